@@ -1,0 +1,24 @@
+# One interface target that every target of ours links: warnings as errors, sanitizers, coverage.
+add_library(rmac_compiler INTERFACE)
+target_compile_options(rmac_compiler INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual
+  -Wcast-align -Wduplicated-cond -Wlogical-op -Wnull-dereference -Werror)
+# A fused multiply-add would make figures depend on the processor; limits are checked against differences of recorded setpoints.
+target_compile_options(rmac_compiler INTERFACE -ffp-contract=off)
+if(CMAKE_BUILD_TYPE STREQUAL "Release")
+  # g++ 12 reports false null dereferences and overflows from inlined library code at -O2 and above.
+  target_compile_options(rmac_compiler INTERFACE -Wno-null-dereference)
+endif()
+if(RMAC_SANITIZE)
+  target_compile_options(rmac_compiler INTERFACE -fsanitize=${RMAC_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
+    -Wno-null-dereference -Wno-maybe-uninitialized)
+  target_link_options(rmac_compiler INTERFACE -fsanitize=${RMAC_SANITIZE})
+endif()
+if(RMAC_COVERAGE)
+  target_compile_options(rmac_compiler INTERFACE --coverage)
+  target_link_options(rmac_compiler INTERFACE --coverage)
+endif()
+find_program(RMAC_CCACHE ccache)
+if(RMAC_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${RMAC_CCACHE})
+endif()

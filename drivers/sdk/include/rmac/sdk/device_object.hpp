@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "rmac/motion/axis.hpp"
+#include "rmac/motion/limits.hpp"
+
+namespace rmac::sdk {
+
+/// A module named in `device.json`, with its parameters by name.
+struct ModuleChoice {
+  std::string name;
+  std::map<std::string, std::vector<double>> numbers;
+  std::map<std::string, std::string> texts;
+};
+
+/// One joint: its limits, its loop, and the drive behind it.
+struct Joint {
+  JointLimits limits;
+  ModuleChoice servo_law;
+  ControlMethod method = ControlMethod::Position;
+  std::vector<double> gains;
+  double max_following_error = 0;  ///< mm or degrees; beyond it the machine stops
+  double max_effort = 0;           ///< N or N·m at the joint
+};
+
+/// One actuator: which axis of which bus, and its scale.
+struct Actuator {
+  std::string bus;
+  std::uint32_t axis = 0;
+  DriveScale scale;
+};
+
+struct Spindle {
+  std::string bus;
+  std::uint32_t axis = 0;
+  double max_speed_rpm = 0;
+  double max_torque_nm = 0;
+  double horse_power = 0;
+  double speed_tolerance_rpm = 0;  ///< how near counts as at speed
+  double speed_timeout_s = 0;
+};
+
+/// The dissertation's device object (figure 4.8): everything about one mechanism, as typed values. The gateway fills it
+/// from `device.json`.
+struct DeviceObject {
+  std::string name;
+  std::string device_driver;
+  std::string driver_version;      ///< "1.2.3"
+  std::string type;                ///< "Mill", "CMM", "Robot"
+  std::string configuration_type;  ///< "3-axis"
+  std::string speed_capability;
+  bool tool_changer = false;
+  int number_of_tools = 1;
+  double length_mm = 0, width_mm = 0, depth_mm = 0;  ///< working volume
+  double max_feedrate_mm_min = 0;
+  double max_pallet_load_kg = 0;
+  double positioning_tolerance_mm = 0, repeatability_tolerance_mm = 0;
+  double path_accel_rise_mm_s2 = 0, path_accel_fall_mm_s2 = 0;  ///< 0: bounded by the joints alone
+  std::vector<Joint> joints;
+  std::vector<Joint> held_joints;   ///< driven, but not moved by this mechanism: they keep the position they have
+  std::vector<Actuator> actuators;  ///< behind joints, then behind held joints, as the actuator map orders them
+  std::vector<Spindle> spindles;
+  ModuleChoice kinematics;
+  ModuleChoice actuator_map;
+  ModuleChoice digital_control_interface;
+  ModuleChoice digital_io_interface;
+  std::map<std::string, int> inputs, outputs;  ///< names of I/O bits, e.g. outputs["Coolant"]
+};
+
+}  // namespace rmac::sdk

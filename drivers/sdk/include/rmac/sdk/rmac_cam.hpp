@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "rmac/motion/error.hpp"
+#include "rmac/motion/move.hpp"
+
+namespace rmac::sdk {
+
+enum class CycleMode { Manual = 0, Automatic = 1 };
+
+/// The RMAC_CAM interface (dissertation 4.5, Appendix IV): motion and control commands, and the machine's answers.
+/// Units are the wire's: mm, deg, mm/min, rpm. Gateway thread only. Functions whose machinery does not exist yet are
+/// not here; the API table says so.
+class RmacCam {
+ public:
+  virtual ~RmacCam() = default;
+
+  virtual Expected<> cycle_start(CycleMode mode) = 0;
+  virtual Expected<> cycle_stop() = 0;
+  virtual Expected<> feed_hold() = 0;
+  virtual Expected<> feed_resume() = 0;
+  /// Stops as fast as the limits allow and empties the queue.
+  virtual Expected<> stop_now() = 0;
+  /// Leaves `Faulted` or `EmergencyStop` once the cause is gone.
+  virtual Expected<> reset() = 0;
+  [[nodiscard]] virtual bool cycle_start_status() const = 0;
+  [[nodiscard]] virtual bool cycle_stop_status() const = 0;
+
+  /// Checks and queues a move; `geometry` is in the part frame. A full queue is CommandQueueFull: the caller waits and
+  /// asks again.
+  virtual Expected<> queue_move(std::int64_t id, const Geometry& geometry) = 0;
+  [[nodiscard]] virtual int moves_in_buffer() const = 0;
+
+  virtual Expected<> set_feedrate(double mm_min) = 0;
+  /// Actual speed of the tool tip from measured joints, mm/min.
+  [[nodiscard]] virtual double feedrate() const = 0;
+  virtual Expected<> set_max_feedrate(double mm_min) = 0;
+  [[nodiscard]] virtual double max_feedrate() const = 0;
+  virtual Expected<> set_feed_override(double percent) = 0;
+  virtual Expected<> set_path_accel_rise(double mm_s2) = 0;
+  [[nodiscard]] virtual double path_accel_rise() const = 0;
+  virtual Expected<> set_path_accel_fall(double mm_s2) = 0;
+  [[nodiscard]] virtual double path_accel_fall() const = 0;
+  virtual Expected<> set_joint_interp_speed(double percent) = 0;
+  [[nodiscard]] virtual double joint_interp_speed() const = 0;
+  virtual Expected<> set_path_tolerance(double mm) = 0;
+  [[nodiscard]] virtual double path_tolerance() const = 0;
+  virtual Expected<> set_part_frame(const Frame& frame) = 0;
+  [[nodiscard]] virtual Frame part_frame() const = 0;
+  virtual Expected<> set_tool_interface_frame(const Frame& frame) = 0;
+  [[nodiscard]] virtual Frame tool_interface_frame() const = 0;
+
+  virtual Expected<> set_spindle_rpm(int spindle, double rpm) = 0;
+  /// Measured.
+  [[nodiscard]] virtual Expected<double> spindle_rpm(int spindle) const = 0;
+  virtual Expected<> set_spindle_max_rpm(int spindle, double rpm) = 0;
+  [[nodiscard]] virtual Expected<double> spindle_max_rpm(int spindle) const = 0;
+  virtual Expected<> set_coolant(bool on) = 0;
+
+  /// Moves one joint by a distance, from rest, at the joint interpolation speed.
+  virtual Expected<> jog_joint(int joint, double distance) = 0;
+  /// Moves all joints to their home position (zero), from rest.
+  virtual Expected<> home() = 0;
+  /// Measured joint positions.
+  [[nodiscard]] virtual Expected<std::vector<double>> current_position() const = 0;
+  virtual Expected<> set_animation(bool on) = 0;
+};
+
+}  // namespace rmac::sdk

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "rmac/motion/error.hpp"
+#include "rmac/motion/move.hpp"
+
+namespace rmac {
+
+/// A point of a curve with derivatives by its own arc length: `d[k][c]` is the k-th derivative of coordinate c.
+struct CurvePoint {
+  std::array<std::array<double, kMaxJoints>, 4> d;
+};
+
+/// A curve parametrised by arc length s in [0, length()]. In pose space the coordinates are tip x y z (mm, part frame)
+/// and unit tool axis i j k, and s is the length of the tip's path (of the axis' turn in degrees where the tip rests);
+/// in joint space they are the joints and s is the Euclidean length in joint units. Smooth inside; second and third
+/// derivatives may jump at `breaks()` only, never the first. Immutable; safe from every thread; `evaluate` is real-time
+/// safe.
+class Curve {
+ public:
+  virtual ~Curve() = default;
+  [[nodiscard]] virtual bool in_joint_space() const noexcept = 0;
+  [[nodiscard]] virtual std::size_t dimension() const noexcept = 0;
+  [[nodiscard]] virtual double length() const noexcept = 0;
+  /// Derivatives up to `order` (0 to 3). At a break `side` chooses the limit from below (-1) or above (+1).
+  virtual void evaluate(double s, int order, int side, CurvePoint& point) const noexcept = 0;
+  /// Ascending arc lengths inside (0, length()) where the second or third derivative may jump.
+  [[nodiscard]] virtual std::span<const double> breaks() const noexcept = 0;
+  /// Ascending arc lengths from 0 to length(), spaced so that between neighbours curvature and its change are small:
+  /// what a planner's grid must at least contain.
+  [[nodiscard]] virtual std::span<const double> nodes() const noexcept = 0;
+};
+
+/// Where a move begins: the pose and joints at the end of what is queued.
+struct CurveStart {
+  ToolPose pose;
+  std::span<const double> joints;
+};
+
+/// The curves of one move, in order; where a curve has a corner inside (a knot of full multiplicity), or a jump of its
+/// tangent, it is cut there. Refuses degenerate geometry (zero length, coincident arc points, bad knots, bad weights,
+/// NaN), and a start further than 1 µm (1e-6 of axis) from `start`, with a message that names the value and the rule.
+[[nodiscard]] Expected<std::vector<std::unique_ptr<const Curve>>> make_curves(const Move& move,
+                                                                              const CurveStart& start);
+
+}  // namespace rmac

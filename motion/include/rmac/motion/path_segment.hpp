@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "rmac/motion/curve.hpp"
+#include "rmac/motion/limits.hpp"
+#include "rmac/motion/ports/kinematics.hpp"
+
+namespace rmac {
+
+/// Frames in force for a move: machine = part · program, and the tool tip on the tool interface.
+struct Frames {
+  Frame part;
+  Frame tool;
+};
+
+/// A point of a path in joint space with derivatives by path length: `d[k][j]` is the k-th derivative of joint j, in mm
+/// or deg.
+struct JointPoint {
+  std::array<std::array<double, kMaxJoints>, 4> d;
+};
+
+/// What a move asks of the planner beside its geometry.
+struct PathDemand {
+  std::int64_t move_id = 0;
+  double feed_mm_s = 0;         ///< bound of ds/dt; for joint moves already reduced to the joints' allowed speed
+  double accel_rise_mm_s2 = 0;  ///< 0: the joints alone bound it
+  double accel_fall_mm_s2 = 0;
+  double tolerance_mm = 0;          ///< of the corner before it
+  double joint_speed_fraction = 1;  ///< of the joints' speed limits
+  double s_begin_mm = 0;            ///< path length within the client's move at the segment's start
+  bool rest_before = false;         ///< positioning moves start at rest
+  bool rest_after = false;          ///< and end at rest
+  bool last_of_move = true;         ///< the move is done when this segment is
+};
+
+/// One curve of one move, seen through the kinematics: joints as a function of path length. Immutable, shared between
+/// planner and servo thread; `evaluate` is const and real-time safe.
+class PathSegment {
+ public:
+  PathSegment(std::shared_ptr<const Curve> curve, const Frames& frames, std::shared_ptr<const Kinematics> kinematics,
+              const PathDemand& demand);
+
+  [[nodiscard]] double length() const noexcept { return length_; }
+  [[nodiscard]] std::size_t joint_count() const noexcept { return joint_count_; }
+  [[nodiscard]] const PathDemand& demand() const noexcept { return demand_; }
+  [[nodiscard]] const Curve& curve() const noexcept { return *curve_; }
+  [[nodiscard]] const Frames& frames() const noexcept { return frames_; }
+
+  /// Finds the joints along the whole segment, node by node from `start_joints`, so that `evaluate` has seeds. Called
+  /// once before use; the status of the first node that has no solution, and its path length, otherwise.
+  [[nodiscard]] KinematicsStatus resolve(std::span<const double> start_joints, double& s_failed);
+
+  /// Joints and their derivatives up to `order` (0 to 3) at s in [0, length()]; `side` as in `Curve::evaluate`.
+  [[nodiscard]] KinematicsStatus evaluate(double s, int order, int side, JointPoint& point) const noexcept;
+
+  /// Tool pose in the part frame at s (through the forward kinematics for joint moves).
+  [[nodiscard]] ToolPose pose(double s) const noexcept;
+
+ private:
+  void seed_at(double s, std::span<double> seed) const noexcept;
+
+  std::shared_ptr<const Curve> curve_;
+  std::shared_ptr<const Kinematics> kinematics_;
+  Frames frames_;
+  PathDemand demand_;
+  double length_ = 0;
+  std::size_t joint_count_ = 0;
+  std::vector<double> seeds_;  ///< joint_count_ values a node of the curve
+};
+
+}  // namespace rmac

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "rmac/motion/path_segment.hpp"
+#include "rmac/motion/time_law.hpp"
+
+namespace rmac {
+
+/// What the servo loop follows from `start_cycle` on: a stretch of path and the law by which it is travelled. Always
+/// ends at rest, so a machine whose planner dies comes to rest on the path. Immutable once published.
+struct Plan {
+  std::uint64_t id = 0;
+  std::int64_t start_cycle = 0;  ///< time 0 of the law
+  std::vector<std::shared_ptr<const PathSegment>> segments;
+  std::vector<double> segment_start;  ///< path length at which each segment begins; same origin as the law's s
+  std::vector<LawPiece> law;          ///< in time order, without gaps; ends with v = 0
+  double end_time_s = 0;
+};
+
+/// The motion wanted in one cycle.
+struct Setpoint {
+  std::array<double, kMaxJoints> position{};
+  std::array<double, kMaxJoints> velocity{};
+  std::array<double, kMaxJoints> acceleration{};
+  ToolPose pose;  ///< part frame
+  std::int64_t move_id = 0;
+  double s_mm = 0;               ///< within the client's move
+  double feed_mm_s = 0;          ///< speed along the path
+  bool moving = false;           ///< a plan is under way
+  std::uint32_t moves_done = 0;  ///< moves whose end was passed in this cycle, see `PlanFollower::done`
+};
+
+}  // namespace rmac

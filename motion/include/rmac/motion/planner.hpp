@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "rmac/motion/error.hpp"
+#include "rmac/motion/move.hpp"
+#include "rmac/motion/path_segment.hpp"
+#include "rmac/motion/plan.hpp"
+#include "rmac/motion/plan_channel.hpp"
+
+namespace rmac {
+
+/// The mechanism as the planner sees it.
+struct PlannerModel {
+  std::shared_ptr<const Kinematics> kinematics;
+  std::vector<JointLimits> joints;  ///< kinematic joints only
+  double period_s = 0.001;
+};
+
+/// Turns moves into checked path segments. Knows where the queue ends. Gateway thread.
+class PathBuilder {
+ public:
+  explicit PathBuilder(PlannerModel model);
+
+  /// Forgets the queue: the next move starts from these joints. Frames may change only when the machine is at rest and
+  /// the queue empty.
+  void restart(std::span<const double> joints, const Frames& frames);
+
+  /// Segments of one move, checked for geometry, reach, singularity and joint travel before anything moves. An error
+  /// names the joint, the amount and the path length of the first offence; then the queue's end is unchanged.
+  [[nodiscard]] Expected<std::vector<std::shared_ptr<const PathSegment>>> build(const Move& move);
+
+  /// Tool pose (part frame) and joints at the end of what was built.
+  [[nodiscard]] const ToolPose& end_pose() const noexcept { return end_pose_; }
+  [[nodiscard]] std::span<const double> end_joints() const noexcept { return end_joints_; }
+  [[nodiscard]] const Frames& frames() const noexcept { return frames_; }
+
+ private:
+  PlannerModel model_;
+  Frames frames_;
+  ToolPose end_pose_;
+  std::vector<double> end_joints_;
+};
+
+/// What the servo loop tells the planner: read from its snapshot.
+struct ServoProgress {
+  std::int64_t cycle = 0;          ///< the cycle that is being executed
+  std::uint64_t active_plan = 0;   ///< id of the plan it follows, 0 for none
+  std::uint64_t last_refused = 0;  ///< id of the last plan that came too late
+};
+
+/// How the machine is to treat its path.
+enum class PathCommand {
+  Stop,    ///< come to rest on the path as soon as the limits allow, and stay
+  RunOne,  ///< run one move, then stop
+  Run,     ///< run what is queued, and what comes
+};
+
+/// The motion planner: path segments in, plans out. One thread at a time (the caller locks); never the servo thread.
+class Planner {
+ public:
+  Planner(PlannerModel model, PlanChannel& channel);
+  ~Planner();
+  Planner(const Planner&) = delete;
+  Planner& operator=(const Planner&) = delete;
+
+  void add(std::vector<std::shared_ptr<const PathSegment>> segments);
+  /// Drops everything that is not yet travelled. Only at rest.
+  void clear();
+  void command(PathCommand command) noexcept;
+  /// 0 to 200 percent of the programmed feed, from as soon as the limits allow.
+  void set_override(double percent) noexcept;
+
+  /// Does one bounded piece of work if there is any: plans a window, or the way to a stop. True when it published
+  /// something.
+  bool step(const ServoProgress& progress);
+  /// Nothing to do until something is added, commanded, or the servo loop goes on.
+  [[nodiscard]] bool idle(const ServoProgress& progress) const noexcept;
+  /// The machine has come, or comes, to rest at the end of what is published by this cycle.
+  [[nodiscard]] bool at_rest(const ServoProgress& progress) const noexcept;
+  /// Moves added and not yet done.
+  [[nodiscard]] std::size_t moves_left() const noexcept;
+  /// Where the path stands when at rest: joints at the end of what was travelled.
+  [[nodiscard]] std::vector<double> rest_joints() const;
+  /// Free segments and moves still to come before `add` should wait.
+  static constexpr std::size_t kQueueCapacity = 10000;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rmac

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+
+#include "rmac/motion/error.hpp"
+
+namespace rmac {
+
+/// Port: up to 64 digital inputs and outputs. Bit numbers are given names in `device.json`.
+class DigitalIoInterface {
+ public:
+  virtual ~DigitalIoInterface() = default;
+  /// Claims the lines; the error names the line that is missing. Off the cycle.
+  [[nodiscard]] virtual Expected<> start() = 0;
+  /// Puts outputs into their safe state. Off the cycle; cannot fail.
+  virtual void stop() noexcept = 0;
+  /// One cycle: writes `outputs`, reads `inputs`. False when the device failed. Real-time safe.
+  [[nodiscard]] virtual bool exchange(std::uint64_t outputs, std::uint64_t& inputs) noexcept = 0;
+};
+
+}  // namespace rmac

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+
+#include "rmac/motion/pose.hpp"
+
+namespace rmac {
+
+enum class KinematicsStatus {
+  Ok,
+  OutOfReach,  ///< no joint vector gives this pose (too far, or off the plane of a two-axis machine)
+  Singular,    ///< the Jacobian loses rank here, so the joint velocities are not determined
+};
+
+/// Port: joints ↔ tool. The machine frame is fixed to the link that holds the part; joints are mm or degrees, in the
+/// order of `device.json`. `tool` is the pose of the tool tip on the tool interface (`SetToolInterfaceFrame`).
+/// Stateless and const: the planner and the servo thread call the same object at the same time. Real-time safe: no
+/// allocation.
+class Kinematics {
+ public:
+  virtual ~Kinematics() = default;
+  [[nodiscard]] virtual std::size_t joint_count() const noexcept = 0;
+
+  /// Tool pose in the machine frame. `joints`: joint_count() values. Total: every joint vector has a pose.
+  virtual void forward(std::span<const double> joints, const Frame& tool, ToolPose& pose) const noexcept = 0;
+
+  /// Joints that give `pose`; of several solutions the one nearest to `seed`. Joint limits are not this function's
+  /// business.
+  [[nodiscard]] virtual KinematicsStatus inverse(const ToolPose& pose, const Frame& tool, std::span<const double> seed,
+                                                 std::span<double> joints) const noexcept = 0;
+
+  /// Row-major 6 x n: d(tip x, y, z, axis i, j, k) / d(joint). Rotary columns are per degree.
+  virtual void jacobian(std::span<const double> joints, const Frame& tool,
+                        std::span<double> jacobian) const noexcept = 0;
+};
+
+}  // namespace rmac

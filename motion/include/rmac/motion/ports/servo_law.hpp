@@ -1,0 +1,43 @@
+#pragma once
+
+#include <span>
+
+namespace rmac {
+
+/// What a servo law sees in one cycle of one joint. mm or degrees; efforts in N or N·m at the joint.
+struct ServoInput {
+  double position_setpoint = 0;
+  double velocity_setpoint = 0;
+  double acceleration_setpoint = 0;
+  double effort_setpoint = 0;  ///< wanted contact force, for force control
+  double position = 0;         ///< measured
+  double velocity = 0;         ///< measured
+  double effort = 0;           ///< measured by a force sensor where there is one, else by the drive
+  double period_s = 0.001;
+};
+
+/// One gain of a law: its name and unit as `device.json` and `SetMechanismJointServoControlGains` order them.
+struct GainInfo {
+  const char* name;
+  const char* unit;
+};
+
+/// Port: the control law of one joint, in joint space; its output is the joint effort in N or N·m.
+class ServoLaw {
+ public:
+  virtual ~ServoLaw() = default;
+
+  /// The meaning of the gain array, in order. Off the cycle.
+  [[nodiscard]] virtual std::span<const GainInfo> gains() const noexcept = 0;
+  /// Takes new gains; false, and nothing changes, when their number or a value is impossible. Off the cycle.
+  [[nodiscard]] virtual bool set_gains(std::span<const double> values) noexcept = 0;
+  /// Largest effort the law may put out. Off the cycle.
+  virtual void set_effort_limit(double effort) noexcept = 0;
+  /// Engages without a jump: the next output continues from `effort`. Real-time safe.
+  virtual void engage(const ServoInput& input, double effort) noexcept = 0;
+  /// One cycle. Always within the effort limit; NaN in gives NaN out, which the servo loop turns into a fault.
+  /// Real-time safe.
+  [[nodiscard]] virtual double update(const ServoInput& input) noexcept = 0;
+};
+
+}  // namespace rmac
