@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "rmac/motion/pose.hpp"
+
+namespace rmac::gateway {
+
+enum class CycleState : std::uint8_t { Idle, Running, Holding, Stopping, Faulted, EmergencyStop };
+
+[[nodiscard]] const char* to_string(CycleState state) noexcept;
+
+/// Everything one servo cycle left behind, as the servo thread writes it and every other thread reads it. Plain data.
+/// Joints 0 to joint_count-1 are the mechanism's; up to axis_count-1 follow the held ones. mm, deg, s, N, N·m; feed in
+/// mm/s.
+struct CycleSample {
+  std::int64_t cycle = 0;
+  double t_s = 0;
+  std::uint32_t joint_count = 0;
+  std::uint32_t axis_count = 0;
+  CycleState state = CycleState::Idle;
+  bool moving = false;
+  std::int64_t move_id = 0;
+  double s_mm = 0;
+  double feed_set_mm_s = 0;     ///< path speed of the setpoint
+  double feed_actual_mm_s = 0;  ///< tool tip, from measured joints through the forward kinematics
+  ToolPose pose_set;            ///< part frame
+  ToolPose pose_actual;         ///< part frame
+  std::array<double, kMaxJoints> position_set{}, velocity_set{}, acceleration_set{};
+  std::array<double, kMaxJoints> position{}, velocity{}, effort{};
+  std::array<std::uint16_t, kMaxJoints> statusword{};
+  std::array<double, 4> spindle_rpm{};
+  std::uint64_t inputs = 0, outputs = 0;
+  std::uint64_t deadline_misses = 0;
+};
+
+/// What happened, in order. Made off the servo thread from what its fault ring reports.
+struct Event {
+  enum class Kind : std::uint8_t {
+    MoveStarted,
+    MoveDone,
+    Hit,
+    Stopped,
+    Fault,
+    Authority,
+    Mechanism,
+    CycleStateChanged
+  };
+  Kind kind = Kind::Stopped;
+  double t_s = 0;
+  std::int64_t move_id = 0;
+  std::string message;  ///< for a person: what happened, where, what to do
+};
+
+}  // namespace rmac::gateway

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "gateway/controller/controller.hpp"
+#include "gateway/device_driver_manager/device_driver_manager.hpp"
+#include "rmac/sdk/device_driver.hpp"
+
+namespace rmac::gateway {
+
+/// Hosts the one device driver that is loaded (dissertation 4.3): reads its device database, loads its module, and lets
+/// it configure the controller. Gateway thread only.
+class DeviceHost {
+ public:
+  DeviceHost(DeviceDriverManager& manager, Controller& controller);
+  ~DeviceHost();
+
+  /// Loads mechanism `name`: the driver configures planner, servo controller and interfaces into a draft, which is
+  /// applied at standstill. On any failure the mechanism that was loaded stays loaded, and the error says what failed.
+  [[nodiscard]] Expected<> load(const std::string& name, bool virtual_mode);
+  [[nodiscard]] Expected<> unload();
+  [[nodiscard]] bool loaded() const noexcept;
+  [[nodiscard]] bool virtual_mode() const noexcept;
+
+  /// The device object of the loaded mechanism as its database gives it.
+  [[nodiscard]] Expected<const sdk::DeviceObject*> database() const;
+  /// The same with what `Machine_Set…` changed since; the three functions below hand it to the driver, and apply.
+  [[nodiscard]] Expected<sdk::DeviceObject*> wanted();
+  [[nodiscard]] Expected<> configure_motion_planner();
+  [[nodiscard]] Expected<> configure_servo_controller();
+  [[nodiscard]] Expected<> configure_digital_control_interface();
+
+  /// A move through the driver (`Machine_MoveIn…`).
+  [[nodiscard]] Expected<> move(std::int64_t id, const Geometry& geometry);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rmac::gateway
