@@ -1,0 +1,177 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "rmac/motion/axis.hpp"
+#include "rmac/motion/path_segment.hpp"
+#include "rmac/motion/plan.hpp"
+#include "rmac/motion/ports/actuator_map.hpp"
+#include "rmac/motion/ports/digital_control_interface.hpp"
+#include "rmac/motion/ports/digital_io_interface.hpp"
+#include "rmac/motion/ports/kinematics.hpp"
+#include "rmac/motion/ports/servo_law.hpp"
+
+namespace rmac {
+
+inline constexpr std::size_t kMaxSpindles = 4;
+
+/// A bus with the words of all its axes. The bus registry owns it; servo loops share it one after the other.
+struct ServoBus {
+  explicit ServoBus(std::shared_ptr<DigitalControlInterface> bus_interface);
+  std::shared_ptr<DigitalControlInterface> interface;
+  std::vector<DriveCommand> commands;   ///< go out with the next exchange
+  std::vector<DriveFeedback> feedback;  ///< came in with the last
+};
+
+/// The loop of one joint.
+struct ServoAxis {
+  std::shared_ptr<ServoLaw> law;  ///< gains set; the loop sets the effort limit
+  ControlMethod method = ControlMethod::Position;
+  double max_following_error = 0;  ///< mm or deg
+  double max_effort = 0;           ///< N or N·m at the joint
+};
+
+/// A drive that moves joints, in torque mode.
+struct ServoActuator {
+  std::shared_ptr<ServoBus> bus;
+  std::uint32_t axis = 0;
+  DriveScale scale;
+};
+
+/// A drive that turns a spindle, in velocity mode.
+struct ServoSpindle {
+  std::shared_ptr<ServoBus> bus;
+  std::uint32_t axis = 0;
+  double max_speed_rpm = 0;
+};
+
+/// What a servo loop is made of. `axes`: the kinematic joints, then the held ones; `actuators` in the order of the map.
+struct ServoLoopParts {
+  std::shared_ptr<const Kinematics> kinematics;
+  std::shared_ptr<const ActuatorMap> actuator_map;
+  std::vector<ServoAxis> axes;
+  std::vector<ServoActuator> actuators;
+  std::vector<ServoSpindle> spindles;
+  std::shared_ptr<DigitalIoInterface> io;  ///< may be null
+  double period_s = 0.001;
+  double enable_timeout_s = 5;        ///< to bring every drive to Operation Enabled
+  bool virtual_mode = false;          ///< setpoints are reflected as measured values; buses and I/O are not touched
+  std::vector<double> virtual_start;  ///< axes.size() positions where virtual mode begins; empty: zeros
+};
+
+enum class ServoState : std::uint8_t {
+  Off,        ///< no torque
+  Enabling,   ///< drives are on their way to Operation Enabled; those that are there hold their position
+  Engaged,    ///< every joint follows its setpoint
+  QuickStop,  ///< asked for: drives brake by themselves
+  Faulted,    ///< the same, because of `fault`; left by a reset
+};
+
+/// What is wrong, first cause first. `index` counts joints (held ones included), actuators, spindles or buses, as
+/// `part` says.
+struct ServoFault {
+  enum class Kind : std::uint8_t {
+    None,
+    FollowingError,  ///< value: the error, bound: what is allowed (mm or deg)
+    NotANumber,      ///< a law or a setpoint gave NaN or infinity
+    DriveFault,      ///< value: the drive's error code (603Fh)
+    DriveOffline,    ///< the drive did not answer
+    DriveDropped,    ///< the drive left Operation Enabled by itself; value: its statusword
+    EnableTimeout,   ///< value: the statusword it is stuck at, bound: seconds waited
+    BusFailure,
+    IoFailure,
+  };
+  enum class Part : std::uint8_t { Joint, Actuator, Spindle, Bus, Io };
+  Kind kind = Kind::None;
+  Part part = Part::Joint;
+  std::uint32_t index = 0;
+  double value = 0;
+  double bound = 0;
+};
+
+/// What the loop is to do in one cycle.
+struct ServoCommand {
+  Setpoint setpoint;  ///< of the kinematic joints; used when Engaged
+  Frames frames;      ///< in force for `setpoint`
+  bool power = false;
+  bool quick_stop = false;
+  bool reset = false;  ///< leaves Faulted, on its rising edge, and resets the drives' faults
+  std::array<double, kMaxSpindles> spindle_rpm{};
+  std::uint64_t outputs = 0;
+};
+
+/// What one cycle found and did. Arrays count joints (held ones included) or actuators; mm, deg, s, N, N·m.
+struct ServoReport {
+  ServoState state = ServoState::Off;
+  ServoFault fault;
+  std::array<double, kMaxJoints> position_set{}, velocity_set{}, acceleration_set{};
+  std::array<double, kMaxJoints> position{}, velocity{};
+  std::array<double, kMaxJoints> effort{};  ///< at the joint, as commanded
+  std::array<std::uint16_t, kMaxJoints> statusword{};
+  std::array<std::uint16_t, kMaxJoints> error_code{};
+  std::array<std::int16_t, kMaxJoints> torque_permille{};  ///< measured by the drives
+  std::array<double, kMaxSpindles> spindle_rpm{};
+  std::array<std::uint16_t, kMaxSpindles> spindle_statusword{};
+  ToolPose pose;         ///< measured, part frame
+  double feed_mm_s = 0;  ///< tool tip, from measured joints
+  std::uint64_t inputs = 0;
+};
+
+/// What a loop leaves to the one that comes after it, drive by drive, so that nothing jumps.
+struct ServoHandover {
+  struct Drive {
+    const ServoBus* bus = nullptr;
+    std::uint32_t axis = 0;
+    std::int64_t counts = 0;  ///< unwrapped
+    double setpoint_rad = 0;  ///< shaft angle wanted, from the drive's encoder zero
+    double torque_nm = 0;     ///< commanded, in the drive's sense
+    bool live = false;        ///< was under control
+  };
+  std::array<Drive, kMaxJoints> drives{};
+  std::size_t count = 0;
+};
+
+/// One servo cycle of one mechanism, as a function. Built off the servo thread; then all members are the servo
+/// thread's, and real-time safe: no allocation, lock or exception.
+///
+/// Order of a cycle: exchange with each bus (the words made in the cycle before go out, so a drive acts on a
+/// measurement one cycle after it was taken); counts → shaft → joint; setpoint; servo law; effort → shaft → torque
+/// word. Joint velocity is the difference of two positions over one period: exact on average, half a period late, and
+/// coarse by one encoder count a period; a law filters its derivative as its gain needs.
+///
+/// While the state is not Engaged the follower must be held at `hold_position()`, so that engaging does not jump.
+class ServoLoop {
+ public:
+  /// Checks that the parts fit together; the error says which do not. Off the servo thread.
+  [[nodiscard]] static Expected<std::unique_ptr<ServoLoop>> create(ServoLoopParts parts);
+  ~ServoLoop();
+  ServoLoop(const ServoLoop&) = delete;
+  ServoLoop& operator=(const ServoLoop&) = delete;
+
+  [[nodiscard]] std::size_t joint_count() const noexcept;  ///< of the kinematics
+  [[nodiscard]] std::size_t axis_count() const noexcept;   ///< held ones included
+  [[nodiscard]] const ServoLoopParts& parts() const noexcept;
+
+  /// Takes over from another loop between two cycles, before this one's first cycle. Drives that both have stay
+  /// operational, with their setpoint and torque; drives of the same buses that this loop does not have go off.
+  void engage(const ServoHandover& previous) noexcept;
+  [[nodiscard]] ServoHandover handover() const noexcept;
+
+  void cycle(const ServoCommand& command, ServoReport& report) noexcept;
+
+  [[nodiscard]] ServoState state() const noexcept;
+  /// Where the loop holds its axes: the last setpoint, or the measured position where there is no torque. axis_count()
+  /// values, the kinematic joints first; zero before the first cycle unless `engage` was called.
+  [[nodiscard]] std::span<const double> hold_position() const noexcept;
+
+ private:
+  struct Impl;
+  explicit ServoLoop(std::unique_ptr<Impl> impl) noexcept;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rmac
