@@ -126,10 +126,10 @@ struct ServoHandover {
   struct Drive {
     const ServoBus* bus = nullptr;
     std::uint32_t axis = 0;
-    std::int64_t counts = 0;  ///< unwrapped
-    double setpoint_rad = 0;  ///< shaft angle wanted, from the drive's encoder zero
-    double torque_nm = 0;     ///< commanded, in the drive's sense
-    bool live = false;        ///< was under control
+    std::int64_t counts = 0;     ///< unwrapped
+    double setpoint_counts = 0;  ///< wanted position in encoder counts, before rounding
+    double torque_nm = 0;        ///< commanded, in the drive's sense
+    bool live = false;           ///< was under control
   };
   std::array<Drive, kMaxJoints> drives{};
   std::size_t count = 0;
