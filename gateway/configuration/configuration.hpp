@@ -1,0 +1,89 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rmac/motion/error.hpp"
+
+namespace rmac::gateway {
+
+/// How motion ends, as IEC 60204-1 (9.2.2) numbers it.
+enum class StopCategory : int { RemovePower = 0, StopThenRemovePower = 1, StopKeepPower = 2 };
+
+/// What each failure leads to. Which category a machine needs follows from its risk assessment, not from these
+/// defaults.
+struct StopCategories {
+  StopCategory lease_lost = StopCategory::StopKeepPower;
+  StopCategory drive_heartbeat_lost = StopCategory::StopThenRemovePower;
+  StopCategory bus_lost = StopCategory::RemovePower;
+  StopCategory sensor_lost = StopCategory::StopThenRemovePower;
+  StopCategory following_error = StopCategory::StopThenRemovePower;
+  StopCategory cycle_deadline = StopCategory::StopThenRemovePower;
+};
+
+/// What paces the servo loop: the clock of the machine, or nothing but the computation (for tests and simulated buses).
+enum class Pace { RealTime, AsFastAsComputed };
+
+struct RealTimeSettings {
+  std::optional<int> cpu;  ///< processor of the servo thread; none: wherever the kernel puts it
+  int priority = 80;       ///< SCHED_FIFO, 1 to 99
+  bool lock_memory = true;
+  bool degraded_allowed = true;  ///< run, with a warning, when the system grants no real-time scheduling
+};
+
+/// A mechanism to load when the daemon starts.
+struct Autoload {
+  std::string mechanism;
+  bool virtual_mode = false;
+};
+
+/// The daemon's configuration, `rmacd.json`, complete: every value that the file leaves out has its default. Paths are
+/// absolute.
+struct Configuration {
+  std::string address = "127.0.0.1";  ///< a loopback address
+  std::uint16_t port = 7402;          ///< 0: the system picks a free one
+  std::filesystem::path unix_socket;  ///< empty: none
+  std::filesystem::path state_folder;
+  std::filesystem::path device_tree;                  ///< holds <type>/<configuration>/<Mechanism>/device.json
+  std::vector<std::filesystem::path> module_folders;  ///< where modules are looked for after the mechanism's own folder
+  std::string database;                               ///< path of the SQLite file, or a "postgresql://…" connection
+  std::chrono::nanoseconds period{1'000'000};
+  Pace pace = Pace::RealTime;
+  RealTimeSettings real_time;
+  int queue_capacity = 10'000;  ///< moves
+  StopCategories stop_categories;
+  std::optional<Autoload> autoload;
+};
+
+/// What the command line puts over the file; values that follow from one of these (the database's place from the state
+/// folder, the module folders from the device tree) follow it.
+struct ConfigurationOverrides {
+  std::optional<std::uint16_t> port;
+  std::optional<std::filesystem::path> unix_socket;
+  std::optional<std::filesystem::path> state_folder;
+  std::optional<std::filesystem::path> device_tree;
+  std::optional<std::string> database;
+  std::optional<Pace> pace;
+};
+
+/// Where things are when neither file nor command line says so.
+struct DefaultFolders {
+  std::filesystem::path device_tree;
+  std::filesystem::path state_folder;
+  std::filesystem::path runtime_folder;  ///< holds the UNIX socket
+};
+
+/// A daemon in a build tree uses that tree; an installed one the folders of its installation, and under systemd the
+/// state and runtime folders that its unit was given ($STATE_DIRECTORY, $RUNTIME_DIRECTORY).
+[[nodiscard]] DefaultFolders default_folders();
+
+/// Reads `rmacd.json`. Relative paths in the file are relative to the file's folder; those of the command line to the
+/// current one. An error names file, key, value and allowed range.
+[[nodiscard]] Expected<Configuration> read_configuration(const std::filesystem::path& rmacd_json,
+                                                         const ConfigurationOverrides& overrides = {});
+
+}  // namespace rmac::gateway
