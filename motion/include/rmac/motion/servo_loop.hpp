@@ -95,11 +95,11 @@ struct ServoFault {
 
 /// What the loop is to do in one cycle.
 struct ServoCommand {
-  Setpoint setpoint;  ///< of the kinematic joints; used when Engaged
-  Frames frames;      ///< in force for `setpoint`
-  bool power = false;
+  Setpoint setpoint;   ///< of the kinematic joints; used when Engaged
+  Frames frames;       ///< in force for `setpoint`
+  bool power = false;  ///< after a fault or a quick stop it must fall before drives are enabled again
   bool quick_stop = false;
-  bool reset = false;  ///< leaves Faulted, on its rising edge, and resets the drives' faults
+  bool reset = false;  ///< its rising edge resets the drives' faults, and leaves Faulted once they are gone
   std::array<double, kMaxSpindles> spindle_rpm{};
   std::uint64_t outputs = 0;
 };
@@ -107,6 +107,7 @@ struct ServoCommand {
 /// What one cycle found and did. Arrays count joints (held ones included) or actuators; mm, deg, s, N, N·m.
 struct ServoReport {
   ServoState state = ServoState::Off;
+  bool follows = false;  ///< the command's setpoint was used; where not, hold the follower at `hold_position()`
   ServoFault fault;
   std::array<double, kMaxJoints> position_set{}, velocity_set{}, acceleration_set{};
   std::array<double, kMaxJoints> position{}, velocity{};
@@ -143,7 +144,8 @@ struct ServoHandover {
 /// word. Joint velocity is the difference of two positions over one period: exact on average, half a period late, and
 /// coarse by one encoder count a period; a law filters its derivative as its gain needs.
 ///
-/// While the state is not Engaged the follower must be held at `hold_position()`, so that engaging does not jump.
+/// After a cycle whose report says that it does not follow, the follower must be put at `hold_position()`
+/// (`PlanFollower::hold_at`), so that engaging does not jump.
 class ServoLoop {
  public:
   /// Checks that the parts fit together; the error says which do not. Off the servo thread.
