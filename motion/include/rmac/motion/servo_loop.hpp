@@ -131,6 +131,7 @@ struct ServoHandover {
     double setpoint_counts = 0;  ///< wanted position in encoder counts, before rounding
     double torque_nm = 0;        ///< commanded, in the drive's sense
     bool live = false;           ///< was under control
+    bool seen = false;           ///< `counts` holds a reading
   };
   std::array<Drive, kMaxJoints> drives{};
   std::size_t count = 0;

@@ -1,0 +1,171 @@
+#include <algorithm>
+#include <cmath>
+
+#include "servo/servo_loop_impl.hpp"
+
+namespace rmac {
+
+namespace {
+
+std::string joint_text(std::size_t joint) {
+  return "joint " + std::to_string(joint);
+}
+
+Expected<> check_counts(const ServoLoopParts& parts) {
+  if (!parts.kinematics || !parts.actuator_map) {
+    return failure(MinorCode::InvalidParameter, "servo loop: kinematics or actuator map is missing; choose both");
+  }
+  const std::size_t axes = parts.axes.size();
+  const std::size_t joints = parts.kinematics->joint_count();
+  if (joints == 0 || joints > axes || axes > kMaxJoints) {
+    return failure(MinorCode::InvalidParameterValue,
+                   "servo loop: the kinematics has " + std::to_string(joints) + " joints, but " + std::to_string(axes) +
+                       " joints are configured (held ones included); at least as many as the kinematics has, and at "
+                       "most " +
+                       std::to_string(kMaxJoints) + ", are needed");
+  }
+  if (parts.actuator_map->joint_count() != axes) {
+    return failure(MinorCode::InvalidParameterValue,
+                   "servo loop: the actuator map is for " + std::to_string(parts.actuator_map->joint_count()) +
+                       " joints, but " + std::to_string(axes) + " are configured (held ones included)");
+  }
+  if (parts.actuator_map->actuator_count() != parts.actuators.size() || parts.actuators.size() > kMaxJoints) {
+    return failure(MinorCode::InvalidParameterValue,
+                   "servo loop: the actuator map is for " + std::to_string(parts.actuator_map->actuator_count()) +
+                       " actuators, but " + std::to_string(parts.actuators.size()) + " are configured");
+  }
+  if (parts.spindles.size() > kMaxSpindles) {
+    return failure(MinorCode::InvalidParameterValue, "servo loop: " + std::to_string(parts.spindles.size()) +
+                                                         " spindles; at most " + std::to_string(kMaxSpindles));
+  }
+  if (!(parts.period_s > 0 && parts.period_s <= 0.1) || !(parts.enable_timeout_s > 0)) {
+    return failure(MinorCode::InvalidParameterValue,
+                   "servo loop: the period must be above 0 and at most 0.1 s, the enable time-out above 0 s");
+  }
+  return {};
+}
+
+Expected<> check_axes(const ServoLoopParts& parts) {
+  for (std::size_t j = 0; j < parts.axes.size(); ++j) {
+    const ServoAxis& axis = parts.axes[j];
+    if (!axis.law) return failure(MinorCode::InvalidParameter, "servo loop: " + joint_text(j) + " has no servo law");
+    if (axis.method != ControlMethod::Position) {
+      return failure(MinorCode::UnsupportedOperation, "servo loop: " + joint_text(j) +
+                                                          " asks for velocity or force control; only position control "
+                                                          "is there so far");
+    }
+    if (!(axis.max_following_error > 0) || !(axis.max_effort > 0) || !std::isfinite(axis.max_effort)) {
+      return failure(MinorCode::InvalidParameterValue,
+                     "servo loop: " + joint_text(j) + " needs a following-error bound and an effort bound above 0");
+    }
+  }
+  const std::size_t starts = parts.virtual_start.size();
+  if (starts != 0 && starts != parts.axes.size()) {
+    return failure(MinorCode::InvalidParameterValue, "servo loop: virtual mode starts at " + std::to_string(starts) +
+                                                         " positions, but there are " +
+                                                         std::to_string(parts.axes.size()) + " joints");
+  }
+  return {};
+}
+
+Expected<> check_drive(const ServoBus* bus, std::uint32_t axis, const std::string& who) {
+  if (bus == nullptr) return failure(MinorCode::InvalidParameter, "servo loop: " + who + " has no bus");
+  if (axis >= bus->commands.size()) {
+    return failure(MinorCode::InvalidParameterValue, "servo loop: " + who + " is axis " + std::to_string(axis) +
+                                                         ", but its bus has " + std::to_string(bus->commands.size()) +
+                                                         " axes, counted from 0");
+  }
+  return {};
+}
+
+Expected<> check_drives(const ServoLoopParts& parts) {
+  std::vector<std::pair<const ServoBus*, std::uint32_t>> taken;
+  const auto take = [&taken](const ServoBus* bus, std::uint32_t axis, const std::string& who) -> Expected<> {
+    if (auto ok = check_drive(bus, axis, who); !ok) return ok;
+    if (std::find(taken.begin(), taken.end(), std::pair{bus, axis}) != taken.end()) {
+      return failure(MinorCode::InvalidParameterValue,
+                     "servo loop: " + who + " is bus axis " + std::to_string(axis) + ", which is taken already");
+    }
+    taken.emplace_back(bus, axis);
+    return {};
+  };
+  for (std::size_t i = 0; i < parts.actuators.size(); ++i) {
+    const ServoActuator& actuator = parts.actuators[i];
+    const std::string who = "actuator " + std::to_string(i);
+    if (auto ok = take(actuator.bus.get(), actuator.axis, who); !ok) return ok;
+    const DriveScale& scale = actuator.scale;
+    if (!(scale.counts_per_revolution > 0) || !(scale.rated_torque_nm > 0) || std::abs(scale.direction) != 1) {
+      return failure(MinorCode::InvalidParameterValue,
+                     "servo loop: " + who +
+                         " needs counts a revolution and a rated torque above 0, and a direction of "
+                         "1 or -1");
+    }
+  }
+  for (std::size_t i = 0; i < parts.spindles.size(); ++i) {
+    const std::string who = "spindle " + std::to_string(i);
+    if (auto ok = take(parts.spindles[i].bus.get(), parts.spindles[i].axis, who); !ok) return ok;
+    if (!(parts.spindles[i].max_speed_rpm > 0)) {
+      return failure(MinorCode::InvalidParameterValue, "servo loop: " + who + " needs a largest speed above 0 rpm");
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+ServoBus::ServoBus(std::shared_ptr<DigitalControlInterface> bus_interface)
+    : interface(std::move(bus_interface)), commands(interface->axis_count()), feedback(interface->axis_count()) {}
+
+Expected<std::unique_ptr<ServoLoop>> ServoLoop::create(ServoLoopParts parts) {
+  return check_counts(parts)
+      .and_then([&] { return check_axes(parts); })
+      .and_then([&] { return check_drives(parts); })
+      .map([&] { return std::unique_ptr<ServoLoop>(new ServoLoop(std::make_unique<Impl>(std::move(parts)))); });
+}
+
+ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
+    : parts(std::move(loop_parts)),
+      joints(parts.kinematics->joint_count()),
+      axes(parts.axes.size()),
+      actuators(parts.actuators.size()) {
+  const auto add_bus = [this](const std::shared_ptr<ServoBus>& bus) {
+    if (std::find(buses.begin(), buses.end(), bus) == buses.end()) buses.push_back(bus);
+  };
+  for (const ServoActuator& actuator : parts.actuators) add_bus(actuator.bus);
+  for (const ServoSpindle& spindle : parts.spindles) add_bus(spindle.bus);
+
+  std::array<double, kMaxJoints> zero{};
+  for (std::size_t j = 0; j < axes; ++j) {
+    parts.axes[j].law->set_effort_limit(parts.axes[j].max_effort);
+    std::array<double, kMaxJoints> unit{};
+    std::array<double, kMaxJoints> torques{};
+    unit[j] = 1;
+    parts.actuator_map->actuator_efforts({zero.data(), axes}, {unit.data(), axes}, {torques.data(), actuators});
+    for (std::size_t i = 0; i < actuators; ++i) {
+      if (torques[i] != 0) actuators_of[j] |= std::uint32_t{1} << i;
+    }
+  }
+  if (parts.virtual_mode) std::copy(parts.virtual_start.begin(), parts.virtual_start.end(), hold.begin());
+  if (parts.virtual_mode) position = hold;
+}
+
+ServoLoop::ServoLoop(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+ServoLoop::~ServoLoop() = default;
+
+std::size_t ServoLoop::joint_count() const noexcept {
+  return impl_->joints;
+}
+std::size_t ServoLoop::axis_count() const noexcept {
+  return impl_->axes;
+}
+const ServoLoopParts& ServoLoop::parts() const noexcept {
+  return impl_->parts;
+}
+ServoState ServoLoop::state() const noexcept {
+  return impl_->state;
+}
+std::span<const double> ServoLoop::hold_position() const noexcept {
+  return {impl_->hold.data(), impl_->axes};
+}
+
+}  // namespace rmac

@@ -1,0 +1,230 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "servo/servo_loop_impl.hpp"
+
+namespace rmac {
+
+void ServoLoop::cycle(const ServoCommand& command, ServoReport& report) noexcept {
+  Impl& loop = *impl_;
+  loop.follows = false;
+  loop.exchange(command, report);
+  loop.change_state(command);
+  if (loop.parts.virtual_mode) {
+    loop.finish_reset();
+    loop.make_setpoints(command, report);
+    loop.reflect_setpoints();
+  } else {
+    loop.read_actuators();
+    loop.read_joints();
+    loop.watch_drives();
+    loop.finish_reset();
+    loop.make_live();
+    loop.make_setpoints(command, report);
+    loop.run_laws();
+    loop.watch_enabling();
+    loop.make_torques();
+    loop.write_actuators();
+    loop.write_spindles(command);
+  }
+  loop.fill(command, report);
+}
+
+void ServoLoop::Impl::exchange(const ServoCommand& command, ServoReport& report) noexcept {
+  if (parts.virtual_mode) {
+    report.inputs = 0;
+    return;
+  }
+  if (fresh) {
+    for (const auto& bus : buses) std::fill(bus->commands.begin(), bus->commands.end(), DriveCommand{});
+    fresh = false;
+  }
+  for (std::size_t b = 0; b < buses.size(); ++b) {
+    if (!buses[b]->interface->exchange(buses[b]->commands, buses[b]->feedback)) {
+      raise({ServoFault::Kind::BusFailure, ServoFault::Part::Bus, static_cast<std::uint32_t>(b), 0, 0});
+    }
+  }
+  if (parts.io && !parts.io->exchange(command.outputs, report.inputs)) {
+    raise({ServoFault::Kind::IoFailure, ServoFault::Part::Io, 0, 0, 0});
+  }
+}
+
+const DriveFeedback& ServoLoop::Impl::feedback(std::size_t actuator) const noexcept {
+  const ServoActuator& part = parts.actuators[actuator];
+  return part.bus->feedback[part.axis];
+}
+
+const DriveFeedback& ServoLoop::Impl::spindle_feedback(std::size_t spindle) const noexcept {
+  const ServoSpindle& part = parts.spindles[spindle];
+  return part.bus->feedback[part.axis];
+}
+
+double ServoLoop::Impl::shaft_rad(std::size_t actuator, double at_counts) const noexcept {
+  const DriveScale& scale = parts.actuators[actuator].scale;
+  return scale.direction * (at_counts - scale.home_counts) * (2 * std::numbers::pi / scale.counts_per_revolution);
+}
+
+double ServoLoop::Impl::shaft_counts(std::size_t actuator, double rad) const noexcept {
+  const DriveScale& scale = parts.actuators[actuator].scale;
+  return scale.home_counts + scale.direction * rad * (scale.counts_per_revolution / (2 * std::numbers::pi));
+}
+
+void ServoLoop::Impl::read_actuators() noexcept {
+  for (std::size_t i = 0; i < actuators; ++i) {
+    const DriveFeedback& words = feedback(i);
+    if (!words.online) {
+      shaft_velocity[i] = 0;
+      continue;
+    }
+    // The drive's word wraps at 32 bits: the difference to the last reading, taken modulo 2^32, does not.
+    const std::int64_t last = seen[i] ? counts[i] : std::int64_t{parts.actuators[i].scale.home_counts};
+    const auto moved =
+        static_cast<std::int32_t>(static_cast<std::uint32_t>(words.position_counts) - static_cast<std::uint32_t>(last));
+    counts[i] = last + moved;
+    const double now = shaft_rad(i, static_cast<double>(counts[i]));
+    shaft_velocity[i] = seen[i] ? (now - shaft[i]) / parts.period_s : 0;
+    shaft[i] = now;
+    seen[i] = true;
+  }
+}
+
+void ServoLoop::Impl::read_joints() noexcept {
+  parts.actuator_map->joint_positions({shaft.data(), actuators}, {position.data(), axes});
+  parts.actuator_map->joint_velocities({shaft.data(), actuators}, {shaft_velocity.data(), actuators},
+                                       {velocity.data(), axes});
+}
+
+ServoInput ServoLoop::Impl::input(std::size_t joint) const noexcept {
+  return {.position_setpoint = hold[joint],
+          .velocity_setpoint = set_velocity[joint],
+          .acceleration_setpoint = set_acceleration[joint],
+          .position = position[joint],
+          .velocity = velocity[joint],
+          .effort = effort[joint],
+          .period_s = parts.period_s};
+}
+
+bool ServoLoop::Impl::operable(std::size_t joint) const noexcept {
+  for (std::size_t i = 0; i < actuators; ++i) {
+    if ((actuators_of[joint] >> i & 1U) == 0) continue;
+    const DriveFeedback& words = feedback(i);
+    if (!words.online || drive_state(words.statusword) != DriveState::OperationEnabled) return false;
+  }
+  return true;
+}
+
+void ServoLoop::Impl::make_live() noexcept {
+  if (!driving()) return;
+  bool all = true;
+  for (std::size_t j = 0; j < axes; ++j) {
+    if (!live[j] && operable(j)) {
+      live[j] = true;
+      hold[j] = position[j];
+      set_velocity[j] = set_acceleration[j] = 0;
+      parts.axes[j].law->engage(input(j), 0);
+    } else if (handed[j]) {
+      parts.axes[j].law->engage(input(j), effort[j]);
+    }
+    handed[j] = false;
+    all = all && live[j];
+  }
+  for (std::size_t i = 0; i < parts.spindles.size(); ++i) {
+    const DriveFeedback& words = spindle_feedback(i);
+    all = all && words.online && drive_state(words.statusword) == DriveState::OperationEnabled;
+  }
+  // A cycle passes between engaging and following, in which the follower is put at where the joints hold.
+  if (state == ServoState::Enabling && all) {
+    state = ServoState::Engaged;
+  } else {
+    follows = state == ServoState::Engaged;
+  }
+}
+
+void ServoLoop::Impl::make_setpoints(const ServoCommand& command, ServoReport& report) noexcept {
+  if (parts.virtual_mode) follows = state == ServoState::Engaged;
+  report.follows = follows;
+  for (std::size_t j = 0; j < axes; ++j) {
+    if (follows && j < joints) {
+      const Setpoint& wanted = command.setpoint;
+      if (!std::isfinite(wanted.position[j]) || !std::isfinite(wanted.velocity[j]) ||
+          !std::isfinite(wanted.acceleration[j])) {
+        raise({ServoFault::Kind::NotANumber, ServoFault::Part::Joint, static_cast<std::uint32_t>(j), wanted.position[j],
+               0});
+        report.follows = false;
+        return;
+      }
+      hold[j] = wanted.position[j];
+      set_velocity[j] = wanted.velocity[j];
+      set_acceleration[j] = wanted.acceleration[j];
+    } else {
+      if (!live[j] && !parts.virtual_mode) hold[j] = position[j];
+      set_velocity[j] = set_acceleration[j] = 0;
+    }
+  }
+}
+
+void ServoLoop::Impl::run_laws() noexcept {
+  for (std::size_t j = 0; j < axes; ++j) {
+    effort[j] = 0;
+    if (!driving() || !live[j]) continue;
+    const ServoAxis& axis = parts.axes[j];
+    const double error = hold[j] - position[j];
+    if (!(std::abs(error) <= axis.max_following_error)) {
+      raise({ServoFault::Kind::FollowingError, ServoFault::Part::Joint, static_cast<std::uint32_t>(j), error,
+             axis.max_following_error});
+      return;
+    }
+    const double wanted = axis.law->update(input(j));
+    if (!std::isfinite(wanted)) {
+      raise({ServoFault::Kind::NotANumber, ServoFault::Part::Joint, static_cast<std::uint32_t>(j), wanted, 0});
+      return;
+    }
+    effort[j] = std::clamp(wanted, -axis.max_effort, axis.max_effort);
+  }
+}
+
+void ServoLoop::Impl::reflect_setpoints() noexcept {
+  position = hold;
+  velocity = set_velocity;
+}
+
+void ServoLoop::Impl::make_torques() noexcept {
+  torque.fill(0);
+  if (!driving()) return;
+  parts.actuator_map->actuator_efforts({position.data(), axes}, {effort.data(), axes}, {torque.data(), actuators});
+  for (std::size_t i = 0; i < actuators; ++i) {
+    if (std::isfinite(torque[i])) continue;
+    raise({ServoFault::Kind::NotANumber, ServoFault::Part::Actuator, static_cast<std::uint32_t>(i), torque[i], 0});
+    torque.fill(0);
+    return;
+  }
+}
+
+void ServoLoop::Impl::write_actuators() noexcept {
+  for (std::size_t i = 0; i < actuators; ++i) {
+    const ServoActuator& part = parts.actuators[i];
+    DriveCommand& words = part.bus->commands[part.axis];
+    const DriveFeedback& from = feedback(i);
+    words.controlword = next_controlword(from.statusword, wish(), resetting, words.controlword);
+    words.mode = DriveMode::CyclicSyncTorque;
+    words.target_position_counts = from.position_counts;
+    words.target_velocity_rpm = 0;
+    const double permille = part.scale.direction * torque[i] * 1000 / part.scale.rated_torque_nm;
+    words.target_torque_permille = static_cast<std::int16_t>(std::lround(std::clamp(permille, -32767.0, 32767.0)));
+  }
+}
+
+void ServoLoop::Impl::write_spindles(const ServoCommand& command) noexcept {
+  for (std::size_t i = 0; i < parts.spindles.size(); ++i) {
+    const ServoSpindle& part = parts.spindles[i];
+    DriveCommand& words = part.bus->commands[part.axis];
+    words.controlword = next_controlword(spindle_feedback(i).statusword, wish(), resetting, words.controlword);
+    words.mode = DriveMode::ProfileVelocity;
+    const double wanted = driving() && std::isfinite(command.spindle_rpm[i]) ? command.spindle_rpm[i] : 0;
+    words.target_velocity_rpm =
+        static_cast<std::int32_t>(std::lround(std::clamp(wanted, -part.max_speed_rpm, part.max_speed_rpm)));
+  }
+}
+
+}  // namespace rmac

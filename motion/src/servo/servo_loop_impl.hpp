@@ -1,0 +1,70 @@
+#pragma once
+
+#include "rmac/motion/drive_power.hpp"
+#include "rmac/motion/servo_loop.hpp"
+
+namespace rmac {
+
+/// State of a servo loop between cycles, and the steps of one. Arrays are indexed by joint or actuator.
+struct ServoLoop::Impl {
+  explicit Impl(ServoLoopParts loop_parts);
+
+  void exchange(const ServoCommand& command, ServoReport& report) noexcept;
+  void read_actuators() noexcept;
+  void read_joints() noexcept;
+  void change_state(const ServoCommand& command) noexcept;
+  void finish_reset() noexcept;
+  void watch_drives() noexcept;
+  void watch_drive(const DriveFeedback& words, bool in_use, ServoFault::Part part, std::size_t index) noexcept;
+  void watch_enabling() noexcept;
+  void make_live() noexcept;
+  void make_setpoints(const ServoCommand& command, ServoReport& report) noexcept;
+  void run_laws() noexcept;
+  void reflect_setpoints() noexcept;
+  void make_torques() noexcept;
+  void write_actuators() noexcept;
+  void write_spindles(const ServoCommand& command) noexcept;
+  void fill_drives(ServoReport& report) const noexcept;
+  void fill(const ServoCommand& command, ServoReport& report) const noexcept;
+
+  void raise(const ServoFault& fault) noexcept;
+  void let_go() noexcept;
+  [[nodiscard]] bool driving() const noexcept { return state == ServoState::Enabling || state == ServoState::Engaged; }
+  [[nodiscard]] DriveWish wish() const noexcept;
+  [[nodiscard]] bool owns(const ServoBus* bus, std::uint32_t axis) const noexcept;
+  [[nodiscard]] bool operable(std::size_t joint) const noexcept;
+  [[nodiscard]] ServoInput input(std::size_t joint) const noexcept;
+  [[nodiscard]] const DriveFeedback& feedback(std::size_t actuator) const noexcept;
+  [[nodiscard]] const DriveFeedback& spindle_feedback(std::size_t spindle) const noexcept;
+  [[nodiscard]] double shaft_rad(std::size_t actuator, double counts) const noexcept;
+  [[nodiscard]] double shaft_counts(std::size_t actuator, double rad) const noexcept;
+  void take_over_joints(std::uint32_t live_drives, const std::array<double, kMaxJoints>& shaft_set) noexcept;
+
+  ServoLoopParts parts;
+  std::size_t joints;  ///< of the kinematics
+  std::size_t axes;    ///< held ones included
+  std::size_t actuators;
+  std::vector<std::shared_ptr<ServoBus>> buses;
+  std::array<std::uint32_t, kMaxJoints> actuators_of{};  ///< bit i: this joint's effort reaches actuator i
+
+  ServoState state = ServoState::Off;
+  ServoFault fault;
+  bool fresh = true;          ///< no cycle has run, and no loop handed over
+  bool power_spent = false;   ///< power must fall before it counts again
+  bool reset_before = false;  ///< reset in the last cycle, for its edge
+  bool resetting = false;
+  std::int64_t waiting_cycles = 0;
+  bool follows = false;
+
+  std::array<bool, kMaxJoints> seen{};  ///< a position of this drive was read
+  std::array<std::int64_t, kMaxJoints> counts{};
+  std::array<double, kMaxJoints> shaft{}, shaft_velocity{};
+  std::array<double, kMaxJoints> position{}, velocity{};
+  std::array<double, kMaxJoints> hold{};
+  std::array<double, kMaxJoints> set_velocity{}, set_acceleration{};
+  std::array<double, kMaxJoints> effort{}, torque{};
+  std::array<bool, kMaxJoints> live{};    ///< the joint's law is at work
+  std::array<bool, kMaxJoints> handed{};  ///< live by handover: its law still has to be engaged
+};
+
+}  // namespace rmac
