@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "gateway/rmac/connection.hpp"
+#include "gateway/rmac/failure.hpp"
+#include "gateway/rmac/runner.hpp"
+
+namespace rmac::cli {
+
+/// What `rmac machines` looks for. Numbers are lower bounds, in the units of the database.
+struct MachineSearch {
+  std::string type, configuration;
+  std::optional<int> joints;
+  std::string volume;  ///< LxWxD, mm
+  std::optional<double> spindle_hp;
+  std::string sql;  ///< instead of all of the above
+};
+
+/// Each command of the client: does its work, prints, and says why it could not. `json` prints for programs.
+[[nodiscard]] Result<> list_machines(Connection& connection, const MachineSearch& search, bool json);
+[[nodiscard]] Result<> show_machine(Connection& connection, const std::string& name, bool json);
+[[nodiscard]] Result<> load_machine(Connection& connection, const std::string& name, bool virtual_mode);
+[[nodiscard]] Result<> unload_machine(Connection& connection);
+
+[[nodiscard]] Result<> run_program(Connection& connection, const std::string& file, const RunOptions& options,
+                                   bool json);
+
+[[nodiscard]] Result<> show_status(Connection& connection, bool watch, bool json);
+[[nodiscard]] Result<> show_events(Connection& connection, bool json);
+
+[[nodiscard]] Result<> jog(Connection& connection, int joint, double distance);
+[[nodiscard]] Result<> home(Connection& connection);
+[[nodiscard]] Result<> hold(Connection& connection);
+[[nodiscard]] Result<> resume(Connection& connection);
+[[nodiscard]] Result<> stop(Connection& connection);
+[[nodiscard]] Result<> set_override(Connection& connection, double percent);
+
+}  // namespace rmac::cli

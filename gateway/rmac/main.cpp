@@ -1,0 +1,131 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <memory>
+
+#include "gateway/rmac/commands.hpp"
+
+namespace {
+
+using namespace rmac::cli;
+
+using Command = std::function<Result<>(Connection&)>;
+
+/// The command line as a person typed it; each option is bound to one of these.
+struct Arguments {
+  Endpoint endpoint;
+  bool json = false, watch = false, load_virtual = false;
+  std::string name, file;
+  MachineSearch search;
+  RunOptions run;
+  int joint = 0;
+  double distance = 0, percent = 100;
+};
+
+void add_database_commands(CLI::App& app, Arguments& arguments, Command& command) {
+  auto* machines = app.add_subcommand("machines", "list the machines that the appliance knows, or search them");
+  auto& search = arguments.search;
+  machines->add_option("--type", search.type, "Mill, CMM, Robot, …");
+  machines->add_option("--configuration", search.configuration, "3-axis, 5-axis, …");
+  machines->add_option("--joints", search.joints, "exactly so many joints");
+  machines->add_option("--volume", search.volume, "a working volume of at least LxWxD, mm");
+  machines->add_option("--spindle-hp", search.spindle_hp, "a spindle of at least so many horse powers");
+  machines->add_option("--sql", search.sql, "a SELECT over the table DeviceDrivers instead")
+      ->excludes("--type", "--configuration", "--joints", "--volume", "--spindle-hp");
+  machines->callback([&] { command = [&](auto& to) { return list_machines(to, arguments.search, arguments.json); }; });
+
+  auto* show = app.add_subcommand("show", "a machine's characteristics; of the loaded one its joints too");
+  show->add_option("NAME", arguments.name, "as `rmac machines` lists it")->required();
+  show->callback([&] { command = [&](auto& to) { return show_machine(to, arguments.name, arguments.json); }; });
+
+  auto* load = app.add_subcommand("load", "make a machine's driver configure the controller");
+  load->add_option("NAME", arguments.name, "as `rmac machines` lists it")->required();
+  load->add_flag("--virtual", arguments.load_virtual, "setpoints come back as joint values, drives stay untouched");
+  load->callback([&] { command = [&](auto& to) { return load_machine(to, arguments.name, arguments.load_virtual); }; });
+
+  app.add_subcommand("unload", "take the loaded machine out")->callback([&] { command = unload_machine; });
+}
+
+void add_operating_commands(CLI::App& app, Arguments& arguments, Command& command) {
+  auto* run = app.add_subcommand("run", "machine a program, one JSON-RPC request a line");
+  run->add_option("FILE", arguments.file, "the .rmac file, - for standard input")->required();
+  run->add_flag("--virtual", arguments.run.virtual_mode, "in virtual mode: drives stay untouched");
+  run->add_option("--record", arguments.run.record_file,
+                  "write every cycle's setpoints and measured joints to this CSV");
+  run->add_option("--machine", arguments.run.machine, "load this machine first");
+  run->callback(
+      [&] { command = [&](auto& to) { return run_program(to, arguments.file, arguments.run, arguments.json); }; });
+
+  auto* status = app.add_subcommand("status", "what the machine does now");
+  status->add_flag("--watch", arguments.watch, "go on until Ctrl-C");
+  status->callback([&] { command = [&](auto& to) { return show_status(to, arguments.watch, arguments.json); }; });
+
+  app.add_subcommand("events", "follow what happens until Ctrl-C")->callback([&] {
+    command = [&](auto& to) { return show_events(to, arguments.json); };
+  });
+
+  auto* jog_command = app.add_subcommand("jog", "move one joint by a distance, from rest");
+  jog_command->add_option("--joint", arguments.joint, "counted from 0")->required()->check(CLI::NonNegativeNumber);
+  jog_command->add_option("--distance", arguments.distance, "mm or degrees, signed")->required();
+  jog_command->callback([&] { command = [&](auto& to) { return jog(to, arguments.joint, arguments.distance); }; });
+
+  app.add_subcommand("home", "move all joints to their home position")->callback([&] { command = home; });
+  app.add_subcommand("hold", "feed hold: stop on the path, keep the program")->callback([&] { command = hold; });
+  app.add_subcommand("resume", "go on after a hold")->callback([&] { command = resume; });
+  app.add_subcommand("stop", "stop now and empty the queue")->callback([&] { command = stop; });
+
+  auto* override_command = app.add_subcommand("override", "scale the feed");
+  override_command->add_option("PERCENT", arguments.percent, "0 to 200")->required()->check(CLI::Range(0.0, 200.0));
+  override_command->callback([&] { command = [&](auto& to) { return set_override(to, arguments.percent); }; });
+}
+
+int report(const Failure& failure) {
+  // One line, whatever the message held: scripts read it so.
+  auto message = failure.message;
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  fmt::print(stderr, "rmac: {}\n", message);
+  return kExitFailed;
+}
+
+int run(int count, char** words) {
+  CLI::App app{"rmac talks to the fieldbus gateway appliance, rmacd.", "rmac"};
+  app.set_version_flag("--version", RMAC_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough();
+  Arguments arguments;
+  Command command;
+  app.add_option("--socket", arguments.endpoint.socket, "UNIX socket of the appliance")->envname("RMAC_SOCKET");
+  app.add_option("--host", arguments.endpoint.host, "host of the appliance")
+      ->envname("RMAC_HOST")
+      ->capture_default_str();
+  app.add_option("--port", arguments.endpoint.port, "its TCP port")->envname("RMAC_PORT")->capture_default_str();
+  app.add_flag("--json", arguments.json, "print for programs");
+  add_database_commands(app, arguments, command);
+  add_operating_commands(app, arguments, command);
+  try {
+    app.parse(count, words);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitDone : kExitUsage;
+  }
+  auto connection = Connection::open(arguments.endpoint);
+  if (!connection) {
+    return report(connection.error());
+  }
+  const auto done = command(**connection);
+  return done ? kExitDone : report(done.error());
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  try {
+    return run(count, words);
+  } catch (const std::exception& error) {
+    return report(Failure{error.what()});
+  }
+}

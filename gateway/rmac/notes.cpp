@@ -1,0 +1,60 @@
+#include "gateway/rmac/notes.hpp"
+
+#include <string_view>
+
+namespace rmac::cli {
+
+namespace {
+
+// A key that an older or newer appliance does not send leaves its default: watching must not end for want of one value.
+template <typename T>
+void read(const nlohmann::json& object, std::string_view key, T& value) {
+  if (const auto entry = object.find(key); entry != object.end() && !entry->is_null()) {
+    try {
+      entry->get_to(value);
+    } catch (const nlohmann::json::exception&) {
+      // Same: another type than expected.
+    }
+  }
+}
+
+}  // namespace
+
+EventNote read_event(const nlohmann::json& params) {
+  EventNote event;
+  read(params, "kind", event.kind);
+  read(params, "t_s", event.t_s);
+  read(params, "move_id", event.move_id);
+  read(params, "message", event.message);
+  return event;
+}
+
+StateNote read_state(const nlohmann::json& params) {
+  StateNote state;
+  read(params, "cycle_state", state.cycle_state);
+  read(params, "moving", state.moving);
+  read(params, "move_id", state.move_id);
+  read(params, "t_s", state.t_s);
+  return state;
+}
+
+std::vector<JointSample> read_joints(const nlohmann::json& params) {
+  std::vector<JointSample> samples;
+  const auto list = params.find("samples");
+  if (list == params.end()) {
+    return samples;
+  }
+  for (const auto& entry : *list) {
+    JointSample sample;
+    read(entry, "t_s", sample.t_s);
+    read(entry, "cycle", sample.cycle);
+    read(entry, "move_id", sample.move_id);
+    read(entry, "s_mm", sample.s_mm);
+    read(entry, "feed_mm_s", sample.feed_mm_s);
+    read(entry, "pose", sample.pose);
+    samples.push_back(std::move(sample));
+  }
+  return samples;
+}
+
+}  // namespace rmac::cli

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace rmac::cli {
+
+/// What the `events` topic tells. Keys: docs/protocol.md.
+struct EventNote {
+  std::string kind;
+  double t_s = 0;
+  std::int64_t move_id = 0;
+  std::string message;
+};
+
+/// What the `state` topic tells. mm, deg, mm/min, rpm.
+struct StateNote {
+  std::string cycle_state;
+  bool moving = false;
+  std::int64_t move_id = 0;
+  double t_s = 0, feed_actual = 0, feed_set = 0, override_percent = 0;
+  int moves_in_buffer = 0;
+  std::string mechanism, authority;
+  std::vector<double> tool_tip, joints, spindle_rpm;
+  std::vector<std::string> faults;
+};
+
+/// One cycle of the `joints` topic. mm, deg; feed mm/s.
+struct JointSample {
+  double t_s = 0;
+  std::int64_t cycle = 0, move_id = 0;
+  double s_mm = 0, feed_mm_s = 0;
+  std::vector<double> pose, position_set, velocity_set, acceleration_set, position;
+};
+
+[[nodiscard]] EventNote read_event(const nlohmann::json& params);
+[[nodiscard]] StateNote read_state(const nlohmann::json& params);
+[[nodiscard]] std::vector<JointSample> read_joints(const nlohmann::json& params);
+
+}  // namespace rmac::cli

@@ -1,0 +1,88 @@
+#include <fmt/format.h>
+
+#include "gateway/rmac/authority.hpp"
+#include "gateway/rmac/commands.hpp"
+#include "gateway/rmac/notes.hpp"
+
+namespace rmac::cli {
+
+namespace {
+
+Result<> call(Connection& connection, const std::string& method,
+              const nlohmann::json& params = nlohmann::json::object()) {
+  const auto answer = connection.call(method, params);
+  return answer ? Result<>() : tl::unexpected(answer.error());
+}
+
+/// Starts a motion of its own and stays until it is over. Ctrl-C stops it.
+Result<> move_and_wait(Connection& connection, const std::string& method, const nlohmann::json& params) {
+  std::optional<StateNote> state;
+  std::string fault;
+  connection.on_notification([&](const std::string& topic, const nlohmann::json& note) {
+    if (topic == "state") {
+      state = read_state(note);
+    } else if (topic == "events") {
+      if (auto event = read_event(note); event.kind == "Fault") {
+        fault = event.message;
+      }
+    }
+  });
+  const auto done = with_authority(connection, [&]() -> Result<> {
+    constexpr double kRateHz = 50;
+    if (auto topics = call(connection, "subscribe", {{"topics", {"state", "events"}}, {"rate_hz", kRateHz}}); !topics) {
+      return topics;
+    }
+    if (auto begun = call(connection, method, params); !begun) {
+      return begun;
+    }
+    state.reset();
+    auto rest =
+        connection.wait([&] { return !fault.empty() || (state && !state->moving && state->moves_in_buffer == 0); });
+    if (!rest) {
+      static_cast<void>(call(connection, "RMAC_CAM.StopNow"));
+      return rest;
+    }
+    return fault.empty() ? Result<>() : Result<>(fail(fault));
+  });
+  connection.on_notification({});
+  return done;
+}
+
+/// For what an operator changes beside a running program: with the lease only where nobody holds it, because taking it
+/// and giving it back must not disturb the program's client.
+Result<> call_with_or_without_authority(Connection& connection, const std::string& method,
+                                        const nlohmann::json& params) {
+  auto done = call(connection, method, params);
+  if (done || done.error().rpc_code != kAuthorityRequired) {
+    return done;
+  }
+  return with_authority(connection, [&] { return call(connection, method, params); });
+}
+
+}  // namespace
+
+Result<> jog(Connection& connection, int joint, double distance) {
+  return move_and_wait(connection, "RMAC_CAM.JogJoint", {{"JntNum", joint}, {"Distance", distance}});
+}
+
+Result<> home(Connection& connection) {
+  return move_and_wait(connection, "RMAC_CAM.Home", nlohmann::json::object());
+}
+
+Result<> hold(Connection& connection) {
+  return call(connection, "RMAC_CAM.FeedHold");
+}
+
+Result<> resume(Connection& connection) {
+  return call_with_or_without_authority(connection, "RMAC_CAM.FeedResume", nlohmann::json::object());
+}
+
+Result<> stop(Connection& connection) {
+  return call(connection, "RMAC_CAM.StopNow");
+}
+
+Result<> set_override(Connection& connection, double percent) {
+  return call_with_or_without_authority(connection, "RMAC_CAM.SetFeedOverride", {{"Percent", percent}});
+}
+
+}  // namespace rmac::cli

@@ -1,0 +1,94 @@
+#include "gateway/rmac/record.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <iterator>
+#include <system_error>
+
+namespace rmac::cli {
+
+namespace {
+
+constexpr std::size_t kPoseNumbers = 6;
+
+Result<> write_failure(const std::string& file) {
+  return fail(fmt::format("{}: the record cannot be written: {}", file, std::generic_category().message(errno)));
+}
+
+}  // namespace
+
+std::string Record::name_of(std::size_t number) const {
+  if (number <= 1) {
+    return file_;
+  }
+  const std::filesystem::path path(file_);
+  return (path.parent_path() / fmt::format("{}-{}{}", path.stem().string(), number, path.extension().string()))
+      .string();
+}
+
+Result<> Record::open() {
+  files_.push_back(file_);
+  output_.open(file_, std::ios::trunc);
+  return output_ ? Result<>() : write_failure(file_);
+}
+
+Result<> Record::start_file(std::size_t joints) {
+  if (joints_ != 0) {
+    if (auto closed = close(); !closed) {
+      return closed;
+    }
+    files_.push_back(name_of(files_.size() + 1));
+    output_.open(files_.back(), std::ios::trunc);
+  }
+  joints_ = joints;
+  row_ = "t_s,move_id,s_mm,feed_mm_s,x,y,z,i,j,k";
+  for (const char* quantity : {"q", "qd", "qdd", "a"}) {
+    for (std::size_t joint = 1; joint <= joints; ++joint) {
+      fmt::format_to(std::back_inserter(row_), ",{}{}", quantity, joint);
+    }
+  }
+  row_ += '\n';
+  output_ << row_;
+  return output_ ? Result<>() : write_failure(files_.back());
+}
+
+Result<> Record::add(const JointSample& sample) {
+  const auto joints = sample.position_set.size();
+  if (joints == 0) {
+    return {};
+  }
+  if (sample.pose.size() != kPoseNumbers || sample.velocity_set.size() != joints ||
+      sample.acceleration_set.size() != joints || sample.position.size() != joints) {
+    return fail("the appliance sent a joints sample whose lists differ in length: the record would be wrong");
+  }
+  if (last_cycle_ >= 0 && sample.cycle > last_cycle_ + 1) {
+    missing_ += sample.cycle - last_cycle_ - 1;
+  }
+  last_cycle_ = sample.cycle;
+  if (joints != joints_) {
+    if (auto started = start_file(joints); !started) {
+      return started;
+    }
+  }
+  row_.clear();
+  fmt::format_to(std::back_inserter(row_), "{},{},{},{}", sample.t_s, sample.move_id, sample.s_mm, sample.feed_mm_s);
+  for (const auto* numbers :
+       {&sample.pose, &sample.position_set, &sample.velocity_set, &sample.acceleration_set, &sample.position}) {
+    for (const double number : *numbers) {
+      fmt::format_to(std::back_inserter(row_), ",{}", number);
+    }
+  }
+  row_ += '\n';
+  output_ << row_;
+  ++rows_;
+  return output_ ? Result<>() : write_failure(files_.back());
+}
+
+Result<> Record::close() {
+  output_.close();
+  return output_ ? Result<>() : write_failure(files_.back());
+}
+
+}  // namespace rmac::cli

@@ -1,0 +1,282 @@
+#include "gateway/rmac/runner.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rmac::cli {
+
+namespace {
+
+constexpr std::size_t kPipelineRequests = 32;
+constexpr double kFullRateHz = 1e6;  // More than any cycle: the appliance gives its own full rate.
+constexpr double kWatchRateHz = 100;
+constexpr double kStateRateHz = 20;
+constexpr auto kRecordBound = std::chrono::seconds(10);
+constexpr auto kHaltBound = std::chrono::seconds(10);
+
+}  // namespace
+
+Runner::Runner(Connection& connection, RunOptions options)
+    : connection_(connection), options_(std::move(options)), progress_(options_.show_progress) {
+  connection_.on_notification([this](const auto& topic, const auto& params) { take(topic, params); });
+}
+
+Result<RunReport> Runner::run(const Program& program) {
+  const auto begin = std::chrono::steady_clock::now();
+  total_moves_ = program.moves;
+  auto done = prepare(program);
+  if (done) {
+    done = stream(program);
+  }
+  if (!done) {
+    halt();
+  } else {
+    // Nothing moves any more, so giving the lease back stops nothing.
+    if (auto released = connection_.call("authority.release"); !released) {
+      done = tl::unexpected(released.error());
+    }
+  }
+  progress_.clear();
+  if (record_) {
+    report_.record_rows = record_->rows();
+    report_.record_files = record_->files();
+    if (auto closed = record_->close(); done && !closed) {
+      done = closed;
+    }
+    if (done && record_->missing_cycles() > 0) {
+      done =
+          fail(fmt::format("the record lacks {} cycles: another client has the full rate", record_->missing_cycles()));
+    }
+  }
+  if (!done) {
+    return tl::unexpected(done.error());
+  }
+  report_.requests = program.requests.size();
+  report_.wall_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return report_;
+}
+
+Result<> Runner::prepare(const Program& program) {
+  if (!options_.record_file.empty()) {
+    record_.emplace(options_.record_file);
+    if (auto opened = record_->open(); !opened) {
+      return opened;
+    }
+  }
+  const auto& limits = connection_.greeting().value("limits", nlohmann::json::object());
+  queue_bound_ = limits.value("queue_capacity", std::size_t{0});
+  // A move refused for want of room, while later ones are already on their way, would leave a gap in the part. So there
+  // is a window only where the appliance said how much it holds.
+  window_ = queue_bound_ > 0 ? kPipelineRequests : 1;
+  if (auto lease = connection_.call("authority.acquire"); !lease) {
+    return tl::unexpected(lease.error());
+  }
+  if (auto topics = connection_.call("subscribe", {{"topics", {"events"}}}); !topics) {
+    return tl::unexpected(topics.error());
+  }
+  if (auto topics = connection_.call("subscribe", {{"topics", {"state"}}, {"rate_hz", kStateRateHz}}); !topics) {
+    return tl::unexpected(topics.error());
+  }
+  std::string machine = options_.machine;
+  if (machine.empty() && options_.virtual_mode && !program.loads_mechanism) {
+    auto loaded = connection_.call("Device.Machine_GetMechanismName");
+    if (!loaded) {
+      return tl::unexpected(loaded.error());
+    }
+    machine = loaded->get<std::string>();
+  }
+  if (!machine.empty()) {
+    if (auto loaded = connection_.call("Device.Load", {{"Name", machine}, {"Virtual", options_.virtual_mode}});
+        !loaded) {
+      return tl::unexpected(loaded.error());
+    }
+  }
+  auto waiting = connection_.call("RMAC_CAM.NumMovesInBuffer");
+  if (waiting && waiting->get<int>() > 0) {
+    return fail(fmt::format("{} moves of an earlier program are still queued: end them with `rmac stop` first",
+                            waiting->get<int>()));
+  }
+  return {};
+}
+
+Result<> Runner::stream(const Program& program) {
+  for (const auto& request : program.requests) {
+    if (auto submitted = submit(program, request); !submitted) {
+      return submitted;
+    }
+  }
+  if (!unfinished_.empty() && !started_) {
+    return fail(fmt::format("{}: the program ends without starting its cycle", program.file));
+  }
+  return settle();
+}
+
+Result<> Runner::submit(const Program& program, const Request& request) {
+  const auto place = fmt::format("{}:{}", program.file, request.line);
+  if (request.timing == Timing::Settled) {
+    if (!unfinished_.empty() && !started_) {
+      return fail(fmt::format("{}: {} needs the moves before it done, but the program starts its cycle later", place,
+                              request.method));
+    }
+    if (auto settled = settle(); !settled) {
+      return settled;
+    }
+  }
+  const bool is_move = request.timing == Timing::Move;
+  if (is_move) {
+    if (auto ready = before_move(program); !ready) {
+      return ready;
+    }
+  }
+  const auto room = [&] {
+    const bool queue_has_room = !is_move || !started_ || queue_bound_ == 0 || unfinished_.size() < queue_bound_;
+    return unanswered_ < window_ && queue_has_room;
+  };
+  if (auto waited = wait(room); !waited) {
+    return waited;
+  }
+  auto params = request.params;
+  if (request.method == "Device.Load" && options_.virtual_mode && params.is_object()) {
+    params["Virtual"] = true;
+  }
+  ++unanswered_;
+  if (is_move) {
+    unfinished_.push_back(request.move_id);
+  }
+  started_ = started_ || request.timing == Timing::Start;
+  unsettled_ = unsettled_ || request.timing == Timing::Settled;
+  connection_.send(request.method, params, [this, place, method = request.method](const Connection::Answer& answer) {
+    --unanswered_;
+    if (!answer) {
+      fail_with(fmt::format("{}: {}: {}", place, method, answer.error().message));
+    }
+  });
+  return {};
+}
+
+Result<> Runner::before_move(const Program& program) {
+  if (auto watching = watch_joints(); !watching) {
+    return watching;
+  }
+  if (unsettled_) {
+    // A jog, a home or a swapped mechanism: its motion must have ended, and the cycle may have with it.
+    if (auto settled = settle(); !settled) {
+      return settled;
+    }
+    unsettled_ = false;
+    started_ = state_->cycle_state == "Running";
+  }
+  return started_ || program.starts_cycle ? Result<>() : start_cycle();
+}
+
+Result<> Runner::start_cycle() {
+  // Answered before the first move goes out: a refusal (a fault, drives that are not ready) is then the only message.
+  constexpr int kAutomatic = 1;
+  auto started = connection_.call("RMAC_CAM.CycleStart", {{"Mode", kAutomatic}});
+  if (!started) {
+    return tl::unexpected(started.error());
+  }
+  started_ = true;
+  return {};
+}
+
+Result<> Runner::settle() {
+  if (auto done = wait([&] { return unanswered_ == 0 && unfinished_.empty(); }); !done) {
+    return done;
+  }
+  // Home and jog have no MoveID. State older than their answer does not count: wait for the next one that shows rest.
+  state_.reset();
+  if (auto rest = wait([&] { return state_ && !state_->moving && state_->moves_in_buffer == 0; }); !rest) {
+    return rest;
+  }
+  if (!record_ || !watching_) {
+    return {};
+  }
+  // The last cycles of a record come in a batch of their own, perhaps after the state.
+  return connection_.wait([&] { return last_sample_s_ >= last_done_s_ || !failure_.empty(); }, kRecordBound,
+                          "the joints of the last cycle");
+}
+
+Result<> Runner::watch_joints() {
+  if (watching_) {
+    return {};
+  }
+  watching_ = true;
+  const auto rate_hz = record_ ? kFullRateHz : kWatchRateHz;
+  report_.every_cycle_seen = record_.has_value();
+  auto subscribed = connection_.call("subscribe", {{"topics", {"joints"}}, {"rate_hz", rate_hz}});
+  return subscribed ? Result<>() : tl::unexpected(subscribed.error());
+}
+
+Result<> Runner::wait(const std::function<bool()>& done) {
+  auto waited = connection_.wait([&] { return !failure_.empty() || done(); });
+  if (waited && !failure_.empty()) {
+    return fail(failure_);
+  }
+  return waited;
+}
+
+void Runner::halt() {
+  // Anyone connected may stop the machine; a lost connection has stopped it by losing the lease.
+  if (connection_.call("RMAC_CAM.StopNow")) {
+    state_.reset();
+    static_cast<void>(connection_.wait([&] { return state_ && !state_->moving; }, kHaltBound, "a state at rest"));
+    static_cast<void>(connection_.call("authority.release"));
+  }
+}
+
+void Runner::take(const std::string& topic, const nlohmann::json& params) {
+  if (topic == "events") {
+    take(read_event(params));
+  } else if (topic == "state") {
+    state_ = read_state(params);
+    progress_.draw(report_.moves, total_moves_,
+                   state_->cycle_state == "Holding" ? "held: `rmac resume` goes on"
+                                                    : fmt::format("{:.0f} mm/min", state_->feed_actual));
+  } else if (topic == "joints") {
+    for (const auto& sample : read_joints(params)) {
+      take(sample);
+    }
+  }
+}
+
+void Runner::take(const EventNote& event) {
+  if (event.kind == "MoveStarted" && !first_start_s_) {
+    first_start_s_ = event.t_s;
+  } else if (event.kind == "MoveDone" && !unfinished_.empty() && unfinished_.front() == event.move_id) {
+    unfinished_.pop_front();
+    ++report_.moves;
+    last_done_s_ = event.t_s;
+    report_.cycle_time_s = event.t_s - first_start_s_.value_or(event.t_s);
+  } else if (event.kind == "Fault" || event.kind == "Stopped") {
+    if (!unfinished_.empty()) {
+      fail_with(event.message);
+    }
+  }
+}
+
+void Runner::take(const JointSample& sample) {
+  last_sample_s_ = sample.t_s;
+  if (report_.following_error.size() < sample.position_set.size()) {
+    report_.following_error.resize(sample.position_set.size());
+  }
+  for (std::size_t joint = 0; joint < std::min(sample.position_set.size(), sample.position.size()); ++joint) {
+    report_.following_error[joint] =
+        std::max(report_.following_error[joint], std::abs(sample.position_set[joint] - sample.position[joint]));
+  }
+  if (record_) {
+    if (auto added = record_->add(sample); !added) {
+      fail_with(added.error().message);
+    }
+  }
+}
+
+void Runner::fail_with(const std::string& message) {
+  if (failure_.empty()) {
+    failure_ = message;
+  }
+}
+
+}  // namespace rmac::cli

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/rmac/connection.hpp"
+#include "gateway/rmac/notes.hpp"
+#include "gateway/rmac/program.hpp"
+#include "gateway/rmac/progress.hpp"
+#include "gateway/rmac/record.hpp"
+
+namespace rmac::cli {
+
+struct RunOptions {
+  std::string record_file;  ///< empty: none
+  bool virtual_mode = false;
+  std::string machine;  ///< loaded before the program; empty: what is loaded
+  bool show_progress = false;
+};
+
+struct RunReport {
+  std::size_t requests = 0, moves = 0;
+  double cycle_time_s = 0;  ///< the machine's clock, from the first move's start to the last one's end
+  double wall_time_s = 0;
+  std::vector<double> following_error;  ///< largest seen of each joint, mm or deg
+  bool every_cycle_seen = false;        ///< false: the largest of samples, not of all cycles
+  std::size_t record_rows = 0;
+  std::vector<std::string> record_files;
+};
+
+/// Machines one program: streams its requests, keeps as many in flight as the appliance can queue, and waits until the
+/// last move is done. Holds motion authority meanwhile.
+class Runner {
+ public:
+  Runner(Connection& connection, RunOptions options);
+
+  [[nodiscard]] Result<RunReport> run(const Program& program);
+
+ private:
+  [[nodiscard]] Result<> prepare(const Program& program);
+  [[nodiscard]] Result<> stream(const Program& program);
+  [[nodiscard]] Result<> submit(const Program& program, const Request& request);
+  [[nodiscard]] Result<> before_move(const Program& program);
+  [[nodiscard]] Result<> start_cycle();
+  [[nodiscard]] Result<> settle();
+  [[nodiscard]] Result<> watch_joints();
+  [[nodiscard]] Result<> wait(const std::function<bool()>& done);
+  void halt();
+
+  void take(const std::string& topic, const nlohmann::json& params);
+  void take(const EventNote& event);
+  void take(const JointSample& sample);
+  void fail_with(const std::string& message);
+
+  Connection& connection_;
+  RunOptions options_;
+  Progress progress_;
+  std::optional<Record> record_;
+  RunReport report_;
+
+  std::size_t window_ = 1;       ///< requests without an answer at one time
+  std::size_t queue_bound_ = 0;  ///< moves not done at one time; what the appliance's queue holds
+  std::size_t unanswered_ = 0;
+  std::deque<std::int64_t> unfinished_;  ///< ids of moves sent and not done, in order
+  std::optional<double> first_start_s_;
+  std::optional<StateNote> state_;
+  std::string failure_;
+  std::size_t total_moves_ = 0;
+  double last_done_s_ = 0, last_sample_s_ = 0;
+  bool started_ = false;  ///< the cycle runs, so moves become done
+  bool unsettled_ =
+      false;  ///< something acted on the machine since the last move: rest and cycle state must be looked at
+  bool watching_ = false;
+};
+
+}  // namespace rmac::cli

@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "gateway/rmac/commands.hpp"
+#include "gateway/rmac/notes.hpp"
+#include "gateway/rmac/table.hpp"
+
+namespace rmac::cli {
+
+namespace {
+
+std::string list(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) {
+    text += (text.empty() ? "" : "  ") + number(value, 4);
+  }
+  return text.empty() ? "-" : text;
+}
+
+std::string state_table(const StateNote& state) {
+  std::string faults;
+  for (const auto& fault : state.faults) {
+    faults += (faults.empty() ? "" : "; ") + fault;
+  }
+  return table({"", "", ""}, {{"machine", state.mechanism.empty() ? "none loaded" : state.mechanism, ""},
+                              {"cycle", state.cycle_state + (state.moving ? ", moving" : ", at rest"), ""},
+                              {"move", std::to_string(state.move_id), ""},
+                              {"queued", std::to_string(state.moves_in_buffer), "moves"},
+                              {"feed", number(state.feed_actual, 1) + " of " + number(state.feed_set, 1), "mm/min"},
+                              {"override", number(state.override_percent, 1), "%"},
+                              {"tool tip", list(state.tool_tip), "mm"},
+                              {"joints", list(state.joints), "mm, deg"},
+                              {"spindle", list(state.spindle_rpm), "rpm"},
+                              {"authority", state.authority.empty() ? "nobody" : state.authority, ""},
+                              {"faults", faults.empty() ? "none" : faults, ""}});
+}
+
+/// Ctrl-C is how a person ends watching, not a failure.
+Result<> until_interrupted(Connection& connection) {
+  auto waited = connection.wait([] { return false; });
+  return connection.interrupted() ? Result<>() : waited;
+}
+
+}  // namespace
+
+Result<> show_status(Connection& connection, bool watch, bool json) {
+  constexpr double kRateHz = 5;
+  bool seen = false;
+  const bool redraw = watch && !json && isatty(STDOUT_FILENO) == 1;
+  connection.on_notification([&](const std::string& topic, const nlohmann::json& params) {
+    if (topic != "state" || (seen && !watch)) {
+      return;
+    }
+    seen = true;
+    fmt::print("{}{}{}", redraw ? "\x1b[H\x1b[2J" : "", json ? params.dump() : state_table(read_state(params)),
+               json || (watch && !redraw) ? "\n" : "");
+    std::fflush(stdout);
+  });
+  if (auto topics = connection.call("subscribe", {{"topics", {"state"}}, {"rate_hz", kRateHz}}); !topics) {
+    return tl::unexpected(topics.error());
+  }
+  constexpr auto kBound = std::chrono::seconds(10);
+  auto done = watch ? until_interrupted(connection) : connection.wait([&] { return seen; }, kBound, "its state");
+  connection.on_notification({});
+  return done;
+}
+
+Result<> show_events(Connection& connection, bool json) {
+  connection.on_notification([&](const std::string& topic, const nlohmann::json& params) {
+    if (topic != "events") {
+      return;
+    }
+    const auto event = read_event(params);
+    if (json) {
+      fmt::print("{}\n", params.dump());
+    } else {
+      fmt::print("{:>12}  {:<18}{}{}\n", number(event.t_s), event.kind,
+                 event.move_id != 0 ? fmt::format("move {}  ", event.move_id) : "", event.message);
+    }
+    std::fflush(stdout);
+  });
+  if (auto topics = connection.call("subscribe", {{"topics", {"events"}}}); !topics) {
+    return tl::unexpected(topics.error());
+  }
+  auto done = until_interrupted(connection);
+  connection.on_notification({});
+  return done;
+}
+
+}  // namespace rmac::cli
