@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+
+namespace rmac::fieldbus {
+
+/// Mechanics and motor of one simulated axis, seen at the motor shaft. The default is a small table axis: a 100 W motor
+/// on a ball screw of 5 mm pitch.
+struct AxisPlantParameters {
+  // Yaskawa SGMAH-01A with holding brake, Sigma-II series user's manual, 3.1.1.
+  double rated_torque_nm = 0.318;
+  double peak_torque_nm = 0.955;
+  double rotor_inertia_kg_m2 = 0.0364e-4 + 0.0085e-4;
+  double max_speed_rpm = 5000;
+  // The same series' encoder of 17 bits; which encoder a machine has is a choice of its builder, so: assumed.
+  double counts_per_revolution = 131072;
+  // Assumed: screw of 12 mm diameter and 300 mm length, table with vice and part.
+  double screw_inertia_kg_m2 = 4.8e-6;
+  double pitch_mm = 5;
+  double table_mass_kg = 12;
+  double viscous_nm_s = 1.0e-4;  ///< assumed: 0.03 N·m of grease and seals at 3000 rpm
+  double coulomb_nm = 0.020;     ///< assumed: preloaded nut and wipers, 25 N at the table
+  double static_nm = 0.026;      ///< assumed: 1.3 times the sliding friction, before it breaks away
+  double gravity_nm = 0;         ///< load that pulls towards negative angles; 0 for a horizontal axis
+  double brake_nm = 0.318;       ///< assumed: a holding brake holds the rated torque
+  // Current loop of the drive, as a first-order lag.
+  double torque_lag_s = 0.0002;  ///< assumed: 800 Hz of current-loop bandwidth
+
+  [[nodiscard]] double inertia_kg_m2() const noexcept;
+};
+
+/// Rotor, screw and table as one inertia under motor torque, friction and gravity. Real-time safe.
+class AxisPlant {
+ public:
+  explicit AxisPlant(const AxisPlantParameters& parameters) noexcept
+      : parameters_(parameters), inertia_kg_m2_(parameters.inertia_kg_m2()) {}
+
+  /// `motor_nm` is the torque wanted of the current loop; with `braked` the holding brake is closed.
+  void advance(double motor_nm, bool braked, double duration_s) noexcept;
+
+  [[nodiscard]] double angle_rad() const noexcept { return angle_rad_; }
+  [[nodiscard]] double speed_rad_s() const noexcept { return speed_rad_s_; }
+  [[nodiscard]] double motor_nm() const noexcept { return motor_nm_; }
+  void put_at(double angle_rad) noexcept;
+
+ private:
+  void step(bool braked, double dt) noexcept;
+
+  AxisPlantParameters parameters_;
+  double inertia_kg_m2_;
+  double angle_rad_ = 0;
+  double speed_rad_s_ = 0;
+  double motor_nm_ = 0;
+};
+
+/// A spindle and its drive's own speed loop, as a first-order approach to the wanted speed within a torque bound.
+struct SpindlePlantParameters {
+  double max_speed_rpm = 1000;    ///< Table 4-1, DMACXYZ
+  double max_torque_nm = 5;       ///< Table 4-1, DMACXYZ
+  double inertia_kg_m2 = 0.01;    ///< assumed: spindle, chuck and tool
+  double time_constant_s = 0.05;  ///< assumed
+};
+
+class SpindlePlant {
+ public:
+  explicit SpindlePlant(const SpindlePlantParameters& parameters) noexcept : parameters_(parameters) {}
+
+  void advance(double wanted_rpm, bool powered, double duration_s) noexcept;
+  [[nodiscard]] double speed_rpm() const noexcept { return speed_rpm_; }
+  [[nodiscard]] double torque_nm() const noexcept { return torque_nm_; }
+
+ private:
+  SpindlePlantParameters parameters_;
+  double speed_rpm_ = 0;
+  double torque_nm_ = 0;
+};
+
+}  // namespace rmac::fieldbus

@@ -1,0 +1,69 @@
+#include "rmac/fieldbus/simulated_plant.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rmac::fieldbus {
+
+namespace {
+
+// Well below the current loop's lag.
+constexpr double kLargestStepS = 25e-6;
+constexpr double kRadPerRpm = 2 * std::numbers::pi / 60;
+
+double towards_zero(double value, double amount) noexcept {
+  return std::copysign(std::max(std::abs(value) - amount, 0.0), value);
+}
+
+}  // namespace
+
+double AxisPlantParameters::inertia_kg_m2() const noexcept {
+  const double metres_per_radian = pitch_mm * 1e-3 / (2 * std::numbers::pi);
+  return rotor_inertia_kg_m2 + screw_inertia_kg_m2 + table_mass_kg * metres_per_radian * metres_per_radian;
+}
+
+void AxisPlant::put_at(double angle_rad) noexcept {
+  angle_rad_ = angle_rad;
+  speed_rad_s_ = 0;
+}
+
+void AxisPlant::advance(double motor_nm, bool braked, double duration_s) noexcept {
+  const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / kLargestStepS - 1e-9)));
+  const double dt = duration_s / steps;
+  const double bounded = std::clamp(motor_nm, -parameters_.peak_torque_nm, parameters_.peak_torque_nm);
+  const double approach = -std::expm1(-dt / parameters_.torque_lag_s);
+  for (int i = 0; i < steps; ++i) {
+    motor_nm_ += (bounded - motor_nm_) * approach;
+    step(braked, dt);
+  }
+}
+
+void AxisPlant::step(bool braked, double dt) noexcept {
+  const double brake = braked ? parameters_.brake_nm : 0;
+  const double driving = motor_nm_ - parameters_.gravity_nm;
+  if (speed_rad_s_ == 0 && std::abs(driving) <= parameters_.static_nm + brake) return;  // it sticks
+
+  // Dry friction can stop the shaft within a step, never turn it round: what it takes away ends at zero. The viscous
+  // part is implicit, so any step is stable. (Symplectic Euler; first order in dt.)
+  const double pushed = speed_rad_s_ + driving * dt / inertia_kg_m2_;
+  const double before = speed_rad_s_;
+  speed_rad_s_ = towards_zero(pushed, (parameters_.coulomb_nm + brake) * dt / inertia_kg_m2_) /
+                 (1 + parameters_.viscous_nm_s * dt / inertia_kg_m2_);
+  // Coming through zero, the shaft rests for an instant and sticks unless the torque breaks it away.
+  if (before * speed_rad_s_ < 0 && std::abs(driving) <= parameters_.static_nm + brake) speed_rad_s_ = 0;
+  angle_rad_ += speed_rad_s_ * dt;
+}
+
+void SpindlePlant::advance(double wanted_rpm, bool powered, double duration_s) noexcept {
+  const double bounded = powered ? std::clamp(wanted_rpm, -parameters_.max_speed_rpm, parameters_.max_speed_rpm) : 0;
+  // Without power it runs down under a tenth of its torque.
+  const double torque_bound = powered ? parameters_.max_torque_nm : parameters_.max_torque_nm / 10;
+  const double change_bound_rpm = torque_bound / parameters_.inertia_kg_m2 * duration_s / kRadPerRpm;
+  const double approach = (bounded - speed_rpm_) * -std::expm1(-duration_s / parameters_.time_constant_s);
+  const double change = std::clamp(approach, -change_bound_rpm, change_bound_rpm);
+  speed_rpm_ += change;
+  torque_nm_ = powered ? change * kRadPerRpm / duration_s * parameters_.inertia_kg_m2 : 0;
+}
+
+}  // namespace rmac::fieldbus
