@@ -20,12 +20,16 @@ class PlanFollower {
   /// `last_refused`.
   void sample(std::int64_t cycle, Setpoint& setpoint) noexcept;
 
-  [[nodiscard]] std::uint64_t active_plan() const noexcept { return active_id_; }
+  /// Id of the newest plan accepted, under way or about to be; 0 for none.
+  [[nodiscard]] std::uint64_t accepted_plan() const noexcept { return accepted_; }
   [[nodiscard]] std::uint64_t last_refused() const noexcept { return last_refused_; }
 
  private:
   void receive(std::int64_t cycle) noexcept;
-  void locate(double t) noexcept;
+  void activate(const Plan* plan) noexcept;
+  void retire(const Plan* plan) noexcept;
+  void follow(double t, Setpoint& setpoint) noexcept;
+  [[nodiscard]] std::uint32_t count_done(double s) noexcept;
 
   PlanChannel& channel_;
   const Plan* active_ = nullptr;
@@ -34,7 +38,8 @@ class PlanFollower {
   std::size_t segment_ = 0;
   std::size_t joint_count_;
   double period_s_;
-  std::uint64_t active_id_ = 0;
+  double counted_s_ = 0;          ///< path length up to which ended moves were reported
+  std::uint64_t accepted_ = 0;
   std::uint64_t last_refused_ = 0;
   Setpoint held_;
 };

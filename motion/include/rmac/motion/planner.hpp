@@ -48,9 +48,9 @@ class PathBuilder {
 
 /// What the servo loop tells the planner: read from its snapshot.
 struct ServoProgress {
-  std::int64_t cycle = 0;          ///< the cycle that is being executed
-  std::uint64_t active_plan = 0;   ///< id of the plan it follows, 0 for none
-  std::uint64_t last_refused = 0;  ///< id of the last plan that came too late
+  std::int64_t cycle = 0;           ///< the cycle that is being executed
+  std::uint64_t accepted_plan = 0;  ///< `PlanFollower::accepted_plan`
+  std::uint64_t last_refused = 0;   ///< `PlanFollower::last_refused`
 };
 
 /// How the machine is to treat its path.

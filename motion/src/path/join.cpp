@@ -1,0 +1,20 @@
+#include "path/join.hpp"
+
+#include <cmath>
+
+namespace rmac {
+
+bool passable(const JointPoint& below, const JointPoint& above, const std::vector<JointLimits>& joints, double v,
+              double period_s) noexcept {
+  // What rounding leaves in a client's coordinates, as a part of the jerk limit; anything larger is a corner.
+  constexpr double kPart = 1e-3;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const double jerk = joints[j].max_jerk * kPart;
+    const double speed = v * std::abs(above.d[1][j] - below.d[1][j]);
+    const double acceleration = v * v * std::abs(above.d[2][j] - below.d[2][j]);
+    if (speed > jerk * period_s * period_s || acceleration > jerk * period_s) return false;
+  }
+  return true;
+}
+
+}  // namespace rmac

@@ -1,0 +1,225 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "path/join.hpp"
+#include "path/trimmed_curve.hpp"
+#include "rmac/motion/frame.hpp"
+#include "rmac/motion/planner.hpp"
+
+namespace rmac {
+namespace {
+
+/// A joint may stand this far beyond its limit, in mm or degrees: rounding of a move that ends exactly on it.
+constexpr double kTravelSlack = 1e-6;
+
+template <typename... Values>
+std::string text(const char* format, Values... values) {
+  char buffer[400];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+const char* unit(const JointLimits& joint) {
+  return joint.type == JointType::Rotary ? "degrees" : "mm";
+}
+
+Expected<> check_demand(const Move& move, bool joint_move) {
+  const auto bad = [&](const char* what, double value, const char* rule) {
+    return failure(MinorCode::InvalidParameterValue,
+                   text("move %lld: %s is %g; %s", static_cast<long long>(move.id), what, value, rule));
+  };
+  if (!joint_move && !(move.feed_mm_s > 0 && std::isfinite(move.feed_mm_s))) {
+    return bad("the feed", move.feed_mm_s * 60, "set one above 0 mm/min with SetFeedrate");
+  }
+  if (joint_move && !(move.joint_speed_fraction > 0 && move.joint_speed_fraction <= 1)) {
+    return bad("the joint speed", move.joint_speed_fraction * 100, "it must be above 0 and at most 100 percent");
+  }
+  if (!(move.tolerance_mm >= 0)) return bad("the path tolerance", move.tolerance_mm, "it cannot be negative");
+  if (!(move.accel_rise_mm_s2 >= 0))
+    return bad("the path acceleration rise", move.accel_rise_mm_s2, "it cannot be negative");
+  if (!(move.accel_fall_mm_s2 >= 0))
+    return bad("the path acceleration fall", move.accel_fall_mm_s2, "it cannot be negative");
+  return {};
+}
+
+/// How far joint j is beyond its travel, with sign; 0 inside.
+double beyond(const JointLimits& joint, double position) {
+  const bool bounded_above =
+      joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfiniteNegative;
+  const bool bounded_below =
+      joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfinitePositive;
+  if (bounded_above && position > joint.max + kTravelSlack) return position - joint.max;
+  if (bounded_below && position < joint.min - kTravelSlack) return position - joint.min;
+  return 0;
+}
+
+struct Offence {
+  std::size_t joint = 0;
+  double position = 0, amount = 0, s = 0;
+};
+
+/// The first point of a segment, node by node and at each joint's turning points between nodes, where a joint leaves
+/// its travel.
+bool find_offence(const PathSegment& segment, const std::vector<JointLimits>& joints, Offence& offence) {
+  const auto nodes = segment.curve().nodes();
+  JointPoint left, right, turn;
+  const auto offends = [&](const JointPoint& point, double s) {
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      if (const double amount = beyond(joints[j], point.d[0][j]); amount != 0) {
+        offence = {j, point.d[0][j], amount, s};
+        return true;
+      }
+    }
+    return false;
+  };
+  if (segment.evaluate(nodes[0], 1, 1, left) != KinematicsStatus::Ok || offends(left, nodes[0])) return true;
+  for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+    const double h = nodes[i + 1] - nodes[i];
+    if (segment.evaluate(nodes[i + 1], 1, -1, right) != KinematicsStatus::Ok) return true;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      // Where the joint turns between the nodes: the zero of the secant of its derivative is near enough, nodes being
+      // dense.
+      const double a = left.d[1][j], b = right.d[1][j];
+      if (a * b >= 0) continue;
+      const double s = nodes[i] + h * a / (a - b);
+      if (segment.evaluate(s, 0, 1, turn) == KinematicsStatus::Ok && offends(turn, s)) return true;
+    }
+    if (offends(right, nodes[i + 1])) return true;
+    left = right;
+  }
+  return false;
+}
+
+Error unreachable(const Move& move, const PathSegment& segment, KinematicsStatus status, double s) {
+  const ToolPose pose = segment.pose(s);
+  const std::string place =
+      text("tip x %.4f y %.4f z %.4f, axis i %.4f j %.4f k %.4f (part frame), %.4f mm along the move", pose.tip[0],
+           pose.tip[1], pose.tip[2], pose.axis[0], pose.axis[1], pose.axis[2], segment.demand().s_begin_mm + s);
+  const long long id = move.id;
+  if (status == KinematicsStatus::Singular) {
+    return {MinorCode::TravelLimit,
+            text("move %lld passes a singular pose of this mechanism at %s; keep away from it or reorient the part", id,
+                 place.c_str())};
+  }
+  return {MinorCode::TravelLimit,
+          text("move %lld is out of this mechanism's reach at %s; no joint values give this pose", id, place.c_str())};
+}
+
+}  // namespace
+
+PathBuilder::PathBuilder(PlannerModel model) : model_(std::move(model)), end_joints_(model_.joints.size(), 0.0) {
+  restart(end_joints_, Frames{});
+}
+
+void PathBuilder::restart(std::span<const double> joints, const Frames& frames) {
+  std::vector<double> copy(joints.begin(), joints.end());
+  end_joints_ = std::move(copy);
+  frames_ = frames;
+  ToolPose machine;
+  model_.kinematics->forward(end_joints_, frames_.tool, machine);
+  end_pose_ = apply_to_pose(inverse(frames_.part), machine);
+}
+
+Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(const Move& move) {
+  const auto* nurbs = std::get_if<NurbsGeometry>(&move.geometry);
+  const bool joint_move = std::holds_alternative<JointTargetGeometry>(move.geometry) ||
+                          (nurbs != nullptr && nurbs->space == NurbsSpace::Joint);
+  const bool positioning = std::holds_alternative<JointTargetGeometry>(move.geometry) ||
+                           std::holds_alternative<PathTargetGeometry>(move.geometry);
+  if (auto checked = check_demand(move, joint_move); !checked) return tl::unexpected(checked.error());
+  auto curves = make_curves(move, {end_pose_, end_joints_});
+  if (!curves) return tl::unexpected(curves.error());
+
+  std::vector<std::shared_ptr<const PathSegment>> segments;
+  std::vector<double> joints = end_joints_;
+  PathDemand demand;
+  demand.move_id = move.id;
+  demand.feed_mm_s = move.feed_mm_s;
+  demand.accel_rise_mm_s2 = move.accel_rise_mm_s2;
+  demand.accel_fall_mm_s2 = move.accel_fall_mm_s2;
+  demand.tolerance_mm = move.tolerance_mm;
+  demand.joint_speed_fraction = move.joint_speed_fraction;
+  demand.last_of_move = false;
+
+  // One smooth curve in, one segment out; a curve is cut where the joints' acceleration would have to jump.
+  const auto append = [&](const std::shared_ptr<const Curve>& curve) -> Expected<> {
+    const auto segment = std::make_shared<PathSegment>(curve, frames_, model_.kinematics, demand);
+    double s = 0;
+    if (const auto status = segment->resolve(joints, s); status != KinematicsStatus::Ok) {
+      return tl::unexpected(unreachable(move, *segment, status, s));
+    }
+    if (Offence offence; find_offence(*segment, model_.joints, offence)) {
+      const JointLimits& joint = model_.joints[offence.joint];
+      return failure(MinorCode::TravelLimit,
+                     text("move %lld takes joint %s to %.4f %s, %.4f %s beyond its limit of %.4f, %.4f mm along the "
+                          "move; nothing was queued",
+                          static_cast<long long>(move.id), joint.name.c_str(), offence.position, unit(joint),
+                          std::abs(offence.amount), unit(joint), offence.amount > 0 ? joint.max : joint.min,
+                          demand.s_begin_mm + offence.s));
+    }
+    JointPoint end;
+    if (segment->evaluate(segment->length(), 0, -1, end) != KinematicsStatus::Ok) {
+      return tl::unexpected(unreachable(move, *segment, KinematicsStatus::Singular, segment->length()));
+    }
+    std::copy_n(end.d[0].begin(), joints.size(), joints.begin());
+    demand.s_begin_mm += segment->length();
+    segments.push_back(segment);
+    return {};
+  };
+
+  for (auto& owned : *curves) {
+    const std::shared_ptr<const Curve> curve = std::move(owned);
+    if (joint_move) {
+      // Speed along a joint path: what the slowest joint allows at the move's fraction; the time law bounds each joint
+      // again, point by point.
+      demand.feed_mm_s = std::numeric_limits<double>::infinity();
+      CurvePoint point;
+      double feed = 0;
+      for (const double s : curve->nodes()) {
+        curve->evaluate(s, 1, s > 0 ? -1 : 1, point);
+        double here = std::numeric_limits<double>::infinity();
+        for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+          if (point.d[1][j] != 0)
+            here = std::min(here, model_.joints[j].max_speed * move.joint_speed_fraction / std::abs(point.d[1][j]));
+        }
+        feed = std::max(feed, here);
+      }
+      demand.feed_mm_s = feed;
+    }
+    std::vector<double> cuts{0};
+    if (!curve->breaks().empty()) {
+      PathSegment probe(curve, frames_, model_.kinematics, demand);
+      double s = 0;
+      if (const auto status = probe.resolve(joints, s); status != KinematicsStatus::Ok)
+        return tl::unexpected(unreachable(move, probe, status, s));
+      JointPoint below, above;
+      for (const double at : curve->breaks()) {
+        if (probe.evaluate(at, 2, -1, below) != KinematicsStatus::Ok ||
+            probe.evaluate(at, 2, 1, above) != KinematicsStatus::Ok)
+          continue;
+        if (!passable(below, above, model_.joints, std::max(demand.feed_mm_s, 1.0), model_.period_s))
+          cuts.push_back(at);
+      }
+    }
+    cuts.push_back(curve->length());
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+      const bool whole = cuts.size() == 2;
+      auto piece = whole ? curve : std::make_shared<TrimmedCurve>(curve, cuts[i], cuts[i + 1]);
+      const bool last = &owned == &curves->back() && i + 2 == cuts.size();
+      demand.rest_before = positioning && segments.empty();
+      demand.rest_after = positioning && last;
+      demand.last_of_move = last;
+      if (auto appended = append(piece); !appended) return tl::unexpected(appended.error());
+    }
+  }
+  end_joints_ = std::move(joints);
+  ToolPose machine;
+  model_.kinematics->forward(end_joints_, frames_.tool, machine);
+  end_pose_ = segments.back()->curve().in_joint_space() ? apply_to_pose(inverse(frames_.part), machine)
+                                                        : segments.back()->pose(segments.back()->length());
+  return segments;
+}
+
+}  // namespace rmac

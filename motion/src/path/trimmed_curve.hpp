@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "rmac/motion/curve.hpp"
+
+namespace rmac {
+
+/// The part of a curve between two arc lengths, as a curve of its own.
+class TrimmedCurve final : public Curve {
+ public:
+  TrimmedCurve(std::shared_ptr<const Curve> curve, double begin, double end)
+      : curve_(std::move(curve)), begin_(begin), end_(end) {
+    const auto inside = [&](std::span<const double> all, std::vector<double>& kept) {
+      for (const double s : all) {
+        if (s > begin_ && s < end_) kept.push_back(s - begin_);
+      }
+    };
+    inside(curve_->breaks(), breaks_);
+    nodes_.push_back(0);
+    inside(curve_->nodes(), nodes_);
+    nodes_.push_back(end_ - begin_);
+  }
+  [[nodiscard]] bool in_joint_space() const noexcept override { return curve_->in_joint_space(); }
+  [[nodiscard]] std::size_t dimension() const noexcept override { return curve_->dimension(); }
+  [[nodiscard]] double length() const noexcept override { return end_ - begin_; }
+  void evaluate(double s, int order, int side, CurvePoint& point) const noexcept override {
+    // At its own ends only one side exists.
+    if (s <= 0) side = 1;
+    if (s >= end_ - begin_) side = -1;
+    curve_->evaluate(std::clamp(begin_ + s, begin_, end_), order, side, point);
+  }
+  [[nodiscard]] std::span<const double> breaks() const noexcept override { return breaks_; }
+  [[nodiscard]] std::span<const double> nodes() const noexcept override { return nodes_; }
+
+ private:
+  std::shared_ptr<const Curve> curve_;
+  double begin_, end_;
+  std::vector<double> breaks_, nodes_;
+};
+
+}  // namespace rmac

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "rmac/motion/time_law.hpp"
+
+namespace rmac {
+
+/// Joints' first three derivatives by path length at one end of a grid interval; spans of joint_count values in
+/// `LawProblem::derivatives`.
+struct JointDerivatives {
+  const double* d1;
+  const double* d2;
+  const double* d3;
+};
+
+/// The optimisation that finds a time law (docs/derivations/time-law.md): q(s) = (ds/dt)² as a C1 quadratic spline over
+/// a grid, fastest under linear bounds on q and q' (feed, joint speed and acceleration, path acceleration) and the
+/// bound on joint jerk. Both end states are given: rest itself is not a spline (q grows like s^(4/3) there) and is
+/// handled by `rest_ends`.
+struct LawProblem {
+  std::size_t joint_count = 0;
+  std::vector<double> nodes;        ///< N + 1 ascending path lengths
+  std::vector<double> derivatives;  ///< an interval: left d1 d2 d3, right d1 d2 d3, each joint_count values
+  std::vector<double> speed_cap;    ///< an interval: bound of q, mm²/s²
+  std::vector<double> rise,
+      fall;  ///< an interval: bounds of path acceleration, mm/s²; infinity where the joints alone bound it
+  std::vector<double>
+      tightening;  ///< an interval: joint bounds are multiplied by it; 1 at first, less where the check found excess
+  std::vector<double> max_acceleration, max_jerk;  ///< a joint
+  PathState begin, end;
+
+  [[nodiscard]] std::size_t intervals() const noexcept { return nodes.size() - 1; }
+  [[nodiscard]] double step(std::size_t interval) const noexcept { return nodes[interval + 1] - nodes[interval]; }
+  [[nodiscard]] JointDerivatives at(std::size_t interval, bool right) const noexcept {
+    const double* const first = derivatives.data() + (interval * 2 + (right ? 1U : 0U)) * 3 * joint_count;
+    return {first, first + joint_count, first + 2 * joint_count};
+  }
+};
+
+/// Result: the spline's coefficients (intervals + 2), see eq. 7.
+struct LawSolution {
+  bool converged = false;
+  int iterations = 0;
+  std::vector<double> coefficients;
+};
+
+/// Solves by a primal-dual interior point method. `guess` may hold coefficients of an earlier solve of the same grid,
+/// or be empty.
+[[nodiscard]] LawSolution solve_law(const LawProblem& problem, const std::vector<double>& guess);
+
+/// q, q' and q'' of the spline at the left end of an interval.
+struct SplineStart {
+  double q, dq, ddq;
+};
+[[nodiscard]] SplineStart spline_start(const LawProblem& problem, const std::vector<double>& coefficients,
+                                       std::size_t interval) noexcept;
+
+/// The law's pieces, the first one beginning at time `t0`.
+[[nodiscard]] std::vector<LawPiece> law_pieces(const LawProblem& problem, const std::vector<double>& coefficients,
+                                               double t0);
+
+}  // namespace rmac

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "rmac/motion/path_segment.hpp"
+
+namespace rmac {
+
+/// Segments laid end to end on one path length. Read only; whoever owns the vectors keeps them alive.
+class PathView {
+ public:
+  PathView(const std::vector<std::shared_ptr<const PathSegment>>& segments, const std::vector<double>& starts)
+      : segments_(segments), starts_(starts) {}
+
+  /// Index of the segment that holds s; at a boundary the one before (side -1) or after (+1).
+  [[nodiscard]] std::size_t find(double s, int side) const noexcept {
+    const auto it = side < 0 ? std::lower_bound(starts_.begin(), starts_.end(), s)
+                             : std::upper_bound(starts_.begin(), starts_.end(), s);
+    return it == starts_.begin() ? 0 : static_cast<std::size_t>(it - starts_.begin()) - 1;
+  }
+  [[nodiscard]] KinematicsStatus evaluate(double s, int order, int side, JointPoint& point) const noexcept {
+    const std::size_t i = find(s, side);
+    return segments_[i]->evaluate(std::clamp(s - starts_[i], 0.0, segments_[i]->length()), order, side, point);
+  }
+  [[nodiscard]] const PathSegment& segment(std::size_t i) const noexcept { return *segments_[i]; }
+  [[nodiscard]] double start(std::size_t i) const noexcept { return starts_[i]; }
+  [[nodiscard]] double end() const noexcept { return starts_.back() + segments_.back()->length(); }
+
+ private:
+  const std::vector<std::shared_ptr<const PathSegment>>& segments_;
+  const std::vector<double>& starts_;
+};
+
+}  // namespace rmac

@@ -1,0 +1,307 @@
+#include "time_law/window.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "time_law/law_problem.hpp"
+
+namespace rmac {
+namespace {
+
+/// Planning stays this part inside the limits, so that what a check finds between grid points still keeps the limits
+/// themselves.
+constexpr double kMargin = 0.9985;
+constexpr int kTightenings = 6;
+constexpr double kGrading = 0.35;  ///< grid steps grow by this part of the distance from a point of rest
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double bound(double value) {
+  return value > 0 ? value : kInfinity;
+}
+
+/// Speed bound at a point of the path: feed and joint speeds.
+double speed_bound(const PathSegment& segment, const JointPoint& point, const std::vector<JointLimits>& joints,
+                   double factor) {
+  const PathDemand& demand = segment.demand();
+  double v = demand.feed_mm_s * factor;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const double d = std::abs(point.d[1][j]);
+    if (d * v > joints[j].max_speed * kMargin) v = joints[j].max_speed * kMargin / d;
+    if (segment.curve().in_joint_space())
+      v = std::min(v, joints[j].max_speed * kMargin * demand.joint_speed_fraction * factor / std::max(d, 1e-12));
+  }
+  return v;
+}
+
+/// The stretch next to a point of rest, travelled at constant jerk: q ~ s^(4/3) there, which no spline follows (eq.
+/// 12).
+struct RestEnd {
+  double length = 0, time = 0, speed = 0, acceleration = 0, jerk = 0;
+};
+
+std::optional<RestEnd> rest_end(const PathView& path, const std::vector<JointLimits>& joints, double s_rest,
+                                int direction, double available, double grid_step, double factor) {
+  JointPoint point;
+  if (path.evaluate(s_rest, 3, direction, point) != KinematicsStatus::Ok) return std::nullopt;
+  const PathSegment& segment = path.segment(path.find(s_rest, direction));
+  const PathDemand& demand = segment.demand();
+  double jerk = kInfinity, acceleration = bound(direction > 0 ? demand.accel_rise_mm_s2 : demand.accel_fall_mm_s2);
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const double d = std::max(std::abs(point.d[1][j]), 1e-12);
+    jerk = std::min(jerk, joints[j].max_jerk * kMargin / d);
+    acceleration = std::min(acceleration, joints[j].max_acceleration * kMargin / d);
+  }
+  RestEnd end;
+  end.jerk = 0.97 * jerk;
+  const double speed = speed_bound(segment, point, joints, factor);
+  const double step = std::min(grid_step, available / 40);
+  end.time =
+      std::min({0.3 * acceleration / end.jerk, std::sqrt(0.2 * speed / end.jerk), std::cbrt(6 * step / end.jerk)});
+  for (int attempt = 0; attempt < 40; ++attempt, end.time *= 0.7, end.jerk = 0.9 * jerk) {
+    end.length = end.jerk * end.time * end.time * end.time / 6;
+    end.speed = end.jerk * end.time * end.time / 2;
+    end.acceleration = end.jerk * end.time;
+    const double room = s_rest + direction * end.length;
+    if (path.find(room, -direction) != path.find(s_rest, direction)) continue;  // stay inside one segment
+    bool fits = true;
+    for (int i = 1; i <= 4 && fits; ++i) {
+      const double t = end.time * i / 4;
+      const double v = end.jerk * t * t / 2, a = end.jerk * t;
+      if (path.evaluate(s_rest + direction * end.jerk * t * t * t / 6, 3, direction, point) != KinematicsStatus::Ok)
+        return std::nullopt;
+      for (std::size_t j = 0; j < joints.size() && fits; ++j) {
+        // Mirrored at an end: t runs backwards, so speed and jerk keep their sign and the acceleration changes it (eq.
+        // 13).
+        const double sign = direction;
+        fits = std::abs(point.d[3][j] * v * v * v + 3 * sign * point.d[2][j] * v * a + point.d[1][j] * end.jerk) <=
+                   joints[j].max_jerk * kMargin &&
+               std::abs(point.d[2][j] * v * v + sign * point.d[1][j] * a) <= 0.5 * joints[j].max_acceleration;
+      }
+    }
+    if (fits) return end;
+  }
+  return std::nullopt;
+}
+
+/// Distance between a segment's own nodes around s: how finely its geometry asks to be sampled.
+double node_spacing(const PathView& path, double s) {
+  const std::size_t i = path.find(s, 1);
+  const auto nodes = path.segment(i).curve().nodes();
+  const double local = s - path.start(i);
+  auto above = std::upper_bound(nodes.begin(), nodes.end(), local);
+  if (above == nodes.begin()) ++above;
+  if (above == nodes.end()) --above;
+  return *above - *(above - 1);
+}
+
+/// Grid from a to b: segment ends and breaks on it, as fine as the geometry asks and no coarser than `coarsest`, graded
+/// towards rest.
+std::vector<double> make_grid(const PathView& path, double a, double b, double rest_a, double rest_b, double finest_a,
+                              double finest_b, double coarsest) {
+  std::vector<double> fixed{a};
+  for (std::size_t i = path.find(a, 1); i <= path.find(b, -1); ++i) {
+    const double start = path.start(i);
+    const auto keep = [&](double s) {
+      if (s > fixed.back() + 1e-9 * (1 + std::abs(s)) * 1e-3 && s < b) fixed.push_back(s);
+    };
+    keep(start);
+    for (const double s : path.segment(i).curve().breaks()) keep(start + s);
+  }
+  fixed.push_back(b);
+  const auto spacing = [&](double s) {
+    double h = std::min(coarsest, node_spacing(path, s));
+    if (std::isfinite(rest_a)) h = std::min(h, finest_a + kGrading * (s - rest_a));
+    if (std::isfinite(rest_b)) h = std::min(h, finest_b + kGrading * (rest_b - s));
+    return h;
+  };
+  std::vector<double> nodes{a};
+  std::vector<double> stretch;
+  for (std::size_t i = 0; i + 1 < fixed.size(); ++i) {
+    const double from = fixed[i], to = fixed[i + 1];
+    stretch.clear();
+    double s = from;
+    while (s < to) {
+      double h = spacing(s);
+      h = std::min(h, spacing(std::min(s + h, to)) * 1.5);
+      s += h;
+      stretch.push_back(s);
+    }
+    const double squeeze = (to - from) / (stretch.back() - from);
+    for (double& node : stretch) node = from + (node - from) * squeeze;
+    stretch.back() = to;
+    nodes.insert(nodes.end(), stretch.begin(), stretch.end());
+  }
+  // The spline's end coefficients are fixed by the end states; a law needs some that are free.
+  while (nodes.size() < 6) {
+    std::vector<double> finer{nodes.front()};
+    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+      finer.push_back(0.5 * (nodes[i] + nodes[i + 1]));
+      finer.push_back(nodes[i + 1]);
+    }
+    nodes = std::move(finer);
+  }
+  return nodes;
+}
+
+bool fill(LawProblem& problem, const PathView& path, const std::vector<JointLimits>& joints, double factor) {
+  const std::size_t n = joints.size(), intervals = problem.intervals();
+  problem.joint_count = n;
+  problem.derivatives.resize(intervals * 6 * n);
+  problem.speed_cap.resize(intervals);
+  problem.rise.resize(intervals);
+  problem.fall.resize(intervals);
+  problem.tightening.assign(intervals, 1.0);
+  for (const JointLimits& joint : joints) {
+    problem.max_acceleration.push_back(joint.max_acceleration * kMargin);
+    problem.max_jerk.push_back(joint.max_jerk * kMargin);
+  }
+  JointPoint point;
+  for (std::size_t k = 0; k < intervals; ++k) {
+    double* out = problem.derivatives.data() + k * 6 * n;
+    const PathSegment& segment = path.segment(path.find(0.5 * (problem.nodes[k] + problem.nodes[k + 1]), 1));
+    double v = kInfinity;
+    for (int right = 0; right < 2; ++right) {
+      if (path.evaluate(problem.nodes[k + static_cast<std::size_t>(right)], 3, right != 0 ? -1 : 1, point) !=
+          KinematicsStatus::Ok)
+        return false;
+      for (std::size_t d = 1; d <= 3; ++d) out = std::copy_n(point.d[d].begin(), n, out);
+      v = std::min(v, speed_bound(segment, point, joints, factor));
+    }
+    problem.speed_cap[k] = v * v;
+    problem.rise[k] = bound(segment.demand().accel_rise_mm_s2);
+    problem.fall[k] = bound(segment.demand().accel_fall_mm_s2);
+  }
+  return true;
+}
+
+/// Where the state at the beginning is faster than the bounds (an override was lowered), they give way as far as
+/// braking needs.
+void yield_to_begin(LawProblem& problem) {
+  double acceleration = kInfinity, jerk = kInfinity;
+  for (std::size_t k = 0; k < std::min<std::size_t>(problem.intervals(), 40); ++k) {
+    const JointDerivatives d = problem.at(k, false);
+    for (std::size_t j = 0; j < problem.joint_count; ++j) {
+      acceleration = std::min(acceleration, 0.25 * problem.max_acceleration[j] / std::max(std::abs(d.d1[j]), 1e-9));
+      jerk = std::min(jerk, 0.25 * problem.max_jerk[j] / std::max(std::abs(d.d1[j]), 1e-9));
+    }
+    acceleration = std::min(acceleration, 0.5 * problem.fall[k]);
+  }
+  // First the acceleration is taken back to zero and to braking at constant jerk, then it is kept.
+  PathState state = problem.begin;
+  const double dt = std::max(1e-4, problem.begin.v / acceleration / 4000);
+  double s = state.s, v = state.v, a = state.a;
+  for (std::size_t k = 0; k < problem.intervals() && v > 0; ++k) {
+    problem.speed_cap[k] = std::max(problem.speed_cap[k], v * v * 1.02 + 2 * std::max(a, 0.0) * problem.step(k));
+    while (s < problem.nodes[k + 1] && v > 0) {
+      a = std::max(a - jerk * dt, -acceleration);
+      v += a * dt;
+      s += std::max(v, 0.0) * dt;
+    }
+  }
+}
+
+}  // namespace
+
+double ramp_length(double v, double a, double j) noexcept {
+  // Jerk up, constant acceleration, jerk down; the mean speed is v/2 whether or not the acceleration limit is reached.
+  const double time = v * j >= a * a ? v / a + a / j : 2 * std::sqrt(v / j);
+  return 0.5 * v * time;
+}
+
+LawExcess check_law(const PathView& path, const std::vector<JointLimits>& joints, const std::vector<LawPiece>& law,
+                    double factor) {
+  constexpr int kSamples = 4;
+  LawExcess excess;
+  excess.by_piece.reserve(law.size());
+  JointPoint point;
+  for (const LawPiece& piece : law) {
+    double worst = 0;
+    for (int i = 0; i <= kSamples; ++i) {
+      const double t = piece.duration * i / kSamples;
+      const PathState at = piece.at(t);
+      const double path_jerk = piece.kind == LawPiece::Kind::Jerk ? piece.slope : piece.slope * at.v;
+      const int side = i == kSamples ? -1 : 1;
+      const PathSegment& segment = path.segment(path.find(at.s, side));
+      if (!(at.v >= -1e-9) || path.evaluate(at.s, 3, side, point) != KinematicsStatus::Ok) return {kInfinity, {}};
+      for (std::size_t j = 0; j < joints.size(); ++j) {
+        const double d1 = point.d[1][j], d2 = point.d[2][j], d3 = point.d[3][j], v = at.v;
+        worst = std::max({worst, std::abs(d1 * v) / joints[j].max_speed,
+                          std::abs(d2 * v * v + d1 * at.a) / joints[j].max_acceleration,
+                          std::abs(d3 * v * v * v + 3 * d2 * v * at.a + d1 * path_jerk) / joints[j].max_jerk});
+      }
+      const PathDemand& demand = segment.demand();
+      worst = std::max({worst, at.a / bound(demand.accel_rise_mm_s2), -at.a / bound(demand.accel_fall_mm_s2)});
+      if (factor >= 0) worst = std::max(worst, at.v / (demand.feed_mm_s * factor * 1.0005));
+    }
+    excess.by_piece.push_back(worst);
+    excess.worst = std::max(excess.worst, worst);
+  }
+  return excess;
+}
+
+std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std::vector<JointLimits>& joints,
+                                                 const Window& window) {
+  const bool from_rest = window.begin.v == 0 && window.begin.a == 0;
+  const double length = window.s_end - window.begin.s;
+  const double factor = window.override_factor;
+  if (!(length > 0)) return std::nullopt;
+
+  double coarsest = length / 12;
+  {  // grid steps resolve the ramps to full speed
+    double a = kInfinity, j = kInfinity;
+    for (const JointLimits& joint : joints) a = std::min(a, joint.max_acceleration), j = std::min(j, joint.max_jerk);
+    double v = 0;
+    for (std::size_t i = path.find(window.begin.s, 1); i <= path.find(window.s_end, -1); ++i)
+      v = std::max(v, path.segment(i).demand().feed_mm_s * factor);
+    for (const JointLimits& joint : joints) v = std::min(v, 2 * joint.max_speed);
+    coarsest = std::min(coarsest, std::max(ramp_length(v, a, j) / 16, 0.01));
+  }
+  double a = window.begin.s, b = window.s_end;
+  std::optional<RestEnd> first, last;
+  if (from_rest) {
+    first = rest_end(path, joints, a, 1, length, coarsest, factor);
+    if (!first) return std::nullopt;
+    a += first->length;
+  }
+  last = rest_end(path, joints, b, -1, length, coarsest, factor);
+  if (!last) return std::nullopt;
+  b -= last->length;
+  if (!(b > a)) return std::nullopt;
+
+  LawProblem problem;
+  problem.begin = first ? PathState{a, first->speed, first->acceleration} : window.begin;
+  problem.end = {b, last->speed, -last->acceleration};
+  problem.nodes = make_grid(path, a, b, first ? window.begin.s : -kInfinity, window.s_end, first ? first->length : 0,
+                            last->length, coarsest);
+  if (!fill(problem, path, joints, factor)) return std::nullopt;
+  const bool yields = problem.begin.v * problem.begin.v > 0.98 * problem.speed_cap[0];
+  if (yields) yield_to_begin(problem);
+
+  std::vector<double> guess;
+  for (int round = 0; round < kTightenings; ++round) {
+    const LawSolution solution = solve_law(problem, guess);
+    if (!solution.converged) return std::nullopt;
+    std::vector<LawPiece> law;
+    double t = 0;
+    if (first) {
+      law.push_back({0, {window.begin.s, 0, 0}, first->jerk, first->time, LawPiece::Kind::Jerk});
+      t = first->time;
+    }
+    const std::size_t offset = law.size();
+    const std::vector<LawPiece> middle = law_pieces(problem, solution.coefficients, t);
+    law.insert(law.end(), middle.begin(), middle.end());
+    t = law.back().t0 + law.back().duration;
+    law.push_back({t, problem.end, last->jerk, last->time, LawPiece::Kind::Jerk});
+    const LawExcess excess = check_law(path, joints, law, yields ? -1 : factor);
+    if (excess.worst <= 1.0) return law;
+    if (!std::isfinite(excess.worst)) return std::nullopt;
+    for (std::size_t k = 0; k < problem.intervals(); ++k) {
+      const double over = excess.by_piece[k + offset];
+      if (over > kMargin) problem.tightening[k] *= std::max(0.5, kMargin / over * (over > 1 ? 0.9995 : 1));
+    }
+    guess = solution.coefficients;
+  }
+  return std::nullopt;
+}
+
+}  // namespace rmac
