@@ -1,0 +1,118 @@
+#include "bspline.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rmac::curves {
+
+struct BSpline::Homogeneous {
+  std::array<std::array<double, kMaxJoints + 1>, 4> d;
+};
+
+BSpline::BSpline(const Nurbs& nurbs)
+    : degree_(static_cast<std::size_t>(nurbs.degree)),
+      dimension_(nurbs.dimension),
+      width_(nurbs.dimension + (nurbs.weights.empty() ? 0U : 1U)),
+      rational_(!nurbs.weights.empty()) {
+  const std::size_t count = nurbs.points.size();
+  first_ = nurbs.knots[degree_];
+  range_ = nurbs.knots[count] - first_;
+  knots_.reserve(nurbs.knots.size());
+  for (const double knot : nurbs.knots) knots_.push_back((knot - first_) / range_);
+  for (std::size_t i = degree_; i < count; ++i) {
+    if (knots_[i + 1] > knots_[i]) spans_.push_back(i);
+  }
+
+  for (std::size_t c = 0; c < dimension_; ++c) origin_[c] = nurbs.points[0][c];
+  points_[0].reserve(count * width_);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double weight = rational_ ? nurbs.weights[i] : 1;
+    for (std::size_t c = 0; c < dimension_; ++c) points_[0].push_back(weight * (nurbs.points[i][c] - origin_[c]));
+    if (rational_) points_[0].push_back(weight);
+  }
+  // The NURBS Book, eq. 3.8; a derivative's point whose support is empty is never used.
+  for (std::size_t k = 1; k < points_.size() && k <= degree_; ++k) {
+    const std::size_t left = count - k;
+    points_[k].resize(left * width_);
+    for (std::size_t i = 0; i < left; ++i) {
+      const double support = knots_[i + degree_ + 1] - knots_[i + k];
+      const double factor = support > 0 ? static_cast<double>(degree_ - k + 1) / support : 0;
+      for (std::size_t c = 0; c < width_; ++c) {
+        points_[k][i * width_ + c] = factor * (points_[k - 1][(i + 1) * width_ + c] - points_[k - 1][i * width_ + c]);
+      }
+    }
+  }
+}
+
+std::size_t BSpline::multiplicity(std::size_t span) const noexcept {
+  const auto [low, high] = std::equal_range(knots_.begin(), knots_.end(), knots_[spans_[span]]);
+  return static_cast<std::size_t>(high - low);
+}
+
+double BSpline::extent(std::size_t first, std::size_t last) const noexcept {
+  double most = 0;
+  for (std::size_t i = 0; i < points_[0].size(); i += width_) {
+    const double weight = rational_ ? points_[0][i + dimension_] : 1;
+    double sum = 0;
+    for (std::size_t c = first; c < last; ++c) sum += points_[0][i + c] * points_[0][i + c] / (weight * weight);
+    most = std::max(most, std::sqrt(sum));
+  }
+  return most;
+}
+
+void BSpline::basis_sums(std::size_t span, double t, std::size_t order, Homogeneous& sums) const noexcept {
+  const std::size_t knot = spans_[span];
+  const double* const after = knots_.data() + knot;
+  std::array<double, kMaxDegree + 1> basis;
+  std::array<double, kMaxDegree + 1> left;
+  std::array<double, kMaxDegree + 1> right;
+  basis[0] = 1;
+  for (std::size_t j = 0;; ++j) {
+    // The functions of degree j carry the derivative of order degree - j (docs/derivations/curves.md, eq. 5).
+    const std::size_t k = degree_ - j;
+    if (k <= order) {
+      const double* points = points_[k].data() + (knot - degree_) * width_;
+      auto& sum = sums.d[k];
+      for (std::size_t c = 0; c < width_; ++c) sum[c] = basis[0] * points[c];
+      for (std::size_t l = 1; l <= j; ++l) {
+        points += width_;
+        for (std::size_t c = 0; c < width_; ++c) sum[c] += basis[l] * points[c];
+      }
+    }
+    if (j == degree_) return;
+    // A2.2 of The NURBS Book, from degree j to j + 1.
+    left[j + 1] = t + (after[0] - *(after - j));
+    right[j + 1] = (after[j + 1] - after[0]) - t;
+    double saved = 0;
+    for (std::size_t r = 0; r <= j; ++r) {
+      const double share = basis[r] / (right[r + 1] + left[j + 1 - r]);
+      basis[r] = saved + right[r + 1] * share;
+      saved = left[j + 1 - r] * share;
+    }
+    basis[j + 1] = saved;
+  }
+}
+
+void BSpline::evaluate(std::size_t span, double t, int order, CurvePoint& point) const noexcept {
+  static constexpr double kBinomial[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
+  const auto wanted = static_cast<std::size_t>(std::clamp(order, 0, 3));
+  const std::size_t known = std::min(wanted, degree_);
+  Homogeneous sums;
+  basis_sums(span, t, known, sums);
+  for (std::size_t k = known + 1; k <= wanted; ++k) std::fill_n(sums.d[k].begin(), width_, 0.0);
+  if (!rational_) {
+    for (std::size_t k = 0; k <= wanted; ++k) std::copy_n(sums.d[k].begin(), dimension_, point.d[k].begin());
+  } else {
+    const double inverse_weight = 1 / sums.d[0][dimension_];
+    for (std::size_t k = 0; k <= wanted; ++k) {
+      for (std::size_t c = 0; c < dimension_; ++c) {
+        double value = sums.d[k][c];
+        for (std::size_t i = 1; i <= k; ++i) value -= kBinomial[k][i] * sums.d[i][dimension_] * point.d[k - i][c];
+        point.d[k][c] = value * inverse_weight;
+      }
+    }
+  }
+  for (std::size_t c = 0; c < dimension_; ++c) point.d[0][c] += origin_[c];
+}
+
+}  // namespace rmac::curves

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "rmac/motion/curve.hpp"
+#include "rmac/motion/nurbs.hpp"
+
+namespace rmac::curves {
+
+inline constexpr std::size_t kMaxDegree = 25;
+
+/// A checked NURBS ready for evaluation: derivatives up to the third by the curve's parameter (The NURBS Book, A2.2,
+/// A3.3 and A4.2; docs/derivations/curves.md, section 3). Places are a span (a knot interval that is not empty, counted
+/// from 0) and t, the distance from the span's first knot with the whole domain scaled to length 1: short spans far
+/// from the first knot keep all their digits. Immutable; `evaluate` is real-time safe.
+class BSpline {
+ public:
+  /// `nurbs` must have passed `check_nurbs`.
+  explicit BSpline(const Nurbs& nurbs);
+
+  [[nodiscard]] std::size_t degree() const noexcept { return degree_; }
+  [[nodiscard]] std::size_t dimension() const noexcept { return dimension_; }
+  [[nodiscard]] std::size_t span_count() const noexcept { return spans_.size(); }
+  /// Largest t of a span.
+  [[nodiscard]] double span_width(std::size_t span) const noexcept {
+    return knots_[spans_[span] + 1] - knots_[spans_[span]];
+  }
+  /// How often the knot at the span's start occurs.
+  [[nodiscard]] std::size_t multiplicity(std::size_t span) const noexcept;
+  /// The client's parameter of a place, for messages.
+  [[nodiscard]] double parameter(std::size_t span, double t) const noexcept {
+    return first_ + range_ * (knots_[spans_[span]] + t);
+  }
+  /// Largest distance of a control point from the first, over coordinates [first, last).
+  [[nodiscard]] double extent(std::size_t first, std::size_t last) const noexcept;
+
+  void evaluate(std::size_t span, double t, int order, CurvePoint& point) const noexcept;
+
+ private:
+  struct Homogeneous;
+  void basis_sums(std::size_t span, double t, std::size_t order, Homogeneous& sums) const noexcept;
+
+  std::size_t degree_;
+  std::size_t dimension_;
+  std::size_t width_;  ///< coordinates a stored point: one more than the dimension where there are weights
+  bool rational_;
+  double first_ = 0;
+  double range_ = 1;
+  std::vector<double> knots_;
+  std::vector<std::size_t> spans_;             ///< index of each span's first knot
+  std::array<double, kMaxJoints> origin_{};    ///< subtracted from all points: weights far from it would lose digits
+  std::array<std::vector<double>, 4> points_;  ///< control points of the curve and its three derivatives
+};
+
+}  // namespace rmac::curves

@@ -1,0 +1,125 @@
+#include "length_table.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "chebyshev.hpp"
+
+namespace rmac::curves {
+namespace {
+
+constexpr std::size_t kSpeedDegree = 16;
+constexpr int kMaxHalvings = 44;
+/// Relative to the piece: what is left out of the speed's series, and how far t(s) may miss s.
+constexpr double kSeriesTail = 2e-13;
+constexpr double kInverseError = 2e-12;
+
+/// Arc length along one piece, as a polynomial of x in [-1, 1] (eq. 8 of the derivation).
+struct PieceLength {
+  std::array<double, kSpeedDegree + 1> speed{};
+  std::array<double, kSpeedDegree + 2> integral{};
+
+  [[nodiscard]] double at(double x) const noexcept { return chebyshev_sum(integral, x); }
+  [[nodiscard]] double total() const noexcept { return at(1); }
+
+  void integrate() noexcept {
+    const auto coefficient = [this](std::size_t k) { return k < speed.size() ? speed[k] : 0.0; };
+    for (std::size_t k = 1; k < integral.size(); ++k) {
+      const double before = k == 1 ? 2 * coefficient(0) : coefficient(k - 1);
+      integral[k] = (before - coefficient(k + 1)) / (2 * static_cast<double>(k));
+    }
+    integral[0] = 0;
+    integral[0] = -at(-1);
+  }
+
+  /// x where the length is `target`; Newton from `guess`, monotone because the speed is positive.
+  [[nodiscard]] std::optional<double> inverse(double target, double guess) const noexcept {
+    double x = guess;
+    for (int i = 0; i < 30; ++i) {
+      const double step = (target - at(x)) / chebyshev_sum(speed, x);
+      x = std::clamp(x + step, -1.0, 1.0);
+      if (std::abs(step) < 1e-15) return x;
+      // Rounding leaves the last steps wandering at the size of the series' own noise.
+      if (i > 8 && std::abs(step) < 1e-13) return x;
+    }
+    return std::nullopt;
+  }
+};
+
+}  // namespace
+
+struct LengthTable::Span {
+  std::size_t index;
+  double width;
+  double least_speed;
+  const Speed& speed;
+};
+
+std::optional<LengthTable::Flaw> LengthTable::add_span(std::size_t span, double width, double least_speed,
+                                                       const Speed& speed) {
+  double fastest = 0;
+  for (int i = 0; i <= 16; ++i) fastest = std::max(fastest, speed(span, width * i / 16));
+  // A speed this much lower than the rest of its span is a cusp that rounding has filled in.
+  return add({span, width, std::max(least_speed, 1e-9 * fastest), speed}, 0, width, 0);
+}
+
+std::optional<LengthTable::Flaw> LengthTable::add(const Span& span, double from, double to, int depth) {
+  static const Chebyshev<kSpeedDegree> kSpeedNodes;
+  static const Chebyshev<kDegree> kNodes;
+  const double half = (to - from) / 2;
+  const double middle = from + half;
+  const auto split = [&]() -> std::optional<Flaw> {
+    if (depth == kMaxHalvings) return Flaw{span.index, middle};
+    if (auto flaw = add(span, from, middle, depth + 1)) return flaw;
+    return add(span, middle, to, depth + 1);
+  };
+
+  std::array<double, kSpeedDegree + 1> speeds;
+  for (std::size_t j = 0; j <= kSpeedDegree; ++j) {
+    const double t = std::clamp(middle + half * kSpeedNodes.node(j), from, to);
+    speeds[j] = span.speed(span.index, t);
+    if (!(speeds[j] > span.least_speed)) return Flaw{span.index, t};
+  }
+  PieceLength piece;
+  piece.speed = kSpeedNodes.coefficients(speeds);
+  const double tail = std::max({std::abs(piece.speed[kSpeedDegree]), std::abs(piece.speed[kSpeedDegree - 1]),
+                                std::abs(piece.speed[kSpeedDegree - 2])});
+  if (tail > kSeriesTail * piece.speed[0]) return split();
+  piece.integrate();
+
+  const double total = piece.total();
+  std::array<double, kDegree + 1> t;
+  for (std::size_t j = 0; j <= kDegree; ++j) {
+    const auto x = piece.inverse(total * (1 + kNodes.node(j)) / 2, kNodes.node(j));
+    if (!x) return split();
+    t[j] = middle + half * *x;
+  }
+  t.front() = to;
+  t.back() = from;
+  const auto inverse = kNodes.coefficients(t);
+  // Rounding of t alone moves x by eps t / half: no reason to halve again.
+  const double allowed =
+      kInverseError * total + 4 * std::numeric_limits<double>::epsilon() * to / half * piece.speed[0];
+  for (std::size_t j = 0; j < kDegree; ++j) {
+    const double y = (kNodes.node(j) + kNodes.node(j + 1)) / 2;
+    const double x = (chebyshev_sum(inverse, y) - middle) / half;
+    if (!(std::abs(piece.at(x) - total * (1 + y) / 2) <= allowed)) return split();
+  }
+
+  const double length = total * half;
+  if (!(length > 0)) return Flaw{span.index, middle};
+  starts_.push_back(length_);
+  pieces_.push_back({length_ + length / 2, 2 / length, span.width, inverse, static_cast<std::uint32_t>(span.index)});
+  length_ += length;
+  return std::nullopt;
+}
+
+LengthTable::Place LengthTable::locate(double s, int side) const noexcept {
+  const auto next = side < 0 ? std::lower_bound(starts_.begin() + 1, starts_.end(), s)
+                             : std::upper_bound(starts_.begin() + 1, starts_.end(), s);
+  const Piece& piece = pieces_[static_cast<std::size_t>(next - starts_.begin()) - 1];
+  const double y = std::clamp((s - piece.middle_s) * piece.inverse_half, -1.0, 1.0);
+  return {piece.span, std::clamp(chebyshev_sum(piece.t, y), 0.0, piece.width)};
+}
+
+}  // namespace rmac::curves
