@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string_view>
+
+namespace rmac::gateway {
+
+/// The JSON schemas of etc/, compiled in, so that binary and schema cannot disagree and no path matters.
+[[nodiscard]] std::string_view device_schema_text();
+[[nodiscard]] std::string_view rmacd_schema_text();
+
+}  // namespace rmac::gateway

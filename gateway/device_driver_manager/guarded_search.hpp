@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "rmac/motion/error.hpp"
+
+namespace rmac::gateway {
+
+/// Runs a stranger's SQL on the SQLite file `database` and returns the MechanismID of each row, in the statement's
+/// order.
+///
+/// Nothing in the statement is trusted. It runs on a connection of its own that is read-only and defensive; an
+/// authorizer lets through SELECT, the columns of DeviceDrivers and a list of harmless functions; lengths, columns,
+/// depths and memory are bounded; it ends after 200 ms; one statement is taken, and it must yield a MechanismID.
+/// An error tells what was refused. Gateway thread only.
+[[nodiscard]] Expected<std::vector<std::int64_t>> search_mechanisms(const std::string& database,
+                                                                    const std::string& sql);
+
+}  // namespace rmac::gateway
