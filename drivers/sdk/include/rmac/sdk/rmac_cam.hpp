@@ -32,6 +32,11 @@ class RmacCam {
   /// asks again.
   virtual Expected<> queue_move(std::int64_t id, const Geometry& geometry) = 0;
   [[nodiscard]] virtual int moves_in_buffer() const = 0;
+  /// Joints that put the tool at `pose` (part frame); of several solutions the one nearest to the end of the queue.
+  [[nodiscard]] virtual Expected<std::vector<double>> joints_at(const ToolPose& /*pose*/) const {
+    return failure(MinorCode::UnsupportedOperation,
+                   "a joint target given as a pose is not supported yet; give {\"joints\": [...]}");
+  }
 
   virtual Expected<> set_feedrate(double mm_min) = 0;
   /// Actual speed of the tool tip from measured joints, mm/min.

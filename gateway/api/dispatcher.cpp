@@ -1,0 +1,150 @@
+#include "gateway/api/dispatcher.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gateway/api/decode.hpp"
+#include "gateway/api/method_table.hpp"
+
+namespace rmac::gateway {
+
+namespace {
+
+using nlohmann::json;
+
+tl::unexpected<RpcError> wrong(int code, std::string message) {
+  return tl::unexpected<RpcError>(RpcError{code, std::move(message), MinorCode::InvalidParameter});
+}
+
+/// Deepest nesting of brackets outside texts.
+int nesting_of(std::string_view line) {
+  int depth = 0;
+  int deepest = 0;
+  bool in_text = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (in_text) {
+      if (c == '\\') ++i;
+      if (c == '"') in_text = false;
+    } else if (c == '"') {
+      in_text = true;
+    } else if (c == '[' || c == '{') {
+      deepest = std::max(deepest, ++depth);
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+  return deepest;
+}
+
+/// NaN and Infinity are what people send most often that is not JSON, so they are named.
+const char* hint_for(std::string_view line) {
+  for (const char* word : {"NaN", "nan", "Infinity", "inf"}) {
+    if (line.find(word) != std::string_view::npos)
+      return "; JSON has no NaN and no Infinity, every number must be finite";
+  }
+  return "";
+}
+
+/// The reader's own message, printable whatever bytes it quotes.
+std::string printable(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7e) c = '?';
+  }
+  if (text.size() > 300) text.resize(300);
+  return text;
+}
+
+}  // namespace
+
+tl::expected<json, RpcError> parse_line(std::string_view line) {
+  if (const int depth = nesting_of(line); depth > kLargestNesting) {
+    return wrong(rpc_code::kParseError,
+                 fmt::format("nested {} deep, at most {} objects and arrays within each other are read", depth,
+                             kLargestNesting));
+  }
+  try {
+    return json::parse(line);
+  } catch (const json::exception& error) {
+    return wrong(rpc_code::kParseError,
+                 fmt::format("the line is not JSON: {}{}", printable(error.what()), hint_for(line)));
+  }
+}
+
+Request read_request(json message) {
+  Request request;
+  const auto refuse = [&](std::string why) {
+    request.error = RpcError{rpc_code::kInvalidRequest, std::move(why), MinorCode::InvalidParameter};
+    request.notification = false;
+  };
+  if (!message.is_object()) {
+    refuse(fmt::format("{} is not a request; expected {}", shortened(message),
+                       R"({"jsonrpc": "2.0", "id": 1, "method": "...", "params": {...}})"));
+    return request;
+  }
+  request.notification = !message.contains("id");
+  if (!request.notification) {
+    json& id = message["id"];
+    if (!id.is_string() && !id.is_number() && !id.is_null()) {
+      refuse(fmt::format("\"id\" is {}, expected a text, a number or null", shortened(id)));
+      return request;
+    }
+    request.id = std::move(id);
+  }
+  if (!message.contains("jsonrpc") || message["jsonrpc"] != "2.0") {
+    refuse(R"(a request needs "jsonrpc": "2.0")");
+    return request;
+  }
+  if (!message.contains("method") || !message["method"].is_string()) {
+    refuse(R"(a request needs "method", a text)");
+    return request;
+  }
+  const std::string& name = message["method"].get_ref<const std::string&>();
+  request.method = find_method(name);
+  if (request.method == nullptr) {
+    request.error = RpcError{rpc_code::kMethodNotFound,
+                             fmt::format("there is no method {}; rpc.discover lists all", shortened(message["method"])),
+                             MinorCode::UnsupportedOperation};
+  }
+  if (message.contains("params")) request.params = std::move(message["params"]);
+  return request;
+}
+
+Answer Dispatcher::execute(const Request& request, SessionPort& session) {
+  if (request.error) return tl::unexpected<RpcError>(*request.error);
+  const Method& method = *request.method;
+  auto arguments = arrange(method, request.params);
+  if (!arguments) return tl::unexpected<RpcError>(std::move(arguments.error()));
+  const bool writes_property = method.property && arguments->back() != nullptr;
+  if ((method.permission == Permission::Authority || writes_property) && !session.has_authority()) {
+    const std::string holder = session.authority_holder();
+    return tl::unexpected<RpcError>(RpcError{
+        rpc_code::kAuthorityRequired,
+        fmt::format("{} needs motion authority; {}", method.name,
+                    holder.empty() ? "call authority.acquire first"
+                                   : fmt::format("{} holds it: call authority.acquire when it is free", holder)),
+        MinorCode::UnsupportedOperation});
+  }
+  Call call{machine_, status_, session};
+  try {
+    return method.handler(call, *arguments);
+  } catch (const std::exception& error) {
+    // Nothing below is meant to throw; a client gets an answer all the same, and the daemon lives on.
+    return tl::unexpected<RpcError>(RpcError{rpc_code::kInternalError,
+                                             fmt::format("{} failed: {}", method.name, printable(error.what())),
+                                             MinorCode::Unknown});
+  }
+}
+
+json to_response(const json& id, const Answer& answer) {
+  json response{{"jsonrpc", "2.0"}, {"id", id}};
+  if (answer) {
+    response["result"] = *answer;
+  } else {
+    response["error"] = to_json(answer.error());
+  }
+  return response;
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+
+#include "gateway/api/method.hpp"
+#include "gateway/api/ports.hpp"
+
+namespace rmac::gateway {
+
+/// Objects and arrays within each other, at most. A NURBS in a batch needs six.
+inline constexpr int kLargestNesting = 32;
+
+/// One line of the wire as JSON, or a parse error that says where and why. Never throws; bounded in depth before
+/// anything is built.
+[[nodiscard]] tl::expected<nlohmann::json, RpcError> parse_line(std::string_view line);
+
+/// One request of a line or of a batch, looked up in the method table.
+struct Request {
+  nlohmann::json id;               ///< null for a notification, and where it could not be read
+  bool notification = false;       ///< wants no answer
+  const Method* method = nullptr;  ///< nullptr when `error` is set
+  nlohmann::json params;
+  std::optional<RpcError> error;  ///< not a request, or an unknown method
+
+  [[nodiscard]] bool stops() const noexcept { return method != nullptr && method->permission == Permission::Stop; }
+  [[nodiscard]] bool queues_a_move() const noexcept { return method != nullptr && method->queues_a_move; }
+};
+
+[[nodiscard]] Request read_request(nlohmann::json message);
+
+using Answer = tl::expected<nlohmann::json, RpcError>;
+
+/// Checks a request against the table and the caller's authority, and carries it out. Gateway thread only.
+class Dispatcher {
+ public:
+  explicit Dispatcher(MachinePort& machine) : machine_(machine) {}
+
+  [[nodiscard]] Answer execute(const Request& request, SessionPort& session);
+  [[nodiscard]] MachineStatus& status() noexcept { return status_; }
+  [[nodiscard]] MachinePort& machine() noexcept { return machine_; }
+
+ private:
+  MachinePort& machine_;
+  MachineStatus status_;
+};
+
+/// The answer's line, without the newline.
+[[nodiscard]] nlohmann::json to_response(const nlohmann::json& id, const Answer& answer);
+
+}  // namespace rmac::gateway

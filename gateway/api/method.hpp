@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "gateway/api/ports.hpp"
+#include "gateway/api/wire_type.hpp"
+
+namespace rmac::gateway {
+
+enum class Permission {
+  Anyone,     ///< reads
+  Authority,  ///< moves or changes the machine: needs the lease
+  Stop,       ///< stops: needs no lease, and overtakes what waits on its connection
+};
+
+enum class Origin { Dissertation, Extension };
+
+[[nodiscard]] const char* to_string(Permission permission) noexcept;
+[[nodiscard]] const char* to_string(Origin origin) noexcept;
+
+/// One method of the API. Dispatch, parameter checks, `rpc.discover` and docs/api.md read this and nothing else.
+struct Method {
+  /// Arguments in the order of `parameters`; null pointers stand for optional ones that were left out.
+  using Arguments = std::vector<const nlohmann::json*>;
+  using Handler = std::function<tl::expected<nlohmann::json, RpcError>(Call&, const Arguments&)>;
+
+  std::string name;  ///< "Interface.Function"
+  std::string meaning;
+  std::vector<ParameterSpec> parameters;
+  ResultSpec result;
+  Permission permission = Permission::Anyone;
+  Origin origin = Origin::Dissertation;
+  bool property = false;       ///< reads without `newVal`; with it writes, gives true, and needs authority
+  bool queues_a_move = false;  ///< waits for room in a full queue
+  std::string missing;         ///< what the method still lacks; empty when it works
+  Handler handler;
+
+  [[nodiscard]] bool supported() const noexcept { return missing.empty(); }
+};
+
+/// Binds the call's JSON to the handler: parameters by name or by position, none unknown, none missing. Types and
+/// ranges are checked by the handler, which knows the C++ types.
+[[nodiscard]] tl::expected<Method::Arguments, RpcError> arrange(const Method& method, const nlohmann::json& params);
+
+}  // namespace rmac::gateway

@@ -1,0 +1,243 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <tuple>
+#include <utility>
+
+#include "gateway/api/decode.hpp"
+#include "gateway/api/method.hpp"
+
+// How the method table is written: each entry names its parameters with C++ types, and its handler takes just those
+// types, so a handler that does not fit its declaration does not compile.
+
+namespace rmac::gateway {
+
+/// A declared parameter whose value reaches the handler as T.
+template <typename T>
+struct Parameter {
+  ParameterSpec spec;
+
+  Parameter above(double bound) && {
+    spec.range.min = bound;
+    spec.range.min_excluded = true;
+    return std::move(*this);
+  }
+  Parameter at_least(double bound) && {
+    spec.range.min = bound;
+    return std::move(*this);
+  }
+  Parameter within(double min, double max) && {
+    spec.range = {min, max, false};
+    return std::move(*this);
+  }
+  Parameter noted(std::string text) && {
+    spec.note = std::move(text);
+    return std::move(*this);
+  }
+  Parameter<std::optional<T>> optional() && {
+    spec.optional = true;
+    return {std::move(spec)};
+  }
+};
+
+template <typename T>
+Parameter<T> declared(const char* name, WireType type, const char* unit = "") {
+  Parameter<T> parameter;
+  parameter.spec.name = name;
+  parameter.spec.type = type;
+  parameter.spec.unit = unit;
+  return parameter;
+}
+
+inline auto boolean(const char* name) {
+  return declared<bool>(name, WireType::Boolean);
+}
+inline auto integer(const char* name, const char* unit = "") {
+  return declared<std::int64_t>(name, WireType::Integer, unit);
+}
+inline auto number(const char* name, const char* unit) {
+  return declared<double>(name, WireType::Number, unit);
+}
+inline auto text(const char* name) {
+  return declared<std::string>(name, WireType::String);
+}
+inline auto numbers(const char* name, const char* unit) {
+  return declared<std::vector<double>>(name, WireType::Numbers, unit);
+}
+inline auto texts(const char* name) {
+  return declared<std::vector<std::string>>(name, WireType::Strings);
+}
+inline auto mask(const char* name) {
+  return declared<Mask>(name, WireType::Mask);
+}
+inline auto vector(const char* name) {
+  return declared<Vector>(name, WireType::Vector, "mm");
+}
+inline auto frame(const char* name) {
+  return declared<Frame>(name, WireType::Frame, "mm");
+}
+inline auto tool_pose(const char* name) {
+  return declared<ToolPose>(name, WireType::Frame, "mm");
+}
+inline auto joint_target(const char* name) {
+  return declared<JointTarget>(name, WireType::JointTarget, "mm or deg");
+}
+inline auto nurbs(const char* name) {
+  return declared<TipNurbs>(name, WireType::Nurbs, "mm");
+}
+inline auto nurbs_nd(const char* name) {
+  return declared<NurbsGeometry>(name, WireType::NurbsNd, "mm or deg");
+}
+inline auto choice(const char* name, const Enumeration& values) {
+  auto parameter = declared<std::int64_t>(name, WireType::Integer);
+  parameter.spec.enumeration = &values;
+  return parameter;
+}
+
+/// Joints count from 0, held ones after the moved ones. Which exist is the machine's business.
+inline auto joint_number(const char* name = "JntNum") {
+  return integer(name).within(0, static_cast<double>(kMaxJoints - 1));
+}
+inline auto move_id() {
+  return integer("MoveID").noted("the client's number; comes back in events and records");
+}
+
+namespace detail {
+
+template <typename T>
+struct IsOptional : std::false_type {};
+template <typename T>
+struct IsOptional<std::optional<T>> : std::true_type {};
+
+/// One argument as T, or the message that names the parameter, the value and what goes there.
+template <typename T>
+bool take(const nlohmann::json* argument, const ParameterSpec& spec, T& out, RpcError& error) {
+  if (argument == nullptr) return true;  // optional and left out
+  Decoded<T> decoded{T{}};
+  decode_into(*argument, spec, decoded);
+  if (decoded) {
+    out = std::move(*decoded);
+    return true;
+  }
+  const Mismatch& wrong = decoded.error();
+  error = {rpc_code::kInvalidParams,
+           fmt::format("parameter \"{}\"{}{} is {}, expected {}", spec.name, wrong.where.empty() ? "" : " at ",
+                       wrong.where, wrong.found, wrong.expected),
+           MinorCode::InvalidParameterValue};
+  return false;
+}
+
+/// Remembers the machine's last error. A full queue is one only when the server gives up waiting; it notes that itself.
+inline void note(const Error& error, MachineStatus& status) {
+  if (error.code != MinorCode::CommandQueueFull) status.fail(error.code);
+}
+
+/// What a handler returns, as JSON: nothing becomes `done` (null, or true where the declaration says boolean).
+inline tl::expected<nlohmann::json, RpcError> finish(Expected<> outcome, MachineStatus& status,
+                                                     const nlohmann::json& done) {
+  if (outcome) return done;
+  note(outcome.error(), status);
+  return tl::unexpected<RpcError>(to_rpc_error(outcome.error()));
+}
+template <typename T>
+tl::expected<nlohmann::json, RpcError> finish(Expected<T> outcome, MachineStatus& status,
+                                              const nlohmann::json& /*done*/) {
+  if (outcome) return nlohmann::json(std::move(*outcome));
+  note(outcome.error(), status);
+  return tl::unexpected<RpcError>(to_rpc_error(outcome.error()));
+}
+inline tl::expected<nlohmann::json, RpcError> finish(tl::expected<nlohmann::json, RpcError> outcome,
+                                                     MachineStatus& /*status*/, const nlohmann::json& /*done*/) {
+  return outcome;
+}
+inline tl::expected<nlohmann::json, RpcError> finish(tl::expected<void, RpcError> outcome, MachineStatus& /*status*/,
+                                                     const nlohmann::json& done) {
+  if (outcome) return done;
+  return tl::unexpected<RpcError>(std::move(outcome.error()));
+}
+template <typename T>
+tl::expected<nlohmann::json, RpcError> finish(T value, MachineStatus& /*status*/, const nlohmann::json& /*done*/) {
+  return nlohmann::json(std::move(value));
+}
+
+}  // namespace detail
+
+/// A method under construction whose handler takes (Call&, Ts...).
+template <typename... Ts>
+class MethodBuilder {
+ public:
+  explicit MethodBuilder(Method method) : method_(std::move(method)) {}
+
+  template <typename... Us>
+  MethodBuilder<Us...> takes(Parameter<Us>... parameters) && {
+    (method_.parameters.push_back(std::move(parameters.spec)), ...);
+    return MethodBuilder<Us...>(std::move(method_));
+  }
+  MethodBuilder gives(WireType type, const char* unit = "", const Enumeration* enumeration = nullptr) && {
+    method_.result = {type, unit, enumeration};
+    return std::move(*this);
+  }
+  MethodBuilder needs(Permission permission) && {
+    method_.permission = permission;
+    return std::move(*this);
+  }
+  MethodBuilder extension() && {
+    method_.origin = Origin::Extension;
+    return std::move(*this);
+  }
+  MethodBuilder property() && {
+    method_.property = true;
+    return std::move(*this);
+  }
+  MethodBuilder queues_a_move() && {
+    method_.queues_a_move = true;
+    return std::move(*this);
+  }
+
+  /// The method works, by this handler.
+  template <typename Function>
+  Method does(Function function) && {
+    const nlohmann::json done = method_.result.type == WireType::Boolean ? nlohmann::json(true) : nlohmann::json();
+    method_.handler = [function = std::move(function), specs = method_.parameters, done](
+                          Call& call, const Method::Arguments& arguments) -> tl::expected<nlohmann::json, RpcError> {
+      return invoke(function, specs, done, call, arguments, std::index_sequence_for<Ts...>{});
+    };
+    return std::move(method_);
+  }
+
+  /// The method is declared, checks its parameters, and then answers MACHINE_ERR_UNSUPPORTED_OPERATION with `what`.
+  Method lacks(std::string what) && {
+    method_.missing = what;
+    auto message = method_.name + " is not supported yet: " + what;
+    return std::move(*this).does([message = std::move(message)](Call&, const Ts&...) -> Expected<> {
+      return failure(MinorCode::UnsupportedOperation, message);
+    });
+  }
+
+ private:
+  template <typename Function, std::size_t... kIndex>
+  static tl::expected<nlohmann::json, RpcError> invoke(const Function& function,
+                                                       const std::vector<ParameterSpec>& specs,
+                                                       const nlohmann::json& done, Call& call,
+                                                       const Method::Arguments& arguments,
+                                                       std::index_sequence<kIndex...>) {
+    std::tuple<Ts...> values{};
+    RpcError error;
+    const bool taken = (detail::take(arguments[kIndex], specs[kIndex], std::get<kIndex>(values), error) && ...);
+    if (!taken) return tl::unexpected<RpcError>(std::move(error));
+    return detail::finish(function(call, std::get<kIndex>(values)...), call.status, done);
+  }
+
+  Method method_;
+};
+
+/// Starts the declaration of a method: its name on the wire and one line of meaning.
+inline MethodBuilder<> method(const char* name, const char* meaning) {
+  Method declared_method;
+  declared_method.name = name;
+  declared_method.meaning = meaning;
+  return MethodBuilder<>(std::move(declared_method));
+}
+
+}  // namespace rmac::gateway

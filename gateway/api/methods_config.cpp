@@ -1,0 +1,170 @@
+// RMAC_Config.*: the draft of a mechanism (Appendix IV). Nothing acts before RMAC_Config.Apply.
+#include "gateway/api/method_builder.hpp"
+#include "gateway/api/method_table.hpp"
+
+namespace rmac::gateway {
+
+namespace {
+
+using sdk::ModuleChoice;
+using sdk::RmacConfig;
+
+/// A module of this name; naming the one that the draft has already keeps its parameters.
+ModuleChoice chosen(const ModuleChoice& present, const std::string& name) {
+  if (present.name == name) return present;
+  return ModuleChoice{name, {}, {}};
+}
+
+template <typename Function>
+Method joint_number_setter(const char* name, const char* meaning, Parameter<double> value, Function function) {
+  return method(name, meaning)
+      .takes(joint_number(), std::move(value))
+      .needs(Permission::Authority)
+      .does([function](Call& call, std::int64_t joint, double wanted) {
+        return (call.machine.config().*function)(static_cast<int>(joint), wanted);
+      });
+}
+
+template <typename Function>
+Method count_setter(const char* name, const char* meaning, const char* parameter, int min, Function function) {
+  return method(name, meaning)
+      .takes(integer(parameter).within(min, static_cast<double>(kMaxJoints)))
+      .needs(Permission::Authority)
+      .does([function](Call& call, std::int64_t count) {
+        return (call.machine.config().*function)(static_cast<int>(count));
+      });
+}
+
+template <typename Function>
+Method module_setter(const char* name, const char* meaning, const char* parameter,
+                     ModuleChoice sdk::DeviceObject::*present, Function function) {
+  return method(name, meaning)
+      .takes(text(parameter).noted("name of a module"))
+      .needs(Permission::Authority)
+      .does([function, present](Call& call, const std::string& module) {
+        RmacConfig& config = call.machine.config();
+        return (config.*function)(chosen(config.draft().*present, module));
+      });
+}
+
+void add_joint_setters(const auto& add) {
+  add(method("RMAC_Config.SetMechanismJointType", "Whether a joint turns, slides or screws.")
+          .takes(joint_number(), choice("JointType", kJointTypeValues))
+          .needs(Permission::Authority)
+          .does([](Call& call, std::int64_t joint, std::int64_t type) {
+            return call.machine.config().set_joint_type(static_cast<int>(joint), static_cast<JointType>(type));
+          }));
+  add(method("RMAC_Config.SetMechanismJointLimitType", "On which sides a joint's travel ends.")
+          .takes(joint_number(), choice("JointLimitType", kJointLimitTypeValues))
+          .needs(Permission::Authority)
+          .does([](Call& call, std::int64_t joint, std::int64_t type) {
+            return call.machine.config().set_joint_limit_type(static_cast<int>(joint),
+                                                              static_cast<JointLimitType>(type));
+          }));
+  add(joint_number_setter("RMAC_Config.SetMechanismJointMaximumLimit", "Upper end of a joint's travel.",
+                          number("MaxJntLimit", "mm or deg"), &RmacConfig::set_joint_maximum_limit));
+  add(joint_number_setter("RMAC_Config.SetMechanismJointMinimumLimit", "Lower end of a joint's travel.",
+                          number("MinJntLimit", "mm or deg"), &RmacConfig::set_joint_minimum_limit));
+  add(joint_number_setter("RMAC_Config.SetMechanismJointMaximumSpeed", "Largest speed of a joint.",
+                          number("MaxJntSpeed", "mm/s or deg/s").above(0), &RmacConfig::set_joint_maximum_speed));
+  add(joint_number_setter("RMAC_Config.SetMechanismJointMaximumAcceleration", "Largest acceleration of a joint.",
+                          number("MaxJntAccel", "mm/s² or deg/s²").above(0),
+                          &RmacConfig::set_joint_maximum_acceleration));
+  add(joint_number_setter("RMAC_Config.SetMechanismJointMaximumJerk", "Largest jerk of a joint.",
+                          number("MaxJntJerk", "mm/s³ or deg/s³").above(0), &RmacConfig::set_joint_maximum_jerk));
+}
+
+void add_servo_setters(const auto& add) {
+  add(method("RMAC_Config.SetMechanismJointControlMethod", "What a joint's servo loop controls.")
+          .takes(joint_number(), choice("DMACServoControlMethod", kControlMethodValues))
+          .needs(Permission::Authority)
+          .does([](Call& call, std::int64_t joint, std::int64_t wanted) {
+            return call.machine.config().set_joint_control_method(static_cast<int>(joint),
+                                                                  static_cast<ControlMethod>(wanted));
+          }));
+  add(method("RMAC_Config.SetMechanismJointServoControlGains", "Gains of a joint's servo law, in the law's own order.")
+          .takes(joint_number(), numbers("ServoControlGains", "as the law declares"))
+          .needs(Permission::Authority)
+          .does([](Call& call, std::int64_t joint, const std::vector<double>& gains) {
+            return call.machine.config().set_joint_servo_control_gains(static_cast<int>(joint), gains);
+          }));
+  add(method("RMAC_Config.SetMechanismJointServoControlLaw", "Servo law of a joint.")
+          .takes(joint_number(), text("ControlLaw")
+                                     .noted("DMAC_PID_CONTROL or another constant of Appendix IV, or "
+                                            "the name of a module"))
+          .needs(Permission::Authority)
+          .does([](Call& call, std::int64_t joint, const std::string& law) {
+            RmacConfig& config = call.machine.config();
+            const auto index = static_cast<std::size_t>(joint);
+            const auto& joints = config.draft().joints;
+            return config.set_joint_servo_control_law(
+                static_cast<int>(joint),
+                index < joints.size() ? chosen(joints[index].servo_law, law) : ModuleChoice{law, {}, {}});
+          }));
+  constexpr const char* kSpindleDrive = "spindle drives close their speed loop themselves";
+  add(method("RMAC_Config.SetMechanismSpindleControlMethod", "What the spindle's servo loop controls.")
+          .takes(choice("DMACServoControlMethod", kControlMethodValues))
+          .needs(Permission::Authority)
+          .lacks(kSpindleDrive));
+  add(method("RMAC_Config.SetMechanismSpindleServoControlLaw", "Servo law of the spindle.")
+          .takes(text("ControlLaw"))
+          .needs(Permission::Authority)
+          .lacks(kSpindleDrive));
+  add(method("RMAC_Config.SetMechanismSpindleServoControlGains", "Gains of the spindle's servo law.")
+          .takes(numbers("ServoControlGains", "as the law declares"))
+          .needs(Permission::Authority)
+          .lacks(kSpindleDrive));
+}
+
+void add_interface_setters(const auto& add) {
+  using sdk::DeviceObject;
+  add(module_setter("RMAC_Config.SetMechanismDigitalControlInterface", "Interface to the drives.",
+                    "DigitalControlInterface", &DeviceObject::digital_control_interface,
+                    &RmacConfig::set_digital_control_interface));
+  add(method("RMAC_Config.InitializeMechanismDigitalControlInterface", "Brings the interface to the drives up.")
+          .gives(WireType::Boolean)
+          .needs(Permission::Authority)
+          .does([](Call& call) { return call.machine.config().initialize_digital_control_interface(); }));
+  add(module_setter("RMAC_Config.SetMechanismDigitalIOInterface", "Interface to inputs and outputs.",
+                    "DigitalIOInterface", &DeviceObject::digital_io_interface, &RmacConfig::set_digital_io_interface));
+  add(method("RMAC_Config.InitializeMechanismDigitalIOInterface", "Brings the interface to inputs and outputs up.")
+          .gives(WireType::Boolean)
+          .needs(Permission::Authority)
+          .does([](Call& call) { return call.machine.config().initialize_digital_io_interface(); }));
+}
+
+}  // namespace
+
+void add_config_methods(std::vector<Method>& table) {
+  const auto add = [&](Method entry) { table.push_back(std::move(entry)); };
+  using sdk::DeviceObject;
+  add(module_setter("RMAC_Config.SetMechanismKinematics", "Module that computes the kinematics.", "DMACKin",
+                    &DeviceObject::kinematics, &RmacConfig::set_kinematics));
+  add(module_setter("RMAC_Config.SetMechanismActuatorMap", "Module that maps joints to actuators.", "DMACMachineActMap",
+                    &DeviceObject::actuator_map, &RmacConfig::set_actuator_map));
+  add(count_setter("RMAC_Config.SetMechanismNumJnts", "Number of joints that the mechanism moves.", "NumJnts", 1,
+                   &RmacConfig::set_number_of_joints));
+  add(count_setter("RMAC_Config.SetMechanismNumSpindle", "Number of spindles.", "NumSpindle", 0,
+                   &RmacConfig::set_number_of_spindles));
+  add(count_setter("RMAC_Config.SetMechanismNumActuators", "Number of actuators behind joints and held joints.",
+                   "NumActuators", 1, &RmacConfig::set_number_of_actuators));
+  add(method("RMAC_Config.SetMechanismSpindleMaxRPM", "Largest speed of every spindle.")
+          .takes(number("MaxSpindleRPM", "rpm").above(0))
+          .needs(Permission::Authority)
+          .does([](Call& call, double rpm) { return call.machine.config().set_spindle_maximum_rpm(rpm); }));
+  add(method("RMAC_Config.SetMechanismMaxFeedrate", "Largest feed of the mechanism.")
+          .takes(number("MaxFeedrate", "mm/min").above(0))
+          .needs(Permission::Authority)
+          .does([](Call& call, double feed) { return call.machine.config().set_maximum_feedrate(feed); }));
+  add_joint_setters(add);
+  add_servo_setters(add);
+  add_interface_setters(add);
+  add(method("RMAC_Config.Apply",
+             "Checks the draft as a whole and puts it in at standstill; or changes nothing and says why.")
+          .gives(WireType::Boolean)
+          .needs(Permission::Authority)
+          .extension()
+          .does([](Call& call) { return call.machine.config().apply(); }));
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,82 @@
+// RMAC_CAM.*: starting, stopping, holding and resuming.
+#include "gateway/api/method_builder.hpp"
+#include "gateway/api/method_table.hpp"
+#include "gateway/api/state_json.hpp"
+
+namespace rmac::gateway {
+
+namespace {
+
+Expected<> start(Call& call, std::int64_t mode) {
+  return call.machine.cam().cycle_start(static_cast<sdk::CycleMode>(mode)).map([&] {
+    call.status.cycle_mode = kCycleModeValues.find(mode)->name;
+  });
+}
+
+}  // namespace
+
+void add_cycle_methods(std::vector<Method>& table) {
+  const auto add = [&](Method entry) { table.push_back(std::move(entry)); };
+  add(method("RMAC_CAM.CycleStart",
+             "Starts the cycle: AUTOMATIC runs the queue and what comes after it, MANUAL runs one move.")
+          .takes(choice("Mode", kCycleModeValues))
+          .gives(WireType::Boolean)
+          .needs(Permission::Authority)
+          .does(start));
+  add(method("RMAC_CAM.SetCycleStartStatus",
+             "The start button as an HMI sees it: true does what CycleStart(AUTOMATIC) does; false, its release, moves "
+             "and stops nothing.")
+          .takes(boolean("status"))
+          .needs(Permission::Authority)
+          .does([](Call& call, bool pressed) { return pressed ? start(call, 1) : Expected<>{}; }));
+  add(method("RMAC_CAM.GetCycleStartStatus", "Whether the cycle is started.")
+          .gives(WireType::Boolean)
+          .does([](Call& call) { return call.machine.cam().cycle_start_status(); }));
+  add(method("RMAC_CAM.CycleStop",
+             "Stops on the path, whatever the mode, and keeps the rest of the queue; a new CycleStart goes on.")
+          .takes(choice("Mode", kCycleModeValues))
+          .gives(WireType::Boolean)
+          .needs(Permission::Stop)
+          .does([](Call& call, std::int64_t) { return call.machine.cam().cycle_stop(); }));
+  add(method("RMAC_CAM.SetCycleStopStatus",
+             "The stop button as an HMI sees it: true does what CycleStop does; false, its release, does not start "
+             "anything.")
+          .takes(boolean("status"))
+          .needs(Permission::Stop)
+          .does([](Call& call, bool pressed) { return pressed ? call.machine.cam().cycle_stop() : Expected<>{}; }));
+  add(method("RMAC_CAM.GetCycleStopStatus", "Whether the cycle is stopped.")
+          .gives(WireType::Boolean)
+          .does([](Call& call) { return call.machine.cam().cycle_stop_status(); }));
+  add(method("RMAC_CAM.StopNow", "Stops as fast as the limits allow and empties the queue.")
+          .gives(WireType::Boolean)
+          .needs(Permission::Stop)
+          .does([](Call& call) { return call.machine.cam().stop_now(); }));
+  add(method("RMAC_CAM.FeedHold", "Comes to rest on the path; FeedResume goes on from there.")
+          .gives(WireType::Boolean)
+          .needs(Permission::Stop)
+          .extension()
+          .does([](Call& call) { return call.machine.cam().feed_hold(); }));
+  add(method("RMAC_CAM.FeedResume", "Goes on after a FeedHold.")
+          .gives(WireType::Boolean)
+          .needs(Permission::Authority)
+          .extension()
+          .does([](Call& call) { return call.machine.cam().feed_resume(); }));
+  add(method("RMAC_CAM.Reset", "Leaves a fault or emergency stop whose cause is gone; nothing moves by it.")
+          .gives(WireType::Boolean)
+          .needs(Permission::Authority)
+          .extension()
+          .does([](Call& call) { return call.machine.cam().reset(); }));
+  add(method("RMAC_CAM.SetFeedOverride", "Percentage of the programmed feed at which moves run, at once; 0 waits.")
+          .takes(number("Percent", "%").within(0, 200))
+          .needs(Permission::Authority)
+          .extension()
+          .does([](Call& call, double percent) {
+            return call.machine.cam().set_feed_override(percent).map([&] { call.status.override_percent = percent; });
+          }));
+  add(method("RMAC_CAM.GetState", "The machine's state now: what the topic `state` pushes.")
+          .gives(WireType::Object)
+          .extension()
+          .does([](Call& call) { return state_to_json(call.machine, call.status, call.session.authority_holder()); }));
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,111 @@
+// Device.Machine_Set…: changes to the device object that Device.Machine_Configure… then puts in (Appendix III).
+#include "gateway/api/method_builder.hpp"
+#include "gateway/api/method_table.hpp"
+
+namespace rmac::gateway {
+
+namespace {
+
+using sdk::DeviceObject;
+
+Expected<sdk::Joint*> joint_of(DeviceObject& device, std::int64_t number) {
+  const auto index = static_cast<std::size_t>(number);
+  if (index < device.joints.size()) return &device.joints[index];
+  if (index < device.joints.size() + device.held_joints.size()) {
+    return &device.held_joints[index - device.joints.size()];
+  }
+  return failure(MinorCode::InvalidParameterValue,
+                 fmt::format("joint {} does not exist: {} has joints 0 to {}", number, device.name,
+                             device.joints.size() + device.held_joints.size() - 1));
+}
+
+/// A setter of one value of one joint.
+template <typename T, typename Function>
+Method joint_setter(const char* name, const char* meaning, Parameter<T> value, Function function) {
+  return method(name, meaning)
+      .takes(joint_number(), std::move(value))
+      .needs(Permission::Authority)
+      .does([function](Call& call, std::int64_t joint, T wanted) {
+        return call.machine.device()
+            .wanted()
+            .and_then([&](DeviceObject* device) { return joint_of(*device, joint); })
+            .map([&](sdk::Joint* found) { function(*found, wanted); });
+      });
+}
+
+}  // namespace
+
+void add_device_setters(std::vector<Method>& table) {
+  const auto add = [&](Method entry) { table.push_back(std::move(entry)); };
+  using J = sdk::Joint;
+  add(method("Device.Machine_SetMechanismNumberOfJoints",
+             "Wanted number of joints. Acts with the next Machine_Configure…, which refuses what modules do not fit.")
+          .takes(integer("NumJnts").within(1, static_cast<double>(kMaxJoints)))
+          .needs(Permission::Authority)
+          .does([](Call& call, std::int64_t count) {
+            return call.machine.device().wanted().map(
+                [&](DeviceObject* device) { device->joints.resize(static_cast<std::size_t>(count)); });
+          }));
+  add(method("Device.Machine_SetMechanismMaxFeedrate", "Wanted largest feed. Acts with the next Machine_Configure….")
+          .takes(number("MaxFeedrate", "mm/min").above(0))
+          .needs(Permission::Authority)
+          .does([](Call& call, double feed) {
+            return call.machine.device().wanted().map(
+                [&](DeviceObject* device) { device->max_feedrate_mm_min = feed; });
+          }));
+  add(method("Device.Machine_SetMechanismSpindleMaxSpeed",
+             "Wanted largest speed of spindle 0. Acts with the next Machine_Configure….")
+          .takes(number("MaxSpindleSpeed", "rpm").above(0))
+          .needs(Permission::Authority)
+          .does([](Call& call, double rpm) {
+            return call.machine.device().wanted().and_then([&](DeviceObject* device) -> Expected<> {
+              if (device->spindles.empty()) {
+                return failure(MinorCode::InvalidParameter, device->name + " has no spindle");
+              }
+              device->spindles.front().max_speed_rpm = rpm;
+              return {};
+            });
+          }));
+  add(method("Device.Machine_SetMechanismSpindleMaxTorque", "Wanted largest torque of spindle 0.")
+          .takes(number("MaxSpindleTorque", "N·m").above(0))
+          .needs(Permission::Authority)
+          .lacks("spindle drives take a speed only; their torque limit stays as device.json says"));
+  add(joint_setter("Device.Machine_SetMechanismJntTypes",
+                   "Wanted type of a joint. Acts with the next Machine_Configure….",
+                   choice("JntType", kJointTypeValues),
+                   [](J& joint, std::int64_t type) { joint.limits.type = static_cast<JointType>(type); }));
+  add(joint_setter("Device.Machine_SetMechanismJntMaxLimit",
+                   "Wanted upper end of a joint's travel. Acts with the next Machine_Configure….",
+                   number("MaxJntLimit", "mm or deg"), [](J& joint, double value) { joint.limits.max = value; }));
+  add(joint_setter("Device.Machine_SetMechanismJntMinLimit",
+                   "Wanted lower end of a joint's travel. Acts with the next Machine_Configure….",
+                   number("MinJntLimit", "mm or deg"), [](J& joint, double value) { joint.limits.min = value; }));
+  add(joint_setter("Device.Machine_SetMechanismJntMaxSpeed",
+                   "Wanted largest speed of a joint. Acts with the next Machine_Configure….",
+                   number("MaxJntSpeed", "mm/s or deg/s").above(0),
+                   [](J& joint, double value) { joint.limits.max_speed = value; }));
+  add(joint_setter("Device.Machine_SetMechanismJntMaxAccel",
+                   "Wanted largest acceleration of a joint. Acts with the next Machine_Configure….",
+                   number("MaxJntAccel", "mm/s² or deg/s²").above(0),
+                   [](J& joint, double value) { joint.limits.max_acceleration = value; }));
+  add(joint_setter(
+      "Device.Machine_SetMechanismJntMaxJerk", "Wanted largest jerk of a joint. Acts with the next Machine_Configure….",
+      number("MaxJntJerk", "mm/s³ or deg/s³").above(0), [](J& joint, double value) { joint.limits.max_jerk = value; }));
+  add(method("Device.Machine_ConfigureMotionPlanner",
+             "The driver configures the motion planner by the wanted values, at standstill; or nothing changes.")
+          .gives(WireType::Boolean)
+          .needs(Permission::Authority)
+          .does([](Call& call) { return call.machine.device().configure_motion_planner(); }));
+  add(method("Device.Machine_ConfigureServoController",
+             "The driver configures the servo controller by the wanted values, at standstill; or nothing changes.")
+          .gives(WireType::Boolean)
+          .needs(Permission::Authority)
+          .does([](Call& call) { return call.machine.device().configure_servo_controller(); }));
+  add(method("Device.Machine_ConfigureDigitalControlInterface",
+             "The driver configures the interfaces to drives and I/O, at standstill; or nothing changes.")
+          .gives(WireType::Boolean)
+          .needs(Permission::Authority)
+          .does([](Call& call) { return call.machine.device().configure_digital_control_interface(); }));
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/api/rpc_error.hpp"
+#include "gateway/controller/machine_state.hpp"
+#include "gateway/device_driver_manager/device_driver_manager.hpp"
+#include "rmac/sdk/device_object.hpp"
+#include "rmac/sdk/rmac_cam.hpp"
+#include "rmac/sdk/rmac_config.hpp"
+
+// What the API needs of the rest of the gateway, as interfaces: the daemon binds them to the real things, a test to
+// fakes. All of it is used on the gateway thread.
+
+namespace rmac::gateway {
+
+/// Appendix II's record set of one connection.
+class RecordCursor {
+ public:
+  virtual ~RecordCursor() = default;
+  virtual Expected<> open() = 0;
+  virtual void close() = 0;
+  virtual Expected<int> total() const = 0;
+  virtual Expected<int> search(const std::string& sql) = 0;
+  virtual Expected<DriverRecord> current() const = 0;
+  virtual Expected<> first() = 0;
+  virtual Expected<> last() = 0;
+  virtual Expected<> next() = 0;
+  virtual Expected<> previous() = 0;
+};
+
+/// The device driver that is loaded.
+class DevicePort {
+ public:
+  virtual ~DevicePort() = default;
+  virtual Expected<> load(const std::string& name, bool virtual_mode) = 0;
+  virtual Expected<> unload() = 0;
+  [[nodiscard]] virtual bool virtual_mode() const = 0;
+  [[nodiscard]] virtual Expected<const sdk::DeviceObject*> database() const = 0;
+  [[nodiscard]] virtual Expected<sdk::DeviceObject*> wanted() = 0;
+  virtual Expected<> configure_motion_planner() = 0;
+  virtual Expected<> configure_servo_controller() = 0;
+  virtual Expected<> configure_digital_control_interface() = 0;
+  virtual Expected<> move(std::int64_t id, const Geometry& geometry) = 0;
+};
+
+/// The machine as a whole.
+class MachinePort {
+ public:
+  virtual ~MachinePort() = default;
+  [[nodiscard]] virtual sdk::RmacCam& cam() = 0;
+  [[nodiscard]] virtual sdk::RmacConfig& config() = 0;
+  [[nodiscard]] virtual DevicePort& device() = 0;
+  /// The mechanism in force, or nullptr.
+  [[nodiscard]] virtual const sdk::DeviceObject* mechanism() const = 0;
+  [[nodiscard]] virtual CycleSample sample() const = 0;
+  /// Reads the device tree again; how many mechanisms there are now.
+  virtual Expected<int> rescan() = 0;
+};
+
+/// What a method may ask of the connection that called it.
+class SessionPort {
+ public:
+  virtual ~SessionPort() = default;
+  virtual void introduce(const std::string& client, const std::string& version) = 0;
+  /// Who the daemon is, and its limits: the answer to `hello`.
+  [[nodiscard]] virtual nlohmann::json greeting() const = 0;
+  [[nodiscard]] virtual RecordCursor& records() = 0;
+  [[nodiscard]] virtual bool has_authority() const = 0;
+  /// Name of the client that holds motion authority, or empty.
+  [[nodiscard]] virtual std::string authority_holder() const = 0;
+  virtual tl::expected<void, RpcError> acquire_authority() = 0;
+  virtual tl::expected<void, RpcError> renew_authority() = 0;
+  virtual tl::expected<void, RpcError> release_authority() = 0;
+  virtual tl::expected<void, RpcError> subscribe(const std::vector<std::string>& topics, double rate_hz) = 0;
+  virtual void unsubscribe(const std::vector<std::string>& topics) = 0;
+};
+
+/// The error the machine met last (StatusMajorCode, StatusMinorCode, Ok), and what the CAM interface does not give
+/// back. One a machine, whoever asks.
+struct MachineStatus {
+  std::int64_t major = 0;
+  std::int64_t minor = 0;
+  double override_percent = 100;
+  std::string cycle_mode;  ///< of the last CycleStart; empty before
+
+  void fail(MinorCode code) {
+    major = 1;
+    minor = static_cast<std::int64_t>(code);
+  }
+};
+
+/// One call on its way to the machine.
+struct Call {
+  MachinePort& machine;
+  MachineStatus& status;
+  SessionPort& session;
+};
+
+}  // namespace rmac::gateway

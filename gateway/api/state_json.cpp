@@ -1,0 +1,45 @@
+#include "gateway/api/state_json.hpp"
+
+namespace rmac::gateway {
+
+namespace {
+
+std::vector<double> first(const auto& values, std::size_t count) {
+  return {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count)};
+}
+
+}  // namespace
+
+nlohmann::json state_to_json(MachinePort& machine, const MachineStatus& status, const std::string& authority_holder) {
+  const CycleSample sample = machine.sample();
+  const sdk::DeviceObject* mechanism = machine.mechanism();
+  const ToolPose& tool = sample.pose_actual;
+  nlohmann::json state{{"t_s", sample.t_s},
+                       {"cycle", sample.cycle},
+                       {"state", to_string(sample.state)},
+                       {"mode", status.cycle_mode},
+                       {"moving", sample.moving},
+                       {"move_id", sample.move_id},
+                       {"s_mm", sample.s_mm},
+                       {"feed_set_mm_min", sample.feed_set_mm_s * 60},
+                       {"feed_actual_mm_min", sample.feed_actual_mm_s * 60},
+                       {"override_percent", status.override_percent},
+                       {"pose", {tool.tip[0], tool.tip[1], tool.tip[2], tool.axis[0], tool.axis[1], tool.axis[2]}},
+                       {"joints", first(sample.position, sample.joint_count)},
+                       {"held_joints", std::vector<double>(sample.position.begin() + sample.joint_count,
+                                                           sample.position.begin() + sample.axis_count)},
+                       {"inputs", sample.inputs},
+                       {"outputs", sample.outputs},
+                       {"deadline_misses", sample.deadline_misses},
+                       {"moves_in_buffer", machine.cam().moves_in_buffer()},
+                       {"status_major", status.major},
+                       {"status_minor", status.minor},
+                       {"authority", authority_holder},
+                       {"virtual", machine.device().virtual_mode()}};
+  state["mechanism"] = mechanism == nullptr ? nlohmann::json() : nlohmann::json(mechanism->name);
+  state["spindle_rpm"] = first(
+      sample.spindle_rpm, mechanism == nullptr ? 0 : std::min(mechanism->spindles.size(), sample.spindle_rpm.size()));
+  return state;
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,50 @@
+#include "gateway/api/wire_type.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace rmac::gateway {
+
+const char* to_string(WireType type) noexcept {
+  switch (type) {
+    case WireType::Null:
+      return "null";
+    case WireType::Boolean:
+      return "boolean";
+    case WireType::Integer:
+    case WireType::Mask:
+      return "integer";
+    case WireType::Number:
+      return "number";
+    case WireType::String:
+      return "string";
+    case WireType::Numbers:
+      return "array<number>";
+    case WireType::Strings:
+      return "array<string>";
+    case WireType::Vector:
+      return "Vector";
+    case WireType::Frame:
+    case WireType::JointTarget:
+      return "Frame";
+    case WireType::Nurbs:
+      return "Nurbs";
+    case WireType::NurbsNd:
+      return "NurbsND";
+    case WireType::Object:
+      return "object";
+  }
+  return "null";
+}
+
+std::string Range::text() const {
+  const bool below = std::isfinite(min);
+  const bool above = std::isfinite(max);
+  if (below && above) return fmt::format("{}{} to {}", min_excluded ? "more than " : "", min, max);
+  if (below) return fmt::format("{} {}", min_excluded ? "more than" : "at least", min);
+  if (above) return fmt::format("at most {}", max);
+  return {};
+}
+
+}  // namespace rmac::gateway

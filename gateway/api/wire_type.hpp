@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "gateway/api/enumeration.hpp"
+
+namespace rmac::gateway {
+
+/// The types of the wire. What they look like as JSON stands in docs/api.md and in `rpc.discover`.
+enum class WireType {
+  Null,
+  Boolean,
+  Integer,
+  Number,
+  String,
+  Numbers,  ///< array of numbers
+  Strings,  ///< array of strings
+  Mask,     ///< 64 bits: an integer up to 2^53-1 or a "0x…" string
+  Vector,
+  Frame,
+  JointTarget,  ///< a Frame, or {"joints": […]}
+  Nurbs,
+  NurbsNd,
+  Object,
+};
+
+/// As the specification spells it, e.g. "array<number>".
+[[nodiscard]] const char* to_string(WireType type) noexcept;
+
+/// Which numbers a parameter takes.
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool min_excluded = false;
+
+  [[nodiscard]] bool contains(double value) const noexcept {
+    return (min_excluded ? value > min : value >= min) && value <= max;
+  }
+  /// "0 to 200", "more than 0", "" when everything goes.
+  [[nodiscard]] std::string text() const;
+};
+
+struct ParameterSpec {
+  std::string name;
+  WireType type = WireType::Null;
+  std::string unit;
+  Range range;
+  const Enumeration* enumeration = nullptr;
+  bool optional = false;
+  std::string note;
+};
+
+struct ResultSpec {
+  WireType type = WireType::Null;
+  std::string unit;
+  const Enumeration* enumeration = nullptr;
+};
+
+}  // namespace rmac::gateway
