@@ -1,10 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "gateway/controller/bus_registry.hpp"
+#include "gateway/controller/clock.hpp"
 #include "gateway/controller/machine_state.hpp"
 #include "rmac/motion/error.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
@@ -22,10 +25,19 @@ struct ControllerOptions {
   int priority = 80;
   bool as_fast_as_computed =
       false;  ///< virtual clock: cycles follow each other without waiting, but never outrun the planner
+  std::size_t queue_capacity = 10'000;  ///< moves
+  std::shared_ptr<Clock> clock;         ///< paces the servo thread; null: the monotonic clock
+  /// Interfaces beside the built-in ones, by name.
+  std::map<std::string, BusRegistry::ControlFactory> control_interfaces;
+  std::map<std::string, BusRegistry::IoFactory> io_interfaces;
 };
 
 /// The RMAC controller (dissertation 4.6): configuration system, planner and servo threads, bus registry. One an
 /// appliance. All members are the gateway thread's.
+///
+/// A mechanism that goes in has its drives enabled; putting it in returns when every joint is held by its loop. Device.
+/// Load leaves the machine Idle, so a cycle that was running must be started again; applying a changed configuration of
+/// the same mechanism keeps the cycle's state.
 class Controller {
  public:
   explicit Controller(ControllerOptions options);
@@ -36,12 +48,21 @@ class Controller {
   [[nodiscard]] Expected<> start();
   void stop() noexcept;
 
+  /// What real time was asked for and not granted, each with how to grant it; known after `start`.
+  [[nodiscard]] const std::vector<std::string>& real_time_shortcomings() const noexcept;
+
   [[nodiscard]] sdk::RmacConfig& config() noexcept;
   [[nodiscard]] sdk::RmacCam& cam() noexcept;
 
   /// Modules of the mechanism about to be configured are looked for here first. Virtual: setpoints are reflected as
   /// joint values.
   void set_mechanism_folder(std::string folder, bool virtual_mode);
+  [[nodiscard]] const std::string& mechanism_folder() const noexcept;
+  [[nodiscard]] bool virtual_mode() const noexcept;
+  /// A module of a device driver, found as the mechanism's other modules are.
+  [[nodiscard]] Expected<std::shared_ptr<sdk::DeviceDriver>> load_device_driver(const sdk::ModuleChoice& choice) const;
+  /// Drops what was drafted and not applied: the draft continues from what is in force.
+  void discard_draft();
   /// Takes the mechanism out at standstill: drives disabled, no motion until another is configured.
   [[nodiscard]] Expected<> unload();
   [[nodiscard]] bool mechanism_loaded() const noexcept;

@@ -33,7 +33,9 @@ struct CycleSample {
   std::array<std::uint16_t, kMaxJoints> statusword{};
   std::array<double, 4> spindle_rpm{};
   std::uint64_t inputs = 0, outputs = 0;
+  std::uint64_t moves_done = 0;  ///< since the mechanism went in
   std::uint64_t deadline_misses = 0;
+  std::uint64_t samples_lost = 0;  ///< cycles that no listener heard of because the gateway was too slow
 };
 
 /// What happened, in order. Made off the servo thread from what its fault ring reports.

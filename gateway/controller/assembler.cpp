@@ -1,0 +1,143 @@
+#include "gateway/controller/assembler.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "rmac/sdk/servo_law_names.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+/// Stands for the drives in virtual mode: it has axes to name, and nothing behind them.
+class NoBus final : public DigitalControlInterface {
+ public:
+  explicit NoBus(std::size_t axes) : axes_(axes) {}
+  std::size_t axis_count() const noexcept override { return axes_; }
+  Expected<> start() override { return {}; }
+  void stop() noexcept override {}
+  bool exchange(std::span<const DriveCommand>, std::span<DriveFeedback>) noexcept override { return true; }
+
+ private:
+  std::size_t axes_;
+};
+
+constexpr std::size_t kMaxVirtualAxes = 256;
+
+Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loader) {
+  auto name = sdk::servo_law_module(joint.servo_law.name);
+  if (!name) return tl::unexpected(name.error());
+  auto law = loader.load<ServoLaw>({*name, joint.servo_law.numbers, joint.servo_law.texts});
+  if (!law) return tl::unexpected(law.error());
+  if (!law->object->set_gains(joint.gains)) {
+    std::string wanted;
+    for (const GainInfo& gain : law->object->gains()) {
+      wanted += fmt::format("{}{} ({})", wanted.empty() ? "" : ", ", gain.name, gain.unit);
+    }
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("joint \"{}\": {} does not accept the gains [{}]; it takes {}: {}", joint.limits.name,
+                               *name, fmt::join(joint.gains, ", "), law->object->gains().size(), wanted));
+  }
+  return ServoAxis{std::move(law->object), joint.method, joint.max_following_error, joint.max_effort};
+}
+
+Expected<> add_axes(const sdk::DeviceObject& device, const ModuleLoader& loader, ServoLoopParts& parts) {
+  for (const auto* joints : {&device.joints, &device.held_joints}) {
+    for (const sdk::Joint& joint : *joints) {
+      auto axis = make_axis(joint, loader);
+      if (!axis) return tl::unexpected(axis.error());
+      parts.axes.push_back(std::move(*axis));
+      parts.virtual_start.push_back(joint.limits.limit_type == JointLimitType::Limited
+                                        ? std::clamp(0.0, joint.limits.min, joint.limits.max)
+                                        : 0.0);
+    }
+  }
+  return {};
+}
+
+Expected<> add_drives(const sdk::DeviceObject& device, const ModuleLoader& loader, BusRegistry& registry,
+                      ServoLoopParts& parts) {
+  const auto virtual_bus = parts.virtual_mode ? std::make_shared<ServoBus>(std::make_shared<NoBus>(kMaxVirtualAxes))
+                                              : std::shared_ptr<ServoBus>();
+  std::uint32_t next_virtual_axis = 0;
+  const auto place = [&](const std::string& who, const std::string& name,
+                         std::uint32_t axis) -> Expected<std::pair<std::shared_ptr<ServoBus>, std::uint32_t>> {
+    if (virtual_bus) return std::pair{virtual_bus, next_virtual_axis++};
+    auto bus = registry.acquire(name, device.digital_control_interface, loader);
+    if (!bus) return tl::unexpected(bus.error());
+    if (const std::size_t there = (*bus)->interface->axis_count(); axis >= there) {
+      return failure(MinorCode::InvalidParameterValue,
+                     fmt::format("{}: bus {} has no axis {}; it has {}", who, name, axis, there));
+    }
+    return std::pair{std::move(*bus), axis};
+  };
+  for (const sdk::Actuator& actuator : device.actuators) {
+    auto at = place(fmt::format("actuator {}", parts.actuators.size()), actuator.bus, actuator.axis);
+    if (!at) return tl::unexpected(at.error());
+    parts.actuators.push_back({std::move(at->first), at->second, actuator.scale});
+  }
+  for (const sdk::Spindle& spindle : device.spindles) {
+    auto at = place(fmt::format("spindle {}", parts.spindles.size()), spindle.bus, spindle.axis);
+    if (!at) return tl::unexpected(at.error());
+    parts.spindles.push_back({std::move(at->first), at->second, spindle.max_speed_rpm});
+  }
+  return {};
+}
+
+Expected<> add_io(const sdk::DeviceObject& device, const ModuleLoader& loader, BusRegistry& registry,
+                  ServoLoopParts& parts) {
+  if (parts.virtual_mode || device.digital_io_interface.name.empty()) return {};
+  auto io = registry.acquire_io(device.digital_io_interface, loader);
+  if (!io) return tl::unexpected(io.error());
+  parts.io = std::move(*io);
+  return {};
+}
+
+Expected<> add_geometry(const sdk::DeviceObject& device, const ModuleLoader& loader, ServoLoopParts& parts) {
+  auto kinematics = loader.load<Kinematics>(device.kinematics);
+  if (!kinematics) return tl::unexpected(kinematics.error());
+  if (kinematics->object->joint_count() != device.joints.size()) {
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("{} has {} joints, but {} are configured", device.kinematics.name,
+                               kinematics->object->joint_count(), device.joints.size()));
+  }
+  auto map = loader.load<ActuatorMap>(device.actuator_map);
+  if (!map) return tl::unexpected(map.error());
+  const std::size_t axes = device.joints.size() + device.held_joints.size();
+  if (map->object->joint_count() != axes || map->object->actuator_count() != device.actuators.size()) {
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("{} maps {} joints to {} actuators, but {} joints (held ones included) and {} actuators "
+                               "are configured",
+                               device.actuator_map.name, map->object->joint_count(), map->object->actuator_count(),
+                               axes, device.actuators.size()));
+  }
+  parts.kinematics = std::move(kinematics->object);
+  parts.actuator_map = std::move(map->object);
+  return {};
+}
+
+}  // namespace
+
+Expected<std::shared_ptr<Mechanism>> assemble(const sdk::DeviceObject& device, bool virtual_mode, double period_s,
+                                              const ModuleLoader& loader, BusRegistry& registry) {
+  ServoLoopParts parts;
+  parts.period_s = period_s;
+  parts.virtual_mode = virtual_mode;
+  auto ready = check_device(device)
+                   .and_then([&] { return add_geometry(device, loader, parts); })
+                   .and_then([&] { return add_axes(device, loader, parts); })
+                   .and_then([&] { return add_drives(device, loader, registry, parts); })
+                   .and_then([&] { return add_io(device, loader, registry, parts); });
+  if (!ready) return tl::unexpected(ready.error());
+
+  PlannerModel model;
+  model.kinematics = parts.kinematics;
+  for (const sdk::Joint& joint : device.joints) model.joints.push_back(joint.limits);
+  model.period_s = period_s;
+  auto loop = ServoLoop::create(std::move(parts));
+  if (!loop) return tl::unexpected(loop.error());
+  return std::make_shared<Mechanism>(device, std::move(model), std::shared_ptr<ServoLoop>(std::move(*loop)));
+}
+
+}  // namespace rmac::gateway

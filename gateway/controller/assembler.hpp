@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+
+#include "gateway/controller/bus_registry.hpp"
+#include "gateway/controller/mechanism.hpp"
+#include "gateway/controller/module_loader.hpp"
+
+namespace rmac::gateway {
+
+/// Checks a device object as a whole, whatever its modules are: counts, names, limits, bounds, bus axes, I/O bits. The
+/// error names the joint, actuator or spindle, the value, and what would be right.
+[[nodiscard]] Expected<> check_device(const sdk::DeviceObject& device);
+
+/// Builds the mechanism that a device object describes, beside whatever is in force: loads its modules, checks that
+/// they fit each other and the gains, and borrows the buses. Nothing moves and nothing in force changes; a failure
+/// leaves at most a bus brought up, which `BusRegistry::stop_unused` stops. Gateway thread.
+[[nodiscard]] Expected<std::shared_ptr<Mechanism>> assemble(const sdk::DeviceObject& device, bool virtual_mode,
+                                                            double period_s, const ModuleLoader& loader,
+                                                            BusRegistry& registry);
+
+}  // namespace rmac::gateway

@@ -1,0 +1,51 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gateway/controller/controller_impl.hpp"
+#include "rmac/fieldbus/simulated_interface.hpp"
+#include "rmac/fieldbus/simulated_io_interface.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+constexpr double kMostSimulatedAxes = 64;
+
+/// The example machines' axes, or as many as the parameter `axes` says: more of them are table axes.
+Expected<std::shared_ptr<DigitalControlInterface>> make_simulated(const sdk::ModuleChoice& choice, double period_s) {
+  std::vector<fieldbus::SimulatedAxis> axes = fieldbus::default_simulated_axes();
+  for (const auto& [name, numbers] : choice.numbers) {
+    const bool whole = numbers.size() == 1 && numbers[0] == std::floor(numbers[0]);
+    if (name != "axes" || !whole || numbers[0] < 1 || numbers[0] > kMostSimulatedAxes) {
+      return failure(MinorCode::InvalidParameterValue,
+                     fmt::format("SimulatedInterface: parameter \"{}\" is not understood; it takes \"axes\", a whole "
+                                 "number from 1 to {}",
+                                 name, kMostSimulatedAxes));
+    }
+    axes.resize(static_cast<std::size_t>(numbers[0]), fieldbus::AxisPlantParameters{});
+  }
+  if (!choice.texts.empty()) {
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("SimulatedInterface: parameter \"{}\" is not understood; it takes \"axes\" alone",
+                               choice.texts.begin()->first));
+  }
+  return std::make_shared<fieldbus::SimulatedInterface>(std::move(axes), period_s);
+}
+
+Expected<std::shared_ptr<DigitalIoInterface>> make_simulated_io(const sdk::ModuleChoice& choice) {
+  if (!choice.numbers.empty() || !choice.texts.empty()) {
+    return failure(MinorCode::InvalidParameterValue, "SimulatedIOInterface takes no parameters");
+  }
+  return std::make_shared<fieldbus::SimulatedIoInterface>();
+}
+
+}  // namespace
+
+void add_built_in_interfaces(BusRegistry& registry, double period_s) {
+  registry.add_control_interface(
+      "SimulatedInterface", [period_s](const sdk::ModuleChoice& choice) { return make_simulated(choice, period_s); });
+  registry.add_io_interface("SimulatedIOInterface", make_simulated_io);
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "gateway/controller/module_loader.hpp"
+#include "rmac/motion/servo_loop.hpp"
+
+namespace rmac::gateway {
+
+/// The buses of the appliance. They outlive mechanisms, which borrow axes of them: a drive that two mechanisms share
+/// stays operational while one replaces the other. Interfaces are built in and chosen by name, or come as modules.
+/// Gateway thread only.
+class BusRegistry {
+ public:
+  using ControlFactory =
+      std::function<Expected<std::shared_ptr<DigitalControlInterface>>(const sdk::ModuleChoice& choice)>;
+  using IoFactory = std::function<Expected<std::shared_ptr<DigitalIoInterface>>(const sdk::ModuleChoice& choice)>;
+
+  void add_control_interface(const std::string& name, ControlFactory factory);
+  void add_io_interface(const std::string& name, IoFactory factory);
+
+  /// Whether an interface of this name is built in or can be loaded.
+  [[nodiscard]] Expected<> check_control_interface(const sdk::ModuleChoice& choice, const ModuleLoader& loader) const;
+  [[nodiscard]] Expected<> check_io_interface(const sdk::ModuleChoice& choice, const ModuleLoader& loader) const;
+
+  /// The bus, brought up. A bus that runs already is shared as long as the same interface is wanted of it.
+  [[nodiscard]] Expected<std::shared_ptr<ServoBus>> acquire(const std::string& bus, const sdk::ModuleChoice& choice,
+                                                            const ModuleLoader& loader);
+  [[nodiscard]] Expected<std::shared_ptr<DigitalIoInterface>> acquire_io(const sdk::ModuleChoice& choice,
+                                                                         const ModuleLoader& loader);
+
+  /// Stops what no mechanism borrows any more: drives disabled, outputs safe. What is behind it stays known.
+  void stop_unused() noexcept;
+
+ private:
+  struct Bus {
+    sdk::ModuleChoice choice;
+    std::shared_ptr<ServoBus> bus;
+    bool started = false;
+  };
+  struct Io {
+    sdk::ModuleChoice choice;
+    std::shared_ptr<DigitalIoInterface> interface;
+    bool started = false;
+  };
+
+  [[nodiscard]] Expected<std::shared_ptr<DigitalControlInterface>> make_control(const sdk::ModuleChoice& choice,
+                                                                                const ModuleLoader& loader) const;
+  [[nodiscard]] Expected<std::shared_ptr<DigitalIoInterface>> make_io(const sdk::ModuleChoice& choice,
+                                                                      const ModuleLoader& loader) const;
+
+  std::map<std::string, ControlFactory> control_factories_;
+  std::map<std::string, IoFactory> io_factories_;
+  std::map<std::string, Bus> buses_;
+  std::map<std::string, Io> ios_;
+};
+
+}  // namespace rmac::gateway

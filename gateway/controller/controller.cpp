@@ -1,0 +1,120 @@
+#include "gateway/controller/controller.hpp"
+
+#include <fmt/format.h>
+
+#include "gateway/controller/controller_impl.hpp"
+
+namespace rmac::gateway {
+
+namespace {
+
+ServoThread::Options thread_options(const ControllerOptions& options) {
+  return {.period_s = options.period_s,
+          .virtual_time = options.as_fast_as_computed,
+          .real_time = options.real_time,
+          .degraded_ok = options.degraded_ok,
+          .wish = {options.priority, options.cpu},
+          .clock = options.clock};
+}
+
+}  // namespace
+
+Controller::Impl::Impl(ControllerOptions controller_options)
+    : options(std::move(controller_options)),
+      link(std::make_unique<ServoLink>()),
+      supervisor({.period_s = options.period_s, .queue_capacity = options.queue_capacity}, *link),
+      thread(thread_options(options), *link, supervisor),
+      draft({[this](const sdk::DeviceObject& device, bool fresh) { return put_in(device, fresh); },
+             [this](const sdk::ModuleChoice& choice) { return registry.check_control_interface(choice, loader()); },
+             [this](const sdk::ModuleChoice& choice) { return registry.check_io_interface(choice, loader()); }}),
+      cam(supervisor, *link, [this] { return reset(); }) {
+  add_built_in_interfaces(registry, options.period_s);
+  for (const auto& [name, factory] : options.control_interfaces) registry.add_control_interface(name, factory);
+  for (const auto& [name, factory] : options.io_interfaces) registry.add_io_interface(name, factory);
+}
+
+Controller::Controller(ControllerOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
+
+Controller::~Controller() {
+  stop();
+}
+
+Expected<> Controller::start() {
+  if (impl_->running) return {};
+  if (!(impl_->options.period_s > 0)) {
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("the servo period {} s must be above 0", impl_->options.period_s));
+  }
+  return impl_->thread.start().map([&] { impl_->running = true; });
+}
+
+void Controller::stop() noexcept {
+  if (!impl_->running) return;
+  impl_->come_to_rest();
+  impl_->thread.stop();
+  impl_->running = false;
+  impl_->in_force.reset();
+  (void)impl_->supervisor.install(nullptr, ++impl_->generation, false);
+  impl_->registry.stop_unused();
+}
+
+const std::vector<std::string>& Controller::real_time_shortcomings() const noexcept {
+  return impl_->thread.shortcomings();
+}
+
+sdk::RmacConfig& Controller::config() noexcept {
+  return impl_->draft;
+}
+sdk::RmacCam& Controller::cam() noexcept {
+  return impl_->cam;
+}
+
+void Controller::set_mechanism_folder(std::string folder, bool virtual_mode) {
+  impl_->folder = std::move(folder);
+  impl_->virtual_mode = virtual_mode;
+}
+
+const std::string& Controller::mechanism_folder() const noexcept {
+  return impl_->folder;
+}
+bool Controller::virtual_mode() const noexcept {
+  return impl_->virtual_mode;
+}
+
+Expected<std::shared_ptr<sdk::DeviceDriver>> Controller::load_device_driver(const sdk::ModuleChoice& choice) const {
+  return impl_->loader().load<sdk::DeviceDriver>(choice).map(
+      [](ModuleObject<sdk::DeviceDriver> made) { return std::move(made.object); });
+}
+
+void Controller::discard_draft() {
+  impl_->draft.discard(mechanism());
+}
+
+Expected<> Controller::unload() {
+  return impl_->take_out();
+}
+bool Controller::mechanism_loaded() const noexcept {
+  return impl_->in_force != nullptr;
+}
+
+const sdk::DeviceObject* Controller::mechanism() const noexcept {
+  return impl_->in_force ? &impl_->in_force->device : nullptr;
+}
+
+CycleSample Controller::sample() const noexcept {
+  return impl_->link->sample.read();
+}
+
+void Controller::on_event(std::function<void(const Event&)> listener) {
+  impl_->event_listeners.push_back(std::move(listener));
+}
+
+void Controller::on_sample(std::function<void(const CycleSample&)> listener) {
+  impl_->sample_listeners.push_back(std::move(listener));
+}
+
+void Controller::dispatch() {
+  impl_->dispatch();
+}
+
+}  // namespace rmac::gateway

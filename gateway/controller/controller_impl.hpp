@@ -1,0 +1,66 @@
+#pragma once
+
+#include <deque>
+
+#include "gateway/controller/assembler.hpp"
+#include "gateway/controller/controller.hpp"
+#include "gateway/controller/motion_supervisor.hpp"
+#include "gateway/controller/move_ledger.hpp"
+#include "gateway/controller/servo_thread.hpp"
+#include "gateway/rmac_cam/cam.hpp"
+#include "gateway/rmac_config/config_draft.hpp"
+
+namespace rmac::gateway {
+
+/// Registers the interfaces that the appliance brings along.
+void add_built_in_interfaces(BusRegistry& registry, double period_s);
+
+struct Controller::Impl {
+  explicit Impl(ControllerOptions controller_options);
+
+  [[nodiscard]] ModuleLoader loader() const;
+
+  // Changing mechanisms (mechanism_change.cpp).
+  [[nodiscard]] Expected<> put_in(const sdk::DeviceObject& device, bool fresh);
+  [[nodiscard]] Expected<> take_out();
+  [[nodiscard]] Expected<> reset();
+  void come_to_rest() noexcept;
+
+  [[nodiscard]] Expected<> ready_for_change(const char* what);
+  [[nodiscard]] Expected<> swap(Mechanism* next);
+  [[nodiscard]] Expected<> switch_to(std::shared_ptr<Mechanism> next, bool keep_running);
+  [[nodiscard]] Expected<> power_on();
+  [[nodiscard]] Expected<> clear_servo_fault();
+  [[nodiscard]] std::string put_back(const sdk::DeviceObject& device, bool virtual_before);
+  /// Waits, off the servo thread, until the status of the mechanism in force satisfies `reached`.
+  template <typename Reached>
+  [[nodiscard]] bool wait_for(Reached&& reached);
+  void drain();
+
+  // Telling the listeners (dispatch.cpp).
+  void dispatch();
+  void deliver_samples_until(std::int64_t cycle);
+  void tell(const Event& event) const;
+  void tell_faults();
+
+  ControllerOptions options;
+  std::unique_ptr<ServoLink> link;
+  MotionSupervisor supervisor;
+  ServoThread thread;
+  BusRegistry registry;
+  ConfigDraft draft;
+  Cam cam;
+
+  std::string folder;
+  bool virtual_mode = false;
+  bool running = false;
+  std::shared_ptr<Mechanism> in_force;
+  std::uint64_t generation = 0;
+
+  std::vector<std::function<void(const Event&)>> event_listeners;
+  std::vector<std::function<void(const CycleSample&)>> sample_listeners;
+  std::deque<CycleSample> waiting_samples;
+  MoveLedger ledger;
+};
+
+}  // namespace rmac::gateway

@@ -1,0 +1,173 @@
+#include "gateway/controller/cycle_sequencer.hpp"
+
+#include <fmt/format.h>
+
+namespace rmac::gateway {
+
+const char* to_string(CycleState state) noexcept {
+  switch (state) {
+    case CycleState::Idle:
+      return "Idle";
+    case CycleState::Running:
+      return "Running";
+    case CycleState::Holding:
+      return "Holding";
+    case CycleState::Stopping:
+      return "Stopping";
+    case CycleState::Faulted:
+      return "Faulted";
+    case CycleState::EmergencyStop:
+      return "EmergencyStop";
+  }
+  return "Unknown";
+}
+
+Expected<> CycleSequencer::refuse_when_faulted(const char* what) const {
+  if (state_ == CycleState::EmergencyStop) {
+    return failure(MinorCode::EmergencyStop,
+                   fmt::format("{}: the machine is in emergency stop; release it, then reset", what));
+  }
+  if (state_ == CycleState::Faulted) {
+    return failure(MinorCode::Other, fmt::format("{}: the machine is faulted; remove the cause, then reset", what));
+  }
+  return {};
+}
+
+Expected<> CycleSequencer::start(sdk::CycleMode mode, const CycleObservation& seen) {
+  if (auto fine = refuse_when_faulted("CycleStart"); !fine) return fine;
+  if (state_ == CycleState::Stopping) {
+    return failure(MinorCode::Other, "CycleStart: the machine is still stopping; start it when it has come to rest");
+  }
+  if (state_ == CycleState::Running && positioning_) {
+    return failure(MinorCode::Other, "CycleStart: a jog is under way; start the cycle when it has ended");
+  }
+  if (state_ == CycleState::Running && mode == mode_) return {};
+  mode_ = mode;
+  positioning_ = false;
+  state_ = CycleState::Running;
+  done_at_start_ = seen.moves_done;
+  waiting_since_s_.reset();
+  return {};
+}
+
+Expected<> CycleSequencer::check_positioning() const {
+  if (auto fine = refuse_when_faulted("jog"); !fine) return fine;
+  if (state_ != CycleState::Idle) {
+    return failure(MinorCode::Other,
+                   fmt::format("jog: the machine is {}, a jog needs it Idle; stop the cycle first", to_string(state_)));
+  }
+  return {};
+}
+
+Expected<> CycleSequencer::start_positioning(const CycleObservation& seen) {
+  if (auto fine = check_positioning(); !fine) return fine;
+  mode_ = sdk::CycleMode::Manual;
+  positioning_ = true;
+  state_ = CycleState::Running;
+  done_at_start_ = seen.moves_done;
+  return {};
+}
+
+Expected<> CycleSequencer::stop() {
+  // What is left of a jog is no part of a program: it must not run at the next start.
+  clear_at_rest_ = clear_at_rest_ || positioning_;
+  if (state_ == CycleState::Running || state_ == CycleState::Holding) state_ = CycleState::Stopping;
+  return {};
+}
+
+Expected<> CycleSequencer::stop_and_clear() {
+  if (state_ == CycleState::Faulted || state_ == CycleState::EmergencyStop) return {};
+  clear_at_rest_ = true;
+  state_ = CycleState::Stopping;
+  return {};
+}
+
+Expected<> CycleSequencer::hold() {
+  if (state_ == CycleState::Running) state_ = CycleState::Holding;
+  return {};
+}
+
+Expected<> CycleSequencer::resume() {
+  if (auto fine = refuse_when_faulted("FeedResume"); !fine) return fine;
+  if (state_ == CycleState::Running) return {};
+  if (state_ != CycleState::Holding) {
+    return failure(MinorCode::Other, fmt::format("FeedResume: nothing is held, the machine is {}; CycleStart runs the "
+                                                 "queue",
+                                                 to_string(state_)));
+  }
+  state_ = CycleState::Running;
+  return {};
+}
+
+Expected<> CycleSequencer::reset() {
+  if (state_ != CycleState::Faulted && state_ != CycleState::EmergencyStop) {
+    return failure(MinorCode::Other,
+                   fmt::format("reset: there is no fault to reset, the machine is {}", to_string(state_)));
+  }
+  state_ = CycleState::Idle;
+  clear_at_rest_ = false;
+  spindle_wait_ = false;
+  commanded_ = PathCommand::Stop;
+  return {};
+}
+
+void CycleSequencer::fault() noexcept {
+  if (state_ != CycleState::EmergencyStop) state_ = CycleState::Faulted;
+  clear_at_rest_ = false;
+}
+
+void CycleSequencer::mechanism_changed(bool keep_running) noexcept {
+  if (!keep_running) {
+    state_ = CycleState::Idle;
+    spindle_wait_ = false;
+  }
+  done_at_start_ = 0;
+  commanded_ = PathCommand::Stop;
+}
+
+void CycleSequencer::spindle_commanded(double timeout_s) noexcept {
+  spindle_wait_ = true;
+  spindle_timeout_s_ = timeout_s;
+  waiting_since_s_.reset();
+}
+
+PathCommand CycleSequencer::wanted(const CycleObservation& seen) noexcept {
+  if (state_ != CycleState::Running) return PathCommand::Stop;
+  // Motion under way is not interrupted by a spindle command: it began with the speed it needed.
+  if (spindle_wait_ && !positioning_ && seen.at_rest) return PathCommand::Stop;
+  return mode_ == sdk::CycleMode::Automatic ? PathCommand::Run : PathCommand::RunOne;
+}
+
+CycleSequencer::Verdict CycleSequencer::step(const CycleObservation& seen) noexcept {
+  Verdict verdict;
+  if (seen.faulted && state_ != CycleState::EmergencyStop) fault();
+  if (state_ == CycleState::Stopping && seen.at_rest) {
+    state_ = CycleState::Idle;
+    verdict.clear_queue = clear_at_rest_;
+    verdict.came_to_rest = true;
+    clear_at_rest_ = false;
+  }
+  if (state_ == CycleState::Running && mode_ == sdk::CycleMode::Manual && seen.at_rest &&
+      seen.moves_done > done_at_start_) {
+    state_ = CycleState::Idle;
+    positioning_ = false;
+    verdict.came_to_rest = true;
+  }
+  if (spindle_wait_ && seen.spindles_at_speed) spindle_wait_ = false;
+  if (spindle_wait_ && state_ == CycleState::Running && !positioning_) {
+    if (!waiting_since_s_) waiting_since_s_ = seen.t_s;
+    if (seen.t_s - *waiting_since_s_ > spindle_timeout_s_) {
+      fault();
+      spindle_wait_ = false;
+      verdict.spindle_timed_out = true;
+    }
+  }
+  if (state_ == CycleState::Idle) positioning_ = false;
+  if (const PathCommand command = wanted(seen); command != commanded_) {
+    commanded_ = command;
+    verdict.command = command;
+  }
+  return verdict;
+}
+
+}  // namespace rmac::gateway

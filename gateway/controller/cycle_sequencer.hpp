@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "gateway/controller/machine_state.hpp"
+#include "rmac/motion/error.hpp"
+#include "rmac/motion/planner.hpp"
+#include "rmac/sdk/rmac_cam.hpp"
+
+namespace rmac::gateway {
+
+/// What the sequencer sees of the machine.
+struct CycleObservation {
+  double t_s = 0;                ///< machine time
+  bool at_rest = true;           ///< nothing moves and nothing published is still to move
+  std::size_t moves_left = 0;    ///< queued, the one under way included
+  std::uint64_t moves_done = 0;  ///< since the mechanism went in
+  bool faulted = false;          ///< the servo loop is
+  bool spindles_at_speed = true;
+};
+
+/// The machine's cycle states and what they mean for the path (contract "Cycle"):
+/// Idle → Running ⇄ Holding, any → Stopping → Idle, any → Faulted, left by a reset alone. A pure state machine: the
+/// motion supervisor asks it under its lock.
+class CycleSequencer {
+ public:
+  [[nodiscard]] Expected<> start(sdk::CycleMode mode, const CycleObservation& seen);
+  /// Whether a jog may begin.
+  [[nodiscard]] Expected<> check_positioning() const;
+  /// Runs one move that needs no spindle: a jog.
+  [[nodiscard]] Expected<> start_positioning(const CycleObservation& seen);
+  [[nodiscard]] Expected<> stop();
+  [[nodiscard]] Expected<> stop_and_clear();
+  [[nodiscard]] Expected<> hold();
+  [[nodiscard]] Expected<> resume();
+  /// Leaves Faulted or EmergencyStop; the path was emptied before.
+  [[nodiscard]] Expected<> reset();
+  void fault() noexcept;
+  /// Another mechanism went in: `keep_running` when it is the same one, configured anew.
+  void mechanism_changed(bool keep_running) noexcept;
+  /// A spindle was told another speed: motion that has not begun waits for it, at most `timeout_s`.
+  void spindle_commanded(double timeout_s) noexcept;
+
+  struct Verdict {
+    std::optional<PathCommand> command;  ///< for the planner, when it changes
+    bool clear_queue = false;
+    bool came_to_rest = false;       ///< a stop is complete
+    bool spindle_timed_out = false;  ///< now Faulted
+  };
+  [[nodiscard]] Verdict step(const CycleObservation& seen) noexcept;
+
+  [[nodiscard]] CycleState state() const noexcept { return state_; }
+  [[nodiscard]] sdk::CycleMode mode() const noexcept { return mode_; }
+  [[nodiscard]] bool waits_for_spindle() const noexcept { return spindle_wait_; }
+
+ private:
+  [[nodiscard]] Expected<> refuse_when_faulted(const char* what) const;
+  [[nodiscard]] PathCommand wanted(const CycleObservation& seen) noexcept;
+
+  CycleState state_ = CycleState::Idle;
+  sdk::CycleMode mode_ = sdk::CycleMode::Automatic;
+  PathCommand commanded_ = PathCommand::Stop;
+  bool clear_at_rest_ = false;
+  bool positioning_ = false;
+  bool spindle_wait_ = false;
+  double spindle_timeout_s_ = 0;
+  std::optional<double> waiting_since_s_;
+  std::uint64_t done_at_start_ = 0;
+};
+
+}  // namespace rmac::gateway

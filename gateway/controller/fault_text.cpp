@@ -1,0 +1,80 @@
+#include "gateway/controller/fault_text.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "rmac/motion/drive_power.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+std::string joint_name(std::uint32_t index, const sdk::DeviceObject* device) {
+  if (device == nullptr) return fmt::format("joint {}", index);
+  const std::size_t moved = device->joints.size();
+  if (index < moved) return fmt::format("joint {} ({})", index, device->joints[index].limits.name);
+  if (index - moved < device->held_joints.size()) {
+    return fmt::format("held joint {} ({})", index, device->held_joints[index - moved].limits.name);
+  }
+  return fmt::format("joint {}", index);
+}
+
+std::string where(const ServoFault& fault, const sdk::DeviceObject* device) {
+  switch (fault.part) {
+    case ServoFault::Part::Joint:
+      return joint_name(fault.index, device);
+    case ServoFault::Part::Actuator:
+      if (device != nullptr && fault.index < device->actuators.size()) {
+        const sdk::Actuator& actuator = device->actuators[fault.index];
+        return fmt::format("drive of actuator {} (bus {}, axis {})", fault.index, actuator.bus, actuator.axis);
+      }
+      return fmt::format("drive of actuator {}", fault.index);
+    case ServoFault::Part::Spindle:
+      return fmt::format("drive of spindle {}", fault.index);
+    case ServoFault::Part::Bus:
+      return fmt::format("bus {}", fault.index);
+    case ServoFault::Part::Io:
+      return "digital I/O";
+  }
+  return "somewhere";
+}
+
+}  // namespace
+
+std::string describe(const ServoFault& fault, const sdk::DeviceObject* device) {
+  const std::string at = where(fault, device);
+  const auto word = static_cast<unsigned>(std::lround(std::abs(fault.value)));
+  switch (fault.kind) {
+    case ServoFault::Kind::None:
+      return "no fault";
+    case ServoFault::Kind::FollowingError:
+      return fmt::format(
+          "{}: following error {:.4g} is beyond the bound of {:.4g}; look for a blocked axis, a wrong "
+          "scale or weak gains, then reset",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::NotANumber:
+      return fmt::format("{}: the servo loop computed no number; check gains and feedback, then reset", at);
+    case ServoFault::Kind::DriveFault:
+      return fmt::format("{}: the drive reports error {:04X}h; look it up in its manual, remove the cause, then reset",
+                         at, word);
+    case ServoFault::Kind::DriveOffline:
+      return fmt::format("{}: the drive does not answer; check its power and its cable, then reset", at);
+    case ServoFault::Kind::DriveDropped:
+      return fmt::format(
+          "{}: the drive left Operation Enabled by itself and is in {}; check its enable chain, then "
+          "reset",
+          at, rmac::to_string(drive_state(static_cast<std::uint16_t>(word))));
+    case ServoFault::Kind::EnableTimeout:
+      return fmt::format(
+          "{}: the drive was not enabled within {:.3g} s, it stays in {}; check its power and its enable "
+          "chain, then reset",
+          at, fault.bound, rmac::to_string(drive_state(static_cast<std::uint16_t>(word))));
+    case ServoFault::Kind::BusFailure:
+      return fmt::format("{}: the bus failed; check the interface, then reset", at);
+    case ServoFault::Kind::IoFailure:
+      return fmt::format("{}: the device failed; check it, then reset", at);
+  }
+  return at;
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,227 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <thread>
+
+#include "gateway/controller/controller_impl.hpp"
+#include "gateway/controller/fault_text.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+/// The servo thread answers within cycles, drives within the loop's own time-out; beyond this something hangs.
+constexpr std::chrono::seconds kPatience{10};
+constexpr std::chrono::microseconds kLookAgain{100};
+
+}  // namespace
+
+ModuleLoader Controller::Impl::loader() const {
+  std::vector<std::filesystem::path> folders;
+  if (!folder.empty()) folders.emplace_back(folder);
+  folders.insert(folders.end(), options.module_folders.begin(), options.module_folders.end());
+  return ModuleLoader(std::move(folders));
+}
+
+void Controller::Impl::drain() {
+  CycleSample sample;
+  while (link->samples.pop(sample)) waiting_samples.push_back(sample);
+}
+
+template <typename Reached>
+bool Controller::Impl::wait_for(Reached&& reached) {
+  const auto give_up = std::chrono::steady_clock::now() + kPatience;
+  while (!reached()) {
+    if (std::chrono::steady_clock::now() > give_up) return false;
+    drain();  // in virtual time a full ring would keep the servo thread from answering
+    std::this_thread::sleep_for(kLookAgain);
+  }
+  return true;
+}
+
+Expected<> Controller::Impl::ready_for_change(const char* what) {
+  if (!running) return failure(MinorCode::Other, fmt::format("{}: the controller is not running; start it", what));
+  const CycleState state = supervisor.state();
+  if (state == CycleState::Faulted || state == CycleState::EmergencyStop) {
+    return failure(MinorCode::Other,
+                   fmt::format("{}: the machine is {}; remove the cause and reset first", what, to_string(state)));
+  }
+  return supervisor.require_rest(what);
+}
+
+Expected<> Controller::Impl::swap(Mechanism* next) {
+  SwapRequest request;
+  request.next = next;
+  request.generation = generation + 1;
+  link->swap.store(&request, std::memory_order_release);
+  const auto answered = [&] { return request.result.load(std::memory_order_acquire) != SwapRequest::Result::Waiting; };
+  if (!wait_for(answered)) {
+    // Taken back unless the servo thread got hold of it just now; then its answer is certain, and near.
+    if (link->swap.exchange(nullptr, std::memory_order_acq_rel) == &request) {
+      return failure(MinorCode::ResponseTimeout, "the servo thread does not run cycles, so no mechanism can be put in");
+    }
+    while (!answered()) std::this_thread::yield();
+  }
+  if (request.result.load(std::memory_order_acquire) == SwapRequest::Result::Refused) {
+    return failure(MinorCode::Other, "the machine is moving; a mechanism is put in at rest only");
+  }
+  ++generation;
+  return {};
+}
+
+Expected<> Controller::Impl::switch_to(std::shared_ptr<Mechanism> next, bool keep_running) {
+  if (auto swapped = swap(next.get()); !swapped) return swapped;
+  in_force = next;
+  const auto old = supervisor.install(std::move(next), generation, keep_running);
+  if (!wait_for([&] { return link->status.read().generation == generation; })) {
+    return failure(MinorCode::ResponseTimeout, "the servo thread does not report on the mechanism that was put in");
+  }
+  return {};
+}
+
+Expected<> Controller::Impl::power_on() {
+  supervisor.wish([](ServoWishes& wishes) { wishes.power = true; });
+  const bool settled = wait_for([&] {
+    const ServoStatus now = link->status.read();
+    return now.follows || now.state == ServoState::Faulted;
+  });
+  const ServoStatus now = link->status.read();
+  if (settled && now.follows) return {};
+  return failure(MinorCode::Other, settled ? describe(now.fault, &in_force->device)
+                                           : "the drives were not enabled in time; check their power");
+}
+
+Expected<> Controller::Impl::clear_servo_fault() {
+  supervisor.wish([](ServoWishes& wishes) {
+    wishes.power = false;
+    wishes.reset = true;
+  });
+  (void)wait_for([&, since = link->status.read().t_s] {
+    const ServoStatus now = link->status.read();
+    return now.state != ServoState::Faulted || now.t_s - since > 1.0;
+  });
+  const ServoStatus now = link->status.read();
+  supervisor.wish([](ServoWishes& wishes) { wishes.reset = false; });
+  if (now.state != ServoState::Faulted) return {};
+  return failure(MinorCode::Other, fmt::format("the fault is still there: {}", describe(now.fault, &in_force->device)));
+}
+
+std::string Controller::Impl::put_back(const sdk::DeviceObject& device, bool virtual_before) {
+  // The loop that was in force has handed its drives over and cannot take them back; one like it can.
+  auto again = assemble(device, virtual_before, options.period_s, loader(), registry);
+  if (!again) return again.error().message;
+  const auto restored = switch_to(std::move(*again), false).and_then([&] { return clear_servo_fault(); }).and_then([&] {
+    return power_on();
+  });
+  if (!restored) return restored.error().message;
+  // The failed attempt faulted the machine; the old mechanism is well.
+  (void)supervisor.command([](CycleSequencer& cycle, const CycleObservation&) {
+    return cycle.state() == CycleState::Faulted ? cycle.reset() : Expected<>{};
+  });
+  return {};
+}
+
+Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh) {
+  if (auto ready = ready_for_change("putting in a configuration"); !ready) return ready;
+  const bool virtual_before = in_force && in_force->virtual_mode();
+  auto before = in_force;
+  auto next = assemble(device, virtual_mode, options.period_s, loader(), registry);
+  if (!next) {
+    registry.stop_unused();
+    return tl::unexpected(next.error());
+  }
+  if (fresh) {
+    supervisor.wish([](ServoWishes& wishes) { wishes.spindle_rpm.fill(0); });
+  }
+  auto done = switch_to(std::move(*next), !fresh);
+  if (done) done = power_on();
+  if (!done) {
+    std::string message = done.error().message;
+    if (in_force != before) {
+      if (before) {
+        const std::string trouble = put_back(before->device, virtual_before);
+        message += trouble.empty() ? fmt::format("; {} is in force again", before->device.name)
+                                   : fmt::format("; and {} could not be put back: {}", before->device.name, trouble);
+      } else if (auto out = take_out(); !out) {
+        message += "; and it could not be taken out again: " + out.error().message;
+      }
+    }
+    cam.mechanism_changed(in_force ? &in_force->device : nullptr, false);
+    before.reset();
+    registry.stop_unused();
+    return failure(done.error().code, message);
+  }
+  before.reset();
+  if (fresh) {
+    supervisor.wish([](ServoWishes& wishes) { wishes.outputs = 0; });
+    supervisor.set_frames({});
+  }
+  cam.mechanism_changed(&in_force->device, fresh);
+  draft.discard(&in_force->device);
+  registry.stop_unused();
+  supervisor.report({Event::Kind::Mechanism, link->status.read().t_s, 0,
+                     fmt::format("{} is {}{}", device.name, fresh ? "loaded" : "configured",
+                                 virtual_mode ? " in virtual mode" : "")});
+  return {};
+}
+
+Expected<> Controller::Impl::take_out() {
+  if (!in_force) return {};
+  const CycleState state = supervisor.state();
+  if (state != CycleState::Faulted && state != CycleState::EmergencyStop) {
+    if (auto rest = supervisor.require_rest("unloading"); !rest) return rest;
+  }
+  supervisor.wish([](ServoWishes& wishes) {
+    wishes.power = false;
+    wishes.reset = false;
+    wishes.spindle_rpm.fill(0);
+    wishes.outputs = 0;
+  });
+  const std::string name = in_force->device.name;
+  // Some cycles, so that the drives hear of it before the bus stops.
+  (void)wait_for([&, since = link->status.read().t_s] {
+    const ServoStatus now = link->status.read();
+    return now.state == ServoState::Off || now.t_s - since > 0.1;
+  });
+  if (auto swapped = swap(nullptr); !swapped) return swapped;
+  (void)supervisor.install(nullptr, generation, false);
+  cam.mechanism_changed(nullptr, true);
+  in_force.reset();
+  draft.discard(nullptr);
+  registry.stop_unused();
+  supervisor.report({Event::Kind::Mechanism, link->status.read().t_s, 0, name + " is unloaded"});
+  return {};
+}
+
+Expected<> Controller::Impl::reset() {
+  const CycleState state = supervisor.state();
+  if (state != CycleState::Faulted && state != CycleState::EmergencyStop) {
+    return failure(MinorCode::Other,
+                   fmt::format("reset: there is no fault to reset, the machine is {}", to_string(state)));
+  }
+  if (in_force && link->status.read().state == ServoState::Faulted) {
+    if (auto cleared = clear_servo_fault(); !cleared) return cleared;
+  }
+  if (in_force) {
+    // What was planned begins where the machine no longer is.
+    if (auto switched = switch_to(in_force->with_empty_path(), true); !switched) return switched;
+    cam.mechanism_changed(&in_force->device, false);
+  }
+  auto left = supervisor.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.reset(); });
+  if (left && in_force) left = power_on();
+  return left;
+}
+
+void Controller::Impl::come_to_rest() noexcept {
+  // Ending cannot fail: whatever does not work, the threads end and the buses stop.
+  try {
+    (void)cam.stop_now();
+    (void)wait_for([&] {
+      const CycleState state = supervisor.state();
+      return state == CycleState::Idle || state == CycleState::Faulted || state == CycleState::EmergencyStop;
+    });
+    (void)take_out();
+  } catch (...) {
+  }
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "rmac/motion/error.hpp"
+#include "rmac/motion/ports/actuator_map.hpp"
+#include "rmac/motion/ports/digital_control_interface.hpp"
+#include "rmac/motion/ports/digital_io_interface.hpp"
+#include "rmac/motion/ports/kinematics.hpp"
+#include "rmac/motion/ports/servo_law.hpp"
+#include "rmac/sdk/device_driver.hpp"
+#include "rmac/sdk/device_object.hpp"
+#include "rmac/sdk/module.hpp"
+
+namespace rmac::gateway {
+
+/// Which kind of module makes which port.
+template <typename Port>
+inline constexpr sdk::ModuleKind kKindOf = sdk::ModuleKind::Kinematics;
+template <>
+inline constexpr sdk::ModuleKind kKindOf<ActuatorMap> = sdk::ModuleKind::ActuatorMap;
+template <>
+inline constexpr sdk::ModuleKind kKindOf<ServoLaw> = sdk::ModuleKind::ServoLaw;
+template <>
+inline constexpr sdk::ModuleKind kKindOf<DigitalControlInterface> = sdk::ModuleKind::DigitalControlInterface;
+template <>
+inline constexpr sdk::ModuleKind kKindOf<DigitalIoInterface> = sdk::ModuleKind::DigitalIoInterface;
+template <>
+inline constexpr sdk::ModuleKind kKindOf<sdk::DeviceDriver> = sdk::ModuleKind::DeviceDriver;
+
+[[nodiscard]] const char* to_string(sdk::ModuleKind kind) noexcept;
+
+/// An object that a module made. The last owner destroys it with the module's own code, then closes the module.
+template <typename Port>
+struct ModuleObject {
+  std::shared_ptr<Port> object;
+  std::string build_id;
+};
+
+/// Finds modules by name and makes their objects: the loading half of the configuration system (dissertation 4.6). The
+/// descriptor is checked before anything of the module runs. Gateway thread only.
+class ModuleLoader {
+ public:
+  /// `folders` are searched in order; the mechanism's own comes first.
+  explicit ModuleLoader(std::vector<std::filesystem::path> folders);
+
+  /// Opens `choice.name`.so from a private copy, so that a module rebuilt since its last use really is the new one, and
+  /// makes its object with the choice's parameters. The error says which folders were searched, or what does not fit.
+  template <typename Port>
+  [[nodiscard]] Expected<ModuleObject<Port>> load(const sdk::ModuleChoice& choice) const {
+    return create(choice, kKindOf<Port>).map([](ModuleObject<void> made) {
+      return ModuleObject<Port>{std::static_pointer_cast<Port>(std::move(made.object)), std::move(made.build_id)};
+    });
+  }
+
+ private:
+  [[nodiscard]] Expected<ModuleObject<void>> create(const sdk::ModuleChoice& choice, sdk::ModuleKind kind) const;
+  [[nodiscard]] Expected<std::filesystem::path> find(const std::string& name, sdk::ModuleKind kind) const;
+
+  std::vector<std::filesystem::path> folders_;
+};
+
+}  // namespace rmac::gateway

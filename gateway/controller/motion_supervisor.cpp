@@ -1,0 +1,264 @@
+#include "gateway/controller/motion_supervisor.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <thread>
+#include <utility>
+
+namespace rmac::gateway {
+
+namespace {
+/// With this many moves ahead, a client that pauses cannot make the queue run dry.
+constexpr std::size_t kAmpleMoves = 256;
+}  // namespace
+
+MotionSupervisor::MotionSupervisor(Options options, ServoLink& link) : options_(options), link_(link) {}
+
+MotionSupervisor::Turn::Turn(MotionSupervisor& supervisor) : supervisor_(supervisor) {
+  supervisor_.gateway_waits_.fetch_add(1, std::memory_order_relaxed);
+  supervisor_.mutex_.lock();
+  supervisor_.gateway_waits_.fetch_sub(1, std::memory_order_relaxed);
+}
+
+MotionSupervisor::Turn::~Turn() {
+  supervisor_.work_to_do_ = true;
+  supervisor_.mutex_.unlock();
+  supervisor_.work_.notify_one();
+}
+
+CycleObservation MotionSupervisor::observe(const ServoStatus& status) {
+  CycleObservation seen;
+  seen.t_s = status.t_s;
+  t_s_ = status.t_s;
+  if (!mechanism_) return seen;
+  seen.moves_left = mechanism_->planner.moves_left();
+  if (status.generation != generation_) return seen;
+  seen.at_rest = !status.moving && mechanism_->planner.at_rest(status.progress);
+  seen.moves_done = status.moves_done;
+  seen.faulted = status.state == ServoState::Faulted;
+  seen.spindles_at_speed = spindles_at_speed(status);
+  return seen;
+}
+
+bool MotionSupervisor::spindles_at_speed(const ServoStatus& status) const {
+  if (mechanism_->virtual_mode()) return true;
+  const auto& spindles = mechanism_->device.spindles;
+  for (std::size_t i = 0; i < spindles.size(); ++i) {
+    if (!(std::abs(status.spindle_rpm[i] - wishes_.spindle_rpm[i]) <= spindles[i].speed_tolerance_rpm)) return false;
+  }
+  return true;
+}
+
+void MotionSupervisor::settle(const ServoStatus& status) {
+  apply_verdict(sequencer_.step(observe(status)), status);
+}
+
+void MotionSupervisor::apply_verdict(const CycleSequencer::Verdict& verdict, const ServoStatus& status) {
+  if (mechanism_ && verdict.command) mechanism_->planner.command(*verdict.command);
+  if (mechanism_ && verdict.clear_queue) {
+    mechanism_->planner.clear();
+    rebase_ = true;
+    news_.queue.push_back({QueueChange::Kind::Cleared, 0, status.progress.cycle});
+  }
+  if (verdict.spindle_timed_out) {
+    std::string speeds;
+    for (std::size_t i = 0; i < mechanism_->device.spindles.size(); ++i) {
+      speeds += fmt::format("{}spindle {} turns at {:.0f} of {:.0f} rpm", i == 0 ? "" : ", ", i, status.spindle_rpm[i],
+                            wishes_.spindle_rpm[i]);
+    }
+    note({Event::Kind::Fault, t_s_, 0,
+          fmt::format("{}: not at speed within the time allowed, so no move was begun; check the spindle's drive, then "
+                      "reset",
+                      speeds)});
+  }
+  if (verdict.came_to_rest) note({Event::Kind::Stopped, t_s_, 0, "the machine has come to rest"});
+  tell_state();
+}
+
+void MotionSupervisor::tell_state() {
+  const CycleState state = sequencer_.state();
+  if (state == reported_state_) return;
+  note(
+      {Event::Kind::CycleStateChanged, t_s_, 0, fmt::format("{} to {}", to_string(reported_state_), to_string(state))});
+  reported_state_ = state;
+  wishes_.state = state;
+  if (state == CycleState::Faulted || state == CycleState::EmergencyStop) wishes_.spindle_rpm.fill(0);
+  link_.wishes.write(wishes_);
+}
+
+MotionSupervisor::Pace MotionSupervisor::advance(const ServoStatus& status) {
+  // Yielding to a waiting gateway costs at most one scheduling round; barging ahead could starve it for ever.
+  while (gateway_waits_.load(std::memory_order_relaxed) > 0) std::this_thread::yield();
+  const std::lock_guard lock(mutex_);
+  work_to_do_ = false;
+  settle(status);
+  if (!mechanism_ || status.generation != generation_) return Pace::Calm;
+  if (sequencer_.state() != CycleState::Faulted && !mechanism_->planner.idle(status.progress)) {
+    mechanism_->planner.step(status.progress);
+    return Pace::Planning;
+  }
+  return pace(status);
+}
+
+MotionSupervisor::Pace MotionSupervisor::pace(const ServoStatus& status) {
+  const CycleState state = sequencer_.state();
+  const std::size_t left = mechanism_->planner.moves_left();
+  if (state == CycleState::Running && left > 0 && left < kAmpleMoves && left < options_.queue_capacity &&
+      sequencer_.mode() == sdk::CycleMode::Automatic &&
+      std::chrono::steady_clock::now() - last_added_ < options_.client_grace) {
+    return Pace::Sending;
+  }
+  const bool waiting = state == CycleState::Running && (left > 0 || sequencer_.waits_for_spindle());
+  const bool coming_to_rest = status.moving || !mechanism_->planner.at_rest(status.progress);
+  const bool busy = waiting || coming_to_rest || state == CycleState::Stopping || status.state == ServoState::Enabling;
+  return busy && state != CycleState::Faulted ? Pace::Busy : Pace::Calm;
+}
+
+void MotionSupervisor::wait_for_work(std::chrono::nanoseconds period) {
+  std::unique_lock lock(mutex_);
+  work_.wait_for(lock, period, [this] { return work_to_do_; });
+}
+
+Expected<> MotionSupervisor::prepare_move() {
+  const Turn turn(*this);
+  if (!mechanism_) {
+    return failure(MinorCode::Other, "there is no mechanism; load one with Device.Load before sending moves");
+  }
+  const CycleState state = sequencer_.state();
+  if (state == CycleState::Faulted || state == CycleState::EmergencyStop) {
+    return failure(
+        state == CycleState::Faulted ? MinorCode::Other : MinorCode::EmergencyStop,
+        fmt::format("no moves are taken while the machine is {}; remove the cause, then reset", to_string(state)));
+  }
+  if (const std::size_t left = mechanism_->planner.moves_left(); left >= options_.queue_capacity) {
+    return failure(
+        MinorCode::CommandQueueFull,
+        fmt::format("the queue holds {} moves, as many as it can; send the next one when a move is done", left));
+  }
+  if (!rebase_) return {};
+  const ServoStatus now = status();
+  const CycleObservation seen = observe(now);
+  if (state == CycleState::Stopping || !seen.at_rest) {
+    return failure(MinorCode::Other, "the machine is still coming to rest; send moves when it has stopped");
+  }
+  if (now.generation != generation_ || !now.follows) {
+    return failure(MinorCode::Other, "the drives are not enabled yet; send moves when they are");
+  }
+  mechanism_->builder.restart({now.position_set.data(), now.joint_count}, wishes_.frames);
+  rebase_ = false;
+  return {};
+}
+
+Expected<> MotionSupervisor::add_move(const Move& move) {
+  // The builder is the gateway thread's alone; building may take long, and planning goes on meanwhile.
+  auto segments = mechanism_->builder.build(move);
+  if (!segments) return tl::unexpected(segments.error());
+  const Turn turn(*this);
+  mechanism_->planner.add(std::move(*segments));
+  news_.queue.push_back({QueueChange::Kind::Added, move.id, 0});
+  last_added_ = std::chrono::steady_clock::now();
+  return {};
+}
+
+Expected<> MotionSupervisor::run_positioning(const Move& move) {
+  return command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.check_positioning(); })
+      .and_then([&] { return require_rest("a jog"); })
+      .and_then([&] { return prepare_move(); })
+      .and_then([&] { return add_move(move); })
+      .and_then([&] {
+        return command(
+            [](CycleSequencer& cycle, const CycleObservation& seen) { return cycle.start_positioning(seen); });
+      });
+}
+
+Expected<> MotionSupervisor::require_rest(const char* what) {
+  const Turn turn(*this);
+  if (!mechanism_) return {};
+  const CycleState state = sequencer_.state();
+  const CycleObservation seen = observe(status());
+  if (!seen.at_rest || state == CycleState::Stopping) {
+    return failure(MinorCode::Other,
+                   fmt::format("{} needs the machine at rest, and it is moving; wait for its moves or "
+                               "stop it first",
+                               what));
+  }
+  if (seen.moves_left > 0) {
+    return failure(MinorCode::Other, fmt::format("{} needs an empty queue, and {} moves are still in it; run them, or "
+                                                 "drop them with StopNow",
+                                                 what, seen.moves_left));
+  }
+  return {};
+}
+
+void MotionSupervisor::wish(const std::function<void(ServoWishes&)>& change) {
+  const Turn turn(*this);
+  change(wishes_);
+  link_.wishes.write(wishes_);
+}
+
+ServoWishes MotionSupervisor::wishes() {
+  const Turn turn(*this);
+  return wishes_;
+}
+
+void MotionSupervisor::set_frames(const Frames& frames) {
+  const Turn turn(*this);
+  wishes_.frames = frames;
+  link_.wishes.write(wishes_);
+  rebase_ = true;
+}
+
+void MotionSupervisor::set_override(double percent) {
+  const Turn turn(*this);
+  override_percent_ = percent;
+  if (mechanism_) mechanism_->planner.set_override(percent);
+}
+
+void MotionSupervisor::set_spindle(std::size_t spindle, double rpm) {
+  const Turn turn(*this);
+  wishes_.spindle_rpm[spindle] = rpm;
+  link_.wishes.write(wishes_);
+  sequencer_.spindle_commanded(mechanism_->device.spindles[spindle].speed_timeout_s);
+  settle(status());
+}
+
+std::size_t MotionSupervisor::moves_left() {
+  const Turn turn(*this);
+  return mechanism_ ? mechanism_->planner.moves_left() : 0;
+}
+
+CycleState MotionSupervisor::state() {
+  const Turn turn(*this);
+  return sequencer_.state();
+}
+
+std::shared_ptr<Mechanism> MotionSupervisor::install(std::shared_ptr<Mechanism> next, std::uint64_t generation,
+                                                     bool keep_running) {
+  const Turn turn(*this);
+  std::swap(mechanism_, next);
+  generation_ = generation;
+  rebase_ = true;
+  if (mechanism_) mechanism_->planner.set_override(override_percent_);
+  sequencer_.mechanism_changed(keep_running);
+  news_.queue.push_back({QueueChange::Kind::Replaced, 0, status().progress.cycle});
+  settle(status());
+  return next;
+}
+
+std::shared_ptr<Mechanism> MotionSupervisor::mechanism() {
+  const Turn turn(*this);
+  return mechanism_;
+}
+
+MotionSupervisor::News MotionSupervisor::take_news() {
+  const Turn turn(*this);
+  return std::exchange(news_, {});
+}
+
+void MotionSupervisor::report(Event event) {
+  const Turn turn(*this);
+  note(std::move(event));
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "gateway/controller/cycle_sequencer.hpp"
+#include "gateway/controller/servo_link.hpp"
+
+namespace rmac::gateway {
+
+/// Id of the moves that jogs and `home` make; clients' own ids are what they chose.
+inline constexpr std::int64_t kPositioningMoveId = -1;
+
+/// Joins cycle states, planner and servo wishes under one lock. The gateway thread commands it; `advance` runs on the
+/// planner thread, or, in virtual time, between two servo cycles. Never called by a servo thread in real pace.
+class MotionSupervisor {
+ public:
+  struct Options {
+    double period_s = 0.001;
+    std::size_t queue_capacity = Planner::kQueueCapacity;
+    /// Virtual time stands still this long (of real time) after a move was queued while few moves are: a client that is
+    /// still sending must not find its queue run dry because time flew.
+    std::chrono::milliseconds client_grace{20};
+  };
+
+  MotionSupervisor(Options options, ServoLink& link);
+
+  /// What the machine is about, for who paces the cycles.
+  enum class Pace {
+    Planning,  ///< more to plan before the next cycle
+    Sending,   ///< a client is filling the queue
+    Busy,      ///< something moves or is about to
+    Calm,      ///< nothing to do
+  };
+  /// One bounded piece of planning, and the cycle states.
+  Pace advance(const ServoStatus& status);
+  /// The planner thread's wait: until a command came, or `period`.
+  void wait_for_work(std::chrono::nanoseconds period);
+
+  // All below: gateway thread.
+
+  /// Runs `function(sequencer, observation)` of the cycle states and acts on what it changed.
+  template <typename Function>
+  auto command(Function&& function) {
+    const Turn turn(*this);
+    auto result = function(sequencer_, observe(status()));
+    settle(status());
+    return result;
+  }
+
+  /// Refuses when a move cannot be taken now; then readies `builder()` to begin where the machine stands, if it must.
+  [[nodiscard]] Expected<> prepare_move();
+  /// Builds and adds a move that `prepare_move` let through.
+  [[nodiscard]] Expected<> add_move(const Move& move);
+  /// Builds, adds and runs one move from rest, outside of the cycle.
+  [[nodiscard]] Expected<> run_positioning(const Move& move);
+
+  /// True when nothing moves and nothing is queued; otherwise an error that says what `what` must wait for.
+  [[nodiscard]] Expected<> require_rest(const char* what);
+  /// Changes the wishes, for the next cycle.
+  void wish(const std::function<void(ServoWishes&)>& change);
+  [[nodiscard]] ServoWishes wishes();
+  void set_frames(const Frames& frames);
+  void set_override(double percent);
+  void set_spindle(std::size_t spindle, double rpm);
+  [[nodiscard]] std::size_t moves_left();
+  [[nodiscard]] CycleState state();
+  /// Puts a mechanism in force, or none: from now on moves go to it, and statuses of generations before are ignored.
+  /// The old one is handed back; the servo thread must be through with it, or never have had it.
+  std::shared_ptr<Mechanism> install(std::shared_ptr<Mechanism> next, std::uint64_t generation, bool keep_running);
+  [[nodiscard]] std::shared_ptr<Mechanism> mechanism();
+
+  /// What happened to the queue, in order: a move was added, or (at `cycle`) everything not done was dropped, or
+  /// another mechanism's queue began.
+  struct QueueChange {
+    enum class Kind : std::uint8_t { Added, Cleared, Replaced };
+    Kind kind = Kind::Added;
+    std::int64_t move_id = 0;
+    std::int64_t cycle = 0;
+  };
+  struct News {
+    std::vector<QueueChange> queue;
+    std::vector<Event> events;
+  };
+  [[nodiscard]] News take_news();
+  void report(Event event);
+
+ private:
+  void note(Event event) { news_.events.push_back(std::move(event)); }
+  /// The gateway goes first: a thread that takes the lock cycle after cycle would otherwise starve it.
+  class Turn {
+   public:
+    explicit Turn(MotionSupervisor& supervisor);
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+    ~Turn();
+
+   private:
+    MotionSupervisor& supervisor_;
+  };
+
+  [[nodiscard]] ServoStatus status() const noexcept { return link_.status.read(); }
+  [[nodiscard]] CycleObservation observe(const ServoStatus& status);
+  [[nodiscard]] bool spindles_at_speed(const ServoStatus& status) const;
+  void settle(const ServoStatus& status);
+  void apply_verdict(const CycleSequencer::Verdict& verdict, const ServoStatus& status);
+  void tell_state();
+  [[nodiscard]] Pace pace(const ServoStatus& status);
+
+  Options options_;
+  ServoLink& link_;
+
+  std::mutex mutex_;
+  std::atomic<int> gateway_waits_{0};
+  std::condition_variable work_;
+  bool work_to_do_ = false;
+
+  std::shared_ptr<Mechanism> mechanism_;
+  std::uint64_t generation_ = 0;
+  CycleSequencer sequencer_;
+  CycleState reported_state_ = CycleState::Idle;
+  ServoWishes wishes_;
+  bool rebase_ = true;  ///< the next move begins where the machine stands, not where the queue ended
+  std::chrono::steady_clock::time_point last_added_{};
+  News news_;
+  double override_percent_ = 100;
+  double t_s_ = 0;
+};
+
+}  // namespace rmac::gateway

@@ -1,0 +1,32 @@
+#include "gateway/controller/move_ledger.hpp"
+
+#include <fmt/format.h>
+
+#include "gateway/controller/motion_supervisor.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+Event make_event(Event::Kind kind, double t_s, std::int64_t id) {
+  const char* what = kind == Event::Kind::MoveStarted ? "started" : "done";
+  return {kind, t_s, id, id == kPositioningMoveId ? fmt::format("jog {}", what) : fmt::format("move {} {}", id, what)};
+}
+
+}  // namespace
+
+void MoveLedger::read(const CycleSample& sample, const std::function<void(const Event&)>& tell) {
+  const auto start = [&](Entry& entry) {
+    if (!entry.started) tell(make_event(Event::Kind::MoveStarted, sample.t_s, entry.id));
+    entry.started = true;
+  };
+  while (done_ < sample.moves_done && !moves_.empty()) {
+    start(moves_.front());
+    tell(make_event(Event::Kind::MoveDone, sample.t_s, moves_.front().id));
+    moves_.pop_front();
+    ++done_;
+  }
+  if (sample.moves_done > done_) done_ = sample.moves_done;
+  if (sample.moving && !moves_.empty() && moves_.front().id == sample.move_id) start(moves_.front());
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,42 @@
+#include "gateway/controller/real_time.hpp"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace rmac::gateway {
+
+std::vector<std::string> enter_real_time(const RealTimeWish& wish) {
+  std::vector<std::string> missing;
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
+    missing.push_back(
+        fmt::format("memory is not locked ({}): set LimitMEMLOCK=infinity in the unit, or `ulimit -l unlimited`",
+                    std::strerror(errno)));
+  }
+  sched_param parameter{};
+  parameter.sched_priority = wish.priority;
+  if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter); error != 0) {
+    missing.push_back(fmt::format(
+        "SCHED_FIFO priority {} is not granted ({}): set AmbientCapabilities=CAP_SYS_NICE or LimitRTPRIO={} "
+        "in the unit, or run `setcap cap_sys_nice+ep` on rmacd",
+        wish.priority, std::strerror(error), wish.priority));
+  }
+  if (wish.cpu >= 0) {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    const bool fits = wish.cpu < CPU_SETSIZE;
+    if (fits) CPU_SET(static_cast<std::size_t>(wish.cpu), &set);
+    const int error = fits ? pthread_setaffinity_np(pthread_self(), sizeof(set), &set) : EINVAL;
+    if (error != 0) {
+      missing.push_back(fmt::format("CPU {} is not available ({}): choose one of those that `nproc` counts, or -1",
+                                    wish.cpu, std::strerror(error)));
+    }
+  }
+  return missing;
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,90 @@
+#include "gateway/controller/servo_thread.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <chrono>
+#include <future>
+
+namespace rmac::gateway {
+
+namespace {
+/// How long virtual time stands still before it looks again whether it may go on.
+constexpr std::chrono::microseconds kStandstill{50};
+}  // namespace
+
+ServoThread::ServoThread(Options options, ServoLink& link, MotionSupervisor& supervisor)
+    : options_(std::move(options)), link_(link), supervisor_(supervisor) {
+  if (!options_.clock) options_.clock = make_monotonic_clock(options_.period_s);
+}
+
+ServoThread::~ServoThread() {
+  stop();
+}
+
+Expected<> ServoThread::start() {
+  stop_.store(false);
+  std::promise<std::vector<std::string>> granted;
+  auto answer = granted.get_future();
+  servo_ = std::thread([this, &granted] {
+    granted.set_value(options_.real_time ? enter_real_time(options_.wish) : std::vector<std::string>{});
+    ServoCycle cycle(link_, options_.period_s);
+    if (options_.virtual_time) {
+      run_virtual(cycle);
+    } else {
+      run_real(cycle);
+    }
+  });
+  shortcomings_ = answer.get();
+  if (!shortcomings_.empty() && !options_.degraded_ok) {
+    stop();
+    return failure(MinorCode::Other, fmt::format("real time is wanted and not granted: {}; or allow degraded operation",
+                                                 fmt::join(shortcomings_, "; ")));
+  }
+  if (!options_.virtual_time) planner_ = std::thread([this] { plan(); });
+  return {};
+}
+
+void ServoThread::stop() noexcept {
+  stop_.store(true);
+  if (servo_.joinable()) servo_.join();
+  if (planner_.joinable()) planner_.join();
+}
+
+void ServoThread::run_real(ServoCycle& cycle) noexcept {
+  options_.clock->restart();
+  while (!stop_.load(std::memory_order_relaxed)) cycle.run(options_.clock->wait_for_cycle());
+}
+
+void ServoThread::plan() {
+  const auto tick = std::chrono::nanoseconds(static_cast<std::int64_t>(options_.period_s * 1e9));
+  while (!stop_.load(std::memory_order_relaxed)) {
+    if (supervisor_.advance(link_.status.read()) != MotionSupervisor::Pace::Planning) supervisor_.wait_for_work(tick);
+  }
+}
+
+void ServoThread::run_virtual(ServoCycle& cycle) {
+  bool calm = false;
+  while (!stop_.load(std::memory_order_relaxed)) {
+    // Nobody may miss a cycle in virtual time: a full ring makes the machine wait for its readers.
+    if (link_.samples.size() == link_.samples.capacity()) {
+      std::this_thread::sleep_for(kStandstill);
+      continue;
+    }
+    const auto pace = supervisor_.advance(cycle.status());
+    if (pace == MotionSupervisor::Pace::Planning) continue;
+    if (pace == MotionSupervisor::Pace::Sending) {
+      std::this_thread::sleep_for(kStandstill);
+      continue;
+    }
+    if (pace == MotionSupervisor::Pace::Calm) {
+      if (!calm) options_.clock->restart();
+      // Lateness means nothing in virtual time.
+      (void)options_.clock->wait_for_cycle();
+    }
+    calm = pace == MotionSupervisor::Pace::Calm;
+    cycle.run(0);
+  }
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,283 @@
+#include "gateway/rmac_cam/cam.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rmac/motion/frame.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+constexpr double kSecondsPerMinute = 60;
+
+tl::unexpected<Error> refuse(std::string message) {
+  return failure(MinorCode::InvalidParameterValue, std::move(message));
+}
+
+bool positive(double value) {
+  return std::isfinite(value) && value > 0;
+}
+
+}  // namespace
+
+Cam::Cam(MotionSupervisor& supervisor, ServoLink& link, std::function<Expected<>()> reset)
+    : supervisor_(supervisor), link_(link), reset_(std::move(reset)) {}
+
+void Cam::mechanism_changed(const sdk::DeviceObject* device, bool fresh) {
+  device_ = device;
+  const sdk::DeviceObject none;
+  const sdk::DeviceObject& now = device != nullptr ? *device : none;
+  if (fresh) {
+    feedrate_mm_min_ = 0;
+    max_feedrate_mm_min_ = now.max_feedrate_mm_min;
+    accel_rise_mm_s2_ = now.path_accel_rise_mm_s2;
+    accel_fall_mm_s2_ = now.path_accel_fall_mm_s2;
+    joint_interp_percent_ = 100;
+    tolerance_mm_ = 0;
+    frames_ = {};
+    spindle_max_rpm_.clear();
+    supervisor_.set_override(100);
+  }
+  // A configuration defines the mechanism: its maxima are the new bounds of ours, upwards too.
+  max_feedrate_mm_min_ = now.max_feedrate_mm_min;
+  spindle_max_rpm_.clear();
+  for (const sdk::Spindle& spindle : now.spindles) spindle_max_rpm_.push_back(spindle.max_speed_rpm);
+}
+
+Expected<> Cam::require_mechanism(const char* function) const {
+  if (device_ != nullptr) return {};
+  return failure(MinorCode::Other, fmt::format("{}: no mechanism is loaded; load one with Device.Load", function));
+}
+
+Expected<> Cam::cycle_start(sdk::CycleMode mode) {
+  return require_mechanism("CycleStart").and_then([&] {
+    return supervisor_.command(
+        [mode](CycleSequencer& cycle, const CycleObservation& seen) { return cycle.start(mode, seen); });
+  });
+}
+
+Expected<> Cam::cycle_stop() {
+  return supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.stop(); });
+}
+
+Expected<> Cam::feed_hold() {
+  return supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.hold(); });
+}
+
+Expected<> Cam::feed_resume() {
+  return supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.resume(); });
+}
+
+Expected<> Cam::stop_now() {
+  return supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.stop_and_clear(); });
+}
+
+Expected<> Cam::reset() {
+  return reset_();
+}
+
+bool Cam::cycle_start_status() const {
+  const CycleState state = supervisor_.state();
+  return state == CycleState::Running || state == CycleState::Holding;
+}
+
+bool Cam::cycle_stop_status() const {
+  return !cycle_start_status();
+}
+
+Move Cam::make_move(std::int64_t id, const Geometry& geometry) const {
+  return {.id = id,
+          .geometry = geometry,
+          .feed_mm_s = feedrate_mm_min_ / kSecondsPerMinute,
+          .tolerance_mm = tolerance_mm_,
+          .accel_rise_mm_s2 = accel_rise_mm_s2_,
+          .accel_fall_mm_s2 = accel_fall_mm_s2_,
+          .joint_speed_fraction = joint_interp_percent_ / 100};
+}
+
+Expected<> Cam::queue_move(std::int64_t id, const Geometry& geometry) {
+  if (auto loaded = require_mechanism("move"); !loaded) return loaded;
+  const auto* nurbs = std::get_if<NurbsGeometry>(&geometry);
+  const bool in_joints =
+      std::holds_alternative<JointTargetGeometry>(geometry) || (nurbs != nullptr && nurbs->space == NurbsSpace::Joint);
+  if (!in_joints && !(feedrate_mm_min_ > 0)) {
+    return failure(MinorCode::SpeedLimit,
+                   fmt::format("move {}: no feed is set; use SetFeedrate before the first move", id));
+  }
+  // The maximum may have been lowered since the feed was set.
+  if (!in_joints && feedrate_mm_min_ > max_feedrate_mm_min_) {
+    return failure(MinorCode::SpeedLimit,
+                   fmt::format("move {}: the feed in force, {} mm/min, is above the maximum of {} mm/min; set a lower "
+                               "one with SetFeedrate",
+                               id, feedrate_mm_min_, max_feedrate_mm_min_));
+  }
+  return supervisor_.prepare_move().and_then([&] { return supervisor_.add_move(make_move(id, geometry)); });
+}
+
+int Cam::moves_in_buffer() const {
+  return static_cast<int>(supervisor_.moves_left());
+}
+
+Expected<> Cam::set_feedrate(double mm_min) {
+  if (auto loaded = require_mechanism("SetFeedrate"); !loaded) return loaded;
+  if (!positive(mm_min)) return refuse(fmt::format("SetFeedrate: {} mm/min must be above 0", mm_min));
+  if (mm_min > max_feedrate_mm_min_) {
+    return failure(MinorCode::SpeedLimit, fmt::format("SetFeedrate: {} mm/min is above the maximum of {} mm/min",
+                                                      mm_min, max_feedrate_mm_min_));
+  }
+  feedrate_mm_min_ = mm_min;
+  return {};
+}
+
+double Cam::feedrate() const {
+  return link_.sample.read().feed_actual_mm_s * kSecondsPerMinute;
+}
+
+Expected<> Cam::set_max_feedrate(double mm_min) {
+  if (auto loaded = require_mechanism("SetMaxFeedrate"); !loaded) return loaded;
+  if (!positive(mm_min)) return refuse(fmt::format("SetMaxFeedrate: {} mm/min must be above 0", mm_min));
+  if (mm_min > device_->max_feedrate_mm_min) {
+    return failure(MinorCode::SpeedLimit,
+                   fmt::format("SetMaxFeedrate: {} mm/min is above the mechanism's {} mm/min, which RMAC_CAM can only "
+                               "tighten",
+                               mm_min, device_->max_feedrate_mm_min));
+  }
+  max_feedrate_mm_min_ = mm_min;
+  return {};
+}
+
+double Cam::max_feedrate() const {
+  return max_feedrate_mm_min_;
+}
+
+Expected<> Cam::set_feed_override(double percent) {
+  if (!std::isfinite(percent) || percent < 0 || percent > 200) {
+    return refuse(fmt::format("SetFeedOverride: {} percent must be 0 to 200", percent));
+  }
+  supervisor_.set_override(percent);
+  return {};
+}
+
+Expected<> Cam::check_accel(const char* function, double mm_s2, double bound_mm_s2) const {
+  if (auto loaded = require_mechanism(function); !loaded) return loaded;
+  if (!positive(mm_s2)) return refuse(fmt::format("{}: {} mm/s² must be above 0", function, mm_s2));
+  if (bound_mm_s2 > 0 && mm_s2 > bound_mm_s2) {
+    return failure(MinorCode::AccelerationLimit,
+                   fmt::format("{}: {} mm/s² is above the mechanism's {} mm/s²", function, mm_s2, bound_mm_s2));
+  }
+  return {};
+}
+
+Expected<> Cam::set_path_accel_rise(double mm_s2) {
+  return check_accel("SetPathAccelRise", mm_s2, device_ != nullptr ? device_->path_accel_rise_mm_s2 : 0).map([&] {
+    accel_rise_mm_s2_ = mm_s2;
+  });
+}
+
+double Cam::path_accel_rise() const {
+  return accel_rise_mm_s2_;
+}
+
+Expected<> Cam::set_path_accel_fall(double mm_s2) {
+  return check_accel("SetPathAccelFall", mm_s2, device_ != nullptr ? device_->path_accel_fall_mm_s2 : 0).map([&] {
+    accel_fall_mm_s2_ = mm_s2;
+  });
+}
+
+double Cam::path_accel_fall() const {
+  return accel_fall_mm_s2_;
+}
+
+Expected<> Cam::set_joint_interp_speed(double percent) {
+  if (!positive(percent) || percent > 100) {
+    return refuse(fmt::format("SetJointInterpSpeed: {} percent must be above 0 and at most 100", percent));
+  }
+  joint_interp_percent_ = percent;
+  return {};
+}
+
+double Cam::joint_interp_speed() const {
+  return joint_interp_percent_;
+}
+
+Expected<> Cam::set_path_tolerance(double mm) {
+  if (!std::isfinite(mm) || mm < 0) return refuse(fmt::format("SetPathTolerance: {} mm must be 0 or more", mm));
+  tolerance_mm_ = mm;
+  return {};
+}
+
+double Cam::path_tolerance() const {
+  return tolerance_mm_;
+}
+
+Expected<> Cam::set_frames(const char* function, const Frames& frames) {
+  return require_mechanism(function).and_then([&] { return supervisor_.require_rest(function); }).map([&] {
+    frames_ = frames;
+    supervisor_.set_frames(frames);
+  });
+}
+
+Expected<> Cam::set_part_frame(const Frame& frame) {
+  return check_frame(frame, "SetPartFrame").and_then([&] {
+    return set_frames("SetPartFrame", {normalized(frame), frames_.tool});
+  });
+}
+
+Frame Cam::part_frame() const {
+  return frames_.part;
+}
+
+Expected<> Cam::set_tool_interface_frame(const Frame& frame) {
+  return check_frame(frame, "SetToolInterfaceFrame").and_then([&] {
+    return set_frames("SetToolInterfaceFrame", {frames_.part, normalized(frame)});
+  });
+}
+
+Frame Cam::tool_interface_frame() const {
+  return frames_.tool;
+}
+
+Expected<> Cam::jog_joint(int joint, double distance) {
+  if (auto loaded = require_mechanism("JogJoint"); !loaded) return loaded;
+  const auto count = static_cast<int>(device_->joints.size());
+  if (joint < 0 || joint >= count) {
+    return refuse(fmt::format("JogJoint: there is no joint {}; joints are 0 to {}", joint, count - 1));
+  }
+  if (!std::isfinite(distance) || distance == 0) {
+    return refuse(fmt::format("JogJoint: the distance {} must be a number other than 0", distance));
+  }
+  const ServoStatus now = link_.status.read();
+  JointTargetGeometry target;
+  target.joints.assign(now.position_set.begin(), now.position_set.begin() + count);
+  target.joints[static_cast<std::size_t>(joint)] += distance;
+  return supervisor_.run_positioning(make_move(kPositioningMoveId, target));
+}
+
+Expected<> Cam::home() {
+  if (auto loaded = require_mechanism("Home"); !loaded) return loaded;
+  const std::size_t count = device_->joints.size();
+  const ServoStatus now = link_.status.read();
+  const bool there =
+      std::all_of(now.position_set.begin(), now.position_set.begin() + static_cast<std::ptrdiff_t>(count),
+                  [](double position) { return std::abs(position) < 1e-9; });
+  if (there) return supervisor_.require_rest("Home");
+  return supervisor_.run_positioning(
+      make_move(kPositioningMoveId, JointTargetGeometry{std::vector<double>(count, 0.0)}));
+}
+
+Expected<std::vector<double>> Cam::current_position() const {
+  if (auto loaded = require_mechanism("GetCurrentPosition"); !loaded) return tl::unexpected(loaded.error());
+  const CycleSample now = link_.sample.read();
+  return std::vector<double>(now.position.begin(), now.position.begin() + now.joint_count);
+}
+
+Expected<> Cam::set_animation(bool) {
+  return failure(
+      MinorCode::UnsupportedOperation,
+      "SetAnimation: not there yet; subscribe to the topic \"joints\", which streams joint values in virtual "
+      "mode too");
+}
+
+}  // namespace rmac::gateway

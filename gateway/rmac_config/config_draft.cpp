@@ -1,0 +1,225 @@
+#include "gateway/rmac_config/config_draft.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rmac/motion/servo_loop.hpp"
+#include "rmac/sdk/servo_law_names.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+tl::unexpected<Error> refuse(std::string message) {
+  return failure(MinorCode::InvalidParameterValue, std::move(message));
+}
+
+bool positive(double value) {
+  return std::isfinite(value) && value > 0;
+}
+
+Expected<> check_count(const char* function, int count, int least, std::size_t most) {
+  if (count < least || static_cast<std::size_t>(count) > most) {
+    return refuse(fmt::format("{}: {} must be {} to {}", function, count, least, most));
+  }
+  return {};
+}
+
+Expected<> set_module(const char* function, const sdk::ModuleChoice& module, sdk::ModuleChoice& target) {
+  if (module.name.empty()) return refuse(fmt::format("{}: the name of a module is needed", function));
+  target = module;
+  return {};
+}
+
+}  // namespace
+
+void ConfigDraft::discard(const sdk::DeviceObject* in_force) {
+  draft_ = in_force != nullptr ? *in_force : sdk::DeviceObject{};
+  begun_ = in_force != nullptr;
+  new_mechanism_ = false;
+}
+
+Expected<> ConfigDraft::begin(const sdk::DeviceObject& device) {
+  draft_ = device;
+  // The rest is for the device driver to set, joint by joint.
+  draft_.joints.clear();
+  std::fill(draft_.held_joints.begin(), draft_.held_joints.end(), sdk::Joint{});
+  draft_.kinematics = {};
+  draft_.actuator_map = {};
+  draft_.digital_control_interface = {};
+  draft_.digital_io_interface = {};
+  begun_ = true;
+  new_mechanism_ = true;
+  return {};
+}
+
+Expected<> ConfigDraft::apply() {
+  if (!begun_) {
+    return failure(MinorCode::Other,
+                   "Apply: there is no mechanism to configure; load a device driver with Device.Load");
+  }
+  return controller_.apply(draft_, new_mechanism_).map([this] { new_mechanism_ = false; });
+}
+
+Expected<sdk::Joint*> ConfigDraft::joint(int number, const char* function) {
+  const std::size_t moved = draft_.joints.size();
+  const std::size_t count = moved + draft_.held_joints.size();
+  if (number < 0 || static_cast<std::size_t>(number) >= count) {
+    return refuse(count == 0
+                      ? fmt::format("{}: there is no joint {}; set the number of joints first", function, number)
+                      : fmt::format("{}: there is no joint {}; joints are 0 to {}", function, number, count - 1));
+  }
+  const auto index = static_cast<std::size_t>(number);
+  return index < moved ? &draft_.joints[index] : &draft_.held_joints[index - moved];
+}
+
+template <typename Change>
+Expected<> ConfigDraft::change_joint(int number, const char* function, Change&& change) {
+  return joint(number, function).map([&](sdk::Joint* found) { change(*found); });
+}
+
+Expected<> ConfigDraft::set_positive(int number, const char* function, double value, double JointLimits::*member) {
+  if (!positive(value)) return refuse(fmt::format("{}: {} must be a number above 0", function, value));
+  return change_joint(number, function, [&](sdk::Joint& found) { found.limits.*member = value; });
+}
+
+Expected<> ConfigDraft::set_kinematics(const sdk::ModuleChoice& module) {
+  return set_module("SetMechanismKinematics", module, draft_.kinematics);
+}
+
+Expected<> ConfigDraft::set_actuator_map(const sdk::ModuleChoice& module) {
+  return set_module("SetMechanismActuatorMap", module, draft_.actuator_map);
+}
+
+Expected<> ConfigDraft::set_number_of_joints(int count) {
+  return check_count("SetMechanismNumberOfJoints", count, 1, kMaxJoints - draft_.held_joints.size()).map([&] {
+    draft_.joints.resize(static_cast<std::size_t>(count));
+  });
+}
+
+Expected<> ConfigDraft::set_number_of_spindles(int count) {
+  return check_count("SetMechanismNumberOfSpindles", count, 0, kMaxSpindles).map([&] {
+    draft_.spindles.resize(static_cast<std::size_t>(count));
+  });
+}
+
+Expected<> ConfigDraft::set_number_of_actuators(int count) {
+  return check_count("SetMechanismNumberOfActuators", count, 1, kMaxJoints).map([&] {
+    draft_.actuators.resize(static_cast<std::size_t>(count));
+  });
+}
+
+Expected<> ConfigDraft::set_joint_name(int number, std::string_view name) {
+  if (name.empty()) return refuse("SetMechanismJointName: a name must have a letter at least");
+  return change_joint(number, "SetMechanismJointName", [&](sdk::Joint& found) { found.limits.name = name; });
+}
+
+Expected<> ConfigDraft::set_joint_type(int number, JointType type) {
+  return change_joint(number, "SetMechanismJointType", [&](sdk::Joint& found) { found.limits.type = type; });
+}
+
+Expected<> ConfigDraft::set_joint_limit_type(int number, JointLimitType type) {
+  return change_joint(number, "SetMechanismJointLimitType", [&](sdk::Joint& found) { found.limits.limit_type = type; });
+}
+
+Expected<> ConfigDraft::set_joint_maximum_limit(int number, double value) {
+  if (!std::isfinite(value)) return refuse("SetMechanismJointMaximumLimit: the limit must be a finite number");
+  return change_joint(number, "SetMechanismJointMaximumLimit", [&](sdk::Joint& found) { found.limits.max = value; });
+}
+
+Expected<> ConfigDraft::set_joint_minimum_limit(int number, double value) {
+  if (!std::isfinite(value)) return refuse("SetMechanismJointMinimumLimit: the limit must be a finite number");
+  return change_joint(number, "SetMechanismJointMinimumLimit", [&](sdk::Joint& found) { found.limits.min = value; });
+}
+
+Expected<> ConfigDraft::set_joint_maximum_speed(int number, double value) {
+  return set_positive(number, "SetMechanismJointMaximumSpeed", value, &JointLimits::max_speed);
+}
+
+Expected<> ConfigDraft::set_joint_maximum_acceleration(int number, double value) {
+  return set_positive(number, "SetMechanismJointMaximumAcceleration", value, &JointLimits::max_acceleration);
+}
+
+Expected<> ConfigDraft::set_joint_maximum_jerk(int number, double value) {
+  return set_positive(number, "SetMechanismJointMaximumJerk", value, &JointLimits::max_jerk);
+}
+
+Expected<> ConfigDraft::set_maximum_feedrate(double mm_min) {
+  if (!positive(mm_min)) return refuse(fmt::format("SetMaximumFeedrate: {} mm/min must be above 0", mm_min));
+  draft_.max_feedrate_mm_min = mm_min;
+  return {};
+}
+
+template <typename Change>
+Expected<> ConfigDraft::change_spindles(const char* function, double value, const char* unit, Change&& change) {
+  if (!positive(value)) return refuse(fmt::format("{}: {} {} must be above 0", function, value, unit));
+  if (draft_.spindles.empty()) return refuse(fmt::format("{}: the mechanism has no spindle", function));
+  for (sdk::Spindle& spindle : draft_.spindles) change(spindle);
+  return {};
+}
+
+Expected<> ConfigDraft::set_spindle_maximum_rpm(double rpm) {
+  return change_spindles("SetSpindleMaximumRPM", rpm, "rpm",
+                         [&](sdk::Spindle& spindle) { spindle.max_speed_rpm = rpm; });
+}
+
+Expected<> ConfigDraft::set_spindle_maximum_torque(double nm) {
+  return change_spindles("SetSpindleMaximumTorque", nm, "N·m",
+                         [&](sdk::Spindle& spindle) { spindle.max_torque_nm = nm; });
+}
+
+Expected<> ConfigDraft::set_joint_control_method(int number, ControlMethod method) {
+  return change_joint(number, "SetMechanismJointControlMethod", [&](sdk::Joint& found) { found.method = method; });
+}
+
+Expected<> ConfigDraft::set_joint_servo_control_law(int number, const sdk::ModuleChoice& module) {
+  if (auto known = sdk::servo_law_module(module.name); !known) return tl::unexpected(known.error());
+  return joint(number, "SetMechanismJointServoControlLaw").and_then([&](sdk::Joint* found) {
+    return set_module("SetMechanismJointServoControlLaw", module, found->servo_law);
+  });
+}
+
+Expected<> ConfigDraft::set_joint_servo_control_gains(int number, std::span<const double> gains) {
+  if (!std::all_of(gains.begin(), gains.end(), [](double gain) { return std::isfinite(gain); })) {
+    return refuse("SetMechanismJointServoControlGains: every gain must be a finite number");
+  }
+  return change_joint(number, "SetMechanismJointServoControlGains",
+                      [&](sdk::Joint& found) { found.gains.assign(gains.begin(), gains.end()); });
+}
+
+Expected<> ConfigDraft::set_joint_watch(int number, double max_following_error, double max_effort) {
+  if (!positive(max_following_error) || !positive(max_effort)) {
+    return refuse(fmt::format("joint {}: following-error bound {} and effort bound {} must be above 0", number,
+                              max_following_error, max_effort));
+  }
+  return change_joint(number, "joint watch", [&](sdk::Joint& found) {
+    found.max_following_error = max_following_error;
+    found.max_effort = max_effort;
+  });
+}
+
+Expected<> ConfigDraft::set_digital_control_interface(const sdk::ModuleChoice& module) {
+  return set_module("SetDigitalControlInterface", module, draft_.digital_control_interface);
+}
+
+Expected<> ConfigDraft::initialize_digital_control_interface() {
+  if (draft_.digital_control_interface.name.empty()) {
+    return failure(MinorCode::InvalidParameter,
+                   "InitializeDigitalControlInterface: choose one with SetDigitalControlInterface first");
+  }
+  return controller_.check_control_interface(draft_.digital_control_interface);
+}
+
+Expected<> ConfigDraft::set_digital_io_interface(const sdk::ModuleChoice& module) {
+  // A mechanism without digital I/O names no interface.
+  draft_.digital_io_interface = module;
+  return {};
+}
+
+Expected<> ConfigDraft::initialize_digital_io_interface() {
+  if (draft_.digital_io_interface.name.empty()) return {};
+  return controller_.check_io_interface(draft_.digital_io_interface);
+}
+
+}  // namespace rmac::gateway

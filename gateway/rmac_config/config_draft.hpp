@@ -1,0 +1,68 @@
+#pragma once
+
+#include <functional>
+
+#include "rmac/sdk/rmac_config.hpp"
+
+namespace rmac::gateway {
+
+/// RMAC_Config (dissertation 4.4): the draft of a mechanism. Checks each value as far as it can be checked alone;
+/// whether they fit together is found out by `apply`. Gateway thread only.
+class ConfigDraft final : public sdk::RmacConfig {
+ public:
+  struct Controller {
+    /// Puts a device object in force. `new_mechanism`: it replaces the mechanism, instead of changing it.
+    std::function<Expected<>(const sdk::DeviceObject& device, bool new_mechanism)> apply;
+    std::function<Expected<>(const sdk::ModuleChoice& choice)> check_control_interface;
+    std::function<Expected<>(const sdk::ModuleChoice& choice)> check_io_interface;
+  };
+
+  explicit ConfigDraft(Controller controller) : controller_(std::move(controller)) {}
+
+  /// Forgets the draft and continues from `in_force`, or from nothing.
+  void discard(const sdk::DeviceObject* in_force);
+
+  Expected<> begin(const sdk::DeviceObject& device) override;
+  Expected<> set_kinematics(const sdk::ModuleChoice& module) override;
+  Expected<> set_actuator_map(const sdk::ModuleChoice& module) override;
+  Expected<> set_number_of_joints(int count) override;
+  Expected<> set_number_of_spindles(int count) override;
+  Expected<> set_number_of_actuators(int count) override;
+  Expected<> set_joint_name(int joint, std::string_view name) override;
+  Expected<> set_joint_type(int joint, JointType type) override;
+  Expected<> set_joint_limit_type(int joint, JointLimitType type) override;
+  Expected<> set_joint_maximum_limit(int joint, double value) override;
+  Expected<> set_joint_minimum_limit(int joint, double value) override;
+  Expected<> set_joint_maximum_speed(int joint, double value) override;
+  Expected<> set_joint_maximum_acceleration(int joint, double value) override;
+  Expected<> set_joint_maximum_jerk(int joint, double value) override;
+  Expected<> set_maximum_feedrate(double mm_min) override;
+  Expected<> set_spindle_maximum_rpm(double rpm) override;
+  Expected<> set_spindle_maximum_torque(double nm) override;
+  Expected<> set_joint_control_method(int joint, ControlMethod method) override;
+  Expected<> set_joint_servo_control_law(int joint, const sdk::ModuleChoice& module) override;
+  Expected<> set_joint_servo_control_gains(int joint, std::span<const double> gains) override;
+  Expected<> set_joint_watch(int joint, double max_following_error, double max_effort) override;
+  Expected<> set_digital_control_interface(const sdk::ModuleChoice& module) override;
+  Expected<> initialize_digital_control_interface() override;
+  Expected<> set_digital_io_interface(const sdk::ModuleChoice& module) override;
+  Expected<> initialize_digital_io_interface() override;
+  [[nodiscard]] const sdk::DeviceObject& draft() const override { return draft_; }
+  Expected<> apply() override;
+
+ private:
+  /// Joints count first, held joints follow.
+  [[nodiscard]] Expected<sdk::Joint*> joint(int number, const char* function);
+  template <typename Change>
+  Expected<> change_joint(int number, const char* function, Change&& change);
+  template <typename Change>
+  Expected<> change_spindles(const char* function, double value, const char* unit, Change&& change);
+  Expected<> set_positive(int number, const char* function, double value, double JointLimits::*member);
+
+  Controller controller_;
+  sdk::DeviceObject draft_;
+  bool begun_ = false;
+  bool new_mechanism_ = false;
+};
+
+}  // namespace rmac::gateway
