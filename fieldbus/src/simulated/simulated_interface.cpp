@@ -85,12 +85,13 @@ const SpindlePlant& SimulatedInterface::spindle(std::size_t axis) const {
 }
 
 std::vector<SimulatedAxis> default_simulated_axes() {
+  const AxisPlantParameters table;
+  AxisPlantParameters saddle;  // carries the table
+  saddle.table_mass_kg = 26;
   AxisPlantParameters head;
-  head.table_mass_kg = 8;
-  head.gravity_nm = 0.0624;  // 8 kg on a pitch of 5 mm: 8 · 9.81 · 0.005 / 2π
-  return {AxisPlantParameters{},    AxisPlantParameters{}, head,
-          SpindlePlantParameters{}, AxisPlantParameters{}, AxisPlantParameters{},
-          AxisPlantParameters{},    AxisPlantParameters{}};
+  head.table_mass_kg = 12;
+  head.gravity_nm = 0.0937;  // 12 kg on a pitch of 5 mm: 12 · 9.81 · 0.005 / 2π
+  return {table, saddle, head, SpindlePlantParameters{}, table, table, table, table};
 }
 
 }  // namespace rmac::fieldbus

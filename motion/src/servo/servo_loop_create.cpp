@@ -104,8 +104,8 @@ Expected<> check_drives(const ServoLoopParts& parts) {
   for (std::size_t i = 0; i < parts.spindles.size(); ++i) {
     const std::string who = "spindle " + std::to_string(i);
     if (auto ok = take(parts.spindles[i].bus.get(), parts.spindles[i].axis, who); !ok) return ok;
-    if (!(parts.spindles[i].max_speed_rpm > 0)) {
-      return failure(MinorCode::InvalidParameterValue, "servo loop: " + who + " needs a largest speed above 0 rpm");
+    if (!(parts.spindles[i].max_speed_rpm >= 0)) {
+      return failure(MinorCode::InvalidParameterValue, "servo loop: " + who + " has a negative largest speed");
     }
   }
   return {};

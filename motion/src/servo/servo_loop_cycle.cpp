@@ -74,6 +74,7 @@ void ServoLoop::Impl::read_actuators() noexcept {
   for (std::size_t i = 0; i < actuators; ++i) {
     const DriveFeedback& words = feedback(i);
     if (!words.online) {
+      history[i] = 0;
       shaft_velocity[i] = 0;
       continue;
     }
@@ -83,7 +84,12 @@ void ServoLoop::Impl::read_actuators() noexcept {
         static_cast<std::int32_t>(static_cast<std::uint32_t>(words.position_counts) - static_cast<std::uint32_t>(last));
     counts[i] = last + moved;
     const double now = shaft_rad(i, static_cast<double>(counts[i]));
-    shaft_velocity[i] = seen[i] ? (now - shaft[i]) / parts.period_s : 0;
+    const double back1 = now - shaft[i];
+    const double back2 = shaft[i] - shaft_before[i];
+    const double moved_rad = history[i] == 0 ? 0 : history[i] == 1 ? back1 : (3 * back1 - back2) / 2;
+    shaft_velocity[i] = moved_rad / parts.period_s;
+    history[i] = static_cast<std::uint8_t>(std::min(history[i] + 1, 2));
+    shaft_before[i] = shaft[i];
     shaft[i] = now;
     seen[i] = true;
   }

@@ -64,6 +64,7 @@ void ServoLoop::engage(const ServoHandover& previous) noexcept {
     });
     if (found == drives.end()) continue;
     loop.seen[i] = found->seen;
+    loop.history[i] = found->seen ? 1 : 0;
     loop.counts[i] = found->counts;
     loop.shaft[i] = loop.shaft_rad(i, static_cast<double>(found->counts));
     loop.torque[i] = part.scale.direction * found->torque_nm;

@@ -58,7 +58,8 @@ struct ServoLoop::Impl {
 
   std::array<bool, kMaxJoints> seen{};  ///< a position of this drive was read
   std::array<std::int64_t, kMaxJoints> counts{};
-  std::array<double, kMaxJoints> shaft{}, shaft_velocity{};
+  std::array<std::uint8_t, kMaxJoints> history{};  ///< positions before this one that a velocity may use, 2 at most
+  std::array<double, kMaxJoints> shaft{}, shaft_before{}, shaft_velocity{};
   std::array<double, kMaxJoints> position{}, velocity{};
   std::array<double, kMaxJoints> hold{};
   std::array<double, kMaxJoints> set_velocity{}, set_acceleration{};

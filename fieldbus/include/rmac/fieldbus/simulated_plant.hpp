@@ -17,10 +17,10 @@ struct AxisPlantParameters {
   // Assumed: screw of 12 mm diameter and 300 mm length, table with vice and part.
   double screw_inertia_kg_m2 = 4.8e-6;
   double pitch_mm = 5;
-  double table_mass_kg = 12;
+  double table_mass_kg = 20;
   double viscous_nm_s = 1.0e-4;  ///< assumed: 0.03 N·m of grease and seals at 3000 rpm
-  double coulomb_nm = 0.020;     ///< assumed: preloaded nut and wipers, 25 N at the table
-  double static_nm = 0.026;      ///< assumed: 1.3 times the sliding friction, before it breaks away
+  double coulomb_nm = 0.015;     ///< assumed: preloaded nut and wipers, 19 N at the table
+  double static_nm = 0.018;      ///< assumed: 1.2 times the sliding friction, before it breaks away
   double gravity_nm = 0;         ///< load that pulls towards negative angles; 0 for a horizontal axis
   double brake_nm = 0.318;       ///< assumed: a holding brake holds the rated torque
   // Current loop of the drive, as a first-order lag.

@@ -1,0 +1,3 @@
+#include "rmac/modules/ball_screw_map.hpp"
+
+RMAC_MODULE(ActuatorMap, "DMACXYMachineActMap", rmac::ActuatorMap, rmac::modules::BallScrewMapFactory<3>)

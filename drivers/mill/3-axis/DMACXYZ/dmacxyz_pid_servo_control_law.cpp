@@ -1,0 +1,3 @@
+#include "rmac/modules/pid_servo_law.hpp"
+
+RMAC_MODULE(ServoLaw, "DMACXYZPIDServoControlLaw", rmac::ServoLaw, rmac::modules::PidServoLawFactory)
