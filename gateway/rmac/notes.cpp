@@ -31,10 +31,22 @@ EventNote read_event(const nlohmann::json& params) {
 
 StateNote read_state(const nlohmann::json& params) {
   StateNote state;
-  read(params, "cycle_state", state.cycle_state);
+  read(params, "state", state.state);
+  read(params, "mechanism", state.mechanism);
+  read(params, "authority", state.authority);
   read(params, "moving", state.moving);
+  read(params, "virtual", state.virtual_mode);
   read(params, "move_id", state.move_id);
+  read(params, "moves_in_buffer", state.moves_in_buffer);
+  read(params, "status_minor", state.status_minor);
   read(params, "t_s", state.t_s);
+  read(params, "feed_actual_mm_min", state.feed_actual);
+  read(params, "feed_set_mm_min", state.feed_set);
+  read(params, "override_percent", state.override_percent);
+  read(params, "pose", state.pose);
+  read(params, "joints", state.joints);
+  read(params, "held_joints", state.held_joints);
+  read(params, "spindle_rpm", state.spindle_rpm);
   return state;
 }
 

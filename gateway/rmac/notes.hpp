@@ -17,14 +17,14 @@ struct EventNote {
 
 /// What the `state` topic tells. mm, deg, mm/min, rpm.
 struct StateNote {
-  std::string cycle_state;
-  bool moving = false;
+  std::string state, mechanism, authority;  ///< cycle state; empty: none loaded; empty: nobody holds it
+  bool moving = false, virtual_mode = false;
   std::int64_t move_id = 0;
+  int moves_in_buffer = 0, status_minor = 0;
   double t_s = 0, feed_actual = 0, feed_set = 0, override_percent = 0;
-  int moves_in_buffer = 0;
-  std::string mechanism, authority;
-  std::vector<double> tool_tip, joints, spindle_rpm;
-  std::vector<std::string> faults;
+  std::vector<double> pose, joints, held_joints, spindle_rpm;
+
+  [[nodiscard]] bool at_rest() const { return !moving && moves_in_buffer == 0; }
 };
 
 /// One cycle of the `joints` topic. mm, deg; feed mm/s.

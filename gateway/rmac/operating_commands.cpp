@@ -36,8 +36,7 @@ Result<> move_and_wait(Connection& connection, const std::string& method, const 
       return begun;
     }
     state.reset();
-    auto rest =
-        connection.wait([&] { return !fault.empty() || (state && !state->moving && state->moves_in_buffer == 0); });
+    auto rest = connection.wait([&] { return !fault.empty() || (state && state->at_rest()); });
     if (!rest) {
       static_cast<void>(call(connection, "RMAC_CAM.StopNow"));
       return rest;

@@ -93,11 +93,16 @@ Result<> Runner::prepare(const Program& program) {
       return tl::unexpected(loaded.error());
     }
   }
-  auto waiting = connection_.call("RMAC_CAM.NumMovesInBuffer");
-  if (waiting && waiting->get<int>() > 0) {
-    return fail(fmt::format("{} moves of an earlier program are still queued: end them with `rmac stop` first",
-                            waiting->get<int>()));
+  auto state = connection_.call("RMAC_CAM.GetState");
+  if (!state) {
+    return tl::unexpected(state.error());
   }
+  state_ = read_state(*state);
+  if (state_->moves_in_buffer > 0) {
+    return fail(fmt::format("{} moves of an earlier program are still queued: end them with `rmac stop` first",
+                            state_->moves_in_buffer));
+  }
+  started_ = state_->state == "Running";
   return {};
 }
 
@@ -166,7 +171,7 @@ Result<> Runner::before_move(const Program& program) {
       return settled;
     }
     unsettled_ = false;
-    started_ = state_->cycle_state == "Running";
+    started_ = state_->state == "Running";
   }
   return started_ || program.starts_cycle ? Result<>() : start_cycle();
 }
@@ -186,10 +191,20 @@ Result<> Runner::settle() {
   if (auto done = wait([&] { return unanswered_ == 0 && unfinished_.empty(); }); !done) {
     return done;
   }
-  // Home and jog have no MoveID. State older than their answer does not count: wait for the next one that shows rest.
-  state_.reset();
-  if (auto rest = wait([&] { return state_ && !state_->moving && state_->moves_in_buffer == 0; }); !rest) {
-    return rest;
+  // Home and jog have no MoveID, so the machine itself is asked whether it rests.
+  for (;;) {
+    auto state = connection_.call("RMAC_CAM.GetState");
+    if (!state) {
+      return tl::unexpected(state.error());
+    }
+    state_ = read_state(*state);
+    if (state_->at_rest()) {
+      break;
+    }
+    state_.reset();
+    if (auto next = wait([&] { return state_.has_value(); }); !next) {
+      return next;
+    }
   }
   if (!record_ || !watching_) {
     return {};
@@ -232,9 +247,9 @@ void Runner::take(const std::string& topic, const nlohmann::json& params) {
     take(read_event(params));
   } else if (topic == "state") {
     state_ = read_state(params);
-    progress_.draw(report_.moves, total_moves_,
-                   state_->cycle_state == "Holding" ? "held: `rmac resume` goes on"
-                                                    : fmt::format("{:.0f} mm/min", state_->feed_actual));
+    progress_.draw(
+        report_.moves, total_moves_,
+        state_->state == "Holding" ? "held: `rmac resume` goes on" : fmt::format("{:.0f} mm/min", state_->feed_actual));
   } else if (topic == "joints") {
     for (const auto& sample : read_joints(params)) {
       take(sample);
@@ -243,7 +258,7 @@ void Runner::take(const std::string& topic, const nlohmann::json& params) {
 }
 
 void Runner::take(const EventNote& event) {
-  if (event.kind == "MoveStarted" && !first_start_s_) {
+  if (event.kind == "MoveStarted" && !first_start_s_ && !unfinished_.empty()) {
     first_start_s_ = event.t_s;
   } else if (event.kind == "MoveDone" && !unfinished_.empty() && unfinished_.front() == event.move_id) {
     unfinished_.pop_front();

@@ -20,21 +20,21 @@ std::string list(const std::vector<double>& values) {
 }
 
 std::string state_table(const StateNote& state) {
-  std::string faults;
-  for (const auto& fault : state.faults) {
-    faults += (faults.empty() ? "" : "; ") + fault;
-  }
-  return table({"", "", ""}, {{"machine", state.mechanism.empty() ? "none loaded" : state.mechanism, ""},
-                              {"cycle", state.cycle_state + (state.moving ? ", moving" : ", at rest"), ""},
+  const auto machine =
+      state.mechanism.empty() ? "none loaded" : state.mechanism + (state.virtual_mode ? ", virtual" : "");
+  return table({"", "", ""}, {{"machine", machine, ""},
+                              {"cycle", state.state + (state.moving ? ", moving" : ", at rest"), ""},
                               {"move", std::to_string(state.move_id), ""},
                               {"queued", std::to_string(state.moves_in_buffer), "moves"},
                               {"feed", number(state.feed_actual, 1) + " of " + number(state.feed_set, 1), "mm/min"},
                               {"override", number(state.override_percent, 1), "%"},
-                              {"tool tip", list(state.tool_tip), "mm"},
-                              {"joints", list(state.joints), "mm, deg"},
+                              {"tool tip", list(state.pose), "mm, axis"},
+                              {"joints", list(state.joints), "mm or deg"},
+                              {"held joints", list(state.held_joints), "mm or deg"},
                               {"spindle", list(state.spindle_rpm), "rpm"},
                               {"authority", state.authority.empty() ? "nobody" : state.authority, ""},
-                              {"faults", faults.empty() ? "none" : faults, ""}});
+                              {"last error", state.status_minor == 0 ? "none" : std::to_string(state.status_minor),
+                               state.status_minor == 0 ? "" : "StatusMinorCode"}});
 }
 
 /// Ctrl-C is how a person ends watching, not a failure.

@@ -1,0 +1,90 @@
+"""The daemon's own command line, its readiness and its end."""
+
+import json
+import os
+import socket
+import subprocess
+import tempfile
+import unittest
+
+from appliance import BUILD, SOURCE, Appliance
+
+RMACD = BUILD / "bin" / "rmacd"
+DONE, FAILED, USAGE = 0, 1, 2
+
+
+def rmacd(*words):
+    return subprocess.run([RMACD, *words], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60,
+                          check=False)
+
+
+class CommandLine(unittest.TestCase):
+    def check(self, settings):
+        with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
+            file.write(settings if isinstance(settings, str) else json.dumps(settings))
+            file.flush()
+            return rmacd("--check", "--config", file.name)
+
+    def test_shipped_configuration_is_valid(self):
+        done = rmacd("--check", "--config", str(SOURCE / "etc" / "rmacd.json"))
+        self.assertEqual(done.returncode, DONE, done.stderr)
+
+    def test_bad_value_names_key_and_range(self):
+        done = self.check({"listen": {"port": 70000}})
+        self.assertEqual(done.returncode, FAILED)
+        for word in ("/listen/port", "70000", "65535"):
+            self.assertIn(word, done.stderr)
+
+    def test_unknown_key_is_an_error(self):
+        done = self.check({"lisen": {}})
+        self.assertEqual(done.returncode, FAILED)
+        self.assertIn("lisen", done.stderr)
+
+    def test_address_of_the_network_is_refused_with_the_reason(self):
+        done = self.check({"listen": {"address": "0.0.0.0"}})
+        self.assertEqual(done.returncode, FAILED)
+        self.assertIn("authenticated", done.stderr)
+
+    def test_unknown_option_is_a_usage_error(self):
+        self.assertEqual(rmacd("--nonsense").returncode, USAGE)
+
+
+class LifeCycle(unittest.TestCase):
+    def test_service_manager_is_told_of_readiness_and_end(self):
+        with tempfile.TemporaryDirectory() as folder, socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
+            address = os.path.join(folder, "notify")
+            manager.bind(address)
+            manager.settimeout(60)
+            config = os.path.join(folder, "rmacd.json")
+            with open(config, "w", encoding="utf-8") as file:
+                json.dump({"listen": {"port": 0}, "state_folder": "state",
+                           "real_time": {"lock_memory": False}}, file)
+            environment = os.environ | {"NOTIFY_SOCKET": address, "WATCHDOG_USEC": "200000"}
+            with subprocess.Popen([RMACD, "--config", config], env=environment, stdin=subprocess.DEVNULL,
+                                  stderr=subprocess.DEVNULL) as daemon:
+                try:
+                    self.read_until(manager, "READY=1")
+                    self.read_until(manager, "WATCHDOG=1")
+                    self.read_until(manager, "WATCHDOG=1")
+                    daemon.terminate()
+                    self.read_until(manager, "STOPPING=1")
+                    self.assertEqual(daemon.wait(timeout=60), DONE)
+                finally:
+                    daemon.kill()
+
+    def read_until(self, manager, word):
+        while word not in manager.recv(4096).decode().splitlines():
+            pass
+
+    def test_discover_lists_every_function_once(self):
+        spec = json.loads((SOURCE / "tests/unit/api/fixtures/rmac_api.json").read_text())
+        wanted = {f"{function['interface']}.{function['name']}" for function in spec["functions"]}
+        with Appliance() as appliance:
+            document = appliance.client().call("rpc.discover")
+        names = [method["name"] for method in document["methods"]]
+        self.assertEqual(len(names), len(set(names)))
+        self.assertEqual(wanted - set(names), set())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,107 @@
+"""What ends or disturbs a cut in progress: clients that stop, hold, go away or meddle. At the machine's real pace."""
+
+import unittest
+
+from appliance import Appliance, line
+
+AUTHORITY_REQUIRED, AUTHORITY_HELD = -32040, -32041
+SLOW_MM_MIN = 120  # 2 mm/s: the 40 mm below last 20 s, so every test interrupts it.
+LENGTH_MM = 40.0
+
+
+class Interruptions(unittest.TestCase):
+    def setUp(self):
+        self.appliance = self.enterContext(Appliance(pace="real-time"))
+        self.operator = self.appliance.operator()
+        self.watcher = self.appliance.client("watcher")
+        self.watcher.call("subscribe", topics=["events"])
+        self.watcher.call("subscribe", topics=["state"], rate_hz=100)
+        self.operator.call("RMAC_CAM.SetFeedrate", Feedrate=SLOW_MM_MIN)
+        self.operator.call("RMAC_CAM.CycleStart", Mode="AUTOMATIC")
+        self.operator.call("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (LENGTH_MM, 0, 0), move_id=7))
+        self.wait_state(lambda state: state["moving"] and state["pose"][0] > 0.2)
+
+    def wait_state(self, matches):
+        return self.watcher.wait_note("state", matches)
+
+    def rest(self):
+        state = self.wait_state(lambda state: not state["moving"] and state["state"] not in ("Running", "Stopping"))
+        self.assertGreater(state["pose"][0], 0.1)
+        self.assertLess(state["pose"][0], LENGTH_MM - 10, "it did not stop in mid-cut")
+        self.assertAlmostEqual(state["pose"][1], 0, delta=0.02)
+        return state
+
+    def assert_stays(self, state, samples=20):
+        for _ in range(samples):
+            later = self.wait_state(lambda _: True)
+            self.assertFalse(later["moving"])
+            self.assertAlmostEqual(later["pose"][0], state["pose"][0], delta=0.02)
+
+    def test_anyone_connected_may_stop(self):
+        self.watcher.call("RMAC_CAM.StopNow")
+        state = self.rest()
+        self.assertEqual(state["state"], "Idle")
+        self.assertEqual(self.watcher.state()["moves_in_buffer"], 0)
+        self.assert_stays(state)
+
+    def test_anyone_connected_may_stop_the_cycle_and_the_rest_waits_for_a_new_start(self):
+        self.watcher.call("RMAC_CAM.CycleStop", Mode="AUTOMATIC")
+        state = self.rest()
+        self.assertEqual(state["state"], "Idle")
+        self.assertEqual(self.watcher.state()["moves_in_buffer"], 1)
+        self.assert_stays(state)
+        self.operator.call("RMAC_CAM.CycleStart", Mode="AUTOMATIC")
+        self.wait_state(lambda later: later["moving"] and later["pose"][0] > state["pose"][0] + 0.1)
+
+    def test_anyone_connected_may_hold_and_the_holder_of_authority_resumes(self):
+        self.watcher.call("RMAC_CAM.FeedHold")
+        state = self.rest()
+        self.assertEqual(state["state"], "Holding")
+        self.assert_stays(state)
+        refusal = self.watcher.refusal("RMAC_CAM.FeedResume")
+        self.assertEqual(refusal.code, AUTHORITY_REQUIRED)
+        self.operator.call("RMAC_CAM.FeedResume")
+        self.wait_state(lambda later: later["moving"] and later["pose"][0] > state["pose"][0] + 0.1)
+
+    def test_client_that_goes_away_stops_the_machine_and_nothing_restarts_it(self):
+        self.operator.close()
+        event = self.watcher.wait_note("events", lambda event: event["kind"] == "Authority")
+        self.assertTrue(event["message"])
+        state = self.rest()
+        self.assertEqual(state["authority"], "")
+        self.assert_stays(state)
+        self.watcher.call("authority.acquire")
+        self.assert_stays(state)
+        self.watcher.call("RMAC_CAM.StopNow")
+        self.watcher.call("RMAC_CAM.JogJoint", JntNum=1, Distance=1)
+        self.wait_state(lambda later: not later["moving"] and abs(later["pose"][1] - 1) < 0.02)
+
+    def test_second_client_that_jogs_disturbs_nothing(self):
+        before = self.watcher.state()
+        self.assertEqual(self.watcher.refusal("RMAC_CAM.JogJoint", JntNum=1, Distance=5).code, AUTHORITY_REQUIRED)
+        self.assertEqual(self.watcher.refusal("authority.acquire").code, AUTHORITY_HELD)
+        state = self.wait_state(lambda later: later["pose"][0] > before["pose"][0] + 0.2)
+        self.assertEqual((state["state"], state["moving"], state["authority"]), ("Running", True, before["authority"]))
+        self.assertAlmostEqual(state["pose"][1], 0, delta=0.02)
+
+    def test_jog_beside_a_running_program_is_refused(self):
+        refusal = self.operator.refusal("RMAC_CAM.JogJoint", JntNum=1, Distance=5)
+        self.assertTrue(refusal.message)
+        self.assertTrue(self.operator.state()["moving"])
+
+    def test_mechanism_is_not_swapped_in_mid_cut(self):
+        self.operator.refusal("Device.Load", Name="DMACXY")
+        state = self.operator.state()
+        self.assertEqual((state["mechanism"], state["moving"]), ("DMACXYZ", True))
+
+    def test_override_acts_at_once(self):
+        self.operator.call("RMAC_CAM.SetFeedOverride", Percent=200)
+        self.wait_state(lambda state: abs(state["feed_set_mm_min"] - 2 * SLOW_MM_MIN) < 1)
+        self.operator.call("RMAC_CAM.SetFeedOverride", Percent=0)
+        state = self.wait_state(lambda state: not state["moving"] or state["feed_set_mm_min"] == 0)
+        self.operator.call("RMAC_CAM.SetFeedOverride", Percent=100)
+        self.wait_state(lambda later: later["moving"] and later["pose"][0] > state["pose"][0] + 0.1)
+
+
+if __name__ == "__main__":
+    unittest.main()

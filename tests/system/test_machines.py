@@ -1,0 +1,69 @@
+"""The device driver database as a client sees it."""
+
+import json
+import unittest
+
+from appliance import Appliance
+
+SIX = {"DMACXYZ", "TarusXYZCA", "SuginoXYZ", "SuginoXYZAC", "CMM", "DMACXY"}
+
+
+class Machines(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.appliance = cls.enterClassContext(Appliance())
+
+    def names(self, *words):
+        done = self.appliance.rmac("--json", "machines", *words)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        return {machine["Name"] for machine in json.loads(done.stdout)}
+
+    def test_all_machines_of_the_tree_are_listed(self):
+        self.assertEqual(self.names(), SIX)
+
+    def test_five_axis_mill_with_volume_and_power_is_the_tarus(self):
+        found = self.names("--type", "mill", "--joints", "5", "--volume", "150x150x150", "--spindle-hp", "5.1")
+        self.assertEqual(found, {"TarusXYZCA"})
+
+    def test_sql_of_the_client_finds_the_same(self):
+        sql = ("SELECT * FROM DeviceDrivers WHERE Type = 'Mill' AND NumberOfJoints = 5 AND Length > 150 AND Width > 150 "
+               "AND Depth > 150 AND SpindleHorsePower > 5")
+        self.assertEqual(self.names("--sql", sql), {"TarusXYZCA"})
+
+    def test_quotes_in_a_search_stay_text(self):
+        self.assertEqual(self.names("--type", "Mill' OR '1'='1"), set())
+
+    def test_table_has_a_row_a_machine(self):
+        done = self.appliance.rmac("machines")
+        rows = done.stdout.splitlines()
+        self.assertEqual(len(rows), 1 + len(SIX))
+        self.assertTrue(rows[0].startswith("name"))
+
+    def test_hostile_sql_is_an_error_and_changes_nothing(self):
+        for sql in ("DELETE FROM DeviceDrivers", "SELECT * FROM sqlite_master", "SELECT 1; DROP TABLE DeviceDrivers",
+                    "ATTACH 'other' AS other", "PRAGMA table_info(DeviceDrivers)"):
+            done = self.appliance.rmac("machines", "--sql", sql)
+            self.assertEqual((done.returncode, done.stdout), (1, ""), sql)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        self.assertEqual(self.names(), SIX)
+
+    def test_show_prints_table_4_1s_values(self):
+        done = self.appliance.rmac("--json", "show", "DMACXYZ")
+        machine = json.loads(done.stdout)
+        self.assertEqual((machine["Name"], machine["NumberOfJoints"], machine["RepeatabilityTolerance"]),
+                         ("DMACXYZ", 3, 0.025))
+        self.assertEqual(machine["DriverVersion"].count("."), 2)
+
+    def test_show_of_an_unknown_machine_fails_in_one_line(self):
+        done = self.appliance.rmac("show", "Nonsense")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn("Nonsense", done.stderr)
+
+    def test_show_of_the_loaded_machine_has_its_joints(self):
+        self.assertEqual(self.appliance.rmac("load", "DMACXYZ").returncode, 0)
+        machine = json.loads(self.appliance.rmac("--json", "show", "DMACXYZ").stdout)
+        self.assertEqual([joint["MaxJerk"] for joint in machine["Joints"]], [10000, 10000, 10000])
+
+
+if __name__ == "__main__":
+    unittest.main()

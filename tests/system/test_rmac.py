@@ -1,0 +1,256 @@
+"""The command line client: exit codes, one line of complaint, programs and records."""
+
+import csv
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import unittest
+
+from appliance import BUILD, Appliance, line, pose
+
+DONE, FAILED, USAGE = 0, 1, 2
+
+
+def request(method, **params):
+    return json.dumps({"jsonrpc": "2.0", "id": 1, "method": method, "params": params})
+
+
+class Usage(unittest.TestCase):
+    """Needs no daemon."""
+
+    def rmac(self, *words):
+        return subprocess.run([BUILD / "bin" / "rmac", *words], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                              timeout=60, check=False)
+
+    def test_wrong_words_are_usage_errors(self):
+        for words in ([], ["fly"], ["jog"], ["jog", "--joint", "x", "--distance", "1"], ["override", "201"], ["load"],
+                      ["machines", "--sql", "SELECT 1", "--joints", "5"], ["run"], ["status", "--nonsense"]):
+            done = self.rmac(*words)
+            self.assertEqual(done.returncode, USAGE, words)
+            self.assertEqual(done.stdout, "")
+            self.assertTrue(done.stderr)
+
+    def test_help_and_version_are_no_errors(self):
+        self.assertEqual(self.rmac("--help").returncode, DONE)
+        self.assertEqual(self.rmac("run", "--help").returncode, DONE)
+        self.assertRegex(self.rmac("--version").stdout, r"^\d+\.\d+\.\d+")
+
+    def test_no_appliance_is_one_line_that_says_where_was_looked(self):
+        done = self.rmac("--socket", "/nonexistent/rmacd.sock", "status")
+        self.assertEqual((done.returncode, done.stdout), (FAILED, ""))
+        self.assertEqual(len(done.stderr.splitlines()), 1)
+        self.assertIn("/nonexistent/rmacd.sock", done.stderr)
+
+
+class Operating(unittest.TestCase):
+    def setUp(self):
+        self.appliance = self.enterContext(Appliance())
+
+    def rmac(self, *words):
+        done = self.appliance.rmac(*words)
+        self.assertEqual((done.returncode, done.stderr), (DONE, ""), words)
+        return done.stdout
+
+    def state(self):
+        return json.loads(self.rmac("--json", "status"))
+
+    def assert_fails(self, *words):
+        done = self.appliance.rmac(*words)
+        self.assertEqual(done.returncode, FAILED, words)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        return done.stderr
+
+    def test_load_jog_home_and_unload(self):
+        self.assertIsNone(self.state()["mechanism"])
+        self.rmac("load", "DMACXYZ")
+        self.rmac("jog", "--joint", "1", "--distance", "-2.5")
+        self.assertAlmostEqual(self.state()["joints"][1], -2.5, delta=0.02)
+        self.rmac("home")
+        self.assertAlmostEqual(self.state()["joints"][1], 0, delta=0.02)
+        self.assertEqual(self.state()["authority"], "")
+        self.rmac("unload")
+        self.assertIsNone(self.state()["mechanism"])
+
+    def test_status_names_the_machine(self):
+        self.rmac("load", "DMACXYZ", "--virtual")
+        self.assertIn("DMACXYZ, virtual", self.rmac("status"))
+
+    def test_jog_over_the_limit_fails_and_moves_nothing(self):
+        self.rmac("load", "DMACXYZ")
+        self.assertIn("X", self.assert_fails("jog", "--joint", "0", "--distance", "51"))
+        self.assertAlmostEqual(self.state()["joints"][0], 0, delta=0.02)
+
+    def test_moving_what_is_not_loaded_fails(self):
+        self.assert_fails("jog", "--joint", "0", "--distance", "1")
+        self.assert_fails("load", "Nonsense")
+
+    def test_hold_resume_override_and_stop_are_accepted_at_rest(self):
+        self.rmac("load", "DMACXYZ")
+        self.rmac("override", "50")
+        self.assertEqual(self.state()["override_percent"], 50)
+        self.rmac("stop")
+
+    def test_socket_serves_as_well_as_the_port(self):
+        socket = self.appliance.folder / "state" / "rmacd.sock"
+        done = subprocess.run([BUILD / "bin" / "rmac", "--socket", socket, "--json", "status"], capture_output=True,
+                              text=True, timeout=60, check=True)
+        self.assertEqual(json.loads(done.stdout)["state"], "Idle")
+
+    def test_events_tell_of_a_load_until_interrupted(self):
+        with subprocess.Popen([BUILD / "bin" / "rmac", "--port", str(self.appliance.port), "--json", "events"],
+                              stdout=subprocess.PIPE, text=True) as events:
+            watcher = self.appliance.client("watcher")
+            watcher.call("subscribe", topics=["events"])
+            # The client above subscribes at its own time: loads are repeated until it tells of one.
+            heard = json.loads(self.load_until_heard(events.stdout))
+            self.assertIn("kind", heard)
+            events.send_signal(signal.SIGINT)
+            events.stdout.read()
+            self.assertEqual(events.wait(timeout=60), DONE)
+
+    def load_until_heard(self, stream):
+        os.set_blocking(stream.fileno(), False)
+        heard = ""
+        for _ in range(200):
+            self.rmac("load", "DMACXYZ")
+            heard += stream.read() or ""
+            if "\n" in heard:
+                os.set_blocking(stream.fileno(), True)
+                return heard.splitlines()[0]
+        raise AssertionError("rmac events told of no load")
+
+
+class Programs(unittest.TestCase):
+    def setUp(self):
+        self.appliance = self.enterContext(Appliance())
+        self.assertEqual(self.appliance.rmac("load", "DMACXYZ").returncode, DONE)
+
+    def program(self, *lines):
+        file = self.appliance.folder / "part.rmac"
+        file.write_text("\n".join(lines) + "\n")
+        return str(file)
+
+    def square(self, side=4.0, rounds=1):
+        corners = [(0, 0, 0), (side, 0, 0), (side, side, 0), (0, side, 0), (0, 0, 0)]
+        return [request("RMAC_CAM.MoveAlongLine", **line(start, end, move_id=number))
+                for _ in range(rounds) for number, (start, end) in enumerate(zip(corners, corners[1:]), start=1)]
+
+    def test_run_reports_moves_and_cycle_time(self):
+        program = self.program(request("RMAC_CAM.SetFeedrate", Feedrate=1500), "", *self.square())
+        done = self.appliance.rmac("--json", "run", program)
+        self.assertEqual((done.returncode, done.stderr), (DONE, ""))
+        report = json.loads(done.stdout)
+        self.assertEqual(report["moves"], 4)
+        # 16 mm at 25 mm/s, and some for the corners.
+        self.assertGreater(report["cycle_time_s"], 16 / 25)
+        self.assertLess(report["cycle_time_s"], 3)
+
+    def test_record_has_one_row_a_cycle_and_every_column(self):
+        program = self.program(request("RMAC_CAM.SetFeedrate", Feedrate=1500), *self.square())
+        record = self.appliance.folder / "record.csv"
+        done = self.appliance.rmac("run", program, "--record", str(record))
+        self.assertEqual((done.returncode, done.stderr), (DONE, ""))
+        with record.open() as file:
+            rows = list(csv.DictReader(file))
+        wanted = "t_s,move_id,s_mm,feed_mm_s,x,y,z,i,j,k,q1,q2,q3,qd1,qd2,qd3,qdd1,qdd2,qdd3,a1,a2,a3".split(",")
+        self.assertEqual(list(rows[0]), wanted)
+        times = [float(row["t_s"]) for row in rows]
+        steps = {round((later - earlier) * 1000) for earlier, later in zip(times, times[1:])}
+        self.assertEqual(steps, {1})
+        self.assertEqual(max(float(row["q1"]) for row in rows), 4)
+        self.assertEqual({int(row["move_id"]) for row in rows} - {0}, {1, 2, 3, 4})
+        for before, after in zip(rows, rows[1:]):
+            moved = float(after["q1"]) - float(before["q1"])
+            self.assertLessEqual(abs(moved), 200 / 1000 * 1.001)
+        self.assertLess(max(abs(float(row["q1"]) - float(row["a1"])) for row in rows), 0.2)
+
+    def test_many_moves_stream_through_a_small_queue(self):
+        with Appliance(queue_capacity=8) as small:
+            program = self.program(request("RMAC_CAM.SetFeedrate", Feedrate=2000), *self.square(side=1, rounds=25))
+            done = small.rmac("--json", "run", "--machine", "DMACXYZ", program)
+            self.assertEqual((done.returncode, done.stderr), (DONE, ""))
+            self.assertEqual(json.loads(done.stdout)["moves"], 100)
+
+    def test_program_may_start_its_own_cycle(self):
+        program = self.program(*self.square(), request("RMAC_CAM.CycleStart", Mode="AUTOMATIC"))
+        done = self.appliance.rmac("--json", "run", program)
+        self.assertEqual((done.returncode, done.stderr), (DONE, ""))
+
+    def test_program_may_swap_the_mechanism_between_moves(self):
+        program = self.program(
+            request("RMAC_CAM.SetFeedrate", Feedrate=1500), *self.square(),
+            request("Device.Load", Name="DMACXY"),
+            request("RMAC_CAM.SetFeedrate", Feedrate=1500), *self.square())
+        record = self.appliance.folder / "swap.csv"
+        done = self.appliance.rmac("--json", "run", program, "--record", str(record))
+        self.assertEqual((done.returncode, done.stderr), (DONE, ""))
+        self.assertEqual(json.loads(done.stdout)["moves"], 8)
+        second = pathlib.Path(record.parent, "swap-2.csv")
+        self.assertIn(",q2,qd1,", second.read_text().splitlines()[0])
+
+    def test_virtual_run_leaves_drives_alone(self):
+        program = self.program(request("Device.Load", Name="DMACXYZ"), request("RMAC_CAM.SetFeedrate", Feedrate=1500),
+                               request("RMAC_CAM.MoveToPathTarget", MoveID=1, TargetFrame=pose(3, 0, 0)))
+        self.assertEqual(self.appliance.rmac("run", "--virtual", program).returncode, DONE)
+        self.assertTrue(json.loads(self.appliance.rmac("--json", "status").stdout)["virtual"])
+        self.assertEqual(self.appliance.rmac("load", "DMACXYZ").returncode, DONE)
+        state = json.loads(self.appliance.rmac("--json", "status").stdout)
+        self.assertAlmostEqual(state["joints"][0], 0, delta=0.02)
+
+    def assert_run_fails(self, place, *lines):
+        done = self.appliance.rmac("run", self.program(*lines))
+        self.assertEqual((done.returncode, done.stdout), (FAILED, ""))
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        self.assertIn(place, done.stderr)
+        state = json.loads(self.appliance.rmac("--json", "status").stdout)
+        self.assertEqual((state["moving"], state["moves_in_buffer"], state["authority"]), (False, 0, ""))
+        return done.stderr
+
+    def test_syntax_error_is_found_before_anything_moves(self):
+        self.assert_run_fails("part.rmac:6", request("RMAC_CAM.SetFeedrate", Feedrate=1500), *self.square(), "{broken")
+        state = json.loads(self.appliance.rmac("--json", "status").stdout)
+        self.assertAlmostEqual(state["joints"][0], 0, delta=0.02)
+
+    def test_refused_request_names_its_line_and_the_machines_reason(self):
+        message = self.assert_run_fails("part.rmac:2", request("RMAC_CAM.SetFeedrate", Feedrate=1500),
+                                        request("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (77, 0, 0))))
+        self.assertIn("X", message)
+
+    def test_missing_file_and_unwritable_record_fail_in_one_line(self):
+        for words in (["run", "/nonexistent.rmac"],
+                      ["run", self.program(*self.square()), "--record", "/nonexistent/record.csv"]):
+            done = self.appliance.rmac(*words)
+            self.assertEqual((done.returncode, done.stdout), (FAILED, ""))
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+
+    def test_program_held_by_another_client_is_refused(self):
+        other = self.appliance.client("other")
+        other.call("authority.acquire")
+        done = self.appliance.rmac("run", self.program(*self.square()))
+        self.assertEqual(done.returncode, FAILED)
+        self.assertIn("other", done.stderr)
+
+
+class InterruptedProgram(unittest.TestCase):
+    def test_ctrl_c_stops_the_machine(self):
+        with Appliance(pace="real-time") as appliance:
+            self.assertEqual(appliance.rmac("load", "DMACXYZ").returncode, DONE)
+            watcher = appliance.client("watcher")
+            watcher.call("subscribe", topics=["state"], rate_hz=100)
+            file = appliance.folder / "slow.rmac"
+            file.write_text(request("RMAC_CAM.SetFeedrate", Feedrate=120) + "\n" +
+                            request("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (40, 0, 0))) + "\n")
+            with subprocess.Popen([BUILD / "bin" / "rmac", "--port", str(appliance.port), "run", file],
+                                  stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as run:
+                watcher.wait_note("state", lambda state: state["moving"] and state["pose"][0] > 0.2)
+                run.send_signal(signal.SIGINT)
+                self.assertEqual(run.stderr.read().splitlines(), ["rmac: interrupted"])
+                self.assertEqual(run.wait(timeout=60), FAILED)
+            state = watcher.state()
+            self.assertEqual((state["moving"], state["moves_in_buffer"], state["state"]), (False, 0, "Idle"))
+
+
+if __name__ == "__main__":
+    unittest.main()
