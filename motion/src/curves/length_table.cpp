@@ -38,9 +38,8 @@ struct PieceLength {
     for (int i = 0; i < 30; ++i) {
       const double step = (target - at(x)) / chebyshev_sum(speed, x);
       x = std::clamp(x + step, -1.0, 1.0);
-      if (std::abs(step) < 1e-15) return x;
-      // Rounding leaves the last steps wandering at the size of the series' own noise.
-      if (i > 8 && std::abs(step) < 1e-13) return x;
+      // Convergence is quadratic: the step after one this small would be lost in rounding.
+      if (std::abs(step) < 1e-9) return x;
     }
     return std::nullopt;
   }
@@ -52,6 +51,7 @@ struct LengthTable::Span {
   std::size_t index;
   double width;
   double least_speed;
+  double noise;  ///< rounding in the speed, which no halving takes away
   const Speed& speed;
 };
 
@@ -60,7 +60,8 @@ std::optional<LengthTable::Flaw> LengthTable::add_span(std::size_t span, double 
   double fastest = 0;
   for (int i = 0; i <= 16; ++i) fastest = std::max(fastest, speed(span, width * i / 16));
   // A speed this much lower than the rest of its span is a cusp that rounding has filled in.
-  return add({span, width, std::max(least_speed, 1e-9 * fastest), speed}, 0, width, 0);
+  const double noise = 8 * std::numeric_limits<double>::epsilon() * fastest;
+  return add({span, width, std::max(least_speed, 1e-9 * fastest), noise, speed}, 0, width, 0);
 }
 
 std::optional<LengthTable::Flaw> LengthTable::add(const Span& span, double from, double to, int depth) {
@@ -84,7 +85,7 @@ std::optional<LengthTable::Flaw> LengthTable::add(const Span& span, double from,
   piece.speed = kSpeedNodes.coefficients(speeds);
   const double tail = std::max({std::abs(piece.speed[kSpeedDegree]), std::abs(piece.speed[kSpeedDegree - 1]),
                                 std::abs(piece.speed[kSpeedDegree - 2])});
-  if (tail > kSeriesTail * piece.speed[0]) return split();
+  if (tail > kSeriesTail * piece.speed[0] + span.noise) return split();
   piece.integrate();
 
   const double total = piece.total();
@@ -115,8 +116,9 @@ std::optional<LengthTable::Flaw> LengthTable::add(const Span& span, double from,
 }
 
 LengthTable::Place LengthTable::locate(double s, int side) const noexcept {
-  const auto next = side < 0 ? std::lower_bound(starts_.begin() + 1, starts_.end(), s)
-                             : std::upper_bound(starts_.begin() + 1, starts_.end(), s);
+  // A caller that comes to a border by sums of lengths misses it by rounding, and still means the side it asked for.
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() * length_;
+  const auto next = std::upper_bound(starts_.begin() + 1, starts_.end(), side < 0 ? s - 2 * rounding : s + rounding);
   const Piece& piece = pieces_[static_cast<std::size_t>(next - starts_.begin()) - 1];
   const double y = std::clamp((s - piece.middle_s) * piece.inverse_half, -1.0, 1.0);
   return {piece.span, std::clamp(chebyshev_sum(piece.t, y), 0.0, piece.width)};
