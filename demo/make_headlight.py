@@ -35,17 +35,17 @@ def greville(knots):
 def bell(r):
     """1 at the centre, 0 from r = 1 on, with a broad crown."""
     r = np.clip(r, 0, 1)
-    return 0.5 * (1 + np.cos(np.pi * r**1.0))
+    return 0.5 * (1 + np.cos(np.pi * r**1.2))
 
 
 def height(x, y):
     peak_x, peak_y = -6.0, -2.0
-    reach_x = np.where(x < peak_x, 30.5, 43.0)  # a blunt nose and a long tail
+    reach_x = np.where(x < peak_x, 29.6, 42.0)  # a blunt nose and a long tail
     taper = 1 - 0.22 * np.clip((x - peak_x) / 40, 0, 1) ** 2
-    reach_y = np.where(y < peak_y, 23.6, 28.6) * taper
-    r = (np.abs((x - peak_x) / reach_x) ** 2.15 + np.abs((y - peak_y) / reach_y) ** 2.15) ** (1 / 2.15)
-    valley = 5.2 * np.exp(-(((y - 0.3 * (x - 10) - 1) / 6.0) ** 2)) * np.exp(-(((x - 12) / 17) ** 2))
-    return HEIGHT_MM * 1.12 * bell(r) - valley * bell(r) ** 0.5
+    reach_y = np.where(y < peak_y, 23.0, 27.8) * taper
+    r = (np.abs((x - peak_x) / reach_x) ** 2.4 + np.abs((y - peak_y) / reach_y) ** 2.4) ** (1 / 2.4)
+    valley = 3.6 * np.exp(-(((y - 0.3 * (x - 10) - 1) / 6.0) ** 2)) * np.exp(-(((x - 12) / 17) ** 2))
+    return HEIGHT_MM * 1.07 * bell(r) - valley * bell(r) ** 0.5
 
 
 def make():

@@ -36,7 +36,7 @@ class Plan:
     block_half_mm: tuple = (48.0, 38.0)  # the blank in plan, corners rounded
     block_corner_mm: float = 17.0
     stock_mm: float = 0.6  # what the blank is higher than the part
-    rim_tracks_mm: tuple = ((41.0, 31.0, 10.0), (45.0, 35.0, 14.0))  # half length, half width, corner radius
+    rim_tracks_mm: tuple = ((41.0, 31.0, 10.0), (45.4, 35.4, 14.4))  # half length, half width, corner radius
     wait_mm: tuple = (-20.0, -44.0)  # where tools are changed and mechanisms swapped, clear of the blank
     fit_error_um: float = 0.0
     scallop_planned_um: float = 0.0
@@ -119,7 +119,7 @@ def sweep_parameters(surface, radius_mm, scallop_limit_mm, v_range=None):
         excess = lambda step: scallop_mm(row, v, v + step, radius_mm) - scallop_limit_mm
         widest = min(1.2, surface.domain[1][1] - v)
         if widest > 1e-3 and excess(widest) > 0:
-            step = 0.96 * brentq(excess, 1e-3, widest, xtol=1e-4)
+            step = 0.94 * brentq(excess, 1e-3, widest, xtol=1e-4)
         chosen.append(v + step)
     scale = (end - first) / (chosen[-1] - first)
     return [first + scale * (v - first) for v in chosen[:-1]] + [end]

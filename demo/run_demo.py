@@ -1,0 +1,156 @@
+"""Machines the headlight on a running appliance and judges the result.
+
+The session of the dissertation's second experiment: search for a machine, load DMACXYZ, sweep the surface with native
+NURBS moves, load DMACXY while the appliance keeps running, face-mill the rim with lines and arcs. The last line printed
+is one JSON object; the exit code is 0 only if every figure is within bounds.json.
+"""
+
+import argparse
+import json
+import pathlib
+import sys
+import time
+
+import figures
+import toolpaths
+from client import Client, Recorder, Refused
+
+HERE = pathlib.Path(__file__).parent
+FULL_RATE_HZ = 1000
+# The part needs 2 x (48 + overlap) mm of travel in x and 2 x 44 mm in y, 25 mm in z.
+SEARCH = (
+    "SELECT * FROM DeviceDrivers WHERE Type = 'Mill' AND ConfigurationType = '3-axis' "
+    "AND Length >= 100 AND Width >= 90 AND Depth >= 30 AND PositioningTolerance <= 0.05 ORDER BY Length * Width * Depth"
+)
+REFUSALS = {"MACHINE_ERR_TRAVEL_LIMIT", "MACHINE_ERR_INVALID_PARAMETER_VALUE", "MACHINE_ERR_UNSUPPORTED_OPERATION"}
+
+
+def say(text):
+    print(text, flush=True)
+
+
+def search(client):
+    """Names of the mills that can do the work, the smallest first."""
+    client.call("DeviceDriverManager.OpenDeviceDriverDatabase")
+    total = client.call("DeviceDriverManager.GetTotalNumberOfRecords")
+    found = client.call("DeviceDriverManager.SearchDatabaseRecordSet", MachineSQLStatement=SEARCH)
+    names = []
+    for number in range(found):
+        if number:
+            client.call("DeviceDriverManager.OnNextRecord")
+        names.append(client.call("DeviceDriverManager.Machine_GetMechanismName"))
+    client.call("DeviceDriverManager.CloseDeviceDriverDatabase")
+    say(f"  {total} machines known, {found} fit: {', '.join(names)}")
+    return names
+
+
+def machine(client, program):
+    """Runs one program to its end; gives the record and when the first move was sent (wall clock)."""
+    first = next(n for n, r in enumerate(program.requests) if ".Move" in r["method"])
+    client.recorder = None
+    client.run(program.requests[:first])
+    recorder = Recorder()
+    client.recorder = recorder
+    client.call("subscribe", topics=["joints"], rate_hz=FULL_RATE_HZ)
+    sent = time.monotonic()
+    client.run(program.requests[first:])
+    state = client.wait_until_done()
+    client.call("unsubscribe", topics=["joints"])
+    client.recorder = None
+    wall = time.monotonic() - sent
+    moves = len(program.requests) - first
+    say(f"  {moves} requests done after {wall:.1f} s of wall time; {recorder.cycles} cycles watched")
+    return recorder, sent, state
+
+
+def probe_off_plane(client, plan, session):
+    """A move that leaves the plane of the two-axis mill must be refused, and nothing may move by it."""
+    x, y = plan.wait_mm
+    before = client.call("RMAC_CAM.GetState")["joints"]
+    try:
+        client.call(
+            "RMAC_CAM.MoveAlongLine", MoveID=999,
+            StartPoint=toolpaths.frame((x, y, 0)), EndPoint=toolpaths.frame((x, y, 5)),
+        )  # fmt: skip
+        session.problems.append("a move 5 mm off the plane of DMACXY was accepted")
+    except Refused as refusal:
+        say(f"  {refusal}")
+        if refusal.minor in REFUSALS:
+            session.off_plane_refusal = f"refused: {refusal.minor}"
+        else:
+            session.problems.append(f"the off-plane move was refused, but with {refusal.minor or 'no minor code'}")
+    after = client.call("RMAC_CAM.GetState")
+    if after["moving"] or max(abs(a - b) for a, b in zip(before, after["joints"])) > 0.01:
+        session.problems.append("the machine moved although the off-plane move was refused")
+
+
+def run(host, port, out, device_tree):
+    out = pathlib.Path(out)
+    session = figures.Session()
+    say("The process plan")
+    plan, sweep, rim = toolpaths.make(out)
+    say(
+        f"  {plan.sweeps} sweeps, {plan.sweep_length_mm / 1000:.2f} m, ridges up to {plan.scallop_planned_um:.1f} um; "
+        f"NURBS within {plan.fit_error_um:.2f} um of the offset surface"
+    )
+    ready = time.monotonic()
+
+    say("Search for a machine")
+    client = Client(host, port)
+    names = search(client)
+    if "DMACXYZ" not in names:
+        raise RuntimeError(f"the search did not find DMACXYZ, but {names or 'nothing'}")
+    client.call("authority.acquire")
+    client.call("subscribe", topics=["events"])
+
+    say("DMACXYZ: sweep the headlight (ball end)")
+    recorder, sent, _ = machine(client, sweep)
+    session.plan_to_motion_ms = (recorder.first_motion - ready) * 1e3
+    session.send_to_motion_ms = (recorder.first_motion - sent) * 1e3
+    session.lost_samples += recorder.lost
+    records = {"record.csv": recorder.record()}
+
+    say("DMACXY: face-mill the rim (flat end), the appliance running on")
+    head = [r for r in rim.requests if ".Move" not in r["method"]]
+    client.run(head)
+    probe_off_plane(client, plan, session)
+    recorder, _, state = machine(client, rim)
+    session.lost_samples += recorder.lost
+    records["record-rim.csv"] = recorder.record()
+    say(f"  held drive stands at {state['held_joints']} mm")
+
+    client.call("RMAC_CAM.SetSpindleRPM", SpindleNumber=0, RPM=0)
+    client.call("RMAC_CAM.TurnCoolantOff")
+    client.call("authority.release")
+    faults = [e for e in client.events if "fault" in str(e.get("kind", "")).lower()]
+    session.problems += [f"fault: {e.get('message')}" for e in faults]
+    client.close()
+
+    say("Checks")
+    for name, record in records.items():
+        record.write(out / name)
+    rows, line = figures.judge(out, device_tree, session, records)
+    figures.print_table(rows)
+    say(f"  {out / 'report.html'} has the pictures, {out / 'record.csv'} every cycle")
+    return line
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--host", default="127.0.0.1")
+    parser.add_argument("--port", type=int, default=7402)
+    parser.add_argument("--out", default="out")
+    parser.add_argument("--device-tree", default=HERE.parent / "drivers", help="where the device.json files are")
+    arguments = parser.parse_args()
+    try:
+        line = run(arguments.host, arguments.port, arguments.out, arguments.device_tree)
+    except (Refused, RuntimeError, OSError, ValueError) as error:
+        print(f"run_demo: {error}", file=sys.stderr)
+        print(json.dumps({"ok": False, "error": str(error)}))
+        return 1
+    print(json.dumps(line))
+    return 0 if line["ok"] else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
