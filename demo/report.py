@@ -36,7 +36,7 @@ def picture_of_part(height_map):
 
 def deviation_figure(height_map, bound_um):
     deviation = parts.deviation_um(height_map)
-    figure, (map_axis, axis) = plt.subplots(1, 2, figsize=(12, 4.6), width_ratios=[2.4, 1])
+    figure, (map_axis, axis) = plt.subplots(1, 2, figsize=(12, 4.4), width_ratios=[1.9, 1])
     extent = (height_map.x[0], height_map.x[-1], height_map.y[0], height_map.y[-1])
     scale = max(10.0, np.ceil(np.nanmax(np.abs(deviation)) / 10) * 10)
     image = map_axis.imshow(

@@ -44,22 +44,23 @@ def search(client):
     return names
 
 
-def machine(client, program):
-    """Runs one program to its end; gives the record and when the first move was sent (wall clock)."""
+def split(program):
+    """A program's requests before its first move, and the rest."""
     first = next(n for n, r in enumerate(program.requests) if ".Move" in r["method"])
-    client.recorder = None
-    client.run(program.requests[:first])
-    recorder = Recorder()
-    client.recorder = recorder
+    return program.requests[:first], program.requests[first:]
+
+
+def machine(client, requests):
+    """Runs moves to their end while every cycle is recorded: (recorder, wall clock when the first was sent, state)."""
+    client.recorder = Recorder()
     client.call("subscribe", topics=["joints"], rate_hz=FULL_RATE_HZ)
     sent = time.monotonic()
-    client.run(program.requests[first:])
+    client.run(requests)
     state = client.wait_until_done()
     client.call("unsubscribe", topics=["joints"])
-    client.recorder = None
+    recorder, client.recorder = client.recorder, None
     wall = time.monotonic() - sent
-    moves = len(program.requests) - first
-    say(f"  {moves} requests done after {wall:.1f} s of wall time; {recorder.cycles} cycles watched")
+    say(f"  {len(requests)} requests done after {wall:.1f} s of wall time; {recorder.cycles} cycles watched")
     return recorder, sent, state
 
 
@@ -104,17 +105,19 @@ def run(host, port, out, device_tree):
     client.call("subscribe", topics=["events"])
 
     say("DMACXYZ: sweep the headlight (ball end)")
-    recorder, sent, _ = machine(client, sweep)
+    preparation, moves = split(sweep)
+    client.run(preparation)
+    recorder, sent, _ = machine(client, moves)
     session.plan_to_motion_ms = (recorder.first_motion - ready) * 1e3
     session.send_to_motion_ms = (recorder.first_motion - sent) * 1e3
     session.lost_samples += recorder.lost
     records = {"record.csv": recorder.record()}
 
     say("DMACXY: face-mill the rim (flat end), the appliance running on")
-    head = [r for r in rim.requests if ".Move" not in r["method"]]
-    client.run(head)
+    preparation, moves = split(rim)
+    client.run(preparation)
     probe_off_plane(client, plan, session)
-    recorder, _, state = machine(client, rim)
+    recorder, _, state = machine(client, moves)
     session.lost_samples += recorder.lost
     records["record-rim.csv"] = recorder.record()
     say(f"  held drive stands at {state['held_joints']} mm")
