@@ -1,0 +1,94 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "rmac/motion/frame.hpp"
+#include "rmac/motion/ports/kinematics.hpp"
+
+namespace rmac::conformance {
+
+struct JointRange {
+  double min = 0;
+  double max = 0;
+};
+
+/// What every kinematics must keep, over seeded random joint vectors inside `ranges` and with several tools: the seeded
+/// inverse gives the joints back, the forward of the inverse gives the pose back, and the Jacobian is the derivative of
+/// the forward. `tools` are those that the machine can carry.
+class KinematicsConformance {
+ public:
+  KinematicsConformance(const Kinematics& kinematics, std::vector<JointRange> ranges, std::vector<Frame> tools)
+      : kinematics_(kinematics), ranges_(std::move(ranges)), tools_(std::move(tools)) {}
+
+  void check(unsigned seed = 1, int samples = 2000) const {
+    ASSERT_EQ(kinematics_.joint_count(), ranges_.size());
+    std::mt19937 random(seed);
+    for (int i = 0; i < samples; ++i) {
+      std::vector<double> joints;
+      for (const JointRange& range : ranges_) {
+        joints.push_back(std::uniform_real_distribution<>(range.min, range.max)(random));
+      }
+      for (const Frame& tool : tools_) {
+        SCOPED_TRACE(text(joints));
+        check_round_trip(joints, tool);
+        check_jacobian(joints, tool);
+        if (testing::Test::HasFailure()) return;
+      }
+    }
+  }
+
+ private:
+  static std::string text(const std::vector<double>& joints) {
+    std::string result = "joints";
+    for (const double joint : joints) result += " " + std::to_string(joint);
+    return result;
+  }
+
+  void check_round_trip(const std::vector<double>& joints, const Frame& tool) const {
+    ToolPose pose;
+    kinematics_.forward(joints, tool, pose);
+    EXPECT_NEAR(std::hypot(pose.axis[0], pose.axis[1], pose.axis[2]), 1, 1e-12);
+    std::vector<double> seed = joints;
+    for (double& joint : seed) joint += 1e-3;
+    std::vector<double> found(joints.size());
+    ASSERT_EQ(kinematics_.inverse(pose, tool, seed, found), KinematicsStatus::Ok);
+    ToolPose again;
+    kinematics_.forward(found, tool, again);
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(again.tip[c], pose.tip[c], 1e-9);
+      EXPECT_NEAR(again.axis[c], pose.axis[c], 1e-12);
+    }
+    for (std::size_t j = 0; j < joints.size(); ++j) EXPECT_NEAR(found[j], joints[j], 1e-9);
+  }
+
+  void check_jacobian(const std::vector<double>& joints, const Frame& tool) const {
+    const std::size_t n = joints.size();
+    std::vector<double> jacobian(6 * n, std::nan(""));
+    kinematics_.jacobian(joints, tool, jacobian);
+    constexpr double kStep = 1e-4;
+    for (std::size_t j = 0; j < n; ++j) {
+      std::vector<double> up = joints;
+      std::vector<double> down = joints;
+      up[j] += kStep;
+      down[j] -= kStep;
+      ToolPose above;
+      ToolPose below;
+      kinematics_.forward(up, tool, above);
+      kinematics_.forward(down, tool, below);
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(jacobian[c * n + j], (above.tip[c] - below.tip[c]) / (2 * kStep), 1e-6);
+        EXPECT_NEAR(jacobian[(3 + c) * n + j], (above.axis[c] - below.axis[c]) / (2 * kStep), 1e-6);
+      }
+    }
+  }
+
+  const Kinematics& kinematics_;
+  std::vector<JointRange> ranges_;
+  std::vector<Frame> tools_;
+};
+
+}  // namespace rmac::conformance
