@@ -62,12 +62,12 @@ struct Configuration {
 /// What the command line puts over the file; values that follow from one of these (the database's place from the state
 /// folder, the module folders from the device tree) follow it.
 struct ConfigurationOverrides {
-  std::optional<std::uint16_t> port;
-  std::optional<std::filesystem::path> unix_socket;
-  std::optional<std::filesystem::path> state_folder;
-  std::optional<std::filesystem::path> device_tree;
-  std::optional<std::string> database;
-  std::optional<Pace> pace;
+  std::optional<std::uint16_t> port{};
+  std::optional<std::filesystem::path> unix_socket{};
+  std::optional<std::filesystem::path> state_folder{};
+  std::optional<std::filesystem::path> device_tree{};
+  std::optional<std::string> database{};
+  std::optional<Pace> pace{};
 };
 
 /// Where things are when neither file nor command line says so.

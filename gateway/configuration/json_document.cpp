@@ -40,6 +40,7 @@ class StrictReader final : public nlohmann::json_sax<nlohmann::json> {
 
   bool key(string_t& name) override {
     Level& level = levels_.back();
+    level.name.clear();
     if (!level.keys.insert(name).second) {
       return fail(fmt::format("the key \"{}\" stands twice in {}; keep one", name, pointer()));
     }
@@ -53,9 +54,9 @@ class StrictReader final : public nlohmann::json_sax<nlohmann::json> {
   bool end_array() override { return leave(); }
 
   bool parse_error(std::size_t position, const std::string&, const nlohmann::json::exception& error) override {
-    const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(position, text_.size()));
-    // The parser's position is one past the character that it could not take.
-    const auto last = end == text_.begin() ? end : end - 1;
+    // The parser stands behind the last character of the token that it could not take.
+    const std::size_t end = std::min(position, text_.size());
+    const auto last = text_.begin() + static_cast<std::ptrdiff_t>(end == 0 ? 0 : end - 1);
     const auto line = 1 + std::count(text_.begin(), last, '\n');
     const auto line_start = std::find(std::make_reverse_iterator(last), text_.rend(), '\n').base();
     std::string reason = error.what();

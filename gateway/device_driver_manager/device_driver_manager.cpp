@@ -105,6 +105,8 @@ struct DeviceDriverManager::Impl {
       record.mechanism_id = numbering.number_of(record.name);
       records.push_back(std::move(record));
     }
+    std::sort(records.begin(), records.end(),
+              [](const DriverRecord& a, const DriverRecord& b) { return a.mechanism_id < b.mechanism_id; });
     return records;
   }
 };

@@ -21,6 +21,8 @@ struct DriverRecord {
   double max_feedrate = 0, max_pallet_load = 0, positioning_tolerance = 0, repeatability_tolerance = 0;
   std::string speed_capability;
   std::string driver_version;  ///< "1.2.3"
+
+  bool operator==(const DriverRecord&) const = default;
 };
 
 /// Appendix II's record set: the rows of the last search and a cursor on one of them. Each connection has its own.

@@ -13,7 +13,7 @@ namespace {
 constexpr int kLayout = 1;  ///< of the tables below; kept in the file as user_version
 
 constexpr const char* kMakeDrivers =
-    "CREATE TABLE IF NOT EXISTS DeviceDrivers ("
+    "CREATE TABLE DeviceDrivers ("
     "MechanismID INTEGER PRIMARY KEY, Name TEXT NOT NULL UNIQUE, DeviceDriver TEXT NOT NULL, Type TEXT NOT NULL, "
     "ConfigurationType TEXT NOT NULL, NumberOfJoints INTEGER NOT NULL, Length REAL NOT NULL, Width REAL NOT NULL, "
     "Depth REAL NOT NULL, SpindleHorsePower REAL NOT NULL, SpindleMaxSpeed REAL NOT NULL, "
@@ -21,7 +21,7 @@ constexpr const char* kMakeDrivers =
     "PositioningTolerance REAL NOT NULL, RepeatabilityTolerance REAL NOT NULL, SpeedCapability TEXT NOT NULL, "
     "DriverVersion TEXT NOT NULL)";
 constexpr const char* kMakeNumbers =
-    "CREATE TABLE IF NOT EXISTS MechanismNumbers (Name TEXT PRIMARY KEY, MechanismID INTEGER NOT NULL UNIQUE)";
+    "CREATE TABLE MechanismNumbers (Name TEXT PRIMARY KEY, MechanismID INTEGER NOT NULL UNIQUE)";
 
 constexpr const char* kInsert =
     "INSERT INTO DeviceDrivers (MechanismID, Name, DeviceDriver, Type, ConfigurationType, NumberOfJoints, Length, "
@@ -58,12 +58,13 @@ struct DriverTable::Impl {
   void prepare() {
     int layout = 0;
     session << "PRAGMA user_version", soci::into(layout);
-    if (layout != 0 && layout != kLayout) {
-      throw std::runtime_error(fmt::format("its layout has version {}, this daemon knows {}", layout, kLayout));
-    }
+    if (layout == kLayout) return;
+    if (layout != 0) throw std::runtime_error(fmt::format("its layout is {}, this daemon knows {}", layout, kLayout));
+    soci::transaction transaction(session);
     session << kMakeDrivers;
     session << kMakeNumbers;
     session << fmt::format("PRAGMA user_version = {}", kLayout);
+    transaction.commit();
   }
 
   void insert(const DriverRecord& record) {
@@ -119,6 +120,8 @@ Expected<std::map<std::string, std::int64_t>> DriverTable::numbers() {
 }
 
 Expected<> DriverTable::replace(const std::vector<DriverRecord>& records) {
+  // A scan that finds nothing new shall not wear the appliance's flash.
+  if (const auto rows = all(); rows && *rows == records) return {};
   try {
     soci::transaction transaction(impl_->session);
     impl_->session << "DELETE FROM DeviceDrivers";

@@ -99,22 +99,24 @@ int authorize(void* data, int action, const char* first, const char* second, con
   switch (action) {
     case SQLITE_SELECT:
       return SQLITE_OK;
-    case SQLITE_READ:
-      if (!same("main", schema) || !same("DeviceDrivers", first)) {
+    case SQLITE_READ: {
+      // An empty column stands for the row as such, as in count(*), and comes without a schema.
+      const bool row_alone = second == nullptr || *second == '\0';
+      if (!same("DeviceDrivers", first) || (schema == nullptr ? !row_alone : !same("main", schema))) {
         return guard.deny("it reads the table \"%.60s\"; only DeviceDrivers may be read", or_nothing(first));
       }
-      // An empty column stands for the row as such, as in count(*).
-      if (second != nullptr && *second != '\0' && !listed(kColumns, second)) {
+      if (!row_alone && !listed(kColumns, second)) {
         return guard.deny("DeviceDrivers has no column \"%.60s\" for clients", second);
       }
       return SQLITE_OK;
+    }
     case SQLITE_FUNCTION:
       if (listed(kFunctions, second)) return SQLITE_OK;
       return guard.deny("the function %.60s is not available here", or_nothing(second));
     case SQLITE_RECURSIVE:
       return guard.deny("it is recursive");
     default:
-      return guard.deny("only SELECT is allowed");
+      return guard.deny("only SELECT on the table DeviceDrivers is allowed");
   }
 }
 
@@ -140,8 +142,8 @@ tl::unexpected<Error> refused_by(sqlite3* connection, const Guard& guard, int re
   }
   if (guard.reason[0] != '\0') return refused(guard.reason.data());
   if (result == SQLITE_NOMEM) return refused("it needs too much memory; select less");
-  return refused(
-      fmt::format("{} (texts stand in single quotes; the table is DeviceDrivers)", sqlite3_errmsg(connection)));
+  const std::string reason = sqlite3_errmsg(connection);
+  return refused(reason.starts_with("no such column") ? reason + " (a text stands in single quotes)" : reason);
 }
 
 /// Null when the file cannot be opened.
@@ -184,7 +186,7 @@ Expected<Statement> prepare_alone(sqlite3* connection, const std::string& sql, c
   const Statement second(raw);
   if (result != SQLITE_OK || second != nullptr) return refused("it holds more than one statement");
   if (sqlite3_stmt_readonly(statement.get()) == 0 || sqlite3_stmt_isexplain(statement.get()) != 0) {
-    return refused("only SELECT is allowed");
+    return refused("only SELECT on the table DeviceDrivers is allowed");
   }
   return statement;
 }
