@@ -76,7 +76,9 @@ void add_cycle_methods(std::vector<Method>& table) {
   add(method("RMAC_CAM.GetState", "The machine's state now: what the topic `state` pushes.")
           .gives(WireType::Object)
           .extension()
-          .does([](Call& call) { return state_to_json(call.machine, call.status, call.session.authority_holder()); }));
+          .does([](Call& call) {
+            return state_to_json(call.machine, call.machine.sample(), call.status, call.session.authority_holder());
+          }));
 }
 
 }  // namespace rmac::gateway

@@ -1,5 +1,7 @@
 #include "gateway/api/state_json.hpp"
 
+#include <algorithm>
+
 namespace rmac::gateway {
 
 namespace {
@@ -10,8 +12,8 @@ std::vector<double> first(const auto& values, std::size_t count) {
 
 }  // namespace
 
-nlohmann::json state_to_json(MachinePort& machine, const MachineStatus& status, const std::string& authority_holder) {
-  const CycleSample sample = machine.sample();
+nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, const MachineStatus& status,
+                             const std::string& authority_holder) {
   const sdk::DeviceObject* mechanism = machine.mechanism();
   const ToolPose& tool = sample.pose_actual;
   nlohmann::json state{{"t_s", sample.t_s},

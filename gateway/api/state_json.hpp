@@ -8,7 +8,7 @@
 namespace rmac::gateway {
 
 /// The topic `state`: docs/protocol.md lists its members.
-[[nodiscard]] nlohmann::json state_to_json(MachinePort& machine, const MachineStatus& status,
+[[nodiscard]] nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, const MachineStatus& status,
                                            const std::string& authority_holder);
 
 }  // namespace rmac::gateway

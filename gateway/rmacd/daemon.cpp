@@ -1,0 +1,185 @@
+#include "gateway/rmacd/daemon.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <systemd/sd-daemon.h>
+
+#include <asio.hpp>
+#include <cstdlib>
+
+#include "gateway/rmacd/machine.hpp"
+#include "gateway/server/server.hpp"
+
+namespace rmac::gateway {
+
+namespace {
+
+constexpr std::chrono::milliseconds kTick{2};
+constexpr std::chrono::seconds kStopBound{10};  ///< for coming to rest before the daemon ends regardless
+
+ControllerOptions controller_options(const Configuration& configuration) {
+  ControllerOptions options;
+  for (const auto& folder : configuration.module_folders) options.module_folders.push_back(folder.string());
+  options.period_s = std::chrono::duration<double>(configuration.period).count();
+  options.as_fast_as_computed = configuration.pace == Pace::AsFastAsComputed;
+  options.real_time = !options.as_fast_as_computed;
+  options.degraded_ok = configuration.real_time.degraded_allowed;
+  options.cpu = configuration.real_time.cpu.value_or(-1);
+  options.priority = configuration.real_time.priority;
+  options.queue_capacity = static_cast<std::size_t>(configuration.queue_capacity);
+  return options;
+}
+
+Expected<ServerOptions> server_options(const Configuration& configuration) {
+  ServerOptions options;
+  options.address = configuration.address;
+  options.port = configuration.port;
+  options.unix_socket = configuration.unix_socket;
+  options.cycle_hz = 1 / std::chrono::duration<double>(configuration.period).count();
+  options.queue_capacity = configuration.queue_capacity;
+  options.throttle_machine = configuration.pace == Pace::AsFastAsComputed;
+  switch (configuration.stop_categories.lease_lost) {
+    case StopCategory::StopKeepPower:
+      options.lease_lost = LeaseLostAction::Stop;
+      break;
+    case StopCategory::StopThenRemovePower:
+      options.lease_lost = LeaseLostAction::StopAndPowerOff;
+      break;
+    case StopCategory::RemovePower:
+      return failure(MinorCode::UnsupportedOperation,
+                     "stop_categories.LeaseLost is 0, which the hardware's safety chain alone can do; choose 1 or 2");
+  }
+  return options;
+}
+
+/// The parts, in the order in which they need each other.
+class Daemon {
+ public:
+  Daemon(std::unique_ptr<DeviceDriverManager> manager, const Configuration& configuration, ServerOptions options)
+      : manager_(std::move(manager)),
+        controller_(controller_options(configuration)),
+        host_(*manager_, controller_),
+        machine_(controller_, host_, *manager_),
+        server_(
+            io_, machine_, [this] { return std::make_unique<Records>(*manager_); }, std::move(options)),
+        fast_(configuration.pace == Pace::AsFastAsComputed) {}
+
+  Expected<> run(const Configuration& configuration);
+
+ private:
+  void schedule_tick();
+  void tick();
+  void end(const char* why);
+  void end_when_at_rest();
+
+  asio::io_context io_;
+  std::unique_ptr<DeviceDriverManager> manager_;
+  Controller controller_;
+  DeviceHost host_;
+  Machine machine_;
+  Server server_;
+  asio::steady_timer timer_{io_};
+  asio::signal_set signals_{io_, SIGTERM, SIGINT};
+  bool fast_;
+  bool ending_ = false;
+  std::chrono::steady_clock::time_point end_by_;
+  std::chrono::steady_clock::time_point last_watchdog_;
+  std::chrono::microseconds watchdog_period_{0};
+};
+
+Expected<> Daemon::run(const Configuration& configuration) {
+  for (const auto& problem : manager_->problems()) {
+    spdlog::warn("{} is left out of the device driver database: {}", problem.file.string(), problem.message);
+  }
+  controller_.on_sample([this](const CycleSample& sample) { server_.on_sample(sample); });
+  controller_.on_event([this](const Event& event) {
+    if (event.kind == Event::Kind::Fault) spdlog::error("{}", event.message);
+    server_.on_event(event);
+  });
+  if (auto started = controller_.start(); !started) return started;
+  for (const std::string& shortcoming : controller_.real_time_shortcomings()) spdlog::warn("{}", shortcoming);
+  if (configuration.autoload) {
+    if (auto loaded = host_.load(configuration.autoload->mechanism, configuration.autoload->virtual_mode); !loaded) {
+      spdlog::error("autoload of {} failed, the daemon runs without a mechanism: {}", configuration.autoload->mechanism,
+                    loaded.error().message);
+    }
+  }
+  if (auto listening = server_.listen(); !listening) {
+    controller_.stop();
+    return listening;
+  }
+  spdlog::info("rmacd {} listens on {}:{}{}", RMAC_VERSION, configuration.address, server_.port(),
+               configuration.unix_socket.empty() ? "" : " and " + configuration.unix_socket.string());
+  sd_notifyf(0, "READY=1\nSTATUS=Listening on %s:%u", configuration.address.c_str(),
+             static_cast<unsigned>(server_.port()));
+  if (std::uint64_t limit_us = 0; sd_watchdog_enabled(0, &limit_us) > 0) {
+    watchdog_period_ = std::chrono::microseconds(limit_us / 3);
+  }
+  signals_.async_wait([this](asio::error_code problem, int signal) {
+    if (!problem) end(signal == SIGTERM ? "SIGTERM" : "SIGINT");
+  });
+  schedule_tick();
+  io_.run();
+  server_.close();
+  controller_.stop();
+  return {};
+}
+
+void Daemon::schedule_tick() {
+  // In virtual time the machine goes as fast as its samples are taken; the sockets still get their turn in between.
+  timer_.expires_after(fast_ ? std::chrono::microseconds{100} : std::chrono::microseconds{kTick});
+  timer_.async_wait([this](asio::error_code problem) {
+    if (problem) return;
+    tick();
+    if (!io_.stopped()) schedule_tick();
+  });
+}
+
+void Daemon::tick() {
+  if (server_.may_dispatch() || ending_) controller_.dispatch();
+  server_.tick();
+  // From the tick, so that a gateway thread that hangs is noticed.
+  const auto now = std::chrono::steady_clock::now();
+  if (watchdog_period_.count() > 0 && now - last_watchdog_ > watchdog_period_) {
+    last_watchdog_ = now;
+    sd_notify(0, "WATCHDOG=1");
+  }
+  if (ending_) end_when_at_rest();
+}
+
+void Daemon::end(const char* why) {
+  spdlog::info("{}: stopping the machine and ending", why);
+  sd_notify(0, "STOPPING=1");
+  ending_ = true;
+  end_by_ = std::chrono::steady_clock::now() + kStopBound;
+  const CycleSample sample = controller_.sample();
+  if (sample.moving || sample.state == CycleState::Running || sample.state == CycleState::Holding) {
+    if (auto stopped = controller_.cam().cycle_stop(); !stopped) spdlog::error("{}", stopped.error().message);
+  }
+}
+
+void Daemon::end_when_at_rest() {
+  const CycleSample sample = controller_.sample();
+  const bool late = std::chrono::steady_clock::now() > end_by_;
+  const bool at_rest = !sample.moving && sample.state != CycleState::Running && sample.state != CycleState::Stopping;
+  if (!at_rest && !late) return;
+  if (late) spdlog::error("the machine did not come to rest in {} s; ending regardless", kStopBound.count());
+  io_.stop();
+}
+
+}  // namespace
+
+Expected<> run_daemon(const Configuration& configuration) {
+  std::error_code problem;
+  std::filesystem::create_directories(configuration.state_folder, problem);
+  if (!configuration.unix_socket.empty()) {
+    std::filesystem::create_directories(configuration.unix_socket.parent_path(), problem);
+  }
+  auto options = server_options(configuration);
+  if (!options) return tl::unexpected<Error>(std::move(options.error()));
+  auto manager = DeviceDriverManager::open({configuration.device_tree, configuration.database});
+  if (!manager) return tl::unexpected<Error>(std::move(manager.error()));
+  return Daemon(std::move(*manager), configuration, std::move(*options)).run(configuration);
+}
+
+}  // namespace rmac::gateway

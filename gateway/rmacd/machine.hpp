@@ -1,0 +1,66 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "gateway/api/ports.hpp"
+#include "gateway/controller/controller.hpp"
+#include "gateway/device_driver/device_host.hpp"
+#include "gateway/device_driver_manager/device_driver_manager.hpp"
+
+// The API's ports, bound to the real machine: nothing here but passing on.
+
+namespace rmac::gateway {
+
+class Records final : public RecordCursor {
+ public:
+  explicit Records(const DeviceDriverManager& manager) : set_(manager) {}
+  Expected<> open() override { return set_.open(); }
+  void close() override { set_.close(); }
+  Expected<int> total() const override { return set_.total(); }
+  Expected<int> search(const std::string& sql) override { return set_.search(sql); }
+  Expected<DriverRecord> current() const override { return set_.current(); }
+  Expected<> first() override { return set_.first(); }
+  Expected<> last() override { return set_.last(); }
+  Expected<> next() override { return set_.next(); }
+  Expected<> previous() override { return set_.previous(); }
+
+ private:
+  DriverRecordSet set_;
+};
+
+class HostedDevice final : public DevicePort {
+ public:
+  explicit HostedDevice(DeviceHost& host) : host_(host) {}
+  Expected<> load(const std::string& name, bool virtual_mode) override { return host_.load(name, virtual_mode); }
+  Expected<> unload() override { return host_.unload(); }
+  bool virtual_mode() const override { return host_.virtual_mode(); }
+  Expected<const sdk::DeviceObject*> database() const override { return host_.database(); }
+  Expected<sdk::DeviceObject*> wanted() override { return host_.wanted(); }
+  Expected<> configure_motion_planner() override { return host_.configure_motion_planner(); }
+  Expected<> configure_servo_controller() override { return host_.configure_servo_controller(); }
+  Expected<> configure_digital_control_interface() override { return host_.configure_digital_control_interface(); }
+  Expected<> move(std::int64_t id, const Geometry& geometry) override { return host_.move(id, geometry); }
+
+ private:
+  DeviceHost& host_;
+};
+
+class Machine final : public MachinePort {
+ public:
+  Machine(Controller& controller, DeviceHost& host, DeviceDriverManager& manager)
+      : controller_(controller), manager_(manager), device_(host) {}
+  sdk::RmacCam& cam() override { return controller_.cam(); }
+  sdk::RmacConfig& config() override { return controller_.config(); }
+  DevicePort& device() override { return device_; }
+  const sdk::DeviceObject* mechanism() const override { return controller_.mechanism(); }
+  CycleSample sample() const override { return controller_.sample(); }
+  Expected<int> rescan() override { return manager_.rescan(); }
+
+ private:
+  Controller& controller_;
+  DeviceDriverManager& manager_;
+  HostedDevice device_;
+};
+
+}  // namespace rmac::gateway

@@ -1,0 +1,209 @@
+#include "gateway/server/server.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+
+#include "gateway/server/connection.hpp"
+
+namespace rmac::gateway {
+
+namespace {
+
+template <typename... Arguments>
+tl::unexpected<Error> cannot(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  return failure(MinorCode::Other, fmt::format(format, std::forward<Arguments>(arguments)...));
+}
+
+}  // namespace
+
+Server::Server(asio::io_context& io, MachinePort& machine, MakeRecords make_records, ServerOptions options)
+    : io_(io),
+      dispatcher_(machine),
+      make_records_(std::move(make_records)),
+      options_(std::move(options)),
+      tcp_(io),
+      unix_(io) {}
+
+Server::~Server() {
+  close();
+}
+
+Expected<> Server::listen() {
+  return listen_tcp().and_then(
+      [this]() -> Expected<> { return options_.unix_socket.empty() ? Expected<>{} : listen_unix(); });
+}
+
+Expected<> Server::listen_tcp() {
+  asio::error_code problem;
+  const auto address = asio::ip::make_address(options_.address, problem);
+  if (problem) return cannot("{} is not an IP address", options_.address);
+  if (!address.is_loopback()) {
+    return cannot("{} is not a loopback address: clients are not authenticated, so only this machine may connect",
+                  options_.address);
+  }
+  const asio::ip::tcp::endpoint endpoint(address, options_.port);
+  tcp_.open(endpoint.protocol(), problem);
+  if (!problem) tcp_.set_option(asio::socket_base::reuse_address(true), problem);
+  if (!problem) tcp_.bind(endpoint, problem);
+  if (!problem) tcp_.listen(asio::socket_base::max_listen_connections, problem);
+  if (problem) {
+    return cannot("cannot listen on {}:{}: {}; is another rmacd running? choose another port with --port",
+                  options_.address, options_.port, problem.message());
+  }
+  port_ = tcp_.local_endpoint().port();
+  accept(tcp_, "TCP");
+  return {};
+}
+
+Expected<> Server::listen_unix() {
+  const asio::local::stream_protocol::endpoint endpoint(options_.unix_socket.string());
+  asio::error_code problem;
+  // A socket file that nobody answers on is left over from a daemon that died; one that answers is in use.
+  asio::local::stream_protocol::socket probe(io_);
+  probe.connect(endpoint, problem);
+  if (!problem) return cannot("another daemon listens on {}", options_.unix_socket.string());
+  std::error_code ignored;
+  if (std::filesystem::is_socket(options_.unix_socket, ignored)) std::filesystem::remove(options_.unix_socket, ignored);
+  problem = {};
+  unix_.open(endpoint.protocol(), problem);
+  if (!problem) unix_.bind(endpoint, problem);
+  if (!problem) unix_.listen(asio::socket_base::max_listen_connections, problem);
+  if (problem) return cannot("cannot listen on {}: {}", options_.unix_socket.string(), problem.message());
+  ::chmod(options_.unix_socket.c_str(), S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP);
+  accept(unix_, "UNIX socket");
+  return {};
+}
+
+template <typename Acceptor>
+void Server::accept(Acceptor& acceptor, const char* what) {
+  acceptor.async_accept([this, &acceptor, what](asio::error_code problem, auto socket) {
+    if (problem == asio::error::operation_aborted) return;
+    if (!problem) {
+      welcome(std::move(socket), what);
+    } else {
+      spdlog::warn("accepting a client failed: {}", problem.message());
+    }
+    accept(acceptor, what);
+  });
+}
+
+void Server::welcome(asio::generic::stream_protocol::socket socket, const char* what) {
+  if (connections_.size() >= options_.connection_limit) {
+    const std::string why = fmt::format("{} clients are connected, which is the limit", connections_.size());
+    spdlog::warn("a client was turned away: {}", why);
+    const std::string line =
+        to_response(nullptr,
+                    tl::unexpected<RpcError>(RpcError{rpc_code::kInvalidRequest, why, MinorCode::UnsupportedOperation}))
+            .dump() +
+        '\n';
+    asio::error_code ignored;
+    socket.write_some(asio::buffer(line), ignored);  // a new socket's buffer has room for one line
+    return;
+  }
+  const std::uint64_t id = next_id_++;
+  auto connection = std::make_shared<Connection>(*this, std::move(socket), id, fmt::format("{} client {}", what, id));
+  connections_.emplace(id, connection);
+  connection->start();
+}
+
+void Server::close() {
+  asio::error_code ignored;
+  tcp_.close(ignored);
+  if (unix_.is_open()) {
+    unix_.close(ignored);
+    std::error_code gone;
+    std::filesystem::remove(options_.unix_socket, gone);
+  }
+  const auto open = std::move(connections_);
+  connections_.clear();
+  for (const auto& [id, connection] : open) {
+    lease_.release(id);
+    connection->abort();
+  }
+}
+
+void Server::on_sample(const CycleSample& sample) {
+  for (const auto& [id, connection] : connections_) connection->push_sample(sample);
+}
+
+void Server::on_event(const Event& event) {
+  if (event.kind == Event::Kind::Fault) dispatcher_.status().fail(MinorCode::Other);
+  const std::string line = event_notification(event);
+  for (const auto& [id, connection] : connections_) connection->push_event(line);
+}
+
+bool Server::may_dispatch() const noexcept {
+  return !options_.throttle_machine ||
+         std::ranges::none_of(connections_, [](const auto& entry) { return entry.second->behind(); });
+}
+
+void Server::tick() {
+  const auto now = std::chrono::steady_clock::now();
+  // Connections may leave the map while they are pumped, so the loop runs over a copy of their pointers.
+  std::vector<std::shared_ptr<Connection>> open;
+  open.reserve(connections_.size());
+  for (const auto& [id, connection] : connections_) open.push_back(connection);
+  for (const auto& connection : open) {
+    connection->flush_topics();
+    if (connection->stalled(now)) {
+      spdlog::warn("{} was cut off: it has not read for {} ms", connection->name(), options_.stall_limit.count());
+      connection->abort();
+      continue;
+    }
+    connection->pump();
+  }
+  power_off_at_rest();
+}
+
+const Connection* Server::fast_watcher_beside(const Connection& connection) const {
+  for (const auto& [id, other] : connections_) {
+    if (id != connection.id() && other->watches_fast()) return other.get();
+  }
+  return nullptr;
+}
+
+void Server::lose_lease(const Connection& connection, const char* why) {
+  if (!lease_.release(connection.id())) return;
+  MachinePort& machine = dispatcher_.machine();
+  const CycleSample sample = machine.sample();
+  const bool runs = sample.state == CycleState::Running || sample.state == CycleState::Holding || sample.moving;
+  std::string message = fmt::format("{} {} motion authority", connection.name(), why);
+  if (runs) {
+    const Expected<> stopped = machine.cam().cycle_stop();
+    message += stopped ? "; the machine is stopped on its path" : "; stopping failed: " + stopped.error().message;
+    if (!stopped) dispatcher_.status().fail(stopped.error().code);
+    power_off_pending_ = options_.lease_lost == LeaseLostAction::StopAndPowerOff;
+    if (power_off_pending_) message += ", then its drives are switched off";
+  }
+  spdlog::info("{}", message);
+  announce(Event::Kind::Authority, std::move(message));
+}
+
+void Server::power_off_at_rest() {
+  if (!power_off_pending_) return;
+  MachinePort& machine = dispatcher_.machine();
+  const CycleSample sample = machine.sample();
+  if (sample.moving || sample.state == CycleState::Running || sample.state == CycleState::Stopping) return;
+  power_off_pending_ = false;
+  if (const Expected<> done = machine.device().unload(); !done) {
+    spdlog::error("the drives could not be switched off: {}", done.error().message);
+    announce(Event::Kind::Fault, "the drives could not be switched off: " + done.error().message);
+  }
+}
+
+void Server::announce(Event::Kind kind, std::string message) {
+  Event event;
+  event.kind = kind;
+  event.t_s = dispatcher_.machine().sample().t_s;
+  event.message = std::move(message);
+  on_event(event);
+}
+
+void Server::forget(const Connection& connection) {
+  connections_.erase(connection.id());
+}
+
+}  // namespace rmac::gateway

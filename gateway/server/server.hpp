@@ -1,0 +1,101 @@
+#pragma once
+
+#include <asio.hpp>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "gateway/api/dispatcher.hpp"
+#include "gateway/server/lease.hpp"
+
+namespace rmac::gateway {
+
+class Connection;
+
+/// What losing the lease does to a machine that runs (IEC 60204-1, 9.2.2).
+enum class LeaseLostAction {
+  Stop,            ///< category 2: comes to rest on the path, power stays
+  StopAndPowerOff  ///< category 1: comes to rest, then the mechanism is taken out, which disables its drives
+};
+
+struct ServerOptions {
+  std::string address = "127.0.0.1";  ///< loopback: clients are not authenticated
+  std::uint16_t port = 7402;          ///< 0: the system picks a free one
+  std::filesystem::path unix_socket;  ///< empty: none
+  double cycle_hz = 1000;
+  int queue_capacity = 10'000;    ///< told to clients
+  bool throttle_machine = false;  ///< virtual time: wait for slow watchers instead of cutting them off
+  LeaseLostAction lease_lost = LeaseLostAction::Stop;
+  std::size_t line_limit_bytes = std::size_t{8} << 20;
+  std::size_t pending_limit_bytes = std::size_t{32} << 20;  ///< of requests that wait, before reading pauses
+  std::size_t output_limit_bytes = std::size_t{64} << 20;   ///< unread output, before the client is cut off
+  std::size_t high_water_bytes = std::size_t{4} << 20;      ///< unread output, before virtual time waits
+  std::chrono::milliseconds queue_wait{1000};               ///< for room in a full queue of moves
+  std::chrono::milliseconds stall_limit{10'000};            ///< of a watcher that virtual time waits for
+  std::size_t connection_limit = 64;
+};
+
+/// The sockets of the gateway: newline JSON-RPC over TCP and a UNIX socket. Everything runs on the thread of the
+/// io_context.
+class Server {
+ public:
+  using MakeRecords = std::function<std::unique_ptr<RecordCursor>()>;
+
+  Server(asio::io_context& io, MachinePort& machine, MakeRecords make_records, ServerOptions options);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  [[nodiscard]] Expected<> listen();
+  /// The TCP port in use.
+  [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
+  /// Stops listening and closes every connection. The lease is dropped without a stop: the machine's end is the
+  /// caller's business.
+  void close();
+
+  /// Listeners for the controller's reports.
+  void on_sample(const CycleSample& sample);
+  void on_event(const Event& event);
+  /// False while a watcher is too far behind for virtual time to go on; the caller then leaves the controller's
+  /// samples where they are.
+  [[nodiscard]] bool may_dispatch() const noexcept;
+  /// After each dispatch, every few milliseconds: sends batches, retries moves that wait for room.
+  void tick();
+
+  // For connections.
+  [[nodiscard]] Dispatcher& dispatcher() noexcept { return dispatcher_; }
+  [[nodiscard]] const ServerOptions& options() const noexcept { return options_; }
+  [[nodiscard]] Lease& lease() noexcept { return lease_; }
+  [[nodiscard]] std::unique_ptr<RecordCursor> make_records() const { return make_records_(); }
+  /// Another connection that receives more than the watchers' rate, or nullptr.
+  [[nodiscard]] const Connection* fast_watcher_beside(const Connection& connection) const;
+  /// Releases the lease of a connection that gave it back or went away, and stops the machine if it runs.
+  void lose_lease(const Connection& connection, const char* why);
+  void announce(Event::Kind kind, std::string message);
+  void forget(const Connection& connection);
+
+ private:
+  template <typename Acceptor>
+  void accept(Acceptor& acceptor, const char* what);
+  [[nodiscard]] Expected<> listen_tcp();
+  [[nodiscard]] Expected<> listen_unix();
+  void welcome(asio::generic::stream_protocol::socket socket, const char* what);
+  void power_off_at_rest();
+
+  asio::io_context& io_;
+  Dispatcher dispatcher_;
+  MakeRecords make_records_;
+  ServerOptions options_;
+  Lease lease_;
+  asio::ip::tcp::acceptor tcp_;
+  asio::local::stream_protocol::acceptor unix_;
+  std::map<std::uint64_t, std::shared_ptr<Connection>> connections_;
+  std::uint64_t next_id_ = 1;
+  std::uint16_t port_ = 0;
+  bool power_off_pending_ = false;
+};
+
+}  // namespace rmac::gateway
