@@ -26,7 +26,8 @@ class Curve {
   [[nodiscard]] virtual bool in_joint_space() const noexcept = 0;
   [[nodiscard]] virtual std::size_t dimension() const noexcept = 0;
   [[nodiscard]] virtual double length() const noexcept = 0;
-  /// Derivatives up to `order` (0 to 3). At a break `side` chooses the limit from below (-1) or above (+1).
+  /// Derivatives up to `order` (0 to 3). At a break (met to a few ulps)
+  /// `side` chooses the limit from below (-1) or above (+1).
   virtual void evaluate(double s, int order, int side, CurvePoint& point) const noexcept = 0;
   /// Ascending arc lengths inside (0, length()) where the second or third derivative may jump.
   [[nodiscard]] virtual std::span<const double> breaks() const noexcept = 0;
@@ -43,7 +44,9 @@ struct CurveStart {
 
 /// The curves of one move, in order; where a curve has a corner inside (a knot of full multiplicity), or a jump of its
 /// tangent, it is cut there. Refuses degenerate geometry (zero length, coincident arc points, bad knots, bad weights,
-/// NaN), and a start further than 1 µm (1e-6 of axis) from `start`, with a message that names the value and the rule.
+/// NaN), and a start further than 1 µm (1e-6 of axis) from `start`, with a message that names the value and the rule. A
+/// start closer than that is taken up: the first curve begins exactly at `start`, and lies within the gap of what was
+/// asked for (docs/derivations/curves.md, section 6).
 [[nodiscard]] Expected<std::vector<std::unique_ptr<const Curve>>> make_curves(const Move& move,
                                                                               const CurveStart& start);
 

@@ -16,8 +16,9 @@ struct LineGeometry {
   ToolPose start, end;
 };
 
-/// Circular arc about an axis. `closed` makes a full circle; `rotation` is +1 counter-clockwise about `normal`, -1
-/// clockwise.
+/// Circular arc about an axis. `closed` makes a full circle, whose end is its start; `rotation` is +1 counter-clockwise
+/// about `normal`, -1 clockwise. Start and end may differ in radius and height about the axis by 1 µm and a millionth
+/// of the radius.
 struct ArcGeometry {
   Vector center{};
   Vector normal{0, 0, 1};
