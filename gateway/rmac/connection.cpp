@@ -83,8 +83,12 @@ Connection::Answer Connection::call(const std::string& method, const nlohmann::j
   // Shared, because an answer that comes after the bound must not write into a dead frame.
   auto slot = std::make_shared<std::optional<Answer>>();
   send(method, params, [slot](const Answer& received) { *slot = received; });
-  if (auto waited = wait([&] { return slot->has_value(); }, kCallBound, "an answer to " + method); !waited) {
-    return tl::unexpected(waited.error());
+  const auto answered = wait([&] { return slot->has_value(); }, kCallBound);
+  if (!answered) {
+    return tl::unexpected(answered.error());
+  }
+  if (!*answered) {
+    return fail(fmt::format("{} did not answer {} within {} s", to_string(endpoint_), method, kCallBound.count()));
   }
   return std::move(**slot);
 }
@@ -103,7 +107,7 @@ Result<> Connection::wait(const std::function<bool()>& done) {
   return {};
 }
 
-Result<> Connection::wait(const std::function<bool()>& done, std::chrono::milliseconds bound, const std::string& what) {
+Result<bool> Connection::wait(const std::function<bool()>& done, std::chrono::milliseconds bound) {
   bool late = false;
   timer_.expires_after(bound);
   timer_.async_wait([&late](const asio::error_code& error) { late = !error; });
@@ -111,11 +115,10 @@ Result<> Connection::wait(const std::function<bool()>& done, std::chrono::millis
   timer_.cancel();
   // The cancelled handler refers to `late`: it must have run before this frame goes.
   io_.poll();
-  if (waited && late && !done()) {
-    return fail(fmt::format("{} did not send {} within {} s", to_string(endpoint_), what,
-                            std::chrono::duration_cast<std::chrono::seconds>(bound).count()));
+  if (!waited) {
+    return tl::unexpected(waited.error());
   }
-  return waited;
+  return done();
 }
 
 void Connection::read() {

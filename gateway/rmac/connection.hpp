@@ -43,9 +43,8 @@ class Connection {
 
   /// Handles what arrives until `done` holds. Fails when the connection is lost or the person presses Ctrl-C.
   [[nodiscard]] Result<> wait(const std::function<bool()>& done);
-  /// The same with a bound; `done` not holding by then is a failure that says what was waited for.
-  [[nodiscard]] Result<> wait(const std::function<bool()>& done, std::chrono::milliseconds bound,
-                              const std::string& what);
+  /// The same with a bound; whether `done` held by then.
+  [[nodiscard]] Result<bool> wait(const std::function<bool()>& done, std::chrono::milliseconds bound);
 
   /// A person asked to end by Ctrl-C; `wait` says so once, then goes on when called again.
   [[nodiscard]] bool interrupted() const noexcept { return interrupted_; }

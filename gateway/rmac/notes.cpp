@@ -63,7 +63,12 @@ std::vector<JointSample> read_joints(const nlohmann::json& params) {
     read(entry, "move_id", sample.move_id);
     read(entry, "s_mm", sample.s_mm);
     read(entry, "feed_mm_s", sample.feed_mm_s);
+    read(entry, "moving", sample.moving);
     read(entry, "pose", sample.pose);
+    read(entry, "q", sample.position_set);
+    read(entry, "qd", sample.velocity_set);
+    read(entry, "qdd", sample.acceleration_set);
+    read(entry, "a", sample.position);
     samples.push_back(std::move(sample));
   }
   return samples;

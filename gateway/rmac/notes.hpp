@@ -31,6 +31,7 @@ struct StateNote {
 struct JointSample {
   double t_s = 0;
   std::int64_t cycle = 0, move_id = 0;
+  bool moving = false;
   double s_mm = 0, feed_mm_s = 0;
   std::vector<double> pose, position_set, velocity_set, acceleration_set, position;
 };

@@ -3,6 +3,7 @@
 #include "gateway/rmac/authority.hpp"
 #include "gateway/rmac/commands.hpp"
 #include "gateway/rmac/notes.hpp"
+#include "gateway/rmac/rest.hpp"
 
 namespace rmac::cli {
 
@@ -16,32 +17,27 @@ Result<> call(Connection& connection, const std::string& method,
 
 /// Starts a motion of its own and stays until it is over. Ctrl-C stops it.
 Result<> move_and_wait(Connection& connection, const std::string& method, const nlohmann::json& params) {
-  std::optional<StateNote> state;
   std::string fault;
   connection.on_notification([&](const std::string& topic, const nlohmann::json& note) {
-    if (topic == "state") {
-      state = read_state(note);
-    } else if (topic == "events") {
+    if (topic == "events") {
       if (auto event = read_event(note); event.kind == "Fault") {
         fault = event.message;
       }
     }
   });
   const auto done = with_authority(connection, [&]() -> Result<> {
-    constexpr double kRateHz = 50;
-    if (auto topics = call(connection, "subscribe", {{"topics", {"state", "events"}}, {"rate_hz", kRateHz}}); !topics) {
+    if (auto topics = call(connection, "subscribe", {{"topics", {"events"}}}); !topics) {
       return topics;
     }
     if (auto begun = call(connection, method, params); !begun) {
       return begun;
     }
-    state.reset();
-    auto rest = connection.wait([&] { return !fault.empty() || (state && state->at_rest()); });
+    const auto rest = wait_for_rest(connection, fault);
     if (!rest) {
       static_cast<void>(call(connection, "RMAC_CAM.StopNow"));
-      return rest;
+      return tl::unexpected(rest.error());
     }
-    return fault.empty() ? Result<>() : Result<>(fail(fault));
+    return {};
   });
   connection.on_notification({});
   return done;

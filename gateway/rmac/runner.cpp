@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gateway/rmac/rest.hpp"
+
 namespace rmac::cli {
 
 namespace {
@@ -14,7 +16,6 @@ constexpr double kFullRateHz = 1e6;  // More than any cycle: the appliance gives
 constexpr double kWatchRateHz = 100;
 constexpr double kStateRateHz = 20;
 constexpr auto kRecordBound = std::chrono::seconds(10);
-constexpr auto kHaltBound = std::chrono::seconds(10);
 
 }  // namespace
 
@@ -191,27 +192,26 @@ Result<> Runner::settle() {
   if (auto done = wait([&] { return unanswered_ == 0 && unfinished_.empty(); }); !done) {
     return done;
   }
-  // Home and jog have no MoveID, so the machine itself is asked whether it rests.
-  for (;;) {
-    auto state = connection_.call("RMAC_CAM.GetState");
-    if (!state) {
-      return tl::unexpected(state.error());
-    }
-    state_ = read_state(*state);
-    if (state_->at_rest()) {
-      break;
-    }
-    state_.reset();
-    if (auto next = wait([&] { return state_.has_value(); }); !next) {
-      return next;
-    }
-  }
-  if (!record_ || !watching_) {
-    return {};
+  if (auto rested = rest(); !rested || !record_ || !watching_) {
+    return rested;
   }
   // The last cycles of a record come in a batch of their own, perhaps after the state.
-  return connection_.wait([&] { return last_sample_s_ >= last_done_s_ || !failure_.empty(); }, kRecordBound,
-                          "the joints of the last cycle");
+  const auto complete =
+      connection_.wait([&] { return last_sample_s_ >= last_done_s_ || !failure_.empty(); }, kRecordBound);
+  if (!complete) {
+    return tl::unexpected(complete.error());
+  }
+  return *complete ? Result<>() : fail("the record is not complete: the joints of the last cycles did not come");
+}
+
+Result<> Runner::rest() {
+  // Home and jog have no MoveID, so the machine itself is asked.
+  auto state = wait_for_rest(connection_, failure_);
+  if (!state) {
+    return tl::unexpected(state.error());
+  }
+  state_ = std::move(*state);
+  return {};
 }
 
 Result<> Runner::watch_joints() {
@@ -236,8 +236,8 @@ Result<> Runner::wait(const std::function<bool()>& done) {
 void Runner::halt() {
   // Anyone connected may stop the machine; a lost connection has stopped it by losing the lease.
   if (connection_.call("RMAC_CAM.StopNow")) {
-    state_.reset();
-    static_cast<void>(connection_.wait([&] { return state_ && !state_->moving; }, kHaltBound, "a state at rest"));
+    failure_.clear();
+    static_cast<void>(rest());
     static_cast<void>(connection_.call("authority.release"));
   }
 }
@@ -281,7 +281,8 @@ void Runner::take(const JointSample& sample) {
     report_.following_error[joint] =
         std::max(report_.following_error[joint], std::abs(sample.position_set[joint] - sample.position[joint]));
   }
-  if (record_) {
+  // Waiting for the first move is no part of the record; every cycle from there on is.
+  if (record_ && (sample.moving || record_->rows() > 0)) {
     if (auto added = record_->add(sample); !added) {
       fail_with(added.error().message);
     }

@@ -46,6 +46,7 @@ class Runner {
   [[nodiscard]] Result<> before_move(const Program& program);
   [[nodiscard]] Result<> start_cycle();
   [[nodiscard]] Result<> settle();
+  [[nodiscard]] Result<> rest();
   [[nodiscard]] Result<> watch_joints();
   [[nodiscard]] Result<> wait(const std::function<bool()>& done);
   void halt();

@@ -61,8 +61,7 @@ Result<> show_status(Connection& connection, bool watch, bool json) {
   if (auto topics = connection.call("subscribe", {{"topics", {"state"}}, {"rate_hz", kRateHz}}); !topics) {
     return tl::unexpected(topics.error());
   }
-  constexpr auto kBound = std::chrono::seconds(10);
-  auto done = watch ? until_interrupted(connection) : connection.wait([&] { return seen; }, kBound, "its state");
+  auto done = watch ? until_interrupted(connection) : connection.wait([&] { return seen; });
   connection.on_notification({});
   return done;
 }

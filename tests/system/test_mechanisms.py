@@ -42,15 +42,15 @@ class Swap(unittest.TestCase):
             operator = appliance.operator("DMACXYZ")
             watcher = appliance.client("watcher")
             watcher.call("subscribe", topics=["drives"], rate_hz=1000)
-            cycle_before = watcher.wait_note("drives")["cycle"]
+            cycle = watcher.wait_note("drives")["samples"][-1]["cycle"]
             operator.call("Device.Load", Name="DMACXY")
             loaded_at = operator.state()["cycle"]
-            cycle = cycle_before
             while cycle < loaded_at + 50:
-                note = watcher.wait_note("drives")
-                cycle = note["cycle"]
-                for drive in note["drives"][:3]:
-                    self.assertEqual(drive["statusword"] & OPERATION_ENABLED_MASK, OPERATION_ENABLED, note)
+                for sample in watcher.wait_note("drives")["samples"]:
+                    self.assertEqual(sample["cycle"], cycle + 1, "a cycle is missing")
+                    cycle = sample["cycle"]
+                    for word in sample["statusword"][:3]:
+                        self.assertEqual(word & OPERATION_ENABLED_MASK, OPERATION_ENABLED, sample)
 
     def test_unload_leaves_nothing_to_move(self):
         with Appliance() as appliance:
