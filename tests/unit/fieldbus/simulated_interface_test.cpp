@@ -1,0 +1,154 @@
+#include "rmac/fieldbus/simulated_interface.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "conformance/control_interface_conformance.hpp"
+#include "rmac/fieldbus/simulated_io_interface.hpp"
+
+namespace {
+
+using namespace rmac;
+using namespace rmac::fieldbus;
+
+class SimulatedBus : public testing::Test {
+ protected:
+  DriveState cycle(std::size_t axis, DriveWish wish, std::int16_t torque_permille = 0, bool reset = false) {
+    DriveCommand& command = commands_[axis];
+    command.controlword = next_controlword(feedback_[axis].statusword, wish, reset, command.controlword);
+    command.mode = axis == kSpindle ? DriveMode::ProfileVelocity : DriveMode::CyclicSyncTorque;
+    command.target_torque_permille = torque_permille;
+    ok_ = bus_.exchange(commands_, feedback_);
+    return drive_state(feedback_[axis].statusword);
+  }
+  void enable(std::size_t axis) {
+    for (int i = 0; i < 10; ++i) cycle(axis, DriveWish::Operational);
+    ASSERT_EQ(drive_state(feedback_[axis].statusword), DriveState::OperationEnabled);
+  }
+
+  static constexpr std::size_t kX = 0;
+  static constexpr std::size_t kZ = 2;
+  static constexpr std::size_t kSpindle = 3;
+  SimulatedInterface bus_{default_simulated_axes(), 0.001};
+  std::vector<DriveCommand> commands_ = std::vector<DriveCommand>(bus_.axis_count());
+  std::vector<DriveFeedback> feedback_ = std::vector<DriveFeedback>(bus_.axis_count());
+  bool ok_ = false;
+};
+
+TEST_F(SimulatedBus, ConformsToThePort) {
+  conformance::ControlInterfaceConformance(bus_, kX).check();
+}
+
+TEST_F(SimulatedBus, RefusesToStartWithoutAxes) {
+  SimulatedInterface empty({}, 0.001);
+  const auto started = empty.start();
+  ASSERT_FALSE(started);
+  EXPECT_EQ(started.error().message, "simulated bus: it has no axes; give it at least one");
+}
+
+TEST_F(SimulatedBus, ActsOnACommandOnlyAfterItsFeedbackWasTaken) {
+  enable(kX);
+  const std::int32_t start = feedback_[kX].position_counts;
+  cycle(kX, DriveWish::Operational, 1000);
+  EXPECT_EQ(feedback_[kX].position_counts, start);
+  cycle(kX, DriveWish::Operational, 1000);
+  EXPECT_GT(feedback_[kX].position_counts, start);
+}
+
+TEST_F(SimulatedBus, CountsTheShaftInWholeEncoderCounts) {
+  bus_.plant(kX).put_at(2 * M_PI * 1.5 / 131072);
+  cycle(kX, DriveWish::Off);
+  EXPECT_EQ(feedback_[kX].position_counts, 1);
+  bus_.plant(kX).put_at(-2 * M_PI * 0.5 / 131072);
+  cycle(kX, DriveWish::Off);
+  EXPECT_EQ(feedback_[kX].position_counts, -1);
+}
+
+TEST_F(SimulatedBus, WrapsItsCountsAt32Bits) {
+  bus_.plant(kX).put_at(2 * M_PI * (2147483648.0 + 10.5) / 131072);
+  cycle(kX, DriveWish::Off);
+  EXPECT_EQ(feedback_[kX].position_counts, -2147483648 + 10);
+}
+
+TEST_F(SimulatedBus, HoldsALoadedAxisByItsBrakeWhileDisabled) {
+  for (int i = 0; i < 1000; ++i) cycle(kZ, DriveWish::Off);
+  EXPECT_EQ(feedback_[kZ].position_counts, 0);
+}
+
+TEST_F(SimulatedBus, ReportsATripUntilItIsReset) {
+  enable(kX);
+  bus_.trip(kX, 0x2310);
+  EXPECT_EQ(cycle(kX, DriveWish::Operational), DriveState::Fault);
+  EXPECT_EQ(feedback_[kX].error_code, 0x2310);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(cycle(kX, DriveWish::Operational, 500), DriveState::Fault);
+  for (int i = 0; i < 3; ++i) cycle(kX, DriveWish::Off, 0, true);
+  EXPECT_EQ(drive_state(feedback_[kX].statusword), DriveState::SwitchOnDisabled);
+  EXPECT_EQ(feedback_[kX].error_code, 0);
+}
+
+TEST_F(SimulatedBus, StopsADriveThatWasCutOff) {
+  enable(kX);
+  bus_.set_online(kX, false);
+  cycle(kX, DriveWish::Operational, 500);
+  EXPECT_TRUE(ok_);
+  EXPECT_FALSE(feedback_[kX].online);
+  bus_.set_online(kX, true);
+  EXPECT_EQ(cycle(kX, DriveWish::Operational, 500), DriveState::Fault);
+  EXPECT_EQ(feedback_[kX].error_code, 0x8130);
+}
+
+TEST_F(SimulatedBus, SaysWhenTheBusItselfFailed) {
+  enable(kX);
+  bus_.set_bus_failed(true);
+  cycle(kX, DriveWish::Operational, 500);
+  EXPECT_FALSE(ok_);
+  bus_.set_bus_failed(false);
+  EXPECT_EQ(cycle(kX, DriveWish::Operational, 500), DriveState::Fault);
+  EXPECT_TRUE(ok_);
+}
+
+TEST_F(SimulatedBus, ShiftsAnEncoderWithoutMovingTheShaft) {
+  bus_.shift_encoder(kX, 5000);
+  cycle(kX, DriveWish::Off);
+  EXPECT_EQ(feedback_[kX].position_counts, 5000);
+  EXPECT_EQ(bus_.plant(kX).angle_rad(), 0);
+}
+
+TEST_F(SimulatedBus, TurnsTheSpindleByItsVelocityWordOnceEnabled) {
+  commands_[kSpindle].target_velocity_rpm = 600;
+  for (int i = 0; i < 100; ++i) cycle(kSpindle, DriveWish::Off);
+  EXPECT_EQ(feedback_[kSpindle].velocity_rpm, 0);
+  for (int i = 0; i < 1500; ++i) cycle(kSpindle, DriveWish::Operational);
+  EXPECT_NEAR(feedback_[kSpindle].velocity_rpm, 600, 1);
+}
+
+TEST_F(SimulatedBus, HasAPlantWhereverItsDrivesAre) {
+  EXPECT_EQ(bus_.axis_count(), 8U);
+  EXPECT_EQ(bus_.spindle(kSpindle).speed_rpm(), 0);
+}
+
+TEST(SimulatedIo, PassesInputsInAndOutputsOut) {
+  SimulatedIoInterface io;
+  ASSERT_TRUE(io.start().has_value());
+  io.set_inputs(0x5);
+  std::uint64_t inputs = 0;
+  EXPECT_TRUE(io.exchange(std::uint64_t{1} << 63, inputs));
+  EXPECT_EQ(inputs, 0x5U);
+  EXPECT_EQ(io.outputs(), std::uint64_t{1} << 63);
+}
+
+TEST(SimulatedIo, DropsItsOutputsWhenItFailsOrStops) {
+  SimulatedIoInterface io;
+  std::uint64_t inputs = 7;
+  ASSERT_TRUE(io.exchange(0x3, inputs));
+  io.set_failed(true);
+  EXPECT_FALSE(io.exchange(0x3, inputs));
+  EXPECT_EQ(io.outputs(), 0U);
+  io.set_failed(false);
+  ASSERT_TRUE(io.exchange(0x3, inputs));
+  io.stop();
+  EXPECT_EQ(io.outputs(), 0U);
+}
+
+}  // namespace
