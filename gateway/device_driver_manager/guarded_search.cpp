@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -135,6 +136,42 @@ tl::unexpected<Error> refused(const std::string& reason) {
   return failure(MinorCode::InvalidParameterValue, fmt::format("the SQL statement was refused: {}", reason));
 }
 
+/// Where the quoted text or comment that starts at `from` ends; `from` when none starts there.
+std::size_t skip_quoted(std::string_view sql, std::size_t from) {
+  struct Quote {
+    std::string_view open, close;
+  };
+  // A doubled quote inside a text reads as two texts in a row, which ends at the same place.
+  constexpr std::array<Quote, 6> kQuotes = {
+      {{"'", "'"}, {"\"", "\""}, {"`", "`"}, {"[", "]"}, {"--", "\n"}, {"/*", "*/"}}};
+  for (const Quote& quote : kQuotes) {
+    if (sql.substr(from, quote.open.size()) != quote.open) continue;
+    const std::size_t end = sql.find(quote.close, from + quote.open.size());
+    return end == std::string_view::npos ? sql.size() : end + quote.close.size();
+  }
+  return from;
+}
+
+/// Whether the statement has the word WITH. SQLite copies a common table for each mention while it prepares, so forty
+/// of them, each naming the one before twice, take 2^40 copies; no deadline interrupts that.
+bool has_common_table(std::string_view sql) {
+  const auto in_word = [](char letter) {
+    return letter == '_' || letter == '$' || std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter < 0;
+  };
+  for (std::size_t at = 0; at < sql.size();) {
+    if (const std::size_t end = skip_quoted(sql, at); end != at) {
+      at = end;
+    } else if (in_word(sql[at])) {
+      const std::size_t start = at;
+      while (at < sql.size() && in_word(sql[at])) ++at;
+      if (same(sql.substr(start, at - start), "WITH")) return true;
+    } else {
+      ++at;
+    }
+  }
+  return false;
+}
+
 /// Why SQLite gave up, in the order of what helps most.
 tl::unexpected<Error> refused_by(sqlite3* connection, const Guard& guard, int result) {
   if (guard.late) {
@@ -203,6 +240,7 @@ Expected<int> number_column(sqlite3_stmt* statement) {
 Expected<std::vector<std::int64_t>> search_mechanisms(const std::string& database, const std::string& sql) {
   if (sql.find('\0') != std::string::npos) return refused("it holds a NUL character");
   if (sql.size() > 4'000) return refused(fmt::format("it has {} bytes; at most 4000 are taken", sql.size()));
+  if (has_common_table(sql)) return refused("common tables (WITH) are not available here; use a subquery");
   Guard guard;
   const Connection connection = open_guarded(database, guard);
   if (connection == nullptr) {

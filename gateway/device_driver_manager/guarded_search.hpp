@@ -13,8 +13,8 @@ namespace rmac::gateway {
 ///
 /// Nothing in the statement is trusted. It runs on a connection of its own that is read-only and defensive; an
 /// authorizer lets through SELECT, the columns of DeviceDrivers and a list of harmless functions; lengths, columns,
-/// depths and memory are bounded; it ends after 200 ms; one statement is taken, and it must yield a MechanismID.
-/// An error tells what was refused. Gateway thread only.
+/// depths and memory are bounded; common tables (WITH) are refused; it ends after 200 ms; one statement is taken, and
+/// it must yield a MechanismID. An error tells what was refused. Gateway thread only.
 [[nodiscard]] Expected<std::vector<std::int64_t>> search_mechanisms(const std::string& database,
                                                                     const std::string& sql);
 

@@ -64,6 +64,7 @@ TEST_F(Search, GivesRowsInTheStatementsOrder) {
   EXPECT_THAT(names("SELECT * FROM DeviceDrivers WHERE MaxFeedrate = (SELECT max(MaxFeedrate) FROM DeviceDrivers)"),
               ElementsAre("TarusXYZCA"));
   EXPECT_THAT(names("SELECT * FROM DeviceDrivers WHERE Length > 1e6"), IsEmpty());
+  EXPECT_THAT(names("SELECT * FROM DeviceDrivers WHERE SpeedCapability = 'with speed' -- with nothing"), IsEmpty());
 }
 
 TEST_F(Search, RowsThatTellNoMechanismAreRefused) {
@@ -158,15 +159,17 @@ std::vector<Hostile> hostile_statements() {
       {"CommentAlone", "-- nothing", "empty"},
       {"OpenComment", "/* nothing", "empty"},
       {"RecursiveTable",
-       "WITH RECURSIVE c(MechanismID) AS (SELECT 1 UNION ALL SELECT MechanismID + 1 FROM c) SELECT * FROM c",
-       "recursive"},
+       "WITH RECURSIVE c(MechanismID) AS (SELECT 1 UNION ALL SELECT MechanismID + 1 FROM c) SELECT * FROM c", "WITH"},
       {"Join26Ways", join(26), "more than 10000 rows"},
       {"Join26WaysWithoutARow", join(26) + " WHERE a0.Length + a25.Length < 0", "ran longer than 200 ms"},
       {"Join26WaysCounted", join(26) + " GROUP BY a0.MechanismID HAVING count(*) > 1", "ran longer than 200 ms"},
       {"Join26WaysSorted", join(26) + " ORDER BY a25.Name || a24.Name", ""},
       {"Join26WaysDistinct", "SELECT DISTINCT *" + join(26).substr(21), ""},
       {"TooManyRows", join(6), "more than 10000 rows"},
-      {"DoublingTables", doubling_tables(40), ""},
+      {"DoublingTables", doubling_tables(40), "WITH"},
+      {"DoublingTablesBehindAComment", "/* ' */ -- '\n" + doubling_tables(40), "WITH"},
+      {"DoublingTablesBehindATrickyText", all + " WHERE Name = 'a''b' OR Name IN (" + doubling_tables(40) + ")",
+       "WITH"},
       {"ZeroBlob", selecting("zeroblob(1000000000)"), "zeroblob"},
       {"RandomBlob", selecting("randomblob(1000000000)"), "randomblob"},
       {"Printf", selecting("printf('%.*c', 1000000000, 'x')"), "printf"},
