@@ -55,6 +55,7 @@ ServoHandover ServoLoop::handover() const noexcept {
 void ServoLoop::engage(const ServoHandover& previous) noexcept {
   Impl& loop = *impl_;
   std::uint32_t live_drives = 0;
+  std::size_t known = 0;
   std::array<double, kMaxJoints> shaft_set{};
   const std::span<const ServoHandover::Drive> drives(previous.drives.data(), previous.count);
   for (std::size_t i = 0; i < loop.actuators; ++i) {
@@ -63,6 +64,7 @@ void ServoLoop::engage(const ServoHandover& previous) noexcept {
       return drive.bus == part.bus.get() && drive.axis == part.axis;
     });
     if (found == drives.end()) continue;
+    ++known;
     loop.seen[i] = found->seen;
     loop.history[i] = found->seen ? 1 : 0;
     loop.counts[i] = found->counts;
@@ -73,7 +75,7 @@ void ServoLoop::engage(const ServoHandover& previous) noexcept {
   }
 
   if (loop.parts.virtual_mode) {
-    if (loop.parts.virtual_start.empty()) {
+    if (known == loop.actuators) {
       loop.parts.actuator_map->joint_positions({shaft_set.data(), loop.actuators}, {loop.hold.data(), loop.axes});
       loop.position = loop.hold;
     }

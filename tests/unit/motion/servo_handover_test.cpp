@@ -145,6 +145,7 @@ TEST_F(ServoHandoverTest, IntoVirtualModeStartsWhereTheMachineStood) {
   const ServoHandover handover = loop->handover();
   ServoLoopParts animated = parts();
   animated.virtual_mode = true;
+  animated.virtual_start = {9, 9, 9};
   build(std::move(animated));
   loop->engage(handover);
   EXPECT_NEAR(loop->hold_position()[0], 3, 1e-9);

@@ -58,9 +58,10 @@ struct ServoLoopParts {
   std::vector<ServoSpindle> spindles;
   std::shared_ptr<DigitalIoInterface> io;  ///< may be null
   double period_s = 0.001;
-  double enable_timeout_s = 5;        ///< to bring every drive to Operation Enabled
-  bool virtual_mode = false;          ///< setpoints are reflected as measured values; buses and I/O are not touched
-  std::vector<double> virtual_start;  ///< axes.size() positions where virtual mode begins; empty: zeros
+  double enable_timeout_s = 5;  ///< to bring every drive to Operation Enabled
+  bool virtual_mode = false;    ///< setpoints are reflected as measured values; buses and I/O are not touched
+  /// axes.size() positions where virtual mode begins when no loop hands over; empty: zeros.
+  std::vector<double> virtual_start;
 };
 
 enum class ServoState : std::uint8_t {
