@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# Installs the packages, builds, starts the appliance on its simulated bus, machines a headlight through its socket and leaves
+# record, pictures and report in out/. The last line of the output is the figures as JSON.
+#   --real-time   at the machine's own pace, instead of as fast as cycles can be computed
+#   --out FOLDER  instead of out
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+usage() { echo "usage: ./demo.sh [--real-time] [--out FOLDER]" >&2; exit 2; }
+pace=as-fast-as-computed
+out=out
+while [ $# -gt 0 ]; do
+  case "$1" in
+    --real-time) pace=real-time ;;
+    --out) [ $# -gt 1 ] || usage; shift; out=$1 ;;
+    *) usage ;;
+  esac
+  shift
+done
+
+./packages.sh
+
+echo "== build"
+cmake --preset release --log-level=WARNING >/dev/null
+cmake --build --preset release --parallel "$(nproc)" --target rmacd rmac rmac_modules -- --quiet
+
+echo "== start the appliance ($pace)"
+state=$(mktemp -d)
+log=$state/rmacd.log
+daemon=
+end() {
+  if [ -n "$daemon" ] && kill -0 "$daemon" 2>/dev/null; then
+    kill -TERM "$daemon"
+    wait "$daemon" || true
+  fi
+  rm -rf "$state"
+}
+trap end EXIT
+
+build/release/bin/rmacd --config etc/rmacd.json --port 0 --pace "$pace" --state-dir "$state" 2>"$log" &
+daemon=$!
+port=
+until [ -n "$port" ]; do
+  if ! kill -0 "$daemon" 2>/dev/null; then
+    cat "$log" >&2
+    echo "demo.sh: rmacd did not start; its log is above" >&2
+    exit 1
+  fi
+  port=$(sed -n 's/.*listens on 127\.0\.0\.1:\([0-9]*\).*/\1/p' "$log" | head -n 1)
+  [ -n "$port" ] || sleep 0.05
+done
+
+echo "== machine the headlight through 127.0.0.1:$port"
+if ! /usr/bin/python3 -B demo/run_demo.py --host 127.0.0.1 --port "$port" --out "$out"; then
+  grep -iE 'warn|err|crit' "$log" >&2 || true
+  exit 1
+fi
