@@ -52,6 +52,7 @@ class Server {
   [[nodiscard]] Expected<> listen();
   /// The TCP port in use.
   [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
+  [[nodiscard]] std::size_t connection_count() const noexcept { return connections_.size(); }
   /// Stops listening and closes every connection. The lease is dropped without a stop: the machine's end is the
   /// caller's business.
   void close();

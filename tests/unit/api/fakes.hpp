@@ -1,0 +1,191 @@
+#pragma once
+
+#include <gmock/gmock.h>
+
+#include "gateway/api/ports.hpp"
+
+// Fakes of the API's ports. MockCam and MockConfig check calls; FakeDevice and FakeMachine keep values.
+
+namespace rmac::gateway::fakes {
+
+class MockCam : public sdk::RmacCam {
+ public:
+  MOCK_METHOD(Expected<>, cycle_start, (sdk::CycleMode), (override));
+  MOCK_METHOD(Expected<>, cycle_stop, (), (override));
+  MOCK_METHOD(Expected<>, feed_hold, (), (override));
+  MOCK_METHOD(Expected<>, feed_resume, (), (override));
+  MOCK_METHOD(Expected<>, stop_now, (), (override));
+  MOCK_METHOD(Expected<>, reset, (), (override));
+  MOCK_METHOD(bool, cycle_start_status, (), (const, override));
+  MOCK_METHOD(bool, cycle_stop_status, (), (const, override));
+  MOCK_METHOD(Expected<>, queue_move, (std::int64_t, const Geometry&), (override));
+  MOCK_METHOD(int, moves_in_buffer, (), (const, override));
+  MOCK_METHOD(Expected<std::vector<double>>, joints_at, (const ToolPose&), (const, override));
+  MOCK_METHOD(Expected<>, set_feedrate, (double), (override));
+  MOCK_METHOD(double, feedrate, (), (const, override));
+  MOCK_METHOD(Expected<>, set_max_feedrate, (double), (override));
+  MOCK_METHOD(double, max_feedrate, (), (const, override));
+  MOCK_METHOD(Expected<>, set_feed_override, (double), (override));
+  MOCK_METHOD(Expected<>, set_path_accel_rise, (double), (override));
+  MOCK_METHOD(double, path_accel_rise, (), (const, override));
+  MOCK_METHOD(Expected<>, set_path_accel_fall, (double), (override));
+  MOCK_METHOD(double, path_accel_fall, (), (const, override));
+  MOCK_METHOD(Expected<>, set_joint_interp_speed, (double), (override));
+  MOCK_METHOD(double, joint_interp_speed, (), (const, override));
+  MOCK_METHOD(Expected<>, set_path_tolerance, (double), (override));
+  MOCK_METHOD(double, path_tolerance, (), (const, override));
+  MOCK_METHOD(Expected<>, set_part_frame, (const Frame&), (override));
+  MOCK_METHOD(Frame, part_frame, (), (const, override));
+  MOCK_METHOD(Expected<>, set_tool_interface_frame, (const Frame&), (override));
+  MOCK_METHOD(Frame, tool_interface_frame, (), (const, override));
+  MOCK_METHOD(Expected<>, set_spindle_rpm, (int, double), (override));
+  MOCK_METHOD(Expected<double>, spindle_rpm, (int), (const, override));
+  MOCK_METHOD(Expected<>, set_spindle_max_rpm, (int, double), (override));
+  MOCK_METHOD(Expected<double>, spindle_max_rpm, (int), (const, override));
+  MOCK_METHOD(Expected<>, set_coolant, (bool), (override));
+  MOCK_METHOD(Expected<>, jog_joint, (int, double), (override));
+  MOCK_METHOD(Expected<>, home, (), (override));
+  MOCK_METHOD(Expected<std::vector<double>>, current_position, (), (const, override));
+  MOCK_METHOD(Expected<>, set_animation, (bool), (override));
+};
+
+class MockConfig : public sdk::RmacConfig {
+ public:
+  MOCK_METHOD(Expected<>, begin, (const sdk::DeviceObject&), (override));
+  MOCK_METHOD(Expected<>, set_kinematics, (const sdk::ModuleChoice&), (override));
+  MOCK_METHOD(Expected<>, set_actuator_map, (const sdk::ModuleChoice&), (override));
+  MOCK_METHOD(Expected<>, set_number_of_joints, (int), (override));
+  MOCK_METHOD(Expected<>, set_number_of_spindles, (int), (override));
+  MOCK_METHOD(Expected<>, set_number_of_actuators, (int), (override));
+  MOCK_METHOD(Expected<>, set_joint_name, (int, std::string_view), (override));
+  MOCK_METHOD(Expected<>, set_joint_type, (int, JointType), (override));
+  MOCK_METHOD(Expected<>, set_joint_limit_type, (int, JointLimitType), (override));
+  MOCK_METHOD(Expected<>, set_joint_maximum_limit, (int, double), (override));
+  MOCK_METHOD(Expected<>, set_joint_minimum_limit, (int, double), (override));
+  MOCK_METHOD(Expected<>, set_joint_maximum_speed, (int, double), (override));
+  MOCK_METHOD(Expected<>, set_joint_maximum_acceleration, (int, double), (override));
+  MOCK_METHOD(Expected<>, set_joint_maximum_jerk, (int, double), (override));
+  MOCK_METHOD(Expected<>, set_maximum_feedrate, (double), (override));
+  MOCK_METHOD(Expected<>, set_spindle_maximum_rpm, (double), (override));
+  MOCK_METHOD(Expected<>, set_spindle_maximum_torque, (double), (override));
+  MOCK_METHOD(Expected<>, set_joint_control_method, (int, ControlMethod), (override));
+  MOCK_METHOD(Expected<>, set_joint_servo_control_law, (int, const sdk::ModuleChoice&), (override));
+  MOCK_METHOD(Expected<>, set_joint_servo_control_gains, (int, std::span<const double>), (override));
+  MOCK_METHOD(Expected<>, set_joint_watch, (int, double, double), (override));
+  MOCK_METHOD(Expected<>, set_digital_control_interface, (const sdk::ModuleChoice&), (override));
+  MOCK_METHOD(Expected<>, initialize_digital_control_interface, (), (override));
+  MOCK_METHOD(Expected<>, set_digital_io_interface, (const sdk::ModuleChoice&), (override));
+  MOCK_METHOD(Expected<>, initialize_digital_io_interface, (), (override));
+  MOCK_METHOD(const sdk::DeviceObject&, draft, (), (const, override));
+  MOCK_METHOD(Expected<>, apply, (), (override));
+};
+
+/// A device with two joints, a held one and a spindle.
+inline sdk::DeviceObject two_joint_device() {
+  sdk::DeviceObject device;
+  device.name = "Fake";
+  device.joints.resize(2);
+  device.joints[0].limits = {"X", JointType::Linear, JointLimitType::Limited, -50, 50, 200, 1000, 10000};
+  device.joints[1].limits = {"A", JointType::Rotary, JointLimitType::Infinite, -180, 180, 90, 500, 5000};
+  device.joints[0].servo_law.name = "FakeLaw";
+  device.held_joints.resize(1);
+  device.held_joints[0].limits.max = 7;
+  device.spindles.push_back({.bus = "sim0",
+                             .axis = 3,
+                             .max_speed_rpm = 1000,
+                             .max_torque_nm = 5,
+                             .horse_power = 2.5,
+                             .speed_tolerance_rpm = 20,
+                             .speed_timeout_s = 5});
+  device.length_mm = device.width_mm = device.depth_mm = 100;
+  return device;
+}
+
+class FakeDevice : public DevicePort {
+ public:
+  Expected<> load(const std::string& name, bool virtual_mode) override {
+    if (name != "Fake") return failure(MinorCode::InvalidParameterValue, "no mechanism " + name + "; there is Fake");
+    device = two_joint_device();
+    is_virtual = virtual_mode;
+    return {};
+  }
+  Expected<> unload() override {
+    device.reset();
+    return {};
+  }
+  bool virtual_mode() const override { return is_virtual; }
+  Expected<const sdk::DeviceObject*> database() const override {
+    if (!device) return failure(MinorCode::UnsupportedOperation, "no mechanism is loaded; call Device.Load");
+    return &*device;
+  }
+  Expected<sdk::DeviceObject*> wanted() override {
+    if (!device) return failure(MinorCode::UnsupportedOperation, "no mechanism is loaded; call Device.Load");
+    return &*device;
+  }
+  MOCK_METHOD(Expected<>, configure_motion_planner, (), (override));
+  MOCK_METHOD(Expected<>, configure_servo_controller, (), (override));
+  MOCK_METHOD(Expected<>, configure_digital_control_interface, (), (override));
+  MOCK_METHOD(Expected<>, move, (std::int64_t, const Geometry&), (override));
+
+  std::optional<sdk::DeviceObject> device = two_joint_device();
+  bool is_virtual = false;
+};
+
+class FakeMachine : public MachinePort {
+ public:
+  sdk::RmacCam& cam() override { return cam_mock; }
+  sdk::RmacConfig& config() override { return config_mock; }
+  DevicePort& device() override { return device_fake; }
+  const sdk::DeviceObject* mechanism() const override { return device_fake.device ? &*device_fake.device : nullptr; }
+  CycleSample sample() const override { return now; }
+  Expected<int> rescan() override { return 6; }
+
+  testing::NiceMock<MockCam> cam_mock;
+  testing::NiceMock<MockConfig> config_mock;
+  testing::NiceMock<FakeDevice> device_fake;
+  CycleSample now;
+};
+
+/// Two records, A and B.
+class FakeRecords : public RecordCursor {
+ public:
+  Expected<> open() override {
+    rows_ = {row(1, "A"), row(2, "B")};
+    at_ = 0;
+    return {};
+  }
+  void close() override { rows_.clear(); }
+  Expected<int> total() const override { return 2; }
+  Expected<int> search(const std::string& sql) override {
+    rows_ = {row(2, sql)};
+    at_ = 0;
+    return 1;
+  }
+  Expected<DriverRecord> current() const override {
+    if (rows_.empty()) return failure(MinorCode::Other, "the record set is closed");
+    return rows_[at_];
+  }
+  Expected<> first() override { return go(0); }
+  Expected<> last() override { return go(rows_.size() - 1); }
+  Expected<> next() override { return go(at_ + 1); }
+  Expected<> previous() override { return go(at_ - 1); }
+
+ private:
+  static DriverRecord row(int id, const std::string& name) {
+    DriverRecord record;
+    record.mechanism_id = id;
+    record.name = name;
+    record.driver_version = "1.2.3";
+    record.length = record.width = record.depth = 100.5;
+    return record;
+  }
+  Expected<> go(std::size_t where) {
+    if (where >= rows_.size()) return failure(MinorCode::Other, "no such row");
+    at_ = where;
+    return {};
+  }
+  std::vector<DriverRecord> rows_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace rmac::gateway::fakes

@@ -1,0 +1,125 @@
+// The method table against the dissertation's functions and our enumerations, as the specification lists them.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "gateway/api/method_table.hpp"
+#include "gateway/api/openrpc.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+using nlohmann::json;
+
+json fixture(const std::string& name) {
+  std::ifstream file(std::string(RMAC_SOURCE_DIR) + "/tests/unit/api/fixtures/" + name);
+  EXPECT_TRUE(file) << name;
+  return json::parse(file);
+}
+
+std::string wire_name(const json& function) {
+  return function["interface"].get<std::string>() + "." + function["name"].get<std::string>();
+}
+
+TEST(MethodTable, HasEveryFunctionOfTheDissertation) {
+  std::set<std::string> wanted;
+  for (const json& function : fixture("rmac_api.json")["functions"]) wanted.insert(wire_name(function));
+  std::set<std::string> ours;
+  for (const Method& entry : method_table()) {
+    if (entry.origin == Origin::Dissertation) ours.insert(entry.name);
+  }
+  EXPECT_EQ(wanted.size(), 143U);
+  EXPECT_EQ(ours, wanted);
+}
+
+TEST(MethodTable, HasEachNameOnce) {
+  std::set<std::string> names;
+  for (const Method& entry : method_table()) EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
+}
+
+TEST(MethodTable, HasTheSpecifiedParametersInOrder) {
+  for (const json& function : fixture("rmac_api.json")["functions"]) {
+    const Method* entry = find_method(wire_name(function));
+    ASSERT_NE(entry, nullptr) << wire_name(function);
+    std::vector<ParameterSpec> parameters = entry->parameters;
+    if (function.value("access", "") == "get") {
+      ASSERT_TRUE(entry->property) << entry->name;
+      ASSERT_EQ(parameters.back().name, "newVal");
+      EXPECT_TRUE(parameters.back().optional) << entry->name;
+      parameters.pop_back();
+    }
+    ASSERT_EQ(parameters.size(), function["params"].size()) << entry->name;
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      EXPECT_EQ(parameters[i].name, function["params"][i]["name"]) << entry->name;
+      EXPECT_EQ(to_string(parameters[i].type), function["params"][i]["type"]) << entry->name << parameters[i].name;
+    }
+  }
+}
+
+TEST(MethodTable, HasTheSpecifiedResults) {
+  for (const json& function : fixture("rmac_api.json")["functions"]) {
+    const Method* entry = find_method(wire_name(function));
+    ASSERT_NE(entry, nullptr);
+    if (function.value("access", "") == "put") {
+      EXPECT_EQ(function["result"], "boolean") << "writing a property gives true";
+      continue;
+    }
+    EXPECT_EQ(to_string(entry->result.type), function["result"]) << entry->name;
+  }
+}
+
+TEST(MethodTable, SaysWhatEachMethodMeansAndWhatUnsupportedOnesLack) {
+  for (const Method& entry : method_table()) {
+    EXPECT_FALSE(entry.meaning.empty()) << entry.name;
+    EXPECT_TRUE(entry.handler) << entry.name;
+    EXPECT_EQ(entry.supported(), entry.missing.empty()) << entry.name;
+  }
+}
+
+TEST(MethodTable, StopsNeedNoAuthority) {
+  std::set<std::string> stops;
+  for (const Method& entry : method_table()) {
+    if (entry.permission == Permission::Stop) stops.insert(entry.name);
+  }
+  EXPECT_EQ(stops, (std::set<std::string>{"RMAC_CAM.CycleStop", "RMAC_CAM.SetCycleStopStatus", "RMAC_CAM.StopNow",
+                                          "RMAC_CAM.FeedHold", "authority.release"}));
+}
+
+TEST(Enumerations, HaveTheSpecifiedValues) {
+  const json spec = fixture("enums.json");
+  std::size_t compared = 0;
+  for (const Enumeration* values : enumerations()) {
+    if (!spec.contains(values->name)) continue;
+    std::map<std::string, std::int64_t> wanted = spec[values->name];
+    std::map<std::string, std::int64_t> ours;
+    for (const auto& value : values->values) ours[value.name] = value.number;
+    EXPECT_EQ(ours, wanted) << values->name;
+    ++compared;
+  }
+  EXPECT_EQ(compared, 10U);
+}
+
+TEST(OpenRpc, MarksOriginAndSupportOfEveryMethod) {
+  const json& document = openrpc_document();
+  ASSERT_EQ(document["methods"].size(), method_table().size());
+  for (const json& entry : document["methods"]) {
+    const Method* declared = find_method(entry["name"].get<std::string>());
+    ASSERT_NE(declared, nullptr);
+    EXPECT_EQ(entry["x-origin"], to_string(declared->origin));
+    EXPECT_EQ(entry["x-supported"], declared->supported()) << declared->name;
+    EXPECT_EQ(entry.contains("x-missing"), !declared->supported()) << declared->name;
+    EXPECT_EQ(entry["params"].size(), declared->parameters.size());
+  }
+}
+
+TEST(ApiPage, IsTheOneInDocs) {
+  std::ifstream file(std::string(RMAC_SOURCE_DIR) + "/docs/api.md");
+  const std::string written((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  EXPECT_TRUE(written == api_page()) << "docs/api.md is stale; write it again with rmacd --print-api > docs/api.md";
+}
+
+}  // namespace
+}  // namespace rmac::gateway

@@ -1,0 +1,261 @@
+// Who may move the machine, who may stop it, and what happens when a client is gone.
+#include <gtest/gtest.h>
+
+#include "bench.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+using fakes::Client;
+using fakes::FakeMachine;
+using fakes::ServerBench;
+using nlohmann::json;
+using testing::_;
+using testing::HasSubstr;
+using testing::Return;
+
+constexpr const char* kMove = R"({"MoveID":1,"TargetFrame":{"p":[0,0,0],"axis":[0,0,1]}})";
+
+std::string move_line(int id) {
+  return R"({"jsonrpc":"2.0","id":)" + std::to_string(id) + R"(,"method":"RMAC_CAM.MoveToPathTarget","params":)" +
+         kMove + "}\n";
+}
+
+void set_running(ServerBench& bench) {
+  bench.on_gateway([](Server&, FakeMachine& machine) {
+    machine.now.state = CycleState::Running;
+    machine.now.moving = true;
+  });
+}
+
+TEST(Authority, IsHeldByOneClientAndNamesItToTheSecond) {
+  ServerBench bench;
+  Client first(bench.port());
+  first.call("hello", R"({"client":"cam-tool"})");
+  EXPECT_EQ(first.call("authority.acquire")["result"], true);
+  EXPECT_EQ(first.call("authority.acquire")["result"], true) << "again is no error";
+  Client second(bench.port());
+  const json refused = second.call("authority.acquire")["error"];
+  EXPECT_EQ(refused["code"], rpc_code::kAuthorityHeld);
+  EXPECT_THAT(refused["message"].get<std::string>(), HasSubstr("cam-tool"));
+  EXPECT_EQ(second.call("authority.renew")["error"]["code"], rpc_code::kAuthorityRequired);
+  EXPECT_EQ(first.call("authority.release")["result"], true);
+  EXPECT_EQ(second.call("authority.acquire")["result"], true);
+}
+
+TEST(Authority, SecondClientMayNotJogButMayStop) {
+  ServerBench bench;
+  bench.on_gateway([](Server&, FakeMachine& machine) {
+    EXPECT_CALL(machine.cam_mock, jog_joint(_, _)).Times(0);
+    EXPECT_CALL(machine.cam_mock, stop_now()).WillOnce(Return(Expected<>{}));
+    EXPECT_CALL(machine.cam_mock, feed_hold()).WillOnce(Return(Expected<>{}));
+  });
+  Client first(bench.port());
+  EXPECT_EQ(first.call("authority.acquire")["result"], true);
+  Client second(bench.port());
+  EXPECT_EQ(second.call("RMAC_CAM.JogJoint", R"({"JntNum":0,"Distance":1})")["error"]["code"],
+            rpc_code::kAuthorityRequired);
+  EXPECT_EQ(second.call("RMAC_CAM.StopNow")["result"], true);
+  EXPECT_EQ(second.call("RMAC_CAM.FeedHold")["result"], true);
+}
+
+TEST(Authority, LossInMidCutStopsTheMachineAndIsAnnounced) {
+  ServerBench bench;
+  std::promise<void> stopped;
+  bench.on_gateway([&](Server&, FakeMachine& machine) {
+    EXPECT_CALL(machine.cam_mock, cycle_stop()).WillOnce([&]() -> Expected<> {
+      stopped.set_value();
+      return {};
+    });
+  });
+  Client watcher(bench.port());
+  EXPECT_EQ(watcher.call("subscribe", R"({"topics":["events"]})")["result"], true);
+  {
+    Client holder(bench.port());
+    holder.call("hello", R"({"client":"cam-tool"})");
+    EXPECT_EQ(holder.call("authority.acquire")["result"], true);
+    set_running(bench);
+  }
+  stopped.get_future().wait();
+  EXPECT_THAT(watcher.pushed("events")["message"].get<std::string>(), HasSubstr("took motion authority"));
+  const json event = watcher.pushed("events");
+  EXPECT_EQ(event["kind"], "Authority");
+  EXPECT_THAT(event["message"].get<std::string>(),
+              testing::AllOf(HasSubstr("cam-tool"), HasSubstr("disconnected"), HasSubstr("stopped on its path")));
+  EXPECT_EQ(watcher.call("authority.acquire")["result"], true);
+}
+
+TEST(Authority, LossAtRestStopsNothing) {
+  ServerBench bench;
+  bench.on_gateway([](Server&, FakeMachine& machine) { EXPECT_CALL(machine.cam_mock, cycle_stop()).Times(0); });
+  Client watcher(bench.port());
+  EXPECT_EQ(watcher.call("subscribe", R"({"topics":["events"]})")["result"], true);
+  { EXPECT_EQ(Client(bench.port()).call("authority.acquire")["result"], true); }
+  watcher.pushed("events");
+  EXPECT_THAT(watcher.pushed("events")["message"].get<std::string>(), HasSubstr("disconnected"));
+}
+
+TEST(Authority, LossPowersOffAtRestWhereConfiguredSo) {
+  ServerOptions options;
+  options.lease_lost = LeaseLostAction::StopAndPowerOff;
+  ServerBench bench(options);
+  bench.on_gateway([](Server&, FakeMachine& machine) {
+    EXPECT_CALL(machine.cam_mock, cycle_stop()).WillOnce([&]() -> Expected<> {
+      EXPECT_TRUE(machine.device_fake.device) << "power must stay on until the machine rests";
+      machine.now.state = CycleState::Stopping;
+      return {};
+    });
+  });
+  Client holder(bench.port());
+  EXPECT_EQ(holder.call("authority.acquire")["result"], true);
+  set_running(bench);
+  EXPECT_EQ(holder.call("authority.release")["result"], true);
+  EXPECT_EQ(holder.call("Device.OpenDeviceDatabase")["result"], true);
+  bench.on_gateway([](Server& server, FakeMachine& machine) {
+    machine.now.state = CycleState::Idle;
+    machine.now.moving = false;
+    server.tick();
+  });
+  EXPECT_TRUE(holder.call("Device.OpenDeviceDatabase").contains("error")) << "unloaded";
+}
+
+TEST(QueueWait, StopOvertakesAMoveThatWaitsForRoom) {
+  ServerOptions options;
+  options.queue_wait = std::chrono::hours(1);
+  ServerBench bench(options);
+  bench.on_gateway([](Server&, FakeMachine& machine) {
+    ON_CALL(machine.cam_mock, queue_move(_, _)).WillByDefault(Return(failure(MinorCode::CommandQueueFull, "full")));
+    ON_CALL(machine.cam_mock, cycle_stop()).WillByDefault([&]() -> Expected<> {
+      machine.now.state = CycleState::Stopping;
+      return {};
+    });
+  });
+  set_running(bench);
+  Client client(bench.port());
+  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  client.send(move_line(10) + move_line(11) + "{\"jsonrpc\":\"2.0\",\"id\":12,\"method\":\"RMAC_CAM.Ok\"}\n" +
+              "{\"jsonrpc\":\"2.0\",\"id\":13,\"method\":\"RMAC_CAM.CycleStop\",\"params\":[1]}\n");
+  EXPECT_EQ(client.json_line()["id"], 13) << "the stop is answered first";
+  // Stopping makes no room, so the moves that waited are refused at once, in order.
+  for (const int id : {10, 11}) {
+    const json refused = client.json_line();
+    EXPECT_EQ(refused["id"], id);
+    EXPECT_EQ(refused["error"]["data"]["minorName"], "MACHINE_ERR_COMMAND_QUEUE_FULL");
+  }
+  EXPECT_EQ(client.json_line()["id"], 12);
+}
+
+TEST(QueueWait, StopInsideABatchOvertakesToo) {
+  ServerOptions options;
+  options.queue_wait = std::chrono::hours(1);
+  ServerBench bench(options);
+  std::promise<void> stopped;
+  bench.on_gateway([&](Server&, FakeMachine& machine) {
+    ON_CALL(machine.cam_mock, queue_move(_, _)).WillByDefault(Return(failure(MinorCode::CommandQueueFull, "full")));
+    ON_CALL(machine.cam_mock, stop_now()).WillByDefault([&]() -> Expected<> {
+      machine.now.state = CycleState::Stopping;
+      stopped.set_value();
+      return {};
+    });
+  });
+  set_running(bench);
+  Client client(bench.port());
+  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  std::string move = move_line(20);
+  move.pop_back();
+  client.send(move_line(19) + "[" + move + ",{\"jsonrpc\":\"2.0\",\"id\":21,\"method\":\"RMAC_CAM.StopNow\"}]\n");
+  stopped.get_future().wait();
+  EXPECT_EQ(client.json_line()["id"], 19);
+  const json batch = client.json_line();
+  EXPECT_TRUE(batch[0].contains("error"));
+  EXPECT_EQ(batch[1]["result"], true);
+}
+
+TEST(QueueWait, MoveIsTakenWhenThereIsRoomAgain) {
+  ServerOptions options;
+  options.queue_wait = std::chrono::hours(1);
+  ServerBench bench(options);
+  bench.on_gateway([](Server&, FakeMachine& machine) {
+    EXPECT_CALL(machine.cam_mock, queue_move(_, _))
+        .WillOnce(Return(failure(MinorCode::CommandQueueFull, "full")))
+        .WillOnce(Return(failure(MinorCode::CommandQueueFull, "full")))
+        .WillOnce(Return(Expected<>{}));
+  });
+  set_running(bench);
+  Client client(bench.port());
+  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  client.send(move_line(30));
+  EXPECT_EQ(client.json_line()["result"], true);
+  EXPECT_EQ(client.call("RMAC_CAM.Ok")["result"], true) << "waiting is no error of the machine";
+}
+
+TEST(QueueWait, OtherClientsAreServedMeanwhile) {
+  ServerOptions options;
+  options.queue_wait = std::chrono::hours(1);
+  ServerBench bench(options);
+  std::promise<void> tried;
+  bench.on_gateway([&](Server&, FakeMachine& machine) {
+    EXPECT_CALL(machine.cam_mock, queue_move(_, _))
+        .WillOnce([&](std::int64_t, const Geometry&) -> Expected<> {
+          tried.set_value();
+          return failure(MinorCode::CommandQueueFull, "full");
+        })
+        .WillRepeatedly(Return(failure(MinorCode::CommandQueueFull, "full")));
+  });
+  set_running(bench);
+  Client waiting(bench.port());
+  EXPECT_EQ(waiting.call("authority.acquire")["result"], true);
+  waiting.send(move_line(1));
+  tried.get_future().wait();
+  EXPECT_EQ(Client(bench.port()).call("RMAC_CAM.GetState").contains("result"), true);
+}
+
+TEST(QueueWait, FullQueueIsRefusedAtOnceBeforeCycleStart) {
+  ServerOptions options;
+  options.queue_wait = std::chrono::hours(1);
+  ServerBench bench(options);
+  bench.on_gateway([](Server&, FakeMachine& machine) {
+    EXPECT_CALL(machine.cam_mock, queue_move(_, _)).WillOnce(Return(failure(MinorCode::CommandQueueFull, "full")));
+  });
+  Client client(bench.port());
+  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  client.send(move_line(40));
+  EXPECT_EQ(client.json_line()["error"]["code"], -32015);
+  EXPECT_EQ(client.call("RMAC_CAM.StatusMinorCode")["result"], 15);
+}
+
+TEST(QueueWait, GivesUpAfterItsTime) {
+  ServerOptions options;
+  options.queue_wait = std::chrono::milliseconds(0);
+  ServerBench bench(options);
+  bench.on_gateway([](Server&, FakeMachine& machine) {
+    ON_CALL(machine.cam_mock, queue_move(_, _)).WillByDefault(Return(failure(MinorCode::CommandQueueFull, "full")));
+  });
+  set_running(bench);
+  Client client(bench.port());
+  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  client.send(move_line(50));
+  EXPECT_EQ(client.json_line()["error"]["code"], -32015);
+}
+
+TEST(QueueWait, MovesBehindARefusedOneAreNotTakenInItsPlace) {
+  ServerOptions options;
+  options.queue_wait = std::chrono::milliseconds(0);
+  ServerBench bench(options);
+  bench.on_gateway([](Server&, FakeMachine& machine) {
+    EXPECT_CALL(machine.cam_mock, queue_move(_, _)).WillOnce(Return(failure(MinorCode::CommandQueueFull, "full")));
+  });
+  Client client(bench.port());
+  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  std::string first = move_line(60);
+  std::string second = move_line(61);
+  first.pop_back();
+  second.pop_back();
+  client.send("[" + first + "," + second + "]\n");
+  const json answers = client.json_line();
+  EXPECT_EQ(answers[0]["error"]["code"], -32015);
+  EXPECT_THAT(answers[1]["error"]["message"].get<std::string>(), HasSubstr("a move sent before it"));
+}
+
+}  // namespace
+}  // namespace rmac::gateway
