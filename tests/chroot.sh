@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# Proves the two commands on a Debian 12 that holds nothing: makes one with debootstrap, clones the committed tree into it, and runs
+# ./demo.sh and ./test.sh --fast there, then the demo again without a network. Needs root, debootstrap and git.
+#   tests/chroot.sh FOLDER     FOLDER is made, and kept: a second run starts from the packages it has
+set -euo pipefail
+source=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+root=${1:-}
+if [ -z "$root" ] || [ $# -ne 1 ]; then
+  echo "usage: tests/chroot.sh FOLDER" >&2
+  exit 2
+fi
+if [ "$(id -u)" -ne 0 ]; then
+  echo "tests/chroot.sh: chroot needs root" >&2
+  exit 1
+fi
+
+# The mirror that this machine itself installs from.
+mirror=$(apt-get indextargets --format '$(REPO_URI) $(CODENAME)' 'Created-By: Packages' | awk '$2 == "bookworm" {print $1; exit}')
+if [ ! -x "$root/usr/bin/apt-get" ]; then
+  debootstrap --variant=minbase bookworm "$root" "${mirror:-http://deb.debian.org/debian}"
+fi
+cp /etc/resolv.conf "$root/etc/resolv.conf"
+rm -rf "$root/rmac"
+git clone --quiet --no-hardlinks "$source" "$root/rmac"
+
+unmount() { umount -l "$root/dev/shm" "$root/proc" 2>/dev/null || true; }
+trap unmount EXIT
+mount -t proc proc "$root/proc"
+mkdir -p "$root/dev/shm"
+mount -t tmpfs tmpfs "$root/dev/shm"
+
+inside() { # command line
+  env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 CI=true \
+    chroot "$root" bash -c "cd /rmac && $1" </dev/null
+}
+inside ./demo.sh
+inside "./test.sh --fast"
+echo "== again, without a network"
+export -f inside
+export root
+unshare --net bash -c "ip link set lo up && inside ./demo.sh"
+echo "chroot.sh: demo and tests pass in a fresh Debian 12"
