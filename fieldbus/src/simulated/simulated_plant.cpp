@@ -10,6 +10,8 @@ namespace {
 
 // Well below the current loop's lag.
 constexpr double kLargestStepS = 25e-6;
+// Below this (N·m, rpm) an exponential approach has arrived; going on would end in denormal numbers, which are slow.
+constexpr double kSettled = 1e-12;
 constexpr double kRadPerRpm = 2 * std::numbers::pi / 60;
 
 double towards_zero(double value, double amount) noexcept {
@@ -35,6 +37,7 @@ void AxisPlant::advance(double motor_nm, bool braked, double duration_s) noexcep
   const double approach = -std::expm1(-dt / parameters_.torque_lag_s);
   for (int i = 0; i < steps; ++i) {
     motor_nm_ += (bounded - motor_nm_) * approach;
+    if (std::abs(bounded - motor_nm_) < kSettled) motor_nm_ = bounded;
     step(braked, dt);
   }
 }
@@ -63,6 +66,7 @@ void SpindlePlant::advance(double wanted_rpm, bool powered, double duration_s) n
   const double approach = (bounded - speed_rpm_) * -std::expm1(-duration_s / parameters_.time_constant_s);
   const double change = std::clamp(approach, -change_bound_rpm, change_bound_rpm);
   speed_rpm_ += change;
+  if (std::abs(bounded - speed_rpm_) < kSettled) speed_rpm_ = bounded;
   torque_nm_ = powered ? change * kRadPerRpm / duration_s * parameters_.inertia_kg_m2 : 0;
 }
 
