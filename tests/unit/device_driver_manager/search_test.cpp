@@ -160,7 +160,7 @@ std::vector<Hostile> hostile_statements() {
       {"OpenComment", "/* nothing", "empty"},
       {"RecursiveTable",
        "WITH RECURSIVE c(MechanismID) AS (SELECT 1 UNION ALL SELECT MechanismID + 1 FROM c) SELECT * FROM c", "WITH"},
-      {"Join26Ways", join(26), "more than 10000 rows"},
+      {"Join26Ways", join(26), ""},
       {"Join26WaysWithoutARow", join(26) + " WHERE a0.Length + a25.Length < 0", "ran longer than 200 ms"},
       {"Join26WaysCounted", join(26) + " GROUP BY a0.MechanismID HAVING count(*) > 1", "ran longer than 200 ms"},
       {"Join26WaysSorted", join(26) + " ORDER BY a25.Name || a24.Name", ""},
