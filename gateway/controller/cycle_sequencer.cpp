@@ -135,7 +135,9 @@ PathCommand CycleSequencer::wanted(const CycleObservation& seen) noexcept {
   if (state_ != CycleState::Running) return PathCommand::Stop;
   // Motion under way is not interrupted by a spindle command: it began with the speed it needed.
   if (spindle_wait_ && !positioning_ && seen.at_rest) return PathCommand::Stop;
-  return mode_ == sdk::CycleMode::Automatic ? PathCommand::Run : PathCommand::RunOne;
+  if (mode_ == sdk::CycleMode::Automatic) return PathCommand::Run;
+  // The planner takes the move that is next when it is told: there must be one.
+  return seen.moves_left > 0 ? PathCommand::RunOne : PathCommand::Stop;
 }
 
 CycleSequencer::Verdict CycleSequencer::step(const CycleObservation& seen) noexcept {

@@ -23,8 +23,11 @@ ModuleLoader Controller::Impl::loader() const {
 }
 
 void Controller::Impl::drain() {
+  // No more than a ring's worth: in virtual time the servo thread could fill it as fast as it is emptied.
   CycleSample sample;
-  while (link->samples.pop(sample)) waiting_samples.push_back(sample);
+  for (std::size_t i = 0; i < link->samples.capacity() && link->samples.pop(sample); ++i) {
+    waiting_samples.push_back(sample);
+  }
 }
 
 template <typename Reached>

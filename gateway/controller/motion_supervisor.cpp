@@ -94,9 +94,9 @@ MotionSupervisor::Pace MotionSupervisor::advance(const ServoStatus& status) {
   work_to_do_ = false;
   settle(status);
   if (!mechanism_ || status.generation != generation_) return Pace::Calm;
-  if (sequencer_.state() != CycleState::Faulted && !mechanism_->planner.idle(status.progress)) {
+  if (sequencer_.state() != CycleState::Faulted) {
     mechanism_->planner.step(status.progress);
-    return Pace::Planning;
+    if (!mechanism_->planner.idle(status.progress)) return Pace::Planning;
   }
   return pace(status);
 }

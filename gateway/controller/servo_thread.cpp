@@ -11,6 +11,8 @@ namespace rmac::gateway {
 namespace {
 /// How long virtual time stands still before it looks again whether it may go on.
 constexpr std::chrono::microseconds kStandstill{50};
+/// More planning than this in one cycle means that the planner waits for the cycle.
+constexpr int kMostPlanningPasses = 1000;
 }  // namespace
 
 ServoThread::ServoThread(Options options, ServoLink& link, MotionSupervisor& supervisor)
@@ -65,6 +67,7 @@ void ServoThread::plan() {
 
 void ServoThread::run_virtual(ServoCycle& cycle) {
   bool calm = false;
+  int passes = 0;
   while (!stop_.load(std::memory_order_relaxed)) {
     // Nobody may miss a cycle in virtual time: a full ring makes the machine wait for its readers.
     if (link_.samples.size() == link_.samples.capacity()) {
@@ -72,7 +75,8 @@ void ServoThread::run_virtual(ServoCycle& cycle) {
       continue;
     }
     const auto pace = supervisor_.advance(cycle.status());
-    if (pace == MotionSupervisor::Pace::Planning) continue;
+    if (pace == MotionSupervisor::Pace::Planning && ++passes < kMostPlanningPasses) continue;
+    passes = 0;
     if (pace == MotionSupervisor::Pace::Sending) {
       std::this_thread::sleep_for(kStandstill);
       continue;
