@@ -36,15 +36,17 @@ void add_feeds(const auto& add) {
              number("MaxFeedrate", "mm/min").above(0), &RmacCam::set_max_feedrate));
   add(getter("RMAC_CAM.GetMaxFeedrate", "Largest feed that SetFeedrate takes.", "mm/min", &RmacCam::max_feedrate));
   add(setter("RMAC_CAM.SetPathAccelRise",
-             "Acceleration along the path while the feed rises, for moves queued from now on; 0: the joints bound it.",
-             number("newVal", "mm/s²").at_least(0), &RmacCam::set_path_accel_rise));
-  add(getter("RMAC_CAM.GetPathAccelRise", "What SetPathAccelRise set.", "mm/s²", &RmacCam::path_accel_rise));
+             "Acceleration along the path while the feed rises, for moves queued from now on.",
+             number("newVal", "mm/s²").above(0), &RmacCam::set_path_accel_rise));
+  add(getter("RMAC_CAM.GetPathAccelRise", "What SetPathAccelRise set; 0 while the joints alone bound it.", "mm/s²",
+             &RmacCam::path_accel_rise));
   add(setter("RMAC_CAM.SetPathAccelFall",
-             "Deceleration along the path while the feed falls, for moves queued from now on; 0: the joints bound it.",
-             number("newVal", "mm/s²").at_least(0), &RmacCam::set_path_accel_fall));
-  add(getter("RMAC_CAM.GetPathAccelFall", "What SetPathAccelFall set.", "mm/s²", &RmacCam::path_accel_fall));
+             "Deceleration along the path while the feed falls, for moves queued from now on.",
+             number("newVal", "mm/s²").above(0), &RmacCam::set_path_accel_fall));
+  add(getter("RMAC_CAM.GetPathAccelFall", "What SetPathAccelFall set; 0 while the joints alone bound it.", "mm/s²",
+             &RmacCam::path_accel_fall));
   add(setter("RMAC_CAM.SetJointInterpSpeed", "Speed of joint moves and jogs, of each joint's speed limit.",
-             number("newVal", "%").above(0), &RmacCam::set_joint_interp_speed));
+             number("newVal", "%").within(0, 100), &RmacCam::set_joint_interp_speed));
   add(getter("RMAC_CAM.GetJointInterpSpeed", "What SetJointInterpSpeed set.", "%", &RmacCam::joint_interp_speed));
   constexpr const char* kPerJoint = "joint moves are bounded by each joint's acceleration limit alone so far";
   for (const bool rise : {true, false}) {
@@ -131,15 +133,10 @@ void add_auxiliaries(const auto& add) {
   add(method("RMAC_CAM.SetAnimation",
              "True streams the joint values to this connection (topic joints, 50 Hz) for an animation; false ends it.")
           .takes(boolean("mode"))
-          .does([](Call& call, bool on) -> tl::expected<nlohmann::json, RpcError> {
-            if (auto set = call.machine.cam().set_animation(on); !set) {
-              return tl::unexpected<RpcError>(to_rpc_error(set.error()));
-            }
-            if (!on) {
-              call.session.unsubscribe({"joints"});
-              return nlohmann::json();
-            }
-            return call.session.subscribe({"joints"}, 50).map([] { return nlohmann::json(); });
+          .does([](Call& call, bool on) -> tl::expected<void, RpcError> {
+            if (on) return call.session.subscribe({"joints"}, 50);
+            call.session.unsubscribe({"joints"});
+            return {};
           }));
 }
 

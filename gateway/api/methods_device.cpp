@@ -57,7 +57,10 @@ void add_life_cycle(const auto& add) {
           .needs(Permission::Authority)
           .extension()
           .does([](Call& call, const std::string& name, std::optional<bool> virtual_mode) {
-            return call.machine.device().load(name, virtual_mode.value_or(false));
+            return call.machine.device().load(name, virtual_mode.value_or(false)).map([&] {
+              call.status.override_percent = 100;  // another mechanism starts with the programmed feed
+              call.status.cycle_mode.clear();
+            });
           }));
   add(method("Device.Unload", "Takes the mechanism out at standstill: drives off, no motion until another is loaded.")
           .gives(WireType::Boolean)

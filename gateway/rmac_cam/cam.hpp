@@ -28,6 +28,7 @@ class Cam final : public sdk::RmacCam {
   [[nodiscard]] bool cycle_stop_status() const override;
   Expected<> queue_move(std::int64_t id, const Geometry& geometry) override;
   [[nodiscard]] int moves_in_buffer() const override;
+  [[nodiscard]] Expected<std::vector<double>> joints_at(const ToolPose& pose) const override;
   Expected<> set_feedrate(double mm_min) override;
   [[nodiscard]] double feedrate() const override;
   Expected<> set_max_feedrate(double mm_min) override;

@@ -16,6 +16,13 @@ Answer refused(int code, std::string message, MinorCode minor) {
   return tl::unexpected<RpcError>(RpcError{code, std::move(message), minor});
 }
 
+/// A line that holds no request still gets its answer in its turn.
+Request not_a_request(RpcError error) {
+  Request request;
+  request.error = std::move(error);
+  return request;
+}
+
 std::string text_of(const nlohmann::json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -25,23 +32,19 @@ std::string text_of(const nlohmann::json& json) {
 void Connection::take_line(std::string_view line) {
   if (line.ends_with('\r')) line.remove_suffix(1);
   if (line.find_first_not_of(" \t") == std::string_view::npos) return;
-  auto parsed = parse_line(line);
-  if (!parsed) {
-    send(text_of(to_response(nullptr, tl::unexpected<RpcError>(std::move(parsed.error())))));
-    return;
-  }
   Work work;
   work.bytes = line.size();
   work.received = std::chrono::steady_clock::now();
-  work.batch = parsed->is_array();
-  if (work.batch && (parsed->empty() || parsed->size() > kLargestBatch)) {
-    send(text_of(to_response(
-        nullptr, refused(rpc_code::kInvalidRequest,
-                         fmt::format("a batch of {} requests; 1 to {} are taken", parsed->size(), kLargestBatch),
-                         MinorCode::InvalidParameter))));
-    return;
-  }
-  if (work.batch) {
+  auto parsed = parse_line(line);
+  if (!parsed) {
+    work.requests.push_back(not_a_request(std::move(parsed.error())));
+  } else if (parsed->is_array() && (parsed->empty() || parsed->size() > kLargestBatch)) {
+    work.requests.push_back(
+        not_a_request({rpc_code::kInvalidRequest,
+                       fmt::format("a batch of {} requests; 1 to {} are taken", parsed->size(), kLargestBatch),
+                       MinorCode::InvalidParameter}));
+  } else if (parsed->is_array()) {
+    work.batch = true;
     for (auto& message : *parsed) work.requests.push_back(read_request(std::move(message)));
   } else {
     work.requests.push_back(read_request(std::move(*parsed)));

@@ -8,7 +8,6 @@ namespace {
 
 using fakes::Api;
 using nlohmann::json;
-using testing::_;
 using testing::HasSubstr;
 using testing::Return;
 
@@ -116,7 +115,6 @@ TEST(CamApi, ButtonsDoWhatTheirFunctionsDo) {
 
 TEST(CamApi, AnimationStreamsJointsToItsCaller) {
   Api api;
-  ON_CALL(api.machine.cam_mock, set_animation(_)).WillByDefault(Return(Expected<>{}));
   EXPECT_TRUE(api.result("RMAC_CAM.SetAnimation", "[true]").is_null());
   EXPECT_EQ(api.session.topics, std::vector<std::string>{"joints"});
   EXPECT_TRUE(api.result("RMAC_CAM.SetAnimation", "[false]").is_null());
