@@ -89,10 +89,14 @@ class Appliance:
         return client
 
     def operator(self, machine="DMACXYZ"):
-        """A client that holds authority over a loaded machine."""
+        """A client that holds authority over a loaded machine, which stands at home.
+
+        A drive stands where it stands, to the encoder's count; the first path begins at zero exactly."""
         client = self.client("operator")
         client.call("authority.acquire")
         client.call("Device.Load", Name=machine)
+        client.call("RMAC_CAM.Home")
+        wait_for_rest(client)
         return client
 
     def rmac(self, *words, **options):
@@ -111,13 +115,19 @@ def line(start, end, move_id=1):
     return {"MoveID": move_id, "StartPoint": pose(*start), "EndPoint": pose(*end)}
 
 
-def run_to_rest(client):
-    """Starts the cycle and returns the state when the queue is done."""
+def wait_for_rest(client):
+    """The state once nothing moves and nothing is queued."""
     client.call("subscribe", topics=["state"], rate_hz=100)
-    client.call("RMAC_CAM.CycleStart", Mode="AUTOMATIC")
     state = client.state()
     while state["moving"] or state["moves_in_buffer"] > 0:
-        state = client.wait_note("state")
+        client.wait_note("state")
+        state = client.state()
     client.call("unsubscribe", topics=["state"])
     client.notes.clear()
-    return client.state()
+    return state
+
+
+def run_to_rest(client):
+    """Starts the cycle and returns the state when the queue is done."""
+    client.call("RMAC_CAM.CycleStart", Mode="AUTOMATIC")
+    return wait_for_rest(client)

@@ -30,13 +30,16 @@ class BadInput(unittest.TestCase):
         """What a refused request must leave as it was."""
         state = self.operator.state()
         kept = ("mechanism", "state", "moving", "moves_in_buffer", "authority", "override_percent", "virtual")
-        return {key: state[key] for key in kept} | {"pose": [round(value, 3) for value in state["pose"]]}
+        return {key: state[key] for key in kept} | {"pose": state["pose"]}
 
     def setUp(self):
         self.before = self.picture()
 
     def tearDown(self):
-        self.assertEqual(self.picture(), self.before)
+        after = self.picture()
+        for value, wanted in zip(after.pop("pose"), self.before.pop("pose")):
+            self.assertAlmostEqual(value, wanted, delta=0.02)  # A held drive sways by a few encoder counts.
+        self.assertEqual(after, self.before)
 
     def assert_error(self, answer, code, *words):
         self.assertIn("error", answer)

@@ -5,7 +5,7 @@ import os
 import shutil
 import unittest
 
-from appliance import Appliance, line, run_to_rest
+from appliance import Appliance, line, pose, run_to_rest, wait_for_rest
 
 XY_FOLDER = "mill/2-axis/DMACXY"
 OPERATION_ENABLED_MASK, OPERATION_ENABLED = 0x6F, 0x27
@@ -60,7 +60,7 @@ class Swap(unittest.TestCase):
             self.assertTrue(operator.refusal("RMAC_CAM.JogJoint", JntNum=0, Distance=1).message)
             operator.call("Device.Load", Name="DMACXYZ")
             operator.call("RMAC_CAM.JogJoint", JntNum=0, Distance=1)
-            self.assertAlmostEqual(run_to_rest(operator)["joints"][0], 1, delta=0.02)
+            self.assertAlmostEqual(wait_for_rest(operator)["joints"][0], 1, delta=0.02)
 
     def test_virtual_mode_moves_setpoints_and_leaves_drives_alone(self):
         with Appliance() as appliance:
@@ -68,7 +68,7 @@ class Swap(unittest.TestCase):
             operator.call("authority.acquire")
             operator.call("Device.Load", Name="DMACXYZ", Virtual=True)
             operator.call("RMAC_CAM.SetFeedrate", Feedrate=1500)
-            operator.call("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (5, 0, 0)))
+            operator.call("RMAC_CAM.MoveToPathTarget", MoveID=1, TargetFrame=pose(5, 0, 0))
             state = run_to_rest(operator)
             self.assertTrue(state["virtual"])
             self.assertAlmostEqual(state["joints"][0], 5, delta=1e-9)

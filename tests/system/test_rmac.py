@@ -133,16 +133,18 @@ class Programs(unittest.TestCase):
         return str(file)
 
     def square(self, side=4.0, rounds=1):
+        """A positioning move and four lines a round."""
         corners = [(0, 0, 0), (side, 0, 0), (side, side, 0), (0, side, 0), (0, 0, 0)]
-        return [request("RMAC_CAM.MoveAlongLine", **line(start, end, move_id=number))
-                for _ in range(rounds) for number, (start, end) in enumerate(zip(corners, corners[1:]), start=1)]
+        start = [request("RMAC_CAM.MoveToPathTarget", MoveID=9, TargetFrame=pose(0, 0, 0))]
+        return start + [request("RMAC_CAM.MoveAlongLine", **line(start, end, move_id=number))
+                        for _ in range(rounds) for number, (start, end) in enumerate(zip(corners, corners[1:]), start=1)]
 
     def test_run_reports_moves_and_cycle_time(self):
         program = self.program(request("RMAC_CAM.SetFeedrate", Feedrate=1500), "", *self.square())
         done = self.appliance.rmac("--json", "run", program)
         self.assertEqual((done.returncode, done.stderr), (DONE, ""))
         report = json.loads(done.stdout)
-        self.assertEqual(report["moves"], 4)
+        self.assertEqual(report["moves"], 5)
         # 16 mm at 25 mm/s, and some for the corners.
         self.assertGreater(report["cycle_time_s"], 16 / 25)
         self.assertLess(report["cycle_time_s"], 3)
@@ -159,8 +161,8 @@ class Programs(unittest.TestCase):
         times = [float(row["t_s"]) for row in rows]
         steps = {round((later - earlier) * 1000) for earlier, later in zip(times, times[1:])}
         self.assertEqual(steps, {1})
-        self.assertEqual(max(float(row["q1"]) for row in rows), 4)
-        self.assertEqual({int(row["move_id"]) for row in rows} - {0}, {1, 2, 3, 4})
+        self.assertAlmostEqual(max(float(row["q1"]) for row in rows), 4, delta=1e-9)
+        self.assertEqual({int(row["move_id"]) for row in rows} - {0}, {9, 1, 2, 3, 4})
         for before, after in zip(rows, rows[1:]):
             moved = float(after["q1"]) - float(before["q1"])
             self.assertLessEqual(abs(moved), 200 / 1000 * 1.001)
@@ -171,7 +173,7 @@ class Programs(unittest.TestCase):
             program = self.program(request("RMAC_CAM.SetFeedrate", Feedrate=2000), *self.square(side=1, rounds=25))
             done = small.rmac("--json", "run", "--machine", "DMACXYZ", program)
             self.assertEqual((done.returncode, done.stderr), (DONE, ""))
-            self.assertEqual(json.loads(done.stdout)["moves"], 100)
+            self.assertEqual(json.loads(done.stdout)["moves"], 101)
 
     def test_program_may_start_its_own_cycle(self):
         program = self.program(*self.square(), request("RMAC_CAM.CycleStart", Mode="AUTOMATIC"))
@@ -186,7 +188,7 @@ class Programs(unittest.TestCase):
         record = self.appliance.folder / "swap.csv"
         done = self.appliance.rmac("--json", "run", program, "--record", str(record))
         self.assertEqual((done.returncode, done.stderr), (DONE, ""))
-        self.assertEqual(json.loads(done.stdout)["moves"], 8)
+        self.assertEqual(json.loads(done.stdout)["moves"], 10)
         second = pathlib.Path(record.parent, "swap-2.csv")
         self.assertIn(",q2,qd1,", second.read_text().splitlines()[0])
 
@@ -209,12 +211,12 @@ class Programs(unittest.TestCase):
         return done.stderr
 
     def test_syntax_error_is_found_before_anything_moves(self):
-        self.assert_run_fails("part.rmac:6", request("RMAC_CAM.SetFeedrate", Feedrate=1500), *self.square(), "{broken")
+        self.assert_run_fails("part.rmac:7", request("RMAC_CAM.SetFeedrate", Feedrate=1500), *self.square(), "{broken")
         state = json.loads(self.appliance.rmac("--json", "status").stdout)
         self.assertAlmostEqual(state["joints"][0], 0, delta=0.02)
 
     def test_refused_request_names_its_line_and_the_machines_reason(self):
-        message = self.assert_run_fails("part.rmac:2", request("RMAC_CAM.SetFeedrate", Feedrate=1500),
+        message = self.assert_run_fails("part.rmac:2", self.square()[0],
                                         request("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (77, 0, 0))))
         self.assertIn("X", message)
 
@@ -241,7 +243,7 @@ class InterruptedProgram(unittest.TestCase):
             watcher.call("subscribe", topics=["state"], rate_hz=100)
             file = appliance.folder / "slow.rmac"
             file.write_text(request("RMAC_CAM.SetFeedrate", Feedrate=120) + "\n" +
-                            request("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (40, 0, 0))) + "\n")
+                            request("RMAC_CAM.MoveToPathTarget", MoveID=1, TargetFrame=pose(40, 0, 0)) + "\n")
             with subprocess.Popen([BUILD / "bin" / "rmac", "--port", str(appliance.port), "run", file],
                                   stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as run:
                 watcher.wait_note("state", lambda state: state["moving"] and state["pose"][0] > 0.2)
