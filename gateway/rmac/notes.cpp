@@ -32,6 +32,7 @@ EventNote read_event(const nlohmann::json& params) {
 StateNote read_state(const nlohmann::json& params) {
   StateNote state;
   read(params, "state", state.state);
+  read(params, "mode", state.mode);
   read(params, "mechanism", state.mechanism);
   read(params, "authority", state.authority);
   read(params, "moving", state.moving);

@@ -17,7 +17,8 @@ struct EventNote {
 
 /// What the `state` topic tells. mm, deg, mm/min, rpm.
 struct StateNote {
-  std::string state, mechanism, authority;  ///< cycle state; empty: none loaded; empty: nobody holds it
+  std::string state, mode;           ///< of the cycle; mode of its last start
+  std::string mechanism, authority;  ///< empty: none loaded; nobody holds it
   bool moving = false, virtual_mode = false;
   std::int64_t move_id = 0;
   int moves_in_buffer = 0, status_minor = 0;

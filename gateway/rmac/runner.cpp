@@ -226,11 +226,43 @@ Result<> Runner::watch_joints() {
 }
 
 Result<> Runner::wait(const std::function<bool()>& done) {
-  auto waited = connection_.wait([&] { return !failure_.empty() || done(); });
-  if (waited && !failure_.empty()) {
-    return fail(failure_);
+  for (;;) {
+    auto waited = connection_.wait([&] { return !failure_.empty() || rest_told_ || done(); });
+    if (!waited) {
+      return waited;
+    }
+    if (!failure_.empty()) {
+      return fail(failure_);
+    }
+    if (!rest_told_) {
+      return {};
+    }
+    rest_told_ = false;
+    if (auto explained = explain_rest(); !explained) {
+      return explained;
+    }
   }
-  return waited;
+}
+
+Result<> Runner::explain_rest() {
+  // A jog, or a move in manual mode, ends at rest as it should. So does a machine that another client stopped.
+  auto answer = connection_.call("RMAC_CAM.GetState");
+  if (!answer) {
+    return tl::unexpected(answer.error());
+  }
+  const auto state = read_state(*answer);
+  if (state.state != "Idle" || unfinished_.empty()) {
+    return {};
+  }
+  const auto queued = unfinished_.size() - std::min(unanswered_, unfinished_.size());
+  if (static_cast<std::size_t>(state.moves_in_buffer) < queued) {
+    return fail(
+        fmt::format("the machine was stopped and its queue emptied: {} moves are not done", unfinished_.size()));
+  }
+  if (state.moves_in_buffer > 0 && state.mode == "AUTOMATIC") {
+    return fail(fmt::format("the cycle was stopped: {} moves are not done", unfinished_.size()));
+  }
+  return {};
 }
 
 void Runner::halt() {
@@ -265,10 +297,10 @@ void Runner::take(const EventNote& event) {
     ++report_.moves;
     last_done_s_ = event.t_s;
     report_.cycle_time_s = event.t_s - first_start_s_.value_or(event.t_s);
-  } else if (event.kind == "Fault" || event.kind == "Stopped") {
-    if (!unfinished_.empty()) {
-      fail_with(event.message);
-    }
+  } else if (event.kind == "Fault") {
+    fail_with(event.message);
+  } else if (event.kind == "Stopped") {
+    rest_told_ = !unfinished_.empty();
   }
 }
 

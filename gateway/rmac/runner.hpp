@@ -49,6 +49,7 @@ class Runner {
   [[nodiscard]] Result<> rest();
   [[nodiscard]] Result<> watch_joints();
   [[nodiscard]] Result<> wait(const std::function<bool()>& done);
+  [[nodiscard]] Result<> explain_rest();
   void halt();
 
   void take(const std::string& topic, const nlohmann::json& params);
@@ -75,6 +76,7 @@ class Runner {
   bool unsettled_ =
       false;  ///< something acted on the machine since the last move: rest and cycle state must be looked at
   bool watching_ = false;
+  bool rest_told_ = false;  ///< the machine came to rest with moves not done
 };
 
 }  // namespace rmac::cli

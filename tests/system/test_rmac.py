@@ -184,11 +184,11 @@ class Programs(unittest.TestCase):
         program = self.program(
             request("RMAC_CAM.SetFeedrate", Feedrate=1500), *self.square(),
             request("Device.Load", Name="DMACXY"),
-            request("RMAC_CAM.SetFeedrate", Feedrate=1500), *self.square())
+            request("RMAC_CAM.SetFeedrate", Feedrate=1500), *self.square()[1:])
         record = self.appliance.folder / "swap.csv"
         done = self.appliance.rmac("--json", "run", program, "--record", str(record))
         self.assertEqual((done.returncode, done.stderr), (DONE, ""))
-        self.assertEqual(json.loads(done.stdout)["moves"], 10)
+        self.assertEqual(json.loads(done.stdout)["moves"], 9)
         second = pathlib.Path(record.parent, "swap-2.csv")
         self.assertIn(",q2,qd1,", second.read_text().splitlines()[0])
 
@@ -216,8 +216,8 @@ class Programs(unittest.TestCase):
         self.assertAlmostEqual(state["joints"][0], 0, delta=0.02)
 
     def test_refused_request_names_its_line_and_the_machines_reason(self):
-        message = self.assert_run_fails("part.rmac:2", self.square()[0],
-                                        request("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (77, 0, 0))))
+        message = self.assert_run_fails("part.rmac:3", request("RMAC_CAM.SetFeedrate", Feedrate=1500),
+                                        self.square()[0], request("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (77, 0, 0))))
         self.assertIn("X", message)
 
     def test_missing_file_and_unwritable_record_fail_in_one_line(self):
