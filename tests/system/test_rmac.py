@@ -176,7 +176,8 @@ class Programs(unittest.TestCase):
             self.assertEqual(json.loads(done.stdout)["moves"], 101)
 
     def test_program_may_start_its_own_cycle(self):
-        program = self.program(*self.square(), request("RMAC_CAM.CycleStart", Mode="AUTOMATIC"))
+        program = self.program(request("RMAC_CAM.SetFeedrate", Feedrate=1500), *self.square(),
+                               request("RMAC_CAM.CycleStart", Mode="AUTOMATIC"))
         done = self.appliance.rmac("--json", "run", program)
         self.assertEqual((done.returncode, done.stderr), (DONE, ""))
 
