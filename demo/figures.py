@@ -64,7 +64,7 @@ def judge(out, device_tree, session, records=None):
         "machine": session.machine,
         "moves": sum(c["moves"] for c in checks),
         "cycle_time_s": round(sum(c["cycle_time_s"] for c in checks), 3),
-        "path_deviation_um": round(max(c["path"]["deviation_um"] for c in checks), 6),
+        "path_deviation_um": float(f"{max(c['path']['deviation_um'] for c in checks):.3g}"),
         "following_error_um": round(max(c["following"]["largest_um"] for c in checks), 3),
         "part_deviation_um": round(deviation["part_deviation_um"], 3),
         "limit_violations": sum(c["limits"]["violations"] + c["feed"]["violations"] for c in checks),
@@ -94,10 +94,10 @@ def table(checks, deviation, plan, bounds, session):
     """Rows (what, value, bound, fine) and whether all are fine."""
     rows = []
 
-    def row(what, value, unit="", bound=None, digits=3, fine=None):
+    def row(what, value, unit="", bound=None, form=".3f", fine=None):
         if fine is None:
             fine = bound is None or value <= bound
-        text = f"{value:.{digits}f}" if isinstance(value, float) else str(value)
+        text = format(value, form) if isinstance(value, float) else str(value)
         rows.append((what, f"{text} {unit}".strip(), "" if bound is None else f"{bound:g} {unit}".strip(), bool(fine)))
 
     count = lambda key: sum(len(c["path"][key]) if key == "unfinished_moves" else c["path"][key] for c in checks)
@@ -108,30 +108,32 @@ def table(checks, deviation, plan, bounds, session):
     for check in checks:
         row(f"Cycle time, {check['mechanism']}", check["cycle_time_s"], "s")
     row("Setpoints off the exact path, largest", max(c["path"]["deviation_um"] for c in checks), "µm",
-        bounds["path_deviation_um"], 6)  # fmt: skip
+        bounds["path_deviation_um"], ".1e")  # fmt: skip
     row("Reported tool tip off the joints', largest", max(c["pose_disagrees_um"] for c in checks), "µm",
-        bounds["pose_disagrees_um"], 6)  # fmt: skip
+        bounds["pose_disagrees_um"], ".1e")  # fmt: skip
     row("Following error, largest of any joint", max(c["following"]["largest_um"] for c in checks), "µm",
         bounds["following_error_um"])  # fmt: skip
     row("Measured positions off the exact path, largest", max(c["contour_um"] for c in checks), "µm")
     row("Limit violations (travel, feed, speed, acceleration, jerk, lost cycles)", violations, bound=0)
     for check in checks:
         peak = max(j["peak_jerk"] / j["limit_jerk"] for j in check["limits"]["joints"])
-        row(f"Peak jerk, {check['mechanism']}", 100 * peak, "% of the limit", digits=2)
+        row(f"Peak jerk, {check['mechanism']}", 100 * peak, "% of the limit", form=".2f")
     row("Part off the surface, largest, ridges included", deviation["part_deviation_um"], "µm",
         bounds["part_deviation_um"])  # fmt: skip
     row("  of that: material left / cut too deep", f"{deviation['left_um']:.2f} / {deviation['gouge_um']:.2f}", "µm")
     row("  ridges as planned / median / 99 % of cells below", f"{plan['scallop_planned_um']:.1f} / "
         f"{deviation['deviation_p50_um']:.2f} / {deviation['deviation_p99_um']:.2f}", "µm")  # fmt: skip
     for held in checks[1]["held"]:
+        row("Held drive off the plane it was left in, mean", abs(held["position_mm"] - plan["part_origin_mm"][2]) * 1e3,
+            "µm", bounds["held_strayed_um"])  # fmt: skip
         row("Held drive strayed from its place, largest", held["strayed_um"], "µm", bounds["held_strayed_um"])
     if not checks[1]["held"]:
         row("Held drive's position", "not in the record", fine=False)
     row("Move off the two-axis plane", session.off_plane_refusal or "was not refused",
         fine=bool(session.off_plane_refusal))  # fmt: skip
     row("Samples lost on the way to the client", session.lost_samples, bound=0)
-    row("Plan ready to first motion, search and driver loading included", session.plan_to_motion_ms, "ms", digits=1)
-    row("First move sent to first motion", session.send_to_motion_ms, "ms", digits=1)
+    row("Plan ready to first motion, search and driver loading included", session.plan_to_motion_ms, "ms", form=".1f")
+    row("First move sent to first motion", session.send_to_motion_ms, "ms", form=".1f")
     row("  conventional way (Table 6-1): post-processing and file handling", report.CONVENTIONAL_MIN, "min")
     for problem in session.problems:
         row("Problem", problem, fine=False)

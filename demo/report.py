@@ -37,6 +37,7 @@ def picture_of_part(height_map):
 def deviation_figure(height_map, bound_um):
     deviation = parts.deviation_um(height_map)
     figure, (map_axis, axis) = plt.subplots(1, 2, figsize=(12, 4.4), width_ratios=[1.9, 1])
+    figure.set_layout_engine("compressed")  # closes the gap that the map's fixed aspect leaves
     extent = (height_map.x[0], height_map.x[-1], height_map.y[0], height_map.y[-1])
     scale = max(10.0, np.ceil(np.nanmax(np.abs(deviation)) / 10) * 10)
     image = map_axis.imshow(
@@ -79,7 +80,7 @@ def detail_figure(record, seconds=4.5):
         axes[2].plot(t, (q - record.a[rows][:, : record.joints])[:, joint] * 1e3, linewidth=0.8, label=f"q{joint + 1}")
     axes[1].set(xlabel="s", title="jerk (third difference), mm/s³")
     axes[2].set(xlabel="s", title="following error, µm")
-    axes[1].legend(frameon=False, ncols=3)
+    axes[2].legend(frameon=False, loc="upper left")
     return figure
 
 
@@ -109,7 +110,7 @@ def embedded(figure_or_picture, alternative, out, name):
     if isinstance(figure_or_picture, np.ndarray):
         plt.imsave(data, np.clip(figure_or_picture, 0, 1))
     else:
-        figure_or_picture.savefig(data, dpi=110)
+        figure_or_picture.savefig(data, dpi=110, bbox_inches="tight")
         plt.close(figure_or_picture)
     (out / name).write_bytes(data.getvalue())
     code = base64.b64encode(data.getvalue()).decode()
