@@ -4,18 +4,32 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 
 namespace rmac::gateway {
 
+namespace {
+
+/// Locks all memory, now and later; nullptr, or why not.
+const char* lock_memory() {
+  rlimit limit{};
+  getrlimit(RLIMIT_MEMLOCK, &limit);
+  // Below a limit, locking what is to come would make some later allocation fail.
+  if (limit.rlim_cur != RLIM_INFINITY && geteuid() != 0) return "the limit on locked memory is not lifted";
+  return mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? nullptr : std::strerror(errno);
+}
+
+}  // namespace
+
 std::vector<std::string> enter_real_time(const RealTimeWish& wish) {
   std::vector<std::string> missing;
-  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
-    missing.push_back(
-        fmt::format("memory is not locked ({}): set LimitMEMLOCK=infinity in the unit, or `ulimit -l unlimited`",
-                    std::strerror(errno)));
+  if (const char* reason = lock_memory()) {
+    missing.push_back(fmt::format(
+        "memory is not locked ({}): set LimitMEMLOCK=infinity in the unit, or `ulimit -l unlimited`", reason));
   }
   sched_param parameter{};
   parameter.sched_priority = wish.priority;
