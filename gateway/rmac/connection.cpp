@@ -1,6 +1,7 @@
 #include "gateway/rmac/connection.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <asio/local/stream_protocol.hpp>
 #include <csignal>
@@ -91,6 +92,29 @@ Connection::Answer Connection::call(const std::string& method, const nlohmann::j
     return fail(fmt::format("{} did not answer {} within {} s", to_string(endpoint_), method, kCallBound.count()));
   }
   return std::move(**slot);
+}
+
+void Connection::on_entered_line(std::function<void()> handler) {
+  entered_line_ = std::move(handler);
+  if (!terminal_.is_open() && isatty(STDIN_FILENO) == 1) {
+    // In the background of a shell, reading ends with an error instead of stopping the process.
+    std::signal(SIGTTIN, SIG_IGN);
+    terminal_.assign(dup(STDIN_FILENO));
+    read_terminal();
+  }
+}
+
+void Connection::read_terminal() {
+  asio::async_read_until(terminal_, entered_, '\n', [this](const asio::error_code& error, std::size_t bytes) {
+    if (error) {
+      return;
+    }
+    entered_.consume(bytes);
+    if (entered_line_) {
+      entered_line_();
+    }
+    read_terminal();
+  });
 }
 
 Result<> Connection::wait(const std::function<bool()>& done) {

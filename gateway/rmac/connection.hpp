@@ -41,6 +41,9 @@ class Connection {
   [[nodiscard]] Answer call(const std::string& method, const nlohmann::json& params = nlohmann::json::object());
   void on_notification(NotificationHandler handler) { notify_ = std::move(handler); }
 
+  /// Calls `handler` for each line that a person enters at the terminal, if standard input is one.
+  void on_entered_line(std::function<void()> handler);
+
   /// Handles what arrives until `done` holds. Fails when the connection is lost or the person presses Ctrl-C.
   [[nodiscard]] Result<> wait(const std::function<bool()>& done);
   /// The same with a bound; whether `done` held by then.
@@ -60,12 +63,16 @@ class Connection {
   void write();
   void take(std::string_view line);
   void lose(const std::string& why);
+  void read_terminal();
 
   Endpoint endpoint_;
   asio::io_context io_;
   Socket socket_{io_};
   asio::signal_set signals_{io_, SIGINT, SIGTERM};
   asio::steady_timer timer_{io_};
+  asio::posix::stream_descriptor terminal_{io_};
+  asio::streambuf entered_;
+  std::function<void()> entered_line_;
   std::string input_;
   std::deque<std::string> output_;
   std::unordered_map<std::int64_t, AnswerHandler> open_;

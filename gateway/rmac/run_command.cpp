@@ -17,6 +17,7 @@ Result<> run_program(Connection& connection, const std::string& file, const RunO
   Runner runner(connection, shown);
   const auto report = runner.run(*program);
   connection.on_notification({});
+  connection.on_entered_line({});
   if (!report) {
     return tl::unexpected(report.error());
   }

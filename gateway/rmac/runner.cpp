@@ -22,6 +22,10 @@ constexpr auto kRecordBound = std::chrono::seconds(10);
 Runner::Runner(Connection& connection, RunOptions options)
     : connection_(connection), options_(std::move(options)), progress_(options_.show_progress) {
   connection_.on_notification([this](const auto& topic, const auto& params) { take(topic, params); });
+  // Whoever holds a program from another terminal cannot resume it there: this client has the lease. A refusal means
+  // that nothing is held.
+  connection_.on_entered_line(
+      [this] { connection_.send("RMAC_CAM.FeedResume", nlohmann::json::object(), [](const Connection::Answer&) {}); });
 }
 
 Result<RunReport> Runner::run(const Program& program) {
@@ -281,7 +285,7 @@ void Runner::take(const std::string& topic, const nlohmann::json& params) {
     state_ = read_state(params);
     progress_.draw(
         report_.moves, total_moves_,
-        state_->state == "Holding" ? "held: `rmac resume` goes on" : fmt::format("{:.0f} mm/min", state_->feed_actual));
+        state_->state == "Holding" ? "held: Enter goes on" : fmt::format("{:.0f} mm/min", state_->feed_actual));
   } else if (topic == "joints") {
     for (const auto& sample : read_joints(params)) {
       take(sample);

@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import pathlib
+import pty
 import signal
 import subprocess
 import unittest
@@ -237,22 +238,61 @@ class Programs(unittest.TestCase):
 
 
 class InterruptedProgram(unittest.TestCase):
+    """A program under way, at the machine's real pace, that a person meddles with."""
+
+    def setUp(self):
+        self.appliance = self.enterContext(Appliance(pace="real-time"))
+        self.assertEqual(self.appliance.rmac("load", "DMACXYZ").returncode, DONE)
+        self.watcher = self.appliance.client("watcher")
+        self.watcher.call("subscribe", topics=["state"], rate_hz=100)
+        self.file = self.appliance.folder / "slow.rmac"
+        self.file.write_text(request("RMAC_CAM.SetFeedrate", Feedrate=120) + "\n" +
+                             request("RMAC_CAM.MoveToPathTarget", MoveID=1, TargetFrame=pose(40, 0, 0)) + "\n")
+
+    def run_until_moving(self, stdin=subprocess.DEVNULL):
+        run = self.enterContext(subprocess.Popen(
+            [BUILD / "bin" / "rmac", "--port", str(self.appliance.port), "run", self.file],
+            stdin=stdin, stderr=subprocess.PIPE, text=True))
+        self.watcher.wait_note("state", lambda state: state["moving"] and state["pose"][0] > 0.2)
+        return run
+
+    def assert_fails(self, run, message):
+        lines = run.stderr.read().splitlines()
+        self.assertEqual(len(lines), 1, lines)
+        self.assertIn(message, lines[0])
+        self.assertEqual(run.wait(timeout=60), FAILED)
+        state = self.watcher.state()
+        self.assertEqual((state["moving"], state["moves_in_buffer"], state["state"]), (False, 0, "Idle"))
+
     def test_ctrl_c_stops_the_machine(self):
-        with Appliance(pace="real-time") as appliance:
-            self.assertEqual(appliance.rmac("load", "DMACXYZ").returncode, DONE)
-            watcher = appliance.client("watcher")
-            watcher.call("subscribe", topics=["state"], rate_hz=100)
-            file = appliance.folder / "slow.rmac"
-            file.write_text(request("RMAC_CAM.SetFeedrate", Feedrate=120) + "\n" +
-                            request("RMAC_CAM.MoveToPathTarget", MoveID=1, TargetFrame=pose(40, 0, 0)) + "\n")
-            with subprocess.Popen([BUILD / "bin" / "rmac", "--port", str(appliance.port), "run", file],
-                                  stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as run:
-                watcher.wait_note("state", lambda state: state["moving"] and state["pose"][0] > 0.2)
-                run.send_signal(signal.SIGINT)
-                self.assertEqual(run.stderr.read().splitlines(), ["rmac: interrupted"])
-                self.assertEqual(run.wait(timeout=60), FAILED)
-            state = watcher.state()
-            self.assertEqual((state["moving"], state["moves_in_buffer"], state["state"]), (False, 0, "Idle"))
+        run = self.run_until_moving()
+        run.send_signal(signal.SIGINT)
+        self.assert_fails(run, "interrupted")
+
+    def test_stop_from_another_terminal_ends_the_run(self):
+        run = self.run_until_moving()
+        self.assertEqual(self.appliance.rmac("stop").returncode, DONE)
+        self.assert_fails(run, "stopped")
+
+    def test_hold_from_another_terminal_is_resumed_by_enter(self):
+        keyboard, terminal = pty.openpty()
+        run = self.run_until_moving(stdin=terminal)
+        self.assertEqual(self.appliance.rmac("hold").returncode, DONE)
+        held = self.watcher.wait_note("state", lambda state: state["state"] == "Holding" and not state["moving"])
+        refused = self.appliance.rmac("resume")
+        self.assertEqual(refused.returncode, FAILED)
+        os.write(keyboard, b"\n")
+        self.watcher.wait_note("state", lambda state: state["moving"] and state["pose"][0] > held["pose"][0] + 0.1)
+        run.send_signal(signal.SIGINT)
+        self.assert_fails(run, "interrupted")
+        os.close(keyboard)
+        os.close(terminal)
+
+    def test_rmacd_that_ends_under_a_program_is_told(self):
+        run = self.run_until_moving()
+        self.appliance.process.send_signal(signal.SIGTERM)
+        self.assertIn("connection", run.stderr.read())
+        self.assertEqual(run.wait(timeout=60), FAILED)
 
 
 if __name__ == "__main__":
