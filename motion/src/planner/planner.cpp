@@ -20,6 +20,8 @@ constexpr double kShortestWindow_mm = 1.0;
 constexpr std::int64_t kLeadAtFirst = 2;
 constexpr std::int64_t kLongestLead = 64;
 constexpr double kSamePlace = 1e-7;
+/// A window that found no plan is tried again from a later state, after so many cycles.
+constexpr std::int64_t kRetryAfter = 10;
 
 }  // namespace
 
@@ -46,7 +48,7 @@ struct Planner::Impl {
   std::uint64_t next_id = 1;
   std::uint64_t refused_seen = 0;
   std::int64_t lead = kLeadAtFirst;
-  std::int64_t tried_at = -1;  ///< cycle of the last attempt that found no plan; not repeated within it
+  std::int64_t tried_at = -kRetryAfter;  ///< cycle of the last attempt that found no plan
   PathCommand wanted = PathCommand::Stop;
   double factor = 1;
   double limit_s = 0;  ///< path length at which RunOne ends
@@ -226,9 +228,10 @@ struct Planner::Impl {
   }
 
   /// The law of the next window from a state; from rest it always has one.
-  [[nodiscard]] std::optional<std::vector<LawPiece>> window_law(const PathState& from, double s_end) const {
+  [[nodiscard]] std::optional<std::vector<LawPiece>> window_law(const PathState& from, double s_end,
+                                                                const std::vector<LawPiece>* before) const {
     const PathView path(segments, starts);
-    if (auto law = plan_window(path, model.joints, {from, s_end, factor})) return law;
+    if (auto law = plan_window(path, model.joints, {from, s_end, factor, before})) return law;
     if (from.v != 0 || from.a != 0) return std::nullopt;
     auto law = cautious_law(path, model.joints, from.s, s_end, factor);
     if (check_law(path, model.joints, law, -1).worst <= 1.0) return law;
@@ -240,7 +243,7 @@ struct Planner::Impl {
     const double s = base_end_s();
     bool hard = false;
     const double s_end = window_end(s, path, hard);
-    auto law = window_law({s, 0, 0}, s_end);
+    auto law = window_law({s, 0, 0}, s_end, nullptr);
     if (!law) return no_plan(progress);
     auto plan = std::make_unique<Plan>();
     plan->start_cycle = progress.cycle + lead;
@@ -261,7 +264,7 @@ struct Planner::Impl {
     const PathState from = state_at(p, t_from);
     bool hard = false;
     const double s_end = window_end(from.s, path, hard);
-    auto law = window_law(from, s_end);
+    auto law = window_law(from, s_end, &p.plan->law);
     if (!law) return no_plan(progress);
     auto plan = std::make_unique<Plan>();
     plan->start_cycle = progress.cycle;
@@ -279,7 +282,8 @@ struct Planner::Impl {
     const PathState from = state_at(p, now_s(p, cycle));
     bool hard = false;
     const double end = s_end ? *s_end : window_end(from.s, path, hard);
-    auto law = plan_window(path, model.joints, {from, end, stops ? std::max(factor, p.override_factor) : factor});
+    auto law = plan_window(path, model.joints,
+                           {from, end, stops ? std::max(factor, p.override_factor) : factor, &p.plan->law});
     if (!law) return false;
     auto plan = std::make_unique<Plan>();
     plan->start_cycle = cycle;
@@ -353,7 +357,7 @@ struct Planner::Impl {
   enum class Task { None, Stop, Override, Start, Extend };
 
   [[nodiscard]] Task task(const ServoProgress& progress) const {
-    if (!acknowledged(progress) || progress.cycle == tried_at) return Task::None;
+    if (!acknowledged(progress) || progress.cycle < tried_at + kRetryAfter) return Task::None;
     const bool at_end = ended(progress);
     const bool run = wanted != PathCommand::Stop && factor > 0;
     if (!run) return at_end || base()->stops ? Task::None : Task::Stop;

@@ -30,6 +30,8 @@ struct LawProblem {
       tightening;  ///< an interval: joint bounds are multiplied by it; 1 at first, less where the check found excess
   std::vector<double> max_acceleration, max_jerk;  ///< a joint
   PathState begin, end;
+  std::vector<double>
+      travelled_before;  ///< empty, or a coefficient each: what an earlier law had here; 0 where it had nothing
 
   [[nodiscard]] std::size_t intervals() const noexcept { return nodes.size() - 1; }
   [[nodiscard]] double step(std::size_t interval) const noexcept { return nodes[interval + 1] - nodes[interval]; }

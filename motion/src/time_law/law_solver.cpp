@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "time_law/law_problem.hpp"
 
@@ -137,6 +138,7 @@ class Solver {
       c_ = guess;
     } else {
       initial_guess();
+      for (std::size_t i = 0; i < p_.travelled_before.size(); ++i) c_[i] = std::max(c_[i], p_.travelled_before[i]);
     }
     c_[0] = p_.begin.v * p_.begin.v;
     c_[1] = c_[0] + p_.begin.a * p_.step(0);
@@ -146,27 +148,46 @@ class Solver {
     end_free_ = n_ - 2;
   }
 
-  /// A profile that neither end can forbid: from each end q grows no faster than a part of the joints' acceleration
-  /// allows.
+  /// A profile not far from what the bounds allow: at each place no faster than curvature and its change would permit
+  /// at constant speed, and from place to place growing no faster than a part of the acceleration permits; then
+  /// smoothed, because a kink is jerk.
   void initial_guess() {
     const std::size_t n = p_.intervals();
-    std::vector<double> node(n + 1);
-    const auto slope = [&](std::size_t k) {
-      double limit = std::min(p_.rise[k], p_.fall[k]);
-      const auto d = p_.at(k, false);
+    std::vector<double> node(n + 1), slope(n);
+    const auto permitted = [&](const JointDerivatives& d) {
+      double q = std::numeric_limits<double>::infinity();
       for (std::size_t j = 0; j < p_.joint_count; ++j) {
-        if (std::abs(d.d1[j]) > 1e-9) limit = std::min(limit, p_.max_acceleration[j] / std::abs(d.d1[j]));
+        if (d.d2[j] != 0) q = std::min(q, 0.4 * p_.max_acceleration[j] / std::abs(d.d2[j]));
+        if (d.d3[j] != 0) q = std::min(q, std::pow(0.2 * p_.max_jerk[j] / std::abs(d.d3[j]), 2.0 / 3));
       }
-      return 2 * 0.3 * limit;
+      return q;
     };
-    const auto cap = [&](std::size_t k) { return 0.7 * p_.speed_cap[k]; };
-    node[0] = p_.begin.v * p_.begin.v;
-    for (std::size_t k = 0; k < n; ++k)
-      node[k + 1] = std::min(std::max(cap(k), 0.9 * node[k]), node[k] + slope(k) * p_.step(k));
-    node[n] = std::min(node[n], p_.end.v * p_.end.v);
-    for (std::size_t k = n; k-- > 0;) node[k] = std::min(node[k], node[k + 1] + slope(k) * p_.step(k));
-    for (std::size_t k = 0; k < n; ++k)
-      c_[k + 1] = std::max(std::min(0.5 * (node[k] + node[k + 1]), cap(k)), 1e-3 * cap(k));
+    for (double& q : node) q = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < n; ++k) {
+      const JointDerivatives left = p_.at(k, false), right = p_.at(k, true);
+      node[k] = std::min({node[k], 0.7 * p_.speed_cap[k], permitted(left)});
+      node[k + 1] = std::min({node[k + 1], 0.7 * p_.speed_cap[k], permitted(right)});
+      double limit = std::min(p_.rise[k], p_.fall[k]);
+      for (std::size_t j = 0; j < p_.joint_count; ++j) {
+        if (std::abs(left.d1[j]) > 1e-9) limit = std::min(limit, p_.max_acceleration[j] / std::abs(left.d1[j]));
+      }
+      slope[k] = 0.5 * limit;
+    }
+    const double first = p_.begin.v * p_.begin.v, last = p_.end.v * p_.end.v;
+    node[0] = first;
+    for (std::size_t k = 0; k < n; ++k) node[k + 1] = std::min(node[k + 1], node[k] + slope[k] * p_.step(k));
+    node[n] = last;
+    for (std::size_t k = n; k-- > 0;) node[k] = std::min(node[k], node[k + 1] + slope[k] * p_.step(k));
+    node[0] = first;
+    for (int pass = 0; pass < 4; ++pass) {
+      double before = node[0];
+      for (std::size_t k = 1; k < n; ++k) {
+        const double here = node[k];
+        node[k] = std::min(here, 0.25 * before + 0.5 * here + 0.25 * node[k + 1]);
+        before = here;
+      }
+    }
+    for (std::size_t k = 0; k < n; ++k) c_[k + 1] = 0.5 * (node[k] + node[k + 1]);
   }
 
   void add(std::size_t first, const Weights& w, double bound) {

@@ -110,8 +110,7 @@ std::vector<double> make_grid(const PathView& path, double a, double b, double r
   fixed.push_back(b);
   const auto spacing = [&](double s) {
     double h = std::min(coarsest, node_spacing(path, s));
-    if (std::isfinite(rest_a)) h = std::min(h, finest_a + kGrading * (s - rest_a));
-    if (std::isfinite(rest_b)) h = std::min(h, finest_b + kGrading * (rest_b - s));
+    h = std::min({h, finest_a + kGrading * (s - rest_a), finest_b + kGrading * (rest_b - s)});
     return h;
   };
   std::vector<double> nodes{a};
@@ -200,6 +199,25 @@ void yield_to_begin(LawProblem& problem) {
   }
 }
 
+/// Lets the next law start from the one before. Its state lies at the edge of what is viable, so the first stretch may
+/// use most of the margin that the law before left; and what that law had is the first guess (eq. 8).
+void resume_from(LawProblem& problem, const std::vector<LawPiece>& before) {
+  constexpr double kRelaxed = 0.9997 / kMargin;
+  const double span = problem.nodes.back() - problem.nodes.front();
+  problem.travelled_before.assign(problem.intervals() + 2, 0.0);
+  std::size_t piece = 0;
+  for (std::size_t k = 0; k < problem.intervals(); ++k) {
+    if (problem.nodes[k] - problem.nodes.front() < 0.25 * span) problem.tightening[k] = kRelaxed;
+    const double h = problem.step(k), middle = problem.nodes[k] + h / 2;
+    while (piece + 1 < before.size() && before[piece + 1].start.s <= middle) ++piece;
+    const LawPiece& at = before[piece];
+    if (at.kind != LawPiece::Kind::Linear || piece + 1 == before.size()) continue;
+    const double ds = middle - at.start.s;
+    const double q = at.start.v * at.start.v + 2 * at.start.a * ds + at.slope * ds * ds;
+    problem.travelled_before[k + 1] = std::max(0.0, 0.995 * (q - h * h / 4 * at.slope));
+  }
+}
+
 }  // namespace
 
 double ramp_length(double v, double a, double j) noexcept {
@@ -274,8 +292,10 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
   problem.nodes = make_grid(path, a, b, first ? window.begin.s : -kInfinity, window.s_end, first ? first->length : 0,
                             last->length, coarsest);
   if (!fill(problem, path, joints, factor)) return std::nullopt;
-  const bool yields = problem.begin.v * problem.begin.v > 0.98 * problem.speed_cap[0];
+  const double q0 = problem.begin.v * problem.begin.v;
+  const bool yields = std::max(q0, q0 + problem.begin.a * problem.step(0)) > problem.speed_cap[0] * (1 + 1e-6);
   if (yields) yield_to_begin(problem);
+  if (window.before != nullptr && !from_rest) resume_from(problem, *window.before);
 
   std::vector<double> guess;
   for (int round = 0; round < kTightenings; ++round) {
@@ -297,7 +317,7 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
     if (!std::isfinite(excess.worst)) return std::nullopt;
     for (std::size_t k = 0; k < problem.intervals(); ++k) {
       const double over = excess.by_piece[k + offset];
-      if (over > kMargin) problem.tightening[k] *= std::max(0.5, kMargin / over * (over > 1 ? 0.9995 : 1));
+      if (over > 0.9999) problem.tightening[k] *= std::max(0.5, 0.9992 / over);
     }
     guess = solution.coefficients;
   }

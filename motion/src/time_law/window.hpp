@@ -15,6 +15,8 @@ struct Window {
   PathState begin;  ///< v = a = 0: from rest
   double s_end = 0;
   double override_factor = 1;  ///< on the programmed feed
+  const std::vector<LawPiece>* before =
+      nullptr;  ///< the law that the window's begin state was taken from: a good first guess
 };
 
 /// The fastest checked time law of a window, beginning at time 0, or nothing when none passed its check. From rest
