@@ -107,7 +107,6 @@ Result<> Runner::prepare(const Program& program) {
     return fail(fmt::format("{} moves of an earlier program are still queued: end them with `rmac stop` first",
                             state_->moves_in_buffer));
   }
-  started_ = state_->state == "Running";
   return {};
 }
 
@@ -133,6 +132,12 @@ Result<> Runner::submit(const Program& program, const Request& request) {
     if (auto settled = settle(); !settled) {
       return settled;
     }
+  }
+  if (request.timing == Timing::Start && unsettled_) {
+    if (auto settled = settle(); !settled) {
+      return settled;
+    }
+    unsettled_ = false;
   }
   const bool is_move = request.timing == Timing::Move;
   if (is_move) {
@@ -170,21 +175,32 @@ Result<> Runner::before_move(const Program& program) {
   if (auto watching = watch_joints(); !watching) {
     return watching;
   }
-  if (unsettled_) {
-    // A jog, a home or a swapped mechanism: its motion must have ended, and the cycle may have with it.
-    if (auto settled = settle(); !settled) {
-      return settled;
-    }
-    unsettled_ = false;
-    started_ = state_->state == "Running";
+  if (!unsettled_) {
+    return {};
   }
-  return started_ || program.starts_cycle ? Result<>() : start_cycle();
+  // A jog, a home or a swapped mechanism: its motion must have ended, and the cycle may have with it.
+  if (auto settled = settle(); !settled) {
+    return settled;
+  }
+  unsettled_ = false;
+  return program.starts_cycle ? Result<>() : start_cycle();
 }
 
 Result<> Runner::start_cycle() {
   // Answered before the first move goes out: a refusal (a fault, drives that are not ready) is then the only message.
+  // A jog that just came to rest is refused for as long as the machine needs to see it, so one refusal proves nothing.
   constexpr int kAutomatic = 1;
-  auto started = connection_.call("RMAC_CAM.CycleStart", {{"Mode", kAutomatic}});
+  constexpr auto kPause = std::chrono::milliseconds(20);
+  constexpr int kTries = 50;
+  Connection::Answer started = fail("");
+  for (int tries = 0; tries < kTries && !started; ++tries) {
+    if (tries > 0) {
+      if (auto waited = connection_.wait([&] { return !failure_.empty(); }, kPause); !waited || *waited) {
+        break;
+      }
+    }
+    started = connection_.call("RMAC_CAM.CycleStart", {{"Mode", kAutomatic}});
+  }
   if (!started) {
     return tl::unexpected(started.error());
   }
