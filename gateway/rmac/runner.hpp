@@ -72,9 +72,8 @@ class Runner {
   std::string failure_;
   std::size_t total_moves_ = 0;
   double last_done_s_ = 0, last_sample_s_ = 0;
-  bool started_ = false;  ///< the cycle runs, so moves become done
-  bool unsettled_ =
-      false;  ///< something acted on the machine since the last move: rest and cycle state must be looked at
+  bool started_ = false;   ///< the program's cycle was started, so moves become done
+  bool unsettled_ = true;  ///< something acted on the machine since the last move: its rest must be looked at
   bool watching_ = false;
   bool rest_told_ = false;  ///< the machine came to rest with moves not done
 };
