@@ -64,6 +64,8 @@ TEST(Authority, LossInMidCutStopsTheMachineAndIsAnnounced) {
   std::promise<void> stopped;
   bench.on_gateway([&](Server&, FakeMachine& machine) {
     EXPECT_CALL(machine.cam_mock, cycle_stop()).WillOnce([&]() -> Expected<> {
+      machine.now.state = CycleState::Idle;
+      machine.now.moving = false;
       stopped.set_value();
       return {};
     });
