@@ -153,11 +153,11 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
     if (Offence offence; find_offence(*segment, model_.joints, offence)) {
       const JointLimits& joint = model_.joints[offence.joint];
       return failure(MinorCode::TravelLimit,
-                     text("move %lld takes joint %s to %.4f %s, %.4f %s beyond its limit of %.4f, %.4f mm along the "
+                     text("move %lld takes joint %s to %.4f %s, %.4f %s beyond its limit of %.4f %s, %.4f mm along the "
                           "move; nothing was queued",
                           static_cast<long long>(move.id), joint.name.c_str(), offence.position, unit(joint),
                           std::abs(offence.amount), unit(joint), offence.amount > 0 ? joint.max : joint.min,
-                          demand.s_begin_mm + offence.s));
+                          unit(joint), demand.s_begin_mm + offence.s));
     }
     JointPoint end;
     if (segment->evaluate(segment->length(), 0, -1, end) != KinematicsStatus::Ok) {

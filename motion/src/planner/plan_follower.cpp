@@ -66,7 +66,7 @@ void PlanFollower::follow(double t, Setpoint& setpoint) noexcept {
   while (piece_ + 1 < plan.law.size() && t >= plan.law[piece_ + 1].t0) ++piece_;
   const LawPiece& piece = plan.law[piece_];
   const bool ended = t >= plan.end_time_s;
-  PathState at = piece.at(std::min(t - piece.t0, piece.duration));
+  PathState at = piece.at(std::clamp(t - piece.t0, 0.0, piece.duration));
   if (ended) at.v = at.a = 0;
 
   setpoint.moves_done = count_done(at.s);

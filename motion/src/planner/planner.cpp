@@ -47,7 +47,8 @@ struct Planner::Impl {
   std::vector<PublishedPlan> alive;  ///< in order of publication; the last is the base of what is planned next
   std::uint64_t next_id = 1;
   std::uint64_t refused_seen = 0;
-  std::int64_t lead = kLeadAtFirst;
+  double work_cycles = 0;                ///< cycles that went by while a plan was made, lately
+  std::int64_t work_began = -1;          ///< cycle in which the last plan was begun
   std::int64_t tried_at = -kRetryAfter;  ///< cycle of the last attempt that found no plan
   PathCommand wanted = PathCommand::Stop;
   double factor = 1;
@@ -97,16 +98,29 @@ struct Planner::Impl {
                      period());
   }
 
+  /// Cycles from now after which a plan begun now will have reached the servo loop.
+  [[nodiscard]] std::int64_t lead() const { return kLeadAtFirst + static_cast<std::int64_t>(std::ceil(work_cycles)); }
+
+  /// The cycle from which on a plan can follow `p`, which itself may not have started.
+  [[nodiscard]] static std::int64_t earliest(const PublishedPlan& p, std::int64_t cycle) {
+    return std::max(cycle, p.plan->start_cycle);
+  }
+
   void collect(const ServoProgress& progress) {
     const Plan* plan = nullptr;
     while (channel.retired.pop(plan)) {
       std::erase_if(alive, [&](const PublishedPlan& p) { return p.plan.get() == plan; });
     }
     // A refused plan never acted: `alive` ends again with the plan that is followed. The next attempt leaves more time.
+    if (work_began >= 0) {
+      work_cycles = std::max(0.9 * work_cycles, static_cast<double>(progress.cycle - work_began - 1));
+      work_began = -1;
+    }
     if (progress.last_refused != refused_seen) {
       refused_seen = progress.last_refused;
-      lead = std::min(lead * 2, kLongestLead);
+      work_cycles = 2 * work_cycles + 1;
     }
+    work_cycles = std::min(work_cycles, static_cast<double>(kLongestLead));
   }
 
   /// Drops segments that are behind the tool.
@@ -126,7 +140,7 @@ struct Planner::Impl {
     auto piece =
         std::upper_bound(law.begin(), law.end(), t, [](double value, const LawPiece& x) { return value < x.t0; });
     if (piece != law.begin()) --piece;
-    return piece->at(t - piece->t0);
+    return piece->at(std::max(t - piece->t0, 0.0));
   }
 
   /// Where the window that begins at s must or may end: at a demanded rest, at RunOne's limit, at the end of the path,
@@ -246,7 +260,7 @@ struct Planner::Impl {
     auto law = window_law({s, 0, 0}, s_end, nullptr);
     if (!law) return no_plan(progress);
     auto plan = std::make_unique<Plan>();
-    plan->start_cycle = progress.cycle + lead;
+    plan->start_cycle = progress.cycle + lead();
     plan->latest_cycle = plan->start_cycle;
     plan->law = std::move(*law);
     return publish(std::move(plan), false, hard, s);
@@ -257,28 +271,30 @@ struct Planner::Impl {
   bool extend(const ServoProgress& progress) {
     const PathView path(segments, starts);
     const PublishedPlan& p = *base();
-    const double t_now = now_s(p, progress.cycle);
+    const std::int64_t now = earliest(p, progress.cycle);
+    const double t_now = now_s(p, now);
     double t_from = p.plan->end_time_s;
-    if (!p.hard_end) t_from = std::max(p.commit_t, t_now + static_cast<double>(lead) * period());
-    if (t_from >= p.plan->end_time_s) t_from = p.plan->end_time_s;
+    if (!p.hard_end) t_from = std::min(std::max(p.commit_t, t_now + static_cast<double>(lead()) * period()), t_from);
+    // Too near the end to be there in time: the machine comes to rest, and starts again from there.
+    if (t_from - t_now < static_cast<double>(lead()) * period()) return no_plan(progress);
     const PathState from = state_at(p, t_from);
     bool hard = false;
     const double s_end = window_end(from.s, path, hard);
     auto law = window_law(from, s_end, &p.plan->law);
     if (!law) return no_plan(progress);
     auto plan = std::make_unique<Plan>();
-    plan->start_cycle = progress.cycle;
-    plan->law = kept_pieces(p, progress.cycle, t_from);
-    plan->latest_cycle = progress.cycle + static_cast<std::int64_t>(std::floor((t_from - t_now) / period() + 1e-9));
+    plan->start_cycle = now;
+    plan->law = kept_pieces(p, now, t_from);
+    plan->latest_cycle = now + static_cast<std::int64_t>(std::floor((t_from - t_now) / period() + 1e-9));
     append_law(plan->law, *law, t_from - t_now);
     return publish(std::move(plan), false, hard, from.s);
   }
 
-  /// Leaves the plan `lead` cycles from now: for a new override, or (s_end given) to stop there.
+  /// Leaves the plan `lead()` cycles from now: for a new override, or (s_end given) to stop there.
   bool divert(const ServoProgress& progress, std::optional<double> s_end, bool stops) {
     const PathView path(segments, starts);
     const PublishedPlan& p = *base();
-    const std::int64_t cycle = progress.cycle + lead;
+    const std::int64_t cycle = earliest(p, progress.cycle + lead());
     const PathState from = state_at(p, now_s(p, cycle));
     bool hard = false;
     const double end = s_end ? *s_end : window_end(from.s, path, hard);
@@ -294,7 +310,7 @@ struct Planner::Impl {
 
   bool stop(const ServoProgress& progress) {
     const PublishedPlan& p = *base();
-    const PathState from = state_at(p, now_s(p, progress.cycle + lead));
+    const PathState from = state_at(p, now_s(p, earliest(p, progress.cycle + lead())));
     if (from.v <= 0) return no_plan(progress);
     // The next demanded rest on the followed plan ends every search: the plan itself comes to rest there.
     double rest = base_end_s();
@@ -340,10 +356,11 @@ struct Planner::Impl {
       }
     }
     auto plan = std::make_unique<Plan>();
-    const double t_now = now_s(p, progress.cycle);
-    plan->start_cycle = progress.cycle;
-    plan->law = kept_pieces(p, progress.cycle, t_rest);
-    plan->latest_cycle = progress.cycle + static_cast<std::int64_t>(std::floor((t_rest - t_now) / period()));
+    const std::int64_t now = earliest(p, progress.cycle);
+    const double t_now = now_s(p, now);
+    plan->start_cycle = now;
+    plan->law = kept_pieces(p, now, t_rest);
+    plan->latest_cycle = now + static_cast<std::int64_t>(std::floor((t_rest - t_now) / period()));
     if (plan->law.empty()) return no_plan(progress);
     return publish(std::move(plan), true, true, rest);
   }
@@ -381,7 +398,9 @@ struct Planner::Impl {
       count_done(s);
       forget_travelled(std::min(s, base()->plan->law.front().start.s));
     }
-    switch (task(progress)) {
+    const Task next = task(progress);
+    if (next != Task::None) work_began = progress.cycle;
+    switch (next) {
       case Task::None:
         return false;
       case Task::Stop:

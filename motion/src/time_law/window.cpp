@@ -95,7 +95,7 @@ double node_spacing(const PathView& path, double s) {
 }
 
 /// Grid from a to b: segment ends and breaks on it, as fine as the geometry asks and no coarser than `coarsest`, graded
-/// towards rest.
+/// towards the window's ends at rest_a and rest_b.
 std::vector<double> make_grid(const PathView& path, double a, double b, double rest_a, double rest_b, double finest_a,
                               double finest_b, double coarsest) {
   std::vector<double> fixed{a};
@@ -289,11 +289,17 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
   LawProblem problem;
   problem.begin = first ? PathState{a, first->speed, first->acceleration} : window.begin;
   problem.end = {b, last->speed, -last->acceleration};
-  problem.nodes = make_grid(path, a, b, first ? window.begin.s : -kInfinity, window.s_end, first ? first->length : 0,
-                            last->length, coarsest);
+  // A moving start is graded too: its first spline coefficients are fixed by the state, and must not reach over the
+  // feed.
+  double start_step = first ? first->length : coarsest;
+  if (JointPoint point; !first && window.begin.a > 0 && path.evaluate(a, 1, 1, point) == KinematicsStatus::Ok) {
+    const double cap = speed_bound(path.segment(path.find(a, 1)), point, joints, factor);
+    const double room = cap * cap - window.begin.v * window.begin.v;
+    start_step = std::clamp(0.5 * room / window.begin.a, std::min(1e-4, coarsest), coarsest);
+  }
+  problem.nodes = make_grid(path, a, b, window.begin.s, window.s_end, start_step, last->length, coarsest);
   if (!fill(problem, path, joints, factor)) return std::nullopt;
-  const double q0 = problem.begin.v * problem.begin.v;
-  const bool yields = std::max(q0, q0 + problem.begin.a * problem.step(0)) > problem.speed_cap[0] * (1 + 1e-6);
+  const bool yields = problem.begin.v * problem.begin.v > problem.speed_cap[0] * (1 + 1e-5);
   if (yields) yield_to_begin(problem);
   if (window.before != nullptr && !from_rest) resume_from(problem, *window.before);
 
