@@ -62,9 +62,10 @@ void add_feeds(const auto& add) {
             .gives(WireType::Number, "mm/s² or deg/s²")
             .lacks(kPerJoint));
   }
-  Method tolerance = setter("RMAC_CAM.SetPathTolerance",
-                            "How far corners between moves queued from now on may be rounded; 0: exact stop.",
-                            number("Tolerance", "mm").at_least(0), &RmacCam::set_path_tolerance);
+  Method tolerance =
+      setter("RMAC_CAM.SetPathTolerance",
+             "How far corners between moves queued from now on may be rounded. So far only 0, an exact stop, is taken.",
+             number("Tolerance", "mm").at_least(0), &RmacCam::set_path_tolerance);
   tolerance.origin = Origin::Extension;
   add(std::move(tolerance));
   Method tolerance_now =
