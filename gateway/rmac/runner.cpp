@@ -34,12 +34,13 @@ Result<RunReport> Runner::run(const Program& program) {
   auto done = prepare(program);
   if (done) {
     done = stream(program);
+    if (!done) {
+      halt();
+    }
   }
-  if (!done) {
-    halt();
-  } else {
-    // Nothing moves any more, so giving the lease back stops nothing.
-    if (auto released = connection_.call("authority.release"); !released) {
+  // Nothing of this program moves any more, so giving the lease back stops nothing.
+  if (leased_) {
+    if (auto released = connection_.call("authority.release"); done && !released) {
       done = tl::unexpected(released.error());
     }
   }
@@ -78,6 +79,7 @@ Result<> Runner::prepare(const Program& program) {
   if (auto lease = connection_.call("authority.acquire"); !lease) {
     return tl::unexpected(lease.error());
   }
+  leased_ = true;
   if (auto topics = connection_.call("subscribe", {{"topics", {"events"}}}); !topics) {
     return tl::unexpected(topics.error());
   }
@@ -290,7 +292,6 @@ void Runner::halt() {
   if (connection_.call("RMAC_CAM.StopNow")) {
     failure_.clear();
     static_cast<void>(rest());
-    static_cast<void>(connection_.call("authority.release"));
   }
 }
 

@@ -274,6 +274,28 @@ class InterruptedProgram(unittest.TestCase):
         self.assertEqual(self.appliance.rmac("stop").returncode, DONE)
         self.assert_fails(run, "stopped")
 
+    def test_second_program_is_refused_and_the_first_goes_on(self):
+        run = self.run_until_moving()
+        second = self.appliance.rmac("run", str(self.file))
+        self.assertEqual(second.returncode, FAILED)
+        self.assertIn("holds motion authority", second.stderr)
+        state = self.watcher.state()
+        self.assertEqual((state["state"], state["moves_in_buffer"]), ("Running", 1))
+        self.watcher.wait_note("state", lambda later: later["moving"] and later["pose"][0] > state["pose"][0] + 0.2)
+        run.send_signal(signal.SIGINT)
+        self.assert_fails(run, "interrupted")
+
+    def test_program_behind_the_rest_of_another_is_refused_and_leaves_it(self):
+        run = self.run_until_moving()
+        run.kill()
+        run.wait()
+        rest = self.watcher.wait_note("state", lambda state: state["authority"] == "" and not state["moving"])
+        self.assertEqual(rest["moves_in_buffer"], 1)
+        second = self.appliance.rmac("run", str(self.file))
+        self.assertEqual(second.returncode, FAILED)
+        self.assertIn("rmac stop", second.stderr)
+        self.assertEqual(self.watcher.state()["moves_in_buffer"], 1)
+
     def test_hold_from_another_terminal_is_resumed_by_enter(self):
         keyboard, terminal = pty.openpty()
         run = self.run_until_moving(stdin=terminal)
