@@ -24,9 +24,10 @@ Controller::Impl::Impl(ControllerOptions controller_options)
       link(std::make_unique<ServoLink>()),
       supervisor({.period_s = options.period_s, .queue_capacity = options.queue_capacity}, *link),
       thread(thread_options(options), *link, supervisor),
-      draft({[this](const sdk::DeviceObject& device, bool fresh) { return put_in(device, fresh); },
-             [this](const sdk::ModuleChoice& choice) { return registry.check_control_interface(choice, loader()); },
-             [this](const sdk::ModuleChoice& choice) { return registry.check_io_interface(choice, loader()); }}),
+      draft(
+          {[this](const sdk::DeviceObject& device, bool fresh) { return put_in(device, fresh); },
+           [this](const sdk::ModuleChoice& choice) { return registry.check_control_interface(choice, loader(folder)); },
+           [this](const sdk::ModuleChoice& choice) { return registry.check_io_interface(choice, loader(folder)); }}),
       cam(supervisor, *link, [this] { return reset(); }) {
   add_built_in_interfaces(registry, options.period_s);
   for (const auto& [name, factory] : options.control_interfaces) registry.add_control_interface(name, factory);
@@ -82,8 +83,9 @@ bool Controller::virtual_mode() const noexcept {
 }
 
 Expected<std::shared_ptr<sdk::DeviceDriver>> Controller::load_device_driver(const sdk::ModuleChoice& choice) const {
-  return impl_->loader().load<sdk::DeviceDriver>(choice).map(
-      [](ModuleObject<sdk::DeviceDriver> made) { return std::move(made.object); });
+  return impl_->loader(impl_->folder).load<sdk::DeviceDriver>(choice).map([](ModuleObject<sdk::DeviceDriver> made) {
+    return std::move(made.object);
+  });
 }
 
 void Controller::discard_draft() {

@@ -18,7 +18,8 @@ void add_built_in_interfaces(BusRegistry& registry, double period_s);
 struct Controller::Impl {
   explicit Impl(ControllerOptions controller_options);
 
-  [[nodiscard]] ModuleLoader loader() const;
+  /// Finds modules in a mechanism's folder first, then in the shared ones.
+  [[nodiscard]] ModuleLoader loader(const std::string& mechanism_folder) const;
 
   // Changing mechanisms (mechanism_change.cpp).
   [[nodiscard]] Expected<> put_in(const sdk::DeviceObject& device, bool fresh);
@@ -31,6 +32,8 @@ struct Controller::Impl {
   [[nodiscard]] Expected<> switch_to(std::shared_ptr<Mechanism> next, bool keep_running);
   [[nodiscard]] Expected<> power_on();
   [[nodiscard]] Expected<> clear_servo_fault();
+  /// Ends a fault whose cause went with the mechanism that had it.
+  void leave_fault();
   [[nodiscard]] std::string put_back(const sdk::DeviceObject& device, bool virtual_before);
   /// Waits, off the servo thread, until the status of the mechanism in force satisfies `reached`.
   template <typename Reached>
@@ -51,7 +54,8 @@ struct Controller::Impl {
   ConfigDraft draft;
   Cam cam;
 
-  std::string folder;
+  std::string folder;           ///< of the mechanism about to be configured
+  std::string folder_in_force;  ///< of the one in force
   bool virtual_mode = false;
   bool running = false;
   std::shared_ptr<Mechanism> in_force;

@@ -118,7 +118,8 @@ void CycleSequencer::fault() noexcept {
 
 void CycleSequencer::mechanism_changed(bool keep_running) noexcept {
   if (!keep_running) {
-    state_ = CycleState::Idle;
+    // A fault is left by a reset, not by taking the mechanism out.
+    if (state_ != CycleState::Faulted && state_ != CycleState::EmergencyStop) state_ = CycleState::Idle;
     spindle_wait_ = false;
   }
   done_at_start_ = 0;
@@ -156,7 +157,8 @@ CycleSequencer::Verdict CycleSequencer::step(const CycleObservation& seen) noexc
     verdict.came_to_rest = true;
   }
   if (spindle_wait_ && seen.spindles_at_speed) spindle_wait_ = false;
-  if (spindle_wait_ && state_ == CycleState::Running && !positioning_) {
+  // Only what waits for the spindle can wait too long: motion under way began with the speed it needed.
+  if (spindle_wait_ && state_ == CycleState::Running && !positioning_ && seen.at_rest) {
     if (!waiting_since_s_) waiting_since_s_ = seen.t_s;
     if (seen.t_s - *waiting_since_s_ > spindle_timeout_s_) {
       fault();

@@ -15,9 +15,9 @@ constexpr std::chrono::microseconds kLookAgain{100};
 
 }  // namespace
 
-ModuleLoader Controller::Impl::loader() const {
+ModuleLoader Controller::Impl::loader(const std::string& mechanism_folder) const {
   std::vector<std::filesystem::path> folders;
-  if (!folder.empty()) folders.emplace_back(folder);
+  if (!mechanism_folder.empty()) folders.emplace_back(mechanism_folder);
   folders.insert(folders.end(), options.module_folders.begin(), options.module_folders.end());
   return ModuleLoader(std::move(folders));
 }
@@ -110,24 +110,27 @@ Expected<> Controller::Impl::clear_servo_fault() {
 
 std::string Controller::Impl::put_back(const sdk::DeviceObject& device, bool virtual_before) {
   // The loop that was in force has handed its drives over and cannot take them back; one like it can.
-  auto again = assemble(device, virtual_before, options.period_s, loader(), registry);
+  auto again = assemble(device, virtual_before, options.period_s, loader(folder_in_force), registry);
   if (!again) return again.error().message;
   const auto restored = switch_to(std::move(*again), false).and_then([&] { return clear_servo_fault(); }).and_then([&] {
     return power_on();
   });
   if (!restored) return restored.error().message;
-  // The failed attempt faulted the machine; the old mechanism is well.
+  leave_fault();  // the failed attempt faulted the machine; the old mechanism is well
+  return {};
+}
+
+void Controller::Impl::leave_fault() {
   (void)supervisor.command([](CycleSequencer& cycle, const CycleObservation&) {
     return cycle.state() == CycleState::Faulted ? cycle.reset() : Expected<>{};
   });
-  return {};
 }
 
 Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh) {
   if (auto ready = ready_for_change("putting in a configuration"); !ready) return ready;
   const bool virtual_before = in_force && in_force->virtual_mode();
   auto before = in_force;
-  auto next = assemble(device, virtual_mode, options.period_s, loader(), registry);
+  auto next = assemble(device, virtual_mode, options.period_s, loader(folder), registry);
   if (!next) {
     registry.stop_unused();
     return tl::unexpected(next.error());
@@ -146,6 +149,8 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
                                    : fmt::format("; and {} could not be put back: {}", before->device.name, trouble);
       } else if (auto out = take_out(); !out) {
         message += "; and it could not be taken out again: " + out.error().message;
+      } else {
+        leave_fault();  // nothing is in force that could be at fault
       }
     }
     cam.mechanism_changed(in_force ? &in_force->device : nullptr, false);
@@ -154,6 +159,7 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
     return failure(done.error().code, message);
   }
   before.reset();
+  folder_in_force = folder;
   if (fresh) {
     supervisor.wish([](ServoWishes& wishes) { wishes.outputs = 0; });
     supervisor.set_frames({});

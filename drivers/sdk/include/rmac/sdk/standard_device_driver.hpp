@@ -14,6 +14,7 @@ class StandardDeviceDriver : public DeviceDriver {
         .and_then([&] { return config.set_kinematics(device.kinematics); })
         .and_then([&] { return config.set_actuator_map(device.actuator_map); })
         .and_then([&] { return config.set_maximum_feedrate(device.max_feedrate_mm_min); })
+        .and_then([&] { return set_spindle_speed(device.spindles, config); })
         .and_then([&] {
           return for_each_joint(device.joints, 0, [&](int number, const Joint& joint) {
             return set_limits(config, number, joint.limits);
@@ -50,6 +51,14 @@ class StandardDeviceDriver : public DeviceDriver {
   }
 
  private:
+  /// RMAC_Config knows one maximum for all spindles; where they differ, each keeps what its device database gives.
+  static Expected<> set_spindle_speed(const std::vector<Spindle>& spindles, RmacConfig& config) {
+    for (const Spindle& spindle : spindles) {
+      if (spindle.max_speed_rpm != spindles.front().max_speed_rpm) return {};
+    }
+    return spindles.empty() ? Expected<>{} : config.set_spindle_maximum_rpm(spindles.front().max_speed_rpm);
+  }
+
   template <typename Function>
   static Expected<> for_each_joint(const std::vector<Joint>& joints, int first, Function&& set) {
     for (const Joint& joint : joints) {
