@@ -135,6 +135,7 @@ Expected<std::shared_ptr<Mechanism>> assemble(const sdk::DeviceObject& device, b
   model.kinematics = parts.kinematics;
   for (const sdk::Joint& joint : device.joints) model.joints.push_back(joint.limits);
   model.period_s = period_s;
+  model.max_feed_mm_s = device.max_feedrate_mm_min / 60;
   auto loop = ServoLoop::create(std::move(parts));
   if (!loop) return tl::unexpected(loop.error());
   return std::make_shared<Mechanism>(device, std::move(model), std::shared_ptr<ServoLoop>(std::move(*loop)));

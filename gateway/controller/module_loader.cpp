@@ -1,11 +1,14 @@
 #include "gateway/controller/module_loader.hpp"
 
 #include <dlfcn.h>
+#include <elf.h>
 #include <fmt/format.h>
 #include <stdlib.h>
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <fstream>
 #include <system_error>
 
 namespace rmac::gateway {
@@ -42,6 +45,30 @@ class PrivateFolder {
   fs::path path_;
 };
 
+/// False for an ELF file that ends before its tables do: half copied, it would be mapped beyond its end and kill the
+/// daemon. What is no ELF file at all is left to the loader, which says so.
+bool is_whole(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  Elf64_Ehdr header{};
+  if (!stream.read(reinterpret_cast<char*>(&header), sizeof(header))) return true;
+  if (!std::equal(header.e_ident, header.e_ident + SELFMAG, ELFMAG) || header.e_ident[EI_CLASS] != ELFCLASS64)
+    return true;
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
+  const auto ends_inside = [&](std::uintmax_t offset, std::uintmax_t length) {
+    return offset <= size && length <= size - offset;
+  };
+  if (error || !ends_inside(header.e_shoff, std::uintmax_t{header.e_shentsize} * header.e_shnum)) return false;
+  if (header.e_phentsize != sizeof(Elf64_Phdr) || !stream.seekg(static_cast<std::streamoff>(header.e_phoff)))
+    return false;
+  for (int i = 0; i < header.e_phnum; ++i) {
+    Elf64_Phdr segment{};
+    if (!stream.read(reinterpret_cast<char*>(&segment), sizeof(segment))) return false;
+    if (segment.p_type == PT_LOAD && !ends_inside(segment.p_offset, segment.p_filesz)) return false;
+  }
+  return true;
+}
+
 const char* last_loader_error() {
   const char* text = dlerror();
   return text != nullptr ? text : "no reason given";
@@ -54,6 +81,11 @@ Expected<Library> open_private_copy(const fs::path& file) {
   if (!folder.make()) {
     return failure(MinorCode::Other, fmt::format("cannot make a private folder for a copy of {}: is the temporary "
                                                  "folder (TMPDIR) writable?",
+                                                 file.string()));
+  }
+  if (!is_whole(file)) {
+    return failure(MinorCode::Other, fmt::format("module {} is not a whole shared object of this processor; copy or "
+                                                 "build it again",
                                                  file.string()));
   }
   const fs::path copy = folder.path() / file.filename();

@@ -177,6 +177,12 @@ Expected<std::vector<DriverRecord>> DeviceDriverManager::search(const std::strin
 
 Expected<std::filesystem::path> DeviceDriverManager::folder_of(const std::string& mechanism) const {
   if (const auto folder = impl_->folders.find(mechanism); folder != impl_->folders.end()) return folder->second;
+  for (const ScanProblem& problem : problems()) {
+    if (problem.file.parent_path().filename() == mechanism) {
+      return failure(MinorCode::InvalidParameterValue,
+                     fmt::format("mechanism \"{}\" is left out of the device tree: {}", mechanism, problem.message));
+    }
+  }
   std::vector<std::string> names;
   for (const auto& [name, unused] : impl_->folders) names.push_back(name);
   return failure(MinorCode::InvalidParameterValue,

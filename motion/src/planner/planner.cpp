@@ -51,11 +51,12 @@ struct Planner::Impl {
   std::int64_t work_began = -1;          ///< cycle in which the last plan was begun
   std::int64_t tried_at = -kRetryAfter;  ///< cycle of the last attempt that found no plan
   PathCommand wanted = PathCommand::Stop;
-  double factor = 1;
+  double factor = 1;   ///< the override
   double limit_s = 0;  ///< path length at which RunOne ends
 
   Impl(PlannerModel m, PlanChannel& c) : model(std::move(m)), channel(c) {}
 
+  [[nodiscard]] FeedRule feed(double override_factor) const { return {override_factor, model.max_feed_mm_s}; }
   [[nodiscard]] double period() const { return model.period_s; }
   [[nodiscard]] double path_end() const {
     return segments.empty() ? origin : starts.back() + segments.back()->length();
@@ -245,10 +246,10 @@ struct Planner::Impl {
   [[nodiscard]] std::optional<std::vector<LawPiece>> window_law(const PathState& from, double s_end,
                                                                 const std::vector<LawPiece>* before) const {
     const PathView path(segments, starts);
-    if (auto law = plan_window(path, model.joints, {from, s_end, factor, before})) return law;
+    if (auto law = plan_window(path, model.joints, {from, s_end, feed(factor), before})) return law;
     if (from.v != 0 || from.a != 0) return std::nullopt;
-    auto law = cautious_law(path, model.joints, from.s, s_end, factor);
-    if (check_law(path, model.joints, law, -1).worst <= 1.0) return law;
+    auto law = cautious_law(path, model.joints, from.s, s_end, feed(factor));
+    if (check_law(path, model.joints, law, nullptr).worst <= 1.0) return law;
     return std::nullopt;
   }
 
@@ -299,7 +300,7 @@ struct Planner::Impl {
     bool hard = false;
     const double end = s_end ? *s_end : window_end(from.s, path, hard);
     auto law = plan_window(path, model.joints,
-                           {from, end, stops ? std::max(factor, p.override_factor) : factor, &p.plan->law});
+                           {from, end, feed(stops ? std::max(factor, p.override_factor) : factor), &p.plan->law});
     if (!law) return false;
     auto plan = std::make_unique<Plan>();
     plan->start_cycle = cycle;
@@ -377,13 +378,15 @@ struct Planner::Impl {
     if (!acknowledged(progress) || progress.cycle < tried_at + kRetryAfter) return Task::None;
     const bool at_end = ended(progress);
     const bool run = wanted != PathCommand::Stop && factor > 0;
-    if (!run) return at_end || base()->stops ? Task::None : Task::Stop;
+    // A plan is left only once it is followed: what replaces it begins somewhere along it.
+    const bool begun = base() == nullptr || progress.cycle >= base()->plan->start_cycle;
+    if (!run) return at_end || base()->stops || !begun ? Task::None : Task::Stop;
     const double limit = wanted == PathCommand::RunOne ? std::min(limit_s, path_end()) : path_end();
     const bool more = base_end_s() < limit - kSamePlace;
     if (at_end) return more ? Task::Start : Task::None;
     if (base()->stops) return Task::None;
     const double t_now = now_s(*base(), progress.cycle);
-    if (factor != base()->override_factor) return Task::Override;
+    if (factor != base()->override_factor) return begun ? Task::Override : Task::None;
     const double t_decide = base()->hard_end ? base()->plan->end_time_s : base()->commit_t;
     if (more && t_decide - t_now < kHorizon_s) return Task::Extend;
     return Task::None;

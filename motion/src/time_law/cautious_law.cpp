@@ -13,7 +13,7 @@ struct Bounds {
 /// Constant path bounds under which each of the three terms of a joint's jerk has a third of its limit, and each of the
 /// two terms of its acceleration a half (docs/derivations/time-law.md, eq. 14).
 Bounds constant_bounds(const PathView& path, const std::vector<JointLimits>& joints, double s_begin, double s_end,
-                       double factor) {
+                       const FeedRule& feed) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Bounds bounds{kInfinity, kInfinity, kInfinity};
   std::vector<double> d1(joints.size()), d2(joints.size()), d3(joints.size());
@@ -30,7 +30,7 @@ Bounds constant_bounds(const PathView& path, const std::vector<JointLimits>& joi
   take(s_end, -1);
   for (std::size_t i = path.find(s_begin, 1); i <= path.find(s_end, -1); ++i) {
     const PathDemand& demand = path.segment(i).demand();
-    bounds.speed = std::min(bounds.speed, demand.feed_mm_s * factor);
+    bounds.speed = std::min(bounds.speed, feed.bound(path.segment(i)));
     if (demand.accel_rise_mm_s2 > 0) bounds.acceleration = std::min(bounds.acceleration, demand.accel_rise_mm_s2);
     if (demand.accel_fall_mm_s2 > 0) bounds.acceleration = std::min(bounds.acceleration, demand.accel_fall_mm_s2);
     const auto nodes = path.segment(i).curve().nodes();
@@ -63,8 +63,8 @@ Bounds constant_bounds(const PathView& path, const std::vector<JointLimits>& joi
 }  // namespace
 
 std::vector<LawPiece> cautious_law(const PathView& path, const std::vector<JointLimits>& joints, double s_begin,
-                                   double s_end, double factor) {
-  Bounds b = constant_bounds(path, joints, s_begin, s_end, factor);
+                                   double s_end, const FeedRule& feed) {
+  Bounds b = constant_bounds(path, joints, s_begin, s_end, feed);
   const double length = s_end - s_begin;
   // Largest speed whose two ramps fit into the length; the ramp's length grows with the speed.
   if (2 * ramp_length(b.speed, b.acceleration, b.jerk) > length) {

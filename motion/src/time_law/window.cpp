@@ -21,14 +21,15 @@ double bound(double value) {
 
 /// Speed bound at a point of the path: feed and joint speeds.
 double speed_bound(const PathSegment& segment, const JointPoint& point, const std::vector<JointLimits>& joints,
-                   double factor) {
+                   const FeedRule& feed) {
   const PathDemand& demand = segment.demand();
-  double v = demand.feed_mm_s * factor;
+  double v = feed.bound(segment);
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const double d = std::abs(point.d[1][j]);
     if (d * v > joints[j].max_speed * kMargin) v = joints[j].max_speed * kMargin / d;
     if (segment.curve().in_joint_space())
-      v = std::min(v, joints[j].max_speed * kMargin * demand.joint_speed_fraction * factor / std::max(d, 1e-12));
+      v = std::min(
+          v, joints[j].max_speed * kMargin * demand.joint_speed_fraction * feed.override_factor / std::max(d, 1e-12));
   }
   return v;
 }
@@ -40,7 +41,7 @@ struct RestEnd {
 };
 
 std::optional<RestEnd> rest_end(const PathView& path, const std::vector<JointLimits>& joints, double s_rest,
-                                int direction, double available, double grid_step, double factor) {
+                                int direction, double available, double grid_step, const FeedRule& feed) {
   JointPoint point;
   if (path.evaluate(s_rest, 3, direction, point) != KinematicsStatus::Ok) return std::nullopt;
   const PathSegment& segment = path.segment(path.find(s_rest, direction));
@@ -53,7 +54,7 @@ std::optional<RestEnd> rest_end(const PathView& path, const std::vector<JointLim
   }
   RestEnd end;
   end.jerk = 0.97 * jerk;
-  const double speed = speed_bound(segment, point, joints, factor);
+  const double speed = speed_bound(segment, point, joints, feed);
   const double step = std::min(grid_step, available / 40);
   end.time =
       std::min({0.3 * acceleration / end.jerk, std::sqrt(0.2 * speed / end.jerk), std::cbrt(6 * step / end.jerk)});
@@ -142,7 +143,7 @@ std::vector<double> make_grid(const PathView& path, double a, double b, double r
   return nodes;
 }
 
-bool fill(LawProblem& problem, const PathView& path, const std::vector<JointLimits>& joints, double factor) {
+bool fill(LawProblem& problem, const PathView& path, const std::vector<JointLimits>& joints, const FeedRule& feed) {
   const std::size_t n = joints.size(), intervals = problem.intervals();
   problem.joint_count = n;
   problem.derivatives.resize(intervals * 6 * n);
@@ -164,7 +165,7 @@ bool fill(LawProblem& problem, const PathView& path, const std::vector<JointLimi
           KinematicsStatus::Ok)
         return false;
       for (std::size_t d = 1; d <= 3; ++d) out = std::copy_n(point.d[d].begin(), n, out);
-      v = std::min(v, speed_bound(segment, point, joints, factor));
+      v = std::min(v, speed_bound(segment, point, joints, feed));
     }
     problem.speed_cap[k] = v * v;
     problem.rise[k] = bound(segment.demand().accel_rise_mm_s2);
@@ -227,7 +228,7 @@ double ramp_length(double v, double a, double j) noexcept {
 }
 
 LawExcess check_law(const PathView& path, const std::vector<JointLimits>& joints, const std::vector<LawPiece>& law,
-                    double factor) {
+                    const FeedRule* feed) {
   constexpr int kSamples = 4;
   LawExcess excess;
   excess.by_piece.reserve(law.size());
@@ -249,7 +250,7 @@ LawExcess check_law(const PathView& path, const std::vector<JointLimits>& joints
       }
       const PathDemand& demand = segment.demand();
       worst = std::max({worst, at.a / bound(demand.accel_rise_mm_s2), -at.a / bound(demand.accel_fall_mm_s2)});
-      if (factor >= 0) worst = std::max(worst, at.v / (demand.feed_mm_s * factor * 1.0005));
+      if (feed != nullptr) worst = std::max(worst, at.v / (feed->bound(segment) * 1.0005));
     }
     excess.by_piece.push_back(worst);
     excess.worst = std::max(excess.worst, worst);
@@ -261,7 +262,7 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
                                                  const Window& window) {
   const bool from_rest = window.begin.v == 0 && window.begin.a == 0;
   const double length = window.s_end - window.begin.s;
-  const double factor = window.override_factor;
+  const FeedRule& feed = window.feed;
   if (!(length > 0)) return std::nullopt;
 
   double coarsest = length / 12;
@@ -270,18 +271,18 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
     for (const JointLimits& joint : joints) a = std::min(a, joint.max_acceleration), j = std::min(j, joint.max_jerk);
     double v = 0;
     for (std::size_t i = path.find(window.begin.s, 1); i <= path.find(window.s_end, -1); ++i)
-      v = std::max(v, path.segment(i).demand().feed_mm_s * factor);
+      v = std::max(v, feed.bound(path.segment(i)));
     for (const JointLimits& joint : joints) v = std::min(v, 2 * joint.max_speed);
     coarsest = std::min(coarsest, std::max(ramp_length(v, a, j) / 16, 0.01));
   }
   double a = window.begin.s, b = window.s_end;
   std::optional<RestEnd> first, last;
   if (from_rest) {
-    first = rest_end(path, joints, a, 1, length, coarsest, factor);
+    first = rest_end(path, joints, a, 1, length, coarsest, feed);
     if (!first) return std::nullopt;
     a += first->length;
   }
-  last = rest_end(path, joints, b, -1, length, coarsest, factor);
+  last = rest_end(path, joints, b, -1, length, coarsest, feed);
   if (!last) return std::nullopt;
   b -= last->length;
   if (!(b > a)) return std::nullopt;
@@ -293,12 +294,12 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
   // feed.
   double start_step = first ? first->length : coarsest;
   if (JointPoint point; !first && window.begin.a > 0 && path.evaluate(a, 1, 1, point) == KinematicsStatus::Ok) {
-    const double cap = speed_bound(path.segment(path.find(a, 1)), point, joints, factor);
+    const double cap = speed_bound(path.segment(path.find(a, 1)), point, joints, feed);
     const double room = cap * cap - window.begin.v * window.begin.v;
     start_step = std::clamp(0.5 * room / window.begin.a, std::min(1e-4, coarsest), coarsest);
   }
   problem.nodes = make_grid(path, a, b, window.begin.s, window.s_end, start_step, last->length, coarsest);
-  if (!fill(problem, path, joints, factor)) return std::nullopt;
+  if (!fill(problem, path, joints, feed)) return std::nullopt;
   const bool yields = problem.begin.v * problem.begin.v > problem.speed_cap[0] * (1 + 1e-5);
   if (yields) yield_to_begin(problem);
   if (window.before != nullptr && !from_rest) resume_from(problem, *window.before);
@@ -318,7 +319,7 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
     law.insert(law.end(), middle.begin(), middle.end());
     t = law.back().t0 + law.back().duration;
     law.push_back({t, problem.end, last->jerk, last->time, LawPiece::Kind::Jerk});
-    const LawExcess excess = check_law(path, joints, law, yields ? -1 : factor);
+    const LawExcess excess = check_law(path, joints, law, yields ? nullptr : &feed);
     if (excess.worst <= 1.0) return law;
     if (!std::isfinite(excess.worst)) return std::nullopt;
     for (std::size_t k = 0; k < problem.intervals(); ++k) {

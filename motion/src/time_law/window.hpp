@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -9,12 +11,24 @@
 
 namespace rmac {
 
+/// How fast the path may be travelled: the programmed feed times the override, and never above the machine's largest
+/// feed.
+struct FeedRule {
+  double override_factor = 1;
+  double largest_mm_s = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] double bound(const PathSegment& segment) const noexcept {
+    const double feed = segment.demand().feed_mm_s * override_factor;
+    return segment.curve().in_joint_space() ? feed : std::min(feed, largest_mm_s);
+  }
+};
+
 /// A stretch of path to be given a time law: from a state to rest at `s_end`. The path between is smooth to the second
 /// derivative.
 struct Window {
   PathState begin;  ///< v = a = 0: from rest
   double s_end = 0;
-  double override_factor = 1;  ///< on the programmed feed
+  FeedRule feed;
   const std::vector<LawPiece>* before =
       nullptr;  ///< the law that the window's begin state was taken from: a good first guess
 };
@@ -32,7 +46,7 @@ struct LawExcess {
   std::vector<double> by_piece;
 };
 [[nodiscard]] LawExcess check_law(const PathView& path, const std::vector<JointLimits>& joints,
-                                  const std::vector<LawPiece>& law, double override_factor);
+                                  const std::vector<LawPiece>& law, const FeedRule* feed);
 
 /// Length of the ramp from rest to speed v (mm) under acceleration a and jerk j.
 [[nodiscard]] double ramp_length(double v, double a, double j) noexcept;
@@ -41,6 +55,6 @@ struct LawExcess {
 /// speed, acceleration and jerk, each term of a joint's demand having a third of the limit. Slow, and never without an
 /// answer.
 [[nodiscard]] std::vector<LawPiece> cautious_law(const PathView& path, const std::vector<JointLimits>& joints,
-                                                 double s_begin, double s_end, double override_factor);
+                                                 double s_begin, double s_end, const FeedRule& feed);
 
 }  // namespace rmac

@@ -61,6 +61,17 @@ TEST_F(ModuleFolder, LooksIntoTheFirstFolderFirst) {
   EXPECT_EQ(made->build_id, "two");
 }
 
+TEST_F(ModuleFolder, RefusesAHalfCopiedModule) {
+  const fs::path whole = kModules / "good" / "TestKinematics3.so", file = folder_ / "TestKinematics3.so";
+  for (const double part : {0.1, 0.3, 0.6, 0.99}) {
+    fs::copy_file(whole, file, fs::copy_options::overwrite_existing);
+    fs::resize_file(file, static_cast<std::uintmax_t>(static_cast<double>(fs::file_size(whole)) * part));
+    const auto made = ModuleLoader({folder_}).load<Kinematics>({"TestKinematics3", {}, {}});
+    ASSERT_FALSE(made) << part;
+    EXPECT_THAT(made.error().message, HasSubstr("is not a whole shared object")) << part;
+  }
+}
+
 TEST_F(ModuleFolder, LeavesNoCopyBehind) {
   ::setenv("TMPDIR", folder_.c_str(), 1);
   const auto made = ModuleLoader({kModules / "good"}).load<ServoLaw>({"TestLaw", {}, {}});

@@ -153,6 +153,23 @@ TEST_P(PlannerProperty, TakesOverridesAtAnyInstantWithinLimits) {
   EXPECT_EQ(bench.moves_done(), moves);
 }
 
+TEST_P(PlannerProperty, TakesOverridesFasterThanItPlans) {
+  PlannerBench bench(mill());
+  RandomProgram program(GetParam() + 5000);
+  queue_program(bench, program, 3);
+  bench.planner.command(PathCommand::Run);
+  for (int step = 0; step < 400 && bench.planner.moves_left() > 0; ++step) {
+    bench.cycles_with_late_planner(1 + step % 7);
+    bench.planner.set_override(program.uniform(-50, 200));  // zero now and then
+    bench.planner.command(step % 5 == 4 ? PathCommand::Stop : PathCommand::Run);
+    for (int i = 0; i < step % 3; ++i) bench.cycle();
+  }
+  bench.planner.command(PathCommand::Run);
+  bench.planner.set_override(100);
+  ASSERT_TRUE(bench.run());
+  expect_limits_kept(bench, GetParam());
+}
+
 TEST_P(PlannerProperty, RestsAtTheEndOfWhatASlowClientSentAndGoesOn) {
   PlannerBench bench(mill());
   RandomProgram program(GetParam() + 3000);
@@ -227,6 +244,22 @@ TEST(Planner, StopsExactlyInACornerWithoutTolerance) {
       slowest = std::min(slowest, setpoint.feed_mm_s);
   }
   EXPECT_LT(slowest, 0.1);
+}
+
+TEST(Planner, NeverPassesTheLargestFeedWhateverTheOverride) {
+  PlannerModel model = mill();
+  model.max_feed_mm_s = 2000.0 / 60;
+  PlannerBench bench(model);
+  Move move;
+  move.feed_mm_s = 30;
+  move.geometry = LineGeometry{{{0, 0, 0}, kUp}, {{40, 0, 0}, kUp}};
+  ASSERT_TRUE(bench.queue(move));
+  bench.planner.set_override(200);
+  bench.planner.command(PathCommand::Run);
+  ASSERT_TRUE(bench.run());
+  double fastest = 0;
+  for (const Setpoint& setpoint : bench.record) fastest = std::max(fastest, setpoint.feed_mm_s);
+  EXPECT_NEAR(fastest, 2000.0 / 60, 0.05);
 }
 
 TEST(Planner, RunsOneMoveInManualMode) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -19,6 +20,7 @@ struct PlannerModel {
   std::shared_ptr<const Kinematics> kinematics;
   std::vector<JointLimits> joints;  ///< kinematic joints only
   double period_s = 0.001;
+  double max_feed_mm_s = std::numeric_limits<double>::infinity();  ///< of the tool tip, whatever the override says
 };
 
 /// Turns moves into checked path segments. Knows where the queue ends. Gateway thread.
