@@ -9,8 +9,8 @@ namespace rmac::gateway {
 namespace {
 
 constexpr std::size_t kLargestBatch = 10'000;
-/// Requests carried out before other connections get their turn.
-constexpr std::size_t kTurn = 64;
+/// Of one line or of several, before other connections get their turn: their stops must not wait for a long batch.
+constexpr std::chrono::milliseconds kTurn{5};
 
 Answer refused(int code, std::string message, MinorCode minor) {
   return tl::unexpected<RpcError>(RpcError{code, std::move(message), minor});
@@ -21,6 +21,32 @@ Request not_a_request(RpcError error) {
   Request request;
   request.error = std::move(error);
   return request;
+}
+
+/// Whether a stop button is only let go, which stops nothing.
+bool is_release(const Request& stop) {
+  const auto arguments = arrange(*stop.method, stop.params);
+  return arguments && arguments->size() == 1 && arguments->front() != nullptr && *arguments->front() == false;
+}
+
+bool keeps_the_queue(const Request& stop) {
+  const std::string& name = stop.method->name;
+  return name == "RMAC_CAM.CycleStop" || name == "RMAC_CAM.SetCycleStopStatus" || name == "RMAC_CAM.FeedHold";
+}
+
+/// Moves, and the settings between them: they wait for a start themselves.
+bool only_queues(const Request& request) {
+  const Method& method = *request.method;
+  const std::string_view function = std::string_view(method.name).substr(method.name.find('.') + 1);
+  const bool sets = function.starts_with("Set") || function.starts_with("Machine_Set");
+  return request.queues_a_move() || method.property || (sets && function != "SetCycleStartStatus");
+}
+
+/// Whether `request`, sent before `stop` and not yet run, must not run after it.
+bool is_overtaken(const Request& request, const Request& stop) {
+  if (request.method == nullptr) return false;
+  const bool changes = request.method->permission == Permission::Authority || request.method->property;
+  return changes && !(keeps_the_queue(stop) && only_queues(request));
 }
 
 std::string text_of(const nlohmann::json& json) {
@@ -52,7 +78,24 @@ void Connection::take_line(std::string_view line) {
   work.answers.resize(work.requests.size());
   // Stops do not queue: they act before everything that waits here, in a batch too.
   for (std::size_t i = 0; i < work.requests.size(); ++i) {
-    if (work.requests[i].stops()) work.answers[i] = server_.dispatcher().execute(work.requests[i], *this);
+    const Request& stop = work.requests[i];
+    if (!stop.stops()) continue;
+    work.answers[i] = server_.dispatcher().execute(stop, *this);
+    if (is_release(stop)) continue;
+    // What was sent before the stop must not undo it.
+    const auto refuse_before = [&stop](Work& earlier, std::size_t end) {
+      for (std::size_t k = earlier.next; k < end; ++k) {
+        if (earlier.answers[k] || !is_overtaken(earlier.requests[k], stop)) continue;
+        earlier.answers[k] = refused(
+            rpc_code::kMachineBase - static_cast<int>(MinorCode::Other),
+            fmt::format(
+                "{} was overtaken by a stop: {} came before it was carried out; send it again if it still holds",
+                earlier.requests[k].method->name, stop.method->name),
+            MinorCode::Other);
+      }
+    };
+    for (Work& earlier : pending_) refuse_before(earlier, earlier.requests.size());
+    refuse_before(work, i);
   }
   if (!work.batch && work.answers[0]) {
     answer(work);
@@ -64,8 +107,15 @@ void Connection::take_line(std::string_view line) {
 
 void Connection::pump() {
   const auto self = shared_from_this();
-  for (std::size_t done = 0; !pending_.empty() && phase_ != Phase::Closed; ++done) {
-    if (done == kTurn) {
+  const auto turn_end = std::chrono::steady_clock::now() + kTurn;
+  while (!pending_.empty() && phase_ != Phase::Closed) {
+    Work& work = pending_.front();
+    // Not done: its turn ended, or it waits for room in the queue. The next tick goes on with it at the latest.
+    if (!run(work)) return;
+    answer(work);
+    pending_bytes_ -= work.bytes;
+    pending_.pop_front();
+    if (!pending_.empty() && std::chrono::steady_clock::now() >= turn_end) {
       if (!pump_posted_) {
         pump_posted_ = true;
         asio::post(socket_.get_executor(), [self] {
@@ -75,11 +125,6 @@ void Connection::pump() {
       }
       return;
     }
-    Work& work = pending_.front();
-    if (!run(work)) return;  // waits for room in the queue; the next tick tries again
-    answer(work);
-    pending_bytes_ -= work.bytes;
-    pending_.pop_front();
   }
   if (phase_ == Phase::Draining && pending_.empty()) server_.lose_lease(*this, "disconnected with");
   finish_if_drained();
@@ -87,7 +132,9 @@ void Connection::pump() {
 }
 
 bool Connection::run(Work& work) {
-  for (; work.next < work.requests.size(); ++work.next) {
+  const auto turn_end = std::chrono::steady_clock::now() + kTurn;
+  for (const std::size_t first = work.next; work.next < work.requests.size(); ++work.next) {
+    if (work.next != first && std::chrono::steady_clock::now() >= turn_end) return false;
     if (work.answers[work.next]) continue;
     const Request& request = work.requests[work.next];
     if (work.refuse_moves && request.queues_a_move()) {

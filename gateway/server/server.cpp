@@ -12,6 +12,9 @@ namespace rmac::gateway {
 
 namespace {
 
+/// The server itself as holder of the lease, while it switches the drives off: no client may start anything then.
+constexpr Lease::Holder kServerItself = ~Lease::Holder{0};
+
 template <typename... Arguments>
 tl::unexpected<Error> cannot(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   return failure(MinorCode::Other, fmt::format(format, std::forward<Arguments>(arguments)...));
@@ -168,15 +171,24 @@ const Connection* Server::fast_watcher_beside(const Connection& connection) cons
 void Server::lose_lease(const Connection& connection, const char* why) {
   if (!lease_.release(connection.id())) return;
   MachinePort& machine = dispatcher_.machine();
+  // The sample may be a cycle old: a start that came along with the goodbye is not in it, but the cam knows.
   const CycleSample sample = machine.sample();
-  const bool runs = sample.state == CycleState::Running || sample.state == CycleState::Holding || sample.moving;
+  const bool runs = sample.state == CycleState::Running || sample.state == CycleState::Holding || sample.moving ||
+                    machine.cam().cycle_start_status();
+  const bool power_off = runs && options_.lease_lost == LeaseLostAction::StopAndPowerOff;
   std::string message = fmt::format("{} {} motion authority", connection.name(), why);
-  if (runs) {
-    const Expected<> stopped = machine.cam().cycle_stop();
-    message += stopped ? "; the machine is stopped on its path" : "; stopping failed: " + stopped.error().message;
-    if (!stopped) dispatcher_.status().fail(stopped.error().code);
-    power_off_pending_ = options_.lease_lost == LeaseLostAction::StopAndPowerOff;
-    if (power_off_pending_) message += ", then its drives are switched off";
+  // At rest, too: stopping on the path is harmless there. Drives go off only with an empty queue.
+  const Expected<> stopped = power_off ? machine.cam().stop_now() : machine.cam().cycle_stop();
+  if (!stopped) {
+    message += "; stopping failed: " + stopped.error().message;
+    dispatcher_.status().fail(stopped.error().code);
+  } else if (runs) {
+    message += "; the machine is stopped on its path";
+  }
+  if (power_off) {
+    message += ", then its drives are switched off";
+    power_off_pending_ = true;
+    static_cast<void>(lease_.acquire(kServerItself, "rmacd, which is switching the drives off after a lost lease,"));
   }
   spdlog::info("{}", message);
   announce(Event::Kind::Authority, std::move(message));
@@ -187,11 +199,12 @@ void Server::power_off_at_rest() {
   MachinePort& machine = dispatcher_.machine();
   const CycleSample sample = machine.sample();
   if (sample.moving || sample.state == CycleState::Running || sample.state == CycleState::Stopping) return;
+  // Tried again at every tick: the controller may still be emptying its queue.
+  if (machine.mechanism() != nullptr && !machine.device().unload()) return;
   power_off_pending_ = false;
-  if (const Expected<> done = machine.device().unload(); !done) {
-    spdlog::error("the drives could not be switched off: {}", done.error().message);
-    announce(Event::Kind::Fault, "the drives could not be switched off: " + done.error().message);
-  }
+  lease_.release(kServerItself);
+  spdlog::info("the drives are switched off after a lost lease");
+  announce(Event::Kind::Authority, "the drives are switched off; motion authority is free");
 }
 
 void Server::announce(Event::Kind kind, std::string message) {

@@ -21,6 +21,11 @@ std::string move_line(int id) {
          kMove + "}\n";
 }
 
+std::string line_of(int id, const std::string& method, const std::string& params = "[]") {
+  return R"({"jsonrpc":"2.0","id":)" + std::to_string(id) + R"(,"method":")" + method + R"(","params":)" + params +
+         "}\n";
+}
+
 void set_running(ServerBench& bench) {
   bench.on_gateway([](Server&, FakeMachine& machine) {
     machine.now.state = CycleState::Running;
@@ -87,9 +92,27 @@ TEST(Authority, LossInMidCutStopsTheMachineAndIsAnnounced) {
   EXPECT_EQ(watcher.call("authority.acquire")["result"], true);
 }
 
-TEST(Authority, LossAtRestStopsNothing) {
+TEST(Authority, LossStopsAMachineWhoseSampleDoesNotShowItsStartYet) {
   ServerBench bench;
-  bench.on_gateway([](Server&, FakeMachine& machine) { EXPECT_CALL(machine.cam_mock, cycle_stop()).Times(0); });
+  bench.on_gateway([](Server&, FakeMachine& machine) {
+    testing::InSequence in_order;
+    EXPECT_CALL(machine.cam_mock, cycle_start(_)).WillOnce(Return(Expected<>{}));
+    EXPECT_CALL(machine.cam_mock, cycle_stop()).WillOnce(Return(Expected<>{}));
+  });
+  Client watcher(bench.port());
+  EXPECT_EQ(watcher.call("subscribe", R"({"topics":["events"]})")["result"], true);
+  {
+    Client holder(bench.port());
+    EXPECT_EQ(holder.call("authority.acquire")["result"], true);
+    holder.send(line_of(2, "RMAC_CAM.CycleStart", "[1]"));
+    holder.end_writing();
+    EXPECT_EQ(holder.json_line()["result"], true);
+    EXPECT_EQ(holder.line(), "");
+  }
+}
+
+TEST(Authority, LossAtRestIsAnnouncedWithoutAStop) {
+  ServerBench bench;
   Client watcher(bench.port());
   EXPECT_EQ(watcher.call("subscribe", R"({"topics":["events"]})")["result"], true);
   { EXPECT_EQ(Client(bench.port()).call("authority.acquire")["result"], true); }
@@ -102,7 +125,7 @@ TEST(Authority, LossPowersOffAtRestWhereConfiguredSo) {
   options.lease_lost = LeaseLostAction::StopAndPowerOff;
   ServerBench bench(options);
   bench.on_gateway([](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, cycle_stop()).WillOnce([&]() -> Expected<> {
+    EXPECT_CALL(machine.cam_mock, stop_now()).WillOnce([&]() -> Expected<> {
       EXPECT_TRUE(machine.device_fake.device) << "power must stay on until the machine rests";
       machine.now.state = CycleState::Stopping;
       return {};
@@ -113,12 +136,95 @@ TEST(Authority, LossPowersOffAtRestWhereConfiguredSo) {
   set_running(bench);
   EXPECT_EQ(holder.call("authority.release")["result"], true);
   EXPECT_EQ(holder.call("Device.OpenDeviceDatabase")["result"], true);
+  EXPECT_THAT(holder.call("authority.acquire")["error"]["message"].get<std::string>(),
+              HasSubstr("switching the drives off"));
   bench.on_gateway([](Server& server, FakeMachine& machine) {
     machine.now.state = CycleState::Idle;
     machine.now.moving = false;
     server.tick();
   });
   EXPECT_TRUE(holder.call("Device.OpenDeviceDatabase").contains("error")) << "unloaded";
+  EXPECT_EQ(holder.call("authority.acquire")["result"], true);
+}
+
+TEST(Overtaken, WhatStartsMotionDoesNotRunAfterAStopSentBehindIt) {
+  for (const char* start : {"RMAC_CAM.CycleStart [1]", "RMAC_CAM.SetCycleStartStatus [true]", "RMAC_CAM.FeedResume []",
+                            "RMAC_CAM.JogJoint [0,1]"}) {
+    for (const char* stop : {"RMAC_CAM.StopNow []", "RMAC_CAM.CycleStop [1]", "RMAC_CAM.FeedHold []"}) {
+      for (const bool batch : {false, true}) {
+        SCOPED_TRACE(std::string(start) + ", " + stop + (batch ? " in a batch" : ""));
+        ServerBench bench;
+        bench.on_gateway([](Server&, FakeMachine& machine) {
+          EXPECT_CALL(machine.cam_mock, cycle_start(_)).Times(0);
+          EXPECT_CALL(machine.cam_mock, feed_resume()).Times(0);
+          EXPECT_CALL(machine.cam_mock, jog_joint(_, _)).Times(0);
+        });
+        Client client(bench.port());
+        EXPECT_EQ(client.call("authority.acquire")["result"], true);
+        const auto request = [](int id, const std::string& words) {
+          const std::size_t space = words.find(' ');
+          return line_of(id, words.substr(0, space), words.substr(space + 1));
+        };
+        const std::string first = request(10, start);
+        const std::string second = request(11, stop);
+        json refused;
+        if (batch) {
+          client.send("[" + first.substr(0, first.size() - 1) + "," + second.substr(0, second.size() - 1) + "]\n");
+          refused = client.json_line()[0];
+        } else {
+          client.send(first + second);
+          refused = client.answer(10);
+        }
+        EXPECT_THAT(refused["error"]["message"].get<std::string>(), HasSubstr("overtaken by a stop"));
+      }
+    }
+  }
+}
+
+TEST(Overtaken, LettingAStopButtonGoOvertakesNothing) {
+  ServerBench bench;
+  bench.on_gateway([](Server&, FakeMachine& machine) {
+    EXPECT_CALL(machine.cam_mock, cycle_start(_)).WillOnce(Return(Expected<>{}));
+  });
+  Client client(bench.port());
+  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  client.send(line_of(10, "RMAC_CAM.CycleStart", "[1]") + line_of(11, "RMAC_CAM.SetCycleStopStatus", "[false]"));
+  EXPECT_EQ(client.answer(10)["result"], true);
+}
+
+TEST(Turn, AStopOfAnotherClientIsServedInsideALongBatch) {
+  ServerBench bench;
+  std::promise<void> sent;
+  std::atomic<int> run = 0;
+  std::atomic<int> run_at_stop = -1;
+  bench.on_gateway([&](Server&, FakeMachine& machine) {
+    ON_CALL(machine.cam_mock, set_feedrate(_)).WillByDefault([&](double) -> Expected<> {
+      if (run++ == 0) sent.get_future().wait();
+      const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(6);  // longer than a turn
+      while (std::chrono::steady_clock::now() < end) {
+      }
+      return {};
+    });
+    ON_CALL(machine.cam_mock, stop_now()).WillByDefault([&]() -> Expected<> {
+      run_at_stop = run.load();
+      return {};
+    });
+  });
+  Client client(bench.port());
+  Client other(bench.port());
+  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  EXPECT_EQ(other.call("RMAC_CAM.Ok")["result"], true);
+  std::string batch = "[";
+  for (int i = 0; i < 50; ++i) {
+    const std::string line = line_of(100 + i, "RMAC_CAM.SetFeedrate", "[100]");
+    batch += (i == 0 ? "" : ",") + line.substr(0, line.size() - 1);
+  }
+  client.send(batch + "]\n");
+  other.send(line_of(7, "RMAC_CAM.StopNow"));
+  sent.set_value();
+  EXPECT_EQ(other.json_line()["result"], true);
+  EXPECT_LT(run_at_stop, 50);
+  EXPECT_EQ(client.json_line().size(), 50U) << "the batch goes on all the same";
 }
 
 TEST(QueueWait, StopOvertakesAMoveThatWaitsForRoom) {
