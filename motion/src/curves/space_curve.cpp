@@ -47,6 +47,7 @@ SpaceCurve::SpaceCurve(const Nurbs& nurbs, NurbsSpace space, const Vector& held_
     unit_ = 180 / std::numbers::pi;
     rests_ = false;
   }
+  extent_ = spline_.extent(first_, last_);
 }
 
 void SpaceCurve::evaluate(std::size_t span, double t, int order, CurvePoint& point) const noexcept {
@@ -96,7 +97,7 @@ void SpaceCurve::tangent(std::size_t span, double t, CurvePoint& point) const no
 
 double SpaceCurve::least_speed(std::size_t span) const noexcept {
   // A span in which the points differ by their last digits only: what is left of the speed is rounding.
-  return 1e-12 * spline_.extent(first_, last_) * unit_ / spline_.span_width(span);
+  return 1e-12 * extent_ * unit_ / spline_.span_width(span);
 }
 
 std::optional<LengthTable::Place> SpaceCurve::vanishing_axis() const {
