@@ -23,10 +23,12 @@ cp /etc/resolv.conf "$root/etc/resolv.conf"
 rm -rf "$root/rmac"
 git clone --quiet --no-hardlinks "$source" "$root/rmac"
 
-unmount() { umount -l "$root/dev/shm" "$root/proc" 2>/dev/null || true; }
+unmount() { umount -l "$root/dev/pts" "$root/dev/shm" "$root/proc" 2>/dev/null || true; }
 trap unmount EXIT
 mount -t proc proc "$root/proc"
-mkdir -p "$root/dev/shm"
+mkdir -p "$root/dev/shm" "$root/dev/pts"
+mount -t devpts -o newinstance,ptmxmode=0666 devpts "$root/dev/pts"
+ln -sf pts/ptmx "$root/dev/ptmx"
 mount -t tmpfs tmpfs "$root/dev/shm"
 
 inside() { # command line
