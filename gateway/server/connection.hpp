@@ -57,7 +57,8 @@ class Connection final : public SessionPort, public std::enable_shared_from_this
   /// The requests of one line.
   struct Work {
     bool batch = false;
-    bool refuse_moves = false;  ///< a move before these found the queue full: taking a later one would leave a gap
+    std::size_t answer_bytes = 0;  ///< of a batch's answers so far
+    bool refuse_moves = false;     ///< a move before these found the queue full: taking a later one would leave a gap
     std::vector<Request> requests;
     std::vector<std::optional<Answer>> answers;
     std::size_t next = 0;

@@ -9,6 +9,8 @@ namespace rmac::gateway {
 namespace {
 
 constexpr std::size_t kLargestBatch = 10'000;
+/// A batch is answered in one piece, which memory must hold.
+constexpr std::size_t kMostAnswerBytes = 8U << 20U;
 /// Of one line or of several, before other connections get their turn: their stops must not wait for a long batch.
 constexpr std::chrono::milliseconds kTurn{5};
 
@@ -144,7 +146,14 @@ bool Connection::run(Work& work) {
                   MinorCode::CommandQueueFull);
       continue;
     }
+    if (work.answer_bytes > kMostAnswerBytes) {
+      work.answers[work.next] =
+          refused(rpc_code::kMachineBase - static_cast<int>(MinorCode::Other),
+                  "not carried out: the answers of this batch exceed 8 MiB; send smaller batches", MinorCode::Other);
+      continue;
+    }
     Answer result = server_.dispatcher().execute(request, *this);
+    if (work.batch && result && result->is_structured()) work.answer_bytes += result->dump().size();
     if (!result && result.error().minor == MinorCode::CommandQueueFull && request.queues_a_move()) {
       if (must_wait(work)) return false;
       server_.dispatcher().status().fail(MinorCode::CommandQueueFull);

@@ -200,7 +200,15 @@ void Server::power_off_at_rest() {
   const CycleSample sample = machine.sample();
   if (sample.moving || sample.state == CycleState::Running || sample.state == CycleState::Stopping) return;
   // Tried again at every tick: the controller may still be emptying its queue.
-  if (machine.mechanism() != nullptr && !machine.device().unload()) return;
+  if (machine.mechanism() != nullptr) {
+    if (const auto unloaded = machine.device().unload(); !unloaded) {
+      if (!power_off_refused_)
+        announce(Event::Kind::Fault, "the drives are not switched off yet: " + unloaded.error().message);
+      power_off_refused_ = true;
+      return;
+    }
+  }
+  power_off_refused_ = false;
   power_off_pending_ = false;
   lease_.release(kServerItself);
   spdlog::info("the drives are switched off after a lost lease");

@@ -97,6 +97,7 @@ class Server {
   std::uint64_t next_id_ = 1;
   std::uint16_t port_ = 0;
   bool power_off_pending_ = false;
+  bool power_off_refused_ = false;  ///< and it was said
 };
 
 }  // namespace rmac::gateway
