@@ -97,6 +97,8 @@ class Appliance:
         client.call("Device.Load", Name=machine)
         client.call("RMAC_CAM.Home")
         wait_for_rest(client)
+        while client.state()["state"] != "Idle":  # The state follows the last motion by a cycle or two.
+            pass
         return client
 
     def rmac(self, *words, **options):
