@@ -111,7 +111,7 @@ TEST(Authority, LossStopsAMachineWhoseSampleDoesNotShowItsStartYet) {
   }
 }
 
-TEST(Authority, LossAtRestIsAnnouncedWithoutAStop) {
+TEST(Authority, LossAtRestIsAnnounced) {
   ServerBench bench;
   Client watcher(bench.port());
   EXPECT_EQ(watcher.call("subscribe", R"({"topics":["events"]})")["result"], true);
