@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import pty
+import select
 import signal
 import subprocess
 import unittest
@@ -101,7 +102,7 @@ class Operating(unittest.TestCase):
 
     def test_events_tell_of_a_load_until_interrupted(self):
         with subprocess.Popen([BUILD / "bin" / "rmac", "--port", str(self.appliance.port), "--json", "events"],
-                              stdout=subprocess.PIPE, text=True) as events:
+                              stdout=subprocess.PIPE, bufsize=0) as events:
             watcher = self.appliance.client("watcher")
             watcher.call("subscribe", topics=["events"])
             # The client above subscribes at its own time: loads are repeated until it tells of one.
@@ -112,13 +113,12 @@ class Operating(unittest.TestCase):
             self.assertEqual(events.wait(timeout=60), DONE)
 
     def load_until_heard(self, stream):
-        os.set_blocking(stream.fileno(), False)
-        heard = ""
+        heard = b""
         for _ in range(200):
             self.rmac("load", "DMACXYZ")
-            heard += stream.read() or ""
-            if "\n" in heard:
-                os.set_blocking(stream.fileno(), True)
+            while select.select([stream], [], [], 0)[0]:
+                heard += os.read(stream.fileno(), 65536)
+            if b"\n" in heard:
                 return heard.splitlines()[0]
         raise AssertionError("rmac events told of no load")
 
