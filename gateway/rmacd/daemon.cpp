@@ -5,6 +5,7 @@
 #include <systemd/sd-daemon.h>
 
 #include <asio.hpp>
+#include <csignal>
 #include <cstdlib>
 
 #include "gateway/rmacd/machine.hpp"
@@ -87,6 +88,15 @@ class Daemon {
   std::chrono::microseconds watchdog_period_{0};
 };
 
+/// A second SIGTERM or SIGINT must not turn an orderly end into a kill once the signal set no longer catches it.
+void keep_ending() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+
 Expected<> Daemon::run(const Configuration& configuration) {
   for (const auto& problem : manager_->problems()) {
     spdlog::warn("{} is left out of the device driver database: {}", problem.file.string(), problem.message);
@@ -122,6 +132,7 @@ Expected<> Daemon::run(const Configuration& configuration) {
   io_.run();
   server_.close();
   controller_.stop();
+  keep_ending();
   return {};
 }
 
