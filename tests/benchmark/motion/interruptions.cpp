@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "drive.hpp"
+#include "exact_nurbs.hpp"
+#include "limit_check.hpp"
+#include "machines.hpp"
+#include "rows.hpp"
+#include "shapes.hpp"
+#include "shortest_stop.hpp"
+
+namespace rmac::bench {
+namespace {
+
+constexpr int kInstantsOfSpline = 10;
+
+struct Outcome {
+  int instants = 0, unfinished = 0, holds = 0, late = 0;
+  double worst = 0, off_nm = 0;
+  std::vector<double> reaction_cycles, stop_ratio, planning_ms;
+};
+
+/// Path length of a plan at a time, for a comparison with what came instead.
+PathState state_of(const Plan& plan, double t) {
+  if (t >= plan.end_time_s) {
+    const LawPiece& last = plan.law.back();
+    return {last.at(last.duration).s, 0, 0};
+  }
+  auto piece =
+      std::upper_bound(plan.law.begin(), plan.law.end(), t, [](double at, const LawPiece& p) { return at < p.t0; });
+  if (piece != plan.law.begin()) --piece;
+  return piece->at(t - piece->t0);
+}
+
+/// One spline, travelled with interruptions at random instants.
+class Case {
+ public:
+  Case(RandomSplines& random, Outcome& outcome)
+      : random_(random),
+        outcome_(outcome),
+        nurbs_(random.three_axis()),
+        exact_(nurbs_),
+        model_(bench_xyz()),
+        drive_(model_, nurbs_.points.front()),
+        check_(model_.joints) {
+    u_ = exact_.begin();
+    drive_.on_travelled = [this](const Plan& plan, double from, double to) { check_.travelled(plan, from, to); };
+    drive_.on_setpoint = [this](const Setpoint& setpoint) { look(setpoint); };
+    Move move;
+    move.id = 1;
+    move.feed_mm_s = random_.uniform(20, 200);
+    move.geometry = NurbsGeometry{NurbsSpace::Tip, nurbs_};
+    queued_ = drive_.queue(move).has_value();
+  }
+
+  void travel() {
+    if (!queued_) {
+      ++outcome_.unfinished;
+      return;
+    }
+    drive_.planner.command(PathCommand::Run);
+    for (int i = 0; i < kInstantsOfSpline; ++i) {
+      const auto wait = static_cast<int>(random_.uniform(1, 400));
+      for (int k = 0; k < wait; ++k) drive_.cycle();
+      if (drive_.planner.moves_left() == 0) break;
+      ++outcome_.instants;
+      if (random_.uniform(0, 1) < 0.4) {
+        override_step();
+      } else {
+        hold();
+      }
+    }
+    drive_.planner.set_override(150);
+    drive_.planner.command(PathCommand::Run);
+    if (!drive_.run(200'000)) ++outcome_.unfinished;
+    drive_.finish();
+    outcome_.worst = std::max(outcome_.worst, check_.worst());
+  }
+
+ private:
+  void look(const Setpoint& setpoint) {
+    check_.setpoint(setpoint);
+    if (!setpoint.moving) return;
+    const double* const tip = setpoint.position.data();
+    u_ = std::min(u_ + setpoint.feed_mm_s * static_cast<Real>(model_.period_s) / exact_.speed(u_), exact_.end());
+    if (drive_.now() % 8 != 0) return;
+    u_ = exact_.nearest(tip, u_);
+    outcome_.off_nm = std::max(outcome_.off_nm, 1e6 * static_cast<double>(exact_.distance(tip, u_)));
+  }
+
+  void override_step() {
+    const double percent = random_.uniform(0, 1) < 0.1 ? 0 : random_.uniform(1, 200);
+    drive_.planner.set_override(percent);
+    if (percent > 0) return;
+    const auto wait = static_cast<int>(random_.uniform(1, 600));
+    for (int k = 0; k < wait; ++k) drive_.cycle();
+    drive_.planner.set_override(random_.uniform(1, 200));
+  }
+
+  /// Cycles after the command that still follow the plan in force when it came, and the way to rest from there.
+  void hold() {
+    const auto before = drive_.plan();
+    const std::int64_t asked = drive_.now();
+    const bool measured = before != nullptr && drive_.setpoint().feed_mm_s > 1;
+    const double planning = drive_.planning_s();
+    drive_.planner.command(PathCommand::Stop);
+    const bool impatient = random_.uniform(0, 1) < 0.2;
+    std::int64_t followed = -1;
+    const std::size_t most = impatient ? static_cast<std::size_t>(random_.uniform(1, 150)) : 5000;
+    bool rested = false;
+    for (std::size_t k = 0; k < most && !rested; ++k) {
+      const Setpoint& setpoint = drive_.cycle();
+      if (k == 0) outcome_.planning_ms.push_back(1e3 * (drive_.planning_s() - planning));
+      if (measured && followed < 0) {
+        const double t = static_cast<double>(drive_.now() - before->start_cycle) * model_.period_s;
+        if (std::abs(setpoint.s_mm - state_of(*before, t).s) > 1e-9) followed = drive_.now() - 1 - asked;
+      }
+      rested = drive_.resting();
+    }
+    if (measured && !impatient && followed >= 0) {
+      ++outcome_.holds;
+      outcome_.reaction_cycles.push_back(static_cast<double>(followed));
+      const double t = static_cast<double>(asked + followed - before->start_cycle) * model_.period_s;
+      const PathState left = state_of(*before, t);
+      const double shortest = shortest_stop_mm(*before->segments.front(), model_.joints, left);
+      if (std::isfinite(shortest) && before->segments.size() == 1)
+        outcome_.stop_ratio.push_back((drive_.setpoint().s_mm - left.s) / shortest);
+    } else if (measured && !impatient) {
+      ++outcome_.late;  // the plan in force was braking for its own end
+    }
+    drive_.planner.command(PathCommand::Run);
+  }
+
+  RandomSplines& random_;
+  Outcome& outcome_;
+  Nurbs nurbs_;
+  ExactNurbs exact_;
+  PlannerModel model_;
+  Drive drive_;
+  LimitCheck check_;
+  Real u_ = 0;
+  bool queued_ = false;
+};
+
+}  // namespace
+
+void interruption_rows(Figures& figures, const Extent& extent) {
+  const int wanted = extent.cases(10'000, 500);
+  RandomSplines random(17);
+  Outcome outcome;
+  while (outcome.instants < wanted) Case(random, outcome).travel();
+  const std::string note = std::to_string(outcome.instants) + " instants";
+  const std::string holds = std::to_string(outcome.holds) + " holds";
+  figures.at_most("interruptions_limits", outcome.worst, 1.001, "of limit", note);
+  figures.at_most("interruptions_off_curve", outcome.off_nm, 1, "nm", note);
+  figures.at_most("interruptions_unfinished", outcome.unfinished, 0, "programs", note);
+  figures.at_most("hold_reaction_p50", quantile(outcome.reaction_cycles, 0.5), 2, "cycles", holds);
+  figures.at_most("hold_reaction_p99", quantile(outcome.reaction_cycles, 0.99), 2, "cycles", holds);
+  figures.at_most("hold_reaction_max", quantile(outcome.reaction_cycles, 1), 2, "cycles", holds);
+  figures.inform("hold_kept_plan", outcome.late, "holds", "the plan in force came to rest by itself");
+  figures.at_most("hold_distance_p50", quantile(outcome.stop_ratio, 0.5), 1.2, "of shortest", holds);
+  figures.inform("hold_distance_p99", quantile(outcome.stop_ratio, 0.99), "of shortest", holds);
+  figures.inform("hold_planning_p50", quantile(outcome.planning_ms, 0.5), "ms", "CPU time");
+  figures.inform("hold_planning_p99", quantile(outcome.planning_ms, 0.99), "ms", "CPU time");
+}
+
+}  // namespace rmac::bench

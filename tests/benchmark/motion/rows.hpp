@@ -1,0 +1,19 @@
+#pragma once
+
+#include "figures.hpp"
+
+namespace rmac::bench {
+
+struct Extent {
+  bool quick = false;  ///< fewer cases
+  [[nodiscard]] int cases(int full, int few) const { return quick ? few : full; }
+};
+
+void rose_rows(Figures& figures, const Extent& extent);
+void spline_rows(Figures& figures, const Extent& extent);
+void curve_step_rows(Figures& figures, const Extent& extent);
+void planning_rows(Figures& figures, const Extent& extent);
+void interruption_rows(Figures& figures, const Extent& extent);
+void stream_rows(Figures& figures, const Extent& extent);
+
+}  // namespace rmac::bench
