@@ -1,21 +1,27 @@
 #!/usr/bin/env bash
-# Installs the packages, builds, runs every test: as released, then under the address and undefined-behaviour sanitizers.
+# Installs the packages, checks the layout of the code, builds, runs every test: as released, then under the address and
+# undefined-behaviour sanitizers.
 #   --fast   as released only
+#   --lint   clang-tidy over all our sources too
 #   --tsan   the tests that have threads under the thread sanitizer too
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-usage() { echo "usage: ./test.sh [--fast] [--tsan]" >&2; exit 2; }
+usage() { echo "usage: ./test.sh [--fast] [--lint] [--tsan]" >&2; exit 2; }
 presets=(release asan)
 for option in "$@"; do
   case "$option" in
     --fast) presets=(release) ;;
+    --lint) lint=1 ;;
     --tsan) thread_sanitizer=1 ;;
     *) usage ;;
   esac
 done
 
 ./packages.sh
+
+echo "== layout: clang-format"
+find motion fieldbus drivers gateway tests -name '*.[ch]pp' -print0 | xargs -0 clang-format --dry-run --Werror
 
 build() { # preset
   echo "== $1: configure and build"
@@ -28,6 +34,14 @@ for preset in "${presets[@]}"; do
   echo "== $preset: tests"
   ctest --preset "$preset"
 done
+if [ -n "${lint:-}" ]; then
+  echo "== lint: clang-tidy"
+  # clang 14 stops at the one option of g++ that it does not know.
+  mkdir -p build/lint
+  sed 's/ -fno-gnu-unique//g' build/release/compile_commands.json > build/lint/compile_commands.json
+  find motion fieldbus drivers gateway -name '*.cpp' -print0 |
+    xargs -0 -n 4 -P "$(nproc)" clang-tidy -p build/lint --quiet --extra-arg=-Wno-unknown-warning-option 2>/dev/null
+fi
 if [ -n "${thread_sanitizer:-}" ]; then
   build tsan
   echo "== tsan: tests"

@@ -37,9 +37,10 @@ double norm_of(const std::array<double, kSize>& values) {
 
 Decoded<int> only_members(const json& value, std::initializer_list<const char*> known, const char* expected) {
   if (!value.is_object()) return mismatch(value, expected);
-  for (const auto& [key, member] : value.items()) {
+  for (const auto& item : value.items()) {
+    const std::string& key = item.key();
     if (std::ranges::none_of(known, [&](const char* name) { return key == name; })) {
-      return mismatch(member, fmt::format("no such member; {}", expected), "." + key);
+      return mismatch(item.value(), fmt::format("no such member; {}", expected), "." + key);
     }
   }
   return 0;

@@ -100,7 +100,8 @@ Expected<> Controller::Impl::clear_servo_fault() {
   });
   (void)wait_for([&, since = link->status.read().t_s] {
     const ServoStatus now = link->status.read();
-    // A loop that was put in just now needs some cycles to notice its drives' fault, and to hear that it is to be reset.
+    // A loop that was put in just now needs some cycles to notice its drives' fault, and to hear that it is to be
+    // reset.
     const double waited_s = now.t_s - since;
     return (waited_s > 0.02 && now.state == ServoState::Off) || waited_s > 1.0;
   });

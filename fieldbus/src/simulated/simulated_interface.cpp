@@ -14,7 +14,7 @@ constexpr std::uint16_t kHeartbeatError = 0x8130;
 
 }  // namespace
 
-SimulatedInterface::SimulatedInterface(std::vector<SimulatedAxis> axes, double period_s)
+SimulatedInterface::SimulatedInterface(const std::vector<SimulatedAxis>& axes, double period_s)
     : injected_(axes.size()), period_s_(period_s) {
   drives_.reserve(axes.size());
   for (const SimulatedAxis& axis : axes) drives_.push_back(make_drive(axis));

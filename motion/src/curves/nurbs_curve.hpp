@@ -45,7 +45,7 @@ class SpaceCurve {
   Vector held_axis_;
   std::size_t first_ = 0;  ///< coordinates [first_, last_) measure arc length
   std::size_t last_ = 3;
-  double unit_ = 1;  ///< units of s per unit of those coordinates
+  double unit_ = 1;    ///< units of s per unit of those coordinates
   double extent_ = 0;  ///< of the coordinates that measure length; once, because a curve may have many spans
   bool rests_ = false;
 };

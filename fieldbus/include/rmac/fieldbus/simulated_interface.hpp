@@ -17,7 +17,7 @@ using SimulatedAxis = std::variant<AxisPlantParameters, SpindlePlantParameters>;
 /// Tests inject faults from any thread; they act in the next exchange.
 class SimulatedInterface : public DigitalControlInterface {
  public:
-  SimulatedInterface(std::vector<SimulatedAxis> axes, double period_s);
+  SimulatedInterface(const std::vector<SimulatedAxis>& axes, double period_s);
 
   [[nodiscard]] std::size_t axis_count() const noexcept override { return drives_.size(); }
   [[nodiscard]] Expected<> start() override;

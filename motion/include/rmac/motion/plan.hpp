@@ -13,11 +13,12 @@ namespace rmac {
 /// ends at rest, so a machine whose planner dies comes to rest on the path. Immutable once published.
 struct Plan {
   std::uint64_t id = 0;
-  std::int64_t start_cycle = 0;   ///< time 0 of the law
-  std::int64_t latest_cycle = 0;  ///< last cycle in which it may be taken over: until then it agrees with the plan before it
+  std::int64_t start_cycle = 0;  ///< time 0 of the law
+  /// Last cycle in which it may be taken over: until then it agrees with the plan before it.
+  std::int64_t latest_cycle = 0;
   std::vector<std::shared_ptr<const PathSegment>> segments;
   std::vector<double> segment_start;  ///< path length at which each segment begins; same origin as the law's s
-  std::vector<LawPiece> law;          ///< in time order, without gaps; ends with v = 0; the first may begin before time 0
+  std::vector<LawPiece> law;  ///< in time order, without gaps; ends with v = 0; the first may begin before time 0
   double end_time_s = 0;
 };
 

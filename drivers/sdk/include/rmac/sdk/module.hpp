@@ -60,6 +60,7 @@ inline constexpr const char* kModuleSymbol = "rmac_module";
 
 /// Defines the exported descriptor. `Factory` is a type with `static Port* create(Parameters, char* error, std::size_t
 /// size)`.
+// NOLINTBEGIN(bugprone-macro-parentheses): the arguments are names, which parentheses would make expressions.
 #define RMAC_MODULE(kind_value, module_name, Port, Factory)                                                       \
   extern "C" __attribute__((visibility("default"))) const ::rmac::sdk::ModuleDescriptor* rmac_module() noexcept { \
     static constexpr ::rmac::sdk::ModuleDescriptor kDescriptor{                                                   \
@@ -73,3 +74,4 @@ inline constexpr const char* kModuleSymbol = "rmac_module";
         [](void* object) noexcept { delete static_cast<Port*>(object); }};                                        \
     return &kDescriptor;                                                                                          \
   }
+// NOLINTEND(bugprone-macro-parentheses)
