@@ -16,8 +16,9 @@ inline constexpr double kStartTolerance_mm = 1e-3;
 inline constexpr double kStartTolerance_axis = 1e-6;
 /// What is shorter than this does not move.
 inline constexpr double kZeroLength_mm = 1e-6;
-/// A planner's grid is never finer than this, in mm (or joint units, or degrees).
-inline constexpr double kNodeSpacing = 1e-3;
+/// A planner's grid is never finer than this, in mm (or joint units, or degrees). A near-cusp of 0.1 µm radius is still
+/// resolved; halving closes in on it, so that fine nodes cost a few, not many.
+inline constexpr double kNodeSpacing = 1e-5;
 /// Nodes at most this far apart in turn of the tangent or the tool axis.
 inline constexpr double kNodeTurn_rad = 0.1;
 
@@ -42,6 +43,9 @@ inline constexpr double kNodeTurn_rad = 0.1;
 
 /// Nodes for a curve of which curvature is known by evaluation only: every interval of `knots` (ascending, from 0 to
 /// the length) is halved until turn and change of curvature are small, see docs/derivations/curves.md, section 5.
-[[nodiscard]] std::vector<double> curvature_nodes(const Curve& curve, std::span<const double> knots);
+/// `probes`: further places (ascending) to look at, so that no sharp bend hides between the ends and the middle of an
+/// interval.
+[[nodiscard]] std::vector<double> curvature_nodes(const Curve& curve, std::span<const double> knots,
+                                                  std::span<const double> probes);
 
 }  // namespace rmac::curves

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace rmac::curves {
@@ -29,6 +30,8 @@ class LengthTable {
   [[nodiscard]] std::optional<Flaw> add_span(std::size_t span, double width, double least_speed, const Speed& speed);
 
   [[nodiscard]] double length() const noexcept { return length_; }
+  /// Arc lengths at which the pieces begin.
+  [[nodiscard]] std::span<const double> starts() const noexcept { return starts_; }
   /// Where arc length s lies; on a border between pieces `side` < 0 chooses the one that ends there.
   [[nodiscard]] Place locate(double s, int side) const noexcept;
 

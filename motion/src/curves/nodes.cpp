@@ -28,21 +28,29 @@ Bend bend_at(const Curve& curve, double s, int side) {
 
 /// Small turn, and a change of bend that is small relative to it or in the angle it makes (section 5 of the
 /// derivation).
-bool even(double a, double m, double b, double step) {
+bool even(double most, double least, double step) {
   constexpr double kChange = 0.15;
   constexpr double kChange_rad = 0.005;
-  const double most = std::max({a, m, b});
-  const double change = most - std::min({a, m, b});
+  const double change = most - least;
   return most * step <= kNodeTurn_rad && (change <= kChange * most || change * step <= kChange_rad);
 }
 
-void halve(const Curve& curve, const Bend& a, const Bend& b, int least_depth, std::vector<double>& nodes) {
+/// `inside`: bends known between a and b, ascending.
+void halve(const Curve& curve, const Bend& a, const Bend& b, std::span<const Bend> inside, int least_depth,
+           std::vector<double>& nodes) {
   const double step = b.s - a.s;
   if (step >= 2 * kNodeSpacing) {
     const Bend m = bend_at(curve, a.s + step / 2, 1);
-    if (least_depth > 0 || !even(a.path, m.path, b.path, step) || !even(a.axis, m.axis, b.axis, step)) {
-      halve(curve, a, m, least_depth - 1, nodes);
-      halve(curve, m, b, least_depth - 1, nodes);
+    const auto uneven = [&](double Bend::*bend) {
+      double most = std::max({a.*bend, m.*bend, b.*bend}), least = std::min({a.*bend, m.*bend, b.*bend});
+      for (const Bend& known : inside) most = std::max(most, known.*bend), least = std::min(least, known.*bend);
+      return !even(most, least, step);
+    };
+    if (least_depth > 0 || uneven(&Bend::path) || uneven(&Bend::axis)) {
+      const auto middle = std::partition_point(inside.begin(), inside.end(), [&](const Bend& k) { return k.s < m.s; });
+      const auto before = static_cast<std::size_t>(middle - inside.begin());
+      halve(curve, a, m, inside.first(before), least_depth - 1, nodes);
+      halve(curve, m, b, inside.subspan(before), least_depth - 1, nodes);
       return;
     }
   }
@@ -60,10 +68,15 @@ std::vector<double> even_nodes(double length, double turn_rad) {
   return nodes;
 }
 
-std::vector<double> curvature_nodes(const Curve& curve, std::span<const double> knots) {
+std::vector<double> curvature_nodes(const Curve& curve, std::span<const double> knots, std::span<const double> probes) {
   std::vector<double> nodes{0};
+  std::vector<Bend> inside;
+  auto probe = probes.begin();
   for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-    halve(curve, bend_at(curve, knots[i], 1), bend_at(curve, knots[i + 1], -1), 2, nodes);
+    inside.clear();
+    while (probe != probes.end() && *probe <= knots[i]) ++probe;
+    for (; probe != probes.end() && *probe < knots[i + 1]; ++probe) inside.push_back(bend_at(curve, *probe, 1));
+    halve(curve, bend_at(curve, knots[i], 1), bend_at(curve, knots[i + 1], -1), inside, 2, nodes);
   }
   return nodes;
 }

@@ -99,7 +99,8 @@ Expected<CurvePtr> NurbsCurve::make(std::shared_ptr<const SpaceCurve> curve, std
     }
     knots.push_back(result->table_.length());
   }
-  result->nodes_ = curvature_nodes(*result, knots);
+  // Where the speed dips, at a near-cusp, the table's pieces crowd: they show the planner's grid where to look.
+  result->nodes_ = curvature_nodes(*result, knots, result->table_.starts());
   return result;
 }
 

@@ -1,5 +1,6 @@
 #include "time_law/window.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +18,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double bound(double value) {
   return value > 0 ? value : kInfinity;
+}
+
+/// A place just inside an interval of the path from one of its ends. Path lengths are sums, so a place meant to be a
+/// knot's misses it by rounding, and a derivative that jumps there would be taken from the other side.
+double just_inside(double end, double other_end) {
+  const double h = other_end - end;
+  const double rounding = 8 * std::numeric_limits<double>::epsilon() * std::abs(end);
+  return end + std::copysign(std::min(std::max(1e-7 * std::abs(h), rounding), std::abs(h) / 4), h);
 }
 
 /// Speed bound at a point of the path: feed and joint speeds.
@@ -84,22 +93,12 @@ std::optional<RestEnd> rest_end(const PathView& path, const std::vector<JointLim
   return std::nullopt;
 }
 
-/// Distance between a segment's own nodes around s: how finely its geometry asks to be sampled.
-double node_spacing(const PathView& path, double s) {
-  const std::size_t i = path.find(s, 1);
-  const auto nodes = path.segment(i).curve().nodes();
-  const double local = s - path.start(i);
-  auto above = std::upper_bound(nodes.begin(), nodes.end(), local);
-  if (above == nodes.begin()) ++above;
-  if (above == nodes.end()) --above;
-  return *above - *(above - 1);
-}
-
 /// Grid from a to b: segment ends and breaks on it, as fine as the geometry asks and no coarser than `coarsest`, graded
 /// towards the window's ends at rest_a and rest_b.
 std::vector<double> make_grid(const PathView& path, double a, double b, double rest_a, double rest_b, double finest_a,
                               double finest_b, double coarsest) {
   std::vector<double> fixed{a};
+  std::vector<double> asked;  // the nodes of the geometry
   for (std::size_t i = path.find(a, 1); i <= path.find(b, -1); ++i) {
     const double start = path.start(i);
     const auto keep = [&](double s) {
@@ -107,11 +106,19 @@ std::vector<double> make_grid(const PathView& path, double a, double b, double r
     };
     keep(start);
     for (const double s : path.segment(i).curve().breaks()) keep(start + s);
+    for (const double s : path.segment(i).curve().nodes()) asked.push_back(start + s);
   }
   fixed.push_back(b);
-  const auto spacing = [&](double s) {
-    double h = std::min(coarsest, node_spacing(path, s));
-    h = std::min({h, finest_a + kGrading * (s - rest_a), finest_b + kGrading * (rest_b - s)});
+  std::size_t node = 0;  // the last one at or before the place
+  // A step reaches into an interval between the geometry's nodes by that interval's width at most: a sharp bend is
+  // never stepped over, however short it is.
+  const auto step_from = [&](double s) {
+    while (node + 1 < asked.size() && asked[node + 1] <= s) ++node;
+    double h = std::min({coarsest, finest_a + kGrading * (s - rest_a), finest_b + kGrading * (rest_b - s)});
+    for (std::size_t i = node; i + 1 < asked.size() && asked[i] < s + h; ++i) {
+      const double width = asked[i + 1] - asked[i];
+      if (width > 0) h = std::min(h, std::max(asked[i] - s, 0.0) + width);
+    }
     return h;
   };
   std::vector<double> nodes{a};
@@ -119,16 +126,16 @@ std::vector<double> make_grid(const PathView& path, double a, double b, double r
   for (std::size_t i = 0; i + 1 < fixed.size(); ++i) {
     const double from = fixed[i], to = fixed[i + 1];
     stretch.clear();
-    double s = from;
-    while (s < to) {
-      double h = spacing(s);
-      h = std::min(h, spacing(std::min(s + h, to)) * 1.5);
-      s += h;
+    for (double s = from; s < to;) {
+      s += step_from(s);
       stretch.push_back(s);
     }
-    const double squeeze = (to - from) / (stretch.back() - from);
-    for (double& node : stretch) node = from + (node - from) * squeeze;
+    // The last step is cut short; were it much shorter than the one before, the two share their length.
     stretch.back() = to;
+    if (const std::size_t n = stretch.size(); n >= 2) {
+      const double before = n >= 3 ? stretch[n - 3] : from;
+      if (to - stretch[n - 2] < 0.5 * (stretch[n - 2] - before)) stretch[n - 2] = before + 0.5 * (to - before);
+    }
     nodes.insert(nodes.end(), stretch.begin(), stretch.end());
   }
   // The spline's end coefficients are fixed by the end states; a law needs some that are free.
@@ -160,10 +167,10 @@ bool fill(LawProblem& problem, const PathView& path, const std::vector<JointLimi
     double* out = problem.derivatives.data() + k * 6 * n;
     const PathSegment& segment = path.segment(path.find(0.5 * (problem.nodes[k] + problem.nodes[k + 1]), 1));
     double v = kInfinity;
+    const double left_s = problem.nodes[k], right_s = problem.nodes[k + 1];
     for (int right = 0; right < 2; ++right) {
-      if (path.evaluate(problem.nodes[k + static_cast<std::size_t>(right)], 3, right != 0 ? -1 : 1, point) !=
-          KinematicsStatus::Ok)
-        return false;
+      const double s = right != 0 ? just_inside(right_s, left_s) : just_inside(left_s, right_s);
+      if (path.evaluate(s, 3, right != 0 ? -1 : 1, point) != KinematicsStatus::Ok) return false;
       for (std::size_t d = 1; d <= 3; ++d) out = std::copy_n(point.d[d].begin(), n, out);
       v = std::min(v, speed_bound(segment, point, joints, feed));
     }
@@ -227,31 +234,55 @@ double ramp_length(double v, double a, double j) noexcept {
   return 0.5 * v * time;
 }
 
+namespace {
+
+/// Largest of a joint's demand in a piece, from equidistant samples: between them the curve is taken for the parabola
+/// through three neighbours, so a peak between samples counts.
+template <std::size_t kCount>
+double largest(const std::array<double, kCount>& samples) {
+  double worst = std::max(std::abs(samples.front()), std::abs(samples.back()));
+  for (std::size_t i = 1; i + 1 < kCount; ++i) {
+    const double here = samples[i], rise = (samples[i + 1] - samples[i - 1]) / 2;
+    const double bend = samples[i + 1] - 2 * here + samples[i - 1];
+    const bool peak = here > 0 ? bend < 0 : bend > 0;
+    const double vertex = peak && std::abs(rise) < std::abs(bend) ? here - rise * rise / (2 * bend) : here;
+    worst = std::max(worst, std::abs(vertex));
+  }
+  return worst;
+}
+
+}  // namespace
+
 LawExcess check_law(const PathView& path, const std::vector<JointLimits>& joints, const std::vector<LawPiece>& law,
                     const FeedRule* feed) {
-  constexpr int kSamples = 4;
+  constexpr std::size_t kSamples = 9;
   LawExcess excess;
   excess.by_piece.reserve(law.size());
   JointPoint point;
+  std::array<std::array<double, kSamples>, kMaxJoints> acceleration, jerk;
   for (const LawPiece& piece : law) {
     double worst = 0;
-    for (int i = 0; i <= kSamples; ++i) {
-      const double t = piece.duration * i / kSamples;
-      const PathState at = piece.at(t);
+    const double s_begin = piece.start.s, s_end = piece.at(piece.duration).s;
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      const PathState at = piece.at(piece.duration * static_cast<double>(i) / (kSamples - 1));
       const double path_jerk = piece.kind == LawPiece::Kind::Jerk ? piece.slope : piece.slope * at.v;
-      const int side = i == kSamples ? -1 : 1;
-      const PathSegment& segment = path.segment(path.find(at.s, side));
-      if (!(at.v >= -1e-9) || path.evaluate(at.s, 3, side, point) != KinematicsStatus::Ok) return {kInfinity, {}};
+      const bool last = i + 1 == kSamples;
+      const double s = i == 0 ? just_inside(s_begin, s_end) : last ? just_inside(s_end, s_begin) : at.s;
+      const PathSegment& segment = path.segment(path.find(s, 1));
+      if (!(at.v >= -1e-9) || path.evaluate(s, 3, last ? -1 : 1, point) != KinematicsStatus::Ok) return {kInfinity, {}};
       for (std::size_t j = 0; j < joints.size(); ++j) {
         const double d1 = point.d[1][j], d2 = point.d[2][j], d3 = point.d[3][j], v = at.v;
-        worst = std::max({worst, std::abs(d1 * v) / joints[j].max_speed,
-                          std::abs(d2 * v * v + d1 * at.a) / joints[j].max_acceleration,
-                          std::abs(d3 * v * v * v + 3 * d2 * v * at.a + d1 * path_jerk) / joints[j].max_jerk});
+        worst = std::max(worst, std::abs(d1 * v) / joints[j].max_speed);
+        acceleration[j][i] = (d2 * v * v + d1 * at.a) / joints[j].max_acceleration;
+        jerk[j][i] = (d3 * v * v * v + 3 * d2 * v * at.a + d1 * path_jerk) / joints[j].max_jerk;
       }
       const PathDemand& demand = segment.demand();
       worst = std::max({worst, at.a / bound(demand.accel_rise_mm_s2), -at.a / bound(demand.accel_fall_mm_s2)});
       if (feed != nullptr) worst = std::max(worst, at.v / (feed->bound(segment) * 1.0005));
     }
+    for (std::size_t j = 0; j < joints.size(); ++j)
+      worst = std::max({worst, largest(acceleration[j]), largest(jerk[j])});
+    if (!std::isfinite(worst)) return {kInfinity, {}};
     excess.by_piece.push_back(worst);
     excess.worst = std::max(excess.worst, worst);
   }

@@ -246,6 +246,23 @@ TEST(Planner, StopsExactlyInACornerWithoutTolerance) {
   EXPECT_LT(slowest, 0.1);
 }
 
+TEST(Planner, KeepsLimitsThroughNearCuspsFarAlongAMove) {
+  for (const double gap : {1.0, 0.3, 0.1}) {  // the last one's sharpest radius is 26 nm
+    PlannerBench bench(mill(50000));
+    Move move;
+    move.feed_mm_s = 200;
+    NurbsGeometry geometry;
+    // The curve's legs cross; with the gap closed it would have a cusp halfway.
+    geometry.curve = {3, 3, {0, 0, 0, 0, 1, 1, 1, 1}, {{0, 0, 0}, {40, 40, 0}, {gap, 40, 0}, {40, 0, 0}}, {}};
+    move.geometry = geometry;
+    ASSERT_TRUE(bench.queue(move));
+    bench.planner.command(PathCommand::Run);
+    ASSERT_TRUE(bench.run());
+    EXPECT_LE(bench.peaks().jerk, kAtMost) << gap;
+    EXPECT_LE(bench.peaks().acceleration, kAtMost) << gap;
+  }
+}
+
 TEST(Planner, NeverPassesTheLargestFeedWhateverTheOverride) {
   PlannerModel model = mill();
   model.max_feed_mm_s = 2000.0 / 60;
