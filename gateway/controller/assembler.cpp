@@ -26,9 +26,8 @@ class NoBus final : public DigitalControlInterface {
 constexpr std::size_t kMaxVirtualAxes = 256;
 
 Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loader) {
-  auto name = sdk::servo_law_module(joint.servo_law.name);
-  if (!name) return tl::unexpected(name.error());
-  auto law = loader.load<ServoLaw>({*name, joint.servo_law.numbers, joint.servo_law.texts});
+  const std::string name = sdk::servo_law_module(joint.servo_law.name);
+  auto law = loader.load<ServoLaw>({name, joint.servo_law.numbers, joint.servo_law.texts});
   if (!law) return tl::unexpected(law.error());
   if (!law->object->set_gains(joint.gains)) {
     std::string wanted;
@@ -37,7 +36,7 @@ Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loade
     }
     return failure(MinorCode::InvalidParameterValue,
                    fmt::format("joint \"{}\": {} does not accept the gains [{}]; it takes {}: {}", joint.limits.name,
-                               *name, fmt::join(joint.gains, ", "), law->object->gains().size(), wanted));
+                               name, fmt::join(joint.gains, ", "), law->object->gains().size(), wanted));
   }
   return ServoAxis{std::move(law->object), joint.method, joint.max_following_error, joint.max_effort};
 }

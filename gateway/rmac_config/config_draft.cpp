@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "rmac/motion/servo_loop.hpp"
-#include "rmac/sdk/servo_law_names.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -174,7 +173,6 @@ Expected<> ConfigDraft::set_joint_control_method(int number, ControlMethod metho
 }
 
 Expected<> ConfigDraft::set_joint_servo_control_law(int number, const sdk::ModuleChoice& module) {
-  if (auto known = sdk::servo_law_module(module.name); !known) return tl::unexpected(known.error());
   return joint(number, "SetMechanismJointServoControlLaw").and_then([&](sdk::Joint* found) {
     return set_module("SetMechanismJointServoControlLaw", module, found->servo_law);
   });

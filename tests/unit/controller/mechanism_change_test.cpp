@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(
         Defect{"Law", [](sdk::DeviceObject& d) { d.joints[1].servo_law.name = "Gone"; },
                "there is no servo control law module Gone"},
         Defect{"LawOfAppendixIV", [](sdk::DeviceObject& d) { d.joints[1].servo_law.name = "DMAC_FUZZY_CONTROL"; },
-               "DMAC_FUZZY_CONTROL"},
+               "there is no servo control law module FuzzyServoControlLaw"},
         Defect{"Gains",
                [](sdk::DeviceObject& d) {
                  d.joints[0].gains = {1, 2, 3};

@@ -2,16 +2,21 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 #include <vector>
 
+#include "circle.hpp"
 #include "conformance/loaded_module.hpp"
 #include "rmac/fieldbus/simulated_interface.hpp"
 #include "rmac/motion/servo_loop.hpp"
+#include "rmac/sdk/servo_law_names.hpp"
 
 namespace rmac::mill_test {
 
@@ -50,20 +55,24 @@ class RestToRest {
   double jerk_time_, accel_time_, cruise_time_;
 };
 
-/// A mill with the modules, gains and scales of its own device.json on the simulated bus.
+/// A mill with the modules, gains and scales of its own device.json on the simulated bus, unless `edit` changes them.
 class Mill {
  public:
-  Mill(const std::string& folder, std::shared_ptr<ServoBus> bus)
+  using Edit = std::function<void(nlohmann::json& device)>;
+  using EditParts = std::function<void(Mill& mill, ServoLoopParts& parts)>;
+
+  Mill(const std::string& folder, std::shared_ptr<ServoBus> bus, const Edit& edit = {},
+       const EditParts& edit_parts = {})
       : folder_(folder),
         device_(nlohmann::json::parse(std::ifstream(RMAC_SOURCE_DIR "/drivers/" + folder + "/device.json"))) {
+    if (edit) edit(device_);
     ServoLoopParts parts;
     parts.kinematics = make<Kinematics>(device_["Kinematics"]);
     parts.actuator_map = make<ActuatorMap>(device_["ActuatorMap"]);
     for (const char* list : {"Joints", "HeldJoints"}) {
       for (const auto& joint : device_[list]) {
-        const auto law = make<ServoLaw>(joint["ServoControlLaw"]);
-        EXPECT_TRUE(law->set_gains(joint["Gains"].get<std::vector<double>>()));
-        parts.axes.push_back({law, ControlMethod::Position, joint["MaxFollowingError"], joint["MaxEffort"]});
+        parts.axes.push_back(
+            {make_law(joint), ControlMethod::Position, joint["MaxFollowingError"], joint["MaxEffort"]});
       }
     }
     for (const auto& actuator : device_["Actuators"]) {
@@ -74,6 +83,7 @@ class Mill {
     }
     for (const auto& spindle : device_["Spindles"])
       parts.spindles.push_back({bus, spindle["Axis"], spindle["MaxSpeed"]});
+    if (edit_parts) edit_parts(*this, parts);
     auto made = ServoLoop::create(std::move(parts));
     EXPECT_TRUE(made.has_value()) << (made ? "" : made.error().message);
     loop_ = std::move(*made);
@@ -81,11 +91,17 @@ class Mill {
 
   [[nodiscard]] ServoLoop& loop() { return *loop_; }
   [[nodiscard]] const nlohmann::json& device() const { return device_; }
+  /// The law of a joint as device.json gives it, its gains set.
+  std::shared_ptr<ServoLaw> make_law(const nlohmann::json& joint) {
+    auto law = make<ServoLaw>(joint["ServoControlLaw"]);
+    EXPECT_TRUE(law && law->set_gains(joint["Gains"].get<std::vector<double>>())) << joint["ServoControlLaw"];
+    return law;
+  }
 
  private:
   template <typename Port>
   std::shared_ptr<Port> make(const nlohmann::json& choice) {
-    const std::string name = choice["Module"];
+    const std::string name = sdk::servo_law_module(choice["Module"].get<std::string>());
     for (const std::string& folder : {folder_, std::string("modules")}) {
       auto module = std::make_unique<conformance::LoadedModule>(folder, name);
       if (module->descriptor() == nullptr) continue;
@@ -113,5 +129,126 @@ class Mill {
   std::vector<std::unique_ptr<conformance::LoadedModule>> modules_;  // outlive the loop
   std::unique_ptr<ServoLoop> loop_;
 };
+
+constexpr double kHunt = 0.003;  // mm
+inline const Circle kFastCircle(25, 100, 1000, 10000);
+
+/// Drives a mill on the simulated bus of the example machines.
+class MillRun {
+ public:
+  void cycle(Mill& mill) {
+    mill.loop().cycle(command_, report_);
+    failed_ = failed_ || report_.fault.kind != ServoFault::Kind::None;
+    EXPECT_FALSE(failed_) << "fault " << static_cast<int>(report_.fault.kind) << " of index " << report_.fault.index
+                          << ", value " << report_.fault.value;
+    if (!report_.follows) return;
+    for (std::size_t j = 0; j < mill.loop().axis_count(); ++j) {
+      const double error = std::abs(report_.position_set[j] - report_.position[j]);
+      largest_error_[j] = std::max(largest_error_[j], error);
+    }
+  }
+  void dwell(Mill& mill, int cycles) {
+    for (int i = 0; i < cycles && !failed_; ++i) cycle(mill);
+  }
+  void hold_still(Mill& mill) {
+    const std::span<const double> hold = mill.loop().hold_position();
+    std::copy(hold.begin(), hold.end(), command_.setpoint.position.begin());
+    command_.setpoint.velocity.fill(0);
+    command_.setpoint.acceleration.fill(0);
+  }
+  void power_up(Mill& mill) {
+    command_.power = true;
+    for (int i = 0; i < 100 && !report_.follows; ++i) {
+      cycle(mill);
+      hold_still(mill);
+    }
+    EXPECT_TRUE(report_.follows);
+    dwell(mill, 300);
+    largest_error_.fill(0);
+  }
+  /// All joints together by `distance` at 2000 mm/min, with the joints' acceleration and jerk.
+  void move(Mill& mill, double distance) {
+    const RestToRest profile(std::abs(distance), 2000.0 / 60, 1000, 10000);
+    const std::array<double, kMaxJoints> start = command_.setpoint.position;
+    const double sign = distance > 0 ? 1 : -1;
+    const auto cycles = static_cast<int>(std::ceil(profile.duration() * 1000));
+    for (int i = 1; i <= cycles && !failed_; ++i) {
+      const auto [s, v, a] = profile.at(i * 1e-3);
+      for (std::size_t j = 0; j < mill.loop().joint_count(); ++j) {
+        command_.setpoint.position[j] = start[j] + sign * s;
+        command_.setpoint.velocity[j] = sign * v;
+        command_.setpoint.acceleration[j] = sign * a;
+      }
+      cycle(mill);
+    }
+  }
+  /// Two turns of a circle with the first two joints from where they stand; the second turn, as the shafts really went.
+  Ballbar circle(Mill& mill, const Circle& circle, const std::function<void()>& before_cycle = {}) {
+    const std::array<double, kMaxJoints> start = command_.setpoint.position;
+    Ballbar ballbar(circle.radius());
+    const auto turn = static_cast<int>(std::ceil(circle.turn_s() * 1000));
+    for (int i = 1; i <= 2 * turn && !failed_; ++i) {
+      const Circle::Point point = circle.at(i * 1e-3);
+      for (std::size_t j = 0; j < 2; ++j) {
+        command_.setpoint.position[j] = start[j] + point.position[j];
+        command_.setpoint.velocity[j] = point.velocity[j];
+        command_.setpoint.acceleration[j] = point.acceleration[j];
+      }
+      if (before_cycle) before_cycle();
+      cycle(mill);
+      if (i > turn) ballbar.add(table_mm(0) - start[0], table_mm(1) - start[1]);
+    }
+    return ballbar;
+  }
+  /// The circle of the figures with DMACXYZ: 50 mm across, 6 m/min, with the joints' acceleration and jerk.
+  Ballbar measure_circle(const Mill::Edit& edit) {
+    Mill mill("mill/3-axis/DMACXYZ", bus_, edit);
+    power_up(mill);
+    return circle(mill, kFastCircle);
+  }
+  /// Where the screw of an axis really stands, by its shaft.
+  [[nodiscard]] double table_mm(std::size_t axis) const {
+    return simulated_->plant(axis).angle_rad() * 5 / (2 * std::numbers::pi);
+  }
+
+ protected:
+  std::shared_ptr<fieldbus::SimulatedInterface> simulated_ =
+      std::make_shared<fieldbus::SimulatedInterface>(fieldbus::default_simulated_axes(), 0.001);
+  std::shared_ptr<ServoBus> bus_ = std::make_shared<ServoBus>(simulated_);
+  ServoCommand command_;
+  ServoReport report_;
+  std::array<double, kMaxJoints> largest_error_{};
+  bool failed_ = false;
+};
+
+class MillOnSimulatedBus : public testing::Test, protected MillRun {};
+
+/// Feedforward with feedback for the two table axes: the model of the plant, `share` of it (1: as it is), on top of the
+/// gains that device.json gives to PID.
+inline void choose_feedforward(nlohmann::json& device, double share = 1, double lead_s = 0.0017) {
+  const std::vector<fieldbus::SimulatedAxis> axes = fieldbus::default_simulated_axes();
+  for (std::size_t j = 0; j < device["Joints"].size(); ++j) {
+    const auto& plant = std::get<fieldbus::AxisPlantParameters>(axes[j]);
+    const double rad_per_mm = 2 * std::numbers::pi / plant.pitch_mm;
+    nlohmann::json& joint = device["Joints"][j];
+    joint["ServoControlLaw"] = {{"Module", "DMAC_FEEDFORWARDFEEDBACK_CONTROL"}, {"Parameters", {{"lead_s", {lead_s}}}}};
+    // N·m and rad at the shaft to N and mm at the joint.
+    for (const double gain :
+         {plant.viscous_nm_s * rad_per_mm * rad_per_mm * 1000, plant.inertia_kg_m2() * rad_per_mm * rad_per_mm * 1000,
+          plant.coulomb_nm * rad_per_mm * 1000}) {
+      joint["Gains"].push_back(share * gain);
+    }
+    joint["Gains"].push_back(share * plant.gravity_nm * rad_per_mm * 1000);
+  }
+}
+
+/// The fuzzy law with the gains of PID around its centre, and `effort_range` (N) for what error and rate may add.
+inline void choose_fuzzy(nlohmann::json& device, double effort_range) {
+  for (nlohmann::json& joint : device["Joints"]) {
+    const std::vector<double> pid = joint["Gains"];
+    joint["ServoControlLaw"] = {{"Module", "DMAC_FUZZY_CONTROL"}};
+    joint["Gains"] = {2 * effort_range / pid[0], 2 * effort_range / pid[2], effort_range, pid[1]};
+  }
+}
 
 }  // namespace rmac::mill_test

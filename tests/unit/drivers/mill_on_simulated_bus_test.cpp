@@ -1,66 +1,6 @@
 #include "mill_on_simulated_bus.hpp"
 
-#include <algorithm>
-
 namespace rmac::mill_test {
-
-constexpr double kHunt = 0.003;  // mm
-
-class MillOnSimulatedBus : public testing::Test {
- protected:
-  void cycle(Mill& mill) {
-    mill.loop().cycle(command_, report_);
-    ASSERT_EQ(report_.fault.kind, ServoFault::Kind::None)
-        << "fault of index " << report_.fault.index << ", value " << report_.fault.value;
-    if (!report_.follows) return;
-    for (std::size_t j = 0; j < mill.loop().axis_count(); ++j) {
-      const double error = std::abs(report_.position_set[j] - report_.position[j]);
-      largest_error_[j] = std::max(largest_error_[j], error);
-    }
-  }
-  void dwell(Mill& mill, int cycles) {
-    for (int i = 0; i < cycles && !HasFailure(); ++i) cycle(mill);
-  }
-  void hold_still(Mill& mill) {
-    const std::span<const double> hold = mill.loop().hold_position();
-    std::copy(hold.begin(), hold.end(), command_.setpoint.position.begin());
-    command_.setpoint.velocity.fill(0);
-    command_.setpoint.acceleration.fill(0);
-  }
-  void power_up(Mill& mill) {
-    command_.power = true;
-    for (int i = 0; i < 100 && !report_.follows; ++i) {
-      cycle(mill);
-      hold_still(mill);
-    }
-    ASSERT_TRUE(report_.follows);
-    dwell(mill, 300);
-    largest_error_.fill(0);
-  }
-  /// All joints together by `distance` at 2000 mm/min, with the joints' acceleration and jerk.
-  void move(Mill& mill, double distance) {
-    const RestToRest profile(std::abs(distance), 2000.0 / 60, 1000, 10000);
-    const std::array<double, kMaxJoints> start = command_.setpoint.position;
-    const double sign = distance > 0 ? 1 : -1;
-    const auto cycles = static_cast<int>(std::ceil(profile.duration() * 1000));
-    for (int i = 1; i <= cycles && !HasFailure(); ++i) {
-      const auto [s, v, a] = profile.at(i * 1e-3);
-      for (std::size_t j = 0; j < mill.loop().joint_count(); ++j) {
-        command_.setpoint.position[j] = start[j] + sign * s;
-        command_.setpoint.velocity[j] = sign * v;
-        command_.setpoint.acceleration[j] = sign * a;
-      }
-      cycle(mill);
-    }
-  }
-
-  std::shared_ptr<fieldbus::SimulatedInterface> simulated_ =
-      std::make_shared<fieldbus::SimulatedInterface>(fieldbus::default_simulated_axes(), 0.001);
-  std::shared_ptr<ServoBus> bus_ = std::make_shared<ServoBus>(simulated_);
-  ServoCommand command_;
-  ServoReport report_;
-  std::array<double, kMaxJoints> largest_error_{};
-};
 
 // What a PID without feed-forward does at a cycle of 1 ms against the friction of these axes; the reversal is the
 // worst, where friction changes its sign while the move starts.
@@ -110,7 +50,7 @@ TEST_F(MillOnSimulatedBus, ChangesFromThreeAxesToTwoWithoutAMovementOrADisabledD
   Mill two("mill/2-axis/DMACXY", bus_);
   two.loop().engage(three.loop().handover());
   hold_still(two);
-  for (int i = 0; i < 500 && !HasFailure(); ++i) {
+  for (int i = 0; i < 500 && !failed_; ++i) {
     cycle(two);
     for (std::size_t j = 0; j < 3; ++j) {
       EXPECT_EQ(report_.statusword[j] & 0x6F, 0x27) << "drive " << j << " in cycle " << i;

@@ -5,7 +5,6 @@
 #include "conformance/actuator_map_conformance.hpp"
 #include "conformance/kinematics_conformance.hpp"
 #include "conformance/loaded_module.hpp"
-#include "conformance/servo_law_conformance.hpp"
 
 namespace {
 
@@ -92,53 +91,6 @@ TEST_P(MachineActMap, RefusesParametersThatAreMissingOrImpossible) {
   const std::array<double, 3> bad{5, 0, 5};
   EXPECT_FALSE(module.create<ActuatorMap>(screws(bad, kGear)));
   EXPECT_THAT(module.error(), HasSubstr("pitch_mm holds 0; it must be above 0"));
-}
-
-class PidLaw : public testing::TestWithParam<std::pair<const char*, const char*>> {};
-INSTANTIATE_TEST_SUITE_P(Modules, PidLaw,
-                         testing::Values(std::pair{kDmacxyz, "DMACXYZPIDServoControlLaw"},
-                                         std::pair{"modules", "PIDServoControlLaw"}));
-
-TEST_P(PidLaw, Conforms) {
-  LoadedModule module(GetParam().first, GetParam().second);
-  for (const double filter_s : {0.0, 0.001}) {
-    const std::array<sdk::Parameter, 1> parameters{{{"derivative_filter_s", {&filter_s, 1}, nullptr}}};
-    const auto law = module.create<ServoLaw>(parameters);
-    ASSERT_TRUE(law) << module.error();
-    conformance::ServoLawConformance(*law, {1500, 100000, 11}).check();
-  }
-}
-
-TEST_P(PidLaw, DoesNotJumpWhenGainsChange) {
-  LoadedModule module(GetParam().first, GetParam().second);
-  const auto law = module.create<ServoLaw>();
-  ASSERT_TRUE(law) << module.error();
-  ASSERT_TRUE(law->set_gains(std::array{1000.0, 0.0, 5.0}));
-  law->set_effort_limit(1000);
-  const ServoInput input{.position_setpoint = 0.01, .velocity_setpoint = 2, .velocity = 1};
-  law->engage({}, 0);
-  const double before = law->update(input);
-  ASSERT_TRUE(law->set_gains(std::array{2000.0, 0.0, 9.0}));
-  EXPECT_NEAR(law->update(input), before, 1e-9);
-}
-
-TEST_P(PidLaw, LeavesItsLimitAtOnceAfterALongSaturation) {
-  LoadedModule module(GetParam().first, GetParam().second);
-  const auto law = module.create<ServoLaw>();
-  ASSERT_TRUE(law) << module.error();
-  ASSERT_TRUE(law->set_gains(std::array{1000.0, 50000.0, 5.0}));
-  law->set_effort_limit(100);
-  law->engage({}, 0);
-  for (int i = 0; i < 10000; ++i) EXPECT_EQ(law->update({.position_setpoint = 1}), 100);
-  EXPECT_LT(law->update({.position_setpoint = -0.01}), 100);
-}
-
-TEST_P(PidLaw, RefusesAFilterOutOfRange) {
-  LoadedModule module(GetParam().first, GetParam().second);
-  const double filter_s = -1;
-  const std::array<sdk::Parameter, 1> parameters{{{"derivative_filter_s", {&filter_s, 1}, nullptr}}};
-  EXPECT_FALSE(module.create<ServoLaw>(parameters));
-  EXPECT_THAT(module.error(), HasSubstr("derivative_filter_s must be one number from 0 to 0.1 s"));
 }
 
 }  // namespace

@@ -1,24 +1,24 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
-
-#include "rmac/motion/error.hpp"
+#include <utility>
 
 namespace rmac::sdk {
 
-/// The module behind a servo law as a client names it: one of Appendix IV's constants, or a module's own name. An error
-/// for a constant whose law does not exist yet.
-[[nodiscard]] inline Expected<std::string> servo_law_module(std::string_view name) {
-  if (name == "DMAC_PID_CONTROL") return "PIDServoControlLaw";
-  for (const std::string_view later :
-       {"DMAC_FEEDFORWARD_CONTROL", "DMAC_FEEDFORWARDFEEDBACK_CONTROL", "DMAC_FUZZY_CONTROL"}) {
-    if (name == later) {
-      return failure(MinorCode::UnsupportedOperation,
-                     std::string(name) +
-                         ": this servo law is not there yet; use DMAC_PID_CONTROL or the name of a "
-                         "servo-law module");
-    }
+/// Appendix IV's constants for servo laws, and the module behind each.
+inline constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kServoLawNames{{
+    {"DMAC_PID_CONTROL", "PIDServoControlLaw"},
+    {"DMAC_FEEDFORWARD_CONTROL", "FeedforwardServoControlLaw"},
+    {"DMAC_FEEDFORWARDFEEDBACK_CONTROL", "FeedforwardFeedbackServoControlLaw"},
+    {"DMAC_FUZZY_CONTROL", "FuzzyServoControlLaw"},
+}};
+
+/// The module behind a servo law as a client names it: one of Appendix IV's constants, or a module's own name.
+[[nodiscard]] inline std::string servo_law_module(std::string_view name) {
+  for (const auto& [constant, module] : kServoLawNames) {
+    if (name == constant) return std::string(module);
   }
   return std::string(name);
 }

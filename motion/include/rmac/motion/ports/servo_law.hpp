@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <span>
 
 namespace rmac {
@@ -16,6 +17,12 @@ struct ServoInput {
   double period_s = 0.001;
 };
 
+/// What an update of a position or velocity law may rest on; false for NaN and infinity anywhere in it.
+[[nodiscard]] inline bool is_finite(const ServoInput& input) noexcept {
+  return std::isfinite(input.position_setpoint) && std::isfinite(input.velocity_setpoint) &&
+         std::isfinite(input.acceleration_setpoint) && std::isfinite(input.position) && std::isfinite(input.velocity);
+}
+
 /// One gain of a law: its name and unit as `device.json` and `SetMechanismJointServoControlGains` order them.
 struct GainInfo {
   const char* name;
@@ -29,14 +36,15 @@ class ServoLaw {
 
   /// The meaning of the gain array, in order. Off the cycle.
   [[nodiscard]] virtual std::span<const GainInfo> gains() const noexcept = 0;
-  /// Takes new gains; false, and nothing changes, when their number or a value is impossible. Off the cycle.
+  /// Takes new gains, without a jump of the next output; false, and nothing changes, when their number or a value is
+  /// impossible. Off the cycle.
   [[nodiscard]] virtual bool set_gains(std::span<const double> values) noexcept = 0;
   /// Largest effort the law may put out. Off the cycle.
   virtual void set_effort_limit(double effort) noexcept = 0;
   /// Engages without a jump: the next output continues from `effort`. Real-time safe.
   virtual void engage(const ServoInput& input, double effort) noexcept = 0;
-  /// One cycle. Always within the effort limit; NaN in gives NaN out, which the servo loop turns into a fault.
-  /// Real-time safe.
+  /// One cycle. Always within the effort limit; NaN or infinity in gives NaN out, which the servo loop turns into a
+  /// fault, and leaves the law's state as it was. Real-time safe.
   [[nodiscard]] virtual double update(const ServoInput& input) noexcept = 0;
 };
 

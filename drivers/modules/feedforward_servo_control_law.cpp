@@ -1,0 +1,3 @@
+#include "rmac/modules/feedforward_servo_law.hpp"
+
+RMAC_MODULE(ServoLaw, "FeedforwardServoControlLaw", rmac::ServoLaw, rmac::modules::FeedforwardServoLawFactory)

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "rmac/modules/error_signal.hpp"
+#include "rmac/modules/integral_action.hpp"
+#include "rmac/sdk/parameters.hpp"
+
+namespace rmac::modules {
+
+/// Kp·e + Kd·ė + ∫ Ki·e dt on top of an effort that is known beforehand, within one limit for the sum.
+class PidFeedback {
+ public:
+  explicit PidFeedback(double derivative_filter_s) noexcept : signal_(derivative_filter_s) {}
+
+  /// Kp above 0, Ki and Kd at least 0.
+  [[nodiscard]] static bool takes(std::span<const double, 3> gains) noexcept {
+    return std::all_of(gains.begin(), gains.end(), [](double v) { return std::isfinite(v) && v >= 0; }) && gains[0] > 0;
+  }
+  void set_gains(std::span<const double, 3> gains) noexcept {
+    integral_.shift((kp_ - gains[0]) * signal_.error() + (kd_ - gains[2]) * signal_.rate());
+    kp_ = gains[0];
+    kd_ = gains[2];
+    integral_.set_gain(gains[1]);
+  }
+  /// Takes up a change of the known effort by -`effort`.
+  void shift(double effort) noexcept { integral_.shift(effort); }
+
+  void engage(const ServoInput& input, double known, double effort) noexcept {
+    signal_.engage(input);
+    integral_.start(effort, known + proportional(), signal_.error(), input.period_s);
+  }
+  [[nodiscard]] double update(const ServoInput& input, double known, double limit) noexcept {
+    signal_.update(input);
+    return integral_.output(known + proportional(), signal_.error(), input.period_s, limit);
+  }
+
+ private:
+  [[nodiscard]] double proportional() const noexcept { return kp_ * signal_.error() + kd_ * signal_.rate(); }
+
+  ErrorSignal signal_;
+  IntegralAction integral_;
+  double kp_ = 0, kd_ = 0;
+};
+
+/// The parameter of every law that has a D term: the time constant of its low-pass, none unless given.
+inline constexpr sdk::NumberParameter kDerivativeFilter{"derivative_filter_s", 0, 0, 0.1, "s"};
+
+}  // namespace rmac::modules

@@ -1,0 +1,182 @@
+#include <gmock/gmock.h>
+
+#include <array>
+
+#include "conformance/loaded_module.hpp"
+#include "conformance/servo_law_conformance.hpp"
+#include "rmac/modules/fuzzy_surface.hpp"
+#include "rmac/sdk/servo_law_names.hpp"
+
+namespace {
+
+using namespace rmac;
+using conformance::LoadedModule;
+using modules::FuzzySurface;
+using testing::HasSubstr;
+
+struct LawCase {
+  const char* folder;
+  const char* module;
+  std::vector<double> gains, other_gains;
+};
+void PrintTo(const LawCase& law, std::ostream* out) {
+  *out << law.module;
+}
+
+const std::vector<double> kModelGains{0.16, 0.035, 19, -118};
+const std::vector<double> kOtherModelGains{0.3, 0, 40, 0};
+
+class ServoLaws : public testing::TestWithParam<LawCase> {};
+INSTANTIATE_TEST_SUITE_P(
+    Modules, ServoLaws,
+    testing::Values(LawCase{"mill/3-axis/DMACXYZ", "DMACXYZPIDServoControlLaw", {1500, 100000, 11}, {300, 0, 40}},
+                    LawCase{"modules", "PIDServoControlLaw", {1500, 100000, 11}, {300, 0, 40}},
+                    LawCase{"modules", "FeedforwardServoControlLaw", kModelGains, kOtherModelGains},
+                    LawCase{"modules",
+                            "FeedforwardFeedbackServoControlLaw",
+                            {1500, 100000, 11, 0.16, 0.035, 19, -118},
+                            {300, 0, 40, 0.3, 0, 40, 0}},
+                    LawCase{"modules", "FuzzyServoControlLaw", {0.1, 15, 80, 100000}, {0.02, 100, 300, 0}}),
+    [](const testing::TestParamInfo<LawCase>& law) { return std::string(law.param.module); });
+
+TEST_P(ServoLaws, Conforms) {
+  LoadedModule module(GetParam().folder, GetParam().module);
+  const auto law = module.create<ServoLaw>();
+  ASSERT_TRUE(law) << module.error();
+  conformance::ServoLawConformance(*law, GetParam().gains, GetParam().other_gains).check();
+}
+
+TEST_P(ServoLaws, ConformsWithFilterAndLead) {
+  LoadedModule module(GetParam().folder, GetParam().module);
+  const double filter_s = 0.001, lead_s = 0.0017, friction_speed = 2;
+  const std::array<sdk::Parameter, 3> parameters{{{"derivative_filter_s", {&filter_s, 1}, nullptr},
+                                                  {"lead_s", {&lead_s, 1}, nullptr},
+                                                  {"friction_speed", {&friction_speed, 1}, nullptr}}};
+  const auto law = module.create<ServoLaw>(parameters);
+  ASSERT_TRUE(law) << module.error();
+  conformance::ServoLawConformance(*law, GetParam().gains, GetParam().other_gains).check();
+}
+
+TEST(ServoLawNames, EachConstantOfAppendixIVIsAModule) {
+  for (const auto& [constant, name] : sdk::kServoLawNames) {
+    EXPECT_EQ(sdk::servo_law_module(constant), name);
+    LoadedModule module("modules", std::string(name));
+    ASSERT_NE(module.descriptor(), nullptr) << module.path();
+    EXPECT_EQ(module.descriptor()->name, name);
+    EXPECT_TRUE(module.create<ServoLaw>()) << module.error();
+  }
+  EXPECT_EQ(sdk::servo_law_module("DMACXYZPIDServoControlLaw"), "DMACXYZPIDServoControlLaw");
+}
+
+class LawsWithFeedback : public ServoLaws {};
+INSTANTIATE_TEST_SUITE_P(
+    Modules, LawsWithFeedback,
+    testing::Values(LawCase{"modules", "PIDServoControlLaw", {1000, 50000, 5}, {}},
+                    LawCase{
+                        "modules", "FeedforwardFeedbackServoControlLaw", {1000, 50000, 5, 0.16, 0.035, 19, -20}, {}},
+                    LawCase{"modules", "FuzzyServoControlLaw", {0.1, 15, 80, 50000}, {}}),
+    [](const testing::TestParamInfo<LawCase>& law) { return std::string(law.param.module); });
+
+TEST_P(LawsWithFeedback, LeaveTheirLimitAtOnceAfterALongSaturation) {
+  LoadedModule module(GetParam().folder, GetParam().module);
+  const auto law = module.create<ServoLaw>();
+  ASSERT_TRUE(law) << module.error();
+  ASSERT_TRUE(law->set_gains(GetParam().gains));
+  law->set_effort_limit(100);
+  law->engage({}, 0);
+  for (int i = 0; i < 10000; ++i) (void)law->update({.position_setpoint = 1});
+  EXPECT_EQ(law->update({.position_setpoint = 1}), 100);
+  EXPECT_LT(law->update({.position_setpoint = -0.1}), 100);
+}
+
+TEST_P(LawsWithFeedback, TakeUpASteadyLoad) {
+  LoadedModule module(GetParam().folder, GetParam().module);
+  const auto law = module.create<ServoLaw>();
+  ASSERT_TRUE(law) << module.error();
+  ASSERT_TRUE(law->set_gains(GetParam().gains));
+  law->set_effort_limit(800);
+  law->engage({}, 0);
+  // A load of 60 N on a mass of 50 kg, with more damping than the law has to bring.
+  double position = 0, velocity = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double effort = law->update({.position = position, .velocity = velocity});
+    velocity += (effort - 60 - 5 * velocity) / 50 * 1e3 * 1e-3;
+    position += velocity * 1e-3;
+  }
+  EXPECT_NEAR(position, 0, 1e-5);
+}
+
+TEST(LawParameters, AreRefusedOutOfRange) {
+  const double bad = -1;
+  for (const auto& [name, parameter] :
+       std::vector<std::pair<const char*, const char*>>{{"PIDServoControlLaw", "derivative_filter_s"},
+                                                        {"FuzzyServoControlLaw", "derivative_filter_s"},
+                                                        {"FeedforwardServoControlLaw", "lead_s"},
+                                                        {"FeedforwardFeedbackServoControlLaw", "friction_speed"}}) {
+    LoadedModule module("modules", name);
+    const std::array<sdk::Parameter, 1> parameters{{{parameter, {&bad, 1}, nullptr}}};
+    EXPECT_FALSE(module.create<ServoLaw>(parameters)) << name;
+    EXPECT_THAT(module.error(), HasSubstr(std::string(parameter) + " must be one number from "));
+  }
+}
+
+TEST(FeedforwardLaw, GivesTheEffortOfItsModelOnceTheOffsetHasFaded) {
+  LoadedModule module("modules", "FeedforwardServoControlLaw");
+  const auto law = module.create<ServoLaw>();
+  ASSERT_TRUE(law) << module.error();
+  ASSERT_TRUE(law->set_gains(kModelGains));
+  law->set_effort_limit(800);
+  const ServoInput input{.velocity_setpoint = 100, .acceleration_setpoint = -2000, .position = 3};
+  law->engage(input, 500);
+  double effort = law->update(input);
+  EXPECT_NEAR(effort, 500, 1e-9);
+  for (int i = 0; i < 20000; ++i) effort = law->update(input);
+  EXPECT_NEAR(effort, 0.16 * 100 - 0.035 * 2000 + 19 - 118, 1e-6);
+}
+
+TEST(FeedforwardLaw, TurnsFrictionRoundEarlierByItsLead) {
+  LoadedModule module("modules", "FeedforwardServoControlLaw");
+  const double lead_s = 0.002;
+  const std::array<sdk::Parameter, 1> parameters{{{"lead_s", {&lead_s, 1}, nullptr}}};
+  const auto law = module.create<ServoLaw>(parameters);
+  ASSERT_TRUE(law) << module.error();
+  ASSERT_TRUE(law->set_gains(std::array{0.0, 0.0, 20.0, 0.0}));
+  law->set_effort_limit(100);
+  law->engage({}, 0);
+  constexpr double kDeceleration = -500;
+  const auto effort = [&](double before_reversal_s) {
+    return law->update(
+        {.velocity_setpoint = -kDeceleration * before_reversal_s, .acceleration_setpoint = kDeceleration});
+  };
+  EXPECT_GT(effort(0.003), 15);
+  EXPECT_NEAR(effort(0.002), 0, 1e-9);
+  EXPECT_LT(effort(0.001), -15);
+}
+
+TEST(FuzzySurface, GivesEachRulesConsequenceWhereItsTermsPeak) {
+  for (std::size_t i = 0; i < FuzzySurface::kTerms; ++i) {
+    for (std::size_t j = 0; j < FuzzySurface::kTerms; ++j) {
+      EXPECT_DOUBLE_EQ(FuzzySurface::at(FuzzySurface::kPeaks[i], FuzzySurface::kPeaks[j]),
+                       FuzzySurface::kLevels[FuzzySurface::kRules[i][j]]);
+    }
+  }
+}
+
+TEST(FuzzySurface, IsOddRisesWithBothInputsAndIsSteepestAtItsCentre) {
+  constexpr double kStep = 0.01;
+  for (double e = -1.2; e <= 1.2; e += kStep) {
+    for (double r = -1.2; r <= 1.2; r += kStep) {
+      const double here = FuzzySurface::at(e, r);
+      ASSERT_LE(std::abs(here), 1);
+      ASSERT_NEAR(FuzzySurface::at(-e, -r), -here, 1e-12);
+      for (const double up : {FuzzySurface::at(e + kStep, r) - here, FuzzySurface::at(e, r + kStep) - here}) {
+        ASSERT_GE(up, -1e-12) << "at " << e << ", " << r;
+        ASSERT_LE(up, FuzzySurface::kCentreSlope * kStep + 1e-12) << "at " << e << ", " << r;
+      }
+    }
+  }
+  EXPECT_NEAR(FuzzySurface::at(kStep, 0), FuzzySurface::kCentreSlope * kStep, 1e-12);
+  EXPECT_NEAR(FuzzySurface::at(0, kStep), FuzzySurface::kCentreSlope * kStep, 1e-12);
+}
+
+}  // namespace
