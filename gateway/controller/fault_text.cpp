@@ -42,7 +42,7 @@ std::string where(const ServoFault& fault, const sdk::DeviceObject* device) {
 }  // namespace
 
 std::string describe(const ServoFault& fault, const sdk::DeviceObject* device) {
-  const std::string at = where(fault, device);
+  std::string at = where(fault, device);
   const auto word = static_cast<unsigned>(std::lround(std::abs(fault.value)));
   switch (fault.kind) {
     case ServoFault::Kind::None:

@@ -8,6 +8,7 @@
 #include <array>
 #include <cctype>
 #include <chrono>
+#include <cstdarg>
 #include <cstdio>
 #include <memory>
 #include <string_view>
@@ -79,9 +80,11 @@ struct Guard {
   bool late = false;
   std::array<char, 160> reason{};
 
-  template <typename... Arguments>
-  int deny(const char* format, Arguments... arguments) noexcept {
-    if (reason[0] == '\0') std::snprintf(reason.data(), reason.size(), format, arguments...);
+  [[gnu::format(printf, 2, 3)]] int deny(const char* format, ...) noexcept {
+    va_list arguments;
+    va_start(arguments, format);
+    if (reason[0] == '\0') std::vsnprintf(reason.data(), reason.size(), format, arguments);
+    va_end(arguments);
     return SQLITE_DENY;
   }
   bool check_time() noexcept {
