@@ -1,0 +1,161 @@
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <memory>
+#include <mutex>
+
+#include "test_machine.hpp"
+#include "trap.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+using real_time_test::TrapCounts;
+
+/// The machine's clock, with the trap set from the moment a cycle is due until the thread asks for the next one.
+class TrappingClock final : public Clock {
+ public:
+  std::uint64_t wait_for_cycle() noexcept override {
+    if (cycles_ == 0) catches_system_calls_ = real_time_test::prepare_trap();
+    real_time_test::disarm_trap();
+    const std::uint64_t missed = clock_->wait_for_cycle();
+    cycles_ = cycles_ + 1;
+    real_time_test::arm_trap();
+    return missed;
+  }
+  void restart() noexcept override { clock_->restart(); }
+
+  [[nodiscard]] std::int64_t cycles() const { return cycles_; }
+  [[nodiscard]] bool catches_system_calls() const { return catches_system_calls_; }
+
+ private:
+  std::shared_ptr<Clock> clock_ = make_monotonic_clock(0.001);
+  std::atomic<std::int64_t> cycles_{0};
+  std::atomic<bool> catches_system_calls_{false};
+};
+
+TEST(Trap, CatchesWhatAnArmedThreadDoesAndNothingElse) {
+  std::thread([] {
+    const bool system_calls = real_time_test::prepare_trap();
+    (void)real_time_test::take_trap_counts();
+    std::mutex mutex;
+    const auto misbehave = [&mutex] {
+      delete new volatile int(1);
+      const std::lock_guard lock(mutex);
+      (void)::getppid();
+    };
+    misbehave();
+    TrapCounts counts = real_time_test::take_trap_counts();
+    EXPECT_EQ(counts.allocations + counts.locks + counts.system_calls, 0U);
+    real_time_test::arm_trap();
+    misbehave();
+    real_time_test::disarm_trap();
+    counts = real_time_test::take_trap_counts();
+    EXPECT_EQ(counts.allocations, 2U);
+    EXPECT_EQ(counts.locks, 1U);
+    EXPECT_EQ(counts.system_calls, system_calls ? 1U : 0U);
+    EXPECT_FALSE(counts.first.empty());
+  }).join();
+}
+
+class ServoThreadUnderTrap : public testing::Test {
+ protected:
+  static ControllerOptions options(std::shared_ptr<Clock> clock) {
+    ControllerOptions real_pace = TestMachine::options();
+    real_pace.as_fast_as_computed = false;
+    real_pace.module_folders.emplace_back(RMAC_BINARY_DIR "/drivers/modules");
+    real_pace.clock = std::move(clock);
+    return real_pace;
+  }
+  static sdk::DeviceObject with_law(sdk::DeviceObject device, const char* law, const std::vector<double>& gains) {
+    for (auto* joints : {&device.joints, &device.held_joints}) {
+      for (sdk::Joint& joint : *joints) {
+        joint.servo_law = {law, {}, {}};
+        joint.gains = gains;
+      }
+    }
+    return device;
+  }
+  sdk::RmacCam& cam() { return machine_.controller.cam(); }
+  /// At least `count` cycles more.
+  void let_run(std::int64_t count) {
+    const std::int64_t until = clock_->cycles() + count;
+    ASSERT_TRUE(machine_.run_until([&] { return clock_->cycles() >= until; }));
+  }
+  void stop() {
+    ASSERT_TRUE(cam().stop_now());
+    const auto at_rest = [&] {
+      const CycleSample now = machine_.controller.sample();
+      return !now.moving && now.state == CycleState::Idle;
+    };
+    ASSERT_TRUE(machine_.run_until(at_rest));
+  }
+  void expect_clean(const char* after) {
+    const TrapCounts counts = real_time_test::take_trap_counts();
+    EXPECT_EQ(counts.allocations, 0U) << after;
+    EXPECT_EQ(counts.locks, 0U) << after;
+    EXPECT_EQ(counts.system_calls, 0U) << after;
+    EXPECT_EQ(counts.first, "") << after;
+  }
+
+  std::shared_ptr<TrappingClock> clock_ = std::make_shared<TrappingClock>();
+  TestMachine machine_{options(clock_)};
+};
+
+TEST_F(ServoThreadUnderTrap, NeitherAllocatesNorLocksNorCallsTheSystem) {
+  (void)real_time_test::take_trap_counts();
+  ASSERT_TRUE(machine_.load_at_zero(TestMachine::mill()));
+  expect_clean("loading and homing");
+
+  ASSERT_TRUE(cam().set_feedrate(3000));
+  ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {20, 5, 0}));
+  ASSERT_TRUE(machine_.line(2, {20, 5, 0}, {0, 0, 0}));
+  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveStarted, 1));
+  let_run(50);
+  ASSERT_TRUE(cam().feed_hold());
+  let_run(200);
+  ASSERT_TRUE(cam().feed_resume());
+  ASSERT_TRUE(cam().set_feed_override(150));
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 2));
+  stop();
+  expect_clean("two moves with a hold, an override and a stop");
+
+  for (const auto& [law, gains] : std::vector<std::pair<const char*, std::vector<double>>>{
+           {"DMAC_PID_CONTROL", {1550, 140000, 11.1}},
+           {"DMAC_FEEDFORWARDFEEDBACK_CONTROL", {1550, 140000, 11.1, 0.16, 0.035, 19, 0}},
+           {"DMAC_FUZZY_CONTROL", {0.16, 22, 120, 140000}}}) {
+    const auto changed = machine_.load(with_law(TestMachine::mill(), law, gains));
+    ASSERT_TRUE(changed) << changed.error().message;
+    ASSERT_TRUE(cam().set_feedrate(3000));
+    ASSERT_TRUE(machine_.line(3, machine_.controller.sample().pose_set.tip, {2, 0, 0}));
+    ASSERT_TRUE(machine_.line(4, {2, 0, 0}, {0, 0, 0}));
+    ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+    machine_.events.clear();
+    ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 4)) << law;
+    stop();
+    expect_clean(law);
+  }
+
+  const auto plane = machine_.load(TestMachine::plane_mill());
+  ASSERT_TRUE(plane) << plane.error().message;
+  let_run(100);
+  expect_clean("another mechanism");
+
+  ASSERT_TRUE(cam().set_feedrate(3000));
+  ASSERT_TRUE(machine_.line(5, machine_.controller.sample().pose_set.tip, {20, 0, 0}));
+  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveStarted, 5));
+  let_run(50);
+  machine_.bus->trip(1, 0x2310);
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::Fault, 5));
+  let_run(100);
+  expect_clean("a drive's fault");
+  EXPECT_GT(clock_->cycles(), 1000);
+  RecordProperty("cycles", std::to_string(clock_->cycles()));
+  if (!clock_->catches_system_calls())
+    GTEST_SKIP() << "this kernel has no syscall user dispatch: calls were not caught";
+}
+
+}  // namespace
+}  // namespace rmac::gateway
