@@ -72,7 +72,8 @@ TEST_P(MachineActMap, Conforms) {
   ASSERT_TRUE(map) << module.error();
   ASSERT_EQ(map->joint_count(), 3U);
   ASSERT_EQ(map->actuator_count(), 3U);
-  conformance::check_actuator_map(*map, 50, {1e-3, 1e-3, 1e-3});
+  const conformance::MappedJoint joint{-50, 50, 1e-3};
+  conformance::ActuatorMapConformance(*map, {joint, joint, joint}).check();
 }
 
 TEST_P(MachineActMap, TurnsTheScrewOncePerPitch) {
