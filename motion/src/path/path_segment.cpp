@@ -1,7 +1,7 @@
 #include "rmac/motion/path_segment.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "rmac/motion/frame.hpp"
@@ -16,10 +16,55 @@ constexpr double kSingularPivot = 1e-9;
 /// about 1e-8.
 constexpr double kJacobianStep = 1e-3;
 
-using PoseRows = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, kMaxJoints>;
-using JointColumn = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
-using JointMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, kMaxJoints>;
-using PoseColumn = Eigen::Matrix<double, 6, 1>;
+using PoseColumn = std::array<double, 6>;
+using JointColumn = std::array<double, kMaxJoints>;
+using PoseRows = std::array<double, 6 * kMaxJoints>;  ///< row-major, 6 x n
+
+/// Least squares of J x = p by the normal equations and their LDLᵀ: matrices of a handful of rows, for which a
+/// library's general routines spend most of their time on copies.
+class LeastSquares {
+ public:
+  LeastSquares(const PoseRows& jacobian, std::size_t n) noexcept : jacobian_(jacobian), n_(n) {
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t k = 0; k <= i; ++k) {
+        double sum = 0;
+        for (std::size_t r = 0; r < 6; ++r) sum += jacobian[r * n + i] * jacobian[r * n + k];
+        for (std::size_t m = 0; m < k; ++m) sum -= lower_[i * n + m] * lower_[k * n + m] * diagonal_[m];
+        if (k < i) {
+          lower_[i * n + k] = sum / diagonal_[k];
+        } else {
+          diagonal_[i] = sum;
+        }
+      }
+      if (!(diagonal_[i] > 0)) return;  // singular already
+    }
+    const auto [least, most] =
+        std::minmax_element(diagonal_.begin(), diagonal_.begin() + static_cast<std::ptrdiff_t>(n));
+    singular_ = !(*least > kSingularPivot * *most);
+  }
+
+  [[nodiscard]] bool singular() const noexcept { return singular_; }
+
+  void solve(const PoseColumn& pose, JointColumn& x) const noexcept {
+    for (std::size_t i = 0; i < n_; ++i) {
+      double sum = 0;
+      for (std::size_t r = 0; r < 6; ++r) sum += jacobian_[r * n_ + i] * pose[r];
+      for (std::size_t m = 0; m < i; ++m) sum -= lower_[i * n_ + m] * x[m];
+      x[i] = sum;
+    }
+    for (std::size_t i = n_; i-- > 0;) {
+      x[i] /= diagonal_[i];
+      for (std::size_t m = i + 1; m < n_; ++m) x[i] -= lower_[m * n_ + i] * x[m];
+    }
+  }
+
+ private:
+  const PoseRows& jacobian_;
+  std::size_t n_;
+  std::array<double, kMaxJoints * kMaxJoints> lower_;  // below the unit diagonal
+  std::array<double, kMaxJoints> diagonal_;
+  bool singular_ = true;
+};
 
 }  // namespace
 
@@ -73,10 +118,10 @@ KinematicsStatus PathSegment::evaluate(double s, int order, int side, JointPoint
     const Vector axis{c.d[k][3], c.d[k][4], c.d[k][5]};
     const Vector p = k == 0 ? apply_to_point(frames_.part, tip) : apply_to_vector(frames_.part, tip);
     const Vector a = apply_to_vector(frames_.part, axis);
-    pose[k] << p[0], p[1], p[2], a[0], a[1], a[2];
+    pose[k] = {p[0], p[1], p[2], a[0], a[1], a[2]};
   }
 
-  std::array<double, kMaxJoints> seed{};
+  JointColumn seed;
   seed_at(s, {seed.data(), n});
   const ToolPose wanted{{pose[0][0], pose[0][1], pose[0][2]}, {pose[0][3], pose[0][4], pose[0][5]}};
   if (const auto status = kinematics_->inverse(wanted, frames_.tool, {seed.data(), n}, {point.d[0].data(), n});
@@ -87,43 +132,55 @@ KinematicsStatus PathSegment::evaluate(double s, int order, int side, JointPoint
 
   // Least squares of J x' = p' through the normal equations; the sixth row is dependent because the axis has unit
   // length.
-  const auto joint_count = static_cast<Eigen::Index>(n);
   const auto jacobian_at = [&](const JointColumn& joints, PoseRows& rows) {
-    rows.resize(6, joint_count);
     kinematics_->jacobian({joints.data(), n}, frames_.tool, {rows.data(), 6 * n});
-    rows.bottomRows<3>() *= kAxisWeight;
+    for (std::size_t i = 3 * n; i < 6 * n; ++i) rows[i] *= kAxisWeight;
   };
-  for (int k = 1; k <= order; ++k) pose[static_cast<std::size_t>(k)].tail<3>() *= kAxisWeight;
-  const JointColumn q = Eigen::Map<const Eigen::VectorXd>(point.d[0].data(), joint_count);
+  for (std::size_t k = 1; k <= static_cast<std::size_t>(order); ++k) {
+    for (std::size_t r = 3; r < 6; ++r) pose[k][r] *= kAxisWeight;
+  }
+  auto& [q, x1, x2, x3] = point.d;
   PoseRows jacobian;
   jacobian_at(q, jacobian);
-  const JointMatrix normal = jacobian.transpose() * jacobian;
-  const Eigen::LDLT<JointMatrix> factor(normal);
-  const double largest = factor.vectorD().cwiseAbs().maxCoeff();
-  if (!(factor.vectorD().minCoeff() > kSingularPivot * largest)) return KinematicsStatus::Singular;
-  const auto solve = [&](const PoseColumn& rhs) -> JointColumn { return factor.solve(jacobian.transpose() * rhs); };
-  const auto store = [&](std::size_t k, const JointColumn& value) { std::copy_n(value.data(), n, point.d[k].begin()); };
-
-  const JointColumn x1 = solve(pose[1]);
-  store(1, x1);
+  const LeastSquares squares(jacobian, n);
+  if (squares.singular()) return KinematicsStatus::Singular;
+  squares.solve(pose[1], x1);
   if (order == 1) return KinematicsStatus::Ok;
 
   // x'' = J⁺(p'' - J' x'), x''' = J⁺(p''' - 2 J' x'' - J'' x'), primes along the path (docs/derivations/joint-path.md,
   // eq. 2 and 3).
   const double h = kJacobianStep;
-  PoseRows ahead, behind;
-  jacobian_at(q + h * x1, ahead);
-  jacobian_at(q - h * x1, behind);
-  const PoseRows turn = (ahead - behind) / (2 * h);  // dJ along x'
-  const JointColumn x2 = solve(pose[2] - turn * x1);
-  store(2, x2);
+  const auto jacobian_along = [&](double by, const JointColumn& direction, PoseRows& rows) {
+    JointColumn joints;
+    for (std::size_t j = 0; j < n; ++j) joints[j] = q[j] + by * direction[j];
+    jacobian_at(joints, rows);
+  };
+  PoseRows ahead, behind, turn;  // turn: dJ along x'
+  jacobian_along(h, x1, ahead);
+  jacobian_along(-h, x1, behind);
+  PoseColumn rest = pose[2];
+  for (std::size_t r = 0; r < 6; ++r) {
+    for (std::size_t j = 0; j < n; ++j) {
+      const std::size_t i = r * n + j;
+      turn[i] = (ahead[i] - behind[i]) / (2 * h);
+      rest[r] -= turn[i] * x1[j];
+    }
+  }
+  squares.solve(rest, x2);
   if (order == 2) return KinematicsStatus::Ok;
 
   PoseRows ahead2, behind2;
-  jacobian_at(q + h * x2, ahead2);
-  jacobian_at(q - h * x2, behind2);
-  const PoseRows bend = (ahead2 - behind2) / (2 * h) + (ahead - 2 * jacobian + behind) / (h * h);
-  store(3, solve(pose[3] - 2 * turn * x2 - bend * x1));
+  jacobian_along(h, x2, ahead2);
+  jacobian_along(-h, x2, behind2);
+  rest = pose[3];
+  for (std::size_t r = 0; r < 6; ++r) {
+    for (std::size_t j = 0; j < n; ++j) {
+      const std::size_t i = r * n + j;
+      const double bend = (ahead2[i] - behind2[i]) / (2 * h) + (ahead[i] - 2 * jacobian[i] + behind[i]) / (h * h);
+      rest[r] -= 2 * turn[i] * x2[j] + bend * x1[j];
+    }
+  }
+  squares.solve(rest, x3);
   return KinematicsStatus::Ok;
 }
 
