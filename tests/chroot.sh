@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Proves the two commands on a Debian 12 that holds nothing: makes one with debootstrap, clones the committed tree into it, and runs
-# ./demo.sh and ./test.sh --fast there, then the demo again without a network. Needs root, debootstrap and git.
+# ./demo.sh and ./test.sh there, then the demo again without a network. Needs root, debootstrap and git.
 #   tests/chroot.sh FOLDER     FOLDER is made, and kept: a second run starts from the packages it has
 set -euo pipefail
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -36,7 +36,7 @@ inside() { # command line
     chroot "$root" bash -c "cd /rmac && $1" </dev/null
 }
 inside ./demo.sh
-inside "./test.sh --fast"
+inside ./test.sh
 echo "== again, without a network"
 export -f inside
 export root

@@ -261,6 +261,7 @@ Result<> show_machine(Connection& connection, const std::string& name, bool json
     return {};
   }
   std::vector<std::vector<std::string>> lines;
+  lines.reserve(kColumns.size());
   for (const auto& column : kColumns) {
     lines.push_back({column.title, text_of(machine.at(column.key)), column.unit});
   }

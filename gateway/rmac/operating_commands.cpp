@@ -25,7 +25,7 @@ Result<> move_and_wait(Connection& connection, const std::string& method, const 
       }
     }
   });
-  const auto done = with_authority(connection, [&]() -> Result<> {
+  auto done = with_authority(connection, [&]() -> Result<> {
     if (auto topics = call(connection, "subscribe", {{"topics", {"events"}}}); !topics) {
       return topics;
     }
