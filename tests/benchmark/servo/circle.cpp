@@ -1,0 +1,33 @@
+#include "rows.hpp"
+#include "unit/drivers/law_changes.hpp"
+
+namespace rmac::bench {
+
+using namespace mill_test;
+
+void circle_rows(Figures& figures) {
+  const char* const note = "50 mm at 6 m/min, 1 kHz, torque mode, friction 19 N, at the shafts";
+  const Ballbar pid = MillRun().measure_circle({});
+  const Ballbar fuzzy = MillRun().measure_circle([](nlohmann::json& device) { choose_fuzzy(device, 120); });
+  const Ballbar exact = MillRun().measure_circle([](nlohmann::json& device) { choose_feedforward(device); });
+  const Ballbar wrong = MillRun().measure_circle([](nlohmann::json& device) { choose_feedforward(device, 0.9); });
+  figures.inform("circle_contour_pid", 1e3 * pid.contour_error(), "um", note);
+  figures.inform("circle_contour_fuzzy", 1e3 * fuzzy.contour_error(), "um", "PID's gains at its centre");
+  figures.at_most("circle_contour_feedforward", 1e3 * exact.contour_error(), 5, "um", note);
+  figures.at_most("circle_contour_feedforward_model_10_percent_low", 1e3 * wrong.contour_error(), 5, "um", note);
+  figures.inform("circle_reversal_spike_pid", 1e3 * pid.reversal_spike(), "um", note);
+  figures.at_most("circle_reversal_spike_feedforward", 1e3 * exact.reversal_spike(), 3, "um", note);
+  figures.at_most("circle_reversal_spike_feedforward_model_10_percent_low", 1e3 * wrong.reversal_spike(), 3, "um",
+                  note);
+  LawChanges all;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const LawChanges changes = LawChangesOnMill().change_laws_on_circle(seed);
+    all.count += changes.count;
+    all.largest_step_nm = std::max(all.largest_step_nm, changes.largest_step_nm);
+    all.rated_nm = changes.rated_nm;
+  }
+  figures.at_most("torque_step_where_laws_change", 100 * all.largest_step_nm / all.rated_nm, 1, "% of rated",
+                  std::to_string(all.count) + " changes on the circle");
+}
+
+}  // namespace rmac::bench

@@ -1,0 +1,15 @@
+#include <gtest/gtest.h>
+
+#include "rows.hpp"
+
+int main(int count, char** words) {
+  using namespace rmac::bench;
+  testing::InitGoogleTest(&count, words);  // the simulated mill checks itself with its assertions
+  Figures figures;
+  cycle_rows(figures);
+  circle_rows(figures);
+  figures.missing("missed_cycles_6_joints_4khz_60s", "<= 0", "cycles", "not measured: needs the virtual bench");
+  figures.missing("random_faults_detected_and_stopped", ">= 10000", "faults", "not measured: no such run yet");
+  figures.print_table();
+  return figures.all_ok() ? 0 : 1;
+}
