@@ -16,7 +16,8 @@ Written by `rmacd --print-api` from the table that dispatches (`gateway/api`); d
 examples, stands in [protocol.md](protocol.md). `rpc.discover` gives the same as an OpenRPC document.
 
 Permission: *anyone* may call it; *authority* needs the lease of `authority.acquire`; *stop* needs none and overtakes what
-waits on its connection. A property reads without `newVal`; with it, it writes, gives `true` and needs authority. Methods
+waits on its connection. Effect on motion: what *starts* something and still waits, on any connection, when someone calls what
+*holds* or *stops* is refused, and after what *stops*, which empties the queue, so is what *queues* moves. A property reads without `newVal`; with it, it writes, gives `true` and needs authority. Methods
 marked † are ours, not the dissertation's. Lengths are mm, angles degrees, feeds mm/min.
 )";
 
@@ -49,6 +50,13 @@ std::string result_of(const Method& entry) {
       unit_of(entry.result.unit));
 }
 
+std::string effect_of(const Method& entry) {
+  if (entry.effect == Effect::None) return {};
+  if (!entry.harmless) return to_string(entry.effect);
+  return fmt::format("{}, not with `{}` {}", to_string(entry.effect), entry.parameters[entry.harmless->parameter].name,
+                     entry.harmless->value.dump());
+}
+
 std::string interface_of(const Method& entry) {
   const std::size_t dot = entry.name.find('.');
   const std::string prefix = entry.name.substr(0, dot == std::string::npos ? 0 : dot);
@@ -59,15 +67,17 @@ std::string interface_of(const Method& entry) {
 
 std::string methods_of(std::string_view interface) {
   std::string text = fmt::format(
-      "\n## {}\n\n| method | parameters | gives | permission | meaning |\n| --- | --- | --- | --- | --- |\n",
+      "\n## {}\n\n| method | parameters | gives | permission | effect | meaning |\n| --- | --- | --- | --- | --- | --- "
+      "|\n",
       interface);
   for (const Method& entry : method_table()) {
     if (interface_of(entry) != interface) continue;
     std::string meaning = entry.meaning;
     if (!entry.supported()) meaning += " **Not supported yet**: " + entry.missing + ".";
-    text += fmt::format("| `{}`{} | {} | {} | {}{} | {} |\n", entry.name, entry.origin == Origin::Extension ? " †" : "",
-                        cell(parameters_of(entry)), cell(result_of(entry)), to_string(entry.permission),
-                        entry.property ? ", property" : "", cell(meaning));
+    text +=
+        fmt::format("| `{}`{} | {} | {} | {}{} | {} | {} |\n", entry.name,
+                    entry.origin == Origin::Extension ? " †" : "", cell(parameters_of(entry)), cell(result_of(entry)),
+                    to_string(entry.permission), entry.property ? ", property" : "", effect_of(entry), cell(meaning));
   }
   return text;
 }

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <vector>
 
 #include "gateway/api/decode.hpp"
 #include "gateway/api/method_table.hpp"
@@ -17,10 +19,15 @@ tl::unexpected<RpcError> wrong(int code, std::string message) {
   return tl::unexpected<RpcError>(RpcError{code, std::move(message), MinorCode::InvalidParameter});
 }
 
-/// Deepest nesting of brackets outside texts.
-int nesting_of(std::string_view line) {
+/// What one look at the characters tells of a line, before anything is built from it.
+struct Outline {
+  int nesting = 0;          ///< deepest, of brackets outside texts
+  std::size_t members = 0;  ///< of all objects together
+};
+
+Outline outline_of(std::string_view line) {
+  Outline outline;
   int depth = 0;
-  int deepest = 0;
   bool in_text = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const char c = line[i];
@@ -30,12 +37,37 @@ int nesting_of(std::string_view line) {
     } else if (c == '"') {
       in_text = true;
     } else if (c == '[' || c == '{') {
-      deepest = std::max(deepest, ++depth);
+      outline.nesting = std::max(outline.nesting, ++depth);
+    } else if (c == ':') {
+      ++outline.members;
     } else if (c == ']' || c == '}') {
       --depth;
     }
   }
-  return deepest;
+  return outline;
+}
+
+std::size_t members_in(const json& value) {
+  if (!value.is_structured()) return 0;
+  std::size_t members = value.is_object() ? value.size() : 0;
+  for (const json& element : value) members += members_in(element);
+  return members;
+}
+
+/// A key that stands twice in one object of a line that has such.
+std::string repeated_key(std::string_view line) {
+  std::vector<std::set<std::string>> open;
+  std::string repeated;
+  const auto watch = [&](int, json::parse_event_t event, json& value) {
+    if (event == json::parse_event_t::object_start) open.emplace_back();
+    if (event == json::parse_event_t::object_end) open.pop_back();
+    if (event == json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second) {
+      repeated = shortened(value);
+    }
+    return true;
+  };
+  const json again = json::parse(line, watch);
+  return repeated;
 }
 
 /// NaN and Infinity are what people send most often that is not JSON, so they are named.
@@ -59,13 +91,20 @@ std::string printable(std::string text) {
 }  // namespace
 
 tl::expected<json, RpcError> parse_line(std::string_view line) {
-  if (const int depth = nesting_of(line); depth > kLargestNesting) {
+  const Outline outline = outline_of(line);
+  if (outline.nesting > kLargestNesting) {
     return wrong(rpc_code::kParseError,
-                 fmt::format("nested {} deep, at most {} objects and arrays within each other are read", depth,
-                             kLargestNesting));
+                 fmt::format("nested {} deep, at most {} objects and arrays within each other are read",
+                             outline.nesting, kLargestNesting));
   }
   try {
-    return json::parse(line);
+    json parsed = json::parse(line);
+    // Of two members with one name a reader keeps one, so then the line has more than what was read from it.
+    if (members_in(parsed) != outline.members) {
+      return wrong(rpc_code::kInvalidRequest,
+                   fmt::format("the member {} stands twice in one object; say what it is once", repeated_key(line)));
+    }
+    return parsed;
   } catch (const json::exception& error) {
     return wrong(rpc_code::kParseError,
                  fmt::format("the line is not JSON: {}{}", printable(error.what()), hint_for(line)));
@@ -86,11 +125,18 @@ Request read_request(json message) {
   request.notification = !message.contains("id");
   if (!request.notification) {
     json& id = message["id"];
-    if (!id.is_string() && !id.is_number() && !id.is_null()) {
-      refuse(fmt::format("\"id\" is {}, expected a text, a number or null", shortened(id)));
+    // A number that no 64 bits hold, or a fraction, would come back as another.
+    if (!id.is_string() && !id.is_number_integer() && !id.is_null()) {
+      refuse(fmt::format("\"id\" is {}, expected a text, an integer from -2^63 to 2^64-1, or null", shortened(id)));
       return request;
     }
     request.id = std::move(id);
+  }
+  for (const auto& [key, value] : message.items()) {
+    if (key == "jsonrpc" || key == "id" || key == "method" || key == "params") continue;
+    refuse(fmt::format("a request has no member {}; it has \"jsonrpc\", \"id\", \"method\" and \"params\"",
+                       shortened(key)));
+    return request;
   }
   if (!message.contains("jsonrpc") || message["jsonrpc"] != "2.0") {
     refuse(R"(a request needs "jsonrpc": "2.0")");
@@ -109,6 +155,14 @@ Request read_request(json message) {
   }
   if (message.contains("params")) request.params = std::move(message["params"]);
   return request;
+}
+
+Effect Request::effect() const {
+  if (method == nullptr) return Effect::None;
+  if (!method->harmless) return method->effect;
+  const auto arguments = arrange(*method, params);
+  const bool harmless = arguments && *(*arguments)[method->harmless->parameter] == method->harmless->value;
+  return harmless ? Effect::None : method->effect;
 }
 
 Answer Dispatcher::execute(const Request& request, SessionPort& session) {

@@ -24,8 +24,11 @@ struct Request {
   nlohmann::json params;
   std::optional<RpcError> error;  ///< not a request, or an unknown method
 
-  [[nodiscard]] bool stops() const noexcept { return method != nullptr && method->permission == Permission::Stop; }
-  [[nodiscard]] bool queues_a_move() const noexcept { return method != nullptr && method->queues_a_move; }
+  /// Whether it overtakes what waits on its connection.
+  [[nodiscard]] bool is_urgent() const noexcept { return method != nullptr && method->permission == Permission::Stop; }
+  [[nodiscard]] bool queues_a_move() const noexcept { return method != nullptr && method->effect == Effect::Queues; }
+  /// What it does to motion with the parameters it came with.
+  [[nodiscard]] Effect effect() const;
 };
 
 [[nodiscard]] Request read_request(nlohmann::json message);

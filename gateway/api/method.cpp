@@ -38,6 +38,22 @@ const char* to_string(Permission permission) noexcept {
   return "anyone";
 }
 
+const char* to_string(Effect effect) noexcept {
+  switch (effect) {
+    case Effect::None:
+      return "none";
+    case Effect::Queues:
+      return "queues";
+    case Effect::Starts:
+      return "starts";
+    case Effect::Holds:
+      return "holds";
+    case Effect::Stops:
+      return "stops";
+  }
+  return "none";
+}
+
 const char* to_string(Origin origin) noexcept {
   return origin == Origin::Dissertation ? "dissertation" : "extension";
 }

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,20 @@ enum class Permission {
   Stop,       ///< stops: needs no lease, and overtakes what waits on its connection
 };
 
+/// What a method does to motion. It decides what becomes of a request that still waits, on whichever connection, when
+/// someone stops the machine.
+enum class Effect {
+  None,    ///< moves nothing by itself: runs whatever was stopped meanwhile
+  Queues,  ///< adds a move to the queue: refused after a stop that empties the queue
+  Starts,  ///< motion, a spindle or power may come on by it: refused after every stop
+  Holds,   ///< a stop that keeps the queue
+  Stops,   ///< a stop that empties the queue
+};
+
 enum class Origin { Dissertation, Extension };
 
 [[nodiscard]] const char* to_string(Permission permission) noexcept;
+[[nodiscard]] const char* to_string(Effect effect) noexcept;
 [[nodiscard]] const char* to_string(Origin origin) noexcept;
 
 /// One method of the API. Dispatch, parameter checks, `rpc.discover` and docs/api.md read this and nothing else.
@@ -33,9 +45,16 @@ struct Method {
   ResultSpec result;
   Permission permission = Permission::Anyone;
   Origin origin = Origin::Dissertation;
-  bool property = false;       ///< reads without `newVal`; with it writes, gives true, and needs authority
-  bool queues_a_move = false;  ///< waits for room in a full queue
-  std::string missing;         ///< what the method still lacks; empty when it works
+  Effect effect = Effect::None;
+  /// The parameter and the value with which the method has no effect: a button let go, a spindle switched off.
+  struct Harmless {
+    std::size_t parameter = 0;
+    nlohmann::json value;
+  };
+  std::optional<Harmless> harmless;
+  bool property = false;  ///< reads without `newVal`; with it writes, gives true, and needs authority
+  bool slow = false;      ///< may take so long that others' stops must not wait for it
+  std::string missing;    ///< what the method still lacks; empty when it works
   Handler handler;
 
   [[nodiscard]] bool supported() const noexcept { return missing.empty(); }

@@ -190,8 +190,19 @@ class MethodBuilder {
     method_.property = true;
     return std::move(*this);
   }
-  MethodBuilder queues_a_move() && {
-    method_.queues_a_move = true;
+  /// What it does to motion. Whoever may stop, may; all else takes authority.
+  MethodBuilder causes(Effect effect) && {
+    method_.effect = effect;
+    const bool stops = effect == Effect::Holds || effect == Effect::Stops;
+    return std::move(*this).needs(stops ? Permission::Stop : Permission::Authority);
+  }
+  MethodBuilder may_be_slow() && {
+    method_.slow = true;
+    return std::move(*this);
+  }
+  /// With this value of its last parameter it has no effect on motion.
+  MethodBuilder except(nlohmann::json value) && {
+    method_.harmless = Method::Harmless{sizeof...(Ts) - 1, std::move(value)};
     return std::move(*this);
   }
 

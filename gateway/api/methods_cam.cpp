@@ -97,7 +97,8 @@ void add_frames(const auto& add) {
 void add_auxiliaries(const auto& add) {
   add(method("RMAC_CAM.SetSpindleRPM", "Speed of a spindle; feed waits until it is reached. 0 stops it.")
           .takes(spindle_number(), number("RPM", "rpm"))
-          .needs(Permission::Authority)
+          .causes(Effect::Starts)
+          .except(0)
           .does([](Call& call, std::int64_t spindle, double rpm) {
             return call.machine.cam().set_spindle_rpm(static_cast<int>(spindle), rpm);
           }));
@@ -129,15 +130,16 @@ void add_auxiliaries(const auto& add) {
   add(method("RMAC_CAM.DoToolChange", "Changes the tool.")
           .takes(integer("ToolNumber").at_least(0))
           .gives(WireType::Boolean)
-          .needs(Permission::Authority)
+          .causes(Effect::Starts)
           .lacks("no tool changer is driven yet; change the tool by hand at rest"));
   add(method("RMAC_CAM.SetAnimation",
-             "True streams the joint values to this connection (topic joints, 50 Hz) for an animation; false ends it.")
+             "True streams the joint values to this connection (topic joints, 50 Hz, or faster if it is subscribed to "
+             "so) for "
+             "an animation; false ends it.")
           .takes(boolean("mode"))
-          .does([](Call& call, bool on) -> tl::expected<void, RpcError> {
-            if (on) return call.session.subscribe({"joints"}, 50);
-            call.session.unsubscribe({"joints"});
-            return {};
+          .does([](Call& call, bool on) {
+            call.session.animate(on);
+            return Expected<>{};
           }));
 }
 

@@ -32,8 +32,8 @@ Method status_property(const char* name, const char* meaning, const Enumeration&
       });
 }
 
-MethodBuilder<> command(const char* name, const char* meaning) {
-  return method(name, meaning).gives(WireType::Boolean).needs(Permission::Authority);
+MethodBuilder<> command(const char* name, const char* meaning, Effect effect) {
+  return method(name, meaning).gives(WireType::Boolean).causes(effect);
 }
 
 void add_status(const auto& add) {
@@ -76,40 +76,42 @@ void add_cmm_moves(const auto& add) {
   const auto y = [] { return number("y", "mm"); };
   const auto z = [] { return number("z", "mm"); };
   const auto speed = [](const char* name = "Speed") { return number(name, "mm/s").above(0); };
-  add(command("RMAC_CAM.Home", "Moves all joints to their home position, zero, from rest.").does([](Call& call) {
-    return call.machine.cam().home();
-  }));
-  add(command("RMAC_CAM.MoveToXYZ", "Moves the tip to a point at a speed.")
+  add(command("RMAC_CAM.Home", "Moves all joints to their home position, zero, from rest.", Effect::Starts)
+          .does([](Call& call) { return call.machine.cam().home(); }));
+  add(command("RMAC_CAM.MoveToXYZ", "Moves the tip to a point at a speed.", Effect::Queues)
           .takes(move_id(), x(), y(), z(), speed())
           .lacks(kOwnSpeed));
-  add(command("RMAC_CAM.MoveRotaryAxis", "Turns one rotary joint to a position.")
+  add(command("RMAC_CAM.MoveRotaryAxis", "Turns one rotary joint to a position.", Effect::Queues)
           .takes(move_id(), joint_number("JointNum"), number("JointPose", "deg"),
                  choice("Direction", kRotaryDirectionValues), number("Speed", "deg/s").above(0))
           .lacks("joint moves do not choose a direction of turning yet; use MoveToJointTarget"));
-  add(command("RMAC_CAM.AutoMeasure", "Moves towards a point until the probe is hit, then backs off.")
+  add(command("RMAC_CAM.AutoMeasure", "Moves towards a point until the probe is hit, then backs off.", Effect::Queues)
           .takes(move_id(), x(), y(), z(), speed())
           .lacks(kProbing));
-  add(command("RMAC_CAM.MoveInArc", "Moves on an arc from the present position to a point.")
+  add(command("RMAC_CAM.MoveInArc", "Moves on an arc from the present position to a point.", Effect::Queues)
           .takes(move_id(), x(), y(), z(), number("CenterX", "mm"), number("CenterY", "mm"), number("CenterZ", "mm"),
                  number("i", ""), number("j", ""), number("k", ""), speed())
           .lacks(kOwnSpeed));
-  add(command("RMAC_CAM.MoveAllAxis", "Moves all joints to their positions at a speed.")
+  add(command("RMAC_CAM.MoveAllAxis", "Moves all joints to their positions at a speed.", Effect::Queues)
           .takes(move_id(), numbers("Position", "mm or deg"), speed("LinearSpeed"))
           .lacks(kOwnSpeed));
-  add(command("RMAC_CAM.SendConditionChangedEvent", "Simulates a hit of the probe where no live drive can move.")
+  add(command("RMAC_CAM.SendConditionChangedEvent", "Simulates a hit of the probe where no live drive can move.",
+              Effect::None)
           .takes(numbers("JointValues", "mm or deg"), integer("NumJoints").within(0, static_cast<double>(kMaxJoints)),
                  mask("Mask"), mask("Condition"))
           .lacks(kProbing));
-  add(command("RMAC_CAM.SetCalibratedPartFrame", "Sets the part frame so that all joints read zero here.")
+  add(command("RMAC_CAM.SetCalibratedPartFrame", "Sets the part frame so that all joints read zero here.", Effect::None)
           .lacks(kProbing));
-  add(command("RMAC_CAM.ManualMeasure", "Lets a person move the probe and expects a hit.").lacks(kProbing));
-  add(command("RMAC_CAM.SpinProbe", "Spins the probe for a time.")
+  add(command("RMAC_CAM.ManualMeasure", "Lets a person move the probe and expects a hit.", Effect::Starts)
+          .lacks(kProbing));
+  add(command("RMAC_CAM.SpinProbe", "Spins the probe for a time.", Effect::Starts)
           .takes(number("RPM", "rpm"), number("Seconds", "s").at_least(0))
           .lacks(kProbing));
 }
 
 void add_jogs(const auto& add) {
-  add(command("RMAC_CAM.JogJoint", "Moves one joint by a distance, from rest, at the joint interpolation speed.")
+  add(command("RMAC_CAM.JogJoint", "Moves one joint by a distance, from rest, at the joint interpolation speed.",
+              Effect::Starts)
           .takes(joint_number(), number("Distance", "mm or deg").optional(),
                  number("Velocity", "mm/s or deg/s").optional().noted("not supported yet"))
           .extension()
@@ -122,14 +124,14 @@ void add_jogs(const auto& add) {
             if (!distance) return failure(MinorCode::InvalidParameter, "RMAC_CAM.JogJoint needs Distance");
             return call.machine.cam().jog_joint(static_cast<int>(joint), *distance);
           }));
-  add(command("RMAC_CAM.JogPath", "Moves the tool tip along a direction.")
+  add(command("RMAC_CAM.JogPath", "Moves the tool tip along a direction.", Effect::Starts)
           .takes(vector("Direction"), number("Distance", "mm").optional(), number("Velocity", "mm/s").optional())
           .extension()
           .lacks("jogging along the path comes later; use MoveToPathTarget or JogJoint"));
-  add(command("RMAC_CAM.MoveToReferencePoint", "Moves to the machine's reference point.")
+  add(command("RMAC_CAM.MoveToReferencePoint", "Moves to the machine's reference point.", Effect::Starts)
           .extension()
           .lacks("reference points come later; Home moves all joints to zero"));
-  add(command("RMAC_CAM.SetJointForce", "Contact force that a joint under force control keeps.")
+  add(command("RMAC_CAM.SetJointForce", "Contact force that a joint under force control keeps.", Effect::Starts)
           .takes(joint_number(), number("Force", "N or N·m"))
           .extension()
           .lacks("force control comes later"));

@@ -123,13 +123,13 @@ void add_interface_setters(const auto& add) {
                     &RmacConfig::set_digital_control_interface));
   add(method("RMAC_Config.InitializeMechanismDigitalControlInterface", "Brings the interface to the drives up.")
           .gives(WireType::Boolean)
-          .needs(Permission::Authority)
+          .causes(Effect::Starts)
           .does([](Call& call) { return call.machine.config().initialize_digital_control_interface(); }));
   add(module_setter("RMAC_Config.SetMechanismDigitalIOInterface", "Interface to inputs and outputs.",
                     "DigitalIOInterface", &DeviceObject::digital_io_interface, &RmacConfig::set_digital_io_interface));
   add(method("RMAC_Config.InitializeMechanismDigitalIOInterface", "Brings the interface to inputs and outputs up.")
           .gives(WireType::Boolean)
-          .needs(Permission::Authority)
+          .causes(Effect::Starts)
           .does([](Call& call) { return call.machine.config().initialize_digital_io_interface(); }));
 }
 
@@ -162,7 +162,7 @@ void add_config_methods(std::vector<Method>& table) {
   add(method("RMAC_Config.Apply",
              "Checks the draft as a whole and puts it in at standstill; or changes nothing and says why.")
           .gives(WireType::Boolean)
-          .needs(Permission::Authority)
+          .causes(Effect::Starts)
           .extension()
           .does([](Call& call) { return call.machine.config().apply(); }));
 }

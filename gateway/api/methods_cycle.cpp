@@ -8,9 +8,7 @@ namespace rmac::gateway {
 namespace {
 
 Expected<> start(Call& call, std::int64_t mode) {
-  return call.machine.cam().cycle_start(static_cast<sdk::CycleMode>(mode)).map([&] {
-    call.status.cycle_mode = kCycleModeValues.find(mode)->name;
-  });
+  return call.machine.cam().cycle_start(static_cast<sdk::CycleMode>(mode));
 }
 
 }  // namespace
@@ -21,13 +19,14 @@ void add_cycle_methods(std::vector<Method>& table) {
              "Starts the cycle: AUTOMATIC runs the queue and what comes after it, MANUAL runs one move.")
           .takes(choice("Mode", kCycleModeValues))
           .gives(WireType::Boolean)
-          .needs(Permission::Authority)
+          .causes(Effect::Starts)
           .does(start));
   add(method("RMAC_CAM.SetCycleStartStatus",
              "The start button as an HMI sees it: true does what CycleStart(AUTOMATIC) does; false, its release, moves "
              "and stops nothing.")
           .takes(boolean("status"))
-          .needs(Permission::Authority)
+          .causes(Effect::Starts)
+          .except(false)
           .does([](Call& call, bool pressed) { return pressed ? start(call, 1) : Expected<>{}; }));
   add(method("RMAC_CAM.GetCycleStartStatus", "Whether the cycle is started.")
           .gives(WireType::Boolean)
@@ -36,48 +35,49 @@ void add_cycle_methods(std::vector<Method>& table) {
              "Stops on the path, whatever the mode, and keeps the rest of the queue; a new CycleStart goes on.")
           .takes(choice("Mode", kCycleModeValues))
           .gives(WireType::Boolean)
-          .needs(Permission::Stop)
+          .causes(Effect::Holds)
           .does([](Call& call, std::int64_t) { return call.machine.cam().cycle_stop(); }));
   add(method("RMAC_CAM.SetCycleStopStatus",
              "The stop button as an HMI sees it: true does what CycleStop does; false, its release, does not start "
              "anything.")
           .takes(boolean("status"))
-          .needs(Permission::Stop)
+          .causes(Effect::Holds)
+          .except(false)
           .does([](Call& call, bool pressed) { return pressed ? call.machine.cam().cycle_stop() : Expected<>{}; }));
   add(method("RMAC_CAM.GetCycleStopStatus", "Whether the cycle is stopped.")
           .gives(WireType::Boolean)
           .does([](Call& call) { return call.machine.cam().cycle_stop_status(); }));
   add(method("RMAC_CAM.StopNow", "Stops as fast as the limits allow and empties the queue.")
           .gives(WireType::Boolean)
-          .needs(Permission::Stop)
+          .causes(Effect::Stops)
           .does([](Call& call) { return call.machine.cam().stop_now(); }));
   add(method("RMAC_CAM.FeedHold", "Comes to rest on the path; FeedResume goes on from there.")
           .gives(WireType::Boolean)
-          .needs(Permission::Stop)
+          .causes(Effect::Holds)
           .extension()
           .does([](Call& call) { return call.machine.cam().feed_hold(); }));
   add(method("RMAC_CAM.FeedResume", "Goes on after a FeedHold.")
           .gives(WireType::Boolean)
-          .needs(Permission::Authority)
+          .causes(Effect::Starts)
           .extension()
           .does([](Call& call) { return call.machine.cam().feed_resume(); }));
   add(method("RMAC_CAM.Reset", "Leaves a fault or emergency stop whose cause is gone; nothing moves by it.")
           .gives(WireType::Boolean)
-          .needs(Permission::Authority)
+          .causes(Effect::Starts)
           .extension()
           .does([](Call& call) { return call.machine.cam().reset(); }));
   add(method("RMAC_CAM.SetFeedOverride", "Percentage of the programmed feed at which moves run, at once; 0 waits.")
           .takes(number("Percent", "%").within(0, 200))
           .needs(Permission::Authority)
           .extension()
-          .does([](Call& call, double percent) {
-            return call.machine.cam().set_feed_override(percent).map([&] { call.status.override_percent = percent; });
-          }));
+          .does([](Call& call, double percent) { return call.machine.cam().set_feed_override(percent); }));
   add(method("RMAC_CAM.GetState", "The machine's state now: what the topic `state` pushes.")
           .gives(WireType::Object)
           .extension()
           .does([](Call& call) {
-            return state_to_json(call.machine, call.machine.sample(), call.status, call.session.authority_holder());
+            CycleSample now = call.machine.sample();
+            now.state = call.machine.cycle_now().state;  // a start that was just accepted is not in the sample yet
+            return state_to_json(call.machine, now, call.status, call.session.authority_holder());
           }));
 }
 

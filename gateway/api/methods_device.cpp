@@ -54,13 +54,10 @@ void add_life_cycle(const auto& add) {
           .takes(text("Name"), boolean("Virtual").optional().noted("true: setpoints come back as joint values and "
                                                                    "no bus is touched; false when left out"))
           .gives(WireType::Boolean)
-          .needs(Permission::Authority)
+          .causes(Effect::Starts)
           .extension()
           .does([](Call& call, const std::string& name, std::optional<bool> virtual_mode) {
-            return call.machine.device().load(name, virtual_mode.value_or(false)).map([&] {
-              call.status.override_percent = 100;  // another mechanism starts with the programmed feed
-              call.status.cycle_mode.clear();
-            });
+            return call.machine.device().load(name, virtual_mode.value_or(false));
           }));
   add(method("Device.Unload", "Takes the mechanism out at standstill: drives off, no motion until another is loaded.")
           .gives(WireType::Boolean)

@@ -94,17 +94,17 @@ void add_device_setters(std::vector<Method>& table) {
   add(method("Device.Machine_ConfigureMotionPlanner",
              "The driver configures the motion planner by the wanted values, at standstill; or nothing changes.")
           .gives(WireType::Boolean)
-          .needs(Permission::Authority)
+          .causes(Effect::Starts)
           .does([](Call& call) { return call.machine.device().configure_motion_planner(); }));
   add(method("Device.Machine_ConfigureServoController",
              "The driver configures the servo controller by the wanted values, at standstill; or nothing changes.")
           .gives(WireType::Boolean)
-          .needs(Permission::Authority)
+          .causes(Effect::Starts)
           .does([](Call& call) { return call.machine.device().configure_servo_controller(); }));
   add(method("Device.Machine_ConfigureDigitalControlInterface",
              "The driver configures the interfaces to drives and I/O, at standstill; or nothing changes.")
           .gives(WireType::Boolean)
-          .needs(Permission::Authority)
+          .causes(Effect::Starts)
           .does([](Call& call) { return call.machine.device().configure_digital_control_interface(); }));
 }
 

@@ -58,6 +58,7 @@ void add_driver_manager_methods(std::vector<Method>& table) {
              "number.")
           .takes(text("MachineSQLStatement").noted("one read-only SELECT that yields MechanismID (or *)"))
           .gives(WireType::Integer)
+          .may_be_slow()
           .does([](Call& call, const std::string& sql) { return call.session.records().search(sql); }));
   add(method("DeviceDriverManager.GetDatabaseRecordSetColumns",
              "Checks that the record set has a current row; the getters below read it.")
@@ -114,11 +115,20 @@ void add_driver_manager_methods(std::vector<Method>& table) {
   add(column("DeviceDriverManager.Machine_GetMechanismRepeatabilityTolerance", "How exactly it reaches it again.",
              WireType::Number, "mm", [](const R& row) { return row.repeatability_tolerance; }));
   add(method("DeviceDriverManager.Rescan",
-             "Reads the device tree again; gives the number of mechanisms in the database after it.")
-          .gives(WireType::Integer)
+             "Reads the device tree again. Gives `mechanisms`, how many are in the database after it, and `problems`, "
+             "what was left out: `file` and `message` of each.")
+          .gives(WireType::Object)
           .needs(Permission::Authority)
           .extension()
-          .does([](Call& call) { return call.machine.rescan(); }));
+          .does([](Call& call) {
+            return call.machine.rescan().map([](const ScanReport& report) {
+              nlohmann::json problems = nlohmann::json::array();
+              for (const auto& [file, message] : report.problems) {
+                problems.push_back({{"file", file.string()}, {"message", message}});
+              }
+              return nlohmann::json{{"mechanisms", report.mechanisms}, {"problems", problems}};
+            });
+          }));
 }
 
 }  // namespace rmac::gateway

@@ -21,7 +21,7 @@ struct ToDriver {
 };
 
 MethodBuilder<> move_method(const char* name, const char* meaning, Origin origin) {
-  auto builder = method(name, meaning).gives(WireType::Boolean).needs(Permission::Authority).queues_a_move();
+  auto builder = method(name, meaning).gives(WireType::Boolean).causes(Effect::Queues);
   return origin == Origin::Extension ? std::move(builder).extension() : std::move(builder);
 }
 

@@ -16,18 +16,26 @@ void add_session_methods(std::vector<Method>& table) {
             call.session.introduce(client, version.value_or(""));
             return call.session.greeting();
           }));
-  add(method("authority.acquire", "Takes motion authority, the lease that moving needs; one client at a time holds it.")
-          .gives(WireType::Boolean)
+  add(method(
+          "authority.acquire",
+          "Takes motion authority, the lease that moving needs; one client at a time holds it. Gives `timeout_s`, the "
+          "silence after which the lease ends (0: never), and `dropped_moves`, how many moves were dropped from the "
+          "queue when the lease before it ended.")
+          .gives(WireType::Object)
           .extension()
           .does([](Call& call) { return call.session.acquire_authority(); }));
   add(method("authority.renew",
-             "Confirms that this connection still holds motion authority; an open connection keeps it.")
+             "Confirms that this connection still holds motion authority; like any request, it keeps the lease from "
+             "ending.")
           .gives(WireType::Boolean)
           .extension()
           .does([](Call& call) { return call.session.renew_authority(); }));
-  add(method("authority.release", "Gives motion authority back; a machine that moves is stopped as for a lost lease.")
+  add(method("authority.release",
+             "Gives motion authority back. As when a lease is lost, a machine that moves is stopped, and what is "
+             "queued is "
+             "dropped.")
           .gives(WireType::Boolean)
-          .needs(Permission::Stop)
+          .causes(Effect::Stops)
           .extension()
           .does([](Call& call) { return call.session.release_authority(); }));
   add(method("subscribe", "Pushes topics to this connection: state, joints, drives, events.")

@@ -48,6 +48,12 @@ class DevicePort {
   virtual Expected<> move(std::int64_t id, const Geometry& geometry) = 0;
 };
 
+/// What reading the device tree gave: the mechanisms in the database now, and what was left out of it and why.
+struct ScanReport {
+  int mechanisms = 0;
+  std::vector<DeviceDriverManager::ScanProblem> problems;
+};
+
 /// The machine as a whole.
 class MachinePort {
  public:
@@ -58,8 +64,9 @@ class MachinePort {
   /// The mechanism in force, or nullptr.
   [[nodiscard]] virtual const sdk::DeviceObject* mechanism() const = 0;
   [[nodiscard]] virtual CycleSample sample() const = 0;
-  /// Reads the device tree again; how many mechanisms there are now.
-  virtual Expected<int> rescan() = 0;
+  [[nodiscard]] virtual CycleNow cycle_now() const = 0;
+  /// Reads the device tree again.
+  virtual Expected<ScanReport> rescan() = 0;
 };
 
 /// What a method may ask of the connection that called it.
@@ -73,20 +80,20 @@ class SessionPort {
   [[nodiscard]] virtual bool has_authority() const = 0;
   /// Name of the client that holds motion authority, or empty.
   [[nodiscard]] virtual std::string authority_holder() const = 0;
-  virtual tl::expected<void, RpcError> acquire_authority() = 0;
+  /// Takes the lease; tells how long it lasts, and what became of the queue of the one before.
+  virtual tl::expected<nlohmann::json, RpcError> acquire_authority() = 0;
   virtual tl::expected<void, RpcError> renew_authority() = 0;
   virtual tl::expected<void, RpcError> release_authority() = 0;
   virtual tl::expected<void, RpcError> subscribe(const std::vector<std::string>& topics, double rate_hz) = 0;
   virtual void unsubscribe(const std::vector<std::string>& topics) = 0;
+  /// Streams the joints for an animation, or ends that; what the client subscribed to itself stays as it is.
+  virtual void animate(bool on) = 0;
 };
 
-/// The error the machine met last (StatusMajorCode, StatusMinorCode, Ok), and what the CAM interface does not give
-/// back. One a machine, whoever asks.
+/// The error the machine met last (StatusMajorCode, StatusMinorCode, Ok). One a machine, whoever asks.
 struct MachineStatus {
   std::int64_t major = 0;
   std::int64_t minor = 0;
-  double override_percent = 100;
-  std::string cycle_mode;  ///< of the last CycleStart; empty before
 
   void fail(MinorCode code) {
     major = 1;

@@ -15,17 +15,18 @@ std::vector<double> first(const auto& values, std::size_t count) {
 nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, const MachineStatus& status,
                              const std::string& authority_holder) {
   const sdk::DeviceObject* mechanism = machine.mechanism();
+  const CycleNow cycle = machine.cycle_now();
   const ToolPose& tool = sample.pose_actual;
   nlohmann::json state{{"t_s", sample.t_s},
                        {"cycle", sample.cycle},
                        {"state", to_string(sample.state)},
-                       {"mode", status.cycle_mode},
+                       {"mode", cycle.mode},
                        {"moving", sample.moving},
                        {"move_id", sample.move_id},
                        {"s_mm", sample.s_mm},
                        {"feed_set_mm_min", sample.feed_set_mm_s * 60},
                        {"feed_actual_mm_min", sample.feed_actual_mm_s * 60},
-                       {"override_percent", status.override_percent},
+                       {"override_percent", cycle.override_percent},
                        {"pose", {tool.tip[0], tool.tip[1], tool.tip[2], tool.axis[0], tool.axis[1], tool.axis[2]}},
                        {"joints", first(sample.position, sample.joint_count)},
                        {"held_joints", std::vector<double>(sample.position.begin() + sample.joint_count,

@@ -77,20 +77,6 @@ class Paths {
   const Json& document_;
 };
 
-StopCategory category(const Json& categories, const char* key, StopCategory otherwise) {
-  return static_cast<StopCategory>(categories.value(key, static_cast<int>(otherwise)));
-}
-
-StopCategories stop_categories(const Json& categories) {
-  const StopCategories defaults;
-  return {.lease_lost = category(categories, "LeaseLost", defaults.lease_lost),
-          .drive_heartbeat_lost = category(categories, "DriveHeartbeatLost", defaults.drive_heartbeat_lost),
-          .bus_lost = category(categories, "BusLost", defaults.bus_lost),
-          .sensor_lost = category(categories, "SensorLost", defaults.sensor_lost),
-          .following_error = category(categories, "FollowingError", defaults.following_error),
-          .cycle_deadline = category(categories, "CycleDeadline", defaults.cycle_deadline)};
-}
-
 RealTimeSettings real_time_settings(const Json& settings) {
   RealTimeSettings real_time;
   if (const int cpu = settings.value("cpu", -1); cpu >= 0) real_time.cpu = cpu;
@@ -114,7 +100,12 @@ Configuration from_document(const Json& document, const std::filesystem::path& f
   configuration.pace = overrides.pace.value_or(fast ? Pace::AsFastAsComputed : Pace::RealTime);
   configuration.real_time = real_time_settings(group(document, "real_time"));
   configuration.queue_capacity = document.value("queue_capacity", configuration.queue_capacity);
-  configuration.stop_categories = stop_categories(group(document, "stop_categories"));
+  // The schema holds the others to what they do anyway.
+  configuration.lease_lost = static_cast<StopCategory>(
+      group(document, "stop_categories").value("LeaseLost", static_cast<int>(configuration.lease_lost)));
+  constexpr double kMillisecondsPerSecond = 1e3;
+  configuration.lease_timeout =
+      std::chrono::milliseconds(std::llround(document.value("lease_timeout_s", 0.0) * kMillisecondsPerSecond));
   if (document.contains("autoload")) {
     configuration.autoload = Autoload{.mechanism = document["autoload"]["mechanism"].get<std::string>(),
                                       .virtual_mode = document["autoload"].value("virtual", false)};

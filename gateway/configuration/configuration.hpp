@@ -11,19 +11,9 @@
 
 namespace rmac::gateway {
 
-/// How motion ends, as IEC 60204-1 (9.2.2) numbers it.
-enum class StopCategory : int { RemovePower = 0, StopThenRemovePower = 1, StopKeepPower = 2 };
-
-/// What each failure leads to. Which category a machine needs follows from its risk assessment, not from these
-/// defaults.
-struct StopCategories {
-  StopCategory lease_lost = StopCategory::StopKeepPower;
-  StopCategory drive_heartbeat_lost = StopCategory::StopThenRemovePower;
-  StopCategory bus_lost = StopCategory::RemovePower;
-  StopCategory sensor_lost = StopCategory::StopThenRemovePower;
-  StopCategory following_error = StopCategory::StopThenRemovePower;
-  StopCategory cycle_deadline = StopCategory::StopThenRemovePower;
-};
+/// How motion ends, as IEC 60204-1 (9.2.2) numbers it; category 0, power off at once, is the hardware's. Which one a
+/// machine needs follows from its risk assessment.
+enum class StopCategory : int { StopThenRemovePower = 1, StopKeepPower = 2 };
 
 /// What paces the servo loop: the clock of the machine, or nothing but the computation (for tests and simulated buses).
 enum class Pace { RealTime, AsFastAsComputed };
@@ -55,7 +45,9 @@ struct Configuration {
   Pace pace = Pace::RealTime;
   RealTimeSettings real_time;
   int queue_capacity = 10'000;  ///< moves
-  StopCategories stop_categories;
+  /// What a lost lease leads to. Every other failure that is watched is a quick stop by the drives, category 1.
+  StopCategory lease_lost = StopCategory::StopKeepPower;
+  std::chrono::milliseconds lease_timeout{0};  ///< silence of its holder that ends the lease; 0: none
   std::optional<Autoload> autoload;
 };
 

@@ -86,6 +86,7 @@ const Json& SchemaWords::at(const std::vector<std::string>& steps) const {
 std::string SchemaWords::allowed(const Json& unresolved) const {
   const Json& schema = resolved(unresolved);
   const std::string unit = schema.contains("x-unit") ? fmt::format(" ({})", schema["x-unit"].get<std::string>()) : "";
+  if (schema.contains("not")) return schema.value("x-form", "something else");
   if (schema.contains("enum")) {
     std::vector<std::string> choices;
     for (const Json& choice : schema["enum"]) choices.push_back(choice.dump());

@@ -13,7 +13,7 @@ ServoThread::Options thread_options(const ControllerOptions& options) {
           .virtual_time = options.as_fast_as_computed,
           .real_time = options.real_time,
           .degraded_ok = options.degraded_ok,
-          .wish = {options.priority, options.cpu},
+          .wish = {options.priority, options.cpu, options.lock_memory},
           .clock = options.clock};
 }
 
@@ -105,6 +105,10 @@ const sdk::DeviceObject* Controller::mechanism() const noexcept {
 
 CycleSample Controller::sample() const noexcept {
   return impl_->link->sample.read();
+}
+
+CycleNow Controller::cycle_now() const {
+  return impl_->supervisor.now();
 }
 
 void Controller::on_event(std::function<void(const Event&)> listener) {

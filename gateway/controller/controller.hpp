@@ -23,6 +23,7 @@ struct ControllerOptions {
   bool degraded_ok = true;
   int cpu = -1;
   int priority = 80;
+  bool lock_memory = true;
   bool as_fast_as_computed =
       false;  ///< virtual clock: cycles follow each other without waiting, but never outrun the planner
   std::size_t queue_capacity = 10'000;  ///< moves
@@ -70,6 +71,8 @@ class Controller {
   [[nodiscard]] const sdk::DeviceObject* mechanism() const noexcept;
 
   [[nodiscard]] CycleSample sample() const noexcept;
+  /// The cycle's state, which follows an accepted command at once; the sample follows some cycles later.
+  [[nodiscard]] CycleNow cycle_now() const;
 
   /// Called on the gateway thread, in order, for each event and for every cycle's sample; see `dispatch`.
   void on_event(std::function<void(const Event&)> listener);

@@ -52,6 +52,8 @@ class CycleSequencer {
 
   [[nodiscard]] CycleState state() const noexcept { return state_; }
   [[nodiscard]] sdk::CycleMode mode() const noexcept { return mode_; }
+  /// Whether the stop under way empties the queue.
+  [[nodiscard]] bool clears_at_rest() const noexcept { return clear_at_rest_; }
   [[nodiscard]] bool waits_for_spindle() const noexcept { return spindle_wait_; }
 
  private:

@@ -12,6 +12,13 @@ enum class CycleState : std::uint8_t { Idle, Running, Holding, Stopping, Faulted
 
 [[nodiscard]] const char* to_string(CycleState state) noexcept;
 
+/// The cycle as the controller has it now; a sample is some cycles behind.
+struct CycleNow {
+  CycleState state = CycleState::Idle;
+  const char* mode = "";  ///< Appendix IV's name of the mode of the cycle that is started; empty when none is
+  double override_percent = 100;
+};
+
 /// Everything one servo cycle left behind, as the servo thread writes it and every other thread reads it. Plain data.
 /// Joints 0 to joint_count-1 are the mechanism's; up to axis_count-1 follow the held ones. mm, deg, s, N, N·m; feed in
 /// mm/s.

@@ -131,6 +131,9 @@ Expected<> MotionSupervisor::prepare_move() {
         state == CycleState::Faulted ? MinorCode::Other : MinorCode::EmergencyStop,
         fmt::format("no moves are taken while the machine is {}; remove the cause, then reset", to_string(state)));
   }
+  if (state == CycleState::Stopping && sequencer_.clears_at_rest()) {
+    return failure(MinorCode::Other, "the queue is being emptied; send moves when the machine has stopped");
+  }
   if (const std::size_t left = mechanism_->planner.moves_left(); left >= options_.queue_capacity) {
     return failure(
         MinorCode::CommandQueueFull,
@@ -155,6 +158,14 @@ Expected<> MotionSupervisor::add_move(const Move& move) {
   auto segments = mechanism_->builder.build(move);
   if (!segments) return tl::unexpected(segments.error());
   const Turn turn(*this);
+  // Built to follow a queue that is gone.
+  if (rebase_ || (sequencer_.state() == CycleState::Stopping && sequencer_.clears_at_rest())) {
+    rebase_ = true;
+    return failure(MinorCode::Other,
+                   fmt::format("move {}: the machine was stopped and its queue emptied before the move was ready; "
+                               "nothing was queued",
+                               move.id));
+  }
   mechanism_->planner.add(std::move(*segments));
   news_.queue.push_back({QueueChange::Kind::Added, move.id, 0});
   last_added_ = std::chrono::steady_clock::now();
@@ -231,6 +242,14 @@ std::size_t MotionSupervisor::moves_left() {
 CycleState MotionSupervisor::state() {
   const Turn turn(*this);
   return sequencer_.state();
+}
+
+CycleNow MotionSupervisor::now() {
+  const Turn turn(*this);
+  const CycleState state = sequencer_.state();
+  const bool started = state == CycleState::Running || state == CycleState::Holding || state == CycleState::Stopping;
+  const bool automatic = sequencer_.mode() == sdk::CycleMode::Automatic;
+  return {state, !started ? "" : automatic ? "AUTOMATIC" : "MANUAL", override_percent_};
 }
 
 std::shared_ptr<Mechanism> MotionSupervisor::install(std::shared_ptr<Mechanism> next, std::uint64_t generation,

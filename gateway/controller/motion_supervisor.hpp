@@ -71,6 +71,7 @@ class MotionSupervisor {
   void set_spindle(std::size_t spindle, double rpm);
   [[nodiscard]] std::size_t moves_left();
   [[nodiscard]] CycleState state();
+  [[nodiscard]] CycleNow now();
   /// Puts a mechanism in force, or none: from now on moves go to it, and statuses of generations before are ignored.
   /// The old one is handed back; the servo thread must be through with it, or never have had it.
   std::shared_ptr<Mechanism> install(std::shared_ptr<Mechanism> next, std::uint64_t generation, bool keep_running);

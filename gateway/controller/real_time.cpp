@@ -27,7 +27,7 @@ const char* lock_memory() {
 
 std::vector<std::string> enter_real_time(const RealTimeWish& wish) {
   std::vector<std::string> missing;
-  if (const char* reason = lock_memory()) {
+  if (const char* reason = wish.lock_memory ? lock_memory() : nullptr) {
     missing.push_back(fmt::format(
         "memory is not locked ({}): set LimitMEMLOCK=infinity in the unit, or `ulimit -l unlimited`", reason));
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <map>
@@ -139,6 +140,9 @@ Expected<int> DeviceDriverManager::rescan() {
     return tl::make_unexpected(replaced.error());
   }
   impl_->problems = std::move(tree->problems);
+  for (const ScanProblem& problem : impl_->problems) {
+    spdlog::warn("left out of the device driver database: {}", problem.message);
+  }
   impl_->folders.clear();
   for (const DeviceTree::Mechanism& mechanism : tree->mechanisms) {
     impl_->folders[mechanism.database.device.name] = mechanism.folder;

@@ -76,8 +76,12 @@ Result<> Runner::prepare(const Program& program) {
   // A move refused for want of room, while later ones are already on their way, would leave a gap in the part. So there
   // is a window only where the appliance said how much it holds.
   window_ = queue_bound_ > 0 ? kPipelineRequests : 1;
-  if (auto lease = connection_.call("authority.acquire"); !lease) {
+  auto lease = connection_.call("authority.acquire");
+  if (!lease) {
     return tl::unexpected(lease.error());
+  }
+  if (const double timeout_s = lease->value("timeout_s", 0.0); timeout_s > 0) {
+    renew_every_ = std::chrono::milliseconds(static_cast<std::int64_t>(timeout_s * 1000 / 3) + 1);
   }
   leased_ = true;
   if (auto topics = connection_.call("subscribe", {{"topics", {"events"}}}); !topics) {
@@ -249,9 +253,13 @@ Result<> Runner::watch_joints() {
 
 Result<> Runner::wait(const std::function<bool()>& done) {
   for (;;) {
-    auto waited = connection_.wait([&] { return !failure_.empty() || rest_told_ || done(); });
+    auto waited = connection_.wait([&] { return !failure_.empty() || rest_told_ || done(); }, renew_every_);
     if (!waited) {
-      return waited;
+      return tl::unexpected(waited.error());
+    }
+    if (!*waited) {
+      connection_.send("authority.renew", nlohmann::json::object(), [](const Connection::Answer&) {});
+      continue;
     }
     if (!failure_.empty()) {
       return fail(failure_);

@@ -72,7 +72,8 @@ class Runner {
   std::string failure_;
   std::size_t total_moves_ = 0;
   double last_done_s_ = 0, last_sample_s_ = 0;
-  bool leased_ = false;    ///< this client holds motion authority
+  std::chrono::milliseconds renew_every_ = std::chrono::hours(1);  ///< so that waiting is not taken for hanging
+  bool leased_ = false;                                            ///< this client holds motion authority
   bool started_ = false;   ///< the program's cycle was started, so moves become done
   bool unsettled_ = true;  ///< something acted on the machine since the last move: its rest must be looked at
   bool watching_ = false;

@@ -27,11 +27,12 @@ ControllerOptions controller_options(const Configuration& configuration) {
   options.degraded_ok = configuration.real_time.degraded_allowed;
   options.cpu = configuration.real_time.cpu.value_or(-1);
   options.priority = configuration.real_time.priority;
+  options.lock_memory = configuration.real_time.lock_memory;
   options.queue_capacity = static_cast<std::size_t>(configuration.queue_capacity);
   return options;
 }
 
-Expected<ServerOptions> server_options(const Configuration& configuration) {
+ServerOptions server_options(const Configuration& configuration) {
   ServerOptions options;
   options.address = configuration.address;
   options.port = configuration.port;
@@ -39,16 +40,14 @@ Expected<ServerOptions> server_options(const Configuration& configuration) {
   options.cycle_hz = 1 / std::chrono::duration<double>(configuration.period).count();
   options.queue_capacity = configuration.queue_capacity;
   options.throttle_machine = configuration.pace == Pace::AsFastAsComputed;
-  switch (configuration.stop_categories.lease_lost) {
+  options.lease_timeout = configuration.lease_timeout;
+  switch (configuration.lease_lost) {
     case StopCategory::StopKeepPower:
       options.lease_lost = LeaseLostAction::Stop;
       break;
     case StopCategory::StopThenRemovePower:
       options.lease_lost = LeaseLostAction::StopAndPowerOff;
       break;
-    case StopCategory::RemovePower:
-      return failure(MinorCode::UnsupportedOperation,
-                     "stop_categories.LeaseLost is 0, which the hardware's safety chain alone can do; choose 1 or 2");
   }
   return options;
 }
@@ -82,7 +81,7 @@ class Daemon {
   asio::steady_timer timer_{io_};
   asio::signal_set signals_{io_, SIGTERM, SIGINT};
   bool fast_;
-  bool ending_ = false;
+  enum class Phase { Serving, Stopping, Leaving } phase_ = Phase::Serving;
   std::chrono::steady_clock::time_point end_by_;
   std::chrono::steady_clock::time_point last_watchdog_;
   std::chrono::microseconds watchdog_period_{0};
@@ -98,9 +97,6 @@ void keep_ending() {
 }
 
 Expected<> Daemon::run(const Configuration& configuration) {
-  for (const auto& problem : manager_->problems()) {
-    spdlog::warn("{} is left out of the device driver database: {}", problem.file.string(), problem.message);
-  }
   controller_.on_sample([this](const CycleSample& sample) { server_.on_sample(sample); });
   controller_.on_event([this](const Event& event) {
     if (event.kind == Event::Kind::Fault) spdlog::error("{}", event.message);
@@ -147,7 +143,7 @@ void Daemon::schedule_tick() {
 }
 
 void Daemon::tick() {
-  if (server_.may_dispatch() || ending_) controller_.dispatch();
+  if (server_.may_dispatch() || phase_ != Phase::Serving) controller_.dispatch();
   server_.tick();
   // From the tick, so that a gateway thread that hangs is noticed.
   const auto now = std::chrono::steady_clock::now();
@@ -155,27 +151,33 @@ void Daemon::tick() {
     last_watchdog_ = now;
     sd_notify(0, "WATCHDOG=1");
   }
-  if (ending_) end_when_at_rest();
+  if (phase_ != Phase::Serving) end_when_at_rest();
 }
 
 void Daemon::end(const char* why) {
   spdlog::info("{}: stopping the machine and ending", why);
   sd_notify(0, "STOPPING=1");
-  ending_ = true;
+  phase_ = Phase::Stopping;
   end_by_ = std::chrono::steady_clock::now() + kStopBound;
-  const CycleSample sample = controller_.sample();
-  if (sample.moving || sample.state == CycleState::Running || sample.state == CycleState::Holding) {
-    if (auto stopped = controller_.cam().cycle_stop(); !stopped) spdlog::error("{}", stopped.error().message);
-  }
+  server_.retire();
 }
 
 void Daemon::end_when_at_rest() {
-  const CycleSample sample = controller_.sample();
+  if (phase_ == Phase::Leaving) {
+    // Connections see to their own bound.
+    if (server_.connection_count() == 0) io_.stop();
+    return;
+  }
+  // The cycle's own state: a sample does not show yet what was started or stopped last.
+  const CycleState state = controller_.cycle_now().state;
   const bool late = std::chrono::steady_clock::now() > end_by_;
-  const bool at_rest = !sample.moving && sample.state != CycleState::Running && sample.state != CycleState::Stopping;
+  const bool at_rest = state != CycleState::Running && state != CycleState::Holding && state != CycleState::Stopping &&
+                       !controller_.sample().moving;
   if (!at_rest && !late) return;
   if (late) spdlog::error("the machine did not come to rest in {} s; ending regardless", kStopBound.count());
-  io_.stop();
+  controller_.dispatch();  // what its last cycles did, before clients are let go
+  server_.dismiss();
+  phase_ = Phase::Leaving;
 }
 
 }  // namespace
@@ -186,11 +188,9 @@ Expected<> run_daemon(const Configuration& configuration) {
   if (!configuration.unix_socket.empty()) {
     std::filesystem::create_directories(configuration.unix_socket.parent_path(), problem);
   }
-  auto options = server_options(configuration);
-  if (!options) return tl::unexpected<Error>(std::move(options.error()));
   auto manager = DeviceDriverManager::open({configuration.device_tree, configuration.database});
   if (!manager) return tl::unexpected<Error>(std::move(manager.error()));
-  return Daemon(std::move(*manager), configuration, std::move(*options)).run(configuration);
+  return Daemon(std::move(*manager), configuration, server_options(configuration)).run(configuration);
 }
 
 }  // namespace rmac::gateway

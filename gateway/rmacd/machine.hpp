@@ -55,7 +55,10 @@ class Machine final : public MachinePort {
   DevicePort& device() override { return device_; }
   const sdk::DeviceObject* mechanism() const override { return controller_.mechanism(); }
   CycleSample sample() const override { return controller_.sample(); }
-  Expected<int> rescan() override { return manager_.rescan(); }
+  CycleNow cycle_now() const override { return controller_.cycle_now(); }
+  Expected<ScanReport> rescan() override {
+    return manager_.rescan().map([&](int mechanisms) { return ScanReport{mechanisms, manager_.problems()}; });
+  }
 
  private:
   Controller& controller_;

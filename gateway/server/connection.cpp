@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kDiscardLimitBytes = std::size_t{256} << 20;
 constexpr std::chrono::seconds kLeaveTime{5};
 constexpr std::chrono::seconds kDrainTime{30};
+constexpr std::chrono::seconds kDismissTime{2};
 constexpr std::size_t kBuffersPerWrite = 64;
 
 }  // namespace
@@ -51,6 +52,12 @@ void Connection::abort() {
   server_.forget(*this);
 }
 
+std::uint64_t Connection::arrived_bytes() const {
+  asio::error_code problem;
+  const std::size_t unread = socket_.available(problem);
+  return read_bytes_ + (problem ? 0 : unread);
+}
+
 void Connection::read() {
   // Reading pauses while too much waits; TCP then holds the client back.
   if (reading_ || phase_ != Phase::Open || pending_bytes_ > server_.options().pending_limit_bytes) return;
@@ -58,6 +65,8 @@ void Connection::read() {
   socket_.async_read_some(asio::buffer(buffer_),
                           [self = shared_from_this()](asio::error_code problem, std::size_t bytes) {
                             self->reading_ = false;
+                            self->read_bytes_ += bytes;
+                            if (self->phase_ == Phase::Leaving && !problem) self->discard_input();
                             if (self->phase_ != Phase::Open) return;
                             if (problem == asio::error::eof) {
                               self->end_of_input();
@@ -123,6 +132,19 @@ void Connection::refuse_and_leave(RpcError error) {
   // thrown away for a while.
   leave_within(kLeaveTime);
   discard_input();
+}
+
+void Connection::dismiss() {
+  if (phase_ == Phase::Closed) return;
+  state_now_ = state_now_ || state_.on();  // how everything ended
+  flush_topics();
+  pending_.clear();
+  input_ = {};
+  const bool reads = reading_ || phase_ == Phase::Leaving;
+  phase_ = Phase::Leaving;
+  leave_within(kDismissTime);
+  if (!reads) discard_input();
+  finish_if_drained();
 }
 
 void Connection::leave_within(std::chrono::seconds bound) {

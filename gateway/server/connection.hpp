@@ -26,6 +26,8 @@ class Connection final : public SessionPort, public std::enable_shared_from_this
   void start();
   /// Closes at once; nothing more is written.
   void abort();
+  /// Closes once everything that was to be sent is sent, or some seconds have passed.
+  void dismiss();
   /// Carries out what waits, as far as it goes.
   void pump();
 
@@ -42,16 +44,24 @@ class Connection final : public SessionPort, public std::enable_shared_from_this
   /// Behind for longer than the limit, without reading a byte.
   [[nodiscard]] bool stalled(std::chrono::steady_clock::time_point now) const noexcept;
 
+  /// Whether the client waits for an answer.
+  [[nodiscard]] bool waits() const noexcept { return !pending_.empty(); }
+  /// Bytes that the client has sent so far, read by us or not.
+  [[nodiscard]] std::uint64_t arrived_bytes() const;
+  /// A stop that `what` names took effect: what stands before `position` of the input must start nothing.
+  void stopped(Effect effect, const std::string& what, std::uint64_t position);
+
   void introduce(const std::string& client, const std::string& version) override;
   [[nodiscard]] nlohmann::json greeting() const override;
   [[nodiscard]] RecordCursor& records() override { return *records_; }
   [[nodiscard]] bool has_authority() const override;
   [[nodiscard]] std::string authority_holder() const override;
-  tl::expected<void, RpcError> acquire_authority() override;
+  tl::expected<nlohmann::json, RpcError> acquire_authority() override;
   tl::expected<void, RpcError> renew_authority() override;
   tl::expected<void, RpcError> release_authority() override;
   tl::expected<void, RpcError> subscribe(const std::vector<std::string>& topics, double rate_hz) override;
   void unsubscribe(const std::vector<std::string>& topics) override;
+  void animate(bool on) override;
 
  private:
   /// The requests of one line.
@@ -62,6 +72,7 @@ class Connection final : public SessionPort, public std::enable_shared_from_this
     std::vector<Request> requests;
     std::vector<std::optional<Answer>> answers;
     std::size_t next = 0;
+    std::uint64_t position = 0;  ///< of the line in the input; its requests count on from there
     std::size_t bytes = 0;
     std::chrono::steady_clock::time_point received;
   };
@@ -84,6 +95,8 @@ class Connection final : public SessionPort, public std::enable_shared_from_this
   /// Whether a move that found the queue full is tried again.
   [[nodiscard]] bool must_wait(const Work& work) const;
   void refuse_pending_moves();
+  /// Why a request must not run any more, if so.
+  [[nodiscard]] std::optional<Answer> refusal_of(const Work& work, const Request& request) const;
   void answer(const Work& work);
 
   void send(std::string line);
@@ -106,6 +119,12 @@ class Connection final : public SessionPort, public std::enable_shared_from_this
   std::size_t discarded_ = 0;
   asio::steady_timer leaving_;
 
+  std::uint64_t read_bytes_ = 0;        ///< of the input so far
+  std::uint64_t line_position_ = 0;     ///< where the next line begins
+  std::uint64_t no_starts_before_ = 0;  ///< position in the input: what starts motion and was sent before is refused
+  std::uint64_t no_moves_before_ = 0;   ///< the same for moves
+  std::string last_stop_;               ///< which stop that was
+
   std::deque<Work> pending_;
   std::size_t pending_bytes_ = 0;
   bool pump_posted_ = false;
@@ -116,6 +135,7 @@ class Connection final : public SessionPort, public std::enable_shared_from_this
   std::chrono::steady_clock::time_point last_progress_;
 
   TopicPace state_, joints_, drives_;
+  std::optional<std::int64_t> joints_before_animation_;  ///< cycles between samples; 0: none went out
   bool events_ = false;
   bool state_now_ = false;  ///< the first state goes out without waiting for a cycle
   std::string joints_batch_, drives_batch_;

@@ -13,6 +13,7 @@ namespace rmac::gateway {
 namespace {
 
 constexpr double kWatchRateHz = 100;
+constexpr double kAnimationRateHz = 50;
 constexpr std::size_t kBatchBytes = 256 * 1024;
 constexpr std::size_t kLongestName = 64;
 
@@ -54,19 +55,16 @@ std::string Connection::authority_holder() const {
   return server_.lease().holder_name();
 }
 
-tl::expected<void, RpcError> Connection::acquire_authority() {
-  const bool had = has_authority();
-  return server_.lease().acquire(id_, name()).map([&] {
-    if (!had) server_.announce(Event::Kind::Authority, name() + " took motion authority");
-  });
+tl::expected<nlohmann::json, RpcError> Connection::acquire_authority() {
+  return server_.acquire_lease(*this);
 }
 
 tl::expected<void, RpcError> Connection::renew_authority() {
-  return server_.lease().renew(id_);
+  return server_.lease().confirm(id_);
 }
 
 tl::expected<void, RpcError> Connection::release_authority() {
-  return server_.lease().renew(id_).map([&] { server_.lose_lease(*this, "gave back"); });
+  return server_.lease().confirm(id_).map([&] { server_.lose_lease(*this, "gave back"); });
 }
 
 std::vector<TopicPace*> Connection::paces(const std::vector<std::string>& topics) {
@@ -103,6 +101,7 @@ tl::expected<void, RpcError> Connection::subscribe(const std::vector<std::string
   }
   const double cycles = std::clamp(std::round(server_.options().cycle_hz / rate_hz), 1.0, 1e12);
   for (TopicPace* pace : wanted) pace->start(static_cast<std::int64_t>(cycles));
+  if (std::ranges::count(topics, "joints") > 0) joints_before_animation_.reset();
   state_now_ = state_now_ || std::ranges::count(topics, "state") > 0;
   events_ = events_ || std::ranges::count(topics, "events") > 0;
   return {};
@@ -113,6 +112,17 @@ void Connection::unsubscribe(const std::vector<std::string>& topics) {
   const auto ended = paces(all ? std::vector<std::string>{"state", "joints", "drives"} : topics);
   for (TopicPace* pace : ended) pace->stop();
   if (all || std::ranges::count(topics, "events") > 0) events_ = false;
+}
+
+void Connection::animate(bool on) {
+  const std::int64_t every = std::max(std::llround(server_.options().cycle_hz / kAnimationRateHz), 1LL);
+  if (on && (!joints_.on() || joints_.every_cycles() > every)) {
+    joints_before_animation_ = joints_.every_cycles();
+    joints_.start(every);
+  } else if (!on && joints_before_animation_) {
+    const std::int64_t before = *std::exchange(joints_before_animation_, std::nullopt);
+    joints_.start(before);
+  }
 }
 
 bool Connection::watches_fast() const noexcept {

@@ -14,8 +14,8 @@ constexpr std::size_t kMostAnswerBytes = 8U << 20U;
 /// Of one line or of several, before other connections get their turn: their stops must not wait for a long batch.
 constexpr std::chrono::milliseconds kTurn{5};
 
-Answer refused(int code, std::string message, MinorCode minor) {
-  return tl::unexpected<RpcError>(RpcError{code, std::move(message), minor});
+Answer refused(MinorCode minor, std::string message) {
+  return tl::unexpected<RpcError>(to_rpc_error(Error{minor, std::move(message)}));
 }
 
 /// A line that holds no request still gets its answer in its turn.
@@ -25,30 +25,9 @@ Request not_a_request(RpcError error) {
   return request;
 }
 
-/// Whether a stop button is only let go, which stops nothing.
-bool is_release(const Request& stop) {
-  const auto arguments = arrange(*stop.method, stop.params);
-  return arguments && arguments->size() == 1 && arguments->front() != nullptr && *arguments->front() == false;
-}
-
-bool keeps_the_queue(const Request& stop) {
-  const std::string& name = stop.method->name;
-  return name == "RMAC_CAM.CycleStop" || name == "RMAC_CAM.SetCycleStopStatus" || name == "RMAC_CAM.FeedHold";
-}
-
-/// Moves, and the settings between them: they wait for a start themselves.
-bool only_queues(const Request& request) {
-  const Method& method = *request.method;
-  const std::string_view function = std::string_view(method.name).substr(method.name.find('.') + 1);
-  const bool sets = function.starts_with("Set") || function.starts_with("Machine_Set");
-  return request.queues_a_move() || method.property || (sets && function != "SetCycleStartStatus");
-}
-
-/// Whether `request`, sent before `stop` and not yet run, must not run after it.
-bool is_overtaken(const Request& request, const Request& stop) {
-  if (request.method == nullptr) return false;
-  const bool changes = request.method->permission == Permission::Authority || request.method->property;
-  return changes && !(keeps_the_queue(stop) && only_queues(request));
+/// Whether the machine was asked to stop: a call with wrong parameters, or a release by who holds nothing, was no stop.
+bool took_effect(const Answer& answer) {
+  return answer || (answer.error().code < rpc_code::kMachineBase && answer.error().code > rpc_code::kAuthorityRequired);
 }
 
 std::string text_of(const nlohmann::json& json) {
@@ -58,9 +37,12 @@ std::string text_of(const nlohmann::json& json) {
 }  // namespace
 
 void Connection::take_line(std::string_view line) {
+  Work work;
+  work.position = line_position_;
+  line_position_ += line.size() + 1;
   if (line.ends_with('\r')) line.remove_suffix(1);
   if (line.find_first_not_of(" \t") == std::string_view::npos) return;
-  Work work;
+  server_.heard(*this);
   work.bytes = line.size();
   work.received = std::chrono::steady_clock::now();
   auto parsed = parse_line(line);
@@ -81,23 +63,9 @@ void Connection::take_line(std::string_view line) {
   // Stops do not queue: they act before everything that waits here, in a batch too.
   for (std::size_t i = 0; i < work.requests.size(); ++i) {
     const Request& stop = work.requests[i];
-    if (!stop.stops()) continue;
+    if (!stop.is_urgent()) continue;
     work.answers[i] = server_.dispatcher().execute(stop, *this);
-    if (is_release(stop)) continue;
-    // What was sent before the stop must not undo it.
-    const auto refuse_before = [&stop](Work& earlier, std::size_t end) {
-      for (std::size_t k = earlier.next; k < end; ++k) {
-        if (earlier.answers[k] || !is_overtaken(earlier.requests[k], stop)) continue;
-        earlier.answers[k] = refused(
-            rpc_code::kMachineBase - static_cast<int>(MinorCode::Other),
-            fmt::format(
-                "{} was overtaken by a stop: {} came before it was carried out; send it again if it still holds",
-                earlier.requests[k].method->name, stop.method->name),
-            MinorCode::Other);
-      }
-    };
-    for (Work& earlier : pending_) refuse_before(earlier, earlier.requests.size());
-    refuse_before(work, i);
+    if (took_effect(*work.answers[i])) server_.overtake(*this, stop, work.position + i);
   }
   if (!work.batch && work.answers[0]) {
     answer(work);
@@ -139,17 +107,8 @@ bool Connection::run(Work& work) {
     if (work.next != first && std::chrono::steady_clock::now() >= turn_end) return false;
     if (work.answers[work.next]) continue;
     const Request& request = work.requests[work.next];
-    if (work.refuse_moves && request.queues_a_move()) {
-      work.answers[work.next] =
-          refused(rpc_code::kMachineBase - static_cast<int>(MinorCode::CommandQueueFull),
-                  "refused because a move sent before it found the queue full; send both again when there is room",
-                  MinorCode::CommandQueueFull);
-      continue;
-    }
-    if (work.answer_bytes > kMostAnswerBytes) {
-      work.answers[work.next] =
-          refused(rpc_code::kMachineBase - static_cast<int>(MinorCode::Other),
-                  "not carried out: the answers of this batch exceed 8 MiB; send smaller batches", MinorCode::Other);
+    if (auto refusal = refusal_of(work, request)) {
+      work.answers[work.next] = std::move(refusal);
       continue;
     }
     Answer result = server_.dispatcher().execute(request, *this);
@@ -162,6 +121,33 @@ bool Connection::run(Work& work) {
     work.answers[work.next] = std::move(result);
   }
   return true;
+}
+
+std::optional<Answer> Connection::refusal_of(const Work& work, const Request& request) const {
+  const std::uint64_t position = work.position + work.next;
+  const Effect effect = request.effect();
+  if ((effect == Effect::Starts && position < no_starts_before_) ||
+      (effect == Effect::Queues && position < no_moves_before_)) {
+    return refused(MinorCode::Other,
+                   fmt::format("{} was overtaken by a stop: {} came before it was carried out; send it again if it "
+                               "still holds",
+                               request.method->name, last_stop_));
+  }
+  if (work.refuse_moves && effect == Effect::Queues) {
+    return refused(MinorCode::CommandQueueFull,
+                   "refused because a move sent before it found the queue full; send both again when there is room");
+  }
+  if (work.answer_bytes > kMostAnswerBytes) {
+    return refused(MinorCode::Other, "not carried out: the answers of this batch exceed 8 MiB; send smaller batches");
+  }
+  return std::nullopt;
+}
+
+void Connection::stopped(Effect effect, const std::string& what, std::uint64_t position) {
+  if (effect != Effect::Holds && effect != Effect::Stops) return;
+  last_stop_ = what;
+  no_starts_before_ = std::max(no_starts_before_, position);
+  if (effect == Effect::Stops) no_moves_before_ = std::max(no_moves_before_, position);
 }
 
 bool Connection::must_wait(const Work& work) const {

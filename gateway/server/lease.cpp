@@ -14,7 +14,7 @@ tl::expected<void, RpcError> Lease::acquire(Holder who, const std::string& name)
   return {};
 }
 
-tl::expected<void, RpcError> Lease::renew(Holder who) const {
+tl::expected<void, RpcError> Lease::confirm(Holder who) const {
   if (holder_ == who) return {};
   return tl::unexpected<RpcError>(RpcError{
       rpc_code::kAuthorityRequired, "this connection does not hold motion authority; call authority.acquire first",

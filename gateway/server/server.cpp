@@ -75,6 +75,7 @@ Expected<> Server::listen_unix() {
   if (!problem) unix_.bind(endpoint, problem);
   if (!problem) unix_.listen(asio::socket_base::max_listen_connections, problem);
   if (problem) return cannot("cannot listen on {}: {}", options_.unix_socket.string(), problem.message());
+  listens_on_unix_ = true;
   ::chmod(options_.unix_socket.c_str(), S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP);
   accept(unix_, "UNIX socket");
   return {};
@@ -115,8 +116,8 @@ void Server::welcome(asio::generic::stream_protocol::socket socket, const char* 
 void Server::close() {
   asio::error_code ignored;
   tcp_.close(ignored);
-  if (unix_.is_open()) {
-    unix_.close(ignored);
+  unix_.close(ignored);
+  if (listens_on_unix_) {
     std::error_code gone;
     std::filesystem::remove(options_.unix_socket, gone);
   }
@@ -158,6 +159,7 @@ void Server::tick() {
     }
     connection->pump();
   }
+  end_silent_lease();
   power_off_at_rest();
 }
 
@@ -168,23 +170,71 @@ const Connection* Server::fast_watcher_beside(const Connection& connection) cons
   return nullptr;
 }
 
+tl::expected<nlohmann::json, RpcError> Server::acquire_lease(const Connection& connection) {
+  const bool had = lease_.held_by(connection.id());
+  return lease_.acquire(connection.id(), connection.name()).map([&]() -> nlohmann::json {
+    lease_.heard(options_.now());
+    const int dropped = had ? 0 : std::exchange(dropped_moves_, 0);
+    if (!had) announce(Event::Kind::Authority, connection.name() + " took motion authority");
+    return {{"timeout_s", std::chrono::duration<double>(options_.lease_timeout).count()}, {"dropped_moves", dropped}};
+  });
+}
+
+void Server::heard(const Connection& connection) {
+  if (lease_.held_by(connection.id())) lease_.heard(options_.now());
+}
+
+void Server::end_silent_lease() {
+  if (options_.lease_timeout.count() == 0 || lease_.silence(options_.now()) <= options_.lease_timeout) return;
+  // A holder that waits for an answer is not silent: we are.
+  const auto holder = std::ranges::find_if(
+      connections_, [&](const auto& entry) { return lease_.held_by(entry.first) && !entry.second->waits(); });
+  if (holder != connections_.end()) lose_lease(*holder->second, "was silent for too long and lost");
+}
+
+void Server::overtake(const Connection& stopper, const Request& stop, std::uint64_t position) {
+  const std::string what = fmt::format("{} of {}", stop.method->name, stopper.name());
+  for (const auto& [id, connection] : connections_) {
+    connection->stopped(stop.effect(), what, id == stopper.id() ? position : connection->arrived_bytes());
+  }
+}
+
 void Server::lose_lease(const Connection& connection, const char* why) {
-  if (!lease_.release(connection.id())) return;
+  if (lease_.release(connection.id())) stop_for_lease(fmt::format("{} {} motion authority", connection.name(), why));
+}
+
+void Server::retire() {
+  retired_ = true;
+  lease_ = {};
+  stop_for_lease("rmacd ends and takes motion authority");
+  lease_ = {};
+  static_cast<void>(lease_.acquire(kServerItself, "rmacd, which is ending,"));
+}
+
+void Server::dismiss() {
+  asio::error_code ignored;
+  tcp_.close(ignored);
+  unix_.close(ignored);
+  const auto open = connections_;  // those with nothing left to send leave the map at once
+  for (const auto& [id, connection] : open) connection->dismiss();
+}
+
+void Server::stop_for_lease(std::string message) {
   MachinePort& machine = dispatcher_.machine();
   // The sample may be a cycle old: a start that came along with the goodbye is not in it, but the cam knows.
   const CycleSample sample = machine.sample();
   const bool runs = sample.state == CycleState::Running || sample.state == CycleState::Holding || sample.moving ||
                     machine.cam().cycle_start_status();
+  dropped_moves_ = machine.cam().moves_in_buffer();
   const bool power_off = runs && options_.lease_lost == LeaseLostAction::StopAndPowerOff;
-  std::string message = fmt::format("{} {} motion authority", connection.name(), why);
-  // At rest, too: stopping on the path is harmless there. Drives go off only with an empty queue.
-  const Expected<> stopped = power_off ? machine.cam().stop_now() : machine.cam().cycle_stop();
+  const Expected<> stopped = runs || dropped_moves_ > 0 ? machine.cam().stop_now() : machine.cam().cycle_stop();
   if (!stopped) {
     message += "; stopping failed: " + stopped.error().message;
     dispatcher_.status().fail(stopped.error().code);
   } else if (runs) {
     message += "; the machine is stopped on its path";
   }
+  if (dropped_moves_ > 0) message += fmt::format("; {} queued moves are dropped", dropped_moves_);
   if (power_off) {
     message += ", then its drives are switched off";
     power_off_pending_ = true;
@@ -210,7 +260,7 @@ void Server::power_off_at_rest() {
   }
   power_off_refused_ = false;
   power_off_pending_ = false;
-  lease_.release(kServerItself);
+  if (!retired_) lease_.release(kServerItself);
   spdlog::info("the drives are switched off after a lost lease");
   announce(Event::Kind::Authority, "the drives are switched off; motion authority is free");
 }

@@ -29,6 +29,8 @@ struct ServerOptions {
   int queue_capacity = 10'000;    ///< told to clients
   bool throttle_machine = false;  ///< virtual time: wait for slow watchers instead of cutting them off
   LeaseLostAction lease_lost = LeaseLostAction::Stop;
+  std::chrono::milliseconds lease_timeout{0};  ///< silence of its holder that ends the lease; 0: none
+  std::function<std::chrono::steady_clock::time_point()> now = std::chrono::steady_clock::now;  ///< of the lease
   std::size_t line_limit_bytes = std::size_t{8} << 20;
   std::size_t pending_limit_bytes = std::size_t{32} << 20;  ///< of requests that wait, before reading pauses
   std::size_t output_limit_bytes = std::size_t{64} << 20;   ///< unread output, before the client is cut off
@@ -56,6 +58,10 @@ class Server {
   /// Stops listening and closes every connection. The lease is dropped without a stop: the machine's end is the
   /// caller's business.
   void close();
+  /// The daemon ends: stops the machine as a lost lease does, and no client gets authority any more.
+  void retire();
+  /// Lets every client go once it has been sent what it was told so far.
+  void dismiss();
 
   /// Listeners for the controller's reports.
   void on_sample(const CycleSample& sample);
@@ -69,12 +75,19 @@ class Server {
   // For connections.
   [[nodiscard]] Dispatcher& dispatcher() noexcept { return dispatcher_; }
   [[nodiscard]] const ServerOptions& options() const noexcept { return options_; }
-  [[nodiscard]] Lease& lease() noexcept { return lease_; }
+  [[nodiscard]] const Lease& lease() const noexcept { return lease_; }
   [[nodiscard]] std::unique_ptr<RecordCursor> make_records() const { return make_records_(); }
   /// Another connection that receives more than the watchers' rate, or nullptr.
   [[nodiscard]] const Connection* fast_watcher_beside(const Connection& connection) const;
-  /// Releases the lease of a connection that gave it back or went away, and stops the machine if it runs.
+  [[nodiscard]] tl::expected<nlohmann::json, RpcError> acquire_lease(const Connection& connection);
+  /// A sign of life of a connection.
+  void heard(const Connection& connection);
+  /// Releases the lease of a connection that gave it back or went away, stops the machine and empties its queue: the
+  /// next holder starts what they sent themselves, and nothing else.
   void lose_lease(const Connection& connection, const char* why);
+  /// A stop took effect: what was sent before it on any connection and may start motion must not run after it. Of the
+  /// stop's own connection that is what stands before `position` of its input.
+  void overtake(const Connection& stopper, const Request& stop, std::uint64_t position);
   void announce(Event::Kind kind, std::string message);
   void forget(const Connection& connection);
 
@@ -84,7 +97,10 @@ class Server {
   [[nodiscard]] Expected<> listen_tcp();
   [[nodiscard]] Expected<> listen_unix();
   void welcome(asio::generic::stream_protocol::socket socket, const char* what);
+  /// The lease ended, as `message` begins to tell: stops the machine, drops its queue.
+  void stop_for_lease(std::string message);
   void power_off_at_rest();
+  void end_silent_lease();
 
   asio::io_context& io_;
   Dispatcher dispatcher_;
@@ -96,6 +112,9 @@ class Server {
   std::map<std::uint64_t, std::shared_ptr<Connection>> connections_;
   std::uint64_t next_id_ = 1;
   std::uint16_t port_ = 0;
+  bool listens_on_unix_ = false;  ///< so the socket's file is ours to remove
+  int dropped_moves_ = 0;         ///< when the lease ended last
+  bool retired_ = false;
   bool power_off_pending_ = false;
   bool power_off_refused_ = false;  ///< and it was said
 };

@@ -62,6 +62,16 @@ class Appliance:
     def __exit__(self, kind, error, trace):
         for client in self.clients:
             client.close()
+        code = self.end()
+        log = "".join(self.log)
+        self._folder.cleanup()
+        if error is not None:
+            print(f"--- rmacd's log, exit code {code}:\n{log}---")
+        elif code != 0 or "Sanitizer" in log or "runtime error:" in log:
+            raise AssertionError(f"rmacd ended with {code}:\n{log}")
+
+    def end(self):
+        """Ends the daemon; returns its exit code. Its log is complete then."""
         self.process.send_signal(signal.SIGTERM)
         try:
             code = self.process.wait(timeout=STOP_BOUND_S)
@@ -69,12 +79,7 @@ class Appliance:
             self.process.kill()
             code = self.process.wait()
         self._reader.join()
-        log = "".join(self.log)
-        self._folder.cleanup()
-        if error is not None:
-            print(f"--- rmacd's log, exit code {code}:\n{log}---")
-        elif code != 0 or "Sanitizer" in log or "runtime error:" in log:
-            raise AssertionError(f"rmacd ended with {code}:\n{log}")
+        return code
 
     def _read_log(self, lines):
         for line in self.process.stderr:

@@ -1,5 +1,6 @@
 """What ends or disturbs a cut in progress: clients that stop, hold, go away or meddle. At the machine's real pace."""
 
+import signal
 import unittest
 
 from appliance import Appliance, line
@@ -70,11 +71,39 @@ class Interruptions(unittest.TestCase):
         state = self.rest()
         self.assertEqual(state["authority"], "")
         self.assert_stays(state)
-        self.watcher.call("authority.acquire")
+        self.assertEqual(self.watcher.call("authority.acquire")["dropped_moves"], 1)
+        self.assertEqual(self.watcher.state()["moves_in_buffer"], 0)
+        self.watcher.call("RMAC_CAM.CycleStart", Mode="AUTOMATIC")
         self.assert_stays(state)
-        self.watcher.call("RMAC_CAM.StopNow")
+        self.watcher.call("RMAC_CAM.CycleStop", Mode="AUTOMATIC")
+        self.wait_state(lambda later: later["state"] == "Idle")
         self.watcher.call("RMAC_CAM.JogJoint", JntNum=1, Distance=1)
         self.wait_state(lambda later: not later["moving"] and abs(later["pose"][1] - 1) < 0.02)
+
+    def test_end_of_the_daemon_stops_the_machine_and_tells_that_before_it_closes(self):
+        self.appliance.process.send_signal(signal.SIGTERM)
+        events = []
+        while (message := self.watcher.read_line()) is not None:
+            if message.get("method") == "events":
+                events.append(message["params"])
+            elif message.get("method") == "state":
+                state = message["params"]
+        self.assertIn("Stopped", [event["kind"] for event in events])
+        self.assertFalse(state["moving"])
+        self.assertGreater(state["pose"][0], 0.1)
+        self.assertLess(state["pose"][0], LENGTH_MM - 10, "it did not stop in mid-cut")
+        self.assertAlmostEqual(state["pose"][1], 0, delta=0.02)
+
+    def test_state_is_not_idle_between_an_accepted_start_and_its_end(self):
+        self.operator.call("RMAC_CAM.StopNow")
+        self.rest()
+        target = self.operator.state()["joints"][1]
+        for distance in (0.2, -0.2) * 10:
+            target += distance
+            self.operator.call("RMAC_CAM.JogJoint", JntNum=1, Distance=distance)
+            while (state := self.operator.state())["state"] != "Idle":
+                pass
+            self.assertAlmostEqual(state["joints"][1], target, delta=0.05, msg="Idle before the jog was done")
 
     def test_second_client_that_jogs_disturbs_nothing(self):
         before = self.watcher.state()

@@ -118,6 +118,46 @@ class BadMechanism(unittest.TestCase):
         shutil.copy(os.environ["RMAC_WRONG_ABI_MODULE"], module)
         self.assert_load_fails("DMACXYKinematics", "ABI", "1", "2")
 
+    def test_truncated_module_is_refused_at_every_length(self):
+        module = self.folder / "DMACXYKinematics.so"
+        whole = module.read_bytes()
+        module.unlink()
+        for parts in (1, 8, 50, 90, 99):
+            module.write_bytes(whole[: len(whole) * parts // 100])
+            self.assertIn("DMACXYKinematics", self.operator.refusal("Device.Load", Name="DMACXY").message)
+        self.assert_load_fails("DMACXYKinematics")
+        module.write_bytes(whole)
+        self.operator.call("Device.Load", Name="DMACXY")
+
+    def test_rescan_reports_every_bad_folder_and_keeps_the_good_ones(self):
+        good = self.operator.call("DeviceDriverManager.Rescan")
+        self.assertEqual(good["problems"], [])
+        self.change(lambda device: device["Joints"][1].update(MaxSpeed=-1))
+        copy = self.appliance.tree / "mill/3-axis/Copy"
+        shutil.copytree(self.appliance.tree / "mill/3-axis/DMACXYZ", copy)
+        torn = self.appliance.tree / "mill/5-axis/TarusXYZCA/device.json"
+        text = torn.read_text()
+        torn.unlink()
+        torn.write_text(text[: len(text) // 2])
+        binary = self.appliance.tree / "mill/3-axis/Noise"
+        binary.mkdir()
+        (binary / "device.json").write_bytes(bytes(range(256)))
+
+        report = self.operator.call("DeviceDriverManager.Rescan")
+        self.assertEqual(report["mechanisms"], good["mechanisms"] - 2)
+        messages = {problem["file"].split("/")[-2]: problem["message"] for problem in report["problems"]}
+        self.assertEqual(sorted(messages), ["Copy", "DMACXY", "Noise", "TarusXYZCA"])
+        for mechanism, words in (("DMACXY", ("/Joints/1/MaxSpeed", "-1", "allowed")),
+                                 ("Copy", ("/MechanismName", "DMACXYZ", "allowed")),
+                                 ("TarusXYZCA", ("line", "is not JSON")), ("Noise", ("line 1", "is not JSON"))):
+            for word in (f"{mechanism}/device.json", *words):
+                self.assertIn(word, messages[mechanism])
+        self.operator.call("Device.Load", Name="DMACXYZ")
+        self.appliance.end()
+        log = "".join(self.appliance.log)
+        for message in messages.values():
+            self.assertIn(message, log)
+
     def test_module_that_is_no_module_is_refused(self):
         module = self.folder / "DMACXYKinematics.so"
         module.unlink()

@@ -285,16 +285,27 @@ class InterruptedProgram(unittest.TestCase):
         run.send_signal(signal.SIGINT)
         self.assert_fails(run, "interrupted")
 
-    def test_program_behind_the_rest_of_another_is_refused_and_leaves_it(self):
+    def test_program_after_one_that_was_killed_runs_its_own_moves_alone(self):
         run = self.run_until_moving()
         run.kill()
         run.wait()
-        rest = self.watcher.wait_note("state", lambda state: state["authority"] == "" and not state["moving"])
-        self.assertEqual(rest["moves_in_buffer"], 1)
+        rest = self.watcher.wait_note("state", lambda state: state["authority"] == "" and state["state"] == "Idle")
+        self.assertEqual((rest["moving"], rest["moves_in_buffer"]), (False, 0))
+        self.file.write_text(request("RMAC_CAM.SetFeedrate", Feedrate=1500) + "\n" +
+                             request("RMAC_CAM.MoveToPathTarget", MoveID=1, TargetFrame=pose(0, 1, 0)) + "\n")
         second = self.appliance.rmac("run", str(self.file))
-        self.assertEqual(second.returncode, FAILED)
-        self.assertIn("rmac stop", second.stderr)
-        self.assertEqual(self.watcher.state()["moves_in_buffer"], 1)
+        self.assertEqual(second.returncode, DONE, second.stderr)
+        state = self.watcher.state()
+        for value, wanted in zip(state["pose"], (0, 1, 0)):
+            self.assertAlmostEqual(value, wanted, delta=0.02)
+
+    def test_program_that_waits_keeps_its_lease_where_silence_ends_it(self):
+        with Appliance(pace="real-time", lease_timeout_s=0.5) as appliance:
+            self.assertEqual(appliance.rmac("load", "DMACXYZ").returncode, DONE)
+            self.file.write_text(request("RMAC_CAM.SetFeedrate", Feedrate=120) + "\n" +
+                                 request("RMAC_CAM.MoveToPathTarget", MoveID=1, TargetFrame=pose(4, 0, 0)) + "\n")
+            done = appliance.rmac("run", str(self.file))  # 2 s
+            self.assertEqual(done.returncode, DONE, done.stderr)
 
     def test_hold_from_another_terminal_is_resumed_by_enter(self):
         keyboard, terminal = pty.openpty()

@@ -8,6 +8,7 @@ namespace {
 
 using fakes::Api;
 using nlohmann::json;
+using testing::_;
 using testing::HasSubstr;
 using testing::Return;
 
@@ -116,9 +117,9 @@ TEST(CamApi, ButtonsDoWhatTheirFunctionsDo) {
 TEST(CamApi, AnimationStreamsJointsToItsCaller) {
   Api api;
   EXPECT_TRUE(api.result("RMAC_CAM.SetAnimation", "[true]").is_null());
-  EXPECT_EQ(api.session.topics, std::vector<std::string>{"joints"});
+  EXPECT_TRUE(api.session.animation);
   EXPECT_TRUE(api.result("RMAC_CAM.SetAnimation", "[false]").is_null());
-  EXPECT_TRUE(api.session.topics.empty());
+  EXPECT_FALSE(api.session.animation);
 }
 
 TEST(CamApi, JogsByDistanceAndRefusesVelocity) {
@@ -142,6 +143,29 @@ TEST(CamApi, StateTellsMechanismJointsAndStatus) {
   EXPECT_EQ(state["feed_actual_mm_min"], 600.0);
   EXPECT_EQ(state["state"], "Idle");
   EXPECT_EQ(state["spindle_rpm"].size(), 1U);
+}
+
+TEST(CamApi, StateIsTheControllersNotTheLastSamplesNorWhatWasSetLast) {
+  Api api;
+  EXPECT_CALL(api.machine.cam_mock, set_feed_override(50)).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(api.machine.cam_mock, cycle_start(_)).WillOnce(Return(Expected<>{}));
+  EXPECT_TRUE(api.result("RMAC_CAM.SetFeedOverride", "[50]").is_null());
+  EXPECT_EQ(api.result("RMAC_CAM.CycleStart", "[0]"), true);
+  api.machine.now.state = CycleState::Idle;
+  api.machine.cycle = {CycleState::Running, "AUTOMATIC", 130};
+  const json state = api.result("RMAC_CAM.GetState");
+  EXPECT_EQ(state["state"], "Running");
+  EXPECT_EQ(state["mode"], "AUTOMATIC");
+  EXPECT_EQ(state["override_percent"], 130);
+}
+
+TEST(DriverManagerApi, RescanTellsWhatIsLeftOutAndWhy) {
+  Api api;
+  const json report = api.result("DeviceDriverManager.Rescan");
+  EXPECT_EQ(report["mechanisms"], 6);
+  ASSERT_EQ(report["problems"].size(), 1U);
+  EXPECT_EQ(report["problems"][0]["file"], "mill/broken/device.json");
+  EXPECT_EQ(report["problems"][0]["message"], "mill/broken/device.json: /Type is 5");
 }
 
 }  // namespace

@@ -46,6 +46,41 @@ TEST(ReadRequest, RefusesWhatIsNotARequest) {
   }
 }
 
+TEST(ParseLine, RefusesAMemberThatStandsTwiceAndNamesIt) {
+  for (const char* text :
+       {R"({"id":1,"id":2})", R"([{"id":1},{"id":1,"x":{"id":3,"i\u0064":4}}])", R"({"id":":{\":","id":"a:b"})"}) {
+    const auto parsed = parse_line(text);
+    ASSERT_FALSE(parsed) << text;
+    EXPECT_EQ(parsed.error().code, rpc_code::kInvalidRequest);
+    EXPECT_THAT(parsed.error().message, HasSubstr("\"id\" stands twice")) << text;
+  }
+  EXPECT_TRUE(parse_line(R"([{"a":{"a":":"}},{"a":[{"b:":1},{"b:":2}]}])"));
+}
+
+TEST(ReadRequest, RefusesIdsThatWouldComeBackAltered) {
+  for (const char* id : {"18446744073709551616", "-9223372036854775809", "1.5", "1e3"}) {
+    const Request request =
+        read_request(json::parse(std::string(R"({"jsonrpc":"2.0","method":"hello","id":)") + id + "}"));
+    ASSERT_TRUE(request.error) << id;
+    EXPECT_EQ(request.error->code, rpc_code::kInvalidRequest);
+    EXPECT_TRUE(request.id.is_null());
+  }
+  for (const char* id : {"18446744073709551615", "-9223372036854775808", "\"x\"", "null", "0"}) {
+    const Request request =
+        read_request(json::parse(std::string(R"({"jsonrpc":"2.0","method":"hello","id":)") + id + "}"));
+    EXPECT_FALSE(request.error) << id;
+    EXPECT_EQ(request.id.dump(), id);
+  }
+}
+
+TEST(ReadRequest, RefusesUnknownMembersAndKeepsTheId) {
+  const Request request = read_request(json::parse(R"({"jsonrpc":"2.0","id":7,"method":"hello","parms":{}})"));
+  ASSERT_TRUE(request.error);
+  EXPECT_EQ(request.error->code, rpc_code::kInvalidRequest);
+  EXPECT_THAT(request.error->message, HasSubstr("\"parms\""));
+  EXPECT_EQ(request.id, 7);
+}
+
 TEST(Dispatcher, NamesAnUnknownMethod) {
   Api api;
   EXPECT_THAT(api.refusal("RMAC_CAM.Fly", "{}", rpc_code::kMethodNotFound), HasSubstr("RMAC_CAM.Fly"));

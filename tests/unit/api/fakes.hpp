@@ -110,6 +110,7 @@ class FakeDevice : public DevicePort {
     return {};
   }
   Expected<> unload() override {
+    if (!unload_refusal.empty()) return failure(MinorCode::Other, unload_refusal);
     device.reset();
     return {};
   }
@@ -129,6 +130,7 @@ class FakeDevice : public DevicePort {
 
   std::optional<sdk::DeviceObject> device = two_joint_device();
   bool is_virtual = false;
+  std::string unload_refusal;  ///< why it cannot be taken out; empty: it can
 };
 
 class FakeMachine : public MachinePort {
@@ -138,12 +140,16 @@ class FakeMachine : public MachinePort {
   DevicePort& device() override { return device_fake; }
   const sdk::DeviceObject* mechanism() const override { return device_fake.device ? &*device_fake.device : nullptr; }
   CycleSample sample() const override { return now; }
-  Expected<int> rescan() override { return 6; }
+  CycleNow cycle_now() const override { return cycle; }
+  Expected<ScanReport> rescan() override {
+    return ScanReport{6, {{"mill/broken/device.json", "mill/broken/device.json: /Type is 5"}}};
+  }
 
   testing::NiceMock<MockCam> cam_mock;
   testing::NiceMock<MockConfig> config_mock;
   testing::NiceMock<FakeDevice> device_fake;
   CycleSample now;
+  CycleNow cycle;
 };
 
 /// Two records, A and B.

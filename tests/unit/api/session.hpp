@@ -14,9 +14,9 @@ class FakeSession : public SessionPort {
   RecordCursor& records() override { return records_fake; }
   bool has_authority() const override { return authority; }
   std::string authority_holder() const override { return authority ? client : "another"; }
-  tl::expected<void, RpcError> acquire_authority() override {
+  tl::expected<nlohmann::json, RpcError> acquire_authority() override {
     authority = true;
-    return {};
+    return nlohmann::json{{"timeout_s", 0}, {"dropped_moves", 0}};
   }
   tl::expected<void, RpcError> renew_authority() override { return {}; }
   tl::expected<void, RpcError> release_authority() override {
@@ -29,12 +29,14 @@ class FakeSession : public SessionPort {
     return {};
   }
   void unsubscribe(const std::vector<std::string>& /*ended*/) override { topics.clear(); }
+  void animate(bool on) override { animation = on; }
 
   FakeRecords records_fake;
   std::string client;
   bool authority = true;
   std::vector<std::string> topics;
   double rate = 0;
+  bool animation = false;
 };
 
 /// Calls of one client, as text in and text out.

@@ -95,6 +95,41 @@ TEST(MethodTable, StopsNeedNoAuthority) {
                                           "RMAC_CAM.FeedHold", "authority.release"}));
 }
 
+std::set<std::string> methods_that(Effect effect) {
+  std::set<std::string> names;
+  for (const Method& entry : method_table()) {
+    if (entry.effect == effect && entry.supported()) names.insert(entry.name);
+  }
+  return names;
+}
+
+TEST(MethodTable, SaysWhatStartsMotionAndWhatStopsIt) {
+  using Names = std::set<std::string>;
+  EXPECT_EQ(methods_that(Effect::Stops), (Names{"RMAC_CAM.StopNow", "authority.release"}));
+  EXPECT_EQ(methods_that(Effect::Holds),
+            (Names{"RMAC_CAM.CycleStop", "RMAC_CAM.SetCycleStopStatus", "RMAC_CAM.FeedHold"}));
+  const Names starts = methods_that(Effect::Starts);
+  for (const char* name :
+       {"RMAC_CAM.CycleStart", "RMAC_CAM.SetCycleStartStatus", "RMAC_CAM.FeedResume", "RMAC_CAM.Reset", "RMAC_CAM.Home",
+        "RMAC_CAM.JogJoint", "RMAC_CAM.SetSpindleRPM", "Device.Load", "RMAC_Config.Apply"}) {
+    EXPECT_TRUE(starts.contains(name)) << name;
+  }
+  for (const Method& entry : method_table()) {
+    const std::string function = entry.name.substr(entry.name.find('.') + 1);
+    const bool is_a_move =
+        (function.starts_with("MoveAlong") || function.starts_with("Machine_MoveIn") || function.ends_with("Target")) &&
+        entry.supported();
+    if (is_a_move) {
+      EXPECT_EQ(entry.effect, Effect::Queues) << entry.name;
+    }
+    const bool stops = entry.effect == Effect::Holds || entry.effect == Effect::Stops;
+    EXPECT_EQ(stops, entry.permission == Permission::Stop) << entry.name;
+    if (entry.effect == Effect::Starts || entry.effect == Effect::Queues) {
+      EXPECT_EQ(entry.permission, Permission::Authority) << entry.name;
+    }
+  }
+}
+
 TEST(Enumerations, HaveTheSpecifiedValues) {
   const json spec = fixture("enums.json");
   std::size_t compared = 0;
@@ -117,6 +152,8 @@ TEST(OpenRpc, MarksOriginAndSupportOfEveryMethod) {
     ASSERT_NE(declared, nullptr);
     EXPECT_EQ(entry["x-origin"], to_string(declared->origin));
     EXPECT_EQ(entry["x-supported"], declared->supported()) << declared->name;
+    EXPECT_EQ(entry["x-effect"], to_string(declared->effect)) << declared->name;
+    EXPECT_EQ(entry.contains("x-no-effect-with"), declared->harmless.has_value()) << declared->name;
     EXPECT_EQ(entry.contains("x-missing"), !declared->supported()) << declared->name;
     EXPECT_EQ(entry["params"].size(), declared->parameters.size());
   }

@@ -44,8 +44,8 @@ TEST(Configuration, HasADefaultForEveryKey) {
   EXPECT_TRUE(configuration.real_time.lock_memory);
   EXPECT_TRUE(configuration.real_time.degraded_allowed);
   EXPECT_EQ(configuration.queue_capacity, 10'000);
-  EXPECT_EQ(configuration.stop_categories.lease_lost, StopCategory::StopKeepPower);
-  EXPECT_EQ(configuration.stop_categories.bus_lost, StopCategory::RemovePower);
+  EXPECT_EQ(configuration.lease_lost, StopCategory::StopKeepPower);
+  EXPECT_EQ(configuration.lease_timeout, std::chrono::seconds(0));
   EXPECT_EQ(configuration.autoload, std::nullopt);
 }
 
@@ -62,8 +62,8 @@ TEST(Configuration, TakesEveryKeyOfTheFile) {
     "period_s": 0.0005, "pace": "as-fast-as-computed",
     "real_time": {"cpu": 3, "priority": 42, "lock_memory": false, "degraded_allowed": false},
     "queue_capacity": 7,
-    "stop_categories": {"LeaseLost": 0, "DriveHeartbeatLost": 2, "BusLost": 1, "SensorLost": 0, "FollowingError": 0,
-                        "CycleDeadline": 2},
+    "lease_timeout_s": 2.5,
+    "stop_categories": {"LeaseLost": 1, "DriveHeartbeatLost": 1, "BusLost": 1, "FollowingError": 1},
     "autoload": {"mechanism": "DMACXYZ", "virtual": true}})");
   EXPECT_EQ(configuration.address, "::1");
   EXPECT_EQ(configuration.port, 0);
@@ -79,15 +79,21 @@ TEST(Configuration, TakesEveryKeyOfTheFile) {
   EXPECT_FALSE(configuration.real_time.lock_memory);
   EXPECT_FALSE(configuration.real_time.degraded_allowed);
   EXPECT_EQ(configuration.queue_capacity, 7);
-  EXPECT_EQ(configuration.stop_categories.lease_lost, StopCategory::RemovePower);
-  EXPECT_EQ(configuration.stop_categories.drive_heartbeat_lost, StopCategory::StopKeepPower);
-  EXPECT_EQ(configuration.stop_categories.bus_lost, StopCategory::StopThenRemovePower);
-  EXPECT_EQ(configuration.stop_categories.sensor_lost, StopCategory::RemovePower);
-  EXPECT_EQ(configuration.stop_categories.following_error, StopCategory::RemovePower);
-  EXPECT_EQ(configuration.stop_categories.cycle_deadline, StopCategory::StopKeepPower);
+  EXPECT_EQ(configuration.lease_lost, StopCategory::StopThenRemovePower);
+  EXPECT_EQ(configuration.lease_timeout, std::chrono::milliseconds(2500));
   ASSERT_TRUE(configuration.autoload);
   EXPECT_EQ(configuration.autoload->mechanism, "DMACXYZ");
   EXPECT_TRUE(configuration.autoload->virtual_mode);
+}
+
+TEST(Configuration, RefusesWhatCannotActYetAndSaysWhy) {
+  EXPECT_EQ(problem_of(R"({"stop_categories": {"FollowingError": 2}})"),
+            "/stop_categories/FollowingError is 2; allowed is one of 1");
+  EXPECT_EQ(problem_of(R"({"stop_categories": {"SensorLost": 1}})"),
+            "/stop_categories/SensorLost is 1; allowed is no value yet, for no sensor is watched; leave the key out");
+  EXPECT_EQ(problem_of(R"({"stop_categories": {"CycleDeadline": 1}})"),
+            "/stop_categories/CycleDeadline is 1; allowed is no value yet, for missed deadlines are counted and stop "
+            "nothing; leave the key out");
 }
 
 TEST(Configuration, RelativePathsAreTheFilesNotTheWorkingFolders) {
@@ -130,8 +136,8 @@ TEST(Configuration, ErrorNamesKeyValueAndAllowedRange) {
             "/listen/port is 70000; allowed is an integer from 0 to 65535");
   EXPECT_EQ(problem_of(R"({"pace": "slow"})"),
             "/pace is \"slow\"; allowed is one of \"real-time\", \"as-fast-as-computed\"");
-  EXPECT_EQ(problem_of(R"({"stop_categories": {"BusLost": 3}})"),
-            "/stop_categories/BusLost is 3; allowed is one of 0, 1, 2");
+  EXPECT_EQ(problem_of(R"({"stop_categories": {"LeaseLost": 0}})"),
+            "/stop_categories/LeaseLost is 0; allowed is one of 1, 2");
   EXPECT_THAT(problem_of(R"({"listen": {"prot": 7402}})"),
               StartsWith("/listen has the unknown key \"prot\"; did you mean \"port\"?"));
   EXPECT_EQ(

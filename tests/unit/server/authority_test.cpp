@@ -2,50 +2,35 @@
 #include <gtest/gtest.h>
 
 #include "bench.hpp"
+#include "requests.hpp"
 
 namespace rmac::gateway {
 namespace {
 
 using fakes::Client;
 using fakes::FakeMachine;
+using fakes::line_of;
+using fakes::move_line;
 using fakes::ServerBench;
+using fakes::set_running;
 using nlohmann::json;
 using testing::_;
 using testing::HasSubstr;
 using testing::Return;
 
-constexpr const char* kMove = R"({"MoveID":1,"TargetFrame":{"p":[0,0,0],"axis":[0,0,1]}})";
-
-std::string move_line(int id) {
-  return R"({"jsonrpc":"2.0","id":)" + std::to_string(id) + R"(,"method":"RMAC_CAM.MoveToPathTarget","params":)" +
-         kMove + "}\n";
-}
-
-std::string line_of(int id, const std::string& method, const std::string& params = "[]") {
-  return R"({"jsonrpc":"2.0","id":)" + std::to_string(id) + R"(,"method":")" + method + R"(","params":)" + params +
-         "}\n";
-}
-
-void set_running(ServerBench& bench) {
-  bench.on_gateway([](Server&, FakeMachine& machine) {
-    machine.now.state = CycleState::Running;
-    machine.now.moving = true;
-  });
-}
-
 TEST(Authority, IsHeldByOneClientAndNamesItToTheSecond) {
   ServerBench bench;
   Client first(bench.port());
   first.call("hello", R"({"client":"cam-tool"})");
-  EXPECT_EQ(first.call("authority.acquire")["result"], true);
-  EXPECT_EQ(first.call("authority.acquire")["result"], true) << "again is no error";
+  EXPECT_TRUE(first.call("authority.acquire").contains("result"));
+  EXPECT_TRUE(first.call("authority.acquire").contains("result")) << "again is no error";
   Client second(bench.port());
   const json refused = second.call("authority.acquire")["error"];
   EXPECT_EQ(refused["code"], rpc_code::kAuthorityHeld);
   EXPECT_THAT(refused["message"].get<std::string>(), HasSubstr("cam-tool"));
   EXPECT_EQ(second.call("authority.renew")["error"]["code"], rpc_code::kAuthorityRequired);
   EXPECT_EQ(first.call("authority.release")["result"], true);
-  EXPECT_EQ(second.call("authority.acquire")["result"], true);
+  EXPECT_TRUE(second.call("authority.acquire").contains("result"));
 }
 
 TEST(Authority, SecondClientMayNotJogButMayStop) {
@@ -56,7 +41,7 @@ TEST(Authority, SecondClientMayNotJogButMayStop) {
     EXPECT_CALL(machine.cam_mock, feed_hold()).WillOnce(Return(Expected<>{}));
   });
   Client first(bench.port());
-  EXPECT_EQ(first.call("authority.acquire")["result"], true);
+  EXPECT_TRUE(first.call("authority.acquire").contains("result"));
   Client second(bench.port());
   EXPECT_EQ(second.call("RMAC_CAM.JogJoint", R"({"JntNum":0,"Distance":1})")["error"]["code"],
             rpc_code::kAuthorityRequired);
@@ -64,12 +49,13 @@ TEST(Authority, SecondClientMayNotJogButMayStop) {
   EXPECT_EQ(second.call("RMAC_CAM.FeedHold")["result"], true);
 }
 
-TEST(Authority, LossInMidCutStopsTheMachineAndIsAnnounced) {
+TEST(Authority, LossInMidCutStopsTheMachineDropsItsQueueAndTellsThat) {
   ServerBench bench;
   std::promise<void> stopped;
   bench.on_gateway([&](Server&, FakeMachine& machine) {
+    ON_CALL(machine.cam_mock, moves_in_buffer()).WillByDefault(Return(3));
     // The watcher's own authority, taken at the end, is lost with the bench: that stop is of a machine at rest.
-    EXPECT_CALL(machine.cam_mock, cycle_stop())
+    EXPECT_CALL(machine.cam_mock, stop_now())
         .WillOnce([&]() -> Expected<> {
           machine.now.state = CycleState::Idle;
           machine.now.moving = false;
@@ -83,7 +69,7 @@ TEST(Authority, LossInMidCutStopsTheMachineAndIsAnnounced) {
   {
     Client holder(bench.port());
     holder.call("hello", R"({"client":"cam-tool"})");
-    EXPECT_EQ(holder.call("authority.acquire")["result"], true);
+    EXPECT_TRUE(holder.call("authority.acquire").contains("result"));
     set_running(bench);
   }
   stopped.get_future().wait();
@@ -91,22 +77,26 @@ TEST(Authority, LossInMidCutStopsTheMachineAndIsAnnounced) {
   const json event = watcher.pushed("events");
   EXPECT_EQ(event["kind"], "Authority");
   EXPECT_THAT(event["message"].get<std::string>(),
-              testing::AllOf(HasSubstr("cam-tool"), HasSubstr("disconnected"), HasSubstr("stopped on its path")));
-  EXPECT_EQ(watcher.call("authority.acquire")["result"], true);
+              testing::AllOf(HasSubstr("cam-tool"), HasSubstr("disconnected"), HasSubstr("stopped on its path"),
+                             HasSubstr("3 queued moves are dropped")));
+  EXPECT_EQ(watcher.call("authority.acquire")["result"]["dropped_moves"], 3);
+  EXPECT_EQ(watcher.call("authority.acquire")["result"]["dropped_moves"], 0) << "told once";
 }
 
 TEST(Authority, LossStopsAMachineWhoseSampleDoesNotShowItsStartYet) {
   ServerBench bench;
   bench.on_gateway([](Server&, FakeMachine& machine) {
-    testing::InSequence in_order;
-    EXPECT_CALL(machine.cam_mock, cycle_start(_)).WillOnce(Return(Expected<>{}));
-    EXPECT_CALL(machine.cam_mock, cycle_stop()).WillOnce(Return(Expected<>{}));
+    EXPECT_CALL(machine.cam_mock, cycle_start(_)).WillOnce([&]() -> Expected<> {
+      ON_CALL(machine.cam_mock, cycle_start_status()).WillByDefault(Return(true));
+      return {};
+    });
+    EXPECT_CALL(machine.cam_mock, stop_now()).WillOnce(Return(Expected<>{}));
   });
   Client watcher(bench.port());
   EXPECT_EQ(watcher.call("subscribe", R"({"topics":["events"]})")["result"], true);
   {
     Client holder(bench.port());
-    EXPECT_EQ(holder.call("authority.acquire")["result"], true);
+    EXPECT_TRUE(holder.call("authority.acquire").contains("result"));
     holder.send(line_of(2, "RMAC_CAM.CycleStart", "[1]"));
     holder.end_writing();
     EXPECT_EQ(holder.json_line()["result"], true);
@@ -118,7 +108,7 @@ TEST(Authority, LossAtRestIsAnnounced) {
   ServerBench bench;
   Client watcher(bench.port());
   EXPECT_EQ(watcher.call("subscribe", R"({"topics":["events"]})")["result"], true);
-  { EXPECT_EQ(Client(bench.port()).call("authority.acquire")["result"], true); }
+  { EXPECT_TRUE(Client(bench.port()).call("authority.acquire").contains("result")); }
   watcher.pushed("events");
   EXPECT_THAT(watcher.pushed("events")["message"].get<std::string>(), HasSubstr("disconnected"));
 }
@@ -135,7 +125,7 @@ TEST(Authority, LossPowersOffAtRestWhereConfiguredSo) {
     });
   });
   Client holder(bench.port());
-  EXPECT_EQ(holder.call("authority.acquire")["result"], true);
+  EXPECT_TRUE(holder.call("authority.acquire").contains("result"));
   set_running(bench);
   EXPECT_EQ(holder.call("authority.release")["result"], true);
   EXPECT_EQ(holder.call("Device.OpenDeviceDatabase")["result"], true);
@@ -147,7 +137,7 @@ TEST(Authority, LossPowersOffAtRestWhereConfiguredSo) {
     server.tick();
   });
   EXPECT_TRUE(holder.call("Device.OpenDeviceDatabase").contains("error")) << "unloaded";
-  EXPECT_EQ(holder.call("authority.acquire")["result"], true);
+  EXPECT_TRUE(holder.call("authority.acquire").contains("result"));
 }
 
 TEST(Overtaken, WhatStartsMotionDoesNotRunAfterAStopSentBehindIt) {
@@ -163,7 +153,7 @@ TEST(Overtaken, WhatStartsMotionDoesNotRunAfterAStopSentBehindIt) {
           EXPECT_CALL(machine.cam_mock, jog_joint(_, _)).Times(0);
         });
         Client client(bench.port());
-        EXPECT_EQ(client.call("authority.acquire")["result"], true);
+        EXPECT_TRUE(client.call("authority.acquire").contains("result"));
         const auto request = [](int id, const std::string& words) {
           const std::size_t space = words.find(' ');
           return line_of(id, words.substr(0, space), words.substr(space + 1));
@@ -190,7 +180,7 @@ TEST(Overtaken, LettingAStopButtonGoOvertakesNothing) {
     EXPECT_CALL(machine.cam_mock, cycle_start(_)).WillOnce(Return(Expected<>{}));
   });
   Client client(bench.port());
-  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  EXPECT_TRUE(client.call("authority.acquire").contains("result"));
   client.send(line_of(10, "RMAC_CAM.CycleStart", "[1]") + line_of(11, "RMAC_CAM.SetCycleStopStatus", "[false]"));
   EXPECT_EQ(client.answer(10)["result"], true);
 }
@@ -215,7 +205,7 @@ TEST(Turn, AStopOfAnotherClientIsServedInsideALongBatch) {
   });
   Client client(bench.port());
   Client other(bench.port());
-  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  EXPECT_TRUE(client.call("authority.acquire").contains("result"));
   EXPECT_EQ(other.call("RMAC_CAM.Ok")["result"], true);
   std::string batch = "[";
   for (int i = 0; i < 50; ++i) {
@@ -243,7 +233,7 @@ TEST(QueueWait, StopOvertakesAMoveThatWaitsForRoom) {
   });
   set_running(bench);
   Client client(bench.port());
-  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  EXPECT_TRUE(client.call("authority.acquire").contains("result"));
   client.send(move_line(10) + move_line(11) + "{\"jsonrpc\":\"2.0\",\"id\":12,\"method\":\"RMAC_CAM.Ok\"}\n" +
               "{\"jsonrpc\":\"2.0\",\"id\":13,\"method\":\"RMAC_CAM.CycleStop\",\"params\":[1]}\n");
   EXPECT_EQ(client.json_line()["id"], 13) << "the stop is answered first";
@@ -271,7 +261,7 @@ TEST(QueueWait, StopInsideABatchOvertakesToo) {
   });
   set_running(bench);
   Client client(bench.port());
-  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  EXPECT_TRUE(client.call("authority.acquire").contains("result"));
   std::string move = move_line(20);
   move.pop_back();
   client.send(move_line(19) + "[" + move + ",{\"jsonrpc\":\"2.0\",\"id\":21,\"method\":\"RMAC_CAM.StopNow\"}]\n");
@@ -294,7 +284,7 @@ TEST(QueueWait, MoveIsTakenWhenThereIsRoomAgain) {
   });
   set_running(bench);
   Client client(bench.port());
-  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  EXPECT_TRUE(client.call("authority.acquire").contains("result"));
   client.send(move_line(30));
   EXPECT_EQ(client.json_line()["result"], true);
   EXPECT_EQ(client.call("RMAC_CAM.Ok")["result"], true) << "waiting is no error of the machine";
@@ -315,7 +305,7 @@ TEST(QueueWait, OtherClientsAreServedMeanwhile) {
   });
   set_running(bench);
   Client waiting(bench.port());
-  EXPECT_EQ(waiting.call("authority.acquire")["result"], true);
+  EXPECT_TRUE(waiting.call("authority.acquire").contains("result"));
   waiting.send(move_line(1));
   tried.get_future().wait();
   EXPECT_EQ(Client(bench.port()).call("RMAC_CAM.GetState").contains("result"), true);
@@ -329,7 +319,7 @@ TEST(QueueWait, FullQueueIsRefusedAtOnceBeforeCycleStart) {
     EXPECT_CALL(machine.cam_mock, queue_move(_, _)).WillOnce(Return(failure(MinorCode::CommandQueueFull, "full")));
   });
   Client client(bench.port());
-  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  EXPECT_TRUE(client.call("authority.acquire").contains("result"));
   client.send(move_line(40));
   EXPECT_EQ(client.json_line()["error"]["code"], -32015);
   EXPECT_EQ(client.call("RMAC_CAM.StatusMinorCode")["result"], 15);
@@ -344,7 +334,7 @@ TEST(QueueWait, GivesUpAfterItsTime) {
   });
   set_running(bench);
   Client client(bench.port());
-  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  EXPECT_TRUE(client.call("authority.acquire").contains("result"));
   client.send(move_line(50));
   EXPECT_EQ(client.json_line()["error"]["code"], -32015);
 }
@@ -357,7 +347,7 @@ TEST(QueueWait, MovesBehindARefusedOneAreNotTakenInItsPlace) {
     EXPECT_CALL(machine.cam_mock, queue_move(_, _)).WillOnce(Return(failure(MinorCode::CommandQueueFull, "full")));
   });
   Client client(bench.port());
-  EXPECT_EQ(client.call("authority.acquire")["result"], true);
+  EXPECT_TRUE(client.call("authority.acquire").contains("result"));
   std::string first = move_line(60);
   std::string second = move_line(61);
   first.pop_back();

@@ -94,6 +94,30 @@ TEST(Topics, WatchersGetEveryTenthCycle) {
   EXPECT_EQ(client.pushed("drives")["samples"].size(), 10U);
 }
 
+TEST(Topics, AnAnimationNeitherLowersARateNorEndsASubscription) {
+  ServerBench bench;
+  Client client(bench.port());
+  EXPECT_EQ(client.call("subscribe", R"({"topics":["joints"],"rate_hz":1000})")["result"], true);
+  EXPECT_TRUE(client.call("RMAC_CAM.SetAnimation", "[true]").contains("result"));
+  push_samples(bench, 1, 100);
+  EXPECT_EQ(client.pushed("joints")["samples"].size(), 100U);
+  EXPECT_TRUE(client.call("RMAC_CAM.SetAnimation", "[false]").contains("result"));
+  push_samples(bench, 101, 100);
+  EXPECT_EQ(client.pushed("joints")["samples"].size(), 100U);
+}
+
+TEST(Topics, AnAnimationRaisesALowerRateUntilItEnds) {
+  ServerBench bench;
+  Client client(bench.port());
+  EXPECT_EQ(client.call("subscribe", R"({"topics":["joints"],"rate_hz":10})")["result"], true);
+  EXPECT_TRUE(client.call("RMAC_CAM.SetAnimation", "[true]").contains("result"));
+  push_samples(bench, 1, 100);
+  EXPECT_EQ(client.pushed("joints")["samples"].size(), 5U);
+  EXPECT_TRUE(client.call("RMAC_CAM.SetAnimation", "[false]").contains("result"));
+  push_samples(bench, 101, 100);
+  EXPECT_EQ(client.pushed("joints")["samples"].size(), 1U);
+}
+
 TEST(Topics, OneClientAtATimeGetsTheFullRate) {
   ServerBench bench;
   Client first(bench.port());
