@@ -95,6 +95,21 @@ TEST_F(Cycle, HoldStopsOnThePathAndResumeGoesOn) {
   EXPECT_NEAR(machine_.controller.sample().position_set[0], 40, 1e-6);
 }
 
+TEST_F(Cycle, IsToldAsItIsNowNotAsTheLastSampleSawIt) {
+  EXPECT_EQ(machine_.controller.cycle_now().state, CycleState::Idle);
+  EXPECT_STREQ(machine_.controller.cycle_now().mode, "");
+  start_slow_line();
+  ASSERT_TRUE(cam().cycle_stop());
+  ASSERT_TRUE(machine_.run_until([&] { return machine_.count(Event::Kind::Stopped) > 0; }));
+  EXPECT_EQ(machine_.controller.cycle_now().state, CycleState::Idle);
+  ASSERT_TRUE(cam().set_feed_override(50));
+  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  const CycleNow now = machine_.controller.cycle_now();
+  EXPECT_EQ(now.state, CycleState::Running);
+  EXPECT_STREQ(now.mode, "AUTOMATIC");
+  EXPECT_EQ(now.override_percent, 50);
+}
+
 TEST_F(Cycle, StopKeepsTheRestOfTheQueue) {
   start_slow_line();
   ASSERT_TRUE(cam().cycle_stop());
@@ -111,6 +126,7 @@ TEST_F(Cycle, StopNowEmptiesTheQueueAndTheNextMoveBeginsWhereTheMachineStands) {
   start_slow_line();
   ASSERT_TRUE(machine_.line(2, {40, 0, 0}, {0, 0, 0}));
   ASSERT_TRUE(cam().stop_now());
+  EXPECT_FALSE(machine_.line(4, {0, 0, 0}, {1, 0, 0})) << "it would be dropped with the rest";
   ASSERT_TRUE(machine_.run_until([&] { return machine_.count(Event::Kind::Stopped) > 0; }));
   EXPECT_EQ(cam().moves_in_buffer(), 0);
   const double at = machine_.controller.sample().position_set[0];
