@@ -15,5 +15,6 @@ void curve_step_rows(Figures& figures, const Extent& extent);
 void planning_rows(Figures& figures, const Extent& extent);
 void interruption_rows(Figures& figures, const Extent& extent);
 void stream_rows(Figures& figures, const Extent& extent);
+void state_to_state_rows(Figures& figures, const Extent& extent);
 
 }  // namespace rmac::bench
