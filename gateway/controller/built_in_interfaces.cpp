@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "gateway/controller/controller_impl.hpp"
+#include "rmac/fieldbus/canopen/bus_load.hpp"
+#include "rmac/fieldbus/canopen/canopen_interface.hpp"
 #include "rmac/fieldbus/simulated_interface.hpp"
 #include "rmac/fieldbus/simulated_io_interface.hpp"
 
@@ -33,6 +35,14 @@ Expected<std::shared_ptr<DigitalControlInterface>> make_simulated(const sdk::Mod
   return std::make_shared<fieldbus::SimulatedInterface>(std::move(axes), period_s);
 }
 
+Expected<std::shared_ptr<DigitalControlInterface>> make_canopen(const std::string& bus, const sdk::ModuleChoice& choice,
+                                                                double period_s) {
+  auto config = fieldbus::canopen::read_canopen_config(bus, choice.numbers, choice.texts, period_s);
+  if (!config) return tl::unexpected(config.error());
+  if (auto fits = fieldbus::canopen::check_bus_load(*config); !fits) return tl::unexpected(fits.error());
+  return fieldbus::canopen::make_socketcan_interface(std::move(*config));
+}
+
 Expected<std::shared_ptr<DigitalIoInterface>> make_simulated_io(const sdk::ModuleChoice& choice) {
   if (!choice.numbers.empty() || !choice.texts.empty()) {
     return failure(MinorCode::InvalidParameterValue, "SimulatedIOInterface takes no parameters");
@@ -43,8 +53,13 @@ Expected<std::shared_ptr<DigitalIoInterface>> make_simulated_io(const sdk::Modul
 }  // namespace
 
 void add_built_in_interfaces(BusRegistry& registry, double period_s) {
-  registry.add_control_interface(
-      "SimulatedInterface", [period_s](const sdk::ModuleChoice& choice) { return make_simulated(choice, period_s); });
+  registry.add_control_interface("SimulatedInterface", [period_s](const std::string&, const sdk::ModuleChoice& choice) {
+    return make_simulated(choice, period_s);
+  });
+  registry.add_control_interface("CANopenInterface",
+                                 [period_s](const std::string& bus, const sdk::ModuleChoice& choice) {
+                                   return make_canopen(bus, choice, period_s);
+                                 });
   registry.add_io_interface("SimulatedIOInterface", make_simulated_io);
 }
 

@@ -32,10 +32,11 @@ void BusRegistry::add_io_interface(const std::string& name, IoFactory factory) {
   io_factories_[name] = std::move(factory);
 }
 
-Expected<std::shared_ptr<DigitalControlInterface>> BusRegistry::make_control(const sdk::ModuleChoice& choice,
+Expected<std::shared_ptr<DigitalControlInterface>> BusRegistry::make_control(const std::string& bus,
+                                                                             const sdk::ModuleChoice& choice,
                                                                              const ModuleLoader& loader) const {
   if (const auto built_in = control_factories_.find(choice.name); built_in != control_factories_.end()) {
-    return built_in->second(choice);
+    return built_in->second(bus, choice);
   }
   auto loaded = loader.load<DigitalControlInterface>(choice);
   if (!loaded) {
@@ -55,7 +56,8 @@ Expected<std::shared_ptr<DigitalIoInterface>> BusRegistry::make_io(const sdk::Mo
 }
 
 Expected<> BusRegistry::check_control_interface(const sdk::ModuleChoice& choice, const ModuleLoader& loader) const {
-  return make_control(choice, loader).map([](const auto&) {});
+  if (control_factories_.contains(choice.name)) return {};
+  return make_control("", choice, loader).map([](const auto&) {});
 }
 
 Expected<> BusRegistry::check_io_interface(const sdk::ModuleChoice& choice, const ModuleLoader& loader) const {
@@ -77,7 +79,7 @@ Expected<std::shared_ptr<ServoBus>> BusRegistry::acquire(const std::string& name
     known = buses_.end();
   }
   if (known == buses_.end()) {
-    auto made = make_control(choice, loader);
+    auto made = make_control(name, choice, loader);
     if (!made) return tl::unexpected(made.error());
     known = buses_.emplace(name, Bus{choice, std::make_shared<ServoBus>(std::move(*made)), false}).first;
   }

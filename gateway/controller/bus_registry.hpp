@@ -15,14 +15,17 @@ namespace rmac::gateway {
 /// Gateway thread only.
 class BusRegistry {
  public:
-  using ControlFactory =
-      std::function<Expected<std::shared_ptr<DigitalControlInterface>>(const sdk::ModuleChoice& choice)>;
+  /// Makes the interface to one bus, which `device.json` names. The name may say which of the machine's interfaces it
+  /// is.
+  using ControlFactory = std::function<Expected<std::shared_ptr<DigitalControlInterface>>(
+      const std::string& bus, const sdk::ModuleChoice& choice)>;
   using IoFactory = std::function<Expected<std::shared_ptr<DigitalIoInterface>>(const sdk::ModuleChoice& choice)>;
 
   void add_control_interface(const std::string& name, ControlFactory factory);
   void add_io_interface(const std::string& name, IoFactory factory);
 
-  /// Whether an interface of this name is built in or can be loaded.
+  /// Whether an interface of this name is built in or can be loaded. A built-in one's parameters are its buses', and
+  /// are checked with them.
   [[nodiscard]] Expected<> check_control_interface(const sdk::ModuleChoice& choice, const ModuleLoader& loader) const;
   [[nodiscard]] Expected<> check_io_interface(const sdk::ModuleChoice& choice, const ModuleLoader& loader) const;
 
@@ -47,7 +50,8 @@ class BusRegistry {
     bool started = false;
   };
 
-  [[nodiscard]] Expected<std::shared_ptr<DigitalControlInterface>> make_control(const sdk::ModuleChoice& choice,
+  [[nodiscard]] Expected<std::shared_ptr<DigitalControlInterface>> make_control(const std::string& bus,
+                                                                                const sdk::ModuleChoice& choice,
                                                                                 const ModuleLoader& loader) const;
   [[nodiscard]] Expected<std::shared_ptr<DigitalIoInterface>> make_io(const sdk::ModuleChoice& choice,
                                                                       const ModuleLoader& loader) const;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "rmac/fieldbus/canopen/emergency.hpp"
 #include "rmac/motion/drive_power.hpp"
 
 namespace rmac::gateway {
@@ -55,8 +56,9 @@ std::string describe(const ServoFault& fault, const sdk::DeviceObject* device) {
     case ServoFault::Kind::NotANumber:
       return fmt::format("{}: the servo loop computed no number; check gains and feedback, then reset", at);
     case ServoFault::Kind::DriveFault:
-      return fmt::format("{}: the drive reports error {:04X}h; look it up in its manual, remove the cause, then reset",
-                         at, word);
+      return fmt::format(
+          "{}: the drive reports error {:04X}h ({}); look it up in its manual, remove the cause, then reset", at, word,
+          fieldbus::canopen::emergency_text(static_cast<std::uint16_t>(word)));
     case ServoFault::Kind::DriveOffline:
       return fmt::format("{}: the drive does not answer; check its power and its cable, then reset", at);
     case ServoFault::Kind::DriveDropped:

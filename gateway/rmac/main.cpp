@@ -24,7 +24,7 @@ struct Arguments {
   MachineSearch search;
   RunOptions run;
   int joint = 0;
-  double distance = 0, percent = 100;
+  double distance = 0, percent = 100, period_s = 0.001;
 };
 
 void add_database_commands(CLI::App& app, Arguments& arguments, Command& command) {
@@ -84,6 +84,19 @@ void add_operating_commands(CLI::App& app, Arguments& arguments, Command& comman
   override_command->callback([&] { command = [&](auto& to) { return set_override(to, arguments.percent); }; });
 }
 
+/// Commands that need no appliance.
+void add_offline_commands(CLI::App& app, Arguments& arguments, std::function<Result<>()>& command) {
+  auto* bus = app.add_subcommand("bus", "commission a fieldbus");
+  bus->require_subcommand(1);
+  auto* load =
+      bus->add_subcommand("load", "the bits that a machine's CAN buses carry at worst; exit code 1 if too many");
+  load->add_option("FILE", arguments.file, "the machine's device.json")->required();
+  load->add_option("--period", arguments.period_s, "cycle of the servo loop, s (period_s in rmacd.json)")
+      ->check(CLI::Range(0.0001, 0.1))
+      ->capture_default_str();
+  load->callback([&] { command = [&] { return show_bus_load(arguments.file, arguments.period_s, arguments.json); }; });
+}
+
 int report(const Failure& failure) {
   // One line, whatever the message held: scripts read it so.
   auto message = failure.message;
@@ -107,10 +120,16 @@ int run(int count, char** words) {
   app.add_flag("--json", arguments.json, "print for programs");
   add_database_commands(app, arguments, command);
   add_operating_commands(app, arguments, command);
+  std::function<Result<>()> offline_command;
+  add_offline_commands(app, arguments, offline_command);
   try {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitDone : kExitUsage;
+  }
+  if (offline_command) {
+    const auto done = offline_command();
+    return done ? kExitDone : report(done.error());
   }
   auto connection = Connection::open(arguments.endpoint);
   if (!connection) {

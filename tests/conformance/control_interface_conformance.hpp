@@ -67,7 +67,7 @@ class ControlInterfaceConformance {
   }
 
   void check_stop() {
-    for (int i = 0; i < 10; ++i) cycle(DriveWish::Operational, 0);
+    for (int i = 0; i < 100; ++i) cycle(DriveWish::Operational, 0);
     EXPECT_EQ(cycle(DriveWish::Operational, 0), DriveState::OperationEnabled) << "no way back from the quick stop";
     bus_.stop();
     commands_[axis_] = {};

@@ -23,9 +23,8 @@ class DeadBus final : public fieldbus::SimulatedInterface {
 
 ControllerOptions TestMachine::with_interfaces(ControllerOptions controller_options) {
   controller_options.control_interfaces["TestBus"] =
-      [this](const sdk::ModuleChoice&) -> Expected<std::shared_ptr<DigitalControlInterface>> {
+      [this](const std::string&, const sdk::ModuleChoice&) -> Expected<std::shared_ptr<DigitalControlInterface>> {
     if (!bus_trouble.empty()) return std::make_shared<DeadBus>(bus_trouble);
-    // The draft's check makes one of its own, which nobody borrows: a test wants the one that is used.
     if (!bus || bus.use_count() == 1) {
       bus = std::make_shared<fieldbus::SimulatedInterface>(fieldbus::default_simulated_axes(), 0.001);
     }

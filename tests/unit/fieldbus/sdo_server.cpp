@@ -196,7 +196,7 @@ std::vector<CanFrame> SdoServer::block_download_segment(const CanFrame& frame) {
 }
 
 std::vector<CanFrame> SdoServer::block_download_end(const CanFrame& frame) {
-  data_.resize(data_.size() - (frame.data[0] >> 2 & 7));
+  data_.erase(data_.end() - (frame.data[0] >> 2 & 7), data_.end());
   if (crc_ && crc_of(data_) != number(&frame.data[1], 2)) return abort(0x05040004);
   const std::uint32_t code = commit();
   if (code != 0) return abort(code);

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "rmac/fieldbus/canopen/sdo.hpp"
+#include "rmac/motion/ports/digital_control_interface.hpp"
+
+namespace rmac::fieldbus::canopen {
+
+inline constexpr std::uint16_t kAxisOffset = 0x800;  ///< between the objects of two axes of a node (CiA 402-2, 5.2)
+inline constexpr std::size_t kMostAxesPerNode = 4;   ///< as many as have identifiers in the predefined connection set
+
+/// An entry of a PDO: an object of a node's first axis, and how long it is.
+struct MappedObject {
+  ObjectAddress object;
+  std::uint8_t bits = 0;
+};
+
+/// A number to be written to a node when it is brought up.
+struct SdoWrite {
+  ObjectAddress object;
+  std::uint8_t size = 4;  ///< bytes, 1 to 4
+  std::uint32_t value = 0;
+};
+
+/// Who a node is (1018h). 0: whoever it is.
+struct Identity {
+  std::uint32_t vendor_id = 0;
+  std::uint32_t product_code = 0;
+  std::uint32_t revision_number = 0;
+  std::uint32_t serial_number = 0;
+};
+
+/// One axis of the bus: a CiA 402 drive, or one axis of a drive for several.
+struct AxisConfig {
+  std::uint8_t node = 0;
+  std::uint8_t axis_in_node = 0;
+  DriveMode mode = DriveMode::CyclicSyncTorque;
+  std::vector<MappedObject> setpoints;  ///< the RPDO
+  std::vector<MappedObject> answers;    ///< the TPDO
+  double velocity_units_per_rpm = 1;    ///< of 60FFh and 606Ch
+  Identity identity;
+  std::vector<SdoWrite> setup;
+};
+
+/// One CANopen bus and its drives.
+struct CanopenConfig {
+  std::string interface;  ///< "can0"
+  std::vector<AxisConfig> axes;
+  std::chrono::nanoseconds period = std::chrono::milliseconds(1);
+  std::uint32_t bit_rate = 1'000'000;
+  double load_share = 0.8;  ///< of a cycle that SYNC and PDOs may fill
+  std::chrono::milliseconds heartbeat{50};
+  std::uint8_t master_node = 127;
+  std::chrono::milliseconds boot_timeout{5000};
+  int abort_connection = 3;          ///< 6007h: quick stop; -1: not written
+  std::uint32_t missed_answers = 1;  ///< SYNCs in a row that a drive may leave unanswered
+  bool sync_first = false;           ///< SYNC before the setpoints of its cycle, not after them
+
+  /// How long a heartbeat may be absent before its producer counts as gone.
+  [[nodiscard]] std::chrono::milliseconds heartbeat_deadline() const noexcept { return heartbeat * 3 / 2; }
+};
+
+/// Reads the parameters of `CANopenInterface` in `device.json` (docs/canopen.md). A parameter named `bus.name` is for
+/// the bus `bus` alone and wins over `name`. The bus's name is the CAN interface's. The error names the parameter,
+/// its value and what is allowed.
+[[nodiscard]] Expected<CanopenConfig> read_canopen_config(const std::string& bus,
+                                                          const std::map<std::string, std::vector<double>>& numbers,
+                                                          const std::map<std::string, std::string>& texts,
+                                                          double period_s);
+
+/// COB-IDs of an axis: the predefined connection set (CiA 301, 7.3.5), one pair for each axis of a node.
+[[nodiscard]] inline std::uint16_t setpoint_id(const AxisConfig& axis) noexcept {
+  return static_cast<std::uint16_t>(0x200 + 0x100 * axis.axis_in_node + axis.node);
+}
+[[nodiscard]] inline std::uint16_t answer_id(const AxisConfig& axis) noexcept {
+  return static_cast<std::uint16_t>(0x180 + 0x100 * axis.axis_in_node + axis.node);
+}
+
+/// Bytes of a PDO.
+[[nodiscard]] std::size_t mapped_bytes(const std::vector<MappedObject>& objects) noexcept;
+
+}  // namespace rmac::fieldbus::canopen

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "rmac/fieldbus/can/can_port.hpp"
+#include "rmac/fieldbus/canopen/canopen_config.hpp"
+
+namespace rmac::fieldbus::canopen {
+
+/// What a bus went through since it was started.
+struct CanopenCounters {
+  std::uint64_t cycles = 0;
+  std::uint64_t unsent = 0;           ///< frames of a cycle that the port did not take
+  std::uint64_t missed_answers = 0;   ///< SYNCs that a drive left unanswered
+  std::uint64_t short_answers = 0;    ///< PDOs shorter than what is mapped; passed over
+  std::uint64_t emergencies = 0;      ///< EMCY messages with an error
+  std::uint64_t nodes_lost = 0;       ///< heartbeat gone, or a node left Operational by itself
+  std::uint64_t nodes_recovered = 0;  ///< brought up again by the cycle
+};
+
+/// CiA 402 drives on one CAN bus, behind the control interface port. The cycle produces SYNC, the setpoints and the
+/// master's heartbeat, so that drives stop by themselves when the cycle ends, whatever ended it. A node that went away
+/// and comes back is configured and started again by the cycle; whether its drive is enabled is not this class's to
+/// decide.
+///
+/// No thread of its own: `start` and `stop` run on their caller's, `exchange` on the servo thread, never at once.
+class CanopenInterface final : public DigitalControlInterface {
+ public:
+  /// Opens the bus for the identifiers that the drives send; `queue_frames` as `SocketCanPort::open` takes it.
+  using OpenPort = std::function<Expected<std::unique_ptr<CanPort>>(std::span<const std::uint16_t> wanted,
+                                                                    std::size_t queue_frames)>;
+
+  /// `config` as `read_canopen_config` gives it.
+  CanopenInterface(CanopenConfig config, OpenPort open);
+  ~CanopenInterface() override;
+  CanopenInterface(const CanopenInterface&) = delete;
+  CanopenInterface& operator=(const CanopenInterface&) = delete;
+
+  [[nodiscard]] std::size_t axis_count() const noexcept override;
+  [[nodiscard]] Expected<> start() override;
+  void stop() noexcept override;
+  /// False when a frame of the cycle could not be sent or the bus is off; answers that came are taken all the same.
+  [[nodiscard]] bool exchange(std::span<const DriveCommand> commands,
+                              std::span<DriveFeedback> feedback) noexcept override;
+
+  [[nodiscard]] const CanopenCounters& counters() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The interface on a raw CAN socket of the kernel's interface `config.interface`.
+[[nodiscard]] std::shared_ptr<CanopenInterface> make_socketcan_interface(CanopenConfig config);
+
+}  // namespace rmac::fieldbus::canopen

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+#include "rmac/fieldbus/can/can_port.hpp"
+
+namespace rmac::fieldbus::canopen {
+
+/// Commands of network management (CiA 301, 7.2.8.3.1).
+enum class NmtCommand : std::uint8_t {
+  Start = 0x01,
+  Stop = 0x02,
+  EnterPreOperational = 0x80,
+  ResetNode = 0x81,
+  ResetCommunication = 0x82,
+};
+
+/// What a heartbeat says (7.2.8.3.2.2). `BootUp` is said once, when a node has come up (7.2.8.3.3).
+enum class NmtState : std::uint8_t { BootUp = 0x00, Stopped = 0x04, Operational = 0x05, PreOperational = 0x7F };
+
+inline constexpr std::uint16_t kSyncId = 0x080;
+inline constexpr std::uint16_t kEmergencyId = 0x080;  ///< plus the node's id, as the following ones
+inline constexpr std::uint16_t kSdoAnswerId = 0x580;
+inline constexpr std::uint16_t kHeartbeatId = 0x700;
+
+[[nodiscard]] inline CanFrame nmt_frame(NmtCommand command, std::uint8_t node) noexcept {
+  return {.id = 0, .size = 2, .data = {static_cast<std::uint8_t>(command), node}};
+}
+[[nodiscard]] inline CanFrame heartbeat_frame(std::uint8_t node, NmtState state) noexcept {
+  return {.id = static_cast<std::uint16_t>(kHeartbeatId + node), .size = 1, .data = {static_cast<std::uint8_t>(state)}};
+}
+[[nodiscard]] inline CanFrame sync_frame() noexcept {
+  return {.id = kSyncId};
+}
+/// The state in a heartbeat; bit 7 is reserved and passed over.
+[[nodiscard]] inline NmtState heartbeat_state(const CanFrame& frame) noexcept {
+  return static_cast<NmtState>(frame.data[0] & 0x7F);
+}
+
+}  // namespace rmac::fieldbus::canopen

@@ -1,0 +1,46 @@
+#include "rmac/fieldbus/canopen/bus_load.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "rmac/fieldbus/can/can_load.hpp"
+
+namespace rmac::fieldbus::canopen {
+
+BusLoad bus_load(const CanopenConfig& config) noexcept {
+  const double period_s = std::chrono::duration<double>(config.period).count();
+  BusLoad load;
+  load.sync_bits = worst_frame_bits(0);
+  std::set<std::uint8_t> nodes;
+  for (const AxisConfig& axis : config.axes) {
+    load.setpoint_bits += worst_frame_bits(mapped_bytes(axis.setpoints));
+    load.answer_bits += worst_frame_bits(mapped_bytes(axis.answers));
+    nodes.insert(axis.node);
+  }
+  const double heartbeats_per_s = 1 / std::chrono::duration<double>(config.heartbeat).count();
+  load.heartbeat_bits_per_s = static_cast<double>(nodes.size() + 1) * heartbeats_per_s * worst_frame_bits(1);
+  load.bits_of_cycle = config.bit_rate * period_s;
+  load.share = config.load_share;
+  return load;
+}
+
+Expected<> check_bus_load(const CanopenConfig& config) {
+  const BusLoad load = bus_load(config);
+  if (load.fits()) return {};
+  const double period_s = std::chrono::duration<double>(config.period).count();
+  return failure(
+      MinorCode::InvalidParameterValue,
+      fmt::format("bus {}: {} axes in a cycle of {:g} ms need {} bits, {:.1f} % of the {:.0f} that {} bit/s give; its "
+                  "share is {:g} %. Take a cycle of {:.3g} ms or more, spread the axes over several buses, or map less",
+                  config.interface, config.axes.size(), period_s * 1e3, load.cyclic_bits(), load.load() * 100,
+                  load.bits_of_cycle, config.bit_rate, load.share * 100,
+                  load.cyclic_bits() / (load.share * config.bit_rate) * 1e3));
+}
+
+std::size_t frames_of_cycle(const CanopenConfig& config) noexcept {
+  constexpr std::size_t kSyncHeartbeatAndBoot = 3;
+  return config.axes.size() + kSyncHeartbeatAndBoot;
+}
+
+}  // namespace rmac::fieldbus::canopen

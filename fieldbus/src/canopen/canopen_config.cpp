@@ -1,0 +1,144 @@
+#include "rmac/fieldbus/canopen/canopen_config.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "canopen/object_list.hpp"
+#include "canopen/parameters.hpp"
+
+namespace rmac::fieldbus::canopen {
+namespace {
+
+// What the setpoints and answers of a mode need (CiA 402-2, 14 to 17 and 10).
+const char* default_setpoints(DriveMode mode) {
+  switch (mode) {
+    case DriveMode::CyclicSyncTorque:
+      return "6040:00/16 6071:00/16";
+    case DriveMode::CyclicSyncPosition:
+      return "6040:00/16 607A:00/32";
+    default:
+      return "6040:00/16 60FF:00/32";
+  }
+}
+
+const char* default_answers(DriveMode mode) {
+  return mode == DriveMode::ProfileVelocity ? "6041:00/16 606C:00/32" : "6041:00/16 6064:00/32 6077:00/16";
+}
+
+constexpr std::array kModes{DriveMode::ProfileVelocity, DriveMode::CyclicSyncPosition, DriveMode::CyclicSyncVelocity,
+                            DriveMode::CyclicSyncTorque};
+
+Expected<std::vector<MappedObject>> mapping(const Parameters& parameters, const std::string& name, std::size_t axis,
+                                            const char* otherwise) {
+  const std::string text = parameters.text_of_axis(name, axis, otherwise);
+  auto objects = read_mapping(text);
+  if (!objects) {
+    return failure(objects.error().code, parameters.place(fmt::format("{}: {}", name, objects.error().message)));
+  }
+  return objects;
+}
+
+Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis) {
+  AxisConfig config;
+  config.node = static_cast<std::uint8_t>(parameters.number_of_axis("node", axis, 0, 1, 127));
+  config.axis_in_node =
+      static_cast<std::uint8_t>(parameters.number_of_axis("axis_in_node", axis, 0, 0, kMostAxesPerNode - 1));
+  const double mode = parameters.number_of_axis("mode", axis, static_cast<double>(DriveMode::CyclicSyncTorque), 3, 10);
+  config.mode = static_cast<DriveMode>(mode);
+  if (parameters.sound() && std::find(kModes.begin(), kModes.end(), config.mode) == kModes.end()) {
+    parameters.refuse(
+        fmt::format("mode is {:g} for axis {}; allowed are 3 (profile velocity), 8, 9 and 10 (cyclic "
+                    "synchronous position, velocity and torque)",
+                    mode, axis));
+  }
+  config.velocity_units_per_rpm =
+      parameters.number_of_axis("velocity_units_per_rpm", axis, 1, 1e-6, 1e9, Parameters::Kind::Any);
+  constexpr double kMost = 4294967295.0;
+  config.identity.vendor_id = static_cast<std::uint32_t>(parameters.number_of_axis("vendor_id", axis, 0, 0, kMost));
+  config.identity.product_code =
+      static_cast<std::uint32_t>(parameters.number_of_axis("product_code", axis, 0, 0, kMost));
+  config.identity.revision_number =
+      static_cast<std::uint32_t>(parameters.number_of_axis("revision_number", axis, 0, 0, kMost));
+  config.identity.serial_number =
+      static_cast<std::uint32_t>(parameters.number_of_axis("serial_number", axis, 0, 0, kMost));
+  if (!parameters.sound()) return failure(MinorCode::InvalidParameterValue, parameters.problem());
+
+  auto setpoints = mapping(parameters, "rpdo", axis, default_setpoints(config.mode));
+  if (!setpoints) return tl::unexpected(setpoints.error());
+  auto answers = mapping(parameters, "tpdo", axis, default_answers(config.mode));
+  if (!answers) return tl::unexpected(answers.error());
+  if (auto known = check_setpoints(*setpoints); !known) {
+    return failure(known.error().code, parameters.place("rpdo: " + known.error().message));
+  }
+  if (auto known = check_answers(*answers); !known) {
+    return failure(known.error().code, parameters.place("tpdo: " + known.error().message));
+  }
+  auto setup = read_setup(parameters.text_of_axis("setup", axis, ""));
+  if (!setup) return failure(setup.error().code, parameters.place("setup: " + setup.error().message));
+  config.setpoints = std::move(*setpoints);
+  config.answers = std::move(*answers);
+  config.setup = std::move(*setup);
+  return config;
+}
+
+std::string check_nodes(const CanopenConfig& config) {
+  std::set<std::pair<int, int>> taken;
+  for (const AxisConfig& axis : config.axes) {
+    if (axis.node == config.master_node) {
+      return fmt::format("node {} is the master's own id; give master_node or that drive another", axis.node);
+    }
+    if (!taken.emplace(axis.node, axis.axis_in_node).second) {
+      return fmt::format(
+          "node {} stands twice with axis_in_node {}; each drive needs a node id of its own, and each "
+          "axis of a drive a number of its own",
+          axis.node, axis.axis_in_node);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::size_t mapped_bytes(const std::vector<MappedObject>& objects) noexcept {
+  return std::accumulate(objects.begin(), objects.end(), std::size_t{0},
+                         [](std::size_t sum, const MappedObject& object) { return sum + object.bits / 8; });
+}
+
+Expected<CanopenConfig> read_canopen_config(const std::string& bus,
+                                            const std::map<std::string, std::vector<double>>& numbers,
+                                            const std::map<std::string, std::string>& texts, double period_s) {
+  Parameters parameters(bus, numbers, texts);
+  CanopenConfig config;
+  config.interface = bus;
+  config.period = std::chrono::nanoseconds(std::llround(period_s * 1e9));
+  config.bit_rate = static_cast<std::uint32_t>(parameters.number("bit_rate", 1e6, 10e3, 1e6));
+  config.load_share = parameters.number("load_share", 80, 1, 100, Parameters::Kind::Any) / 100;
+  config.heartbeat = std::chrono::milliseconds(static_cast<int>(parameters.number("heartbeat_ms", 50, 2, 10000)));
+  config.master_node = static_cast<std::uint8_t>(parameters.number("master_node", 127, 1, 127));
+  config.boot_timeout = std::chrono::milliseconds(
+      std::llround(parameters.number("boot_timeout_s", 5, 0.1, 600, Parameters::Kind::Any) * 1e3));
+  config.abort_connection = static_cast<int>(parameters.number("abort_connection", 3, -1, 3));
+  config.missed_answers = static_cast<std::uint32_t>(parameters.number("missed_answers", 1, 0, 100));
+  const std::string sync = parameters.text("sync", "last");
+  if (sync != "first" && sync != "last") {
+    parameters.refuse(fmt::format("sync is \"{}\"; allowed are \"first\" and \"last\"", sync));
+  }
+  config.sync_first = sync == "first";
+  const std::size_t axes = parameters.axes();
+  if (axes == 0) parameters.refuse("node is missing; it lists the node id of each axis, for example [1, 2, 3]");
+  for (std::size_t axis = 0; axis < axes && parameters.sound(); ++axis) {
+    auto read = read_axis(parameters, axis);
+    if (!read) return tl::unexpected(read.error());
+    config.axes.push_back(std::move(*read));
+  }
+  parameters.refuse_unknown();
+  if (parameters.sound()) parameters.refuse(check_nodes(config));
+  if (!parameters.sound()) return failure(MinorCode::InvalidParameterValue, parameters.problem());
+  return config;
+}
+
+}  // namespace rmac::fieldbus::canopen

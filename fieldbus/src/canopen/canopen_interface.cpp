@@ -1,0 +1,326 @@
+#include "rmac/fieldbus/canopen/canopen_interface.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "canopen/node_boot.hpp"
+#include "canopen/pdo.hpp"
+#include "rmac/fieldbus/can/socket_can_port.hpp"
+#include "rmac/fieldbus/canopen/bus_load.hpp"
+
+namespace rmac::fieldbus::canopen {
+namespace {
+
+/// More frames than this in one cycle are left for the next: the cycle has a deadline.
+constexpr int kMostFramesPerCycle = 512;
+
+struct Node {
+  Node(const CanopenConfig& config, std::uint8_t id) : boot(config, id) {}
+  NodeBoot boot;
+  std::chrono::nanoseconds heard{0};
+  std::uint16_t error_code = 0;
+  bool up = false;
+};
+
+struct Axis {
+  AxisConfig config;
+  std::size_t node = 0;
+  DriveFeedback feedback;
+  std::uint32_t unanswered = 0;
+  bool answered = false;  ///< since its node came up
+};
+
+}  // namespace
+
+struct CanopenInterface::Impl {
+  Impl(CanopenConfig configuration, OpenPort opener) : config(std::move(configuration)), open(std::move(opener)) {
+    for (const AxisConfig& axis : config.axes) {
+      auto at = std::find_if(nodes.begin(), nodes.end(), [&](const Node& n) { return n.boot.node() == axis.node; });
+      if (at == nodes.end()) at = nodes.emplace(nodes.end(), config, axis.node);
+      axes.push_back({.config = axis, .node = static_cast<std::size_t>(at - nodes.begin()), .feedback = {}});
+    }
+  }
+
+  [[nodiscard]] std::vector<std::uint16_t> wanted() const {
+    std::vector<std::uint16_t> ids;
+    for (const Node& node : nodes) {
+      for (const std::uint16_t base : {kEmergencyId, kSdoAnswerId, kHeartbeatId}) {
+        ids.push_back(static_cast<std::uint16_t>(base + node.boot.node()));
+      }
+    }
+    for (const Axis& axis : axes) ids.push_back(answer_id(axis.config));
+    return ids;
+  }
+
+  // Off the cycle
+  [[nodiscard]] Expected<> boot_all();
+  [[nodiscard]] std::string problems() const;
+  void reset_all() noexcept;
+
+  // On the cycle
+  void fetch(std::chrono::nanoseconds now) noexcept;
+  void take(const CanFrame& frame, std::chrono::nanoseconds now) noexcept;
+  void take_from_node(Node& node, const CanFrame& frame, std::chrono::nanoseconds now) noexcept;
+  void watch(std::chrono::nanoseconds now) noexcept;
+  void recover(std::chrono::nanoseconds now) noexcept;
+  void lose(Node& node, std::chrono::nanoseconds now) noexcept;
+  void fill(std::span<DriveFeedback> feedback) noexcept;
+  [[nodiscard]] bool send(const CanFrame& frame) noexcept;
+  [[nodiscard]] bool send_cycle(std::span<const DriveCommand> commands, std::chrono::nanoseconds now) noexcept;
+
+  CanopenConfig config;
+  OpenPort open;
+  std::unique_ptr<CanPort> port;
+  std::vector<Node> nodes;
+  std::vector<Axis> axes;
+  CanopenCounters counters;
+  std::chrono::nanoseconds next_heartbeat{0};
+  std::size_t recovering = 0;  ///< whose turn it is to send a frame of its boot
+  bool running = false;
+  bool fresh = false;  ///< no cycle since start
+};
+
+CanopenInterface::CanopenInterface(CanopenConfig config, OpenPort open)
+    : impl_(std::make_unique<Impl>(std::move(config), std::move(open))) {}
+
+CanopenInterface::~CanopenInterface() {
+  stop();
+}
+
+std::size_t CanopenInterface::axis_count() const noexcept {
+  return impl_->axes.size();
+}
+
+const CanopenCounters& CanopenInterface::counters() const noexcept {
+  return impl_->counters;
+}
+
+Expected<> CanopenInterface::start() {
+  Impl& bus = *impl_;
+  if (auto fits = check_bus_load(bus.config); !fits) return fits;
+  auto port = bus.open(bus.wanted(), frames_of_cycle(bus.config));
+  if (!port) return tl::unexpected(port.error());
+  bus.port = std::move(*port);
+  bus.counters = {};
+  if (auto booted = bus.boot_all(); !booted) {
+    bus.reset_all();
+    bus.port.reset();
+    return booted;
+  }
+  bus.running = bus.fresh = true;
+  return {};
+}
+
+Expected<> CanopenInterface::Impl::boot_all() {
+  for (Node& node : nodes) {
+    node.up = false;
+    node.boot.begin(port->now());
+  }
+  const auto settled = [](const Node& node) {
+    return node.boot.state() == NodeBoot::State::Operational || node.boot.state() == NodeBoot::State::Failed;
+  };
+  while (!std::all_of(nodes.begin(), nodes.end(), settled)) {
+    fetch(port->now());
+    for (Node& node : nodes) {
+      CanFrame frame;
+      while (node.boot.next_frame(port->now(), frame)) port->send(frame);
+    }
+    port->wait(std::chrono::milliseconds(1));
+  }
+  const bool all = std::all_of(nodes.begin(), nodes.end(),
+                               [](const Node& node) { return node.boot.state() == NodeBoot::State::Operational; });
+  if (!all) return failure(MinorCode::CommTimeout, problems());
+  for (Node& node : nodes) {
+    node.up = true;
+    node.error_code = node.boot.error_code();
+  }
+  return {};
+}
+
+std::string CanopenInterface::Impl::problems() const {
+  std::string text;
+  for (const Node& node : nodes) {
+    if (node.boot.state() != NodeBoot::State::Failed) continue;
+    text += (text.empty() ? "" : "; ") + describe(node.boot.problem(), node.boot.node(), config);
+  }
+  const CanHealth health = port->health();
+  if (health.bus_off || health.queue_full > 0) {
+    text += "; the interface gets no frame onto the bus: check cable, termination and bit rate";
+  }
+  if (health.link_down) text += "; the interface went down meanwhile";
+  return text;
+}
+
+void CanopenInterface::Impl::reset_all() noexcept {
+  // Resetting its communication also ends a node's watch over this master (CiA 301, 7.3.2.2.1).
+  for (const Node& node : nodes) port->send(nmt_frame(NmtCommand::ResetCommunication, node.boot.node()));
+}
+
+void CanopenInterface::stop() noexcept {
+  Impl& bus = *impl_;
+  if (!bus.running) return;
+  bus.running = false;
+  for (const Axis& axis : bus.axes) bus.port->send(pack_setpoints(axis.config, DriveCommand{}));
+  bus.port->send(sync_frame());
+  const std::chrono::nanoseconds until = bus.port->now() + 2 * bus.config.period;
+  while (bus.port->now() < until) {
+    bus.port->wait(until - bus.port->now());
+    CanFrame ignored;
+    while (bus.port->now() < until && bus.port->receive(ignored)) {
+    }
+  }
+  bus.reset_all();
+  bus.port.reset();
+}
+
+bool CanopenInterface::exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept {
+  Impl& bus = *impl_;
+  if (!bus.running) {
+    std::fill(feedback.begin(), feedback.end(), DriveFeedback{});
+    return true;
+  }
+  const std::chrono::nanoseconds now = bus.port->now();
+  if (bus.fresh) {
+    for (Node& node : bus.nodes) node.heard = now;
+    for (Axis& axis : bus.axes) {
+      axis.feedback = {};
+      axis.answered = false;
+      axis.unanswered = 0;
+    }
+    bus.next_heartbeat = now;
+    bus.fresh = false;
+  }
+  ++bus.counters.cycles;
+  bus.fetch(now);
+  bus.watch(now);
+  bus.fill(feedback);
+  const bool sent = bus.send_cycle(commands, now);
+  bus.recover(now);
+  return sent && bus.port->health().usable();
+}
+
+void CanopenInterface::Impl::fetch(std::chrono::nanoseconds now) noexcept {
+  CanFrame frame;
+  for (int i = 0; i < kMostFramesPerCycle && port->receive(frame); ++i) take(frame, now);
+}
+
+void CanopenInterface::Impl::take(const CanFrame& frame, std::chrono::nanoseconds now) noexcept {
+  for (Axis& axis : axes) {
+    if (frame.id != answer_id(axis.config)) continue;
+    if (!nodes[axis.node].up) return;
+    if (!unpack_answers(axis.config, frame, axis.feedback)) {
+      ++counters.short_answers;
+      return;
+    }
+    axis.unanswered = 0;
+    axis.answered = true;
+    return;
+  }
+  for (Node& node : nodes) {
+    const std::uint8_t id = node.boot.node();
+    if (frame.id == kEmergencyId + id || frame.id == kSdoAnswerId + id || frame.id == kHeartbeatId + id) {
+      take_from_node(node, frame, now);
+      return;
+    }
+  }
+}
+
+void CanopenInterface::Impl::take_from_node(Node& node, const CanFrame& frame, std::chrono::nanoseconds now) noexcept {
+  const std::uint8_t id = node.boot.node();
+  if (frame.id == kEmergencyId + id) {
+    if (frame.size < 2) return;
+    node.error_code = word_at(frame.data.data());
+    if (node.error_code != 0) ++counters.emergencies;
+    return;
+  }
+  if (frame.id == kHeartbeatId + id && frame.size == 1) {
+    node.heard = now;
+    if (node.up && heartbeat_state(frame) != NmtState::Operational) lose(node, now);
+  }
+  node.boot.receive(frame, now);
+}
+
+void CanopenInterface::Impl::lose(Node& node, std::chrono::nanoseconds now) noexcept {
+  ++counters.nodes_lost;
+  node.up = false;
+  for (Axis& axis : axes) {
+    if (&nodes[axis.node] == &node) axis.answered = false;
+  }
+  node.boot.begin(now);
+}
+
+void CanopenInterface::Impl::watch(std::chrono::nanoseconds now) noexcept {
+  for (Node& node : nodes) {
+    if (node.up && now - node.heard > config.heartbeat_deadline()) lose(node, now);
+    if (!node.up && node.boot.state() == NodeBoot::State::Operational) {
+      node.up = true;
+      node.heard = now;
+      node.error_code = node.boot.error_code();
+      ++counters.nodes_recovered;
+    }
+    if (node.boot.state() == NodeBoot::State::Failed) node.boot.begin(now);
+  }
+}
+
+void CanopenInterface::Impl::fill(std::span<DriveFeedback> feedback) noexcept {
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    Axis& axis = axes[i];
+    const Node& node = nodes[axis.node];
+    if (axis.answered && axis.unanswered > 0) ++counters.missed_answers;
+    feedback[i] = axis.feedback;
+    feedback[i].online = node.up && axis.answered && axis.unanswered <= config.missed_answers;
+    const bool mapped = std::any_of(axis.config.answers.begin(), axis.config.answers.end(),
+                                    [](const MappedObject& object) { return object.object.index == 0x603F; });
+    if (!mapped) feedback[i].error_code = node.error_code;
+  }
+}
+
+bool CanopenInterface::Impl::send(const CanFrame& frame) noexcept {
+  const bool sent = port->send(frame);
+  if (!sent) ++counters.unsent;
+  return sent;
+}
+
+bool CanopenInterface::Impl::send_cycle(std::span<const DriveCommand> commands, std::chrono::nanoseconds now) noexcept {
+  bool all = !config.sync_first || send(sync_frame());
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    // Nothing is queued for a node that is away: what it would find there on its return is old.
+    if (nodes[axes[i].node].up) all = send(pack_setpoints(axes[i].config, commands[i])) && all;
+  }
+  if (!config.sync_first) all = send(sync_frame()) && all;
+  for (Axis& axis : axes) ++axis.unanswered;
+  if (now >= next_heartbeat) {
+    all = send(heartbeat_frame(config.master_node, NmtState::Operational)) && all;
+    next_heartbeat = std::max(next_heartbeat + config.heartbeat, now);
+  }
+  return all;
+}
+
+void CanopenInterface::Impl::recover(std::chrono::nanoseconds now) noexcept {
+  // One frame a cycle, in turn, so that bringing up a node takes little from the cycles of the others.
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    recovering = (recovering + 1) % nodes.size();
+    Node& node = nodes[recovering];
+    CanFrame frame;
+    if (!node.up && node.boot.next_frame(now, frame)) {
+      port->send(frame);
+      return;
+    }
+  }
+}
+
+std::shared_ptr<CanopenInterface> make_socketcan_interface(CanopenConfig config) {
+  const std::string interface = config.interface;
+  return std::make_shared<CanopenInterface>(
+      std::move(config),
+      [interface](std::span<const std::uint16_t> wanted,
+                  std::size_t queue_frames) -> Expected<std::unique_ptr<CanPort>> {
+        return SocketCanPort::open(interface, wanted, queue_frames).map([](std::unique_ptr<SocketCanPort> port) {
+          return std::unique_ptr<CanPort>(std::move(port));
+        });
+      });
+}
+
+}  // namespace rmac::fieldbus::canopen

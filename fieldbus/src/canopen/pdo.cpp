@@ -1,0 +1,77 @@
+#include "canopen/pdo.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rmac::fieldbus::canopen {
+namespace {
+
+/// Rounded, and bounded to what the word holds.
+std::int32_t to_long(double value) noexcept {
+  return static_cast<std::int32_t>(std::lround(std::clamp(value, -2147483648.0, 2147483647.0)));
+}
+
+std::uint32_t setpoint_word(const AxisConfig& axis, const DriveCommand& command, std::uint16_t index) noexcept {
+  switch (index) {
+    case 0x6040:
+      return command.controlword;
+    case 0x6060:
+      return static_cast<std::uint32_t>(command.mode);
+    case 0x6071:
+      return static_cast<std::uint32_t>(command.target_torque_permille);
+    case 0x607A:
+      return static_cast<std::uint32_t>(command.target_position_counts);
+    case 0x60FF:
+      return static_cast<std::uint32_t>(to_long(command.target_velocity_rpm * axis.velocity_units_per_rpm));
+    default:
+      return 0;
+  }
+}
+
+void take_word(const AxisConfig& axis, std::uint16_t index, std::uint32_t word, DriveFeedback& feedback) noexcept {
+  switch (index) {
+    case 0x6041:
+      feedback.statusword = static_cast<std::uint16_t>(word);
+      break;
+    case 0x603F:
+      feedback.error_code = static_cast<std::uint16_t>(word);
+      break;
+    case 0x6064:
+      feedback.position_counts = static_cast<std::int32_t>(word);
+      break;
+    case 0x606C:
+      feedback.velocity_rpm = to_long(static_cast<std::int32_t>(word) / axis.velocity_units_per_rpm);
+      break;
+    case 0x6077:
+      feedback.torque_permille = static_cast<std::int16_t>(word);
+      break;
+    default:
+      break;
+  }
+}
+
+}  // namespace
+
+CanFrame pack_setpoints(const AxisConfig& axis, const DriveCommand& command) noexcept {
+  CanFrame frame;
+  frame.id = setpoint_id(axis);
+  for (const MappedObject& mapped : axis.setpoints) {
+    const std::uint32_t word = setpoint_word(axis, command, mapped.object.index);
+    for (unsigned bit = 0; bit < mapped.bits; bit += 8)
+      frame.data[frame.size++] = static_cast<std::uint8_t>(word >> bit);
+  }
+  return frame;
+}
+
+bool unpack_answers(const AxisConfig& axis, const CanFrame& frame, DriveFeedback& feedback) noexcept {
+  if (frame.size < mapped_bytes(axis.answers)) return false;
+  std::size_t at = 0;
+  for (const MappedObject& mapped : axis.answers) {
+    std::uint32_t word = 0;
+    for (unsigned bit = 0; bit < mapped.bits; bit += 8) word |= static_cast<std::uint32_t>(frame.data[at++]) << bit;
+    take_word(axis, mapped.object.index, word, feedback);
+  }
+  return true;
+}
+
+}  // namespace rmac::fieldbus::canopen

@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "gateway/device_driver/device_database.hpp"
+#include "gateway/rmac/commands.hpp"
+#include "gateway/rmac/table.hpp"
+#include "rmac/fieldbus/canopen/bus_load.hpp"
+
+namespace rmac::cli {
+namespace {
+
+using fieldbus::canopen::BusLoad;
+using fieldbus::canopen::CanopenConfig;
+
+/// The buses that a machine's drives are on.
+std::set<std::string> buses_of(const sdk::DeviceObject& device) {
+  std::set<std::string> names;
+  for (const sdk::Actuator& actuator : device.actuators) names.insert(actuator.bus);
+  for (const sdk::Spindle& spindle : device.spindles) names.insert(spindle.bus);
+  return names;
+}
+
+nlohmann::json to_json(const CanopenConfig& config, const BusLoad& load) {
+  return {{"bus", config.interface},
+          {"axes", config.axes.size()},
+          {"period_s", std::chrono::duration<double>(config.period).count()},
+          {"bit_rate", config.bit_rate},
+          {"sync_bits", load.sync_bits},
+          {"setpoint_bits", load.setpoint_bits},
+          {"answer_bits", load.answer_bits},
+          {"cyclic_bits", load.cyclic_bits()},
+          {"cycle_bits", load.bits_of_cycle},
+          {"load", load.load()},
+          {"share", load.share},
+          {"heartbeat_bits_per_s", load.heartbeat_bits_per_s},
+          {"fits", load.fits()}};
+}
+
+std::vector<std::string> to_row(const CanopenConfig& config, const BusLoad& load) {
+  const double heartbeat_percent = load.heartbeat_bits_per_s / config.bit_rate * 100;
+  return {config.interface,
+          std::to_string(config.axes.size()),
+          number(std::chrono::duration<double, std::milli>(config.period).count()),
+          std::to_string(load.sync_bits),
+          std::to_string(load.setpoint_bits),
+          std::to_string(load.answer_bits),
+          std::to_string(load.cyclic_bits()),
+          number(load.bits_of_cycle, 0),
+          number(load.load() * 100, 1),
+          number(load.share * 100, 1),
+          number(heartbeat_percent, 2)};
+}
+
+}  // namespace
+
+Result<> show_bus_load(const std::string& device_json, double period_s, bool json) {
+  const auto device = gateway::read_device_database(device_json);
+  if (!device) return fail(device.error().message);
+  const sdk::ModuleChoice& choice = device->digital_control_interface;
+  if (choice.name != "CANopenInterface") {
+    return fail(fmt::format("{}: its drives are reached by {}, which is no CAN bus", device_json, choice.name));
+  }
+  nlohmann::json list = nlohmann::json::array();
+  std::vector<std::vector<std::string>> rows;
+  std::string refusal;
+  for (const std::string& bus : buses_of(*device)) {
+    const auto config = fieldbus::canopen::read_canopen_config(bus, choice.numbers, choice.texts, period_s);
+    if (!config) return fail(fmt::format("{}: {}", device_json, config.error().message));
+    const BusLoad load = bus_load(*config);
+    list.push_back(to_json(*config, load));
+    rows.push_back(to_row(*config, load));
+    if (const auto fits = check_bus_load(*config); !fits && refusal.empty()) refusal = fits.error().message;
+  }
+  if (json) {
+    fmt::print("{}\n", list.dump());
+  } else {
+    fmt::print("{}", table({"bus", "axes", "cycle ms", "SYNC", "setpoints", "answers", "bits", "of", "load %",
+                            "share %", "heartbeats %"},
+                           rows));
+  }
+  return refusal.empty() ? Result<>() : fail(refusal);
+}
+
+}  // namespace rmac::cli

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <set>
+#include <vector>
+
+#include "unit/fieldbus/sdo_server.hpp"
+
+namespace rmac::fieldbus::test {
+
+/// The power state machine of CiA 402-2, figure 3, written from the standard's tables and not from the master's code.
+class PowerStates {
+ public:
+  enum State {
+    NotReady,
+    SwitchOnDisabled,
+    ReadyToSwitchOn,
+    SwitchedOn,
+    OperationEnabled,
+    QuickStop,
+    FaultReaction,
+    Fault
+  };
+
+  void control(std::uint16_t word);
+  void raise_fault() { state = FaultReaction; }
+  /// What goes on by itself: transitions 1 and 14.
+  void proceed();
+  [[nodiscard]] std::uint16_t statusword() const;
+  /// Asks for a quick stop as an abort of the connection does.
+  void quick_stop() {
+    if (state == OperationEnabled) state = QuickStop;
+  }
+
+  State state = NotReady;
+
+ private:
+  bool reset_before_ = false;
+};
+
+/// A CANopen node with one or more CiA 402 axes: object dictionary, SDO server, PDOs as its dictionary says, NMT,
+/// heartbeat produced and watched, EMCY, and an axis that moves. It shares no protocol code with the master.
+class VirtualDrive {
+ public:
+  using Time = std::chrono::nanoseconds;
+
+  explicit VirtualDrive(std::uint8_t node, int axes = 1);
+
+  void receive(const CanFrame& frame, Time now);
+  /// Lets time pass: heartbeats, moving axes.
+  void poll(Time now);
+  /// What it wants to send, in order.
+  [[nodiscard]] std::vector<CanFrame> take_output();
+
+  void power_on(Time now);  ///< sends its boot-up message
+  void power_off() { powered_ = false; }
+  void trip(std::uint16_t error_code);
+
+  [[nodiscard]] std::uint8_t node() const { return node_; }
+  [[nodiscard]] PowerStates::State state(int axis = 0) const {
+    return axes_.at(static_cast<std::size_t>(axis)).power.state;
+  }
+  [[nodiscard]] double position(int axis = 0) const { return axes_.at(static_cast<std::size_t>(axis)).position; }
+  [[nodiscard]] double velocity(int axis = 0) const { return axes_.at(static_cast<std::size_t>(axis)).velocity; }
+  [[nodiscard]] bool operational() const { return nmt_ == 5; }
+  [[nodiscard]] std::uint32_t value(std::uint16_t index, std::uint8_t sub) const;
+  void set(std::uint16_t index, std::uint8_t sub, std::uint32_t value, int bytes);
+  void remove(std::uint16_t index);
+
+  SdoServer& server() { return server_; }
+  bool answers_sdo = true;
+  bool answers_sync = true;
+  bool sends_heartbeats = true;
+  std::uint8_t tpdo_length_change = 0;  ///< bytes that its TPDOs are too short by
+  std::function<void(Object, const Bytes&)> on_write;
+
+ private:
+  struct Axis {
+    PowerStates power;
+    double position = 0;  ///< counts
+    double velocity = 0;  ///< counts/s
+  };
+
+  void reset(Time now);
+  void emergency(std::uint16_t code);
+  void sync(Time now);
+  void act_on(const CanFrame& frame);
+  void move(Time now);
+  void publish();
+  void watch_master(Time now);
+  [[nodiscard]] std::uint32_t check_write(Object object, const Bytes& bytes);
+  void send(std::uint16_t id, std::vector<std::uint8_t> data);
+
+  std::uint8_t node_;
+  std::vector<Axis> axes_;
+  ObjectDictionary dictionary_;
+  ObjectDictionary defaults_;
+  SdoServer server_;
+  std::vector<CanFrame> output_;
+  std::vector<CanFrame> waiting_;  ///< setpoints for the next SYNC
+  int nmt_ = 0;
+  bool powered_ = false;
+  Time moved_{0};
+  Time next_heartbeat_{0};
+  Time master_heard_{0};
+  bool watches_ = false;
+};
+
+}  // namespace rmac::fieldbus::test
