@@ -64,7 +64,8 @@ void add_feeds(const auto& add) {
   }
   Method tolerance =
       setter("RMAC_CAM.SetPathTolerance",
-             "How far corners between moves queued from now on may be rounded. So far only 0, an exact stop, is taken.",
+             "How far the path of moves queued from now on may be from what was programmed, so that corners, jumps of "
+             "curvature and short lines are passed at speed. 0: an exact stop wherever the path is not smooth.",
              number("Tolerance", "mm").at_least(0), &RmacCam::set_path_tolerance);
   tolerance.origin = Origin::Extension;
   add(std::move(tolerance));

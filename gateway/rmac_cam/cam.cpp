@@ -204,13 +204,6 @@ double Cam::joint_interp_speed() const {
 
 Expected<> Cam::set_path_tolerance(double mm) {
   if (!std::isfinite(mm) || mm < 0) return refuse(fmt::format("SetPathTolerance: {} mm must be 0 or more", mm));
-  if (mm > 0) {
-    return failure(
-        MinorCode::UnsupportedOperation,
-        fmt::format(
-            "SetPathTolerance: {} mm cannot be used, corners are not rounded yet; 0, an exact stop, stays in force",
-            mm));
-  }
   tolerance_mm_ = mm;
   return {};
 }

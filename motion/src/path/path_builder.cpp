@@ -4,15 +4,13 @@
 #include <limits>
 
 #include "path/join.hpp"
+#include "path/travel.hpp"
 #include "path/trimmed_curve.hpp"
 #include "rmac/motion/frame.hpp"
 #include "rmac/motion/planner.hpp"
 
 namespace rmac {
 namespace {
-
-/// A joint may stand this far beyond its limit, in mm or degrees: rounding of a move that ends exactly on it.
-constexpr double kTravelSlack = 1e-6;
 
 template <typename... Values>
 std::string text(const char* format, Values... values) {
@@ -44,59 +42,11 @@ Expected<> check_demand(const Move& move, bool joint_move) {
   return {};
 }
 
-/// How far joint j is beyond its travel, with sign; 0 inside.
-double beyond(const JointLimits& joint, double position) {
-  const bool bounded_above =
-      joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfiniteNegative;
-  const bool bounded_below =
-      joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfinitePositive;
-  if (bounded_above && position > joint.max + kTravelSlack) return position - joint.max;
-  if (bounded_below && position < joint.min - kTravelSlack) return position - joint.min;
-  return 0;
-}
-
-struct Offence {
-  std::size_t joint = 0;
-  double position = 0, amount = 0, s = 0;
-};
-
-/// The first point of a segment, node by node and at each joint's turning points between nodes, where a joint leaves
-/// its travel.
-bool find_offence(const PathSegment& segment, const std::vector<JointLimits>& joints, Offence& offence) {
-  const auto nodes = segment.curve().nodes();
-  JointPoint left, right, turn;
-  const auto offends = [&](const JointPoint& point, double s) {
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-      if (const double amount = beyond(joints[j], point.d[0][j]); amount != 0) {
-        offence = {j, point.d[0][j], amount, s};
-        return true;
-      }
-    }
-    return false;
-  };
-  if (segment.evaluate(nodes[0], 1, 1, left) != KinematicsStatus::Ok || offends(left, nodes[0])) return true;
-  for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-    const double h = nodes[i + 1] - nodes[i];
-    if (segment.evaluate(nodes[i + 1], 1, -1, right) != KinematicsStatus::Ok) return true;
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-      // Where the joint turns between the nodes: the zero of the secant of its derivative is near enough, nodes being
-      // dense.
-      const double a = left.d[1][j], b = right.d[1][j];
-      if (a * b >= 0) continue;
-      const double s = nodes[i] + h * a / (a - b);
-      if (segment.evaluate(s, 0, 1, turn) == KinematicsStatus::Ok && offends(turn, s)) return true;
-    }
-    if (offends(right, nodes[i + 1])) return true;
-    left = right;
-  }
-  return false;
-}
-
 Error unreachable(const Move& move, const PathSegment& segment, KinematicsStatus status, double s) {
   const ToolPose pose = segment.pose(s);
-  const std::string place =
-      text("tip x %.4f y %.4f z %.4f, axis i %.4f j %.4f k %.4f (part frame), %.4f mm along the move", pose.tip[0],
-           pose.tip[1], pose.tip[2], pose.axis[0], pose.axis[1], pose.axis[2], segment.demand().s_begin_mm + s);
+  const std::string place = text(
+      "tip x %.4f y %.4f z %.4f, axis i %.4f j %.4f k %.4f (part frame), %.4f mm along the move", pose.tip[0],
+      pose.tip[1], pose.tip[2], pose.axis[0], pose.axis[1], pose.axis[2], segment.stretches().front().s_begin_mm + s);
   const long long id = move.id;
   if (status == KinematicsStatus::Singular) {
     return {MinorCode::TravelLimit,
@@ -135,36 +85,37 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
   std::vector<std::shared_ptr<const PathSegment>> segments;
   std::vector<double> joints = end_joints_;
   PathDemand demand;
-  demand.move_id = move.id;
   demand.feed_mm_s = move.feed_mm_s;
   demand.accel_rise_mm_s2 = move.accel_rise_mm_s2;
   demand.accel_fall_mm_s2 = move.accel_fall_mm_s2;
   demand.tolerance_mm = move.tolerance_mm;
   demand.joint_speed_fraction = move.joint_speed_fraction;
-  demand.last_of_move = false;
+  MoveStretch stretch;
+  stretch.move_id = move.id;
 
   // One smooth curve in, one segment out; a curve is cut where the joints' acceleration would have to jump.
   const auto append = [&](const std::shared_ptr<const Curve>& curve) -> Expected<> {
-    const auto segment = std::make_shared<PathSegment>(curve, frames_, model_.kinematics, demand);
+    const auto segment = std::make_shared<PathSegment>(curve, frames_, model_.kinematics, demand, std::vector{stretch});
     double s = 0;
     if (const auto status = segment->resolve(joints, s); status != KinematicsStatus::Ok) {
       return tl::unexpected(unreachable(move, *segment, status, s));
     }
-    if (Offence offence; find_offence(*segment, model_.joints, offence)) {
+    if (const auto found = find_offence(*segment, model_.joints)) {
+      const TravelOffence& offence = *found;
       const JointLimits& joint = model_.joints[offence.joint];
       return failure(MinorCode::TravelLimit,
                      text("move %lld takes joint %s to %.4f %s, %.4f %s beyond its limit of %.4f %s, %.4f mm along the "
                           "move; nothing was queued",
                           static_cast<long long>(move.id), joint.name.c_str(), offence.position, unit(joint),
                           std::abs(offence.amount), unit(joint), offence.amount > 0 ? joint.max : joint.min,
-                          unit(joint), demand.s_begin_mm + offence.s));
+                          unit(joint), stretch.s_begin_mm + offence.s));
     }
     JointPoint end;
     if (segment->evaluate(segment->length(), 0, -1, end) != KinematicsStatus::Ok) {
       return tl::unexpected(unreachable(move, *segment, KinematicsStatus::Singular, segment->length()));
     }
     std::copy_n(end.d[0].begin(), joints.size(), joints.begin());
-    demand.s_begin_mm += segment->length();
+    stretch.s_begin_mm += segment->length();
     segments.push_back(segment);
     return {};
   };
@@ -190,7 +141,7 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
     }
     std::vector<double> cuts{0};
     if (!curve->breaks().empty()) {
-      PathSegment probe(curve, frames_, model_.kinematics, demand);
+      PathSegment probe(curve, frames_, model_.kinematics, demand, {stretch});
       double s = 0;
       if (const auto status = probe.resolve(joints, s); status != KinematicsStatus::Ok)
         return tl::unexpected(unreachable(move, probe, status, s));
@@ -210,7 +161,7 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
       const bool last = &owned == &curves->back() && i + 2 == cuts.size();
       demand.rest_before = positioning && segments.empty();
       demand.rest_after = positioning && last;
-      demand.last_of_move = last;
+      stretch.last_of_move = last;
       if (auto appended = append(piece); !appended) return tl::unexpected(appended.error());
     }
   }

@@ -69,13 +69,38 @@ class LeastSquares {
 }  // namespace
 
 PathSegment::PathSegment(std::shared_ptr<const Curve> curve, const Frames& frames,
-                         std::shared_ptr<const Kinematics> kinematics, const PathDemand& demand)
+                         std::shared_ptr<const Kinematics> kinematics, const PathDemand& demand,
+                         std::vector<MoveStretch> stretches)
     : curve_(std::move(curve)),
       kinematics_(std::move(kinematics)),
       frames_(frames),
       demand_(demand),
+      stretches_(std::move(stretches)),
       length_(curve_->length()),
-      joint_count_(kinematics_->joint_count()) {}
+      joint_count_(kinematics_->joint_count()) {
+  ended_before_.reserve(stretches_.size());
+  std::uint32_t ended = 0;
+  for (const MoveStretch& stretch : stretches_) {
+    ended_before_.push_back(ended);
+    if (stretch.last_of_move) ++ended;
+  }
+}
+
+const MoveStretch& PathSegment::stretch_at(double s) const noexcept {
+  const auto above = std::upper_bound(stretches_.begin(), stretches_.end(), s,
+                                      [](double value, const MoveStretch& stretch) { return value < stretch.begin; });
+  return above == stretches_.begin() ? stretches_.front() : *(above - 1);
+}
+
+std::uint32_t PathSegment::moves_ended(double from, double to) const noexcept {
+  // A stretch ends where the next one begins, the last one at the segment's end.
+  const auto ended = [this](double s) {
+    if (s >= length_) return ended_before_.back() + (stretches_.back().last_of_move ? 1U : 0U);
+    const auto index = &stretch_at(s) - stretches_.data();
+    return ended_before_[static_cast<std::size_t>(index)];
+  };
+  return to > from ? ended(to) - ended(from) : 0;
+}
 
 KinematicsStatus PathSegment::resolve(std::span<const double> start_joints, double& s_failed) {
   const auto nodes = curve_->nodes();

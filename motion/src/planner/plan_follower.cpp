@@ -51,13 +51,11 @@ void PlanFollower::receive(std::int64_t cycle) noexcept {
 std::uint32_t PlanFollower::count_done(double s) noexcept {
   std::uint32_t done = 0;
   for (std::size_t i = segment_; i < active_->segments.size(); ++i) {
-    const double end = active_->segment_start[i] + active_->segments[i]->length();
-    if (end > s + kSamePlace) break;
-    if (end > counted_s_ + kSamePlace) {
-      counted_s_ = end;
-      if (active_->segments[i]->demand().last_of_move) ++done;
-    }
+    const double start = active_->segment_start[i];
+    if (start > s) break;
+    done += active_->segments[i]->moves_ended(counted_s_ + kSamePlace - start, s + kSamePlace - start);
   }
+  counted_s_ = std::max(counted_s_, s);
   return done;
 }
 
@@ -86,8 +84,9 @@ void PlanFollower::follow(double t, Setpoint& setpoint) noexcept {
     setpoint.acceleration[j] = point.d[2][j] * at.v * at.v + point.d[1][j] * at.a;
   }
   setpoint.pose = segment.pose(local);
-  setpoint.move_id = segment.demand().move_id;
-  setpoint.s_mm = segment.demand().s_begin_mm + local;
+  const MoveStretch& stretch = segment.stretch_at(local);
+  setpoint.move_id = stretch.move_id;
+  setpoint.s_mm = stretch.s_begin_mm + stretch.s_per_length * (local - stretch.begin);
   setpoint.feed_mm_s = at.v;
   setpoint.moving = !ended;
   held_ = setpoint;

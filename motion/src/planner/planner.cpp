@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "joins/path_joiner.hpp"
 #include "path/join.hpp"
 #include "time_law/window.hpp"
 
@@ -22,6 +23,8 @@ constexpr std::int64_t kLongestLead = 64;
 constexpr double kSamePlace = 1e-7;
 /// A window that found no plan is tried again from a later state, after so many cycles.
 constexpr std::int64_t kRetryAfter = 10;
+/// What is held back for the sake of a join is given out so long before the machine would have to brake for its lack.
+constexpr double kRelease_s = 0.05;
 
 }  // namespace
 
@@ -41,6 +44,7 @@ struct Planner::Impl {
   std::vector<std::shared_ptr<const PathSegment>> segments;
   std::vector<double> starts;
   std::vector<char> rest_after;  ///< the path demands rest at the end of this segment
+  PathJoiner joiner;
   std::size_t moves_left = 0;
   double origin = 0;  ///< path length at which the first segment begins
 
@@ -50,11 +54,12 @@ struct Planner::Impl {
   double work_cycles = 0;                ///< cycles that went by while a plan was made, lately
   std::int64_t work_began = -1;          ///< cycle in which the last plan was begun
   std::int64_t tried_at = -kRetryAfter;  ///< cycle of the last attempt that found no plan
+  bool tried_from_rest = false;
   PathCommand wanted = PathCommand::Stop;
   double factor = 1;   ///< the override
   double limit_s = 0;  ///< path length at which RunOne ends
 
-  Impl(PlannerModel m, PlanChannel& c) : model(std::move(m)), channel(c) {}
+  Impl(PlannerModel m, PlanChannel& c) : model(std::move(m)), channel(c), joiner(model.joints, model.period_s) {}
 
   [[nodiscard]] FeedRule feed(double override_factor) const { return {override_factor, model.max_feed_mm_s}; }
   [[nodiscard]] double period() const { return model.period_s; }
@@ -80,12 +85,34 @@ struct Planner::Impl {
 
   void add(std::vector<std::shared_ptr<const PathSegment>> added) {
     for (auto& segment : added) {
+      moves_left += segment->moves_ended(-1, segment->length());
+      joiner.add(std::move(segment));
+    }
+  }
+
+  /// Lays what comes out of the joiner onto the path.
+  void lay(const PathJoiner::Segments& fresh) {
+    for (const auto& segment : fresh) {
       if (!segments.empty()) rest_after.back() = static_cast<char>(demands_rest(*segments.back(), *segment));
       starts.push_back(path_end());
-      moves_left += segment->demand().last_of_move ? 1U : 0U;
-      segments.push_back(std::move(segment));
-      rest_after.push_back(static_cast<char>(segments.back()->demand().rest_after));
+      segments.push_back(segment);
+      rest_after.push_back(static_cast<char>(segment->demand().rest_after));
     }
+  }
+
+  /// Makes the path longer by what is certain; false when nothing is.
+  bool supply() {
+    PathJoiner::Segments fresh;
+    while (fresh.empty() && joiner.ready()) joiner.advance(fresh);
+    lay(fresh);
+    return !fresh.empty();
+  }
+
+  /// Makes the path longer by what was held back for a join.
+  void release() {
+    PathJoiner::Segments fresh;
+    joiner.release(fresh);
+    lay(fresh);
   }
 
   [[nodiscard]] bool demands_rest(const PathSegment& before, const PathSegment& after) const {
@@ -146,29 +173,32 @@ struct Planner::Impl {
 
   /// Where the window that begins at s must or may end: at a demanded rest, at RunOne's limit, at the end of the path,
   /// or where it is long enough. `hard` tells the first two.
-  [[nodiscard]] double window_end(double s, const PathView& path, bool& hard) const {
-    double stop = path_end();
+  [[nodiscard]] double window_end(double s, const PathView& path, bool& hard) {
     hard = false;
+    std::optional<double> found;
     double v = 0, reach = kShortestWindow_mm;
     double a = std::numeric_limits<double>::infinity(), j = a;
     for (const JointLimits& joint : model.joints)
       a = std::min(a, joint.max_acceleration), j = std::min(j, joint.max_jerk);
     double fastest = 0;
     for (const JointLimits& joint : model.joints) fastest = std::max(fastest, joint.max_speed);
-    for (std::size_t i = path.find(s + kSamePlace, 1); i < segments.size(); ++i) {
+    for (std::size_t i = path.find(s + kSamePlace, 1); i < segments.size() || supply(); ++i) {
       v = std::max(v, std::min(segments[i]->demand().feed_mm_s * std::max(factor, 1.0), 2 * fastest));
       reach = std::max(reach, kRampsInWindow * ramp_length(v, a, j));
       const double end = starts[i] + segments[i]->length();
+      // Whether the path goes on without rest is known once its next segment is there.
+      if (i + 1 == segments.size() && rest_after[i] == 0 && end - s <= 2 * reach) supply();
       if (rest_after[i] != 0) {
-        stop = end;
+        found = end;
         hard = true;
         break;
       }
       if (end - s > 2 * reach) {
-        stop = end;
+        found = end;
         break;
       }
     }
+    double stop = found.value_or(path_end());
     if (wanted == PathCommand::RunOne && limit_s <= stop) {
       stop = limit_s;
       hard = true;
@@ -242,13 +272,19 @@ struct Planner::Impl {
     }
   }
 
-  /// The law of the next window from a state; from rest it always has one.
-  [[nodiscard]] std::optional<std::vector<LawPiece>> window_law(const PathState& from, double s_end,
-                                                                const std::vector<LawPiece>* before) const {
+  /// The law of a window from rest, which may end earlier than asked (`hard` is then cleared): what is too much for one
+  /// window may be found in parts, and where nothing is found the cautious law creeps over a short part only.
+  [[nodiscard]] std::optional<std::vector<LawPiece>> law_from_rest(double s, double s_end, bool& hard) const {
     const PathView path(segments, starts);
-    if (auto law = plan_window(path, model.joints, {from, s_end, feed(factor), before})) return law;
-    if (from.v != 0 || from.a != 0) return std::nullopt;
-    auto law = cautious_law(path, model.joints, from.s, s_end, feed(factor));
+    if (auto law = plan_window(path, model.joints, {{s, 0, 0}, s_end, feed(factor), nullptr})) return law;
+    for (const double part : {0.5, 0.4, 0.35, 0.3}) {
+      const double end = s + part * (s_end - s);
+      if (end - s < 100 * kSamePlace) break;
+      hard = false;
+      if (auto law = plan_window(path, model.joints, {{s, 0, 0}, end, feed(factor), nullptr})) return law;
+      s_end = end;
+    }
+    auto law = cautious_law(path, model.joints, s, s_end, feed(factor));
     if (check_law(path, model.joints, law, nullptr).worst <= 1.0) return law;
     return std::nullopt;
   }
@@ -258,7 +294,7 @@ struct Planner::Impl {
     const double s = base_end_s();
     bool hard = false;
     const double s_end = window_end(s, path, hard);
-    auto law = window_law({s, 0, 0}, s_end, nullptr);
+    auto law = law_from_rest(s, s_end, hard);
     if (!law) return no_plan(progress);
     auto plan = std::make_unique<Plan>();
     plan->start_cycle = progress.cycle + lead();
@@ -281,7 +317,8 @@ struct Planner::Impl {
     const PathState from = state_at(p, t_from);
     bool hard = false;
     const double s_end = window_end(from.s, path, hard);
-    auto law = window_law(from, s_end, &p.plan->law);
+    auto law = from.v == 0 && from.a == 0 ? law_from_rest(from.s, s_end, hard)
+                                          : plan_window(path, model.joints, {from, s_end, feed(factor), &p.plan->law});
     if (!law) return no_plan(progress);
     auto plan = std::make_unique<Plan>();
     plan->start_cycle = now;
@@ -368,27 +405,38 @@ struct Planner::Impl {
 
   bool no_plan(const ServoProgress& progress) {
     tried_at = progress.cycle;
+    tried_from_rest = ended(progress);
     return false;
   }
 
   /// What there is to do, if anything; the order is the order of urgency.
-  enum class Task { None, Stop, Override, Start, Extend };
+  enum class Task { None, Stop, Override, Supply, Start, Extend };
 
   [[nodiscard]] Task task(const ServoProgress& progress) const {
-    if (!acknowledged(progress) || progress.cycle < tried_at + kRetryAfter) return Task::None;
+    if (!acknowledged(progress)) return Task::None;
     const bool at_end = ended(progress);
+    // What found no plan in motion may find one from rest.
+    if (progress.cycle < tried_at + kRetryAfter && tried_from_rest == at_end) return Task::None;
     const bool run = wanted != PathCommand::Stop && factor > 0;
     // A plan is left only once it is followed: what replaces it begins somewhere along it.
     const bool begun = base() == nullptr || progress.cycle >= base()->plan->start_cycle;
     if (!run) return at_end || base()->stops || !begun ? Task::None : Task::Stop;
     const double limit = wanted == PathCommand::RunOne ? std::min(limit_s, path_end()) : path_end();
     const bool more = base_end_s() < limit - kSamePlace;
-    if (at_end) return more ? Task::Start : Task::None;
+    const bool one_done = wanted == PathCommand::RunOne && base_end_s() >= limit_s - kSamePlace;
+    const bool dry = base_end_s() >= path_end() - kSamePlace && !one_done;
+    if (dry && joiner.ready()) return Task::Supply;
+    if (at_end) {
+      if (more) return Task::Start;
+      return dry && !joiner.empty() ? Task::Supply : Task::None;
+    }
     if (base()->stops) return Task::None;
     const double t_now = now_s(*base(), progress.cycle);
     if (factor != base()->override_factor) return begun ? Task::Override : Task::None;
     const double t_decide = base()->hard_end ? base()->plan->end_time_s : base()->commit_t;
     if (more && t_decide - t_now < kHorizon_s) return Task::Extend;
+    if (dry && !joiner.empty() && t_decide - t_now < kRelease_s + static_cast<double>(lead()) * period())
+      return Task::Supply;
     return Task::None;
   }
 
@@ -402,7 +450,7 @@ struct Planner::Impl {
       forget_travelled(std::min(s, base()->plan->law.front().start.s));
     }
     const Task next = task(progress);
-    if (next != Task::None) work_began = progress.cycle;
+    if (next != Task::None && next != Task::Supply) work_began = progress.cycle;
     switch (next) {
       case Task::None:
         return false;
@@ -410,6 +458,9 @@ struct Planner::Impl {
         return stop(progress);
       case Task::Override:
         return divert(progress, std::nullopt, false) || no_plan(progress);
+      case Task::Supply:
+        if (!supply()) release();
+        return false;
       case Task::Start:
         return start_from_rest(progress);
       case Task::Extend:
@@ -421,27 +472,30 @@ struct Planner::Impl {
   double counted_s = -std::numeric_limits<double>::infinity();
 
   void count_done(double s) {
-    for (std::size_t i = 0; i < segments.size(); ++i) {
-      const double end = starts[i] + segments[i]->length();
-      if (end > s + kSamePlace) break;
-      if (end > counted_s + kSamePlace) {
-        counted_s = end;
-        if (segments[i]->demand().last_of_move && moves_left > 0) --moves_left;
+    for (std::size_t i = 0; i < segments.size() && starts[i] <= s; ++i) {
+      const std::size_t done = segments[i]->moves_ended(counted_s + kSamePlace - starts[i], s + kSamePlace - starts[i]);
+      moves_left -= std::min(moves_left, done);
+    }
+    counted_s = std::max(counted_s, s);
+  }
+
+  /// Where the move ends that the machine is in, or stands before.
+  [[nodiscard]] double next_move_end(double s) {
+    for (std::size_t i = segments.empty() ? 0 : PathView(segments, starts).find(s + kSamePlace, 1);; ++i) {
+      while (i >= segments.size() && !joiner.empty()) {
+        if (!supply()) release();
+      }
+      if (i >= segments.size()) return path_end();
+      const auto stretches = segments[i]->stretches();
+      for (std::size_t k = 0; k < stretches.size(); ++k) {
+        const double end = starts[i] + (k + 1 < stretches.size() ? stretches[k + 1].begin : segments[i]->length());
+        if (stretches[k].last_of_move && end > s + kSamePlace) return end;
       }
     }
   }
 
   void command(PathCommand command) {
-    if (command == PathCommand::RunOne) {
-      const double s = base_end_s();
-      const PathView path(segments, starts);
-      limit_s = path_end();
-      for (std::size_t i = segments.empty() ? 0 : path.find(s + kSamePlace, 1); i < segments.size(); ++i) {
-        if (!segments[i]->demand().last_of_move) continue;
-        limit_s = starts[i] + segments[i]->length();
-        break;
-      }
-    }
+    if (command == PathCommand::RunOne) limit_s = next_move_end(base_end_s());
     wanted = command;
   }
 };
@@ -461,6 +515,7 @@ void Planner::clear() {
   i.segments.clear();
   i.starts.clear();
   i.rest_after.clear();
+  i.joiner.clear();
   i.moves_left = 0;
   i.origin = s;
   i.counted_s = s;

@@ -109,16 +109,25 @@ std::vector<double> make_grid(const PathView& path, double a, double b, double r
     for (const double s : path.segment(i).curve().nodes()) asked.push_back(start + s);
   }
   fixed.push_back(b);
+  // A step into an interval between the geometry's nodes is no longer than that interval, and steps grow with the
+  // distance from it: a sharp bend is never stepped over, and next to one the speed changes as fast as next to a rest.
+  std::vector<double> finest(asked.size(), coarsest);
+  for (std::size_t i = 0; i + 1 < asked.size(); ++i) {
+    const double width = asked[i + 1] - asked[i];
+    if (!(width > 0)) continue;
+    finest[i] = std::min(finest[i], width);
+    finest[i + 1] = std::min(finest[i + 1], width);
+  }
+  for (std::size_t i = 1; i < asked.size(); ++i)
+    finest[i] = std::min(finest[i], finest[i - 1] + kGrading * (asked[i] - asked[i - 1]));
+  for (std::size_t i = asked.size() - 1; i-- > 0;)
+    finest[i] = std::min(finest[i], finest[i + 1] + kGrading * (asked[i + 1] - asked[i]));
   std::size_t node = 0;  // the last one at or before the place
-  // A step reaches into an interval between the geometry's nodes by that interval's width at most: a sharp bend is
-  // never stepped over, however short it is.
   const auto step_from = [&](double s) {
     while (node + 1 < asked.size() && asked[node + 1] <= s) ++node;
     double h = std::min({coarsest, finest_a + kGrading * (s - rest_a), finest_b + kGrading * (rest_b - s)});
-    for (std::size_t i = node; i + 1 < asked.size() && asked[i] < s + h; ++i) {
-      const double width = asked[i + 1] - asked[i];
-      if (width > 0) h = std::min(h, std::max(asked[i] - s, 0.0) + width);
-    }
+    h = std::min(h, finest[node] + kGrading * std::abs(s - asked[node]));
+    if (node + 1 < asked.size()) h = std::min(h, finest[node + 1] + kGrading * (asked[node + 1] - s));
     return h;
   };
   std::vector<double> nodes{a};

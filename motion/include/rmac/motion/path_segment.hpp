@@ -24,30 +24,43 @@ struct JointPoint {
 
 /// What a move asks of the planner beside its geometry.
 struct PathDemand {
-  std::int64_t move_id = 0;
   double feed_mm_s = 0;         ///< bound of ds/dt; for joint moves already reduced to the joints' allowed speed
   double accel_rise_mm_s2 = 0;  ///< 0: the joints alone bound it
   double accel_fall_mm_s2 = 0;
   double tolerance_mm = 0;          ///< of the corner before it
   double joint_speed_fraction = 1;  ///< of the joints' speed limits
-  double s_begin_mm = 0;            ///< path length within the client's move at the segment's start
   bool rest_before = false;         ///< positioning moves start at rest
   bool rest_after = false;          ///< and end at rest
-  bool last_of_move = true;         ///< the move is done when this segment is
 };
 
-/// One curve of one move, seen through the kinematics: joints as a function of path length. Immutable, shared between
-/// planner and servo thread; `evaluate` is const and real-time safe.
+/// The stretch of a segment that belongs to one of the client's moves: from `begin` to the next stretch, or the end.
+struct MoveStretch {
+  double begin = 0;  ///< path length on the segment
+  std::int64_t move_id = 0;
+  double s_begin_mm = 0;     ///< path length within the move at `begin`
+  double s_per_length = 1;   ///< by how much the length within the move grows along the segment
+  bool last_of_move = true;  ///< the move is done at the end of the stretch
+};
+
+/// One curve of one move, or of several that were joined, seen through the kinematics: joints as a function of path
+/// length. Immutable, shared between planner and servo thread; `evaluate` is const and real-time safe.
 class PathSegment {
  public:
   PathSegment(std::shared_ptr<const Curve> curve, const Frames& frames, std::shared_ptr<const Kinematics> kinematics,
-              const PathDemand& demand);
+              const PathDemand& demand, std::vector<MoveStretch> stretches);
 
   [[nodiscard]] double length() const noexcept { return length_; }
   [[nodiscard]] std::size_t joint_count() const noexcept { return joint_count_; }
   [[nodiscard]] const PathDemand& demand() const noexcept { return demand_; }
   [[nodiscard]] const Curve& curve() const noexcept { return *curve_; }
   [[nodiscard]] const Frames& frames() const noexcept { return frames_; }
+  [[nodiscard]] const std::shared_ptr<const Curve>& shared_curve() const noexcept { return curve_; }
+  [[nodiscard]] const std::shared_ptr<const Kinematics>& kinematics() const noexcept { return kinematics_; }
+  [[nodiscard]] std::span<const MoveStretch> stretches() const noexcept { return stretches_; }
+  /// The stretch that holds s; at a border the one that begins there. Real-time safe.
+  [[nodiscard]] const MoveStretch& stretch_at(double s) const noexcept;
+  /// Moves of which the end lies in (from, to]. Real-time safe.
+  [[nodiscard]] std::uint32_t moves_ended(double from, double to) const noexcept;
 
   /// Finds the joints along the whole segment, node by node from `start_joints`, so that `evaluate` has seeds. Called
   /// once before use; the status of the first node that has no solution, and its path length, otherwise.
@@ -66,6 +79,8 @@ class PathSegment {
   std::shared_ptr<const Kinematics> kinematics_;
   Frames frames_;
   PathDemand demand_;
+  std::vector<MoveStretch> stretches_;
+  std::vector<std::uint32_t> ended_before_;  ///< moves that end before each stretch begins
   double length_ = 0;
   std::size_t joint_count_ = 0;
   std::vector<double> seeds_;  ///< joint_count_ values a node of the curve

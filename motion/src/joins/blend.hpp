@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "joins/corner_shape.hpp"
+#include "rmac/motion/limits.hpp"
+#include "rmac/motion/path_segment.hpp"
+
+namespace rmac {
+
+/// A blend leaves `before` and enters `after` at this distance from where they meet, and lies between.
+struct Blend {
+  double reach = 0;
+  std::shared_ptr<const PathSegment> segment;
+};
+
+/// The fastest blend of two segments that meet, within the tolerance of the second (docs/derivations/joins.md): tangent
+/// and curvature of tip and tool axis are continuous, no point is further than the tolerance from the programmed path,
+/// nor any point of that from the blend. It uses no more than `room` of either. Without a segment
+/// where there is none: tolerance 0, joint moves, a turn on the spot, a place out of reach or travel.
+[[nodiscard]] Blend make_blend(const PathSegment& before, const PathSegment& after, double room,
+                               const std::vector<JointLimits>& joints);
+
+/// Appends the stretches of `from` between the path lengths a and b, laid onto [begin, end] of another segment.
+void append_stretches(const PathSegment& from, double a, double b, double begin, double end,
+                      std::vector<MoveStretch>& stretches);
+
+}  // namespace rmac

@@ -1,0 +1,114 @@
+#include "joins/path_joiner.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "joins/blend.hpp"
+#include "path/join.hpp"
+#include "path/trimmed_curve.hpp"
+
+namespace rmac {
+namespace {
+
+/// Each of a segment's two joins may take half of it; what remains between them is nothing, or at least this part.
+constexpr double kHalf = 0.5;
+constexpr double kLeastRest = 0.02;
+
+}  // namespace
+
+PathJoiner::PathJoiner(std::vector<JointLimits> joints, double period_s)
+    : joints_(std::move(joints)), period_s_(period_s) {}
+
+void PathJoiner::clear() {
+  incoming_.clear();
+  current_ = nullptr;
+}
+
+bool PathJoiner::ready() const noexcept {
+  if (current_ == nullptr) return !incoming_.empty();
+  // Without a tolerance of its own a move is not held back: its successor will hardly have one.
+  return !incoming_.empty() || !(current_->demand().tolerance_mm > 0);
+}
+
+bool PathJoiner::passes(const PathSegment& before, const PathSegment& after) const {
+  JointPoint below, above;
+  if (before.evaluate(before.length(), 2, -1, below) != KinematicsStatus::Ok ||
+      after.evaluate(0, 2, 1, above) != KinematicsStatus::Ok)
+    return false;
+  return passable(below, above, joints_, std::max({before.demand().feed_mm_s, after.demand().feed_mm_s, 1.0}),
+                  period_s_);
+}
+
+void PathJoiner::emit(double begin, double end, Segments& out) {
+  if (begin == 0 && end == current_->length()) {
+    out.push_back(current_);
+    return;
+  }
+  if (!(end > begin)) return;
+  std::vector<MoveStretch> stretches;
+  append_stretches(*current_, begin, end, 0, end - begin, stretches);
+  PathDemand demand = current_->demand();
+  demand.rest_before = demand.rest_before && begin == 0;
+  demand.rest_after = demand.rest_after && end == current_->length();
+  auto part = std::make_shared<PathSegment>(std::make_shared<TrimmedCurve>(current_->shared_curve(), begin, end),
+                                            current_->frames(), current_->kinematics(), demand, std::move(stretches));
+  JointPoint start;
+  double s_failed = 0;
+  // The whole was resolved, so its parts have solutions too.
+  if (current_->evaluate(begin, 0, 1, start) == KinematicsStatus::Ok)
+    (void)part->resolve({start.d[0].data(), joints_.size()}, s_failed);
+  out.push_back(std::move(part));
+}
+
+void PathJoiner::advance(Segments& out) {
+  if (current_ == nullptr) {
+    current_ = std::move(incoming_.front());
+    incoming_.pop_front();
+    begin_ = 0;
+    if (!ready()) return;
+  }
+  const double length = current_->length();
+  if (incoming_.empty()) {
+    emit(begin_, length, out);
+    current_ = nullptr;
+    return;
+  }
+  std::shared_ptr<const PathSegment> next = std::move(incoming_.front());
+  incoming_.pop_front();
+  Blend blend;
+  if (next->demand().tolerance_mm > 0 && !passes(*current_, *next)) {
+    double room = kHalf * std::min(length, next->length());
+    blend = make_blend(*current_, *next, room, joints_);
+    const auto leaves_sliver = [&](double whole) {
+      return blend.reach < kHalf * whole && blend.reach > (kHalf - kLeastRest) * whole;
+    };
+    for (const double whole : {length, next->length()}) {
+      if (!leaves_sliver(whole)) continue;
+      room = std::min(room, (kHalf - kLeastRest) * whole);
+      blend = make_blend(*current_, *next, room, joints_);
+    }
+  }
+  emit(begin_, length - blend.reach, out);
+  if (blend.segment) out.push_back(std::move(blend.segment));
+  current_ = std::move(next);
+  begin_ = blend.reach;
+}
+
+void PathJoiner::release(Segments& out) {
+  if (current_ == nullptr) {
+    if (incoming_.empty()) return;
+    current_ = std::move(incoming_.front());
+    incoming_.pop_front();
+    begin_ = 0;
+  }
+  const double length = current_->length();
+  if (begin_ < (kHalf - kLeastRest) * length && current_->demand().tolerance_mm > 0) {
+    emit(begin_, kHalf * length, out);
+    begin_ = kHalf * length;
+    return;
+  }
+  emit(begin_, length, out);
+  current_ = nullptr;
+}
+
+}  // namespace rmac

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "rmac/motion/limits.hpp"
+#include "rmac/motion/path_segment.hpp"
+
+namespace rmac {
+
+/// The stage between the moves as they were programmed and the path as it is travelled: corners are rounded within
+/// tolerance (docs/derivations/joins.md). It streams: how a segment ends is known only once the next one is there, so
+/// the last one is held back until then, or until the machine would have to slow down for it. Planner thread.
+class PathJoiner {
+ public:
+  using Segments = std::vector<std::shared_ptr<const PathSegment>>;
+
+  explicit PathJoiner(std::vector<JointLimits> joints, double period_s);
+
+  void add(std::shared_ptr<const PathSegment> segment) { incoming_.push_back(std::move(segment)); }
+  void clear();
+
+  /// Nothing is held back or waits.
+  [[nodiscard]] bool empty() const noexcept { return current_ == nullptr && incoming_.empty(); }
+  /// `advance` has something to give.
+  [[nodiscard]] bool ready() const noexcept;
+  /// Appends the next piece of path for certain; call while `ready`.
+  void advance(Segments& out);
+  /// Appends a piece of what is held back without waiting for what follows: first the half that no join can touch, then
+  /// the rest, to the exact end of the move.
+  void release(Segments& out);
+
+ private:
+  void emit(double begin, double end, Segments& out);
+  [[nodiscard]] bool passes(const PathSegment& before, const PathSegment& after) const;
+
+  std::vector<JointLimits> joints_;
+  double period_s_;
+  std::deque<std::shared_ptr<const PathSegment>> incoming_;
+  std::shared_ptr<const PathSegment> current_;
+  double begin_ = 0;  ///< up to here `current_` was given out, or replaced by a blend
+};
+
+}  // namespace rmac

@@ -1,0 +1,53 @@
+#include "path/travel.hpp"
+
+namespace rmac {
+namespace {
+
+/// A joint may stand this far beyond its limit, in mm or degrees: rounding of a move that ends exactly on it.
+constexpr double kTravelSlack = 1e-6;
+
+/// How far joint j is beyond its travel, with sign; 0 inside.
+double beyond(const JointLimits& joint, double position) {
+  const bool bounded_above =
+      joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfiniteNegative;
+  const bool bounded_below =
+      joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfinitePositive;
+  if (bounded_above && position > joint.max + kTravelSlack) return position - joint.max;
+  if (bounded_below && position < joint.min - kTravelSlack) return position - joint.min;
+  return 0;
+}
+
+}  // namespace
+
+std::optional<TravelOffence> find_offence(const PathSegment& segment, const std::vector<JointLimits>& joints) {
+  const auto nodes = segment.curve().nodes();
+  JointPoint left, right, turn;
+  TravelOffence offence;
+  const auto offends = [&](const JointPoint& point, double s) {
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      if (const double amount = beyond(joints[j], point.d[0][j]); amount != 0) {
+        offence = {j, point.d[0][j], amount, s};
+        return true;
+      }
+    }
+    return false;
+  };
+  if (segment.evaluate(nodes[0], 1, 1, left) != KinematicsStatus::Ok || offends(left, nodes[0])) return offence;
+  for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+    const double h = nodes[i + 1] - nodes[i];
+    if (segment.evaluate(nodes[i + 1], 1, -1, right) != KinematicsStatus::Ok) return offence;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      // Where the joint turns between the nodes: the zero of the secant of its derivative is near enough, nodes being
+      // dense.
+      const double a = left.d[1][j], b = right.d[1][j];
+      if (a * b >= 0) continue;
+      const double s = nodes[i] + h * a / (a - b);
+      if (segment.evaluate(s, 0, 1, turn) == KinematicsStatus::Ok && offends(turn, s)) return offence;
+    }
+    if (offends(right, nodes[i + 1])) return offence;
+    left = right;
+  }
+  return std::nullopt;
+}
+
+}  // namespace rmac
