@@ -11,7 +11,7 @@ namespace rmac {
 namespace {
 
 /// A blend shorter than this each way is hardly faster than a stop, and strains the time law.
-constexpr double kLeastReach_mm = 0.02;
+constexpr double kLeastReach_mm = 0.05;
 /// The tolerance of a direction: what moves a point this far from the tip by the tolerance, about the length of a tool.
 constexpr double kAxisLever_mm = 100;
 constexpr int kTrials = 12;

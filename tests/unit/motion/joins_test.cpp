@@ -227,8 +227,8 @@ TEST_P(JoinProperty, RestsAtTheExactEndOfWhatASlowClientSent) {
 INSTANTIATE_TEST_SUITE_P(Seeds, JoinProperty, ::testing::Range(1U, 9U));
 
 /// Two lines of 20 mm that turn by an angle.
-PlannerBench around_corner(double degrees, double tolerance_mm, double feed_mm_s = 100) {
-  PlannerBench bench(mill(50000));
+std::unique_ptr<PlannerBench> around_corner(double degrees, double tolerance_mm, double feed_mm_s = 100) {
+  auto bench = std::make_unique<PlannerBench>(mill(50000));
   Move move;
   move.feed_mm_s = feed_mm_s;
   move.tolerance_mm = tolerance_mm;
@@ -236,41 +236,43 @@ PlannerBench around_corner(double degrees, double tolerance_mm, double feed_mm_s
   const Vector corner{20, 0, 0}, end{20 + 20 * std::cos(angle), 20 * std::sin(angle), 0};
   move.id = 1;
   move.geometry = LineGeometry{{{0, 0, 0}, kUp}, {corner, kUp}};
-  EXPECT_TRUE(bench.queue(move));
+  EXPECT_TRUE(bench->queue(move));
   move.id = 2;
   move.geometry = LineGeometry{{corner, kUp}, {end, kUp}};
-  EXPECT_TRUE(bench.queue(move));
-  bench.planner.command(PathCommand::Run);
-  EXPECT_TRUE(bench.run());
+  EXPECT_TRUE(bench->queue(move));
+  bench->planner.command(PathCommand::Run);
+  EXPECT_TRUE(bench->run());
   return bench;
 }
 
 TEST(Joins, PassCornersWithinToleranceAndFasterTheMoreThereIs) {
   for (const double degrees : {5.0, 30.0, 90.0, 135.0}) {
-    double before = seconds(around_corner(degrees, 0));
+    double before = seconds(*around_corner(degrees, 0));
     for (const double tolerance : {0.01, 0.1, 1.0}) {
-      const PlannerBench bench = around_corner(degrees, tolerance);
-      EXPECT_LE(seconds(bench), before + 0.001) << degrees << " degrees, " << tolerance << " mm";
-      EXPECT_LE(distance_to_trace({20, 0, 0}, travelled(bench)), tolerance);
-      before = seconds(bench);
+      const auto bench = around_corner(degrees, tolerance);
+      EXPECT_LE(seconds(*bench), before + 0.001) << degrees << " degrees, " << tolerance << " mm";
+      EXPECT_LE(distance_to_trace({20, 0, 0}, travelled(*bench)), tolerance);
+      before = seconds(*bench);
     }
-    EXPECT_LT(before, 0.95 * seconds(around_corner(degrees, 0)));
+    EXPECT_LT(before, 0.95 * seconds(*around_corner(degrees, 0)));
   }
 }
 
 TEST(Joins, RoundNoMoreThanTheFeedNeeds) {
-  const double deviation = distance_to_trace({20, 0, 0}, travelled(around_corner(90, 1, 5)));
+  const double deviation = distance_to_trace({20, 0, 0}, travelled(*around_corner(90, 1, 5)));
   EXPECT_LT(deviation, 0.1);
 }
 
 TEST(Joins, EndAMoveInTheMiddleOfItsCorner) {
-  const PlannerBench bench = around_corner(90, 0.1);
+  const auto bench = around_corner(90, 0.1);
   double s = -1;
   std::int64_t id = 0;
-  for (const Setpoint& setpoint : bench.record) {
+  for (const Setpoint& setpoint : bench->record) {
     if (setpoint.move_id == 0) continue;
     if (setpoint.move_id != id) {
-      if (id != 0) EXPECT_NEAR(s, 20, 0.1);
+      if (id != 0) {
+        EXPECT_NEAR(s, 20, 0.1);
+      }
       EXPECT_EQ(setpoint.move_id, id + 1);
       EXPECT_NEAR(setpoint.s_mm, 0, 0.1);
       EXPECT_EQ(setpoint.moves_done, id == 0 ? 0U : 1U);
