@@ -17,7 +17,7 @@ class PathTolerance(unittest.TestCase):
 
     def nearest_to_corner(self, tolerance_mm):
         """How near the measured path of two lines comes to where they meet."""
-        self.operator.call("RMAC_CAM.SetFeedrate", Feedrate=6000)
+        self.operator.call("RMAC_CAM.SetFeedrate", Feedrate=2000)
         self.operator.call("RMAC_CAM.SetPathTolerance", Tolerance=tolerance_mm)
         self.assertEqual(self.operator.call("RMAC_CAM.GetPathTolerance"), tolerance_mm)
         self.operator.call("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (*CORNER, 0), move_id=1))
