@@ -1,0 +1,45 @@
+#!/bin/bash
+# Boots a Debian kernel in QEMU over this machine's own root file system (read-only, under an overlay), runs a script in it,
+# prints its console, and ends with the script's exit code. The kernel is fetched once and unpacked, not installed.
+# usage: [FLAVOUR=rt-amd64] [KERNELS=DIR] boot.sh GUEST_SCRIPT [ARGUMENT]
+# The guest's clock counts instructions (1 ns each), so that what happens in it does not depend on how busy the machine is.
+set -euo pipefail
+flavour=${FLAVOUR:-amd64} kernels=${KERNELS:-${XDG_CACHE_HOME:-$HOME/.cache}/rmac-bench} guest=$(realpath "$1") argument=${2:-}
+kernel=$kernels/$flavour
+if ! [[ -d $kernel ]]; then
+  mkdir -p "$kernels"
+  package=$(apt-cache depends "linux-image-$flavour" | awk '/Depends: linux-image-[0-9]/ {print $2; exit}')
+  (cd "$kernels" && apt-get download -qq "$package" && dpkg-deb -x "$package"_*.deb "$flavour.part" && rm "$package"_*.deb && mv "$flavour.part" "$flavour")
+fi
+work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
+mkdir -p "$work"/root/{bin,proc,sys,dev,m}
+cp /bin/busybox "$work/root/bin/"
+for module in virtio virtio_ring virtio_pci virtio_pci_modern_dev virtio_pci_legacy_dev netfs fscache 9pnet 9pnet_virtio 9p overlay can can-raw can-dev vcan; do
+  find "$kernel/lib/modules" -name "$module.ko" -exec cp {} "$work/root/m/" \;
+done
+cat > "$work/root/init" <<'I'
+#!/bin/busybox sh
+b=/bin/busybox
+$b mount -t proc proc /proc; $b mount -t sysfs sys /sys; $b mount -t devtmpfs dev /dev
+# Three passes load modules in whatever order they need each other.
+for pass in 1 2 3; do for f in /m/*.ko; do $b insmod $f 2>/dev/null; done; done
+$b mkdir -p /lower /over /sysroot
+$b mount -t 9p -o trans=virtio,version=9p2000.L,msize=512000,ro,cache=loose rootfs /lower
+$b mount -t tmpfs tmpfs /over; $b mkdir /over/up /over/work
+$b mount -t overlay overlay -o lowerdir=/lower,upperdir=/over/up,workdir=/over/work /sysroot
+for fs in proc sysfs:sys devtmpfs:dev tmpfs:run tmpfs:dev/shm devpts:dev/pts; do
+  $b mkdir -p /sysroot/${fs#*:}; $b mount -t ${fs%%:*} none /sysroot/${fs#*:}
+done
+for word in $($b cat /proc/cmdline); do case $word in guest=*) guest=${word#guest=};; argument=*) argument=${word#argument=};; esac; done
+$b chroot /sysroot /usr/bin/env PATH=/usr/sbin:/usr/bin:/sbin:/bin /bin/bash "$guest" "$argument"
+echo "guest exit $?"
+echo o > /proc/sysrq-trigger; $b sleep 5
+I
+chmod +x "$work/root/init"
+(cd "$work/root" && find . | cpio -o -H newc --quiet | gzip -1) > "$work/initrd.gz"
+timeout "${LIMIT:-600}" qemu-system-x86_64 -M q35 -cpu max -accel tcg,thread=single -icount shift=0,sleep=off -smp 1 -m 1G \
+  -nographic -nic none -no-reboot -kernel "$kernel"/boot/vmlinuz-* -initrd "$work/initrd.gz" \
+  -append "console=ttyS0 quiet panic=-1 mitigations=off nokaslr guest=$guest argument=$argument" \
+  -fsdev local,id=r,path=/,security_model=none,readonly=on,multidevs=remap -device virtio-9p-pci,fsdev=r,mount_tag=rootfs |
+  tr -d '\r' | tee "$work/console"
+exit "$(awk '/^guest exit / {code = $3} END {print code == "" ? 1 : code}' "$work/console")"
