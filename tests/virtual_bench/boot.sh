@@ -31,7 +31,7 @@ for fs in proc sysfs:sys devtmpfs:dev tmpfs:run tmpfs:dev/shm devpts:dev/pts; do
   $b mkdir -p /sysroot/${fs#*:}; $b mount -t ${fs%%:*} none /sysroot/${fs#*:}
 done
 for word in $($b cat /proc/cmdline); do case $word in guest=*) guest=${word#guest=};; argument=*) argument=${word#argument=};; esac; done
-$b chroot /sysroot /usr/bin/env PATH=/usr/sbin:/usr/bin:/sbin:/bin /bin/bash "$guest" "$argument"
+$b chroot /sysroot /usr/bin/env PATH=/usr/sbin:/usr/bin:/sbin:/bin "$guest" "$argument"
 echo "guest exit $?"
 echo o > /proc/sysrq-trigger; $b sleep 5
 I

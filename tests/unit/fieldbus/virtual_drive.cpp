@@ -9,7 +9,6 @@ namespace {
 constexpr int kPreOperational = 127;
 constexpr int kOperational = 5;
 constexpr int kStopped = 4;
-constexpr double kMaxAcceleration = 2e6;  // counts/s² at rated torque
 
 std::uint16_t profile(int axis, int index) {
   return static_cast<std::uint16_t>(index + 0x800 * axis);
@@ -304,7 +303,7 @@ void VirtualDrive::move(Time now) {
       const double before = axis.position;
       if (mode == 10) {
         const auto torque = static_cast<std::int16_t>(value(profile(a, 0x6071), 0));
-        axis.velocity += torque / 1000.0 * kMaxAcceleration * dt;
+        axis.velocity += torque / 1000.0 * acceleration_counts_s2 * dt;
         axis.position += axis.velocity * dt;
       } else if (mode == 8) {
         axis.position = static_cast<std::int32_t>(value(profile(a, 0x607A), 0));
@@ -314,7 +313,7 @@ void VirtualDrive::move(Time now) {
         axis.position += axis.velocity * dt;
       }
     } else {  // brakes: on the quick stop ramp, or with the brake closed
-      const double brake = kMaxAcceleration * dt;
+      const double brake = acceleration_counts_s2 * dt;
       axis.velocity = std::abs(axis.velocity) <= brake ? 0 : axis.velocity - std::copysign(brake, axis.velocity);
       axis.position += axis.velocity * dt;
     }

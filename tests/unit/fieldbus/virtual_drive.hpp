@@ -69,6 +69,7 @@ class VirtualDrive {
   void remove(std::uint16_t index);
 
   SdoServer& server() { return server_; }
+  double acceleration_counts_s2 = 2e6;  ///< at rated torque, and while braking
   bool answers_sdo = true;
   bool answers_sync = true;
   bool sends_heartbeats = true;

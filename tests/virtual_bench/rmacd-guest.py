@@ -1,0 +1,106 @@
+#!/usr/bin/python3
+"""Inside the emulated machine: rmacd drives the example mill over vcan0 (three axes) and vcan1 (its spindle)."""
+
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+BUILD = pathlib.Path(sys.argv[1])
+RUN = pathlib.Path("/run/bench")
+TREE = RUN / "drivers"
+HEARTBEAT_MS = 50
+
+
+def call(*words):
+    return subprocess.run([str(word) for word in words], check=True, text=True, capture_output=True).stdout
+
+
+def rmac(*words):
+    return call(BUILD / "bin/rmac", "--host", "127.0.0.1", "--port", 7402, *words)
+
+
+def wait_for(what, reached, seconds=30.0):
+    end = time.monotonic() + seconds
+    while not reached():
+        if time.monotonic() > end:
+            raise SystemExit(f"{what}: waited {seconds} s")
+        time.sleep(0.02)
+
+
+def prepare():
+    for name in ("vcan0", "vcan1"):
+        call("ip", "link", "add", "dev", name, "type", "vcan")
+        call("ip", "link", "set", name, "txqueuelen", 256, "up")
+    call("ip", "link", "set", "lo", "up")
+    folder = TREE / "mill/3-axis/DMACXYZ"
+    shutil.copytree(BUILD / "drivers/mill/3-axis/DMACXYZ", folder)
+    shutil.copytree(BUILD / "drivers/modules", TREE / "modules")
+    device = json.loads((folder / "device.json").read_text())
+    for actuator in device["Actuators"]:
+        actuator["Bus"] = "vcan0"
+    device["Spindles"][0].update(Bus="vcan1", Axis=0)
+    for joint in device["Joints"]:  # a bus answers one cycle later than the simulated drives do: softer gains
+        joint["Gains"] = [400, 15000, 6.5]
+    device["DigitalControlInterface"] = {
+        "Module": "CANopenInterface",
+        "Parameters": {"vcan0.node": [1, 2, 3], "vcan1.node": 4, "vcan1.mode": 3, "vcan0.tpdo": "6041:00/16 6064:00/32",
+                       "heartbeat_ms": HEARTBEAT_MS}}
+    (folder / "device.json").write_text(json.dumps(device))
+    (RUN / "rmacd.json").write_text(json.dumps({
+        "listen": {"address": "127.0.0.1", "port": 7402}, "state_folder": str(RUN / "state"), "device_tree": str(TREE)}))
+    return folder / "device.json"
+
+
+class Drives:
+    def __init__(self, interface, *nodes):
+        self.log = RUN / f"{interface}.log"
+        self.process = subprocess.Popen([BUILD / "tests/virtual_bench/virtual_drives", interface, *map(str, nodes)],
+                                        stdout=self.log.open("w"))
+
+    def changes(self):
+        """(time, node, state, position), as they came."""
+        rows = re.findall(r"^(\S+) node (\d+) (\S+) at (\S+)$", self.log.read_text(), re.MULTILINE)
+        return [(float(t), int(node), state, float(position)) for t, node, state, position in rows]
+
+    def states(self):
+        return {node: state for _, node, state, _ in self.changes()}
+
+
+def main():
+    device = prepare()
+    print(call(BUILD / "bin/rmac", "bus", "load", device))
+    table = Drives("vcan0", 1, 2, 3)
+    head = Drives("vcan1", 4)
+    daemon = subprocess.Popen([BUILD / "bin/rmacd",
+                               "--config", RUN / "rmacd.json"])
+    wait_for("the daemon answers", lambda: subprocess.run(
+        [BUILD / "bin/rmac", "--port", "7402", "status", "--json"], capture_output=True).returncode == 0)
+    rmac("load", "DMACXYZ")
+    print("loaded:", table.states(), head.states())
+    rmac("jog", "--joint", 0, "--distance", 5)
+    status = json.loads(rmac("status", "--json"))
+    print("after a jog of 5 mm:", json.dumps(status)[:600])
+    assert set(table.states().values()) == {"operation-enabled"}, table.states()
+
+    jog = subprocess.Popen([BUILD / "bin/rmac", "--port", "7402", "jog", "--joint", "0", "--distance", "40"])
+    time.sleep(0.15)
+    killed = time.monotonic()
+    daemon.kill()
+    jog.wait()
+    wait_for("all drives stop", lambda: set({**table.states(), **head.states()}.values()) == {"quick-stop"}, 5)
+    stops = [(t, node, position) for drives in (table, head) for t, node, state, position in drives.changes()
+             if state == "quick-stop"]
+    late_ms = [(t - killed) * 1e3 for t, _, _ in stops]
+    x_mm = next(position for _, node, position in stops if node == 1) / 131072 * 5
+    print(f"killed at {x_mm:.3f} mm of X; quick stop after " + ", ".join(f"{ms:.1f} ms" for ms in late_ms))
+    assert len(stops) == 4 and max(late_ms) <= 2 * HEARTBEAT_MS
+    assert 5.1 < x_mm < 44.9, "it was not killed in mid-move"
+    print("ok")
+
+
+if __name__ == "__main__":
+    main()
