@@ -216,7 +216,9 @@ struct Planner::Impl {
     plan->end_time_s = last.t0 + last.duration;
     const double s_begin = plan->law.front().start.s, s_end = last.at(last.duration).s;
     const PathView path(segments, starts);
-    for (std::size_t i = path.find(s_begin, 1); i <= path.find(s_end, -1); ++i) {
+    // The cycle before may have seen the segment before, whose end the follower still has to count.
+    const double s_before = s_begin - 2 * plan->law.front().start.v * period();
+    for (std::size_t i = path.find(s_before, 1); i <= path.find(s_end, -1); ++i) {
       plan->segments.push_back(segments[i]);
       plan->segment_start.push_back(starts[i]);
     }
@@ -373,10 +375,11 @@ struct Planner::Impl {
     const double shortest = from.v * t0 + from.a * t0 * t0 / 3 + ramp_length(v_top, a, j);
     for (const double stretch : {1.02, 1.08, 1.2, 1.4, 1.8, 2.5, 4.0}) {
       const double s_end = from.s + shortest * stretch;
-      if (s_end >= rest - kSamePlace) break;
+      if (s_end >= rest - kSamePlace) return end_at_rest(progress, rest);
       if (divert(progress, s_end, true)) return true;
     }
-    return end_at_rest(progress, rest);
+    // This state, at the edge of what the limits allow, has no way out but the plan's own; one a little later may.
+    return no_plan(progress);
   }
 
   /// Cuts the followed plan off at path length `rest`, where it stands still anyway.
@@ -496,7 +499,14 @@ struct Planner::Impl {
 
   void command(PathCommand command) {
     if (command == PathCommand::RunOne) limit_s = next_move_end(base_end_s());
+    if (command != wanted) tried_at = -kRetryAfter;  // what failed was another wish
     wanted = command;
+  }
+
+  void set_override(double percent) {
+    const double wish = std::clamp(percent, 0.0, 200.0) / 100;
+    if (wish != factor) tried_at = -kRetryAfter;
+    factor = wish;
   }
 };
 
@@ -525,7 +535,7 @@ void Planner::command(PathCommand command) noexcept {
   impl_->command(command);
 }
 void Planner::set_override(double percent) noexcept {
-  impl_->factor = std::clamp(percent, 0.0, 200.0) / 100;
+  impl_->set_override(percent);
 }
 bool Planner::step(const ServoProgress& progress) {
   return impl_->step(progress);

@@ -305,7 +305,7 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
   const FeedRule& feed = window.feed;
   if (!(length > 0)) return std::nullopt;
 
-  double coarsest = length / 12;
+  double coarsest = length / (from_rest ? 12 : 40);
   {  // grid steps resolve the ramps to full speed
     double a = kInfinity, j = kInfinity;
     for (const JointLimits& joint : joints) a = std::min(a, joint.max_acceleration), j = std::min(j, joint.max_jerk);

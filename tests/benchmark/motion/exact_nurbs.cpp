@@ -104,6 +104,21 @@ Real ExactNurbs::length(Real from, Real to) const {
 }
 
 Real ExactNurbs::nearest(const double* point, Real guess) const {
+  const Real found = newton(point, guess);
+  if (distance(point, found) < 1e-9L) return found;
+  // In a near-cusp Newton's method may leave for another branch: look around, then start anew.
+  constexpr int kPlaces = 2000;
+  const Real around = 0.02L * (end() - begin());
+  Real best = found, least = distance(point, found);
+  for (int i = -kPlaces; i <= kPlaces; ++i) {
+    const Real u = std::clamp(guess + around * i / kPlaces, begin(), end());
+    if (const Real here = distance(point, u); here < least) least = here, best = u;
+  }
+  const Real again = newton(point, best);
+  return distance(point, again) < least ? again : best;
+}
+
+Real ExactNurbs::newton(const double* point, Real guess) const {
   Real u = std::clamp(guess, begin(), end());
   for (int i = 0; i < 40; ++i) {
     const auto d = at(u, 2);

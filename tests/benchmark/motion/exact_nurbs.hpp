@@ -38,6 +38,7 @@ class ExactNurbs {
     std::vector<RealPoint> points;  ///< homogeneous: weight last
   };
   [[nodiscard]] static RealPoint de_boor(const Level& level, Real u);
+  [[nodiscard]] Real newton(const double* point, Real guess) const;
   [[nodiscard]] Real length_smooth(Real from, Real to) const;
 
   std::size_t degree_;

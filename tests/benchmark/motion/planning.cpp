@@ -1,3 +1,5 @@
+#include <malloc.h>
+
 #include <string>
 
 #include "drive.hpp"
@@ -41,8 +43,10 @@ void planning_rows(Figures& figures, const Extent& extent) {
     ++sent;
     return true;
   };
+  const std::size_t before = mallinfo2().uordblks;
   while (sent < Planner::kQueueCapacity && append()) {
   }
+  const double queued_mb = 1e-6 * static_cast<double>(mallinfo2().uordblks - before);
   drive.planner.command(PathCommand::Run);
   const double longest_s = 60;  // of planning: a planner too slow for this row shall not hold up the others
   while (sent < most && drive.planning_s() < longest_s) {
@@ -56,6 +60,7 @@ void planning_rows(Figures& figures, const Extent& extent) {
   figures.at_least("planning_rate", static_cast<double>(done) / busy_s, 100'000, "lines/s", note + ", CPU time");
   figures.at_most("append_p99", quantile(append_us, 0.99), 20, "us",
                   std::to_string(append_us.size()) + " with 10000 queued, CPU time");
+  figures.inform("queue_memory", queued_mb, "MB", "10000 lines queued, the most there can be");
   figures.inform("append_p50", quantile(append_us, 0.5), "us");
 }
 

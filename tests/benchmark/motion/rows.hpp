@@ -14,6 +14,7 @@ void spline_rows(Figures& figures, const Extent& extent);
 void curve_step_rows(Figures& figures, const Extent& extent);
 void planning_rows(Figures& figures, const Extent& extent);
 void interruption_rows(Figures& figures, const Extent& extent);
+void headlight_rows(Figures& figures, const Extent& extent);
 void stream_rows(Figures& figures, const Extent& extent);
 void state_to_state_rows(Figures& figures, const Extent& extent);
 

@@ -35,7 +35,8 @@ Outcome stream(const PlannerModel& model, double feed_mm_s, double wanted_m, std
   std::int64_t sent = 0, done = 0, since = 0;
   drive.on_setpoint = [&](const Setpoint& setpoint) {
     check.setpoint(setpoint);
-    if (moving && !setpoint.moving && !(done + setpoint.moves_done == sent && (outcome.length_m >= wanted_m || sent >= most)))
+    if (moving && !setpoint.moving &&
+        !(done + setpoint.moves_done == sent && (outcome.length_m >= wanted_m || sent >= most)))
       ++outcome.rests;
     if (moving || setpoint.moving) outcome.travel_s += model.period_s;
     moving = setpoint.moving;
