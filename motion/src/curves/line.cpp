@@ -21,6 +21,7 @@ class LineCurve final : public Curve {
   [[nodiscard]] bool in_joint_space() const noexcept override { return false; }
   [[nodiscard]] std::size_t dimension() const noexcept override { return 6; }
   [[nodiscard]] double length() const noexcept override { return ends_[1]; }
+  [[nodiscard]] bool straight() const noexcept override { return turn_.angle_rad() == 0; }
   [[nodiscard]] std::span<const double> breaks() const noexcept override { return {}; }
   [[nodiscard]] std::span<const double> nodes() const noexcept override {
     if (nodes_.empty()) return ends_;

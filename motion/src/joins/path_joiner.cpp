@@ -17,17 +17,18 @@ constexpr double kLeastRest = 0.02;
 }  // namespace
 
 PathJoiner::PathJoiner(std::vector<JointLimits> joints, double period_s)
-    : joints_(std::move(joints)), period_s_(period_s) {}
+    : joints_(std::move(joints)), period_s_(period_s), lines_(joints_) {}
 
 void PathJoiner::clear() {
+  lines_.clear();
   incoming_.clear();
   current_ = nullptr;
 }
 
 bool PathJoiner::ready() const noexcept {
-  if (current_ == nullptr) return !incoming_.empty();
+  if (!incoming_.empty() || lines_.ready()) return true;
   // Without a tolerance of its own a move is not held back: its successor will hardly have one.
-  return !incoming_.empty() || !(current_->demand().tolerance_mm > 0);
+  return current_ != nullptr && lines_.empty() && !(current_->demand().tolerance_mm > 0);
 }
 
 bool PathJoiner::passes(const PathSegment& before, const PathSegment& after) const {
@@ -61,14 +62,17 @@ void PathJoiner::emit(double begin, double end, Segments& out) {
 }
 
 void PathJoiner::advance(Segments& out) {
+  if (incoming_.empty()) lines_.advance(false, incoming_);
   if (current_ == nullptr) {
+    if (incoming_.empty()) return;
     current_ = std::move(incoming_.front());
     incoming_.pop_front();
     begin_ = 0;
-    if (!ready()) return;
+    return;
   }
   const double length = current_->length();
   if (incoming_.empty()) {
+    if (!lines_.empty() || current_->demand().tolerance_mm > 0) return;
     emit(begin_, length, out);
     current_ = nullptr;
     return;
@@ -95,6 +99,11 @@ void PathJoiner::advance(Segments& out) {
 }
 
 void PathJoiner::release(Segments& out) {
+  if (incoming_.empty()) lines_.advance(true, incoming_);
+  if (current_ != nullptr && !incoming_.empty()) {
+    advance(out);
+    return;
+  }
   if (current_ == nullptr) {
     if (incoming_.empty()) return;
     current_ = std::move(incoming_.front());

@@ -4,25 +4,27 @@
 #include <memory>
 #include <vector>
 
+#include "joins/line_fit.hpp"
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/path_segment.hpp"
 
 namespace rmac {
 
-/// The stage between the moves as they were programmed and the path as it is travelled: corners are rounded within
-/// tolerance (docs/derivations/joins.md). It streams: how a segment ends is known only once the next one is there, so
-/// the last one is held back until then, or until the machine would have to slow down for it. Planner thread.
+/// The stage between the moves as they were programmed and the path as it is travelled: runs of
+/// short lines become the curves they came from, and corners are rounded, within tolerance (docs/derivations/joins.md).
+/// It streams: how a segment ends is known only once the next one is there, so the last one is held back until then, or
+/// until the machine would have to slow down for it. Planner thread.
 class PathJoiner {
  public:
   using Segments = std::vector<std::shared_ptr<const PathSegment>>;
 
   explicit PathJoiner(std::vector<JointLimits> joints, double period_s);
 
-  void add(std::shared_ptr<const PathSegment> segment) { incoming_.push_back(std::move(segment)); }
+  void add(std::shared_ptr<const PathSegment> segment) { lines_.add(std::move(segment)); }
   void clear();
 
   /// Nothing is held back or waits.
-  [[nodiscard]] bool empty() const noexcept { return current_ == nullptr && incoming_.empty(); }
+  [[nodiscard]] bool empty() const noexcept { return current_ == nullptr && incoming_.empty() && lines_.empty(); }
   /// `advance` has something to give.
   [[nodiscard]] bool ready() const noexcept;
   /// Appends the next piece of path for certain; call while `ready`.
@@ -37,7 +39,8 @@ class PathJoiner {
 
   std::vector<JointLimits> joints_;
   double period_s_;
-  std::deque<std::shared_ptr<const PathSegment>> incoming_;
+  LineFit lines_;
+  std::deque<std::shared_ptr<const PathSegment>> incoming_;  ///< through with `lines_`
   std::shared_ptr<const PathSegment> current_;
   double begin_ = 0;  ///< up to here `current_` was given out, or replaced by a blend
 };

@@ -300,5 +300,81 @@ TEST(Joins, KeepTheTravelThatTheCornersThemselvesKeep) {
     for (std::size_t j = 0; j < 2; ++j) EXPECT_LE(setpoint.position[j], 50 + 1e-6);
 }
 
+/// A rose of five leaves from the origin, in lines; `rounding_mm` is what the client's coordinates are rounded to.
+Trace rose(double line_mm, double rounding_mm = 0) {
+  Trace corners;
+  double since = line_mm;
+  Vector before{};
+  for (int i = 0; i <= 400000; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 400000, r = 12 + 4 * std::cos(5 * angle);
+    Vector here{r * std::cos(angle) - 16, r * std::sin(angle), 0};
+    if (i > 0) since += distance(before, here);
+    before = here;
+    if (since < line_mm) continue;
+    since = 0;
+    if (rounding_mm > 0)
+      for (double& c : here) c = std::round(c / rounding_mm) * rounding_mm;
+    corners.push_back(here);
+  }
+  return corners;
+}
+
+/// Queues lines through corners, and checks that the path keeps their tolerance and the limits.
+double machined(const Trace& corners, double tolerance_mm, int cycles_between = 0) {
+  PlannerBench bench(mill(50000));
+  if (cycles_between > 0) bench.planner.command(PathCommand::Run);
+  Move move;
+  move.feed_mm_s = 100;
+  move.tolerance_mm = tolerance_mm;
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    move.id = static_cast<std::int64_t>(i);
+    move.geometry = LineGeometry{{corners[i - 1], kUp}, {corners[i], kUp}};
+    EXPECT_TRUE(bench.queue(move));
+    for (int k = 0; k < cycles_between; ++k) bench.cycle();
+  }
+  bench.planner.command(PathCommand::Run);
+  EXPECT_TRUE(bench.run());
+  EXPECT_EQ(bench.moves_done(), corners.size() - 1);
+  EXPECT_EQ(bench.planner.moves_left(), 0U);
+  const Trace path = travelled(bench);
+  EXPECT_LT(distance(path.back(), corners.back()), 1e-9);
+  double off = 0;
+  for (const Vector& p : path) off = std::max(off, distance_to_trace(p, corners));
+  EXPECT_LE(off, tolerance_mm + 1e-9);
+  off = 0;
+  for (const Vector& p : corners) off = std::max(off, distance_to_trace(p, path));
+  EXPECT_LE(off, tolerance_mm + 2e-4);
+  std::int64_t id = 0;
+  for (const Setpoint& setpoint : bench.record) {
+    EXPECT_GE(setpoint.move_id, id);
+    id = setpoint.move_id;
+  }
+  const auto peaks = bench.peaks();
+  EXPECT_LE(peaks.velocity, kAtMost);
+  EXPECT_LE(peaks.acceleration, kAtMost);
+  EXPECT_LE(peaks.jerk, kAtMost);
+  return seconds(bench);
+}
+
+TEST(ShortLines, RunAsFastAsTheCurveTheyCameFromHoweverShort) {
+  const double fifths = machined(rose(0.2), 0.01);
+  EXPECT_NEAR(machined(rose(0.1), 0.01) / fifths, 1, 0.02);
+  EXPECT_NEAR(machined(rose(0.05), 0.01) / fifths, 1, 0.02);
+  EXPECT_NEAR(machined(rose(0.1, 0.001), 0.01) / fifths, 1, 0.05);
+}
+
+TEST(ShortLines, OfASlowClientEndExactly) {
+  Trace corners = rose(0.2);
+  corners.resize(60);
+  machined(corners, 0.01, 15);
+}
+
+TEST(ShortLines, KeepTheCornersThatWereMeant) {
+  Trace corners;
+  for (int i = 0; i <= 40; ++i) corners.push_back({i * 0.1, 0, 0});
+  for (int i = 1; i <= 40; ++i) corners.push_back({4, i * 0.1, 0});
+  machined(corners, 0.01);
+}
+
 }  // namespace
 }  // namespace rmac

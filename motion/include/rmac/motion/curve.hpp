@@ -26,6 +26,8 @@ class Curve {
   [[nodiscard]] virtual bool in_joint_space() const noexcept = 0;
   [[nodiscard]] virtual std::size_t dimension() const noexcept = 0;
   [[nodiscard]] virtual double length() const noexcept = 0;
+  /// The tip moves on a straight line and the tool axis stays.
+  [[nodiscard]] virtual bool straight() const noexcept { return false; }
   /// Derivatives up to `order` (0 to 3). At a break (met to a few ulps)
   /// `side` chooses the limit from below (-1) or above (+1).
   virtual void evaluate(double s, int order, int side, CurvePoint& point) const noexcept = 0;

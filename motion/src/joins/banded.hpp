@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "rmac/motion/pose.hpp"
+
+namespace rmac {
+
+/// A symmetric positive matrix with `band` diagonals on either side of the main one; solved by LDLᵀ.
+class Banded {
+ public:
+  Banded(std::size_t size, std::size_t band) : size_(size), band_(band), values_(size * (band + 1), 0.0) {}
+
+  /// Entry (row, row - below).
+  [[nodiscard]] double& at(std::size_t row, std::size_t below) { return values_[row * (band_ + 1) + below]; }
+
+  /// Gives an unknown its value: its row becomes trivial, and its column goes to the right side.
+  void fix(std::size_t index, const Vector& value, std::vector<Vector>& right) {
+    for (std::size_t k = 1; k <= band_; ++k) {
+      if (index >= k) take(at(index, k), value, right[index - k]);
+      if (index + k < size_) take(at(index + k, k), value, right[index + k]);
+    }
+    at(index, 0) = 1;
+    right[index] = value;
+  }
+
+  /// Replaces the right sides by the solution; false where the matrix is not positive.
+  [[nodiscard]] bool solve(std::vector<Vector>& right) {
+    for (std::size_t i = 0; i < size_; ++i) {
+      for (std::size_t k = band_ < i ? band_ : i; k > 0; --k) {
+        // L(i, j) with j = i - k.
+        double sum = at(i, k);
+        const std::size_t j = i - k;
+        for (std::size_t m = k + 1; m <= band_ && m <= i; ++m) {
+          const std::size_t p = i - m;
+          if (j - p <= band_) sum -= at(i, m) * at(j, j - p) * at(p, 0);
+        }
+        at(i, k) = sum / at(j, 0);
+      }
+      for (std::size_t k = 1; k <= band_ && k <= i; ++k) at(i, 0) -= at(i, k) * at(i, k) * at(i - k, 0);
+      if (!(at(i, 0) > 0)) return false;
+      for (std::size_t k = 1; k <= band_ && k <= i; ++k) subtract(at(i, k), right[i - k], right[i]);
+    }
+    for (std::size_t i = size_; i-- > 0;) {
+      for (double& value : right[i]) value /= at(i, 0);
+      for (std::size_t k = 1; k <= band_ && i + k < size_; ++k) subtract(at(i + k, k), right[i + k], right[i]);
+    }
+    return true;
+  }
+
+ private:
+  static void subtract(double factor, const Vector& from, Vector& to) {
+    for (std::size_t c = 0; c < 3; ++c) to[c] -= factor * from[c];
+  }
+  static void take(double& entry, const Vector& value, Vector& right) {
+    subtract(entry, value, right);
+    entry = 0;
+  }
+
+  std::size_t size_;
+  std::size_t band_;
+  std::vector<double> values_;
+};
+
+}  // namespace rmac
