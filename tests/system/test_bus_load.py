@@ -1,0 +1,63 @@
+"""`rmac bus load`: what a machine's CAN buses carry at worst, from its device.json, without a daemon."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+BUILD = pathlib.Path(os.environ["RMAC_BUILD"])
+SOURCE = pathlib.Path(os.environ["RMAC_SOURCE"])
+
+
+class BusLoad(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="rmac-test-")
+        self.addCleanup(folder.cleanup)
+        self.file = pathlib.Path(folder.name) / "device.json"
+        self.device = json.loads((SOURCE / "drivers/mill/3-axis/DMACXYZ/device.json").read_text())
+
+    def load(self, parameters, *options, spindle_bus="can0"):
+        for actuator in self.device["Actuators"]:
+            actuator["Bus"] = "can0"
+        self.device["Spindles"][0].update(Bus=spindle_bus, Axis=3 if spindle_bus == "can0" else 0)
+        self.device["DigitalControlInterface"] = {"Module": "CANopenInterface", "Parameters": parameters}
+        self.file.write_text(json.dumps(self.device))
+        return subprocess.run([BUILD / "bin" / "rmac", "bus", "load", self.file, *options], capture_output=True, text=True)
+
+    def test_tells_each_bus_with_its_bits(self):
+        done = self.load({"can0.node": [1, 2, 3], "can1.node": 4, "can1.mode": 3, "can0.tpdo": "6041:00/16 6064:00/32"},
+                         "--json", spindle_bus="can1")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        table, head = json.loads(done.stdout)
+        # Three times 4 and 6 bytes beside SYNC; once 6 and 6 bytes.
+        self.assertEqual((table["bus"], table["axes"], table["cyclic_bits"]), ("can0", 3, 55 + 3 * 95 + 3 * 115))
+        self.assertEqual((head["bus"], head["axes"], head["cyclic_bits"]), ("can1", 1, 55 + 115 + 115))
+        self.assertTrue(table["fits"] and head["fits"])
+
+    def test_fails_above_the_share_and_says_what_helps(self):
+        parameters = {"node": [1, 2, 3, 4], "mode": [10, 10, 10, 3], "rpdo": "6040:00/16 607A:00/32 6071:00/16"}
+        parameters["tpdo"] = "6041:00/16 6064:00/32 6077:00/16"
+        done = self.load(parameters)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("113.5", done.stdout)
+        self.assertEqual(done.stderr.splitlines(), [
+            "rmac: bus can0: 4 axes in a cycle of 1 ms need 1135 bits, 113.5 % of the 1000 that 1000000 bit/s give; its share "
+            "is 80 %. Take a cycle of 1.42 ms or more, spread the axes over several buses, or map less"])
+        self.assertEqual(self.load(parameters, "--period", "0.002").returncode, 0)
+
+    def test_names_a_parameter_that_is_wrong(self):
+        done = self.load({"node": [1, 2, 3, 200]})
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("CANopenInterface, bus can0: node is 200; allowed is a whole number from 1 to 127", done.stderr)
+
+    def test_refuses_a_machine_without_a_can_bus(self):
+        done = subprocess.run([BUILD / "bin" / "rmac", "bus", "load", SOURCE / "drivers/mill/3-axis/DMACXYZ/device.json"],
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("its drives are reached by SimulatedInterface, which is no CAN bus", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
