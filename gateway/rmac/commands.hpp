@@ -37,8 +37,8 @@ struct MachineSearch {
 [[nodiscard]] Result<> stop(Connection& connection);
 [[nodiscard]] Result<> set_override(Connection& connection, double percent);
 
-/// The bits that a machine's CAN buses carry at worst in a cycle of `period_s`, from its device.json alone; fails when a
-/// bus exceeds its share. Needs no appliance.
+/// The bits that a machine's CAN buses carry at worst in a cycle of `period_s`, from its device.json alone; fails when
+/// a bus exceeds its share. Needs no appliance.
 [[nodiscard]] Result<> show_bus_load(const std::string& device_json, double period_s, bool json);
 
 }  // namespace rmac::cli
