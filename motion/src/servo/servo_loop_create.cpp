@@ -58,6 +58,7 @@ Expected<> check_axes(const ServoLoopParts& parts) {
       return failure(MinorCode::InvalidParameterValue,
                      "servo loop: " + joint_text(j) + " needs a following-error bound and an effort bound above 0");
     }
+    if (auto ok = check_mechanics(axis.mechanics, parts.period_s, joint_text(j)); !ok) return ok;
   }
   const std::size_t starts = parts.virtual_start.size();
   if (starts != 0 && starts != parts.axes.size()) {
@@ -135,6 +136,7 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
   for (const ServoSpindle& spindle : parts.spindles) add_bus(spindle.bus);
 
   std::array<double, kMaxJoints> zero{};
+  std::array<bool, kMaxJoints> reached{};
   for (std::size_t j = 0; j < axes; ++j) {
     parts.axes[j].law->set_effort_limit(parts.axes[j].max_effort);
     std::array<double, kMaxJoints> unit{};
@@ -142,8 +144,15 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
     unit[j] = 1;
     parts.actuator_map->actuator_efforts({zero.data(), axes}, {unit.data(), axes}, {torques.data(), actuators});
     for (std::size_t i = 0; i < actuators; ++i) {
-      if (torques[i] != 0) actuators_of[j] |= std::uint32_t{1} << i;
+      if (torques[i] == 0) continue;
+      actuators_of[j] |= std::uint32_t{1} << i;
+      joint_of[i] = static_cast<std::uint8_t>(j);
+      const bool shared = reached[i];
+      reached[i] = true;
+      sense[i] = static_cast<std::int8_t>(shared ? 0 : torques[i] > 0 ? 1 : -1);
     }
+    corrections.emplace_back(parts.axes[j].mechanics);
+    filters.emplace_back(parts.axes[j].mechanics, parts.period_s);
   }
   if (parts.virtual_mode) std::copy(parts.virtual_start.begin(), parts.virtual_start.end(), hold.begin());
   if (parts.virtual_mode) position = hold;

@@ -99,14 +99,20 @@ void ServoLoop::Impl::read_joints() noexcept {
   parts.actuator_map->joint_positions({shaft.data(), actuators}, {position.data(), axes});
   parts.actuator_map->joint_velocities({shaft.data(), actuators}, {shaft_velocity.data(), actuators},
                                        {velocity.data(), axes});
+  for (std::size_t j = 0; j < axes; ++j) {
+    PositionCorrection& correction = corrections[j];
+    correction.follow(live[j] ? set_velocity[j] : 0, parts.period_s);
+    velocity[j] = correction.actual_velocity(position[j], velocity[j]);
+    position[j] = correction.actual(position[j]);
+  }
 }
 
 ServoInput ServoLoop::Impl::input(std::size_t joint) const noexcept {
   return {.position_setpoint = hold[joint],
-          .velocity_setpoint = set_velocity[joint],
-          .acceleration_setpoint = set_acceleration[joint],
+          .velocity_setpoint = set_velocity[joint] + corrections[joint].crossing_velocity(),
+          .acceleration_setpoint = set_acceleration[joint] + corrections[joint].crossing_acceleration(),
           .position = position[joint],
-          .velocity = velocity[joint],
+          .velocity = velocity[joint] + corrections[joint].crossing_velocity(),
           .effort = effort[joint],
           .period_s = parts.period_s};
 }
@@ -128,9 +134,9 @@ void ServoLoop::Impl::make_live() noexcept {
       live[j] = true;
       hold[j] = position[j];
       set_velocity[j] = set_acceleration[j] = 0;
-      parts.axes[j].law->engage(input(j), 0);
+      engage_law(j, 0);
     } else if (handed[j]) {
-      parts.axes[j].law->engage(input(j), effort[j]);
+      engage_law(j, effort[j]);
     }
     handed[j] = false;
     all = all && live[j];
@@ -145,6 +151,11 @@ void ServoLoop::Impl::make_live() noexcept {
   } else {
     follows = state == ServoState::Engaged;
   }
+}
+
+void ServoLoop::Impl::engage_law(std::size_t joint, double from_effort) noexcept {
+  parts.axes[joint].law->engage(input(joint), from_effort);
+  filters[joint].engage(from_effort);
 }
 
 void ServoLoop::Impl::make_setpoints(const ServoCommand& command, ServoReport& report) noexcept {
@@ -186,7 +197,7 @@ void ServoLoop::Impl::run_laws() noexcept {
       raise({ServoFault::Kind::NotANumber, ServoFault::Part::Joint, static_cast<std::uint32_t>(j), wanted, 0});
       return;
     }
-    effort[j] = std::clamp(wanted, -axis.max_effort, axis.max_effort);
+    effort[j] = std::clamp(filters[j].update(wanted), -axis.max_effort, axis.max_effort);
   }
 }
 

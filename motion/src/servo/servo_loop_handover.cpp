@@ -29,25 +29,38 @@ void joint_efforts(const ActuatorMap& map, std::span<const double> joints, std::
 
 }  // namespace
 
+void ServoLoop::Impl::shafts_for(std::span<const double> joint_positions, std::span<double> shafts) const noexcept {
+  std::array<double, kMaxJoints> shown{};
+  for (std::size_t j = 0; j < axes; ++j) shown[j] = corrections[j].shown(joint_positions[j]);
+  parts.actuator_map->actuator_positions({shown.data(), axes}, shafts);
+}
+
+void ServoLoop::Impl::joints_for(std::span<const double> shafts, std::span<double> joint_positions) const noexcept {
+  parts.actuator_map->joint_positions(shafts, joint_positions);
+  for (std::size_t j = 0; j < axes; ++j) joint_positions[j] = corrections[j].actual(joint_positions[j]);
+}
+
 ServoHandover ServoLoop::handover() const noexcept {
   const Impl& loop = *impl_;
   ServoHandover result;
   result.count = loop.actuators;
   std::array<double, kMaxJoints> shaft_set{};
-  loop.parts.actuator_map->actuator_positions(hold_position(), {shaft_set.data(), loop.actuators});
+  loop.shafts_for(hold_position(), {shaft_set.data(), loop.actuators});
   for (std::size_t i = 0; i < loop.actuators; ++i) {
     const ServoActuator& part = loop.parts.actuators[i];
     bool live = loop.driving() && !loop.parts.virtual_mode;
     for (std::size_t j = 0; j < loop.axes; ++j) {
       if ((loop.actuators_of[j] >> i & 1U) != 0 && !loop.live[j]) live = false;
     }
-    result.drives[i] = {.bus = part.bus.get(),
-                        .axis = part.axis,
-                        .counts = loop.counts[i],
-                        .setpoint_counts = loop.shaft_counts(i, shaft_set[i]),
-                        .torque_nm = part.scale.direction * loop.torque[i],
-                        .live = live,
-                        .seen = loop.seen[i]};
+    result.drives[i] = {
+        .bus = part.bus.get(),
+        .axis = part.axis,
+        .counts = loop.counts[i],
+        .setpoint_counts = loop.shaft_counts(i, shaft_set[i]),
+        .torque_nm = part.scale.direction * loop.torque[i],
+        .backlash_side = part.scale.direction * loop.sense[i] * loop.corrections[loop.joint_of[i]].side(),
+        .live = live,
+        .seen = loop.seen[i]};
   }
   return result;
 }
@@ -71,12 +84,15 @@ void ServoLoop::engage(const ServoHandover& previous) noexcept {
     loop.shaft[i] = loop.shaft_rad(i, static_cast<double>(found->counts));
     loop.torque[i] = part.scale.direction * found->torque_nm;
     shaft_set[i] = loop.shaft_rad(i, found->setpoint_counts);
+    if (loop.sense[i] != 0) {
+      loop.corrections[loop.joint_of[i]].set_side(part.scale.direction * loop.sense[i] * found->backlash_side);
+    }
     if (found->live) live_drives |= std::uint32_t{1} << i;
   }
 
   if (loop.parts.virtual_mode) {
     if (known == loop.actuators) {
-      loop.parts.actuator_map->joint_positions({shaft_set.data(), loop.actuators}, {loop.hold.data(), loop.axes});
+      loop.joints_for({shaft_set.data(), loop.actuators}, {loop.hold.data(), loop.axes});
       loop.position = loop.hold;
     }
     return;
@@ -100,7 +116,7 @@ void ServoLoop::Impl::take_over_joints(std::uint32_t live_drives,
                                        const std::array<double, kMaxJoints>& shaft_set) noexcept {
   state = ServoState::Enabling;
   waiting_cycles = 0;
-  parts.actuator_map->joint_positions({shaft_set.data(), actuators}, {hold.data(), axes});
+  joints_for({shaft_set.data(), actuators}, {hold.data(), axes});
   joint_efforts(*parts.actuator_map, {hold.data(), axes}, {torque.data(), actuators}, {effort.data(), axes});
   for (std::size_t j = 0; j < axes; ++j) {
     live[j] = handed[j] = (actuators_of[j] & ~live_drives) == 0;

@@ -2,6 +2,8 @@
 
 #include "rmac/motion/drive_power.hpp"
 #include "rmac/motion/servo_loop.hpp"
+#include "servo/effort_filter.hpp"
+#include "servo/position_correction.hpp"
 
 namespace rmac {
 
@@ -20,6 +22,9 @@ struct ServoLoop::Impl {
   void make_live() noexcept;
   void make_setpoints(const ServoCommand& command, ServoReport& report) noexcept;
   void run_laws() noexcept;
+  void engage_law(std::size_t joint, double from_effort) noexcept;
+  void shafts_for(std::span<const double> joint_positions, std::span<double> shafts) const noexcept;
+  void joints_for(std::span<const double> shafts, std::span<double> joint_positions) const noexcept;
   void reflect_setpoints() noexcept;
   void make_torques() noexcept;
   void write_actuators() noexcept;
@@ -46,6 +51,11 @@ struct ServoLoop::Impl {
   std::size_t actuators;
   std::vector<std::shared_ptr<ServoBus>> buses;
   std::array<std::uint32_t, kMaxJoints> actuators_of{};  ///< bit i: this joint's effort reaches actuator i
+
+  std::array<std::int8_t, kMaxJoints> sense{};      ///< of the shaft for its joint; 0 where several joints share it
+  std::array<std::uint8_t, kMaxJoints> joint_of{};  ///< whose shaft it is, where `sense` is not 0
+  std::vector<PositionCorrection> corrections;      ///< one a joint
+  std::vector<EffortFilter> filters;                ///< one a joint
 
   ServoState state = ServoState::Off;
   ServoFault fault;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rmac/motion/axis.hpp"
+#include "rmac/motion/joint_mechanics.hpp"
 #include "rmac/motion/path_segment.hpp"
 #include "rmac/motion/plan.hpp"
 #include "rmac/motion/ports/actuator_map.hpp"
@@ -33,6 +34,7 @@ struct ServoAxis {
   ControlMethod method = ControlMethod::Position;
   double max_following_error = 0;  ///< mm or deg
   double max_effort = 0;           ///< N or N·m at the joint
+  JointMechanics mechanics{};      ///< made good between the law and the drive
 };
 
 /// A drive that moves joints, in torque mode.
@@ -131,6 +133,7 @@ struct ServoHandover {
     std::int64_t counts = 0;     ///< unwrapped
     double setpoint_counts = 0;  ///< wanted position in encoder counts, before rounding
     double torque_nm = 0;        ///< commanded, in the drive's sense
+    double backlash_side = 0;    ///< flank that carries, -1 to 1 in the drive's sense; 0 where several joints share it
     bool live = false;           ///< was under control
     bool seen = false;           ///< `counts` holds a reading
   };
@@ -148,6 +151,9 @@ struct ServoHandover {
 /// Joint velocity comes from the last three positions, (3 x0 - 4 x1 + x2) / (2 period): without lag as long as the
 /// acceleration is steady, where a plain difference would be half a period late, which a D term pays for in phase. Its
 /// noise is at most four encoder counts a period; a law may filter it further.
+///
+/// Joint positions are those of the joint, after pitch errors and backlash; efforts pass the joint's filters on their
+/// way to the map.
 ///
 /// After a cycle whose report says that it does not follow, the follower must be put at `hold_position()`
 /// (`PlanFollower::hold_at`), so that engaging does not jump.
