@@ -175,6 +175,7 @@ PathDemand common_demand(const PathDemand& a, const PathDemand& b) {
   demand.accel_rise_mm_s2 = lower(a.accel_rise_mm_s2, b.accel_rise_mm_s2);
   demand.accel_fall_mm_s2 = lower(a.accel_fall_mm_s2, b.accel_fall_mm_s2);
   demand.tolerance_mm = b.tolerance_mm;
+  demand.deviation_mm = std::max(a.deviation_mm, b.deviation_mm);
   return demand;
 }
 
@@ -203,7 +204,8 @@ std::shared_ptr<const PathSegment> as_segment(const std::shared_ptr<const Curve>
 
 Blend make_blend(const PathSegment& before, const PathSegment& after, double room,
                  const std::vector<JointLimits>& joints) {
-  const double tolerance = after.demand().tolerance_mm;
+  const double tolerance =
+      after.demand().tolerance_mm - std::max(before.demand().deviation_mm, after.demand().deviation_mm);
   if (!(tolerance > 0) || before.demand().rest_after || after.demand().rest_before) return {};
   if (before.curve().in_joint_space() || after.curve().in_joint_space()) return {};
   if (!same_frames(before.frames(), after.frames()) || before.kinematics() != after.kinematics()) return {};

@@ -17,7 +17,7 @@ using curves::along;
 using curves::difference;
 using curves::distance;
 
-/// Of the tolerance: the rest is for rounding.
+/// Of the tolerance: something is left for the blend where the spline meets another move at a corner.
 constexpr double kPart = 0.95;
 /// Lines that turn by more meet in a corner that was meant.
 constexpr double kMostTurn = 0.35;
@@ -158,10 +158,10 @@ bool LineFit::solve(const std::vector<Vector>& vertices, double step, Fit& fit) 
 
 namespace {
 
-/// The spline is within `tolerance` of every chord between the vertices: at the vertices, and between two of them by
-/// the convex hull of its second derivative (eq. 10).
-bool within(const std::vector<double>& knots, const std::vector<Vector>& points, const std::vector<double>& places,
-            const std::vector<Vector>& vertices, double from, double tolerance) {
+/// How far the spline may be from the chords between the vertices: what it is at the vertices, and between two of them
+/// by the convex hull of its second derivative (eq. 10). Stops looking once that is more than `tolerance`.
+double deviation(const std::vector<double>& knots, const std::vector<Vector>& points, const std::vector<double>& places,
+                 const std::vector<Vector>& vertices, double from, double tolerance) {
   const std::size_t count = points.size();
   std::vector<double> bend(count, 0.0);
   for (std::size_t i = 0; i + 2 < count; ++i) {
@@ -176,8 +176,9 @@ bool within(const std::vector<double>& knots, const std::vector<Vector>& points,
     bend[i] = std::sqrt(sum);
   }
   double before = 0;
+  double largest = 0;
   std::size_t span_before = 0;
-  for (std::size_t k = 0; k < vertices.size(); ++k) {
+  for (std::size_t k = 0; largest <= tolerance && k < vertices.size(); ++k) {
     const double place = k == 0 ? from : places[k];
     const std::size_t span = span_of(knots, count, place);
     const auto n = basis(knots, span, place);
@@ -190,11 +191,11 @@ bool within(const std::vector<double>& knots, const std::vector<Vector>& points,
       for (std::size_t i = span_before - 5; i + 2 <= span; ++i) grow = std::max(grow, bend[i]);
       grow *= h * h / 8;
     }
-    if (std::max(here, before) + grow > tolerance) return false;
+    largest = std::max(largest, std::max(here, before) + grow);
     before = here;
     span_before = span;
   }
-  return true;
+  return largest;
 }
 
 }  // namespace
@@ -214,8 +215,9 @@ bool LineFit::fit(std::size_t lines, bool ends, Fit& fit) const {
   const double longest = std::min(kLongestStep_mm, mean * static_cast<double>(kOverlap) / 8);
   double step = step_ > 0 ? std::min(2 * step_, longest) : longest;
   for (; step >= 0.9 * mean; step *= 0.5) {
-    if (solve(vertices, step, fit) && within(fit.knots, fit.points, fit.places, vertices, from, tolerance))
-      return make_segments(ends, fit);
+    if (!solve(vertices, step, fit)) continue;
+    fit.deviation_mm = deviation(fit.knots, fit.points, fit.places, vertices, from, tolerance);
+    if (fit.deviation_mm <= tolerance) return make_segments(ends, fit);
   }
   return false;
 }
@@ -263,8 +265,9 @@ std::shared_ptr<const PathSegment> LineFit::segment(const Fit& fit, std::shared_
                      stretches);
   }
   const PathSegment& line = *waiting_[first];
-  auto segment =
-      std::make_shared<PathSegment>(std::move(curve), line.frames(), line.kinematics(), line.demand(), stretches);
+  PathDemand demand = line.demand();
+  demand.deviation_mm = fit.deviation_mm;
+  auto segment = std::make_shared<PathSegment>(std::move(curve), line.frames(), line.kinematics(), demand, stretches);
   JointPoint joints;
   double s_failed = 0;
   if (line.evaluate(from - fit.places[first], 0, 1, joints) != KinematicsStatus::Ok ||

@@ -40,6 +40,7 @@ class LineFit {
     std::shared_ptr<const PathSegment> head;  ///< final
     std::shared_ptr<const PathSegment> tail;  ///< to the end of the last line; what follows may find a better way
     std::size_t cut = 0;                      ///< knot between the two
+    double deviation_mm = 0;                  ///< bound of its distance from the lines
   };
 
   [[nodiscard]] bool complete() const noexcept;
