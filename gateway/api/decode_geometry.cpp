@@ -47,6 +47,15 @@ Decoded<int> only_members(const json& value, std::initializer_list<const char*> 
 }
 
 constexpr const char* kVectorExpected = "three numbers [x, y, z] in mm";
+
+bool within(const Range& range, const json& numbers) {
+  return std::ranges::all_of(numbers, [&](const json& number) { return range.contains(number.get<double>()); });
+}
+
+/// A place, once its form was found right: its numbers must lie in the parameter's range.
+tl::unexpected<Mismatch> out_of_range(const json& value, const ParameterSpec& spec, std::string where = {}) {
+  return mismatch(value, fmt::format("numbers {} {}", spec.range.text(), spec.unit), std::move(where));
+}
 constexpr const char* kFrameExpected = R"(a frame {"p": [x, y, z], "q": [w, x, y, z]})";
 constexpr const char* kPoseExpected = R"(a frame {"p": [x, y, z]} with "q": [w, x, y, z] or "axis": [i, j, k])";
 
@@ -109,7 +118,8 @@ Decoded<std::vector<double>> flat_knots(const json& value) {
   return flat;
 }
 
-Decoded<std::vector<std::vector<double>>> points_of(const json& points, std::size_t dimension) {
+Decoded<std::vector<std::vector<double>>> points_of(const json& points, std::size_t dimension,
+                                                    const ParameterSpec& spec) {
   if (!points.is_array() || points.empty()) return mismatch(points, "an array of points", ".points");
   // Dimension 0: whatever the first point has; the mechanism's number of joints is not known here.
   if (dimension == 0 && points[0].is_array()) dimension = points[0].size();
@@ -121,13 +131,14 @@ Decoded<std::vector<std::vector<double>>> points_of(const json& points, std::siz
         !std::ranges::all_of(point, [](const json& item) { return item.is_number(); })) {
       return mismatch(point, fmt::format("{} numbers", dimension), fmt::format(".points[{}]", i));
     }
+    if (!within(spec.range, point)) return out_of_range(point, spec, fmt::format(".points[{}]", i));
     result.push_back(point.get<std::vector<double>>());
   }
   return result;
 }
 
 /// What the wire can check without knowing about curves: types, counts, dimensions. The rest is motion's business.
-Decoded<Nurbs> nurbs_of(const json& value, std::size_t dimension) {
+Decoded<Nurbs> nurbs_of(const json& value, std::size_t dimension, const ParameterSpec& spec) {
   for (const char* key : {"degree", "knots", "points"}) {
     if (!value.contains(key)) return mismatch(value, fmt::format("a member \"{}\" of {}", key, kNurbsMembers));
   }
@@ -137,7 +148,7 @@ Decoded<Nurbs> nurbs_of(const json& value, std::size_t dimension) {
   }
   auto knots = flat_knots(value);
   if (!knots) return tl::unexpected<Mismatch>(std::move(knots.error()));
-  auto points = points_of(value["points"], dimension);
+  auto points = points_of(value["points"], dimension, spec);
   if (!points) return tl::unexpected<Mismatch>(std::move(points.error()));
   Decoded<std::vector<double>> weights{std::vector<double>{}};
   if (value.contains("weights") && !value["weights"].is_null()) {
@@ -159,16 +170,20 @@ Decoded<Nurbs> nurbs_of(const json& value, std::size_t dimension) {
 
 }  // namespace
 
-void decode_into(const json& value, const ParameterSpec& /*spec*/, Decoded<Vector>& out) {
+void decode_into(const json& value, const ParameterSpec& spec, Decoded<Vector>& out) {
   if (!value.is_array() || value.size() != 3 ||
       !std::ranges::all_of(value, [](const json& item) { return item.is_number(); })) {
     out = mismatch(value, kVectorExpected);
     return;
   }
+  if (!within(spec.range, value)) {
+    out = out_of_range(value, spec);
+    return;
+  }
   out = value.get<Vector>();
 }
 
-void decode_into(const json& value, const ParameterSpec& /*spec*/, Decoded<Frame>& out) {
+void decode_into(const json& value, const ParameterSpec& spec, Decoded<Frame>& out) {
   if (auto known = only_members(value, {"p", "q"}, kFrameExpected); !known) {
     out = tl::unexpected<Mismatch>(std::move(known.error()));
     return;
@@ -181,6 +196,8 @@ void decode_into(const json& value, const ParameterSpec& /*spec*/, Decoded<Frame
   const auto q = quaternion_of(value);
   if (!p) {
     out = tl::unexpected<Mismatch>(p.error());
+  } else if (!within(spec.range, value["p"])) {
+    out = out_of_range(value["p"], spec, ".p");
   } else if (!q) {
     out = tl::unexpected<Mismatch>(q.error());
   } else {
@@ -188,7 +205,7 @@ void decode_into(const json& value, const ParameterSpec& /*spec*/, Decoded<Frame
   }
 }
 
-void decode_into(const json& value, const ParameterSpec& /*spec*/, Decoded<ToolPose>& out) {
+void decode_into(const json& value, const ParameterSpec& spec, Decoded<ToolPose>& out) {
   if (auto known = only_members(value, {"p", "q", "axis"}, kPoseExpected); !known) {
     out = tl::unexpected<Mismatch>(std::move(known.error()));
     return;
@@ -201,6 +218,8 @@ void decode_into(const json& value, const ParameterSpec& /*spec*/, Decoded<ToolP
   const auto axis = value.contains("axis") ? axis_of(value) : quaternion_of(value).map(tool_axis);
   if (!p) {
     out = tl::unexpected<Mismatch>(p.error());
+  } else if (!within(spec.range, value["p"])) {
+    out = out_of_range(value["p"], spec, ".p");
   } else if (!axis) {
     out = tl::unexpected<Mismatch>(axis.error());
   } else {
@@ -211,8 +230,7 @@ void decode_into(const json& value, const ParameterSpec& /*spec*/, Decoded<ToolP
 void decode_into(const json& value, const ParameterSpec& spec, Decoded<JointTarget>& out) {
   if (value.is_object() && value.contains("joints")) {
     Decoded<std::vector<double>> joints{std::vector<double>{}};
-    ParameterSpec any;
-    decode_into(value["joints"], any, joints);
+    decode_into(value["joints"], spec, joints);
     if (!joints) {
       joints.error().where = ".joints" + joints.error().where;
       out = tl::unexpected<Mismatch>(std::move(joints.error()));
@@ -232,13 +250,13 @@ void decode_into(const json& value, const ParameterSpec& spec, Decoded<JointTarg
   }
 }
 
-void decode_into(const json& value, const ParameterSpec& /*spec*/, Decoded<TipNurbs>& out) {
+void decode_into(const json& value, const ParameterSpec& spec, Decoded<TipNurbs>& out) {
   if (auto known = only_members(value, {"degree", "knots", "multiplicities", "points", "weights"}, kNurbsMembers);
       !known) {
     out = tl::unexpected<Mismatch>(std::move(known.error()));
     return;
   }
-  auto nurbs = nurbs_of(value, 3);
+  auto nurbs = nurbs_of(value, 3, spec);
   if (!nurbs) {
     out = tl::unexpected<Mismatch>(std::move(nurbs.error()));
     return;
@@ -246,7 +264,7 @@ void decode_into(const json& value, const ParameterSpec& /*spec*/, Decoded<TipNu
   out = TipNurbs{NurbsGeometry{NurbsSpace::Tip, std::move(*nurbs)}};
 }
 
-void decode_into(const json& value, const ParameterSpec& /*spec*/, Decoded<NurbsGeometry>& out) {
+void decode_into(const json& value, const ParameterSpec& spec, Decoded<NurbsGeometry>& out) {
   constexpr const char* kExpected = R"(a NURBS with "space": "pose" or "joint")";
   if (auto known = only_members(value, {"degree", "knots", "multiplicities", "points", "weights", "space"}, kExpected);
       !known) {
@@ -258,7 +276,7 @@ void decode_into(const json& value, const ParameterSpec& /*spec*/, Decoded<Nurbs
     return;
   }
   const bool pose = value["space"] == "pose";
-  auto nurbs = nurbs_of(value, pose ? 6 : 0);
+  auto nurbs = nurbs_of(value, pose ? 6 : 0, spec);
   if (!nurbs) {
     out = tl::unexpected<Mismatch>(std::move(nurbs.error()));
     return;

@@ -31,6 +31,10 @@ struct Parameter {
     spec.range = {min, max, false};
     return std::move(*this);
   }
+  Parameter within(const Range& range) && {
+    spec.range = range;
+    return std::move(*this);
+  }
   Parameter noted(std::string text) && {
     spec.note = std::move(text);
     return std::move(*this);
@@ -71,23 +75,25 @@ inline auto texts(const char* name) {
 inline auto mask(const char* name) {
   return declared<Mask>(name, WireType::Mask);
 }
+/// Where a place may lie: no machine is larger, and the arithmetic behind keeps its digits.
+inline constexpr Range kPlaces{-1e6, 1e6};
 inline auto vector(const char* name) {
-  return declared<Vector>(name, WireType::Vector, "mm");
+  return declared<Vector>(name, WireType::Vector, "mm").within(kPlaces);
 }
 inline auto frame(const char* name) {
-  return declared<Frame>(name, WireType::Frame, "mm");
+  return declared<Frame>(name, WireType::Frame, "mm").within(kPlaces);
 }
 inline auto tool_pose(const char* name) {
-  return declared<ToolPose>(name, WireType::Frame, "mm");
+  return declared<ToolPose>(name, WireType::Frame, "mm").within(kPlaces);
 }
 inline auto joint_target(const char* name) {
-  return declared<JointTarget>(name, WireType::JointTarget, "mm or deg");
+  return declared<JointTarget>(name, WireType::JointTarget, "mm or deg").within(kPlaces);
 }
 inline auto nurbs(const char* name) {
-  return declared<TipNurbs>(name, WireType::Nurbs, "mm");
+  return declared<TipNurbs>(name, WireType::Nurbs, "mm").within(kPlaces);
 }
 inline auto nurbs_nd(const char* name) {
-  return declared<NurbsGeometry>(name, WireType::NurbsNd, "mm or deg");
+  return declared<NurbsGeometry>(name, WireType::NurbsNd, "mm or deg").within(kPlaces);
 }
 inline auto choice(const char* name, const Enumeration& values) {
   auto parameter = declared<std::int64_t>(name, WireType::Integer);

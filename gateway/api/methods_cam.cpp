@@ -29,24 +29,24 @@ auto spindle_number() {
 
 void add_feeds(const auto& add) {
   add(setter("RMAC_CAM.SetFeedrate", "Feed of the moves queued from now on; refused above the maximum.",
-             number("Feedrate", "mm/min").above(0), &RmacCam::set_feedrate));
+             number("Feedrate", "mm/min").within(device_range("MaxFeedrate")), &RmacCam::set_feedrate));
   add(getter("RMAC_CAM.GetFeedrate", "Actual speed of the tool tip, from measured joints.", "mm/min",
              &RmacCam::feedrate));
   add(setter("RMAC_CAM.SetMaxFeedrate", "Largest feed that SetFeedrate takes, at most the mechanism's own.",
-             number("MaxFeedrate", "mm/min").above(0), &RmacCam::set_max_feedrate));
+             number("MaxFeedrate", "mm/min").within(device_range("MaxFeedrate")), &RmacCam::set_max_feedrate));
   add(getter("RMAC_CAM.GetMaxFeedrate", "Largest feed that SetFeedrate takes.", "mm/min", &RmacCam::max_feedrate));
   add(setter("RMAC_CAM.SetPathAccelRise",
              "Acceleration along the path while the feed rises, for moves queued from now on.",
-             number("newVal", "mm/s²").above(0), &RmacCam::set_path_accel_rise));
+             number("newVal", "mm/s²").within(device_range("PathAccelRise")), &RmacCam::set_path_accel_rise));
   add(getter("RMAC_CAM.GetPathAccelRise", "What SetPathAccelRise set; 0 while the joints alone bound it.", "mm/s²",
              &RmacCam::path_accel_rise));
   add(setter("RMAC_CAM.SetPathAccelFall",
              "Deceleration along the path while the feed falls, for moves queued from now on.",
-             number("newVal", "mm/s²").above(0), &RmacCam::set_path_accel_fall));
+             number("newVal", "mm/s²").within(device_range("PathAccelFall")), &RmacCam::set_path_accel_fall));
   add(getter("RMAC_CAM.GetPathAccelFall", "What SetPathAccelFall set; 0 while the joints alone bound it.", "mm/s²",
              &RmacCam::path_accel_fall));
   add(setter("RMAC_CAM.SetJointInterpSpeed", "Speed of joint moves and jogs, of each joint's speed limit.",
-             number("newVal", "%").within(0, 100), &RmacCam::set_joint_interp_speed));
+             number("newVal", "%").within(0.1, 100), &RmacCam::set_joint_interp_speed));
   add(getter("RMAC_CAM.GetJointInterpSpeed", "What SetJointInterpSpeed set.", "%", &RmacCam::joint_interp_speed));
   constexpr const char* kPerJoint = "joint moves are bounded by each joint's acceleration limit alone so far";
   for (const bool rise : {true, false}) {
@@ -66,7 +66,7 @@ void add_feeds(const auto& add) {
       setter("RMAC_CAM.SetPathTolerance",
              "How far the path of moves queued from now on may be from what was programmed, so that corners, jumps of "
              "curvature and short lines are passed at speed. 0: an exact stop wherever the path is not smooth.",
-             number("Tolerance", "mm").at_least(0), &RmacCam::set_path_tolerance);
+             number("Tolerance", "mm").within(0, 100), &RmacCam::set_path_tolerance);
   tolerance.origin = Origin::Extension;
   add(std::move(tolerance));
   Method tolerance_now =
@@ -97,7 +97,7 @@ void add_frames(const auto& add) {
 
 void add_auxiliaries(const auto& add) {
   add(method("RMAC_CAM.SetSpindleRPM", "Speed of a spindle; feed waits until it is reached. 0 stops it.")
-          .takes(spindle_number(), number("RPM", "rpm"))
+          .takes(spindle_number(), number("RPM", "rpm").within(-1e6, 1e6))
           .causes(Effect::Starts)
           .except(0)
           .does([](Call& call, std::int64_t spindle, double rpm) {
@@ -110,7 +110,7 @@ void add_auxiliaries(const auto& add) {
             return call.machine.cam().spindle_rpm(static_cast<int>(spindle));
           }));
   add(method("RMAC_CAM.SetSpindleMaxRPM", "Largest speed that SetSpindleRPM takes, at most the mechanism's own.")
-          .takes(spindle_number(), number("MaxRPM", "rpm").above(0))
+          .takes(spindle_number(), number("MaxRPM", "rpm").within(device_range("spindle/MaxSpeed")).at_least(1))
           .needs(Permission::Authority)
           .does([](Call& call, std::int64_t spindle, double rpm) {
             return call.machine.cam().set_spindle_max_rpm(static_cast<int>(spindle), rpm);

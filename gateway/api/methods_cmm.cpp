@@ -112,8 +112,8 @@ void add_cmm_moves(const auto& add) {
 void add_jogs(const auto& add) {
   add(command("RMAC_CAM.JogJoint", "Moves one joint by a distance, from rest, at the joint interpolation speed.",
               Effect::Starts)
-          .takes(joint_number(), number("Distance", "mm or deg").optional(),
-                 number("Velocity", "mm/s or deg/s").optional().noted("not supported yet"))
+          .takes(joint_number(), number("Distance", "mm or deg").within(kPlaces).optional(),
+                 number("Velocity", "mm/s or deg/s").within(kPlaces).optional().noted("not supported yet"))
           .extension()
           .does([](Call& call, std::int64_t joint, std::optional<double> distance,
                    std::optional<double> velocity) -> Expected<> {

@@ -1,6 +1,7 @@
 // RMAC_Config.*: the draft of a mechanism (Appendix IV). Nothing acts before RMAC_Config.Apply.
 #include "gateway/api/method_builder.hpp"
 #include "gateway/api/method_table.hpp"
+#include "rmac/motion/servo_loop.hpp"
 
 namespace rmac::gateway {
 
@@ -26,9 +27,9 @@ Method joint_number_setter(const char* name, const char* meaning, Parameter<doub
 }
 
 template <typename Function>
-Method count_setter(const char* name, const char* meaning, const char* parameter, int min, Function function) {
+Method count_setter(const char* name, const char* meaning, Parameter<std::int64_t> parameter, Function function) {
   return method(name, meaning)
-      .takes(integer(parameter).within(min, static_cast<double>(kMaxJoints)))
+      .takes(std::move(parameter))
       .needs(Permission::Authority)
       .does([function](Call& call, std::int64_t count) {
         return (call.machine.config().*function)(static_cast<int>(count));
@@ -62,28 +63,31 @@ void add_joint_setters(const auto& add) {
                                                               static_cast<JointLimitType>(type));
           }));
   add(joint_number_setter("RMAC_Config.SetMechanismJointMaximumLimit", "Upper end of a joint's travel.",
-                          number("MaxJntLimit", "mm or deg"), &RmacConfig::set_joint_maximum_limit));
+                          number("MaxJntLimit", "mm or deg").within(device_range("joint/Max")),
+                          &RmacConfig::set_joint_maximum_limit));
   add(joint_number_setter("RMAC_Config.SetMechanismJointMinimumLimit", "Lower end of a joint's travel.",
-                          number("MinJntLimit", "mm or deg"), &RmacConfig::set_joint_minimum_limit));
+                          number("MinJntLimit", "mm or deg").within(device_range("joint/Min")),
+                          &RmacConfig::set_joint_minimum_limit));
   add(joint_number_setter("RMAC_Config.SetMechanismJointMaximumSpeed", "Largest speed of a joint.",
-                          number("MaxJntSpeed", "mm/s or deg/s").above(0), &RmacConfig::set_joint_maximum_speed));
+                          number("MaxJntSpeed", "mm/s or deg/s").within(device_range("joint/MaxSpeed")),
+                          &RmacConfig::set_joint_maximum_speed));
   add(joint_number_setter("RMAC_Config.SetMechanismJointMaximumAcceleration", "Largest acceleration of a joint.",
-                          number("MaxJntAccel", "mm/s² or deg/s²").above(0),
+                          number("MaxJntAccel", "mm/s² or deg/s²").within(device_range("joint/MaxAcceleration")),
                           &RmacConfig::set_joint_maximum_acceleration));
   add(joint_number_setter("RMAC_Config.SetMechanismJointMaximumJerk", "Largest jerk of a joint.",
-                          number("MaxJntJerk", "mm/s³ or deg/s³").above(0), &RmacConfig::set_joint_maximum_jerk));
+                          number("MaxJntJerk", "mm/s³ or deg/s³").within(device_range("joint/MaxJerk")),
+                          &RmacConfig::set_joint_maximum_jerk));
 }
 
 void add_servo_setters(const auto& add) {
   add(method("RMAC_Config.SetMechanismJointControlMethod", "What a joint's servo loop controls.")
           .takes(joint_number(), choice("DMACServoControlMethod", kControlMethodValues))
           .needs(Permission::Authority)
-          .does([](Call& call, std::int64_t joint, std::int64_t wanted) {
-            return call.machine.config().set_joint_control_method(static_cast<int>(joint),
-                                                                  static_cast<ControlMethod>(wanted));
-          }));
+          .lacks(
+              "every joint's loop controls its position; velocity and force control come with the measuring machine"));
   add(method("RMAC_Config.SetMechanismJointServoControlGains", "Gains of a joint's servo law, in the law's own order.")
-          .takes(joint_number(), numbers("ServoControlGains", "as the law declares"))
+          .takes(joint_number(),
+                 numbers("ServoControlGains", "as the law declares").within(device_range("joint/Gains")))
           .needs(Permission::Authority)
           .does([](Call& call, std::int64_t joint, const std::vector<double>& gains) {
             return call.machine.config().set_joint_servo_control_gains(static_cast<int>(joint), gains);
@@ -111,16 +115,18 @@ void add_servo_setters(const auto& add) {
           .needs(Permission::Authority)
           .lacks(kSpindleDrive));
   add(method("RMAC_Config.SetMechanismSpindleServoControlGains", "Gains of the spindle's servo law.")
-          .takes(numbers("ServoControlGains", "as the law declares"))
+          .takes(numbers("ServoControlGains", "as the law declares").within(device_range("joint/Gains")))
           .needs(Permission::Authority)
           .lacks(kSpindleDrive));
 }
 
 void add_interface_setters(const auto& add) {
   using sdk::DeviceObject;
-  add(module_setter("RMAC_Config.SetMechanismDigitalControlInterface", "Interface to the drives.",
-                    "DigitalControlInterface", &DeviceObject::digital_control_interface,
-                    &RmacConfig::set_digital_control_interface));
+  add(method("RMAC_Config.SetMechanismDigitalControlInterface", "Interface to the drives.")
+          .takes(text("DigitalControlInterface").noted("name of a module"))
+          .needs(Permission::Authority)
+          .lacks(
+              "a bus keeps the interface that it came up with; load a device driver whose device.json names another"));
   add(method("RMAC_Config.InitializeMechanismDigitalControlInterface", "Brings the interface to the drives up.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
@@ -142,18 +148,26 @@ void add_config_methods(std::vector<Method>& table) {
                     &DeviceObject::kinematics, &RmacConfig::set_kinematics));
   add(module_setter("RMAC_Config.SetMechanismActuatorMap", "Module that maps joints to actuators.", "DMACMachineActMap",
                     &DeviceObject::actuator_map, &RmacConfig::set_actuator_map));
-  add(count_setter("RMAC_Config.SetMechanismNumJnts", "Number of joints that the mechanism moves.", "NumJnts", 1,
-                   &RmacConfig::set_number_of_joints));
-  add(count_setter("RMAC_Config.SetMechanismNumSpindle", "Number of spindles.", "NumSpindle", 0,
-                   &RmacConfig::set_number_of_spindles));
+  add(count_setter("RMAC_Config.SetMechanismNumJnts", "Number of joints that the mechanism moves.",
+                   integer("NumJnts").within(1, kMaxJoints), &RmacConfig::set_number_of_joints));
+  add(count_setter("RMAC_Config.SetMechanismNumSpindle", "Number of spindles.",
+                   integer("NumSpindle").within(0, kMaxSpindles), &RmacConfig::set_number_of_spindles));
   add(count_setter("RMAC_Config.SetMechanismNumActuators", "Number of actuators behind joints and held joints.",
-                   "NumActuators", 1, &RmacConfig::set_number_of_actuators));
+                   integer("NumActuators").within(1, kMaxJoints), &RmacConfig::set_number_of_actuators));
   add(method("RMAC_Config.SetMechanismSpindleMaxRPM", "Largest speed of every spindle.")
-          .takes(number("MaxSpindleRPM", "rpm").above(0))
+          .takes(number("MaxSpindleRPM", "rpm").within(device_range("spindle/MaxSpeed")).at_least(1))
           .needs(Permission::Authority)
-          .does([](Call& call, double rpm) { return call.machine.config().set_spindle_maximum_rpm(rpm); }));
+          .does([](Call& call, double rpm) -> Expected<> {
+            RmacConfig& config = call.machine.config();
+            const int count = static_cast<int>(config.draft().spindles.size());
+            if (count == 0) return config.set_spindle_maximum_rpm(0, rpm);  // says that there is none
+            for (int spindle = 0; spindle < count; ++spindle) {
+              if (auto set = config.set_spindle_maximum_rpm(spindle, rpm); !set) return set;
+            }
+            return {};
+          }));
   add(method("RMAC_Config.SetMechanismMaxFeedrate", "Largest feed of the mechanism.")
-          .takes(number("MaxFeedrate", "mm/min").above(0))
+          .takes(number("MaxFeedrate", "mm/min").within(device_range("MaxFeedrate")))
           .needs(Permission::Authority)
           .does([](Call& call, double feed) { return call.machine.config().set_maximum_feedrate(feed); }));
   add_joint_setters(add);

@@ -47,7 +47,7 @@ void add_device_setters(std::vector<Method>& table) {
                 [&](DeviceObject* device) { device->joints.resize(static_cast<std::size_t>(count)); });
           }));
   add(method("Device.Machine_SetMechanismMaxFeedrate", "Wanted largest feed. Acts with the next Machine_Configure….")
-          .takes(number("MaxFeedrate", "mm/min").above(0))
+          .takes(number("MaxFeedrate", "mm/min").within(device_range("MaxFeedrate")))
           .needs(Permission::Authority)
           .does([](Call& call, double feed) {
             return call.machine.device().wanted().map(
@@ -55,7 +55,7 @@ void add_device_setters(std::vector<Method>& table) {
           }));
   add(method("Device.Machine_SetMechanismSpindleMaxSpeed",
              "Wanted largest speed of spindle 0. Acts with the next Machine_Configure….")
-          .takes(number("MaxSpindleSpeed", "rpm").above(0))
+          .takes(number("MaxSpindleSpeed", "rpm").within(device_range("spindle/MaxSpeed")).at_least(1))
           .needs(Permission::Authority)
           .does([](Call& call, double rpm) {
             return call.machine.device().wanted().and_then([&](DeviceObject* device) -> Expected<> {
@@ -76,21 +76,24 @@ void add_device_setters(std::vector<Method>& table) {
                    [](J& joint, std::int64_t type) { joint.limits.type = static_cast<JointType>(type); }));
   add(joint_setter("Device.Machine_SetMechanismJntMaxLimit",
                    "Wanted upper end of a joint's travel. Acts with the next Machine_Configure….",
-                   number("MaxJntLimit", "mm or deg"), [](J& joint, double value) { joint.limits.max = value; }));
+                   number("MaxJntLimit", "mm or deg").within(device_range("joint/Max")),
+                   [](J& joint, double value) { joint.limits.max = value; }));
   add(joint_setter("Device.Machine_SetMechanismJntMinLimit",
                    "Wanted lower end of a joint's travel. Acts with the next Machine_Configure….",
-                   number("MinJntLimit", "mm or deg"), [](J& joint, double value) { joint.limits.min = value; }));
+                   number("MinJntLimit", "mm or deg").within(device_range("joint/Min")),
+                   [](J& joint, double value) { joint.limits.min = value; }));
   add(joint_setter("Device.Machine_SetMechanismJntMaxSpeed",
                    "Wanted largest speed of a joint. Acts with the next Machine_Configure….",
-                   number("MaxJntSpeed", "mm/s or deg/s").above(0),
+                   number("MaxJntSpeed", "mm/s or deg/s").within(device_range("joint/MaxSpeed")),
                    [](J& joint, double value) { joint.limits.max_speed = value; }));
   add(joint_setter("Device.Machine_SetMechanismJntMaxAccel",
                    "Wanted largest acceleration of a joint. Acts with the next Machine_Configure….",
-                   number("MaxJntAccel", "mm/s² or deg/s²").above(0),
+                   number("MaxJntAccel", "mm/s² or deg/s²").within(device_range("joint/MaxAcceleration")),
                    [](J& joint, double value) { joint.limits.max_acceleration = value; }));
-  add(joint_setter(
-      "Device.Machine_SetMechanismJntMaxJerk", "Wanted largest jerk of a joint. Acts with the next Machine_Configure….",
-      number("MaxJntJerk", "mm/s³ or deg/s³").above(0), [](J& joint, double value) { joint.limits.max_jerk = value; }));
+  add(joint_setter("Device.Machine_SetMechanismJntMaxJerk",
+                   "Wanted largest jerk of a joint. Acts with the next Machine_Configure….",
+                   number("MaxJntJerk", "mm/s³ or deg/s³").within(device_range("joint/MaxJerk")),
+                   [](J& joint, double value) { joint.limits.max_jerk = value; }));
   add(method("Device.Machine_ConfigureMotionPlanner",
              "The driver configures the motion planner by the wanted values, at standstill; or nothing changes.")
           .gives(WireType::Boolean)

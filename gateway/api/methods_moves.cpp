@@ -91,7 +91,7 @@ void add_device_services(std::vector<Method>& table) {
                   "Device.Machine_MoveInArc", "Device.Machine_MoveInLine"},
                  ToDriver{});
   add(method("Device.Machine_SetFeedrate", "Feed of the moves queued from now on; refused above the maximum.")
-          .takes(number("Feedrate", "mm/min").above(0))
+          .takes(number("Feedrate", "mm/min").within(device_range("MaxFeedrate")))
           .needs(Permission::Authority)
           .extension()
           .does([](Call& call, double feed) { return call.machine.cam().set_feedrate(feed); }));

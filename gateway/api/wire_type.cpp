@@ -1,9 +1,5 @@
 #include "gateway/api/wire_type.hpp"
 
-#include <fmt/format.h>
-
-#include <cmath>
-
 namespace rmac::gateway {
 
 const char* to_string(WireType type) noexcept {
@@ -36,15 +32,6 @@ const char* to_string(WireType type) noexcept {
       return "object";
   }
   return "null";
-}
-
-std::string Range::text() const {
-  const bool below = std::isfinite(min);
-  const bool above = std::isfinite(max);
-  if (below && above) return fmt::format("{}{} to {}", min_excluded ? "more than " : "", min, max);
-  if (below) return fmt::format("{} {}", min_excluded ? "more than" : "at least", min);
-  if (above) return fmt::format("at most {}", max);
-  return {};
 }
 
 }  // namespace rmac::gateway

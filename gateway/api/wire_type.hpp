@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <string>
 
 #include "gateway/api/enumeration.hpp"
+#include "gateway/configuration/range.hpp"
 
 namespace rmac::gateway {
 
@@ -28,19 +28,6 @@ enum class WireType {
 
 /// As the specification spells it, e.g. "array<number>".
 [[nodiscard]] const char* to_string(WireType type) noexcept;
-
-/// Which numbers a parameter takes.
-struct Range {
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  bool min_excluded = false;
-
-  [[nodiscard]] bool contains(double value) const noexcept {
-    return (min_excluded ? value > min : value >= min) && value <= max;
-  }
-  /// "0 to 200", "more than 0", "" when everything goes.
-  [[nodiscard]] std::string text() const;
-};
 
 struct ParameterSpec {
   std::string name;

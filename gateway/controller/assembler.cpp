@@ -93,6 +93,10 @@ Expected<> add_io(const sdk::DeviceObject& device, const ModuleLoader& loader, B
   return {};
 }
 
+const char* type_text(JointType type) {
+  return type == JointType::Rotary ? "Rotary" : type == JointType::Linear ? "Linear" : "Screw";
+}
+
 Expected<> add_geometry(const sdk::DeviceObject& device, const ModuleLoader& loader, ServoLoopParts& parts) {
   auto kinematics = loader.load<Kinematics>(device.kinematics);
   if (!kinematics) return tl::unexpected(kinematics.error());
@@ -100,6 +104,14 @@ Expected<> add_geometry(const sdk::DeviceObject& device, const ModuleLoader& loa
     return failure(MinorCode::InvalidParameterValue,
                    fmt::format("{} has {} joints, but {} are configured", device.kinematics.name,
                                kinematics->object->joint_count(), device.joints.size()));
+  }
+  for (std::size_t i = 0; i < device.joints.size(); ++i) {
+    const JointLimits& joint = device.joints[i].limits;
+    if (const JointType built = kinematics->object->joint_type(i); joint.type != built) {
+      return failure(MinorCode::InvalidParameterValue,
+                     fmt::format("joint {} \"{}\" is set to be {}, but it is {} in the geometry of {}", i, joint.name,
+                                 type_text(joint.type), type_text(built), device.kinematics.name));
+    }
   }
   auto map = loader.load<ActuatorMap>(device.actuator_map);
   if (!map) return tl::unexpected(map.error());

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <initializer_list>
 #include <set>
 
+#include "gateway/configuration/range.hpp"
 #include "gateway/controller/assembler.hpp"
 
 namespace rmac::gateway {
@@ -12,33 +14,39 @@ tl::unexpected<Error> refuse(std::string message) {
   return failure(MinorCode::InvalidParameterValue, std::move(message));
 }
 
-bool positive(double value) {
-  return std::isfinite(value) && value > 0;
-}
-
-Expected<> check_limits(const JointLimits& limits, const std::string& who) {
-  if (!positive(limits.max_speed) || !positive(limits.max_acceleration) || !positive(limits.max_jerk)) {
-    return refuse(fmt::format("{}: maximum speed {}, acceleration {} and jerk {} must all be above 0", who,
-                              limits.max_speed, limits.max_acceleration, limits.max_jerk));
-  }
-  if (!std::isfinite(limits.min) || !std::isfinite(limits.max)) {
-    return refuse(fmt::format("{}: limits {} and {} must be finite", who, limits.min, limits.max));
-  }
-  if (limits.limit_type == JointLimitType::Limited && !(limits.min < limits.max)) {
-    return refuse(
-        fmt::format("{}: the minimum limit {} must be below the maximum limit {}", who, limits.min, limits.max));
+/// Every value of a row within what device.json allows for its key.
+Expected<> check_all(const std::string& who, std::initializer_list<std::pair<const char*, double>> values) {
+  for (const auto& [key, value] : values) {
+    const std::string name = key;
+    if (auto fine = check_device_range(key, value, who + ": " + name.substr(name.find('/') + 1)); !fine) return fine;
   }
   return {};
 }
 
+/// 0 stands for "none"; else as `check_all`.
+Expected<> check_optional(const std::string& who, const char* key, double value) {
+  return value == 0 ? Expected<>{} : check_all(who, {{key, value}});
+}
+
 Expected<> check_joint(const sdk::Joint& joint, const std::string& who) {
-  if (auto limits = check_limits(joint.limits, who); !limits) return limits;
+  const JointLimits& limits = joint.limits;
+  auto fine = check_all(who, {{"joint/Min", limits.min},
+                              {"joint/Max", limits.max},
+                              {"joint/MaxSpeed", limits.max_speed},
+                              {"joint/MaxAcceleration", limits.max_acceleration},
+                              {"joint/MaxJerk", limits.max_jerk},
+                              {"joint/MaxFollowingError", joint.max_following_error},
+                              {"joint/MaxEffort", joint.max_effort}});
+  if (!fine) return fine;
+  if (limits.limit_type == JointLimitType::Limited && !(limits.min < limits.max)) {
+    return refuse(
+        fmt::format("{}: the minimum limit {} must be below the maximum limit {}", who, limits.min, limits.max));
+  }
   if (joint.servo_law.name.empty()) {
     return refuse(who + ": no servo control law is chosen; use SetMechanismJointServoControlLaw");
   }
-  if (!positive(joint.max_following_error) || !positive(joint.max_effort)) {
-    return refuse(fmt::format("{}: following-error bound {} and effort bound {} must be above 0", who,
-                              joint.max_following_error, joint.max_effort));
+  for (const double gain : joint.gains) {
+    if (auto sound = check_all(who, {{"joint/Gains", gain}}); !sound) return sound;
   }
   return {};
 }
@@ -76,24 +84,27 @@ Expected<> check_actuators(const sdk::DeviceObject& device) {
     const sdk::Actuator& actuator = device.actuators[i];
     const std::string who = fmt::format("actuator {}", i);
     if (auto free = take(who, actuator.bus, actuator.axis); !free) return free;
-    if (!positive(actuator.scale.counts_per_revolution) || !positive(actuator.scale.rated_torque_nm) ||
-        std::abs(actuator.scale.direction) != 1) {
-      return refuse(fmt::format(
-          "{}: counts per revolution {} and rated torque {} must be above 0, direction {} must be "
-          "1 or -1",
-          who, actuator.scale.counts_per_revolution, actuator.scale.rated_torque_nm, actuator.scale.direction));
+    auto fine = check_all(who, {{"actuator/CountsPerRevolution", actuator.scale.counts_per_revolution},
+                                {"actuator/RatedTorque", actuator.scale.rated_torque_nm}});
+    if (!fine) return fine;
+    if (std::abs(actuator.scale.direction) != 1) {
+      return refuse(fmt::format("{}: direction {} must be 1 or -1", who, actuator.scale.direction));
     }
   }
   for (std::size_t i = 0; i < device.spindles.size(); ++i) {
     const sdk::Spindle& spindle = device.spindles[i];
     const std::string who = fmt::format("spindle {}", i);
     if (auto free = take(who, spindle.bus, spindle.axis); !free) return free;
-    if (!positive(spindle.max_speed_rpm) || !positive(spindle.speed_tolerance_rpm) ||
-        !positive(spindle.speed_timeout_s)) {
-      return refuse(
-          fmt::format("{}: maximum speed {} rpm, speed tolerance {} rpm and speed time-out {} s must be above "
-                      "0",
-                      who, spindle.max_speed_rpm, spindle.speed_tolerance_rpm, spindle.speed_timeout_s));
+    auto fine = check_all(who, {{"spindle/MaxSpeed", spindle.max_speed_rpm},
+                                {"spindle/SpeedTolerance", spindle.speed_tolerance_rpm},
+                                {"spindle/SpeedTimeout", spindle.speed_timeout_s}});
+    if (!fine) return fine;
+    // 0 rpm is a spindle that does not turn; one that does needs a tolerance that it can keep.
+    constexpr double kLeastToleranceRpm = 0.1;
+    if (spindle.max_speed_rpm != 0 &&
+        !(spindle.max_speed_rpm >= 1 && spindle.speed_tolerance_rpm >= kLeastToleranceRpm)) {
+      return refuse(fmt::format("{}: maximum speed {} rpm and speed tolerance {} rpm must be at least 1 and {}", who,
+                                spindle.max_speed_rpm, spindle.speed_tolerance_rpm, kLeastToleranceRpm));
     }
   }
   return {};
@@ -117,10 +128,10 @@ Expected<> check_io(const sdk::DeviceObject& device) {
 }  // namespace
 
 Expected<> check_device(const sdk::DeviceObject& device) {
-  if (!positive(device.max_feedrate_mm_min)) {
-    return refuse(
-        fmt::format("{}: maximum feedrate {} mm/min must be above 0", device.name, device.max_feedrate_mm_min));
-  }
+  auto fine = check_all(device.name, {{"MaxFeedrate", device.max_feedrate_mm_min}})
+                  .and_then([&] { return check_optional(device.name, "PathAccelRise", device.path_accel_rise_mm_s2); })
+                  .and_then([&] { return check_optional(device.name, "PathAccelFall", device.path_accel_fall_mm_s2); });
+  if (!fine) return fine;
   if (device.kinematics.name.empty()) return refuse("no kinematics is chosen; use SetMechanismKinematics");
   if (device.actuator_map.name.empty()) return refuse("no actuator map is chosen");
   if (device.digital_control_interface.name.empty()) return refuse("no digital control interface is chosen");

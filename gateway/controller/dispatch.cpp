@@ -32,8 +32,8 @@ void Controller::Impl::dispatch() {
   drain();
   using Kind = MotionSupervisor::QueueChange::Kind;
   for (const MotionSupervisor::QueueChange& change : news.queue) {
-    if (change.kind == Kind::Added) {
-      ledger.add(change.move_id);
+    if (change.kind == Kind::Added || change.kind == Kind::Still) {
+      ledger.add(change.move_id, change.kind == Kind::Still);
       continue;
     }
     deliver_samples_until(change.cycle);

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
 #include "gateway/controller/controller_impl.hpp"
 #include "gateway/controller/fault_text.hpp"
+#include "gateway/controller/standing.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -134,15 +136,28 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
   const bool virtual_before = in_force && in_force->virtual_mode();
   auto before = in_force;
   auto next = assemble(device, virtual_mode, options.period_s, loader(folder), registry);
-  if (!next) {
+  std::optional<std::vector<double>> standing;
+  if (next && before) {
+    const ServoStatus now = link->status.read();
+    standing = standing_after(*before, {now.position_set.data(), now.axis_count}, **next);
+  }
+  const auto may_go_in = !next      ? Expected<>(tl::unexpected(next.error()))
+                         : standing ? check_standing(device, *standing, fresh)
+                                    : Expected<>{};
+  if (!may_go_in) {
+    next = tl::unexpected(may_go_in.error());  // gives its buses back
     registry.stop_unused();
-    return tl::unexpected(next.error());
+    return may_go_in;
   }
   if (fresh) {
     supervisor.wish([](ServoWishes& wishes) { wishes.spindle_rpm.fill(0); });
   }
   auto done = switch_to(std::move(*next), !fresh);
   if (done) done = power_on();
+  if (done && !standing) {
+    const ServoStatus now = link->status.read();
+    done = check_standing(device, {now.position_set.data(), now.axis_count}, true);
+  }
   if (!done) {
     std::string message = done.error().message;
     if (in_force != before) {
@@ -167,6 +182,13 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
     supervisor.wish([](ServoWishes& wishes) { wishes.outputs = 0; });
     supervisor.set_frames({});
   }
+  // A spindle that turns faster than it may now slows down, and feed does not wait for the speed that it had.
+  supervisor.wish([&](ServoWishes& wishes) {
+    for (std::size_t i = 0; i < kMaxSpindles; ++i) {
+      const double bound = i < device.spindles.size() ? device.spindles[i].max_speed_rpm : 0;
+      wishes.spindle_rpm[i] = std::clamp(wishes.spindle_rpm[i], -bound, bound);
+    }
+  });
   cam.mechanism_changed(&in_force->device, fresh);
   draft.discard(&in_force->device);
   registry.stop_unused();

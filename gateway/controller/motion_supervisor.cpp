@@ -153,7 +153,7 @@ Expected<> MotionSupervisor::prepare_move() {
   return {};
 }
 
-Expected<> MotionSupervisor::add_move(const Move& move) {
+Expected<bool> MotionSupervisor::add_move(const Move& move) {
   // The builder is the gateway thread's alone; building may take long, and planning goes on meanwhile.
   auto segments = mechanism_->builder.build(move);
   if (!segments) return tl::unexpected(segments.error());
@@ -166,10 +166,11 @@ Expected<> MotionSupervisor::add_move(const Move& move) {
                                "nothing was queued",
                                move.id));
   }
+  const bool moves = !segments->empty();
   mechanism_->planner.add(std::move(*segments));
-  news_.queue.push_back({QueueChange::Kind::Added, move.id, 0});
+  news_.queue.push_back({moves ? QueueChange::Kind::Added : QueueChange::Kind::Still, move.id, 0});
   last_added_ = std::chrono::steady_clock::now();
-  return {};
+  return moves;
 }
 
 Expected<> MotionSupervisor::run_positioning(const Move& move) {
@@ -177,7 +178,8 @@ Expected<> MotionSupervisor::run_positioning(const Move& move) {
       .and_then([&] { return require_rest("a jog"); })
       .and_then([&] { return prepare_move(); })
       .and_then([&] { return add_move(move); })
-      .and_then([&] {
+      .and_then([&](bool moves) {
+        if (!moves) return Expected<>{};
         return command(
             [](CycleSequencer& cycle, const CycleObservation& seen) { return cycle.start_positioning(seen); });
       });

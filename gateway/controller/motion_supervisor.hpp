@@ -56,8 +56,9 @@ class MotionSupervisor {
 
   /// Refuses when a move cannot be taken now; then readies `builder()` to begin where the machine stands, if it must.
   [[nodiscard]] Expected<> prepare_move();
-  /// Builds and adds a move that `prepare_move` let through.
-  [[nodiscard]] Expected<> add_move(const Move& move);
+  /// Builds and adds a move that `prepare_move` let through. False when there is nothing to move: such a move is done
+  /// as soon as those before it are.
+  [[nodiscard]] Expected<bool> add_move(const Move& move);
   /// Builds, adds and runs one move from rest, outside of the cycle.
   [[nodiscard]] Expected<> run_positioning(const Move& move);
 
@@ -77,10 +78,10 @@ class MotionSupervisor {
   std::shared_ptr<Mechanism> install(std::shared_ptr<Mechanism> next, std::uint64_t generation, bool keep_running);
   [[nodiscard]] std::shared_ptr<Mechanism> mechanism();
 
-  /// What happened to the queue, in order: a move was added, or (at `cycle`) everything not done was dropped, or
-  /// another mechanism's queue began.
+  /// What happened to the queue, in order: a move was added (`Still`: one without motion), or (at `cycle`) everything
+  /// not done was dropped, or another mechanism's queue began.
   struct QueueChange {
-    enum class Kind : std::uint8_t { Added, Cleared, Replaced };
+    enum class Kind : std::uint8_t { Added, Still, Cleared, Replaced };
     Kind kind = Kind::Added;
     std::int64_t move_id = 0;
     std::int64_t cycle = 0;

@@ -19,11 +19,11 @@ void MoveLedger::read(const CycleSample& sample, const std::function<void(const 
     if (!entry.started) tell(make_event(Event::Kind::MoveStarted, sample.t_s, entry.id));
     entry.started = true;
   };
-  while (done_ < sample.moves_done && !moves_.empty()) {
+  while (!moves_.empty() && (moves_.front().still || done_ < sample.moves_done)) {
     start(moves_.front());
     tell(make_event(Event::Kind::MoveDone, sample.t_s, moves_.front().id));
+    if (!moves_.front().still) ++done_;
     moves_.pop_front();
-    ++done_;
   }
   if (sample.moves_done > done_) done_ = sample.moves_done;
   if (sample.moving && !moves_.empty() && moves_.front().id == sample.move_id) start(moves_.front());

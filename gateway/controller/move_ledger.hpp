@@ -12,7 +12,8 @@ namespace rmac::gateway {
 /// when some were dropped or many short moves end in one cycle. Gateway thread.
 class MoveLedger {
  public:
-  void add(std::int64_t move_id) { moves_.push_back({move_id, false}); }
+  /// `still`: the move has no motion, so no sample counts it; it is done in its turn.
+  void add(std::int64_t move_id, bool still) { moves_.push_back({move_id, false, still}); }
   /// What is not done will not be done.
   void clear() { moves_.clear(); }
   /// Another mechanism: its count begins at zero.
@@ -26,6 +27,7 @@ class MoveLedger {
   struct Entry {
     std::int64_t id;
     bool started;
+    bool still;
   };
   std::deque<Entry> moves_;
   std::uint64_t done_ = 0;

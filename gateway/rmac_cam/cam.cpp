@@ -113,7 +113,9 @@ Expected<> Cam::queue_move(std::int64_t id, const Geometry& geometry) {
                                "one with SetFeedrate",
                                id, feedrate_mm_min_, max_feedrate_mm_min_));
   }
-  return supervisor_.prepare_move().and_then([&] { return supervisor_.add_move(make_move(id, geometry)); });
+  return supervisor_.prepare_move()
+      .and_then([&] { return supervisor_.add_move(make_move(id, geometry)); })
+      .map([](bool) {});
 }
 
 int Cam::moves_in_buffer() const {
@@ -153,8 +155,11 @@ double Cam::max_feedrate() const {
 }
 
 Expected<> Cam::set_feed_override(double percent) {
-  if (!std::isfinite(percent) || percent < 0 || percent > 200) {
-    return refuse(fmt::format("SetFeedOverride: {} percent must be 0 to 200", percent));
+  constexpr double kSlowestPercent = 0.01;
+  const bool waits = percent == 0;
+  if (!waits && !(percent >= kSlowestPercent && percent <= 200)) {
+    return refuse(
+        fmt::format("SetFeedOverride: {} percent must be 0, which waits, or {} to 200", percent, kSlowestPercent));
   }
   supervisor_.set_override(percent);
   return {};

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
+#include "gateway/configuration/range.hpp"
 #include "rmac/motion/servo_loop.hpp"
 
 namespace rmac::gateway {
@@ -12,10 +12,6 @@ namespace {
 
 tl::unexpected<Error> refuse(std::string message) {
   return failure(MinorCode::InvalidParameterValue, std::move(message));
-}
-
-bool positive(double value) {
-  return std::isfinite(value) && value > 0;
 }
 
 Expected<> check_count(const char* function, int count, int least, std::size_t most) {
@@ -78,9 +74,11 @@ Expected<> ConfigDraft::change_joint(int number, const char* function, Change&& 
   return joint(number, function).map([&](sdk::Joint* found) { change(*found); });
 }
 
-Expected<> ConfigDraft::set_positive(int number, const char* function, double value, double JointLimits::*member) {
-  if (!positive(value)) return refuse(fmt::format("{}: {} must be a number above 0", function, value));
-  return change_joint(number, function, [&](sdk::Joint& found) { found.limits.*member = value; });
+Expected<> ConfigDraft::set_limit(int number, const char* function, const char* key, double value,
+                                  double JointLimits::*member) {
+  return check_device_range(key, value, function).and_then([&] {
+    return change_joint(number, function, [&](sdk::Joint& found) { found.limits.*member = value; });
+  });
 }
 
 Expected<> ConfigDraft::set_kinematics(const sdk::ModuleChoice& module) {
@@ -123,49 +121,42 @@ Expected<> ConfigDraft::set_joint_limit_type(int number, JointLimitType type) {
 }
 
 Expected<> ConfigDraft::set_joint_maximum_limit(int number, double value) {
-  if (!std::isfinite(value)) return refuse("SetMechanismJointMaximumLimit: the limit must be a finite number");
-  return change_joint(number, "SetMechanismJointMaximumLimit", [&](sdk::Joint& found) { found.limits.max = value; });
+  return set_limit(number, "SetMechanismJointMaximumLimit", "joint/Max", value, &JointLimits::max);
 }
 
 Expected<> ConfigDraft::set_joint_minimum_limit(int number, double value) {
-  if (!std::isfinite(value)) return refuse("SetMechanismJointMinimumLimit: the limit must be a finite number");
-  return change_joint(number, "SetMechanismJointMinimumLimit", [&](sdk::Joint& found) { found.limits.min = value; });
+  return set_limit(number, "SetMechanismJointMinimumLimit", "joint/Min", value, &JointLimits::min);
 }
 
 Expected<> ConfigDraft::set_joint_maximum_speed(int number, double value) {
-  return set_positive(number, "SetMechanismJointMaximumSpeed", value, &JointLimits::max_speed);
+  return set_limit(number, "SetMechanismJointMaximumSpeed", "joint/MaxSpeed", value, &JointLimits::max_speed);
 }
 
 Expected<> ConfigDraft::set_joint_maximum_acceleration(int number, double value) {
-  return set_positive(number, "SetMechanismJointMaximumAcceleration", value, &JointLimits::max_acceleration);
+  return set_limit(number, "SetMechanismJointMaximumAcceleration", "joint/MaxAcceleration", value,
+                   &JointLimits::max_acceleration);
 }
 
 Expected<> ConfigDraft::set_joint_maximum_jerk(int number, double value) {
-  return set_positive(number, "SetMechanismJointMaximumJerk", value, &JointLimits::max_jerk);
+  return set_limit(number, "SetMechanismJointMaximumJerk", "joint/MaxJerk", value, &JointLimits::max_jerk);
 }
 
 Expected<> ConfigDraft::set_maximum_feedrate(double mm_min) {
-  if (!positive(mm_min)) return refuse(fmt::format("SetMaximumFeedrate: {} mm/min must be above 0", mm_min));
-  draft_.max_feedrate_mm_min = mm_min;
-  return {};
+  return check_device_range("MaxFeedrate", mm_min, "SetMechanismMaxFeedrate").map([&] {
+    draft_.max_feedrate_mm_min = mm_min;
+  });
 }
 
-template <typename Change>
-Expected<> ConfigDraft::change_spindles(const char* function, double value, const char* unit, Change&& change) {
-  if (!positive(value)) return refuse(fmt::format("{}: {} {} must be above 0", function, value, unit));
-  if (draft_.spindles.empty()) return refuse(fmt::format("{}: the mechanism has no spindle", function));
-  for (sdk::Spindle& spindle : draft_.spindles) change(spindle);
-  return {};
-}
-
-Expected<> ConfigDraft::set_spindle_maximum_rpm(double rpm) {
-  return change_spindles("SetSpindleMaximumRPM", rpm, "rpm",
-                         [&](sdk::Spindle& spindle) { spindle.max_speed_rpm = rpm; });
-}
-
-Expected<> ConfigDraft::set_spindle_maximum_torque(double nm) {
-  return change_spindles("SetSpindleMaximumTorque", nm, "N·m",
-                         [&](sdk::Spindle& spindle) { spindle.max_torque_nm = nm; });
+Expected<> ConfigDraft::set_spindle_maximum_rpm(int spindle, double rpm) {
+  const std::size_t count = draft_.spindles.size();
+  if (spindle < 0 || static_cast<std::size_t>(spindle) >= count) {
+    return refuse(count == 0 ? "SetMechanismSpindleMaxRPM: the mechanism has no spindle"
+                             : fmt::format("SetMechanismSpindleMaxRPM: there is no spindle {}; spindles are 0 to {}",
+                                           spindle, count - 1));
+  }
+  return check_device_range("spindle/MaxSpeed", rpm, "SetMechanismSpindleMaxRPM").map([&] {
+    draft_.spindles[static_cast<std::size_t>(spindle)].max_speed_rpm = rpm;
+  });
 }
 
 Expected<> ConfigDraft::set_joint_control_method(int number, ControlMethod method) {
@@ -179,18 +170,20 @@ Expected<> ConfigDraft::set_joint_servo_control_law(int number, const sdk::Modul
 }
 
 Expected<> ConfigDraft::set_joint_servo_control_gains(int number, std::span<const double> gains) {
-  if (!std::all_of(gains.begin(), gains.end(), [](double gain) { return std::isfinite(gain); })) {
-    return refuse("SetMechanismJointServoControlGains: every gain must be a finite number");
+  for (const double gain : gains) {
+    if (auto sound = check_device_range("joint/Gains", gain, "SetMechanismJointServoControlGains"); !sound)
+      return sound;
   }
   return change_joint(number, "SetMechanismJointServoControlGains",
                       [&](sdk::Joint& found) { found.gains.assign(gains.begin(), gains.end()); });
 }
 
 Expected<> ConfigDraft::set_joint_watch(int number, double max_following_error, double max_effort) {
-  if (!positive(max_following_error) || !positive(max_effort)) {
-    return refuse(fmt::format("joint {}: following-error bound {} and effort bound {} must be above 0", number,
-                              max_following_error, max_effort));
-  }
+  const auto fine =
+      check_device_range("joint/MaxFollowingError", max_following_error, "following-error bound").and_then([&] {
+        return check_device_range("joint/MaxEffort", max_effort, "effort bound");
+      });
+  if (!fine) return fine;
   return change_joint(number, "joint watch", [&](sdk::Joint& found) {
     found.max_following_error = max_following_error;
     found.max_effort = max_effort;

@@ -37,8 +37,7 @@ class ConfigDraft final : public sdk::RmacConfig {
   Expected<> set_joint_maximum_acceleration(int joint, double value) override;
   Expected<> set_joint_maximum_jerk(int joint, double value) override;
   Expected<> set_maximum_feedrate(double mm_min) override;
-  Expected<> set_spindle_maximum_rpm(double rpm) override;
-  Expected<> set_spindle_maximum_torque(double nm) override;
+  Expected<> set_spindle_maximum_rpm(int spindle, double rpm) override;
   Expected<> set_joint_control_method(int joint, ControlMethod method) override;
   Expected<> set_joint_servo_control_law(int joint, const sdk::ModuleChoice& module) override;
   Expected<> set_joint_servo_control_gains(int joint, std::span<const double> gains) override;
@@ -55,9 +54,7 @@ class ConfigDraft final : public sdk::RmacConfig {
   [[nodiscard]] Expected<sdk::Joint*> joint(int number, const char* function);
   template <typename Change>
   Expected<> change_joint(int number, const char* function, Change&& change);
-  template <typename Change>
-  Expected<> change_spindles(const char* function, double value, const char* unit, Change&& change);
-  Expected<> set_positive(int number, const char* function, double value, double JointLimits::*member);
+  Expected<> set_limit(int number, const char* function, const char* key, double value, double JointLimits::*member);
 
   Controller controller_;
   sdk::DeviceObject draft_;

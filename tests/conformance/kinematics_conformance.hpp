@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -17,8 +18,8 @@ struct JointRange {
 };
 
 /// What every kinematics must keep, over seeded random joint vectors inside `ranges` and with several tools: the seeded
-/// inverse gives the joints back, the forward of the inverse gives the pose back, and the Jacobian is the derivative of
-/// the forward. `tools` are those that the machine can carry.
+/// inverse gives the joints back, the forward of the inverse gives the pose back, the Jacobian is the derivative of the
+/// forward, and joints are of the type they are said to be. `tools` are those that the machine can carry.
 class KinematicsConformance {
  public:
   KinematicsConformance(const Kinematics& kinematics, std::vector<JointRange> ranges, std::vector<Frame> tools)
@@ -36,6 +37,7 @@ class KinematicsConformance {
         SCOPED_TRACE(text(joints));
         check_round_trip(joints, tool);
         check_jacobian(joints, tool);
+        check_types(joints, tool);
         if (testing::Test::HasFailure()) return;
       }
     }
@@ -82,6 +84,24 @@ class KinematicsConformance {
       for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_NEAR(jacobian[c * n + j], (above.tip[c] - below.tip[c]) / (2 * kStep), 1e-6);
         EXPECT_NEAR(jacobian[(3 + c) * n + j], (above.axis[c] - below.axis[c]) / (2 * kStep), 1e-6);
+      }
+    }
+  }
+
+  /// A slide carries tip and axis along by as much as it moves, and turns nothing; a turn keeps no axis but its own.
+  void check_types(const std::vector<double>& joints, const Frame& tool) const {
+    const std::size_t n = joints.size();
+    std::vector<double> jacobian(6 * n);
+    kinematics_.jacobian(joints, tool, jacobian);
+    for (std::size_t j = 0; j < n; ++j) {
+      const auto length = [&](std::size_t row) {
+        return std::hypot(jacobian[row * n + j], jacobian[(row + 1) * n + j], jacobian[(row + 2) * n + j]);
+      };
+      if (kinematics_.joint_type(j) == JointType::Linear) {
+        EXPECT_NEAR(length(0), 1, 1e-9);
+        EXPECT_NEAR(length(3), 0, 1e-9);
+      } else if (kinematics_.joint_type(j) == JointType::Rotary) {
+        EXPECT_LE(length(3), std::numbers::pi / 180 + 1e-9);
       }
     }
   }

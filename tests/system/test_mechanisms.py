@@ -116,7 +116,7 @@ class BadMechanism(unittest.TestCase):
         module = self.folder / "DMACXYKinematics.so"
         module.unlink()
         shutil.copy(os.environ["RMAC_WRONG_ABI_MODULE"], module)
-        self.assert_load_fails("DMACXYKinematics", "ABI", "1", "2")
+        self.assert_load_fails("DMACXYKinematics", "ABI 2", "ABI 3")
 
     def test_truncated_module_is_refused_at_every_length(self):
         module = self.folder / "DMACXYKinematics.so"

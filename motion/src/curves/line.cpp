@@ -105,9 +105,7 @@ Expected<CurvePtr> make_joint_line(std::span<const double> start, std::span<cons
   }
   const double length = std::sqrt(sum);
   if (!std::isfinite(length)) return refuse("the joint target is too far away to be a number");
-  if (length <= kZeroLength_mm) {
-    return refuse("the joint move has no length: every joint is at its target already; leave the move out");
-  }
+  if (length <= kZeroLength_mm) return CurvePtr{};
   return std::make_unique<JointLineCurve>(start, end, length);
 }
 

@@ -62,11 +62,16 @@ Expected<CurveList> curves_of(const NurbsGeometry& nurbs, const CurveStart& star
 Expected<CurveList> curves_of(const PathTargetGeometry& move, const CurveStart& start) {
   const auto target = checked(move.target, "target");
   if (!target) return tl::unexpected(target.error());
+  const bool there = distance(start.pose.tip, target->tip) <= kZeroLength_mm &&
+                     distance(start.pose.axis, target->axis) <= kStartTolerance_axis;
+  if (there) return CurveList{};
   return listed(make_line(start.pose, *target));
 }
 
 Expected<CurveList> curves_of(const JointTargetGeometry& move, const CurveStart& start) {
-  return listed(make_joint_line(start.joints, move.joints));
+  auto curve = make_joint_line(start.joints, move.joints);
+  if (curve && *curve == nullptr) return CurveList{};
+  return listed(std::move(curve));
 }
 
 }  // namespace

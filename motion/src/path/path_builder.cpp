@@ -81,6 +81,7 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
   if (auto checked = check_demand(move, joint_move); !checked) return tl::unexpected(checked.error());
   auto curves = make_curves(move, {end_pose_, end_joints_});
   if (!curves) return tl::unexpected(curves.error());
+  if (curves->empty()) return std::vector<std::shared_ptr<const PathSegment>>{};
 
   std::vector<std::shared_ptr<const PathSegment>> segments;
   std::vector<double> joints = end_joints_;

@@ -12,6 +12,7 @@ namespace rmac::bench {
 class BenchKinematics final : public Kinematics {
  public:
   [[nodiscard]] std::size_t joint_count() const noexcept override { return 3; }
+  [[nodiscard]] JointType joint_type(std::size_t) const noexcept override { return JointType::Linear; }
   void forward(std::span<const double> joints, const Frame&, ToolPose& pose) const noexcept override {
     pose.tip = {joints[0], joints[1], joints[2]};
     pose.axis = {0, 0, 1};
@@ -36,6 +37,9 @@ inline constexpr double kPivot_mm = 150;
 class ForkHeadKinematics final : public Kinematics {
  public:
   [[nodiscard]] std::size_t joint_count() const noexcept override { return 5; }
+  [[nodiscard]] JointType joint_type(std::size_t joint) const noexcept override {
+    return joint < 3 ? JointType::Linear : JointType::Rotary;
+  }
   void forward(std::span<const double> q, const Frame&, ToolPose& pose) const noexcept override {
     const double a = q[3] * kRad, b = q[4] * kRad;
     pose.axis = {std::sin(b), -std::sin(a) * std::cos(b), std::cos(a) * std::cos(b)};

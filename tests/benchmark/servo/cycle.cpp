@@ -19,6 +19,7 @@ class Arm final : public Kinematics {
  public:
   explicit Arm(std::size_t joints) : joints_(joints) {}
   [[nodiscard]] std::size_t joint_count() const noexcept override { return joints_; }
+  [[nodiscard]] JointType joint_type(std::size_t) const noexcept override { return JointType::Rotary; }
 
   void forward(std::span<const double> joints, const Frame& tool, ToolPose& pose) const noexcept override {
     Links links;

@@ -107,9 +107,9 @@ TEST(Dispatcher, NamesParameterValueAndWhatIsExpected) {
   Api api;
   EXPECT_CALL(api.machine.cam_mock, set_feedrate(_)).Times(0);
   EXPECT_EQ(api.refusal("RMAC_CAM.SetFeedrate", R"({"Feedrate":"fast"})", rpc_code::kInvalidParams),
-            "parameter \"Feedrate\" is \"fast\", expected a number more than 0 mm/min");
+            "parameter \"Feedrate\" is \"fast\", expected a number 0.01 to 1000000 mm/min");
   EXPECT_EQ(api.refusal("RMAC_CAM.SetFeedrate", R"({"Feedrate":0})", rpc_code::kInvalidParams),
-            "parameter \"Feedrate\" is 0, expected a number more than 0 mm/min");
+            "parameter \"Feedrate\" is 0, expected a number 0.01 to 1000000 mm/min");
   EXPECT_EQ(api.refusal("RMAC_CAM.SetFeedOverride", R"({"Percent":201})", rpc_code::kInvalidParams),
             "parameter \"Percent\" is 201, expected a number 0 to 200 %");
   EXPECT_EQ(api.refusal("RMAC_CAM.JogJoint", R"({"JntNum":32,"Distance":1})", rpc_code::kInvalidParams),

@@ -51,7 +51,7 @@ TEST_F(Draft, RefusesWhatNoDraftCouldMakeRight) {
   EXPECT_FALSE(draft_.set_number_of_joints(0));
   EXPECT_FALSE(draft_.set_number_of_joints(static_cast<int>(kMaxJoints)));
   EXPECT_FALSE(draft_.set_kinematics({"", {}, {}}));
-  EXPECT_FALSE(draft_.set_spindle_maximum_rpm(100)) << "there is no spindle";
+  EXPECT_FALSE(draft_.set_spindle_maximum_rpm(0, 100)) << "there is no spindle";
   EXPECT_FALSE(draft_.set_joint_servo_control_law(0, {"", {}, {}}));
 }
 

@@ -28,6 +28,37 @@ class Cycle : public testing::Test {
   TestMachine machine_;
 };
 
+TEST_F(Cycle, AMoveToWhereTheToolWillStandIsDoneInItsTurn) {
+  const ToolPose corner{{10, 0, 0}, {0, 0, 1}};
+  ASSERT_TRUE(machine_.line(1, {0, 0, 0}, corner.tip));
+  ASSERT_TRUE(cam().queue_move(2, PathTargetGeometry{corner}));
+  ASSERT_TRUE(cam().queue_move(3, JointTargetGeometry{{10, 0, 0}}));
+  ASSERT_TRUE(machine_.line(4, corner.tip, {10, 5, 0}));
+  machine_.controller.dispatch();
+  EXPECT_EQ(machine_.count(Event::Kind::MoveDone, 2), 0) << "move 1 is before it";
+  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 4));
+  std::vector<std::int64_t> begun, done;
+  for (const Event& event : machine_.events) {
+    if (event.kind == Event::Kind::MoveStarted) begun.push_back(event.move_id);
+    if (event.kind == Event::Kind::MoveDone) done.push_back(event.move_id);
+  }
+  EXPECT_THAT(begun, testing::ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(done, testing::ElementsAre(1, 2, 3, 4));
+}
+
+TEST_F(Cycle, AMoveToWhereTheToolStandsIsDoneAtOnceAndTheNextOneRuns) {
+  ASSERT_TRUE(cam().queue_move(5, PathTargetGeometry{{{0, 0, 0}, {0, 0, 1}}}));
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 5));
+  EXPECT_EQ(cam().moves_in_buffer(), 0);
+  ASSERT_TRUE(cam().jog_joint(0, 1e-9)) << "nor does a jog that goes nowhere wait for ever";
+  EXPECT_EQ(state(), CycleState::Idle);
+  ASSERT_TRUE(machine_.line(6, {0, 0, 0}, {1, 0, 0}));
+  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Manual));
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 6));
+  EXPECT_NEAR(machine_.samples.back().position_set[0], 1, 1e-6);
+}
+
 TEST_F(Cycle, RunsTheQueueInOrderWhenStartedAutomatically) {
   ASSERT_TRUE(machine_.line(7, {0, 0, 0}, {10, 0, 0}));
   ASSERT_TRUE(machine_.line(8, {10, 0, 0}, {10, 5, 0}));

@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(
                "it takes 2: stiffness (N/mm), damping (N·s/mm)"},
         Defect{"Limits", [](sdk::DeviceObject& d) { d.joints[0].limits.min = 60; },
                "the minimum limit 60 must be below the maximum limit 50"},
-        Defect{"Jerk", [](sdk::DeviceObject& d) { d.held_joints[0].limits.max_jerk = 0; }, "above 0"},
+        Defect{"Jerk", [](sdk::DeviceObject& d) { d.held_joints[0].limits.max_jerk = 0; }, "SetMechanismJointMaximumJerk is 0"},
         Defect{"ForceControl", [](sdk::DeviceObject& d) { d.joints[0].method = ControlMethod::Force; },
                "only position control"},
         Defect{"AxisTakenTwice", [](sdk::DeviceObject& d) { d.actuators[2].axis = 0; },

@@ -129,8 +129,8 @@ TEST(DeviceDatabase, TakesTheSchemasDefaultsForWhatIsLeftOut) {
   EXPECT_EQ(device.speed_capability, by_default("/properties/SpeedCapability"));
   EXPECT_EQ(device.tool_changer, by_default("/properties/ToolChanger"));
   EXPECT_EQ(device.number_of_tools, by_default("/properties/NumberOfTools"));
-  EXPECT_EQ(device.path_accel_rise_mm_s2, by_default("/properties/PathAccelRise"));
-  EXPECT_EQ(device.path_accel_fall_mm_s2, by_default("/properties/PathAccelFall"));
+  EXPECT_EQ(device.path_accel_rise_mm_s2, 0) << "the joints alone bound it";
+  EXPECT_EQ(device.path_accel_fall_mm_s2, 0);
   EXPECT_EQ(device.actuators[0].scale.direction, by_default("/definitions/actuator/properties/Direction"));
   EXPECT_EQ(device.actuators[0].scale.home_counts, by_default("/definitions/actuator/properties/HomeCounts"));
   EXPECT_EQ(device.spindles[0].speed_tolerance_rpm, by_default("/definitions/spindle/properties/SpeedTolerance"));
@@ -175,13 +175,13 @@ TEST(DeviceDatabase, MissingFileAndFolderAreErrors) {
 
 TEST(DeviceDatabase, WrongValueNamesKeyValueAndAllowedRange) {
   EXPECT_EQ(problem_with("/Joints/1/MaxSpeed", -200),
-            "/Joints/1/MaxSpeed is -200; allowed is a number above 0 and at most 1000000 (mm/s or deg/s)");
+            "/Joints/1/MaxSpeed is -200; allowed is a number from 0.001 to 1000000 (mm/s or deg/s)");
   EXPECT_EQ(problem_with("/Actuators/2/Axis", 128), "/Actuators/2/Axis is 128; allowed is an integer from 0 to 127");
   EXPECT_EQ(problem_with("/Joints/0/Type", "Circular"),
             "/Joints/0/Type is \"Circular\"; allowed is one of \"Linear\", \"Rotary\", \"Screw\"");
   EXPECT_EQ(problem_with("/ToolChanger", 1), "/ToolChanger is 1; allowed is true or false");
   EXPECT_EQ(problem_with("/MaxFeedrate", "2000"),
-            "/MaxFeedrate is \"2000\"; allowed is a number above 0 and at most 1000000 (mm/min)");
+            "/MaxFeedrate is \"2000\"; allowed is a number from 0.01 to 1000000 (mm/min)");
   EXPECT_EQ(problem_with("/DeviceDriverVersion", "1.2"),
             "/DeviceDriverVersion is \"1.2\"; allowed is a text (three numbers of at most two digits, as in 1.2.3)");
   EXPECT_EQ(problem_with("/Kinematics/Module", "../../etc/passwd"),
@@ -198,7 +198,7 @@ TEST(DeviceDatabase, WrongValueNamesKeyValueAndAllowedRange) {
 
 TEST(DeviceDatabase, MissingKeyIsNamedWithWhatItWants) {
   EXPECT_EQ(problem_without("/Joints/2", "MaxJerk"),
-            "/Joints/2 lacks the key \"MaxJerk\", a number above 0 and at most 10000000000 (mm/s³ or deg/s³)");
+            "/Joints/2 lacks the key \"MaxJerk\", a number from 1 to 10000000000 (mm/s³ or deg/s³)");
   EXPECT_EQ(problem_without("", "Kinematics"), "the document lacks the key \"Kinematics\", an object");
 }
 

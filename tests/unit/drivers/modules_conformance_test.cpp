@@ -91,7 +91,7 @@ TEST_P(MachineActMap, RefusesParametersThatAreMissingOrImpossible) {
   EXPECT_THAT(module.error(), HasSubstr("pitch_mm has 0 values; give 3"));
   const std::array<double, 3> bad{5, 0, 5};
   EXPECT_FALSE(module.create<ActuatorMap>(screws(bad, kGear)));
-  EXPECT_THAT(module.error(), HasSubstr("pitch_mm holds 0; it must be above 0"));
+  EXPECT_THAT(module.error(), HasSubstr("pitch_mm holds 0; it must be 0.001 to 10000"));
 }
 
 }  // namespace

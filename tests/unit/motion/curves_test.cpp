@@ -108,7 +108,13 @@ TEST_F(Line, IsRefusedWhenItStartsElsewhere) {
 TEST_F(Line, IsRefusedWithoutLength) {
   const ToolPose here{{1, 1, 1}, {0, 0, 1}};
   EXPECT_THAT(refusal(LineGeometry{here, here}, {here, {}}), HasSubstr("the line has no length"));
-  EXPECT_THAT(refusal(PathTargetGeometry{here}, {here, {}}), HasSubstr("the line has no length"));
+}
+
+TEST_F(Line, HasNoCurveForATargetWhereTheToolStands) {
+  const ToolPose here{{1, 1, 1}, {0, 0, 1}};
+  const auto curves = make_curves(move_of(PathTargetGeometry{here}), {here, {}});
+  ASSERT_TRUE(curves) << curves.error().message;
+  EXPECT_TRUE(curves->empty());
 }
 
 TEST_F(Line, IsRefusedWhenTheAxisTurnsHalfAround) {
@@ -151,7 +157,13 @@ TEST_F(JointLine, IsRefusedWithWrongTargets) {
   const std::vector<double> start{1, 2};
   EXPECT_THAT(refusal(JointTargetGeometry{{1, 2, 3}}, {{}, start}), HasSubstr("has 3 values, the machine has 2"));
   EXPECT_THAT(refusal(JointTargetGeometry{{1, kNan}}, {{}, start}), HasSubstr("joint 1 is not a finite number"));
-  EXPECT_THAT(refusal(JointTargetGeometry{{1, 2}}, {{}, start}), HasSubstr("no length"));
+}
+
+TEST_F(JointLine, HasNoCurveForATargetWhereTheJointsStand) {
+  const std::vector<double> start{1, 2};
+  const auto curves = make_curves(move_of(JointTargetGeometry{{1, 2}}), {{{}, {0, 0, 1}}, start});
+  ASSERT_TRUE(curves) << curves.error().message;
+  EXPECT_TRUE(curves->empty());
 }
 
 TEST_F(Arc, KeepsRadiusPlaneAndSense) {

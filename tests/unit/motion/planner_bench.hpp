@@ -15,6 +15,7 @@ namespace rmac::test {
 class CartesianKinematics final : public Kinematics {
  public:
   [[nodiscard]] std::size_t joint_count() const noexcept override { return 3; }
+  [[nodiscard]] JointType joint_type(std::size_t) const noexcept override { return JointType::Linear; }
   void forward(std::span<const double> joints, const Frame&, ToolPose& pose) const noexcept override {
     pose.tip = {joints[0], joints[1], joints[2]};
     pose.axis = {0, 0, 1};

@@ -19,6 +19,7 @@ constexpr double kRatedNm = 1;
 class PlaneKinematics : public Kinematics {
  public:
   [[nodiscard]] std::size_t joint_count() const noexcept override { return 2; }
+  [[nodiscard]] JointType joint_type(std::size_t) const noexcept override { return JointType::Linear; }
   void forward(std::span<const double> joints, const Frame& tool, ToolPose& pose) const noexcept override {
     pose = {{joints[0] + tool.p[0], joints[1] + tool.p[1], tool.p[2]}, {0, 0, 1}};
   }

@@ -4,6 +4,7 @@
 
 namespace rmac {
 
+enum class JointType { Rotary = 0, Linear = 1, Screw = 2 };
 enum class ControlMethod { Position = 0, Velocity = 1, Force = 2 };
 
 /// How the words of one drive become shaft values: counts to rad, per mille of rated torque to N·m.

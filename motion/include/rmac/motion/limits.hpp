@@ -2,9 +2,10 @@
 
 #include <string>
 
+#include "rmac/motion/axis.hpp"
+
 namespace rmac {
 
-enum class JointType { Rotary = 0, Linear = 1, Screw = 2 };
 enum class JointLimitType { Limited = 0, Infinite = 1, InfinitePositive = 2, InfiniteNegative = 3 };
 
 /// Bounds of one joint, in mm and s, or degrees and s for a rotary one.

@@ -4,12 +4,19 @@
 #include "rmac/motion/ports/actuator_map.hpp"
 #include "rmac/sdk/module.hpp"
 
+#ifndef TEST_NAME
+#define TEST_NAME "TestMap"
+#endif
+#ifndef TEST_PITCH_MM
+#define TEST_PITCH_MM 5
+#endif
+
 namespace {
 
-constexpr double kPitchMm = 5;
+constexpr double kPitchMm = TEST_PITCH_MM;
 constexpr double kMmPerRad = kPitchMm / (2 * std::numbers::pi);
 
-/// One ball screw a joint; the parameter `joints` says how many.
+/// One ball screw a joint; the parameter `joints` says how many, where the build does not.
 class BallScrews final : public rmac::ActuatorMap {
  public:
   explicit BallScrews(std::size_t joints) : joints_(joints) {}
@@ -37,15 +44,20 @@ class BallScrews final : public rmac::ActuatorMap {
 
 struct Factory {
   static rmac::ActuatorMap* create(rmac::sdk::Parameters parameters, char* error, std::size_t size) {
+#ifdef TEST_JOINTS
+    (void)parameters, (void)error, (void)size;
+    return new BallScrews(TEST_JOINTS);
+#else
     const auto joints = rmac::sdk::find_numbers(parameters, "joints");
     if (joints.size() != 1 || !(joints[0] >= 1)) {
       std::snprintf(error, size, "joints must be 1 or more");
       return nullptr;
     }
     return new BallScrews(static_cast<std::size_t>(joints[0]));
+#endif
   }
 };
 
 }  // namespace
 
-RMAC_MODULE(ActuatorMap, "TestMap", rmac::ActuatorMap, Factory)
+RMAC_MODULE(ActuatorMap, TEST_NAME, rmac::ActuatorMap, Factory)

@@ -5,6 +5,9 @@
 
 #define TEST_TEXT_OF(x) #x
 #define TEST_TEXT(x) TEST_TEXT_OF(x)
+#ifndef TEST_NAME
+#define TEST_NAME "TestKinematics" TEST_TEXT(TEST_JOINTS)
+#endif
 
 namespace {
 
@@ -19,6 +22,7 @@ inline double& kept_shift_mm() {
 class Cartesian final : public rmac::Kinematics {
  public:
   std::size_t joint_count() const noexcept override { return TEST_JOINTS; }
+  rmac::JointType joint_type(std::size_t) const noexcept override { return rmac::JointType::Linear; }
   void forward(std::span<const double> joints, const rmac::Frame& tool, rmac::ToolPose& pose) const noexcept override {
     pose = {};
     for (std::size_t i = 0; i < TEST_JOINTS; ++i) pose.tip[i] = joints[i] + tool.p[i];
@@ -43,4 +47,4 @@ struct Factory {
 
 }  // namespace
 
-RMAC_MODULE(Kinematics, "TestKinematics" TEST_TEXT(TEST_JOINTS), rmac::Kinematics, Factory)
+RMAC_MODULE(Kinematics, TEST_NAME, rmac::Kinematics, Factory)

@@ -28,6 +28,10 @@ struct BallScrewMapFactory {
   }
 
  private:
+  /// Of mm a turn, and of motor turns a turn of the screw: far beyond what is built.
+  static constexpr double kLeast = 1e-3;
+  static constexpr double kMost = 1e4;
+
   static bool check(const char* name, std::span<const double> values, char* error, std::size_t error_size) noexcept {
     if (values.size() != kJoints) {
       std::snprintf(error, error_size, "parameter %s has %zu values; give %zu, one a joint", name, values.size(),
@@ -35,8 +39,8 @@ struct BallScrewMapFactory {
       return false;
     }
     for (const double value : values) {
-      if (std::isfinite(value) && value > 0) continue;
-      std::snprintf(error, error_size, "parameter %s holds %g; it must be above 0", name, value);
+      if (value >= kLeast && value <= kMost) continue;
+      std::snprintf(error, error_size, "parameter %s holds %g; it must be %g to %g", name, value, kLeast, kMost);
       return false;
     }
     return true;

@@ -17,6 +17,7 @@ class CartesianKinematics final : public Kinematics {
 
  public:
   [[nodiscard]] std::size_t joint_count() const noexcept override { return kAxes; }
+  [[nodiscard]] JointType joint_type(std::size_t /*joint*/) const noexcept override { return JointType::Linear; }
 
   void forward(std::span<const double> joints, const Frame& tool, ToolPose& pose) const noexcept override {
     pose.tip = tool.p;

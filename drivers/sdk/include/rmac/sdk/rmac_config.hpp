@@ -33,8 +33,7 @@ class RmacConfig {
   virtual Expected<> set_joint_maximum_acceleration(int joint, double value) = 0;
   virtual Expected<> set_joint_maximum_jerk(int joint, double value) = 0;
   virtual Expected<> set_maximum_feedrate(double mm_min) = 0;
-  virtual Expected<> set_spindle_maximum_rpm(double rpm) = 0;
-  virtual Expected<> set_spindle_maximum_torque(double nm) = 0;
+  virtual Expected<> set_spindle_maximum_rpm(int spindle, double rpm) = 0;
 
   virtual Expected<> set_joint_control_method(int joint, ControlMethod method) = 0;
   virtual Expected<> set_joint_servo_control_law(int joint, const ModuleChoice& module) = 0;

@@ -14,7 +14,7 @@ class StandardDeviceDriver : public DeviceDriver {
         .and_then([&] { return config.set_kinematics(device.kinematics); })
         .and_then([&] { return config.set_actuator_map(device.actuator_map); })
         .and_then([&] { return config.set_maximum_feedrate(device.max_feedrate_mm_min); })
-        .and_then([&] { return set_spindle_speed(device.spindles, config); })
+        .and_then([&] { return set_spindle_speeds(device.spindles, config); })
         .and_then([&] {
           return for_each_joint(device.joints, 0, [&](int number, const Joint& joint) {
             return set_limits(config, number, joint.limits);
@@ -51,12 +51,12 @@ class StandardDeviceDriver : public DeviceDriver {
   }
 
  private:
-  /// RMAC_Config knows one maximum for all spindles; where they differ, each keeps what its device database gives.
-  static Expected<> set_spindle_speed(const std::vector<Spindle>& spindles, RmacConfig& config) {
+  static Expected<> set_spindle_speeds(const std::vector<Spindle>& spindles, RmacConfig& config) {
+    int number = 0;
     for (const Spindle& spindle : spindles) {
-      if (spindle.max_speed_rpm != spindles.front().max_speed_rpm) return {};
+      if (auto done = config.set_spindle_maximum_rpm(number++, spindle.max_speed_rpm); !done) return done;
     }
-    return spindles.empty() ? Expected<>{} : config.set_spindle_maximum_rpm(spindles.front().max_speed_rpm);
+    return {};
   }
 
   template <typename Function>

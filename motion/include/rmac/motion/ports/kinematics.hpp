@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "rmac/motion/axis.hpp"
 #include "rmac/motion/pose.hpp"
 
 namespace rmac {
@@ -20,6 +21,8 @@ class Kinematics {
  public:
   virtual ~Kinematics() = default;
   [[nodiscard]] virtual std::size_t joint_count() const noexcept = 0;
+  /// What joint number `joint` does in this geometry; a mechanism whose device says otherwise is refused.
+  [[nodiscard]] virtual JointType joint_type(std::size_t joint) const noexcept = 0;
 
   /// Tool pose in the machine frame. `joints`: joint_count() values. Total: every joint vector has a pose.
   virtual void forward(std::span<const double> joints, const Frame& tool, ToolPose& pose) const noexcept = 0;

@@ -1,0 +1,188 @@
+// RMAC_Config's setters: each is called, applied, and seen in what the machine then does.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "unit/setters/setter_bench.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// Sets one value of joint 0, and applies it.
+void set_joint(SetterBench& bench, const char* setter, const char* parameter, double value) {
+  bench.call(setter, fmt::format(R"({{"JntNum": 0, "{}": {}}})", parameter, value));
+  bench.apply();
+}
+
+/// The mill without its third axis takes four setters. Each must be needed: without it the configuration is refused,
+/// and the mill goes on as it was; with it the machine moves in the plane, and the third drive is let go.
+void becomes_planar_by(SetterBench& bench, const std::string& setter, const std::string& params) {
+  const std::vector<std::pair<std::string, std::string>> all{
+      {"RMAC_Config.SetMechanismKinematics", R"({"DMACKin": "TestKinematics2"})"},
+      {"RMAC_Config.SetMechanismActuatorMap", R"({"DMACMachineActMap": "PlaneMap"})"},
+      {"RMAC_Config.SetMechanismNumJnts", R"({"NumJnts": 2})"},
+      {"RMAC_Config.SetMechanismNumActuators", R"({"NumActuators": 2})"}};
+  for (const auto& [other, its_params] : all) {
+    if (other != setter) bench.call(other, its_params);
+  }
+  bench.refusal("RMAC_Config.Apply");
+  EXPECT_NEAR(bench.tip_to(0, 0, 2).back().position_set[2], 2, 1e-5) << "still the mill with three axes";
+  bench.tip_to(0, 0, 0);
+  bench.call(setter, params);
+  bench.apply();
+  EXPECT_THAT(bench.tip_refusal(0, 0, 2), HasSubstr("reach"));
+  const Trace trace = bench.tip_to(3, 4, 0);
+  EXPECT_NEAR(trace.back().position_set[1], 4, 1e-5);
+  EXPECT_EQ(trace.back().axis_count, 2U);
+}
+
+}  // namespace
+
+const std::vector<SetterEffect>& config_setter_effects() {
+  static const std::vector<SetterEffect> kEffects{
+      {"RMAC_Config.SetMechanismKinematics",
+       [](SetterBench& bench) {
+         EXPECT_NEAR(bench.tip_to(10, 0, 0).back().position_set[0], 10, 1e-5);
+         bench.call("RMAC_Config.SetMechanismKinematics", R"({"DMACKin": "ShiftedKinematics"})");
+         bench.apply();
+         EXPECT_NEAR(bench.tip_to(20, 0, 0).back().position_set[0], 13, 1e-5) << "its tool stands 7 mm ahead";
+       }},
+      {"RMAC_Config.SetMechanismActuatorMap",
+       [](SetterBench& bench) {
+         constexpr double kTurn = 2 * std::numbers::pi;
+         const double at_home = bench.bus->plant(0).angle_rad();
+         bench.joints_to({10, 0, 0});
+         EXPECT_NEAR(bench.bus->plant(0).angle_rad() - at_home, 2 * kTurn, 0.1) << "a pitch of 5 mm";
+         bench.joints_to({0, 0, 0});
+         bench.call("RMAC_Config.SetMechanismActuatorMap", R"({"DMACMachineActMap": "CoarseMap"})");
+         bench.apply();
+         bench.joints_to({10, 0, 0});
+         EXPECT_NEAR(bench.bus->plant(0).angle_rad() - at_home, kTurn, 0.1) << "a pitch of 10 mm";
+       }},
+      {"RMAC_Config.SetMechanismNumJnts",
+       [](SetterBench& bench) { becomes_planar_by(bench, "RMAC_Config.SetMechanismNumJnts", R"({"NumJnts": 2})"); }},
+      {"RMAC_Config.SetMechanismNumActuators",
+       [](SetterBench& bench) {
+         becomes_planar_by(bench, "RMAC_Config.SetMechanismNumActuators", R"({"NumActuators": 2})");
+       }},
+      {"RMAC_Config.SetMechanismNumSpindle",
+       [](SetterBench& bench) {
+         bench.call("RMAC_CAM.SetSpindleRPM", R"({"SpindleNumber": 0, "RPM": 600})");
+         bench.run_until([&] { return bench.now().spindle_rpm[0] > 590; });
+         bench.call("RMAC_Config.SetMechanismNumSpindle", R"({"NumSpindle": 0})");
+         bench.apply();
+         bench.run_until([&] { return bench.bus->spindle(3).speed_rpm() == 0; });
+         EXPECT_THAT(bench.refusal("RMAC_CAM.SetSpindleRPM", R"({"SpindleNumber": 0, "RPM": 600})"),
+                     HasSubstr("no spindle"));
+       }},
+      {"RMAC_Config.SetMechanismSpindleMaxRPM",
+       [](SetterBench& bench) {
+         bench.call("RMAC_CAM.SetSpindleRPM", R"({"SpindleNumber": 0, "RPM": 800})");
+         bench.run_until([&] { return bench.now().spindle_rpm[0] > 790; });
+         bench.call("RMAC_Config.SetMechanismSpindleMaxRPM", R"({"MaxSpindleRPM": 500})");
+         bench.apply();
+         bench.run_until([&] { return std::abs(bench.now().spindle_rpm[0] - 500) < 1; });
+         EXPECT_THAT(bench.refusal("RMAC_CAM.SetSpindleRPM", R"({"SpindleNumber": 0, "RPM": 800})"), HasSubstr("500"));
+         EXPECT_NEAR(bench.tip_to(5, 0, 0).back().position_set[0], 5, 1e-5)
+             << "the spindle is at the speed that it may have";
+       }},
+      {"RMAC_Config.SetMechanismMaxFeedrate",
+       [](SetterBench& bench) {
+         bench.call("RMAC_CAM.SetFeedOverride", R"({"Percent": 200})");
+         EXPECT_NEAR(peak_feed(bench.tip_to(20, 0, 0)), 2000.0 / 60, 0.1);
+         bench.call("RMAC_Config.SetMechanismMaxFeedrate", R"({"MaxFeedrate": 600})");
+         bench.apply();
+         EXPECT_THAT(bench.tip_refusal(0, 0, 0), HasSubstr("above the maximum of 600"));
+         bench.call("RMAC_CAM.SetFeedrate", R"({"Feedrate": 600})");
+         EXPECT_NEAR(peak_feed(bench.tip_to(0, 0, 0)), 10, 0.01) << "no override passes it";
+       }},
+      {"RMAC_Config.SetMechanismJointType",
+       [](SetterBench& bench) {
+         bench.call("RMAC_Config.SetMechanismJointType", R"({"JntNum": 1, "JointType": "DMAC_ROT_JNT"})");
+         EXPECT_THAT(bench.refusal("RMAC_Config.Apply"), AllOf(HasSubstr("\"Y\""), HasSubstr("Rotary"),
+                                                               HasSubstr("DMACXYZKinematics"), HasSubstr("Linear")));
+         EXPECT_NEAR(bench.tip_to(0, 2, 0).back().position_set[1], 2, 1e-5) << "the old mechanism is in force";
+         bench.call("RMAC_Config.SetMechanismJointType", R"({"JntNum": 1, "JointType": "DMAC_LIN_JNT"})");
+         bench.apply();
+       }},
+      {"RMAC_Config.SetMechanismJointLimitType",
+       [](SetterBench& bench) {
+         EXPECT_THAT(bench.tip_refusal(60, 0, 0), HasSubstr("beyond its limit of 50"));
+         bench.call("RMAC_Config.SetMechanismJointLimitType",
+                    R"({"JntNum": 0, "JointLimitType": "DMAC_INFINITY_JNT_POS"})");
+         bench.apply();
+         EXPECT_NEAR(bench.joints_to({60, 0, 0}).back().position[0], 60, 0.05);
+         EXPECT_THAT(bench.tip_refusal(-60, 0, 0), HasSubstr("beyond its limit of -50"));
+       }},
+      {"RMAC_Config.SetMechanismJointMaximumLimit",
+       [](SetterBench& bench) {
+         set_joint(bench, "RMAC_Config.SetMechanismJointMaximumLimit", "MaxJntLimit", 20);
+         EXPECT_THAT(bench.tip_refusal(30, 0, 0), HasSubstr("beyond its limit of 20"));
+         set_joint(bench, "RMAC_Config.SetMechanismJointMaximumLimit", "MaxJntLimit", 60);
+         EXPECT_NEAR(bench.joints_to({55, 0, 0}).back().position[0], 55, 0.05);
+       }},
+      {"RMAC_Config.SetMechanismJointMinimumLimit",
+       [](SetterBench& bench) {
+         set_joint(bench, "RMAC_Config.SetMechanismJointMinimumLimit", "MinJntLimit", -20);
+         EXPECT_THAT(bench.tip_refusal(-30, 0, 0), HasSubstr("beyond its limit of -20"));
+         set_joint(bench, "RMAC_Config.SetMechanismJointMinimumLimit", "MinJntLimit", -60);
+         EXPECT_NEAR(bench.joints_to({-55, 0, 0}).back().position[0], -55, 0.05);
+       }},
+      {"RMAC_Config.SetMechanismJointMaximumSpeed",
+       [](SetterBench& bench) {
+         EXPECT_GT(peak(bench.joints_to({40, 0, 0}), &CycleSample::velocity_set, 0), 140);
+         set_joint(bench, "RMAC_Config.SetMechanismJointMaximumSpeed", "MaxJntSpeed", 25);
+         EXPECT_NEAR(peak(bench.joints_to({0, 0, 0}), &CycleSample::velocity_set, 0), 25, 0.1);
+       }},
+      {"RMAC_Config.SetMechanismJointMaximumAcceleration",
+       [](SetterBench& bench) {
+         EXPECT_NEAR(peak(bench.joints_to({40, 0, 0}), &CycleSample::acceleration_set, 0), 1000, 10);
+         set_joint(bench, "RMAC_Config.SetMechanismJointMaximumAcceleration", "MaxJntAccel", 250);
+         EXPECT_NEAR(peak(bench.joints_to({0, 0, 0}), &CycleSample::acceleration_set, 0), 250, 2.5);
+       }},
+      {"RMAC_Config.SetMechanismJointMaximumJerk",
+       [](SetterBench& bench) {
+         EXPECT_NEAR(peak_jerk(bench.joints_to({40, 0, 0}), 0), 10000, 100);
+         set_joint(bench, "RMAC_Config.SetMechanismJointMaximumJerk", "MaxJntJerk", 2000);
+         EXPECT_NEAR(peak_jerk(bench.joints_to({0, 0, 0}), 0), 2000, 20);
+       }},
+      {"RMAC_Config.SetMechanismJointServoControlGains",
+       [](SetterBench& bench) {
+         const double stiff = peak_following_error(bench.joints_to({30, 0, 0}), 0);
+         bench.call("RMAC_Config.SetMechanismJointServoControlGains",
+                    R"({"JntNum": 0, "ServoControlGains": [775, 35000, 7.8]})");
+         bench.apply();
+         EXPECT_GT(peak_following_error(bench.joints_to({0, 0, 0}), 0), 1.5 * stiff) << "half the stiffness";
+       }},
+      {"RMAC_Config.SetMechanismJointServoControlLaw",
+       [](SetterBench& bench) {
+         const auto settled = [](const Trace& trace) {  // in the middle, at a steady speed
+           const CycleSample& sample = trace[trace.size() / 2];
+           return std::abs(sample.position_set[0] - sample.position[0]);
+         };
+         EXPECT_LT(settled(bench.tip_to(30, 0, 0)), 0.005) << "an integral takes the friction";
+         bench.call("RMAC_Config.SetMechanismJointServoControlLaw", R"({"JntNum": 0, "ControlLaw": "TestLaw"})");
+         bench.call("RMAC_Config.SetMechanismJointServoControlGains",
+                    R"({"JntNum": 0, "ServoControlGains": [300, 4]})");
+         bench.apply();
+         EXPECT_GT(settled(bench.tip_to(0, 0, 0)), 0.03) << "a spring gives way to it";
+       }},
+      {"RMAC_Config.SetMechanismDigitalIOInterface",
+       [](SetterBench& bench) {
+         bench.call("RMAC_CAM.TurnCoolantOn");
+         bench.run_until([&] { return bench.io->outputs() == 1; });
+         bench.call("RMAC_Config.SetMechanismDigitalIOInterface", R"({"DigitalIOInterface": "OtherIo"})");
+         bench.apply();
+         bench.run_until([&] { return bench.other_io->outputs() == 1; });
+         bench.call("RMAC_CAM.TurnCoolantOff");
+         bench.run_until([&] { return bench.other_io->outputs() == 0; });
+       }},
+  };
+  return kEffects;
+}
+
+}  // namespace rmac::gateway
