@@ -32,8 +32,9 @@ class PathBuilder {
   /// the queue empty.
   void restart(std::span<const double> joints, const Frames& frames);
 
-  /// Segments of one move (none for a positioning move to where the queue ends already), checked for geometry, reach, singularity and joint travel before anything moves. An error
-  /// names the joint, the amount and the path length of the first offence; then the queue's end is unchanged.
+  /// Segments of one move (none for a positioning move to where the queue ends already), checked for geometry, reach,
+  /// singularity and joint travel before anything moves. An error names the joint, the amount and the path length of
+  /// the first offence; then the queue's end is unchanged.
   [[nodiscard]] Expected<std::vector<std::shared_ptr<const PathSegment>>> build(const Move& move);
 
   /// Tool pose (part frame) and joints at the end of what was built.
