@@ -48,19 +48,27 @@ void add_feeds(const auto& add) {
   add(setter("RMAC_CAM.SetJointInterpSpeed", "Speed of joint moves and jogs, of each joint's speed limit.",
              number("newVal", "%").within(0.1, 100), &RmacCam::set_joint_interp_speed));
   add(getter("RMAC_CAM.GetJointInterpSpeed", "What SetJointInterpSpeed set.", "%", &RmacCam::joint_interp_speed));
-  constexpr const char* kPerJoint = "joint moves are bounded by each joint's acceleration limit alone so far";
   for (const bool rise : {true, false}) {
     add(method(rise ? "RMAC_CAM.SetJointAccelRise" : "RMAC_CAM.SetJointAccelFall",
                rise ? "Acceleration of one joint in joint moves while its speed rises."
                     : "Deceleration of one joint in joint moves while its speed falls.")
-            .takes(joint_number("JointNum"), number("newVal", "mm/s² or deg/s²").above(0))
+            .takes(joint_number("JointNum"),
+                   number("newVal", "mm/s² or deg/s²").within(device_range("joint/MaxAcceleration")))
             .needs(Permission::Authority)
-            .lacks(kPerJoint));
+            .does([rise](Call& call, std::int64_t joint, double value) {
+              RmacCam& cam = call.machine.cam();
+              const auto index = static_cast<int>(joint);
+              return rise ? cam.set_joint_accel_rise(index, value) : cam.set_joint_accel_fall(index, value);
+            }));
     add(method(rise ? "RMAC_CAM.GetJointAccelRise" : "RMAC_CAM.GetJointAccelFall",
                rise ? "What SetJointAccelRise set." : "What SetJointAccelFall set.")
             .takes(joint_number("JointNum"))
             .gives(WireType::Number, "mm/s² or deg/s²")
-            .lacks(kPerJoint));
+            .does([rise](Call& call, std::int64_t joint) {
+              const RmacCam& cam = call.machine.cam();
+              const auto index = static_cast<int>(joint);
+              return rise ? cam.joint_accel_rise(index) : cam.joint_accel_fall(index);
+            }));
   }
   Method tolerance =
       setter("RMAC_CAM.SetPathTolerance",

@@ -128,9 +128,10 @@ void add_jogs(const auto& add) {
           .takes(vector("Direction"), number("Distance", "mm").optional(), number("Velocity", "mm/s").optional())
           .extension()
           .lacks("jogging along the path comes later; use MoveToPathTarget or JogJoint"));
-  add(command("RMAC_CAM.MoveToReferencePoint", "Moves to the machine's reference point.", Effect::Starts)
+  add(command("RMAC_CAM.MoveToReferencePoint", "Moves the tip straight to the zero of the part frame, from rest.",
+              Effect::Starts)
           .extension()
-          .lacks("reference points come later; Home moves all joints to zero"));
+          .does([](Call& call) { return call.machine.cam().move_to_reference_point(); }));
   add(command("RMAC_CAM.SetJointForce", "Contact force that a joint under force control keeps.", Effect::Starts)
           .takes(joint_number(), number("Force", "N or N·m"))
           .extension()

@@ -43,6 +43,9 @@ void Cam::mechanism_changed(const sdk::DeviceObject* device, bool fresh) {
   // A configuration defines the mechanism: its maxima are the new bounds of ours, upwards too.
   max_feedrate_mm_min_ = now.max_feedrate_mm_min;
   spindle_max_rpm_.clear();
+  joint_accel_rise_.clear();
+  for (const sdk::Joint& joint : now.joints) joint_accel_rise_.push_back(joint.limits.max_acceleration);
+  joint_accel_fall_ = joint_accel_rise_;
   for (const sdk::Spindle& spindle : now.spindles) spindle_max_rpm_.push_back(spindle.max_speed_rpm);
 }
 
@@ -114,7 +117,11 @@ Expected<> Cam::queue_move(std::int64_t id, const Geometry& geometry) {
                                id, feedrate_mm_min_, max_feedrate_mm_min_));
   }
   return supervisor_.prepare_move()
-      .and_then([&] { return supervisor_.add_move(make_move(id, geometry)); })
+      .and_then([&] {
+        const auto* target = std::get_if<JointTargetGeometry>(&geometry);
+        if (target == nullptr) return supervisor_.add_move(make_move(id, geometry));
+        return supervisor_.add_move(make_joint_move(id, *target, supervisor_.mechanism()->builder.end_joints()));
+      })
       .map([](bool) {});
 }
 
@@ -257,7 +264,7 @@ Expected<> Cam::jog_joint(int joint, double distance) {
   JointTargetGeometry target;
   target.joints.assign(now.position_set.begin(), now.position_set.begin() + count);
   target.joints[static_cast<std::size_t>(joint)] += distance;
-  return supervisor_.run_positioning(make_move(kPositioningMoveId, target));
+  return supervisor_.run_positioning(make_joint_move(kPositioningMoveId, target, now.position_set));
 }
 
 Expected<> Cam::home() {
@@ -269,7 +276,7 @@ Expected<> Cam::home() {
                   [](double position) { return std::abs(position) < 1e-9; });
   if (there) return supervisor_.require_rest("Home");
   return supervisor_.run_positioning(
-      make_move(kPositioningMoveId, JointTargetGeometry{std::vector<double>(count, 0.0)}));
+      make_joint_move(kPositioningMoveId, JointTargetGeometry{std::vector<double>(count, 0.0)}, now.position_set));
 }
 
 Expected<std::vector<double>> Cam::current_position() const {

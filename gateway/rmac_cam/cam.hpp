@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 
 #include "gateway/controller/motion_supervisor.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
@@ -40,6 +41,10 @@ class Cam final : public sdk::RmacCam {
   [[nodiscard]] double path_accel_fall() const override;
   Expected<> set_joint_interp_speed(double percent) override;
   [[nodiscard]] double joint_interp_speed() const override;
+  Expected<> set_joint_accel_rise(int joint, double value) override;
+  [[nodiscard]] Expected<double> joint_accel_rise(int joint) const override;
+  Expected<> set_joint_accel_fall(int joint, double value) override;
+  [[nodiscard]] Expected<double> joint_accel_fall(int joint) const override;
   Expected<> set_path_tolerance(double mm) override;
   [[nodiscard]] double path_tolerance() const override;
   Expected<> set_part_frame(const Frame& frame) override;
@@ -53,6 +58,7 @@ class Cam final : public sdk::RmacCam {
   Expected<> set_coolant(bool on) override;
   Expected<> jog_joint(int joint, double distance) override;
   Expected<> home() override;
+  Expected<> move_to_reference_point() override;
   [[nodiscard]] Expected<std::vector<double>> current_position() const override;
   Expected<> set_animation(bool on) override;
 
@@ -61,6 +67,11 @@ class Cam final : public sdk::RmacCam {
   [[nodiscard]] Expected<std::size_t> find_spindle(int spindle, const char* function) const;
   [[nodiscard]] Expected<> check_accel(const char* function, double mm_s2, double bound_mm_s2) const;
   [[nodiscard]] Expected<> set_frames(const char* function, const Frames& frames);
+  [[nodiscard]] Expected<std::size_t> find_joint(int joint, const char* function) const;
+  [[nodiscard]] Expected<> set_joint_accel(std::vector<double>& accel, const char* function, int joint, double value);
+  /// A positioning move of all joints together, as it is made from `from`.
+  [[nodiscard]] Move make_joint_move(std::int64_t id, const JointTargetGeometry& target,
+                                     std::span<const double> from) const;
   [[nodiscard]] Move make_move(std::int64_t id, const Geometry& geometry) const;
 
   MotionSupervisor& supervisor_;
@@ -76,6 +87,8 @@ class Cam final : public sdk::RmacCam {
   double tolerance_mm_ = 0;
   Frames frames_;
   std::vector<double> spindle_max_rpm_;
+  std::vector<double> joint_accel_rise_;
+  std::vector<double> joint_accel_fall_;
 };
 
 }  // namespace rmac::gateway

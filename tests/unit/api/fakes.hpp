@@ -45,6 +45,11 @@ class MockCam : public sdk::RmacCam {
   MOCK_METHOD(Expected<>, set_coolant, (bool), (override));
   MOCK_METHOD(Expected<>, jog_joint, (int, double), (override));
   MOCK_METHOD(Expected<>, home, (), (override));
+  MOCK_METHOD(Expected<>, move_to_reference_point, (), (override));
+  MOCK_METHOD(Expected<>, set_joint_accel_rise, (int, double), (override));
+  MOCK_METHOD(Expected<double>, joint_accel_rise, (int), (const, override));
+  MOCK_METHOD(Expected<>, set_joint_accel_fall, (int, double), (override));
+  MOCK_METHOD(Expected<double>, joint_accel_fall, (int), (const, override));
   MOCK_METHOD(Expected<std::vector<double>>, current_position, (), (const, override));
   MOCK_METHOD(Expected<>, set_animation, (bool), (override));
 };

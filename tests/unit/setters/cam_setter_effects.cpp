@@ -67,6 +67,20 @@ const std::vector<SetterEffect>& cam_setter_effects() {
          bench.call("RMAC_CAM.SetJointInterpSpeed", R"({"newVal": 10})");
          EXPECT_NEAR(peak(bench.joints_to({40, 0, 0}), &CycleSample::velocity_set, 0), 20, 0.1);
        }},
+      {"RMAC_CAM.SetJointAccelRise",
+       [](SetterBench& bench) {
+         bench.call("RMAC_CAM.SetJointAccelRise", R"({"JointNum": 0, "newVal": 100})");
+         const Trace trace = bench.joints_to({40, 0, 0});
+         EXPECT_NEAR(peak_feed_rise(trace), 100, 1);
+         EXPECT_GT(peak_feed_fall(trace), 300);
+       }},
+      {"RMAC_CAM.SetJointAccelFall",
+       [](SetterBench& bench) {
+         bench.call("RMAC_CAM.SetJointAccelFall", R"({"JointNum": 0, "newVal": 100})");
+         const Trace trace = bench.joints_to({40, 0, 0});
+         EXPECT_NEAR(peak_feed_fall(trace), 100, 1);
+         EXPECT_GT(peak_feed_rise(trace), 300);
+       }},
       {"RMAC_CAM.SetPathTolerance",
        [](SetterBench& bench) {
          bench.call("RMAC_CAM.SetPathTolerance", R"({"Tolerance": 0})");

@@ -50,6 +50,12 @@ class RmacCam {
   [[nodiscard]] virtual double path_accel_fall() const = 0;
   virtual Expected<> set_joint_interp_speed(double percent) = 0;
   [[nodiscard]] virtual double joint_interp_speed() const = 0;
+  /// Acceleration of one joint in joint moves, jogs and `home` while its speed rises; at most the joint's limit.
+  virtual Expected<> set_joint_accel_rise(int joint, double value) = 0;
+  [[nodiscard]] virtual Expected<double> joint_accel_rise(int joint) const = 0;
+  /// Likewise while its speed falls.
+  virtual Expected<> set_joint_accel_fall(int joint, double value) = 0;
+  [[nodiscard]] virtual Expected<double> joint_accel_fall(int joint) const = 0;
   virtual Expected<> set_path_tolerance(double mm) = 0;
   [[nodiscard]] virtual double path_tolerance() const = 0;
   virtual Expected<> set_part_frame(const Frame& frame) = 0;
@@ -68,6 +74,8 @@ class RmacCam {
   virtual Expected<> jog_joint(int joint, double distance) = 0;
   /// Moves all joints to their home position (zero), from rest.
   virtual Expected<> home() = 0;
+  /// Moves the tool tip straight to the zero of the part frame, from rest; the tool axis stays as it is.
+  virtual Expected<> move_to_reference_point() = 0;
   /// Measured joint positions.
   [[nodiscard]] virtual Expected<std::vector<double>> current_position() const = 0;
   virtual Expected<> set_animation(bool on) = 0;

@@ -1,0 +1,83 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gateway/controller/mechanism.hpp"
+#include "gateway/rmac_cam/cam.hpp"
+#include "rmac/motion/frame.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+constexpr double kSecondsPerMinute = 60;
+
+}  // namespace
+
+Expected<std::size_t> Cam::find_joint(int joint, const char* function) const {
+  if (auto loaded = require_mechanism(function); !loaded) return tl::unexpected(loaded.error());
+  const auto count = static_cast<int>(device_->joints.size());
+  if (joint >= 0 && joint < count) return static_cast<std::size_t>(joint);
+  return failure(MinorCode::InvalidParameterValue,
+                 fmt::format("{}: there is no joint {}; joints are 0 to {}", function, joint, count - 1));
+}
+
+Expected<> Cam::set_joint_accel(std::vector<double>& accel, const char* function, int joint, double value) {
+  const auto found = find_joint(joint, function);
+  if (!found) return tl::unexpected(found.error());
+  return check_accel(function, value, device_->joints[*found].limits.max_acceleration).map([&] {
+    accel[*found] = value;
+  });
+}
+
+Expected<> Cam::set_joint_accel_rise(int joint, double value) {
+  return set_joint_accel(joint_accel_rise_, "SetJointAccelRise", joint, value);
+}
+
+Expected<double> Cam::joint_accel_rise(int joint) const {
+  return find_joint(joint, "GetJointAccelRise").map([&](std::size_t found) { return joint_accel_rise_[found]; });
+}
+
+Expected<> Cam::set_joint_accel_fall(int joint, double value) {
+  return set_joint_accel(joint_accel_fall_, "SetJointAccelFall", joint, value);
+}
+
+Expected<double> Cam::joint_accel_fall(int joint) const {
+  return find_joint(joint, "GetJointAccelFall").map([&](std::size_t found) { return joint_accel_fall_[found]; });
+}
+
+Move Cam::make_joint_move(std::int64_t id, const JointTargetGeometry& target, std::span<const double> from) const {
+  Move move = make_move(id, target);
+  // All joints go in proportion on a line in joint space, so a joint's bound is one along that line, whatever
+  // SetPathAccelRise says of the tool tip.
+  const std::size_t count = std::min({target.joints.size(), from.size(), joint_accel_rise_.size()});
+  double square = 0;
+  for (std::size_t i = 0; i < count; ++i) square += (target.joints[i] - from[i]) * (target.joints[i] - from[i]);
+  move.accel_rise_mm_s2 = move.accel_fall_mm_s2 = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = std::abs(target.joints[i] - from[i]) / std::sqrt(square);
+    if (!(share > 0)) continue;
+    const auto tighten = [&](double& bound, double accel) {
+      bound = bound > 0 ? std::min(bound, accel / share) : accel / share;
+    };
+    tighten(move.accel_rise_mm_s2, joint_accel_rise_[i]);
+    tighten(move.accel_fall_mm_s2, joint_accel_fall_[i]);
+  }
+  return move;
+}
+
+Expected<> Cam::move_to_reference_point() {
+  if (auto loaded = require_mechanism("MoveToReferencePoint"); !loaded) return loaded;
+  // Not from a sample: frames set just now are not in it yet.
+  const ServoStatus now = link_.status.read();
+  ToolPose at;
+  supervisor_.mechanism()->planner_model.kinematics->forward({now.position_set.data(), now.joint_count}, frames_.tool,
+                                                             at);
+  Move move =
+      make_move(kPositioningMoveId, PathTargetGeometry{{{0, 0, 0}, apply_to_pose(inverse(frames_.part), at).axis}});
+  // Without a feed in force, as fast as joint moves are allowed to be.
+  if (!(move.feed_mm_s > 0)) move.feed_mm_s = max_feedrate_mm_min_ / kSecondsPerMinute * joint_interp_percent_ / 100;
+  return supervisor_.run_positioning(move);
+}
+
+}  // namespace rmac::gateway
