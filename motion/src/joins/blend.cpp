@@ -5,6 +5,7 @@
 
 #include "curves/nurbs_curve.hpp"
 #include "joins/blend_spline.hpp"
+#include "path/part_of.hpp"
 #include "path/travel.hpp"
 
 namespace rmac {
@@ -252,24 +253,6 @@ Blend make_blend(const PathSegment& before, const PathSegment& after, double roo
     choice.reach = std::min(choice.reach, tolerance / (choice.shape.deviation * turn));
   }
   return {};
-}
-
-void append_stretches(const PathSegment& from, double a, double b, double begin, double end,
-                      std::vector<MoveStretch>& stretches) {
-  const auto all = from.stretches();
-  const double rate = (end - begin) / (b - a);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const double stretch_end = i + 1 < all.size() ? all[i + 1].begin : from.length();
-    if (stretch_end <= a && i + 1 < all.size()) continue;
-    if (all[i].begin >= b) break;
-    MoveStretch part = all[i];
-    const double cut = std::max(a - part.begin, 0.0);
-    part.s_begin_mm += part.s_per_length * cut;
-    part.begin = begin + rate * (std::max(part.begin, a) - a);
-    part.s_per_length /= rate;
-    part.last_of_move = part.last_of_move && stretch_end <= b;
-    stretches.push_back(part);
-  }
 }
 
 }  // namespace rmac

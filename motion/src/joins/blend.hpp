@@ -22,8 +22,4 @@ struct Blend {
 [[nodiscard]] Blend make_blend(const PathSegment& before, const PathSegment& after, double room,
                                const std::vector<JointLimits>& joints);
 
-/// Appends the stretches of `from` between the path lengths a and b, laid onto [begin, end] of another segment.
-void append_stretches(const PathSegment& from, double a, double b, double begin, double end,
-                      std::vector<MoveStretch>& stretches);
-
 }  // namespace rmac

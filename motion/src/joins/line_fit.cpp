@@ -8,6 +8,7 @@
 #include "curves/vector.hpp"
 #include "joins/banded.hpp"
 #include "joins/blend.hpp"
+#include "path/part_of.hpp"
 #include "path/travel.hpp"
 
 namespace rmac {

@@ -5,7 +5,7 @@
 
 #include "joins/blend.hpp"
 #include "path/join.hpp"
-#include "path/trimmed_curve.hpp"
+#include "path/part_of.hpp"
 
 namespace rmac {
 namespace {
@@ -31,34 +31,12 @@ bool PathJoiner::ready() const noexcept {
   return current_ != nullptr && lines_.empty() && !(current_->demand().tolerance_mm > 0);
 }
 
-bool PathJoiner::passes(const PathSegment& before, const PathSegment& after) const {
-  JointPoint below, above;
-  if (before.evaluate(before.length(), 2, -1, below) != KinematicsStatus::Ok ||
-      after.evaluate(0, 2, 1, above) != KinematicsStatus::Ok)
-    return false;
-  return passable(below, above, joints_, std::max({before.demand().feed_mm_s, after.demand().feed_mm_s, 1.0}),
-                  period_s_);
-}
-
 void PathJoiner::emit(double begin, double end, Segments& out) {
   if (begin == 0 && end == current_->length()) {
     out.push_back(current_);
     return;
   }
-  if (!(end > begin)) return;
-  std::vector<MoveStretch> stretches;
-  append_stretches(*current_, begin, end, 0, end - begin, stretches);
-  PathDemand demand = current_->demand();
-  demand.rest_before = demand.rest_before && begin == 0;
-  demand.rest_after = demand.rest_after && end == current_->length();
-  auto part = std::make_shared<PathSegment>(std::make_shared<TrimmedCurve>(current_->shared_curve(), begin, end),
-                                            current_->frames(), current_->kinematics(), demand, std::move(stretches));
-  JointPoint start;
-  double s_failed = 0;
-  // The whole was resolved, so its parts have solutions too.
-  if (current_->evaluate(begin, 0, 1, start) == KinematicsStatus::Ok)
-    (void)part->resolve({start.d[0].data(), joints_.size()}, s_failed);
-  out.push_back(std::move(part));
+  if (end > begin) out.push_back(part_of(*current_, begin, end));
 }
 
 void PathJoiner::advance(Segments& out) {
@@ -80,7 +58,7 @@ void PathJoiner::advance(Segments& out) {
   std::shared_ptr<const PathSegment> next = std::move(incoming_.front());
   incoming_.pop_front();
   Blend blend;
-  if (next->demand().tolerance_mm > 0 && !passes(*current_, *next)) {
+  if (next->demand().tolerance_mm > 0 && !passes_at_speed(*current_, *next, joints_, period_s_)) {
     double room = kHalf * std::min(length, next->length());
     blend = make_blend(*current_, *next, room, joints_);
     const auto leaves_sliver = [&](double whole) {

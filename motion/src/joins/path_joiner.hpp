@@ -35,7 +35,6 @@ class PathJoiner {
 
  private:
   void emit(double begin, double end, Segments& out);
-  [[nodiscard]] bool passes(const PathSegment& before, const PathSegment& after) const;
 
   std::vector<JointLimits> joints_;
   double period_s_;

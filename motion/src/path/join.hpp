@@ -12,4 +12,9 @@ namespace rmac {
 [[nodiscard]] bool passable(const JointPoint& below, const JointPoint& above, const std::vector<JointLimits>& joints,
                             double v, double period_s) noexcept;
 
+/// Whether the path may go on from one segment to the next at their feed: no demanded rest, no change of space, no
+/// corner.
+[[nodiscard]] bool passes_at_speed(const PathSegment& before, const PathSegment& after,
+                                   const std::vector<JointLimits>& joints, double period_s) noexcept;
+
 }  // namespace rmac

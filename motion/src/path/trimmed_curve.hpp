@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -8,15 +9,20 @@
 
 namespace rmac {
 
-/// The part of a curve between two arc lengths, as a curve of its own.
+/// Which way along a curve.
+enum class Direction : std::uint8_t { Forward, Backward };
+
+/// The part of a curve between two arc lengths, as a curve of its own, in its own direction or against it.
 class TrimmedCurve final : public Curve {
  public:
-  TrimmedCurve(std::shared_ptr<const Curve> curve, double begin, double end)
-      : curve_(std::move(curve)), begin_(begin), end_(end) {
+  TrimmedCurve(std::shared_ptr<const Curve> curve, double begin, double end, Direction direction = Direction::Forward)
+      : curve_(std::move(curve)), begin_(begin), end_(end), direction_(direction) {
     const auto inside = [&](std::span<const double> all, std::vector<double>& kept) {
+      const auto first = static_cast<std::ptrdiff_t>(kept.size());
       for (const double s : all) {
-        if (s > begin_ && s < end_) kept.push_back(s - begin_);
+        if (s > begin_ && s < end_) kept.push_back(direction_ == Direction::Forward ? s - begin_ : end_ - s);
       }
+      if (direction_ == Direction::Backward) std::reverse(kept.begin() + first, kept.end());
     };
     inside(curve_->breaks(), breaks_);
     nodes_.push_back(0);
@@ -30,7 +36,14 @@ class TrimmedCurve final : public Curve {
     // At its own ends only one side exists.
     if (s <= 0) side = 1;
     if (s >= end_ - begin_) side = -1;
-    curve_->evaluate(std::clamp(begin_ + s, begin_, end_), order, side, point);
+    if (direction_ == Direction::Forward) {
+      curve_->evaluate(std::clamp(begin_ + s, begin_, end_), order, side, point);
+      return;
+    }
+    curve_->evaluate(std::clamp(end_ - s, begin_, end_), order, -side, point);
+    for (std::size_t k = 1; k <= static_cast<std::size_t>(order); k += 2) {
+      for (std::size_t c = 0; c < dimension(); ++c) point.d[k][c] = -point.d[k][c];
+    }
   }
   [[nodiscard]] std::span<const double> breaks() const noexcept override { return breaks_; }
   [[nodiscard]] std::span<const double> nodes() const noexcept override { return nodes_; }
@@ -38,6 +51,7 @@ class TrimmedCurve final : public Curve {
  private:
   std::shared_ptr<const Curve> curve_;
   double begin_, end_;
+  Direction direction_;
   std::vector<double> breaks_, nodes_;
 };
 

@@ -1,0 +1,113 @@
+#include "planner/laid_path.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "path/join.hpp"
+#include "path/part_of.hpp"
+
+namespace rmac {
+namespace {
+
+/// So many segments stay remembered behind the tool, for a retrace; twice as many before they are dropped together.
+constexpr std::size_t kRemembered = 1000;
+
+}  // namespace
+
+LaidPath::LaidPath(std::vector<JointLimits> joints, double period_s)
+    : joints_(std::move(joints)), period_s_(period_s), joiner_(joints_, period_s) {}
+
+void LaidPath::add(std::vector<std::shared_ptr<const PathSegment>> moves) {
+  for (auto& segment : moves) {
+    moves_left_ += segment->moves_ended(-1, segment->length());
+    joiner_.add(std::move(segment));
+  }
+}
+
+void LaidPath::clear(double s) {
+  segments_.clear();
+  starts_.clear();
+  rest_after_.clear();
+  joiner_.clear();
+  moves_left_ = 0;
+  origin_ = s;
+  counted_s_ = s;
+}
+
+void LaidPath::append(std::shared_ptr<const PathSegment> segment) {
+  if (!segments_.empty())
+    rest_after_.back() = static_cast<char>(!passes_at_speed(*segments_.back(), *segment, joints_, period_s_));
+  starts_.push_back(end());
+  rest_after_.push_back(static_cast<char>(segment->demand().rest_after));
+  segments_.push_back(std::move(segment));
+}
+
+void LaidPath::lay(const PathJoiner::Segments& fresh) {
+  for (const auto& segment : fresh) append(segment);
+}
+
+bool LaidPath::supply() {
+  PathJoiner::Segments fresh;
+  while (fresh.empty() && joiner_.ready()) joiner_.advance(fresh);
+  lay(fresh);
+  return !fresh.empty();
+}
+
+void LaidPath::release() {
+  PathJoiner::Segments fresh;
+  joiner_.release(fresh);
+  lay(fresh);
+}
+
+double LaidPath::next_rest(double s, double otherwise) const noexcept {
+  for (std::size_t i = view().find(s, 1); i < size() && starts_[i] < otherwise; ++i) {
+    if (rest_after(i)) return std::min(otherwise, end(i));
+  }
+  return otherwise;
+}
+
+double LaidPath::next_move_end(double s) {
+  for (std::size_t i = view().find(s + kSamePlace, 1);; ++i) {
+    while (i >= size() && has_more()) {
+      if (!supply()) release();
+    }
+    if (i >= size()) return end();
+    const auto stretches = segments_[i]->stretches();
+    for (std::size_t k = 0; k < stretches.size(); ++k) {
+      const double stretch_end = k + 1 < stretches.size() ? starts_[i] + stretches[k + 1].begin : end(i);
+      if (stretches[k].last_of_move && stretch_end > s + kSamePlace) return stretch_end;
+    }
+  }
+}
+
+void LaidPath::travelled(double s, double needed_from) {
+  if (segments_.empty()) return;
+  for (std::size_t i = view().find(counted_s_, -1); i < size() && starts_[i] <= s; ++i) {
+    const std::size_t done =
+        segments_[i]->moves_ended(counted_s_ + kSamePlace - starts_[i], s + kSamePlace - starts_[i]);
+    moves_left_ -= std::min(moves_left_, done);
+  }
+  counted_s_ = std::max(counted_s_, s);
+
+  const std::size_t behind = view().find(std::min(s, needed_from) - kSamePlace, -1);
+  if (behind < 2 * kRemembered) return;
+  const auto n = static_cast<std::ptrdiff_t>(behind - kRemembered);
+  segments_.erase(segments_.begin(), segments_.begin() + n);
+  starts_.erase(starts_.begin(), starts_.begin() + n);
+  rest_after_.erase(rest_after_.begin(), rest_after_.begin() + n);
+}
+
+LaidPath LaidPath::backward(double s, double distance) const {
+  LaidPath back(joints_, period_s_);
+  if (segments_.empty() || !(s > starts_.front())) return back;
+  const double from = std::max(s - distance, starts_.front());
+  back.origin_ = from;
+  for (std::size_t i = view().find(s, -1) + 1; i-- > 0 && end(i) > from;) {
+    const double begin = std::max(from - starts_[i], 0.0);
+    const double end = std::min(s - starts_[i], segments_[i]->length());
+    if (end - begin > kSamePlace) back.append(part_of(*segments_[i], begin, end, Direction::Backward));
+  }
+  return back;
+}
+
+}  // namespace rmac

@@ -1,0 +1,51 @@
+#include "planner/published_plan.hpp"
+
+#include <algorithm>
+
+namespace rmac {
+namespace {
+
+/// The part of a window that is kept when the next one is planned.
+constexpr double kCommitted = 0.6;
+
+}  // namespace
+
+double PublishedPlan::end_s() const {
+  const LawPiece& last = plan->law.back();
+  return last.at(last.duration).s;
+}
+
+PathState PublishedPlan::state_at(double t) const {
+  const auto& law = plan->law;
+  if (t >= plan->end_time_s) return {end_s(), 0, 0};
+  auto piece =
+      std::upper_bound(law.begin(), law.end(), t, [](double value, const LawPiece& x) { return value < x.t0; });
+  if (piece != law.begin()) --piece;
+  return piece->at(std::max(t - piece->t0, 0.0));
+}
+
+std::vector<LawPiece> PublishedPlan::pieces_between(double t_begin, double t_end) const {
+  std::vector<LawPiece> kept;
+  for (LawPiece piece : plan->law) {
+    const double end = piece.t0 + piece.duration;
+    if (end <= t_begin || piece.t0 >= t_end) continue;
+    if (end > t_end) piece.duration = t_end - piece.t0;
+    piece.t0 -= t_begin;
+    kept.push_back(piece);
+  }
+  return kept;
+}
+
+double commit_time(const Plan& plan, double window_begin) {
+  const auto& law = plan.law;
+  const LawPiece& last = law.back();
+  const double s_commit = window_begin + kCommitted * (last.at(last.duration).s - window_begin);
+  double t = plan.end_time_s;
+  for (std::size_t i = law.size(); i-- > 0;) {
+    t = law[i].t0;
+    if (law[i].start.s <= s_commit) break;
+  }
+  return t;
+}
+
+}  // namespace rmac

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "rmac/motion/plan.hpp"
+
+namespace rmac {
+
+/// A published plan with what the planner must remember of it. Times count from the plan's start, in s.
+struct PublishedPlan {
+  std::unique_ptr<const Plan> plan;
+  bool stops = false;     ///< made to stop: the path goes on behind its end, but motion does not
+  bool hard_end = false;  ///< it ends where the path demands rest
+  bool backward = false;  ///< on a path that is retraced
+  double override_factor = 1;
+  double commit_t = 0;  ///< up to here a following window keeps it
+
+  [[nodiscard]] double end_s() const;
+  /// The state at t; at rest at the end from there on.
+  [[nodiscard]] PathState state_at(double t) const;
+  /// Law pieces between two times, with times counted from the first; the first piece may begin before.
+  [[nodiscard]] std::vector<LawPiece> pieces_between(double t_begin, double t_end) const;
+};
+
+/// The time up to which a plan is kept when more path comes: before it brakes for its own end, and not all of its last
+/// window, which begins at path length `window_begin`.
+[[nodiscard]] double commit_time(const Plan& plan, double window_begin);
+
+}  // namespace rmac
