@@ -41,7 +41,10 @@ struct Planner::Impl {
   PlannerModel model;
   PlanChannel& channel;
 
-  LaidPath path;
+  LaidPath forward;
+  std::optional<LaidPath> backward;  ///< a retrace: what lies behind the place on `forward` where it began
+  /// After a turn to another path, until a plan is published on it: where on it the machine stands.
+  std::optional<double> turned_to;
 
   std::vector<PublishedPlan> alive;  ///< in order of publication; the last is the base of what is planned next
   std::uint64_t next_id = 1;
@@ -54,7 +57,7 @@ struct Planner::Impl {
   double factor = 1;   ///< the override
   double limit_s = 0;  ///< path length at which RunOne ends
 
-  Impl(PlannerModel m, PlanChannel& c) : model(std::move(m)), channel(c), path(model.joints, model.period_s) {}
+  Impl(PlannerModel m, PlanChannel& c) : model(std::move(m)), channel(c), forward(model.joints, model.period_s) {}
 
   [[nodiscard]] FeedRule feed(double override_factor) const { return {override_factor, model.max_feed_mm_s}; }
   [[nodiscard]] double period() const { return model.period_s; }
@@ -69,7 +72,18 @@ struct Planner::Impl {
   [[nodiscard]] bool ended(const ServoProgress& progress) const {
     return base() == nullptr || (acknowledged(progress) && now_s(*base(), progress.cycle) >= base()->plan->end_time_s);
   }
-  [[nodiscard]] double base_end_s() const { return base() == nullptr ? path.begin() : base()->end_s(); }
+  /// The path that is travelled, or will be from rest.
+  [[nodiscard]] LaidPath& path() { return backward ? *backward : forward; }
+  [[nodiscard]] const LaidPath& path() const { return backward ? *backward : forward; }
+  /// Where on it everything ends that is published.
+  [[nodiscard]] double base_end_s() const {
+    if (turned_to) return *turned_to;
+    return base() == nullptr ? path().begin() : base()->end_s();
+  }
+  /// The place on `forward` where the machine stands at rest.
+  [[nodiscard]] double place_s() const {
+    return backward ? backward->begin() + backward->end() - base_end_s() : base_end_s();
+  }
 
   /// Cycles from now after which a plan begun now will have reached the servo loop.
   [[nodiscard]] std::int64_t lead() const { return kLeadAtFirst + static_cast<std::int64_t>(std::ceil(work_cycles)); }
@@ -113,16 +127,16 @@ struct Planner::Impl {
     }
     std::optional<WindowEnd> found;
     double v = 0, reach = kShortestWindow_mm;
-    for (std::size_t i = path.view().find(s + kSamePlace, 1); !found; ++i) {
-      if (i >= path.size() && !path.supply()) break;
-      v = std::max(v, std::min(path.segment(i)->demand().feed_mm_s * std::max(factor, 1.0), 2 * fastest));
+    for (std::size_t i = path().view().find(s + kSamePlace, 1); !found; ++i) {
+      if (i >= path().size() && !path().supply()) break;
+      v = std::max(v, std::min(path().segment(i)->demand().feed_mm_s * std::max(factor, 1.0), 2 * fastest));
       reach = std::max(reach, kRampsInWindow * weakest.length(v));
-      const bool enough = path.end(i) - s > 2 * reach;
+      const bool enough = path().end(i) - s > 2 * reach;
       // Whether the path goes on without rest is known once its next segment is there.
-      if (i + 1 == path.size() && !path.rest_after(i) && !enough) path.supply();
-      if (path.rest_after(i) || enough) found = WindowEnd{path.end(i), path.rest_after(i)};
+      if (i + 1 == path().size() && !path().rest_after(i) && !enough) path().supply();
+      if (path().rest_after(i) || enough) found = WindowEnd{path().end(i), path().rest_after(i)};
     }
-    WindowEnd end = found.value_or(WindowEnd{path.end(), false});
+    WindowEnd end = found.value_or(WindowEnd{path().end(), false});
     if (wanted == PathCommand::RunOne && limit_s <= end.s) end = {limit_s, true};
     if (end.s - s > 1.5 * reach) return {s + reach, false};
     return end;
@@ -133,22 +147,24 @@ struct Planner::Impl {
     const LawPiece& last = plan->law.back();
     plan->end_time_s = last.t0 + last.duration;
     const double s_begin = plan->law.front().start.s, s_end = last.at(last.duration).s;
-    const PathView view = path.view();
+    const PathView view = path().view();
     // The cycle before may have seen the segment before, whose end the follower still has to count.
     const double s_before = s_begin - 2 * plan->law.front().start.v * period();
     for (std::size_t i = view.find(s_before, 1); i <= view.find(s_end, -1); ++i) {
-      plan->segments.push_back(path.segment(i));
-      plan->segment_start.push_back(path.start(i));
+      plan->segments.push_back(path().segment(i));
+      plan->segment_start.push_back(path().start(i));
     }
     PublishedPlan p;
     p.stops = stops;
     p.hard_end = hard_end;
+    p.backward = backward.has_value();
     p.override_factor = factor;
     p.commit_t = commit_time(*plan, committed_from);
     p.plan = std::move(plan);
     if (!channel.published.push(p.plan.get()))
       return false;  // the servo loop does not take plans: it stands still or is gone
     ++next_id;
+    turned_to.reset();
     alive.push_back(std::move(p));
     return true;
   }
@@ -162,7 +178,7 @@ struct Planner::Impl {
 
   [[nodiscard]] std::optional<std::vector<LawPiece>> law_between(const PathState& from, double s_end, FeedRule rule,
                                                                  const std::vector<LawPiece>* before) const {
-    return plan_window(path.view(), model.joints, {from, s_end, rule, before});
+    return plan_window(path().view(), model.joints, {from, s_end, rule, before});
   }
 
   /// The law of a window from rest, which may end earlier than asked (`end.hard` is then cleared): what is too much for
@@ -175,8 +191,8 @@ struct Planner::Impl {
       end = {nearer, false};
       if (auto law = law_between({s, 0, 0}, end.s, feed(factor), nullptr)) return law;
     }
-    auto law = cautious_law(path.view(), model.joints, s, end.s, feed(factor));
-    if (check_law(path.view(), model.joints, law, nullptr).worst <= 1.0) return law;
+    auto law = cautious_law(path().view(), model.joints, s, end.s, feed(factor));
+    if (check_law(path().view(), model.joints, law, nullptr).worst <= 1.0) return law;
     return std::nullopt;
   }
 
@@ -235,7 +251,7 @@ struct Planner::Impl {
     const PublishedPlan& p = *base();
     const PathState from = p.state_at(now_s(p, earliest(p, progress.cycle + lead())));
     JointPoint point;
-    if (from.v <= 0 || path.view().evaluate(from.s, 1, 1, point) != KinematicsStatus::Ok) return no_plan(progress);
+    if (from.v <= 0 || path().view().evaluate(from.s, 1, 1, point) != KinematicsStatus::Ok) return no_plan(progress);
     Ramp ramp;
     for (std::size_t k = 0; k < model.joints.size(); ++k)
       ramp.limit(model.joints[k], std::max(std::abs(point.d[1][k]), 1e-9));
@@ -244,7 +260,7 @@ struct Planner::Impl {
     const double v_top = from.v + 0.5 * std::max(from.a, 0.0) * t0;
     const double shortest = from.v * t0 + from.a * t0 * t0 / 3 + ramp.length(v_top);
     // The next demanded rest on the followed plan ends every search: the plan itself comes to rest there.
-    const double rest = path.next_rest(from.s, base_end_s());
+    const double rest = path().next_rest(from.s, base_end_s());
     for (const double stretch : {1.02, 1.08, 1.2, 1.4, 1.8, 2.5, 4.0}) {
       const double s_end = from.s + shortest * stretch;
       if (s_end >= rest - kSamePlace) return end_at_rest(progress, rest);
@@ -285,32 +301,37 @@ struct Planner::Impl {
   }
 
   /// What there is to do, if anything; the order is the order of urgency.
-  enum class Task { None, Stop, Override, Supply, Start, Extend };
+  enum class Task { None, Stop, Turn, Override, Supply, Start, Extend };
 
   [[nodiscard]] Task task(const ServoProgress& progress) const {
     if (!acknowledged(progress)) return Task::None;
     const bool at_end = ended(progress);
     // What found no plan in motion may find one from rest.
     if (progress.cycle < tried_at + kRetryAfter && tried_from_rest == at_end) return Task::None;
-    const bool run = wanted != PathCommand::Stop && factor > 0;
+    const bool this_way = backward.has_value() == (wanted == PathCommand::Retrace);
+    const bool run = wanted != PathCommand::Stop && factor > 0 && this_way;
     // A plan is left only once it is followed: what replaces it begins somewhere along it.
     const bool begun = base() == nullptr || progress.cycle >= base()->plan->start_cycle;
-    if (!run) return at_end || base()->stops || !begun ? Task::None : Task::Stop;
-    const double limit = wanted == PathCommand::RunOne ? std::min(limit_s, path.end()) : path.end();
+    if (!run && at_end) {
+      const bool forward_again = backward && (wanted == PathCommand::Run || wanted == PathCommand::RunOne);
+      return forward_again ? Task::Turn : Task::None;
+    }
+    if (!run) return base()->stops || !begun ? Task::None : Task::Stop;
+    const double limit = wanted == PathCommand::RunOne ? std::min(limit_s, path().end()) : path().end();
     const bool more = base_end_s() < limit - kSamePlace;
     const bool one_done = wanted == PathCommand::RunOne && base_end_s() >= limit_s - kSamePlace;
-    const bool dry = base_end_s() >= path.end() - kSamePlace && !one_done;
-    if (dry && path.can_supply()) return Task::Supply;
+    const bool dry = base_end_s() >= path().end() - kSamePlace && !one_done;
+    if (dry && path().can_supply()) return Task::Supply;
     if (at_end) {
       if (more) return Task::Start;
-      return dry && path.has_more() ? Task::Supply : Task::None;
+      return dry && path().has_more() ? Task::Supply : Task::None;
     }
     if (base()->stops) return Task::None;
     const double t_now = now_s(*base(), progress.cycle);
     if (factor != base()->override_factor) return begun ? Task::Override : Task::None;
     const double t_decide = base()->hard_end ? base()->plan->end_time_s : base()->commit_t;
     if (more && t_decide - t_now < kHorizon_s) return Task::Extend;
-    if (dry && path.has_more() && t_decide - t_now < kRelease_s + static_cast<double>(lead()) * period())
+    if (dry && path().has_more() && t_decide - t_now < kRelease_s + static_cast<double>(lead()) * period())
       return Task::Supply;
     return Task::None;
   }
@@ -319,20 +340,22 @@ struct Planner::Impl {
     collect(progress);
     if (base() != nullptr && acknowledged(progress) && progress.last_refused == base()->plan->id)
       return false;  // comes back through `retired`
-    if (base() != nullptr && acknowledged(progress)) {
-      path.travelled(base()->state_at(now_s(*base(), progress.cycle)).s, base()->plan->law.front().start.s);
-    }
+    if (base() != nullptr && acknowledged(progress) && base()->backward == backward.has_value())
+      path().travelled(base()->state_at(now_s(*base(), progress.cycle)).s, base()->plan->law.front().start.s);
     const Task next = task(progress);
-    if (next != Task::None && next != Task::Supply) work_began = progress.cycle;
+    if (next != Task::None && next != Task::Supply && next != Task::Turn) work_began = progress.cycle;
     switch (next) {
       case Task::None:
         return false;
       case Task::Stop:
         return stop(progress);
+      case Task::Turn:
+        turn_forward();
+        return false;
       case Task::Override:
         return divert(progress, std::nullopt) || no_plan(progress);
       case Task::Supply:
-        if (!path.supply()) path.release();
+        if (!path().supply()) path().release();
         return false;
       case Task::Start:
         return start_from_rest(progress);
@@ -342,8 +365,34 @@ struct Planner::Impl {
     return false;
   }
 
+  /// Sets RunOne's limit. After a retrace, the move that is run is the one not yet done.
+  void limit_run() { limit_s = forward.next_move_end(std::max(place_s(), forward.farthest())); }
+
+  /// Readies the way back from where the machine stands; its length.
+  double turn_back(double distance) {
+    LaidPath back = forward.backward(place_s(), distance);
+    if (back.size() == 0) return 0;
+    backward = std::move(back);
+    turned_to = backward->begin();
+    return backward->end() - backward->begin();
+  }
+
+  void turn_forward() {
+    turned_to = place_s();
+    backward.reset();
+    if (wanted == PathCommand::RunOne) limit_run();
+  }
+
+  /// Path length goes on counting, so that plans before and after never disagree about places, nor about what was done.
+  void clear() {
+    const double s = std::max(place_s(), forward.farthest());
+    backward.reset();
+    forward.clear(s);
+    turned_to = s;
+  }
+
   void command(PathCommand command) {
-    if (command == PathCommand::RunOne) limit_s = path.next_move_end(base_end_s());
+    if (command == PathCommand::RunOne) limit_run();
     if (command != wanted) tried_at = -kRetryAfter;  // what failed was another wish
     wanted = command;
   }
@@ -359,15 +408,20 @@ Planner::Planner(PlannerModel model, PlanChannel& channel) : impl_(std::make_uni
 Planner::~Planner() = default;
 
 void Planner::add(std::vector<std::shared_ptr<const PathSegment>> segments) {
-  impl_->path.add(std::move(segments));
+  impl_->forward.add(std::move(segments));
 }
 
 void Planner::clear() {
-  // Path length goes on counting from where the machine stands, so that plans before and after never disagree about
-  // places.
-  impl_->path.clear(impl_->base_end_s());
+  impl_->clear();
 }
 
+double Planner::turn_back(double distance_mm) {
+  return impl_->turn_back(distance_mm);
+}
+bool Planner::retraced(const ServoProgress& progress) const noexcept {
+  const Impl& i = *impl_;
+  return i.backward && i.ended(progress) && i.base_end_s() >= i.backward->end() - kSamePlace;
+}
 void Planner::command(PathCommand command) noexcept {
   impl_->command(command);
 }
@@ -384,7 +438,7 @@ bool Planner::at_rest(const ServoProgress& progress) const noexcept {
   return impl_->ended(progress);
 }
 std::size_t Planner::moves_left() const noexcept {
-  return impl_->path.moves_left();
+  return impl_->forward.moves_left();
 }
 
 std::vector<double> Planner::rest_joints() const {
@@ -393,7 +447,7 @@ std::vector<double> Planner::rest_joints() const {
   const Plan& plan = *base->plan;
   const PathView path(plan.segments, plan.segment_start);
   JointPoint point;
-  if (path.evaluate(impl_->base_end_s(), 0, -1, point) != KinematicsStatus::Ok) return {};
+  if (path.evaluate(base->end_s(), 0, -1, point) != KinematicsStatus::Ok) return {};
   return {point.d[0].begin(), point.d[0].begin() + static_cast<std::ptrdiff_t>(impl_->model.joints.size())};
 }
 

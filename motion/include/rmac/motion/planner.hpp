@@ -58,9 +58,10 @@ struct ServoProgress {
 
 /// How the machine is to treat its path.
 enum class PathCommand {
-  Stop,    ///< come to rest on the path as soon as the limits allow, and stay
-  RunOne,  ///< run one move, then stop
-  Run,     ///< run what is queued, and what comes
+  Stop,     ///< come to rest on the path as soon as the limits allow, and stay
+  RunOne,   ///< run one move, then stop
+  Run,      ///< run what is queued, and what comes
+  Retrace,  ///< run back what `turn_back` readied, then stay; Run and RunOne go forward again from where that stopped
 };
 
 /// The motion planner: path segments in, plans out. One thread at a time (the caller locks); never the servo thread.
@@ -74,6 +75,11 @@ class Planner {
   void add(std::vector<std::shared_ptr<const PathSegment>> segments);
   /// Drops everything that is not yet travelled. Only at rest.
   void clear();
+  /// Readies the way back along up to `distance_mm` of what was travelled, for `PathCommand::Retrace`. Its length; 0
+  /// when nothing is remembered, which is so after `clear`. Only at rest.
+  double turn_back(double distance_mm);
+  /// The machine rests at the end of a retrace.
+  [[nodiscard]] bool retraced(const ServoProgress& progress) const noexcept;
   void command(PathCommand command) noexcept;
   /// 0 to 200 percent of the programmed feed, from as soon as the limits allow.
   void set_override(double percent) noexcept;
