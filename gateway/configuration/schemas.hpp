@@ -7,5 +7,7 @@ namespace rmac::gateway {
 /// The JSON schemas of etc/, compiled in, so that binary and schema cannot disagree and no path matters.
 [[nodiscard]] std::string_view device_schema_text();
 [[nodiscard]] std::string_view rmacd_schema_text();
+[[nodiscard]] std::string_view modbus_spindle_schema_text();
+[[nodiscard]] std::string_view modbus_io_schema_text();
 
 }  // namespace rmac::gateway

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "canopen/object_list.hpp"
-#include "canopen/parameters.hpp"
+#include "parameters.hpp"
 
 namespace rmac::fieldbus::canopen {
 namespace {
@@ -111,7 +111,7 @@ std::size_t mapped_bytes(const std::vector<MappedObject>& objects) noexcept {
 Expected<CanopenConfig> read_canopen_config(const std::string& bus,
                                             const std::map<std::string, std::vector<double>>& numbers,
                                             const std::map<std::string, std::string>& texts, double period_s) {
-  Parameters parameters(bus, numbers, texts);
+  Parameters parameters("CANopenInterface", "node", bus, numbers, texts);
   CanopenConfig config;
   config.interface = bus;
   config.period = std::chrono::nanoseconds(std::llround(period_s * 1e9));

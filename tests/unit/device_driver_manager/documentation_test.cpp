@@ -48,6 +48,8 @@ TEST(ConfigurationPage, SaysWhatTheSchemasSay) {
 TEST(CompiledSchemas, AreTheFilesOfEtc) {
   EXPECT_EQ(device_schema_text(), text_of(RMAC_SOURCE_DIR "/etc/device.schema.json"));
   EXPECT_EQ(rmacd_schema_text(), text_of(RMAC_SOURCE_DIR "/etc/rmacd.schema.json"));
+  EXPECT_EQ(modbus_spindle_schema_text(), text_of(RMAC_SOURCE_DIR "/etc/modbus-spindle.schema.json"));
+  EXPECT_EQ(modbus_io_schema_text(), text_of(RMAC_SOURCE_DIR "/etc/modbus-io.schema.json"));
 }
 
 }  // namespace

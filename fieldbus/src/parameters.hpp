@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace rmac::fieldbus::canopen {
+namespace rmac::fieldbus {
 
 /// The parameters of one bus out of `device.json`: those named `bus.name`, and those named `name` where there is none.
 /// Keeps the first mistake, so that a reader can ask for all values first and look once.
@@ -13,9 +13,14 @@ class Parameters {
  public:
   enum class Kind { Whole, Any };
 
-  Parameters(std::string bus, const std::map<std::string, std::vector<double>>& numbers,
-             const std::map<std::string, std::string>& texts)
-      : bus_(std::move(bus)), numbers_(numbers), texts_(texts) {}
+  /// `interface` is for messages; `axis_list` names the parameter that has one number for each axis.
+  Parameters(std::string interface, std::string axis_list, std::string bus,
+             const std::map<std::string, std::vector<double>>& numbers, const std::map<std::string, std::string>& texts)
+      : interface_(std::move(interface)),
+        axis_list_(std::move(axis_list)),
+        bus_(std::move(bus)),
+        numbers_(numbers),
+        texts_(texts) {}
 
   [[nodiscard]] double number(const std::string& name, double otherwise, double least, double most,
                               Kind kind = Kind::Whole);
@@ -25,7 +30,7 @@ class Parameters {
   [[nodiscard]] std::string text(const std::string& name, const std::string& otherwise);
   /// `name_axis` where it is given, else `name`.
   [[nodiscard]] std::string text_of_axis(const std::string& name, std::size_t axis, const std::string& otherwise) const;
-  /// As many as there are node ids.
+  /// As many as the list of axes has numbers.
   [[nodiscard]] std::size_t axes();
 
   /// A mistake: the first one is kept. An empty text is none.
@@ -34,7 +39,7 @@ class Parameters {
   [[nodiscard]] bool sound() const { return problem_.empty(); }
   [[nodiscard]] const std::string& problem() const { return problem_; }
   [[nodiscard]] std::string place(const std::string& what) const {
-    return "CANopenInterface, bus " + bus_ + ": " + what;
+    return interface_ + (bus_.empty() ? "" : ", bus " + bus_) + ": " + what;
   }
 
  private:
@@ -42,6 +47,8 @@ class Parameters {
   [[nodiscard]] const std::string* find_text(const std::string& name) const;
   [[nodiscard]] double checked(const std::string& name, double value, double least, double most, Kind kind);
 
+  std::string interface_;
+  std::string axis_list_;
   std::string bus_;
   const std::map<std::string, std::vector<double>>& numbers_;
   const std::map<std::string, std::string>& texts_;
@@ -49,4 +56,4 @@ class Parameters {
   std::string problem_;
 };
 
-}  // namespace rmac::fieldbus::canopen
+}  // namespace rmac::fieldbus

@@ -1,4 +1,4 @@
-#include "canopen/parameters.hpp"
+#include "parameters.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace rmac::fieldbus::canopen {
+namespace rmac::fieldbus {
 
 const std::vector<double>* Parameters::find_numbers(const std::string& name) const {
   asked_.insert(name);
@@ -67,8 +67,8 @@ std::string Parameters::text_of_axis(const std::string& name, std::size_t axis, 
 }
 
 std::size_t Parameters::axes() {
-  const std::vector<double>* nodes = find_numbers("node");
-  return nodes != nullptr ? nodes->size() : 0;
+  const std::vector<double>* list = find_numbers(axis_list_);
+  return list != nullptr ? list->size() : 0;
 }
 
 void Parameters::refuse_unknown() {
@@ -84,4 +84,4 @@ void Parameters::refuse_unknown() {
   for (const auto& [key, ignored] : texts_) check(key);
 }
 
-}  // namespace rmac::fieldbus::canopen
+}  // namespace rmac::fieldbus

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace rmac::fieldbus {
+
+/// What a control interface implements beside its port when its drives have error codes of their own in place of CiA
+/// 402's.
+class FaultTexts {
+ public:
+  virtual ~FaultTexts() = default;
+  /// A drive's error code in words. Off the cycle; does not change while the interface lives.
+  [[nodiscard]] virtual std::string fault_text(std::size_t axis, std::uint16_t error_code) const = 0;
+};
+
+}  // namespace rmac::fieldbus

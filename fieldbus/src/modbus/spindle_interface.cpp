@@ -1,0 +1,98 @@
+#include "rmac/fieldbus/modbus/spindle_interface.hpp"
+
+#include <fmt/format.h>
+
+#include <deque>
+
+#include "modbus/spindle_station.hpp"
+#include "rmac/fieldbus/drive_state_machine.hpp"
+#include "rmac/motion/drive_power.hpp"
+
+namespace rmac::fieldbus::modbus {
+
+struct SpindleInterface::Impl {
+  struct Axis {
+    explicit Axis(SpindleConfig config) : station(std::move(config)) {}
+    SpindleStation station;
+    DriveStateMachine power;
+    std::uint16_t controlword = 0;  ///< of the cycle before
+  };
+
+  std::chrono::milliseconds stale;
+  std::chrono::milliseconds boot_timeout;
+  std::deque<Axis> axes;  ///< stations stay where they are
+  std::unique_ptr<Line> line;
+
+  /// One axis in one cycle. True when its drive is to be told something new.
+  [[nodiscard]] bool exchange(Axis& axis, const DriveCommand& command, DriveFeedback& feedback,
+                              Clock::time_point now) const noexcept {
+    const SpindleStation::Report report = axis.station.report();
+    const bool fresh = report.asked != Clock::time_point::min() && now - report.asked <= stale;
+    const bool reset = (command.controlword & ~axis.controlword & controlword::kFaultReset) != 0;
+    axis.controlword = command.controlword;
+    if (reset) axis.station.request_reset();
+    axis.power.step(command.controlword);
+    if (!fresh || report.dropped) axis.power.step(0);
+    if (fresh && report.tripped) axis.power.trip(report.error_code);
+    feedback = {.statusword = axis.power.statusword(),
+                .error_code = axis.power.error_code(),
+                .velocity_rpm = fresh ? report.rpm : 0,
+                .online = fresh};
+    return axis.station.command(axis.power.operational() ? command.target_velocity_rpm : 0);
+  }
+};
+
+SpindleInterface::SpindleInterface(SpindleLineConfig config)
+    : impl_(new Impl{config.stale, config.boot_timeout, {}, {}}) {
+  std::vector<Station*> stations;
+  for (SpindleConfig& axis : config.axes) {
+    impl_->axes.emplace_back(std::move(axis));
+    stations.push_back(&impl_->axes.back().station);
+  }
+  impl_->line = std::make_unique<Line>(std::move(config.line), std::move(stations));
+}
+
+SpindleInterface::~SpindleInterface() {
+  stop();
+}
+
+std::size_t SpindleInterface::axis_count() const noexcept {
+  return impl_->axes.size();
+}
+
+Expected<> SpindleInterface::start() {
+  stop();
+  return impl_->line->start(impl_->boot_timeout);
+}
+
+void SpindleInterface::stop() noexcept {
+  impl_->line->stop();
+  for (Impl::Axis& axis : impl_->axes) {
+    axis.station.clear();
+    axis.power = {};
+    axis.controlword = 0;
+  }
+}
+
+bool SpindleInterface::exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept {
+  const Clock::time_point now = Clock::now();
+  bool news = false;
+  for (std::size_t i = 0; i < impl_->axes.size(); ++i) {
+    news = impl_->exchange(impl_->axes[i], commands[i], feedback[i], now) || news;
+  }
+  if (news) impl_->line->wake();
+  return true;
+}
+
+std::string SpindleInterface::fault_text(std::size_t axis, std::uint16_t error_code) const {
+  if (axis >= impl_->axes.size()) return "unknown";
+  const SpindleMap& map = impl_->axes[axis].station.map();
+  const auto text = map.fault_texts.find(error_code);
+  return fmt::format("{}: {}", map.name, text != map.fault_texts.end() ? text->second : "see its manual");
+}
+
+LineCounters SpindleInterface::counters() const noexcept {
+  return impl_->line->counters();
+}
+
+}  // namespace rmac::fieldbus::modbus
