@@ -5,7 +5,8 @@ import unittest
 
 from appliance import Appliance
 
-SIX = {"DMACXYZ", "TarusXYZCA", "SuginoXYZ", "SuginoXYZAC", "CMM", "DMACXY"}
+TABLE_4_1 = {"DMACXYZ", "TarusXYZCA", "SuginoXYZ", "SuginoXYZAC", "CMM", "DMACXY"}
+ALL = TABLE_4_1 | {"BenchXYZ"}
 
 
 class Machines(unittest.TestCase):
@@ -19,7 +20,10 @@ class Machines(unittest.TestCase):
         return {machine["Name"] for machine in json.loads(done.stdout)}
 
     def test_all_machines_of_the_tree_are_listed(self):
-        self.assertEqual(self.names(), SIX)
+        self.assertEqual(self.names(), ALL)
+
+    def test_searches_for_mills_do_not_find_the_bench(self):
+        self.assertEqual(self.names("--type", "mill"), TABLE_4_1 - {"CMM"})
 
     def test_five_axis_mill_with_volume_and_power_is_the_tarus(self):
         found = self.names("--type", "mill", "--joints", "5", "--volume", "150x150x150", "--spindle-hp", "5.1")
@@ -36,7 +40,7 @@ class Machines(unittest.TestCase):
     def test_table_has_a_row_a_machine(self):
         done = self.appliance.rmac("machines")
         rows = done.stdout.splitlines()
-        self.assertEqual(len(rows), 1 + len(SIX))
+        self.assertEqual(len(rows), 1 + len(ALL))
         self.assertTrue(rows[0].startswith("name"))
 
     def test_hostile_sql_is_an_error_and_changes_nothing(self):
@@ -45,7 +49,7 @@ class Machines(unittest.TestCase):
             done = self.appliance.rmac("machines", "--sql", sql)
             self.assertEqual((done.returncode, done.stdout), (1, ""), sql)
             self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
-        self.assertEqual(self.names(), SIX)
+        self.assertEqual(self.names(), ALL)
 
     def test_show_prints_table_4_1s_values(self):
         done = self.appliance.rmac("--json", "show", "DMACXYZ")
