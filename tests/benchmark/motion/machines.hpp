@@ -4,29 +4,10 @@
 #include <memory>
 #include <numbers>
 
+#include "rmac/modules/cartesian_kinematics.hpp"
 #include "rmac/motion/planner.hpp"
 
 namespace rmac::bench {
-
-/// BenchXYZ: three linear axes, joints are the tip.
-class BenchKinematics final : public Kinematics {
- public:
-  [[nodiscard]] std::size_t joint_count() const noexcept override { return 3; }
-  [[nodiscard]] JointType joint_type(std::size_t) const noexcept override { return JointType::Linear; }
-  void forward(std::span<const double> joints, const Frame&, ToolPose& pose) const noexcept override {
-    pose.tip = {joints[0], joints[1], joints[2]};
-    pose.axis = {0, 0, 1};
-  }
-  [[nodiscard]] KinematicsStatus inverse(const ToolPose& pose, const Frame&, std::span<const double>,
-                                         std::span<double> joints) const noexcept override {
-    std::copy(pose.tip.begin(), pose.tip.end(), joints.begin());
-    return KinematicsStatus::Ok;
-  }
-  void jacobian(std::span<const double>, const Frame&, std::span<double> jacobian) const noexcept override {
-    std::fill(jacobian.begin(), jacobian.end(), 0.0);
-    jacobian[0] = jacobian[4] = jacobian[8] = 1;
-  }
-};
 
 /// Distance from the fork's axes to the tool tip, mm.
 inline constexpr double kPivot_mm = 150;
@@ -73,11 +54,11 @@ class ForkHeadKinematics final : public Kinematics {
   static constexpr double kRad = std::numbers::pi / 180;
 };
 
-/// The mechanism of the figures: three axes, ±50 mm, 200 mm/s, 1000 mm/s², 10 000 mm/s³, 12 000 mm/min, unless a row
-/// sets other limits.
+/// BenchXYZ, the mechanism of the figures: three axes, ±50 mm, 200 mm/s, 1000 mm/s², 10 000 mm/s³, 12 000 mm/min,
+/// unless a row sets other limits.
 inline PlannerModel bench_xyz(double acceleration = 1000, double jerk = 10000) {
   PlannerModel model;
-  model.kinematics = std::make_shared<BenchKinematics>();
+  model.kinematics = std::make_shared<modules::CartesianKinematics<3>>();
   for (const char* name : {"X", "Y", "Z"})
     model.joints.push_back({name, JointType::Linear, JointLimitType::Limited, -50, 50, 200, acceleration, jerk});
   model.max_feed_mm_s = 200;

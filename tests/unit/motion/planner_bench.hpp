@@ -6,34 +6,15 @@
 #include <random>
 #include <vector>
 
+#include "rmac/modules/cartesian_kinematics.hpp"
 #include "rmac/motion/plan_follower.hpp"
 #include "rmac/motion/planner.hpp"
 
 namespace rmac::test {
 
-/// Three linear axes: joints are the tip.
-class CartesianKinematics final : public Kinematics {
- public:
-  [[nodiscard]] std::size_t joint_count() const noexcept override { return 3; }
-  [[nodiscard]] JointType joint_type(std::size_t) const noexcept override { return JointType::Linear; }
-  void forward(std::span<const double> joints, const Frame&, ToolPose& pose) const noexcept override {
-    pose.tip = {joints[0], joints[1], joints[2]};
-    pose.axis = {0, 0, 1};
-  }
-  [[nodiscard]] KinematicsStatus inverse(const ToolPose& pose, const Frame&, std::span<const double>,
-                                         std::span<double> joints) const noexcept override {
-    std::copy(pose.tip.begin(), pose.tip.end(), joints.begin());
-    return KinematicsStatus::Ok;
-  }
-  void jacobian(std::span<const double>, const Frame&, std::span<double> jacobian) const noexcept override {
-    std::fill(jacobian.begin(), jacobian.end(), 0.0);
-    jacobian[0] = jacobian[4] = jacobian[8] = 1;
-  }
-};
-
 inline PlannerModel mill(double jerk = 10000) {
   PlannerModel model;
-  model.kinematics = std::make_shared<CartesianKinematics>();
+  model.kinematics = std::make_shared<modules::CartesianKinematics<3>>();
   for (const char* name : {"X", "Y", "Z"})
     model.joints.push_back({name, JointType::Linear, JointLimitType::Limited, -50, 50, 200, 1000, jerk});
   return model;
