@@ -11,6 +11,7 @@ namespace {
 ServoThread::Options thread_options(const ControllerOptions& options) {
   return {.period_s = options.period_s,
           .virtual_time = options.as_fast_as_computed,
+          .stepped = options.stepped,
           .real_time = options.real_time,
           .degraded_ok = options.degraded_ok,
           .wish = {options.priority, options.cpu, options.lock_memory},
@@ -72,7 +73,7 @@ sdk::RmacCam& Controller::cam() noexcept {
 
 void Controller::set_mechanism_folder(std::string folder, bool virtual_mode) {
   impl_->folder = std::move(folder);
-  impl_->virtual_mode = virtual_mode;
+  impl_->virtual_mode = virtual_mode || impl_->options.stepped;
 }
 
 const std::string& Controller::mechanism_folder() const noexcept {
@@ -117,6 +118,15 @@ void Controller::on_event(std::function<void(const Event&)> listener) {
 
 void Controller::on_sample(std::function<void(const CycleSample&)> listener) {
   impl_->sample_listeners.push_back(std::move(listener));
+}
+
+void Controller::on_queued(QueueListener listener) {
+  impl_->supervisor.on_queued(std::move(listener));
+}
+
+void Controller::cycle() {
+  impl_->thread.step();
+  impl_->dispatch();
 }
 
 void Controller::dispatch() {

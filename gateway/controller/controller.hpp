@@ -26,6 +26,9 @@ struct ControllerOptions {
   bool lock_memory = true;
   bool as_fast_as_computed =
       false;  ///< virtual clock: cycles follow each other without waiting, but never outrun the planner
+  /// No threads and no drives: cycles run when `cycle` is called, and mechanisms go in in virtual mode, whatever is
+  /// asked for.
+  bool stepped = false;
   std::size_t queue_capacity = 10'000;  ///< moves
   std::shared_ptr<Clock> clock;         ///< paces the servo thread; null: the monotonic clock
   /// Interfaces beside the built-in ones, by name.
@@ -77,9 +80,13 @@ class Controller {
   /// Called on the gateway thread, in order, for each event and for every cycle's sample; see `dispatch`.
   void on_event(std::function<void(const Event&)> listener);
   void on_sample(std::function<void(const CycleSample&)> listener);
+  /// Called on the gateway thread, before the call that queues the move returns.
+  void on_queued(QueueListener listener);
   /// Hands what the servo and planner threads reported since the last call to the listeners. The gateway calls it every
   /// few ms.
   void dispatch();
+  /// `stepped`: plans all that can be planned now, runs one cycle, and dispatches.
+  void cycle();
 
  private:
   struct Impl;

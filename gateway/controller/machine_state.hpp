@@ -2,9 +2,13 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
 #include <string>
 
-#include "rmac/motion/pose.hpp"
+#include "rmac/motion/move.hpp"
+#include "rmac/motion/path_segment.hpp"
 
 namespace rmac::gateway {
 
@@ -62,5 +66,8 @@ struct Event {
   std::int64_t move_id = 0;
   std::string message;  ///< for a person: what happened, where, what to do
 };
+
+/// Hears of a move as it is queued, and of the curves it has become: none when there is nothing to move.
+using QueueListener = std::function<void(const Move&, std::span<const std::shared_ptr<const PathSegment>>)>;
 
 }  // namespace rmac::gateway

@@ -38,7 +38,11 @@ bool Controller::Impl::wait_for(Reached&& reached) {
   while (!reached()) {
     if (std::chrono::steady_clock::now() > give_up) return false;
     drain();  // in virtual time a full ring would keep the servo thread from answering
-    std::this_thread::sleep_for(kLookAgain);
+    if (options.stepped) {
+      thread.step();
+    } else {
+      std::this_thread::sleep_for(kLookAgain);
+    }
   }
   return true;
 }

@@ -167,6 +167,7 @@ Expected<bool> MotionSupervisor::add_move(const Move& move) {
                                move.id));
   }
   const bool moves = !segments->empty();
+  if (queue_listener_) queue_listener_(move, *segments);
   mechanism_->planner.add(std::move(*segments));
   news_.queue.push_back({moves ? QueueChange::Kind::Added : QueueChange::Kind::Still, move.id, 0});
   last_added_ = std::chrono::steady_clock::now();

@@ -91,6 +91,7 @@ class MotionSupervisor {
     std::vector<Event> events;
   };
   [[nodiscard]] News take_news();
+  void on_queued(QueueListener listener) { queue_listener_ = std::move(listener); }
   void report(Event event);
 
  private:
@@ -131,6 +132,7 @@ class MotionSupervisor {
   bool rebase_ = true;  ///< the next move begins where the machine stands, not where the queue ended
   std::chrono::steady_clock::time_point last_added_{};
   News news_;
+  QueueListener queue_listener_;
   double override_percent_ = 100;
   double t_s_ = 0;
 };

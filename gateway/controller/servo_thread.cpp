@@ -25,6 +25,10 @@ ServoThread::~ServoThread() {
 }
 
 Expected<> ServoThread::start() {
+  if (options_.stepped) {
+    stepped_.emplace(link_, options_.period_s);
+    return {};
+  }
   stop_.store(false);
   std::promise<std::vector<std::string>> granted;
   auto answer = granted.get_future();
@@ -51,6 +55,14 @@ void ServoThread::stop() noexcept {
   stop_.store(true);
   if (servo_.joinable()) servo_.join();
   if (planner_.joinable()) planner_.join();
+}
+
+void ServoThread::step() {
+  int passes = 0;
+  while (supervisor_.advance(stepped_->status()) == MotionSupervisor::Pace::Planning &&
+         ++passes < kMostPlanningPasses) {
+  }
+  stepped_->run(0);
 }
 
 void ServoThread::run_real(ServoCycle& cycle) noexcept {

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -16,12 +17,14 @@ namespace rmac::gateway {
 /// Runs servo cycles, in one of two paces (docs/real-time.md). Real: the clock says when, planning runs on a thread of
 /// its own, and nothing on the servo thread waits for anybody. Virtual: cycles follow each other as fast as they are
 /// computed, planning happens between two of them, and they wait for whoever reads the samples; when there is nothing
-/// to do they keep real time.
+/// to do they keep real time. Stepped: no thread, and no time but the count of cycles; whoever calls `step` is both
+/// threads at once.
 class ServoThread {
  public:
   struct Options {
     double period_s = 0.001;
     bool virtual_time = false;
+    bool stepped = false;
     bool real_time = false;   ///< ask for priority, locked memory and CPU
     bool degraded_ok = true;  ///< run without what was not granted
     RealTimeWish wish;
@@ -36,6 +39,8 @@ class ServoThread {
   /// The error says what real time lacks and how to grant it.
   [[nodiscard]] Expected<> start();
   void stop() noexcept;
+  /// Stepped: all planning that can be done now, and one cycle.
+  void step();
   /// What was not granted, when that is allowed.
   [[nodiscard]] const std::vector<std::string>& shortcomings() const noexcept { return shortcomings_; }
 
@@ -49,6 +54,7 @@ class ServoThread {
   MotionSupervisor& supervisor_;
   std::atomic<bool> stop_{false};
   std::vector<std::string> shortcomings_;
+  std::optional<ServoCycle> stepped_;
   std::thread servo_;
   std::thread planner_;
 };

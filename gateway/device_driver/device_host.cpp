@@ -21,7 +21,8 @@ struct DeviceHost::Impl {
   template <typename Configure>
   Expected<> configure(Configure&& configure_part);
   Expected<Loaded*> require_loaded();
-  Expected<Loaded> configure_anew(const std::filesystem::path& folder);
+  Expected<> load(const std::string& what, const std::filesystem::path& device_json, bool virtual_mode);
+  Expected<Loaded> configure_anew(const std::filesystem::path& device_json);
 
   DeviceDriverManager& manager;
   Controller& controller;
@@ -32,8 +33,8 @@ DeviceHost::DeviceHost(DeviceDriverManager& manager, Controller& controller)
     : impl_(new Impl{manager, controller, std::nullopt}) {}
 DeviceHost::~DeviceHost() = default;
 
-Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(const std::filesystem::path& folder) {
-  auto device = read_device_database(folder / "device.json");
+Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(const std::filesystem::path& device_json) {
+  auto device = read_device_database(device_json);
   if (!device) return tl::unexpected(device.error());
   auto driver = controller.load_device_driver({device->device_driver, {}, {}});
   if (!driver) return tl::unexpected(driver.error());
@@ -50,20 +51,29 @@ Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(const std::f
 Expected<> DeviceHost::load(const std::string& name, bool virtual_mode) {
   const auto folder = impl_->manager.folder_of(name);
   if (!folder) return tl::unexpected(folder.error());
-  const std::string folder_before = impl_->controller.mechanism_folder();
-  const bool virtual_before = impl_->controller.virtual_mode();
-  impl_->controller.set_mechanism_folder(folder->string(), virtual_mode);
-  auto loaded = impl_->configure_anew(*folder);
-  if (!loaded) {
-    impl_->controller.set_mechanism_folder(folder_before, virtual_before);
-    impl_->controller.discard_draft();
-    const sdk::DeviceObject* in_force = impl_->controller.mechanism();
-    if (in_force == nullptr) impl_->loaded.reset();
-    return failure(loaded.error().code,
-                   fmt::format("{} is not loaded: {} ({})", name, loaded.error().message,
+  return impl_->load(name, *folder / "device.json", virtual_mode);
+}
+
+Expected<> DeviceHost::load_file(const std::filesystem::path& device_json, bool virtual_mode) {
+  return impl_->load(device_json.string(), device_json, virtual_mode);
+}
+
+Expected<> DeviceHost::Impl::load(const std::string& what, const std::filesystem::path& device_json,
+                                  bool virtual_mode) {
+  const std::string folder_before = controller.mechanism_folder();
+  const bool virtual_before = controller.virtual_mode();
+  controller.set_mechanism_folder(device_json.parent_path().string(), virtual_mode);
+  auto made = configure_anew(device_json);
+  if (!made) {
+    controller.set_mechanism_folder(folder_before, virtual_before);
+    controller.discard_draft();
+    const sdk::DeviceObject* in_force = controller.mechanism();
+    if (in_force == nullptr) loaded.reset();
+    return failure(made.error().code,
+                   fmt::format("{} is not loaded: {} ({})", what, made.error().message,
                                in_force != nullptr ? in_force->name + " stays loaded" : "no mechanism is loaded"));
   }
-  impl_->loaded = std::move(*loaded);
+  loaded = std::move(*made);
   return {};
 }
 

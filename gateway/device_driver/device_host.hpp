@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -19,6 +20,8 @@ class DeviceHost {
   /// Loads mechanism `name`: the driver configures planner, servo controller and interfaces into a draft, which is
   /// applied at standstill. On any failure the mechanism that was loaded stays loaded, and the error says what failed.
   [[nodiscard]] Expected<> load(const std::string& name, bool virtual_mode);
+  /// The same with the device database in a file of any name; modules are looked for beside it first.
+  [[nodiscard]] Expected<> load_file(const std::filesystem::path& device_json, bool virtual_mode);
   [[nodiscard]] Expected<> unload();
   [[nodiscard]] bool loaded() const noexcept;
   [[nodiscard]] bool virtual_mode() const noexcept;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -26,6 +27,16 @@ struct MachineSearch {
 
 [[nodiscard]] Result<> run_program(Connection& connection, const std::string& file, const RunOptions& options,
                                    bool json);
+
+struct SimulateOptions {
+  std::string machine;                ///< a name in the device tree, or the path of a device.json; empty: the program's
+  std::filesystem::path device_tree;  ///< empty: the installation's
+  std::string record_file;            ///< empty: none
+  double period_s = 0.001;
+};
+
+/// Plans a program as the appliance would, without one, and tells how long it takes and what it asks of the machine.
+[[nodiscard]] Result<> simulate_program(const std::string& file, const SimulateOptions& options, bool json);
 
 [[nodiscard]] Result<> show_status(Connection& connection, bool watch, bool json);
 [[nodiscard]] Result<> show_events(Connection& connection, bool json);

@@ -23,6 +23,7 @@ struct Arguments {
   std::string name, file;
   MachineSearch search;
   RunOptions run;
+  SimulateOptions simulate;
   int joint = 0;
   double distance = 0, percent = 100, period_s = 0.001;
 };
@@ -86,6 +87,20 @@ void add_operating_commands(CLI::App& app, Arguments& arguments, Command& comman
 
 /// Commands that need no appliance.
 void add_offline_commands(CLI::App& app, Arguments& arguments, std::function<Result<>()>& command) {
+  auto* simulate = app.add_subcommand(
+      "simulate", "only plan a program, faster than real time: cycle time, limits; needs no appliance");
+  simulate->add_option("FILE", arguments.file, "the .rmac file, - for standard input")->required();
+  simulate->add_option("--machine", arguments.simulate.machine,
+                       "a machine's name, or the path of its device.json; needed unless the program loads one");
+  simulate->add_option("--record", arguments.simulate.record_file, "write every cycle's setpoints to this CSV");
+  simulate->add_option("--device-tree", arguments.simulate.device_tree,
+                       "where machines are looked for; the installation's unless given");
+  simulate->add_option("--period", arguments.simulate.period_s, "cycle of the servo loop, s (period_s in rmacd.json)")
+      ->check(CLI::Range(0.0001, 0.1))
+      ->capture_default_str();
+  simulate->callback(
+      [&] { command = [&] { return simulate_program(arguments.file, arguments.simulate, arguments.json); }; });
+
   auto* bus = app.add_subcommand("bus", "commission a fieldbus");
   bus->require_subcommand(1);
   auto* load =

@@ -34,7 +34,7 @@ Result<> Record::open() {
   return output_ ? Result<>() : write_failure(file_);
 }
 
-Result<> Record::start_file(std::size_t joints) {
+Result<> Record::start_file(std::size_t joints, bool measured) {
   if (joints_ != 0) {
     if (auto closed = close(); !closed) {
       return closed;
@@ -45,6 +45,7 @@ Result<> Record::start_file(std::size_t joints) {
   joints_ = joints;
   row_ = "t_s,move_id,s_mm,feed_mm_s,x,y,z,i,j,k";
   for (const char* quantity : {"q", "qd", "qdd", "a"}) {
+    if (!measured && quantity[0] == 'a') continue;
     for (std::size_t joint = 1; joint <= joints; ++joint) {
       fmt::format_to(std::back_inserter(row_), ",{}{}", quantity, joint);
     }
@@ -59,8 +60,9 @@ Result<> Record::add(const JointSample& sample) {
   if (joints == 0) {
     return {};
   }
+  const bool measured = !sample.position.empty();
   if (sample.pose.size() != kPoseNumbers || sample.velocity_set.size() != joints ||
-      sample.acceleration_set.size() != joints || sample.position.size() != joints) {
+      sample.acceleration_set.size() != joints || (measured && sample.position.size() != joints)) {
     return fail("the appliance sent a joints sample whose lists differ in length: the record would be wrong");
   }
   if (last_cycle_ >= 0 && sample.cycle > last_cycle_ + 1) {
@@ -68,7 +70,7 @@ Result<> Record::add(const JointSample& sample) {
   }
   last_cycle_ = sample.cycle;
   if (joints != joints_) {
-    if (auto started = start_file(joints); !started) {
+    if (auto started = start_file(joints, measured); !started) {
       return started;
     }
   }

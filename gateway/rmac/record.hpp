@@ -11,7 +11,8 @@
 namespace rmac::cli {
 
 /// Writes the setpoint record: a header, then one row a cycle, every number with all its digits. A mechanism with
-/// another number of joints gets a file of its own, `name-2.csv` and so on, because its columns differ.
+/// another number of joints gets a file of its own, `name-2.csv` and so on, because its columns differ. Where no drives
+/// ran, samples have no measured positions, and the record has no columns for them.
 class Record {
  public:
   explicit Record(std::string file) : file_(std::move(file)) {}
@@ -27,7 +28,7 @@ class Record {
   [[nodiscard]] std::int64_t missing_cycles() const noexcept { return missing_; }
 
  private:
-  [[nodiscard]] Result<> start_file(std::size_t joints);
+  [[nodiscard]] Result<> start_file(std::size_t joints, bool measured);
   [[nodiscard]] std::string name_of(std::size_t number) const;
 
   std::string file_;

@@ -1,5 +1,6 @@
 """What cmake --install puts where, and what systemd says of the units."""
 
+import json
 import os
 import pathlib
 import shutil
@@ -42,6 +43,14 @@ class Installation(unittest.TestCase):
         done = subprocess.run([self.one("usr/sbin/rmacd"), "--check", "--config", self.one("**/etc/rmac/rmacd.json")],
                               capture_output=True, text=True, timeout=60, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_installed_client_simulates_on_the_installed_drivers(self):
+        move = {"jsonrpc": "2.0", "id": 1, "method": "RMAC_CAM.MoveToJointTarget",
+                "params": {"MoveID": 1, "JointTargetFrame": {"joints": [1, 2, 3]}}}
+        done = subprocess.run([self.one("usr/bin/rmac"), "--json", "simulate", "-", "--machine", "BenchXYZ"],
+                              input=json.dumps(move), capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(json.loads(done.stdout)["moves"], 1)
 
     def test_nothing_of_the_tests_is_installed(self):
         self.assertEqual([str(path) for path in self.root.rglob("*test*")], [])

@@ -1,0 +1,181 @@
+#include "gateway/rmac/simulator.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace rmac::cli {
+namespace {
+
+/// Without drives nothing outside of the machine can still set it going, so this is long.
+constexpr double kStuckAfter_s = 1;
+
+JointSample to_note(const gateway::CycleSample& sample) {
+  const auto joints = [&](const auto& values) {
+    return std::vector<double>(values.begin(), values.begin() + sample.joint_count);
+  };
+  JointSample note;
+  note.t_s = sample.t_s;
+  note.cycle = sample.cycle;
+  note.move_id = sample.move_id;
+  note.moving = sample.moving;
+  note.s_mm = sample.s_mm;
+  note.feed_mm_s = sample.feed_set_mm_s;
+  note.pose = {sample.pose_set.tip[0],  sample.pose_set.tip[1],  sample.pose_set.tip[2],
+               sample.pose_set.axis[0], sample.pose_set.axis[1], sample.pose_set.axis[2]};
+  note.position_set = joints(sample.position_set);
+  note.velocity_set = joints(sample.velocity_set);
+  note.acceleration_set = joints(sample.acceleration_set);
+  return note;
+}
+
+}  // namespace
+
+Simulator::Simulator(gateway::Simulation& simulation, const std::string& record_file)
+    : simulation_(simulation), account_(simulation.period_s()) {
+  if (!record_file.empty()) record_.emplace(record_file);
+  gateway::Controller& controller = simulation_.controller();
+  if (controller.mechanism() != nullptr) account_.mechanism(*controller.mechanism());
+  controller.on_sample([this](const gateway::CycleSample& sample) { take(sample); });
+  controller.on_event([this](const gateway::Event& event) { take(event); });
+  controller.on_queued([this](const auto& move, auto segments) { account_.queued(move, segments); });
+}
+
+Result<SimulationReport> Simulator::run(Program program) {
+  file_ = program.file;
+  if (record_) {
+    if (auto opened = record_->open(); !opened) return tl::unexpected(opened.error());
+  }
+  for (Request& request : program.requests) {
+    line_ = request.line;
+    if (auto done = submit(program, request); !done) return tl::unexpected(done.error());
+  }
+  if (!unfinished_.empty() && !started_) {
+    return fail(fmt::format("{}: the program ends without starting its cycle", program.file));
+  }
+  if (auto settled = settle(); !settled) return tl::unexpected(settled.error());
+  if (record_) {
+    if (auto closed = record_->close(); !closed) return tl::unexpected(closed.error());
+    report_.record_rows = record_->rows();
+    report_.record_files = record_->files();
+  }
+  report_.length_mm = account_.length_mm();
+  report_.joints = account_.joints();
+  report_.limited_by = account_.shares();
+  return report_;
+}
+
+Result<> Simulator::submit(const Program& program, Request& request) {
+  const bool is_move = request.timing == Timing::Move;
+  if (request.timing == Timing::Settled && !unfinished_.empty() && !started_) {
+    return fail_at(line_, fmt::format("{} needs the moves before it done, but the program starts its cycle later",
+                                      request.method));
+  }
+  // What acts on the machine waits for all before it; so do a start and a first move after it.
+  const bool waits = request.timing == Timing::Settled || (request.timing != Timing::Stream && unsettled_);
+  if (auto settled = waits ? settle() : Result<>(); !settled) return settled;
+  if (is_move && unsettled_ && !program.starts_cycle) {
+    if (auto started = start_cycle(); !started) return started;
+  }
+  if (auto room = make_room(request); !room) return room;
+  if (is_move) unfinished_.push_back({request.move_id, request.line});
+  started_ = started_ || request.timing == Timing::Start;
+  unsettled_ = request.timing == Timing::Settled || (unsettled_ && request.timing == Timing::Stream);
+  return call(request.method, std::move(request.params));
+}
+
+Result<> Simulator::make_room(const Request& request) {
+  if (request.timing == Timing::Move && started_) {
+    const auto capacity = static_cast<int>(simulation_.queue_capacity());
+    return run_until([&] { return simulation_.controller().cam().moves_in_buffer() < capacity; });
+  }
+  if (request.timing == Timing::Start) {
+    // In manual mode a start is for one move: the one before must be over.
+    return run_until([this] {
+      const gateway::CycleNow now = simulation_.controller().cycle_now();
+      return now.state != gateway::CycleState::Running || std::string_view(now.mode) != "MANUAL" || unfinished_.empty();
+    });
+  }
+  return {};
+}
+
+Result<> Simulator::start_cycle() {
+  // Refused for as long as the machine needs to see that a jog is over.
+  constexpr int kTries = 50;
+  Result<> started = fail("");
+  for (int i = 0; i < kTries && !started; ++i) {
+    if (i > 0) simulation_.cycle();
+    started = call("RMAC_CAM.CycleStart", {{"Mode", "AUTOMATIC"}});
+  }
+  started_ = started_ || started.has_value();
+  return started;
+}
+
+Result<> Simulator::settle() {
+  auto rested = run_until([this] { return unfinished_.empty() && at_rest(); });
+  // One more cycle: a jog is over when the machine has seen that it stands.
+  simulation_.cycle();
+  return rested;
+}
+
+Result<> Simulator::run_until(const std::function<bool()>& reached) {
+  double still_s = 0;
+  while (!reached()) {
+    simulation_.cycle();
+    const int line = unfinished_.empty() ? line_ : unfinished_.front().line;
+    if (!failure_.empty()) return fail_at(line, failure_);
+    still_s = moving_ ? 0 : still_s + simulation_.period_s();
+    if (still_s > kStuckAfter_s) return fail_at(line, stuck());
+  }
+  return {};
+}
+
+bool Simulator::at_rest() {
+  gateway::Controller& controller = simulation_.controller();
+  return !moving_ && controller.cam().moves_in_buffer() == 0 &&
+         controller.cycle_now().state != gateway::CycleState::Stopping;
+}
+
+tl::unexpected<Failure> Simulator::fail_at(int line, const std::string& message) const {
+  return fail(fmt::format("{}:{}: {}", file_, line, message));
+}
+
+std::string Simulator::stuck() {
+  const gateway::CycleNow now = simulation_.controller().cycle_now();
+  return fmt::format(
+      "the machine stands still in state {} with the feed override at {} %, and nothing in the program "
+      "sets it going again: {} moves are not done",
+      gateway::to_string(now.state), now.override_percent, unfinished_.size());
+}
+
+Result<> Simulator::call(const std::string& method, nlohmann::json params) {
+  const gateway::Answer answer = simulation_.call(method, std::move(params));
+  return answer ? Result<>() : fail_at(line_, fmt::format("{}: {}", method, answer.error().message));
+}
+
+void Simulator::take(const gateway::CycleSample& sample) {
+  moving_ = sample.moving;
+  account_.cycle(sample, simulation_.controller().cycle_now().override_percent);
+  // As in a record of `rmac run`: every cycle from the first move on.
+  if (!record_ || !(sample.moving || record_->rows() > 0)) return;
+  if (auto added = record_->add(to_note(sample)); !added && failure_.empty()) failure_ = added.error().message;
+}
+
+void Simulator::take(const gateway::Event& event) {
+  using Kind = gateway::Event::Kind;
+  if (event.kind == Kind::Mechanism) {
+    if (const sdk::DeviceObject* device = simulation_.controller().mechanism()) account_.mechanism(*device);
+  } else if (event.kind == Kind::MoveStarted && !first_start_s_ && !unfinished_.empty()) {
+    first_start_s_ = event.t_s;
+  } else if (event.kind == Kind::MoveDone) {
+    account_.move_done();
+    if (unfinished_.empty() || unfinished_.front().id != event.move_id) return;
+    unfinished_.pop_front();
+    ++report_.moves;
+    report_.cycle_time_s = event.t_s - first_start_s_.value_or(event.t_s);
+  } else if (event.kind == Kind::Fault && failure_.empty()) {
+    failure_ = event.message;
+  }
+}
+
+}  // namespace rmac::cli

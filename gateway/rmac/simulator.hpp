@@ -1,0 +1,71 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/rmac/program.hpp"
+#include "gateway/rmac/record.hpp"
+#include "gateway/simulation/motion_account.hpp"
+#include "gateway/simulation/simulation.hpp"
+
+namespace rmac::cli {
+
+struct SimulationReport {
+  std::size_t moves = 0;
+  double cycle_time_s = 0;  ///< from the first move's start to the last one's end, as `rmac run` counts it
+  double length_mm = 0;
+  std::vector<gateway::MotionAccount::Joint> joints;
+  std::vector<gateway::MotionAccount::Share> limited_by;
+  std::size_t record_rows = 0;
+  std::vector<std::string> record_files;
+};
+
+/// Plans one program on a simulated appliance as `rmac run` would have it machined: moves are queued as far as the
+/// queue has room, and what acts on the machine waits until all before it is done.
+class Simulator {
+ public:
+  /// `record_file`: of the setpoints; empty: none.
+  Simulator(gateway::Simulation& simulation, const std::string& record_file);
+
+  /// An error names the program's line.
+  [[nodiscard]] Result<SimulationReport> run(Program program);
+
+ private:
+  struct Pending {
+    std::int64_t id = 0;
+    int line = 0;
+  };
+
+  [[nodiscard]] Result<> submit(const Program& program, Request& request);
+  [[nodiscard]] Result<> make_room(const Request& request);
+  [[nodiscard]] Result<> start_cycle();
+  [[nodiscard]] Result<> settle();
+  /// Lets machine time go on until `reached`; an error when nothing moves any more before it is.
+  [[nodiscard]] Result<> run_until(const std::function<bool()>& reached);
+  [[nodiscard]] Result<> call(const std::string& method, nlohmann::json params);
+  [[nodiscard]] bool at_rest();
+  [[nodiscard]] std::string stuck();
+  [[nodiscard]] tl::unexpected<Failure> fail_at(int line, const std::string& message) const;
+
+  void take(const gateway::CycleSample& sample);
+  void take(const gateway::Event& event);
+
+  gateway::Simulation& simulation_;
+  gateway::MotionAccount account_;
+  std::optional<Record> record_;
+  SimulationReport report_;
+  std::string file_;  ///< of the program
+  int line_ = 0;      ///< of the request under way
+
+  std::deque<Pending> unfinished_;  ///< moves queued and not done, in order
+  std::optional<double> first_start_s_;
+  std::string failure_;
+  bool moving_ = false;
+  bool started_ = false;   ///< the cycle was started, so moves become done
+  bool unsettled_ = true;  ///< something acted on the machine since the last move
+};
+
+}  // namespace rmac::cli

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "gateway/controller/machine_state.hpp"
+#include "rmac/sdk/device_object.hpp"
+
+namespace rmac::gateway {
+
+/// What the motion of a program asks of a machine: each joint's peaks, and the limit that each cycle was nearest to.
+/// Fed with setpoints, cycle by cycle; a joint's jerk is the change of its acceleration from one cycle to the next.
+class MotionAccount {
+ public:
+  /// mm or deg, and s.
+  struct Joint {
+    std::string name;
+    double peak_velocity = 0, peak_acceleration = 0, peak_jerk = 0;
+  };
+  /// Time for which a limit was the nearest.
+  struct Share {
+    std::string limit;  ///< "feed", "path acceleration", "X velocity", "X acceleration", "X jerk", …, "none"
+    double time_s = 0;
+  };
+  /// The nearest limit rules a cycle from this part of its bound on; below, none does.
+  static constexpr double kRules = 0.5;
+
+  explicit MotionAccount(double period_s);
+
+  /// Limits from now on. A joint keeps its name, whichever mechanism moves it.
+  void mechanism(const sdk::DeviceObject& device);
+  /// A move has been added to those that are not done.
+  void queued(const Move& move, std::span<const std::shared_ptr<const PathSegment>> segments);
+  /// The first of the moves that are not done is done.
+  void move_done();
+  void cycle(const CycleSample& sample, double override_percent);
+
+  [[nodiscard]] const std::vector<Joint>& joints() const noexcept { return joints_; }
+  /// Limits that ruled for any time, the longest first; together the time in motion.
+  [[nodiscard]] std::vector<Share> shares() const;
+  /// The tool tip's way along the moves that were queued, as programmed.
+  [[nodiscard]] double length_mm() const noexcept { return length_mm_; }
+
+ private:
+  struct Bounds {
+    std::size_t joint = 0;  ///< in joints_
+    double velocity = 0, acceleration = 0, jerk = 0;
+  };
+  /// What a move allows along its path; 0: as much as the joints can.
+  struct PathBounds {
+    double feed_mm_s = 0, rise_mm_s2 = 0, fall_mm_s2 = 0;
+    double joint_fraction = 0;  ///< of a move in joint space: of the joints' speed limits
+  };
+  static constexpr std::size_t kFeed = 0, kPathAcceleration = 1, kJointLimits = 2;
+
+  void count(const CycleSample& sample, double override_percent);
+  [[nodiscard]] double part_of_feed(const CycleSample& sample, const PathBounds& path, double override_factor) const;
+
+  double period_s_;
+  double max_feed_mm_s_ = 0;
+  std::vector<Joint> joints_;
+  std::vector<Bounds> bounds_;        ///< of the mechanism in force, joint by joint
+  std::vector<double> time_s_;        ///< feed, path acceleration, then velocity, acceleration and jerk of each joint
+  std::deque<PathBounds> path_;       ///< of the moves that are not done
+  std::vector<double> jerk_;          ///< of the cycle
+  std::vector<double> acceleration_;  ///< of the cycle before
+  double none_s_ = 0, length_mm_ = 0, feed_before_mm_s_ = 0;
+};
+
+}  // namespace rmac::gateway

@@ -1,0 +1,151 @@
+#include "gateway/simulation/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <system_error>
+
+#include "gateway/device_driver/device_database.hpp"
+#include "gateway/rmacd/machine.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder that ends with its owner: the device driver database of a simulation is nobody else's.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (fs::temp_directory_path() / "rmac-simulation-XXXXXX").string();
+    if (mkdtemp(name.data()) != nullptr) path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] const fs::path& path() const noexcept { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// The only client there is. What it subscribes to reaches it as the controller's samples and events.
+class OnlyClient final : public SessionPort {
+ public:
+  explicit OnlyClient(const DeviceDriverManager& manager) : records_(manager) {}
+  void introduce(const std::string& /*client*/, const std::string& /*version*/) override {}
+  nlohmann::json greeting() const override { return {{"server", "rmac simulate"}, {"version", RMAC_VERSION}}; }
+  RecordCursor& records() override { return records_; }
+  bool has_authority() const override { return true; }
+  std::string authority_holder() const override { return "the simulation's client"; }
+  tl::expected<nlohmann::json, RpcError> acquire_authority() override {
+    return nlohmann::json{{"timeout_s", 0}, {"dropped_moves", 0}};
+  }
+  tl::expected<void, RpcError> renew_authority() override { return {}; }
+  tl::expected<void, RpcError> release_authority() override { return {}; }
+  tl::expected<void, RpcError> subscribe(const std::vector<std::string>& /*topics*/, double /*rate_hz*/) override {
+    return {};
+  }
+  void unsubscribe(const std::vector<std::string>& /*topics*/) override {}
+  void animate(bool /*on*/) override {}
+
+ private:
+  Records records_;
+};
+
+bool is_path(const std::string& machine) {
+  return machine.find('/') != std::string::npos || machine.ends_with(".json");
+}
+
+ControllerOptions controller_options(const Simulation::Options& options, const std::vector<fs::path>& folders) {
+  ControllerOptions made;
+  for (const fs::path& folder : folders) made.module_folders.push_back(folder.string());
+  made.module_folders.push_back((options.device_tree / "modules").string());
+  made.period_s = options.period_s;
+  made.stepped = true;
+  made.queue_capacity = options.queue_capacity;
+  return made;
+}
+
+/// Where the device tree has modules for a device.json that lies elsewhere.
+std::vector<fs::path> folders_for(const sdk::DeviceObject& device, const DeviceDriverManager& manager) {
+  std::vector<fs::path> folders;
+  for (const std::string& name : {device.name, device.device_driver}) {
+    if (auto folder = manager.folder_of(name)) folders.push_back(std::move(*folder));
+  }
+  return folders;
+}
+
+}  // namespace
+
+/// In the order in which they need each other.
+struct Simulation::Parts {
+  Parts(const Options& options, std::unique_ptr<TemporaryFolder> database_folder,
+        std::unique_ptr<DeviceDriverManager> device_drivers, const std::vector<fs::path>& module_folders)
+      : folder(std::move(database_folder)),
+        manager(std::move(device_drivers)),
+        controller(controller_options(options, module_folders)),
+        host(*manager, controller),
+        machine(controller, host, *manager),
+        dispatcher(machine),
+        client(*manager) {}
+
+  std::unique_ptr<TemporaryFolder> folder;
+  std::unique_ptr<DeviceDriverManager> manager;
+  Controller controller;
+  DeviceHost host;
+  Machine machine;
+  Dispatcher dispatcher;
+  OnlyClient client;
+};
+
+Simulation::Simulation(const Options& options) : options_(options) {}
+Simulation::~Simulation() = default;
+
+Expected<std::unique_ptr<Simulation>> Simulation::open(const Options& options, const std::string& machine) {
+  std::unique_ptr<Simulation> simulation(new Simulation(options));
+  auto folder = std::make_unique<TemporaryFolder>();
+  if (folder->path().empty()) {
+    return failure(MinorCode::Other,
+                   fmt::format("no folder for the device driver database can be made in {}: {}",
+                               fs::temp_directory_path().string(), std::generic_category().message(errno)));
+  }
+  auto manager = DeviceDriverManager::open({options.device_tree, (folder->path() / "drivers.sqlite").string()});
+  if (!manager) return tl::unexpected(manager.error());
+  std::vector<fs::path> module_folders;
+  if (is_path(machine)) {
+    const auto device = read_device_database(machine);
+    if (!device) return tl::unexpected(device.error());
+    module_folders = folders_for(*device, **manager);
+  }
+  simulation->parts_ = std::make_unique<Parts>(options, std::move(folder), std::move(*manager), module_folders);
+  Parts& parts = *simulation->parts_;
+  auto ready = parts.controller.start();
+  if (ready && is_path(machine)) {
+    ready = parts.host.load_file(machine, true);
+  } else if (ready && !machine.empty()) {
+    ready = parts.host.load(machine, true);
+  }
+  if (!ready) return tl::unexpected(ready.error());
+  return simulation;
+}
+
+Answer Simulation::call(const std::string& method, nlohmann::json params) {
+  nlohmann::json message{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}};
+  if (!params.is_null()) message["params"] = std::move(params);
+  return parts_->dispatcher.execute(read_request(std::move(message)), parts_->client);
+}
+
+void Simulation::cycle() {
+  parts_->controller.cycle();
+}
+
+Controller& Simulation::controller() noexcept {
+  return parts_->controller;
+}
+
+}  // namespace rmac::gateway
