@@ -10,21 +10,6 @@
 namespace rmac::gateway {
 namespace {
 
-/// Stands for the drives in virtual mode: it has axes to name, and nothing behind them.
-class NoBus final : public DigitalControlInterface {
- public:
-  explicit NoBus(std::size_t axes) : axes_(axes) {}
-  std::size_t axis_count() const noexcept override { return axes_; }
-  Expected<> start() override { return {}; }
-  void stop() noexcept override {}
-  bool exchange(std::span<const DriveCommand>, std::span<DriveFeedback>) noexcept override { return true; }
-
- private:
-  std::size_t axes_;
-};
-
-constexpr std::size_t kMaxVirtualAxes = 256;
-
 Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loader) {
   const std::string name = sdk::servo_law_module(joint.servo_law.name);
   auto law = loader.load<ServoLaw>({name, joint.servo_law.numbers, joint.servo_law.texts});
@@ -57,12 +42,9 @@ Expected<> add_axes(const sdk::DeviceObject& device, const ModuleLoader& loader,
 
 Expected<> add_drives(const sdk::DeviceObject& device, const ModuleLoader& loader, BusRegistry& registry,
                       ServoLoopParts& parts) {
-  const auto virtual_bus = parts.virtual_mode ? std::make_shared<ServoBus>(std::make_shared<NoBus>(kMaxVirtualAxes))
-                                              : std::shared_ptr<ServoBus>();
-  std::uint32_t next_virtual_axis = 0;
   const auto place = [&](const std::string& who, const std::string& name,
                          std::uint32_t axis) -> Expected<std::pair<std::shared_ptr<ServoBus>, std::uint32_t>> {
-    if (virtual_bus) return std::pair{virtual_bus, next_virtual_axis++};
+    if (parts.virtual_mode) return std::pair{registry.virtual_bus(name), axis};
     auto bus = registry.acquire(name, device.digital_control_interface, loader);
     if (!bus) return tl::unexpected(bus.error());
     if (const std::size_t there = (*bus)->interface->axis_count(); axis >= there) {

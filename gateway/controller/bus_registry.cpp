@@ -5,6 +5,18 @@
 namespace rmac::gateway {
 namespace {
 
+/// Has axes to name, and nothing behind them.
+class NoBus final : public DigitalControlInterface {
+ public:
+  std::size_t axis_count() const noexcept override { return kAxes; }
+  Expected<> start() override { return {}; }
+  void stop() noexcept override {}
+  bool exchange(std::span<const DriveCommand>, std::span<DriveFeedback>) noexcept override { return true; }
+
+ private:
+  static constexpr std::size_t kAxes = 256;
+};
+
 bool same(const sdk::ModuleChoice& a, const sdk::ModuleChoice& b) {
   return a.name == b.name && a.numbers == b.numbers && a.texts == b.texts;
 }
@@ -91,6 +103,12 @@ Expected<std::shared_ptr<ServoBus>> BusRegistry::acquire(const std::string& name
     bus.started = true;
   }
   return bus.bus;
+}
+
+std::shared_ptr<ServoBus> BusRegistry::virtual_bus(const std::string& name) {
+  std::shared_ptr<ServoBus>& bus = virtual_buses_[name];
+  if (!bus) bus = std::make_shared<ServoBus>(std::make_shared<NoBus>());
+  return bus;
 }
 
 Expected<std::shared_ptr<DigitalIoInterface>> BusRegistry::acquire_io(const sdk::ModuleChoice& choice,

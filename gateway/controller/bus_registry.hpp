@@ -32,6 +32,9 @@ class BusRegistry {
   /// The bus, brought up. A bus that runs already is shared as long as the same interface is wanted of it.
   [[nodiscard]] Expected<std::shared_ptr<ServoBus>> acquire(const std::string& bus, const sdk::ModuleChoice& choice,
                                                             const ModuleLoader& loader);
+  /// What stands for a bus in virtual mode: axes and nothing behind them. The same one each time, so that a mechanism
+  /// that replaces another one takes over where its drives stand.
+  [[nodiscard]] std::shared_ptr<ServoBus> virtual_bus(const std::string& bus);
   [[nodiscard]] Expected<std::shared_ptr<DigitalIoInterface>> acquire_io(const sdk::ModuleChoice& choice,
                                                                          const ModuleLoader& loader);
 
@@ -59,6 +62,7 @@ class BusRegistry {
   std::map<std::string, ControlFactory> control_factories_;
   std::map<std::string, IoFactory> io_factories_;
   std::map<std::string, Bus> buses_;
+  std::map<std::string, std::shared_ptr<ServoBus>> virtual_buses_;
   std::map<std::string, Io> ios_;
 };
 

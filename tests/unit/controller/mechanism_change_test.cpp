@@ -189,6 +189,21 @@ TEST(MechanismChange, AVirtualMechanismLeavesTheBusAlone) {
   EXPECT_EQ(machine.bus, nullptr) << "a virtual machine has a bus behind it";
 }
 
+TEST(MechanismChange, AVirtualMechanismStandsWhereTheOneBeforeItStood) {
+  TestMachine machine;
+  machine.controller.set_mechanism_folder("", true);
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  ASSERT_TRUE(machine.controller.cam().jog_joint(1, 12));
+  ASSERT_TRUE(machine.run_until([&] { return machine.count(Event::Kind::Stopped) > 0; }));
+  ASSERT_TRUE(machine.controller.config().set_joint_maximum_speed(0, 25));
+  const auto applied = machine.controller.config().apply();
+  ASSERT_TRUE(applied) << applied.error().message;
+  EXPECT_NEAR(machine.controller.sample().position_set[1], 12, 1e-9) << "after a change of its own limits";
+  const auto loaded = machine.load(TestMachine::plane_mill());
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_NEAR(machine.controller.sample().position_set[1], 12, 1e-9) << "under another mechanism on the same drives";
+}
+
 TEST(MechanismChange, UnloadingDisablesTheDrives) {
   TestMachine machine;
   ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));

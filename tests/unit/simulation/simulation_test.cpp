@@ -121,9 +121,14 @@ TEST_F(Simulated, ChangesOfTheConfigurationCount) {
   EXPECT_NEAR(peak, 30, 0.1);
 }
 
-TEST_F(Simulated, AnotherMechanismGoesInAndNoBusIsTouched) {
+TEST_F(Simulated, AnotherMechanismGoesInWhereTheMachineStandsAndNoBusIsTouched) {
   load("DMACXYZ");
+  call("RMAC_CAM.SetFeedrate", {{"Feedrate", 2000}});
+  call("RMAC_CAM.CycleStart", {{"Mode", "AUTOMATIC"}});
+  call("RMAC_CAM.MoveToPathTarget", line(7));
+  ASSERT_TRUE(run());
   call("Device.Load", {{"Name", "DMACXY"}});
+  EXPECT_NEAR(simulation_->controller().sample().position_set[0], 7, 1e-9);
   EXPECT_EQ(simulation_->controller().mechanism()->name, "DMACXY");
   EXPECT_TRUE(simulation_->controller().virtual_mode());
 }
