@@ -11,7 +11,8 @@ INTRODUCTION = """# Configuration
 
 Two files configure the appliance: `rmacd.json` the daemon, `device.json` one mechanism each. Both are checked against the
 schemas in `etc/` (`rmacd.schema.json`, `device.schema.json`), which are compiled into the daemon; editors that know JSON
-schemas can use them as well. This page is made from them by `docs/generate_configuration.py`.
+schemas can use them as well. So are the register maps of Modbus devices ([modbus.md](modbus.md)). This page is made from
+the schemas by `docs/generate_configuration.py`.
 
 A mistake is never passed over: an unknown key, a key that stands twice, a wrong type, a value out of range. The message
 names file, key (as a JSON pointer), value and what is allowed; a syntax error is told by line and column:
@@ -114,5 +115,5 @@ def section(name, text=""):
 
 
 if __name__ == "__main__":
-    page = INTRODUCTION + section("rmacd") + section("device", MECHANISMS)
+    page = INTRODUCTION + section("rmacd") + section("device", MECHANISMS) + section("modbus-spindle") + section("modbus-io")
     (FOLDER / "configuration.md").write_text(page, encoding="utf-8")

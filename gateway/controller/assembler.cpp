@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "gateway/controller/bus_choice.hpp"
 #include "rmac/sdk/servo_law_names.hpp"
 
 namespace rmac::gateway {
@@ -45,7 +46,7 @@ Expected<> add_drives(const sdk::DeviceObject& device, const ModuleLoader& loade
   const auto place = [&](const std::string& who, const std::string& name,
                          std::uint32_t axis) -> Expected<std::pair<std::shared_ptr<ServoBus>, std::uint32_t>> {
     if (parts.virtual_mode) return std::pair{registry.virtual_bus(name), axis};
-    auto bus = registry.acquire(name, device.digital_control_interface, loader);
+    auto bus = registry.acquire(name, interface_of_bus(name, device.digital_control_interface), loader);
     if (!bus) return tl::unexpected(bus.error());
     if (const std::size_t there = (*bus)->interface->axis_count(); axis >= there) {
       return failure(MinorCode::InvalidParameterValue,

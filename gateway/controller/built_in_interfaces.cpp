@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gateway/configuration/register_map_file.hpp"
 #include "gateway/controller/controller_impl.hpp"
 #include "rmac/fieldbus/canopen/bus_load.hpp"
 #include "rmac/fieldbus/canopen/canopen_interface.hpp"
+#include "rmac/fieldbus/modbus/io_interface.hpp"
+#include "rmac/fieldbus/modbus/spindle_interface.hpp"
 #include "rmac/fieldbus/simulated_interface.hpp"
 #include "rmac/fieldbus/simulated_io_interface.hpp"
 
@@ -43,7 +46,29 @@ Expected<std::shared_ptr<DigitalControlInterface>> make_canopen(const std::strin
   return fieldbus::canopen::make_socketcan_interface(std::move(*config));
 }
 
-Expected<std::shared_ptr<DigitalIoInterface>> make_simulated_io(const sdk::ModuleChoice& choice) {
+Expected<std::filesystem::path> find_register_map(const ModuleLoader& loader, const std::string& name) {
+  return loader.find_file("modbus", name, ".json", "register map");
+}
+
+Expected<std::shared_ptr<DigitalControlInterface>> make_modbus(const std::string& bus, const sdk::ModuleChoice& choice,
+                                                               const ModuleLoader& loader) {
+  auto config = fieldbus::modbus::read_spindle_line(bus, choice.numbers, choice.texts, [&](const std::string& name) {
+    return find_register_map(loader, name).and_then(read_spindle_map);
+  });
+  if (!config) return tl::unexpected(config.error());
+  return std::make_shared<fieldbus::modbus::SpindleInterface>(std::move(*config));
+}
+
+Expected<std::shared_ptr<DigitalIoInterface>> make_modbus_io(const sdk::ModuleChoice& choice,
+                                                             const ModuleLoader& loader) {
+  auto config = fieldbus::modbus::read_io_line(choice.numbers, choice.texts, [&](const std::string& name) {
+    return find_register_map(loader, name).and_then(read_io_map);
+  });
+  if (!config) return tl::unexpected(config.error());
+  return std::make_shared<fieldbus::modbus::IoInterface>(std::move(*config));
+}
+
+Expected<std::shared_ptr<DigitalIoInterface>> make_simulated_io(const sdk::ModuleChoice& choice, const ModuleLoader&) {
   if (!choice.numbers.empty() || !choice.texts.empty()) {
     return failure(MinorCode::InvalidParameterValue, "SimulatedIOInterface takes no parameters");
   }
@@ -53,13 +78,16 @@ Expected<std::shared_ptr<DigitalIoInterface>> make_simulated_io(const sdk::Modul
 }  // namespace
 
 void add_built_in_interfaces(BusRegistry& registry, double period_s) {
-  registry.add_control_interface("SimulatedInterface", [period_s](const std::string&, const sdk::ModuleChoice& choice) {
-    return make_simulated(choice, period_s);
-  });
-  registry.add_control_interface("CANopenInterface",
-                                 [period_s](const std::string& bus, const sdk::ModuleChoice& choice) {
-                                   return make_canopen(bus, choice, period_s);
+  registry.add_control_interface("SimulatedInterface",
+                                 [period_s](const std::string&, const sdk::ModuleChoice& choice, const ModuleLoader&) {
+                                   return make_simulated(choice, period_s);
                                  });
+  registry.add_control_interface(
+      "CANopenInterface", [period_s](const std::string& bus, const sdk::ModuleChoice& choice, const ModuleLoader&) {
+        return make_canopen(bus, choice, period_s);
+      });
+  registry.add_control_interface("ModbusInterface", make_modbus);
+  registry.add_io_interface("ModbusIOInterface", make_modbus_io);
   registry.add_io_interface("SimulatedIOInterface", make_simulated_io);
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "gateway/controller/bus_choice.hpp"
+
 namespace rmac::gateway {
 namespace {
 
@@ -48,7 +50,7 @@ Expected<std::shared_ptr<DigitalControlInterface>> BusRegistry::make_control(con
                                                                              const sdk::ModuleChoice& choice,
                                                                              const ModuleLoader& loader) const {
   if (const auto built_in = control_factories_.find(choice.name); built_in != control_factories_.end()) {
-    return built_in->second(bus, choice);
+    return built_in->second(bus, choice, loader);
   }
   auto loaded = loader.load<DigitalControlInterface>(choice);
   if (!loaded) {
@@ -60,7 +62,7 @@ Expected<std::shared_ptr<DigitalControlInterface>> BusRegistry::make_control(con
 Expected<std::shared_ptr<DigitalIoInterface>> BusRegistry::make_io(const sdk::ModuleChoice& choice,
                                                                    const ModuleLoader& loader) const {
   if (const auto built_in = io_factories_.find(choice.name); built_in != io_factories_.end()) {
-    return built_in->second(choice);
+    return built_in->second(choice, loader);
   }
   auto loaded = loader.load<DigitalIoInterface>(choice);
   if (!loaded) return no_interface("digital I/O interface", choice, names(io_factories_), loaded.error());
@@ -69,7 +71,7 @@ Expected<std::shared_ptr<DigitalIoInterface>> BusRegistry::make_io(const sdk::Mo
 
 Expected<> BusRegistry::check_control_interface(const sdk::ModuleChoice& choice, const ModuleLoader& loader) const {
   if (control_factories_.contains(choice.name)) return {};
-  return make_control("", choice, loader).map([](const auto&) {});
+  return make_control("", interface_of_bus("", choice), loader).map([](const auto&) {});
 }
 
 Expected<> BusRegistry::check_io_interface(const sdk::ModuleChoice& choice, const ModuleLoader& loader) const {

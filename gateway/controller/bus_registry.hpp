@@ -16,10 +16,11 @@ namespace rmac::gateway {
 class BusRegistry {
  public:
   /// Makes the interface to one bus, which `device.json` names. The name may say which of the machine's interfaces it
-  /// is.
+  /// is; the loader finds what else it needs in the mechanism's folder and the shared ones.
   using ControlFactory = std::function<Expected<std::shared_ptr<DigitalControlInterface>>(
-      const std::string& bus, const sdk::ModuleChoice& choice)>;
-  using IoFactory = std::function<Expected<std::shared_ptr<DigitalIoInterface>>(const sdk::ModuleChoice& choice)>;
+      const std::string& bus, const sdk::ModuleChoice& choice, const ModuleLoader& loader)>;
+  using IoFactory = std::function<Expected<std::shared_ptr<DigitalIoInterface>>(const sdk::ModuleChoice& choice,
+                                                                                const ModuleLoader& loader)>;
 
   void add_control_interface(const std::string& name, ControlFactory factory);
   void add_io_interface(const std::string& name, IoFactory factory);

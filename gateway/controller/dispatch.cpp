@@ -21,8 +21,8 @@ void Controller::Impl::deliver_samples_until(std::int64_t cycle) {
 void Controller::Impl::tell_faults() {
   FaultRecord record;
   while (link->faults.pop(record)) {
-    const sdk::DeviceObject* device = in_force && record.generation == generation ? &in_force->device : nullptr;
-    tell({Event::Kind::Fault, record.t_s, record.move_id, describe(record.fault, device)});
+    const Mechanism* mechanism = in_force && record.generation == generation ? in_force.get() : nullptr;
+    tell({Event::Kind::Fault, record.t_s, record.move_id, describe(record.fault, mechanism)});
   }
 }
 

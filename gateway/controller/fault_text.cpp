@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "rmac/fieldbus/canopen/emergency.hpp"
+#include "rmac/fieldbus/fault_texts.hpp"
 #include "rmac/motion/drive_power.hpp"
 
 namespace rmac::gateway {
@@ -31,6 +33,10 @@ std::string where(const ServoFault& fault, const sdk::DeviceObject* device) {
       }
       return fmt::format("drive of actuator {}", fault.index);
     case ServoFault::Part::Spindle:
+      if (device != nullptr && fault.index < device->spindles.size()) {
+        const sdk::Spindle& spindle = device->spindles[fault.index];
+        return fmt::format("drive of spindle {} (bus {}, axis {})", fault.index, spindle.bus, spindle.axis);
+      }
       return fmt::format("drive of spindle {}", fault.index);
     case ServoFault::Part::Bus:
       return fmt::format("bus {}", fault.index);
@@ -40,10 +46,29 @@ std::string where(const ServoFault& fault, const sdk::DeviceObject* device) {
   return "somewhere";
 }
 
+/// A drive's error code, as its interface tells it or else as CiA 402 does.
+std::string code_text(const ServoFault& fault, std::uint16_t code, const Mechanism* mechanism) {
+  const auto told_by = [code](const auto& drive) -> std::optional<std::string> {
+    const auto* texts = dynamic_cast<const fieldbus::FaultTexts*>(drive.bus->interface.get());
+    if (texts == nullptr) return {};
+    return texts->fault_text(drive.axis, code);
+  };
+  std::optional<std::string> text;
+  if (mechanism != nullptr) {
+    const ServoLoopParts& parts = mechanism->loop->parts();
+    if (fault.part == ServoFault::Part::Spindle && fault.index < parts.spindles.size()) {
+      text = told_by(parts.spindles[fault.index]);
+    } else if (fault.part == ServoFault::Part::Actuator && fault.index < parts.actuators.size()) {
+      text = told_by(parts.actuators[fault.index]);
+    }
+  }
+  return text ? *text : fieldbus::canopen::emergency_text(code);
+}
+
 }  // namespace
 
-std::string describe(const ServoFault& fault, const sdk::DeviceObject* device) {
-  std::string at = where(fault, device);
+std::string describe(const ServoFault& fault, const Mechanism* mechanism) {
+  std::string at = where(fault, mechanism != nullptr ? &mechanism->device : nullptr);
   const auto word = static_cast<unsigned>(std::lround(std::abs(fault.value)));
   switch (fault.kind) {
     case ServoFault::Kind::None:
@@ -58,7 +83,7 @@ std::string describe(const ServoFault& fault, const sdk::DeviceObject* device) {
     case ServoFault::Kind::DriveFault:
       return fmt::format(
           "{}: the drive reports error {:04X}h ({}); look it up in its manual, remove the cause, then reset", at, word,
-          fieldbus::canopen::emergency_text(static_cast<std::uint16_t>(word)));
+          code_text(fault, static_cast<std::uint16_t>(word), mechanism));
     case ServoFault::Kind::DriveOffline:
       return fmt::format("{}: the drive does not answer; check its power and its cable, then reset", at);
     case ServoFault::Kind::DriveDropped:

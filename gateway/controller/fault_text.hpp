@@ -2,11 +2,13 @@
 
 #include <string>
 
+#include "gateway/controller/mechanism.hpp"
 #include "gateway/controller/servo_link.hpp"
 
 namespace rmac::gateway {
 
-/// A fault in words: what happened, where, and what to do. `device` names joints; nullptr when its mechanism is gone.
-[[nodiscard]] std::string describe(const ServoFault& fault, const sdk::DeviceObject* device);
+/// A fault in words: what happened, where, and what to do. The mechanism names joints and drives; nullptr when it is
+/// gone.
+[[nodiscard]] std::string describe(const ServoFault& fault, const Mechanism* mechanism);
 
 }  // namespace rmac::gateway

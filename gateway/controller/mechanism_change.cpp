@@ -95,7 +95,7 @@ Expected<> Controller::Impl::power_on() {
   });
   const ServoStatus now = link->status.read();
   if (settled && now.follows) return {};
-  return failure(MinorCode::Other, settled ? describe(now.fault, &in_force->device)
+  return failure(MinorCode::Other, settled ? describe(now.fault, in_force.get())
                                            : "the drives were not enabled in time; check their power");
 }
 
@@ -114,7 +114,7 @@ Expected<> Controller::Impl::clear_servo_fault() {
   const ServoStatus now = link->status.read();
   supervisor.wish([](ServoWishes& wishes) { wishes.reset = false; });
   if (now.state != ServoState::Faulted) return {};
-  return failure(MinorCode::Other, fmt::format("the fault is still there: {}", describe(now.fault, &in_force->device)));
+  return failure(MinorCode::Other, fmt::format("the fault is still there: {}", describe(now.fault, in_force.get())));
 }
 
 std::string Controller::Impl::put_back(const sdk::DeviceObject& device, bool virtual_before) {

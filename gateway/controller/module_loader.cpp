@@ -158,28 +158,29 @@ const char* to_string(sdk::ModuleKind kind) noexcept {
 
 ModuleLoader::ModuleLoader(std::vector<fs::path> folders) : folders_(std::move(folders)) {}
 
-Expected<fs::path> ModuleLoader::find(const std::string& name, sdk::ModuleKind kind) const {
+Expected<fs::path> ModuleLoader::find_file(const std::string& subfolder, const std::string& name,
+                                           const std::string& extension, const std::string& what) const {
   const auto is_name_character = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   };
   if (name.empty() || !std::all_of(name.begin(), name.end(), is_name_character)) {
-    return failure(
-        MinorCode::InvalidParameterValue,
-        fmt::format("\"{}\" cannot be the name of a {} module: letters, digits, _ and - only", name, to_string(kind)));
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("\"{}\" cannot be the name of a {}: letters, digits, _ and - only", name, what));
   }
   std::string searched;
-  for (const fs::path& folder : folders_) {
-    const fs::path file = folder / (name + ".so");
+  for (const fs::path& parent : folders_) {
+    const fs::path folder = subfolder.empty() ? parent : parent / subfolder;
+    const fs::path file = folder / (name + extension);
     if (std::error_code ignored; fs::is_regular_file(file, ignored)) return file;
     searched += (searched.empty() ? "" : ", ") + folder.string();
   }
   return failure(MinorCode::InvalidParameterValue,
-                 fmt::format("there is no {} module {}: no file {}.so in {}", to_string(kind), name, name,
+                 fmt::format("there is no {} {}: no file {}{} in {}", what, name, name, extension,
                              searched.empty() ? "any folder (none is configured)" : searched));
 }
 
 Expected<ModuleObject<void>> ModuleLoader::create(const sdk::ModuleChoice& choice, sdk::ModuleKind kind) const {
-  const auto file = find(choice.name, kind);
+  const auto file = find_file("", choice.name, ".so", fmt::format("{} module", to_string(kind)));
   if (!file) return tl::unexpected(file.error());
   auto opened = open_private_copy(*file);
   if (!opened) return tl::unexpected(opened.error());

@@ -56,9 +56,13 @@ class ModuleLoader {
     });
   }
 
+  /// The first file `subfolder`/`name``extension` in the folders; what the mechanism brings along goes before what is
+  /// shared. `what` is for the error, which says what was searched.
+  [[nodiscard]] Expected<std::filesystem::path> find_file(const std::string& subfolder, const std::string& name,
+                                                          const std::string& extension, const std::string& what) const;
+
  private:
   [[nodiscard]] Expected<ModuleObject<void>> create(const sdk::ModuleChoice& choice, sdk::ModuleKind kind) const;
-  [[nodiscard]] Expected<std::filesystem::path> find(const std::string& name, sdk::ModuleKind kind) const;
 
   std::vector<std::filesystem::path> folders_;
 };

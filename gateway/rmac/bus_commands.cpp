@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "gateway/controller/bus_choice.hpp"
 #include "gateway/device_driver/device_database.hpp"
 #include "gateway/rmac/commands.hpp"
 #include "gateway/rmac/table.hpp"
@@ -58,20 +59,22 @@ std::vector<std::string> to_row(const CanopenConfig& config, const BusLoad& load
 Result<> show_bus_load(const std::string& device_json, double period_s, bool json) {
   const auto device = gateway::read_device_database(device_json);
   if (!device) return fail(device.error().message);
-  const sdk::ModuleChoice& choice = device->digital_control_interface;
-  if (choice.name != "CANopenInterface") {
-    return fail(fmt::format("{}: its drives are reached by {}, which is no CAN bus", device_json, choice.name));
-  }
   nlohmann::json list = nlohmann::json::array();
   std::vector<std::vector<std::string>> rows;
   std::string refusal;
   for (const std::string& bus : buses_of(*device)) {
+    const sdk::ModuleChoice choice = gateway::interface_of_bus(bus, device->digital_control_interface);
+    if (choice.name != "CANopenInterface") continue;
     const auto config = fieldbus::canopen::read_canopen_config(bus, choice.numbers, choice.texts, period_s);
     if (!config) return fail(fmt::format("{}: {}", device_json, config.error().message));
     const BusLoad load = bus_load(*config);
     list.push_back(to_json(*config, load));
     rows.push_back(to_row(*config, load));
     if (const auto fits = check_bus_load(*config); !fits && refusal.empty()) refusal = fits.error().message;
+  }
+  if (rows.empty()) {
+    return fail(fmt::format("{}: its drives are reached by {}, which is no CAN bus", device_json,
+                            device->digital_control_interface.name));
   }
   if (json) {
     fmt::print("{}\n", list.dump());

@@ -11,6 +11,8 @@ constexpr std::chrono::seconds kStartsWithin{2};
 // Some drives restart when they are reset, and answer nothing meanwhile (WJ200: about a second).
 constexpr std::chrono::seconds kBetweenResets{2};
 
+constexpr auto kBetweenStops = 2 * Client::kSettle;
+
 constexpr std::uint64_t kTripped = std::uint64_t{1} << 48U;
 constexpr std::uint64_t kDropped = std::uint64_t{1} << 49U;
 constexpr std::uint16_t kNoCodeOfItsOwn = 0xFF00;  // CiA 402: manufacturer specific
@@ -98,6 +100,7 @@ Answer<> SpindleStation::apply(Client& client, std::int32_t rpm) {
   if (applied_ == rpm && (rpm == 0 || speed_ == speed_words(rpm))) return {};
   const SpindleMap& map = config_.map;
   if (rpm != 0) {
+    stop_sent_at_ = {};
     const Words words = speed_words(rpm);
     if (speed_ != words) {
       const Place& place = map.speed_command.place;
@@ -134,11 +137,20 @@ void SpindleStation::check_read_back() noexcept {
   if (to_words(place, image_.number(place)) != *speed_) speed_.reset();
 }
 
+/// A stop goes out before anything is asked, in doubt too: once, and then again seldom, because a slave may have to be
+/// left alone before its answers can be trusted again.
+Answer<> SpindleStation::stop_at_once(Client& client) {
+  const auto now = Clock::now();
+  const bool wanted = wanted_rpm_.load(std::memory_order_acquire) == 0;
+  if (!wanted || applied_ == 0 || now - stop_sent_at_ < kBetweenStops) return {};
+  stop_sent_at_ = now;
+  auto stopped = apply(client, 0);
+  if (!stopped && stopped.error().kind == Failure::Kind::InDoubt) return {};
+  return stopped;
+}
+
 Answer<> SpindleStation::serve(Client& client) {
-  // A stop goes out before anything is asked, in doubt too.
-  const std::int32_t before = wanted_rpm_.load(std::memory_order_acquire);
-  Answer<> stopped = before == 0 ? apply(client, 0) : Answer<>();
-  if (!stopped && stopped.error().kind != Failure::Kind::InDoubt) return stopped;
+  if (auto stopped = stop_at_once(client); !stopped) return stopped;
   if (auto sure = image_.resynchronise(client, config_.slave); !sure) return sure;
   const auto asked = image_.read(client, config_.slave);
   if (!asked) return tl::unexpected(asked.error());

@@ -40,6 +40,7 @@ class SpindleStation final : public Station {
  private:
   [[nodiscard]] Answer<> write(Client& client, const std::vector<RegisterWrite>& writes) const;
   [[nodiscard]] Words speed_words(std::int32_t rpm) const noexcept;
+  Answer<> stop_at_once(Client& client);
   Answer<> apply(Client& client, std::int32_t rpm);
   Answer<> reset_if_asked(Client& client);
   void check_read_back() noexcept;
@@ -49,6 +50,7 @@ class SpindleStation final : public Station {
   Image image_;
   std::optional<std::int32_t> applied_;  ///< rpm that the drive confirmed; none: not known
   Clock::time_point applied_at_{};
+  Clock::time_point stop_sent_at_{};
   std::optional<Words> speed_;  ///< speed command that the drive confirmed
   std::uint32_t resets_done_ = 0;
   Clock::time_point reset_at_{};

@@ -23,7 +23,8 @@ class DeadBus final : public fieldbus::SimulatedInterface {
 
 ControllerOptions TestMachine::with_interfaces(ControllerOptions controller_options) {
   controller_options.control_interfaces["TestBus"] =
-      [this](const std::string&, const sdk::ModuleChoice&) -> Expected<std::shared_ptr<DigitalControlInterface>> {
+      [this](const std::string&, const sdk::ModuleChoice&,
+             const ModuleLoader&) -> Expected<std::shared_ptr<DigitalControlInterface>> {
     if (!bus_trouble.empty()) return std::make_shared<DeadBus>(bus_trouble);
     if (!bus || bus.use_count() == 1) {
       bus = std::make_shared<fieldbus::SimulatedInterface>(fieldbus::default_simulated_axes(), 0.001);
@@ -31,7 +32,7 @@ ControllerOptions TestMachine::with_interfaces(ControllerOptions controller_opti
     return bus;
   };
   controller_options.io_interfaces["TestIo"] =
-      [this](const sdk::ModuleChoice&) -> Expected<std::shared_ptr<DigitalIoInterface>> {
+      [this](const sdk::ModuleChoice&, const ModuleLoader&) -> Expected<std::shared_ptr<DigitalIoInterface>> {
     if (!io) io = std::make_shared<fieldbus::SimulatedIoInterface>();
     return io;
   };

@@ -38,6 +38,8 @@ TEST(ConfigurationPage, SaysWhatTheSchemasSay) {
   std::vector<std::string> words;
   collect(json::parse(device_schema_text()), words);
   collect(json::parse(rmacd_schema_text()), words);
+  collect(json::parse(modbus_spindle_schema_text()), words);
+  collect(json::parse(modbus_io_schema_text()), words);
   ASSERT_GT(words.size(), 100U);
   for (const std::string& word : words) {
     EXPECT_NE(page.find(word), std::string::npos)

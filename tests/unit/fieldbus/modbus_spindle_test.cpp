@@ -228,6 +228,22 @@ TEST_P(ModbusSpindle, IsOfflineWhenTheLineIsGone) {
   spindle->stop();  // in bounded time, though nobody answers
 }
 
+TEST(ModbusSpindleStart, ReachesADriveThatGivesOneRegisterAtATime) {
+  ModbusPeer peer(Wire::Rtu);
+  RegisterBank bank;
+  bank.most_per_read = 1;
+  peer.respond([&](const Bytes& request) { return bank.answer(request); });
+  SpindleLineConfig config;
+  config.line.endpoint = peer.endpoint();
+  config.line.period = 5ms;
+  config.boot_timeout = 60s;
+  config.axes = {{.slave = 9, .rpm_per_hz = 60, .maximum_hz = 0, .map = map()}};
+  config.axes[0].map.most_per_read = 1;
+  SpindleInterface spindle(std::move(config));
+  const auto started = spindle.start();
+  EXPECT_TRUE(started) << started.error().message;
+}
+
 TEST(ModbusSpindleStart, NamesTheSlaveThatDoesNotAnswer) {
   ModbusPeer peer(Wire::Rtu);
   peer.behave(Manner::Silent);

@@ -34,7 +34,8 @@ SetterBench::SetterBench() : folder_(fs::temp_directory_path() / ("rmac-setters-
   options.as_fast_as_computed = true;
   // The draft's check makes interfaces that nobody borrows: a test wants the one that is used, which is made last.
   const auto make_bus = [](std::shared_ptr<fieldbus::SimulatedInterface>& made) {
-    return [&made](const std::string&, const sdk::ModuleChoice&) -> Expected<std::shared_ptr<DigitalControlInterface>> {
+    return [&made](const std::string&, const sdk::ModuleChoice&,
+                   const ModuleLoader&) -> Expected<std::shared_ptr<DigitalControlInterface>> {
       if (!made || made.use_count() == 1) {
         made = std::make_shared<fieldbus::SimulatedInterface>(fieldbus::default_simulated_axes(), kPeriodS);
       }
@@ -42,7 +43,7 @@ SetterBench::SetterBench() : folder_(fs::temp_directory_path() / ("rmac-setters-
     };
   };
   const auto make_io = [](std::shared_ptr<fieldbus::SimulatedIoInterface>& made) {
-    return [&made](const sdk::ModuleChoice&) -> Expected<std::shared_ptr<DigitalIoInterface>> {
+    return [&made](const sdk::ModuleChoice&, const ModuleLoader&) -> Expected<std::shared_ptr<DigitalIoInterface>> {
       if (!made) made = std::make_shared<fieldbus::SimulatedIoInterface>();
       return made;
     };
