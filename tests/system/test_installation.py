@@ -33,6 +33,7 @@ class Installation(unittest.TestCase):
         self.one("usr/bin/rmac")
         self.one("usr/lib/**/rmac/drivers/mill/3-axis/DMACXYZ/device.json")
         self.one("usr/lib/**/rmac/drivers/mill/3-axis/DMACXYZ/DMACXYZKinematics.so")
+        self.one("usr/lib/**/rmac/drivers/modules/modbus/delta-vfd-b.json")
         self.one("usr/lib/systemd/system/rmacd.service")
         self.one("usr/lib/systemd/system/rmac-can@.service")
         self.one("usr/lib/sysusers.d/rmac.conf")
