@@ -18,16 +18,16 @@ using Kind = Failure::Kind;
 constexpr int kMostSlave = 247;  // Modbus over Serial Line V1.02, 2.2
 constexpr int kAnyUnit = 255;    // a TCP device without a gateway behind it (Messaging on TCP/IP V1.0b, 4.4.2.6)
 constexpr std::size_t kAddresses = 65536;
-constexpr std::size_t kProbes = 32;  ///< lengths of probes before the first comes again
+constexpr std::size_t kProbes = 64;  ///< lengths that a probe can have
 
 std::string error_text(int error) {
   const char* text = strerrordesc_np(error);
   return text != nullptr ? text : fmt::format("error {}", error);
 }
 
-/// The length of the probe after `number` others: one that differs from theirs, and from all below `count`, in bytes.
-std::size_t probe_length(Table table, std::size_t count, std::size_t number) {
-  const std::size_t step = number % kProbes;
+/// The length of one of `kProbes` probes: their answers differ in bytes from each other's, and from that to any
+/// question below `count`.
+std::size_t probe_length(Table table, std::size_t count, std::size_t step) {
   if (of_bits(table)) return 8 * ((count + 6) / 8 + 1 + step);
   return count + step;
 }
@@ -60,7 +60,8 @@ struct Client::Impl {
   struct Slave {
     bool doubt = false;
     bool refuses_probes = false;
-    Clock::time_point asked{};  ///< last; never: the epoch
+    Clock::time_point asked{};                ///< last; never: the epoch
+    std::vector<Clock::time_point> probed{};  ///< when it was asked for each length of a probe last
   };
 
   Endpoint endpoint;
@@ -68,7 +69,6 @@ struct Client::Impl {
   Context context;
   bool open = false;
   std::array<Slave, kAnyUnit + 1> slaves{};
-  std::size_t probes = 0;
 
   [[nodiscard]] bool serial() const noexcept { return std::holds_alternative<RtuEndpoint>(endpoint); }
   [[nodiscard]] Slave& slave(const Request& request) noexcept {
@@ -174,7 +174,7 @@ Expected<std::unique_ptr<Client>> Client::create(Endpoint endpoint, std::chrono:
                    fmt::format("Modbus line {}: a deadline of {} ms; allowed is 1 ms to 1 minute", to_string(endpoint),
                                deadline.count()));
   }
-  auto impl = std::make_unique<Impl>(Impl{std::move(endpoint), deadline, nullptr, false, {}, 0});
+  auto impl = std::make_unique<Impl>(Impl{std::move(endpoint), deadline, nullptr, false, {}});
   impl->context = make_context(impl->endpoint);
   if (!impl->context) {
     return failure(MinorCode::Other, fmt::format("Modbus line {}: {}", to_string(impl->endpoint), error_text(errno)));
@@ -239,13 +239,20 @@ Answer<> Client::write(int slave, Table table, std::uint16_t address, std::span<
 
 Answer<> Client::resynchronise(int slave, Table table, std::uint16_t address, std::size_t count) {
   if (!in_doubt(slave)) return {};
-  const Request request{slave, false, table, address, probe_length(table, count, impl_->probes++)};
+  Impl::Slave& known = impl_->slaves[static_cast<std::size_t>(slave)];
+  known.probed.resize(kProbes);
+  const auto now = Clock::now();
+  const auto long_ago = [now](Clock::time_point asked) { return now - asked >= kSettle; };
+  const bool settled = long_ago(known.asked);
+  // The shortest length that is this probe's alone, because no answer to an older one of the same length can come.
+  const auto probed = std::find_if(known.probed.begin(), known.probed.end(), long_ago);
+  const auto step = static_cast<std::size_t>(probed - known.probed.begin());
+  const Request request{slave, false, table, address, probe_length(table, count, step)};
   if (auto fine = impl_->check(request); !fine) return fine;
-  Impl::Slave& known = impl_->slave(request);
-  const bool settled = Clock::now() - known.asked >= kSettle;
-  if (known.refuses_probes && !settled) {
+  if (probed == known.probed.end() || (known.refuses_probes && !settled)) {
     return impl_->fail(Kind::InDoubt, request, "not asked, an answer to an earlier question may still come");
   }
+  *probed = now;
   std::array<std::uint16_t, MODBUS_MAX_READ_BITS> values{};
   auto answer = impl_->ask(request, {}, {values.data(), request.count});
   const bool refused = !answer && answer.error().kind == Kind::Exception;

@@ -176,6 +176,15 @@ TEST_P(ModbusClient, TakesNoLateAnswerForANewOne) {
   }
 }
 
+TEST_P(ModbusClient, TakesNoAnswerFromAQueueOfLateOnes) {
+  // Asked faster than it answers, all the time: the questions queue up in front of it.
+  constexpr auto kDeadline = 2ms;
+  open(kDeadline);
+  peer.behave(Manner::Late, 4ms);
+  const auto ask = [this](std::span<std::uint16_t> words) { return read_registers(words); };
+  expect_nothing_stale(peer, ask, kDeadline, 400);
+}
+
 TEST_P(ModbusClient, WorksAgainOnceThePeerBehaves) {
   open(20ms);
   std::array<std::uint16_t, 2> words{};

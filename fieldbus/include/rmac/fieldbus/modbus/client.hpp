@@ -72,8 +72,8 @@ using Clock = std::chrono::steady_clock;
 /// Late answers: after anything but an answer or a slave's exception a TCP connection is closed, and what comes late
 /// goes down with it. An RTU line has no connection and its frames no numbers, so a late answer would be taken for the
 /// next one's. Therefore the slave is *in doubt* from then on: no read is sent to it and no answer to a write believed
-/// until `resynchronise` got the answer to a question of a length that no other question had. A slave answers in the
-/// order in which it is asked, hence all that was late has come by then.
+/// until `resynchronise` got the answer to a question of a length that no other question had within `kSettle`. A slave
+/// answers in the order in which it is asked, hence all that was late has come by then.
 ///
 /// It belongs to one thread. Never on the servo thread.
 class Client {
@@ -100,8 +100,8 @@ class Client {
   [[nodiscard]] bool in_doubt(int slave) const noexcept;
   /// Asks for `count` values or some more: their answer ends the doubt. `count` must be above that of any read of this
   /// slave. Devices may refuse so many; an exception does not tell which question it belongs to, so it ends the doubt
-  /// only where the slave was asked nothing for `kSettle` before, and until then this fails without asking. Nothing
-  /// happens where there is no doubt.
+  /// only where the slave was asked nothing for `kSettle` before, and until then this fails without asking. It fails
+  /// likewise when it was called so often that no length is left. Nothing happens where there is no doubt.
   Answer<> resynchronise(int slave, Table table, std::uint16_t address, std::size_t count);
 
   /// No slave on a serial line answers later than this after it was asked.
