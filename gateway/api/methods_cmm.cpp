@@ -109,25 +109,50 @@ void add_cmm_moves(const auto& add) {
           .lacks(kProbing));
 }
 
+/// A jog goes by a distance or at a velocity: one of the two is given.
+Expected<> jog(const char* function, std::optional<double> distance, std::optional<double> velocity,
+               const auto& by_distance, const auto& at_velocity) {
+  if (distance.has_value() == velocity.has_value()) {
+    return failure(
+        MinorCode::InvalidParameter,
+        std::string(function) + (distance ? " takes Distance or Velocity, not both" : " needs Distance or Velocity"));
+  }
+  return distance ? by_distance(*distance) : at_velocity(*velocity);
+}
+
 void add_jogs(const auto& add) {
-  add(command("RMAC_CAM.JogJoint", "Moves one joint by a distance, from rest, at the joint interpolation speed.",
-              Effect::Starts)
+  add(command(
+          "RMAC_CAM.JogJoint",
+          "Moves one joint from rest: by a distance at the joint interpolation speed, or at a velocity for 200 ms, on "
+          "and on while it is sent again.",
+          Effect::Starts)
           .takes(joint_number(), number("Distance", "mm or deg").within(kPlaces).optional(),
-                 number("Velocity", "mm/s or deg/s").within(kPlaces).optional().noted("not supported yet"))
+                 number("Velocity", "mm/s or deg/s").within(kPlaces).optional().noted("0 stops; instead of Distance"))
           .extension()
-          .does([](Call& call, std::int64_t joint, std::optional<double> distance,
-                   std::optional<double> velocity) -> Expected<> {
-            if (velocity) {
-              return failure(MinorCode::UnsupportedOperation,
-                             "RMAC_CAM.JogJoint by Velocity is not supported yet; give Distance");
-            }
-            if (!distance) return failure(MinorCode::InvalidParameter, "RMAC_CAM.JogJoint needs Distance");
-            return call.machine.cam().jog_joint(static_cast<int>(joint), *distance);
+          .does([](Call& call, std::int64_t joint, std::optional<double> distance, std::optional<double> velocity) {
+            const auto number = static_cast<int>(joint);
+            return jog(
+                "RMAC_CAM.JogJoint", distance, velocity,
+                [&](double mm) { return call.machine.cam().jog_joint(number, mm); },
+                [&](double mm_s) { return call.machine.cam().jog_joint_at(number, mm_s); });
           }));
-  add(command("RMAC_CAM.JogPath", "Moves the tool tip along a direction.", Effect::Starts)
-          .takes(vector("Direction"), number("Distance", "mm").optional(), number("Velocity", "mm/s").optional())
+  add(command("RMAC_CAM.JogPath",
+              "Moves the tool tip straight from rest, the tool axis staying as it is: by a distance at the feed in "
+              "force, or at a velocity for 200 ms, on and on while it is sent again.",
+              Effect::Starts)
+          .takes(
+              vector("Direction"), number("Distance", "mm").within(kPlaces).optional(),
+              number("Velocity", "mm/s").within(kPlaces).optional().noted("0 stops; instead of Distance"),
+              boolean("InToolFrame").optional().noted("the direction is the tool's, Z along its axis; else the part's"))
           .extension()
-          .lacks("jogging along the path comes later; use MoveToPathTarget or JogJoint"));
+          .does([](Call& call, const Vector& vector, std::optional<double> distance, std::optional<double> velocity,
+                   std::optional<bool> in_tool_frame) {
+            const sdk::JogDirection direction{vector, in_tool_frame.value_or(false)};
+            return jog(
+                "RMAC_CAM.JogPath", distance, velocity,
+                [&](double mm) { return call.machine.cam().jog_path(direction, mm); },
+                [&](double mm_s) { return call.machine.cam().jog_path_at(direction, mm_s); });
+          }));
   add(command("RMAC_CAM.MoveToReferencePoint", "Moves the tip straight to the zero of the part frame, from rest.",
               Effect::Starts)
           .extension()

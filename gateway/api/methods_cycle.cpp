@@ -61,6 +61,13 @@ void add_cycle_methods(std::vector<Method>& table) {
           .causes(Effect::Starts)
           .extension()
           .does([](Call& call) { return call.machine.cam().feed_resume(); }));
+  add(method("RMAC_CAM.FeedRetrace",
+             "Runs back along the path of what is held, then holds again; FeedResume runs forward from there.")
+          .takes(number("Distance", "mm").above(0))
+          .gives(WireType::Number, "mm")
+          .causes(Effect::Starts)
+          .extension()
+          .does([](Call& call, double distance) { return call.machine.cam().feed_retrace(distance); }));
   add(method("RMAC_CAM.Reset", "Leaves a fault or emergency stop whose cause is gone; nothing moves by it.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)

@@ -41,6 +41,10 @@ Expected<> CycleSequencer::start(sdk::CycleMode mode, const CycleObservation& se
   if (state_ == CycleState::Running && positioning_) {
     return failure(MinorCode::Other, "CycleStart: a jog is under way; start the cycle when it has ended");
   }
+  if (retracing_) {
+    return failure(MinorCode::Other,
+                   "CycleStart: the machine runs back along its path; FeedResume turns it forward, FeedHold stops it");
+  }
   if (state_ == CycleState::Running && mode == mode_) return {};
   mode_ = mode;
   positioning_ = false;
@@ -52,6 +56,7 @@ Expected<> CycleSequencer::start(sdk::CycleMode mode, const CycleObservation& se
 
 Expected<> CycleSequencer::check_positioning() const {
   if (auto fine = refuse_when_faulted("jog"); !fine) return fine;
+  if (positioning_) return failure(MinorCode::Other, "jog: another jog is under way; let it come to rest first");
   if (state_ != CycleState::Idle) {
     return failure(MinorCode::Other,
                    fmt::format("jog: the machine is {}, a jog needs it Idle; stop the cycle first", to_string(state_)));
@@ -59,13 +64,36 @@ Expected<> CycleSequencer::check_positioning() const {
   return {};
 }
 
-Expected<> CycleSequencer::start_positioning(const CycleObservation& seen) {
+Expected<> CycleSequencer::start_positioning(const CycleObservation& seen, std::optional<double> lasts_s) {
   if (auto fine = check_positioning(); !fine) return fine;
+  jog_until_s_.reset();
+  if (lasts_s) renew_jog(seen, *lasts_s);
   mode_ = sdk::CycleMode::Manual;
   positioning_ = true;
   state_ = CycleState::Running;
   done_at_start_ = seen.moves_done;
   return {};
+}
+
+Expected<> CycleSequencer::check_retrace(const CycleObservation& seen) const {
+  if (auto fine = refuse_when_faulted("FeedRetrace"); !fine) return fine;
+  if (state_ != CycleState::Holding) {
+    return failure(MinorCode::Other, fmt::format("FeedRetrace: the machine is {}, and only what is held can be "
+                                                 "retraced; send FeedHold first",
+                                                 to_string(state_)));
+  }
+  if (positioning_) {
+    return failure(MinorCode::Other, "FeedRetrace: a jog is held, not a program; jog back instead");
+  }
+  if (!seen.at_rest) {
+    return failure(MinorCode::Other, "FeedRetrace: the machine is still coming to rest; ask again when it stands");
+  }
+  return {};
+}
+
+void CycleSequencer::retrace() noexcept {
+  retracing_ = true;
+  state_ = CycleState::Running;
 }
 
 Expected<> CycleSequencer::stop() {
@@ -89,6 +117,7 @@ Expected<> CycleSequencer::hold() {
 
 Expected<> CycleSequencer::resume() {
   if (auto fine = refuse_when_faulted("FeedResume"); !fine) return fine;
+  retracing_ = false;
   if (state_ == CycleState::Running) return {};
   if (state_ != CycleState::Holding) {
     return failure(MinorCode::Other, fmt::format("FeedResume: nothing is held, the machine is {}; CycleStart runs the "
@@ -136,6 +165,7 @@ PathCommand CycleSequencer::wanted(const CycleObservation& seen) noexcept {
   if (state_ != CycleState::Running) return PathCommand::Stop;
   // Motion under way is not interrupted by a spindle command: it began with the speed it needed.
   if (spindle_wait_ && !positioning_ && seen.at_rest) return PathCommand::Stop;
+  if (retracing_) return PathCommand::Retrace;
   if (mode_ == sdk::CycleMode::Automatic) return PathCommand::Run;
   // The planner takes the move that is next when it is told: there must be one.
   return seen.moves_left > 0 ? PathCommand::RunOne : PathCommand::Stop;
@@ -144,13 +174,19 @@ PathCommand CycleSequencer::wanted(const CycleObservation& seen) noexcept {
 CycleSequencer::Verdict CycleSequencer::step(const CycleObservation& seen) noexcept {
   Verdict verdict;
   if (seen.faulted && state_ != CycleState::EmergencyStop) fault();
+  if (state_ == CycleState::Running && jog_until_s_ && seen.t_s > *jog_until_s_) static_cast<void>(stop());
   if (state_ == CycleState::Stopping && seen.at_rest) {
     state_ = CycleState::Idle;
     verdict.clear_queue = clear_at_rest_;
     verdict.came_to_rest = true;
     clear_at_rest_ = false;
   }
-  if (state_ == CycleState::Running && mode_ == sdk::CycleMode::Manual && seen.at_rest &&
+  if (state_ == CycleState::Running && retracing_ && seen.retraced) {
+    state_ = CycleState::Holding;
+    verdict.came_to_rest = true;
+  }
+  if (state_ != CycleState::Running) retracing_ = false;
+  if (state_ == CycleState::Running && !retracing_ && mode_ == sdk::CycleMode::Manual && seen.at_rest &&
       seen.moves_done > done_at_start_) {
     state_ = CycleState::Idle;
     positioning_ = false;
@@ -167,6 +203,7 @@ CycleSequencer::Verdict CycleSequencer::step(const CycleObservation& seen) noexc
     }
   }
   if (state_ == CycleState::Idle) positioning_ = false;
+  if (!positioning_) jog_until_s_.reset();
   if (const PathCommand command = wanted(seen); command != commanded_) {
     commanded_ = command;
     verdict.command = command;

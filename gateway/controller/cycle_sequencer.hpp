@@ -14,6 +14,7 @@ namespace rmac::gateway {
 struct CycleObservation {
   double t_s = 0;                ///< machine time
   bool at_rest = true;           ///< nothing moves and nothing published is still to move
+  bool retraced = false;         ///< at rest at the end of a retrace
   std::size_t moves_left = 0;    ///< queued, the one under way included
   std::uint64_t moves_done = 0;  ///< since the mechanism went in
   bool faulted = false;          ///< the servo loop is
@@ -28,8 +29,15 @@ class CycleSequencer {
   [[nodiscard]] Expected<> start(sdk::CycleMode mode, const CycleObservation& seen);
   /// Whether a jog may begin.
   [[nodiscard]] Expected<> check_positioning() const;
-  /// Runs one move that needs no spindle: a jog.
-  [[nodiscard]] Expected<> start_positioning(const CycleObservation& seen);
+  /// Runs one move that needs no spindle: a jog. With `lasts_s` it stops when it was not renewed for so long.
+  [[nodiscard]] Expected<> start_positioning(const CycleObservation& seen, std::optional<double> lasts_s);
+  /// A jog that lasts while it is renewed is under way, and not yet told to stop.
+  [[nodiscard]] bool jogs() const noexcept { return state_ == CycleState::Running && jog_until_s_.has_value(); }
+  void renew_jog(const CycleObservation& seen, double lasts_s) noexcept { jog_until_s_ = seen.t_s + lasts_s; }
+  /// Whether a retrace may begin.
+  [[nodiscard]] Expected<> check_retrace(const CycleObservation& seen) const;
+  /// Runs back what the planner readied; then the machine is Holding again.
+  void retrace() noexcept;
   [[nodiscard]] Expected<> stop();
   [[nodiscard]] Expected<> stop_and_clear();
   [[nodiscard]] Expected<> hold();
@@ -65,6 +73,8 @@ class CycleSequencer {
   PathCommand commanded_ = PathCommand::Stop;
   bool clear_at_rest_ = false;
   bool positioning_ = false;
+  bool retracing_ = false;
+  std::optional<double> jog_until_s_;
   bool spindle_wait_ = false;
   double spindle_timeout_s_ = 0;
   std::optional<double> waiting_since_s_;

@@ -11,6 +11,8 @@ namespace rmac::gateway {
 namespace {
 /// With this many moves ahead, a client that pauses cannot make the queue run dry.
 constexpr std::size_t kAmpleMoves = 256;
+/// A jog by velocity stops when it was not renewed for so long (the design's dead-man).
+constexpr double kJogLasts_s = 0.2;
 }  // namespace
 
 MotionSupervisor::MotionSupervisor(Options options, ServoLink& link) : options_(options), link_(link) {}
@@ -35,6 +37,7 @@ CycleObservation MotionSupervisor::observe(const ServoStatus& status) {
   seen.moves_left = mechanism_->planner.moves_left();
   if (status.generation != generation_) return seen;
   seen.at_rest = !status.moving && mechanism_->planner.at_rest(status.progress);
+  seen.retraced = seen.at_rest && mechanism_->planner.retraced(status.progress);
   seen.moves_done = status.moves_done;
   seen.faulted = status.state == ServoState::Faulted;
   seen.spindles_at_speed = spindles_at_speed(status);
@@ -73,6 +76,10 @@ void MotionSupervisor::apply_verdict(const CycleSequencer::Verdict& verdict, con
                       speeds)});
   }
   if (verdict.came_to_rest) note({Event::Kind::Stopped, t_s_, 0, "the machine has come to rest"});
+  if (jog_share_ != 1 && sequencer_.state() == CycleState::Idle) {
+    jog_share_ = 1;
+    apply_override();
+  }
   tell_state();
 }
 
@@ -148,6 +155,8 @@ Expected<> MotionSupervisor::prepare_move() {
   if (now.generation != generation_ || !now.follows) {
     return failure(MinorCode::Other, "the drives are not enabled yet; send moves when they are");
   }
+  // After a retrace the path ends elsewhere than where the machine stands.
+  mechanism_->planner.clear();
   mechanism_->builder.restart({now.position_set.data(), now.joint_count}, wishes_.frames);
   rebase_ = false;
   return {};
@@ -174,16 +183,57 @@ Expected<bool> MotionSupervisor::add_move(const Move& move) {
   return moves;
 }
 
-Expected<> MotionSupervisor::run_positioning(const Move& move) {
+Expected<> MotionSupervisor::run_positioning(const Move& move, std::optional<double> share) {
   return command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.check_positioning(); })
       .and_then([&] { return require_rest("a jog"); })
-      .and_then([&] { return prepare_move(); })
+      .and_then([&] {
+        begin_where_it_stands();
+        return prepare_move();
+      })
       .and_then([&] { return add_move(move); })
       .and_then([&](bool moves) {
         if (!moves) return Expected<>{};
-        return command(
-            [](CycleSequencer& cycle, const CycleObservation& seen) { return cycle.start_positioning(seen); });
+        return command([&](CycleSequencer& cycle, const CycleObservation& seen) {
+          jog_share_ = share.value_or(1);
+          apply_override();
+          return cycle.start_positioning(seen, share ? std::optional(kJogLasts_s) : std::nullopt);
+        });
       });
+}
+
+void MotionSupervisor::begin_where_it_stands() {
+  const Turn turn(*this);
+  rebase_ = true;
+}
+
+bool MotionSupervisor::renew_jog(double share) {
+  const Turn turn(*this);
+  const ServoStatus now = status();
+  settle(now);  // it may have ended since
+  if (!sequencer_.jogs()) return false;
+  sequencer_.renew_jog(observe(now), kJogLasts_s);
+  jog_share_ = share;
+  apply_override();
+  return true;
+}
+
+Expected<> MotionSupervisor::end_jog() {
+  return command(
+      [](CycleSequencer& cycle, const CycleObservation&) { return cycle.jogs() ? cycle.stop() : Expected<>{}; });
+}
+
+Expected<double> MotionSupervisor::retrace(double distance_mm) {
+  const Turn turn(*this);
+  if (auto fine = sequencer_.check_retrace(observe(status())); !fine) return tl::unexpected(fine.error());
+  const double way = mechanism_->planner.turn_back(distance_mm);
+  if (!(way > 0)) {
+    return failure(MinorCode::Other,
+                   "FeedRetrace: there is no path behind the tool; it stands where its path began, or where the queue "
+                   "was emptied");
+  }
+  sequencer_.retrace();
+  settle(status());
+  return way;
 }
 
 Expected<> MotionSupervisor::require_rest(const char* what) {
@@ -226,7 +276,11 @@ void MotionSupervisor::set_frames(const Frames& frames) {
 void MotionSupervisor::set_override(double percent) {
   const Turn turn(*this);
   override_percent_ = percent;
-  if (mechanism_) mechanism_->planner.set_override(percent);
+  apply_override();
+}
+
+void MotionSupervisor::apply_override() {
+  if (mechanism_) mechanism_->planner.set_override(override_percent_ * jog_share_);
 }
 
 void MotionSupervisor::set_spindle(std::size_t spindle, double rpm) {
@@ -261,7 +315,7 @@ std::shared_ptr<Mechanism> MotionSupervisor::install(std::shared_ptr<Mechanism> 
   std::swap(mechanism_, next);
   generation_ = generation;
   rebase_ = true;
-  if (mechanism_) mechanism_->planner.set_override(override_percent_);
+  apply_override();
   sequencer_.mechanism_changed(keep_running);
   news_.queue.push_back({QueueChange::Kind::Replaced, 0, status().progress.cycle});
   settle(status());

@@ -59,8 +59,15 @@ class MotionSupervisor {
   /// Builds and adds a move that `prepare_move` let through. False when there is nothing to move: such a move is done
   /// as soon as those before it are.
   [[nodiscard]] Expected<bool> add_move(const Move& move);
-  /// Builds, adds and runs one move from rest, outside of the cycle.
-  [[nodiscard]] Expected<> run_positioning(const Move& move);
+  /// Builds, adds and runs one move from rest, outside of the cycle. With `share` it is a jog that lasts while
+  /// `renew_jog` says so, at this share of the move's speed.
+  [[nodiscard]] Expected<> run_positioning(const Move& move, std::optional<double> share = std::nullopt);
+  /// Keeps the jog under way going, at `share` of its move's speed; false when none is.
+  [[nodiscard]] bool renew_jog(double share);
+  /// Stops the jog under way, if there is one.
+  [[nodiscard]] Expected<> end_jog();
+  /// Runs back along up to `distance_mm` of the path of what is held. The way it will go, in mm.
+  [[nodiscard]] Expected<double> retrace(double distance_mm);
 
   /// True when nothing moves and nothing is queued; otherwise an error that says what `what` must wait for.
   [[nodiscard]] Expected<> require_rest(const char* what);
@@ -108,12 +115,14 @@ class MotionSupervisor {
     MotionSupervisor& supervisor_;
   };
 
+  void begin_where_it_stands();
   [[nodiscard]] ServoStatus status() const noexcept { return link_.status.read(); }
   [[nodiscard]] CycleObservation observe(const ServoStatus& status);
   [[nodiscard]] bool spindles_at_speed(const ServoStatus& status) const;
   void settle(const ServoStatus& status);
   void apply_verdict(const CycleSequencer::Verdict& verdict, const ServoStatus& status);
   void tell_state();
+  void apply_override();
   [[nodiscard]] Pace pace(const ServoStatus& status);
 
   Options options_;
@@ -134,6 +143,7 @@ class MotionSupervisor {
   News news_;
   QueueListener queue_listener_;
   double override_percent_ = 100;
+  double jog_share_ = 1;  ///< of a jog's full speed, while it lasts
   double t_s_ = 0;
 };
 

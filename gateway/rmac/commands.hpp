@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "gateway/rmac/connection.hpp"
 #include "gateway/rmac/failure.hpp"
@@ -41,7 +42,14 @@ struct SimulateOptions {
 [[nodiscard]] Result<> show_status(Connection& connection, bool watch, bool json);
 [[nodiscard]] Result<> show_events(Connection& connection, bool json);
 
-[[nodiscard]] Result<> jog(Connection& connection, int joint, double distance);
+/// What `rmac jog` moves: one joint, or the tool tip along a direction; by a distance, or at a velocity until Ctrl-C.
+struct JogRequest {
+  std::optional<int> joint;
+  std::vector<double> direction;
+  bool in_tool_frame = false;
+  std::optional<double> distance, velocity;
+};
+[[nodiscard]] Result<> jog(Connection& connection, const JogRequest& request);
 [[nodiscard]] Result<> home(Connection& connection);
 [[nodiscard]] Result<> hold(Connection& connection);
 [[nodiscard]] Result<> resume(Connection& connection);

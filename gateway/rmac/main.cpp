@@ -24,8 +24,8 @@ struct Arguments {
   MachineSearch search;
   RunOptions run;
   SimulateOptions simulate;
-  int joint = 0;
-  double distance = 0, percent = 100, period_s = 0.001;
+  JogRequest jog;
+  double percent = 100, period_s = 0.001;
 };
 
 void add_database_commands(CLI::App& app, Arguments& arguments, Command& command) {
@@ -70,10 +70,16 @@ void add_operating_commands(CLI::App& app, Arguments& arguments, Command& comman
     command = [&](auto& to) { return show_events(to, arguments.json); };
   });
 
-  auto* jog_command = app.add_subcommand("jog", "move one joint by a distance, from rest");
-  jog_command->add_option("--joint", arguments.joint, "counted from 0")->required()->check(CLI::NonNegativeNumber);
-  jog_command->add_option("--distance", arguments.distance, "mm or degrees, signed")->required();
-  jog_command->callback([&] { command = [&](auto& to) { return jog(to, arguments.joint, arguments.distance); }; });
+  JogRequest& request = arguments.jog;
+  auto* jog_command = app.add_subcommand("jog", "move one joint, or the tool straight, from rest");
+  auto* what = jog_command->add_option_group("what")->require_option(1);
+  what->add_option("--joint", request.joint, "counted from 0")->check(CLI::NonNegativeNumber);
+  what->add_option("--direction", request.direction, "X Y Z of the tool's way, in the part frame")->expected(3);
+  jog_command->add_flag("--tool", request.in_tool_frame, "the direction is the tool's own, Z along its axis");
+  auto* how = jog_command->add_option_group("how")->require_option(1);
+  how->add_option("--distance", request.distance, "mm or degrees, signed");
+  how->add_option("--velocity", request.velocity, "mm/s or degrees/s, signed; until Ctrl-C");
+  jog_command->callback([&] { command = [&](auto& to) { return jog(to, request); }; });
 
   app.add_subcommand("home", "move all joints to their home position")->callback([&] { command = home; });
   app.add_subcommand("hold", "feed hold: stop on the path, keep the program")->callback([&] { command = hold; });

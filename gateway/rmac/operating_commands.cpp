@@ -9,6 +9,9 @@ namespace rmac::cli {
 
 namespace {
 
+/// Well within the 200 ms for which the appliance lets a jog by velocity run.
+constexpr std::chrono::milliseconds kJogAgain{80};
+
 Result<> call(Connection& connection, const std::string& method,
               const nlohmann::json& params = nlohmann::json::object()) {
   const auto answer = connection.call(method, params);
@@ -56,8 +59,31 @@ Result<> call_with_or_without_authority(Connection& connection, const std::strin
 
 }  // namespace
 
-Result<> jog(Connection& connection, int joint, double distance) {
-  return move_and_wait(connection, "RMAC_CAM.JogJoint", {{"JntNum", joint}, {"Distance", distance}});
+Result<> jog(Connection& connection, const JogRequest& request) {
+  const char* method = request.joint ? "RMAC_CAM.JogJoint" : "RMAC_CAM.JogPath";
+  nlohmann::json params;
+  if (request.joint) {
+    params["JntNum"] = *request.joint;
+  } else {
+    params["Direction"] = request.direction;
+    params["InToolFrame"] = request.in_tool_frame;
+  }
+  if (request.distance) {
+    params["Distance"] = *request.distance;
+    return move_and_wait(connection, method, params);
+  }
+  params["Velocity"] = *request.velocity;
+  return with_authority(connection, [&]() -> Result<> {
+    // Sent again for as long as this program lives: should it die, or its network, the machine stops.
+    for (;;) {
+      if (auto sent = call(connection, method, params); !sent) return sent;
+      if (auto waited = connection.wait([] { return false; }, kJogAgain); !waited) break;
+    }
+    params["Velocity"] = 0;
+    if (auto ended = call(connection, method, params); !ended) return ended;
+    const auto rest = wait_for_rest(connection, "");
+    return rest ? Result<>() : tl::unexpected(rest.error());
+  });
 }
 
 Result<> home(Connection& connection) {

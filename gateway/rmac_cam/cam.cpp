@@ -10,8 +10,6 @@
 namespace rmac::gateway {
 namespace {
 
-constexpr double kSecondsPerMinute = 60;
-
 tl::unexpected<Error> refuse(std::string message) {
   return failure(MinorCode::InvalidParameterValue, std::move(message));
 }
@@ -71,6 +69,10 @@ Expected<> Cam::feed_hold() {
 
 Expected<> Cam::feed_resume() {
   return supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.resume(); });
+}
+
+Expected<double> Cam::feed_retrace(double distance_mm) {
+  return require_mechanism("FeedRetrace").and_then([&] { return supervisor_.retrace(distance_mm); });
 }
 
 Expected<> Cam::stop_now() {
@@ -249,34 +251,6 @@ Expected<> Cam::set_tool_interface_frame(const Frame& frame) {
 
 Frame Cam::tool_interface_frame() const {
   return frames_.tool;
-}
-
-Expected<> Cam::jog_joint(int joint, double distance) {
-  if (auto loaded = require_mechanism("JogJoint"); !loaded) return loaded;
-  const auto count = static_cast<int>(device_->joints.size());
-  if (joint < 0 || joint >= count) {
-    return refuse(fmt::format("JogJoint: there is no joint {}; joints are 0 to {}", joint, count - 1));
-  }
-  if (!std::isfinite(distance) || distance == 0) {
-    return refuse(fmt::format("JogJoint: the distance {} must be a number other than 0", distance));
-  }
-  const ServoStatus now = link_.status.read();
-  JointTargetGeometry target;
-  target.joints.assign(now.position_set.begin(), now.position_set.begin() + count);
-  target.joints[static_cast<std::size_t>(joint)] += distance;
-  return supervisor_.run_positioning(make_joint_move(kPositioningMoveId, target, now.position_set));
-}
-
-Expected<> Cam::home() {
-  if (auto loaded = require_mechanism("Home"); !loaded) return loaded;
-  const std::size_t count = device_->joints.size();
-  const ServoStatus now = link_.status.read();
-  const bool there =
-      std::all_of(now.position_set.begin(), now.position_set.begin() + static_cast<std::ptrdiff_t>(count),
-                  [](double position) { return std::abs(position) < 1e-9; });
-  if (there) return supervisor_.require_rest("Home");
-  return supervisor_.run_positioning(
-      make_joint_move(kPositioningMoveId, JointTargetGeometry{std::vector<double>(count, 0.0)}, now.position_set));
 }
 
 Expected<std::vector<double>> Cam::current_position() const {

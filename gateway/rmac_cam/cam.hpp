@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
+#include <variant>
 
 #include "gateway/controller/motion_supervisor.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
@@ -56,13 +58,19 @@ class Cam final : public sdk::RmacCam {
   Expected<> set_spindle_max_rpm(int spindle, double rpm) override;
   [[nodiscard]] Expected<double> spindle_max_rpm(int spindle) const override;
   Expected<> set_coolant(bool on) override;
+  Expected<double> feed_retrace(double distance_mm) override;
   Expected<> jog_joint(int joint, double distance) override;
+  Expected<> jog_joint_at(int joint, double velocity) override;
+  Expected<> jog_path(const sdk::JogDirection& direction, double distance_mm) override;
+  Expected<> jog_path_at(const sdk::JogDirection& direction, double velocity_mm_s) override;
   Expected<> home() override;
   Expected<> move_to_reference_point() override;
   [[nodiscard]] Expected<std::vector<double>> current_position() const override;
   Expected<> set_animation(bool on) override;
 
  private:
+  static constexpr double kSecondsPerMinute = 60;
+
   [[nodiscard]] Expected<> require_mechanism(const char* function) const;
   [[nodiscard]] Expected<std::size_t> find_spindle(int spindle, const char* function) const;
   [[nodiscard]] Expected<> check_accel(const char* function, double mm_s2, double bound_mm_s2) const;
@@ -73,6 +81,23 @@ class Cam final : public sdk::RmacCam {
   [[nodiscard]] Move make_joint_move(std::int64_t id, const JointTargetGeometry& target,
                                      std::span<const double> from) const;
   [[nodiscard]] Move make_move(std::int64_t id, const Geometry& geometry) const;
+  /// A straight positioning move of the tool tip from where it stands.
+  [[nodiscard]] Move make_straight_move(const ToolPose& target) const;
+  /// Where the tool is meant to be now, in the part frame.
+  [[nodiscard]] ToolPose tool_pose_set() const;
+
+  /// What a jog by velocity moves, and at what speed when it is not slowed down.
+  struct Jog {
+    std::variant<int, sdk::JogDirection> what;
+    bool positive = true;
+    double fastest = 0;
+  };
+  /// Goes on with the jog under way if it is this one, or starts it with the move that `begin` makes.
+  Expected<> jog_at(const char* function, const Jog& jog, double velocity,
+                    const std::function<Expected<Move>()>& begin);
+  [[nodiscard]] Expected<Vector> part_direction(const char* function, const sdk::JogDirection& direction) const;
+  /// How far the tip can go straight from where it stands before a joint leaves its travel or the reach ends.
+  [[nodiscard]] Expected<double> straight_reach(const Vector& direction) const;
 
   MotionSupervisor& supervisor_;
   ServoLink& link_;
@@ -89,6 +114,7 @@ class Cam final : public sdk::RmacCam {
   std::vector<double> spindle_max_rpm_;
   std::vector<double> joint_accel_rise_;
   std::vector<double> joint_accel_fall_;
+  std::optional<Jog> jog_;  ///< by velocity, begun last
 };
 
 }  // namespace rmac::gateway

@@ -8,11 +8,7 @@
 #include "rmac/motion/frame.hpp"
 
 namespace rmac::gateway {
-namespace {
-
-constexpr double kSecondsPerMinute = 60;
-
-}  // namespace
+namespace {}  // namespace
 
 Expected<std::size_t> Cam::find_joint(int joint, const char* function) const {
   if (auto loaded = require_mechanism(function); !loaded) return tl::unexpected(loaded.error());
@@ -66,18 +62,37 @@ Move Cam::make_joint_move(std::int64_t id, const JointTargetGeometry& target, st
   return move;
 }
 
-Expected<> Cam::move_to_reference_point() {
-  if (auto loaded = require_mechanism("MoveToReferencePoint"); !loaded) return loaded;
+Expected<> Cam::home() {
+  if (auto loaded = require_mechanism("Home"); !loaded) return loaded;
+  const std::size_t count = device_->joints.size();
+  const ServoStatus now = link_.status.read();
+  const bool there =
+      std::all_of(now.position_set.begin(), now.position_set.begin() + static_cast<std::ptrdiff_t>(count),
+                  [](double position) { return std::abs(position) < 1e-9; });
+  if (there) return supervisor_.require_rest("Home");
+  return supervisor_.run_positioning(
+      make_joint_move(kPositioningMoveId, JointTargetGeometry{std::vector<double>(count, 0.0)}, now.position_set));
+}
+
+ToolPose Cam::tool_pose_set() const {
   // Not from a sample: frames set just now are not in it yet.
   const ServoStatus now = link_.status.read();
   ToolPose at;
   supervisor_.mechanism()->planner_model.kinematics->forward({now.position_set.data(), now.joint_count}, frames_.tool,
                                                              at);
-  Move move =
-      make_move(kPositioningMoveId, PathTargetGeometry{{{0, 0, 0}, apply_to_pose(inverse(frames_.part), at).axis}});
+  return apply_to_pose(inverse(frames_.part), at);
+}
+
+Move Cam::make_straight_move(const ToolPose& target) const {
+  Move move = make_move(kPositioningMoveId, PathTargetGeometry{target});
   // Without a feed in force, as fast as joint moves are allowed to be.
   if (!(move.feed_mm_s > 0)) move.feed_mm_s = max_feedrate_mm_min_ / kSecondsPerMinute * joint_interp_percent_ / 100;
-  return supervisor_.run_positioning(move);
+  return move;
+}
+
+Expected<> Cam::move_to_reference_point() {
+  if (auto loaded = require_mechanism("MoveToReferencePoint"); !loaded) return loaded;
+  return supervisor_.run_positioning(make_straight_move({{0, 0, 0}, tool_pose_set().axis}));
 }
 
 }  // namespace rmac::gateway

@@ -331,3 +331,23 @@ class InterruptedProgram(unittest.TestCase):
 
 if __name__ == "__main__":
     unittest.main()
+
+    def test_jog_by_velocity_lasts_until_ctrl_c(self):
+        jog = self.enterContext(subprocess.Popen(
+            [BUILD / "bin" / "rmac", "--port", str(self.appliance.port), "jog", "--joint", "0", "--velocity", "4"],
+            stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True))
+        self.watcher.wait_note("state", lambda state: state["moving"] and state["pose"][0] > 0.2)
+        jog.send_signal(signal.SIGINT)
+        complaint = jog.stderr.read()
+        if jog.wait(timeout=60) != DONE:
+            self.assertIn("a jog needs it Idle", complaint)  # too busy a computer to renew it: then it stops
+        self.watcher.wait_note("state", lambda state: state["state"] == "Idle" and not state["moving"])
+
+    def test_jog_by_velocity_ends_when_it_is_not_renewed(self):
+        operator = self.appliance.operator()
+        operator.call("RMAC_CAM.JogPath", Direction=[0, 0, -1], Velocity=10)
+        self.watcher.wait_note("state", lambda state: state["moving"])
+        rest = self.watcher.wait_note("state", lambda state: state["state"] == "Idle" and not state["moving"])
+        self.assertLess(rest["pose"][2], -1)
+        self.assertGreater(rest["pose"][2], -3)
+        self.assertEqual(rest["authority"], "operator")

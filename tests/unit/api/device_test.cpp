@@ -122,12 +122,26 @@ TEST(CamApi, AnimationStreamsJointsToItsCaller) {
   EXPECT_FALSE(api.session.animation);
 }
 
-TEST(CamApi, JogsByDistanceAndRefusesVelocity) {
+TEST(CamApi, JogsByDistanceOrAtAVelocity) {
   Api api;
   EXPECT_CALL(api.machine.cam_mock, jog_joint(1, -2.5)).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(api.machine.cam_mock, jog_joint_at(2, 4)).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(api.machine.cam_mock, jog_path(sdk::JogDirection{{1, 0, 0}, false}, 3)).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(api.machine.cam_mock, jog_path_at(sdk::JogDirection{{0, 0, 1}, true}, -5)).WillOnce(Return(Expected<>{}));
   EXPECT_EQ(api.result("RMAC_CAM.JogJoint", R"({"JntNum":1,"Distance":-2.5})"), true);
-  api.refusal("RMAC_CAM.JogJoint", R"({"JntNum":1,"Velocity":1})", -32016);
+  EXPECT_EQ(api.result("RMAC_CAM.JogJoint", R"({"JntNum":2,"Velocity":4})"), true);
+  EXPECT_EQ(api.result("RMAC_CAM.JogPath", R"({"Direction":[1,0,0],"Distance":3})"), true);
+  EXPECT_EQ(api.result("RMAC_CAM.JogPath", R"({"Direction":[0,0,1],"Velocity":-5,"InToolFrame":true})"), true);
   api.refusal("RMAC_CAM.JogJoint", R"({"JntNum":1})", -32013);
+  api.refusal("RMAC_CAM.JogJoint", R"({"JntNum":1,"Distance":1,"Velocity":1})", -32013);
+  api.refusal("RMAC_CAM.JogPath", R"({"Distance":1})", -32602);
+}
+
+TEST(CamApi, RetracesAndAnswersTheWay) {
+  Api api;
+  EXPECT_CALL(api.machine.cam_mock, feed_retrace(7)).WillOnce(Return(Expected<double>(4.5)));
+  EXPECT_EQ(api.result("RMAC_CAM.FeedRetrace", R"({"Distance":7})"), 4.5);
+  api.refusal("RMAC_CAM.FeedRetrace", R"({"Distance":0})", -32602);
 }
 
 TEST(CamApi, StateTellsMechanismJointsAndStatus) {

@@ -109,9 +109,9 @@ TEST(MethodTable, SaysWhatStartsMotionAndWhatStopsIt) {
   EXPECT_EQ(methods_that(Effect::Holds),
             (Names{"RMAC_CAM.CycleStop", "RMAC_CAM.SetCycleStopStatus", "RMAC_CAM.FeedHold"}));
   const Names starts = methods_that(Effect::Starts);
-  for (const char* name :
-       {"RMAC_CAM.CycleStart", "RMAC_CAM.SetCycleStartStatus", "RMAC_CAM.FeedResume", "RMAC_CAM.Reset", "RMAC_CAM.Home",
-        "RMAC_CAM.JogJoint", "RMAC_CAM.SetSpindleRPM", "Device.Load", "RMAC_Config.Apply"}) {
+  for (const char* name : {"RMAC_CAM.CycleStart", "RMAC_CAM.SetCycleStartStatus", "RMAC_CAM.FeedResume",
+                           "RMAC_CAM.Reset", "RMAC_CAM.Home", "RMAC_CAM.JogJoint", "RMAC_CAM.JogPath",
+                           "RMAC_CAM.FeedRetrace", "RMAC_CAM.SetSpindleRPM", "Device.Load", "RMAC_Config.Apply"}) {
     EXPECT_TRUE(starts.contains(name)) << name;
   }
   for (const Method& entry : method_table()) {

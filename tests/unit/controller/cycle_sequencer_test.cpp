@@ -31,5 +31,50 @@ TEST(CycleSequencer, WaitsForASpindleOnlyWhileNothingMoves) {
   EXPECT_EQ(cycle.state(), CycleState::Faulted);
 }
 
+TEST(CycleSequencer, RunsAJogOnlyWhileItIsRenewed) {
+  CycleSequencer cycle;
+  CycleObservation seen;
+  ASSERT_TRUE(cycle.start_positioning(seen, 0.2));
+  seen.at_rest = false;
+  seen.moves_left = 1;
+  for (int renewal = 0; renewal < 50; ++renewal) {
+    seen.t_s += 0.19;
+    EXPECT_TRUE(cycle.step(seen).command || renewal > 0);
+    ASSERT_TRUE(cycle.jogs());
+    cycle.renew_jog(seen, 0.2);
+  }
+  seen.t_s += 0.201;
+  EXPECT_EQ(cycle.step(seen).command, PathCommand::Stop);
+  EXPECT_EQ(cycle.state(), CycleState::Stopping);
+  EXPECT_FALSE(cycle.jogs()) << "a renewal that comes too late does not take the stop back";
+  seen.at_rest = true;
+  EXPECT_TRUE(cycle.step(seen).clear_queue);
+  EXPECT_EQ(cycle.state(), CycleState::Idle);
+}
+
+TEST(CycleSequencer, HoldsAgainAtTheEndOfARetraceInEitherMode) {
+  for (const auto mode : {sdk::CycleMode::Automatic, sdk::CycleMode::Manual}) {
+    CycleSequencer cycle;
+    CycleObservation seen;
+    seen.moves_left = 2;
+    ASSERT_TRUE(cycle.start(mode, seen));
+    seen.moves_done = 1;
+    seen.at_rest = false;
+    (void)cycle.step(seen);
+    ASSERT_TRUE(cycle.hold());
+    EXPECT_FALSE(cycle.check_retrace(seen)) << "not at rest yet";
+    seen.at_rest = true;
+    (void)cycle.step(seen);
+    ASSERT_TRUE(cycle.check_retrace(seen));
+    cycle.retrace();
+    EXPECT_EQ(cycle.step(seen).command, PathCommand::Retrace);
+    EXPECT_EQ(cycle.state(), CycleState::Running);
+    EXPECT_FALSE(cycle.start(mode, seen));
+    seen.retraced = true;
+    EXPECT_TRUE(cycle.step(seen).came_to_rest);
+    EXPECT_EQ(cycle.state(), CycleState::Holding);
+  }
+}
+
 }  // namespace
 }  // namespace rmac::gateway

@@ -13,6 +13,15 @@ enum class CycleMode { Manual = 0, Automatic = 1 };
 /// The RMAC_CAM interface (dissertation 4.5, Appendix IV): motion and control commands, and the machine's answers.
 /// Units are the wire's: mm, deg, mm/min, rpm. Gateway thread only. Functions whose machinery does not exist yet are
 /// not here; the API table says so.
+/// A direction of jogging, of any length but zero: in the part frame, or in the tool's. The tool's frame has the tool
+/// axis for its Z, and is the part frame turned by the smallest rotation that brings Z there.
+struct JogDirection {
+  Vector vector{};
+  bool in_tool_frame = false;
+
+  bool operator==(const JogDirection&) const = default;
+};
+
 class RmacCam {
  public:
   virtual ~RmacCam() = default;
@@ -70,8 +79,19 @@ class RmacCam {
   [[nodiscard]] virtual Expected<double> spindle_max_rpm(int spindle) const = 0;
   virtual Expected<> set_coolant(bool on) = 0;
 
+  /// Runs back along up to `distance_mm` of the path of what is held, then holds again; `feed_resume` runs forward from
+  /// there, at any time. The way it will go, in mm.
+  virtual Expected<double> feed_retrace(double distance_mm) = 0;
+
   /// Moves one joint by a distance, from rest, at the joint interpolation speed.
   virtual Expected<> jog_joint(int joint, double distance) = 0;
+  /// Moves one joint at a velocity, from rest, up to its limit at most, for 200 ms; called again within that time, with
+  /// the velocity that is wanted now, it goes on.
+  virtual Expected<> jog_joint_at(int joint, double velocity) = 0;
+  /// Moves the tool tip straight by a distance, from rest, at the feed in force; the tool axis stays as it is.
+  virtual Expected<> jog_path(const JogDirection& direction, double distance_mm) = 0;
+  /// Likewise at a velocity in mm/s, as `jog_joint_at`, as far as every joint can go.
+  virtual Expected<> jog_path_at(const JogDirection& direction, double velocity_mm_s) = 0;
   /// Moves all joints to their home position (zero), from rest.
   virtual Expected<> home() = 0;
   /// Moves the tool tip straight to the zero of the part frame, from rest; the tool axis stays as it is.
