@@ -229,9 +229,9 @@ TEST_P(ModbusSpindle, IsOfflineWhenTheLineIsGone) {
 }
 
 TEST(ModbusSpindleStart, ReachesADriveThatGivesOneRegisterAtATime) {
-  ModbusPeer peer(Wire::Rtu);
-  RegisterBank bank;
+  RegisterBank bank;  // outlives the peer, which answers from it
   bank.most_per_read = 1;
+  ModbusPeer peer(Wire::Rtu);
   peer.respond([&](const Bytes& request) { return bank.answer(request); });
   SpindleLineConfig config;
   config.line.endpoint = peer.endpoint();
@@ -263,10 +263,10 @@ TEST(ModbusSpindleStart, NamesTheSlaveThatDoesNotAnswer) {
 }
 
 TEST(ModbusSpindleLine, OfTwoDrivesOneMuteLeavesTheOtherAtWork) {
-  ModbusPeer peer(Wire::Rtu);
   RegisterBank bank;
   bank.on_write = drive;
   std::atomic<bool> mute{false};
+  ModbusPeer peer(Wire::Rtu);
   peer.respond([&](const Bytes& request) { return request[0] == 1 && mute ? Bytes() : bank.answer(request); });
   SpindleLineConfig config;
   config.line.endpoint = peer.endpoint();

@@ -288,7 +288,8 @@ void VirtualDrive::publish() {
           dictionary_.at({static_cast<std::uint16_t>(entry >> 16), static_cast<std::uint8_t>(entry >> 8)});
       data.insert(data.end(), bytes.begin(), bytes.end());
     }
-    data.resize(data.size() - std::min<std::size_t>(tpdo_length_change, data.size()));
+    const auto kept = data.size() - std::min<std::size_t>(tpdo_length_change, data.size());
+    data.erase(data.begin() + static_cast<std::ptrdiff_t>(kept), data.end());
     send(static_cast<std::uint16_t>(id & 0x7FF), data);
   }
 }
