@@ -186,6 +186,24 @@ class Pi500(Drive):
         self.values[HOLDING, 0x8000] = self.trip_code if self.tripped else 0
 
 
+class RemoteIo(Drive):
+    """Sixteen discrete inputs and sixteen coils from address 0."""
+
+    def define(self):
+        self.has(DISCRETE_INPUTS, *range(16))
+        self.has(COILS, *range(16))
+
+    def act(self, _):
+        """Its coils are all it has."""
+
+    def show(self):
+        """The same."""
+
+    def switch(self, number, value):
+        with self._news:
+            self.values[DISCRETE_INPUTS, number] = value
+
+
 class Served:
     """A drive behind one of pymodbus's servers, in a thread of its own. A context manager."""
 

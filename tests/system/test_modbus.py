@@ -136,5 +136,29 @@ class Spindle(unittest.TestCase):
             self.assertIsNone(operator.state()["mechanism"])
 
 
+class RemoteIo(unittest.TestCase):
+    def test_carries_outputs_and_inputs_and_faults_the_machine_when_it_goes_away(self):
+        device = modbus_drives.RemoteIo()
+        with Appliance(pace="real-time", own_tree=True) as appliance:
+            with modbus_drives.ServedOnTcp(device) as served:
+                file = appliance.tree / "mill/3-axis/DMACXYZ/device.json"
+                data = json.loads(file.read_text())
+                data["DigitalIOInterface"] = {
+                    "Module": "ModbusIOInterface", "Inputs": {"Door": 3}, "Outputs": {"Coolant": 5},
+                    "Parameters": {"map": "generic-remote-io", **served.parameters(), **PATIENCE, "deadline_ms": 1000,
+                                   "stale_ms": 2000}}
+                file.write_text(json.dumps(data))
+                operator = appliance.operator()
+                watcher = appliance.client("watcher")
+                watcher.call("subscribe", topics=["state"], rate_hz=100)
+                operator.call("RMAC_CAM.TurnCoolantOn")
+                device.wait_for(lambda device: device.values["coil", 5] == 1)
+                device.switch(3, 1)
+                watcher.wait_note("state", lambda state: state["inputs"] == 1 << 3)
+                operator.call("RMAC_CAM.TurnCoolantOff")
+                device.wait_for(lambda device: device.values["coil", 5] == 0)
+            watcher.wait_note("state", lambda state: state["state"] == "Faulted")
+
+
 if __name__ == "__main__":
     unittest.main()
