@@ -60,6 +60,14 @@ double BSpline::extent(std::size_t first, std::size_t last) const noexcept {
   return most;
 }
 
+std::vector<double> BSpline::control_point(std::size_t span, std::size_t i, std::size_t first, std::size_t last) const {
+  const double* const stored = points_[0].data() + (spans_[span] - degree_ + i) * width_;
+  const double weight = rational_ ? stored[dimension_] : 1;
+  std::vector<double> point;
+  for (std::size_t c = first; c < last; ++c) point.push_back(stored[c] / weight + origin_[c]);
+  return point;
+}
+
 void BSpline::basis_sums(std::size_t span, double t, std::size_t order, Homogeneous& sums) const noexcept {
   const std::size_t knot = spans_[span];
   const double* const after = knots_.data() + knot;

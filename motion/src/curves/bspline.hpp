@@ -35,6 +35,10 @@ class BSpline {
   /// Largest distance of a control point from the first, over coordinates [first, last).
   [[nodiscard]] double extent(std::size_t first, std::size_t last) const noexcept;
 
+  /// Control point `i` of the degree + 1 that shape a span, over coordinates [first, last).
+  [[nodiscard]] std::vector<double> control_point(std::size_t span, std::size_t i, std::size_t first,
+                                                  std::size_t last) const;
+
   void evaluate(std::size_t span, double t, int order, CurvePoint& point) const noexcept;
 
  private:

@@ -75,9 +75,55 @@ bool corner_before(const SpaceCurve& curve, std::size_t span) {
   return jump(0, 3) > kCorner || jump(3, 6) > kCorner;
 }
 
+/// A straight span, by its ends.
+Expected<CurvePtr> line_along(const SpaceCurve& curve, std::size_t span) {
+  CurvePoint begin;
+  CurvePoint end;
+  curve.evaluate(span, 0, 0, begin);
+  curve.evaluate(span, curve.spline().span_width(span), 0, end);
+  if (curve.space() == NurbsSpace::Joint) {
+    return make_joint_line({begin.d[0].data(), curve.dimension()}, {end.d[0].data(), curve.dimension()});
+  }
+  const auto pose = [](const CurvePoint& point) {
+    const auto& d = point.d[0];
+    return ToolPose{{d[0], d[1], d[2]}, {d[3], d[4], d[5]}};
+  };
+  return make_line(pose(begin), pose(end));
+}
+
+/// Appends spans [begin, end), between which there is no corner. A straight one whose parameter stands still somewhere
+/// (where control points coincide) is travelled as the line it is (docs/derivations/curves.md, section 7). Which are
+/// straight is told by the curve as it was `given`, before its start was moved to where the queue ends.
+Expected<> append(const SpaceCurve& given, const std::shared_ptr<const SpaceCurve>& curve, std::size_t begin,
+                  std::size_t end, CurveList& curves) {
+  while (begin < end) {
+    auto part = NurbsCurve::make(curve, begin, end);
+    if (part) {
+      curves.push_back(std::move(*part));
+      return {};
+    }
+    const LengthTable::Flaw flaw = part.error();
+    if (!given.straight(flaw.span)) {
+      return refuse("the curve stands still at parameter " + text(curve->spline().parameter(flaw.span, flaw.t)) +
+                    " (its first derivative vanishes: control points that coincide, or a cusp) and is not straight "
+                    "there, so its curvature may have no bound; give each control point a place of its own, such as a "
+                    "third of the way to the next, or cut the curve at the cusp");
+    }
+    if (flaw.span > begin) {
+      if (auto before = append(given, curve, begin, flaw.span, curves); !before) return before;
+    }
+    auto line = line_along(*curve, flaw.span);
+    if (!line) return tl::unexpected(line.error());
+    if (*line) curves.push_back(std::move(*line));
+    begin = flaw.span + 1;
+  }
+  return {};
+}
+
 }  // namespace
 
-Expected<CurvePtr> NurbsCurve::make(std::shared_ptr<const SpaceCurve> curve, std::size_t first, std::size_t last) {
+tl::expected<CurvePtr, LengthTable::Flaw> NurbsCurve::make(std::shared_ptr<const SpaceCurve> curve, std::size_t first,
+                                                           std::size_t last) {
   std::unique_ptr<NurbsCurve> result(new NurbsCurve(std::move(curve)));
   const SpaceCurve& space = *result->curve_;
   const BSpline& spline = space.spline();
@@ -92,11 +138,7 @@ Expected<CurvePtr> NurbsCurve::make(std::shared_ptr<const SpaceCurve> curve, std
       result->breaks_.push_back(result->table_.length());
     }
     const auto flaw = result->table_.add_span(span, spline.span_width(span), space.least_speed(span), speed);
-    if (flaw) {
-      return refuse("the curve stands still at parameter " + text(spline.parameter(flaw->span, flaw->t)) +
-                    " (its first derivative vanishes: a cusp, or control points that coincide); a path needs a "
-                    "direction everywhere, so part the points or cut the curve there");
-    }
+    if (flaw) return tl::unexpected(*flaw);
     knots.push_back(result->table_.length());
   }
   // Where the speed dips, at a near-cusp, the table's pieces crowd: they show the planner's grid where to look.
@@ -134,9 +176,7 @@ Expected<CurveList> make_nurbs(const NurbsGeometry& geometry, const CurveStart& 
   for (std::size_t begin = 0; begin < spans;) {
     std::size_t end = begin + 1;
     while (end < spans && !corner_before(*curve, end)) ++end;
-    auto part = NurbsCurve::make(curve, begin, end);
-    if (!part) return tl::unexpected(part.error());
-    curves.push_back(std::move(*part));
+    if (auto appended = append(given, curve, begin, end, curves); !appended) return tl::unexpected(appended.error());
     begin = end;
   }
   return curves;

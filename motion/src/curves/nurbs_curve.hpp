@@ -32,6 +32,9 @@ class SpaceCurve {
   void tangent(std::size_t span, double t, CurvePoint& point) const noexcept;
   /// What speed counts as standing still in a span.
   [[nodiscard]] double least_speed(std::size_t span) const noexcept;
+  /// The span is a straight line, however its parameter runs along it: its control points lie on one, in order, and the
+  /// tool axis stays.
+  [[nodiscard]] bool straight(std::size_t span) const;
   /// A place where the axis of a pose curve shrinks to nothing, and so has no direction.
   [[nodiscard]] std::optional<LengthTable::Place> vanishing_axis() const;
 
@@ -53,8 +56,8 @@ class SpaceCurve {
 /// Spans [first, last) of a space curve, by arc length.
 class NurbsCurve final : public Curve {
  public:
-  [[nodiscard]] static Expected<CurvePtr> make(std::shared_ptr<const SpaceCurve> curve, std::size_t first,
-                                               std::size_t last);
+  [[nodiscard]] static tl::expected<CurvePtr, LengthTable::Flaw> make(std::shared_ptr<const SpaceCurve> curve,
+                                                                      std::size_t first, std::size_t last);
 
   [[nodiscard]] bool in_joint_space() const noexcept override { return curve_->space() == NurbsSpace::Joint; }
   [[nodiscard]] std::size_t dimension() const noexcept override { return curve_->dimension(); }

@@ -100,6 +100,38 @@ double SpaceCurve::least_speed(std::size_t span) const noexcept {
   return 1e-12 * extent_ * unit_ / spline_.span_width(span);
 }
 
+bool SpaceCurve::straight(std::size_t span) const {
+  if (unit_ != 1) return false;  // the tool axis measures the length
+  const std::size_t degree = spline_.degree();
+  const auto point = [&](std::size_t i) { return spline_.control_point(span, i, first_, last_); };
+  const std::vector<double> begin = point(0);
+  const std::vector<double> end = point(degree);
+  double length = 0;
+  for (std::size_t c = 0; c < begin.size(); ++c) length = std::hypot(length, end[c] - begin[c]);
+  if (length <= kZeroLength_mm) return false;
+  double reached = 0;
+  for (std::size_t i = 1; i <= degree; ++i) {
+    const std::vector<double> here = point(i);
+    double ahead = 0;
+    for (std::size_t c = 0; c < here.size(); ++c) ahead += (here[c] - begin[c]) * (end[c] - begin[c]) / length;
+    double aside = 0;
+    for (std::size_t c = 0; c < here.size(); ++c) {
+      aside = std::hypot(aside, here[c] - begin[c] - ahead * (end[c] - begin[c]) / length);
+    }
+    if (aside > kZeroLength_mm || ahead < reached - kZeroLength_mm) return false;
+    reached = ahead;
+  }
+  if (space_ != NurbsSpace::Pose) return true;
+  const std::vector<double> axis = spline_.control_point(span, 0, 3, 6);
+  for (std::size_t i = 1; i <= degree; ++i) {
+    const std::vector<double> other = spline_.control_point(span, i, 3, 6);
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (std::abs(other[c] - axis[c]) > kStartTolerance_axis) return false;
+    }
+  }
+  return true;
+}
+
 std::optional<LengthTable::Place> SpaceCurve::vanishing_axis() const {
   if (space_ != NurbsSpace::Pose) return std::nullopt;
   LengthTable::Place place;

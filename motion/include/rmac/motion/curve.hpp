@@ -45,7 +45,8 @@ struct CurveStart {
 };
 
 /// The curves of one move, in order: none for a positioning move to where the machine stands already. Where a curve has
-/// a corner inside (a knot of full multiplicity), or a jump of its tangent, it is cut there. Refuses degenerate
+/// a corner inside (a knot of full multiplicity), or a jump of its tangent, it is cut there; so are straight stretches
+/// with control points that coincide, which become lines. Refuses degenerate
 /// geometry (zero length, coincident arc points, bad knots, bad weights, NaN), and a start further than 1 µm (1e-6 of
 /// axis) from `start`, with a message that names the value and the rule. A start closer than that is taken up: the
 /// first curve begins exactly at `start`, and lies within the gap of what was asked for (docs/derivations/curves.md,
