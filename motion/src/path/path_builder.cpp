@@ -57,6 +57,15 @@ Error unreachable(const Move& move, const PathSegment& segment, KinematicsStatus
           text("move %lld is out of this mechanism's reach at %s; no joint values give this pose", id, place.c_str())};
 }
 
+/// The joint that a move leaves outside of its travel, where it stood further out before.
+std::optional<TravelOffence> still_outside(std::span<const double> excess, const PathSegment& last) {
+  JointPoint end;
+  const auto joint = std::find_if(excess.begin(), excess.end(), [](double amount) { return amount != 0; });
+  if (joint == excess.end() || last.evaluate(last.length(), 0, -1, end) != KinematicsStatus::Ok) return std::nullopt;
+  const auto index = static_cast<std::size_t>(joint - excess.begin());
+  return TravelOffence{index, end.d[0][index], *joint, last.length()};
+}
+
 }  // namespace
 
 PathBuilder::PathBuilder(PlannerModel model) : model_(std::move(model)), end_joints_(model_.joints.size(), 0.0) {
@@ -85,6 +94,7 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
 
   std::vector<std::shared_ptr<const PathSegment>> segments;
   std::vector<double> joints = end_joints_;
+  std::vector<double> excess = excess_of(joints, model_.joints);
   PathDemand demand;
   demand.feed_mm_s = move.feed_mm_s;
   demand.accel_rise_mm_s2 = move.accel_rise_mm_s2;
@@ -101,7 +111,9 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
     if (const auto status = segment->resolve(joints, s); status != KinematicsStatus::Ok) {
       return tl::unexpected(unreachable(move, *segment, status, s));
     }
-    if (const auto found = find_offence(*segment, model_.joints)) {
+    auto found = find_offence(*segment, model_.joints, excess);
+    if (!found && stretch.last_of_move) found = still_outside(excess, *segment);
+    if (found) {
       const TravelOffence& offence = *found;
       const JointLimits& joint = model_.joints[offence.joint];
       return failure(MinorCode::TravelLimit,

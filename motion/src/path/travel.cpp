@@ -1,5 +1,7 @@
 #include "path/travel.hpp"
 
+#include <cmath>
+
 namespace rmac {
 namespace {
 
@@ -19,16 +21,31 @@ double beyond(const JointLimits& joint, double position) {
 
 }  // namespace
 
+std::vector<double> excess_of(std::span<const double> positions, const std::vector<JointLimits>& joints) {
+  std::vector<double> excess;
+  for (std::size_t j = 0; j < joints.size(); ++j) excess.push_back(beyond(joints[j], positions[j]));
+  return excess;
+}
+
 std::optional<TravelOffence> find_offence(const PathSegment& segment, const std::vector<JointLimits>& joints) {
+  std::vector<double> inside(joints.size(), 0.0);
+  return find_offence(segment, joints, inside);
+}
+
+std::optional<TravelOffence> find_offence(const PathSegment& segment, const std::vector<JointLimits>& joints,
+                                          std::span<double> excess) {
   const auto nodes = segment.curve().nodes();
   JointPoint left, right, turn;
   TravelOffence offence;
   const auto offends = [&](const JointPoint& point, double s) {
     for (std::size_t j = 0; j < joints.size(); ++j) {
-      if (const double amount = beyond(joints[j], point.d[0][j]); amount != 0) {
+      const double amount = beyond(joints[j], point.d[0][j]);
+      const bool on_its_way_in = amount * excess[j] > 0 && std::abs(amount) <= std::abs(excess[j]) + kTravelSlack;
+      if (amount != 0 && !on_its_way_in) {
         offence = {j, point.d[0][j], amount, s};
         return true;
       }
+      if (std::abs(amount) < std::abs(excess[j])) excess[j] = amount;
     }
     return false;
   };
