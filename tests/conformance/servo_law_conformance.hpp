@@ -23,6 +23,7 @@ class ServoLawConformance {
     check_gains();
     if (!testing::Test::HasFailure()) check_bounded(seed);
     if (!testing::Test::HasFailure()) check_engage(seed);
+    if (!testing::Test::HasFailure()) check_resting();
     if (!testing::Test::HasFailure()) check_new_gains(seed);
     if (!testing::Test::HasFailure()) check_refused_gains(seed);
     if (!testing::Test::HasFailure()) check_nan(seed);
@@ -79,6 +80,15 @@ class ServoLawConformance {
       ASSERT_NEAR(law_.update(input), effort, 1e-6) << "the output jumps when the law is engaged";
       for (int cycle = 0; cycle < i % 5; ++cycle) (void)law_.update(random_input(random, 10));
     }
+  }
+
+  /// What holds the joint at rest is what the law puts out there, and goes on with.
+  void check_resting() {
+    const double resting = law_.resting_effort();
+    ASSERT_TRUE(std::isfinite(resting));
+    law_.set_effort_limit(std::abs(resting) + kLimit);
+    law_.engage({}, resting);
+    for (int i = 0; i < 1000; ++i) ASSERT_NEAR(law_.update({}), resting, 1e-6) << "in cycle " << i;
   }
 
   /// With steady input the step in which gains change is no larger than the steps before and after it together: those

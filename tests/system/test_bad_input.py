@@ -38,8 +38,7 @@ class BadInput(unittest.TestCase):
     def tearDown(self):
         after = self.picture()
         for value, wanted in zip(after.pop("pose"), self.before.pop("pose")):
-            # Drives that were just switched on take up their load, some hundredths of a millimetre, meanwhile.
-            self.assertAlmostEqual(value, wanted, delta=0.1)
+            self.assertAlmostEqual(value, wanted, delta=0.02)
         self.assertEqual(after, self.before)
 
     def assert_error(self, answer, code, *words):

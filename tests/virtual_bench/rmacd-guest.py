@@ -45,6 +45,7 @@ def prepare():
     device["Spindles"][0].update(Bus="vcan1", Axis=0)
     for joint in device["Joints"]:  # a bus answers one cycle later than the simulated drives do: softer gains
         joint["Gains"] = [400, 15000, 6.5]
+        joint["ServoControlLaw"].pop("Parameters", None)  # nothing hangs on these drives
     device["DigitalControlInterface"] = {
         "Module": "CANopenInterface",
         "Parameters": {"vcan0.node": [1, 2, 3], "vcan1.node": 4, "vcan1.mode": 3, "vcan0.tpdo": "6041:00/16 6064:00/32",

@@ -134,7 +134,7 @@ void ServoLoop::Impl::make_live() noexcept {
       live[j] = true;
       hold[j] = position[j];
       set_velocity[j] = set_acceleration[j] = 0;
-      engage_law(j, 0);
+      engage_law(j, resting_effort(j));
     } else if (handed[j]) {
       engage_law(j, effort[j]);
     }
@@ -151,6 +151,12 @@ void ServoLoop::Impl::make_live() noexcept {
   } else {
     follows = state == ServoState::Engaged;
   }
+}
+
+double ServoLoop::Impl::resting_effort(std::size_t joint) const noexcept {
+  const double wanted = parts.axes[joint].law->resting_effort();
+  const double bound = parts.axes[joint].max_effort;
+  return std::isfinite(wanted) ? std::clamp(wanted, -bound, bound) : 0;
 }
 
 void ServoLoop::Impl::engage_law(std::size_t joint, double from_effort) noexcept {
@@ -184,7 +190,12 @@ void ServoLoop::Impl::make_setpoints(const ServoCommand& command, ServoReport& r
 void ServoLoop::Impl::run_laws() noexcept {
   for (std::size_t j = 0; j < axes; ++j) {
     effort[j] = 0;
-    if (!driving() || !live[j]) continue;
+    if (!driving()) continue;
+    if (!live[j]) {
+      // A drive acts on the torque beside the word that enables it, before any position of it could be controlled.
+      effort[j] = resting_effort(j);
+      continue;
+    }
     const ServoAxis& axis = parts.axes[j];
     const double error = hold[j] - position[j];
     if (!(std::abs(error) <= axis.max_following_error)) {

@@ -38,6 +38,7 @@ struct ServoLoop::Impl {
   [[nodiscard]] DriveWish wish() const noexcept;
   [[nodiscard]] bool owns(const ServoBus* bus, std::uint32_t axis) const noexcept;
   [[nodiscard]] bool operable(std::size_t joint) const noexcept;
+  [[nodiscard]] double resting_effort(std::size_t joint) const noexcept;
   [[nodiscard]] ServoInput input(std::size_t joint) const noexcept;
   [[nodiscard]] const DriveFeedback& feedback(std::size_t actuator) const noexcept;
   [[nodiscard]] const DriveFeedback& spindle_feedback(std::size_t spindle) const noexcept;

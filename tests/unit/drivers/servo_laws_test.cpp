@@ -46,10 +46,11 @@ TEST_P(ServoLaws, Conforms) {
   conformance::ServoLawConformance(*law, GetParam().gains, GetParam().other_gains).check();
 }
 
-TEST_P(ServoLaws, ConformsWithFilterAndLead) {
+TEST_P(ServoLaws, ConformsWithFilterLeadAndLoad) {
   LoadedModule module(GetParam().folder, GetParam().module);
-  const double filter_s = 0.001, lead_s = 0.0017, friction_speed = 2;
-  const std::array<sdk::Parameter, 3> parameters{{{"derivative_filter_s", {&filter_s, 1}, nullptr},
+  const double filter_s = 0.001, lead_s = 0.0017, friction_speed = 2, load = 40;
+  const std::array<sdk::Parameter, 4> parameters{{{"derivative_filter_s", {&filter_s, 1}, nullptr},
+                                                  {"load", {&load, 1}, nullptr},
                                                   {"lead_s", {&lead_s, 1}, nullptr},
                                                   {"friction_speed", {&friction_speed, 1}, nullptr}}};
   const auto law = module.create<ServoLaw>(parameters);

@@ -89,6 +89,7 @@ class RecordingLaw : public ServoLaw {
   [[nodiscard]] std::span<const GainInfo> gains() const noexcept override { return {}; }
   [[nodiscard]] bool set_gains(std::span<const double>) noexcept override { return true; }
   void set_effort_limit(double effort) noexcept override { limit = effort; }
+  [[nodiscard]] double resting_effort() const noexcept override { return resting; }
   void engage(const ServoInput& input, double effort) noexcept override {
     ++engaged;
     bias = effort - gain * (input.position_setpoint - input.position);
@@ -100,6 +101,7 @@ class RecordingLaw : public ServoLaw {
   double gain = 0.1;
   double bias = 0;
   double limit = 0;
+  double resting = 0;
   int engaged = 0;
   bool answer_nan = false;
   ServoInput last;

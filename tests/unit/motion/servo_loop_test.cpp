@@ -169,6 +169,30 @@ TEST_F(ServoLoopTest, QuickStopsEveryDriveAtOnceWhenAsked) {
   engage();
 }
 
+TEST_F(ServoLoopTest, GivesADriveTheRestingEffortBesideTheWordThatEnablesIt) {
+  build();
+  laws[2]->resting = 0.4;
+  laws[1]->resting = 100;  // more than the joint may get
+  fake->drives[1].stuck = true;
+  cycle(3);
+  EXPECT_EQ(torque(2), 0) << "nobody asked for power";
+  command.power = true;
+  for (int i = 0; i < 20 && fake->drives[2].words.statusword != 0x27; ++i) cycle();
+  ASSERT_EQ(fake->drives[2].words.statusword, 0x27);
+  EXPECT_EQ(fake->drives[2].command.target_torque_permille, 400) << "in the very exchange that enabled it";
+  EXPECT_EQ(torque(1), 5000) << "the joint's largest effort, still waiting for its drive";
+  cycle(5);
+  EXPECT_EQ(laws[2]->engaged, 1);
+  EXPECT_EQ(torque(2), 400) << "the law goes on from there";
+  fake->drives[1].stuck = false;
+  engage();
+  EXPECT_EQ(torque(2), 400);
+  laws[0]->answer_nan = true;
+  cycle(2);
+  ASSERT_EQ(report.state, ServoState::Faulted);
+  for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(torque(axis), 0);
+}
+
 TEST_F(ServoLoopTest, TouchesNoBusInVirtualMode) {
   ServoLoopParts virtual_parts = parts();
   virtual_parts.virtual_mode = true;

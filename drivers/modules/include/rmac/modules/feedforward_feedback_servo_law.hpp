@@ -33,6 +33,8 @@ class FeedforwardFeedbackServoLaw final : public ServoLaw {
 
   void set_effort_limit(double effort) noexcept override { limit_ = std::abs(effort); }
 
+  [[nodiscard]] double resting_effort() const noexcept override { return model_.load(); }
+
   void engage(const ServoInput& input, double effort) noexcept override {
     last_ = input;
     feedback_.engage(input, model_.effort(input), std::clamp(effort, -limit_, limit_));

@@ -35,6 +35,7 @@ class FeedforwardModel {
   }
   void set_gains(std::span<const double, 4> gains) noexcept { std::copy(gains.begin(), gains.end(), gains_.begin()); }
 
+  [[nodiscard]] double load() const noexcept { return gains_[3]; }
   [[nodiscard]] double effort(const ServoInput& input) const noexcept {
     const double v = input.velocity_setpoint;
     const double a = input.acceleration_setpoint;

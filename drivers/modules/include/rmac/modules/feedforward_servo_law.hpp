@@ -28,6 +28,8 @@ class FeedforwardServoLaw final : public ServoLaw {
 
   void set_effort_limit(double effort) noexcept override { limit_ = std::abs(effort); }
 
+  [[nodiscard]] double resting_effort() const noexcept override { return model_.load(); }
+
   void engage(const ServoInput& input, double effort) noexcept override {
     last_ = input;
     offset_.start(std::clamp(effort, -limit_, limit_), model_.effort(input), 0, input.period_s);

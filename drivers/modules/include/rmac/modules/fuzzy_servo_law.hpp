@@ -11,12 +11,12 @@
 
 namespace rmac::modules {
 
-/// Fuzzy law: effort = U · surface(e / E, ė / V) + ∫ Ki·E/2 · surface(e / E, 0) dt. Close to rest it acts as a PID with
-/// Kp = 2 U/E, Ki, and Kd = 2 U/V; further out it is softer, and what error and rate add ends at U. U must therefore be
-/// more than load and friction can suddenly ask for.
+/// Fuzzy law: effort = load + U · surface(e / E, ė / V) + ∫ Ki·E/2 · surface(e / E, 0) dt. Close to rest it acts as a
+/// PID with Kp = 2 U/E, Ki, and Kd = 2 U/V; further out it is softer, and what error and rate add ends at U. U must
+/// therefore be more than load and friction can suddenly ask for.
 class FuzzyServoLaw final : public ServoLaw {
  public:
-  explicit FuzzyServoLaw(double derivative_filter_s) noexcept : signal_(derivative_filter_s) {}
+  FuzzyServoLaw(double derivative_filter_s, double load) noexcept : signal_(derivative_filter_s), load_(load) {}
 
   [[nodiscard]] std::span<const GainInfo> gains() const noexcept override { return kGains; }
 
@@ -35,15 +35,17 @@ class FuzzyServoLaw final : public ServoLaw {
 
   void set_effort_limit(double effort) noexcept override { limit_ = std::abs(effort); }
 
+  [[nodiscard]] double resting_effort() const noexcept override { return load_; }
+
   void engage(const ServoInput& input, double effort) noexcept override {
     signal_.engage(input);
-    integral_.start(std::clamp(effort, -limit_, limit_), surface(), softened_error(), input.period_s);
+    integral_.start(std::clamp(effort, -limit_, limit_), load_ + surface(), softened_error(), input.period_s);
   }
 
   [[nodiscard]] double update(const ServoInput& input) noexcept override {
     if (!is_finite(input)) return std::numeric_limits<double>::quiet_NaN();
     signal_.update(input);
-    return integral_.output(surface(), softened_error(), input.period_s, limit_);
+    return integral_.output(load_ + surface(), softened_error(), input.period_s, limit_);
   }
 
  private:
@@ -60,18 +62,21 @@ class FuzzyServoLaw final : public ServoLaw {
   }
 
   ErrorSignal signal_;
+  double load_;
   IntegralAction integral_;
   double error_range_ = 1, rate_range_ = 1;
   double effort_range_ = 0;
   double limit_ = 0;
 };
 
-/// Makes a `FuzzyServoLaw`; parameter `derivative_filter_s`.
+/// Makes a `FuzzyServoLaw`; parameters `derivative_filter_s` and `load`.
 struct FuzzyServoLawFactory {
   static ServoLaw* create(sdk::Parameters parameters, char* error, std::size_t error_size) noexcept {
     double filter_s = 0;
+    double load = 0;
     if (!sdk::read_number(parameters, kDerivativeFilter, filter_s, error, error_size)) return nullptr;
-    return new FuzzyServoLaw(filter_s);
+    if (!sdk::read_number(parameters, kLoad, load, error, error_size)) return nullptr;
+    return new FuzzyServoLaw(filter_s, load);
   }
 };
 

@@ -47,5 +47,8 @@ class PidFeedback {
 
 /// The parameter of every law that has a D term: the time constant of its low-pass, none unless given.
 inline constexpr sdk::NumberParameter kDerivativeFilter{"derivative_filter_s", 0, 0, 0.1, "s"};
+/// The parameter of the laws without a feedforward model: the weight that hangs on the joint, as the effort that holds
+/// it.
+inline constexpr sdk::NumberParameter kLoad{"load", 0, -1e7, 1e7, "N or N·m"};
 
 }  // namespace rmac::modules

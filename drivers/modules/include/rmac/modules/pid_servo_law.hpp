@@ -10,12 +10,12 @@
 
 namespace rmac::modules {
 
-/// PID law of one joint: effort = Kp·e + Kd·ė + ∫ Ki·e dt, with e the following error, and ė the difference of wanted
-/// and measured velocity behind a first-order low-pass. Gains act at the joint: N/mm, N/(mm·s), N·s/mm for a linear
-/// one, N·m and deg for a rotary one.
+/// PID law of one joint: effort = load + Kp·e + Kd·ė + ∫ Ki·e dt, with e the following error, and ė the difference of
+/// wanted and measured velocity behind a first-order low-pass. Gains act at the joint: N/mm, N/(mm·s), N·s/mm for a
+/// linear one, N·m and deg for a rotary one.
 class PidServoLaw final : public ServoLaw {
  public:
-  explicit PidServoLaw(double derivative_filter_s) noexcept : feedback_(derivative_filter_s) {}
+  PidServoLaw(double derivative_filter_s, double load) noexcept : feedback_(derivative_filter_s), load_(load) {}
 
   [[nodiscard]] std::span<const GainInfo> gains() const noexcept override { return kGains; }
 
@@ -27,28 +27,33 @@ class PidServoLaw final : public ServoLaw {
 
   void set_effort_limit(double effort) noexcept override { limit_ = std::abs(effort); }
 
+  [[nodiscard]] double resting_effort() const noexcept override { return load_; }
+
   void engage(const ServoInput& input, double effort) noexcept override {
-    feedback_.engage(input, 0, std::clamp(effort, -limit_, limit_));
+    feedback_.engage(input, load_, std::clamp(effort, -limit_, limit_));
   }
 
   [[nodiscard]] double update(const ServoInput& input) noexcept override {
     if (!is_finite(input)) return std::numeric_limits<double>::quiet_NaN();
-    return feedback_.update(input, 0, limit_);
+    return feedback_.update(input, load_, limit_);
   }
 
  private:
   static constexpr std::array<GainInfo, 3> kGains{{{"Kp", "N/mm"}, {"Ki", "N/(mm·s)"}, {"Kd", "N·s/mm"}}};
 
   PidFeedback feedback_;
+  double load_;
   double limit_ = 0;
 };
 
-/// Makes a `PidServoLaw`; parameter `derivative_filter_s`.
+/// Makes a `PidServoLaw`; parameters `derivative_filter_s` and `load`.
 struct PidServoLawFactory {
   static ServoLaw* create(sdk::Parameters parameters, char* error, std::size_t error_size) noexcept {
     double filter_s = 0;
+    double load = 0;
     if (!sdk::read_number(parameters, kDerivativeFilter, filter_s, error, error_size)) return nullptr;
-    return new PidServoLaw(filter_s);
+    if (!sdk::read_number(parameters, kLoad, load, error, error_size)) return nullptr;
+    return new PidServoLaw(filter_s, load);
   }
 };
 

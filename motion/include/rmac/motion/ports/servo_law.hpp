@@ -41,6 +41,9 @@ class ServoLaw {
   [[nodiscard]] virtual bool set_gains(std::span<const double> values) noexcept = 0;
   /// Largest effort the law may put out. Off the cycle.
   virtual void set_effort_limit(double effort) noexcept = 0;
+  /// Effort that holds the joint where it stands, as far as the law knows it beforehand: a hanging load. The drive is
+  /// given it with the command that enables it, so that the load does not sag when the brake opens. Real-time safe.
+  [[nodiscard]] virtual double resting_effort() const noexcept { return 0; }
   /// Engages without a jump: the next output continues from `effort`. Real-time safe.
   virtual void engage(const ServoInput& input, double effort) noexcept = 0;
   /// One cycle. Always within the effort limit; NaN or infinity in gives NaN out, which the servo loop turns into a
