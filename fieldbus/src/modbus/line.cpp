@@ -42,7 +42,14 @@ struct Line::Impl {
     Backoff backoff(config.first_pause, config.longest_pause);
     while (!ending) {
       const auto begun = Clock::now();
-      if (client->connected() || (backoff.due(begun) && open(backoff))) serve_all();
+      if (client->connected() || (backoff.due(begun) && open(backoff))) {
+        // To be opened proves nothing: only a device that answers ends the pauses.
+        if (serve_all()) {
+          backoff.succeeded();
+        } else if (!client->connected()) {
+          backoff.failed(Clock::now());
+        }
+      }
       ++rounds;
       pause(begun + config.period);
     }
@@ -57,20 +64,23 @@ struct Line::Impl {
       return false;
     }
     ++connected;
-    backoff.succeeded();
     for (Station* station : stations) station->forget();
     return true;
   }
 
-  void serve_all() {
+  /// True when at least one was served.
+  bool serve_all() {
+    bool any = false;
     for (std::size_t i = 0; i < stations.size() && client->connected(); ++i) {
       const auto served = stations[i]->serve(*client);
+      any = any || served.has_value();
       if (!served) {
         ++failures;
         stations[i]->forget();
       }
       note(i, served);
     }
+    return any;
   }
 
   void note(std::size_t station, const Answer<>& served) {

@@ -244,6 +244,28 @@ TEST(ModbusSpindleStart, ReachesADriveThatGivesOneRegisterAtATime) {
   EXPECT_TRUE(started) << started.error().message;
 }
 
+TEST(ModbusSpindleLine, IsOpenedAgainWithPausesThatDouble) {
+  ModbusPeer peer(Wire::Tcp);
+  peer.behave(Manner::Resetting);
+  SpindleLineConfig config;
+  config.line.endpoint = peer.endpoint();
+  config.line.period = 1ms;
+  config.line.first_pause = 40ms;
+  config.boot_timeout = 60s;
+  config.axes = {{.slave = 1, .rpm_per_hz = 60, .maximum_hz = 0, .map = map()}};
+  SpindleInterface spindle(std::move(config));
+  const auto begun = Clock::now();
+  // After the fourth request three pauses have passed.
+  std::thread behave([&peer] {
+    for (int requests = 0; requests < 4; requests = static_cast<int>(peer.requests())) std::this_thread::yield();
+    peer.respond([](const Bytes& request) { return RegisterBank().answer(request); });
+    peer.behave(Manner::Honest);
+  });
+  EXPECT_TRUE(spindle.start());
+  behave.join();
+  EXPECT_GE(Clock::now() - begun, 40ms + 80ms + 160ms);
+}
+
 TEST(ModbusSpindleStart, NamesTheSlaveThatDoesNotAnswer) {
   ModbusPeer peer(Wire::Rtu);
   peer.behave(Manner::Silent);

@@ -23,9 +23,10 @@ class Station {
 
 struct LineConfig {
   Endpoint endpoint;
-  std::chrono::milliseconds deadline{200};     ///< of a transaction, and of connecting
-  std::chrono::milliseconds period{50};        ///< between the begins of two rounds, where they do not take longer
-  std::chrono::milliseconds first_pause{100};  ///< before a line that does not open is tried again; then it doubles
+  std::chrono::milliseconds deadline{200};  ///< of a transaction, and of connecting
+  std::chrono::milliseconds period{50};     ///< between the begins of two rounds, where they do not take longer
+  std::chrono::milliseconds first_pause{
+      100};  ///< before a line that broke is opened again; doubles until a device answers
   std::chrono::milliseconds longest_pause{5000};
 };
 
