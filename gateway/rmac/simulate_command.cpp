@@ -60,8 +60,10 @@ void print_table(const SimulationReport& report, double took_s) {
   }
   fmt::print("{}\n", table({"joint", "peak velocity /s", "acceleration /s²", "jerk /s³"}, rows));
   rows.clear();
+  double in_motion_s = 0;
+  for (const auto& share : report.limited_by) in_motion_s += share.time_s;
   for (const auto& [limit, time_s] : report.limited_by) {
-    rows.push_back({limit, number(time_s), number(100 * time_s / report.cycle_time_s, 1)});
+    rows.push_back({limit, number(time_s), number(100 * time_s / in_motion_s, 1)});
   }
   fmt::print("{}", table({"limited by", "s", "%"}, rows));
 }

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "gateway/controller/motion_supervisor.hpp"
+
 namespace rmac::gateway {
 namespace {
 
@@ -58,7 +60,8 @@ void MotionAccount::mechanism(const sdk::DeviceObject& device) {
 void MotionAccount::queued(const Move& move, std::span<const std::shared_ptr<const PathSegment>> segments) {
   PathBounds bounds;
   for (const auto& segment : segments) {
-    length_mm_ += tip_length(*segment);
+    // A jog is no part of the program's way, and may end before the end of its curve.
+    if (move.id != kPositioningMoveId) length_mm_ += tip_length(*segment);
     if (segment->curve().in_joint_space()) {
       bounds.joint_fraction = move.joint_speed_fraction;
     } else {

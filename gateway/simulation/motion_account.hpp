@@ -40,7 +40,7 @@ class MotionAccount {
   [[nodiscard]] const std::vector<Joint>& joints() const noexcept { return joints_; }
   /// Limits that ruled for any time, the longest first; together the time in motion.
   [[nodiscard]] std::vector<Share> shares() const;
-  /// The tool tip's way along the moves that were queued, as programmed.
+  /// The tool tip's way along the moves that were queued, as programmed; without jogs.
   [[nodiscard]] double length_mm() const noexcept { return length_mm_; }
 
  private:

@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include "gateway/controller/motion_supervisor.hpp"
 #include "rmac/modules/cartesian_kinematics.hpp"
 #include "rmac/motion/planner.hpp"
 
@@ -111,6 +112,12 @@ TEST_F(Account, AJointMovesFeedIsTheSpeedItWasLeft) {
   EXPECT_NEAR(account_.length_mm(), 50, 1e-9);
   account_.cycle(moving({12, 19}, {0, 0}, 22), 100);
   EXPECT_NEAR(time_of("feed"), kPeriod_s, 1e-12) << "19 of a tenth of 200 mm/s";
+}
+
+TEST_F(Account, AJogIsNoPartOfTheWay) {
+  const Move jog{.id = kPositioningMoveId, .geometry = JointTargetGeometry{{30, 40}}};
+  account_.queued(jog, curves(jog));
+  EXPECT_EQ(account_.length_mm(), 0);
 }
 
 TEST_F(Account, SharesAddUpToTheTimeInMotion) {
