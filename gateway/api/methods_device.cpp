@@ -1,4 +1,5 @@
 // Device.*: loading a mechanism, and the getters of Appendix III.
+#include "gateway/api/joint_of.hpp"
 #include "gateway/api/method_builder.hpp"
 #include "gateway/api/method_table.hpp"
 
@@ -13,17 +14,6 @@ Method whole(const char* name, const char* meaning, WireType type, const char* u
   return method(name, meaning).gives(type, unit).does([function](Call& call) {
     return call.machine.device().database().map([&](const DeviceObject* device) { return function(*device); });
   });
-}
-
-Expected<const sdk::Joint*> joint_of(const DeviceObject& device, std::int64_t number) {
-  const auto index = static_cast<std::size_t>(number);
-  if (index < device.joints.size()) return &device.joints[index];
-  if (index < device.joints.size() + device.held_joints.size()) {
-    return &device.held_joints[index - device.joints.size()];
-  }
-  return failure(MinorCode::InvalidParameterValue,
-                 fmt::format("joint {} does not exist: {} has joints 0 to {}", number, device.name,
-                             device.joints.size() + device.held_joints.size() - 1));
 }
 
 template <typename Function>

@@ -1,4 +1,5 @@
 // Device.Machine_Set…: changes to the device object that Device.Machine_Configure… then puts in (Appendix III).
+#include "gateway/api/joint_of.hpp"
 #include "gateway/api/method_builder.hpp"
 #include "gateway/api/method_table.hpp"
 
@@ -7,17 +8,6 @@ namespace rmac::gateway {
 namespace {
 
 using sdk::DeviceObject;
-
-Expected<sdk::Joint*> joint_of(DeviceObject& device, std::int64_t number) {
-  const auto index = static_cast<std::size_t>(number);
-  if (index < device.joints.size()) return &device.joints[index];
-  if (index < device.joints.size() + device.held_joints.size()) {
-    return &device.held_joints[index - device.joints.size()];
-  }
-  return failure(MinorCode::InvalidParameterValue,
-                 fmt::format("joint {} does not exist: {} has joints 0 to {}", number, device.name,
-                             device.joints.size() + device.held_joints.size() - 1));
-}
 
 /// A setter of one value of one joint.
 template <typename T, typename Function>

@@ -28,8 +28,11 @@ constexpr std::array<const char*, 18> kMinorNames{"NONE",
 constexpr std::array kMeanings{
     RpcErrorMeaning{rpc_code::kParseError, "Parse error",
                     "The line is not JSON (NaN and Infinity are not), or it is nested too deeply."},
-    RpcErrorMeaning{rpc_code::kInvalidRequest, "Invalid request",
-                    "The line is JSON, but not a JSON-RPC 2.0 request; an empty batch is none either."},
+    RpcErrorMeaning{
+        rpc_code::kInvalidRequest, "Invalid request",
+        "The line is JSON, but not a JSON-RPC 2.0 request: a member is missing, unknown, of another type or "
+        "there twice, or a batch has no or more than 10 000 requests. Also said to a client that is turned "
+        "away because too many are connected."},
     RpcErrorMeaning{rpc_code::kMethodNotFound, "Method not found",
                     "No method has this name; `rpc.discover` lists them."},
     RpcErrorMeaning{rpc_code::kInvalidParams, "Invalid parameters",

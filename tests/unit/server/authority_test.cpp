@@ -11,6 +11,7 @@ namespace {
 
 using fakes::Client;
 using fakes::FakeMachine;
+using fakes::keep_queue_full;
 using fakes::line_of;
 using fakes::move_line;
 using fakes::ServerBench;
@@ -297,20 +298,12 @@ TEST(QueueWait, OtherClientsAreServedMeanwhile) {
   ServerOptions options;
   options.queue_wait = std::chrono::hours(1);
   ServerBench bench(options);
-  std::promise<void> tried;
-  bench.on_gateway([&](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, queue_move(_, _))
-        .WillOnce([&](std::int64_t, const Geometry&) -> Expected<> {
-          tried.set_value();
-          return failure(MinorCode::CommandQueueFull, "full");
-        })
-        .WillRepeatedly(Return(failure(MinorCode::CommandQueueFull, "full")));
-  });
+  const std::future<void> tried = keep_queue_full(bench);
   set_running(bench);
   Client waiting(bench.port());
   EXPECT_TRUE(waiting.call("authority.acquire").contains("result"));
   waiting.send(move_line(1));
-  tried.get_future().wait();
+  tried.wait();
   EXPECT_EQ(Client(bench.port()).call("RMAC_CAM.GetState").contains("result"), true);
 }
 

@@ -9,6 +9,7 @@ namespace {
 
 using fakes::Client;
 using fakes::FakeMachine;
+using fakes::keep_queue_full;
 using fakes::line_of;
 using fakes::move_line;
 using fakes::ServerBench;
@@ -155,20 +156,12 @@ TEST(LeaseTimeout, AHolderThatWaitsForRoomIsNotSilent) {
   ServerOptions options = clock.options();
   options.queue_wait = std::chrono::hours(1);
   ServerBench bench(options);
-  std::promise<void> tried;
-  bench.on_gateway([&](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, queue_move(_, _))
-        .WillOnce([&](std::int64_t, const Geometry&) -> Expected<> {
-          tried.set_value();
-          return failure(MinorCode::CommandQueueFull, "full");
-        })
-        .WillRepeatedly(Return(failure(MinorCode::CommandQueueFull, "full")));
-  });
+  const std::future<void> tried = keep_queue_full(bench);
   set_running(bench);
   Client holder(bench.port());
   EXPECT_TRUE(holder.call("authority.acquire").contains("result"));
   holder.send(move_line(1));
-  tried.get_future().wait();
+  tried.wait();
   clock.pass(bench, std::chrono::hours(2));
   EXPECT_EQ(Client(bench.port()).call("authority.acquire")["error"]["code"], rpc_code::kAuthorityHeld);
 }

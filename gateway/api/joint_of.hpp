@@ -1,0 +1,25 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+
+#include "rmac/motion/error.hpp"
+#include "rmac/sdk/device_object.hpp"
+
+namespace rmac::gateway {
+
+/// Joint `number` of a device, constant or not: those that are moved, then those that are held.
+template <typename Device>
+[[nodiscard]] auto joint_of(Device& device, std::int64_t number) -> Expected<decltype(device.joints.data())> {
+  const auto index = static_cast<std::size_t>(number);
+  if (index < device.joints.size()) return &device.joints[index];
+  if (index < device.joints.size() + device.held_joints.size()) {
+    return &device.held_joints[index - device.joints.size()];
+  }
+  return failure(MinorCode::InvalidParameterValue,
+                 fmt::format("joint {} does not exist: {} has joints 0 to {}", number, device.name,
+                             device.joints.size() + device.held_joints.size() - 1));
+}
+
+}  // namespace rmac::gateway
