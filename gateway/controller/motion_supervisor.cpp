@@ -62,6 +62,7 @@ void MotionSupervisor::apply_verdict(const CycleSequencer::Verdict& verdict, con
   if (mechanism_ && verdict.clear_queue) {
     mechanism_->planner.clear();
     rebase_ = true;
+    forget_moves();
     news_.queue.push_back({QueueChange::Kind::Cleared, 0, status.progress.cycle});
   }
   if (verdict.spindle_timed_out) {
@@ -141,7 +142,7 @@ Expected<> MotionSupervisor::prepare_move() {
   if (state == CycleState::Stopping && sequencer_.clears_at_rest()) {
     return failure(MinorCode::Other, "the queue is being emptied; send moves when the machine has stopped");
   }
-  if (const std::size_t left = mechanism_->planner.moves_left(); left >= options_.queue_capacity) {
+  if (const std::size_t left = count_moves(); left >= options_.queue_capacity) {
     return failure(
         MinorCode::CommandQueueFull,
         fmt::format("the queue holds {} moves, as many as it can; send the next one when a move is done", left));
@@ -178,6 +179,11 @@ Expected<bool> MotionSupervisor::add_move(const Move& move) {
   const bool moves = !segments->empty();
   if (queue_listener_) queue_listener_(move, *segments);
   mechanism_->planner.add(std::move(*segments));
+  if (moves) {
+    ++moves_added_;
+  } else {
+    still_moves_.push_back(moves_added_);
+  }
   news_.queue.push_back({moves ? QueueChange::Kind::Added : QueueChange::Kind::Still, move.id, 0});
   last_added_ = std::chrono::steady_clock::now();
   return moves;
@@ -293,7 +299,20 @@ void MotionSupervisor::set_spindle(std::size_t spindle, double rpm) {
 
 std::size_t MotionSupervisor::moves_left() {
   const Turn turn(*this);
-  return mechanism_ ? mechanism_->planner.moves_left() : 0;
+  return count_moves();
+}
+
+std::size_t MotionSupervisor::count_moves() {
+  if (!mechanism_) return 0;
+  const std::size_t left = mechanism_->planner.moves_left();
+  // A move without motion is done when those before it are.
+  while (!still_moves_.empty() && still_moves_.front() + left <= moves_added_) still_moves_.pop_front();
+  return left + still_moves_.size();
+}
+
+void MotionSupervisor::forget_moves() {
+  moves_added_ = 0;
+  still_moves_.clear();
 }
 
 CycleState MotionSupervisor::state() {
@@ -316,6 +335,7 @@ std::shared_ptr<Mechanism> MotionSupervisor::install(std::shared_ptr<Mechanism> 
   generation_ = generation;
   rebase_ = true;
   apply_override();
+  forget_moves();
   sequencer_.mechanism_changed(keep_running);
   news_.queue.push_back({QueueChange::Kind::Replaced, 0, status().progress.cycle});
   settle(status());

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -77,6 +78,7 @@ class MotionSupervisor {
   void set_frames(const Frames& frames);
   void set_override(double percent);
   void set_spindle(std::size_t spindle, double rpm);
+  /// Moves queued and not yet done, those without motion included.
   [[nodiscard]] std::size_t moves_left();
   [[nodiscard]] CycleState state();
   [[nodiscard]] CycleNow now();
@@ -120,6 +122,8 @@ class MotionSupervisor {
   [[nodiscard]] CycleObservation observe(const ServoStatus& status);
   [[nodiscard]] bool spindles_at_speed(const ServoStatus& status) const;
   void settle(const ServoStatus& status);
+  [[nodiscard]] std::size_t count_moves();
+  void forget_moves();
   void apply_verdict(const CycleSequencer::Verdict& verdict, const ServoStatus& status);
   void tell_state();
   void apply_override();
@@ -140,6 +144,8 @@ class MotionSupervisor {
   ServoWishes wishes_;
   bool rebase_ = true;  ///< the next move begins where the machine stands, not where the queue ended
   std::chrono::steady_clock::time_point last_added_{};
+  std::uint64_t moves_added_ = 0;          ///< with motion, since the queue was emptied last
+  std::deque<std::uint64_t> still_moves_;  ///< without motion, each by the number of those before it
   News news_;
   QueueListener queue_listener_;
   double override_percent_ = 100;

@@ -47,6 +47,44 @@ TEST_F(Cycle, AMoveToWhereTheToolWillStandIsDoneInItsTurn) {
   EXPECT_THAT(done, testing::ElementsAre(1, 2, 3, 4));
 }
 
+TEST_F(Cycle, MovesWithoutMotionCountAsQueuedUntilTheirTurn) {
+  const ToolPose corner{{10, 0, 0}, {0, 0, 1}};
+  ASSERT_TRUE(machine_.line(1, {0, 0, 0}, corner.tip));
+  for (std::int64_t id = 2; id <= 4; ++id) ASSERT_TRUE(cam().queue_move(id, PathTargetGeometry{corner}));
+  ASSERT_TRUE(machine_.line(5, corner.tip, {0, 0, 0}));
+  ASSERT_TRUE(cam().queue_move(6, JointTargetGeometry{{0, 0, 0}}));
+  EXPECT_EQ(cam().moves_in_buffer(), 6);
+  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Manual));
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 4));
+  ASSERT_TRUE(machine_.run_until([&] { return cam().moves_in_buffer() == 2; })) << "5, and 6 behind it";
+  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 6));
+  EXPECT_EQ(cam().moves_in_buffer(), 0);
+
+  ASSERT_TRUE(cam().set_feed_override(0));
+  ASSERT_TRUE(machine_.line(7, {0, 0, 0}, corner.tip));
+  ASSERT_TRUE(cam().queue_move(8, PathTargetGeometry{corner}));
+  EXPECT_EQ(cam().moves_in_buffer(), 2);
+  ASSERT_TRUE(cam().stop_now());
+  ASSERT_TRUE(machine_.run_until([&] { return state() == CycleState::Idle; }));
+  EXPECT_EQ(cam().moves_in_buffer(), 0) << "dropped with the rest";
+}
+
+TEST(Queue, IsFullOfMovesWithoutMotionToo) {
+  ControllerOptions options = TestMachine::options();
+  options.queue_capacity = 5;
+  TestMachine machine(options);
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  sdk::RmacCam& cam = machine.controller.cam();
+  ASSERT_TRUE(cam.set_feedrate(6000));
+  ASSERT_TRUE(machine.line(1, {0, 0, 0}, {1, 0, 0}));
+  for (std::int64_t id = 2; id <= 5; ++id) ASSERT_TRUE(cam.queue_move(id, JointTargetGeometry{{1, 0, 0}}));
+  const auto sixth = cam.queue_move(6, JointTargetGeometry{{1, 0, 0}});
+  ASSERT_FALSE(sixth);
+  EXPECT_EQ(sixth.error().code, MinorCode::CommandQueueFull);
+  EXPECT_THAT(sixth.error().message, HasSubstr("the queue holds 5 moves"));
+}
+
 TEST_F(Cycle, AMoveToWhereTheToolStandsIsDoneAtOnceAndTheNextOneRuns) {
   ASSERT_TRUE(cam().queue_move(5, PathTargetGeometry{{{0, 0, 0}, {0, 0, 1}}}));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 5));
