@@ -57,6 +57,12 @@ void MotionSupervisor::settle(const ServoStatus& status) {
   apply_verdict(sequencer_.step(observe(status)), status);
 }
 
+void MotionSupervisor::notice_fault() {
+  // Of the rest, what the servo loop reports counts when the planner has taken note of it too: in `advance`.
+  const ServoStatus now = status();
+  if (now.state == ServoState::Faulted) settle(now);
+}
+
 void MotionSupervisor::apply_verdict(const CycleSequencer::Verdict& verdict, const ServoStatus& status) {
   if (mechanism_ && verdict.command) mechanism_->planner.command(*verdict.command);
   if (mechanism_ && verdict.clear_queue) {
@@ -130,6 +136,7 @@ void MotionSupervisor::wait_for_work(std::chrono::nanoseconds period) {
 
 Expected<> MotionSupervisor::prepare_move() {
   const Turn turn(*this);
+  notice_fault();
   if (!mechanism_) {
     return failure(MinorCode::Other, "there is no mechanism; load one with Device.Load before sending moves");
   }
@@ -317,11 +324,13 @@ void MotionSupervisor::forget_moves() {
 
 CycleState MotionSupervisor::state() {
   const Turn turn(*this);
+  notice_fault();
   return sequencer_.state();
 }
 
 CycleNow MotionSupervisor::now() {
   const Turn turn(*this);
+  notice_fault();
   const CycleState state = sequencer_.state();
   const bool started = state == CycleState::Running || state == CycleState::Holding || state == CycleState::Stopping;
   const bool automatic = sequencer_.mode() == sdk::CycleMode::Automatic;

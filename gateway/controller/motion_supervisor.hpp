@@ -50,6 +50,7 @@ class MotionSupervisor {
   template <typename Function>
   auto command(Function&& function) {
     const Turn turn(*this);
+    notice_fault();
     auto result = function(sequencer_, observe(status()));
     settle(status());
     return result;
@@ -122,6 +123,8 @@ class MotionSupervisor {
   [[nodiscard]] CycleObservation observe(const ServoStatus& status);
   [[nodiscard]] bool spindles_at_speed(const ServoStatus& status) const;
   void settle(const ServoStatus& status);
+  /// Takes note of a fault that samples, and so clients, show already.
+  void notice_fault();
   [[nodiscard]] std::size_t count_moves();
   void forget_moves();
   void apply_verdict(const CycleSequencer::Verdict& verdict, const ServoStatus& status);
