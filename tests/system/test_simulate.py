@@ -32,10 +32,13 @@ def to(x, y, z, move_id=1):
 
 
 def mixed_program():
-    """Corners, an arc, a spline, a joint move, a frame and another feed."""
+    """Corners, an arc, a spline, a joint move, a frame and another feed. The cycle starts when all of it is queued, so
+    that on the appliance no move waits for a client on a busy computer."""
     return [
         request("RMAC_CAM.Home"),
+        request("RMAC_CAM.SetPartFrame", PartFrame={"p": [5, 5, 5], "q": [1, 0, 0, 0]}),
         feed(6000),
+        to(0, 0, 0, 7),
         request("RMAC_CAM.SetPathTolerance", Tolerance=0.05),
         along((0, 0, 0), (20, 0, 0), 1),
         along((20, 0, 0), (20, 15, 0), 2),
@@ -46,8 +49,8 @@ def mixed_program():
             "degree": 3, "knots": [0, 0, 0, 0, 1, 2, 2, 2, 2],
             "points": [[0, 15, 0], [0, 5, 0], [-20, 5, 5], [-25, -5, 5], [-30, -30, 0]]}),
         request("RMAC_CAM.MoveToJointTarget", MoveID=5, JointTargetFrame={"joints": [10, 10, 10]}),
-        request("RMAC_CAM.SetPartFrame", PartFrame={"p": [5, 5, 5], "q": [1, 0, 0, 0]}),
         to(0, 0, 0, 6),
+        request("RMAC_CAM.CycleStart", Mode="AUTOMATIC"),
     ]
 
 
