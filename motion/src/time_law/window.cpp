@@ -93,6 +93,11 @@ std::optional<RestEnd> rest_end(const PathView& path, const std::vector<JointLim
   return std::nullopt;
 }
 
+/// Whether s lies behind `before` by more than rounding.
+bool apart(double before, double s) {
+  return s > before + 1e-12 * (1 + std::abs(s));
+}
+
 /// Grid from a to b: segment ends and breaks on it, as fine as the geometry asks and no coarser than `coarsest`, graded
 /// towards the window's ends at rest_a and rest_b.
 std::vector<double> make_grid(const PathView& path, double a, double b, double rest_a, double rest_b, double finest_a,
@@ -102,7 +107,7 @@ std::vector<double> make_grid(const PathView& path, double a, double b, double r
   for (std::size_t i = path.find(a, 1); i <= path.find(b, -1); ++i) {
     const double start = path.start(i);
     const auto keep = [&](double s) {
-      if (s > fixed.back() + 1e-9 * (1 + std::abs(s)) * 1e-3 && s < b) fixed.push_back(s);
+      if (apart(fixed.back(), s) && s < b) fixed.push_back(s);
     };
     keep(start);
     for (const double s : path.segment(i).curve().breaks()) keep(start + s);
@@ -114,7 +119,8 @@ std::vector<double> make_grid(const PathView& path, double a, double b, double r
   std::vector<double> finest(asked.size(), coarsest);
   for (std::size_t i = 0; i + 1 < asked.size(); ++i) {
     const double width = asked[i + 1] - asked[i];
-    if (!(width > 0)) continue;
+    // Where segments meet, the last node of one and the first of the next differ by rounding.
+    if (!apart(asked[i], asked[i + 1])) continue;
     finest[i] = std::min(finest[i], width);
     finest[i + 1] = std::min(finest[i + 1], width);
   }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "planner_bench.hpp"
 
@@ -224,6 +225,31 @@ TEST(Planner, PassesCollinearLinesAtFullFeed) {
     }
   }
   EXPECT_EQ(bench.moves_done(), 40U);
+}
+
+TEST(Planner, IsNotSlowedByAToleranceThatACurveHasNoUseFor) {
+  for (const int count : {41, 51, 61, 101, 300}) {  // with some of these, path lengths meet only to rounding
+    const auto time = [&](double tolerance) {
+      PlannerBench bench(mill(50000));
+      NurbsGeometry geometry;
+      geometry.curve.degree = 3;
+      for (int i = 0; i < count; ++i) {
+        const double angle = 2 * std::numbers::pi * i / (count - 1), r = 30 + 10 * std::cos(5 * angle);
+        geometry.curve.points.push_back({r * std::cos(angle), r * std::sin(angle), 0});
+      }
+      for (int i = 0; i < count + 4; ++i) geometry.curve.knots.push_back(std::clamp(i - 3, 0, count - 3));
+      bench.builder.restart(std::vector<double>{40, 0, 0}, {});
+      Move move;
+      move.feed_mm_s = 100;
+      move.tolerance_mm = tolerance;
+      move.geometry = geometry;
+      EXPECT_TRUE(bench.queue(move));
+      bench.planner.command(PathCommand::Run);
+      EXPECT_TRUE(bench.run());
+      return static_cast<double>(bench.record.size());
+    };
+    EXPECT_LE(time(0.01), 1.01 * time(0)) << count << " poles";
+  }
 }
 
 TEST(Planner, StopsExactlyInACornerWithoutTolerance) {
