@@ -336,13 +336,14 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
   LawProblem problem;
   problem.begin = first ? PathState{a, first->speed, first->acceleration} : window.begin;
   problem.end = {b, last->speed, -last->acceleration};
-  // A moving start is graded too: its first spline coefficients are fixed by the state, and must not reach over the
-  // feed.
-  double start_step = first ? first->length : coarsest;
+  // A moving start is graded too. Its first spline coefficients are fixed by its state, which may lie at the edge of
+  // what the limits allow: on a coarse grid most such states have no way to a stop. Nor may they reach over the feed.
+  constexpr double kFinerAtStart = 24;
+  double start_step = first ? first->length : coarsest / kFinerAtStart;
   if (JointPoint point; !first && window.begin.a > 0 && path.evaluate(a, 1, 1, point) == KinematicsStatus::Ok) {
     const double cap = speed_bound(path.segment(path.find(a, 1)), point, joints, feed);
     const double room = cap * cap - window.begin.v * window.begin.v;
-    start_step = std::clamp(0.5 * room / window.begin.a, std::min(1e-4, coarsest), coarsest);
+    start_step = std::clamp(0.5 * room / window.begin.a, std::min(1e-4, start_step), start_step);
   }
   problem.nodes = make_grid(path, a, b, window.begin.s, window.s_end, start_step, last->length, coarsest);
   if (!fill(problem, path, joints, feed)) return std::nullopt;
