@@ -63,7 +63,7 @@ void add_cycle_methods(std::vector<Method>& table) {
           .does([](Call& call) { return call.machine.cam().feed_resume(); }));
   add(method("RMAC_CAM.FeedRetrace",
              "Runs back along the path of what is held, then holds again; FeedResume runs forward from there.")
-          .takes(number("Distance", "mm").above(0))
+          .takes(number("Distance", "mm").within(0.001, kPlaces.max))
           .gives(WireType::Number, "mm")
           .causes(Effect::Starts)
           .extension()
