@@ -6,6 +6,7 @@
 
 #include "gateway/configuration/register_map_file.hpp"
 #include "gateway/configuration/schemas.hpp"
+#include "unit/device_driver_manager/fixtures.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -27,12 +28,7 @@ json document_of(const fs::path& file) {
 /// A map that is written, read back, and gone.
 class ChangedMap {
  public:
-  explicit ChangedMap(const json& document) : file_(fs::path(testing::TempDir()) / "rmac-changed-map.json") {
-    std::ofstream(file_) << document;
-  }
-  ~ChangedMap() { fs::remove(file_); }
-  ChangedMap(const ChangedMap&) = delete;
-  ChangedMap& operator=(const ChangedMap&) = delete;
+  explicit ChangedMap(const json& document) : file_(folder_.write("map.json", document.dump())) {}
   [[nodiscard]] std::string spindle_error() const {
     const auto read = read_spindle_map(file_);
     return read ? "no error" : read.error().message;
@@ -43,6 +39,7 @@ class ChangedMap {
   }
 
  private:
+  test::TemporaryFolder folder_;
   fs::path file_;
 };
 
