@@ -10,7 +10,7 @@ namespace rmac::gateway {
 
 /// Motion authority: one connection at a time may move and change the machine. The lease ends with its connection, and,
 /// where a time-out is configured, when its holder was silent for so long: a client that hangs keeps its connection
-/// open (docs/decisions/0002-lease.md).
+/// open (docs/decisions/0003-lease.md).
 class Lease {
  public:
   using Holder = std::uint64_t;  ///< a connection's number, from 1
