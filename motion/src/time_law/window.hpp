@@ -33,8 +33,8 @@ struct Window {
       nullptr;  ///< the law that the window's begin state was taken from: a good first guess
 };
 
-/// The fastest checked time law of a window, beginning at time 0, or nothing when none passed its check. From rest there
-/// may still be one for a part of the window, and `cautious_law` is the last resort.
+/// The fastest checked time law of a window, beginning at time 0, or nothing when none passed its check. From rest
+/// there may still be one for a part of the window, and `cautious_law` is the last resort.
 [[nodiscard]] std::optional<std::vector<LawPiece>> plan_window(const PathView& path,
                                                                const std::vector<JointLimits>& joints,
                                                                const Window& window);
