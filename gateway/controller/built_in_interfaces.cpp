@@ -5,6 +5,7 @@
 
 #include "gateway/configuration/register_map_file.hpp"
 #include "gateway/controller/controller_impl.hpp"
+#include "gateway/controller/device_descriptions.hpp"
 #include "rmac/fieldbus/canopen/bus_load.hpp"
 #include "rmac/fieldbus/canopen/canopen_interface.hpp"
 #include "rmac/fieldbus/modbus/io_interface.hpp"
@@ -39,8 +40,9 @@ Expected<std::shared_ptr<DigitalControlInterface>> make_simulated(const sdk::Mod
 }
 
 Expected<std::shared_ptr<DigitalControlInterface>> make_canopen(const std::string& bus, const sdk::ModuleChoice& choice,
-                                                                double period_s) {
-  auto config = fieldbus::canopen::read_canopen_config(bus, choice.numbers, choice.texts, period_s);
+                                                                const ModuleLoader& loader, double period_s) {
+  auto config =
+      fieldbus::canopen::read_canopen_config(bus, choice.numbers, choice.texts, period_s, find_descriptions(loader));
   if (!config) return tl::unexpected(config.error());
   if (auto fits = fieldbus::canopen::check_bus_load(*config); !fits) return tl::unexpected(fits.error());
   return fieldbus::canopen::make_socketcan_interface(std::move(*config));
@@ -82,10 +84,10 @@ void add_built_in_interfaces(BusRegistry& registry, double period_s) {
                                  [period_s](const std::string&, const sdk::ModuleChoice& choice, const ModuleLoader&) {
                                    return make_simulated(choice, period_s);
                                  });
-  registry.add_control_interface(
-      "CANopenInterface", [period_s](const std::string& bus, const sdk::ModuleChoice& choice, const ModuleLoader&) {
-        return make_canopen(bus, choice, period_s);
-      });
+  registry.add_control_interface("CANopenInterface", [period_s](const std::string& bus, const sdk::ModuleChoice& choice,
+                                                                const ModuleLoader& loader) {
+    return make_canopen(bus, choice, loader, period_s);
+  });
   registry.add_control_interface("ModbusInterface", make_modbus);
   registry.add_io_interface("ModbusIOInterface", make_modbus_io);
   registry.add_io_interface("SimulatedIOInterface", make_simulated_io);

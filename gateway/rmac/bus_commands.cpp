@@ -4,6 +4,7 @@
 #include <set>
 
 #include "gateway/controller/bus_choice.hpp"
+#include "gateway/controller/device_descriptions.hpp"
 #include "gateway/device_driver/device_database.hpp"
 #include "gateway/rmac/commands.hpp"
 #include "gateway/rmac/table.hpp"
@@ -58,6 +59,7 @@ std::vector<std::string> to_row(const CanopenConfig& config, const BusLoad& load
 
 Result<> show_bus_load(const std::string& device_json, double period_s, bool json) {
   const auto device = gateway::read_device_database(device_json);
+  const gateway::ModuleLoader loader({std::filesystem::path(device_json).parent_path()});
   if (!device) return fail(device.error().message);
   nlohmann::json list = nlohmann::json::array();
   std::vector<std::vector<std::string>> rows;
@@ -65,7 +67,8 @@ Result<> show_bus_load(const std::string& device_json, double period_s, bool jso
   for (const std::string& bus : buses_of(*device)) {
     const sdk::ModuleChoice choice = gateway::interface_of_bus(bus, device->digital_control_interface);
     if (choice.name != "CANopenInterface") continue;
-    const auto config = fieldbus::canopen::read_canopen_config(bus, choice.numbers, choice.texts, period_s);
+    const auto config = fieldbus::canopen::read_canopen_config(bus, choice.numbers, choice.texts, period_s,
+                                                               gateway::find_descriptions(loader));
     if (!config) return fail(fmt::format("{}: {}", device_json, config.error().message));
     const BusLoad load = bus_load(*config);
     list.push_back(to_json(*config, load));

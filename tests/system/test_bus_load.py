@@ -52,6 +52,21 @@ class BusLoad(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn("CANopenInterface, bus can0: node is 200; allowed is a whole number from 1 to 127", done.stderr)
 
+    def test_holds_the_drives_against_their_data_sheet(self):
+        folder = self.file.parent / "canopen"
+        folder.mkdir()
+        sheet = (SOURCE / "fieldbus/vdrive/rmac-vdrive.eds").read_text()
+        (folder / "servo.eds").write_text(sheet)
+        parameters = {"node": [1, 2, 3, 4], "mode": [10, 10, 10, 3], "eds": "servo"}
+        self.assertEqual(self.load(parameters, "--period", "0.002").stderr, "")
+        line = sheet[:sheet.index("[6066]")].count("\n") + 1
+        done = self.load(dict(parameters, tpdo="6041:00/16 6066:00/16"), "--period", "0.002")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(f"axis 0: {folder}/servo.eds:{line}: 6066h:00 (Following error time out) cannot be mapped into a PDO",
+                      done.stderr)
+        done = self.load(dict(parameters, eds="other"), "--period", "0.002")
+        self.assertIn(f"there is no EDS other: no file other.eds in {folder}", done.stderr)
+
     def test_refuses_a_machine_without_a_can_bus(self):
         done = subprocess.run([BUILD / "bin" / "rmac", "bus", "load", SOURCE / "drivers/mill/3-axis/DMACXYZ/device.json"],
                               capture_output=True, text=True)

@@ -1,13 +1,14 @@
 #include "canopen/boot_plan.hpp"
 
-#include <algorithm>
+#include <array>
+
+#include "canopen/description_check.hpp"
 
 namespace rmac::fieldbus::canopen {
 namespace {
 
 using Kind = BootStep::Kind;
 
-constexpr std::uint16_t kPdoOffset = 0x40;  // between the PDO numbers of two axes of a node: 64 each (CiA 402-3)
 constexpr std::uint32_t kInvalidPdo = 0x80000000;
 constexpr std::uint32_t kNoRemoteRequest = 0x40000000;
 constexpr std::uint8_t kEverySync = 1;
@@ -43,35 +44,43 @@ class Plan {
     map(static_cast<std::uint16_t>(0x1400 + number), setpoint_id(axis), axis.setpoints, offset);
     map(static_cast<std::uint16_t>(0x1800 + number), kNoRemoteRequest | answer_id(axis), axis.answers, offset);
     if (config_.abort_connection >= 0) {
-      write(shifted({0x6007, 0}, offset), 2, static_cast<std::uint32_t>(config_.abort_connection));
+      write(of_axis({0x6007, 0}, offset), 2, static_cast<std::uint32_t>(config_.abort_connection));
     }
-    write(shifted({0x6060, 0}, offset), 1, static_cast<std::uint32_t>(axis.mode));
+    write(of_axis({0x6060, 0}, offset), 1, static_cast<std::uint32_t>(axis.mode));
     interpolation(offset);
     for (const SdoWrite& setup : axis.setup) {
-      // Objects of the drive profile belong to the axis, those of the communication and the maker's to the node.
-      const bool of_axis = setup.object.index >= 0x6000 && setup.object.index < 0x6000 + kAxisOffset;
-      write(of_axis ? shifted(setup.object, offset) : setup.object, setup.size, setup.value);
+      steps_.push_back({.kind = Kind::Write, .object = of_axis(setup.object, offset), .bytes = setup.bytes});
     }
   }
 
-  void read_error() { steps_.push_back({Kind::ReadError, {0x603F, 0}, 2, 0, 0, true}); }
+  /// A DCF is of the whole node: its addresses stand as they are.
+  void write_configured(const AxisConfig& axis) {
+    if (!axis.description) return;
+    for (SdoWrite& configured : configured_writes(*axis.description, axis.node)) {
+      steps_.push_back({.kind = Kind::Write, .object = configured.object, .bytes = std::move(configured.bytes)});
+    }
+  }
+
+  void read_error() {
+    steps_.push_back({.kind = Kind::ReadError, .object = {0x603F, 0}, .bytes = {}, .optional = true});
+  }
   [[nodiscard]] std::vector<BootStep> steps() && { return std::move(steps_); }
 
  private:
-  static ObjectAddress shifted(ObjectAddress object, std::uint16_t offset) {
-    return {static_cast<std::uint16_t>(object.index + offset), object.sub};
-  }
   void check(ObjectAddress object, std::uint32_t value, std::uint32_t mask, bool optional = false) {
-    steps_.push_back({Kind::Check, object, 4, value, mask, optional});
+    steps_.push_back(
+        {.kind = Kind::Check, .object = object, .bytes = {}, .value = value, .mask = mask, .optional = optional});
   }
-  void write(ObjectAddress object, std::uint8_t size, std::uint32_t value, bool optional = false) {
-    steps_.push_back({Kind::Write, object, size, value, 0xFFFFFFFF, optional});
+  void write(ObjectAddress object, std::size_t size, std::uint32_t value, bool optional = false) {
+    std::vector<std::uint8_t> bytes(size);
+    for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
+    steps_.push_back({.kind = Kind::Write, .object = object, .bytes = std::move(bytes), .optional = optional});
   }
 
   /// Supported drive modes: bit 0 is mode 1, and so on (CiA 402-2, 6502h).
   void supports(const AxisConfig& axis, std::uint16_t offset) {
     const std::uint32_t bit = 1U << (static_cast<unsigned>(axis.mode) - 1);
-    check(shifted({0x6502, 0}, offset), bit, bit, true);
+    check(of_axis({0x6502, 0}, offset), bit, bit, true);
   }
 
   /// PDOs that a drive has by default would load the bus beside what is counted.
@@ -95,9 +104,7 @@ class Plan {
     write({contents, 0}, 1, 0);
     std::uint8_t entry = 0;
     for (const MappedObject& object : objects) {
-      constexpr std::uint16_t kFirstProfileObject = 0x6000;
-      const ObjectAddress at =
-          object.object.index >= kFirstProfileObject ? shifted(object.object, offset) : object.object;
+      const ObjectAddress at = of_axis(object.object, offset);
       write({contents, ++entry}, 4, static_cast<std::uint32_t>(at.index) << 16 | at.sub << 8 | object.bits);
     }
     write({contents, 0}, 1, entry);
@@ -114,8 +121,8 @@ class Plan {
     }
     constexpr std::int64_t kMostValue = 255;
     if (value <= kMostValue) {
-      write(shifted({0x60C2, 1}, offset), 1, static_cast<std::uint32_t>(value), true);
-      write(shifted({0x60C2, 2}, offset), 1, static_cast<std::uint32_t>(exponent) & 0xFF, true);
+      write(of_axis({0x60C2, 1}, offset), 1, static_cast<std::uint32_t>(value), true);
+      write(of_axis({0x60C2, 2}, offset), 1, static_cast<std::uint32_t>(exponent) & 0xFF, true);
     }
   }
 
@@ -130,7 +137,10 @@ std::vector<BootStep> boot_plan(const CanopenConfig& config, std::uint8_t node) 
   bool first = true;
   for (const AxisConfig& axis : config.axes) {
     if (axis.node != node) continue;
-    if (first) plan.check_node(axis);
+    if (first) {
+      plan.check_node(axis);
+      plan.write_configured(axis);
+    }
     first = false;
     plan.add_axis(axis);
   }

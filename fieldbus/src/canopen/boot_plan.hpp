@@ -10,18 +10,28 @@ namespace rmac::fieldbus::canopen {
 struct BootStep {
   enum class Kind : std::uint8_t {
     Check,      ///< (what was read & mask) must be `value`
-    Write,      ///< `size` bytes of `value`
+    Write,      ///< `bytes`
     ReadError,  ///< the drive's error code, for whoever asks later
   };
   Kind kind = Kind::Write;
   ObjectAddress object;
-  std::uint8_t size = 4;
+  std::vector<std::uint8_t> bytes;
   std::uint32_t value = 0;
   std::uint32_t mask = 0xFFFFFFFF;
   bool optional = false;  ///< passed over when the node does not have the object
 };
 
-/// All steps for `node`, in order: who it is, what it can, its PDOs, its watch over the master, its mode and setup.
+inline constexpr std::uint16_t kPdoOffset = 0x40;  ///< between the PDO numbers of two axes of a node (CiA 402-3)
+inline constexpr std::uint16_t kFirstProfileObject = 0x6000;
+
+/// The same object of another axis of a node; objects of the communication and the maker's own belong to the node.
+[[nodiscard]] inline ObjectAddress of_axis(ObjectAddress object, std::uint16_t offset) noexcept {
+  const bool shifts = object.index >= kFirstProfileObject && object.index < kFirstProfileObject + kAxisOffset;
+  return shifts ? ObjectAddress{static_cast<std::uint16_t>(object.index + offset), object.sub} : object;
+}
+
+/// All steps for `node`, in order: who it is, what its DCF says, what it can, its PDOs, its mode and setup, its watch
+/// over the master.
 [[nodiscard]] std::vector<BootStep> boot_plan(const CanopenConfig& config, std::uint8_t node);
 
 }  // namespace rmac::fieldbus::canopen

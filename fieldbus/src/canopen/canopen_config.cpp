@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "canopen/description_check.hpp"
 #include "canopen/object_list.hpp"
 #include "parameters.hpp"
 
@@ -33,7 +34,7 @@ constexpr std::array kModes{DriveMode::ProfileVelocity, DriveMode::CyclicSyncPos
                             DriveMode::CyclicSyncTorque};
 
 Expected<std::vector<MappedObject>> mapping(const Parameters& parameters, const std::string& name, std::size_t axis,
-                                            const char* otherwise) {
+                                            const std::string& otherwise) {
   const std::string text = parameters.text_of_axis(name, axis, otherwise);
   auto objects = read_mapping(text);
   if (!objects) {
@@ -42,7 +43,38 @@ Expected<std::vector<MappedObject>> mapping(const Parameters& parameters, const 
   return objects;
 }
 
-Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis) {
+/// The EDS or DCF that an axis names, and who the node is by it.
+Expected<> read_description(Parameters& parameters, std::size_t axis, const FindDescription& find, AxisConfig& config) {
+  const std::string sheet = parameters.text_of_axis("eds", axis, "");
+  const std::string configuration = parameters.text_of_axis("dcf", axis, "");
+  if (sheet.empty() && configuration.empty()) return {};
+  if (!sheet.empty() && !configuration.empty()) {
+    return failure(
+        MinorCode::InvalidParameterValue,
+        parameters.place(fmt::format("axis {} names both eds and dcf; a DCF says all that its EDS says", axis)));
+  }
+  if (!find) return failure(MinorCode::UnsupportedOperation, parameters.place("EDS files are not looked for here"));
+  auto description = configuration.empty() ? find("eds", sheet) : find("dcf", configuration);
+  if (!description) return failure(description.error().code, parameters.place(description.error().message));
+  if (config.identity.vendor_id == 0) config.identity.vendor_id = description->vendor_number;
+  if (config.identity.product_code == 0) config.identity.product_code = description->product_number;
+  config.description = std::make_shared<const eds::DeviceDescription>(std::move(*description));
+  return {};
+}
+
+/// The contents of a PDO: what device.json says, else what the DCF says, else what the mode needs.
+Expected<std::vector<MappedObject>> contents(const Parameters& parameters, const std::string& name, std::size_t axis,
+                                             const AxisConfig& config, std::uint16_t mapping_index,
+                                             const char* by_mode) {
+  std::string otherwise = by_mode;
+  if (config.description) {
+    const std::string of_file = configured_mapping(*config.description, mapping_index, config.axis_in_node);
+    if (!of_file.empty()) otherwise = of_file;
+  }
+  return mapping(parameters, name, axis, otherwise);
+}
+
+Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const FindDescription& find) {
   AxisConfig config;
   config.node = static_cast<std::uint8_t>(parameters.number_of_axis("node", axis, 0, 1, 127));
   config.axis_in_node =
@@ -67,9 +99,10 @@ Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis) {
       static_cast<std::uint32_t>(parameters.number_of_axis("serial_number", axis, 0, 0, kMost));
   if (!parameters.sound()) return failure(MinorCode::InvalidParameterValue, parameters.problem());
 
-  auto setpoints = mapping(parameters, "rpdo", axis, default_setpoints(config.mode));
+  if (auto read = read_description(parameters, axis, find, config); !read) return tl::unexpected(read.error());
+  auto setpoints = contents(parameters, "rpdo", axis, config, 0x1600, default_setpoints(config.mode));
   if (!setpoints) return tl::unexpected(setpoints.error());
-  auto answers = mapping(parameters, "tpdo", axis, default_answers(config.mode));
+  auto answers = contents(parameters, "tpdo", axis, config, 0x1A00, default_answers(config.mode));
   if (!answers) return tl::unexpected(answers.error());
   if (auto known = check_setpoints(*setpoints); !known) {
     return failure(known.error().code, parameters.place("rpdo: " + known.error().message));
@@ -110,7 +143,8 @@ std::size_t mapped_bytes(const std::vector<MappedObject>& objects) noexcept {
 
 Expected<CanopenConfig> read_canopen_config(const std::string& bus,
                                             const std::map<std::string, std::vector<double>>& numbers,
-                                            const std::map<std::string, std::string>& texts, double period_s) {
+                                            const std::map<std::string, std::string>& texts, double period_s,
+                                            const FindDescription& find) {
   Parameters parameters("CANopenInterface", "node", bus, numbers, texts);
   CanopenConfig config;
   config.interface = bus;
@@ -131,12 +165,17 @@ Expected<CanopenConfig> read_canopen_config(const std::string& bus,
   const std::size_t axes = parameters.axes();
   if (axes == 0) parameters.refuse("node is missing; it lists the node id of each axis, for example [1, 2, 3]");
   for (std::size_t axis = 0; axis < axes && parameters.sound(); ++axis) {
-    auto read = read_axis(parameters, axis);
+    auto read = read_axis(parameters, axis, find);
     if (!read) return tl::unexpected(read.error());
     config.axes.push_back(std::move(*read));
   }
   parameters.refuse_unknown();
   if (parameters.sound()) parameters.refuse(check_nodes(config));
+  for (std::size_t axis = 0; axis < axes && parameters.sound(); ++axis) {
+    if (auto fits = check_description(config, config.axes[axis]); !fits) {
+      parameters.refuse(fmt::format("axis {}: {}", axis, fits.error().message));
+    }
+  }
   if (!parameters.sound()) return failure(MinorCode::InvalidParameterValue, parameters.problem());
   return config;
 }

@@ -59,8 +59,10 @@ void NodeBoot::begin_step(std::chrono::nanoseconds now) noexcept {
   const BootStep& step = steps_[step_];
   problem_ = {.object = step.object, .expected = step.value, .writing = step.kind == BootStep::Kind::Write};
   if (problem_.writing) {
-    put_long(bytes_.data(), step.value);
-    sdo_.download(step.object, {bytes_.data(), step.size}, now);
+    for (std::size_t i = 0; i < step.bytes.size() && i < 4; ++i) {
+      problem_.expected |= static_cast<std::uint32_t>(step.bytes[i]) << (8 * i);
+    }
+    sdo_.download(step.object, step.bytes, now);
   } else {
     bytes_.fill(0);
     sdo_.upload(step.object, bytes_, now);

@@ -14,6 +14,7 @@ namespace rmac::fieldbus::canopen {
 namespace {
 
 constexpr std::size_t kPdoBytes = 8;
+constexpr std::uint16_t kFirstObject = 0x1000;  // below are data types, which fill room
 
 template <typename Number>
 bool read_number(std::string_view text, int base, Number& number) {
@@ -51,8 +52,14 @@ template <typename Words>
 Expected<> check_words(const std::vector<MappedObject>& objects, const Words& words, ObjectAddress needed,
                        bool foreign_allowed) {
   bool found = false;
-  for (const MappedObject& object : objects) {
+  for (auto at = objects.begin(); at != objects.end(); ++at) {
+    const MappedObject& object = *at;
     found = found || object.object == needed;
+    const bool dummy = object.object.index < kFirstObject;
+    const auto same = [&](const MappedObject& other) { return other.object == object.object; };
+    if (!dummy && std::any_of(objects.begin(), at, same)) {
+      return failure(MinorCode::InvalidParameterValue, fmt::format("{} is mapped twice", to_string(object.object)));
+    }
     const std::uint8_t bits = length_of(words, object.object);
     if (bits == 0 && !foreign_allowed) {
       return failure(MinorCode::InvalidParameterValue,
@@ -105,7 +112,9 @@ Expected<std::vector<SdoWrite>> read_setup(const std::string& text) {
                                  "for example 6085:00/32=100000",
                                  word));
     }
-    writes.push_back({object->object, static_cast<std::uint8_t>(object->bits / 8), static_cast<std::uint32_t>(value)});
+    SdoWrite write{object->object, std::vector<std::uint8_t>(object->bits / 8)};
+    for (std::size_t i = 0; i < write.bytes.size(); ++i) write.bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
+    writes.push_back(std::move(write));
   }
   return writes;
 }

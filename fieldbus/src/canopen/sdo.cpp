@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 namespace rmac::fieldbus::canopen {
 namespace {
@@ -60,12 +59,6 @@ constexpr std::array<std::uint16_t, 256> make_crc_table() {
 }
 
 }  // namespace
-
-std::string to_string(ObjectAddress address) {
-  std::array<char, 12> text{};
-  const int length = std::snprintf(text.data(), text.size(), "%04Xh:%02X", address.index, address.sub);
-  return {text.data(), static_cast<std::size_t>(std::max(length, 0))};
-}
 
 const char* sdo_abort_text(std::uint32_t code) noexcept {
   const auto found = std::find_if(kAbortTexts.begin(), kAbortTexts.end(),

@@ -22,7 +22,10 @@ class CanopenBench : public testing::Test {
   void make(const Numbers& numbers, const Texts& texts = {}) {
     auto config = canopen::read_canopen_config("can0", numbers, texts, kPeriodS);
     ASSERT_TRUE(config.has_value()) << config.error().message;
-    master_ = std::make_unique<canopen::CanopenInterface>(*config, [this](std::span<const std::uint16_t>, std::size_t) {
+    make_from(*config);
+  }
+  void make_from(const canopen::CanopenConfig& config) {
+    master_ = std::make_unique<canopen::CanopenInterface>(config, [this](std::span<const std::uint16_t>, std::size_t) {
       return Expected<std::unique_ptr<CanPort>>(wire_.open());
     });
     commands_.assign(master_->axis_count(), {});

@@ -73,7 +73,7 @@ TEST(CanopenConfig, MapsByTextForAllAxesOrOne) {
   EXPECT_EQ(mapped_bytes(config->axes[0].answers), 6U);
   EXPECT_EQ(mapped_bytes(config->axes[1].answers), 2U);
   EXPECT_TRUE(config->axes[0].setup.empty());
-  EXPECT_EQ(config->axes[1].setup.at(0).value & 0xFFFF, 0xFFFFU);
+  EXPECT_EQ(config->axes[1].setup.at(0).bytes, (std::vector<std::uint8_t>{0xFF, 0xFF}));
 }
 
 /// As many axes as the load check accepts.

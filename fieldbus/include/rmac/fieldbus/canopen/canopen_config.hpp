@@ -1,11 +1,14 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "rmac/fieldbus/canopen/sdo.hpp"
+#include "rmac/fieldbus/eds/device_description.hpp"
 #include "rmac/motion/ports/digital_control_interface.hpp"
 
 namespace rmac::fieldbus::canopen {
@@ -19,11 +22,10 @@ struct MappedObject {
   std::uint8_t bits = 0;
 };
 
-/// A number to be written to a node when it is brought up.
+/// What is to be written to a node when it is brought up.
 struct SdoWrite {
   ObjectAddress object;
-  std::uint8_t size = 4;  ///< bytes, 1 to 4
-  std::uint32_t value = 0;
+  std::vector<std::uint8_t> bytes;
 };
 
 /// Who a node is (1018h). 0: whoever it is.
@@ -44,6 +46,7 @@ struct AxisConfig {
   double velocity_units_per_rpm = 1;    ///< of 60FFh and 606Ch
   Identity identity;
   std::vector<SdoWrite> setup;
+  std::shared_ptr<const eds::DeviceDescription> description;  ///< null where no file was named
 };
 
 /// One CANopen bus and its drives.
@@ -64,13 +67,17 @@ struct CanopenConfig {
   [[nodiscard]] std::chrono::milliseconds heartbeat_deadline() const noexcept { return heartbeat * 3 / 2; }
 };
 
+/// Finds and reads the EDS or DCF of a name in `device.json`; `kind` is "eds" or "dcf".
+using FindDescription =
+    std::function<Expected<eds::DeviceDescription>(const std::string& kind, const std::string& name)>;
+
 /// Reads the parameters of `CANopenInterface` in `device.json` (docs/canopen.md). A parameter named `bus.name` is for
 /// the bus `bus` alone and wins over `name`. The bus's name is the CAN interface's. The error names the parameter,
-/// its value and what is allowed.
+/// its value and what is allowed. Drives that name an EDS or DCF are held against it.
 [[nodiscard]] Expected<CanopenConfig> read_canopen_config(const std::string& bus,
                                                           const std::map<std::string, std::vector<double>>& numbers,
                                                           const std::map<std::string, std::string>& texts,
-                                                          double period_s);
+                                                          double period_s, const FindDescription& find = {});
 
 /// COB-IDs of an axis: the predefined connection set (CiA 301, 7.3.5), one pair for each axis of a node.
 [[nodiscard]] inline std::uint16_t setpoint_id(const AxisConfig& axis) noexcept {

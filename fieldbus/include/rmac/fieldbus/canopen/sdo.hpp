@@ -2,19 +2,10 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
+
+#include "rmac/fieldbus/eds/object_entry.hpp"
 
 namespace rmac::fieldbus::canopen {
-
-/// One entry of an object dictionary.
-struct ObjectAddress {
-  std::uint16_t index = 0;
-  std::uint8_t sub = 0;
-  [[nodiscard]] bool operator==(const ObjectAddress&) const noexcept = default;
-};
-
-/// "6040h:00", as the standards write it.
-[[nodiscard]] std::string to_string(ObjectAddress address);
 
 /// Abort codes that this side sends or reacts to (CiA 301, 7.2.4.3.17, table 22).
 namespace sdo_abort {
