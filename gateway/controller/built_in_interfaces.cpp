@@ -1,11 +1,7 @@
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "gateway/configuration/register_map_file.hpp"
 #include "gateway/controller/controller_impl.hpp"
 #include "gateway/controller/device_descriptions.hpp"
+#include "gateway/controller/simulated_bus.hpp"
 #include "rmac/fieldbus/canopen/bus_load.hpp"
 #include "rmac/fieldbus/canopen/canopen_interface.hpp"
 #include "rmac/fieldbus/modbus/io_interface.hpp"
@@ -16,27 +12,10 @@
 namespace rmac::gateway {
 namespace {
 
-constexpr double kMostSimulatedAxes = 64;
-
-/// The example machines' axes, or as many as the parameter `axes` says: more of them are table axes.
 Expected<std::shared_ptr<DigitalControlInterface>> make_simulated(const sdk::ModuleChoice& choice, double period_s) {
-  std::vector<fieldbus::SimulatedAxis> axes = fieldbus::default_simulated_axes();
-  for (const auto& [name, numbers] : choice.numbers) {
-    const bool whole = numbers.size() == 1 && numbers[0] == std::floor(numbers[0]);
-    if (name != "axes" || !whole || numbers[0] < 1 || numbers[0] > kMostSimulatedAxes) {
-      return failure(MinorCode::InvalidParameterValue,
-                     fmt::format("SimulatedInterface: parameter \"{}\" is not understood; it takes \"axes\", a whole "
-                                 "number from 1 to {}",
-                                 name, kMostSimulatedAxes));
-    }
-    axes.resize(static_cast<std::size_t>(numbers[0]), fieldbus::AxisPlantParameters{});
-  }
-  if (!choice.texts.empty()) {
-    return failure(MinorCode::InvalidParameterValue,
-                   fmt::format("SimulatedInterface: parameter \"{}\" is not understood; it takes \"axes\" alone",
-                               choice.texts.begin()->first));
-  }
-  return std::make_shared<fieldbus::SimulatedInterface>(std::move(axes), period_s);
+  return simulated_axes(choice).map([&](const std::vector<fieldbus::SimulatedAxis>& axes) {
+    return std::shared_ptr<DigitalControlInterface>(std::make_shared<fieldbus::SimulatedInterface>(axes, period_s));
+  });
 }
 
 Expected<std::shared_ptr<DigitalControlInterface>> make_canopen(const std::string& bus, const sdk::ModuleChoice& choice,

@@ -1,10 +1,62 @@
 #include <fmt/format.h>
 
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+
 #include "gateway/controller/mechanism.hpp"
 #include "gateway/rmac_cam/cam.hpp"
 #include "rmac/motion/frame.hpp"
 
 namespace rmac::gateway {
+namespace {
+
+/// More than any machine tool's geometry has; a module that has more is asked for the nearest.
+constexpr std::size_t kMostSolutions = 16;
+
+bool has_min(const JointLimits& joint) {
+  return joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfinitePositive;
+}
+bool has_max(const JointLimits& joint) {
+  return joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfiniteNegative;
+}
+
+/// A turn that lies outside of its travel, by as few whole turns further as bring it inside.
+double unwound(const JointLimits& joint, double degrees) {
+  if (joint.type != JointType::Rotary) return degrees;
+  if (has_max(joint) && degrees > joint.max) return degrees - 360 * std::ceil((degrees - joint.max) / 360);
+  if (has_min(joint) && degrees < joint.min) return degrees + 360 * std::ceil((joint.min - degrees) / 360);
+  return degrees;
+}
+
+bool inside(const JointLimits& joint, double position) {
+  return !(has_min(joint) && position < joint.min) && !(has_max(joint) && position > joint.max);
+}
+
+/// Of the solutions of one pose the one that lies within all travels and has the shortest way for the joint that takes
+/// longest; none where every solution leaves the travel.
+std::optional<std::vector<double>> nearest_inside(std::span<double> solutions, std::span<const double> from,
+                                                  const std::vector<JointLimits>& joints) {
+  std::optional<std::vector<double>> nearest;
+  double shortest = 0;
+  for (std::size_t first = 0; first < solutions.size(); first += joints.size()) {
+    const std::span<double> solution = solutions.subspan(first, joints.size());
+    bool reached = true;
+    double longest = 0;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      solution[j] = unwound(joints[j], solution[j]);
+      reached = reached && inside(joints[j], solution[j]);
+      longest = std::max(longest, std::abs(solution[j] - from[j]) / joints[j].max_speed);
+    }
+    if (!reached || (nearest && longest >= shortest)) continue;
+    shortest = longest;
+    nearest.emplace(solution.begin(), solution.end());
+  }
+  return nearest;
+}
+
+}  // namespace
 
 Expected<std::vector<double>> Cam::joints_at(const ToolPose& pose) const {
   if (auto loaded = require_mechanism("MoveToJointTarget"); !loaded) return tl::unexpected(loaded.error());
@@ -13,15 +65,19 @@ Expected<std::vector<double>> Cam::joints_at(const ToolPose& pose) const {
   const std::shared_ptr<Mechanism> mechanism = supervisor_.mechanism();
   const PathBuilder& builder = mechanism->builder;
   const Kinematics& kinematics = *mechanism->planner_model.kinematics;
-  std::vector<double> joints(kinematics.joint_count());
-  const KinematicsStatus status = kinematics.inverse(apply_to_pose(builder.frames().part, pose), builder.frames().tool,
-                                                     builder.end_joints(), joints);
-  if (status == KinematicsStatus::Ok) return joints;
-  return failure(MinorCode::TravelLimit,
-                 fmt::format("MoveToJointTarget: {} the pose with the tip at {}, {}, {} mm",
-                             status == KinematicsStatus::OutOfReach ? "no joint positions give"
-                                                                    : "the joints are not determined at",
-                             pose.tip[0], pose.tip[1], pose.tip[2]));
+  std::vector<double> all(kMostSolutions * kinematics.joint_count());
+  const std::size_t count = kinematics.solutions(apply_to_pose(builder.frames().part, pose), builder.frames().tool,
+                                                 builder.end_joints(), all);
+  if (count == 0) {
+    return failure(MinorCode::TravelLimit,
+                   fmt::format("MoveToJointTarget: no joint positions give the pose with the tip at {}, {}, {} mm and "
+                               "the axis {}, {}, {}",
+                               pose.tip[0], pose.tip[1], pose.tip[2], pose.axis[0], pose.axis[1], pose.axis[2]));
+  }
+  const std::vector<double> nearest(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(kinematics.joint_count()));
+  all.resize(count * kinematics.joint_count());
+  // Where none is inside, the move says which joint leaves its travel, and by how much.
+  return nearest_inside(all, builder.end_joints(), mechanism->planner_model.joints).value_or(nearest);
 }
 
 }  // namespace rmac::gateway

@@ -19,7 +19,8 @@ struct JointRange {
 
 /// What every kinematics must keep, over seeded random joint vectors inside `ranges` and with several tools: the seeded
 /// inverse gives the joints back, the forward of the inverse gives the pose back, the Jacobian is the derivative of the
-/// forward, and joints are of the type they are said to be. `tools` are those that the machine can carry.
+/// forward, joints are of the type they are said to be, and all solutions are solutions, of which the inverse finds the
+/// nearest from wherever it is asked. `tools` are those that the machine can carry.
 class KinematicsConformance {
  public:
   KinematicsConformance(const Kinematics& kinematics, std::vector<JointRange> ranges, std::vector<Frame> tools)
@@ -38,6 +39,7 @@ class KinematicsConformance {
         check_round_trip(joints, tool);
         check_jacobian(joints, tool);
         check_types(joints, tool);
+        check_solutions(joints, tool, random);
         if (testing::Test::HasFailure()) return;
       }
     }
@@ -104,6 +106,52 @@ class KinematicsConformance {
         EXPECT_LE(length(3), std::numbers::pi / 180 + 1e-9);
       }
     }
+  }
+
+  /// Of a pose whose joints are known, asked for from random joints.
+  void check_solutions(const std::vector<double>& joints, const Frame& tool, std::mt19937& random) const {
+    const std::size_t n = joints.size();
+    ToolPose pose;
+    kinematics_.forward(joints, tool, pose);
+    std::vector<double> seed;
+    for (const JointRange& range : ranges_) {
+      seed.push_back(std::uniform_real_distribution<>(range.min, range.max)(random));
+    }
+    constexpr std::size_t kMost = 16;
+    std::vector<double> all(kMost * n);
+    const std::size_t count = kinematics_.solutions(pose, tool, seed, all);
+    ASSERT_GE(count, 1U);
+    ASSERT_LE(count, kMost);
+    double shortest = 0;
+    bool found_again = false;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::vector<double> solution(all.begin() + static_cast<std::ptrdiff_t>(i * n),
+                                         all.begin() + static_cast<std::ptrdiff_t>((i + 1) * n));
+      ToolPose again;
+      kinematics_.forward(solution, tool, again);
+      double way = 0, off = 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(again.tip[c], pose.tip[c], 1e-9) << "solution " << i << ": " << text(solution);
+        EXPECT_NEAR(again.axis[c], pose.axis[c], 1e-12) << "solution " << i << ": " << text(solution);
+      }
+      for (std::size_t j = 0; j < n; ++j) {
+        const bool turns = kinematics_.joint_type(j) == JointType::Rotary;
+        if (turns) {
+          EXPECT_LE(std::abs(solution[j] - seed[j]), 180 + 1e-9);
+          way += (solution[j] - seed[j]) * (solution[j] - seed[j]);
+        }
+        off = std::max(off, std::abs(turns ? std::remainder(solution[j] - joints[j], 360) : solution[j] - joints[j]));
+      }
+      found_again = found_again || off < 1e-7;
+      EXPECT_GE(way, shortest) << "the nearest comes first";
+      if (i == 0) {
+        shortest = way;
+        std::vector<double> one(n);
+        ASSERT_EQ(kinematics_.inverse(pose, tool, seed, one), KinematicsStatus::Ok);
+        for (std::size_t j = 0; j < n; ++j) EXPECT_NEAR(one[j], solution[j], 1e-9) << "inverse finds the nearest";
+      }
+    }
+    EXPECT_TRUE(found_again) << "the joints that the pose was made of are not among " << count << " solutions";
   }
 
   const Kinematics& kinematics_;

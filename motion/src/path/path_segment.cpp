@@ -12,6 +12,8 @@ namespace {
 /// Rows of the pose that are directions count as this many mm, so that one solve weighs tip and axis alike.
 constexpr double kAxisWeight = 100;
 constexpr double kSingularPivot = 1e-9;
+/// What a free joint would have to do, in mm by path length, that counts as nothing.
+constexpr double kAnswered = 1e-6;
 /// Step along the path for differences of the Jacobian, in mm; central differences of an exact Jacobian are good to
 /// about 1e-8.
 constexpr double kJacobianStep = 1e-3;
@@ -21,49 +23,74 @@ using JointColumn = std::array<double, kMaxJoints>;
 using PoseRows = std::array<double, 6 * kMaxJoints>;  ///< row-major, 6 x n
 
 /// Least squares of J x = p by the normal equations and their LDLᵀ: matrices of a handful of rows, for which a
-/// library's general routines spend most of their time on copies.
+/// library's general routines spend most of their time on copies. A column that depends on those before it is a joint
+/// that the pose leaves free; it stays at rest, which answers p only where p asks nothing of it.
 class LeastSquares {
  public:
-  LeastSquares(const PoseRows& jacobian, std::size_t n) noexcept : jacobian_(jacobian), n_(n) {
-    for (std::size_t i = 0; i < n; ++i) {
+  LeastSquares(const PoseRows& jacobian, const Kinematics& kinematics) noexcept
+      : jacobian_(jacobian), n_(kinematics.joint_count()) {
+    // Slides first: at the pole a turn moves the tip as slides do, and it is the turn that is free.
+    std::size_t placed = 0;
+    for (const bool turns : {false, true}) {
+      for (std::size_t j = 0; j < n_; ++j) {
+        if ((kinematics.joint_type(j) == JointType::Rotary) == turns) order_[placed++] = j;
+      }
+    }
+    double most = 0;
+    for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t k = 0; k <= i; ++k) {
         double sum = 0;
-        for (std::size_t r = 0; r < 6; ++r) sum += jacobian[r * n + i] * jacobian[r * n + k];
-        for (std::size_t m = 0; m < k; ++m) sum -= lower_[i * n + m] * lower_[k * n + m] * diagonal_[m];
+        for (std::size_t r = 0; r < 6; ++r) sum += jacobian[r * n_ + order_[i]] * jacobian[r * n_ + order_[k]];
+        for (std::size_t m = 0; m < k; ++m) sum -= lower_[i * n_ + m] * lower_[k * n_ + m] * diagonal_[m];
         if (k < i) {
-          lower_[i * n + k] = sum / diagonal_[k];
+          lower_[i * n_ + k] = diagonal_[k] > 0 ? sum / diagonal_[k] : 0;
         } else {
           diagonal_[i] = sum;
         }
       }
-      if (!(diagonal_[i] > 0)) return;  // singular already
+      most = std::max(most, diagonal_[i]);
+      if (diagonal_[i] > kSingularPivot * most) continue;
+      diagonal_[i] = 0;
+      any_free_ = true;
     }
-    const auto [least, most] =
-        std::minmax_element(diagonal_.begin(), diagonal_.begin() + static_cast<std::ptrdiff_t>(n));
-    singular_ = !(*least > kSingularPivot * *most);
   }
 
-  [[nodiscard]] bool singular() const noexcept { return singular_; }
-
-  void solve(const PoseColumn& pose, JointColumn& x) const noexcept {
+  /// False where p asks for what a free joint alone could do.
+  [[nodiscard]] bool solve(const PoseColumn& pose, JointColumn& x) const noexcept {
+    std::array<double, kMaxJoints> y;  // in the order of the columns
     for (std::size_t i = 0; i < n_; ++i) {
       double sum = 0;
-      for (std::size_t r = 0; r < 6; ++r) sum += jacobian_[r * n_ + i] * pose[r];
-      for (std::size_t m = 0; m < i; ++m) sum -= lower_[i * n_ + m] * x[m];
-      x[i] = sum;
+      for (std::size_t r = 0; r < 6; ++r) sum += jacobian_[r * n_ + order_[i]] * pose[r];
+      for (std::size_t m = 0; m < i; ++m) sum -= lower_[i * n_ + m] * y[m];
+      y[i] = sum;
     }
     for (std::size_t i = n_; i-- > 0;) {
-      x[i] /= diagonal_[i];
-      for (std::size_t m = i + 1; m < n_; ++m) x[i] -= lower_[m * n_ + i] * x[m];
+      y[i] = diagonal_[i] > 0 ? y[i] / diagonal_[i] : 0;
+      // Nothing depends on a free joint: its column below the diagonal is zero.
+      for (std::size_t m = i + 1; m < n_; ++m) y[i] -= lower_[m * n_ + i] * y[m];
     }
+    for (std::size_t i = 0; i < n_; ++i) x[order_[i]] = y[i];
+    return !any_free_ || answered(pose, x);
   }
 
  private:
+  [[nodiscard]] bool answered(const PoseColumn& pose, const JointColumn& x) const noexcept {
+    double off = 0, whole = 0;
+    for (std::size_t r = 0; r < 6; ++r) {
+      double left = pose[r];
+      for (std::size_t j = 0; j < n_; ++j) left -= jacobian_[r * n_ + j] * x[j];
+      off += left * left;
+      whole += pose[r] * pose[r];
+    }
+    return off <= kAnswered * kAnswered * (1 + whole);
+  }
+
   const PoseRows& jacobian_;
   std::size_t n_;
+  std::array<std::size_t, kMaxJoints> order_;          ///< of the columns
   std::array<double, kMaxJoints * kMaxJoints> lower_;  // below the unit diagonal
-  std::array<double, kMaxJoints> diagonal_;
-  bool singular_ = true;
+  std::array<double, kMaxJoints> diagonal_;            // 0 for a free joint
+  bool any_free_ = false;
 };
 
 }  // namespace
@@ -167,9 +194,8 @@ KinematicsStatus PathSegment::evaluate(double s, int order, int side, JointPoint
   auto& [q, x1, x2, x3] = point.d;
   PoseRows jacobian;
   jacobian_at(q, jacobian);
-  const LeastSquares squares(jacobian, n);
-  if (squares.singular()) return KinematicsStatus::Singular;
-  squares.solve(pose[1], x1);
+  const LeastSquares squares(jacobian, *kinematics_);
+  if (!squares.solve(pose[1], x1)) return KinematicsStatus::Singular;
   if (order == 1) return KinematicsStatus::Ok;
 
   // x'' = J⁺(p'' - J' x'), x''' = J⁺(p''' - 2 J' x'' - J'' x'), primes along the path (docs/derivations/joint-path.md,
@@ -191,7 +217,7 @@ KinematicsStatus PathSegment::evaluate(double s, int order, int side, JointPoint
       rest[r] -= turn[i] * x1[j];
     }
   }
-  squares.solve(rest, x2);
+  if (!squares.solve(rest, x2)) return KinematicsStatus::Singular;
   if (order == 2) return KinematicsStatus::Ok;
 
   PoseRows ahead2, behind2;
@@ -205,8 +231,7 @@ KinematicsStatus PathSegment::evaluate(double s, int order, int side, JointPoint
       rest[r] -= 2 * turn[i] * x2[j] + bend * x1[j];
     }
   }
-  squares.solve(rest, x3);
-  return KinematicsStatus::Ok;
+  return squares.solve(rest, x3) ? KinematicsStatus::Ok : KinematicsStatus::Singular;
 }
 
 ToolPose PathSegment::pose(double s) const noexcept {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <numbers>
 
-#include "rmac/modules/cartesian_kinematics.hpp"
+#include "rmac/modules/chain_kinematics.hpp"
 #include "rmac/motion/planner.hpp"
 
 namespace rmac::bench {
@@ -58,7 +58,7 @@ class ForkHeadKinematics final : public Kinematics {
 /// unless a row sets other limits.
 inline PlannerModel bench_xyz(double acceleration = 1000, double jerk = 10000) {
   PlannerModel model;
-  model.kinematics = std::make_shared<modules::CartesianKinematics<3>>();
+  model.kinematics = std::make_shared<modules::ChainKinematics>(modules::cartesian(3));
   for (const char* name : {"X", "Y", "Z"})
     model.joints.push_back({name, JointType::Linear, JointLimitType::Limited, -50, 50, 200, acceleration, jerk});
   model.max_feed_mm_s = 200;

@@ -68,7 +68,8 @@ TEST_F(Host, LoadsOneMechanismAfterAnother) {
 
 TEST_F(Host, KeepsTheLoadedMechanismWhenAnotherCannotBeLoaded) {
   ASSERT_TRUE(host_->load("DMACXYZ", false));
-  const auto missing = host_->load("TarusXYZCA", false);
+  replace_in_device_json("SuginoXYZ", "\"Module\": \"ChainKinematics\"", "\"Module\": \"LostKinematics\"");
+  const auto missing = host_->load("SuginoXYZ", false);
   ASSERT_FALSE(missing);
   EXPECT_THAT(missing.error().message, HasSubstr("no file"));
   EXPECT_THAT(missing.error().message, HasSubstr("DMACXYZ stays loaded"));

@@ -195,12 +195,12 @@ TEST_F(DeviceDriverManagerTest, RepositorysTreeHoldsTable41) {
   ASSERT_TRUE(opened) << opened.error().message;
   const auto& manager = **opened;
   for (const auto& problem : manager.problems()) ADD_FAILURE() << problem.message;
-  EXPECT_THAT(numbers(manager),
-              ElementsAre(Pair(1, "DMACXYZ"), Pair(2, "TarusXYZCA"), Pair(3, "SuginoXYZ"), Pair(4, "SuginoXYZAC"),
-                          Pair(5, "CMM"), Pair(6, "DMACXY"), Pair(7, "BenchXYZ")));
+  EXPECT_THAT(numbers(manager), ElementsAre(Pair(1, "DMACXYZ"), Pair(2, "TarusXYZCA"), Pair(3, "SuginoXYZ"),
+                                            Pair(4, "SuginoXYZAC"), Pair(5, "CMM"), Pair(6, "DMACXY"),
+                                            Pair(7, "BenchXYZ"), Pair(8, "DMACXYZA"), Pair(9, "TarusXYZCATwin")));
   const std::vector<DriverRecord> records = manager.all().value();
   const std::vector<json> table = test::table_4_1();
-  ASSERT_EQ(records.size(), table.size() + 1);
+  ASSERT_EQ(records.size(), table.size() + 3);
   for (std::size_t i = 0; i < table.size(); ++i) {
     SCOPED_TRACE(records[i].name);
     EXPECT_EQ(records[i].type, table[i]["Type"]);

@@ -13,7 +13,6 @@ using conformance::LoadedModule;
 using testing::HasSubstr;
 
 constexpr const char* kDmacxyz = "mill/3-axis/DMACXYZ";
-constexpr const char* kBench = "bench/3-axis/BenchXYZ";
 constexpr const char* kDmacxy = "mill/2-axis/DMACXY";
 
 const std::vector<Frame> kTools{{}, {{1, -2, 80}, {1, 0, 0, 0}}};
@@ -31,13 +30,6 @@ TEST(DmacxyzKinematics, CannotReachATiltedTool) {
   ASSERT_TRUE(kinematics) << module.error();
   std::array<double, 3> joints{};
   EXPECT_EQ(kinematics->inverse({{0, 0, 0}, {0.1, 0, 0.995}}, {}, joints, joints), KinematicsStatus::OutOfReach);
-}
-
-TEST(BenchXyzKinematics, Conforms) {
-  LoadedModule module(kBench, "BenchXYZKinematics");
-  const auto kinematics = module.create<Kinematics>();
-  ASSERT_TRUE(kinematics) << module.error();
-  conformance::KinematicsConformance(*kinematics, {{-50, 50}, {-50, 50}, {-50, 50}}, kTools).check();
 }
 
 TEST(DmacxyKinematics, Conforms) {

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "rmac/modules/cartesian_kinematics.hpp"
+#include "rmac/modules/chain_kinematics.hpp"
 #include "rmac/motion/plan_follower.hpp"
 #include "rmac/motion/planner.hpp"
 
@@ -14,7 +14,7 @@ namespace rmac::test {
 
 inline PlannerModel mill(double jerk = 10000) {
   PlannerModel model;
-  model.kinematics = std::make_shared<modules::CartesianKinematics<3>>();
+  model.kinematics = std::make_shared<modules::ChainKinematics>(modules::cartesian(3));
   for (const char* name : {"X", "Y", "Z"})
     model.joints.push_back({name, JointType::Linear, JointLimitType::Limited, -50, 50, 200, 1000, jerk});
   return model;

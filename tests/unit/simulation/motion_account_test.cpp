@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "gateway/controller/motion_supervisor.hpp"
-#include "rmac/modules/cartesian_kinematics.hpp"
+#include "rmac/modules/chain_kinematics.hpp"
 #include "rmac/motion/planner.hpp"
 
 namespace rmac::gateway {
@@ -37,7 +37,7 @@ CycleSample moving(const std::vector<double>& velocities, const std::vector<doub
 /// What a move from the origin becomes.
 std::vector<std::shared_ptr<const PathSegment>> curves(const Move& move) {
   PlannerModel model;
-  model.kinematics = std::make_shared<modules::CartesianKinematics<2>>();
+  model.kinematics = std::make_shared<modules::ChainKinematics>(modules::cartesian(2));
   for (const sdk::Joint& joint : device({"X", "Y"}).joints) model.joints.push_back(joint.limits);
   PathBuilder builder(model);
   builder.restart(std::vector<double>(2, 0.0), {});

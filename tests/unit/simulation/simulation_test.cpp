@@ -137,7 +137,7 @@ TEST_F(Simulated, SearchesTheDeviceTree) {
   load("BenchXYZ");
   call("DeviceDriverManager.OpenDeviceDriverDatabase");
   EXPECT_EQ(call("DeviceDriverManager.SearchDatabaseRecordSet",
-                 {{"MachineSQLStatement", "SELECT * FROM DeviceDrivers WHERE Type = 'Bench'"}}),
+                 {{"MachineSQLStatement", "SELECT * FROM DeviceDrivers WHERE Type = 'Bench' AND NumberOfJoints = 3"}}),
             1);
 }
 

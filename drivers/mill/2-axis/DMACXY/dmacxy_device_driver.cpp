@@ -1,15 +1,4 @@
 #include "rmac/sdk/module.hpp"
 #include "rmac/sdk/standard_device_driver.hpp"
 
-namespace {
-
-struct Factory {
-  static rmac::sdk::DeviceDriver* create(rmac::sdk::Parameters /*parameters*/, char* /*error*/,
-                                         std::size_t /*size*/) noexcept {
-    return new rmac::sdk::StandardDeviceDriver();
-  }
-};
-
-}  // namespace
-
-RMAC_MODULE(DeviceDriver, "DMACXY", rmac::sdk::DeviceDriver, Factory)
+RMAC_MODULE(DeviceDriver, "DMACXY", rmac::sdk::DeviceDriver, rmac::sdk::StandardDeviceDriverFactory)

@@ -1,15 +1,7 @@
-#include "rmac/modules/cartesian_kinematics.hpp"
-#include "rmac/sdk/module.hpp"
+#include "rmac/modules/chain_kinematics_factory.hpp"
 
 namespace {
-
-struct Factory {
-  static rmac::Kinematics* create(rmac::sdk::Parameters /*parameters*/, char* /*error*/,
-                                  std::size_t /*size*/) noexcept {
-    return new rmac::modules::CartesianKinematics<2>();
-  }
-};
-
-}  // namespace
+using Factory = rmac::modules::ChainKinematicsFactory<'X', 'Y'>;
+}
 
 RMAC_MODULE(Kinematics, "DMACXYKinematics", rmac::Kinematics, Factory)

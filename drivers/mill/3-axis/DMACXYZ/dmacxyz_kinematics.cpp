@@ -1,15 +1,7 @@
-#include "rmac/modules/cartesian_kinematics.hpp"
-#include "rmac/sdk/module.hpp"
+#include "rmac/modules/chain_kinematics_factory.hpp"
 
 namespace {
-
-struct Factory {
-  static rmac::Kinematics* create(rmac::sdk::Parameters /*parameters*/, char* /*error*/,
-                                  std::size_t /*size*/) noexcept {
-    return new rmac::modules::CartesianKinematics<3>();
-  }
-};
-
-}  // namespace
+using Factory = rmac::modules::ChainKinematicsFactory<'X', 'Y', 'Z'>;
+}
 
 RMAC_MODULE(Kinematics, "DMACXYZKinematics", rmac::Kinematics, Factory)

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
+
 #include "rmac/sdk/device_driver.hpp"
+#include "rmac/sdk/module.hpp"
 
 namespace rmac::sdk {
 
@@ -76,6 +79,13 @@ class StandardDeviceDriver : public DeviceDriver {
         .and_then([&] { return config.set_joint_maximum_speed(number, limits.max_speed); })
         .and_then([&] { return config.set_joint_maximum_acceleration(number, limits.max_acceleration); })
         .and_then([&] { return config.set_joint_maximum_jerk(number, limits.max_jerk); });
+  }
+};
+
+/// Makes one; it takes no parameters.
+struct StandardDeviceDriverFactory {
+  static DeviceDriver* create(Parameters /*parameters*/, char* /*error*/, std::size_t /*size*/) noexcept {
+    return new StandardDeviceDriver();
   }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "rmac/motion/axis.hpp"
@@ -27,14 +28,23 @@ class Kinematics {
   /// Tool pose in the machine frame. `joints`: joint_count() values. Total: every joint vector has a pose.
   virtual void forward(std::span<const double> joints, const Frame& tool, ToolPose& pose) const noexcept = 0;
 
-  /// Joints that give `pose`; of several solutions the one nearest to `seed`. Joint limits are not this function's
-  /// business.
+  /// Joints that give `pose`; of several solutions the one whose rotary joints are nearest to `seed`, whole turns
+  /// included. A joint that the pose leaves free (C while the tool stands along it) keeps its seed. Joint limits are
+  /// not this function's business.
   [[nodiscard]] virtual KinematicsStatus inverse(const ToolPose& pose, const Frame& tool, std::span<const double> seed,
                                                  std::span<double> joints) const noexcept = 0;
 
   /// Row-major 6 x n: d(tip x, y, z, axis i, j, k) / d(joint). Rotary columns are per degree.
   virtual void jacobian(std::span<const double> joints, const Frame& tool,
                         std::span<double> jacobian) const noexcept = 0;
+
+  /// Every solution, each within half a turn of `seed` in its rotary joints, the nearest first, one after the other in
+  /// `joints`; as many as fit. How many there are: 0 where the pose is out of reach. A geometry with a single solution
+  /// need not say more than its inverse.
+  [[nodiscard]] virtual std::size_t solutions(const ToolPose& pose, const Frame& tool, std::span<const double> seed,
+                                              std::span<double> joints) const noexcept {
+    return inverse(pose, tool, seed, joints.first(joint_count())) == KinematicsStatus::Ok ? 1 : 0;
+  }
 };
 
 }  // namespace rmac

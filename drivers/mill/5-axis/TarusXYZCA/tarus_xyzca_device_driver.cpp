@@ -1,0 +1,4 @@
+#include "rmac/sdk/module.hpp"
+#include "rmac/sdk/standard_device_driver.hpp"
+
+RMAC_MODULE(DeviceDriver, "TarusXYZCA", rmac::sdk::DeviceDriver, rmac::sdk::StandardDeviceDriverFactory)

@@ -1,0 +1,3 @@
+#include "rmac/modules/feedforward_feedback_servo_law.hpp"
+
+RMAC_MODULE(ServoLaw, "TarusXYZCAPFFServoControlLaw", rmac::ServoLaw, rmac::modules::FeedforwardFeedbackServoLawFactory)

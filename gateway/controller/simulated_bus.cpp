@@ -1,0 +1,152 @@
+#include "gateway/controller/simulated_bus.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+
+namespace rmac::gateway {
+namespace {
+
+using fieldbus::AxisPlantParameters;
+using fieldbus::SimulatedAxis;
+using fieldbus::SpindlePlantParameters;
+
+struct Bounds {
+  double min;
+  double max;
+};
+
+constexpr Bounds kAxes{1, 64}, kSpindle{-1, 63};
+
+/// What one number says of an axis, at the motor shaft.
+struct OfAxis {
+  Bounds bounds;
+  void (*set)(AxisPlantParameters& axis, double value);
+};
+
+const std::map<std::string, OfAxis> kOfAxis{
+    {"rated_torque_nm",
+     {{1e-3, 1e4},
+      [](AxisPlantParameters& axis, double value) {
+        axis.rated_torque_nm = axis.brake_nm = value;
+        axis.peak_torque_nm = 3 * value;
+      }}},
+    {"inertia_kg_m2",
+     {{1e-8, 1e3},
+      [](AxisPlantParameters& axis, double value) {
+        axis.rotor_inertia_kg_m2 = value;
+        axis.screw_inertia_kg_m2 = axis.table_mass_kg = 0;
+      }}},
+    {"friction_nm",
+     {{0, 1e4},
+      [](AxisPlantParameters& axis, double value) {
+        axis.coulomb_nm = value;
+        axis.static_nm = 1.2 * value;
+      }}},
+    {"gravity_nm", {{-1e4, 1e4}, [](AxisPlantParameters& axis, double value) { axis.gravity_nm = value; }}},
+    {"counts_per_revolution",
+     {{1, 4294967296.0}, [](AxisPlantParameters& axis, double value) { axis.counts_per_revolution = value; }}},
+};
+
+struct OfSpindle {
+  Bounds bounds;
+  double SpindlePlantParameters::*member;
+};
+
+const std::map<std::string, OfSpindle> kOfSpindle{
+    {"spindle_max_rpm", {{1, 1e6}, &SpindlePlantParameters::max_speed_rpm}},
+    {"spindle_max_torque_nm", {{1e-3, 1e5}, &SpindlePlantParameters::max_torque_nm}},
+};
+
+tl::unexpected<Error> refuse(std::string message) {
+  return failure(MinorCode::InvalidParameterValue, "SimulatedInterface: " + std::move(message));
+}
+
+bool inside(double value, Bounds bounds) {
+  return value >= bounds.min && value <= bounds.max;
+}
+
+/// A whole number among the parameters, or `otherwise`.
+Expected<int> whole(const sdk::ModuleChoice& choice, const char* name, Bounds bounds, int otherwise) {
+  const auto given = choice.numbers.find(name);
+  if (given == choice.numbers.end()) return otherwise;
+  const std::vector<double>& numbers = given->second;
+  if (numbers.size() != 1 || numbers[0] != std::floor(numbers[0]) || !inside(numbers[0], bounds)) {
+    return refuse(fmt::format("parameter \"{}\" must be one whole number from {} to {}", name, bounds.min, bounds.max));
+  }
+  return static_cast<int>(numbers[0]);
+}
+
+Expected<> set_axes(const std::string& name, const std::vector<double>& numbers, const OfAxis& of,
+                    std::vector<SimulatedAxis>& axes) {
+  if (numbers.size() != axes.size()) {
+    return refuse(fmt::format("parameter \"{}\" has {} numbers; give one for each of the {} axes, 0 for the spindle",
+                              name, numbers.size(), axes.size()));
+  }
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    auto* axis = std::get_if<AxisPlantParameters>(&axes[i]);
+    if (axis == nullptr) continue;
+    if (!inside(numbers[i], of.bounds)) {
+      return refuse(fmt::format("parameter \"{}\": {} of axis {} must be {} to {}", name, numbers[i], i, of.bounds.min,
+                                of.bounds.max));
+    }
+    of.set(*axis, numbers[i]);
+  }
+  return {};
+}
+
+Expected<> set_spindle(const std::string& name, const std::vector<double>& numbers, const OfSpindle& of,
+                       std::vector<SimulatedAxis>& axes) {
+  if (numbers.size() != 1 || !inside(numbers[0], of.bounds)) {
+    return refuse(fmt::format("parameter \"{}\" must be one number from {} to {}", name, of.bounds.min, of.bounds.max));
+  }
+  for (SimulatedAxis& axis : axes) {
+    if (auto* spindle = std::get_if<SpindlePlantParameters>(&axis)) spindle->*of.member = numbers[0];
+  }
+  return {};
+}
+
+tl::unexpected<Error> not_understood(const std::string& name) {
+  std::string known = "axes, spindle";
+  for (const auto& [key, ignored] : kOfSpindle) known += ", " + key;
+  for (const auto& [key, ignored] : kOfAxis) known += ", " + key;
+  return refuse(fmt::format("parameter \"{}\" is not understood; there are {}", name, known));
+}
+
+}  // namespace
+
+Expected<std::vector<SimulatedAxis>> simulated_axes(const sdk::ModuleChoice& choice) {
+  if (!choice.texts.empty()) return not_understood(choice.texts.begin()->first);
+  std::vector<SimulatedAxis> axes = fieldbus::default_simulated_axes();
+  const auto count = whole(choice, "axes", kAxes, static_cast<int>(axes.size()));
+  if (!count) return tl::unexpected(count.error());
+  axes.resize(static_cast<std::size_t>(*count), AxisPlantParameters{});
+  if (choice.numbers.contains("spindle")) {
+    const auto spindle = whole(choice, "spindle", kSpindle, -1);
+    if (!spindle) return tl::unexpected(spindle.error());
+    if (*spindle >= *count) return refuse(fmt::format("the spindle is axis {}, and there are {}", *spindle, *count));
+    for (SimulatedAxis& axis : axes) {
+      if (std::holds_alternative<SpindlePlantParameters>(axis)) axis = AxisPlantParameters{};
+    }
+    if (*spindle >= 0) axes[static_cast<std::size_t>(*spindle)] = SpindlePlantParameters{};
+  }
+  for (const auto& [name, numbers] : choice.numbers) {
+    if (name == "axes" || name == "spindle") continue;
+    const auto of_axis = kOfAxis.find(name);
+    const auto of_spindle = kOfSpindle.find(name);
+    Expected<> done;
+    if (of_axis != kOfAxis.end()) {
+      done = set_axes(name, numbers, of_axis->second, axes);
+    } else if (of_spindle != kOfSpindle.end()) {
+      done = set_spindle(name, numbers, of_spindle->second, axes);
+    } else {
+      return not_understood(name);
+    }
+    if (!done) return tl::unexpected(done.error());
+  }
+  return axes;
+}
+
+}  // namespace rmac::gateway

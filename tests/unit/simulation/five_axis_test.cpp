@@ -1,0 +1,245 @@
+#include <gmock/gmock.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "gateway/controller/snapshot.hpp"
+#include "gateway/simulation/simulation.hpp"
+#include "rmac/motion/frame.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+using Joints = std::array<double, kMaxJoints>;
+
+constexpr double kRad = std::numbers::pi / 180;
+
+Vector about_x(double degrees, const Vector& v) {
+  const double c = std::cos(degrees * kRad), s = std::sin(degrees * kRad);
+  return {v[0], c * v[1] - s * v[2], s * v[1] + c * v[2]};
+}
+Vector about_z(double degrees, const Vector& v) {
+  const double c = std::cos(degrees * kRad), s = std::sin(degrees * kRad);
+  return {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]};
+}
+Vector sum(const Vector& a, const Vector& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+/// A machine, and its geometry written down a second time.
+struct Machine {
+  const char* name;
+  ToolPose (*forward)(const Joints& q, const ToolPose& tool);
+  std::size_t turn, tilt;  ///< joints C and A
+};
+
+/// The part turns by C about z and tilts by A about the line 60 mm below the origin; the tool stands still but for X,
+/// Y, Z.
+ToolPose table(const Joints& q, const ToolPose& tool) {
+  const Vector tip = sum(tool.tip, {q[0], q[1], q[2] + 60});
+  const Vector tilted = sum(about_x(q[3], tip), {0, 0, -60});
+  return {about_z(q[4], tilted), about_z(q[4], about_x(q[3], tool.axis))};
+}
+
+/// The tool leans by A about a line 200 mm above the interface, and turns with that by C.
+ToolPose head(const Joints& q, const ToolPose& tool) {
+  const Vector leaning = sum(about_x(q[4], sum(tool.tip, {0, 0, -200})), {0, 0, 200});
+  return {sum(about_z(q[3], leaning), {q[0], q[1], q[2]}), about_z(q[3], about_x(q[4], tool.axis))};
+}
+
+constexpr Machine kTable{"SuginoXYZAC", table, 4, 3};
+constexpr Machine kHead{"TarusXYZCA", head, 3, 4};
+
+void PrintTo(const Machine& machine, std::ostream* out) {
+  *out << machine.name;
+}
+
+double angle(const Vector& a, const Vector& b) {
+  const Vector across{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  return std::atan2(std::hypot(across[0], across[1], across[2]), a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+}
+
+/// Tool axis that leans by `tilt` degrees from z, towards `around` degrees from x.
+Vector leaning(double tilt, double around) {
+  return about_z(around, {std::sin(tilt * kRad), 0, std::cos(tilt * kRad)});
+}
+
+/// How far a point is from the line between two others, and which part of the way along it.
+std::pair<double, double> from_line(const Vector& point, const Vector& a, const Vector& b) {
+  double along = 0, square = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    along += (point[c] - a[c]) * (b[c] - a[c]);
+    square += (b[c] - a[c]) * (b[c] - a[c]);
+  }
+  const double part = along / square;
+  double off = 0;
+  for (std::size_t c = 0; c < 3; ++c) off += std::pow(point[c] - a[c] - part * (b[c] - a[c]), 2);
+  return {std::sqrt(off), part};
+}
+
+class FiveAxes : public testing::TestWithParam<Machine> {
+ protected:
+  void load() {
+    auto opened = Simulation::open({.device_tree = std::string(RMAC_BINARY_DIR) + "/drivers"}, GetParam().name);
+    ASSERT_TRUE(opened) << opened.error().message;
+    simulation_ = std::move(*opened);
+    simulation_->controller().on_sample([this](const CycleSample& sample) {
+      if (sample.moving) trace_.push_back(sample);
+    });
+    expect(cam().set_feedrate(6000).and_then([&] { return cam().cycle_start(sdk::CycleMode::Automatic); }));
+  }
+  sdk::RmacCam& cam() { return simulation_->controller().cam(); }
+  static void expect(const Expected<>& done) { ASSERT_TRUE(done) << done.error().message; }
+  /// Puts the tool at a pose by turning joints.
+  void go_to(const ToolPose& pose) {
+    const auto joints = cam().joints_at(pose);
+    ASSERT_TRUE(joints) << joints.error().message;
+    ASSERT_NO_FATAL_FAILURE(expect(cam().queue_move(1, JointTargetGeometry{*joints})));
+    ASSERT_TRUE(run());
+  }
+  bool run() {
+    for (int i = 0; i < 200'000; ++i) {
+      simulation_->cycle();
+      const CycleSample now = simulation_->controller().sample();
+      if (cam().moves_in_buffer() == 0 && !now.moving) return true;
+    }
+    return false;
+  }
+  void line(const ToolPose& from, const ToolPose& to) {
+    ASSERT_NO_FATAL_FAILURE(expect(cam().queue_move(2, LineGeometry{from, to})));
+  }
+  /// Where these joints put the tool in the part frame, by the test's own geometry.
+  [[nodiscard]] ToolPose where(const Joints& joints) const {
+    return apply_to_pose(inverse(part_), GetParam().forward(joints, {tool_.p, z_axis(tool_)}));
+  }
+  void check_limits() const {
+    const auto& limits = simulation_->controller().mechanism()->joints;
+    for (std::size_t i = 1; i < trace_.size(); ++i) {
+      for (std::size_t j = 0; j < limits.size(); ++j) {
+        const JointLimits& joint = limits[j].limits;
+        const double speed = trace_[i].velocity_set[j], acceleration = trace_[i].acceleration_set[j];
+        const double jerk = (acceleration - trace_[i - 1].acceleration_set[j]) / 1e-3;
+        ASSERT_LE(std::abs(speed), joint.max_speed * 1.000001) << joint.name << " in cycle " << i;
+        ASSERT_LE(std::abs(acceleration), joint.max_acceleration * 1.000001) << joint.name << " in cycle " << i;
+        ASSERT_LE(std::abs(jerk), joint.max_jerk * 1.01) << joint.name << " in cycle " << i;
+        const double step = trace_[i].position_set[j] - trace_[i - 1].position_set[j];
+        ASSERT_LE(std::abs(step), joint.max_speed * 1.001e-3) << joint.name << " jumps in cycle " << i;
+        if (joint.limit_type != JointLimitType::Limited) continue;
+        ASSERT_LE(trace_[i].position_set[j], joint.max + 1e-6) << joint.name;
+        ASSERT_GE(trace_[i].position_set[j], joint.min - 1e-6) << joint.name;
+      }
+    }
+  }
+  /// Every setpoint holds the tip on the line, and the axis in step with it to within `lean` degrees.
+  void check_line(const ToolPose& from, const ToolPose& to, double lean) const {
+    ASSERT_GT(trace_.size(), 50U);
+    const double whole = angle(from.axis, to.axis);
+    for (const CycleSample& sample : trace_) {
+      const ToolPose pose = where(sample.position_set);
+      const auto [off, part] = from_line(pose.tip, from.tip, to.tip);
+      ASSERT_LE(off, 1e-6) << "mm off the line, " << part << " along it";
+      const double a = whole > 0 ? std::sin((1 - part) * whole) / std::sin(whole) : 1;
+      const double b = whole > 0 ? std::sin(part * whole) / std::sin(whole) : 0;
+      Vector wanted;
+      for (std::size_t c = 0; c < 3; ++c) wanted[c] = a * from.axis[c] + b * to.axis[c];
+      ASSERT_LE(angle(wanted, pose.axis), lean * kRad + 1e-8) << part << " along the line";
+    }
+  }
+
+  std::unique_ptr<Simulation> simulation_;
+  std::vector<CycleSample> trace_;
+  Frame part_, tool_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Machines, FiveAxes, testing::Values(kTable, kHead),
+                         [](const auto& made) { return made.param.name; });
+
+TEST_P(FiveAxes, HoldTheTipOnItsLineWhileTheToolTurnsWhereverPartAndToolAre) {
+  std::mt19937 random(20261121);
+  const auto between = [&](double a, double b) { return std::uniform_real_distribution<>(a, b)(random); };
+  for (int round = 0; round < 12; ++round) {
+    SCOPED_TRACE("round " + std::to_string(round));
+    ASSERT_NO_FATAL_FAILURE(load());
+    const double turned = between(-180, 180) * kRad / 2;
+    part_ = {{between(-20, 20), between(-20, 20), between(0, 20)}, {std::cos(turned), 0, 0, std::sin(turned)}};
+    const double aslant = between(-5, 5) * kRad / 2;
+    tool_ = {{between(-3, 3), between(-3, 3), -between(20, 80)}, {std::cos(aslant), std::sin(aslant), 0, 0}};
+    ASSERT_NO_FATAL_FAILURE(
+        expect(cam().set_tool_interface_frame(tool_).and_then([&] { return cam().set_part_frame(part_); })));
+    // On one side of the pole, and 15 degrees off it at least.
+    const double around = between(-180, 180);
+    const auto somewhere = [&] {
+      return ToolPose{{between(-25, 25), between(-25, 25), between(-20, 20)},
+                      leaning(between(25, 50), around + between(-40, 40))};
+    };
+    const ToolPose from = somewhere(), to = somewhere();
+    ASSERT_NO_FATAL_FAILURE(go_to(from));
+    trace_.clear();
+    ASSERT_NO_FATAL_FAILURE(line(from, to));
+    ASSERT_TRUE(run());
+    check_line(from, to, 0);
+    check_limits();
+    if (HasFatalFailure()) return;
+    const ToolPose end = where(simulation_->controller().sample().position_set);
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(end.tip[c], to.tip[c], 1e-6);
+    EXPECT_LE(angle(end.axis, to.axis), 1e-8);
+  }
+}
+
+TEST_P(FiveAxes, FollowANurbsOfTipAndAxis) {
+  ASSERT_NO_FATAL_FAILURE(load());
+  Nurbs curve;
+  curve.degree = 3;
+  curve.dimension = 6;
+  curve.knots = {0, 0, 0, 0, 1, 2, 3, 3, 3, 3};
+  for (int i = 0; i < 6; ++i) {
+    const Vector axis = leaning(30 + 3 * i, 20 * i);
+    curve.points.push_back({8.0 * i - 20, 10 * std::sin(1.3 * i), 4 * std::cos(2.1 * i), axis[0], axis[1], axis[2]});
+    curve.weights.push_back(1);
+  }
+  const auto first = curve.points.front();
+  const ToolPose from{{first[0], first[1], first[2]}, {first[3], first[4], first[5]}};
+  ASSERT_NO_FATAL_FAILURE(go_to(from));
+  trace_.clear();
+  ASSERT_NO_FATAL_FAILURE(expect(cam().queue_move(3, NurbsGeometry{NurbsSpace::Pose, curve})));
+  ASSERT_TRUE(run());
+  ASSERT_GT(trace_.size(), 200U);
+  for (const CycleSample& sample : trace_) {
+    const ToolPose pose = where(sample.position_set);
+    for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(pose.tip[c], sample.pose_set.tip[c], 1e-6);
+    ASSERT_LE(angle(pose.axis, sample.pose_set.axis), 1e-8);
+  }
+  check_limits();
+}
+
+TEST_P(FiveAxes, WorkWithTheToolUprightWithoutTurningC) {
+  ASSERT_NO_FATAL_FAILURE(load());
+  const ToolPose from = simulation_->controller().sample().pose_set;
+  ToolPose to = from;
+  to.tip[0] += 30;
+  to.tip[1] -= 20;
+  ASSERT_NO_FATAL_FAILURE(line(from, to));
+  ASSERT_TRUE(run());
+  check_line(from, to, 0);
+  check_limits();
+  for (const CycleSample& sample : trace_) {
+    ASSERT_EQ(sample.position_set[GetParam().turn], 0);
+    ASSERT_EQ(sample.position_set[GetParam().tilt], 0);
+  }
+}
+
+TEST_P(FiveAxes, RefuseByNameAmountAndPlaceWhatAJointCannotReach) {
+  ASSERT_NO_FATAL_FAILURE(load());
+  const ToolPose from{{0, 0, 0}, leaning(100, 90)}, to{{20, 0, 0}, leaning(125, 90)};
+  ASSERT_NO_FATAL_FAILURE(go_to(from));
+  const auto refused = cam().queue_move(2, LineGeometry{from, to});
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message,
+              testing::ContainsRegex("joint A to -?11[0-9.]+ degrees, [0-9.]+ degrees beyond"));
+  EXPECT_THAT(refused.error().message, testing::HasSubstr("mm along the move"));
+}
+
+}  // namespace
+}  // namespace rmac::gateway
