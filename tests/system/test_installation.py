@@ -31,6 +31,8 @@ class Installation(unittest.TestCase):
     def test_programs_drivers_and_units_are_where_debian_expects_them(self):
         self.one("usr/sbin/rmacd")
         self.one("usr/bin/rmac")
+        self.one("usr/bin/rmac-vdrive")
+        self.one("usr/share/rmac/rmac-vdrive.eds")
         self.one("usr/lib/**/rmac/drivers/mill/3-axis/DMACXYZ/device.json")
         self.one("usr/lib/**/rmac/drivers/mill/3-axis/DMACXYZ/DMACXYZKinematics.so")
         self.one("usr/lib/**/rmac/drivers/modules/modbus/delta-vfd-b.json")

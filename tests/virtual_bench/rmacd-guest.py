@@ -2,6 +2,7 @@
 """Inside the emulated machine: rmacd drives the example mill over vcan0 (three axes) and vcan1 (its spindle)."""
 
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -13,6 +14,7 @@ BUILD = pathlib.Path(sys.argv[1])
 RUN = pathlib.Path("/run/bench")
 TREE = RUN / "drivers"
 HEARTBEAT_MS = 50
+COUNTS_PER_REVOLUTION = 131072
 
 
 def call(*words):
@@ -49,7 +51,10 @@ def prepare():
     device["DigitalControlInterface"] = {
         "Module": "CANopenInterface",
         "Parameters": {"vcan0.node": [1, 2, 3], "vcan1.node": 4, "vcan1.mode": 3, "vcan0.tpdo": "6041:00/16 6064:00/32",
+                       "vcan1.velocity_units_per_rpm": COUNTS_PER_REVOLUTION / 60, "eds": "rmac-vdrive",
                        "heartbeat_ms": HEARTBEAT_MS}}
+    (folder / "canopen").mkdir()
+    (folder / "canopen/rmac-vdrive.eds").write_text(call(BUILD / "bin/rmac-vdrive", "--print-eds"))
     (folder / "device.json").write_text(json.dumps(device))
     (RUN / "rmacd.json").write_text(json.dumps({
         "listen": {"address": "127.0.0.1", "port": 7402}, "state_folder": str(RUN / "state"), "device_tree": str(TREE)}))
@@ -59,8 +64,13 @@ def prepare():
 class Drives:
     def __init__(self, interface, *nodes):
         self.log = RUN / f"{interface}.log"
-        self.process = subprocess.Popen([BUILD / "tests/virtual_bench/virtual_drives", interface, *map(str, nodes)],
+        self.commands = RUN / f"{interface}.commands"
+        os.mkfifo(self.commands)
+        self.process = subprocess.Popen([BUILD / "bin/rmac-vdrive", "--commands", self.commands, interface, *map(str, nodes)],
                                         stdout=self.log.open("w"))
+
+    def tell(self, command):
+        self.commands.write_text(command + "\n")
 
     def changes(self):
         """(time, node, state, position), as they came."""
@@ -75,7 +85,7 @@ def main():
     device = prepare()
     print(call(BUILD / "bin/rmac", "bus", "load", device))
     table = Drives("vcan0", 1, 2, 3)
-    head = Drives("vcan1", 4)
+    head = Drives("vcan1", "--spindle", 4)
     daemon = subprocess.Popen([BUILD / "bin/rmacd",
                                "--config", RUN / "rmacd.json"])
     wait_for("the daemon answers", lambda: subprocess.run(
@@ -87,16 +97,21 @@ def main():
     print("after a jog of 5 mm:", json.dumps(status)[:600])
     assert set(table.states().values()) == {"operation-enabled"}, table.states()
 
+    table.tell("1 status")
+    wait_for("the drives answer a command", lambda: "node 1 operational operation-enabled" in table.log.read_text())
     jog = subprocess.Popen([BUILD / "bin/rmac", "--port", "7402", "jog", "--joint", "0", "--distance", "40"])
     time.sleep(0.15)
     killed = time.monotonic()
     daemon.kill()
     jog.wait()
-    wait_for("all drives stop", lambda: set({**table.states(), **head.states()}.values()) == {"quick-stop"}, 5)
-    stops = [(t, node, position) for drives in (table, head) for t, node, state, position in drives.changes()
-             if state == "quick-stop"]
+    def stops_now():
+        return [(t, node, position) for drives in (table, head) for t, node, state, position in drives.changes()
+                if state == "quick-stop" and t > killed]
+
+    wait_for("all drives stop", lambda: len(stops_now()) == 4, 5)
+    stops = stops_now()
     late_ms = [(t - killed) * 1e3 for t, _, _ in stops]
-    x_mm = next(position for _, node, position in stops if node == 1) / 131072 * 5
+    x_mm = next(position for _, node, position in stops if node == 1) / COUNTS_PER_REVOLUTION * 5
     print(f"killed at {x_mm:.3f} mm of X; quick stop after " + ", ".join(f"{ms:.1f} ms" for ms in late_ms))
     assert len(stops) == 4 and max(late_ms) <= 2 * HEARTBEAT_MS
     assert 5.1 < x_mm < 44.9, "it was not killed in mid-move"

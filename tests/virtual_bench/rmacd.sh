@@ -4,5 +4,5 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 build=$(realpath "${1:-$here/../../build/release}")
-cmake --build "$build" --target virtual_drives rmacd rmac rmac_modules
+cmake --build "$build" --target rmac-vdrive rmacd rmac rmac_modules
 "$here/boot.sh" "$here/rmacd-guest.py" "$build"

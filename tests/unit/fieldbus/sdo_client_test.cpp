@@ -5,15 +5,16 @@
 #include <deque>
 #include <random>
 
-#include "unit/fieldbus/sdo_server.hpp"
+#include "unit/fieldbus/object_bank.hpp"
 
 namespace {
 
 using namespace rmac::fieldbus;
 using namespace rmac::fieldbus::canopen;
 using rmac::fieldbus::test::Bytes;
+using rmac::fieldbus::test::ObjectBank;
 using rmac::fieldbus::test::ObjectDictionary;
-using rmac::fieldbus::test::SdoServer;
+using rmac::vdrive::SdoServer;
 using std::chrono::milliseconds;
 
 constexpr ObjectAddress kObject{0x2000, 1};
@@ -79,7 +80,8 @@ class SdoWire : public testing::Test {
   Bytes& object() { return dictionary_[{kObject.index, kObject.sub}]; }
 
   ObjectDictionary dictionary_;
-  SdoServer server_{5, dictionary_};
+  ObjectBank bank_{dictionary_};
+  SdoServer server_{5, bank_};
   SdoClient client_{5};
   std::chrono::nanoseconds now_{0};
   std::function<Fate(CanFrame&)> fate_;
@@ -195,8 +197,8 @@ TEST_F(SdoWire, SaysWhyTheServerRefused) {
   dictionary_[{0x2000, 2}] = {1};
   EXPECT_TRUE(upload(4).empty());
   EXPECT_EQ(client_.state(), SdoClient::State::Refused);
-  EXPECT_EQ(client_.abort_code(), sdo_abort::kNoObject);
-  EXPECT_STREQ(sdo_abort_text(client_.abort_code()), "object does not exist in the object dictionary");
+  EXPECT_EQ(client_.abort_code(), sdo_abort::kNoSubindex);
+  EXPECT_STREQ(sdo_abort_text(client_.abort_code()), "sub-index does not exist");
 }
 
 TEST_F(SdoWire, RefusesMoreThanItHasRoomFor) {

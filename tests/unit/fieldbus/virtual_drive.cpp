@@ -60,7 +60,7 @@ std::uint16_t PowerStates::statusword() const {
 }
 
 VirtualDrive::VirtualDrive(std::uint8_t node, int axes)
-    : node_(node), axes_(static_cast<std::size_t>(axes)), server_(node, dictionary_) {
+    : node_(node), axes_(static_cast<std::size_t>(axes)), server_(node, bank_) {
   set(0x1000, 0, 0x00020192, 4);
   set(0x1001, 0, 0, 1);
   set(0x1014, 0, 0x80U + node, 4);
@@ -97,7 +97,7 @@ VirtualDrive::VirtualDrive(std::uint8_t node, int axes)
     set(profile(a, 0x6502), 0, 0x3A5, 4);  // pp, pv, hm, csp, csv, cst
   }
   defaults_ = dictionary_;
-  server_.write_check = [this](Object object, const Bytes& bytes) { return check_write(object, bytes); };
+  bank_.write_check = [this](Object object, const Bytes& bytes) { return check_write(object, bytes); };
 }
 
 void VirtualDrive::set(std::uint16_t index, std::uint8_t sub, std::uint32_t number, int bytes) {
@@ -117,7 +117,7 @@ std::uint32_t VirtualDrive::value(std::uint16_t index, std::uint8_t sub) const {
 
 void VirtualDrive::remove(std::uint16_t index) {
   for (ObjectDictionary* book : {&dictionary_, &defaults_}) {
-    std::erase_if(*book, [index](const auto& entry) { return entry.first.first == index; });
+    std::erase_if(*book, [index](const auto& entry) { return entry.first.index == index; });
   }
 }
 

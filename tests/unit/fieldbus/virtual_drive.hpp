@@ -5,7 +5,7 @@
 #include <set>
 #include <vector>
 
-#include "unit/fieldbus/sdo_server.hpp"
+#include "unit/fieldbus/object_bank.hpp"
 
 namespace rmac::fieldbus::test {
 
@@ -68,7 +68,7 @@ class VirtualDrive {
   void set(std::uint16_t index, std::uint8_t sub, std::uint32_t value, int bytes);
   void remove(std::uint16_t index);
 
-  SdoServer& server() { return server_; }
+  vdrive::SdoServer& server() { return server_; }
   double acceleration_counts_s2 = 2e6;  ///< at rated torque, and while braking
   bool answers_sdo = true;
   bool answers_sync = true;
@@ -97,7 +97,8 @@ class VirtualDrive {
   std::vector<Axis> axes_;
   ObjectDictionary dictionary_;
   ObjectDictionary defaults_;
-  SdoServer server_;
+  ObjectBank bank_{dictionary_};
+  vdrive::SdoServer server_;
   std::vector<CanFrame> output_;
   std::vector<CanFrame> waiting_;  ///< setpoints for the next SYNC
   int nmt_ = 0;

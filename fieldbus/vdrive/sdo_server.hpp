@@ -1,37 +1,41 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <map>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "rmac/fieldbus/can/can_port.hpp"
+#include "rmac/fieldbus/eds/object_entry.hpp"
 
-namespace rmac::fieldbus::test {
+namespace rmac::vdrive {
 
+using fieldbus::CanFrame;
+using fieldbus::ObjectAddress;
 using Bytes = std::vector<std::uint8_t>;
-using Object = std::pair<std::uint16_t, std::uint8_t>;
-using ObjectDictionary = std::map<Object, Bytes>;
+
+/// What an SDO server reads and writes. Both answer 0 or the abort code that refuses (CiA 301, 7.2.4.3.17, table 22).
+class SdoObjects {
+ public:
+  virtual ~SdoObjects() = default;
+  [[nodiscard]] virtual std::uint32_t read(ObjectAddress object, Bytes& bytes) = 0;
+  [[nodiscard]] virtual std::uint32_t write(ObjectAddress object, const Bytes& bytes) = 0;
+};
 
 /// The server's side of service data objects, written from CiA 301's clauses alone: it shares no protocol code with the
 /// master, so that a misreading cannot cancel itself out.
 class SdoServer {
  public:
-  /// Called before a write takes effect; anything but 0 is the abort code that refuses it.
-  using WriteCheck = std::function<std::uint32_t(Object, const Bytes&)>;
-
-  SdoServer(std::uint8_t node, ObjectDictionary& dictionary) : node_(node), dictionary_(dictionary) {}
+  SdoServer(std::uint8_t node, SdoObjects& objects) : node_(node), objects_(objects) {}
 
   bool knows_blocks = true;
   bool knows_crc = true;
   bool tells_size = true;
   std::uint8_t block_size = 127;
-  WriteCheck write_check;
 
   /// A frame of identifier 600h + node; what is answered.
   [[nodiscard]] std::vector<CanFrame> receive(const CanFrame& frame);
+  /// Forgets a transfer that runs, as a reset does.
+  void reset() { mode_ = Mode::None; }
 
  private:
   enum class Mode { None, Download, Upload, BlockDownload, BlockDownloadEnd, BlockUpload, BlockUploadEnd };
@@ -51,9 +55,9 @@ class SdoServer {
   std::uint32_t commit();
 
   std::uint8_t node_;
-  ObjectDictionary& dictionary_;
+  SdoObjects& objects_;
   Mode mode_ = Mode::None;
-  Object object_;
+  ObjectAddress object_;
   Bytes data_;
   std::size_t position_ = 0;
   std::optional<std::size_t> announced_;
@@ -64,4 +68,4 @@ class SdoServer {
   std::uint8_t sent_ = 0;
 };
 
-}  // namespace rmac::fieldbus::test
+}  // namespace rmac::vdrive

@@ -1,9 +1,13 @@
-#include "unit/fieldbus/sdo_server.hpp"
+#include "vdrive/sdo_server.hpp"
 
 #include <algorithm>
 
-namespace rmac::fieldbus::test {
+namespace rmac::vdrive {
 namespace {
+
+// More than any object of this device holds; who sends more is refused before it fills the memory.
+constexpr std::size_t kMostBytes = 65536;
+constexpr std::uint32_t kOutOfMemory = 0x05040005;
 
 std::uint32_t number(const std::uint8_t* at, int bytes) {
   std::uint32_t value = 0;
@@ -40,9 +44,9 @@ CanFrame SdoServer::answer(std::uint8_t command) const {
 
 std::vector<CanFrame> SdoServer::with_object(std::uint8_t command, Bytes rest) const {
   CanFrame frame = answer(command);
-  frame.data[1] = static_cast<std::uint8_t>(object_.first & 0xFF);
-  frame.data[2] = static_cast<std::uint8_t>(object_.first >> 8);
-  frame.data[3] = object_.second;
+  frame.data[1] = static_cast<std::uint8_t>(object_.index & 0xFF);
+  frame.data[2] = static_cast<std::uint8_t>(object_.index >> 8);
+  frame.data[3] = object_.sub;
   std::copy(rest.begin(), rest.end(), frame.data.begin() + 4);
   return {frame};
 }
@@ -53,13 +57,14 @@ std::vector<CanFrame> SdoServer::abort(std::uint32_t code) {
 }
 
 std::vector<CanFrame> SdoServer::receive(const CanFrame& frame) {
+  if (frame.size != 8) return {};  // 7.2.4.3: always eight bytes
   const std::uint8_t command = frame.data[0];
   if (mode_ == Mode::BlockDownload && command != 0x80) return block_download_segment(frame);
   if (command == 0x80) {
     mode_ = Mode::None;
     return {};
   }
-  const auto object = Object(static_cast<std::uint16_t>(number(&frame.data[1], 2)), frame.data[3]);
+  const ObjectAddress object{static_cast<std::uint16_t>(number(&frame.data[1], 2)), frame.data[3]};
   switch (command >> 5) {
     case 1:
       object_ = object;
@@ -87,18 +92,7 @@ std::vector<CanFrame> SdoServer::receive(const CanFrame& frame) {
 std::uint32_t SdoServer::commit() {
   mode_ = Mode::None;
   if (announced_ && *announced_ != data_.size()) return 0x06070010;
-  const auto entry = dictionary_.find(object_);
-  if (entry == dictionary_.end()) {
-    return std::any_of(dictionary_.begin(), dictionary_.end(),
-                       [&](const auto& e) { return e.first.first == object_.first; })
-               ? 0x06090011
-               : 0x06020000;
-  }
-  if (write_check) {
-    if (const std::uint32_t code = write_check(object_, data_); code != 0) return code;
-  }
-  entry->second = data_;
-  return 0;
+  return objects_.write(object_, data_);
 }
 
 std::vector<CanFrame> SdoServer::initiate_download(const CanFrame& frame) {
@@ -122,6 +116,7 @@ std::vector<CanFrame> SdoServer::download_segment(const CanFrame& frame) {
   if (mode_ != Mode::Download) return abort(0x05040001);
   if (((command >> 4 & 1) != 0) != toggle_) return abort(0x05030000);
   const int size = 7 - (command >> 1 & 7);
+  if (data_.size() >= kMostBytes) return abort(kOutOfMemory);
   data_.insert(data_.end(), frame.data.begin() + 1, frame.data.begin() + 1 + size);
   const auto response = static_cast<std::uint8_t>(0x20 | (toggle_ ? 0x10 : 0));
   toggle_ = !toggle_;
@@ -132,9 +127,8 @@ std::vector<CanFrame> SdoServer::download_segment(const CanFrame& frame) {
 }
 
 std::vector<CanFrame> SdoServer::initiate_upload(const CanFrame& frame, bool block) {
-  const auto entry = dictionary_.find(object_);
-  if (entry == dictionary_.end()) return abort(0x06020000);
-  data_ = entry->second;
+  data_.clear();
+  if (const std::uint32_t code = objects_.read(object_, data_); code != 0) return abort(code);
   position_ = 0;
   toggle_ = false;
   if (block && data_.size() > frame.data[5]) {
@@ -181,6 +175,7 @@ std::vector<CanFrame> SdoServer::block_download_segment(const CanFrame& frame) {
   const int sequence = frame.data[0] & 0x7F;
   const bool last = (frame.data[0] & 0x80) != 0;
   bool complete = false;
+  if (data_.size() >= kMostBytes) return abort(kOutOfMemory);
   if (sequence == expected_) {
     data_.insert(data_.end(), frame.data.begin() + 1, frame.data.end());
     ++expected_;
@@ -196,7 +191,9 @@ std::vector<CanFrame> SdoServer::block_download_segment(const CanFrame& frame) {
 }
 
 std::vector<CanFrame> SdoServer::block_download_end(const CanFrame& frame) {
-  data_.erase(data_.end() - (frame.data[0] >> 2 & 7), data_.end());
+  const std::size_t unused = frame.data[0] >> 2 & 7U;
+  if (unused > data_.size()) return abort(0x08000000);
+  data_.erase(data_.end() - static_cast<std::ptrdiff_t>(unused), data_.end());
   if (crc_ && crc_of(data_) != number(&frame.data[1], 2)) return abort(0x05040004);
   const std::uint32_t code = commit();
   if (code != 0) return abort(code);
@@ -244,4 +241,4 @@ std::vector<CanFrame> SdoServer::send_block() {
   return frames;
 }
 
-}  // namespace rmac::fieldbus::test
+}  // namespace rmac::vdrive

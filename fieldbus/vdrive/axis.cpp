@@ -1,0 +1,419 @@
+#include "vdrive/axis.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace rmac::vdrive {
+namespace {
+
+constexpr double kStep_s = 125e-6;  // of the drive's own loops
+// Bandwidths of the loops, well apart from each other and from the current loop's 5000 rad/s.
+constexpr double kVelocityBandwidth = 700;  // 1/s
+constexpr double kPositionBandwidth = 150;  // 1/s
+constexpr double kIntegral = 50;            // 1/s
+constexpr double kStandingRevolutionsPerS = 0.02;
+
+constexpr std::uint16_t kHalt = 0x0100;
+constexpr std::uint16_t kFollowingError = 0x8611;
+constexpr std::uint16_t kOvertemperature = 0x4310;
+
+unsigned bit(unsigned number, bool set) {
+  return set ? 1U << number : 0U;
+}
+
+}  // namespace
+
+/// What the steps of one advance need of the dictionary.
+struct Axis::Parameters {
+  double velocity, acceleration, deceleration, quick_stop, homing_acceleration, fast, slow, top_velocity;
+  double target_velocity, target_torque, most_torque, least_position, most_position;
+  double window, window_s, velocity_window, velocity_window_s, error_window, error_s;
+  double negative_limit, positive_limit, cam_from, cam_to, index, home_offset, slow_velocity;
+  OptionCodes options;
+  int homing_method;
+  std::uint16_t controlword;
+};
+
+Axis::Axis(Dictionary& dictionary, const fieldbus::AxisPlantParameters& plant, Report report)
+    : dictionary_(dictionary),
+      mechanics_(plant),
+      plant_(plant),
+      report_(std::move(report)),
+      parameters_(std::make_unique<Parameters>()) {
+  reset();
+}
+
+Axis::~Axis() = default;
+
+void Axis::reset() {
+  *parameters_ = parameters();
+  power_ = PowerStates();
+  power_.proceed(true, parameters_->options);
+  homing_.stop();
+  mode_ = Mode::None;
+  offset_ = encoder_shift_ = 0;
+  next_target_.reset();
+  acknowledges_ = new_setpoint_before_ = homes_before_ = at_target_ = following_error_ = false;
+  dictionary_.set(0x6076, std::llround(mechanics_.rated_torque_nm * 1000));
+  dictionary_.set({0x608F, 1}, std::llround(mechanics_.counts_per_revolution));
+  follow_actual();
+  publish();
+}
+
+double Axis::counts_per_radian() const {
+  return mechanics_.counts_per_revolution / (2 * std::numbers::pi);
+}
+double Axis::shaft() const {
+  return plant_.angle_rad() * counts_per_radian();
+}
+double Axis::position() const {
+  return std::floor(shaft()) + offset_ + encoder_shift_;
+}
+double Axis::velocity() const {
+  return plant_.speed_rad_s() * counts_per_radian();
+}
+bool Axis::standing() const {
+  return demand_.velocity == 0 && std::abs(velocity()) < kStandingRevolutionsPerS * mechanics_.counts_per_revolution;
+}
+bool Axis::at_negative_limit() const {
+  return shaft() <= parameters_->negative_limit;
+}
+bool Axis::at_positive_limit() const {
+  return shaft() >= parameters_->positive_limit;
+}
+
+Axis::Parameters Axis::parameters() const {
+  const auto of = [this](std::uint16_t index, std::uint8_t sub = 0) {
+    return static_cast<double>(dictionary_.number(index, sub));
+  };
+  const bool has_limits = of(0x607D, 1) < of(0x607D, 2);
+  const double most_permille = std::min(of(0x6072), 1000 * mechanics_.peak_torque_nm / mechanics_.rated_torque_nm);
+  return {.velocity = std::min(of(0x6081), of(0x607F)),
+          .acceleration = of(0x6083),
+          .deceleration = of(0x6084),
+          .quick_stop = of(0x6085),
+          .homing_acceleration = of(0x609A),
+          .fast = of(0x6099, 1),
+          .slow = of(0x6099, 2),
+          .top_velocity = of(0x607F),
+          .target_velocity = std::clamp(of(0x60FF) + of(0x60B1), -of(0x607F), of(0x607F)),
+          .target_torque = (of(0x6071) + of(0x60B2)) / 1000 * mechanics_.rated_torque_nm,
+          .most_torque = most_permille / 1000 * mechanics_.rated_torque_nm,
+          .least_position = has_limits ? of(0x607D, 1) : -2147483648.0,
+          .most_position = has_limits ? of(0x607D, 2) : 2147483647.0,
+          .window = of(0x6067),
+          .window_s = of(0x6068) / 1000,
+          .velocity_window = of(0x606D),
+          .velocity_window_s = of(0x606E) / 1000,
+          .error_window = of(0x6065),
+          .error_s = of(0x6066) / 1000,
+          .negative_limit = of(0x2000, 1),
+          .positive_limit = of(0x2000, 2),
+          .cam_from = of(0x2000, 3),
+          .cam_to = of(0x2000, 4),
+          .index = of(0x2000, 5),
+          .home_offset = of(0x607C),
+          .slow_velocity = of(0x606F),
+          .options = {.quick_stop = static_cast<int>(of(0x605A)),
+                      .shutdown = static_cast<int>(of(0x605B)),
+                      .disable_operation = static_cast<int>(of(0x605C)),
+                      .fault_reaction = static_cast<int>(of(0x605E))},
+          .homing_method = static_cast<int>(of(0x6098)),
+          .controlword = static_cast<std::uint16_t>(dictionary_.number(0x6040))};
+}
+
+void Axis::take(ObjectAddress object) {
+  *parameters_ = parameters();
+  if (object.index == 0x6040) take_controlword();
+  if (object.index == 0x607A && mode_ == Mode::CyclicSyncPosition) {
+    setpoint_ = static_cast<double>(dictionary_.number(0x607A));
+    // 60C2h: value times ten to the index, in seconds.
+    setpoint_left_s_ = static_cast<double>(dictionary_.number(0x60C2, 1)) *
+                       std::pow(10.0, static_cast<double>(dictionary_.number(0x60C2, 2)));
+  }
+  if (object.index == 0x6060) {
+    const Mode wanted = static_cast<Mode>(dictionary_.number(0x6060));
+    if (wanted == mode_) return;
+    mode_ = wanted;
+    homing_.stop();
+    next_target_.reset();
+    acknowledges_ = at_target_ = homes_before_ = false;
+    setpoint_ = target_ = demand_.position;
+    setpoint_left_s_ = 0;
+  }
+}
+
+void Axis::take_controlword() {
+  const auto word = static_cast<std::uint16_t>(dictionary_.number(0x6040));
+  const bool was_powered = power_.powered();
+  if (power_.control(word, parameters_->options)) report_(0);
+  if (!was_powered && power_.powered()) follow_actual();
+  const bool rises = (word & 0x10) != 0 && !new_setpoint_before_;
+  new_setpoint_before_ = (word & 0x10) != 0;
+  if (!power_.operating() || mode_ != Mode::ProfilePosition) {
+    if (!new_setpoint_before_) acknowledges_ = false;
+    return;
+  }
+  // The handshake of a new set-point (CiA 402-2, 10.2): taken on the rise of bit 4, acknowledged until it falls and
+  // there is room for another.
+  if (rises && (!next_target_ || (word & 0x20) != 0)) {
+    const auto written = static_cast<double>(dictionary_.number(0x607A));
+    const double from = next_target_ ? *next_target_ : target_;
+    const double target = (word & 0x40) != 0 ? from + written : written;
+    const bool at_once = (word & 0x20) != 0 || at_target_ || (!next_target_ && demand_.velocity == 0);
+    if (at_once) {
+      target_ = target;
+      next_target_.reset();
+      at_target_ = false;
+    } else {
+      next_target_ = target;
+    }
+    acknowledges_ = true;
+  }
+  if (!new_setpoint_before_ && !next_target_) acknowledges_ = false;
+}
+
+void Axis::trip(std::uint16_t error_code) {
+  if (power_.state() == PowerStates::Fault || power_.state() == PowerStates::FaultReaction) return;
+  power_.raise_fault(parameters_->options);
+  report_(error_code);
+}
+
+void Axis::abort_connection() {
+  constexpr std::uint16_t kHeartbeatError = 0x8130;
+  power_.abort_connection(static_cast<int>(dictionary_.number(0x6007)), parameters_->options);
+  if (power_.state() == PowerStates::FaultReaction) dictionary_.set(0x603F, kHeartbeatError);
+}
+
+void Axis::follow_actual() {
+  demand_ = {.position = position(), .velocity = velocity(), .acceleration = 0};
+  setpoint_ = target_ = demand_.position;
+  setpoint_left_s_ = 0;
+  integral_nm_ = mechanics_.gravity_nm;
+  torque_nm_ = 0;
+  index_turn_ = std::floor((shaft() - parameters_->index) / mechanics_.counts_per_revolution);
+}
+
+void Axis::advance(double duration_s) {
+  if (duration_s <= 0) return;
+  // A host that stood still for long would otherwise be busy for as long with what it missed.
+  constexpr double kMostAtOnce_s = 0.5;
+  const double bounded = std::min(duration_s, kMostAtOnce_s);
+  const int steps = static_cast<int>(std::ceil(bounded / kStep_s - 1e-9));
+  for (int i = 0; i < steps; ++i) step(*parameters_, bounded / steps);
+}
+
+void Axis::step(const Parameters& parameters, double dt) {
+  if (overheated_) trip(kOvertemperature);
+  const Demand before = demand_;
+  limited_ = false;
+  if (power_.operating()) {
+    operate(parameters, dt);
+    const bool torque = mode_ == Mode::CyclicSyncTorque || mode_ == Mode::None;
+    if (!torque && mode_ != Mode::Homing) stop_at_limits(before, parameters, dt);
+    if (!torque) torque_nm_ = loops(parameters, dt);
+  } else if (power_.powered()) {
+    // From what it does, not from what it was asked to do: a setpoint may have been out of reach.
+    if (!braking_) demand_ = {.position = position(), .velocity = velocity(), .acceleration = 0};
+    brake(parameters, dt);
+  } else {
+    follow_actual();
+  }
+  braking_ = power_.powered() && !power_.operating();
+  torque_nm_ = std::clamp(torque_nm_, -parameters.most_torque, parameters.most_torque);
+  plant_.advance(torque_nm_, !power_.powered(), dt);
+  watch(parameters, dt);
+  power_.proceed(standing(), parameters_->options);
+}
+
+void Axis::operate(const Parameters& parameters, double dt) {
+  const bool halt = (parameters.controlword & kHalt) != 0;
+  switch (mode_) {
+    case Mode::CyclicSyncTorque: {
+      const double torque = parameters.target_torque;
+      follow_actual();
+      torque_nm_ = torque;
+      const double top = mechanics_.max_speed_rpm / 60 * mechanics_.counts_per_revolution;
+      const bool too_fast = std::abs(velocity()) >= top && torque * velocity() > 0;
+      limited_ = (torque > 0 && at_positive_limit()) || (torque < 0 && at_negative_limit());
+      // Into a limit switch it brakes instead, as far as that does not turn it round within the step.
+      const double to_rest = -plant_.speed_rad_s() * mechanics_.inertia_kg_m2() / dt;
+      if (limited_) torque_nm_ = std::clamp(to_rest, -mechanics_.rated_torque_nm, mechanics_.rated_torque_nm);
+      if (too_fast) torque_nm_ = 0;
+      break;
+    }
+    case Mode::CyclicSyncPosition:
+      setpoint_ = std::clamp(setpoint_, parameters.least_position, parameters.most_position);
+      follow_setpoint(dt);
+      break;
+    case Mode::CyclicSyncVelocity:
+      demand_.acceleration = 0;
+      demand_.velocity = parameters.target_velocity;
+      demand_.position += demand_.velocity * dt;
+      break;
+    case Mode::ProfileVelocity: {
+      const double wanted = halt ? 0 : parameters.target_velocity;
+      const bool slows = std::abs(wanted) < std::abs(demand_.velocity) || wanted * demand_.velocity < 0;
+      demand_.ramp(wanted, slows ? parameters.deceleration : parameters.acceleration, dt);
+      break;
+    }
+    case Mode::ProfilePosition:
+      if (halt) {
+        demand_.ramp(0, parameters.deceleration, dt);
+      } else {
+        position_profile(parameters, dt);
+      }
+      break;
+    case Mode::Homing:
+      home(parameters, dt);
+      break;
+    default:
+      follow_actual();
+      break;
+  }
+}
+
+/// Along a straight line to the setpoint, which it reaches when the next one is due.
+void Axis::follow_setpoint(double dt) {
+  if (setpoint_left_s_ < dt / 2) {
+    demand_.position = setpoint_;
+    demand_.velocity = demand_.acceleration = 0;
+    return;
+  }
+  demand_.velocity = (setpoint_ - demand_.position) / std::max(setpoint_left_s_, dt);
+  demand_.acceleration = 0;
+  demand_.position += demand_.velocity * dt;
+  setpoint_left_s_ -= dt;
+}
+
+void Axis::position_profile(const Parameters& parameters, double dt) {
+  const double target = std::clamp(target_, parameters.least_position, parameters.most_position);
+  limited_ = target != target_;
+  const bool arrived =
+      demand_.approach(target, parameters.velocity, parameters.acceleration, parameters.deceleration, dt);
+  if (arrived && next_target_) {
+    target_ = *next_target_;
+    next_target_.reset();
+    at_target_ = false;
+    if (!new_setpoint_before_) acknowledges_ = false;
+  }
+}
+
+void Axis::home(const Parameters& parameters, double dt) {
+  const bool start = (parameters.controlword & 0x10) != 0;
+  const int method = parameters.homing_method;
+  if (start && !homes_before_ && Homing::knows(method)) homing_.start(method);
+  if (!start && homing_.state() == Homing::State::Running) homing_.stop();
+  homes_before_ = start;
+  const double shaft_now = shaft();
+  const double turn = std::floor((shaft_now - parameters_->index) / mechanics_.counts_per_revolution);
+  const bool in_cam = shaft_now >= parameters_->cam_from && shaft_now <= parameters_->cam_to;
+  const int direction = homing_.step({.negative_limit = at_negative_limit(),
+                                      .positive_limit = at_positive_limit(),
+                                      .home_switch = in_cam,
+                                      .index = turn != index_turn_,
+                                      .standing = standing()});
+  index_turn_ = turn;
+  const bool halt = (parameters.controlword & kHalt) != 0;
+  const double velocity = halt ? 0 : direction * (homing_.fast() ? parameters.fast : parameters.slow);
+  demand_.ramp(velocity, parameters.homing_acceleration, dt);
+  if (homing_.found()) {
+    // The position here becomes the home offset (607Ch); what the loops follow moves with it.
+    const double shift = parameters_->home_offset - position();
+    offset_ += shift;
+    demand_.position += shift;
+    setpoint_ = target_ = demand_.position;
+  }
+}
+
+/// Into a closed limit switch no demand goes on: it comes to rest on the quick stop's deceleration and stays.
+void Axis::stop_at_limits(const Demand& before, const Parameters& parameters, double dt) {
+  const bool into = (demand_.velocity > 0 && at_positive_limit()) || (demand_.velocity < 0 && at_negative_limit());
+  if (!into) return;
+  limited_ = true;
+  demand_ = before;
+  demand_.ramp(0, parameters.quick_stop, dt);
+}
+
+void Axis::brake(const Parameters& parameters, double dt) {
+  double deceleration = parameters.quick_stop;
+  if (power_.braking() == Braking::SlowDown) deceleration = parameters.deceleration;
+  const double possible = mechanics_.rated_torque_nm / mechanics_.inertia_kg_m2() * counts_per_radian();
+  if (power_.braking() == Braking::Torque) deceleration = possible;
+  demand_.ramp(0, std::min(deceleration, possible), dt);
+  torque_nm_ = loops(parameters, dt);
+}
+
+double Axis::loops(const Parameters& parameters, double dt) {
+  const double nm_per_count = mechanics_.inertia_kg_m2() / counts_per_radian();
+  const double position_error = demand_.position - position();
+  const double velocity_error = demand_.velocity - velocity();
+  const double gain = nm_per_count * kVelocityBandwidth * kPositionBandwidth;
+  integral_nm_ += gain * kIntegral * position_error * dt;
+  integral_nm_ = std::clamp(integral_nm_, -parameters.most_torque, parameters.most_torque);
+  return nm_per_count * (demand_.acceleration + kVelocityBandwidth * velocity_error) + gain * position_error +
+         integral_nm_;
+}
+
+void Axis::watch(const Parameters& parameters, double dt) {
+  const double error = std::abs(demand_.position - position());
+  const bool follows = power_.operating() && (mode_ == Mode::CyclicSyncPosition || mode_ == Mode::ProfilePosition);
+  constexpr double kOff = 4294967295.0;
+  following_error_ = follows && parameters.error_window < kOff && error > parameters.error_window;
+  following_error_s_ = following_error_ ? following_error_s_ + dt : 0;
+  if (following_error_ && following_error_s_ > parameters.error_s) trip(kFollowingError);
+
+  const bool halt = (parameters.controlword & kHalt) != 0;
+  bool within = false;
+  double needed_s = 0;
+  if (halt) {
+    within = standing();
+  } else if (mode_ == Mode::ProfilePosition) {
+    within = !next_target_ && std::abs(target_ - position()) <= parameters.window;
+    needed_s = parameters.window_s;
+  } else if (mode_ == Mode::ProfileVelocity) {
+    within = std::abs(parameters.target_velocity - velocity()) <= parameters.velocity_window;
+    needed_s = parameters.velocity_window_s;
+  }
+  in_window_s_ = within ? in_window_s_ + dt : 0;
+  at_target_ = within && in_window_s_ >= needed_s;
+}
+
+unsigned Axis::mode_bits() const {
+  switch (mode_) {
+    case Mode::ProfilePosition:
+      return bit(10, at_target_) | bit(12, acknowledges_) | bit(13, following_error_);
+    case Mode::ProfileVelocity: {
+      const bool slow = std::abs(velocity()) <= parameters_->slow_velocity;
+      return bit(10, at_target_) | bit(12, slow);
+    }
+    case Mode::Homing:
+      return bit(10, homing_.state() != Homing::State::Running && demand_.velocity == 0) |
+             bit(12, homing_.state() == Homing::State::Attained) | bit(13, homing_.state() == Homing::State::Failed);
+    case Mode::CyclicSyncPosition:
+    case Mode::CyclicSyncVelocity:
+    case Mode::CyclicSyncTorque:
+      return bit(12, power_.operating() && !limited_) | bit(13, following_error_);
+    default:
+      return 0;
+  }
+}
+
+void Axis::publish() {
+  const double shaft_now = shaft();
+  const bool in_cam = shaft_now >= parameters_->cam_from && shaft_now <= parameters_->cam_to;
+  dictionary_.set(0x6041, power_.statusword() | mode_bits() | bit(11, limited_) | bit(7, overheated_));
+  dictionary_.set(0x6061, static_cast<std::int64_t>(mode_));
+  dictionary_.set(0x6062, std::llround(demand_.position));
+  dictionary_.set(0x6064, std::llround(position()));
+  dictionary_.set(0x606B, std::llround(demand_.velocity));
+  dictionary_.set(0x606C, std::llround(velocity()));
+  dictionary_.set(0x6077, std::lround(plant_.motor_nm() * 1000 / mechanics_.rated_torque_nm));
+  dictionary_.set(0x60F4, std::llround(demand_.position - position()));
+  dictionary_.set(0x60FD, bit(0, at_negative_limit()) | bit(1, at_positive_limit()) | bit(2, in_cam));
+  constexpr std::int64_t kWarm = 250;  // tenths of a degree
+  constexpr std::int64_t kHot = 1150;
+  dictionary_.set(0x2001, overheated_ ? kHot : kWarm);
+}
+
+}  // namespace rmac::vdrive

@@ -1,0 +1,178 @@
+#include <deque>
+
+#include "conformance/control_interface_conformance.hpp"
+#include "rmac/fieldbus/canopen/canopen_interface.hpp"
+#include "rmac/motion/drive_power.hpp"
+#include "unit/vdrive/node_bench.hpp"
+
+// The CANopen master and these drives know nothing of each other but the standards.
+namespace rmac::vdrive::test {
+namespace {
+
+using fieldbus::CanHealth;
+using fieldbus::CanPort;
+using fieldbus::canopen::CanopenInterface;
+using std::chrono::milliseconds;
+
+/// Nodes at one end of a wire inside the process, the master's port at the other.
+class Wire {
+ public:
+  Node& add(std::uint8_t id) {
+    nodes_.push_back(std::make_unique<Node>(sheet(), id, fieldbus::AxisPlantParameters()));
+    nodes_.back()->power_on(now_);
+    return *nodes_.back();
+  }
+  std::unique_ptr<CanPort> open() { return std::make_unique<Port>(*this); }
+  void pass(Time time) {
+    for (const Time end = now_ + time; now_ < end;) {
+      now_ = std::min(now_ + Time(std::chrono::microseconds(250)), end);
+      for (auto& node : nodes_) node->poll(now_);
+      deliver();
+    }
+  }
+
+ private:
+  class Port final : public CanPort {
+   public:
+    explicit Port(Wire& wire) : wire_(wire) { wire_.received_.clear(); }
+    bool send(const CanFrame& frame) noexcept override {
+      for (auto& node : wire_.nodes_) node->receive(frame, wire_.now_);
+      wire_.deliver();
+      return true;
+    }
+    bool receive(CanFrame& frame) noexcept override {
+      if (wire_.received_.empty()) return false;
+      frame = wire_.received_.front();
+      wire_.received_.pop_front();
+      return true;
+    }
+    void wait(Time at_most) noexcept override { wire_.pass(at_most); }
+    [[nodiscard]] Time now() const noexcept override { return wire_.now_; }
+    [[nodiscard]] CanHealth health() const noexcept override { return {}; }
+
+   private:
+    Wire& wire_;
+  };
+  void deliver() {
+    for (auto& node : nodes_) {
+      for (const CanFrame& frame : node->take_output(now_)) received_.push_back(frame);
+    }
+  }
+
+  std::vector<std::unique_ptr<Node>> nodes_;
+  std::deque<CanFrame> received_;
+  Time now_{std::chrono::seconds(1)};
+};
+
+class MasterOverVirtualDrives : public testing::Test, public DigitalControlInterface {
+ protected:
+  void make(const std::map<std::string, std::vector<double>>& numbers,
+            const std::map<std::string, std::string>& texts = {}) {
+    auto config = fieldbus::canopen::read_canopen_config(
+        "can0", numbers, texts, 0.001,
+        [](const std::string&, const std::string&) -> Expected<fieldbus::eds::DeviceDescription> { return sheet(); });
+    ASSERT_TRUE(config.has_value()) << config.error().message;
+    master_ = std::make_unique<CanopenInterface>(*config, [this](std::span<const std::uint16_t>, std::size_t) {
+      return Expected<std::unique_ptr<CanPort>>(wire_.open());
+    });
+    commands_.assign(master_->axis_count(), {});
+    feedback_.assign(master_->axis_count(), {});
+  }
+  std::size_t axis_count() const noexcept override { return master_->axis_count(); }
+  Expected<> start() override {
+    return master_->start().map([this] { EXPECT_TRUE(exchange(commands_, feedback_)); });
+  }
+  void stop() noexcept override { master_->stop(); }
+  bool exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept override {
+    const bool sound = master_->exchange(commands, feedback);
+    wire_.pass(milliseconds(1));
+    return sound;
+  }
+  void cycles(int count, DriveWish wish, bool reset = false) {
+    for (int i = 0; i < count; ++i) {
+      for (std::size_t a = 0; a < commands_.size(); ++a) {
+        commands_[a].controlword = next_controlword(feedback_[a].statusword, wish, reset, commands_[a].controlword);
+      }
+      EXPECT_TRUE(exchange(commands_, feedback_));
+    }
+  }
+
+  Wire wire_;
+  std::unique_ptr<CanopenInterface> master_;
+  std::vector<DriveCommand> commands_;
+  std::vector<DriveFeedback> feedback_;
+};
+
+TEST_F(MasterOverVirtualDrives, ConformsToThePort) {
+  wire_.add(1);
+  wire_.add(2);
+  make({{"node", {1, 2}}}, {{"eds", "rmac-vdrive"}});
+  conformance::ControlInterfaceConformance(*this, 1).check();
+}
+
+TEST_F(MasterOverVirtualDrives, MovesByTorquePositionAndVelocity) {
+  for (int id = 1; id <= 3; ++id) wire_.add(static_cast<std::uint8_t>(id));
+  make({{"node", {1, 2, 3}}, {"mode", {10, 8, 9}}, {"load_share", {100}}},
+       {{"tpdo", "6041:00/16 6064:00/32"}, {"eds", "rmac-vdrive"}});
+  ASSERT_TRUE(start().has_value());
+  cycles(20, DriveWish::Operational);
+  for (const DriveFeedback& words : feedback_) ASSERT_EQ(drive_state(words.statusword), DriveState::OperationEnabled);
+  commands_[0].mode = DriveMode::CyclicSyncTorque;
+  for (int i = 0; i < 500; ++i) {
+    commands_[0].target_torque_permille = static_cast<std::int16_t>(i < 100 ? 300 : 0);
+    commands_[1].target_position_counts = static_cast<std::int32_t>(std::lround(40000 * (1 - std::cos(i * 0.01))));
+    commands_[2].target_velocity_rpm = 100000;  // units of the drive: counts/s
+    cycles(1, DriveWish::Operational);
+  }
+  EXPECT_GT(feedback_[0].position_counts, 100000);
+  EXPECT_NEAR(feedback_[1].position_counts, 40000 * (1 - std::cos(4.97)), 500);
+  EXPECT_NEAR(feedback_[2].position_counts, 50000, 3000);
+  stop();
+}
+
+TEST_F(MasterOverVirtualDrives, SeesFaultsAndGoesOnAfterThem) {
+  Node& hot = wire_.add(1);
+  Node& mute = wire_.add(2);
+  make({{"node", {1, 2}}}, {{"eds", "rmac-vdrive"}});
+  ASSERT_TRUE(start().has_value());
+  cycles(20, DriveWish::Operational);
+  hot.set_overheated(true);
+  cycles(20, DriveWish::Operational);
+  EXPECT_EQ(drive_state(feedback_[0].statusword), DriveState::Fault);
+  EXPECT_EQ(feedback_[0].error_code, 0x4310);
+  hot.set_overheated(false);
+  mute.set_mute(true);
+  cycles(5, DriveWish::Off);
+  EXPECT_FALSE(feedback_[1].online);
+  mute.set_mute(false);
+  // Its heartbeat was away for less than the master waits: the answers are back at once.
+  cycles(5, DriveWish::Off);
+  EXPECT_TRUE(feedback_[1].online);
+  mute.set_mute(true);
+  cycles(200, DriveWish::Off);
+  mute.set_mute(false);
+  cycles(1500, DriveWish::Off);
+  EXPECT_TRUE(feedback_[1].online) << "brought up again";
+  hot.set_pdo_length_change(-1);
+  cycles(5, DriveWish::Off);
+  EXPECT_FALSE(feedback_[0].online);
+  EXPECT_GT(master_->counters().short_answers, 0U);
+  hot.set_pdo_length_change(0);
+  cycles(5, DriveWish::Off, true);
+  EXPECT_TRUE(feedback_[0].online);
+  EXPECT_NE(drive_state(feedback_[0].statusword), DriveState::Fault);
+  stop();
+}
+
+TEST_F(MasterOverVirtualDrives, StopsThemByItsDeath) {
+  Node& node = wire_.add(1);
+  make({{"node", {1}}}, {{"eds", "rmac-vdrive"}, {"setup", "605A:00/16=6"}});
+  ASSERT_TRUE(start().has_value());
+  cycles(20, DriveWish::Operational);
+  EXPECT_EQ(node.axis().state(), PowerStates::OperationEnabled);
+  wire_.pass(milliseconds(100));  // two heartbeat periods
+  EXPECT_EQ(node.axis().state(), PowerStates::QuickStop);
+}
+
+}  // namespace
+}  // namespace rmac::vdrive::test
