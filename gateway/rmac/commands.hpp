@@ -60,4 +60,8 @@ struct JogRequest {
 /// a bus exceeds its share. Needs no appliance.
 [[nodiscard]] Result<> show_bus_load(const std::string& device_json, double period_s, bool json);
 
+/// Lists the CANopen nodes on an interface, and which data sheets of `folder` are theirs; refuses a bus on which a
+/// machine runs. Needs no appliance.
+[[nodiscard]] Result<> scan_bus(const std::string& interface, const std::string& folder, bool json);
+
 }  // namespace rmac::cli

@@ -20,7 +20,7 @@ using Command = std::function<Result<>(Connection&)>;
 struct Arguments {
   Endpoint endpoint;
   bool json = false, watch = false, load_virtual = false;
-  std::string name, file;
+  std::string name, file, folder;
   MachineSearch search;
   RunOptions run;
   SimulateOptions simulate;
@@ -115,6 +115,12 @@ void add_offline_commands(CLI::App& app, Arguments& arguments, std::function<Res
   load->add_option("--period", arguments.period_s, "cycle of the servo loop, s (period_s in rmacd.json)")
       ->check(CLI::Range(0.0001, 0.1))
       ->capture_default_str();
+  auto* scan =
+      bus->add_subcommand("scan", "list the CANopen nodes on an interface; refuses a bus on which a machine runs");
+  scan->add_option("INTERFACE", arguments.name, "a CAN interface that is up: can0")->required();
+  scan->add_option("--eds", arguments.folder, "a folder of EDS and DCF files: say which are the nodes'")
+      ->check(CLI::ExistingDirectory);
+  scan->callback([&] { command = [&] { return scan_bus(arguments.name, arguments.folder, arguments.json); }; });
   load->callback([&] { command = [&] { return show_bus_load(arguments.file, arguments.period_s, arguments.json); }; });
 }
 

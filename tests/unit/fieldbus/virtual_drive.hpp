@@ -66,6 +66,8 @@ class VirtualDrive {
   [[nodiscard]] bool operational() const { return nmt_ == 5; }
   [[nodiscard]] std::uint32_t value(std::uint16_t index, std::uint8_t sub) const;
   void set(std::uint16_t index, std::uint8_t sub, std::uint32_t value, int bytes);
+  /// Also from the next reset on, while it is without power.
+  void set_bytes(Object object, const Bytes& bytes) { dictionary_[object] = defaults_[object] = bytes; }
   void remove(std::uint16_t index);
 
   vdrive::SdoServer& server() { return server_; }
