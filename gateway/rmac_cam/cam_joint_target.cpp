@@ -15,23 +15,8 @@ namespace {
 /// More than any machine tool's geometry has; a module that has more is asked for the nearest.
 constexpr std::size_t kMostSolutions = 16;
 
-bool has_min(const JointLimits& joint) {
-  return joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfinitePositive;
-}
-bool has_max(const JointLimits& joint) {
-  return joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfiniteNegative;
-}
-
-/// A turn that lies outside of its travel, by as few whole turns further as bring it inside.
-double unwound(const JointLimits& joint, double degrees) {
-  if (joint.type != JointType::Rotary) return degrees;
-  if (has_max(joint) && degrees > joint.max) return degrees - 360 * std::ceil((degrees - joint.max) / 360);
-  if (has_min(joint) && degrees < joint.min) return degrees + 360 * std::ceil((joint.min - degrees) / 360);
-  return degrees;
-}
-
 bool inside(const JointLimits& joint, double position) {
-  return !(has_min(joint) && position < joint.min) && !(has_max(joint) && position > joint.max);
+  return !(ends_below(joint) && position < joint.min) && !(ends_above(joint) && position > joint.max);
 }
 
 /// Of the solutions of one pose the one that lies within all travels and has the shortest way for the joint that takes

@@ -209,6 +209,7 @@ Blend make_blend(const PathSegment& before, const PathSegment& after, double roo
       after.demand().tolerance_mm - std::max(before.demand().deviation_mm, after.demand().deviation_mm);
   if (!(tolerance > 0) || before.demand().rest_after || after.demand().rest_before) return {};
   if (before.curve().in_joint_space() || after.curve().in_joint_space()) return {};
+  if (before.curve().dimension() > 6 || after.curve().dimension() > 6) return {};  // past the pole, turns are not free
   if (!same_frames(before.frames(), after.frames()) || before.kinematics() != after.kinematics()) return {};
   Meeting corner;
   before.curve().evaluate(before.length(), 2, -1, corner.before);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "path/join.hpp"
+#include "path/pole_passage.hpp"
 #include "path/travel.hpp"
 #include "path/trimmed_curve.hpp"
 #include "rmac/motion/frame.hpp"
@@ -55,6 +56,19 @@ Error unreachable(const Move& move, const PathSegment& segment, KinematicsStatus
   }
   return {MinorCode::TravelLimit,
           text("move %lld is out of this mechanism's reach at %s; no joint values give this pose", id, place.c_str())};
+}
+
+Error beyond_pole(const Move& move, const Curve& near, double s_mm, double deviation) {
+  constexpr double kDegrees = 57.29577951308232;
+  CurvePoint point;
+  near.evaluate(near.length() / 2, 0, 1, point);
+  return {
+      MinorCode::TravelLimit,
+      text("move %lld passes the pole, where the tool stands along a rotary axis, at tip x %.4f y %.4f z %.4f (part "
+           "frame), %.4f mm along the move; the tool axis would leave the programmed one by %.3f degrees there, and "
+           "may by %.3f; lead it past the pole further off, or straight through",
+           static_cast<long long>(move.id), point.d[0][0], point.d[0][1], point.d[0][2], s_mm, deviation * kDegrees,
+           kPoleDeviation * kDegrees)};
 }
 
 /// The joint that a move leaves outside of its travel, where it stood further out before.
@@ -133,25 +147,14 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
     return {};
   };
 
-  for (auto& owned : *curves) {
-    const std::shared_ptr<const Curve> curve = std::move(owned);
-    if (joint_move) {
-      // Speed along a joint path: what the slowest joint allows at the move's fraction; the time law bounds each joint
-      // again, point by point.
-      demand.feed_mm_s = std::numeric_limits<double>::infinity();
-      CurvePoint point;
-      double feed = 0;
-      for (const double s : curve->nodes()) {
-        curve->evaluate(s, 1, s > 0 ? -1 : 1, point);
-        double here = std::numeric_limits<double>::infinity();
-        for (std::size_t j = 0; j < model_.joints.size(); ++j) {
-          if (point.d[1][j] != 0)
-            here = std::min(here, model_.joints[j].max_speed * move.joint_speed_fraction / std::abs(point.d[1][j]));
-        }
-        feed = std::max(feed, here);
-      }
-      demand.feed_mm_s = feed;
-    }
+  const auto append_piece = [&](const std::shared_ptr<const Curve>& piece, bool last) {
+    demand.rest_before = positioning && segments.empty();
+    demand.rest_after = positioning && last;
+    stretch.last_of_move = last;
+    return append(piece);
+  };
+
+  const auto lay = [&](const std::shared_ptr<const Curve>& curve, bool last) -> Expected<> {
     std::vector<double> cuts{0};
     if (!curve->breaks().empty()) {
       PathSegment probe(curve, frames_, model_.kinematics, demand, {stretch});
@@ -171,12 +174,72 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
       const bool whole = cuts.size() == 2;
       auto piece = whole ? curve : std::make_shared<TrimmedCurve>(curve, cuts[i], cuts[i + 1]);
-      const bool last = &owned == &curves->back() && i + 2 == cuts.size();
-      demand.rest_before = positioning && segments.empty();
-      demand.rest_after = positioning && last;
-      stretch.last_of_move = last;
-      if (auto appended = append(piece); !appended) return tl::unexpected(appended.error());
+      if (auto appended = append_piece(piece, last && i + 2 == cuts.size()); !appended) return appended;
     }
+    return {};
+  };
+
+  const auto pass_pole = [&](const std::shared_ptr<const Curve>& near, const PathSegment* before,
+                             const std::shared_ptr<const Curve>& next, bool last) -> Expected<> {
+    const auto passages = pole_passages(near, {joints, before}, next, model_.kinematics, frames_, model_.joints);
+    Expected<> refused = tl::unexpected(beyond_pole(move, *near, stretch.s_begin_mm, kPoleDeviation));
+    for (const auto& passage : passages) {
+      const auto [deviation, s] = passage->largest_deviation();
+      if (deviation > kPoleDeviation) {
+        refused = tl::unexpected(beyond_pole(move, *near, stretch.s_begin_mm + s, deviation));
+      } else if (auto appended = append_piece(passage, last); appended || &passage == &passages.back()) {
+        return appended;
+      }
+    }
+    return refused;
+  };
+
+  const auto lay_past_pole = [&](const std::shared_ptr<const Curve>& curve, bool last) -> Expected<> {
+    Vector pole{};
+    if (joint_move || !model_.kinematics->pole(pole)) return lay(curve, last);
+    const PoleMap map = map_pole(*curve, apply_to_vector(inverse(frames_.part), pole));
+    if (map.passages.empty() && map.nodes.empty()) return lay(curve, last);
+    const double length = curve->length();
+    const auto part = [&](double begin, double end) -> std::shared_ptr<const Curve> {
+      return std::make_shared<TrimmedCurve>(curve, begin, end, Direction::Forward, map.nodes);
+    };
+    double at = 0;
+    for (std::size_t i = 0; i <= map.passages.size(); ++i) {
+      const double until = i < map.passages.size() ? map.passages[i].begin : length;
+      if (until > at) {
+        if (auto laid = lay(part(at, until), last && until == length); !laid) return laid;
+      }
+      if (i == map.passages.size()) break;
+      const auto [begin, end] = map.passages[i];
+      const double next_end = i + 1 < map.passages.size() ? map.passages[i + 1].begin : length;
+      const auto next = end < next_end ? part(end, next_end) : nullptr;
+      const PathSegment* const before = until > at ? segments.back().get() : nullptr;
+      if (auto passed = pass_pole(part(begin, end), before, next, last && end == length); !passed) return passed;
+      at = end;
+    }
+    return {};
+  };
+
+  for (auto& owned : *curves) {
+    const std::shared_ptr<const Curve> curve = std::move(owned);
+    if (joint_move) {
+      // Speed along a joint path: what the slowest joint allows at the move's fraction; the time law bounds each joint
+      // again, point by point.
+      demand.feed_mm_s = std::numeric_limits<double>::infinity();
+      CurvePoint point;
+      double feed = 0;
+      for (const double s : curve->nodes()) {
+        curve->evaluate(s, 1, s > 0 ? -1 : 1, point);
+        double here = std::numeric_limits<double>::infinity();
+        for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+          if (point.d[1][j] != 0)
+            here = std::min(here, model_.joints[j].max_speed * move.joint_speed_fraction / std::abs(point.d[1][j]));
+        }
+        feed = std::max(feed, here);
+      }
+      demand.feed_mm_s = feed;
+    }
+    if (auto laid = lay_past_pole(curve, &owned == &curves->back()); !laid) return tl::unexpected(laid.error());
   }
   end_joints_ = std::move(joints);
   ToolPose machine;

@@ -11,12 +11,14 @@ namespace {
 
 /// Rows of the pose that are directions count as this many mm, so that one solve weighs tip and axis alike.
 constexpr double kAxisWeight = 100;
+constexpr std::size_t kPoseDimension = 6;
 constexpr double kSingularPivot = 1e-9;
 /// What a free joint would have to do, in mm by path length, that counts as nothing.
 constexpr double kAnswered = 1e-6;
-/// Step along the path for differences of the Jacobian, in mm; central differences of an exact Jacobian are good to
-/// about 1e-8.
+/// Step along the path for differences of the Jacobian, in mm, and the largest step of a joint with it; central
+/// differences of an exact Jacobian are then good to about 1e-8.
 constexpr double kJacobianStep = 1e-3;
+constexpr double kJointStep = 0.01;
 
 using PoseColumn = std::array<double, 6>;
 using JointColumn = std::array<double, kMaxJoints>;
@@ -30,11 +32,9 @@ class LeastSquares {
   LeastSquares(const PoseRows& jacobian, const Kinematics& kinematics) noexcept
       : jacobian_(jacobian), n_(kinematics.joint_count()) {
     // Slides first: at the pole a turn moves the tip as slides do, and it is the turn that is free.
-    std::size_t placed = 0;
-    for (const bool turns : {false, true}) {
-      for (std::size_t j = 0; j < n_; ++j) {
-        if ((kinematics.joint_type(j) == JointType::Rotary) == turns) order_[placed++] = j;
-      }
+    std::size_t slides = 0, turns = n_;
+    for (std::size_t j = 0; j < n_; ++j) {
+      order_[kinematics.joint_type(j) == JointType::Rotary ? --turns : slides++] = j;
     }
     double most = 0;
     for (std::size_t i = 0; i < n_; ++i) {
@@ -43,14 +43,17 @@ class LeastSquares {
         for (std::size_t r = 0; r < 6; ++r) sum += jacobian[r * n_ + order_[i]] * jacobian[r * n_ + order_[k]];
         for (std::size_t m = 0; m < k; ++m) sum -= lower_[i * n_ + m] * lower_[k * n_ + m] * diagonal_[m];
         if (k < i) {
-          lower_[i * n_ + k] = diagonal_[k] > 0 ? sum / diagonal_[k] : 0;
+          lower_[i * n_ + k] = sum * inverse_[k];
         } else {
           diagonal_[i] = sum;
         }
       }
       most = std::max(most, diagonal_[i]);
-      if (diagonal_[i] > kSingularPivot * most) continue;
-      diagonal_[i] = 0;
+      if (diagonal_[i] > kSingularPivot * most) {
+        inverse_[i] = 1 / diagonal_[i];
+        continue;
+      }
+      diagonal_[i] = inverse_[i] = 0;
       any_free_ = true;
     }
   }
@@ -65,7 +68,7 @@ class LeastSquares {
       y[i] = sum;
     }
     for (std::size_t i = n_; i-- > 0;) {
-      y[i] = diagonal_[i] > 0 ? y[i] / diagonal_[i] : 0;
+      y[i] *= inverse_[i];
       // Nothing depends on a free joint: its column below the diagonal is zero.
       for (std::size_t m = i + 1; m < n_; ++m) y[i] -= lower_[m * n_ + i] * y[m];
     }
@@ -89,8 +92,80 @@ class LeastSquares {
   std::size_t n_;
   std::array<std::size_t, kMaxJoints> order_;          ///< of the columns
   std::array<double, kMaxJoints * kMaxJoints> lower_;  // below the unit diagonal
-  std::array<double, kMaxJoints> diagonal_;            // 0 for a free joint
+  std::array<double, kMaxJoints> diagonal_, inverse_;  // 0 for a free joint
   bool any_free_ = false;
+};
+
+/// What ties joints to the pose: the whole of it, or, where the curve tells the rotary joints, the tip alone, which is
+/// then the slides' to bring along.
+class JointEquations {
+ public:
+  JointEquations(const Kinematics& kinematics, const Frame& tool, const CurvePoint& curve, bool turns_known) noexcept
+      : kinematics_(kinematics), tool_(tool), curve_(curve), n_(kinematics.joint_count()) {
+    for (std::size_t j = 0; turns_known && j < n_; ++j) {
+      if (kinematics.joint_type(j) == JointType::Rotary) known_[known_count_++] = j;
+    }
+  }
+
+  [[nodiscard]] KinematicsStatus position(const PoseColumn& pose, const JointColumn& seed,
+                                          JointColumn& q) const noexcept {
+    const ToolPose wanted{{pose[0], pose[1], pose[2]}, {pose[3], pose[4], pose[5]}};
+    if (known_count_ == 0) return kinematics_.inverse(wanted, tool_, {seed.data(), n_}, {q.data(), n_});
+    // Slides move the tip linearly, so one step from anywhere arrives.
+    std::copy_n(seed.begin(), n_, q.begin());
+    for (std::size_t i = 0; i < known_count_; ++i) q[known_[i]] = curve_.d[0][kPoseDimension + i];
+    ToolPose here;
+    kinematics_.forward({q.data(), n_}, tool_, here);
+    PoseRows rows;
+    jacobian_at(q, rows);
+    PoseColumn way{};
+    for (std::size_t c = 0; c < 3; ++c) way[c] = wanted.tip[c] - here.tip[c];
+    PoseRows left;
+    JointColumn x;
+    if (!LeastSquares(unknown(rows, left), kinematics_).solve(way, x)) return KinematicsStatus::OutOfReach;
+    for (std::size_t j = 0; j < n_; ++j) q[j] += x[j];
+    return KinematicsStatus::Ok;
+  }
+
+  /// With the axis' rows weighted.
+  void jacobian_at(const JointColumn& joints, PoseRows& rows) const noexcept {
+    kinematics_.jacobian({joints.data(), n_}, tool_, {rows.data(), 6 * n_});
+    for (std::size_t i = 3 * n_; i < 6 * n_; ++i) rows[i] *= kAxisWeight;
+  }
+
+  /// What of the Jacobian is left to solve for: all of it, or, laid into `rows`, what slides do to the tip.
+  [[nodiscard]] const PoseRows& unknown(const PoseRows& jacobian, PoseRows& rows) const noexcept {
+    if (known_count_ == 0) return jacobian;
+    std::copy_n(jacobian.begin(), 3 * n_, rows.begin());
+    std::fill(rows.begin() + static_cast<std::ptrdiff_t>(3 * n_), rows.begin() + static_cast<std::ptrdiff_t>(6 * n_),
+              0.0);
+    for (std::size_t i = 0; i < known_count_; ++i) {
+      for (std::size_t r = 0; r < 3; ++r) rows[r * n_ + known_[i]] = 0;
+    }
+    return rows;
+  }
+
+  /// The joints' derivative of an order; J times it must be `rest`.
+  [[nodiscard]] bool solve(const LeastSquares& squares, const PoseRows& jacobian, std::size_t order, PoseColumn rest,
+                           JointColumn& x) const noexcept {
+    if (known_count_ == 0) return squares.solve(rest, x);
+    std::fill(rest.begin() + 3, rest.end(), 0.0);
+    const auto& turns = curve_.d[order];
+    for (std::size_t i = 0; i < known_count_; ++i) {
+      for (std::size_t r = 0; r < 3; ++r) rest[r] -= jacobian[r * n_ + known_[i]] * turns[kPoseDimension + i];
+    }
+    const bool solved = squares.solve(rest, x);
+    for (std::size_t i = 0; i < known_count_; ++i) x[known_[i]] = turns[kPoseDimension + i];
+    return solved;
+  }
+
+ private:
+  const Kinematics& kinematics_;
+  const Frame& tool_;
+  const CurvePoint& curve_;
+  std::size_t n_;
+  std::size_t known_count_ = 0;
+  std::array<std::size_t, kMaxJoints> known_;
 };
 
 }  // namespace
@@ -173,39 +248,36 @@ KinematicsStatus PathSegment::evaluate(double s, int order, int side, JointPoint
     pose[k] = {p[0], p[1], p[2], a[0], a[1], a[2]};
   }
 
+  auto& [q, x1, x2, x3] = point.d;
   JointColumn seed;
   seed_at(s, {seed.data(), n});
-  const ToolPose wanted{{pose[0][0], pose[0][1], pose[0][2]}, {pose[0][3], pose[0][4], pose[0][5]}};
-  if (const auto status = kinematics_->inverse(wanted, frames_.tool, {seed.data(), n}, {point.d[0].data(), n});
-      status != KinematicsStatus::Ok) {
-    return status;
-  }
-  if (order == 0) return KinematicsStatus::Ok;
+  const JointEquations equations(*kinematics_, frames_.tool, c, curve_->dimension() > kPoseDimension);
+  const auto status = equations.position(pose[0], seed, q);
+  if (status != KinematicsStatus::Ok || order == 0) return status;
 
-  // Least squares of J x' = p' through the normal equations; the sixth row is dependent because the axis has unit
-  // length.
-  const auto jacobian_at = [&](const JointColumn& joints, PoseRows& rows) {
-    kinematics_->jacobian({joints.data(), n}, frames_.tool, {rows.data(), 6 * n});
-    for (std::size_t i = 3 * n; i < 6 * n; ++i) rows[i] *= kAxisWeight;
-  };
   for (std::size_t k = 1; k <= static_cast<std::size_t>(order); ++k) {
     for (std::size_t r = 3; r < 6; ++r) pose[k][r] *= kAxisWeight;
   }
-  auto& [q, x1, x2, x3] = point.d;
+  // x' = J⁺p', x'' = J⁺(p'' - J' x'), x''' = J⁺(p''' - 2 J' x'' - J'' x'), primes along the path
+  // (docs/derivations/joint-path.md, eq. 1 to 3).
   PoseRows jacobian;
-  jacobian_at(q, jacobian);
-  const LeastSquares squares(jacobian, *kinematics_);
-  if (!squares.solve(pose[1], x1)) return KinematicsStatus::Singular;
+  equations.jacobian_at(q, jacobian);
+  PoseRows left;
+  const LeastSquares squares(equations.unknown(jacobian, left), *kinematics_);
+  if (!equations.solve(squares, jacobian, 1, pose[1], x1)) return KinematicsStatus::Singular;
   if (order == 1) return KinematicsStatus::Ok;
 
-  // x'' = J⁺(p'' - J' x'), x''' = J⁺(p''' - 2 J' x'' - J'' x'), primes along the path (docs/derivations/joint-path.md,
-  // eq. 2 and 3).
-  const double h = kJacobianStep;
+  const auto step_for = [&](const JointColumn& direction) {
+    double largest = 0;
+    for (std::size_t j = 0; j < n; ++j) largest = std::max(largest, std::abs(direction[j]));
+    return largest * kJacobianStep > kJointStep ? kJointStep / largest : kJacobianStep;
+  };
   const auto jacobian_along = [&](double by, const JointColumn& direction, PoseRows& rows) {
     JointColumn joints;
     for (std::size_t j = 0; j < n; ++j) joints[j] = q[j] + by * direction[j];
-    jacobian_at(joints, rows);
+    equations.jacobian_at(joints, rows);
   };
+  const double h = step_for(x1);
   PoseRows ahead, behind, turn;  // turn: dJ along x'
   jacobian_along(h, x1, ahead);
   jacobian_along(-h, x1, behind);
@@ -217,21 +289,22 @@ KinematicsStatus PathSegment::evaluate(double s, int order, int side, JointPoint
       rest[r] -= turn[i] * x1[j];
     }
   }
-  if (!squares.solve(rest, x2)) return KinematicsStatus::Singular;
+  if (!equations.solve(squares, jacobian, 2, rest, x2)) return KinematicsStatus::Singular;
   if (order == 2) return KinematicsStatus::Ok;
 
+  const double h2 = step_for(x2);
   PoseRows ahead2, behind2;
-  jacobian_along(h, x2, ahead2);
-  jacobian_along(-h, x2, behind2);
+  jacobian_along(h2, x2, ahead2);
+  jacobian_along(-h2, x2, behind2);
   rest = pose[3];
   for (std::size_t r = 0; r < 6; ++r) {
     for (std::size_t j = 0; j < n; ++j) {
       const std::size_t i = r * n + j;
-      const double bend = (ahead2[i] - behind2[i]) / (2 * h) + (ahead[i] - 2 * jacobian[i] + behind[i]) / (h * h);
+      const double bend = (ahead2[i] - behind2[i]) / (2 * h2) + (ahead[i] - 2 * jacobian[i] + behind[i]) / (h * h);
       rest[r] -= 2 * turn[i] * x2[j] + bend * x1[j];
     }
   }
-  return squares.solve(rest, x3) ? KinematicsStatus::Ok : KinematicsStatus::Singular;
+  return equations.solve(squares, jacobian, 3, rest, x3) ? KinematicsStatus::Ok : KinematicsStatus::Singular;
 }
 
 ToolPose PathSegment::pose(double s) const noexcept {

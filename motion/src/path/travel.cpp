@@ -10,12 +10,8 @@ constexpr double kTravelSlack = 1e-6;
 
 /// How far joint j is beyond its travel, with sign; 0 inside.
 double beyond(const JointLimits& joint, double position) {
-  const bool bounded_above =
-      joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfiniteNegative;
-  const bool bounded_below =
-      joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfinitePositive;
-  if (bounded_above && position > joint.max + kTravelSlack) return position - joint.max;
-  if (bounded_below && position < joint.min - kTravelSlack) return position - joint.min;
+  if (ends_above(joint) && position > joint.max + kTravelSlack) return position - joint.max;
+  if (ends_below(joint) && position < joint.min - kTravelSlack) return position - joint.min;
   return 0;
 }
 

@@ -12,10 +12,12 @@ namespace rmac {
 /// Which way along a curve.
 enum class Direction : std::uint8_t { Forward, Backward };
 
-/// The part of a curve between two arc lengths, as a curve of its own, in its own direction or against it.
+/// The part of a curve between two arc lengths, as a curve of its own, in its own direction or against it; with more
+/// nodes than the curve has, where its own are not enough.
 class TrimmedCurve final : public Curve {
  public:
-  TrimmedCurve(std::shared_ptr<const Curve> curve, double begin, double end, Direction direction = Direction::Forward)
+  TrimmedCurve(std::shared_ptr<const Curve> curve, double begin, double end, Direction direction = Direction::Forward,
+               std::span<const double> more_nodes = {})
       : curve_(std::move(curve)), begin_(begin), end_(end), direction_(direction) {
     const auto inside = [&](std::span<const double> all, std::vector<double>& kept) {
       const auto first = static_cast<std::ptrdiff_t>(kept.size());
@@ -27,6 +29,11 @@ class TrimmedCurve final : public Curve {
     inside(curve_->breaks(), breaks_);
     nodes_.push_back(0);
     inside(curve_->nodes(), nodes_);
+    if (!more_nodes.empty()) {
+      inside(more_nodes, nodes_);
+      std::sort(nodes_.begin(), nodes_.end());
+      nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+    }
     nodes_.push_back(end_ - begin_);
   }
   [[nodiscard]] bool in_joint_space() const noexcept override { return curve_->in_joint_space(); }

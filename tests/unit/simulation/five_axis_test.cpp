@@ -241,5 +241,73 @@ TEST_P(FiveAxes, RefuseByNameAmountAndPlaceWhatAJointCannotReach) {
   EXPECT_THAT(refused.error().message, testing::HasSubstr("mm along the move"));
 }
 
+/// Lines whose axis comes close to the one along which C turns.
+class PastThePole : public FiveAxes {
+ protected:
+  static constexpr double kDeviation = 0.2;  // degrees, kPoleDeviation
+
+  void follow(const ToolPose& from, const ToolPose& to) {
+    trace_.clear();
+    ASSERT_NO_FATAL_FAILURE(line(from, to));
+    ASSERT_TRUE(run());
+    check_line(from, to, kDeviation);
+    check_limits();
+    if (HasFatalFailure()) return;
+    const ToolPose end = where(simulation_->controller().sample().position_set);
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(end.tip[c], to.tip[c], 1e-6);
+    EXPECT_LE(angle(end.axis, to.axis), 1e-6);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Machines, PastThePole, testing::Values(kTable, kHead),
+                         [](const auto& made) { return made.param.name; });
+
+TEST_P(PastThePole, AToolLeansAnyWayFromUprightAndBack) {
+  for (const double around : {0.0, 30.0, 90.0, -100.0, 170.0}) {
+    SCOPED_TRACE("towards " + std::to_string(around));
+    ASSERT_NO_FATAL_FAILURE(load());
+    const ToolPose upright = simulation_->controller().sample().pose_set;
+    const ToolPose leant{{20, 10, 5}, leaning(25, around)}, back{{0, 15, 0}, {0, 0, 1}};
+    ASSERT_NO_FATAL_FAILURE(follow(upright, leant));
+    ASSERT_NO_FATAL_FAILURE(follow(leant, back));
+  }
+}
+
+TEST_P(PastThePole, TheTipHoldsItsLineHoweverCloseTheAxisPasses) {
+  for (const double off : {0.0, 1e-9, 1e-5, 0.001, 0.05, 0.3, 5.0}) {
+    for (const double around : {90.0, 20.0}) {
+      SCOPED_TRACE("off by " + std::to_string(off) + " degrees, towards " + std::to_string(around));
+      ASSERT_NO_FATAL_FAILURE(load());
+      // The circle between the two axes passes the pole by about `off`.
+      const double beside = std::asin(std::min(1.0, std::sin(off * kRad) / std::sin(20 * kRad))) / kRad;
+      const ToolPose from{{-20, 0, 0}, leaning(20, around + beside)},
+          to{{20, 5, 3}, leaning(20, around + 180 - beside)};
+      ASSERT_NO_FATAL_FAILURE(go_to(from));
+      ASSERT_NO_FATAL_FAILURE(follow(from, to));
+    }
+  }
+}
+
+TEST_P(PastThePole, SeededLinesKeepTipAndLimits) {
+  std::mt19937 random(6);
+  const auto between = [&](double a, double b) { return std::uniform_real_distribution<>(a, b)(random); };
+  for (int round = 0; round < 15; ++round) {
+    SCOPED_TRACE("round " + std::to_string(round));
+    ASSERT_NO_FATAL_FAILURE(load());
+    tool_ = {{0, 0, -between(20, 80)}, {1, 0, 0, 0}};
+    ASSERT_NO_FATAL_FAILURE(expect(cam().set_tool_interface_frame(tool_)));
+    const auto somewhere = [&] {
+      return ToolPose{{between(-25, 25), between(-25, 25), between(-20, 20)},
+                      leaning(between(0, 12), between(-180, 180))};
+    };
+    ToolPose from = somewhere();
+    ASSERT_NO_FATAL_FAILURE(go_to(from));
+    for (int i = 0; i < 3; ++i) {
+      const ToolPose to = somewhere();
+      ASSERT_NO_FATAL_FAILURE(follow(from, to));
+      from = to;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rmac::gateway

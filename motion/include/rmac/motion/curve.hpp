@@ -17,7 +17,9 @@ struct CurvePoint {
 
 /// A curve parametrised by arc length s in [0, length()]. In pose space the coordinates are tip x y z (mm, part frame)
 /// and unit tool axis i j k, and s is the length of the tip's path (of the axis' turn in degrees where the tip rests);
-/// in joint space they are the joints and s is the Euclidean length in joint units. Smooth inside; second and third
+/// in joint space they are the joints and s is the Euclidean length in joint units. A curve in pose space may add the
+/// rotary joints, in their order, as coordinates 6 on: then they are what turns, and i j k only tells where to. Smooth
+/// inside; second and third
 /// derivatives may jump at `breaks()` only, never the first. Immutable; safe from every thread; `evaluate` is real-time
 /// safe.
 class Curve {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include "rmac/motion/axis.hpp"
@@ -19,5 +20,23 @@ struct JointLimits {
   double max_acceleration = 0;
   double max_jerk = 0;
 };
+
+/// Whether the travel has an upper, or a lower, end.
+[[nodiscard]] inline bool ends_above(const JointLimits& joint) noexcept {
+  return joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfiniteNegative;
+}
+[[nodiscard]] inline bool ends_below(const JointLimits& joint) noexcept {
+  return joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfinitePositive;
+}
+
+/// The position of a rotary joint, brought by as few whole turns as it takes into its travel, or to beyond the other
+/// end where its travel is shorter than that.
+[[nodiscard]] inline double unwound(const JointLimits& joint, double position) noexcept {
+  constexpr double kTurn = 360;
+  if (joint.type != JointType::Rotary) return position;
+  if (ends_above(joint) && position > joint.max) return position - kTurn * std::ceil((position - joint.max) / kTurn);
+  if (ends_below(joint) && position < joint.min) return position + kTurn * std::ceil((joint.min - position) / kTurn);
+  return position;
+}
 
 }  // namespace rmac

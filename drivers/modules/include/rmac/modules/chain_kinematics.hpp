@@ -91,6 +91,11 @@ class ChainKinematics final : public Kinematics {
     return fit_slides(start, pose.tip, joints) ? KinematicsStatus::Ok : KinematicsStatus::OutOfReach;
   }
 
+  [[nodiscard]] bool pole(Vector& axis) const noexcept override {
+    axis = axes_[turns_[0]].direction;
+    return turn_count_ == 2;
+  }
+
   [[nodiscard]] std::size_t solutions(const ToolPose& pose, const Frame& tool, std::span<const double> seed,
                                       std::span<double> joints) const noexcept override {
     std::array<TurnAngles, 2> found;

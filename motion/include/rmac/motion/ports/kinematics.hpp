@@ -38,6 +38,10 @@ class Kinematics {
   virtual void jacobian(std::span<const double> joints, const Frame& tool,
                         std::span<double> jacobian) const noexcept = 0;
 
+  /// The pole, where there is one: the direction of the tool axis, in the machine frame and in either sense, along
+  /// which it leaves a rotary joint free, and close to which that joint turns fast. The planner leads paths past it.
+  [[nodiscard]] virtual bool pole(Vector& /*axis*/) const noexcept { return false; }
+
   /// Every solution, each within half a turn of `seed` in its rotary joints, the nearest first, one after the other in
   /// `joints`; as many as fit. How many there are: 0 where the pose is out of reach. A geometry with a single solution
   /// need not say more than its inverse.
