@@ -17,7 +17,9 @@ struct MachineSearch {
   std::optional<int> joints;
   std::string volume;  ///< LxWxD, mm
   std::optional<double> spindle_hp;
-  std::string sql;  ///< instead of all of the above
+  std::string sql;                    ///< instead of all of the above
+  std::string program;                ///< what they shall machine, a .rmac file; empty: nothing
+  std::filesystem::path device_tree;  ///< in which they are simulated; empty: the installation's
 };
 
 /// Each command of the client: does its work, prints, and says why it could not. `json` prints for programs.

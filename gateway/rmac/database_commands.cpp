@@ -6,6 +6,7 @@
 
 #include "gateway/rmac/authority.hpp"
 #include "gateway/rmac/commands.hpp"
+#include "gateway/rmac/fits.hpp"
 #include "gateway/rmac/table.hpp"
 
 namespace rmac::cli {
@@ -212,6 +213,35 @@ void print_joints(const nlohmann::json& joints) {
   fmt::print("\n{}", table(header, rows));
 }
 
+/// Puts under each machine what it makes of the program.
+Result<> add_fits(const MachineSearch& search, nlohmann::json& machines) {
+  const auto program = read_program(search.program);
+  if (!program) {
+    return tl::unexpected(program.error());
+  }
+  for (auto& machine : machines) {
+    const Fit fit = fit_of(*program, machine.at("Name").get<std::string>(), search.device_tree);
+    machine["Fits"] = fit.fits;
+    if (fit.fits) {
+      machine["CycleTime_s"] = fit.cycle_time_s;
+    } else {
+      machine["WhyNot"] = fit.why_not;
+    }
+  }
+  return {};
+}
+
+void print_fits(const nlohmann::json& machines) {
+  std::vector<std::vector<std::string>> cells;
+  for (const auto& machine : machines) {
+    const bool fits = machine.at("Fits").get<bool>();
+    cells.push_back({machine.at("Name").get<std::string>(), text_of(machine.at("NumberOfJoints")),
+                     fits ? number(machine.at("CycleTime_s").get<double>()) : "",
+                     fits ? "" : machine.at("WhyNot").get<std::string>()});
+  }
+  fmt::print("{}", table({"name", "joints", "cycle time s", "why not"}, cells));
+}
+
 }  // namespace
 
 Result<> list_machines(Connection& connection, const MachineSearch& search, bool json) {
@@ -219,12 +249,21 @@ Result<> list_machines(Connection& connection, const MachineSearch& search, bool
   if (!sql) {
     return tl::unexpected(sql.error());
   }
-  const auto rows = select(connection, *sql);
+  auto rows = select(connection, *sql);
   if (!rows) {
     return tl::unexpected(rows.error());
   }
+  if (!search.program.empty()) {
+    if (auto added = add_fits(search, *rows); !added) {
+      return added;
+    }
+  }
   if (json) {
     fmt::print("{}\n", rows->dump());
+    return {};
+  }
+  if (!search.program.empty()) {
+    print_fits(*rows);
     return {};
   }
   constexpr std::array kKeys{

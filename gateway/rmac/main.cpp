@@ -38,6 +38,10 @@ void add_database_commands(CLI::App& app, Arguments& arguments, Command& command
   machines->add_option("--spindle-hp", search.spindle_hp, "a spindle of at least so many horse powers");
   machines->add_option("--sql", search.sql, "a SELECT over the table DeviceDrivers instead")
       ->excludes("--type", "--configuration", "--joints", "--volume", "--spindle-hp");
+  machines->add_option("--fits", search.program,
+                       "simulate this .rmac file on each that is found: how long it takes, or why it cannot");
+  machines->add_option("--device-tree", search.device_tree,
+                       "where they are looked for to be simulated; the installation's unless given");
   machines->callback([&] { command = [&](auto& to) { return list_machines(to, arguments.search, arguments.json); }; });
 
   auto* show = app.add_subcommand("show", "a machine's characteristics; of the loaded one its joints too");

@@ -35,6 +35,37 @@ class Machines(unittest.TestCase):
                "AND Depth > 150 AND SpindleHorsePower > 5")
         self.assertEqual(self.names("--sql", sql), {"TarusXYZCA"})
 
+    def fits(self, program, *words):
+        file = self.appliance.folder / "program.rmac"
+        file.write_text("".join(json.dumps({"jsonrpc": "2.0", "id": number, **request}) + "\n"
+                                for number, request in enumerate(program, 1)))
+        done = self.appliance.rmac("--json", "machines", "--fits", str(file), "--device-tree", str(self.appliance.tree),
+                                   *words)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        return {machine["Name"]: machine for machine in json.loads(done.stdout)}
+
+    def test_fits_tells_how_long_a_program_takes_or_why_a_machine_cannot(self):
+        feed = {"method": "RMAC_CAM.SetFeedrate", "params": {"Feedrate": 1500}}
+        leaning = {"method": "RMAC_CAM.MoveToJointTarget",
+                   "params": {"MoveID": 1, "JointTargetFrame": {"p": [10, 0, 0], "axis": [0, 0.5, 0.8660254037844386]}}}
+        cut = {"method": "RMAC_CAM.MoveToPathTarget",
+               "params": {"MoveID": 2, "TargetFrame": {"p": [10, 20, 0], "axis": [0, 0.5, 0.8660254037844386]}}}
+        machines = self.fits([feed, leaning, cut], "--type", "mill")
+        self.assertEqual({name for name, machine in machines.items() if machine["Fits"]},
+                         {"SuginoXYZAC", "TarusXYZCA", "DMACXYZA"})
+        for name in ("SuginoXYZAC", "TarusXYZCA", "DMACXYZA"):
+            self.assertGreater(machines[name]["CycleTime_s"], 20 / 25)  # 20 mm at 25 mm/s
+        self.assertIn("program.rmac:2", machines["DMACXYZ"]["WhyNot"])
+        self.assertIn("pose", machines["DMACXYZ"]["WhyNot"])
+
+        far = {"method": "RMAC_CAM.MoveToPathTarget",
+               "params": {"MoveID": 1, "TargetFrame": {"p": [300, 0, 0], "axis": [0, 0, 1]}}}
+        machines = self.fits([{"method": "Device.Load", "params": {"Name": "DMACXYZ"}}, feed, far])
+        self.assertTrue(machines["TarusXYZCA"]["Fits"])
+        self.assertIn("joint X", machines["SuginoXYZAC"]["WhyNot"])
+        self.assertIn("50.0000 mm beyond", machines["SuginoXYZAC"]["WhyNot"])
+        self.assertIn("no measuring functions", machines["CMM"]["WhyNot"])
+
     def test_quotes_in_a_search_stay_text(self):
         self.assertEqual(self.names("--type", "Mill' OR '1'='1"), set())
 

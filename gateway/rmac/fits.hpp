@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "gateway/rmac/failure.hpp"
+#include "gateway/rmac/program.hpp"
+
+namespace rmac::cli {
+
+/// What a machine makes of a program.
+struct Fit {
+  bool fits = false;
+  double cycle_time_s = 0;  ///< where it fits
+  std::string why_not;      ///< where it does not: what was refused, in which line, and what to do
+};
+
+/// Plans the program on a machine of the device tree as `rmac simulate` does. Machines that the program itself would
+/// load are passed over: which one it runs on is the question.
+[[nodiscard]] Fit fit_of(const Program& program, const std::string& machine, const std::filesystem::path& device_tree);
+
+}  // namespace rmac::cli
