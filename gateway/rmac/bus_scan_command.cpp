@@ -7,6 +7,7 @@
 #include "gateway/rmac/table.hpp"
 #include "rmac/fieldbus/can/socket_can_port.hpp"
 #include "rmac/fieldbus/canopen/bus_scan.hpp"
+#include "rmac/fieldbus/canopen/stored_parameters.hpp"
 
 namespace rmac::cli {
 namespace {
@@ -120,6 +121,20 @@ Result<> scan_bus(const std::string& interface, const std::string& folder, bool 
   std::vector<std::vector<std::string>> rows;
   for (const ScannedNode& node : *nodes) rows.push_back(to_row(node, *sheets));
   fmt::print("{}", table({"node", "state", "device", "vendor", "product", "revision", "serial", "name", "file"}, rows));
+  return {};
+}
+
+Result<> store_node(const std::string& interface, int node, bool defaults) {
+  using fieldbus::canopen::StoreCommand;
+  constexpr std::size_t kBurst = 4;
+  auto port = fieldbus::SocketCanPort::open(interface, {}, kBurst);
+  if (!port) return fail(port.error().message);
+  const auto done = fieldbus::canopen::store_parameters(**port, static_cast<std::uint8_t>(node),
+                                                        defaults ? StoreCommand::LoadDefaults : StoreCommand::Save);
+  if (!done) return fail(fmt::format("{}: {}", interface, done.error().message));
+  fmt::print("node {} {}\n", node,
+             defaults ? "takes its maker's parameters from its next reset on: switch it off and on"
+                      : "keeps its parameters as they are now");
   return {};
 }
 

@@ -66,4 +66,7 @@ struct JogRequest {
 /// machine runs. Needs no appliance.
 [[nodiscard]] Result<> scan_bus(const std::string& interface, const std::string& folder, bool json);
 
+/// Has a node keep its parameters as they are now (1010h), or take the maker's from its next reset on (1011h).
+[[nodiscard]] Result<> store_node(const std::string& interface, int node, bool defaults);
+
 }  // namespace rmac::cli

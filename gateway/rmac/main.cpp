@@ -25,6 +25,7 @@ struct Arguments {
   RunOptions run;
   SimulateOptions simulate;
   JogRequest jog;
+  int node = 0;
   double percent = 100, period_s = 0.001;
 };
 
@@ -125,6 +126,15 @@ void add_offline_commands(CLI::App& app, Arguments& arguments, std::function<Res
   scan->add_option("--eds", arguments.folder, "a folder of EDS and DCF files: say which are the nodes'")
       ->check(CLI::ExistingDirectory);
   scan->callback([&] { command = [&] { return scan_bus(arguments.name, arguments.folder, arguments.json); }; });
+  const auto add_store = [&](const char* name, const char* what, bool defaults) {
+    auto* store = bus->add_subcommand(name, what);
+    store->add_option("INTERFACE", arguments.name, "a CAN interface that is up: can0")->required();
+    store->add_option("NODE", arguments.node, "its node id")->required()->check(CLI::Range(1, 127));
+    store->callback(
+        [&, defaults] { command = [&, defaults] { return store_node(arguments.name, arguments.node, defaults); }; });
+  };
+  add_store("store", "have a node keep its parameters as they are now, without power too (1010h)", false);
+  add_store("restore", "have a node take its maker's parameters from its next reset on (1011h)", true);
   load->callback([&] { command = [&] { return show_bus_load(arguments.file, arguments.period_s, arguments.json); }; });
 }
 

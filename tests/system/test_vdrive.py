@@ -59,6 +59,13 @@ class BusScan(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertTrue(done.stderr.startswith("rmac: CAN interface no-such-can: "), done.stderr)
 
+    def test_stores_nothing_where_there_is_no_interface(self):
+        for command in ("store", "restore"):
+            done = call("rmac", "bus", command, "no-such-can", 3)
+            self.assertEqual(done.returncode, 1)
+            self.assertTrue(done.stderr.startswith("rmac: CAN interface no-such-can: "), done.stderr)
+            self.assertEqual(call("rmac", "bus", command, "no-such-can", 128).returncode, 2)
+
     def test_wants_an_interface_and_a_folder_that_exists(self):
         self.assertEqual(call("rmac", "bus", "scan").returncode, 2)
         self.assertEqual(call("rmac", "bus", "scan", "can0", "--eds", "/no/such/folder").returncode, 2)

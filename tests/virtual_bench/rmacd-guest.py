@@ -91,6 +91,7 @@ def main():
     found = json.loads(call(BUILD / "bin/rmac", "--json", "bus", "scan", "vcan0", "--eds", device.parent / "canopen"))
     assert [(node["node"], node["name"], node["files"]) for node in found] == [
         (node, "rmac-vdrive", ["rmac-vdrive.eds"]) for node in (1, 2, 3)], found
+    print(call(BUILD / "bin/rmac", "bus", "store", "vcan0", 2))
     daemon = subprocess.Popen([BUILD / "bin/rmacd",
                                "--config", RUN / "rmacd.json"])
     wait_for("the daemon answers", lambda: subprocess.run(

@@ -20,6 +20,9 @@ BusLoad bus_load(const CanopenConfig& config) noexcept {
   }
   const double heartbeats_per_s = 1 / std::chrono::duration<double>(config.heartbeat).count();
   load.heartbeat_bits_per_s = static_cast<double>(nodes.size() + 1) * heartbeats_per_s * worst_frame_bits(1);
+  constexpr std::size_t kTimeBytes = 6;
+  const double time_s = std::chrono::duration<double>(config.time_interval).count();
+  if (time_s > 0) load.heartbeat_bits_per_s += worst_frame_bits(kTimeBytes) / time_s;
   load.bits_of_cycle = config.bit_rate * period_s;
   load.share = config.load_share;
   return load;
@@ -39,8 +42,8 @@ Expected<> check_bus_load(const CanopenConfig& config) {
 }
 
 std::size_t frames_of_cycle(const CanopenConfig& config) noexcept {
-  constexpr std::size_t kSyncHeartbeatAndBoot = 3;
-  return config.axes.size() + kSyncHeartbeatAndBoot;
+  constexpr std::size_t kSyncHeartbeatTimeAndBoot = 4;
+  return config.axes.size() + kSyncHeartbeatTimeAndBoot;
 }
 
 }  // namespace rmac::fieldbus::canopen

@@ -79,8 +79,11 @@ class Probe {
   bool asked_ = false;
 };
 
-Expected<> check_idle(CanPort& port, const ScanOptions& options, std::vector<std::unique_ptr<Probe>>& probes) {
-  const std::chrono::nanoseconds end = port.now() + options.listen;
+}  // namespace
+
+Expected<> check_idle(CanPort& port, std::chrono::nanoseconds listen,
+                      const std::function<void(const CanFrame&)>& take) {
+  const std::chrono::nanoseconds end = port.now() + listen;
   while (port.now() < end) {
     port.wait(std::min<std::chrono::nanoseconds>(end - port.now(), std::chrono::milliseconds(10)));
     CanFrame frame;
@@ -98,18 +101,19 @@ Expected<> check_idle(CanPort& port, const ScanOptions& options, std::vector<std
                        fmt::format("a machine runs on this bus: node {} is operational. Unload it first (rmac unload)",
                                    frame.id - kHeartbeatId));
       }
-      for (auto& probe : probes) probe->receive(frame, port.now());
+      if (take) take(frame);
     }
   }
   return {};
 }
 
-}  // namespace
-
 Expected<std::vector<ScannedNode>> scan_bus(CanPort& port, const ScanOptions& options) {
   std::vector<std::unique_ptr<Probe>> probes;
   for (std::uint8_t node = 1; node <= kMostNodes; ++node) probes.push_back(std::make_unique<Probe>(node, options));
-  if (auto idle = check_idle(port, options, probes); !idle) return tl::unexpected(idle.error());
+  const auto take = [&](const CanFrame& frame) {
+    for (auto& probe : probes) probe->receive(frame, port.now());
+  };
+  if (auto idle = check_idle(port, options.listen, take); !idle) return tl::unexpected(idle.error());
 
   std::size_t begun = 0;
   const auto all_over = [&] {
@@ -119,9 +123,7 @@ Expected<std::vector<ScannedNode>> scan_bus(CanPort& port, const ScanOptions& op
     // One node more a round, so that questions never fill the transmit queue.
     begun = std::min(begun + 1, probes.size());
     CanFrame frame;
-    while (port.receive(frame)) {
-      for (auto& probe : probes) probe->receive(frame, port.now());
-    }
+    while (port.receive(frame)) take(frame);
     for (std::size_t i = 0; i < begun; ++i) {
       if (probes[i]->next_frame(port.now(), frame)) port.send(frame);
     }

@@ -152,6 +152,8 @@ Expected<CanopenConfig> read_canopen_config(const std::string& bus,
   config.bit_rate = static_cast<std::uint32_t>(parameters.number("bit_rate", 1e6, 10e3, 1e6));
   config.load_share = parameters.number("load_share", 80, 1, 100, Parameters::Kind::Any) / 100;
   config.heartbeat = std::chrono::milliseconds(static_cast<int>(parameters.number("heartbeat_ms", 50, 2, 10000)));
+  config.time_interval =
+      std::chrono::nanoseconds(std::llround(parameters.number("time_s", 0, 0, 3600, Parameters::Kind::Any) * 1e9));
   config.master_node = static_cast<std::uint8_t>(parameters.number("master_node", 127, 1, 127));
   config.boot_timeout = std::chrono::milliseconds(
       std::llround(parameters.number("boot_timeout_s", 5, 0.1, 600, Parameters::Kind::Any) * 1e3));

@@ -77,6 +77,7 @@ struct CanopenInterface::Impl {
   std::vector<Axis> axes;
   CanopenCounters counters;
   std::chrono::nanoseconds next_heartbeat{0};
+  std::chrono::nanoseconds next_time{0};
   std::size_t recovering = 0;  ///< whose turn it is to send a frame of its boot
   bool running = false;
   bool fresh = false;  ///< no cycle since start
@@ -189,7 +190,7 @@ bool CanopenInterface::exchange(std::span<const DriveCommand> commands, std::spa
       axis.answered = false;
       axis.unanswered = 0;
     }
-    bus.next_heartbeat = now;
+    bus.next_heartbeat = bus.next_time = now;
     bus.fresh = false;
   }
   ++bus.counters.cycles;
@@ -294,6 +295,10 @@ bool CanopenInterface::Impl::send_cycle(std::span<const DriveCommand> commands, 
   if (now >= next_heartbeat) {
     all = send(heartbeat_frame(config.master_node, NmtState::Operational)) && all;
     next_heartbeat = std::max(next_heartbeat + config.heartbeat, now);
+  }
+  if (config.time_interval.count() > 0 && now >= next_time) {
+    all = send(time_frame(std::chrono::system_clock::now())) && all;
+    next_time = std::max(next_time + config.time_interval, now);
   }
   return all;
 }

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "rmac/fieldbus/canopen/stored_parameters.hpp"
 #include "unit/fieldbus/canopen_bench.hpp"
 
 namespace {
@@ -106,6 +107,40 @@ TEST_F(BusScan, SaysWhenNothingGetsOntoTheBus) {
   const auto found = scan_bus(*port);
   ASSERT_FALSE(found.has_value());
   EXPECT_THAT(found.error().message, HasSubstr("the interface gets no frame onto the bus"));
+}
+
+class StoredParameters : public BusScan {
+ protected:
+  std::string answer(std::uint8_t node, StoreCommand command) {
+    const auto port = wire_.open();
+    const auto done = store_parameters(*port, node, command);
+    return done ? "done" : done.error().message;
+  }
+};
+
+TEST_F(StoredParameters, AreSavedAndForgottenByTheirSignatures) {
+  VirtualDrive& drive = wire_.add(3);
+  drive.set(0x1010, 1, 1, 4);
+  drive.set(0x1011, 1, 1, 4);
+  std::vector<std::pair<Object, Bytes>> written;
+  drive.on_write = [&](Object object, const Bytes& bytes) { written.emplace_back(object, bytes); };
+  EXPECT_EQ(answer(3, StoreCommand::Save), "done");
+  EXPECT_EQ(answer(3, StoreCommand::LoadDefaults), "done");
+  EXPECT_THAT(written, testing::ElementsAre(std::pair(Object{0x1010, 1}, Bytes{0x73, 0x61, 0x76, 0x65}),
+                                            std::pair(Object{0x1011, 1}, Bytes{0x6C, 0x6F, 0x61, 0x64})));
+}
+
+TEST_F(StoredParameters, AreLeftAloneWhereAMachineRunsOrANodeRefuses) {
+  VirtualDrive& drive = wire_.add(3);
+  EXPECT_EQ(answer(3, StoreCommand::Save),
+            "node 3 refused 1010h:01: object does not exist in the object dictionary (06020000h)");
+  EXPECT_EQ(answer(4, StoreCommand::Save), "node 4 does not answer; rmac bus scan lists those that do");
+  bool wrote = false;
+  drive.on_write = [&](Object, const Bytes&) { wrote = true; };
+  const auto port = wire_.open();
+  wire_.inject({.id = 0x80});
+  EXPECT_FALSE(store_parameters(*port, 3, StoreCommand::Save).has_value());
+  EXPECT_FALSE(wrote);
 }
 
 TEST(DeviceType, IsNamedByItsProfile) {

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "conformance/control_interface_conformance.hpp"
+#include "rmac/fieldbus/canopen/nmt.hpp"
 #include "unit/fieldbus/canopen_bench.hpp"
 
 namespace {
@@ -315,6 +316,32 @@ TEST_F(CanopenBench, HaltsAllAxesInOneSync) {
   for (std::size_t i = 0; i < drives.size(); ++i) commands_[i].controlword = controlword::kEnableVoltage;
   (void)master_->exchange(commands_, feedback_);
   for (const VirtualDrive* drive : drives) EXPECT_EQ(drive->state(), PowerStates::QuickStop);
+}
+
+TEST(CanopenTime, CountsDaysSince1984AndMillisecondsSinceMidnight) {
+  using namespace std::chrono;
+  constexpr sys_days kDay = year(2026) / November / 21;
+  const CanFrame frame = canopen::time_frame(kDay + hours(10) + minutes(37) + seconds(45) + milliseconds(123));
+  EXPECT_EQ(frame.id, 0x100);
+  EXPECT_EQ(frame.size, 6);
+  const std::uint32_t ms = canopen::long_at(frame.data.data());
+  EXPECT_EQ(ms, ((10U * 60 + 37) * 60 + 45) * 1000 + 123);
+  EXPECT_EQ(canopen::word_at(&frame.data[4]), 15665) << "date -d 2026-11-21 +%s and 1984-01-01, in days apart";
+}
+
+TEST_F(CanopenBench, SendsTimeAtItsIntervalWhereItIsAskedTo) {
+  wire_.add(1);
+  int times = 0;
+  wire_.listen = [&](const CanFrame& frame) { times += frame.id == 0x100 ? 1 : 0; };
+  make({{"node", {1}}});
+  start();
+  cycles(300, DriveWish::Off);
+  EXPECT_EQ(times, 0);
+  master_->stop();
+  make({{"node", {1}}, {"time_s", {0.1}}});
+  start();
+  cycles(300, DriveWish::Off);
+  EXPECT_NEAR(times, 4, 1);
 }
 
 TEST_F(CanopenBench, StaysCalmWhateverFramesCome) {

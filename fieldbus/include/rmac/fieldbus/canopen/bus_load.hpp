@@ -9,7 +9,7 @@ struct BusLoad {
   std::uint32_t sync_bits = 0;      ///< a cycle
   std::uint32_t setpoint_bits = 0;  ///< a cycle
   std::uint32_t answer_bits = 0;    ///< a cycle
-  double heartbeat_bits_per_s = 0;  ///< of all nodes and the master
+  double heartbeat_bits_per_s = 0;  ///< of all nodes and the master, and TIME
   double bits_of_cycle = 0;         ///< that the bit rate gives
   double share = 0;                 ///< of them that SYNC and PDOs may fill
 

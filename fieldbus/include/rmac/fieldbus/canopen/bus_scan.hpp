@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,9 +27,13 @@ struct ScanOptions {
   std::chrono::nanoseconds timeout = std::chrono::milliseconds(200);  ///< for each answer of a node
 };
 
-/// Looks for all 127 nodes: reads 1000h, 1018h and 1008h of each, and changes nothing. Refuses a bus on which a machine
-/// runs, which shows by SYNC or by a node that is Operational: another client's questions would come between those of
-/// its master. Off the cycle.
+/// Listens for `listen` and refuses a bus on which a machine runs, which shows by SYNC or by a node that is
+/// Operational: another client's questions would come between those of its master. `take` sees every frame meanwhile.
+[[nodiscard]] Expected<> check_idle(CanPort& port, std::chrono::nanoseconds listen,
+                                    const std::function<void(const CanFrame&)>& take = {});
+
+/// Looks for all 127 nodes: reads 1000h, 1018h and 1008h of each, and changes nothing. Refuses a bus that is not idle.
+/// Off the cycle.
 [[nodiscard]] Expected<std::vector<ScannedNode>> scan_bus(CanPort& port, const ScanOptions& options = {});
 
 /// What a device type (1000h) means: "servo drive (CiA 402)".

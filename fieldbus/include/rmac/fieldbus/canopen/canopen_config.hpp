@@ -57,6 +57,7 @@ struct CanopenConfig {
   std::uint32_t bit_rate = 1'000'000;
   double load_share = 0.8;  ///< of a cycle that SYNC and PDOs may fill
   std::chrono::milliseconds heartbeat{50};
+  std::chrono::nanoseconds time_interval{0};  ///< between two TIME messages; 0: none
   std::uint8_t master_node = 127;
   std::chrono::milliseconds boot_timeout{5000};
   int abort_connection = 3;          ///< 6007h: quick stop; -1: not written

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 
 #include "rmac/fieldbus/can/can_port.hpp"
@@ -19,6 +20,7 @@ enum class NmtCommand : std::uint8_t {
 enum class NmtState : std::uint8_t { BootUp = 0x00, Stopped = 0x04, Operational = 0x05, PreOperational = 0x7F };
 
 inline constexpr std::uint16_t kSyncId = 0x080;
+inline constexpr std::uint16_t kTimeId = 0x100;
 inline constexpr std::uint16_t kEmergencyId = 0x080;  ///< plus the node's id, as the following ones
 inline constexpr std::uint16_t kSdoAnswerId = 0x580;
 inline constexpr std::uint16_t kHeartbeatId = 0x700;
@@ -31,6 +33,19 @@ inline constexpr std::uint16_t kHeartbeatId = 0x700;
 }
 [[nodiscard]] inline CanFrame sync_frame() noexcept {
   return {.id = kSyncId};
+}
+/// TIME (7.2.6): TIME_OF_DAY, milliseconds since midnight in 28 bits and days since 1 January 1984 (7.1.6.5). UTC.
+[[nodiscard]] inline CanFrame time_frame(std::chrono::system_clock::time_point now) noexcept {
+  using std::chrono::days;
+  constexpr std::chrono::sys_days kFirstDay{std::chrono::year_month_day(
+      std::chrono::year(1984), std::chrono::January, std::chrono::day(1))};  // NOLINT: the standard's
+  const auto today = std::chrono::floor<days>(now);
+  const auto ms = static_cast<std::uint32_t>(std::chrono::floor<std::chrono::milliseconds>(now - today).count());
+  const auto day = static_cast<std::uint32_t>((today - kFirstDay).count());
+  CanFrame frame{.id = kTimeId, .size = 6};
+  for (unsigned i = 0; i < 4; ++i) frame.data[i] = static_cast<std::uint8_t>(ms >> (8 * i));
+  for (unsigned i = 0; i < 2; ++i) frame.data[4 + i] = static_cast<std::uint8_t>(day >> (8 * i));
+  return frame;
 }
 /// The state in a heartbeat; bit 7 is reserved and passed over.
 [[nodiscard]] inline NmtState heartbeat_state(const CanFrame& frame) noexcept {
