@@ -201,7 +201,7 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
     if (map.passages.empty() && map.nodes.empty()) return lay(curve, last);
     const double length = curve->length();
     const auto part = [&](double begin, double end) -> std::shared_ptr<const Curve> {
-      return std::make_shared<TrimmedCurve>(curve, begin, end, Direction::Forward, map.nodes);
+      return std::make_shared<TrimmedCurve>(curve, begin, end, Direction::Forward, &map.nodes);
     };
     double at = 0;
     for (std::size_t i = 0; i <= map.passages.size(); ++i) {

@@ -16,11 +16,15 @@ constexpr double kPartOfLean = 0.25;
 constexpr double kPartOfCap = 0.125;
 /// Beyond this lean, in rad, the curve's own nodes do.
 constexpr double kFarFromPole = 0.35;
+/// Nodes are added where the direction of the lean has turned by this much, in rad; the joint turns with it.
+constexpr double kNodeTurn = 0.2;
 /// A tool this close to the pole at the end of a curve stands on it: what programs round off, in rad.
 constexpr double kOnPole = 5e-7;
 /// Shorter stretches, in mm, are left to the curve.
 constexpr double kLeastStretch_mm = 1e-4;
-constexpr std::size_t kPassageNodes = 32;
+/// On a passage, by this many degrees of the joint that turns most.
+constexpr double kPassageTurn = 3;
+constexpr double kLeastPassageNodes = 4;
 constexpr std::size_t kMostSolutions = 16;
 
 Vector axis_of(const CurvePoint& point, std::size_t order = 0) {
@@ -69,6 +73,14 @@ PoleMap map_pole(const Curve& curve, const Vector& pole) {
   double s = 0;
   double before = 0;
   bool was_inside = false;
+  // A lean on the other side of the pole is no turn: there the other joint changes its sign.
+  const auto turned = [&](const Vector& a, const Vector& b) {
+    const Vector p = curves::cross(pole, a), q = curves::cross(pole, b);
+    const double across = curves::norm(curves::cross(p, q)), along = std::abs(curves::dot(p, q));
+    return std::atan2(across, along);
+  };
+  curve.evaluate(0, 0, 1, point);
+  Vector at_node = axis_of(point);
   for (std::size_t next = 1;;) {
     curve.evaluate(s, 1, s < curve.length() ? 1 : -1, point);
     const double lean = lean_of(axis_of(point), pole);
@@ -81,9 +93,11 @@ PoleMap map_pole(const Curve& curve, const Vector& pole) {
     const double rate = curves::norm(axis_of(point, 1));
     const double turn = std::max(kPartOfLean * lean, kPartOfCap * kPoleCap);
     const double step = lean < kFarFromPole && rate > 0 ? turn / rate : curve.length();
+    const bool far = turned(at_node, axis_of(point)) > kNodeTurn;
+    if (far && s > 0) map.nodes.push_back(s);
+    if (far || s == nodes[next - 1]) at_node = axis_of(point);
     if (s + step < nodes[next] - step / 4) {
       s += step;
-      map.nodes.push_back(s);
     } else {
       s = nodes[next++];
     }
@@ -130,9 +144,10 @@ PolePassage::PolePassage(std::shared_ptr<const Curve> stretch, std::vector<TurnW
                          std::shared_ptr<const Kinematics> kinematics, const Frames& frames)
     : stretch_(std::move(stretch)), turns_(std::move(turns)), kinematics_(std::move(kinematics)), frames_(frames) {
   nodes_.assign(stretch_->nodes().begin(), stretch_->nodes().end());
-  for (std::size_t i = 1; i < kPassageNodes; ++i) {
-    nodes_.push_back(stretch_->length() * static_cast<double>(i) / kPassageNodes);
-  }
+  double most = 0;
+  for (const TurnWay& way : turns_) most = std::max(most, std::abs(way.at(length(), 0) - way.at(0, 0)));
+  const double parts = std::max(kLeastPassageNodes, std::ceil(most / kPassageTurn));
+  for (double i = 1; i < parts; ++i) nodes_.push_back(stretch_->length() * i / parts);
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
 }

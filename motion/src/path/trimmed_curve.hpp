@@ -13,11 +13,11 @@ namespace rmac {
 enum class Direction : std::uint8_t { Forward, Backward };
 
 /// The part of a curve between two arc lengths, as a curve of its own, in its own direction or against it; with more
-/// nodes than the curve has, where its own are not enough.
+/// nodes than the curve has, where its own are not enough, and none hardly off an end.
 class TrimmedCurve final : public Curve {
  public:
   TrimmedCurve(std::shared_ptr<const Curve> curve, double begin, double end, Direction direction = Direction::Forward,
-               std::span<const double> more_nodes = {})
+               const std::vector<double>* more_nodes = nullptr)
       : curve_(std::move(curve)), begin_(begin), end_(end), direction_(direction) {
     const auto inside = [&](std::span<const double> all, std::vector<double>& kept) {
       const auto first = static_cast<std::ptrdiff_t>(kept.size());
@@ -29,12 +29,13 @@ class TrimmedCurve final : public Curve {
     inside(curve_->breaks(), breaks_);
     nodes_.push_back(0);
     inside(curve_->nodes(), nodes_);
-    if (!more_nodes.empty()) {
-      inside(more_nodes, nodes_);
+    if (more_nodes != nullptr) {
+      inside(*more_nodes, nodes_);
       std::sort(nodes_.begin(), nodes_.end());
       nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
     }
     nodes_.push_back(end_ - begin_);
+    if (more_nodes != nullptr) drop_slivers();
   }
   [[nodiscard]] bool in_joint_space() const noexcept override { return curve_->in_joint_space(); }
   [[nodiscard]] std::size_t dimension() const noexcept override { return curve_->dimension(); }
@@ -56,6 +57,17 @@ class TrimmedCurve final : public Curve {
   [[nodiscard]] std::span<const double> nodes() const noexcept override { return nodes_; }
 
  private:
+  /// Such a node adds nothing but a step that is far shorter than the one beside it.
+  void drop_slivers() {
+    constexpr double kPart = 0.2;
+    const auto sliver = [&](std::size_t end, std::size_t next, std::size_t beyond) {
+      return nodes_.size() > 3 &&
+             std::abs(nodes_[next] - nodes_[end]) < kPart * std::abs(nodes_[beyond] - nodes_[next]);
+    };
+    while (sliver(0, 1, 2)) nodes_.erase(nodes_.begin() + 1);
+    while (sliver(nodes_.size() - 1, nodes_.size() - 2, nodes_.size() - 3)) nodes_.erase(nodes_.end() - 2);
+  }
+
   std::shared_ptr<const Curve> curve_;
   double begin_, end_;
   Direction direction_;

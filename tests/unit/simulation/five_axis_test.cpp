@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "gateway/controller/snapshot.hpp"
+#include "gateway/controller/machine_state.hpp"
 #include "gateway/simulation/simulation.hpp"
 #include "rmac/motion/frame.hpp"
 
@@ -306,6 +306,85 @@ TEST_P(PastThePole, SeededLinesKeepTipAndLimits) {
       ASSERT_NO_FATAL_FAILURE(follow(from, to));
       from = to;
     }
+  }
+}
+
+TEST_P(PastThePole, StraightThroughItGoesOnWithoutAStop) {
+  ASSERT_NO_FATAL_FAILURE(load());
+  const ToolPose from{{-20, 0, 0}, leaning(15, 60)}, to{{20, 0, 0}, leaning(15, 240)};
+  ASSERT_NO_FATAL_FAILURE(expect(cam().set_feedrate(600)));
+  ASSERT_NO_FATAL_FAILURE(go_to(from));
+  ASSERT_NO_FATAL_FAILURE(follow(from, to));
+  for (const CycleSample& sample : trace_) {
+    if (sample.s_mm < 5 || sample.s_mm > 35) continue;
+    ASSERT_GT(sample.feed_set_mm_s, 5) << sample.s_mm << " mm along the line";
+  }
+}
+
+TEST_P(PastThePole, AHeldMachineRunsBackThroughItAndForwardAgain) {
+  ASSERT_NO_FATAL_FAILURE(load());
+  const ToolPose from = simulation_->controller().sample().pose_set;
+  const ToolPose to{{from.tip[0] + 20, from.tip[1], from.tip[2]}, leaning(20, 50)};
+  int stops = 0;
+  simulation_->controller().on_event([&](const Event& event) { stops += event.kind == Event::Kind::Stopped ? 1 : 0; });
+  const auto stopped = [&](int count) {
+    for (int i = 0; i < 100'000 && stops < count; ++i) simulation_->cycle();
+    return stops == count;
+  };
+  trace_.clear();
+  ASSERT_NO_FATAL_FAILURE(expect(cam().set_feedrate(600)));
+  ASSERT_NO_FATAL_FAILURE(line(from, to));
+  while (simulation_->controller().sample().s_mm < 10) simulation_->cycle();
+  ASSERT_NO_FATAL_FAILURE(expect(cam().feed_hold()));
+  while (simulation_->controller().sample().moving) simulation_->cycle();
+  EXPECT_LT(simulation_->controller().sample().s_mm, 15);
+  const auto way = cam().feed_retrace(1000);
+  ASSERT_TRUE(way) << way.error().message;
+  ASSERT_TRUE(stopped(1));
+  EXPECT_NEAR(where(simulation_->controller().sample().position_set).tip[0], from.tip[0], 1e-6);
+  ASSERT_NO_FATAL_FAILURE(expect(cam().feed_resume()));
+  ASSERT_TRUE(run());
+  check_line(from, to, kDeviation);
+  check_limits();
+}
+
+/// All poses that some joint vector within the travel gives are reached within it, and by the quickest such vector.
+TEST_P(FiveAxes, JointTargetsTakeTheQuickestSolutionInsideTheTravel) {
+  ASSERT_NO_FATAL_FAILURE(load());
+  const auto& joints = simulation_->controller().mechanism()->joints;
+  std::mt19937 random(9);
+  for (int round = 0; round < 60; ++round) {
+    Joints wanted{};
+    std::vector<double> start;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      const JointLimits& limits = joints[j].limits;
+      const bool turns = limits.type == JointType::Rotary;
+      const double min = limits.limit_type == JointLimitType::Limited ? (turns ? limits.min : -40) : -500;
+      const double max = limits.limit_type == JointLimitType::Limited ? (turns ? limits.max : 40) : 500;
+      wanted[j] = std::uniform_real_distribution<>(min, max)(random);
+      start.push_back(std::uniform_real_distribution<>(min, max)(random));
+    }
+    ASSERT_NO_FATAL_FAILURE(expect(cam().queue_move(1, JointTargetGeometry{start})));
+    ASSERT_TRUE(run());
+    const ToolPose pose = where(wanted);
+    const auto found = cam().joints_at(pose);
+    ASSERT_TRUE(found) << found.error().message;
+    Joints taken{};
+    std::copy(found->begin(), found->end(), taken.begin());
+    const ToolPose reached = where(taken);
+    double longest = 0, known = 0;
+    for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(reached.tip[c], pose.tip[c], 1e-8);
+    ASSERT_LE(angle(reached.axis, pose.axis), 1e-9);
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      const JointLimits& limits = joints[j].limits;
+      if (limits.limit_type == JointLimitType::Limited) {
+        ASSERT_GE(taken[j], limits.min - 1e-9) << limits.name;
+        ASSERT_LE(taken[j], limits.max + 1e-9) << limits.name;
+      }
+      longest = std::max(longest, std::abs(taken[j] - start[j]) / limits.max_speed);
+      known = std::max(known, std::abs(wanted[j] - start[j]) / limits.max_speed);
+    }
+    EXPECT_LE(longest, known + 1e-9) << "the joints that the pose was made of are quicker to reach";
   }
 }
 
