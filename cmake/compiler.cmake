@@ -8,7 +8,7 @@ target_compile_options(rmac_compiler INTERFACE -ffp-contract=off)
 if(NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
   # g++ 12 reports false null dereferences and overlaps from inlined library code when it optimises: Asio's scheduler, for
   # one, and std::string::replace (GCC bug 105651).
-  target_compile_options(rmac_compiler INTERFACE -Wno-null-dereference -Wno-restrict)
+  target_compile_options(rmac_compiler INTERFACE -Wno-null-dereference -Wno-restrict -fno-math-errno)
 endif()
 if(RMAC_SANITIZE)
   target_compile_options(rmac_compiler INTERFACE -fsanitize=${RMAC_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all

@@ -19,8 +19,9 @@ struct JointRange {
 
 /// What every kinematics must keep, over seeded random joint vectors inside `ranges` and with several tools: the seeded
 /// inverse gives the joints back, the forward of the inverse gives the pose back, the Jacobian is the derivative of the
-/// forward, joints are of the type they are said to be, and all solutions are solutions, of which the inverse finds the
-/// nearest from wherever it is asked. `tools` are those that the machine can carry.
+/// forward (and everywhere the same where it is said to be), joints are of the type they are said to be, and all
+/// solutions are solutions, of which the inverse finds the nearest from wherever it is asked. `tools` are those that
+/// the machine can carry.
 class KinematicsConformance {
  public:
   KinematicsConformance(const Kinematics& kinematics, std::vector<JointRange> ranges, std::vector<Frame> tools)
@@ -73,6 +74,11 @@ class KinematicsConformance {
     const std::size_t n = joints.size();
     std::vector<double> jacobian(6 * n, std::nan(""));
     kinematics_.jacobian(joints, tool, jacobian);
+    if (kinematics_.constant_jacobian()) {
+      std::vector<double> elsewhere(6 * n, std::nan(""));
+      kinematics_.jacobian(std::vector<double>(n, 0.0), tool, elsewhere);
+      EXPECT_EQ(jacobian, elsewhere);
+    }
     constexpr double kStep = 1e-4;
     for (std::size_t j = 0; j < n; ++j) {
       std::vector<double> up = joints;

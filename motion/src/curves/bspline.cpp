@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <utility>
 
 namespace rmac::curves {
-
-struct BSpline::Homogeneous {
-  std::array<std::array<double, kMaxJoints + 1>, 4> d;
-};
 
 BSpline::BSpline(const Nurbs& nurbs)
     : degree_(static_cast<std::size_t>(nurbs.degree)),
@@ -24,24 +22,49 @@ BSpline::BSpline(const Nurbs& nurbs)
   }
 
   for (std::size_t c = 0; c < dimension_; ++c) origin_[c] = nurbs.points[0][c];
+  points_.emplace_back();
   points_[0].reserve(count * width_);
   for (std::size_t i = 0; i < count; ++i) {
     const double weight = rational_ ? nurbs.weights[i] : 1;
     for (std::size_t c = 0; c < dimension_; ++c) points_[0].push_back(weight * (nurbs.points[i][c] - origin_[c]));
     if (rational_) points_[0].push_back(weight);
   }
-  // The NURBS Book, eq. 3.8; a derivative's point whose support is empty is never used.
-  for (std::size_t k = 1; k < points_.size() && k <= degree_; ++k) {
-    const std::size_t left = count - k;
-    points_[k].resize(left * width_);
+  make_derivatives();
+  if (degree_ <= kPowerDegree) make_powers();
+}
+
+/// The NURBS Book, eq. 3.8; a derivative's point whose support is empty is never used.
+void BSpline::make_derivatives() {
+  const std::size_t most = degree_ <= kPowerDegree ? degree_ : 3;
+  for (std::size_t k = 1; k <= most; ++k) {
+    const std::vector<double>& before = points_.back();
+    const std::size_t left = before.size() / width_ - 1;
+    std::vector<double> points(left * width_);
     for (std::size_t i = 0; i < left; ++i) {
       const double support = knots_[i + degree_ + 1] - knots_[i + k];
       const double factor = support > 0 ? static_cast<double>(degree_ - k + 1) / support : 0;
-      for (std::size_t c = 0; c < width_; ++c) {
-        points_[k][i * width_ + c] = factor * (points_[k - 1][(i + 1) * width_ + c] - points_[k - 1][i * width_ + c]);
-      }
+      for (std::size_t c = 0; c < width_; ++c)
+        points[i * width_ + c] = factor * (before[(i + 1) * width_ + c] - before[i * width_ + c]);
+    }
+    points_.push_back(std::move(points));
+  }
+}
+
+/// Taylor's series about the middle of each span, in u = 2 t / width - 1 (docs/derivations/curves.md, section 3).
+void BSpline::make_powers() {
+  const std::size_t row = (width_ + kLanes - 1) / kLanes * kLanes;
+  powers_.assign(spans_.size() * (degree_ + 1) * row, 0.0);
+  std::array<Homogeneous, kPowerDegree + 1> derivatives;
+  double* out = powers_.data();
+  for (std::size_t span = 0; span < spans_.size(); ++span) {
+    const double half = span_width(span) / 2;
+    basis_sums(span, half, {derivatives.data(), degree_ + 1});
+    double factor = 1;
+    for (std::size_t k = 0; k <= degree_; ++k, out += row, factor *= half / static_cast<double>(k)) {
+      for (std::size_t c = 0; c < width_; ++c) out[c] = factor * derivatives[k][c];
     }
   }
+  points_.resize(1);
 }
 
 std::size_t BSpline::multiplicity(std::size_t span) const noexcept {
@@ -68,7 +91,7 @@ std::vector<double> BSpline::control_point(std::size_t span, std::size_t i, std:
   return point;
 }
 
-void BSpline::basis_sums(std::size_t span, double t, std::size_t order, Homogeneous& sums) const noexcept {
+void BSpline::basis_sums(std::size_t span, double t, std::span<Homogeneous> sums) const noexcept {
   const std::size_t knot = spans_[span];
   const double* const after = knots_.data() + knot;
   std::array<double, kMaxDegree + 1> basis;
@@ -78,9 +101,9 @@ void BSpline::basis_sums(std::size_t span, double t, std::size_t order, Homogene
   for (std::size_t j = 0;; ++j) {
     // The functions of degree j carry the derivative of order degree - j (docs/derivations/curves.md, eq. 5).
     const std::size_t k = degree_ - j;
-    if (k <= order) {
+    if (k < sums.size()) {
       const double* points = points_[k].data() + (knot - degree_) * width_;
-      auto& sum = sums.d[k];
+      Homogeneous& sum = sums[k];
       for (std::size_t c = 0; c < width_; ++c) sum[c] = basis[0] * points[c];
       for (std::size_t l = 1; l <= j; ++l) {
         points += width_;
@@ -101,21 +124,49 @@ void BSpline::basis_sums(std::size_t span, double t, std::size_t order, Homogene
   }
 }
 
+void BSpline::power_sums(std::size_t span, double t, std::array<Homogeneous, 4>& sums) const noexcept {
+  const std::size_t row = (width_ + kLanes - 1) / kLanes * kLanes;
+  const double* const coefficients = powers_.data() + span * (degree_ + 1) * row;
+  const double rate = 2 / span_width(span);
+  const double u = rate * t - 1;
+  for (std::size_t c = 0; c < row; c += kLanes) {
+    // Horner's scheme; the rows below carry the derivatives, divided by their factorials.
+    Lanes value{}, first{}, second{}, third{};
+    for (std::size_t i = degree_ + 1; i-- > 0;) {
+      Lanes next;
+      std::memcpy(&next, coefficients + i * row + c, sizeof next);
+      third = third * u + second;
+      second = second * u + first;
+      first = first * u + value;
+      value = value * u + next;
+    }
+    first *= rate;
+    second *= 2 * rate * rate;
+    third *= 6 * rate * rate * rate;
+    std::memcpy(sums[0].data() + c, &value, sizeof value);
+    std::memcpy(sums[1].data() + c, &first, sizeof first);
+    std::memcpy(sums[2].data() + c, &second, sizeof second);
+    std::memcpy(sums[3].data() + c, &third, sizeof third);
+  }
+}
+
 void BSpline::evaluate(std::size_t span, double t, int order, CurvePoint& point) const noexcept {
   static constexpr double kBinomial[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
   const auto wanted = static_cast<std::size_t>(std::clamp(order, 0, 3));
-  const std::size_t known = std::min(wanted, degree_);
-  Homogeneous sums;
-  basis_sums(span, t, known, sums);
-  for (std::size_t k = known + 1; k <= wanted; ++k) std::fill_n(sums.d[k].begin(), width_, 0.0);
-  if (!rational_) {
-    for (std::size_t k = 0; k <= wanted; ++k) std::copy_n(sums.d[k].begin(), dimension_, point.d[k].begin());
+  std::array<Homogeneous, 4> sums;
+  if (!powers_.empty()) {
+    power_sums(span, t, sums);
   } else {
-    const double inverse_weight = 1 / sums.d[0][dimension_];
+    basis_sums(span, t, {sums.data(), wanted + 1});
+  }
+  if (!rational_) {
+    for (std::size_t k = 0; k <= wanted; ++k) std::copy_n(sums[k].begin(), dimension_, point.d[k].begin());
+  } else {
+    const double inverse_weight = 1 / sums[0][dimension_];
     for (std::size_t k = 0; k <= wanted; ++k) {
       for (std::size_t c = 0; c < dimension_; ++c) {
-        double value = sums.d[k][c];
-        for (std::size_t i = 1; i <= k; ++i) value -= kBinomial[k][i] * sums.d[i][dimension_] * point.d[k - i][c];
+        double value = sums[k][c];
+        for (std::size_t i = 1; i <= k; ++i) value -= kBinomial[k][i] * sums[i][dimension_] * point.d[k - i][c];
         point.d[k][c] = value * inverse_weight;
       }
     }

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "build.hpp"
 
@@ -35,26 +37,32 @@ bool even(double most, double least, double step) {
   return most * step <= kNodeTurn_rad && (change <= kChange * most || change * step <= kChange_rad);
 }
 
-/// `inside`: bends known between a and b, ascending.
-void halve(const Curve& curve, const Bend& a, const Bend& b, std::span<const Bend> inside, int least_depth,
-           std::vector<double>& nodes) {
-  const double step = b.s - a.s;
-  if (step >= 2 * kNodeSpacing) {
-    const Bend m = bend_at(curve, a.s + step / 2, 1);
-    const auto uneven = [&](double Bend::*bend) {
-      double most = std::max({a.*bend, m.*bend, b.*bend}), least = std::min({a.*bend, m.*bend, b.*bend});
-      for (const Bend& known : inside) most = std::max(most, known.*bend), least = std::min(least, known.*bend);
-      return !even(most, least, step);
+/// Bends at the ends, the quarters and the middle of a stretch.
+using Five = std::array<Bend, 5>;
+
+/// `inside`: more bends known between the ends, ascending.
+void halve(const Curve& curve, const Five& known, std::span<const Bend> inside, std::vector<double>& nodes) {
+  const double step = known[4].s - known[0].s;
+  const auto uneven = [&](double Bend::*bend) {
+    double most = 0, least = std::numeric_limits<double>::infinity();
+    for (const Bend& here : known) most = std::max(most, here.*bend), least = std::min(least, here.*bend);
+    for (const Bend& here : inside) most = std::max(most, here.*bend), least = std::min(least, here.*bend);
+    return !even(most, least, step);
+  };
+  if (step >= 2 * kNodeSpacing && (uneven(&Bend::path) || uneven(&Bend::axis))) {
+    const auto middle =
+        std::partition_point(inside.begin(), inside.end(), [&](const Bend& k) { return k.s < known[2].s; });
+    const auto before = static_cast<std::size_t>(middle - inside.begin());
+    const auto half = [&](std::size_t i) {
+      const double quarter = (known[i + 2].s - known[i].s) / 4;
+      return Five{known[i], bend_at(curve, known[i].s + quarter, 1), known[i + 1],
+                  bend_at(curve, known[i].s + 3 * quarter, 1), known[i + 2]};
     };
-    if (least_depth > 0 || uneven(&Bend::path) || uneven(&Bend::axis)) {
-      const auto middle = std::partition_point(inside.begin(), inside.end(), [&](const Bend& k) { return k.s < m.s; });
-      const auto before = static_cast<std::size_t>(middle - inside.begin());
-      halve(curve, a, m, inside.first(before), least_depth - 1, nodes);
-      halve(curve, m, b, inside.subspan(before), least_depth - 1, nodes);
-      return;
-    }
+    halve(curve, half(0), inside.first(before), nodes);
+    halve(curve, half(2), inside.subspan(before), nodes);
+    return;
   }
-  nodes.push_back(b.s);
+  nodes.push_back(known[4].s);
 }
 
 }  // namespace
@@ -76,7 +84,9 @@ std::vector<double> curvature_nodes(const Curve& curve, std::span<const double> 
     inside.clear();
     while (probe != probes.end() && *probe <= knots[i]) ++probe;
     for (; probe != probes.end() && *probe < knots[i + 1]; ++probe) inside.push_back(bend_at(curve, *probe, 1));
-    halve(curve, bend_at(curve, knots[i], 1), bend_at(curve, knots[i + 1], -1), inside, 2, nodes);
+    const double from = knots[i], width = knots[i + 1] - from;
+    const auto at = [&](double part) { return bend_at(curve, from + part * width, 1); };
+    halve(curve, {at(0), at(0.25), at(0.5), at(0.75), bend_at(curve, knots[i + 1], -1)}, inside, nodes);
   }
   return nodes;
 }

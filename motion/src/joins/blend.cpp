@@ -180,10 +180,6 @@ PathDemand common_demand(const PathDemand& a, const PathDemand& b) {
   return demand;
 }
 
-bool same_frames(const Frames& a, const Frames& b) {
-  return a.part.p == b.part.p && a.part.q == b.part.q && a.tool.p == b.tool.p && a.tool.q == b.tool.q;
-}
-
 std::shared_ptr<const PathSegment> as_segment(const std::shared_ptr<const Curve>& curve, const PathSegment& before,
                                               const PathSegment& after, double reach,
                                               const std::vector<JointLimits>& joints) {
@@ -191,8 +187,8 @@ std::shared_ptr<const PathSegment> as_segment(const std::shared_ptr<const Curve>
   const double length = curve->length();
   append_stretches(before, before.length() - reach, before.length(), 0, length / 2, stretches);
   append_stretches(after, 0, reach, length / 2, length, stretches);
-  auto segment = std::make_shared<PathSegment>(curve, before.frames(), before.kinematics(),
-                                               common_demand(before.demand(), after.demand()), std::move(stretches));
+  auto segment = std::make_shared<PathSegment>(curve, before.map(), common_demand(before.demand(), after.demand()),
+                                               std::move(stretches));
   JointPoint start;
   if (before.evaluate(before.length() - reach, 0, -1, start) != KinematicsStatus::Ok) return nullptr;
   double s_failed = 0;
@@ -210,7 +206,7 @@ Blend make_blend(const PathSegment& before, const PathSegment& after, double roo
   if (!(tolerance > 0) || before.demand().rest_after || after.demand().rest_before) return {};
   if (before.curve().in_joint_space() || after.curve().in_joint_space()) return {};
   if (before.curve().dimension() > 6 || after.curve().dimension() > 6) return {};  // past the pole, turns are not free
-  if (!same_frames(before.frames(), after.frames()) || before.kinematics() != after.kinematics()) return {};
+  if (before.map() != after.map()) return {};
   Meeting corner;
   before.curve().evaluate(before.length(), 2, -1, corner.before);
   after.curve().evaluate(0, 2, 1, corner.after);

@@ -38,10 +38,7 @@ Vector point_of(const PathSegment& line, double s) {
 bool same(const PathSegment& a, const PathSegment& b) {
   const PathDemand &x = a.demand(), &y = b.demand();
   return x.feed_mm_s == y.feed_mm_s && x.accel_rise_mm_s2 == y.accel_rise_mm_s2 &&
-         x.accel_fall_mm_s2 == y.accel_fall_mm_s2 && x.tolerance_mm == y.tolerance_mm &&
-         a.kinematics() == b.kinematics() && a.frames().part.p == b.frames().part.p &&
-         a.frames().part.q == b.frames().part.q && a.frames().tool.p == b.frames().tool.p &&
-         a.frames().tool.q == b.frames().tool.q;
+         x.accel_fall_mm_s2 == y.accel_fall_mm_s2 && x.tolerance_mm == y.tolerance_mm && a.map() == b.map();
 }
 
 bool short_line(const PathSegment& segment) {
@@ -268,7 +265,7 @@ std::shared_ptr<const PathSegment> LineFit::segment(const Fit& fit, std::shared_
   const PathSegment& line = *waiting_[first];
   PathDemand demand = line.demand();
   demand.deviation_mm = fit.deviation_mm;
-  auto segment = std::make_shared<PathSegment>(std::move(curve), line.frames(), line.kinematics(), demand, stretches);
+  auto segment = std::make_shared<PathSegment>(std::move(curve), line.map(), demand, stretches);
   JointPoint joints;
   double s_failed = 0;
   if (line.evaluate(from - fit.places[first], 0, 1, joints) != KinematicsStatus::Ok ||

@@ -50,7 +50,7 @@ std::shared_ptr<const PathSegment> part_of(const PathSegment& whole, double begi
     std::swap(demand.rest_before, demand.rest_after);
   }
   auto part = std::make_shared<PathSegment>(std::make_shared<TrimmedCurve>(whole.shared_curve(), begin, end, direction),
-                                            whole.frames(), whole.kinematics(), demand, std::move(stretches));
+                                            whole.map(), demand, std::move(stretches));
   JointPoint start;
   double s_failed = 0;
   // The whole was resolved, so its parts have solutions too.

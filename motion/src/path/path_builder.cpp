@@ -80,19 +80,24 @@ std::optional<TravelOffence> still_outside(std::span<const double> excess, const
   return TravelOffence{index, end.d[0][index], *joint, last.length()};
 }
 
+bool same(const Frames& a, const Frames& b) {
+  return a.part.p == b.part.p && a.part.q == b.part.q && a.tool.p == b.tool.p && a.tool.q == b.tool.q;
+}
+
 }  // namespace
 
-PathBuilder::PathBuilder(PlannerModel model) : model_(std::move(model)), end_joints_(model_.joints.size(), 0.0) {
-  restart(end_joints_, Frames{});
-}
+PathBuilder::PathBuilder(PlannerModel model)
+    : model_(std::move(model)),
+      end_joints_(model_.joints.size(), 0.0),
+      map_(std::make_shared<const PoseToJoints>(Frames{}, model_.kinematics)),
+      end_pose_(map_->pose(end_joints_)) {}
 
 void PathBuilder::restart(std::span<const double> joints, const Frames& frames) {
   std::vector<double> copy(joints.begin(), joints.end());
   end_joints_ = std::move(copy);
-  frames_ = frames;
-  ToolPose machine;
-  model_.kinematics->forward(end_joints_, frames_.tool, machine);
-  end_pose_ = apply_to_pose(inverse(frames_.part), machine);
+  // Segments join only under one map: it is made anew only when the frames are others.
+  if (!same(map_->frames(), frames)) map_ = std::make_shared<const PoseToJoints>(frames, model_.kinematics);
+  end_pose_ = map_->pose(end_joints_);
 }
 
 Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(const Move& move) {
@@ -120,7 +125,7 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
 
   // One smooth curve in, one segment out; a curve is cut where the joints' acceleration would have to jump.
   const auto append = [&](const std::shared_ptr<const Curve>& curve) -> Expected<> {
-    const auto segment = std::make_shared<PathSegment>(curve, frames_, model_.kinematics, demand, std::vector{stretch});
+    const auto segment = std::make_shared<PathSegment>(curve, map_, demand, std::vector{stretch});
     double s = 0;
     if (const auto status = segment->resolve(joints, s); status != KinematicsStatus::Ok) {
       return tl::unexpected(unreachable(move, *segment, status, s));
@@ -157,7 +162,7 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
   const auto lay = [&](const std::shared_ptr<const Curve>& curve, bool last) -> Expected<> {
     std::vector<double> cuts{0};
     if (!curve->breaks().empty()) {
-      PathSegment probe(curve, frames_, model_.kinematics, demand, {stretch});
+      PathSegment probe(curve, map_, demand, {stretch});
       double s = 0;
       if (const auto status = probe.resolve(joints, s); status != KinematicsStatus::Ok)
         return tl::unexpected(unreachable(move, probe, status, s));
@@ -181,7 +186,7 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
 
   const auto pass_pole = [&](const std::shared_ptr<const Curve>& near, const PathSegment* before,
                              const std::shared_ptr<const Curve>& next, bool last) -> Expected<> {
-    const auto passages = pole_passages(near, {joints, before}, next, model_.kinematics, frames_, model_.joints);
+    const auto passages = pole_passages(near, {joints, before}, next, map_, model_.joints);
     Expected<> refused = tl::unexpected(beyond_pole(move, *near, stretch.s_begin_mm, kPoleDeviation));
     for (const auto& passage : passages) {
       const auto [deviation, s] = passage->largest_deviation();
@@ -197,7 +202,7 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
   const auto lay_past_pole = [&](const std::shared_ptr<const Curve>& curve, bool last) -> Expected<> {
     Vector pole{};
     if (joint_move || !model_.kinematics->pole(pole)) return lay(curve, last);
-    const PoleMap map = map_pole(*curve, apply_to_vector(inverse(frames_.part), pole));
+    const PoleMap map = map_pole(*curve, apply_to_vector(inverse(map_->frames().part), pole));
     if (map.passages.empty() && map.nodes.empty()) return lay(curve, last);
     const double length = curve->length();
     const auto part = [&](double begin, double end) -> std::shared_ptr<const Curve> {
@@ -242,10 +247,7 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
     if (auto laid = lay_past_pole(curve, &owned == &curves->back()); !laid) return tl::unexpected(laid.error());
   }
   end_joints_ = std::move(joints);
-  ToolPose machine;
-  model_.kinematics->forward(end_joints_, frames_.tool, machine);
-  end_pose_ = segments.back()->curve().in_joint_space() ? apply_to_pose(inverse(frames_.part), machine)
-                                                        : segments.back()->pose(segments.back()->length());
+  end_pose_ = segments.back()->pose(segments.back()->length());
   return segments;
 }
 

@@ -141,8 +141,8 @@ double TurnWay::at(double s, std::size_t order) const noexcept {
 }
 
 PolePassage::PolePassage(std::shared_ptr<const Curve> stretch, std::vector<TurnWay> turns,
-                         std::shared_ptr<const Kinematics> kinematics, const Frames& frames)
-    : stretch_(std::move(stretch)), turns_(std::move(turns)), kinematics_(std::move(kinematics)), frames_(frames) {
+                         std::shared_ptr<const PoseToJoints> map)
+    : stretch_(std::move(stretch)), turns_(std::move(turns)), map_(std::move(map)) {
   nodes_.assign(stretch_->nodes().begin(), stretch_->nodes().end());
   double most = 0;
   for (const TurnWay& way : turns_) most = std::max(most, std::abs(way.at(length(), 0) - way.at(0, 0)));
@@ -160,12 +160,10 @@ void PolePassage::evaluate(double s, int order, int side, CurvePoint& point) con
   // Slides carry the axis along as it is, so they may stand anywhere.
   std::array<double, kMaxJoints> joints{};
   std::size_t turn = 0;
-  for (std::size_t j = 0; j < kinematics_->joint_count(); ++j) {
-    if (kinematics_->joint_type(j) == JointType::Rotary) joints[j] = point.d[0][6 + turn++];
+  for (std::size_t j = 0; j < map_->joint_count(); ++j) {
+    if (map_->kinematics().joint_type(j) == JointType::Rotary) joints[j] = point.d[0][6 + turn++];
   }
-  ToolPose pose;
-  kinematics_->forward({joints.data(), kinematics_->joint_count()}, frames_.tool, pose);
-  const Vector axis = apply_to_vector(inverse(frames_.part), pose.axis);
+  const Vector axis = map_->pose({joints.data(), map_->joint_count()}).axis;
   std::copy(axis.begin(), axis.end(), point.d[0].begin() + 3);
 }
 
@@ -193,29 +191,32 @@ struct PoleExit {
 };
 
 /// Joints that put the tool where the stretch ends; on the pole itself if the curve ends that close to it.
-std::vector<double> end_joints(const Curve& stretch, bool curve_ends, const Kinematics& kinematics,
-                               const Frames& frames, std::span<const double> seed) {
+std::vector<double> end_joints(const Curve& stretch, bool curve_ends, const PoseToJoints& map,
+                               std::span<const double> seed) {
+  const Kinematics& kinematics = map.kinematics();
   CurvePoint point;
   stretch.evaluate(stretch.length(), 0, -1, point);
-  ToolPose pose = apply_to_pose(frames.part, {{point.d[0][0], point.d[0][1], point.d[0][2]}, axis_of(point)});
+  ToolPose pose = apply_to_pose(map.frames().part, {{point.d[0][0], point.d[0][1], point.d[0][2]}, axis_of(point)});
   Vector pole{};
   if (kinematics.pole(pole) && curve_ends && lean_of(pose.axis, pole) < kOnPole) {
     pose.axis = curves::scaled(curves::dot(pose.axis, pole) < 0 ? -1 : 1, pole);
   }
   std::vector<double> all(kMostSolutions * kinematics.joint_count());
-  all.resize(kinematics.solutions(pose, frames.tool, seed, all) * kinematics.joint_count());
+  all.resize(kinematics.solutions(pose, map.frames().tool, seed, all) * kinematics.joint_count());
   return all;
 }
 
 }  // namespace
 
-std::vector<std::shared_ptr<const PolePassage>> pole_passages(
-    const std::shared_ptr<const Curve>& stretch, const PoleEntry& entry, const std::shared_ptr<const Curve>& next,
-    const std::shared_ptr<const Kinematics>& kinematics, const Frames& frames, const std::vector<JointLimits>& joints) {
+std::vector<std::shared_ptr<const PolePassage>> pole_passages(const std::shared_ptr<const Curve>& stretch,
+                                                              const PoleEntry& entry,
+                                                              const std::shared_ptr<const Curve>& next,
+                                                              const std::shared_ptr<const PoseToJoints>& map,
+                                                              const std::vector<JointLimits>& joints) {
   const std::size_t n = joints.size();
   std::vector<std::size_t> turning;
   for (std::size_t j = 0; j < n; ++j) {
-    if (kinematics->joint_type(j) == JointType::Rotary) turning.push_back(j);
+    if (map->kinematics().joint_type(j) == JointType::Rotary) turning.push_back(j);
   }
   const auto states_of = [&](const JointPoint& point, std::size_t orders) {
     std::vector<TurnState> states(turning.size());
@@ -231,7 +232,7 @@ std::vector<std::shared_ptr<const PolePassage>> pole_passages(
   const std::vector<TurnState> from = states_of(begin, known ? 4 : 1);
 
   std::vector<PoleExit> exits;
-  std::vector<double> solutions = end_joints(*stretch, next == nullptr, *kinematics, frames, entry.joints);
+  std::vector<double> solutions = end_joints(*stretch, next == nullptr, *map, entry.joints);
   for (std::size_t first = 0; first < solutions.size(); first += n) {
     const std::span<double> solution(solutions.data() + first, n);
     for (const std::size_t j : turning) solution[j] = unwound(joints[j], solution[j]);
@@ -242,7 +243,7 @@ std::vector<std::shared_ptr<const PolePassage>> pole_passages(
     JointPoint end;
     std::copy(solution.begin(), solution.end(), end.d[0].begin());
     if (next) {
-      PathSegment rest(next, frames, kinematics, {}, {MoveStretch{}});
+      PathSegment rest(next, map, {}, {MoveStretch{}});
       double s_failed = 0;
       if (rest.resolve(solution, s_failed) != KinematicsStatus::Ok ||
           rest.evaluate(0, 3, 1, end) != KinematicsStatus::Ok)
@@ -263,7 +264,7 @@ std::vector<std::shared_ptr<const PolePassage>> pole_passages(
   for (const PoleExit& exit : exits) {
     std::vector<TurnWay> ways;
     for (std::size_t i = 0; i < turning.size(); ++i) ways.emplace_back(from[i], exit.turns[i], stretch->length());
-    passages.push_back(std::make_shared<const PolePassage>(stretch, std::move(ways), kinematics, frames));
+    passages.push_back(std::make_shared<const PolePassage>(stretch, std::move(ways), map));
   }
   return passages;
 }

@@ -46,7 +46,7 @@ class TurnWay {
 class PolePassage final : public Curve {
  public:
   PolePassage(std::shared_ptr<const Curve> stretch, std::vector<TurnWay> turns,
-              std::shared_ptr<const Kinematics> kinematics, const Frames& frames);
+              std::shared_ptr<const PoseToJoints> map);
 
   [[nodiscard]] bool in_joint_space() const noexcept override { return false; }
   [[nodiscard]] std::size_t dimension() const noexcept override { return 6 + turns_.size(); }
@@ -62,8 +62,7 @@ class PolePassage final : public Curve {
  private:
   std::shared_ptr<const Curve> stretch_;
   std::vector<TurnWay> turns_;
-  std::shared_ptr<const Kinematics> kinematics_;
-  Frames frames_;
+  std::shared_ptr<const PoseToJoints> map_;
   std::vector<double> nodes_;
 };
 
@@ -78,6 +77,6 @@ struct PoleEntry {
 /// passage, or none where the curve ends with this one.
 [[nodiscard]] std::vector<std::shared_ptr<const PolePassage>> pole_passages(
     const std::shared_ptr<const Curve>& stretch, const PoleEntry& entry, const std::shared_ptr<const Curve>& next,
-    const std::shared_ptr<const Kinematics>& kinematics, const Frames& frames, const std::vector<JointLimits>& joints);
+    const std::shared_ptr<const PoseToJoints>& map, const std::vector<JointLimits>& joints);
 
 }  // namespace rmac

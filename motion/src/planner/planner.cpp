@@ -6,6 +6,7 @@
 
 #include "planner/laid_path.hpp"
 #include "planner/published_plan.hpp"
+#include "time_law/law_check.hpp"
 #include "time_law/window.hpp"
 
 namespace rmac {
@@ -13,8 +14,11 @@ namespace {
 
 /// Plans are made this far ahead of the servo loop; more would only be thrown away by a hold or an override.
 constexpr double kHorizon_s = 0.4;
-/// A window holds this many ramps to full speed.
-constexpr double kRampsInWindow = 5;
+/// A window holds this many ramps to full speed: few where its law is needed at once, many where motion goes on. The
+/// last ones brake for an end that the next window takes away: they are planned again.
+constexpr double kRampsAtOnce = 5;
+constexpr double kRampsAhead = 16;
+constexpr double kRampsPlannedAgain = 2;
 constexpr double kShortestWindow_mm = 1.0;
 constexpr std::int64_t kLeadAtFirst = 2;
 constexpr std::int64_t kLongestLead = 64;
@@ -114,11 +118,12 @@ struct Planner::Impl {
   struct WindowEnd {
     double s = 0;
     bool hard = false;
+    double planned_again = 0;  ///< length before the end that a following window plans again
   };
 
   /// Where the window that begins at s must or may end: at a demanded rest, at RunOne's limit, at the end of the path,
-  /// or where it is long enough.
-  [[nodiscard]] WindowEnd window_end(double s) {
+  /// or where it is long enough, which takes `ramps` ramps to full speed.
+  [[nodiscard]] WindowEnd window_end(double s, double ramps) {
     Ramp weakest;
     double fastest = 0;
     for (const JointLimits& joint : model.joints) {
@@ -130,7 +135,7 @@ struct Planner::Impl {
     for (std::size_t i = path().view().find(s + kSamePlace, 1); !found; ++i) {
       if (i >= path().size() && !path().supply()) break;
       v = std::max(v, std::min(path().segment(i)->demand().feed_mm_s * std::max(factor, 1.0), 2 * fastest));
-      reach = std::max(reach, kRampsInWindow * weakest.length(v));
+      reach = std::max(reach, ramps * weakest.length(v));
       const bool enough = path().end(i) - s > 2 * reach;
       // Whether the path goes on without rest is known once its next segment is there.
       if (i + 1 == path().size() && !path().rest_after(i) && !enough) path().supply();
@@ -138,11 +143,12 @@ struct Planner::Impl {
     }
     WindowEnd end = found.value_or(WindowEnd{path().end(), false});
     if (wanted == PathCommand::RunOne && limit_s <= end.s) end = {limit_s, true};
-    if (end.s - s > 1.5 * reach) return {s + reach, false};
+    if (end.s - s > 1.5 * reach) end = {s + reach, false};
+    end.planned_again = reach / ramps * kRampsPlannedAgain;
     return end;
   }
 
-  bool publish(std::unique_ptr<Plan> plan, bool stops, bool hard_end, double committed_from) {
+  bool publish(std::unique_ptr<Plan> plan, bool stops, const WindowEnd& end, double window_begin) {
     plan->id = next_id;
     const LawPiece& last = plan->law.back();
     plan->end_time_s = last.t0 + last.duration;
@@ -156,10 +162,10 @@ struct Planner::Impl {
     }
     PublishedPlan p;
     p.stops = stops;
-    p.hard_end = hard_end;
+    p.hard_end = end.hard;
     p.backward = backward.has_value();
     p.override_factor = factor;
-    p.commit_t = commit_time(*plan, committed_from);
+    p.commit_t = commit_time(*plan, window_begin, end.planned_again);
     p.plan = std::move(plan);
     if (!channel.published.push(p.plan.get()))
       return false;  // the servo loop does not take plans: it stands still or is gone
@@ -188,7 +194,7 @@ struct Planner::Impl {
     for (const double part : {0.5, 0.4, 0.35, 0.3}) {
       const double nearer = s + part * (end.s - s);
       if (nearer - s < 100 * kSamePlace) break;
-      end = {nearer, false};
+      end = {nearer, false, end.planned_again};
       if (auto law = law_between({s, 0, 0}, end.s, feed(factor), nullptr)) return law;
     }
     auto law = cautious_law(path().view(), model.joints, s, end.s, feed(factor));
@@ -198,14 +204,14 @@ struct Planner::Impl {
 
   bool start_from_rest(const ServoProgress& progress) {
     const double s = base_end_s();
-    WindowEnd end = window_end(s);
+    WindowEnd end = window_end(s, kRampsAtOnce);
     auto law = law_from_rest(s, end);
     if (!law) return no_plan(progress);
     auto plan = std::make_unique<Plan>();
     plan->start_cycle = progress.cycle + lead();
     plan->latest_cycle = plan->start_cycle;
     plan->law = std::move(*law);
-    return publish(std::move(plan), false, end.hard, s);
+    return publish(std::move(plan), false, end, s);
   }
 
   /// Adds the next window to the plan that is followed: behind its end where the path demands rest there, else from its
@@ -219,16 +225,24 @@ struct Planner::Impl {
     // Too near the end to be there in time: the machine comes to rest, and starts again from there.
     if (t_from - t_now < static_cast<double>(lead()) * period()) return no_plan(progress);
     const PathState from = p.state_at(t_from);
-    WindowEnd end = window_end(from.s);
-    auto law =
-        from.v == 0 && from.a == 0 ? law_from_rest(from.s, end) : law_between(from, end.s, feed(factor), &p.plan->law);
+    WindowEnd end;
+    std::optional<std::vector<LawPiece>> law;
+    if (from.v == 0 && from.a == 0) {
+      end = window_end(from.s, kRampsAtOnce);
+      law = law_from_rest(from.s, end);
+    }
+    for (const double ramps : {kRampsAhead, kRampsAtOnce}) {
+      if (law) break;
+      end = window_end(from.s, ramps);
+      law = law_between(from, end.s, feed(factor), &p.plan->law);
+    }
     if (!law) return no_plan(progress);
     auto plan = std::make_unique<Plan>();
     plan->start_cycle = now;
     plan->law = p.pieces_between(t_now, t_from);
     plan->latest_cycle = now + static_cast<std::int64_t>(std::floor((t_from - t_now) / period() + 1e-9));
     append_law(plan->law, *law, t_from - t_now);
-    return publish(std::move(plan), false, end.hard, from.s);
+    return publish(std::move(plan), false, end, from.s);
   }
 
   /// Leaves the plan `lead()` cycles from now: for a new override, or (s_end given) to stop there.
@@ -236,7 +250,7 @@ struct Planner::Impl {
     const PublishedPlan& p = *base();
     const std::int64_t cycle = earliest(p, progress.cycle + lead());
     const PathState from = p.state_at(now_s(p, cycle));
-    const WindowEnd end = s_stop ? WindowEnd{*s_stop, false} : window_end(from.s);
+    const WindowEnd end = s_stop ? WindowEnd{*s_stop, false} : window_end(from.s, kRampsAtOnce);
     const double allowed = s_stop ? std::max(factor, p.override_factor) : factor;
     auto law = law_between(from, end.s, feed(allowed), &p.plan->law);
     if (!law) return false;
@@ -244,7 +258,7 @@ struct Planner::Impl {
     plan->start_cycle = cycle;
     plan->latest_cycle = cycle;
     plan->law = std::move(*law);
-    return publish(std::move(plan), s_stop.has_value(), end.hard, from.s);
+    return publish(std::move(plan), s_stop.has_value(), end, from.s);
   }
 
   bool stop(const ServoProgress& progress) {
@@ -291,7 +305,7 @@ struct Planner::Impl {
     plan->law = p.pieces_between(t_now, t_rest);
     plan->latest_cycle = now + static_cast<std::int64_t>(std::floor((t_rest - t_now) / period()));
     if (plan->law.empty()) return no_plan(progress);
-    return publish(std::move(plan), true, true, rest);
+    return publish(std::move(plan), true, {rest, true}, rest);
   }
 
   bool no_plan(const ServoProgress& progress) {

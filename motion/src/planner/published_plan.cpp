@@ -3,13 +3,6 @@
 #include <algorithm>
 
 namespace rmac {
-namespace {
-
-/// The part of a window that is kept when the next one is planned.
-constexpr double kCommitted = 0.6;
-
-}  // namespace
-
 double PublishedPlan::end_s() const {
   const LawPiece& last = plan->law.back();
   return last.at(last.duration).s;
@@ -36,10 +29,11 @@ std::vector<LawPiece> PublishedPlan::pieces_between(double t_begin, double t_end
   return kept;
 }
 
-double commit_time(const Plan& plan, double window_begin) {
+double commit_time(const Plan& plan, double window_begin, double planned_again) {
   const auto& law = plan.law;
   const LawPiece& last = law.back();
-  const double s_commit = window_begin + kCommitted * (last.at(last.duration).s - window_begin);
+  const double s_end = last.at(last.duration).s;
+  const double s_commit = s_end - std::min(planned_again, 0.5 * (s_end - window_begin));
   double t = plan.end_time_s;
   for (std::size_t i = law.size(); i-- > 0;) {
     t = law[i].t0;

@@ -24,7 +24,7 @@ struct PublishedPlan {
 };
 
 /// The time up to which a plan is kept when more path comes: before it brakes for its own end, and not all of its last
-/// window, which begins at path length `window_begin`.
-[[nodiscard]] double commit_time(const Plan& plan, double window_begin);
+/// window, which begins at path length `window_begin`: less the last `planned_again` of it, in mm, at least half.
+[[nodiscard]] double commit_time(const Plan& plan, double window_begin, double planned_again);
 
 }  // namespace rmac

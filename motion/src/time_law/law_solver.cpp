@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdint>
+#include <utility>
 
+#include "lanes.hpp"
 #include "time_law/law_spline.hpp"
 
 namespace rmac {
@@ -13,48 +15,71 @@ constexpr double kBoundaryFraction = 0.99;
 constexpr double kGap = 2e-4;
 constexpr double kFeasible = 1e-7;
 
-/// One end of an interval as jerk bands see it: q there, and its root.
-struct Place {
-  std::uint32_t first = 0;
-  Weights u{};
-  double root = 0, half_inverse_root = 0;
-};
-
-constexpr std::uint32_t kLinear = 0xffffffff;
-
-/// low <= phi(c) <= 1 on three neighbouring coefficients, with slack and dual variable of both sides: most of the time
-/// of a plan is spent going through these, so what belongs together lies together and both sides share one gradient.
-/// Linear: phi = w·c. Jerk: phi = (w·c)·√(u·c), eq. 10, u·c being q at `place`.
-struct Band {
-  std::uint32_t first = 0;
-  std::uint32_t place = kLinear;
-  double low = -1;
-  Weights w{}, gradient{};
+/// low <= phi(c) <= 1 on the three coefficients of one interval, some such rows at once, with slack and dual variable
+/// of both sides. Most of the time of a plan is spent going through these, so what belongs together lies together, both
+/// sides share one gradient, and rows of an interval share the coefficients that they touch.
+/// phi = w·c, or for jerk (w·c)·√(u·c), eq. 10, u·c being q at an end of the interval.
+struct Rows {
+  LaneTriple w{}, u{}, gradient{};
+  Lanes low{};
+  LaneMask linear{};
   struct Side {
-    double slack = 0, inverse_slack = 0, dual = 0, residual = 0, slack_step = 0, dual_step = 0;
+    Lanes slack{}, inverse_slack{}, dual{}, residual{}, slack_step{}, dual_step{};
   };
   Side above, below;
+};
+
+/// Rows of one interval while they are collected.
+class RowCollector {
+ public:
+  explicit RowCollector(std::vector<Rows>& all) : all_(all) {}
+
+  /// low <= w·c <= high; a side that does not bind may be anything far away.
+  void add_linear(const Weights& w, double low, double high) {
+    Rows& rows = next();
+    for (std::size_t i = 0; i < 3; ++i) rows.w[i][lane_] = w[i] / high;
+    rows.low[lane_] = low / high;
+  }
+  /// |(w·c)·√(u·c)| <= 1.
+  void add_jerk(const Weights& w, const Weights& u) {
+    Rows& rows = next();
+    for (std::size_t i = 0; i < 3; ++i) rows.w[i][lane_] = w[i], rows.u[i][lane_] = u[i];
+    rows.linear[lane_] = 0;
+  }
+  void end_interval() { lane_ = kLanes - 1; }
+
+ private:
+  Rows& next() {
+    lane_ = (lane_ + 1) % kLanes;
+    if (lane_ == 0) {
+      // A lane that stays empty is a row of zeros, inside its bounds whatever the coefficients are.
+      all_.emplace_back();
+      all_.back().low = all_lanes(-1);
+      all_.back().linear = all_lanes(1) == all_lanes(1);
+    }
+    return all_.back();
+  }
+
+  std::vector<Rows>& all_;
+  std::size_t lane_ = kLanes - 1;
 };
 
 class Solver {
  public:
   Solver(const LawProblem& problem, const std::vector<double>& guess) : p_(problem), n_(problem.intervals() + 2) {
     fix_ends(guess);
-    build_bands();
+    build_rows();
     for (auto* v : {&diagonal_, &off1_, &off2_, &rhs_, &objective_gradient_}) v->resize(n_);
-    step_.assign(n_ + 2, 0.0);
+    step_.assign(n_, 0.0);
   }
 
   LawSolution run() {
     LawSolution result;
-    const double count = 2 * static_cast<double>(bands_.size());
+    const double count = 2 * static_cast<double>(kLanes * rows_.size());
     evaluate(true);
-    const double first_dual = 0.1 * travel_time() / count;
-    for (Band& band : bands_) {
-      for (Band::Side* side : {&band.above, &band.below}) {
-        side->inverse_slack = 1 / side->slack;
-        side->dual = first_dual * side->inverse_slack;
-      }
+    const Lanes first_dual = all_lanes(0.1 * travel_time() / count);
+    for (Rows& rows : rows_) {
+      for (Rows::Side* side : {&rows.above, &rows.below}) side->dual = first_dual * side->inverse_slack;
     }
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
       result.iterations = iteration + 1;
@@ -69,10 +94,11 @@ class Solver {
       direction<true>(sigma * mu);
       const auto [alpha_p, alpha_d] = reaches(kBoundaryFraction);
       for (std::size_t j = 0; j < n_; ++j) c_[j] += alpha_p * step_[j];
-      for (Band& band : bands_) {
-        for (Band::Side* side : {&band.above, &band.below}) {
-          side->slack += alpha_p * side->slack_step;
-          side->dual += alpha_d * side->dual_step;
+      const Lanes primal = all_lanes(alpha_p), dual = all_lanes(alpha_d);
+      for (Rows& rows : rows_) {
+        for (Rows::Side* side : {&rows.above, &rows.below}) {
+          side->slack += primal * side->slack_step;
+          side->dual += dual * side->dual_step;
         }
       }
       const double infeasible = evaluate(false);
@@ -83,7 +109,7 @@ class Solver {
       if (alpha_p < 1e-9) break;
     }
     if (!result.converged) result.converged = evaluate(false) <= 1e-5;  // feasible, if not proven optimal
-    result.coefficients.assign(c_.begin(), c_.begin() + static_cast<std::ptrdiff_t>(n_));
+    result.coefficients = std::move(c_);
     return result;
   }
 
@@ -105,103 +131,90 @@ class Solver {
     end_free_ = n_ - 2;
   }
 
-  /// low <= w·c <= high; a side that does not bind may be anything far away.
-  void add(std::size_t first, const Weights& w, double low, double high) {
-    Band band;
-    band.first = static_cast<std::uint32_t>(first);
-    band.low = low / high;
-    for (std::size_t i = 0; i < 3; ++i) band.w[i] = w[i] / high;
-    bands_.push_back(band);
-  }
-
-  void build_bands() {
+  void build_rows() {
     const std::size_t n = p_.intervals();
-    bands_.reserve(n * (3 * p_.joint_count + 3));
-    places_.reserve(2 * n);
-    // Nothing bounds the coefficients from below: the travel time does, which goes to infinity there.
-    for (std::size_t j = first_free_; j < end_free_; ++j) {
-      const double cap = p_.speed_cap[std::min(j - 1, n - 1)];
-      add(j, {1, 0, 0}, -cap, cap);
-    }
+    rows_.reserve(n * ((3 * p_.joint_count + 2) / kLanes + 1));
+    first_row_.reserve(n + 1);
+    RowCollector rows(rows_);
     for (std::size_t k = 0; k < n; ++k) {
+      first_row_.push_back(rows_.size());
+      // Nothing bounds the coefficients from below: the travel time does, which goes to infinity there.
+      if (k + 1 >= first_free_ && k + 1 < end_free_) rows.add_linear({0, 1, 0}, -p_.speed_cap[k], p_.speed_cap[k]);
       const Basis left = basis(p_, k, false), right = basis(p_, k, true);
       if (k > 0) {
         const double cap = std::min(p_.speed_cap[k], p_.speed_cap[k - 1]);
-        if (p_.speed_cap[k] != p_.speed_cap[k - 1]) add(k, left.q, -cap, cap);
-        path_acceleration_band(k, left, std::min(p_.rise[k], p_.rise[k - 1]), std::min(p_.fall[k], p_.fall[k - 1]));
-        joint_acceleration_bands(k, left, p_.at(k, false), std::min(p_.tightening[k], p_.tightening[k - 1]));
+        if (p_.speed_cap[k] != p_.speed_cap[k - 1]) rows.add_linear(left.q, -cap, cap);
+        path_acceleration_row(left, std::min(p_.rise[k], p_.rise[k - 1]), std::min(p_.fall[k], p_.fall[k - 1]), rows);
+        joint_acceleration_rows(left, p_.at(k, false), std::min(p_.tightening[k], p_.tightening[k - 1]), rows);
       }
-      jerk_bands(k, left, p_.at(k, false), p_.tightening[k]);
-      jerk_bands(k, right, p_.at(k, true), p_.tightening[k]);
+      jerk_rows(left, p_.at(k, false), p_.tightening[k], rows);
+      jerk_rows(right, p_.at(k, true), p_.tightening[k], rows);
+      rows.end_interval();
     }
+    first_row_.push_back(rows_.size());
   }
 
-  void path_acceleration_band(std::size_t k, const Basis& b, double rise, double fall) {
+  static void path_acceleration_row(const Basis& b, double rise, double fall, RowCollector& rows) {
     const double most = std::isfinite(rise) ? rise : fall;
     if (!std::isfinite(most)) return;
     constexpr double kFarAway = 1e3;
-    add(k, {b.dq[0] / 2, b.dq[1] / 2, b.dq[2] / 2}, -std::min(fall, kFarAway * most), std::min(rise, kFarAway * most));
+    rows.add_linear({b.dq[0] / 2, b.dq[1] / 2, b.dq[2] / 2}, -std::min(fall, kFarAway * most),
+                    std::min(rise, kFarAway * most));
   }
 
-  void joint_acceleration_bands(std::size_t k, const Basis& b, const JointDerivatives& d, double tightening) {
+  void joint_acceleration_rows(const Basis& b, const JointDerivatives& d, double tightening, RowCollector& rows) const {
     for (std::size_t j = 0; j < p_.joint_count; ++j) {
       if (std::abs(d.d1[j]) < 1e-12 && std::abs(d.d2[j]) < 1e-12) continue;
       Weights w;
       for (std::size_t i = 0; i < 3; ++i) w[i] = d.d2[j] * b.q[i] + 0.5 * d.d1[j] * b.dq[i];
       const double most = p_.max_acceleration[j] * tightening;
-      add(k, w, -most, most);
+      rows.add_linear(w, -most, most);
     }
   }
 
-  void jerk_bands(std::size_t k, const Basis& b, const JointDerivatives& d, double tightening) {
-    const auto place = static_cast<std::uint32_t>(places_.size());
-    places_.push_back({static_cast<std::uint32_t>(k), b.q, 0, 0});
+  void jerk_rows(const Basis& b, const JointDerivatives& d, double tightening, RowCollector& rows) const {
     for (std::size_t j = 0; j < p_.joint_count; ++j) {
       if (std::abs(d.d1[j]) < 1e-12 && std::abs(d.d2[j]) < 1e-12 && std::abs(d.d3[j]) < 1e-12) continue;
-      Band band;
-      band.first = static_cast<std::uint32_t>(k);
-      band.place = place;
       const double scale = 1 / (p_.max_jerk[j] * tightening);
-      for (std::size_t i = 0; i < 3; ++i) {
-        band.w[i] = (d.d3[j] * b.q[i] + 1.5 * d.d2[j] * b.dq[i] + 0.5 * d.d1[j] * b.ddq[i]) * scale;
-      }
-      bands_.push_back(band);
+      Weights w;
+      for (std::size_t i = 0; i < 3; ++i)
+        w[i] = (d.d3[j] * b.q[i] + 1.5 * d.d2[j] * b.dq[i] + 0.5 * d.d1[j] * b.ddq[i]) * scale;
+      rows.add_jerk(w, b.q);
+    }
+  }
+
+  /// Calls visit(rows, k) for each few rows, k being the first of their interval's coefficients.
+  template <typename Visit>
+  void each(Visit visit) {
+    for (std::size_t k = 0; k < p_.intervals(); ++k) {
+      for (std::size_t i = first_row_[k]; i < first_row_[k + 1]; ++i) visit(rows_[i], k);
     }
   }
 
   /// Residuals phi - 1 + slack and low - phi + slack, gradients d phi / d c, and the largest excess over a bound.
   double evaluate(bool first) {
-    for (Place& place : places_) {
-      place.root = std::sqrt(std::max(dot(place.u, c_.data() + place.first), 1e-30));
-      place.half_inverse_root = 0.5 / place.root;
-    }
-    double infeasible = 0;
-    for (Band& band : bands_) {
-      const double* const c = c_.data() + band.first;
-      double phi = 0;
-      if (band.place != kLinear) {
-        const Place& place = places_[band.place];
-        const double form = dot(band.w, c);
-        phi = form * place.root;
-        const double half = form * place.half_inverse_root;
-        for (std::size_t a = 0; a < 3; ++a) band.gradient[a] = place.root * band.w[a] + half * place.u[a];
-      } else {
-        // The bounds on single coefficients touch only c[first]; what lies behind it may be beyond the array.
-        phi = band.w[1] == 0 && band.w[2] == 0 ? band.w[0] * c[0] : dot(band.w, c);
-        band.gradient = band.w;
-      }
-      const auto settle = [&](Band::Side& side, double excess) {
-        infeasible = std::max(infeasible, excess);
+    const Lanes one = all_lanes(1), half = all_lanes(0.5), least_slack = all_lanes(0.02);
+    Lanes infeasible{};
+    each([&](Rows& rows, std::size_t k) {
+      const LaneTriple c = lanes_of(c_.data() + k);
+      const Lanes q = larger(dot(rows.u, c), all_lanes(1e-30));
+      const Lanes root = rows.linear ? one : square_root(q);
+      const Lanes form = dot(rows.w, c);
+      const Lanes phi = form * root;
+      const Lanes bend = rows.linear ? Lanes{} : half * form / root;
+      for (std::size_t i = 0; i < 3; ++i) rows.gradient[i] = root * rows.w[i] + bend * rows.u[i];
+      const auto settle = [&](Rows::Side& side, Lanes excess) {
+        infeasible = larger(infeasible, excess);
         // A side that turned out better than its slack takes it up at once: the linearisation never claims slack that
         // is not there.
-        side.slack = std::max(first ? 0.02 : side.slack, -excess);
-        side.inverse_slack = 1 / side.slack;
+        side.slack = larger(first ? least_slack : side.slack, -excess);
+        side.inverse_slack = one / side.slack;
         side.residual = excess + side.slack;
       };
-      settle(band.above, phi - 1);
-      settle(band.below, band.low - phi);
-    }
-    return infeasible;
+      settle(rows.above, phi - one);
+      settle(rows.below, rows.low - phi);
+    });
+    return largest(infeasible);
   }
 
   [[nodiscard]] double travel_time() const {
@@ -211,14 +224,15 @@ class Solver {
   }
 
   /// Sum of slack times dual, after steps of these lengths.
-  [[nodiscard]] double complementarity(double primal, double dual) const {
-    double sum = 0;
-    for (const Band& band : bands_) {
-      const Band::Side &a = band.above, &b = band.below;
-      sum += (a.slack + primal * a.slack_step) * (a.dual + dual * a.dual_step);
-      sum += (b.slack + primal * b.slack_step) * (b.dual + dual * b.dual_step);
+  [[nodiscard]] double complementarity(double primal_step, double dual_step) const {
+    const Lanes primal = all_lanes(primal_step), dual = all_lanes(dual_step);
+    Lanes total{};
+    for (const Rows& rows : rows_) {
+      const Rows::Side &a = rows.above, &b = rows.below;
+      total += (a.slack + primal * a.slack_step) * (a.dual + dual * a.dual_step);
+      total += (b.slack + primal * b.slack_step) * (b.dual + dual * b.dual_step);
     }
-    return sum;
+    return sum(total);
   }
 
   /// Objective: the sum of h/√c over the middle coefficients, which is the travel time up to second order and convex.
@@ -229,19 +243,25 @@ class Solver {
       const double force = 0.5 * h / (c * std::sqrt(c));
       objective_gradient_[k + 1] = -force;
       diagonal_[k + 1] += 1.5 * force / c;
-    }
-    for (const Band& band : bands_) {
-      const std::size_t f = band.first;
-      const double ratio = band.above.dual * band.above.inverse_slack + band.below.dual * band.below.inverse_slack;
-      const Weights& g = band.gradient;
-      diagonal_[f] += ratio * g[0] * g[0];
-      if (g[1] == 0 && g[2] == 0) continue;
-      diagonal_[f + 1] += ratio * g[1] * g[1];
-      off1_[f] += ratio * g[0] * g[1];
-      if (g[2] == 0) continue;
-      diagonal_[f + 2] += ratio * g[2] * g[2];
-      off1_[f + 1] += ratio * g[1] * g[2];
-      off2_[f] += ratio * g[0] * g[2];
+      Lanes d0{}, d1{}, d2{}, near0{}, near1{}, far{};
+      for (std::size_t i = first_row_[k]; i < first_row_[k + 1]; ++i) {
+        const Rows& rows = rows_[i];
+        const auto& [g0, g1, g2] = rows.gradient;
+        const Lanes ratio = rows.above.dual * rows.above.inverse_slack + rows.below.dual * rows.below.inverse_slack;
+        const Lanes r0 = ratio * g0, r1 = ratio * g1;
+        d0 += r0 * g0;
+        d1 += r1 * g1;
+        d2 += ratio * g2 * g2;
+        near0 += r0 * g1;
+        near1 += r1 * g2;
+        far += r0 * g2;
+      }
+      diagonal_[k] += sum(d0);
+      diagonal_[k + 1] += sum(d1);
+      diagonal_[k + 2] += sum(d2);
+      off1_[k] += sum(near0);
+      off1_[k + 1] += sum(near1);
+      off2_[k] += sum(far);
     }
   }
 
@@ -269,21 +289,23 @@ class Solver {
 
   template <bool kSecondOrder>
   void direction(double target) {
-    const auto aim = [target](const Band::Side& side) {
-      if constexpr (kSecondOrder) return target - side.slack_step * side.dual_step;
-      return target;
+    const Lanes centre = all_lanes(target);
+    const auto aim = [centre](const Rows::Side& side) {
+      if constexpr (kSecondOrder) return centre - side.slack_step * side.dual_step;
+      return centre;
     };
     for (std::size_t j = 0; j < n_; ++j) rhs_[j] = -objective_gradient_[j];
-    for (const Band& band : bands_) {
-      const auto pull = [&](const Band::Side& side) {
-        return (aim(side) + side.dual * side.residual) * side.inverse_slack;
-      };
-      const double weight = pull(band.above) - pull(band.below);
-      const std::size_t f = band.first;
-      const Weights& g = band.gradient;
-      rhs_[f] -= weight * g[0];
-      if (g[1] != 0) rhs_[f + 1] -= weight * g[1];
-      if (g[2] != 0) rhs_[f + 2] -= weight * g[2];
+    for (std::size_t k = 0; k < p_.intervals(); ++k) {
+      LaneTriple pull{};
+      for (std::size_t i = first_row_[k]; i < first_row_[k + 1]; ++i) {
+        const Rows& rows = rows_[i];
+        const auto force = [&](const Rows::Side& side) {
+          return (aim(side) + side.dual * side.residual) * side.inverse_slack;
+        };
+        const Lanes weight = force(rows.above) - force(rows.below);
+        for (std::size_t c = 0; c < 3; ++c) pull[c] += weight * rows.gradient[c];
+      }
+      for (std::size_t c = 0; c < 3; ++c) rhs_[k + c] -= sum(pull[c]);
     }
     for (std::size_t j = first_free_; j < end_free_; ++j) {
       double value = rhs_[j];
@@ -297,15 +319,15 @@ class Solver {
       if (j + 2 < end_free_) value -= off2_[j] * step_[j + 2];
       step_[j] = value;
     }
-    for (Band& band : bands_) {
-      const double change = dot(band.gradient, step_.data() + band.first);
-      const auto follow = [&](Band::Side& side, double slack_step) {
+    each([&](Rows& rows, std::size_t k) {
+      const Lanes change = dot(rows.gradient, lanes_of(step_.data() + k));
+      const auto follow = [&](Rows::Side& side, Lanes slack_step) {
         side.dual_step = (aim(side) - side.dual * slack_step) * side.inverse_slack - side.dual;
         side.slack_step = slack_step;
       };
-      follow(band.above, -band.above.residual - change);
-      follow(band.below, -band.below.residual + change);
-    }
+      follow(rows.above, -rows.above.residual - change);
+      follow(rows.below, -rows.below.residual + change);
+    });
   }
 
   struct Reach {
@@ -313,28 +335,26 @@ class Solver {
   };
   /// How far the steps may go before a slack or a dual falls to 1 - `fraction` of itself.
   [[nodiscard]] Reach reaches(double fraction) const {
-    double fall = fraction;  // largest part of itself that a slack would lose
-    double dual = 1;
-    for (const Band& band : bands_) {
-      fall = std::max(
-          {fall, -band.above.slack_step * band.above.inverse_slack, -band.below.slack_step * band.below.inverse_slack});
-      for (const Band::Side* side : {&band.above, &band.below}) {
-        if (fraction * side->dual < -dual * side->dual_step) dual = -fraction * side->dual / side->dual_step;
+    Lanes slack_fall = all_lanes(fraction), dual_fall = slack_fall;  // largest part of itself that one would lose
+    for (const Rows& rows : rows_) {
+      for (const Rows::Side* side : {&rows.above, &rows.below}) {
+        slack_fall = larger(slack_fall, -side->slack_step * side->inverse_slack);
+        dual_fall = larger(dual_fall, -side->dual_step / side->dual);
       }
     }
-    double primal = fraction / fall;
+    double primal = fraction / largest(slack_fall);
     // q itself must stay positive whatever the slacks say, or the next linearisation has no meaning.
     for (std::size_t j = first_free_; j < end_free_; ++j) {
       if (0.9 * c_[j] < -primal * step_[j]) primal = -0.9 * c_[j] / step_[j];
     }
-    return {primal, dual};
+    return {primal, fraction / largest(dual_fall)};
   }
 
   const LawProblem& p_;
   std::size_t n_;
   std::size_t first_free_ = 0, end_free_ = 0;
-  std::vector<Place> places_;
-  std::vector<Band> bands_;
+  std::vector<Rows> rows_;
+  std::vector<std::size_t> first_row_;  ///< of each interval, and behind the last
   std::vector<double> c_, step_, diagonal_, off1_, off2_, rhs_, objective_gradient_;
 };
 

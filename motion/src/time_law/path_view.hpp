@@ -1,12 +1,22 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
 #include "rmac/motion/path_segment.hpp"
 
 namespace rmac {
+
+/// A place just inside an interval of the path from one of its ends. Path lengths are sums, so a place meant to be a
+/// knot's misses it by rounding, and a derivative that jumps there would be taken from the other side.
+[[nodiscard]] inline double just_inside(double end, double other_end) noexcept {
+  const double h = other_end - end;
+  const double rounding = 8 * std::numeric_limits<double>::epsilon() * std::abs(end);
+  return end + std::copysign(std::min(std::max(1e-7 * std::abs(h), rounding), std::abs(h) / 4), h);
+}
 
 /// Segments laid end to end on one path length. Read only; whoever owns the vectors keeps them alive.
 class PathView {

@@ -1,9 +1,9 @@
 #include "time_law/window.hpp"
 
-#include <array>
 #include <cmath>
 #include <limits>
 
+#include "time_law/law_check.hpp"
 #include "time_law/law_problem.hpp"
 
 namespace rmac {
@@ -15,18 +15,6 @@ constexpr double kMargin = 0.9985;
 constexpr int kTightenings = 6;
 constexpr double kGrading = 0.35;  ///< grid steps grow by this part of the distance from a point of rest
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-double bound(double value) {
-  return value > 0 ? value : kInfinity;
-}
-
-/// A place just inside an interval of the path from one of its ends. Path lengths are sums, so a place meant to be a
-/// knot's misses it by rounding, and a derivative that jumps there would be taken from the other side.
-double just_inside(double end, double other_end) {
-  const double h = other_end - end;
-  const double rounding = 8 * std::numeric_limits<double>::epsilon() * std::abs(end);
-  return end + std::copysign(std::min(std::max(1e-7 * std::abs(h), rounding), std::abs(h) / 4), h);
-}
 
 /// Speed bound at a point of the path: feed and joint speeds.
 double speed_bound(const PathSegment& segment, const JointPoint& point, const std::vector<JointLimits>& joints,
@@ -55,7 +43,8 @@ std::optional<RestEnd> rest_end(const PathView& path, const std::vector<JointLim
   if (path.evaluate(s_rest, 3, direction, point) != KinematicsStatus::Ok) return std::nullopt;
   const PathSegment& segment = path.segment(path.find(s_rest, direction));
   const PathDemand& demand = segment.demand();
-  double jerk = kInfinity, acceleration = bound(direction > 0 ? demand.accel_rise_mm_s2 : demand.accel_fall_mm_s2);
+  double jerk = kInfinity,
+         acceleration = or_unbounded(direction > 0 ? demand.accel_rise_mm_s2 : demand.accel_fall_mm_s2);
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const double d = std::max(std::abs(point.d[1][j]), 1e-12);
     jerk = std::min(jerk, joints[j].max_jerk * kMargin / d);
@@ -190,8 +179,8 @@ bool fill(LawProblem& problem, const PathView& path, const std::vector<JointLimi
       v = std::min(v, speed_bound(segment, point, joints, feed));
     }
     problem.speed_cap[k] = v * v;
-    problem.rise[k] = bound(segment.demand().accel_rise_mm_s2);
-    problem.fall[k] = bound(segment.demand().accel_fall_mm_s2);
+    problem.rise[k] = or_unbounded(segment.demand().accel_rise_mm_s2);
+    problem.fall[k] = or_unbounded(segment.demand().accel_fall_mm_s2);
   }
   return true;
 }
@@ -249,61 +238,6 @@ double ramp_length(double v, double a, double j) noexcept {
   return 0.5 * v * time;
 }
 
-namespace {
-
-/// Largest of a joint's demand in a piece, from equidistant samples: between them the curve is taken for the parabola
-/// through three neighbours, so a peak between samples counts.
-template <std::size_t kCount>
-double largest(const std::array<double, kCount>& samples) {
-  double worst = std::max(std::abs(samples.front()), std::abs(samples.back()));
-  for (std::size_t i = 1; i + 1 < kCount; ++i) {
-    const double here = samples[i], rise = (samples[i + 1] - samples[i - 1]) / 2;
-    const double bend = samples[i + 1] - 2 * here + samples[i - 1];
-    const bool peak = here > 0 ? bend < 0 : bend > 0;
-    const double vertex = peak && std::abs(rise) < std::abs(bend) ? here - rise * rise / (2 * bend) : here;
-    worst = std::max(worst, std::abs(vertex));
-  }
-  return worst;
-}
-
-}  // namespace
-
-LawExcess check_law(const PathView& path, const std::vector<JointLimits>& joints, const std::vector<LawPiece>& law,
-                    const FeedRule* feed) {
-  constexpr std::size_t kSamples = 9;
-  LawExcess excess;
-  excess.by_piece.reserve(law.size());
-  JointPoint point;
-  std::array<std::array<double, kSamples>, kMaxJoints> acceleration, jerk;
-  for (const LawPiece& piece : law) {
-    double worst = 0;
-    const double s_begin = piece.start.s, s_end = piece.at(piece.duration).s;
-    for (std::size_t i = 0; i < kSamples; ++i) {
-      const PathState at = piece.at(piece.duration * static_cast<double>(i) / (kSamples - 1));
-      const double path_jerk = piece.kind == LawPiece::Kind::Jerk ? piece.slope : piece.slope * at.v;
-      const bool last = i + 1 == kSamples;
-      const double s = i == 0 ? just_inside(s_begin, s_end) : last ? just_inside(s_end, s_begin) : at.s;
-      const PathSegment& segment = path.segment(path.find(s, 1));
-      if (!(at.v >= -1e-9) || path.evaluate(s, 3, last ? -1 : 1, point) != KinematicsStatus::Ok) return {kInfinity, {}};
-      for (std::size_t j = 0; j < joints.size(); ++j) {
-        const double d1 = point.d[1][j], d2 = point.d[2][j], d3 = point.d[3][j], v = at.v;
-        worst = std::max(worst, std::abs(d1 * v) / joints[j].max_speed);
-        acceleration[j][i] = (d2 * v * v + d1 * at.a) / joints[j].max_acceleration;
-        jerk[j][i] = (d3 * v * v * v + 3 * d2 * v * at.a + d1 * path_jerk) / joints[j].max_jerk;
-      }
-      const PathDemand& demand = segment.demand();
-      worst = std::max({worst, at.a / bound(demand.accel_rise_mm_s2), -at.a / bound(demand.accel_fall_mm_s2)});
-      if (feed != nullptr) worst = std::max(worst, at.v / (feed->bound(segment) * 1.0005));
-    }
-    for (std::size_t j = 0; j < joints.size(); ++j)
-      worst = std::max({worst, largest(acceleration[j]), largest(jerk[j])});
-    if (!std::isfinite(worst)) return {kInfinity, {}};
-    excess.by_piece.push_back(worst);
-    excess.worst = std::max(excess.worst, worst);
-  }
-  return excess;
-}
-
 std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std::vector<JointLimits>& joints,
                                                  const Window& window) {
   const bool from_rest = window.begin.v == 0 && window.begin.a == 0;
@@ -319,7 +253,7 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
     for (std::size_t i = path.find(window.begin.s, 1); i <= path.find(window.s_end, -1); ++i)
       v = std::max(v, feed.bound(path.segment(i)));
     for (const JointLimits& joint : joints) v = std::min(v, 2 * joint.max_speed);
-    coarsest = std::min(coarsest, std::max(ramp_length(v, a, j) / 16, 0.01));
+    coarsest = std::min(coarsest, std::max(ramp_length(v, a, j) / 8, 0.01));
   }
   double a = window.begin.s, b = window.s_end;
   std::optional<RestEnd> first, last;
@@ -338,7 +272,7 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
   problem.end = {b, last->speed, -last->acceleration};
   // A moving start is graded too. Its first spline coefficients are fixed by its state, which may lie at the edge of
   // what the limits allow: on a coarse grid most such states have no way to a stop. Nor may they reach over the feed.
-  constexpr double kFinerAtStart = 24;
+  constexpr double kFinerAtStart = 48;
   double start_step = first ? first->length : coarsest / kFinerAtStart;
   if (JointPoint point; !first && window.begin.a > 0 && path.evaluate(a, 1, 1, point) == KinematicsStatus::Ok) {
     const double cap = speed_bound(path.segment(path.find(a, 1)), point, joints, feed);

@@ -1,27 +1,14 @@
 #pragma once
 
-#include <algorithm>
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/time_law.hpp"
+#include "time_law/feed_rule.hpp"
 #include "time_law/path_view.hpp"
 
 namespace rmac {
-
-/// How fast the path may be travelled: the programmed feed times the override, and never above the machine's largest
-/// feed.
-struct FeedRule {
-  double override_factor = 1;
-  double largest_mm_s = std::numeric_limits<double>::infinity();
-
-  [[nodiscard]] double bound(const PathSegment& segment) const noexcept {
-    const double feed = segment.demand().feed_mm_s * override_factor;
-    return segment.curve().in_joint_space() ? feed : std::min(feed, largest_mm_s);
-  }
-};
 
 /// A stretch of path to be given a time law: from a state to rest at `s_end`. The path between is smooth to the second
 /// derivative.
@@ -38,15 +25,6 @@ struct Window {
 [[nodiscard]] std::optional<std::vector<LawPiece>> plan_window(const PathView& path,
                                                                const std::vector<JointLimits>& joints,
                                                                const Window& window);
-
-/// Largest ratio of a joint's or the path's demand to its limit along a law, sampled independently of how the law was
-/// made.
-struct LawExcess {
-  double worst = 0;  ///< 1 is just at a limit
-  std::vector<double> by_piece;
-};
-[[nodiscard]] LawExcess check_law(const PathView& path, const std::vector<JointLimits>& joints,
-                                  const std::vector<LawPiece>& law, const FeedRule* feed);
 
 /// Length of the ramp from rest to speed v (mm) under acceleration a and jerk j.
 [[nodiscard]] double ramp_length(double v, double a, double j) noexcept;

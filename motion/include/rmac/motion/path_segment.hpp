@@ -6,21 +6,9 @@
 
 #include "rmac/motion/curve.hpp"
 #include "rmac/motion/limits.hpp"
-#include "rmac/motion/ports/kinematics.hpp"
+#include "rmac/motion/pose_to_joints.hpp"
 
 namespace rmac {
-
-/// Frames in force for a move: machine = part · program, and the tool tip on the tool interface.
-struct Frames {
-  Frame part;
-  Frame tool;
-};
-
-/// A point of a path in joint space with derivatives by path length: `d[k][j]` is the k-th derivative of joint j, in mm
-/// or deg.
-struct JointPoint {
-  std::array<std::array<double, kMaxJoints>, 4> d;
-};
 
 /// What a move asks of the planner beside its geometry.
 struct PathDemand {
@@ -47,16 +35,16 @@ struct MoveStretch {
 /// length. Immutable, shared between planner and servo thread; `evaluate` is const and real-time safe.
 class PathSegment {
  public:
-  PathSegment(std::shared_ptr<const Curve> curve, const Frames& frames, std::shared_ptr<const Kinematics> kinematics,
-              const PathDemand& demand, std::vector<MoveStretch> stretches);
+  PathSegment(std::shared_ptr<const Curve> curve, std::shared_ptr<const PoseToJoints> map, const PathDemand& demand,
+              std::vector<MoveStretch> stretches);
 
   [[nodiscard]] double length() const noexcept { return length_; }
   [[nodiscard]] std::size_t joint_count() const noexcept { return joint_count_; }
   [[nodiscard]] const PathDemand& demand() const noexcept { return demand_; }
   [[nodiscard]] const Curve& curve() const noexcept { return *curve_; }
-  [[nodiscard]] const Frames& frames() const noexcept { return frames_; }
   [[nodiscard]] const std::shared_ptr<const Curve>& shared_curve() const noexcept { return curve_; }
-  [[nodiscard]] const std::shared_ptr<const Kinematics>& kinematics() const noexcept { return kinematics_; }
+  /// Shared by the segments that were made under the same frames.
+  [[nodiscard]] const std::shared_ptr<const PoseToJoints>& map() const noexcept { return map_; }
   [[nodiscard]] std::span<const MoveStretch> stretches() const noexcept { return stretches_; }
   /// The stretch that holds s; at a border the one that begins there. Real-time safe.
   [[nodiscard]] const MoveStretch& stretch_at(double s) const noexcept;
@@ -74,11 +62,10 @@ class PathSegment {
   [[nodiscard]] ToolPose pose(double s) const noexcept;
 
  private:
-  void seed_at(double s, std::span<double> seed) const noexcept;
+  [[nodiscard]] std::span<const double> seed_at(double s) const noexcept;
 
   std::shared_ptr<const Curve> curve_;
-  std::shared_ptr<const Kinematics> kinematics_;
-  Frames frames_;
+  std::shared_ptr<const PoseToJoints> map_;
   PathDemand demand_;
   std::vector<MoveStretch> stretches_;
   std::vector<std::uint32_t> ended_before_;  ///< moves that end before each stretch begins

@@ -40,13 +40,13 @@ class PathBuilder {
   /// Tool pose (part frame) and joints at the end of what was built.
   [[nodiscard]] const ToolPose& end_pose() const noexcept { return end_pose_; }
   [[nodiscard]] std::span<const double> end_joints() const noexcept { return end_joints_; }
-  [[nodiscard]] const Frames& frames() const noexcept { return frames_; }
+  [[nodiscard]] const Frames& frames() const noexcept { return map_->frames(); }
 
  private:
   PlannerModel model_;
-  Frames frames_;
-  ToolPose end_pose_;
   std::vector<double> end_joints_;
+  std::shared_ptr<const PoseToJoints> map_;
+  ToolPose end_pose_;
 };
 
 /// What the servo loop tells the planner: read from its snapshot.

@@ -144,6 +144,8 @@ class ChainKinematics final : public Kinematics {
     }
   }
 
+  [[nodiscard]] bool constant_jacobian() const noexcept override { return turn_count_ == 0; }
+
  private:
   static constexpr std::size_t kMost = kMostSlides + kMostTurns;
   static constexpr double kReach_mm = 1e-6;  ///< how far a tip may lie off what fewer than three slides reach

@@ -49,6 +49,10 @@ class Kinematics {
                                               std::span<double> joints) const noexcept {
     return inverse(pose, tool, seed, joints.first(joint_count())) == KinematicsStatus::Ok ? 1 : 0;
   }
+
+  /// The Jacobian is the same at all joints: slides alone, each along a direction of its own. Spares the planner a
+  /// third of its work.
+  [[nodiscard]] virtual bool constant_jacobian() const noexcept { return false; }
 };
 
 }  // namespace rmac

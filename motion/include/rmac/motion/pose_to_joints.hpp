@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+
+#include "rmac/motion/curve.hpp"
+#include "rmac/motion/ports/kinematics.hpp"
+
+namespace rmac {
+
+/// Frames in force for a move: machine = part · program, and the tool tip on the tool interface.
+struct Frames {
+  Frame part;
+  Frame tool;
+};
+
+/// A point of a path in joint space with derivatives by path length: `d[k][j]` is the k-th derivative of joint j, in mm
+/// or deg.
+struct JointPoint {
+  std::array<std::array<double, kMaxJoints>, 4> d;
+};
+
+/// From tool poses in the part frame to joints, under frames and kinematics that many moves share. Immutable.
+class PoseToJoints {
+ public:
+  PoseToJoints(const Frames& frames, std::shared_ptr<const Kinematics> kinematics);
+
+  [[nodiscard]] const Frames& frames() const noexcept { return frames_; }
+  [[nodiscard]] const Kinematics& kinematics() const noexcept { return *kinematics_; }
+  [[nodiscard]] std::size_t joint_count() const noexcept { return joint_count_; }
+
+  /// Joints, and their derivatives by path length up to `order` (0 to 3), at a point of a curve of poses, which may
+  /// have the rotary joints as further coordinates (see `Curve`). `seed`: joints nearby, joint_count() values.
+  /// Real-time safe.
+  [[nodiscard]] KinematicsStatus evaluate(const CurvePoint& curve, std::size_t dimension, int order,
+                                          std::span<const double> seed, JointPoint& point) const noexcept;
+  /// The pose in the part frame that joints give.
+  [[nodiscard]] ToolPose pose(std::span<const double> joints) const noexcept;
+
+ private:
+  [[nodiscard]] KinematicsStatus solve(const CurvePoint& curve, std::size_t dimension, const ToolPose& wanted,
+                                       int order, std::span<const double> seed, JointPoint& point) const noexcept;
+
+  Frames frames_;
+  std::shared_ptr<const Kinematics> kinematics_;
+  std::size_t joint_count_;
+  /// Where the Jacobian is the same everywhere and has full rank: d(joint)/d(pose in the part frame), n x 6 row-major.
+  std::array<double, 6 * kMaxJoints> rates_{};
+  bool constant_rates_ = false;
+};
+
+}  // namespace rmac

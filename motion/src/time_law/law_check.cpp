@@ -1,0 +1,111 @@
+#include "time_law/law_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace rmac {
+namespace {
+
+constexpr std::size_t kSamples = 9;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// What a joint asks of one of its limits at equidistant instants of a piece, as parts of the limit.
+using Demand = std::array<double, kSamples>;
+
+/// Largest of every `stride`-th sample, where between samples the curve is taken for the parabola through three
+/// neighbours, so that a peak between samples counts.
+double largest(const Demand& demand, std::size_t stride) {
+  double worst = std::max(std::abs(demand.front()), std::abs(demand.back()));
+  for (std::size_t i = stride; i + stride < kSamples; i += stride) {
+    const double here = demand[i], rise = (demand[i + stride] - demand[i - stride]) / 2;
+    const double bend = demand[i + stride] - 2 * here + demand[i - stride];
+    const bool peak = here > 0 ? bend < 0 : bend > 0;
+    const double vertex = peak && std::abs(rise) < std::abs(bend) ? here - rise * rise / (2 * bend) : here;
+    worst = std::max(worst, std::abs(vertex));
+  }
+  return worst;
+}
+
+/// Both ends, the middle and the quarters lie on a parabola, nearly.
+bool parabolic(const Demand& demand) {
+  constexpr double kNearly = 1e-3;
+  const double a = demand[0], m = demand[4], b = demand[8];
+  return std::abs(0.375 * a + 0.75 * m - 0.125 * b - demand[2]) < kNearly &&
+         std::abs(0.375 * b + 0.75 * m - 0.125 * a - demand[6]) < kNearly;
+}
+
+class PieceCheck {
+ public:
+  PieceCheck(const PathView& path, const std::vector<JointLimits>& joints, const FeedRule* feed)
+      : path_(path), joints_(joints), feed_(feed) {}
+
+  double worst(const LawPiece& piece) {
+    worst_ = 0;
+    s_begin_ = piece.start.s;
+    s_end_ = piece.at(piece.duration).s;
+    for (std::size_t i = 0; i < kSamples; i += 2) {
+      if (!sample(piece, i)) return kInfinity;
+    }
+    // Five samples do where three of them foretell the others, and where all is far from the limits.
+    constexpr double kFar = 0.9;
+    std::size_t stride = 2;
+    for (std::size_t j = 0; j < joints_.size() && stride == 2; ++j) {
+      for (const Demand* demand : {&acceleration_[j], &jerk_[j]}) {
+        if (!parabolic(*demand) && largest(*demand, 2) > kFar) stride = 1;
+      }
+    }
+    for (std::size_t i = 1; stride == 1 && i < kSamples; i += 2) {
+      if (!sample(piece, i)) return kInfinity;
+    }
+    for (std::size_t j = 0; j < joints_.size(); ++j)
+      worst_ = std::max({worst_, largest(acceleration_[j], stride), largest(jerk_[j], stride)});
+    return std::isfinite(worst_) ? worst_ : kInfinity;
+  }
+
+ private:
+  bool sample(const LawPiece& piece, std::size_t i) {
+    const PathState at = piece.at(piece.duration * static_cast<double>(i) / (kSamples - 1));
+    const double path_jerk = piece.kind == LawPiece::Kind::Jerk ? piece.slope : piece.slope * at.v;
+    const bool last = i + 1 == kSamples;
+    const double s = i == 0 ? just_inside(s_begin_, s_end_) : last ? just_inside(s_end_, s_begin_) : at.s;
+    if (!(at.v >= -1e-9) || path_.evaluate(s, 3, last ? -1 : 1, point_) != KinematicsStatus::Ok) return false;
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+      const double d1 = point_.d[1][j], d2 = point_.d[2][j], d3 = point_.d[3][j], v = at.v;
+      worst_ = std::max(worst_, std::abs(d1 * v) / joints_[j].max_speed);
+      acceleration_[j][i] = (d2 * v * v + d1 * at.a) / joints_[j].max_acceleration;
+      jerk_[j][i] = (d3 * v * v * v + 3 * d2 * v * at.a + d1 * path_jerk) / joints_[j].max_jerk;
+    }
+    const PathSegment& segment = path_.segment(path_.find(s, 1));
+    const PathDemand& demand = segment.demand();
+    worst_ =
+        std::max({worst_, at.a / or_unbounded(demand.accel_rise_mm_s2), -at.a / or_unbounded(demand.accel_fall_mm_s2)});
+    if (feed_ != nullptr) worst_ = std::max(worst_, at.v / (feed_->bound(segment) * 1.0005));
+    return true;
+  }
+
+  const PathView& path_;
+  const std::vector<JointLimits>& joints_;
+  const FeedRule* feed_;
+  double worst_ = 0, s_begin_ = 0, s_end_ = 0;
+  std::array<Demand, kMaxJoints> acceleration_, jerk_;
+  JointPoint point_;
+};
+
+}  // namespace
+
+LawExcess check_law(const PathView& path, const std::vector<JointLimits>& joints, const std::vector<LawPiece>& law,
+                    const FeedRule* feed) {
+  LawExcess excess;
+  excess.by_piece.reserve(law.size());
+  PieceCheck check(path, joints, feed);
+  for (const LawPiece& piece : law) {
+    excess.by_piece.push_back(check.worst(piece));
+    excess.worst = std::max(excess.worst, excess.by_piece.back());
+    if (!std::isfinite(excess.worst)) break;
+  }
+  return excess;
+}
+
+}  // namespace rmac
