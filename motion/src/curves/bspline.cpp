@@ -124,29 +124,27 @@ void BSpline::basis_sums(std::size_t span, double t, std::span<Homogeneous> sums
   }
 }
 
+template <std::size_t kOrder>
 void BSpline::power_sums(std::size_t span, double t, std::array<Homogeneous, 4>& sums) const noexcept {
+  static constexpr std::array<double, 4> kFactorial{1, 1, 2, 6};
   const std::size_t row = (width_ + kLanes - 1) / kLanes * kLanes;
   const double* const coefficients = powers_.data() + span * (degree_ + 1) * row;
   const double rate = 2 / span_width(span);
   const double u = rate * t - 1;
   for (std::size_t c = 0; c < row; c += kLanes) {
-    // Horner's scheme; the rows below carry the derivatives, divided by their factorials.
-    Lanes value{}, first{}, second{}, third{};
+    // Horner's scheme; the rows above the first carry the derivatives, divided by their factorials.
+    std::array<Lanes, kOrder + 1> d{};
     for (std::size_t i = degree_ + 1; i-- > 0;) {
       Lanes next;
       std::memcpy(&next, coefficients + i * row + c, sizeof next);
-      third = third * u + second;
-      second = second * u + first;
-      first = first * u + value;
-      value = value * u + next;
+      for (std::size_t k = kOrder; k > 0; --k) d[k] = d[k] * u + d[k - 1];
+      d[0] = d[0] * u + next;
     }
-    first *= rate;
-    second *= 2 * rate * rate;
-    third *= 6 * rate * rate * rate;
-    std::memcpy(sums[0].data() + c, &value, sizeof value);
-    std::memcpy(sums[1].data() + c, &first, sizeof first);
-    std::memcpy(sums[2].data() + c, &second, sizeof second);
-    std::memcpy(sums[3].data() + c, &third, sizeof third);
+    double factor = 1;
+    for (std::size_t k = 0; k <= kOrder; ++k, factor *= rate) {
+      const Lanes derivative = d[k] * (kFactorial[k] * factor);
+      std::memcpy(sums[k].data() + c, &derivative, sizeof derivative);
+    }
   }
 }
 
@@ -155,7 +153,7 @@ void BSpline::evaluate(std::size_t span, double t, int order, CurvePoint& point)
   const auto wanted = static_cast<std::size_t>(std::clamp(order, 0, 3));
   std::array<Homogeneous, 4> sums;
   if (!powers_.empty()) {
-    power_sums(span, t, sums);
+    wanted > 1 ? power_sums<3>(span, t, sums) : power_sums<1>(span, t, sums);
   } else {
     basis_sums(span, t, {sums.data(), wanted + 1});
   }

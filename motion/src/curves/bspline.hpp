@@ -54,6 +54,7 @@ class BSpline {
   void make_powers();
   /// Derivatives of orders 0 to sums.size() - 1, at most the degree.
   void basis_sums(std::size_t span, double t, std::span<Homogeneous> sums) const noexcept;
+  template <std::size_t kOrder>
   void power_sums(std::size_t span, double t, std::array<Homogeneous, 4>& sums) const noexcept;
 
   std::size_t degree_;

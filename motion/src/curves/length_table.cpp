@@ -58,7 +58,7 @@ struct LengthTable::Span {
 std::optional<LengthTable::Flaw> LengthTable::add_span(std::size_t span, double width, double least_speed,
                                                        const Speed& speed) {
   double fastest = 0;
-  for (int i = 0; i <= 16; ++i) fastest = std::max(fastest, speed(span, width * i / 16));
+  for (int i = 0; i <= 4; ++i) fastest = std::max(fastest, speed(span, width * i / 4));
   // A speed this much lower than the rest of its span is a cusp that rounding has filled in.
   const double noise = 8 * std::numeric_limits<double>::epsilon() * fastest;
   return add({span, width, std::max(least_speed, 1e-9 * fastest), noise, speed}, 0, width, 0);

@@ -69,46 +69,35 @@ class Solver {
   Solver(const LawProblem& problem, const std::vector<double>& guess) : p_(problem), n_(problem.intervals() + 2) {
     fix_ends(guess);
     build_rows();
-    for (auto* v : {&diagonal_, &off1_, &off2_, &rhs_, &objective_gradient_}) v->resize(n_);
+    for (auto* v : {&diagonal_, &off1_, &off2_, &rhs_}) v->resize(n_);
     step_.assign(n_, 0.0);
   }
 
   LawSolution run() {
     LawSolution result;
     const double count = 2 * static_cast<double>(kLanes * rows_.size());
-    evaluate(true);
-    const Lanes first_dual = all_lanes(0.1 * travel_time() / count);
-    for (Rows& rows : rows_) {
-      for (Rows::Side* side : {&rows.above, &rows.below}) side->dual = first_dual * side->inverse_slack;
-    }
+    begin(0.1 * travel_time() / count);
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
       result.iterations = iteration + 1;
-      const double mu = complementarity(0, 0) / count;
-      assemble();
+      const double mu = gap_ / count;
       if (!factorise()) break;
+      solve_step();
       // Predictor: how far a pure Newton step gets tells how much to centre (Mehrotra).
-      direction<false>(0);
-      const auto [reach_p, reach_d] = reaches(1);
-      const double ratio = complementarity(reach_p, reach_d) / count / mu;
+      const Reach pure = follow<false>(0, 1);
+      const double ratio = pure.gap / gap_;
       const double sigma = std::clamp(ratio * ratio * ratio, 1e-4, 0.8);
-      direction<true>(sigma * mu);
-      const auto [alpha_p, alpha_d] = reaches(kBoundaryFraction);
-      for (std::size_t j = 0; j < n_; ++j) c_[j] += alpha_p * step_[j];
-      const Lanes primal = all_lanes(alpha_p), dual = all_lanes(alpha_d);
-      for (Rows& rows : rows_) {
-        for (Rows::Side* side : {&rows.above, &rows.below}) {
-          side->slack += primal * side->slack_step;
-          side->dual += dual * side->dual_step;
-        }
-      }
-      const double infeasible = evaluate(false);
-      if (infeasible <= kFeasible && complementarity(0, 0) <= kGap * travel_time()) {
+      aim(sigma * mu);
+      solve_step();
+      const Reach reach = follow<true>(sigma * mu, kBoundaryFraction);
+      for (std::size_t j = 0; j < n_; ++j) c_[j] += reach.primal * step_[j];
+      refresh(reach.primal, reach.dual);
+      if (infeasible_ <= kFeasible && gap_ <= kGap * travel_time()) {
         result.converged = true;
         break;
       }
-      if (alpha_p < 1e-9) break;
+      if (reach.primal < 1e-9) break;
     }
-    if (!result.converged) result.converged = evaluate(false) <= 1e-5;  // feasible, if not proven optimal
+    if (!result.converged) result.converged = infeasible_ <= 1e-5;  // feasible, if not proven optimal
     result.coefficients = std::move(c_);
     return result;
   }
@@ -183,86 +172,87 @@ class Solver {
     }
   }
 
-  /// Calls visit(rows, k) for each few rows, k being the first of their interval's coefficients.
-  template <typename Visit>
-  void each(Visit visit) {
-    for (std::size_t k = 0; k < p_.intervals(); ++k) {
-      for (std::size_t i = first_row_[k]; i < first_row_[k + 1]; ++i) visit(rows_[i], k);
-    }
-  }
-
-  /// Residuals phi - 1 + slack and low - phi + slack, gradients d phi / d c, and the largest excess over a bound.
-  double evaluate(bool first) {
-    const Lanes one = all_lanes(1), half = all_lanes(0.5), least_slack = all_lanes(0.02);
-    Lanes infeasible{};
-    each([&](Rows& rows, std::size_t k) {
-      const LaneTriple c = lanes_of(c_.data() + k);
-      const Lanes q = larger(dot(rows.u, c), all_lanes(1e-30));
-      const Lanes root = rows.linear ? one : square_root(q);
-      const Lanes form = dot(rows.w, c);
-      const Lanes phi = form * root;
-      const Lanes bend = rows.linear ? Lanes{} : half * form / root;
-      for (std::size_t i = 0; i < 3; ++i) rows.gradient[i] = root * rows.w[i] + bend * rows.u[i];
-      const auto settle = [&](Rows::Side& side, Lanes excess) {
-        infeasible = larger(infeasible, excess);
-        // A side that turned out better than its slack takes it up at once: the linearisation never claims slack that
-        // is not there.
-        side.slack = larger(first ? least_slack : side.slack, -excess);
-        side.inverse_slack = one / side.slack;
-        side.residual = excess + side.slack;
-      };
-      settle(rows.above, phi - one);
-      settle(rows.below, rows.low - phi);
-    });
-    return largest(infeasible);
-  }
-
   [[nodiscard]] double travel_time() const {
     double t = 0;
     for (std::size_t k = 0; k < p_.intervals(); ++k) t += p_.step(k) / std::sqrt(std::max(c_[k + 1], 1e-30));
     return t;
   }
 
-  /// Sum of slack times dual, after steps of these lengths.
-  [[nodiscard]] double complementarity(double primal_step, double dual_step) const {
-    const Lanes primal = all_lanes(primal_step), dual = all_lanes(dual_step);
-    Lanes total{};
-    for (const Rows& rows : rows_) {
-      const Rows::Side &a = rows.above, &b = rows.below;
-      total += (a.slack + primal * a.slack_step) * (a.dual + dual * a.dual_step);
-      total += (b.slack + primal * b.slack_step) * (b.dual + dual * b.dual_step);
+  /// Slacks that the rows have at the guess, or a least one, and duals that make all products `product`.
+  void begin(double product) {
+    for (Rows& rows : rows_) rows.above.slack = rows.below.slack = all_lanes(0.02);
+    refresh(0, 0);
+    for (Rows& rows : rows_) {
+      for (Rows::Side* side : {&rows.above, &rows.below}) side->dual = all_lanes(product) * side->inverse_slack;
     }
-    return sum(total);
+    refresh(0, 0);
   }
 
-  /// Objective: the sum of h/√c over the middle coefficients, which is the travel time up to second order and convex.
-  void assemble() {
-    for (auto* v : {&diagonal_, &off1_, &off2_, &objective_gradient_}) std::fill(v->begin(), v->end(), 0.0);
-    for (std::size_t k = 0; k < p_.intervals(); ++k) {
-      const double c = c_[k + 1], h = p_.step(k);
-      const double force = 0.5 * h / (c * std::sqrt(c));
-      objective_gradient_[k + 1] = -force;
-      diagonal_[k + 1] += 1.5 * force / c;
-      Lanes d0{}, d1{}, d2{}, near0{}, near1{}, far{};
-      for (std::size_t i = first_row_[k]; i < first_row_[k + 1]; ++i) {
-        const Rows& rows = rows_[i];
-        const auto& [g0, g1, g2] = rows.gradient;
-        const Lanes ratio = rows.above.dual * rows.above.inverse_slack + rows.below.dual * rows.below.inverse_slack;
-        const Lanes r0 = ratio * g0, r1 = ratio * g1;
-        d0 += r0 * g0;
-        d1 += r1 * g1;
-        d2 += ratio * g2 * g2;
-        near0 += r0 * g1;
-        near1 += r1 * g2;
-        far += r0 * g2;
-      }
-      diagonal_[k] += sum(d0);
-      diagonal_[k + 1] += sum(d1);
-      diagonal_[k + 2] += sum(d2);
-      off1_[k] += sum(near0);
-      off1_[k + 1] += sum(near1);
-      off2_[k] += sum(far);
+  /// What the rows of one interval add to the normal matrix and its right side.
+  struct Share {
+    Lanes d0{}, d1{}, d2{}, near0{}, near1{}, far{};
+    LaneTriple pull{};
+
+    void add(const LaneTriple& g, Lanes ratio, Lanes weight) {
+      const Lanes r0 = ratio * g[0], r1 = ratio * g[1];
+      d0 += r0 * g[0];
+      d1 += r1 * g[1];
+      d2 += ratio * g[2] * g[2];
+      near0 += r0 * g[1];
+      near1 += r1 * g[2];
+      far += r0 * g[2];
+      for (std::size_t i = 0; i < 3; ++i) pull[i] += weight * g[i];
     }
+  };
+
+  /// Takes the steps of slacks and duals, looks at the rows anew where the coefficients are now (residuals phi - 1 +
+  /// slack and low - phi + slack, gradients d phi / d c), and sets up Newton's equations. The objective is the sum of
+  /// h/√c over the middle coefficients, which is the travel time up to second order and convex. All in one pass: time
+  /// goes into loading the rows.
+  void refresh(double primal_step, double dual_step) {
+    for (auto* v : {&diagonal_, &off1_, &off2_, &rhs_}) std::fill(v->begin(), v->end(), 0.0);
+    const Lanes one = all_lanes(1), half = all_lanes(0.5);
+    const Lanes primal = all_lanes(primal_step), dual = all_lanes(dual_step);
+    Lanes infeasible{}, gap{};
+    for (std::size_t k = 0; k < p_.intervals(); ++k) {
+      const LaneTriple c = lanes_of(c_.data() + k);
+      Share share;
+      for (std::size_t i = first_row_[k]; i < first_row_[k + 1]; ++i) {
+        Rows& rows = rows_[i];
+        const Lanes root = rows.linear ? one : square_root(larger(dot(rows.u, c), all_lanes(1e-30)));
+        const Lanes form = dot(rows.w, c);
+        const Lanes phi = form * root;
+        const Lanes bend = rows.linear ? Lanes{} : half * form / root;
+        for (std::size_t x = 0; x < 3; ++x) rows.gradient[x] = root * rows.w[x] + bend * rows.u[x];
+        const auto settle = [&](Rows::Side& side, Lanes excess) {
+          infeasible = larger(infeasible, excess);
+          // A side that turned out better than its slack takes it up at once: the linearisation never claims slack that
+          // is not there.
+          side.slack = larger(side.slack + primal * side.slack_step, -excess);
+          side.dual += dual * side.dual_step;
+          side.inverse_slack = one / side.slack;
+          side.residual = excess + side.slack;
+          gap += side.slack * side.dual;
+        };
+        settle(rows.above, phi - one);
+        settle(rows.below, rows.low - phi);
+        const Lanes above = rows.above.dual * rows.above.inverse_slack;
+        const Lanes below = rows.below.dual * rows.below.inverse_slack;
+        share.add(rows.gradient, above + below, above * rows.above.residual - below * rows.below.residual);
+      }
+      const double middle = c_[k + 1];
+      const double force = 0.5 * p_.step(k) / (middle * std::sqrt(middle));
+      diagonal_[k] += sum(share.d0);
+      diagonal_[k + 1] += sum(share.d1) + 1.5 * force / middle;
+      diagonal_[k + 2] += sum(share.d2);
+      off1_[k] += sum(share.near0);
+      off1_[k + 1] += sum(share.near1);
+      off2_[k] += sum(share.far);
+      rhs_[k + 1] += force;
+      for (std::size_t x = 0; x < 3; ++x) rhs_[k + x] -= sum(share.pull[x]);
+    }
+    infeasible_ = largest(infeasible);
+    gap_ = sum(gap);
   }
 
   /// LDLᵀ of the pentadiagonal matrix over the free coefficients, in place; the diagonal is left inverted.
@@ -287,26 +277,8 @@ class Solver {
     return true;
   }
 
-  template <bool kSecondOrder>
-  void direction(double target) {
-    const Lanes centre = all_lanes(target);
-    const auto aim = [centre](const Rows::Side& side) {
-      if constexpr (kSecondOrder) return centre - side.slack_step * side.dual_step;
-      return centre;
-    };
-    for (std::size_t j = 0; j < n_; ++j) rhs_[j] = -objective_gradient_[j];
-    for (std::size_t k = 0; k < p_.intervals(); ++k) {
-      LaneTriple pull{};
-      for (std::size_t i = first_row_[k]; i < first_row_[k + 1]; ++i) {
-        const Rows& rows = rows_[i];
-        const auto force = [&](const Rows::Side& side) {
-          return (aim(side) + side.dual * side.residual) * side.inverse_slack;
-        };
-        const Lanes weight = force(rows.above) - force(rows.below);
-        for (std::size_t c = 0; c < 3; ++c) pull[c] += weight * rows.gradient[c];
-      }
-      for (std::size_t c = 0; c < 3; ++c) rhs_[k + c] -= sum(pull[c]);
-    }
+  /// The steps of the coefficients, from the factors and the right side.
+  void solve_step() {
     for (std::size_t j = first_free_; j < end_free_; ++j) {
       double value = rhs_[j];
       if (j >= first_free_ + 1) value -= off1_[j - 1] * step_[j - 1];
@@ -319,27 +291,59 @@ class Solver {
       if (j + 2 < end_free_) value -= off2_[j] * step_[j + 2];
       step_[j] = value;
     }
-    each([&](Rows& rows, std::size_t k) {
-      const Lanes change = dot(rows.gradient, lanes_of(step_.data() + k));
-      const auto follow = [&](Rows::Side& side, Lanes slack_step) {
-        side.dual_step = (aim(side) - side.dual * slack_step) * side.inverse_slack - side.dual;
-        side.slack_step = slack_step;
-      };
-      follow(rows.above, -rows.above.residual - change);
-      follow(rows.below, -rows.below.residual + change);
-    });
+  }
+
+  /// What a side aims at for the product of its slack and dual: the centre, and what the predictor's steps would make
+  /// of it.
+  template <bool kSecondOrder>
+  [[nodiscard]] [[gnu::always_inline]] static Lanes product(const Rows::Side& side, Lanes centre) {
+    if constexpr (kSecondOrder) return centre - side.slack_step * side.dual_step;
+    return centre;
+  }
+
+  /// Adds to the right side what aiming at other products than 0 means.
+  void aim(double target) {
+    const Lanes centre = all_lanes(target);
+    for (std::size_t k = 0; k < p_.intervals(); ++k) {
+      LaneTriple pull{};
+      for (std::size_t i = first_row_[k]; i < first_row_[k + 1]; ++i) {
+        const Rows& rows = rows_[i];
+        const Lanes weight = product<true>(rows.above, centre) * rows.above.inverse_slack -
+                             product<true>(rows.below, centre) * rows.below.inverse_slack;
+        for (std::size_t x = 0; x < 3; ++x) pull[x] += weight * rows.gradient[x];
+      }
+      for (std::size_t x = 0; x < 3; ++x) rhs_[k + x] -= sum(pull[x]);
+    }
   }
 
   struct Reach {
     double primal, dual;
+    double gap;  ///< what is left of it there
   };
-  /// How far the steps may go before a slack or a dual falls to 1 - `fraction` of itself.
-  [[nodiscard]] Reach reaches(double fraction) const {
+  /// The steps of slacks and duals that go with those of the coefficients, and how far they may go before one of them
+  /// falls to 1 - `fraction` of itself.
+  template <bool kSecondOrder>
+  Reach follow(double target, double fraction) {
+    const Lanes centre = all_lanes(target);
     Lanes slack_fall = all_lanes(fraction), dual_fall = slack_fall;  // largest part of itself that one would lose
-    for (const Rows& rows : rows_) {
-      for (const Rows::Side* side : {&rows.above, &rows.below}) {
-        slack_fall = larger(slack_fall, -side->slack_step * side->inverse_slack);
-        dual_fall = larger(dual_fall, -side->dual_step / side->dual);
+    Lanes by_slack{}, by_dual{}, by_both{};
+    for (std::size_t k = 0; k < p_.intervals(); ++k) {
+      const LaneTriple step = lanes_of(step_.data() + k);
+      for (std::size_t i = first_row_[k]; i < first_row_[k + 1]; ++i) {
+        Rows& rows = rows_[i];
+        const Lanes change = dot(rows.gradient, step);
+        const auto take = [&](Rows::Side& side, Lanes slack_step) {
+          const Lanes aimed = product<kSecondOrder>(side, centre);
+          side.dual_step = (aimed - side.dual * slack_step) * side.inverse_slack - side.dual;
+          side.slack_step = slack_step;
+          slack_fall = larger(slack_fall, -slack_step * side.inverse_slack);
+          dual_fall = larger(dual_fall, -side.dual_step / side.dual);
+          by_slack += slack_step * side.dual;
+          by_dual += side.slack * side.dual_step;
+          by_both += slack_step * side.dual_step;
+        };
+        take(rows.above, -rows.above.residual - change);
+        take(rows.below, -rows.below.residual + change);
       }
     }
     double primal = fraction / largest(slack_fall);
@@ -347,7 +351,8 @@ class Solver {
     for (std::size_t j = first_free_; j < end_free_; ++j) {
       if (0.9 * c_[j] < -primal * step_[j]) primal = -0.9 * c_[j] / step_[j];
     }
-    return {primal, fraction / largest(dual_fall)};
+    const double dual = fraction / largest(dual_fall);
+    return {primal, dual, gap_ + primal * sum(by_slack) + dual * sum(by_dual) + primal * dual * sum(by_both)};
   }
 
   const LawProblem& p_;
@@ -355,7 +360,9 @@ class Solver {
   std::size_t first_free_ = 0, end_free_ = 0;
   std::vector<Rows> rows_;
   std::vector<std::size_t> first_row_;  ///< of each interval, and behind the last
-  std::vector<double> c_, step_, diagonal_, off1_, off2_, rhs_, objective_gradient_;
+  std::vector<double> c_, step_, diagonal_, off1_, off2_, rhs_;
+  double infeasible_ = 0;  ///< largest excess over a bound
+  double gap_ = 0;         ///< sum of slack times dual
 };
 
 }  // namespace

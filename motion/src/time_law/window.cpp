@@ -1,9 +1,11 @@
 #include "time_law/window.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "time_law/law_check.hpp"
+#include "time_law/law_mend.hpp"
 #include "time_law/law_problem.hpp"
 
 namespace rmac {
@@ -230,6 +232,14 @@ void resume_from(LawProblem& problem, const std::vector<LawPiece>& before) {
   }
 }
 
+/// The law of the grid with the stretches next to rest.
+std::vector<LawPiece> with_rest_ends(std::vector<LawPiece> law, const std::optional<LawPiece>& first, LawPiece last) {
+  last.t0 = law.back().t0 + law.back().duration;
+  law.push_back(last);
+  if (first) law.insert(law.begin(), *first);
+  return law;
+}
+
 }  // namespace
 
 double ramp_length(double v, double a, double j) noexcept {
@@ -285,29 +295,33 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
   if (yields) yield_to_begin(problem);
   if (window.before != nullptr && !from_rest) resume_from(problem, *window.before);
 
-  std::vector<double> guess;
+  std::optional<LawPiece> from_standing;
+  if (first) from_standing = {0, {window.begin.s, 0, 0}, first->jerk, first->time, LawPiece::Kind::Jerk};
+  const LawPiece to_standing{0, problem.end, last->jerk, last->time, LawPiece::Kind::Jerk};
+  const FeedRule* const programmed = yields ? nullptr : &feed;
+  std::vector<LawPiece> ends{to_standing};
+  if (from_standing) ends.push_back(*from_standing);
+  if (check_law(path, joints, ends, programmed).worst > 1) return std::nullopt;
+
+  const LawSolution solution = solve_law(problem, {});
+  if (!solution.converged) return std::nullopt;
+  std::vector<double> coefficients = solution.coefficients;
+  const double t_first = first ? first->time : 0;
+  std::vector<LawPiece> law = law_pieces(problem, coefficients, t_first);
+  std::vector<double> excess(law.size());
+  std::vector<IntervalRange> changed{{0, law.size()}};
   for (int round = 0; round < kTightenings; ++round) {
-    const LawSolution solution = solve_law(problem, guess);
-    if (!solution.converged) return std::nullopt;
-    std::vector<LawPiece> law;
-    double t = 0;
-    if (first) {
-      law.push_back({0, {window.begin.s, 0, 0}, first->jerk, first->time, LawPiece::Kind::Jerk});
-      t = first->time;
+    for (const auto& [begin, end] : changed) {
+      const auto from = static_cast<std::ptrdiff_t>(begin), to = static_cast<std::ptrdiff_t>(end);
+      const LawExcess found = check_law(path, joints, {law.begin() + from, law.begin() + to}, programmed);
+      if (!std::isfinite(found.worst)) return std::nullopt;
+      std::copy(found.by_piece.begin(), found.by_piece.end(), excess.begin() + from);
     }
-    const std::size_t offset = law.size();
-    const std::vector<LawPiece> middle = law_pieces(problem, solution.coefficients, t);
-    law.insert(law.end(), middle.begin(), middle.end());
-    t = law.back().t0 + law.back().duration;
-    law.push_back({t, problem.end, last->jerk, last->time, LawPiece::Kind::Jerk});
-    const LawExcess excess = check_law(path, joints, law, yields ? nullptr : &feed);
-    if (excess.worst <= 1.0) return law;
-    if (!std::isfinite(excess.worst)) return std::nullopt;
-    for (std::size_t k = 0; k < problem.intervals(); ++k) {
-      const double over = excess.by_piece[k + offset];
-      if (over > 0.9999) problem.tightening[k] *= std::max(0.5, 0.9992 / over);
-    }
-    guess = solution.coefficients;
+    if (*std::max_element(excess.begin(), excess.end()) <= 1.0)
+      return with_rest_ends(std::move(law), from_standing, to_standing);
+    changed = mend_law(problem, excess, coefficients);
+    if (changed.empty()) return std::nullopt;
+    law = law_pieces(problem, coefficients, t_first);
   }
   return std::nullopt;
 }

@@ -1,0 +1,82 @@
+#include "time_law/law_mend.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rmac {
+namespace {
+
+/// Intervals on either side of one in excess that may give way to it.
+constexpr std::size_t kReach = 48;
+
+template <typename T>
+std::vector<T> slice(const std::vector<T>& all, std::size_t first, std::size_t last) {
+  return {all.begin() + static_cast<std::ptrdiff_t>(first), all.begin() + static_cast<std::ptrdiff_t>(last)};
+}
+
+std::vector<IntervalRange> around_excess(const std::vector<double>& excess) {
+  std::vector<IntervalRange> ranges;
+  for (std::size_t k = 0; k < excess.size(); ++k) {
+    if (excess[k] <= 1) continue;
+    const std::size_t first = k - std::min(k, kReach), last = std::min(k + kReach + 1, excess.size());
+    if (!ranges.empty() && first <= ranges.back().last) {
+      ranges.back().last = last;
+    } else {
+      ranges.push_back({first, last});
+    }
+  }
+  return ranges;
+}
+
+PathState state_at(const LawProblem& problem, const std::vector<double>& coefficients, std::size_t node) {
+  if (node == 0) return problem.begin;
+  if (node == problem.intervals()) return problem.end;
+  const SplineStart start = spline_start(problem, coefficients, node);
+  return {problem.nodes[node], std::sqrt(start.q), start.dq / 2};
+}
+
+LawProblem part_of(const LawProblem& whole, const std::vector<double>& coefficients, const IntervalRange& range) {
+  const auto [first, last] = range;
+  const std::size_t each = 6 * whole.joint_count;
+  LawProblem part;
+  part.joint_count = whole.joint_count;
+  part.nodes = slice(whole.nodes, first, last + 1);
+  part.derivatives = slice(whole.derivatives, first * each, last * each);
+  part.speed_cap = slice(whole.speed_cap, first, last);
+  part.rise = slice(whole.rise, first, last);
+  part.fall = slice(whole.fall, first, last);
+  part.tightening = slice(whole.tightening, first, last);
+  part.max_acceleration = whole.max_acceleration;
+  part.max_jerk = whole.max_jerk;
+  part.begin = state_at(whole, coefficients, first);
+  part.end = state_at(whole, coefficients, last);
+  return part;
+}
+
+}  // namespace
+
+std::vector<IntervalRange> mend_law(LawProblem& problem, const std::vector<double>& excess,
+                                    std::vector<double>& coefficients) {
+  const std::vector<IntervalRange> ranges = around_excess(excess);
+  for (const IntervalRange& range : ranges) {
+    for (std::size_t k = range.first; k < range.last; ++k) {
+      if (excess[k] > 0.9999) problem.tightening[k] *= std::max(0.5, 0.9992 / excess[k]);
+    }
+  }
+  const std::vector<double> before = coefficients;
+  for (const IntervalRange& range : ranges) {
+    // The coefficients at both ends of the part say its end states, as they did in the whole (eq. 9).
+    const LawSolution solution = solve_law(part_of(problem, before, range), slice(before, range.first, range.last + 2));
+    if (!solution.converged) {
+      const LawSolution whole = solve_law(problem, before);
+      if (!whole.converged) return {};
+      coefficients = whole.coefficients;
+      return {{0, problem.intervals()}};
+    }
+    std::copy(solution.coefficients.begin() + 2, solution.coefficients.end() - 2,
+              coefficients.begin() + static_cast<std::ptrdiff_t>(range.first) + 2);
+  }
+  return ranges;
+}
+
+}  // namespace rmac
