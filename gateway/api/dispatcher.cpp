@@ -166,10 +166,15 @@ Effect Request::effect() const {
 }
 
 Answer Dispatcher::execute(const Request& request, SessionPort& session) {
+  if (auto refusal = refusal_of(request, session)) return std::move(*refusal);
+  return carry_out(request, session, status_);
+}
+
+std::optional<Answer> Dispatcher::refusal_of(const Request& request, const SessionPort& session) {
   if (request.error) return tl::unexpected<RpcError>(*request.error);
   const Method& method = *request.method;
-  auto arguments = arrange(method, request.params);
-  if (!arguments) return tl::unexpected<RpcError>(std::move(arguments.error()));
+  const auto arguments = arrange(method, request.params);
+  if (!arguments) return tl::unexpected<RpcError>(arguments.error());
   const bool writes_property = method.property && arguments->back() != nullptr;
   if ((method.permission == Permission::Authority || writes_property) && !session.has_authority()) {
     const std::string holder = session.authority_holder();
@@ -180,9 +185,14 @@ Answer Dispatcher::execute(const Request& request, SessionPort& session) {
                                    : fmt::format("{} holds it: call authority.acquire when it is free", holder)),
         MinorCode::UnsupportedOperation});
   }
-  Call call{machine_, status_, session};
+  return std::nullopt;
+}
+
+Answer Dispatcher::carry_out(const Request& request, SessionPort& session, MachineStatus& status) {
+  const Method& method = *request.method;
+  Call call{machine_, status, session};
   try {
-    return method.handler(call, *arguments);
+    return method.handler(call, *arrange(method, request.params));
   } catch (const std::exception& error) {
     // Nothing below is meant to throw; a client gets an answer all the same, and the daemon lives on.
     return tl::unexpected<RpcError>(RpcError{rpc_code::kInternalError,

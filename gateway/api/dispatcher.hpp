@@ -23,6 +23,7 @@ struct Request {
   const Method* method = nullptr;  ///< nullptr when `error` is set
   nlohmann::json params;
   std::optional<RpcError> error;  ///< not a request, or an unknown method
+  bool large = false;             ///< decoding its parameters takes milliseconds
 
   /// Whether it overtakes what waits on its connection.
   [[nodiscard]] bool is_urgent() const noexcept { return method != nullptr && method->permission == Permission::Stop; }
@@ -35,12 +36,16 @@ struct Request {
 
 using Answer = tl::expected<nlohmann::json, RpcError>;
 
-/// Checks a request against the table and the caller's authority, and carries it out. Gateway thread only.
+/// Checks a request against the table and the caller's authority, and carries it out. Gateway thread, except that
+/// `carry_out` of what is slow runs beside it while nothing but stops is carried out there.
 class Dispatcher {
  public:
   explicit Dispatcher(MachinePort& machine) : machine_(machine) {}
 
   [[nodiscard]] Answer execute(const Request& request, SessionPort& session);
+  /// The two halves of `execute`: why the request is refused before anything is done, if it is; then carrying it out.
+  [[nodiscard]] static std::optional<Answer> refusal_of(const Request& request, const SessionPort& session);
+  [[nodiscard]] Answer carry_out(const Request& request, SessionPort& session, MachineStatus& status);
   [[nodiscard]] MachineStatus& status() noexcept { return status_; }
   [[nodiscard]] MachinePort& machine() noexcept { return machine_; }
 

@@ -66,6 +66,7 @@ class Connection final : public SessionPort, public std::enable_shared_from_this
  private:
   /// The requests of one line.
   struct Work {
+    bool away = false;  ///< on the thread beside the gateway's: being read, or its next request carried out
     bool batch = false;
     std::size_t answer_bytes = 0;  ///< of a batch's answers so far
     bool refuse_moves = false;     ///< a move before these found the queue full: taking a later one would leave a gap
@@ -86,12 +87,19 @@ class Connection final : public SessionPort, public std::enable_shared_from_this
   void read();
   void take_input(std::size_t bytes);
   void take_line(std::string_view line);
+  /// Makes the requests of a line. Any thread.
+  static void read_requests(std::string_view line, Work& work);
+  /// Carries out the stops in it, before anything that waits.
+  void stop_first(Work& work);
   void end_of_input();
   void refuse_and_leave(RpcError error);
   void discard_input();
   void leave_within(std::chrono::seconds bound);
 
-  [[nodiscard]] bool run(Work& work);
+  [[nodiscard]] bool run(const std::shared_ptr<Work>& work);
+  void carry_out_aside(const std::shared_ptr<Work>& work);
+  /// Notes the answer to the next request. False when that is a move that must be tried again.
+  [[nodiscard]] bool settle(Work& work, Answer answer);
   /// Whether a move that found the queue full is tried again.
   [[nodiscard]] bool must_wait(const Work& work) const;
   void refuse_pending_moves();
@@ -125,7 +133,7 @@ class Connection final : public SessionPort, public std::enable_shared_from_this
   std::uint64_t no_moves_before_ = 0;   ///< the same for moves
   std::string last_stop_;               ///< which stop that was
 
-  std::deque<Work> pending_;
+  std::deque<std::shared_ptr<Work>> pending_;
   std::size_t pending_bytes_ = 0;
   bool pump_posted_ = false;
 

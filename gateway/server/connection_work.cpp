@@ -13,6 +13,10 @@ constexpr std::size_t kLargestBatch = 10'000;
 constexpr std::size_t kMostAnswerBytes = 8U << 20U;
 /// Of one line or of several, before other connections get their turn: their stops must not wait for a long batch.
 constexpr std::chrono::milliseconds kTurn{5};
+/// Longer lines are read beside the gateway thread.
+constexpr std::size_t kLongLine = 64U << 10U;
+/// Of a request's parameters: with more, decoding and building take milliseconds.
+constexpr std::size_t kManyValues = 2000;
 
 Answer refused(MinorCode minor, std::string message) {
   return tl::unexpected<RpcError>(to_rpc_error(Error{minor, std::move(message)}));
@@ -30,6 +34,19 @@ bool took_effect(const Answer& answer) {
   return answer || (answer.error().code < rpc_code::kMachineBase && answer.error().code > rpc_code::kAuthorityRequired);
 }
 
+/// Numbers, texts and so on in a tree.
+std::size_t values_in(const nlohmann::json& tree) {
+  if (!tree.is_structured()) return 1;
+  std::size_t values = 0;
+  for (const auto& element : tree) values += values_in(element);
+  return values;
+}
+
+/// Whether others' stops must not wait for it.
+bool is_slow(const Request& request) {
+  return request.method != nullptr && (request.method->slow || (request.large && request.queues_a_move()));
+}
+
 std::string text_of(const nlohmann::json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -37,14 +54,37 @@ std::string text_of(const nlohmann::json& json) {
 }  // namespace
 
 void Connection::take_line(std::string_view line) {
-  Work work;
-  work.position = line_position_;
+  const std::uint64_t position = line_position_;
   line_position_ += line.size() + 1;
   if (line.ends_with('\r')) line.remove_suffix(1);
   if (line.find_first_not_of(" \t") == std::string_view::npos) return;
   server_.heard(*this);
-  work.bytes = line.size();
-  work.received = std::chrono::steady_clock::now();
+  auto work = std::make_shared<Work>();
+  work->position = position;
+  work->bytes = line.size();
+  work->received = std::chrono::steady_clock::now();
+  if (line.size() > kLongLine) {
+    work->away = true;
+    server_.run_aside([work, text = std::string(line)] { read_requests(text, *work); },
+                      [self = shared_from_this(), work] {
+                        work->away = false;
+                        if (self->phase_ == Phase::Closed || self->phase_ == Phase::Leaving) return;
+                        self->stop_first(*work);
+                        self->pump();
+                      });
+  } else {
+    read_requests(line, *work);
+    stop_first(*work);
+    if (!work->batch && work->answers[0]) {
+      answer(*work);
+      return;
+    }
+  }
+  pending_bytes_ += work->bytes;
+  pending_.push_back(std::move(work));
+}
+
+void Connection::read_requests(std::string_view line, Work& work) {
   auto parsed = parse_line(line);
   if (!parsed) {
     work.requests.push_back(not_a_request(std::move(parsed.error())));
@@ -59,31 +99,30 @@ void Connection::take_line(std::string_view line) {
   } else {
     work.requests.push_back(read_request(std::move(*parsed)));
   }
+  if (line.size() > kLongLine) {
+    for (Request& request : work.requests) request.large = values_in(request.params) > kManyValues;
+  }
   work.answers.resize(work.requests.size());
-  // Stops do not queue: they act before everything that waits here, in a batch too.
+}
+
+void Connection::stop_first(Work& work) {
   for (std::size_t i = 0; i < work.requests.size(); ++i) {
     const Request& stop = work.requests[i];
     if (!stop.is_urgent()) continue;
     work.answers[i] = server_.dispatcher().execute(stop, *this);
     if (took_effect(*work.answers[i])) server_.overtake(*this, stop, work.position + i);
   }
-  if (!work.batch && work.answers[0]) {
-    answer(work);
-    return;
-  }
-  pending_bytes_ += work.bytes;
-  pending_.push_back(std::move(work));
 }
 
 void Connection::pump() {
   const auto self = shared_from_this();
   const auto turn_end = std::chrono::steady_clock::now() + kTurn;
   while (!pending_.empty() && phase_ != Phase::Closed) {
-    Work& work = pending_.front();
-    // Not done: its turn ended, or it waits for room in the queue. The next tick goes on with it at the latest.
+    const std::shared_ptr<Work> work = pending_.front();
+    // Not done: its turn ended, it waits for room in the queue, or it is away. The next tick goes on at the latest.
     if (!run(work)) return;
-    answer(work);
-    pending_bytes_ -= work.bytes;
+    answer(*work);
+    pending_bytes_ -= work->bytes;
     pending_.pop_front();
     if (!pending_.empty() && std::chrono::steady_clock::now() >= turn_end) {
       if (!pump_posted_) {
@@ -101,25 +140,49 @@ void Connection::pump() {
   read();
 }
 
-bool Connection::run(Work& work) {
+bool Connection::run(const std::shared_ptr<Work>& waiting) {
+  Work& work = *waiting;
+  if (work.away) return false;
   const auto turn_end = std::chrono::steady_clock::now() + kTurn;
-  for (const std::size_t first = work.next; work.next < work.requests.size(); ++work.next) {
+  for (const std::size_t first = work.next; work.next < work.requests.size();) {
     if (work.next != first && std::chrono::steady_clock::now() >= turn_end) return false;
-    if (work.answers[work.next]) continue;
-    const Request& request = work.requests[work.next];
-    if (auto refusal = refusal_of(work, request)) {
-      work.answers[work.next] = std::move(refusal);
+    if (work.answers[work.next]) {
+      ++work.next;
       continue;
     }
-    Answer result = server_.dispatcher().execute(request, *this);
-    if (work.batch && result && result->is_structured()) work.answer_bytes += result->dump().size();
-    if (!result && result.error().minor == MinorCode::CommandQueueFull && request.queues_a_move()) {
-      if (must_wait(work)) return false;
-      server_.dispatcher().status().fail(MinorCode::CommandQueueFull);
-      refuse_pending_moves();
+    const Request& request = work.requests[work.next];
+    auto refusal = refusal_of(work, request);
+    if (!refusal) {
+      if (server_.machine_is_away()) return false;
+      refusal = Dispatcher::refusal_of(request, *this);
     }
-    work.answers[work.next] = std::move(result);
+    if (!refusal && is_slow(request)) {
+      carry_out_aside(waiting);
+      return false;
+    }
+    if (!settle(work, refusal ? std::move(*refusal) : server_.dispatcher().execute(request, *this))) return false;
   }
+  return true;
+}
+
+void Connection::carry_out_aside(const std::shared_ptr<Work>& work) {
+  work->away = true;
+  server_.carry_out_aside(work->requests[work->next], *this, [self = shared_from_this(), work](Answer answer) {
+    work->away = false;
+    if (self->settle(*work, std::move(answer))) self->pump();
+  });
+}
+
+bool Connection::settle(Work& work, Answer answer) {
+  const Request& request = work.requests[work.next];
+  if (work.batch && answer && answer->is_structured()) work.answer_bytes += answer->dump().size();
+  const bool full = !answer && answer.error().minor == MinorCode::CommandQueueFull && request.queues_a_move();
+  if (full && !work.refuse_moves) {
+    if (must_wait(work)) return false;
+    server_.dispatcher().status().fail(MinorCode::CommandQueueFull);
+    refuse_pending_moves();
+  }
+  work.answers[work.next++] = std::move(answer);
   return true;
 }
 
@@ -159,7 +222,7 @@ bool Connection::must_wait(const Work& work) const {
 }
 
 void Connection::refuse_pending_moves() {
-  for (Work& work : pending_) work.refuse_moves = true;
+  for (const auto& work : pending_) work->refuse_moves = true;
 }
 
 void Connection::answer(const Work& work) {

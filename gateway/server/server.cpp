@@ -127,6 +127,32 @@ void Server::close() {
     lease_.release(id);
     connection->abort();
   }
+  aside_.stop();
+  aside_.join();
+}
+
+void Server::run_aside(std::function<void()> work, std::function<void()> done) {
+  asio::post(aside_, [this, work = std::move(work), done = std::move(done)]() mutable {
+    work();
+    work = nullptr;
+    asio::post(io_, std::move(done));
+  });
+}
+
+void Server::carry_out_aside(const Request& request, SessionPort& session, std::function<void(Answer)> done) {
+  machine_away_ = true;
+  struct Outcome {
+    MachineStatus status;
+    Answer answer;
+  };
+  auto outcome = std::make_shared<Outcome>();
+  run_aside([this, &request, &session,
+             outcome] { outcome->answer = dispatcher_.carry_out(request, session, outcome->status); },
+            [this, outcome, done = std::move(done)] {
+              machine_away_ = false;
+              if (outcome->status.major != 0) dispatcher_.status().fail(static_cast<MinorCode>(outcome->status.minor));
+              done(std::move(outcome->answer));
+            });
 }
 
 void Server::on_sample(const CycleSample& sample) {
@@ -227,7 +253,9 @@ void Server::stop_for_lease(std::string message) {
                     machine.cam().cycle_start_status();
   dropped_moves_ = machine.cam().moves_in_buffer();
   const bool power_off = runs && options_.lease_lost == LeaseLostAction::StopAndPowerOff;
-  const Expected<> stopped = runs || dropped_moves_ > 0 ? machine.cam().stop_now() : machine.cam().cycle_stop();
+  // A move that is being built now must find that its queue is gone, too.
+  const Expected<> stopped =
+      runs || dropped_moves_ > 0 || machine_away_ ? machine.cam().stop_now() : machine.cam().cycle_stop();
   if (!stopped) {
     message += "; stopping failed: " + stopped.error().message;
     dispatcher_.status().fail(stopped.error().code);
@@ -245,7 +273,7 @@ void Server::stop_for_lease(std::string message) {
 }
 
 void Server::power_off_at_rest() {
-  if (!power_off_pending_) return;
+  if (!power_off_pending_ || machine_away_) return;
   MachinePort& machine = dispatcher_.machine();
   const CycleSample sample = machine.sample();
   if (sample.moving || sample.state == CycleState::Running || sample.state == CycleState::Stopping) return;

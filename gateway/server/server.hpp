@@ -41,7 +41,8 @@ struct ServerOptions {
 };
 
 /// The sockets of the gateway: newline JSON-RPC over TCP and a UNIX socket. Everything runs on the thread of the
-/// io_context.
+/// io_context, except what would keep it from the next stop for long: reading a long line, decoding and building a
+/// large move, searching the database. That runs on one thread beside it, one piece at a time.
 class Server {
  public:
   using MakeRecords = std::function<std::unique_ptr<RecordCursor>()>;
@@ -88,6 +89,12 @@ class Server {
   /// A stop took effect: what was sent before it on any connection and may start motion must not run after it. Of the
   /// stop's own connection that is what stands before `position` of its input.
   void overtake(const Connection& stopper, const Request& stop, std::uint64_t position);
+  /// Work that needs nothing of the gateway, on the thread beside it; `done` runs back on the gateway thread.
+  void run_aside(std::function<void()> work, std::function<void()> done);
+  /// Carries a slow request out on the thread beside the gateway's. Until it is done the gateway carries out nothing
+  /// but stops, so that the machine still has one user besides them.
+  void carry_out_aside(const Request& request, SessionPort& session, std::function<void(Answer)> done);
+  [[nodiscard]] bool machine_is_away() const noexcept { return machine_away_; }
   void announce(Event::Kind kind, std::string message);
   void forget(const Connection& connection);
 
@@ -113,7 +120,9 @@ class Server {
   std::uint64_t next_id_ = 1;
   std::uint16_t port_ = 0;
   bool listens_on_unix_ = false;  ///< so the socket's file is ours to remove
-  int dropped_moves_ = 0;         ///< when the lease ended last
+  asio::thread_pool aside_{1};
+  bool machine_away_ = false;  ///< a slow request has it
+  int dropped_moves_ = 0;      ///< when the lease ended last
   bool retired_ = false;
   bool power_off_pending_ = false;
   bool power_off_refused_ = false;  ///< and it was said

@@ -158,11 +158,13 @@ class FakeMachine : public MachinePort {
   testing::NiceMock<FakeDevice> device_fake;
   CycleSample now;
   CycleNow cycle;
+  std::function<void()> during_search;
 };
 
 /// Two records, A and B.
 class FakeRecords : public RecordCursor {
  public:
+  explicit FakeRecords(const FakeMachine* machine = nullptr) : machine_(machine) {}
   Expected<> open() override {
     rows_ = {row(1, "A"), row(2, "B")};
     at_ = 0;
@@ -171,6 +173,7 @@ class FakeRecords : public RecordCursor {
   void close() override { rows_.clear(); }
   Expected<int> total() const override { return 2; }
   Expected<int> search(const std::string& sql) override {
+    if (machine_ != nullptr && machine_->during_search) machine_->during_search();
     rows_ = {row(2, sql)};
     at_ = 0;
     return 1;
@@ -198,6 +201,7 @@ class FakeRecords : public RecordCursor {
     at_ = where;
     return {};
   }
+  const FakeMachine* machine_;
   std::vector<DriverRecord> rows_;
   std::size_t at_ = 0;
 };

@@ -20,7 +20,7 @@ class ServerBench {
   explicit ServerBench(ServerOptions options = {}) {
     options.port = 0;
     server_ = std::make_unique<Server>(
-        io_, machine_, [] { return std::make_unique<FakeRecords>(); }, options);
+        io_, machine_, [this] { return std::make_unique<FakeRecords>(&machine_); }, options);
     const auto listening = server_->listen();
     if (!listening) ADD_FAILURE() << listening.error().message;
     tick();

@@ -1,0 +1,133 @@
+// What takes long does not keep others from stopping the machine. Told by order, not by time: the slow request ends
+// only after the stop was answered.
+#include <gtest/gtest.h>
+
+#include "bench.hpp"
+#include "requests.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+using fakes::Client;
+using fakes::FakeMachine;
+using fakes::line_of;
+using fakes::ServerBench;
+using nlohmann::json;
+using testing::_;
+using testing::Return;
+
+/// A NURBS of some megabytes.
+std::string large_move(int id) {
+  constexpr int kPoints = 60'000;
+  std::string knots = "0,0";
+  std::string points = "[0,0,0]";
+  for (int i = 1; i < kPoints; ++i) {
+    knots += "," + std::to_string(std::min(i, kPoints - 1));
+    points += "," + std::string("[") + std::to_string(i) + ".125,0.5,0.25]";
+  }
+  knots += "," + std::to_string(kPoints - 1);
+  return line_of(id, "RMAC_CAM.MoveAlongNurbs",
+                 R"({"MoveID":1,"Nurbs":{"degree":1,"knots":[)" + knots + R"(],"points":[)" + points + "]}}");
+}
+
+/// Something that lasts until the test lets it end.
+struct Slow {
+  std::promise<void> begun, end;
+  void run() {
+    begun.set_value();
+    end.get_future().wait();
+  }
+};
+
+TEST(SlowRequest, LetsAnotherClientStopDuringASearch) {
+  Slow slow;
+  ServerBench bench;
+  bench.on_gateway([&](Server&, FakeMachine& machine) {
+    EXPECT_CALL(machine.cam_mock, stop_now()).WillOnce(Return(Expected<>{}));
+    machine.during_search = [&] { slow.run(); };
+  });
+  Client searcher(bench.port());
+  Client panel(bench.port());
+  searcher.send(line_of(1, "DeviceDriverManager.SearchDatabaseRecordSet", R"(["SELECT 1"])") +
+                line_of(2, "RMAC_CAM.Ok"));
+  slow.begun.get_future().wait();
+  EXPECT_EQ(panel.call("RMAC_CAM.StopNow")["result"], true);
+  slow.end.set_value();
+  EXPECT_EQ(searcher.json_line()["id"], 1) << "answers keep their order";
+  EXPECT_EQ(searcher.json_line()["id"], 2);
+}
+
+TEST(SlowRequest, LetsAnyoneStopWhileALargeMoveIsBuilt) {
+  for (const bool own : {false, true}) {
+    SCOPED_TRACE(own ? "the same client" : "another client");
+    Slow slow;
+    ServerBench bench;
+    bench.on_gateway([&](Server&, FakeMachine& machine) {
+      EXPECT_CALL(machine.cam_mock, stop_now()).Times(testing::AtLeast(1)).WillRepeatedly(Return(Expected<>{}));
+      EXPECT_CALL(machine.cam_mock, queue_move(1, _)).WillOnce([&](std::int64_t, const Geometry&) -> Expected<> {
+        slow.run();
+        return failure(MinorCode::Other, "its queue is gone");
+      });
+    });
+    Client holder(bench.port());
+    Client panel(bench.port());
+    EXPECT_TRUE(holder.call("authority.acquire").contains("result"));
+    holder.send(large_move(10) + line_of(11, "RMAC_CAM.Ok"));
+    slow.begun.get_future().wait();
+    if (own) holder.send(line_of(12, "RMAC_CAM.StopNow"));
+    EXPECT_EQ(own ? holder.answer(12)["result"] : panel.call("RMAC_CAM.StopNow")["result"], true);
+    slow.end.set_value();
+    EXPECT_EQ(holder.json_line()["id"], 10);
+    EXPECT_EQ(holder.json_line()["id"], 11);
+    EXPECT_EQ(holder.call("RMAC_CAM.StatusMinorCode")["result"], static_cast<int>(MinorCode::Other));
+  }
+}
+
+TEST(SlowRequest, OfAClientThatLeavesIsFollowedByAStopThatDropsIt) {
+  Slow slow;
+  std::promise<void> stopped;
+  ServerBench bench;
+  bench.on_gateway([&](Server&, FakeMachine& machine) {
+    EXPECT_CALL(machine.cam_mock, queue_move(1, _)).WillOnce([&](std::int64_t, const Geometry&) -> Expected<> {
+      slow.run();
+      return {};
+    });
+    ON_CALL(machine.cam_mock, moves_in_buffer()).WillByDefault(Return(1));
+    // The watcher's own lease, taken at the end, is lost with the bench.
+    EXPECT_CALL(machine.cam_mock, stop_now())
+        .WillOnce([&]() -> Expected<> {
+          stopped.set_value();
+          return {};
+        })
+        .WillRepeatedly(Return(Expected<>{}));
+  });
+  Client watcher(bench.port());
+  {
+    Client holder(bench.port());
+    EXPECT_TRUE(holder.call("authority.acquire").contains("result"));
+    EXPECT_TRUE(holder.call("subscribe", R"({"topics":["events"]})").contains("result"));
+    holder.send(large_move(10));
+    slow.begun.get_future().wait();
+  }
+  // Closed with nothing unread, so the server sees an end of input and answers first; it loses the lease then.
+  slow.end.set_value();
+  stopped.get_future().wait();
+  EXPECT_TRUE(watcher.call("authority.acquire").contains("result"));
+}
+
+TEST(SlowRequest, ALongLineKeepsItsPlaceAmongShortOnes) {
+  ServerBench bench;
+  Client client(bench.port());
+  const std::string name(1 << 20, 'n');
+  client.send(line_of(1, "RMAC_CAM.Ok") + line_of(2, "hello", R"({"client":")" + name + R"("})") +
+              line_of(3, "RMAC_CAM.Ok") + "{\"jsonrpc\"" + std::string(1 << 17, ' ') + "\n" +
+              line_of(5, "RMAC_CAM.Ok"));
+  EXPECT_EQ(client.json_line()["id"], 1);
+  EXPECT_EQ(client.json_line()["id"], 2);
+  EXPECT_EQ(client.json_line()["id"], 3);
+  EXPECT_EQ(client.json_line()["error"]["code"], rpc_code::kParseError);
+  EXPECT_EQ(client.json_line()["id"], 5);
+}
+
+}  // namespace
+}  // namespace rmac::gateway
