@@ -177,6 +177,7 @@ void add_config_methods(std::vector<Method>& table) {
              "Checks the draft as a whole and puts it in at standstill; or changes nothing and says why.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
+          .may_be_slow()
           .extension()
           .does([](Call& call) { return call.machine.config().apply(); }));
 }

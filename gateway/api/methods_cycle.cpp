@@ -71,6 +71,7 @@ void add_cycle_methods(std::vector<Method>& table) {
   add(method("RMAC_CAM.Reset", "Leaves a fault or emergency stop whose cause is gone; nothing moves by it.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
+          .may_be_slow()
           .extension()
           .does([](Call& call) { return call.machine.cam().reset(); }));
   add(method("RMAC_CAM.SetFeedOverride", "Percentage of the programmed feed at which moves run, at once; 0 waits.")

@@ -45,6 +45,7 @@ void add_life_cycle(const auto& add) {
                                                                    "no bus is touched; false when left out"))
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
+          .may_be_slow()
           .extension()
           .does([](Call& call, const std::string& name, std::optional<bool> virtual_mode) {
             return call.machine.device().load(name, virtual_mode.value_or(false));

@@ -88,16 +88,19 @@ void add_device_setters(std::vector<Method>& table) {
              "The driver configures the motion planner by the wanted values, at standstill; or nothing changes.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
+          .may_be_slow()
           .does([](Call& call) { return call.machine.device().configure_motion_planner(); }));
   add(method("Device.Machine_ConfigureServoController",
              "The driver configures the servo controller by the wanted values, at standstill; or nothing changes.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
+          .may_be_slow()
           .does([](Call& call) { return call.machine.device().configure_servo_controller(); }));
   add(method("Device.Machine_ConfigureDigitalControlInterface",
              "The driver configures the interfaces to drives and I/O, at standstill; or nothing changes.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
+          .may_be_slow()
           .does([](Call& call) { return call.machine.device().configure_digital_control_interface(); }));
 }
 

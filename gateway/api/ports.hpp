@@ -14,7 +14,8 @@
 #include "rmac/sdk/rmac_config.hpp"
 
 // What the API needs of the rest of the gateway, as interfaces: the daemon binds them to the real things, a test to
-// fakes. All of it is used on the gateway thread.
+// fakes. One thread at a time uses it; while that is the one beside the gateway's, the gateway stops the machine at
+// most (see Dispatcher).
 
 namespace rmac::gateway {
 

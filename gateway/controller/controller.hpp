@@ -37,7 +37,9 @@ struct ControllerOptions {
 };
 
 /// The RMAC controller (dissertation 4.6): configuration system, planner and servo threads, bus registry. One an
-/// appliance. All members are the gateway thread's.
+/// appliance. One thread at a time uses it: the gateway's, or the one beside it that carries out what takes long.
+/// Meanwhile the gateway may call `sample`, `cycle_now`, and of `cam()` the stops, the cycle's status and
+/// `moves_in_buffer`.
 ///
 /// A mechanism that goes in has its drives enabled; putting it in returns when every joint is held by its loop. Device.
 /// Load leaves the machine Idle, so a cycle that was running must be started again; applying a changed configuration of

@@ -149,6 +149,7 @@ void CycleSequencer::mechanism_changed(bool keep_running) noexcept {
   if (!keep_running) {
     // A fault is left by a reset, not by taking the mechanism out.
     if (state_ != CycleState::Faulted && state_ != CycleState::EmergencyStop) state_ = CycleState::Idle;
+    clear_at_rest_ = false;  // a stop may come while mechanisms change; the new one's queue is empty
     spindle_wait_ = false;
   }
   done_at_start_ = 0;

@@ -69,6 +69,7 @@ class Daemon {
  private:
   void schedule_tick();
   void tick();
+  void dispatch();
   void end(const char* why);
   void end_when_at_rest();
 
@@ -142,8 +143,13 @@ void Daemon::schedule_tick() {
   });
 }
 
+void Daemon::dispatch() {
+  // Whoever changes the mechanism has the controller until that is done; its samples wait.
+  if (!server_.mechanism_changes()) controller_.dispatch();
+}
+
 void Daemon::tick() {
-  if (server_.may_dispatch() || phase_ != Phase::Serving) controller_.dispatch();
+  if (server_.may_dispatch() || phase_ != Phase::Serving) dispatch();
   server_.tick();
   // From the tick, so that a gateway thread that hangs is noticed.
   const auto now = std::chrono::steady_clock::now();
@@ -172,10 +178,10 @@ void Daemon::end_when_at_rest() {
   const CycleState state = controller_.cycle_now().state;
   const bool late = std::chrono::steady_clock::now() > end_by_;
   const bool at_rest = state != CycleState::Running && state != CycleState::Holding && state != CycleState::Stopping &&
-                       !controller_.sample().moving;
+                       !controller_.sample().moving && !server_.mechanism_changes();
   if (!at_rest && !late) return;
   if (late) spdlog::error("the machine did not come to rest in {} s; ending regardless", kStopBound.count());
-  controller_.dispatch();  // what its last cycles did, before clients are let go
+  dispatch();  // what its last cycles did, before clients are let go
   server_.dismiss();
   phase_ = Phase::Leaving;
 }

@@ -164,7 +164,7 @@ void Connection::flush_topics() {
     send(notification("drives", "{\"samples\":[" + drives_batch_ + "]}"));
     drives_batch_.clear();
   }
-  if (state_now_ && state_.on()) {
+  if (state_now_ && state_.on() && !server_.mechanism_changes()) {
     state_now_ = false;
     Dispatcher& api = server_.dispatcher();
     send(notification("state",

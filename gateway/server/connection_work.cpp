@@ -68,8 +68,7 @@ void Connection::take_line(std::string_view line) {
     server_.run_aside([work, text = std::string(line)] { read_requests(text, *work); },
                       [self = shared_from_this(), work] {
                         work->away = false;
-                        if (self->phase_ == Phase::Closed || self->phase_ == Phase::Leaving) return;
-                        self->stop_first(*work);
+                        self->stop_first(*work);  // even of a client that is gone: it was sent
                         self->pump();
                       });
   } else {
@@ -169,7 +168,7 @@ void Connection::carry_out_aside(const std::shared_ptr<Work>& work) {
   work->away = true;
   server_.carry_out_aside(work->requests[work->next], *this, [self = shared_from_this(), work](Answer answer) {
     work->away = false;
-    if (self->settle(*work, std::move(answer))) self->pump();
+    return self->settle(*work, std::move(answer));
   });
 }
 

@@ -139,19 +139,33 @@ void Server::run_aside(std::function<void()> work, std::function<void()> done) {
   });
 }
 
-void Server::carry_out_aside(const Request& request, SessionPort& session, std::function<void(Answer)> done) {
+void Server::pump() {
+  // Connections may leave the map while they are pumped, so the loop runs over a copy of their pointers. It begins
+  // after the one whose slow request had the machine last: a client that sends many must let others in between.
+  std::vector<std::shared_ptr<Connection>> open;
+  open.reserve(connections_.size());
+  for (const auto& [id, connection] : connections_) open.push_back(connection);
+  const auto next = std::ranges::find_if(open, [this](const auto& entry) { return entry->id() > served_aside_; });
+  std::ranges::rotate(open, next);
+  for (const auto& connection : open) connection->pump();
+}
+
+void Server::carry_out_aside(const Request& request, Connection& connection, std::function<bool(Answer)> done) {
+  served_aside_ = connection.id();
   machine_away_ = true;
+  mechanism_changes_ = request.method->slow && request.effect() == Effect::Starts;
   struct Outcome {
     MachineStatus status;
     Answer answer;
   };
   auto outcome = std::make_shared<Outcome>();
-  run_aside([this, &request, &session,
-             outcome] { outcome->answer = dispatcher_.carry_out(request, session, outcome->status); },
+  run_aside([this, &request, &connection,
+             outcome] { outcome->answer = dispatcher_.carry_out(request, connection, outcome->status); },
             [this, outcome, done = std::move(done)] {
-              machine_away_ = false;
+              machine_away_ = mechanism_changes_ = false;
               if (outcome->status.major != 0) dispatcher_.status().fail(static_cast<MinorCode>(outcome->status.minor));
-              done(std::move(outcome->answer));
+              // A move that must wait for room is tried again at the next tick, not at once.
+              if (done(std::move(outcome->answer))) pump();
             });
 }
 
@@ -172,19 +186,14 @@ bool Server::may_dispatch() const noexcept {
 
 void Server::tick() {
   const auto now = std::chrono::steady_clock::now();
-  // Connections may leave the map while they are pumped, so the loop runs over a copy of their pointers.
-  std::vector<std::shared_ptr<Connection>> open;
-  open.reserve(connections_.size());
-  for (const auto& [id, connection] : connections_) open.push_back(connection);
-  for (const auto& connection : open) {
+  const auto open = connections_;  // those that are cut off leave the map
+  for (const auto& [id, connection] : open) {
     connection->flush_topics();
-    if (connection->stalled(now)) {
-      spdlog::warn("{} was cut off: it has not read for {} ms", connection->name(), options_.stall_limit.count());
-      connection->abort();
-      continue;
-    }
-    connection->pump();
+    if (!connection->stalled(now)) continue;
+    spdlog::warn("{} was cut off: it has not read for {} ms", connection->name(), options_.stall_limit.count());
+    connection->abort();
   }
+  pump();
   end_silent_lease();
   power_off_at_rest();
 }

@@ -42,7 +42,7 @@ struct ServerOptions {
 
 /// The sockets of the gateway: newline JSON-RPC over TCP and a UNIX socket. Everything runs on the thread of the
 /// io_context, except what would keep it from the next stop for long: reading a long line, decoding and building a
-/// large move, searching the database. That runs on one thread beside it, one piece at a time.
+/// large move, searching the database, changing the mechanism. That runs on one thread beside it, one piece at a time.
 class Server {
  public:
   using MakeRecords = std::function<std::unique_ptr<RecordCursor>()>;
@@ -92,9 +92,12 @@ class Server {
   /// Work that needs nothing of the gateway, on the thread beside it; `done` runs back on the gateway thread.
   void run_aside(std::function<void()> work, std::function<void()> done);
   /// Carries a slow request out on the thread beside the gateway's. Until it is done the gateway carries out nothing
-  /// but stops, so that the machine still has one user besides them.
-  void carry_out_aside(const Request& request, SessionPort& session, std::function<void(Answer)> done);
+  /// but stops, so that the machine still has one user besides them. `done` tells whether the answer is final.
+  void carry_out_aside(const Request& request, Connection& connection, std::function<bool(Answer)> done);
   [[nodiscard]] bool machine_is_away() const noexcept { return machine_away_; }
+  /// Whether the request that has the machine may change its mechanism: then the controller may not be dispatched, nor
+  /// the mechanism be read.
+  [[nodiscard]] bool mechanism_changes() const noexcept { return mechanism_changes_; }
   void announce(Event::Kind kind, std::string message);
   void forget(const Connection& connection);
 
@@ -108,6 +111,8 @@ class Server {
   void stop_for_lease(std::string message);
   void power_off_at_rest();
   void end_silent_lease();
+  /// Lets every connection carry out what waits there.
+  void pump();
 
   asio::io_context& io_;
   Dispatcher dispatcher_;
@@ -122,7 +127,9 @@ class Server {
   bool listens_on_unix_ = false;  ///< so the socket's file is ours to remove
   asio::thread_pool aside_{1};
   bool machine_away_ = false;  ///< a slow request has it
-  int dropped_moves_ = 0;      ///< when the lease ended last
+  bool mechanism_changes_ = false;
+  std::uint64_t served_aside_ = 0;  ///< id of the connection whose slow request it is, or was last
+  int dropped_moves_ = 0;           ///< when the lease ended last
   bool retired_ = false;
   bool power_off_pending_ = false;
   bool power_off_refused_ = false;  ///< and it was said

@@ -112,6 +112,7 @@ inline sdk::DeviceObject two_joint_device() {
 class FakeDevice : public DevicePort {
  public:
   Expected<> load(const std::string& name, bool virtual_mode) override {
+    if (during_load) during_load();
     if (name != "Fake") return failure(MinorCode::InvalidParameterValue, "no mechanism " + name + "; there is Fake");
     device = two_joint_device();
     is_virtual = virtual_mode;
@@ -139,6 +140,7 @@ class FakeDevice : public DevicePort {
   std::optional<sdk::DeviceObject> device = two_joint_device();
   bool is_virtual = false;
   std::string unload_refusal;  ///< why it cannot be taken out; empty: it can
+  std::function<void()> during_load;
 };
 
 class FakeMachine : public MachinePort {

@@ -1,5 +1,8 @@
 #include <gmock/gmock.h>
 
+#include <atomic>
+#include <thread>
+
 #include "test_machine.hpp"
 
 namespace rmac::gateway {
@@ -16,6 +19,43 @@ struct Defect {
 
 void PrintTo(const Defect& defect, std::ostream* out) {
   *out << defect.name;
+}
+
+TEST(MechanismChange, MayBeStoppedMeanwhileFromAnotherThread) {
+  // As the gateway does while the thread beside it changes the mechanism. No stop leaves anything behind.
+  TestMachine machine;
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  std::atomic<bool> changing = true;
+  std::thread gateway([&] {
+    int turn = 0;
+    do {
+      const auto stopped = turn % 2 == 0 ? machine.controller.cam().stop_now() : machine.controller.cam().cycle_stop();
+      EXPECT_TRUE(stopped);
+      (void)machine.controller.sample();
+      (void)machine.controller.cycle_now();
+      (void)machine.controller.cam().cycle_start_status();
+      (void)machine.controller.cam().moves_in_buffer();
+      ++turn;
+    } while (changing);
+  });
+  for (int i = 0; i < 6; ++i) {
+    const auto loaded = machine.load(i % 2 == 0 ? TestMachine::plane_mill() : TestMachine::mill());
+    // A stop that has not come to rest when the change begins is a reason to refuse it, and the only one.
+    if (!loaded) {
+      EXPECT_THAT(loaded.error().message, HasSubstr("machine at rest"));
+    }
+  }
+  changing = false;
+  gateway.join();
+  const auto loaded = machine.load(TestMachine::mill());
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  ASSERT_TRUE(machine.controller.cam().set_feed_override(0));
+  ASSERT_TRUE(machine.line(1, {0, 0, 0}, {1, 0, 0}));
+  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.controller.cam().cycle_stop());
+  ASSERT_TRUE(machine.run_until([&] { return machine.controller.cycle_now().state == CycleState::Idle; }));
+  EXPECT_EQ(machine.controller.cam().moves_in_buffer(), 1) << "an earlier stop's order to clear is still in force";
 }
 
 class FailedChange : public testing::TestWithParam<Defect> {};

@@ -2,6 +2,8 @@
 // only after the stop was answered.
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "bench.hpp"
 #include "requests.hpp"
 
@@ -55,6 +57,68 @@ TEST(SlowRequest, LetsAnotherClientStopDuringASearch) {
   slow.end.set_value();
   EXPECT_EQ(searcher.json_line()["id"], 1) << "answers keep their order";
   EXPECT_EQ(searcher.json_line()["id"], 2);
+}
+
+TEST(SlowRequest, LetsAnotherClientStopWhileTheMechanismChanges) {
+  Slow slow;
+  ServerBench bench;
+  bench.on_gateway([&](Server&, FakeMachine& machine) {
+    EXPECT_CALL(machine.cam_mock, stop_now()).WillRepeatedly(Return(Expected<>{}));
+    machine.device_fake.during_load = [&] { slow.run(); };
+  });
+  Client holder(bench.port());
+  Client panel(bench.port());
+  EXPECT_TRUE(holder.call("authority.acquire").contains("result"));
+  holder.send(line_of(10, "Device.Load", R"(["Fake"])"));
+  slow.begun.get_future().wait();
+  EXPECT_EQ(panel.call("RMAC_CAM.StopNow")["result"], true);
+  EXPECT_TRUE(bench.on_gateway([](Server& server, FakeMachine&) { return server.mechanism_changes(); }));
+  panel.send(line_of(20, "RMAC_CAM.GetState"));
+  slow.end.set_value();
+  EXPECT_EQ(holder.answer(10)["result"], true);
+  EXPECT_EQ(panel.answer(20)["result"]["mechanism"], "Fake") << "what reads the mechanism waits for it";
+  EXPECT_FALSE(bench.on_gateway([](Server& server, FakeMachine&) { return server.mechanism_changes(); }));
+}
+
+TEST(SlowRequest, LetsOthersInBeforeTheSameClientsNext) {
+  // The first client (both orders) sends many; what another one sent meanwhile comes before its second.
+  for (const bool first_connected : {true, false}) {
+    SCOPED_TRACE(first_connected ? "the busy client connected first" : "the busy client connected last");
+    constexpr int kSearches = 5;
+    Slow slow;
+    std::atomic<int> searches = 0;
+    std::atomic<int> before_the_other = 0;
+    ServerBench bench;
+    bench.on_gateway([&](Server&, FakeMachine& machine) {
+      machine.during_search = [&] {
+        if (searches++ == 0) slow.run();
+      };
+      EXPECT_CALL(machine.cam_mock, cycle_start_status()).WillRepeatedly([&] {
+        before_the_other = searches.load();
+        return false;
+      });
+    });
+    Client one(bench.port());
+    EXPECT_TRUE(one.call("hello", R"({"client":"one"})").contains("result"));
+    Client two(bench.port());
+    EXPECT_TRUE(two.call("hello", R"({"client":"two"})").contains("result"));
+    Client& busy = first_connected ? one : two;
+    Client& other = first_connected ? two : one;
+    std::string lines;
+    for (int i = 1; i <= kSearches; ++i) {
+      lines += line_of(i, "DeviceDriverManager.SearchDatabaseRecordSet", R"(["SELECT 1"])");
+    }
+    busy.send(lines);
+    slow.begun.get_future().wait();
+    other.send(line_of(30, "RMAC_CAM.GetCycleStartStatus"));
+    // A stop's answer tells that what was sent before it on its connection has been read.
+    other.send(line_of(31, "RMAC_CAM.CycleStop", "[1]"));
+    EXPECT_TRUE(other.answer(31).contains("result"));
+    slow.end.set_value();
+    EXPECT_EQ(other.answer(30)["result"], false);
+    for (int i = 1; i <= kSearches; ++i) EXPECT_EQ(busy.json_line()["id"], i);
+    EXPECT_EQ(before_the_other, 1);
+  }
 }
 
 TEST(SlowRequest, LetsAnyoneStopWhileALargeMoveIsBuilt) {
