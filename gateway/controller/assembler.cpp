@@ -24,7 +24,7 @@ Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loade
                    fmt::format("joint \"{}\": {} does not accept the gains [{}]; it takes {}: {}", joint.limits.name,
                                name, fmt::join(joint.gains, ", "), law->object->gains().size(), wanted));
   }
-  return ServoAxis{std::move(law->object), joint.method, joint.max_following_error, joint.max_effort};
+  return ServoAxis{std::move(law->object), joint.method, joint.max_following_error, joint.max_effort, joint.mechanics};
 }
 
 Expected<> add_axes(const sdk::DeviceObject& device, const ModuleLoader& loader, ServoLoopParts& parts) {

@@ -68,6 +68,23 @@ JointLimits limits(const Json& joint) {
   return limits;
 }
 
+JointMechanics mechanics(const Json& joint) {
+  JointMechanics result;
+  if (const auto table = joint.find("PitchErrors"); table != joint.end()) {
+    result.pitch = {number(*table, "First"), number(*table, "Step"), (*table)["Errors"].get<std::vector<double>>()};
+  }
+  result.backlash = joint.value("Backlash", 0.0);
+  for (const Json& entry : joint.value("Resonances", Json::array())) {
+    Resonance resonance;
+    resonance.frequency_hz = number(entry, "Frequency");
+    resonance.damping = number(entry, "Damping");
+    resonance.width = entry.value("Width", resonance.width);
+    result.resonances.push_back(resonance);
+  }
+  result.low_pass_hz = joint.value("LowPass", 0.0);
+  return result;
+}
+
 std::vector<sdk::Joint> joints(const Json& list) {
   std::vector<sdk::Joint> result;
   for (const Json& entry : list) {
@@ -81,6 +98,7 @@ std::vector<sdk::Joint> joints(const Json& list) {
     joint.gains = entry["Gains"].get<std::vector<double>>();
     joint.max_following_error = number(entry, "MaxFollowingError");
     joint.max_effort = number(entry, "MaxEffort");
+    joint.mechanics = mechanics(entry);
     result.push_back(std::move(joint));
   }
   return result;

@@ -190,6 +190,10 @@ Expected<> ConfigDraft::set_joint_watch(int number, double max_following_error, 
   });
 }
 
+Expected<> ConfigDraft::set_joint_mechanics(int number, const JointMechanics& mechanics) {
+  return change_joint(number, "joint mechanics", [&](sdk::Joint& found) { found.mechanics = mechanics; });
+}
+
 Expected<> ConfigDraft::set_digital_control_interface(const sdk::ModuleChoice& module) {
   return set_module("SetDigitalControlInterface", module, draft_.digital_control_interface);
 }

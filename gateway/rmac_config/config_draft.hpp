@@ -42,6 +42,7 @@ class ConfigDraft final : public sdk::RmacConfig {
   Expected<> set_joint_servo_control_law(int joint, const sdk::ModuleChoice& module) override;
   Expected<> set_joint_servo_control_gains(int joint, std::span<const double> gains) override;
   Expected<> set_joint_watch(int joint, double max_following_error, double max_effort) override;
+  Expected<> set_joint_mechanics(int joint, const JointMechanics& mechanics) override;
   Expected<> set_digital_control_interface(const sdk::ModuleChoice& module) override;
   Expected<> initialize_digital_control_interface() override;
   Expected<> set_digital_io_interface(const sdk::ModuleChoice& module) override;

@@ -80,6 +80,7 @@ class MockConfig : public sdk::RmacConfig {
   MOCK_METHOD(Expected<>, set_joint_servo_control_law, (int, const sdk::ModuleChoice&), (override));
   MOCK_METHOD(Expected<>, set_joint_servo_control_gains, (int, std::span<const double>), (override));
   MOCK_METHOD(Expected<>, set_joint_watch, (int, double, double), (override));
+  MOCK_METHOD(Expected<>, set_joint_mechanics, (int, const JointMechanics&), (override));
   MOCK_METHOD(Expected<>, set_digital_control_interface, (const sdk::ModuleChoice&), (override));
   MOCK_METHOD(Expected<>, initialize_digital_control_interface, (), (override));
   MOCK_METHOD(Expected<>, set_digital_io_interface, (const sdk::ModuleChoice&), (override));

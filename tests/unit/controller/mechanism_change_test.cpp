@@ -110,6 +110,8 @@ INSTANTIATE_TEST_SUITE_P(
                "it takes 2: stiffness (N/mm), damping (N·s/mm)"},
         Defect{"Limits", [](sdk::DeviceObject& d) { d.joints[0].limits.min = 60; },
                "the minimum limit 60 must be below the maximum limit 50"},
+        Defect{"Mechanics", [](sdk::DeviceObject& d) { d.joints[1].mechanics.backlash = -1; },
+               "joint 1: a backlash must be 0 to 10"},
         Defect{"Jerk", [](sdk::DeviceObject& d) { d.held_joints[0].limits.max_jerk = 0; },
                "SetMechanismJointMaximumJerk is 0"},
         Defect{"ForceControl", [](sdk::DeviceObject& d) { d.joints[0].method = ControlMethod::Force; },

@@ -115,6 +115,27 @@ TEST(DeviceDatabase, GivesEveryValueOfTheFile) {
   EXPECT_EQ(device.spindles[0].speed_timeout_s, 4);
 }
 
+TEST(DeviceDatabase, GivesWhatTheMechanicsOfAJointDoWrong) {
+  json file = sound_device();
+  EXPECT_TRUE(read_sound(file).joints[0].mechanics.pitch.errors.empty());
+  file["Joints"][1].update({{"PitchErrors", {{"First", -50}, {"Step", 25}, {"Errors", {0.01, 0, -0.02}}}},
+                            {"Backlash", 0.015},
+                            {"Resonances", {{{"Frequency", 180}, {"Damping", 0.02}}}},
+                            {"LowPass", 350}});
+  const JointMechanics mechanics = read_sound(file).joints[1].mechanics;
+  EXPECT_EQ(mechanics.pitch.first, -50);
+  EXPECT_EQ(mechanics.pitch.step, 25);
+  EXPECT_EQ(mechanics.pitch.errors, (std::vector<double>{0.01, 0, -0.02}));
+  EXPECT_EQ(mechanics.backlash, 0.015);
+  ASSERT_EQ(mechanics.resonances.size(), 1U);
+  EXPECT_EQ(mechanics.resonances[0].frequency_hz, 180);
+  EXPECT_EQ(mechanics.resonances[0].damping, 0.02);
+  EXPECT_EQ(mechanics.resonances[0].width, 0.5);
+  EXPECT_EQ(mechanics.low_pass_hz, 350);
+  EXPECT_EQ(problem_with("/Joints/0/Backlash", -1),
+            "/Joints/0/Backlash is -1; allowed is a number from 0 to 10 (mm or deg)");
+}
+
 TEST(DeviceDatabase, TakesTheSchemasDefaultsForWhatIsLeftOut) {
   json file = sound_device();
   for (const char* key : {"SpeedCapability", "ToolChanger", "NumberOfTools", "HeldJoints"}) file.erase(key);

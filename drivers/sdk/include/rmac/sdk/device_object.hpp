@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rmac/motion/axis.hpp"
+#include "rmac/motion/joint_mechanics.hpp"
 #include "rmac/motion/limits.hpp"
 
 namespace rmac::sdk {
@@ -25,6 +26,7 @@ struct Joint {
   std::vector<double> gains;
   double max_following_error = 0;  ///< mm or degrees; beyond it the machine stops
   double max_effort = 0;           ///< N or N·m at the joint
+  JointMechanics mechanics{};
 };
 
 /// One actuator: which axis of which bus, and its scale.

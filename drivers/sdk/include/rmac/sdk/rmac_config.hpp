@@ -40,6 +40,8 @@ class RmacConfig {
   virtual Expected<> set_joint_servo_control_gains(int joint, std::span<const double> gains) = 0;
   /// Following-error and effort bounds of a joint.
   virtual Expected<> set_joint_watch(int joint, double max_following_error, double max_effort) = 0;
+  /// Pitch errors, backlash and resonances that the servo loop makes good.
+  virtual Expected<> set_joint_mechanics(int joint, const JointMechanics& mechanics) = 0;
 
   virtual Expected<> set_digital_control_interface(const ModuleChoice& module) = 0;
   virtual Expected<> initialize_digital_control_interface() = 0;

@@ -35,7 +35,8 @@ class StandardDeviceDriver : public DeviceDriver {
       return config.set_joint_control_method(number, joint.method)
           .and_then([&] { return config.set_joint_servo_control_law(number, joint.servo_law); })
           .and_then([&] { return config.set_joint_servo_control_gains(number, joint.gains); })
-          .and_then([&] { return config.set_joint_watch(number, joint.max_following_error, joint.max_effort); });
+          .and_then([&] { return config.set_joint_watch(number, joint.max_following_error, joint.max_effort); })
+          .and_then([&] { return config.set_joint_mechanics(number, joint.mechanics); });
     };
     return config.set_number_of_actuators(static_cast<int>(device.actuators.size()))
         .and_then([&] { return for_each_joint(device.joints, 0, set_loop); })
