@@ -130,6 +130,20 @@ INSTANTIATE_TEST_SUITE_P(
         Defect{"IoBit", [](sdk::DeviceObject& d) { d.outputs["Coolant"] = 64; }, "bit 64 must be 0 to 63"}),
     [](const testing::TestParamInfo<Defect>& defect) { return std::string(defect.param.name); });
 
+TEST(MechanismChange, TakesWhatTheMechanicsOfAJointDoWrong) {
+  // The drives stay where they are: the joint stands elsewhere than thought.
+  TestMachine machine;
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  sdk::DeviceObject measured = TestMachine::mill();
+  measured.joints[0].mechanics.pitch = {0, 1, {0.5}};
+  const auto loaded = machine.load(measured);
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  const CycleSample now = machine.controller.sample();
+  EXPECT_NEAR(now.position[0], 0.5, 0.01);
+  EXPECT_NEAR(now.position_set[0], 0.5, 0.01);
+  EXPECT_NEAR(now.position[1], 0, 0.01);
+}
+
 TEST(MechanismChange, FailsWhenTheBusDoesNotComeUp) {
   TestMachine machine;
   machine.bus_trouble = "node 3 does not answer";
