@@ -9,6 +9,7 @@
 #include "gateway/api/rpc_error.hpp"
 #include "gateway/controller/machine_state.hpp"
 #include "gateway/device_driver_manager/device_driver_manager.hpp"
+#include "gateway/record/flight_record.hpp"
 #include "rmac/sdk/device_object.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
 #include "rmac/sdk/rmac_config.hpp"
@@ -66,8 +67,14 @@ class MachinePort {
   [[nodiscard]] virtual const sdk::DeviceObject* mechanism() const = 0;
   [[nodiscard]] virtual CycleSample sample() const = 0;
   [[nodiscard]] virtual CycleNow cycle_now() const = 0;
+  /// What stopped the machine last.
+  [[nodiscard]] virtual const std::optional<Event>& last_stop() const = 0;
   /// Reads the device tree again.
   virtual Expected<ScanReport> rescan() = 0;
+  /// Has a flight record written; its name.
+  virtual Expected<std::string> record_flight() = 0;
+  /// The flight records that there are; nullptr where none are made.
+  [[nodiscard]] virtual const FlightFolder* flight_records() const = 0;
 };
 
 /// What a method may ask of the connection that called it.

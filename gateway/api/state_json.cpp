@@ -12,6 +12,42 @@ std::vector<double> first(const auto& values, std::size_t count) {
 
 }  // namespace
 
+const char* to_string(Event::Kind kind) noexcept {
+  switch (kind) {
+    case Event::Kind::MoveStarted:
+      return "MoveStarted";
+    case Event::Kind::MoveDone:
+      return "MoveDone";
+    case Event::Kind::Hit:
+      return "Hit";
+    case Event::Kind::Stopped:
+      return "Stopped";
+    case Event::Kind::Fault:
+      return "Fault";
+    case Event::Kind::Authority:
+      return "Authority";
+    case Event::Kind::Mechanism:
+      return "Mechanism";
+    case Event::Kind::CycleStateChanged:
+      return "CycleStateChanged";
+    case Event::Kind::FlightRecord:
+      return "FlightRecord";
+    case Event::Kind::FlightRecordFailed:
+      return "FlightRecordFailed";
+  }
+  return "unknown";
+}
+
+nlohmann::json event_to_json(const Event& event) {
+  nlohmann::json json{{"kind", to_string(event.kind)},
+                      {"t_s", event.t_s},
+                      {"cycle", event.cycle},
+                      {"move_id", event.move_id},
+                      {"message", event.message}};
+  if (!event.record.empty()) json["record"] = event.record;
+  return json;
+}
+
 nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, const MachineStatus& status,
                              const std::string& authority_holder) {
   const sdk::DeviceObject* mechanism = machine.mechanism();
@@ -39,6 +75,8 @@ nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, co
                        {"status_minor", status.minor},
                        {"authority", authority_holder},
                        {"virtual", machine.device().virtual_mode()}};
+  const std::optional<Event>& stop = machine.last_stop();
+  state["last_stop"] = stop ? event_to_json(*stop) : nlohmann::json();
   state["mechanism"] = mechanism == nullptr ? nlohmann::json() : nlohmann::json(mechanism->name);
   state["spindle_rpm"] = first(
       sample.spindle_rpm, mechanism == nullptr ? 0 : std::min(mechanism->spindles.size(), sample.spindle_rpm.size()));

@@ -7,6 +7,11 @@
 
 namespace rmac::gateway {
 
+[[nodiscard]] const char* to_string(Event::Kind kind) noexcept;
+
+/// An entry of the topic `events`, and `last_stop` of the topic `state`.
+[[nodiscard]] nlohmann::json event_to_json(const Event& event);
+
 /// The topic `state`: docs/protocol.md lists its members.
 [[nodiscard]] nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, const MachineStatus& status,
                                            const std::string& authority_holder);

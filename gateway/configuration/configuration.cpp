@@ -48,6 +48,8 @@ class Paths {
     configuration.unix_socket =
         pick(overrides.unix_socket, group(document_, "listen"), "unix_socket", runtime / "rmacd.sock");
     configuration.device_tree = pick(overrides.device_tree, document_, "device_tree", folders.device_tree);
+    configuration.flight_recorder.folder =
+        pick({}, group(document_, "flight_recorder"), "folder", configuration.state_folder / "flight-records");
     if (document_.contains("module_folders")) {
       for (const Json& folder : document_["module_folders"]) {
         configuration.module_folders.push_back(from_file(folder.get<std::string>()));
@@ -106,6 +108,9 @@ Configuration from_document(const Json& document, const std::filesystem::path& f
   constexpr double kMillisecondsPerSecond = 1e3;
   configuration.lease_timeout =
       std::chrono::milliseconds(std::llround(document.value("lease_timeout_s", 0.0) * kMillisecondsPerSecond));
+  const Json recorder = group(document, "flight_recorder");
+  configuration.flight_recorder.seconds = recorder.value("seconds", configuration.flight_recorder.seconds);
+  configuration.flight_recorder.files_kept = recorder.value("files", configuration.flight_recorder.files_kept);
   if (document.contains("autoload")) {
     configuration.autoload = Autoload{.mechanism = document["autoload"]["mechanism"].get<std::string>(),
                                       .virtual_mode = document["autoload"].value("virtual", false)};

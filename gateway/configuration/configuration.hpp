@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "gateway/record/flight_recorder_options.hpp"
 #include "rmac/motion/error.hpp"
 
 namespace rmac::gateway {
@@ -48,6 +49,7 @@ struct Configuration {
   /// What a lost lease leads to. Every other failure that is watched is a quick stop by the drives, category 1.
   StopCategory lease_lost = StopCategory::StopKeepPower;
   std::chrono::milliseconds lease_timeout{0};  ///< silence of its holder that ends the lease; 0: none
+  FlightRecorderOptions flight_recorder;
   std::optional<Autoload> autoload;
 };
 
@@ -67,6 +69,7 @@ struct DefaultFolders {
   std::filesystem::path device_tree;
   std::filesystem::path state_folder;
   std::filesystem::path runtime_folder;  ///< holds the UNIX socket
+  std::filesystem::path helpers;         ///< programs that ours start
 };
 
 /// A daemon in a build tree uses that tree; an installed one the folders of its installation, and under systemd the

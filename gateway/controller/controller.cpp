@@ -22,7 +22,7 @@ ServoThread::Options thread_options(const ControllerOptions& options) {
 
 Controller::Impl::Impl(ControllerOptions controller_options)
     : options(std::move(controller_options)),
-      link(std::make_unique<ServoLink>()),
+      link(std::make_unique<ServoLink>(FlightRecorder::history_cycles(options.flight_recorder, options.period_s))),
       supervisor({.period_s = options.period_s, .queue_capacity = options.queue_capacity}, *link),
       thread(thread_options(options), *link, supervisor),
       draft(
@@ -30,6 +30,9 @@ Controller::Impl::Impl(ControllerOptions controller_options)
            [this](const sdk::ModuleChoice& choice) { return registry.check_control_interface(choice, loader(folder)); },
            [this](const sdk::ModuleChoice& choice) { return registry.check_io_interface(choice, loader(folder)); }}),
       cam(supervisor, *link, [this] { return reset(); }) {
+  if (options.flight_recorder.wanted()) {
+    recorder = std::make_unique<FlightRecorder>(options.flight_recorder, options.period_s, link->history);
+  }
   add_built_in_interfaces(registry, options.period_s);
   for (const auto& [name, factory] : options.control_interfaces) registry.add_control_interface(name, factory);
   for (const auto& [name, factory] : options.io_interfaces) registry.add_io_interface(name, factory);
@@ -105,11 +108,28 @@ const sdk::DeviceObject* Controller::mechanism() const noexcept {
 }
 
 CycleSample Controller::sample() const noexcept {
-  return impl_->link->sample.read();
+  return impl_->link->history.latest();
 }
 
 CycleNow Controller::cycle_now() const {
   return impl_->supervisor.now();
+}
+
+const std::optional<Event>& Controller::last_stop() const noexcept {
+  return impl_->last_stop;
+}
+
+Expected<std::string> Controller::record_flight() {
+  const CycleSample now = sample();
+  Event asked;
+  asked.t_s = now.t_s;
+  asked.cycle = now.cycle;
+  asked.message = "asked for by a client";
+  return impl_->record(FlightCause::Demand, asked);
+}
+
+const FlightFolder* Controller::flight_records() const noexcept {
+  return impl_->recorder ? &impl_->recorder->folder() : nullptr;
 }
 
 void Controller::on_event(std::function<void(const Event&)> listener) {

@@ -3,12 +3,14 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "gateway/controller/bus_registry.hpp"
 #include "gateway/controller/clock.hpp"
 #include "gateway/controller/machine_state.hpp"
+#include "gateway/record/flight_recorder_options.hpp"
 #include "rmac/motion/error.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
 #include "rmac/sdk/rmac_config.hpp"
@@ -31,10 +33,13 @@ struct ControllerOptions {
   bool stepped = false;
   std::size_t queue_capacity = 10'000;  ///< moves
   std::shared_ptr<Clock> clock;         ///< paces the servo thread; null: the monotonic clock
+  FlightRecorderOptions flight_recorder{};
   /// Interfaces beside the built-in ones, by name.
   std::map<std::string, BusRegistry::ControlFactory> control_interfaces;
   std::map<std::string, BusRegistry::IoFactory> io_interfaces;
 };
+
+class FlightFolder;
 
 /// The RMAC controller (dissertation 4.6): configuration system, planner and servo threads, bus registry. One an
 /// appliance. One thread at a time uses it: the gateway's, or the one beside it that carries out what takes long.
@@ -78,6 +83,13 @@ class Controller {
   [[nodiscard]] CycleSample sample() const noexcept;
   /// The cycle's state, which follows an accepted command at once; the sample follows some cycles later.
   [[nodiscard]] CycleNow cycle_now() const;
+
+  /// What stopped the machine last: a fault, or a stop; none since the start.
+  [[nodiscard]] const std::optional<Event>& last_stop() const noexcept;
+  /// Has the last seconds of every cycle written; the name of the record. An event tells when it is there, or why not.
+  [[nodiscard]] Expected<std::string> record_flight();
+  /// The records that there are; nullptr where none are made.
+  [[nodiscard]] const FlightFolder* flight_records() const noexcept;
 
   /// Called on the gateway thread, in order, for each event and for every cycle's sample; see `dispatch`.
   void on_event(std::function<void(const Event&)> listener);

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 
 #include "gateway/controller/assembler.hpp"
 #include "gateway/controller/controller.hpp"
 #include "gateway/controller/motion_supervisor.hpp"
 #include "gateway/controller/move_ledger.hpp"
 #include "gateway/controller/servo_thread.hpp"
+#include "gateway/record/flight_recorder.hpp"
 #include "gateway/rmac_cam/cam.hpp"
 #include "gateway/rmac_config/config_draft.hpp"
 
@@ -26,6 +28,7 @@ struct Controller::Impl {
   [[nodiscard]] Expected<> take_out();
   [[nodiscard]] Expected<> reset();
   void come_to_rest() noexcept;
+  void tell_of_mechanism(std::string message);
 
   [[nodiscard]] Expected<> ready_for_change(const char* what);
   [[nodiscard]] Expected<> swap(Mechanism* next);
@@ -43,13 +46,17 @@ struct Controller::Impl {
   // Telling the listeners (dispatch.cpp).
   void dispatch();
   void deliver_samples_until(std::int64_t cycle);
-  void tell(const Event& event) const;
+  void tell(Event event);
   void tell_faults();
+  void tell_records();
+  /// Has the cycles up to that of `event` written; the name of the record.
+  [[nodiscard]] Expected<std::string> record(FlightCause cause, const Event& event);
 
   ControllerOptions options;
   std::unique_ptr<ServoLink> link;
   MotionSupervisor supervisor;
   ServoThread thread;
+  std::unique_ptr<FlightRecorder> recorder;  ///< none where none is wanted
   BusRegistry registry;
   ConfigDraft draft;
   Cam cam;
@@ -64,6 +71,7 @@ struct Controller::Impl {
   std::vector<std::function<void(const Event&)>> event_listeners;
   std::vector<std::function<void(const CycleSample&)>> sample_listeners;
   std::deque<CycleSample> waiting_samples;
+  std::optional<Event> last_stop;
   MoveLedger ledger;
 };
 

@@ -22,6 +22,25 @@ const char* to_string(CycleState state) noexcept {
   return "Unknown";
 }
 
+const char* describe(StopCause cause) noexcept {
+  switch (cause) {
+    case StopCause::CycleStop:
+      return "the machine has come to rest after a CycleStop; what is queued goes on with CycleStart";
+    case StopCause::StopNow:
+      return "the machine has come to rest after a StopNow, or because motion authority was lost; its queue is empty";
+    case StopCause::JogLapsed:
+      return "the jog came to rest because it was not renewed in time: its key, its client or the network let go; jog "
+             "again to go on";
+    case StopCause::JogEnded:
+      return "the jog has come to rest, as its client asked";
+    case StopCause::MoveDone:
+      return "the machine has come to rest: the one move that was to be done is done";
+    case StopCause::RetraceEnded:
+      return "the machine has come to rest at the end of its way back; FeedResume goes forward again";
+  }
+  return "the machine has come to rest";
+}
+
 Expected<> CycleSequencer::refuse_when_faulted(const char* what) const {
   if (state_ == CycleState::EmergencyStop) {
     return failure(MinorCode::EmergencyStop,
@@ -99,13 +118,17 @@ void CycleSequencer::retrace() noexcept {
 Expected<> CycleSequencer::stop() {
   // What is left of a jog is no part of a program: it must not run at the next start.
   clear_at_rest_ = clear_at_rest_ || positioning_;
-  if (state_ == CycleState::Running || state_ == CycleState::Holding) state_ = CycleState::Stopping;
+  if (state_ == CycleState::Running || state_ == CycleState::Holding) {
+    stop_cause_ = positioning_ ? StopCause::JogEnded : StopCause::CycleStop;
+    state_ = CycleState::Stopping;
+  }
   return {};
 }
 
 Expected<> CycleSequencer::stop_and_clear() {
   if (state_ == CycleState::Faulted || state_ == CycleState::EmergencyStop) return {};
   clear_at_rest_ = true;
+  stop_cause_ = StopCause::StopNow;
   state_ = CycleState::Stopping;
   return {};
 }
@@ -175,23 +198,26 @@ PathCommand CycleSequencer::wanted(const CycleObservation& seen) noexcept {
 CycleSequencer::Verdict CycleSequencer::step(const CycleObservation& seen) noexcept {
   Verdict verdict;
   if (seen.faulted && state_ != CycleState::EmergencyStop) fault();
-  if (state_ == CycleState::Running && jog_until_s_ && seen.t_s > *jog_until_s_) static_cast<void>(stop());
+  if (state_ == CycleState::Running && jog_until_s_ && seen.t_s > *jog_until_s_) {
+    static_cast<void>(stop());
+    stop_cause_ = StopCause::JogLapsed;
+  }
   if (state_ == CycleState::Stopping && seen.at_rest) {
     state_ = CycleState::Idle;
     verdict.clear_queue = clear_at_rest_;
-    verdict.came_to_rest = true;
+    verdict.came_to_rest = stop_cause_;
     clear_at_rest_ = false;
   }
   if (state_ == CycleState::Running && retracing_ && seen.retraced) {
     state_ = CycleState::Holding;
-    verdict.came_to_rest = true;
+    verdict.came_to_rest = StopCause::RetraceEnded;
   }
   if (state_ != CycleState::Running) retracing_ = false;
   if (state_ == CycleState::Running && !retracing_ && mode_ == sdk::CycleMode::Manual && seen.at_rest &&
       seen.moves_done > done_at_start_) {
     state_ = CycleState::Idle;
     positioning_ = false;
-    verdict.came_to_rest = true;
+    verdict.came_to_rest = StopCause::MoveDone;
   }
   if (spindle_wait_ && seen.spindles_at_speed) spindle_wait_ = false;
   // Only what waits for the spindle can wait too long: motion under way began with the speed it needed.

@@ -21,6 +21,12 @@ struct CycleObservation {
   bool spindles_at_speed = true;
 };
 
+/// Why the machine came to rest.
+enum class StopCause : std::uint8_t { CycleStop, StopNow, JogLapsed, JogEnded, MoveDone, RetraceEnded };
+
+/// What happened, and what to do to go on.
+[[nodiscard]] const char* describe(StopCause cause) noexcept;
+
 /// The machine's cycle states and what they mean for the path (contract "Cycle"):
 /// Idle → Running ⇄ Holding, any → Stopping → Idle, any → Faulted, left by a reset alone. A pure state machine: the
 /// motion supervisor asks it under its lock.
@@ -53,8 +59,8 @@ class CycleSequencer {
   struct Verdict {
     std::optional<PathCommand> command;  ///< for the planner, when it changes
     bool clear_queue = false;
-    bool came_to_rest = false;       ///< a stop is complete
-    bool spindle_timed_out = false;  ///< now Faulted
+    std::optional<StopCause> came_to_rest;  ///< a stop is complete
+    bool spindle_timed_out = false;         ///< now Faulted
   };
   [[nodiscard]] Verdict step(const CycleObservation& seen) noexcept;
 
@@ -72,6 +78,7 @@ class CycleSequencer {
   sdk::CycleMode mode_ = sdk::CycleMode::Automatic;
   PathCommand commanded_ = PathCommand::Stop;
   bool clear_at_rest_ = false;
+  StopCause stop_cause_ = StopCause::CycleStop;  ///< of the stop under way
   bool positioning_ = false;
   bool retracing_ = false;
   std::optional<double> jog_until_s_;

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <limits>
 
 #include "gateway/controller/controller_impl.hpp"
@@ -5,7 +7,15 @@
 
 namespace rmac::gateway {
 
-void Controller::Impl::tell(const Event& event) const {
+void Controller::Impl::tell(Event event) {
+  if (event.kind == Event::Kind::Fault && recorder) {
+    if (auto name = record(FlightCause::Fault, event)) {
+      event.record = std::move(*name);
+    } else {
+      event.message += "; it is not recorded: " + name.error().message;
+    }
+  }
+  if (event.kind == Event::Kind::Fault || event.kind == Event::Kind::Stopped) last_stop = event;
   for (const auto& listener : event_listeners) listener(event);
 }
 
@@ -22,7 +32,43 @@ void Controller::Impl::tell_faults() {
   FaultRecord record;
   while (link->faults.pop(record)) {
     const Mechanism* mechanism = in_force && record.generation == generation ? in_force.get() : nullptr;
-    tell({Event::Kind::Fault, record.t_s, record.move_id, describe(record.fault, mechanism)});
+    tell({Event::Kind::Fault, record.t_s, record.move_id, describe(record.fault, mechanism), record.cycle, {}});
+  }
+}
+
+Expected<std::string> Controller::Impl::record(FlightCause cause, const Event& event) {
+  if (!recorder) {
+    return failure(MinorCode::Other, "no flight records are made; give flight_recorder seconds above 0 in rmacd.json");
+  }
+  if (!in_force) return failure(MinorCode::Other, "there is nothing to record: no mechanism is loaded");
+  FlightHead head;
+  head.cause = cause;
+  head.message = event.message;
+  head.cycle = event.cycle;
+  head.t_s = event.t_s;
+  head.mechanism = in_force->device.name;
+  for (const auto* joints : {&in_force->device.joints, &in_force->device.held_joints}) {
+    for (const sdk::Joint& joint : *joints) {
+      head.joints.push_back({joint.limits.name, joint.limits.type == JointType::Rotary ? "deg" : "mm"});
+    }
+  }
+  return recorder->request(std::move(head));
+}
+
+void Controller::Impl::tell_records() {
+  if (!recorder) return;
+  for (const auto& [head, written] : recorder->take_outcomes()) {
+    Event event{Event::Kind::FlightRecord, head.t_s, 0, {}, head.cycle, head.name};
+    if (written) {
+      event.message = fmt::format("flight record {}: cycles {} to {}", head.name, head.first_cycle, head.last_cycle);
+    } else {
+      event.kind = Event::Kind::FlightRecordFailed;
+      event.message = fmt::format(
+          "flight record {} was not written: {}; free its disk, or choose another folder with "
+          "flight_recorder in rmacd.json. The machine is not touched by it",
+          head.name, written.error().message);
+    }
+    tell(std::move(event));
   }
 }
 
@@ -46,6 +92,7 @@ void Controller::Impl::dispatch() {
   deliver_samples_until(std::numeric_limits<std::int64_t>::max());
   tell_faults();
   for (const Event& event : news.events) tell(event);
+  tell_records();
 }
 
 }  // namespace rmac::gateway

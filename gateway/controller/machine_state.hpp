@@ -9,6 +9,7 @@
 
 #include "rmac/motion/move.hpp"
 #include "rmac/motion/path_segment.hpp"
+#include "rmac/motion/servo_fault.hpp"
 
 namespace rmac::gateway {
 
@@ -31,8 +32,11 @@ struct CycleSample {
   double t_s = 0;
   std::uint32_t joint_count = 0;
   std::uint32_t axis_count = 0;
+  std::uint32_t actuator_count = 0;
   CycleState state = CycleState::Idle;
+  ServoState servo_state = ServoState::Off;
   bool moving = false;
+  ServoFault fault;  ///< that the servo loop is in, from the cycle on in which it was found
   std::int64_t move_id = 0;
   double s_mm = 0;
   double feed_set_mm_s = 0;     ///< path speed of the setpoint
@@ -41,7 +45,9 @@ struct CycleSample {
   ToolPose pose_actual;         ///< part frame
   std::array<double, kMaxJoints> position_set{}, velocity_set{}, acceleration_set{};
   std::array<double, kMaxJoints> position{}, velocity{}, effort{};
-  std::array<std::uint16_t, kMaxJoints> statusword{};
+  std::array<std::uint16_t, kMaxJoints> statusword{};      ///< one an actuator, as all that drives tell
+  std::array<std::uint16_t, kMaxJoints> error_code{};      ///< CiA 402's 603Fh
+  std::array<std::int16_t, kMaxJoints> torque_permille{};  ///< of the rated one, measured
   std::array<double, 4> spindle_rpm{};
   std::uint64_t inputs = 0, outputs = 0;
   std::uint64_t moves_done = 0;  ///< since the mechanism went in
@@ -59,12 +65,16 @@ struct Event {
     Fault,
     Authority,
     Mechanism,
-    CycleStateChanged
+    CycleStateChanged,
+    FlightRecord,
+    FlightRecordFailed
   };
   Kind kind = Kind::Stopped;
   double t_s = 0;
   std::int64_t move_id = 0;
-  std::string message;  ///< for a person: what happened, where, what to do
+  std::string message;     ///< for a person: what happened, where, what to do
+  std::int64_t cycle = 0;  ///< in which it happened, or was noticed off the servo thread
+  std::string record;      ///< name of the flight record that shows it; empty: none
 };
 
 /// Hears of a move as it is queued, and of the curves it has become: none when there is nothing to move.

@@ -25,11 +25,13 @@ ModuleLoader Controller::Impl::loader(const std::string& mechanism_folder) const
 }
 
 void Controller::Impl::drain() {
-  // No more than a ring's worth: in virtual time the servo thread could fill it as fast as it is emptied.
+  // No further than now: in virtual time the servo thread could go on as fast as it is followed.
+  const std::int64_t newest = link->history.newest();
   CycleSample sample;
-  for (std::size_t i = 0; i < link->samples.capacity() && link->samples.pop(sample); ++i) {
-    waiting_samples.push_back(sample);
+  for (auto cycle = std::max(link->delivered.load() + 1, link->history.oldest()); cycle <= newest; ++cycle) {
+    if (link->history.read(cycle, sample)) waiting_samples.push_back(sample);
   }
+  link->delivered.store(newest);
 }
 
 template <typename Reached>
@@ -196,10 +198,14 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
   cam.mechanism_changed(&in_force->device, fresh);
   draft.discard(&in_force->device);
   registry.stop_unused();
-  supervisor.report({Event::Kind::Mechanism, link->status.read().t_s, 0,
-                     fmt::format("{} is {}{}", device.name, fresh ? "loaded" : "configured",
-                                 virtual_mode ? " in virtual mode" : "")});
+  tell_of_mechanism(
+      fmt::format("{} is {}{}", device.name, fresh ? "loaded" : "configured", virtual_mode ? " in virtual mode" : ""));
   return {};
+}
+
+void Controller::Impl::tell_of_mechanism(std::string message) {
+  const ServoStatus now = link->status.read();
+  supervisor.report({Event::Kind::Mechanism, now.t_s, 0, std::move(message), now.progress.cycle, {}});
 }
 
 Expected<> Controller::Impl::take_out() {
@@ -226,7 +232,7 @@ Expected<> Controller::Impl::take_out() {
   in_force.reset();
   draft.discard(nullptr);
   registry.stop_unused();
-  supervisor.report({Event::Kind::Mechanism, link->status.read().t_s, 0, name + " is unloaded"});
+  tell_of_mechanism(name + " is unloaded");
   return {};
 }
 

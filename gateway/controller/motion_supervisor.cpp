@@ -33,6 +33,7 @@ CycleObservation MotionSupervisor::observe(const ServoStatus& status) {
   CycleObservation seen;
   seen.t_s = status.t_s;
   t_s_ = status.t_s;
+  cycle_ = status.progress.cycle;
   if (!mechanism_) return seen;
   seen.moves_left = mechanism_->planner.moves_left();
   if (status.generation != generation_) return seen;
@@ -77,12 +78,16 @@ void MotionSupervisor::apply_verdict(const CycleSequencer::Verdict& verdict, con
       speeds += fmt::format("{}spindle {} turns at {:.0f} of {:.0f} rpm", i == 0 ? "" : ", ", i, status.spindle_rpm[i],
                             wishes_.spindle_rpm[i]);
     }
-    note({Event::Kind::Fault, t_s_, 0,
+    note({Event::Kind::Fault,
+          t_s_,
+          0,
           fmt::format("{}: not at speed within the time allowed, so no move was begun; check the spindle's drive, then "
                       "reset",
-                      speeds)});
+                      speeds),
+          cycle_,
+          {}});
   }
-  if (verdict.came_to_rest) note({Event::Kind::Stopped, t_s_, 0, "the machine has come to rest"});
+  if (verdict.came_to_rest) note({Event::Kind::Stopped, t_s_, 0, describe(*verdict.came_to_rest), cycle_, {}});
   if (jog_share_ != 1 && sequencer_.state() == CycleState::Idle) {
     jog_share_ = 1;
     apply_override();
@@ -93,8 +98,12 @@ void MotionSupervisor::apply_verdict(const CycleSequencer::Verdict& verdict, con
 void MotionSupervisor::tell_state() {
   const CycleState state = sequencer_.state();
   if (state == reported_state_) return;
-  note(
-      {Event::Kind::CycleStateChanged, t_s_, 0, fmt::format("{} to {}", to_string(reported_state_), to_string(state))});
+  note({Event::Kind::CycleStateChanged,
+        t_s_,
+        0,
+        fmt::format("{} to {}", to_string(reported_state_), to_string(state)),
+        cycle_,
+        {}});
   reported_state_ = state;
   wishes_.state = state;
   if (state == CycleState::Faulted || state == CycleState::EmergencyStop) wishes_.spindle_rpm.fill(0);

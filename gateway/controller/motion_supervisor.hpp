@@ -154,6 +154,7 @@ class MotionSupervisor {
   double override_percent_ = 100;
   double jog_share_ = 1;  ///< of a jog's full speed, while it lasts
   double t_s_ = 0;
+  std::int64_t cycle_ = 0;
 };
 
 }  // namespace rmac::gateway

@@ -7,21 +7,23 @@
 namespace rmac::gateway {
 namespace {
 
-Event make_event(Event::Kind kind, double t_s, std::int64_t id) {
+Event make_event(Event::Kind kind, const CycleSample& sample, std::int64_t id) {
   const char* what = kind == Event::Kind::MoveStarted ? "started" : "done";
-  return {kind, t_s, id, id == kPositioningMoveId ? fmt::format("jog {}", what) : fmt::format("move {} {}", id, what)};
+  return {kind,         sample.t_s,
+          id,           id == kPositioningMoveId ? fmt::format("jog {}", what) : fmt::format("move {} {}", id, what),
+          sample.cycle, {}};
 }
 
 }  // namespace
 
 void MoveLedger::read(const CycleSample& sample, const std::function<void(const Event&)>& tell) {
   const auto start = [&](Entry& entry) {
-    if (!entry.started) tell(make_event(Event::Kind::MoveStarted, sample.t_s, entry.id));
+    if (!entry.started) tell(make_event(Event::Kind::MoveStarted, sample, entry.id));
     entry.started = true;
   };
   while (!moves_.empty() && (moves_.front().still || done_ < sample.moves_done)) {
     start(moves_.front());
-    tell(make_event(Event::Kind::MoveDone, sample.t_s, moves_.front().id));
+    tell(make_event(Event::Kind::MoveDone, sample, moves_.front().id));
     if (!moves_.front().still) ++done_;
     moves_.pop_front();
   }

@@ -74,7 +74,7 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
 
   if (!was_faulted && report_.fault.kind != ServoFault::Kind::None) {
     // A full ring holds 64 faults that nobody has read: the first ones are those that matter.
-    (void)link_.faults.push({sample_.t_s, status_.generation, setpoint.move_id, setpoint.s_mm, report_.fault});
+    (void)link_.faults.push({cycle_, sample_.t_s, status_.generation, setpoint.move_id, setpoint.s_mm, report_.fault});
   }
 }
 
@@ -96,6 +96,9 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
   if (mechanism_ != nullptr) {
     sample_.joint_count = status_.joint_count;
     sample_.axis_count = status_.axis_count;
+    sample_.actuator_count = static_cast<std::uint32_t>(mechanism_->loop->parts().actuators.size());
+    sample_.servo_state = status_.state;
+    sample_.fault = status_.fault;
     sample_.moving = status_.moving;
     sample_.move_id = command_.setpoint.move_id;
     sample_.s_mm = command_.setpoint.s_mm;
@@ -110,13 +113,16 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
     sample_.velocity = report_.velocity;
     sample_.effort = report_.effort;
     sample_.statusword = report_.statusword;
+    sample_.error_code = report_.error_code;
+    sample_.torque_permille = report_.torque_permille;
     std::copy(report_.spindle_rpm.begin(), report_.spindle_rpm.end(), sample_.spindle_rpm.begin());
     sample_.inputs = report_.inputs;
     sample_.outputs = wishes.outputs;
     sample_.moves_done = status_.moves_done;
   }
-  if (!link_.samples.push(sample_)) ++sample_.samples_lost;
-  link_.sample.write(sample_);
+  const auto kept = static_cast<std::int64_t>(link_.history.capacity());
+  if (cycle_ - link_.delivered.load(std::memory_order_relaxed) > kept) ++sample_.samples_lost;
+  link_.history.add(sample_);
   link_.status.write(status_);
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
 
+#include "gateway/controller/cycle_history.hpp"
 #include "gateway/controller/machine_state.hpp"
 #include "gateway/controller/mechanism.hpp"
 #include "gateway/controller/snapshot.hpp"
@@ -37,6 +39,7 @@ struct ServoStatus {
 };
 
 struct FaultRecord {
+  std::int64_t cycle = 0;
   double t_s = 0;
   std::uint64_t generation = 0;
   std::int64_t move_id = 0;
@@ -52,14 +55,21 @@ struct SwapRequest {
   std::atomic<Result> result{Result::Waiting};
 };
 
-/// Everything that the servo thread shares with others. No lock, and nobody allocates.
+/// Cycles by which the servo thread may be ahead of the gateway: in virtual time it waits then.
+inline constexpr std::int64_t kMostUndelivered = 4096;
+
+/// Everything that the servo thread shares with others. No lock, and nobody allocates after it was made.
 struct ServoLink {
+  /// Keeps the samples of so many cycles at least.
+  explicit ServoLink(std::size_t history_cycles)
+      : history(std::max(history_cycles, static_cast<std::size_t>(kMostUndelivered))) {}
+
   LatestValue<ServoWishes> wishes;
   std::atomic<SwapRequest*> swap{nullptr};
 
   SequenceLocked<ServoStatus> status;
-  SequenceLocked<CycleSample> sample;
-  SpscRing<CycleSample, 4096> samples;
+  CycleHistory history;
+  std::atomic<std::int64_t> delivered{0};  ///< last cycle whose sample the gateway took
   SpscRing<FaultRecord, 64> faults;
 };
 

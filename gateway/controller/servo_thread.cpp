@@ -25,6 +25,8 @@ ServoThread::~ServoThread() {
 }
 
 Expected<> ServoThread::start() {
+  link_.history.restart();
+  link_.delivered.store(0);
   if (options_.stepped) {
     stepped_.emplace(link_, options_.period_s);
     return {};
@@ -81,8 +83,9 @@ void ServoThread::run_virtual(ServoCycle& cycle) {
   bool calm = false;
   int passes = 0;
   while (!stop_.load(std::memory_order_relaxed)) {
-    // Nobody may miss a cycle in virtual time: a full ring makes the machine wait for its readers.
-    if (link_.samples.size() == link_.samples.capacity()) {
+    // Nobody may miss a cycle in virtual time: the machine waits for its readers.
+    if (link_.history.newest() - link_.delivered.load(std::memory_order_acquire) >= kMostUndelivered ||
+        link_.history.would_overwrite()) {
       std::this_thread::sleep_for(kStandstill);
       continue;
     }

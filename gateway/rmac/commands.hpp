@@ -58,6 +58,16 @@ struct JogRequest {
 [[nodiscard]] Result<> stop(Connection& connection);
 [[nodiscard]] Result<> set_override(Connection& connection, double percent);
 
+/// The flight records that there are.
+[[nodiscard]] Result<> list_records(Connection& connection, bool json);
+/// Has one written, and waits for it.
+[[nodiscard]] Result<> make_record(Connection& connection, bool json);
+/// Writes a record's cycles as CSV; an empty name: the newest one; an empty file: its name with .csv in this folder; -:
+/// standard output.
+[[nodiscard]] Result<> export_record(Connection& connection, const std::string& name, const std::string& file);
+/// Draws a record: positions, following errors, efforts and states over time, with the cycle of the fault marked.
+[[nodiscard]] Result<> plot_record(Connection& connection, const std::string& name, const std::string& file);
+
 /// The bits that a machine's CAN buses carry at worst in a cycle of `period_s`, from its device.json alone; fails when
 /// a bus exceeds its share. Needs no appliance.
 [[nodiscard]] Result<> show_bus_load(const std::string& device_json, double period_s, bool json);

@@ -96,6 +96,25 @@ void add_operating_commands(CLI::App& app, Arguments& arguments, Command& comman
   override_command->callback([&] { command = [&](auto& to) { return set_override(to, arguments.percent); }; });
 }
 
+void add_trace_commands(CLI::App& app, Arguments& arguments, Command& command) {
+  auto* trace = app.add_subcommand("trace", "the flight records: what every cycle did before a fault, or up to now");
+  trace->require_subcommand(0, 1);
+  trace->preparse_callback([&](std::size_t) { command = [&](auto& to) { return list_records(to, arguments.json); }; });
+  trace->add_subcommand("list", "the records that there are, oldest first; what `rmac trace` alone does")
+      ->callback([&] { command = [&](auto& to) { return list_records(to, arguments.json); }; });
+  trace->add_subcommand("record", "have the last seconds written now, and wait for it")->callback([&] {
+    command = [&](auto& to) { return make_record(to, arguments.json); };
+  });
+  auto* exports = trace->add_subcommand("export", "write a record as CSV, one row a cycle");
+  auto* plot = trace->add_subcommand("plot", "draw a record; needs python3-matplotlib");
+  for (auto* of_one : {exports, plot}) {
+    of_one->add_option("NAME", arguments.name, "as `rmac trace list` shows it; the newest one unless given");
+    of_one->add_option("-o,--output", arguments.file, "the file to write; NAME.csv or NAME.png here unless given");
+  }
+  exports->callback([&] { command = [&](auto& to) { return export_record(to, arguments.name, arguments.file); }; });
+  plot->callback([&] { command = [&](auto& to) { return plot_record(to, arguments.name, arguments.file); }; });
+}
+
 /// Commands that need no appliance.
 void add_offline_commands(CLI::App& app, Arguments& arguments, std::function<Result<>()>& command) {
   auto* simulate = app.add_subcommand(
@@ -161,6 +180,7 @@ int run(int count, char** words) {
   app.add_flag("--json", arguments.json, "print for programs");
   add_database_commands(app, arguments, command);
   add_operating_commands(app, arguments, command);
+  add_trace_commands(app, arguments, command);
   std::function<Result<>()> offline_command;
   add_offline_commands(app, arguments, offline_command);
   try {

@@ -25,7 +25,9 @@ EventNote read_event(const nlohmann::json& params) {
   read(params, "kind", event.kind);
   read(params, "t_s", event.t_s);
   read(params, "move_id", event.move_id);
+  read(params, "cycle", event.cycle);
   read(params, "message", event.message);
+  read(params, "record", event.record);
   return event;
 }
 
@@ -48,6 +50,9 @@ StateNote read_state(const nlohmann::json& params) {
   read(params, "joints", state.joints);
   read(params, "held_joints", state.held_joints);
   read(params, "spindle_rpm", state.spindle_rpm);
+  if (const auto stop = params.find("last_stop"); stop != params.end() && stop->is_object()) {
+    state.last_stop = read_event(*stop);
+  }
   return state;
 }
 

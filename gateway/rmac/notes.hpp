@@ -11,8 +11,8 @@ namespace rmac::cli {
 struct EventNote {
   std::string kind;
   double t_s = 0;
-  std::int64_t move_id = 0;
-  std::string message;
+  std::int64_t move_id = 0, cycle = 0;
+  std::string message, record;  ///< record: name of the flight record that shows it
 };
 
 /// What the `state` topic tells. mm, deg, mm/min, rpm.
@@ -24,6 +24,7 @@ struct StateNote {
   int moves_in_buffer = 0, status_minor = 0;
   double t_s = 0, feed_actual = 0, feed_set = 0, override_percent = 0;
   std::vector<double> pose, joints, held_joints, spindle_rpm;
+  EventNote last_stop;  ///< without a kind: none yet
 
   [[nodiscard]] bool at_rest() const { return !moving && moves_in_buffer == 0; }
 };

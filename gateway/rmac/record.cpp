@@ -4,8 +4,9 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <iterator>
 #include <system_error>
+
+#include "gateway/record/setpoint_record.hpp"
 
 namespace rmac::cli {
 
@@ -43,13 +44,8 @@ Result<> Record::start_file(std::size_t joints, bool measured) {
     output_.open(files_.back(), std::ios::trunc);
   }
   joints_ = joints;
-  row_ = "t_s,move_id,s_mm,feed_mm_s,x,y,z,i,j,k";
-  for (const char* quantity : {"q", "qd", "qdd", "a"}) {
-    if (!measured && quantity[0] == 'a') continue;
-    for (std::size_t joint = 1; joint <= joints; ++joint) {
-      fmt::format_to(std::back_inserter(row_), ",{}{}", quantity, joint);
-    }
-  }
+  row_.clear();
+  gateway::append_setpoint_header(joints, measured, row_);
   row_ += '\n';
   output_ << row_;
   return output_ ? Result<>() : write_failure(files_.back());
@@ -75,13 +71,9 @@ Result<> Record::add(const JointSample& sample) {
     }
   }
   row_.clear();
-  fmt::format_to(std::back_inserter(row_), "{},{},{},{}", sample.t_s, sample.move_id, sample.s_mm, sample.feed_mm_s);
-  for (const auto* numbers :
-       {&sample.pose, &sample.position_set, &sample.velocity_set, &sample.acceleration_set, &sample.position}) {
-    for (const double number : *numbers) {
-      fmt::format_to(std::back_inserter(row_), ",{}", number);
-    }
-  }
+  gateway::append_setpoint_row({sample.t_s, sample.move_id, sample.s_mm, sample.feed_mm_s, sample.pose,
+                                sample.position_set, sample.velocity_set, sample.acceleration_set, sample.position},
+                               row_);
   row_ += '\n';
   output_ << row_;
   ++rows_;

@@ -19,6 +19,17 @@ std::string list(const std::vector<double>& values) {
   return text.empty() ? "-" : text;
 }
 
+/// What stopped the machine last, in a line or two below the table.
+std::string last_stop(const EventNote& stop) {
+  if (stop.kind.empty()) return "";
+  std::string text =
+      fmt::format("\nlast stop ({}): cycle {}, {} s: {}\n", stop.kind, stop.cycle, number(stop.t_s, 4), stop.message);
+  if (!stop.record.empty()) {
+    text += fmt::format("flight record {}: rmac trace plot {}\n", stop.record, stop.record);
+  }
+  return text;
+}
+
 std::string state_table(const StateNote& state) {
   const auto machine =
       state.mechanism.empty() ? "none loaded" : state.mechanism + (state.virtual_mode ? ", virtual" : "");
@@ -34,7 +45,8 @@ std::string state_table(const StateNote& state) {
                               {"spindle", list(state.spindle_rpm), "rpm"},
                               {"authority", state.authority.empty() ? "nobody" : state.authority, ""},
                               {"last error", state.status_minor == 0 ? "none" : std::to_string(state.status_minor),
-                               state.status_minor == 0 ? "" : "StatusMinorCode"}});
+                               state.status_minor == 0 ? "" : "StatusMinorCode"}}) +
+         last_stop(state.last_stop);
 }
 
 /// Ctrl-C is how a person ends watching, not a failure.
@@ -75,8 +87,9 @@ Result<> show_events(Connection& connection, bool json) {
     if (json) {
       fmt::print("{}\n", params.dump());
     } else {
-      fmt::print("{:>12}  {:<18}{}{}\n", number(event.t_s), event.kind,
-                 event.move_id != 0 ? fmt::format("move {}  ", event.move_id) : "", event.message);
+      fmt::print("{:>12}  {:>10}  {:<18}{}{}{}\n", number(event.t_s), event.cycle, event.kind,
+                 event.move_id != 0 ? fmt::format("move {}  ", event.move_id) : "", event.message,
+                 event.kind == "Fault" && !event.record.empty() ? "; flight record " + event.record : "");
     }
     std::fflush(stdout);
   });

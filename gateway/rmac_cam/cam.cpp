@@ -143,7 +143,7 @@ Expected<> Cam::set_feedrate(double mm_min) {
 }
 
 double Cam::feedrate() const {
-  return link_.sample.read().feed_actual_mm_s * kSecondsPerMinute;
+  return link_.history.latest().feed_actual_mm_s * kSecondsPerMinute;
 }
 
 Expected<> Cam::set_max_feedrate(double mm_min) {
@@ -255,7 +255,7 @@ Frame Cam::tool_interface_frame() const {
 
 Expected<std::vector<double>> Cam::current_position() const {
   if (auto loaded = require_mechanism("GetCurrentPosition"); !loaded) return tl::unexpected(loaded.error());
-  const CycleSample now = link_.sample.read();
+  const CycleSample now = link_.history.latest();
   return std::vector<double>(now.position.begin(), now.position.begin() + now.joint_count);
 }
 

@@ -39,7 +39,7 @@ Expected<> Cam::set_spindle_rpm(int spindle, double rpm) {
 
 Expected<double> Cam::spindle_rpm(int spindle) const {
   return find_spindle(spindle, "GetSpindleRPM").map([&](std::size_t found) {
-    return link_.sample.read().spindle_rpm[found];
+    return link_.history.latest().spindle_rpm[found];
   });
 }
 

@@ -29,6 +29,7 @@ ControllerOptions controller_options(const Configuration& configuration) {
   options.priority = configuration.real_time.priority;
   options.lock_memory = configuration.real_time.lock_memory;
   options.queue_capacity = static_cast<std::size_t>(configuration.queue_capacity);
+  options.flight_recorder = configuration.flight_recorder;
   return options;
 }
 
@@ -100,7 +101,9 @@ void keep_ending() {
 Expected<> Daemon::run(const Configuration& configuration) {
   controller_.on_sample([this](const CycleSample& sample) { server_.on_sample(sample); });
   controller_.on_event([this](const Event& event) {
-    if (event.kind == Event::Kind::Fault) spdlog::error("{}", event.message);
+    if (event.kind == Event::Kind::Fault) spdlog::error("cycle {}: {}", event.cycle, event.message);
+    if (event.kind == Event::Kind::FlightRecord) spdlog::info("{}", event.message);
+    if (event.kind == Event::Kind::FlightRecordFailed) spdlog::error("{}", event.message);
     server_.on_event(event);
   });
   if (auto started = controller_.start(); !started) return started;

@@ -56,6 +56,9 @@ class Machine final : public MachinePort {
   const sdk::DeviceObject* mechanism() const override { return controller_.mechanism(); }
   CycleSample sample() const override { return controller_.sample(); }
   CycleNow cycle_now() const override { return controller_.cycle_now(); }
+  const std::optional<Event>& last_stop() const override { return controller_.last_stop(); }
+  Expected<std::string> record_flight() override { return controller_.record_flight(); }
+  const FlightFolder* flight_records() const override { return controller_.flight_records(); }
   Expected<ScanReport> rescan() override {
     return manager_.rescan().map([&](int mechanisms) { return ScanReport{mechanisms, manager_.problems()}; });
   }

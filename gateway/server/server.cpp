@@ -305,7 +305,9 @@ void Server::power_off_at_rest() {
 void Server::announce(Event::Kind kind, std::string message) {
   Event event;
   event.kind = kind;
-  event.t_s = dispatcher_.machine().sample().t_s;
+  const CycleSample now = dispatcher_.machine().sample();
+  event.t_s = now.t_s;
+  event.cycle = now.cycle;
   event.message = std::move(message);
   on_event(event);
 }

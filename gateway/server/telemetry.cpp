@@ -6,6 +6,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "gateway/api/state_json.hpp"
+
 namespace rmac::gateway {
 
 namespace {
@@ -112,32 +114,8 @@ std::string notification(const char* topic, const std::string& params) {
   return fmt::format("{{\"jsonrpc\":\"2.0\",\"method\":\"{}\",\"params\":{}}}", topic, params);
 }
 
-const char* to_string(Event::Kind kind) noexcept {
-  switch (kind) {
-    case Event::Kind::MoveStarted:
-      return "MoveStarted";
-    case Event::Kind::MoveDone:
-      return "MoveDone";
-    case Event::Kind::Hit:
-      return "Hit";
-    case Event::Kind::Stopped:
-      return "Stopped";
-    case Event::Kind::Fault:
-      return "Fault";
-    case Event::Kind::Authority:
-      return "Authority";
-    case Event::Kind::Mechanism:
-      return "Mechanism";
-    case Event::Kind::CycleStateChanged:
-      return "CycleStateChanged";
-  }
-  return "unknown";
-}
-
 std::string event_notification(const Event& event) {
-  const nlohmann::json params{
-      {"kind", to_string(event.kind)}, {"t_s", event.t_s}, {"move_id", event.move_id}, {"message", event.message}};
-  return notification("events", params.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  return notification("events", event_to_json(event).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 }  // namespace rmac::gateway

@@ -23,7 +23,6 @@ void append_drives(const CycleSample& sample, std::string& out);
 
 /// The topic `events`.
 [[nodiscard]] std::string event_notification(const Event& event);
-[[nodiscard]] const char* to_string(Event::Kind kind) noexcept;
 
 /// The pace at which one topic goes to one connection, counted in cycles so that no clock is needed.
 class TopicPace {

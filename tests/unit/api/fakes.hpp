@@ -152,6 +152,9 @@ class FakeMachine : public MachinePort {
   const sdk::DeviceObject* mechanism() const override { return device_fake.device ? &*device_fake.device : nullptr; }
   CycleSample sample() const override { return now; }
   CycleNow cycle_now() const override { return cycle; }
+  const std::optional<Event>& last_stop() const override { return stop; }
+  Expected<std::string> record_flight() override { return std::string("20261121T000000.000Z-demand-1"); }
+  const FlightFolder* flight_records() const override { return nullptr; }
   Expected<ScanReport> rescan() override {
     return ScanReport{6, {{"mill/broken/device.json", "mill/broken/device.json: /Type is 5"}}};
   }
@@ -159,6 +162,7 @@ class FakeMachine : public MachinePort {
   testing::NiceMock<MockCam> cam_mock;
   testing::NiceMock<MockConfig> config_mock;
   testing::NiceMock<FakeDevice> device_fake;
+  std::optional<Event> stop;
   CycleSample now;
   CycleNow cycle;
   std::function<void()> during_search;

@@ -71,9 +71,32 @@ TEST(CycleSequencer, HoldsAgainAtTheEndOfARetraceInEitherMode) {
     EXPECT_EQ(cycle.state(), CycleState::Running);
     EXPECT_FALSE(cycle.start(mode, seen));
     seen.retraced = true;
-    EXPECT_TRUE(cycle.step(seen).came_to_rest);
+    EXPECT_EQ(cycle.step(seen).came_to_rest, StopCause::RetraceEnded);
     EXPECT_EQ(cycle.state(), CycleState::Holding);
   }
+}
+
+TEST(CycleSequencer, SaysWhyTheMachineCameToRest) {
+  const auto cause_of = [](const auto& stop, std::optional<double> jog_lasts_s) {
+    CycleSequencer cycle;
+    CycleObservation seen;
+    seen.moves_left = 1;
+    EXPECT_TRUE(jog_lasts_s ? cycle.start_positioning(seen, *jog_lasts_s)
+                            : cycle.start(sdk::CycleMode::Automatic, seen));
+    seen.at_rest = false;
+    (void)cycle.step(seen);
+    stop(cycle, seen);
+    EXPECT_EQ(cycle.step(seen).came_to_rest, std::nullopt) << "still moving";
+    seen.at_rest = true;
+    return cycle.step(seen).came_to_rest;
+  };
+  const auto stop = [](CycleSequencer& cycle, CycleObservation&) { EXPECT_TRUE(cycle.stop()); };
+  const auto stop_now = [](CycleSequencer& cycle, CycleObservation&) { EXPECT_TRUE(cycle.stop_and_clear()); };
+  const auto time_passes = [](CycleSequencer&, CycleObservation& seen) { seen.t_s = 0.3; };
+  EXPECT_EQ(cause_of(stop, {}), StopCause::CycleStop);
+  EXPECT_EQ(cause_of(stop_now, {}), StopCause::StopNow);
+  EXPECT_EQ(cause_of(stop, 0.2), StopCause::JogEnded);
+  EXPECT_EQ(cause_of(time_passes, 0.2), StopCause::JogLapsed);
 }
 
 }  // namespace

@@ -52,6 +52,8 @@ TEST_F(Jog, ThatIsNotRenewedEndsByItself) {
   EXPECT_GT(position(0), -0.2 * 20 - 2);
   EXPECT_EQ(machine_.controller.cycle_now().state, CycleState::Idle);
   EXPECT_EQ(cam().moves_in_buffer(), 0);
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::Stopped));
+  EXPECT_THAT(machine_.last(Event::Kind::Stopped), HasSubstr("because it was not renewed in time"));
 }
 
 TEST_F(Jog, OfAJointEndsExactlyAtItsLimitAndSaysSoThen) {

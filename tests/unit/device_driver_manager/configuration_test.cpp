@@ -46,6 +46,9 @@ TEST(Configuration, HasADefaultForEveryKey) {
   EXPECT_EQ(configuration.queue_capacity, 10'000);
   EXPECT_EQ(configuration.lease_lost, StopCategory::StopKeepPower);
   EXPECT_EQ(configuration.lease_timeout, std::chrono::seconds(0));
+  EXPECT_EQ(configuration.flight_recorder.folder, default_folders().state_folder / "flight-records");
+  EXPECT_EQ(configuration.flight_recorder.seconds, 10);
+  EXPECT_EQ(configuration.flight_recorder.files_kept, 20U);
   EXPECT_EQ(configuration.autoload, std::nullopt);
 }
 
@@ -64,6 +67,7 @@ TEST(Configuration, TakesEveryKeyOfTheFile) {
     "queue_capacity": 7,
     "lease_timeout_s": 2.5,
     "stop_categories": {"LeaseLost": 1, "DriveHeartbeatLost": 1, "BusLost": 1, "FollowingError": 1},
+    "flight_recorder": {"folder": "/f", "seconds": 2.5, "files": 3},
     "autoload": {"mechanism": "DMACXYZ", "virtual": true}})");
   EXPECT_EQ(configuration.address, "::1");
   EXPECT_EQ(configuration.port, 0);
@@ -81,6 +85,9 @@ TEST(Configuration, TakesEveryKeyOfTheFile) {
   EXPECT_EQ(configuration.queue_capacity, 7);
   EXPECT_EQ(configuration.lease_lost, StopCategory::StopThenRemovePower);
   EXPECT_EQ(configuration.lease_timeout, std::chrono::milliseconds(2500));
+  EXPECT_EQ(configuration.flight_recorder.folder, "/f");
+  EXPECT_EQ(configuration.flight_recorder.seconds, 2.5);
+  EXPECT_EQ(configuration.flight_recorder.files_kept, 3U);
   ASSERT_TRUE(configuration.autoload);
   EXPECT_EQ(configuration.autoload->mechanism, "DMACXYZ");
   EXPECT_TRUE(configuration.autoload->virtual_mode);
@@ -115,6 +122,7 @@ TEST(Configuration, CommandLineGoesOverTheFileAndWhatFollowsFromIt) {
   EXPECT_EQ(configuration.state_folder, "/other");
   EXPECT_EQ(configuration.database, "/other/device-drivers.sqlite");
   EXPECT_EQ(configuration.unix_socket, "/other/rmacd.sock");
+  EXPECT_EQ(configuration.flight_recorder.folder, "/other/flight-records");
   EXPECT_EQ(configuration.device_tree, "/tree");
   EXPECT_EQ(configuration.module_folders.front(), "/tree/modules");
   EXPECT_EQ(configuration.pace, Pace::AsFastAsComputed);

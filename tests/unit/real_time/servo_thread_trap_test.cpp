@@ -6,6 +6,7 @@
 
 #include "test_machine.hpp"
 #include "trap.hpp"
+#include "unit/device_driver_manager/fixtures.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -60,11 +61,12 @@ TEST(Trap, CatchesWhatAnArmedThreadDoesAndNothingElse) {
 
 class ServoThreadUnderTrap : public testing::Test {
  protected:
-  static ControllerOptions options(std::shared_ptr<Clock> clock) {
+  ControllerOptions options(std::shared_ptr<Clock> clock) const {
     ControllerOptions real_pace = TestMachine::options();
     real_pace.as_fast_as_computed = false;
     real_pace.module_folders.emplace_back(RMAC_BINARY_DIR "/drivers/modules");
     real_pace.clock = std::move(clock);
+    real_pace.flight_recorder = {folder_.path(), 1, 20};
     return real_pace;
   }
   static sdk::DeviceObject with_law(sdk::DeviceObject device, const char* law, const std::vector<double>& gains) {
@@ -98,6 +100,7 @@ class ServoThreadUnderTrap : public testing::Test {
     EXPECT_EQ(counts.first, "") << after;
   }
 
+  test::TemporaryFolder folder_;
   std::shared_ptr<TrappingClock> clock_ = std::make_shared<TrappingClock>();
   TestMachine machine_{options(clock_)};
 };
@@ -147,10 +150,15 @@ TEST_F(ServoThreadUnderTrap, NeitherAllocatesNorLocksNorCallsTheSystem) {
   ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveStarted, 5));
   let_run(50);
+  ASSERT_TRUE(machine_.controller.record_flight());
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::FlightRecord));
+  expect_clean("a flight record that was asked for");
+  machine_.events.clear();
   machine_.bus->trip(1, 0x2310);
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::Fault, 5));
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::FlightRecord));
   let_run(100);
-  expect_clean("a drive's fault");
+  expect_clean("a drive's fault and its flight record");
   EXPECT_GT(clock_->cycles(), 1000);
   RecordProperty("cycles", std::to_string(clock_->cycles()));
   if (!clock_->catches_system_calls())

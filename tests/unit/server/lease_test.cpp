@@ -76,7 +76,7 @@ TEST(Lease, IsTheDaemonsWhenItEnds) {
   EXPECT_EQ(holder.call("RMAC_CAM.CycleStart", "[1]")["error"]["code"], rpc_code::kAuthorityRequired);
   EXPECT_THAT(holder.call("authority.acquire")["error"]["message"].get<std::string>(), HasSubstr("ending"));
   bench.on_gateway([](Server& server, FakeMachine&) {
-    server.on_event({Event::Kind::Stopped, 0, 0, "at rest"});
+    server.on_event({Event::Kind::Stopped, 0, 0, "at rest", 0, {}});
     server.dismiss();
   });
   holder.pushed("events");

@@ -15,6 +15,7 @@
 #include "rmac/motion/ports/digital_io_interface.hpp"
 #include "rmac/motion/ports/kinematics.hpp"
 #include "rmac/motion/ports/servo_law.hpp"
+#include "rmac/motion/servo_fault.hpp"
 
 namespace rmac {
 
@@ -64,36 +65,6 @@ struct ServoLoopParts {
   bool virtual_mode = false;    ///< setpoints are reflected as measured values; buses and I/O are not touched
   /// axes.size() positions where virtual mode begins when no loop hands over; empty: zeros.
   std::vector<double> virtual_start;
-};
-
-enum class ServoState : std::uint8_t {
-  Off,        ///< no torque
-  Enabling,   ///< drives are on their way to Operation Enabled; those that are there hold their position
-  Engaged,    ///< every joint follows its setpoint
-  QuickStop,  ///< asked for: drives brake by themselves
-  Faulted,    ///< the same, because of `fault`; left by a reset
-};
-
-/// What is wrong, first cause first. `index` counts joints (held ones included), actuators, spindles or buses, as
-/// `part` says.
-struct ServoFault {
-  enum class Kind : std::uint8_t {
-    None,
-    FollowingError,  ///< value: the error, bound: what is allowed (mm or deg)
-    NotANumber,      ///< a law or a setpoint gave NaN or infinity
-    DriveFault,      ///< value: the drive's error code (603Fh)
-    DriveOffline,    ///< the drive did not answer
-    DriveDropped,    ///< the drive left Operation Enabled by itself; value: its statusword
-    EnableTimeout,   ///< value: the statusword it is stuck at, bound: seconds waited
-    BusFailure,
-    IoFailure,
-  };
-  enum class Part : std::uint8_t { Joint, Actuator, Spindle, Bus, Io };
-  Kind kind = Kind::None;
-  Part part = Part::Joint;
-  std::uint32_t index = 0;
-  double value = 0;
-  double bound = 0;
 };
 
 /// What the loop is to do in one cycle.

@@ -1,0 +1,45 @@
+#include "rmac/motion/servo_fault.hpp"
+
+namespace rmac {
+
+const char* to_string(ServoState state) noexcept {
+  switch (state) {
+    case ServoState::Off:
+      return "Off";
+    case ServoState::Enabling:
+      return "Enabling";
+    case ServoState::Engaged:
+      return "Engaged";
+    case ServoState::QuickStop:
+      return "QuickStop";
+    case ServoState::Faulted:
+      return "Faulted";
+  }
+  return "Unknown";
+}
+
+const char* to_string(ServoFault::Kind kind) noexcept {
+  switch (kind) {
+    case ServoFault::Kind::None:
+      return "None";
+    case ServoFault::Kind::FollowingError:
+      return "FollowingError";
+    case ServoFault::Kind::NotANumber:
+      return "NotANumber";
+    case ServoFault::Kind::DriveFault:
+      return "DriveFault";
+    case ServoFault::Kind::DriveOffline:
+      return "DriveOffline";
+    case ServoFault::Kind::DriveDropped:
+      return "DriveDropped";
+    case ServoFault::Kind::EnableTimeout:
+      return "EnableTimeout";
+    case ServoFault::Kind::BusFailure:
+      return "BusFailure";
+    case ServoFault::Kind::IoFailure:
+      return "IoFailure";
+  }
+  return "Unknown";
+}
+
+}  // namespace rmac
