@@ -118,10 +118,25 @@ class Program {
   bool quiet_;
 };
 
+/// A sheet that lacks what the drive lives by would make another device of it.
+Expected<> check_complete(const fieldbus::eds::DeviceDescription& sheet) {
+  const auto own = fieldbus::eds::parse_device_description(sheet_text(), "rmac-vdrive.eds");
+  if (!own) return tl::unexpected(own.error());
+  for (const auto& [address, entry] : own->entries) {
+    const auto* found = sheet.find(address);
+    if (found != nullptr && found->type == entry.type) continue;
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("{}: {} ({}) is {}; change values only in what --print-eds gives", sheet.file,
+                               to_string(address), entry.name, found == nullptr ? "missing" : "of another type"));
+  }
+  return {};
+}
+
 Expected<Nodes> make_nodes(const Arguments& arguments) {
   const auto sheet = arguments.sheet.empty() ? fieldbus::eds::parse_device_description(sheet_text(), "rmac-vdrive.eds")
                                              : fieldbus::eds::read_device_description(arguments.sheet);
   if (!sheet) return tl::unexpected(sheet.error());
+  if (auto complete = check_complete(*sheet); !complete) return tl::unexpected(complete.error());
   Nodes nodes;
   std::set<int> taken;
   for (const auto* list : {&arguments.nodes, &arguments.spindles}) {

@@ -53,6 +53,18 @@ class VirtualDrive(unittest.TestCase):
         self.assertIn(f"mine.eds:{line}: DataType is \"four\"", done.stderr)
 
 
+    def test_refuses_a_data_sheet_of_another_device(self):
+        with tempfile.TemporaryDirectory(prefix="rmac-test-") as folder:
+            file = pathlib.Path(folder) / "mine.eds"
+            file.write_text(SHEET.read_text().replace("[6084]\nParameterName=Profile deceleration\nObjectType=0x7\nDataType=0x0007",
+                                                      "[6084]\nParameterName=Profile deceleration\nObjectType=0x7\nDataType=0x0006"))
+            text = file.read_text().replace("DefaultValue=13107200", "DefaultValue=1000")
+            file.write_text(text)
+            done = call("rmac-vdrive", "--eds", file, "no-such-can", 1)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("mine.eds: 6084h:00 (Profile deceleration) is of another type", done.stderr)
+
+
 class BusScan(unittest.TestCase):
     def test_says_what_is_wrong_with_the_interface(self):
         done = call("rmac", "bus", "scan", "no-such-can")

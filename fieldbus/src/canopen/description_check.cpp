@@ -90,6 +90,7 @@ std::vector<SdoWrite> configured_writes(const DeviceDescription& description, st
   for (const auto& [address, entry] : description.entries) {
     const bool masters_own = address.index < kFirstDeviceObject && address.index != kErrorBehavior;
     if (!entry.configured || masters_own || is_setpoint(address) || !writable(entry.access)) continue;
+    if (entry.configured->bytes.empty()) continue;  // a domain, whose value is the name of another file
     writes.push_back({address, entry.configured->bytes_for(node)});
   }
   return writes;

@@ -37,6 +37,9 @@ Expected<IniDocument> parse_ini(std::string_view text, const std::string& file) 
   IniDocument document;
   IniSection* section = nullptr;
   std::size_t number = 0;
+  if (constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF"; text.starts_with(kByteOrderMark)) {
+    text.remove_prefix(kByteOrderMark.size());  // editors of one system put it there
+  }
   while (!text.empty()) {
     ++number;
     const std::size_t end = text.find('\n');

@@ -2,6 +2,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "canopen/boot_plan.hpp"
 #include "unit/fieldbus/canopen_bench.hpp"
 
 namespace {
@@ -120,6 +121,14 @@ TEST(DeviceDescriptionCheck, TakesIdentityAndMappingFromADcf) {
   ASSERT_EQ(axis.answers.size(), 2U);
   EXPECT_EQ(axis.answers[1].object, (ObjectAddress{0x606C, 0}));
   EXPECT_EQ(axis.setpoints.at(1).object, (ObjectAddress{0x6071, 0})) << "what the file leaves open goes by the mode";
+}
+
+TEST(DeviceDescriptionCheck, WritesNoDomains) {
+  std::string file = sheet_of_virtual_drive();
+  file = changed(file, "6081", "DataType=0x0007", "DataType=0x000F\nParameterValue=firmware.bin");
+  const auto config = canopen::read_canopen_config("can0", {{"node", {5}}}, {{"dcf", "x"}}, 0.001, holding(file));
+  ASSERT_TRUE(config.has_value()) << config.error().message;
+  for (const auto& step : canopen::boot_plan(*config, 5)) EXPECT_NE(step.object, (ObjectAddress{0x6081, 0}));
 }
 
 TEST_F(CanopenBench, WritesTheValuesOfADcfAtBootBeforeTheSetup) {

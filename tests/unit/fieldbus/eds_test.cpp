@@ -54,6 +54,12 @@ TEST(Eds, TellsDeviceObjectsTypesAccessLimitsAndDefaults) {
   EXPECT_FALSE(drive.has(0x1900));
 }
 
+TEST(Eds, IsReadWithLineEndsAndMarksOfAnySystem) {
+  std::string text = "\xEF\xBB\xBF" + sheet_of_virtual_drive();
+  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 2)) text.insert(at, "\r");
+  EXPECT_EQ(parsed(text).entries.size(), parsed(sheet_of_virtual_drive()).entries.size());
+}
+
 TEST(Eds, AddsTheNodesIdWhereTheFileSaysSo) {
   const DeviceDescription drive = parsed(sheet_of_virtual_drive());
   const ObjectEntry& id = *drive.find({0x1800, 1});
