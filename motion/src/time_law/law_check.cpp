@@ -48,23 +48,30 @@ class PieceCheck {
     for (std::size_t i = 0; i < kSamples; i += 2) {
       if (!sample(piece, i)) return kInfinity;
     }
-    // Five samples do where three of them foretell the others, and where all is far from the limits.
-    constexpr double kFar = 0.9;
-    std::size_t stride = 2;
-    for (std::size_t j = 0; j < joints_.size() && stride == 2; ++j) {
-      for (const Demand* demand : {&acceleration_[j], &jerk_[j]}) {
-        if (!parabolic(*demand) && largest(*demand, 2) > kFar) stride = 1;
-      }
-    }
+    const std::size_t stride = five_do(path_.segment(path_.find(s_begin_, 1))) ? 2 : 1;
     for (std::size_t i = 1; stride == 1 && i < kSamples; i += 2) {
       if (!sample(piece, i)) return kInfinity;
     }
     for (std::size_t j = 0; j < joints_.size(); ++j)
-      worst_ = std::max({worst_, largest(acceleration_[j], stride), largest(jerk_[j], stride)});
+      worst_ =
+          std::max({worst_, largest(speed_[j], stride), largest(acceleration_[j], stride), largest(jerk_[j], stride)});
     return std::isfinite(worst_) ? worst_ : kInfinity;
   }
 
  private:
+  /// Where joints follow the curve linearly, and the curve is as even as its nodes say, five samples do if three of
+  /// them foretell the others or all is far from the limits. Turns may hide more between samples.
+  [[nodiscard]] bool five_do(const PathSegment& segment) const {
+    constexpr double kFar = 0.9;
+    if (!segment.linear_in_curve()) return false;
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+      for (const Demand* demand : {&speed_[j], &acceleration_[j], &jerk_[j]}) {
+        if (!parabolic(*demand) && largest(*demand, 2) > kFar) return false;
+      }
+    }
+    return true;
+  }
+
   bool sample(const LawPiece& piece, std::size_t i) {
     const PathState at = piece.at(piece.duration * static_cast<double>(i) / (kSamples - 1));
     const double path_jerk = piece.kind == LawPiece::Kind::Jerk ? piece.slope : piece.slope * at.v;
@@ -73,7 +80,7 @@ class PieceCheck {
     if (!(at.v >= -1e-9) || path_.evaluate(s, 3, last ? -1 : 1, point_) != KinematicsStatus::Ok) return false;
     for (std::size_t j = 0; j < joints_.size(); ++j) {
       const double d1 = point_.d[1][j], d2 = point_.d[2][j], d3 = point_.d[3][j], v = at.v;
-      worst_ = std::max(worst_, std::abs(d1 * v) / joints_[j].max_speed);
+      speed_[j][i] = d1 * v / joints_[j].max_speed;
       acceleration_[j][i] = (d2 * v * v + d1 * at.a) / joints_[j].max_acceleration;
       jerk_[j][i] = (d3 * v * v * v + 3 * d2 * v * at.a + d1 * path_jerk) / joints_[j].max_jerk;
     }
@@ -89,7 +96,7 @@ class PieceCheck {
   const std::vector<JointLimits>& joints_;
   const FeedRule* feed_;
   double worst_ = 0, s_begin_ = 0, s_end_ = 0;
-  std::array<Demand, kMaxJoints> acceleration_, jerk_;
+  std::array<Demand, kMaxJoints> speed_, acceleration_, jerk_;
   JointPoint point_;
 };
 
