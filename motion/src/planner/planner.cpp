@@ -24,7 +24,6 @@ constexpr std::int64_t kLeadAtFirst = 2;
 constexpr std::int64_t kLongestLead = 64;
 /// A window that found no plan is tried again from a later state, after so many cycles.
 constexpr std::int64_t kRetryAfter = 10;
-constexpr std::int64_t kRetryStopAfter = 1;
 /// What is held back for the sake of a join is given out so long before the machine would have to brake for its lack.
 constexpr double kRelease_s = 0.05;
 
@@ -324,8 +323,7 @@ struct Planner::Impl {
     const bool this_way = backward.has_value() == (wanted == PathCommand::Retrace);
     const bool run = wanted != PathCommand::Stop && factor > 0 && this_way;
     // What found no plan in motion may find one from rest.
-    if (progress.cycle < tried_at + (run ? kRetryAfter : kRetryStopAfter) && tried_from_rest == at_end)
-      return Task::None;
+    if (progress.cycle < tried_at + kRetryAfter && tried_from_rest == at_end) return Task::None;
     // A plan is left only once it is followed: what replaces it begins somewhere along it.
     const bool begun = base() == nullptr || progress.cycle >= base()->plan->start_cycle;
     if (!run && at_end) {
