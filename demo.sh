@@ -37,6 +37,7 @@ end() {
 }
 trap end EXIT
 
+: >"$log" # the loop below may look before the daemon has opened it
 build/release/bin/rmacd --config etc/rmacd.json --port 0 --pace "$pace" --state-dir "$state" 2>"$log" &
 daemon=$!
 port=
