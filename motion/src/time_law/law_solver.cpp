@@ -15,7 +15,7 @@ constexpr double kBoundaryFraction = 0.99;
 constexpr double kGap = 2e-4;
 constexpr double kFeasible = 1e-7;
 
-/// low <= phi(c) <= 1 on the three coefficients of one interval, some such rows at once, with slack and dual variable
+/// low <= phi(c) <= 1 on the three coefficients of one interval, two such rows at once, with slack and dual variable
 /// of both sides. Most of the time of a plan is spent going through these, so what belongs together lies together, both
 /// sides share one gradient, and rows of an interval share the coefficients that they touch.
 /// phi = w·c, or for jerk (w·c)·√(u·c), eq. 10, u·c being q at an end of the interval.
