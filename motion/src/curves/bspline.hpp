@@ -17,7 +17,7 @@ inline constexpr std::size_t kMaxDegree = 25;
 /// A3.3 and A4.2; docs/derivations/curves.md, section 3). Places are a span (a knot interval that is not empty, counted
 /// from 0) and t, the distance from the span's first knot with the whole domain scaled to length 1: short spans far
 /// from the first knot keep all their digits. Up to degree 7 each span is kept as a polynomial about its middle, which
-/// takes a fifth of the time of the B-spline's recursion. Immutable; `evaluate` is real-time safe.
+/// spares the B-spline's recursion with its divisions. Immutable; `evaluate` is real-time safe.
 class BSpline {
  public:
   /// `nurbs` must have passed `check_nurbs`.

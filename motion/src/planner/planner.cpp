@@ -230,11 +230,12 @@ struct Planner::Impl {
     if (from.v == 0 && from.a == 0) {
       end = window_end(from.s, kRampsAtOnce);
       law = law_from_rest(from.s, end);
-    }
-    for (const double ramps : {kRampsAhead, kRampsAtOnce}) {
-      if (law) break;
-      end = window_end(from.s, ramps);
-      law = law_between(from, end.s, feed(factor), &p.plan->law);
+    } else {
+      for (const double ramps : {kRampsAhead, kRampsAtOnce}) {
+        end = window_end(from.s, ramps);
+        law = law_between(from, end.s, feed(factor), &p.plan->law);
+        if (law) break;
+      }
     }
     if (!law) return no_plan(progress);
     auto plan = std::make_unique<Plan>();

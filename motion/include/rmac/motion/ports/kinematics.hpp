@@ -51,7 +51,7 @@ class Kinematics {
   }
 
   /// The Jacobian is the same at all joints: slides alone, each along a direction of its own. Spares the planner a
-  /// third of its work.
+  /// quarter of its work (bench_motion's planning row: 23 500 lines a second without, 31 100 with).
   [[nodiscard]] virtual bool constant_jacobian() const noexcept { return false; }
 };
 
