@@ -8,32 +8,24 @@
 namespace rmac {
 namespace {
 
-constexpr std::size_t kSamples = 9;
+constexpr std::size_t kSamples = 17;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What a joint asks of one of its limits at equidistant instants of a piece, as parts of the limit.
 using Demand = std::array<double, kSamples>;
 
-/// Largest of every `stride`-th sample, where between samples the curve is taken for the parabola through three
-/// neighbours, so that a peak between samples counts.
-double largest(const Demand& demand, std::size_t stride) {
+/// Largest of the samples, where between them the curve is taken for the parabola through three neighbours, so that a
+/// peak between samples counts.
+double largest(const Demand& demand) {
   double worst = std::max(std::abs(demand.front()), std::abs(demand.back()));
-  for (std::size_t i = stride; i + stride < kSamples; i += stride) {
-    const double here = demand[i], rise = (demand[i + stride] - demand[i - stride]) / 2;
-    const double bend = demand[i + stride] - 2 * here + demand[i - stride];
+  for (std::size_t i = 1; i + 1 < kSamples; ++i) {
+    const double here = demand[i], rise = (demand[i + 1] - demand[i - 1]) / 2;
+    const double bend = demand[i + 1] - 2 * here + demand[i - 1];
     const bool peak = here > 0 ? bend < 0 : bend > 0;
     const double vertex = peak && std::abs(rise) < std::abs(bend) ? here - rise * rise / (2 * bend) : here;
     worst = std::max(worst, std::abs(vertex));
   }
   return worst;
-}
-
-/// Both ends, the middle and the quarters lie on a parabola, nearly.
-bool parabolic(const Demand& demand) {
-  constexpr double kNearly = 1e-3;
-  const double a = demand[0], m = demand[4], b = demand[8];
-  return std::abs(0.375 * a + 0.75 * m - 0.125 * b - demand[2]) < kNearly &&
-         std::abs(0.375 * b + 0.75 * m - 0.125 * a - demand[6]) < kNearly;
 }
 
 class PieceCheck {
@@ -45,33 +37,15 @@ class PieceCheck {
     worst_ = 0;
     s_begin_ = piece.start.s;
     s_end_ = piece.at(piece.duration).s;
-    for (std::size_t i = 0; i < kSamples; i += 2) {
-      if (!sample(piece, i)) return kInfinity;
-    }
-    const std::size_t stride = five_do(path_.segment(path_.find(s_begin_, 1))) ? 2 : 1;
-    for (std::size_t i = 1; stride == 1 && i < kSamples; i += 2) {
+    for (std::size_t i = 0; i < kSamples; ++i) {
       if (!sample(piece, i)) return kInfinity;
     }
     for (std::size_t j = 0; j < joints_.size(); ++j)
-      worst_ =
-          std::max({worst_, largest(speed_[j], stride), largest(acceleration_[j], stride), largest(jerk_[j], stride)});
+      worst_ = std::max({worst_, largest(speed_[j]), largest(acceleration_[j]), largest(jerk_[j])});
     return std::isfinite(worst_) ? worst_ : kInfinity;
   }
 
  private:
-  /// Where joints follow the curve linearly, and the curve is as even as its nodes say, five samples do if three of
-  /// them foretell the others or all is far from the limits. Turns may hide more between samples.
-  [[nodiscard]] bool five_do(const PathSegment& segment) const {
-    constexpr double kFar = 0.9;
-    if (!segment.linear_in_curve()) return false;
-    for (std::size_t j = 0; j < joints_.size(); ++j) {
-      for (const Demand* demand : {&speed_[j], &acceleration_[j], &jerk_[j]}) {
-        if (!parabolic(*demand) && largest(*demand, 2) > kFar) return false;
-      }
-    }
-    return true;
-  }
-
   bool sample(const LawPiece& piece, std::size_t i) {
     const PathState at = piece.at(piece.duration * static_cast<double>(i) / (kSamples - 1));
     const double path_jerk = piece.kind == LawPiece::Kind::Jerk ? piece.slope : piece.slope * at.v;

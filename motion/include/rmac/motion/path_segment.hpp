@@ -43,8 +43,6 @@ class PathSegment {
   [[nodiscard]] const PathDemand& demand() const noexcept { return demand_; }
   [[nodiscard]] const Curve& curve() const noexcept { return *curve_; }
   [[nodiscard]] const std::shared_ptr<const Curve>& shared_curve() const noexcept { return curve_; }
-  /// Joints are the curve's coordinates, or slides alone that follow them: nothing bends but the curve.
-  [[nodiscard]] bool linear_in_curve() const noexcept { return curve_->in_joint_space() || map_->constant_rates(); }
   /// Shared by the segments that were made under the same frames.
   [[nodiscard]] const std::shared_ptr<const PoseToJoints>& map() const noexcept { return map_; }
   [[nodiscard]] std::span<const MoveStretch> stretches() const noexcept { return stretches_; }

@@ -29,8 +29,6 @@ class PoseToJoints {
   [[nodiscard]] const Frames& frames() const noexcept { return frames_; }
   [[nodiscard]] const Kinematics& kinematics() const noexcept { return *kinematics_; }
   [[nodiscard]] std::size_t joint_count() const noexcept { return joint_count_; }
-  /// The joints follow the pose by the same rates everywhere: slides alone.
-  [[nodiscard]] bool constant_rates() const noexcept { return constant_rates_; }
 
   /// Joints, and their derivatives by path length up to `order` (0 to 3), at a point of a curve of poses, which may
   /// have the rotary joints as further coordinates (see `Curve`). `seed`: joints nearby, joint_count() values.
