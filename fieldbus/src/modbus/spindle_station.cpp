@@ -73,11 +73,14 @@ void SpindleStation::clear() noexcept {
   wanted_rpm_ = 0;
   resets_done_ = resets_;
   asked_ = Clock::time_point::min().time_since_epoch().count();
-  forget();
+  applied_.reset();
+  speed_.reset();
 }
 
+/// A stop is sent again in doubt, and so is a speed. A run is not: a drive that was told to and stands was stopped by
+/// someone, who must not see it start again.
 void SpindleStation::forget() noexcept {
-  applied_.reset();
+  if (applied_ == 0) applied_.reset();
   speed_.reset();
 }
 
@@ -112,6 +115,7 @@ Answer<> SpindleStation::apply(Client& client, std::int32_t rpm) {
   const bool same_way = applied_ && (*applied_ > 0) == (rpm > 0) && (*applied_ < 0) == (rpm < 0);
   if (!same_way) {
     const auto& writes = rpm == 0 ? map.stop : rpm > 0 ? map.forward_run : map.backward_run;
+    applied_.reset();  // until it is confirmed
     if (auto written = write(client, writes); !written) return written;
     applied_at_ = Clock::now();
   }

@@ -60,10 +60,10 @@ class ModbusSpindle : public testing::TestWithParam<Wire> {
     peer.respond([this](const Bytes& request) { return bank.answer(request); });
   }
 
-  void bring_up(std::chrono::milliseconds stale = 30s, std::chrono::milliseconds deadline = 50ms) {
+  void bring_up(std::chrono::milliseconds stale = 30s) {
     SpindleLineConfig config;
     config.line.endpoint = peer.endpoint();
-    config.line.deadline = deadline;
+    config.line.deadline = 50ms;
     config.line.period = 2ms;
     config.line.first_pause = 1ms;
     config.line.longest_pause = 5ms;
@@ -179,15 +179,35 @@ TEST_P(ModbusSpindle, ReportsAFaultInItsDrivesWordsUntilItIsReset) {
 }
 
 TEST_P(ModbusSpindle, ThatSomeoneElseStoppedIsDropped) {
-  // An answer that a loaded machine delays beyond the deadline has the drive told to run again.
-  bring_up(30s, 5s);
+  bring_up();
   ASSERT_TRUE(run_at(1500));
+  bank.set(kHolding, kCommand, 0);
   bank.set(kHolding, kStatus, 0);
   bank.set(kHolding, kActual, 0);
   EXPECT_TRUE(run_until(DriveWish::Operational, 1500, [](const DriveFeedback& words) {
     return words.online && drive_state(words.statusword) == DriveState::SwitchOnDisabled;
   }));
   EXPECT_TRUE(drive_was_told(kStop));
+}
+
+TEST_P(ModbusSpindle, ThatSomeoneElseStoppedIsDroppedThoughAnswersAreLostJustThen) {
+  bring_up();
+  ASSERT_TRUE(run_at(1500));
+  peer.behave(Manner::Silent);
+  bank.set(kHolding, kCommand, 0);
+  bank.set(kHolding, kStatus, 0);
+  bank.set(kHolding, kActual, 0);
+  static_cast<void>(peer.take_requests());
+  const std::uint64_t before = peer.requests();
+  ASSERT_TRUE(
+      run_until(DriveWish::Operational, 1500, [&](const DriveFeedback&) { return peer.requests() > before + 2; }));
+  peer.behave(Manner::Honest);
+  EXPECT_TRUE(run_until(DriveWish::Operational, 1500, [](const DriveFeedback& words) {
+    return words.online && drive_state(words.statusword) == DriveState::SwitchOnDisabled;
+  }));
+  for (const Bytes& request : peer.take_requests()) {
+    EXPECT_NE(request, (Bytes{4, 6, 0, kCommand, 0, static_cast<std::uint8_t>(kForward)})) << "it is told to run again";
+  }
 }
 
 TEST_P(ModbusSpindle, IsToldAgainWhatItDidNotTake) {
