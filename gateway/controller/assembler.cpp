@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "gateway/controller/bus_choice.hpp"
 #include "rmac/sdk/servo_law_names.hpp"
@@ -67,12 +68,43 @@ Expected<> add_drives(const sdk::DeviceObject& device, const ModuleLoader& loade
   return {};
 }
 
+/// Names of inputs on which the servo loop acts by itself.
+constexpr std::string_view kEmergencyStop = "EmergencyStop", kLimit = "Limit";
+
+std::uint64_t named(const std::map<std::string, int>& names, std::string_view prefix) {
+  std::uint64_t bits = 0;
+  for (const auto& [name, bit] : names) bits |= name.starts_with(prefix) ? std::uint64_t{1} << bit : 0;
+  return bits;
+}
+
+Expected<> check_bits(const std::map<std::string, int>& names, const char* what, std::uint64_t there,
+                      const std::string& interface) {
+  for (const auto& [name, bit] : names) {
+    if ((there >> bit & 1U) != 0) continue;
+    std::vector<int> bits;
+    for (int i = 0; i < 64; ++i) {
+      if ((there >> i & 1U) != 0) bits.push_back(i);
+    }
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("{} \"{}\" is bit {}, to which nothing of {} is connected; connected are {}", what, name,
+                               bit, interface, bits.empty() ? "none" : fmt::format("{}", fmt::join(bits, ", "))));
+  }
+  return {};
+}
+
 Expected<> add_io(const sdk::DeviceObject& device, const ModuleLoader& loader, BusRegistry& registry,
                   ServoLoopParts& parts) {
   if (parts.virtual_mode || device.digital_io_interface.name.empty()) return {};
   auto io = registry.acquire_io(device.digital_io_interface, loader);
   if (!io) return tl::unexpected(io.error());
+  const std::string& name = device.digital_io_interface.name;
+  auto connected = check_bits(device.inputs, "input", (*io)->input_bits(), name).and_then([&] {
+    return check_bits(device.outputs, "output", (*io)->output_bits(), name);
+  });
+  if (!connected) return connected;
   parts.io = std::move(*io);
+  parts.emergency_stop_inputs = named(device.inputs, kEmergencyStop);
+  parts.limit_inputs = named(device.inputs, kLimit);
   return {};
 }
 

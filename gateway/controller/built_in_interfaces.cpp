@@ -4,6 +4,7 @@
 #include "gateway/controller/simulated_bus.hpp"
 #include "rmac/fieldbus/canopen/bus_load.hpp"
 #include "rmac/fieldbus/canopen/canopen_interface.hpp"
+#include "rmac/fieldbus/gpio/gpio_interface.hpp"
 #include "rmac/fieldbus/modbus/io_interface.hpp"
 #include "rmac/fieldbus/modbus/spindle_interface.hpp"
 #include "rmac/fieldbus/simulated_interface.hpp"
@@ -49,6 +50,12 @@ Expected<std::shared_ptr<DigitalIoInterface>> make_modbus_io(const sdk::ModuleCh
   return std::make_shared<fieldbus::modbus::IoInterface>(std::move(*config));
 }
 
+Expected<std::shared_ptr<DigitalIoInterface>> make_gpio(const sdk::ModuleChoice& choice, const ModuleLoader&) {
+  auto config = fieldbus::gpio::read_gpio_config(choice.numbers, choice.texts);
+  if (!config) return tl::unexpected(config.error());
+  return std::make_shared<fieldbus::gpio::GpioInterface>(std::move(*config), fieldbus::gpio::make_kernel_lines());
+}
+
 Expected<std::shared_ptr<DigitalIoInterface>> make_simulated_io(const sdk::ModuleChoice& choice, const ModuleLoader&) {
   if (!choice.numbers.empty() || !choice.texts.empty()) {
     return failure(MinorCode::InvalidParameterValue, "SimulatedIOInterface takes no parameters");
@@ -68,6 +75,7 @@ void add_built_in_interfaces(BusRegistry& registry, double period_s) {
     return make_canopen(bus, choice, loader, period_s);
   });
   registry.add_control_interface("ModbusInterface", make_modbus);
+  registry.add_io_interface("GPIOInterface", make_gpio);
   registry.add_io_interface("ModbusIOInterface", make_modbus_io);
   registry.add_io_interface("SimulatedIOInterface", make_simulated_io);
 }

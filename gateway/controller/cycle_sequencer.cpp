@@ -126,7 +126,7 @@ Expected<> CycleSequencer::stop() {
 }
 
 Expected<> CycleSequencer::stop_and_clear() {
-  if (state_ == CycleState::Faulted || state_ == CycleState::EmergencyStop) return {};
+  if (is_faulted(state_)) return {};
   clear_at_rest_ = true;
   stop_cause_ = StopCause::StopNow;
   state_ = CycleState::Stopping;
@@ -152,7 +152,7 @@ Expected<> CycleSequencer::resume() {
 }
 
 Expected<> CycleSequencer::reset() {
-  if (state_ != CycleState::Faulted && state_ != CycleState::EmergencyStop) {
+  if (!is_faulted(state_)) {
     return failure(MinorCode::Other,
                    fmt::format("reset: there is no fault to reset, the machine is {}", to_string(state_)));
   }
@@ -163,15 +163,15 @@ Expected<> CycleSequencer::reset() {
   return {};
 }
 
-void CycleSequencer::fault() noexcept {
-  if (state_ != CycleState::EmergencyStop) state_ = CycleState::Faulted;
+void CycleSequencer::fault(CycleState to) noexcept {
+  if (state_ != CycleState::EmergencyStop) state_ = to;
   clear_at_rest_ = false;
 }
 
 void CycleSequencer::mechanism_changed(bool keep_running) noexcept {
   if (!keep_running) {
     // A fault is left by a reset, not by taking the mechanism out.
-    if (state_ != CycleState::Faulted && state_ != CycleState::EmergencyStop) state_ = CycleState::Idle;
+    if (!is_faulted(state_)) state_ = CycleState::Idle;
     clear_at_rest_ = false;  // a stop may come while mechanisms change; the new one's queue is empty
     spindle_wait_ = false;
   }
@@ -197,7 +197,7 @@ PathCommand CycleSequencer::wanted(const CycleObservation& seen) noexcept {
 
 CycleSequencer::Verdict CycleSequencer::step(const CycleObservation& seen) noexcept {
   Verdict verdict;
-  if (seen.faulted && state_ != CycleState::EmergencyStop) fault();
+  if (seen.faulted) fault(seen.emergency_stop ? CycleState::EmergencyStop : CycleState::Faulted);
   if (state_ == CycleState::Running && jog_until_s_ && seen.t_s > *jog_until_s_) {
     static_cast<void>(stop());
     stop_cause_ = StopCause::JogLapsed;

@@ -18,6 +18,7 @@ struct CycleObservation {
   std::size_t moves_left = 0;    ///< queued, the one under way included
   std::uint64_t moves_done = 0;  ///< since the mechanism went in
   bool faulted = false;          ///< the servo loop is
+  bool emergency_stop = false;   ///< and that is why
   bool spindles_at_speed = true;
 };
 
@@ -50,7 +51,7 @@ class CycleSequencer {
   [[nodiscard]] Expected<> resume();
   /// Leaves Faulted or EmergencyStop; the path was emptied before.
   [[nodiscard]] Expected<> reset();
-  void fault() noexcept;
+  void fault(CycleState to = CycleState::Faulted) noexcept;
   /// Another mechanism went in: `keep_running` when it is the same one, configured anew.
   void mechanism_changed(bool keep_running) noexcept;
   /// A spindle was told another speed: motion that has not begun waits for it, at most `timeout_s`.

@@ -46,6 +46,21 @@ std::string where(const ServoFault& fault, const sdk::DeviceObject* device) {
   return "somewhere";
 }
 
+std::string input_name(std::uint32_t bit, const Mechanism* mechanism) {
+  if (mechanism != nullptr) {
+    for (const auto& [name, at] : mechanism->device.inputs) {
+      if (static_cast<std::uint32_t>(at) == bit) return fmt::format("{} (input {})", name, bit);
+    }
+  }
+  return fmt::format("input {}", bit);
+}
+
+std::string io_text(const Mechanism* mechanism) {
+  const auto* told =
+      mechanism == nullptr ? nullptr : dynamic_cast<const fieldbus::IoFaultText*>(mechanism->loop->parts().io.get());
+  return told != nullptr ? told->fault_text() : "the device failed; check it";
+}
+
 /// A drive's error code, as its interface tells it or else as CiA 402 does.
 std::string code_text(const ServoFault& fault, std::uint16_t code, const Mechanism* mechanism) {
   const auto told_by = [code](const auto& drive) -> std::optional<std::string> {
@@ -99,7 +114,12 @@ std::string describe(const ServoFault& fault, const Mechanism* mechanism) {
     case ServoFault::Kind::BusFailure:
       return fmt::format("{}: the bus failed; check the interface, then reset", at);
     case ServoFault::Kind::IoFailure:
-      return fmt::format("{}: the device failed; check it, then reset", at);
+      return fmt::format("{}: {}, then reset", at, io_text(mechanism));
+    case ServoFault::Kind::EmergencyStop:
+      return fmt::format("{} stopped the machine; release it, then reset", input_name(fault.index, mechanism));
+    case ServoFault::Kind::LimitSwitch:
+      return fmt::format("{} is reached; reset, then jog the axis off it: nothing keeps it from moving on towards it",
+                         input_name(fault.index, mechanism));
   }
   return at;
 }

@@ -16,6 +16,10 @@ namespace rmac::gateway {
 enum class CycleState : std::uint8_t { Idle, Running, Holding, Stopping, Faulted, EmergencyStop };
 
 [[nodiscard]] const char* to_string(CycleState state) noexcept;
+/// Left by a reset alone.
+[[nodiscard]] constexpr bool is_faulted(CycleState state) noexcept {
+  return state == CycleState::Faulted || state == CycleState::EmergencyStop;
+}
 
 /// The cycle as the controller has it now; a sample is some cycles behind.
 struct CycleNow {

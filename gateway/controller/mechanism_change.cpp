@@ -52,7 +52,7 @@ bool Controller::Impl::wait_for(Reached&& reached) {
 Expected<> Controller::Impl::ready_for_change(const char* what) {
   if (!running) return failure(MinorCode::Other, fmt::format("{}: the controller is not running; start it", what));
   const CycleState state = supervisor.state();
-  if (state == CycleState::Faulted || state == CycleState::EmergencyStop) {
+  if (is_faulted(state)) {
     return failure(MinorCode::Other,
                    fmt::format("{}: the machine is {}; remove the cause and reset first", what, to_string(state)));
   }
@@ -116,7 +116,9 @@ Expected<> Controller::Impl::clear_servo_fault() {
   const ServoStatus now = link->status.read();
   supervisor.wish([](ServoWishes& wishes) { wishes.reset = false; });
   if (now.state != ServoState::Faulted) return {};
-  return failure(MinorCode::Other, fmt::format("the fault is still there: {}", describe(now.fault, in_force.get())));
+  const bool pressed = now.fault.kind == ServoFault::Kind::EmergencyStop;
+  return failure(pressed ? MinorCode::EmergencyStop : MinorCode::Other,
+                 fmt::format("the fault is still there: {}", describe(now.fault, in_force.get())));
 }
 
 std::string Controller::Impl::put_back(const sdk::DeviceObject& device, bool virtual_before) {
@@ -133,7 +135,7 @@ std::string Controller::Impl::put_back(const sdk::DeviceObject& device, bool vir
 
 void Controller::Impl::leave_fault() {
   (void)supervisor.command([](CycleSequencer& cycle, const CycleObservation&) {
-    return cycle.state() == CycleState::Faulted ? cycle.reset() : Expected<>{};
+    return is_faulted(cycle.state()) ? cycle.reset() : Expected<>{};
   });
 }
 
@@ -211,7 +213,7 @@ void Controller::Impl::tell_of_mechanism(std::string message) {
 Expected<> Controller::Impl::take_out() {
   if (!in_force) return {};
   const CycleState state = supervisor.state();
-  if (state != CycleState::Faulted && state != CycleState::EmergencyStop) {
+  if (!is_faulted(state)) {
     if (auto rest = supervisor.require_rest("unloading"); !rest) return rest;
   }
   supervisor.wish([](ServoWishes& wishes) {
@@ -238,7 +240,7 @@ Expected<> Controller::Impl::take_out() {
 
 Expected<> Controller::Impl::reset() {
   const CycleState state = supervisor.state();
-  if (state != CycleState::Faulted && state != CycleState::EmergencyStop) {
+  if (!is_faulted(state)) {
     return failure(MinorCode::Other,
                    fmt::format("reset: there is no fault to reset, the machine is {}", to_string(state)));
   }
@@ -261,7 +263,7 @@ void Controller::Impl::come_to_rest() noexcept {
     (void)cam.stop_now();
     (void)wait_for([&] {
       const CycleState state = supervisor.state();
-      return state == CycleState::Idle || state == CycleState::Faulted || state == CycleState::EmergencyStop;
+      return state == CycleState::Idle || is_faulted(state);
     });
     (void)take_out();
   } catch (...) {

@@ -41,6 +41,7 @@ CycleObservation MotionSupervisor::observe(const ServoStatus& status) {
   seen.retraced = seen.at_rest && mechanism_->planner.retraced(status.progress);
   seen.moves_done = status.moves_done;
   seen.faulted = status.state == ServoState::Faulted;
+  seen.emergency_stop = seen.faulted && status.fault.kind == ServoFault::Kind::EmergencyStop;
   seen.spindles_at_speed = spindles_at_speed(status);
   return seen;
 }
@@ -106,7 +107,9 @@ void MotionSupervisor::tell_state() {
         {}});
   reported_state_ = state;
   wishes_.state = state;
-  if (state == CycleState::Faulted || state == CycleState::EmergencyStop) wishes_.spindle_rpm.fill(0);
+  if (is_faulted(state)) wishes_.spindle_rpm.fill(0);
+  // Nothing may flow, open or close when the stop is released.
+  if (state == CycleState::EmergencyStop) wishes_.outputs = 0;
   link_.wishes.write(wishes_);
 }
 
@@ -117,7 +120,7 @@ MotionSupervisor::Pace MotionSupervisor::advance(const ServoStatus& status) {
   work_to_do_ = false;
   settle(status);
   if (!mechanism_ || status.generation != generation_) return Pace::Calm;
-  if (sequencer_.state() != CycleState::Faulted) {
+  if (!is_faulted(sequencer_.state())) {
     mechanism_->planner.step(status.progress);
     if (!mechanism_->planner.idle(status.progress)) return Pace::Planning;
   }
@@ -135,7 +138,7 @@ MotionSupervisor::Pace MotionSupervisor::pace(const ServoStatus& status) {
   const bool waiting = state == CycleState::Running && (left > 0 || sequencer_.waits_for_spindle());
   const bool coming_to_rest = status.moving || !mechanism_->planner.at_rest(status.progress);
   const bool busy = waiting || coming_to_rest || state == CycleState::Stopping || status.state == ServoState::Enabling;
-  return busy && state != CycleState::Faulted ? Pace::Busy : Pace::Calm;
+  return busy && !is_faulted(state) ? Pace::Busy : Pace::Calm;
 }
 
 void MotionSupervisor::wait_for_work(std::chrono::nanoseconds period) {
@@ -150,7 +153,7 @@ Expected<> MotionSupervisor::prepare_move() {
     return failure(MinorCode::Other, "there is no mechanism; load one with Device.Load before sending moves");
   }
   const CycleState state = sequencer_.state();
-  if (state == CycleState::Faulted || state == CycleState::EmergencyStop) {
+  if (is_faulted(state)) {
     return failure(
         state == CycleState::Faulted ? MinorCode::Other : MinorCode::EmergencyStop,
         fmt::format("no moves are taken while the machine is {}; remove the cause, then reset", to_string(state)));

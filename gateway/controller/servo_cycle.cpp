@@ -57,7 +57,7 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
   if (!report_.follows) mechanism_->follower.hold_at(loop.hold_position().first(loop.joint_count()));
   mechanism_->follower.sample(cycle_, command_.setpoint);
 
-  const bool was_faulted = report_.fault.kind != ServoFault::Kind::None;
+  const ServoFault::Kind before = report_.fault.kind;
   loop.cycle(command_, report_);
 
   const Setpoint& setpoint = command_.setpoint;
@@ -72,7 +72,7 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
   status_.position_set = report_.position_set;
   status_.spindle_rpm = report_.spindle_rpm;
 
-  if (!was_faulted && report_.fault.kind != ServoFault::Kind::None) {
+  if (report_.fault.kind != before && report_.fault.kind != ServoFault::Kind::None) {
     // A full ring holds 64 faults that nobody has read: the first ones are those that matter.
     (void)link_.faults.push({cycle_, sample_.t_s, status_.generation, setpoint.move_id, setpoint.s_mm, report_.fault});
   }
@@ -92,7 +92,11 @@ void ServoCycle::fill_pose_set() noexcept {
 void ServoCycle::publish(const ServoWishes& wishes) noexcept {
   status_.t_s = sample_.t_s;
   status_.progress.cycle = cycle_;
-  sample_.state = status_.state == ServoState::Faulted ? CycleState::Faulted : wishes.state;
+  sample_.state = wishes.state;
+  if (status_.state == ServoState::Faulted) {
+    const bool pressed = status_.fault.kind == ServoFault::Kind::EmergencyStop;
+    sample_.state = pressed ? CycleState::EmergencyStop : CycleState::Faulted;
+  }
   if (mechanism_ != nullptr) {
     sample_.joint_count = status_.joint_count;
     sample_.axis_count = status_.axis_count;

@@ -30,7 +30,7 @@ Expected<> Cam::set_spindle_rpm(int spindle, double rpm) {
                    fmt::format("SetSpindleRPM: {} rpm is above spindle {}'s maximum of {} rpm", rpm, spindle, max));
   }
   const CycleState state = supervisor_.state();
-  if (rpm != 0 && (state == CycleState::Faulted || state == CycleState::EmergencyStop)) {
+  if (rpm != 0 && (is_faulted(state))) {
     return failure(MinorCode::Other, "SetSpindleRPM: the machine is faulted; remove the cause, then reset");
   }
   supervisor_.set_spindle(*found, rpm);

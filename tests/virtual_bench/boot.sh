@@ -6,17 +6,14 @@
 set -euo pipefail
 flavour=${FLAVOUR:-amd64} kernels=${KERNELS:-${XDG_CACHE_HOME:-$HOME/.cache}/rmac-bench} guest=$(realpath "$1") argument=${2:-}
 kernel=$kernels/$flavour
-if ! [[ -d $kernel ]]; then
-  mkdir -p "$kernels"
-  package=$(apt-cache depends "linux-image-$flavour" | awk '/Depends: linux-image-[0-9]/ {print $2; exit}')
-  (cd "$kernels" && apt-get download -qq "$package" && dpkg-deb -x "$package"_*.deb "$flavour.part" && rm "$package"_*.deb && mv "$flavour.part" "$flavour")
-fi
+"$(dirname "$0")/fetch-kernel.sh"
 work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
 mkdir -p "$work"/root/{bin,proc,sys,dev,m}
 cp /bin/busybox "$work/root/bin/"
-for module in virtio virtio_ring virtio_pci virtio_pci_modern_dev virtio_pci_legacy_dev netfs fscache 9pnet 9pnet_virtio 9p overlay can can-raw can-dev vcan; do
+for module in virtio virtio_ring virtio_pci virtio_pci_modern_dev virtio_pci_legacy_dev netfs fscache 9pnet 9pnet_virtio 9p overlay configfs can can-raw can-dev vcan; do
   find "$kernel/lib/modules" -name "$module.ko" -exec cp {} "$work/root/m/" \;
 done
+[[ ! -e $kernel/gpio-sim.ko ]] || cp "$kernel/gpio-sim.ko" "$work/root/"  # where gpio-sim.sh made one
 cat > "$work/root/init" <<'I'
 #!/bin/busybox sh
 b=/bin/busybox
@@ -27,11 +24,12 @@ $b mkdir -p /lower /over /sysroot
 $b mount -t 9p -o trans=virtio,version=9p2000.L,msize=512000,ro,cache=loose rootfs /lower
 $b mount -t tmpfs tmpfs /over; $b mkdir /over/up /over/work
 $b mount -t overlay overlay -o lowerdir=/lower,upperdir=/over/up,workdir=/over/work /sysroot
-for fs in proc sysfs:sys devtmpfs:dev tmpfs:run tmpfs:dev/shm devpts:dev/pts; do
+for fs in proc sysfs:sys devtmpfs:dev tmpfs:run tmpfs:dev/shm devpts:dev/pts configfs:sys/kernel/config; do
   $b mkdir -p /sysroot/${fs#*:}; $b mount -t ${fs%%:*} none /sysroot/${fs#*:}
 done
 for word in $($b cat /proc/cmdline); do case $word in guest=*) guest=${word#guest=};; argument=*) argument=${word#argument=};; esac; done
-$b chroot /sysroot /usr/bin/env PATH=/usr/sbin:/usr/bin:/sbin:/bin "$guest" "$argument"
+[ ! -e /gpio-sim.ko ] || $b cp /gpio-sim.ko /sysroot/run/
+$b chroot /sysroot /usr/bin/env GPIO_SIM=/run/gpio-sim.ko PATH=/usr/sbin:/usr/bin:/sbin:/bin "$guest" "$argument"
 echo "guest exit $?"
 echo o > /proc/sysrq-trigger; $b sleep 5
 I

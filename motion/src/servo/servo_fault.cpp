@@ -38,6 +38,10 @@ const char* to_string(ServoFault::Kind kind) noexcept {
       return "BusFailure";
     case ServoFault::Kind::IoFailure:
       return "IoFailure";
+    case ServoFault::Kind::EmergencyStop:
+      return "EmergencyStop";
+    case ServoFault::Kind::LimitSwitch:
+      return "LimitSwitch";
   }
   return "Unknown";
 }

@@ -48,6 +48,7 @@ void ServoLoop::Impl::exchange(const ServoCommand& command, ServoReport& report)
   if (parts.io && !parts.io->exchange(command.outputs, report.inputs)) {
     raise({ServoFault::Kind::IoFailure, ServoFault::Part::Io, 0, 0, 0});
   }
+  if (parts.io) watch_inputs(report.inputs);
 }
 
 const DriveFeedback& ServoLoop::Impl::feedback(std::size_t actuator) const noexcept {

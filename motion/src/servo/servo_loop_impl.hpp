@@ -12,6 +12,7 @@ struct ServoLoop::Impl {
   explicit Impl(ServoLoopParts loop_parts);
 
   void exchange(const ServoCommand& command, ServoReport& report) noexcept;
+  void watch_inputs(std::uint64_t now) noexcept;
   void read_actuators() noexcept;
   void read_joints() noexcept;
   void change_state(const ServoCommand& command) noexcept;
@@ -66,6 +67,7 @@ struct ServoLoop::Impl {
   bool resetting = false;
   std::int64_t waiting_cycles = 0;
   bool follows = false;
+  std::uint64_t inputs = 0;  ///< in the last cycle
 
   std::array<bool, kMaxJoints> seen{};  ///< a position of this drive was read
   std::array<std::int64_t, kMaxJoints> counts{};

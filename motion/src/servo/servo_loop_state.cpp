@@ -1,3 +1,5 @@
+#include <bit>
+
 #include "servo/servo_loop_impl.hpp"
 
 namespace rmac {
@@ -23,12 +25,22 @@ void ServoLoop::Impl::let_go() noexcept {
 }
 
 void ServoLoop::Impl::raise(const ServoFault& found) noexcept {
-  if (state == ServoState::Faulted) return;
+  const bool graver = found.kind == ServoFault::Kind::EmergencyStop && fault.kind != found.kind;
+  if (state == ServoState::Faulted && !graver) return;
   fault = found;
   state = ServoState::Faulted;
   power_spent = true;
   follows = false;
   let_go();
+}
+
+void ServoLoop::Impl::watch_inputs(std::uint64_t now) noexcept {
+  const std::uint64_t pressed = now & parts.emergency_stop_inputs;
+  const std::uint64_t reached = now & ~inputs & parts.limit_inputs;
+  inputs = now;
+  const auto first = [](std::uint64_t bits) { return static_cast<std::uint32_t>(std::countr_zero(bits)); };
+  if (pressed != 0) raise({ServoFault::Kind::EmergencyStop, ServoFault::Part::Io, first(pressed), 0, 0});
+  if (reached != 0) raise({ServoFault::Kind::LimitSwitch, ServoFault::Part::Io, first(reached), 0, 0});
 }
 
 void ServoLoop::Impl::change_state(const ServoCommand& command) noexcept {
@@ -69,7 +81,7 @@ void ServoLoop::Impl::change_state(const ServoCommand& command) noexcept {
 
 void ServoLoop::Impl::finish_reset() noexcept {
   if (!resetting) return;
-  bool any = false;
+  bool any = (inputs & parts.emergency_stop_inputs) != 0;
   if (!parts.virtual_mode) {
     for (std::size_t i = 0; i < actuators; ++i) any = any || faulted(feedback(i));
     for (std::size_t i = 0; i < parts.spindles.size(); ++i) any = any || faulted(spindle_feedback(i));

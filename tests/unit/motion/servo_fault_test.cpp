@@ -148,21 +148,22 @@ TEST_F(ServoFaultTest, StaysWhileTheDrivesFaultStays) {
   expect_fault(ServoFault::Kind::DriveFault, ServoFault::Part::Actuator, 1);
 }
 
-class FailingIo : public DigitalIoInterface {
+class HandheldIo : public DigitalIoInterface {
  public:
   [[nodiscard]] Expected<> start() override { return {}; }
   void stop() noexcept override {}
   [[nodiscard]] bool exchange(std::uint64_t outputs, std::uint64_t& inputs) noexcept override {
     seen = outputs;
-    inputs = 0xA5;
+    inputs = on;
     return works;
   }
   std::uint64_t seen = 0;
+  std::uint64_t on = 0xA5;
   bool works = true;
 };
 
 TEST_F(ServoFaultTest, IoIsExchangedAndItsFailureStopsAll) {
-  const auto io = std::make_shared<FailingIo>();
+  const auto io = std::make_shared<HandheldIo>();
   ServoLoopParts with_io = parts();
   with_io.io = io;
   build(std::move(with_io));
@@ -173,6 +174,93 @@ TEST_F(ServoFaultTest, IoIsExchangedAndItsFailureStopsAll) {
   io->works = false;
   cycle();
   expect_fault(ServoFault::Kind::IoFailure, ServoFault::Part::Io, 0);
+}
+
+/// Bit 4 is an emergency stop, bit 9 a limit switch.
+class ServoInputTest : public ServoFaultTest {
+ protected:
+  void SetUp() override {
+    ServoLoopParts with_io = parts();
+    with_io.io = io;
+    with_io.emergency_stop_inputs = 1U << 4U;
+    with_io.limit_inputs = 1U << 9U;
+    io->on = 0;
+    build(std::move(with_io));
+  }
+  void reset() {
+    command.power = false;
+    command.reset = true;
+    cycle(2);
+    command.reset = false;
+    cycle();
+  }
+  std::shared_ptr<HandheldIo> io = std::make_shared<HandheldIo>();
+};
+
+TEST_F(ServoInputTest, EmergencyStopStopsAllInItsCycleAndIsNotResetBeforeItIsReleased) {
+  engage();
+  io->on = 1U << 4U;
+  cycle();
+  expect_fault(ServoFault::Kind::EmergencyStop, ServoFault::Part::Io, 4);
+  expect_all_quick_stopped();
+  reset();
+  expect_fault(ServoFault::Kind::EmergencyStop, ServoFault::Part::Io, 4);
+  cycle(100);  // until the loop has given that reset up
+  io->on = 0;
+  cycle(100);
+  expect_fault(ServoFault::Kind::EmergencyStop, ServoFault::Part::Io, 4);
+  reset();
+  EXPECT_EQ(report.state, ServoState::Off);
+  cycle(100);
+  EXPECT_EQ(report.state, ServoState::Off) << "nothing is enabled by itself";
+  engage();
+}
+
+TEST_F(ServoInputTest, EmergencyStopIsToldThoughTheMachineIsFaultedAlready) {
+  engage();
+  fake->works = false;
+  cycle();
+  expect_fault(ServoFault::Kind::BusFailure, ServoFault::Part::Bus, 0);
+  io->on = 1U << 4U;
+  cycle();
+  expect_fault(ServoFault::Kind::EmergencyStop, ServoFault::Part::Io, 4);
+}
+
+TEST_F(ServoInputTest, NothingIsEnabledWhileTheEmergencyStopIsPressed) {
+  io->on = 1U << 4U;
+  command.power = true;
+  for (int i = 0; i < 50; ++i) {
+    cycle();
+    EXPECT_EQ(report.state, ServoState::Faulted);
+    for (std::size_t axis = 0; axis < 4; ++axis) {
+      EXPECT_EQ(bus->commands[axis].controlword & controlword::kEnableOperation, 0);
+    }
+  }
+}
+
+TEST_F(ServoInputTest, LimitSwitchStopsAllAsItIsReachedAndLetsTheMachineMoveOffIt) {
+  engage();
+  io->on = 1U << 9U;
+  cycle();
+  expect_fault(ServoFault::Kind::LimitSwitch, ServoFault::Part::Io, 9);
+  expect_all_quick_stopped();
+  reset();
+  EXPECT_EQ(report.state, ServoState::Off);
+  engage();
+  cycle(20);
+  EXPECT_EQ(report.state, ServoState::Engaged) << "it is still closed";
+  io->on = 0;
+  cycle();
+  io->on = 1U << 9U;
+  cycle();
+  expect_fault(ServoFault::Kind::LimitSwitch, ServoFault::Part::Io, 9);
+}
+
+TEST_F(ServoInputTest, OtherInputsStopNothing) {
+  engage();
+  io->on = ~(1ULL << 4U | 1ULL << 9U);
+  cycle(20);
+  EXPECT_EQ(report.state, ServoState::Engaged);
 }
 
 }  // namespace rmac::servo_test

@@ -14,4 +14,12 @@ class FaultTexts {
   [[nodiscard]] virtual std::string fault_text(std::size_t axis, std::uint16_t error_code) const = 0;
 };
 
+/// What an I/O interface implements beside its port when it can say why `exchange` fails.
+class IoFaultText {
+ public:
+  virtual ~IoFaultText() = default;
+  /// What is wrong, and what to do. Any thread but the servo thread.
+  [[nodiscard]] virtual std::string fault_text() const = 0;
+};
+
 }  // namespace rmac::fieldbus

@@ -25,6 +25,8 @@ struct ServoFault {
     EnableTimeout,   ///< value: the statusword it is stuck at, bound: seconds waited
     BusFailure,
     IoFailure,
+    EmergencyStop,  ///< index: the input; told whatever else is wrong
+    LimitSwitch,    ///< index: the input
   };
   enum class Part : std::uint8_t { Joint, Actuator, Spindle, Bus, Io };
   Kind kind = Kind::None;

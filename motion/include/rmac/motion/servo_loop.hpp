@@ -60,6 +60,10 @@ struct ServoLoopParts {
   std::vector<ServoActuator> actuators;
   std::vector<ServoSpindle> spindles;
   std::shared_ptr<DigitalIoInterface> io;  ///< may be null
+  /// Inputs that stop all drives while any is on; a reset has to wait until they are off.
+  std::uint64_t emergency_stop_inputs = 0;
+  /// Inputs that stop all drives as they come on. A reset helps while they are on, so that the axis can be moved off.
+  std::uint64_t limit_inputs = 0;
   double period_s = 0.001;
   double enable_timeout_s = 5;  ///< to bring every drive to Operation Enabled
   bool virtual_mode = false;    ///< setpoints are reflected as measured values; buses and I/O are not touched

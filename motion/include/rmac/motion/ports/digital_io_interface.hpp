@@ -16,6 +16,9 @@ class DigitalIoInterface {
   virtual void stop() noexcept = 0;
   /// One cycle: writes `outputs`, reads `inputs`. False when the device failed. Real-time safe.
   [[nodiscard]] virtual bool exchange(std::uint64_t outputs, std::uint64_t& inputs) noexcept = 0;
+  /// Bits that something is connected to: a name for another one is a mistake.
+  [[nodiscard]] virtual std::uint64_t input_bits() const noexcept { return ~std::uint64_t{0}; }
+  [[nodiscard]] virtual std::uint64_t output_bits() const noexcept { return ~std::uint64_t{0}; }
 };
 
 }  // namespace rmac
