@@ -14,6 +14,7 @@ class Banded {
 
   /// Entry (row, row - below).
   [[nodiscard]] double& at(std::size_t row, std::size_t below) { return values_[row * (band_ + 1) + below]; }
+  [[nodiscard]] double at(std::size_t row, std::size_t below) const { return values_[row * (band_ + 1) + below]; }
 
   /// Gives an unknown its value: its row becomes trivial, and its column goes to the right side.
   void fix(std::size_t index, const Vector& value, std::vector<Vector>& right) {
@@ -25,33 +26,49 @@ class Banded {
     right[index] = value;
   }
 
-  /// Replaces the right sides by the solution; false where the matrix is not positive.
-  [[nodiscard]] bool solve(std::vector<Vector>& right) {
+  /// Replaces the entries by those of L and D; false where the matrix is not positive.
+  [[nodiscard]] bool factorise() {
     for (std::size_t i = 0; i < size_; ++i) {
+      double* const row = &at(i, 0);
       for (std::size_t k = band_ < i ? band_ : i; k > 0; --k) {
-        // L(i, j) with j = i - k.
-        double sum = at(i, k);
+        // L(i, j) D(j) with j = i - k; L(i, p) D(p) stands in the row until all of it is known.
         const std::size_t j = i - k;
-        for (std::size_t m = k + 1; m <= band_ && m <= i; ++m) {
-          const std::size_t p = i - m;
-          if (j - p <= band_) sum -= at(i, m) * at(j, j - p) * at(p, 0);
-        }
-        at(i, k) = sum / at(j, 0);
+        const double* const above = &at(j, 0);
+        double sum = row[k];
+        const std::size_t most = band_ < i ? band_ : i;
+        for (std::size_t m = k + 1; m <= most; ++m) sum -= row[m] * above[m - k];
+        row[k] = sum;
       }
-      for (std::size_t k = 1; k <= band_ && k <= i; ++k) at(i, 0) -= at(i, k) * at(i, k) * at(i - k, 0);
-      if (!(at(i, 0) > 0)) return false;
-      for (std::size_t k = 1; k <= band_ && k <= i; ++k) subtract(at(i, k), right[i - k], right[i]);
-    }
-    for (std::size_t i = size_; i-- > 0;) {
-      for (double& value : right[i]) value /= at(i, 0);
-      for (std::size_t k = 1; k <= band_ && i + k < size_; ++k) subtract(at(i + k, k), right[i + k], right[i]);
+      for (std::size_t k = 1; k <= band_ && k <= i; ++k) {
+        const double scaled = row[k];
+        row[k] /= at(i - k, 0);
+        row[0] -= row[k] * scaled;
+      }
+      if (!(row[0] > 0)) return false;
     }
     return true;
   }
 
+  /// Replaces right sides, numbers or vectors, by the solution; after `factorise`.
+  template <class T>
+  void substitute(std::vector<T>& right) const {
+    for (std::size_t i = 0; i < size_; ++i) {
+      for (std::size_t k = 1; k <= band_ && k <= i; ++k) subtract(at(i, k), right[i - k], right[i]);
+    }
+    for (std::size_t i = size_; i-- > 0;) {
+      divide(right[i], at(i, 0));
+      for (std::size_t k = 1; k <= band_ && i + k < size_; ++k) subtract(at(i + k, k), right[i + k], right[i]);
+    }
+  }
+
  private:
+  static void subtract(double factor, double from, double& to) { to -= factor * from; }
   static void subtract(double factor, const Vector& from, Vector& to) {
     for (std::size_t c = 0; c < 3; ++c) to[c] -= factor * from[c];
+  }
+  static void divide(double& value, double by) { value /= by; }
+  static void divide(Vector& value, double by) {
+    for (double& v : value) v /= by;
   }
   static void take(double& entry, const Vector& value, Vector& right) {
     subtract(entry, value, right);

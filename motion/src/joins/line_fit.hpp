@@ -4,14 +4,16 @@
 #include <memory>
 #include <vector>
 
+#include "joins/tube_spline.hpp"
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/path_segment.hpp"
 
 namespace rmac {
 
 /// Recognises runs of short lines as the smooth curve they came from: a quintic spline within the tolerance of every
-/// line (docs/derivations/joins.md, section 6). Streams: a run is fitted in windows, each going on smoothly from the
-/// one before. What is no such run passes unchanged, in order. Planner thread.
+/// line, found by least squares where the lines are dense, or as the smoothest in the tube of the tolerance where they
+/// are coarse (docs/derivations/joins.md, sections 6 and 7). Streams: a run is fitted in windows, each going on
+/// smoothly from the one before. What is no such run passes unchanged, in order. Planner thread.
 class LineFit {
  public:
   using Segments = std::deque<std::shared_ptr<const PathSegment>>;
@@ -22,32 +24,47 @@ class LineFit {
   void clear();
   [[nodiscard]] bool empty() const noexcept { return waiting_.empty(); }
   /// `advance` would give something without waiting for more lines.
-  [[nodiscard]] bool ready() const noexcept { return !waiting_.empty() && (complete() || waiting_.size() > kWindow); }
+  [[nodiscard]] bool ready() const noexcept {
+    return !waiting_.empty() && (complete() || waiting_.size() > kDense.lines);
+  }
   /// Appends the next segments; `finish`: the run ends with what is there.
   void advance(bool finish, Segments& out);
 
  private:
-  static constexpr std::size_t kWindow = 240;  ///< lines in one fit
-  static constexpr std::size_t kOverlap = 60;  ///< of which so many at its end are fitted again with what follows
+  /// Lines in one fit, and how many of these at its end are fitted again with what follows.
+  struct Window {
+    std::size_t lines, overlap;
+  };
+  static constexpr Window kDense{240, 60};
+  static constexpr Window kTube{60, 12};  ///< takes a few milliseconds, and what is further off makes no difference
   static constexpr std::size_t kShortest = 6;  ///< lines that are worth a fit
-  static constexpr std::size_t kDegree = 5;
 
   /// A spline by chord length, counted from the start of the first waiting line, and the path that it makes.
   struct Fit {
+    Polyline polyline;
     std::vector<double> knots;
     std::vector<Vector> points;
-    std::vector<double> places;               ///< of the lines' ends, the first line's start in front
-    std::shared_ptr<const PathSegment> head;  ///< final
+    std::vector<double> deviations_mm;                      ///< bound of its distance from each line
+    std::vector<std::shared_ptr<const PathSegment>> heads;  ///< final
     std::shared_ptr<const PathSegment> tail;  ///< to the end of the last line; what follows may find a better way
     std::size_t cut = 0;                      ///< knot between the two
-    double deviation_mm = 0;                  ///< bound of its distance from the lines
   };
 
   [[nodiscard]] bool complete() const noexcept;
   [[nodiscard]] std::size_t run_length() const noexcept;
-  [[nodiscard]] bool fit(std::size_t lines, bool ends, Fit& fit) const;
-  [[nodiscard]] bool solve(const std::vector<Vector>& vertices, double step, Fit& fit) const;
-  [[nodiscard]] bool make_segments(bool ends, Fit& fit) const;
+  [[nodiscard]] bool goes_on() const noexcept { return before_.tail != nullptr; }
+  /// Parameter on the first waiting line where the spline begins.
+  [[nodiscard]] double begin() const noexcept;
+  [[nodiscard]] Polyline polyline(std::size_t lines) const;
+  [[nodiscard]] bool fit(bool finish, Fit& fit) const;
+  [[nodiscard]] bool fit_dense(std::size_t lines, bool ends, Fit& fit) const;
+  [[nodiscard]] bool fit_tube(std::size_t lines, bool ends, Fit& fit) const;
+  [[nodiscard]] bool least_squares(double step, Fit& fit) const;
+  /// The knots that the window before keeps, these, and the end's; false where there are too few.
+  [[nodiscard]] bool set_knots(const std::vector<double>& inner, Fit& fit) const;
+  [[nodiscard]] std::size_t kept_points() const noexcept;
+  /// Cuts it at these knots, and at the last one into head and tail unless it `ends`.
+  [[nodiscard]] bool make_segments(std::vector<std::size_t> cuts, std::size_t overlap, bool ends, Fit& fit) const;
   [[nodiscard]] std::shared_ptr<const PathSegment> segment(const Fit& fit, std::shared_ptr<const Curve> curve,
                                                            double from, double to) const;
   void take(Fit fit, Segments& out);

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "planner_bench.hpp"
 
@@ -362,6 +364,50 @@ TEST(ShortLines, RunAsFastAsTheCurveTheyCameFromHoweverShort) {
   EXPECT_NEAR(machined(rose(0.05), 0.01) / fifths, 1, 0.02);
   EXPECT_NEAR(machined(rose(0.1, 0.001), 0.01) / fifths, 1, 0.05);
 }
+
+TEST(ShortLines, WhoseChordsMissTheCurveByMoreThanTheToleranceAreNotStoppedAtEachCorner) {
+  const double fine = machined(rose(0.1), 0.01);
+  EXPECT_LT(machined(rose(0.3), 0.01), 1.15 * fine);
+  EXPECT_LT(machined(rose(0.5), 0.01), 1.5 * fine);
+}
+
+/// Lines of all lengths and directions in space, now dense, now coarse, with corners among them.
+Trace wandering(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  Trace corners{{0, 0, 0}};
+  Vector ahead{1, 0, 0}, turn{};
+  double line = 1;
+  for (int i = 0; i < 300; ++i) {
+    if (i % 40 == 0) {
+      line = std::exp(uniform(std::log(0.05), std::log(3.0)));
+      for (double& c : turn) c = uniform(-0.4, 0.4);
+    }
+    for (std::size_t c = 0; c < 3; ++c) ahead[c] += turn[c] * std::min(1.0, 2 * line) + uniform(-0.1, 0.1);
+    if (uniform(0, 1) < 0.02) ahead = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+    const double length = distance(ahead, {0, 0, 0});
+    const double step = line * uniform(0.3, 1);
+    Vector next = corners.back();
+    for (std::size_t c = 0; c < 3; ++c) {
+      ahead[c] /= length;
+      if (std::abs(next[c] + step * ahead[c]) > 45) ahead[c] = -ahead[c];
+      next[c] += step * ahead[c];
+    }
+    corners.push_back(next);
+  }
+  return corners;
+}
+
+class WanderingLines : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(WanderingLines, KeepToleranceAndLimits) {
+  const double tolerance = std::array{0.002, 0.01, 0.05, 0.3}[GetParam() % 4];
+  machined(wandering(GetParam()), tolerance);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, WanderingLines, ::testing::Range(1U, 25U));
 
 TEST(ShortLines, OfASlowClientEndExactly) {
   Trace corners = rose(0.2);

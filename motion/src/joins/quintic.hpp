@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "rmac/motion/pose.hpp"
+
+namespace rmac::quintic {
+
+/// Splines of degree 5 in space as plain knots and control points, for the fits that look for them. Knots are simple
+/// but for the ends. Curves that are travelled are `curves::SpaceCurve`s.
+inline constexpr std::size_t kDegree = 5;
+
+/// The six basis functions that live at a place, of control points `first` to `first` + 5.
+struct Basis {
+  std::size_t first = 0;
+  std::array<double, kDegree + 1> values{};
+};
+
+/// Index of the knot that begins the span of x; `count` is the number of control points.
+[[nodiscard]] std::size_t span_of(const std::vector<double>& knots, std::size_t count, double x);
+/// The NURBS Book, A2.2.
+[[nodiscard]] Basis basis(const std::vector<double>& knots, std::size_t count, double x);
+/// Third derivatives of the same functions.
+[[nodiscard]] Basis third_derivatives(const std::vector<double>& knots, std::size_t count, double x);
+[[nodiscard]] Vector value(const Basis& basis, const std::vector<Vector>& points);
+/// Length of each control point of the second derivative: on the span that begins with knot k, |S''| is at most the
+/// largest of those from k - 5 to k - 2.
+[[nodiscard]] std::vector<double> second_derivative_hull(const std::vector<double>& knots,
+                                                         const std::vector<Vector>& points);
+
+}  // namespace rmac::quintic
