@@ -6,6 +6,7 @@
 
 #include "planner/laid_path.hpp"
 #include "planner/published_plan.hpp"
+#include "planner/stop_distance.hpp"
 #include "time_law/law_check.hpp"
 #include "time_law/window.hpp"
 
@@ -184,7 +185,7 @@ struct Planner::Impl {
 
   [[nodiscard]] std::optional<std::vector<LawPiece>> law_between(const PathState& from, double s_end, FeedRule rule,
                                                                  const std::vector<LawPiece>* before) const {
-    return plan_window(path().view(), model.joints, {from, s_end, rule, before});
+    return plan_window(path().view(), model.joints, {from, s_end, rule, before, before != nullptr});
   }
 
   /// The law of a window from rest, which may end earlier than asked (`end.hard` is then cleared): what is too much for
@@ -253,7 +254,8 @@ struct Planner::Impl {
     const PathState from = p.state_at(now_s(p, cycle));
     const WindowEnd end = s_stop ? WindowEnd{*s_stop, false} : window_end(from.s, kRampsAtOnce);
     const double allowed = s_stop ? std::max(factor, p.override_factor) : factor;
-    auto law = law_between(from, end.s, feed(allowed), &p.plan->law);
+    auto law = plan_window(path().view(), model.joints,
+                           {from, end.s, feed(allowed), &p.plan->law, s_stop || allowed == p.override_factor});
     if (!law) return false;
     auto plan = std::make_unique<Plan>();
     plan->start_cycle = cycle;
@@ -265,18 +267,11 @@ struct Planner::Impl {
   bool stop(const ServoProgress& progress) {
     const PublishedPlan& p = *base();
     const PathState from = p.state_at(now_s(p, earliest(p, progress.cycle + lead())));
-    JointPoint point;
-    if (from.v <= 0 || path().view().evaluate(from.s, 1, 1, point) != KinematicsStatus::Ok) return no_plan(progress);
-    Ramp ramp;
-    for (std::size_t k = 0; k < model.joints.size(); ++k)
-      ramp.limit(model.joints[k], std::max(std::abs(point.d[1][k]), 1e-9));
-    // First the acceleration has to be taken back to zero; then a ramp down.
-    const double t0 = std::max(from.a, 0.0) / ramp.jerk;
-    const double v_top = from.v + 0.5 * std::max(from.a, 0.0) * t0;
-    const double shortest = from.v * t0 + from.a * t0 * t0 / 3 + ramp.length(v_top);
+    if (from.v <= 0) return no_plan(progress);
+    const double shortest = stop_distance(path().view(), model.joints, from);
     // The next demanded rest on the followed plan ends every search: the plan itself comes to rest there.
     const double rest = path().next_rest(from.s, base_end_s());
-    for (const double stretch : {1.02, 1.08, 1.2, 1.4, 1.8, 2.5, 4.0}) {
+    for (const double stretch : {1.02, 1.08, 1.2, 1.4, 1.8, 2.5, 4.0, 7.0}) {
       const double s_end = from.s + shortest * stretch;
       if (s_end >= rest - kSamePlace) return end_at_rest(progress, rest);
       if (divert(progress, s_end)) return true;

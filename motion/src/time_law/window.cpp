@@ -214,8 +214,9 @@ void yield_to_begin(LawProblem& problem) {
 }
 
 /// Lets the next law start from the one before. Its state lies at the edge of what is viable, so the first stretch may
-/// use most of the margin that the law before left; and what that law had is the first guess (eq. 8).
-void resume_from(LawProblem& problem, const std::vector<LawPiece>& before) {
+/// use most of the margin that the law before left; and what that law had is the first guess (eq. 8). Where a feed
+/// gives way to that law (`yields`), it does so as far as the law went.
+void resume_from(LawProblem& problem, const std::vector<LawPiece>& before, bool yields) {
   constexpr double kRelaxed = 0.9997 / kMargin;
   const double span = problem.nodes.back() - problem.nodes.front();
   problem.travelled_before.assign(problem.intervals() + 2, 0.0);
@@ -229,6 +230,8 @@ void resume_from(LawProblem& problem, const std::vector<LawPiece>& before) {
     const double ds = middle - at.start.s;
     const double q = at.start.v * at.start.v + 2 * at.start.a * ds + at.slope * ds * ds;
     problem.travelled_before[k + 1] = std::max(0.0, 0.995 * (q - h * h / 4 * at.slope));
+    const double most = q + h * std::abs(at.start.a + at.slope * ds) + h * h / 4 * std::abs(at.slope);
+    if (yields) problem.speed_cap[k] = std::max(problem.speed_cap[k], 1.01 * most);
   }
 }
 
@@ -259,7 +262,7 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
   {  // grid steps resolve the ramps to full speed
     double a = kInfinity, j = kInfinity;
     for (const JointLimits& joint : joints) a = std::min(a, joint.max_acceleration), j = std::min(j, joint.max_jerk);
-    double v = 0;
+    double v = window.begin.v;
     for (std::size_t i = path.find(window.begin.s, 1); i <= path.find(window.s_end, -1); ++i)
       v = std::max(v, feed.bound(path.segment(i)));
     for (const JointLimits& joint : joints) v = std::min(v, 2 * joint.max_speed);
@@ -287,13 +290,14 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
   if (JointPoint point; !first && window.begin.a > 0 && path.evaluate(a, 1, 1, point) == KinematicsStatus::Ok) {
     const double cap = speed_bound(path.segment(path.find(a, 1)), point, joints, feed);
     const double room = cap * cap - window.begin.v * window.begin.v;
-    start_step = std::clamp(0.5 * room / window.begin.a, std::min(1e-4, start_step), start_step);
+    // Without room, the feed gives way.
+    if (room > 0) start_step = std::clamp(0.5 * room / window.begin.a, std::min(1e-4, start_step), start_step);
   }
   problem.nodes = make_grid(path, a, b, window.begin.s, window.s_end, start_step, last->length, coarsest);
   if (!fill(problem, path, joints, feed)) return std::nullopt;
   const bool yields = problem.begin.v * problem.begin.v > problem.speed_cap[0] * (1 + 1e-5);
   if (yields) yield_to_begin(problem);
-  if (window.before != nullptr && !from_rest) resume_from(problem, *window.before);
+  if (window.before != nullptr && !from_rest) resume_from(problem, *window.before, yields && window.same_feed);
 
   std::optional<LawPiece> from_standing;
   if (first) from_standing = {0, {window.begin.s, 0, 0}, first->jerk, first->time, LawPiece::Kind::Jerk};

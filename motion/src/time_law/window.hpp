@@ -17,7 +17,8 @@ struct Window {
   double s_end = 0;
   FeedRule feed;
   const std::vector<LawPiece>* before =
-      nullptr;  ///< the law that the window's begin state was taken from: a good first guess
+      nullptr;             ///< the law that the window's begin state was taken from: a good first guess
+  bool same_feed = false;  ///< `before` was made for this feed: where it is still faster, this law may be so too
 };
 
 /// The fastest checked time law of a window, beginning at time 0, or nothing when none passed its check. From rest
