@@ -32,6 +32,7 @@ class Installation(unittest.TestCase):
         self.one("usr/sbin/rmacd")
         self.one("usr/bin/rmac")
         self.one("usr/bin/rmac-vdrive")
+        self.one("usr/bin/rmac-vmodbus")
         self.one("usr/share/rmac/rmac-vdrive.eds")
         self.one("usr/lib/**/rmac/drivers/mill/3-axis/DMACXYZ/device.json")
         self.one("usr/lib/**/rmac/drivers/mill/3-axis/DMACXYZ/DMACXYZKinematics.so")
