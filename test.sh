@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the packages, checks the layout of the code, builds, runs every test: as released, then under the address and
+# Installs the packages, checks the layout of the code, builds, runs a scenario in the emulated machine and every test: as released, then under the address and
 # undefined-behaviour sanitizers.
 #   --fast   as released only
 #   --lint   clang-tidy over all our sources too
@@ -31,6 +31,10 @@ build() { # preset
 
 for preset in "${presets[@]}"; do
   build "$preset"
+  if [ "$preset" = release ]; then
+    echo "== bench: the emulated machine"
+    tests/bench/run canopen || [ $? -eq 77 ]  # where it cannot be run, it says so
+  fi
   echo "== $preset: tests"
   ctest --preset "$preset"
 done

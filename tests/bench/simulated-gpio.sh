@@ -1,4 +1,4 @@
-# Sourced inside the emulated machine: a simulated GPIO chip with the label io, of 8 lines. boot.sh brought its module.
+# Sourced or run inside the emulated machine: a simulated GPIO chip with the label io, of 8 lines. boot.sh brought its module.
 insmod "$GPIO_SIM"
 io=/sys/kernel/config/gpio-sim/io
 mkdir -p $io/bank0

@@ -10,11 +10,15 @@ import subprocess
 import sys
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "system"))
+import client  # noqa: E402
+
 BUILD = pathlib.Path(sys.argv[1])
 RUN = pathlib.Path("/run/bench")
 TREE = RUN / "drivers"
 HEARTBEAT_MS = 50
 COUNTS_PER_REVOLUTION = 131072
+HAS_GPIO = pathlib.Path(os.environ.get("GPIO_SIM", "/none")).exists()
 
 
 def call(*words):
@@ -33,6 +37,39 @@ def wait_for(what, reached, seconds=30.0):
         time.sleep(0.02)
 
 
+def press(pressed):
+    """The two contacts of the emergency stop: line 0 opens, line 1 closes."""
+    chip = next(pathlib.Path("/sys/devices/platform").glob("gpio-sim.*/gpiochip*"))
+    for line, up in ((0, not pressed), (1, pressed)):
+        (chip / f"sim_gpio{line}/pull").write_text("pull-up" if up else "pull-down")
+
+
+def state():
+    return json.loads(rmac("status", "--json"))["state"]
+
+
+def check_emergency_stop(*drives):
+    before = time.monotonic()
+    press(True)
+    wait_for("every drive stops", lambda: all(
+        any(t > before and drive == node and change == "quick-stop" for t, drive, change, _ in bus.changes())
+        for bus in drives for node in bus.states()), 5)
+    late_ms = [(next(t for t, drive, change, _ in bus.changes() if t > before and drive == node and change == "quick-stop") - before) * 1e3
+               for bus in drives for node in bus.states()]
+    print("emergency stop: quick stop after " + ", ".join(f"{ms:.1f} ms" for ms in late_ms))
+    assert max(late_ms) <= 20, "an edge acts in the cycle after it"
+    wait_for("the machine says so", lambda: state() == "EmergencyStop")
+    operator = client.Client(7402, "operator")
+    operator.call("authority.acquire")
+    assert "release it" in operator.refusal("RMAC_CAM.Reset").message
+    press(False)
+    time.sleep(0.1)  # longer than the debounce time
+    operator.call("RMAC_CAM.Reset")
+    operator.close()
+    wait_for("the drives hold again", lambda: state() == "Idle" and all(
+        set(bus.states().values()) == {"operation-enabled"} for bus in drives))
+
+
 def prepare():
     for name in ("vcan0", "vcan1"):
         call("ip", "link", "add", "dev", name, "type", "vcan")
@@ -48,11 +85,19 @@ def prepare():
     for joint in device["Joints"]:  # a bus answers one cycle later than the simulated drives do: softer gains
         joint["Gains"] = [400, 15000, 6.5]
         joint["ServoControlLaw"].pop("Parameters", None)  # nothing hangs on these drives
+    for axis, turn in enumerate((2, 2, 1)):
+        device["Actuators"][axis]["HomingTurn"] = turn
     device["DigitalControlInterface"] = {
         "Module": "CANopenInterface",
-        "Parameters": {"vcan0.node": [1, 2, 3], "vcan1.node": 4, "vcan1.mode": 3, "vcan0.tpdo": "6041:00/16 6064:00/32",
+        "Parameters": {"vcan0.node": [1, 2, 3], "vcan1.node": 4, "vcan1.mode": 3, "vcan0.homing_method": [7, 8, 10],
                        "vcan1.velocity_units_per_rpm": COUNTS_PER_REVOLUTION / 60, "eds": "rmac-vdrive",
                        "heartbeat_ms": HEARTBEAT_MS}}
+    if HAS_GPIO:
+        call("bash", pathlib.Path(__file__).parent / "simulated-gpio.sh")
+        device["DigitalIOInterface"] = {
+            "Module": "GPIOInterface", "Inputs": {"EmergencyStop": 0}, "Outputs": {"Coolant": 0},
+            "Parameters": {"chip": "io", "input_0": "!estop-nc estop-no", "output_0": "coolant"}}
+        press(False)
     (folder / "canopen").mkdir()
     (folder / "canopen/rmac-vdrive.eds").write_text(call(BUILD / "bin/rmac-vdrive", "--print-eds"))
     (folder / "device.json").write_text(json.dumps(device))
@@ -98,6 +143,12 @@ def main():
         [BUILD / "bin/rmac", "--port", "7402", "status", "--json"], capture_output=True).returncode == 0)
     rmac("load", "DMACXYZ")
     print("loaded:", table.states(), head.states())
+    rmac("home")
+    joints = json.loads(rmac("status", "--json"))["joints"]
+    print("homed:", joints, {change for *_, change, _ in table.changes()})
+    assert all(abs(joint) < 1 for joint in joints), "each stands near its home, which is its zero"
+    if HAS_GPIO:
+        check_emergency_stop(table, head)
     rmac("jog", "--joint", 0, "--distance", 5)
     status = json.loads(rmac("status", "--json"))
     print("after a jog of 5 mm:", json.dumps(status)[:600])
