@@ -1,19 +1,14 @@
-#include "vdrive/axis.hpp"
-
 #include <cmath>
 #include <numbers>
+
+#include "vdrive/axis_parameters.hpp"
 
 namespace rmac::vdrive {
 namespace {
 
 constexpr double kStep_s = 125e-6;  // of the drive's own loops
-// Bandwidths of the loops, well apart from each other and from the current loop's 5000 rad/s.
-constexpr double kVelocityBandwidth = 700;  // 1/s
-constexpr double kPositionBandwidth = 150;  // 1/s
-constexpr double kIntegral = 50;            // 1/s
 constexpr double kStandingRevolutionsPerS = 0.02;
 
-constexpr std::uint16_t kHalt = 0x0100;
 constexpr std::uint16_t kFollowingError = 0x8611;
 constexpr std::uint16_t kOvertemperature = 0x4310;
 
@@ -22,17 +17,6 @@ unsigned bit(unsigned number, bool set) {
 }
 
 }  // namespace
-
-/// What the steps of one advance need of the dictionary.
-struct Axis::Parameters {
-  double velocity, acceleration, deceleration, quick_stop, homing_acceleration, fast, slow, top_velocity;
-  double target_velocity, target_torque, most_torque, least_position, most_position;
-  double window, window_s, velocity_window, velocity_window_s, error_window, error_s;
-  double negative_limit, positive_limit, cam_from, cam_to, index, home_offset, slow_velocity;
-  OptionCodes options;
-  int homing_method;
-  std::uint16_t controlword;
-};
 
 Axis::Axis(Dictionary& dictionary, const fieldbus::AxisPlantParameters& plant, Report report)
     : dictionary_(dictionary),
@@ -224,135 +208,6 @@ void Axis::step(const Parameters& parameters, double dt) {
   plant_.advance(torque_nm_, !power_.powered(), dt);
   watch(parameters, dt);
   power_.proceed(standing(), parameters_->options);
-}
-
-void Axis::operate(const Parameters& parameters, double dt) {
-  const bool halt = (parameters.controlword & kHalt) != 0;
-  switch (mode_) {
-    case Mode::CyclicSyncTorque: {
-      const double torque = parameters.target_torque;
-      follow_actual();
-      torque_nm_ = torque;
-      const double top = mechanics_.max_speed_rpm / 60 * mechanics_.counts_per_revolution;
-      const bool too_fast = std::abs(velocity()) >= top && torque * velocity() > 0;
-      limited_ = (torque > 0 && at_positive_limit()) || (torque < 0 && at_negative_limit());
-      // Into a limit switch it brakes instead, as far as that does not turn it round within the step.
-      const double to_rest = -plant_.speed_rad_s() * mechanics_.inertia_kg_m2() / dt;
-      if (limited_) torque_nm_ = std::clamp(to_rest, -mechanics_.rated_torque_nm, mechanics_.rated_torque_nm);
-      if (too_fast) torque_nm_ = 0;
-      break;
-    }
-    case Mode::CyclicSyncPosition:
-      setpoint_ = std::clamp(setpoint_, parameters.least_position, parameters.most_position);
-      follow_setpoint(dt);
-      break;
-    case Mode::CyclicSyncVelocity:
-      demand_.acceleration = 0;
-      demand_.velocity = parameters.target_velocity;
-      demand_.position += demand_.velocity * dt;
-      break;
-    case Mode::ProfileVelocity: {
-      const double wanted = halt ? 0 : parameters.target_velocity;
-      const bool slows = std::abs(wanted) < std::abs(demand_.velocity) || wanted * demand_.velocity < 0;
-      demand_.ramp(wanted, slows ? parameters.deceleration : parameters.acceleration, dt);
-      break;
-    }
-    case Mode::ProfilePosition:
-      if (halt) {
-        demand_.ramp(0, parameters.deceleration, dt);
-      } else {
-        position_profile(parameters, dt);
-      }
-      break;
-    case Mode::Homing:
-      home(parameters, dt);
-      break;
-    default:
-      follow_actual();
-      break;
-  }
-}
-
-/// Along a straight line to the setpoint, which it reaches when the next one is due.
-void Axis::follow_setpoint(double dt) {
-  if (setpoint_left_s_ < dt / 2) {
-    demand_.position = setpoint_;
-    demand_.velocity = demand_.acceleration = 0;
-    return;
-  }
-  demand_.velocity = (setpoint_ - demand_.position) / std::max(setpoint_left_s_, dt);
-  demand_.acceleration = 0;
-  demand_.position += demand_.velocity * dt;
-  setpoint_left_s_ -= dt;
-}
-
-void Axis::position_profile(const Parameters& parameters, double dt) {
-  const double target = std::clamp(target_, parameters.least_position, parameters.most_position);
-  limited_ = target != target_;
-  const bool arrived =
-      demand_.approach(target, parameters.velocity, parameters.acceleration, parameters.deceleration, dt);
-  if (arrived && next_target_) {
-    target_ = *next_target_;
-    next_target_.reset();
-    at_target_ = false;
-    if (!new_setpoint_before_) acknowledges_ = false;
-  }
-}
-
-void Axis::home(const Parameters& parameters, double dt) {
-  const bool start = (parameters.controlword & 0x10) != 0;
-  const int method = parameters.homing_method;
-  if (start && !homes_before_ && Homing::knows(method)) homing_.start(method);
-  if (!start && homing_.state() == Homing::State::Running) homing_.stop();
-  homes_before_ = start;
-  const double shaft_now = shaft();
-  const double turn = std::floor((shaft_now - parameters_->index) / mechanics_.counts_per_revolution);
-  const bool in_cam = shaft_now >= parameters_->cam_from && shaft_now <= parameters_->cam_to;
-  const int direction = homing_.step({.negative_limit = at_negative_limit(),
-                                      .positive_limit = at_positive_limit(),
-                                      .home_switch = in_cam,
-                                      .index = turn != index_turn_,
-                                      .standing = standing()});
-  index_turn_ = turn;
-  const bool halt = (parameters.controlword & kHalt) != 0;
-  const double velocity = halt ? 0 : direction * (homing_.fast() ? parameters.fast : parameters.slow);
-  demand_.ramp(velocity, parameters.homing_acceleration, dt);
-  if (homing_.found()) {
-    // The position here becomes the home offset (607Ch); what the loops follow moves with it.
-    const double shift = parameters_->home_offset - position();
-    offset_ += shift;
-    demand_.position += shift;
-    setpoint_ = target_ = demand_.position;
-  }
-}
-
-/// Into a closed limit switch no demand goes on: it comes to rest on the quick stop's deceleration and stays.
-void Axis::stop_at_limits(const Demand& before, const Parameters& parameters, double dt) {
-  const bool into = (demand_.velocity > 0 && at_positive_limit()) || (demand_.velocity < 0 && at_negative_limit());
-  if (!into) return;
-  limited_ = true;
-  demand_ = before;
-  demand_.ramp(0, parameters.quick_stop, dt);
-}
-
-void Axis::brake(const Parameters& parameters, double dt) {
-  double deceleration = parameters.quick_stop;
-  if (power_.braking() == Braking::SlowDown) deceleration = parameters.deceleration;
-  const double possible = mechanics_.rated_torque_nm / mechanics_.inertia_kg_m2() * counts_per_radian();
-  if (power_.braking() == Braking::Torque) deceleration = possible;
-  demand_.ramp(0, std::min(deceleration, possible), dt);
-  torque_nm_ = loops(parameters, dt);
-}
-
-double Axis::loops(const Parameters& parameters, double dt) {
-  const double nm_per_count = mechanics_.inertia_kg_m2() / counts_per_radian();
-  const double position_error = demand_.position - position();
-  const double velocity_error = demand_.velocity - velocity();
-  const double gain = nm_per_count * kVelocityBandwidth * kPositionBandwidth;
-  integral_nm_ += gain * kIntegral * position_error * dt;
-  integral_nm_ = std::clamp(integral_nm_, -parameters.most_torque, parameters.most_torque);
-  return nm_per_count * (demand_.acceleration + kVelocityBandwidth * velocity_error) + gain * position_error +
-         integral_nm_;
 }
 
 void Axis::watch(const Parameters& parameters, double dt) {

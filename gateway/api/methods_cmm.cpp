@@ -76,7 +76,10 @@ void add_cmm_moves(const auto& add) {
   const auto y = [] { return number("y", "mm"); };
   const auto z = [] { return number("z", "mm"); };
   const auto speed = [](const char* name = "Speed") { return number(name, "mm/s").above(0); };
-  add(command("RMAC_CAM.Home", "Moves all joints to their home position, zero, from rest.", Effect::Starts)
+  add(command("RMAC_CAM.Home",
+              "Has the drives look for home that device.json gives a HomingTurn; where there are none, moves all "
+              "joints to their home position, zero. From rest.",
+              Effect::Starts)
           .does([](Call& call) { return call.machine.cam().home(); }));
   add(command("RMAC_CAM.MoveToXYZ", "Moves the tip to a point at a speed.", Effect::Queues)
           .takes(move_id(), x(), y(), z(), speed())

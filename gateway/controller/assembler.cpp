@@ -58,7 +58,8 @@ Expected<> add_drives(const sdk::DeviceObject& device, const ModuleLoader& loade
   for (const sdk::Actuator& actuator : device.actuators) {
     auto at = place(fmt::format("actuator {}", parts.actuators.size()), actuator.bus, actuator.axis);
     if (!at) return tl::unexpected(at.error());
-    parts.actuators.push_back({std::move(at->first), at->second, actuator.scale});
+    parts.actuators.push_back(
+        {std::move(at->first), at->second, actuator.scale, static_cast<std::uint8_t>(actuator.homing_turn)});
   }
   for (const sdk::Spindle& spindle : device.spindles) {
     auto at = place(fmt::format("spindle {}", parts.spindles.size()), spindle.bus, spindle.axis);

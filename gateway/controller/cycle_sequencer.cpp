@@ -35,6 +35,8 @@ const char* describe(StopCause cause) noexcept {
       return "the jog has come to rest, as its client asked";
     case StopCause::MoveDone:
       return "the machine has come to rest: the one move that was to be done is done";
+    case StopCause::Homed:
+      return "the drives have found home, and the machine stands there";
     case StopCause::RetraceEnded:
       return "the machine has come to rest at the end of its way back; FeedResume goes forward again";
   }
@@ -94,6 +96,13 @@ Expected<> CycleSequencer::start_positioning(const CycleObservation& seen, std::
   return {};
 }
 
+Expected<> CycleSequencer::start_homing(const CycleObservation& seen) {
+  if (auto started = start_positioning(seen, std::nullopt); !started) return started;
+  homing_ = true;
+  homings_before_ = seen.homings;
+  return {};
+}
+
 Expected<> CycleSequencer::check_retrace(const CycleObservation& seen) const {
   if (auto fine = refuse_when_faulted("FeedRetrace"); !fine) return fine;
   if (state_ != CycleState::Holding) {
@@ -134,6 +143,7 @@ Expected<> CycleSequencer::stop_and_clear() {
 }
 
 Expected<> CycleSequencer::hold() {
+  if (homing_) return stop();  // there is no path to go on with
   if (state_ == CycleState::Running) state_ = CycleState::Holding;
   return {};
 }
@@ -186,7 +196,7 @@ void CycleSequencer::spindle_commanded(double timeout_s) noexcept {
 }
 
 PathCommand CycleSequencer::wanted(const CycleObservation& seen) noexcept {
-  if (state_ != CycleState::Running) return PathCommand::Stop;
+  if (state_ != CycleState::Running || homing_) return PathCommand::Stop;
   // Motion under way is not interrupted by a spindle command: it began with the speed it needed.
   if (spindle_wait_ && !positioning_ && seen.at_rest) return PathCommand::Stop;
   if (retracing_) return PathCommand::Retrace;
@@ -212,7 +222,11 @@ CycleSequencer::Verdict CycleSequencer::step(const CycleObservation& seen) noexc
     state_ = CycleState::Holding;
     verdict.came_to_rest = StopCause::RetraceEnded;
   }
-  if (state_ != CycleState::Running) retracing_ = false;
+  if (homing_ && state_ == CycleState::Running && seen.follows && seen.homings != homings_before_) {
+    state_ = CycleState::Idle;
+    verdict.came_to_rest = StopCause::Homed;
+  }
+  if (state_ != CycleState::Running) retracing_ = homing_ = false;
   if (state_ == CycleState::Running && !retracing_ && mode_ == sdk::CycleMode::Manual && seen.at_rest &&
       seen.moves_done > done_at_start_) {
     state_ = CycleState::Idle;

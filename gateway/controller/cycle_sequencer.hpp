@@ -20,10 +20,12 @@ struct CycleObservation {
   bool faulted = false;          ///< the servo loop is
   bool emergency_stop = false;   ///< and that is why
   bool spindles_at_speed = true;
+  bool follows = false;       ///< joints follow the plan
+  std::uint32_t homings = 0;  ///< that the drives have completed
 };
 
 /// Why the machine came to rest.
-enum class StopCause : std::uint8_t { CycleStop, StopNow, JogLapsed, JogEnded, MoveDone, RetraceEnded };
+enum class StopCause : std::uint8_t { CycleStop, StopNow, JogLapsed, JogEnded, MoveDone, RetraceEnded, Homed };
 
 /// What happened, and what to do to go on.
 [[nodiscard]] const char* describe(StopCause cause) noexcept;
@@ -41,6 +43,9 @@ class CycleSequencer {
   /// A jog that lasts while it is renewed is under way, and not yet told to stop.
   [[nodiscard]] bool jogs() const noexcept { return state_ == CycleState::Running && jog_until_s_.has_value(); }
   void renew_jog(const CycleObservation& seen, double lasts_s) noexcept { jog_until_s_ = seen.t_s + lasts_s; }
+  /// Has the drives home, from rest.
+  [[nodiscard]] Expected<> start_homing(const CycleObservation& seen);
+  [[nodiscard]] bool homes() const noexcept { return homing_; }
   /// Whether a retrace may begin.
   [[nodiscard]] Expected<> check_retrace(const CycleObservation& seen) const;
   /// Runs back what the planner readied; then the machine is Holding again.
@@ -82,6 +87,8 @@ class CycleSequencer {
   StopCause stop_cause_ = StopCause::CycleStop;  ///< of the stop under way
   bool positioning_ = false;
   bool retracing_ = false;
+  bool homing_ = false;
+  std::uint32_t homings_before_ = 0;
   std::optional<double> jog_until_s_;
   bool spindle_wait_ = false;
   double spindle_timeout_s_ = 0;

@@ -117,6 +117,16 @@ std::string describe(const ServoFault& fault, const Mechanism* mechanism) {
       return fmt::format("{}: {}, then reset", at, io_text(mechanism));
     case ServoFault::Kind::EmergencyStop:
       return fmt::format("{} stopped the machine; release it, then reset", input_name(fault.index, mechanism));
+    case ServoFault::Kind::HomingFailed:
+      return fault.bound > 0
+                 ? fmt::format(
+                       "{}: the drive found no home within {:.3g} s (statusword {:04X}h); check its switch and "
+                       "its homing speeds, then reset",
+                       at, fault.bound, word)
+                 : fmt::format(
+                       "{}: the drive gave up looking for home (statusword {:04X}h); check its switch and its "
+                       "homing method, then reset",
+                       at, word);
     case ServoFault::Kind::LimitSwitch:
       return fmt::format("{} is reached; reset, then jog the axis off it: nothing keeps it from moving on towards it",
                          input_name(fault.index, mechanism));

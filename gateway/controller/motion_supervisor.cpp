@@ -40,6 +40,8 @@ CycleObservation MotionSupervisor::observe(const ServoStatus& status) {
   seen.at_rest = !status.moving && mechanism_->planner.at_rest(status.progress);
   seen.retraced = seen.at_rest && mechanism_->planner.retraced(status.progress);
   seen.moves_done = status.moves_done;
+  seen.follows = status.follows;
+  seen.homings = status.homings;
   seen.faulted = status.state == ServoState::Faulted;
   seen.emergency_stop = seen.faulted && status.fault.kind == ServoFault::Kind::EmergencyStop;
   seen.spindles_at_speed = spindles_at_speed(status);
@@ -66,6 +68,11 @@ void MotionSupervisor::notice_fault() {
 }
 
 void MotionSupervisor::apply_verdict(const CycleSequencer::Verdict& verdict, const ServoStatus& status) {
+  if (wishes_.home != sequencer_.homes()) {
+    wishes_.home = sequencer_.homes();
+    rebase_ = true;
+    link_.wishes.write(wishes_);
+  }
   if (mechanism_ && verdict.command) mechanism_->planner.command(*verdict.command);
   if (mechanism_ && verdict.clear_queue) {
     mechanism_->planner.clear();
@@ -137,7 +144,8 @@ MotionSupervisor::Pace MotionSupervisor::pace(const ServoStatus& status) {
   }
   const bool waiting = state == CycleState::Running && (left > 0 || sequencer_.waits_for_spindle());
   const bool coming_to_rest = status.moving || !mechanism_->planner.at_rest(status.progress);
-  const bool busy = waiting || coming_to_rest || state == CycleState::Stopping || status.state == ServoState::Enabling;
+  const bool busy = waiting || coming_to_rest || sequencer_.homes() || state == CycleState::Stopping ||
+                    status.state == ServoState::Enabling;
   return busy && !is_faulted(state) ? Pace::Busy : Pace::Calm;
 }
 
@@ -318,7 +326,7 @@ void MotionSupervisor::set_spindle(std::size_t spindle, double rpm) {
 
 std::size_t MotionSupervisor::moves_left() {
   const Turn turn(*this);
-  return count_moves();
+  return count_moves() + (sequencer_.homes() ? 1 : 0);
 }
 
 std::size_t MotionSupervisor::count_moves() {

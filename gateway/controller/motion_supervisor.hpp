@@ -79,7 +79,7 @@ class MotionSupervisor {
   void set_frames(const Frames& frames);
   void set_override(double percent);
   void set_spindle(std::size_t spindle, double rpm);
-  /// Moves queued and not yet done, those without motion included.
+  /// Moves queued and not yet done, those without motion included; homing by the drives is one.
   [[nodiscard]] std::size_t moves_left();
   [[nodiscard]] CycleState state();
   [[nodiscard]] CycleNow now();

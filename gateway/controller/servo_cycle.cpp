@@ -52,6 +52,7 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
   command_.frames = wishes.frames;
   command_.power = wishes.power;
   command_.reset = wishes.reset;
+  command_.home = wishes.home;
   command_.spindle_rpm = wishes.spindle_rpm;
   command_.outputs = wishes.outputs;
   if (!report_.follows) mechanism_->follower.hold_at(loop.hold_position().first(loop.joint_count()));
@@ -65,7 +66,8 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
   status_.state = report_.state;
   status_.fault = report_.fault;
   status_.follows = report_.follows;
-  status_.moving = report_.follows && setpoint.moving;
+  status_.moving = (report_.follows && setpoint.moving) || report_.state == ServoState::Homing;
+  status_.homings = report_.homings;
   if (report_.follows) status_.moves_done += setpoint.moves_done;
   status_.joint_count = static_cast<std::uint32_t>(loop.joint_count());
   status_.axis_count = static_cast<std::uint32_t>(loop.axis_count());
@@ -79,7 +81,7 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
 }
 
 void ServoCycle::fill_pose_set() noexcept {
-  if (status_.moving) {
+  if (status_.moving && status_.follows) {
     sample_.pose_set = command_.setpoint.pose;
     return;
   }
@@ -106,7 +108,7 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
     sample_.moving = status_.moving;
     sample_.move_id = command_.setpoint.move_id;
     sample_.s_mm = command_.setpoint.s_mm;
-    sample_.feed_set_mm_s = status_.moving ? command_.setpoint.feed_mm_s : 0;
+    sample_.feed_set_mm_s = status_.moving && status_.follows ? command_.setpoint.feed_mm_s : 0;
     sample_.feed_actual_mm_s = report_.feed_mm_s;
     fill_pose_set();
     sample_.pose_actual = report_.pose;

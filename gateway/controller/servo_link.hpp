@@ -16,6 +16,7 @@ namespace rmac::gateway {
 struct ServoWishes {
   bool power = false;
   bool reset = false;
+  bool home = false;
   Frames frames;
   std::array<double, kMaxSpindles> spindle_rpm{};
   std::uint64_t outputs = 0;
@@ -32,6 +33,7 @@ struct ServoStatus {
   bool follows = false;  ///< joints follow the plan, and may be moved
   bool moving = false;
   std::uint64_t moves_done = 0;
+  std::uint32_t homings = 0;
   std::uint32_t joint_count = 0;
   std::uint32_t axis_count = 0;
   std::array<double, kMaxJoints> position_set{};

@@ -114,6 +114,7 @@ std::vector<sdk::Actuator> actuators(const Json& list) {
     actuator.scale.rated_torque_nm = number(entry, "RatedTorque");
     actuator.scale.direction = entry.value("Direction", 1);
     actuator.scale.home_counts = entry.value("HomeCounts", std::int32_t{0});
+    actuator.homing_turn = entry.value("HomingTurn", 0);
     result.push_back(std::move(actuator));
   }
   return result;

@@ -8,8 +8,6 @@
 #include "rmac/motion/frame.hpp"
 
 namespace rmac::gateway {
-namespace {}  // namespace
-
 Expected<std::size_t> Cam::find_joint(int joint, const char* function) const {
   if (auto loaded = require_mechanism(function); !loaded) return tl::unexpected(loaded.error());
   const auto count = static_cast<int>(device_->joints.size());
@@ -64,6 +62,14 @@ Move Cam::make_joint_move(std::int64_t id, const JointTargetGeometry& target, st
 
 Expected<> Cam::home() {
   if (auto loaded = require_mechanism("Home"); !loaded) return loaded;
+  const bool by_drives = std::any_of(device_->actuators.begin(), device_->actuators.end(),
+                                     [](const sdk::Actuator& actuator) { return actuator.homing_turn > 0; });
+  if (by_drives && !supervisor_.mechanism()->virtual_mode()) {
+    return supervisor_.require_rest("Home").and_then([&] {
+      return supervisor_.command(
+          [](CycleSequencer& cycle, const CycleObservation& seen) { return cycle.start_homing(seen); });
+    });
+  }
   const std::size_t count = device_->joints.size();
   const ServoStatus now = link_.status.read();
   const bool there =

@@ -80,7 +80,8 @@ class Plan {
   /// Supported drive modes: bit 0 is mode 1, and so on (CiA 402-2, 6502h).
   void supports(const AxisConfig& axis, std::uint16_t offset) {
     const std::uint32_t bit = 1U << (static_cast<unsigned>(axis.mode) - 1);
-    check(of_axis({0x6502, 0}, offset), bit, bit, true);
+    const std::uint32_t homing = axis.homes ? 1U << (static_cast<unsigned>(DriveMode::Homing) - 1) : 0;
+    check(of_axis({0x6502, 0}, offset), bit | homing, bit | homing, true);
   }
 
   /// PDOs that a drive has by default would load the bus beside what is counted.

@@ -15,10 +15,10 @@ namespace rmac::fieldbus::canopen {
 namespace {
 
 // What the setpoints and answers of a mode need (CiA 402-2, 14 to 17 and 10).
-const char* default_setpoints(DriveMode mode) {
+const char* default_setpoints(DriveMode mode, bool homes) {
   switch (mode) {
     case DriveMode::CyclicSyncTorque:
-      return "6040:00/16 6071:00/16";
+      return homes ? "6040:00/16 6060:00/8 6071:00/16" : "6040:00/16 6071:00/16";
     case DriveMode::CyclicSyncPosition:
       return "6040:00/16 607A:00/32";
     default:
@@ -26,7 +26,8 @@ const char* default_setpoints(DriveMode mode) {
   }
 }
 
-const char* default_answers(DriveMode mode) {
+const char* default_answers(DriveMode mode, bool homes) {
+  if (homes) return "6041:00/16 6061:00/8 6064:00/32";
   return mode == DriveMode::ProfileVelocity ? "6041:00/16 606C:00/32" : "6041:00/16 6064:00/32 6077:00/16";
 }
 
@@ -74,6 +75,44 @@ Expected<std::vector<MappedObject>> contents(const Parameters& parameters, const
   return mapping(parameters, name, axis, otherwise);
 }
 
+SdoWrite homing_write(ObjectAddress object, std::size_t size, double value) {
+  SdoWrite write{object, std::vector<std::uint8_t>(size)};
+  const std::int64_t whole = std::llround(value);
+  for (std::size_t i = 0; i < size; ++i) write.bytes[i] = static_cast<std::uint8_t>(whole >> (8 * i));
+  return write;
+}
+
+/// How the drive looks for home by itself (CiA 402-2, 13). What is not given is left as it is set in the drive.
+void read_homing(Parameters& parameters, std::size_t axis, AxisConfig& config) {
+  constexpr double kMostUnsigned = 4294967295.0;
+  constexpr double kMostSigned = 2147483647.0;
+  constexpr double kAbsent = -1;
+  const double method = parameters.number_of_axis("homing_method", axis, 0, -128, 37);
+  const double fast = parameters.number_of_axis("homing_speed", axis, kAbsent, 1, kMostUnsigned);
+  const double slow = parameters.number_of_axis("homing_speed_slow", axis, kAbsent, 1, kMostUnsigned);
+  const double acceleration = parameters.number_of_axis("homing_acceleration", axis, kAbsent, 1, kMostUnsigned);
+  const double offset = parameters.number_of_axis("home_offset", axis, std::nan(""), -kMostSigned, kMostSigned);
+  if (method == 0) return;
+  if (config.mode != DriveMode::CyclicSyncTorque) {
+    parameters.refuse(fmt::format("homing_method is {} for axis {}, which does not move a joint", method, axis));
+  }
+  config.homes = true;
+  config.setup.push_back(homing_write({0x6098, 0}, 1, method));
+  if (fast != kAbsent) config.setup.push_back(homing_write({0x6099, 1}, 4, fast));
+  if (slow != kAbsent) config.setup.push_back(homing_write({0x6099, 2}, 4, slow));
+  if (acceleration != kAbsent) config.setup.push_back(homing_write({0x609A, 0}, 4, acceleration));
+  if (!std::isnan(offset)) config.setup.push_back(homing_write({0x607C, 0}, 4, offset));
+}
+
+/// Homing is another mode than the cycle's: both sides have to tell which they mean.
+bool tells_mode(const AxisConfig& config) {
+  const auto holds = [](const std::vector<MappedObject>& objects, std::uint16_t index) {
+    return std::any_of(objects.begin(), objects.end(),
+                       [index](const MappedObject& object) { return object.object.index == index; });
+  };
+  return holds(config.setpoints, 0x6060) && holds(config.answers, 0x6061);
+}
+
 Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const FindDescription& find) {
   AxisConfig config;
   config.node = static_cast<std::uint8_t>(parameters.number_of_axis("node", axis, 0, 1, 127));
@@ -97,12 +136,13 @@ Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const F
       static_cast<std::uint32_t>(parameters.number_of_axis("revision_number", axis, 0, 0, kMost));
   config.identity.serial_number =
       static_cast<std::uint32_t>(parameters.number_of_axis("serial_number", axis, 0, 0, kMost));
+  read_homing(parameters, axis, config);
   if (!parameters.sound()) return failure(MinorCode::InvalidParameterValue, parameters.problem());
 
   if (auto read = read_description(parameters, axis, find, config); !read) return tl::unexpected(read.error());
-  auto setpoints = contents(parameters, "rpdo", axis, config, 0x1600, default_setpoints(config.mode));
+  auto setpoints = contents(parameters, "rpdo", axis, config, 0x1600, default_setpoints(config.mode, config.homes));
   if (!setpoints) return tl::unexpected(setpoints.error());
-  auto answers = contents(parameters, "tpdo", axis, config, 0x1A00, default_answers(config.mode));
+  auto answers = contents(parameters, "tpdo", axis, config, 0x1A00, default_answers(config.mode, config.homes));
   if (!answers) return tl::unexpected(answers.error());
   if (auto known = check_setpoints(*setpoints); !known) {
     return failure(known.error().code, parameters.place("rpdo: " + known.error().message));
@@ -114,7 +154,13 @@ Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const F
   if (!setup) return failure(setup.error().code, parameters.place("setup: " + setup.error().message));
   config.setpoints = std::move(*setpoints);
   config.answers = std::move(*answers);
-  config.setup = std::move(*setup);
+  config.setup.insert(config.setup.end(), setup->begin(), setup->end());
+  if (config.homes && !tells_mode(config)) {
+    return failure(MinorCode::InvalidParameterValue,
+                   parameters.place(fmt::format("axis {} has a homing_method, so rpdo must hold 6060:00/8 and tpdo "
+                                                "6061:00/8, or neither be given",
+                                                axis)));
+  }
   return config;
 }
 

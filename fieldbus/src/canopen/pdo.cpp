@@ -36,6 +36,9 @@ void take_word(const AxisConfig& axis, std::uint16_t index, std::uint32_t word, 
     case 0x603F:
       feedback.error_code = static_cast<std::uint16_t>(word);
       break;
+    case 0x6061:
+      feedback.mode = static_cast<DriveMode>(static_cast<std::int8_t>(word));
+      break;
     case 0x6064:
       feedback.position_counts = static_cast<std::int32_t>(word);
       break;

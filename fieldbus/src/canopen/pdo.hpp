@@ -17,8 +17,8 @@ inline constexpr std::array kSetpointWords{MappedObject{{0x6040, 0}, 16}, Mapped
 
 /// Objects that carry a word of `DriveFeedback`.
 inline constexpr std::array kAnswerWords{MappedObject{{0x6041, 0}, 16}, MappedObject{{0x603F, 0}, 16},
-                                         MappedObject{{0x6064, 0}, 32}, MappedObject{{0x606C, 0}, 32},
-                                         MappedObject{{0x6077, 0}, 16}};
+                                         MappedObject{{0x6061, 0}, 8},  MappedObject{{0x6064, 0}, 32},
+                                         MappedObject{{0x606C, 0}, 32}, MappedObject{{0x6077, 0}, 16}};
 
 /// Fills an axis's RPDO from the words of a cycle. Real-time safe.
 [[nodiscard]] CanFrame pack_setpoints(const AxisConfig& axis, const DriveCommand& command) noexcept;

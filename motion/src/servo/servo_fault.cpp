@@ -10,6 +10,8 @@ const char* to_string(ServoState state) noexcept {
       return "Enabling";
     case ServoState::Engaged:
       return "Engaged";
+    case ServoState::Homing:
+      return "Homing";
     case ServoState::QuickStop:
       return "QuickStop";
     case ServoState::Faulted:
@@ -42,6 +44,8 @@ const char* to_string(ServoFault::Kind kind) noexcept {
       return "EmergencyStop";
     case ServoFault::Kind::LimitSwitch:
       return "LimitSwitch";
+    case ServoFault::Kind::HomingFailed:
+      return "HomingFailed";
   }
   return "Unknown";
 }

@@ -121,7 +121,10 @@ Expected<std::unique_ptr<ServoLoop>> ServoLoop::create(ServoLoopParts parts) {
   return check_counts(parts)
       .and_then([&] { return check_axes(parts); })
       .and_then([&] { return check_drives(parts); })
-      .map([&] { return std::unique_ptr<ServoLoop>(new ServoLoop(std::make_unique<Impl>(std::move(parts)))); });
+      .and_then([&]() -> Expected<std::unique_ptr<ServoLoop>> {
+        auto impl = std::make_unique<Impl>(std::move(parts));
+        return impl->check_homing().map([&] { return std::unique_ptr<ServoLoop>(new ServoLoop(std::move(impl))); });
+      });
 }
 
 ServoLoop::Impl::Impl(ServoLoopParts loop_parts)

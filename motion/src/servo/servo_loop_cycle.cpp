@@ -20,6 +20,7 @@ void ServoLoop::cycle(const ServoCommand& command, ServoReport& report) noexcept
     loop.read_joints();
     loop.watch_drives();
     loop.finish_reset();
+    loop.run_homing(command);
     loop.make_live();
     loop.make_setpoints(command, report);
     loop.run_laws();
@@ -123,12 +124,13 @@ bool ServoLoop::Impl::operable(std::size_t joint) const noexcept {
     if ((actuators_of[joint] >> i & 1U) == 0) continue;
     const DriveFeedback& words = feedback(i);
     if (!words.online || drive_state(words.statusword) != DriveState::OperationEnabled) return false;
+    if (words.mode != DriveMode::None && words.mode != DriveMode::CyclicSyncTorque) return false;
   }
   return true;
 }
 
 void ServoLoop::Impl::make_live() noexcept {
-  if (!driving()) return;
+  if (!driving() || state == ServoState::Homing) return;
   bool all = true;
   for (std::size_t j = 0; j < axes; ++j) {
     if (!live[j] && operable(j)) {
@@ -237,6 +239,7 @@ void ServoLoop::Impl::write_actuators() noexcept {
     const DriveFeedback& from = feedback(i);
     words.controlword = next_controlword(from.statusword, wish(), resetting, words.controlword);
     words.mode = DriveMode::CyclicSyncTorque;
+    command_homing(i, words);
     words.target_position_counts = from.position_counts;
     words.target_velocity_rpm = 0;
     const double permille = part.scale.direction * torque[i] * 1000 / part.scale.rated_torque_nm;

@@ -13,6 +13,12 @@ struct ServoLoop::Impl {
 
   void exchange(const ServoCommand& command, ServoReport& report) noexcept;
   void watch_inputs(std::uint64_t now) noexcept;
+  void begin_homing() noexcept;
+  void begin_homing_turn() noexcept;
+  void run_homing(const ServoCommand& command) noexcept;
+  [[nodiscard]] bool homing_done(std::size_t actuator) noexcept;
+  void command_homing(std::size_t actuator, DriveCommand& words) const noexcept;
+  [[nodiscard]] Expected<> check_homing() const;
   void read_actuators() noexcept;
   void read_joints() noexcept;
   void change_state(const ServoCommand& command) noexcept;
@@ -35,7 +41,9 @@ struct ServoLoop::Impl {
 
   void raise(const ServoFault& fault) noexcept;
   void let_go() noexcept;
-  [[nodiscard]] bool driving() const noexcept { return state == ServoState::Enabling || state == ServoState::Engaged; }
+  [[nodiscard]] bool driving() const noexcept {
+    return state == ServoState::Enabling || state == ServoState::Engaged || state == ServoState::Homing;
+  }
   [[nodiscard]] DriveWish wish() const noexcept;
   [[nodiscard]] bool owns(const ServoBus* bus, std::uint32_t axis) const noexcept;
   [[nodiscard]] bool operable(std::size_t joint) const noexcept;
@@ -68,6 +76,13 @@ struct ServoLoop::Impl {
   std::int64_t waiting_cycles = 0;
   bool follows = false;
   std::uint64_t inputs = 0;  ///< in the last cycle
+
+  bool home_before = false;      ///< for its edge
+  std::uint32_t homing = 0;      ///< bit i: drive of actuator i homes, or has in a turn before
+  std::uint8_t homing_turn = 0;  ///< that is under way
+  bool homing_ends = false;      ///< before it is through
+  std::uint32_t homings = 0;
+  std::array<int, kMaxJoints> homing_cycles{};  ///< in homing mode
 
   std::array<bool, kMaxJoints> seen{};  ///< a position of this drive was read
   std::array<std::int64_t, kMaxJoints> counts{};

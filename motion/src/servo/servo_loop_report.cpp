@@ -22,6 +22,7 @@ void ServoLoop::Impl::fill(const ServoCommand& command, ServoReport& report) con
   report.state = state;
   report.follows = follows;
   report.fault = fault;
+  report.homings = homings;
   report.position_set = hold;
   report.velocity_set = set_velocity;
   report.acceleration_set = set_acceleration;

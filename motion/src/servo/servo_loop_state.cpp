@@ -60,6 +60,7 @@ void ServoLoop::Impl::change_state(const ServoCommand& command) noexcept {
       break;
     case ServoState::Enabling:
     case ServoState::Engaged:
+    case ServoState::Homing:
       if (command.quick_stop) {
         state = ServoState::QuickStop;
         power_spent = true;
@@ -67,6 +68,8 @@ void ServoLoop::Impl::change_state(const ServoCommand& command) noexcept {
       } else if (!command.power) {
         state = ServoState::Off;
         let_go();
+      } else if (state == ServoState::Engaged && command.home && !home_before && !parts.virtual_mode) {
+        begin_homing();
       } else if (parts.virtual_mode && waiting_cycles++ > 0) {
         state = ServoState::Engaged;
       }
@@ -77,6 +80,7 @@ void ServoLoop::Impl::change_state(const ServoCommand& command) noexcept {
     case ServoState::Faulted:
       break;
   }
+  home_before = command.home;
 }
 
 void ServoLoop::Impl::finish_reset() noexcept {
@@ -111,7 +115,7 @@ void ServoLoop::Impl::watch_drive(const DriveFeedback& words, bool in_use, Servo
 
 void ServoLoop::Impl::watch_drives() noexcept {
   if (!driving()) return;
-  std::uint32_t in_use = 0;
+  std::uint32_t in_use = state == ServoState::Homing ? homing : 0;
   for (std::size_t j = 0; j < axes; ++j) {
     if (live[j]) in_use |= actuators_of[j];
   }

@@ -54,6 +54,47 @@ TEST(CanopenConfig, SaysWhichParameterIsWrongAndWhatIsAllowed) {
       refusal({{"node", {1}}, {"nod", {1}}}).starts_with(at + "parameter \"nod\" is not understood; there are "));
 }
 
+TEST(CanopenConfig, HasDrivesThatHomeTellTheirModeAndWritesHowTheyDo) {
+  const auto config = read_canopen_config("can0",
+                                          {{"node", {1, 2}},
+                                           {"homing_method", {-3, 0}},
+                                           {"homing_speed", {70000}},
+                                           {"homing_speed_slow", {500}},
+                                           {"homing_acceleration", {100000}},
+                                           {"home_offset", {-2}}},
+                                          {{"setup", "6085:00/32=1"}}, 0.001);
+  ASSERT_TRUE(config) << config.error().message;
+  const AxisConfig& homes = config->axes[0];
+  EXPECT_TRUE(homes.homes);
+  EXPECT_EQ(homes.setpoints[1].object.index, 0x6060);
+  EXPECT_EQ(homes.answers[1].object.index, 0x6061);
+  ASSERT_EQ(homes.setup.size(), 6U);
+  const auto written = [&](std::size_t i, std::uint16_t index, std::uint8_t sub, std::vector<std::uint8_t> bytes) {
+    EXPECT_EQ(homes.setup[i].object.index, index);
+    EXPECT_EQ(homes.setup[i].object.sub, sub);
+    EXPECT_EQ(homes.setup[i].bytes, bytes);
+  };
+  written(0, 0x6098, 0, {0xFD});
+  written(1, 0x6099, 1, {0x70, 0x11, 1, 0});
+  written(2, 0x6099, 2, {0xF4, 1, 0, 0});
+  written(3, 0x609A, 0, {0xA0, 0x86, 1, 0});
+  written(4, 0x607C, 0, {0xFE, 0xFF, 0xFF, 0xFF});
+  written(5, 0x6085, 0, {1, 0, 0, 0});
+  EXPECT_FALSE(config->axes[1].homes);
+  EXPECT_EQ(config->axes[1].setup.size(), 1U);
+  EXPECT_EQ(config->axes[1].setpoints.size(), 2U);
+}
+
+TEST(CanopenConfig, RefusesHomingThatCouldNotBeTold) {
+  const std::string at = "CANopenInterface, bus can0: ";
+  EXPECT_EQ(refusal({{"node", {1}}, {"homing_method", {17}}}, {{"rpdo", "6040:00/16 6071:00/16"}}),
+            at + "axis 0 has a homing_method, so rpdo must hold 6060:00/8 and tpdo 6061:00/8, or neither be given");
+  EXPECT_EQ(refusal({{"node", {1}}, {"homing_method", {17}}, {"mode", {3}}}),
+            at + "homing_method is 17 for axis 0, which does not move a joint");
+  EXPECT_EQ(refusal({{"node", {1}}, {"homing_method", {38}}}),
+            at + "homing_method is 38; allowed is a whole number from -128 to 37");
+}
+
 TEST(CanopenConfig, TakesWhatIsSaidOfItsBusAlone) {
   const Numbers numbers{{"can0.node", {1, 2}}, {"can1.node", {3}}, {"heartbeat_ms", {20}}, {"can1.heartbeat_ms", {40}}};
   const auto first = read_canopen_config("can0", numbers, {}, 0.001);

@@ -291,7 +291,7 @@ class DriveHoming : public NodeBench {
     control(0x0F);
     EXPECT_NEAR(node_.axis().shaft(), position, 100);
   }
-  /// Where the shaft is when the drive tells 0.
+  /// Where the shaft was when it was at home: zero lies beyond it by the home offset.
   double home_found(int method) {
     enable(6);
     EXPECT_EQ(write(0x6098, 0, method, 1), 0U);
@@ -300,7 +300,7 @@ class DriveHoming : public NodeBench {
     for (int i = 0; i < 400 && (status() & 0x3000) == 0; ++i) pass(0.05);
     EXPECT_EQ(status() & 0x3400, 0x1400) << "homing attained";
     control(0x0F);
-    const double home = node_.axis().shaft() - node_.axis().position() + 777;
+    const double home = node_.axis().shaft() - node_.axis().position() - 777;
     return home;
   }
 };
@@ -363,7 +363,7 @@ TEST_F(DriveHoming, TakesTheIndexOrThePlaceWhereItStands) {
   for (const int method : {35, 37}) {
     go_to(50000);
     EXPECT_NEAR(home_found(method), 50000, 100);
-    EXPECT_NEAR(static_cast<double>(read(0x6064)), 777, 3) << "the home offset";
+    EXPECT_NEAR(static_cast<double>(read(0x6064)), -777, 3) << "the home offset";
   }
 }
 

@@ -1,68 +1,15 @@
-#include <deque>
-
 #include "conformance/control_interface_conformance.hpp"
 #include "rmac/fieldbus/canopen/canopen_interface.hpp"
 #include "rmac/motion/drive_power.hpp"
-#include "unit/vdrive/node_bench.hpp"
+#include "unit/vdrive/wire.hpp"
 
 // The CANopen master and these drives know nothing of each other but the standards.
 namespace rmac::vdrive::test {
 namespace {
 
-using fieldbus::CanHealth;
 using fieldbus::CanPort;
 using fieldbus::canopen::CanopenInterface;
 using std::chrono::milliseconds;
-
-/// Nodes at one end of a wire inside the process, the master's port at the other.
-class Wire {
- public:
-  Node& add(std::uint8_t id) {
-    nodes_.push_back(std::make_unique<Node>(sheet(), id, fieldbus::AxisPlantParameters()));
-    nodes_.back()->power_on(now_);
-    return *nodes_.back();
-  }
-  std::unique_ptr<CanPort> open() { return std::make_unique<Port>(*this); }
-  void pass(Time time) {
-    for (const Time end = now_ + time; now_ < end;) {
-      now_ = std::min(now_ + Time(std::chrono::microseconds(250)), end);
-      for (auto& node : nodes_) node->poll(now_);
-      deliver();
-    }
-  }
-
- private:
-  class Port final : public CanPort {
-   public:
-    explicit Port(Wire& wire) : wire_(wire) { wire_.received_.clear(); }
-    bool send(const CanFrame& frame) noexcept override {
-      for (auto& node : wire_.nodes_) node->receive(frame, wire_.now_);
-      wire_.deliver();
-      return true;
-    }
-    bool receive(CanFrame& frame) noexcept override {
-      if (wire_.received_.empty()) return false;
-      frame = wire_.received_.front();
-      wire_.received_.pop_front();
-      return true;
-    }
-    void wait(Time at_most) noexcept override { wire_.pass(at_most); }
-    [[nodiscard]] Time now() const noexcept override { return wire_.now_; }
-    [[nodiscard]] CanHealth health() const noexcept override { return {}; }
-
-   private:
-    Wire& wire_;
-  };
-  void deliver() {
-    for (auto& node : nodes_) {
-      for (const CanFrame& frame : node->take_output(now_)) received_.push_back(frame);
-    }
-  }
-
-  std::vector<std::unique_ptr<Node>> nodes_;
-  std::deque<CanFrame> received_;
-  Time now_{std::chrono::seconds(1)};
-};
 
 class MasterOverVirtualDrives : public testing::Test, public DigitalControlInterface {
  protected:

@@ -29,8 +29,16 @@ inline constexpr std::uint16_t kSwitchOn = 1U << 0;
 inline constexpr std::uint16_t kEnableVoltage = 1U << 1;
 inline constexpr std::uint16_t kNoQuickStop = 1U << 2;  ///< zero asks for a quick stop
 inline constexpr std::uint16_t kEnableOperation = 1U << 3;
-inline constexpr std::uint16_t kFaultReset = 1U << 7;  ///< acts on its rising edge
+inline constexpr std::uint16_t kStartHoming = 1U << 4;  ///< in homing mode: its rise starts, its fall ends
+inline constexpr std::uint16_t kFaultReset = 1U << 7;   ///< acts on its rising edge
 }  // namespace controlword
+
+/// Bits of the statusword (6041h) in homing mode (CiA 402-2, 13.4.2).
+namespace statusword {
+inline constexpr std::uint16_t kTargetReached = 1U << 10;  ///< it is at rest
+inline constexpr std::uint16_t kHomingAttained = 1U << 12;
+inline constexpr std::uint16_t kHomingError = 1U << 13;
+}  // namespace statusword
 
 /// Decodes a statusword (6041h), bits 0 to 3, 5 and 6. A pattern that the standard leaves undefined is taken for
 /// NotReadyToSwitchOn, which waits. Real-time safe.

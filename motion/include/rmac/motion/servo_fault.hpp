@@ -8,6 +8,7 @@ enum class ServoState : std::uint8_t {
   Off,        ///< no torque
   Enabling,   ///< drives are on their way to Operation Enabled; those that are there hold their position
   Engaged,    ///< every joint follows its setpoint
+  Homing,     ///< some drives look for home by themselves, and the other joints hold their position
   QuickStop,  ///< asked for: drives brake by themselves
   Faulted,    ///< the same, because of `fault`; left by a reset
 };
@@ -27,6 +28,7 @@ struct ServoFault {
     IoFailure,
     EmergencyStop,  ///< index: the input; told whatever else is wrong
     LimitSwitch,    ///< index: the input
+    HomingFailed,   ///< value: the drive's statusword; bound: seconds waited, 0 when the drive gave up
   };
   enum class Part : std::uint8_t { Joint, Actuator, Spindle, Bus, Io };
   Kind kind = Kind::None;

@@ -43,6 +43,7 @@ struct ServoActuator {
   std::shared_ptr<ServoBus> bus;
   std::uint32_t axis = 0;
   DriveScale scale;
+  std::uint8_t homing_turn = 0;  ///< in which its drive looks for home by itself, from 1; 0: it does not
 };
 
 /// A drive that turns a spindle, in velocity mode.
@@ -65,8 +66,9 @@ struct ServoLoopParts {
   /// Inputs that stop all drives as they come on. A reset helps while they are on, so that the axis can be moved off.
   std::uint64_t limit_inputs = 0;
   double period_s = 0.001;
-  double enable_timeout_s = 5;  ///< to bring every drive to Operation Enabled
-  bool virtual_mode = false;    ///< setpoints are reflected as measured values; buses and I/O are not touched
+  double enable_timeout_s = 5;    ///< to bring every drive to Operation Enabled
+  double homing_timeout_s = 120;  ///< for the drives of one turn
+  bool virtual_mode = false;      ///< setpoints are reflected as measured values; buses and I/O are not touched
   /// axes.size() positions where virtual mode begins when no loop hands over; empty: zeros.
   std::vector<double> virtual_start;
 };
@@ -77,6 +79,8 @@ struct ServoCommand {
   Frames frames;       ///< in force for `setpoint`
   bool power = false;  ///< after a fault or a quick stop it must fall before drives are enabled again
   bool quick_stop = false;
+  bool home =
+      false;  ///< its rise, when Engaged, has the drives home, turn by turn; its fall before they are through ends it
   bool reset = false;  ///< its rising edge resets the drives' faults, and leaves Faulted once they are gone
   std::array<double, kMaxSpindles> spindle_rpm{};
   std::uint64_t outputs = 0;
@@ -98,6 +102,7 @@ struct ServoReport {
   ToolPose pose;         ///< measured, part frame
   double feed_mm_s = 0;  ///< tool tip, from measured joints
   std::uint64_t inputs = 0;
+  std::uint32_t homings = 0;  ///< that were completed
 };
 
 /// What a loop leaves to the one that comes after it, drive by drive, so that nothing jumps.

@@ -34,6 +34,7 @@ struct Actuator {
   std::string bus;
   std::uint32_t axis = 0;
   DriveScale scale;
+  int homing_turn = 0;  ///< in which its drive looks for home by itself, from 1; 0: it does not
 };
 
 struct Spindle {

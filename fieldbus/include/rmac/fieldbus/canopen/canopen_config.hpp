@@ -46,6 +46,7 @@ struct AxisConfig {
   double velocity_units_per_rpm = 1;    ///< of 60FFh and 606Ch
   Identity identity;
   std::vector<SdoWrite> setup;
+  bool homes = false;                                         ///< it can be told to home: mode 6 is asked of it, too
   std::shared_ptr<const eds::DeviceDescription> description;  ///< null where no file was named
 };
 

@@ -12,6 +12,7 @@ namespace rmac {
 enum class DriveMode : std::int8_t {
   None = 0,
   ProfileVelocity = 3,
+  Homing = 6,
   CyclicSyncPosition = 8,
   CyclicSyncVelocity = 9,
   CyclicSyncTorque = 10,
@@ -33,6 +34,7 @@ struct DriveFeedback {
   std::int32_t position_counts = 0;  ///< 6064h; wraps
   std::int32_t velocity_rpm = 0;     ///< 606Ch; spindles
   std::int16_t torque_permille = 0;  ///< 6077h
+  DriveMode mode = DriveMode::None;  ///< 6061h; None where the interface does not tell
   bool online = false;               ///< the drive answered in this cycle
 };
 
