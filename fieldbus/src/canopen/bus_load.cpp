@@ -13,8 +13,11 @@ BusLoad bus_load(const CanopenConfig& config) noexcept {
   BusLoad load;
   load.sync_bits = worst_frame_bits(0);
   std::set<std::uint8_t> nodes;
+  std::set<std::uint16_t> setpoints;
   for (const AxisConfig& axis : config.axes) {
-    load.setpoint_bits += worst_frame_bits(mapped_bytes(axis.setpoints));
+    if (setpoints.insert(setpoint_id(axis)).second) {
+      load.setpoint_bits += worst_frame_bits(mapped_bytes(axis.setpoints));
+    }
     load.answer_bits += worst_frame_bits(mapped_bytes(axis.answers));
     nodes.insert(axis.node);
   }

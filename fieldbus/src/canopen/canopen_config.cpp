@@ -118,6 +118,7 @@ Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const F
   config.node = static_cast<std::uint8_t>(parameters.number_of_axis("node", axis, 0, 1, 127));
   config.axis_in_node =
       static_cast<std::uint8_t>(parameters.number_of_axis("axis_in_node", axis, 0, 0, kMostAxesPerNode - 1));
+  config.rpdo_node = static_cast<std::uint8_t>(parameters.number_of_axis("rpdo_node", axis, config.node, 1, 127));
   const double mode = parameters.number_of_axis("mode", axis, static_cast<double>(DriveMode::CyclicSyncTorque), 3, 10);
   config.mode = static_cast<DriveMode>(mode);
   if (parameters.sound() && std::find(kModes.begin(), kModes.end(), config.mode) == kModes.end()) {
@@ -180,6 +181,46 @@ std::string check_nodes(const CanopenConfig& config) {
   return {};
 }
 
+/// Bit i: byte i of an axis's RPDO is its own, and no dummy.
+unsigned own_bytes(const AxisConfig& axis) {
+  unsigned bytes = 0;
+  std::size_t at = 0;
+  for (const MappedObject& object : axis.setpoints) {
+    constexpr std::uint16_t kFirstObject = 0x1000;  // below are data types, which fill room
+    for (std::size_t i = 0; i < object.bits / 8U; ++i, ++at) {
+      if (object.object.index >= kFirstObject) bytes |= 1U << at;
+    }
+  }
+  return bytes;
+}
+
+/// Axes of one RPDO: each leaves the others' bytes to dummies.
+std::string check_shared(const CanopenConfig& config) {
+  for (const AxisConfig& axis : config.axes) {
+    const auto owner = [&](const AxisConfig& other) { return other.node == axis.rpdo_node; };
+    if (std::none_of(config.axes.begin(), config.axes.end(), owner)) {
+      return fmt::format("rpdo_node is {} for node {}, and no drive of this bus has that id", axis.rpdo_node,
+                         axis.node);
+    }
+    for (const AxisConfig& other : config.axes) {
+      if (&other == &axis || setpoint_id(other) != setpoint_id(axis)) continue;
+      if (mapped_bytes(axis.setpoints) != mapped_bytes(other.setpoints)) {
+        return fmt::format(
+            "nodes {} and {} share an RPDO, and map {} and {} bytes of it; fill it up with the dummies "
+            "0005:00/8, 0006:00/16 and 0007:00/32",
+            axis.node, other.node, mapped_bytes(axis.setpoints), mapped_bytes(other.setpoints));
+      }
+      if ((own_bytes(axis) & own_bytes(other)) != 0) {
+        return fmt::format(
+            "nodes {} and {} share an RPDO, and both map some of its bytes; where one maps a setpoint the "
+            "other needs the dummies 0005:00/8, 0006:00/16 or 0007:00/32",
+            axis.node, other.node);
+      }
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 std::size_t mapped_bytes(const std::vector<MappedObject>& objects) noexcept {
@@ -219,6 +260,7 @@ Expected<CanopenConfig> read_canopen_config(const std::string& bus,
   }
   parameters.refuse_unknown();
   if (parameters.sound()) parameters.refuse(check_nodes(config));
+  if (parameters.sound()) parameters.refuse(check_shared(config));
   for (std::size_t axis = 0; axis < axes && parameters.sound(); ++axis) {
     if (auto fits = check_description(config, config.axes[axis]); !fits) {
       parameters.refuse(fmt::format("axis {}: {}", axis, fits.error().message));

@@ -39,6 +39,8 @@ struct CanopenInterface::Impl {
     for (const AxisConfig& axis : config.axes) {
       auto at = std::find_if(nodes.begin(), nodes.end(), [&](const Node& n) { return n.boot.node() == axis.node; });
       if (at == nodes.end()) at = nodes.emplace(nodes.end(), config, axis.node);
+      const auto same = [&](std::size_t other) { return setpoint_id(axes[other].config) == setpoint_id(axis); };
+      if (std::none_of(rpdos.begin(), rpdos.end(), same)) rpdos.push_back(axes.size());
       axes.push_back({.config = axis, .node = static_cast<std::size_t>(at - nodes.begin()), .feedback = {}});
     }
   }
@@ -68,6 +70,7 @@ struct CanopenInterface::Impl {
   void lose(Node& node, std::chrono::nanoseconds now) noexcept;
   void fill(std::span<DriveFeedback> feedback) noexcept;
   [[nodiscard]] bool send(const CanFrame& frame) noexcept;
+  [[nodiscard]] bool send_setpoints(std::size_t first, std::span<const DriveCommand> commands) noexcept;
   [[nodiscard]] bool send_cycle(std::span<const DriveCommand> commands, std::chrono::nanoseconds now) noexcept;
 
   CanopenConfig config;
@@ -75,6 +78,7 @@ struct CanopenInterface::Impl {
   std::unique_ptr<CanPort> port;
   std::vector<Node> nodes;
   std::vector<Axis> axes;
+  std::vector<std::size_t> rpdos;  ///< the first axis of each
   CanopenCounters counters;
   std::chrono::nanoseconds next_heartbeat{0};
   std::chrono::nanoseconds next_time{0};
@@ -286,10 +290,7 @@ bool CanopenInterface::Impl::send(const CanFrame& frame) noexcept {
 
 bool CanopenInterface::Impl::send_cycle(std::span<const DriveCommand> commands, std::chrono::nanoseconds now) noexcept {
   bool all = !config.sync_first || send(sync_frame());
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    // Nothing is queued for a node that is away: what it would find there on its return is old.
-    if (nodes[axes[i].node].up) all = send(pack_setpoints(axes[i].config, commands[i])) && all;
-  }
+  for (const std::size_t first : rpdos) all = send_setpoints(first, commands) && all;
   if (!config.sync_first) all = send(sync_frame()) && all;
   for (Axis& axis : axes) ++axis.unanswered;
   if (now >= next_heartbeat) {
@@ -301,6 +302,19 @@ bool CanopenInterface::Impl::send_cycle(std::span<const DriveCommand> commands, 
     next_time = std::max(next_time + config.time_interval, now);
   }
   return all;
+}
+
+/// The frame of an axis and of those that share it. Nothing is queued for a node that is away: what it would find there
+/// on its return is old. In a frame that another needs its words are zeros, which enable nothing.
+bool CanopenInterface::Impl::send_setpoints(std::size_t first, std::span<const DriveCommand> commands) noexcept {
+  CanFrame frame = pack_setpoints(axes[first].config, DriveCommand{});
+  bool any = false;
+  for (std::size_t i = first; i < axes.size(); ++i) {
+    if (setpoint_id(axes[i].config) != frame.id || !nodes[axes[i].node].up) continue;
+    add_setpoints(frame, pack_setpoints(axes[i].config, commands[i]));
+    any = true;
+  }
+  return !any || send(frame);
 }
 
 void CanopenInterface::Impl::recover(std::chrono::nanoseconds now) noexcept {

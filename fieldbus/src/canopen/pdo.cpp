@@ -66,6 +66,10 @@ CanFrame pack_setpoints(const AxisConfig& axis, const DriveCommand& command) noe
   return frame;
 }
 
+void add_setpoints(CanFrame& shared, const CanFrame& own) noexcept {
+  for (std::size_t i = 0; i < own.size; ++i) shared.data[i] = static_cast<std::uint8_t>(shared.data[i] | own.data[i]);
+}
+
 bool unpack_answers(const AxisConfig& axis, const CanFrame& frame, DriveFeedback& feedback) noexcept {
   if (frame.size < mapped_bytes(axis.answers)) return false;
   std::size_t at = 0;

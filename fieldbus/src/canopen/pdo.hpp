@@ -23,6 +23,9 @@ inline constexpr std::array kAnswerWords{MappedObject{{0x6041, 0}, 16}, MappedOb
 /// Fills an axis's RPDO from the words of a cycle. Real-time safe.
 [[nodiscard]] CanFrame pack_setpoints(const AxisConfig& axis, const DriveCommand& command) noexcept;
 
+/// Adds the words of an axis that shares an RPDO: its bytes are dummies, zeros, in the frames of the others.
+void add_setpoints(CanFrame& shared, const CanFrame& own) noexcept;
+
 /// Takes the words of an axis's TPDO. False, and nothing changes, when the frame is shorter than what is mapped.
 /// Real-time safe.
 [[nodiscard]] bool unpack_answers(const AxisConfig& axis, const CanFrame& frame, DriveFeedback& feedback) noexcept;

@@ -85,6 +85,34 @@ TEST(CanopenConfig, HasDrivesThatHomeTellTheirModeAndWritesHowTheyDo) {
   EXPECT_EQ(config->axes[1].setpoints.size(), 2U);
 }
 
+TEST(CanopenConfig, CountsAnRpdoThatTwoDrivesShareOnce) {
+  const Texts halves{{"rpdo_0", "6040:00/16 6071:00/16 0007:00/32"},
+                     {"rpdo_1", "0007:00/32 6040:00/16 6071:00/16"},
+                     {"rpdo_2", "6040:00/16 6071:00/16 0007:00/32"},
+                     {"rpdo_3", "0007:00/32 6040:00/16 6071:00/16"},
+                     {"tpdo", "6041:00/16 6064:00/32"}};
+  const auto shared = read_canopen_config("can0", {{"node", {1, 2, 3, 4}}, {"rpdo_node", {1, 1, 3, 3}}}, halves, 0.001);
+  ASSERT_TRUE(shared) << shared.error().message;
+  EXPECT_EQ(bus_load(*shared).setpoint_bits, 2 * worst_frame_bits(8));
+  EXPECT_TRUE(check_bus_load(*shared)) << "four axes at 1 kHz";
+  const auto apart = read_canopen_config("can0", {{"node", {1, 2, 3, 4}}}, halves, 0.001);
+  ASSERT_TRUE(apart) << apart.error().message;
+  EXPECT_FALSE(check_bus_load(*apart));
+}
+
+TEST(CanopenConfig, RefusesAnRpdoThatIsSharedWrongly) {
+  const std::string at = "CANopenInterface, bus can0: ";
+  EXPECT_EQ(refusal({{"node", {1, 2}}, {"rpdo_node", {1, 3}}}),
+            at + "rpdo_node is 3 for node 2, and no drive of this bus has that id");
+  EXPECT_EQ(
+      refusal({{"node", {1, 2}}, {"rpdo_node", {1, 1}}}),
+      at + "nodes 1 and 2 share an RPDO, and both map some of its bytes; where one maps a setpoint the other needs "
+           "the dummies 0005:00/8, 0006:00/16 or 0007:00/32");
+  EXPECT_EQ(refusal({{"node", {1, 2}}, {"rpdo_node", {1, 1}}}, {{"rpdo_1", "0007:00/32 6040:00/16 6071:00/16"}}),
+            at + "nodes 1 and 2 share an RPDO, and map 4 and 8 bytes of it; fill it up with the dummies 0005:00/8, "
+                 "0006:00/16 and 0007:00/32");
+}
+
 TEST(CanopenConfig, RefusesHomingThatCouldNotBeTold) {
   const std::string at = "CANopenInterface, bus can0: ";
   EXPECT_EQ(refusal({{"node", {1}}, {"homing_method", {17}}}, {{"rpdo", "6040:00/16 6071:00/16"}}),

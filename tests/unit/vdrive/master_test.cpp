@@ -77,6 +77,45 @@ TEST_F(MasterOverVirtualDrives, MovesByTorquePositionAndVelocity) {
   stop();
 }
 
+TEST_F(MasterOverVirtualDrives, MovesTwoThatShareAnRpdoEachByItsOwnWords) {
+  wire_.add(1);
+  wire_.add(2);
+  make({{"node", {1, 2}}, {"rpdo_node", {1, 1}}}, {{"rpdo_0", "6040:00/16 6071:00/16 0007:00/32"},
+                                                   {"rpdo_1", "0007:00/32 6040:00/16 6071:00/16"},
+                                                   {"tpdo", "6041:00/16 6064:00/32"},
+                                                   {"eds", "rmac-vdrive"}});
+  ASSERT_TRUE(start().has_value());
+  cycles(20, DriveWish::Operational);
+  for (const DriveFeedback& words : feedback_) ASSERT_EQ(drive_state(words.statusword), DriveState::OperationEnabled);
+  for (DriveCommand& command : commands_) command.mode = DriveMode::CyclicSyncTorque;
+  commands_[0].target_torque_permille = 300;
+  commands_[1].target_torque_permille = -300;
+  cycles(200, DriveWish::Operational);
+  EXPECT_GT(feedback_[0].position_counts, 10000);
+  EXPECT_LT(feedback_[1].position_counts, -10000);
+  stop();
+}
+
+TEST_F(MasterOverVirtualDrives, BringsBackOneOfTwoThatShareAnRpdo) {
+  Node& stays = wire_.add(1);
+  Node& goes = wire_.add(2);
+  make({{"node", {1, 2}}, {"rpdo_node", {1, 1}}}, {{"rpdo_0", "6040:00/16 6071:00/16 0007:00/32"},
+                                                   {"rpdo_1", "0007:00/32 6040:00/16 6071:00/16"},
+                                                   {"tpdo", "6041:00/16 6064:00/32"},
+                                                   {"eds", "rmac-vdrive"}});
+  ASSERT_TRUE(start().has_value());
+  cycles(20, DriveWish::Operational);
+  goes.set_mute(true);
+  cycles(200, DriveWish::Operational);
+  EXPECT_FALSE(feedback_[1].online);
+  EXPECT_EQ(stays.axis().state(), PowerStates::OperationEnabled);
+  goes.set_mute(false);
+  cycles(1500, DriveWish::Operational);
+  EXPECT_TRUE(feedback_[1].online);
+  EXPECT_EQ(stays.axis().state(), PowerStates::OperationEnabled) << "it never noticed";
+  stop();
+}
+
 TEST_F(MasterOverVirtualDrives, SeesFaultsAndGoesOnAfterThem) {
   Node& hot = wire_.add(1);
   Node& mute = wire_.add(2);

@@ -40,6 +40,7 @@ struct Identity {
 struct AxisConfig {
   std::uint8_t node = 0;
   std::uint8_t axis_in_node = 0;
+  std::uint8_t rpdo_node = 0;  ///< whose RPDO's identifier it listens to, sharing it by dummies; 0: its own
   DriveMode mode = DriveMode::CyclicSyncTorque;
   std::vector<MappedObject> setpoints;  ///< the RPDO
   std::vector<MappedObject> answers;    ///< the TPDO
@@ -81,9 +82,11 @@ using FindDescription =
                                                           const std::map<std::string, std::string>& texts,
                                                           double period_s, const FindDescription& find = {});
 
-/// COB-IDs of an axis: the predefined connection set (CiA 301, 7.3.5), one pair for each axis of a node.
+/// COB-IDs of an axis: the predefined connection set (CiA 301, 7.3.5), one pair for each axis of a node. Axes that
+/// share an RPDO have the same identifier of setpoints.
 [[nodiscard]] inline std::uint16_t setpoint_id(const AxisConfig& axis) noexcept {
-  return static_cast<std::uint16_t>(0x200 + 0x100 * axis.axis_in_node + axis.node);
+  return static_cast<std::uint16_t>(0x200 + 0x100 * axis.axis_in_node +
+                                    (axis.rpdo_node != 0 ? axis.rpdo_node : axis.node));
 }
 [[nodiscard]] inline std::uint16_t answer_id(const AxisConfig& axis) noexcept {
   return static_cast<std::uint16_t>(0x180 + 0x100 * axis.axis_in_node + axis.node);
