@@ -14,35 +14,57 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// What a joint asks of one of its limits at equidistant instants of a piece, as parts of the limit.
 using Demand = std::array<double, kSamples>;
 
-/// Largest of the samples, where between them the curve is taken for the parabola through three neighbours, so that a
-/// peak between samples counts.
-double largest(const Demand& demand) {
-  double worst = std::max(std::abs(demand.front()), std::abs(demand.back()));
-  for (std::size_t i = 1; i + 1 < kSamples; ++i) {
-    const double here = demand[i], rise = (demand[i + 1] - demand[i - 1]) / 2;
-    const double bend = demand[i + 1] - 2 * here + demand[i - 1];
-    const bool peak = here > 0 ? bend < 0 : bend > 0;
-    const double vertex = peak && std::abs(rise) < std::abs(bend) ? here - rise * rise / (2 * bend) : here;
-    worst = std::max(worst, std::abs(vertex));
+struct Peak {
+  double largest = 0;
+  double unevenness = 0;  ///< largest third difference: what a parabola does not see
+};
+
+/// Of every `stride`th sample, where between them the curve is taken for the parabola through three neighbours, so that
+/// a peak between samples counts.
+Peak peak_of(const Demand& demand, std::size_t stride) {
+  Peak peak{std::max(std::abs(demand.front()), std::abs(demand.back())), 0};
+  double bend_before = 0;
+  for (std::size_t i = stride; i + stride < kSamples; i += stride) {
+    const double here = demand[i], rise = (demand[i + stride] - demand[i - stride]) / 2;
+    const double bend = demand[i + stride] - 2 * here + demand[i - stride];
+    const bool inside = here > 0 ? bend < 0 : bend > 0;
+    const double vertex = inside && std::abs(rise) < std::abs(bend) ? here - rise * rise / (2 * bend) : here;
+    peak.largest = std::max(peak.largest, std::abs(vertex));
+    if (i > stride) peak.unevenness = std::max(peak.unevenness, std::abs(bend - bend_before));
+    bend_before = bend;
   }
-  return worst;
+  return peak;
 }
+
+/// Of the third difference of the samples, what is added for doubt: an error of the parabola is a sixteenth of it.
+constexpr double kDoubt = 0.25;
 
 class PieceCheck {
  public:
   PieceCheck(const PathView& path, const std::vector<JointLimits>& joints, const FeedRule* feed)
       : path_(path), joints_(joints), feed_(feed) {}
 
+  /// Samples are halved until what lies between them cannot matter: five, nine, seventeen.
   double worst(const LawPiece& piece) {
-    worst_ = 0;
+    others_ = 0;
     s_begin_ = piece.start.s;
     s_end_ = piece.at(piece.duration).s;
-    for (std::size_t i = 0; i < kSamples; ++i) {
-      if (!sample(piece, i)) return kInfinity;
+    for (std::size_t stride = 4;; stride /= 2) {
+      for (std::size_t i = 0; i < kSamples; i += stride) {
+        if ((stride == 4 || i % (2 * stride) != 0) && !sample(piece, i)) return kInfinity;
+      }
+      double worst = others_;
+      bool sure = true;
+      for (std::size_t j = 0; j < joints_.size(); ++j) {
+        for (const Demand* demand : {&speed_[j], &acceleration_[j], &jerk_[j]}) {
+          const Peak peak = peak_of(*demand, stride);
+          worst = std::max(worst, peak.largest);
+          sure = sure && peak.largest + kDoubt * peak.unevenness <= 1;
+        }
+      }
+      if (!std::isfinite(worst)) return kInfinity;
+      if (sure || stride == 1) return worst;
     }
-    for (std::size_t j = 0; j < joints_.size(); ++j)
-      worst_ = std::max({worst_, largest(speed_[j]), largest(acceleration_[j]), largest(jerk_[j])});
-    return std::isfinite(worst_) ? worst_ : kInfinity;
   }
 
  private:
@@ -60,16 +82,17 @@ class PieceCheck {
     }
     const PathSegment& segment = path_.segment(path_.find(s, 1));
     const PathDemand& demand = segment.demand();
-    worst_ =
-        std::max({worst_, at.a / or_unbounded(demand.accel_rise_mm_s2), -at.a / or_unbounded(demand.accel_fall_mm_s2)});
-    if (feed_ != nullptr) worst_ = std::max(worst_, at.v / (feed_->bound(segment) * 1.0005));
+    others_ = std::max(
+        {others_, at.a / or_unbounded(demand.accel_rise_mm_s2), -at.a / or_unbounded(demand.accel_fall_mm_s2)});
+    if (feed_ != nullptr) others_ = std::max(others_, at.v / (feed_->bound(segment) * 1.0005));
     return true;
   }
 
   const PathView& path_;
   const std::vector<JointLimits>& joints_;
   const FeedRule* feed_;
-  double worst_ = 0, s_begin_ = 0, s_end_ = 0;
+  double others_ = 0;  ///< what the path itself demands, of its bounds
+  double s_begin_ = 0, s_end_ = 0;
   std::array<Demand, kMaxJoints> speed_, acceleration_, jerk_;
   JointPoint point_;
 };
