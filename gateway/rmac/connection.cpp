@@ -94,7 +94,7 @@ Connection::Answer Connection::call(const std::string& method, const nlohmann::j
   return std::move(**slot);
 }
 
-void Connection::on_entered_line(std::function<void()> handler) {
+void Connection::on_entered_line(std::function<void(const std::string& line)> handler) {
   entered_line_ = std::move(handler);
   if (!terminal_.is_open() && isatty(STDIN_FILENO) == 1) {
     // In the background of a shell, reading ends with an error instead of stopping the process.
@@ -109,9 +109,11 @@ void Connection::read_terminal() {
     if (error) {
       return;
     }
+    const auto begin = asio::buffers_begin(entered_.data());
+    const std::string line(begin, begin + static_cast<std::ptrdiff_t>(bytes) - 1);
     entered_.consume(bytes);
     if (entered_line_) {
-      entered_line_();
+      entered_line_(line);
     }
     read_terminal();
   });

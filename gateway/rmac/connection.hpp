@@ -42,7 +42,7 @@ class Connection {
   void on_notification(NotificationHandler handler) { notify_ = std::move(handler); }
 
   /// Calls `handler` for each line that a person enters at the terminal, if standard input is one.
-  void on_entered_line(std::function<void()> handler);
+  void on_entered_line(std::function<void(const std::string& line)> handler);
 
   /// Handles what arrives until `done` holds. Fails when the connection is lost or the person presses Ctrl-C.
   [[nodiscard]] Result<> wait(const std::function<bool()>& done);
@@ -72,7 +72,7 @@ class Connection {
   asio::steady_timer timer_{io_};
   asio::posix::stream_descriptor terminal_{io_};
   asio::streambuf entered_;
-  std::function<void()> entered_line_;
+  std::function<void(const std::string&)> entered_line_;
   std::string input_;
   std::deque<std::string> output_;
   std::unordered_map<std::int64_t, AnswerHandler> open_;

@@ -58,7 +58,9 @@ void add_database_commands(CLI::App& app, Arguments& arguments, Command& command
 }
 
 void add_operating_commands(CLI::App& app, Arguments& arguments, Command& command) {
-  auto* run = app.add_subcommand("run", "machine a program, one JSON-RPC request a line; Enter goes on after a hold");
+  auto* run = app.add_subcommand(
+      "run",
+      "machine a program, one JSON-RPC request a line; when held, Enter goes on, and a distance in mm runs back");
   run->add_option("FILE", arguments.file, "the .rmac file, - for standard input")->required();
   run->add_flag("--virtual", arguments.run.virtual_mode, "in virtual mode: drives stay untouched");
   run->add_option("--record", arguments.run.record_file,

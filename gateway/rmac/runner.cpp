@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "gateway/rmac/rest.hpp"
@@ -22,10 +23,7 @@ constexpr auto kRecordBound = std::chrono::seconds(10);
 Runner::Runner(Connection& connection, RunOptions options)
     : connection_(connection), options_(std::move(options)), progress_(options_.show_progress) {
   connection_.on_notification([this](const auto& topic, const auto& params) { take(topic, params); });
-  // Whoever holds a program from another terminal cannot resume it there: this client has the lease. A refusal means
-  // that nothing is held.
-  connection_.on_entered_line(
-      [this] { connection_.send("RMAC_CAM.FeedResume", nlohmann::json::object(), [](const Connection::Answer&) {}); });
+  connection_.on_entered_line([this](const std::string& line) { obey(line); });
 }
 
 Result<RunReport> Runner::run(const Program& program) {
@@ -295,6 +293,25 @@ Result<> Runner::explain_rest() {
   return {};
 }
 
+void Runner::obey(const std::string& line) {
+  // Whoever holds a program from another terminal cannot resume it there: this client has the lease.
+  const auto tell = [this](const Connection::Answer& answer) {
+    if (!answer) note_ = answer.error().message;
+  };
+  note_.clear();
+  if (line.empty()) {
+    connection_.send("RMAC_CAM.FeedResume", nlohmann::json::object(), [](const Connection::Answer&) {});
+    return;
+  }
+  double distance_mm = 0;
+  const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), distance_mm);
+  if (error != std::errc() || end != line.data() + line.size()) {
+    note_ = fmt::format("\"{}\" is no distance in mm", line);
+    return;
+  }
+  connection_.send("RMAC_CAM.FeedRetrace", {{"Distance", distance_mm}}, tell);
+}
+
 void Runner::halt() {
   // Anyone connected may stop the machine; a lost connection has stopped it by losing the lease.
   if (connection_.call("RMAC_CAM.StopNow")) {
@@ -308,9 +325,10 @@ void Runner::take(const std::string& topic, const nlohmann::json& params) {
     take(read_event(params));
   } else if (topic == "state") {
     state_ = read_state(params);
-    progress_.draw(
-        report_.moves, total_moves_,
-        state_->state == "Holding" ? "held: Enter goes on" : fmt::format("{:.0f} mm/min", state_->feed_actual));
+    progress_.draw(report_.moves, total_moves_,
+                   state_->state != "Holding" ? fmt::format("{:.0f} mm/min", state_->feed_actual)
+                   : note_.empty()            ? "held: Enter goes on, a distance in mm and Enter runs back"
+                                              : note_);
   } else if (topic == "joints") {
     for (const auto& sample : read_joints(params)) {
       take(sample);

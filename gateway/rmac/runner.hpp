@@ -51,6 +51,8 @@ class Runner {
   [[nodiscard]] Result<> wait(const std::function<bool()>& done);
   [[nodiscard]] Result<> explain_rest();
   void halt();
+  /// A line from the terminal: nothing goes on after a hold, a number of mm runs back along the path.
+  void obey(const std::string& line);
 
   void take(const std::string& topic, const nlohmann::json& params);
   void take(const EventNote& event);
@@ -60,6 +62,7 @@ class Runner {
   Connection& connection_;
   RunOptions options_;
   Progress progress_;
+  std::string note_;  ///< what was wrong with the last line from the terminal
   std::optional<Record> record_;
   RunReport report_;
 

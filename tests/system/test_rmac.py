@@ -321,16 +321,29 @@ class InterruptedProgram(unittest.TestCase):
         os.close(keyboard)
         os.close(terminal)
 
+    def test_held_program_runs_back_by_a_distance_that_is_typed(self):
+        keyboard, terminal = pty.openpty()
+        run = self.run_until_moving(stdin=terminal)
+        self.watcher.wait_note("state", lambda state: state["pose"][0] > 1)
+        self.assertEqual(self.appliance.rmac("hold").returncode, DONE)
+        held = self.watcher.wait_note("state", lambda state: state["state"] == "Holding" and not state["moving"])
+        os.write(keyboard, b"0.5\n")
+        back = self.watcher.wait_note("state", lambda state: state["state"] == "Holding" and not state["moving"] and
+                                      state["pose"][0] < held["pose"][0] - 0.4)
+        self.assertAlmostEqual(back["pose"][0], held["pose"][0] - 0.5, delta=0.05)
+        os.write(keyboard, b"\n")
+        self.watcher.wait_note("state", lambda state: state["pose"][0] > held["pose"][0] + 0.1)
+        run.send_signal(signal.SIGINT)
+        self.assert_fails(run, "interrupted")
+        os.close(keyboard)
+        os.close(terminal)
+
     def test_rmacd_that_ends_under_a_program_is_told(self):
         run = self.run_until_moving()
         self.appliance.process.send_signal(signal.SIGTERM)
         # The daemon stops the machine first; which of the two the client hears of depends on the turn it gets.
         self.assertRegex(run.stderr.read(), "the connection .* ended|the cycle was stopped")
         self.assertEqual(run.wait(timeout=60), FAILED)
-
-
-if __name__ == "__main__":
-    unittest.main()
 
     def test_jog_by_velocity_lasts_until_ctrl_c(self):
         jog = self.enterContext(subprocess.Popen(
@@ -351,3 +364,7 @@ if __name__ == "__main__":
         self.assertLess(rest["pose"][2], -1)
         self.assertGreater(rest["pose"][2], -3)
         self.assertEqual(rest["authority"], "operator")
+
+
+if __name__ == "__main__":
+    unittest.main()
