@@ -85,7 +85,8 @@ class RemoteIo final : public Device {
     for (const BitRange& range : ranges) {
       for (std::size_t i = 0; i < range.count; ++i) {
         const Spot at = spot(range, i);
-        const bool on = (tables().get(range.place.table, at.address) >> at.shift & 1U) != 0;
+        const std::uint32_t value = tables().get(range.place.table, at.address);
+        const bool on = (value >> at.shift & 1U) != 0;
         if (on != range.inverted) bits |= std::uint64_t{1} << (range.first + i);
       }
     }

@@ -111,8 +111,8 @@ std::optional<Exception> Tables::write_many(std::span<const std::uint8_t> reques
   if (!sound) return Exception::IllegalValue;
   if (!has(table, address, count)) return Exception::IllegalAddress;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto value =
-        bits ? static_cast<std::uint16_t>(request[kHead + i / 8] >> i % 8 & 1U) : word(request, kHead + 2 * i);
+    const std::uint32_t eight = bits ? request[kHead + i / 8] : 0;
+    const auto value = bits ? static_cast<std::uint16_t>(eight >> i % 8 & 1U) : word(request, kHead + 2 * i);
     writes.push_back({table, static_cast<std::uint16_t>(address + i), value});
   }
   return {};
