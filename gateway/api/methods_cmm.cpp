@@ -161,9 +161,13 @@ void add_jogs(const auto& add) {
           .extension()
           .does([](Call& call) { return call.machine.cam().move_to_reference_point(); }));
   add(command("RMAC_CAM.SetJointForce", "Contact force that a joint under force control keeps.", Effect::Starts)
-          .takes(joint_number(), number("Force", "N or N·m"))
+          .takes(joint_number(), number("Force", "N or N·m")
+                                     .noted("0: hold the position; positive pushes towards larger "
+                                            "positions"))
           .extension()
-          .lacks("force control comes later"));
+          .does([](Call& call, std::int64_t joint, double force) {
+            return call.machine.cam().set_joint_force(static_cast<int>(joint), force);
+          }));
 }
 
 }  // namespace

@@ -83,8 +83,10 @@ void add_servo_setters(const auto& add) {
   add(method("RMAC_Config.SetMechanismJointControlMethod", "What a joint's servo loop controls.")
           .takes(joint_number(), choice("DMACServoControlMethod", kControlMethodValues))
           .needs(Permission::Authority)
-          .lacks(
-              "every joint's loop controls its position; velocity and force control come with the measuring machine"));
+          .does([](Call& call, std::int64_t joint, std::int64_t method) {
+            return call.machine.config().set_joint_control_method(static_cast<int>(joint),
+                                                                  static_cast<ControlMethod>(method));
+          }));
   add(method("RMAC_Config.SetMechanismJointServoControlGains", "Gains of a joint's servo law, in the law's own order.")
           .takes(joint_number(),
                  numbers("ServoControlGains", "as the law declares").within(device_range("joint/Gains")))

@@ -84,8 +84,24 @@ RealTimeSettings real_time_settings(const Json& settings) {
   if (const int cpu = settings.value("cpu", -1); cpu >= 0) real_time.cpu = cpu;
   real_time.priority = settings.value("priority", real_time.priority);
   real_time.lock_memory = settings.value("lock_memory", real_time.lock_memory);
+  constexpr int kMaxCyclesLost = 5;
+  real_time.max_cycles_lost = settings.value("max_cycles_lost", kMaxCyclesLost);
   real_time.degraded_allowed = settings.value("degraded_allowed", real_time.degraded_allowed);
   return real_time;
+}
+
+/// The schema holds what is not read here to what it does anyway.
+void read_stop_categories(const Json& chosen, Configuration& configuration) {
+  const auto read = [&chosen](const char* key, StopCategory& category) {
+    category = static_cast<StopCategory>(chosen.value(key, static_cast<int>(category)));
+  };
+  read("LeaseLost", configuration.lease_lost);
+  StopCategories& stops = configuration.stop_categories;
+  read("SensorLost", stops.sensor_lost);
+  read("ForceLimit", stops.force_limit);
+  read("ContactLost", stops.contact_lost);
+  read("CycleDeadline", stops.cycles_lost);
+  if (!chosen.contains("CycleDeadline")) configuration.real_time.max_cycles_lost = 0;
 }
 
 Configuration from_document(const Json& document, const std::filesystem::path& file_folder,
@@ -102,9 +118,7 @@ Configuration from_document(const Json& document, const std::filesystem::path& f
   configuration.pace = overrides.pace.value_or(fast ? Pace::AsFastAsComputed : Pace::RealTime);
   configuration.real_time = real_time_settings(group(document, "real_time"));
   configuration.queue_capacity = document.value("queue_capacity", configuration.queue_capacity);
-  // The schema holds the others to what they do anyway.
-  configuration.lease_lost = static_cast<StopCategory>(
-      group(document, "stop_categories").value("LeaseLost", static_cast<int>(configuration.lease_lost)));
+  read_stop_categories(group(document, "stop_categories"), configuration);
   constexpr double kMillisecondsPerSecond = 1e3;
   configuration.lease_timeout =
       std::chrono::milliseconds(std::llround(document.value("lease_timeout_s", 0.0) * kMillisecondsPerSecond));

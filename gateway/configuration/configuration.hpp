@@ -9,12 +9,9 @@
 
 #include "gateway/record/flight_recorder_options.hpp"
 #include "rmac/motion/error.hpp"
+#include "rmac/motion/servo_loop.hpp"
 
 namespace rmac::gateway {
-
-/// How motion ends, as IEC 60204-1 (9.2.2) numbers it; category 0, power off at once, is the hardware's. Which one a
-/// machine needs follows from its risk assessment.
-enum class StopCategory : int { StopThenRemovePower = 1, StopKeepPower = 2 };
 
 /// What paces the servo loop: the clock of the machine, or nothing but the computation (for tests and simulated buses).
 enum class Pace { RealTime, AsFastAsComputed };
@@ -24,6 +21,7 @@ struct RealTimeSettings {
   int priority = 80;       ///< SCHED_FIFO, 1 to 99
   bool lock_memory = true;
   bool degraded_allowed = true;  ///< run, with a warning, when the system grants no real-time scheduling
+  int max_cycles_lost = 0;       ///< missed deadlines within a second that stop the machine beyond it; 0: none does
 };
 
 /// A mechanism to load when the daemon starts.
@@ -46,8 +44,8 @@ struct Configuration {
   Pace pace = Pace::RealTime;
   RealTimeSettings real_time;
   int queue_capacity = 10'000;  ///< moves
-  /// What a lost lease leads to. Every other failure that is watched is a quick stop by the drives, category 1.
   StopCategory lease_lost = StopCategory::StopKeepPower;
+  StopCategories stop_categories;
   std::chrono::milliseconds lease_timeout{0};  ///< silence of its holder that ends the lease; 0: none
   FlightRecorderOptions flight_recorder;
   std::optional<Autoload> autoload;

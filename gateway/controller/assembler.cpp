@@ -12,7 +12,25 @@
 namespace rmac::gateway {
 namespace {
 
-Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loader) {
+/// What is not declared follows from the joint's speed. A word of a drive that comes a cycle late makes one step of its
+/// position up to twice that speed short or long; a jump is what that cannot explain.
+JointBounds bounds(const sdk::Joint& joint, double period_s) {
+  constexpr double kSpeedShare = 1.2, kJumpCycles = 3;
+  const double speed = joint.limits.max_speed;
+  return {.velocity = joint.max_measured_speed > 0 ? joint.max_measured_speed : kSpeedShare * speed,
+          .jump = joint.max_jump > 0 ? joint.max_jump : kJumpCycles * speed * period_s,
+          .stop_deceleration = joint.limits.max_acceleration};
+}
+
+ForceControl force(const sdk::Joint& joint) {
+  ForceControl result = joint.force.value_or(ForceControl{});
+  result.max_acceleration = joint.limits.max_acceleration;
+  if (ends_below(joint.limits)) result.min_position = joint.limits.min;
+  if (ends_above(joint.limits)) result.max_position = joint.limits.max;
+  return result;
+}
+
+Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loader, double period_s) {
   const std::string name = sdk::servo_law_module(joint.servo_law.name);
   auto law = loader.load<ServoLaw>({name, joint.servo_law.numbers, joint.servo_law.texts});
   if (!law) return tl::unexpected(law.error());
@@ -25,13 +43,15 @@ Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loade
                    fmt::format("joint \"{}\": {} does not accept the gains [{}]; it takes {}: {}", joint.limits.name,
                                name, fmt::join(joint.gains, ", "), law->object->gains().size(), wanted));
   }
-  return ServoAxis{std::move(law->object), joint.method, joint.max_following_error, joint.max_effort, joint.mechanics};
+  return ServoAxis{std::move(law->object), joint.method,    joint.max_following_error,
+                   joint.max_effort,       joint.mechanics, bounds(joint, period_s),
+                   std::nullopt,           force(joint)};
 }
 
 Expected<> add_axes(const sdk::DeviceObject& device, const ModuleLoader& loader, ServoLoopParts& parts) {
   for (const auto* joints : {&device.joints, &device.held_joints}) {
     for (const sdk::Joint& joint : *joints) {
-      auto axis = make_axis(joint, loader);
+      auto axis = make_axis(joint, loader, parts.period_s);
       if (!axis) return tl::unexpected(axis.error());
       parts.axes.push_back(std::move(*axis));
       parts.virtual_start.push_back(joint.limits.limit_type == JointLimitType::Limited
@@ -58,13 +78,38 @@ Expected<> add_drives(const sdk::DeviceObject& device, const ModuleLoader& loade
   for (const sdk::Actuator& actuator : device.actuators) {
     auto at = place(fmt::format("actuator {}", parts.actuators.size()), actuator.bus, actuator.axis);
     if (!at) return tl::unexpected(at.error());
-    parts.actuators.push_back(
-        {std::move(at->first), at->second, actuator.scale, static_cast<std::uint8_t>(actuator.homing_turn)});
+    constexpr double kTorqueShare = 3.5;
+    const double max_torque = actuator.max_measured_torque_nm > 0 ? actuator.max_measured_torque_nm
+                                                                  : kTorqueShare * actuator.scale.rated_torque_nm;
+    parts.actuators.push_back({std::move(at->first), at->second, actuator.scale,
+                               static_cast<std::uint8_t>(actuator.homing_turn), max_torque});
   }
   for (const sdk::Spindle& spindle : device.spindles) {
     auto at = place(fmt::format("spindle {}", parts.spindles.size()), spindle.bus, spindle.axis);
     if (!at) return tl::unexpected(at.error());
     parts.spindles.push_back({std::move(at->first), at->second, spindle.max_speed_rpm});
+  }
+  return {};
+}
+
+/// A sensor's word comes with those of a bus that the mechanism's drives are on, or of one of its own.
+Expected<> add_sensors(const sdk::DeviceObject& device, const ModuleLoader& loader, BusRegistry& registry,
+                       ServoLoopParts& parts) {
+  if (parts.virtual_mode) return {};
+  for (std::size_t j = 0; j < parts.axes.size(); ++j) {
+    const std::size_t moved = device.joints.size();
+    const sdk::Joint& joint = j < moved ? device.joints[j] : device.held_joints[j - moved];
+    if (!joint.force_sensor) continue;
+    const sdk::ForceSensor& sensor = *joint.force_sensor;
+    auto bus = registry.acquire(sensor.bus, interface_of_bus(sensor.bus, device.digital_control_interface), loader);
+    if (!bus) return tl::unexpected(bus.error());
+    if (const std::size_t there = (*bus)->interface->axis_count(); sensor.axis >= there) {
+      return failure(MinorCode::InvalidParameterValue,
+                     fmt::format("force sensor of joint \"{}\": bus {} has no axis {}; it has {}", joint.limits.name,
+                                 sensor.bus, sensor.axis, there));
+    }
+    parts.axes[j].force_sensor =
+        ServoForceSensor{std::move(*bus), sensor.axis, sensor.newton_per_count, sensor.zero_counts};
   }
   return {};
 }
@@ -146,22 +191,25 @@ Expected<> add_geometry(const sdk::DeviceObject& device, const ModuleLoader& loa
 
 }  // namespace
 
-Expected<std::shared_ptr<Mechanism>> assemble(const sdk::DeviceObject& device, bool virtual_mode, double period_s,
+Expected<std::shared_ptr<Mechanism>> assemble(const sdk::DeviceObject& device, const AssemblyOptions& options,
                                               const ModuleLoader& loader, BusRegistry& registry) {
   ServoLoopParts parts;
-  parts.period_s = period_s;
-  parts.virtual_mode = virtual_mode;
+  parts.period_s = options.period_s;
+  parts.virtual_mode = options.virtual_mode;
+  parts.stop_categories = options.stop_categories;
+  parts.max_cycles_lost = options.max_cycles_lost;
   auto ready = check_device(device)
                    .and_then([&] { return add_geometry(device, loader, parts); })
                    .and_then([&] { return add_axes(device, loader, parts); })
                    .and_then([&] { return add_drives(device, loader, registry, parts); })
+                   .and_then([&] { return add_sensors(device, loader, registry, parts); })
                    .and_then([&] { return add_io(device, loader, registry, parts); });
   if (!ready) return tl::unexpected(ready.error());
 
   PlannerModel model;
   model.kinematics = parts.kinematics;
   for (const sdk::Joint& joint : device.joints) model.joints.push_back(joint.limits);
-  model.period_s = period_s;
+  model.period_s = options.period_s;
   model.max_feed_mm_s = device.max_feedrate_mm_min / 60;
   auto loop = ServoLoop::create(std::move(parts));
   if (!loop) return tl::unexpected(loop.error());

@@ -12,11 +12,19 @@ namespace rmac::gateway {
 /// error names the joint, actuator or spindle, the value, and what would be right.
 [[nodiscard]] Expected<> check_device(const sdk::DeviceObject& device);
 
+/// What of a servo loop is the appliance's to say, and not the mechanism's.
+struct AssemblyOptions {
+  bool virtual_mode = false;
+  double period_s = 0.001;
+  StopCategories stop_categories{};
+  int max_cycles_lost = 0;
+};
+
 /// Builds the mechanism that a device object describes, beside whatever is in force: loads its modules, checks that
 /// they fit each other and the gains, and borrows the buses. Nothing moves and nothing in force changes; a failure
 /// leaves at most a bus brought up, which `BusRegistry::stop_unused` stops. Gateway thread.
-[[nodiscard]] Expected<std::shared_ptr<Mechanism>> assemble(const sdk::DeviceObject& device, bool virtual_mode,
-                                                            double period_s, const ModuleLoader& loader,
+[[nodiscard]] Expected<std::shared_ptr<Mechanism>> assemble(const sdk::DeviceObject& device,
+                                                            const AssemblyOptions& options, const ModuleLoader& loader,
                                                             BusRegistry& registry);
 
 }  // namespace rmac::gateway

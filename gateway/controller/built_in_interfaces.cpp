@@ -14,9 +14,13 @@ namespace rmac::gateway {
 namespace {
 
 Expected<std::shared_ptr<DigitalControlInterface>> make_simulated(const sdk::ModuleChoice& choice, double period_s) {
-  return simulated_axes(choice).map([&](const std::vector<fieldbus::SimulatedAxis>& axes) {
-    return std::shared_ptr<DigitalControlInterface>(std::make_shared<fieldbus::SimulatedInterface>(axes, period_s));
-  });
+  const auto axes = simulated_axes(choice);
+  if (!axes) return tl::unexpected(axes.error());
+  const auto contact = simulated_contact(choice);
+  if (!contact) return tl::unexpected(contact.error());
+  auto made = std::make_shared<fieldbus::SimulatedInterface>(*axes, period_s);
+  if (*contact) made->set_contact(**contact);
+  return made;
 }
 
 Expected<std::shared_ptr<DigitalControlInterface>> make_canopen(const std::string& bus, const sdk::ModuleChoice& choice,

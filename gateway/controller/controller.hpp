@@ -12,6 +12,7 @@
 #include "gateway/controller/machine_state.hpp"
 #include "gateway/record/flight_recorder_options.hpp"
 #include "rmac/motion/error.hpp"
+#include "rmac/motion/servo_loop.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
 #include "rmac/sdk/rmac_config.hpp"
 
@@ -32,7 +33,9 @@ struct ControllerOptions {
   /// asked for.
   bool stepped = false;
   std::size_t queue_capacity = 10'000;  ///< moves
-  std::shared_ptr<Clock> clock;         ///< paces the servo thread; null: the monotonic clock
+  StopCategories stop_categories{};
+  int max_cycles_lost = 0;       ///< missed deadlines within a second; beyond it the machine stops; 0: not watched
+  std::shared_ptr<Clock> clock;  ///< paces the servo thread; null: the monotonic clock
   FlightRecorderOptions flight_recorder{};
   /// Interfaces beside the built-in ones, by name.
   std::map<std::string, BusRegistry::ControlFactory> control_interfaces;

@@ -23,6 +23,8 @@ struct Controller::Impl {
   /// Finds modules in a mechanism's folder first, then in the shared ones.
   [[nodiscard]] ModuleLoader loader(const std::string& mechanism_folder) const;
 
+  [[nodiscard]] AssemblyOptions assembly_options(bool in_virtual_mode) const;
+
   // Changing mechanisms (mechanism_change.cpp).
   [[nodiscard]] Expected<> put_in(const sdk::DeviceObject& device, bool fresh);
   [[nodiscard]] Expected<> take_out();

@@ -4,6 +4,7 @@
 
 #include "gateway/controller/controller_impl.hpp"
 #include "gateway/controller/fault_text.hpp"
+#include "rmac/sdk/servo_law_names.hpp"
 
 namespace rmac::gateway {
 
@@ -49,7 +50,9 @@ Expected<std::string> Controller::Impl::record(FlightCause cause, const Event& e
   head.mechanism = in_force->device.name;
   for (const auto* joints : {&in_force->device.joints, &in_force->device.held_joints}) {
     for (const sdk::Joint& joint : *joints) {
-      head.joints.push_back({joint.limits.name, joint.limits.type == JointType::Rotary ? "deg" : "mm"});
+      head.joints.push_back({joint.limits.name, joint.limits.type == JointType::Rotary ? "deg" : "mm",
+                             sdk::servo_law_module(joint.servo_law.name), joint.gains, joint.servo_law.numbers,
+                             joint.limits.max_speed, joint.limits.max_acceleration, joint.max_effort});
     }
   }
   return recorder->request(std::move(head));

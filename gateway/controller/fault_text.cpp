@@ -42,6 +42,8 @@ std::string where(const ServoFault& fault, const sdk::DeviceObject* device) {
       return fmt::format("bus {}", fault.index);
     case ServoFault::Part::Io:
       return "digital I/O";
+    case ServoFault::Part::Clock:
+      return "servo thread";
   }
   return "somewhere";
 }
@@ -80,9 +82,7 @@ std::string code_text(const ServoFault& fault, std::uint16_t code, const Mechani
   return text ? *text : fieldbus::canopen::emergency_text(code);
 }
 
-}  // namespace
-
-std::string describe(const ServoFault& fault, const Mechanism* mechanism) {
+std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
   std::string at = where(fault, mechanism != nullptr ? &mechanism->device : nullptr);
   const auto word = static_cast<unsigned>(std::lround(std::abs(fault.value)));
   switch (fault.kind) {
@@ -92,6 +92,45 @@ std::string describe(const ServoFault& fault, const Mechanism* mechanism) {
       return fmt::format(
           "{}: following error {:.4g} is beyond the bound of {:.4g}; look for a blocked axis, a wrong "
           "scale or weak gains, then reset",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::VelocityBound:
+      return fmt::format(
+          "{}: it moves at {:.4g} per second, beyond the bound of {:.4g}; look for a drive that runs away, a wrong "
+          "scale or a wrong direction, then reset",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::TorqueBound:
+      return fmt::format(
+          "{}: it gives {:.3g} N·m, beyond the bound of {:.3g} N·m; look for a collision or a drive whose current loop "
+          "is out of order, then reset",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::EncoderJump:
+      return fmt::format(
+          "{}: its position jumped by {:.4g} within a cycle, and motion explains {:.4g}; check the encoder, its cable "
+          "and its screen, then reset and find the reference again",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::SensorLost:
+      if (fault.part != ServoFault::Part::Joint) {
+        return fmt::format(
+            "{}: the drive has lost its encoder (error {:04X}h, {}); check the encoder and its cable, "
+            "then reset",
+            at, word, code_text(fault, static_cast<std::uint16_t>(word), mechanism));
+      }
+      return fmt::format(
+          "{}: its force sensor gives no valid value; check the sensor, its amplifier and its cable, "
+          "then reset",
+          at);
+    case ServoFault::Kind::ForceLimit:
+      return fmt::format(
+          "{}: it pushes with {:.4g}, beyond the bound of {:.4g}; look at what it met, back off, then "
+          "reset",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::ContactLost:
+      return fmt::format("{}: it went {:.4g} without contact, as far as it may; look where the part is, then reset", at,
+                         fault.value);
+    case ServoFault::Kind::CyclesLost:
+      return fmt::format(
+          "{}: {:.0f} deadlines were missed within a second, and {:.0f} are allowed; look at the load of the "
+          "controller and at docs/real-time.md, then reset",
           at, fault.value, fault.bound);
     case ServoFault::Kind::NotANumber:
       return fmt::format("{}: the servo loop computed no number; check gains and feedback, then reset", at);
@@ -132,6 +171,15 @@ std::string describe(const ServoFault& fault, const Mechanism* mechanism) {
                          input_name(fault.index, mechanism));
   }
   return at;
+}
+
+}  // namespace
+
+std::string describe(const ServoFault& fault, const Mechanism* mechanism) {
+  if (fault.kind == ServoFault::Kind::None) return "no fault";
+  const bool kept = fault.stop == StopCategory::StopKeepPower;
+  return cause(fault, mechanism) + (kept ? ". Stop category 2: every joint brakes and is held under power"
+                                         : ". Stop category 1: the drives brake, and lose their power at rest");
 }
 
 }  // namespace rmac::gateway

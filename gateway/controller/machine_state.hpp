@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "rmac/motion/force_control.hpp"
 #include "rmac/motion/move.hpp"
 #include "rmac/motion/path_segment.hpp"
 #include "rmac/motion/servo_fault.hpp"
@@ -49,6 +50,8 @@ struct CycleSample {
   ToolPose pose_actual;         ///< part frame
   std::array<double, kMaxJoints> position_set{}, velocity_set{}, acceleration_set{};
   std::array<double, kMaxJoints> position{}, velocity{}, effort{};
+  std::array<double, kMaxJoints> force{};                  ///< as force sensors measure it; 0 where there is none
+  std::array<ContactState, kMaxJoints> contact{};          ///< of joints under force control
   std::array<std::uint16_t, kMaxJoints> statusword{};      ///< one an actuator, as all that drives tell
   std::array<std::uint16_t, kMaxJoints> error_code{};      ///< CiA 402's 603Fh
   std::array<std::int16_t, kMaxJoints> torque_permille{};  ///< of the rated one, measured

@@ -24,6 +24,10 @@ ModuleLoader Controller::Impl::loader(const std::string& mechanism_folder) const
   return ModuleLoader(std::move(folders));
 }
 
+AssemblyOptions Controller::Impl::assembly_options(bool in_virtual_mode) const {
+  return {in_virtual_mode, options.period_s, options.stop_categories, options.max_cycles_lost};
+}
+
 void Controller::Impl::drain() {
   // No further than now: in virtual time the servo thread could go on as fast as it is followed.
   const std::int64_t newest = link->history.newest();
@@ -123,7 +127,7 @@ Expected<> Controller::Impl::clear_servo_fault() {
 
 std::string Controller::Impl::put_back(const sdk::DeviceObject& device, bool virtual_before) {
   // The loop that was in force has handed its drives over and cannot take them back; one like it can.
-  auto again = assemble(device, virtual_before, options.period_s, loader(folder_in_force), registry);
+  auto again = assemble(device, assembly_options(virtual_before), loader(folder_in_force), registry);
   if (!again) return again.error().message;
   const auto restored = switch_to(std::move(*again), false).and_then([&] { return clear_servo_fault(); }).and_then([&] {
     return power_on();
@@ -143,7 +147,7 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
   if (auto ready = ready_for_change("putting in a configuration"); !ready) return ready;
   const bool virtual_before = in_force && in_force->virtual_mode();
   auto before = in_force;
-  auto next = assemble(device, virtual_mode, options.period_s, loader(folder), registry);
+  auto next = assemble(device, assembly_options(virtual_mode), loader(folder), registry);
   std::optional<std::vector<double>> standing;
   if (next && before) {
     const ServoStatus now = link->status.read();

@@ -114,7 +114,10 @@ void MotionSupervisor::tell_state() {
         {}});
   reported_state_ = state;
   wishes_.state = state;
-  if (is_faulted(state)) wishes_.spindle_rpm.fill(0);
+  if (is_faulted(state)) {
+    wishes_.spindle_rpm.fill(0);
+    wishes_.force.fill(0);
+  }
   // Nothing may flow, open or close when the stop is released.
   if (state == CycleState::EmergencyStop) wishes_.outputs = 0;
   link_.wishes.write(wishes_);

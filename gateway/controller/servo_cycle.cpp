@@ -13,6 +13,7 @@ void ServoCycle::run(std::uint64_t missed) noexcept {
   sample_.cycle = cycle_;
   sample_.t_s = static_cast<double>(cycle_) * period_s_;
   sample_.deadline_misses += missed;
+  command_.cycles_missed = missed;
   if (mechanism_ != nullptr) move(wishes);
   publish(wishes);
 }
@@ -55,6 +56,7 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
   command_.home = wishes.home;
   command_.spindle_rpm = wishes.spindle_rpm;
   command_.outputs = wishes.outputs;
+  command_.force = wishes.force;
   if (!report_.follows) mechanism_->follower.hold_at(loop.hold_position().first(loop.joint_count()));
   mechanism_->follower.sample(cycle_, command_.setpoint);
 
@@ -118,6 +120,8 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
     sample_.position = report_.position;
     sample_.velocity = report_.velocity;
     sample_.effort = report_.effort;
+    sample_.force = report_.force;
+    sample_.contact = report_.contact;
     sample_.statusword = report_.statusword;
     sample_.error_code = report_.error_code;
     sample_.torque_permille = report_.torque_permille;

@@ -20,7 +20,8 @@ struct ServoWishes {
   Frames frames;
   std::array<double, kMaxSpindles> spindle_rpm{};
   std::uint64_t outputs = 0;
-  CycleState state = CycleState::Idle;  ///< goes into the samples
+  std::array<double, kMaxJoints> force{};  ///< of joints under force control
+  CycleState state = CycleState::Idle;     ///< goes into the samples
 };
 
 /// The little of a cycle that planning and the cycle states need.

@@ -11,6 +11,7 @@ namespace {
 
 using fieldbus::AxisPlantParameters;
 using fieldbus::SimulatedAxis;
+using fieldbus::SimulatedContact;
 using fieldbus::SpindlePlantParameters;
 
 struct Bounds {
@@ -58,6 +59,21 @@ struct OfSpindle {
 const std::map<std::string, OfSpindle> kOfSpindle{
     {"spindle_max_rpm", {{1, 1e6}, &SpindlePlantParameters::max_speed_rpm}},
     {"spindle_max_torque_nm", {{1e-3, 1e5}, &SpindlePlantParameters::max_torque_nm}},
+};
+
+struct OfContact {
+  Bounds bounds;
+  double SimulatedContact::*member;
+};
+
+const std::map<std::string, OfContact> kOfContact{
+    {"contact_surface_mm", {{-1e6, 1e6}, &SimulatedContact::surface_mm}},
+    {"contact_stiffness_n_mm", {{1e-3, 1e6}, &SimulatedContact::stiffness_n_mm}},
+    {"contact_damping_n_s_mm", {{0, 1e4}, &SimulatedContact::damping_n_s_mm}},
+    {"contact_slope", {{-1, 1}, &SimulatedContact::slope}},
+    {"contact_wave_mm", {{0, 100}, &SimulatedContact::wave_mm}},
+    {"contact_wave_length_mm", {{0.1, 1e5}, &SimulatedContact::wave_length_mm}},
+    {"contact_pitch_mm", {{0.1, 1000}, &SimulatedContact::pitch_mm}},
 };
 
 tl::unexpected<Error> refuse(std::string message) {
@@ -109,8 +125,9 @@ Expected<> set_spindle(const std::string& name, const std::vector<double>& numbe
 }
 
 tl::unexpected<Error> not_understood(const std::string& name) {
-  std::string known = "axes, spindle";
+  std::string known = "axes, spindle, contact_axis, contact_along";
   for (const auto& [key, ignored] : kOfSpindle) known += ", " + key;
+  for (const auto& [key, ignored] : kOfContact) known += ", " + key;
   for (const auto& [key, ignored] : kOfAxis) known += ", " + key;
   return refuse(fmt::format("parameter \"{}\" is not understood; there are {}", name, known));
 }
@@ -133,7 +150,7 @@ Expected<std::vector<SimulatedAxis>> simulated_axes(const sdk::ModuleChoice& cho
     if (*spindle >= 0) axes[static_cast<std::size_t>(*spindle)] = SpindlePlantParameters{};
   }
   for (const auto& [name, numbers] : choice.numbers) {
-    if (name == "axes" || name == "spindle") continue;
+    if (name == "axes" || name == "spindle" || name.starts_with("contact_")) continue;
     const auto of_axis = kOfAxis.find(name);
     const auto of_spindle = kOfSpindle.find(name);
     Expected<> done;
@@ -147,6 +164,37 @@ Expected<std::vector<SimulatedAxis>> simulated_axes(const sdk::ModuleChoice& cho
     if (!done) return tl::unexpected(done.error());
   }
   return axes;
+}
+
+Expected<std::optional<SimulatedContact>> simulated_contact(const sdk::ModuleChoice& choice) {
+  const auto axes = simulated_axes(choice);
+  if (!axes) return tl::unexpected(axes.error());
+  std::optional<SimulatedContact> contact;
+  for (const auto& [name, numbers] : choice.numbers) {
+    if (!name.starts_with("contact_")) continue;
+    if (!contact) contact.emplace();
+    if (name == "contact_axis" || name == "contact_along") {
+      const auto axis = whole(choice, name.c_str(), {0, static_cast<double>(axes->size() - 1)}, 0);
+      if (!axis) return tl::unexpected(axis.error());
+      (name == "contact_axis" ? contact->axis : contact->along) = static_cast<std::size_t>(*axis);
+      continue;
+    }
+    const auto known = kOfContact.find(name);
+    if (known == kOfContact.end()) return not_understood(name);
+    if (numbers.size() != 1 || !inside(numbers[0], known->second.bounds)) {
+      return refuse(fmt::format("parameter \"{}\" must be one number from {} to {}", name, known->second.bounds.min,
+                                known->second.bounds.max));
+    }
+    (*contact).*known->second.member = numbers[0];
+  }
+  if (!contact) return contact;
+  for (const std::size_t axis : {contact->axis, contact->along}) {
+    if (axis >= axes->size() || !std::holds_alternative<AxisPlantParameters>((*axes)[axis])) {
+      return refuse(fmt::format("contact: axis {} is no servo axis of this bus", axis));
+    }
+  }
+  if (contact->axis == contact->along) return refuse("contact: contact_axis and contact_along must be two axes");
+  return contact;
 }
 
 }  // namespace rmac::gateway

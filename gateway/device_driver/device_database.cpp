@@ -85,6 +85,29 @@ JointMechanics mechanics(const Json& joint) {
   return result;
 }
 
+std::optional<sdk::ForceSensor> force_sensor(const Json& joint) {
+  const auto sensor = joint.find("ForceSensor");
+  if (sensor == joint.end()) return {};
+  return sdk::ForceSensor{.bus = text(*sensor, "Bus"),
+                          .axis = (*sensor)["Axis"].get<std::uint32_t>(),
+                          .newton_per_count = number(*sensor, "NewtonPerCount"),
+                          .zero_counts = sensor->value("ZeroCounts", std::int32_t{0})};
+}
+
+std::optional<ForceControl> force_control(const Json& joint) {
+  const auto force = joint.find("ForceControl");
+  if (force == joint.end()) return {};
+  ForceControl result;
+  result.approach_speed = number(*force, "ApproachSpeed");
+  result.contact_force = number(*force, "ContactForce");
+  result.gain = number(*force, "Gain");
+  result.reset_time_s = number(*force, "ResetTime");
+  result.max_speed = number(*force, "MaxSpeed");
+  result.max_force = number(*force, "MaxForce");
+  result.max_search = number(*force, "MaxSearch");
+  return result;
+}
+
 std::vector<sdk::Joint> joints(const Json& list) {
   std::vector<sdk::Joint> result;
   for (const Json& entry : list) {
@@ -99,6 +122,10 @@ std::vector<sdk::Joint> joints(const Json& list) {
     joint.max_following_error = number(entry, "MaxFollowingError");
     joint.max_effort = number(entry, "MaxEffort");
     joint.mechanics = mechanics(entry);
+    joint.max_measured_speed = number(entry, "MaxMeasuredSpeed");
+    joint.max_jump = number(entry, "MaxJump");
+    joint.force_sensor = force_sensor(entry);
+    joint.force = force_control(entry);
     result.push_back(std::move(joint));
   }
   return result;
@@ -112,6 +139,7 @@ std::vector<sdk::Actuator> actuators(const Json& list) {
     actuator.axis = entry["Axis"].get<std::uint32_t>();
     actuator.scale.counts_per_revolution = number(entry, "CountsPerRevolution");
     actuator.scale.rated_torque_nm = number(entry, "RatedTorque");
+    actuator.max_measured_torque_nm = number(entry, "MaxMeasuredTorque");
     actuator.scale.direction = entry.value("Direction", 1);
     actuator.scale.home_counts = entry.value("HomeCounts", std::int32_t{0});
     actuator.homing_turn = entry.value("HomingTurn", 0);

@@ -26,7 +26,7 @@ void append_header(const CycleSample& sample, std::string& out) {
   const std::size_t joints = sample.axis_count;
   const std::size_t drives = sample.actuator_count;
   append_setpoint_header(joints, true, out);
-  for (const char* quantity : {"ad", "effort"}) append_columns(quantity, joints, out);
+  for (const char* quantity : {"ad", "effort", "force"}) append_columns(quantity, joints, out);
   for (const char* word : {"torque_permille", "statusword", "error_code"}) append_columns(word, drives, out);
   append_columns("rpm", sample.spindle_rpm.size(), out);
   out += ",feed_actual_mm_s,cycle,state,servo_state,fault,fault_value,fault_bound,inputs,outputs,deadline_misses\n";
@@ -46,6 +46,7 @@ void append_row(const CycleSample& sample, std::string& out) {
       out);
   append_numbers(of_joints(sample.velocity), out);
   append_numbers(of_joints(sample.effort), out);
+  append_numbers(of_joints(sample.force), out);
   append_words(sample.torque_permille, drives, out);
   append_words(sample.statusword, drives, out);
   append_words(sample.error_code, drives, out);
@@ -103,7 +104,16 @@ class NewFile {
 
 nlohmann::json to_json(const FlightHead& head) {
   nlohmann::json joints = nlohmann::json::array();
-  for (const FlightHead::Joint& joint : head.joints) joints.push_back({{"name", joint.name}, {"unit", joint.unit}});
+  for (const FlightHead::Joint& joint : head.joints) {
+    joints.push_back({{"name", joint.name},
+                      {"unit", joint.unit},
+                      {"law", joint.law},
+                      {"gains", joint.gains},
+                      {"parameters", joint.parameters},
+                      {"max_speed", joint.max_speed},
+                      {"max_acceleration", joint.max_acceleration},
+                      {"max_effort", joint.max_effort}});
+  }
   return {{"name", head.name},
           {"cause", head.cause == FlightCause::Fault ? "fault" : "demand"},
           {"message", head.message},

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -19,6 +20,10 @@ enum class FlightCause : std::uint8_t { Fault, Demand };
 struct FlightHead {
   struct Joint {
     std::string name, unit;
+    std::string law;  ///< module of the servo law
+    std::vector<double> gains;
+    std::map<std::string, std::vector<double>> parameters;  ///< of the law, by name
+    double max_speed = 0, max_acceleration = 0, max_effort = 0;
   };
   std::string name;
   FlightCause cause = FlightCause::Demand;

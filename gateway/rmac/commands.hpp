@@ -58,6 +58,27 @@ struct JogRequest {
 [[nodiscard]] Result<> stop(Connection& connection);
 [[nodiscard]] Result<> set_override(Connection& connection, double percent);
 
+/// What `rmac tune` moves, and what it aims at.
+struct TuneRequest {
+  int joint = 0;
+  double travel = 0;        ///< mm or deg from where the joint stands, signed; it comes back
+  double bandwidth_hz = 0;  ///< 0: nine tenths of what the delay lets it have
+  double phase_margin_deg = 40;
+  std::string picture;  ///< empty: tune-JOINT.png here
+  bool apply = false;
+};
+/// Finds what a joint is made of by moving it, and proposes gains. Changes nothing unless told to.
+[[nodiscard]] Result<> tune(Connection& connection, const TuneRequest& request, bool json);
+
+/// A circle from where the tool stands, upwards in Y.
+struct FollowingRequest {
+  double radius_mm = 25;
+  double feed_mm_min = 0;  ///< 0: the machine's largest
+  std::string picture;     ///< empty: following.png here
+};
+/// The circle test of ISO 230-4, as the drives' encoders show it.
+[[nodiscard]] Result<> measure_following(Connection& connection, const FollowingRequest& request, bool json);
+
 /// The flight records that there are.
 [[nodiscard]] Result<> list_records(Connection& connection, bool json);
 /// Has one written, and waits for it.

@@ -25,6 +25,8 @@ struct Arguments {
   RunOptions run;
   SimulateOptions simulate;
   JogRequest jog;
+  TuneRequest tune;
+  FollowingRequest following;
   int node = 0;
   double percent = 100, period_s = 0.001;
 };
@@ -117,6 +119,34 @@ void add_trace_commands(CLI::App& app, Arguments& arguments, Command& command) {
   plot->callback([&] { command = [&](auto& to) { return plot_record(to, arguments.name, arguments.file); }; });
 }
 
+void add_commissioning_commands(CLI::App& app, Arguments& arguments, Command& command) {
+  TuneRequest& request = arguments.tune;
+  auto* tune_command = app.add_subcommand(
+      "tune",
+      "move a joint, find its mass, friction and delay, and propose gains; needs python3-scipy and -matplotlib");
+  tune_command->add_option("JOINT", request.joint, "counted from 0")->required()->check(CLI::NonNegativeNumber);
+  tune_command->add_option("--travel", request.travel, "mm or degrees that it may go from where it stands, signed")
+      ->required();
+  tune_command->add_option("--bandwidth", request.bandwidth_hz, "Hz; nine tenths of what its delay allows unless given")
+      ->check(CLI::PositiveNumber);
+  tune_command->add_option("--phase-margin", request.phase_margin_deg, "degrees")
+      ->check(CLI::Range(10.0, 70.0))
+      ->capture_default_str();
+  tune_command->add_option("-o,--output", request.picture, "the picture to draw; tune-JOINT.png here unless given");
+  tune_command->add_flag("--apply", request.apply, "put the gains in force; without it nothing is changed");
+  tune_command->callback([&] { command = [&](auto& to) { return tune(to, request, arguments.json); }; });
+
+  FollowingRequest& circle = arguments.following;
+  auto* follow = app.add_subcommand("measure-following",
+                                    "go round a circle from where the tool stands (upwards in Y) and draw what a "
+                                    "ballbar would (ISO 230-4)");
+  follow->add_option("--radius", circle.radius_mm, "mm")->check(CLI::Range(0.1, 10000.0))->capture_default_str();
+  follow->add_option("--feed", circle.feed_mm_min, "mm/min; the machine's largest unless given")
+      ->check(CLI::PositiveNumber);
+  follow->add_option("-o,--output", circle.picture, "the picture to draw; following.png here unless given");
+  follow->callback([&] { command = [&](auto& to) { return measure_following(to, circle, arguments.json); }; });
+}
+
 /// Commands that need no appliance.
 void add_offline_commands(CLI::App& app, Arguments& arguments, std::function<Result<>()>& command) {
   auto* simulate = app.add_subcommand(
@@ -183,6 +213,7 @@ int run(int count, char** words) {
   add_database_commands(app, arguments, command);
   add_operating_commands(app, arguments, command);
   add_trace_commands(app, arguments, command);
+  add_commissioning_commands(app, arguments, command);
   std::function<Result<>()> offline_command;
   add_offline_commands(app, arguments, offline_command);
   try {

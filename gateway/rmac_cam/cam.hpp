@@ -58,6 +58,7 @@ class Cam final : public sdk::RmacCam {
   Expected<> set_spindle_max_rpm(int spindle, double rpm) override;
   [[nodiscard]] Expected<double> spindle_max_rpm(int spindle) const override;
   Expected<> set_coolant(bool on) override;
+  Expected<> set_joint_force(int joint, double force) override;
   Expected<double> feed_retrace(double distance_mm) override;
   Expected<> jog_joint(int joint, double distance) override;
   Expected<> jog_joint_at(int joint, double velocity) override;

@@ -29,6 +29,8 @@ ControllerOptions controller_options(const Configuration& configuration) {
   options.priority = configuration.real_time.priority;
   options.lock_memory = configuration.real_time.lock_memory;
   options.queue_capacity = static_cast<std::size_t>(configuration.queue_capacity);
+  options.stop_categories = configuration.stop_categories;
+  options.max_cycles_lost = configuration.real_time.max_cycles_lost;
   options.flight_recorder = configuration.flight_recorder;
   return options;
 }

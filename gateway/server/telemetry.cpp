@@ -58,6 +58,7 @@ void append_joints(const CycleSample& sample, std::string& out) {
   append_list("a", sample.position, 0, joints, out);
   append_list("ad", sample.velocity, 0, joints, out);
   append_list("effort", sample.effort, 0, joints, out);
+  append_list("force", sample.force, 0, joints, out);
   std::array<double, kMaxJoints> error{};
   for (std::size_t i = 0; i < axes; ++i) error[i] = sample.position_set[i] - sample.position[i];
   append_list("error", error, 0, joints, out);

@@ -15,10 +15,18 @@ DriveFeedback SimulatedServoDrive::feedback() const noexcept {
   return {
       .statusword = power_.statusword(),
       .error_code = power_.error_code(),
-      .position_counts = static_cast<std::int32_t>(static_cast<std::uint64_t>(wide)),
+      .position_counts = frozen_counts_.value_or(static_cast<std::int32_t>(static_cast<std::uint64_t>(wide))),
       .velocity_rpm = static_cast<std::int32_t>(std::lround(plant_.speed_rad_s() * 30 / std::numbers::pi)),
       .torque_permille = static_cast<std::int16_t>(std::lround(plant_.motor_nm() * 1000 / parameters_.rated_torque_nm)),
       .online = true};
+}
+
+void SimulatedServoDrive::freeze_encoder(bool frozen) noexcept {
+  if (!frozen) {
+    frozen_counts_.reset();
+  } else if (!frozen_counts_) {
+    frozen_counts_ = feedback().position_counts;
+  }
 }
 
 void SimulatedServoDrive::advance(const DriveCommand& command, double period_s) noexcept {
@@ -30,11 +38,18 @@ void SimulatedServoDrive::advance(const DriveCommand& command, double period_s) 
     // The drive takes torque back where it would drive the motor past its speed limit.
     if (std::abs(plant_.speed_rad_s()) >= max_speed_rad_s && torque * plant_.speed_rad_s() > 0) torque = 0;
   }
+  if (runaway_nm_ && power_.operational()) torque = *runaway_nm_;
   const bool braking = power_.quick_stopping();
   if (braking) {
-    // Rated torque against the motion, less where that would turn it round within the cycle; the brake closes at rest.
+    // Rated torque against the motion, less where that would turn it round within the cycle, and an integral part that
+    // takes up a hanging load; the brake closes at rest.
+    constexpr double kIntegralShare = 0.05;
     const double to_rest = plant_.speed_rad_s() * parameters_.inertia_kg_m2() / period_s;
-    torque = std::clamp(-to_rest, -parameters_.rated_torque_nm, parameters_.rated_torque_nm);
+    torque = std::clamp(load_nm_ - to_rest, -parameters_.rated_torque_nm, parameters_.rated_torque_nm);
+    load_nm_ =
+        std::clamp(load_nm_ - kIntegralShare * to_rest, -parameters_.rated_torque_nm, parameters_.rated_torque_nm);
+  } else {
+    load_nm_ = 0;
   }
   constexpr double kStandingRadS = 0.5;
   const bool standing = std::abs(plant_.speed_rad_s()) < kStandingRadS;

@@ -1,5 +1,8 @@
 #include "rmac/fieldbus/simulated_interface.hpp"
 
+#include <cmath>
+#include <numbers>
+
 namespace rmac::fieldbus {
 
 namespace {
@@ -42,11 +45,40 @@ void SimulatedInterface::act_on_injected(std::size_t axis) noexcept {
     std::visit([code](auto& drive) { drive.power().trip(static_cast<std::uint16_t>(code)); }, drives_[axis]);
   }
   const std::int32_t shift = injected.encoder_shift.exchange(0);
-  if (auto* servo = std::get_if<SimulatedServoDrive>(&drives_[axis])) servo->shift_encoder(shift);
+  auto* const servo = std::get_if<SimulatedServoDrive>(&drives_[axis]);
+  if (servo == nullptr) return;
+  servo->shift_encoder(shift);
+  servo->freeze_encoder(injected.frozen);
+  const double runaway = injected.runaway_nm;
+  // A drive that was switched off is repaired before it comes back.
+  if (!servo->power().operational()) injected.runaway_nm = 0;
+  servo->run_away(runaway == 0 ? std::nullopt : std::optional(runaway));
+  servo->plant().push(injected.push_nm);
+}
+
+void SimulatedInterface::move_surface() noexcept {
+  if (!contact_) return;
+  const double rad_per_mm = 2 * std::numbers::pi / contact_->pitch_mm;
+  const double x = plant(contact_->along).angle_rad() / rad_per_mm;
+  const double wave = contact_->wave_mm * std::sin(2 * std::numbers::pi * x / contact_->wave_length_mm);
+  // N·m a rad from N a mm: once for the force's arm, once for the way.
+  const double to_shaft = 1e-3 / (rad_per_mm * rad_per_mm);
+  plant(contact_->axis)
+      .touch({.stiffness_nm_rad = contact_->stiffness_n_mm * to_shaft,
+              .damping_nm_s_rad = contact_->damping_n_s_mm * to_shaft,
+              .surface_rad = (contact_->surface_mm + contact_->slope * x + wave) * rad_per_mm});
+}
+
+void SimulatedInterface::read_sensor(std::size_t axis, DriveFeedback& words) noexcept {
+  words.sensor_valid = !sensor_lost_;
+  if (!contact_ || contact_->axis != axis) return;
+  const double force_n = plant(contact_->axis).contact_nm() * 2 * std::numbers::pi / (contact_->pitch_mm * 1e-3);
+  words.sensor_counts = static_cast<std::int32_t>(std::lround(-force_n * contact_->counts_per_newton));
 }
 
 bool SimulatedInterface::exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept {
   const bool bus_failed = bus_failed_;
+  move_surface();
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     act_on_injected(i);
     const bool heard = !bus_failed && !injected_[i].offline;
@@ -54,6 +86,7 @@ bool SimulatedInterface::exchange(std::span<const DriveCommand> commands, std::s
         [&](auto& drive) {
           if (heard) {
             feedback[i] = drive.feedback();
+            read_sensor(i, feedback[i]);
             drive.advance(commands[i], period_s_);
           } else {
             feedback[i].online = false;
@@ -74,6 +107,16 @@ void SimulatedInterface::trip(std::size_t axis, std::uint16_t error_code) noexce
 }
 void SimulatedInterface::shift_encoder(std::size_t axis, std::int32_t counts) noexcept {
   injected_[axis].encoder_shift += counts;
+}
+
+void SimulatedInterface::freeze_encoder(std::size_t axis, bool frozen) noexcept {
+  injected_[axis].frozen = frozen;
+}
+void SimulatedInterface::run_away(std::size_t axis, double torque_nm) noexcept {
+  injected_[axis].runaway_nm = torque_nm;
+}
+void SimulatedInterface::push(std::size_t axis, double torque_nm) noexcept {
+  injected_[axis].push_nm = torque_nm;
 }
 
 AxisPlant& SimulatedInterface::plant(std::size_t axis) {

@@ -30,6 +30,12 @@ void AxisPlant::put_at(double angle_rad) noexcept {
   speed_rad_s_ = 0;
 }
 
+double AxisPlant::contact_nm() const noexcept {
+  if (contact_.stiffness_nm_rad == 0 || angle_rad_ >= contact_.surface_rad) return 0;
+  const double spring = contact_.stiffness_nm_rad * (contact_.surface_rad - angle_rad_);
+  return std::max(0.0, spring - contact_.damping_nm_s_rad * speed_rad_s_);
+}
+
 void AxisPlant::advance(double motor_nm, bool braked, double duration_s) noexcept {
   const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / kLargestStepS - 1e-9)));
   const double dt = duration_s / steps;
@@ -44,7 +50,7 @@ void AxisPlant::advance(double motor_nm, bool braked, double duration_s) noexcep
 
 void AxisPlant::step(bool braked, double dt) noexcept {
   const double brake = braked ? parameters_.brake_nm : 0;
-  const double driving = motor_nm_ - parameters_.gravity_nm;
+  const double driving = motor_nm_ - parameters_.gravity_nm + push_nm_ + contact_nm();
   if (speed_rad_s_ == 0 && std::abs(driving) <= parameters_.static_nm + brake) return;  // it sticks
 
   // Dry friction can stop the shaft within a step, never turn it round: what it takes away ends at zero. The viscous

@@ -1,5 +1,7 @@
 #include "rmac/motion/servo_fault.hpp"
 
+#include "rmac/motion/force_control.hpp"
+
 namespace rmac {
 
 const char* to_string(ServoState state) noexcept {
@@ -20,12 +22,40 @@ const char* to_string(ServoState state) noexcept {
   return "Unknown";
 }
 
+const char* to_string(ContactState state) noexcept {
+  switch (state) {
+    case ContactState::None:
+      return "None";
+    case ContactState::Holding:
+      return "Holding";
+    case ContactState::Approaching:
+      return "Approaching";
+    case ContactState::Touching:
+      return "Touching";
+  }
+  return "Unknown";
+}
+
 const char* to_string(ServoFault::Kind kind) noexcept {
   switch (kind) {
     case ServoFault::Kind::None:
       return "None";
     case ServoFault::Kind::FollowingError:
       return "FollowingError";
+    case ServoFault::Kind::VelocityBound:
+      return "VelocityBound";
+    case ServoFault::Kind::TorqueBound:
+      return "TorqueBound";
+    case ServoFault::Kind::EncoderJump:
+      return "EncoderJump";
+    case ServoFault::Kind::SensorLost:
+      return "SensorLost";
+    case ServoFault::Kind::ForceLimit:
+      return "ForceLimit";
+    case ServoFault::Kind::ContactLost:
+      return "ContactLost";
+    case ServoFault::Kind::CyclesLost:
+      return "CyclesLost";
     case ServoFault::Kind::NotANumber:
       return "NotANumber";
     case ServoFault::Kind::DriveFault:

@@ -49,10 +49,17 @@ Expected<> check_axes(const ServoLoopParts& parts) {
   for (std::size_t j = 0; j < parts.axes.size(); ++j) {
     const ServoAxis& axis = parts.axes[j];
     if (!axis.law) return failure(MinorCode::InvalidParameter, "servo loop: " + joint_text(j) + " has no servo law");
-    if (axis.method != ControlMethod::Position) {
-      return failure(MinorCode::UnsupportedOperation, "servo loop: " + joint_text(j) +
-                                                          " asks for velocity or force control; only position control "
-                                                          "is there so far");
+    if (axis.method == ControlMethod::Velocity) {
+      return failure(
+          MinorCode::UnsupportedOperation,
+          "servo loop: " + joint_text(j) + " asks for velocity control; position and force control are there so far");
+    }
+    if (axis.method == ControlMethod::Force) {
+      if (auto ok = check_force_control(axis.force, joint_text(j)); !ok) return ok;
+      if (!axis.force_sensor && !parts.virtual_mode) {
+        return failure(MinorCode::InvalidParameter,
+                       "servo loop: " + joint_text(j) + " is under force control and has no force sensor");
+      }
     }
     if (!(axis.max_following_error > 0) || !(axis.max_effort > 0) || !std::isfinite(axis.max_effort)) {
       return failure(MinorCode::InvalidParameterValue,
@@ -109,6 +116,15 @@ Expected<> check_drives(const ServoLoopParts& parts) {
       return failure(MinorCode::InvalidParameterValue, "servo loop: " + who + " has a negative largest speed");
     }
   }
+  for (std::size_t j = 0; j < parts.axes.size(); ++j) {
+    const auto& sensor = parts.axes[j].force_sensor;
+    if (!sensor) continue;
+    const std::string who = "the force sensor of " + joint_text(j);
+    if (auto ok = check_drive(sensor->bus.get(), sensor->axis, who); !ok) return ok;
+    if (!(std::abs(sensor->newton_per_count) > 0) || !std::isfinite(sensor->newton_per_count)) {
+      return failure(MinorCode::InvalidParameterValue, "servo loop: " + who + " needs a scale other than 0");
+    }
+  }
   return {};
 }
 
@@ -137,6 +153,9 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
   };
   for (const ServoActuator& actuator : parts.actuators) add_bus(actuator.bus);
   for (const ServoSpindle& spindle : parts.spindles) add_bus(spindle.bus);
+  for (const ServoAxis& axis : parts.axes) {
+    if (axis.force_sensor) add_bus(axis.force_sensor->bus);
+  }
 
   std::array<double, kMaxJoints> zero{};
   std::array<bool, kMaxJoints> reached{};
@@ -155,6 +174,7 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
       sense[i] = static_cast<std::int8_t>(shared ? 0 : torques[i] > 0 ? 1 : -1);
     }
     corrections.emplace_back(parts.axes[j].mechanics);
+    force_loops.emplace_back(parts.axes[j].force, parts.period_s);
     filters.emplace_back(parts.axes[j].mechanics, parts.period_s);
   }
   if (parts.virtual_mode) std::copy(parts.virtual_start.begin(), parts.virtual_start.end(), hold.begin());

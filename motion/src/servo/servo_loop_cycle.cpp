@@ -19,12 +19,17 @@ void ServoLoop::cycle(const ServoCommand& command, ServoReport& report) noexcept
     loop.read_actuators();
     loop.read_joints();
     loop.watch_drives();
+    loop.watch_cycles(command.cycles_missed);
     loop.finish_reset();
     loop.run_homing(command);
     loop.make_live();
     loop.make_setpoints(command, report);
+    loop.watch_joints();
+    loop.watch_torques();
+    report.follows = loop.follows;
     loop.run_laws();
     loop.watch_enabling();
+    loop.remove_power_at_rest();
     loop.make_torques();
     loop.write_actuators();
     loop.write_spindles(command);
@@ -102,6 +107,17 @@ void ServoLoop::Impl::read_joints() noexcept {
   parts.actuator_map->joint_velocities({shaft.data(), actuators}, {shaft_velocity.data(), actuators},
                                        {velocity.data(), axes});
   for (std::size_t j = 0; j < axes; ++j) {
+    const double shown = position[j];
+    jumped[j] = shown_history[j] == 2 ? shown - 2 * shown1[j] + shown2[j] : 0;
+    shown2[j] = shown1[j];
+    shown1[j] = shown;
+    // A drive that homes moves its counter by more than its shaft.
+    shown_history[j] =
+        live[j] && answering(j) ? static_cast<std::uint8_t>(std::min(shown_history[j] + 1, 2)) : std::uint8_t{0};
+    if (const auto& sensor = parts.axes[j].force_sensor) {
+      const DriveFeedback& words = sensor->bus->feedback[sensor->axis];
+      force[j] = (static_cast<double>(words.sensor_counts) - sensor->zero_counts) * sensor->newton_per_count;
+    }
     PositionCorrection& correction = corrections[j];
     correction.follow(live[j] ? set_velocity[j] : 0, parts.period_s);
     velocity[j] = correction.actual_velocity(position[j], velocity[j]);
@@ -117,6 +133,13 @@ ServoInput ServoLoop::Impl::input(std::size_t joint) const noexcept {
           .velocity = velocity[joint] + corrections[joint].crossing_velocity(),
           .effort = effort[joint],
           .period_s = parts.period_s};
+}
+
+bool ServoLoop::Impl::answering(std::size_t joint) const noexcept {
+  for (std::size_t i = 0; i < actuators; ++i) {
+    if ((actuators_of[joint] >> i & 1U) != 0 && !feedback(i).online) return false;
+  }
+  return true;
 }
 
 bool ServoLoop::Impl::operable(std::size_t joint) const noexcept {
@@ -170,8 +193,14 @@ void ServoLoop::Impl::engage_law(std::size_t joint, double from_effort) noexcept
 void ServoLoop::Impl::make_setpoints(const ServoCommand& command, ServoReport& report) noexcept {
   if (parts.virtual_mode) follows = state == ServoState::Engaged;
   report.follows = follows;
+  if (braking) {
+    brake();
+    return;
+  }
   for (std::size_t j = 0; j < axes; ++j) {
-    if (follows && j < joints) {
+    if (parts.axes[j].method == ControlMethod::Force && live[j]) {
+      follow_force(j, follows ? command.force[j] : 0);
+    } else if (follows && j < joints) {
       const Setpoint& wanted = command.setpoint;
       if (!std::isfinite(wanted.position[j]) || !std::isfinite(wanted.velocity[j]) ||
           !std::isfinite(wanted.acceleration[j])) {
@@ -190,22 +219,23 @@ void ServoLoop::Impl::make_setpoints(const ServoCommand& command, ServoReport& r
   }
 }
 
+// A joint under force control is out of the plan: its setpoint goes where its force sends it.
+void ServoLoop::Impl::follow_force(std::size_t joint, double wanted) noexcept {
+  set_velocity[joint] = force_loops[joint].step(std::isfinite(wanted) ? wanted : 0, force[joint]);
+  set_acceleration[joint] = 0;
+  hold[joint] += set_velocity[joint] * parts.period_s;
+}
+
 void ServoLoop::Impl::run_laws() noexcept {
   for (std::size_t j = 0; j < axes; ++j) {
     effort[j] = 0;
-    if (!driving()) continue;
+    if (!powered()) continue;
     if (!live[j]) {
       // A drive acts on the torque beside the word that enables it, before any position of it could be controlled.
       effort[j] = resting_effort(j);
       continue;
     }
     const ServoAxis& axis = parts.axes[j];
-    const double error = hold[j] - position[j];
-    if (!(std::abs(error) <= axis.max_following_error)) {
-      raise({ServoFault::Kind::FollowingError, ServoFault::Part::Joint, static_cast<std::uint32_t>(j), error,
-             axis.max_following_error});
-      return;
-    }
     const double wanted = axis.law->update(input(j));
     if (!std::isfinite(wanted)) {
       raise({ServoFault::Kind::NotANumber, ServoFault::Part::Joint, static_cast<std::uint32_t>(j), wanted, 0});
@@ -222,7 +252,7 @@ void ServoLoop::Impl::reflect_setpoints() noexcept {
 
 void ServoLoop::Impl::make_torques() noexcept {
   torque.fill(0);
-  if (!driving()) return;
+  if (!powered()) return;
   parts.actuator_map->actuator_efforts({position.data(), axes}, {effort.data(), axes}, {torque.data(), actuators});
   for (std::size_t i = 0; i < actuators; ++i) {
     if (std::isfinite(torque[i])) continue;
@@ -237,7 +267,7 @@ void ServoLoop::Impl::write_actuators() noexcept {
     const ServoActuator& part = parts.actuators[i];
     DriveCommand& words = part.bus->commands[part.axis];
     const DriveFeedback& from = feedback(i);
-    words.controlword = next_controlword(from.statusword, wish(), resetting, words.controlword);
+    words.controlword = next_controlword(from.statusword, wish(rest[i].reached), resetting, words.controlword);
     words.mode = DriveMode::CyclicSyncTorque;
     command_homing(i, words);
     words.target_position_counts = from.position_counts;
@@ -251,7 +281,8 @@ void ServoLoop::Impl::write_spindles(const ServoCommand& command) noexcept {
   for (std::size_t i = 0; i < parts.spindles.size(); ++i) {
     const ServoSpindle& part = parts.spindles[i];
     DriveCommand& words = part.bus->commands[part.axis];
-    words.controlword = next_controlword(spindle_feedback(i).statusword, wish(), resetting, words.controlword);
+    words.controlword = next_controlword(spindle_feedback(i).statusword, wish(rest[actuators + i].reached), resetting,
+                                         words.controlword);
     words.mode = DriveMode::ProfileVelocity;
     const double wanted = driving() && std::isfinite(command.spindle_rpm[i]) ? command.spindle_rpm[i] : 0;
     words.target_velocity_rpm =

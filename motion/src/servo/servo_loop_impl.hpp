@@ -3,6 +3,7 @@
 #include "rmac/motion/drive_power.hpp"
 #include "rmac/motion/servo_loop.hpp"
 #include "servo/effort_filter.hpp"
+#include "servo/force_loop.hpp"
 #include "servo/position_correction.hpp"
 
 namespace rmac {
@@ -26,8 +27,16 @@ struct ServoLoop::Impl {
   void watch_drives() noexcept;
   void watch_drive(const DriveFeedback& words, bool in_use, ServoFault::Part part, std::size_t index) noexcept;
   void watch_enabling() noexcept;
+  void watch_cycles(std::uint64_t missed) noexcept;
+  void watch_joints() noexcept;
+  void watch_jump(std::size_t joint) noexcept;
+  void watch_velocity(std::size_t joint) noexcept;
+  void watch_sensor(std::size_t joint) noexcept;
+  void watch_contact(std::size_t joint) noexcept;
+  void watch_torques() noexcept;
   void make_live() noexcept;
   void make_setpoints(const ServoCommand& command, ServoReport& report) noexcept;
+  void follow_force(std::size_t joint, double wanted) noexcept;
   void run_laws() noexcept;
   void engage_law(std::size_t joint, double from_effort) noexcept;
   void shafts_for(std::span<const double> joint_positions, std::span<double> shafts) const noexcept;
@@ -41,12 +50,21 @@ struct ServoLoop::Impl {
 
   void raise(const ServoFault& fault) noexcept;
   void let_go() noexcept;
+  /// The category that the configuration gives a fault, as far as there is a choice.
+  [[nodiscard]] StopCategory stop_category(ServoFault::Kind kind) const noexcept;
+  void begin_braking() noexcept;
+  void brake() noexcept;
+  void remove_power_at_rest() noexcept;
+  /// Joints are under control: to follow, or to brake and hold.
+  [[nodiscard]] bool powered() const noexcept { return driving() || braking; }
   [[nodiscard]] bool driving() const noexcept {
     return state == ServoState::Enabling || state == ServoState::Engaged || state == ServoState::Homing;
   }
-  [[nodiscard]] DriveWish wish() const noexcept;
+  /// `rested`: this drive has come to rest after a quick stop.
+  [[nodiscard]] DriveWish wish(bool rested) const noexcept;
   [[nodiscard]] bool owns(const ServoBus* bus, std::uint32_t axis) const noexcept;
   [[nodiscard]] bool operable(std::size_t joint) const noexcept;
+  [[nodiscard]] bool answering(std::size_t joint) const noexcept;
   [[nodiscard]] double resting_effort(std::size_t joint) const noexcept;
   [[nodiscard]] ServoInput input(std::size_t joint) const noexcept;
   [[nodiscard]] const DriveFeedback& feedback(std::size_t actuator) const noexcept;
@@ -66,6 +84,7 @@ struct ServoLoop::Impl {
   std::array<std::uint8_t, kMaxJoints> joint_of{};  ///< whose shaft it is, where `sense` is not 0
   std::vector<PositionCorrection> corrections;      ///< one a joint
   std::vector<EffortFilter> filters;                ///< one a joint
+  std::vector<ForceLoop> force_loops;               ///< one a joint
 
   ServoState state = ServoState::Off;
   ServoFault fault;
@@ -89,11 +108,34 @@ struct ServoLoop::Impl {
   std::array<std::uint8_t, kMaxJoints> history{};  ///< positions before this one that a velocity may use, 2 at most
   std::array<double, kMaxJoints> shaft{}, shaft_before{}, shaft_velocity{};
   std::array<double, kMaxJoints> position{}, velocity{};
+  std::array<double, kMaxJoints> shown1{}, shown2{};     ///< a joint's positions one and two cycles ago, uncorrected
+  std::array<std::uint8_t, kMaxJoints> shown_history{};  ///< how many of the two there are
+  std::array<double, kMaxJoints> jumped{};               ///< change of a joint's step from the last cycle to this one
+  std::array<std::uint8_t, kMaxJoints> too_fast{};       ///< cycles on end beyond the bound of velocity
+  std::array<std::uint8_t, kMaxJoints> too_strong{};     ///< the same of an actuator's torque
+  std::array<double, kMaxJoints> force{};                ///< measured
+  std::uint64_t missed_cycles = 0;                       ///< within the second that runs
+  std::int64_t second_cycles = 0;                        ///< of that second
   std::array<double, kMaxJoints> hold{};
   std::array<double, kMaxJoints> set_velocity{}, set_acceleration{};
   std::array<double, kMaxJoints> effort{}, torque{};
   std::array<bool, kMaxJoints> live{};    ///< the joint's law is at work
   std::array<bool, kMaxJoints> handed{};  ///< live by handover: its law still has to be engaged
+
+  /// A stop that keeps power: velocities of all joints fall to zero in step, so that the tool stays on its path as far
+  /// as that is straight.
+  bool braking = false;
+  std::array<double, kMaxJoints> brake_from{};  ///< velocities at its beginning
+  double brake_s = 0, braked_s = 0;             ///< time that it takes, and has taken
+
+  /// A stop that removes power, drive by drive: actuators, then spindles.
+  struct Rest {
+    std::int64_t mark = 0;   ///< counts at which it seems to stand
+    std::int64_t still = 0;  ///< cycles that it has been there
+    bool reached = false;
+  };
+  std::array<Rest, kMaxJoints + kMaxSpindles> rest{};
+  std::int64_t stopping_cycles = 0;
 };
 
 }  // namespace rmac

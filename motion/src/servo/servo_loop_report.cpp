@@ -29,6 +29,11 @@ void ServoLoop::Impl::fill(const ServoCommand& command, ServoReport& report) con
   report.position = position;
   report.velocity = velocity;
   report.effort = effort;
+  report.force = force;
+  for (std::size_t j = 0; j < axes; ++j) {
+    const bool by_force = parts.axes[j].method == ControlMethod::Force && live[j];
+    report.contact[j] = by_force ? force_loops[j].state() : ContactState::None;
+  }
   if (!parts.virtual_mode) {
     fill_drives(report);
   } else {

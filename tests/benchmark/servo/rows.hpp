@@ -8,5 +8,7 @@ namespace rmac::bench {
 void cycle_rows(Figures& figures);
 /// A circle on the simulated mill, law by law, and laws that change meanwhile.
 void circle_rows(Figures& figures);
+void fault_rows(Figures& figures);
+void force_rows(Figures& figures);
 
 }  // namespace rmac::bench

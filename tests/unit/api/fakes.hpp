@@ -15,6 +15,7 @@ class MockCam : public sdk::RmacCam {
   MOCK_METHOD(Expected<>, feed_hold, (), (override));
   MOCK_METHOD(Expected<>, feed_resume, (), (override));
   MOCK_METHOD(Expected<double>, feed_retrace, (double), (override));
+  MOCK_METHOD(Expected<>, set_joint_force, (int, double), (override));
   MOCK_METHOD(Expected<>, jog_joint_at, (int, double), (override));
   MOCK_METHOD(Expected<>, jog_path, (const sdk::JogDirection&, double), (override));
   MOCK_METHOD(Expected<>, jog_path_at, (const sdk::JogDirection&, double), (override));

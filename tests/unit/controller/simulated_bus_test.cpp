@@ -69,5 +69,30 @@ TEST(SimulatedBus, RefusesWhatItCannotBe) {
   }
 }
 
+TEST(SimulatedBus, HasAPartUnderTheToolWhenOneIsDescribed) {
+  EXPECT_EQ(*simulated_contact(bus({})), std::nullopt);
+  const auto contact = simulated_contact(bus({{"contact_surface_mm", {-12}}, {"contact_along", {1}}}));
+  ASSERT_TRUE(contact && *contact);
+  EXPECT_EQ((*contact)->surface_mm, -12);
+  EXPECT_EQ((*contact)->axis, 2U);
+  EXPECT_EQ((*contact)->along, 1U);
+  EXPECT_EQ((*contact)->stiffness_n_mm, 1000) << "unless said";
+}
+
+TEST(SimulatedBus, RefusesAPartThatCannotBe) {
+  const std::vector<std::pair<std::map<std::string, std::vector<double>>, const char*>> cases{
+      {{{"contact_surface", {1}}}, "\"contact_surface\" is not understood"},
+      {{{"contact_stiffness_n_mm", {0}}}, "\"contact_stiffness_n_mm\" must be one number"},
+      {{{"contact_axis", {8}}}, "\"contact_axis\" must be one whole number from 0 to 7"},
+      {{{"contact_axis", {3}}}, "axis 3 is no servo axis"},
+      {{{"contact_axis", {0}}}, "must be two axes"},
+  };
+  for (const auto& [numbers, message] : cases) {
+    const auto contact = simulated_contact(bus(numbers));
+    ASSERT_FALSE(contact) << message;
+    EXPECT_THAT(contact.error().message, HasSubstr(message));
+  }
+}
+
 }  // namespace
 }  // namespace rmac::gateway

@@ -49,6 +49,7 @@ TEST(Configuration, HasADefaultForEveryKey) {
   EXPECT_EQ(configuration.flight_recorder.folder, default_folders().state_folder / "flight-records");
   EXPECT_EQ(configuration.flight_recorder.seconds, 10);
   EXPECT_EQ(configuration.flight_recorder.files_kept, 20U);
+  EXPECT_EQ(configuration.real_time.max_cycles_lost, 0) << "missed deadlines stop nothing";
   EXPECT_EQ(configuration.autoload, std::nullopt);
 }
 
@@ -63,10 +64,12 @@ TEST(Configuration, TakesEveryKeyOfTheFile) {
     "listen": {"address": "::1", "port": 0, "unix_socket": ""},
     "state_folder": "/s", "device_tree": "/d", "module_folders": ["/m", "/n"], "database": "/b/x.sqlite",
     "period_s": 0.0005, "pace": "as-fast-as-computed",
-    "real_time": {"cpu": 3, "priority": 42, "lock_memory": false, "degraded_allowed": false},
+    "real_time": {"cpu": 3, "priority": 42, "lock_memory": false, "degraded_allowed": false,
+                  "max_cycles_lost": 9},
     "queue_capacity": 7,
     "lease_timeout_s": 2.5,
-    "stop_categories": {"LeaseLost": 1, "DriveHeartbeatLost": 1, "BusLost": 1, "FollowingError": 1},
+    "stop_categories": {"LeaseLost": 1, "DriveHeartbeatLost": 1, "BusLost": 1, "FollowingError": 1, "SensorLost": 2,
+                        "ContactLost": 1, "CycleDeadline": 2},
     "flight_recorder": {"folder": "/f", "seconds": 2.5, "files": 3},
     "autoload": {"mechanism": "DMACXYZ", "virtual": true}})");
   EXPECT_EQ(configuration.address, "::1");
@@ -84,6 +87,11 @@ TEST(Configuration, TakesEveryKeyOfTheFile) {
   EXPECT_FALSE(configuration.real_time.degraded_allowed);
   EXPECT_EQ(configuration.queue_capacity, 7);
   EXPECT_EQ(configuration.lease_lost, StopCategory::StopThenRemovePower);
+  EXPECT_EQ(configuration.stop_categories.sensor_lost, StopCategory::StopKeepPower);
+  EXPECT_EQ(configuration.stop_categories.contact_lost, StopCategory::StopThenRemovePower);
+  EXPECT_EQ(configuration.stop_categories.force_limit, StopCategory::StopThenRemovePower) << "not said";
+  EXPECT_EQ(configuration.stop_categories.cycles_lost, StopCategory::StopKeepPower);
+  EXPECT_EQ(configuration.real_time.max_cycles_lost, 9);
   EXPECT_EQ(configuration.lease_timeout, std::chrono::milliseconds(2500));
   EXPECT_EQ(configuration.flight_recorder.folder, "/f");
   EXPECT_EQ(configuration.flight_recorder.seconds, 2.5);
@@ -96,11 +104,8 @@ TEST(Configuration, TakesEveryKeyOfTheFile) {
 TEST(Configuration, RefusesWhatCannotActYetAndSaysWhy) {
   EXPECT_EQ(problem_of(R"({"stop_categories": {"FollowingError": 2}})"),
             "/stop_categories/FollowingError is 2; allowed is one of 1");
-  EXPECT_EQ(problem_of(R"({"stop_categories": {"SensorLost": 1}})"),
-            "/stop_categories/SensorLost is 1; allowed is no value yet, for no sensor is watched; leave the key out");
-  EXPECT_EQ(problem_of(R"({"stop_categories": {"CycleDeadline": 1}})"),
-            "/stop_categories/CycleDeadline is 1; allowed is no value yet, for missed deadlines are counted and stop "
-            "nothing; leave the key out");
+  EXPECT_EQ(problem_of(R"({"stop_categories": {"SensorLost": 0}})"),
+            "/stop_categories/SensorLost is 0; allowed is one of 1, 2");
 }
 
 TEST(Configuration, RelativePathsAreTheFilesNotTheWorkingFolders) {

@@ -128,6 +128,47 @@ TEST_F(SimulatedBus, HasAPlantWhereverItsDrivesAre) {
   EXPECT_EQ(bus_.spindle(kSpindle).speed_rpm(), 0);
 }
 
+TEST_F(SimulatedBus, FeelsThePartThatAnAxisPushesInto) {
+  bus_.set_contact({.axis = kZ, .surface_mm = 1, .stiffness_n_mm = 500, .along = kX, .slope = 0.1});
+  bus_.plant(kX).put_at(2 * M_PI);        // 5 mm: the surface is at 1.5
+  bus_.plant(kZ).put_at(0.3 * 2 * M_PI);  // 1.5 mm
+  cycle(kZ, DriveWish::Off);
+  EXPECT_TRUE(feedback_[kZ].sensor_valid);
+  EXPECT_NEAR(feedback_[kZ].sensor_counts, 0, 1);
+  bus_.plant(kZ).put_at(0.29 * 2 * M_PI);  // 0.05 mm deeper: 25 N
+  cycle(kZ, DriveWish::Off);
+  EXPECT_NEAR(feedback_[kZ].sensor_counts, -2500, 1) << "it pushes towards smaller positions";
+  bus_.plant(kZ).put_at(0.31 * 2 * M_PI);
+  cycle(kZ, DriveWish::Off);
+  EXPECT_EQ(feedback_[kZ].sensor_counts, 0) << "nothing pulls";
+  bus_.set_sensor_lost(true);
+  cycle(kZ, DriveWish::Off);
+  EXPECT_FALSE(feedback_[kZ].sensor_valid);
+}
+
+TEST_F(SimulatedBus, QuickStopComesToRestUnderAHangingLoad) {
+  enable(kZ);
+  for (int i = 0; i < 50; ++i) cycle(kZ, DriveWish::Operational, -300);  // falling
+  ASSERT_LT(bus_.plant(kZ).speed_rad_s(), -50);
+  for (int i = 0; i < 1000; ++i) cycle(kZ, DriveWish::QuickStop);
+  EXPECT_EQ(bus_.plant(kZ).speed_rad_s(), 0);
+}
+
+TEST_F(SimulatedBus, FreezesAnEncoderAndRunsAwayWhenToldTo) {
+  enable(kX);
+  bus_.freeze_encoder(kX, true);
+  cycle(kX, DriveWish::Operational);
+  const std::int32_t frozen = feedback_[kX].position_counts;
+  bus_.run_away(kX, 0.2);
+  for (int i = 0; i < 20; ++i) cycle(kX, DriveWish::Operational, 0);
+  EXPECT_EQ(feedback_[kX].position_counts, frozen);
+  EXPECT_GT(feedback_[kX].torque_permille, 500) << "nobody asked for it";
+  EXPECT_GT(bus_.plant(kX).speed_rad_s(), 50);
+  bus_.freeze_encoder(kX, false);
+  cycle(kX, DriveWish::Operational);
+  EXPECT_GT(feedback_[kX].position_counts, frozen);
+}
+
 TEST(SimulatedIo, PassesInputsInAndOutputsOut) {
   SimulatedIoInterface io;
   ASSERT_TRUE(io.start().has_value());

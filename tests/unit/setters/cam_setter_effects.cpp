@@ -43,6 +43,20 @@ const std::vector<SetterEffect>& cam_setter_effects() {
          EXPECT_THAT(bench.tip_refusal(20, 0, 0), HasSubstr("above the maximum of 600"));
          EXPECT_THAT(bench.refusal("RMAC_CAM.SetFeedrate", R"({"Feedrate": 601})"), HasSubstr("600"));
        }},
+      {"RMAC_CAM.SetJointForce",
+       [](SetterBench& bench) {
+         EXPECT_THAT(bench.refusal("RMAC_CAM.SetJointForce", R"({"JntNum": 2, "Force": -50})"),
+                     HasSubstr("joint 2 (Z) is under position control"));
+         bench.joints_to({0, 0, SetterBench::kSurfaceMm + 1});
+         bench.call("RMAC_Config.SetMechanismJointControlMethod",
+                    R"({"JntNum": 2, "DMACServoControlMethod": "DMAC_FORCE_CONTROL"})");
+         bench.apply();
+         EXPECT_THAT(bench.refusal("RMAC_CAM.SetJointForce", R"({"JntNum": 2, "Force": -500})"), HasSubstr("5 to 400"));
+         bench.call("RMAC_CAM.SetJointForce", R"({"JntNum": 2, "Force": -50})");
+         bench.run_until([&] { return std::abs(bench.now().force[2] + 50) < 0.5; });
+         bench.call("RMAC_CAM.StopNow");
+         bench.run_until([&] { return bench.now().contact[2] == ContactState::Holding; });
+       }},
       {"RMAC_CAM.SetFeedOverride",
        [](SetterBench& bench) {
          bench.call("RMAC_CAM.SetFeedOverride", R"({"Percent": 50})");

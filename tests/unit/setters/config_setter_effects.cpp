@@ -150,6 +150,19 @@ const std::vector<SetterEffect>& config_setter_effects() {
          set_joint(bench, "RMAC_Config.SetMechanismJointMaximumJerk", "MaxJntJerk", 2000);
          EXPECT_NEAR(peak_jerk(bench.joints_to({0, 0, 0}), 0), 2000, 20);
        }},
+      {"RMAC_Config.SetMechanismJointControlMethod",
+       [](SetterBench& bench) {
+         EXPECT_NEAR(bench.joints_to({0, 0, 5}).back().position[2], 5, 0.05);
+         bench.call("RMAC_Config.SetMechanismJointControlMethod",
+                    R"({"JntNum": 2, "DMACServoControlMethod": "DMAC_FORCE_CONTROL"})");
+         bench.apply();
+         EXPECT_EQ(bench.now().contact[2], ContactState::Holding);
+         EXPECT_NEAR(bench.joints_to({5, 0, 0}).back().position[2], 5, 0.05) << "it is out of the plan";
+         bench.call("RMAC_Config.SetMechanismJointControlMethod",
+                    R"({"JntNum": 2, "DMACServoControlMethod": "DMAC_POSITION_CONTROL"})");
+         bench.apply();
+         EXPECT_NEAR(bench.joints_to({0, 0, 2}).back().position[2], 2, 0.05) << "and follows it again";
+       }},
       {"RMAC_Config.SetMechanismJointServoControlGains",
        [](SetterBench& bench) {
          const double stiff = peak_following_error(bench.joints_to({30, 0, 0}), 0);

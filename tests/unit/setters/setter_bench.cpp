@@ -38,6 +38,7 @@ SetterBench::SetterBench() : folder_(fs::temp_directory_path() / ("rmac-setters-
                    const ModuleLoader&) -> Expected<std::shared_ptr<DigitalControlInterface>> {
       if (!made || made.use_count() == 1) {
         made = std::make_shared<fieldbus::SimulatedInterface>(fieldbus::default_simulated_axes(), kPeriodS);
+        made->set_contact({.surface_mm = SetterBench::kSurfaceMm});
       }
       return made;
     };

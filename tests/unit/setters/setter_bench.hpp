@@ -24,6 +24,9 @@ using PerJoint = std::array<double, kMaxJoints> CycleSample::*;
 /// A caller asks as a client does, by a method's name and JSON parameters.
 class SetterBench {
  public:
+  /// A part lies under the tool.
+  static constexpr double kSurfaceMm = -45;
+
   SetterBench();
   ~SetterBench();
   SetterBench(const SetterBench&) = delete;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "rmac/fieldbus/drive_state_machine.hpp"
 #include "rmac/fieldbus/simulated_plant.hpp"
 #include "rmac/motion/ports/digital_control_interface.hpp"
@@ -18,6 +20,10 @@ class SimulatedServoDrive {
 
   [[nodiscard]] AxisPlant& plant() noexcept { return plant_; }
   [[nodiscard]] DriveStateMachine& power() noexcept { return power_; }
+  /// The encoder's reading stays where it is, whatever the shaft does; and goes on.
+  void freeze_encoder(bool frozen) noexcept;
+  /// The current loop gives this torque whatever is asked for, while the drive is operational; and obeys again.
+  void run_away(std::optional<double> torque_nm) noexcept { runaway_nm_ = torque_nm; }
   /// Moves the encoder's reading without moving the shaft, as a lost reference does.
   void shift_encoder(std::int32_t counts) noexcept { encoder_offset_ += counts; }
 
@@ -26,6 +32,9 @@ class SimulatedServoDrive {
   AxisPlant plant_;
   DriveStateMachine power_;
   std::int64_t encoder_offset_ = 0;
+  double load_nm_ = 0;  ///< that a quick stop has found to hang on the shaft
+  std::optional<double> runaway_nm_;
+  std::optional<std::int32_t> frozen_counts_;
 };
 
 /// A spindle drive in profile velocity mode.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -10,6 +11,22 @@
 namespace rmac::fieldbus {
 
 using SimulatedAxis = std::variant<AxisPlantParameters, SpindlePlantParameters>;
+
+/// A part under the tool: one axis meets it on its way to smaller positions. Its surface may rise and wave along
+/// another axis. Every drive of the bus has a force sensor beside it; the first axis's feels the part. mm and N as with
+/// a screw of `pitch_mm` on both axes.
+struct SimulatedContact {
+  std::size_t axis = 2;
+  double surface_mm = 0;  ///< where the other axis stands at 0
+  double stiffness_n_mm = 1000;
+  double damping_n_s_mm = 1;
+  std::size_t along = 0;  ///< the other axis
+  double slope = 0;       ///< mm a mm of the other axis
+  double wave_mm = 0;     ///< amplitude
+  double wave_length_mm = 100;
+  double pitch_mm = 5;
+  double counts_per_newton = 100;  ///< of the sensor; positive where the joint pushes towards larger positions
+};
 
 /// A bus of simulated drives. Feedback is what the drives measured when the exchange began, and commands act from then
 /// until the next exchange: as with a SYNC on a real bus, a drive acts on a measurement one cycle after it was taken.
@@ -31,6 +48,16 @@ class SimulatedInterface : public DigitalControlInterface {
   /// The drive trips with an error code (603Fh).
   void trip(std::size_t axis, std::uint16_t error_code) noexcept;
   void shift_encoder(std::size_t axis, std::int32_t counts) noexcept;
+  /// The encoder's reading stays where it is; and goes on.
+  void freeze_encoder(std::size_t axis, bool frozen) noexcept;
+  /// The drive gives this torque whatever is asked for, until it is no longer operational.
+  void run_away(std::size_t axis, double torque_nm) noexcept;
+  /// Torque on a shaft from outside, until it is 0 again.
+  void push(std::size_t axis, double torque_nm) noexcept;
+  /// The force sensor's value is not valid; and is again.
+  void set_sensor_lost(bool lost) noexcept { sensor_lost_ = lost; }
+  /// Puts a part under the tool. Before the first exchange.
+  void set_contact(const SimulatedContact& contact) noexcept { contact_ = contact; }
   /// The bus itself fails, as on bus-off; and works again.
   void set_bus_failed(bool failed) noexcept { bus_failed_ = failed; }
 
@@ -44,12 +71,19 @@ class SimulatedInterface : public DigitalControlInterface {
     std::atomic<bool> offline{false};
     std::atomic<std::int32_t> error_code{0};  ///< 0: none
     std::atomic<std::int32_t> encoder_shift{0};
+    std::atomic<bool> frozen{false};
+    std::atomic<double> runaway_nm{0};  ///< 0: none
+    std::atomic<double> push_nm{0};
   };
   void act_on_injected(std::size_t axis) noexcept;
+  void move_surface() noexcept;
+  void read_sensor(std::size_t axis, DriveFeedback& words) noexcept;
 
   std::vector<Drive> drives_;
   std::vector<Injected> injected_;
   std::atomic<bool> bus_failed_{false};
+  std::atomic<bool> sensor_lost_{false};
+  std::optional<SimulatedContact> contact_;
   double period_s_;
 };
 

@@ -29,6 +29,13 @@ struct AxisPlantParameters {
   [[nodiscard]] double inertia_kg_m2() const noexcept;
 };
 
+/// What a table or a head pushes against, seen at the motor shaft: a spring and a damper at angles below `surface_rad`.
+struct PlantContact {
+  double stiffness_nm_rad = 0;  ///< 0: nothing is there
+  double damping_nm_s_rad = 0;
+  double surface_rad = 0;
+};
+
 /// Rotor, screw and table as one inertia under motor torque, friction and gravity. Real-time safe.
 class AxisPlant {
  public:
@@ -42,6 +49,11 @@ class AxisPlant {
   [[nodiscard]] double speed_rad_s() const noexcept { return speed_rad_s_; }
   [[nodiscard]] double motor_nm() const noexcept { return motor_nm_; }
   void put_at(double angle_rad) noexcept;
+  /// Torque from outside, such as of a collision.
+  void push(double nm) noexcept { push_nm_ = nm; }
+  void touch(const PlantContact& contact) noexcept { contact_ = contact; }
+  /// What the contact turns the shaft with; never negative, for nothing pulls.
+  [[nodiscard]] double contact_nm() const noexcept;
 
  private:
   void step(bool braked, double dt) noexcept;
@@ -51,6 +63,8 @@ class AxisPlant {
   double angle_rad_ = 0;
   double speed_rad_s_ = 0;
   double motor_nm_ = 0;
+  double push_nm_ = 0;
+  PlantContact contact_;
 };
 
 /// A spindle and its drive's own speed loop, as a first-order approach to the wanted speed within a torque bound.

@@ -3,10 +3,12 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "rmac/motion/axis.hpp"
+#include "rmac/motion/force_control.hpp"
 #include "rmac/motion/joint_mechanics.hpp"
 #include "rmac/motion/path_segment.hpp"
 #include "rmac/motion/plan.hpp"
@@ -29,6 +31,21 @@ struct ServoBus {
   std::vector<DriveFeedback> feedback;  ///< came in with the last
 };
 
+/// Where a joint's force sensor is read: a word beside those of a drive, of this mechanism or not.
+struct ServoForceSensor {
+  std::shared_ptr<ServoBus> bus;
+  std::uint32_t axis = 0;
+  double newton_per_count = 0;
+  std::int32_t zero_counts = 0;  ///< reading without force
+};
+
+/// What a joint's measured motion is held to, in mm and s, or degrees and s; 0: not watched.
+struct JointBounds {
+  double velocity = 0;           ///< beyond it for three cycles on end the machine stops
+  double jump = 0;               ///< change of a position's step from cycle to cycle that no motion explains
+  double stop_deceleration = 0;  ///< of a stop that keeps power; 0: the setpoint stands at once
+};
+
 /// The loop of one joint.
 struct ServoAxis {
   std::shared_ptr<ServoLaw> law;  ///< gains set; the loop sets the effort limit
@@ -36,6 +53,9 @@ struct ServoAxis {
   double max_following_error = 0;  ///< mm or deg
   double max_effort = 0;           ///< N or N·m at the joint
   JointMechanics mechanics{};      ///< made good between the law and the drive
+  JointBounds bounds{};
+  std::optional<ServoForceSensor> force_sensor{};
+  ForceControl force{};  ///< used under `ControlMethod::Force`
 };
 
 /// A drive that moves joints, in torque mode.
@@ -44,6 +64,8 @@ struct ServoActuator {
   std::uint32_t axis = 0;
   DriveScale scale;
   std::uint8_t homing_turn = 0;  ///< in which its drive looks for home by itself, from 1; 0: it does not
+  double max_torque_nm = 0;      ///< measured by the drive; beyond it for three cycles on end the machine stops; 0: not
+                                 ///< watched
 };
 
 /// A drive that turns a spindle, in velocity mode.
@@ -51,6 +73,16 @@ struct ServoSpindle {
   std::shared_ptr<ServoBus> bus;
   std::uint32_t axis = 0;
   double max_speed_rpm = 0;
+};
+
+/// How the machine stops on what a category may be chosen for. A stop that keeps power rests on the drives and on the
+/// measured positions, so there is no choice where one of them may be what is wrong: a joint that does not follow can
+/// be blocked, or have an encoder that stands still.
+struct StopCategories {
+  StopCategory sensor_lost = StopCategory::StopThenRemovePower;
+  StopCategory force_limit = StopCategory::StopThenRemovePower;
+  StopCategory contact_lost = StopCategory::StopKeepPower;
+  StopCategory cycles_lost = StopCategory::StopThenRemovePower;
 };
 
 /// What a servo loop is made of. `axes`: the kinematic joints, then the held ones; `actuators` in the order of the map.
@@ -68,7 +100,9 @@ struct ServoLoopParts {
   double period_s = 0.001;
   double enable_timeout_s = 5;    ///< to bring every drive to Operation Enabled
   double homing_timeout_s = 120;  ///< for the drives of one turn
-  bool virtual_mode = false;      ///< setpoints are reflected as measured values; buses and I/O are not touched
+  StopCategories stop_categories{};
+  int max_cycles_lost = 0;    ///< missed deadlines within a second; beyond it the machine stops; 0: not watched
+  bool virtual_mode = false;  ///< setpoints are reflected as measured values; buses and I/O are not touched
   /// axes.size() positions where virtual mode begins when no loop hands over; empty: zeros.
   std::vector<double> virtual_start;
 };
@@ -84,6 +118,8 @@ struct ServoCommand {
   bool reset = false;  ///< its rising edge resets the drives' faults, and leaves Faulted once they are gone
   std::array<double, kMaxSpindles> spindle_rpm{};
   std::uint64_t outputs = 0;
+  std::array<double, kMaxJoints> force{};  ///< wanted of joints under force control; 0: hold the position
+  std::uint64_t cycles_missed = 0;         ///< deadlines that passed since the cycle before
 };
 
 /// What one cycle found and did. Arrays count joints (held ones included) or actuators; mm, deg, s, N, N·m.
@@ -94,6 +130,8 @@ struct ServoReport {
   std::array<double, kMaxJoints> position_set{}, velocity_set{}, acceleration_set{};
   std::array<double, kMaxJoints> position{}, velocity{};
   std::array<double, kMaxJoints> effort{};  ///< at the joint, as commanded
+  std::array<double, kMaxJoints> force{};   ///< as the joint's force sensor measures it; 0 where there is none
+  std::array<ContactState, kMaxJoints> contact{};
   std::array<std::uint16_t, kMaxJoints> statusword{};
   std::array<std::uint16_t, kMaxJoints> error_code{};
   std::array<std::int16_t, kMaxJoints> torque_permille{};  ///< measured by the drives

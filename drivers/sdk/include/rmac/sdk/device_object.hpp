@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "rmac/motion/axis.hpp"
+#include "rmac/motion/force_control.hpp"
 #include "rmac/motion/joint_mechanics.hpp"
 #include "rmac/motion/limits.hpp"
 
@@ -18,6 +20,14 @@ struct ModuleChoice {
   std::map<std::string, std::string> texts;
 };
 
+/// Where a joint's force sensor is read: a word beside those of a drive.
+struct ForceSensor {
+  std::string bus;
+  std::uint32_t axis = 0;
+  double newton_per_count = 0;
+  std::int32_t zero_counts = 0;
+};
+
 /// One joint: its limits, its loop, and the drive behind it.
 struct Joint {
   JointLimits limits;
@@ -27,6 +37,10 @@ struct Joint {
   double max_following_error = 0;  ///< mm or degrees; beyond it the machine stops
   double max_effort = 0;           ///< N or N·m at the joint
   JointMechanics mechanics{};
+  double max_measured_speed = 0;  ///< mm/s or deg/s; beyond it the machine stops; 0: a fifth above `max_speed`
+  double max_jump = 0;            ///< mm or deg of encoder jump; 0: what three cycles at `max_speed` go
+  std::optional<ForceSensor> force_sensor{};
+  std::optional<ForceControl> force{};
 };
 
 /// One actuator: which axis of which bus, and its scale.
@@ -35,6 +49,7 @@ struct Actuator {
   std::uint32_t axis = 0;
   DriveScale scale;
   int homing_turn = 0;  ///< in which its drive looks for home by itself, from 1; 0: it does not
+  double max_measured_torque_nm = 0;  ///< beyond it the machine stops; 0: 3.5 times the rated one
 };
 
 struct Spindle {

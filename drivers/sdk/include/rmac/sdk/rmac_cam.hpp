@@ -79,6 +79,10 @@ class RmacCam {
   [[nodiscard]] virtual Expected<double> spindle_max_rpm(int spindle) const = 0;
   virtual Expected<> set_coolant(bool on) = 0;
 
+  /// Contact force that a joint under force control keeps, N or N·m, positive towards larger positions; 0: it holds its
+  /// position. The joint goes for contact by itself.
+  virtual Expected<> set_joint_force(int joint, double force) = 0;
+
   /// Runs back along up to `distance_mm` of the path of what is held, then holds again; `feed_resume` runs forward from
   /// there, at any time. The way it will go, in mm.
   virtual Expected<double> feed_retrace(double distance_mm) = 0;

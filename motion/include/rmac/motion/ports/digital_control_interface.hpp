@@ -36,6 +36,8 @@ struct DriveFeedback {
   std::int16_t torque_permille = 0;  ///< 6077h
   DriveMode mode = DriveMode::None;  ///< 6061h; None where the interface does not tell
   bool online = false;               ///< the drive answered in this cycle
+  std::int32_t sensor_counts = 0;    ///< a sensor beside the drive, such as one of force
+  bool sensor_valid = false;         ///< there is one, and its value is good
 };
 
 /// Port: the drives of one bus, axis by axis. Lives in the gateway's bus registry and outlives mechanisms, which borrow

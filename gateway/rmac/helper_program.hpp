@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gateway/rmac/failure.hpp"
+
+namespace rmac::cli {
+
+/// A file of this process that goes when it goes.
+class TemporaryFile {
+ public:
+  TemporaryFile();
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile();
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// Runs one of our Python programs: what it prints. A failure holds what it said on standard error.
+[[nodiscard]] Result<std::string> run_helper(const std::string& program, const std::vector<std::string>& arguments);
+
+}  // namespace rmac::cli

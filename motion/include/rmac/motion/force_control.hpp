@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace rmac {
+
+/// How a joint keeps a contact force (docs/servo.md, "Force"). Forces are what the joint pushes with, in N or N·m,
+/// positive towards larger positions; mm and s, or degrees and s.
+struct ForceControl {
+  double approach_speed = 0;  ///< until there is contact
+  double contact_force = 0;   ///< from which on there is contact; below half of it there is none any more
+  double gain = 0;            ///< speed a unit of force error, mm/(s·N)
+  double reset_time_s = 0;    ///< of the integral part
+  double max_speed = 0;       ///< in contact
+  double max_force = 0;       ///< beyond it, either way, the machine stops
+  double max_search = 0;      ///< way that the joint may go without contact before the machine stops
+  double max_acceleration = 0;
+  double min_position = -std::numeric_limits<double>::infinity();  ///< travel
+  double max_position = std::numeric_limits<double>::infinity();
+};
+
+/// Where a joint under force control is.
+enum class ContactState : std::uint8_t {
+  None,         ///< the joint's position is controlled
+  Holding,      ///< no force is wanted: it holds its position
+  Approaching,  ///< on its way to contact
+  Touching,     ///< in contact, its force is controlled
+};
+
+[[nodiscard]] const char* to_string(ContactState state) noexcept;
+
+}  // namespace rmac

@@ -1,0 +1,112 @@
+#pragma once
+
+#include "mill_on_simulated_bus.hpp"
+
+namespace rmac::mill_test {
+
+/// What a pass along a surface with a wanted force came to.
+struct ForcePass {
+  double wanted_n = 0;
+  double approach_set_mm_s = 0;    ///< fastest that was asked for before contact
+  double touch_mm_s = 0;           ///< at contact
+  double overshoot_n = 0;          ///< most beyond the wanted force on the way to it
+  double settled_s = 0;            ///< from contact until the force stays within 2 %
+  double worst_share = 0;          ///< of the wanted force, that it is wrong by during the pass
+  double path_error_mm = 0;        ///< of the axes that follow the path, at the shafts
+  double release_torque_step = 0;  ///< share of the rated torque, where position control takes over again
+  double release_jump_mm = 0;      ///< of the axis, in the half second after that
+};
+
+/// DMACXYZ pressing on a sheet that rises and waves, as a tool for friction stir welding does: X goes along, Z keeps
+/// the force. Forces are those of the plant, not of the sensor.
+class ForceOnMill : public MillRun {
+ public:
+  ForcePass press_and_go(double force_n, const fieldbus::SimulatedContact& sheet) {
+    simulated_->set_contact(sheet);
+    pass_.wanted_n = force_n;
+    Mill mill("mill/3-axis/DMACXYZ", bus_, {},
+              [&](Mill& made, ServoLoopParts& parts) { press_with_z(made.device()["Joints"][2], sheet, parts); });
+    power_up(mill);
+    approach(mill);
+    along(mill, sheet);
+    hand_back(mill);
+    return pass_;
+  }
+
+ private:
+  static constexpr double kShare = 0.02;
+
+  void press_with_z(const nlohmann::json& joint, const fieldbus::SimulatedContact& sheet, ServoLoopParts& parts) const {
+    const auto& force = joint["ForceControl"];
+    parts.axes[2].method = ControlMethod::Force;
+    parts.axes[2].force = {.approach_speed = force["ApproachSpeed"],
+                           .contact_force = force["ContactForce"],
+                           .gain = 20 / sheet.stiffness_n_mm,  // as docs/servo.md says
+                           .reset_time_s = force["ResetTime"],
+                           .max_speed = force["MaxSpeed"],
+                           .max_force = force["MaxForce"],
+                           .max_search = force["MaxSearch"],
+                           .max_acceleration = joint["MaxAcceleration"],
+                           .min_position = joint["Min"],
+                           .max_position = joint["Max"]};
+    parts.axes[2].force_sensor = ServoForceSensor{bus_, 2, joint["ForceSensor"]["NewtonPerCount"], 0};
+  }
+  /// What the axis really presses with.
+  [[nodiscard]] double pressed_n() const { return simulated_->plant(2).contact_nm() * 2 * std::numbers::pi / 5e-3; }
+  void approach(Mill& mill) {
+    command_.force[2] = -pass_.wanted_n;
+    int outside = 0, touching = 0;
+    for (int i = 0; i < 4000; ++i) {
+      cycle(mill);
+      if (report_.contact[2] == ContactState::Approaching) {
+        pass_.approach_set_mm_s = std::max(pass_.approach_set_mm_s, std::abs(report_.velocity_set[2]));
+        pass_.touch_mm_s = std::abs(report_.velocity[2]);
+        continue;
+      }
+      ++touching;
+      pass_.overshoot_n = std::max(pass_.overshoot_n, pressed_n() - pass_.wanted_n);
+      if (std::abs(pressed_n() - pass_.wanted_n) > kShare * pass_.wanted_n) outside = touching;
+    }
+    pass_.settled_s = outside * 1e-3;
+  }
+  void along(Mill& mill, const fieldbus::SimulatedContact& sheet) {
+    const RestToRest profile(40, 10, 1000, 10000);
+    const double start = command_.setpoint.position[sheet.along];
+    const double y = table_mm(1);
+    const auto cycles = static_cast<int>(std::ceil(profile.duration() * 1000));
+    for (int i = 1; i <= cycles && !failed_; ++i) {
+      const auto [s, v, a] = profile.at(i * 1e-3);
+      command_.setpoint.position[0] = start + s;
+      command_.setpoint.velocity[0] = v;
+      command_.setpoint.acceleration[0] = a;
+      cycle(mill);
+      pass_.worst_share = std::max(pass_.worst_share, std::abs(pressed_n() - pass_.wanted_n) / pass_.wanted_n);
+      pass_.path_error_mm =
+          std::max({pass_.path_error_mm, std::abs(table_mm(0) - report_.position_set[0]), std::abs(table_mm(1) - y)});
+    }
+    command_.setpoint.velocity.fill(0);
+    command_.setpoint.acceleration.fill(0);
+  }
+  /// Position control for all three axes, as `Apply` puts it in: a new loop that takes the drives over.
+  void hand_back(Mill& pressing) {
+    dwell(pressing, 200);
+    command_.force[2] = 0;
+    dwell(pressing, 100);
+    const int before = bus_->commands[2].target_torque_permille;
+    const double at = table_mm(2);
+    Mill mill("mill/3-axis/DMACXYZ", bus_);
+    mill.loop().engage(pressing.loop().handover());
+    report_.follows = false;
+    for (int i = 0; i < 500; ++i) {
+      if (!report_.follows) hold_still(mill);
+      cycle(mill);
+      const int step = std::abs(bus_->commands[2].target_torque_permille - before);
+      if (i == 0) pass_.release_torque_step = step / 1000.0;
+      pass_.release_jump_mm = std::max(pass_.release_jump_mm, std::abs(table_mm(2) - at));
+    }
+  }
+
+  ForcePass pass_;
+};
+
+}  // namespace rmac::mill_test
