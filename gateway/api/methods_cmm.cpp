@@ -162,6 +162,7 @@ void add_jogs(const auto& add) {
           .does([](Call& call) { return call.machine.cam().move_to_reference_point(); }));
   add(command("RMAC_CAM.SetJointForce", "Contact force that a joint under force control keeps.", Effect::Starts)
           .takes(joint_number(), number("Force", "N or N·m")
+                                     .within({-1e7, 1e7})
                                      .noted("0: hold the position; positive pushes towards larger "
                                             "positions"))
           .extension()

@@ -162,7 +162,7 @@ Result<> go_round(Connection& connection, const FollowingRequest& request, std::
   if (!queued) return tl::unexpected(queued.error());
   const auto rest = wait_for_rest(connection, fault);
   if (!rest) return tl::unexpected(rest.error());
-  return ask(connection, "RMAC_CAM.CycleStop").map([](const Json&) {});
+  return ask(connection, "RMAC_CAM.CycleStop", {{"Mode", "AUTOMATIC"}}).map([](const Json&) {});
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ void Cam::mechanism_changed(const sdk::DeviceObject* device, bool fresh) {
     spindle_max_rpm_.clear();
     supervisor_.set_override(100);
   }
-  supervisor_.wish([](ServoWishes& wishes) { wishes.force.fill(0); });
+  let_go_of_forces();
   // A configuration defines the mechanism: its maxima are the new bounds of ours, upwards too.
   max_feedrate_mm_min_ = now.max_feedrate_mm_min;
   spindle_max_rpm_.clear();
@@ -61,6 +61,7 @@ Expected<> Cam::cycle_start(sdk::CycleMode mode) {
 }
 
 Expected<> Cam::cycle_stop() {
+  let_go_of_forces();
   return supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.stop(); });
 }
 
@@ -77,7 +78,7 @@ Expected<double> Cam::feed_retrace(double distance_mm) {
 }
 
 Expected<> Cam::stop_now() {
-  supervisor_.wish([](ServoWishes& wishes) { wishes.force.fill(0); });
+  let_go_of_forces();
   return supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.stop_and_clear(); });
 }
 

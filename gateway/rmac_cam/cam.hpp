@@ -78,6 +78,8 @@ class Cam final : public sdk::RmacCam {
   [[nodiscard]] Expected<> set_frames(const char* function, const Frames& frames);
   [[nodiscard]] Expected<std::size_t> find_joint(int joint, const char* function) const;
   [[nodiscard]] Expected<> set_joint_accel(std::vector<double>& accel, const char* function, int joint, double value);
+  /// Joints under force control hold their positions.
+  void let_go_of_forces();
   /// A positioning move of all joints together, as it is made from `from`.
   [[nodiscard]] Move make_joint_move(std::int64_t id, const JointTargetGeometry& target,
                                      std::span<const double> from) const;

@@ -33,4 +33,8 @@ Expected<> Cam::set_joint_force(int joint, double force) {
   return {};
 }
 
+void Cam::let_go_of_forces() {
+  supervisor_.wish([](ServoWishes& wishes) { wishes.force.fill(0); });
+}
+
 }  // namespace rmac::gateway

@@ -27,6 +27,15 @@ Expected<> set_module(const char* function, const sdk::ModuleChoice& module, sdk
   return {};
 }
 
+sdk::Joint without_what_is_set(const sdk::Joint& joint) {
+  sdk::Joint left;
+  left.max_measured_speed = joint.max_measured_speed;
+  left.max_jump = joint.max_jump;
+  left.force_sensor = joint.force_sensor;
+  left.force = joint.force;
+  return left;
+}
+
 }  // namespace
 
 void ConfigDraft::discard(const sdk::DeviceObject* in_force) {
@@ -37,9 +46,11 @@ void ConfigDraft::discard(const sdk::DeviceObject* in_force) {
 
 Expected<> ConfigDraft::begin(const sdk::DeviceObject& device) {
   draft_ = device;
-  // The rest is for the device driver to set, joint by joint.
+  // The rest is for the device driver to set, joint by joint; what no setter sets stays as device.json has it.
+  described_.clear();
+  for (const sdk::Joint& joint : device.joints) described_.push_back(without_what_is_set(joint));
   draft_.joints.clear();
-  std::fill(draft_.held_joints.begin(), draft_.held_joints.end(), sdk::Joint{});
+  for (sdk::Joint& joint : draft_.held_joints) joint = without_what_is_set(joint);
   draft_.kinematics = {};
   draft_.actuator_map = {};
   draft_.digital_control_interface = {};
@@ -91,6 +102,9 @@ Expected<> ConfigDraft::set_actuator_map(const sdk::ModuleChoice& module) {
 
 Expected<> ConfigDraft::set_number_of_joints(int count) {
   return check_count("SetMechanismNumberOfJoints", count, 1, kMaxJoints - draft_.held_joints.size()).map([&] {
+    for (std::size_t i = draft_.joints.size(); i < static_cast<std::size_t>(count); ++i) {
+      draft_.joints.push_back(i < described_.size() ? described_[i] : sdk::Joint{});
+    }
     draft_.joints.resize(static_cast<std::size_t>(count));
   });
 }

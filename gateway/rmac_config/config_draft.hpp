@@ -59,6 +59,7 @@ class ConfigDraft final : public sdk::RmacConfig {
 
   Controller controller_;
   sdk::DeviceObject draft_;
+  std::vector<sdk::Joint> described_;  ///< what device.json says of each joint that no setter does
   bool begun_ = false;
   bool new_mechanism_ = false;
 };

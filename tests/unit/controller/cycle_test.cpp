@@ -308,10 +308,10 @@ TEST_F(Cycle, ASpindleThatNeverGetsToSpeedFaultsTheMachine) {
 
 TEST_F(Cycle, ADriveFaultStopsEverythingUntilReset) {
   start_slow_line();
-  machine_.bus->trip(1, 0x7305);
+  machine_.bus->trip(1, 0x2310);
   ASSERT_TRUE(machine_.run_until([&] { return machine_.count(Event::Kind::Fault, 1) > 0; }));
   EXPECT_THAT(machine_.last(Event::Kind::Fault),
-              HasSubstr("actuator 1 (bus test, axis 1): the drive reports error 7305h"));
+              HasSubstr("actuator 1 (bus test, axis 1): the drive reports error 2310h"));
   ASSERT_TRUE(machine_.run_until([&] { return state() == CycleState::Faulted; }));
   EXPECT_FALSE(machine_.line(2, {40, 0, 0}, {0, 0, 0}));
 

@@ -110,7 +110,7 @@ TEST_F(FlightRecord, OfAFaultHasItsCycleTheWayThereAndTheStop) {
   start();
   start_line();
   ASSERT_TRUE(machine_->run_until([&] { return machine_->samples.back().s_mm > 10; })) << "a second";
-  machine_->bus->trip(1, 0x7305);
+  machine_->bus->trip(1, 0x2310);
   const Event fault = wait_for(Event::Kind::Fault);
   ASSERT_FALSE(fault.record.empty());
   EXPECT_EQ(wait_for(Event::Kind::FlightRecord).record, fault.record);
@@ -127,7 +127,7 @@ TEST_F(FlightRecord, OfAFaultHasItsCycleTheWayThereAndTheStop) {
     ASSERT_EQ(record.cycle(row), record.cycle(0) + static_cast<std::int64_t>(row));
     ASSERT_EQ(record.rows[row].at("fault"), row < 499 ? "None" : "DriveFault") << "in cycle " << record.cycle(row);
   }
-  EXPECT_EQ(record.rows[499].at("error_code2"), std::to_string(0x7305));
+  EXPECT_EQ(record.rows[499].at("error_code2"), std::to_string(0x2310));
   EXPECT_EQ(record.rows[499].at("servo_state"), "Faulted");
 }
 
@@ -192,7 +192,7 @@ TEST_F(FlightRecord, ThatCannotBeWrittenIsToldAndChangesNothingElse) {
   const auto file = folder_.write("no-folder", "");
   start_in(file / "records");
   start_line();
-  machine_->bus->trip(1, 0x7305);
+  machine_->bus->trip(1, 0x2310);
   const Event failed = wait_for(Event::Kind::FlightRecordFailed);
   EXPECT_THAT(failed.message, HasSubstr((file / "records").string()));
   EXPECT_THAT(failed.message, HasSubstr("Not a directory"));

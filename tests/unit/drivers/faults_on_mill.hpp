@@ -80,6 +80,7 @@ class FaultOnMill : public MillRun {
   static constexpr double kJump = 0.05;   // mm; DMACXYZ accelerates by 0.001 mm a cycle and cycle
   static constexpr double kTorque = 0.7;  // N·m; its largest effort asks for 0.64
   static constexpr int kStopCycles = 1500;
+  static constexpr int kRestCycles = 300;
 
   void watch(const nlohmann::json& device, ServoLoopParts& parts, bool keep_power) {
     for (std::size_t j = 0; j < parts.axes.size(); ++j) {
@@ -170,7 +171,7 @@ class FaultOnMill : public MillRun {
 
   void stop(Mill& mill, Injection injection, std::size_t axis) {
     outcome_.fault = report_.fault;
-    std::array<double, 3> at{};
+    std::array<double, 3> at{}, rest{}, astray{};
     for (std::size_t j = 0; j < 3; ++j) at[j] = table_mm(j);
     for (int i = 0; i < kStopCycles; ++i) {
       // What pushed is gone when the machine has stopped pushing back.
@@ -178,12 +179,14 @@ class FaultOnMill : public MillRun {
       mill.loop().cycle(command_, report_);
       for (std::size_t j = 0; j < 3; ++j) {
         outcome_.stopped_after_mm = std::max(outcome_.stopped_after_mm, std::abs(table_mm(j) - at[j]));
+        if (i == kStopCycles - kRestCycles) rest[j] = table_mm(j);
+        if (i >= kStopCycles - kRestCycles) astray[j] = std::max(astray[j], std::abs(table_mm(j) - rest[j]));
       }
     }
     outcome_.fault = report_.fault;
     outcome_.stopped = true;
     for (std::size_t j = 0; j < 3; ++j) {
-      const bool stands = std::abs(simulated_->plant(j).speed_rad_s()) < 0.5;
+      const bool stands = astray[j] < 2 * kHunt;  // static friction and the integral play against each other
       const bool powered = (bus_->commands[j].controlword & controlword::kEnableOperation) != 0;
       const bool off = (bus_->commands[j].controlword & controlword::kEnableVoltage) == 0;
       const bool as_wanted = report_.fault.stop == StopCategory::StopKeepPower ? powered : off;
