@@ -123,7 +123,7 @@ class Commands(unittest.TestCase):
             words = ("measure-following", "--radius", "20", "-o", str(picture))
             result = json.loads(self.rmac(appliance, "--json", *words))
             self.assertTrue(picture.read_bytes().startswith(PNG))
-        self.assertEqual(result["feed_mm_min"], 2000)
+        self.assertAlmostEqual(result["feed_mm_min"], 2000, delta=2)
         self.assertEqual(len(result["reversal_spikes_um"]), 4)
         for spike in result["reversal_spikes_um"]:
             self.assertGreater(abs(spike), 2, "PID meets friction where an axis turns round")

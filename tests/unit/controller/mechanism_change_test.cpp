@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(
         Defect{"Jerk", [](sdk::DeviceObject& d) { d.held_joints[0].limits.max_jerk = 0; },
                "SetMechanismJointMaximumJerk is 0"},
         Defect{"ForceControl", [](sdk::DeviceObject& d) { d.joints[0].method = ControlMethod::Force; },
-               "only position control"},
+               "which needs an approach speed"},
         Defect{"AxisTakenTwice", [](sdk::DeviceObject& d) { d.actuators[2].axis = 0; },
                "axis 0 of bus test is taken already"},
         Defect{"AxisThatIsNotThere", [](sdk::DeviceObject& d) { d.actuators[2].axis = 40; },

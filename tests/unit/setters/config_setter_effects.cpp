@@ -59,6 +59,11 @@ const std::vector<SetterEffect>& config_setter_effects() {
          EXPECT_NEAR(bench.bus->plant(0).angle_rad() - at_home, 2 * kTurn, 0.1) << "a pitch of 5 mm";
          bench.joints_to({0, 0, 0});
          bench.call("RMAC_Config.SetMechanismActuatorMap", R"({"DMACMachineActMap": "CoarseMap"})");
+         // The same motor moves a quarter of the mass at twice the pitch.
+         for (const int joint : {0, 1, 2}) {
+           bench.call("RMAC_Config.SetMechanismJointServoControlGains",
+                      fmt::format(R"({{"JntNum": {}, "ServoControlGains": [300, 27000, 2.1]}})", joint));
+         }
          bench.apply();
          bench.joints_to({10, 0, 0});
          EXPECT_NEAR(bench.bus->plant(0).angle_rad() - at_home, kTurn, 0.1) << "a pitch of 10 mm";
