@@ -48,7 +48,7 @@ struct Actuator {
   std::string bus;
   std::uint32_t axis = 0;
   DriveScale scale;
-  int homing_turn = 0;  ///< in which its drive looks for home by itself, from 1; 0: it does not
+  int homing_turn = 0;                ///< in which its drive looks for home by itself, from 1; 0: it does not
   double max_measured_torque_nm = 0;  ///< beyond it the machine stops; 0: 3.5 times the rated one
 };
 
