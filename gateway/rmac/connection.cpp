@@ -5,6 +5,7 @@
 
 #include <asio/local/stream_protocol.hpp>
 #include <csignal>
+#include <istream>
 
 namespace rmac::cli {
 
@@ -105,13 +106,13 @@ void Connection::on_entered_line(std::function<void(const std::string& line)> ha
 }
 
 void Connection::read_terminal() {
-  asio::async_read_until(terminal_, entered_, '\n', [this](const asio::error_code& error, std::size_t bytes) {
+  asio::async_read_until(terminal_, entered_, '\n', [this](const asio::error_code& error, std::size_t) {
     if (error) {
       return;
     }
-    const auto begin = asio::buffers_begin(entered_.data());
-    const std::string line(begin, begin + static_cast<std::ptrdiff_t>(bytes) - 1);
-    entered_.consume(bytes);
+    std::string line;
+    std::istream entered(&entered_);
+    std::getline(entered, line);
     if (entered_line_) {
       entered_line_(line);
     }
