@@ -55,6 +55,8 @@ struct ServoLoop::Impl {
   void begin_braking() noexcept;
   void brake() noexcept;
   void remove_power_at_rest() noexcept;
+  /// After a fault: the stop is through.
+  [[nodiscard]] bool stands() const noexcept;
   /// Joints are under control: to follow, or to brake and hold.
   [[nodiscard]] bool powered() const noexcept { return driving() || braking; }
   [[nodiscard]] bool driving() const noexcept {

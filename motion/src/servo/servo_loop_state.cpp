@@ -68,7 +68,9 @@ void ServoLoop::Impl::change_state(const ServoCommand& command) noexcept {
 }
 
 void ServoLoop::Impl::finish_reset() noexcept {
-  if (!resetting || (braking && braked_s < brake_s)) return;
+  // Without power there is no braking: what still moves is waited for. That ends, for a drive that does not brake is
+  // given up in the end.
+  if (!resetting || (state == ServoState::Faulted && !stands())) return;
   bool any = (inputs & parts.emergency_stop_inputs) != 0;
   if (!parts.virtual_mode) {
     for (std::size_t i = 0; i < actuators; ++i) any = any || faulted(feedback(i));

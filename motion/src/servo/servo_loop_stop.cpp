@@ -80,6 +80,12 @@ void ServoLoop::Impl::brake() noexcept {
   }
 }
 
+bool ServoLoop::Impl::stands() const noexcept {
+  if (braking) return braked_s >= brake_s;
+  const auto end = rest.begin() + static_cast<std::ptrdiff_t>(actuators + parts.spindles.size());
+  return parts.virtual_mode || std::all_of(rest.begin(), end, [](const Rest& drive) { return drive.reached; });
+}
+
 void ServoLoop::Impl::remove_power_at_rest() noexcept {
   if (state != ServoState::Faulted || braking) return;
   const bool too_long = static_cast<double>(++stopping_cycles) * parts.period_s > kQuickStopS;

@@ -244,6 +244,7 @@ TEST_F(ServoInputTest, LimitSwitchStopsAllAsItIsReachedAndLetsTheMachineMoveOffI
   cycle();
   expect_fault(ServoFault::Kind::LimitSwitch, ServoFault::Part::Io, 9);
   expect_all_quick_stopped();
+  cycle(25);  // until the drives are seen to stand
   reset();
   EXPECT_EQ(report.state, ServoState::Off);
   engage();

@@ -174,6 +174,27 @@ TEST_F(ServoWatch, CategoryOneTakesThePowerAwayWhenTheDriveHasComeToRest) {
   }
 }
 
+TEST_F(ServoWatch, ResetWaitsUntilTheDrivesStand) {
+  build_watched(StopCategory::StopThenRemovePower);
+  engage();
+  move(50, 20);
+  command.cycles_missed = 4;
+  cycle();
+  command.cycles_missed = 0;
+  command.power = false;
+  command.reset = true;
+  for (int i = 0; i < 200; ++i) {
+    put_at(0, travelled_ += 0.05);
+    put_at(1, travelled_);
+    cycle();
+    ASSERT_EQ(report.state, ServoState::Faulted) << "cycle " << i;
+    ASSERT_NE(bus->commands[0].controlword & controlword::kEnableVoltage, 0) << "braking takes power";
+  }
+  cycle(25);
+  EXPECT_EQ(report.state, ServoState::Off);
+  EXPECT_EQ(report.fault.kind, ServoFault::Kind::None);
+}
+
 TEST_F(ServoWatch, CategoryTwoBrakesJointsInStepAndHoldsThemUnderPower) {
   build_watched(StopCategory::StopKeepPower);
   engage();
@@ -217,7 +238,7 @@ TEST_F(ServoWatch, ResetLeavesAStopThatKeptPower) {
   fake->drives[4].words.sensor_valid = true;
   command.power = false;
   command.reset = true;
-  cycle(3);
+  cycle(25);  // until the drives are seen to stand
   EXPECT_EQ(report.state, ServoState::Off);
   EXPECT_EQ(report.fault.kind, ServoFault::Kind::None);
   command.reset = false;
