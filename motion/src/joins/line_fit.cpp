@@ -35,7 +35,7 @@ constexpr double kEvenness = 1e-6;
 /// A quintic's span depends on five knots on either side: these stay when the next window takes over.
 constexpr std::ptrdiff_t kKeptKnots = 10;
 constexpr double kSpansALine = 3;
-/// Of the tolerance, at the samples: between them the spline goes out further, mostly by 2 % of it. Where it is more,
+/// Of the tolerance, at the samples: between them the spline goes out further. Where that leaves the tolerance,
 /// the tube is made narrower.
 constexpr double kTubePart = 0.97;
 constexpr int kTubeTrials = 3;

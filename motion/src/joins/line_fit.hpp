@@ -36,7 +36,7 @@ class LineFit {
     std::size_t lines, overlap;
   };
   static constexpr Window kDense{240, 60};
-  static constexpr Window kTube{60, 12};  ///< takes a few milliseconds, and what is further off makes no difference
+  static constexpr Window kTube{60, 12};       ///< more would hold the planner up for longer
   static constexpr std::size_t kShortest = 6;  ///< lines that are worth a fit
 
   /// A spline by chord length, counted from the start of the first waiting line, and the path that it makes.

@@ -23,7 +23,7 @@ using quintic::kDegree;
 
 constexpr int kSamplesASpan = 5;
 /// How far along the path the spline may be from a vertex at its place, in widths: a vertex seen from too far aside is
-/// seen from the wrong line. Less gains nothing (the rose in 1 mm lines takes the same time).
+/// seen from the wrong line.
 constexpr double kVertexSlack = 5;
 /// Control points that are given kept the tube of the fit before; its samples lay elsewhere.
 constexpr double kGivenSlack = 1.01;

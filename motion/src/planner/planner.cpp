@@ -28,14 +28,14 @@ constexpr std::int64_t kRetryAfter = 10;
 /// What is held back for the sake of a join is given out so long before the machine would have to brake for its lack.
 constexpr double kRelease_s = 0.05;
 
-/// Bounds of acceleration and jerk along a direction in joint space, in which the weakest joint rules.
+/// Bounds of acceleration and jerk in which the weakest joint rules.
 struct Ramp {
   double acceleration = std::numeric_limits<double>::infinity();
   double jerk = std::numeric_limits<double>::infinity();
 
-  void limit(const JointLimits& joint, double share) {
-    acceleration = std::min(acceleration, joint.max_acceleration / share);
-    jerk = std::min(jerk, joint.max_jerk / share);
+  void limit(const JointLimits& joint) {
+    acceleration = std::min(acceleration, joint.max_acceleration);
+    jerk = std::min(jerk, joint.max_jerk);
   }
   [[nodiscard]] double length(double v) const { return ramp_length(v, acceleration, jerk); }
 };
@@ -128,7 +128,7 @@ struct Planner::Impl {
     Ramp weakest;
     double fastest = 0;
     for (const JointLimits& joint : model.joints) {
-      weakest.limit(joint, 1);
+      weakest.limit(joint);
       fastest = std::max(fastest, joint.max_speed);
     }
     std::optional<WindowEnd> found;
@@ -254,8 +254,7 @@ struct Planner::Impl {
     const PathState from = p.state_at(now_s(p, cycle));
     const WindowEnd end = s_stop ? WindowEnd{*s_stop, false} : window_end(from.s, kRampsAtOnce);
     const double allowed = s_stop ? std::max(factor, p.override_factor) : factor;
-    auto law = plan_window(path().view(), model.joints,
-                           {from, end.s, feed(allowed), &p.plan->law, s_stop || allowed == p.override_factor});
+    auto law = plan_window(path().view(), model.joints, {from, end.s, feed(allowed), &p.plan->law, s_stop.has_value()});
     if (!law) return false;
     auto plan = std::make_unique<Plan>();
     plan->start_cycle = cycle;

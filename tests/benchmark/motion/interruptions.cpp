@@ -161,6 +161,8 @@ void interruption_rows(Figures& figures, const Extent& extent) {
   figures.at_most("hold_reaction_p50", quantile(outcome.reaction_cycles, 0.5), 2, "cycles", holds);
   figures.inform("hold_reaction_p95", quantile(outcome.reaction_cycles, 0.95), "cycles", holds);
   figures.at_most("hold_reaction_max", quantile(outcome.reaction_cycles, 1), 2, "cycles", holds);
+  const auto late = std::ranges::count_if(outcome.reaction_cycles, [](double cycles) { return cycles > 2; });
+  figures.inform("hold_late", static_cast<double>(late), "holds", holds + ", those with more than 2 cycles");
   figures.inform("hold_visible_p99", quantile(outcome.visible_cycles, 0.99), "cycles",
                  "until the setpoint differs by 1 pm");
   figures.inform("hold_kept_plan", outcome.kept, "holds", "no plan took over: the one in force came to rest");
