@@ -115,5 +115,5 @@ def section(name, text=""):
 
 
 if __name__ == "__main__":
-    page = INTRODUCTION + section("rmacd") + section("device", MECHANISMS) + section("modbus-spindle") + section("modbus-io")
+    page = INTRODUCTION + section("rmacd") + section("device", MECHANISMS) + section("modbus-spindle") + section("modbus-io") + section("tools")
     (FOLDER / "configuration.md").write_text(page, encoding="utf-8")

@@ -14,6 +14,7 @@ const std::vector<Method>& method_table() {
     add_config_methods(table);
     add_cycle_methods(table);
     add_cam_methods(table);
+    add_tool_methods(table);
     add_move_methods(table);
     add_cmm_methods(table);
     add_flight_recorder_methods(table);

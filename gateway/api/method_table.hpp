@@ -21,6 +21,7 @@ void add_device_services(std::vector<Method>& table);
 void add_config_methods(std::vector<Method>& table);
 void add_cycle_methods(std::vector<Method>& table);
 void add_cam_methods(std::vector<Method>& table);
+void add_tool_methods(std::vector<Method>& table);
 void add_move_methods(std::vector<Method>& table);
 void add_cmm_methods(std::vector<Method>& table);
 void add_flight_recorder_methods(std::vector<Method>& table);

@@ -136,11 +136,6 @@ void add_auxiliaries(const auto& add) {
             .needs(Permission::Authority)
             .does([on](Call& call) { return call.machine.cam().set_coolant(on); }));
   }
-  add(method("RMAC_CAM.DoToolChange", "Changes the tool.")
-          .takes(integer("ToolNumber").at_least(0))
-          .gives(WireType::Boolean)
-          .causes(Effect::Starts)
-          .lacks("no tool changer is driven yet; change the tool by hand at rest"));
   add(method("RMAC_CAM.SetAnimation",
              "True streams the joint values to this connection (topic joints, 50 Hz, or faster if it is subscribed to "
              "so) for "

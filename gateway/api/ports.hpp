@@ -10,6 +10,7 @@
 #include "gateway/controller/machine_state.hpp"
 #include "gateway/device_driver_manager/device_driver_manager.hpp"
 #include "gateway/record/flight_record.hpp"
+#include "gateway/tools/tool.hpp"
 #include "rmac/sdk/device_object.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
 #include "rmac/sdk/rmac_config.hpp"
@@ -63,6 +64,7 @@ class MachinePort {
   [[nodiscard]] virtual sdk::RmacCam& cam() = 0;
   [[nodiscard]] virtual sdk::RmacConfig& config() = 0;
   [[nodiscard]] virtual DevicePort& device() = 0;
+  [[nodiscard]] virtual ToolPort& tools() = 0;
   /// The mechanism in force, or nullptr.
   [[nodiscard]] virtual const sdk::DeviceObject* mechanism() const = 0;
   [[nodiscard]] virtual CycleSample sample() const = 0;

@@ -34,6 +34,12 @@ const char* to_string(Event::Kind kind) noexcept {
       return "FlightRecord";
     case Event::Kind::FlightRecordFailed:
       return "FlightRecordFailed";
+    case Event::Kind::ToolWanted:
+      return "ToolWanted";
+    case Event::Kind::ToolChanged:
+      return "ToolChanged";
+    case Event::Kind::ToolChangeDropped:
+      return "ToolChangeDropped";
   }
   return "unknown";
 }
@@ -75,6 +81,10 @@ nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, co
                        {"status_minor", status.minor},
                        {"authority", authority_holder},
                        {"virtual", machine.device().virtual_mode()}};
+  const ToolsNow tools = machine.tools().tools_now();
+  state["tool"] = tools.mounted ? nlohmann::json(*tools.mounted) : nlohmann::json();
+  state["tool_wanted"] = tools.wanted ? nlohmann::json(*tools.wanted) : nlohmann::json();
+  state["tool_prompt"] = tools.prompt;
   const std::optional<Event>& stop = machine.last_stop();
   state["last_stop"] = stop ? event_to_json(*stop) : nlohmann::json();
   state["mechanism"] = mechanism == nullptr ? nlohmann::json() : nlohmann::json(mechanism->name);

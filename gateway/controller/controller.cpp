@@ -29,7 +29,8 @@ Controller::Impl::Impl(ControllerOptions controller_options)
           {[this](const sdk::DeviceObject& device, bool fresh) { return put_in(device, fresh); },
            [this](const sdk::ModuleChoice& choice) { return registry.check_control_interface(choice, loader(folder)); },
            [this](const sdk::ModuleChoice& choice) { return registry.check_io_interface(choice, loader(folder)); }}),
-      cam(supervisor, *link, [this] { return reset(); }) {
+      rack(options.tools_folder),
+      cam(supervisor, *link, rack, [this] { return reset(); }) {
   if (options.flight_recorder.wanted()) {
     recorder = std::make_unique<FlightRecorder>(options.flight_recorder, options.period_s, link->history);
   }
@@ -71,6 +72,10 @@ sdk::RmacConfig& Controller::config() noexcept {
   return impl_->draft;
 }
 sdk::RmacCam& Controller::cam() noexcept {
+  return impl_->cam;
+}
+
+ToolPort& Controller::tools() noexcept {
   return impl_->cam;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -11,6 +12,7 @@
 #include "gateway/controller/clock.hpp"
 #include "gateway/controller/machine_state.hpp"
 #include "gateway/record/flight_recorder_options.hpp"
+#include "gateway/tools/tool.hpp"
 #include "rmac/motion/error.hpp"
 #include "rmac/motion/servo_loop.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
@@ -37,6 +39,7 @@ struct ControllerOptions {
   int max_cycles_lost = 0;       ///< missed deadlines within a second; beyond it the machine stops; 0: not watched
   std::shared_ptr<Clock> clock;  ///< paces the servo thread; null: the monotonic clock
   FlightRecorderOptions flight_recorder{};
+  std::filesystem::path tools_folder{};  ///< of the tool tables; empty: none is read or kept
   /// Interfaces beside the built-in ones, by name.
   std::map<std::string, BusRegistry::ControlFactory> control_interfaces;
   std::map<std::string, BusRegistry::IoFactory> io_interfaces;
@@ -67,6 +70,7 @@ class Controller {
 
   [[nodiscard]] sdk::RmacConfig& config() noexcept;
   [[nodiscard]] sdk::RmacCam& cam() noexcept;
+  [[nodiscard]] ToolPort& tools() noexcept;
 
   /// Modules of the mechanism about to be configured are looked for here first. Virtual: setpoints are reflected as
   /// joint values.

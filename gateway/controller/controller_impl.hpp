@@ -61,6 +61,7 @@ struct Controller::Impl {
   std::unique_ptr<FlightRecorder> recorder;  ///< none where none is wanted
   BusRegistry registry;
   ConfigDraft draft;
+  ToolRack rack;
   Cam cam;
 
   std::string folder;           ///< of the mechanism about to be configured

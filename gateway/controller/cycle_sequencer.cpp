@@ -71,6 +71,7 @@ Expected<> CycleSequencer::start(sdk::CycleMode mode, const CycleObservation& se
   positioning_ = false;
   state_ = CycleState::Running;
   done_at_start_ = seen.moves_done;
+  one_done_ = false;
   waiting_since_s_.reset();
   return {};
 }
@@ -93,6 +94,7 @@ Expected<> CycleSequencer::start_positioning(const CycleObservation& seen, std::
   positioning_ = true;
   state_ = CycleState::Running;
   done_at_start_ = seen.moves_done;
+  one_done_ = false;
   return {};
 }
 
@@ -228,7 +230,7 @@ CycleSequencer::Verdict CycleSequencer::step(const CycleObservation& seen) noexc
   }
   if (state_ != CycleState::Running) retracing_ = homing_ = false;
   if (state_ == CycleState::Running && !retracing_ && mode_ == sdk::CycleMode::Manual && seen.at_rest &&
-      seen.moves_done > done_at_start_) {
+      (one_done_ || seen.moves_done > done_at_start_)) {
     state_ = CycleState::Idle;
     positioning_ = false;
     verdict.came_to_rest = StopCause::MoveDone;

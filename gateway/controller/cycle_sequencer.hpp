@@ -59,6 +59,8 @@ class CycleSequencer {
   void fault(CycleState to = CycleState::Faulted) noexcept;
   /// Another mechanism went in: `keep_running` when it is the same one, configured anew.
   void mechanism_changed(bool keep_running) noexcept;
+  /// What is no move, and done by itself in manual mode, is done: a tool change.
+  void one_done() noexcept { one_done_ = true; }
   /// A spindle was told another speed: motion that has not begun waits for it, at most `timeout_s`.
   void spindle_commanded(double timeout_s) noexcept;
 
@@ -94,6 +96,7 @@ class CycleSequencer {
   double spindle_timeout_s_ = 0;
   std::optional<double> waiting_since_s_;
   std::uint64_t done_at_start_ = 0;
+  bool one_done_ = false;
 };
 
 }  // namespace rmac::gateway

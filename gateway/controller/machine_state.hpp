@@ -74,7 +74,10 @@ struct Event {
     Mechanism,
     CycleStateChanged,
     FlightRecord,
-    FlightRecordFailed
+    FlightRecordFailed,
+    ToolWanted,
+    ToolChanged,
+    ToolChangeDropped
   };
   Kind kind = Kind::Stopped;
   double t_s = 0;

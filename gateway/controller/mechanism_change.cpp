@@ -145,6 +145,8 @@ void Controller::Impl::leave_fault() {
 
 Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh) {
   if (auto ready = ready_for_change("putting in a configuration"); !ready) return ready;
+  auto tools = rack.read(device.name);
+  if (!tools) return tl::unexpected(tools.error());
   const bool virtual_before = in_force && in_force->virtual_mode();
   auto before = in_force;
   auto next = assemble(device, assembly_options(virtual_mode), loader(folder), registry);
@@ -193,6 +195,11 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
   if (fresh) {
     supervisor.wish([](ServoWishes& wishes) { wishes.outputs = 0; });
     supervisor.set_frames({});
+    const auto keeps = !virtual_mode     ? ToolRack::Keeps::Everything
+                       : options.stepped ? ToolRack::Keeps::Nothing
+                                         : ToolRack::Keeps::Tools;
+    (void)cam.keep_mounted();  // of the mechanism before
+    rack.adopt(device.name, std::move(*tools), keeps);
   }
   // A spindle that turns faster than it may now slows down, and feed does not wait for the speed that it had.
   supervisor.wish([&](ServoWishes& wishes) {
@@ -234,6 +241,7 @@ Expected<> Controller::Impl::take_out() {
   });
   if (auto swapped = swap(nullptr); !swapped) return swapped;
   (void)supervisor.install(nullptr, generation, false);
+  (void)cam.keep_mounted();
   cam.mechanism_changed(nullptr, true);
   in_force.reset();
   draft.discard(nullptr);

@@ -59,6 +59,7 @@ bool MotionSupervisor::spindles_at_speed(const ServoStatus& status) const {
 
 void MotionSupervisor::settle(const ServoStatus& status) {
   apply_verdict(sequencer_.step(observe(status)), status);
+  take_steps(status);
 }
 
 void MotionSupervisor::notice_fault() {
@@ -145,7 +146,8 @@ MotionSupervisor::Pace MotionSupervisor::pace(const ServoStatus& status) {
       std::chrono::steady_clock::now() - last_added_ < options_.client_grace) {
     return Pace::Sending;
   }
-  const bool waiting = state == CycleState::Running && (left > 0 || sequencer_.waits_for_spindle());
+  const bool steps = !behind_.empty() && !asked_;
+  const bool waiting = state == CycleState::Running && (left > 0 || steps || sequencer_.waits_for_spindle());
   const bool coming_to_rest = status.moving || !mechanism_->planner.at_rest(status.progress);
   const bool busy = waiting || coming_to_rest || sequencer_.homes() || state == CycleState::Stopping ||
                     status.state == ServoState::Enabling;
@@ -208,15 +210,24 @@ Expected<bool> MotionSupervisor::add_move(const Move& move) {
   }
   const bool moves = !segments->empty();
   if (queue_listener_) queue_listener_(move, *segments);
-  mechanism_->planner.add(std::move(*segments));
+  if (behind_.empty()) {
+    hand_on(move.id, std::move(*segments));
+  } else {
+    behind_.emplace_back(QueuedPath{move.id, std::move(*segments)});
+  }
+  last_added_ = std::chrono::steady_clock::now();
+  return moves;
+}
+
+void MotionSupervisor::hand_on(std::int64_t move_id, std::vector<std::shared_ptr<const PathSegment>> segments) {
+  const bool moves = !segments.empty();
+  mechanism_->planner.add(std::move(segments));
   if (moves) {
     ++moves_added_;
   } else {
     still_moves_.push_back(moves_added_);
   }
-  news_.queue.push_back({moves ? QueueChange::Kind::Added : QueueChange::Kind::Still, move.id, 0});
-  last_added_ = std::chrono::steady_clock::now();
-  return moves;
+  news_.queue.push_back({moves ? QueueChange::Kind::Added : QueueChange::Kind::Still, move_id, 0});
 }
 
 Expected<> MotionSupervisor::run_positioning(const Move& move, std::optional<double> share) {
@@ -283,10 +294,10 @@ Expected<> MotionSupervisor::require_rest(const char* what) {
                                "stop it first",
                                what));
   }
-  if (seen.moves_left > 0) {
+  if (const std::size_t left = seen.moves_left + steps_left(); left > 0) {
     return failure(MinorCode::Other, fmt::format("{} needs an empty queue, and {} moves are still in it; run them, or "
                                                  "drop them with StopNow",
-                                                 what, seen.moves_left));
+                                                 what, left));
   }
   return {};
 }
@@ -337,12 +348,13 @@ std::size_t MotionSupervisor::count_moves() {
   const std::size_t left = mechanism_->planner.moves_left();
   // A move without motion is done when those before it are.
   while (!still_moves_.empty() && still_moves_.front() + left <= moves_added_) still_moves_.pop_front();
-  return left + still_moves_.size();
+  return left + still_moves_.size() + steps_left();
 }
 
 void MotionSupervisor::forget_moves() {
   moves_added_ = 0;
   still_moves_.clear();
+  drop_steps();
 }
 
 CycleState MotionSupervisor::state() {

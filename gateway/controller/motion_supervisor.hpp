@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "gateway/controller/cycle_sequencer.hpp"
+#include "gateway/controller/queue_step.hpp"
 #include "gateway/controller/servo_link.hpp"
+#include "gateway/tools/tool.hpp"
 
 namespace rmac::gateway {
 
@@ -61,6 +63,14 @@ class MotionSupervisor {
   /// Builds and adds a move that `prepare_move` let through. False when there is nothing to move: such a move is done
   /// as soon as those before it are.
   [[nodiscard]] Expected<bool> add_move(const Move& move);
+  /// Adds what is to be done between moves: moves that are added from now on wait behind it. The caller has seen to it
+  /// that `builder()` goes on where the steps leave the machine.
+  [[nodiscard]] Expected<> add_steps(std::vector<QueueStep> steps);
+  [[nodiscard]] ToolsNow tools_now();
+  /// The person who was asked says that this tool is in.
+  [[nodiscard]] Expected<> confirm_tool(int number);
+  /// What is in the spindle, as it is known when nothing is queued.
+  void set_mounted(std::optional<int> number);
   /// Builds, adds and runs one move from rest, outside of the cycle. With `share` it is a jog that lasts while
   /// `renew_jog` says so, at this share of the move's speed.
   [[nodiscard]] Expected<> run_positioning(const Move& move, std::optional<double> share = std::nullopt);
@@ -126,6 +136,19 @@ class MotionSupervisor {
   /// Takes note of a fault that samples, and so clients, show already.
   void notice_fault();
   [[nodiscard]] std::size_t count_moves();
+  /// Of what waits behind a step: moves and tool changes.
+  [[nodiscard]] std::size_t steps_left() const;
+  /// A move's turn has come to be planned.
+  void hand_on(std::int64_t move_id, std::vector<std::shared_ptr<const PathSegment>> segments);
+  void take_steps(const ServoStatus& status);
+  // Each begins or goes on with its step; true when that is done.
+  bool take(QueuedPath& path, const CycleObservation& seen);
+  bool take(BeginToolChange& begin, const CycleObservation& seen);
+  bool take(SwitchOutputs& outputs, const CycleObservation& seen);
+  bool take(AwaitInput& input, const CycleObservation& seen);
+  bool take(AskPerson& person, const CycleObservation& seen);
+  bool take(MountTool& mount, const CycleObservation& seen);
+  void drop_steps();
   void forget_moves();
   void apply_verdict(const CycleSequencer::Verdict& verdict, const ServoStatus& status);
   void tell_state();
@@ -149,6 +172,10 @@ class MotionSupervisor {
   std::chrono::steady_clock::time_point last_added_{};
   std::uint64_t moves_added_ = 0;          ///< with motion, since the queue was emptied last
   std::deque<std::uint64_t> still_moves_;  ///< without motion, each by the number of those before it
+  std::deque<QueueStep> behind_;           ///< the first is no path: it waits for what is planned to be done
+  std::optional<int> mounted_ = kNoTool;   ///< tool; none: not known
+  bool changing_ = false;                  ///< a tool change has begun
+  bool asked_ = false;                     ///< and the person that is to do it
   News news_;
   QueueListener queue_listener_;
   double override_percent_ = 100;

@@ -35,6 +35,7 @@ struct SimulateOptions {
   std::string machine;                ///< a name in the device tree, or the path of a device.json; empty: the program's
   std::filesystem::path device_tree;  ///< empty: the installation's
   std::string record_file;            ///< empty: none
+  std::filesystem::path tools;        ///< folder of tool tables; empty: no tools but the program's own
   double period_s = 0.001;
 };
 
@@ -57,6 +58,21 @@ struct JogRequest {
 [[nodiscard]] Result<> resume(Connection& connection);
 [[nodiscard]] Result<> stop(Connection& connection);
 [[nodiscard]] Result<> set_override(Connection& connection, double percent);
+
+/// The tool table of the loaded mechanism, and what is in the spindle.
+[[nodiscard]] Result<> list_tools(Connection& connection, bool json);
+/// A tool of the table as it is to be; of a tool that is there, what is not given stays.
+struct ToolRequest {
+  int number = 1;
+  std::optional<double> length_mm, radius_mm, max_rpm, max_torque_nm;
+  std::optional<std::string> name;
+  std::optional<bool> needs_spindle;
+  std::vector<double> frame;  ///< x y z, and the quaternion w x y z; empty: not given
+};
+[[nodiscard]] Result<> set_tool(Connection& connection, const ToolRequest& request);
+[[nodiscard]] Result<> remove_tool(Connection& connection, int number);
+/// Says that a tool is in the spindle; without a number, the one that was asked for.
+[[nodiscard]] Result<> confirm_tool(Connection& connection, std::optional<int> number);
 
 /// What `rmac tune` moves, and what it aims at.
 struct TuneRequest {

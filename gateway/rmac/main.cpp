@@ -26,6 +26,8 @@ struct Arguments {
   SimulateOptions simulate;
   JogRequest jog;
   TuneRequest tune;
+  ToolRequest tool;
+  std::optional<int> tool_number;
   FollowingRequest following;
   int node = 0;
   double percent = 100, period_s = 0.001;
@@ -100,6 +102,37 @@ void add_operating_commands(CLI::App& app, Arguments& arguments, Command& comman
   override_command->callback([&] { command = [&](auto& to) { return set_override(to, arguments.percent); }; });
 }
 
+void add_tool_commands(CLI::App& app, Arguments& arguments, Command& command) {
+  const CLI::Range numbers(1, 9999);
+  auto* tools = app.add_subcommand("tools", "the tool table of the loaded machine, and what is in its spindle");
+  tools->require_subcommand(0, 1);
+  tools->preparse_callback([&](std::size_t) { command = [&](auto& to) { return list_tools(to, arguments.json); }; });
+  tools->add_subcommand("list", "the tools; what `rmac tools` alone does")->callback([&] {
+    command = [&](auto& to) { return list_tools(to, arguments.json); };
+  });
+  ToolRequest& tool = arguments.tool;
+  auto* set = tools->add_subcommand("set", "add a tool, or change what is given of one that is there");
+  set->add_option("NUMBER", tool.number, "1 to 9999")->required()->check(numbers);
+  set->add_option("--length", tool.length_mm, "from where it sits to its tip, mm");
+  set->add_option("--radius", tool.radius_mm, "mm");
+  set->add_option("--name", tool.name, "for people");
+  set->add_option("--frame", tool.frame, "where it sits on the tool interface: x y z, mm, and the quaternion w x y z")
+      ->expected(7);
+  set->add_option("--max-rpm", tool.max_rpm, "fastest that it may turn; 0: as fast as the spindle can");
+  set->add_option("--max-torque", tool.max_torque_nm, "N·m; 0: not given");
+  set->add_option("--needs-spindle", tool.needs_spindle, "whether it cuts only while the spindle turns");
+  set->callback([&] { command = [&](auto& to) { return set_tool(to, arguments.tool); }; });
+  auto* remove = tools->add_subcommand("remove", "take a tool out of the table");
+  remove->add_option("NUMBER", tool.number, "1 to 9999")->required()->check(numbers);
+  remove->callback([&] { command = [&](auto& to) { return remove_tool(to, arguments.tool.number); }; });
+
+  auto* confirm = app.add_subcommand("confirm", "say that the tool that was asked for is in the spindle");
+  confirm
+      ->add_option("NUMBER", arguments.tool_number, "the tool that is there; 0: none; the one asked for unless given")
+      ->check(CLI::Range(0, 9999));
+  confirm->callback([&] { command = [&](auto& to) { return confirm_tool(to, arguments.tool_number); }; });
+}
+
 void add_trace_commands(CLI::App& app, Arguments& arguments, Command& command) {
   auto* trace = app.add_subcommand("trace", "the flight records: what every cycle did before a fault, or up to now");
   trace->require_subcommand(0, 1);
@@ -155,6 +188,10 @@ void add_offline_commands(CLI::App& app, Arguments& arguments, std::function<Res
   simulate->add_option("--machine", arguments.simulate.machine,
                        "a machine's name, or the path of its device.json; needed unless the program loads one");
   simulate->add_option("--record", arguments.simulate.record_file, "write every cycle's setpoints to this CSV");
+  simulate
+      ->add_option("--tools", arguments.simulate.tools,
+                   "folder of tool tables (tools/ of an appliance's state folder); only read")
+      ->check(CLI::ExistingDirectory);
   simulate->add_option("--device-tree", arguments.simulate.device_tree,
                        "where machines are looked for; the installation's unless given");
   simulate->add_option("--period", arguments.simulate.period_s, "cycle of the servo loop, s (period_s in rmacd.json)")
@@ -212,6 +249,7 @@ int run(int count, char** words) {
   app.add_flag("--json", arguments.json, "print for programs");
   add_database_commands(app, arguments, command);
   add_operating_commands(app, arguments, command);
+  add_tool_commands(app, arguments, command);
   add_trace_commands(app, arguments, command);
   add_commissioning_commands(app, arguments, command);
   std::function<Result<>()> offline_command;

@@ -50,6 +50,8 @@ StateNote read_state(const nlohmann::json& params) {
   read(params, "joints", state.joints);
   read(params, "held_joints", state.held_joints);
   read(params, "spindle_rpm", state.spindle_rpm);
+  read(params, "tool_wanted", state.tool_wanted);
+  read(params, "tool_prompt", state.tool_prompt);
   if (const auto stop = params.find("last_stop"); stop != params.end() && stop->is_object()) {
     state.last_stop = read_event(*stop);
   }

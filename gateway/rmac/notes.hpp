@@ -24,7 +24,9 @@ struct StateNote {
   int moves_in_buffer = 0, status_minor = 0;
   double t_s = 0, feed_actual = 0, feed_set = 0, override_percent = 0;
   std::vector<double> pose, joints, held_joints, spindle_rpm;
-  EventNote last_stop;  ///< without a kind: none yet
+  int tool_wanted = 0;      ///< by the tool change that comes next
+  std::string tool_prompt;  ///< what a person is asked to do for it; empty: nothing
+  EventNote last_stop;      ///< without a kind: none yet
 
   [[nodiscard]] bool at_rest() const { return !moving && moves_in_buffer == 0; }
 };

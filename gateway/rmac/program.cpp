@@ -37,6 +37,9 @@ constexpr std::array kMoves{"MoveAlong"sv,      "MoveToPathTarget"sv, "MoveToJoi
                             "MoveRotaryAxis"sv, "MoveInArc"sv,        "MoveAllAxis"sv,       "AutoMeasure"sv,
                             "Machine_MoveIn"sv, "Machine_MoveTo"sv};
 
+/// Queued behind the moves before it, and the moves after it wait for it.
+constexpr std::string_view kToolChange = "DoToolChange";
+
 bool starts_with_any(std::string_view name, const auto& prefixes) {
   return std::any_of(prefixes.begin(), prefixes.end(), [&](auto prefix) { return name.starts_with(prefix); });
 }
@@ -78,7 +81,8 @@ Result<Request> read_request(const std::string& text, const std::string& place) 
     return fail(fmt::format("{}: \"params\" of {} is neither an object nor an array", place, request.method));
   }
   request.timing = timing_of(request.method);
-  if (request.timing == Timing::Move) {
+  request.tool_change = function_of(request.method) == kToolChange;
+  if (request.timing == Timing::Move && !request.tool_change) {
     const auto id = move_id_of(request.params);
     if (!id) {
       return fail(fmt::format("{}: {} needs an integer MoveID", place, request.method));
@@ -95,7 +99,7 @@ Timing timing_of(const std::string& method) {
   if (function == "CycleStart" || function == "SetCycleStartStatus") {
     return Timing::Start;
   }
-  if (starts_with_any(function, kMoves)) {
+  if (starts_with_any(function, kMoves) || function == kToolChange) {
     return Timing::Move;
   }
   const bool asks = function.starts_with("Get") || function.starts_with("Machine_Get") ||
@@ -125,7 +129,7 @@ Result<Program> read_program(const std::string& file) {
       return tl::unexpected(request.error());
     }
     request->line = line;
-    program.moves += request->timing == Timing::Move ? 1U : 0U;
+    program.moves += request->timing == Timing::Move && !request->tool_change ? 1U : 0U;
     program.starts_cycle = program.starts_cycle || request->timing == Timing::Start;
     program.loads_mechanism = program.loads_mechanism || request->method == "Device.Load";
     program.requests.push_back(std::move(*request));

@@ -25,6 +25,7 @@ struct Request {
   nlohmann::json params;
   Timing timing = Timing::Settled;
   std::int64_t move_id = 0;  ///< of a `Move`
+  bool tool_change = false;  ///< a `Move` without an id
 };
 
 /// A `.rmac` file: one JSON-RPC request a line, empty lines allowed.

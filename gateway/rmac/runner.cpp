@@ -162,7 +162,7 @@ Result<> Runner::submit(const Program& program, const Request& request) {
   }
   ++unanswered_;
   if (is_move) {
-    unfinished_.push_back(request.move_id);
+    unfinished_.push_back(request.tool_change ? std::nullopt : std::optional(request.move_id));
   }
   started_ = started_ || request.timing == Timing::Start;
   unsettled_ = unsettled_ || request.timing == Timing::Settled;
@@ -299,6 +299,10 @@ void Runner::obey(const std::string& line) {
     if (!answer) note_ = answer.error().message;
   };
   note_.clear();
+  if (line.empty() && state_ && !state_->tool_prompt.empty()) {
+    connection_.send("RMAC_CAM.ConfirmToolChange", {{"ToolNumber", state_->tool_wanted}}, tell);
+    return;
+  }
   if (line.empty()) {
     connection_.send("RMAC_CAM.FeedResume", nlohmann::json::object(), [](const Connection::Answer&) {});
     return;
@@ -326,9 +330,10 @@ void Runner::take(const std::string& topic, const nlohmann::json& params) {
   } else if (topic == "state") {
     state_ = read_state(params);
     progress_.draw(report_.moves, total_moves_,
-                   state_->state != "Holding" ? fmt::format("{:.0f} mm/min", state_->feed_actual)
-                   : note_.empty()            ? "held: Enter goes on, a distance in mm and Enter runs back"
-                                              : note_);
+                   !state_->tool_prompt.empty() ? state_->tool_prompt + ", or Enter"
+                   : state_->state != "Holding" ? fmt::format("{:.0f} mm/min", state_->feed_actual)
+                   : note_.empty()              ? "held: Enter goes on, a distance in mm and Enter runs back"
+                                                : note_);
   } else if (topic == "joints") {
     for (const auto& sample : read_joints(params)) {
       take(sample);
@@ -344,7 +349,12 @@ void Runner::take(const EventNote& event) {
     ++report_.moves;
     last_done_s_ = event.t_s;
     report_.cycle_time_s = event.t_s - first_start_s_.value_or(event.t_s);
-  } else if (event.kind == "Fault") {
+  } else if (event.kind == "ToolWanted") {
+    progress_.clear();
+    fmt::print(stderr, "rmac: {}\n", event.message);
+  } else if (event.kind == "ToolChanged" && !unfinished_.empty() && !unfinished_.front()) {
+    unfinished_.pop_front();
+  } else if (event.kind == "Fault" || event.kind == "ToolChangeDropped") {
     fail_with(event.message);
   } else if (event.kind == "Stopped") {
     rest_told_ = !unfinished_.empty();

@@ -69,7 +69,8 @@ class Runner {
   std::size_t window_ = 1;       ///< requests without an answer at one time
   std::size_t queue_bound_ = 0;  ///< moves not done at one time; what the appliance's queue holds
   std::size_t unanswered_ = 0;
-  std::deque<std::int64_t> unfinished_;  ///< ids of moves sent and not done, in order
+  /// Ids of moves sent and not done, in order; none stands for a tool change.
+  std::deque<std::optional<std::int64_t>> unfinished_;
   std::optional<double> first_start_s_;
   std::optional<StateNote> state_;
   std::string failure_;

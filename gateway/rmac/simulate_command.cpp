@@ -28,13 +28,10 @@ void print_json(const SimulationReport& report, double took_s) {
   }
   nlohmann::json limited_by = nlohmann::json::object();
   for (const auto& [limit, time_s] : report.limited_by) limited_by[limit] = time_s;
-  nlohmann::json line{{"cycle_time_s", report.cycle_time_s},
-                      {"moves", report.moves},
-                      {"length_mm", report.length_mm},
-                      {"joints", std::move(joints)},
-                      {"limited_by_s", std::move(limited_by)},
-                      {"collisions", "not checked"},
-                      {"cpu_time_s", took_s}};
+  nlohmann::json line{{"cycle_time_s", report.cycle_time_s}, {"moves", report.moves},
+                      {"tool_changes", report.tool_changes}, {"length_mm", report.length_mm},
+                      {"joints", std::move(joints)},         {"limited_by_s", std::move(limited_by)},
+                      {"collisions", "not checked"},         {"cpu_time_s", took_s}};
   if (!report.record_files.empty()) {
     line["record_rows"] = report.record_rows;
     line["record_files"] = report.record_files;
@@ -45,6 +42,7 @@ void print_json(const SimulationReport& report, double took_s) {
 void print_table(const SimulationReport& report, double took_s) {
   std::vector<std::vector<std::string>> rows{
       {"moves", std::to_string(report.moves), ""},
+      {"tool changes", std::to_string(report.tool_changes), report.tool_changes > 0 ? "in no time" : ""},
       {"length", number(report.length_mm), "mm"},
       {"cycle time", number(report.cycle_time_s), "s"},
       {"computed in", number(took_s),
@@ -79,7 +77,8 @@ Result<> simulate_program(const std::string& file, const SimulateOptions& option
   }
   spdlog::set_level(spdlog::level::off);  // what is wrong with other machines of the tree is not asked here
   const auto tree = options.device_tree.empty() ? gateway::default_folders().device_tree : options.device_tree;
-  auto simulation = gateway::Simulation::open({.device_tree = tree, .period_s = options.period_s}, options.machine);
+  auto simulation = gateway::Simulation::open(
+      {.device_tree = tree, .tools_folder = options.tools, .period_s = options.period_s}, options.machine);
   if (!simulation) return fail(simulation.error().message);
   Simulator simulator(**simulation, options.record_file);
   const auto report = simulator.run(std::move(*program));

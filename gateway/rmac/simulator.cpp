@@ -78,7 +78,7 @@ Result<> Simulator::submit(const Program& program, Request& request) {
     if (auto started = start_cycle(); !started) return started;
   }
   if (auto room = make_room(request); !room) return room;
-  if (is_move) unfinished_.push_back({request.move_id, request.line});
+  if (is_move) unfinished_.push_back({request.move_id, request.line, request.tool_change});
   started_ = started_ || request.timing == Timing::Start;
   unsettled_ = request.timing == Timing::Settled || (unsettled_ && request.timing == Timing::Stream);
   return call(request.method, std::move(request.params));
@@ -122,6 +122,12 @@ Result<> Simulator::run_until(const std::function<bool()>& reached) {
   double still_s = 0;
   while (!reached()) {
     simulation_.cycle();
+    if (std::exchange(tool_asked_for_, false)) {
+      gateway::ToolPort& tools = simulation_.controller().tools();
+      if (auto in = tools.confirm_tool(tools.tools_now().wanted.value_or(gateway::kNoTool)); !in) {
+        return fail_at(line_, in.error().message);
+      }
+    }
     const int line = unfinished_.empty() ? line_ : unfinished_.front().line;
     if (!failure_.empty()) return fail_at(line, failure_);
     still_s = moving_ ? 0 : still_s + simulation_.period_s();
@@ -169,10 +175,18 @@ void Simulator::take(const gateway::Event& event) {
     first_start_s_ = event.t_s;
   } else if (event.kind == Kind::MoveDone) {
     account_.move_done();
-    if (unfinished_.empty() || unfinished_.front().id != event.move_id) return;
+    if (unfinished_.empty() || unfinished_.front().tool_change || unfinished_.front().id != event.move_id) {
+      return;
+    }
     unfinished_.pop_front();
     ++report_.moves;
     report_.cycle_time_s = event.t_s - first_start_s_.value_or(event.t_s);
+  } else if (event.kind == Kind::ToolWanted) {
+    tool_asked_for_ = true;
+  } else if (event.kind == Kind::ToolChanged) {
+    if (unfinished_.empty() || !unfinished_.front().tool_change) return;
+    unfinished_.pop_front();
+    ++report_.tool_changes;
   } else if (event.kind == Kind::Fault && failure_.empty()) {
     failure_ = event.message;
   }

@@ -15,7 +15,8 @@ namespace rmac::cli {
 
 struct SimulationReport {
   std::size_t moves = 0;
-  double cycle_time_s = 0;  ///< from the first move's start to the last one's end, as `rmac run` counts it
+  std::size_t tool_changes = 0;  ///< a person takes no time here
+  double cycle_time_s = 0;       ///< from the first move's start to the last one's end, as `rmac run` counts it
   double length_mm = 0;
   std::vector<gateway::MotionAccount::Joint> joints;
   std::vector<gateway::MotionAccount::Share> limited_by;
@@ -37,6 +38,7 @@ class Simulator {
   struct Pending {
     std::int64_t id = 0;
     int line = 0;
+    bool tool_change = false;
   };
 
   [[nodiscard]] Result<> submit(const Program& program, Request& request);
@@ -64,6 +66,7 @@ class Simulator {
   std::optional<double> first_start_s_;
   std::string failure_;
   bool moving_ = false;
+  bool tool_asked_for_ = false;
   bool started_ = false;   ///< the cycle was started, so moves become done
   bool unsettled_ = true;  ///< something acted on the machine since the last move
 };

@@ -43,6 +43,7 @@ std::string state_table(const StateNote& state) {
                               {"joints", list(state.joints), "mm or deg"},
                               {"held joints", list(state.held_joints), "mm or deg"},
                               {"spindle", list(state.spindle_rpm), "rpm"},
+                              {"to do", state.tool_prompt.empty() ? "-" : state.tool_prompt, ""},
                               {"authority", state.authority.empty() ? "nobody" : state.authority, ""},
                               {"last error", state.status_minor == 0 ? "none" : std::to_string(state.status_minor),
                                state.status_minor == 0 ? "" : "StatusMinorCode"}}) +

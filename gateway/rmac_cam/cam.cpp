@@ -20,8 +20,8 @@ bool positive(double value) {
 
 }  // namespace
 
-Cam::Cam(MotionSupervisor& supervisor, ServoLink& link, std::function<Expected<>()> reset)
-    : supervisor_(supervisor), link_(link), reset_(std::move(reset)) {}
+Cam::Cam(MotionSupervisor& supervisor, ServoLink& link, ToolRack& rack, std::function<Expected<>()> reset)
+    : supervisor_(supervisor), link_(link), rack_(rack), reset_(std::move(reset)) {}
 
 void Cam::mechanism_changed(const sdk::DeviceObject* device, bool fresh) {
   device_ = device;
@@ -34,9 +34,12 @@ void Cam::mechanism_changed(const sdk::DeviceObject* device, bool fresh) {
     accel_fall_mm_s2_ = now.path_accel_fall_mm_s2;
     joint_interp_percent_ = 100;
     tolerance_mm_ = 0;
-    frames_ = {};
     spindle_max_rpm_.clear();
     supervisor_.set_override(100);
+    // The tool stays in the spindle whoever was loaded meanwhile.
+    const auto mounted = device != nullptr ? rack_.mounted() : kNoTool;
+    supervisor_.set_mounted(mounted);
+    if (mounted && *mounted != kNoTool) supervisor_.set_frames({{}, tip_on_interface(rack_.tools().at(*mounted))});
   }
   let_go_of_forces();
   // A configuration defines the mechanism: its maxima are the new bounds of ours, upwards too.
@@ -120,6 +123,9 @@ Expected<> Cam::queue_move(std::int64_t id, const Geometry& geometry) {
                    fmt::format("move {}: the feed in force, {} mm/min, is above the maximum of {} mm/min; set a lower "
                                "one with SetFeedrate",
                                id, feedrate_mm_min_, max_feedrate_mm_min_));
+  }
+  if (auto fits = check_tool(id, !in_joints && !std::holds_alternative<PathTargetGeometry>(geometry)); !fits) {
+    return fits;
   }
   return supervisor_.prepare_move()
       .and_then([&] {
@@ -231,29 +237,28 @@ double Cam::path_tolerance() const {
 
 Expected<> Cam::set_frames(const char* function, const Frames& frames) {
   return require_mechanism(function).and_then([&] { return supervisor_.require_rest(function); }).map([&] {
-    frames_ = frames;
     supervisor_.set_frames(frames);
   });
 }
 
 Expected<> Cam::set_part_frame(const Frame& frame) {
   return check_frame(frame, "SetPartFrame").and_then([&] {
-    return set_frames("SetPartFrame", {normalized(frame), frames_.tool});
+    return set_frames("SetPartFrame", {normalized(frame), frames().tool});
   });
 }
 
 Frame Cam::part_frame() const {
-  return frames_.part;
+  return frames().part;
 }
 
 Expected<> Cam::set_tool_interface_frame(const Frame& frame) {
   return check_frame(frame, "SetToolInterfaceFrame").and_then([&] {
-    return set_frames("SetToolInterfaceFrame", {frames_.part, normalized(frame)});
+    return set_frames("SetToolInterfaceFrame", {frames().part, normalized(frame)});
   });
 }
 
 Frame Cam::tool_interface_frame() const {
-  return frames_.tool;
+  return frames().tool;
 }
 
 Expected<std::vector<double>> Cam::current_position() const {

@@ -6,16 +6,17 @@
 #include <variant>
 
 #include "gateway/controller/motion_supervisor.hpp"
+#include "gateway/tools/tool_rack.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
 
 namespace rmac::gateway {
 
 /// RMAC_CAM (dissertation 4.5) on top of the motion supervisor: keeps what is in force for the next move, in the wire's
 /// units, and bounds it by the mechanism. Gateway thread only.
-class Cam final : public sdk::RmacCam {
+class Cam final : public sdk::RmacCam, public ToolPort {
  public:
   /// `reset`: brings the machine back after a fault.
-  Cam(MotionSupervisor& supervisor, ServoLink& link, std::function<Expected<>()> reset);
+  Cam(MotionSupervisor& supervisor, ServoLink& link, ToolRack& rack, std::function<Expected<>()> reset);
 
   /// Takes the maxima of a mechanism. `fresh`: another one, so everything starts anew; otherwise what is in force stays
   /// as far as the new maxima let it.
@@ -69,13 +70,29 @@ class Cam final : public sdk::RmacCam {
   [[nodiscard]] Expected<std::vector<double>> current_position() const override;
   Expected<> set_animation(bool on) override;
 
+  [[nodiscard]] Expected<std::vector<Tool>> tools() const override;
+  [[nodiscard]] ToolsNow tools_now() const override { return supervisor_.tools_now(); }
+  Expected<> set_tool(const Tool& tool) override;
+  Expected<> remove_tool(int number) override;
+  Expected<> change_tool(int number) override;
+  Expected<> confirm_tool(int number) override;
+  /// Writes down what is in the spindle now.
+  [[nodiscard]] Expected<> keep_mounted();
+
  private:
   static constexpr double kSecondsPerMinute = 60;
+  static constexpr const char* kCoolantOutput = "Coolant";
 
   [[nodiscard]] Expected<> require_mechanism(const char* function) const;
   [[nodiscard]] Expected<std::size_t> find_spindle(int spindle, const char* function) const;
   [[nodiscard]] Expected<> check_accel(const char* function, double mm_s2, double bound_mm_s2) const;
   [[nodiscard]] Expected<> set_frames(const char* function, const Frames& frames);
+  [[nodiscard]] Frames frames() const { return supervisor_.wishes().frames; }
+  [[nodiscard]] Expected<Tool> find_tool(int number, const char* function) const;
+  /// Refuses a move that the tool in the spindle, or the one that is to be there, cannot make.
+  [[nodiscard]] Expected<> check_tool(std::int64_t move_id, bool feeds) const;
+  [[nodiscard]] Expected<> check_tool_speed(double rpm) const;
+  [[nodiscard]] std::vector<QueueStep> change_by_hand(const Tool& tool) const;
   [[nodiscard]] Expected<std::size_t> find_joint(int joint, const char* function) const;
   [[nodiscard]] Expected<> set_joint_accel(std::vector<double>& accel, const char* function, int joint, double value);
   /// Joints under force control hold their positions.
@@ -104,6 +121,7 @@ class Cam final : public sdk::RmacCam {
 
   MotionSupervisor& supervisor_;
   ServoLink& link_;
+  ToolRack& rack_;
   std::function<Expected<>()> reset_;
 
   const sdk::DeviceObject* device_ = nullptr;
@@ -113,7 +131,6 @@ class Cam final : public sdk::RmacCam {
   double accel_fall_mm_s2_ = 0;
   double joint_interp_percent_ = 100;
   double tolerance_mm_ = 0;
-  Frames frames_;
   std::vector<double> spindle_max_rpm_;
   std::vector<double> joint_accel_rise_;
   std::vector<double> joint_accel_fall_;

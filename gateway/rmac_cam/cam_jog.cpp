@@ -117,9 +117,10 @@ Expected<double> Cam::straight_reach(const Vector& direction) const {
   const auto mechanism = supervisor_.mechanism();
   const ToolPose from = tool_pose_set();
   const ServoStatus now = link_.status.read();
+  const Frames frames = this->frames();
   const auto try_length = [&](double mm) {
     PathBuilder builder(mechanism->planner_model);
-    builder.restart({now.position_set.data(), now.joint_count}, frames_);
+    builder.restart({now.position_set.data(), now.joint_count}, frames);
     return builder.build(make_straight_move(shifted(from, direction, mm)));
   };
   double good = 0;

@@ -83,10 +83,11 @@ Expected<> Cam::home() {
 ToolPose Cam::tool_pose_set() const {
   // Not from a sample: frames set just now are not in it yet.
   const ServoStatus now = link_.status.read();
+  const Frames frames = this->frames();
   ToolPose at;
-  supervisor_.mechanism()->planner_model.kinematics->forward({now.position_set.data(), now.joint_count}, frames_.tool,
+  supervisor_.mechanism()->planner_model.kinematics->forward({now.position_set.data(), now.joint_count}, frames.tool,
                                                              at);
-  return apply_to_pose(inverse(frames_.part), at);
+  return apply_to_pose(inverse(frames.part), at);
 }
 
 Move Cam::make_straight_move(const ToolPose& target) const {

@@ -5,9 +5,6 @@
 #include "gateway/rmac_cam/cam.hpp"
 
 namespace rmac::gateway {
-namespace {
-constexpr const char* kCoolantOutput = "Coolant";
-}
 
 Expected<std::size_t> Cam::find_spindle(int spindle, const char* function) const {
   if (auto loaded = require_mechanism(function); !loaded) return tl::unexpected(loaded.error());
@@ -33,8 +30,7 @@ Expected<> Cam::set_spindle_rpm(int spindle, double rpm) {
   if (rpm != 0 && (is_faulted(state))) {
     return failure(MinorCode::Other, "SetSpindleRPM: the machine is faulted; remove the cause, then reset");
   }
-  supervisor_.set_spindle(*found, rpm);
-  return {};
+  return check_tool_speed(rpm).map([&] { supervisor_.set_spindle(*found, rpm); });
 }
 
 Expected<double> Cam::spindle_rpm(int spindle) const {
@@ -71,6 +67,9 @@ Expected<> Cam::set_coolant(bool on) {
     return failure(
         MinorCode::UnsupportedOperation,
         fmt::format("SetCoolant: {} has no output named {} in its DigitalIOInterface", device_->name, kCoolantOutput));
+  }
+  if (on && supervisor_.tools_now().changing) {
+    return failure(MinorCode::Other, "SetCoolant: a tool change is under way; wait for its end");
   }
   const std::uint64_t bit = std::uint64_t{1} << output->second;
   supervisor_.wish([&](ServoWishes& wishes) { wishes.outputs = on ? wishes.outputs | bit : wishes.outputs & ~bit; });

@@ -53,6 +53,7 @@ class Machine final : public MachinePort {
   sdk::RmacCam& cam() override { return controller_.cam(); }
   sdk::RmacConfig& config() override { return controller_.config(); }
   DevicePort& device() override { return device_; }
+  ToolPort& tools() override { return controller_.tools(); }
   const sdk::DeviceObject* mechanism() const override { return controller_.mechanism(); }
   CycleSample sample() const override { return controller_.sample(); }
   CycleNow cycle_now() const override { return controller_.cycle_now(); }

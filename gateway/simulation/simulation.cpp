@@ -66,6 +66,7 @@ ControllerOptions controller_options(const Simulation::Options& options, const s
   for (const fs::path& folder : folders) made.module_folders.push_back(folder.string());
   made.module_folders.push_back((options.device_tree / "modules").string());
   made.period_s = options.period_s;
+  made.tools_folder = options.tools_folder;
   made.stepped = true;
   made.queue_capacity = options.queue_capacity;
   return made;

@@ -145,8 +145,19 @@ class FakeDevice : public DevicePort {
   std::function<void()> during_load;
 };
 
+class MockTools : public ToolPort {
+ public:
+  MOCK_METHOD(Expected<std::vector<Tool>>, tools, (), (const, override));
+  MOCK_METHOD(ToolsNow, tools_now, (), (const, override));
+  MOCK_METHOD(Expected<>, set_tool, (const Tool&), (override));
+  MOCK_METHOD(Expected<>, remove_tool, (int), (override));
+  MOCK_METHOD(Expected<>, change_tool, (int), (override));
+  MOCK_METHOD(Expected<>, confirm_tool, (int), (override));
+};
+
 class FakeMachine : public MachinePort {
  public:
+  ToolPort& tools() override { return tools_mock; }
   sdk::RmacCam& cam() override { return cam_mock; }
   sdk::RmacConfig& config() override { return config_mock; }
   DevicePort& device() override { return device_fake; }
@@ -163,6 +174,7 @@ class FakeMachine : public MachinePort {
   testing::NiceMock<MockCam> cam_mock;
   testing::NiceMock<MockConfig> config_mock;
   testing::NiceMock<FakeDevice> device_fake;
+  testing::NiceMock<MockTools> tools_mock;
   std::optional<Event> stop;
   CycleSample now;
   CycleNow cycle;

@@ -122,6 +122,19 @@ const std::vector<SetterEffect>& cam_setter_effects() {
          EXPECT_NEAR(trace.back().position_set[1], -1, 1e-5) << "a tip that stands ahead needs less of the joint";
          EXPECT_NEAR(trace.back().position_set[2], 30, 1e-5) << "a tool 30 mm long";
        }},
+      {"RMAC_CAM.SetTool",
+       [](SetterBench& bench) {
+         bench.call("RMAC_CAM.SetTool", R"({"ToolNumber": 4, "Length": 30, "MaxRPM": 500,
+                                            "Frame": {"p": [0, 1, 0], "q": [1, 0, 0, 0]}})");
+         bench.call("RMAC_CAM.DoToolChange", R"({"ToolNumber": 4})");
+         bench.run_until([&] { return bench.call("RMAC_CAM.GetTools")["Prompt"] != ""; });
+         bench.call("RMAC_CAM.ConfirmToolChange", R"({"ToolNumber": 4})");
+         bench.run_until([&] { return bench.call("RMAC_CAM.GetTools")["Mounted"] == 4; });
+         const Trace trace = bench.tip_to(10, 0, 0);
+         EXPECT_NEAR(trace.back().position_set[1], -1, 1e-5);
+         EXPECT_NEAR(trace.back().position_set[2], 30, 1e-5) << "a tool 30 mm long";
+         EXPECT_THAT(bench.refusal("RMAC_CAM.SetSpindleRPM", R"({"SpindleNumber": 0, "RPM": 501})"), HasSubstr("500"));
+       }},
       {"RMAC_CAM.SetSpindleRPM",
        [](SetterBench& bench) {
          bench.call("RMAC_CAM.SetSpindleRPM", R"({"SpindleNumber": 0, "RPM": 600})");

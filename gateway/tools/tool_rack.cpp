@@ -1,0 +1,199 @@
+#include "gateway/tools/tool_rack.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "gateway/configuration/json_document.hpp"
+#include "gateway/configuration/schemas.hpp"
+#include "rmac/motion/frame.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+tl::unexpected<Error> cannot(const fs::path& path, const char* what) {
+  return failure(MinorCode::Other,
+                 fmt::format("{}: {}: {}", path.string(), what, std::generic_category().message(errno)));
+}
+
+/// As the schema has it.
+constexpr std::size_t kMostTools = 2000;
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int get() const noexcept { return number_; }
+
+ private:
+  int number_;
+};
+
+Expected<> write_durably(const fs::path& path, std::string_view text) {
+  constexpr mode_t kMode = 0644;
+  const Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode));
+  if (file.get() < 0) return cannot(path, "cannot be opened");
+  while (!text.empty()) {
+    const ssize_t written = ::write(file.get(), text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return cannot(path, "cannot be written");
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return ::fsync(file.get()) == 0 ? Expected<>() : cannot(path, "cannot be written");
+}
+
+// The schema has checked types, ranges and which keys there are.
+Expected<Tool> read_tool(const Json& entry) {
+  Tool tool;
+  tool.number = entry["ToolNumber"];
+  tool.name = entry.value("Name", "");
+  tool.length_mm = entry["Length"];
+  tool.radius_mm = entry.value("Radius", 0.0);
+  tool.max_rpm = entry.value("MaxRPM", 0.0);
+  tool.max_torque_nm = entry.value("MaxTorque", 0.0);
+  tool.needs_spindle = entry.value("NeedsSpindle", true);
+  if (entry.contains("Frame")) {
+    entry["Frame"]["p"].get_to(tool.frame.p);
+    entry["Frame"]["q"].get_to(tool.frame.q);
+  }
+  return check_frame(tool.frame, "Frame").map([&] {
+    tool.frame = normalized(tool.frame);
+    return tool;
+  });
+}
+
+Json to_json(const Tool& tool) {
+  return {{"ToolNumber", tool.number},
+          {"Name", tool.name},
+          {"Length", tool.length_mm},
+          {"Radius", tool.radius_mm},
+          {"Frame", {{"p", tool.frame.p}, {"q", tool.frame.q}}},
+          {"MaxRPM", tool.max_rpm},
+          {"MaxTorque", tool.max_torque_nm},
+          {"NeedsSpindle", tool.needs_spindle}};
+}
+
+}  // namespace
+
+Frame tip_on_interface(const Tool& tool) {
+  return compose(tool.frame, {{0, 0, -tool.length_mm}, {1, 0, 0, 0}});
+}
+
+Expected<ToolTable> read_tool_table(const fs::path& file) {
+  std::error_code code;
+  if (!fs::exists(file, code) && !code) return ToolTable{};
+  const JsonSchema schema(tools_schema_text());
+  const auto document = read_json_document(file, schema);
+  if (!document) return tl::unexpected(document.error());
+  ToolTable table;
+  const Json& mounted = (*document)["Mounted"];
+  table.mounted = mounted.is_null() ? std::nullopt : std::optional(mounted.get<int>());
+  for (std::size_t i = 0; i < (*document)["Tools"].size(); ++i) {
+    const auto wrong = [&](const std::string& what) {
+      return failure(MinorCode::InvalidParameterValue, fmt::format("{}: /Tools/{}: {}", file.string(), i, what));
+    };
+    auto tool = read_tool((*document)["Tools"][i]);
+    if (!tool) return wrong(tool.error().message);
+    const int number = tool->number;
+    if (!table.tools.emplace(number, std::move(*tool)).second) {
+      return wrong(fmt::format("ToolNumber {} stands twice; give each tool a number of its own", number));
+    }
+  }
+  if (table.mounted && *table.mounted != kNoTool && !table.tools.contains(*table.mounted)) {
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("{}: /Mounted is {}, and Tools holds no such ToolNumber; allowed are these, 0 for an "
+                               "empty spindle, and null for one that nobody knows",
+                               file.string(), *table.mounted));
+  }
+  return table;
+}
+
+Expected<> write_tool_table(const fs::path& file, const ToolTable& table) {
+  Json tools = Json::array();
+  for (const auto& [number, tool] : table.tools) tools.push_back(to_json(tool));
+  const Json document{{"Mounted", table.mounted ? Json(*table.mounted) : Json()}, {"Tools", std::move(tools)}};
+  std::error_code code;
+  fs::create_directories(file.parent_path(), code);
+  if (code) {
+    return failure(MinorCode::Other,
+                   fmt::format("{}: cannot be made: {}", file.parent_path().string(), code.message()));
+  }
+  const fs::path part = file.string() + ".part";
+  if (auto written = write_durably(part, document.dump(2) + "\n"); !written) return written;
+  if (::rename(part.c_str(), file.c_str()) != 0) return cannot(part, "cannot be renamed");
+  // The new name is on the disk only when its folder is.
+  const Descriptor folder(::open(file.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  return folder.get() >= 0 && ::fsync(folder.get()) == 0 ? Expected<>() : cannot(file, "cannot be made durable");
+}
+
+Expected<ToolTable> ToolRack::read(const std::string& mechanism) const {
+  if (folder_.empty()) return ToolTable{};
+  return read_tool_table(folder_ / (mechanism + ".json"));
+}
+
+void ToolRack::adopt(const std::string& mechanism, ToolTable table, Keeps keeps) {
+  file_ = folder_.empty() ? fs::path() : folder_ / (mechanism + ".json");
+  table_ = std::move(table);
+  kept_mounted_ = table_.mounted;
+  keeps_ = file_.empty() ? Keeps::Nothing : keeps;
+}
+
+Expected<Tool> ToolRack::find(int number, const char* function) const {
+  if (const auto found = table_.tools.find(number); found != table_.tools.end()) return found->second;
+  std::string known;
+  for (const auto& [each, tool] : table_.tools) known += fmt::format("{}{}", known.empty() ? "" : ", ", each);
+  return failure(MinorCode::InvalidParameterValue,
+                 fmt::format("{}: there is no tool {} in the tool table; {}", function, number,
+                             known.empty() ? "it is empty: add tools with RMAC_CAM.SetTool"
+                                           : "there are " + known + ", and 0 for an empty spindle"));
+}
+
+Expected<> ToolRack::keep(ToolTable table, bool written_down) {
+  if (written_down) {
+    ToolTable file = table;
+    if (keeps_ == Keeps::Tools) file.mounted = kept_mounted_;
+    if (auto written = write_tool_table(file_, file); !written) return written;
+    kept_mounted_ = file.mounted;
+  }
+  table_ = std::move(table);
+  return {};
+}
+
+Expected<> ToolRack::set(const Tool& tool) {
+  ToolTable next = table_;
+  if (next.tools.size() >= kMostTools && !next.tools.contains(tool.number)) {
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("SetTool: the table holds {} tools, as many as it can; remove one first", kMostTools));
+  }
+  next.tools[tool.number] = tool;
+  return keep(std::move(next), keeps_ != Keeps::Nothing);
+}
+
+Expected<> ToolRack::remove(int number) {
+  if (auto found = find(number, "RemoveTool"); !found) return tl::unexpected(found.error());
+  if (number == table_.mounted || number == kept_mounted_) {
+    return failure(MinorCode::Other, fmt::format("RemoveTool: tool {} is in the spindle; change it first", number));
+  }
+  ToolTable next = table_;
+  next.tools.erase(number);
+  return keep(std::move(next), keeps_ != Keeps::Nothing);
+}
+
+Expected<> ToolRack::set_mounted(std::optional<int> number) {
+  if (number == table_.mounted) return {};
+  ToolTable next = table_;
+  next.mounted = number;
+  return keep(std::move(next), keeps_ == Keeps::Everything);
+}
+
+}  // namespace rmac::gateway
