@@ -43,7 +43,6 @@ void add_tool_methods(std::vector<Method>& table) {
           .takes(integer("ToolNumber").within(0, kLargestToolNumber).noted("0: an empty spindle"))
           .gives(WireType::Boolean)
           .causes(Effect::Queues)
-          .may_be_slow()
           .does([](Call& call, std::int64_t number) {
             return call.machine.tools().change_tool(static_cast<int>(number));
           }));
@@ -82,7 +81,6 @@ void add_tool_methods(std::vector<Method>& table) {
                   .optional()
                   .noted("feed moves are refused while the spindle stands; true unless given"))
           .needs(Permission::Authority)
-          .may_be_slow()
           .extension()
           .does([](Call& call, std::int64_t number, double length, std::optional<double> radius,
                    std::optional<std::string> name, std::optional<Frame> frame, std::optional<double> max_rpm,
@@ -99,7 +97,6 @@ void add_tool_methods(std::vector<Method>& table) {
   add(method("RMAC_CAM.RemoveTool", "Takes a tool out of the mechanism's table; not the one in the spindle.")
           .takes(integer("ToolNumber").within(kToolNumbers))
           .needs(Permission::Authority)
-          .may_be_slow()
           .extension()
           .does([](Call& call, std::int64_t number) {
             return call.machine.tools().remove_tool(static_cast<int>(number));

@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "gateway/configuration/register_map_file.hpp"
 #include "gateway/controller/controller_impl.hpp"
 #include "gateway/controller/device_descriptions.hpp"
@@ -67,6 +71,31 @@ Expected<std::shared_ptr<DigitalIoInterface>> make_simulated_io(const sdk::Modul
   return std::make_shared<fieldbus::SimulatedIoInterface>();
 }
 
+/// Each parameter is a valve: its output, the input that follows it, 1 where that is on while the output is off, and
+/// the time between, in s.
+Expected<std::shared_ptr<DigitalIoInterface>> make_simulated_valves(const sdk::ModuleChoice& choice, double period_s) {
+  constexpr double kLastBit = 63, kLongest_s = 60;
+  const auto whole = [](double value, double most) {
+    return value == std::floor(value) && value >= 0 && value <= most;
+  };
+  std::vector<fieldbus::SimulatedValve> valves;
+  for (const auto& [name, values] : choice.numbers) {
+    const bool sound = values.size() == 4 && whole(values[0], kLastBit) && whole(values[1], kLastBit) &&
+                       whole(values[2], 1) && values[3] >= 0 && values[3] <= kLongest_s;
+    if (!sound) {
+      return failure(MinorCode::InvalidParameterValue,
+                     fmt::format("SimulatedValves: parameter {} must be four numbers: an output from 0 to {}, an input "
+                                 "from 0 to {}, 0 or 1 (the input is on while the output is off), and 0 to {} s",
+                                 name, kLastBit, kLastBit, kLongest_s));
+    }
+    valves.push_back({static_cast<int>(values[0]), static_cast<int>(values[1]), values[2] == 1, values[3]});
+  }
+  if (!choice.texts.empty()) {
+    return failure(MinorCode::InvalidParameterValue, "SimulatedValves takes no parameter that is a text");
+  }
+  return std::make_shared<fieldbus::SimulatedIoInterface>(valves, period_s);
+}
+
 }  // namespace
 
 void add_built_in_interfaces(BusRegistry& registry, double period_s) {
@@ -82,6 +111,9 @@ void add_built_in_interfaces(BusRegistry& registry, double period_s) {
   registry.add_io_interface("GPIOInterface", make_gpio);
   registry.add_io_interface("ModbusIOInterface", make_modbus_io);
   registry.add_io_interface("SimulatedIOInterface", make_simulated_io);
+  registry.add_io_interface("SimulatedValves", [period_s](const sdk::ModuleChoice& choice, const ModuleLoader&) {
+    return make_simulated_valves(choice, period_s);
+  });
 }
 
 }  // namespace rmac::gateway

@@ -14,7 +14,14 @@ Expected<> MotionSupervisor::add_steps(std::vector<QueueStep> steps) {
     return failure(MinorCode::Other,
                    "DoToolChange: the machine was stopped and its queue emptied meanwhile; nothing was queued");
   }
-  for (QueueStep& step : steps) behind_.push_back(std::move(step));
+  for (QueueStep& step : steps) {
+    if (const auto* path = std::get_if<QueuedPath>(&step); path != nullptr && queue_listener_) {
+      Move move;
+      move.id = path->move_id;
+      queue_listener_(move, path->segments);
+    }
+    behind_.push_back(std::move(step));
+  }
   return {};
 }
 

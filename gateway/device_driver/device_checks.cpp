@@ -96,6 +96,45 @@ std::string check_bits(const std::map<std::string, int>& bits, const char* key) 
   return {};
 }
 
+std::string check_step(const DeviceObject& device, const sdk::ToolChangeStep& step) {
+  using Kind = sdk::ToolChangeStep::Kind;
+  if (step.kind == Kind::MoveTo && step.joints.size() != device.joints.size()) {
+    return fmt::format("/Joints has {} entries; allowed are {}, one for each of the mechanism's Joints",
+                       step.joints.size(), device.joints.size());
+  }
+  for (std::size_t i = 0; step.kind == Kind::MoveTo && i < step.joints.size(); ++i) {
+    const JointLimits& joint = device.joints[i].limits;
+    if ((ends_below(joint) && step.joints[i] < joint.min) || (ends_above(joint) && step.joints[i] > joint.max)) {
+      return fmt::format("/Joints/{} is {}; allowed is what lies within the travel of {}, {} to {}", i, step.joints[i],
+                         joint.name, joint.min, joint.max);
+    }
+  }
+  const bool switches = step.kind == Kind::Switch || step.kind == Kind::Select;
+  if (switches && step.outputs.empty()) return " lacks the key \"Outputs\", which Switch and Select need";
+  for (std::size_t i = 0; switches && i < step.outputs.size(); ++i) {
+    if (device.outputs.contains(step.outputs[i])) continue;
+    return fmt::format("/Outputs/{} is \"{}\"; allowed are names of /DigitalIOInterface/Outputs", i, step.outputs[i]);
+  }
+  if (step.kind == Kind::Select && step.whose == sdk::ToolChangeStep::Whose::Both) {
+    return " lacks the key \"For\", \"Old\" or \"New\": which tool's number Select means";
+  }
+  if (step.kind == Kind::Await && !device.inputs.contains(step.input)) {
+    return fmt::format("/Input is \"{}\"; allowed are names of /DigitalIOInterface/Inputs", step.input);
+  }
+  return {};
+}
+
+std::string check_tool_change(const DeviceObject& device) {
+  if (!device.tool_changer && !device.tool_change.empty()) {
+    return "/ToolChanger is false; allowed is true beside ToolChange";
+  }
+  for (std::size_t i = 0; i < device.tool_change.size(); ++i) {
+    const std::string problem = check_step(device, device.tool_change[i]);
+    if (!problem.empty()) return fmt::format("/ToolChange/{}{}", i, problem);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string check_sense(const DeviceObject& device) {
@@ -103,7 +142,7 @@ std::string check_sense(const DeviceObject& device) {
   for (auto problem :
        {check_joints(device.joints, "Joints", names), check_joints(device.held_joints, "HeldJoints", names),
         check_counts(device), check_bus_axes(device), check_spindles(device), check_bits(device.inputs, "Inputs"),
-        check_bits(device.outputs, "Outputs")}) {
+        check_bits(device.outputs, "Outputs"), check_tool_change(device)}) {
     if (!problem.empty()) return problem;
   }
   return {};

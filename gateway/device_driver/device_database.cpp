@@ -166,6 +166,29 @@ std::vector<sdk::Spindle> spindles(const Json& list) {
   return result;
 }
 
+std::vector<sdk::ToolChangeStep> tool_change(const Json& list) {
+  using Step = sdk::ToolChangeStep;
+  constexpr double kTimeOutS = 10;
+  std::vector<Step> result;
+  for (const Json& entry : list) {
+    const std::string what = text(entry, "Do");
+    const std::string whose = entry.value("For", "");
+    Step step;
+    step.kind = what == "MoveTo"   ? Step::Kind::MoveTo
+                : what == "Switch" ? Step::Kind::Switch
+                : what == "Select" ? Step::Kind::Select
+                                   : Step::Kind::Await;
+    step.whose = whose == "Old" ? Step::Whose::Old : whose == "New" ? Step::Whose::New : Step::Whose::Both;
+    step.joints = entry.value("Joints", std::vector<double>());
+    step.outputs = entry.value("Outputs", std::vector<std::string>());
+    step.input = entry.value("Input", "");
+    step.on = entry.value("On", true);
+    step.timeout_s = number(entry, "TimeOut", kTimeOutS);
+    result.push_back(std::move(step));
+  }
+  return result;
+}
+
 sdk::DeviceObject device_object(const Json& file) {
   sdk::DeviceObject device;
   device.name = text(file, "MechanismName");
@@ -175,6 +198,7 @@ sdk::DeviceObject device_object(const Json& file) {
   device.configuration_type = text(file, "ConfigurationType");
   device.speed_capability = text(file, "SpeedCapability");
   device.tool_changer = file.value("ToolChanger", false);
+  device.tool_change = tool_change(file.value("ToolChange", Json::array()));
   device.number_of_tools = file.value("NumberOfTools", 1);
   device.length_mm = number(file["WorkingVolume"], "Length");
   device.width_mm = number(file["WorkingVolume"], "Width");

@@ -39,7 +39,7 @@ void Cam::mechanism_changed(const sdk::DeviceObject* device, bool fresh) {
     // The tool stays in the spindle whoever was loaded meanwhile.
     const auto mounted = device != nullptr ? rack_.mounted() : kNoTool;
     supervisor_.set_mounted(mounted);
-    if (mounted && *mounted != kNoTool) supervisor_.set_frames({{}, tip_on_interface(rack_.tools().at(*mounted))});
+    if (mounted && *mounted != kNoTool) supervisor_.set_frames({{}, tip_on_interface(rack_.tool(*mounted).value())});
   }
   let_go_of_forces();
   // A configuration defines the mechanism: its maxima are the new bounds of ours, upwards too.

@@ -92,7 +92,13 @@ class Cam final : public sdk::RmacCam, public ToolPort {
   /// Refuses a move that the tool in the spindle, or the one that is to be there, cannot make.
   [[nodiscard]] Expected<> check_tool(std::int64_t move_id, bool feeds) const;
   [[nodiscard]] Expected<> check_tool_speed(double rpm) const;
+  /// Refuses a change that is to be automatic and cannot be.
+  [[nodiscard]] Expected<> check_changer(const ToolsNow& now) const;
+  [[nodiscard]] BeginToolChange begin_change() const;
   [[nodiscard]] std::vector<QueueStep> change_by_hand(const Tool& tool) const;
+  /// As `ToolChange` of device.json says; leaves the builder where the steps leave the machine.
+  [[nodiscard]] Expected<std::vector<QueueStep>> change_by_changer(int old, const Tool& tool);
+  [[nodiscard]] Expected<QueueStep> changer_step(const sdk::ToolChangeStep& step, int number);
   [[nodiscard]] Expected<std::size_t> find_joint(int joint, const char* function) const;
   [[nodiscard]] Expected<> set_joint_accel(std::vector<double>& accel, const char* function, int joint, double value);
   /// Joints under force control hold their positions.

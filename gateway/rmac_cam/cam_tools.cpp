@@ -56,12 +56,56 @@ Expected<> Cam::remove_tool(int number) {
   return rack_.remove(number);
 }
 
-std::vector<QueueStep> Cam::change_by_hand(const Tool& tool) const {
+BeginToolChange Cam::begin_change() const {
   const auto coolant = device_->outputs.find(kCoolantOutput);
-  const std::uint64_t off = coolant == device_->outputs.end() ? 0 : std::uint64_t{1} << coolant->second;
+  return {coolant == device_->outputs.end() ? 0 : std::uint64_t{1} << coolant->second};
+}
+
+std::vector<QueueStep> Cam::change_by_hand(const Tool& tool) const {
   const std::string what = tool.number == kNoTool ? "take the tool out" : fmt::format("insert {}", described(tool));
-  return {BeginToolChange{off}, AskPerson{fmt::format("{}, then confirm: rmac confirm {}", what, tool.number)},
+  return {begin_change(), AskPerson{fmt::format("{}, then confirm: rmac confirm {}", what, tool.number)},
           MountTool{tool.number, tip_of(tool), described(tool)}};
+}
+
+Expected<QueueStep> Cam::changer_step(const sdk::ToolChangeStep& step, int number) {
+  using Kind = sdk::ToolChangeStep::Kind;
+  if (step.kind == Kind::MoveTo) {
+    PathBuilder& builder = supervisor_.mechanism()->builder;
+    Move move = make_joint_move(kPositioningMoveId, JointTargetGeometry{step.joints}, builder.end_joints());
+    move.joint_speed_fraction = 1;
+    return builder.build(move).map([](auto&& segments) {
+      return QueueStep(QueuedPath{kPositioningMoveId, std::move(segments)});
+    });
+  }
+  if (step.kind == Kind::Await) {
+    return AwaitInput{std::uint64_t{1} << device_->inputs.at(step.input), step.on, step.timeout_s, step.input};
+  }
+  if (step.kind == Kind::Select && number >= 1 << step.outputs.size()) {
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("DoToolChange: tool {} has no place in the changer, which knows tools up to {}", number,
+                               (1 << step.outputs.size()) - 1));
+  }
+  SwitchOutputs outputs;
+  for (std::size_t i = 0; i < step.outputs.size(); ++i) {
+    const std::uint64_t bit = std::uint64_t{1} << device_->outputs.at(step.outputs[i]);
+    outputs.mask |= bit;
+    if (step.kind == Kind::Select ? ((number >> i) & 1) != 0 : step.on) outputs.values |= bit;
+  }
+  return outputs;
+}
+
+Expected<std::vector<QueueStep>> Cam::change_by_changer(int old, const Tool& tool) {
+  using Whose = sdk::ToolChangeStep::Whose;
+  std::vector<QueueStep> steps{begin_change()};
+  for (const sdk::ToolChangeStep& step : device_->tool_change) {
+    const int number = step.whose == Whose::Old ? old : tool.number;
+    if (step.whose != Whose::Both && number == kNoTool) continue;
+    auto made = changer_step(step, number);
+    if (!made) return tl::unexpected(made.error());
+    steps.push_back(std::move(*made));
+  }
+  steps.emplace_back(MountTool{tool.number, tip_of(tool), described(tool)});
+  return steps;
 }
 
 Expected<> Cam::change_tool(int number) {
@@ -70,20 +114,45 @@ Expected<> Cam::change_tool(int number) {
   if (auto ready = supervisor_.prepare_move(); !ready) return ready;
   const ToolsNow now = supervisor_.tools_now();
   const bool there = now.last ? now.last == number : now.mounted == number;
-  std::vector<QueueStep> steps;
-  if (there) {
-    steps.emplace_back(MountTool{number, tip_of(*tool), described(*tool)});
-  } else {
-    steps = change_by_hand(*tool);
-    // Whoever ends in the midst of the change, the power included, must not be believed to have the old tool.
-    if (auto noted = rack_.set_mounted(std::nullopt); !noted) return noted;
-  }
+  if (auto able = check_changer(now); !able && !there) return able;
   PathBuilder& builder = supervisor_.mechanism()->builder;
-  const std::vector<double> joints(builder.end_joints().begin(), builder.end_joints().end());
-  builder.restart(joints, {builder.frames().part, tip_of(*tool)});
-  auto added = supervisor_.add_steps(std::move(steps));
+  const auto joints = [&] { return std::vector<double>(builder.end_joints().begin(), builder.end_joints().end()); };
+  const std::vector<double> before = joints();
+  const Frames frames_before = builder.frames();
+  const Frames frames_after{frames_before.part, tip_of(*tool)};
+  Expected<std::vector<QueueStep>> steps;
+  if (there) {
+    steps->emplace_back(MountTool{number, tip_of(*tool), described(*tool)});
+  } else {
+    steps =
+        device_->tool_changer ? change_by_changer(now.last ? *now.last : *now.mounted, *tool) : change_by_hand(*tool);
+    // Whoever ends in the midst of the change, the power included, must not be believed to have the old tool.
+    if (auto noted = steps ? rack_.set_mounted(std::nullopt) : Expected<>(); !noted)
+      steps = tl::unexpected(noted.error());
+  }
+  if (!steps) {
+    builder.restart(before, frames_before);
+    return tl::unexpected(steps.error());
+  }
+  builder.restart(joints(), frames_after);
+  auto added = supervisor_.add_steps(std::move(*steps));
   if (!added) (void)keep_mounted();
   return added;
+}
+
+Expected<> Cam::check_changer(const ToolsNow& now) const {
+  if (!device_->tool_changer) return {};
+  if (device_->tool_change.empty()) {
+    return failure(
+        MinorCode::UnsupportedOperation,
+        fmt::format("DoToolChange: device.json of {} says that it has a tool changer, and not what that does; "
+                    "give it the steps of ToolChange, or \"ToolChanger\": false for a change by hand",
+                    device_->name));
+  }
+  if (now.last || now.mounted) return {};
+  return failure(MinorCode::Other,
+                 "DoToolChange: which tool is in the spindle is not known, because a change was not completed, and the "
+                 "changer must put it back; say it with ConfirmToolChange");
 }
 
 Expected<> Cam::confirm_tool(int number) {
@@ -120,15 +189,17 @@ Expected<> Cam::check_tool(std::int64_t move_id, bool feeds) const {
                     "say it with ConfirmToolChange",
                     move_id));
   }
-  const auto tool = rack_.tools().find(now.last ? *now.last : *now.mounted);
-  if (!feeds || tool == rack_.tools().end() || !tool->second.needs_spindle || device_->spindles.empty()) return {};
+  const int number = now.last ? *now.last : *now.mounted;
+  if (!feeds || number == kNoTool || device_->spindles.empty()) return {};
+  const auto tool = rack_.tool(number);
+  if (!tool || !tool->needs_spindle) return {};
   const ServoWishes wishes = supervisor_.wishes();
   const bool turns = std::ranges::any_of(wishes.spindle_rpm, [](double rpm) { return rpm != 0; });
   if (turns && !now.last) return {};
   return failure(MinorCode::Other,
                  fmt::format("move {}: {} needs the spindle turning{}; use SetSpindleRPM{} first, or give the tool "
                              "\"NeedsSpindle\": false",
-                             move_id, described(tool->second), now.last ? ", and its change stops it" : "",
+                             move_id, described(*tool), now.last ? ", and its change stops it" : "",
                              now.last ? " when the change is done" : ""));
 }
 
@@ -141,10 +212,10 @@ Expected<> Cam::check_tool_speed(double rpm) const {
                    "SetSpindleRPM: which tool is in the spindle is not known, because a change was not completed; say "
                    "it with ConfirmToolChange");
   }
-  const auto tool = rack_.tools().find(*now.mounted);
-  if (tool == rack_.tools().end() || tool->second.max_rpm == 0 || std::abs(rpm) <= tool->second.max_rpm) return {};
+  const auto tool = rack_.tool(*now.mounted);
+  if (!tool || tool->max_rpm == 0 || std::abs(rpm) <= tool->max_rpm) return {};
   return failure(MinorCode::SpeedLimit, fmt::format("SetSpindleRPM: {} rpm is above the {} rpm that {} may turn", rpm,
-                                                    tool->second.max_rpm, described(tool->second)));
+                                                    tool->max_rpm, described(*tool)));
 }
 
 }  // namespace rmac::gateway

@@ -142,16 +142,33 @@ Expected<ToolTable> ToolRack::read(const std::string& mechanism) const {
 }
 
 void ToolRack::adopt(const std::string& mechanism, ToolTable table, Keeps keeps) {
+  const std::lock_guard lock(mutex_);
   file_ = folder_.empty() ? fs::path() : folder_ / (mechanism + ".json");
   table_ = std::move(table);
   kept_mounted_ = table_.mounted;
   keeps_ = file_.empty() ? Keeps::Nothing : keeps;
 }
 
+std::map<int, Tool> ToolRack::tools() const {
+  const std::lock_guard lock(mutex_);
+  return table_.tools;
+}
+
+std::optional<Tool> ToolRack::tool(int number) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = table_.tools.find(number);
+  return found == table_.tools.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<int> ToolRack::mounted() const {
+  const std::lock_guard lock(mutex_);
+  return table_.mounted;
+}
+
 Expected<Tool> ToolRack::find(int number, const char* function) const {
-  if (const auto found = table_.tools.find(number); found != table_.tools.end()) return found->second;
+  if (const auto found = tool(number)) return *found;
   std::string known;
-  for (const auto& [each, tool] : table_.tools) known += fmt::format("{}{}", known.empty() ? "" : ", ", each);
+  for (const auto& [each, entry] : tools()) known += fmt::format("{}{}", known.empty() ? "" : ", ", each);
   return failure(MinorCode::InvalidParameterValue,
                  fmt::format("{}: there is no tool {} in the tool table; {}", function, number,
                              known.empty() ? "it is empty: add tools with RMAC_CAM.SetTool"
@@ -170,6 +187,7 @@ Expected<> ToolRack::keep(ToolTable table, bool written_down) {
 }
 
 Expected<> ToolRack::set(const Tool& tool) {
+  const std::lock_guard lock(mutex_);
   ToolTable next = table_;
   if (next.tools.size() >= kMostTools && !next.tools.contains(tool.number)) {
     return failure(MinorCode::InvalidParameterValue,
@@ -181,6 +199,7 @@ Expected<> ToolRack::set(const Tool& tool) {
 
 Expected<> ToolRack::remove(int number) {
   if (auto found = find(number, "RemoveTool"); !found) return tl::unexpected(found.error());
+  const std::lock_guard lock(mutex_);
   if (number == table_.mounted || number == kept_mounted_) {
     return failure(MinorCode::Other, fmt::format("RemoveTool: tool {} is in the spindle; change it first", number));
   }
@@ -190,6 +209,7 @@ Expected<> ToolRack::remove(int number) {
 }
 
 Expected<> ToolRack::set_mounted(std::optional<int> number) {
+  const std::lock_guard lock(mutex_);
   if (number == table_.mounted) return {};
   ToolTable next = table_;
   next.mounted = number;

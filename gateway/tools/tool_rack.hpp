@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <mutex>
 #include <optional>
 
 #include "gateway/tools/tool.hpp"
@@ -20,7 +21,8 @@ struct ToolTable {
 /// Puts the table in place of the file in one step: whoever reads, after a crash too, finds the old one or the new one.
 [[nodiscard]] Expected<> write_tool_table(const std::filesystem::path& file, const ToolTable& table);
 
-/// Keeps the tool table of the mechanism in force in `<folder>/<mechanism>.json`. Gateway thread.
+/// Keeps the tool table of the mechanism in force in `<folder>/<mechanism>.json`. Any thread: a large move is checked
+/// against it beside the gateway thread, which writes down what is in the spindle meanwhile.
 class ToolRack {
  public:
   enum class Keeps {
@@ -36,8 +38,9 @@ class ToolRack {
   /// From now on this is the table.
   void adopt(const std::string& mechanism, ToolTable table, Keeps keeps);
 
-  [[nodiscard]] const std::map<int, Tool>& tools() const noexcept { return table_.tools; }
-  [[nodiscard]] std::optional<int> mounted() const noexcept { return table_.mounted; }
+  [[nodiscard]] std::map<int, Tool> tools() const;
+  [[nodiscard]] std::optional<Tool> tool(int number) const;
+  [[nodiscard]] std::optional<int> mounted() const;
   [[nodiscard]] Expected<Tool> find(int number, const char* function) const;
 
   // Where the file cannot be written nothing changes.
@@ -46,9 +49,11 @@ class ToolRack {
   [[nodiscard]] Expected<> set_mounted(std::optional<int> number);
 
  private:
+  /// Below the lock.
   [[nodiscard]] Expected<> keep(ToolTable table, bool written_down);
 
-  std::filesystem::path folder_;
+  mutable std::mutex mutex_;
+  const std::filesystem::path folder_;
   std::filesystem::path file_;
   Keeps keeps_ = Keeps::Nothing;
   ToolTable table_;

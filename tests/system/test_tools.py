@@ -259,6 +259,127 @@ class Change(unittest.TestCase):
         self.assertEqual([tool["ToolNumber"] for tool in kept(self.state)["Tools"]], [3, 7, 9])
 
 
+class Changer(unittest.TestCase):
+    """DMACXYZA changes tools by itself, on simulated valves."""
+
+    ADVANCE, UNCLAMP = 1 << 1, 1 << 2
+    CHANGE_POSITION = (0, 0, 45, 0)
+    MILLS = ({"ToolNumber": 3, "Length": 20}, {"ToolNumber": 5, "Length": 12.5, "NeedsSpindle": False},
+             {"ToolNumber": 8, "Length": 10})
+
+    def begin(self, edit=None):
+        """Clients of an appliance whose DMACXYZA is as `edit` makes it."""
+        self.appliance = Appliance(own_tree=edit is not None)
+        if edit is not None:
+            file = self.appliance.tree / "mill/4-axis/DMACXYZA/device.json"
+            device = json.loads(file.read_text())
+            edit(device)
+            file.write_text(json.dumps(device))
+        self.enterContext(self.appliance)
+        self.operator = self.appliance.operator("DMACXYZA")
+        for mill in self.MILLS:
+            self.operator.call("RMAC_CAM.SetTool", **mill)
+        self.watcher = self.appliance.client("watcher")
+        self.watcher.call("subscribe", topics=["events"])
+        self.operator.call("RMAC_CAM.CycleStart", Mode="AUTOMATIC")
+
+    def change(self, number):
+        self.operator.call("RMAC_CAM.DoToolChange", ToolNumber=number)
+        self.watcher.wait_note("events", lambda event: event["kind"] == "ToolChanged")
+
+    def table(self):
+        return kept(self.appliance.folder / "state", "DMACXYZA")
+
+    def pocket(self, state):
+        return state["outputs"] >> 3 & 7
+
+    def test_changer_fetches_a_tool_and_puts_it_back_between_moves(self):
+        self.begin()
+        self.operator.call("RMAC_CAM.SetFeedrate", Feedrate=1500)
+        self.operator.call("RMAC_CAM.SetSpindleRPM", SpindleNumber=0, RPM=500)
+        self.operator.call("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (10, 0, 0), 1))
+        drives = self.appliance.client("drives")
+        drives.call("subscribe", topics=["drives"], rate_hz=1000)
+        self.operator.call("RMAC_CAM.DoToolChange", ToolNumber=5)
+        # The machine will stand where the change ends, with the new tip; the next move is queued while it works.
+        self.operator.call("RMAC_CAM.MoveAlongLine", **line((0, 0, 32.5), (0, 5, 32.5), 2))
+        seen = []
+        while not seen or seen[-1] != 0 or len(seen) < 4:
+            for sample in drives.wait_note("drives")["samples"]:
+                valves = sample["outputs"] & (self.ADVANCE | self.UNCLAMP)
+                if not seen or seen[-1] != valves:
+                    seen.append(valves)
+        self.assertEqual(seen, [0, self.ADVANCE, self.ADVANCE | self.UNCLAMP, self.ADVANCE, 0])
+        self.watcher.wait_note("events", lambda event: event["kind"] == "MoveDone" and event["move_id"] == 2)
+        state = wait_for_rest(self.operator)
+        for value, wanted in zip(state["joints"], (0, 5, 45, 0), strict=True):
+            self.assertAlmostEqual(value, wanted, delta=0.02)
+        self.assertEqual((state["tool"], self.pocket(state), self.table()["Mounted"]), (5, 5, 5))
+        self.assertAlmostEqual(state["spindle_rpm"][0], 0, delta=20)
+        self.change(3)
+        state = self.operator.state()
+        self.assertEqual((state["tool"], self.pocket(state)), (3, 3))
+        self.change(0)
+        state = self.operator.state()
+        self.assertEqual((state["tool"], self.pocket(state), self.table()["Mounted"]), (0, 3, 0))
+        for value, wanted in zip(state["joints"], self.CHANGE_POSITION, strict=True):
+            self.assertAlmostEqual(value, wanted, delta=0.02)
+
+    def test_input_that_does_not_come_faults_and_the_tool_is_not_known(self):
+        self.begin(lambda device: device["DigitalIOInterface"]["Parameters"].pop("unclamp"))
+        self.operator.call("RMAC_CAM.DoToolChange", ToolNumber=5)
+        fault = self.watcher.wait_note("events", lambda event: event["kind"] == "Fault")
+        for word in ("Unclamped", "2 s", "not known", "ConfirmToolChange"):
+            self.assertIn(word, fault["message"])
+        state = self.operator.state()
+        self.assertEqual((state["state"], state["tool"], self.table()["Mounted"]), ("Faulted", None, None))
+        self.operator.call("RMAC_CAM.Reset")
+        self.assertIn("ConfirmToolChange", self.operator.refusal("RMAC_CAM.DoToolChange", ToolNumber=5).message)
+        self.operator.call("RMAC_CAM.ConfirmToolChange", ToolNumber=0)
+        self.assertEqual((self.operator.state()["tool"], self.table()["Mounted"]), (0, 0))
+
+    def test_tool_without_a_place_in_the_changer_is_refused_before_anything_moves(self):
+        self.begin()
+        self.assertIn("up to 7", self.operator.refusal("RMAC_CAM.DoToolChange", ToolNumber=8).message)
+        state = self.operator.state()
+        self.assertEqual((state["moves_in_buffer"], state["tool"], self.table()["Mounted"]), (0, 0, 0))
+        self.operator.call("RMAC_CAM.SetFeedrate", Feedrate=1500)
+        self.operator.call("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (1, 0, 0), 1))
+
+    def test_automatic_change_without_the_changers_steps_is_refused(self):
+        self.begin(lambda device: device.pop("ToolChange"))
+        refusal = self.operator.refusal("RMAC_CAM.DoToolChange", ToolNumber=5)
+        self.assertIn("ToolChange", refusal.message)
+        self.assertEqual(refusal.minor, "MACHINE_ERR_UNSUPPORTED_OPERATION")
+
+    def test_wrong_step_is_refused_with_its_key_and_what_is_allowed(self):
+        for edit, words in ((lambda steps: steps[0].update(Joints=[0, 0, 51, 0]), ("/ToolChange/0/Joints/2", "51", "50")),
+                            (lambda steps: steps[0].update(Joints=[0]), ("/ToolChange/0/Joints", "1 entries", "4")),
+                            (lambda steps: steps[1].pop("For"), ("/ToolChange/1", "For")),
+                            (lambda steps: steps[3].update(Input="Forward"), ("/ToolChange/3/Input", "Forward"))):
+            with Appliance(own_tree=True) as appliance:
+                file = appliance.tree / "mill/4-axis/DMACXYZA/device.json"
+                device = json.loads(file.read_text())
+                edit(device["ToolChange"])
+                file.write_text(json.dumps(device))
+                client = appliance.client()
+                client.call("authority.acquire")
+                message = client.refusal("Device.Load", Name="DMACXYZA").message
+                for word in words:
+                    self.assertIn(word, message)
+
+    def test_virtual_mode_waits_for_no_input(self):
+        self.begin(lambda device: device["DigitalIOInterface"].pop("Parameters"))
+        self.operator.call("RMAC_CAM.StopNow")
+        wait_for_rest(self.operator)
+        while self.operator.state()["state"] != "Idle":
+            pass
+        self.operator.call("Device.Load", Name="DMACXYZA", Virtual=True)
+        self.operator.call("RMAC_CAM.CycleStart", Mode="AUTOMATIC")
+        self.change(5)
+        self.assertEqual((self.operator.state()["tool"], self.table()["Mounted"]), (5, 0))
+
+
 class Programs(unittest.TestCase):
     """`rmac run` and `rmac simulate` with a program that changes the tool between two cuts."""
 

@@ -62,6 +62,24 @@ struct Spindle {
   double speed_timeout_s = 0;
 };
 
+/// One step of what a tool changer does, in order.
+struct ToolChangeStep {
+  enum class Kind : std::uint8_t {
+    MoveTo,  ///< all joints, together
+    Switch,  ///< outputs on or off
+    Select,  ///< the outputs' bits tell the changer the tool's number, the first output the lowest
+    Await,   ///< until an input is on or off; a fault when that takes too long
+  };
+  enum class Whose : std::uint8_t { Both, Old, New };
+  Kind kind = Kind::Switch;
+  Whose whose = Whose::Both;  ///< taken only where there is such a tool, and not an empty spindle
+  std::vector<double> joints;
+  std::vector<std::string> outputs;
+  std::string input;
+  bool on = true;
+  double timeout_s = 0;
+};
+
 /// The dissertation's device object (figure 4.8): everything about one mechanism, as typed values. The gateway fills it
 /// from `device.json`.
 struct DeviceObject {
@@ -87,6 +105,7 @@ struct DeviceObject {
   ModuleChoice digital_control_interface;
   ModuleChoice digital_io_interface;
   std::map<std::string, int> inputs, outputs;  ///< names of I/O bits, e.g. outputs["Coolant"]
+  std::vector<ToolChangeStep> tool_change;     ///< of a tool changer; the spindles stand by then
 };
 
 }  // namespace rmac::sdk
