@@ -167,6 +167,7 @@ Effect Request::effect() const {
 
 Answer Dispatcher::execute(const Request& request, SessionPort& session) {
   if (auto refusal = refusal_of(request, session)) return std::move(*refusal);
+  if (auto failed = prepare(request, session, status_)) return std::move(*failed);
   return carry_out(request, session, status_);
 }
 
@@ -188,11 +189,22 @@ std::optional<Answer> Dispatcher::refusal_of(const Request& request, const Sessi
   return std::nullopt;
 }
 
+std::optional<Answer> Dispatcher::prepare(const Request& request, SessionPort& session, MachineStatus& status) {
+  if (!request.method->preparation) return std::nullopt;
+  Answer prepared = run(request.method->preparation, request, session, status);
+  return prepared ? std::nullopt : std::optional<Answer>(std::move(prepared));
+}
+
 Answer Dispatcher::carry_out(const Request& request, SessionPort& session, MachineStatus& status) {
+  return run(request.method->handler, request, session, status);
+}
+
+Answer Dispatcher::run(const Method::Handler& handler, const Request& request, SessionPort& session,
+                       MachineStatus& status) {
   const Method& method = *request.method;
   Call call{machine_, status, session};
   try {
-    return method.handler(call, *arrange(method, request.params));
+    return handler(call, *arrange(method, request.params));
   } catch (const std::exception& error) {
     // Nothing below is meant to throw; a client gets an answer all the same, and the daemon lives on.
     return tl::unexpected<RpcError>(RpcError{rpc_code::kInternalError,

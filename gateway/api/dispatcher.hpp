@@ -37,19 +37,24 @@ struct Request {
 using Answer = tl::expected<nlohmann::json, RpcError>;
 
 /// Checks a request against the table and the caller's authority, and carries it out. Gateway thread, except that
-/// `carry_out` of what is slow runs beside it while nothing but stops is carried out there.
+/// `prepare` and `carry_out` of what is slow run beside it while nothing but stops is carried out there.
 class Dispatcher {
  public:
   explicit Dispatcher(MachinePort& machine) : machine_(machine) {}
 
   [[nodiscard]] Answer execute(const Request& request, SessionPort& session);
-  /// The two halves of `execute`: why the request is refused before anything is done, if it is; then carrying it out.
+  /// The parts of `execute`: why the request is refused before anything is done, if it is; what it needs before it has
+  /// the machine, where it fails; then carrying it out.
   [[nodiscard]] static std::optional<Answer> refusal_of(const Request& request, const SessionPort& session);
+  [[nodiscard]] std::optional<Answer> prepare(const Request& request, SessionPort& session, MachineStatus& status);
   [[nodiscard]] Answer carry_out(const Request& request, SessionPort& session, MachineStatus& status);
   [[nodiscard]] MachineStatus& status() noexcept { return status_; }
   [[nodiscard]] MachinePort& machine() noexcept { return machine_; }
 
  private:
+  [[nodiscard]] Answer run(const Method::Handler& handler, const Request& request, SessionPort& session,
+                           MachineStatus& status);
+
   MachinePort& machine_;
   MachineStatus status_;
 };

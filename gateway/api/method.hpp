@@ -55,6 +55,7 @@ struct Method {
   bool property = false;  ///< reads without `newVal`; with it writes, gives true, and needs authority
   bool slow = false;      ///< may take so long that others' stops must not wait for it
   std::string missing;    ///< what the method still lacks; empty when it works
+  Handler preparation;  ///< of a slow method: what comes before the handler and touches nothing that moves; may be none
   Handler handler;
 
   [[nodiscard]] bool supported() const noexcept { return missing.empty(); }

@@ -206,6 +206,13 @@ class MethodBuilder {
     method_.slow = true;
     return std::move(*this);
   }
+  /// Does the part of it that takes long and touches nothing that moves, before the machine is its own. An error ends
+  /// the call.
+  template <typename Function>
+  MethodBuilder prepared_by(Function function) && {
+    method_.preparation = handler_of(std::move(function), nlohmann::json());
+    return std::move(*this);
+  }
   /// With this value of its last parameter it has no effect on motion.
   MethodBuilder except(nlohmann::json value) && {
     method_.harmless = Method::Harmless{sizeof...(Ts) - 1, std::move(value)};
@@ -215,11 +222,8 @@ class MethodBuilder {
   /// The method works, by this handler.
   template <typename Function>
   Method does(Function function) && {
-    const nlohmann::json done = method_.result.type == WireType::Boolean ? nlohmann::json(true) : nlohmann::json();
-    method_.handler = [function = std::move(function), specs = method_.parameters, done](
-                          Call& call, const Method::Arguments& arguments) -> tl::expected<nlohmann::json, RpcError> {
-      return invoke(function, specs, done, call, arguments, std::index_sequence_for<Ts...>{});
-    };
+    method_.handler = handler_of(std::move(function),
+                                 method_.result.type == WireType::Boolean ? nlohmann::json(true) : nlohmann::json());
     return std::move(method_);
   }
 
@@ -233,6 +237,13 @@ class MethodBuilder {
   }
 
  private:
+  template <typename Function>
+  Method::Handler handler_of(Function function, nlohmann::json done) const {
+    return [function = std::move(function), specs = method_.parameters, done = std::move(done)](
+               Call& call, const Method::Arguments& arguments) -> tl::expected<nlohmann::json, RpcError> {
+      return invoke(function, specs, done, call, arguments, std::index_sequence_for<Ts...>{});
+    };
+  }
   template <typename Function, std::size_t... kIndex>
   static tl::expected<nlohmann::json, RpcError> invoke(const Function& function,
                                                        const std::vector<ParameterSpec>& specs,

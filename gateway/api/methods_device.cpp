@@ -40,13 +40,16 @@ Method of_spindle(const char* name, const char* meaning, const char* unit, Funct
 void add_life_cycle(const auto& add) {
   add(method("Device.Load",
              "Loads a mechanism's device driver and configures the controller by it, at standstill; on any failure the "
-             "mechanism that was loaded stays.")
+             "mechanism that was loaded stays. Modules that did not pass their verification before are verified first.")
           .takes(text("Name"), boolean("Virtual").optional().noted("true: setpoints come back as joint values and "
                                                                    "no bus is touched; false when left out"))
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
           .may_be_slow()
           .extension()
+          .prepared_by([](Call& call, const std::string& name, std::optional<bool> /*virtual_mode*/) {
+            return call.machine.device().ready_to_load(name);
+          })
           .does([](Call& call, const std::string& name, std::optional<bool> virtual_mode) {
             return call.machine.device().load(name, virtual_mode.value_or(false));
           }));
@@ -55,11 +58,30 @@ void add_life_cycle(const auto& add) {
           .needs(Permission::Authority)
           .extension()
           .does([](Call& call) { return call.machine.device().unload(); }));
-  add(method("Device.Verify", "Checks a mechanism's modules in a separate process before they go live.")
+  add(method("Device.Verify",
+             "Checks a mechanism's modules in a separate process. Gives the report: `ok`, and `modules`, of each the "
+             "checks that it `passed`, what was `not_checked`, and the `counter_example` that refuses it.")
           .takes(text("Name"))
-          .gives(WireType::Boolean)
+          .gives(WireType::Object)
+          .needs(Permission::Authority)
+          .may_be_slow()
           .extension()
-          .lacks("the verifier process comes later; Device.Load checks a mechanism when it loads it"));
+          .does([](Call& call, const std::string& name) { return call.machine.device().verify(name); }));
+  add(method(
+          "Device.GetModules",
+          "The modules that are in force, its device driver first. Gives `modules`: `role`, `module` and `build_id` of "
+          "each.")
+          .gives(WireType::Object)
+          .extension()
+          .does([](Call& call) {
+            return call.machine.device().modules().map([](const std::vector<ModuleInUse>& modules) {
+              nlohmann::json list = nlohmann::json::array();
+              for (const auto& [role, module, build_id] : modules) {
+                list.push_back({{"role", role}, {"module", module}, {"build_id", build_id}});
+              }
+              return nlohmann::json{{"modules", std::move(list)}};
+            });
+          }));
   add(method("Device.OpenDeviceDatabase", "Checks that a device database is there: that a mechanism is loaded.")
           .gives(WireType::Boolean)
           .does([](Call& call) {

@@ -8,6 +8,7 @@
 
 #include "gateway/api/rpc_error.hpp"
 #include "gateway/controller/machine_state.hpp"
+#include "gateway/controller/module_loader.hpp"
 #include "gateway/device_driver_manager/device_driver_manager.hpp"
 #include "gateway/record/flight_record.hpp"
 #include "gateway/tools/tool.hpp"
@@ -40,8 +41,14 @@ class RecordCursor {
 class DevicePort {
  public:
   virtual ~DevicePort() = default;
+  /// The verifier's report, whether the mechanism passes or not. Touches nothing that moves.
+  virtual Expected<nlohmann::json> verify(const std::string& name) = 0;
+  /// The half of `load` that takes long and touches nothing that moves.
+  virtual Expected<> ready_to_load(const std::string& name) = 0;
   virtual Expected<> load(const std::string& name, bool virtual_mode) = 0;
   virtual Expected<> unload() = 0;
+  /// Of what is loaded.
+  [[nodiscard]] virtual Expected<std::vector<ModuleInUse>> modules() const = 0;
   [[nodiscard]] virtual bool virtual_mode() const = 0;
   [[nodiscard]] virtual Expected<const sdk::DeviceObject*> database() const = 0;
   [[nodiscard]] virtual Expected<sdk::DeviceObject*> wanted() = 0;

@@ -68,6 +68,7 @@ struct DefaultFolders {
   std::filesystem::path state_folder;
   std::filesystem::path runtime_folder;  ///< holds the UNIX socket
   std::filesystem::path helpers;         ///< programs that ours start
+  std::filesystem::path verifier;        ///< the one of them that checks modules
 };
 
 /// A daemon in a build tree uses that tree; an installed one the folders of its installation, and under systemd the

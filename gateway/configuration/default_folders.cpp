@@ -27,11 +27,13 @@ DefaultFolders default_folders() {
     folders.state_folder = build_folder / "state";
     folders.runtime_folder = folders.state_folder;
     folders.helpers = build_folder / "helpers";
+    folders.verifier = build_folder / "bin" / "rmac-verify";
   } else {
     folders.device_tree = (program_folder / RMAC_DRIVERS_FROM_SBIN).lexically_normal();
     folders.state_folder = RMAC_STATE_FOLDER;
     folders.runtime_folder = "/run/rmac";
     folders.helpers = (program_folder / RMAC_HELPERS_FROM_SBIN).lexically_normal();
+    folders.verifier = folders.helpers / "rmac-verify";
   }
   folders.state_folder = from_environment("STATE_DIRECTORY", folders.state_folder);
   folders.runtime_folder = from_environment("RUNTIME_DIRECTORY", folders.runtime_folder);

@@ -30,7 +30,8 @@ ForceControl force(const sdk::Joint& joint) {
   return result;
 }
 
-Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loader, double period_s) {
+Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loader, double period_s,
+                              std::vector<ModuleInUse>& modules) {
   const std::string name = sdk::servo_law_module(joint.servo_law.name);
   auto law = loader.load<ServoLaw>({name, joint.servo_law.numbers, joint.servo_law.texts});
   if (!law) return tl::unexpected(law.error());
@@ -43,15 +44,17 @@ Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loade
                    fmt::format("joint \"{}\": {} does not accept the gains [{}]; it takes {}: {}", joint.limits.name,
                                name, fmt::join(joint.gains, ", "), law->object->gains().size(), wanted));
   }
+  modules.push_back({"servo control law of joint " + joint.limits.name, name, law->build_id});
   return ServoAxis{std::move(law->object), joint.method,    joint.max_following_error,
                    joint.max_effort,       joint.mechanics, bounds(joint, period_s),
                    std::nullopt,           force(joint)};
 }
 
-Expected<> add_axes(const sdk::DeviceObject& device, const ModuleLoader& loader, ServoLoopParts& parts) {
+Expected<> add_axes(const sdk::DeviceObject& device, const ModuleLoader& loader, ServoLoopParts& parts,
+                    std::vector<ModuleInUse>& modules) {
   for (const auto* joints : {&device.joints, &device.held_joints}) {
     for (const sdk::Joint& joint : *joints) {
-      auto axis = make_axis(joint, loader, parts.period_s);
+      auto axis = make_axis(joint, loader, parts.period_s, modules);
       if (!axis) return tl::unexpected(axis.error());
       parts.axes.push_back(std::move(*axis));
       parts.virtual_start.push_back(joint.limits.limit_type == JointLimitType::Limited
@@ -158,7 +161,8 @@ const char* type_text(JointType type) {
   return type == JointType::Rotary ? "Rotary" : type == JointType::Linear ? "Linear" : "Screw";
 }
 
-Expected<> add_geometry(const sdk::DeviceObject& device, const ModuleLoader& loader, ServoLoopParts& parts) {
+Expected<> add_geometry(const sdk::DeviceObject& device, const ModuleLoader& loader, ServoLoopParts& parts,
+                        std::vector<ModuleInUse>& modules) {
   auto kinematics = loader.load<Kinematics>(device.kinematics);
   if (!kinematics) return tl::unexpected(kinematics.error());
   if (kinematics->object->joint_count() != device.joints.size()) {
@@ -184,6 +188,8 @@ Expected<> add_geometry(const sdk::DeviceObject& device, const ModuleLoader& loa
                                device.actuator_map.name, map->object->joint_count(), map->object->actuator_count(),
                                axes, device.actuators.size()));
   }
+  modules.push_back({"kinematics", device.kinematics.name, kinematics->build_id});
+  modules.push_back({"actuator map", device.actuator_map.name, map->build_id});
   parts.kinematics = std::move(kinematics->object);
   parts.actuator_map = std::move(map->object);
   return {};
@@ -198,9 +204,10 @@ Expected<std::shared_ptr<Mechanism>> assemble(const sdk::DeviceObject& device, c
   parts.virtual_mode = options.virtual_mode;
   parts.stop_categories = options.stop_categories;
   parts.max_cycles_lost = options.max_cycles_lost;
+  std::vector<ModuleInUse> modules;
   auto ready = check_device(device)
-                   .and_then([&] { return add_geometry(device, loader, parts); })
-                   .and_then([&] { return add_axes(device, loader, parts); })
+                   .and_then([&] { return add_geometry(device, loader, parts, modules); })
+                   .and_then([&] { return add_axes(device, loader, parts, modules); })
                    .and_then([&] { return add_drives(device, loader, registry, parts); })
                    .and_then([&] { return add_sensors(device, loader, registry, parts); })
                    .and_then([&] { return add_io(device, loader, registry, parts); });
@@ -213,7 +220,8 @@ Expected<std::shared_ptr<Mechanism>> assemble(const sdk::DeviceObject& device, c
   model.max_feed_mm_s = device.max_feedrate_mm_min / 60;
   auto loop = ServoLoop::create(std::move(parts));
   if (!loop) return tl::unexpected(loop.error());
-  return std::make_shared<Mechanism>(device, std::move(model), std::shared_ptr<ServoLoop>(std::move(*loop)));
+  return std::make_shared<Mechanism>(device, std::move(model), std::shared_ptr<ServoLoop>(std::move(*loop)),
+                                     std::move(modules));
 }
 
 }  // namespace rmac::gateway

@@ -91,10 +91,8 @@ bool Controller::virtual_mode() const noexcept {
   return impl_->virtual_mode;
 }
 
-Expected<std::shared_ptr<sdk::DeviceDriver>> Controller::load_device_driver(const sdk::ModuleChoice& choice) const {
-  return impl_->loader(impl_->folder).load<sdk::DeviceDriver>(choice).map([](ModuleObject<sdk::DeviceDriver> made) {
-    return std::move(made.object);
-  });
+Expected<ModuleObject<sdk::DeviceDriver>> Controller::load_device_driver(const sdk::ModuleChoice& choice) const {
+  return impl_->loader(impl_->folder).load<sdk::DeviceDriver>(choice);
 }
 
 void Controller::discard_draft() {
@@ -110,6 +108,10 @@ bool Controller::mechanism_loaded() const noexcept {
 
 const sdk::DeviceObject* Controller::mechanism() const noexcept {
   return impl_->in_force ? &impl_->in_force->device : nullptr;
+}
+
+std::vector<ModuleInUse> Controller::modules() const {
+  return impl_->in_force ? impl_->in_force->modules : std::vector<ModuleInUse>();
 }
 
 CycleSample Controller::sample() const noexcept {

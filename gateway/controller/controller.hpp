@@ -78,7 +78,7 @@ class Controller {
   [[nodiscard]] const std::string& mechanism_folder() const noexcept;
   [[nodiscard]] bool virtual_mode() const noexcept;
   /// A module of a device driver, found as the mechanism's other modules are.
-  [[nodiscard]] Expected<std::shared_ptr<sdk::DeviceDriver>> load_device_driver(const sdk::ModuleChoice& choice) const;
+  [[nodiscard]] Expected<ModuleObject<sdk::DeviceDriver>> load_device_driver(const sdk::ModuleChoice& choice) const;
   /// Drops what was drafted and not applied: the draft continues from what is in force.
   void discard_draft();
   /// Takes the mechanism out at standstill: drives disabled, no motion until another is configured.
@@ -86,6 +86,8 @@ class Controller {
   [[nodiscard]] bool mechanism_loaded() const noexcept;
   /// The mechanism that is in force.
   [[nodiscard]] const sdk::DeviceObject* mechanism() const noexcept;
+  /// Its modules; none when nothing is in force.
+  [[nodiscard]] std::vector<ModuleInUse> modules() const;
 
   [[nodiscard]] CycleSample sample() const noexcept;
   /// The cycle's state, which follows an accepted command at once; the sample follows some cycles later.

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "gateway/controller/module_loader.hpp"
 #include "rmac/motion/plan_channel.hpp"
 #include "rmac/motion/plan_follower.hpp"
 #include "rmac/motion/planner.hpp"
@@ -14,8 +15,10 @@ namespace rmac::gateway {
 /// the gateway thread; while it is in force the servo thread uses `loop` and `follower`, and `builder` and `planner`
 /// are used under the motion supervisor's lock.
 struct Mechanism {
-  Mechanism(sdk::DeviceObject device_object, PlannerModel model, std::shared_ptr<ServoLoop> servo_loop)
+  Mechanism(sdk::DeviceObject device_object, PlannerModel model, std::shared_ptr<ServoLoop> servo_loop,
+            std::vector<ModuleInUse> modules_in_use)
       : device(std::move(device_object)),
+        modules(std::move(modules_in_use)),
         loop(std::move(servo_loop)),
         follower(channel, loop->joint_count(), model.period_s),
         builder(model),
@@ -24,12 +27,13 @@ struct Mechanism {
 
   /// The same servo loop with nothing planned: what is left of a mechanism after a fault.
   [[nodiscard]] std::shared_ptr<Mechanism> with_empty_path() const {
-    return std::make_shared<Mechanism>(device, planner_model, loop);
+    return std::make_shared<Mechanism>(device, planner_model, loop, modules);
   }
 
   [[nodiscard]] bool virtual_mode() const noexcept { return loop->parts().virtual_mode; }
 
   sdk::DeviceObject device;
+  std::vector<ModuleInUse> modules;  ///< its device driver is its host's
   std::shared_ptr<ServoLoop> loop;
   PlanChannel channel;
   PlanFollower follower;

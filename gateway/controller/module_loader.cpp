@@ -179,8 +179,12 @@ Expected<fs::path> ModuleLoader::find_file(const std::string& subfolder, const s
                              searched.empty() ? "any folder (none is configured)" : searched));
 }
 
-Expected<ModuleObject<void>> ModuleLoader::create(const sdk::ModuleChoice& choice, sdk::ModuleKind kind) const {
-  const auto file = find_file("", choice.name, ".so", fmt::format("{} module", to_string(kind)));
+Expected<fs::path> ModuleLoader::find_module(const std::string& name, sdk::ModuleKind kind) const {
+  return find_file("", name, ".so", fmt::format("{} module", to_string(kind)));
+}
+
+Expected<OpenModule> ModuleLoader::open(const std::string& name, sdk::ModuleKind kind) const {
+  const auto file = find_module(name, kind);
   if (!file) return tl::unexpected(file.error());
   auto opened = open_private_copy(*file);
   if (!opened) return tl::unexpected(opened.error());
@@ -194,8 +198,11 @@ Expected<ModuleObject<void>> ModuleLoader::create(const sdk::ModuleChoice& choic
                     file->string(), sdk::kModuleSymbol));
   }
   const sdk::ModuleDescriptor* descriptor = entry();
-  if (auto fits = check(descriptor, *file, choice.name, kind); !fits) return tl::unexpected(fits.error());
+  if (auto fits = check(descriptor, *file, name, kind); !fits) return tl::unexpected(fits.error());
+  return OpenModule{*file, std::move(*opened), descriptor};
+}
 
+Expected<ModuleObject<void>> OpenModule::create(const sdk::ModuleChoice& choice) const {
   std::array<char, 512> why{};
   const auto parameters = to_parameters(choice);
   void* object = descriptor->create(parameters, why.data(), why.size());
@@ -205,10 +212,9 @@ Expected<ModuleObject<void>> ModuleLoader::create(const sdk::ModuleChoice& choic
                    fmt::format("module {} refuses its parameters: {}", choice.name,
                                why.front() != '\0' ? why.data() : "it gives no reason"));
   }
-  const auto destroy = descriptor->destroy;
   // The deleter owns the library: the object's code must be there until the object is not.
-  std::shared_ptr<void> library = std::move(*opened);
-  std::shared_ptr<void> owner(object, [destroy, library](void* made) noexcept { destroy(made); });
+  std::shared_ptr<void> owner(object,
+                              [destroy = descriptor->destroy, kept = library](void* made) noexcept { destroy(made); });
   return ModuleObject<void>{std::move(owner), descriptor->build_id};
 }
 

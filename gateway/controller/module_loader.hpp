@@ -33,11 +33,28 @@ inline constexpr sdk::ModuleKind kKindOf<sdk::DeviceDriver> = sdk::ModuleKind::D
 
 [[nodiscard]] const char* to_string(sdk::ModuleKind kind) noexcept;
 
+/// A module of the mechanism in force, and which build of it.
+struct ModuleInUse {
+  std::string role;  ///< "kinematics", "servo control law of joint X", …
+  std::string module;
+  std::string build_id;
+};
+
 /// An object that a module made. The last owner destroys it with the module's own code, then closes the module.
 template <typename Port>
 struct ModuleObject {
   std::shared_ptr<Port> object;
   std::string build_id;
+};
+
+/// A module that is open and whose descriptor fits. Its objects keep it open.
+struct OpenModule {
+  /// One object, made with the choice's parameters; the error says why the module refuses them.
+  [[nodiscard]] Expected<ModuleObject<void>> create(const sdk::ModuleChoice& choice) const;
+
+  std::filesystem::path file;  ///< of which a copy is open
+  std::shared_ptr<void> library;
+  const sdk::ModuleDescriptor* descriptor = nullptr;
 };
 
 /// Finds modules by name and makes their objects: the loading half of the configuration system (dissertation 4.6). The
@@ -51,10 +68,16 @@ class ModuleLoader {
   /// makes its object with the choice's parameters. The error says which folders were searched, or what does not fit.
   template <typename Port>
   [[nodiscard]] Expected<ModuleObject<Port>> load(const sdk::ModuleChoice& choice) const {
-    return create(choice, kKindOf<Port>).map([](ModuleObject<void> made) {
-      return ModuleObject<Port>{std::static_pointer_cast<Port>(std::move(made.object)), std::move(made.build_id)};
-    });
+    return open(choice.name, kKindOf<Port>)
+        .and_then([&](const OpenModule& module) { return module.create(choice); })
+        .map([](ModuleObject<void> made) {
+          return ModuleObject<Port>{std::static_pointer_cast<Port>(std::move(made.object)), std::move(made.build_id)};
+        });
   }
+  /// The opening half of `load`.
+  [[nodiscard]] Expected<OpenModule> open(const std::string& name, sdk::ModuleKind kind) const;
+  /// The file of a module.
+  [[nodiscard]] Expected<std::filesystem::path> find_module(const std::string& name, sdk::ModuleKind kind) const;
 
   /// The first file `subfolder`/`name``extension` in the folders; what the mechanism brings along goes before what is
   /// shared. `what` is for the error, which says what was searched.
@@ -62,8 +85,6 @@ class ModuleLoader {
                                                           const std::string& extension, const std::string& what) const;
 
  private:
-  [[nodiscard]] Expected<ModuleObject<void>> create(const sdk::ModuleChoice& choice, sdk::ModuleKind kind) const;
-
   std::vector<std::filesystem::path> folders_;
 };
 

@@ -13,6 +13,7 @@ namespace rmac::gateway {
 struct DeviceHost::Impl {
   struct Loaded {
     std::shared_ptr<sdk::DeviceDriver> driver;
+    std::string driver_build_id;
     sdk::DeviceObject database;
     sdk::DeviceObject wanted;
   };
@@ -23,14 +24,18 @@ struct DeviceHost::Impl {
   Expected<Loaded*> require_loaded();
   Expected<> load(const std::string& what, const std::filesystem::path& device_json, bool virtual_mode);
   Expected<Loaded> configure_anew(const std::filesystem::path& device_json);
+  Expected<> require_verified(const std::filesystem::path& device_json) const;
+  /// Why `what` is not loaded, and what is instead.
+  tl::unexpected<Error> not_loaded(const std::string& what, const Error& why) const;
 
   DeviceDriverManager& manager;
   Controller& controller;
+  const Verification* verification;
   std::optional<Loaded> loaded;
 };
 
-DeviceHost::DeviceHost(DeviceDriverManager& manager, Controller& controller)
-    : impl_(new Impl{manager, controller, std::nullopt}) {}
+DeviceHost::DeviceHost(DeviceDriverManager& manager, Controller& controller, const Verification* verification)
+    : impl_(new Impl{manager, controller, verification, std::nullopt}) {}
 DeviceHost::~DeviceHost() = default;
 
 Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(const std::filesystem::path& device_json) {
@@ -40,12 +45,40 @@ Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(const std::f
   if (!driver) return tl::unexpected(driver.error());
   sdk::RmacConfig& config = controller.config();
   auto done = config.begin(*device)
-                  .and_then([&] { return (*driver)->configure_motion_planner(*device, config); })
-                  .and_then([&] { return (*driver)->configure_servo_controller(*device, config); })
-                  .and_then([&] { return (*driver)->configure_digital_control_interface(*device, config); })
+                  .and_then([&] { return driver->object->configure_motion_planner(*device, config); })
+                  .and_then([&] { return driver->object->configure_servo_controller(*device, config); })
+                  .and_then([&] { return driver->object->configure_digital_control_interface(*device, config); })
                   .and_then([&] { return config.apply(); });
   if (!done) return tl::unexpected(done.error());
-  return Loaded{std::move(*driver), *device, *device};
+  return Loaded{std::move(driver->object), driver->build_id, *device, *device};
+}
+
+Expected<> DeviceHost::Impl::require_verified(const std::filesystem::path& device_json) const {
+  return verification != nullptr ? verification->require(device_json) : Expected<>();
+}
+
+tl::unexpected<Error> DeviceHost::Impl::not_loaded(const std::string& what, const Error& why) const {
+  const sdk::DeviceObject* in_force = controller.mechanism();
+  return failure(why.code,
+                 fmt::format("{} is not loaded: {} ({})", what, why.message,
+                             in_force != nullptr ? in_force->name + " stays loaded" : "no mechanism is loaded"));
+}
+
+Expected<verifier::Report> DeviceHost::verify(const std::string& name) const {
+  const auto folder = impl_->manager.folder_of(name);
+  if (!folder) return tl::unexpected(folder.error());
+  if (impl_->verification == nullptr) {
+    return failure(MinorCode::UnsupportedOperation, "there is no verifier here; a daemon has one");
+  }
+  return impl_->verification->verify(*folder / "device.json");
+}
+
+Expected<> DeviceHost::ready_to_load(const std::string& name) const {
+  const auto folder = impl_->manager.folder_of(name);
+  if (!folder) return tl::unexpected(folder.error());
+  auto verified = impl_->require_verified(*folder / "device.json");
+  if (!verified) return impl_->not_loaded(name, verified.error());
+  return {};
 }
 
 Expected<> DeviceHost::load(const std::string& name, bool virtual_mode) {
@@ -60,6 +93,7 @@ Expected<> DeviceHost::load_file(const std::filesystem::path& device_json, bool 
 
 Expected<> DeviceHost::Impl::load(const std::string& what, const std::filesystem::path& device_json,
                                   bool virtual_mode) {
+  if (auto verified = require_verified(device_json); !verified) return not_loaded(what, verified.error());
   const std::string folder_before = controller.mechanism_folder();
   const bool virtual_before = controller.virtual_mode();
   controller.set_mechanism_folder(device_json.parent_path().string(), virtual_mode);
@@ -67,11 +101,8 @@ Expected<> DeviceHost::Impl::load(const std::string& what, const std::filesystem
   if (!made) {
     controller.set_mechanism_folder(folder_before, virtual_before);
     controller.discard_draft();
-    const sdk::DeviceObject* in_force = controller.mechanism();
-    if (in_force == nullptr) loaded.reset();
-    return failure(made.error().code,
-                   fmt::format("{} is not loaded: {} ({})", what, made.error().message,
-                               in_force != nullptr ? in_force->name + " stays loaded" : "no mechanism is loaded"));
+    if (controller.mechanism() == nullptr) loaded.reset();
+    return not_loaded(what, made.error());
   }
   loaded = std::move(*made);
   return {};
@@ -91,6 +122,14 @@ bool DeviceHost::virtual_mode() const noexcept {
 Expected<DeviceHost::Impl::Loaded*> DeviceHost::Impl::require_loaded() {
   if (loaded) return &*loaded;
   return failure(MinorCode::Other, "no device driver is loaded; load one with Device.Load");
+}
+
+Expected<std::vector<ModuleInUse>> DeviceHost::modules() const {
+  return impl_->require_loaded().map([&](Impl::Loaded* loaded) {
+    std::vector<ModuleInUse> all{{"device driver", loaded->database.device_driver, loaded->driver_build_id}};
+    for (ModuleInUse& module : impl_->controller.modules()) all.push_back(std::move(module));
+    return all;
+  });
 }
 
 Expected<const sdk::DeviceObject*> DeviceHost::database() const {

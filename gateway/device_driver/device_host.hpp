@@ -5,6 +5,7 @@
 #include <string>
 
 #include "gateway/controller/controller.hpp"
+#include "gateway/device_driver/verification.hpp"
 #include "gateway/device_driver_manager/device_driver_manager.hpp"
 #include "rmac/sdk/device_driver.hpp"
 
@@ -14,9 +15,15 @@ namespace rmac::gateway {
 /// it configure the controller. Gateway thread only.
 class DeviceHost {
  public:
-  DeviceHost(DeviceDriverManager& manager, Controller& controller);
+  /// `verification`: of what is to be loaded; null: there is none, as where nothing moves.
+  DeviceHost(DeviceDriverManager& manager, Controller& controller, const Verification* verification = nullptr);
   ~DeviceHost();
 
+  /// The verifier's report on mechanism `name`, made anew. Does not touch the controller.
+  [[nodiscard]] Expected<verifier::Report> verify(const std::string& name) const;
+  /// Whether mechanism `name` passed its verification, or passes it now: the long half of `load`, which does not touch
+  /// the controller. `load` asks again.
+  [[nodiscard]] Expected<> ready_to_load(const std::string& name) const;
   /// Loads mechanism `name`: the driver configures planner, servo controller and interfaces into a draft, which is
   /// applied at standstill. On any failure the mechanism that was loaded stays loaded, and the error says what failed.
   [[nodiscard]] Expected<> load(const std::string& name, bool virtual_mode);
@@ -26,6 +33,8 @@ class DeviceHost {
   [[nodiscard]] bool loaded() const noexcept;
   [[nodiscard]] bool virtual_mode() const noexcept;
 
+  /// The modules of the loaded mechanism, its device driver first.
+  [[nodiscard]] Expected<std::vector<ModuleInUse>> modules() const;
   /// The device object of the loaded mechanism as its database gives it.
   [[nodiscard]] Expected<const sdk::DeviceObject*> database() const;
   /// The same with what `Machine_Set…` changed since; the three functions below hand it to the driver, and apply.

@@ -28,6 +28,14 @@ struct MachineSearch {
 [[nodiscard]] Result<> load_machine(Connection& connection, const std::string& name, bool virtual_mode);
 [[nodiscard]] Result<> unload_machine(Connection& connection);
 
+/// Whether a machine is named by its files instead of by its name in the database.
+[[nodiscard]] bool is_path(const std::string& machine);
+/// Has the appliance verify a machine of its device tree, and shows the report; fails when the machine is refused.
+[[nodiscard]] Result<> verify_machine(Connection& connection, const std::string& name, bool json);
+/// The same with a device.json, or the folder that holds it, and no appliance. Modules that are not beside it are
+/// looked for among the shared ones of the device tree, which is the installation's when it is empty.
+[[nodiscard]] Result<> verify_files(const std::string& path, const std::filesystem::path& device_tree, bool json);
+
 [[nodiscard]] Result<> run_program(Connection& connection, const std::string& file, const RunOptions& options,
                                    bool json);
 

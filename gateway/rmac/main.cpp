@@ -180,8 +180,9 @@ void add_commissioning_commands(CLI::App& app, Arguments& arguments, Command& co
   follow->callback([&] { command = [&](auto& to) { return measure_following(to, circle, arguments.json); }; });
 }
 
-/// Commands that need no appliance.
-void add_offline_commands(CLI::App& app, Arguments& arguments, std::function<Result<>()>& command) {
+/// Commands that need no appliance, or not always.
+void add_offline_commands(CLI::App& app, Arguments& arguments, std::function<Result<>()>& command,
+                          Command& online_command) {
   auto* simulate = app.add_subcommand(
       "simulate", "only plan a program, faster than real time: cycle time, limits; needs no appliance");
   simulate->add_option("FILE", arguments.file, "the .rmac file, - for standard input")->required();
@@ -199,6 +200,23 @@ void add_offline_commands(CLI::App& app, Arguments& arguments, std::function<Res
       ->capture_default_str();
   simulate->callback(
       [&] { command = [&] { return simulate_program(arguments.file, arguments.simulate, arguments.json); }; });
+
+  auto* verify = app.add_subcommand(
+      "verify", "check a machine's modules, each in a process of its own; exit code 1 when it is refused");
+  verify
+      ->add_option("NAME", arguments.name,
+                   "as `rmac machines` lists it; or the path of its folder or its device.json, which needs no "
+                   "appliance")
+      ->required();
+  verify->add_option("--device-tree", arguments.folder,
+                     "with a path: the tree whose shared modules it may name; the installation's unless given");
+  verify->callback([&] {
+    if (is_path(arguments.name)) {
+      command = [&] { return verify_files(arguments.name, arguments.folder, arguments.json); };
+    } else {
+      online_command = [&](auto& to) { return verify_machine(to, arguments.name, arguments.json); };
+    }
+  });
 
   auto* bus = app.add_subcommand("bus", "commission a fieldbus");
   bus->require_subcommand(1);
@@ -253,7 +271,7 @@ int run(int count, char** words) {
   add_trace_commands(app, arguments, command);
   add_commissioning_commands(app, arguments, command);
   std::function<Result<>()> offline_command;
-  add_offline_commands(app, arguments, offline_command);
+  add_offline_commands(app, arguments, offline_command, command);
   try {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {

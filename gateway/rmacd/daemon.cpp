@@ -36,6 +36,12 @@ ControllerOptions controller_options(const Configuration& configuration) {
   return options;
 }
 
+Verification::Options verification_options(const Configuration& configuration) {
+  return {.program = default_folders().verifier,
+          .verdicts = configuration.state_folder / "verified",
+          .module_folders = configuration.module_folders};
+}
+
 ServerOptions server_options(const Configuration& configuration) {
   ServerOptions options;
   options.address = configuration.address;
@@ -62,7 +68,8 @@ class Daemon {
   Daemon(std::unique_ptr<DeviceDriverManager> manager, const Configuration& configuration, ServerOptions options)
       : manager_(std::move(manager)),
         controller_(controller_options(configuration)),
-        host_(*manager_, controller_),
+        verification_(verification_options(configuration)),
+        host_(*manager_, controller_, &verification_),
         machine_(controller_, host_, *manager_),
         server_(
             io_, machine_, [this] { return std::make_unique<Records>(*manager_); }, std::move(options)),
@@ -80,6 +87,7 @@ class Daemon {
   asio::io_context io_;
   std::unique_ptr<DeviceDriverManager> manager_;
   Controller controller_;
+  Verification verification_;
   DeviceHost host_;
   Machine machine_;
   Server server_;
@@ -170,6 +178,7 @@ void Daemon::end(const char* why) {
   spdlog::info("{}: stopping the machine and ending", why);
   sd_notify(0, "STOPPING=1");
   phase_ = Phase::Stopping;
+  verification_.cancel();
   end_by_ = std::chrono::steady_clock::now() + kStopBound;
   server_.retire();
 }

@@ -32,8 +32,13 @@ class Records final : public RecordCursor {
 class HostedDevice final : public DevicePort {
  public:
   explicit HostedDevice(DeviceHost& host) : host_(host) {}
+  Expected<nlohmann::json> verify(const std::string& name) override {
+    return host_.verify(name).map([](const verifier::Report& report) { return verifier::to_json(report); });
+  }
+  Expected<> ready_to_load(const std::string& name) override { return host_.ready_to_load(name); }
   Expected<> load(const std::string& name, bool virtual_mode) override { return host_.load(name, virtual_mode); }
   Expected<> unload() override { return host_.unload(); }
+  Expected<std::vector<ModuleInUse>> modules() const override { return host_.modules(); }
   bool virtual_mode() const override { return host_.virtual_mode(); }
   Expected<const sdk::DeviceObject*> database() const override { return host_.database(); }
   Expected<sdk::DeviceObject*> wanted() override { return host_.wanted(); }

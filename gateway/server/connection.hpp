@@ -66,7 +66,8 @@ class Connection final : public SessionPort, public std::enable_shared_from_this
  private:
   /// The requests of one line.
   struct Work {
-    bool away = false;  ///< on the thread beside the gateway's: being read, or its next request carried out
+    bool away = false;      ///< on the thread beside the gateway's: being read, or its next request carried out
+    bool prepared = false;  ///< its next request is, for being carried out
     bool batch = false;
     std::size_t answer_bytes = 0;  ///< of a batch's answers so far
     bool refuse_moves = false;     ///< a move before these found the queue full: taking a later one would leave a gap

@@ -165,8 +165,19 @@ bool Connection::run(const std::shared_ptr<Work>& waiting) {
 }
 
 void Connection::carry_out_aside(const std::shared_ptr<Work>& work) {
+  const Request& request = work->requests[work->next];
   work->away = true;
-  server_.carry_out_aside(work->requests[work->next], *this, [self = shared_from_this(), work](Answer answer) {
+  if (request.method->preparation && !work->prepared) {
+    // Its turn comes again after it: a stop may have overtaken it by then, or the lease be gone.
+    server_.prepare_aside(request, *this, [self = shared_from_this(), work](std::optional<Answer> failed) {
+      work->away = false;
+      work->prepared = !failed;
+      return !failed || self->settle(*work, std::move(*failed));
+    });
+    return;
+  }
+  work->prepared = false;
+  server_.carry_out_aside(request, *this, [self = shared_from_this(), work](Answer answer) {
     work->away = false;
     return self->settle(*work, std::move(answer));
   });
@@ -182,6 +193,7 @@ bool Connection::settle(Work& work, Answer answer) {
     refuse_pending_moves();
   }
   work.answers[work.next++] = std::move(answer);
+  work.prepared = false;
   return true;
 }
 

@@ -150,23 +150,40 @@ void Server::pump() {
   for (const auto& connection : open) connection->pump();
 }
 
-void Server::carry_out_aside(const Request& request, Connection& connection, std::function<bool(Answer)> done) {
+void Server::take_machine_aside(const Connection& connection, std::function<void(MachineStatus&)> work,
+                                std::function<bool()> done) {
   served_aside_ = connection.id();
   machine_away_ = true;
-  mechanism_changes_ = request.method->slow && request.effect() == Effect::Starts;
-  struct Outcome {
-    MachineStatus status;
-    Answer answer;
-  };
-  auto outcome = std::make_shared<Outcome>();
-  run_aside([this, &request, &connection,
-             outcome] { outcome->answer = dispatcher_.carry_out(request, connection, outcome->status); },
-            [this, outcome, done = std::move(done)] {
+  auto status = std::make_shared<MachineStatus>();
+  run_aside([work = std::move(work), status] { work(*status); },
+            [this, status, done = std::move(done)] {
               machine_away_ = mechanism_changes_ = false;
-              if (outcome->status.major != 0) dispatcher_.status().fail(static_cast<MinorCode>(outcome->status.minor));
+              if (status->major != 0) dispatcher_.status().fail(static_cast<MinorCode>(status->minor));
               // A move that must wait for room is tried again at the next tick, not at once.
-              if (done(std::move(outcome->answer))) pump();
+              if (done()) pump();
             });
+}
+
+void Server::prepare_aside(const Request& request, Connection& connection,
+                           std::function<bool(std::optional<Answer>)> done) {
+  auto failed = std::make_shared<std::optional<Answer>>();
+  take_machine_aside(
+      connection,
+      [this, &request, &connection, failed](MachineStatus& status) {
+        *failed = dispatcher_.prepare(request, connection, status);
+      },
+      [failed, done = std::move(done)] { return done(std::move(*failed)); });
+}
+
+void Server::carry_out_aside(const Request& request, Connection& connection, std::function<bool(Answer)> done) {
+  mechanism_changes_ = request.method->slow && request.effect() == Effect::Starts;
+  auto answer = std::make_shared<Answer>();
+  take_machine_aside(
+      connection,
+      [this, &request, &connection, answer](MachineStatus& status) {
+        *answer = dispatcher_.carry_out(request, connection, status);
+      },
+      [answer, done = std::move(done)] { return done(std::move(*answer)); });
 }
 
 void Server::on_sample(const CycleSample& sample) {

@@ -94,6 +94,8 @@ class Server {
   /// Carries a slow request out on the thread beside the gateway's. Until it is done the gateway carries out nothing
   /// but stops, so that the machine still has one user besides them. `done` tells whether the answer is final.
   void carry_out_aside(const Request& request, Connection& connection, std::function<bool(Answer)> done);
+  /// Likewise what it needs before it has the machine; `done` is told where that failed. Samples go on meanwhile.
+  void prepare_aside(const Request& request, Connection& connection, std::function<bool(std::optional<Answer>)> done);
   [[nodiscard]] bool machine_is_away() const noexcept { return machine_away_; }
   /// Whether the request that has the machine may change its mechanism: then the controller may not be dispatched, nor
   /// the mechanism be read.
@@ -102,6 +104,8 @@ class Server {
   void forget(const Connection& connection);
 
  private:
+  void take_machine_aside(const Connection& connection, std::function<void(MachineStatus&)> work,
+                          std::function<bool()> done);
   template <typename Acceptor>
   void accept(Acceptor& acceptor, const char* what);
   [[nodiscard]] Expected<> listen_tcp();

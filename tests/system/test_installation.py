@@ -31,6 +31,7 @@ class Installation(unittest.TestCase):
     def test_programs_drivers_and_units_are_where_debian_expects_them(self):
         self.one("usr/sbin/rmacd")
         self.one("usr/bin/rmac")
+        self.one("usr/libexec/rmac/rmac-verify")
         self.one("usr/bin/rmac-vdrive")
         self.one("usr/bin/rmac-vmodbus")
         self.one("usr/share/rmac/rmac-vdrive.eds")

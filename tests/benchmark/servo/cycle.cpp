@@ -2,13 +2,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "gateway/verifier/trap.hpp"
 #include "rmac/modules/feedforward_feedback_servo_law.hpp"
 #include "rmac/modules/proportional_transmissions.hpp"
 #include "rmac/modules/transmission_map.hpp"
 #include "rmac/motion/frame.hpp"
 #include "rmac/motion/servo_loop.hpp"
 #include "rows.hpp"
-#include "unit/real_time/trap.hpp"
 
 namespace rmac::bench {
 namespace {
@@ -85,7 +85,7 @@ class InstantBus final : public DigitalControlInterface {
 
 struct Cycles {
   std::vector<double> microseconds;
-  real_time_test::TrapCounts trapped;
+  verifier::TrapCounts trapped;
   bool followed = false;
 };
 
@@ -114,8 +114,8 @@ Cycles run_cycles(std::size_t joints, int count) {
   Cycles result;
   result.followed = true;
   result.microseconds.reserve(static_cast<std::size_t>(count));
-  (void)real_time_test::prepare_trap();
-  (void)real_time_test::take_trap_counts();
+  (void)verifier::prepare_trap();
+  (void)verifier::take_trap_counts();
   for (int i = 0; i < count; ++i) {
     for (std::size_t j = 0; j < joints; ++j) {
       // A swing of 20 degrees a joint; the drives stand where they were to be a cycle ago.
@@ -129,15 +129,15 @@ Cycles run_cycles(std::size_t joints, int count) {
     }
     // Every tenth cycle under the trap; its arming is no part of the time.
     const bool trapped = i % 10 == 0;
-    if (trapped) real_time_test::arm_trap();
+    if (trapped) verifier::arm_trap();
     const auto began = std::chrono::steady_clock::now();
     loop->cycle(command, report);
     const auto ended = std::chrono::steady_clock::now();
-    if (trapped) real_time_test::disarm_trap();
+    if (trapped) verifier::disarm_trap();
     result.followed = result.followed && report.follows;
     result.microseconds.push_back(std::chrono::duration<double, std::micro>(ended - began).count());
   }
-  result.trapped = real_time_test::take_trap_counts();
+  result.trapped = verifier::take_trap_counts();
   return result;
 }
 

@@ -113,12 +113,23 @@ inline sdk::DeviceObject two_joint_device() {
 
 class FakeDevice : public DevicePort {
  public:
+  Expected<nlohmann::json> verify(const std::string& name) override {
+    return nlohmann::json{{"mechanism", name}, {"ok", true}};
+  }
+  Expected<> ready_to_load(const std::string& /*name*/) override {
+    if (during_preparation) during_preparation();
+    if (!verification_refusal.empty()) return failure(MinorCode::InvalidParameterValue, verification_refusal);
+    return {};
+  }
   Expected<> load(const std::string& name, bool virtual_mode) override {
     if (during_load) during_load();
     if (name != "Fake") return failure(MinorCode::InvalidParameterValue, "no mechanism " + name + "; there is Fake");
     device = two_joint_device();
     is_virtual = virtual_mode;
     return {};
+  }
+  Expected<std::vector<ModuleInUse>> modules() const override {
+    return std::vector<ModuleInUse>{{"kinematics", "FakeKinematics", "one"}};
   }
   Expected<> unload() override {
     if (!unload_refusal.empty()) return failure(MinorCode::Other, unload_refusal);
@@ -141,8 +152,9 @@ class FakeDevice : public DevicePort {
 
   std::optional<sdk::DeviceObject> device = two_joint_device();
   bool is_virtual = false;
-  std::string unload_refusal;  ///< why it cannot be taken out; empty: it can
-  std::function<void()> during_load;
+  std::string unload_refusal;        ///< why it cannot be taken out; empty: it can
+  std::string verification_refusal;  ///< empty: what is loaded passes
+  std::function<void()> during_preparation, during_load;
 };
 
 class MockTools : public ToolPort {

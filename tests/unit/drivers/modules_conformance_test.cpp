@@ -1,27 +1,31 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <cmath>
 
-#include "conformance/actuator_map_conformance.hpp"
-#include "conformance/kinematics_conformance.hpp"
+#include "conformance/holds.hpp"
 #include "conformance/loaded_module.hpp"
+#include "gateway/verifier/actuator_map_check.hpp"
+#include "gateway/verifier/kinematics_check.hpp"
 
 namespace {
 
 using namespace rmac;
+using conformance::holds;
 using conformance::LoadedModule;
 using testing::HasSubstr;
 
 constexpr const char* kDmacxyz = "mill/3-axis/DMACXYZ";
 constexpr const char* kDmacxy = "mill/2-axis/DMACXY";
 
+constexpr int kSamples = 2000;
 const std::vector<Frame> kTools{{}, {{1, -2, 80}, {1, 0, 0, 0}}};
 
 TEST(DmacxyzKinematics, Conforms) {
   LoadedModule module(kDmacxyz, "DMACXYZKinematics");
   const auto kinematics = module.create<Kinematics>();
   ASSERT_TRUE(kinematics) << module.error();
-  conformance::KinematicsConformance(*kinematics, {{-50, 50}, {-50, 50}, {-50, 50}}, kTools).check();
+  EXPECT_TRUE(holds(verifier::check_kinematics(*kinematics, {{{-50, 50}, {-50, 50}, {-50, 50}}, kTools, kSamples})));
 }
 
 TEST(DmacxyzKinematics, CannotReachATiltedTool) {
@@ -36,7 +40,7 @@ TEST(DmacxyKinematics, Conforms) {
   LoadedModule module(kDmacxy, "DMACXYKinematics");
   const auto kinematics = module.create<Kinematics>();
   ASSERT_TRUE(kinematics) << module.error();
-  conformance::KinematicsConformance(*kinematics, {{-50, 50}, {-50, 50}}, kTools).check();
+  EXPECT_TRUE(holds(verifier::check_kinematics(*kinematics, {{{-50, 50}, {-50, 50}}, kTools, kSamples})));
 }
 
 TEST(DmacxyKinematics, ReachesItsPlaneOnly) {
@@ -72,8 +76,8 @@ TEST_P(MachineActMap, Conforms) {
   ASSERT_TRUE(map) << module.error();
   ASSERT_EQ(map->joint_count(), 3U);
   ASSERT_EQ(map->actuator_count(), 3U);
-  const conformance::MappedJoint joint{-50, 50, 1e-3};
-  conformance::ActuatorMapConformance(*map, {joint, joint, joint}).check();
+  const verifier::MappedJoint joint{-50, 50, 1e-3};
+  EXPECT_TRUE(holds(verifier::check_actuator_map(*map, {{joint, joint, joint}, 3, kSamples})));
 }
 
 TEST_P(MachineActMap, TurnsTheScrewOncePerPitch) {

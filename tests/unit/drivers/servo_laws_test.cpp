@@ -2,8 +2,9 @@
 
 #include <array>
 
+#include "conformance/holds.hpp"
 #include "conformance/loaded_module.hpp"
-#include "conformance/servo_law_conformance.hpp"
+#include "gateway/verifier/servo_law_check.hpp"
 #include "rmac/modules/fuzzy_surface.hpp"
 #include "rmac/sdk/servo_law_names.hpp"
 
@@ -43,7 +44,16 @@ TEST_P(ServoLaws, Conforms) {
   LoadedModule module(GetParam().folder, GetParam().module);
   const auto law = module.create<ServoLaw>();
   ASSERT_TRUE(law) << module.error();
-  conformance::ServoLawConformance(*law, GetParam().gains, GetParam().other_gains).check();
+  EXPECT_TRUE(conformance::holds(verifier::check_servo_law(*law, {GetParam().gains, GetParam().other_gains})));
+}
+
+TEST_P(ServoLaws, RefuseAGainBelowZero) {
+  LoadedModule module(GetParam().folder, GetParam().module);
+  const auto law = module.create<ServoLaw>();
+  ASSERT_TRUE(law) << module.error();
+  std::vector<double> gains = GetParam().gains;
+  gains.front() = -1;
+  EXPECT_FALSE(law->set_gains(gains));
 }
 
 TEST_P(ServoLaws, ConformsWithFilterLeadAndLoad) {
@@ -55,7 +65,7 @@ TEST_P(ServoLaws, ConformsWithFilterLeadAndLoad) {
                                                   {"friction_speed", {&friction_speed, 1}, nullptr}}};
   const auto law = module.create<ServoLaw>(parameters);
   ASSERT_TRUE(law) << module.error();
-  conformance::ServoLawConformance(*law, GetParam().gains, GetParam().other_gains).check();
+  EXPECT_TRUE(conformance::holds(verifier::check_servo_law(*law, {GetParam().gains, GetParam().other_gains})));
 }
 
 TEST(ServoLawNames, EachConstantOfAppendixIVIsAModule) {

@@ -4,24 +4,24 @@
 #include <memory>
 #include <mutex>
 
+#include "gateway/verifier/trap.hpp"
 #include "test_machine.hpp"
-#include "trap.hpp"
 #include "unit/device_driver_manager/fixtures.hpp"
 
 namespace rmac::gateway {
 namespace {
 
-using real_time_test::TrapCounts;
+using verifier::TrapCounts;
 
 /// The machine's clock, with the trap set from the moment a cycle is due until the thread asks for the next one.
 class TrappingClock final : public Clock {
  public:
   std::uint64_t wait_for_cycle() noexcept override {
-    if (cycles_ == 0) catches_system_calls_ = real_time_test::prepare_trap();
-    real_time_test::disarm_trap();
+    if (cycles_ == 0) catches_system_calls_ = verifier::prepare_trap();
+    verifier::disarm_trap();
     const std::uint64_t missed = clock_->wait_for_cycle();
     cycles_ = cycles_ + 1;
-    real_time_test::arm_trap();
+    verifier::arm_trap();
     return missed;
   }
   void restart() noexcept override { clock_->restart(); }
@@ -37,8 +37,8 @@ class TrappingClock final : public Clock {
 
 TEST(Trap, CatchesWhatAnArmedThreadDoesAndNothingElse) {
   std::thread([] {
-    const bool system_calls = real_time_test::prepare_trap();
-    (void)real_time_test::take_trap_counts();
+    const bool system_calls = verifier::prepare_trap();
+    (void)verifier::take_trap_counts();
     std::mutex mutex;
     const auto misbehave = [&mutex] {
       delete new volatile int(1);
@@ -46,12 +46,12 @@ TEST(Trap, CatchesWhatAnArmedThreadDoesAndNothingElse) {
       (void)::getppid();
     };
     misbehave();
-    TrapCounts counts = real_time_test::take_trap_counts();
+    TrapCounts counts = verifier::take_trap_counts();
     EXPECT_EQ(counts.allocations + counts.locks + counts.system_calls, 0U);
-    real_time_test::arm_trap();
+    verifier::arm_trap();
     misbehave();
-    real_time_test::disarm_trap();
-    counts = real_time_test::take_trap_counts();
+    verifier::disarm_trap();
+    counts = verifier::take_trap_counts();
     EXPECT_EQ(counts.allocations, 2U);
     EXPECT_EQ(counts.locks, 1U);
     EXPECT_EQ(counts.system_calls, system_calls ? 1U : 0U);
@@ -93,7 +93,7 @@ class ServoThreadUnderTrap : public testing::Test {
     ASSERT_TRUE(machine_.run_until(at_rest));
   }
   void expect_clean(const char* after) {
-    const TrapCounts counts = real_time_test::take_trap_counts();
+    const TrapCounts counts = verifier::take_trap_counts();
     EXPECT_EQ(counts.allocations, 0U) << after;
     EXPECT_EQ(counts.locks, 0U) << after;
     EXPECT_EQ(counts.system_calls, 0U) << after;
@@ -106,7 +106,7 @@ class ServoThreadUnderTrap : public testing::Test {
 };
 
 TEST_F(ServoThreadUnderTrap, NeitherAllocatesNorLocksNorCallsTheSystem) {
-  (void)real_time_test::take_trap_counts();
+  (void)verifier::take_trap_counts();
   ASSERT_TRUE(machine_.load_at_zero(TestMachine::mill()));
   expect_clean("loading and homing");
 

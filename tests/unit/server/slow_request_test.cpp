@@ -1,6 +1,6 @@
 // What takes long does not keep others from stopping the machine. Told by order, not by time: the slow request ends
 // only after the stop was answered.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <atomic>
 
@@ -78,6 +78,43 @@ TEST(SlowRequest, LetsAnotherClientStopWhileTheMechanismChanges) {
   EXPECT_EQ(holder.answer(10)["result"], true);
   EXPECT_EQ(panel.answer(20)["result"]["mechanism"], "Fake") << "what reads the mechanism waits for it";
   EXPECT_FALSE(bench.on_gateway([](Server& server, FakeMachine&) { return server.mechanism_changes(); }));
+}
+
+TEST(SlowRequest, IsRefusedWhenAStopCameWhileItWasPrepared) {
+  Slow slow;
+  ServerBench bench;
+  bool loaded = false;
+  bench.on_gateway([&](Server&, FakeMachine& machine) {
+    EXPECT_CALL(machine.cam_mock, stop_now()).WillRepeatedly(Return(Expected<>{}));
+    machine.device_fake.during_preparation = [&] { slow.run(); };
+    machine.device_fake.during_load = [&] { loaded = true; };
+  });
+  Client holder(bench.port());
+  Client panel(bench.port());
+  EXPECT_TRUE(holder.call("authority.acquire").contains("result"));
+  holder.send(line_of(10, "Device.Load", R"(["Fake"])"));
+  slow.begun.get_future().wait();
+  EXPECT_FALSE(bench.on_gateway([](Server& server, FakeMachine&) { return server.mechanism_changes(); }))
+      << "samples go on while modules are verified";
+  EXPECT_EQ(panel.call("RMAC_CAM.StopNow")["result"], true);
+  slow.end.set_value();
+  EXPECT_THAT(holder.answer(10)["error"]["message"].get<std::string>(), testing::HasSubstr("overtaken by a stop"));
+  EXPECT_FALSE(loaded);
+}
+
+TEST(SlowRequest, EndsWhereItsPreparationFails) {
+  ServerBench bench;
+  bool loaded = false;
+  bench.on_gateway([&](Server&, FakeMachine& machine) {
+    machine.device_fake.verification_refusal = "its module crashes";
+    machine.device_fake.during_load = [&] { loaded = true; };
+  });
+  Client holder(bench.port());
+  EXPECT_TRUE(holder.call("authority.acquire").contains("result"));
+  EXPECT_EQ(holder.call("Device.Load", R"(["Fake"])")["error"]["message"], "its module crashes");
+  EXPECT_FALSE(loaded);
+  bench.on_gateway([&](Server&, FakeMachine& machine) { machine.device_fake.verification_refusal.clear(); });
+  EXPECT_EQ(holder.call("Device.Load", R"(["Fake"])")["result"], true);
 }
 
 TEST(SlowRequest, LetsOthersInBeforeTheSameClientsNext) {

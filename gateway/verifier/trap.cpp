@@ -1,7 +1,8 @@
-#include "trap.hpp"
+#include "gateway/verifier/trap.hpp"
 
 #include <dlfcn.h>
 #include <execinfo.h>
+#include <malloc.h>
 #include <pthread.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -13,7 +14,7 @@
 #include <cerrno>
 #include <cstdlib>
 
-namespace rmac::real_time_test {
+namespace rmac::verifier {
 namespace {
 
 thread_local bool armed = false;
@@ -87,6 +88,12 @@ void disarm_trap() noexcept {
   armed = false;
 }
 
+bool trap_caught() noexcept {
+  return allocations.load(std::memory_order_relaxed) + locks.load(std::memory_order_relaxed) +
+             system_calls.load(std::memory_order_relaxed) >
+         0;
+}
+
 TrapCounts take_trap_counts() {
   TrapCounts counts{allocations.exchange(0), locks.exchange(0), system_calls.exchange(0), {}};
   const int depth = first_depth.exchange(0);
@@ -96,7 +103,12 @@ TrapCounts take_trap_counts() {
   return counts;
 }
 
-}  // namespace rmac::real_time_test
+std::size_t heap_in_use() noexcept {
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+}  // namespace rmac::verifier
 
 // The C library's own names, so that whatever this binary and its modules call comes by here.
 extern "C" {
@@ -111,19 +123,19 @@ void __libc_free(void*);
 #pragma GCC diagnostic ignored "-Wmissing-attributes"
 
 void* malloc(std::size_t size) noexcept {
-  rmac::real_time_test::note(rmac::real_time_test::allocations);
+  rmac::verifier::note(rmac::verifier::allocations);
   return __libc_malloc(size);
 }
 void* calloc(std::size_t count, std::size_t size) noexcept {
-  rmac::real_time_test::note(rmac::real_time_test::allocations);
+  rmac::verifier::note(rmac::verifier::allocations);
   return __libc_calloc(count, size);
 }
 void* realloc(void* block, std::size_t size) noexcept {
-  rmac::real_time_test::note(rmac::real_time_test::allocations);
+  rmac::verifier::note(rmac::verifier::allocations);
   return __libc_realloc(block, size);
 }
 void* memalign(std::size_t alignment, std::size_t size) noexcept {
-  rmac::real_time_test::note(rmac::real_time_test::allocations);
+  rmac::verifier::note(rmac::verifier::allocations);
   return __libc_memalign(alignment, size);
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
@@ -134,38 +146,38 @@ int posix_memalign(void** block, std::size_t alignment, std::size_t size) noexce
   return *block == nullptr ? ENOMEM : 0;
 }
 void free(void* block) noexcept {
-  if (block != nullptr) rmac::real_time_test::note(rmac::real_time_test::allocations);
+  if (block != nullptr) rmac::verifier::note(rmac::verifier::allocations);
   __libc_free(block);
 }
 
 int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
-  static auto* const real = rmac::real_time_test::next<int(pthread_mutex_t*)>("pthread_mutex_lock");
-  rmac::real_time_test::note(rmac::real_time_test::locks);
+  static auto* const real = rmac::verifier::next<int(pthread_mutex_t*)>("pthread_mutex_lock");
+  rmac::verifier::note(rmac::verifier::locks);
   return real(mutex);
 }
 int pthread_mutex_trylock(pthread_mutex_t* mutex) noexcept {
-  static auto* const real = rmac::real_time_test::next<int(pthread_mutex_t*)>("pthread_mutex_trylock");
-  rmac::real_time_test::note(rmac::real_time_test::locks);
+  static auto* const real = rmac::verifier::next<int(pthread_mutex_t*)>("pthread_mutex_trylock");
+  rmac::verifier::note(rmac::verifier::locks);
   return real(mutex);
 }
 int pthread_rwlock_rdlock(pthread_rwlock_t* lock) noexcept {
-  static auto* const real = rmac::real_time_test::next<int(pthread_rwlock_t*)>("pthread_rwlock_rdlock");
-  rmac::real_time_test::note(rmac::real_time_test::locks);
+  static auto* const real = rmac::verifier::next<int(pthread_rwlock_t*)>("pthread_rwlock_rdlock");
+  rmac::verifier::note(rmac::verifier::locks);
   return real(lock);
 }
 int pthread_rwlock_wrlock(pthread_rwlock_t* lock) noexcept {
-  static auto* const real = rmac::real_time_test::next<int(pthread_rwlock_t*)>("pthread_rwlock_wrlock");
-  rmac::real_time_test::note(rmac::real_time_test::locks);
+  static auto* const real = rmac::verifier::next<int(pthread_rwlock_t*)>("pthread_rwlock_wrlock");
+  rmac::verifier::note(rmac::verifier::locks);
   return real(lock);
 }
 int pthread_cond_signal(pthread_cond_t* condition) noexcept {
-  static auto* const real = rmac::real_time_test::next<int(pthread_cond_t*)>("pthread_cond_signal");
-  rmac::real_time_test::note(rmac::real_time_test::locks);
+  static auto* const real = rmac::verifier::next<int(pthread_cond_t*)>("pthread_cond_signal");
+  rmac::verifier::note(rmac::verifier::locks);
   return real(condition);
 }
 int pthread_cond_broadcast(pthread_cond_t* condition) noexcept {
-  static auto* const real = rmac::real_time_test::next<int(pthread_cond_t*)>("pthread_cond_broadcast");
-  rmac::real_time_test::note(rmac::real_time_test::locks);
+  static auto* const real = rmac::verifier::next<int(pthread_cond_t*)>("pthread_cond_broadcast");
+  rmac::verifier::note(rmac::verifier::locks);
   return real(condition);
 }
 

@@ -1,0 +1,262 @@
+#include "gateway/verifier/worker.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "gateway/controller/assembler.hpp"
+#include "gateway/controller/bus_registry.hpp"
+#include "gateway/controller/controller_impl.hpp"
+#include "gateway/rmac_config/config_draft.hpp"
+#include "gateway/verifier/actuator_map_check.hpp"
+#include "gateway/verifier/kinematics_check.hpp"
+#include "gateway/verifier/servo_law_check.hpp"
+#include "gateway/verifier/servo_loop_check.hpp"
+#include "gateway/verifier/watched_ports.hpp"
+#include "rmac/motion/frame.hpp"
+#include "rmac/sdk/servo_law_names.hpp"
+
+namespace rmac::verifier {
+namespace {
+
+using gateway::OpenModule;
+using Tell = std::function<void()>;
+
+tl::unexpected<CounterExample> refused(const char* check, const Error& error) {
+  return found(check, error.message, -1, {});
+}
+
+std::size_t open_files() {
+  std::error_code ignored;
+  const std::filesystem::directory_iterator files("/proc/self/fd", ignored);
+  return static_cast<std::size_t>(std::distance(begin(files), end(files)));
+}
+
+/// Objects made and destroyed a thousand times leave nothing behind. `use` works each one as it is off the cycle.
+Checked check_leaks(const OpenModule& module, const sdk::ModuleChoice& choice, Watch& watch,
+                    const std::function<void(void*)>& use) {
+  constexpr int kWarmUp = 20, kTimes = 1000;
+  constexpr std::size_t kNoise_bytes = 4096;
+  std::size_t before = 0, files_before = 0;
+  for (int i = 0; i < kWarmUp + kTimes; ++i) {
+    if (i == kWarmUp) {
+      files_before = open_files();
+      before = heap_in_use();
+    }
+    watch.step("create");
+    auto made = module.create(choice);
+    if (!made) return refused("create and destroy", made.error());
+    if (use) use(made->object.get());
+    watch.step("destroy");
+  }
+  const std::size_t after = heap_in_use(), files_after = open_files();
+  if (files_after > files_before) {
+    return found("leaks",
+                 fmt::format("after {} objects there are {} open files more", kTimes, files_after - files_before), -1,
+                 {});
+  }
+  if (after > before + kNoise_bytes) {
+    return found("leaks",
+                 fmt::format("{} objects made and destroyed leave {} bytes behind, {} each", kTimes, after - before,
+                             (after - before) / kTimes),
+                 -1, {});
+  }
+  return {};
+}
+
+/// A module whose code stays mapped after it is closed would go on running when its next build is loaded.
+Checked check_unmapped() {
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    if (line.find("/rmac-module-") != std::string::npos) {
+      return found("unloading",
+                   "its code stays mapped after it is closed, and would run in place of its next build; "
+                   "compile it with -fno-gnu-unique and let nothing of it register itself for good",
+                   -1, {});
+    }
+  }
+  return {};
+}
+
+/// Notes what a check came to; false when it refuses the module.
+bool take(const Checked& checked, const std::string& name, ModuleReport& report, const Tell& tell) {
+  if (checked) {
+    report.passed.push_back(name);
+  } else {
+    report.refusal = checked.error();
+  }
+  tell();
+  return checked.has_value();
+}
+
+/// What every kind of module is checked for, around what `check` does with its port.
+template <typename Port, typename Check>
+void check_module(const Task& task, const sdk::ModuleChoice& choice, Watch& watch, ModuleReport& report,
+                  const Tell& tell, const std::function<void(void*)>& use, Check&& check) {
+  watch.step("loading");
+  auto module = task.loader.open(choice.name, gateway::kKindOf<Port>);
+  if (!module) {
+    take(refused("loading", module.error()), "", report, tell);
+    return;
+  }
+  report.build_id = module->descriptor->build_id;
+  take({}, fmt::format("it loads, and fits module ABI {}", sdk::kModuleAbi), report, tell);
+  watch.step("create");
+  auto made = module->create(choice);
+  if (!made) {
+    take(refused("create", made.error()), "", report, tell);
+    return;
+  }
+  auto object = std::static_pointer_cast<Port>(made->object);
+  made->object.reset();
+  const bool fine = check(object);
+  watch.step("destroy");
+  object.reset();
+  if (!fine || !take(check_leaks(*module, choice, watch, use), "1000 objects leave no memory and no file behind",
+                     report, tell)) {
+    return;
+  }
+  watch.step("unloading");
+  *module = OpenModule{};
+  take(check_unmapped(), "it is gone once it is closed", report, tell);
+}
+
+JointRange range_of(const JointLimits& limits) {
+  constexpr double kRound = 720;
+  const double least = ends_below(limits) ? limits.min : (ends_above(limits) ? limits.max - kRound : -kRound);
+  const double most = ends_above(limits) ? limits.max : least + 2 * kRound;
+  return {least, most};
+}
+
+/// None, a long one off the spindle's line, and an angle head.
+std::vector<Frame> tools() {
+  return {Frame{}, {{1, -2, 300}, {1, 0, 0, 0}}, normalized({{3, 0, 60}, {0.98, 0.1, -0.05, 0.1642}})};
+}
+
+void check_kinematics_module(const Task& task, Watch& watch, ModuleReport& report, const Tell& tell) {
+  const sdk::DeviceObject& device = task.device;
+  const auto check = [&](const std::shared_ptr<Kinematics>& kinematics) {
+    const WatchedKinematics watched(kinematics, watch);
+    KinematicsCase given{{}, tools(), task.samples, task.seed};
+    for (const sdk::Joint& joint : device.joints) given.ranges.push_back(range_of(joint.limits));
+    Checked types;
+    for (std::size_t j = 0; types && j < std::min(device.joints.size(), kinematics->joint_count()); ++j) {
+      if (kinematics->joint_type(j) == device.joints[j].limits.type) continue;
+      types = found("joint types",
+                    fmt::format("joint {} \"{}\" is of another type in device.json than in the geometry", j,
+                                device.joints[j].limits.name),
+                    -1, {});
+    }
+    if (!take(types, "joints are of the types in device.json", report, tell)) return false;
+    const Checked geometry = check_kinematics(watched, given);
+    // A misdeed that is noted goes before what it led to.
+    const Checked real_time = geometry ? watch.misdeed() : Checked();
+    return take(geometry,
+                fmt::format("forward, inverse, Jacobian and solutions agree at {} joint vectors, corners, ends and "
+                            "poles among them",
+                            task.samples),
+                report, tell) &&
+           take(real_time, "on the cycle it neither allocates nor locks nor calls the system", report, tell);
+  };
+  check_module<Kinematics>(task, device.kinematics, watch, report, tell, {}, check);
+}
+
+void check_map_module(const Task& task, Watch& watch, ModuleReport& report, const Tell& tell) {
+  const sdk::DeviceObject& device = task.device;
+  const auto check = [&](const std::shared_ptr<ActuatorMap>& map) {
+    const WatchedActuatorMap watched(map, watch);
+    ActuatorMapCase given{{}, device.actuators.size(), task.samples, task.seed};
+    for (const auto* joints : {&device.joints, &device.held_joints}) {
+      for (const sdk::Joint& joint : *joints) {
+        const JointRange range = range_of(joint.limits);
+        given.joints.push_back(
+            {range.min, range.max, joint.limits.type == JointType::Rotary ? std::numbers::pi / 180 : 1e-3});
+      }
+    }
+    const Checked mapped = check_actuator_map(watched, given);
+    const Checked real_time = mapped ? watch.misdeed() : Checked();
+    return take(mapped, fmt::format("positions come back and power is conserved at {} joint vectors", task.samples),
+                report, tell) &&
+           take(real_time, "on the cycle it neither allocates nor locks nor calls the system", report, tell);
+  };
+  check_module<ActuatorMap>(task, device.actuator_map, watch, report, tell, {}, check);
+}
+
+sdk::ModuleChoice law_of(const sdk::Joint& joint) {
+  return {sdk::servo_law_module(joint.servo_law.name), joint.servo_law.numbers, joint.servo_law.texts};
+}
+
+void check_law_module(const Task& task, const sdk::Joint& joint, Watch& watch, ModuleReport& report, const Tell& tell) {
+  const auto check = [&](const std::shared_ptr<ServoLaw>& law) {
+    WatchedServoLaw watched(law, watch);
+    ServoLawCase given{joint.gains, joint.gains, task.seed};
+    for (double& gain : given.other_gains) gain /= 2;
+    if (!law->set_gains(given.other_gains)) given.other_gains = joint.gains;
+    const Checked kept = check_servo_law(watched, given);
+    const Checked real_time = kept ? watch.misdeed() : Checked();
+    return take(kept, "its output is bounded and does not jump, and no number in gives none out", report, tell) &&
+           take(real_time, "on the cycle it neither allocates nor locks nor calls the system", report, tell);
+  };
+  const auto use = [&](void* object) { (void)static_cast<ServoLaw*>(object)->set_gains(joint.gains); };
+  check_module<ServoLaw>(task, law_of(joint), watch, report, tell, use, check);
+}
+
+void check_driver_module(const Task& task, Watch& watch, ModuleReport& report, const Tell& tell) {
+  const auto check = [&](const std::shared_ptr<sdk::DeviceDriver>& driver) {
+    // Interfaces are taken at their names here: their own checks load them.
+    const auto named_one = [](const sdk::ModuleChoice&) { return Expected<>(); };
+    gateway::ConfigDraft draft(
+        {[](const sdk::DeviceObject& drafted, bool) { return gateway::check_device(drafted); }, named_one, named_one});
+    watch.step("configure_motion_planner, configure_servo_controller and configure_digital_control_interface");
+    const auto done = draft.begin(task.device)
+                          .and_then([&] { return driver->configure_motion_planner(task.device, draft); })
+                          .and_then([&] { return driver->configure_servo_controller(task.device, draft); })
+                          .and_then([&] { return driver->configure_digital_control_interface(task.device, draft); })
+                          .and_then([&] { return draft.apply(); });
+    return take(done ? Checked() : Checked(refused("configuring", done.error())),
+                "what it configures of device.json is a whole mechanism", report, tell);
+  };
+  check_module<sdk::DeviceDriver>(task, {task.device.device_driver, {}, {}}, watch, report, tell, {}, check);
+}
+
+void check_interface(const Task& task, Watch& watch, ModuleReport& report, const Tell& tell) {
+  gateway::BusRegistry registry;
+  gateway::add_built_in_interfaces(registry, 0.001);
+  watch.step("loading");
+  const auto& device = task.device;
+  const bool control = report.module == device.digital_control_interface.name;
+  const auto fits = control ? registry.check_control_interface(device.digital_control_interface, task.loader)
+                            : registry.check_io_interface(device.digital_io_interface, task.loader);
+  if (take(fits ? Checked() : Checked(refused("loading", fits.error())), "it is built in, or loads", report, tell)) {
+    report.not_checked.emplace_back("what it does on its bus, which stays untouched");
+    tell();
+  }
+}
+
+}  // namespace
+
+std::vector<Job> jobs_for(const sdk::DeviceObject& device) {
+  std::vector<Job> jobs;
+  jobs.push_back({"device driver", device.device_driver, check_driver_module});
+  jobs.push_back({"kinematics", device.kinematics.name, check_kinematics_module});
+  jobs.push_back({"actuator map", device.actuator_map.name, check_map_module});
+  for (const auto* joints : {&device.joints, &device.held_joints}) {
+    for (const sdk::Joint& joint : *joints) {
+      jobs.push_back({"servo control law of joint " + joint.limits.name, law_of(joint).name,
+                      [joint](const Task& task, Watch& watch, ModuleReport& report, const Tell& tell) {
+                        check_law_module(task, joint, watch, report, tell);
+                      }});
+    }
+  }
+  jobs.push_back({"digital control interface", device.digital_control_interface.name, check_interface});
+  if (!device.digital_io_interface.name.empty()) {
+    jobs.push_back({"digital I/O interface", device.digital_io_interface.name, check_interface});
+  }
+  jobs.push_back({"servo loops", "", check_servo_loops});
+  return jobs;
+}
+
+}  // namespace rmac::verifier

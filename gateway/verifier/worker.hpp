@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "gateway/controller/module_loader.hpp"
+#include "gateway/verifier/report.hpp"
+#include "gateway/verifier/watch.hpp"
+#include "rmac/sdk/device_object.hpp"
+
+namespace rmac::verifier {
+
+/// What to check a mechanism's modules with.
+struct Task {
+  sdk::DeviceObject device;
+  gateway::ModuleLoader loader;
+  int samples = 100'000;
+  std::uint64_t seed = 1;
+};
+
+/// Checks one module in one role, in a process of its own: the module may crash it, hang it, or fill its memory. What
+/// it finds out goes into `report` bit by bit, and `tell` is called after each, so that what was found before a crash
+/// is not lost.
+struct Job {
+  std::string role;
+  std::string module;
+  std::function<void(const Task& task, Watch& watch, ModuleReport& report, const std::function<void()>& tell)> run;
+};
+
+/// The jobs that a mechanism needs, the modules that others rest on first.
+[[nodiscard]] std::vector<Job> jobs_for(const sdk::DeviceObject& device);
+
+}  // namespace rmac::verifier

@@ -1,0 +1,117 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "rmac/motion/ports/kinematics.hpp"
+#include "rmac/sdk/module.hpp"
+
+/// A static of an inline function that is visible is one for the whole process, unless -fno-gnu-unique says otherwise.
+[[gnu::visibility("default")]] inline int& kept_for_good() {
+  static int value = 0;
+  return value;
+}
+
+namespace {
+
+using namespace rmac;
+
+enum class Defect {
+  None,
+  CrashesInFactory,
+  CrashesInForward,
+  Hangs,
+  Sleeps,
+  Allocates,
+  Leaks,
+  LiesAboutInverse,
+  LiesAboutJacobian,
+  LiesAboutJoints,
+  HasAnotherAbi,
+  StaysMapped,
+  EatsMemory
+};
+constexpr Defect kDefect = Defect::DEFECT;
+/// Where on the first joint's travel the defect shows.
+constexpr double kFrom_mm = 40;
+
+/// Not at zero, where a sanitizer would have its say.
+[[gnu::noinline]] void crash() {
+  volatile std::uintptr_t nothing_there = 64;
+  *reinterpret_cast<volatile int*>(nothing_there) = 1;
+}
+
+/// Joints are x, y and z.
+class BadKinematics final : public Kinematics {
+ public:
+  std::size_t joint_count() const noexcept override { return 3; }
+  JointType joint_type(std::size_t joint) const noexcept override {
+    return kDefect == Defect::LiesAboutJoints && joint == 2 ? JointType::Rotary : JointType::Linear;
+  }
+  void forward(std::span<const double> joints, const Frame& tool, ToolPose& pose) const noexcept override {
+    if (joints[0] > kFrom_mm) {
+      if (kDefect == Defect::CrashesInForward) crash();
+      if (kDefect == Defect::Allocates) delete new volatile double(joints[0]);
+      if (kDefect == Defect::Sleeps) {
+        while (true) ::pause();
+      }
+      for (volatile bool more = kDefect == Defect::Hangs; more;) {
+      }
+    }
+    const ToolPose at_zero = tool_at_zero(tool);
+    for (std::size_t i = 0; i < 3; ++i) pose.tip[i] = joints[i] + at_zero.tip[i];
+    pose.axis = at_zero.axis;
+  }
+  KinematicsStatus inverse(const ToolPose& pose, const Frame& tool, std::span<const double>,
+                           std::span<double> joints) const noexcept override {
+    const ToolPose at_zero = tool_at_zero(tool);
+    for (std::size_t i = 0; i < 3; ++i) joints[i] = pose.tip[i] - at_zero.tip[i];
+    if (kDefect == Defect::LiesAboutInverse && joints[0] > kFrom_mm) joints[1] += 1e-6;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!(std::abs(pose.axis[i] - at_zero.axis[i]) < 1e-9) || !std::isfinite(joints[i])) {
+        return KinematicsStatus::OutOfReach;
+      }
+    }
+    return KinematicsStatus::Ok;
+  }
+  void jacobian(std::span<const double> joints, const Frame&, std::span<double> jacobian) const noexcept override {
+    std::fill(jacobian.begin(), jacobian.end(), 0.0);
+    for (std::size_t i = 0; i < 3; ++i) jacobian[i * 3 + i] = 1;
+    if (kDefect == Defect::LiesAboutJacobian && joints[0] > kFrom_mm) jacobian[1] = 1e-3;
+  }
+
+ private:
+  static ToolPose tool_at_zero(const Frame& tool) noexcept {
+    const auto [w, x, y, z] = tool.q;
+    return {tool.p, {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
+  }
+};
+
+struct Factory {
+  static Kinematics* create(sdk::Parameters, char*, std::size_t) {
+    if (kDefect == Defect::CrashesInFactory) crash();
+    // Stored, for what is not used may be left out.
+    [[maybe_unused]] static void* volatile kept = nullptr;
+    if (kDefect == Defect::Leaks) kept = new double[16];
+    if (kDefect == Defect::StaysMapped) ++kept_for_good();
+    if (kDefect == Defect::EatsMemory) kept = new char[std::size_t{4} << 30U];
+    return new BadKinematics;
+  }
+};
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) const sdk::ModuleDescriptor* rmac_module() noexcept {
+  static constexpr sdk::ModuleDescriptor kDescriptor{
+      sdk::kModuleAbi + (kDefect == Defect::HasAnotherAbi ? 1 : 0),
+      sdk::ModuleKind::Kinematics,
+      "BadKinematics",
+      __DATE__ " " __TIME__,
+      [](sdk::Parameters parameters, char* error, std::size_t size) noexcept -> void* {
+        return Factory::create(parameters, error, size);
+      },
+      [](void* object) noexcept { delete static_cast<Kinematics*>(object); }};
+  return &kDescriptor;
+}

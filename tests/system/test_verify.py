@@ -1,0 +1,143 @@
+"""Verification before a mechanism goes live: what is bad is refused with its counter-example, and the old one works on."""
+
+import json
+import os
+import shutil
+import subprocess
+import unittest
+
+from appliance import BUILD, Appliance, line, run_to_rest
+
+FOLDER = "mill/3-axis/Bad"
+# The whole build is a sanitizer's: memory is not bounded then, and neither locks nor system calls are seen.
+SANITIZED = "RMAC_SANITIZE:STRING=" in (cache := (BUILD / "CMakeCache.txt").read_text()) and \
+    "RMAC_SANITIZE:STRING=\n" not in cache
+# What each defect of BadKinematics is refused for.
+REFUSALS = {
+    "CrashesInFactory": ("crash", "SEGV", "create"),
+    "CrashesInForward": ("crash", "SEGV", "forward", "joints"),
+    "Hangs": ("hang", "computes", "forward", "joints"),
+    "Sleeps": ("hang", "does not come back", "forward", "joints"),
+    "Allocates": ("real time", "allocates", "forward", "joints"),
+    "Leaks": ("leaks", "bytes behind"),
+    "LiesAboutInverse": ("inverse", "off the pose", "joints", "seed"),
+    "LiesAboutJacobian": ("Jacobian", "row 0, column 1", "joints"),
+    "LiesAboutJoints": ("joint types", "joint 2"),
+    "HasAnotherAbi": ("loading", "module ABI"),
+    "StaysMapped": ("unloading", "stays mapped"),
+    "EatsMemory": ("crash", "ABRT", "create"),
+}
+
+
+class Verify(unittest.TestCase):
+    """DMACXYZ is loaded, and beside it in the tree there is Bad: the same machine with one module in place of its own."""
+
+    def setUp(self):
+        self.appliance = self.enterContext(Appliance(own_tree=True, own_verdicts=True))
+        self.folder = self.appliance.tree / FOLDER
+        shutil.copytree(self.appliance.tree / "mill/3-axis/DMACXYZ", self.folder)
+
+    def choose(self, key, module, defect):
+        """Has Bad use a module of tests/system/bad_modules."""
+        shutil.copy(BUILD / "bad_modules" / defect / f"{module}.so", self.folder)
+        file = self.folder / "device.json"
+        device = json.loads((self.appliance.tree / "mill/3-axis/DMACXYZ/device.json").read_text())
+        device["MechanismName"] = "Bad"
+        device.pop("MechanismID", None)
+        if key == "ServoControlLaw":
+            for joint in device["Joints"]:
+                joint[key] = {"Module": module}
+        else:
+            device[key] = {"Module": module}
+        file.unlink()  # The copy may be read-only.
+        file.write_text(json.dumps(device))
+
+    def assert_refused(self, operator, *words):
+        refusal = operator.refusal("Device.Load", Name="Bad").message
+        for word in ("Bad is not loaded", "DMACXYZ stays loaded", *words):
+            self.assertIn(word, refusal)
+        self.assertEqual(operator.state()["mechanism"], "DMACXYZ")
+
+    def test_each_defect_is_refused_and_the_old_machine_works_on(self):
+        operator = self.appliance.operator("DMACXYZ")
+        self.choose("Kinematics", "BadKinematics", "None")
+        operator.call("DeviceDriverManager.Rescan")
+        for defect, words in REFUSALS.items():
+            if defect in ("EatsMemory", "Sleeps") and SANITIZED:
+                continue
+            with self.subTest(defect):
+                self.choose("Kinematics", "BadKinematics", defect)
+                self.assert_refused(operator, "BadKinematics", *words)
+        for key, module, defect, words in (("ServoControlLaw", "BadLaw", "HidesNoNumber", ("no number in", "puts out 0")),
+                                           ("ServoControlLaw", "BadLaw", "PushesAway", ("stability", "joint")),
+                                           ("ActuatorMap", "BadMap", "LosesPower", ("power", "at the shafts"))):
+            with self.subTest(defect):
+                self.choose(key, module, defect)
+                self.assert_refused(operator, *words)
+        operator.call("RMAC_CAM.SetFeedrate", Feedrate=1500)
+        operator.call("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (2, 0, 3)))
+        self.assertAlmostEqual(run_to_rest(operator)["joints"][2], 3, delta=0.02)
+        # And the same source without a defect is a machine.
+        self.choose("Kinematics", "BadKinematics", "None")
+        operator.call("Device.Load", Name="Bad")
+        operator.call("RMAC_CAM.SetFeedrate", Feedrate=1500)
+        operator.call("RMAC_CAM.MoveAlongLine", **line((2, 0, 3), (0, 0, 0)))
+        self.assertAlmostEqual(run_to_rest(operator)["joints"][2], 0, delta=0.02)
+
+    def test_report_holds_the_counter_example_as_numbers(self):
+        operator = self.appliance.operator("DMACXYZ")
+        self.choose("Kinematics", "BadKinematics", "LiesAboutInverse")
+        operator.call("DeviceDriverManager.Rescan")
+        report = operator.call("Device.Verify", Name="Bad")
+        self.assertFalse(report["ok"])
+        refused = [module for module in report["modules"] if not module["ok"]]
+        self.assertEqual([module["module"] for module in refused], ["BadKinematics"])
+        values = refused[0]["counter_example"]["values"]
+        self.assertGreater(values["joints"][0], 40)
+        self.assertAlmostEqual(values["answer"][1], values["joints"][1] + 1e-6, delta=1e-9)
+        good = operator.call("Device.Verify", Name="DMACXYZ")
+        self.assertTrue(good["ok"], good)
+        self.assertEqual(good["samples"], 100000)
+        self.assertEqual(operator.state()["mechanism"], "DMACXYZ")
+
+    def test_what_passed_is_asked_again_only_once_its_files_change(self):
+        operator = self.appliance.operator("DMACXYZ")
+        folder = self.appliance.folder / "state/verified"
+        first = {file: file.stat().st_mtime_ns for file in folder.glob("DMACXYZ@*.json")}
+        self.assertEqual(len(first), 1)
+        operator.call("Device.Load", Name="DMACXYZ")
+        self.assertEqual({file: file.stat().st_mtime_ns for file in folder.glob("DMACXYZ@*.json")}, first)
+        module = self.appliance.tree / "mill/3-axis/DMACXYZ/DMACXYZKinematics.so"
+        built = module.read_bytes()
+        module.unlink()
+        module.write_bytes(built + b"\0")
+        operator.call("Device.Load", Name="DMACXYZ")
+        self.assertEqual(len(list(folder.glob("DMACXYZ@*.json"))), 2)
+
+    def test_command_needs_no_appliance_for_a_folder(self):
+        good = self.verify(self.appliance.tree / "mill/3-axis/DMACXYZ")
+        self.assertEqual((good.returncode, good.stderr), (0, ""))
+        self.assertIn("DMACXYZ may go live", good.stdout)
+        self.choose("Kinematics", "BadKinematics", "Leaks")
+        bad = self.verify(self.folder / "device.json")
+        self.assertEqual(bad.returncode, 1)
+        self.assertIn("REFUSED", bad.stdout)
+        self.assertEqual(bad.stderr.count("\n"), 1)
+        self.assertIn("bytes behind", bad.stderr)
+        told = self.verify(self.folder, "--json")
+        self.assertEqual(told.returncode, 1)
+        self.assertEqual(json.loads(told.stdout)["ok"], False)
+
+    def test_command_asks_the_appliance_for_a_name(self):
+        done = self.appliance.rmac("verify", "DMACXY")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("DMACXY may go live", done.stdout)
+        self.assertEqual(self.appliance.rmac("verify", "Nowhere").returncode, 1)
+
+    def verify(self, path, *words):
+        return subprocess.run([BUILD / "bin/rmac", "verify", path, *words], stdin=subprocess.DEVNULL,
+                              capture_output=True, text=True, timeout=120, check=False, env=os.environ)
+
+
+if __name__ == "__main__":
+    unittest.main()
