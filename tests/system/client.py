@@ -4,8 +4,10 @@ import collections
 import itertools
 import json
 import socket
+import time
 
 ANSWER_BOUND_S = 60.0
+NOTE_BOUND_S = 100.0  # of notes that come and do not match: the test fails before the whole file is out of time
 
 
 class Refused(Exception):
@@ -73,12 +75,18 @@ class Client:
     def state(self):
         return self.call("RMAC_CAM.GetState")
 
-    def wait_note(self, topic, matches=lambda params: True):
+    def wait_note(self, topic, matches=lambda params: True, within_s=NOTE_BOUND_S):
         """The parameters of the first notification of `topic` that matches; earlier ones are dropped."""
+        until = time.monotonic() + within_s
+        last = None
         while True:
             note = self.notes.popleft() if self.notes else self._read_note()
-            if note["method"] == topic and matches(note["params"]):
-                return note["params"]
+            if note["method"] == topic:
+                if matches(note["params"]):
+                    return note["params"]
+                last = note["params"]
+            if time.monotonic() > until:
+                raise AssertionError(f"no note of {topic} matched within {within_s} s; the last one: {last}")
 
     def _read_note(self):
         message = self._read_message()

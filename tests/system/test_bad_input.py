@@ -132,7 +132,8 @@ class BadInput(unittest.TestCase):
         self.assertIn(refusal.code, (INVALID_PARAMS, -32014))
 
     def test_unsupported_function_says_so_and_pretends_nothing(self):
-        self.assert_refused("MACHINE_ERR_UNSUPPORTED_OPERATION", [], "RMAC_CAM.DoToolChange", ToolNumber=1)
+        self.assert_refused("MACHINE_ERR_UNSUPPORTED_OPERATION", [], "RMAC_Config.SetMechanismSpindleControlMethod",
+                            DMACServoControlMethod="DMAC_VELOCITY_CONTROL")
 
     def test_move_without_authority_is_refused(self):
         watcher = self.appliance.client("watcher")
