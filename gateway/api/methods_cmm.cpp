@@ -1,4 +1,6 @@
 // RMAC_CAM.*: the functions of Appendix IV's CMM part, and jogging.
+#include <fmt/format.h>
+
 #include "gateway/api/method_builder.hpp"
 #include "gateway/api/method_table.hpp"
 
@@ -7,11 +9,6 @@ namespace rmac::gateway {
 namespace {
 
 using nlohmann::json;
-
-constexpr const char* kProbing = "probing comes with the measuring machine";
-constexpr const char* kOwnSpeed =
-    "moves that bring their own speed come with the measuring machine; use SetFeedrate and "
-    "MoveToPathTarget, MoveAlongArc or MoveToJointTarget";
 
 /// A property of the status: reads without newVal, writes with it. MACHINE_SUCCESS and NONE clear both codes.
 Method status_property(const char* name, const char* meaning, const Enumeration& values,
@@ -52,30 +49,45 @@ void add_status(const auto& add) {
           .does([](Call& call) { return call.status.major == 0; }));
   add(method("RMAC_CAM.LastHitPosition", "Joint positions at the last hit of the probe.")
           .gives(WireType::Numbers, "mm or deg")
-          .lacks(kProbing));
+          .does([](Call& call) {
+            return call.machine.measuring().last_hit().map([](const sdk::Hit& hit) { return hit.joints; });
+          }));
   add(method("RMAC_CAM.ControlMode", "What the measuring machine is doing.")
           .takes(choice("newVal", kControlModeValues).optional())
           .gives(WireType::Integer, "", &kControlModeValues)
           .property()
-          .lacks(kProbing));
+          .does([](Call& call, std::optional<std::int64_t> wanted) -> Expected<json> {
+            sdk::Measuring& measuring = call.machine.measuring();
+            if (!wanted) return json(static_cast<int>(measuring.control_mode()));
+            return measuring.set_control_mode(static_cast<sdk::ControlMode>(*wanted)).map([] { return json(true); });
+          }));
   add(method("RMAC_CAM.Parameter", "A distance or speed of probing.")
-          .takes(choice("ParamNumber", kParameterNumberValues), number("newVal", "mm or mm/s").above(0).optional())
+          .takes(choice("ParamNumber", kParameterNumberValues),
+                 number("newVal", "mm or mm/s").within({1e-3, 1e4}).optional())
           .gives(WireType::Number, "mm or mm/s")
           .property()
-          .lacks(kProbing));
+          .does([](Call& call, std::int64_t number, std::optional<double> wanted) -> Expected<json> {
+            sdk::Measuring& measuring = call.machine.measuring();
+            const auto which = static_cast<sdk::MeasureParameter>(number);
+            if (!wanted) return json(measuring.parameter(which));
+            return measuring.set_parameter(which, *wanted).map([] { return json(true); });
+          }));
   add(method("RMAC_CAM.NewHit", "Whether the probe was hit since the positions were read last.")
           .gives(WireType::Boolean)
-          .lacks(kProbing));
+          .does([](Call& call) { return call.machine.measuring().new_hit(); }));
   add(method("RMAC_CAM.ProbeActive", "Whether the probe has power and answers.")
           .gives(WireType::Boolean)
-          .lacks(kProbing));
+          .does([](Call& call) { return call.machine.measuring().probe_active(); }));
 }
 
 void add_cmm_moves(const auto& add) {
-  const auto x = [] { return number("x", "mm"); };
-  const auto y = [] { return number("y", "mm"); };
-  const auto z = [] { return number("z", "mm"); };
-  const auto speed = [](const char* name = "Speed") { return number(name, "mm/s").above(0); };
+  const auto place = [](const char* name, const char* unit = "mm") { return number(name, unit).within(kPlaces); };
+  const auto x = [&] { return place("x"); };
+  const auto y = [&] { return place("y"); };
+  const auto z = [&] { return place("z"); };
+  // Slower than a hair in a minute is a slip; what is too fast the machine knows.
+  constexpr Range kSpeeds{1e-3, 1e5};
+  const auto speed = [kSpeeds](const char* name = "Speed") { return number(name, "mm/s").within(kSpeeds); };
   add(command("RMAC_CAM.Home",
               "Has the drives look for home that device.json gives a HomingTurn; where there are none, moves all "
               "joints to their home position, zero. From rest.",
@@ -83,33 +95,63 @@ void add_cmm_moves(const auto& add) {
           .does([](Call& call) { return call.machine.cam().home(); }));
   add(command("RMAC_CAM.MoveToXYZ", "Moves the tip to a point at a speed.", Effect::Queues)
           .takes(move_id(), x(), y(), z(), speed())
-          .lacks(kOwnSpeed));
+          .does([](Call& call, std::int64_t id, double px, double py, double pz, double mm_s) {
+            return call.machine.measuring().move_to_point(id, {px, py, pz}, mm_s);
+          }));
   add(command("RMAC_CAM.MoveRotaryAxis", "Turns one rotary joint to a position.", Effect::Queues)
-          .takes(move_id(), joint_number("JointNum"), number("JointPose", "deg"),
-                 choice("Direction", kRotaryDirectionValues), number("Speed", "deg/s").above(0))
-          .lacks("joint moves do not choose a direction of turning yet; use MoveToJointTarget"));
+          .takes(move_id(), joint_number("JointNum"), place("JointPose", "deg"),
+                 choice("Direction", kRotaryDirectionValues), number("Speed", "deg/s").within(kSpeeds))
+          .does([](Call& call, std::int64_t id, std::int64_t joint, double position, std::int64_t direction,
+                   double deg_s) {
+            return call.machine.measuring().move_rotary_axis(id, static_cast<int>(joint), position,
+                                                             static_cast<int>(direction), deg_s);
+          }));
   add(command("RMAC_CAM.AutoMeasure", "Moves towards a point until the probe is hit, then backs off.", Effect::Queues)
           .takes(move_id(), x(), y(), z(), speed())
-          .lacks(kProbing));
+          .does([](Call& call, std::int64_t id, double px, double py, double pz, double mm_s) {
+            return call.machine.measuring().auto_measure(id, {px, py, pz}, mm_s);
+          }));
   add(command("RMAC_CAM.MoveInArc", "Moves on an arc from the present position to a point.", Effect::Queues)
-          .takes(move_id(), x(), y(), z(), number("CenterX", "mm"), number("CenterY", "mm"), number("CenterZ", "mm"),
-                 number("i", ""), number("j", ""), number("k", ""), speed())
-          .lacks(kOwnSpeed));
+          .takes(move_id(), x(), y(), z(), place("CenterX"), place("CenterY"), place("CenterZ"), place("i", ""),
+                 place("j", ""), place("k", ""), speed())
+          .does([](Call& call, std::int64_t id, double px, double py, double pz, double cx, double cy, double cz,
+                   double i, double j, double k, double mm_s) {
+            return call.machine.measuring().move_in_arc(id, {{px, py, pz}, {cx, cy, cz}, {i, j, k}}, mm_s);
+          }));
   add(command("RMAC_CAM.MoveAllAxis", "Moves all joints to their positions at a speed.", Effect::Queues)
-          .takes(move_id(), numbers("Position", "mm or deg"), speed("LinearSpeed"))
-          .lacks(kOwnSpeed));
-  add(command("RMAC_CAM.SendConditionChangedEvent", "Simulates a hit of the probe where no live drive can move.",
-              Effect::None)
-          .takes(numbers("JointValues", "mm or deg"), integer("NumJoints").within(0, static_cast<double>(kMaxJoints)),
-                 mask("Mask"), mask("Condition"))
-          .lacks(kProbing));
-  add(command("RMAC_CAM.SetCalibratedPartFrame", "Sets the part frame so that all joints read zero here.", Effect::None)
-          .lacks(kProbing));
-  add(command("RMAC_CAM.ManualMeasure", "Lets a person move the probe and expects a hit.", Effect::Starts)
-          .lacks(kProbing));
+          .takes(move_id(), numbers("Position", "mm or deg").within(kPlaces), speed("LinearSpeed"))
+          .does([](Call& call, std::int64_t id, const std::vector<double>& joints, double mm_s) {
+            return call.machine.measuring().move_all_axes(id, joints, mm_s);
+          }));
+  add(command("RMAC_CAM.SendConditionChangedEvent",
+              "In virtual mode: the probe is deflected with the joints there, or lets go.", Effect::None)
+          .takes(numbers("JointValues", "mm or deg").within(kPlaces),
+                 integer("NumJoints").within(0, static_cast<double>(kMaxJoints)),
+                 mask("Mask").noted("bit 0: the probe"), mask("Condition").noted("bit 0: it touches"))
+          .does([](Call& call, const std::vector<double>& joints, std::int64_t count, Mask mask,
+                   Mask condition) -> Expected<> {
+            if (count != static_cast<std::int64_t>(joints.size())) {
+              return failure(MinorCode::InvalidParameterValue,
+                             fmt::format("SendConditionChangedEvent: NumJoints is {}, and JointValues has {} numbers",
+                                         count, joints.size()));
+            }
+            if ((mask.bits & sdk::kConditionProbe) == 0) {
+              return failure(MinorCode::InvalidParameterValue,
+                             "SendConditionChangedEvent: Mask says that no condition changed; bit 0 is the probe's");
+            }
+            return call.machine.measuring().simulate_probe(joints, (condition.bits & sdk::kConditionProbe) != 0);
+          }));
+  add(command("RMAC_CAM.SetCalibratedPartFrame",
+              "Puts the part frame where the tool tip is, its Z along the tool axis, at rest.", Effect::None)
+          .does([](Call& call) { return call.machine.measuring().set_calibrated_part_frame(); }));
+  add(command("RMAC_CAM.ManualMeasure", "Lets a person jog the probe and expects hits, which end the jog.",
+              Effect::Starts)
+          .does([](Call& call) { return call.machine.measuring().manual_measure(); }));
   add(command("RMAC_CAM.SpinProbe", "Spins the probe for a time.", Effect::Starts)
-          .takes(number("RPM", "rpm"), number("Seconds", "s").at_least(0))
-          .lacks(kProbing));
+          .takes(number("RPM", "rpm").within(kPlaces), number("Seconds", "s").within({1e-3, 60}))
+          .does([](Call& call, double rpm, double seconds) {
+            return call.machine.measuring().spin_probe(rpm, seconds);
+          }));
 }
 
 /// A jog goes by a distance or at a velocity: one of the two is given.

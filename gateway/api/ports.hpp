@@ -13,6 +13,7 @@
 #include "gateway/record/flight_record.hpp"
 #include "gateway/tools/tool.hpp"
 #include "rmac/sdk/device_object.hpp"
+#include "rmac/sdk/measuring.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
 #include "rmac/sdk/rmac_config.hpp"
 
@@ -69,6 +70,7 @@ class MachinePort {
  public:
   virtual ~MachinePort() = default;
   [[nodiscard]] virtual sdk::RmacCam& cam() = 0;
+  [[nodiscard]] virtual sdk::Measuring& measuring() = 0;
   [[nodiscard]] virtual sdk::RmacConfig& config() = 0;
   [[nodiscard]] virtual DevicePort& device() = 0;
   [[nodiscard]] virtual ToolPort& tools() = 0;

@@ -51,6 +51,12 @@ nlohmann::json event_to_json(const Event& event) {
                       {"move_id", event.move_id},
                       {"message", event.message}};
   if (!event.record.empty()) json["record"] = event.record;
+  if (event.code != MinorCode::None) json["status_minor"] = static_cast<int>(event.code);
+  if (event.hit) {
+    const ToolPose& pose = event.hit->pose;
+    json["joints"] = event.hit->joints;
+    json["pose"] = {pose.tip[0], pose.tip[1], pose.tip[2], pose.axis[0], pose.axis[1], pose.axis[2]};
+  }
   return json;
 }
 

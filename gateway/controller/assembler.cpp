@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "gateway/controller/bus_choice.hpp"
+#include "gateway/controller/simulated_io.hpp"
 #include "rmac/sdk/servo_law_names.hpp"
 
 namespace rmac::gateway {
@@ -119,6 +120,8 @@ Expected<> add_sensors(const sdk::DeviceObject& device, const ModuleLoader& load
 
 /// Names of inputs on which the servo loop acts by itself.
 constexpr std::string_view kEmergencyStop = "EmergencyStop", kLimit = "Limit";
+/// Names of those that a touch probe is wired to.
+constexpr const char *kProbe = "Probe", *kProbeReady = "ProbeReady";
 
 std::uint64_t named(const std::map<std::string, int>& names, std::string_view prefix) {
   std::uint64_t bits = 0;
@@ -151,9 +154,16 @@ Expected<> add_io(const sdk::DeviceObject& device, const ModuleLoader& loader, B
     return check_bits(device.outputs, "output", (*io)->output_bits(), name);
   });
   if (!connected) return connected;
-  parts.io = std::move(*io);
+  auto probed = with_touch_probe(std::move(*io), parts);
+  if (!probed) return tl::unexpected(probed.error());
+  parts.io = std::move(*probed);
   parts.emergency_stop_inputs = named(device.inputs, kEmergencyStop);
   parts.limit_inputs = named(device.inputs, kLimit);
+  const auto bit = [&](const char* input) {
+    const auto found = device.inputs.find(input);
+    return found == device.inputs.end() ? 0 : std::uint64_t{1} << found->second;
+  };
+  parts.probe = {bit(kProbe), bit(kProbeReady), device.probing.settle_time_s};
   return {};
 }
 

@@ -6,13 +6,13 @@
 #include "gateway/controller/controller_impl.hpp"
 #include "gateway/controller/device_descriptions.hpp"
 #include "gateway/controller/simulated_bus.hpp"
+#include "gateway/controller/simulated_io.hpp"
 #include "rmac/fieldbus/canopen/bus_load.hpp"
 #include "rmac/fieldbus/canopen/canopen_interface.hpp"
 #include "rmac/fieldbus/gpio/gpio_interface.hpp"
 #include "rmac/fieldbus/modbus/io_interface.hpp"
 #include "rmac/fieldbus/modbus/spindle_interface.hpp"
 #include "rmac/fieldbus/simulated_interface.hpp"
-#include "rmac/fieldbus/simulated_io_interface.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -64,13 +64,6 @@ Expected<std::shared_ptr<DigitalIoInterface>> make_gpio(const sdk::ModuleChoice&
   return std::make_shared<fieldbus::gpio::GpioInterface>(std::move(*config), fieldbus::gpio::make_kernel_lines());
 }
 
-Expected<std::shared_ptr<DigitalIoInterface>> make_simulated_io(const sdk::ModuleChoice& choice, const ModuleLoader&) {
-  if (!choice.numbers.empty() || !choice.texts.empty()) {
-    return failure(MinorCode::InvalidParameterValue, "SimulatedIOInterface takes no parameters");
-  }
-  return std::make_shared<fieldbus::SimulatedIoInterface>();
-}
-
 /// Each parameter is a valve: its output, the input that follows it, 1 where that is on while the output is off, and
 /// the time between, in s.
 Expected<std::shared_ptr<DigitalIoInterface>> make_simulated_valves(const sdk::ModuleChoice& choice, double period_s) {
@@ -110,9 +103,11 @@ void add_built_in_interfaces(BusRegistry& registry, double period_s) {
   registry.add_control_interface("ModbusInterface", make_modbus);
   registry.add_io_interface("GPIOInterface", make_gpio);
   registry.add_io_interface("ModbusIOInterface", make_modbus_io);
-  registry.add_io_interface("SimulatedIOInterface", make_simulated_io);
   registry.add_io_interface("SimulatedValves", [period_s](const sdk::ModuleChoice& choice, const ModuleLoader&) {
     return make_simulated_valves(choice, period_s);
+  });
+  registry.add_io_interface("SimulatedIOInterface", [](const sdk::ModuleChoice& choice, const ModuleLoader&) {
+    return make_simulated_io(choice).map([](auto made) -> std::shared_ptr<DigitalIoInterface> { return made; });
   });
 }
 

@@ -30,7 +30,8 @@ Controller::Impl::Impl(ControllerOptions controller_options)
            [this](const sdk::ModuleChoice& choice) { return registry.check_control_interface(choice, loader(folder)); },
            [this](const sdk::ModuleChoice& choice) { return registry.check_io_interface(choice, loader(folder)); }}),
       rack(options.tools_folder),
-      cam(supervisor, *link, rack, [this] { return reset(); }) {
+      cam(supervisor, *link, rack, [this] { return reset(); }),
+      measuring(supervisor, *link, cam, options.stepped) {
   if (options.flight_recorder.wanted()) {
     recorder = std::make_unique<FlightRecorder>(options.flight_recorder, options.period_s, link->history);
   }
@@ -73,6 +74,9 @@ sdk::RmacConfig& Controller::config() noexcept {
 }
 sdk::RmacCam& Controller::cam() noexcept {
   return impl_->cam;
+}
+sdk::Measuring& Controller::measuring() noexcept {
+  return impl_->measuring;
 }
 
 ToolPort& Controller::tools() noexcept {

@@ -15,6 +15,7 @@
 #include "gateway/tools/tool.hpp"
 #include "rmac/motion/error.hpp"
 #include "rmac/motion/servo_loop.hpp"
+#include "rmac/sdk/measuring.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
 #include "rmac/sdk/rmac_config.hpp"
 
@@ -71,6 +72,7 @@ class Controller {
   [[nodiscard]] sdk::RmacConfig& config() noexcept;
   [[nodiscard]] sdk::RmacCam& cam() noexcept;
   [[nodiscard]] ToolPort& tools() noexcept;
+  [[nodiscard]] sdk::Measuring& measuring() noexcept;
 
   /// Modules of the mechanism about to be configured are looked for here first. Virtual: setpoints are reflected as
   /// joint values.

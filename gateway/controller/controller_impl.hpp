@@ -10,6 +10,7 @@
 #include "gateway/controller/servo_thread.hpp"
 #include "gateway/record/flight_recorder.hpp"
 #include "gateway/rmac_cam/cam.hpp"
+#include "gateway/rmac_cam/measuring_machine.hpp"
 #include "gateway/rmac_config/config_draft.hpp"
 
 namespace rmac::gateway {
@@ -32,6 +33,7 @@ struct Controller::Impl {
   void come_to_rest() noexcept;
   void tell_of_mechanism(std::string message);
 
+  void tell_cam(const sdk::DeviceObject* device, bool fresh);
   [[nodiscard]] Expected<> ready_for_change(const char* what);
   [[nodiscard]] Expected<> swap(Mechanism* next);
   [[nodiscard]] Expected<> switch_to(std::shared_ptr<Mechanism> next, bool keep_running);
@@ -63,6 +65,7 @@ struct Controller::Impl {
   ConfigDraft draft;
   ToolRack rack;
   Cam cam;
+  MeasuringMachine measuring;
 
   std::string folder;           ///< of the mechanism about to be configured
   std::string folder_in_force;  ///< of the one in force

@@ -37,10 +37,37 @@ const char* describe(StopCause cause) noexcept {
       return "the machine has come to rest: the one move that was to be done is done";
     case StopCause::Homed:
       return "the drives have found home, and the machine stands there";
+    case StopCause::HitByHand:
+      return "the probe touched, and the machine has come to rest; jog on";
+    case StopCause::UnexpectedHit:
+      return "the probe touched where nothing was expected, and the machine was stopped; its queue is empty. Look "
+             "what is in the way, and jog off it";
+    case StopCause::PartNotFound:
+      return "the search ended without a hit, so the part is not where it was looked for; the queue is empty. Look "
+             "where the part is, or give a longer search distance";
+    case StopCause::ProbeLost:
+      return "the probe lost its power during a search, and the machine was stopped; its queue is empty. Switch it on";
+    case StopCause::ProbeStuck:
+      return "the probe still touches after its way back, and the machine was stopped; its queue is empty. Jog it "
+             "free, or give a longer retract distance";
     case StopCause::RetraceEnded:
       return "the machine has come to rest at the end of its way back; FeedResume goes forward again";
   }
   return "the machine has come to rest";
+}
+
+MinorCode code_of(StopCause cause) noexcept {
+  switch (cause) {
+    case StopCause::UnexpectedHit:
+      return MinorCode::UnexpectedHit;
+    case StopCause::PartNotFound:
+      return MinorCode::PartNotFound;
+    case StopCause::ProbeLost:
+    case StopCause::ProbeStuck:
+      return MinorCode::ProbeNotArmed;
+    default:
+      return MinorCode::None;
+  }
 }
 
 Expected<> CycleSequencer::refuse_when_faulted(const char* what) const {
@@ -78,7 +105,9 @@ Expected<> CycleSequencer::start(sdk::CycleMode mode, const CycleObservation& se
 
 Expected<> CycleSequencer::check_positioning() const {
   if (auto fine = refuse_when_faulted("jog"); !fine) return fine;
-  if (positioning_) return failure(MinorCode::Other, "jog: another jog is under way; let it come to rest first");
+  if (positioning_)
+    return failure(MinorCode::Other,
+                   "jog: another jog is under way or coming to rest; jog again when the machine stands");
   if (state_ != CycleState::Idle) {
     return failure(MinorCode::Other,
                    fmt::format("jog: the machine is {}, a jog needs it Idle; stop the cycle first", to_string(state_)));
@@ -136,12 +165,22 @@ Expected<> CycleSequencer::stop() {
   return {};
 }
 
-Expected<> CycleSequencer::stop_and_clear() {
+Expected<> CycleSequencer::stop_and_clear(StopCause cause) {
   if (is_faulted(state_)) return {};
   clear_at_rest_ = true;
-  stop_cause_ = StopCause::StopNow;
+  stop_cause_ = cause;
   state_ = CycleState::Stopping;
   return {};
+}
+
+void CycleSequencer::touched() noexcept {
+  if (is_faulted(state_)) return;
+  if (!positioning_) {
+    ends_search_ = true;
+    return;
+  }
+  static_cast<void>(stop());
+  stop_cause_ = StopCause::HitByHand;
 }
 
 Expected<> CycleSequencer::hold() {
@@ -177,7 +216,7 @@ Expected<> CycleSequencer::reset() {
 
 void CycleSequencer::fault(CycleState to) noexcept {
   if (state_ != CycleState::EmergencyStop) state_ = to;
-  clear_at_rest_ = false;
+  clear_at_rest_ = ends_search_ = false;
 }
 
 void CycleSequencer::mechanism_changed(bool keep_running) noexcept {
@@ -188,6 +227,7 @@ void CycleSequencer::mechanism_changed(bool keep_running) noexcept {
     spindle_wait_ = false;
   }
   done_at_start_ = 0;
+  ends_search_ = false;
   commanded_ = PathCommand::Stop;
 }
 
@@ -198,11 +238,11 @@ void CycleSequencer::spindle_commanded(double timeout_s) noexcept {
 }
 
 PathCommand CycleSequencer::wanted(const CycleObservation& seen) noexcept {
-  if (state_ != CycleState::Running || homing_) return PathCommand::Stop;
+  if (state_ != CycleState::Running || homing_ || ends_search_) return PathCommand::Stop;
   // Motion under way is not interrupted by a spindle command: it began with the speed it needed.
   if (spindle_wait_ && !positioning_ && seen.at_rest) return PathCommand::Stop;
   if (retracing_) return PathCommand::Retrace;
-  if (mode_ == sdk::CycleMode::Automatic) return PathCommand::Run;
+  if (mode_ == sdk::CycleMode::Automatic || seen.measures) return PathCommand::Run;
   // The planner takes the move that is next when it is told: there must be one.
   return seen.moves_left > 0 ? PathCommand::RunOne : PathCommand::Stop;
 }
@@ -220,6 +260,10 @@ CycleSequencer::Verdict CycleSequencer::step(const CycleObservation& seen) noexc
     verdict.came_to_rest = stop_cause_;
     clear_at_rest_ = false;
   }
+  if (ends_search_ && seen.at_rest) {
+    ends_search_ = false;
+    verdict.clear_queue = true;
+  }
   if (state_ == CycleState::Running && retracing_ && seen.retraced) {
     state_ = CycleState::Holding;
     verdict.came_to_rest = StopCause::RetraceEnded;
@@ -230,7 +274,7 @@ CycleSequencer::Verdict CycleSequencer::step(const CycleObservation& seen) noexc
   }
   if (state_ != CycleState::Running) retracing_ = homing_ = false;
   if (state_ == CycleState::Running && !retracing_ && mode_ == sdk::CycleMode::Manual && seen.at_rest &&
-      (one_done_ || seen.moves_done > done_at_start_)) {
+      !seen.measures && (one_done_ || seen.moves_done > done_at_start_)) {
     state_ = CycleState::Idle;
     positioning_ = false;
     verdict.came_to_rest = StopCause::MoveDone;

@@ -22,13 +22,29 @@ struct CycleObservation {
   bool spindles_at_speed = true;
   bool follows = false;       ///< joints follow the plan
   std::uint32_t homings = 0;  ///< that the drives have completed
+  bool measures = false;      ///< what is left in the queue is a measurement, which counts as one move
 };
 
 /// Why the machine came to rest.
-enum class StopCause : std::uint8_t { CycleStop, StopNow, JogLapsed, JogEnded, MoveDone, RetraceEnded, Homed };
+enum class StopCause : std::uint8_t {
+  CycleStop,
+  StopNow,
+  JogLapsed,
+  JogEnded,
+  MoveDone,
+  RetraceEnded,
+  Homed,
+  HitByHand,
+  UnexpectedHit,
+  PartNotFound,
+  ProbeLost,
+  ProbeStuck
+};
 
 /// What happened, and what to do to go on.
 [[nodiscard]] const char* describe(StopCause cause) noexcept;
+/// The status that such a stop leaves; None where nothing went wrong.
+[[nodiscard]] MinorCode code_of(StopCause cause) noexcept;
 
 /// The machine's cycle states and what they mean for the path (contract "Cycle"):
 /// Idle → Running ⇄ Holding, any → Stopping → Idle, any → Faulted, left by a reset alone. A pure state machine: the
@@ -43,6 +59,8 @@ class CycleSequencer {
   /// A jog that lasts while it is renewed is under way, and not yet told to stop.
   [[nodiscard]] bool jogs() const noexcept { return state_ == CycleState::Running && jog_until_s_.has_value(); }
   void renew_jog(const CycleObservation& seen, double lasts_s) noexcept { jog_until_s_ = seen.t_s + lasts_s; }
+  /// A jog, or another move outside of the cycle, is under way.
+  [[nodiscard]] bool positions() const noexcept { return positioning_; }
   /// Has the drives home, from rest.
   [[nodiscard]] Expected<> start_homing(const CycleObservation& seen);
   [[nodiscard]] bool homes() const noexcept { return homing_; }
@@ -51,7 +69,9 @@ class CycleSequencer {
   /// Runs back what the planner readied; then the machine is Holding again.
   void retrace() noexcept;
   [[nodiscard]] Expected<> stop();
-  [[nodiscard]] Expected<> stop_and_clear();
+  [[nodiscard]] Expected<> stop_and_clear(StopCause cause = StopCause::StopNow);
+  /// The probe has touched: a jog ends; a search ends where it is, and the cycle goes on with what is queued then.
+  void touched() noexcept;
   [[nodiscard]] Expected<> hold();
   [[nodiscard]] Expected<> resume();
   /// Leaves Faulted or EmergencyStop; the path was emptied before.
@@ -90,6 +110,7 @@ class CycleSequencer {
   bool positioning_ = false;
   bool retracing_ = false;
   bool homing_ = false;
+  bool ends_search_ = false;  ///< at rest the rest of the queue, a search, is dropped
   std::uint32_t homings_before_ = 0;
   std::optional<double> jog_until_s_;
   bool spindle_wait_ = false;

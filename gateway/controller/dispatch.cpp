@@ -29,6 +29,7 @@ void Controller::Impl::deliver_samples_until(std::int64_t cycle) {
     waiting_samples.pop_front();
     for (const auto& listener : sample_listeners) listener(sample);
     ledger.read(sample, [this](const Event& event) { tell(event); });
+    measuring.read(sample, [this](Event event) { tell(std::move(event)); });
   }
 }
 
@@ -36,7 +37,13 @@ void Controller::Impl::tell_faults() {
   FaultRecord record;
   while (link->faults.pop(record)) {
     const Mechanism* mechanism = in_force && record.generation == generation ? in_force.get() : nullptr;
-    tell({Event::Kind::Fault, record.t_s, record.move_id, describe(record.fault, mechanism), record.cycle, {}});
+    tell({Event::Kind::Fault,
+          record.t_s,
+          record.move_id,
+          describe(record.fault, mechanism),
+          record.cycle,
+          {},
+          code_of(record.fault.kind)});
   }
 }
 
@@ -85,7 +92,7 @@ void Controller::Impl::dispatch() {
   using Kind = MotionSupervisor::QueueChange::Kind;
   for (const MotionSupervisor::QueueChange& change : news.queue) {
     if (change.kind == Kind::Added || change.kind == Kind::Still) {
-      ledger.add(change.move_id, change.kind == Kind::Still);
+      ledger.add(change.move_id, change.kind == Kind::Still, change.part);
       continue;
     }
     deliver_samples_until(change.cycle);
@@ -99,6 +106,7 @@ void Controller::Impl::dispatch() {
   tell_faults();
   for (const Event& event : news.events) tell(event);
   tell_records();
+  measuring.advance();
 }
 
 }  // namespace rmac::gateway

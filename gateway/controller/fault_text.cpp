@@ -182,4 +182,38 @@ std::string describe(const ServoFault& fault, const Mechanism* mechanism) {
                                          : ". Stop category 1: the drives brake, and lose their power at rest");
 }
 
+MinorCode code_of(ServoFault::Kind kind) noexcept {
+  using Kind = ServoFault::Kind;
+  switch (kind) {
+    case Kind::None:
+      return MinorCode::None;
+    case Kind::EmergencyStop:
+      return MinorCode::EmergencyStop;
+    case Kind::LimitSwitch:
+      return MinorCode::TravelLimit;
+    case Kind::VelocityBound:
+      return MinorCode::SpeedLimit;
+    case Kind::EncoderJump:
+    case Kind::SensorLost:
+      return MinorCode::Scale;
+    case Kind::DriveOffline:
+    case Kind::BusFailure:
+    case Kind::IoFailure:
+      return MinorCode::CommTimeout;
+    case Kind::EnableTimeout:
+    case Kind::HomingFailed:
+      return MinorCode::ResponseTimeout;
+    case Kind::FollowingError:
+    case Kind::TorqueBound:
+    case Kind::ForceLimit:
+    case Kind::ContactLost:
+    case Kind::CyclesLost:
+    case Kind::NotANumber:
+    case Kind::DriveFault:
+    case Kind::DriveDropped:
+      break;
+  }
+  return MinorCode::Other;
+}
+
 }  // namespace rmac::gateway

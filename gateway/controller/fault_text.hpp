@@ -11,4 +11,7 @@ namespace rmac::gateway {
 /// gone.
 [[nodiscard]] std::string describe(const ServoFault& fault, const Mechanism* mechanism);
 
+/// The status that it leaves (Appendix IV).
+[[nodiscard]] MinorCode code_of(ServoFault::Kind kind) noexcept;
+
 }  // namespace rmac::gateway

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -11,6 +12,8 @@
 #include "rmac/motion/move.hpp"
 #include "rmac/motion/path_segment.hpp"
 #include "rmac/motion/servo_fault.hpp"
+#include "rmac/motion/servo_loop.hpp"
+#include "rmac/sdk/measuring.hpp"
 
 namespace rmac::gateway {
 
@@ -57,6 +60,7 @@ struct CycleSample {
   std::array<std::int16_t, kMaxJoints> torque_permille{};  ///< of the rated one, measured
   std::array<double, 4> spindle_rpm{};
   std::uint64_t inputs = 0, outputs = 0;
+  ProbeReport probe;
   std::uint64_t moves_done = 0;  ///< since the mechanism went in
   std::uint64_t deadline_misses = 0;
   std::uint64_t samples_lost = 0;  ///< cycles that no listener heard of because the gateway was too slow
@@ -82,9 +86,11 @@ struct Event {
   Kind kind = Kind::Stopped;
   double t_s = 0;
   std::int64_t move_id = 0;
-  std::string message;     ///< for a person: what happened, where, what to do
-  std::int64_t cycle = 0;  ///< in which it happened, or was noticed off the servo thread
-  std::string record;      ///< name of the flight record that shows it; empty: none
+  std::string message;               ///< for a person: what happened, where, what to do
+  std::int64_t cycle = 0;            ///< in which it happened, or was noticed off the servo thread
+  std::string record;                ///< name of the flight record that shows it; empty: none
+  MinorCode code = MinorCode::None;  ///< the status that it leaves
+  std::optional<sdk::Hit> hit{};     ///< of Kind::Hit
 };
 
 /// Hears of a move as it is queued, and of the curves it has become: none when there is nothing to move.

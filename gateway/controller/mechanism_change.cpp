@@ -185,7 +185,7 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
         leave_fault();  // nothing is in force that could be at fault
       }
     }
-    cam.mechanism_changed(in_force ? &in_force->device : nullptr, false);
+    tell_cam(in_force ? &in_force->device : nullptr, false);
     before.reset();
     registry.stop_unused();
     return failure(done.error().code, message);
@@ -208,12 +208,17 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
       wishes.spindle_rpm[i] = std::clamp(wishes.spindle_rpm[i], -bound, bound);
     }
   });
-  cam.mechanism_changed(&in_force->device, fresh);
+  tell_cam(&in_force->device, fresh);
   draft.discard(&in_force->device);
   registry.stop_unused();
   tell_of_mechanism(
       fmt::format("{} is {}{}", device.name, fresh ? "loaded" : "configured", virtual_mode ? " in virtual mode" : ""));
   return {};
+}
+
+void Controller::Impl::tell_cam(const sdk::DeviceObject* device, bool fresh) {
+  cam.mechanism_changed(device, fresh);
+  measuring.mechanism_changed(device, fresh);
 }
 
 void Controller::Impl::tell_of_mechanism(std::string message) {
@@ -242,7 +247,7 @@ Expected<> Controller::Impl::take_out() {
   if (auto swapped = swap(nullptr); !swapped) return swapped;
   (void)supervisor.install(nullptr, generation, false);
   (void)cam.keep_mounted();
-  cam.mechanism_changed(nullptr, true);
+  tell_cam(nullptr, true);
   in_force.reset();
   draft.discard(nullptr);
   registry.stop_unused();
@@ -262,7 +267,7 @@ Expected<> Controller::Impl::reset() {
   if (in_force) {
     // What was planned begins where the machine no longer is.
     if (auto switched = switch_to(in_force->with_empty_path(), true); !switched) return switched;
-    cam.mechanism_changed(&in_force->device, false);
+    tell_cam(&in_force->device, false);
   }
   auto left = supervisor.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.reset(); });
   if (left && in_force) left = power_on();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 #include <utility>
@@ -45,6 +46,7 @@ CycleObservation MotionSupervisor::observe(const ServoStatus& status) {
   seen.faulted = status.state == ServoState::Faulted;
   seen.emergency_stop = seen.faulted && status.fault.kind == ServoFault::Kind::EmergencyStop;
   seen.spindles_at_speed = spindles_at_speed(status);
+  seen.measures = measurement_.pending() && seen.moves_left <= measurement_.steps();
   return seen;
 }
 
@@ -58,8 +60,51 @@ bool MotionSupervisor::spindles_at_speed(const ServoStatus& status) const {
 }
 
 void MotionSupervisor::settle(const ServoStatus& status) {
-  apply_verdict(sequencer_.step(observe(status)), status);
+  const CycleObservation seen = observe(status);
+  watch_probe(seen, status);
+  apply_verdict(sequencer_.step(seen), status);
   take_steps(status);
+}
+
+ProbeReport MotionSupervisor::probe(const ServoStatus& status) const {
+  return mechanism_->virtual_mode() ? simulated_probe_ : status.probe;
+}
+
+void MotionSupervisor::watch_probe(const CycleObservation& seen, const ServoStatus& status) {
+  if (!mechanism_) return;
+  if (status.generation != generation_) {
+    measurement_.abandon();
+    return;
+  }
+  if (is_faulted(sequencer_.state()) || (sequencer_.state() == CycleState::Stopping && sequencer_.clears_at_rest())) {
+    measurement_.abandon();
+  }
+  const auto stop = [&](StopCause cause) { static_cast<void>(sequencer_.stop_and_clear(cause)); };
+  switch (measurement_.step({seen.moves_left, seen.at_rest, probe(status)})) {
+    case Measurement::Verdict::Nothing:
+    case Measurement::Verdict::Done:
+      break;
+    case Measurement::Verdict::Touched:
+      // By hand a jog is meant: a program that runs meanwhile expects nothing.
+      if (measurement_.pending() || sequencer_.positions()) {
+        sequencer_.touched();
+      } else {
+        stop(StopCause::UnexpectedHit);
+      }
+      break;
+    case Measurement::Verdict::NotFound:
+      stop(StopCause::PartNotFound);
+      break;
+    case Measurement::Verdict::ProbeLost:
+      stop(StopCause::ProbeLost);
+      break;
+    case Measurement::Verdict::Unexpected:
+      stop(StopCause::UnexpectedHit);
+      break;
+    case Measurement::Verdict::StillTouching:
+      stop(StopCause::ProbeStuck);
+      break;
+  }
 }
 
 void MotionSupervisor::notice_fault() {
@@ -96,7 +141,10 @@ void MotionSupervisor::apply_verdict(const CycleSequencer::Verdict& verdict, con
           cycle_,
           {}});
   }
-  if (verdict.came_to_rest) note({Event::Kind::Stopped, t_s_, 0, describe(*verdict.came_to_rest), cycle_, {}});
+  if (verdict.came_to_rest) {
+    const StopCause cause = *verdict.came_to_rest;
+    note({Event::Kind::Stopped, t_s_, 0, describe(cause), cycle_, {}, code_of(cause)});
+  }
   if (jog_share_ != 1 && sequencer_.state() == CycleState::Idle) {
     jog_share_ = 1;
     apply_override();
@@ -162,6 +210,15 @@ void MotionSupervisor::wait_for_work(std::chrono::nanoseconds period) {
 Expected<> MotionSupervisor::prepare_move() {
   const Turn turn(*this);
   notice_fault();
+  if (measurement_.pending()) {
+    return failure(MinorCode::CommandQueueFull,
+                   "a point is being measured, or waits for CycleStart to be, and the next move begins where that "
+                   "ends; send it when the point is measured");
+  }
+  return ready_for_move();
+}
+
+Expected<> MotionSupervisor::ready_for_move() {
   if (!mechanism_) {
     return failure(MinorCode::Other, "there is no mechanism; load one with Device.Load before sending moves");
   }
@@ -196,9 +253,68 @@ Expected<> MotionSupervisor::prepare_move() {
 }
 
 Expected<bool> MotionSupervisor::add_move(const Move& move) {
+  return build_and_add({{&move, {}}}).map([](std::size_t moving) { return moving > 0; });
+}
+
+Expected<> MotionSupervisor::add_measurement(const std::optional<Move>& approach, const Move& search) {
+  if (tools_now().wanted) {
+    return failure(
+        MinorCode::CommandQueueFull,
+        "a point is measured with the tool that is in the spindle, and a tool change is queued; send it when "
+        "the tool is changed");
+  }
+  std::vector<PartOfMove> parts;
+  if (approach) parts.push_back({&*approach, {.first = true, .last = false}});
+  parts.push_back({&search, {.first = !approach, .last = false}});
+  return build_and_add(parts, [this](std::size_t moving) { measurement_.begin(moving); }).map([](std::size_t) {});
+}
+
+Expected<> MotionSupervisor::add_retract(const Move& move) {
+  {
+    const Turn turn(*this);
+    notice_fault();
+    if (measurement_.phase() != Measurement::Phase::Standing) return {};
+    if (auto ready = ready_for_move(); !ready) return ready;
+  }
+  return build_and_add({{&move, {.first = false, .last = true}}}, [this](std::size_t) { measurement_.retract(); })
+      .map([](std::size_t) {});
+}
+
+Measurement::Phase MotionSupervisor::measurement() {
+  const Turn turn(*this);
+  return measurement_.phase();
+}
+
+void MotionSupervisor::expect_hits_by_hand(bool expected) {
+  const Turn turn(*this);
+  measurement_.expect_by_hand(expected);
+}
+
+bool MotionSupervisor::expects_hits_by_hand() {
+  const Turn turn(*this);
+  return measurement_.expects_by_hand();
+}
+
+void MotionSupervisor::simulate_probe(bool touching) {
+  const Turn turn(*this);
+  if (touching && !simulated_probe_.touching) ++simulated_probe_.hits;
+  simulated_probe_.touching = touching;
+}
+
+Expected<std::size_t> MotionSupervisor::build_and_add(const std::vector<PartOfMove>& parts,
+                                                      const std::function<void(std::size_t)>& then) {
   // The builder is the gateway thread's alone; building may take long, and planning goes on meanwhile.
-  auto segments = mechanism_->builder.build(move);
-  if (!segments) return tl::unexpected(segments.error());
+  std::optional<PathBuilder> before;
+  if (parts.size() > 1) before = mechanism_->builder;
+  std::vector<PathSegments> built;
+  for (const PartOfMove& part : parts) {
+    auto segments = mechanism_->builder.build(*part.move);
+    if (!segments) {
+      if (before) mechanism_->builder = std::move(*before);
+      return tl::unexpected(segments.error());
+    }
+    built.push_back(std::move(*segments));
+  }
   const Turn turn(*this);
   // Built to follow a queue that is gone.
   if (rebase_ || (sequencer_.state() == CycleState::Stopping && sequencer_.clears_at_rest())) {
@@ -206,28 +322,37 @@ Expected<bool> MotionSupervisor::add_move(const Move& move) {
     return failure(MinorCode::Other,
                    fmt::format("move {}: the machine was stopped and its queue emptied before the move was ready; "
                                "nothing was queued",
-                               move.id));
+                               parts.front().move->id));
   }
-  const bool moves = !segments->empty();
-  if (queue_listener_) queue_listener_(move, *segments);
+  std::size_t moving = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (add_built(parts[i], std::move(built[i]))) ++moving;
+  }
+  if (then) then(moving);
+  return moving;
+}
+
+bool MotionSupervisor::add_built(const PartOfMove& part, PathSegments segments) {
+  const bool moves = !segments.empty();
+  if (queue_listener_) queue_listener_(*part.move, segments);
   if (behind_.empty()) {
-    hand_on(move.id, std::move(*segments));
+    hand_on({part.move->id, part.part, std::move(segments)});
   } else {
-    behind_.emplace_back(QueuedPath{move.id, std::move(*segments)});
+    behind_.emplace_back(QueuedPath{part.move->id, part.part, std::move(segments)});
   }
   last_added_ = std::chrono::steady_clock::now();
   return moves;
 }
 
-void MotionSupervisor::hand_on(std::int64_t move_id, std::vector<std::shared_ptr<const PathSegment>> segments) {
-  const bool moves = !segments.empty();
-  mechanism_->planner.add(std::move(segments));
+void MotionSupervisor::hand_on(QueuedPath path) {
+  const bool moves = !path.segments.empty();
+  mechanism_->planner.add(std::move(path.segments));
   if (moves) {
     ++moves_added_;
   } else {
     still_moves_.push_back(moves_added_);
   }
-  news_.queue.push_back({moves ? QueueChange::Kind::Added : QueueChange::Kind::Still, move_id, 0});
+  news_.queue.push_back({moves ? QueueChange::Kind::Added : QueueChange::Kind::Still, path.move_id, 0, path.part});
 }
 
 Expected<> MotionSupervisor::run_positioning(const Move& move, std::optional<double> share) {
@@ -288,6 +413,12 @@ Expected<> MotionSupervisor::require_rest(const char* what) {
   if (!mechanism_) return {};
   const CycleState state = sequencer_.state();
   const CycleObservation seen = observe(status());
+  if (measurement_.pending()) {
+    return failure(MinorCode::Other,
+                   fmt::format("{} needs the machine at rest, and a point is being measured; wait until that is done, "
+                               "or drop it with StopNow",
+                               what));
+  }
   if (!seen.at_rest || state == CycleState::Stopping) {
     return failure(MinorCode::Other,
                    fmt::format("{} needs the machine at rest, and it is moving; wait for its moves or "
@@ -345,9 +476,10 @@ std::size_t MotionSupervisor::moves_left() {
 
 std::size_t MotionSupervisor::count_moves() {
   if (!mechanism_) return 0;
-  const std::size_t left = mechanism_->planner.moves_left();
+  std::size_t left = mechanism_->planner.moves_left();
   // A move without motion is done when those before it are.
   while (!still_moves_.empty() && still_moves_.front() + left <= moves_added_) still_moves_.pop_front();
+  if (measurement_.pending()) left = left - std::min(left, measurement_.steps()) + 1;  // the client's is one
   return left + still_moves_.size() + steps_left();
 }
 
@@ -380,6 +512,8 @@ std::shared_ptr<Mechanism> MotionSupervisor::install(std::shared_ptr<Mechanism> 
   rebase_ = true;
   apply_override();
   forget_moves();
+  measurement_.abandon();
+  if (mechanism_) measurement_.count_from(probe(this->status()).hits);
   sequencer_.mechanism_changed(keep_running);
   news_.queue.push_back({QueueChange::Kind::Replaced, 0, status().progress.cycle});
   settle(status());

@@ -8,9 +8,11 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "gateway/controller/cycle_sequencer.hpp"
+#include "gateway/controller/measurement.hpp"
 #include "gateway/controller/queue_step.hpp"
 #include "gateway/controller/servo_link.hpp"
 #include "gateway/tools/tool.hpp"
@@ -60,6 +62,17 @@ class MotionSupervisor {
 
   /// Refuses when a move cannot be taken now; then readies `builder()` to begin where the machine stands, if it must.
   [[nodiscard]] Expected<> prepare_move();
+  /// Adds a point to be measured: the approach, if there is one, and the search, which both begin and end at rest.
+  /// Nothing can be queued behind it until it is done, because it ends where it finds the part.
+  [[nodiscard]] Expected<> add_measurement(const std::optional<Move>& approach, const Move& search);
+  /// Once the measurement stands after its hit: adds the way back from there.
+  [[nodiscard]] Expected<> add_retract(const Move& move);
+  [[nodiscard]] Measurement::Phase measurement();
+  /// Hits of a person who jogs are expected.
+  void expect_hits_by_hand(bool expected);
+  [[nodiscard]] bool expects_hits_by_hand();
+  /// In virtual mode, where nothing can touch: the probe is deflected, or let go.
+  void simulate_probe(bool touching);
   /// Builds and adds a move that `prepare_move` let through. False when there is nothing to move: such a move is done
   /// as soon as those before it are.
   [[nodiscard]] Expected<bool> add_move(const Move& move);
@@ -105,6 +118,7 @@ class MotionSupervisor {
     Kind kind = Kind::Added;
     std::int64_t move_id = 0;
     std::int64_t cycle = 0;
+    MovePart part{};
   };
   struct News {
     std::vector<QueueChange> queue;
@@ -128,6 +142,17 @@ class MotionSupervisor {
     MotionSupervisor& supervisor_;
   };
 
+  [[nodiscard]] Expected<> ready_for_move();
+  struct PartOfMove {
+    const Move* move;
+    MovePart part;
+  };
+  /// All of them or none; how many have motion. `then` runs with that before the planner sees them.
+  [[nodiscard]] Expected<std::size_t> build_and_add(const std::vector<PartOfMove>& parts,
+                                                    const std::function<void(std::size_t)>& then = {});
+  [[nodiscard]] bool add_built(const PartOfMove& part, PathSegments segments);
+  void watch_probe(const CycleObservation& seen, const ServoStatus& status);
+  [[nodiscard]] ProbeReport probe(const ServoStatus& status) const;
   void begin_where_it_stands();
   [[nodiscard]] ServoStatus status() const noexcept { return link_.status.read(); }
   [[nodiscard]] CycleObservation observe(const ServoStatus& status);
@@ -139,7 +164,7 @@ class MotionSupervisor {
   /// Of what waits behind a step: moves and tool changes.
   [[nodiscard]] std::size_t steps_left() const;
   /// A move's turn has come to be planned.
-  void hand_on(std::int64_t move_id, std::vector<std::shared_ptr<const PathSegment>> segments);
+  void hand_on(QueuedPath path);
   void take_steps(const ServoStatus& status);
   // Each begins or goes on with its step; true when that is done.
   bool take(QueuedPath& path, const CycleObservation& seen);
@@ -166,6 +191,8 @@ class MotionSupervisor {
   std::shared_ptr<Mechanism> mechanism_;
   std::uint64_t generation_ = 0;
   CycleSequencer sequencer_;
+  Measurement measurement_;
+  ProbeReport simulated_probe_{.ready = true, .touching = false, .hits = 0, .hit_before_s = 0};
   CycleState reported_state_ = CycleState::Idle;
   ServoWishes wishes_;
   bool rebase_ = true;  ///< the next move begins where the machine stands, not where the queue ended

@@ -23,7 +23,7 @@ void MoveLedger::read(const CycleSample& sample, const std::function<void(const 
   };
   while (!moves_.empty() && (moves_.front().still || done_ < sample.moves_done)) {
     start(moves_.front());
-    tell(make_event(Event::Kind::MoveDone, sample, moves_.front().id));
+    if (moves_.front().tells_done) tell(make_event(Event::Kind::MoveDone, sample, moves_.front().id));
     if (!moves_.front().still) ++done_;
     moves_.pop_front();
   }

@@ -4,7 +4,7 @@
 #include <deque>
 #include <functional>
 
-#include "gateway/controller/machine_state.hpp"
+#include "gateway/controller/motion_supervisor.hpp"
 
 namespace rmac::gateway {
 
@@ -13,7 +13,10 @@ namespace rmac::gateway {
 class MoveLedger {
  public:
   /// `still`: the move has no motion, so no sample counts it; it is done in its turn.
-  void add(std::int64_t move_id, bool still) { moves_.push_back({move_id, false, still}); }
+  /// Of a move in parts, the first one tells that it began, the last one that it is done.
+  void add(std::int64_t move_id, bool still, MovePart part = {}) {
+    moves_.push_back({move_id, !part.first, still, part.last});
+  }
   /// What is not done will not be done.
   void clear() { moves_.clear(); }
   /// Another mechanism: its count begins at zero.
@@ -26,8 +29,9 @@ class MoveLedger {
  private:
   struct Entry {
     std::int64_t id;
-    bool started;
+    bool started;  ///< told
     bool still;
+    bool tells_done;
   };
   std::deque<Entry> moves_;
   std::uint64_t done_ = 0;

@@ -15,10 +15,18 @@ namespace rmac::gateway {
 // What a tool change is made of, and what waits behind it. Each step but a path is taken at rest, when all before it is
 // done, and while the cycle runs.
 
+/// Of a client's move that is several of the planner's.
+struct MovePart {
+  bool first = true, last = true;
+};
+
+using PathSegments = std::vector<std::shared_ptr<const PathSegment>>;
+
 /// Segments of one move: none where there is nothing to move.
 struct QueuedPath {
   std::int64_t move_id = 0;
-  std::vector<std::shared_ptr<const PathSegment>> segments;
+  MovePart part;
+  PathSegments segments;
 };
 /// Spindles stop, and `outputs_off` (the coolant) go off. From here on nobody can say which tool is in the spindle.
 struct BeginToolChange {

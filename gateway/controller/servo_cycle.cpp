@@ -70,6 +70,7 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
   status_.follows = report_.follows;
   status_.moving = (report_.follows && setpoint.moving) || report_.state == ServoState::Homing;
   status_.homings = report_.homings;
+  status_.probe = report_.probe;
   if (report_.follows) status_.moves_done += setpoint.moves_done;
   status_.joint_count = static_cast<std::uint32_t>(loop.joint_count());
   status_.axis_count = static_cast<std::uint32_t>(loop.axis_count());
@@ -127,6 +128,7 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
     sample_.torque_permille = report_.torque_permille;
     std::copy(report_.spindle_rpm.begin(), report_.spindle_rpm.end(), sample_.spindle_rpm.begin());
     sample_.inputs = report_.inputs;
+    sample_.probe = report_.probe;
     sample_.outputs = wishes.outputs;
     sample_.moves_done = status_.moves_done;
   }

@@ -35,6 +35,7 @@ struct ServoStatus {
   bool moving = false;
   std::uint64_t moves_done = 0;
   std::uint32_t homings = 0;
+  ProbeReport probe;
   std::uint32_t joint_count = 0;
   std::uint32_t axis_count = 0;
   std::array<double, kMaxJoints> position_set{};

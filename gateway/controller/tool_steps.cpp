@@ -92,7 +92,7 @@ void MotionSupervisor::take_steps(const ServoStatus& status) {
 }
 
 bool MotionSupervisor::take(QueuedPath& path, const CycleObservation& /*seen*/) {
-  hand_on(path.move_id, std::move(path.segments));
+  hand_on(std::move(path));
   return true;
 }
 

@@ -189,6 +189,17 @@ std::vector<sdk::ToolChangeStep> tool_change(const Json& list) {
   return result;
 }
 
+sdk::Probing probing(const Json& file) {
+  const Json given = file.value("Probing", Json::object());
+  sdk::Probing result;
+  result.prehit_distance_mm = number(given, "PrehitDistance", result.prehit_distance_mm);
+  result.search_distance_mm = number(given, "SearchDistance", result.search_distance_mm);
+  result.retract_distance_mm = number(given, "RetractDistance", result.retract_distance_mm);
+  result.scan_speed_mm_s = number(given, "ScanSpeed", result.scan_speed_mm_s);
+  result.settle_time_s = number(given, "SettleTime", result.settle_time_s);
+  return result;
+}
+
 sdk::DeviceObject device_object(const Json& file) {
   sdk::DeviceObject device;
   device.name = text(file, "MechanismName");
@@ -213,6 +224,8 @@ sdk::DeviceObject device_object(const Json& file) {
   device.held_joints = joints(file.value("HeldJoints", Json::array()));
   device.actuators = actuators(file["Actuators"]);
   device.spindles = spindles(file.value("Spindles", Json::array()));
+  device.overlay = file.value("Overlay", false);
+  device.probing = probing(file);
   device.kinematics = module_choice(file["Kinematics"]);
   device.actuator_map = module_choice(file["ActuatorMap"]);
   device.digital_control_interface = module_choice(file["DigitalControlInterface"]);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -10,12 +11,42 @@
 
 namespace rmac::gateway {
 
+namespace {
+
+/// What an overlay lies over: the mechanism that it borrows everything from.
+struct Base {
+  sdk::DeviceObject device;
+  std::string folder;  ///< of its modules
+};
+
+/// `role` on the joints, drives and interfaces of `base`.
+Expected<sdk::DeviceObject> overlaid(const sdk::DeviceObject& base, const sdk::DeviceObject& role) {
+  if (role.type == "CMM" && !base.inputs.contains("Probe")) {
+    return failure(
+        MinorCode::ProbeNotArmed,
+        fmt::format("{} has no probe for it to measure with: its DigitalIOInterface has no input named Probe",
+                    base.name));
+  }
+  sdk::DeviceObject made = base;
+  made.name = role.name;
+  made.device_driver = role.device_driver;
+  made.driver_version = role.driver_version;
+  made.type = role.type;
+  made.max_feedrate_mm_min = std::min(base.max_feedrate_mm_min, role.max_feedrate_mm_min);
+  made.overlay = true;
+  made.probing = role.probing;
+  return made;
+}
+
+}  // namespace
+
 struct DeviceHost::Impl {
   struct Loaded {
     std::shared_ptr<sdk::DeviceDriver> driver;
     std::string driver_build_id;
     sdk::DeviceObject database;
     sdk::DeviceObject wanted;
+    std::optional<Base> base{};  ///< of an overlay
   };
 
   /// One of Appendix III's functions: the driver drafts from what is wanted, and the draft goes in.
@@ -23,10 +54,17 @@ struct DeviceHost::Impl {
   Expected<> configure(Configure&& configure_part);
   Expected<Loaded*> require_loaded();
   Expected<> load(const std::string& what, const std::filesystem::path& device_json, bool virtual_mode);
-  Expected<Loaded> configure_anew(const std::filesystem::path& device_json);
+  Expected<Loaded> configure_anew(const std::filesystem::path& device_json, const std::optional<Base>& base_before);
   Expected<> require_verified(const std::filesystem::path& device_json) const;
   /// Why `what` is not loaded, and what is instead.
   tl::unexpected<Error> not_loaded(const std::string& what, const Error& why) const;
+  /// What an overlay that is loaded now would lie over.
+  [[nodiscard]] std::optional<Base> base() const {
+    if (!loaded) return {};
+    if (loaded->base) return loaded->base;
+    if (loaded->database.overlay) return {};
+    return Base{loaded->database, controller.mechanism_folder()};
+  }
 
   DeviceDriverManager& manager;
   Controller& controller;
@@ -38,11 +76,18 @@ DeviceHost::DeviceHost(DeviceDriverManager& manager, Controller& controller, con
     : impl_(new Impl{manager, controller, verification, std::nullopt}) {}
 DeviceHost::~DeviceHost() = default;
 
-Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(const std::filesystem::path& device_json) {
+Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(const std::filesystem::path& device_json,
+                                                                    const std::optional<Base>& base_before) {
   auto device = read_device_database(device_json);
   if (!device) return tl::unexpected(device.error());
   auto driver = controller.load_device_driver({device->device_driver, {}, {}});
   if (!driver) return tl::unexpected(driver.error());
+  std::optional<Base> under = device->overlay ? base_before : std::nullopt;
+  if (under) {
+    device = overlaid(under->device, *device);
+    if (!device) return tl::unexpected(device.error());
+    controller.set_mechanism_folder(under->folder, controller.virtual_mode());
+  }
   sdk::RmacConfig& config = controller.config();
   auto done = config.begin(*device)
                   .and_then([&] { return driver->object->configure_motion_planner(*device, config); })
@@ -50,7 +95,7 @@ Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(const std::f
                   .and_then([&] { return driver->object->configure_digital_control_interface(*device, config); })
                   .and_then([&] { return config.apply(); });
   if (!done) return tl::unexpected(done.error());
-  return Loaded{std::move(driver->object), driver->build_id, *device, *device};
+  return Loaded{std::move(driver->object), driver->build_id, *device, *device, std::move(under)};
 }
 
 Expected<> DeviceHost::Impl::require_verified(const std::filesystem::path& device_json) const {
@@ -96,8 +141,9 @@ Expected<> DeviceHost::Impl::load(const std::string& what, const std::filesystem
   if (auto verified = require_verified(device_json); !verified) return not_loaded(what, verified.error());
   const std::string folder_before = controller.mechanism_folder();
   const bool virtual_before = controller.virtual_mode();
+  const std::optional<Base> base_before = base();
   controller.set_mechanism_folder(device_json.parent_path().string(), virtual_mode);
-  auto made = configure_anew(device_json);
+  auto made = configure_anew(device_json, base_before);
   if (!made) {
     controller.set_mechanism_folder(folder_before, virtual_before);
     controller.discard_draft();

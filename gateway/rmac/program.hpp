@@ -37,6 +37,9 @@ struct Program {
   bool loads_mechanism = false;
 };
 
+[[nodiscard]] inline bool measures(const std::string& method) {
+  return method == "RMAC_CAM.AutoMeasure";
+}
 [[nodiscard]] Timing timing_of(const std::string& method);
 
 /// Reads and checks the whole file before anything moves ("-" is standard input). An error names file and line.

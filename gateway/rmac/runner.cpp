@@ -144,6 +144,13 @@ Result<> Runner::submit(const Program& program, const Request& request) {
     unsettled_ = false;
   }
   const bool is_move = request.timing == Timing::Move;
+  if (measuring_ && started_) {
+    // A measured point ends where the part is: what comes next begins there.
+    if (auto measured = wait([&] { return unanswered_ == 0 && unfinished_.empty(); }); !measured) {
+      return measured;
+    }
+  }
+  measuring_ = measures(request.method);
   if (is_move) {
     if (auto ready = before_move(program); !ready) {
       return ready;

@@ -78,8 +78,9 @@ class Runner {
   double last_done_s_ = 0, last_sample_s_ = 0;
   std::chrono::milliseconds renew_every_ = std::chrono::hours(1);  ///< so that waiting is not taken for hanging
   bool leased_ = false;                                            ///< this client holds motion authority
-  bool started_ = false;   ///< the program's cycle was started, so moves become done
-  bool unsettled_ = true;  ///< something acted on the machine since the last move: its rest must be looked at
+  bool started_ = false;    ///< the program's cycle was started, so moves become done
+  bool unsettled_ = true;   ///< something acted on the machine since the last move: its rest must be looked at
+  bool measuring_ = false;  ///< the last request measures a point
   bool watching_ = false;
   bool rest_told_ = false;  ///< the machine came to rest with moves not done
 };

@@ -78,6 +78,7 @@ Result<> Simulator::submit(const Program& program, Request& request) {
     if (auto started = start_cycle(); !started) return started;
   }
   if (auto room = make_room(request); !room) return room;
+  measuring_ = measures(request.method);
   if (is_move) unfinished_.push_back({request.move_id, request.line, request.tool_change});
   started_ = started_ || request.timing == Timing::Start;
   unsettled_ = request.timing == Timing::Settled || (unsettled_ && request.timing == Timing::Stream);
@@ -85,6 +86,8 @@ Result<> Simulator::submit(const Program& program, Request& request) {
 }
 
 Result<> Simulator::make_room(const Request& request) {
+  // A measured point ends where the part is: what comes next begins there.
+  if (measuring_ && started_) return run_until([this] { return unfinished_.empty(); });
   if (request.timing == Timing::Move && started_) {
     const auto capacity = static_cast<int>(simulation_.queue_capacity());
     return run_until([&] { return simulation_.controller().cam().moves_in_buffer() < capacity; });
@@ -187,7 +190,7 @@ void Simulator::take(const gateway::Event& event) {
     if (unfinished_.empty() || !unfinished_.front().tool_change) return;
     unfinished_.pop_front();
     ++report_.tool_changes;
-  } else if (event.kind == Kind::Fault && failure_.empty()) {
+  } else if ((event.kind == Kind::Fault || event.code != MinorCode::None) && failure_.empty()) {
     failure_ = event.message;
   }
 }

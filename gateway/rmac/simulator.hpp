@@ -67,8 +67,9 @@ class Simulator {
   std::string failure_;
   bool moving_ = false;
   bool tool_asked_for_ = false;
-  bool started_ = false;   ///< the cycle was started, so moves become done
-  bool unsettled_ = true;  ///< something acted on the machine since the last move
+  bool started_ = false;    ///< the cycle was started, so moves become done
+  bool unsettled_ = true;   ///< something acted on the machine since the last move
+  bool measuring_ = false;  ///< the last request measures a point
 };
 
 }  // namespace rmac::cli

@@ -78,13 +78,25 @@ class Cam final : public sdk::RmacCam, public ToolPort {
   Expected<> confirm_tool(int number) override;
   /// Writes down what is in the spindle now.
   [[nodiscard]] Expected<> keep_mounted();
+  /// What the measuring part of RMAC_CAM is made of. A path move at a speed of its own, in mm/s, bounded as feeds are.
+  [[nodiscard]] Expected<Move> path_move_at(const char* function, std::int64_t id, const Geometry& geometry,
+                                            double speed_mm_s) const;
+  /// Queues a move of all joints together, at a speed of the linear ones together, or of all where none moves.
+  [[nodiscard]] Expected<> queue_joints_at(const char* function, std::int64_t id, const JointTargetGeometry& target,
+                                           double speed);
+  [[nodiscard]] Expected<std::size_t> find_joint(int joint, const char* function) const;
+  [[nodiscard]] Expected<std::size_t> find_spindle(int spindle, const char* function) const;
+  /// Where the tool is meant to be now, in the part frame; and in the machine frame.
+  [[nodiscard]] ToolPose tool_pose_set() const;
+  [[nodiscard]] ToolPose tool_pose_in_machine() const;
+  /// Of these joints, in the part frame.
+  [[nodiscard]] ToolPose tool_pose_at(std::span<const double> joints) const;
 
  private:
   static constexpr double kSecondsPerMinute = 60;
   static constexpr const char* kCoolantOutput = "Coolant";
 
   [[nodiscard]] Expected<> require_mechanism(const char* function) const;
-  [[nodiscard]] Expected<std::size_t> find_spindle(int spindle, const char* function) const;
   [[nodiscard]] Expected<> check_accel(const char* function, double mm_s2, double bound_mm_s2) const;
   [[nodiscard]] Expected<> set_frames(const char* function, const Frames& frames);
   [[nodiscard]] Frames frames() const { return supervisor_.wishes().frames; }
@@ -99,7 +111,6 @@ class Cam final : public sdk::RmacCam, public ToolPort {
   /// As `ToolChange` of device.json says; leaves the builder where the steps leave the machine.
   [[nodiscard]] Expected<std::vector<QueueStep>> change_by_changer(int old, const Tool& tool);
   [[nodiscard]] Expected<QueueStep> changer_step(const sdk::ToolChangeStep& step, int number);
-  [[nodiscard]] Expected<std::size_t> find_joint(int joint, const char* function) const;
   [[nodiscard]] Expected<> set_joint_accel(std::vector<double>& accel, const char* function, int joint, double value);
   /// Joints under force control hold their positions.
   void let_go_of_forces();
@@ -109,8 +120,6 @@ class Cam final : public sdk::RmacCam, public ToolPort {
   [[nodiscard]] Move make_move(std::int64_t id, const Geometry& geometry) const;
   /// A straight positioning move of the tool tip from where it stands.
   [[nodiscard]] Move make_straight_move(const ToolPose& target) const;
-  /// Where the tool is meant to be now, in the part frame.
-  [[nodiscard]] ToolPose tool_pose_set() const;
 
   /// What a jog by velocity moves, and at what speed when it is not slowed down.
   struct Jog {

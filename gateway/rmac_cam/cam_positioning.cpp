@@ -80,14 +80,77 @@ Expected<> Cam::home() {
       make_joint_move(kPositioningMoveId, JointTargetGeometry{std::vector<double>(count, 0.0)}, now.position_set));
 }
 
-ToolPose Cam::tool_pose_set() const {
+ToolPose Cam::tool_pose_in_machine() const {
   // Not from a sample: frames set just now are not in it yet.
   const ServoStatus now = link_.status.read();
   const Frames frames = this->frames();
   ToolPose at;
   supervisor_.mechanism()->planner_model.kinematics->forward({now.position_set.data(), now.joint_count}, frames.tool,
                                                              at);
+  return at;
+}
+
+ToolPose Cam::tool_pose_set() const {
+  return apply_to_pose(inverse(frames().part), tool_pose_in_machine());
+}
+
+ToolPose Cam::tool_pose_at(std::span<const double> joints) const {
+  const Frames frames = this->frames();
+  ToolPose at;
+  supervisor_.mechanism()->planner_model.kinematics->forward(joints, frames.tool, at);
   return apply_to_pose(inverse(frames.part), at);
+}
+
+Expected<Move> Cam::path_move_at(const char* function, std::int64_t id, const Geometry& geometry,
+                                 double speed_mm_s) const {
+  if (auto loaded = require_mechanism(function); !loaded) return tl::unexpected(loaded.error());
+  if (!std::isfinite(speed_mm_s) || !(speed_mm_s > 0)) {
+    return failure(MinorCode::InvalidParameterValue, fmt::format("{}: the speed must be above 0 mm/s", function));
+  }
+  if (const double fastest = max_feedrate_mm_min_ / kSecondsPerMinute; speed_mm_s > fastest) {
+    return failure(MinorCode::SpeedLimit,
+                   fmt::format("{}: {} mm/s is above the maximum feed of {} mm/s", function, speed_mm_s, fastest));
+  }
+  Move move = make_move(id, geometry);
+  move.feed_mm_s = speed_mm_s;
+  return move;
+}
+
+Expected<> Cam::queue_joints_at(const char* function, std::int64_t id, const JointTargetGeometry& target,
+                                double speed) {
+  if (auto loaded = require_mechanism(function); !loaded) return loaded;
+  const std::size_t count = device_->joints.size();
+  if (target.joints.size() != count) {
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("{}: {} positions are given, and the mechanism has {} joints", function,
+                               target.joints.size(), count));
+  }
+  if (!std::isfinite(speed) || !(speed > 0)) {
+    return failure(MinorCode::InvalidParameterValue, fmt::format("{}: the speed must be above 0", function));
+  }
+  if (auto ready = supervisor_.prepare_move(); !ready) return ready;
+  const std::span<const double> from = supervisor_.mechanism()->builder.end_joints();
+  double linear = 0, all = 0;
+  for (std::size_t j = 0; j < count; ++j) {
+    const double way = target.joints[j] - from[j];
+    all = std::hypot(all, way);
+    if (device_->joints[j].limits.type != JointType::Rotary) linear = std::hypot(linear, way);
+  }
+  const double takes_s = (linear > 0 ? linear : all) / speed;
+  Move move = make_joint_move(id, target, from);
+  double fraction = 0;
+  for (std::size_t j = 0; j < count && takes_s > 0; ++j) {
+    const JointLimits& joint = device_->joints[j].limits;
+    const double wanted = std::abs(target.joints[j] - from[j]) / takes_s;
+    if (wanted > joint.max_speed * (1 + 1e-12)) {
+      return failure(MinorCode::SpeedLimit,
+                     fmt::format("{}: joint {} would go at {:.6g} a second, and its limit is {:.6g}", function,
+                                 joint.name, wanted, joint.max_speed));
+    }
+    fraction = std::max(fraction, wanted / joint.max_speed);
+  }
+  if (fraction > 0) move.joint_speed_fraction = std::min(fraction, 1.0);
+  return supervisor_.add_move(move).map([](bool) {});
 }
 
 Move Cam::make_straight_move(const ToolPose& target) const {

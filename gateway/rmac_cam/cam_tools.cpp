@@ -74,7 +74,7 @@ Expected<QueueStep> Cam::changer_step(const sdk::ToolChangeStep& step, int numbe
     Move move = make_joint_move(kPositioningMoveId, JointTargetGeometry{step.joints}, builder.end_joints());
     move.joint_speed_fraction = 1;
     return builder.build(move).map([](auto&& segments) {
-      return QueueStep(QueuedPath{kPositioningMoveId, std::move(segments)});
+      return QueueStep(QueuedPath{kPositioningMoveId, {}, std::move(segments)});
     });
   }
   if (step.kind == Kind::Await) {

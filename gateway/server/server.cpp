@@ -191,7 +191,11 @@ void Server::on_sample(const CycleSample& sample) {
 }
 
 void Server::on_event(const Event& event) {
-  if (event.kind == Event::Kind::Fault) dispatcher_.status().fail(MinorCode::Other);
+  if (event.code != MinorCode::None) {
+    dispatcher_.status().fail(event.code);
+  } else if (event.kind == Event::Kind::Fault) {
+    dispatcher_.status().fail(MinorCode::Other);
+  }
   const std::string line = event_notification(event);
   for (const auto& [id, connection] : connections_) connection->push_event(line);
 }

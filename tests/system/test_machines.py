@@ -64,7 +64,7 @@ class Machines(unittest.TestCase):
         self.assertTrue(machines["TarusXYZCA"]["Fits"])
         self.assertIn("joint X", machines["SuginoXYZAC"]["WhyNot"])
         self.assertIn("50.0000 mm beyond", machines["SuginoXYZAC"]["WhyNot"])
-        self.assertIn("no measuring functions", machines["CMM"]["WhyNot"])
+        self.assertIn("joint X", machines["CMM"]["WhyNot"])
 
     def test_quotes_in_a_search_stay_text(self):
         self.assertEqual(self.names("--type", "Mill' OR '1'='1"), set())

@@ -82,7 +82,7 @@ bool GpioInterface::exchange(std::uint64_t outputs, std::uint64_t& inputs) noexc
     const Contact& contact = contacts_[edge.line];
     signals_[contact.signal].edge(contact.contact, edge.high != contact.inverted, edge.at);
   }
-  const Time now = port_->now();
+  const Time now = looked_ = port_->now();
   std::uint64_t active = 0;
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     if (signals_[i].active(now)) active |= mask(config_.inputs[i].bit);
@@ -92,6 +92,14 @@ bool GpioInterface::exchange(std::uint64_t outputs, std::uint64_t& inputs) noexc
   if (open_ && !write(trouble == kSound ? outputs : 0) && trouble == kSound) trouble = kChip;
   if (trouble != kSound) trouble_.store(trouble, std::memory_order_relaxed);
   return trouble == kSound;
+}
+
+double GpioInterface::on_for_s(std::size_t bit) const noexcept {
+  for (std::size_t i = 0; i < signals_.size(); ++i) {
+    if (config_.inputs[i].bit == bit)
+      return std::chrono::duration<double>(looked_ - signals_[i].active_since()).count();
+  }
+  return 0;
 }
 
 std::string GpioInterface::fault_text() const {

@@ -55,6 +55,7 @@ void ServoLoop::Impl::exchange(const ServoCommand& command, ServoReport& report)
     raise({ServoFault::Kind::IoFailure, ServoFault::Part::Io, 0, 0, 0});
   }
   if (parts.io) watch_inputs(report.inputs);
+  probe.read(parts.probe, parts.io.get(), report.inputs, parts.period_s);
 }
 
 const DriveFeedback& ServoLoop::Impl::feedback(std::size_t actuator) const noexcept {

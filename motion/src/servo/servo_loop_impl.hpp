@@ -5,6 +5,7 @@
 #include "servo/effort_filter.hpp"
 #include "servo/force_loop.hpp"
 #include "servo/position_correction.hpp"
+#include "servo/probe_signal.hpp"
 
 namespace rmac {
 
@@ -97,6 +98,7 @@ struct ServoLoop::Impl {
   std::int64_t waiting_cycles = 0;
   bool follows = false;
   std::uint64_t inputs = 0;  ///< in the last cycle
+  ProbeSignal probe;
 
   bool home_before = false;      ///< for its edge
   std::uint32_t homing = 0;      ///< bit i: drive of actuator i homes, or has in a turn before

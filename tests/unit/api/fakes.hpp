@@ -59,6 +59,26 @@ class MockCam : public sdk::RmacCam {
   MOCK_METHOD(Expected<>, set_animation, (bool), (override));
 };
 
+class MockMeasuring : public sdk::Measuring {
+ public:
+  MOCK_METHOD(Expected<>, move_to_point, (std::int64_t, const Vector&, double), (override));
+  MOCK_METHOD(Expected<>, move_in_arc, (std::int64_t, const sdk::ArcTo&, double), (override));
+  MOCK_METHOD(Expected<>, move_all_axes, (std::int64_t, std::vector<double>, double), (override));
+  MOCK_METHOD(Expected<>, move_rotary_axis, (std::int64_t, int, double, int, double), (override));
+  MOCK_METHOD(Expected<>, auto_measure, (std::int64_t, const Vector&, double), (override));
+  MOCK_METHOD(Expected<>, manual_measure, (), (override));
+  MOCK_METHOD(Expected<>, spin_probe, (double, double), (override));
+  MOCK_METHOD(Expected<>, simulate_probe, (std::vector<double>, bool), (override));
+  MOCK_METHOD(Expected<>, set_calibrated_part_frame, (), (override));
+  MOCK_METHOD(Expected<sdk::Hit>, last_hit, (), (override));
+  MOCK_METHOD(bool, new_hit, (), (const, override));
+  MOCK_METHOD(bool, probe_active, (), (const, override));
+  MOCK_METHOD(sdk::ControlMode, control_mode, (), (const, override));
+  MOCK_METHOD(Expected<>, set_control_mode, (sdk::ControlMode), (override));
+  MOCK_METHOD(double, parameter, (sdk::MeasureParameter), (const, override));
+  MOCK_METHOD(Expected<>, set_parameter, (sdk::MeasureParameter, double), (override));
+};
+
 class MockConfig : public sdk::RmacConfig {
  public:
   MOCK_METHOD(Expected<>, begin, (const sdk::DeviceObject&), (override));
@@ -171,6 +191,7 @@ class FakeMachine : public MachinePort {
  public:
   ToolPort& tools() override { return tools_mock; }
   sdk::RmacCam& cam() override { return cam_mock; }
+  sdk::Measuring& measuring() override { return measuring_mock; }
   sdk::RmacConfig& config() override { return config_mock; }
   DevicePort& device() override { return device_fake; }
   const sdk::DeviceObject* mechanism() const override { return device_fake.device ? &*device_fake.device : nullptr; }
@@ -184,6 +205,7 @@ class FakeMachine : public MachinePort {
   }
 
   testing::NiceMock<MockCam> cam_mock;
+  testing::NiceMock<MockMeasuring> measuring_mock;
   testing::NiceMock<MockConfig> config_mock;
   testing::NiceMock<FakeDevice> device_fake;
   testing::NiceMock<MockTools> tools_mock;

@@ -16,7 +16,6 @@ namespace rmac::gateway {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
 using testing::HasSubstr;
 
 /// The repository's device tree as it is built, its drives simulated where a mechanism's are.
@@ -147,10 +146,35 @@ TEST_F(DeviceTree, TarusNeedsItsBusAndRunsVirtuallyWithoutIt) {
   EXPECT_NEAR(controller_->sample().position[3], 200, 1e-9);
 }
 
-TEST_F(DeviceTree, CmmSaysWhatItLacks) {
-  const auto loaded = host_->load("CMM", false);
-  ASSERT_FALSE(loaded);
-  EXPECT_THAT(loaded.error().message, AllOf(HasSubstr("no measuring functions yet"), HasSubstr("load SuginoXYZ")));
+TEST_F(DeviceTree, CmmIsARoleOfWhateverIsLoaded) {
+  for (const char* name : {"DMACXYZ", "SuginoXYZ", "SuginoXYZAC", "DMACXYZA"}) {
+    ASSERT_NO_FATAL_FAILURE(load(name, false)) << name;
+    const sdk::DeviceObject mill = *controller_->mechanism();
+    for (int again = 0; again < 2; ++again) {
+      ASSERT_NO_FATAL_FAILURE(load("CMM", false)) << "on " << name;
+      const sdk::DeviceObject& cmm = *controller_->mechanism();
+      EXPECT_EQ(cmm.name, "CMM");
+      EXPECT_EQ(cmm.type, "CMM");
+      EXPECT_EQ(cmm.kinematics.name, mill.kinematics.name);
+      EXPECT_EQ(cmm.joints.size(), mill.joints.size());
+      EXPECT_EQ(cmm.actuators[0].bus, mill.actuators[0].bus);
+    }
+  }
+}
+
+TEST_F(DeviceTree, CmmAloneMeasuresThePartOfItsOwnFile) {
+  ASSERT_NO_FATAL_FAILURE(load("CMM", false));
+  EXPECT_EQ(controller_->mechanism()->actuators[0].bus, "sugino0");
+  sdk::Measuring& measuring = controller_->measuring();
+  // Its block's top is at -20, the tip's radius 1 mm, and (15, 0) beside the bore.
+  const auto there = measuring.move_to_point(1, {15, 0, -10}, 20);
+  ASSERT_TRUE(there) << there.error().message;
+  ASSERT_TRUE(run_until([&] { return controller_->cam().moves_in_buffer() == 0; }));
+  const auto queued = measuring.auto_measure(2, {15, 0, -19}, 20);
+  ASSERT_TRUE(queued) << queued.error().message;
+  ASSERT_TRUE(run_until([&] { return controller_->cam().moves_in_buffer() == 0; }));
+  ASSERT_TRUE(measuring.new_hit());
+  EXPECT_NEAR(measuring.last_hit()->pose.tip[2], -19, 1.2e-4);
 }
 
 TEST_F(DeviceTree, TwinHasTheValuesOfItsMachine) {

@@ -113,6 +113,15 @@ const std::vector<SetterEffect>& cam_setter_effects() {
          EXPECT_NEAR(trace.back().position_set[1], 12, 1e-5);
          EXPECT_NEAR(trace.back().position_set[2], 3, 1e-5);
        }},
+      {"RMAC_CAM.SetCalibratedPartFrame",
+       [](SetterBench& bench) {
+         bench.joints_to({12, -7, 3});
+         bench.call("RMAC_CAM.SetCalibratedPartFrame");
+         const Trace trace = bench.tip_to(10, 0, 0);
+         EXPECT_NEAR(trace.back().position_set[0], 22, 1e-5) << "the part's zero is where it stood";
+         EXPECT_NEAR(trace.back().position_set[1], -7, 1e-5);
+         EXPECT_NEAR(trace.back().position_set[2], 3, 1e-5);
+       }},
       {"RMAC_CAM.SetToolInterfaceFrame",
        [](SetterBench& bench) {
          bench.call("RMAC_CAM.SetToolInterfaceFrame",

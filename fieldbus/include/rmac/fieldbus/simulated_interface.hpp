@@ -61,9 +61,12 @@ class SimulatedInterface : public DigitalControlInterface {
   /// The bus itself fails, as on bus-off; and works again.
   void set_bus_failed(bool failed) noexcept { bus_failed_ = failed; }
 
-  /// For tests, between exchanges: where a shaft really is.
+  /// Between exchanges: where a shaft really is. For an axis that is no spindle; and one that is.
   [[nodiscard]] AxisPlant& plant(std::size_t axis);
   [[nodiscard]] const SpindlePlant& spindle(std::size_t axis) const;
+  [[nodiscard]] bool is_spindle(std::size_t axis) const noexcept {
+    return std::holds_alternative<SimulatedSpindleDrive>(drives_[axis]);
+  }
 
  private:
   using Drive = std::variant<SimulatedServoDrive, SimulatedSpindleDrive>;

@@ -75,6 +75,21 @@ struct ServoSpindle {
   double max_speed_rpm = 0;
 };
 
+/// A touch probe among the inputs.
+struct ServoProbe {
+  std::uint64_t touch_input = 0;  ///< its bit is 1 while the probe is deflected; 0: there is no probe
+  std::uint64_t ready_input = 0;  ///< on while the probe has power; 0: it does not tell
+  double settle_s = 0.005;        ///< a contact that opens for less has not let go: it bounces
+};
+
+/// What the probe tells in one cycle.
+struct ProbeReport {
+  bool ready = false;       ///< there is one, and it has power as far as it tells
+  bool touching = false;    ///< from its first contact until it has let go for its settling time
+  std::uint32_t hits = 0;   ///< first contacts so far; wraps
+  double hit_before_s = 0;  ///< how long before the cycle's measurement the last one was, in the cycle that counts it
+};
+
 /// How the machine stops on what a category may be chosen for. A stop that keeps power rests on the drives and on the
 /// measured positions, so there is no choice where one of them may be what is wrong: a joint that does not follow can
 /// be blocked, or have an encoder that stands still.
@@ -97,6 +112,7 @@ struct ServoLoopParts {
   std::uint64_t emergency_stop_inputs = 0;
   /// Inputs that stop all drives as they come on. A reset helps while they are on, so that the axis can be moved off.
   std::uint64_t limit_inputs = 0;
+  ServoProbe probe{};
   double period_s = 0.001;
   double enable_timeout_s = 5;    ///< to bring every drive to Operation Enabled
   double homing_timeout_s = 120;  ///< for the drives of one turn
@@ -141,6 +157,7 @@ struct ServoReport {
   double feed_mm_s = 0;  ///< tool tip, from measured joints
   std::uint64_t inputs = 0;
   std::uint32_t homings = 0;  ///< that were completed
+  ProbeReport probe;
 };
 
 /// What a loop leaves to the one that comes after it, drive by drive, so that nothing jumps.

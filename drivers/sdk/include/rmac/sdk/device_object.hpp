@@ -80,6 +80,15 @@ struct ToolChangeStep {
   double timeout_s = 0;
 };
 
+/// How a touch probe measures (Appendix IV's parameters, as they begin).
+struct Probing {
+  double prehit_distance_mm = 3;  ///< before the point that is measured the approach ends, and the search begins
+  double search_distance_mm = 5;  ///< beyond it the search ends
+  double retract_distance_mm = 3;
+  double scan_speed_mm_s = 5;    ///< of the search
+  double settle_time_s = 0.005;  ///< a contact that opens for less bounces
+};
+
 /// The dissertation's device object (figure 4.8): everything about one mechanism, as typed values. The gateway fills it
 /// from `device.json`.
 struct DeviceObject {
@@ -100,6 +109,8 @@ struct DeviceObject {
   std::vector<Joint> held_joints;   ///< driven, but not moved by this mechanism: they keep the position they have
   std::vector<Actuator> actuators;  ///< behind joints, then behind held joints, as the actuator map orders them
   std::vector<Spindle> spindles;
+  bool overlay = false;  ///< a role of whatever mechanism is loaded
+  Probing probing;
   ModuleChoice kinematics;
   ModuleChoice actuator_map;
   ModuleChoice digital_control_interface;

@@ -23,6 +23,7 @@ class GpioInterface final : public DigitalIoInterface, public IoFaultText {
   [[nodiscard]] Expected<> start() override;
   void stop() noexcept override;
   [[nodiscard]] bool exchange(std::uint64_t outputs, std::uint64_t& inputs) noexcept override;
+  [[nodiscard]] double on_for_s(std::size_t bit) const noexcept override;
   [[nodiscard]] std::uint64_t input_bits() const noexcept override { return input_bits_; }
   [[nodiscard]] std::uint64_t output_bits() const noexcept override { return output_bits_; }
   [[nodiscard]] std::string fault_text() const override;
@@ -46,6 +47,7 @@ class GpioInterface final : public DigitalIoInterface, public IoFaultText {
   std::uint64_t input_bits_ = 0;
   std::uint64_t output_bits_ = 0;
   std::uint64_t written_ = 0;
+  Time looked_{};  ///< when the last exchange did
   bool open_ = false;
   std::atomic<int> trouble_{kChip};  ///< of the last exchange that failed: an input whose contacts disagree, or kChip
 };

@@ -23,6 +23,8 @@ class InputSignal {
 
   /// Edges until `now` were told.
   [[nodiscard]] bool active(Time now) noexcept;
+  /// Since when it has been active, on the clock of its edges, while it is.
+  [[nodiscard]] Time active_since() const noexcept { return active_since_; }
   [[nodiscard]] bool broken(Time now) const noexcept { return disagree() && now - disagree_since_ > disagreement_; }
 
  private:
@@ -35,6 +37,7 @@ class InputSignal {
   Time disagreement_;
   std::array<bool, 2> contact_{};
   bool active_ = false;
+  Time active_since_{};
   Time rests_since_{};
   Time disagree_since_{};
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "rmac/motion/error.hpp"
@@ -16,6 +17,9 @@ class DigitalIoInterface {
   virtual void stop() noexcept = 0;
   /// One cycle: writes `outputs`, reads `inputs`. False when the device failed. Real-time safe.
   [[nodiscard]] virtual bool exchange(std::uint64_t outputs, std::uint64_t& inputs) noexcept = 0;
+  /// How long before the last exchange the input `bit`, which is on, came on, in s; 0 where the device stamps no edges.
+  /// Real-time safe.
+  [[nodiscard]] virtual double on_for_s(std::size_t /*bit*/) const noexcept { return 0; }
   /// Bits that something is connected to: a name for another one is a mistake.
   [[nodiscard]] virtual std::uint64_t input_bits() const noexcept { return ~std::uint64_t{0}; }
   [[nodiscard]] virtual std::uint64_t output_bits() const noexcept { return ~std::uint64_t{0}; }
