@@ -115,5 +115,5 @@ def section(name, text=""):
 
 
 if __name__ == "__main__":
-    page = INTRODUCTION + section("rmacd") + section("device", MECHANISMS) + section("modbus-spindle") + section("modbus-io") + section("tools")
+    page = INTRODUCTION + section("rmacd") + section("device", MECHANISMS) + section("modbus-spindle") + section("modbus-io") + section("tools") + section("measuring-plan")
     (FOLDER / "configuration.md").write_text(page, encoding="utf-8")

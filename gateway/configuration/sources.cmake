@@ -1,5 +1,5 @@
 # The typed configuration, and the schemas of etc/ as C++.
-foreach(schema DEVICE RMACD MODBUS-SPINDLE MODBUS-IO TOOLS)
+foreach(schema DEVICE RMACD MODBUS-SPINDLE MODBUS-IO TOOLS MEASURING-PLAN)
   string(TOLOWER ${schema} name)
   set(file ${PROJECT_SOURCE_DIR}/etc/${name}.schema.json)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})

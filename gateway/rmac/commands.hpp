@@ -82,6 +82,13 @@ struct ToolRequest {
 /// Says that a tool is in the spindle; without a number, the one that was asked for.
 [[nodiscard]] Result<> confirm_tool(Connection& connection, std::optional<int> number);
 
+struct MeasureRequest {
+  std::string plan;    ///< file
+  bool apply = false;  ///< put the frame of the part as it was measured in force
+};
+/// Measures the points of a plan, and tells how far the part and its features are off.
+[[nodiscard]] Result<> measure(Connection& connection, const MeasureRequest& request, bool json);
+
 /// What `rmac tune` moves, and what it aims at.
 struct TuneRequest {
   int joint = 0;

@@ -26,6 +26,7 @@ struct Arguments {
   SimulateOptions simulate;
   JogRequest jog;
   TuneRequest tune;
+  MeasureRequest measure;
   ToolRequest tool;
   std::optional<int> tool_number;
   FollowingRequest following;
@@ -131,6 +132,15 @@ void add_tool_commands(CLI::App& app, Arguments& arguments, Command& command) {
       ->add_option("NUMBER", arguments.tool_number, "the tool that is there; 0: none; the one asked for unless given")
       ->check(CLI::Range(0, 9999));
   confirm->callback([&] { command = [&](auto& to) { return confirm_tool(to, arguments.tool_number); }; });
+}
+
+void add_measure_command(CLI::App& app, Arguments& arguments, Command& command) {
+  MeasureRequest& request = arguments.measure;
+  auto* measured =
+      app.add_subcommand("measure", "measure the points of a plan: where the part lies, how far it is off");
+  measured->add_option("PLAN", request.plan, "the measuring plan, a JSON file")->required();
+  measured->add_flag("--apply", request.apply, "set the part frame to where the part lies; without it nothing is set");
+  measured->callback([&] { command = [&](auto& to) { return measure(to, request, arguments.json); }; });
 }
 
 void add_trace_commands(CLI::App& app, Arguments& arguments, Command& command) {
@@ -268,6 +278,7 @@ int run(int count, char** words) {
   add_database_commands(app, arguments, command);
   add_operating_commands(app, arguments, command);
   add_tool_commands(app, arguments, command);
+  add_measure_command(app, arguments, command);
   add_trace_commands(app, arguments, command);
   add_commissioning_commands(app, arguments, command);
   std::function<Result<>()> offline_command;

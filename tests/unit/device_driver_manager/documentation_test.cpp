@@ -41,6 +41,7 @@ TEST(ConfigurationPage, SaysWhatTheSchemasSay) {
   collect(json::parse(modbus_spindle_schema_text()), words);
   collect(json::parse(modbus_io_schema_text()), words);
   collect(json::parse(tools_schema_text()), words);
+  collect(json::parse(measuring_plan_schema_text()), words);
   ASSERT_GT(words.size(), 100U);
   for (const std::string& word : words) {
     EXPECT_NE(page.find(word), std::string::npos)
@@ -54,6 +55,7 @@ TEST(CompiledSchemas, AreTheFilesOfEtc) {
   EXPECT_EQ(modbus_spindle_schema_text(), text_of(RMAC_SOURCE_DIR "/etc/modbus-spindle.schema.json"));
   EXPECT_EQ(modbus_io_schema_text(), text_of(RMAC_SOURCE_DIR "/etc/modbus-io.schema.json"));
   EXPECT_EQ(tools_schema_text(), text_of(RMAC_SOURCE_DIR "/etc/tools.schema.json"));
+  EXPECT_EQ(measuring_plan_schema_text(), text_of(RMAC_SOURCE_DIR "/etc/measuring-plan.schema.json"));
 }
 
 }  // namespace

@@ -1,0 +1,199 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "gateway/api/decode.hpp"
+#include "gateway/metrology/probe.hpp"
+#include "gateway/rmac/authority.hpp"
+#include "gateway/rmac/commands.hpp"
+#include "gateway/rmac/measuring_plan.hpp"
+#include "gateway/rmac/notes.hpp"
+#include "gateway/rmac/rest.hpp"
+#include "gateway/rmac/table.hpp"
+#include "rmac/motion/frame.hpp"
+
+namespace rmac::cli {
+
+namespace {
+
+using gateway::FeatureDeviation;
+using nlohmann::json;
+
+/// Measures point by point, each move done before the next is asked for. Needs motion authority.
+class Prober {
+ public:
+  Prober(Connection& connection, MeasuringPlan& plan) : connection_(connection), plan_(plan) {
+    connection_.on_notification([this](const std::string& topic, const json& note) { take(topic, note); });
+  }
+  ~Prober() { connection_.on_notification({}); }
+  Prober(const Prober&) = delete;
+  Prober& operator=(const Prober&) = delete;
+
+  [[nodiscard]] Result<> measure_all() {
+    for (const auto& [method, params] : {std::pair("subscribe", json{{"topics", {"events"}}}),
+                                         std::pair("RMAC_CAM.CycleStart", json{{"Mode", "AUTOMATIC"}})}) {
+      if (auto done = connection_.call(method, params); !done) return tl::unexpected(done.error());
+    }
+    auto state = wait_for_rest(connection_, failure_);
+    if (!state) return tl::unexpected(state.error());
+    Vector at{state->pose[0], state->pose[1], state->pose[2]};
+    for (gateway::SurfacePoint& point : plan_.points) {
+      const Vector over = off(point, plan_.tip_radius_mm + plan_.clearance_mm);
+      const double height = plan_.safe_height_mm;
+      for (const Vector& way : {Vector{at[0], at[1], height}, Vector{over[0], over[1], height}, over}) {
+        if (auto gone = move("RMAC_CAM.MoveToXYZ", way); !gone) return gone;
+      }
+      hit_.reset();
+      if (auto touched = move("RMAC_CAM.AutoMeasure", off(point, plan_.tip_radius_mm)); !touched) return touched;
+      if (!hit_) return fail(fmt::format("a point of {} was measured, and no hit was told", point.feature));
+      point.measured = gateway::touched_along_normal(*hit_, point.normal, plan_.tip_radius_mm);
+      at = over;
+    }
+    return move("RMAC_CAM.MoveToXYZ", {at[0], at[1], plan_.safe_height_mm});
+  }
+
+ private:
+  static Vector off(const gateway::SurfacePoint& point, double by) {
+    Vector place = point.nominal;
+    for (std::size_t i = 0; i < 3; ++i) place[i] += by * point.normal[i];
+    return place;
+  }
+
+  [[nodiscard]] Result<> move(const char* method, const Vector& to) {
+    done_ = false;
+    ++move_id_;
+    const auto queued = connection_.call(
+        method, {{"MoveID", move_id_}, {"x", to[0]}, {"y", to[1]}, {"z", to[2]}, {"Speed", plan_.speed_mm_s}});
+    if (!queued) return tl::unexpected(queued.error());
+    auto waited = connection_.wait([this] { return done_ || !failure_.empty(); });
+    if (!waited) return waited;
+    return failure_.empty() ? Result<>() : fail(failure_);
+  }
+
+  void take(const std::string& topic, const json& note) {
+    if (topic != "events") return;
+    const EventNote event = read_event(note);
+    if (event.kind == "MoveDone" && event.move_id == move_id_) done_ = true;
+    if (event.kind == "Fault" || event.kind == "Stopped") failure_ = event.message;
+    if (event.kind == "Hit" && note.contains("pose")) {
+      hit_ = Vector{note["pose"][0].get<double>(), note["pose"][1].get<double>(), note["pose"][2].get<double>()};
+    }
+  }
+
+  Connection& connection_;
+  MeasuringPlan& plan_;
+  std::int64_t move_id_ = 0;
+  bool done_ = false;
+  std::string failure_;
+  std::optional<Vector> hit_;  ///< the tip's centre, part frame
+};
+
+Result<Frame> read_part_frame(Connection& connection) {
+  const auto answer = connection.call("RMAC_CAM.GetPartFrame");
+  if (!answer) return tl::unexpected(answer.error());
+  Frame frame;
+  answer->at("p").get_to(frame.p);
+  answer->at("q").get_to(frame.q);
+  return frame;
+}
+
+json to_json(const FeatureDeviation& deviation) {
+  return {{"mean_mm", deviation.mean_mm}, {"rms_mm", deviation.rms_mm}, {"worst_mm", deviation.worst_mm}};
+}
+
+/// What came out, as it is told.
+struct Report {
+  std::vector<FeatureDeviation> before, after;
+  std::optional<Frame> off;         ///< of the part from where it was taken to be
+  std::optional<Frame> part_frame;  ///< in which the deviations are those of `after`
+  std::string why_not;              ///< there is none
+  bool applied = false;
+};
+
+void print_json(const MeasuringPlan& plan, const Report& report) {
+  json features = json::array(), points = json::array();
+  for (std::size_t i = 0; i < report.before.size(); ++i) {
+    json feature{
+        {"name", report.before[i].feature}, {"points", report.before[i].points}, {"before", to_json(report.before[i])}};
+    feature["after"] = report.after.empty() ? json() : to_json(report.after[i]);
+    features.push_back(std::move(feature));
+  }
+  for (const auto& point : plan.points) {
+    points.push_back({{"feature", point.feature},
+                      {"nominal", point.nominal},
+                      {"normal", point.normal},
+                      {"measured", point.measured}});
+  }
+  json line{{"features", std::move(features)}, {"points", std::move(points)}, {"applied", report.applied}};
+  line["part_off"] = report.off ? gateway::frame_to_json(*report.off) : json();
+  line["part_frame"] = report.part_frame ? gateway::frame_to_json(*report.part_frame) : json();
+  if (!report.off) line["not_aligned"] = report.why_not;
+  fmt::print("{}\n", line.dump());
+}
+
+void print_table(const Report& report) {
+  std::vector<std::vector<std::string>> rows;
+  const auto um = [](double mm) { return number(1000 * mm, 3); };
+  for (std::size_t i = 0; i < report.before.size(); ++i) {
+    const FeatureDeviation& before = report.before[i];
+    std::vector<std::string> row{before.feature, std::to_string(before.points), um(before.mean_mm),
+                                 um(before.worst_mm)};
+    const bool aligned = !report.after.empty();
+    row.push_back(aligned ? um(report.after[i].mean_mm) : "-");
+    row.push_back(aligned ? um(report.after[i].worst_mm) : "-");
+    rows.push_back(std::move(row));
+  }
+  fmt::print("{}", table({"feature", "points", "mean µm", "worst µm", "aligned: mean µm", "worst µm"}, rows));
+  if (!report.off) {
+    fmt::print("\nnot aligned: {}\n", report.why_not);
+    return;
+  }
+  constexpr double kDegrees = 57.29577951308232;
+  const auto& q = report.off->q;
+  fmt::print("\nthe part is off by {}, {}, {} mm, and turned by {} degrees; {}\n", number(report.off->p[0], 4),
+             number(report.off->p[1], 4), number(report.off->p[2], 4),
+             number(kDegrees * 2 * std::atan2(std::hypot(q[1], q[2], q[3]), q[0]), 4),
+             report.applied ? "its frame is in force" : "--apply puts its frame in force");
+}
+
+}  // namespace
+
+Result<> measure(Connection& connection, const MeasureRequest& request, bool json_wanted) {
+  auto plan = read_measuring_plan(request.plan);
+  if (!plan) return tl::unexpected(plan.error());
+  Report report;
+  auto done = with_authority(connection, [&]() -> Result<> {
+    const auto frame = read_part_frame(connection);
+    if (!frame) return tl::unexpected(frame.error());
+    {
+      Prober prober(connection, *plan);
+      if (auto measured = prober.measure_all(); !measured) return measured;
+    }
+    report.before = gateway::feature_deviations(plan->points, {});
+    const auto fit = gateway::fit_surfaces(plan->points);
+    if (!fit) {
+      report.why_not = fit.error().message;
+      return request.apply ? fail(fmt::format("nothing is applied: {}", report.why_not)) : Result<>();
+    }
+    report.off = fit->frame;
+    report.part_frame = compose(*frame, fit->frame);
+    report.after = gateway::feature_deviations(plan->points, fit->frame);
+    if (!request.apply) return {};
+    if (auto rest = wait_for_rest(connection, ""); !rest) return tl::unexpected(rest.error());
+    const auto set =
+        connection.call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json(*report.part_frame)}});
+    if (!set) return tl::unexpected(set.error());
+    report.applied = true;
+    return {};
+  });
+  if (!done) return done;
+  if (json_wanted) {
+    print_json(*plan, report);
+  } else {
+    print_table(report);
+  }
+  return {};
+}
+
+}  // namespace rmac::cli

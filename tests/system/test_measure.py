@@ -1,0 +1,113 @@
+"""`rmac measure`: a part that is clamped wrong is measured, and its frame corrected."""
+
+import json
+import math
+import unittest
+
+from appliance import Appliance
+
+DONE, FAILED = 0, 1
+TIP_RADIUS = 1.0  # Of drivers/cmm/3-axis/CMM/device.json.
+PLACE = [0.3, -0.2, 0.1, 0.05, -0.03, 0.2]  # mm, and degrees about x, y, z
+# The block's faces: normal, and the points on them.
+TOP = {"Name": "top", "Points": [{"Point": [x, y, -20], "Normal": [0, 0, 1]}
+                                 for x, y in ((-15, -10), (15, -10), (15, 10), (-15, 10))]}
+LEFT = {"Name": "left", "Points": [{"Point": [-20, y, -28], "Normal": [-2, 0, 0]} for y in (-10, 10)]}
+FRONT = {"Name": "front", "Points": [{"Point": [x, -15, -28], "Normal": [0, -1, 0]} for x in (-15, 0, 15)]}
+
+
+def turn(axis, degrees):
+    """A rotation matrix about one axis."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    i, j = [(1, 2), (2, 0), (0, 1)][axis]
+    matrix = [[1.0 if row == column else 0.0 for column in range(3)] for row in range(3)]
+    matrix[i][i] = matrix[j][j] = c
+    matrix[i][j], matrix[j][i] = -s, s
+    return matrix
+
+
+def rotated(matrix, vector):
+    return [sum(matrix[row][k] * vector[k] for k in range(3)) for row in range(3)]
+
+
+class Measure(unittest.TestCase):
+    def setUp(self):
+        self.appliance = Appliance(own_tree=True)
+        file = self.appliance.tree / "cmm/3-axis/CMM/device.json"
+        device = json.loads(file.read_text())
+        device["DigitalIOInterface"]["Parameters"]["part_place"] = PLACE
+        file.write_text(json.dumps(device))
+        self.enterContext(self.appliance)
+        self.assertEqual(self.appliance.rmac("load", "CMM").returncode, DONE)
+        self.watcher = self.appliance.client("watcher")
+
+    def plan(self, *features, **changes):
+        file = self.appliance.folder / "plan.json"
+        file.write_text(json.dumps({"SafeHeight": -5, "TipRadius": TIP_RADIUS, "Features": features, **changes}))
+        return str(file)
+
+    def measured(self, *words):
+        done = self.appliance.rmac("measure", *words, "--json")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        return json.loads(done.stdout)
+
+    def test_part_that_is_clamped_wrong_is_found_and_lies_right_when_its_frame_is_applied(self):
+        plan = self.plan(TOP, LEFT, FRONT)
+        first = self.measured(plan, "--apply")
+        self.assertTrue(first["applied"])
+        self.assertEqual([feature["name"] for feature in first["features"]], ["top", "left", "front"])
+        self.assertGreater(max(abs(feature["before"]["worst_mm"]) for feature in first["features"]), 0.1)
+        # Six freedoms and nine points: what is left is what the hits are off, a tenth of a micrometre and a count.
+        for feature in first["features"]:
+            self.assertLess(abs(feature["after"]["worst_mm"]), 5e-4)
+        # The nominal corner of the block, laid by the frame, against where the part was put.
+        matrix = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        for axis in range(3):
+            step = turn(axis, PLACE[3 + axis])
+            matrix = [[sum(step[row][k] * matrix[k][column] for k in range(3)) for column in range(3)]
+                      for row in range(3)]
+        frame = first["part_frame"]
+        w, x, y, z = frame["q"]
+        laid_z = [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)]
+        for value, wanted in zip(laid_z, rotated(matrix, [0, 0, 1])):
+            self.assertAlmostEqual(value, wanted, delta=5e-5)
+        self.assertAlmostEqual(2 * math.degrees(math.acos(w)), math.hypot(*PLACE[3:]), delta=0.003)
+        for value, wanted in zip(frame["p"], PLACE):
+            self.assertAlmostEqual(value, wanted, delta=2e-3)
+        self.assertEqual(self.watcher.call("RMAC_CAM.GetPartFrame")["p"], frame["p"])
+        again = self.measured(plan)
+        self.assertFalse(again["applied"])
+        for feature in again["features"]:
+            self.assertLess(abs(feature["before"]["worst_mm"]), 5e-3, "the residual of a part that was corrected")
+
+    def test_plan_that_does_not_hold_the_part_reports_and_applies_nothing(self):
+        plan = self.plan(TOP)
+        told = self.measured(plan)
+        self.assertIsNone(told["part_off"])
+        self.assertIn("needs 6 points", told["not_aligned"])
+        refused = self.appliance.rmac("measure", self.plan(TOP, FRONT), "--apply")
+        self.assertEqual(refused.returncode, FAILED)
+        self.assertIn("its place along (1.000", refused.stderr)
+        self.assertEqual(self.watcher.call("RMAC_CAM.GetPartFrame")["p"], [0, 0, 0])
+
+    def test_part_that_is_not_there_ends_the_plan_with_the_machines_reason(self):
+        beside = {"Name": "air", "Points": [{"Point": [40, -40, -20], "Normal": [0, 0, 1]}]}
+        done = self.appliance.rmac("measure", self.plan(beside))
+        self.assertEqual(done.returncode, FAILED)
+        self.assertIn("not where it was looked for", done.stderr)
+        self.assertEqual(len(done.stderr.splitlines()), 1)
+
+    def test_wrong_plan_is_refused_with_key_and_range_before_anything_moves(self):
+        before = self.watcher.state()["joints"]
+        for changes, words in (({"TipRadius": -1}, ("/TipRadius", "-1", "0 to 100")), ({"Sped": 1}, ("Sped", "Speed"))):
+            refused = self.appliance.rmac("measure", self.plan(TOP, **changes))
+            self.assertEqual(refused.returncode, FAILED)
+            for word in ("plan.json", *words):
+                self.assertIn(word, refused.stderr)
+        flat = {"Name": "top", "Points": [{"Point": [0, 0, -20], "Normal": [0, 0, 0]}]}
+        self.assertIn("/Features/0/Points/0/Normal", self.appliance.rmac("measure", self.plan(flat)).stderr)
+        self.assertEqual(self.watcher.state()["joints"], before)
+
+
+if __name__ == "__main__":
+    unittest.main()
