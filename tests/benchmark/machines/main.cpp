@@ -8,7 +8,6 @@ int main(int count, char** words) {
   Figures figures;
   inverse_rows(figures, quick ? 10'000 : 1'000'000);
   five_axis_rows(figures);
-  figures.missing("hit_position_at_10_mm_s", "<= 0.1", "um", "not measured: no measuring functions yet");
   figures.print_table();
   return figures.all_ok() ? 0 : 1;
 }

@@ -4,7 +4,6 @@ The five-axis machine's kinematics is there in two builds, which are put into it
 A swap's time is counted in servo cycles, from the first one of the mechanism that goes in to the one in which it is in force with every drive
 enabled. Loading and checking its modules comes before that, beside the loop, and is told apart from it."""
 
-import json
 import os
 import shutil
 import statistics
@@ -13,6 +12,7 @@ import threading
 import time
 
 from appliance import BUILD, Appliance
+from figures import Figures
 
 THREE, FIVE = "SuginoXYZ", "SuginoXYZAC"
 FIVE_FOLDER = "mill/5-axis/SuginoXYZAC"
@@ -92,24 +92,6 @@ def put(build, folder):
 def kinematics_build(client):
     modules = client.call("Device.GetModules")["modules"]
     return next(module["build_id"] for module in modules if module["role"] == "kinematics")
-
-
-class Figures:
-    def __init__(self):
-        self.rows = []
-
-    def add(self, name, value, unit, target=None, note=""):
-        good = target is None or value <= target
-        row = {"name": name, "value": value, "unit": unit, "target": "" if target is None else f"<= {target:g}", "ok": good}
-        self.rows.append(row | ({"note": note} if note else {}))
-        print(json.dumps(self.rows[-1]), flush=True)
-
-    def table(self):
-        print()
-        for row in self.rows:
-            verdict = "" if not row["target"] else "ok" if row["ok"] else "missed"
-            print(f"{row['name']:<28} {row['value']:>12.6g}  {row['unit']:<8} {row['target']:<10} {verdict:<7} {row.get('note', '')}")
-        return all(row["ok"] for row in self.rows)
 
 
 def measure(figures, rounds):
