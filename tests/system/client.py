@@ -6,7 +6,7 @@ import json
 import socket
 import time
 
-ANSWER_BOUND_S = 60.0
+ANSWER_BOUND_S = 150.0  # loading a machine verifies it first, in a process of low priority
 NOTE_BOUND_S = 100.0  # of notes that come and do not match: the test fails before the whole file is out of time
 
 
