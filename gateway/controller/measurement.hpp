@@ -45,7 +45,6 @@ class Measurement {
   [[nodiscard]] std::size_t steps() const noexcept { return steps_; }
   /// Hits in motion are expected while it is so.
   void expect_by_hand(bool expected) noexcept { by_hand_ = expected; }
-  [[nodiscard]] bool expects_by_hand() const noexcept { return by_hand_; }
   /// Another probe: its count begins elsewhere.
   void count_from(std::uint32_t hits) noexcept { hits_ = hits; }
   [[nodiscard]] Verdict step(const Seen& seen) noexcept;

@@ -70,7 +70,6 @@ class MotionSupervisor {
   [[nodiscard]] Measurement::Phase measurement();
   /// Hits of a person who jogs are expected.
   void expect_hits_by_hand(bool expected);
-  [[nodiscard]] bool expects_hits_by_hand();
   /// In virtual mode, where nothing can touch: the probe is deflected, or let go.
   void simulate_probe(bool touching);
   /// Builds and adds a move that `prepare_move` let through. False when there is nothing to move: such a move is done

@@ -78,7 +78,9 @@ class Cam final : public sdk::RmacCam, public ToolPort {
   Expected<> confirm_tool(int number) override;
   /// Writes down what is in the spindle now.
   [[nodiscard]] Expected<> keep_mounted();
-  /// What the measuring part of RMAC_CAM is made of. A path move at a speed of its own, in mm/s, bounded as feeds are.
+  /// What the measuring part of RMAC_CAM is made of.
+  [[nodiscard]] Expected<> require_mechanism(const char* function) const;
+  /// A path move at a speed of its own, in mm/s, bounded as feeds are.
   [[nodiscard]] Expected<Move> path_move_at(const char* function, std::int64_t id, const Geometry& geometry,
                                             double speed_mm_s) const;
   /// Queues a move of all joints together, at a speed of the linear ones together, or of all where none moves.
@@ -96,7 +98,6 @@ class Cam final : public sdk::RmacCam, public ToolPort {
   static constexpr double kSecondsPerMinute = 60;
   static constexpr const char* kCoolantOutput = "Coolant";
 
-  [[nodiscard]] Expected<> require_mechanism(const char* function) const;
   [[nodiscard]] Expected<> check_accel(const char* function, double mm_s2, double bound_mm_s2) const;
   [[nodiscard]] Expected<> set_frames(const char* function, const Frames& frames);
   [[nodiscard]] Frames frames() const { return supervisor_.wishes().frames; }

@@ -58,9 +58,7 @@ bool MeasuringMachine::probe_active() const {
 }
 
 Expected<> MeasuringMachine::require_probe(const char* function) const {
-  if (device_ == nullptr) {
-    return failure(MinorCode::Other, fmt::format("{}: no mechanism is loaded; load one with Device.Load", function));
-  }
+  if (auto loaded = cam_.require_mechanism(function); !loaded) return loaded;
   if (mode_ == ControlMode::Inactive || mode_ == ControlMode::Shutdown) {
     return failure(MinorCode::ProbeNotArmed,
                    fmt::format("{}: measuring is switched off; set ControlMode to MODE_STARTUP first", function));
@@ -281,9 +279,7 @@ Expected<> MeasuringMachine::simulate_probe(std::vector<double> joints, bool tou
 
 Expected<> MeasuringMachine::set_calibrated_part_frame() {
   constexpr const char* kFunction = "SetCalibratedPartFrame";
-  if (device_ == nullptr) {
-    return failure(MinorCode::Other, fmt::format("{}: no mechanism is loaded; load one with Device.Load", kFunction));
-  }
+  if (auto loaded = cam_.require_mechanism(kFunction); !loaded) return loaded;
   return supervisor_.require_rest(kFunction).and_then([&] {
     const ToolPose here = cam_.tool_pose_in_machine();
     return cam_.set_part_frame(frame_from_axis(here.tip, here.axis));
@@ -310,9 +306,7 @@ Expected<> MeasuringMachine::set_control_mode(ControlMode mode) {
   if (mode == ControlMode::Manual) {
     if (mode_ != ControlMode::Inactive && mode_ != ControlMode::Shutdown) return manual_measure();
   }
-  if (device_ == nullptr) {
-    return failure(MinorCode::Other, fmt::format("{}: no mechanism is loaded; load one with Device.Load", kFunction));
-  }
+  if (auto loaded = cam_.require_mechanism(kFunction); !loaded) return loaded;
   const ControlMode before = mode_;
   mode_ = mode;
   if (mode == ControlMode::Startup) {
