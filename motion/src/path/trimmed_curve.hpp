@@ -35,7 +35,7 @@ class TrimmedCurve final : public Curve {
       nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
     }
     nodes_.push_back(end_ - begin_);
-    if (more_nodes != nullptr) drop_slivers();
+    drop_slivers();
   }
   [[nodiscard]] bool in_joint_space() const noexcept override { return curve_->in_joint_space(); }
   [[nodiscard]] std::size_t dimension() const noexcept override { return curve_->dimension(); }
