@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 
 namespace rmac {
 
@@ -16,6 +17,14 @@ using LaneTriple = std::array<Lanes, 3>;
 
 [[nodiscard]] [[gnu::always_inline]] inline Lanes all_lanes(double value) noexcept {
   return Lanes{value, value};
+}
+[[nodiscard]] [[gnu::always_inline]] inline Lanes load(const double* from) noexcept {
+  Lanes lanes;
+  std::memcpy(&lanes, from, sizeof lanes);
+  return lanes;
+}
+[[gnu::always_inline]] inline void store(Lanes lanes, double* to) noexcept {
+  std::memcpy(to, &lanes, sizeof lanes);
 }
 [[nodiscard]] [[gnu::always_inline]] inline Lanes larger(Lanes a, Lanes b) noexcept {
   return a > b ? a : b;

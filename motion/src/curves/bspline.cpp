@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 namespace rmac::curves {
@@ -124,8 +123,8 @@ void BSpline::basis_sums(std::size_t span, double t, std::span<Homogeneous> sums
   }
 }
 
-template <std::size_t kOrder>
-void BSpline::power_sums(std::size_t span, double t, std::array<Homogeneous, 4>& sums) const noexcept {
+template <std::size_t kOrder, typename Row>
+void BSpline::power_sums(std::size_t span, double t, std::array<Row, 4>& sums) const noexcept {
   static constexpr std::array<double, 4> kFactorial{1, 1, 2, 6};
   const std::size_t row = (width_ + kLanes - 1) / kLanes * kLanes;
   const double* const coefficients = powers_.data() + span * (degree_ + 1) * row;
@@ -135,15 +134,13 @@ void BSpline::power_sums(std::size_t span, double t, std::array<Homogeneous, 4>&
     // Horner's scheme; the rows above the first carry the derivatives, divided by their factorials.
     std::array<Lanes, kOrder + 1> d{};
     for (std::size_t i = degree_ + 1; i-- > 0;) {
-      Lanes next;
-      std::memcpy(&next, coefficients + i * row + c, sizeof next);
+      const Lanes next = load(coefficients + i * row + c);
       for (std::size_t k = kOrder; k > 0; --k) d[k] = d[k] * u + d[k - 1];
       d[0] = d[0] * u + next;
     }
     double factor = 1;
     for (std::size_t k = 0; k <= kOrder; ++k, factor *= rate) {
-      const Lanes derivative = d[k] * (kFactorial[k] * factor);
-      std::memcpy(sums[k].data() + c, &derivative, sizeof derivative);
+      store(d[k] * (kFactorial[k] * factor), sums[k].data() + c);
     }
   }
 }
@@ -151,15 +148,20 @@ void BSpline::power_sums(std::size_t span, double t, std::array<Homogeneous, 4>&
 void BSpline::evaluate(std::size_t span, double t, int order, CurvePoint& point) const noexcept {
   static constexpr double kBinomial[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
   const auto wanted = static_cast<std::size_t>(std::clamp(order, 0, 3));
+  const auto add_powers = [&](auto& rows) { wanted > 1 ? power_sums<3>(span, t, rows) : power_sums<1>(span, t, rows); };
   std::array<Homogeneous, 4> sums;
-  if (!powers_.empty()) {
-    wanted > 1 ? power_sums<3>(span, t, sums) : power_sums<1>(span, t, sums);
+  if (!powers_.empty() && !rational_) {
+    static_assert(kMaxJoints % kLanes == 0, "a point has room for whole lanes");
+    add_powers(point.d);
+  } else if (!powers_.empty()) {
+    add_powers(sums);
   } else {
     basis_sums(span, t, {sums.data(), wanted + 1});
   }
-  if (!rational_) {
+  if (!rational_ && powers_.empty()) {
     for (std::size_t k = 0; k <= wanted; ++k) std::copy_n(sums[k].begin(), dimension_, point.d[k].begin());
-  } else {
+  }
+  if (rational_) {
     const double inverse_weight = 1 / sums[0][dimension_];
     for (std::size_t k = 0; k <= wanted; ++k) {
       for (std::size_t c = 0; c < dimension_; ++c) {

@@ -54,8 +54,9 @@ class BSpline {
   void make_powers();
   /// Derivatives of orders 0 to sums.size() - 1, at most the degree.
   void basis_sums(std::size_t span, double t, std::span<Homogeneous> sums) const noexcept;
-  template <std::size_t kOrder>
-  void power_sums(std::size_t span, double t, std::array<Homogeneous, 4>& sums) const noexcept;
+  /// Orders 0 to kOrder; rows of whole lanes, which may be more numbers than a point has coordinates.
+  template <std::size_t kOrder, typename Row>
+  void power_sums(std::size_t span, double t, std::array<Row, 4>& sums) const noexcept;
 
   std::size_t degree_;
   std::size_t dimension_;

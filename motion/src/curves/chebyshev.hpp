@@ -25,14 +25,14 @@ class Chebyshev {
 
   /// Coefficients of the polynomial through `values` at the nodes.
   [[nodiscard]] Values coefficients(const Values& values) const noexcept {
+    // Row by row, which the compiler can do for several coefficients at once.
     Values result{};
-    for (std::size_t k = 0; k <= N; ++k) {
-      double sum = 0;
-      for (std::size_t j = 0; j <= N; ++j) {
-        sum += (j == 0 || j == N ? 0.5 : 1.0) * values[j] * cosine_[j][k];
-      }
-      result[k] = (k == 0 || k == N ? 1.0 : 2.0) / static_cast<double>(N) * sum;
+    for (std::size_t j = 0; j <= N; ++j) {
+      const double value = (j == 0 || j == N ? 1.0 : 2.0) / static_cast<double>(N) * values[j];
+      for (std::size_t k = 0; k <= N; ++k) result[k] += value * cosine_[j][k];
     }
+    result.front() /= 2;
+    result.back() /= 2;
     return result;
   }
 

@@ -11,8 +11,10 @@ namespace {
 constexpr double kLeastAxis = 1e-6;
 
 double product(const CurvePoint& point, std::size_t a, std::size_t b, std::size_t first, std::size_t last) noexcept {
+  const auto &x = point.d[a], &y = point.d[b];
+  if (last - first == 3) return x[first] * y[first] + x[first + 1] * y[first + 1] + x[first + 2] * y[first + 2];
   double sum = 0;
-  for (std::size_t c = first; c < last; ++c) sum += point.d[a][c] * point.d[b][c];
+  for (std::size_t c = first; c < last; ++c) sum += x[c] * y[c];
   return sum;
 }
 

@@ -44,7 +44,7 @@ KinematicsStatus PathSegment::resolve(std::span<const double> start_joints, doub
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     double* const here = seeds_.data() + i * joint_count_;
     if (i > 0) std::copy(here - joint_count_, here, here);
-    if (const auto status = evaluate(nodes[i], 3, nodes[i] > 0 ? -1 : 1, point); status != KinematicsStatus::Ok) {
+    if (const auto status = evaluate(nodes[i], 1, nodes[i] > 0 ? -1 : 1, point); status != KinematicsStatus::Ok) {
       s_failed = nodes[i];
       return status;
     }
@@ -57,7 +57,7 @@ std::span<const double> PathSegment::seed_at(double s) const noexcept {
   const auto nodes = curve_->nodes();
   const auto above = std::upper_bound(nodes.begin(), nodes.end(), s);
   const auto index = above == nodes.begin() ? 0U : static_cast<std::size_t>(above - nodes.begin()) - 1;
-  return {seeds_.data() + index * joint_count_, joint_count_};
+  return joints_at_node(index);
 }
 
 KinematicsStatus PathSegment::evaluate(double s, int order, int side, JointPoint& point) const noexcept {
@@ -69,6 +69,17 @@ KinematicsStatus PathSegment::evaluate(double s, int order, int side, JointPoint
     return KinematicsStatus::Ok;
   }
   return map_->evaluate(c, curve_->dimension(), order, seed_at(s), point);
+}
+
+KinematicsStatus PathSegment::derivatives(double s, int side, JointPoint& point) const noexcept {
+  CurvePoint c;
+  curve_->evaluate(s, 3, side, c);
+  if (!curve_->in_joint_space()) {
+    if (map_->derivatives(c, point)) return KinematicsStatus::Ok;
+    return map_->evaluate(c, curve_->dimension(), 3, seed_at(s), point);
+  }
+  for (std::size_t k = 1; k <= 3; ++k) std::copy_n(c.d[k].begin(), joint_count_, point.d[k].begin());
+  return KinematicsStatus::Ok;
 }
 
 ToolPose PathSegment::pose(double s) const noexcept {

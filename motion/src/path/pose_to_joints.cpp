@@ -1,8 +1,11 @@
 #include "rmac/motion/pose_to_joints.hpp"
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <utility>
 
+#include "lanes.hpp"
 #include "path/least_squares.hpp"
 #include "rmac/motion/frame.hpp"
 
@@ -105,12 +108,14 @@ PoseToJoints::PoseToJoints(const Frames& frames, std::shared_ptr<const Kinematic
   JointEquations(*kinematics_, frames_.tool, anywhere, false).jacobian_at(JointColumn{}, jacobian);
   const LeastSquares squares(jacobian, *kinematics_);
   if (!squares.full_rank()) return;
-  constant_rates_ = true;
   for (std::size_t c = 0; c < kPoseDimension; ++c) {
     JointColumn unit{}, x;
     unit[c] = 1;
     (void)squares.solve(weighted(frames_.part, unit), x);
-    for (std::size_t j = 0; j < joint_count_; ++j) rates_[j * kPoseDimension + c] = x[j];
+    for (std::size_t j = 0; j < joint_count_; ++j) {
+      rates_[c][j] = x[j];
+      if (c < 3 || x[j] != 0) coordinates_ = c + 1;
+    }
   }
 }
 
@@ -118,17 +123,35 @@ KinematicsStatus PoseToJoints::evaluate(const CurvePoint& curve, std::size_t dim
                                         std::span<const double> seed, JointPoint& point) const noexcept {
   const auto& d = curve.d[0];
   const ToolPose wanted = apply_to_pose(frames_.part, {{d[0], d[1], d[2]}, {d[3], d[4], d[5]}});
-  if (!constant_rates_) return solve(curve, dimension, wanted, order, seed, point);
-  const auto status = kinematics_->inverse(wanted, frames_.tool, seed, {point.d[0].data(), joint_count_});
-  for (std::size_t k = 1; k <= static_cast<std::size_t>(order); ++k) {
-    const double* rate = rates_.data();
-    for (std::size_t j = 0; j < joint_count_; ++j, rate += kPoseDimension) {
-      double sum = 0;
-      for (std::size_t c = 0; c < kPoseDimension; ++c) sum += rate[c] * curve.d[k][c];
-      point.d[k][j] = sum;
+  if (coordinates_ == 0) return solve(curve, dimension, wanted, order, seed, point);
+  if (order == 1) apply_rates<1>(curve, point);
+  if (order == 2) apply_rates<2>(curve, point);
+  if (order == 3) apply_rates<3>(curve, point);
+  return kinematics_->inverse(wanted, frames_.tool, seed, {point.d[0].data(), joint_count_});
+}
+
+bool PoseToJoints::derivatives(const CurvePoint& curve, JointPoint& point) const noexcept {
+  if (coordinates_ == 0) return false;
+  apply_rates<3>(curve, point);
+  return true;
+}
+
+double PoseToJoints::largest_rate(std::size_t joint) const noexcept {
+  if (coordinates_ != 3) return std::numeric_limits<double>::infinity();
+  return std::hypot(rates_[0][joint], rates_[1][joint], rates_[2][joint]);
+}
+
+template <std::size_t kOrder>
+void PoseToJoints::apply_rates(const CurvePoint& curve, JointPoint& point) const noexcept {
+  static_assert(kMaxJoints % kLanes == 0, "a point has room for whole lanes");
+  for (std::size_t j = 0; j < joint_count_; j += kLanes) {
+    std::array<Lanes, kOrder> d{};
+    for (std::size_t c = 0; c < coordinates_; ++c) {
+      const Lanes rate = load(rates_[c].data() + j);
+      for (std::size_t k = 0; k < kOrder; ++k) d[k] += rate * curve.d[k + 1][c];
     }
+    for (std::size_t k = 0; k < kOrder; ++k) store(d[k], point.d[k + 1].data() + j);
   }
-  return status;
 }
 
 KinematicsStatus PoseToJoints::solve(const CurvePoint& curve, std::size_t dimension, const ToolPose& wanted, int order,

@@ -1,5 +1,6 @@
 #include "path/travel.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace rmac {
@@ -13,6 +14,19 @@ double beyond(const JointLimits& joint, double position) {
   if (ends_above(joint) && position > joint.max + kTravelSlack) return position - joint.max;
   if (ends_below(joint) && position < joint.min - kTravelSlack) return position - joint.min;
   return 0;
+}
+
+/// No joint can come to its limits on the way from one node to the next.
+bool surely_inside(const PathSegment& segment, const std::vector<JointLimits>& joints) {
+  const auto nodes = segment.curve().nodes();
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const double rate = segment.largest_rate(j);
+    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+      const double here = segment.joints_at_node(i)[j], reach = rate * (nodes[i + 1] - nodes[i]);
+      if (beyond(joints[j], here + reach) != 0 || beyond(joints[j], here - reach) != 0) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -30,6 +44,8 @@ std::optional<TravelOffence> find_offence(const PathSegment& segment, const std:
 
 std::optional<TravelOffence> find_offence(const PathSegment& segment, const std::vector<JointLimits>& joints,
                                           std::span<double> excess) {
+  const bool starts_inside = std::all_of(excess.begin(), excess.end(), [](double amount) { return amount == 0; });
+  if (starts_inside && surely_inside(segment, joints)) return std::nullopt;
   const auto nodes = segment.curve().nodes();
   JointPoint left, right, turn;
   TravelOffence offence;

@@ -37,7 +37,7 @@ Allowed allowed_at(const JointPoint& p, const std::vector<JointLimits>& joints, 
 double brake(const PathView& path, const std::vector<JointLimits>& joints, const PathState& from, double part) {
   PathState at = from;
   JointPoint point;
-  while (at.s < path.end() && path.evaluate(at.s, 3, 1, point) == KinematicsStatus::Ok) {
+  while (at.s < path.end() && path.derivatives(at.s, 1, point) == KinematicsStatus::Ok) {
     const Allowed allowed = allowed_at(point, joints, at, part);
     // The last ramp takes the acceleration back to zero just when the speed is zero.
     const double release = std::max(allowed.most_jerk, 1e-9);

@@ -19,7 +19,7 @@ Bounds constant_bounds(const PathView& path, const std::vector<JointLimits>& joi
   std::vector<double> d1(joints.size()), d2(joints.size()), d3(joints.size());
   JointPoint point;
   const auto take = [&](double s, int side) {
-    if (s < s_begin || s > s_end || path.evaluate(s, 3, side, point) != KinematicsStatus::Ok) return;
+    if (s < s_begin || s > s_end || path.derivatives(s, side, point) != KinematicsStatus::Ok) return;
     for (std::size_t j = 0; j < joints.size(); ++j) {
       d1[j] = std::max(d1[j], std::abs(point.d[1][j]));
       d2[j] = std::max(d2[j], std::abs(point.d[2][j]));

@@ -46,9 +46,9 @@ class PieceCheck {
 
   /// Samples are halved until what lies between them cannot matter: five, nine, seventeen.
   double worst(const LawPiece& piece) {
-    others_ = 0;
     s_begin_ = piece.start.s;
     s_end_ = piece.at(piece.duration).s;
+    others_ = 0;
     for (std::size_t stride = 4;; stride /= 2) {
       for (std::size_t i = 0; i < kSamples; i += stride) {
         if ((stride == 4 || i % (2 * stride) != 0) && !sample(piece, i)) return kInfinity;
@@ -73,18 +73,24 @@ class PieceCheck {
     const double path_jerk = piece.kind == LawPiece::Kind::Jerk ? piece.slope : piece.slope * at.v;
     const bool last = i + 1 == kSamples;
     const double s = i == 0 ? just_inside(s_begin_, s_end_) : last ? just_inside(s_end_, s_begin_) : at.s;
-    if (!(at.v >= -1e-9) || path_.evaluate(s, 3, last ? -1 : 1, point_) != KinematicsStatus::Ok) return false;
+    const int side = last ? -1 : 1;
+    if (segment_ == nullptr || s < segment_start_ || s > segment_start_ + segment_->length()) {
+      const std::size_t index = path_.find(s, side);
+      segment_ = &path_.segment(index);
+      segment_start_ = path_.start(index);
+    }
+    const double on_segment = std::clamp(s - segment_start_, 0.0, segment_->length());
+    if (!(at.v >= -1e-9) || segment_->derivatives(on_segment, side, point_) != KinematicsStatus::Ok) return false;
     for (std::size_t j = 0; j < joints_.size(); ++j) {
       const double d1 = point_.d[1][j], d2 = point_.d[2][j], d3 = point_.d[3][j], v = at.v;
       speed_[j][i] = d1 * v / joints_[j].max_speed;
       acceleration_[j][i] = (d2 * v * v + d1 * at.a) / joints_[j].max_acceleration;
       jerk_[j][i] = (d3 * v * v * v + 3 * d2 * v * at.a + d1 * path_jerk) / joints_[j].max_jerk;
     }
-    const PathSegment& segment = path_.segment(path_.find(s, 1));
-    const PathDemand& demand = segment.demand();
+    const PathDemand& demand = segment_->demand();
     others_ = std::max(
         {others_, at.a / or_unbounded(demand.accel_rise_mm_s2), -at.a / or_unbounded(demand.accel_fall_mm_s2)});
-    if (feed_ != nullptr) others_ = std::max(others_, at.v / (feed_->bound(segment) * 1.0005));
+    if (feed_ != nullptr) others_ = std::max(others_, at.v / (feed_->bound(*segment_) * 1.0005));
     return true;
   }
 
@@ -93,6 +99,8 @@ class PieceCheck {
   const FeedRule* feed_;
   double others_ = 0;  ///< what the path itself demands, of its bounds
   double s_begin_ = 0, s_end_ = 0;
+  const PathSegment* segment_ = nullptr;  ///< of the sample before: nearly always that of the next one too
+  double segment_start_ = 0;
   std::array<Demand, kMaxJoints> speed_, acceleration_, jerk_;
   JointPoint point_;
 };

@@ -34,6 +34,11 @@ class PathView {
     const std::size_t i = find(s, side);
     return segments_[i]->evaluate(std::clamp(s - starts_[i], 0.0, segments_[i]->length()), order, side, point);
   }
+  /// Of the joints by path length, to the third: d[0] may be left as it was.
+  [[nodiscard]] KinematicsStatus derivatives(double s, int side, JointPoint& point) const noexcept {
+    const std::size_t i = find(s, side);
+    return segments_[i]->derivatives(std::clamp(s - starts_[i], 0.0, segments_[i]->length()), side, point);
+  }
   [[nodiscard]] const PathSegment& segment(std::size_t i) const noexcept { return *segments_[i]; }
   [[nodiscard]] double start(std::size_t i) const noexcept { return starts_[i]; }
   [[nodiscard]] double end() const noexcept { return starts_.back() + segments_.back()->length(); }

@@ -42,7 +42,7 @@ struct RestEnd {
 std::optional<RestEnd> rest_end(const PathView& path, const std::vector<JointLimits>& joints, double s_rest,
                                 int direction, double available, double grid_step, const FeedRule& feed) {
   JointPoint point;
-  if (path.evaluate(s_rest, 3, direction, point) != KinematicsStatus::Ok) return std::nullopt;
+  if (path.derivatives(s_rest, direction, point) != KinematicsStatus::Ok) return std::nullopt;
   const PathSegment& segment = path.segment(path.find(s_rest, direction));
   const PathDemand& demand = segment.demand();
   double jerk = kInfinity,
@@ -68,7 +68,7 @@ std::optional<RestEnd> rest_end(const PathView& path, const std::vector<JointLim
     for (int i = 1; i <= 4 && fits; ++i) {
       const double t = end.time * i / 4;
       const double v = end.jerk * t * t / 2, a = end.jerk * t;
-      if (path.evaluate(s_rest + direction * end.jerk * t * t * t / 6, 3, direction, point) != KinematicsStatus::Ok)
+      if (path.derivatives(s_rest + direction * end.jerk * t * t * t / 6, direction, point) != KinematicsStatus::Ok)
         return std::nullopt;
       for (std::size_t j = 0; j < joints.size() && fits; ++j) {
         // Mirrored at an end: t runs backwards, so speed and jerk keep their sign and the acceleration changes it (eq.
@@ -176,7 +176,7 @@ bool fill(LawProblem& problem, const PathView& path, const std::vector<JointLimi
     const double left_s = problem.nodes[k], right_s = problem.nodes[k + 1];
     for (int right = 0; right < 2; ++right) {
       const double s = right != 0 ? just_inside(right_s, left_s) : just_inside(left_s, right_s);
-      if (path.evaluate(s, 3, right != 0 ? -1 : 1, point) != KinematicsStatus::Ok) return false;
+      if (path.derivatives(s, right != 0 ? -1 : 1, point) != KinematicsStatus::Ok) return false;
       for (std::size_t d = 1; d <= 3; ++d) out = std::copy_n(point.d[d].begin(), n, out);
       v = std::min(v, speed_bound(segment, point, joints, feed));
     }
@@ -218,6 +218,7 @@ void yield_to_begin(LawProblem& problem) {
 /// gives way to that law (`yields`), it does so as far as the law went.
 void resume_from(LawProblem& problem, const std::vector<LawPiece>& before, bool yields) {
   constexpr double kRelaxed = 0.9997 / kMargin;
+  constexpr double kEasing = 0.1;  ///< of the window
   const double span = problem.nodes.back() - problem.nodes.front();
   problem.travelled_before.assign(problem.intervals() + 2, 0.0);
   std::size_t piece = 0;
@@ -229,7 +230,10 @@ void resume_from(LawProblem& problem, const std::vector<LawPiece>& before, bool 
     if (at.kind != LawPiece::Kind::Linear || piece + 1 == before.size()) continue;
     const double ds = middle - at.start.s;
     const double q = at.start.v * at.start.v + 2 * at.start.a * ds + at.slope * ds * ds;
-    problem.travelled_before[k + 1] = std::max(0.0, 0.995 * (q - h * h / 4 * at.slope));
+    // A little slower, which is inside the bounds; but not at once, which would be a jerk.
+    const double into = std::min((middle - problem.nodes.front()) / (kEasing * span), 1.0);
+    const double part = 1 - 0.005 * into * into * (3 - 2 * into);
+    problem.travelled_before[k + 1] = std::max(0.0, part * (q - h * h / 4 * at.slope));
     const double most = q + h * std::abs(at.start.a + at.slope * ds) + h * h / 4 * std::abs(at.slope);
     if (yields) problem.speed_cap[k] = std::max(problem.speed_cap[k], 1.01 * most);
   }
@@ -266,7 +270,7 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
     for (std::size_t i = path.find(window.begin.s, 1); i <= path.find(window.s_end, -1); ++i)
       v = std::max(v, feed.bound(path.segment(i)));
     for (const JointLimits& joint : joints) v = std::min(v, 2 * joint.max_speed);
-    coarsest = std::min(coarsest, std::max(ramp_length(v, a, j) / 8, 0.01));
+    coarsest = std::min(coarsest, std::max(ramp_length(v, a, j) / 6, 0.01));
   }
   double a = window.begin.s, b = window.s_end;
   std::optional<RestEnd> first, last;

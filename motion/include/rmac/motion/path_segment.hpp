@@ -58,6 +58,18 @@ class PathSegment {
   /// Joints and their derivatives up to `order` (0 to 3) at s in [0, length()]; `side` as in `Curve::evaluate`.
   [[nodiscard]] KinematicsStatus evaluate(double s, int order, int side, JointPoint& point) const noexcept;
 
+  /// As `evaluate` to the third order, without the joints themselves, d[0], where the derivatives can be had without.
+  [[nodiscard]] KinematicsStatus derivatives(double s, int side, JointPoint& point) const noexcept;
+
+  /// The joints at a node of the curve, found by `resolve`.
+  [[nodiscard]] std::span<const double> joints_at_node(std::size_t node) const noexcept {
+    return {seeds_.data() + node * joint_count_, joint_count_};
+  }
+  /// A joint moves by at most this much a mm of the segment; infinite where no bound is known.
+  [[nodiscard]] double largest_rate(std::size_t joint) const noexcept {
+    return curve_->in_joint_space() ? 1 : map_->largest_rate(joint);
+  }
+
   /// Tool pose in the part frame at s (through the forward kinematics for joint moves).
   [[nodiscard]] ToolPose pose(double s) const noexcept;
 

@@ -35,19 +35,28 @@ class PoseToJoints {
   /// Real-time safe.
   [[nodiscard]] KinematicsStatus evaluate(const CurvePoint& curve, std::size_t dimension, int order,
                                           std::span<const double> seed, JointPoint& point) const noexcept;
+  /// d[1] to d[3] of `point` alone, at a curve's point with derivatives up to the third, where they do not depend on
+  /// where the joints are. False where they do: then nothing is done. Real-time safe.
+  [[nodiscard]] bool derivatives(const CurvePoint& curve, JointPoint& point) const noexcept;
+  /// On a curve by the length of the tip's path, a joint moves by at most this much a mm; infinite where it depends on
+  /// where the joints are.
+  [[nodiscard]] double largest_rate(std::size_t joint) const noexcept;
   /// The pose in the part frame that joints give.
   [[nodiscard]] ToolPose pose(std::span<const double> joints) const noexcept;
 
  private:
   [[nodiscard]] KinematicsStatus solve(const CurvePoint& curve, std::size_t dimension, const ToolPose& wanted,
                                        int order, std::span<const double> seed, JointPoint& point) const noexcept;
+  template <std::size_t kOrder>
+  void apply_rates(const CurvePoint& curve, JointPoint& point) const noexcept;
 
   Frames frames_;
   std::shared_ptr<const Kinematics> kinematics_;
   std::size_t joint_count_;
-  /// Where the Jacobian is the same everywhere and has full rank: d(joint)/d(pose in the part frame), n x 6 row-major.
-  std::array<double, 6 * kMaxJoints> rates_{};
-  bool constant_rates_ = false;
+  /// Where the Jacobian is the same everywhere and has full rank: d(joint)/d(pose in the part frame), a column each
+  /// for those coordinates of the pose that move a joint; slides alone follow the tip only.
+  std::array<std::array<double, kMaxJoints>, 6> rates_{};
+  std::size_t coordinates_ = 0;  ///< columns of it; 0: the Jacobian changes
 };
 
 }  // namespace rmac
