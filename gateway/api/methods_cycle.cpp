@@ -11,6 +11,50 @@ Expected<> start(Call& call, std::int64_t mode) {
   return call.machine.cam().cycle_start(static_cast<sdk::CycleMode>(mode));
 }
 
+nlohmann::json to_json(const sdk::ParkedProgram& parked) {
+  const ToolPose& place = parked.place;
+  return {{"mechanism", parked.mechanism},
+          {"moves", parked.moves},
+          {"move_id", parked.move_id},
+          {"s_mm", parked.s_mm},
+          {"pose", {place.tip[0], place.tip[1], place.tip[2], place.axis[0], place.axis[1], place.axis[2]}},
+          {"off_mm", parked.off_mm}};
+}
+
+void add_parking_methods(const auto& add) {
+  add(method("RMAC_CAM.ParkProgram",
+             "Sets the program that is held aside, from its place on. The queue is empty then, spindle and coolant go "
+             "off, and the machine may be jogged, measured with, and loaded in another role.")
+          .gives(WireType::Boolean)
+          .needs(Permission::Authority)
+          .extension()
+          .does([](Call& call) { return call.machine.cam().park_program(); }));
+  add(method("RMAC_CAM.TakeUpProgram",
+             "Queues the parked program again, in the part frame and with the tool in force now, and holds it; nothing "
+             "moves before FeedResume, which switches spindle and coolant on again. The tool must stand within 1 mm of "
+             "the place. When refused, the program stays parked.")
+          .gives(WireType::Boolean)
+          .causes(Effect::Starts)
+          .may_be_slow()
+          .extension()
+          .does([](Call& call) { return call.machine.cam().take_up_program(); }));
+  add(method("RMAC_CAM.DropParkedProgram", "Forgets the parked program.")
+          .gives(WireType::Boolean)
+          .needs(Permission::Authority)
+          .extension()
+          .does([](Call& call) { return call.machine.cam().drop_parked_program(); }));
+  add(method(
+          "RMAC_CAM.GetParkedProgram",
+          "The parked program: `mechanism`, `moves` to do, `move_id` and `s_mm` of the one that was begun, the `pose` "
+          "in the part frame where it goes on, and how far the tool is `off_mm` it. Empty when none is parked.")
+          .gives(WireType::Object)
+          .extension()
+          .does([](Call& call) {
+            const auto parked = call.machine.cam().parked_program();
+            return parked ? to_json(*parked) : nlohmann::json::object();
+          }));
+}
+
 }  // namespace
 
 void add_cycle_methods(std::vector<Method>& table) {
@@ -68,6 +112,7 @@ void add_cycle_methods(std::vector<Method>& table) {
           .causes(Effect::Starts)
           .extension()
           .does([](Call& call, double distance) { return call.machine.cam().feed_retrace(distance); }));
+  add_parking_methods(add);
   add(method("RMAC_CAM.Reset", "Leaves a fault or emergency stop whose cause is gone; nothing moves by it.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)

@@ -50,6 +50,8 @@ const char* describe(StopCause cause) noexcept {
     case StopCause::ProbeStuck:
       return "the probe still touches after its way back, and the machine was stopped; its queue is empty. Jog it "
              "free, or give a longer retract distance";
+    case StopCause::Parked:
+      return "the program is parked, and the queue is empty; TakeUpProgram queues it again from its place";
     case StopCause::RetraceEnded:
       return "the machine has come to rest at the end of its way back; FeedResume goes forward again";
   }
@@ -187,6 +189,13 @@ Expected<> CycleSequencer::hold() {
   if (homing_) return stop();  // there is no path to go on with
   if (state_ == CycleState::Running) state_ = CycleState::Holding;
   return {};
+}
+
+void CycleSequencer::take_up(sdk::CycleMode mode, const CycleObservation& seen) noexcept {
+  mode_ = mode;
+  state_ = CycleState::Holding;
+  done_at_start_ = seen.moves_done;
+  one_done_ = false;
 }
 
 Expected<> CycleSequencer::resume() {

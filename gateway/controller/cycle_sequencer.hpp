@@ -37,6 +37,7 @@ enum class StopCause : std::uint8_t {
   HitByHand,
   UnexpectedHit,
   PartNotFound,
+  Parked,
   ProbeLost,
   ProbeStuck
 };
@@ -73,6 +74,8 @@ class CycleSequencer {
   /// The probe has touched: a jog ends; a search ends where it is, and the cycle goes on with what is queued then.
   void touched() noexcept;
   [[nodiscard]] Expected<> hold();
+  /// A program that was parked is queued again, and held.
+  void take_up(sdk::CycleMode mode, const CycleObservation& seen) noexcept;
   [[nodiscard]] Expected<> resume();
   /// Leaves Faulted or EmergencyStop; the path was emptied before.
   [[nodiscard]] Expected<> reset();

@@ -145,7 +145,12 @@ void Controller::Impl::leave_fault() {
 
 Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh) {
   if (auto ready = ready_for_change("putting in a configuration"); !ready) return ready;
-  auto tools = rack.read(device.name);
+  // The same machine in another role: part and tool are where they were, and what its outputs hold stays held.
+  const bool role =
+      fresh && in_force && device.machine() == in_force->device.machine() && device.name != in_force->device.name;
+  const Frames frames_before = supervisor.wishes().frames;
+  if (role) (void)cam.keep_mounted();  // before the table is read that says so
+  auto tools = rack.read(device.machine());
   if (!tools) return tl::unexpected(tools.error());
   const bool virtual_before = in_force && in_force->virtual_mode();
   auto before = in_force;
@@ -193,13 +198,16 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
   before.reset();
   folder_in_force = folder;
   if (fresh) {
-    supervisor.wish([](ServoWishes& wishes) { wishes.outputs = 0; });
-    supervisor.set_frames({});
+    if (!role) {
+      supervisor.wish([](ServoWishes& wishes) { wishes.outputs = 0; });
+      supervisor.set_frames({});
+      supervisor.drop_parked(device.name + " was loaded anew");
+    }
     const auto keeps = !virtual_mode     ? ToolRack::Keeps::Everything
                        : options.stepped ? ToolRack::Keeps::Nothing
                                          : ToolRack::Keeps::Tools;
     (void)cam.keep_mounted();  // of the mechanism before
-    rack.adopt(device.name, std::move(*tools), keeps);
+    rack.adopt(device.machine(), std::move(*tools), keeps);
   }
   // A spindle that turns faster than it may now slows down, and feed does not wait for the speed that it had.
   supervisor.wish([&](ServoWishes& wishes) {
@@ -209,6 +217,7 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
     }
   });
   tell_cam(&in_force->device, fresh);
+  if (role) supervisor.set_frames(frames_before);
   draft.discard(&in_force->device);
   registry.stop_unused();
   tell_of_mechanism(
@@ -247,6 +256,7 @@ Expected<> Controller::Impl::take_out() {
   if (auto swapped = swap(nullptr); !swapped) return swapped;
   (void)supervisor.install(nullptr, generation, false);
   (void)cam.keep_mounted();
+  supervisor.drop_parked(name + " was unloaded");
   tell_cam(nullptr, true);
   in_force.reset();
   draft.discard(nullptr);

@@ -60,6 +60,7 @@ bool MotionSupervisor::spindles_at_speed(const ServoStatus& status) const {
 }
 
 void MotionSupervisor::settle(const ServoStatus& status) {
+  restart_spindles();
   const CycleObservation seen = observe(status);
   watch_probe(seen, status);
   apply_verdict(sequencer_.step(seen), status);
@@ -221,7 +222,9 @@ Expected<std::size_t> MotionSupervisor::build_and_add(const std::vector<PartOfMo
   std::optional<PathBuilder> before;
   if (parts.size() > 1) before = mechanism_->builder;
   std::vector<PathSegments> built;
+  std::vector<ProgramStep> steps;
   for (const PartOfMove& part : parts) {
+    steps.push_back(step_at(mechanism_->builder, *part.move));
     auto segments = mechanism_->builder.build(*part.move);
     if (!segments) {
       if (before) mechanism_->builder = std::move(*before);
@@ -241,6 +244,7 @@ Expected<std::size_t> MotionSupervisor::build_and_add(const std::vector<PartOfMo
   std::size_t moving = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (add_built(parts[i], std::move(built[i]))) ++moving;
+    program_.add(std::move(steps[i]), count_left());
   }
   if (then) then(moving);
   return moving;
@@ -340,9 +344,10 @@ Expected<> MotionSupervisor::require_rest(const char* what) {
                                what));
   }
   if (const std::size_t left = seen.moves_left + steps_left(); left > 0) {
-    return failure(MinorCode::Other, fmt::format("{} needs an empty queue, and {} moves are still in it; run them, or "
-                                                 "drop them with StopNow",
-                                                 what, left));
+    return failure(MinorCode::Other,
+                   fmt::format("{} needs an empty queue, and {} moves are still in it; run them, park "
+                               "them with ParkProgram, or drop them with StopNow",
+                               what, left));
   }
   return {};
 }
@@ -388,18 +393,25 @@ std::size_t MotionSupervisor::moves_left() {
   return count_moves() + (sequencer_.homes() ? 1 : 0);
 }
 
-std::size_t MotionSupervisor::count_moves() {
+std::size_t MotionSupervisor::count_left() {
   if (!mechanism_) return 0;
-  std::size_t left = mechanism_->planner.moves_left();
+  const std::size_t left = mechanism_->planner.moves_left();
   // A move without motion is done when those before it are.
   while (!still_moves_.empty() && still_moves_.front() + left <= moves_added_) still_moves_.pop_front();
-  if (measurement_.pending()) left = left - std::min(left, measurement_.steps()) + 1;  // the client's is one
   return left + still_moves_.size() + steps_left();
+}
+
+std::size_t MotionSupervisor::count_moves() {
+  const std::size_t left = count_left();
+  if (!measurement_.pending()) return left;
+  return left - std::min(left, measurement_.steps()) + 1;  // the client's is one
 }
 
 void MotionSupervisor::forget_moves() {
   moves_added_ = 0;
   still_moves_.clear();
+  program_.clear();
+  resumes_with_.reset();
   drop_steps();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -9,10 +10,12 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "gateway/controller/cycle_sequencer.hpp"
 #include "gateway/controller/measurement.hpp"
+#include "gateway/controller/program_log.hpp"
 #include "gateway/controller/queue_step.hpp"
 #include "gateway/controller/servo_link.hpp"
 #include "gateway/tools/tool.hpp"
@@ -77,7 +80,7 @@ class MotionSupervisor {
   [[nodiscard]] Expected<bool> add_move(const Move& move);
   /// Adds what is to be done between moves: moves that are added from now on wait behind it. The caller has seen to it
   /// that `builder()` goes on where the steps leave the machine.
-  [[nodiscard]] Expected<> add_steps(std::vector<QueueStep> steps);
+  [[nodiscard]] Expected<> add_steps(std::vector<QueueStep> steps, ProgramStep as_sent);
   [[nodiscard]] ToolsNow tools_now();
   /// The person who was asked says that this tool is in.
   [[nodiscard]] Expected<> confirm_tool(int number);
@@ -92,6 +95,30 @@ class MotionSupervisor {
   [[nodiscard]] Expected<> end_jog();
   /// Runs back along up to `distance_mm` of the path of what is held. The way it will go, in mm.
   [[nodiscard]] Expected<double> retrace(double distance_mm);
+
+  // A program that is set aside (parking.cpp).
+  struct Parked {
+    std::string mechanism;
+    bool virtual_mode = false;
+    std::deque<ProgramStep> steps;
+    sdk::CycleMode mode = sdk::CycleMode::Automatic;
+    std::array<double, kMaxSpindles> spindle_rpm{};
+    std::uint64_t outputs = 0;  ///< that went off
+    double override_percent = 100;
+    ToolPose place;                    ///< part frame; where the first step goes on
+    std::vector<double> place_joints;  ///< under the frames that were in force
+  };
+  /// Sets the queue aside; the spindles and `outputs_off` (the coolant) go off.
+  [[nodiscard]] Expected<> park(std::uint64_t outputs_off);
+  [[nodiscard]] const std::optional<Parked>& parked() const noexcept { return parked_; }
+  /// Queues the way to where the first step goes on, and what is left of that step. From rest, with an empty queue.
+  [[nodiscard]] Expected<> add_rest_of(const ProgramStep& first);
+  /// All steps are queued again: holds them, as before.
+  void hold_taken_up();
+  /// Empties the queue of what was taken up in part.
+  void drop_taken_up();
+  /// Forgets the parked program, if there is one, and tells why.
+  void drop_parked(const std::string& why);
 
   /// True when nothing moves and nothing is queued; otherwise an error that says what `what` must wait for.
   [[nodiscard]] Expected<> require_rest(const char* what);
@@ -157,9 +184,13 @@ class MotionSupervisor {
   [[nodiscard]] CycleObservation observe(const ServoStatus& status);
   [[nodiscard]] bool spindles_at_speed(const ServoStatus& status) const;
   void settle(const ServoStatus& status);
+  /// What was taken up goes on: with the spindles and outputs that it had.
+  void restart_spindles();
   /// Takes note of a fault that samples, and so clients, show already.
   void notice_fault();
   [[nodiscard]] std::size_t count_moves();
+  /// Of the planner and of the steps: a measurement counts as the moves that it is made of.
+  [[nodiscard]] std::size_t count_left();
   /// Of what waits behind a step: moves and tool changes.
   [[nodiscard]] std::size_t steps_left() const;
   /// A move's turn has come to be planned.
@@ -202,6 +233,9 @@ class MotionSupervisor {
   std::optional<int> mounted_ = kNoTool;   ///< tool; none: not known
   bool changing_ = false;                  ///< a tool change has begun
   bool asked_ = false;                     ///< and the person that is to do it
+  ProgramLog program_;                     ///< what is queued, as clients sent it
+  std::optional<Parked> parked_;
+  std::optional<Parked> resumes_with_;  ///< of what was taken up: spindles and outputs for when it goes on
   News news_;
   QueueListener queue_listener_;
   double override_percent_ = 100;

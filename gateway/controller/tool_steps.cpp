@@ -7,13 +7,14 @@
 
 namespace rmac::gateway {
 
-Expected<> MotionSupervisor::add_steps(std::vector<QueueStep> steps) {
+Expected<> MotionSupervisor::add_steps(std::vector<QueueStep> steps, ProgramStep as_sent) {
   const Turn turn(*this);
   if (rebase_ || (sequencer_.state() == CycleState::Stopping && sequencer_.clears_at_rest())) {
     rebase_ = true;
     return failure(MinorCode::Other,
                    "DoToolChange: the machine was stopped and its queue emptied meanwhile; nothing was queued");
   }
+  const std::size_t left_before = count_left();
   for (QueueStep& step : steps) {
     if (const auto* path = std::get_if<QueuedPath>(&step); path != nullptr && queue_listener_) {
       Move move;
@@ -22,6 +23,9 @@ Expected<> MotionSupervisor::add_steps(std::vector<QueueStep> steps) {
     }
     behind_.push_back(std::move(step));
   }
+  const std::size_t left = count_left();
+  as_sent.counts = left - left_before;
+  program_.add(std::move(as_sent), left);
   return {};
 }
 

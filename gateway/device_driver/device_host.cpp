@@ -34,6 +34,7 @@ Expected<sdk::DeviceObject> overlaid(const sdk::DeviceObject& base, const sdk::D
   made.type = role.type;
   made.max_feedrate_mm_min = std::min(base.max_feedrate_mm_min, role.max_feedrate_mm_min);
   made.overlay = true;
+  made.overlay_of = base.name;
   made.probing = role.probing;
   return made;
 }

@@ -28,6 +28,7 @@ struct Arguments {
   TuneRequest tune;
   MeasureRequest measure;
   ToolRequest tool;
+  std::optional<double> back_from_mm;
   std::optional<int> tool_number;
   FollowingRequest following;
   int node = 0;
@@ -63,9 +64,9 @@ void add_database_commands(CLI::App& app, Arguments& arguments, Command& command
 }
 
 void add_operating_commands(CLI::App& app, Arguments& arguments, Command& command) {
-  auto* run = app.add_subcommand(
-      "run",
-      "machine a program, one JSON-RPC request a line; when held, Enter goes on, and a distance in mm runs back");
+  auto* run = app.add_subcommand("run",
+                                 "machine a program, one JSON-RPC request a line; when held, Enter goes on, a distance "
+                                 "in mm runs back, p parks it");
   run->add_option("FILE", arguments.file, "the .rmac file, - for standard input")->required();
   run->add_flag("--virtual", arguments.run.virtual_mode, "in virtual mode: drives stay untouched");
   run->add_option("--record", arguments.run.record_file,
@@ -97,6 +98,14 @@ void add_operating_commands(CLI::App& app, Arguments& arguments, Command& comman
   app.add_subcommand("hold", "feed hold: stop on the path, keep the program")->callback([&] { command = hold; });
   app.add_subcommand("resume", "go on after a hold")->callback([&] { command = resume; });
   app.add_subcommand("stop", "stop now and empty the queue")->callback([&] { command = stop; });
+
+  auto* parked = app.add_subcommand("parked", "the program that is parked: p and Enter at the terminal of `rmac run`");
+  parked
+      ->add_option("--back", arguments.back_from_mm,
+                   "go back to its place, straight to so many mm above it along the tool, then down")
+      ->check(CLI::Range(0.0, 10000.0));
+  parked->callback(
+      [&] { command = [&](auto& to) { return show_parked(to, arguments.back_from_mm, arguments.json); }; });
 
   auto* override_command = app.add_subcommand("override", "scale the feed");
   override_command->add_option("PERCENT", arguments.percent, "0 to 200")->required()->check(CLI::Range(0.0, 200.0));

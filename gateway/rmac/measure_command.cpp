@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "gateway/api/decode.hpp"
 #include "gateway/metrology/probe.hpp"
+#include "gateway/metrology/tool_offset.hpp"
 #include "gateway/rmac/authority.hpp"
 #include "gateway/rmac/commands.hpp"
 #include "gateway/rmac/measuring_plan.hpp"
@@ -102,14 +105,62 @@ json to_json(const FeatureDeviation& deviation) {
   return {{"mean_mm", deviation.mean_mm}, {"rms_mm", deviation.rms_mm}, {"worst_mm", deviation.worst_mm}};
 }
 
+/// What a tool that cut measured features is off.
+struct ToolFound {
+  int number = 0;
+  gateway::ToolOffset offset;
+};
+
 /// What came out, as it is told.
 struct Report {
+  std::vector<ToolFound> tools;
   std::vector<FeatureDeviation> before, after;
   std::optional<Frame> off;         ///< of the part from where it was taken to be
   std::optional<Frame> part_frame;  ///< in which the deviations are those of `after`
   std::string why_not;              ///< there is none
   bool applied = false;
 };
+
+/// The points of features that no tool is judged by; with `tool`, of those that this one cut.
+std::vector<gateway::SurfacePoint> points_of(const MeasuringPlan& plan, std::optional<int> tool) {
+  std::vector<gateway::SurfacePoint> points;
+  for (const auto& point : plan.points) {
+    const auto cut = plan.cut_by.find(point.feature);
+    const auto by = cut == plan.cut_by.end() ? std::nullopt : std::optional(cut->second);
+    if (by == tool) points.push_back(point);
+  }
+  return points;
+}
+
+std::vector<ToolFound> find_tools(const MeasuringPlan& plan, const Frame& part, const Vector& axis) {
+  std::set<int> numbers;
+  for (const auto& [feature, number] : plan.cut_by) numbers.insert(number);
+  std::vector<ToolFound> found;
+  for (const int number : numbers) found.push_back({number, tool_offset(points_of(plan, number), part, axis)});
+  return found;
+}
+
+/// Puts what was found into the tool table; a tool that is in the spindle has its new length at once.
+Result<> apply_tools(Connection& connection, const std::vector<ToolFound>& tools) {
+  const auto table = connection.call("RMAC_CAM.GetTools");
+  if (!table) return tl::unexpected(table.error());
+  for (const auto& [number, offset] : tools) {
+    const auto& all = table->at("Tools");
+    const auto known = std::ranges::find_if(all, [&](const json& tool) { return tool.at("ToolNumber") == number; });
+    if (known == all.end()) {
+      return fail(fmt::format("tool {} is not in the tool table, so that it cannot be corrected there", number));
+    }
+    json tool = *known;
+    tool["Length"] = known->at("Length").get<double>() + offset.length_mm.value_or(0);
+    tool["Radius"] = std::max(known->at("Radius").get<double>() + offset.radius_mm.value_or(0), 0.0);
+    if (auto set = connection.call("RMAC_CAM.SetTool", tool); !set) return tl::unexpected(set.error());
+  }
+  return {};
+}
+
+json to_json(const std::optional<double>& value) {
+  return value ? json(*value) : json();
+}
 
 void print_json(const MeasuringPlan& plan, const Report& report) {
   json features = json::array(), points = json::array();
@@ -120,16 +171,34 @@ void print_json(const MeasuringPlan& plan, const Report& report) {
     features.push_back(std::move(feature));
   }
   for (const auto& point : plan.points) {
-    points.push_back({{"feature", point.feature},
-                      {"nominal", point.nominal},
-                      {"normal", point.normal},
-                      {"measured", point.measured}});
+    json entry{
+        {"feature", point.feature}, {"nominal", point.nominal}, {"normal", point.normal}, {"measured", point.measured}};
+    if (report.off) {
+      const auto one = gateway::feature_deviations({&point, 1}, *report.off);
+      entry["in_part"] = apply_to_pose(inverse(*report.off), {point.measured, point.normal}).tip;
+      entry["deviation_mm"] = one.front().mean_mm;
+    }
+    points.push_back(std::move(entry));
   }
   json line{{"features", std::move(features)}, {"points", std::move(points)}, {"applied", report.applied}};
   line["part_off"] = report.off ? gateway::frame_to_json(*report.off) : json();
   line["part_frame"] = report.part_frame ? gateway::frame_to_json(*report.part_frame) : json();
   if (!report.off) line["not_aligned"] = report.why_not;
+  line["tools"] = json::array();
+  for (const auto& [number, offset] : report.tools) {
+    line["tools"].push_back({{"number", number},
+                             {"length_off_mm", to_json(offset.length_mm)},
+                             {"radius_off_mm", to_json(offset.radius_mm)}});
+  }
   fmt::print("{}\n", line.dump());
+}
+
+void print_tools(const Report& report) {
+  for (const auto& [tool, offset] : report.tools) {
+    const auto mm = [](const std::optional<double>& value) { return value ? number(*value, 4) + " mm" : "not told"; };
+    fmt::print("tool {}: longer than its table says by {}, its radius larger by {}\n", tool, mm(offset.length_mm),
+               mm(offset.radius_mm));
+  }
 }
 
 void print_table(const Report& report) {
@@ -147,6 +216,7 @@ void print_table(const Report& report) {
   fmt::print("{}", table({"feature", "points", "mean µm", "worst µm", "aligned: mean µm", "worst µm"}, rows));
   if (!report.off) {
     fmt::print("\nnot aligned: {}\n", report.why_not);
+    print_tools(report);
     return;
   }
   constexpr double kDegrees = 57.29577951308232;
@@ -155,6 +225,7 @@ void print_table(const Report& report) {
              number(report.off->p[1], 4), number(report.off->p[2], 4),
              number(kDegrees * 2 * std::atan2(std::hypot(q[1], q[2], q[3]), q[0]), 4),
              report.applied ? "its frame is in force" : "--apply puts its frame in force");
+  print_tools(report);
 }
 
 }  // namespace
@@ -170,8 +241,13 @@ Result<> measure(Connection& connection, const MeasureRequest& request, bool jso
       Prober prober(connection, *plan);
       if (auto measured = prober.measure_all(); !measured) return measured;
     }
+    const auto stands = wait_for_rest(connection, "");
+    if (!stands) return tl::unexpected(stands.error());
+    const Vector axis{stands->pose[3], stands->pose[4], stands->pose[5]};
     report.before = gateway::feature_deviations(plan->points, {});
-    const auto fit = gateway::fit_surfaces(plan->points);
+    const auto datums = points_of(*plan, std::nullopt);
+    // Of a plan for tools alone the part lies where it is taken to lie.
+    const auto fit = datums.empty() ? Expected<gateway::Alignment>() : gateway::fit_surfaces(datums);
     if (!fit) {
       report.why_not = fit.error().message;
       return request.apply ? fail(fmt::format("nothing is applied: {}", report.why_not)) : Result<>();
@@ -179,8 +255,9 @@ Result<> measure(Connection& connection, const MeasureRequest& request, bool jso
     report.off = fit->frame;
     report.part_frame = compose(*frame, fit->frame);
     report.after = gateway::feature_deviations(plan->points, fit->frame);
+    report.tools = find_tools(*plan, fit->frame, axis);
     if (!request.apply) return {};
-    if (auto rest = wait_for_rest(connection, ""); !rest) return tl::unexpected(rest.error());
+    if (auto applied = apply_tools(connection, report.tools); !applied) return applied;
     const auto set =
         connection.call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json(*report.part_frame)}});
     if (!set) return tl::unexpected(set.error());

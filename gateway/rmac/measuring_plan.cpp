@@ -21,6 +21,7 @@ Result<MeasuringPlan> read_measuring_plan(const std::string& file) {
   std::size_t feature_number = 0;
   for (const auto& feature : (*document)["Features"]) {
     std::size_t point_number = 0;
+    if (feature.contains("Tool")) plan.cut_by[feature["Name"]] = feature["Tool"];
     for (const auto& entry : feature["Points"]) {
       gateway::SurfacePoint point;
       point.feature = feature["Name"];

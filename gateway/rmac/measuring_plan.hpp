@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct MeasuringPlan {
   double tip_radius_mm = 0;
   double speed_mm_s = 20;
   std::vector<gateway::SurfacePoint> points;  ///< normals are unit; not measured yet
+  std::map<std::string, int> cut_by;          ///< features by which a tool is judged, not the part's place
 };
 
 /// Reads and checks the whole file. An error names file, key, value and range.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "gateway/rmac/rest.hpp"
@@ -158,7 +157,7 @@ Result<> Runner::submit(const Program& program, const Request& request) {
   }
   const auto room = [&] {
     const bool queue_has_room = !is_move || !started_ || queue_bound_ == 0 || unfinished_.size() < queue_bound_;
-    return unanswered_ < window_ && queue_has_room;
+    return unanswered_ < window_ && queue_has_room && !parked_;
   };
   if (auto waited = wait(room); !waited) {
     return waited;
@@ -286,6 +285,7 @@ Result<> Runner::explain_rest() {
     return tl::unexpected(answer.error());
   }
   const auto state = read_state(*answer);
+  if (parked_) return {};
   if (state.state != "Idle" || unfinished_.empty()) {
     return {};
   }
@@ -300,31 +300,10 @@ Result<> Runner::explain_rest() {
   return {};
 }
 
-void Runner::obey(const std::string& line) {
-  // Whoever holds a program from another terminal cannot resume it there: this client has the lease.
-  const auto tell = [this](const Connection::Answer& answer) {
-    if (!answer) note_ = answer.error().message;
-  };
-  note_.clear();
-  if (line.empty() && state_ && !state_->tool_prompt.empty()) {
-    connection_.send("RMAC_CAM.ConfirmToolChange", {{"ToolNumber", state_->tool_wanted}}, tell);
-    return;
-  }
-  if (line.empty()) {
-    connection_.send("RMAC_CAM.FeedResume", nlohmann::json::object(), [](const Connection::Answer&) {});
-    return;
-  }
-  double distance_mm = 0;
-  const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), distance_mm);
-  if (error != std::errc() || end != line.data() + line.size()) {
-    note_ = fmt::format("\"{}\" is no distance in mm", line);
-    return;
-  }
-  connection_.send("RMAC_CAM.FeedRetrace", {{"Distance", distance_mm}}, tell);
-}
-
 void Runner::halt() {
-  // Anyone connected may stop the machine; a lost connection has stopped it by losing the lease.
+  // Anyone connected may stop the machine; a lost connection has stopped it by losing the lease. A program that is
+  // parked moves nothing, and who does is somebody else.
+  if (parked_) return;
   if (connection_.call("RMAC_CAM.StopNow")) {
     failure_.clear();
     static_cast<void>(rest());
@@ -338,8 +317,9 @@ void Runner::take(const std::string& topic, const nlohmann::json& params) {
     state_ = read_state(params);
     progress_.draw(report_.moves, total_moves_,
                    !state_->tool_prompt.empty() ? state_->tool_prompt + ", or Enter"
+                   : parked_                    ? (note_.empty() ? "parked: Enter takes it up again" : note_)
                    : state_->state != "Holding" ? fmt::format("{:.0f} mm/min", state_->feed_actual)
-                   : note_.empty()              ? "held: Enter goes on, a distance in mm and Enter runs back"
+                   : note_.empty()              ? "held: Enter goes on, a distance in mm runs back, p parks"
                                                 : note_);
   } else if (topic == "joints") {
     for (const auto& sample : read_joints(params)) {
@@ -349,6 +329,7 @@ void Runner::take(const std::string& topic, const nlohmann::json& params) {
 }
 
 void Runner::take(const EventNote& event) {
+  if (parked_) return;  // what happens now is not the program's
   if (event.kind == "MoveStarted" && !first_start_s_ && !unfinished_.empty()) {
     first_start_s_ = event.t_s;
   } else if (event.kind == "MoveDone" && !unfinished_.empty() && unfinished_.front() == event.move_id) {

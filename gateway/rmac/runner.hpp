@@ -51,8 +51,11 @@ class Runner {
   [[nodiscard]] Result<> wait(const std::function<bool()>& done);
   [[nodiscard]] Result<> explain_rest();
   void halt();
-  /// A line from the terminal: nothing goes on after a hold, a number of mm runs back along the path.
+  /// A line from the terminal: nothing goes on after a hold, a number of mm runs back along the path, p parks.
   void obey(const std::string& line);
+  /// Sets the program aside, and gives the machine free for others.
+  void park();
+  void take_up();
 
   void take(const std::string& topic, const nlohmann::json& params);
   void take(const EventNote& event);
@@ -78,6 +81,7 @@ class Runner {
   double last_done_s_ = 0, last_sample_s_ = 0;
   std::chrono::milliseconds renew_every_ = std::chrono::hours(1);  ///< so that waiting is not taken for hanging
   bool leased_ = false;                                            ///< this client holds motion authority
+  bool parked_ = false;                                            ///< nothing is sent meanwhile
   bool started_ = false;    ///< the program's cycle was started, so moves become done
   bool unsettled_ = true;   ///< something acted on the machine since the last move: its rest must be looked at
   bool measuring_ = false;  ///< the last request measures a point

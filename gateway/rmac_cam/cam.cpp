@@ -28,13 +28,13 @@ void Cam::mechanism_changed(const sdk::DeviceObject* device, bool fresh) {
   const sdk::DeviceObject none;
   const sdk::DeviceObject& now = device != nullptr ? *device : none;
   if (fresh) {
-    feedrate_mm_min_ = 0;
-    max_feedrate_mm_min_ = now.max_feedrate_mm_min;
-    accel_rise_mm_s2_ = now.path_accel_rise_mm_s2;
-    accel_fall_mm_s2_ = now.path_accel_fall_mm_s2;
-    joint_interp_percent_ = 100;
-    tolerance_mm_ = 0;
-    spindle_max_rpm_.clear();
+    settings_.feedrate_mm_min = 0;
+    settings_.max_feedrate_mm_min = now.max_feedrate_mm_min;
+    settings_.accel_rise_mm_s2 = now.path_accel_rise_mm_s2;
+    settings_.accel_fall_mm_s2 = now.path_accel_fall_mm_s2;
+    settings_.joint_interp_percent = 100;
+    settings_.tolerance_mm = 0;
+    settings_.spindle_max_rpm.clear();
     supervisor_.set_override(100);
     // The tool stays in the spindle whoever was loaded meanwhile.
     const auto mounted = device != nullptr ? rack_.mounted() : kNoTool;
@@ -43,12 +43,12 @@ void Cam::mechanism_changed(const sdk::DeviceObject* device, bool fresh) {
   }
   let_go_of_forces();
   // A configuration defines the mechanism: its maxima are the new bounds of ours, upwards too.
-  max_feedrate_mm_min_ = now.max_feedrate_mm_min;
-  spindle_max_rpm_.clear();
-  joint_accel_rise_.clear();
-  for (const sdk::Joint& joint : now.joints) joint_accel_rise_.push_back(joint.limits.max_acceleration);
-  joint_accel_fall_ = joint_accel_rise_;
-  for (const sdk::Spindle& spindle : now.spindles) spindle_max_rpm_.push_back(spindle.max_speed_rpm);
+  settings_.max_feedrate_mm_min = now.max_feedrate_mm_min;
+  settings_.spindle_max_rpm.clear();
+  settings_.joint_accel_rise.clear();
+  for (const sdk::Joint& joint : now.joints) settings_.joint_accel_rise.push_back(joint.limits.max_acceleration);
+  settings_.joint_accel_fall = settings_.joint_accel_rise;
+  for (const sdk::Spindle& spindle : now.spindles) settings_.spindle_max_rpm.push_back(spindle.max_speed_rpm);
 }
 
 Expected<> Cam::require_mechanism(const char* function) const {
@@ -101,11 +101,11 @@ bool Cam::cycle_stop_status() const {
 Move Cam::make_move(std::int64_t id, const Geometry& geometry) const {
   return {.id = id,
           .geometry = geometry,
-          .feed_mm_s = feedrate_mm_min_ / kSecondsPerMinute,
-          .tolerance_mm = tolerance_mm_,
-          .accel_rise_mm_s2 = accel_rise_mm_s2_,
-          .accel_fall_mm_s2 = accel_fall_mm_s2_,
-          .joint_speed_fraction = joint_interp_percent_ / 100};
+          .feed_mm_s = settings_.feedrate_mm_min / kSecondsPerMinute,
+          .tolerance_mm = settings_.tolerance_mm,
+          .accel_rise_mm_s2 = settings_.accel_rise_mm_s2,
+          .accel_fall_mm_s2 = settings_.accel_fall_mm_s2,
+          .joint_speed_fraction = settings_.joint_interp_percent / 100};
 }
 
 Expected<> Cam::queue_move(std::int64_t id, const Geometry& geometry) {
@@ -113,16 +113,16 @@ Expected<> Cam::queue_move(std::int64_t id, const Geometry& geometry) {
   const auto* nurbs = std::get_if<NurbsGeometry>(&geometry);
   const bool in_joints =
       std::holds_alternative<JointTargetGeometry>(geometry) || (nurbs != nullptr && nurbs->space == NurbsSpace::Joint);
-  if (!in_joints && !(feedrate_mm_min_ > 0)) {
+  if (!in_joints && !(settings_.feedrate_mm_min > 0)) {
     return failure(MinorCode::SpeedLimit,
                    fmt::format("move {}: no feed is set; use SetFeedrate before the first move", id));
   }
   // The maximum may have been lowered since the feed was set.
-  if (!in_joints && feedrate_mm_min_ > max_feedrate_mm_min_) {
+  if (!in_joints && settings_.feedrate_mm_min > settings_.max_feedrate_mm_min) {
     return failure(MinorCode::SpeedLimit,
                    fmt::format("move {}: the feed in force, {} mm/min, is above the maximum of {} mm/min; set a lower "
                                "one with SetFeedrate",
-                               id, feedrate_mm_min_, max_feedrate_mm_min_));
+                               id, settings_.feedrate_mm_min, settings_.max_feedrate_mm_min));
   }
   if (auto fits = check_tool(id, !in_joints && !std::holds_alternative<PathTargetGeometry>(geometry)); !fits) {
     return fits;
@@ -143,11 +143,11 @@ int Cam::moves_in_buffer() const {
 Expected<> Cam::set_feedrate(double mm_min) {
   if (auto loaded = require_mechanism("SetFeedrate"); !loaded) return loaded;
   if (!positive(mm_min)) return refuse(fmt::format("SetFeedrate: {} mm/min must be above 0", mm_min));
-  if (mm_min > max_feedrate_mm_min_) {
+  if (mm_min > settings_.max_feedrate_mm_min) {
     return failure(MinorCode::SpeedLimit, fmt::format("SetFeedrate: {} mm/min is above the maximum of {} mm/min",
-                                                      mm_min, max_feedrate_mm_min_));
+                                                      mm_min, settings_.max_feedrate_mm_min));
   }
-  feedrate_mm_min_ = mm_min;
+  settings_.feedrate_mm_min = mm_min;
   return {};
 }
 
@@ -164,12 +164,12 @@ Expected<> Cam::set_max_feedrate(double mm_min) {
                                "tighten",
                                mm_min, device_->max_feedrate_mm_min));
   }
-  max_feedrate_mm_min_ = mm_min;
+  settings_.max_feedrate_mm_min = mm_min;
   return {};
 }
 
 double Cam::max_feedrate() const {
-  return max_feedrate_mm_min_;
+  return settings_.max_feedrate_mm_min;
 }
 
 Expected<> Cam::set_feed_override(double percent) {
@@ -195,44 +195,44 @@ Expected<> Cam::check_accel(const char* function, double mm_s2, double bound_mm_
 
 Expected<> Cam::set_path_accel_rise(double mm_s2) {
   return check_accel("SetPathAccelRise", mm_s2, device_ != nullptr ? device_->path_accel_rise_mm_s2 : 0).map([&] {
-    accel_rise_mm_s2_ = mm_s2;
+    settings_.accel_rise_mm_s2 = mm_s2;
   });
 }
 
 double Cam::path_accel_rise() const {
-  return accel_rise_mm_s2_;
+  return settings_.accel_rise_mm_s2;
 }
 
 Expected<> Cam::set_path_accel_fall(double mm_s2) {
   return check_accel("SetPathAccelFall", mm_s2, device_ != nullptr ? device_->path_accel_fall_mm_s2 : 0).map([&] {
-    accel_fall_mm_s2_ = mm_s2;
+    settings_.accel_fall_mm_s2 = mm_s2;
   });
 }
 
 double Cam::path_accel_fall() const {
-  return accel_fall_mm_s2_;
+  return settings_.accel_fall_mm_s2;
 }
 
 Expected<> Cam::set_joint_interp_speed(double percent) {
   if (!positive(percent) || percent > 100) {
     return refuse(fmt::format("SetJointInterpSpeed: {} percent must be above 0 and at most 100", percent));
   }
-  joint_interp_percent_ = percent;
+  settings_.joint_interp_percent = percent;
   return {};
 }
 
 double Cam::joint_interp_speed() const {
-  return joint_interp_percent_;
+  return settings_.joint_interp_percent;
 }
 
 Expected<> Cam::set_path_tolerance(double mm) {
   if (!std::isfinite(mm) || mm < 0) return refuse(fmt::format("SetPathTolerance: {} mm must be 0 or more", mm));
-  tolerance_mm_ = mm;
+  settings_.tolerance_mm = mm;
   return {};
 }
 
 double Cam::path_tolerance() const {
-  return tolerance_mm_;
+  return settings_.tolerance_mm;
 }
 
 Expected<> Cam::set_frames(const char* function, const Frames& frames) {

@@ -69,6 +69,10 @@ class Cam final : public sdk::RmacCam, public ToolPort {
   Expected<> move_to_reference_point() override;
   [[nodiscard]] Expected<std::vector<double>> current_position() const override;
   Expected<> set_animation(bool on) override;
+  Expected<> park_program() override;
+  Expected<> take_up_program() override;
+  Expected<> drop_parked_program() override;
+  [[nodiscard]] std::optional<sdk::ParkedProgram> parked_program() const override;
 
   [[nodiscard]] Expected<std::vector<Tool>> tools() const override;
   [[nodiscard]] ToolsNow tools_now() const override { return supervisor_.tools_now(); }
@@ -141,16 +145,21 @@ class Cam final : public sdk::RmacCam, public ToolPort {
   std::function<Expected<>()> reset_;
 
   const sdk::DeviceObject* device_ = nullptr;
-  double feedrate_mm_min_ = 0;
-  double max_feedrate_mm_min_ = 0;
-  double accel_rise_mm_s2_ = 0;
-  double accel_fall_mm_s2_ = 0;
-  double joint_interp_percent_ = 100;
-  double tolerance_mm_ = 0;
-  std::vector<double> spindle_max_rpm_;
-  std::vector<double> joint_accel_rise_;
-  std::vector<double> joint_accel_fall_;
-  std::optional<Jog> jog_;  ///< by velocity, begun last
+  /// What is in force for the next move.
+  struct Settings {
+    double feedrate_mm_min = 0;
+    double max_feedrate_mm_min = 0;
+    double accel_rise_mm_s2 = 0;
+    double accel_fall_mm_s2 = 0;
+    double joint_interp_percent = 100;
+    double tolerance_mm = 0;
+    std::vector<double> spindle_max_rpm;
+    std::vector<double> joint_accel_rise;
+    std::vector<double> joint_accel_fall;
+  };
+  Settings settings_;
+  Settings parked_settings_;  ///< of the program that is parked, if there is one
+  std::optional<Jog> jog_;    ///< by velocity, begun last
 };
 
 }  // namespace rmac::gateway

@@ -100,7 +100,7 @@ Expected<> Cam::jog_path(const sdk::JogDirection& direction, double distance_mm)
 
 Expected<> Cam::jog_path_at(const sdk::JogDirection& direction, double velocity_mm_s) {
   if (auto loaded = require_mechanism("JogPath"); !loaded) return loaded;
-  const double fastest = max_feedrate_mm_min_ / kSecondsPerMinute;
+  const double fastest = settings_.max_feedrate_mm_min / kSecondsPerMinute;
   return jog_at("JogPath", {direction, velocity_mm_s > 0, fastest}, velocity_mm_s, [&]() -> Expected<Move> {
     auto way = part_direction("JogPath", direction);
     if (!way) return tl::unexpected(way.error());

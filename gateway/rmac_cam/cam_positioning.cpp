@@ -25,26 +25,30 @@ Expected<> Cam::set_joint_accel(std::vector<double>& accel, const char* function
 }
 
 Expected<> Cam::set_joint_accel_rise(int joint, double value) {
-  return set_joint_accel(joint_accel_rise_, "SetJointAccelRise", joint, value);
+  return set_joint_accel(settings_.joint_accel_rise, "SetJointAccelRise", joint, value);
 }
 
 Expected<double> Cam::joint_accel_rise(int joint) const {
-  return find_joint(joint, "GetJointAccelRise").map([&](std::size_t found) { return joint_accel_rise_[found]; });
+  return find_joint(joint, "GetJointAccelRise").map([&](std::size_t found) {
+    return settings_.joint_accel_rise[found];
+  });
 }
 
 Expected<> Cam::set_joint_accel_fall(int joint, double value) {
-  return set_joint_accel(joint_accel_fall_, "SetJointAccelFall", joint, value);
+  return set_joint_accel(settings_.joint_accel_fall, "SetJointAccelFall", joint, value);
 }
 
 Expected<double> Cam::joint_accel_fall(int joint) const {
-  return find_joint(joint, "GetJointAccelFall").map([&](std::size_t found) { return joint_accel_fall_[found]; });
+  return find_joint(joint, "GetJointAccelFall").map([&](std::size_t found) {
+    return settings_.joint_accel_fall[found];
+  });
 }
 
 Move Cam::make_joint_move(std::int64_t id, const JointTargetGeometry& target, std::span<const double> from) const {
   Move move = make_move(id, target);
   // All joints go in proportion on a line in joint space, so a joint's bound is one along that line, whatever
   // SetPathAccelRise says of the tool tip.
-  const std::size_t count = std::min({target.joints.size(), from.size(), joint_accel_rise_.size()});
+  const std::size_t count = std::min({target.joints.size(), from.size(), settings_.joint_accel_rise.size()});
   double square = 0;
   for (std::size_t i = 0; i < count; ++i) square += (target.joints[i] - from[i]) * (target.joints[i] - from[i]);
   move.accel_rise_mm_s2 = move.accel_fall_mm_s2 = 0;
@@ -54,8 +58,8 @@ Move Cam::make_joint_move(std::int64_t id, const JointTargetGeometry& target, st
     const auto tighten = [&](double& bound, double accel) {
       bound = bound > 0 ? std::min(bound, accel / share) : accel / share;
     };
-    tighten(move.accel_rise_mm_s2, joint_accel_rise_[i]);
-    tighten(move.accel_fall_mm_s2, joint_accel_fall_[i]);
+    tighten(move.accel_rise_mm_s2, settings_.joint_accel_rise[i]);
+    tighten(move.accel_fall_mm_s2, settings_.joint_accel_fall[i]);
   }
   return move;
 }
@@ -107,7 +111,7 @@ Expected<Move> Cam::path_move_at(const char* function, std::int64_t id, const Ge
   if (!std::isfinite(speed_mm_s) || !(speed_mm_s > 0)) {
     return failure(MinorCode::InvalidParameterValue, fmt::format("{}: the speed must be above 0 mm/s", function));
   }
-  if (const double fastest = max_feedrate_mm_min_ / kSecondsPerMinute; speed_mm_s > fastest) {
+  if (const double fastest = settings_.max_feedrate_mm_min / kSecondsPerMinute; speed_mm_s > fastest) {
     return failure(MinorCode::SpeedLimit,
                    fmt::format("{}: {} mm/s is above the maximum feed of {} mm/s", function, speed_mm_s, fastest));
   }
@@ -156,7 +160,8 @@ Expected<> Cam::queue_joints_at(const char* function, std::int64_t id, const Joi
 Move Cam::make_straight_move(const ToolPose& target) const {
   Move move = make_move(kPositioningMoveId, PathTargetGeometry{target});
   // Without a feed in force, as fast as joint moves are allowed to be.
-  if (!(move.feed_mm_s > 0)) move.feed_mm_s = max_feedrate_mm_min_ / kSecondsPerMinute * joint_interp_percent_ / 100;
+  if (!(move.feed_mm_s > 0))
+    move.feed_mm_s = settings_.max_feedrate_mm_min / kSecondsPerMinute * settings_.joint_interp_percent / 100;
   return move;
 }
 

@@ -22,7 +22,7 @@ Expected<> Cam::set_spindle_rpm(int spindle, double rpm) {
   const auto found = find_spindle(spindle, "SetSpindleRPM");
   if (!found) return tl::unexpected(found.error());
   if (!std::isfinite(rpm)) return failure(MinorCode::InvalidParameterValue, "SetSpindleRPM: the speed must be finite");
-  if (const double max = spindle_max_rpm_[*found]; std::abs(rpm) > max) {
+  if (const double max = settings_.spindle_max_rpm[*found]; std::abs(rpm) > max) {
     return failure(MinorCode::SpeedLimit,
                    fmt::format("SetSpindleRPM: {} rpm is above spindle {}'s maximum of {} rpm", rpm, spindle, max));
   }
@@ -52,12 +52,14 @@ Expected<> Cam::set_spindle_max_rpm(int spindle, double rpm) {
                                "tighten",
                                rpm, bound));
   }
-  spindle_max_rpm_[*found] = rpm;
+  settings_.spindle_max_rpm[*found] = rpm;
   return {};
 }
 
 Expected<double> Cam::spindle_max_rpm(int spindle) const {
-  return find_spindle(spindle, "GetSpindleMaxRPM").map([&](std::size_t found) { return spindle_max_rpm_[found]; });
+  return find_spindle(spindle, "GetSpindleMaxRPM").map([&](std::size_t found) {
+    return settings_.spindle_max_rpm[found];
+  });
 }
 
 Expected<> Cam::set_coolant(bool on) {

@@ -119,6 +119,7 @@ Expected<> Cam::change_tool(int number) {
   const auto joints = [&] { return std::vector<double>(builder.end_joints().begin(), builder.end_joints().end()); };
   const std::vector<double> before = joints();
   const Frames frames_before = builder.frames();
+  ProgramStep as_sent = step_at(builder, number);
   const Frames frames_after{frames_before.part, tip_of(*tool)};
   Expected<std::vector<QueueStep>> steps;
   if (there) {
@@ -135,7 +136,7 @@ Expected<> Cam::change_tool(int number) {
     return tl::unexpected(steps.error());
   }
   builder.restart(joints(), frames_after);
-  auto added = supervisor_.add_steps(std::move(*steps));
+  auto added = supervisor_.add_steps(std::move(*steps), std::move(as_sent));
   if (!added) (void)keep_mounted();
   return added;
 }

@@ -90,6 +90,28 @@ class Measure(unittest.TestCase):
         self.assertIn("its place along (1.000", refused.stderr)
         self.assertEqual(self.watcher.call("RMAC_CAM.GetPartFrame")["p"], [0, 0, 0])
 
+    def test_tool_that_cut_a_feature_is_found_too_long_and_too_large_and_corrected(self):
+        self.assertEqual(self.appliance.rmac("tools", "set", "7", "--length", "40", "--radius", "3").returncode, DONE)
+        # As programmed, the floor lies 0.05 mm higher and the wall 0.03 mm further out than they were cut.
+        floor = {"Name": "floor", "Tool": 7, "Points": [{"Point": [x, 0, -19.95], "Normal": [0, 0, 1]}
+                                                        for x in (-12, 12)]}
+        wall = {"Name": "wall", "Tool": 7, "Points": [{"Point": [20.03, y, -28], "Normal": [1, 0, 0]}
+                                                      for y in (-8, 8)]}
+        told = self.measured(self.plan(TOP, LEFT, FRONT, floor, wall), "--apply")
+        tool, = told["tools"]
+        self.assertEqual(tool["number"], 7)
+        self.assertAlmostEqual(tool["length_off_mm"], 0.05, delta=5e-4)
+        self.assertAlmostEqual(tool["radius_off_mm"], 0.03, delta=5e-4)
+        table = {entry["ToolNumber"]: entry for entry in self.watcher.call("RMAC_CAM.GetTools")["Tools"]}
+        self.assertAlmostEqual(table[7]["Length"], 40 + tool["length_off_mm"], delta=1e-9)
+        self.assertAlmostEqual(table[7]["Radius"], 3 + tool["radius_off_mm"], delta=1e-9)
+        for point in told["points"]:
+            if point["feature"] in ("top", "left", "front"):
+                self.assertLess(abs(point["deviation_mm"]), 5e-4, "tools do not move the part")
+        unknown = self.appliance.rmac("measure", self.plan(TOP, LEFT, FRONT, dict(floor, Tool=8)), "--apply")
+        self.assertEqual(unknown.returncode, FAILED)
+        self.assertIn("tool 8 is not in the tool table", unknown.stderr)
+
     def test_part_that_is_not_there_ends_the_plan_with_the_machines_reason(self):
         beside = {"Name": "air", "Points": [{"Point": [40, -40, -20], "Normal": [0, 0, 1]}]}
         done = self.appliance.rmac("measure", self.plan(beside))

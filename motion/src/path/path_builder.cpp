@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "path/join.hpp"
+#include "path/part_of.hpp"
 #include "path/pole_passage.hpp"
 #include "path/travel.hpp"
 #include "path/trimmed_curve.hpp"
@@ -80,6 +81,19 @@ std::optional<TravelOffence> still_outside(std::span<const double> excess, const
   return TravelOffence{index, end.d[0][index], *joint, last.length()};
 }
 
+/// What of a move's segments lies from `from_mm` on.
+std::vector<std::shared_ptr<const PathSegment>> rest_of(std::vector<std::shared_ptr<const PathSegment>> segments,
+                                                        double from_mm) {
+  constexpr double kNothing_mm = 1e-6;
+  std::vector<std::shared_ptr<const PathSegment>> rest;
+  for (auto& segment : segments) {
+    const double cut = from_mm - segment->stretches().front().s_begin_mm;
+    if (cut >= segment->length() - kNothing_mm) continue;
+    rest.push_back(cut > kNothing_mm ? part_of(*segment, cut, segment->length()) : std::move(segment));
+  }
+  return rest;
+}
+
 bool same(const Frames& a, const Frames& b) {
   return a.part.p == b.part.p && a.part.q == b.part.q && a.tool.p == b.tool.p && a.tool.q == b.tool.q;
 }
@@ -100,7 +114,7 @@ void PathBuilder::restart(std::span<const double> joints, const Frames& frames) 
   end_pose_ = map_->pose(end_joints_);
 }
 
-Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(const Move& move) {
+Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(const Move& move, double from_mm) {
   const auto* nurbs = std::get_if<NurbsGeometry>(&move.geometry);
   const bool joint_move = std::holds_alternative<JointTargetGeometry>(move.geometry) ||
                           (nurbs != nullptr && nurbs->space == NurbsSpace::Joint);
@@ -248,7 +262,7 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
   }
   end_joints_ = std::move(joints);
   end_pose_ = segments.back()->pose(segments.back()->length());
-  return segments;
+  return from_mm > 0 ? rest_of(std::move(segments), from_mm) : segments;
 }
 
 }  // namespace rmac

@@ -97,6 +97,19 @@ void LaidPath::travelled(double s, double needed_from) {
   rest_after_.erase(rest_after_.begin(), rest_after_.begin() + n);
 }
 
+std::optional<PathPlace> LaidPath::place_at(double s) const {
+  if (segments_.empty() || s + kSamePlace >= end()) return std::nullopt;
+  const std::size_t i = view().find(s + kSamePlace, 1);
+  const double on_segment = std::max(s - starts_[i], 0.0);
+  const MoveStretch& stretch = segments_[i]->stretch_at(on_segment + kSamePlace);
+  JointPoint point;
+  if (segments_[i]->evaluate(on_segment, 0, 1, point) != KinematicsStatus::Ok) return std::nullopt;
+  return PathPlace{stretch.move_id,
+                   stretch.s_begin_mm + stretch.s_per_length * std::max(on_segment - stretch.begin, 0.0),
+                   segments_[i]->pose(on_segment),
+                   {point.d[0].begin(), point.d[0].begin() + static_cast<std::ptrdiff_t>(segments_[i]->joint_count())}};
+}
+
 LaidPath LaidPath::backward(double s, double distance) const {
   LaidPath back(joints_, period_s_);
   if (segments_.empty() || !(s > starts_.front())) return back;

@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "joins/path_joiner.hpp"
 #include "rmac/motion/path_segment.hpp"
+#include "rmac/motion/planner.hpp"
 #include "time_law/path_view.hpp"
 
 namespace rmac {
@@ -55,6 +57,8 @@ class LaidPath {
   void travelled(double s, double needed_from);
   /// The farthest place that the tool has come to.
   [[nodiscard]] double farthest() const noexcept { return counted_s_; }
+  /// The place at s; at a border the one where the next stretch begins. Nothing beyond what is laid.
+  [[nodiscard]] std::optional<PathPlace> place_at(double s) const;
 
   /// What lies up to `distance` behind s, as a path of its own that ends no moves and runs the other way: it begins at
   /// path length s - (its length) and ends at s. Empty when nothing is remembered.

@@ -450,6 +450,10 @@ std::size_t Planner::moves_left() const noexcept {
   return impl_->forward.moves_left();
 }
 
+std::optional<PathPlace> Planner::farthest_place() const {
+  return impl_->forward.place_at(std::max(impl_->place_s(), impl_->forward.farthest()));
+}
+
 std::vector<double> Planner::rest_joints() const {
   const auto* base = impl_->base();
   if (base == nullptr) return {};

@@ -57,6 +57,10 @@ class MockCam : public sdk::RmacCam {
   MOCK_METHOD(Expected<double>, joint_accel_fall, (int), (const, override));
   MOCK_METHOD(Expected<std::vector<double>>, current_position, (), (const, override));
   MOCK_METHOD(Expected<>, set_animation, (bool), (override));
+  MOCK_METHOD(Expected<>, park_program, (), (override));
+  MOCK_METHOD(Expected<>, take_up_program, (), (override));
+  MOCK_METHOD(Expected<>, drop_parked_program, (), (override));
+  MOCK_METHOD(std::optional<sdk::ParkedProgram>, parked_program, (), (const, override));
 };
 
 class MockMeasuring : public sdk::Measuring {

@@ -35,7 +35,8 @@ class PathBuilder {
   /// Segments of one move (none for a positioning move to where the queue ends already), checked for geometry, reach,
   /// singularity and joint travel before anything moves. An error names the joint, the amount and the path length of
   /// the first offence; then the queue's end is unchanged.
-  [[nodiscard]] Expected<std::vector<std::shared_ptr<const PathSegment>>> build(const Move& move);
+  /// With `from_mm` only what lies from there on along the move, which was begun before.
+  [[nodiscard]] Expected<std::vector<std::shared_ptr<const PathSegment>>> build(const Move& move, double from_mm = 0);
 
   /// Tool pose (part frame) and joints at the end of what was built.
   [[nodiscard]] const ToolPose& end_pose() const noexcept { return end_pose_; }
@@ -54,6 +55,14 @@ struct ServoProgress {
   std::int64_t cycle = 0;           ///< the cycle that is being executed
   std::uint64_t accepted_plan = 0;  ///< `PlanFollower::accepted_plan`
   std::uint64_t last_refused = 0;   ///< `PlanFollower::last_refused`
+};
+
+/// A place on the path, within one of the client's moves.
+struct PathPlace {
+  std::int64_t move_id = 0;
+  double s_mm = 0;  ///< along the move
+  ToolPose pose;    ///< part frame
+  std::vector<double> joints;
 };
 
 /// How the machine is to treat its path.
@@ -95,6 +104,9 @@ class Planner {
   [[nodiscard]] std::size_t moves_left() const noexcept;
   /// Where the path stands when at rest: joints at the end of what was travelled.
   [[nodiscard]] std::vector<double> rest_joints() const;
+  /// The farthest place that the tool has come to, at rest: where the first move goes on that is not done. Nothing when
+  /// none was begun.
+  [[nodiscard]] std::optional<PathPlace> farthest_place() const;
   /// Free segments and moves still to come before `add` should wait.
   static constexpr std::size_t kQueueCapacity = 10000;
 

@@ -109,7 +109,8 @@ struct DeviceObject {
   std::vector<Joint> held_joints;   ///< driven, but not moved by this mechanism: they keep the position they have
   std::vector<Actuator> actuators;  ///< behind joints, then behind held joints, as the actuator map orders them
   std::vector<Spindle> spindles;
-  bool overlay = false;  ///< a role of whatever mechanism is loaded
+  bool overlay = false;    ///< a role of whatever mechanism is loaded
+  std::string overlay_of;  ///< the mechanism that it lies over; empty: none
   Probing probing;
   ModuleChoice kinematics;
   ModuleChoice actuator_map;
@@ -117,6 +118,9 @@ struct DeviceObject {
   ModuleChoice digital_io_interface;
   std::map<std::string, int> inputs, outputs;  ///< names of I/O bits, e.g. outputs["Coolant"]
   std::vector<ToolChangeStep> tool_change;     ///< of a tool changer; the spindles stand by then
+
+  /// The mechanism whose joints, drives and tools these are.
+  [[nodiscard]] const std::string& machine() const noexcept { return overlay_of.empty() ? name : overlay_of; }
 };
 
 }  // namespace rmac::sdk

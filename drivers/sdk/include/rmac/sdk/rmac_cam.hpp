@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "rmac/motion/error.hpp"
@@ -20,6 +23,16 @@ struct JogDirection {
   bool in_tool_frame = false;
 
   bool operator==(const JogDirection&) const = default;
+};
+
+/// A program that was set aside in the midst of it.
+struct ParkedProgram {
+  std::string mechanism;
+  std::size_t moves = 0;     ///< and tool changes to do, the move that was begun included
+  std::int64_t move_id = 0;  ///< of that one
+  double s_mm = 0;           ///< how far along it the tool was
+  ToolPose place;            ///< where it goes on, in the part frame that is in force
+  double off_mm = 0;         ///< how far the tool stands from there
 };
 
 class RmacCam {
@@ -103,6 +116,16 @@ class RmacCam {
   /// Measured joint positions.
   [[nodiscard]] virtual Expected<std::vector<double>> current_position() const = 0;
   virtual Expected<> set_animation(bool on) = 0;
+
+  /// Sets what is held aside, from its place on: the queue is empty then, and the machine free to be jogged, measured
+  /// with, or loaded in another role. Spindle and coolant go off.
+  virtual Expected<> park_program() = 0;
+  /// Queues it again, in the part frame and with the tool in force now, and holds it: `feed_resume` switches spindle
+  /// and coolant on again and goes on. The tool must stand within a millimetre of the place; the last bit is made
+  /// straight. On a refusal the program stays parked.
+  virtual Expected<> take_up_program() = 0;
+  virtual Expected<> drop_parked_program() = 0;
+  [[nodiscard]] virtual std::optional<ParkedProgram> parked_program() const = 0;
 };
 
 }  // namespace rmac::sdk

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <variant>
+#include <vector>
+
+#include "rmac/motion/planner.hpp"
+
+namespace rmac::gateway {
+
+/// What a client queued, and from where it begins: enough to queue it again, in another part frame too.
+struct ProgramStep {
+  std::variant<Move, int> what;  ///< a move, or a change to this tool
+  ToolPose start;                ///< part frame
+  std::vector<double> start_joints;
+  double from_mm = 0;      ///< of a move that was begun before: what lies before is done
+  bool way_back = false;   ///< the machine's own way to where a program goes on, no step of that
+  std::size_t counts = 1;  ///< moves of the queue that it is
+};
+
+/// As it is queued behind what `builder` built last.
+[[nodiscard]] ProgramStep step_at(const PathBuilder& builder, std::variant<Move, int> what);
+
+/// The steps that are queued and not done, in order.
+class ProgramLog {
+ public:
+  /// `left`: moves in the queue, this step's included.
+  void add(ProgramStep step, std::size_t left);
+  /// Forgets the steps before the last `left` moves: they are done.
+  void keep(std::size_t left);
+  void clear() noexcept;
+  [[nodiscard]] std::deque<ProgramStep> take() noexcept;
+
+ private:
+  std::deque<ProgramStep> steps_;
+  std::size_t moves_ = 0;
+};
+
+}  // namespace rmac::gateway
