@@ -1,7 +1,8 @@
 #!/bin/bash
 # Boots a Debian kernel in QEMU over this machine's own root file system (read-only, under an overlay), runs a script in it,
 # prints its console, and ends with the script's exit code. The kernel is fetched once and unpacked, not installed.
-# usage: [FLAVOUR=rt-amd64] [KERNELS=DIR] boot.sh GUEST_SCRIPT [ARGUMENT]
+# usage: [FLAVOUR=rt-amd64] [KERNELS=DIR] [INIT=systemd] boot.sh GUEST_SCRIPT [ARGUMENT]
+# With INIT=systemd the script runs as a service beside those that it starts; otherwise it is all that runs.
 # The guest's clock counts instructions (1 ns each), so that what happens in it does not depend on how busy the machine is.
 set -euo pipefail
 flavour=${FLAVOUR:-amd64} kernels=${KERNELS:-${XDG_CACHE_HOME:-$HOME/.cache}/rmac-bench} guest=$(realpath "$1") argument=${2:-}
@@ -14,6 +15,18 @@ for module in virtio virtio_ring virtio_pci virtio_pci_modern_dev virtio_pci_leg
   find "$kernel/lib/modules" -name "$module.ko" -exec cp {} "$work/root/m/" \;
 done
 [[ ! -e $kernel/gpio-sim.ko ]] || cp "$kernel/gpio-sim.ko" "$work/root/"  # where gpio-sim.sh made one
+cat > "$work/root/bench.service" <<S
+[Unit]
+Description=Scenario of the bench
+[Service]
+Type=oneshot
+Environment=GPIO_SIM=/run/gpio-sim.ko PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
+ExecStart="$guest" "$argument"
+ExecStopPost=/bin/sh -c 'echo "guest exit \$EXIT_STATUS"; sleep 0.2; echo o > /proc/sysrq-trigger'
+StandardOutput=tty
+StandardError=tty
+TTYPath=/dev/console
+S
 cat > "$work/root/init" <<'I'
 #!/bin/busybox sh
 b=/bin/busybox
@@ -27,9 +40,19 @@ $b mount -t overlay overlay -o lowerdir=/lower,upperdir=/over/up,workdir=/over/w
 for fs in proc sysfs:sys devtmpfs:dev tmpfs:run tmpfs:dev/shm devpts:dev/pts configfs:sys/kernel/config; do
   $b mkdir -p /sysroot/${fs#*:}; $b mount -t ${fs%%:*} none /sysroot/${fs#*:}
 done
-for word in $($b cat /proc/cmdline); do case $word in guest=*) guest=${word#guest=};; argument=*) argument=${word#argument=};; esac; done
+for word in $($b cat /proc/cmdline); do
+  case $word in guest=*) guest=${word#guest=};; argument=*) argument=${word#argument=};; with=*) with=${word#with=};; esac
+done
 [ ! -e /gpio-sim.ko ] || $b cp /gpio-sim.ko /sysroot/run/
-$b chroot /sysroot /usr/bin/env GPIO_SIM=/run/gpio-sim.ko PATH=/usr/sbin:/usr/bin:/sbin:/bin "$guest" "$argument"
+echo  # what the firmware wrote ends without an end of line
+if [ "$with" = systemd ]; then
+  $b rm -f /sysroot/etc/fstab
+  $b cp /bench.service /sysroot/etc/systemd/system/
+  # It would empty /tmp, which is the host's, and where this may lie.
+  $b ln -sf /dev/null /sysroot/etc/systemd/system/systemd-tmpfiles-setup.service
+  exec $b switch_root /sysroot /lib/systemd/systemd --unit=bench.service
+fi
+$b chroot /sysroot /usr/bin/env GPIO_SIM=/run/gpio-sim.ko PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin "$guest" "$argument"
 echo "guest exit $?"
 echo o > /proc/sysrq-trigger; $b sleep 5
 I
@@ -37,7 +60,7 @@ chmod +x "$work/root/init"
 (cd "$work/root" && find . | cpio -o -H newc --quiet | gzip -1) > "$work/initrd.gz"
 timeout "${LIMIT:-600}" qemu-system-x86_64 -M q35 -cpu max -accel tcg,thread=single -icount shift=0,sleep=off -smp 1 -m 1G \
   -nographic -nic none -no-reboot -kernel "$kernel"/boot/vmlinuz-* -initrd "$work/initrd.gz" \
-  -append "console=ttyS0 quiet panic=-1 mitigations=off nokaslr guest=$guest argument=$argument" \
+  -append "console=ttyS0 quiet panic=-1 mitigations=off nokaslr guest=$guest argument=$argument with=${INIT:-nothing} systemd.show_status=false" \
   -fsdev local,id=r,path=/,security_model=none,readonly=on,multidevs=remap -device virtio-9p-pci,fsdev=r,mount_tag=rootfs |
-  tr -d '\r' | tee "$work/console"
+  stdbuf -o0 tr -d '\r' | tee "$work/console"
 exit "$(awk '/^guest exit / {code = $3} END {print code == "" ? 1 : code}' "$work/console")"
