@@ -1,16 +1,19 @@
 #!/usr/bin/env bash
 # Installs the packages, builds, starts the appliance on its simulated bus, machines a headlight through its socket and leaves
 # record, pictures and report in out/. The last line of the output is the figures as JSON.
+#   measure       instead: cuts a part that is clamped wrong, measures it in the midst of the cut, corrects, and goes on
 #   --real-time   at the machine's own pace, instead of as fast as cycles can be computed
 #   --out FOLDER  instead of out
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-usage() { echo "usage: ./demo.sh [--real-time] [--out FOLDER]" >&2; exit 2; }
+usage() { echo "usage: ./demo.sh [measure] [--real-time] [--out FOLDER]" >&2; exit 2; }
 pace=as-fast-as-computed
 out=out
+measure=
 while [ $# -gt 0 ]; do
   case "$1" in
+    measure) measure=yes ;;
     --real-time) pace=real-time ;;
     --out) [ $# -gt 1 ] || usage; shift; out=$1 ;;
     *) usage ;;
@@ -37,8 +40,14 @@ end() {
 }
 trap end EXIT
 
+tree=()
+if [ -n "$measure" ]; then
+  /usr/bin/python3 -B demo/run_measure.py --clamp build/release/drivers "$state/drivers"
+  tree=(--device-tree "$state/drivers")
+fi
+
 : >"$log" # the loop below may look before the daemon has opened it
-build/release/bin/rmacd --config etc/rmacd.json --port 0 --pace "$pace" --state-dir "$state" 2>"$log" &
+build/release/bin/rmacd --config etc/rmacd.json --port 0 --pace "$pace" --state-dir "$state" "${tree[@]}" 2>"$log" &
 daemon=$!
 port=
 until [ -n "$port" ]; do
@@ -51,8 +60,14 @@ until [ -n "$port" ]; do
   [ -n "$port" ] || sleep 0.05
 done
 
-echo "== machine the headlight through 127.0.0.1:$port"
-if ! /usr/bin/python3 -B demo/run_demo.py --host 127.0.0.1 --port "$port" --out "$out"; then
+if [ -n "$measure" ]; then
+  echo "== measure a part where it is cut, through 127.0.0.1:$port"
+  session=demo/run_measure.py
+else
+  echo "== machine the headlight through 127.0.0.1:$port"
+  session=demo/run_demo.py
+fi
+if ! /usr/bin/python3 -B "$session" --host 127.0.0.1 --port "$port" --out "$out"; then
   grep -iE 'warn|err|crit' "$log" >&2 || true
   exit 1
 fi

@@ -24,6 +24,9 @@ struct MachineSearch {
 
 /// Each command of the client: does its work, prints, and says why it could not. `json` prints for programs.
 [[nodiscard]] Result<> list_machines(Connection& connection, const MachineSearch& search, bool json);
+/// Draws what a machine of a device tree reaches; an empty tree: the installation's.
+[[nodiscard]] Result<> plot_machine(const std::string& name, const std::string& picture,
+                                    const std::filesystem::path& device_tree);
 [[nodiscard]] Result<> show_machine(Connection& connection, const std::string& name, bool json);
 [[nodiscard]] Result<> load_machine(Connection& connection, const std::string& name, bool virtual_mode);
 [[nodiscard]] Result<> unload_machine(Connection& connection);
@@ -85,8 +88,9 @@ struct ToolRequest {
 [[nodiscard]] Result<> confirm_tool(Connection& connection, std::optional<int> number);
 
 struct MeasureRequest {
-  std::string plan;    ///< file
-  bool apply = false;  ///< put the frame of the part as it was measured in force
+  std::string plan;      ///< file
+  bool apply = false;    ///< put the frame of the part as it was measured in force
+  bool upright = false;  ///< a frame that is not tilted against the tool
 };
 /// Measures the points of a plan, and tells how far the part and its features are off.
 [[nodiscard]] Result<> measure(Connection& connection, const MeasureRequest& request, bool json);

@@ -4,9 +4,11 @@
 #include <charconv>
 #include <string_view>
 
+#include "gateway/configuration/configuration.hpp"
 #include "gateway/rmac/authority.hpp"
 #include "gateway/rmac/commands.hpp"
 #include "gateway/rmac/fits.hpp"
+#include "gateway/rmac/helper_program.hpp"
 #include "gateway/rmac/table.hpp"
 
 namespace rmac::cli {
@@ -309,6 +311,12 @@ Result<> show_machine(Connection& connection, const std::string& name, bool json
     print_joints(*joints);
   }
   return {};
+}
+
+Result<> plot_machine(const std::string& name, const std::string& picture, const std::filesystem::path& device_tree) {
+  const auto tree = device_tree.empty() ? gateway::default_folders().device_tree : device_tree;
+  const auto drawn = run_helper("show_machine.py", {tree.string(), name, picture});
+  return drawn ? Result<>() : tl::unexpected(drawn.error());
 }
 
 Result<> load_machine(Connection& connection, const std::string& name, bool virtual_mode) {

@@ -53,7 +53,16 @@ void add_database_commands(CLI::App& app, Arguments& arguments, Command& command
 
   auto* show = app.add_subcommand("show", "a machine's characteristics; of the loaded one its joints too");
   show->add_option("NAME", arguments.name, "as `rmac machines` lists it")->required();
-  show->callback([&] { command = [&](auto& to) { return show_machine(to, arguments.name, arguments.json); }; });
+  show->add_option("--plot", arguments.file, "draw its reach and its joints' limits here; needs python3-matplotlib");
+  show->add_option("--device-tree", search.device_tree,
+                   "where its device.json is looked for to be drawn; the installation's unless given");
+  show->callback([&] {
+    command = [&](auto& to) {
+      return show_machine(to, arguments.name, arguments.json).and_then([&]() -> Result<> {
+        return arguments.file.empty() ? Result<>() : plot_machine(arguments.name, arguments.file, search.device_tree);
+      });
+    };
+  });
 
   auto* load = app.add_subcommand("load", "make a machine's driver configure the controller");
   load->add_option("NAME", arguments.name, "as `rmac machines` lists it")->required();
@@ -149,6 +158,8 @@ void add_measure_command(CLI::App& app, Arguments& arguments, Command& command) 
       app.add_subcommand("measure", "measure the points of a plan: where the part lies, how far it is off");
   measured->add_option("PLAN", request.plan, "the measuring plan, a JSON file")->required();
   measured->add_flag("--apply", request.apply, "set the part frame to where the part lies; without it nothing is set");
+  measured->add_flag("--upright", request.upright,
+                     "leave out the part's tilt against the tool's axis, which a machine of slides cannot follow");
   measured->callback([&] { command = [&](auto& to) { return measure(to, request, arguments.json); }; });
 }
 

@@ -140,6 +140,23 @@ std::vector<ToolFound> find_tools(const MeasuringPlan& plan, const Frame& part, 
   return found;
 }
 
+/// The frame without its tilt against `axis`, about the middle of the points: what a machine that cannot lean its tool
+/// can follow.
+Frame without_tilt(const Frame& frame, const Vector& axis, const std::vector<gateway::SurfacePoint>& points) {
+  const auto& q = frame.q;
+  const double along = q[1] * axis[0] + q[2] * axis[1] + q[3] * axis[2];
+  const double length = std::hypot(q[0], along);
+  Frame upright;
+  upright.q = {q[0] / length, along * axis[0] / length, along * axis[1] / length, along * axis[2] / length};
+  Vector middle{};
+  for (const auto& point : points) {
+    for (std::size_t i = 0; i < 3; ++i) middle[i] += point.nominal[i] / static_cast<double>(points.size());
+  }
+  const Vector there = apply_to_pose(frame, {middle, axis}).tip, turned = apply_to_pose(upright, {middle, axis}).tip;
+  for (std::size_t i = 0; i < 3; ++i) upright.p[i] = there[i] - turned[i];
+  return upright;
+}
+
 /// Puts what was found into the tool table; a tool that is in the spindle has its new length at once.
 Result<> apply_tools(Connection& connection, const std::vector<ToolFound>& tools) {
   const auto table = connection.call("RMAC_CAM.GetTools");
@@ -252,10 +269,10 @@ Result<> measure(Connection& connection, const MeasureRequest& request, bool jso
       report.why_not = fit.error().message;
       return request.apply ? fail(fmt::format("nothing is applied: {}", report.why_not)) : Result<>();
     }
-    report.off = fit->frame;
-    report.part_frame = compose(*frame, fit->frame);
-    report.after = gateway::feature_deviations(plan->points, fit->frame);
-    report.tools = find_tools(*plan, fit->frame, axis);
+    report.off = request.upright && !datums.empty() ? without_tilt(fit->frame, axis, datums) : fit->frame;
+    report.part_frame = compose(*frame, *report.off);
+    report.after = gateway::feature_deviations(plan->points, *report.off);
+    report.tools = find_tools(*plan, *report.off, axis);
     if (!request.apply) return {};
     if (auto applied = apply_tools(connection, report.tools); !applied) return applied;
     const auto set =

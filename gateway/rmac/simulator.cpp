@@ -86,8 +86,10 @@ Result<> Simulator::submit(const Program& program, Request& request) {
 }
 
 Result<> Simulator::make_room(const Request& request) {
-  // A measured point ends where the part is: what comes next begins there.
-  if (measuring_ && started_) return run_until([this] { return unfinished_.empty(); });
+  // A measured point ends where the part is: what comes next begins there, once the machine has seen that it stands.
+  if (measuring_ && started_) {
+    return run_until([this] { return unfinished_.empty() && simulation_.controller().cam().moves_in_buffer() == 0; });
+  }
   if (request.timing == Timing::Move && started_) {
     const auto capacity = static_cast<int>(simulation_.queue_capacity());
     return run_until([&] { return simulation_.controller().cam().moves_in_buffer() < capacity; });

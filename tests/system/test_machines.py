@@ -3,7 +3,7 @@
 import json
 import unittest
 
-from appliance import Appliance
+from appliance import SOURCE, Appliance
 
 TABLE_4_1 = {"DMACXYZ", "TarusXYZCA", "SuginoXYZ", "SuginoXYZAC", "CMM", "DMACXY"}
 OURS = {"DMACXYZA"}
@@ -65,6 +65,28 @@ class Machines(unittest.TestCase):
         self.assertIn("joint X", machines["SuginoXYZAC"]["WhyNot"])
         self.assertIn("50.0000 mm beyond", machines["SuginoXYZAC"]["WhyNot"])
         self.assertIn("joint X", machines["CMM"]["WhyNot"])
+
+    def test_page_shows_each_machine_with_its_picture_and_its_figures(self):
+        sections = (SOURCE / "docs/machines.md").read_text().split("\n### ")[1:]
+        pages = {section.split("\n", 1)[0]: section for section in sections}
+        for machine in json.loads(self.appliance.rmac("--json", "machines").stdout):
+            name, page = machine["Name"], pages[machine["Name"]]
+            self.assertIn(f"(images/machines/{name}.png)", page)
+            self.assertTrue((SOURCE / f"docs/images/machines/{name}.png").is_file())
+            self.assertIn(f"| feed at most | {machine['MaxFeedrate']:g} mm/min |", page)
+            self.assertIn(machine["WorkingVolume"].replace("x", " x "), page)
+
+    def test_picture_of_a_machine_is_drawn_from_its_device_json(self):
+        picture = self.appliance.folder / "reach.png"
+        words = ("show", "SuginoXYZAC", "--plot", str(picture), "--device-tree", str(self.appliance.tree))
+        done = self.appliance.rmac(*words)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        empty = self.appliance.folder / "empty"
+        empty.mkdir()
+        done = self.appliance.rmac(*words[:-1], str(empty))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("holds no machine that is called SuginoXYZAC", done.stderr)
 
     def test_quotes_in_a_search_stay_text(self):
         self.assertEqual(self.names("--type", "Mill' OR '1'='1"), set())

@@ -5,6 +5,7 @@ import math
 import os
 import pty
 import subprocess
+import time
 import unittest
 
 from appliance import BUILD, Appliance, pose, wait_for_rest
@@ -56,8 +57,10 @@ class Parking(unittest.TestCase):
 
     def measure_and_come_back(self):
         self.rmac("load", "CMM")
-        measured = json.loads(self.rmac("measure", str(self.plan), "--apply", "--json"))
+        measured = json.loads(self.rmac("measure", str(self.plan), "--apply", "--upright", "--json"))
         self.assertTrue(measured["applied"])
+        for lean in measured["part_frame"]["q"][1:3]:
+            self.assertAlmostEqual(lean, 0, delta=1e-12, msg="a machine of three slides cannot lean its tool")
         back = json.loads(self.rmac("parked", "--back", "4", "--json"))
         self.assertLess(back["off_mm"], 0.01)
         self.rmac("load", "DMACXYZ")
@@ -173,11 +176,14 @@ class Parking(unittest.TestCase):
             self.measure_and_come_back()
             os.write(keyboard, b"\n")
             samples = self.record(watcher)
-            while watcher.state()["moves_in_buffer"] > 0 or watcher.call("RMAC_CAM.GetParkedProgram"):
+            until = time.monotonic() + 100
+            while run.poll() is None and time.monotonic() < until:
+                watcher.state()
                 samples()
-            output, complaint = run.communicate(timeout=100)
+            complaint = run.stderr.read() if run.poll() is not None else "it did not end"
         finally:
             run.kill()
+            run.communicate()
         self.assertEqual(run.returncode, DONE, complaint)
         self.check_cut(samples())
 
