@@ -36,6 +36,7 @@ void Axis::reset() {
   homing_.stop();
   mode_ = Mode::None;
   offset_ = encoder_shift_ = 0;
+  probes_ = {};
   next_target_.reset();
   acknowledges_ = new_setpoint_before_ = homes_before_ = at_target_ = following_error_ = false;
   dictionary_.set(0x6076, std::llround(mechanics_.rated_torque_nm * 1000));
@@ -51,7 +52,10 @@ double Axis::shaft() const {
   return plant_.angle_rad() * counts_per_radian();
 }
 double Axis::position() const {
-  return std::floor(shaft()) + offset_ + encoder_shift_;
+  return told(shaft());
+}
+double Axis::told(double shaft) const {
+  return std::floor(shaft) + offset_ + encoder_shift_;
 }
 double Axis::velocity() const {
   return plant_.speed_rad_s() * counts_per_radian();
@@ -81,6 +85,7 @@ Axis::Parameters Axis::parameters() const {
           .slow = of(0x6099, 2),
           .top_velocity = of(0x607F),
           .target_velocity = std::clamp(of(0x60FF) + of(0x60B1), -of(0x607F), of(0x607F)),
+          .torque_slope = of(0x6087) / 1000 * mechanics_.rated_torque_nm,
           .target_torque = (of(0x6071) + of(0x60B2)) / 1000 * mechanics_.rated_torque_nm,
           .most_torque = most_permille / 1000 * mechanics_.rated_torque_nm,
           .least_position = has_limits ? of(0x607D, 1) : -2147483648.0,
@@ -96,6 +101,8 @@ Axis::Parameters Axis::parameters() const {
           .cam_from = of(0x2000, 3),
           .cam_to = of(0x2000, 4),
           .index = of(0x2000, 5),
+          .touches_from = of(0x2000, 6),
+          .touches_to = of(0x2000, 7),
           .home_offset = of(0x607C),
           .slow_velocity = of(0x606F),
           .options = {.quick_stop = static_cast<int>(of(0x605A)),
@@ -109,8 +116,14 @@ Axis::Parameters Axis::parameters() const {
 void Axis::take(ObjectAddress object) {
   *parameters_ = parameters();
   if (object.index == 0x6040) take_controlword();
-  if (object.index == 0x607A && mode_ == Mode::CyclicSyncPosition) {
-    setpoint_ = static_cast<double>(dictionary_.number(0x607A));
+  if (object.index == 0x60B8) {
+    const auto function = static_cast<unsigned>(dictionary_.number(0x60B8));
+    probes_[0].set_function(function & 0xFFU);
+    probes_[1].set_function(function >> 8 & 0xFFU);
+  }
+  const bool cyclic = object.index == 0x607A && mode_ == Mode::CyclicSyncPosition;
+  if (cyclic || (object.index == 0x60C1 && mode_ == Mode::InterpolatedPosition)) {
+    setpoint_ = static_cast<double>(dictionary_.number(object.index, object.sub));
     // 60C2h: value times ten to the index, in seconds.
     setpoint_left_s_ = static_cast<double>(dictionary_.number(0x60C2, 1)) *
                        std::pow(10.0, static_cast<double>(dictionary_.number(0x60C2, 2)));
@@ -124,6 +137,7 @@ void Axis::take(ObjectAddress object) {
     acknowledges_ = at_target_ = homes_before_ = false;
     setpoint_ = target_ = demand_.position;
     setpoint_left_s_ = 0;
+    profile_nm_ = torque_nm_;
   }
 }
 
@@ -190,10 +204,12 @@ void Axis::advance(double duration_s) {
 void Axis::step(const Parameters& parameters, double dt) {
   if (overheated_) trip(kOvertemperature);
   const Demand before = demand_;
+  const double shaft_before = shaft();
   limited_ = false;
+  if (!power_.operating()) profile_nm_ = 0;
   if (power_.operating()) {
     operate(parameters, dt);
-    const bool torque = mode_ == Mode::CyclicSyncTorque || mode_ == Mode::None;
+    const bool torque = mode_ == Mode::CyclicSyncTorque || mode_ == Mode::ProfileTorque || mode_ == Mode::None;
     if (!torque && mode_ != Mode::Homing) stop_at_limits(before, parameters, dt);
     if (!torque) torque_nm_ = loops(parameters, dt);
   } else if (power_.powered()) {
@@ -206,13 +222,15 @@ void Axis::step(const Parameters& parameters, double dt) {
   braking_ = power_.powered() && !power_.operating();
   torque_nm_ = std::clamp(torque_nm_, -parameters.most_torque, parameters.most_torque);
   plant_.advance(torque_nm_, !power_.powered(), dt);
+  watch_touch_probes(shaft_before);
   watch(parameters, dt);
   power_.proceed(standing(), parameters_->options);
 }
 
 void Axis::watch(const Parameters& parameters, double dt) {
   const double error = std::abs(demand_.position - position());
-  const bool follows = power_.operating() && (mode_ == Mode::CyclicSyncPosition || mode_ == Mode::ProfilePosition);
+  const bool follows = power_.operating() && (mode_ == Mode::CyclicSyncPosition || mode_ == Mode::ProfilePosition ||
+                                            mode_ == Mode::InterpolatedPosition);
   constexpr double kOff = 4294967295.0;
   following_error_ = follows && parameters.error_window < kOff && error > parameters.error_window;
   following_error_s_ = following_error_ ? following_error_s_ + dt : 0;
@@ -230,6 +248,7 @@ void Axis::watch(const Parameters& parameters, double dt) {
     within = std::abs(parameters.target_velocity - velocity()) <= parameters.velocity_window;
     needed_s = parameters.velocity_window_s;
   }
+  if (!halt && mode_ == Mode::ProfileTorque) within = profile_nm_ == parameters.target_torque;
   in_window_s_ = within ? in_window_s_ + dt : 0;
   at_target_ = within && in_window_s_ >= needed_s;
 }
@@ -242,6 +261,11 @@ unsigned Axis::mode_bits() const {
       const bool slow = std::abs(velocity()) <= parameters_->slow_velocity;
       return bit(10, at_target_) | bit(12, slow);
     }
+    case Mode::ProfileTorque:
+      return bit(10, at_target_);
+    case Mode::InterpolatedPosition:
+      return bit(10, standing()) | bit(12, power_.operating() && (parameters_->controlword & 0x10) != 0) |
+             bit(13, following_error_);
     case Mode::Homing:
       return bit(10, homing_.state() != Homing::State::Running && demand_.velocity == 0) |
              bit(12, homing_.state() == Homing::State::Attained) | bit(13, homing_.state() == Homing::State::Failed);
@@ -265,7 +289,14 @@ void Axis::publish() {
   dictionary_.set(0x606C, std::llround(velocity()));
   dictionary_.set(0x6077, std::lround(plant_.motor_nm() * 1000 / mechanics_.rated_torque_nm));
   dictionary_.set(0x60F4, std::llround(demand_.position - position()));
-  dictionary_.set(0x60FD, bit(0, at_negative_limit()) | bit(1, at_positive_limit()) | bit(2, in_cam));
+  dictionary_.set(0x6074, std::lround(torque_nm_ * 1000 / mechanics_.rated_torque_nm));
+  dictionary_.set(0x60FD, bit(0, at_negative_limit()) | bit(1, at_positive_limit()) | bit(2, in_cam) |
+                              bit(16, probes_[0].closed()) | bit(17, probes_[1].closed()));
+  dictionary_.set(0x60B9, probes_[0].status() | probes_[1].status() << 8);
+  dictionary_.set(0x60BA, probes_[0].at_rise());
+  dictionary_.set(0x60BB, probes_[0].at_fall());
+  dictionary_.set(0x60BC, probes_[1].at_rise());
+  dictionary_.set(0x60BD, probes_[1].at_fall());
   constexpr std::int64_t kWarm = 250;  // tenths of a degree
   constexpr std::int64_t kHot = 1150;
   dictionary_.set(0x2001, overheated_ ? kHot : kWarm);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 
@@ -8,6 +9,7 @@
 #include "vdrive/homing.hpp"
 #include "vdrive/power_states.hpp"
 #include "vdrive/profile.hpp"
+#include "vdrive/touch_probe.hpp"
 
 namespace rmac::vdrive {
 
@@ -16,7 +18,9 @@ enum class Mode : std::int8_t {
   None = 0,
   ProfilePosition = 1,
   ProfileVelocity = 3,
+  ProfileTorque = 4,
   Homing = 6,
+  InterpolatedPosition = 7,
   CyclicSyncPosition = 8,
   CyclicSyncVelocity = 9,
   CyclicSyncTorque = 10
@@ -46,6 +50,8 @@ class Axis {
   void trip(std::uint16_t error_code);
   void shift_encoder(std::int32_t counts) noexcept { encoder_shift_ += counts; }
   void set_overheated(bool overheated) noexcept { overheated_ = overheated; }
+  /// The contact at touch probe 1 or 2 closes, or opens.
+  void touch(std::size_t probe, bool closed) noexcept;
 
   [[nodiscard]] PowerStates::State state() const { return power_.state(); }
   [[nodiscard]] double position() const;  ///< as the drive tells it
@@ -62,6 +68,10 @@ class Axis {
   void home(const Parameters& parameters, double dt);
   void position_profile(const Parameters& parameters, double dt);
   void follow_setpoint(double dt);
+  void torque_profile(const Parameters& parameters, double dt);
+  void interpolate(const Parameters& parameters, double dt);
+  void watch_touch_probes(double shaft_before);
+  [[nodiscard]] double told(double shaft) const;  ///< the position told where the shaft is there
   void stop_at_limits(const Demand& before, const Parameters& parameters, double dt);
   void follow_actual();
   [[nodiscard]] double loops(const Parameters& parameters, double dt);
@@ -88,7 +98,8 @@ class Axis {
   double index_turn_ = 0;     ///< which turn the index pulse was seen last in
   double setpoint_ = 0;       ///< of cyclic synchronous position
   double setpoint_left_s_ = 0;
-  double target_ = 0;  ///< of profile position
+  double profile_nm_ = 0;  ///< torque of profile torque
+  double target_ = 0;      ///< of profile position
   std::optional<double> next_target_;
   double in_window_s_ = 0;
   double following_error_s_ = 0;
@@ -100,6 +111,8 @@ class Axis {
   bool following_error_ = false;
   bool braking_ = false;  ///< in the step before
   bool overheated_ = false;
+  std::array<TouchProbe, 2> probes_;
+  std::array<bool, 2> contacts_{};  ///< as somebody closed them
 };
 
 }  // namespace rmac::vdrive

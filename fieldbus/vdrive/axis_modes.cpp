@@ -16,8 +16,11 @@ constexpr double kIntegral = 50;            // 1/s
 void Axis::operate(const Parameters& parameters, double dt) {
   const bool halt = (parameters.controlword & kHalt) != 0;
   switch (mode_) {
+    case Mode::ProfileTorque:
+      torque_profile(parameters, dt);
+      [[fallthrough]];
     case Mode::CyclicSyncTorque: {
-      const double torque = parameters.target_torque;
+      const double torque = mode_ == Mode::ProfileTorque ? profile_nm_ : parameters.target_torque;
       follow_actual();
       torque_nm_ = torque;
       const double top = mechanics_.max_speed_rpm / 60 * mechanics_.counts_per_revolution;
@@ -32,6 +35,9 @@ void Axis::operate(const Parameters& parameters, double dt) {
     case Mode::CyclicSyncPosition:
       setpoint_ = std::clamp(setpoint_, parameters.least_position, parameters.most_position);
       follow_setpoint(dt);
+      break;
+    case Mode::InterpolatedPosition:
+      interpolate(parameters, dt);
       break;
     case Mode::CyclicSyncVelocity:
       demand_.acceleration = 0;
@@ -71,6 +77,48 @@ void Axis::follow_setpoint(double dt) {
   demand_.acceleration = 0;
   demand_.position += demand_.velocity * dt;
   setpoint_left_s_ -= dt;
+}
+
+/// Towards the target torque (or none, on a halt) by the torque slope (CiA 402-2, profile torque).
+void Axis::torque_profile(const Parameters& parameters, double dt) {
+  const bool halt = (parameters.controlword & kHalt) != 0;
+  const double wanted = halt ? 0 : parameters.target_torque;
+  const double step = parameters.torque_slope * dt;
+  profile_nm_ += std::clamp(wanted - profile_nm_, -step, step);
+}
+
+/// While bit 4 of the controlword is on; else it comes to rest, and stays.
+void Axis::interpolate(const Parameters& parameters, double dt) {
+  const bool runs = (parameters.controlword & 0x10) != 0 && (parameters.controlword & kHalt) == 0;
+  if (!runs) {
+    demand_.ramp(0, parameters.deceleration, dt);
+    setpoint_ = demand_.position;
+    setpoint_left_s_ = 0;
+    return;
+  }
+  setpoint_ = std::clamp(setpoint_, parameters.least_position, parameters.most_position);
+  follow_setpoint(dt);
+}
+
+/// The contact closes where the shaft comes into its zone, at the very count, and wherever somebody closes it.
+void Axis::watch_touch_probes(double shaft_before) {
+  const double now = shaft();
+  const double from = parameters_->touches_from, to = parameters_->touches_to;
+  const auto inside = [&](double at) { return at >= from && at <= to; };
+  const bool was_in = inside(shaft_before);
+  double edge = now;
+  if (was_in != inside(now)) edge = was_in == (now > shaft_before) ? to : from;
+  probes_[0].see(contacts_[0] || inside(now), static_cast<std::int32_t>(std::llround(told(edge))));
+  probes_[1].see(contacts_[1], static_cast<std::int32_t>(std::llround(position())));
+  const double turn = mechanics_.counts_per_revolution;
+  const double pulses = std::floor((now - parameters_->index) / turn);
+  if (pulses == std::floor((shaft_before - parameters_->index) / turn)) return;
+  const double pulse = parameters_->index + turn * (now > shaft_before ? pulses : pulses + 1);
+  for (TouchProbe& probe : probes_) probe.see_index(static_cast<std::int32_t>(std::llround(told(pulse))));
+}
+
+void Axis::touch(std::size_t probe, bool closed) noexcept {
+  contacts_.at(probe) = closed;
 }
 
 void Axis::position_profile(const Parameters& parameters, double dt) {

@@ -59,6 +59,9 @@ Expected<Action> action_of(const std::string& what, const std::string& how, Time
   if (what == "hot") {
     return on_or_off(how).map([](bool on) -> Action { return [on](Node& node) { node.set_overheated(on); }; });
   }
+  if (what == "touch") {
+    return on_or_off(how).map([](bool on) -> Action { return [on](Node& node) { node.touch(on); }; });
+  }
   if (what == "trip") {
     return number(how, 1, 0xFFFF).map([](int code) -> Action {
       return [code](Node& node) { node.trip(static_cast<std::uint16_t>(code)); };
@@ -73,7 +76,7 @@ Expected<Action> action_of(const std::string& what, const std::string& how, Time
     });
   }
   return refusal(fmt::format(
-      "\"{}\" is not understood; there are mute, slow, pdo, jump, hot, trip, power, status and help", what));
+      "\"{}\" is not understood; there are mute, slow, pdo, jump, hot, touch, trip, power, status and help", what));
 }
 
 const char* nmt_name(const Node& node) {
@@ -105,6 +108,7 @@ std::string_view command_help() {
          "  NODE pdo BYTES      its PDOs are so much longer (or shorter, below 0) than mapped; 0 ends it\n"
          "  NODE jump COUNTS    its encoder's reading jumps\n"
          "  NODE hot on|off     too hot: fault 4310h, which a reset cannot clear before it is off\n"
+         "  NODE touch on|off   the contact at its touch probe 1 closes, or opens\n"
          "  NODE trip CODE      a fault of this error code (603Fh), for example 0x7305\n"
          "  NODE power off|on   off and on again: all but what was stored (1010h) is forgotten\n"
          "  NODE status         what it does now\n"

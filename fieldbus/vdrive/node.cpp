@@ -195,6 +195,8 @@ std::uint32_t Node::check_write(ObjectAddress object, std::int64_t value) const 
       return value == 0 || (value > 0 && value <= 32 && (dictionary_.number(0x6502) >> (value - 1) & 1) != 0)
                  ? 0
                  : kBadValue;
+    case 0x60B8:
+      return TouchProbe::knows(value & 0xFF) && TouchProbe::knows(value >> 8 & 0xFF) ? 0 : kBadValue;
     case 0x6098:
       return value == 0 || Homing::knows(static_cast<int>(value)) ? 0 : kBadValue;
     default:

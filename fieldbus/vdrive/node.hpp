@@ -30,6 +30,7 @@ class Node {
   void set_delay(Time delay) { delay_ = delay; }  ///< all that it sends comes so much later
   void set_pdo_length_change(int bytes) { pdos_.length_change = bytes; }
   void set_overheated(bool hot) { axis_.set_overheated(hot); }
+  void touch(bool closed) { axis_.touch(0, closed); }  ///< the contact at touch probe 1
   void shift_encoder(std::int32_t counts) { axis_.shift_encoder(counts); }
   void trip(std::uint16_t error_code) { axis_.trip(error_code); }
 

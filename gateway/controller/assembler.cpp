@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "gateway/controller/bus_choice.hpp"
@@ -85,8 +86,25 @@ Expected<> add_drives(const sdk::DeviceObject& device, const ModuleLoader& loade
     constexpr double kTorqueShare = 3.5;
     const double max_torque = actuator.max_measured_torque_nm > 0 ? actuator.max_measured_torque_nm
                                                                   : kTorqueShare * actuator.scale.rated_torque_nm;
+    constexpr double kSameScale = 1e-6;
+    const double told = parts.virtual_mode ? 0 : at->first->interface->counts_per_revolution(at->second);
+    if (const double meant = actuator.scale.counts_per_revolution;
+        told > 0 && std::abs(meant / told - 1) > kSameScale) {
+      return failure(MinorCode::Scale,
+                     fmt::format("actuator {}: its drive (bus {}, axis {}) counts {:.10g} in a turn of the motor, and "
+                                 "CountsPerRevolution is {:.10g}; set one of them right",
+                                 parts.actuators.size(), actuator.bus, actuator.axis, told, meant));
+    }
+    const bool latches =
+        parts.virtual_mode || !actuator.probe_edge || at->first->interface->latches(at->second, *actuator.probe_edge);
+    if (!latches) {
+      return failure(MinorCode::InvalidParameterValue,
+                     fmt::format("actuator {}: a touch probe of its drive is to latch its position, and bus {} does "
+                                 "not carry that for axis {}; leave TouchProbe out, or have its words carried",
+                                 parts.actuators.size(), actuator.bus, actuator.axis));
+    }
     parts.actuators.push_back({std::move(at->first), at->second, actuator.scale,
-                               static_cast<std::uint8_t>(actuator.homing_turn), max_torque});
+                               static_cast<std::uint8_t>(actuator.homing_turn), max_torque, actuator.probe_edge});
   }
   for (const sdk::Spindle& spindle : device.spindles) {
     auto at = place(fmt::format("spindle {}", parts.spindles.size()), spindle.bus, spindle.axis);
@@ -129,7 +147,7 @@ std::uint64_t named(const std::map<std::string, int>& names, std::string_view pr
   return bits;
 }
 
-Expected<> check_bits(const std::map<std::string, int>& names, const char* what, std::uint64_t there,
+Expected<> check_bits(const std::map<std::string, int>& names, const std::string& what, std::uint64_t there,
                       const std::string& interface) {
   for (const auto& [name, bit] : names) {
     if ((there >> bit & 1U) != 0) continue;
@@ -144,19 +162,66 @@ Expected<> check_bits(const std::map<std::string, int>& names, const char* what,
   return {};
 }
 
-Expected<> add_io(const sdk::DeviceObject& device, const ModuleLoader& loader, BusRegistry& registry,
-                  ServoLoopParts& parts) {
-  if (parts.virtual_mode || device.digital_io_interface.name.empty()) return {};
+Expected<> add_io_interface(const sdk::DeviceObject& device, const ModuleLoader& loader, BusRegistry& registry,
+                            ServoLoopParts& parts) {
+  if (device.digital_io_interface.name.empty()) return {};
   auto io = registry.acquire_io(device.digital_io_interface, loader);
   if (!io) return tl::unexpected(io.error());
   const std::string& name = device.digital_io_interface.name;
-  auto connected = check_bits(device.inputs, "input", (*io)->input_bits(), name).and_then([&] {
+  auto inputs = device.inputs;
+  std::erase_if(inputs, [&](const auto& input) { return device.drive_inputs.contains(input.second); });
+  auto connected = check_bits(inputs, "input", (*io)->input_bits(), name).and_then([&] {
     return check_bits(device.outputs, "output", (*io)->output_bits(), name);
   });
   if (!connected) return connected;
   auto probed = with_touch_probe(std::move(*io), parts);
   if (!probed) return tl::unexpected(probed.error());
   parts.io = std::move(*probed);
+  return {};
+}
+
+Expected<> add_drive_inputs(const sdk::DeviceObject& device, ServoLoopParts& parts) {
+  for (const auto& [name, at] : device.inputs) {
+    const auto told = device.drive_inputs.find(at);
+    if (told == device.drive_inputs.end()) continue;
+    const auto [actuator, bit] = told->second;
+    if (actuator >= parts.actuators.size()) {
+      return failure(MinorCode::InvalidParameterValue, fmt::format("input \"{}\" is of actuator {}, and there are {}",
+                                                                   name, actuator, parts.actuators.size()));
+    }
+    const ServoActuator& drive = parts.actuators[actuator];
+    auto told_there = check_bits({{name, bit}}, fmt::format("input of actuator {}", actuator),
+                                 drive.bus->interface->input_bits(drive.axis), "its drive's interface");
+    if (!told_there) return told_there;
+    parts.drive_inputs.push_back(
+        {static_cast<std::uint32_t>(actuator), std::uint32_t{1} << bit, std::uint64_t{1} << at});
+  }
+  return {};
+}
+
+/// Switches whose names say the joint and the end: LimitXNegative, LimitXPositive.
+std::vector<ServoLimit> limits_of(const sdk::DeviceObject& device) {
+  std::vector<ServoLimit> limits;
+  const auto add = [&](const std::string& joint, std::uint32_t number) {
+    for (const auto& [end, direction] : {std::pair{"Negative", -1}, std::pair{"Positive", 1}}) {
+      const auto found = device.inputs.find(fmt::format("{}{}{}", kLimit, joint, end));
+      if (found != device.inputs.end()) limits.push_back({std::uint64_t{1} << found->second, number, direction});
+    }
+  };
+  std::uint32_t number = 0;
+  for (const auto* joints : {&device.joints, &device.held_joints}) {
+    for (const sdk::Joint& joint : *joints) add(joint.limits.name, number++);
+  }
+  return limits;
+}
+
+Expected<> add_io(const sdk::DeviceObject& device, const ModuleLoader& loader, BusRegistry& registry,
+                  ServoLoopParts& parts) {
+  if (parts.virtual_mode) return {};
+  auto added =
+      add_io_interface(device, loader, registry, parts).and_then([&] { return add_drive_inputs(device, parts); });
+  if (!added) return added;
+  parts.limits = limits_of(device);
   parts.emergency_stop_inputs = named(device.inputs, kEmergencyStop);
   parts.limit_inputs = named(device.inputs, kLimit);
   const auto bit = [&](const char* input) {

@@ -119,7 +119,8 @@ Expected<> check_io(const sdk::DeviceObject& device) {
       }
     }
   }
-  if (device.digital_io_interface.name.empty() && !(device.inputs.empty() && device.outputs.empty())) {
+  const bool named = device.inputs.size() > device.drive_inputs.size() || !device.outputs.empty();
+  if (device.digital_io_interface.name.empty() && named) {
     return refuse("I/O names are given, but no digital I/O interface is chosen");
   }
   return {};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -55,6 +56,14 @@ std::string input_name(std::uint32_t bit, const Mechanism* mechanism) {
     }
   }
   return fmt::format("input {}", bit);
+}
+
+/// A limit switch of a known joint and end, towards which that joint moves no further.
+bool holds_back(std::uint32_t bit, const Mechanism* mechanism) {
+  if (mechanism == nullptr) return false;
+  const auto& limits = mechanism->loop->parts().limits;
+  return std::any_of(limits.begin(), limits.end(),
+                     [bit](const ServoLimit& limit) { return limit.input == std::uint64_t{1} << bit; });
 }
 
 std::string io_text(const Mechanism* mechanism) {
@@ -167,8 +176,8 @@ std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
                        "homing method, then reset",
                        at, word);
     case ServoFault::Kind::LimitSwitch:
-      return fmt::format("{} is reached; reset, then jog the axis off it: nothing keeps it from moving on towards it",
-                         input_name(fault.index, mechanism));
+      return fmt::format("{} is reached; reset, then jog the axis off it{}", input_name(fault.index, mechanism),
+                         holds_back(fault.index, mechanism) ? "" : ": nothing keeps it from moving on towards it");
   }
   return at;
 }

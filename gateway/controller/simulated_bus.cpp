@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 
 namespace rmac::gateway {
@@ -47,6 +48,12 @@ const std::map<std::string, OfAxis> kOfAxis{
         axis.static_nm = 1.2 * value;
       }}},
     {"gravity_nm", {{-1e4, 1e4}, [](AxisPlantParameters& axis, double value) { axis.gravity_nm = value; }}},
+    {"negative_switch_turns",
+     {{-1e6, 1e6},
+      [](AxisPlantParameters& axis, double value) { axis.negative_switch_rad = 2 * std::numbers::pi * value; }}},
+    {"positive_switch_turns",
+     {{-1e6, 1e6},
+      [](AxisPlantParameters& axis, double value) { axis.positive_switch_rad = 2 * std::numbers::pi * value; }}},
     {"counts_per_revolution",
      {{1, 4294967296.0}, [](AxisPlantParameters& axis, double value) { axis.counts_per_revolution = value; }}},
 };

@@ -48,23 +48,40 @@ TouchProbeModel::Instant TouchProbeModel::look() const noexcept {
   return seen;
 }
 
-double TouchProbeModel::distance_between(const Instant& from, const Instant& to, double share) const noexcept {
+std::array<double, kMaxJoints> TouchProbeModel::joints_between(const Instant& from, const Instant& to,
+                                                               double share) const noexcept {
   const double u = share, v = 1 - share;
   std::array<double, kMaxJoints> joints{};
   for (std::size_t j = 0; j < axes_; ++j) {
     joints[j] = v * v * ((1 + 2 * u) * from.position[j] + u * period_s_ * from.velocity[j]) +
                 u * u * ((1 + 2 * v) * to.position[j] - v * period_s_ * to.velocity[j]);
   }
-  return distance(joints);
+  return joints;
 }
 
-double TouchProbeModel::first_contact(const Instant& from, const Instant& to) const noexcept {
-  double free = 0, touching = 1;
+double TouchProbeModel::change_of_contact(const Instant& from, const Instant& to) const noexcept {
+  double before = 0, after = 1;
   for (int i = 0; i < 40; ++i) {
-    const double middle = (free + touching) / 2;
-    (distance_between(from, to, middle) > 0 ? free : touching) = middle;
+    const double middle = (before + after) / 2;
+    const bool free = distance(joints_between(from, to, middle)) > 0;
+    (free == (from.distance > 0) ? before : after) = middle;
   }
-  return touching;
+  return after;
+}
+
+void TouchProbeModel::touch_drives(const Instant& from, const Instant& to) noexcept {
+  const bool touches = from.distance > 0 && to.distance <= 0;
+  const bool lets_go = from.distance <= 0 && to.distance > 0;
+  if (!powered_ || !(touches || lets_go)) return;
+  const auto joints = joints_between(from, to, change_of_contact(from, to));
+  std::array<double, kMaxJoints> angles{};
+  map_->actuator_positions({joints.data(), axes_}, {angles.data(), shafts_.size()});
+  for (std::size_t i = 0; i < shafts_.size(); ++i) {
+    const Shaft& at = shafts_[i];
+    const double home = at.scale.home_counts * (2 * std::numbers::pi / at.scale.counts_per_revolution);
+    at.bus->touch(at.axis, touches ? TouchProbeEdge::FirstRising : TouchProbeEdge::FirstFalling,
+                  home + at.scale.direction * angles[i]);
+  }
 }
 
 void TouchProbeModel::follow_switch() noexcept {
@@ -97,10 +114,11 @@ bool TouchProbeModel::exchange(std::uint64_t outputs, std::uint64_t& inputs) noe
   if (!io_->exchange(outputs, inputs)) return false;
   if (now_) {
     const bool came = before_ && before_->distance > 0 && now_->distance <= 0;
-    on_for_s_ = came ? (1 - first_contact(*before_, *now_)) * period_s_ : 0;
+    on_for_s_ = came ? (1 - change_of_contact(*before_, *now_)) * period_s_ : 0;
     if (powered_ && contact(now_->distance <= 0)) inputs |= mask(probe_.touch_input);
     if (powered_) inputs |= mask(probe_.ready_input);
   }
+  if (now_) touch_drives(*now_, next);
   before_ = now_;
   now_ = next;
   return true;

@@ -13,7 +13,7 @@ namespace rmac::gateway {
 /// The simulated inputs with a touch probe that finds the simulated part: where the drives' shafts really are becomes,
 /// through the mechanism's geometry, where the probe's tip really is. The one part of the simulation that knows the
 /// mechanism, and so is made with it. Within a cycle joints go on cubics between where they are at its ends, and the
-/// instant of contact is found on them.
+/// instant of contact is found on them. Every drive has the probe wired to its first touch probe input, too.
 class TouchProbeModel final : public DigitalIoInterface {
  public:
   /// A shaft of the mechanism, in the order of its actuator map.
@@ -46,8 +46,11 @@ class TouchProbeModel final : public DigitalIoInterface {
   [[nodiscard]] Instant look() const noexcept;
   [[nodiscard]] double distance(std::span<const double> joints) const noexcept;
   /// At `share` of the cycle from `from` to `to`.
-  [[nodiscard]] double distance_between(const Instant& from, const Instant& to, double share) const noexcept;
-  [[nodiscard]] double first_contact(const Instant& from, const Instant& to) const noexcept;
+  [[nodiscard]] std::array<double, kMaxJoints> joints_between(const Instant& from, const Instant& to,
+                                                              double share) const noexcept;
+  /// Where the probe touches, or lets go.
+  [[nodiscard]] double change_of_contact(const Instant& from, const Instant& to) const noexcept;
+  void touch_drives(const Instant& from, const Instant& to) noexcept;
   void follow_switch() noexcept;
   [[nodiscard]] bool contact(bool closed) noexcept;
 

@@ -135,6 +135,17 @@ std::string check_tool_change(const DeviceObject& device) {
   return {};
 }
 
+std::string check_touch_probes(const DeviceObject& device) {
+  for (std::size_t i = 0; i < device.actuators.size(); ++i) {
+    if (!device.actuators[i].probe_edge || device.inputs.contains("Probe")) continue;
+    return fmt::format(
+        "/Actuators/{}/TouchProbe is given, and no input is named Probe, which tells when the probe lets go; allowed "
+        "is to name one, of the DigitalIOInterface or of a drive",
+        i);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string check_sense(const DeviceObject& device) {
@@ -142,7 +153,7 @@ std::string check_sense(const DeviceObject& device) {
   for (auto problem :
        {check_joints(device.joints, "Joints", names), check_joints(device.held_joints, "HeldJoints", names),
         check_counts(device), check_bus_axes(device), check_spindles(device), check_bits(device.inputs, "Inputs"),
-        check_bits(device.outputs, "Outputs"), check_tool_change(device)}) {
+        check_bits(device.outputs, "Outputs"), check_tool_change(device), check_touch_probes(device)}) {
     if (!problem.empty()) return problem;
   }
   return {};

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "gateway/configuration/json_document.hpp"
 #include "gateway/configuration/schemas.hpp"
@@ -143,6 +144,13 @@ std::vector<sdk::Actuator> actuators(const Json& list) {
     actuator.scale.direction = entry.value("Direction", 1);
     actuator.scale.home_counts = entry.value("HomeCounts", std::int32_t{0});
     actuator.homing_turn = entry.value("HomingTurn", 0);
+    static const std::map<int, TouchProbeEdge> kEdges{{1, TouchProbeEdge::FirstRising},
+                                                      {-1, TouchProbeEdge::FirstFalling},
+                                                      {2, TouchProbeEdge::SecondRising},
+                                                      {-2, TouchProbeEdge::SecondFalling}};
+    if (const auto probe = entry.find("TouchProbe"); probe != entry.end()) {
+      actuator.probe_edge = kEdges.at(probe->get<int>());
+    }
     result.push_back(std::move(actuator));
   }
   return result;
@@ -198,6 +206,28 @@ sdk::Probing probing(const Json& file) {
   result.scan_speed_mm_s = number(given, "ScanSpeed", result.scan_speed_mm_s);
   result.settle_time_s = number(given, "SettleTime", result.settle_time_s);
   return result;
+}
+
+/// Names of the drives' inputs join those of the I/O interface, on bits that it has not named.
+std::string add_drive_inputs(const Json& list, sdk::DeviceObject& device) {
+  constexpr int kLastBit = 52;  // beyond it a number of JSON is not exact everywhere
+  std::set<int> taken;
+  for (const auto& [name, bit] : device.inputs) taken.insert(bit);
+  int free = kLastBit;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    for (const auto& [name, bit] : list[i].value("Inputs", std::map<std::string, int>())) {
+      while (taken.contains(free)) --free;
+      if (free < 0) {
+        return fmt::format("/Actuators/{}/Inputs/{} is one input too many; bits 0 to {} are taken", i, name, kLastBit);
+      }
+      if (!device.inputs.emplace(name, free).second) {
+        return fmt::format("/Actuators/{}/Inputs/{} has the name of another input; allowed is a name of its own", i,
+                           name);
+      }
+      device.drive_inputs[free--] = {i, bit};
+    }
+  }
+  return {};
 }
 
 sdk::DeviceObject device_object(const Json& file) {
@@ -267,6 +297,7 @@ Expected<DeviceDatabase> read_device_json(const std::filesystem::path& device_js
     if (document->contains("MechanismID")) database.mechanism_id = (*document)["MechanismID"].get<std::int64_t>();
 
     std::string problem = missing_end(*document, database.device);
+    if (problem.empty()) problem = add_drive_inputs((*document)["Actuators"], database.device);
     if (problem.empty()) problem = check_sense(database.device);
     if (!problem.empty()) {
       return failure(MinorCode::InvalidParameterValue, fmt::format("{}: {}", device_json.string(), problem));

@@ -136,6 +136,8 @@ class Cam final : public sdk::RmacCam, public ToolPort {
   Expected<> jog_at(const char* function, const Jog& jog, double velocity,
                     const std::function<Expected<Move>()>& begin);
   [[nodiscard]] Expected<Vector> part_direction(const char* function, const sdk::JogDirection& direction) const;
+  /// Refuses a jog towards a limit switch that is on.
+  [[nodiscard]] Expected<> check_limit_switches(std::size_t joint, bool positive) const;
   /// How far the tip can go straight from where it stands before a joint leaves its travel or the reach ends.
   [[nodiscard]] Expected<double> straight_reach(const Vector& direction) const;
 

@@ -49,10 +49,22 @@ Expected<> Cam::jog_joint(int joint, double distance) {
     return failure(MinorCode::InvalidParameterValue,
                    fmt::format("JogJoint: the distance {} must be a number other than 0", distance));
   }
+  if (auto free = check_limit_switches(*found, distance > 0); !free) return free;
   const ServoStatus now = link_.status.read();
   JointTargetGeometry target{{now.position_set.begin(), now.position_set.begin() + device_->joints.size()}};
   target.joints[*found] += distance;
   return supervisor_.run_positioning(make_joint_move(kPositioningMoveId, target, now.position_set));
+}
+
+Expected<> Cam::check_limit_switches(std::size_t joint, bool positive) const {
+  const std::uint64_t on = link_.history.latest().inputs;
+  for (const ServoLimit& limit : supervisor_.mechanism()->loop->parts().limits) {
+    if (limit.joint != joint || (limit.direction > 0) != positive || (on & limit.input) == 0) continue;
+    return failure(MinorCode::TravelLimit,
+                   fmt::format("JogJoint: joint {} stands on its limit switch at the {} end; jog the other way",
+                               device_->joints[joint].limits.name, positive ? "positive" : "negative"));
+  }
+  return {};
 }
 
 Expected<> Cam::jog_joint_at(int joint, double velocity) {
@@ -61,6 +73,7 @@ Expected<> Cam::jog_joint_at(int joint, double velocity) {
   const JointLimits& limits = device_->joints[*found].limits;
   const bool positive = velocity > 0;
   return jog_at("JogJoint", {joint, positive, limits.max_speed}, velocity, [&]() -> Expected<Move> {
+    if (auto free = check_limit_switches(*found, positive); !free) return tl::unexpected(free.error());
     const ServoStatus now = link_.status.read();
     const double from = now.position_set[*found];
     const double to = travel_end(limits, from, positive);

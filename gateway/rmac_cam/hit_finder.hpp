@@ -9,15 +9,18 @@
 
 namespace rmac::gateway {
 
-/// Finds the joints at the instant of a hit: the probe's time stamp lies between two cycles, and measured positions
-/// around it are joined by a cubic. So a hit is as exact as the encoders, however far a joint goes in a cycle.
+/// Finds the joints at the instant of a hit. Where drives have latched their positions, those are they. Other joints
+/// are taken from the positions measured in the cycles around the instant, joined by a cubic: the probe's time stamp
+/// lies between two cycles, so a hit is as exact as the encoders, however far a joint goes in a cycle. Without a stamp,
+/// the instant is that in which a joint passed the position that its drive latched.
 class HitFinder {
  public:
   struct Found {
     double t_s = 0;
     std::vector<double> joints;
   };
-  /// Every sample, in order. A hit is found one sample after the one that counts it.
+  /// Every sample, in order. A hit is found one sample after the one that counts it, or some more where drives still
+  /// have to tell what they latched.
   [[nodiscard]] std::optional<Found> read(const CycleSample& sample);
   /// Another mechanism: what was read before says nothing.
   void restart() noexcept { *this = HitFinder{}; }
@@ -27,12 +30,21 @@ class HitFinder {
     double t_s = 0;
     std::array<double, kMaxJoints> position{};
   };
-  [[nodiscard]] Found interpolate(double t_s, std::size_t joints) const;
+  struct Hit {
+    double t_s = 0;
+    bool stamped = false;
+    std::uint32_t latching = 0;  ///< joints whose drives latch it
+    int samples = 0;             ///< since the one that counted it
+    std::vector<Node> around;
+  };
+  [[nodiscard]] static std::vector<double> interpolate(const std::vector<Node>& nodes, double t_s, std::size_t joints);
+  [[nodiscard]] static double passing(const std::vector<Node>& nodes, std::size_t joint, double position, double t_s);
+  [[nodiscard]] static Found find(const Hit& hit, const CycleSample& sample);
 
   std::array<Node, 4> nodes_{};  ///< the latest last
   std::size_t count_ = 0;
   std::uint32_t hits_ = 0;
-  std::optional<double> hit_t_s_;
+  std::optional<Hit> hit_;
 };
 
 }  // namespace rmac::gateway

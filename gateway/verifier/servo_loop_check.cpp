@@ -169,6 +169,7 @@ void check_servo_loops(const Task& task, Watch& watch, ModuleReport& report, con
   // Inputs and outputs are not these loops' business, and their device may not be here.
   device.digital_io_interface = {};
   device.inputs.clear();
+  device.drive_inputs.clear();
   device.outputs.clear();
   gateway::BusRegistry registry;
   gateway::add_built_in_interfaces(registry, kPeriod_s);

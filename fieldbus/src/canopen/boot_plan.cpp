@@ -43,6 +43,9 @@ class Plan {
     const auto number = static_cast<std::uint16_t>(kPdoOffset * axis.axis_in_node);
     map(static_cast<std::uint16_t>(0x1400 + number), setpoint_id(axis), axis.setpoints, offset);
     map(static_cast<std::uint16_t>(0x1800 + number), kNoRemoteRequest | answer_id(axis), axis.answers, offset);
+    if (!axis.more_answers.empty()) {
+      map(0x1801, kNoRemoteRequest | more_answers_id(axis), axis.more_answers, offset);
+    }
     if (config_.abort_connection >= 0) {
       write(of_axis({0x6007, 0}, offset), 2, static_cast<std::uint32_t>(config_.abort_connection));
     }

@@ -19,6 +19,7 @@ BusLoad bus_load(const CanopenConfig& config) noexcept {
       load.setpoint_bits += worst_frame_bits(mapped_bytes(axis.setpoints));
     }
     load.answer_bits += worst_frame_bits(mapped_bytes(axis.answers));
+    if (!axis.more_answers.empty()) load.answer_bits += worst_frame_bits(mapped_bytes(axis.more_answers));
     nodes.insert(axis.node);
   }
   const double heartbeats_per_s = 1 / std::chrono::duration<double>(config.heartbeat).count();

@@ -151,10 +151,16 @@ Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const F
   if (auto known = check_answers(*answers); !known) {
     return failure(known.error().code, parameters.place("tpdo: " + known.error().message));
   }
+  auto more = mapping(parameters, "second_tpdo", axis, "");
+  if (!more) return tl::unexpected(more.error());
+  if (auto known = check_more_answers(*answers, *more); !known) {
+    return failure(known.error().code, parameters.place("second_tpdo: " + known.error().message));
+  }
   auto setup = read_setup(parameters.text_of_axis("setup", axis, ""));
   if (!setup) return failure(setup.error().code, parameters.place("setup: " + setup.error().message));
   config.setpoints = std::move(*setpoints);
   config.answers = std::move(*answers);
+  config.more_answers = std::move(*more);
   config.setup.insert(config.setup.end(), setup->begin(), setup->end());
   if (config.homes && !tells_mode(config)) {
     return failure(MinorCode::InvalidParameterValue,
@@ -176,6 +182,13 @@ std::string check_nodes(const CanopenConfig& config) {
           "node {} stands twice with axis_in_node {}; each drive needs a node id of its own, and each "
           "axis of a drive a number of its own",
           axis.node, axis.axis_in_node);
+    }
+    const auto same = [&](const AxisConfig& other) { return other.node == axis.node; };
+    if (!axis.more_answers.empty() && std::count_if(config.axes.begin(), config.axes.end(), same) > 1) {
+      return fmt::format(
+          "node {} has several axes and a second_tpdo, whose identifier is that of the second axis; map all that is "
+          "needed in tpdo",
+          axis.node);
     }
   }
   return {};

@@ -27,9 +27,34 @@ struct Node {
 struct Axis {
   AxisConfig config;
   std::size_t node = 0;
+  /// One PDO of its answers.
+  struct Answer {
+    std::uint16_t id = 0;
+    std::vector<MappedObject> contents;
+    std::uint32_t unanswered = 0;  ///< SYNCs
+    bool answered = false;         ///< since its node came up
+  };
+  std::vector<Answer> answers;
   DriveFeedback feedback;
-  std::uint32_t unanswered = 0;
-  bool answered = false;  ///< since its node came up
+
+  void forget() noexcept {
+    for (Answer& answer : answers) answer.answered = false;
+  }
+  [[nodiscard]] bool answered() const noexcept {
+    return std::all_of(answers.begin(), answers.end(), [](const Answer& answer) { return answer.answered; });
+  }
+  [[nodiscard]] std::uint32_t unanswered() const noexcept {
+    std::uint32_t most = 0;
+    for (const Answer& answer : answers) most = std::max(most, answer.unanswered);
+    return most;
+  }
+  /// Told in one of its PDOs.
+  [[nodiscard]] bool tells(std::uint16_t index) const noexcept {
+    return std::any_of(answers.begin(), answers.end(), [index](const Answer& answer) {
+      return std::any_of(answer.contents.begin(), answer.contents.end(),
+                         [index](const MappedObject& mapped) { return mapped.object.index == index; });
+    });
+  }
 };
 
 }  // namespace
@@ -41,7 +66,12 @@ struct CanopenInterface::Impl {
       if (at == nodes.end()) at = nodes.emplace(nodes.end(), config, axis.node);
       const auto same = [&](std::size_t other) { return setpoint_id(axes[other].config) == setpoint_id(axis); };
       if (std::none_of(rpdos.begin(), rpdos.end(), same)) rpdos.push_back(axes.size());
-      axes.push_back({.config = axis, .node = static_cast<std::size_t>(at - nodes.begin()), .feedback = {}});
+      Axis made{.config = axis, .node = static_cast<std::size_t>(at - nodes.begin()), .answers = {}, .feedback = {}};
+      made.answers.push_back({.id = answer_id(axis), .contents = axis.answers});
+      if (!axis.more_answers.empty()) {
+        made.answers.push_back({.id = more_answers_id(axis), .contents = axis.more_answers});
+      }
+      axes.push_back(std::move(made));
     }
   }
 
@@ -52,7 +82,9 @@ struct CanopenInterface::Impl {
         ids.push_back(static_cast<std::uint16_t>(base + node.boot.node()));
       }
     }
-    for (const Axis& axis : axes) ids.push_back(answer_id(axis.config));
+    for (const Axis& axis : axes) {
+      for (const Axis::Answer& answer : axis.answers) ids.push_back(answer.id);
+    }
     return ids;
   }
 
@@ -64,6 +96,7 @@ struct CanopenInterface::Impl {
   // On the cycle
   void fetch(std::chrono::nanoseconds now) noexcept;
   void take(const CanFrame& frame, std::chrono::nanoseconds now) noexcept;
+  void take_answer(Axis& axis, Axis::Answer& answer, const CanFrame& frame) noexcept;
   void take_from_node(Node& node, const CanFrame& frame, std::chrono::nanoseconds now) noexcept;
   void watch(std::chrono::nanoseconds now) noexcept;
   void recover(std::chrono::nanoseconds now) noexcept;
@@ -96,6 +129,17 @@ CanopenInterface::~CanopenInterface() {
 
 std::size_t CanopenInterface::axis_count() const noexcept {
   return impl_->axes.size();
+}
+
+std::uint32_t CanopenInterface::input_bits(std::size_t axis) const noexcept {
+  return impl_->axes[axis].tells(0x60FD) ? ~std::uint32_t{0} : 0;
+}
+
+bool CanopenInterface::latches(std::size_t axis, TouchProbeEdge edge) const noexcept {
+  const Axis& of = impl_->axes[axis];
+  const bool commanded = std::any_of(of.config.setpoints.begin(), of.config.setpoints.end(),
+                                     [](const MappedObject& mapped) { return mapped.object.index == 0x60B8; });
+  return commanded && of.tells(0x60B9) && of.tells(static_cast<std::uint16_t>(0x60BA + static_cast<int>(edge)));
 }
 
 const CanopenCounters& CanopenInterface::counters() const noexcept {
@@ -191,8 +235,8 @@ bool CanopenInterface::exchange(std::span<const DriveCommand> commands, std::spa
     for (Node& node : bus.nodes) node.heard = now;
     for (Axis& axis : bus.axes) {
       axis.feedback = {};
-      axis.answered = false;
-      axis.unanswered = 0;
+      axis.forget();
+      for (Axis::Answer& answer : axis.answers) answer.unanswered = 0;
     }
     bus.next_heartbeat = bus.next_time = now;
     bus.fresh = false;
@@ -213,15 +257,9 @@ void CanopenInterface::Impl::fetch(std::chrono::nanoseconds now) noexcept {
 
 void CanopenInterface::Impl::take(const CanFrame& frame, std::chrono::nanoseconds now) noexcept {
   for (Axis& axis : axes) {
-    if (frame.id != answer_id(axis.config)) continue;
-    if (!nodes[axis.node].up) return;
-    if (!unpack_answers(axis.config, frame, axis.feedback)) {
-      ++counters.short_answers;
-      return;
+    for (Axis::Answer& answer : axis.answers) {
+      if (frame.id == answer.id) return take_answer(axis, answer, frame);
     }
-    axis.unanswered = 0;
-    axis.answered = true;
-    return;
   }
   for (Node& node : nodes) {
     const std::uint8_t id = node.boot.node();
@@ -230,6 +268,16 @@ void CanopenInterface::Impl::take(const CanFrame& frame, std::chrono::nanosecond
       return;
     }
   }
+}
+
+void CanopenInterface::Impl::take_answer(Axis& axis, Axis::Answer& answer, const CanFrame& frame) noexcept {
+  if (!nodes[axis.node].up) return;
+  if (!unpack_answers(axis.config, answer.contents, frame, axis.feedback)) {
+    ++counters.short_answers;
+    return;
+  }
+  answer.unanswered = 0;
+  answer.answered = true;
 }
 
 void CanopenInterface::Impl::take_from_node(Node& node, const CanFrame& frame, std::chrono::nanoseconds now) noexcept {
@@ -251,7 +299,7 @@ void CanopenInterface::Impl::lose(Node& node, std::chrono::nanoseconds now) noex
   ++counters.nodes_lost;
   node.up = false;
   for (Axis& axis : axes) {
-    if (&nodes[axis.node] == &node) axis.answered = false;
+    if (&nodes[axis.node] == &node) axis.forget();
   }
   node.boot.begin(now);
 }
@@ -273,12 +321,10 @@ void CanopenInterface::Impl::fill(std::span<DriveFeedback> feedback) noexcept {
   for (std::size_t i = 0; i < axes.size(); ++i) {
     Axis& axis = axes[i];
     const Node& node = nodes[axis.node];
-    if (axis.answered && axis.unanswered > 0) ++counters.missed_answers;
+    if (axis.answered() && axis.unanswered() > 0) ++counters.missed_answers;
     feedback[i] = axis.feedback;
-    feedback[i].online = node.up && axis.answered && axis.unanswered <= config.missed_answers;
-    const bool mapped = std::any_of(axis.config.answers.begin(), axis.config.answers.end(),
-                                    [](const MappedObject& object) { return object.object.index == 0x603F; });
-    if (!mapped) feedback[i].error_code = node.error_code;
+    feedback[i].online = node.up && axis.answered() && axis.unanswered() <= config.missed_answers;
+    if (!axis.tells(0x603F)) feedback[i].error_code = node.error_code;
   }
 }
 
@@ -292,7 +338,9 @@ bool CanopenInterface::Impl::send_cycle(std::span<const DriveCommand> commands, 
   bool all = !config.sync_first || send(sync_frame());
   for (const std::size_t first : rpdos) all = send_setpoints(first, commands) && all;
   if (!config.sync_first) all = send(sync_frame()) && all;
-  for (Axis& axis : axes) ++axis.unanswered;
+  for (Axis& axis : axes) {
+    for (Axis::Answer& answer : axis.answers) ++answer.unanswered;
+  }
   if (now >= next_heartbeat) {
     all = send(heartbeat_frame(config.master_node, NmtState::Operational)) && all;
     next_heartbeat = std::max(next_heartbeat + config.heartbeat, now);

@@ -136,8 +136,10 @@ Expected<> check_description(const CanopenConfig& config, const AxisConfig& axis
   for (const MappedObject& object : axis.setpoints) {
     if (auto fits = check_mapped(description, object, offset, true); !fits) return fits;
   }
-  for (const MappedObject& object : axis.answers) {
-    if (auto fits = check_mapped(description, object, offset, false); !fits) return fits;
+  for (const auto* answers : {&axis.answers, &axis.more_answers}) {
+    for (const MappedObject& object : *answers) {
+      if (auto fits = check_mapped(description, object, offset, false); !fits) return fits;
+    }
   }
   for (const BootStep& step : boot_plan(config, axis.node)) {
     if (step.kind != BootStep::Kind::Write) continue;

@@ -127,4 +127,10 @@ Expected<> check_answers(const std::vector<MappedObject>& objects) {
   return check_words(objects, kAnswerWords, {0x6041, 0}, true);
 }
 
+Expected<> check_more_answers(const std::vector<MappedObject>& objects, const std::vector<MappedObject>& more) {
+  std::vector<MappedObject> together = objects;
+  together.insert(together.end(), more.begin(), more.end());
+  return check_answers(together);
+}
+
 }  // namespace rmac::fieldbus::canopen

@@ -17,5 +17,8 @@ namespace rmac::fieldbus::canopen {
 [[nodiscard]] Expected<> check_setpoints(const std::vector<MappedObject>& objects);
 /// Answers hold a statusword; what the master does not know it passes over.
 [[nodiscard]] Expected<> check_answers(const std::vector<MappedObject>& objects);
+/// What a second PDO adds to `objects`: nothing that is there already.
+[[nodiscard]] Expected<> check_more_answers(const std::vector<MappedObject>& objects,
+                                            const std::vector<MappedObject>& more);
 
 }  // namespace rmac::fieldbus::canopen

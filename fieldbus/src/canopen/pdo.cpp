@@ -20,9 +20,12 @@ std::uint32_t setpoint_word(const AxisConfig& axis, const DriveCommand& command,
     case 0x6071:
       return static_cast<std::uint32_t>(command.target_torque_permille);
     case 0x607A:
+    case 0x60C1:
       return static_cast<std::uint32_t>(command.target_position_counts);
     case 0x60FF:
       return static_cast<std::uint32_t>(to_long(command.target_velocity_rpm * axis.velocity_units_per_rpm));
+    case 0x60B8:
+      return command.touch_probe;
     default:
       return 0;
   }
@@ -48,6 +51,18 @@ void take_word(const AxisConfig& axis, std::uint16_t index, std::uint32_t word, 
     case 0x6077:
       feedback.torque_permille = static_cast<std::int16_t>(word);
       break;
+    case 0x60FD:
+      feedback.inputs = word;
+      break;
+    case 0x60B9:
+      feedback.touch_probe = static_cast<std::uint16_t>(word);
+      break;
+    case 0x60BA:
+    case 0x60BB:
+    case 0x60BC:
+    case 0x60BD:
+      feedback.latched_counts[index - 0x60BAU] = static_cast<std::int32_t>(word);
+      break;
     default:
       break;
   }
@@ -70,10 +85,11 @@ void add_setpoints(CanFrame& shared, const CanFrame& own) noexcept {
   for (std::size_t i = 0; i < own.size; ++i) shared.data[i] = static_cast<std::uint8_t>(shared.data[i] | own.data[i]);
 }
 
-bool unpack_answers(const AxisConfig& axis, const CanFrame& frame, DriveFeedback& feedback) noexcept {
-  if (frame.size < mapped_bytes(axis.answers)) return false;
+bool unpack_answers(const AxisConfig& axis, const std::vector<MappedObject>& contents, const CanFrame& frame,
+                    DriveFeedback& feedback) noexcept {
+  if (frame.size < mapped_bytes(contents)) return false;
   std::size_t at = 0;
-  for (const MappedObject& mapped : axis.answers) {
+  for (const MappedObject& mapped : contents) {
     std::uint32_t word = 0;
     for (unsigned bit = 0; bit < mapped.bits; bit += 8) word |= static_cast<std::uint32_t>(frame.data[at++]) << bit;
     take_word(axis, mapped.object.index, word, feedback);

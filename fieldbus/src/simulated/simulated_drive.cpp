@@ -9,16 +9,47 @@ namespace rmac::fieldbus {
 SimulatedServoDrive::SimulatedServoDrive(const AxisPlantParameters& parameters) noexcept
     : parameters_(parameters), plant_(parameters) {}
 
-DriveFeedback SimulatedServoDrive::feedback() const noexcept {
-  const double counts = std::floor(plant_.angle_rad() * parameters_.counts_per_revolution / (2 * std::numbers::pi));
+std::int32_t SimulatedServoDrive::counts_at(double angle_rad) const noexcept {
+  const double counts = std::floor(angle_rad * parameters_.counts_per_revolution / (2 * std::numbers::pi));
   const auto wide = static_cast<std::int64_t>(counts) + encoder_offset_;
+  return frozen_counts_.value_or(static_cast<std::int32_t>(static_cast<std::uint64_t>(wide)));
+}
+
+DriveFeedback SimulatedServoDrive::feedback() const noexcept {
+  const double angle = plant_.angle_rad();
   return {
       .statusword = power_.statusword(),
       .error_code = power_.error_code(),
-      .position_counts = frozen_counts_.value_or(static_cast<std::int32_t>(static_cast<std::uint64_t>(wide))),
+      .position_counts = counts_at(angle),
       .velocity_rpm = static_cast<std::int32_t>(std::lround(plant_.speed_rad_s() * 30 / std::numbers::pi)),
       .torque_permille = static_cast<std::int16_t>(std::lround(plant_.motor_nm() * 1000 / parameters_.rated_torque_nm)),
-      .online = true};
+      .online = true,
+      .inputs =
+          (angle <= parameters_.negative_switch_rad ? 1U : 0U) | (angle >= parameters_.positive_switch_rad ? 2U : 0U),
+      .touch_probe = probe_status_,
+      .latched_counts = latched_counts_};
+}
+
+/// What is no longer wanted is no longer kept (CiA 402-2, touch probe: a new edge is waited for after 0 and 1 again).
+void SimulatedServoDrive::take_touch_probe(std::uint16_t function) noexcept {
+  probe_function_ = function;
+  for (const unsigned probe : {0U, 8U}) {
+    const unsigned wanted = static_cast<unsigned>(function) >> probe;
+    unsigned keeps = (wanted & 0x10U) != 0 ? 0x02U : 0U;
+    if ((wanted & 0x20U) != 0) keeps |= 0x04U;
+    const unsigned enabled = wanted & 1U;
+    const unsigned status = enabled != 0 ? enabled | (static_cast<unsigned>(probe_status_) >> probe & keeps) : 0U;
+    probe_status_ = static_cast<std::uint16_t>((probe_status_ & ~(0xFFU << probe)) | status << probe);
+  }
+}
+
+void SimulatedServoDrive::touch(TouchProbeEdge edge, double angle_rad) noexcept {
+  const unsigned wanted = static_cast<unsigned>(probe_function_) >> touch_probe::shift_of(edge);
+  const bool waits = (wanted & 1U) != 0 && (wanted & (touch_probe::falls(edge) ? 0x20U : 0x10U)) != 0;
+  const bool again = (wanted & 2U) != 0;
+  if (!waits || (!again && (probe_status_ & touch_probe::latched(edge)) != 0)) return;
+  latched_counts_[static_cast<std::size_t>(edge)] = counts_at(angle_rad);
+  probe_status_ = static_cast<std::uint16_t>(probe_status_ | touch_probe::latched(edge));
 }
 
 void SimulatedServoDrive::freeze_encoder(bool frozen) noexcept {
@@ -31,6 +62,7 @@ void SimulatedServoDrive::freeze_encoder(bool frozen) noexcept {
 
 void SimulatedServoDrive::advance(const DriveCommand& command, double period_s) noexcept {
   power_.step(command.controlword);
+  take_touch_probe(command.touch_probe);
   const double max_speed_rad_s = parameters_.max_speed_rpm * std::numbers::pi / 30;
   double torque = 0;
   if (power_.operational() && command.mode == DriveMode::CyclicSyncTorque) {

@@ -7,8 +7,9 @@ namespace rmac {
 /// Makes hits of a touch probe's contact, which bounces. Real-time safe.
 class ProbeSignal {
  public:
-  /// `inputs` as `io` gave them in this cycle; `io` may be null. False when the inputs could not be read.
-  void read(const ServoProbe& probe, const DigitalIoInterface* io, std::uint64_t inputs, double period_s) noexcept;
+  /// `inputs` as they were read in this cycle. `on_for_s`: how long ago the contact closed, where its input has time
+  /// stamps. `latched`: a drive has latched its position at an edge of the contact, which may be over by now.
+  void read(const ServoProbe& probe, std::uint64_t inputs, double on_for_s, bool latched, double period_s) noexcept;
   [[nodiscard]] const ProbeReport& report() const noexcept { return report_; }
 
  private:

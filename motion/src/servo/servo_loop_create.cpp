@@ -128,6 +128,21 @@ Expected<> check_drives(const ServoLoopParts& parts) {
   return {};
 }
 
+Expected<> check_inputs(const ServoLoopParts& parts) {
+  for (const ServoDriveInput& input : parts.drive_inputs) {
+    if (input.actuator < parts.actuators.size()) continue;
+    return failure(MinorCode::InvalidParameterValue, "servo loop: an input is told by actuator " +
+                                                         std::to_string(input.actuator) + ", and there are " +
+                                                         std::to_string(parts.actuators.size()));
+  }
+  for (const ServoLimit& limit : parts.limits) {
+    if (limit.joint < parts.axes.size()) continue;
+    return failure(MinorCode::InvalidParameterValue, "servo loop: a limit switch is of " + joint_text(limit.joint) +
+                                                         ", and there are " + std::to_string(parts.axes.size()));
+  }
+  return {};
+}
+
 }  // namespace
 
 ServoBus::ServoBus(std::shared_ptr<DigitalControlInterface> bus_interface)
@@ -137,6 +152,7 @@ Expected<std::unique_ptr<ServoLoop>> ServoLoop::create(ServoLoopParts parts) {
   return check_counts(parts)
       .and_then([&] { return check_axes(parts); })
       .and_then([&] { return check_drives(parts); })
+      .and_then([&] { return check_inputs(parts); })
       .and_then([&]() -> Expected<std::unique_ptr<ServoLoop>> {
         auto impl = std::make_unique<Impl>(std::move(parts));
         return impl->check_homing().map([&] { return std::unique_ptr<ServoLoop>(new ServoLoop(std::move(impl))); });
@@ -155,6 +171,10 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
   for (const ServoSpindle& spindle : parts.spindles) add_bus(spindle.bus);
   for (const ServoAxis& axis : parts.axes) {
     if (axis.force_sensor) add_bus(axis.force_sensor->bus);
+  }
+
+  for (const ServoActuator& actuator : parts.actuators) {
+    latches.push_back(actuator.probe_edge ? std::optional(ProbeLatch(*actuator.probe_edge)) : std::nullopt);
   }
 
   std::array<double, kMaxJoints> zero{};

@@ -24,6 +24,7 @@ void ServoLoop::cycle(const ServoCommand& command, ServoReport& report) noexcept
     loop.run_homing(command);
     loop.make_live();
     loop.make_setpoints(command, report);
+    loop.watch_limits();
     loop.watch_joints();
     loop.watch_torques();
     report.follows = loop.follows;
@@ -54,8 +55,10 @@ void ServoLoop::Impl::exchange(const ServoCommand& command, ServoReport& report)
   if (parts.io && !parts.io->exchange(command.outputs, report.inputs)) {
     raise({ServoFault::Kind::IoFailure, ServoFault::Part::Io, 0, 0, 0});
   }
-  if (parts.io) watch_inputs(report.inputs);
-  probe.read(parts.probe, parts.io.get(), report.inputs, parts.period_s);
+  if (!parts.io) report.inputs = 0;
+  read_drive_inputs(report.inputs);
+  watch_inputs(report.inputs);
+  read_probe();
 }
 
 const DriveFeedback& ServoLoop::Impl::feedback(std::size_t actuator) const noexcept {
@@ -273,6 +276,7 @@ void ServoLoop::Impl::write_actuators() noexcept {
     command_homing(i, words);
     words.target_position_counts = from.position_counts;
     words.target_velocity_rpm = 0;
+    words.touch_probe = latches[i] ? latches[i]->function() : std::uint16_t{0};
     const double permille = part.scale.direction * torque[i] * 1000 / part.scale.rated_torque_nm;
     words.target_torque_permille = static_cast<std::int16_t>(std::lround(std::clamp(permille, -32767.0, 32767.0)));
   }

@@ -5,6 +5,7 @@
 #include "servo/effort_filter.hpp"
 #include "servo/force_loop.hpp"
 #include "servo/position_correction.hpp"
+#include "servo/probe_latch.hpp"
 #include "servo/probe_signal.hpp"
 
 namespace rmac {
@@ -14,7 +15,11 @@ struct ServoLoop::Impl {
   explicit Impl(ServoLoopParts loop_parts);
 
   void exchange(const ServoCommand& command, ServoReport& report) noexcept;
+  void read_drive_inputs(std::uint64_t& now) const noexcept;
+  void read_probe() noexcept;
+  [[nodiscard]] ProbeReport probe_report() const noexcept;
   void watch_inputs(std::uint64_t now) noexcept;
+  void watch_limits() noexcept;
   void begin_homing() noexcept;
   void begin_homing_turn() noexcept;
   void run_homing(const ServoCommand& command) noexcept;
@@ -99,6 +104,7 @@ struct ServoLoop::Impl {
   bool follows = false;
   std::uint64_t inputs = 0;  ///< in the last cycle
   ProbeSignal probe;
+  std::vector<std::optional<ProbeLatch>> latches;  ///< one an actuator
 
   bool home_before = false;      ///< for its edge
   std::uint32_t homing = 0;      ///< bit i: drive of actuator i homes, or has in a turn before

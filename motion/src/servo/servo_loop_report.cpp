@@ -23,7 +23,7 @@ void ServoLoop::Impl::fill(const ServoCommand& command, ServoReport& report) con
   report.follows = follows;
   report.fault = fault;
   report.homings = homings;
-  report.probe = probe.report();
+  report.probe = probe_report();
   report.position_set = hold;
   report.velocity_set = set_velocity;
   report.acceleration_set = set_acceleration;

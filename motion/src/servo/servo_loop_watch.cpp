@@ -25,6 +25,10 @@ bool beyond(double value, double bound, std::uint8_t& cycles) noexcept {
   return cycles >= kCyclesBeyond;
 }
 
+std::uint32_t first(std::uint64_t bits) noexcept {
+  return static_cast<std::uint32_t>(std::countr_zero(bits));
+}
+
 }  // namespace
 
 void ServoLoop::Impl::watch_drive(const DriveFeedback& words, bool in_use, ServoFault::Part part,
@@ -69,11 +73,27 @@ void ServoLoop::Impl::watch_enabling() noexcept {
 
 void ServoLoop::Impl::watch_inputs(std::uint64_t now) noexcept {
   const std::uint64_t pressed = now & parts.emergency_stop_inputs;
-  const std::uint64_t reached = now & ~inputs & parts.limit_inputs;
+  std::uint64_t reached = now & ~inputs & parts.limit_inputs;
   inputs = now;
-  const auto first = [](std::uint64_t bits) { return static_cast<std::uint32_t>(std::countr_zero(bits)); };
+  // A drive that looks for home may look for it in its limit switch.
+  for (const ServoLimit& limit : parts.limits) {
+    const bool homes = state == ServoState::Homing && (actuators_of[limit.joint] & homing) != 0;
+    if (homes) reached &= ~limit.input;
+  }
   if (pressed != 0) raise({ServoFault::Kind::EmergencyStop, ServoFault::Part::Io, first(pressed), 0, 0});
   if (reached != 0) raise({ServoFault::Kind::LimitSwitch, ServoFault::Part::Io, first(reached), 0, 0});
+}
+
+// Whoever was told of a switch and reset the machine may move off it, and no further.
+void ServoLoop::Impl::watch_limits() noexcept {
+  constexpr double kStanding = 1e-6;  // mm/s or deg/s; less is rounding
+  if (state != ServoState::Engaged) return;
+  for (const ServoLimit& limit : parts.limits) {
+    const bool on = (inputs & limit.input) != 0;
+    if (!on || !live[limit.joint] || set_velocity[limit.joint] * limit.direction <= kStanding) continue;
+    raise({ServoFault::Kind::LimitSwitch, ServoFault::Part::Io, first(limit.input), 0, 0});
+    return;
+  }
 }
 
 void ServoLoop::Impl::watch_cycles(std::uint64_t missed) noexcept {

@@ -82,6 +82,64 @@ TEST_F(EmergencyStop, OfALimitSwitchIsAFaultThatCanBeResetToMoveOff) {
   ASSERT_TRUE(cam().jog_joint(0, -1));
 }
 
+/// A mill whose X drive has a limit switch at four turns, 20 mm, and tells of it.
+sdk::DeviceObject mill_with_limit_switch() {
+  sdk::DeviceObject device = TestMachine::mill();
+  const std::vector<double> far(8, 1e6);
+  std::vector<double> upper = far;
+  upper[0] = 4;
+  device.digital_control_interface = {"SimulatedInterface", {{"positive_switch_turns", upper}}, {}};
+  device.digital_io_interface = {};
+  device.outputs.clear();
+  device.inputs = {{"LimitXPositive", 63}};
+  device.drive_inputs[63] = {0, 1};
+  return device;
+}
+
+TEST(LimitSwitchOfADrive, HoldsEveryJogBackThatGoesOnTowardsIt) {
+  TestMachine machine;
+  const auto loaded = machine.load_at_zero(mill_with_limit_switch());
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  sdk::RmacCam& cam = machine.controller.cam();
+  const auto idle = [&] {
+    machine.controller.dispatch();
+    return machine.controller.cycle_now().state == CycleState::Idle && !machine.controller.sample().moving;
+  };
+  ASSERT_TRUE(cam.jog_joint(0, 25));
+  ASSERT_TRUE(machine.run_until_event(Event::Kind::Fault, -1));
+  EXPECT_THAT(machine.last(Event::Kind::Fault), HasSubstr("LimitXPositive (input 63) is reached; reset, then jog"));
+  EXPECT_NEAR(machine.controller.sample().position[0], 20, 1);
+  ASSERT_TRUE(machine.run_until([&] { return cam.reset().has_value() && idle(); }));
+  ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().servo_state == ServoState::Engaged; }));
+
+  const auto refused = cam.jog_joint(0, 1);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, MinorCode::TravelLimit);
+  EXPECT_EQ(refused.error().message,
+            "JogJoint: joint X stands on its limit switch at the positive end; jog the other way");
+  EXPECT_FALSE(cam.jog_joint_at(0, 5));
+  machine.events.clear();
+  ASSERT_TRUE(cam.jog_path({{1, 1, 0}}, 2));
+  ASSERT_TRUE(machine.run_until_event(Event::Kind::Fault, -1)) << "whatever moves it there";
+  EXPECT_THAT(machine.last(Event::Kind::Fault), HasSubstr("LimitXPositive"));
+  ASSERT_TRUE(machine.run_until([&] { return cam.reset().has_value() && idle(); }));
+  ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().servo_state == ServoState::Engaged; }));
+  ASSERT_TRUE(cam.jog_joint(0, -5));
+  ASSERT_TRUE(machine.run_until([&] { return idle() && machine.controller.sample().position[0] < 17; }));
+  EXPECT_EQ(machine.controller.sample().inputs, 0U);
+}
+
+TEST(LimitSwitchOfADrive, ThatItsBusDoesNotCarryIsRefused) {
+  TestMachine machine;
+  sdk::DeviceObject device = mill_with_limit_switch();
+  device.drive_inputs[63].bit = 5;
+  const auto loaded = machine.load(device);
+  ASSERT_FALSE(loaded);
+  EXPECT_THAT(loaded.error().message,
+              HasSubstr("input of actuator 0 \"LimitXPositive\" is bit 5, to which nothing of its drive's interface is "
+                        "connected; connected are 0, 1"));
+}
+
 /// As much as a device that has four inputs.
 class FourInputs final : public DigitalIoInterface {
  public:

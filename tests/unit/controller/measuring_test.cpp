@@ -96,6 +96,38 @@ TEST_F(Measuring, FindsThePartToTheEncodersCount) {
   EXPECT_EQ(machine_.count(Event::Kind::MoveDone, 7), 60);
 }
 
+TEST_F(Measuring, TakesTheCountsThatTheDrivesLatched) {
+  sdk::DeviceObject device = measuring_mill();
+  for (sdk::Actuator& actuator : device.actuators) actuator.probe_edge = TouchProbeEdge::FirstRising;
+  load(device);
+  std::mt19937 random(7);  // NOLINT(cert-msc51-cpp): the same sphere every time
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int i = 0; i < 20; ++i) {
+    Vector n{unit(random), unit(random), std::abs(unit(random)) + 0.2};
+    const double length = std::hypot(n[0], n[1], n[2]);
+    for (double& c : n) c /= length;
+    const auto at = [&](double distance) {
+      return Vector{35 + distance * n[0], 35 + distance * n[1], -20 + distance * n[2]};
+    };
+    go({35, 35, 2});
+    go(at(10 + kRadius + 4));
+    (void)measure(at(10 + kRadius));
+    const auto hit = measuring().last_hit();
+    ASSERT_TRUE(hit);
+    double squared = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double counts = hit->joints[j] / kCount_mm;
+      EXPECT_NEAR(counts, std::round(counts), 1e-6) << "a whole count, and nothing between two";
+      const double from = hit->joints[j] - std::array{35.0, 35.0, -20.0}[j];
+      squared += from * from;
+    }
+    EXPECT_NEAR(std::sqrt(squared), 10 + kRadius, 2 * kCount_mm) << "no count is rounded by more than one";
+    go(at(10 + kRadius + 4));
+  }
+  EXPECT_EQ(last_code(), MinorCode::None) << machine_.last(Event::Kind::Stopped);
+  EXPECT_EQ(machine_.count(Event::Kind::Hit, 7), 20);
+}
+
 TEST_F(Measuring, StopsAtTheHitAndRetractsAlongTheSearch) {
   ASSERT_TRUE(measuring().set_parameter(MeasureParameter::RetractDistance, 4));
   go({0, 0, -10});

@@ -136,6 +136,42 @@ TEST(DeviceDatabase, GivesWhatTheMechanicsOfAJointDoWrong) {
             "/Joints/0/Backlash is -1; allowed is a number from 0 to 10 (mm or deg)");
 }
 
+TEST(DeviceDatabase, PutsTheInputsOfDrivesBesideThoseOfTheIoInterface) {
+  json file = sound_device();
+  file["DigitalIOInterface"]["Inputs"] = {{"Probe", 3}, {"Door", 62}};
+  file["Actuators"][0].update({{"Inputs", {{"LimitJ0Negative", 0}, {"LimitJ0Positive", 1}}}, {"TouchProbe", -2}});
+  file["Actuators"][2]["Inputs"] = {{"Home", 2}};
+  const sdk::DeviceObject device = read_sound(file);
+  ASSERT_EQ(device.inputs.size(), 5U);
+  ASSERT_EQ(device.drive_inputs.size(), 3U);
+  const auto told = [&](const char* name) { return device.drive_inputs.at(device.inputs.at(name)); };
+  EXPECT_EQ(told("LimitJ0Negative").actuator, 0U);
+  EXPECT_EQ(told("LimitJ0Negative").bit, 0);
+  EXPECT_EQ(told("LimitJ0Positive").bit, 1);
+  EXPECT_EQ(told("Home").actuator, 2U);
+  EXPECT_EQ(device.inputs.at("Door"), 62) << "bits that have a name keep it";
+  EXPECT_EQ(device.actuators[0].probe_edge, TouchProbeEdge::SecondFalling);
+  EXPECT_FALSE(device.actuators[1].probe_edge);
+
+  EXPECT_EQ(problem_with("/Actuators/0/Inputs", {{"Probe", 4}}),
+            "/Actuators/0/Inputs/Probe has the name of another input; allowed is a name of its own");
+  EXPECT_EQ(problem_with("/Actuators/0/TouchProbe", 3), "/Actuators/0/TouchProbe is 3; allowed is one of 1, -1, 2, -2");
+  EXPECT_EQ(problem_with("/Actuators/0/Inputs", {{"Home", 32}}),
+            "/Actuators/0/Inputs/Home is 32; allowed is an integer from 0 to 31");
+}
+
+TEST(DeviceDatabase, RefusesALatchWithoutAProbe) {
+  json file = sound_device();
+  file["DigitalIOInterface"].erase("Inputs");
+  file["Actuators"][1]["TouchProbe"] = 1;
+  const TemporaryFolder folder;
+  const auto refused = read_device_json(folder.write("device.json", file.dump()));
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("/Actuators/1/TouchProbe is given, and no input is named Probe"),
+            std::string::npos)
+      << refused.error().message;
+}
+
 TEST(DeviceDatabase, TakesTheSchemasDefaultsForWhatIsLeftOut) {
   json file = sound_device();
   for (const char* key : {"SpeedCapability", "ToolChanger", "NumberOfTools", "HeldJoints"}) file.erase(key);

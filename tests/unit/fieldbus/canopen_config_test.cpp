@@ -54,6 +54,22 @@ TEST(CanopenConfig, SaysWhichParameterIsWrongAndWhatIsAllowed) {
       refusal({{"node", {1}}, {"nod", {1}}}).starts_with(at + "parameter \"nod\" is not understood; there are "));
 }
 
+TEST(CanopenConfig, HasASecondPdoOfAnswersThatCounts) {
+  const Texts more{{"second_tpdo", "60FD:00/32 60BA:00/32"}};
+  const auto config = read_canopen_config("can0", {{"node", {1}}}, more, 0.001);
+  ASSERT_TRUE(config) << config.error().message;
+  const auto without = read_canopen_config("can0", {{"node", {1}}}, {}, 0.001);
+  EXPECT_EQ(bus_load(*config).answer_bits, bus_load(*without).answer_bits + 135);
+  const std::string at = "CANopenInterface, bus can0: ";
+  EXPECT_EQ(refusal({{"node", {1}}}, {{"second_tpdo", "60FD:00/32 6064:00/32"}}),
+            at + "second_tpdo: 6064h:00 is mapped twice");
+  EXPECT_EQ(refusal({{"node", {1}}}, {{"second_tpdo", "60FD:00/16"}}),
+            at + "second_tpdo: 60FDh:00 has 32 bits, not 16");
+  EXPECT_EQ(refusal({{"node", {1, 1}}, {"axis_in_node", {0, 1}}}, more),
+            at + "node 1 has several axes and a second_tpdo, whose identifier is that of the second axis; map all that "
+                 "is needed in tpdo");
+}
+
 TEST(CanopenConfig, HasDrivesThatHomeTellTheirModeAndWritesHowTheyDo) {
   const auto config = read_canopen_config("can0",
                                           {{"node", {1, 2}},

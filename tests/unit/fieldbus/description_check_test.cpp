@@ -65,8 +65,9 @@ TEST(DeviceDescriptionCheck, NamesTheLineOfWhatCannotBeMapped) {
                 ": 6066h:00 (Following error time out) cannot be mapped into a PDO (PDOMapping)");
   EXPECT_EQ(answer(good, {{"eds", "drive"}, {"tpdo", "6041:00/16 6079:00/32"}}),
             kAt + "axis 0: drive.eds: the device has no 6079h:00, which is mapped by tpdo");
-  EXPECT_EQ(answer(good, {{"eds", "drive"}, {"tpdo", "6041:00/16 60FD:00/16"}}),
-            kAt + "axis 0: " + place(good, "60FD") + ": 60FDh:00 (Digital inputs) has 32 bits, and 16 are mapped");
+  EXPECT_EQ(answer(good, {{"eds", "drive"}, {"tpdo", "6041:00/16 60F4:00/16"}}),
+            kAt + "axis 0: " + place(good, "60F4") +
+                ": 60F4h:00 (Following error actual value) has 32 bits, and 16 are mapped");
   EXPECT_EQ(answer(changed(good, "6071", "AccessType=rw", "AccessType=ro"), {{"eds", "drive"}}),
             kAt + "axis 0: " + place(good, "6071") + ": 6071h:00 (Target torque) cannot be set by a PDO (AccessType)");
   EXPECT_EQ(answer(good, {{"eds", "drive"}, {"tpdo", "6041:00/16 6064:00/32 6041:00/16"}}),

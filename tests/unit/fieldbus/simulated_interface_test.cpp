@@ -146,6 +146,48 @@ TEST_F(SimulatedBus, FeelsThePartThatAnAxisPushesInto) {
   EXPECT_FALSE(feedback_[kZ].sensor_valid);
 }
 
+TEST_F(SimulatedBus, LatchesWhereAnEdgeOfItsTouchProbeCame) {
+  const double turn = 2 * M_PI;
+  EXPECT_TRUE(bus_.latches(kX, TouchProbeEdge::FirstRising));
+  EXPECT_FALSE(bus_.latches(kSpindle, TouchProbeEdge::FirstRising));
+  bus_.touch(kX, TouchProbeEdge::FirstRising, turn);
+  cycle(kX, DriveWish::Off);
+  EXPECT_EQ(feedback_[kX].touch_probe, 0) << "nobody asked for it";
+  commands_[kX].touch_probe = touch_probe::latch_once(TouchProbeEdge::FirstRising);
+  cycle(kX, DriveWish::Off);
+  bus_.touch(kX, TouchProbeEdge::FirstFalling, 3 * turn);
+  bus_.touch(kX, TouchProbeEdge::FirstRising, 1.5 * turn);
+  bus_.touch(kX, TouchProbeEdge::FirstRising, 2 * turn);
+  cycle(kX, DriveWish::Off);
+  EXPECT_EQ(feedback_[kX].touch_probe, 3);
+  EXPECT_EQ(feedback_[kX].latched_counts[0], 131072 * 3 / 2) << "the first edge";
+  commands_[kX].touch_probe = 0;
+  cycle(kX, DriveWish::Off);
+  cycle(kX, DriveWish::Off);
+  EXPECT_EQ(feedback_[kX].touch_probe, 0);
+  commands_[kX].touch_probe = touch_probe::latch_once(TouchProbeEdge::SecondFalling);
+  cycle(kX, DriveWish::Off);
+  bus_.touch(kX, TouchProbeEdge::SecondFalling, -turn);
+  cycle(kX, DriveWish::Off);
+  EXPECT_EQ(feedback_[kX].touch_probe, 0x500);
+  EXPECT_EQ(feedback_[kX].latched_counts[3], -131072);
+}
+
+TEST_F(SimulatedBus, TellsOfItsLimitSwitches) {
+  AxisPlantParameters switched;
+  switched.negative_switch_rad = -1;
+  switched.positive_switch_rad = 2;
+  SimulatedInterface bus({switched}, 0.001);
+  std::vector<DriveCommand> commands(1);
+  std::vector<DriveFeedback> feedback(1);
+  for (const auto& [angle, inputs] : {std::pair{0.0, 0U}, std::pair{-1.01, 1U}, std::pair{2.01, 2U}}) {
+    bus.plant(0).put_at(angle);
+    ASSERT_TRUE(bus.exchange(commands, feedback));
+    EXPECT_EQ(feedback[0].inputs, inputs) << angle;
+  }
+  EXPECT_EQ(bus.input_bits(0), 3U);
+}
+
 TEST_F(SimulatedBus, QuickStopComesToRestUnderAHangingLoad) {
   enable(kZ);
   for (int i = 0; i < 50; ++i) cycle(kZ, DriveWish::Operational, -300);  // falling

@@ -88,8 +88,9 @@ TEST_F(VirtualDriveCommands, SayWhatTheyDoNotUnderstand) {
   EXPECT_EQ(say("200 mute on"), "error: the node: \"200\" is no whole number from 1 to 127");
   EXPECT_EQ(say("1 mute"), "error: \"\" is neither on nor off");
   EXPECT_EQ(say("1 slow x"), "error: \"x\" is no whole number from 0 to 60000");
-  EXPECT_EQ(say("1 dance on"),
-            "error: \"dance\" is not understood; there are mute, slow, pdo, jump, hot, trip, power, status and help");
+  EXPECT_EQ(
+      say("1 dance on"),
+      "error: \"dance\" is not understood; there are mute, slow, pdo, jump, hot, touch, trip, power, status and help");
   EXPECT_EQ(say("1 mute on now"), "error: a command is NODE, what, and a value: 1 mute on");
   EXPECT_THAT(say("help"), HasSubstr("NODE jump COUNTS"));
 }

@@ -116,6 +116,36 @@ TEST_F(MasterOverVirtualDrives, BringsBackOneOfTwoThatShareAnRpdo) {
   stop();
 }
 
+TEST_F(MasterOverVirtualDrives, CarriesInputsAndTouchProbes) {
+  Node& node = wire_.add(1);
+  make({{"node", {1}}}, {{"rpdo", "6040:00/16 6071:00/16 60B8:00/16"},
+                         {"tpdo", "6041:00/16 6064:00/32 60B9:00/16"},
+                         {"second_tpdo", "60FD:00/32 60BA:00/32"},
+                         {"eds", "rmac-vdrive"}});
+  EXPECT_EQ(master_->input_bits(0), 0xFFFFFFFFU);
+  EXPECT_TRUE(master_->latches(0, TouchProbeEdge::FirstRising));
+  EXPECT_FALSE(master_->latches(0, TouchProbeEdge::FirstFalling)) << "60BBh is not mapped";
+  ASSERT_TRUE(start().has_value());
+  commands_[0].mode = DriveMode::CyclicSyncTorque;
+  commands_[0].touch_probe = touch_probe::latch_once(TouchProbeEdge::FirstRising);
+  cycles(20, DriveWish::Operational);
+  EXPECT_EQ(feedback_[0].touch_probe, 1);
+  EXPECT_EQ(feedback_[0].inputs, 0U);
+  commands_[0].target_torque_permille = 200;
+  cycles(100, DriveWish::Operational);
+  const std::int32_t before = feedback_[0].position_counts;
+  node.touch(true);
+  cycles(3, DriveWish::Operational);
+  EXPECT_EQ(feedback_[0].touch_probe, 3);
+  EXPECT_EQ(feedback_[0].inputs, 1U << 16U);
+  EXPECT_GT(feedback_[0].latched_counts[0], before);
+  EXPECT_LT(feedback_[0].latched_counts[0], feedback_[0].position_counts);
+  commands_[0].touch_probe = 0;
+  cycles(3, DriveWish::Operational);
+  EXPECT_EQ(feedback_[0].touch_probe, 0);
+  stop();
+}
+
 TEST_F(MasterOverVirtualDrives, SeesFaultsAndGoesOnAfterThem) {
   Node& hot = wire_.add(1);
   Node& mute = wire_.add(2);

@@ -26,8 +26,13 @@ class SimulatedServoDrive {
   void run_away(std::optional<double> torque_nm) noexcept { runaway_nm_ = torque_nm; }
   /// Moves the encoder's reading without moving the shaft, as a lost reference does.
   void shift_encoder(std::int32_t counts) noexcept { encoder_offset_ += counts; }
+  /// An edge of a touch probe input, that came while the shaft stood at `angle_rad`.
+  void touch(TouchProbeEdge edge, double angle_rad) noexcept;
 
  private:
+  [[nodiscard]] std::int32_t counts_at(double angle_rad) const noexcept;
+  void take_touch_probe(std::uint16_t function) noexcept;
+
   AxisPlantParameters parameters_;
   AxisPlant plant_;
   DriveStateMachine power_;
@@ -35,6 +40,9 @@ class SimulatedServoDrive {
   double load_nm_ = 0;  ///< that a quick stop has found to hang on the shaft
   std::optional<double> runaway_nm_;
   std::optional<std::int32_t> frozen_counts_;
+  std::uint16_t probe_function_ = 0;  ///< 60B8h
+  std::uint16_t probe_status_ = 0;    ///< 60B9h
+  std::array<std::int32_t, 4> latched_counts_{};
 };
 
 /// A spindle drive in profile velocity mode.

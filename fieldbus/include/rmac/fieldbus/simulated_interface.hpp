@@ -41,6 +41,13 @@ class SimulatedInterface : public DigitalControlInterface {
   void stop() noexcept override;
   [[nodiscard]] bool exchange(std::span<const DriveCommand> commands,
                               std::span<DriveFeedback> feedback) noexcept override;
+  [[nodiscard]] std::uint32_t input_bits(std::size_t axis) const noexcept override {
+    constexpr std::uint32_t kLimitSwitches = 3;
+    return is_spindle(axis) ? 0 : kLimitSwitches;
+  }
+  [[nodiscard]] bool latches(std::size_t axis, TouchProbeEdge /*edge*/) const noexcept override {
+    return !is_spindle(axis);
+  }
 
   /// The drive stops answering, and brakes by itself as a drive does that misses its master's heartbeat; and comes
   /// back.
@@ -61,6 +68,10 @@ class SimulatedInterface : public DigitalControlInterface {
   /// The bus itself fails, as on bus-off; and works again.
   void set_bus_failed(bool failed) noexcept { bus_failed_ = failed; }
 
+  /// Between exchanges: an edge at the touch probe of a drive that is no spindle, while its shaft stood at `angle_rad`.
+  void touch(std::size_t axis, TouchProbeEdge edge, double angle_rad) noexcept {
+    std::get_if<SimulatedServoDrive>(&drives_[axis])->touch(edge, angle_rad);
+  }
   /// Between exchanges: where a shaft really is. For an axis that is no spindle; and one that is.
   [[nodiscard]] AxisPlant& plant(std::size_t axis);
   [[nodiscard]] const SpindlePlant& spindle(std::size_t axis) const;

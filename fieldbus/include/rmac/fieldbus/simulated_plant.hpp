@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 namespace rmac::fieldbus {
 
@@ -23,6 +24,9 @@ struct AxisPlantParameters {
   double static_nm = 0.018;      ///< assumed: 1.2 times the sliding friction, before it breaks away
   double gravity_nm = 0;         ///< load that pulls towards negative angles; 0 for a horizontal axis
   double brake_nm = 0.318;       ///< assumed: a holding brake holds the rated torque
+  // Where the limit switches close, which the drive tells as bits 0 and 1 of its inputs: there are none by default.
+  double negative_switch_rad = -std::numeric_limits<double>::infinity();
+  double positive_switch_rad = std::numeric_limits<double>::infinity();
   // Current loop of the drive, as a first-order lag.
   double torque_lag_s = 0.0002;  ///< assumed: 800 Hz of current-loop bandwidth
 

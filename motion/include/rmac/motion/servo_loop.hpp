@@ -66,6 +66,7 @@ struct ServoActuator {
   std::uint8_t homing_turn = 0;  ///< in which its drive looks for home by itself, from 1; 0: it does not
   double max_torque_nm = 0;      ///< measured by the drive; beyond it for three cycles on end the machine stops; 0: not
                                  ///< watched
+  std::optional<TouchProbeEdge> probe_edge{};  ///< at which its drive latches the position of a hit
 };
 
 /// A drive that turns a spindle, in velocity mode.
@@ -73,6 +74,20 @@ struct ServoSpindle {
   std::shared_ptr<ServoBus> bus;
   std::uint32_t axis = 0;
   double max_speed_rpm = 0;
+};
+
+/// A digital input that a drive tells.
+struct ServoDriveInput {
+  std::uint32_t actuator = 0;
+  std::uint32_t drive_bit = 0;  ///< mask, of the drive's inputs
+  std::uint64_t input = 0;      ///< mask, of the machine's
+};
+
+/// A limit switch at one end of a joint's travel. While it is on the joint does not move on towards it.
+struct ServoLimit {
+  std::uint64_t input = 0;  ///< mask; one of `limit_inputs`
+  std::uint32_t joint = 0;
+  int direction = 0;  ///< 1: at the upper end; -1: at the lower one
 };
 
 /// A touch probe among the inputs.
@@ -88,6 +103,9 @@ struct ProbeReport {
   bool touching = false;    ///< from its first contact until it has let go for its settling time
   std::uint32_t hits = 0;   ///< first contacts so far; wraps
   double hit_before_s = 0;  ///< how long before the cycle's measurement the last one was, in the cycle that counts it
+  std::uint32_t latching = 0;                         ///< bit i: the drives of joint i latch their positions at a hit
+  std::uint32_t latched = 0;                          ///< bit i: they have, at the last one; until the probe has let go
+  std::array<double, kMaxJoints> latched_position{};  ///< of those joints
 };
 
 /// How the machine stops on what a category may be chosen for. A stop that keeps power rests on the drives and on the
@@ -112,6 +130,8 @@ struct ServoLoopParts {
   std::uint64_t emergency_stop_inputs = 0;
   /// Inputs that stop all drives as they come on. A reset helps while they are on, so that the axis can be moved off.
   std::uint64_t limit_inputs = 0;
+  std::vector<ServoLimit> limits;             ///< those of known joints and ends
+  std::vector<ServoDriveInput> drive_inputs;  ///< inputs beside those of `io`
   ServoProbe probe{};
   double period_s = 0.001;
   double enable_timeout_s = 5;    ///< to bring every drive to Operation Enabled

@@ -10,6 +10,7 @@
 #include "rmac/motion/force_control.hpp"
 #include "rmac/motion/joint_mechanics.hpp"
 #include "rmac/motion/limits.hpp"
+#include "rmac/motion/ports/digital_control_interface.hpp"
 
 namespace rmac::sdk {
 
@@ -48,8 +49,15 @@ struct Actuator {
   std::string bus;
   std::uint32_t axis = 0;
   DriveScale scale;
-  int homing_turn = 0;                ///< in which its drive looks for home by itself, from 1; 0: it does not
-  double max_measured_torque_nm = 0;  ///< beyond it the machine stops; 0: 3.5 times the rated one
+  int homing_turn = 0;                         ///< in which its drive looks for home by itself, from 1; 0: it does not
+  double max_measured_torque_nm = 0;           ///< beyond it the machine stops; 0: 3.5 times the rated one
+  std::optional<TouchProbeEdge> probe_edge{};  ///< at which the drive latches its position for a hit of the probe
+};
+
+/// An input of a drive (60FDh) among the machine's inputs.
+struct DriveInput {
+  std::size_t actuator = 0;
+  int bit = 0;  ///< of the drive's
 };
 
 struct Spindle {
@@ -117,7 +125,8 @@ struct DeviceObject {
   ModuleChoice digital_control_interface;
   ModuleChoice digital_io_interface;
   std::map<std::string, int> inputs, outputs;  ///< names of I/O bits, e.g. outputs["Coolant"]
-  std::vector<ToolChangeStep> tool_change;     ///< of a tool changer; the spindles stand by then
+  std::map<int, DriveInput> drive_inputs;   ///< bits of `inputs` that drives tell; the I/O interface tells the others
+  std::vector<ToolChangeStep> tool_change;  ///< of a tool changer; the spindles stand by then
 
   /// The mechanism whose joints, drives and tools these are.
   [[nodiscard]] const std::string& machine() const noexcept { return overlay_of.empty() ? name : overlay_of; }

@@ -42,8 +42,9 @@ struct AxisConfig {
   std::uint8_t axis_in_node = 0;
   std::uint8_t rpdo_node = 0;  ///< whose RPDO's identifier it listens to, sharing it by dummies; 0: its own
   DriveMode mode = DriveMode::CyclicSyncTorque;
-  std::vector<MappedObject> setpoints;  ///< the RPDO
-  std::vector<MappedObject> answers;    ///< the TPDO
+  std::vector<MappedObject> setpoints;     ///< the RPDO
+  std::vector<MappedObject> answers;       ///< the TPDO
+  std::vector<MappedObject> more_answers;  ///< the second TPDO; empty: there is none
   double velocity_units_per_rpm = 1;    ///< of 60FFh and 606Ch
   Identity identity;
   std::vector<SdoWrite> setup;
@@ -90,6 +91,10 @@ using FindDescription =
 }
 [[nodiscard]] inline std::uint16_t answer_id(const AxisConfig& axis) noexcept {
   return static_cast<std::uint16_t>(0x180 + 0x100 * axis.axis_in_node + axis.node);
+}
+/// Of the second TPDO, which only a drive of one axis can have: the identifier is that of a second axis.
+[[nodiscard]] inline std::uint16_t more_answers_id(const AxisConfig& axis) noexcept {
+  return static_cast<std::uint16_t>(0x280 + axis.node);
 }
 
 /// Bytes of a PDO.

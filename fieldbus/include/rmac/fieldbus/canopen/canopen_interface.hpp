@@ -43,6 +43,8 @@ class CanopenInterface final : public DigitalControlInterface {
   /// False when a frame of the cycle could not be sent or the bus is off; answers that came are taken all the same.
   [[nodiscard]] bool exchange(std::span<const DriveCommand> commands,
                               std::span<DriveFeedback> feedback) noexcept override;
+  [[nodiscard]] std::uint32_t input_bits(std::size_t axis) const noexcept override;
+  [[nodiscard]] bool latches(std::size_t axis, TouchProbeEdge edge) const noexcept override;
 
   [[nodiscard]] const CanopenCounters& counters() const noexcept;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -11,8 +12,11 @@ namespace rmac {
 /// What a drive makes of a command (CiA 402 modes of operation, object 6060h).
 enum class DriveMode : std::int8_t {
   None = 0,
+  ProfilePosition = 1,
   ProfileVelocity = 3,
+  ProfileTorque = 4,
   Homing = 6,
+  InterpolatedPosition = 7,
   CyclicSyncPosition = 8,
   CyclicSyncVelocity = 9,
   CyclicSyncTorque = 10,
@@ -23,8 +27,9 @@ struct DriveCommand {
   std::uint16_t controlword = 0;            ///< 6040h
   DriveMode mode = DriveMode::None;         ///< 6060h
   std::int16_t target_torque_permille = 0;  ///< 6071h, of the drive's rated torque
-  std::int32_t target_position_counts = 0;  ///< 607Ah
+  std::int32_t target_position_counts = 0;  ///< 607Ah; 60C1h:01 in interpolated position
   std::int32_t target_velocity_rpm = 0;     ///< 60FFh; spindles
+  std::uint16_t touch_probe = 0;            ///< 60B8h
 };
 
 /// Words from one drive.
@@ -38,7 +43,32 @@ struct DriveFeedback {
   bool online = false;               ///< the drive answered in this cycle
   std::int32_t sensor_counts = 0;    ///< a sensor beside the drive, such as one of force
   bool sensor_valid = false;         ///< there is one, and its value is good
+  std::uint32_t inputs = 0;          ///< 60FDh
+  std::uint16_t touch_probe = 0;     ///< 60B9h
+  /// Positions that an edge of a touch probe latched: 60BAh to 60BDh, in the order of `TouchProbeEdge`.
+  std::array<std::int32_t, 4> latched_counts{};
 };
+
+/// An edge of a drive's touch probe input that latches its position.
+enum class TouchProbeEdge : std::uint8_t { FirstRising, FirstFalling, SecondRising, SecondFalling };
+
+/// Bits of 60B8h and 60B9h (CiA 402-2, touch probe) for one edge.
+namespace touch_probe {
+[[nodiscard]] constexpr unsigned shift_of(TouchProbeEdge edge) noexcept {
+  return edge >= TouchProbeEdge::SecondRising ? 8 : 0;
+}
+[[nodiscard]] constexpr bool falls(TouchProbeEdge edge) noexcept {
+  return edge == TouchProbeEdge::FirstFalling || edge == TouchProbeEdge::SecondFalling;
+}
+/// Function: the probe is enabled, its input is the trigger, and the first such edge after this latches.
+[[nodiscard]] constexpr std::uint16_t latch_once(TouchProbeEdge edge) noexcept {
+  return static_cast<std::uint16_t>((falls(edge) ? 0x21U : 0x11U) << shift_of(edge));
+}
+/// Status: the edge has latched a position.
+[[nodiscard]] constexpr std::uint16_t latched(TouchProbeEdge edge) noexcept {
+  return static_cast<std::uint16_t>((falls(edge) ? 0x04U : 0x02U) << shift_of(edge));
+}
+}  // namespace touch_probe
 
 /// Port: the drives of one bus, axis by axis. Lives in the gateway's bus registry and outlives mechanisms, which borrow
 /// axes of it.
@@ -54,6 +84,12 @@ class DigitalControlInterface {
   /// Real-time safe.
   [[nodiscard]] virtual bool exchange(std::span<const DriveCommand> commands,
                                       std::span<DriveFeedback> feedback) noexcept = 0;
+  /// Bits of `DriveFeedback::inputs` that this axis tells: a name for another one is a mistake.
+  [[nodiscard]] virtual std::uint32_t input_bits(std::size_t /*axis*/) const noexcept { return 0; }
+  /// Position counts in one turn of the motor, as its drive says itself; 0 where it does not. Once started.
+  [[nodiscard]] virtual double counts_per_revolution(std::size_t /*axis*/) const noexcept { return 0; }
+  /// Whether this axis can latch its position at `edge`.
+  [[nodiscard]] virtual bool latches(std::size_t /*axis*/, TouchProbeEdge /*edge*/) const noexcept { return false; }
 };
 
 }  // namespace rmac

@@ -1,0 +1,125 @@
+#include "unit/vdrive/node_bench.hpp"
+
+// CiA 402-2: touch probe, profile torque, interpolated position.
+namespace rmac::vdrive::test {
+namespace {
+
+using DriveTouchProbe = NodeBench;
+using DriveModes = NodeBench;
+
+TEST_F(DriveTouchProbe, LatchesTheFirstEdgeAndNoOtherUntilItWasSwitchedOff) {
+  EXPECT_EQ(write(0x60B8, 0, 0x11, 2), 0U);
+  EXPECT_EQ(read(0x60B9), 1) << "enabled";
+  enable(3);
+  EXPECT_EQ(write(0x60FF, 0, 100000, 4), 0U);
+  pass(0.2);
+  node_.touch(true);
+  pass(0.01);
+  EXPECT_EQ(read(0x60B9), 3);
+  EXPECT_EQ(read(0x60FD) & 0x10000, 0x10000);
+  const std::int64_t first = read(0x60BA);
+  EXPECT_NEAR(static_cast<double>(read(0x6064) - first), 1000, 100) << "10 ms ago, at 100 000 counts/s";
+  node_.touch(false);
+  pass(0.01);
+  node_.touch(true);
+  pass(0.01);
+  EXPECT_EQ(read(0x60BA), first);
+  EXPECT_EQ(write(0x60B8, 0, 0, 2), 0U);
+  EXPECT_EQ(read(0x60B9), 0);
+  EXPECT_EQ(write(0x60B8, 0, 0x11, 2), 0U);
+  node_.touch(false);
+  pass(0.01);
+  EXPECT_EQ(read(0x60B9), 1) << "the falling edge was not asked for";
+  node_.touch(true);
+  pass(0.001);
+  EXPECT_EQ(read(0x60B9), 3);
+  EXPECT_GT(read(0x60BA), first);
+}
+
+TEST_F(DriveTouchProbe, LatchesBothEdgesAndAgainWhereAskedTo) {
+  EXPECT_EQ(write(0x60B8, 0, 0x33, 2), 0U);
+  enable(3);
+  EXPECT_EQ(write(0x60FF, 0, 100000, 4), 0U);
+  std::int64_t last = 0;
+  for (int i = 0; i < 3; ++i) {
+    pass(0.1);
+    node_.touch(true);
+    pass(0.1);
+    node_.touch(false);
+    pass(0.1);
+    EXPECT_EQ(read(0x60B9), 7);
+    EXPECT_GT(read(0x60BA), last);
+    EXPECT_GT(read(0x60BB), read(0x60BA));
+    last = read(0x60BB);
+  }
+}
+
+TEST_F(DriveTouchProbe, LatchesTheVeryCountWhereItsContactIs) {
+  EXPECT_EQ(write(0x2000, 6, 20011, 4), 0U);
+  EXPECT_EQ(write(0x2000, 7, 30007, 4), 0U);
+  EXPECT_EQ(write(0x60B8, 0, 0x31, 2), 0U);
+  enable(3);
+  EXPECT_EQ(write(0x60FF, 0, 100000, 4), 0U);
+  pass(0.5);
+  EXPECT_EQ(read(0x60B9), 7);
+  EXPECT_EQ(read(0x60BA), 20011);
+  EXPECT_EQ(read(0x60BB), 30007);
+}
+
+TEST_F(DriveTouchProbe, LatchesAtTheIndexPulse) {
+  EXPECT_EQ(write(0x60B8, 0, 0x1500, 2), 0U);
+  enable(3);
+  EXPECT_EQ(write(0x60FF, 0, 300000, 4), 0U);
+  pass(0.3);
+  EXPECT_EQ(read(0x60B9), 0x300);
+  EXPECT_EQ(read(0x60BC), 30000);
+}
+
+TEST_F(DriveTouchProbe, RefusesSourcesThatItDoesNotHave) {
+  EXPECT_EQ(write(0x60B8, 0, 0x19, 2), 0x06090030U);
+  EXPECT_EQ(write(0x60B8, 0, 0x1900, 2), 0x06090030U);
+}
+
+TEST_F(DriveModes, RampsToATorqueBySlope) {
+  EXPECT_EQ(write(0x6087, 0, 1000, 4), 0U);  // the rated torque in a second
+  EXPECT_EQ(write(0x6071, 0, 100, 2), 0U);
+  enable(4);
+  EXPECT_EQ(status() & 0x400, 0);
+  pass(0.05);
+  EXPECT_NEAR(static_cast<double>(read(0x6074)), 50, 4);
+  pass(0.06);
+  EXPECT_EQ(read(0x6074), 100);
+  EXPECT_EQ(status() & 0x400, 0x400) << "target reached";
+  EXPECT_GT(read(0x606C), 0);
+  control(0x10F);  // halt
+  pass(0.11);
+  EXPECT_EQ(read(0x6074), 0);
+}
+
+TEST_F(DriveModes, InterpolatesBetweenSetpointsWhileItIsTold) {
+  EXPECT_EQ(write(0x60C2, 1, 10, 1), 0U);  // 10 ms
+  enable(7);
+  EXPECT_EQ(status() & 0x1000, 0);
+  EXPECT_EQ(write(0x60C1, 1, 5000, 4), 0U);
+  pass(0.05);
+  EXPECT_EQ(read(0x6064), 0) << "bit 4 is off";
+  control(0x1F);
+  EXPECT_EQ(status() & 0x1000, 0x1000);
+  for (int i = 1; i <= 40; ++i) {
+    EXPECT_EQ(write(0x60C1, 1, 500 * i, 4), 0U);
+    pass(0.005);
+    if (i > 20) {
+      EXPECT_NEAR(static_cast<double>(read(0x6062)), 500 * i - 250, 60) << "half way, after half of the time";
+    }
+    pass(0.005);
+  }
+  pass(0.1);
+  EXPECT_NEAR(static_cast<double>(read(0x6064)), 20000, 100);
+  control(0x0F);
+  EXPECT_EQ(write(0x60C1, 1, 0, 4), 0U);
+  pass(0.05);
+  EXPECT_NEAR(static_cast<double>(read(0x6064)), 20000, 100);
+}
+
+}  // namespace
+}  // namespace rmac::vdrive::test
