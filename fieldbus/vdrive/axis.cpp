@@ -70,31 +70,52 @@ bool Axis::at_positive_limit() const {
   return shaft() >= parameters_->positive_limit;
 }
 
+double Axis::units_per_count() const {
+  const auto ratio = [this](std::uint16_t index) {
+    return static_cast<double>(dictionary_.number(index, 1)) / static_cast<double>(dictionary_.number(index, 2));
+  };
+  return ratio(0x6092) / (ratio(0x608F) * ratio(0x6091));
+}
+double Axis::position_units() const {
+  return (dictionary_.number(0x607E) & 0x80) != 0 ? -units_per_count() : units_per_count();
+}
+double Axis::velocity_units() const {
+  return (dictionary_.number(0x607E) & 0x40) != 0 ? -units_per_count() : units_per_count();
+}
+double Axis::target_position() const {
+  return static_cast<double>(dictionary_.number(0x607A)) / position_units();
+}
+
 Axis::Parameters Axis::parameters() const {
   const auto of = [this](std::uint16_t index, std::uint8_t sub = 0) {
     return static_cast<double>(dictionary_.number(index, sub));
   };
+  const auto counts = [&, units = units_per_count()](std::uint16_t index, std::uint8_t sub = 0) {
+    return of(index, sub) / units;
+  };
   const bool has_limits = of(0x607D, 1) < of(0x607D, 2);
+  const double one_end = of(0x607D, 1) / position_units(), other_end = of(0x607D, 2) / position_units();
+  const double target_velocity = of(0x60FF) / velocity_units() + counts(0x60B1);
   const double most_permille = std::min(of(0x6072), 1000 * mechanics_.peak_torque_nm / mechanics_.rated_torque_nm);
-  return {.velocity = std::min(of(0x6081), of(0x607F)),
-          .acceleration = of(0x6083),
-          .deceleration = of(0x6084),
-          .quick_stop = of(0x6085),
-          .homing_acceleration = of(0x609A),
-          .fast = of(0x6099, 1),
-          .slow = of(0x6099, 2),
-          .top_velocity = of(0x607F),
-          .target_velocity = std::clamp(of(0x60FF) + of(0x60B1), -of(0x607F), of(0x607F)),
+  return {.velocity = std::min(counts(0x6081), counts(0x607F)),
+          .acceleration = counts(0x6083),
+          .deceleration = counts(0x6084),
+          .quick_stop = counts(0x6085),
+          .homing_acceleration = counts(0x609A),
+          .fast = counts(0x6099, 1),
+          .slow = counts(0x6099, 2),
+          .top_velocity = counts(0x607F),
+          .target_velocity = std::clamp(target_velocity, -counts(0x607F), counts(0x607F)),
           .torque_slope = of(0x6087) / 1000 * mechanics_.rated_torque_nm,
           .target_torque = (of(0x6071) + of(0x60B2)) / 1000 * mechanics_.rated_torque_nm,
           .most_torque = most_permille / 1000 * mechanics_.rated_torque_nm,
-          .least_position = has_limits ? of(0x607D, 1) : -2147483648.0,
-          .most_position = has_limits ? of(0x607D, 2) : 2147483647.0,
-          .window = of(0x6067),
+          .least_position = has_limits ? std::min(one_end, other_end) : -2147483648.0,
+          .most_position = has_limits ? std::max(one_end, other_end) : 2147483647.0,
+          .window = counts(0x6067),
           .window_s = of(0x6068) / 1000,
-          .velocity_window = of(0x606D),
+          .velocity_window = counts(0x606D),
           .velocity_window_s = of(0x606E) / 1000,
-          .error_window = of(0x6065),
+          .error_window = of(0x6065) < 4294967295.0 ? counts(0x6065) : 4294967295.0,
           .error_s = of(0x6066) / 1000,
           .negative_limit = of(0x2000, 1),
           .positive_limit = of(0x2000, 2),
@@ -103,8 +124,8 @@ Axis::Parameters Axis::parameters() const {
           .index = of(0x2000, 5),
           .touches_from = of(0x2000, 6),
           .touches_to = of(0x2000, 7),
-          .home_offset = of(0x607C),
-          .slow_velocity = of(0x606F),
+          .home_offset = of(0x607C) / position_units(),
+          .slow_velocity = counts(0x606F),
           .options = {.quick_stop = static_cast<int>(of(0x605A)),
                       .shutdown = static_cast<int>(of(0x605B)),
                       .disable_operation = static_cast<int>(of(0x605C)),
@@ -123,7 +144,7 @@ void Axis::take(ObjectAddress object) {
   }
   const bool cyclic = object.index == 0x607A && mode_ == Mode::CyclicSyncPosition;
   if (cyclic || (object.index == 0x60C1 && mode_ == Mode::InterpolatedPosition)) {
-    setpoint_ = static_cast<double>(dictionary_.number(object.index, object.sub));
+    setpoint_ = static_cast<double>(dictionary_.number(object.index, object.sub)) / position_units();
     // 60C2h: value times ten to the index, in seconds.
     setpoint_left_s_ = static_cast<double>(dictionary_.number(0x60C2, 1)) *
                        std::pow(10.0, static_cast<double>(dictionary_.number(0x60C2, 2)));
@@ -155,7 +176,7 @@ void Axis::take_controlword() {
   // The handshake of a new set-point (CiA 402-2, 10.2): taken on the rise of bit 4, acknowledged until it falls and
   // there is room for another.
   if (rises && (!next_target_ || (word & 0x20) != 0)) {
-    const auto written = static_cast<double>(dictionary_.number(0x607A));
+    const double written = target_position();
     const double from = next_target_ ? *next_target_ : target_;
     const double target = (word & 0x40) != 0 ? from + written : written;
     const bool at_once = (word & 0x20) != 0 || at_target_ || (!next_target_ && demand_.velocity == 0);
@@ -230,7 +251,7 @@ void Axis::step(const Parameters& parameters, double dt) {
 void Axis::watch(const Parameters& parameters, double dt) {
   const double error = std::abs(demand_.position - position());
   const bool follows = power_.operating() && (mode_ == Mode::CyclicSyncPosition || mode_ == Mode::ProfilePosition ||
-                                            mode_ == Mode::InterpolatedPosition);
+                                              mode_ == Mode::InterpolatedPosition);
   constexpr double kOff = 4294967295.0;
   following_error_ = follows && parameters.error_window < kOff && error > parameters.error_window;
   following_error_s_ = following_error_ ? following_error_s_ + dt : 0;
@@ -283,12 +304,13 @@ void Axis::publish() {
   const bool in_cam = shaft_now >= parameters_->cam_from && shaft_now <= parameters_->cam_to;
   dictionary_.set(0x6041, power_.statusword() | mode_bits() | bit(11, limited_) | bit(7, overheated_));
   dictionary_.set(0x6061, static_cast<std::int64_t>(mode_));
-  dictionary_.set(0x6062, std::llround(demand_.position));
-  dictionary_.set(0x6064, std::llround(position()));
-  dictionary_.set(0x606B, std::llround(demand_.velocity));
-  dictionary_.set(0x606C, std::llround(velocity()));
+  const double to_position = position_units(), to_velocity = velocity_units();
+  dictionary_.set(0x6062, std::llround(demand_.position * to_position));
+  dictionary_.set(0x6064, std::llround(position() * to_position));
+  dictionary_.set(0x606B, std::llround(demand_.velocity * to_velocity));
+  dictionary_.set(0x606C, std::llround(velocity() * to_velocity));
   dictionary_.set(0x6077, std::lround(plant_.motor_nm() * 1000 / mechanics_.rated_torque_nm));
-  dictionary_.set(0x60F4, std::llround(demand_.position - position()));
+  dictionary_.set(0x60F4, std::llround((demand_.position - position()) * to_position));
   dictionary_.set(0x6074, std::lround(torque_nm_ * 1000 / mechanics_.rated_torque_nm));
   dictionary_.set(0x60FD, bit(0, at_negative_limit()) | bit(1, at_positive_limit()) | bit(2, in_cam) |
                               bit(16, probes_[0].closed()) | bit(17, probes_[1].closed()));

@@ -54,7 +54,7 @@ class Axis {
   void touch(std::size_t probe, bool closed) noexcept;
 
   [[nodiscard]] PowerStates::State state() const { return power_.state(); }
-  [[nodiscard]] double position() const;  ///< as the drive tells it
+  [[nodiscard]] double position() const;  ///< in counts, as homing and faults have shifted them
   [[nodiscard]] double shaft() const;     ///< where it really is, from where it stood at power on
   [[nodiscard]] double velocity() const;
 
@@ -81,6 +81,11 @@ class Axis {
   [[nodiscard]] bool at_positive_limit() const;
   [[nodiscard]] bool standing() const;
   [[nodiscard]] double counts_per_radian() const;
+  // Units and sense of what the master says and hears (608Fh, 6091h, 6092h, 607Eh).
+  [[nodiscard]] double units_per_count() const;
+  [[nodiscard]] double position_units() const;  ///< units a count; negative where positions are turned round
+  [[nodiscard]] double velocity_units() const;
+  [[nodiscard]] double target_position() const;  ///< 607Ah, in counts
 
   Dictionary& dictionary_;
   fieldbus::AxisPlantParameters mechanics_;

@@ -105,16 +105,19 @@ void Axis::watch_touch_probes(double shaft_before) {
   const double now = shaft();
   const double from = parameters_->touches_from, to = parameters_->touches_to;
   const auto inside = [&](double at) { return at >= from && at <= to; };
+  const auto in_units = [units = position_units()](double at) {
+    return static_cast<std::int32_t>(std::llround(at * units));
+  };
   const bool was_in = inside(shaft_before);
   double edge = now;
   if (was_in != inside(now)) edge = was_in == (now > shaft_before) ? to : from;
-  probes_[0].see(contacts_[0] || inside(now), static_cast<std::int32_t>(std::llround(told(edge))));
-  probes_[1].see(contacts_[1], static_cast<std::int32_t>(std::llround(position())));
+  probes_[0].see(contacts_[0] || inside(now), in_units(told(edge)));
+  probes_[1].see(contacts_[1], in_units(position()));
   const double turn = mechanics_.counts_per_revolution;
   const double pulses = std::floor((now - parameters_->index) / turn);
   if (pulses == std::floor((shaft_before - parameters_->index) / turn)) return;
   const double pulse = parameters_->index + turn * (now > shaft_before ? pulses : pulses + 1);
-  for (TouchProbe& probe : probes_) probe.see_index(static_cast<std::int32_t>(std::llround(told(pulse))));
+  for (TouchProbe& probe : probes_) probe.see_index(in_units(told(pulse)));
 }
 
 void Axis::touch(std::size_t probe, bool closed) noexcept {

@@ -130,6 +130,18 @@ struct FollowingRequest {
 /// a bus exceeds its share. Needs no appliance.
 [[nodiscard]] Result<> show_bus_load(const std::string& device_json, double period_s, bool json);
 
+/// A first motion of one CANopen drive by itself, on a bus that no machine runs.
+struct DriveMove {
+  std::string interface, mode, setup;
+  int node = 0;
+  std::int32_t amount = 0;
+  double seconds = 1;
+  std::int64_t within = 0;
+};
+[[nodiscard]] Result<> move_drive(const DriveMove& move);
+/// Names of the modes that it can be by.
+[[nodiscard]] std::vector<std::string> trial_modes();
+
 /// Lists the CANopen nodes on an interface, and which data sheets of `folder` are theirs; refuses a bus on which a
 /// machine runs. Needs no appliance.
 [[nodiscard]] Result<> scan_bus(const std::string& interface, const std::string& folder, bool json);

@@ -18,6 +18,7 @@ using Command = std::function<Result<>(Connection&)>;
 
 /// The command line as a person typed it; each option is bound to one of these.
 struct Arguments {
+  DriveMove move;
   Endpoint endpoint;
   bool json = false, watch = false, load_virtual = false;
   std::string name, file, folder;
@@ -271,6 +272,24 @@ void add_offline_commands(CLI::App& app, Arguments& arguments, std::function<Res
   };
   add_store("store", "have a node keep its parameters as they are now, without power too (1010h)", false);
   add_store("restore", "have a node take its maker's parameters from its next reset on (1011h)", true);
+  auto* move = bus->add_subcommand(
+      "move", "move one drive by itself, with the motor off the machine; refuses a bus on which a machine runs");
+  move->add_option("INTERFACE", arguments.move.interface, "a CAN interface that is up: can0")->required();
+  move->add_option("NODE", arguments.move.node, "the drive's node id")->required()->check(CLI::Range(1, 126));
+  move->add_option("--mode", arguments.move.mode, "profile or cyclic synchronous position, velocity or torque, or ip")
+      ->required()
+      ->check(CLI::IsMember(trial_modes()));
+  move->add_option("--amount", arguments.move.amount,
+                   "the way in counts; velocity in the drive's units; torque in per mille of the rated one")
+      ->required();
+  move->add_option("--within", arguments.move.within, "counts from where it stands; beyond them it is stopped")
+      ->required()
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{2147483647}));
+  move->add_option("--seconds", arguments.move.seconds, "how long the way, the velocity or the torque lasts")
+      ->check(CLI::Range(0.01, 600.0))
+      ->capture_default_str();
+  move->add_option("--setup", arguments.move.setup, "objects to write first, as in device.json: \"6081:00/32=20000\"");
+  move->callback([&] { command = [&] { return move_drive(arguments.move); }; });
   load->callback([&] { command = [&] { return show_bus_load(arguments.file, arguments.period_s, arguments.json); }; });
 }
 

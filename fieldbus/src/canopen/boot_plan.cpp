@@ -50,9 +50,13 @@ class Plan {
       write(of_axis({0x6007, 0}, offset), 2, static_cast<std::uint32_t>(config_.abort_connection));
     }
     write(of_axis({0x6060, 0}, offset), 1, static_cast<std::uint32_t>(axis.mode));
+    check_polarity(axis, offset);
     interpolation(offset);
     for (const SdoWrite& setup : axis.setup) {
       steps_.push_back({.kind = Kind::Write, .object = of_axis(setup.object, offset), .bytes = setup.bytes});
+    }
+    if (axis.check_scale && axis.mode != DriveMode::ProfileVelocity) {
+      for (const ObjectAddress object : kScaleObjects) read(of_axis(object, offset));
     }
   }
 
@@ -64,12 +68,13 @@ class Plan {
     }
   }
 
-  void read_error() {
-    steps_.push_back({.kind = Kind::ReadError, .object = {0x603F, 0}, .bytes = {}, .optional = true});
-  }
+  void read_error() { read({0x603F, 0}); }
   [[nodiscard]] std::vector<BootStep> steps() && { return std::move(steps_); }
 
  private:
+  void read(ObjectAddress object) {
+    steps_.push_back({.kind = Kind::Read, .object = object, .bytes = {}, .optional = true});
+  }
   void check(ObjectAddress object, std::uint32_t value, std::uint32_t mask, bool optional = false) {
     steps_.push_back(
         {.kind = Kind::Check, .object = object, .bytes = {}, .value = value, .mask = mask, .optional = optional});
@@ -85,6 +90,13 @@ class Plan {
     const std::uint32_t bit = 1U << (static_cast<unsigned>(axis.mode) - 1);
     const std::uint32_t homing = axis.homes ? 1U << (static_cast<unsigned>(DriveMode::Homing) - 1) : 0;
     check(of_axis({0x6502, 0}, offset), bit | homing, bit | homing, true);
+  }
+
+  /// A drive that turns positions round and torques not would run away from its setpoint (607Eh, bit 7).
+  void check_polarity(const AxisConfig& axis, std::uint16_t offset) {
+    constexpr std::uint32_t kPosition = 0x80;
+    if (axis.mode != DriveMode::CyclicSyncTorque || axis.sets_polarity) return;
+    check(of_axis({0x607E, 0}, offset), 0, kPosition, true);
   }
 
   /// PDOs that a drive has by default would load the bus beside what is counted.

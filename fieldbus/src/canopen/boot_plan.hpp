@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "rmac/fieldbus/canopen/canopen_config.hpp"
@@ -9,9 +10,9 @@ namespace rmac::fieldbus::canopen {
 /// One step of bringing up a node: an object is read and compared, or written.
 struct BootStep {
   enum class Kind : std::uint8_t {
-    Check,      ///< (what was read & mask) must be `value`
-    Write,      ///< `bytes`
-    ReadError,  ///< the drive's error code, for whoever asks later
+    Check,  ///< (what was read & mask) must be `value`
+    Write,  ///< `bytes`
+    Read,   ///< for whoever asks later
   };
   Kind kind = Kind::Write;
   ObjectAddress object;
@@ -29,6 +30,10 @@ inline constexpr std::uint16_t kFirstProfileObject = 0x6000;
   const bool shifts = object.index >= kFirstProfileObject && object.index < kFirstProfileObject + kAxisOffset;
   return shifts ? ObjectAddress{static_cast<std::uint16_t>(object.index + offset), object.sub} : object;
 }
+
+/// By which a drive makes units of position of its encoder's counts: encoder resolution, gear ratio, feed constant.
+inline constexpr std::array<ObjectAddress, 6> kScaleObjects{
+    {{0x608F, 1}, {0x608F, 2}, {0x6091, 1}, {0x6091, 2}, {0x6092, 1}, {0x6092, 2}}};
 
 /// All steps for `node`, in order: who it is, what its DCF says, what it can, its PDOs, its mode and setup, its watch
 /// over the master.

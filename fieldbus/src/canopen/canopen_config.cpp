@@ -19,8 +19,13 @@ const char* default_setpoints(DriveMode mode, bool homes) {
   switch (mode) {
     case DriveMode::CyclicSyncTorque:
       return homes ? "6040:00/16 6060:00/8 6071:00/16" : "6040:00/16 6071:00/16";
+    case DriveMode::ProfileTorque:
+      return "6040:00/16 6071:00/16";
     case DriveMode::CyclicSyncPosition:
+    case DriveMode::ProfilePosition:
       return "6040:00/16 607A:00/32";
+    case DriveMode::InterpolatedPosition:
+      return "6040:00/16 60C1:01/32";
     default:
       return "6040:00/16 60FF:00/32";
   }
@@ -31,7 +36,9 @@ const char* default_answers(DriveMode mode, bool homes) {
   return mode == DriveMode::ProfileVelocity ? "6041:00/16 606C:00/32" : "6041:00/16 6064:00/32 6077:00/16";
 }
 
-constexpr std::array kModes{DriveMode::ProfileVelocity, DriveMode::CyclicSyncPosition, DriveMode::CyclicSyncVelocity,
+constexpr std::array kModes{DriveMode::ProfilePosition,    DriveMode::ProfileVelocity,
+                            DriveMode::ProfileTorque,      DriveMode::InterpolatedPosition,
+                            DriveMode::CyclicSyncPosition, DriveMode::CyclicSyncVelocity,
                             DriveMode::CyclicSyncTorque};
 
 Expected<std::vector<MappedObject>> mapping(const Parameters& parameters, const std::string& name, std::size_t axis,
@@ -75,7 +82,7 @@ Expected<std::vector<MappedObject>> contents(const Parameters& parameters, const
   return mapping(parameters, name, axis, otherwise);
 }
 
-SdoWrite homing_write(ObjectAddress object, std::size_t size, double value) {
+SdoWrite setup_write(ObjectAddress object, std::size_t size, double value) {
   SdoWrite write{object, std::vector<std::uint8_t>(size)};
   const std::int64_t whole = std::llround(value);
   for (std::size_t i = 0; i < size; ++i) write.bytes[i] = static_cast<std::uint8_t>(whole >> (8 * i));
@@ -97,11 +104,32 @@ void read_homing(Parameters& parameters, std::size_t axis, AxisConfig& config) {
     parameters.refuse(fmt::format("homing_method is {} for axis {}, which does not move a joint", method, axis));
   }
   config.homes = true;
-  config.setup.push_back(homing_write({0x6098, 0}, 1, method));
-  if (fast != kAbsent) config.setup.push_back(homing_write({0x6099, 1}, 4, fast));
-  if (slow != kAbsent) config.setup.push_back(homing_write({0x6099, 2}, 4, slow));
-  if (acceleration != kAbsent) config.setup.push_back(homing_write({0x609A, 0}, 4, acceleration));
-  if (!std::isnan(offset)) config.setup.push_back(homing_write({0x607C, 0}, 4, offset));
+  config.setup.push_back(setup_write({0x6098, 0}, 1, method));
+  if (fast != kAbsent) config.setup.push_back(setup_write({0x6099, 1}, 4, fast));
+  if (slow != kAbsent) config.setup.push_back(setup_write({0x6099, 2}, 4, slow));
+  if (acceleration != kAbsent) config.setup.push_back(setup_write({0x609A, 0}, 4, acceleration));
+  if (!std::isnan(offset)) config.setup.push_back(setup_write({0x607C, 0}, 4, offset));
+}
+
+/// The sense and the units of a drive's positions (CiA 402-2, 607Eh, 608Fh, 6091h, 6092h). What is not given is left as
+/// it is set in the drive.
+void read_units(Parameters& parameters, std::size_t axis, AxisConfig& config) {
+  struct Unit {
+    const char* name;
+    ObjectAddress object;
+  };
+  constexpr std::array kUnits{Unit{"encoder_counts", {0x608F, 1}},   Unit{"encoder_turns", {0x608F, 2}},
+                              Unit{"gear_motor_turns", {0x6091, 1}}, Unit{"gear_shaft_turns", {0x6091, 2}},
+                              Unit{"feed_counts", {0x6092, 1}},      Unit{"feed_shaft_turns", {0x6092, 2}}};
+  constexpr double kAbsent = -1, kMostPolarity = 255, kMost = 4294967295.0;
+  const double polarity = parameters.number_of_axis("polarity", axis, kAbsent, 0, kMostPolarity);
+  config.sets_polarity = polarity != kAbsent;
+  if (config.sets_polarity) config.setup.push_back(setup_write({0x607E, 0}, 1, polarity));
+  for (const Unit& unit : kUnits) {
+    const double value = parameters.number_of_axis(unit.name, axis, kAbsent, 1, kMost);
+    if (value != kAbsent) config.setup.push_back(setup_write(unit.object, 4, value));
+  }
+  config.check_scale = parameters.number_of_axis("check_scale", axis, 1, 0, 1) != 0;
 }
 
 /// Homing is another mode than the cycle's: both sides have to tell which they mean.
@@ -119,12 +147,12 @@ Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const F
   config.axis_in_node =
       static_cast<std::uint8_t>(parameters.number_of_axis("axis_in_node", axis, 0, 0, kMostAxesPerNode - 1));
   config.rpdo_node = static_cast<std::uint8_t>(parameters.number_of_axis("rpdo_node", axis, config.node, 1, 127));
-  const double mode = parameters.number_of_axis("mode", axis, static_cast<double>(DriveMode::CyclicSyncTorque), 3, 10);
+  const double mode = parameters.number_of_axis("mode", axis, static_cast<double>(DriveMode::CyclicSyncTorque), 1, 10);
   config.mode = static_cast<DriveMode>(mode);
   if (parameters.sound() && std::find(kModes.begin(), kModes.end(), config.mode) == kModes.end()) {
     parameters.refuse(
-        fmt::format("mode is {:g} for axis {}; allowed are 3 (profile velocity), 8, 9 and 10 (cyclic "
-                    "synchronous position, velocity and torque)",
+        fmt::format("mode is {:g} for axis {}; allowed are 1, 3 and 4 (profile position, velocity and torque), 7 "
+                    "(interpolated position), 8, 9 and 10 (cyclic synchronous position, velocity and torque)",
                     mode, axis));
   }
   config.velocity_units_per_rpm =
@@ -138,6 +166,7 @@ Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const F
   config.identity.serial_number =
       static_cast<std::uint32_t>(parameters.number_of_axis("serial_number", axis, 0, 0, kMost));
   read_homing(parameters, axis, config);
+  read_units(parameters, axis, config);
   if (!parameters.sound()) return failure(MinorCode::InvalidParameterValue, parameters.problem());
 
   if (auto read = read_description(parameters, axis, find, config); !read) return tl::unexpected(read.error());

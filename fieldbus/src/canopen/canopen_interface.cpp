@@ -135,6 +135,19 @@ std::uint32_t CanopenInterface::input_bits(std::size_t axis) const noexcept {
   return impl_->axes[axis].tells(0x60FD) ? ~std::uint32_t{0} : 0;
 }
 
+double CanopenInterface::counts_per_revolution(std::size_t axis) const noexcept {
+  const Axis& of = impl_->axes[axis];
+  const auto offset = static_cast<std::uint16_t>(kAxisOffset * of.config.axis_in_node);
+  const NodeBoot& boot = impl_->nodes[of.node].boot;
+  const auto ratio = [&](std::uint16_t index) {
+    const double over = boot.reading(of_axis({index, 1}, offset)), under = boot.reading(of_axis({index, 2}, offset));
+    return over > 0 && under > 0 ? over / under : 0;
+  };
+  // Units of position: counts x feed constant / (encoder resolution x gear ratio) (CiA 402-2, 6.3).
+  const double gear = ratio(0x6091), feed = ratio(0x6092);
+  return feed > 0 ? feed / (gear > 0 ? gear : 1) : ratio(0x608F);
+}
+
 bool CanopenInterface::latches(std::size_t axis, TouchProbeEdge edge) const noexcept {
   const Axis& of = impl_->axes[axis];
   const bool commanded = std::any_of(of.config.setpoints.begin(), of.config.setpoints.end(),

@@ -10,10 +10,54 @@ namespace {
 // A node may miss a command while it starts up; asked too often it would never be ready.
 constexpr std::chrono::seconds kCommandInterval{1};
 
+/// The index of the same object of a node's first axis.
+std::uint16_t object_of_first_axis(std::uint16_t index) noexcept {
+  if (index < kFirstProfileObject) return index;
+  return static_cast<std::uint16_t>(kFirstProfileObject + (index - kFirstProfileObject) % kAxisOffset);
+}
+
+/// Modes of operation by their numbers (CiA 402-2, 6060h).
+constexpr std::array kModeNames{"",
+                                "profile position",
+                                "velocity",
+                                "profile velocity",
+                                "profile torque",
+                                "",
+                                "homing",
+                                "interpolated position",
+                                "cyclic synchronous position",
+                                "cyclic synchronous velocity",
+                                "cyclic synchronous torque"};
+
+/// Of a drive whose supported modes (6502h, bit 0 is mode 1) lack one that it is to run in.
+std::string cannot_do(const BootProblem& problem, const std::string& object) {
+  std::string wanted, there;
+  for (unsigned mode = 1; mode < kModeNames.size(); ++mode) {
+    const std::uint32_t bit = 1U << (mode - 1);
+    if ((problem.expected & ~problem.found & bit) != 0) {
+      wanted += fmt::format("{}{} (mode {})", wanted.empty() ? "" : " and ", kModeNames.at(mode), mode);
+    }
+    if ((problem.found & bit) != 0) there += fmt::format("{}{}", there.empty() ? "" : ", ", mode);
+  }
+  return fmt::format(" cannot do {}: {} says that it does the modes {}", wanted, object,
+                     there.empty() ? "of its maker only" : there);
+}
+
 }  // namespace
 
 NodeBoot::NodeBoot(const CanopenConfig& config, std::uint8_t node)
-    : node_(node), timeout_(config.boot_timeout), steps_(boot_plan(config, node)), sdo_(node) {}
+    : node_(node),
+      timeout_(config.boot_timeout),
+      steps_(boot_plan(config, node)),
+      readings_(steps_.size()),
+      sdo_(node) {}
+
+std::uint32_t NodeBoot::reading(ObjectAddress object) const noexcept {
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    if (steps_[i].kind == BootStep::Kind::Read && steps_[i].object == object) return readings_[i];
+  }
+  return 0;
+}
 
 void NodeBoot::enter(State state, std::chrono::nanoseconds now) noexcept {
   state_ = state;
@@ -71,6 +115,7 @@ void NodeBoot::begin_step(std::chrono::nanoseconds now) noexcept {
 
 bool NodeBoot::passes() noexcept {
   const BootStep& step = steps_[step_];
+  if (step.kind == BootStep::Kind::Read) readings_[step_] = 0;
   if (sdo_.state() == SdoClient::State::Refused) {
     const std::uint32_t code = sdo_.abort_code();
     const bool absent = code == sdo_abort::kNoObject || code == sdo_abort::kNoSubindex;
@@ -82,7 +127,7 @@ bool NodeBoot::passes() noexcept {
     return false;
   }
   const std::uint32_t found = long_at(bytes_.data());
-  if (step.kind == BootStep::Kind::ReadError) error_code_ = static_cast<std::uint16_t>(found);
+  if (step.kind == BootStep::Kind::Read) readings_[step_] = found;
   if (step.kind == BootStep::Kind::Check && (found & step.mask) != step.value) {
     fail(BootProblem::Kind::Different, found);
     return false;
@@ -146,6 +191,13 @@ std::string describe(const BootProblem& problem, std::uint8_t node, const Canope
         constexpr std::array kNames{"", "vendor id", "product code", "revision number", "serial number"};
         return fmt::format("{} is another device than configured: its {} ({}) is {:X}h, not {:X}h", who,
                            kNames.at(problem.object.sub), object, problem.found, problem.expected);
+      }
+      if (object_of_first_axis(problem.object.index) == 0x6502) return who + cannot_do(problem, object);
+      if (object_of_first_axis(problem.object.index) == 0x607E) {
+        return fmt::format(
+            "{} turns its positions round ({} is {:X}h), and follows torques, so it could run away; set polarity to 0 "
+            "and the actuator's Direction to -1, or polarity to {} where the drive turns its torques round, too",
+            who, object, problem.found, problem.found & 0xFFU);
       }
       return fmt::format("{} does not support what is asked of it: {} is {:X}h, and {:X}h is needed in it", who, object,
                          problem.found, problem.expected);

@@ -46,8 +46,10 @@ class NodeBoot {
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] std::uint8_t node() const noexcept { return node_; }
   [[nodiscard]] const BootProblem& problem() const noexcept { return problem_; }
+  /// What was read of an object when it came up; 0 where it has none.
+  [[nodiscard]] std::uint32_t reading(ObjectAddress object) const noexcept;
   /// The drive's error code (603Fh) when it came up.
-  [[nodiscard]] std::uint16_t error_code() const noexcept { return error_code_; }
+  [[nodiscard]] std::uint16_t error_code() const noexcept { return static_cast<std::uint16_t>(reading({0x603F, 0})); }
 
  private:
   void enter(State state, std::chrono::nanoseconds now) noexcept;
@@ -59,6 +61,7 @@ class NodeBoot {
   std::uint8_t node_;
   std::chrono::nanoseconds timeout_;
   std::vector<BootStep> steps_;
+  std::vector<std::uint32_t> readings_;  ///< one a step; 0 where the step reads nothing
   SdoClient sdo_;
   State state_ = State::Idle;
   BootProblem problem_;
@@ -66,7 +69,6 @@ class NodeBoot {
   std::array<std::uint8_t, 8> bytes_{};
   std::chrono::nanoseconds entered_{0};
   std::chrono::nanoseconds next_command_{0};
-  std::uint16_t error_code_ = 0;
 };
 
 /// What went wrong and what to do, for a person.

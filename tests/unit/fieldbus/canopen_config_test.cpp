@@ -33,9 +33,10 @@ TEST(CanopenConfig, SaysWhichParameterIsWrongAndWhatIsAllowed) {
   EXPECT_EQ(refusal({{"node", {127}}}), at + "node 127 is the master's own id; give master_node or that drive another");
   EXPECT_EQ(refusal({{"node", {1, 2, 3}}, {"mode", {8, 9}}}),
             at + "mode has 2 values for 3 axes; it takes one for all axes or one for each");
-  EXPECT_EQ(refusal({{"node", {1}}, {"mode", {7}}}),
-            at + "mode is 7 for axis 0; allowed are 3 (profile velocity), 8, 9 and 10 (cyclic synchronous position, "
-                 "velocity and torque)");
+  EXPECT_EQ(refusal({{"node", {1}}, {"mode", {2}}}),
+            at +
+                "mode is 2 for axis 0; allowed are 1, 3 and 4 (profile position, velocity and torque), 7 (interpolated "
+                "position), 8, 9 and 10 (cyclic synchronous position, velocity and torque)");
   EXPECT_EQ(refusal({{"node", {1}}}, {{"sync", "never"}}),
             at + "sync is \"never\"; allowed are \"first\" and \"last\"");
   EXPECT_EQ(refusal({{"node", {1}}}, {{"rpdo", "6040/16"}}),

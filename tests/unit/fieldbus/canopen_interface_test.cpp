@@ -102,7 +102,50 @@ TEST_F(CanopenBench, RefusesADriveThatCannotDoTheMode) {
   drive.power_on(wire_.now());
   make({{"node", {3}}});
   EXPECT_EQ(start_error(),
-            "node 3 (axis 0) does not support what is asked of it: 6502h:00 is 5h, and 200h is needed in it");
+            "node 3 (axis 0) cannot do cyclic synchronous torque (mode 10): 6502h:00 says that it does the modes 1, "
+            "3");
+}
+
+TEST_F(CanopenBench, RefusesADriveThatTurnsPositionsRoundAndFollowsTorques) {
+  VirtualDrive& drive = wire_.add(3);
+  drive.power_off();
+  drive.set(0x607E, 0, 0x80, 1);
+  drive.power_on(wire_.now());
+  make({{"node", {3}}});
+  EXPECT_EQ(
+      start_error(),
+      "node 3 (axis 0) turns its positions round (607Eh:00 is 80h), and follows torques, so it could run away; "
+      "set polarity to 0 and the actuator's Direction to -1, or polarity to 128 where the drive turns its torques "
+      "round, too");
+  make({{"node", {3}}, {"polarity", {0}}});
+  start();
+  EXPECT_EQ(drive.value(0x607E, 0), 0U);
+}
+
+TEST_F(CanopenBench, ReadsWhatADriveCountsInATurnOfItsMotor) {
+  VirtualDrive& drive = wire_.add(3);
+  const auto counts = [&](const Numbers& numbers, const std::vector<std::pair<std::uint16_t, std::uint32_t>>& ratios) {
+    drive.power_off();
+    for (const int index : {0x608F, 0x6091, 0x6092}) drive.remove(static_cast<std::uint16_t>(index));
+    for (const auto& [index, over] : ratios) {
+      drive.set(index, 1, over, 4);
+      drive.set(index, 2, 1, 4);
+    }
+    drive.power_on(wire_.now());
+    make(numbers);
+    start();
+    const double told = master_->counts_per_revolution(0);
+    master_->stop();
+    return told;
+  };
+  EXPECT_EQ(counts({{"node", {3}}}, {}), 0) << "it does not say";
+  EXPECT_EQ(counts({{"node", {3}}}, {{0x608F, 131072}}), 131072) << "without a feed constant the encoder's";
+  EXPECT_EQ(counts({{"node", {3}}}, {{0x608F, 131072}, {0x6091, 4}, {0x6092, 10000}}), 2500);
+  EXPECT_EQ(counts({{"node", {3}}, {"gear_motor_turns", {5}}, {"gear_shaft_turns", {2}}, {"feed_counts", {10000}}},
+                   {{0x608F, 131072}, {0x6091, 1}, {0x6092, 1}}),
+            4000)
+      << "10000 counts a turn of the shaft, which are 2.5 turns of the motor";
+  EXPECT_EQ(counts({{"node", {3}}, {"check_scale", {0}}}, {{0x608F, 131072}}), 0) << "not asked for";
 }
 
 TEST_F(CanopenBench, SaysWhichObjectADriveRefusedAndWhy) {

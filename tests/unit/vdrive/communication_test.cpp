@@ -63,7 +63,7 @@ TEST_F(NodeCommunication, RefusesWritesByTheirAbortCodes) {
   EXPECT_EQ(write(0x1017, 0, 0, 4), kTooLong);
   EXPECT_EQ(write(0x6007, 0, 4, 2), kTooHigh);
   EXPECT_EQ(write(0x6007, 0, -1, 2), 0x06090032U);
-  EXPECT_EQ(write(0x6060, 0, 7, 1), kBadValue) << "a mode that it cannot do";
+  EXPECT_EQ(write(0x6060, 0, 2, 1), kBadValue) << "a mode that it cannot do";
   EXPECT_EQ(write(0x1016, 1, 127 << 16 | 100, 4), 0U);
   EXPECT_EQ(write(0x1016, 2, 127 << 16 | 50, 4), 0x06040043U) << "the same node watched twice";
 }

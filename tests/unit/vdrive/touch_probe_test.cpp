@@ -1,6 +1,6 @@
 #include "unit/vdrive/node_bench.hpp"
 
-// CiA 402-2: touch probe, profile torque, interpolated position.
+// CiA 402-2: touch probe, profile torque, interpolated position, factors and polarity.
 namespace rmac::vdrive::test {
 namespace {
 
@@ -119,6 +119,39 @@ TEST_F(DriveModes, InterpolatesBetweenSetpointsWhileItIsTold) {
   EXPECT_EQ(write(0x60C1, 1, 0, 4), 0U);
   pass(0.05);
   EXPECT_NEAR(static_cast<double>(read(0x6064)), 20000, 100);
+}
+
+TEST_F(DriveModes, CountsInTheUnitsOfItsFactors) {
+  EXPECT_EQ(read(0x6092, 1), 131072);
+  EXPECT_EQ(write(0x6092, 1, 10000, 4), 0U);  // 10000 a turn of the shaft
+  EXPECT_EQ(write(0x6091, 1, 2, 4), 0U);      // which is two turns of the motor
+  EXPECT_EQ(write(0x6081, 0, 20000, 4), 0U);
+  EXPECT_EQ(write(0x607A, 0, 5000, 4), 0U);
+  enable(1);
+  control(0x1F);
+  pass(0.1);
+  EXPECT_NEAR(static_cast<double>(read(0x606C)), 20000, 1500);
+  pass(1);
+  EXPECT_NEAR(static_cast<double>(read(0x6064)), 5000, 2);
+  EXPECT_NEAR(node_.axis().shaft(), 131072, 60) << "a turn of the motor";
+}
+
+TEST_F(DriveModes, TurnsPositionsAndVelocitiesRoundByPolarity) {
+  EXPECT_EQ(write(0x607E, 0, 0x80, 1), 0U);
+  EXPECT_EQ(write(0x607A, 0, 40000, 4), 0U);
+  enable(1);
+  control(0x1F);
+  pass(1);
+  EXPECT_NEAR(static_cast<double>(read(0x6064)), 40000, 20);
+  EXPECT_NEAR(node_.axis().shaft(), -40000, 20);
+  EXPECT_EQ(write(0x6060, 0, 3, 1), 0U);
+  EXPECT_EQ(write(0x60FF, 0, 100000, 4), 0U);
+  pass(0.2);
+  EXPECT_GT(node_.axis().velocity(), 90000) << "bit 6 is off";
+  EXPECT_EQ(write(0x607E, 0, 0xC0, 1), 0U);
+  pass(0.2);
+  EXPECT_LT(node_.axis().velocity(), -90000);
+  EXPECT_NEAR(static_cast<double>(read(0x606C)), 100000, 2000);
 }
 
 }  // namespace

@@ -45,9 +45,11 @@ struct AxisConfig {
   std::vector<MappedObject> setpoints;     ///< the RPDO
   std::vector<MappedObject> answers;       ///< the TPDO
   std::vector<MappedObject> more_answers;  ///< the second TPDO; empty: there is none
-  double velocity_units_per_rpm = 1;    ///< of 60FFh and 606Ch
+  double velocity_units_per_rpm = 1;       ///< of 60FFh and 606Ch
   Identity identity;
   std::vector<SdoWrite> setup;
+  bool sets_polarity = false;                                 ///< 607Eh is among `setup`
+  bool check_scale = true;                                    ///< its factors are asked of it at boot
   bool homes = false;                                         ///< it can be told to home: mode 6 is asked of it, too
   std::shared_ptr<const eds::DeviceDescription> description;  ///< null where no file was named
 };

@@ -44,6 +44,8 @@ class CanopenInterface final : public DigitalControlInterface {
   [[nodiscard]] bool exchange(std::span<const DriveCommand> commands,
                               std::span<DriveFeedback> feedback) noexcept override;
   [[nodiscard]] std::uint32_t input_bits(std::size_t axis) const noexcept override;
+  /// By its encoder resolution, gear ratio and feed constant.
+  [[nodiscard]] double counts_per_revolution(std::size_t axis) const noexcept override;
   [[nodiscard]] bool latches(std::size_t axis, TouchProbeEdge edge) const noexcept override;
 
   [[nodiscard]] const CanopenCounters& counters() const noexcept;
