@@ -95,6 +95,7 @@ const char* nmt_name(const Node& node) {
 
 std::string status_of(const Node& node) {
   const Axis& axis = node.axis();
+  if (node.id() == LssSlave::kUnconfigured) return "a node without an id";
   return fmt::format("node {} {} {} at {:.0f} counts, {:.0f} counts/s, shaft at {:.0f}", node.id(), nmt_name(node),
                      to_string(axis.state()), axis.position(), axis.velocity(), axis.shaft());
 }

@@ -37,7 +37,7 @@ unsigned dummy_bits(std::uint16_t index) {
 
 }  // namespace
 
-Dictionary::Dictionary(const DeviceDescription& sheet, std::uint8_t node) {
+Dictionary::Dictionary(const DeviceDescription& sheet, std::uint8_t node, std::optional<std::uint32_t> serial_number) {
   for (const auto& [address, entry] : sheet.entries) {
     Slot slot{.type = entry.type,
               .access = entry.access,
@@ -48,6 +48,11 @@ Dictionary::Dictionary(const DeviceDescription& sheet, std::uint8_t node) {
               .bytes = {}};
     if (entry.initial) slot.initial = entry.initial->bytes_for(node);
     if (entry.configured) slot.initial = entry.configured->bytes_for(node);
+    if (serial_number && address == ObjectAddress{0x1018, 4}) {
+      for (unsigned i = 0; i < slot.initial.size(); ++i) {
+        slot.initial[i] = static_cast<std::uint8_t>(*serial_number >> (8 * i));
+      }
+    }
     if (entry.least) slot.least = entry.least->number_for(node, entry.type);
     if (entry.most) slot.most = entry.most->number_for(node, entry.type);
     slot.bytes = slot.initial;

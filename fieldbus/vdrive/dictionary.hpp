@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 
 #include "rmac/fieldbus/eds/device_description.hpp"
 #include "vdrive/sdo_server.hpp"
@@ -16,7 +17,9 @@ class Dictionary final : public SdoObjects {
   using Check = std::function<std::uint32_t(ObjectAddress, std::int64_t)>;
   using Notice = std::function<void(ObjectAddress)>;
 
-  Dictionary(const fieldbus::eds::DeviceDescription& sheet, std::uint8_t node);
+  /// `serial_number` in the place of the file's (1018h:04), where there is one.
+  Dictionary(const fieldbus::eds::DeviceDescription& sheet, std::uint8_t node,
+             std::optional<std::uint32_t> serial_number = std::nullopt);
 
   Check before_write;
   Notice after_write;  ///< by SDO or PDO

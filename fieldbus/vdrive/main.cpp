@@ -27,6 +27,7 @@ volatile std::sig_atomic_t ends = 0;
 struct Arguments {
   std::string interface, sheet, commands;
   std::vector<int> nodes, spindles;
+  std::vector<std::uint32_t> unconfigured;  ///< serial numbers
   std::vector<std::string> at;
   bool quiet = false, print_sheet = false;
 };
@@ -148,6 +149,9 @@ Expected<Nodes> make_nodes(const Arguments& arguments) {
       nodes.push_back(std::make_unique<Node>(*sheet, static_cast<std::uint8_t>(id), plant));
     }
   }
+  for (const std::uint32_t serial : arguments.unconfigured) {
+    nodes.push_back(std::make_unique<Node>(*sheet, LssSlave::kUnconfigured, AxisPlantParameters(), serial));
+  }
   return nodes;
 }
 
@@ -187,6 +191,8 @@ int main(int count, char** words) {
   app.add_option("INTERFACE", arguments.interface, "a CAN interface that is up: vcan0, can0");
   app.add_option("NODE", arguments.nodes, "node ids of servo axes, 1 to 127")->check(CLI::Range(1, 127));
   app.add_option("--spindle", arguments.spindles, "node ids of spindles")->check(CLI::Range(1, 127));
+  app.add_option("--unconfigured", arguments.unconfigured,
+                 "serial numbers of servo axes without a node id, which LSS gives them");
   app.add_option("--eds", arguments.sheet, "another data sheet, or a DCF, with the same objects and other values");
   app.add_option("--at", arguments.at, "\"SECONDS COMMAND\": a command some time after the start")
       ->allow_extra_args(false);
@@ -202,7 +208,8 @@ int main(int count, char** words) {
     fmt::print("{}", sheet_text());
     return 0;
   }
-  if (arguments.interface.empty() || arguments.nodes.size() + arguments.spindles.size() == 0) {
+  if (arguments.interface.empty() ||
+      arguments.nodes.size() + arguments.spindles.size() + arguments.unconfigured.size() == 0) {
     fmt::print(stderr, "rmac-vdrive: an interface and at least one node are needed: rmac-vdrive vcan0 1 2 3\n");
     return kExitUsage;
   }

@@ -28,21 +28,40 @@ std::uint16_t register_bits(std::uint16_t code) {
 
 }  // namespace
 
-Node::Node(const fieldbus::eds::DeviceDescription& sheet, std::uint8_t id, const fieldbus::AxisPlantParameters& plant)
-    : id_(id),
-      dictionary_(sheet, id),
+Node::Node(const fieldbus::eds::DeviceDescription& sheet, std::uint8_t id, const fieldbus::AxisPlantParameters& plant,
+           std::optional<std::uint32_t> serial_number)
+    : sheet_(sheet),
+      id_(id),
+      lss_(id),
+      dictionary_(sheet, id, serial_number),
       pdos_(dictionary_),
-      server_(id, dictionary_),
+      server_(std::in_place, id, dictionary_),
       axis_(dictionary_, plant, [this](std::uint16_t code) { report_error(code); }) {
+  attach();
+}
+
+void Node::attach() {
   dictionary_.before_write = [this](ObjectAddress object, std::int64_t value) { return check_write(object, value); };
   dictionary_.after_write = [this](ObjectAddress object) { take_write(object); };
   dictionary_.before_read = [this](ObjectAddress) { axis_.publish(); };
 }
 
+/// Identifiers follow the node's id, and so do the values that the sheet has for it.
+void Node::renumber(std::uint8_t id) {
+  if (id == id_) return;
+  id_ = id;
+  const auto serial_number = static_cast<std::uint32_t>(dictionary_.number(0x1018, 4));
+  dictionary_ = Dictionary(sheet_, id, serial_number);
+  attach();
+  server_.emplace(id, dictionary_);
+}
+
 void Node::power_on(Time now) {
   powered_ = true;
   now_ = now;
-  reset_application(now);
+  lss_.power_on();
+  renumber(lss_.node());
+  if (has_id()) reset_application(now);
 }
 
 void Node::power_off() {
@@ -65,7 +84,7 @@ void Node::reset_communication(Time now) {
   const bool faulty = axis_.state() == PowerStates::Fault || axis_.state() == PowerStates::FaultReaction;
   error_register_ = faulty ? static_cast<std::uint16_t>(error_register_ & ~kCommunication) : std::uint16_t{0};
   dictionary_.set(0x1001, error_register_);
-  server_.reset();
+  server_->reset();
   pdos_.reload();
   for (std::uint16_t i = 0; i < watched_.size(); ++i) take_write({0x1016, static_cast<std::uint8_t>(i + 1)});
   next_heartbeat_ = now;
@@ -89,17 +108,34 @@ void Node::command(std::uint8_t command, Time now) {
     case 128:
       return enter(NmtState::PreOperational);
     case 129:
+      renumber(lss_.adopt());
       return reset_application(now);
     case 130:
       axis_.abort_connection();
+      renumber(lss_.adopt());
       return reset_communication(now);
     default:
       return;
   }
 }
 
+/// Layer setting is for nodes that are not at work (CiA 305, 3.1).
+void Node::hear_lss(const CanFrame& frame, Time now) {
+  if (nmt_ == NmtState::Operational) return;
+  LssSlave::Identity identity{};
+  for (std::uint8_t part = 0; part < identity.size(); ++part) {
+    identity.at(part) = static_cast<std::uint32_t>(dictionary_.number(0x1018, static_cast<std::uint8_t>(part + 1)));
+  }
+  if (const auto answer = lss_.receive(frame, identity, now)) output_.push_back(*answer);
+  if (!lss_.may_begin()) return;
+  renumber(lss_.adopt());
+  reset_application(now);
+}
+
 void Node::receive(const CanFrame& frame, Time now) {
-  if (!powered_) return;
+  if (!powered_ || lss_.silent(now)) return;
+  if (frame.id == LssSlave::kMasterId) return hear_lss(frame, now);
+  if (!has_id()) return;
   if (frame.id == 0) {
     if (frame.size == 2 && (frame.data[1] == 0 || frame.data[1] == id_)) {
       move(now);
@@ -110,7 +146,7 @@ void Node::receive(const CanFrame& frame, Time now) {
   if (frame.id == 0x600 + id_) {
     if (nmt_ == NmtState::Stopped) return;
     move(now);
-    for (const CanFrame& reply : server_.receive(frame)) output_.push_back(reply);
+    for (const CanFrame& reply : server_->receive(frame)) output_.push_back(reply);
     return;
   }
   if (frame.id > 0x700 && frame.id < 0x780) return hear(frame, now);
@@ -156,7 +192,7 @@ void Node::move(Time now) {
 }
 
 void Node::poll(Time now) {
-  if (!powered_) return;
+  if (!powered_ || !has_id()) return;
   // With SYNC the axis moves anyway; a poll between two of them is not worth the steps.
   constexpr Time kWorthMoving = std::chrono::microseconds(400);
   if (now - now_ >= kWorthMoving) move(now);
@@ -166,7 +202,7 @@ void Node::poll(Time now) {
     pdos_.tell_events(now, output_);
   }
   const Time interval = std::chrono::milliseconds(dictionary_.number(0x1017));
-  if (interval.count() == 0 || now < next_heartbeat_) return;
+  if (interval.count() == 0 || now < next_heartbeat_ || lss_.silent(now)) return;
   send(static_cast<std::uint16_t>(0x700 + id_), {static_cast<std::uint8_t>(nmt_)});
   next_heartbeat_ = std::max(next_heartbeat_ + interval, now);
 }

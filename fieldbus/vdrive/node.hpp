@@ -3,6 +3,7 @@
 #include <deque>
 
 #include "vdrive/axis.hpp"
+#include "vdrive/lss_slave.hpp"
 #include "vdrive/pdo_set.hpp"
 
 namespace rmac::vdrive {
@@ -13,7 +14,9 @@ class Node {
  public:
   enum class NmtState : std::uint8_t { Initialising = 0, Stopped = 4, Operational = 5, PreOperational = 127 };
 
-  Node(const fieldbus::eds::DeviceDescription& sheet, std::uint8_t id, const fieldbus::AxisPlantParameters& plant);
+  /// `id` LssSlave::kUnconfigured: it has none yet, and says nothing until it is given one by LSS.
+  Node(const fieldbus::eds::DeviceDescription& sheet, std::uint8_t id, const fieldbus::AxisPlantParameters& plant,
+       std::optional<std::uint32_t> serial_number = std::nullopt);
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
@@ -35,6 +38,7 @@ class Node {
   void trip(std::uint16_t error_code) { axis_.trip(error_code); }
 
   [[nodiscard]] std::uint8_t id() const { return id_; }
+  [[nodiscard]] const LssSlave& lss() const { return lss_; }
   [[nodiscard]] bool powered() const { return powered_; }
   [[nodiscard]] NmtState nmt_state() const { return nmt_; }
   [[nodiscard]] const Axis& axis() const { return axis_; }
@@ -48,6 +52,10 @@ class Node {
     bool runs = false;
   };
 
+  void attach();
+  void renumber(std::uint8_t id);
+  void hear_lss(const CanFrame& frame, Time now);
+  [[nodiscard]] bool has_id() const { return id_ != LssSlave::kUnconfigured; }
   void command(std::uint8_t command, Time now);
   void reset_application(Time now);
   void reset_communication(Time now);
@@ -62,10 +70,12 @@ class Node {
   void send(std::uint16_t id, const Bytes& data);
   void move(Time now);
 
+  fieldbus::eds::DeviceDescription sheet_;
   std::uint8_t id_;
+  LssSlave lss_;
   Dictionary dictionary_;
   PdoSet pdos_;
-  SdoServer server_;
+  std::optional<SdoServer> server_;
   Axis axis_;
   std::vector<CanFrame> output_;
   std::deque<std::pair<Time, CanFrame>> delayed_;

@@ -142,6 +142,17 @@ struct DriveMove {
 /// Names of the modes that it can be by.
 [[nodiscard]] std::vector<std::string> trial_modes();
 
+/// Layer setting services: the nodes without an id; a node id for one of them, or for the node of an identity (vendor,
+/// product, revision and serial number); a bit rate for all. Each refuses a bus on which a machine runs.
+[[nodiscard]] Result<> lss_scan(const std::string& interface, bool json);
+struct LssAssignment {
+  std::string interface;
+  int node = 0;
+  std::vector<std::uint32_t> identity;  ///< four numbers, or none
+};
+[[nodiscard]] Result<> lss_assign(const LssAssignment& wanted);
+[[nodiscard]] Result<> lss_set_bit_rate(const std::string& interface, std::uint32_t bit_rate, double delay_s);
+
 /// Lists the CANopen nodes on an interface, and which data sheets of `folder` are theirs; refuses a bus on which a
 /// machine runs. Needs no appliance.
 [[nodiscard]] Result<> scan_bus(const std::string& interface, const std::string& folder, bool json);

@@ -15,10 +15,14 @@ namespace {
 using namespace rmac::cli;
 
 using Command = std::function<Result<>(Connection&)>;
+using OfflineCommand = std::function<Result<>()>;
 
 /// The command line as a person typed it; each option is bound to one of these.
 struct Arguments {
   DriveMove move;
+  LssAssignment assignment;
+  std::uint32_t bit_rate = 0;
+  double switch_delay_s = 10;
   Endpoint endpoint;
   bool json = false, watch = false, load_virtual = false;
   std::string name, file, folder;
@@ -212,45 +216,35 @@ void add_commissioning_commands(CLI::App& app, Arguments& arguments, Command& co
 }
 
 /// Commands that need no appliance, or not always.
-void add_offline_commands(CLI::App& app, Arguments& arguments, std::function<Result<>()>& command,
-                          Command& online_command) {
-  auto* simulate = app.add_subcommand(
-      "simulate", "only plan a program, faster than real time: cycle time, limits; needs no appliance");
-  simulate->add_option("FILE", arguments.file, "the .rmac file, - for standard input")->required();
-  simulate->add_option("--machine", arguments.simulate.machine,
-                       "a machine's name, or the path of its device.json; needed unless the program loads one");
-  simulate->add_option("--record", arguments.simulate.record_file, "write every cycle's setpoints to this CSV");
-  simulate
-      ->add_option("--tools", arguments.simulate.tools,
-                   "folder of tool tables (tools/ of an appliance's state folder); only read")
-      ->check(CLI::ExistingDirectory);
-  simulate->add_option("--device-tree", arguments.simulate.device_tree,
-                       "where machines are looked for; the installation's unless given");
-  simulate->add_option("--period", arguments.simulate.period_s, "cycle of the servo loop, s (period_s in rmacd.json)")
-      ->check(CLI::Range(0.0001, 0.1))
+void add_lss_commands(CLI::App& bus, Arguments& arguments, OfflineCommand& command) {
+  auto* lss = bus.add_subcommand("lss", "node ids and bit rates over the bus (CiA 305)");
+  lss->require_subcommand(1);
+  auto* scan = lss->add_subcommand("scan", "list the nodes that have no node id");
+  scan->add_option("INTERFACE", arguments.name, "a CAN interface that is up: can0")->required();
+  scan->callback([&] { command = [&] { return lss_scan(arguments.name, arguments.json); }; });
+  auto* assign = lss->add_subcommand("assign", "give a node an id: the one that has none, or the one of --identity");
+  assign->add_option("INTERFACE", arguments.assignment.interface, "a CAN interface that is up: can0")->required();
+  assign->add_option("NODE", arguments.assignment.node, "its id from now on")->required()->check(CLI::Range(1, 126));
+  assign
+      ->add_option("--identity", arguments.assignment.identity,
+                   "its vendor, product, revision and serial number; hexadecimal ones with 0x")
+      ->expected(4);
+  assign->callback([&] { command = [&] { return lss_assign(arguments.assignment); }; });
+  auto* rate = lss->add_subcommand("bit-rate", "have all nodes take another bit rate, and say what is left to do");
+  rate->add_option("INTERFACE", arguments.name, "a CAN interface that is up: can0")->required();
+  rate->add_option("BITRATE", arguments.bit_rate, "bit/s")->required();
+  rate->add_option("--delay", arguments.switch_delay_s, "s until they change, and again until they speak")
+      ->check(CLI::Range(0.0, 65.0))
       ->capture_default_str();
-  simulate->callback(
-      [&] { command = [&] { return simulate_program(arguments.file, arguments.simulate, arguments.json); }; });
-
-  auto* verify = app.add_subcommand(
-      "verify", "check a machine's modules, each in a process of its own; exit code 1 when it is refused");
-  verify
-      ->add_option("NAME", arguments.name,
-                   "as `rmac machines` lists it; or the path of its folder or its device.json, which needs no "
-                   "appliance")
-      ->required();
-  verify->add_option("--device-tree", arguments.folder,
-                     "with a path: the tree whose shared modules it may name; the installation's unless given");
-  verify->callback([&] {
-    if (is_path(arguments.name)) {
-      command = [&] { return verify_files(arguments.name, arguments.folder, arguments.json); };
-    } else {
-      online_command = [&](auto& to) { return verify_machine(to, arguments.name, arguments.json); };
-    }
+  rate->callback([&] {
+    command = [&] { return lss_set_bit_rate(arguments.name, arguments.bit_rate, arguments.switch_delay_s); };
   });
+}
 
+void add_bus_commands(CLI::App& app, Arguments& arguments, OfflineCommand& command) {
   auto* bus = app.add_subcommand("bus", "commission a fieldbus");
   bus->require_subcommand(1);
+  add_lss_commands(*bus, arguments, command);
   auto* load =
       bus->add_subcommand("load", "the bits that a machine's CAN buses carry at worst; exit code 1 if too many");
   load->add_option("FILE", arguments.file, "the machine's device.json")->required();
@@ -293,6 +287,44 @@ void add_offline_commands(CLI::App& app, Arguments& arguments, std::function<Res
   load->callback([&] { command = [&] { return show_bus_load(arguments.file, arguments.period_s, arguments.json); }; });
 }
 
+void add_offline_commands(CLI::App& app, Arguments& arguments, std::function<Result<>()>& command,
+                          Command& online_command) {
+  auto* simulate = app.add_subcommand(
+      "simulate", "only plan a program, faster than real time: cycle time, limits; needs no appliance");
+  simulate->add_option("FILE", arguments.file, "the .rmac file, - for standard input")->required();
+  simulate->add_option("--machine", arguments.simulate.machine,
+                       "a machine's name, or the path of its device.json; needed unless the program loads one");
+  simulate->add_option("--record", arguments.simulate.record_file, "write every cycle's setpoints to this CSV");
+  simulate
+      ->add_option("--tools", arguments.simulate.tools,
+                   "folder of tool tables (tools/ of an appliance's state folder); only read")
+      ->check(CLI::ExistingDirectory);
+  simulate->add_option("--device-tree", arguments.simulate.device_tree,
+                       "where machines are looked for; the installation's unless given");
+  simulate->add_option("--period", arguments.simulate.period_s, "cycle of the servo loop, s (period_s in rmacd.json)")
+      ->check(CLI::Range(0.0001, 0.1))
+      ->capture_default_str();
+  simulate->callback(
+      [&] { command = [&] { return simulate_program(arguments.file, arguments.simulate, arguments.json); }; });
+
+  auto* verify = app.add_subcommand(
+      "verify", "check a machine's modules, each in a process of its own; exit code 1 when it is refused");
+  verify
+      ->add_option("NAME", arguments.name,
+                   "as `rmac machines` lists it; or the path of its folder or its device.json, which needs no "
+                   "appliance")
+      ->required();
+  verify->add_option("--device-tree", arguments.folder,
+                     "with a path: the tree whose shared modules it may name; the installation's unless given");
+  verify->callback([&] {
+    if (is_path(arguments.name)) {
+      command = [&] { return verify_files(arguments.name, arguments.folder, arguments.json); };
+    } else {
+      online_command = [&](auto& to) { return verify_machine(to, arguments.name, arguments.json); };
+    }
+  });
+}
+
 int report(const Failure& failure) {
   // One line, whatever the message held: scripts read it so.
   auto message = failure.message;
@@ -322,6 +354,7 @@ int run(int count, char** words) {
   add_commissioning_commands(app, arguments, command);
   std::function<Result<>()> offline_command;
   add_offline_commands(app, arguments, offline_command, command);
+  add_bus_commands(app, arguments, offline_command);
   try {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {

@@ -82,6 +82,21 @@ class BusScan(unittest.TestCase):
         self.assertEqual(call("rmac", "bus", "scan").returncode, 2)
         self.assertEqual(call("rmac", "bus", "scan", "can0", "--eds", "/no/such/folder").returncode, 2)
 
+    def test_moves_and_sets_nothing_where_there_is_no_interface(self):
+        for words in (("lss", "scan", "no-such-can"), ("lss", "assign", "no-such-can", 4), ("lss", "bit-rate", "no-such-can", 500000),
+                      ("move", "no-such-can", 1, "--mode", "pp", "--amount", -100, "--within", 200)):
+            with self.subTest(words=words):
+                done = call("rmac", "bus", *words)
+                self.assertEqual(done.returncode, 1)
+                self.assertTrue(done.stderr.startswith("rmac: CAN interface no-such-can: "), done.stderr)
+
+    def test_wants_to_know_what_to_move_and_how_far(self):
+        for words in (("move", "can0", 1), ("move", "can0", 1, "--mode", "walk", "--amount", 1, "--within", 2),
+                      ("move", "can0", 1, "--mode", "pp", "--amount", 1, "--within", 0), ("lss",),
+                      ("lss", "assign", "can0", 127), ("lss", "assign", "can0", 4, "--identity", 1, 2, 3)):
+            with self.subTest(words=words):
+                self.assertEqual(call("rmac", "bus", *words).returncode, 2)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -10,8 +10,8 @@ namespace rmac::vdrive::test {
 /// Nodes at one end of a wire inside the process, the master's port at the other.
 class Wire {
  public:
-  Node& add(std::uint8_t id) {
-    nodes_.push_back(std::make_unique<Node>(sheet(), id, fieldbus::AxisPlantParameters()));
+  Node& add(std::uint8_t id, std::optional<std::uint32_t> serial_number = std::nullopt) {
+    nodes_.push_back(std::make_unique<Node>(sheet(), id, fieldbus::AxisPlantParameters(), serial_number));
     nodes_.back()->power_on(now_);
     return *nodes_.back();
   }
