@@ -126,11 +126,11 @@ class Peer:
     def tell(self, command):
         self.commands.write_text(command + "\n")
 
-    def ask(self, command):
-        """What it printed since."""
+    def ask(self, command, pattern):
+        """Every match of the pattern in what it printed since, once there is one."""
         before = len(self.log.read_text())
         self.tell(command)
-        return wait_for(f"an answer to {command}", lambda: self.log.read_text()[before:])
+        return wait_for(f"an answer to {command}", lambda: re.findall(pattern, self.log.read_text()[before:], re.MULTILINE))
 
 
 class Drives(Peer):
@@ -166,7 +166,7 @@ class Drives(Peer):
 
     def positions_mm(self):
         return {int(node): float(shaft) / COUNTS_PER_REVOLUTION * PITCH_MM
-                for node, shaft in re.findall(r"^node (\d+) .* shaft at (\S+)$", self.ask("all status"), re.MULTILINE)}
+                for node, shaft in self.ask("all status", r"^node (\d+) .* shaft at (\S+)$")}
 
 
 def axes_alone(*nodes, **parameters):
@@ -201,13 +201,18 @@ def milliseconds(times):
     return ", ".join(f"{ms:.1f} ms" for ms in times)
 
 
-def check_emergency_stop(*drives):
+def stop_by_emergency(*drives):
     before = time.monotonic()
     press(True)
     late_ms = [ms for bus in drives for ms in bus.stops_after(before).values()]
     print(f"emergency stop: quick stop after {milliseconds(late_ms)}")
     assert max(late_ms) <= 20, "an edge acts in the cycle after it"
     wait_for("the machine says so", lambda: status()["state"] == "EmergencyStop")
+
+
+def check_emergency_stop(*drives):
+    """Of a machine at rest: it is stopped, and holds again once the stop is released and the machine reset."""
+    stop_by_emergency(*drives)
     operator = client.Client(PORT, "operator")
     operator.call("authority.acquire")
     assert "release it" in operator.refusal("RMAC_CAM.Reset").message

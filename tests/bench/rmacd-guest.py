@@ -66,7 +66,7 @@ def main():
 
     scan = subprocess.run(["rmac", "bus", "scan", "vcan0"], capture_output=True, text=True)
     assert scan.returncode == 1 and "a machine runs on this bus" in scan.stderr, scan
-    assert "node 1 operational operation-enabled" in table.ask("1 status")
+    table.ask("1 status", "^node 1 operational operation-enabled")
     rmac("jog", "--joint", 0, "--distance", -50)  # to -45
     jog = subprocess.Popen(["rmac", "jog", "--joint", "0", "--distance", "90"])
     wait_for("the jog is under way", lambda: status()["joints"][0] > -44)
