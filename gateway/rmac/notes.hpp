@@ -28,7 +28,10 @@ struct StateNote {
   std::string tool_prompt;  ///< what a person is asked to do for it; empty: nothing
   EventNote last_stop;      ///< without a kind: none yet
 
-  [[nodiscard]] bool at_rest() const { return !moving && moves_in_buffer == 0; }
+  /// What a faulted machine has queued stays until its reset, and moves nothing.
+  [[nodiscard]] bool at_rest() const {
+    return !moving && (moves_in_buffer == 0 || state == "Faulted" || state == "EmergencyStop");
+  }
 };
 
 /// One cycle of the `joints` topic. mm, deg; feed mm/s.
