@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 
 #include "planner/laid_path.hpp"
+#include "planner/next_window.hpp"
 #include "planner/published_plan.hpp"
 #include "planner/stop_distance.hpp"
-#include "time_law/law_check.hpp"
 #include "time_law/window.hpp"
 
 namespace rmac {
@@ -15,30 +15,12 @@ namespace {
 
 /// Plans are made this far ahead of the servo loop; more would only be thrown away by a hold or an override.
 constexpr double kHorizon_s = 0.4;
-/// A window holds this many ramps to full speed: few where its law is needed at once, many where motion goes on. The
-/// last ones brake for an end that the next window takes away: they are planned again.
-constexpr double kRampsAtOnce = 5;
-constexpr double kRampsAhead = 16;
-constexpr double kRampsPlannedAgain = 2;
-constexpr double kShortestWindow_mm = 1.0;
 constexpr std::int64_t kLeadAtFirst = 2;
 constexpr std::int64_t kLongestLead = 64;
 /// A window that found no plan is tried again from a later state, after so many cycles.
 constexpr std::int64_t kRetryAfter = 10;
 /// What is held back for the sake of a join is given out so long before the machine would have to brake for its lack.
 constexpr double kRelease_s = 0.05;
-
-/// Bounds of acceleration and jerk in which the weakest joint rules.
-struct Ramp {
-  double acceleration = std::numeric_limits<double>::infinity();
-  double jerk = std::numeric_limits<double>::infinity();
-
-  void limit(const JointLimits& joint) {
-    acceleration = std::min(acceleration, joint.max_acceleration);
-    jerk = std::min(jerk, joint.max_jerk);
-  }
-  [[nodiscard]] double length(double v) const { return ramp_length(v, acceleration, jerk); }
-};
 
 }  // namespace
 
@@ -115,38 +97,9 @@ struct Planner::Impl {
     work_cycles = std::min(work_cycles, static_cast<double>(kLongestLead));
   }
 
-  /// Where a window ends, and whether the path demands rest there.
-  struct WindowEnd {
-    double s = 0;
-    bool hard = false;
-    double planned_again = 0;  ///< length before the end that a following window plans again
-  };
-
-  /// Where the window that begins at s must or may end: at a demanded rest, at RunOne's limit, at the end of the path,
-  /// or where it is long enough, which takes `ramps` ramps to full speed.
   [[nodiscard]] WindowEnd window_end(double s, double ramps) {
-    Ramp weakest;
-    double fastest = 0;
-    for (const JointLimits& joint : model.joints) {
-      weakest.limit(joint);
-      fastest = std::max(fastest, joint.max_speed);
-    }
-    std::optional<WindowEnd> found;
-    double v = 0, reach = kShortestWindow_mm;
-    for (std::size_t i = path().view().find(s + kSamePlace, 1); !found; ++i) {
-      if (i >= path().size() && !path().supply()) break;
-      v = std::max(v, std::min(path().segment(i)->demand().feed_mm_s * std::max(factor, 1.0), 2 * fastest));
-      reach = std::max(reach, ramps * weakest.length(v));
-      const bool enough = path().end(i) - s > 2 * reach;
-      // Whether the path goes on without rest is known once its next segment is there.
-      if (i + 1 == path().size() && !path().rest_after(i) && !enough) path().supply();
-      if (path().rest_after(i) || enough) found = WindowEnd{path().end(i), path().rest_after(i)};
-    }
-    WindowEnd end = found.value_or(WindowEnd{path().end(), false});
-    if (wanted == PathCommand::RunOne && limit_s <= end.s) end = {limit_s, true};
-    if (end.s - s > 1.5 * reach) end = {s + reach, false};
-    end.planned_again = reach / ramps * kRampsPlannedAgain;
-    return end;
+    const auto limit = wanted == PathCommand::RunOne ? std::optional(limit_s) : std::nullopt;
+    return next_window_end(path(), model.joints, s, ramps, factor, limit);
   }
 
   bool publish(std::unique_ptr<Plan> plan, bool stops, const WindowEnd& end, double window_begin) {
@@ -183,30 +136,10 @@ struct Planner::Impl {
     }
   }
 
-  [[nodiscard]] std::optional<std::vector<LawPiece>> law_between(const PathState& from, double s_end, FeedRule rule,
-                                                                 const std::vector<LawPiece>* before) const {
-    return plan_window(path().view(), model.joints, {from, s_end, rule, before, before != nullptr});
-  }
-
-  /// The law of a window from rest, which may end earlier than asked (`end.hard` is then cleared): what is too much for
-  /// one window may be found in parts, and where nothing is found the cautious law creeps over a short part only.
-  [[nodiscard]] std::optional<std::vector<LawPiece>> law_from_rest(double s, WindowEnd& end) const {
-    if (auto law = law_between({s, 0, 0}, end.s, feed(factor), nullptr)) return law;
-    for (const double part : {0.5, 0.4, 0.35, 0.3}) {
-      const double nearer = s + part * (end.s - s);
-      if (nearer - s < 100 * kSamePlace) break;
-      end = {nearer, false, end.planned_again};
-      if (auto law = law_between({s, 0, 0}, end.s, feed(factor), nullptr)) return law;
-    }
-    auto law = cautious_law(path().view(), model.joints, s, end.s, feed(factor));
-    if (check_law(path().view(), model.joints, law, nullptr).worst <= 1.0) return law;
-    return std::nullopt;
-  }
-
   bool start_from_rest(const ServoProgress& progress) {
     const double s = base_end_s();
     WindowEnd end = window_end(s, kRampsAtOnce);
-    auto law = law_from_rest(s, end);
+    auto law = law_from_rest(path().view(), model.joints, s, end, feed(factor));
     if (!law) return no_plan(progress);
     auto plan = std::make_unique<Plan>();
     plan->start_cycle = progress.cycle + lead();
@@ -230,11 +163,11 @@ struct Planner::Impl {
     std::optional<std::vector<LawPiece>> law;
     if (from.v == 0 && from.a == 0) {
       end = window_end(from.s, kRampsAtOnce);
-      law = law_from_rest(from.s, end);
+      law = law_from_rest(path().view(), model.joints, from.s, end, feed(factor));
     } else {
       for (const double ramps : {kRampsAhead, kRampsAtOnce}) {
         end = window_end(from.s, ramps);
-        law = law_between(from, end.s, feed(factor), &p.plan->law);
+        law = plan_window(path().view(), model.joints, {from, end.s, feed(factor), &p.plan->law, true});
         if (law) break;
       }
     }
