@@ -34,6 +34,10 @@ ForceControl force(const sdk::Joint& joint) {
 
 Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loader, double period_s,
                               std::vector<ModuleInUse>& modules) {
+  ServoAxis axis{nullptr,          joint.method,    joint.max_following_error,
+                 joint.max_effort, joint.mechanics, bounds(joint, period_s),
+                 std::nullopt,     force(joint)};
+  if (joint.servo_law.name.empty()) return axis;
   const std::string name = sdk::servo_law_module(joint.servo_law.name);
   auto law = loader.load<ServoLaw>({name, joint.servo_law.numbers, joint.servo_law.texts});
   if (!law) return tl::unexpected(law.error());
@@ -47,9 +51,8 @@ Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loade
                                name, fmt::join(joint.gains, ", "), law->object->gains().size(), wanted));
   }
   modules.push_back({"servo control law of joint " + joint.limits.name, name, law->build_id});
-  return ServoAxis{std::move(law->object), joint.method,    joint.max_following_error,
-                   joint.max_effort,       joint.mechanics, bounds(joint, period_s),
-                   std::nullopt,           force(joint)};
+  axis.law = std::move(law->object);
+  return axis;
 }
 
 Expected<> add_axes(const sdk::DeviceObject& device, const ModuleLoader& loader, ServoLoopParts& parts,
@@ -103,8 +106,11 @@ Expected<> add_drives(const sdk::DeviceObject& device, const ModuleLoader& loade
                                  "not carry that for axis {}; leave TouchProbe out, or have its words carried",
                                  parts.actuators.size(), actuator.bus, actuator.axis));
     }
+    const DriveMode mode = parts.virtual_mode ? DriveMode::CyclicSyncTorque : at->first->interface->mode(at->second);
+    const double gain = parts.virtual_mode ? 0 : actuator.position_gain;
     parts.actuators.push_back({std::move(at->first), at->second, actuator.scale,
-                               static_cast<std::uint8_t>(actuator.homing_turn), max_torque, actuator.probe_edge});
+                               static_cast<std::uint8_t>(actuator.homing_turn), max_torque, mode, gain,
+                               actuator.probe_edge});
   }
   for (const sdk::Spindle& spindle : device.spindles) {
     auto at = place(fmt::format("spindle {}", parts.spindles.size()), spindle.bus, spindle.axis);

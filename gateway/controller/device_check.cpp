@@ -42,8 +42,11 @@ Expected<> check_joint(const sdk::Joint& joint, const std::string& who) {
     return refuse(
         fmt::format("{}: the minimum limit {} must be below the maximum limit {}", who, limits.min, limits.max));
   }
-  if (joint.servo_law.name.empty()) {
-    return refuse(who + ": no servo control law is chosen; use SetMechanismJointServoControlLaw");
+  if (joint.servo_law.name.empty() && !joint.gains.empty()) {
+    return refuse(
+        who +
+        ": it has gains and no servo control law; choose one (SetMechanismJointServoControlLaw), or leave the "
+        "gains out where its drive closes the loop itself");
   }
   for (const double gain : joint.gains) {
     if (auto sound = check_all(who, {{"joint/Gains", gain}}); !sound) return sound;

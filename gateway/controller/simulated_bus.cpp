@@ -22,6 +22,9 @@ struct Bounds {
 
 constexpr Bounds kAxes{1, 64}, kSpindle{-1, 63};
 
+constexpr Bounds kModes{static_cast<double>(DriveMode::CyclicSyncPosition),
+                        static_cast<double>(DriveMode::CyclicSyncTorque)};
+
 /// What one number says of an axis, at the motor shaft.
 struct OfAxis {
   Bounds bounds;
@@ -54,6 +57,8 @@ const std::map<std::string, OfAxis> kOfAxis{
     {"positive_switch_turns",
      {{-1e6, 1e6},
       [](AxisPlantParameters& axis, double value) { axis.positive_switch_rad = 2 * std::numbers::pi * value; }}},
+    {"mode",
+     {kModes, [](AxisPlantParameters& axis, double value) { axis.mode = static_cast<DriveMode>(std::lround(value)); }}},
     {"counts_per_revolution",
      {{1, 4294967296.0}, [](AxisPlantParameters& axis, double value) { axis.counts_per_revolution = value; }}},
 };

@@ -114,12 +114,12 @@ std::vector<sdk::Joint> joints(const Json& list) {
   for (const Json& entry : list) {
     sdk::Joint joint;
     joint.limits = limits(entry);
-    joint.servo_law = module_choice(entry["ServoControlLaw"]);
+    if (const auto law = entry.find("ServoControlLaw"); law != entry.end()) joint.servo_law = module_choice(*law);
     joint.method = named<ControlMethod>(entry, "ControlMethod",
                                         {{"Position", ControlMethod::Position},
                                          {"Velocity", ControlMethod::Velocity},
                                          {"Force", ControlMethod::Force}});
-    joint.gains = entry["Gains"].get<std::vector<double>>();
+    joint.gains = entry.value("Gains", std::vector<double>());
     joint.max_following_error = number(entry, "MaxFollowingError");
     joint.max_effort = number(entry, "MaxEffort");
     joint.mechanics = mechanics(entry);
@@ -144,6 +144,7 @@ std::vector<sdk::Actuator> actuators(const Json& list) {
     actuator.scale.direction = entry.value("Direction", 1);
     actuator.scale.home_counts = entry.value("HomeCounts", std::int32_t{0});
     actuator.homing_turn = entry.value("HomingTurn", 0);
+    actuator.position_gain = number(entry, "PositionGain");
     static const std::map<int, TouchProbeEdge> kEdges{{1, TouchProbeEdge::FirstRising},
                                                       {-1, TouchProbeEdge::FirstFalling},
                                                       {2, TouchProbeEdge::SecondRising},

@@ -46,6 +46,7 @@ std::set<std::string> modules_of(const sdk::DeviceObject& device) {
   for (const auto* joints : {&device.joints, &device.held_joints}) {
     for (const sdk::Joint& joint : *joints) names.insert(sdk::servo_law_module(joint.servo_law.name));
   }
+  names.erase("");  // of a joint whose drive closes the loop itself
   return names;
 }
 

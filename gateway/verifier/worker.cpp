@@ -245,6 +245,7 @@ std::vector<Job> jobs_for(const sdk::DeviceObject& device) {
   jobs.push_back({"actuator map", device.actuator_map.name, check_map_module});
   for (const auto* joints : {&device.joints, &device.held_joints}) {
     for (const sdk::Joint& joint : *joints) {
+      if (joint.servo_law.name.empty()) continue;
       jobs.push_back({"servo control law of joint " + joint.limits.name, law_of(joint).name,
                       [joint](const Task& task, Watch& watch, ModuleReport& report, const Tell& tell) {
                         check_law_module(task, joint, watch, report, tell);

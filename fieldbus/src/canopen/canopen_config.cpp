@@ -22,6 +22,9 @@ const char* default_setpoints(DriveMode mode, bool homes) {
     case DriveMode::ProfileTorque:
       return "6040:00/16 6071:00/16";
     case DriveMode::CyclicSyncPosition:
+      return homes ? "6040:00/16 6060:00/8 607A:00/32" : "6040:00/16 607A:00/32";
+    case DriveMode::CyclicSyncVelocity:
+      return homes ? "6040:00/16 6060:00/8 60FF:00/32" : "6040:00/16 60FF:00/32";
     case DriveMode::ProfilePosition:
       return "6040:00/16 607A:00/32";
     case DriveMode::InterpolatedPosition:
@@ -100,7 +103,8 @@ void read_homing(Parameters& parameters, std::size_t axis, AxisConfig& config) {
   const double acceleration = parameters.number_of_axis("homing_acceleration", axis, kAbsent, 1, kMostUnsigned);
   const double offset = parameters.number_of_axis("home_offset", axis, std::nan(""), -kMostSigned, kMostSigned);
   if (method == 0) return;
-  if (config.mode != DriveMode::CyclicSyncTorque) {
+  if (config.mode != DriveMode::CyclicSyncTorque && config.mode != DriveMode::CyclicSyncPosition &&
+      config.mode != DriveMode::CyclicSyncVelocity) {
     parameters.refuse(fmt::format("homing_method is {} for axis {}, which does not move a joint", method, axis));
   }
   config.homes = true;

@@ -135,6 +135,10 @@ std::uint32_t CanopenInterface::input_bits(std::size_t axis) const noexcept {
   return impl_->axes[axis].tells(0x60FD) ? ~std::uint32_t{0} : 0;
 }
 
+DriveMode CanopenInterface::mode(std::size_t axis) const noexcept {
+  return impl_->axes[axis].config.mode;
+}
+
 double CanopenInterface::counts_per_revolution(std::size_t axis) const noexcept {
   const Axis& of = impl_->axes[axis];
   const auto offset = static_cast<std::uint16_t>(kAxisOffset * of.config.axis_in_node);

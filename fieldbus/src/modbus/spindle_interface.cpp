@@ -38,7 +38,8 @@ struct SpindleInterface::Impl {
                 .error_code = axis.power.error_code(),
                 .velocity_rpm = fresh ? report.rpm : 0,
                 .online = fresh};
-    return axis.station.command(axis.power.operational() ? command.target_velocity_rpm : 0);
+    return axis.station.command(
+        axis.power.operational() ? static_cast<std::int32_t>(std::lround(command.target_velocity_rpm)) : 0);
   }
 };
 

@@ -20,7 +20,11 @@ constexpr std::uint16_t kHeartbeatError = 0x8130;
 SimulatedInterface::SimulatedInterface(const std::vector<SimulatedAxis>& axes, double period_s)
     : injected_(axes.size()), period_s_(period_s) {
   drives_.reserve(axes.size());
-  for (const SimulatedAxis& axis : axes) drives_.push_back(make_drive(axis));
+  for (const SimulatedAxis& axis : axes) {
+    drives_.push_back(make_drive(axis));
+    const auto* servo = std::get_if<AxisPlantParameters>(&axis);
+    modes_.push_back(servo != nullptr ? servo->mode : DriveMode::ProfileVelocity);
+  }
 }
 
 Expected<> SimulatedInterface::start() {

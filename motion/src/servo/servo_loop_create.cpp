@@ -48,7 +48,6 @@ Expected<> check_counts(const ServoLoopParts& parts) {
 Expected<> check_axes(const ServoLoopParts& parts) {
   for (std::size_t j = 0; j < parts.axes.size(); ++j) {
     const ServoAxis& axis = parts.axes[j];
-    if (!axis.law) return failure(MinorCode::InvalidParameter, "servo loop: " + joint_text(j) + " has no servo law");
     if (axis.method == ControlMethod::Velocity) {
       return failure(
           MinorCode::UnsupportedOperation,
@@ -86,6 +85,31 @@ Expected<> check_drive(const ServoBus* bus, std::uint32_t axis, const std::strin
   return {};
 }
 
+/// A gain that closes more than half of the error within a cycle would swing, with the cycle that an answer takes.
+constexpr double kMostOfACycle = 0.5;
+
+Expected<> check_mode(const ServoActuator& actuator, double period_s, const std::string& who) {
+  const bool velocity = actuator.mode == DriveMode::CyclicSyncVelocity;
+  if (!velocity && actuator.mode != DriveMode::CyclicSyncTorque && actuator.mode != DriveMode::CyclicSyncPosition) {
+    return failure(MinorCode::InvalidParameterValue,
+                   "servo loop: " + who + " has a drive in mode " + std::to_string(static_cast<int>(actuator.mode)) +
+                       ", which no joint can be moved in; allowed are 8, 9 and 10 (cyclic synchronous position, "
+                       "velocity and torque)");
+  }
+  if (velocity && !(actuator.position_gain > 0 && actuator.position_gain * period_s <= kMostOfACycle)) {
+    return failure(MinorCode::InvalidParameterValue,
+                   "servo loop: " + who + " has a drive in velocity mode, and a position gain of " +
+                       std::to_string(actuator.position_gain) + " 1/s; it must be above 0 and at most " +
+                       std::to_string(kMostOfACycle / period_s));
+  }
+  if (!velocity && actuator.position_gain != 0) {
+    return failure(MinorCode::InvalidParameterValue,
+                   "servo loop: " + who +
+                       " has a position gain, which only a drive in cyclic synchronous velocity (mode 9) needs");
+  }
+  return {};
+}
+
 Expected<> check_drives(const ServoLoopParts& parts) {
   std::vector<std::pair<const ServoBus*, std::uint32_t>> taken;
   const auto take = [&taken](const ServoBus* bus, std::uint32_t axis, const std::string& who) -> Expected<> {
@@ -108,6 +132,7 @@ Expected<> check_drives(const ServoLoopParts& parts) {
                          " needs counts a revolution and a rated torque above 0, and a direction of "
                          "1 or -1");
     }
+    if (auto ok = check_mode(actuator, parts.period_s, who); !ok) return ok;
   }
   for (std::size_t i = 0; i < parts.spindles.size(); ++i) {
     const std::string who = "spindle " + std::to_string(i);
@@ -155,8 +180,33 @@ Expected<std::unique_ptr<ServoLoop>> ServoLoop::create(ServoLoopParts parts) {
       .and_then([&] { return check_inputs(parts); })
       .and_then([&]() -> Expected<std::unique_ptr<ServoLoop>> {
         auto impl = std::make_unique<Impl>(std::move(parts));
-        return impl->check_homing().map([&] { return std::unique_ptr<ServoLoop>(new ServoLoop(std::move(impl))); });
+        auto sound = impl->check_modes().and_then([&] { return impl->check_homing(); });
+        return sound.map([&] { return std::unique_ptr<ServoLoop>(new ServoLoop(std::move(impl))); });
       });
+}
+
+Expected<> ServoLoop::Impl::check_modes() const {
+  for (std::size_t j = 0; j < axes && !parts.virtual_mode; ++j) {
+    const bool takes_torque = (actuators_of[j] & torque_drives) != 0;
+    const bool follows_itself = (actuators_of[j] & ~torque_drives) != 0;
+    if (takes_torque && follows_itself) {
+      return failure(MinorCode::InvalidParameterValue,
+                     "servo loop: " + joint_text(j) +
+                         " is moved by drives that take a torque and by others that follow a position or velocity "
+                         "themselves; give them all the same kind of mode");
+    }
+    if (takes_torque && !parts.axes[j].law)
+      return failure(MinorCode::InvalidParameter, "servo loop: " + joint_text(j) +
+                                                      " has no servo law, and its drive takes a torque; choose one "
+                                                      "(SetMechanismJointServoControlLaw)");
+    if (!takes_torque && parts.axes[j].law) {
+      return failure(MinorCode::InvalidParameterValue,
+                     "servo loop: " + joint_text(j) +
+                         " has a servo law, but its drive closes the loop itself (cyclic synchronous position or "
+                         "velocity); leave the law out, or put the drive in torque mode");
+    }
+  }
+  return {};
 }
 
 ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
@@ -174,13 +224,14 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
   }
 
   for (const ServoActuator& actuator : parts.actuators) {
+    if (actuator.mode == DriveMode::CyclicSyncTorque) torque_drives |= std::uint32_t{1} << latches.size();
     latches.push_back(actuator.probe_edge ? std::optional(ProbeLatch(*actuator.probe_edge)) : std::nullopt);
   }
 
   std::array<double, kMaxJoints> zero{};
   std::array<bool, kMaxJoints> reached{};
   for (std::size_t j = 0; j < axes; ++j) {
-    parts.axes[j].law->set_effort_limit(parts.axes[j].max_effort);
+    if (parts.axes[j].law) parts.axes[j].law->set_effort_limit(parts.axes[j].max_effort);
     std::array<double, kMaxJoints> unit{};
     std::array<double, kMaxJoints> torques{};
     unit[j] = 1;

@@ -32,6 +32,7 @@ void ServoLoop::cycle(const ServoCommand& command, ServoReport& report) noexcept
     loop.watch_enabling();
     loop.remove_power_at_rest();
     loop.make_torques();
+    loop.aim_shafts();
     loop.write_actuators();
     loop.write_spindles(command);
   }
@@ -151,7 +152,7 @@ bool ServoLoop::Impl::operable(std::size_t joint) const noexcept {
     if ((actuators_of[joint] >> i & 1U) == 0) continue;
     const DriveFeedback& words = feedback(i);
     if (!words.online || drive_state(words.statusword) != DriveState::OperationEnabled) return false;
-    if (words.mode != DriveMode::None && words.mode != DriveMode::CyclicSyncTorque) return false;
+    if (words.mode != DriveMode::None && words.mode != parts.actuators[i].mode) return false;
   }
   return true;
 }
@@ -184,12 +185,14 @@ void ServoLoop::Impl::make_live() noexcept {
 }
 
 double ServoLoop::Impl::resting_effort(std::size_t joint) const noexcept {
+  if (!parts.axes[joint].law) return 0;
   const double wanted = parts.axes[joint].law->resting_effort();
   const double bound = parts.axes[joint].max_effort;
   return std::isfinite(wanted) ? std::clamp(wanted, -bound, bound) : 0;
 }
 
 void ServoLoop::Impl::engage_law(std::size_t joint, double from_effort) noexcept {
+  if (!parts.axes[joint].law) return;
   parts.axes[joint].law->engage(input(joint), from_effort);
   filters[joint].engage(from_effort);
 }
@@ -233,7 +236,7 @@ void ServoLoop::Impl::follow_force(std::size_t joint, double wanted) noexcept {
 void ServoLoop::Impl::run_laws() noexcept {
   for (std::size_t j = 0; j < axes; ++j) {
     effort[j] = 0;
-    if (!powered()) continue;
+    if (!powered() || !parts.axes[j].law) continue;
     if (!live[j]) {
       // A drive acts on the torque beside the word that enables it, before any position of it could be controlled.
       effort[j] = resting_effort(j);
@@ -266,19 +269,57 @@ void ServoLoop::Impl::make_torques() noexcept {
   }
 }
 
+bool ServoLoop::Impl::controlled(std::size_t actuator) const noexcept {
+  for (std::size_t j = 0; j < axes; ++j) {
+    if ((actuators_of[j] >> actuator & 1U) != 0 && !live[j]) return false;
+  }
+  return powered();
+}
+
+void ServoLoop::Impl::aim_shafts() noexcept {
+  const std::array<double, kMaxJoints> before = aim;
+  if (const auto all = (std::uint64_t{1} << actuators) - 1; torque_drives != all) {
+    shafts_for({hold.data(), axes}, {aim.data(), actuators});
+  }
+  for (std::size_t i = 0; i < actuators; ++i) {
+    const bool follows_aim = (torque_drives >> i & 1U) == 0 && controlled(i);
+    if (follows_aim && !std::isfinite(aim[i])) {
+      raise({ServoFault::Kind::NotANumber, ServoFault::Part::Actuator, static_cast<std::uint32_t>(i), aim[i], 0});
+      aimed.fill(false);
+      return;
+    }
+    aim_before[i] = aimed[i] ? before[i] : aim[i];
+    aimed[i] = follows_aim;
+  }
+}
+
 void ServoLoop::Impl::write_actuators() noexcept {
   for (std::size_t i = 0; i < actuators; ++i) {
     const ServoActuator& part = parts.actuators[i];
     DriveCommand& words = part.bus->commands[part.axis];
     const DriveFeedback& from = feedback(i);
     words.controlword = next_controlword(from.statusword, wish(rest[i].reached), resetting, words.controlword);
-    words.mode = DriveMode::CyclicSyncTorque;
+    words.mode = part.mode;
     command_homing(i, words);
     words.target_position_counts = from.position_counts;
     words.target_velocity_rpm = 0;
+    if (aimed[i]) command_aim(i, words);
     words.touch_probe = latches[i] ? latches[i]->function() : std::uint16_t{0};
     const double permille = part.scale.direction * torque[i] * 1000 / part.scale.rated_torque_nm;
     words.target_torque_permille = static_cast<std::int16_t>(std::lround(std::clamp(permille, -32767.0, 32767.0)));
+  }
+}
+
+void ServoLoop::Impl::command_aim(std::size_t actuator, DriveCommand& words) const noexcept {
+  const ServoActuator& part = parts.actuators[actuator];
+  if (part.mode == DriveMode::CyclicSyncPosition) {
+    // The drive's word wraps at 32 bits, as its answer does.
+    const auto wide = static_cast<std::uint64_t>(std::llround(shaft_counts(actuator, aim[actuator])));
+    words.target_position_counts = static_cast<std::int32_t>(static_cast<std::uint32_t>(wide));
+  } else {
+    const double wanted = (aim[actuator] - aim_before[actuator]) / parts.period_s +
+                          part.position_gain * (aim[actuator] - shaft[actuator]);
+    words.target_velocity_rpm = part.scale.direction * wanted * 30 / std::numbers::pi;
   }
 }
 
@@ -290,8 +331,7 @@ void ServoLoop::Impl::write_spindles(const ServoCommand& command) noexcept {
                                          words.controlword);
     words.mode = DriveMode::ProfileVelocity;
     const double wanted = driving() && std::isfinite(command.spindle_rpm[i]) ? command.spindle_rpm[i] : 0;
-    words.target_velocity_rpm =
-        static_cast<std::int32_t>(std::lround(std::clamp(wanted, -part.max_speed_rpm, part.max_speed_rpm)));
+    words.target_velocity_rpm = std::round(std::clamp(wanted, -part.max_speed_rpm, part.max_speed_rpm));
   }
 }
 

@@ -48,10 +48,7 @@ ServoHandover ServoLoop::handover() const noexcept {
   loop.shafts_for(hold_position(), {shaft_set.data(), loop.actuators});
   for (std::size_t i = 0; i < loop.actuators; ++i) {
     const ServoActuator& part = loop.parts.actuators[i];
-    bool live = loop.driving() && !loop.parts.virtual_mode;
-    for (std::size_t j = 0; j < loop.axes; ++j) {
-      if ((loop.actuators_of[j] >> i & 1U) != 0 && !loop.live[j]) live = false;
-    }
+    const bool live = loop.driving() && !loop.parts.virtual_mode && loop.controlled(i);
     result.drives[i] = {
         .bus = part.bus.get(),
         .axis = part.axis,

@@ -26,6 +26,8 @@ struct ServoLoop::Impl {
   [[nodiscard]] bool homing_done(std::size_t actuator) noexcept;
   void command_homing(std::size_t actuator, DriveCommand& words) const noexcept;
   [[nodiscard]] Expected<> check_homing() const;
+  /// A joint has a law exactly where its drives take a torque.
+  [[nodiscard]] Expected<> check_modes() const;
   void read_actuators() noexcept;
   void read_joints() noexcept;
   void change_state(const ServoCommand& command) noexcept;
@@ -49,6 +51,8 @@ struct ServoLoop::Impl {
   void joints_for(std::span<const double> shafts, std::span<double> joint_positions) const noexcept;
   void reflect_setpoints() noexcept;
   void make_torques() noexcept;
+  void aim_shafts() noexcept;
+  void command_aim(std::size_t actuator, DriveCommand& words) const noexcept;
   void write_actuators() noexcept;
   void write_spindles(const ServoCommand& command) noexcept;
   void fill_drives(ServoReport& report) const noexcept;
@@ -72,6 +76,8 @@ struct ServoLoop::Impl {
   [[nodiscard]] DriveWish wish(bool rested) const noexcept;
   [[nodiscard]] bool owns(const ServoBus* bus, std::uint32_t axis) const noexcept;
   [[nodiscard]] bool operable(std::size_t joint) const noexcept;
+  /// All joints that this actuator moves are live.
+  [[nodiscard]] bool controlled(std::size_t actuator) const noexcept;
   [[nodiscard]] bool answering(std::size_t joint) const noexcept;
   [[nodiscard]] double resting_effort(std::size_t joint) const noexcept;
   [[nodiscard]] ServoInput input(std::size_t joint) const noexcept;
@@ -129,6 +135,10 @@ struct ServoLoop::Impl {
   std::array<double, kMaxJoints> hold{};
   std::array<double, kMaxJoints> set_velocity{}, set_acceleration{};
   std::array<double, kMaxJoints> effort{}, torque{};
+  /// Where drives that follow setpoints themselves are sent, and were; `aimed`: they were in the cycle before.
+  std::array<double, kMaxJoints> aim{}, aim_before{};
+  std::array<bool, kMaxJoints> aimed{};
+  std::uint32_t torque_drives = 0;        ///< bit i: actuator i takes a torque
   std::array<bool, kMaxJoints> live{};    ///< the joint's law is at work
   std::array<bool, kMaxJoints> handed{};  ///< live by handover: its law still has to be engaged
 

@@ -270,7 +270,7 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
     for (std::size_t i = path.find(window.begin.s, 1); i <= path.find(window.s_end, -1); ++i)
       v = std::max(v, feed.bound(path.segment(i)));
     for (const JointLimits& joint : joints) v = std::min(v, 2 * joint.max_speed);
-    coarsest = std::min(coarsest, std::max(ramp_length(v, a, j) / 6, 0.01));
+    coarsest = std::min(coarsest, std::max(ramp_length(v, a, j) / 8, 0.01));
   }
   double a = window.begin.s, b = window.s_end;
   std::optional<RestEnd> first, last;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gateway/controller/simulated_bus.hpp"
 #include "rmac/sdk/standard_device_driver.hpp"
 
 namespace rmac::gateway {
@@ -23,11 +24,13 @@ class DeadBus final : public fieldbus::SimulatedInterface {
 
 ControllerOptions TestMachine::with_interfaces(ControllerOptions controller_options) {
   controller_options.control_interfaces["TestBus"] =
-      [this](const std::string&, const sdk::ModuleChoice&,
+      [this](const std::string&, const sdk::ModuleChoice& choice,
              const ModuleLoader&) -> Expected<std::shared_ptr<DigitalControlInterface>> {
     if (!bus_trouble.empty()) return std::make_shared<DeadBus>(bus_trouble);
     if (!bus || bus.use_count() == 1) {
-      bus = std::make_shared<fieldbus::SimulatedInterface>(fieldbus::default_simulated_axes(), 0.001);
+      const auto axes = simulated_axes(choice);
+      if (!axes) return tl::unexpected(axes.error());
+      bus = std::make_shared<fieldbus::SimulatedInterface>(*axes, 0.001);
     }
     return bus;
   };

@@ -8,7 +8,8 @@
 
 namespace rmac::fieldbus {
 
-/// A servo drive in cyclic synchronous torque mode on the plant of one axis. Sees its words and nothing else.
+/// A servo drive on the plant of one axis, in the cyclic synchronous mode that it is commanded: a torque goes to the
+/// current loop; velocities and positions to loops of its own. Sees its words and nothing else.
 class SimulatedServoDrive {
  public:
   explicit SimulatedServoDrive(const AxisPlantParameters& parameters) noexcept;
@@ -31,6 +32,8 @@ class SimulatedServoDrive {
 
  private:
   [[nodiscard]] std::int32_t counts_at(double angle_rad) const noexcept;
+  [[nodiscard]] double angle_of(std::int32_t counts) const noexcept;
+  void run_loops(const DriveCommand& command, double period_s) noexcept;
   void take_touch_probe(std::uint16_t function) noexcept;
 
   AxisPlantParameters parameters_;
@@ -39,6 +42,8 @@ class SimulatedServoDrive {
   std::int64_t encoder_offset_ = 0;
   double load_nm_ = 0;  ///< that a quick stop has found to hang on the shaft
   std::optional<double> runaway_nm_;
+  std::optional<double> aim_rad_;  ///< where the drive was to be at the end of the last cycle in position mode
+  double integral_nm_ = 0;         ///< of its velocity loop
   std::optional<std::int32_t> frozen_counts_;
   std::uint16_t probe_function_ = 0;  ///< 60B8h
   std::uint16_t probe_status_ = 0;    ///< 60B9h

@@ -45,6 +45,7 @@ class SimulatedInterface : public DigitalControlInterface {
     constexpr std::uint32_t kLimitSwitches = 3;
     return is_spindle(axis) ? 0 : kLimitSwitches;
   }
+  [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override { return modes_[axis]; }
   [[nodiscard]] bool latches(std::size_t axis, TouchProbeEdge /*edge*/) const noexcept override {
     return !is_spindle(axis);
   }
@@ -94,6 +95,7 @@ class SimulatedInterface : public DigitalControlInterface {
   void read_sensor(std::size_t axis, DriveFeedback& words) noexcept;
 
   std::vector<Drive> drives_;
+  std::vector<DriveMode> modes_;
   std::vector<Injected> injected_;
   std::atomic<bool> bus_failed_{false};
   std::atomic<bool> sensor_lost_{false};

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "rmac/motion/ports/digital_control_interface.hpp"
+
 namespace rmac::fieldbus {
 
 /// Mechanics and motor of one simulated axis, seen at the motor shaft. The default is a small table axis: a 100 W motor
@@ -28,7 +30,8 @@ struct AxisPlantParameters {
   double negative_switch_rad = -std::numeric_limits<double>::infinity();
   double positive_switch_rad = std::numeric_limits<double>::infinity();
   // Current loop of the drive, as a first-order lag.
-  double torque_lag_s = 0.0002;  ///< assumed: 800 Hz of current-loop bandwidth
+  double torque_lag_s = 0.0002;                  ///< assumed: 800 Hz of current-loop bandwidth
+  DriveMode mode = DriveMode::CyclicSyncTorque;  ///< in which the drive is used; velocity and position are the others
 
   [[nodiscard]] double inertia_kg_m2() const noexcept;
 };

@@ -48,7 +48,8 @@ struct JointBounds {
 
 /// The loop of one joint.
 struct ServoAxis {
-  std::shared_ptr<ServoLaw> law;  ///< gains set; the loop sets the effort limit
+  /// Gains set; the loop sets the effort limit. Null where the joint's drives close its loop themselves.
+  std::shared_ptr<ServoLaw> law;
   ControlMethod method = ControlMethod::Position;
   double max_following_error = 0;  ///< mm or deg
   double max_effort = 0;           ///< N or N·m at the joint
@@ -58,7 +59,7 @@ struct ServoAxis {
   ForceControl force{};  ///< used under `ControlMethod::Force`
 };
 
-/// A drive that moves joints, in torque mode.
+/// A drive that moves joints: in torque mode, behind the law of its joint, or following the joint's setpoint itself.
 struct ServoActuator {
   std::shared_ptr<ServoBus> bus;
   std::uint32_t axis = 0;
@@ -66,6 +67,9 @@ struct ServoActuator {
   std::uint8_t homing_turn = 0;  ///< in which its drive looks for home by itself, from 1; 0: it does not
   double max_torque_nm = 0;      ///< measured by the drive; beyond it for three cycles on end the machine stops; 0: not
                                  ///< watched
+  /// Cyclic synchronous torque, velocity or position.
+  DriveMode mode = DriveMode::CyclicSyncTorque;
+  double position_gain = 0;  ///< 1/s: of the position loop that is closed here over a drive in velocity mode
   std::optional<TouchProbeEdge> probe_edge{};  ///< at which its drive latches the position of a hit
 };
 

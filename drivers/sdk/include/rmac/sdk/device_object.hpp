@@ -32,7 +32,7 @@ struct ForceSensor {
 /// One joint: its limits, its loop, and the drive behind it.
 struct Joint {
   JointLimits limits;
-  ModuleChoice servo_law;
+  ModuleChoice servo_law;  ///< no name: the joint's drives close its loop themselves
   ControlMethod method = ControlMethod::Position;
   std::vector<double> gains;
   double max_following_error = 0;  ///< mm or degrees; beyond it the machine stops
@@ -51,6 +51,7 @@ struct Actuator {
   DriveScale scale;
   int homing_turn = 0;                         ///< in which its drive looks for home by itself, from 1; 0: it does not
   double max_measured_torque_nm = 0;           ///< beyond it the machine stops; 0: 3.5 times the rated one
+  double position_gain = 0;                    ///< 1/s: of the loop over a drive in cyclic synchronous velocity
   std::optional<TouchProbeEdge> probe_edge{};  ///< at which the drive latches its position for a hit of the probe
 };
 

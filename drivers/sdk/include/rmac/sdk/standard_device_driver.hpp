@@ -33,8 +33,7 @@ class StandardDeviceDriver : public DeviceDriver {
   Expected<> configure_servo_controller(const DeviceObject& device, RmacConfig& config) override {
     const auto set_loop = [&](int number, const Joint& joint) {
       return config.set_joint_control_method(number, joint.method)
-          .and_then([&] { return config.set_joint_servo_control_law(number, joint.servo_law); })
-          .and_then([&] { return config.set_joint_servo_control_gains(number, joint.gains); })
+          .and_then([&] { return set_law(config, number, joint); })
           .and_then([&] { return config.set_joint_watch(number, joint.max_following_error, joint.max_effort); })
           .and_then([&] { return config.set_joint_mechanics(number, joint.mechanics); });
     };
@@ -55,6 +54,13 @@ class StandardDeviceDriver : public DeviceDriver {
   }
 
  private:
+  /// None where the joint's drive closes the loop itself.
+  static Expected<> set_law(RmacConfig& config, int number, const Joint& joint) {
+    if (joint.servo_law.name.empty()) return {};
+    return config.set_joint_servo_control_law(number, joint.servo_law).and_then([&] {
+      return config.set_joint_servo_control_gains(number, joint.gains);
+    });
+  }
   static Expected<> set_spindle_speeds(const std::vector<Spindle>& spindles, RmacConfig& config) {
     int number = 0;
     for (const Spindle& spindle : spindles) {

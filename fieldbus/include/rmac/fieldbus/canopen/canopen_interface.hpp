@@ -43,6 +43,7 @@ class CanopenInterface final : public DigitalControlInterface {
   /// False when a frame of the cycle could not be sent or the bus is off; answers that came are taken all the same.
   [[nodiscard]] bool exchange(std::span<const DriveCommand> commands,
                               std::span<DriveFeedback> feedback) noexcept override;
+  [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override;
   [[nodiscard]] std::uint32_t input_bits(std::size_t axis) const noexcept override;
   /// By its encoder resolution, gear ratio and feed constant.
   [[nodiscard]] double counts_per_revolution(std::size_t axis) const noexcept override;

@@ -28,7 +28,7 @@ struct DriveCommand {
   DriveMode mode = DriveMode::None;         ///< 6060h
   std::int16_t target_torque_permille = 0;  ///< 6071h, of the drive's rated torque
   std::int32_t target_position_counts = 0;  ///< 607Ah; 60C1h:01 in interpolated position
-  std::int32_t target_velocity_rpm = 0;     ///< 60FFh; spindles
+  double target_velocity_rpm = 0;           ///< 60FFh
   std::uint16_t touch_probe = 0;            ///< 60B8h
 };
 
@@ -84,6 +84,8 @@ class DigitalControlInterface {
   /// Real-time safe.
   [[nodiscard]] virtual bool exchange(std::span<const DriveCommand> commands,
                                       std::span<DriveFeedback> feedback) noexcept = 0;
+  /// The mode in which this axis follows its setpoints. Before or after start.
+  [[nodiscard]] virtual DriveMode mode(std::size_t /*axis*/) const noexcept { return DriveMode::CyclicSyncTorque; }
   /// Bits of `DriveFeedback::inputs` that this axis tells: a name for another one is a mistake.
   [[nodiscard]] virtual std::uint32_t input_bits(std::size_t /*axis*/) const noexcept { return 0; }
   /// Position counts in one turn of the motor, as its drive says itself; 0 where it does not. Once started.
