@@ -50,6 +50,10 @@ const char* describe(StopCause cause) noexcept {
     case StopCause::ProbeStuck:
       return "the probe still touches after its way back, and the machine was stopped; its queue is empty. Jog it "
              "free, or give a longer retract distance";
+    case StopCause::AirLost:
+      return "the compressed air went off (input Air), and the machine was stopped on its path; see to the air, then "
+             "go "
+             "on with CycleStart";
     case StopCause::Parked:
       return "the program is parked, and the queue is empty; TakeUpProgram queues it again from its place";
     case StopCause::RetraceEnded:
@@ -64,6 +68,8 @@ MinorCode code_of(StopCause cause) noexcept {
       return MinorCode::UnexpectedHit;
     case StopCause::PartNotFound:
       return MinorCode::PartNotFound;
+    case StopCause::AirLost:
+      return MinorCode::NoAir;
     case StopCause::ProbeLost:
     case StopCause::ProbeStuck:
       return MinorCode::ProbeNotArmed;
@@ -83,8 +89,16 @@ Expected<> CycleSequencer::refuse_when_faulted(const char* what) const {
   return {};
 }
 
+Expected<> CycleSequencer::refuse_when_unfit(const char* what, const CycleObservation& seen) const {
+  if (auto fine = refuse_when_faulted(what); !fine) return fine;
+  if (seen.air) return {};
+  return failure(MinorCode::NoAir, fmt::format("{}: the machine has no compressed air (input Air is off); see to it, "
+                                               "then start again",
+                                               what));
+}
+
 Expected<> CycleSequencer::start(sdk::CycleMode mode, const CycleObservation& seen) {
-  if (auto fine = refuse_when_faulted("CycleStart"); !fine) return fine;
+  if (auto fine = refuse_when_unfit("CycleStart", seen); !fine) return fine;
   if (state_ == CycleState::Stopping) {
     return failure(MinorCode::Other, "CycleStart: the machine is still stopping; start it when it has come to rest");
   }
@@ -105,8 +119,8 @@ Expected<> CycleSequencer::start(sdk::CycleMode mode, const CycleObservation& se
   return {};
 }
 
-Expected<> CycleSequencer::check_positioning() const {
-  if (auto fine = refuse_when_faulted("jog"); !fine) return fine;
+Expected<> CycleSequencer::check_positioning(const CycleObservation& seen) const {
+  if (auto fine = refuse_when_unfit("jog", seen); !fine) return fine;
   if (positioning_)
     return failure(MinorCode::Other,
                    "jog: another jog is under way or coming to rest; jog again when the machine stands");
@@ -118,7 +132,7 @@ Expected<> CycleSequencer::check_positioning() const {
 }
 
 Expected<> CycleSequencer::start_positioning(const CycleObservation& seen, std::optional<double> lasts_s) {
-  if (auto fine = check_positioning(); !fine) return fine;
+  if (auto fine = check_positioning(seen); !fine) return fine;
   jog_until_s_.reset();
   if (lasts_s) renew_jog(seen, *lasts_s);
   mode_ = sdk::CycleMode::Manual;
@@ -259,6 +273,10 @@ PathCommand CycleSequencer::wanted(const CycleObservation& seen) noexcept {
 CycleSequencer::Verdict CycleSequencer::step(const CycleObservation& seen) noexcept {
   Verdict verdict;
   if (seen.faulted) fault(seen.emergency_stop ? CycleState::EmergencyStop : CycleState::Faulted);
+  if (state_ == CycleState::Running && !seen.air) {
+    static_cast<void>(stop());
+    stop_cause_ = StopCause::AirLost;
+  }
   if (state_ == CycleState::Running && jog_until_s_ && seen.t_s > *jog_until_s_) {
     static_cast<void>(stop());
     stop_cause_ = StopCause::JogLapsed;

@@ -22,6 +22,7 @@ struct CycleObservation {
   bool spindles_at_speed = true;
   bool follows = false;       ///< joints follow the plan
   std::uint32_t homings = 0;  ///< that the drives have completed
+  bool air = true;            ///< the machine has its compressed air, or needs none
   bool measures = false;      ///< what is left in the queue is a measurement, which counts as one move
 };
 
@@ -37,6 +38,7 @@ enum class StopCause : std::uint8_t {
   HitByHand,
   UnexpectedHit,
   PartNotFound,
+  AirLost,
   Parked,
   ProbeLost,
   ProbeStuck
@@ -54,7 +56,7 @@ class CycleSequencer {
  public:
   [[nodiscard]] Expected<> start(sdk::CycleMode mode, const CycleObservation& seen);
   /// Whether a jog may begin.
-  [[nodiscard]] Expected<> check_positioning() const;
+  [[nodiscard]] Expected<> check_positioning(const CycleObservation& seen) const;
   /// Runs one move that needs no spindle: a jog. With `lasts_s` it stops when it was not renewed for so long.
   [[nodiscard]] Expected<> start_positioning(const CycleObservation& seen, std::optional<double> lasts_s);
   /// A jog that lasts while it is renewed is under way, and not yet told to stop.
@@ -103,6 +105,8 @@ class CycleSequencer {
 
  private:
   [[nodiscard]] Expected<> refuse_when_faulted(const char* what) const;
+  /// Also where the machine lacks what it needs to move.
+  [[nodiscard]] Expected<> refuse_when_unfit(const char* what, const CycleObservation& seen) const;
   [[nodiscard]] PathCommand wanted(const CycleObservation& seen) noexcept;
 
   CycleState state_ = CycleState::Idle;

@@ -46,6 +46,7 @@ CycleObservation MotionSupervisor::observe(const ServoStatus& status) {
   seen.faulted = status.state == ServoState::Faulted;
   seen.emergency_stop = seen.faulted && status.fault.kind == ServoFault::Kind::EmergencyStop;
   seen.spindles_at_speed = spindles_at_speed(status);
+  seen.air = has_air();
   seen.measures = measurement_.pending() && seen.moves_left <= measurement_.steps();
   return seen;
 }
@@ -57,6 +58,14 @@ bool MotionSupervisor::spindles_at_speed(const ServoStatus& status) const {
     if (!(std::abs(status.spindle_rpm[i] - wishes_.spindle_rpm[i]) <= spindles[i].speed_tolerance_rpm)) return false;
   }
   return true;
+}
+
+bool MotionSupervisor::has_air() const {
+  const auto& inputs = mechanism_->device.inputs;
+  const auto air = inputs.find("Air");
+  // No device is behind the inputs in virtual mode.
+  if (air == inputs.end() || mechanism_->virtual_mode()) return true;
+  return (link_.history.latest().inputs & (std::uint64_t{1} << air->second)) != 0;
 }
 
 void MotionSupervisor::settle(const ServoStatus& status) {
@@ -274,7 +283,7 @@ void MotionSupervisor::hand_on(QueuedPath path) {
 }
 
 Expected<> MotionSupervisor::run_positioning(const Move& move, std::optional<double> share) {
-  return command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.check_positioning(); })
+  return command([](CycleSequencer& cycle, const CycleObservation& seen) { return cycle.check_positioning(seen); })
       .and_then([&] { return require_rest("a jog"); })
       .and_then([&] {
         begin_where_it_stands();

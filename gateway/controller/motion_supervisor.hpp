@@ -113,8 +113,8 @@ class MotionSupervisor {
   [[nodiscard]] const std::optional<Parked>& parked() const noexcept { return parked_; }
   /// Queues the way to where the first step goes on, and what is left of that step. From rest, with an empty queue.
   [[nodiscard]] Expected<> add_rest_of(const ProgramStep& first);
-  /// All steps are queued again: holds them, as before.
-  void hold_taken_up();
+  /// All steps are queued again: holds them, as before. False when a stop emptied the queue meanwhile.
+  [[nodiscard]] bool hold_taken_up();
   /// Empties the queue of what was taken up in part.
   void drop_taken_up();
   /// Forgets the parked program, if there is one, and tells why.
@@ -182,6 +182,7 @@ class MotionSupervisor {
   void begin_where_it_stands();
   [[nodiscard]] ServoStatus status() const noexcept { return link_.status.read(); }
   [[nodiscard]] CycleObservation observe(const ServoStatus& status);
+  [[nodiscard]] bool has_air() const;
   [[nodiscard]] bool spindles_at_speed(const ServoStatus& status) const;
   void settle(const ServoStatus& status);
   /// What was taken up goes on: with the spindles and outputs that it had.

@@ -161,14 +161,15 @@ Expected<> MotionSupervisor::add_rest_of(const ProgramStep& first) {
   return {};
 }
 
-void MotionSupervisor::hold_taken_up() {
+bool MotionSupervisor::hold_taken_up() {
   const Turn turn(*this);
-  if (!parked_ || rebase_) return;  // stopped meanwhile: it stays parked
+  if (!parked_ || rebase_ || sequencer_.state() != CycleState::Idle) return false;
   sequencer_.take_up(parked_->mode, observe(status()));
   override_percent_ = parked_->override_percent;
   apply_override();
   resumes_with_ = std::exchange(parked_, std::nullopt);
   settle(status());
+  return true;
 }
 
 void MotionSupervisor::drop_taken_up() {

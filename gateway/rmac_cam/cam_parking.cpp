@@ -32,10 +32,8 @@ Expected<> Cam::take_up_program() {
     return failure(MinorCode::Other, fmt::format("{}: the program was parked on {}{}; load that first", kFunction,
                                                  parked->mechanism, parked->virtual_mode ? " in virtual mode" : ""));
   }
-  if (auto idle =
-          supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.check_positioning(); });
-      !idle) {
-    return failure(idle.error().code, fmt::format("{}: the cycle is under way; stop it first", kFunction));
+  if (supervisor_.state() != CycleState::Idle) {
+    return failure(MinorCode::Other, fmt::format("{}: the cycle is under way; stop it first", kFunction));
   }
   auto queued = supervisor_.require_rest(kFunction).and_then([&] { return supervisor_.prepare_move(); }).and_then([&] {
     return supervisor_.add_rest_of(parked->steps.front());
@@ -46,6 +44,9 @@ Expected<> Cam::take_up_program() {
     const Move* const move = std::get_if<Move>(&what);
     queued = move != nullptr ? supervisor_.add_move(*move).map([](bool) {}) : change_tool(std::get<int>(what));
   }
+  if (queued && !supervisor_.hold_taken_up()) {
+    queued = failure(MinorCode::Other, fmt::format("{}: the machine was stopped meanwhile", kFunction));
+  }
   if (!queued) {
     supervisor_.drop_taken_up();
     (void)keep_mounted();
@@ -53,7 +54,6 @@ Expected<> Cam::take_up_program() {
   }
   settings_ = parked_settings_;
   settings_.max_feedrate_mm_min = std::min(settings_.max_feedrate_mm_min, device_->max_feedrate_mm_min);
-  supervisor_.hold_taken_up();
   return {};
 }
 
