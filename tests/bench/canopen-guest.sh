@@ -12,7 +12,11 @@ code=0
 candump -L vcan0,080:7FF > /run/sync.log & witness=$!
 "$program" --gtest_filter="$steady" || code=1
 kill $witness; wait $witness 2>/dev/null
-"$program" --gtest_filter="-$steady" || code=1  # interfaces go down in these, and candump would end
+/usr/bin/python3 "$(dirname "$0")/canopen_node.py" vcan0 5:1000 7 0x80000001 > /run/node.log & node=$!
+until grep -q up /run/node.log || ! kill -0 $node; do sleep 0.1; done
+"$program" --gtest_filter='CanopenWithPython.*' || code=1
+kill $node; wait $node 2>/dev/null
+"$program" --gtest_filter="-$steady:CanopenWithPython.*" || code=1  # interfaces go down in these, and candump would end
 # SYNC by the kernel's clock: how far the time between two is from 1 ms.
 /usr/bin/python3 - /run/sync.log <<'P' || code=1
 import sys

@@ -58,15 +58,10 @@ class Master {
 
   /// The answer to a request, if one comes in time.
   std::optional<CanFrame> ask(std::initializer_list<std::uint8_t> request, Command answer) {
-    CanFrame frame;
-    while (port_.receive(frame)) {
-    }
-    send(request);
+    send_alone(request);
     const auto end = port_.now() + options_.timeout;
     while (port_.now() < end) {
-      while (port_.receive(frame)) {
-        if (frame.id == kAnswerId && frame.size == 8 && frame.data[0] == answer) return frame;
-      }
+      if (const auto came = received(answer)) return came;
       port_.wait(std::min<std::chrono::nanoseconds>(end - port_.now(), std::chrono::milliseconds(1)));
     }
     return {};
@@ -156,6 +151,20 @@ class Master {
   void reset(std::uint8_t node) { port_.send(nmt_frame(NmtCommand::ResetCommunication, node)); }
 
  private:
+  /// Sends what only an answer that comes from now on can belong to.
+  void send_alone(std::initializer_list<std::uint8_t> request) {
+    CanFrame frame;
+    while (port_.receive(frame)) {
+    }
+    send(request);
+  }
+  std::optional<CanFrame> received(Command answer) {
+    CanFrame frame;
+    while (port_.receive(frame)) {
+      if (frame.id == kAnswerId && frame.size == 8 && frame.data[0] == answer) return frame;
+    }
+    return {};
+  }
   static std::uint8_t byte(std::uint32_t number, unsigned at) { return static_cast<std::uint8_t>(number >> (8 * at)); }
 
   void send(std::initializer_list<std::uint8_t> bytes) {
@@ -166,10 +175,16 @@ class Master {
   void tell(Command command, std::uint32_t number) {
     send({command, byte(number, 0), byte(number, 1), byte(number, 2), byte(number, 3)});
   }
+  /// Whether any node fits. Many may answer, each when it is ready: all of the time has to pass, or a late one's answer
+  /// would be taken for that to the next step.
   bool scan_step(std::uint32_t number, std::uint8_t bit, std::uint8_t part, std::uint8_t next) {
-    return ask({kFastScan, byte(number, 0), byte(number, 1), byte(number, 2), byte(number, 3), bit, part, next},
-               kIdentified)
-        .has_value();
+    send_alone({kFastScan, byte(number, 0), byte(number, 1), byte(number, 2), byte(number, 3), bit, part, next});
+    bool fits = false;
+    for (const auto end = port_.now() + options_.timeout; port_.now() < end;) {
+      port_.wait(std::min<std::chrono::nanoseconds>(end - port_.now(), std::chrono::milliseconds(1)));
+      while (received(kIdentified)) fits = true;
+    }
+    return fits;
   }
 
   CanPort& port_;

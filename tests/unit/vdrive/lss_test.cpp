@@ -3,6 +3,7 @@
 #include <random>
 
 #include "rmac/fieldbus/canopen/bus_scan.hpp"
+#include "unit/fieldbus/noisy_port.hpp"
 #include "unit/vdrive/wire.hpp"
 
 // CiA 305: the master's layer setting services against nodes that know nothing of it.
@@ -42,6 +43,14 @@ TEST_F(LayerSetting, FindsEveryNodeWithoutAnIdByItsIdentity) {
   const auto again = lss_scan(*port);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->size(), serials.size()) << "all were left waiting";
+}
+
+TEST_F(LayerSetting, FindsNodesOfWhichEachAnswersInItsOwnTime) {
+  std::uint32_t serial = 0x55AA0000;
+  for (const int ms : {0, 3, 17, 40}) unconfigured(++serial).set_delay(milliseconds(ms));
+  const auto found = lss_scan(*wire_.open());
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->size(), 4U) << "a late answer was taken for that to the next step";
 }
 
 TEST_F(LayerSetting, FindsNobodyWhereAllHaveIds) {
@@ -143,37 +152,9 @@ TEST_F(LayerSetting, ChangesNoBitRateWhereOneNodeIsNotThere) {
   EXPECT_FALSE(lss_set_bit_rate(*wire_.open(), {identity(1)}, 100'000, milliseconds(100))) << "not in the table";
 }
 
-/// Whatever is asked, noise comes; time passes.
-class NoisyPort final : public fieldbus::CanPort {
- public:
-  explicit NoisyPort(unsigned seed) : random_(seed) {}
-  bool send(const CanFrame&) noexcept override {
-    frames_ = random_() % 4;
-    return true;
-  }
-  bool receive(CanFrame& frame) noexcept override {
-    if (frames_ == 0) return false;
-    --frames_;
-    frame.id = random_() % 8 == 0 ? static_cast<std::uint16_t>(0x600 + random_() % 0x80) : LssSlave::kSlaveId;
-    frame.size = static_cast<std::uint8_t>(random_() % 4 == 0 ? random_() % 9 : 8);
-    for (auto& byte : frame.data) byte = static_cast<std::uint8_t>(random_());
-    constexpr std::array<std::uint8_t, 6> kAnswers{0x11, 0x13, 0x17, 0x44, 0x4F, 0x5E};
-    if (random_() % 2 == 0) frame.data[0] = kAnswers[random_() % kAnswers.size()];
-    return true;
-  }
-  void wait(Time at_most) noexcept override { now_ += std::max(at_most, Time(std::chrono::microseconds(100))); }
-  [[nodiscard]] Time now() const noexcept override { return now_; }
-  [[nodiscard]] fieldbus::CanHealth health() const noexcept override { return {}; }
-
- private:
-  std::mt19937 random_;
-  unsigned long frames_ = 0;
-  Time now_{0};
-};
-
 TEST(LayerSettingMaster, EndsWhateverFramesCome) {
   for (unsigned seed = 0; seed < 8; ++seed) {
-    NoisyPort port(seed);
+    fieldbus::test::NoisyPort port(seed, {0x11, 0x13, 0x17, 0x44, 0x4F, 0x5E});
     const auto found = lss_scan(port);
     if (found) {
       EXPECT_LE(found->size(), 127U);

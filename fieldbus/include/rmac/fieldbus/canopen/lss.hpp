@@ -14,7 +14,7 @@ namespace rmac::fieldbus::canopen {
 struct LssOptions {
   std::chrono::nanoseconds listen = std::chrono::milliseconds(500);  ///< before anything is sent
   std::chrono::nanoseconds timeout =
-      std::chrono::milliseconds(50);                                ///< for an answer; a bit of an identity may cost it
+      std::chrono::milliseconds(50);  ///< for an answer; each of an identity's 128 bits costs it
   std::chrono::nanoseconds boot_timeout = std::chrono::seconds(5);  ///< for a node to come up with its new id
 };
 
