@@ -5,21 +5,24 @@
 #include <set>
 
 #include "rmac/fieldbus/can/can_load.hpp"
+#include "rmac/fieldbus/canopen/nmt.hpp"
 
 namespace rmac::fieldbus::canopen {
 
 BusLoad bus_load(const CanopenConfig& config) noexcept {
   const double period_s = std::chrono::duration<double>(config.period).count();
   BusLoad load;
-  load.sync_bits = worst_frame_bits(0);
+  load.sync_bits = worst_frame_bits(kSyncId, 0);
   std::set<std::uint8_t> nodes;
   std::set<std::uint16_t> setpoints;
   for (const AxisConfig& axis : config.axes) {
     if (setpoints.insert(setpoint_id(axis)).second) {
-      load.setpoint_bits += worst_frame_bits(mapped_bytes(axis.setpoints));
+      load.setpoint_bits += worst_frame_bits(setpoint_id(axis), mapped_bytes(axis.setpoints));
     }
-    load.answer_bits += worst_frame_bits(mapped_bytes(axis.answers));
-    if (!axis.more_answers.empty()) load.answer_bits += worst_frame_bits(mapped_bytes(axis.more_answers));
+    load.answer_bits += worst_frame_bits(answer_id(axis), mapped_bytes(axis.answers));
+    if (!axis.more_answers.empty()) {
+      load.answer_bits += worst_frame_bits(more_answers_id(axis), mapped_bytes(axis.more_answers));
+    }
     nodes.insert(axis.node);
   }
   const double heartbeats_per_s = 1 / std::chrono::duration<double>(config.heartbeat).count();

@@ -191,8 +191,9 @@ Counted count(const canopen::CanopenConfig& config, int cycles) {
 double above_of_frames_percent(std::size_t bytes) {
   double predicted = 0, worst = 0;
   for (std::uint16_t node = 1; node < 127; ++node) {
-    predicted += worst_frame_bits(bytes);
-    worst += most_bits({.id = static_cast<std::uint16_t>(0x180 + node), .size = static_cast<std::uint8_t>(bytes)});
+    const auto id = static_cast<std::uint16_t>(0x180 + node);
+    predicted += worst_frame_bits(id, bytes);
+    worst += most_bits({.id = id, .size = static_cast<std::uint8_t>(bytes)});
   }
   return 100 * (predicted - worst) / worst;
 }

@@ -21,8 +21,8 @@ std::string answer(const sdk::ModuleChoice& choice, const std::string& bus = "ca
 TEST(CanopenBus, IsRefusedAboveItsShareBeforeAnythingIsSent) {
   EXPECT_EQ(
       answer({"CANopenInterface", {{"node", {1, 2, 3, 4}}}, {}}),
-      "bus can0: 4 axes in a cycle of 1 ms need 975 bits, 97.5 % of the 1000 that 1000000 bit/s give; its share is "
-      "80 %. Take a cycle of 1.22 ms or more, spread the axes over several buses, or map less");
+      "bus can0: 4 axes in a cycle of 1 ms need 951 bits, 95.1 % of the 1000 that 1000000 bit/s give; its share is "
+      "80 %. Take a cycle of 1.19 ms or more, spread the axes over several buses, or map less");
 }
 
 TEST(CanopenBus, IsRefusedWithAWrongParameterThatIsNamed) {

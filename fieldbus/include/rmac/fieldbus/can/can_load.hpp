@@ -21,4 +21,27 @@ namespace rmac::fieldbus {
   return 47 + 8 * static_cast<std::uint32_t>(bytes);
 }
 
+/// At most, of a frame whose identifier is known: the 19 bits before the data are stuffed as they are, and only the
+/// data and the CRC are taken to be whatever is stuffed most.
+[[nodiscard]] constexpr std::uint32_t worst_frame_bits(std::uint16_t id, std::size_t bytes) noexcept {
+  constexpr unsigned kHeadBits = 19;
+  constexpr std::uint32_t kCrcBits = 15, kRun = 5;
+  // Start of frame 0, identifier, three bits 0 (a data frame, 11-bit identifiers, reserved), length.
+  const std::uint32_t head = static_cast<std::uint32_t>(id) << 7U | static_cast<std::uint32_t>(bytes);
+  std::uint32_t stuffed = 0, alike = 0;
+  bool last = true;
+  for (unsigned i = kHeadBits; i-- > 0;) {
+    const bool bit = (head >> i & 1U) != 0;
+    alike = bit == last ? alike + 1 : 1;
+    last = bit;
+    if (alike == kRun) {
+      ++stuffed;
+      last = !bit;
+      alike = 1;
+    }
+  }
+  const std::uint32_t rest = 8 * static_cast<std::uint32_t>(bytes) + kCrcBits;
+  return least_frame_bits(bytes) + stuffed + (rest + alike - 1) / (kRun - 1);
+}
+
 }  // namespace rmac::fieldbus

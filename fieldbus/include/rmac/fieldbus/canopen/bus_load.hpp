@@ -4,7 +4,7 @@
 
 namespace rmac::fieldbus::canopen {
 
-/// What a bus carries at worst: every frame with all the stuff bits that it can have.
+/// What a bus carries at worst: every frame with all the stuff bits that it can have by its identifier and length.
 struct BusLoad {
   std::uint32_t sync_bits = 0;      ///< a cycle
   std::uint32_t setpoint_bits = 0;  ///< a cycle
