@@ -14,10 +14,7 @@ std::string bus_of(const std::string& key) {
 }  // namespace
 
 sdk::ModuleChoice interface_of_bus(const std::string& bus, const sdk::ModuleChoice& machine) {
-  const auto has_its_own = [&machine](const std::string& name) {
-    return !name.empty() && machine.texts.contains(name + "." + kInterface);
-  };
-  const bool own = has_its_own(bus);
+  const bool own = !bus.empty() && machine.texts.contains(bus + "." + kInterface);
   sdk::ModuleChoice choice;
   choice.name = own ? machine.texts.at(bus + "." + kInterface) : machine.name;
   const auto take = [&](const auto& from, auto& to) {
@@ -25,7 +22,7 @@ sdk::ModuleChoice interface_of_bus(const std::string& bus, const sdk::ModuleChoi
       const std::string named = bus_of(key);
       if (own && named == bus) {
         to.emplace(key.substr(bus.size() + 1), value);
-      } else if (!own && !has_its_own(named)) {
+      } else if (!own && (named.empty() || named == bus)) {
         to.emplace(key, value);
       }
     }

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "gateway/configuration/configuration.hpp"
 #include "gateway/controller/bus_choice.hpp"
 #include "gateway/controller/device_descriptions.hpp"
 #include "gateway/device_driver/device_database.hpp"
@@ -59,7 +60,8 @@ std::vector<std::string> to_row(const CanopenConfig& config, const BusLoad& load
 
 Result<> show_bus_load(const std::string& device_json, double period_s, bool json) {
   const auto device = gateway::read_device_database(device_json);
-  const gateway::ModuleLoader loader({std::filesystem::path(device_json).parent_path()});
+  const gateway::ModuleLoader loader(
+      {std::filesystem::path(device_json).parent_path(), gateway::default_folders().device_tree / "modules"});
   if (!device) return fail(device.error().message);
   nlohmann::json list = nlohmann::json::array();
   std::vector<std::vector<std::string>> rows;

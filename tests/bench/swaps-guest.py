@@ -31,9 +31,8 @@ def prepare():
     make_can("vcan0", "vcan1")
     for name in ("vcan0", "vcan1"):
         call("ip", "link", "set", name, "txqueuelen", 256, "up")
-    # An interface of its own, so that what is said of this bus changes nothing about the other.
     on_buses("DMACXYZ", spindle(Bus="vcan1", Parameters={
-        "interface": "CANopenInterface", "node": 4, "mode": 3, "velocity_units_per_rpm": COUNTS_PER_REVOLUTION / 60, "eds": "rmac-vdrive"}))
+        "node": 4, "mode": 3, "velocity_units_per_rpm": COUNTS_PER_REVOLUTION / 60, "eds": "rmac-vdrive"}))
     on_buses("DMACXY", spindle(Bus="spindle0", Parameters={
         "interface": "ModbusInterface", "device": str(RUN / "spindle"), "bit_rate": 19200, "slave": [1], "map": "delta-vfd-b", "rpm_per_hz": 60}))
     (RUN / "rmacd.json").write_text(json.dumps({"state_folder": str(RUN / "state")}))

@@ -39,12 +39,27 @@ TEST(InterfaceOfBus, IsTheMachinesOwnUnlessTheBusNamesAnother) {
                                   {{"spindle0.interface", "ModbusInterface"}, {"spindle0.map", "delta-vfd-b"}}};
   const sdk::ModuleChoice can = interface_of_bus("can0", machine);
   EXPECT_EQ(can.name, "CANopenInterface");
-  EXPECT_EQ(can.numbers, (decltype(can.numbers){{"node", {1, 2}}, {"can1.node", {3}}}));
+  EXPECT_EQ(can.numbers, (decltype(can.numbers){{"node", {1, 2}}}));
   EXPECT_TRUE(can.texts.empty());
+  EXPECT_EQ(interface_of_bus("can1", machine).numbers, (decltype(can.numbers){{"node", {1, 2}}, {"can1.node", {3}}}));
   const sdk::ModuleChoice spindle = interface_of_bus("spindle0", machine);
   EXPECT_EQ(spindle.name, "ModbusInterface");
   EXPECT_EQ(spindle.numbers, (decltype(can.numbers){{"slave", {4}}}));
   EXPECT_EQ(spindle.texts, (decltype(can.texts){{"map", "delta-vfd-b"}}));
+}
+
+TEST(InterfaceOfBus, StaysAsItIsWhileSomethingIsSaidOfAnotherBus) {
+  BusRegistry registry;
+  add_built_in_interfaces(registry, 0.001);
+  const auto acquire = [&](const std::string& parameter) {
+    const sdk::ModuleChoice machine{"SimulatedInterface", {{"axes", {2}}, {parameter, {2}}}, {}};
+    return registry.acquire("can0", interface_of_bus("can0", machine), shared_folder());
+  };
+  const auto before = acquire("can1.axes");
+  ASSERT_TRUE(before) << before.error().message;
+  const auto after = acquire("can2.axes");
+  ASSERT_TRUE(after) << after.error().message;
+  EXPECT_EQ(*before, *after) << "it is in use, and goes on";
 }
 
 TEST(ModbusBus, IsRefusedWithAWrongParameterThatIsNamed) {
