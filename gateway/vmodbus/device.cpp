@@ -8,6 +8,7 @@
 namespace rmac::vmodbus {
 
 Bytes Device::answer(std::span<const std::uint8_t> request) {
+  unasked_s = 0;
   if (manners.busy && !request.empty()) return exception_answer(request[0], Exception::DeviceBusy);
   std::vector<Tables::Write> writes;
   Bytes answered = tables_.answer(request, writes);

@@ -49,6 +49,8 @@ class Device {
   Tables& tables() { return tables_; }
   [[nodiscard]] const Tables& tables() const { return tables_; }
 
+  double unasked_s = 0;  ///< since the last request, as far as `advance` counts it
+
  private:
   Tables tables_;
 };
@@ -57,6 +59,8 @@ class Device {
 struct SpindleOptions {
   double maximum_hz = 400;
   double ramp_hz_s = 200;
+  double time_out_s = 0;       ///< without a request: one that runs stops; 0: never
+  unsigned time_out_code = 0;  ///< that it trips with, instead of ramping down; 0: none
 };
 
 /// A device as a register map describes it; the file says which kind it is.

@@ -229,6 +229,14 @@ int main(int count, char** words) {
   app.add_option("--ramp", arguments.spindle.ramp_hz_s, "Hz a second by which spindles change")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  app.add_option("--time-out", arguments.spindle.time_out_s,
+                 "seconds without a request after which a spindle drive that runs ramps down; 0: never")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  app.add_option("--time-out-trip", arguments.spindle.time_out_code,
+                 "the code with which it trips instead, and coasts; 0: it ramps down")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
   app.add_option("--at", arguments.at, "\"SECONDS COMMAND\": a command some time after the start")
       ->allow_extra_args(false);
   app.add_option("--commands", arguments.commands, "read commands from this FIFO, or - for standard input");

@@ -34,6 +34,8 @@ class Spindle final : public Device {
   }
 
   bool advance(double seconds) override {
+    unasked_s += seconds;
+    if (options_.time_out_s > 0 && unasked_s >= options_.time_out_s && direction_ != 0) end_of_talk();
     const double wanted = direction_ * commanded_hz();
     const double step = options_.ramp_hz_s * seconds;
     hz_ = tripped_ ? hz_ : std::clamp(wanted, hz_ - step, hz_ + step);
@@ -62,9 +64,7 @@ class Spindle final : public Device {
       return failure(MinorCode::InvalidParameterValue,
                      fmt::format("\"{} {}\" is no command of a spindle drive; there are: {}", verb, value, help()));
     }
-    tripped_ = true;
-    code_ = code;
-    direction_ = 0;
+    trip(code);
     show();
     return status();
   }
@@ -100,6 +100,17 @@ class Spindle final : public Device {
   }
 
  private:
+  void trip(unsigned code) {
+    tripped_ = true;
+    code_ = code;
+    direction_ = 0;
+  }
+  /// Nobody talks to it any more.
+  void end_of_talk() {
+    direction_ = 0;
+    if (options_.time_out_code != 0) trip(options_.time_out_code);
+  }
+
   /// This write completes the list: its other addresses stand as the list has them. Of a pulse, values one after the
   /// other at one address, the first counts.
   [[nodiscard]] bool written(const std::vector<RegisterWrite>& list, const Tables::Write& write) const {
