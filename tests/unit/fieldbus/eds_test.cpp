@@ -131,9 +131,18 @@ TEST(Eds, SaysWhichFileCannotBeRead) {
   EXPECT_EQ(read.error().message, "/no/such/drive.eds: the file cannot be read");
 }
 
+/// The same as a DCF, which says values and which node they are for.
+std::string configuration_of_virtual_drive() {
+  std::string text = sheet_of_virtual_drive();
+  constexpr std::string_view kDefault = "\nDefaultValue=";
+  for (std::size_t at = 0; (at = text.find(kDefault, at)) != std::string::npos; at += kDefault.size()) {
+    if (at % 3 == 0) text.insert(at, "\nParameterValue=0x1");
+  }
+  return text + "\n[DeviceComissioning]\nNodeID=5\nNodeName=left\nBaudrate=1000\nNetNumber=1\n";
+}
+
 /// Whatever the bytes are: an answer, or an error that names a line of the file.
-TEST(Eds, RefusesDamagedFilesByLine) {
-  const std::string good = sheet_of_virtual_drive();
+void expect_damage_is_refused_by_line(const std::string& good) {
   const auto lines = static_cast<std::size_t>(std::count(good.begin(), good.end(), '\n'));
   std::mt19937 random(306);  // NOLINT: the same damage in every run
   const auto below = [&](std::size_t bound) {
@@ -172,6 +181,14 @@ TEST(Eds, RefusesDamagedFilesByLine) {
   }
   EXPECT_GT(refused, 40);
   EXPECT_LT(refused, 400);
+}
+
+TEST(Eds, RefusesDamagedFilesByLine) {
+  expect_damage_is_refused_by_line(sheet_of_virtual_drive());
+}
+
+TEST(Dcf, RefusesDamagedFilesByLine) {
+  expect_damage_is_refused_by_line(configuration_of_virtual_drive());
 }
 
 }  // namespace
