@@ -1,5 +1,5 @@
 # Sourced or run inside the emulated machine: a simulated GPIO chip with the label io, of 8 lines. boot.sh brought its module.
-insmod "$GPIO_SIM"
+busybox insmod "$GPIO_SIM"
 io=/sys/kernel/config/gpio-sim/io
 mkdir -p $io/bank0
 echo 8 > $io/bank0/num_lines
