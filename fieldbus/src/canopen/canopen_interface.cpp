@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "canopen/bus_axis.hpp"
 #include "canopen/node_boot.hpp"
 #include "canopen/pdo.hpp"
 #include "rmac/fieldbus/can/socket_can_port.hpp"
@@ -24,39 +25,6 @@ struct Node {
   bool up = false;
 };
 
-struct Axis {
-  AxisConfig config;
-  std::size_t node = 0;
-  /// One PDO of its answers.
-  struct Answer {
-    std::uint16_t id = 0;
-    std::vector<MappedObject> contents;
-    std::uint32_t unanswered = 0;  ///< SYNCs
-    bool answered = false;         ///< since its node came up
-  };
-  std::vector<Answer> answers;
-  DriveFeedback feedback;
-
-  void forget() noexcept {
-    for (Answer& answer : answers) answer.answered = false;
-  }
-  [[nodiscard]] bool answered() const noexcept {
-    return std::all_of(answers.begin(), answers.end(), [](const Answer& answer) { return answer.answered; });
-  }
-  [[nodiscard]] std::uint32_t unanswered() const noexcept {
-    std::uint32_t most = 0;
-    for (const Answer& answer : answers) most = std::max(most, answer.unanswered);
-    return most;
-  }
-  /// Told in one of its PDOs.
-  [[nodiscard]] bool tells(std::uint16_t index) const noexcept {
-    return std::any_of(answers.begin(), answers.end(), [index](const Answer& answer) {
-      return std::any_of(answer.contents.begin(), answer.contents.end(),
-                         [index](const MappedObject& mapped) { return mapped.object.index == index; });
-    });
-  }
-};
-
 }  // namespace
 
 struct CanopenInterface::Impl {
@@ -66,7 +34,7 @@ struct CanopenInterface::Impl {
       if (at == nodes.end()) at = nodes.emplace(nodes.end(), config, axis.node);
       const auto same = [&](std::size_t other) { return setpoint_id(axes[other].config) == setpoint_id(axis); };
       if (std::none_of(rpdos.begin(), rpdos.end(), same)) rpdos.push_back(axes.size());
-      Axis made{.config = axis, .node = static_cast<std::size_t>(at - nodes.begin()), .answers = {}, .feedback = {}};
+      BusAxis made{.config = axis, .node = static_cast<std::size_t>(at - nodes.begin()), .answers = {}, .feedback = {}};
       made.answers.push_back({.id = answer_id(axis), .contents = axis.answers});
       if (!axis.more_answers.empty()) {
         made.answers.push_back({.id = more_answers_id(axis), .contents = axis.more_answers});
@@ -82,8 +50,8 @@ struct CanopenInterface::Impl {
         ids.push_back(static_cast<std::uint16_t>(base + node.boot.node()));
       }
     }
-    for (const Axis& axis : axes) {
-      for (const Axis::Answer& answer : axis.answers) ids.push_back(answer.id);
+    for (const BusAxis& axis : axes) {
+      for (const BusAxis::Answer& answer : axis.answers) ids.push_back(answer.id);
     }
     return ids;
   }
@@ -96,7 +64,7 @@ struct CanopenInterface::Impl {
   // On the cycle
   void fetch(std::chrono::nanoseconds now) noexcept;
   void take(const CanFrame& frame, std::chrono::nanoseconds now) noexcept;
-  void take_answer(Axis& axis, Axis::Answer& answer, const CanFrame& frame) noexcept;
+  void take_answer(BusAxis& axis, BusAxis::Answer& answer, const CanFrame& frame) noexcept;
   void take_from_node(Node& node, const CanFrame& frame, std::chrono::nanoseconds now) noexcept;
   void watch(std::chrono::nanoseconds now) noexcept;
   void recover(std::chrono::nanoseconds now) noexcept;
@@ -110,7 +78,7 @@ struct CanopenInterface::Impl {
   OpenPort open;
   std::unique_ptr<CanPort> port;
   std::vector<Node> nodes;
-  std::vector<Axis> axes;
+  std::vector<BusAxis> axes;
   std::vector<std::size_t> rpdos;  ///< the first axis of each
   CanopenCounters counters;
   std::chrono::nanoseconds next_heartbeat{0};
@@ -140,7 +108,7 @@ DriveMode CanopenInterface::mode(std::size_t axis) const noexcept {
 }
 
 double CanopenInterface::counts_per_revolution(std::size_t axis) const noexcept {
-  const Axis& of = impl_->axes[axis];
+  const BusAxis& of = impl_->axes[axis];
   const auto offset = static_cast<std::uint16_t>(kAxisOffset * of.config.axis_in_node);
   const NodeBoot& boot = impl_->nodes[of.node].boot;
   const auto ratio = [&](std::uint16_t index) {
@@ -153,7 +121,7 @@ double CanopenInterface::counts_per_revolution(std::size_t axis) const noexcept 
 }
 
 bool CanopenInterface::latches(std::size_t axis, TouchProbeEdge edge) const noexcept {
-  const Axis& of = impl_->axes[axis];
+  const BusAxis& of = impl_->axes[axis];
   const bool commanded = std::any_of(of.config.setpoints.begin(), of.config.setpoints.end(),
                                      [](const MappedObject& mapped) { return mapped.object.index == 0x60B8; });
   return commanded && of.tells(0x60B9) && of.tells(static_cast<std::uint16_t>(0x60BA + static_cast<int>(edge)));
@@ -228,7 +196,7 @@ void CanopenInterface::stop() noexcept {
   Impl& bus = *impl_;
   if (!bus.running) return;
   bus.running = false;
-  for (const Axis& axis : bus.axes) bus.port->send(pack_setpoints(axis.config, DriveCommand{}));
+  for (const BusAxis& axis : bus.axes) bus.port->send(pack_setpoints(axis.config, DriveCommand{}));
   bus.port->send(sync_frame());
   const std::chrono::nanoseconds until = bus.port->now() + 2 * bus.config.period;
   while (bus.port->now() < until) {
@@ -250,10 +218,10 @@ bool CanopenInterface::exchange(std::span<const DriveCommand> commands, std::spa
   const std::chrono::nanoseconds now = bus.port->now();
   if (bus.fresh) {
     for (Node& node : bus.nodes) node.heard = now;
-    for (Axis& axis : bus.axes) {
+    for (BusAxis& axis : bus.axes) {
       axis.feedback = {};
       axis.forget();
-      for (Axis::Answer& answer : axis.answers) answer.unanswered = 0;
+      for (BusAxis::Answer& answer : axis.answers) answer.unanswered = 0;
     }
     bus.next_heartbeat = bus.next_time = now;
     bus.fresh = false;
@@ -273,8 +241,8 @@ void CanopenInterface::Impl::fetch(std::chrono::nanoseconds now) noexcept {
 }
 
 void CanopenInterface::Impl::take(const CanFrame& frame, std::chrono::nanoseconds now) noexcept {
-  for (Axis& axis : axes) {
-    for (Axis::Answer& answer : axis.answers) {
+  for (BusAxis& axis : axes) {
+    for (BusAxis::Answer& answer : axis.answers) {
       if (frame.id == answer.id) return take_answer(axis, answer, frame);
     }
   }
@@ -287,7 +255,7 @@ void CanopenInterface::Impl::take(const CanFrame& frame, std::chrono::nanosecond
   }
 }
 
-void CanopenInterface::Impl::take_answer(Axis& axis, Axis::Answer& answer, const CanFrame& frame) noexcept {
+void CanopenInterface::Impl::take_answer(BusAxis& axis, BusAxis::Answer& answer, const CanFrame& frame) noexcept {
   if (!nodes[axis.node].up) return;
   if (!unpack_answers(axis.config, answer.contents, frame, axis.feedback)) {
     ++counters.short_answers;
@@ -315,7 +283,7 @@ void CanopenInterface::Impl::take_from_node(Node& node, const CanFrame& frame, s
 void CanopenInterface::Impl::lose(Node& node, std::chrono::nanoseconds now) noexcept {
   ++counters.nodes_lost;
   node.up = false;
-  for (Axis& axis : axes) {
+  for (BusAxis& axis : axes) {
     if (&nodes[axis.node] == &node) axis.forget();
   }
   node.boot.begin(now);
@@ -336,7 +304,7 @@ void CanopenInterface::Impl::watch(std::chrono::nanoseconds now) noexcept {
 
 void CanopenInterface::Impl::fill(std::span<DriveFeedback> feedback) noexcept {
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    Axis& axis = axes[i];
+    BusAxis& axis = axes[i];
     const Node& node = nodes[axis.node];
     if (axis.answered() && axis.unanswered() > 0) ++counters.missed_answers;
     feedback[i] = axis.feedback;
@@ -355,8 +323,8 @@ bool CanopenInterface::Impl::send_cycle(std::span<const DriveCommand> commands, 
   bool all = !config.sync_first || send(sync_frame());
   for (const std::size_t first : rpdos) all = send_setpoints(first, commands) && all;
   if (!config.sync_first) all = send(sync_frame()) && all;
-  for (Axis& axis : axes) {
-    for (Axis::Answer& answer : axis.answers) ++answer.unanswered;
+  for (BusAxis& axis : axes) {
+    for (BusAxis::Answer& answer : axis.answers) ++answer.unanswered;
   }
   if (now >= next_heartbeat) {
     all = send(heartbeat_frame(config.master_node, NmtState::Operational)) && all;

@@ -4,13 +4,15 @@
 #include "rmac/fieldbus/canopen/bus_scan.hpp"
 #include "rmac/fieldbus/canopen/canopen_interface.hpp"
 #include "rmac/fieldbus/canopen/stored_parameters.hpp"
+#include "unit/fieldbus/canopen_bench.hpp"
 #include "unit/fieldbus/noisy_port.hpp"
 
 // Whatever comes over the bus, each service of the master ends, in its time, and reads nothing that is not there. What
-// SDO transfers, LSS and the cycle do is in the tests beside theirs.
+// SDO transfers and LSS do is in the tests beside theirs.
 namespace rmac::fieldbus::canopen {
 namespace {
 
+using test::CanopenBench;
 using test::kSdoAnswers;
 using test::NoisyPort;
 
@@ -49,6 +51,25 @@ TEST(Noise, EndsTheBootOfAMachineInTimeWithANodeThatIsNamed) {
     ASSERT_FALSE(started) << "seed " << seed;
     ASSERT_NE(started.error().message.find("node "), std::string::npos) << started.error().message;
   }
+}
+
+TEST_F(CanopenBench, StaysCalmWhateverFramesCome) {
+  test::VirtualDrive& drive = wire_.add(1);
+  make({{"node", {1}}});
+  start();
+  enable_all();
+  std::mt19937 random(12);
+  for (int i = 0; i < 5000; ++i) {
+    constexpr std::uint16_t kIds[] = {0x081, 0x181, 0x581, 0x701, 0x081};
+    CanFrame frame{.id = kIds[random() % 5], .size = static_cast<std::uint8_t>(random() % 9)};
+    for (auto& byte : frame.data) byte = static_cast<std::uint8_t>(random());
+    wire_.inject(frame);
+    cycle(DriveWish::Off);
+  }
+  EXPECT_TRUE(sound_);
+  cycles(3000, DriveWish::Off);
+  EXPECT_TRUE(feedback_[0].online);
+  EXPECT_TRUE(drive.operational());
 }
 
 /// Some objects of `words`, as many as fit.

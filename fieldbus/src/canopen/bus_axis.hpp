@@ -1,0 +1,45 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "rmac/fieldbus/canopen/canopen_config.hpp"
+#include "rmac/motion/ports/digital_control_interface.hpp"
+
+namespace rmac::fieldbus::canopen {
+
+/// An axis as its bus has it: where its node is, and what came of it.
+struct BusAxis {
+  AxisConfig config;
+  std::size_t node = 0;  ///< its place among the bus's nodes
+  /// One PDO of its answers.
+  struct Answer {
+    std::uint16_t id = 0;
+    std::vector<MappedObject> contents;
+    std::uint32_t unanswered = 0;  ///< SYNCs
+    bool answered = false;         ///< since its node came up
+  };
+  std::vector<Answer> answers;
+  DriveFeedback feedback;
+
+  void forget() noexcept {
+    for (Answer& answer : answers) answer.answered = false;
+  }
+  [[nodiscard]] bool answered() const noexcept {
+    return std::all_of(answers.begin(), answers.end(), [](const Answer& answer) { return answer.answered; });
+  }
+  [[nodiscard]] std::uint32_t unanswered() const noexcept {
+    std::uint32_t most = 0;
+    for (const Answer& answer : answers) most = std::max(most, answer.unanswered);
+    return most;
+  }
+  /// Told in one of its PDOs.
+  [[nodiscard]] bool tells(std::uint16_t index) const noexcept {
+    return std::any_of(answers.begin(), answers.end(), [index](const Answer& answer) {
+      return std::any_of(answer.contents.begin(), answer.contents.end(),
+                         [index](const MappedObject& mapped) { return mapped.object.index == index; });
+    });
+  }
+};
+
+}  // namespace rmac::fieldbus::canopen
