@@ -36,6 +36,15 @@ int value(int line) {
   return level;
 }
 
+/// What a program prints.
+std::string said_by(const std::string& command) {
+  FILE* const output = popen((command + " 2>&1").c_str(), "r");
+  std::string text;
+  for (int byte = fgetc(output); byte != EOF; byte = fgetc(output)) text += static_cast<char>(byte);
+  pclose(output);
+  return text;
+}
+
 std::unique_ptr<GpioInterface> make(const std::map<std::string, std::string>& lines, double debounce_ms = 20) {
   auto texts = lines;
   texts["chip"] = "io";
@@ -154,6 +163,30 @@ TEST_F(GpioOnSim, RefusesLinesThatAreNotThereOrTaken) {
   EXPECT_EQ(refusal({{"input_1", "release"}}), "nothing") << "a refusal gives back what it had claimed";
   first->stop();
   EXPECT_EQ(refusal({{"input_0", "probe"}}), "nothing") << "and so does a stop";
+}
+
+// libgpiod's own tools at the other end.
+TEST_F(GpioOnSim, HoldsItsLinesAsGpioinfoSees) {
+  const auto io = make({{"input_0", "probe"}, {"output_0", "coolant"}, {"output_1", "!release"}});
+  ASSERT_TRUE(io->start());
+  const std::string held = said_by("gpioinfo io");
+  EXPECT_THAT(held, testing::ContainsRegex("\"probe\" +\"rmacd\" +input +active-high \\[used"));
+  EXPECT_THAT(held, testing::ContainsRegex("\"coolant\" +\"rmacd\" +output +active-high \\[used"));
+  EXPECT_THAT(held, testing::ContainsRegex("\"estop-nc\" +unused +input"));
+  EXPECT_THAT(said_by("gpioset io 3=1"), HasSubstr("Device or resource busy"));
+  io->stop();
+  EXPECT_THAT(said_by("gpioinfo io"), testing::ContainsRegex("\"coolant\" +unused"));
+  EXPECT_EQ(said_by("gpioget io 0 1"), "1 0\n") << "as they are pulled";
+}
+
+TEST_F(GpioOnSim, SaysWhichProgramHasALine) {
+  FILE* const monitor = popen("exec gpiomon --num-events=1 io 2 >/dev/null", "r");
+  while (said_by("gpioinfo io").find("\"gpiomon\"") == std::string::npos) {
+  }
+  EXPECT_THAT(refusal({{"input_0", "probe"}}), HasSubstr("line probe of chip io is taken by \"gpiomon\""));
+  pull(2, true);  // which ends it
+  pclose(monitor);
+  EXPECT_EQ(refusal({{"input_0", "probe"}}), "nothing");
 }
 
 /// Last, for the chip is gone after it.
