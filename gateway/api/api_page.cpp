@@ -72,12 +72,10 @@ std::string methods_of(std::string_view interface) {
       interface);
   for (const Method& entry : method_table()) {
     if (interface_of(entry) != interface) continue;
-    std::string meaning = entry.meaning;
-    if (!entry.supported()) meaning += " **Not supported yet**: " + entry.missing + ".";
-    text +=
-        fmt::format("| `{}`{} | {} | {} | {}{} | {} | {} |\n", entry.name,
-                    entry.origin == Origin::Extension ? " †" : "", cell(parameters_of(entry)), cell(result_of(entry)),
-                    to_string(entry.permission), entry.property ? ", property" : "", effect_of(entry), cell(meaning));
+    text += fmt::format("| `{}`{} | {} | {} | {}{} | {} | {} |\n", entry.name,
+                        entry.origin == Origin::Extension ? " †" : "", cell(parameters_of(entry)),
+                        cell(result_of(entry)), to_string(entry.permission), entry.property ? ", property" : "",
+                        effect_of(entry), cell(entry.meaning));
   }
   return text;
 }
@@ -98,17 +96,8 @@ std::string values_and_errors() {
 
 std::string api_page() {
   std::string page(kHead);
-  std::size_t supported = 0;
-  std::size_t dissertation = 0;
-  std::size_t dissertation_supported = 0;
-  for (const Method& entry : method_table()) {
-    supported += entry.supported() ? 1U : 0U;
-    if (entry.origin != Origin::Dissertation) continue;
-    ++dissertation;
-    dissertation_supported += entry.supported() ? 1U : 0U;
-  }
-  page += fmt::format("\n{} methods, {} of them supported; of the dissertation's {}, {}.\n", method_table().size(),
-                      supported, dissertation, dissertation_supported);
+  const auto dissertation = std::ranges::count(method_table(), Origin::Dissertation, &Method::origin);
+  page += fmt::format("\n{} methods, {} of them the dissertation's.\n", method_table().size(), dissertation);
   for (const char* interface : {"DeviceDriverManager", "Device", "RMAC_Config", "RMAC_CAM", "Connection"}) {
     page += methods_of(interface);
   }

@@ -54,11 +54,8 @@ struct Method {
   std::optional<Harmless> harmless;
   bool property = false;  ///< reads without `newVal`; with it writes, gives true, and needs authority
   bool slow = false;      ///< may take so long that others' stops must not wait for it
-  std::string missing;    ///< what the method still lacks; empty when it works
   Handler preparation;  ///< of a slow method: what comes before the handler and touches nothing that moves; may be none
   Handler handler;
-
-  [[nodiscard]] bool supported() const noexcept { return missing.empty(); }
 };
 
 /// Binds the call's JSON to the handler: parameters by name or by position, none unknown, none missing. Types and

@@ -227,15 +227,6 @@ class MethodBuilder {
     return std::move(method_);
   }
 
-  /// The method is declared, checks its parameters, and then answers MACHINE_ERR_UNSUPPORTED_OPERATION with `what`.
-  Method lacks(std::string what) && {
-    auto message = method_.name + " is not supported yet: " + what;
-    method_.missing = std::move(what);
-    return std::move(*this).does([message = std::move(message)](Call&, const Ts&...) -> Expected<> {
-      return failure(MinorCode::UnsupportedOperation, message);
-    });
-  }
-
  private:
   template <typename Function>
   Method::Handler handler_of(Function function, nlohmann::json done) const {

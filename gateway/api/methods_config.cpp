@@ -1,4 +1,6 @@
 // RMAC_Config.*: the draft of a mechanism (Appendix IV). Nothing acts before RMAC_Config.Apply.
+#include <algorithm>
+
 #include "gateway/api/method_builder.hpp"
 #include "gateway/api/method_table.hpp"
 #include "rmac/motion/servo_loop.hpp"
@@ -107,28 +109,68 @@ void add_servo_setters(const auto& add) {
                 static_cast<int>(joint),
                 index < joints.size() ? chosen(joints[index].servo_law, law) : ModuleChoice{law, {}, {}});
           }));
-  constexpr const char* kSpindleDrive = "spindle drives close their speed loop themselves";
-  add(method("RMAC_Config.SetMechanismSpindleControlMethod", "What the spindle's servo loop controls.")
+}
+
+/// The dissertation's setters of spindles name none: they are of every one.
+template <typename Set>
+Expected<> for_each_spindle(Call& call, Set set) {
+  const auto count = std::max<std::size_t>(1, call.machine.config().draft().spindles.size());
+  for (std::size_t spindle = 0; spindle < count; ++spindle) {
+    // Where there is none, the first says so.
+    if (auto done = set(call.machine.config(), static_cast<int>(spindle)); !done) return done;
+  }
+  return {};
+}
+
+void add_spindle_setters(const auto& add) {
+  add(method("RMAC_Config.SetMechanismSpindleMaxRPM", "Largest speed of every spindle.")
+          .takes(number("MaxSpindleRPM", "rpm").within(device_range("spindle/MaxSpeed")).at_least(1))
+          .needs(Permission::Authority)
+          .does([](Call& call, double rpm) {
+            return for_each_spindle(
+                call, [rpm](RmacConfig& config, int spindle) { return config.set_spindle_maximum_rpm(spindle, rpm); });
+          }));
+  add(method("RMAC_Config.SetMechanismSpindleControlMethod",
+             "What the servo loop of every spindle controls: its speed, or its angle where its drive takes a torque.")
           .takes(choice("DMACServoControlMethod", kControlMethodValues))
           .needs(Permission::Authority)
-          .lacks(kSpindleDrive));
-  add(method("RMAC_Config.SetMechanismSpindleServoControlLaw", "Servo law of the spindle.")
-          .takes(text("ControlLaw"))
+          .does([](Call& call, std::int64_t method) {
+            return for_each_spindle(call, [method](RmacConfig& config, int spindle) {
+              return config.set_spindle_control_method(spindle, static_cast<ControlMethod>(method));
+            });
+          }));
+  add(method("RMAC_Config.SetMechanismSpindleServoControlLaw",
+             "Servo law of every spindle, whose drives must take a torque; none where they follow speeds themselves.")
+          .takes(text("ControlLaw")
+                     .noted("DMAC_PID_CONTROL or another constant of Appendix IV, the name of a module, or "
+                            "empty for none"))
           .needs(Permission::Authority)
-          .lacks(kSpindleDrive));
-  add(method("RMAC_Config.SetMechanismSpindleServoControlGains", "Gains of the spindle's servo law.")
+          .does([](Call& call, const std::string& law) {
+            return for_each_spindle(call, [&law](RmacConfig& config, int spindle) {
+              const auto& spindles = config.draft().spindles;
+              const auto index = static_cast<std::size_t>(spindle);
+              return config.set_spindle_servo_control_law(spindle, index < spindles.size()
+                                                                       ? chosen(spindles[index].servo_law, law)
+                                                                       : ModuleChoice{law, {}, {}});
+            });
+          }));
+  add(method("RMAC_Config.SetMechanismSpindleServoControlGains",
+             "Gains of the servo law of every spindle, in the law's own order.")
           .takes(numbers("ServoControlGains", "as the law declares").within(device_range("joint/Gains")))
           .needs(Permission::Authority)
-          .lacks(kSpindleDrive));
+          .does([](Call& call, const std::vector<double>& gains) {
+            return for_each_spindle(call, [&gains](RmacConfig& config, int spindle) {
+              return config.set_spindle_servo_control_gains(spindle, gains);
+            });
+          }));
 }
 
 void add_interface_setters(const auto& add) {
   using sdk::DeviceObject;
-  add(method("RMAC_Config.SetMechanismDigitalControlInterface", "Interface to the drives.")
-          .takes(text("DigitalControlInterface").noted("name of a module"))
-          .needs(Permission::Authority)
-          .lacks(
-              "a bus keeps the interface that it came up with; load a device driver whose device.json names another"));
+  add(module_setter("RMAC_Config.SetMechanismDigitalControlInterface",
+                    "Interface to the drives. Apply brings them down and up again, because two cannot run one bus.",
+                    "DigitalControlInterface", &DeviceObject::digital_control_interface,
+                    &RmacConfig::set_digital_control_interface));
   add(method("RMAC_Config.InitializeMechanismDigitalControlInterface", "Brings the interface to the drives up.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
@@ -156,24 +198,13 @@ void add_config_methods(std::vector<Method>& table) {
                    integer("NumSpindle").within(0, kMaxSpindles), &RmacConfig::set_number_of_spindles));
   add(count_setter("RMAC_Config.SetMechanismNumActuators", "Number of actuators behind joints and held joints.",
                    integer("NumActuators").within(1, kMaxJoints), &RmacConfig::set_number_of_actuators));
-  add(method("RMAC_Config.SetMechanismSpindleMaxRPM", "Largest speed of every spindle.")
-          .takes(number("MaxSpindleRPM", "rpm").within(device_range("spindle/MaxSpeed")).at_least(1))
-          .needs(Permission::Authority)
-          .does([](Call& call, double rpm) -> Expected<> {
-            RmacConfig& config = call.machine.config();
-            const int count = static_cast<int>(config.draft().spindles.size());
-            if (count == 0) return config.set_spindle_maximum_rpm(0, rpm);  // says that there is none
-            for (int spindle = 0; spindle < count; ++spindle) {
-              if (auto set = config.set_spindle_maximum_rpm(spindle, rpm); !set) return set;
-            }
-            return {};
-          }));
   add(method("RMAC_Config.SetMechanismMaxFeedrate", "Largest feed of the mechanism.")
           .takes(number("MaxFeedrate", "mm/min").within(device_range("MaxFeedrate")))
           .needs(Permission::Authority)
           .does([](Call& call, double feed) { return call.machine.config().set_maximum_feedrate(feed); }));
   add_joint_setters(add);
   add_servo_setters(add);
+  add_spindle_setters(add);
   add_interface_setters(add);
   add(method("RMAC_Config.Apply",
              "Checks the draft as a whole and puts it in at standstill; or changes nothing and says why.")

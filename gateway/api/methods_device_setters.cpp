@@ -23,6 +23,23 @@ Method joint_setter(const char* name, const char* meaning, Parameter<T> value, F
       });
 }
 
+Expected<sdk::Spindle*> spindle_of(DeviceObject* device) {
+  if (device->spindles.empty()) return failure(MinorCode::InvalidParameter, device->name + " has no spindle");
+  return &device->spindles.front();
+}
+
+Expected<> set_torque(sdk::Spindle& spindle, double torque_nm) {
+  if (spindle.scale.rated_torque_nm == 0) {
+    return failure(MinorCode::InvalidParameterValue,
+                   "Machine_SetMechanismSpindleMaxTorque: the drive of spindle 0 (bus " + spindle.bus + ", axis " +
+                       std::to_string(spindle.axis) +
+                       ") tells no torque, so nothing holds it to one; give its RatedTorque in device.json, if it "
+                       "measures one");
+  }
+  spindle.max_torque_nm = torque_nm;
+  return {};
+}
+
 }  // namespace
 
 void add_device_setters(std::vector<Method>& table) {
@@ -48,18 +65,21 @@ void add_device_setters(std::vector<Method>& table) {
           .takes(number("MaxSpindleSpeed", "rpm").within(device_range("spindle/MaxSpeed")).at_least(1))
           .needs(Permission::Authority)
           .does([](Call& call, double rpm) {
-            return call.machine.device().wanted().and_then([&](DeviceObject* device) -> Expected<> {
-              if (device->spindles.empty()) {
-                return failure(MinorCode::InvalidParameter, device->name + " has no spindle");
-              }
-              device->spindles.front().max_speed_rpm = rpm;
-              return {};
+            return call.machine.device().wanted().and_then(spindle_of).map([rpm](sdk::Spindle* spindle) {
+              spindle->max_speed_rpm = rpm;
             });
           }));
-  add(method("Device.Machine_SetMechanismSpindleMaxTorque", "Wanted largest torque of spindle 0.")
-          .takes(number("MaxSpindleTorque", "N·m").above(0))
+  add(method(
+          "Device.Machine_SetMechanismSpindleMaxTorque",
+          "Wanted largest torque of spindle 0: its servo law gives no more, and measured it is an overload that stops "
+          "the machine. Acts with the next Machine_Configure….")
+          .takes(number("MaxSpindleTorque", "N·m").within(device_range("spindle/MaxTorque")).above(0))
           .needs(Permission::Authority)
-          .lacks("spindle drives take a speed only; their torque limit stays as device.json says"));
+          .does([](Call& call, double torque_nm) {
+            return call.machine.device().wanted().and_then(spindle_of).and_then([&](sdk::Spindle* spindle) {
+              return set_torque(*spindle, torque_nm);
+            });
+          }));
   add(joint_setter("Device.Machine_SetMechanismJntTypes",
                    "Wanted type of a joint. Acts with the next Machine_Configure….",
                    choice("JntType", kJointTypeValues),

@@ -116,12 +116,10 @@ json method_to_json(const Method& entry) {
               {"result", result_to_json(entry)},
               {"x-origin", to_string(entry.origin)},
               {"x-permission", to_string(entry.permission)},
-              {"x-effect", to_string(entry.effect)},
-              {"x-supported", entry.supported()}};
+              {"x-effect", to_string(entry.effect)}};
   if (entry.harmless) {
     result["x-no-effect-with"] = {{entry.parameters[entry.harmless->parameter].name, entry.harmless->value}};
   }
-  if (!entry.supported()) result["x-missing"] = entry.missing;
   return result;
 }
 

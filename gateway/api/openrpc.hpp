@@ -6,7 +6,7 @@
 namespace rmac::gateway {
 
 /// The API as an OpenRPC 1.2.6 document, made from the method table. Ours beside the standard: `x-origin`,
-/// `x-permission`, `x-supported`, `x-missing`, `x-unit`.
+/// `x-permission`, `x-effect`, `x-unit`.
 [[nodiscard]] const nlohmann::json& openrpc_document();
 
 /// docs/api.md, made from the same table.

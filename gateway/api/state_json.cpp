@@ -94,8 +94,10 @@ nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, co
   const std::optional<Event>& stop = machine.last_stop();
   state["last_stop"] = stop ? event_to_json(*stop) : nlohmann::json();
   state["mechanism"] = mechanism == nullptr ? nlohmann::json() : nlohmann::json(mechanism->name);
-  state["spindle_rpm"] = first(
-      sample.spindle_rpm, mechanism == nullptr ? 0 : std::min(mechanism->spindles.size(), sample.spindle_rpm.size()));
+  const std::size_t spindles =
+      mechanism == nullptr ? 0 : std::min(mechanism->spindles.size(), sample.spindle_rpm.size());
+  state["spindle_rpm"] = first(sample.spindle_rpm, spindles);
+  state["spindle_torque_nm"] = first(sample.spindle_torque_nm, spindles);
   return state;
 }
 

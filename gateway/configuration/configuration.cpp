@@ -100,6 +100,7 @@ void read_stop_categories(const Json& chosen, Configuration& configuration) {
   read("SensorLost", stops.sensor_lost);
   read("ForceLimit", stops.force_limit);
   read("ContactLost", stops.contact_lost);
+  read("SpindleOverload", stops.spindle_overload);
   read("CycleDeadline", stops.cycles_lost);
   if (!chosen.contains("CycleDeadline")) configuration.real_time.max_cycles_lost = 0;
 }

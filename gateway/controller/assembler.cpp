@@ -32,26 +32,35 @@ ForceControl force(const sdk::Joint& joint) {
   return result;
 }
 
+/// The law that is named, with these gains.
+Expected<std::shared_ptr<ServoLaw>> load_law(const sdk::ModuleChoice& choice, const std::vector<double>& gains,
+                                             const std::string& who, const ModuleLoader& loader,
+                                             std::vector<ModuleInUse>& modules) {
+  const std::string name = sdk::servo_law_module(choice.name);
+  auto law = loader.load<ServoLaw>({name, choice.numbers, choice.texts});
+  if (!law) return tl::unexpected(law.error());
+  if (!law->object->set_gains(gains)) {
+    std::string wanted;
+    for (const GainInfo& gain : law->object->gains()) {
+      wanted += fmt::format("{}{} ({})", wanted.empty() ? "" : ", ", gain.name, gain.unit);
+    }
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("{}: {} does not accept the gains [{}]; it takes {}: {}", who, name,
+                               fmt::join(gains, ", "), law->object->gains().size(), wanted));
+  }
+  modules.push_back({"servo control law of " + who, name, law->build_id});
+  return std::move(law->object);
+}
+
 Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loader, double period_s,
                               std::vector<ModuleInUse>& modules) {
   ServoAxis axis{nullptr,          joint.method,    joint.max_following_error,
                  joint.max_effort, joint.mechanics, bounds(joint, period_s),
                  std::nullopt,     force(joint)};
   if (joint.servo_law.name.empty()) return axis;
-  const std::string name = sdk::servo_law_module(joint.servo_law.name);
-  auto law = loader.load<ServoLaw>({name, joint.servo_law.numbers, joint.servo_law.texts});
+  auto law = load_law(joint.servo_law, joint.gains, "joint " + joint.limits.name, loader, modules);
   if (!law) return tl::unexpected(law.error());
-  if (!law->object->set_gains(joint.gains)) {
-    std::string wanted;
-    for (const GainInfo& gain : law->object->gains()) {
-      wanted += fmt::format("{}{} ({})", wanted.empty() ? "" : ", ", gain.name, gain.unit);
-    }
-    return failure(MinorCode::InvalidParameterValue,
-                   fmt::format("joint \"{}\": {} does not accept the gains [{}]; it takes {}: {}", joint.limits.name,
-                               name, fmt::join(joint.gains, ", "), law->object->gains().size(), wanted));
-  }
-  modules.push_back({"servo control law of joint " + joint.limits.name, name, law->build_id});
-  axis.law = std::move(law->object);
+  axis.law = std::move(*law);
   return axis;
 }
 
@@ -70,27 +79,32 @@ Expected<> add_axes(const sdk::DeviceObject& device, const ModuleLoader& loader,
   return {};
 }
 
+/// The bus of a drive, brought up.
+Expected<std::shared_ptr<ServoBus>> bus_of(const std::string& who, const std::string& name, std::uint32_t axis,
+                                           const sdk::DeviceObject& device, const ModuleLoader& loader,
+                                           BusRegistry& registry, bool virtual_mode) {
+  if (virtual_mode) return registry.virtual_bus(name);
+  auto bus = registry.acquire(name, interface_of_bus(name, device.digital_control_interface), loader);
+  if (!bus) return bus;
+  if (const std::size_t there = (*bus)->interface->axis_count(); axis >= there) {
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("{}: bus {} has no axis {}; it has {}", who, name, axis, there));
+  }
+  return bus;
+}
+
 Expected<> add_drives(const sdk::DeviceObject& device, const ModuleLoader& loader, BusRegistry& registry,
                       ServoLoopParts& parts) {
-  const auto place = [&](const std::string& who, const std::string& name,
-                         std::uint32_t axis) -> Expected<std::pair<std::shared_ptr<ServoBus>, std::uint32_t>> {
-    if (parts.virtual_mode) return std::pair{registry.virtual_bus(name), axis};
-    auto bus = registry.acquire(name, interface_of_bus(name, device.digital_control_interface), loader);
-    if (!bus) return tl::unexpected(bus.error());
-    if (const std::size_t there = (*bus)->interface->axis_count(); axis >= there) {
-      return failure(MinorCode::InvalidParameterValue,
-                     fmt::format("{}: bus {} has no axis {}; it has {}", who, name, axis, there));
-    }
-    return std::pair{std::move(*bus), axis};
-  };
   for (const sdk::Actuator& actuator : device.actuators) {
-    auto at = place(fmt::format("actuator {}", parts.actuators.size()), actuator.bus, actuator.axis);
-    if (!at) return tl::unexpected(at.error());
+    auto bus = bus_of(fmt::format("actuator {}", parts.actuators.size()), actuator.bus, actuator.axis, device, loader,
+                      registry, parts.virtual_mode);
+    if (!bus) return tl::unexpected(bus.error());
+    const DigitalControlInterface& interface = *(*bus)->interface;
     constexpr double kTorqueShare = 3.5;
     const double max_torque = actuator.max_measured_torque_nm > 0 ? actuator.max_measured_torque_nm
                                                                   : kTorqueShare * actuator.scale.rated_torque_nm;
     constexpr double kSameScale = 1e-6;
-    const double told = parts.virtual_mode ? 0 : at->first->interface->counts_per_revolution(at->second);
+    const double told = parts.virtual_mode ? 0 : interface.counts_per_revolution(actuator.axis);
     if (const double meant = actuator.scale.counts_per_revolution;
         told > 0 && std::abs(meant / told - 1) > kSameScale) {
       return failure(MinorCode::Scale,
@@ -99,23 +113,57 @@ Expected<> add_drives(const sdk::DeviceObject& device, const ModuleLoader& loade
                                  parts.actuators.size(), actuator.bus, actuator.axis, told, meant));
     }
     const bool latches =
-        parts.virtual_mode || !actuator.probe_edge || at->first->interface->latches(at->second, *actuator.probe_edge);
+        parts.virtual_mode || !actuator.probe_edge || interface.latches(actuator.axis, *actuator.probe_edge);
     if (!latches) {
       return failure(MinorCode::InvalidParameterValue,
                      fmt::format("actuator {}: a touch probe of its drive is to latch its position, and bus {} does "
                                  "not carry that for axis {}; leave TouchProbe out, or have its words carried",
                                  parts.actuators.size(), actuator.bus, actuator.axis));
     }
-    const DriveMode mode = parts.virtual_mode ? DriveMode::CyclicSyncTorque : at->first->interface->mode(at->second);
+    const DriveMode mode = parts.virtual_mode ? DriveMode::CyclicSyncTorque : interface.mode(actuator.axis);
     const double gain = parts.virtual_mode ? 0 : actuator.position_gain;
-    parts.actuators.push_back({std::move(at->first), at->second, actuator.scale,
+    parts.actuators.push_back({std::move(*bus), actuator.axis, actuator.scale,
                                static_cast<std::uint8_t>(actuator.homing_turn), max_torque, mode, gain,
                                actuator.probe_edge});
   }
+  return {};
+}
+
+Expected<> add_spindles(const sdk::DeviceObject& device, const ModuleLoader& loader, BusRegistry& registry,
+                        ServoLoopParts& parts, std::vector<ModuleInUse>& modules) {
   for (const sdk::Spindle& spindle : device.spindles) {
-    auto at = place(fmt::format("spindle {}", parts.spindles.size()), spindle.bus, spindle.axis);
-    if (!at) return tl::unexpected(at.error());
-    parts.spindles.push_back({std::move(at->first), at->second, spindle.max_speed_rpm});
+    const std::string who = fmt::format("spindle {}", parts.spindles.size());
+    auto bus = bus_of(who, spindle.bus, spindle.axis, device, loader, registry, parts.virtual_mode);
+    if (!bus) return tl::unexpected(bus.error());
+    std::shared_ptr<ServoLaw> law;
+    if (!spindle.servo_law.name.empty()) {
+      auto loaded = load_law(spindle.servo_law, spindle.gains, who, loader, modules);
+      if (!loaded) return tl::unexpected(loaded.error());
+      law = std::move(*loaded);
+    }
+    ServoSpindle part{.bus = std::move(*bus), .axis = spindle.axis, .max_speed_rpm = spindle.max_speed_rpm};
+    if (!parts.virtual_mode) {
+      const DigitalControlInterface& interface = *part.bus->interface;
+      const std::string drive = fmt::format("{} (bus {}, axis {})", who, spindle.bus, spindle.axis);
+      if (spindle.scale.rated_torque_nm > 0 && !interface.tells_torque(spindle.axis)) {
+        return failure(
+            MinorCode::InvalidParameterValue,
+            fmt::format("{}: RatedTorque is given, and its drive tells no torque here; leave it out, or have "
+                        "6077h carried",
+                        drive));
+      }
+      part.mode = interface.mode(spindle.axis);
+      part.law = std::move(law);
+      part.method = spindle.method;
+      part.scale = spindle.scale;
+      part.max_acceleration_rpm_s = spindle.max_acceleration_rpm_s;
+      part.max_following_error_deg = spindle.max_following_error_deg;
+      part.max_torque_nm = spindle.max_torque_nm;
+      part.speed_tolerance_rpm = spindle.speed_tolerance_rpm;
+      part.speed_timeout_s = spindle.speed_timeout_s;
+      if (auto fine = check_spindle(part, drive); !fine) return fine;
+    }
+    parts.spindles.push_back(std::move(part));
   }
   return {};
 }
@@ -290,6 +338,7 @@ Expected<std::shared_ptr<Mechanism>> assemble(const sdk::DeviceObject& device, c
                    .and_then([&] { return add_geometry(device, loader, parts, modules); })
                    .and_then([&] { return add_axes(device, loader, parts, modules); })
                    .and_then([&] { return add_drives(device, loader, registry, parts); })
+                   .and_then([&] { return add_spindles(device, loader, registry, parts, modules); })
                    .and_then([&] { return add_sensors(device, loader, registry, parts); })
                    .and_then([&] { return add_io(device, loader, registry, parts); });
   if (!ready) return tl::unexpected(ready.error());

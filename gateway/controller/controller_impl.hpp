@@ -29,6 +29,12 @@ struct Controller::Impl {
   // Changing mechanisms (mechanism_change.cpp).
   [[nodiscard]] Expected<> put_in(const sdk::DeviceObject& device, bool fresh);
   [[nodiscard]] Expected<> take_out();
+  /// Takes the power off the mechanism in force, and the servo thread away from it.
+  [[nodiscard]] Expected<> switch_off();
+  /// Puts in the mechanism in force with another interface to its drives (interface_change.cpp).
+  [[nodiscard]] Expected<> exchange_interface(const sdk::DeviceObject& device);
+  [[nodiscard]] static bool same_interface(const sdk::DeviceObject& one, const sdk::DeviceObject& other);
+  void bound_spindles(const sdk::DeviceObject& device);
   [[nodiscard]] Expected<> reset();
   void come_to_rest() noexcept;
   void tell_of_mechanism(std::string message);

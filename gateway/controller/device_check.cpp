@@ -100,8 +100,16 @@ Expected<> check_actuators(const sdk::DeviceObject& device) {
     if (auto free = take(who, spindle.bus, spindle.axis); !free) return free;
     auto fine = check_all(who, {{"spindle/MaxSpeed", spindle.max_speed_rpm},
                                 {"spindle/SpeedTolerance", spindle.speed_tolerance_rpm},
-                                {"spindle/SpeedTimeout", spindle.speed_timeout_s}});
+                                {"spindle/SpeedTimeout", spindle.speed_timeout_s},
+                                {"spindle/MaxTorque", spindle.max_torque_nm},
+                                {"spindle/RatedTorque", spindle.scale.rated_torque_nm}});
     if (!fine) return fine;
+    for (const double gain : spindle.gains) {
+      if (auto sound = check_all(who, {{"spindle/Gains", gain}}); !sound) return sound;
+    }
+    if (spindle.servo_law.name.empty() && !spindle.gains.empty()) {
+      return refuse(who + ": it has gains and no servo control law; choose one (SetMechanismSpindleServoControlLaw)");
+    }
     // 0 rpm is a spindle that does not turn; one that does needs a tolerance that it can keep.
     constexpr double kLeastToleranceRpm = 0.1;
     if (spindle.max_speed_rpm != 0 &&

@@ -91,9 +91,39 @@ std::string code_text(const ServoFault& fault, std::uint16_t code, const Mechani
   return text ? *text : fieldbus::canopen::emergency_text(code);
 }
 
+/// What only a spindle's own watch finds; nothing for what any drive may have.
+std::optional<std::string> spindle_cause(const ServoFault& fault, const std::string& at, const Mechanism* mechanism) {
+  switch (fault.kind) {
+    case ServoFault::Kind::FollowingError:
+      return fmt::format(
+          "{}: its angle is {:.4g} degrees off, beyond the bound of {:.4g}; look for a blocked spindle or weak gains, "
+          "then reset",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::VelocityBound:
+      return fmt::format(
+          "{}: it turns at {:.4g} rpm, a fifth beyond its {:.4g} rpm; look for a drive that runs away, or a wrong "
+          "scale "
+          "or direction, then reset",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::TorqueBound: {
+      const bool own = mechanism == nullptr || fault.index >= mechanism->device.spindles.size() ||
+                       fault.bound >= mechanism->device.spindles[fault.index].max_torque_nm;
+      return fmt::format(
+          "{}: it gave {:.3g} N·m for a tenth of a second, and {} {:.3g} N·m; look at the tool, which may be blunt or "
+          "stuck, and cut less at once, then reset",
+          at, fault.value, own ? "may give" : "its tool bears", fault.bound);
+    }
+    default:
+      return {};
+  }
+}
+
 std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
   std::string at = where(fault, mechanism != nullptr ? &mechanism->device : nullptr);
   const auto word = static_cast<unsigned>(std::lround(std::abs(fault.value)));
+  if (fault.part == ServoFault::Part::Spindle) {
+    if (auto text = spindle_cause(fault, at, mechanism)) return *text;
+  }
   switch (fault.kind) {
     case ServoFault::Kind::None:
       return "no fault";

@@ -53,12 +53,12 @@ struct CycleSample {
   ToolPose pose_actual;         ///< part frame
   std::array<double, kMaxJoints> position_set{}, velocity_set{}, acceleration_set{};
   std::array<double, kMaxJoints> position{}, velocity{}, effort{};
-  std::array<double, kMaxJoints> force{};                  ///< as force sensors measure it; 0 where there is none
-  std::array<ContactState, kMaxJoints> contact{};          ///< of joints under force control
-  std::array<std::uint16_t, kMaxJoints> statusword{};      ///< one an actuator, as all that drives tell
-  std::array<std::uint16_t, kMaxJoints> error_code{};      ///< CiA 402's 603Fh
-  std::array<std::int16_t, kMaxJoints> torque_permille{};  ///< of the rated one, measured
-  std::array<double, 4> spindle_rpm{};
+  std::array<double, kMaxJoints> force{};                    ///< as force sensors measure it; 0 where there is none
+  std::array<ContactState, kMaxJoints> contact{};            ///< of joints under force control
+  std::array<std::uint16_t, kMaxJoints> statusword{};        ///< one an actuator, as all that drives tell
+  std::array<std::uint16_t, kMaxJoints> error_code{};        ///< CiA 402's 603Fh
+  std::array<std::int16_t, kMaxJoints> torque_permille{};    ///< of the rated one, measured
+  std::array<double, 4> spindle_rpm{}, spindle_torque_nm{};  ///< measured
   std::uint64_t inputs = 0, outputs = 0;
   ProbeReport probe;
   std::uint64_t moves_done = 0;  ///< since the mechanism went in

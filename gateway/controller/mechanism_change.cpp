@@ -153,6 +153,8 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
   auto tools = rack.read(device.machine());
   if (!tools) return tl::unexpected(tools.error());
   const bool virtual_before = in_force && in_force->virtual_mode();
+  const bool on_its_buses = fresh || !in_force || virtual_mode || same_interface(in_force->device, device);
+  if (!on_its_buses) return exchange_interface(device);
   auto before = in_force;
   auto next = assemble(device, assembly_options(virtual_mode), loader(folder), registry);
   std::optional<std::vector<double>> standing;
@@ -209,13 +211,7 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
     (void)cam.keep_mounted();  // of the mechanism before
     rack.adopt(device.machine(), std::move(*tools), keeps);
   }
-  // A spindle that turns faster than it may now slows down, and feed does not wait for the speed that it had.
-  supervisor.wish([&](ServoWishes& wishes) {
-    for (std::size_t i = 0; i < kMaxSpindles; ++i) {
-      const double bound = i < device.spindles.size() ? device.spindles[i].max_speed_rpm : 0;
-      wishes.spindle_rpm[i] = std::clamp(wishes.spindle_rpm[i], -bound, bound);
-    }
-  });
+  bound_spindles(device);
   tell_cam(&in_force->device, fresh);
   if (role) supervisor.set_frames(frames_before);
   draft.discard(&in_force->device);
@@ -223,6 +219,16 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
   tell_of_mechanism(
       fmt::format("{} is {}{}", device.name, fresh ? "loaded" : "configured", virtual_mode ? " in virtual mode" : ""));
   return {};
+}
+
+/// A spindle that turns faster than it may now slows down, and feed does not wait for the speed that it had.
+void Controller::Impl::bound_spindles(const sdk::DeviceObject& device) {
+  supervisor.wish([&](ServoWishes& wishes) {
+    for (std::size_t i = 0; i < kMaxSpindles; ++i) {
+      const double bound = i < device.spindles.size() ? device.spindles[i].max_speed_rpm : 0;
+      wishes.spindle_rpm[i] = std::clamp(wishes.spindle_rpm[i], -bound, bound);
+    }
+  });
 }
 
 void Controller::Impl::tell_cam(const sdk::DeviceObject* device, bool fresh) {
@@ -235,26 +241,29 @@ void Controller::Impl::tell_of_mechanism(std::string message) {
   supervisor.report({Event::Kind::Mechanism, now.t_s, 0, std::move(message), now.progress.cycle, {}});
 }
 
+Expected<> Controller::Impl::switch_off() {
+  supervisor.wish([](ServoWishes& wishes) {
+    wishes.power = false;
+    wishes.reset = false;
+    wishes.spindle_rpm.fill(0);
+  });
+  // Some cycles, so that the drives hear of it before the bus stops.
+  (void)wait_for([&, since = link->status.read().t_s] {
+    const ServoStatus now = link->status.read();
+    return now.state == ServoState::Off || now.t_s - since > 0.1;
+  });
+  return swap(nullptr).map([&] { (void)supervisor.install(nullptr, generation, false); });
+}
+
 Expected<> Controller::Impl::take_out() {
   if (!in_force) return {};
   const CycleState state = supervisor.state();
   if (!is_faulted(state)) {
     if (auto rest = supervisor.require_rest("unloading"); !rest) return rest;
   }
-  supervisor.wish([](ServoWishes& wishes) {
-    wishes.power = false;
-    wishes.reset = false;
-    wishes.spindle_rpm.fill(0);
-    wishes.outputs = 0;
-  });
+  supervisor.wish([](ServoWishes& wishes) { wishes.outputs = 0; });
   const std::string name = in_force->device.name;
-  // Some cycles, so that the drives hear of it before the bus stops.
-  (void)wait_for([&, since = link->status.read().t_s] {
-    const ServoStatus now = link->status.read();
-    return now.state == ServoState::Off || now.t_s - since > 0.1;
-  });
-  if (auto swapped = swap(nullptr); !swapped) return swapped;
-  (void)supervisor.install(nullptr, generation, false);
+  if (auto off = switch_off(); !off) return off;
   (void)cam.keep_mounted();
   supervisor.drop_parked(name + " was unloaded");
   tell_cam(nullptr, true);

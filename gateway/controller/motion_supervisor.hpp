@@ -84,8 +84,8 @@ class MotionSupervisor {
   [[nodiscard]] ToolsNow tools_now();
   /// The person who was asked says that this tool is in.
   [[nodiscard]] Expected<> confirm_tool(int number);
-  /// What is in the spindle, as it is known when nothing is queued.
-  void set_mounted(std::optional<int> number);
+  /// What is in the spindle, as it is known when nothing is queued, and the torque that it bears.
+  void set_mounted(std::optional<int> number, double max_torque_nm = 0);
   /// Builds, adds and runs one move from rest, outside of the cycle. With `share` it is a jog that lasts while
   /// `renew_jog` says so, at this share of the move's speed.
   [[nodiscard]] Expected<> run_positioning(const Move& move, std::optional<double> share = std::nullopt);

@@ -52,7 +52,8 @@ struct AskPerson {
 struct MountTool {
   int number = 0;
   Frame tip{};
-  std::string text;  ///< the tool, for people
+  std::string text;          ///< the tool, for people
+  double max_torque_nm = 0;  ///< that it bears; 0: not given
 };
 
 using QueueStep = std::variant<QueuedPath, BeginToolChange, SwitchOutputs, AwaitInput, AskPerson, MountTool>;

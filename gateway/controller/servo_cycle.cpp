@@ -55,6 +55,7 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
   command_.reset = wishes.reset;
   command_.home = wishes.home;
   command_.spindle_rpm = wishes.spindle_rpm;
+  command_.tool_torque_nm = wishes.tool_torque_nm;
   command_.outputs = wishes.outputs;
   command_.force = wishes.force;
   if (!report_.follows) mechanism_->follower.hold_at(loop.hold_position().first(loop.joint_count()));
@@ -127,6 +128,7 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
     sample_.error_code = report_.error_code;
     sample_.torque_permille = report_.torque_permille;
     std::copy(report_.spindle_rpm.begin(), report_.spindle_rpm.end(), sample_.spindle_rpm.begin());
+    std::copy(report_.spindle_torque_nm.begin(), report_.spindle_torque_nm.end(), sample_.spindle_torque_nm.begin());
     sample_.inputs = report_.inputs;
     sample_.probe = report_.probe;
     sample_.outputs = wishes.outputs;

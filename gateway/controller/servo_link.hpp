@@ -19,6 +19,7 @@ struct ServoWishes {
   bool home = false;
   Frames frames;
   std::array<double, kMaxSpindles> spindle_rpm{};
+  double tool_torque_nm = 0;  ///< most that the tool in spindle 0 bears; 0: not given
   std::uint64_t outputs = 0;
   std::array<double, kMaxJoints> force{};  ///< of joints under force control
   CycleState state = CycleState::Idle;     ///< goes into the samples

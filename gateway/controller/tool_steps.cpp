@@ -48,9 +48,11 @@ ToolsNow MotionSupervisor::tools_now() {
   return now;
 }
 
-void MotionSupervisor::set_mounted(std::optional<int> number) {
+void MotionSupervisor::set_mounted(std::optional<int> number, double max_torque_nm) {
   const Turn turn(*this);
   mounted_ = number;
+  wishes_.tool_torque_nm = max_torque_nm;
+  link_.wishes.write(wishes_);
 }
 
 Expected<> MotionSupervisor::confirm_tool(int number) {
@@ -151,6 +153,7 @@ bool MotionSupervisor::take(MountTool& mount, const CycleObservation& /*seen*/) 
   mounted_ = mount.number;
   changing_ = false;
   wishes_.frames.tool = mount.tip;
+  wishes_.tool_torque_nm = mount.max_torque_nm;
   link_.wishes.write(wishes_);
   mechanism_->planner.clear();  // what was cut with another tool is not retraced with this one
   sequencer_.one_done();

@@ -170,6 +170,13 @@ std::vector<sdk::Spindle> spindles(const Json& list) {
     constexpr double kSpeedTimeoutS = 5;
     spindle.speed_tolerance_rpm = number(entry, "SpeedTolerance", kSpeedToleranceRpm);
     spindle.speed_timeout_s = number(entry, "SpeedTimeout", kSpeedTimeoutS);
+    if (const auto law = entry.find("ServoControlLaw"); law != entry.end()) spindle.servo_law = module_choice(*law);
+    if (entry.value("ControlMethod", "") == "Position") spindle.method = ControlMethod::Position;
+    spindle.gains = entry.value("Gains", std::vector<double>());
+    spindle.scale = {number(entry, "CountsPerRevolution"), number(entry, "RatedTorque"), entry.value("Direction", 1)};
+    spindle.max_acceleration_rpm_s = number(entry, "MaxAcceleration");
+    constexpr double kFollowingErrorDeg = 90;
+    spindle.max_following_error_deg = number(entry, "MaxFollowingError", kFollowingErrorDeg);
     result.push_back(std::move(spindle));
   }
   return result;

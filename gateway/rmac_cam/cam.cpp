@@ -38,8 +38,9 @@ void Cam::mechanism_changed(const sdk::DeviceObject* device, bool fresh) {
     supervisor_.set_override(100);
     // The tool stays in the spindle whoever was loaded meanwhile.
     const auto mounted = device != nullptr ? rack_.mounted() : kNoTool;
-    supervisor_.set_mounted(mounted);
-    if (mounted && *mounted != kNoTool) supervisor_.set_frames({{}, tip_on_interface(rack_.tool(*mounted).value())});
+    const auto tool = mounted && *mounted != kNoTool ? rack_.tool(*mounted) : std::nullopt;
+    supervisor_.set_mounted(mounted, tool ? tool->max_torque_nm : 0);
+    if (tool) supervisor_.set_frames({{}, tip_on_interface(*tool)});
   }
   let_go_of_forces();
   // A configuration defines the mechanism: its maxima are the new bounds of ours, upwards too.

@@ -19,6 +19,10 @@ Frame tip_of(const Tool& tool) {
   return tool.number == kNoTool ? Frame{} : tip_on_interface(tool);
 }
 
+MountTool mount(const Tool& tool) {
+  return {tool.number, tip_of(tool), described(tool), tool.max_torque_nm};
+}
+
 }  // namespace
 
 Expected<Tool> Cam::find_tool(int number, const char* function) const {
@@ -44,7 +48,9 @@ Expected<> Cam::set_tool(const Tool& tool) {
   Tool set = tool;
   set.frame = normalized(tool.frame);
   return rack_.set(set).map([&] {
-    if (now.mounted == set.number) supervisor_.set_frames({frames().part, tip_of(set)});
+    if (now.mounted != set.number) return;
+    supervisor_.set_mounted(set.number, set.max_torque_nm);
+    supervisor_.set_frames({frames().part, tip_of(set)});
   });
 }
 
@@ -63,8 +69,7 @@ BeginToolChange Cam::begin_change() const {
 
 std::vector<QueueStep> Cam::change_by_hand(const Tool& tool) const {
   const std::string what = tool.number == kNoTool ? "take the tool out" : fmt::format("insert {}", described(tool));
-  return {begin_change(), AskPerson{fmt::format("{}, then confirm: rmac confirm {}", what, tool.number)},
-          MountTool{tool.number, tip_of(tool), described(tool)}};
+  return {begin_change(), AskPerson{fmt::format("{}, then confirm: rmac confirm {}", what, tool.number)}, mount(tool)};
 }
 
 Expected<QueueStep> Cam::changer_step(const sdk::ToolChangeStep& step, int number) {
@@ -104,7 +109,7 @@ Expected<std::vector<QueueStep>> Cam::change_by_changer(int old, const Tool& too
     if (!made) return tl::unexpected(made.error());
     steps.push_back(std::move(*made));
   }
-  steps.emplace_back(MountTool{tool.number, tip_of(tool), described(tool)});
+  steps.emplace_back(mount(tool));
   return steps;
 }
 
@@ -123,7 +128,7 @@ Expected<> Cam::change_tool(int number) {
   const Frames frames_after{frames_before.part, tip_of(*tool)};
   Expected<std::vector<QueueStep>> steps;
   if (there) {
-    steps->emplace_back(MountTool{number, tip_of(*tool), described(*tool)});
+    steps->emplace_back(mount(*tool));
   } else {
     steps =
         device_->tool_changer ? change_by_changer(now.last ? *now.last : *now.mounted, *tool) : change_by_hand(*tool);
@@ -170,7 +175,7 @@ Expected<> Cam::confirm_tool(int number) {
                     *now.mounted));
   }
   return supervisor_.require_rest("ConfirmToolChange").and_then([&] { return rack_.set_mounted(number); }).map([&] {
-    supervisor_.set_mounted(number);
+    supervisor_.set_mounted(number, tool->max_torque_nm);
     supervisor_.set_frames({frames().part, tip_of(*tool)});
   });
 }

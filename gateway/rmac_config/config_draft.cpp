@@ -161,18 +161,6 @@ Expected<> ConfigDraft::set_maximum_feedrate(double mm_min) {
   });
 }
 
-Expected<> ConfigDraft::set_spindle_maximum_rpm(int spindle, double rpm) {
-  const std::size_t count = draft_.spindles.size();
-  if (spindle < 0 || static_cast<std::size_t>(spindle) >= count) {
-    return refuse(count == 0 ? "SetMechanismSpindleMaxRPM: the mechanism has no spindle"
-                             : fmt::format("SetMechanismSpindleMaxRPM: there is no spindle {}; spindles are 0 to {}",
-                                           spindle, count - 1));
-  }
-  return check_device_range("spindle/MaxSpeed", rpm, "SetMechanismSpindleMaxRPM").map([&] {
-    draft_.spindles[static_cast<std::size_t>(spindle)].max_speed_rpm = rpm;
-  });
-}
-
 Expected<> ConfigDraft::set_joint_control_method(int number, ControlMethod method) {
   return change_joint(number, "SetMechanismJointControlMethod", [&](sdk::Joint& found) { found.method = method; });
 }

@@ -38,11 +38,15 @@ class ConfigDraft final : public sdk::RmacConfig {
   Expected<> set_joint_maximum_jerk(int joint, double value) override;
   Expected<> set_maximum_feedrate(double mm_min) override;
   Expected<> set_spindle_maximum_rpm(int spindle, double rpm) override;
+  Expected<> set_spindle_maximum_torque(int spindle, double torque_nm) override;
   Expected<> set_joint_control_method(int joint, ControlMethod method) override;
   Expected<> set_joint_servo_control_law(int joint, const sdk::ModuleChoice& module) override;
   Expected<> set_joint_servo_control_gains(int joint, std::span<const double> gains) override;
   Expected<> set_joint_watch(int joint, double max_following_error, double max_effort) override;
   Expected<> set_joint_mechanics(int joint, const JointMechanics& mechanics) override;
+  Expected<> set_spindle_control_method(int spindle, ControlMethod method) override;
+  Expected<> set_spindle_servo_control_law(int spindle, const sdk::ModuleChoice& module) override;
+  Expected<> set_spindle_servo_control_gains(int spindle, std::span<const double> gains) override;
   Expected<> set_digital_control_interface(const sdk::ModuleChoice& module) override;
   Expected<> initialize_digital_control_interface() override;
   Expected<> set_digital_io_interface(const sdk::ModuleChoice& module) override;
@@ -55,6 +59,7 @@ class ConfigDraft final : public sdk::RmacConfig {
   [[nodiscard]] Expected<sdk::Joint*> joint(int number, const char* function);
   template <typename Change>
   Expected<> change_joint(int number, const char* function, Change&& change);
+  [[nodiscard]] Expected<sdk::Spindle*> spindle(int number, const char* function);
   Expected<> set_limit(int number, const char* function, const char* key, double value, double JointLimits::*member);
 
   Controller controller_;

@@ -21,7 +21,7 @@ struct Tool {
   double radius_mm = 0;
   Frame frame{};              ///< where the tool sits on the tool interface, before its length: an angle head's turn
   double max_rpm = 0;         ///< 0: the spindle's own bound alone
-  double max_torque_nm = 0;   ///< 0: not given; told, and watched by nobody
+  double max_torque_nm = 0;   ///< that spindle 0 may measure with it; 0: not given
   bool needs_spindle = true;  ///< it cuts only while the spindle turns; a probe or a drag knife does not need that
 };
 

@@ -185,23 +185,21 @@ void check_map_module(const Task& task, Watch& watch, ModuleReport& report, cons
   check_module<ActuatorMap>(task, device.actuator_map, watch, report, tell, {}, check);
 }
 
-sdk::ModuleChoice law_of(const sdk::Joint& joint) {
-  return {sdk::servo_law_module(joint.servo_law.name), joint.servo_law.numbers, joint.servo_law.texts};
-}
-
-void check_law_module(const Task& task, const sdk::Joint& joint, Watch& watch, ModuleReport& report, const Tell& tell) {
+/// The law of a joint or a spindle.
+void check_law_module(const Task& task, const sdk::ModuleChoice& choice, const std::vector<double>& gains, Watch& watch,
+                      ModuleReport& report, const Tell& tell) {
   const auto check = [&](const std::shared_ptr<ServoLaw>& law) {
     WatchedServoLaw watched(law, watch);
-    ServoLawCase given{joint.gains, joint.gains, task.seed};
+    ServoLawCase given{gains, gains, task.seed};
     for (double& gain : given.other_gains) gain /= 2;
-    if (!law->set_gains(given.other_gains)) given.other_gains = joint.gains;
+    if (!law->set_gains(given.other_gains)) given.other_gains = gains;
     const Checked kept = check_servo_law(watched, given);
     const Checked real_time = kept ? watch.misdeed() : Checked();
     return take(kept, "its output is bounded and does not jump, and no number in gives none out", report, tell) &&
            take(real_time, "on the cycle it neither allocates nor locks nor calls the system", report, tell);
   };
-  const auto use = [&](void* object) { (void)static_cast<ServoLaw*>(object)->set_gains(joint.gains); };
-  check_module<ServoLaw>(task, law_of(joint), watch, report, tell, use, check);
+  const auto use = [&](void* object) { (void)static_cast<ServoLaw*>(object)->set_gains(gains); };
+  check_module<ServoLaw>(task, choice, watch, report, tell, use, check);
 }
 
 void check_driver_module(const Task& task, Watch& watch, ModuleReport& report, const Tell& tell) {
@@ -243,15 +241,20 @@ std::vector<Job> jobs_for(const sdk::DeviceObject& device) {
   jobs.push_back({"device driver", device.device_driver, check_driver_module});
   jobs.push_back({"kinematics", device.kinematics.name, check_kinematics_module});
   jobs.push_back({"actuator map", device.actuator_map.name, check_map_module});
+  const auto add_law = [&jobs](const std::string& whose, const auto& loop) {
+    if (loop.servo_law.name.empty()) return;
+    const sdk::ModuleChoice choice{sdk::servo_law_module(loop.servo_law.name), loop.servo_law.numbers,
+                                   loop.servo_law.texts};
+    jobs.push_back(
+        {"servo control law of " + whose, choice.name,
+         [choice, gains = loop.gains](const Task& task, Watch& watch, ModuleReport& report, const Tell& tell) {
+           check_law_module(task, choice, gains, watch, report, tell);
+         }});
+  };
   for (const auto* joints : {&device.joints, &device.held_joints}) {
-    for (const sdk::Joint& joint : *joints) {
-      if (joint.servo_law.name.empty()) continue;
-      jobs.push_back({"servo control law of joint " + joint.limits.name, law_of(joint).name,
-                      [joint](const Task& task, Watch& watch, ModuleReport& report, const Tell& tell) {
-                        check_law_module(task, joint, watch, report, tell);
-                      }});
-    }
+    for (const sdk::Joint& joint : *joints) add_law("joint " + joint.limits.name, joint);
   }
+  for (std::size_t i = 0; i < device.spindles.size(); ++i) add_law(fmt::format("spindle {}", i), device.spindles[i]);
   jobs.push_back({"digital control interface", device.digital_control_interface.name, check_interface});
   if (!device.digital_io_interface.name.empty()) {
     jobs.push_back({"digital I/O interface", device.digital_io_interface.name, check_interface});

@@ -107,6 +107,10 @@ DriveMode CanopenInterface::mode(std::size_t axis) const noexcept {
   return impl_->axes[axis].config.mode;
 }
 
+bool CanopenInterface::tells_torque(std::size_t axis) const noexcept {
+  return impl_->axes[axis].tells(0x6077);
+}
+
 double CanopenInterface::counts_per_revolution(std::size_t axis) const noexcept {
   const BusAxis& of = impl_->axes[axis];
   const auto offset = static_cast<std::uint16_t>(kAxisOffset * of.config.axis_in_node);

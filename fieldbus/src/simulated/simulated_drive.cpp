@@ -130,6 +130,7 @@ DriveFeedback SimulatedSpindleDrive::feedback() const noexcept {
   return {.statusword = power_.statusword(),
           .error_code = power_.error_code(),
           .velocity_rpm = static_cast<std::int32_t>(std::lround(plant_.speed_rpm())),
+          .torque_permille = static_cast<std::int16_t>(std::lround(plant_.torque_permille())),
           .online = true};
 }
 

@@ -49,6 +49,7 @@ void SimulatedInterface::act_on_injected(std::size_t axis) noexcept {
     std::visit([code](auto& drive) { drive.power().trip(static_cast<std::uint16_t>(code)); }, drives_[axis]);
   }
   const std::int32_t shift = injected.encoder_shift.exchange(0);
+  if (auto* const spindle = std::get_if<SimulatedSpindleDrive>(&drives_[axis])) spindle->load(injected.push_nm);
   auto* const servo = std::get_if<SimulatedServoDrive>(&drives_[axis]);
   if (servo == nullptr) return;
   servo->shift_encoder(shift);

@@ -68,12 +68,15 @@ void SpindlePlant::advance(double wanted_rpm, bool powered, double duration_s) n
   const double bounded = powered ? std::clamp(wanted_rpm, -parameters_.max_speed_rpm, parameters_.max_speed_rpm) : 0;
   // Without power it runs down under a tenth of its torque.
   const double torque_bound = powered ? parameters_.max_torque_nm : parameters_.max_torque_nm / 10;
-  const double change_bound_rpm = torque_bound / parameters_.inertia_kg_m2 * duration_s / kRadPerRpm;
+  const double rpm_per_nm = duration_s / (parameters_.inertia_kg_m2 * kRadPerRpm);
+  const double load = speed_rpm_ == 0 ? 0 : std::copysign(load_nm_, speed_rpm_);
   const double approach = (bounded - speed_rpm_) * -std::expm1(-duration_s / parameters_.time_constant_s);
-  const double change = std::clamp(approach, -change_bound_rpm, change_bound_rpm);
-  speed_rpm_ += change;
+  const double motor = std::clamp(approach / rpm_per_nm + load, -torque_bound, torque_bound);
+  const double before = speed_rpm_;
+  speed_rpm_ += (motor - load) * rpm_per_nm;
+  if (load != 0 && before * speed_rpm_ < 0) speed_rpm_ = 0;  // a load stops it, and does not turn it round
   if (std::abs(bounded - speed_rpm_) < kSettled) speed_rpm_ = bounded;
-  torque_nm_ = powered ? change * kRadPerRpm / duration_s * parameters_.inertia_kg_m2 : 0;
+  torque_nm_ = powered ? motor : 0;
 }
 
 }  // namespace rmac::fieldbus

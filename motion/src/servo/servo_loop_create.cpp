@@ -137,9 +137,7 @@ Expected<> check_drives(const ServoLoopParts& parts) {
   for (std::size_t i = 0; i < parts.spindles.size(); ++i) {
     const std::string who = "spindle " + std::to_string(i);
     if (auto ok = take(parts.spindles[i].bus.get(), parts.spindles[i].axis, who); !ok) return ok;
-    if (!(parts.spindles[i].max_speed_rpm >= 0)) {
-      return failure(MinorCode::InvalidParameterValue, "servo loop: " + who + " has a negative largest speed");
-    }
+    if (auto ok = check_spindle(parts.spindles[i], "servo loop: " + who); !ok) return ok;
   }
   for (std::size_t j = 0; j < parts.axes.size(); ++j) {
     const auto& sensor = parts.axes[j].force_sensor;
@@ -223,6 +221,7 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
     if (axis.force_sensor) add_bus(axis.force_sensor->bus);
   }
 
+  for (const ServoSpindle& spindle : parts.spindles) spindles.emplace_back(spindle, parts.period_s);
   for (const ServoActuator& actuator : parts.actuators) {
     if (actuator.mode == DriveMode::CyclicSyncTorque) torque_drives |= std::uint32_t{1} << latches.size();
     latches.push_back(actuator.probe_edge ? std::optional(ProbeLatch(*actuator.probe_edge)) : std::nullopt);

@@ -18,6 +18,7 @@ void ServoLoop::cycle(const ServoCommand& command, ServoReport& report) noexcept
   } else {
     loop.read_actuators();
     loop.read_joints();
+    loop.read_spindles();
     loop.watch_drives();
     loop.watch_cycles(command.cycles_missed);
     loop.finish_reset();
@@ -27,14 +28,16 @@ void ServoLoop::cycle(const ServoCommand& command, ServoReport& report) noexcept
     loop.watch_limits();
     loop.watch_joints();
     loop.watch_torques();
+    loop.watch_spindles(command);
     report.follows = loop.follows;
     loop.run_laws();
+    loop.run_spindles(command);
     loop.watch_enabling();
     loop.remove_power_at_rest();
     loop.make_torques();
     loop.aim_shafts();
     loop.write_actuators();
-    loop.write_spindles(command);
+    loop.write_spindles();
   }
   loop.fill(command, report);
 }
@@ -64,11 +67,6 @@ void ServoLoop::Impl::exchange(const ServoCommand& command, ServoReport& report)
 
 const DriveFeedback& ServoLoop::Impl::feedback(std::size_t actuator) const noexcept {
   const ServoActuator& part = parts.actuators[actuator];
-  return part.bus->feedback[part.axis];
-}
-
-const DriveFeedback& ServoLoop::Impl::spindle_feedback(std::size_t spindle) const noexcept {
-  const ServoSpindle& part = parts.spindles[spindle];
   return part.bus->feedback[part.axis];
 }
 
@@ -320,18 +318,6 @@ void ServoLoop::Impl::command_aim(std::size_t actuator, DriveCommand& words) con
     const double wanted = (aim[actuator] - aim_before[actuator]) / parts.period_s +
                           part.position_gain * (aim[actuator] - shaft[actuator]);
     words.target_velocity_rpm = part.scale.direction * wanted * 30 / std::numbers::pi;
-  }
-}
-
-void ServoLoop::Impl::write_spindles(const ServoCommand& command) noexcept {
-  for (std::size_t i = 0; i < parts.spindles.size(); ++i) {
-    const ServoSpindle& part = parts.spindles[i];
-    DriveCommand& words = part.bus->commands[part.axis];
-    words.controlword = next_controlword(spindle_feedback(i).statusword, wish(rest[actuators + i].reached), resetting,
-                                         words.controlword);
-    words.mode = DriveMode::ProfileVelocity;
-    const double wanted = driving() && std::isfinite(command.spindle_rpm[i]) ? command.spindle_rpm[i] : 0;
-    words.target_velocity_rpm = std::round(std::clamp(wanted, -part.max_speed_rpm, part.max_speed_rpm));
   }
 }
 

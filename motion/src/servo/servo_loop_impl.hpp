@@ -7,6 +7,7 @@
 #include "servo/position_correction.hpp"
 #include "servo/probe_latch.hpp"
 #include "servo/probe_signal.hpp"
+#include "servo/spindle_loop.hpp"
 
 namespace rmac {
 
@@ -42,6 +43,9 @@ struct ServoLoop::Impl {
   void watch_sensor(std::size_t joint) noexcept;
   void watch_contact(std::size_t joint) noexcept;
   void watch_torques() noexcept;
+  void read_spindles() noexcept;
+  void run_spindles(const ServoCommand& command) noexcept;
+  void watch_spindles(const ServoCommand& command) noexcept;
   void make_live() noexcept;
   void make_setpoints(const ServoCommand& command, ServoReport& report) noexcept;
   void follow_force(std::size_t joint, double wanted) noexcept;
@@ -54,14 +58,14 @@ struct ServoLoop::Impl {
   void aim_shafts() noexcept;
   void command_aim(std::size_t actuator, DriveCommand& words) const noexcept;
   void write_actuators() noexcept;
-  void write_spindles(const ServoCommand& command) noexcept;
+  void write_spindles() noexcept;
   void fill_drives(ServoReport& report) const noexcept;
   void fill(const ServoCommand& command, ServoReport& report) const noexcept;
 
   void raise(const ServoFault& fault) noexcept;
   void let_go() noexcept;
   /// The category that the configuration gives a fault, as far as there is a choice.
-  [[nodiscard]] StopCategory stop_category(ServoFault::Kind kind) const noexcept;
+  [[nodiscard]] StopCategory stop_category(const ServoFault& found) const noexcept;
   void begin_braking() noexcept;
   void brake() noexcept;
   void remove_power_at_rest() noexcept;
@@ -83,6 +87,7 @@ struct ServoLoop::Impl {
   [[nodiscard]] ServoInput input(std::size_t joint) const noexcept;
   [[nodiscard]] const DriveFeedback& feedback(std::size_t actuator) const noexcept;
   [[nodiscard]] const DriveFeedback& spindle_feedback(std::size_t spindle) const noexcept;
+  [[nodiscard]] double wanted_rpm(std::size_t spindle, const ServoCommand& command) const noexcept;
   [[nodiscard]] double shaft_rad(std::size_t actuator, double counts) const noexcept;
   [[nodiscard]] double shaft_counts(std::size_t actuator, double rad) const noexcept;
   void take_over_joints(std::uint32_t live_drives, const std::array<double, kMaxJoints>& shaft_set) noexcept;
@@ -99,6 +104,7 @@ struct ServoLoop::Impl {
   std::vector<PositionCorrection> corrections;      ///< one a joint
   std::vector<EffortFilter> filters;                ///< one a joint
   std::vector<ForceLoop> force_loops;               ///< one a joint
+  std::vector<SpindleLoop> spindles;
 
   ServoState state = ServoState::Off;
   ServoFault fault;

@@ -14,7 +14,8 @@ void ServoLoop::Impl::fill_drives(ServoReport& report) const noexcept {
   }
   for (std::size_t i = 0; i < parts.spindles.size(); ++i) {
     report.spindle_statusword[i] = spindle_feedback(i).statusword;
-    report.spindle_rpm[i] = spindle_feedback(i).velocity_rpm;
+    report.spindle_rpm[i] = spindles[i].rpm();
+    report.spindle_torque_nm[i] = spindles[i].torque_nm();
   }
 }
 

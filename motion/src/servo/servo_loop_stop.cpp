@@ -11,14 +11,18 @@ namespace {
 constexpr double kStillS = 0.02;
 constexpr double kStillTurns = 5e-4;
 constexpr std::int64_t kStillCounts = 2;
-constexpr std::int64_t kStillRpm = 1;
+constexpr double kStillRpm = 1;
 // A drive that has not come to rest by itself by now does not brake.
 constexpr double kQuickStopS = 10;
 
+std::int64_t still_counts(double counts_per_turn) noexcept {
+  return std::max<std::int64_t>(kStillCounts, std::llround(kStillTurns * counts_per_turn));
+}
+
 }  // namespace
 
-StopCategory ServoLoop::Impl::stop_category(ServoFault::Kind kind) const noexcept {
-  switch (kind) {
+StopCategory ServoLoop::Impl::stop_category(const ServoFault& found) const noexcept {
+  switch (found.kind) {
     case ServoFault::Kind::SensorLost:
       return parts.stop_categories.sensor_lost;
     case ServoFault::Kind::ForceLimit:
@@ -27,6 +31,9 @@ StopCategory ServoLoop::Impl::stop_category(ServoFault::Kind kind) const noexcep
       return parts.stop_categories.contact_lost;
     case ServoFault::Kind::CyclesLost:
       return parts.stop_categories.cycles_lost;
+    case ServoFault::Kind::TorqueBound:
+      return found.part == ServoFault::Part::Spindle ? parts.stop_categories.spindle_overload
+                                                     : StopCategory::StopThenRemovePower;
     default:
       return StopCategory::StopThenRemovePower;
   }
@@ -47,7 +54,7 @@ void ServoLoop::Impl::raise(const ServoFault& found) noexcept {
   const bool drive_lost = found.kind == ServoFault::Kind::SensorLost && found.part != ServoFault::Part::Joint;
   const bool may_choose = state == ServoState::Engaged && !drive_lost;
   fault = found;
-  fault.stop = may_choose ? stop_category(found.kind) : StopCategory::StopThenRemovePower;
+  fault.stop = may_choose ? stop_category(found) : StopCategory::StopThenRemovePower;
   state = ServoState::Faulted;
   power_spent = true;
   follows = false;
@@ -100,12 +107,17 @@ void ServoLoop::Impl::remove_power_at_rest() noexcept {
   };
   for (std::size_t i = 0; i < actuators; ++i) {
     const double counts_per_turn = parts.actuators[i].scale.counts_per_revolution;
-    look(rest[i], counts[i], std::max<std::int64_t>(kStillCounts, std::llround(kStillTurns * counts_per_turn)));
+    look(rest[i], counts[i], still_counts(counts_per_turn));
   }
   for (std::size_t i = 0; i < parts.spindles.size(); ++i) {
+    if (spindles[i].has_encoder()) {
+      const double counts_per_turn = parts.spindles[i].scale.counts_per_revolution;
+      look(rest[actuators + i], spindles[i].counts(), still_counts(counts_per_turn));
+      continue;
+    }
     // A spindle stands at 0 rpm, not at any steady speed.
-    const std::int64_t rpm = spindle_feedback(i).velocity_rpm;
-    look(rest[actuators + i], std::abs(rpm) <= kStillRpm ? 0 : stopping_cycles * 1000, kStillRpm);
+    const bool stands = std::abs(spindles[i].rpm()) <= kStillRpm;
+    look(rest[actuators + i], stands ? 0 : stopping_cycles * 1000, 1);
   }
 }
 

@@ -207,7 +207,7 @@ json sample_of(const ParameterSpec& parameter) {
   }
 }
 
-TEST(Dispatcher, AnswersUnsupportedWhereMachineryIsMissingAndNowhereElse) {
+TEST(Dispatcher, AnswersUnsupportedForNoFunctionOfTheSpec) {
   for (const Method& entry : method_table()) {
     Api api;
     EXPECT_TRUE(api.session.records_fake.open());
@@ -223,10 +223,7 @@ TEST(Dispatcher, AnswersUnsupportedWhereMachineryIsMissingAndNowhereElse) {
     }
     const json response = api.call(entry.name, params.dump());
     const bool unsupported = response.contains("error") && response["error"]["data"]["minorCode"] == 16;
-    EXPECT_EQ(unsupported, !entry.supported()) << entry.name << ": " << response.dump();
-    if (unsupported) {
-      EXPECT_THAT(response["error"]["message"].get<std::string>(), HasSubstr(entry.missing));
-    }
+    EXPECT_FALSE(unsupported) << entry.name << ": " << response.dump();
   }
 }
 

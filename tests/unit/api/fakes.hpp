@@ -100,6 +100,10 @@ class MockConfig : public sdk::RmacConfig {
   MOCK_METHOD(Expected<>, set_joint_maximum_acceleration, (int, double), (override));
   MOCK_METHOD(Expected<>, set_joint_maximum_jerk, (int, double), (override));
   MOCK_METHOD(Expected<>, set_maximum_feedrate, (double), (override));
+  MOCK_METHOD(Expected<>, set_spindle_maximum_torque, (int, double), (override));
+  MOCK_METHOD(Expected<>, set_spindle_control_method, (int, ControlMethod), (override));
+  MOCK_METHOD(Expected<>, set_spindle_servo_control_law, (int, const sdk::ModuleChoice&), (override));
+  MOCK_METHOD(Expected<>, set_spindle_servo_control_gains, (int, std::span<const double>), (override));
   MOCK_METHOD(Expected<>, set_spindle_maximum_rpm, (int, double), (override));
   MOCK_METHOD(Expected<>, set_joint_control_method, (int, ControlMethod), (override));
   MOCK_METHOD(Expected<>, set_joint_servo_control_law, (int, const sdk::ModuleChoice&), (override));

@@ -78,11 +78,10 @@ TEST(MethodTable, HasTheSpecifiedResults) {
   }
 }
 
-TEST(MethodTable, SaysWhatEachMethodMeansAndWhatUnsupportedOnesLack) {
+TEST(MethodTable, SaysWhatEachMethodMeansAndDoes) {
   for (const Method& entry : method_table()) {
     EXPECT_FALSE(entry.meaning.empty()) << entry.name;
     EXPECT_TRUE(entry.handler) << entry.name;
-    EXPECT_EQ(entry.supported(), entry.missing.empty()) << entry.name;
   }
 }
 
@@ -98,7 +97,7 @@ TEST(MethodTable, StopsNeedNoAuthority) {
 std::set<std::string> methods_that(Effect effect) {
   std::set<std::string> names;
   for (const Method& entry : method_table()) {
-    if (entry.effect == effect && entry.supported()) names.insert(entry.name);
+    if (entry.effect == effect) names.insert(entry.name);
   }
   return names;
 }
@@ -117,8 +116,7 @@ TEST(MethodTable, SaysWhatStartsMotionAndWhatStopsIt) {
   for (const Method& entry : method_table()) {
     const std::string function = entry.name.substr(entry.name.find('.') + 1);
     const bool is_a_move =
-        (function.starts_with("MoveAlong") || function.starts_with("Machine_MoveIn") || function.ends_with("Target")) &&
-        entry.supported();
+        function.starts_with("MoveAlong") || function.starts_with("Machine_MoveIn") || function.ends_with("Target");
     if (is_a_move) {
       EXPECT_EQ(entry.effect, Effect::Queues) << entry.name;
     }
@@ -146,17 +144,15 @@ TEST(Enumerations, HaveTheSpecifiedValues) {
   EXPECT_EQ(compared, 10U);
 }
 
-TEST(OpenRpc, MarksOriginAndSupportOfEveryMethod) {
+TEST(OpenRpc, MarksOriginAndEffectOfEveryMethod) {
   const json& document = openrpc_document();
   ASSERT_EQ(document["methods"].size(), method_table().size());
   for (const json& entry : document.at("methods")) {
     const Method* declared = find_method(entry["name"].get<std::string>());
     ASSERT_NE(declared, nullptr);
     EXPECT_EQ(entry["x-origin"], to_string(declared->origin));
-    EXPECT_EQ(entry["x-supported"], declared->supported()) << declared->name;
     EXPECT_EQ(entry["x-effect"], to_string(declared->effect)) << declared->name;
     EXPECT_EQ(entry.contains("x-no-effect-with"), declared->harmless.has_value()) << declared->name;
-    EXPECT_EQ(entry.contains("x-missing"), !declared->supported()) << declared->name;
     EXPECT_EQ(entry["params"].size(), declared->parameters.size());
   }
 }

@@ -84,6 +84,22 @@ TEST(Watching, CategoryOneTakesThePowerAway) {
   }));
 }
 
+TEST(Watching, OverloadedSpindleStopsTheMachineUnderPower) {
+  TestMachine machine;
+  sdk::DeviceObject device = TestMachine::mill();
+  device.spindles[0].scale.rated_torque_nm = 5;
+  ASSERT_TRUE(machine.load_at_zero(device));
+  ASSERT_TRUE(machine.controller.cam().set_spindle_rpm(0, 600));
+  ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().spindle_rpm[0] > 595; }));
+  machine.bus->push(3, 7);
+  ASSERT_TRUE(machine.run_until([&] { return machine.count(Event::Kind::Fault) > 0; }));
+  EXPECT_THAT(machine.controller.last_stop()->message,
+              AllOf(HasSubstr("spindle 0 (bus test, axis 3)"), HasSubstr("5 N·m for a tenth of a second"),
+                    HasSubstr("may give 5"), HasSubstr("then reset"), HasSubstr("category 2")));
+  ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().spindle_rpm[0] == 0; }));
+  EXPECT_EQ(machine.controller.sample().statusword[0] & 0x6F, 0x27) << "operation enabled";
+}
+
 TEST(Watching, BoundsThatAreNotDeclaredFollowFromTheJointsSpeed) {
   TestMachine machine;
   start_slow_line(machine);

@@ -96,6 +96,23 @@ TEST(SpindlePlant, ApproachesItsSpeedWithinItsTorque) {
   EXPECT_NEAR(plant.speed_rpm(), 800, 1);
 }
 
+TEST(SpindlePlant, GivesWhatALoadTakesAndIsStoppedByMoreThanItHas) {
+  SpindlePlant plant{SpindlePlantParameters{}};
+  for (int i = 0; i < 2000; ++i) plant.advance(-800, true, kCycle);
+  plant.load(3);
+  for (int i = 0; i < 2000; ++i) plant.advance(-800, true, kCycle);
+  EXPECT_NEAR(plant.speed_rpm(), -800, 1e-6);
+  EXPECT_NEAR(plant.torque_nm(), -3, 1e-6);
+  EXPECT_NEAR(plant.torque_permille(), -600, 1e-3);
+  plant.load(6);
+  for (int i = 0; i < 2000; ++i) {
+    plant.advance(-800, true, kCycle);
+    ASSERT_LE(plant.speed_rpm(), 0) << "nothing turns it round";
+  }
+  EXPECT_GT(plant.speed_rpm(), -800 * 0.05);
+  EXPECT_NEAR(std::abs(plant.torque_nm()), 5, 1e-9);
+}
+
 TEST(SpindlePlant, NeverTurnsFasterThanItsBoundAndRunsDownWithoutPower) {
   SpindlePlant plant{SpindlePlantParameters{}};
   for (int i = 0; i < 5000; ++i) plant.advance(1e6, true, kCycle);

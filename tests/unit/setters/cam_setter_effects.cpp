@@ -133,7 +133,7 @@ const std::vector<SetterEffect>& cam_setter_effects() {
        }},
       {"RMAC_CAM.SetTool",
        [](SetterBench& bench) {
-         bench.call("RMAC_CAM.SetTool", R"({"ToolNumber": 4, "Length": 30, "MaxRPM": 500,
+         bench.call("RMAC_CAM.SetTool", R"({"ToolNumber": 4, "Length": 30, "MaxRPM": 500, "MaxTorque": 1.5,
                                             "Frame": {"p": [0, 1, 0], "q": [1, 0, 0, 0]}})");
          bench.call("RMAC_CAM.DoToolChange", R"({"ToolNumber": 4})");
          bench.run_until([&] { return bench.call("RMAC_CAM.GetTools")["Prompt"] != ""; });
@@ -143,6 +143,11 @@ const std::vector<SetterEffect>& cam_setter_effects() {
          EXPECT_NEAR(trace.back().position_set[1], -1, 1e-5);
          EXPECT_NEAR(trace.back().position_set[2], 30, 1e-5) << "a tool 30 mm long";
          EXPECT_THAT(bench.refusal("RMAC_CAM.SetSpindleRPM", R"({"SpindleNumber": 0, "RPM": 501})"), HasSubstr("500"));
+         bench.call("RMAC_CAM.SetSpindleRPM", R"({"SpindleNumber": 0, "RPM": 500})");
+         bench.run_until([&] { return std::abs(bench.now().spindle_rpm[0] - 500) < 1; });
+         bench.bus->push(3, 2);
+         bench.run_until([&] { return bench.now().fault.kind == ServoFault::Kind::TorqueBound; });
+         EXPECT_EQ(bench.now().fault.bound, 1.5) << "what the tool bears";
        }},
       {"RMAC_CAM.SetSpindleRPM",
        [](SetterBench& bench) {

@@ -40,6 +40,30 @@ void becomes_planar_by(SetterBench& bench, const std::string& setter, const std:
   EXPECT_EQ(trace.back().axis_count, 2U);
 }
 
+/// Puts the spindle's drive into torque mode, behind a PID with these gains.
+void drive_spindle_by_torque(SetterBench& bench, const char* gains) {
+  bench.call("RMAC_Config.SetMechanismDigitalControlInterface", R"({"DigitalControlInterface": "TorqueInterface"})");
+  bench.call("RMAC_Config.SetMechanismSpindleServoControlLaw", R"({"ControlLaw": "DMAC_PID_CONTROL"})");
+  bench.call("RMAC_Config.SetMechanismSpindleServoControlGains", fmt::format(R"({{"ServoControlGains": {}}})", gains));
+}
+
+constexpr const char* kSpindleGains = "[0.06, 1, 0]";
+
+/// How far the spindle falls behind 600 rpm when 2 N·m brake it.
+double slowed_by_load(SetterBench& bench) {
+  bench.call("RMAC_CAM.SetSpindleRPM", R"({"SpindleNumber": 0, "RPM": 600})");
+  bench.run_until([&] { return std::abs(bench.now().spindle_rpm[0] - 600) < 1; });
+  bench.torque_bus->push(3, -2);
+  double slowest = 600;
+  const double until = bench.now().t_s + 0.5;
+  bench.run_until([&] {
+    slowest = std::min(slowest, bench.now().spindle_rpm[0]);
+    return bench.now().t_s > until;
+  });
+  bench.torque_bus->push(3, 0);
+  return 600 - slowest;
+}
+
 }  // namespace
 
 const std::vector<SetterEffect>& config_setter_effects() {
@@ -94,6 +118,80 @@ const std::vector<SetterEffect>& config_setter_effects() {
          EXPECT_THAT(bench.refusal("RMAC_CAM.SetSpindleRPM", R"({"SpindleNumber": 0, "RPM": 800})"), HasSubstr("500"));
          EXPECT_NEAR(bench.tip_to(5, 0, 0).back().position_set[0], 5, 1e-5)
              << "the spindle is at the speed that it may have";
+       }},
+      {"RMAC_Config.SetMechanismSpindleControlMethod",
+       [](SetterBench& bench) {
+         bench.call("RMAC_Config.SetMechanismSpindleControlMethod",
+                    R"({"DMACServoControlMethod": "DMAC_POSITION_CONTROL"})");
+         EXPECT_THAT(bench.refusal("RMAC_Config.Apply"),
+                     AllOf(HasSubstr("spindle 0 (bus sim0, axis 3)"), HasSubstr("mode 3"), HasSubstr("angle")));
+         EXPECT_THAT(bench.refusal("RMAC_Config.SetMechanismSpindleControlMethod",
+                                   R"({"DMACServoControlMethod": "DMAC_FORCE_CONTROL"})"),
+                     HasSubstr("nothing asks a spindle for a force"));
+         const auto given_way = [&] {  // to 1 N·m, at rest
+           bench.run_until([&] { return bench.now().servo_state == ServoState::Engaged; });
+           const double before = bench.torque_bus->plant(3).angle_rad();
+           bench.torque_bus->push(3, 1);
+           const double until = bench.now().t_s + 1;
+           bench.run_until([&] { return bench.now().t_s > until; });
+           bench.torque_bus->push(3, 0);
+           return std::abs(bench.torque_bus->plant(3).angle_rad() - before);
+         };
+         bench.call("RMAC_Config.SetMechanismSpindleControlMethod",
+                    R"({"DMACServoControlMethod": "DMAC_VELOCITY_CONTROL"})");
+         drive_spindle_by_torque(bench, kSpindleGains);
+         bench.apply_interface();
+         EXPECT_GT(given_way(), 0.06) << "its speed is held, and its angle is not";
+         bench.call("RMAC_Config.SetMechanismSpindleControlMethod",
+                    R"({"DMACServoControlMethod": "DMAC_POSITION_CONTROL"})");
+         bench.call("RMAC_Config.SetMechanismSpindleServoControlGains", R"({"ServoControlGains": [0.7, 4, 0.012]})");
+         bench.apply();
+         EXPECT_LT(given_way(), 0.02) << "it stands where it is";
+         bench.call("RMAC_CAM.SetSpindleRPM", R"({"SpindleNumber": 0, "RPM": 300})");
+         bench.run_until([&] { return std::abs(bench.now().spindle_rpm[0] - 300) < 1; });
+       }},
+      {"RMAC_Config.SetMechanismSpindleServoControlLaw",
+       [](SetterBench& bench) {
+         drive_spindle_by_torque(bench, kSpindleGains);
+         bench.apply_interface();
+         EXPECT_LT(slowed_by_load(bench), 100) << "it holds its speed";
+         bench.call("RMAC_Config.SetMechanismSpindleServoControlLaw", R"({"ControlLaw": ""})");
+         EXPECT_THAT(bench.refusal("RMAC_Config.Apply"),
+                     AllOf(HasSubstr("spindle 0 (bus sim0, axis 3)"), HasSubstr("no servo law to make it")));
+         // A spring without an integral.
+         bench.call("RMAC_Config.SetMechanismSpindleServoControlLaw", R"({"ControlLaw": "TestLaw"})");
+         bench.call("RMAC_Config.SetMechanismSpindleServoControlGains", R"({"ServoControlGains": [0.06, 0]})");
+         bench.apply();
+         bench.call("RMAC_CAM.SetSpindleRPM", R"({"SpindleNumber": 0, "RPM": 600})");
+         bench.torque_bus->push(3, -1);
+         const double until = bench.now().t_s + 2;
+         bench.run_until([&] { return bench.now().t_s > until; });
+         EXPECT_NEAR(bench.now().spindle_rpm[0], 600 - (1 + 0.1) / 0.06, 3) << "it gives way to load and friction";
+       }},
+      {"RMAC_Config.SetMechanismSpindleServoControlGains",
+       [](SetterBench& bench) {
+         drive_spindle_by_torque(bench, kSpindleGains);
+         bench.apply_interface();
+         const double soft = slowed_by_load(bench);
+         bench.call("RMAC_Config.SetMechanismSpindleServoControlGains", R"({"ServoControlGains": [0.12, 4, 0]})");
+         bench.apply();
+         EXPECT_LT(slowed_by_load(bench), 0.7 * soft);
+       }},
+      {"RMAC_Config.SetMechanismDigitalControlInterface",
+       [](SetterBench& bench) {
+         EXPECT_NEAR(bench.tip_to(5, 0, 0).back().position_set[0], 5, 1e-5);
+         drive_spindle_by_torque(bench, "[1]");
+         EXPECT_THAT(bench.refusal("RMAC_Config.Apply"),
+                     AllOf(HasSubstr("PIDServoControlLaw does not accept the gains"),
+                           HasSubstr("in force again over SimulatedInterface")));
+         bench.call("RMAC_CAM.CycleStart", R"({"Mode": "AUTOMATIC"})");
+         EXPECT_NEAR(bench.tip_to(0, 0, 0).back().position[0], 0, 0.05) << "the old drives do their work";
+         drive_spindle_by_torque(bench, kSpindleGains);
+         bench.apply_interface();
+         const double old_shaft = bench.bus->plant(0).angle_rad();
+         bench.tip_to(10, 0, 0);
+         EXPECT_NEAR(bench.torque_bus->plant(0).angle_rad(), 4 * std::numbers::pi, 0.1) << "two turns of 5 mm";
+         EXPECT_EQ(bench.bus->plant(0).angle_rad(), old_shaft);
        }},
       {"RMAC_Config.SetMechanismMaxFeedrate",
        [](SetterBench& bench) {

@@ -40,6 +40,25 @@ const std::vector<SetterEffect>& device_setter_effects() {
          bench.call(kConfigure);
          bench.run_until([&] { return std::abs(bench.now().spindle_rpm[0] - 400) < 1; });
        }},
+      {"Device.Machine_SetMechanismSpindleMaxTorque",
+       [](SetterBench& bench) {
+         const auto turn_under_load = [&] {
+           bench.call("RMAC_CAM.SetSpindleRPM", R"({"SpindleNumber": 0, "RPM": 600})");
+           bench.run_until([&] { return std::abs(bench.now().spindle_rpm[0] - 600) < 1; });
+           bench.bus->push(3, 3);
+         };
+         turn_under_load();
+         const double until = bench.now().t_s + 1;
+         bench.run_until([&] { return bench.now().t_s > until; });
+         EXPECT_NEAR(bench.now().spindle_torque_nm[0], 3, 0.01);
+         EXPECT_EQ(bench.now().fault.kind, ServoFault::Kind::None) << "5 N·m is what it may give";
+         bench.bus->push(3, 0);
+         bench.call("Device.Machine_SetMechanismSpindleMaxTorque", R"({"MaxSpindleTorque": 2})");
+         bench.call(kConfigure);
+         turn_under_load();
+         bench.run_until([&] { return bench.now().fault.kind == ServoFault::Kind::TorqueBound; });
+         EXPECT_EQ(bench.now().fault.part, ServoFault::Part::Spindle);
+       }},
       {"Device.Machine_SetMechanismJntTypes",
        [](SetterBench& bench) {
          bench.call("Device.Machine_SetMechanismJntTypes", R"({"JntNum": 0, "JntType": "DMAC_ROT_JNT"})");

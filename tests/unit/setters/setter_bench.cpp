@@ -12,6 +12,17 @@ namespace {
 namespace fs = std::filesystem;
 constexpr double kPeriodS = 0.001;
 
+/// The spindle of DMACXYZ as a motor without a speed loop of its own.
+fieldbus::AxisPlantParameters torque_spindle() {
+  fieldbus::AxisPlantParameters motor;
+  motor.rated_torque_nm = motor.brake_nm = 5;
+  motor.peak_torque_nm = 10;
+  motor.rotor_inertia_kg_m2 = 0.01;
+  motor.screw_inertia_kg_m2 = motor.table_mass_kg = 0;
+  motor.coulomb_nm = motor.static_nm = 0.1;
+  return motor;
+}
+
 /// The largest of what `of` makes of two neighbouring samples.
 template <typename Function>
 double largest_step(const Trace& trace, Function&& of) {
@@ -33,11 +44,13 @@ SetterBench::SetterBench() : folder_(fs::temp_directory_path() / ("rmac-setters-
   options.module_folders = {(built / "drivers" / "modules").string(), (built / "test_modules" / "good").string()};
   options.as_fast_as_computed = true;
   // The draft's check makes interfaces that nobody borrows: a test wants the one that is used, which is made last.
-  const auto make_bus = [](std::shared_ptr<fieldbus::SimulatedInterface>& made) {
-    return [&made](const std::string&, const sdk::ModuleChoice&,
-                   const ModuleLoader&) -> Expected<std::shared_ptr<DigitalControlInterface>> {
+  const auto make_bus = [](std::shared_ptr<fieldbus::SimulatedInterface>& made, bool torque) {
+    return [&made, torque](const std::string&, const sdk::ModuleChoice&,
+                           const ModuleLoader&) -> Expected<std::shared_ptr<DigitalControlInterface>> {
       if (!made || made.use_count() == 1) {
-        made = std::make_shared<fieldbus::SimulatedInterface>(fieldbus::default_simulated_axes(), kPeriodS);
+        auto axes = fieldbus::default_simulated_axes();
+        if (torque) axes[3] = torque_spindle();
+        made = std::make_shared<fieldbus::SimulatedInterface>(axes, kPeriodS);
         made->set_contact({.surface_mm = SetterBench::kSurfaceMm});
       }
       return made;
@@ -49,7 +62,8 @@ SetterBench::SetterBench() : folder_(fs::temp_directory_path() / ("rmac-setters-
       return made;
     };
   };
-  options.control_interfaces = {{"SimulatedInterface", make_bus(bus)}};
+  options.control_interfaces = {{"SimulatedInterface", make_bus(bus, false)},
+                                {"TorqueInterface", make_bus(torque_bus, true)}};
   options.io_interfaces = {{"SimulatedIOInterface", make_io(io)}, {"OtherIo", make_io(other_io)}};
   controller_ = std::make_unique<Controller>(options);
   host_ = std::make_unique<DeviceHost>(*manager_, *controller_);
@@ -80,6 +94,11 @@ SetterBench::~SetterBench() {
 void SetterBench::listen() {
   controller_->on_sample([this](const CycleSample& sample) { samples_.push_back(sample); });
   controller_->on_event([this](const Event& event) { events_.push_back(event); });
+}
+
+void SetterBench::apply_interface() {
+  apply();
+  call("RMAC_CAM.CycleStart", R"({"Mode": "AUTOMATIC"})");
 }
 
 nlohmann::json SetterBench::ask(const std::string& method, const std::string& params) {

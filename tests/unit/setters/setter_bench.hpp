@@ -37,6 +37,8 @@ class SetterBench {
   /// The message that the call must be refused with.
   std::string refusal(const std::string& method, const std::string& params = "{}");
   void apply() { call("RMAC_Config.Apply"); }
+  /// Applies another interface to the drives, by which they come down and up again, and starts the cycle anew.
+  void apply_interface();
 
   /// Moves from rest to rest and gives what happened meanwhile: the tool tip on a line, or all joints together.
   Trace tip_to(double x, double y, double z);
@@ -50,6 +52,8 @@ class SetterBench {
   [[nodiscard]] CycleSample now() { return controller_->sample(); }
 
   std::shared_ptr<fieldbus::SimulatedInterface> bus;
+  /// Behind the interface "TorqueInterface": the same, but for the spindle's drive, which takes a torque.
+  std::shared_ptr<fieldbus::SimulatedInterface> torque_bus;
   std::shared_ptr<fieldbus::SimulatedIoInterface> io, other_io;
   fakes::FakeSession session;
 

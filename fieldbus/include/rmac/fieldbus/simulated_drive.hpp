@@ -60,6 +60,7 @@ class SimulatedSpindleDrive {
 
   [[nodiscard]] DriveStateMachine& power() noexcept { return power_; }
   [[nodiscard]] const SpindlePlant& plant() const noexcept { return plant_; }
+  void load(double nm) noexcept { plant_.load(nm); }
 
  private:
   SpindlePlant plant_;

@@ -46,6 +46,7 @@ class SimulatedInterface : public DigitalControlInterface {
     return is_spindle(axis) ? 0 : kLimitSwitches;
   }
   [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override { return modes_[axis]; }
+  [[nodiscard]] bool tells_torque(std::size_t /*axis*/) const noexcept override { return true; }
   [[nodiscard]] bool latches(std::size_t axis, TouchProbeEdge /*edge*/) const noexcept override {
     return !is_spindle(axis);
   }
@@ -60,7 +61,7 @@ class SimulatedInterface : public DigitalControlInterface {
   void freeze_encoder(std::size_t axis, bool frozen) noexcept;
   /// The drive gives this torque whatever is asked for, until it is no longer operational.
   void run_away(std::size_t axis, double torque_nm) noexcept;
-  /// Torque on a shaft from outside, until it is 0 again.
+  /// Torque on a shaft from outside, until it is 0 again. A spindle's load holds it back, whichever way it turns.
   void push(std::size_t axis, double torque_nm) noexcept;
   /// The force sensor's value is not valid; and is again.
   void set_sensor_lost(bool lost) noexcept { sensor_lost_ = lost; }

@@ -89,9 +89,14 @@ class SpindlePlant {
   void advance(double wanted_rpm, bool powered, double duration_s) noexcept;
   [[nodiscard]] double speed_rpm() const noexcept { return speed_rpm_; }
   [[nodiscard]] double torque_nm() const noexcept { return torque_nm_; }
+  /// What the motor gives, in per mille of the most that it can.
+  [[nodiscard]] double torque_permille() const noexcept { return torque_nm_ * 1000 / parameters_.max_torque_nm; }
+  /// Torque that holds it back while it turns, such as of a cut.
+  void load(double nm) noexcept { load_nm_ = nm; }
 
  private:
   SpindlePlantParameters parameters_;
+  double load_nm_ = 0;
   double speed_rpm_ = 0;
   double torque_nm_ = 0;
 };

@@ -26,8 +26,8 @@ struct ServoFault {
   enum class Kind : std::uint8_t {
     None,
     FollowingError,  ///< value: the error, bound: what is allowed (mm or deg)
-    VelocityBound,   ///< value: the measured velocity, bound: what is allowed (mm/s or deg/s)
-    TorqueBound,     ///< value: the torque that the drive measures, bound: what is allowed (N·m)
+    VelocityBound,   ///< value: the measured velocity, bound: what is allowed (mm/s or deg/s; of a spindle rpm)
+    TorqueBound,     ///< value: the torque that the drive measures, bound: what is allowed (N·m); of a spindle too
     EncoderJump,     ///< value: the jump, bound: what motion can explain within a cycle (mm or deg)
     SensorLost,      ///< a joint's force sensor gives no valid value, or a drive reports its encoder gone
     ForceLimit,      ///< value: the measured force, bound: what is allowed (N or N·m)

@@ -18,10 +18,9 @@
 #include "rmac/motion/ports/kinematics.hpp"
 #include "rmac/motion/ports/servo_law.hpp"
 #include "rmac/motion/servo_fault.hpp"
+#include "rmac/motion/servo_spindle.hpp"
 
 namespace rmac {
-
-inline constexpr std::size_t kMaxSpindles = 4;
 
 /// A bus with the words of all its axes. The bus registry owns it; servo loops share it one after the other.
 struct ServoBus {
@@ -73,13 +72,6 @@ struct ServoActuator {
   std::optional<TouchProbeEdge> probe_edge{};  ///< at which its drive latches the position of a hit
 };
 
-/// A drive that turns a spindle, in velocity mode.
-struct ServoSpindle {
-  std::shared_ptr<ServoBus> bus;
-  std::uint32_t axis = 0;
-  double max_speed_rpm = 0;
-};
-
 /// A digital input that a drive tells.
 struct ServoDriveInput {
   std::uint32_t actuator = 0;
@@ -119,6 +111,7 @@ struct StopCategories {
   StopCategory sensor_lost = StopCategory::StopThenRemovePower;
   StopCategory force_limit = StopCategory::StopThenRemovePower;
   StopCategory contact_lost = StopCategory::StopKeepPower;
+  StopCategory spindle_overload = StopCategory::StopKeepPower;
   StopCategory cycles_lost = StopCategory::StopThenRemovePower;
 };
 
@@ -157,6 +150,7 @@ struct ServoCommand {
       false;  ///< its rise, when Engaged, has the drives home, turn by turn; its fall before they are through ends it
   bool reset = false;  ///< its rising edge resets the drives' faults, and leaves Faulted once they are gone
   std::array<double, kMaxSpindles> spindle_rpm{};
+  double tool_torque_nm = 0;  ///< most that the tool in spindle 0 bears; 0: not given
   std::uint64_t outputs = 0;
   std::array<double, kMaxJoints> force{};  ///< wanted of joints under force control; 0: hold the position
   std::uint64_t cycles_missed = 0;         ///< deadlines that passed since the cycle before
@@ -176,6 +170,7 @@ struct ServoReport {
   std::array<std::uint16_t, kMaxJoints> error_code{};
   std::array<std::int16_t, kMaxJoints> torque_permille{};  ///< measured by the drives
   std::array<double, kMaxSpindles> spindle_rpm{};
+  std::array<double, kMaxSpindles> spindle_torque_nm{};  ///< measured; 0 where the drive does not tell
   std::array<std::uint16_t, kMaxSpindles> spindle_statusword{};
   ToolPose pose;         ///< measured, part frame
   double feed_mm_s = 0;  ///< tool tip, from measured joints

@@ -69,6 +69,12 @@ struct Spindle {
   double horse_power = 0;
   double speed_tolerance_rpm = 0;  ///< how near counts as at speed
   double speed_timeout_s = 0;
+  ModuleChoice servo_law{};  ///< no name: its drive closes its speed loop itself
+  ControlMethod method = ControlMethod::Velocity;
+  std::vector<double> gains{};
+  DriveScale scale{};                 ///< of a drive that takes a torque; the rated torque of one that tells its torque
+  double max_acceleration_rpm_s = 0;  ///< of the speed that a drive in a cyclic mode is told
+  double max_following_error_deg = 0;  ///< under `ControlMethod::Position`
 };
 
 /// One step of what a tool changer does, in order.

@@ -34,6 +34,7 @@ class RmacConfig {
   virtual Expected<> set_joint_maximum_jerk(int joint, double value) = 0;
   virtual Expected<> set_maximum_feedrate(double mm_min) = 0;
   virtual Expected<> set_spindle_maximum_rpm(int spindle, double rpm) = 0;
+  virtual Expected<> set_spindle_maximum_torque(int spindle, double torque_nm) = 0;
 
   virtual Expected<> set_joint_control_method(int joint, ControlMethod method) = 0;
   virtual Expected<> set_joint_servo_control_law(int joint, const ModuleChoice& module) = 0;
@@ -42,6 +43,12 @@ class RmacConfig {
   virtual Expected<> set_joint_watch(int joint, double max_following_error, double max_effort) = 0;
   /// Pitch errors, backlash and resonances that the servo loop makes good.
   virtual Expected<> set_joint_mechanics(int joint, const JointMechanics& mechanics) = 0;
+
+  /// Velocity, or Position of a spindle whose drive takes a torque.
+  virtual Expected<> set_spindle_control_method(int spindle, ControlMethod method) = 0;
+  /// Of a spindle whose drive takes a torque; without a name none, and no gains.
+  virtual Expected<> set_spindle_servo_control_law(int spindle, const ModuleChoice& module) = 0;
+  virtual Expected<> set_spindle_servo_control_gains(int spindle, std::span<const double> gains) = 0;
 
   virtual Expected<> set_digital_control_interface(const ModuleChoice& module) = 0;
   virtual Expected<> initialize_digital_control_interface() = 0;

@@ -17,7 +17,7 @@ class StandardDeviceDriver : public DeviceDriver {
         .and_then([&] { return config.set_kinematics(device.kinematics); })
         .and_then([&] { return config.set_actuator_map(device.actuator_map); })
         .and_then([&] { return config.set_maximum_feedrate(device.max_feedrate_mm_min); })
-        .and_then([&] { return set_spindle_speeds(device.spindles, config); })
+        .and_then([&] { return set_spindle_bounds(device.spindles, config); })
         .and_then([&] {
           return for_each_joint(device.joints, 0, [&](int number, const Joint& joint) {
             return set_limits(config, number, joint.limits);
@@ -39,7 +39,8 @@ class StandardDeviceDriver : public DeviceDriver {
     };
     return config.set_number_of_actuators(static_cast<int>(device.actuators.size()))
         .and_then([&] { return for_each_joint(device.joints, 0, set_loop); })
-        .and_then([&] { return for_each_joint(device.held_joints, static_cast<int>(device.joints.size()), set_loop); });
+        .and_then([&] { return for_each_joint(device.held_joints, static_cast<int>(device.joints.size()), set_loop); })
+        .and_then([&] { return set_spindle_loops(device.spindles, config); });
   }
 
   Expected<> configure_digital_control_interface(const DeviceObject& device, RmacConfig& config) override {
@@ -61,10 +62,25 @@ class StandardDeviceDriver : public DeviceDriver {
       return config.set_joint_servo_control_gains(number, joint.gains);
     });
   }
-  static Expected<> set_spindle_speeds(const std::vector<Spindle>& spindles, RmacConfig& config) {
+  static Expected<> set_spindle_bounds(const std::vector<Spindle>& spindles, RmacConfig& config) {
     int number = 0;
     for (const Spindle& spindle : spindles) {
-      if (auto done = config.set_spindle_maximum_rpm(number++, spindle.max_speed_rpm); !done) return done;
+      auto done = config.set_spindle_maximum_rpm(number, spindle.max_speed_rpm).and_then([&] {
+        return config.set_spindle_maximum_torque(number, spindle.max_torque_nm);
+      });
+      if (!done) return done;
+      ++number;
+    }
+    return {};
+  }
+  static Expected<> set_spindle_loops(const std::vector<Spindle>& spindles, RmacConfig& config) {
+    int number = 0;
+    for (const Spindle& spindle : spindles) {
+      auto done = config.set_spindle_control_method(number, spindle.method)
+                      .and_then([&] { return config.set_spindle_servo_control_law(number, spindle.servo_law); })
+                      .and_then([&] { return config.set_spindle_servo_control_gains(number, spindle.gains); });
+      if (!done) return done;
+      ++number;
     }
     return {};
   }

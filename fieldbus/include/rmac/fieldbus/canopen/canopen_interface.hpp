@@ -44,6 +44,7 @@ class CanopenInterface final : public DigitalControlInterface {
   [[nodiscard]] bool exchange(std::span<const DriveCommand> commands,
                               std::span<DriveFeedback> feedback) noexcept override;
   [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override;
+  [[nodiscard]] bool tells_torque(std::size_t axis) const noexcept override;
   [[nodiscard]] std::uint32_t input_bits(std::size_t axis) const noexcept override;
   /// By its encoder resolution, gear ratio and feed constant.
   [[nodiscard]] double counts_per_revolution(std::size_t axis) const noexcept override;

@@ -28,6 +28,7 @@ class SpindleInterface final : public DigitalControlInterface, public FaultTexts
   /// Always true: the line's troubles are its drives', which go offline.
   [[nodiscard]] bool exchange(std::span<const DriveCommand> commands,
                               std::span<DriveFeedback> feedback) noexcept override;
+  [[nodiscard]] DriveMode mode(std::size_t /*axis*/) const noexcept override { return DriveMode::ProfileVelocity; }
   [[nodiscard]] std::string fault_text(std::size_t axis, std::uint16_t error_code) const override;
 
   [[nodiscard]] LineCounters counters() const noexcept;

@@ -84,12 +84,14 @@ class DigitalControlInterface {
   /// Real-time safe.
   [[nodiscard]] virtual bool exchange(std::span<const DriveCommand> commands,
                                       std::span<DriveFeedback> feedback) noexcept = 0;
-  /// The mode in which this axis follows its setpoints. Before or after start.
+  /// The mode in which this axis, of a joint or a spindle, follows its setpoints. Before or after start.
   [[nodiscard]] virtual DriveMode mode(std::size_t /*axis*/) const noexcept { return DriveMode::CyclicSyncTorque; }
   /// Bits of `DriveFeedback::inputs` that this axis tells: a name for another one is a mistake.
   [[nodiscard]] virtual std::uint32_t input_bits(std::size_t /*axis*/) const noexcept { return 0; }
   /// Position counts in one turn of the motor, as its drive says itself; 0 where it does not. Once started.
   [[nodiscard]] virtual double counts_per_revolution(std::size_t /*axis*/) const noexcept { return 0; }
+  /// Whether the answers of this axis hold its torque (6077h).
+  [[nodiscard]] virtual bool tells_torque(std::size_t /*axis*/) const noexcept { return false; }
   /// Whether this axis can latch its position at `edge`.
   [[nodiscard]] virtual bool latches(std::size_t /*axis*/, TouchProbeEdge /*edge*/) const noexcept { return false; }
 };

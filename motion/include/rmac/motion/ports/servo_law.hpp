@@ -5,7 +5,8 @@
 
 namespace rmac {
 
-/// What a servo law sees in one cycle of one joint. mm or degrees; efforts in N or N·m at the joint.
+/// What a servo law sees in one cycle of one joint. mm or degrees; efforts in N or N·m at the joint. The law of a
+/// spindle's speed sees that, in rpm, as position, and its rate of change as velocity.
 struct ServoInput {
   double position_setpoint = 0;
   double velocity_setpoint = 0;
