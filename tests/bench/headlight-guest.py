@@ -25,7 +25,7 @@ SPINDLE_TIME_OUT_S = 1  # what a spindle drive is set to, so that it stops when 
 
 
 def change(device):
-    device["Spindles"][0].update(Bus="spindle0", Axis=0)
+    device["Spindles"][0].update(Bus="spindle0", Axis=0, RatedTorque=0)
     device["DigitalControlInterface"] = {
         "Module": "CANopenInterface",
         "Parameters": {"vcan0.node": [1, 2, 3], "eds": "rmac-vdrive", "heartbeat_ms": HEARTBEAT_MS,

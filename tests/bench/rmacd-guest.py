@@ -12,7 +12,7 @@ from guest import (COUNTS_PER_REVOLUTION, HAS_GPIO, HEARTBEAT_MS, PITCH_MM, RUN,
 
 
 def change(device):
-    device["Spindles"][0].update(Bus="vcan1", Axis=0)
+    device["Spindles"][0].update(Bus="vcan1", Axis=0, RatedTorque=0)
     for axis, turn in enumerate((2, 2, 1)):
         device["Actuators"][axis]["HomingTurn"] = turn
     device["DigitalControlInterface"] = {

@@ -21,7 +21,7 @@ def spindle(**choice):
     def change(device):
         spindles = device["Spindles"]
         axes_alone(*NODES, **{f"{choice['Bus']}.{name}": value for name, value in choice["Parameters"].items()})(device)
-        device["Spindles"] = [spindles[0] | {"Bus": choice["Bus"], "Axis": 0}]
+        device["Spindles"] = [spindles[0] | {"Bus": choice["Bus"], "Axis": 0, "RatedTorque": 0}]
     return change
 
 

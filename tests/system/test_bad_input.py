@@ -131,9 +131,13 @@ class BadInput(unittest.TestCase):
         refusal = self.operator.refusal("RMAC_CAM.SetPartFrame", PartFrame={"p": [0, 0, 0], "q": [0, 0, 0, 0]})
         self.assertIn(refusal.code, (INVALID_PARAMS, -32014))
 
-    def test_unsupported_function_says_so_and_pretends_nothing(self):
-        self.assert_refused("MACHINE_ERR_UNSUPPORTED_OPERATION", [], "RMAC_Config.SetMechanismSpindleControlMethod",
-                            DMACServoControlMethod="DMAC_VELOCITY_CONTROL")
+    def test_what_a_drive_cannot_do_is_refused_with_its_reason(self):
+        self.assert_refused("MACHINE_ERR_INVALID_PARAMETER_VALUE", ["force"], "RMAC_Config.SetMechanismSpindleControlMethod",
+                            DMACServoControlMethod="DMAC_FORCE_CONTROL")
+        self.operator.call("RMAC_Config.SetMechanismSpindleControlMethod", DMACServoControlMethod="DMAC_POSITION_CONTROL")
+        self.assert_refused("MACHINE_ERR_INVALID_PARAMETER_VALUE", ["spindle 0 (bus sim0, axis 3)", "mode 3", "angle"],
+                            "RMAC_Config.Apply")
+        self.operator.call("RMAC_Config.SetMechanismSpindleControlMethod", DMACServoControlMethod="DMAC_VELOCITY_CONTROL")
 
     def test_move_without_authority_is_refused(self):
         watcher = self.appliance.client("watcher")

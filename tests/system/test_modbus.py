@@ -22,7 +22,7 @@ def set_spindle(appliance, parameters):
     """DMACXYZ with its axes on the simulated bus and its spindle on Modbus."""
     file = appliance.tree / "mill/3-axis/DMACXYZ/device.json"
     device = json.loads(file.read_text())
-    device["Spindles"][0].update(Bus="spindle0", Axis=0)
+    device["Spindles"][0].update(Bus="spindle0", Axis=0, RatedTorque=0)
     device["DigitalControlInterface"]["Parameters"] = {
         "spindle0.interface": "ModbusInterface",
         **{f"spindle0.{name}": value for name, value in parameters.items()}}

@@ -92,7 +92,7 @@ TEST(Watching, OverloadedSpindleStopsTheMachineUnderPower) {
   ASSERT_TRUE(machine.controller.cam().set_spindle_rpm(0, 600));
   ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().spindle_rpm[0] > 595; }));
   machine.bus->push(3, 7);
-  ASSERT_TRUE(machine.run_until([&] { return machine.count(Event::Kind::Fault) > 0; }));
+  ASSERT_TRUE(machine.run_until([&] { return !machine.last(Event::Kind::Fault).empty(); }));
   EXPECT_THAT(machine.controller.last_stop()->message,
               AllOf(HasSubstr("spindle 0 (bus test, axis 3)"), HasSubstr("5 N·m for a tenth of a second"),
                     HasSubstr("may give 5"), HasSubstr("then reset"), HasSubstr("category 2")));

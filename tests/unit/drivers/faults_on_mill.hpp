@@ -92,7 +92,7 @@ class FaultOnMill : public MillRun {
     parts.max_cycles_lost = 5;
     if (!keep_power) return;
     constexpr auto kKeep = StopCategory::StopKeepPower;
-    parts.stop_categories = {kKeep, kKeep, kKeep, kKeep};
+    parts.stop_categories = {kKeep, kKeep, kKeep, kKeep, kKeep};
     keep_power_ = true;
   }
   void power_up_quickly(Mill& mill) {

@@ -25,7 +25,7 @@ class ServoWatch : public ServoLoopTest {
   }
   void build_watched(StopCategory category) {
     ServoLoopParts made = watched_parts();
-    made.stop_categories = {category, category, category, category};
+    made.stop_categories = {category, category, category, category, category};
     build(std::move(made));
   }
   /// All joints at `velocity` for some cycles, followed without error.

@@ -148,6 +148,14 @@ class FiveAxes : public testing::TestWithParam<Machine> {
     }
   }
 
+  /// How far C goes.
+  [[nodiscard]] double peak_turn() const {
+    const auto [least, most] = std::minmax_element(trace_.begin(), trace_.end(), [&](const auto& a, const auto& b) {
+      return a.position_set[GetParam().turn] < b.position_set[GetParam().turn];
+    });
+    return trace_.empty() ? 0 : most->position_set[GetParam().turn] - least->position_set[GetParam().turn];
+  }
+
   std::unique_ptr<Simulation> simulation_;
   std::vector<CycleSample> trace_;
   Frame part_, tool_;
@@ -345,6 +353,84 @@ TEST_P(PastThePole, AHeldMachineRunsBackThroughItAndForwardAgain) {
   ASSERT_NO_FATAL_FAILURE(expect(cam().feed_resume()));
   ASSERT_TRUE(run());
   check_line(from, to, kDeviation);
+  check_limits();
+}
+
+TEST_P(PastThePole, WhatWouldLeaveTheAxisMoreThanItMayIsRefusedWithPlaceAndAmount) {
+  ASSERT_NO_FATAL_FAILURE(load());
+  // The axis comes to the pole within a millimetre, and stays there for many.
+  Nurbs curve;
+  curve.degree = 2;
+  curve.dimension = 6;
+  const std::array<double, 9> leans{10, 5, 0, 0, 0, 0, 0, 5, 10};
+  const std::array<double, 9> places{-20, -19.5, -19, -18.5, 0, 18.5, 19, 19.5, 20};
+  for (std::size_t i = 0; i < leans.size(); ++i) {
+    const Vector axis = leaning(leans[i], 40);
+    curve.points.push_back({places[i], 0, 0, axis[0], axis[1], axis[2]});
+    curve.weights.push_back(1);
+  }
+  curve.knots = {0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 7, 7};
+  const ToolPose from{{-20, 0, 0}, leaning(10, 40)};
+  ASSERT_NO_FATAL_FAILURE(go_to(from));
+  const auto refused = cam().queue_move(3, NurbsGeometry{NurbsSpace::Pose, curve});
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message,
+              testing::AllOf(testing::HasSubstr("move 3 passes the pole"), testing::HasSubstr("may by 0.200"),
+                             testing::ContainsRegex("tip x -?[0-9.]+ y -?0.0000 z -?0.0000")));
+  const ToolPose to{{20, 0, 0}, leaning(10, 40)};
+  ASSERT_NO_FATAL_FAILURE(follow(from, to));  // nothing of it was queued
+}
+
+TEST_P(PastThePole, ACornerBesideItIsTakenExactlyAndNotRounded) {
+  ASSERT_NO_FATAL_FAILURE(load());
+  ASSERT_NO_FATAL_FAILURE(expect(cam().set_path_tolerance(0.05)));
+  const ToolPose from{{-10, 0, 0}, leaning(8, 30)}, corner{{0, 0, 0}, {0, 0, 1}}, to{{0, 10, 0}, leaning(8, 120)};
+  ASSERT_NO_FATAL_FAILURE(go_to(from));
+  trace_.clear();
+  ASSERT_NO_FATAL_FAILURE(line(from, corner));
+  ASSERT_NO_FATAL_FAILURE(line(corner, to));
+  ASSERT_TRUE(run());
+  check_limits();
+  double nearest = 1;
+  for (const CycleSample& sample : trace_) {
+    const ToolPose pose = where(sample.position_set);
+    const double off =
+        std::min(from_line(pose.tip, from.tip, corner.tip).first, from_line(pose.tip, corner.tip, to.tip).first);
+    ASSERT_LE(off, 1e-6) << "the tip stays on the two lines";
+    nearest = std::min(nearest, std::hypot(pose.tip[0], pose.tip[1]));
+  }
+  EXPECT_LT(nearest, 1e-6) << "through the corner itself";
+}
+
+/// Round and round: a C with an end of travel is refused where it would run into it, by name, and a joint target with
+/// the tool clear of the part unwinds it. Nothing unwinds it in the middle of a cut.
+TEST_P(FiveAxes, ACThatHasWoundUpIsRefusedByNameAndUnwoundByAJointTarget) {
+  ASSERT_NO_FATAL_FAILURE(load());
+  const auto& joints = simulation_->controller().mechanism()->joints;
+  const bool ends = joints[GetParam().turn].limits.limit_type == JointLimitType::Limited;
+  const auto around = [](int i) { return ToolPose{{10, 0, 0}, leaning(30, 60.0 * i)}; };
+  ASSERT_NO_FATAL_FAILURE(go_to(around(0)));
+  std::string refusal;
+  int i = 0;
+  for (; i < 15 && refusal.empty(); ++i) {
+    ToolPose next = around(i + 1);
+    next.tip[1] = 1.0 * (i % 2 == 0);
+    ToolPose here = around(i);
+    here.tip[1] = 1.0 * (i % 2 == 1);
+    const auto queued = cam().queue_move(2, LineGeometry{here, next});
+    if (!queued) refusal = queued.error().message;
+    ASSERT_TRUE(run());
+    if (refusal.empty()) continue;
+    EXPECT_THAT(refusal, testing::AllOf(testing::ContainsRegex("joint C to -?[0-9.]+ degrees, [0-9.]+ degrees beyond"),
+                                        testing::HasSubstr("mm along the move")));
+    trace_.clear();
+    ASSERT_NO_FATAL_FAILURE(go_to({{10, 0, 50}, next.axis}));
+    EXPECT_GT(peak_turn(), 100) << "it unwinds";
+    ASSERT_NO_FATAL_FAILURE(go_to(here));
+    ASSERT_NO_FATAL_FAILURE(line(here, next));
+    ASSERT_TRUE(run());
+  }
+  EXPECT_EQ(!refusal.empty(), ends) << "the table turns without end";
   check_limits();
 }
 
