@@ -15,19 +15,19 @@ constexpr std::uint16_t kRequestId = 0x7E5, kAnswerId = 0x7E4;
 
 // Command specifiers (CiA 305, 3.8)
 enum Command : std::uint8_t {
-  kSwitchAll = 0x04,
-  kConfigureNode = 0x11,
-  kConfigureBitTiming = 0x13,
-  kActivateBitTiming = 0x15,
-  kStoreConfiguration = 0x17,
-  kSelectVendor = 0x40,
-  kSelectProduct = 0x41,
-  kSelectRevision = 0x42,
-  kSelectSerial = 0x43,
-  kSelected = 0x44,
-  kIdentified = 0x4F,
-  kFastScan = 0x51,
-  kInquireNode = 0x5E
+  SwitchAll = 0x04,
+  ConfigureNode = 0x11,
+  ConfigureBitTiming = 0x13,
+  ActivateBitTiming = 0x15,
+  StoreConfiguration = 0x17,
+  SelectVendor = 0x40,
+  SelectProduct = 0x41,
+  SelectRevision = 0x42,
+  SelectSerial = 0x43,
+  Selected = 0x44,
+  Identified = 0x4F,
+  FastScan = 0x51,
+  InquireNode = 0x5E
 };
 
 /// Table 1 of the standard: bit timings by their index.
@@ -54,7 +54,7 @@ class Master {
     return idle;
   }
 
-  void switch_all(bool configure) { send({kSwitchAll, static_cast<std::uint8_t>(configure ? 1 : 0)}); }
+  void switch_all(bool configure) { send({SwitchAll, static_cast<std::uint8_t>(configure ? 1 : 0)}); }
 
   /// The answer to a request, if one comes in time.
   std::optional<CanFrame> ask(std::initializer_list<std::uint8_t> request, Command answer) {
@@ -86,11 +86,11 @@ class Master {
 
   Expected<> select(const Identity& identity) {
     switch_all(false);
-    tell(kSelectVendor, identity.vendor_id);
-    tell(kSelectProduct, identity.product_code);
-    tell(kSelectRevision, identity.revision_number);
+    tell(SelectVendor, identity.vendor_id);
+    tell(SelectProduct, identity.product_code);
+    tell(SelectRevision, identity.revision_number);
     const std::uint32_t serial = identity.serial_number;
-    if (ask({kSelectSerial, byte(serial, 0), byte(serial, 1), byte(serial, 2), byte(serial, 3)}, kSelected)) return {};
+    if (ask({SelectSerial, byte(serial, 0), byte(serial, 1), byte(serial, 2), byte(serial, 3)}, Selected)) return {};
     return failure(MinorCode::CommTimeout,
                    fmt::format("no node answers to {}: it is not there, or knows no LSS", to_string(identity)));
   }
@@ -107,13 +107,13 @@ class Master {
   }
 
   std::optional<std::uint8_t> node_of_selected() {
-    const auto told = ask({kInquireNode}, kInquireNode);
+    const auto told = ask({InquireNode}, InquireNode);
     return told ? std::optional(told->data[1]) : std::nullopt;
   }
 
   void activate(std::chrono::milliseconds delay) {
     const auto ms = static_cast<std::uint32_t>(delay.count());
-    send({kActivateBitTiming, byte(ms, 0), byte(ms, 1)});
+    send({ActivateBitTiming, byte(ms, 0), byte(ms, 1)});
   }
 
   Expected<> require_free(std::uint8_t node) {
@@ -178,11 +178,11 @@ class Master {
   /// Whether any node fits. Many may answer, each when it is ready: all of the time has to pass, or a late one's answer
   /// would be taken for that to the next step.
   bool scan_step(std::uint32_t number, std::uint8_t bit, std::uint8_t part, std::uint8_t next) {
-    send_alone({kFastScan, byte(number, 0), byte(number, 1), byte(number, 2), byte(number, 3), bit, part, next});
+    send_alone({FastScan, byte(number, 0), byte(number, 1), byte(number, 2), byte(number, 3), bit, part, next});
     bool fits = false;
     for (const auto end = port_.now() + options_.timeout; port_.now() < end;) {
       port_.wait(std::min<std::chrono::nanoseconds>(end - port_.now(), std::chrono::milliseconds(1)));
-      while (received(kIdentified)) fits = true;
+      while (received(Identified)) fits = true;
     }
     return fits;
   }
@@ -238,10 +238,10 @@ Expected<LssAssigned> lss_assign(CanPort& port, std::uint8_t node, const std::op
     assigned.identity = *found;
   }
   const auto before = master.node_of_selected();
-  if (auto done = master.configure({kConfigureNode, node}, fmt::format("it was given the id {}", node)); !done) {
+  if (auto done = master.configure({ConfigureNode, node}, fmt::format("it was given the id {}", node)); !done) {
     return tl::unexpected(done.error());
   }
-  assigned.stored = master.configure({kStoreConfiguration}, "it was told to store its id").has_value();
+  assigned.stored = master.configure({StoreConfiguration}, "it was told to store its id").has_value();
   master.switch_all(false);
   // One that had an id goes on with it until it is reset.
   if (before && *before != kNoNode) master.reset(*before);
@@ -268,8 +268,8 @@ Expected<> lss_set_bit_rate(CanPort& port, const std::vector<Identity>& nodes, s
   for (const bool stores : {false, true}) {
     for (const Identity& identity : nodes) {
       auto told = master.select(identity).and_then([&] {
-        return stores ? master.configure({kStoreConfiguration}, "it was told to store its bit rate")
-                      : master.configure({kConfigureBitTiming, 0, timing->index},
+        return stores ? master.configure({StoreConfiguration}, "it was told to store its bit rate")
+                      : master.configure({ConfigureBitTiming, 0, timing->index},
                                          fmt::format("it was given {} bit/s", bit_rate));
       });
       if (told) continue;
