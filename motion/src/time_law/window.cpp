@@ -84,9 +84,21 @@ std::optional<RestEnd> rest_end(const PathView& path, const std::vector<JointLim
   return std::nullopt;
 }
 
+/// A place of rest that misses the border of two segments by rounding is meant to be that. Beside it, what is left of a
+/// segment would be shorter than any step that changes s.
+double on_border(const PathView& path, double s) {
+  constexpr double kRounding_mm = 1e-9;
+  const double border = path.start(path.find(s + kRounding_mm, 1));
+  return std::abs(border - s) <= kRounding_mm ? border : s;
+}
+
+double rounding(double s) {
+  return 1e-12 * (1 + std::abs(s));
+}
+
 /// Whether s lies behind `before` by more than rounding.
 bool apart(double before, double s) {
-  return s > before + 1e-12 * (1 + std::abs(s));
+  return s > before + rounding(s);
 }
 
 /// Grid from a to b: segment ends and breaks on it, as fine as the geometry asks and no coarser than `coarsest`, graded
@@ -133,7 +145,7 @@ std::vector<double> make_grid(const PathView& path, double a, double b, double r
     const double from = fixed[i], to = fixed[i + 1];
     stretch.clear();
     for (double s = from; s < to;) {
-      s += step_from(s);
+      s += std::max(step_from(s), rounding(s));  // a shorter step would not get on
       stretch.push_back(s);
     }
     // The last step is cut short; were it much shorter than the one before, the two share their length.
@@ -258,7 +270,9 @@ double ramp_length(double v, double a, double j) noexcept {
 std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std::vector<JointLimits>& joints,
                                                  const Window& window) {
   const bool from_rest = window.begin.v == 0 && window.begin.a == 0;
-  const double length = window.s_end - window.begin.s;
+  const double s_begin = from_rest ? on_border(path, window.begin.s) : window.begin.s;
+  const double s_end = on_border(path, window.s_end);
+  const double length = s_end - s_begin;
   const FeedRule& feed = window.feed;
   if (!(length > 0)) return std::nullopt;
 
@@ -267,12 +281,12 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
     double a = kInfinity, j = kInfinity;
     for (const JointLimits& joint : joints) a = std::min(a, joint.max_acceleration), j = std::min(j, joint.max_jerk);
     double v = window.begin.v;
-    for (std::size_t i = path.find(window.begin.s, 1); i <= path.find(window.s_end, -1); ++i)
+    for (std::size_t i = path.find(s_begin, 1); i <= path.find(s_end, -1); ++i)
       v = std::max(v, feed.bound(path.segment(i)));
     for (const JointLimits& joint : joints) v = std::min(v, 2 * joint.max_speed);
     coarsest = std::min(coarsest, std::max(ramp_length(v, a, j) / 8, 0.01));
   }
-  double a = window.begin.s, b = window.s_end;
+  double a = s_begin, b = s_end;
   std::optional<RestEnd> first, last;
   if (from_rest) {
     first = rest_end(path, joints, a, 1, length, coarsest, feed);
@@ -297,14 +311,14 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
     // Without room, the feed gives way.
     if (room > 0) start_step = std::clamp(0.5 * room / window.begin.a, std::min(1e-4, start_step), start_step);
   }
-  problem.nodes = make_grid(path, a, b, window.begin.s, window.s_end, start_step, last->length, coarsest);
+  problem.nodes = make_grid(path, a, b, s_begin, s_end, start_step, last->length, coarsest);
   if (!fill(problem, path, joints, feed)) return std::nullopt;
   const bool yields = problem.begin.v * problem.begin.v > problem.speed_cap[0] * (1 + 1e-5);
   if (yields) yield_to_begin(problem);
   if (window.before != nullptr && !from_rest) resume_from(problem, *window.before, yields && window.same_feed);
 
   std::optional<LawPiece> from_standing;
-  if (first) from_standing = {0, {window.begin.s, 0, 0}, first->jerk, first->time, LawPiece::Kind::Jerk};
+  if (first) from_standing = {0, {s_begin, 0, 0}, first->jerk, first->time, LawPiece::Kind::Jerk};
   const LawPiece to_standing{0, problem.end, last->jerk, last->time, LawPiece::Kind::Jerk};
   const FeedRule* const programmed = yields ? nullptr : &feed;
   std::vector<LawPiece> ends{to_standing};

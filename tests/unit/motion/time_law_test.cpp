@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "planner_bench.hpp"
+#include "time_law/law_check.hpp"
+#include "time_law/window.hpp"
 
 namespace rmac {
 namespace {
@@ -53,6 +56,44 @@ TEST(TimeLaw, OfAStraightLineIsWithinThreePercentOfTheClosedForm) {
       const double shortest = shortest_time(length, feed, 1000, 10000);
       EXPECT_LE(static_cast<double>(moving) * 1e-3, shortest * 1.03 + 0.002) << "length " << length << " feed " << feed;
       EXPECT_NEAR(bench.record.back().position[0], length, 1e-9);
+    }
+  }
+}
+
+// Path lengths are sums: where a machine stands at the end of a move misses the end of its segment by rounding, either
+// way.
+TEST(TimeLaw, BeginsAndEndsAtBordersThatRoundingMisses) {
+  test::PlannerBench bench(test::mill());
+  std::vector<std::shared_ptr<const PathSegment>> segments;
+  std::vector<double> starts{0};
+  const std::array<Vector, 5> corners{{{-45, 0, 0}, {45, 3, 0}, {-45, 6, 0}, {45, 9, 0}, {40, -40, 0}}};
+  for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+    Move move;
+    move.id = static_cast<std::int64_t>(i);
+    move.feed_mm_s = 30;
+    move.geometry = LineGeometry{{corners[i], {0, 0, 1}}, {corners[i + 1], {0, 0, 1}}};
+    if (i == 0) bench.builder.restart(std::vector<double>{-45, 0, 0}, {});
+    auto built = bench.builder.build(move);
+    ASSERT_TRUE(built) << built.error().message;
+    ASSERT_EQ(built->size(), 1U);
+    segments.push_back(built->front());
+    starts.push_back(starts.back() + built->front()->length());
+  }
+  starts.pop_back();
+  const PathView path(segments, starts);
+  const auto joints = test::mill().joints;
+  const double ulp = std::nextafter(starts[1], 1e9) - starts[1];
+  for (const double at_begin : {-1e-10, -1e-12, -1.0, 0.0, 1.0, 1e-12, 1e-10}) {
+    for (const double at_end : {-1e-10, -1e-12, -1.0, 0.0, 1.0, 1e-12, 1e-10}) {
+      const auto by = [ulp](double off) { return std::abs(off) == 1 ? off * ulp : off; };
+      const double from = starts[1] + by(at_begin), to = starts[2] + by(at_end);
+      SCOPED_TRACE("off by " + std::to_string(at_begin) + " and " + std::to_string(at_end));
+      const auto law = plan_window(path, joints, {{from, 0, 0}, to, {}});
+      ASSERT_TRUE(law);
+      EXPECT_LE(check_law(path, joints, *law, nullptr).worst, 1);
+      EXPECT_NEAR(law->front().start.s, starts[1], 1e-9);
+      EXPECT_NEAR(law->back().at(law->back().duration).s, starts[2], 1e-9);
+      EXPECT_LT(law->back().t0 + law->back().duration, 3.3) << "90 mm at 30 mm/s";
     }
   }
 }
