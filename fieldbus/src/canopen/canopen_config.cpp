@@ -145,6 +145,24 @@ bool tells_mode(const AxisConfig& config) {
   return holds(config.setpoints, 0x6060) && holds(config.answers, 0x6061);
 }
 
+/// The answer that is a sensor's reading; none where none is named.
+Expected<std::optional<MappedObject>> sensor_among(Parameters& parameters, std::size_t axis,
+                                                   const std::vector<MappedObject>& answers,
+                                                   const std::vector<MappedObject>& more) {
+  return mapping(parameters, "sensor", axis, "")
+      .and_then([&](const std::vector<MappedObject>& named) -> Expected<std::optional<MappedObject>> {
+        if (named.empty()) return std::nullopt;
+        const auto holds = [&named](const std::vector<MappedObject>& objects) {
+          return std::find(objects.begin(), objects.end(), named.front()) != objects.end();
+        };
+        if (named.size() == 1 && (holds(answers) || holds(more))) return named.front();
+        return failure(MinorCode::InvalidParameterValue,
+                       parameters.place(fmt::format("sensor of axis {} is \"{}\"; it names one object, as it stands in "
+                                                    "that axis's tpdo or second_tpdo, for example 6401:01/16",
+                                                    axis, parameters.text_of_axis("sensor", axis, ""))));
+      });
+}
+
 Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const FindDescription& find) {
   AxisConfig config;
   config.node = static_cast<std::uint8_t>(parameters.number_of_axis("node", axis, 0, 1, 127));
@@ -189,11 +207,14 @@ Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const F
   if (auto known = check_more_answers(*answers, *more); !known) {
     return failure(known.error().code, parameters.place("second_tpdo: " + known.error().message));
   }
+  auto sensor = sensor_among(parameters, axis, *answers, *more);
+  if (!sensor) return tl::unexpected(sensor.error());
   auto setup = read_setup(parameters.text_of_axis("setup", axis, ""));
   if (!setup) return failure(setup.error().code, parameters.place("setup: " + setup.error().message));
   config.setpoints = std::move(*setpoints);
   config.answers = std::move(*answers);
   config.more_answers = std::move(*more);
+  config.sensor = *sensor;
   config.setup.insert(config.setup.end(), setup->begin(), setup->end());
   if (config.homes && !tells_mode(config)) {
     return failure(MinorCode::InvalidParameterValue,
@@ -293,10 +314,10 @@ Expected<CanopenConfig> read_canopen_config(const std::string& bus,
   config.abort_connection = static_cast<int>(parameters.number("abort_connection", 3, -1, 3));
   config.missed_answers = static_cast<std::uint32_t>(parameters.number("missed_answers", 1, 0, 100));
   const std::string sync = parameters.text("sync", "last");
-  if (sync != "first" && sync != "last") {
-    parameters.refuse(fmt::format("sync is \"{}\"; allowed are \"first\" and \"last\"", sync));
+  if (sync != "first" && sync != "last" && sync != "external") {
+    parameters.refuse(fmt::format("sync is \"{}\"; allowed are \"first\", \"last\" and \"external\"", sync));
   }
-  config.sync_first = sync == "first";
+  config.sync = sync == "first" ? SyncOrder::First : sync == "last" ? SyncOrder::Last : SyncOrder::External;
   const std::size_t axes = parameters.axes();
   if (axes == 0) parameters.refuse("node is missing; it lists the node id of each axis, for example [1, 2, 3]");
   for (std::size_t axis = 0; axis < axes && parameters.sound(); ++axis) {

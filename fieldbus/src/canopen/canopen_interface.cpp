@@ -201,7 +201,7 @@ void CanopenInterface::stop() noexcept {
   if (!bus.running) return;
   bus.running = false;
   for (const BusAxis& axis : bus.axes) bus.port->send(pack_setpoints(axis.config, DriveCommand{}));
-  bus.port->send(sync_frame());
+  if (bus.config.sync != SyncOrder::External) bus.port->send(sync_frame());
   const std::chrono::nanoseconds until = bus.port->now() + 2 * bus.config.period;
   while (bus.port->now() < until) {
     bus.port->wait(until - bus.port->now());
@@ -324,9 +324,9 @@ bool CanopenInterface::Impl::send(const CanFrame& frame) noexcept {
 }
 
 bool CanopenInterface::Impl::send_cycle(std::span<const DriveCommand> commands, std::chrono::nanoseconds now) noexcept {
-  bool all = !config.sync_first || send(sync_frame());
+  bool all = config.sync != SyncOrder::First || send(sync_frame());
   for (const std::size_t first : rpdos) all = send_setpoints(first, commands) && all;
-  if (!config.sync_first) all = send(sync_frame()) && all;
+  if (config.sync == SyncOrder::Last) all = send(sync_frame()) && all;
   for (BusAxis& axis : axes) {
     for (BusAxis::Answer& answer : axis.answers) ++answer.unanswered;
   }

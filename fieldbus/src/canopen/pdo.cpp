@@ -93,6 +93,11 @@ bool unpack_answers(const AxisConfig& axis, const std::vector<MappedObject>& con
     std::uint32_t word = 0;
     for (unsigned bit = 0; bit < mapped.bits; bit += 8) word |= static_cast<std::uint32_t>(frame.data[at++]) << bit;
     take_word(axis, mapped.object.index, word, feedback);
+    if (axis.sensor == mapped) {
+      const unsigned empty = 32U - mapped.bits;
+      feedback.sensor_counts = static_cast<std::int32_t>(word << empty) >> empty;
+      feedback.sensor_valid = true;
+    }
   }
   return true;
 }

@@ -38,7 +38,7 @@ TEST(CanopenConfig, SaysWhichParameterIsWrongAndWhatIsAllowed) {
                 "mode is 2 for axis 0; allowed are 1, 3 and 4 (profile position, velocity and torque), 7 (interpolated "
                 "position), 8, 9 and 10 (cyclic synchronous position, velocity and torque)");
   EXPECT_EQ(refusal({{"node", {1}}}, {{"sync", "never"}}),
-            at + "sync is \"never\"; allowed are \"first\" and \"last\"");
+            at + "sync is \"never\"; allowed are \"first\", \"last\" and \"external\"");
   EXPECT_EQ(refusal({{"node", {1}}}, {{"rpdo", "6040/16"}}),
             at + "rpdo: \"6040/16\" is no object; write index:sub/bits, whole bytes of 32 bits at most, for example "
                  "6040:00/16");
@@ -64,6 +64,9 @@ TEST(CanopenConfig, HasASecondPdoOfAnswersThatCounts) {
   const std::string at = "CANopenInterface, bus can0: ";
   EXPECT_EQ(refusal({{"node", {1}}}, {{"second_tpdo", "60FD:00/32 6064:00/32"}}),
             at + "second_tpdo: 6064h:00 is mapped twice");
+  EXPECT_EQ(refusal({{"node", {1}}}, {{"sensor", "6401:01/16"}}),
+            at + "sensor of axis 0 is \"6401:01/16\"; it names one object, as it stands in that axis's tpdo or "
+                 "second_tpdo, for example 6401:01/16");
   EXPECT_EQ(refusal({{"node", {1}}}, {{"second_tpdo", "60FD:00/16"}}),
             at + "second_tpdo: 60FDh:00 has 32 bits, not 16");
   EXPECT_EQ(refusal({{"node", {1, 1}}, {"axis_in_node", {0, 1}}}, more),

@@ -52,6 +52,46 @@ TEST_F(CanopenBench, ConformsToThePortWithSyncFirst) {
   conformance::ControlInterfaceConformance(paced, 0).check();
 }
 
+TEST_F(CanopenBench, ReadsASensorBesideADriveWithItsSign) {
+  VirtualDrive& drive = wire_.add(1);
+  wire_.add(2);
+  drive.set_bytes({0x6401, 1}, {0, 0});
+  make({{"node", {1, 2}}}, {{"tpdo_0", "6041:00/16 6064:00/32 6401:01/16"}, {"sensor_0", "6401:01/16"}});
+  start();
+  std::vector<DriveCommand> commands(2);
+  std::vector<DriveFeedback> feedback(2);
+  for (const int reading : {0, 1234, -1234, 32767, -32768}) {
+    drive.set(0x6401, 1, static_cast<std::uint16_t>(reading), 2);
+    for (int i = 0; i < 3; ++i) {
+      (void)master_->exchange(commands, feedback);
+      wire_.pass(milliseconds(1));
+    }
+    EXPECT_EQ(feedback[0].sensor_counts, reading);
+    EXPECT_TRUE(feedback[0].sensor_valid);
+    EXPECT_FALSE(feedback[1].sensor_valid) << "no sensor is named beside this one";
+  }
+}
+
+TEST_F(CanopenBench, LeavesSyncToTheNodeThatProducesIt) {
+  wire_.add(1);
+  make({{"node", {1}}}, {{"sync", "external"}});
+  int syncs = 0, setpoints = 0;
+  start();
+  wire_.listen = [&](const CanFrame& frame) {
+    syncs += frame.id == canopen::sync_frame().id ? 1 : 0;
+    setpoints += frame.id == 0x201 ? 1 : 0;
+  };
+  std::vector<DriveCommand> commands(1);
+  std::vector<DriveFeedback> feedback(1);
+  for (int i = 0; i < 20; ++i) {
+    (void)master_->exchange(commands, feedback);
+    wire_.pass(milliseconds(1));
+  }
+  master_->stop();
+  EXPECT_EQ(syncs, 0);
+  EXPECT_GE(setpoints, 20);
+}
+
 TEST_F(CanopenBench, WritesMappingWatchAndModeAtBoot) {
   VirtualDrive& drive = wire_.add(5);
   make({{"node", {5}}, {"mode", {8}}, {"heartbeat_ms", {40}}}, {{"setup", "6085:00/32=70000"}});

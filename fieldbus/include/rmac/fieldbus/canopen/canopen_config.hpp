@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ inline constexpr std::size_t kMostAxesPerNode = 4;   ///< as many as have identi
 struct MappedObject {
   ObjectAddress object;
   std::uint8_t bits = 0;
+
+  [[nodiscard]] bool operator==(const MappedObject&) const = default;
 };
 
 /// What is to be written to a node when it is brought up.
@@ -45,6 +48,7 @@ struct AxisConfig {
   std::vector<MappedObject> setpoints;     ///< the RPDO
   std::vector<MappedObject> answers;       ///< the TPDO
   std::vector<MappedObject> more_answers;  ///< the second TPDO; empty: there is none
+  std::optional<MappedObject> sensor;      ///< one of the answers, a sensor's reading with a sign
   double velocity_units_per_rpm = 1;       ///< of 60FFh and 606Ch
   Identity identity;
   std::vector<SdoWrite> setup;
@@ -53,6 +57,10 @@ struct AxisConfig {
   bool homes = false;                                         ///< it can be told to home: mode 6 is asked of it, too
   std::shared_ptr<const eds::DeviceDescription> description;  ///< null where no file was named
 };
+
+/// Where SYNC stands among the frames of a cycle: behind the setpoints or before them, or nowhere, because another node
+/// produces it.
+enum class SyncOrder : std::uint8_t { Last, First, External };
 
 /// One CANopen bus and its drives.
 struct CanopenConfig {
@@ -67,7 +75,7 @@ struct CanopenConfig {
   std::chrono::milliseconds boot_timeout{5000};
   int abort_connection = 3;          ///< 6007h: quick stop; -1: not written
   std::uint32_t missed_answers = 1;  ///< SYNCs in a row that a drive may leave unanswered
-  bool sync_first = false;           ///< SYNC before the setpoints of its cycle, not after them
+  SyncOrder sync = SyncOrder::Last;
 
   /// How long a heartbeat may be absent before its producer counts as gone.
   [[nodiscard]] std::chrono::milliseconds heartbeat_deadline() const noexcept { return heartbeat * 3 / 2; }
