@@ -46,9 +46,9 @@ class ForceOnMill : public MillRun {
                            .max_speed = force["MaxSpeed"],
                            .max_force = force["MaxForce"],
                            .max_search = force["MaxSearch"],
-                           .max_acceleration = joint["MaxAcceleration"],
-                           .min_position = joint["Min"],
-                           .max_position = joint["Max"]};
+                           .max_acceleration = joint["MaxAcceleration"]};
+    parts.axes[2].bounds.min_position = joint["Min"];
+    parts.axes[2].bounds.max_position = joint["Max"];
     parts.axes[2].force_sensor = ServoForceSensor{bus_, 2, joint["ForceSensor"]["NewtonPerCount"], 0};
   }
   /// What the axis really presses with.

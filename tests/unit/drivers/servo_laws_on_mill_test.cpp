@@ -44,9 +44,11 @@ TEST_F(LawsOnMill, FuzzyDoesAsWellAsPidAgainstFrictionAndNoBetter) {
 
 TEST_F(LawsOnMill, ChangeInMotionWithoutAStepOfTorque) {
   const LawChanges changes = change_laws_on_circle(1);
-  EXPECT_GT(changes.count, 50);
+  EXPECT_GT(changes.count, 25);
+  EXPECT_GT(changes.gain_count, 25);
   EXPECT_LT(changes.contour_error, 0.05);
   EXPECT_LT(changes.largest_step_nm, 0.01 * changes.rated_nm);
+  EXPECT_LT(changes.largest_gain_step_nm, 0.01 * changes.rated_nm);
 }
 
 }  // namespace

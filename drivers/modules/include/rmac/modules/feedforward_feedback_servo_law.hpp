@@ -14,8 +14,8 @@ namespace rmac::modules {
 /// are those of the PID, then those of the model.
 class FeedforwardFeedbackServoLaw final : public ServoLaw {
  public:
-  FeedforwardFeedbackServoLaw(double derivative_filter_s, const FeedforwardModel::Parameters& model) noexcept
-      : feedback_(derivative_filter_s), model_(model) {}
+  FeedforwardFeedbackServoLaw(const ErrorSignal::Parameters& signal, const FeedforwardModel::Parameters& model) noexcept
+      : feedback_(signal), model_(model) {}
 
   [[nodiscard]] std::span<const GainInfo> gains() const noexcept override { return kGains; }
 
@@ -61,14 +61,14 @@ class FeedforwardFeedbackServoLaw final : public ServoLaw {
   double limit_ = 0;
 };
 
-/// Makes a `FeedforwardFeedbackServoLaw`; parameters `derivative_filter_s`, `lead_s` and `friction_speed`.
+/// Makes a `FeedforwardFeedbackServoLaw`; parameters `derivative_filter_s`, `rest_band`, `lead_s` and `friction_speed`.
 struct FeedforwardFeedbackServoLawFactory {
   static ServoLaw* create(sdk::Parameters parameters, char* error, std::size_t error_size) noexcept {
-    double filter_s = 0;
+    ErrorSignal::Parameters signal;
     FeedforwardModel::Parameters model;
-    if (!sdk::read_number(parameters, kDerivativeFilter, filter_s, error, error_size)) return nullptr;
+    if (!ErrorSignal::read(parameters, signal, error, error_size)) return nullptr;
     if (!FeedforwardModel::read(parameters, model, error, error_size)) return nullptr;
-    return new FeedforwardFeedbackServoLaw(filter_s, model);
+    return new FeedforwardFeedbackServoLaw(signal, model);
   }
 };
 

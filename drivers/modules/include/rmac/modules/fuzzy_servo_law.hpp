@@ -16,7 +16,7 @@ namespace rmac::modules {
 /// therefore be more than load and friction can suddenly ask for.
 class FuzzyServoLaw final : public ServoLaw {
  public:
-  FuzzyServoLaw(double derivative_filter_s, double load) noexcept : signal_(derivative_filter_s), load_(load) {}
+  FuzzyServoLaw(const ErrorSignal::Parameters& signal, double load) noexcept : signal_(signal), load_(load) {}
 
   [[nodiscard]] std::span<const GainInfo> gains() const noexcept override { return kGains; }
 
@@ -58,6 +58,7 @@ class FuzzyServoLaw final : public ServoLaw {
 
   /// As the surface weighs it against effort: an integral of the plain error would outgrow the rest far from rest.
   [[nodiscard]] double softened_error() const noexcept {
+    if (signal_.rests()) return 0;
     return error_range_ / FuzzySurface::kCentreSlope * FuzzySurface::at(signal_.error() / error_range_, 0);
   }
 
@@ -69,14 +70,14 @@ class FuzzyServoLaw final : public ServoLaw {
   double limit_ = 0;
 };
 
-/// Makes a `FuzzyServoLaw`; parameters `derivative_filter_s` and `load`.
+/// Makes a `FuzzyServoLaw`; parameters `derivative_filter_s`, `rest_band` and `load`.
 struct FuzzyServoLawFactory {
   static ServoLaw* create(sdk::Parameters parameters, char* error, std::size_t error_size) noexcept {
-    double filter_s = 0;
+    ErrorSignal::Parameters signal;
     double load = 0;
-    if (!sdk::read_number(parameters, kDerivativeFilter, filter_s, error, error_size)) return nullptr;
+    if (!ErrorSignal::read(parameters, signal, error, error_size)) return nullptr;
     if (!sdk::read_number(parameters, kLoad, load, error, error_size)) return nullptr;
-    return new FuzzyServoLaw(filter_s, load);
+    return new FuzzyServoLaw(signal, load);
   }
 };
 

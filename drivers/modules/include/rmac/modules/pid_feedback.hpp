@@ -13,7 +13,7 @@ namespace rmac::modules {
 /// Kp·e + Kd·ė + ∫ Ki·e dt on top of an effort that is known beforehand, within one limit for the sum.
 class PidFeedback {
  public:
-  explicit PidFeedback(double derivative_filter_s) noexcept : signal_(derivative_filter_s) {}
+  explicit PidFeedback(const ErrorSignal::Parameters& parameters) noexcept : signal_(parameters) {}
 
   /// Kp above 0, Ki and Kd at least 0.
   [[nodiscard]] static bool takes(std::span<const double, 3> gains) noexcept {
@@ -30,23 +30,23 @@ class PidFeedback {
 
   void engage(const ServoInput& input, double known, double effort) noexcept {
     signal_.engage(input);
-    integral_.start(effort, known + proportional(), signal_.error(), input.period_s);
+    integral_.start(effort, known + proportional(), integrated(), input.period_s);
   }
   [[nodiscard]] double update(const ServoInput& input, double known, double limit) noexcept {
     signal_.update(input);
-    return integral_.output(known + proportional(), signal_.error(), input.period_s, limit);
+    return integral_.output(known + proportional(), integrated(), input.period_s, limit);
   }
 
  private:
   [[nodiscard]] double proportional() const noexcept { return kp_ * signal_.error() + kd_ * signal_.rate(); }
+
+  [[nodiscard]] double integrated() const noexcept { return signal_.rests() ? 0 : signal_.error(); }
 
   ErrorSignal signal_;
   IntegralAction integral_;
   double kp_ = 0, kd_ = 0;
 };
 
-/// The parameter of every law that has a D term: the time constant of its low-pass, none unless given.
-inline constexpr sdk::NumberParameter kDerivativeFilter{"derivative_filter_s", 0, 0, 0.1, "s"};
 /// The parameter of the laws without a feedforward model: the weight that hangs on the joint, as the effort that holds
 /// it.
 inline constexpr sdk::NumberParameter kLoad{"load", 0, -1e7, 1e7, "N or N·m"};

@@ -15,7 +15,7 @@ namespace rmac::modules {
 /// linear one, N·m and deg for a rotary one.
 class PidServoLaw final : public ServoLaw {
  public:
-  PidServoLaw(double derivative_filter_s, double load) noexcept : feedback_(derivative_filter_s), load_(load) {}
+  PidServoLaw(const ErrorSignal::Parameters& signal, double load) noexcept : feedback_(signal), load_(load) {}
 
   [[nodiscard]] std::span<const GainInfo> gains() const noexcept override { return kGains; }
 
@@ -46,14 +46,14 @@ class PidServoLaw final : public ServoLaw {
   double limit_ = 0;
 };
 
-/// Makes a `PidServoLaw`; parameters `derivative_filter_s` and `load`.
+/// Makes a `PidServoLaw`; parameters `derivative_filter_s`, `rest_band` and `load`.
 struct PidServoLawFactory {
   static ServoLaw* create(sdk::Parameters parameters, char* error, std::size_t error_size) noexcept {
-    double filter_s = 0;
+    ErrorSignal::Parameters signal;
     double load = 0;
-    if (!sdk::read_number(parameters, kDerivativeFilter, filter_s, error, error_size)) return nullptr;
+    if (!ErrorSignal::read(parameters, signal, error, error_size)) return nullptr;
     if (!sdk::read_number(parameters, kLoad, load, error, error_size)) return nullptr;
-    return new PidServoLaw(filter_s, load);
+    return new PidServoLaw(signal, load);
   }
 };
 
