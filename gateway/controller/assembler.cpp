@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "gateway/controller/bus_choice.hpp"
@@ -19,16 +20,17 @@ namespace {
 JointBounds bounds(const sdk::Joint& joint, double period_s) {
   constexpr double kSpeedShare = 1.2, kJumpCycles = 3;
   const double speed = joint.limits.max_speed;
+  constexpr double kNoEnd = std::numeric_limits<double>::infinity();
   return {.velocity = joint.max_measured_speed > 0 ? joint.max_measured_speed : kSpeedShare * speed,
           .jump = joint.max_jump > 0 ? joint.max_jump : kJumpCycles * speed * period_s,
-          .stop_deceleration = joint.limits.max_acceleration};
+          .stop_deceleration = joint.limits.max_acceleration,
+          .min_position = ends_below(joint.limits) ? joint.limits.min : -kNoEnd,
+          .max_position = ends_above(joint.limits) ? joint.limits.max : kNoEnd};
 }
 
 ForceControl force(const sdk::Joint& joint) {
   ForceControl result = joint.force.value_or(ForceControl{});
   result.max_acceleration = joint.limits.max_acceleration;
-  if (ends_below(joint.limits)) result.min_position = joint.limits.min;
-  if (ends_above(joint.limits)) result.max_position = joint.limits.max;
   return result;
 }
 
@@ -290,6 +292,12 @@ const char* type_text(JointType type) {
   return type == JointType::Rotary ? "Rotary" : type == JointType::Linear ? "Linear" : "Screw";
 }
 
+/// A screw slides by what it counts. Its turn, about the axis along which it slides, is the geometry's business where it
+/// moves the tool, and shows in none where the tool lies in that axis, as in a quill's.
+bool fits(JointType configured, JointType built) {
+  return configured == built || (configured == JointType::Screw && built == JointType::Linear);
+}
+
 Expected<> add_geometry(const sdk::DeviceObject& device, const ModuleLoader& loader, ServoLoopParts& parts,
                         std::vector<ModuleInUse>& modules) {
   auto kinematics = loader.load<Kinematics>(device.kinematics);
@@ -301,7 +309,7 @@ Expected<> add_geometry(const sdk::DeviceObject& device, const ModuleLoader& loa
   }
   for (std::size_t i = 0; i < device.joints.size(); ++i) {
     const JointLimits& joint = device.joints[i].limits;
-    if (const JointType built = kinematics->object->joint_type(i); joint.type != built) {
+    if (const JointType built = kinematics->object->joint_type(i); !fits(joint.type, built)) {
       return failure(MinorCode::InvalidParameterValue,
                      fmt::format("joint {} \"{}\" is set to be {}, but it is {} in the geometry of {}", i, joint.name,
                                  type_text(joint.type), type_text(built), device.kinematics.name));

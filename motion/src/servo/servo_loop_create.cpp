@@ -48,11 +48,6 @@ Expected<> check_counts(const ServoLoopParts& parts) {
 Expected<> check_axes(const ServoLoopParts& parts) {
   for (std::size_t j = 0; j < parts.axes.size(); ++j) {
     const ServoAxis& axis = parts.axes[j];
-    if (axis.method == ControlMethod::Velocity) {
-      return failure(
-          MinorCode::UnsupportedOperation,
-          "servo loop: " + joint_text(j) + " asks for velocity control; position and force control are there so far");
-    }
     if (axis.method == ControlMethod::Force) {
       if (auto ok = check_force_control(axis.force, joint_text(j)); !ok) return ok;
       if (!axis.force_sensor && !parts.virtual_mode) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -9,7 +10,9 @@ namespace rmac {
 void ServoLoop::cycle(const ServoCommand& command, ServoReport& report) noexcept {
   Impl& loop = *impl_;
   loop.follows = false;
+  const auto begun = std::chrono::steady_clock::now();
   loop.exchange(command, report);
+  report.exchange_ns = std::chrono::nanoseconds(std::chrono::steady_clock::now() - begun).count();
   loop.change_state(command);
   if (loop.parts.virtual_mode) {
     loop.finish_reset();
@@ -195,42 +198,6 @@ void ServoLoop::Impl::engage_law(std::size_t joint, double from_effort) noexcept
   filters[joint].engage(from_effort);
 }
 
-void ServoLoop::Impl::make_setpoints(const ServoCommand& command, ServoReport& report) noexcept {
-  if (parts.virtual_mode) follows = state == ServoState::Engaged;
-  report.follows = follows;
-  if (braking) {
-    brake();
-    return;
-  }
-  for (std::size_t j = 0; j < axes; ++j) {
-    if (parts.axes[j].method == ControlMethod::Force && live[j]) {
-      follow_force(j, follows ? command.force[j] : 0);
-    } else if (follows && j < joints) {
-      const Setpoint& wanted = command.setpoint;
-      if (!std::isfinite(wanted.position[j]) || !std::isfinite(wanted.velocity[j]) ||
-          !std::isfinite(wanted.acceleration[j])) {
-        raise({ServoFault::Kind::NotANumber, ServoFault::Part::Joint, static_cast<std::uint32_t>(j), wanted.position[j],
-               0});
-        report.follows = false;
-        return;
-      }
-      hold[j] = wanted.position[j];
-      set_velocity[j] = wanted.velocity[j];
-      set_acceleration[j] = wanted.acceleration[j];
-    } else {
-      if (!live[j] && !parts.virtual_mode) hold[j] = position[j];
-      set_velocity[j] = set_acceleration[j] = 0;
-    }
-  }
-}
-
-// A joint under force control is out of the plan: its setpoint goes where its force sends it.
-void ServoLoop::Impl::follow_force(std::size_t joint, double wanted) noexcept {
-  set_velocity[joint] = force_loops[joint].step(std::isfinite(wanted) ? wanted : 0, force[joint]);
-  set_acceleration[joint] = 0;
-  hold[joint] += set_velocity[joint] * parts.period_s;
-}
-
 void ServoLoop::Impl::run_laws() noexcept {
   for (std::size_t j = 0; j < axes; ++j) {
     effort[j] = 0;
@@ -248,11 +215,6 @@ void ServoLoop::Impl::run_laws() noexcept {
     }
     effort[j] = std::clamp(filters[j].update(wanted), -axis.max_effort, axis.max_effort);
   }
-}
-
-void ServoLoop::Impl::reflect_setpoints() noexcept {
-  position = hold;
-  velocity = set_velocity;
 }
 
 void ServoLoop::Impl::make_torques() noexcept {

@@ -49,6 +49,7 @@ struct ServoLoop::Impl {
   void make_live() noexcept;
   void make_setpoints(const ServoCommand& command, ServoReport& report) noexcept;
   void follow_force(std::size_t joint, double wanted) noexcept;
+  void follow_velocity(std::size_t joint, double wanted, double acceleration) noexcept;
   void run_laws() noexcept;
   void engage_law(std::size_t joint, double from_effort) noexcept;
   void shafts_for(std::span<const double> joint_positions, std::span<double> shafts) const noexcept;

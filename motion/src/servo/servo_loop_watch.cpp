@@ -153,8 +153,8 @@ void ServoLoop::Impl::watch_contact(std::size_t joint) noexcept {
   if (!(std::abs(force[joint]) <= control.max_force)) {
     raise({ServoFault::Kind::ForceLimit, ServoFault::Part::Joint, number, force[joint], control.max_force});
   }
-  const bool at_end = (hold[joint] > control.max_position && set_velocity[joint] > 0) ||
-                      (hold[joint] < control.min_position && set_velocity[joint] < 0);
+  const bool at_end = (hold[joint] > parts.axes[joint].bounds.max_position && set_velocity[joint] > 0) ||
+                      (hold[joint] < parts.axes[joint].bounds.min_position && set_velocity[joint] < 0);
   const double searched = force_loops[joint].searched();
   const bool searching = force_loops[joint].state() == ContactState::Approaching;
   if (at_end || (searching && searched > control.max_search)) {

@@ -25,11 +25,12 @@ ForceControl control() {
 /// Joint 1 under force control, its drive exactly where its setpoint is, above a spring.
 class ForceControlled : public ServoLoopTest {
  protected:
-  void start(const ForceControl& force = control(), double stiffness_n_mm = 500) {
+  void start(const ForceControl& force = control(), double stiffness_n_mm = 500, const JointBounds& bounds = {}) {
     stiffness_ = stiffness_n_mm;
     ServoLoopParts made = parts();
     made.axes[1].method = ControlMethod::Force;
     made.axes[1].force = force;
+    made.axes[1].bounds = bounds;
     made.axes[1].force_sensor = ServoForceSensor{bus, 4, 0.001, 0};
     fake->drives[4].words.sensor_valid = true;
     build(std::move(made));
@@ -113,9 +114,7 @@ TEST_F(ForceControlled, StopsAfterTheWayItMaySearch) {
 }
 
 TEST_F(ForceControlled, StopsAtTheEndOfItsTravel) {
-  ForceControl near = control();
-  near.min_position = -0.5;
-  start(near);
+  start(control(), 500, {.min_position = -0.5});
   command.force[1] = -100;
   run(2000);
   EXPECT_EQ(report.fault.kind, ServoFault::Kind::ContactLost);

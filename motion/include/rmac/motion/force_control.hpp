@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 namespace rmac {
 
@@ -16,8 +15,6 @@ struct ForceControl {
   double max_force = 0;       ///< beyond it, either way, the machine stops
   double max_search = 0;      ///< way that the joint may go without contact before the machine stops
   double max_acceleration = 0;
-  double min_position = -std::numeric_limits<double>::infinity();  ///< travel
-  double max_position = std::numeric_limits<double>::infinity();
 };
 
 /// Where a joint under force control is.

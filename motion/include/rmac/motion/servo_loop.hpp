@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -43,6 +44,8 @@ struct JointBounds {
   double velocity = 0;           ///< beyond it for three cycles on end the machine stops
   double jump = 0;               ///< change of a position's step from cycle to cycle that no motion explains
   double stop_deceleration = 0;  ///< of a stop that keeps power; 0: the setpoint stands at once
+  double min_position = -std::numeric_limits<double>::infinity();  ///< travel, where no plan keeps the joint in it
+  double max_position = std::numeric_limits<double>::infinity();
 };
 
 /// The loop of one joint.
@@ -175,7 +178,8 @@ struct ServoReport {
   ToolPose pose;         ///< measured, part frame
   double feed_mm_s = 0;  ///< tool tip, from measured joints
   std::uint64_t inputs = 0;
-  std::uint32_t homings = 0;  ///< that were completed
+  std::uint32_t homings = 0;     ///< that were completed
+  std::int64_t exchange_ns = 0;  ///< of the cycle's time, that the exchange with buses and I/O took
   ProbeReport probe;
 };
 
