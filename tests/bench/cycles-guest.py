@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 
-from guest import PITCH_MM, RUN, Drives, Figures, answers, axes_alone, call, install, make_can, on_buses, status, wait_for
+from guest import PITCH_MM, RUN, Drives, Figures, answers, axes_alone, call, diagonal, install, make_can, on_buses, status, wait_for
 
 WANTED_S = 600
 BUILD, SECONDS = sys.argv[1].split(",")
@@ -32,24 +32,6 @@ def six_axes(device):
 def prepare():
     install(pathlib.Path(BUILD))
     call("ip", "link", "set", "lo", "up")
-
-
-def program(seconds):
-    """To and fro along a diagonal, for so long and a little longer."""
-    def move(number):
-        near, far = [-40, -40, -40], [40, 40, 40]
-        start, end = (near, far) if number % 2 else (far, near)
-        return {"MoveID": number, "StartPoint": {"p": start, "axis": [0, 0, 1]}, "EndPoint": {"p": end, "axis": [0, 0, 1]}}
-
-    feed_mm_min, length_mm = 2000, 80 * 3**0.5
-    moves = int(seconds * feed_mm_min / 60 / length_mm) + 4
-    requests = [("RMAC_CAM.SetFeedrate", {"Feedrate": feed_mm_min}),
-                ("RMAC_CAM.MoveToPathTarget", {"MoveID": 0, "TargetFrame": {"p": [-40, -40, -40], "axis": [0, 0, 1]}}),
-                *(("RMAC_CAM.MoveAlongLine", move(number)) for number in range(1, moves))]
-    file = RUN / "diagonal.rmac"
-    file.write_text("".join(json.dumps({"jsonrpc": "2.0", "id": number, "method": method, "params": params}) + "\n"
-                            for number, (method, params) in enumerate(requests)))
-    return file
 
 
 def quantile(values, part):
@@ -80,7 +62,7 @@ def measure(figures, name, nodes, period_s, change):
     drives = Drives(interface, *nodes)
     daemon = subprocess.Popen(["rmacd", "--config", RUN / "rmacd.json"], stderr=(RUN / "rmacd.log").open("w"))
     wait_for("the daemon answers", answers)
-    run = subprocess.Popen(["rmac", "run", program(SECONDS), "--machine", "DMACXYZ"], stdout=subprocess.DEVNULL, stderr=(RUN / "run.log").open("w"))
+    run = subprocess.Popen(["rmac", "run", diagonal(SECONDS), "--machine", "DMACXYZ"], stdout=subprocess.DEVNULL, stderr=(RUN / "run.log").open("w"))
     wait_for("it moves", lambda: status()["move_id"] >= 1, 120)
     log = (RUN / f"{interface}.sync").open("w")
     witness = subprocess.Popen(["candump", "-L", f"{interface},080:7FF"], stdout=log)

@@ -180,6 +180,24 @@ def axes_alone(*nodes, **parameters):
     return change
 
 
+def diagonal(seconds):
+    """A program that goes to and fro along a diagonal of DMACXYZ, for so long and a little longer."""
+    def move(number):
+        near, far = [-40, -40, -40], [40, 40, 40]
+        start, end = (near, far) if number % 2 else (far, near)
+        return {"MoveID": number, "StartPoint": {"p": start, "axis": [0, 0, 1]}, "EndPoint": {"p": end, "axis": [0, 0, 1]}}
+
+    feed_mm_min, length_mm = 2000, 80 * 3**0.5
+    moves = int(seconds * feed_mm_min / 60 / length_mm) + 4
+    requests = [("RMAC_CAM.SetFeedrate", {"Feedrate": feed_mm_min}),
+                ("RMAC_CAM.MoveToPathTarget", {"MoveID": 0, "TargetFrame": {"p": [-40, -40, -40], "axis": [0, 0, 1]}}),
+                *(("RMAC_CAM.MoveAlongLine", move(number)) for number in range(1, moves))]
+    file = RUN / "diagonal.rmac"
+    file.write_text("".join(json.dumps({"jsonrpc": "2.0", "id": number, "method": method, "params": params}) + "\n"
+                            for number, (method, params) in enumerate(requests)))
+    return file
+
+
 class Figures:
     """A line of JSON each, as it is known."""
 

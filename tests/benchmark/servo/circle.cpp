@@ -23,11 +23,15 @@ void circle_rows(Figures& figures) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const LawChanges changes = LawChangesOnMill().change_laws_on_circle(seed);
     all.count += changes.count;
+    all.gain_count += changes.gain_count;
+    all.largest_gain_step_nm = std::max(all.largest_gain_step_nm, changes.largest_gain_step_nm);
     all.largest_step_nm = std::max(all.largest_step_nm, changes.largest_step_nm);
     all.rated_nm = changes.rated_nm;
   }
   figures.at_most("torque_step_where_laws_change", 100 * all.largest_step_nm / all.rated_nm, 1, "% of rated",
                   std::to_string(all.count) + " changes on the circle");
+  figures.at_most("torque_step_where_gains_change", 100 * all.largest_gain_step_nm / all.rated_nm, 1, "% of rated",
+                  std::to_string(all.gain_count) + " changes on the circle, to 0.6 to 1.1 of what they are");
 }
 
 }  // namespace rmac::bench
