@@ -132,6 +132,19 @@ void add_cycle_methods(std::vector<Method>& table) {
             now.state = call.machine.cycle_now().state;  // a start that was just accepted is not in the sample yet
             return state_to_json(call.machine, now, call.status, call.session.authority_holder());
           }));
+  add(method("RMAC_CAM.GetCycleTimes",
+             "Where the servo thread's time goes, since the mechanism was put in: `deadline_misses`, and of `wake_up` "
+             "(from when a cycle was due), `compute` (without the bus) and `bus` each `count`, `median_us`, `p99_us`, "
+             "`p999_us`, `largest_us`, and `bins`, pairs of a bin's largest time in µs and how often it occurred.")
+          .gives(WireType::Object)
+          .extension()
+          .does([](Call& call) {
+            const CycleTimes& times = call.machine.cycle_times();
+            return nlohmann::json{{"deadline_misses", call.machine.sample().deadline_misses},
+                                  {"wake_up", times_to_json(times.wake_up.read())},
+                                  {"compute", times_to_json(times.compute.read())},
+                                  {"bus", times_to_json(times.bus.read())}};
+          }));
 }
 
 }  // namespace rmac::gateway

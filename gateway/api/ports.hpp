@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gateway/api/rpc_error.hpp"
+#include "gateway/controller/cycle_times.hpp"
 #include "gateway/controller/machine_state.hpp"
 #include "gateway/controller/module_loader.hpp"
 #include "gateway/device_driver_manager/device_driver_manager.hpp"
@@ -77,6 +78,7 @@ class MachinePort {
   /// The mechanism in force, or nullptr.
   [[nodiscard]] virtual const sdk::DeviceObject* mechanism() const = 0;
   [[nodiscard]] virtual CycleSample sample() const = 0;
+  [[nodiscard]] virtual const CycleTimes& cycle_times() const = 0;
   [[nodiscard]] virtual CycleNow cycle_now() const = 0;
   /// What stopped the machine last.
   [[nodiscard]] virtual const std::optional<Event>& last_stop() const = 0;

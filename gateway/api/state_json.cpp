@@ -10,6 +10,17 @@ std::vector<double> first(const auto& values, std::size_t count) {
   return {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
+double in_us(std::int64_t ns) {
+  return static_cast<double>(ns) / 1000;
+}
+
+/// What the topic `state` tells of the cycles' times.
+nlohmann::json brief(const TimeCounts& counts) {
+  return {{"median_us", in_us(counts.quantile_ns(0.5))},
+          {"p999_us", in_us(counts.quantile_ns(0.999))},
+          {"largest_us", in_us(counts.largest_ns)}};
+}
+
 }  // namespace
 
 const char* to_string(Event::Kind kind) noexcept {
@@ -82,6 +93,9 @@ nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, co
                        {"inputs", sample.inputs},
                        {"outputs", sample.outputs},
                        {"deadline_misses", sample.deadline_misses},
+                       {"wake_up", brief(machine.cycle_times().wake_up.read())},
+                       {"compute", brief(machine.cycle_times().compute.read())},
+                       {"bus", brief(machine.cycle_times().bus.read())},
                        {"moves_in_buffer", machine.cam().moves_in_buffer()},
                        {"status_major", status.major},
                        {"status_minor", status.minor},
@@ -99,6 +113,17 @@ nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, co
   state["spindle_rpm"] = first(sample.spindle_rpm, spindles);
   state["spindle_torque_nm"] = first(sample.spindle_torque_nm, spindles);
   return state;
+}
+
+nlohmann::json times_to_json(const TimeCounts& counts) {
+  nlohmann::json json = brief(counts);
+  json["count"] = counts.count;
+  json["p99_us"] = in_us(counts.quantile_ns(0.99));
+  json["bins"] = nlohmann::json::array();
+  for (std::size_t bin = 0; bin < TimeCounts::kBins; ++bin) {
+    if (counts.bins[bin] > 0) json["bins"].push_back({in_us(TimeCounts::end_of(bin)), counts.bins[bin]});
+  }
+  return json;
 }
 
 }  // namespace rmac::gateway

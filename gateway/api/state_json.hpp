@@ -16,4 +16,7 @@ namespace rmac::gateway {
 [[nodiscard]] nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, const MachineStatus& status,
                                            const std::string& authority_holder);
 
+/// In µs; bins without a time are left out.
+[[nodiscard]] nlohmann::json times_to_json(const TimeCounts& counts);
+
 }  // namespace rmac::gateway

@@ -83,6 +83,7 @@ RealTimeSettings real_time_settings(const Json& settings) {
   RealTimeSettings real_time;
   if (const int cpu = settings.value("cpu", -1); cpu >= 0) real_time.cpu = cpu;
   real_time.priority = settings.value("priority", real_time.priority);
+  real_time.sync_from = settings.value("sync_from", std::string());
   real_time.lock_memory = settings.value("lock_memory", real_time.lock_memory);
   constexpr int kMaxCyclesLost = 5;
   real_time.max_cycles_lost = settings.value("max_cycles_lost", kMaxCyclesLost);

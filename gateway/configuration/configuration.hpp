@@ -20,6 +20,7 @@ struct RealTimeSettings {
   std::optional<int> cpu;  ///< processor of the servo thread; none: wherever the kernel puts it
   int priority = 80;       ///< SCHED_FIFO, 1 to 99
   bool lock_memory = true;
+  std::string sync_from;         ///< CAN interface whose SYNC begins each cycle; empty: the timer does
   bool degraded_allowed = true;  ///< run, with a warning, when the system grants no real-time scheduling
   int max_cycles_lost = 0;       ///< missed deadlines within a second that stop the machine beyond it; 0: none does
 };

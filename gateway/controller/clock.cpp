@@ -17,20 +17,22 @@ class MonotonicClock final : public Clock {
   }
 
   std::uint64_t wait_for_cycle() noexcept override {
-    const std::int64_t late_ns = now_ns() - due_ns_;
+    late_ns_ = now_ns() - due_ns_;
     std::uint64_t missed = 0;
-    if (late_ns > 0) {
-      missed = static_cast<std::uint64_t>(late_ns / period_ns_) + 1;
+    if (late_ns_ > 0) {
+      missed = static_cast<std::uint64_t>(late_ns_ / period_ns_) + 1;
       due_ns_ += static_cast<std::int64_t>(missed - 1) * period_ns_;
     } else {
       const timespec due{due_ns_ / kNanosecondsPerSecond, due_ns_ % kNanosecondsPerSecond};
       while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
       }
+      late_ns_ = now_ns() - due_ns_;
     }
     due_ns_ += period_ns_;
     return missed;
   }
 
+  std::int64_t late_ns() const noexcept override { return late_ns_; }
   void restart() noexcept override { due_ns_ = now_ns() + period_ns_; }
 
  private:
@@ -42,6 +44,7 @@ class MonotonicClock final : public Clock {
 
   std::int64_t period_ns_;
   std::int64_t due_ns_ = 0;
+  std::int64_t late_ns_ = 0;
 };
 
 }  // namespace

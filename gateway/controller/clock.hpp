@@ -12,6 +12,8 @@ class Clock {
   virtual ~Clock() = default;
   /// Returns when the next cycle is due. The cycles whose time had passed already: 0 when in time.
   [[nodiscard]] virtual std::uint64_t wait_for_cycle() noexcept = 0;
+  /// How long after it was due the last cycle began, ns.
+  [[nodiscard]] virtual std::int64_t late_ns() const noexcept = 0;
   /// The next cycle is due one period from now, whatever was due before.
   virtual void restart() noexcept = 0;
 };

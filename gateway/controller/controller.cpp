@@ -122,6 +122,10 @@ CycleSample Controller::sample() const noexcept {
   return impl_->link->history.latest();
 }
 
+const CycleTimes& Controller::cycle_times() const noexcept {
+  return impl_->link->times;
+}
+
 CycleNow Controller::cycle_now() const {
   return impl_->supervisor.now();
 }

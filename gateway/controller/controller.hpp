@@ -10,6 +10,7 @@
 
 #include "gateway/controller/bus_registry.hpp"
 #include "gateway/controller/clock.hpp"
+#include "gateway/controller/cycle_times.hpp"
 #include "gateway/controller/machine_state.hpp"
 #include "gateway/record/flight_recorder_options.hpp"
 #include "gateway/tools/tool.hpp"
@@ -92,6 +93,7 @@ class Controller {
   [[nodiscard]] std::vector<ModuleInUse> modules() const;
 
   [[nodiscard]] CycleSample sample() const noexcept;
+  [[nodiscard]] const CycleTimes& cycle_times() const noexcept;
   /// The cycle's state, which follows an accepted command at once; the sample follows some cycles later.
   [[nodiscard]] CycleNow cycle_now() const;
 

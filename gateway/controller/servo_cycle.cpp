@@ -43,7 +43,10 @@ void ServoCycle::take_over(Mechanism* next) noexcept {
   sample_.deadline_misses = misses;
   sample_.samples_lost = lost;
   status_ = ServoStatus{};
-  if (!same_loop) report_ = ServoReport{};
+  if (!same_loop) {
+    report_ = ServoReport{};
+    link_.times.clear();
+  }
   // The first cycle puts the follower where the joints hold.
   report_.follows = false;
 }

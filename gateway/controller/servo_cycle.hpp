@@ -14,6 +14,8 @@ class ServoCycle {
   void run(std::uint64_t missed) noexcept;
   /// What the last cycle left.
   [[nodiscard]] const ServoStatus& status() const noexcept { return status_; }
+  /// Of the last cycle's time, that the exchange with buses and I/O took.
+  [[nodiscard]] std::int64_t exchange_ns() const noexcept { return report_.exchange_ns; }
 
  private:
   void serve_swap() noexcept;

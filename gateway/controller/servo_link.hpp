@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "gateway/controller/cycle_history.hpp"
+#include "gateway/controller/cycle_times.hpp"
 #include "gateway/controller/machine_state.hpp"
 #include "gateway/controller/mechanism.hpp"
 #include "gateway/controller/snapshot.hpp"
@@ -76,6 +77,7 @@ struct ServoLink {
   CycleHistory history;
   std::atomic<std::int64_t> delivered{0};  ///< last cycle whose sample the gateway took
   SpscRing<FaultRecord, 64> faults;
+  CycleTimes times;
 };
 
 }  // namespace rmac::gateway

@@ -69,7 +69,19 @@ void ServoThread::step() {
 
 void ServoThread::run_real(ServoCycle& cycle) noexcept {
   options_.clock->restart();
-  while (!stop_.load(std::memory_order_relaxed)) cycle.run(options_.clock->wait_for_cycle());
+  while (!stop_.load(std::memory_order_relaxed)) {
+    const std::uint64_t missed = options_.clock->wait_for_cycle();
+    link_.times.wake_up.add(options_.clock->late_ns());
+    run_timed(cycle, missed);
+  }
+}
+
+void ServoThread::run_timed(ServoCycle& cycle, std::uint64_t missed) noexcept {
+  const auto begun = std::chrono::steady_clock::now();
+  cycle.run(missed);
+  const std::int64_t all_ns = std::chrono::nanoseconds(std::chrono::steady_clock::now() - begun).count();
+  link_.times.compute.add(all_ns - cycle.exchange_ns());
+  link_.times.bus.add(cycle.exchange_ns());
 }
 
 void ServoThread::plan() {
@@ -102,7 +114,7 @@ void ServoThread::run_virtual(ServoCycle& cycle) {
       (void)options_.clock->wait_for_cycle();
     }
     calm = pace == MotionSupervisor::Pace::Calm;
-    cycle.run(0);
+    run_timed(cycle, 0);
   }
 }
 

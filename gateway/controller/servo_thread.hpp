@@ -46,6 +46,7 @@ class ServoThread {
 
  private:
   void run_real(ServoCycle& cycle) noexcept;
+  void run_timed(ServoCycle& cycle, std::uint64_t missed) noexcept;
   void run_virtual(ServoCycle& cycle);
   void plan();
 

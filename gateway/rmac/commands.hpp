@@ -54,6 +54,8 @@ struct SimulateOptions {
 [[nodiscard]] Result<> simulate_program(const std::string& file, const SimulateOptions& options, bool json);
 
 [[nodiscard]] Result<> show_status(Connection& connection, bool watch, bool json);
+/// Where the servo thread's time goes, as a table and bars.
+[[nodiscard]] Result<> show_cycles(Connection& connection, bool json);
 [[nodiscard]] Result<> show_events(Connection& connection, bool json);
 
 /// What `rmac jog` moves: one joint, or the tool tip along a direction; by a distance, or at a velocity until Ctrl-C.

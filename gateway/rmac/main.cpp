@@ -93,6 +93,10 @@ void add_operating_commands(CLI::App& app, Arguments& arguments, Command& comman
   status->add_flag("--watch", arguments.watch, "go on until Ctrl-C");
   status->callback([&] { command = [&](auto& to) { return show_status(to, arguments.watch, arguments.json); }; });
 
+  app.add_subcommand("cycles", "how late the servo cycles began, and what they took")->callback([&] {
+    command = [&](auto& to) { return show_cycles(to, arguments.json); };
+  });
+
   app.add_subcommand("events", "follow what happens until Ctrl-C")->callback([&] {
     command = [&](auto& to) { return show_events(to, arguments.json); };
   });

@@ -50,6 +50,8 @@ StateNote read_state(const nlohmann::json& params) {
   read(params, "joints", state.joints);
   read(params, "held_joints", state.held_joints);
   read(params, "spindle_rpm", state.spindle_rpm);
+  read(params, "deadline_misses", state.deadline_misses);
+  if (const auto late = params.find("wake_up"); late != params.end()) read(*late, "p999_us", state.wake_up_p999_us);
   read(params, "tool_wanted", state.tool_wanted);
   read(params, "tool_prompt", state.tool_prompt);
   if (const auto stop = params.find("last_stop"); stop != params.end() && stop->is_object()) {

@@ -24,9 +24,11 @@ struct StateNote {
   int moves_in_buffer = 0, status_minor = 0;
   double t_s = 0, feed_actual = 0, feed_set = 0, override_percent = 0;
   std::vector<double> pose, joints, held_joints, spindle_rpm;
-  int tool_wanted = 0;      ///< by the tool change that comes next
-  std::string tool_prompt;  ///< what a person is asked to do for it; empty: nothing
-  EventNote last_stop;      ///< without a kind: none yet
+  std::int64_t deadline_misses = 0;
+  double wake_up_p999_us = 0;  ///< of the servo thread, after its cycle was due
+  int tool_wanted = 0;         ///< by the tool change that comes next
+  std::string tool_prompt;     ///< what a person is asked to do for it; empty: nothing
+  EventNote last_stop;         ///< without a kind: none yet
 
   /// What a faulted machine has queued stays until its reset, and moves nothing.
   [[nodiscard]] bool at_rest() const {

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "gateway/rmac/commands.hpp"
 #include "gateway/rmac/notes.hpp"
@@ -43,11 +45,27 @@ std::string state_table(const StateNote& state) {
                               {"joints", list(state.joints), "mm or deg"},
                               {"held joints", list(state.held_joints), "mm or deg"},
                               {"spindle", list(state.spindle_rpm), "rpm"},
+                              {"cycles begin", "99.9 % within " + number(state.wake_up_p999_us, 1), "µs"},
+                              {"deadlines missed", std::to_string(state.deadline_misses), ""},
                               {"to do", state.tool_prompt.empty() ? "-" : state.tool_prompt, ""},
                               {"authority", state.authority.empty() ? "nobody" : state.authority, ""},
                               {"last error", state.status_minor == 0 ? "none" : std::to_string(state.status_minor),
                                state.status_minor == 0 ? "" : "StatusMinorCode"}}) +
          last_stop(state.last_stop);
+}
+
+/// Bins joined to octaves, each with a bar as long as the logarithm of its count: one cycle in a million is to be seen.
+std::string bars(const nlohmann::json& bins) {
+  std::map<int, std::uint64_t> octaves;
+  for (const auto& bin : bins) octaves[std::ilogb(bin[0].get<double>())] += bin[1].get<std::uint64_t>();
+  std::string text;
+  for (const auto& [octave, count] : octaves) {
+    constexpr double kDecade = 6;
+    const auto length = static_cast<std::size_t>(1 + kDecade * std::log10(static_cast<double>(count)));
+    text += fmt::format("{:>10} µs {:>12}  {}\n", fmt::format("< {:g}", std::ldexp(1, octave + 1)), count,
+                        std::string(length, '#'));
+  }
+  return text;
 }
 
 /// Ctrl-C is how a person ends watching, not a failure.
@@ -77,6 +95,28 @@ Result<> show_status(Connection& connection, bool watch, bool json) {
   auto done = watch ? until_interrupted(connection) : connection.wait([&] { return seen; });
   connection.on_notification({});
   return done;
+}
+
+Result<> show_cycles(Connection& connection, bool json) {
+  return connection.call("RMAC_CAM.GetCycleTimes").map([json](const nlohmann::json& times) {
+    if (json) {
+      fmt::print("{}\n", times.dump());
+      return;
+    }
+    std::vector<std::vector<std::string>> rows;
+    std::string drawn;
+    for (const auto& [key, what] :
+         {std::pair{"wake_up", "after it was due"}, {"compute", "computing"}, {"bus", "on the bus"}}) {
+      const nlohmann::json& of = times.at(key);
+      rows.push_back({what, std::to_string(of.at("count").get<std::uint64_t>())});
+      for (const char* column : {"median_us", "p99_us", "p999_us", "largest_us"}) {
+        rows.back().push_back(number(of.at(column).get<double>(), 1));
+      }
+      drawn += fmt::format("\n{}:\n{}", what, bars(of.at("bins")));
+    }
+    fmt::print("{}{}{} deadlines missed\n", table({"", "cycles", "median", "99 %", "99.9 %", "largest µs"}, rows),
+               drawn, times.at("deadline_misses").get<std::uint64_t>());
+  });
 }
 
 Result<> show_events(Connection& connection, bool json) {

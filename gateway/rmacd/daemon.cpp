@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdlib>
 
+#include "gateway/controller/sync_clock.hpp"
 #include "gateway/rmacd/machine.hpp"
 #include "gateway/server/server.hpp"
 
@@ -18,8 +19,9 @@ namespace {
 constexpr std::chrono::milliseconds kTick{2};
 constexpr std::chrono::seconds kStopBound{10};  ///< for coming to rest before the daemon ends regardless
 
-ControllerOptions controller_options(const Configuration& configuration) {
+ControllerOptions controller_options(const Configuration& configuration, std::shared_ptr<Clock> clock) {
   ControllerOptions options;
+  options.clock = std::move(clock);
   for (const auto& folder : configuration.module_folders) options.module_folders.push_back(folder.string());
   options.period_s = std::chrono::duration<double>(configuration.period).count();
   options.as_fast_as_computed = configuration.pace == Pace::AsFastAsComputed;
@@ -34,6 +36,13 @@ ControllerOptions controller_options(const Configuration& configuration) {
   options.flight_recorder = configuration.flight_recorder;
   options.tools_folder = configuration.state_folder / "tools";
   return options;
+}
+
+/// Null where the timer begins the cycles.
+Expected<std::shared_ptr<Clock>> clock_for(const Configuration& configuration) {
+  const std::string& interface = configuration.real_time.sync_from;
+  if (interface.empty() || configuration.pace != Pace::RealTime) return nullptr;
+  return SyncClock::on(interface, std::chrono::duration<double>(configuration.period).count());
 }
 
 Verification::Options verification_options(const Configuration& configuration) {
@@ -65,9 +74,11 @@ ServerOptions server_options(const Configuration& configuration) {
 /// The parts, in the order in which they need each other.
 class Daemon {
  public:
-  Daemon(std::unique_ptr<DeviceDriverManager> manager, const Configuration& configuration, ServerOptions options)
+  /// `clock`: null for the timer.
+  Daemon(std::unique_ptr<DeviceDriverManager> manager, const Configuration& configuration, std::shared_ptr<Clock> clock,
+         ServerOptions options)
       : manager_(std::move(manager)),
-        controller_(controller_options(configuration)),
+        controller_(controller_options(configuration, std::move(clock))),
         verification_(verification_options(configuration)),
         host_(*manager_, controller_, &verification_),
         machine_(controller_, host_, *manager_),
@@ -211,7 +222,10 @@ Expected<> run_daemon(const Configuration& configuration) {
   }
   auto manager = DeviceDriverManager::open({configuration.device_tree, configuration.database});
   if (!manager) return tl::unexpected<Error>(std::move(manager.error()));
-  return Daemon(std::move(*manager), configuration, server_options(configuration)).run(configuration);
+  return clock_for(configuration).and_then([&](std::shared_ptr<Clock> clock) {
+    return Daemon(std::move(*manager), configuration, std::move(clock), server_options(configuration))
+        .run(configuration);
+  });
 }
 
 }  // namespace rmac::gateway

@@ -114,11 +114,11 @@ class Appliance:
             pass
         return client
 
-    def rmac(self, *words, **options):
+    def rmac(self, *words, bound_s=120, **options):
         """Runs the command line client to its end."""
         return subprocess.run(
             [BUILD / "bin" / "rmac", "--port", str(self.port), *words],
-            stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, check=False, **options)
+            stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=bound_s, check=False, **options)
 
 
 def pose(x, y, z):

@@ -46,7 +46,7 @@ class Air(unittest.TestCase):
         while self.client.state()["state"] != "Idle":
             pass
         self.client.call("subscribe", topics=["events"])
-        self.client.call("RMAC_CAM.SetFeedrate", Feedrate=60)
+        self.client.call("RMAC_CAM.SetFeedrate", Feedrate=6)
         self.client.call("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (30, 0, 0)))
         self.client.call("RMAC_CAM.CycleStart", Mode="AUTOMATIC")
         self.client.wait_note("events", lambda event: event["kind"] == "MoveStarted")

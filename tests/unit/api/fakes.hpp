@@ -204,6 +204,7 @@ class FakeMachine : public MachinePort {
   DevicePort& device() override { return device_fake; }
   const sdk::DeviceObject* mechanism() const override { return device_fake.device ? &*device_fake.device : nullptr; }
   CycleSample sample() const override { return now; }
+  const CycleTimes& cycle_times() const override { return times; }
   CycleNow cycle_now() const override { return cycle; }
   const std::optional<Event>& last_stop() const override { return stop; }
   Expected<std::string> record_flight() override { return std::string("20261121T000000.000Z-demand-1"); }
@@ -219,6 +220,7 @@ class FakeMachine : public MachinePort {
   testing::NiceMock<MockTools> tools_mock;
   std::optional<Event> stop;
   CycleSample now;
+  CycleTimes times;
   CycleNow cycle;
   std::function<void()> during_search;
 };

@@ -35,8 +35,8 @@ class Parking : public testing::Test {
     ASSERT_TRUE(loaded) << loaded.error().message;
   }
   /// A quarter of an arc between two lines, a positioning move and one of the joints.
-  void queue() {
-    ASSERT_TRUE(cam().set_feedrate(300));
+  void queue(double feed_mm_min = 300) {
+    ASSERT_TRUE(cam().set_feedrate(feed_mm_min));
     ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {8, 0, 0}));
     ASSERT_TRUE(cam().queue_move(2, ArcGeometry{{8, 4, 0}, {0, 0, 1}, 1, false, at(8, 0, 0), at(12, 4, 0)}));
     ASSERT_TRUE(machine_.line(3, {12, 4, 0}, {12, 12, 2}));
@@ -51,6 +51,11 @@ class Parking : public testing::Test {
   [[nodiscard]] bool rests() {
     machine_.controller.dispatch();
     return !machine_.samples.empty() && !machine_.samples.back().moving;
+  }
+  /// The machine is up to twice 4096 cycles ahead of who hears of it: each of the first three moves lasts longer.
+  void queue_and_hold_in(std::int64_t move) {
+    queue(30);
+    hold_in(move);
   }
   void hold_in(std::int64_t move) {
     ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveStarted, move));
@@ -145,8 +150,7 @@ TEST_F(Parking, GoesOnFromItsPlaceWhereverItWasHeld) {
 }
 
 TEST_F(Parking, LaysWhatIsLeftInTheFrameThatIsInForceThen) {
-  queue();
-  hold_in(2);
+  queue_and_hold_in(2);
   park();
   Frame found;
   found.p = {0.3, -0.2, 0.1};
@@ -175,8 +179,7 @@ TEST_F(Parking, LaysWhatIsLeftInTheFrameThatIsInForceThen) {
 }
 
 TEST_F(Parking, TakesNothingUpWhereTheToolStandsElsewhere) {
-  queue();
-  hold_in(3);
+  queue_and_hold_in(3);
   park();
   ASSERT_TRUE(cam().jog_joint(2, 5));
   ASSERT_TRUE(machine_.run_until([&] { return state() == CycleState::Idle && rests(); }));
@@ -194,7 +197,7 @@ TEST_F(Parking, TakesNothingUpWhereTheToolStandsElsewhere) {
 }
 
 TEST_F(Parking, RefusesAFrameInWhichTheRestCannotBeReached) {
-  ASSERT_TRUE(cam().set_feedrate(300));
+  ASSERT_TRUE(cam().set_feedrate(120));
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {20, 0, 0}));
   ASSERT_TRUE(machine_.line(2, {20, 0, 0}, {20, 49.9, 0}));
   ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
@@ -216,8 +219,7 @@ TEST_F(Parking, RefusesAFrameInWhichTheRestCannotBeReached) {
 TEST_F(Parking, StopsTheSpindleAndHasItTurningAgainBeforeItGoesOn) {
   ASSERT_TRUE(cam().set_spindle_rpm(0, 800));
   ASSERT_TRUE(cam().set_coolant(true));
-  queue();
-  hold_in(2);
+  queue_and_hold_in(2);
   EXPECT_NEAR(machine_.controller.sample().spindle_rpm[0], 800, 25);
   park();
   ASSERT_TRUE(machine_.run_until([&] { return machine_.controller.sample().spindle_rpm[0] < 1; }));
@@ -242,8 +244,7 @@ TEST_F(Parking, OutlastsAnotherRoleOfTheSameMachine) {
   ASSERT_TRUE(cam().set_part_frame(part));
   ASSERT_TRUE(cam().set_feedrate(300));
   ASSERT_TRUE(cam().queue_move(6, PathTargetGeometry{at(0, 0, 0)}));
-  queue();
-  hold_in(2);
+  queue_and_hold_in(2);
   park();
   const auto loaded = machine_.load(measuring_role());
   ASSERT_TRUE(loaded) << loaded.error().message;
@@ -269,8 +270,7 @@ TEST_F(Parking, OutlastsAnotherRoleOfTheSameMachine) {
 }
 
 TEST_F(Parking, EndsWhenAnotherMachineIsLoadedAndSurvivesOneThatCannotBe) {
-  queue();
-  hold_in(2);
+  queue_and_hold_in(2);
   park();
   sdk::DeviceObject broken = measuring_role();
   broken.kinematics.name = "NoSuchModule";
@@ -288,7 +288,7 @@ TEST_F(Parking, EndsWhenAnotherMachineIsLoadedAndSurvivesOneThatCannotBe) {
 
 TEST_F(Parking, SetsAsideOnlyWhatIsHeld) {
   EXPECT_THAT(cam().park_program().error().message, HasSubstr("nothing is queued"));
-  queue();
+  queue(30);
   EXPECT_THAT(cam().park_program().error().message, HasSubstr("FeedHold first"));
   hold_in(2);
   park();
@@ -302,8 +302,7 @@ TEST_F(Parking, SetsAsideOnlyWhatIsHeld) {
 }
 
 TEST_F(Parking, CanBeRepeatedOnTheWayBack) {
-  queue();
-  hold_in(2);
+  queue_and_hold_in(2);
   for (int i = 0; i < 3; ++i) {
     park();
     take_up();

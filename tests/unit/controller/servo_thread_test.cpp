@@ -16,6 +16,7 @@ using testing::HasSubstr;
 class LateClock final : public Clock {
  public:
   std::uint64_t wait_for_cycle() noexcept override { return clock_->wait_for_cycle() + 1; }
+  std::int64_t late_ns() const noexcept override { return clock_->late_ns(); }
   void restart() noexcept override { clock_->restart(); }
 
  private:

@@ -113,6 +113,7 @@ TEST(Watching, BoundsThatAreNotDeclaredFollowFromTheJointsSpeed) {
 /// The machine's clock, which misses so many deadlines when it is told to.
 class LateClock final : public Clock {
  public:
+  std::int64_t late_ns() const noexcept override { return 0; }
   void restart() noexcept override {}
   [[nodiscard]] std::uint64_t wait_for_cycle() noexcept override {
     std::this_thread::sleep_for(std::chrono::microseconds(100));

@@ -4,36 +4,14 @@
 #include <memory>
 #include <mutex>
 
-#include "gateway/verifier/trap.hpp"
 #include "test_machine.hpp"
+#include "trapping_clock.hpp"
 #include "unit/device_driver_manager/fixtures.hpp"
 
 namespace rmac::gateway {
 namespace {
 
 using verifier::TrapCounts;
-
-/// The machine's clock, with the trap set from the moment a cycle is due until the thread asks for the next one.
-class TrappingClock final : public Clock {
- public:
-  std::uint64_t wait_for_cycle() noexcept override {
-    if (cycles_ == 0) catches_system_calls_ = verifier::prepare_trap();
-    verifier::disarm_trap();
-    const std::uint64_t missed = clock_->wait_for_cycle();
-    cycles_ = cycles_ + 1;
-    verifier::arm_trap();
-    return missed;
-  }
-  void restart() noexcept override { clock_->restart(); }
-
-  [[nodiscard]] std::int64_t cycles() const { return cycles_; }
-  [[nodiscard]] bool catches_system_calls() const { return catches_system_calls_; }
-
- private:
-  std::shared_ptr<Clock> clock_ = make_monotonic_clock(0.001);
-  std::atomic<std::int64_t> cycles_{0};
-  std::atomic<bool> catches_system_calls_{false};
-};
 
 TEST(Trap, CatchesWhatAnArmedThreadDoesAndNothingElse) {
   std::thread([] {
@@ -101,7 +79,7 @@ class ServoThreadUnderTrap : public testing::Test {
   }
 
   test::TemporaryFolder folder_;
-  std::shared_ptr<TrappingClock> clock_ = std::make_shared<TrappingClock>();
+  std::shared_ptr<TrappingClock> clock_ = std::make_shared<TrappingClock>(make_monotonic_clock(0.001));
   TestMachine machine_{options(clock_)};
 };
 
