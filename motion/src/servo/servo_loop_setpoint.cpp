@@ -66,9 +66,7 @@ void ServoLoop::Impl::follow_velocity(std::size_t joint, double wanted, double a
   const ServoAxis& axis = parts.axes[joint];
   const double slip = kSlip * axis.max_following_error;
   hold[joint] = std::clamp(hold[joint], position[joint] - slip, position[joint] + slip);
-  const auto fastest = [&](double way) {
-    return speed_before_end(way, axis.bounds.stop_deceleration, parts.period_s);
-  };
+  const auto fastest = [&](double way) { return speed_before_end(way, axis.bounds.stop_deceleration, parts.period_s); };
   set_velocity[joint] = std::clamp(wanted, -fastest(hold[joint] - axis.bounds.min_position),
                                    fastest(axis.bounds.max_position - hold[joint]));
   set_acceleration[joint] = set_velocity[joint] == wanted ? acceleration : 0;
