@@ -292,8 +292,8 @@ const char* type_text(JointType type) {
   return type == JointType::Rotary ? "Rotary" : type == JointType::Linear ? "Linear" : "Screw";
 }
 
-/// A screw slides by what it counts. Its turn, about the axis along which it slides, is the geometry's business where it
-/// moves the tool, and shows in none where the tool lies in that axis, as in a quill's.
+/// A screw slides by what it counts. Its turn, about the axis along which it slides, is the geometry's business where
+/// it moves the tool, and shows in none where the tool lies in that axis, as in a quill's.
 bool fits(JointType configured, JointType built) {
   return configured == built || (configured == JointType::Screw && built == JointType::Linear);
 }

@@ -99,7 +99,8 @@ Cycles run_cycles(std::size_t joints, int count) {
   std::vector<std::unique_ptr<ActuatorMap>> gears;
   for (std::size_t j = 0; j < joints; ++j) {
     gears.push_back(std::make_unique<modules::Proportional>(modules::Proportional::gear(kGear)));
-    auto law = std::make_shared<modules::FeedforwardFeedbackServoLaw>(0.001, modules::FeedforwardModel::Parameters{});
+    auto law = std::make_shared<modules::FeedforwardFeedbackServoLaw>(modules::ErrorSignal::Parameters{0.001, 0},
+                                                                      modules::FeedforwardModel::Parameters{});
     (void)law->set_gains(std::array{50.0, 500.0, 0.5, 0.1, 0.01, 2.0, 0.0});
     parts.axes.push_back({law, ControlMethod::Position, 5, 500});
     parts.actuators.push_back({bus, static_cast<std::uint32_t>(j), {kCountsPerTurn, 1, 1, 0}});
