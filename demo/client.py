@@ -150,9 +150,12 @@ class Client:
     def wait_until_done(self, seconds=3600, poll_s=0.05):
         """Until the queue is empty and the machine rests, and the record has caught up. Returns the state then."""
         deadline = time.monotonic() + seconds
+        stopping = False  # as every cycle does at its end, too
         while True:
             state = self.call("RMAC_CAM.GetState")
-            if state["state"] not in ("Idle", "Running"):
+            stopping |= state["state"] == "Stopping"
+            stopped_short = stopping and state["state"] == "Idle" and state["moves_in_buffer"] > 0
+            if stopped_short or state["state"] not in ("Idle", "Running", "Stopping"):
                 told = "; ".join(str(e.get("message", e)) for e in self.events[-3:])
                 raise RuntimeError(f"the machine went to {state['state']} at move {state['move_id']}: {told}")
             if state["moves_in_buffer"] == 0 and not state["moving"]:
