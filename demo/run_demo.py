@@ -22,6 +22,12 @@ SEARCH = (
     "SELECT * FROM DeviceDrivers WHERE Type = 'Mill' AND ConfigurationType = '3-axis' "
     "AND Length >= 100 AND Width >= 90 AND Depth >= 30 AND PositioningTolerance <= 0.05 ORDER BY Length * Width * Depth"
 )
+# Of each joint the gains of its PID, and the axis: N·s/mm of grease, N·s²/mm of mass, N of friction and of weight (docs/servo.md).
+FEEDFORWARD = (
+    ((1550, 140000, 11.1), (0.158, 0.0347, 18.85, 0)),
+    ((1820, 164000, 13.0), (0.158, 0.0407, 18.85, 0)),
+    ((1195, 107500, 8.5), (0.158, 0.0267, 18.85, 117.7)),
+)
 REFUSALS = {"MACHINE_ERR_TRAVEL_LIMIT", "MACHINE_ERR_INVALID_PARAMETER_VALUE", "MACHINE_ERR_UNSUPPORTED_OPERATION"}
 
 
@@ -42,6 +48,14 @@ def search(client):
     client.call("DeviceDriverManager.CloseDeviceDriverDatabase")
     say(f"  {total} machines known, {found} fit: {', '.join(names)}")
     return names
+
+
+def feed_forward(client):
+    """Puts feedforward before the PID of DMACXYZ's joints: another law in the same loops, without shutting down."""
+    for joint, (pid, model) in enumerate(FEEDFORWARD):
+        client.call("RMAC_Config.SetMechanismJointServoControlLaw", JntNum=joint, ControlLaw="DMAC_FEEDFORWARDFEEDBACK_CONTROL")
+        client.call("RMAC_Config.SetMechanismJointServoControlGains", JntNum=joint, ServoControlGains=[*pid, *model])
+    client.call("RMAC_Config.Apply")
 
 
 def split(program):
@@ -107,6 +121,7 @@ def run(host, port, out, device_tree):
     say("DMACXYZ: sweep the headlight (ball end)")
     preparation, moves = split(sweep)
     client.run(preparation)
+    feed_forward(client)
     recorder, sent, _ = machine(client, moves)
     session.plan_to_motion_ms = (recorder.first_motion - ready) * 1e3
     session.send_to_motion_ms = (recorder.first_motion - sent) * 1e3
