@@ -94,8 +94,8 @@ bool unpack_answers(const AxisConfig& axis, const std::vector<MappedObject>& con
     for (unsigned bit = 0; bit < mapped.bits; bit += 8) word |= static_cast<std::uint32_t>(frame.data[at++]) << bit;
     take_word(axis, mapped.object.index, word, feedback);
     if (axis.sensor == mapped) {
-      const unsigned empty = 32U - mapped.bits;
-      feedback.sensor_counts = static_cast<std::int32_t>(word << empty) >> empty;
+      const std::uint32_t sign = std::uint32_t{1} << ((mapped.bits - 1U) & 31U);
+      feedback.sensor_counts = static_cast<std::int32_t>((word ^ sign) - sign);
       feedback.sensor_valid = true;
     }
   }
