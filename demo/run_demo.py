@@ -22,12 +22,8 @@ SEARCH = (
     "SELECT * FROM DeviceDrivers WHERE Type = 'Mill' AND ConfigurationType = '3-axis' "
     "AND Length >= 100 AND Width >= 90 AND Depth >= 30 AND PositioningTolerance <= 0.05 ORDER BY Length * Width * Depth"
 )
-# Of each joint the gains of its PID, and the axis: N·s/mm of grease, N·s²/mm of mass, N of friction and of weight (docs/servo.md).
-FEEDFORWARD = (
-    ((1550, 140000, 11.1), (0.158, 0.0347, 18.85, 0)),
-    ((1820, 164000, 13.0), (0.158, 0.0407, 18.85, 0)),
-    ((1195, 107500, 8.5), (0.158, 0.0267, 18.85, 117.7)),
-)
+# What each axis of the simulated bus is: N·s/mm of grease, N·s²/mm of mass, N of friction (docs/servo.md, docs/simulated-bus.md).
+AXES = ((0.158, 0.0347, 18.85), (0.158, 0.0407, 18.85), (0.158, 0.0267, 18.85))
 REFUSALS = {"MACHINE_ERR_TRAVEL_LIMIT", "MACHINE_ERR_INVALID_PARAMETER_VALUE", "MACHINE_ERR_UNSUPPORTED_OPERATION"}
 
 
@@ -50,11 +46,13 @@ def search(client):
     return names
 
 
-def feed_forward(client):
+def feed_forward(client, device_tree):
     """Puts feedforward before the PID of DMACXYZ's joints: another law in the same loops, without shutting down."""
-    for joint, (pid, model) in enumerate(FEEDFORWARD):
-        client.call("RMAC_Config.SetMechanismJointServoControlLaw", JntNum=joint, ControlLaw="DMAC_FEEDFORWARDFEEDBACK_CONTROL")
-        client.call("RMAC_Config.SetMechanismJointServoControlGains", JntNum=joint, ServoControlGains=[*pid, *model])
+    joints = json.loads((pathlib.Path(device_tree) / "mill/3-axis/DMACXYZ/device.json").read_text(encoding="utf-8"))["Joints"]
+    for number, (joint, axis) in enumerate(zip(joints, AXES)):
+        gains = [*joint["Gains"], *axis, *joint["ServoControlLaw"]["Parameters"].get("load", [0])]
+        client.call("RMAC_Config.SetMechanismJointServoControlLaw", JntNum=number, ControlLaw="DMAC_FEEDFORWARDFEEDBACK_CONTROL")
+        client.call("RMAC_Config.SetMechanismJointServoControlGains", JntNum=number, ServoControlGains=gains)
     client.call("RMAC_Config.Apply")
 
 
@@ -121,7 +119,7 @@ def run(host, port, out, device_tree):
     say("DMACXYZ: sweep the headlight (ball end)")
     preparation, moves = split(sweep)
     client.run(preparation)
-    feed_forward(client)
+    feed_forward(client, device_tree)
     recorder, sent, _ = machine(client, moves)
     session.plan_to_motion_ms = (recorder.first_motion - ready) * 1e3
     session.send_to_motion_ms = (recorder.first_motion - sent) * 1e3

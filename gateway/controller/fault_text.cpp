@@ -102,8 +102,7 @@ std::optional<std::string> spindle_cause(const ServoFault& fault, const std::str
     case ServoFault::Kind::VelocityBound:
       return fmt::format(
           "{}: it turns at {:.4g} rpm, a fifth beyond its {:.4g} rpm; look for a drive that runs away, or a wrong "
-          "scale "
-          "or direction, then reset",
+          "scale or direction, then reset",
           at, fault.value, fault.bound);
     case ServoFault::Kind::TorqueBound: {
       const bool own = mechanism == nullptr || fault.index >= mechanism->device.spindles.size() ||

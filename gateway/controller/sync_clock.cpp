@@ -27,7 +27,7 @@ SyncClock::SyncClock(std::unique_ptr<fieldbus::CanPort> port, double period_s) n
 }
 
 Expected<std::shared_ptr<Clock>> SyncClock::on(const std::string& interface, double period_s) {
-  const std::array wanted{fieldbus::canopen::sync_frame().id};
+  const std::array wanted{fieldbus::canopen::kSyncId};
   return fieldbus::SocketCanPort::open(interface, wanted, 0).map([period_s](auto port) -> std::shared_ptr<Clock> {
     return std::make_shared<SyncClock>(std::move(port), period_s);
   });

@@ -22,7 +22,10 @@ class SyncClock final : public Clock {
 
   std::uint64_t wait_for_cycle() noexcept override;
   [[nodiscard]] std::int64_t late_ns() const noexcept override { return late_.count(); }
-  void restart() noexcept override { begun_ = port_->now(); }
+  void restart() noexcept override {
+    begun_ = port_->now();
+    without_ = false;
+  }
 
  private:
   std::unique_ptr<fieldbus::CanPort> port_;

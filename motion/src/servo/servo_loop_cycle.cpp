@@ -10,9 +10,7 @@ namespace rmac {
 void ServoLoop::cycle(const ServoCommand& command, ServoReport& report) noexcept {
   Impl& loop = *impl_;
   loop.follows = false;
-  const auto begun = std::chrono::steady_clock::now();
   loop.exchange(command, report);
-  report.exchange_ns = std::chrono::nanoseconds(std::chrono::steady_clock::now() - begun).count();
   loop.change_state(command);
   if (loop.parts.virtual_mode) {
     loop.finish_reset();
@@ -48,8 +46,10 @@ void ServoLoop::cycle(const ServoCommand& command, ServoReport& report) noexcept
 void ServoLoop::Impl::exchange(const ServoCommand& command, ServoReport& report) noexcept {
   if (parts.virtual_mode) {
     report.inputs = 0;
+    report.exchange_ns = 0;
     return;
   }
+  const auto begun = std::chrono::steady_clock::now();
   if (fresh) {
     for (const auto& bus : buses) std::fill(bus->commands.begin(), bus->commands.end(), DriveCommand{});
     fresh = false;
@@ -62,6 +62,7 @@ void ServoLoop::Impl::exchange(const ServoCommand& command, ServoReport& report)
   if (parts.io && !parts.io->exchange(command.outputs, report.inputs)) {
     raise({ServoFault::Kind::IoFailure, ServoFault::Part::Io, 0, 0, 0});
   }
+  report.exchange_ns = std::chrono::nanoseconds(std::chrono::steady_clock::now() - begun).count();
   if (!parts.io) report.inputs = 0;
   read_drive_inputs(report.inputs);
   watch_inputs(report.inputs);
