@@ -243,6 +243,8 @@ class ServedOnTcp(Served):
         self.port = self._server.server.sockets[0].getsockname()[1]
 
     def close(self):
+        for connection in self._server.active_connections.values():
+            connection.transport.abort()
         self._server.server.close()
 
     def parameters(self):
