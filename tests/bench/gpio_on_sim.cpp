@@ -4,6 +4,7 @@
 #include <fstream>
 #include <thread>
 
+#include "conformance/digital_io_conformance.hpp"
 #include "rmac/fieldbus/gpio/gpio_interface.hpp"
 
 // The GPIO adapter on a chip that the kernel simulates (gpio-guest.sh sets it up): lines estop-nc, estop-no, probe,
@@ -73,6 +74,15 @@ class GpioOnSim : public testing::Test {
     return inputs;
   }
 };
+
+TEST_F(GpioOnSim, ConformsToThePort) {
+  const auto io = make({{"input_3", "probe"}, {"output_1", "coolant"}});
+  conformance::DigitalIoConformance(*io, {.input = 3,
+                                          .output = 1,
+                                          .turn_input = [](bool on) { pull(2, on); },
+                                          .output_is_on = [] { return value(3) == 1; }})
+      .check();
+}
 
 TEST_F(GpioOnSim, StampsEdgesWithTheKernelsClock) {
   const auto lines = make_kernel_lines();

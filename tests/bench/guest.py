@@ -134,8 +134,8 @@ class Peer:
 
 
 class Drives(Peer):
-    def __init__(self, interface, *nodes):
-        super().__init__(interface, ["rmac-vdrive", interface, *map(str, nodes)])
+    def __init__(self, interface, *nodes, name=None):
+        super().__init__(name or interface, ["rmac-vdrive", interface, *map(str, nodes)])
         self._read = 0
         self._changes = []
 

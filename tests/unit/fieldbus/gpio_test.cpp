@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "conformance/digital_io_conformance.hpp"
 #include "rmac/fieldbus/gpio/gpio_interface.hpp"
 
 namespace rmac::fieldbus::gpio {
@@ -169,6 +170,16 @@ class GpioInterfaceTest : public testing::Test {
   std::unique_ptr<GpioInterface> io;
   std::uint64_t inputs = 0;
 };
+
+TEST_F(GpioInterfaceTest, ConformsToThePort) {
+  lines->level = {1, 0, 0};
+  conformance::DigitalIoConformance(*io, {.input = 5,
+                                          .output = 3,
+                                          .turn_input = [this](bool on) { lines->set(2, on); },
+                                          .output_is_on = [this] { return lines->out.at(1) == 0; },
+                                          .pass = [this] { lines->clock += 1ms; }})
+      .check();
+}
 
 TEST_F(GpioInterfaceTest, CarriesBitsBothWays) {
   start();

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "conformance/digital_io_conformance.hpp"
 #include "register_bank.hpp"
 #include "rmac/fieldbus/modbus/io_interface.hpp"
 
@@ -50,6 +51,15 @@ class ModbusIo : public testing::TestWithParam<Wire> {
 
 INSTANTIATE_TEST_SUITE_P(Wires, ModbusIo, testing::Values(Wire::Tcp, Wire::Rtu),
                          [](const auto& wire) { return wire.param == Wire::Tcp ? "Tcp" : "Rtu"; });
+
+TEST_P(ModbusIo, ConformsToThePort) {
+  conformance::DigitalIoConformance(*io, {.input = 1,
+                                          .output = 2,
+                                          .turn_input = [this](bool on) { bank.set(Table::DiscreteInputs, 4, on); },
+                                          .output_is_on = [this] { return bank.get(Table::Coils, 7) != 0; },
+                                          .pass = [] { std::this_thread::yield(); }})
+      .check();
+}
 
 TEST_P(ModbusIo, CarriesBitsBothWays) {
   ASSERT_TRUE(io->start());

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "conformance/digital_io_conformance.hpp"
 #include "rmac/fieldbus/simulated_io_interface.hpp"
 
 namespace rmac::fieldbus {
@@ -12,6 +13,15 @@ std::uint64_t inputs_with(SimulatedIoInterface& io, std::uint64_t outputs) {
   std::uint64_t inputs = 0;
   EXPECT_TRUE(io.exchange(outputs, inputs));
   return inputs;
+}
+
+TEST(SimulatedIo, ConformsToThePort) {
+  SimulatedIoInterface io;
+  conformance::DigitalIoConformance(io, {.input = 7,
+                                         .output = 9,
+                                         .turn_input = [&io](bool on) { io.set_inputs(on ? 1U << 7 : 0); },
+                                         .output_is_on = [&io] { return (io.outputs() >> 9 & 1U) != 0; }})
+      .check();
 }
 
 TEST(SimulatedValve, SwitchesItsInputsSomeTimeAfterItsOutput) {
