@@ -103,6 +103,7 @@ void read_stop_categories(const Json& chosen, Configuration& configuration) {
   read("ContactLost", stops.contact_lost);
   read("SpindleOverload", stops.spindle_overload);
   read("CycleDeadline", stops.cycles_lost);
+  read("DriveHeartbeatLost", stops.drive_silent);
   if (!chosen.contains("CycleDeadline")) configuration.real_time.max_cycles_lost = 0;
 }
 

@@ -215,9 +215,12 @@ std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
 
 std::string describe(const ServoFault& fault, const Mechanism* mechanism) {
   if (fault.kind == ServoFault::Kind::None) return "no fault";
-  const bool kept = fault.stop == StopCategory::StopKeepPower;
-  return cause(fault, mechanism) + (kept ? ". Stop category 2: every joint brakes and is held under power"
-                                         : ". Stop category 1: the drives brake, and lose their power at rest");
+  if (fault.stop == StopCategory::StopThenRemovePower) {
+    return cause(fault, mechanism) + ". Stop category 1: the drives brake, and lose their power at rest";
+  }
+  const bool but_one = fault.kind == ServoFault::Kind::DriveOffline && fault.part == ServoFault::Part::Actuator;
+  return cause(fault, mechanism) + ". Stop category 2: every " + (but_one ? "other " : "") +
+         "joint brakes and is held under power";
 }
 
 MinorCode code_of(ServoFault::Kind kind) noexcept {

@@ -205,7 +205,7 @@ void ServoLoop::Impl::run_laws() noexcept {
     if (!powered() || !parts.axes[j].law) continue;
     if (!live[j]) {
       // A drive acts on the torque beside the word that enables it, before any position of it could be controlled.
-      effort[j] = resting_effort(j);
+      effort[j] = braking ? 0 : resting_effort(j);
       continue;
     }
     const ServoAxis& axis = parts.axes[j];
@@ -259,7 +259,8 @@ void ServoLoop::Impl::write_actuators() noexcept {
     const ServoActuator& part = parts.actuators[i];
     DriveCommand& words = part.bus->commands[part.axis];
     const DriveFeedback& from = feedback(i);
-    words.controlword = next_controlword(from.statusword, wish(rest[i].reached), resetting, words.controlword);
+    words.controlword =
+        next_controlword(from.statusword, wish(ServoFault::Part::Actuator, i), resetting, words.controlword);
     words.mode = part.mode;
     command_homing(i, words);
     words.target_position_counts = from.position_counts;

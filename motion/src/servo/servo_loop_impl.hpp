@@ -65,8 +65,11 @@ struct ServoLoop::Impl {
 
   void raise(const ServoFault& fault) noexcept;
   void let_go() noexcept;
+  void let_go(std::size_t joint) noexcept;
   /// The category that the configuration gives a fault, as far as there is a choice.
   [[nodiscard]] StopCategory stop_category(const ServoFault& found) const noexcept;
+  /// Nothing but a spindle, or a joint of its own, hangs on the drive that this fault tells of.
+  [[nodiscard]] bool can_do_without(const ServoFault& found) const noexcept;
   void begin_braking() noexcept;
   void brake() noexcept;
   void remove_power_at_rest() noexcept;
@@ -77,8 +80,9 @@ struct ServoLoop::Impl {
   [[nodiscard]] bool driving() const noexcept {
     return state == ServoState::Enabling || state == ServoState::Engaged || state == ServoState::Homing;
   }
-  /// `rested`: this drive has come to rest after a quick stop.
-  [[nodiscard]] DriveWish wish(bool rested) const noexcept;
+  [[nodiscard]] DriveWish wish(ServoFault::Part part, std::size_t index) const noexcept;
+  /// The others brake without this drive, which is silent: should it come back, it is not enabled again.
+  [[nodiscard]] bool given_up(ServoFault::Part part, std::size_t index) const noexcept;
   [[nodiscard]] bool owns(const ServoBus* bus, std::uint32_t axis) const noexcept;
   [[nodiscard]] bool operable(std::size_t joint) const noexcept;
   /// All joints that this actuator moves are live.

@@ -60,7 +60,7 @@ void ServoLoop::Impl::write_spindles() noexcept {
   for (std::size_t i = 0; i < spindles.size(); ++i) {
     const ServoSpindle& part = parts.spindles[i];
     DriveCommand& words = part.bus->commands[part.axis];
-    words.controlword = next_controlword(spindle_feedback(i).statusword, wish(rest[actuators + i].reached), resetting,
+    words.controlword = next_controlword(spindle_feedback(i).statusword, wish(ServoFault::Part::Spindle, i), resetting,
                                          words.controlword);
     spindles[i].command(words);
   }

@@ -11,8 +11,10 @@ bool faulted(const DriveFeedback& words) noexcept {
 
 }  // namespace
 
-DriveWish ServoLoop::Impl::wish(bool rested) const noexcept {
+DriveWish ServoLoop::Impl::wish(ServoFault::Part part, std::size_t index) const noexcept {
+  if (given_up(part, index)) return DriveWish::QuickStop;
   if (powered()) return DriveWish::Operational;
+  const bool rested = rest[part == ServoFault::Part::Spindle ? actuators + index : index].reached;
   return state == ServoState::Off || rested ? DriveWish::Off : DriveWish::QuickStop;
 }
 

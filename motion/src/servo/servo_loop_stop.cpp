@@ -31,12 +31,19 @@ StopCategory ServoLoop::Impl::stop_category(const ServoFault& found) const noexc
       return parts.stop_categories.contact_lost;
     case ServoFault::Kind::CyclesLost:
       return parts.stop_categories.cycles_lost;
+    case ServoFault::Kind::DriveOffline:
+      return can_do_without(found) ? parts.stop_categories.drive_silent : StopCategory::StopThenRemovePower;
     case ServoFault::Kind::TorqueBound:
       return found.part == ServoFault::Part::Spindle ? parts.stop_categories.spindle_overload
                                                      : StopCategory::StopThenRemovePower;
     default:
       return StopCategory::StopThenRemovePower;
   }
+}
+
+bool ServoLoop::Impl::can_do_without(const ServoFault& found) const noexcept {
+  if (found.part != ServoFault::Part::Actuator) return found.part == ServoFault::Part::Spindle;
+  return sense[found.index] != 0 && actuators_of[joint_of[found.index]] == std::uint32_t{1} << found.index;
 }
 
 void ServoLoop::Impl::raise(const ServoFault& found) noexcept {
@@ -61,10 +68,24 @@ void ServoLoop::Impl::raise(const ServoFault& found) noexcept {
   rest.fill({});
   stopping_cycles = 0;
   if (fault.stop == StopCategory::StopKeepPower) {
+    if (fault.kind == ServoFault::Kind::DriveOffline && fault.part == ServoFault::Part::Actuator) {
+      let_go(joint_of[fault.index]);
+    }
     begin_braking();
   } else {
     let_go();
   }
+}
+
+bool ServoLoop::Impl::given_up(ServoFault::Part part, std::size_t index) const noexcept {
+  return braking && fault.kind == ServoFault::Kind::DriveOffline && fault.part == part && fault.index == index;
+}
+
+/// Its drive is out of reach, and stops it by its own watch over the appliance.
+void ServoLoop::Impl::let_go(std::size_t joint) noexcept {
+  live[joint] = handed[joint] = false;
+  set_velocity[joint] = set_acceleration[joint] = 0;
+  force_loops[joint].restart();
 }
 
 void ServoLoop::Impl::begin_braking() noexcept {

@@ -54,7 +54,8 @@ void ServoLoop::Impl::watch_drives() noexcept {
     watch_drive(feedback(i), (in_use >> i & 1U) != 0, ServoFault::Part::Actuator, i);
   }
   for (std::size_t i = 0; i < parts.spindles.size(); ++i) {
-    watch_drive(spindle_feedback(i), state == ServoState::Engaged || braking, ServoFault::Part::Spindle, i);
+    const bool spindle_in_use = state == ServoState::Engaged || (braking && !given_up(ServoFault::Part::Spindle, i));
+    watch_drive(spindle_feedback(i), spindle_in_use, ServoFault::Part::Spindle, i);
   }
 }
 

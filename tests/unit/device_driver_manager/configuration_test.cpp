@@ -91,6 +91,7 @@ TEST(Configuration, TakesEveryKeyOfTheFile) {
   EXPECT_EQ(configuration.stop_categories.contact_lost, StopCategory::StopThenRemovePower);
   EXPECT_EQ(configuration.stop_categories.force_limit, StopCategory::StopThenRemovePower) << "not said";
   EXPECT_EQ(configuration.stop_categories.cycles_lost, StopCategory::StopKeepPower);
+  EXPECT_EQ(configuration.stop_categories.drive_silent, StopCategory::StopThenRemovePower);
   EXPECT_EQ(configuration.real_time.max_cycles_lost, 9);
   EXPECT_EQ(configuration.lease_timeout, std::chrono::milliseconds(2500));
   EXPECT_EQ(configuration.flight_recorder.folder, "/f");

@@ -90,9 +90,12 @@ class FaultOnMill : public MillRun {
     for (ServoActuator& actuator : parts.actuators) actuator.max_torque_nm = kTorque;
     parts.axes[2].force_sensor = ServoForceSensor{bus_, 2, 0.01, 0};
     parts.max_cycles_lost = 5;
-    if (!keep_power) return;
+    if (!keep_power) {
+      parts.stop_categories.drive_silent = StopCategory::StopThenRemovePower;
+      return;
+    }
     constexpr auto kKeep = StopCategory::StopKeepPower;
-    parts.stop_categories = {kKeep, kKeep, kKeep, kKeep, kKeep};
+    parts.stop_categories = {kKeep, kKeep, kKeep, kKeep, kKeep, kKeep};
     keep_power_ = true;
   }
   void power_up_quickly(Mill& mill) {
@@ -129,6 +132,7 @@ class FaultOnMill : public MillRun {
       case Injection::DriveTrip:
         return simulated_->trip(axis, static_cast<std::uint16_t>(0x2000 + random_() % 0x5000));
       case Injection::DriveSilent:
+        may_keep();
         return simulated_->set_online(axis, false);
       case Injection::BusFails:
         return simulated_->set_bus_failed(true);
@@ -189,7 +193,9 @@ class FaultOnMill : public MillRun {
       const bool stands = astray[j] < 2 * kHunt;  // static friction and the integral play against each other
       const bool powered = (bus_->commands[j].controlword & controlword::kEnableOperation) != 0;
       const bool off = (bus_->commands[j].controlword & controlword::kEnableVoltage) == 0;
-      const bool as_wanted = report_.fault.stop == StopCategory::StopKeepPower ? powered : off;
+      const bool left_out = injection == Injection::DriveSilent && j == axis;
+      const bool kept = left_out ? !powered : powered;
+      const bool as_wanted = report_.fault.stop == StopCategory::StopKeepPower ? kept : off;
       outcome_.stopped = outcome_.stopped && stands && as_wanted;
       if (!stands) outcome_.where += "; axis " + std::to_string(j) + " still moves";
       if (!as_wanted) outcome_.where += "; axis " + std::to_string(j) + " has the wrong power";

@@ -23,9 +23,10 @@ class ServoWatch : public ServoLoopTest {
     fake->drives[4].words.sensor_valid = true;
     return result;
   }
-  void build_watched(StopCategory category) {
+  void build_watched(StopCategory category, std::shared_ptr<const ActuatorMap> map = std::make_shared<DirectMap>()) {
     ServoLoopParts made = watched_parts();
-    made.stop_categories = {category, category, category, category, category};
+    made.actuator_map = std::move(map);
+    made.stop_categories = {category, category, category, category, category, category};
     build(std::move(made));
   }
   /// All joints at `velocity` for some cycles, followed without error.
@@ -226,6 +227,77 @@ TEST_F(ServoWatch, CategoryTwoGoesOverToOneWhenMoreGoesWrong) {
   fake->drives[1].words.statusword = 0x08;
   cycle();
   expect_fault(ServoFault::Kind::SensorLost, ServoFault::Part::Joint, 2);
+  EXPECT_EQ(report.fault.stop, StopCategory::StopThenRemovePower);
+  expect_all_quick_stopped();
+}
+
+TEST_F(ServoWatch, SilentDriveIsLeftOutWhileTheOthersBrake) {
+  build_watched(StopCategory::StopKeepPower);
+  engage();
+  move(100, 20);
+  fake->drives[0].words.online = false;
+  cycle();
+  expect_fault(ServoFault::Kind::DriveOffline, ServoFault::Part::Actuator, 0);
+  EXPECT_EQ(report.fault.stop, StopCategory::StopKeepPower);
+  double velocity = report.velocity_set[1];
+  EXPECT_NEAR(velocity, 100 - kDeceleration * kPeriod, 1e-9) << "at once";
+  for (int i = 0; i < 300; ++i) {
+    if (i == 50) fake->drives[0].words.online = true;
+    follow(1);
+    ASSERT_LE(velocity - report.velocity_set[1], kDeceleration * kPeriod * 1.0001);
+    velocity = report.velocity_set[1];
+    ASSERT_TRUE(enabled(1) && enabled(2)) << "cycle " << i;
+    ASSERT_FALSE(enabled(0)) << "cycle " << i;
+    ASSERT_EQ(torque(0), 0) << "cycle " << i;
+  }
+  EXPECT_EQ(velocity, 0);
+  EXPECT_EQ(report.fault.stop, StopCategory::StopKeepPower) << "it was back meanwhile";
+  command.power = false;
+  command.reset = true;
+  cycle(25);
+  command.reset = false;
+  engage();
+  EXPECT_TRUE(enabled(0));
+}
+
+TEST_F(ServoWatch, SilentSpindleLeavesEveryJointToBrakeInStep) {
+  build_watched(StopCategory::StopKeepPower);
+  engage();
+  move(100, 20);
+  fake->drives[3].words.online = false;
+  cycle();
+  expect_fault(ServoFault::Kind::DriveOffline, ServoFault::Part::Spindle, 0);
+  EXPECT_EQ(report.fault.stop, StopCategory::StopKeepPower);
+  for (int i = 0; i < 300; ++i) {
+    if (i == 50) fake->drives[3].words.online = true;
+    follow(1);
+    ASSERT_EQ(report.velocity_set[0], report.velocity_set[1]) << "in step";
+    ASSERT_TRUE(enabled(0) && enabled(1) && enabled(2)) << "cycle " << i;
+    ASSERT_FALSE(enabled(3)) << "cycle " << i;
+  }
+  EXPECT_EQ(report.velocity_set[0], 0);
+}
+
+TEST_F(ServoWatch, SecondSilentDriveMakesItCategoryOne) {
+  build_watched(StopCategory::StopKeepPower);
+  engage();
+  move(100, 20);
+  fake->drives[0].words.online = false;
+  cycle();
+  follow(10);
+  fake->drives[1].words.online = false;
+  cycle();
+  expect_fault(ServoFault::Kind::DriveOffline, ServoFault::Part::Actuator, 0);
+  EXPECT_EQ(report.fault.stop, StopCategory::StopThenRemovePower);
+  expect_all_quick_stopped();
+}
+
+TEST_F(ServoWatch, SilentDriveThatJointsShareIsCategoryOne) {
+  build_watched(StopCategory::StopKeepPower, std::make_shared<DifferentialMap>());
+  engage();
+  fake->drives[1].words.online = false;
+  cycle();
+  expect_fault(ServoFault::Kind::DriveOffline, ServoFault::Part::Actuator, 1);
   EXPECT_EQ(report.fault.stop, StopCategory::StopThenRemovePower);
   expect_all_quick_stopped();
 }

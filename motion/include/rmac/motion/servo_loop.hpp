@@ -109,13 +109,15 @@ struct ProbeReport {
 
 /// How the machine stops on what a category may be chosen for. A stop that keeps power rests on the drives and on the
 /// measured positions, so there is no choice where one of them may be what is wrong: a joint that does not follow can
-/// be blocked, or have an encoder that stands still.
+/// be blocked, or have an encoder that stands still. A drive that falls silent leaves a choice where nothing but a
+/// spindle or a joint of its own hangs on it: the rest brakes without it.
 struct StopCategories {
   StopCategory sensor_lost = StopCategory::StopThenRemovePower;
   StopCategory force_limit = StopCategory::StopThenRemovePower;
   StopCategory contact_lost = StopCategory::StopKeepPower;
   StopCategory spindle_overload = StopCategory::StopKeepPower;
   StopCategory cycles_lost = StopCategory::StopThenRemovePower;
+  StopCategory drive_silent = StopCategory::StopKeepPower;
 };
 
 /// What a servo loop is made of. `axes`: the kinematic joints, then the held ones; `actuators` in the order of the map.
