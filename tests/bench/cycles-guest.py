@@ -7,7 +7,6 @@ import pathlib
 import re
 import subprocess
 import sys
-import time
 
 from guest import PITCH_MM, RUN, Drives, Figures, answers, axes_alone, call, diagonal, install, make_can, on_buses, status, wait_for
 

@@ -2,7 +2,6 @@
 """Inside the emulated machine: the appliance dies in each of four ways, again and again, while it moves; how long each drive takes to stop.
 The argument is the build folder and how many deaths of each kind."""
 
-import contextlib
 import ctypes
 import json
 import os
@@ -13,7 +12,7 @@ import subprocess
 import sys
 import time
 
-from guest import HEARTBEAT_MS, PORT, RUN, Drives, Figures, axes_alone, call, client, install, make_can, on_buses, wait_for
+from guest import HEARTBEAT_MS, RUN, Drives, Figures, axes_alone, call, install, make_can, on_buses, operator, wait_for
 
 WANTED = 200
 BUILD, COUNT = sys.argv[1].split(",")
@@ -36,14 +35,8 @@ class Appliance:
         begun = time.monotonic()
         self.process = subprocess.Popen(["rmacd", "--config", RUN / "rmacd.json"], stderr=(RUN / "rmacd.log").open("a"))
         wait_for("the drives hold", lambda: drives.in_state("operation-enabled", begun).keys() == set(NODES), 60)
-        self.client = wait_for("the appliance answers", self._connect)
-        self.client.call("authority.acquire")
+        self.client = operator()
         self.held = 0  # a thread
-
-    @staticmethod
-    def _connect():
-        with contextlib.suppress(OSError):
-            return client.Client(PORT, "operator")
 
     def move(self):
         """Joint 0 is under way, to one side or back."""

@@ -109,6 +109,18 @@ def answers():
     return bool(_watcher)
 
 
+def operator():
+    """A connection of its own with motion authority, once the appliance answers."""
+    def connected():
+        with contextlib.suppress(OSError):
+            return client.Client(PORT, "operator")
+        return None
+
+    connection = wait_for("the appliance answers", connected)
+    connection.call("authority.acquire")
+    return connection
+
+
 def status():
     return _watcher[0].state()
 
@@ -231,12 +243,11 @@ def stop_by_emergency(*drives):
 def check_emergency_stop(*drives):
     """Of a machine at rest: it is stopped, and holds again once the stop is released and the machine reset."""
     stop_by_emergency(*drives)
-    operator = client.Client(PORT, "operator")
-    operator.call("authority.acquire")
-    assert "release it" in operator.refusal("RMAC_CAM.Reset").message
+    person = operator()
+    assert "release it" in person.refusal("RMAC_CAM.Reset").message
     press(False)
     time.sleep(0.1)  # longer than the debounce time
-    operator.call("RMAC_CAM.Reset")
-    operator.close()
+    person.call("RMAC_CAM.Reset")
+    person.close()
     wait_for("the drives hold again", lambda: status()["state"] == "Idle" and all(
         set(bus.states().values()) == {"operation-enabled"} for bus in drives))

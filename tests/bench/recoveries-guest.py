@@ -3,7 +3,6 @@
 off the bus, a drive is reset by somebody else, a drive's program is killed and started again. How soon all drives are operational again, what the
 appliance's processor time is meanwhile, and that nothing moves before a person says so. The argument is the build folder and how many of each kind."""
 
-import contextlib
 import json
 import pathlib
 import random
@@ -12,7 +11,7 @@ import sys
 import time
 
 import can
-from guest import HEARTBEAT_MS, PORT, RUN, Drives, Figures, axes_alone, call, client, install, make_can, on_buses, wait_for
+from guest import HEARTBEAT_MS, RUN, Drives, Figures, axes_alone, call, install, make_can, on_buses, operator, wait_for
 
 WANTED = 20
 BUILD, COUNT = sys.argv[1].split(",")
@@ -42,15 +41,9 @@ def used_s(process):
 class Appliance:
     def __init__(self):
         self.process = subprocess.Popen(["rmacd", "--config", RUN / "rmacd.json"], stderr=(RUN / "rmacd.log").open("w"))
-        self.client = wait_for("the appliance answers", self._connect)
-        self.client.call("authority.acquire")
+        self.client = operator()
         self.client.call("Device.Load", Name="DMACXYZ")
         self.client.call("RMAC_CAM.SetFeedrate", Feedrate=FEED_MM_MIN)
-
-    @staticmethod
-    def _connect():
-        with contextlib.suppress(OSError):
-            return client.Client(PORT, "operator")
 
     def move(self):
         """Joint 0 is under way, to one side or back, and will be for longer than it is looked at."""

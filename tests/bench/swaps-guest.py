@@ -9,7 +9,7 @@ import subprocess
 import sys
 import threading
 
-from guest import (COUNTS_PER_REVOLUTION, PORT, RUN, Drives, Figures, Peer, answers, axes_alone, call, client, install, make_can, on_buses, wait_for)
+from guest import COUNTS_PER_REVOLUTION, PORT, RUN, Drives, Figures, Peer, axes_alone, call, client, install, make_can, on_buses, operator
 
 WANTED = 1000
 PERIOD_S = 0.001
@@ -60,21 +60,19 @@ def main():
     axes, head = Drives("vcan0", *NODES), Drives("vcan1", "--spindle", 4)
     Peer("spindle0", ["rmac-vmodbus", "1=delta-vfd-b", "--pty", RUN / "spindle"])
     daemon = subprocess.Popen(["rmacd", "--config", RUN / "rmacd.json"], stderr=(RUN / "rmacd.log").open("w"))
-    wait_for("the daemon answers", answers)
-    operator = client.Client(PORT, "operator")
-    operator.call("authority.acquire")
+    person = operator()
     for name in ("DMACXY", "DMACXYZ"):  # so that both are verified
-        operator.call("Device.Load", Name=name)
+        person.call("Device.Load", Name=name)
     Follower().start()
     log = RUN / "vcan0.sync"
     witness = subprocess.Popen(["candump", "-L", "vcan0,080:7FF"], stdout=log.open("w"))
-    begun = operator.state()
+    begun = person.state()
     memory = []
     swaps = int(COUNT)
     for turn in range(swaps):
-        operator.call("Device.Load", Name=("DMACXY", "DMACXYZ")[turn % 2])
+        person.call("Device.Load", Name=("DMACXY", "DMACXYZ")[turn % 2])
         memory.append(resident_kib(daemon))
-    ended = operator.state()
+    ended = person.state()
     witness.terminate()
     witness.wait()
     times = [float(line.split()[0].strip("()")) for line in log.read_text().splitlines()]
