@@ -84,6 +84,33 @@ TEST(Watching, CategoryOneTakesThePowerAway) {
   }));
 }
 
+TEST(Watching, SilentDriveStopsTheOthersOnTheirPath) {
+  TestMachine machine;
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  ASSERT_TRUE(machine.controller.cam().set_feedrate(3000));
+  ASSERT_TRUE(machine.line(kMove, {0, 0, 0}, {40, 20, 10}));
+  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().position_set[0] > 10; }));
+  machine.bus->set_online(2, false);
+  ASSERT_TRUE(machine.run_until([&] { return machine.count(Event::Kind::Fault, kMove) > 0; }));
+  EXPECT_THAT(machine.controller.last_stop()->message,
+              AllOf(HasSubstr("axis 2"), HasSubstr("the drive does not answer"), HasSubstr("then reset"),
+                    HasSubstr("category 2: every other joint brakes and is held under power")));
+  const std::int64_t later = machine.controller.sample().cycle + 500;
+  ASSERT_TRUE(machine.run_until([&] { return !machine.samples.empty() && machine.samples.back().cycle > later; }));
+  const std::int64_t faulted = faulted_cycle(machine);
+  int braking = 0;
+  for (const CycleSample& sample : machine.samples) {
+    if (sample.cycle < faulted) continue;
+    ASSERT_NEAR(sample.position_set[0], 2 * sample.position_set[1], 1e-9) << "cycle " << sample.cycle;
+    braking += sample.velocity_set[0] > 0 ? 1 : 0;
+  }
+  EXPECT_GT(braking, 20);
+  const CycleSample& held = machine.samples.back();
+  EXPECT_EQ(held.velocity_set[0], 0);
+  for (std::size_t axis = 0; axis < 2; ++axis) EXPECT_EQ(held.statusword[axis] & 0x6F, 0x27) << "operation enabled";
+}
+
 TEST(Watching, OverloadedSpindleStopsTheMachineUnderPower) {
   TestMachine machine;
   sdk::DeviceObject device = TestMachine::mill();
