@@ -97,6 +97,12 @@ void LaidPath::travelled(double s, double needed_from) {
   rest_after_.erase(rest_after_.begin(), rest_after_.begin() + n);
 }
 
+void LaidPath::move_origin(double distance_mm) {
+  for (double& start : starts_) start -= distance_mm;
+  origin_ -= distance_mm;
+  counted_s_ -= distance_mm;
+}
+
 std::optional<PathPlace> LaidPath::place_at(double s) const {
   if (segments_.empty() || s + kSamePlace >= end()) return std::nullopt;
   const std::size_t i = view().find(s + kSamePlace, 1);

@@ -13,13 +13,12 @@
 
 namespace rmac {
 
-/// Two path lengths nearer than this are the same place: far below a setpoint's resolution, far above rounding on a
-/// path of 10 km.
+/// Two path lengths nearer than this are the same place: far below a setpoint's resolution, far above rounding.
 inline constexpr double kSamePlace = 1e-7;
 
 /// The path that is travelled: segments end to end on one path length, which goes on counting for as long as the
-/// planner lives. Behind its end stands the joiner with what was queued and is not yet certain. Remembers which moves
-/// were done, and a stretch of what was travelled. Planner thread.
+/// planner lives, from an origin that is moved after the tool. Behind its end stands the joiner with what was queued
+/// and is not yet certain. Remembers which moves were done, and a stretch of what was travelled. Planner thread.
 class LaidPath {
  public:
   LaidPath(std::vector<JointLimits> joints, double period_s);
@@ -53,6 +52,8 @@ class LaidPath {
 
   /// Moves added and not yet done.
   [[nodiscard]] std::size_t moves_left() const noexcept { return moves_left_; }
+  /// Counts path length from a place `distance_mm` further along; in whole mm, which rounds nothing ahead of it.
+  void move_origin(double distance_mm);
   /// The tool has come to s: counts the moves that ended, and drops what lies far behind it and behind `needed_from`.
   void travelled(double s, double needed_from);
   /// The farthest place that the tool has come to.

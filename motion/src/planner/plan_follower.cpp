@@ -5,8 +5,7 @@
 namespace rmac {
 namespace {
 
-/// Two path lengths nearer than this are the same place: far below a setpoint's resolution, far above rounding on a
-/// path of 10 km.
+/// Two path lengths nearer than this are the same place: far below a setpoint's resolution, far above rounding.
 constexpr double kSamePlace = 1e-7;
 
 }  // namespace
@@ -26,6 +25,8 @@ void PlanFollower::retire(const Plan* plan) noexcept {
 void PlanFollower::activate(const Plan* plan) noexcept {
   retire(active_);
   active_ = plan;
+  counted_s_ -= plan->origin_mm - origin_mm_;
+  origin_mm_ = plan->origin_mm;
   piece_ = 0;
   segment_ = 0;
 }

@@ -19,6 +19,8 @@ constexpr std::int64_t kLeadAtFirst = 2;
 constexpr std::int64_t kLongestLead = 64;
 /// A window that found no plan is tried again from a later state, after so many cycles.
 constexpr std::int64_t kRetryAfter = 10;
+/// Path length is counted from a new origin once the tool is so far from the last: its rounding stays below 1e-12 mm.
+constexpr double kFarthest_mm = 1000;
 /// What is held back for the sake of a join is given out so long before the machine would have to brake for its lack.
 constexpr double kRelease_s = 0.05;
 
@@ -40,9 +42,11 @@ struct Planner::Impl {
   std::int64_t work_began = -1;          ///< cycle in which the last plan was begun
   std::int64_t tried_at = -kRetryAfter;  ///< cycle of the last attempt that found no plan
   bool tried_from_rest = false;
+  std::uint64_t tried_base = 0;  ///< the plan that was the base then
   PathCommand wanted = PathCommand::Stop;
-  double factor = 1;   ///< the override
-  double limit_s = 0;  ///< path length at which RunOne ends
+  double factor = 1;     ///< the override
+  double limit_s = 0;    ///< path length at which RunOne ends
+  double origin_mm = 0;  ///< of `forward`'s path length: so far behind the first one's
 
   Impl(PlannerModel m, PlanChannel& c) : model(std::move(m)), channel(c), forward(model.joints, model.period_s) {}
 
@@ -104,6 +108,7 @@ struct Planner::Impl {
 
   bool publish(std::unique_ptr<Plan> plan, bool stops, const WindowEnd& end, double window_begin) {
     plan->id = next_id;
+    plan->origin_mm = origin_mm;
     const LawPiece& last = plan->law.back();
     plan->end_time_s = last.t0 + last.duration;
     const double s_begin = plan->law.front().start.s, s_end = last.at(last.duration).s;
@@ -120,6 +125,7 @@ struct Planner::Impl {
     p.backward = backward.has_value();
     p.override_factor = factor;
     p.commit_t = commit_time(*plan, window_begin, end.planned_again);
+    p.law = plan->law;
     p.plan = std::move(plan);
     if (!channel.published.push(p.plan.get()))
       return false;  // the servo loop does not take plans: it stands still or is gone
@@ -127,13 +133,6 @@ struct Planner::Impl {
     turned_to.reset();
     alive.push_back(std::move(p));
     return true;
-  }
-
-  static void append_law(std::vector<LawPiece>& law, const std::vector<LawPiece>& tail, double t0) {
-    for (LawPiece piece : tail) {
-      piece.t0 += t0;
-      law.push_back(piece);
-    }
   }
 
   bool start_from_rest(const ServoProgress& progress) {
@@ -154,10 +153,12 @@ struct Planner::Impl {
     const PublishedPlan& p = *base();
     const std::int64_t now = earliest(p, progress.cycle);
     const double t_now = now_s(p, now);
-    double t_from = p.plan->end_time_s;
-    if (!p.hard_end) t_from = std::min(std::max(p.commit_t, t_now + static_cast<double>(lead()) * period()), t_from);
+    const double t_soonest = t_now + static_cast<double>(lead()) * period();
     // Too near the end to be there in time: the machine comes to rest, and starts again from there.
-    if (t_from - t_now < static_cast<double>(lead()) * period()) return no_plan(progress);
+    if (t_soonest > p.plan->end_time_s) return no_plan(progress);
+    double t_from = p.plan->end_time_s;
+    // A state from which no window was found is not asked again: the next attempt is from a sooner one.
+    if (!p.hard_end) t_from = std::clamp(tried_base == p.plan->id ? t_soonest : p.commit_t, t_soonest, t_from);
     const PathState from = p.state_at(t_from);
     WindowEnd end;
     std::optional<std::vector<LawPiece>> law;
@@ -167,7 +168,7 @@ struct Planner::Impl {
     } else {
       for (const double ramps : {kRampsAhead, kRampsAtOnce}) {
         end = window_end(from.s, ramps);
-        law = plan_window(path().view(), model.joints, {from, end.s, feed(factor), &p.plan->law, true});
+        law = plan_window(path().view(), model.joints, {from, end.s, feed(factor), &p.law, true});
         if (law) break;
       }
     }
@@ -187,7 +188,7 @@ struct Planner::Impl {
     const PathState from = p.state_at(now_s(p, cycle));
     const WindowEnd end = s_stop ? WindowEnd{*s_stop, false} : window_end(from.s, kRampsAtOnce);
     const double allowed = s_stop ? std::max(factor, p.override_factor) : factor;
-    auto law = plan_window(path().view(), model.joints, {from, end.s, feed(allowed), &p.plan->law, s_stop.has_value()});
+    auto law = plan_window(path().view(), model.joints, {from, end.s, feed(allowed), &p.law, s_stop.has_value()});
     if (!law) return false;
     auto plan = std::make_unique<Plan>();
     plan->start_cycle = cycle;
@@ -219,13 +220,7 @@ struct Planner::Impl {
       base()->stops = true;
       return true;
     }
-    double t_rest = p.plan->end_time_s;
-    for (const LawPiece& piece : p.plan->law) {
-      if (piece.start.s >= rest - kSamePlace) {
-        t_rest = piece.t0;
-        break;
-      }
-    }
+    const double t_rest = p.time_at(rest - kSamePlace);
     auto plan = std::make_unique<Plan>();
     const std::int64_t now = earliest(p, progress.cycle);
     const double t_now = now_s(p, now);
@@ -236,8 +231,20 @@ struct Planner::Impl {
     return publish(std::move(plan), true, {rest, true}, rest);
   }
 
+  /// The machine has come to path length s.
+  void travelled(double s) {
+    path().travelled(s, base()->law.front().start.s);
+    if (backward || turned_to || s < kFarthest_mm) return;
+    const double by = std::floor(s);
+    forward.move_origin(by);
+    for (PublishedPlan& p : alive) p.move_origin(by);
+    limit_s -= by;
+    origin_mm += by;
+  }
+
   bool no_plan(const ServoProgress& progress) {
     tried_at = progress.cycle;
+    tried_base = base() == nullptr ? 0 : base()->plan->id;
     tried_from_rest = ended(progress);
     return false;
   }
@@ -283,7 +290,7 @@ struct Planner::Impl {
     if (base() != nullptr && acknowledged(progress) && progress.last_refused == base()->plan->id)
       return false;  // comes back through `retired`
     if (base() != nullptr && acknowledged(progress) && base()->backward == backward.has_value())
-      path().travelled(base()->state_at(now_s(*base(), progress.cycle)).s, base()->plan->law.front().start.s);
+      travelled(base()->state_at(now_s(*base(), progress.cycle)).s);
     const Task next = task(progress);
     if (next != Task::None && next != Task::Supply && next != Task::Turn) work_began = progress.cycle;
     switch (next) {
@@ -392,8 +399,9 @@ std::vector<double> Planner::rest_joints() const {
   if (base == nullptr) return {};
   const Plan& plan = *base->plan;
   const PathView path(plan.segments, plan.segment_start);
+  const LawPiece& last = plan.law.back();
   JointPoint point;
-  if (path.evaluate(base->end_s(), 0, -1, point) != KinematicsStatus::Ok) return {};
+  if (path.evaluate(last.at(last.duration).s, 0, -1, point) != KinematicsStatus::Ok) return {};
   return {point.d[0].begin(), point.d[0].begin() + static_cast<std::ptrdiff_t>(impl_->model.joints.size())};
 }
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 
 namespace rmac {
+
 double PublishedPlan::end_s() const {
-  const LawPiece& last = plan->law.back();
+  const LawPiece& last = law.back();
   return last.at(last.duration).s;
 }
 
 PathState PublishedPlan::state_at(double t) const {
-  const auto& law = plan->law;
   if (t >= plan->end_time_s) return {end_s(), 0, 0};
   auto piece =
       std::upper_bound(law.begin(), law.end(), t, [](double value, const LawPiece& x) { return value < x.t0; });
@@ -19,7 +19,7 @@ PathState PublishedPlan::state_at(double t) const {
 
 std::vector<LawPiece> PublishedPlan::pieces_between(double t_begin, double t_end) const {
   std::vector<LawPiece> kept;
-  for (LawPiece piece : plan->law) {
+  for (LawPiece piece : law) {
     const double end = piece.t0 + piece.duration;
     if (end <= t_begin || piece.t0 >= t_end) continue;
     if (end > t_end) piece.duration = t_end - piece.t0;
@@ -27,6 +27,22 @@ std::vector<LawPiece> PublishedPlan::pieces_between(double t_begin, double t_end
     kept.push_back(piece);
   }
   return kept;
+}
+
+double PublishedPlan::time_at(double s) const {
+  const auto piece = std::find_if(law.begin(), law.end(), [&](const LawPiece& x) { return x.start.s >= s; });
+  return piece == law.end() ? plan->end_time_s : piece->t0;
+}
+
+void PublishedPlan::move_origin(double distance_mm) {
+  for (LawPiece& piece : law) piece.start.s -= distance_mm;
+}
+
+void append_law(std::vector<LawPiece>& law, const std::vector<LawPiece>& tail, double t0) {
+  for (LawPiece piece : tail) {
+    piece.t0 += t0;
+    law.push_back(piece);
+  }
 }
 
 double commit_time(const Plan& plan, double window_begin, double planned_again) {

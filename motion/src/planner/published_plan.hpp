@@ -10,18 +10,26 @@ namespace rmac {
 /// A published plan with what the planner must remember of it. Times count from the plan's start, in s.
 struct PublishedPlan {
   std::unique_ptr<const Plan> plan;
-  bool stops = false;     ///< made to stop: the path goes on behind its end, but motion does not
-  bool hard_end = false;  ///< it ends where the path demands rest
-  bool backward = false;  ///< on a path that is retraced
+  std::vector<LawPiece> law;  ///< the plan's, by the path length of today, whose origin may have moved since
+  bool stops = false;         ///< made to stop: the path goes on behind its end, but motion does not
+  bool hard_end = false;      ///< it ends where the path demands rest
+  bool backward = false;      ///< on a path that is retraced
   double override_factor = 1;
   double commit_t = 0;  ///< up to here a following window keeps it
 
   [[nodiscard]] double end_s() const;
   /// The state at t; at rest at the end from there on.
   [[nodiscard]] PathState state_at(double t) const;
+  /// The time at which the first piece of law begins at or behind path length s; else the end.
+  [[nodiscard]] double time_at(double s) const;
   /// Law pieces between two times, with times counted from the first; the first piece may begin before.
   [[nodiscard]] std::vector<LawPiece> pieces_between(double t_begin, double t_end) const;
+  /// Counts path length from a place `distance_mm` further along, as LaidPath::move_origin() does.
+  void move_origin(double distance_mm);
 };
+
+/// Appends `tail`, whose times are moved by `t0`.
+void append_law(std::vector<LawPiece>& law, const std::vector<LawPiece>& tail, double t0);
 
 /// The time up to which a plan is kept when more path comes: before it brakes for its own end, and not all of its last
 /// window, which begins at path length `window_begin`: less the last `planned_again` of it, in mm, at least half.

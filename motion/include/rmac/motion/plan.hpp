@@ -17,6 +17,9 @@ struct Plan {
   /// Last cycle in which it may be taken over: until then it agrees with the plan before it.
   std::int64_t latest_cycle = 0;
   std::vector<std::shared_ptr<const PathSegment>> segments;
+  /// Where path length is counted from, as far along the path as plans before it have moved their zero, in whole mm: a
+  /// path length never grows so long that its rounding shows in what the joints are asked.
+  double origin_mm = 0;
   std::vector<double> segment_start;  ///< path length at which each segment begins; same origin as the law's s
   std::vector<LawPiece> law;  ///< in time order, without gaps; ends with v = 0; the first may begin before time 0
   double end_time_s = 0;

@@ -38,7 +38,8 @@ class PlanFollower {
   std::size_t segment_ = 0;
   std::size_t joint_count_;
   double period_s_;
-  double counted_s_ = 0;  ///< path length up to which ended moves were reported
+  double counted_s_ = 0;  ///< path length up to which ended moves were reported, from `origin_mm_`
+  double origin_mm_ = 0;  ///< of the active plan
   std::uint64_t accepted_ = 0;
   std::uint64_t last_refused_ = 0;
   Setpoint held_;
