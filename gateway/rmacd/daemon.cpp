@@ -96,6 +96,7 @@ class Daemon {
   void end_when_at_rest();
 
   asio::io_context io_;
+  asio::signal_set signals_{io_, SIGTERM, SIGINT};  // outlives every part that has threads: see keep_ending()
   std::unique_ptr<DeviceDriverManager> manager_;
   Controller controller_;
   Verification verification_;
@@ -103,7 +104,6 @@ class Daemon {
   Machine machine_;
   Server server_;
   asio::steady_timer timer_{io_};
-  asio::signal_set signals_{io_, SIGTERM, SIGINT};
   bool fast_;
   enum class Phase { Serving, Stopping, Leaving } phase_ = Phase::Serving;
   std::chrono::steady_clock::time_point end_by_;
@@ -111,7 +111,8 @@ class Daemon {
   std::chrono::microseconds watchdog_period_{0};
 };
 
-/// A second SIGTERM or SIGINT must not turn an orderly end into a kill once the signal set no longer catches it.
+/// A second SIGTERM or SIGINT must not turn an orderly end into a kill once the signal set no longer catches it: by
+/// then this thread, which blocks both, is the only one left.
 void keep_ending() {
   sigset_t signals;
   sigemptyset(&signals);

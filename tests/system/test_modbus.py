@@ -116,6 +116,15 @@ class Spindle(unittest.TestCase):
             machine.appliance.process.send_signal(signal.SIGTERM)
             served.drive.wait_for(lambda drive: drive.turning_hz == 0)
 
+    def test_asking_for_the_end_again_and_again_does_not_kill_it(self):
+        # The drive's own thread lives almost to the end of the process.
+        with modbus_drives.ServedOnTcp(modbus_drives.DeltaVfdB()) as served, Machine(served, "delta-vfd-b") as machine:
+            machine.turn(600)
+            while machine.appliance.process.poll() is None:
+                machine.appliance.process.send_signal(signal.SIGTERM)
+            self.assertEqual(machine.appliance.process.returncode, 0)
+            self.assertEqual(served.drive.turning_hz, 0)
+
     def test_a_drive_that_goes_away_faults_the_machine_and_stays_stopped(self):
         drive = modbus_drives.DeltaVfdB()
         with modbus_drives.ServedOnTcp(drive) as served:
