@@ -94,10 +94,12 @@ class Bus:
             if message is None:
                 continue
             node = message.arbitration_id - 0x700
+            if message.is_error_frame or node not in waited:  # what came before the filter was set, too
+                continue
             if message.data[0] != 5:
                 left.add(node)
             elif node in left or node not in anew:
-                waited.discard(node)
+                waited.remove(node)
         return time.monotonic()
 
 
