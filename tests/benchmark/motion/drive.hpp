@@ -61,7 +61,15 @@ class Drive {
   std::uint64_t plans_ = 0;
 };
 
-/// CPU time of this thread, s: what other programs on the machine take does not count.
-[[nodiscard]] double cpu_time_s();
+/// CPU time of this thread that work takes, s: what other programs on the machine take does not count, nor what it costs
+/// to read the clock, which in a virtual machine is most of a microsecond.
+class CpuTime {
+ public:
+  CpuTime();
+  [[nodiscard]] double since_s() const;
+
+ private:
+  double began_s_;
+};
 
 }  // namespace rmac::bench

@@ -34,9 +34,9 @@ void planning_rows(Figures& figures, const Extent& extent) {
   double building_s = 0;
   const auto append = [&] {
     const Move move = line(corner(sent), corner(sent + 1), static_cast<std::int64_t>(sent) + 1);
-    const double began = cpu_time_s();
+    const CpuTime time;
     const auto queued = drive.queue(move);
-    const double took = cpu_time_s() - began;
+    const double took = time.since_s();
     if (!queued) return false;
     building_s += took;
     if (sent >= Planner::kQueueCapacity) append_us.push_back(1e6 * took);
