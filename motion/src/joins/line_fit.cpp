@@ -34,6 +34,9 @@ constexpr double kLongestStep_mm = 2;
 constexpr double kEvenness = 1e-6;
 /// A quintic's span depends on five knots on either side: these stay when the next window takes over.
 constexpr std::ptrdiff_t kKeptKnots = 10;
+/// Where knots further apart were too far, they are for the next windows too: a fit in vain costs as much as one that
+/// serves.
+constexpr int kWindowsAsFine = 4;
 constexpr double kSpansALine = 3;
 /// Of the tolerance, at the samples: between them the spline goes out further. Where that leaves the tolerance,
 /// the tube is made narrower.
@@ -207,8 +210,8 @@ bool LineFit::fit_dense(std::size_t lines, bool ends, Fit& fit) const {
   const double mean = fit.polyline.places.back() / static_cast<double>(lines);
   // The overlap holds the knots that a cut keeps, and more.
   const double longest = std::min(kLongestStep_mm, mean * static_cast<double>(kDense.overlap) / 8);
-  double step = step_ > 0 ? std::min(2 * step_, longest) : longest;
-  for (; step >= 0.9 * mean; step *= 0.5) {
+  double step = step_ > 0 ? std::min((no_coarser_for_ > 0 ? 1 : 2) * step_, longest) : longest;
+  for (fit.coarser_failed = false; step >= 0.9 * mean; step *= 0.5, fit.coarser_failed = true) {
     if (!least_squares(step, fit)) continue;
     fit.deviations_mm = chord_distances(fit.knots, fit.points, fit.polyline);
     if (largest(fit.deviations_mm) <= tolerance) return make_segments({}, kDense.overlap, ends, fit);
@@ -331,6 +334,7 @@ std::shared_ptr<const PathSegment> LineFit::segment(const Fit& fit, std::shared_
 void LineFit::take(Fit fit, Segments& out) {
   for (auto& head : fit.heads) out.push_back(std::move(head));
   step_ = fit.knots[fit.cut] - fit.knots[fit.cut - 1];
+  no_coarser_for_ = fit.coarser_failed ? kWindowsAsFine : std::max(no_coarser_for_ - 1, 0);
   if (!fit.tail) {
     before_ = {};
     drop_lines(fit.polyline.places.size() - 1);

@@ -48,6 +48,7 @@ class LineFit {
     std::vector<std::shared_ptr<const PathSegment>> heads;  ///< final
     std::shared_ptr<const PathSegment> tail;  ///< to the end of the last line; what follows may find a better way
     std::size_t cut = 0;                      ///< knot between the two
+    bool coarser_failed = false;              ///< wider spaced knots were tried in vain
   };
 
   [[nodiscard]] bool complete() const noexcept;
@@ -75,7 +76,8 @@ class LineFit {
   mutable std::size_t checked_ = 0;  ///< lines at the front of `waiting_` known to belong together
   /// The window before: its knots and control points from five before the cut on, and its tail.
   Fit before_;
-  double step_ = 0;  ///< knot spacing that served last
+  double step_ = 0;         ///< knot spacing that served last
+  int no_coarser_for_ = 0;  ///< windows for which a wider one is not tried again
 };
 
 }  // namespace rmac

@@ -61,8 +61,8 @@ class Drive {
   std::uint64_t plans_ = 0;
 };
 
-/// CPU time of this thread that work takes, s: what other programs on the machine take does not count, nor what it costs
-/// to read the clock, which in a virtual machine is most of a microsecond.
+/// CPU time of this thread that work takes, s: what other programs on the machine take does not count, nor what it
+/// costs to read the clock, which in a virtual machine is most of a microsecond.
 class CpuTime {
  public:
   CpuTime();
