@@ -70,6 +70,8 @@ struct JogRequest {
 [[nodiscard]] Result<> hold(Connection& connection);
 [[nodiscard]] Result<> resume(Connection& connection);
 [[nodiscard]] Result<> stop(Connection& connection);
+/// Leaves a fault or an emergency stop whose cause is gone.
+[[nodiscard]] Result<> reset(Connection& connection);
 /// The program that is parked; with `back_from_mm`, goes back to its place first, from so far above it along the tool.
 [[nodiscard]] Result<> show_parked(Connection& connection, std::optional<double> back_from_mm, bool json);
 [[nodiscard]] Result<> set_override(Connection& connection, double percent);

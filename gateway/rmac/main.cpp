@@ -116,6 +116,8 @@ void add_operating_commands(CLI::App& app, Arguments& arguments, Command& comman
   app.add_subcommand("hold", "feed hold: stop on the path, keep the program")->callback([&] { command = hold; });
   app.add_subcommand("resume", "go on after a hold")->callback([&] { command = resume; });
   app.add_subcommand("stop", "stop now and empty the queue")->callback([&] { command = stop; });
+  app.add_subcommand("reset", "leave a fault or an emergency stop whose cause is gone; nothing moves by it")
+      ->callback([&] { command = reset; });
 
   auto* parked = app.add_subcommand("parked", "the program that is parked: p and Enter at the terminal of `rmac run`");
   parked

@@ -102,6 +102,10 @@ Result<> stop(Connection& connection) {
   return call(connection, "RMAC_CAM.StopNow");
 }
 
+Result<> reset(Connection& connection) {
+  return with_authority(connection, [&] { return call(connection, "RMAC_CAM.Reset"); });
+}
+
 Result<> set_override(Connection& connection, double percent) {
   return call_with_or_without_authority(connection, "RMAC_CAM.SetFeedOverride", {{"Percent", percent}});
 }

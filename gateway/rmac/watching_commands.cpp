@@ -21,14 +21,16 @@ std::string list(const std::vector<double>& values) {
   return text.empty() ? "-" : text;
 }
 
-/// What stopped the machine last, in a line or two below the table.
-std::string last_stop(const EventNote& stop) {
+/// What stopped the machine last, in some lines below the table.
+std::string last_stop(const StateNote& state) {
+  const EventNote& stop = state.last_stop;
   if (stop.kind.empty()) return "";
   std::string text =
       fmt::format("\nlast stop ({}): cycle {}, {} s: {}\n", stop.kind, stop.cycle, number(stop.t_s, 4), stop.message);
   if (!stop.record.empty()) {
     text += fmt::format("flight record {}: rmac trace plot {}\n", stop.record, stop.record);
   }
+  if (state.state == "Faulted" || state.state == "EmergencyStop") text += "to go on, its cause removed: rmac reset\n";
   return text;
 }
 
@@ -51,7 +53,7 @@ std::string state_table(const StateNote& state) {
                               {"authority", state.authority.empty() ? "nobody" : state.authority, ""},
                               {"last error", state.status_minor == 0 ? "none" : std::to_string(state.status_minor),
                                state.status_minor == 0 ? "" : "StatusMinorCode"}}) +
-         last_stop(state.last_stop);
+         last_stop(state);
 }
 
 /// Bins joined to octaves, each with a bar as long as the logarithm of its count: one cycle in a million is to be seen.

@@ -45,6 +45,7 @@ class FlightRecorder(unittest.TestCase):
         self.assertIn(f"cycle {fault['cycle']}", status)
         self.assertIn(f"rmac trace plot {fault['record']}", status)
         self.assertIn(fault["message"], status)
+        self.assertIn("rmac reset", status)
         self.assertIn(fault["record"], self.rmac(appliance, "trace"))
         listed = json.loads(self.rmac(appliance, "--json", "trace", "list"))
         self.assertEqual([entry["cycle"] for entry in listed], [fault["cycle"]])

@@ -104,6 +104,25 @@ class Operating(unittest.TestCase):
         self.assertEqual(self.state()["override_percent"], 50)
         self.rmac("stop")
 
+    def test_reset_leaves_a_fault_and_moves_nothing(self):
+        self.rmac("load", "DMACXYZ")
+        self.assertIn("there is no fault to reset", self.assert_fails("reset"))
+        weak = self.appliance.client("weak")
+        weak.call("authority.acquire")
+        weak.call("RMAC_Config.SetMechanismJointServoControlGains", JntNum=0, ServoControlGains=[15, 0, 0.1])
+        weak.call("RMAC_Config.Apply")
+        weak.call("authority.release")
+        self.assertIn("following error", self.assert_fails("jog", "--joint", "0", "--distance", "50"))
+        self.assertEqual(self.state()["state"], "Faulted")
+        self.assertIn("then reset", self.assert_fails("home"))
+        self.rmac("reset")
+        reset = self.state()
+        self.assertEqual((reset["state"], reset["moving"], reset["moves_in_buffer"]), ("Idle", False, 0))
+        self.assertNotIn("rmac reset", self.rmac("status"))
+        self.rmac("load", "DMACXYZ")  # with the gains of its file
+        self.rmac("jog", "--joint", "0", "--distance", "1")
+        self.assertAlmostEqual(self.state()["joints"][0], reset["joints"][0] + 1, delta=0.05)
+
     def test_socket_serves_as_well_as_the_port(self):
         socket = self.appliance.folder / "state" / "rmacd.sock"
         done = subprocess.run([BUILD / "bin" / "rmac", "--socket", socket, "--json", "status"], capture_output=True,
