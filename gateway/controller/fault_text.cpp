@@ -244,6 +244,8 @@ MinorCode code_of(ServoFault::Kind kind) noexcept {
     case Kind::EnableTimeout:
     case Kind::HomingFailed:
       return MinorCode::ResponseTimeout;
+    case Kind::DriveDropped:  // and does not say why
+      return MinorCode::Unknown;
     case Kind::FollowingError:
     case Kind::TorqueBound:
     case Kind::ForceLimit:
@@ -251,7 +253,6 @@ MinorCode code_of(ServoFault::Kind kind) noexcept {
     case Kind::CyclesLost:
     case Kind::NotANumber:
     case Kind::DriveFault:
-    case Kind::DriveDropped:
       break;
   }
   return MinorCode::Other;

@@ -108,7 +108,8 @@ void MotionSupervisor::apply_verdict(const CycleSequencer::Verdict& verdict, con
                       "reset",
                       speeds),
           cycle_,
-          {}});
+          {},
+          MinorCode::ResponseTimeout});
   }
   if (verdict.came_to_rest) {
     const StopCause cause = *verdict.came_to_rest;

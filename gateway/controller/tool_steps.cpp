@@ -136,7 +136,8 @@ bool MotionSupervisor::take(AwaitInput& input, const CycleObservation& seen) {
                       "is",
                       input.name, input.on ? "on" : "off", input.timeout_s),
           cycle_,
-          {}});
+          {},
+          MinorCode::ResponseTimeout});
     sequencer_.fault();
     tell_state();
   }
