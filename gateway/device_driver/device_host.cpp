@@ -42,13 +42,24 @@ Expected<sdk::DeviceObject> overlaid(const sdk::DeviceObject& base, const sdk::D
 }  // namespace
 
 struct DeviceHost::Impl {
+  struct Driver {
+    std::shared_ptr<sdk::DeviceDriver> object;
+    std::string name, build_id;
+  };
+  /// An overlay has a high-level driver, its own, which knows no machine; what is configured and moved goes through the
+  /// low-level one, that of the machine below.
   struct Loaded {
-    std::shared_ptr<sdk::DeviceDriver> driver;
-    std::string driver_build_id;
+    Driver driver;
+    std::optional<Driver> high_level;
     sdk::DeviceObject database;
     sdk::DeviceObject wanted;
     std::optional<Base> base{};  ///< of an overlay
   };
+  Expected<Driver> load_driver(const std::string& name) const {
+    return controller.load_device_driver({name, {}, {}}).map([&](auto made) {
+      return Driver{std::move(made.object), name, made.build_id};
+    });
+  }
 
   /// One of Appendix III's functions: the driver drafts from what is wanted, and the draft goes in.
   template <typename Configure>
@@ -81,13 +92,17 @@ Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(const std::f
                                                                     const std::optional<Base>& base_before) {
   auto device = read_device_database(device_json);
   if (!device) return tl::unexpected(device.error());
-  auto driver = controller.load_device_driver({device->device_driver, {}, {}});
+  auto driver = load_driver(device->device_driver);
   if (!driver) return tl::unexpected(driver.error());
+  std::optional<Driver> high_level;
   std::optional<Base> under = device->overlay ? base_before : std::nullopt;
   if (under) {
     device = overlaid(under->device, *device);
     if (!device) return tl::unexpected(device.error());
     controller.set_mechanism_folder(under->folder, controller.virtual_mode());
+    high_level = std::move(*driver);
+    driver = load_driver(under->device.device_driver);
+    if (!driver) return tl::unexpected(driver.error());
   }
   sdk::RmacConfig& config = controller.config();
   auto done = config.begin(*device)
@@ -96,7 +111,7 @@ Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(const std::f
                   .and_then([&] { return driver->object->configure_digital_control_interface(*device, config); })
                   .and_then([&] { return config.apply(); });
   if (!done) return tl::unexpected(done.error());
-  return Loaded{std::move(driver->object), driver->build_id, *device, *device, std::move(under)};
+  return Loaded{std::move(*driver), std::move(high_level), *device, *device, std::move(under)};
 }
 
 Expected<> DeviceHost::Impl::require_verified(const std::filesystem::path& device_json) const {
@@ -173,7 +188,10 @@ Expected<DeviceHost::Impl::Loaded*> DeviceHost::Impl::require_loaded() {
 
 Expected<std::vector<ModuleInUse>> DeviceHost::modules() const {
   return impl_->require_loaded().map([&](Impl::Loaded* loaded) {
-    std::vector<ModuleInUse> all{{"device driver", loaded->database.device_driver, loaded->driver_build_id}};
+    std::vector<ModuleInUse> all;
+    if (const auto& role = loaded->high_level) all.push_back({"device driver", role->name, role->build_id});
+    all.push_back({loaded->high_level ? "low-level device driver" : "device driver", loaded->driver.name,
+                   loaded->driver.build_id});
     for (ModuleInUse& module : impl_->controller.modules()) all.push_back(std::move(module));
     return all;
   });
@@ -193,7 +211,7 @@ Expected<> DeviceHost::Impl::configure(Configure&& configure_part) {
   auto now = require_loaded();
   if (!now) return tl::unexpected(now.error());
   sdk::RmacConfig& config = controller.config();
-  auto done = configure_part(*(*now)->driver, (*now)->wanted, config).and_then([&] { return config.apply(); });
+  auto done = configure_part(*(*now)->driver.object, (*now)->wanted, config).and_then([&] { return config.apply(); });
   if (!done) controller.discard_draft();
   return done;
 }
@@ -219,7 +237,7 @@ Expected<> DeviceHost::configure_digital_control_interface() {
 Expected<> DeviceHost::move(std::int64_t id, const Geometry& geometry) {
   auto now = impl_->require_loaded();
   if (!now) return tl::unexpected(now.error());
-  return (*now)->driver->move(id, geometry, impl_->controller.cam());
+  return (*now)->driver.object->move(id, geometry, impl_->controller.cam());
 }
 
 }  // namespace rmac::gateway

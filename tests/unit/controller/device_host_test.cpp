@@ -66,6 +66,27 @@ TEST_F(Host, LoadsOneMechanismAfterAnother) {
   EXPECT_FALSE(host_->loaded());
 }
 
+TEST_F(Host, HasTheDriverOfTheMachineConfigureItUnderAnOverlayToo) {
+  replace_in_device_json("DMACXYZ", R"("DeviceDriver": "DMACXYZ")", R"("DeviceDriver": "CarefulDriver")");
+  fs::copy(fs::path(RMAC_BINARY_DIR) / "test_modules/good/CarefulDriver.so", *manager_->folder_of("DMACXYZ"));
+  const auto mill = host_->load("DMACXYZ", false);
+  ASSERT_TRUE(mill) << mill.error().message;
+  ASSERT_EQ(controller_->mechanism()->joints[0].limits.max_speed, 100) << "half of what its file says";
+  for (int again = 0; again < 2; ++again) {
+    const auto overlay = host_->load("CMM", false);
+    ASSERT_TRUE(overlay) << overlay.error().message;
+    EXPECT_EQ(controller_->mechanism()->name, "CMM");
+    EXPECT_EQ(controller_->mechanism()->joints[0].limits.max_speed, 100);
+  }
+  const auto modules = host_->modules();
+  ASSERT_TRUE(modules);
+  EXPECT_EQ((*modules)[0].role + " " + (*modules)[0].module, "device driver CMM");
+  EXPECT_EQ((*modules)[1].role + " " + (*modules)[1].module, "low-level device driver CarefulDriver");
+  (*host_->wanted())->joints[0].limits.max_speed = 60;
+  ASSERT_TRUE(host_->configure_motion_planner());
+  EXPECT_EQ(controller_->mechanism()->joints[0].limits.max_speed, 30);
+}
+
 TEST_F(Host, KeepsTheLoadedMechanismWhenAnotherCannotBeLoaded) {
   ASSERT_TRUE(host_->load("DMACXYZ", false));
   replace_in_device_json("SuginoXYZ", "\"Module\": \"ChainKinematics\"", "\"Module\": \"LostKinematics\"");
