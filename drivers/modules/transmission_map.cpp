@@ -90,6 +90,17 @@ Made make_transmission(std::string_view name, const std::string& key, Numbers nu
   return nullptr;
 }
 
+/// The first parameter that none of the transmissions reads, or nothing.
+std::string stray_parameter(sdk::Parameters parameters, std::size_t count) {
+  for (const sdk::Parameter& parameter : parameters) {
+    const std::string_view name = parameter.name;
+    bool known = name == "transmissions";
+    for (std::size_t i = 1; i <= count; ++i) known = known || name == "t" + std::to_string(i);
+    if (!known) return std::string(name);
+  }
+  return "";
+}
+
 }  // namespace
 
 ActuatorMap* TransmissionMapFactory::create(sdk::Parameters parameters, char* error, std::size_t error_size) noexcept {
@@ -113,6 +124,10 @@ ActuatorMap* TransmissionMapFactory::create(sdk::Parameters parameters, char* er
   }
   if (transmissions.empty()) {
     return refuse("parameter transmissions must name the transmission of each joint, parted by blanks");
+  }
+  if (const std::string stray = stray_parameter(parameters, transmissions.size()); !stray.empty()) {
+    return refuse("parameter " + stray + " is not understood; there are transmissions and t1 to t" +
+                  std::to_string(transmissions.size()) + ", numbers of each");
   }
   return new TransmissionMap(std::move(transmissions));
 }

@@ -12,10 +12,21 @@ namespace {
 using sdk::ModuleChoice;
 using sdk::RmacConfig;
 
+/// The laws themselves know narrower ones, which Apply holds their parameters to.
+constexpr Range kLawParameters{-1e6, 1e6};
+
 /// A module of this name; naming the one that the draft has already keeps its parameters.
 ModuleChoice chosen(const ModuleChoice& present, const std::string& name) {
   if (present.name == name) return present;
   return ModuleChoice{name, {}, {}};
+}
+
+/// Of a joint or a held one; none where there is no such joint, which the setter says.
+ModuleChoice law_of(const sdk::DeviceObject& draft, std::int64_t joint) {
+  const auto index = static_cast<std::size_t>(joint);
+  const std::size_t moved = draft.joints.size();
+  if (index < moved) return draft.joints[index].servo_law;
+  return index - moved < draft.held_joints.size() ? draft.held_joints[index - moved].servo_law : ModuleChoice{};
 }
 
 template <typename Function>
@@ -103,11 +114,20 @@ void add_servo_setters(const auto& add) {
           .needs(Permission::Authority)
           .does([](Call& call, std::int64_t joint, const std::string& law) {
             RmacConfig& config = call.machine.config();
-            const auto index = static_cast<std::size_t>(joint);
-            const auto& joints = config.draft().joints;
-            return config.set_joint_servo_control_law(
-                static_cast<int>(joint),
-                index < joints.size() ? chosen(joints[index].servo_law, law) : ModuleChoice{law, {}, {}});
+            return config.set_joint_servo_control_law(static_cast<int>(joint),
+                                                      chosen(law_of(config.draft(), joint), law));
+          }));
+  add(method("RMAC_Config.SetMechanismJointServoControlParameter",
+             "A parameter of a joint's servo law beside its gains: lead_s, rest_band, … Another law forgets it.")
+          .takes(joint_number(), text("Name").noted("as docs/servo.md has it"),
+                 number("Value", "as the law declares").within(kLawParameters))
+          .needs(Permission::Authority)
+          .extension()
+          .does([](Call& call, std::int64_t joint, const std::string& name, double value) -> Expected<> {
+            RmacConfig& config = call.machine.config();
+            ModuleChoice law = law_of(config.draft(), joint);
+            law.numbers[name] = {value};
+            return config.set_joint_servo_control_law(static_cast<int>(joint), law);
           }));
 }
 

@@ -26,7 +26,7 @@ TEST_P(FrictionStirPass, KeepsItsForceWithinTwoPercentWhileThePathIsFollowed) {
   record(pass);
 }
 
-INSTANTIATE_TEST_SUITE_P(OnStiffness, FrictionStirPass, testing::Values(500.0, 700.0, 1000.0),
+INSTANTIATE_TEST_SUITE_P(OnStiffness, FrictionStirPass, testing::Values(200.0, 300.0, 500.0, 700.0, 1000.0),
                          [](const auto& stiffness) { return std::to_string(static_cast<int>(stiffness.param)); });
 
 }  // namespace

@@ -96,6 +96,8 @@ TEST_P(MachineActMap, RefusesParametersThatAreMissingOrImpossible) {
   const std::array<double, 3> bad{5, 0, 5};
   EXPECT_FALSE(module.create<ActuatorMap>(screws(bad, kGear)));
   EXPECT_THAT(module.error(), HasSubstr("pitch_mm holds 0; it must be 0.001 to 10000"));
+  EXPECT_FALSE(module.create<ActuatorMap>(std::array{sdk::Parameter{"pitch", {kPitch.data(), 3}, nullptr}}));
+  EXPECT_THAT(module.error(), HasSubstr("parameter pitch is not understood; there are pitch_mm, gear_ratio"));
 }
 
 }  // namespace

@@ -19,10 +19,17 @@ struct LawCase {
   const char* folder;
   const char* module;
   std::vector<double> gains, other_gains;
+  std::vector<sdk::Parameter> parameters{};
 };
 void PrintTo(const LawCase& law, std::ostream* out) {
   *out << law.module;
 }
+
+constexpr double kFilter_s = 0.001, kLead_s = 0.0017, kFrictionSpeed = 2, kLoad = 40;
+const sdk::Parameter kFiltered{"derivative_filter_s", {&kFilter_s, 1}, nullptr};
+const sdk::Parameter kLeading{"lead_s", {&kLead_s, 1}, nullptr};
+const sdk::Parameter kSpread{"friction_speed", {&kFrictionSpeed, 1}, nullptr};
+const sdk::Parameter kLoaded{"load", {&kLoad, 1}, nullptr};
 
 const std::vector<double> kModelGains{0.16, 0.035, 19, -118};
 const std::vector<double> kOtherModelGains{0.3, 0, 40, 0};
@@ -30,14 +37,17 @@ const std::vector<double> kOtherModelGains{0.3, 0, 40, 0};
 class ServoLaws : public testing::TestWithParam<LawCase> {};
 INSTANTIATE_TEST_SUITE_P(
     Modules, ServoLaws,
-    testing::Values(LawCase{"mill/3-axis/DMACXYZ", "DMACXYZPIDServoControlLaw", {1500, 100000, 11}, {300, 0, 40}},
-                    LawCase{"modules", "PIDServoControlLaw", {1500, 100000, 11}, {300, 0, 40}},
-                    LawCase{"modules", "FeedforwardServoControlLaw", kModelGains, kOtherModelGains},
-                    LawCase{"modules",
-                            "FeedforwardFeedbackServoControlLaw",
-                            {1500, 100000, 11, 0.16, 0.035, 19, -118},
-                            {300, 0, 40, 0.3, 0, 40, 0}},
-                    LawCase{"modules", "FuzzyServoControlLaw", {0.1, 15, 80, 100000}, {0.02, 100, 300, 0}}),
+    testing::Values(
+        LawCase{
+            "mill/3-axis/DMACXYZ", "DMACXYZPIDServoControlLaw", {1500, 100000, 11}, {300, 0, 40}, {kFiltered, kLoaded}},
+        LawCase{"modules", "PIDServoControlLaw", {1500, 100000, 11}, {300, 0, 40}, {kFiltered, kLoaded}},
+        LawCase{"modules", "FeedforwardServoControlLaw", kModelGains, kOtherModelGains, {kLeading, kSpread}},
+        LawCase{"modules",
+                "FeedforwardFeedbackServoControlLaw",
+                {1500, 100000, 11, 0.16, 0.035, 19, -118},
+                {300, 0, 40, 0.3, 0, 40, 0},
+                {kFiltered, kLeading, kSpread}},
+        LawCase{"modules", "FuzzyServoControlLaw", {0.1, 15, 80, 100000}, {0.02, 100, 300, 0}, {kFiltered, kLoaded}}),
     [](const testing::TestParamInfo<LawCase>& law) { return std::string(law.param.module); });
 
 TEST_P(ServoLaws, Conforms) {
@@ -58,14 +68,20 @@ TEST_P(ServoLaws, RefuseAGainBelowZero) {
 
 TEST_P(ServoLaws, ConformsWithFilterLeadAndLoad) {
   LoadedModule module(GetParam().folder, GetParam().module);
-  const double filter_s = 0.001, lead_s = 0.0017, friction_speed = 2, load = 40;
-  const std::array<sdk::Parameter, 4> parameters{{{"derivative_filter_s", {&filter_s, 1}, nullptr},
-                                                  {"load", {&load, 1}, nullptr},
-                                                  {"lead_s", {&lead_s, 1}, nullptr},
-                                                  {"friction_speed", {&friction_speed, 1}, nullptr}}};
-  const auto law = module.create<ServoLaw>(parameters);
+  const auto law = module.create<ServoLaw>(GetParam().parameters);
   ASSERT_TRUE(law) << module.error();
   EXPECT_TRUE(conformance::holds(verifier::check_servo_law(*law, {GetParam().gains, GetParam().other_gains})));
+}
+
+TEST_P(ServoLaws, RefuseParametersThatTheyDoNotKnow) {
+  LoadedModule module(GetParam().folder, GetParam().module);
+  const double value = 0.001;
+  for (const char* name : {"rest_bnd", "Load", "", "lead_s_"}) {
+    EXPECT_FALSE(module.create<ServoLaw>(std::array{sdk::Parameter{name, {&value, 1}, nullptr}})) << name;
+    EXPECT_THAT(module.error(), HasSubstr(std::string("parameter ") + name + " is not understood; there are "));
+  }
+  EXPECT_FALSE(module.create<ServoLaw>(std::array{sdk::Parameter{GetParam().parameters[0].name, {}, "0.001"}}));
+  EXPECT_THAT(module.error(), HasSubstr("must be a number, and is a text"));
 }
 
 TEST(ServoLawNames, EachConstantOfAppendixIVIsAModule) {

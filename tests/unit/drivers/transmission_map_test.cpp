@@ -123,6 +123,7 @@ TEST(TransmissionMapParameters, AreRefusedWithWhatIsWanted) {
   EXPECT_THAT(refusal("screw chain", {{5, 1}, {3}}),
               HasSubstr("no transmission \"chain\"; there are screw, gear, gantry, differential"));
   EXPECT_THAT(refusal("screw screw", {{5, 1}}), HasSubstr("t2 must be the 2 numbers of a screw: lead_mm, gear"));
+  EXPECT_THAT(refusal("gear", {{3}, {5, 1}}), HasSubstr("t2 is not understood; there are transmissions and t1 to t1"));
   EXPECT_THAT(refusal("gear", {{-3}}), HasSubstr("the first 1 above 0"));
   EXPECT_THAT(refusal("piston", {{300, 120, 10, 1.5, 80, -80, 60}}), HasSubstr("between 5 and 175 degrees"));
   EXPECT_THAT(refusal("four-bar", {{60, 150, 90, 160, 20, 100, 1, -100, 100}}), HasSubstr("must close"));

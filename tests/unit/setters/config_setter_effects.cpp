@@ -287,6 +287,24 @@ const std::vector<SetterEffect>& config_setter_effects() {
          bench.apply();
          EXPECT_GT(settled(bench.tip_to(0, 0, 0)), 0.03) << "a spring gives way to it";
        }},
+      {"RMAC_Config.SetMechanismJointServoControlParameter",
+       [](SetterBench& bench) {
+         bench.call("RMAC_Config.SetMechanismJointServoControlLaw",
+                    R"({"JntNum": 0, "ControlLaw": "DMAC_FEEDFORWARDFEEDBACK_CONTROL"})");
+         bench.call("RMAC_Config.SetMechanismJointServoControlGains",
+                    R"({"JntNum": 0, "ServoControlGains": [1550, 140000, 11.1, 0.16, 0.035, 19, 0]})");
+         bench.apply();
+         const double known = peak_following_error(bench.joints_to({30, 0, 0}), 0);
+         const auto set = [&](const char* name, double value) {
+           bench.call("RMAC_Config.SetMechanismJointServoControlParameter",
+                      fmt::format(R"({{"JntNum": 0, "Name": "{}", "Value": {}}})", name, value));
+         };
+         set("friction_speed", 100);
+         bench.apply();
+         EXPECT_GT(peak_following_error(bench.joints_to({0, 0, 0}), 0), 1.5 * known) << "friction made good too late";
+         set("friction_sped", 0.5);
+         EXPECT_THAT(bench.refusal("RMAC_Config.Apply"), HasSubstr("friction_sped is not understood"));
+       }},
       {"RMAC_Config.SetMechanismDigitalIOInterface",
        [](SetterBench& bench) {
          bench.call("RMAC_CAM.TurnCoolantOn");

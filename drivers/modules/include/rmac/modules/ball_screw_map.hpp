@@ -9,6 +9,7 @@
 #include "rmac/modules/proportional_transmissions.hpp"
 #include "rmac/modules/transmission_map.hpp"
 #include "rmac/sdk/module.hpp"
+#include "rmac/sdk/parameters.hpp"
 
 namespace rmac::modules {
 
@@ -17,6 +18,7 @@ namespace rmac::modules {
 template <std::size_t kJoints>
 struct BallScrewMapFactory {
   static ActuatorMap* create(sdk::Parameters parameters, char* error, std::size_t error_size) noexcept {
+    if (!sdk::are_known_numbers(parameters, {"pitch_mm", "gear_ratio"}, error, error_size)) return nullptr;
     const std::span<const double> pitch = sdk::find_numbers(parameters, "pitch_mm");
     const std::span<const double> gear = sdk::find_numbers(parameters, "gear_ratio");
     if (!check("pitch_mm", pitch, error, error_size) || !check("gear_ratio", gear, error, error_size)) return nullptr;

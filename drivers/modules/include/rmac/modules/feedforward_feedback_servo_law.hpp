@@ -64,6 +64,9 @@ class FeedforwardFeedbackServoLaw final : public ServoLaw {
 /// Makes a `FeedforwardFeedbackServoLaw`; parameters `derivative_filter_s`, `rest_band`, `lead_s` and `friction_speed`.
 struct FeedforwardFeedbackServoLawFactory {
   static ServoLaw* create(sdk::Parameters parameters, char* error, std::size_t error_size) noexcept {
+    if (!sdk::are_known_numbers(parameters, {"derivative_filter_s", "rest_band", "lead_s", "friction_speed"}, error,
+                                error_size))
+      return nullptr;
     ErrorSignal::Parameters signal;
     FeedforwardModel::Parameters model;
     if (!ErrorSignal::read(parameters, signal, error, error_size)) return nullptr;

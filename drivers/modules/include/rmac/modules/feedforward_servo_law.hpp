@@ -51,6 +51,7 @@ class FeedforwardServoLaw final : public ServoLaw {
 /// Makes a `FeedforwardServoLaw`; parameters `lead_s` and `friction_speed`.
 struct FeedforwardServoLawFactory {
   static ServoLaw* create(sdk::Parameters parameters, char* error, std::size_t error_size) noexcept {
+    if (!sdk::are_known_numbers(parameters, {"lead_s", "friction_speed"}, error, error_size)) return nullptr;
     FeedforwardModel::Parameters model;
     if (!FeedforwardModel::read(parameters, model, error, error_size)) return nullptr;
     return new FeedforwardServoLaw(model);

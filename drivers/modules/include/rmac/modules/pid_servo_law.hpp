@@ -49,6 +49,8 @@ class PidServoLaw final : public ServoLaw {
 /// Makes a `PidServoLaw`; parameters `derivative_filter_s`, `rest_band` and `load`.
 struct PidServoLawFactory {
   static ServoLaw* create(sdk::Parameters parameters, char* error, std::size_t error_size) noexcept {
+    if (!sdk::are_known_numbers(parameters, {"derivative_filter_s", "rest_band", "load"}, error, error_size))
+      return nullptr;
     ErrorSignal::Parameters signal;
     double load = 0;
     if (!ErrorSignal::read(parameters, signal, error, error_size)) return nullptr;

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <cstring>
+#include <initializer_list>
 #include <span>
+#include <string>
 
 #include "rmac/sdk/module.hpp"
 
@@ -27,6 +31,25 @@ struct NumberParameter {
   std::snprintf(error, error_size, "parameter %s must be one number from %g to %g %s", wanted.name, wanted.min,
                 wanted.max, wanted.unit);
   return false;
+}
+
+/// Whether each parameter that is given is of `known` and numbers. False, with the reason in `error`, at the first that
+/// is not: misspelt, it would be passed over.
+[[nodiscard]] inline bool are_known_numbers(Parameters parameters, std::initializer_list<const char*> known,
+                                            char* error, std::size_t error_size) {
+  for (const Parameter& parameter : parameters) {
+    const auto names_it = [&](const char* name) { return std::strcmp(name, parameter.name) == 0; };
+    if (std::any_of(known.begin(), known.end(), names_it)) {
+      if (parameter.text == nullptr) continue;
+      std::snprintf(error, error_size, "parameter %s must be a number, and is a text", parameter.name);
+      return false;
+    }
+    std::string names;
+    for (const char* name : known) names += (names.empty() ? "" : ", ") + std::string(name);
+    std::snprintf(error, error_size, "parameter %s is not understood; there are %s", parameter.name, names.c_str());
+    return false;
+  }
+  return true;
 }
 
 }  // namespace rmac::sdk
