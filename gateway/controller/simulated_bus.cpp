@@ -20,7 +20,8 @@ struct Bounds {
   double max;
 };
 
-constexpr Bounds kAxes{1, 64}, kSpindle{-1, 63};
+constexpr Bounds kAxes{1, 64}, kSpindle{-1, 63}, kLateAnswers{0, 1};
+constexpr const char* kLateAnswersName = "late_answers";
 
 constexpr Bounds kModes{static_cast<double>(DriveMode::CyclicSyncPosition),
                         static_cast<double>(DriveMode::CyclicSyncTorque)};
@@ -137,7 +138,7 @@ Expected<> set_spindle(const std::string& name, const std::vector<double>& numbe
 }
 
 tl::unexpected<Error> not_understood(const std::string& name) {
-  std::string known = "axes, spindle, contact_axis, contact_along";
+  std::string known = "axes, spindle, late_answers, contact_axis, contact_along";
   for (const auto& [key, ignored] : kOfSpindle) known += ", " + key;
   for (const auto& [key, ignored] : kOfContact) known += ", " + key;
   for (const auto& [key, ignored] : kOfAxis) known += ", " + key;
@@ -162,7 +163,7 @@ Expected<std::vector<SimulatedAxis>> simulated_axes(const sdk::ModuleChoice& cho
     if (*spindle >= 0) axes[static_cast<std::size_t>(*spindle)] = SpindlePlantParameters{};
   }
   for (const auto& [name, numbers] : choice.numbers) {
-    if (name == "axes" || name == "spindle" || name.starts_with("contact_")) continue;
+    if (name == "axes" || name == "spindle" || name == kLateAnswersName || name.starts_with("contact_")) continue;
     const auto of_axis = kOfAxis.find(name);
     const auto of_spindle = kOfSpindle.find(name);
     Expected<> done;
@@ -176,6 +177,10 @@ Expected<std::vector<SimulatedAxis>> simulated_axes(const sdk::ModuleChoice& cho
     if (!done) return tl::unexpected(done.error());
   }
   return axes;
+}
+
+Expected<bool> simulated_answers_late(const sdk::ModuleChoice& choice) {
+  return whole(choice, kLateAnswersName, kLateAnswers, 0).map([](int cycles) { return cycles == 1; });
 }
 
 Expected<std::optional<SimulatedContact>> simulated_contact(const sdk::ModuleChoice& choice) {

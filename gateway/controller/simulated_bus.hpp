@@ -13,6 +13,9 @@ namespace rmac::gateway {
 /// of them (docs/simulated-bus.md). An error names the parameter and what it takes.
 [[nodiscard]] Expected<std::vector<fieldbus::SimulatedAxis>> simulated_axes(const sdk::ModuleChoice& choice);
 
+/// Whether its answers are those of the cycle before, as on CAN.
+[[nodiscard]] Expected<bool> simulated_answers_late(const sdk::ModuleChoice& choice);
+
 /// The part under the tool that the parameters describe, if any.
 [[nodiscard]] Expected<std::optional<fieldbus::SimulatedContact>> simulated_contact(const sdk::ModuleChoice& choice);
 

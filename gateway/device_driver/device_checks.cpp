@@ -1,7 +1,9 @@
 #include "gateway/device_driver/device_checks.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
@@ -70,6 +72,31 @@ std::string check_bus_axes(const DeviceObject& device) {
     if (!problem.empty()) return problem;
   }
   return {};
+}
+
+/// A parameter `BUS.name` of a bus that is not there would be passed over.
+std::string check_bus_names(const DeviceObject& device) {
+  std::set<std::string> buses;
+  for (const sdk::Actuator& actuator : device.actuators) buses.insert(actuator.bus);
+  for (const sdk::Spindle& spindle : device.spindles) buses.insert(spindle.bus);
+  for (const auto* joints : {&device.joints, &device.held_joints}) {
+    for (const sdk::Joint& joint : *joints) {
+      if (joint.force_sensor) buses.insert(joint.force_sensor->bus);
+    }
+  }
+  const auto check = [&](const auto& parameters) -> std::string {
+    for (const auto& [key, ignored] : parameters) {
+      const bool known = std::ranges::any_of(buses, [&](const std::string& bus) { return key.starts_with(bus + "."); });
+      if (known || key.find('.') == std::string::npos) continue;
+      return fmt::format(
+          "/DigitalControlInterface/Parameters has \"{}\"; allowed before the point is a bus on which "
+          "something of this machine hangs: {}",
+          key, fmt::join(buses, ", "));
+    }
+    return {};
+  };
+  auto problem = check(device.digital_control_interface.numbers);
+  return problem.empty() ? check(device.digital_control_interface.texts) : problem;
 }
 
 std::string check_spindles(const DeviceObject& device) {
@@ -152,8 +179,9 @@ std::string check_sense(const DeviceObject& device) {
   std::map<std::string, std::string> names;
   for (auto problem :
        {check_joints(device.joints, "Joints", names), check_joints(device.held_joints, "HeldJoints", names),
-        check_counts(device), check_bus_axes(device), check_spindles(device), check_bits(device.inputs, "Inputs"),
-        check_bits(device.outputs, "Outputs"), check_tool_change(device), check_touch_probes(device)}) {
+        check_counts(device), check_bus_axes(device), check_bus_names(device), check_spindles(device),
+        check_bits(device.inputs, "Inputs"), check_bits(device.outputs, "Outputs"), check_tool_change(device),
+        check_touch_probes(device)}) {
     if (!problem.empty()) return problem;
   }
   return {};

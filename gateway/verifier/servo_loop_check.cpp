@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
 #include "gateway/controller/assembler.hpp"
-#include "gateway/controller/bus_choice.hpp"
 #include "gateway/controller/controller_impl.hpp"
 #include "gateway/controller/fault_text.hpp"
+#include "gateway/verifier/axis_models.hpp"
 
 namespace rmac::verifier {
 namespace {
@@ -17,16 +19,27 @@ constexpr double kPeriod_s = 0.001;
 /// Of a joint's following-error bound, what is left half a second after a move.
 constexpr double kRestShare = 0.2;
 
+/// Of a joint's largest effort, how much the effort may swing at a steady speed: friction does not change there, which
+/// could hold a loop that is unstable by itself, and what the encoder's steps make of a loop that is stable is less.
+constexpr double kSwingShare = 0.25;
+
+/// What a way may ask for of a joint's limits, and how far it goes, in mm or degrees.
+constexpr double kShare = 0.5, kMost = 10;
+
+/// How far a joint goes from where it stands: to the side that has more room.
+double reach(const JointLimits& limits, double from) {
+  const double above = ends_above(limits) ? limits.max - from : kMost;
+  const double below = ends_below(limits) ? from - limits.min : kMost;
+  return above >= below ? std::min(kMost, 0.5 * above) : -std::min(kMost, 0.5 * below);
+}
+
 /// One joint's way there and back, by the polynomial of least jerk.
 struct Way {
   double from = 0, by = 0, time_s = 0;
 
   static Way within(const sdk::Joint& joint, double from) {
-    constexpr double kShare = 0.5, kMost = 10;
     const JointLimits& limits = joint.limits;
-    const double above = ends_above(limits) ? limits.max - from : kMost;
-    const double below = ends_below(limits) ? from - limits.min : kMost;
-    Way way{from, above >= below ? std::min(kMost, 0.5 * above) : -std::min(kMost, 0.5 * below), 0};
+    Way way{from, reach(limits, from), 0};
     // Peaks of s(τ) = 10 τ³ - 15 τ⁴ + 6 τ⁵ over τ from 0 to 1: 1.875, 5.774 and 60.
     const double length = std::abs(way.by);
     way.time_s = std::max({1.875 * length / (kShare * limits.max_speed),
@@ -40,6 +53,41 @@ struct Way {
     const double v = u * u * (30 + u * (-60 + 30 * u)) / time_s;
     const double a = u * (60 + u * (-180 + 120 * u)) / (time_s * time_s);
     return {from + by * (back ? 1 - s : s), (back ? -by : by) * v, (back ? -by : by) * a};
+  }
+};
+
+/// One joint's way there, most of it at a steady speed.
+struct SteadyWay {
+  double from = 0, speed = 0, ramp_s = 0;
+  static constexpr double kSteady_s = 1;
+
+  static SteadyWay within(const sdk::Joint& joint, double from) {
+    const JointLimits& limits = joint.limits;
+    const double room = reach(limits, from);
+    // Peaks of v(τ) = 3 τ² - 2 τ³ over τ from 0 to 1: of its derivatives 1.5 and 6.
+    const double most = std::min(std::abs(room) / kSteady_s, kShare * limits.max_speed);
+    const double ramp_s = std::max(
+        {1.5 * most / (kShare * limits.max_acceleration), std::sqrt(6 * most / (kShare * limits.max_jerk)), 0.05});
+    return {from, std::copysign(std::min(most, std::abs(room) / (kSteady_s + ramp_s)), room), ramp_s};
+  }
+  [[nodiscard]] double time_s() const { return kSteady_s + 2 * ramp_s; }
+  /// The last third of the steady part, in which a loop that is stable has settled.
+  [[nodiscard]] bool is_settled(double t_s) const {
+    return t_s > ramp_s + kSteady_s * 2 / 3 && t_s < ramp_s + kSteady_s;
+  }
+  [[nodiscard]] std::array<double, 3> at(double t_s) const {
+    const double whole = speed * (kSteady_s + ramp_s), left_s = time_s() - t_s;
+    if (t_s < ramp_s) return ramp(t_s);
+    if (left_s >= ramp_s) return {from + speed * (t_s - 0.5 * ramp_s), speed, 0};
+    const auto [s, v, a] = ramp(std::max(left_s, 0.0));
+    return {from + whole - (s - from), v, -a};
+  }
+
+ private:
+  [[nodiscard]] std::array<double, 3> ramp(double t_s) const {
+    const double u = t_s / ramp_s;
+    return {from + speed * ramp_s * u * u * u * (1 - 0.5 * u), speed * u * u * (3 - 2 * u),
+            speed / ramp_s * 6 * u * (1 - u)};
   }
 };
 
@@ -63,6 +111,13 @@ class ServoLoopCheck {
       const Way way = Way::within(joint, command_.setpoint.position[j]);
       for (const bool back : {false, true}) {
         if (auto fine = go(j, way, back).and_then([&] { return rest(); }); !fine) return fine;
+      }
+      const SteadyWay steady = SteadyWay::within(joint, command_.setpoint.position[j]);
+      if (auto fine = go_steadily(j, steady).and_then([&] { return rest(); }); !fine) return fine;
+    }
+    for (std::size_t i = 0; i < mechanism_.device.spindles.size(); ++i) {
+      for (const double rpm : {mechanism_.device.spindles[i].max_speed_rpm, 0.0}) {
+        if (auto fine = turn(i, rpm); !fine) return fine;
       }
     }
     return {};
@@ -100,14 +155,51 @@ class ServoLoopCheck {
   Checked go(std::size_t j, const Way& way, bool back) {
     const auto cycles = static_cast<int>(std::ceil(way.time_s / kPeriod_s));
     for (int i = 1; i <= cycles; ++i) {
-      const auto [s, v, a] = way.at(i * kPeriod_s, back);
-      command_.setpoint.position[j] = s;
-      command_.setpoint.velocity[j] = v;
-      command_.setpoint.acceleration[j] = a;
+      if (auto fine = follow(j, way.at(i * kPeriod_s, back)); !fine) return fine;
+    }
+    return {};
+  }
+
+  Checked follow(std::size_t j, const std::array<double, 3>& setpoint) {
+    std::tie(command_.setpoint.position[j], command_.setpoint.velocity[j], command_.setpoint.acceleration[j]) =
+        std::tuple_cat(setpoint);
+    return cycle();
+  }
+
+  /// At a steady speed the effort hardly changes.
+  Checked go_steadily(std::size_t j, const SteadyWay& way) {
+    const auto cycles = static_cast<int>(std::ceil(way.time_s() / kPeriod_s));
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (int i = 1; i <= cycles; ++i) {
+      if (auto fine = follow(j, way.at(i * kPeriod_s)); !fine) return fine;
+      if (!way.is_settled(i * kPeriod_s)) continue;
+      least = std::min(least, report_.effort[j]);
+      most = std::max(most, report_.effort[j]);
+    }
+    const sdk::Joint& joint = joint_of(j);
+    if (most - least <= kSwingShare * joint.max_effort) return {};
+    return fault(
+        fmt::format("joint \"{}\" swings: at a steady speed of {} its effort goes from {} to {}; {} of its "
+                    "MaxEffort is allowed",
+                    joint.limits.name, way.speed, least, most, kSwingShare));
+  }
+
+  /// A spindle comes to a speed in its time, and has it a second later.
+  Checked turn(std::size_t i, double rpm) {
+    const sdk::Spindle& spindle = mechanism_.device.spindles[i];
+    const auto reached = [&] { return std::abs(report_.spindle_rpm[i] - rpm) <= spindle.speed_tolerance_rpm; };
+    command_.spindle_rpm[i] = rpm;
+    const auto cycles = static_cast<int>(std::ceil(spindle.speed_timeout_s / kPeriod_s));
+    for (int k = 0; k < cycles && (k == 0 || !reached()); ++k) {
       if (auto fine = cycle(); !fine) return fine;
     }
-    command_.setpoint.velocity[j] = command_.setpoint.acceleration[j] = 0;
-    return {};
+    const bool in_time = reached();
+    if (auto fine = rest(); !fine) return fine;
+    if (in_time && reached()) return {};
+    return fault(
+        fmt::format("spindle {} {} {} rpm; it turns at {}, its SpeedTolerance is {} rpm, and its SpeedTimeout {} s", i,
+                    in_time ? "does not stay at" : "does not come to", rpm, report_.spindle_rpm[i],
+                    spindle.speed_tolerance_rpm, spindle.speed_timeout_s));
   }
 
   /// A second, in whose second half every joint stands.
@@ -137,35 +229,18 @@ class ServoLoopCheck {
   std::int64_t cycles_ = 0;
 };
 
-/// The first bus that is not simulated; empty when all are.
-std::string real_bus(const sdk::DeviceObject& device) {
-  const auto is_real = [&](const std::string& bus) {
-    return gateway::interface_of_bus(bus, device.digital_control_interface).name != "SimulatedInterface";
-  };
-  for (const sdk::Actuator& actuator : device.actuators) {
-    if (is_real(actuator.bus)) return actuator.bus;
-  }
-  for (const sdk::Spindle& spindle : device.spindles) {
-    if (is_real(spindle.bus)) return spindle.bus;
-  }
-  for (const auto* joints : {&device.joints, &device.held_joints}) {
-    for (const sdk::Joint& joint : *joints) {
-      if (joint.force_sensor && is_real(joint.force_sensor->bus)) return joint.force_sensor->bus;
-    }
-  }
-  return "";
-}
-
 }  // namespace
 
 void check_servo_loops(const Task& task, Watch& watch, ModuleReport& report, const std::function<void()>& tell) {
-  if (const std::string bus = real_bus(task.device); !bus.empty()) {
+  sdk::DeviceObject device = task.device;
+  if (const std::string bus = put_on_models(device); !bus.empty()) {
     report.not_checked.push_back(
-        fmt::format("stability: bus {} is not a simulated one, so there is no model of its axes", bus));
+        fmt::format("stability: bus {0} is not a simulated one, and device.json has no model of its axes "
+                    "({0}.model.interface; docs/simulated-bus.md)",
+                    bus));
     tell();
     return;
   }
-  sdk::DeviceObject device = task.device;
   // Inputs and outputs are not these loops' business, and their device may not be here.
   device.digital_io_interface = {};
   device.inputs.clear();
@@ -179,6 +254,7 @@ void check_servo_loops(const Task& task, Watch& watch, ModuleReport& report, con
                               : Checked(found("assembling", mechanism.error().message, -1, {}));
   if (checked) {
     report.passed.emplace_back("on the axis models each joint goes there and back, follows and comes to rest");
+    if (!device.spindles.empty()) report.passed.emplace_back("each spindle comes to its full speed, and to rest");
   } else {
     report.refusal = checked.error();
   }

@@ -128,6 +128,37 @@ class Verify(unittest.TestCase):
         self.assertEqual(told.returncode, 1)
         self.assertEqual(json.loads(told.stdout)["ok"], False)
 
+    def test_machine_on_can_is_checked_on_the_models_of_its_buses(self):
+        file = self.appliance.tree / "mill/5-axis/TarusXYZCA/device.json"
+        whole = file.read_text()
+
+        def verify(change=lambda device: None):
+            device = json.loads(whole)
+            change(device)
+            file.unlink()
+            file.write_text(json.dumps(device))
+            return self.verify(file.parent)
+
+        good = verify()
+        self.assertEqual((good.returncode, good.stderr), (0, ""))
+        self.assertIn("on the axis models each joint goes there and back", good.stdout)
+        self.assertIn("each spindle comes to its full speed", good.stdout)
+
+        def gains_of_a_quicker_bus(device):
+            for joint in device["Joints"]:
+                joint["Gains"][:3] = [gain * factor for gain, factor in zip(joint["Gains"], (4, 8, 3))]
+        self.assertIn("swings: at a steady speed", verify(gains_of_a_quicker_bus).stderr)
+
+        def answer_at_once(device):
+            gains_of_a_quicker_bus(device)
+            device["DigitalControlInterface"]["Parameters"].update({"can0.model.late_answers": 0, "can1.model.late_answers": 0})
+        self.assertEqual(verify(answer_at_once).returncode, 0, "they would do on a quicker bus")
+        self.assertIn("spindle 0 does not come to 5000 rpm",
+                      verify(lambda device: device["Spindles"][0].update(SpeedTimeout=0.1)).stderr)
+        without = verify(lambda device: device["DigitalControlInterface"]["Parameters"].pop("can1.model.interface"))
+        self.assertEqual(without.returncode, 0, "what nobody has measured is no reason to refuse a machine")
+        self.assertIn("not checked stability: bus can1", " ".join(without.stdout.split()))
+
     def test_command_asks_the_appliance_for_a_name(self):
         done = self.appliance.rmac("verify", "DMACXY")
         self.assertEqual((done.returncode, done.stderr), (0, ""))

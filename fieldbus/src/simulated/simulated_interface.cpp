@@ -1,5 +1,6 @@
 #include "rmac/fieldbus/simulated_interface.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -101,6 +102,7 @@ bool SimulatedInterface::exchange(std::span<const DriveCommand> commands, std::s
         },
         drives_[i]);
   }
+  if (!before_.empty()) std::swap_ranges(before_.begin(), before_.end(), feedback.begin());
   return !bus_failed;
 }
 

@@ -98,13 +98,15 @@ INSTANTIATE_TEST_SUITE_P(OnSimulatedDrives, EveryMechanism,
 TEST_P(EveryMechanism, LoadsAndMovesEachOfItsJoints) {
   ASSERT_NO_FATAL_FAILURE(load(GetParam(), false));
   const std::vector<sdk::Joint> joints = controller_->mechanism()->joints;
+  const bool late = controller_->mechanism()->digital_control_interface.numbers.contains("late_answers");
   std::vector<double> there;
   for (std::size_t j = 0; j < joints.size(); ++j) there.push_back(20 + 5 * static_cast<double>(j));
   ASSERT_NO_FATAL_FAILURE(move(JointTargetGeometry{there}));
   const CycleSample now = controller_->sample();
   for (std::size_t j = 0; j < joints.size(); ++j) {
     EXPECT_NEAR(now.position[j], there[j], 0.05) << joints[j].limits.name;
-    EXPECT_LT(largest_error_[j], 0.1) << joints[j].limits.name;
+    // Late answers are off by what a joint goes in a cycle.
+    EXPECT_LT(largest_error_[j], 0.1 + (late ? 0.001 * joints[j].limits.max_speed : 0)) << joints[j].limits.name;
   }
 }
 
@@ -186,6 +188,18 @@ TEST_F(DeviceTree, TwinHasTheValuesOfItsMachine) {
   for (auto& joint : twin["Joints"]) joint["ServoControlLaw"]["Module"] = "TarusXYZCAPFFServoControlLaw";
   for (const char* key : {"Joints", "Kinematics", "ActuatorMap", "MaxFeedrate", "WorkingVolume"}) {
     EXPECT_EQ(twin[key], machine[key]) << key;
+  }
+  // And the axes of the models of its buses: three of each, the spindle last of the machine's and fourth of the twin's.
+  const auto& models = machine["DigitalControlInterface"]["Parameters"];
+  const auto& plants = twin["DigitalControlInterface"]["Parameters"];
+  for (const char* key : {"rated_torque_nm", "inertia_kg_m2", "friction_nm", "counts_per_revolution"}) {
+    auto axes = models[std::string("can0.model.") + key];
+    const auto& head = models[std::string("can1.model.") + key];
+    for (const std::size_t i : {2U, 0U, 1U}) axes.push_back(head[i]);
+    EXPECT_EQ(plants[key], axes) << key;
+  }
+  for (const char* key : {"spindle_max_rpm", "spindle_max_torque_nm", "late_answers"}) {
+    EXPECT_EQ(plants[key], models[std::string("can1.model.") + key]) << key;
   }
 }
 

@@ -46,6 +46,14 @@ TEST(SimulatedBus, TakesWhatIsSaidOfEachAxis) {
   EXPECT_EQ(spindle.max_torque_nm, 10);
 }
 
+TEST(SimulatedBus, AnswersLateWhereItIsSaid) {
+  EXPECT_EQ(simulated_answers_late(bus({})), false);
+  EXPECT_EQ(simulated_answers_late(bus({{"late_answers", {1}}})), true);
+  const auto two = simulated_answers_late(bus({{"late_answers", {2}}}));
+  ASSERT_FALSE(two);
+  EXPECT_THAT(two.error().message, HasSubstr("\"late_answers\" must be one whole number from 0 to 1"));
+}
+
 TEST(SimulatedBus, CanDoWithoutASpindle) {
   const auto axes = simulated_axes(bus({{"spindle", {-1}}}));
   ASSERT_TRUE(axes);

@@ -172,6 +172,16 @@ TEST(DeviceDatabase, RefusesALatchWithoutAProbe) {
       << refused.error().message;
 }
 
+TEST(DeviceDatabase, RefusesParametersOfABusThatIsNotThere) {
+  json file = sound_device();
+  file["DigitalControlInterface"]["Parameters"] = {{"axes", 40}, {"sim0.model.axes", 40}};
+  EXPECT_EQ(read_sound(file).digital_control_interface.numbers.size(), 2U);
+  EXPECT_EQ(
+      problem_with("/DigitalControlInterface/Parameters", {{"sim1.axes", 3}}),
+      "/DigitalControlInterface/Parameters has \"sim1.axes\"; allowed before the point is a bus on which something "
+      "of this machine hangs: sim0");
+}
+
 TEST(DeviceDatabase, TakesTheSchemasDefaultsForWhatIsLeftOut) {
   json file = sound_device();
   for (const char* key : {"SpeedCapability", "ToolChanger", "NumberOfTools", "HeldJoints"}) file.erase(key);

@@ -56,6 +56,22 @@ TEST_F(SimulatedBus, ActsOnACommandOnlyAfterItsFeedbackWasTaken) {
   EXPECT_GT(feedback_[kX].position_counts, start);
 }
 
+TEST_F(SimulatedBus, TellsOfTheCycleBeforeWhereItsAnswersAreLate) {
+  SimulatedInterface late{default_simulated_axes(), 0.001};
+  late.set_answers_late(true);
+  std::vector<DriveFeedback> before(bus_.axis_count()), now = before;
+  for (int i = 0; i < 50; ++i) {
+    cycle(kX, DriveWish::Operational, i < 20 ? 1000 : -500);
+    // The same commands, whatever is told of them.
+    ASSERT_TRUE(late.exchange(commands_, now));
+    EXPECT_EQ(now[kX].statusword, before[kX].statusword) << i;
+    EXPECT_EQ(now[kX].position_counts, before[kX].position_counts) << i;
+    EXPECT_EQ(now[kX].online, i > 0) << i;
+    before = feedback_;
+  }
+  EXPECT_NE(feedback_[kX].position_counts, 0) << "it moved";
+}
+
 TEST_F(SimulatedBus, CountsTheShaftInWholeEncoderCounts) {
   bus_.plant(kX).put_at(2 * M_PI * 1.5 / 131072);
   cycle(kX, DriveWish::Off);

@@ -67,6 +67,9 @@ class SimulatedInterface : public DigitalControlInterface {
   void set_sensor_lost(bool lost) noexcept { sensor_lost_ = lost; }
   /// Puts a part under the tool. Before the first exchange.
   void set_contact(const SimulatedContact& contact) noexcept { contact_ = contact; }
+  /// Answers are those of the exchange before, as on a bus whose drives answer a SYNC while nobody reads on. Before the
+  /// first exchange.
+  void set_answers_late(bool late) { before_.resize(late ? drives_.size() : 0); }
   /// The bus itself fails, as on bus-off; and works again.
   void set_bus_failed(bool failed) noexcept { bus_failed_ = failed; }
 
@@ -101,6 +104,7 @@ class SimulatedInterface : public DigitalControlInterface {
   std::atomic<bool> bus_failed_{false};
   std::atomic<bool> sensor_lost_{false};
   std::optional<SimulatedContact> contact_;
+  std::vector<DriveFeedback> before_;  ///< what late answers will tell; empty where they are not late
   double period_s_;
 };
 
