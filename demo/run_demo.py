@@ -24,7 +24,6 @@ SEARCH = (
 )
 # What each axis of the simulated bus is: N·s/mm of grease, N·s²/mm of mass, N of friction (docs/servo.md, docs/simulated-bus.md).
 AXES = ((0.158, 0.0347, 18.85), (0.158, 0.0407, 18.85), (0.158, 0.0267, 18.85))
-LEAD_S = 0.0017  # how much earlier than the torque of a cycle acts, friction is to turn round (docs/servo.md)
 REFUSALS = {"MACHINE_ERR_TRAVEL_LIMIT", "MACHINE_ERR_INVALID_PARAMETER_VALUE", "MACHINE_ERR_UNSUPPORTED_OPERATION"}
 
 
@@ -51,12 +50,9 @@ def feed_forward(client, device_tree):
     """Puts feedforward before the PID of DMACXYZ's joints: another law in the same loops, without shutting down."""
     joints = json.loads((pathlib.Path(device_tree) / "mill/3-axis/DMACXYZ/device.json").read_text(encoding="utf-8"))["Joints"]
     for number, (joint, axis) in enumerate(zip(joints, AXES)):
-        pid = joint["ServoControlLaw"]["Parameters"]
-        gains = [*joint["Gains"], *axis, *pid.get("load", [0])]
+        gains = [*joint["Gains"], *axis, *joint["ServoControlLaw"]["Parameters"].get("load", [0])]
         client.call("RMAC_Config.SetMechanismJointServoControlLaw", JntNum=number, ControlLaw="DMAC_FEEDFORWARDFEEDBACK_CONTROL")
         client.call("RMAC_Config.SetMechanismJointServoControlGains", JntNum=number, ServoControlGains=gains)
-        for name, value in (("lead_s", LEAD_S), ("rest_band", pid["rest_band"][0])):
-            client.call("RMAC_Config.SetMechanismJointServoControlParameter", JntNum=number, Name=name, Value=value)
     client.call("RMAC_Config.Apply")
 
 
