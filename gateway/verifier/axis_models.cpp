@@ -12,7 +12,8 @@ std::string put_on_models(sdk::DeviceObject& device) {
   const auto put = [&](std::string& bus) {
     if (is_simulated(bus)) return;
     const std::string model = bus + ".model";
-    if (is_simulated(model)) {
+    // A bus that says nothing of itself is the machine's own interface's, which may be a simulated one.
+    if (device.digital_control_interface.texts.contains(model + ".interface") && is_simulated(model)) {
       bus = model;
     } else if (without.empty()) {
       without = bus;
