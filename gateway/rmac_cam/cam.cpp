@@ -269,10 +269,11 @@ Expected<std::vector<double>> Cam::current_position() const {
 }
 
 Expected<> Cam::set_animation(bool) {
+  // A client's call is its session's to answer (gateway/api): it streams to the connection that asks.
   return failure(
       MinorCode::UnsupportedOperation,
-      "SetAnimation: not there yet; subscribe to the topic \"joints\", which streams joint values in virtual "
-      "mode too");
+      "SetAnimation: joint values are streamed to a connection, and this call came through none; ask over the "
+      "socket, or read the state");
 }
 
 }  // namespace rmac::gateway
