@@ -10,10 +10,12 @@ import unittest
 
 import modbus_drives
 from appliance import Appliance
+from client import Refused
 
 logging.disable()  # pymodbus calls it an error when its server ends
 TOLERANCE_RPM = 20
 RPM_PER_HZ = 60
+RESETS = 20
 # Python answers, on a machine that may be busy: nothing here is lost, only late.
 PATIENCE = {"deadline_ms": 10000, "stale_ms": 60000, "boot_timeout_s": 60}
 
@@ -57,6 +59,15 @@ class Machine:
         self.served.drive.wait_for(lambda drive: abs(drive.turning_hz * RPM_PER_HZ - rpm) < TOLERANCE_RPM)
         self.watcher.wait_note("state", lambda state: abs(state["spindle_rpm"][0] - rpm) < TOLERANCE_RPM)
 
+    def reset(self):
+        """Asks again, as an operator would, where a drive on a slow line takes longer to leave its fault than a reset waits."""
+        for left in reversed(range(RESETS)):
+            try:
+                return self.operator.call("RMAC_CAM.Reset")
+            except Refused as refusal:
+                if left == 0 or "the fault is still there" not in refusal.message:
+                    raise
+
     def wait_fault(self):
         message = self.watcher.wait_note("events", lambda event: event["kind"] == "Fault")["message"]
         self.watcher.wait_note("state", lambda state: state["state"] == "Faulted")
@@ -71,7 +82,7 @@ class RegisterMaps(unittest.TestCase):
             drive.trip()
             self.assertIn(drive.fault_words, machine.wait_fault())
             drive.wait_for(lambda drive: drive.turning_hz == 0)
-            machine.operator.call("RMAC_CAM.Reset")
+            machine.reset()
             drive.wait_for(lambda drive: not drive.tripped and drive.turning_hz == 0)
             machine.turn(600)
             self.assertEqual(machine.appliance.end(), 0)

@@ -214,7 +214,7 @@ TEST_P(ModbusClient, SaysThatThePeerWentAway) {
 
 TEST(ModbusClientRtu, AsksNothingInDoubtAndBelievesNoConfirmation) {
   ModbusPeer peer(Wire::Rtu);
-  const auto client = std::move(*Client::create(peer.endpoint(), 20ms));
+  const auto client = std::move(*Client::create(peer.endpoint(), 500ms));
   ASSERT_TRUE(client->connect());
   EXPECT_TRUE(client->in_doubt(kSlave)) << "what the line was used for before is not known";
   std::array<std::uint16_t, 2> words{};
