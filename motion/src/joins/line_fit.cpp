@@ -210,13 +210,15 @@ bool LineFit::fit_dense(std::size_t lines, bool ends, Fit& fit) const {
   const double mean = fit.polyline.places.back() / static_cast<double>(lines);
   // The overlap holds the knots that a cut keeps, and more.
   const double longest = std::min(kLongestStep_mm, mean * static_cast<double>(kDense.overlap) / 8);
-  double step = step_ > 0 ? std::min((no_coarser_for_ > 0 ? 1 : 2) * step_, longest) : longest;
-  for (fit.coarser_failed = false; step >= 0.9 * mean; step *= 0.5, fit.coarser_failed = true) {
+  const double widest = step_ > 0 ? std::min((no_coarser_for_ > 0 ? 1 : 2) * step_, longest) : longest;
+  for (int halvings = 0;; ++halvings) {
+    const double step = std::ldexp(widest, -halvings);
+    if (step < 0.9 * mean) return false;
+    fit.coarser_failed = halvings > 0;
     if (!least_squares(step, fit)) continue;
     fit.deviations_mm = chord_distances(fit.knots, fit.points, fit.polyline);
     if (largest(fit.deviations_mm) <= tolerance) return make_segments({}, kDense.overlap, ends, fit);
   }
-  return false;
 }
 
 bool LineFit::fit_tube(std::size_t lines, bool ends, Fit& fit) const {

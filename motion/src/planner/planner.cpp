@@ -271,14 +271,15 @@ struct Planner::Impl {
     const bool one_done = wanted == PathCommand::RunOne && base_end_s() >= limit_s - kSamePlace;
     const bool dry = base_end_s() >= path().end() - kSamePlace && !one_done;
     if (dry && path().can_supply()) return Task::Supply;
-    if (at_end) {
+    const PublishedPlan* const p = base();
+    if (at_end || p == nullptr) {
       if (more) return Task::Start;
       return dry && path().has_more() ? Task::Supply : Task::None;
     }
-    if (base()->stops) return Task::None;
-    const double t_now = now_s(*base(), progress.cycle);
-    if (factor != base()->override_factor) return begun ? Task::Override : Task::None;
-    const double t_decide = base()->hard_end ? base()->plan->end_time_s : base()->commit_t;
+    if (p->stops) return Task::None;
+    const double t_now = now_s(*p, progress.cycle);
+    if (factor != p->override_factor) return begun ? Task::Override : Task::None;
+    const double t_decide = p->hard_end ? p->plan->end_time_s : p->commit_t;
     if (more && t_decide - t_now < kHorizon_s) return Task::Extend;
     if (dry && path().has_more() && t_decide - t_now < kRelease_s + static_cast<double>(lead()) * period())
       return Task::Supply;
