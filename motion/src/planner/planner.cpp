@@ -17,7 +17,7 @@ namespace {
 constexpr double kHorizon_s = 0.4;
 constexpr std::int64_t kLeadAtFirst = 2;
 constexpr std::int64_t kLongestLead = 64;
-/// A window that found no plan is tried again from a later state, after so many cycles.
+/// A window that found no plan is tried again from another state, after so many cycles.
 constexpr std::int64_t kRetryAfter = 10;
 /// Path length is counted from a new origin once the tool is so far from the last: its rounding stays below 1e-12 mm.
 constexpr double kFarthest_mm = 1000;
