@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <sys/signalfd.h>
 #include <systemd/sd-daemon.h>
 
 #include <asio.hpp>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <system_error>
 
 #include "gateway/controller/sync_clock.hpp"
 #include "gateway/rmacd/machine.hpp"
@@ -71,13 +74,30 @@ ServerOptions server_options(const Configuration& configuration) {
   return options;
 }
 
+/// Blocks SIGTERM and SIGINT in this thread and in all that it will start, for good; gives the descriptor that they are
+/// read from. So they interrupt no cycle, and however many come, none turns an orderly end into a kill.
+Expected<int> catch_end_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  const int descriptor = signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
+  if (descriptor < 0) {
+    return failure(MinorCode::Other, fmt::format("SIGTERM and SIGINT cannot be read from a descriptor: {}",
+                                                 std::generic_category().message(errno)));
+  }
+  return descriptor;
+}
+
 /// The parts, in the order in which they need each other.
 class Daemon {
  public:
-  /// `clock`: null for the timer.
-  Daemon(std::unique_ptr<DeviceDriverManager> manager, const Configuration& configuration, std::shared_ptr<Clock> clock,
-         ServerOptions options)
-      : manager_(std::move(manager)),
+  /// `signals`: see catch_end_signals(). `clock`: null for the timer.
+  Daemon(int signals, std::unique_ptr<DeviceDriverManager> manager, const Configuration& configuration,
+         std::shared_ptr<Clock> clock, ServerOptions options)
+      : signals_(io_, signals),
+        manager_(std::move(manager)),
         controller_(controller_options(configuration, std::move(clock))),
         verification_(verification_options(configuration)),
         host_(*manager_, controller_, &verification_),
@@ -96,7 +116,8 @@ class Daemon {
   void end_when_at_rest();
 
   asio::io_context io_;
-  asio::signal_set signals_{io_, SIGTERM, SIGINT};  // outlives every part that has threads: see keep_ending()
+  asio::posix::stream_descriptor signals_;
+  signalfd_siginfo signal_{};
   std::unique_ptr<DeviceDriverManager> manager_;
   Controller controller_;
   Verification verification_;
@@ -110,16 +131,6 @@ class Daemon {
   std::chrono::steady_clock::time_point last_watchdog_;
   std::chrono::microseconds watchdog_period_{0};
 };
-
-/// A second SIGTERM or SIGINT must not turn an orderly end into a kill once the signal set no longer catches it: by
-/// then this thread, which blocks both, is the only one left.
-void keep_ending() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGINT);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-}
 
 Expected<> Daemon::run(const Configuration& configuration) {
   controller_.on_sample([this](const CycleSample& sample) { server_.on_sample(sample); });
@@ -148,14 +159,13 @@ Expected<> Daemon::run(const Configuration& configuration) {
   if (std::uint64_t limit_us = 0; sd_watchdog_enabled(0, &limit_us) > 0) {
     watchdog_period_ = std::chrono::microseconds(limit_us / 3);
   }
-  signals_.async_wait([this](asio::error_code problem, int signal) {
-    if (!problem) end(signal == SIGTERM ? "SIGTERM" : "SIGINT");
+  signals_.async_read_some(asio::buffer(&signal_, sizeof signal_), [this](asio::error_code problem, std::size_t) {
+    if (!problem) end(signal_.ssi_signo == SIGTERM ? "SIGTERM" : "SIGINT");
   });
   schedule_tick();
   io_.run();
   server_.close();
   controller_.stop();
-  keep_ending();
   return {};
 }
 
@@ -216,6 +226,8 @@ void Daemon::end_when_at_rest() {
 }  // namespace
 
 Expected<> run_daemon(const Configuration& configuration) {
+  auto signals = catch_end_signals();
+  if (!signals) return tl::unexpected<Error>(std::move(signals.error()));
   std::error_code problem;
   std::filesystem::create_directories(configuration.state_folder, problem);
   if (!configuration.unix_socket.empty()) {
@@ -224,7 +236,7 @@ Expected<> run_daemon(const Configuration& configuration) {
   auto manager = DeviceDriverManager::open({configuration.device_tree, configuration.database});
   if (!manager) return tl::unexpected<Error>(std::move(manager.error()));
   return clock_for(configuration).and_then([&](std::shared_ptr<Clock> clock) {
-    return Daemon(std::move(*manager), configuration, std::move(clock), server_options(configuration))
+    return Daemon(*signals, std::move(*manager), configuration, std::move(clock), server_options(configuration))
         .run(configuration);
   });
 }

@@ -6,10 +6,11 @@ import json
 import logging
 import signal
 import subprocess
+import time
 import unittest
 
 import modbus_drives
-from appliance import Appliance
+from appliance import STOP_BOUND_S, Appliance
 from client import Refused
 
 logging.disable()  # pymodbus calls it an error when its server ends
@@ -131,7 +132,9 @@ class Spindle(unittest.TestCase):
         # The drive's own thread lives almost to the end of the process.
         with modbus_drives.ServedOnTcp(modbus_drives.DeltaVfdB()) as served, Machine(served, "delta-vfd-b") as machine:
             machine.turn(600)
+            end = time.monotonic() + STOP_BOUND_S
             while machine.appliance.process.poll() is None:
+                self.assertLess(time.monotonic(), end, "it does not end")
                 machine.appliance.process.send_signal(signal.SIGTERM)
             self.assertEqual(machine.appliance.process.returncode, 0)
             self.assertEqual(served.drive.turning_hz, 0)
