@@ -30,10 +30,9 @@ struct StateNote {
   std::string tool_prompt;     ///< what a person is asked to do for it; empty: nothing
   EventNote last_stop;         ///< without a kind: none yet
 
+  [[nodiscard]] bool faulted() const { return state == "Faulted" || state == "EmergencyStop"; }
   /// What a faulted machine has queued stays until its reset, and moves nothing.
-  [[nodiscard]] bool at_rest() const {
-    return !moving && (moves_in_buffer == 0 || state == "Faulted" || state == "EmergencyStop");
-  }
+  [[nodiscard]] bool at_rest() const { return !moving && (moves_in_buffer == 0 || faulted()); }
 };
 
 /// One cycle of the `joints` topic. mm, deg; feed mm/s.

@@ -40,7 +40,7 @@ Result<> move_and_wait(Connection& connection, const std::string& method, const 
       static_cast<void>(call(connection, "RMAC_CAM.StopNow"));
       return tl::unexpected(rest.error());
     }
-    return {};
+    return rest->faulted() ? fail("the machine is in a fault; `rmac status` says which") : Result<>();
   });
   connection.on_notification({});
   return done;

@@ -7,7 +7,9 @@ namespace rmac::cli {
 Result<StateNote> wait_for_rest(Connection& connection, const std::string& failure) {
   // Asked, not subscribed: a machine that comes to rest just after the last state it sent would be waited for for ever.
   constexpr auto kAskAgain = std::chrono::milliseconds(20);
-  for (;;) {
+  // An answer may tell of a fault some ms before the event that says which one; an old fault has no event any more.
+  constexpr int kLooksForEvent = 50;
+  for (int looks = 0;;) {
     const auto answer = connection.call("RMAC_CAM.GetState");
     if (!answer) {
       return tl::unexpected(answer.error());
@@ -16,7 +18,7 @@ Result<StateNote> wait_for_rest(Connection& connection, const std::string& failu
     if (!failure.empty()) {
       return fail(failure);
     }
-    if (state.at_rest()) {
+    if (state.at_rest() && (!state.faulted() || ++looks > kLooksForEvent)) {
       return state;
     }
     if (const auto waited = connection.wait([&] { return !failure.empty(); }, kAskAgain); !waited) {

@@ -30,7 +30,7 @@ std::string last_stop(const StateNote& state) {
   if (!stop.record.empty()) {
     text += fmt::format("flight record {}: rmac trace plot {}\n", stop.record, stop.record);
   }
-  if (state.state == "Faulted" || state.state == "EmergencyStop") text += "to go on, its cause removed: rmac reset\n";
+  if (state.faulted()) text += "to go on, its cause removed: rmac reset\n";
   return text;
 }
 
