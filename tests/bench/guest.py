@@ -45,6 +45,13 @@ def wait_for(what, reached, seconds=30.0, look_s=0.02):
     return found
 
 
+def chosen(kind, kinds):
+    """The one that was asked for, or all."""
+    if kind not in ("", *kinds):
+        raise SystemExit(f"there is no kind {kind}, only {', '.join(kinds)}")
+    return [kind] if kind else kinds
+
+
 def install(build):
     """What `cmake --install` made for this scenario, into this machine: in memory, and with it what the programs are linked with, because a page
     that had to come from the host in mid-cycle would cost cycles."""

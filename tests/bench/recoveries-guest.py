@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Inside the emulated machine: the bus of an appliance in mid-move goes away and comes back, again and again: its interface goes down, its controller is
 off the bus, a drive is reset by somebody else, a drive's program is killed and started again. How soon all drives are operational again, what the
-appliance's processor time is meanwhile, and that nothing moves before a person says so. The argument is the build folder and how many of each kind."""
+appliance's processor time is meanwhile, and that nothing moves before a person says so. The argument is the build folder, how many
+of each kind, and of which kind alone, if not of every one."""
 
 import json
 import pathlib
@@ -11,10 +12,11 @@ import sys
 import time
 
 import can
-from guest import HEARTBEAT_MS, RUN, Drives, Figures, axes_alone, call, install, make_can, on_buses, operator, wait_for
+from guest import HEARTBEAT_MS, RUN, Drives, Figures, axes_alone, call, chosen, install, make_can, on_buses, operator, wait_for
 
 WANTED = 20
-BUILD, COUNT = sys.argv[1].split(",")
+BUILD, COUNT, KIND = sys.argv[1].split(",")
+KINDS = chosen(KIND, ("interface_down", "bus_off", "node_reset", "drive_restarted"))
 LAST = 3  # the node with a program of its own
 LOOK_S = 0.5
 FEED_MM_MIN = 1200
@@ -181,7 +183,7 @@ def main():
     figures = Figures()
     random_number = random.Random(1)
     count = int(COUNT)
-    for kind in ("interface_down", "bus_off", "node_reset", "drive_restarted"):
+    for kind in KINDS:
         normal, away, back_ms = zip(*(recover(kind, appliance, plant, random_number) for _ in range(count)))
         note = f"{count} times in mid-move" + ("" if count >= WANTED else f"; {WANTED} wanted")
         figures.at_most(f"recovery_{kind}_max", round(max(back_ms), 1), BACK_MS, "ms", note)
