@@ -29,6 +29,9 @@ using LaneTriple = std::array<Lanes, 3>;
 [[nodiscard]] [[gnu::always_inline]] inline Lanes larger(Lanes a, Lanes b) noexcept {
   return a > b ? a : b;
 }
+[[nodiscard]] [[gnu::always_inline]] inline Lanes smaller(Lanes a, Lanes b) noexcept {
+  return a < b ? a : b;
+}
 [[nodiscard]] [[gnu::always_inline]] inline Lanes square_root(Lanes a) noexcept {
   return Lanes{std::sqrt(a[0]), std::sqrt(a[1])};
 }
@@ -37,6 +40,9 @@ using LaneTriple = std::array<Lanes, 3>;
 }
 [[nodiscard]] [[gnu::always_inline]] inline double largest(Lanes a) noexcept {
   return std::max(a[0], a[1]);
+}
+[[nodiscard]] [[gnu::always_inline]] inline double smallest(Lanes a) noexcept {
+  return std::min(a[0], a[1]);
 }
 /// Three neighbouring numbers, each in all lanes.
 [[nodiscard]] [[gnu::always_inline]] inline LaneTriple lanes_of(const double* first) noexcept {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lanes.hpp"
+#include "time_law/law_rows.hpp"
 #include "time_law/law_spline.hpp"
 
 namespace rmac {
@@ -24,83 +25,32 @@ struct StartingPoint {
 constexpr StartingPoint kFromProfile{10, 0.2};
 constexpr StartingPoint kFromLaw{0.1, 0.02};
 
-/// low <= phi(c) <= 1 on the three coefficients of one interval, two such rows at once, with slack and dual variable
-/// of both sides. Most of the time of a plan is spent going through these, so what belongs together lies together, both
-/// sides share one gradient, and rows of an interval share the coefficients that they touch.
-/// phi = w·c, or for jerk (w·c)·√(u·c), eq. 10, u·c being q at an end of the interval.
-struct Rows {
-  LaneTriple w{}, u{}, gradient{};
-  Lanes low{};
-  LaneMask linear{};
-  struct Side {
-    Lanes slack{}, inverse_slack{}, dual{}, residual{}, slack_step{}, dual_step{};
-  };
-  Side above, below;
-};
-
-/// Rows of one interval while they are collected.
-class RowCollector {
- public:
-  explicit RowCollector(std::vector<Rows>& all) : all_(all) {}
-
-  /// low <= w·c <= high; a side that does not bind may be anything far away.
-  void add_linear(const Weights& w, double low, double high) {
-    Rows& rows = next();
-    for (std::size_t i = 0; i < 3; ++i) rows.w[i][lane_] = w[i] / high;
-    rows.low[lane_] = low / high;
-  }
-  /// |(w·c)·√(u·c)| <= 1.
-  void add_jerk(const Weights& w, const Weights& u) {
-    Rows& rows = next();
-    for (std::size_t i = 0; i < 3; ++i) rows.w[i][lane_] = w[i], rows.u[i][lane_] = u[i];
-    rows.linear[lane_] = 0;
-  }
-  void end_interval() { lane_ = kLanes - 1; }
-
- private:
-  Rows& next() {
-    lane_ = (lane_ + 1) % kLanes;
-    if (lane_ == 0) {
-      // A lane that stays empty is a row of zeros, inside its bounds whatever the coefficients are.
-      all_.emplace_back();
-      all_.back().low = all_lanes(-1);
-      all_.back().linear = all_lanes(1) == all_lanes(1);
-    }
-    return all_.back();
-  }
-
-  std::vector<Rows>& all_;
-  std::size_t lane_ = kLanes - 1;
-};
-
 class Solver {
  public:
-  Solver(const LawProblem& problem, const std::vector<double>& guess) : p_(problem), n_(problem.intervals() + 2) {
+  Solver(const LawProblem& problem, const std::vector<double>& guess)
+      : p_(problem), n_(problem.intervals() + 2), rows_(problem) {
     fix_ends(guess);
-    build_rows();
     for (auto* v : {&diagonal_, &off1_, &off2_, &rhs_}) v->resize(n_);
     step_.assign(n_, 0.0);
   }
 
   LawSolution run() {
     LawSolution result;
-    const double count = 2 * static_cast<double>(kLanes * rows_.size());
-    begin(start_.gap * travel_time() / count);
+    const double count = 2 * static_cast<double>(kLanes * rows_.all.size());
+    begin(count);
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
       result.iterations = iteration + 1;
       const double mu = gap_ / count;
       if (!factorise()) break;
       solve_step();
-      // Predictor: how far a pure Newton step gets tells how much to centre (Mehrotra).
-      const Reach pure = follow<false>(0, 1);
-      const double ratio = pure.gap / gap_;
+      const double ratio = predicted_gap() / gap_;
       const double sigma = std::clamp(ratio * ratio, 1e-4, 0.8);
       aim(sigma * mu);
       solve_step();
-      const Reach reach = follow<true>(sigma * mu, kBoundaryFraction);
+      const Reach reach = correct(sigma * mu);
       for (std::size_t j = 0; j < n_; ++j) c_[j] += reach.primal * step_[j];
       refresh(reach.primal, reach.dual);
-      if (infeasible_ <= kFeasible && gap_ <= kGap * travel_time()) {
+      if (infeasible_ <= kFeasible && gap_ <= kGap * travel_time_) {
         result.converged = true;
         break;
       }
@@ -130,70 +80,13 @@ class Solver {
     end_free_ = n_ - 2;
   }
 
-  void build_rows() {
-    const std::size_t n = p_.intervals();
-    rows_.reserve(n * ((3 * p_.joint_count + 2) / kLanes + 1));
-    first_row_.reserve(n + 1);
-    RowCollector rows(rows_);
-    for (std::size_t k = 0; k < n; ++k) {
-      first_row_.push_back(rows_.size());
-      // Nothing bounds the coefficients from below: the travel time does, which goes to infinity there.
-      if (k + 1 >= first_free_ && k + 1 < end_free_) rows.add_linear({0, 1, 0}, -p_.speed_cap[k], p_.speed_cap[k]);
-      const Basis left = basis(p_, k, false), right = basis(p_, k, true);
-      if (k > 0) {
-        const double cap = std::min(p_.speed_cap[k], p_.speed_cap[k - 1]);
-        if (p_.speed_cap[k] != p_.speed_cap[k - 1]) rows.add_linear(left.q, -cap, cap);
-        path_acceleration_row(left, std::min(p_.rise[k], p_.rise[k - 1]), std::min(p_.fall[k], p_.fall[k - 1]), rows);
-        joint_acceleration_rows(left, p_.at(k, false), std::min(p_.tightening[k], p_.tightening[k - 1]), rows);
-      }
-      jerk_rows(left, p_.at(k, false), p_.tightening[k], rows);
-      jerk_rows(right, p_.at(k, true), p_.tightening[k], rows);
-      rows.end_interval();
-    }
-    first_row_.push_back(rows_.size());
-  }
-
-  static void path_acceleration_row(const Basis& b, double rise, double fall, RowCollector& rows) {
-    const double most = std::isfinite(rise) ? rise : fall;
-    if (!std::isfinite(most)) return;
-    constexpr double kFarAway = 1e3;
-    rows.add_linear({b.dq[0] / 2, b.dq[1] / 2, b.dq[2] / 2}, -std::min(fall, kFarAway * most),
-                    std::min(rise, kFarAway * most));
-  }
-
-  void joint_acceleration_rows(const Basis& b, const JointDerivatives& d, double tightening, RowCollector& rows) const {
-    for (std::size_t j = 0; j < p_.joint_count; ++j) {
-      if (std::abs(d.d1[j]) < 1e-12 && std::abs(d.d2[j]) < 1e-12) continue;
-      Weights w;
-      for (std::size_t i = 0; i < 3; ++i) w[i] = d.d2[j] * b.q[i] + 0.5 * d.d1[j] * b.dq[i];
-      const double most = p_.max_acceleration[j] * tightening;
-      rows.add_linear(w, -most, most);
-    }
-  }
-
-  void jerk_rows(const Basis& b, const JointDerivatives& d, double tightening, RowCollector& rows) const {
-    for (std::size_t j = 0; j < p_.joint_count; ++j) {
-      if (std::abs(d.d1[j]) < 1e-12 && std::abs(d.d2[j]) < 1e-12 && std::abs(d.d3[j]) < 1e-12) continue;
-      const double scale = 1 / (p_.max_jerk[j] * tightening);
-      Weights w;
-      for (std::size_t i = 0; i < 3; ++i)
-        w[i] = (d.d3[j] * b.q[i] + 1.5 * d.d2[j] * b.dq[i] + 0.5 * d.d1[j] * b.ddq[i]) * scale;
-      rows.add_jerk(w, b.q);
-    }
-  }
-
-  [[nodiscard]] double travel_time() const {
-    double t = 0;
-    for (std::size_t k = 0; k < p_.intervals(); ++k) t += p_.step(k) / std::sqrt(std::max(c_[k + 1], 1e-30));
-    return t;
-  }
-
-  /// Slacks that the rows have at the guess, or a least one, and duals that make all products `product`.
-  void begin(double product) {
-    for (Rows& rows : rows_) rows.above.slack = rows.below.slack = all_lanes(start_.slack);
+  /// Slacks that the rows have at the guess, or a least one, and duals that make all products alike.
+  void begin(double count) {
+    for (Rows& rows : rows_.all) rows.above.slack = rows.below.slack = all_lanes(start_.slack);
     refresh(0, 0);
-    for (Rows& rows : rows_) {
-      for (Rows::Side* side : {&rows.above, &rows.below}) side->dual = all_lanes(product) * side->inverse_slack;
+    const Lanes product = all_lanes(start_.gap * travel_time_ / count);
+    for (Rows& rows : rows_.all) {
+      for (Rows::Side* side : {&rows.above, &rows.below}) side->dual = product * side->inverse_slack;
     }
     refresh(0, 0);
   }
@@ -224,36 +117,44 @@ class Solver {
     const Lanes one = all_lanes(1), half = all_lanes(0.5);
     const Lanes primal = all_lanes(primal_step), dual = all_lanes(dual_step);
     Lanes infeasible{}, gap{};
+    double travel_time = 0;
     for (std::size_t k = 0; k < p_.intervals(); ++k) {
       const LaneTriple c = lanes_of(c_.data() + k);
+      const IntervalRows& interval = rows_.intervals[k];
       Share share;
-      for (std::size_t i = first_row_[k]; i < first_row_[k + 1]; ++i) {
-        Rows& rows = rows_[i];
-        const Lanes root = rows.linear ? one : square_root(larger(dot(rows.u, c), all_lanes(1e-30)));
-        const Lanes form = dot(rows.w, c);
-        const Lanes phi = form * root;
-        const Lanes bend = rows.linear ? Lanes{} : half * form / root;
-        for (std::size_t x = 0; x < 3; ++x) rows.gradient[x] = root * rows.w[x] + bend * rows.u[x];
-        const auto settle = [&](Rows::Side& side, Lanes excess) {
-          infeasible = larger(infeasible, excess);
-          // A side that turned out better than its slack takes it up at once: the linearisation never claims slack that
-          // is not there.
-          side.slack = larger(side.slack + primal * side.slack_step, -excess);
-          side.dual += dual * side.dual_step;
-          side.inverse_slack = one / side.slack;
-          side.residual = excess + side.slack;
-          gap += side.slack * side.dual;
-        };
+      const auto settle = [&](Rows::Side& side, Lanes excess) {
+        infeasible = larger(infeasible, excess);
+        // A side that turned out better than its slack takes it up at once: the linearisation never claims slack that
+        // is not there.
+        side.slack = larger(side.slack + primal * side.slack_step, -excess);
+        side.dual += dual * side.dual_step;
+        side.inverse_slack = one / side.slack;
+        side.residual = excess + side.slack;
+        gap += side.slack * side.dual;
+      };
+      const auto take = [&](Rows& rows, const LaneTriple& gradient, Lanes phi) {
         settle(rows.above, phi - one);
         settle(rows.below, rows.low - phi);
         const Lanes above = rows.above.dual * rows.above.inverse_slack;
         const Lanes below = rows.below.dual * rows.below.inverse_slack;
-        share.add(rows.gradient, above + below, above * rows.above.residual - below * rows.below.residual);
+        share.add(gradient, above + below, above * rows.above.residual - below * rows.below.residual);
+      };
+      for (std::size_t i = interval.linear; i < interval.jerk; ++i)
+        take(rows_.all[i], rows_.all[i].gradient, dot(rows_.all[i].gradient, c));
+      const Lanes root = square_root(larger(dot(interval.q, c), all_lanes(1e-30))), bending = half / root;
+      for (std::size_t i = interval.jerk; i < rows_.intervals[k + 1].linear; ++i) {
+        Rows& rows = rows_.all[i];
+        const Lanes form = dot(rows.w, c), bend = form * bending;
+        LaneTriple gradient;
+        for (std::size_t x = 0; x < 3; ++x) gradient[x] = root * rows.w[x] + bend * interval.q[x];
+        rows.gradient = gradient;
+        take(rows, gradient, form * root);
       }
-      const double middle = c_[k + 1];
-      const double force = 0.5 * p_.step(k) / (middle * std::sqrt(middle));
+      const double h = p_.step(k), middle = std::max(c_[k + 1], 1e-30), speed = std::sqrt(middle);
+      const double inverse = 1 / (middle * speed), force = 0.5 * h * inverse;
+      travel_time += h * middle * inverse;
       diagonal_[k] += sum(share.d0);
-      diagonal_[k + 1] += sum(share.d1) + 1.5 * force / middle;
+      diagonal_[k + 1] += sum(share.d1) + 1.5 * force * inverse * speed;
       diagonal_[k + 2] += sum(share.d2);
       off1_[k] += sum(share.near0);
       off1_[k + 1] += sum(share.near1);
@@ -263,6 +164,7 @@ class Solver {
     }
     infeasible_ = largest(infeasible);
     gap_ = sum(gap);
+    travel_time_ = travel_time;
   }
 
   /// LDLᵀ of the pentadiagonal matrix over the free coefficients, in place; the diagonal is left inverted.
@@ -303,77 +205,98 @@ class Solver {
     }
   }
 
-  /// What a side aims at for the product of its slack and dual: the centre, and what the predictor's steps would make
-  /// of it.
-  template <bool kSecondOrder>
-  [[nodiscard]] [[gnu::always_inline]] static Lanes product(const Rows::Side& side, Lanes centre) {
-    if constexpr (kSecondOrder) return centre - side.slack_step * side.dual_step;
-    return centre;
+  /// Predictor: aims at products of 0. How much of all slack and dual is left at the end of the longest step tells how
+  /// much to centre, and the product of both steps what curvature the corrector has to expect (Mehrotra).
+  double predicted_gap() {
+    // With x the step of a slack as a part of it, the dual's is -(1 + x) of the dual.
+    Lanes least = all_lanes(-1), most = all_lanes(0), first{}, second{};
+    for (std::size_t k = 0; k < p_.intervals(); ++k) {
+      const LaneTriple step = lanes_of(step_.data() + k);
+      for (std::size_t i = rows_.intervals[k].linear; i < rows_.intervals[k + 1].linear; ++i) {
+        Rows& rows = rows_.all[i];
+        const Lanes change = dot(rows.gradient, step);
+        const auto take = [&](Rows::Side& side, Lanes slack_step) {
+          const Lanes x = slack_step * side.inverse_slack;
+          const Lanes product_x = side.slack * side.dual * x, product_xx = product_x * x;
+          least = smaller(least, x);
+          most = larger(most, x);
+          first += product_x;
+          second += product_xx;
+          side.product = product_x + product_xx;
+        };
+        take(rows.above, -rows.above.residual - change);
+        take(rows.below, change - rows.below.residual);
+      }
+    }
+    const double x = sum(first), xx = sum(second);
+    const double primal = within_positive(-1 / smallest(least)), dual = 1 / (1 + largest(most));
+    return gap_ + primal * x - dual * (gap_ + x) - primal * dual * (x + xx);
   }
 
-  /// Adds to the right side what aiming at other products than 0 means.
+  /// Adds to the right side what aiming at the products `target` means, the predicted ones taken into account.
   void aim(double target) {
     const Lanes centre = all_lanes(target);
     for (std::size_t k = 0; k < p_.intervals(); ++k) {
       LaneTriple pull{};
-      for (std::size_t i = first_row_[k]; i < first_row_[k + 1]; ++i) {
-        const Rows& rows = rows_[i];
-        const Lanes weight = product<true>(rows.above, centre) * rows.above.inverse_slack -
-                             product<true>(rows.below, centre) * rows.below.inverse_slack;
+      for (std::size_t i = rows_.intervals[k].linear; i < rows_.intervals[k + 1].linear; ++i) {
+        const Rows& rows = rows_.all[i];
+        const Lanes weight = (centre + rows.above.product) * rows.above.inverse_slack -
+                             (centre + rows.below.product) * rows.below.inverse_slack;
         for (std::size_t x = 0; x < 3; ++x) pull[x] += weight * rows.gradient[x];
       }
       for (std::size_t x = 0; x < 3; ++x) rhs_[k + x] -= sum(pull[x]);
     }
   }
 
+  /// Takes a quotient where it is larger. Only then it is worth its division, which is seldom.
+  [[gnu::always_inline]] static void raise(Lanes& largest, Lanes numerator, Lanes denominator) {
+    const LaneMask more = numerator > largest * denominator;
+    if ((more[0] | more[1]) != 0) largest = larger(largest, numerator / denominator);
+  }
+
   struct Reach {
     double primal, dual;
-    double gap;  ///< what is left of it there
   };
-  /// The steps of slacks and duals that go with those of the coefficients, and how far they may go before one of them
-  /// falls to 1 - `fraction` of itself.
-  template <bool kSecondOrder>
-  Reach follow(double target, double fraction) {
+  /// Corrector: the steps of slacks and duals that go with those of the coefficients, and how far they may go before
+  /// one of them comes near its bound.
+  Reach correct(double target) {
     const Lanes centre = all_lanes(target);
-    Lanes slack_fall = all_lanes(fraction), dual_fall = slack_fall;  // largest part of itself that one would lose
-    Lanes by_slack{}, by_dual{}, by_both{};
+    Lanes slack_fall = all_lanes(kBoundaryFraction), dual_fall = slack_fall;  // largest part of itself that one loses
     for (std::size_t k = 0; k < p_.intervals(); ++k) {
       const LaneTriple step = lanes_of(step_.data() + k);
-      for (std::size_t i = first_row_[k]; i < first_row_[k + 1]; ++i) {
-        Rows& rows = rows_[i];
+      for (std::size_t i = rows_.intervals[k].linear; i < rows_.intervals[k + 1].linear; ++i) {
+        Rows& rows = rows_.all[i];
         const Lanes change = dot(rows.gradient, step);
         const auto take = [&](Rows::Side& side, Lanes slack_step) {
-          const Lanes aimed = product<kSecondOrder>(side, centre);
-          side.dual_step = (aimed - side.dual * slack_step) * side.inverse_slack - side.dual;
           side.slack_step = slack_step;
+          side.dual_step = (centre + side.product - side.dual * slack_step) * side.inverse_slack - side.dual;
           slack_fall = larger(slack_fall, -slack_step * side.inverse_slack);
-          dual_fall = larger(dual_fall, -side.dual_step / side.dual);
-          by_slack += slack_step * side.dual;
-          by_dual += side.slack * side.dual_step;
-          by_both += slack_step * side.dual_step;
+          raise(dual_fall, -side.dual_step, side.dual);
         };
         take(rows.above, -rows.above.residual - change);
-        take(rows.below, -rows.below.residual + change);
+        take(rows.below, change - rows.below.residual);
       }
     }
-    double primal = fraction / largest(slack_fall);
-    // q itself must stay positive whatever the slacks say, or the next linearisation has no meaning.
+    return {within_positive(kBoundaryFraction / largest(slack_fall)), kBoundaryFraction / largest(dual_fall)};
+  }
+
+  /// q itself must stay positive whatever the slacks say, or the next linearisation has no meaning.
+  [[nodiscard]] double within_positive(double primal) const {
     for (std::size_t j = first_free_; j < end_free_; ++j) {
       if (0.9 * c_[j] < -primal * step_[j]) primal = -0.9 * c_[j] / step_[j];
     }
-    const double dual = fraction / largest(dual_fall);
-    return {primal, dual, gap_ + primal * sum(by_slack) + dual * sum(by_dual) + primal * dual * sum(by_both)};
+    return primal;
   }
 
   const LawProblem& p_;
   std::size_t n_;
   std::size_t first_free_ = 0, end_free_ = 0;
-  std::vector<Rows> rows_;
-  std::vector<std::size_t> first_row_;  ///< of each interval, and behind the last
+  LawRows rows_;
   std::vector<double> c_, step_, diagonal_, off1_, off2_, rhs_;
   StartingPoint start_ = kFromProfile;
   double infeasible_ = 0;  ///< largest excess over a bound
   double gap_ = 0;         ///< sum of slack times dual
+  double travel_time_ = 0;
 };
 
 }  // namespace

@@ -1,0 +1,95 @@
+#include "time_law/law_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "time_law/law_spline.hpp"
+
+namespace rmac {
+namespace {
+
+/// Linear rows of one interval while they are collected, two beside each other.
+class RowCollector {
+ public:
+  explicit RowCollector(std::vector<Rows>& all) : all_(all) {}
+
+  /// low <= w·c <= high; a side that does not bind may be anything far away.
+  void add(const Weights& w, double low, double high) {
+    lane_ = (lane_ + 1) % kLanes;
+    if (lane_ == 0) {
+      // A lane that stays empty is a row of zeros, inside its bounds whatever the coefficients are.
+      all_.emplace_back();
+      all_.back().low = all_lanes(-1);
+    }
+    Rows& rows = all_.back();
+    for (std::size_t i = 0; i < 3; ++i) rows.gradient[i][lane_] = w[i] / high;
+    rows.low[lane_] = low / high;
+  }
+
+ private:
+  std::vector<Rows>& all_;
+  std::size_t lane_ = kLanes - 1;
+};
+
+void path_acceleration_row(const Basis& b, double rise, double fall, RowCollector& rows) {
+  const double most = std::isfinite(rise) ? rise : fall;
+  if (!std::isfinite(most)) return;
+  constexpr double kFarAway = 1e3;
+  rows.add({b.dq[0] / 2, b.dq[1] / 2, b.dq[2] / 2}, -std::min(fall, kFarAway * most), std::min(rise, kFarAway * most));
+}
+
+void joint_acceleration_rows(const LawProblem& p, const Basis& b, const JointDerivatives& d, double tightening,
+                             RowCollector& rows) {
+  for (std::size_t j = 0; j < p.joint_count; ++j) {
+    if (std::abs(d.d1[j]) < 1e-12 && std::abs(d.d2[j]) < 1e-12) continue;
+    Weights w;
+    for (std::size_t i = 0; i < 3; ++i) w[i] = d.d2[j] * b.q[i] + 0.5 * d.d1[j] * b.dq[i];
+    const double most = p.max_acceleration[j] * tightening;
+    rows.add(w, -most, most);
+  }
+}
+
+void jerk_rows(const LawProblem& p, std::size_t k, const Basis& left, const Basis& right, std::vector<Rows>& all) {
+  static_assert(kLanes == 2, "a lane for each end of the interval");
+  const JointDerivatives at_left = p.at(k, false), at_right = p.at(k, true);
+  const auto rests = [](const JointDerivatives& d, std::size_t j) {
+    return std::abs(d.d1[j]) < 1e-12 && std::abs(d.d2[j]) < 1e-12 && std::abs(d.d3[j]) < 1e-12;
+  };
+  for (std::size_t j = 0; j < p.joint_count; ++j) {
+    if (rests(at_left, j) && rests(at_right, j)) continue;
+    const double scale = 1 / (p.max_jerk[j] * p.tightening[k]);
+    const auto weight = [&](const Basis& b, const JointDerivatives& d, std::size_t i) {
+      return (d.d3[j] * b.q[i] + 1.5 * d.d2[j] * b.dq[i] + 0.5 * d.d1[j] * b.ddq[i]) * scale;
+    };
+    Rows& rows = all.emplace_back();
+    rows.low = all_lanes(-1);
+    for (std::size_t i = 0; i < 3; ++i) rows.w[i] = Lanes{weight(left, at_left, i), weight(right, at_right, i)};
+  }
+}
+
+}  // namespace
+
+LawRows::LawRows(const LawProblem& p) {
+  const std::size_t n = p.intervals();
+  all.reserve(n * ((p.joint_count + 2) / kLanes + 1 + p.joint_count));
+  intervals.resize(n + 1);
+  for (std::size_t k = 0; k < n; ++k) {
+    intervals[k].linear = all.size();
+    RowCollector rows(all);
+    // Nothing bounds the coefficients from below: the travel time does, which goes to infinity there.
+    if (k > 0 && k + 1 < n) rows.add({0, 1, 0}, -p.speed_cap[k], p.speed_cap[k]);
+    const Basis left = basis(p, k, false), right = basis(p, k, true);
+    if (k > 0) {
+      const double cap = std::min(p.speed_cap[k], p.speed_cap[k - 1]);
+      if (p.speed_cap[k] != p.speed_cap[k - 1]) rows.add(left.q, -cap, cap);
+      path_acceleration_row(left, std::min(p.rise[k], p.rise[k - 1]), std::min(p.fall[k], p.fall[k - 1]), rows);
+      joint_acceleration_rows(p, left, p.at(k, false), std::min(p.tightening[k], p.tightening[k - 1]), rows);
+    }
+    intervals[k].jerk = all.size();
+    for (std::size_t i = 0; i < 3; ++i) intervals[k].q[i] = Lanes{left.q[i], right.q[i]};
+    jerk_rows(p, k, left, right, all);
+  }
+  intervals[n].linear = all.size();
+}
+
+}  // namespace rmac

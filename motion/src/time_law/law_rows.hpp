@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "lanes.hpp"
+#include "time_law/law_problem.hpp"
+
+namespace rmac {
+
+/// low <= phi(c) <= 1 on the three coefficients of one interval, two such rows at once, with slack and dual variable
+/// of both sides. Most of the time of a plan is spent going through these, so what belongs together lies together, both
+/// sides share one gradient, and rows of an interval share the coefficients that they touch.
+/// phi is gradient·c, or for jerk (w·c)·√q, eq. 10, with q at the interval's ends: a joint's jerk at the left and
+/// right.
+struct Rows {
+  LaneTriple w{}, gradient{};
+  Lanes low{};
+  struct Side {
+    Lanes slack{}, inverse_slack{}, dual{}, residual{}, slack_step{};
+    union {
+      Lanes dual_step{};
+      Lanes product;  ///< of slack and dual, what is to be added for the predictor's steps
+    };
+  };
+  Side above, below;
+};
+
+/// Where an interval's rows lie among all: the linear ones, then those of jerk, up to the next interval's; and its q at
+/// both ends as weights of the coefficients.
+struct IntervalRows {
+  std::size_t linear = 0, jerk = 0;
+  LaneTriple q{};
+};
+
+/// What bounds a law: everything that `LawProblem` says, but for the end states, which fix two coefficients each.
+struct LawRows {
+  std::vector<Rows> all;
+  std::vector<IntervalRows> intervals;  ///< and one behind the last
+
+  explicit LawRows(const LawProblem& problem);
+};
+
+}  // namespace rmac
