@@ -53,10 +53,12 @@ void BSpline::make_derivatives() {
 void BSpline::make_powers() {
   const std::size_t row = (width_ + kLanes - 1) / kLanes * kLanes;
   powers_.assign(spans_.size() * (degree_ + 1) * row, 0.0);
+  power_rates_.reserve(spans_.size());
   std::array<Homogeneous, kPowerDegree + 1> derivatives;
   double* out = powers_.data();
   for (std::size_t span = 0; span < spans_.size(); ++span) {
     const double half = span_width(span) / 2;
+    power_rates_.push_back(1 / half);
     basis_sums(span, half, {derivatives.data(), degree_ + 1});
     double factor = 1;
     for (std::size_t k = 0; k <= degree_; ++k, out += row, factor *= half / static_cast<double>(k)) {
@@ -128,12 +130,12 @@ void BSpline::power_sums(std::size_t span, double t, std::array<Row, 4>& sums) c
   static constexpr std::array<double, 4> kFactorial{1, 1, 2, 6};
   const std::size_t row = (width_ + kLanes - 1) / kLanes * kLanes;
   const double* const coefficients = powers_.data() + span * (degree_ + 1) * row;
-  const double rate = 2 / span_width(span);
+  const double rate = power_rates_[span];
   const double u = rate * t - 1;
   for (std::size_t c = 0; c < row; c += kLanes) {
     // Horner's scheme; the rows above the first carry the derivatives, divided by their factorials.
-    std::array<Lanes, kOrder + 1> d{};
-    for (std::size_t i = degree_ + 1; i-- > 0;) {
+    std::array<Lanes, kOrder + 1> d{load(coefficients + degree_ * row + c)};
+    for (std::size_t i = degree_; i-- > 0;) {
       const Lanes next = load(coefficients + i * row + c);
       for (std::size_t k = kOrder; k > 0; --k) d[k] = d[k] * u + d[k - 1];
       d[0] = d[0] * u + next;
@@ -172,6 +174,23 @@ void BSpline::evaluate(std::size_t span, double t, int order, CurvePoint& point)
     }
   }
   for (std::size_t c = 0; c < dimension_; ++c) point.d[0][c] += origin_[c];
+}
+
+void BSpline::differentiate(std::size_t span, double t, CurvePoint& point) const noexcept {
+  if (powers_.empty() || rational_) {
+    evaluate(span, t, 1, point);
+    return;
+  }
+  const std::size_t row = (width_ + kLanes - 1) / kLanes * kLanes;
+  const double* const coefficients = powers_.data() + span * (degree_ + 1) * row;
+  const double rate = power_rates_[span];
+  const double u = rate * t - 1;
+  for (std::size_t c = 0; c < row; c += kLanes) {
+    Lanes d{};
+    double power = static_cast<double>(degree_);
+    for (std::size_t i = degree_; i > 0; --i, --power) d = d * u + power * load(coefficients + i * row + c);
+    store(d * rate, point.d[1].data() + c);
+  }
 }
 
 }  // namespace rmac::curves

@@ -44,6 +44,8 @@ class BSpline {
                                                   std::size_t last) const;
 
   void evaluate(std::size_t span, double t, int order, CurvePoint& point) const noexcept;
+  /// The first derivative alone, d[1].
+  void differentiate(std::size_t span, double t, CurvePoint& point) const noexcept;
 
  private:
   /// Above this degree powers of the parameter lose digits that the basis functions keep.
@@ -69,6 +71,7 @@ class BSpline {
   std::array<double, kMaxJoints> origin_{};  ///< subtracted from all points: weights far from it would lose digits
   std::vector<std::vector<double>> points_;  ///< control points of the curve and its derivatives
   std::vector<double> powers_;               ///< degree + 1 rows of whole lanes a span; empty for higher degrees
+  std::vector<double> power_rates_;          ///< of a span: du/dt of the powers' u
 };
 
 }  // namespace rmac::curves

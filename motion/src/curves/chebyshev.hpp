@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <span>
 
 namespace rmac::curves {
 
@@ -18,6 +19,11 @@ class Chebyshev {
       for (std::size_t k = 0; k <= N; ++k) {
         cosine_[j][k] = std::cos(std::numbers::pi * static_cast<double>(j * k % (2 * N)) / static_cast<double>(N));
       }
+    }
+    polynomial_[0][0] = polynomial_[1][1] = 1;
+    for (std::size_t k = 2; k <= N; ++k) {
+      for (std::size_t i = 0; i <= N; ++i)
+        polynomial_[k][i] = (i > 0 ? 2 * polynomial_[k - 1][i - 1] : 0) - polynomial_[k - 2][i];
     }
   }
 
@@ -36,21 +42,47 @@ class Chebyshev {
     return result;
   }
 
+  /// The same polynomial's coefficients of x^k. Good where Chebyshev's fall off quickly: those of a high power then are
+  /// small, however many of them make it up.
+  [[nodiscard]] Values powers(const Values& coefficients) const noexcept {
+    Values result{};
+    for (std::size_t k = 0; k <= N; ++k) {
+      for (std::size_t i = 0; i <= N; ++i) result[i] += coefficients[k] * polynomial_[k][i];
+    }
+    return result;
+  }
+
  private:
   std::array<Values, N + 1> cosine_{};
+  std::array<Values, N + 1> polynomial_{};  ///< Chebyshev's k-th, by powers
 };
 
-/// Clenshaw's sum of Chebyshev coefficients at x.
+/// Clenshaw's sums of Chebyshev coefficients at several places: one alone would have to wait for each of its terms.
 template <std::size_t M>
-[[nodiscard]] inline double chebyshev_sum(const std::array<double, M>& coefficients, double x) noexcept {
-  double above = 0;
-  double here = 0;
-  for (std::size_t k = M - 1; k > 0; --k) {
-    const double next = coefficients[k] + (2 * x * here - above);
-    above = here;
-    here = next;
+[[nodiscard]] inline std::array<double, M> chebyshev_sums(std::span<const double> coefficients,
+                                                          const std::array<double, M>& x) noexcept {
+  std::array<double, M> above{}, here{};
+  for (std::size_t k = coefficients.size() - 1; k > 0; --k) {
+    for (std::size_t i = 0; i < M; ++i) {
+      const double next = coefficients[k] + (2 * x[i] * here[i] - above[i]);
+      above[i] = here[i];
+      here[i] = next;
+    }
   }
-  return coefficients[0] + (x * here - above);
+  for (std::size_t i = 0; i < M; ++i) here[i] = coefficients[0] + (x[i] * here[i] - above[i]);
+  return here;
+}
+
+/// Sum of coefficients of x^k, as many even as odd ones, which need not wait for each other.
+template <std::size_t M>
+[[nodiscard]] inline double power_sum(const std::array<double, M>& coefficients, double x) noexcept {
+  static_assert(M % 2 == 0);
+  double even = coefficients[M - 2], odd = coefficients[M - 1];
+  for (std::size_t k = M - 2; k > 0; k -= 2) {
+    even = even * (x * x) + coefficients[k - 2];
+    odd = odd * (x * x) + coefficients[k - 1];
+  }
+  return even + x * odd;
 }
 
 }  // namespace rmac::curves

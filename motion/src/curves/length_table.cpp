@@ -12,34 +12,50 @@ constexpr std::size_t kSpeedDegree = 16;
 constexpr int kMaxHalvings = 44;
 /// Relative to the piece: what is left out of the speed's series, and how far t(s) may miss s.
 constexpr double kSeriesTail = 2e-13;
-constexpr double kInverseError = 2e-12;
+constexpr double kInverseError = 1e-12;
+
+/// Coefficients of the speed below this part of the first are nothing.
+constexpr double kNegligible = 1e-14;
 
 /// Arc length along one piece, as a polynomial of x in [-1, 1] (eq. 8 of the derivation).
 struct PieceLength {
   std::array<double, kSpeedDegree + 1> speed{};
   std::array<double, kSpeedDegree + 2> integral{};
+  std::size_t terms = 0;  ///< of the speed
 
-  [[nodiscard]] double at(double x) const noexcept { return chebyshev_sum(integral, x); }
-  [[nodiscard]] double total() const noexcept { return at(1); }
+  template <std::size_t N>
+  [[nodiscard]] std::array<double, N> at(const std::array<double, N>& x) const noexcept {
+    return chebyshev_sums<N>({integral.data(), terms + 1}, x);
+  }
 
-  void integrate() noexcept {
-    const auto coefficient = [this](std::size_t k) { return k < speed.size() ? speed[k] : 0.0; };
-    for (std::size_t k = 1; k < integral.size(); ++k) {
+  /// From the speed; the total.
+  double integrate() noexcept {
+    terms = speed.size();
+    while (terms > 1 && std::abs(speed[terms - 1]) < kNegligible * speed[0]) --terms;
+    const auto coefficient = [this](std::size_t k) { return k < terms ? speed[k] : 0.0; };
+    for (std::size_t k = 1; k <= terms; ++k) {
       const double before = k == 1 ? 2 * coefficient(0) : coefficient(k - 1);
       integral[k] = (before - coefficient(k + 1)) / (2 * static_cast<double>(k));
     }
-    integral[0] = 0;
-    integral[0] = -at(-1);
+    const auto [begin, end] = at(std::array{-1.0, 1.0});
+    integral[0] = -begin;
+    return end - begin;
   }
 
-  /// x where the length is `target`; Newton from `guess`, monotone because the speed is positive.
-  [[nodiscard]] std::optional<double> inverse(double target, double guess) const noexcept {
-    double x = guess;
+  /// Each x where the length is one of `targets`; Newton from a guess, monotone because the speed is positive.
+  template <std::size_t N>
+  [[nodiscard]] std::optional<std::array<double, N>> inverse(const std::array<double, N>& targets,
+                                                             std::array<double, N> x) const noexcept {
     for (int i = 0; i < 30; ++i) {
-      const double step = (target - at(x)) / chebyshev_sum(speed, x);
-      x = std::clamp(x + step, -1.0, 1.0);
+      const auto lengths = at(x), rates = chebyshev_sums<N>({speed.data(), terms}, x);
       // Convergence is quadratic: the step after one this small would be lost in rounding.
-      if (std::abs(step) < 1e-9) return x;
+      bool converged = true;
+      for (std::size_t j = 0; j < N; ++j) {
+        const double step = (targets[j] - lengths[j]) / rates[j];
+        x[j] = std::clamp(x[j] + step, -1.0, 1.0);
+        converged = converged && std::abs(step) < 1e-9;
+      }
+      if (converged) return x;
     }
     return std::nullopt;
   }
@@ -86,25 +102,30 @@ std::optional<LengthTable::Flaw> LengthTable::add(const Span& span, double from,
   const double tail = std::max({std::abs(piece.speed[kSpeedDegree]), std::abs(piece.speed[kSpeedDegree - 1]),
                                 std::abs(piece.speed[kSpeedDegree - 2])});
   if (tail > kSeriesTail * piece.speed[0] + span.noise) return split();
-  piece.integrate();
-
-  const double total = piece.total();
-  std::array<double, kDegree + 1> t;
-  for (std::size_t j = 0; j <= kDegree; ++j) {
-    const auto x = piece.inverse(total * (1 + kNodes.node(j)) / 2, kNodes.node(j));
-    if (!x) return split();
-    t[j] = middle + half * *x;
+  const double total = piece.integrate();
+  std::array<double, kDegree - 1> inside, targets;
+  for (std::size_t j = 0; j < inside.size(); ++j) {
+    inside[j] = kNodes.node(j + 1);
+    targets[j] = total * (1 + inside[j]) / 2;
   }
+  const auto x = piece.inverse(targets, inside);
+  if (!x) return split();
+  std::array<double, kDegree + 1> t;
   t.front() = to;
+  for (std::size_t j = 0; j < inside.size(); ++j) t[j + 1] = middle + half * (*x)[j];
   t.back() = from;
-  const auto inverse = kNodes.coefficients(t);
+  const auto inverse = kNodes.powers(kNodes.coefficients(t));
   // Rounding of t alone moves x by eps t / half: no reason to halve again.
   const double allowed =
       kInverseError * total + 4 * std::numeric_limits<double>::epsilon() * to / half * piece.speed[0];
+  std::array<double, kDegree> between, reached;
   for (std::size_t j = 0; j < kDegree; ++j) {
-    const double y = (kNodes.node(j) + kNodes.node(j + 1)) / 2;
-    const double x = (chebyshev_sum(inverse, y) - middle) / half;
-    if (!(std::abs(piece.at(x) - total * (1 + y) / 2) <= allowed)) return split();
+    between[j] = (kNodes.node(j) + kNodes.node(j + 1)) / 2;
+    reached[j] = (power_sum(inverse, between[j]) - middle) / half;
+  }
+  const auto lengths = piece.at(reached);
+  for (std::size_t j = 0; j < kDegree; ++j) {
+    if (!(std::abs(lengths[j] - total * (1 + between[j]) / 2) <= allowed)) return split();
   }
 
   const double length = total * half;
@@ -121,7 +142,7 @@ LengthTable::Place LengthTable::locate(double s, int side) const noexcept {
   const auto next = std::upper_bound(starts_.begin() + 1, starts_.end(), side < 0 ? s - 2 * rounding : s + rounding);
   const Piece& piece = pieces_[static_cast<std::size_t>(next - starts_.begin()) - 1];
   const double y = std::clamp((s - piece.middle_s) * piece.inverse_half, -1.0, 1.0);
-  return {piece.span, std::clamp(chebyshev_sum(piece.t, y), 0.0, piece.width)};
+  return {piece.span, std::clamp(power_sum(piece.t, y), 0.0, piece.width)};
 }
 
 }  // namespace rmac::curves

@@ -36,12 +36,12 @@ class LengthTable {
   [[nodiscard]] Place locate(double s, int side) const noexcept;
 
  private:
-  static constexpr std::size_t kDegree = 7;
+  static constexpr std::size_t kDegree = 9;
   struct Piece {
     double middle_s;
-    double inverse_half;  ///< 1 / half of the piece's length
-    double width;         ///< of the span
-    std::array<double, kDegree + 1> t;
+    double inverse_half;                ///< 1 / half of the piece's length
+    double width;                       ///< of the span
+    std::array<double, kDegree + 1> t;  ///< by powers of the place on the piece, from -1 to 1
     std::uint32_t span;
   };
   struct Span;

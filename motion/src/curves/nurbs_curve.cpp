@@ -127,11 +127,7 @@ tl::expected<CurvePtr, LengthTable::Flaw> NurbsCurve::make(std::shared_ptr<const
   std::unique_ptr<NurbsCurve> result(new NurbsCurve(std::move(curve)));
   const SpaceCurve& space = *result->curve_;
   const BSpline& spline = space.spline();
-  const auto speed = [&](std::size_t span, double t) {
-    CurvePoint point;
-    space.evaluate(span, t, 1, point);
-    return space.speed(point);
-  };
+  const auto speed = [&](std::size_t span, double t) { return space.speed(span, t); };
   std::vector<double> knots{0};
   for (std::size_t span = first; span < last; ++span) {
     if (span > first && spline.degree() < spline.multiplicity(span) + 3) {

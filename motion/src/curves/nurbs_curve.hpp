@@ -25,7 +25,7 @@ class SpaceCurve {
   /// Derivatives by parameter. Real-time safe.
   void evaluate(std::size_t span, double t, int order, CurvePoint& point) const noexcept;
   /// Length of the first derivative, in the unit of s. Real-time safe.
-  [[nodiscard]] double speed(const CurvePoint& point) const noexcept;
+  [[nodiscard]] double speed(std::size_t span, double t) const noexcept;
   /// Turns derivatives by parameter into derivatives by arc length (docs/derivations/curves.md, eq. 1). Real-time safe.
   void to_arc_length(int order, CurvePoint& point) const noexcept;
   /// Unit tangent (and rate of the axis) at a place.
@@ -39,6 +39,7 @@ class SpaceCurve {
   [[nodiscard]] std::optional<LengthTable::Place> vanishing_axis() const;
 
  private:
+  [[nodiscard]] double speed(const CurvePoint& point) const noexcept;
   [[nodiscard]] double product(const CurvePoint& point, std::size_t a, std::size_t b) const noexcept;
   [[nodiscard]] bool axis_vanishes(std::size_t span, double from, double to, int depth,
                                    LengthTable::Place& place) const;

@@ -61,12 +61,22 @@ void SpaceCurve::evaluate(std::size_t span, double t, int order, CurvePoint& poi
   }
 }
 
-double SpaceCurve::product(const CurvePoint& point, std::size_t a, std::size_t b) const noexcept {
+inline double SpaceCurve::product(const CurvePoint& point, std::size_t a, std::size_t b) const noexcept {
   return curves::product(point, a, b, first_, last_) * unit_ * unit_;
 }
 
-double SpaceCurve::speed(const CurvePoint& point) const noexcept {
+inline double SpaceCurve::speed(const CurvePoint& point) const noexcept {
   return std::sqrt(product(point, 1, 1));
+}
+
+double SpaceCurve::speed(std::size_t span, double t) const noexcept {
+  CurvePoint point;
+  if (space_ == NurbsSpace::Pose && first_ == 3) {
+    evaluate(span, t, 1, point);  // the axis is normalised first
+  } else {
+    spline_.differentiate(span, t, point);
+  }
+  return speed(point);
 }
 
 void SpaceCurve::to_arc_length(int order, CurvePoint& point) const noexcept {
@@ -84,7 +94,9 @@ void SpaceCurve::to_arc_length(int order, CurvePoint& point) const noexcept {
       t3 = (3 * v1 * v1 * inverse - v2) * square * square;
     }
   }
-  for (std::size_t c = 0; c < dimension(); ++c) {
+  // An axis that is held stays as it is.
+  const std::size_t moving = space_ == NurbsSpace::Tip ? 3 : dimension();
+  for (std::size_t c = 0; c < moving; ++c) {
     auto& d = point.d;
     if (order >= 3) d[3][c] = d[3][c] * t1 * t1 * t1 + 3 * d[2][c] * t1 * t2 + d[1][c] * t3;
     if (order >= 2) d[2][c] = d[2][c] * t1 * t1 + d[1][c] * t2;

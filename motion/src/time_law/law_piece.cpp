@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 
 #include "rmac/motion/time_law.hpp"
@@ -10,17 +11,23 @@ struct Stumpff {
   double c, s, d;
 };
 
+constexpr std::size_t kTerms = 7;
+constexpr auto kInverseFactorial = [] {
+  std::array<double, 2 * kTerms + 1> inverse{};
+  double factorial = 1;
+  for (std::size_t k = 1; k < inverse.size(); ++k) inverse[k] = 1 / (factorial *= static_cast<double>(k));
+  return inverse;
+}();
+
 Stumpff stumpff(double x) noexcept {
   if (std::abs(x) < 0.1) {
     // Taylor series; the first term left out is below 1e-17 of the sum here.
-    double c = 1, s = 1, d = 0.5, c_term = 1, s_term = 1, d_term = 0.5;
-    for (int k = 1; k <= 7; ++k) {
-      c_term *= x / ((2.0 * k - 1) * (2.0 * k));
-      s_term *= x / ((2.0 * k) * (2.0 * k + 1));
-      d_term *= x / ((2.0 * k + 1) * (2.0 * k + 2));
-      c += c_term, s += s_term, d += d_term;
+    double s = kInverseFactorial[2 * kTerms - 1], d = kInverseFactorial[2 * kTerms];
+    for (std::size_t k = kTerms - 1; k > 0; --k) {
+      s = s * x + kInverseFactorial[2 * k - 1];
+      d = d * x + kInverseFactorial[2 * k];
     }
-    return {c, s, d};
+    return {1 + x * d, s, d};
   }
   if (x > 0) {
     const double w = std::sqrt(x);
