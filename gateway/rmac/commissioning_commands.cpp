@@ -128,7 +128,8 @@ Json pose(double x, double y, double z, const std::vector<double>& axis) {
   return {{"p", {x, y, z}}, {"axis", axis}};
 }
 
-/// A quarter to get to speed, the turn that counts, and a quarter to stop.
+/// To where the tool stands, as nearly as an axis rests; then a quarter to get to speed, the turn that counts, and a
+/// quarter to stop.
 Result<> go_round(Connection& connection, const FollowingRequest& request, std::int64_t turn,
                   const std::string& fault) {
   const auto now = ask(connection, "RMAC_CAM.GetState");
@@ -149,20 +150,34 @@ Result<> go_round(Connection& connection, const FollowingRequest& request, std::
                 {"EndPoint", to}});
   };
   const Json below = pose(x, y - r, z, axis), right = pose(x + r, y, z, axis), above = pose(x, y + r, z, axis);
-  auto queued = ask(connection, "RMAC_CAM.SetFeedrate", {{"Feedrate", request.feed_mm_min}})
-                    .and_then([&](const Json&) {
-                      return ask(connection, "RMAC_CAM.SetPathTolerance", {{"Tolerance", 0}});
-                    })
-                    .and_then([&](const Json&) { return arc(turn - 1, false, below, right); })
-                    .and_then([&](const Json&) { return arc(turn, true, right, right); })
-                    .and_then([&](const Json&) { return arc(turn + 1, false, right, above); })
-                    .and_then([&](const Json&) {
-                      return ask(connection, "RMAC_CAM.CycleStart", {{"Mode", "AUTOMATIC"}});
-                    });
+  auto queued =
+      ask(connection, "RMAC_CAM.SetFeedrate", {{"Feedrate", request.feed_mm_min}})
+          .and_then([&](const Json&) {
+            return ask(connection, "RMAC_CAM.MoveToPathTarget", {{"MoveID", turn - 2}, {"TargetFrame", below}});
+          })
+          .and_then([&](const Json&) { return arc(turn - 1, false, below, right); })
+          .and_then([&](const Json&) { return arc(turn, true, right, right); })
+          .and_then([&](const Json&) { return arc(turn + 1, false, right, above); })
+          .and_then([&](const Json&) {
+            return ask(connection, "RMAC_CAM.CycleStart", {{"Mode", "AUTOMATIC"}});
+          });
   if (!queued) return tl::unexpected(queued.error());
   const auto rest = wait_for_rest(connection, fault);
   if (!rest) return tl::unexpected(rest.error());
   return ask(connection, "RMAC_CAM.CycleStop", {{"Mode", "AUTOMATIC"}}).map([](const Json&) {});
+}
+
+/// The same, exactly on the circle; the path tolerance is put back.
+Result<> go_round_exactly(Connection& connection, const FollowingRequest& request, std::int64_t turn,
+                          const std::string& fault) {
+  const auto tolerance = ask(connection, "RMAC_CAM.GetPathTolerance");
+  if (!tolerance) return tl::unexpected(tolerance.error());
+  const auto set = [&](const Json& value) {
+    return ask(connection, "RMAC_CAM.SetPathTolerance", {{"Tolerance", value}}).map([](const Json&) {});
+  };
+  const auto done = set(0).and_then([&] { return go_round(connection, request, turn, fault); });
+  const auto restored = set(*tolerance);
+  return done && !restored ? restored : done;
 }
 
 }  // namespace
@@ -170,6 +185,11 @@ Result<> go_round(Connection& connection, const FollowingRequest& request, std::
 Result<> tune(Connection& connection, const TuneRequest& request, bool json) {
   const TemporaryFile record;
   const std::string picture = request.picture.empty() ? fmt::format("tune-{}.png", request.joint) : request.picture;
+  if (auto fine = check_picture(picture); !fine) return fine;  // before anything moves
+  if (!std::isfinite(request.travel) || request.travel == 0) {
+    return fail(fmt::format("--travel {}: give the way that the joint may go, in mm or degrees, negative the other way",
+                            request.travel));
+  }
   return commission(connection, [&](const std::string& fault) -> Result<> {
     const auto state = ask(connection, "RMAC_CAM.GetState").map(read_state);
     if (!state) return tl::unexpected(state.error());
@@ -178,11 +198,17 @@ Result<> tune(Connection& connection, const TuneRequest& request, bool json) {
     if (request.joint >= static_cast<int>(state->joints.size())) {
       return fail(fmt::format("there is no joint {}; the machine has {}", request.joint, state->joints.size()));
     }
+    const auto law = ask(connection, "Device.Machine_GetMechanismJntServoControlLaw", {{"JntNum", request.joint}});
+    if (!law) return tl::unexpected(law.error());
+    if (law->get<std::string>().empty()) {
+      return fail(
+          fmt::format("joint {}: its drive closes the loop itself; tune it with its maker's tool", request.joint));
+    }
     if (auto moved = excite(connection, request, fault); !moved) return moved;
     if (auto kept = keep_record(connection, record); !kept) return kept;
-    const auto found =
-        helper_answer("tune.py", {record.path(), std::to_string(request.joint), fmt::format("{}", request.bandwidth_hz),
-                                  fmt::format("{}", request.phase_margin_deg), picture});
+    const auto found = helper_answer(
+        "tune.py", {record.path(), std::to_string(request.joint), fmt::format("{}", state->t_s),
+                    fmt::format("{}", request.bandwidth_hz), fmt::format("{}", request.phase_margin_deg), picture});
     if (!found) return tl::unexpected(found.error());
     if (json) {
       fmt::print("{}\n", found->dump());
@@ -190,15 +216,17 @@ Result<> tune(Connection& connection, const TuneRequest& request, bool json) {
       print_tuning(*found, picture);
     }
     if (request.apply) return apply_gains(connection, request, *found);
-    if (!json) fmt::print("nothing was changed; --apply puts these gains in force, device.json keeps them\n");
+    if (!json)
+      fmt::print("nothing was changed; --apply puts these gains in force; to keep them, write them into device.json\n");
     return {};
   });
 }
 
 Result<> measure_following(Connection& connection, const FollowingRequest& request, bool json) {
-  constexpr std::int64_t kTurn = 2;
+  constexpr std::int64_t kTurn = 3;
   const TemporaryFile record;
   const std::string picture = request.picture.empty() ? "following.png" : request.picture;
+  if (auto fine = check_picture(picture); !fine) return fine;
   return commission(connection, [&](const std::string& fault) -> Result<> {
     FollowingRequest asked = request;
     if (asked.feed_mm_min == 0) {
@@ -206,10 +234,13 @@ Result<> measure_following(Connection& connection, const FollowingRequest& reque
       if (!most) return tl::unexpected(most.error());
       asked.feed_mm_min = most->get<double>();
     }
-    if (auto moved = go_round(connection, asked, kTurn, fault); !moved) return moved;
+    const auto before = ask(connection, "RMAC_CAM.GetState").map(read_state);
+    if (!before) return tl::unexpected(before.error());
+    if (auto moved = go_round_exactly(connection, asked, kTurn, fault); !moved) return moved;
     if (auto kept = keep_record(connection, record); !kept) return kept;
-    const auto found = helper_answer(
-        "measure_following.py", {record.path(), std::to_string(kTurn), fmt::format("{}", asked.radius_mm), picture});
+    const auto found =
+        helper_answer("measure_following.py", {record.path(), std::to_string(kTurn), fmt::format("{}", before->t_s),
+                                               fmt::format("{}", asked.radius_mm), picture});
     if (!found) return tl::unexpected(found.error());
     if (json) {
       fmt::print("{}\n", found->dump());

@@ -26,6 +26,12 @@ std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/// Of what a program complained of, the line that says what: a traceback's last one.
+std::string last_line(std::string text) {
+  text.erase(text.find_last_not_of(" \n") + 1);
+  return text.substr(text.rfind('\n') + 1);
+}
+
 }  // namespace
 
 TemporaryFile::TemporaryFile() : path_((std::filesystem::temp_directory_path() / "rmac-XXXXXX").string()) {
@@ -60,7 +66,20 @@ Result<std::string> run_helper(const std::string& program, const std::vector<std
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return text_of(output.path());
-  return fail(fmt::format("{}: {}", program, text_of(complaint.path())));
+  return fail(fmt::format("{}: {}", program, last_line(text_of(complaint.path()))));
+}
+
+Result<> check_picture(const std::string& file) {
+  const std::filesystem::path path(file);
+  const std::string kind = path.extension();
+  if (kind != ".png" && kind != ".svg" && kind != ".pdf") {
+    return fail(fmt::format("{}: a picture's name ends in .png, .svg or .pdf", file));
+  }
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (std::filesystem::is_directory(path) || ::access(folder.c_str(), W_OK) != 0) {
+    return fail(fmt::format("{}: cannot be written; choose another place with --output", file));
+  }
+  return {};
 }
 
 }  // namespace rmac::cli

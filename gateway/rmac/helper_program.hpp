@@ -20,7 +20,10 @@ class TemporaryFile {
   std::string path_;
 };
 
-/// Runs one of our Python programs: what it prints. A failure holds what it said on standard error.
+/// Runs one of our Python programs: what it prints. A failure holds the last line that it said on standard error.
 [[nodiscard]] Result<std::string> run_helper(const std::string& program, const std::vector<std::string>& arguments);
+
+/// Refuses a picture that could not be drawn, before anything is done for it.
+[[nodiscard]] Result<> check_picture(const std::string& file);
 
 }  // namespace rmac::cli

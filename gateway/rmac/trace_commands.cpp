@@ -71,11 +71,12 @@ Result<> export_record(Connection& connection, const std::string& name, const st
 Result<> plot_record(Connection& connection, const std::string& name, const std::string& file) {
   const auto chosen = name_or_newest(connection, name);
   if (!chosen) return tl::unexpected(chosen.error());
+  const std::string target = file.empty() ? *chosen + ".png" : file;
+  if (auto fine = check_picture(target); !fine) return fine;
   const auto text = fetch_flight_record(connection, *chosen);
   if (!text) return tl::unexpected(text.error());
   const TemporaryFile record;
   if (auto written = write_file(record.path(), *text); !written) return written;
-  const std::string target = file.empty() ? *chosen + ".png" : file;
   const auto drawn = run_helper("plot_flight_record.py", {record.path(), target});
   if (!drawn) return tl::unexpected(drawn.error());
   fmt::print("{}\n", target);

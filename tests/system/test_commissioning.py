@@ -1,5 +1,6 @@
 """rmac tune and rmac measure-following: what they find, and that they change nothing unless told to."""
 
+import csv
 import json
 import os
 import pathlib
@@ -67,10 +68,41 @@ class Identification(unittest.TestCase):
                 self.assertLess(error.max(), 0.1)
                 self.assertLess(error[-20:].max(), 0.005)
 
+    def test_bode_plot_shows_the_phase_margin_where_the_loop_crosses_one(self):
+        """And phases from -360 to 0 where it begins: a plot of -400 to 0 degrees has to show them."""
+        frequency = np.geomspace(1, 500, 2000)
+        for seed in range(1, 41):
+            joint = Joint.of(seed)
+            plant = servo_model.Plant(joint.mass, joint.viscous, joint.friction, joint.load, joint.delay_s)
+            gains = servo_model.gains_for(plant, 0.8 * servo_model.largest_bandwidth_hz(plant, MARGIN), MARGIN)
+            with self.subTest(seed=seed, joint=joint):
+                magnitude, phase = servo_model.bode(plant, gains, frequency)
+                crossover, margin, _ = servo_model.margins(plant, gains)
+                self.assertAlmostEqual(np.interp(crossover, frequency, magnitude), 1, delta=0.01)
+                self.assertAlmostEqual(np.interp(crossover, frequency, phase), margin - 180, delta=0.1)
+                self.assertTrue(-360 < phase[0] <= 0, phase[0])
+                self.assertLess(phase.max(), 0)
+
+    def test_gains_are_such_as_laws_take(self):
+        """None below 0, even where viscous friction alone leaves more phase than was asked for."""
+        chance = random.Random(5)
+        for _ in range(300):
+            plant = servo_model.Plant(10 ** chance.uniform(-3, 0), 10 ** chance.uniform(-3, 1), 10, 0, 0.0017)
+            margin = chance.uniform(10, 70)
+            bandwidth = chance.uniform(0.01, 1) * servo_model.largest_bandwidth_hz(plant, margin)
+            with self.subTest(plant=plant, margin=margin, bandwidth=bandwidth):
+                try:
+                    gains = servo_model.gains_for(plant, bandwidth, margin)
+                except ValueError:
+                    continue
+                self.assertTrue(gains[0] > 0 and min(gains) >= 0, gains)
+
     def test_refuses_what_cannot_be(self):
         plant = servo_model.Plant(0.02, 0.01, 10, 0, 0.0017)
-        with self.assertRaisesRegex(ValueError, "out of reach for a delay of 1.70 ms; at most 57.19 Hz"):
-            servo_model.gains_for(plant, 80, MARGIN)
+        # A whole turn of delay later the same angle comes again; that is no lead that a law could give.
+        for bandwidth in (60, 80, 150, 300, 500, 588, 650, 1000):
+            with self.assertRaisesRegex(ValueError, "out of reach for a delay of 1.70 ms; at most 57.19 Hz"):
+                servo_model.gains_for(plant, bandwidth, MARGIN)
         with self.assertRaisesRegex(servo_model.Unidentifiable, "did not move"):
             servo_model.identify(np.arange(1000) * PERIOD, np.zeros(1000), np.ones(1000))
         with self.assertRaisesRegex(servo_model.Unidentifiable, "too few"):
@@ -107,6 +139,8 @@ class Commands(unittest.TestCase):
                 self.assertAlmostEqual(plant["load"], 117.7 if joint == 2 else 0, delta=1)
                 self.assertAlmostEqual(plant["delay_s"], 0.0017, delta=0.0003)
                 self.assertTrue(picture.read_bytes().startswith(PNG))
+                self.assert_stays_within(appliance, joint, -20)
+                self.assertEqual(json.loads(file.read_text()), device)
 
                 again = json.loads(self.rmac(appliance, *words, "--apply"))
                 self.assertEqual(again["before"]["gains"], device["Joints"][joint]["Gains"], "nothing was changed")
@@ -115,20 +149,44 @@ class Commands(unittest.TestCase):
                     self.assertAlmostEqual(applied / proposed, 1, delta=1e-9)
                 self.assertAlmostEqual(third["before"]["phase_margin_deg"], MARGIN, delta=4)
 
+    def assert_stays_within(self, appliance, joint, travel):
+        """What the newest record shows: setpoints between 0 and `travel`, and other joints where they were."""
+        rows = list(csv.DictReader(self.rmac(appliance, "trace", "export", "-o", "-").splitlines()))
+        for other in range(3):
+            wanted = [float(row[f"q{other + 1}"]) for row in rows]
+            low, high = sorted((0, travel if other == joint else 0))
+            self.assertGreaterEqual(min(wanted), low - 0.01)
+            self.assertLessEqual(max(wanted), high + 0.01)
+            self.assertGreater(max(map(abs, wanted)), abs(travel) - 0.01 if other == joint else -1)
+
     def test_measure_following_draws_the_circle_and_its_reversals(self):
         appliance = self.enterContext(Appliance())
         self.rmac(appliance, "load", "DMACXYZ")
+        client = appliance.client("operator")
+        client.call("authority.acquire")
+        client.call("RMAC_CAM.SetPathTolerance", Tolerance=0.01)
+        client.call("authority.release")
+        # An axis rests some micrometres beside its setpoint, which is where the path begins.
+        self.rmac(appliance, "jog", "--joint", "0", "--distance", "3.3")
         with tempfile.TemporaryDirectory() as folder:
             picture = pathlib.Path(folder, "circle.png")
             words = ("measure-following", "--radius", "20", "-o", str(picture))
             result = json.loads(self.rmac(appliance, "--json", *words))
             self.assertTrue(picture.read_bytes().startswith(PNG))
         self.assertAlmostEqual(result["feed_mm_min"], 2000, delta=2)
+        self.assertEqual(client.call("RMAC_CAM.GetPathTolerance"), 0.01)
         self.assertEqual(len(result["reversal_spikes_um"]), 4)
         for spike in result["reversal_spikes_um"]:
             self.assertGreater(abs(spike), 2, "PID meets friction where an axis turns round")
             self.assertLess(abs(spike), 40)
         self.assertLess(result["circular_deviation_um"], 60)
+        # Another turn right behind it is in the same record.
+        with tempfile.TemporaryDirectory() as folder:
+            words = ("measure-following", "--radius", "3", "-o", str(pathlib.Path(folder, "circle.png")))
+            again = json.loads(self.rmac(appliance, "--json", *words))
+        self.assertEqual(again["radius_mm"], 3)
+        self.assertLess(again["circular_deviation_um"], 60)
+        self.assertLess(max(map(abs, again["radial_deviation_um"])), 60)
 
     def test_say_what_is_missing(self):
         appliance = self.enterContext(Appliance())
@@ -142,6 +200,22 @@ class Commands(unittest.TestCase):
         far = appliance.rmac("tune", "0", "--travel", "1000")
         self.assertEqual(far.returncode, 1)
         self.assertIn("limit", far.stderr)
+        before = self.rmac(appliance, "--json", "status")
+        for words, said in ((("tune", "0", "--travel", "nan"), "give the way"),
+                            (("tune", "0", "--travel", "0"), "give the way"),
+                            (("tune", "0", "--travel", "5", "-o", "/nowhere/tune.png"), "cannot be written"),
+                            (("tune", "0", "--travel", "5", "-o", "tune.bmp"), "ends in .png, .svg or .pdf"),
+                            (("measure-following", "-o", "/nowhere/circle.png"), "cannot be written"),
+                            (("measure-following", "--radius", "9999"), "limit"),
+                            (("trace", "plot", "-o", "/nowhere/trace.png"), "no flight record yet")):
+            with self.subTest(words=words):
+                refused = appliance.rmac(*words)
+                self.assertEqual((refused.returncode, refused.stderr.count("\n")), (1, 1), refused.stderr)
+                self.assertIn(said, refused.stderr)
+        self.assertEqual(json.loads(self.rmac(appliance, "--json", "status"))["joints"], json.loads(before)["joints"])
+        beyond = appliance.rmac("tune", "0", "--travel", "20", "--bandwidth", "500", "-o", "/tmp/tune.png")
+        self.assertEqual((beyond.returncode, beyond.stderr.count("\n")), (1, 1), beyond.stderr)
+        self.assertIn("out of reach for a delay of", beyond.stderr)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Draws the circle test of ISO 230-4: measure_following.py RECORD MOVE RADIUS PICTURE.
+"""Draws the circle test of ISO 230-4: measure_following.py RECORD MOVE BEGIN RADIUS PICTURE.
 
-RECORD is a flight record in which the first two joints go round a circle, MOVE the number of the full turn, RADIUS in
-mm. Prints the circular deviations and the reversal spikes as JSON."""
+RECORD is a flight record in which the first two joints go round a circle, MOVE the number of the full turn, which begins
+after BEGIN (t_s), RADIUS in mm. Prints the circular deviations and the reversal spikes as JSON."""
 
 import json
 import sys
@@ -91,19 +91,19 @@ def draw(head, angle, deviation, result, radius, feed, path):
 
 def main():
     """Exit code 1 with one line that says why, when the record does not do."""
-    if len(sys.argv) != 5:
-        print("usage: measure_following.py RECORD MOVE RADIUS PICTURE", file=sys.stderr)
+    if len(sys.argv) != 6:
+        print("usage: measure_following.py RECORD MOVE BEGIN RADIUS PICTURE", file=sys.stderr)
         return 2
-    radius = float(sys.argv[3])
-    head, columns = model.read_record(sys.argv[1])
+    move, begin, radius = int(sys.argv[2]), float(sys.argv[3]), float(sys.argv[4])
+    head, columns = model.read_record(sys.argv[1], begin)
     try:
-        wanted, measured = turn_of(head, columns, int(sys.argv[2]))
+        wanted, measured = turn_of(head, columns, move)
     except NoCircle as problem:
         print(problem, file=sys.stderr)
         return 1
     angle, deviation, result = deviations(wanted, measured, radius)
-    feed = 60 * float(np.median(columns["feed_mm_s"][columns["move_id"] == int(sys.argv[2])]))
-    draw(head, angle, deviation, result, radius, feed, sys.argv[4])
+    feed = 60 * float(np.median(columns["feed_mm_s"][columns["move_id"] == move]))
+    draw(head, angle, deviation, result, radius, feed, sys.argv[5])
     print(json.dumps({"radius_mm": radius, "feed_mm_min": feed, **result}))
     return 0
 

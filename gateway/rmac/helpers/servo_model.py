@@ -45,15 +45,17 @@ class Unidentifiable(Exception):
     """The record does not say what the joint is made of."""
 
 
-def read_record(path):
-    """Head and columns of numbers of a flight record."""
+def read_record(path, begin):
+    """Head and columns of numbers of a flight record, from `begin` (t_s) on: what the machine did before that may have
+    been a cut, or a test under other gains."""
     with open(path, encoding="utf-8") as file:
         head = json.loads(file.readline())
         names = file.readline().strip().split(",")
         words = {"state", "servo_state", "fault"}
         wanted = [index for index, name in enumerate(names) if name not in words]
         table = np.loadtxt(file, delimiter=",", usecols=wanted, ndmin=2)
-    return head, {names[index]: table[:, column] for column, index in enumerate(wanted)}
+    columns = {names[index]: table[:, column] for column, index in enumerate(wanted)}
+    return head, {name: values[columns["t_s"] > begin] for name, values in columns.items()}
 
 
 def identify(time, position, effort, period=None):
@@ -108,13 +110,15 @@ def gains_for(plant, bandwidth_hz, margin_deg):
     C(jw) P(jw) = exp(j (margin - 180°)), C(s) = Kp + Ki/s + Kd s."""
     omega = 2 * np.pi * bandwidth_hz
     wanted = -np.exp(1j * np.radians(margin_deg)) / plant.response(omega)
-    if not wanted.real > 0 or np.degrees(np.angle(wanted)) > LARGEST_LEAD + 1e-9:
+    # Not the angle of `wanted`, which is the same again after a whole turn of delay.
+    lead = margin_deg - 90 + np.degrees(omega * plant.delay_s + np.arctan2(omega * plant.mass, plant.viscous))
+    if not -90 < lead <= LARGEST_LEAD + 1e-9:
         raise ValueError(f"a bandwidth of {bandwidth_hz:.4g} Hz with a phase margin of {margin_deg:.4g}° is out of reach "
                          f"for a delay of {1e3 * plant.delay_s:.2f} ms; at most "
                          f"{largest_bandwidth_hz(plant, margin_deg):.4g} Hz")
     kp = wanted.real
     ki = kp * omega / INTEGRAL_RATIO
-    kd = (wanted.imag + ki / omega) / omega
+    kd = max((wanted.imag + ki / omega) / omega, 0.0)  # where viscous friction alone leaves more phase than is asked for
     return float(kp), float(ki), float(kd)
 
 
@@ -123,6 +127,13 @@ def open_loop(plant, gains, omega):
     kp, ki, kd = gains
     s = 1j * omega
     return (kp + ki / s + kd * s) * plant.response(omega)
+
+
+def bode(plant, gains, frequency):
+    """Magnitude of the open loop, and its phase in degrees, which begins between -360 and 0."""
+    response = open_loop(plant, gains, 2 * np.pi * frequency)
+    phase = np.degrees(np.unwrap(np.angle(response)))
+    return np.abs(response), phase - 360 * np.ceil(phase[0] / 360)
 
 
 def margins(plant, gains):

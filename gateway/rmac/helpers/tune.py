@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Proposes gains for a joint: tune.py RECORD JOINT BANDWIDTH MARGIN PICTURE.
+"""Proposes gains for a joint: tune.py RECORD JOINT BEGIN BANDWIDTH MARGIN PICTURE.
 
-RECORD is a flight record of the joint's excitation, JOINT its number from 0, BANDWIDTH in Hz (0: nine tenths of what
-the delay lets it have), MARGIN in degrees. Draws Bode and step plots of the loop before and after into PICTURE, and
-prints what was found as JSON."""
+RECORD is a flight record of the joint's excitation, which begins after BEGIN (t_s), JOINT its number from 0, BANDWIDTH
+in Hz (0: nine tenths of what the delay lets it have), MARGIN in degrees. Draws Bode and step plots of the loop before
+and after into PICTURE, and prints what was found as JSON."""
 
 import json
 import sys
@@ -38,10 +38,10 @@ def draw(head, joint, plant, loops, period, path):
     figure, (size, phase, step) = plt.subplots(3, 1, figsize=(9, 11), constrained_layout=True)
     frequency = np.geomspace(1, 0.5 / period, 2000)
     for label, gains in loops:
-        response = model.open_loop(plant, gains, 2 * np.pi * frequency)
+        magnitude, angle = model.bode(plant, gains, frequency)
         crossover, margin, _ = model.margins(plant, gains)
-        size.loglog(frequency, np.abs(response), label=f"{label}: {crossover:.1f} Hz")
-        phase.semilogx(frequency, np.degrees(np.unwrap(np.angle(response))), label=f"{label}: margin {margin:.0f}°")
+        size.loglog(frequency, magnitude, label=f"{label}: {crossover:.1f} Hz")
+        phase.semilogx(frequency, angle, label=f"{label}: margin {margin:.0f}°")
         time, position = model.step_response(plant, gains, period)
         step.plot(1e3 * time, position, label=label)
     size.axhline(1, color="grey", linewidth=0.8)
@@ -65,11 +65,11 @@ def draw(head, joint, plant, loops, period, path):
 
 def main():
     """Exit code 1 with one line that says why, when the record or the wish does not do."""
-    if len(sys.argv) != 6:
-        print("usage: tune.py RECORD JOINT BANDWIDTH MARGIN PICTURE", file=sys.stderr)
+    if len(sys.argv) != 7:
+        print("usage: tune.py RECORD JOINT BEGIN BANDWIDTH MARGIN PICTURE", file=sys.stderr)
         return 2
-    number, bandwidth, margin = int(sys.argv[2]), float(sys.argv[3]), float(sys.argv[4])
-    head, columns = model.read_record(sys.argv[1])
+    number, begin, bandwidth, margin = int(sys.argv[2]), float(sys.argv[3]), float(sys.argv[4]), float(sys.argv[5])
+    head, columns = model.read_record(sys.argv[1], begin)
     joint = head["joints"][number]
     column = number + 1
     try:
@@ -82,7 +82,7 @@ def main():
         return 1
     before = feedback_gains(joint)
     loops = ([("before", before)] if before else []) + [("proposed", gains)]
-    draw(head, joint, plant, loops, float(np.median(np.diff(columns["t_s"]))), sys.argv[5])
+    draw(head, joint, plant, loops, float(np.median(np.diff(columns["t_s"]))), sys.argv[6])
     forward = [*gains, plant.viscous, plant.mass, plant.friction, plant.load]
     print(json.dumps({
         "joint": joint["name"], "unit": joint["unit"], "law": joint["law"], "plant": model.as_json(plant),
