@@ -9,6 +9,8 @@ namespace rmac {
 namespace {
 
 constexpr std::size_t kSamples = 17;
+/// As a part of a piece: no derivative differs between places that are nearer.
+constexpr double kSamePlace = 1e-7;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What a joint asks of one of its limits at equidistant instants of a piece, as parts of the limit.
@@ -44,12 +46,14 @@ constexpr double kDoubt = 0.5;
 class PieceCheck {
  public:
   PieceCheck(const PathView& path, const std::vector<JointLimits>& joints, const FeedRule* feed)
-      : path_(path), joints_(joints), feed_(feed) {}
+      : path_(path), joint_count_(joints.size()), feed_(feed) {
+    for (std::size_t j = 0; j < joint_count_; ++j)
+      per_limit_[j] = {1 / joints[j].max_speed, 1 / joints[j].max_acceleration, 1 / joints[j].max_jerk};
+  }
 
   /// Samples are halved until what lies between them cannot matter: five, nine, seventeen.
   double worst(const LawPiece& piece) {
-    s_begin_ = piece.start.s;
-    s_end_ = piece.at(piece.duration).s;
+    end_ = piece.at(piece.duration);
     others_ = 0;
     for (std::size_t stride = 4;; stride /= 2) {
       for (std::size_t i = 0; i < kSamples; i += stride) {
@@ -57,7 +61,7 @@ class PieceCheck {
       }
       double worst = others_;
       bool sure = true;
-      for (std::size_t j = 0; j < joints_.size(); ++j) {
+      for (std::size_t j = 0; j < joint_count_; ++j) {
         for (const Demand* demand : {&speed_[j], &acceleration_[j], &jerk_[j]}) {
           const Peak peak = peak_of(*demand, stride);
           worst = std::max(worst, peak.largest);
@@ -71,40 +75,56 @@ class PieceCheck {
 
  private:
   bool sample(const LawPiece& piece, std::size_t i) {
-    const PathState at = piece.at(piece.duration * static_cast<double>(i) / (kSamples - 1));
+    const bool first = i == 0, last = i + 1 == kSamples;
+    const PathState at = first  ? piece.start
+                         : last ? end_
+                                : piece.at(piece.duration * static_cast<double>(i) / (kSamples - 1));
+    if (!(at.v >= -1e-9)) return false;
     const double path_jerk = piece.kind == LawPiece::Kind::Jerk ? piece.slope : piece.slope * at.v;
-    const bool last = i + 1 == kSamples;
-    const double s = i == 0 ? just_inside(s_begin_, s_end_) : last ? just_inside(s_end_, s_begin_) : at.s;
+    const double s = first ? just_inside(at.s, end_.s) : last ? just_inside(at.s, piece.start.s) : at.s;
     const int side = last ? -1 : 1;
-    if (segment_ == nullptr || s < segment_start_ || s > segment_start_ + segment_->length()) {
-      const std::size_t index = path_.find(s, side);
-      segment_ = &path_.segment(index);
-      segment_start_ = path_.start(index);
-    }
+    if (segment_ == nullptr || s < segment_start_ || s > segment_start_ + segment_->length()) enter_segment(s, side);
+    const bool known = first && std::abs(at.s - end_point_s_) <= kSamePlace * (end_.s - at.s);
+    JointPoint& point = last || known ? end_point_ : point_;
     const double on_segment = std::clamp(s - segment_start_, 0.0, segment_->length());
-    if (!(at.v >= -1e-9) || segment_->derivatives(on_segment, side, point_) != KinematicsStatus::Ok) return false;
-    for (std::size_t j = 0; j < joints_.size(); ++j) {
-      const double d1 = point_.d[1][j], d2 = point_.d[2][j], d3 = point_.d[3][j], v = at.v;
-      speed_[j][i] = d1 * v / joints_[j].max_speed;
-      acceleration_[j][i] = (d2 * v * v + d1 * at.a) / joints_[j].max_acceleration;
-      jerk_[j][i] = (d3 * v * v * v + 3 * d2 * v * at.a + d1 * path_jerk) / joints_[j].max_jerk;
+    if (!known && segment_->derivatives(on_segment, side, point) != KinematicsStatus::Ok) return false;
+    if (last) end_point_s_ = segment_->curve().breaks().empty() ? at.s : kInfinity;
+    for (std::size_t j = 0; j < joint_count_; ++j) {
+      const double d1 = point.d[1][j], d2 = point.d[2][j], d3 = point.d[3][j], v = at.v;
+      speed_[j][i] = d1 * v * per_limit_[j][0];
+      acceleration_[j][i] = (d2 * v * v + d1 * at.a) * per_limit_[j][1];
+      jerk_[j][i] = (d3 * v * v * v + 3 * d2 * v * at.a + d1 * path_jerk) * per_limit_[j][2];
     }
-    const PathDemand& demand = segment_->demand();
-    others_ = std::max(
-        {others_, at.a / or_unbounded(demand.accel_rise_mm_s2), -at.a / or_unbounded(demand.accel_fall_mm_s2)});
-    if (feed_ != nullptr) others_ = std::max(others_, at.v / (feed_->bound(*segment_) * 1.0005));
+    others_ = std::max({others_, at.a * per_rise_, -at.a * per_fall_, at.v * per_feed_});
     return true;
   }
 
+  void enter_segment(double s, int side) {
+    const std::size_t index = path_.find(s, side);
+    segment_ = &path_.segment(index);
+    segment_start_ = path_.start(index);
+    end_point_s_ = kInfinity;
+    const PathDemand& demand = segment_->demand();
+    per_rise_ = 1 / or_unbounded(demand.accel_rise_mm_s2);
+    per_fall_ = 1 / or_unbounded(demand.accel_fall_mm_s2);
+    per_feed_ = feed_ != nullptr ? 1 / (feed_->bound(*segment_) * 1.0005) : 0;
+  }
+
   const PathView& path_;
-  const std::vector<JointLimits>& joints_;
+  std::size_t joint_count_;
+  std::array<std::array<double, 3>, kMaxJoints> per_limit_;  ///< inverse bounds of speed, acceleration and jerk
   const FeedRule* feed_;
-  double others_ = 0;  ///< what the path itself demands, of its bounds
-  double s_begin_ = 0, s_end_ = 0;
+  double others_ = 0;                     ///< what the path itself demands, of its bounds
+  PathState end_;                         ///< of the piece
   const PathSegment* segment_ = nullptr;  ///< of the sample before: nearly always that of the next one too
   double segment_start_ = 0;
+  double per_rise_ = 0, per_fall_ = 0, per_feed_ = 0;  ///< inverse bounds there
   std::array<Demand, kMaxJoints> speed_, acceleration_, jerk_;
   JointPoint point_;
+  /// At the end of the piece before, and where that is: derivatives at the next one's begin too, where they do not
+  /// jump.
+  JointPoint end_point_;
+  double end_point_s_ = kInfinity;
 };
 
 }  // namespace

@@ -22,8 +22,9 @@ class RowCollector {
       all_.back().low = all_lanes(-1);
     }
     Rows& rows = all_.back();
-    for (std::size_t i = 0; i < 3; ++i) rows.gradient[i][lane_] = w[i] / high;
-    rows.low[lane_] = low / high;
+    const double scale = 1 / high;
+    for (std::size_t i = 0; i < 3; ++i) rows.gradient[i][lane_] = w[i] * scale;
+    rows.low[lane_] = low * scale;
   }
 
  private:

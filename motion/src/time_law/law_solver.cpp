@@ -30,7 +30,7 @@ class Solver {
   Solver(const LawProblem& problem, const std::vector<double>& guess)
       : p_(problem), n_(problem.intervals() + 2), rows_(problem) {
     fix_ends(guess);
-    for (auto* v : {&diagonal_, &off1_, &off2_, &rhs_}) v->resize(n_);
+    for (auto* v : {&diagonal_, &off1_, &off2_, &rhs_, &centre_pull_}) v->resize(n_);
     step_.assign(n_, 0.0);
   }
 
@@ -45,7 +45,7 @@ class Solver {
       solve_step();
       const double ratio = predicted_gap() / gap_;
       const double sigma = std::clamp(ratio * ratio, 1e-4, 0.8);
-      aim(sigma * mu);
+      for (std::size_t j = 0; j < n_; ++j) rhs_[j] -= sigma * mu * centre_pull_[j];
       solve_step();
       const Reach reach = correct(sigma * mu);
       for (std::size_t j = 0; j < n_; ++j) c_[j] += reach.primal * step_[j];
@@ -82,13 +82,9 @@ class Solver {
 
   /// Slacks that the rows have at the guess, or a least one, and duals that make all products alike.
   void begin(double count) {
+    for (std::size_t k = 0; k < p_.intervals(); ++k) travel_time_ += p_.step(k) / std::sqrt(std::max(c_[k + 1], 1e-30));
     for (Rows& rows : rows_.all) rows.above.slack = rows.below.slack = all_lanes(start_.slack);
-    refresh(0, 0);
-    const Lanes product = all_lanes(start_.gap * travel_time_ / count);
-    for (Rows& rows : rows_.all) {
-      for (Rows::Side* side : {&rows.above, &rows.below}) side->dual = product * side->inverse_slack;
-    }
-    refresh(0, 0);
+    refresh<true>(0, 0, start_.gap * travel_time_ / count);
   }
 
   /// What the rows of one interval add to the normal matrix and its right side.
@@ -112,8 +108,9 @@ class Solver {
   /// slack and low - phi + slack, gradients d phi / d c), and sets up Newton's equations. The objective is the sum of
   /// h/√c over the middle coefficients, which is the travel time up to second order and convex. All in one pass: time
   /// goes into loading the rows.
-  void refresh(double primal_step, double dual_step) {
-    for (auto* v : {&diagonal_, &off1_, &off2_, &rhs_}) std::fill(v->begin(), v->end(), 0.0);
+  template <bool kFirst = false>
+  void refresh(double primal_step, double dual_step, double first_product = 0) {
+    for (auto* v : {&diagonal_, &off1_, &off2_, &rhs_, &centre_pull_}) std::fill(v->begin(), v->end(), 0.0);
     const Lanes one = all_lanes(1), half = all_lanes(0.5);
     const Lanes primal = all_lanes(primal_step), dual = all_lanes(dual_step);
     Lanes infeasible{}, gap{};
@@ -127,8 +124,8 @@ class Solver {
         // A side that turned out better than its slack takes it up at once: the linearisation never claims slack that
         // is not there.
         side.slack = larger(side.slack + primal * side.slack_step, -excess);
-        side.dual += dual * side.dual_step;
         side.inverse_slack = one / side.slack;
+        side.dual = kFirst ? first_product * side.inverse_slack : side.dual + dual * side.dual_step;
         side.residual = excess + side.slack;
         gap += side.slack * side.dual;
       };
@@ -206,12 +203,14 @@ class Solver {
   }
 
   /// Predictor: aims at products of 0. How much of all slack and dual is left at the end of the longest step tells how
-  /// much to centre, and the product of both steps what curvature the corrector has to expect (Mehrotra).
+  /// much to centre, and the product of both steps what curvature the corrector has to expect (Mehrotra). That goes to
+  /// the right side here, and apart from it what centring would add, for all of which the rows are gone through once.
   double predicted_gap() {
     // With x the step of a slack as a part of it, the dual's is -(1 + x) of the dual.
     Lanes least = all_lanes(-1), most = all_lanes(0), first{}, second{};
     for (std::size_t k = 0; k < p_.intervals(); ++k) {
       const LaneTriple step = lanes_of(step_.data() + k);
+      LaneTriple centre{}, product{};
       for (std::size_t i = rows_.intervals[k].linear; i < rows_.intervals[k + 1].linear; ++i) {
         Rows& rows = rows_.all[i];
         const Lanes change = dot(rows.gradient, step);
@@ -226,26 +225,22 @@ class Solver {
         };
         take(rows.above, -rows.above.residual - change);
         take(rows.below, change - rows.below.residual);
+        const Lanes to_centre = rows.above.inverse_slack - rows.below.inverse_slack;
+        const Lanes to_product =
+            rows.above.product * rows.above.inverse_slack - rows.below.product * rows.below.inverse_slack;
+        for (std::size_t a = 0; a < 3; ++a) {
+          centre[a] += to_centre * rows.gradient[a];
+          product[a] += to_product * rows.gradient[a];
+        }
+      }
+      for (std::size_t a = 0; a < 3; ++a) {
+        centre_pull_[k + a] += sum(centre[a]);
+        rhs_[k + a] -= sum(product[a]);
       }
     }
     const double x = sum(first), xx = sum(second);
     const double primal = within_positive(-1 / smallest(least)), dual = 1 / (1 + largest(most));
     return gap_ + primal * x - dual * (gap_ + x) - primal * dual * (x + xx);
-  }
-
-  /// Adds to the right side what aiming at the products `target` means, the predicted ones taken into account.
-  void aim(double target) {
-    const Lanes centre = all_lanes(target);
-    for (std::size_t k = 0; k < p_.intervals(); ++k) {
-      LaneTriple pull{};
-      for (std::size_t i = rows_.intervals[k].linear; i < rows_.intervals[k + 1].linear; ++i) {
-        const Rows& rows = rows_.all[i];
-        const Lanes weight = (centre + rows.above.product) * rows.above.inverse_slack -
-                             (centre + rows.below.product) * rows.below.inverse_slack;
-        for (std::size_t x = 0; x < 3; ++x) pull[x] += weight * rows.gradient[x];
-      }
-      for (std::size_t x = 0; x < 3; ++x) rhs_[k + x] -= sum(pull[x]);
-    }
   }
 
   /// Takes a quotient where it is larger. Only then it is worth its division, which is seldom.
@@ -293,6 +288,7 @@ class Solver {
   std::size_t first_free_ = 0, end_free_ = 0;
   LawRows rows_;
   std::vector<double> c_, step_, diagonal_, off1_, off2_, rhs_;
+  std::vector<double> centre_pull_;  ///< what the right side loses where products of 1 are aimed at
   StartingPoint start_ = kFromProfile;
   double infeasible_ = 0;  ///< largest excess over a bound
   double gap_ = 0;         ///< sum of slack times dual

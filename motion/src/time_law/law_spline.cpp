@@ -11,15 +11,16 @@ Basis basis(const LawProblem& p, std::size_t k, bool right) noexcept {
   const double h = p.step(k);
   const double before = k > 0 ? p.step(k - 1) : 0;
   const double after = k + 1 < n ? p.step(k + 1) : 0;
-  const double a = h / (before + h), b = before / (before + h);  // q at the left node
-  const double c = after / (h + after), d = h / (h + after);     // q at the right node
+  const double per_left = 1 / (before + h), per_right = 1 / (h + after);
+  const double a = h * per_left, b = before * per_left;   // q at the left node
+  const double c = after * per_right, d = h * per_right;  // q at the right node
   Basis result{};
   if (right) {
     result.q = {0, c, d};
-    result.dq = {0, -2 / (h + after), 2 / (h + after)};
+    result.dq = {0, -2 * per_right, 2 * per_right};
   } else {
     result.q = {a, b, 0};
-    result.dq = {-2 / (before + h), 2 / (before + h), 0};
+    result.dq = {-2 * per_left, 2 * per_left, 0};
   }
   const double s = 2 / (h * h);
   result.ddq = {a * s, (b + c - 2) * s, d * s};
@@ -33,12 +34,12 @@ void guess_coefficients(const LawProblem& p, std::vector<double>& c) {
   const std::size_t n = p.intervals();
   std::vector<double> node(n + 1), slope(n);
   const auto permitted = [&](const JointDerivatives& d) {
-    double q = std::numeric_limits<double>::infinity();
+    double q = std::numeric_limits<double>::infinity(), cubed = q;  // bounds of q, and of q^(3/2)
     for (std::size_t j = 0; j < p.joint_count; ++j) {
       if (d.d2[j] != 0) q = std::min(q, 0.4 * p.max_acceleration[j] / std::abs(d.d2[j]));
-      if (d.d3[j] != 0) q = std::min(q, std::pow(0.2 * p.max_jerk[j] / std::abs(d.d3[j]), 2.0 / 3));
+      if (d.d3[j] != 0) cubed = std::min(cubed, 0.2 * p.max_jerk[j] / std::abs(d.d3[j]));
     }
-    return q;
+    return std::min(q, std::pow(cubed, 2.0 / 3));
   };
   for (double& q : node) q = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < n; ++k) {
