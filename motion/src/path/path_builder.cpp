@@ -156,11 +156,8 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
                           std::abs(offence.amount), unit(joint), offence.amount > 0 ? joint.max : joint.min,
                           unit(joint), stretch.s_begin_mm + offence.s));
     }
-    JointPoint end;
-    if (segment->evaluate(segment->length(), 0, -1, end) != KinematicsStatus::Ok) {
-      return tl::unexpected(unreachable(move, *segment, KinematicsStatus::Singular, segment->length()));
-    }
-    std::copy_n(end.d[0].begin(), joints.size(), joints.begin());
+    const auto end = segment->joints_at_node(curve->nodes().size() - 1);
+    std::copy(end.begin(), end.end(), joints.begin());
     stretch.s_begin_mm += segment->length();
     segments.push_back(segment);
     return {};
@@ -174,20 +171,18 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
   };
 
   const auto lay = [&](const std::shared_ptr<const Curve>& curve, bool last) -> Expected<> {
+    if (curve->breaks().empty()) return append_piece(curve, last);
     std::vector<double> cuts{0};
-    if (!curve->breaks().empty()) {
-      PathSegment probe(curve, map_, demand, {stretch});
-      double s = 0;
-      if (const auto status = probe.resolve(joints, s); status != KinematicsStatus::Ok)
-        return tl::unexpected(unreachable(move, probe, status, s));
-      JointPoint below, above;
-      for (const double at : curve->breaks()) {
-        if (probe.evaluate(at, 2, -1, below) != KinematicsStatus::Ok ||
-            probe.evaluate(at, 2, 1, above) != KinematicsStatus::Ok)
-          continue;
-        if (!passable(below, above, model_.joints, std::max(demand.feed_mm_s, 1.0), model_.period_s))
-          cuts.push_back(at);
-      }
+    PathSegment probe(curve, map_, demand, {stretch});
+    double s = 0;
+    if (const auto status = probe.resolve(joints, s); status != KinematicsStatus::Ok)
+      return tl::unexpected(unreachable(move, probe, status, s));
+    JointPoint below, above;
+    for (const double at : curve->breaks()) {
+      if (probe.evaluate(at, 2, -1, below) != KinematicsStatus::Ok ||
+          probe.evaluate(at, 2, 1, above) != KinematicsStatus::Ok)
+        continue;
+      if (!passable(below, above, model_.joints, std::max(demand.feed_mm_s, 1.0), model_.period_s)) cuts.push_back(at);
     }
     cuts.push_back(curve->length());
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {

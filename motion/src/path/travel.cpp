@@ -33,6 +33,7 @@ bool surely_inside(const PathSegment& segment, const std::vector<JointLimits>& j
 
 std::vector<double> excess_of(std::span<const double> positions, const std::vector<JointLimits>& joints) {
   std::vector<double> excess;
+  excess.reserve(joints.size());
   for (std::size_t j = 0; j < joints.size(); ++j) excess.push_back(beyond(joints[j], positions[j]));
   return excess;
 }

@@ -267,9 +267,10 @@ struct Planner::Impl {
     }
     if (!run) return base()->stops || !begun ? Task::None : Task::Stop;
     const double limit = wanted == PathCommand::RunOne ? std::min(limit_s, path().end()) : path().end();
-    const bool more = base_end_s() < limit - kSamePlace;
-    const bool one_done = wanted == PathCommand::RunOne && base_end_s() >= limit_s - kSamePlace;
-    const bool dry = base_end_s() >= path().end() - kSamePlace && !one_done;
+    const double planned_to = base_end_s();
+    const bool more = planned_to < limit - kSamePlace;
+    const bool one_done = wanted == PathCommand::RunOne && planned_to >= limit_s - kSamePlace;
+    const bool dry = planned_to >= path().end() - kSamePlace && !one_done;
     if (dry && path().can_supply()) return Task::Supply;
     const PublishedPlan* const p = base();
     if (at_end || p == nullptr) {
