@@ -8,12 +8,15 @@
 
 #include "gateway/api/decode.hpp"
 #include "gateway/api/method_table.hpp"
+#include "gateway/configuration/printable.hpp"
 
 namespace rmac::gateway {
 
 namespace {
 
 using nlohmann::json;
+
+constexpr std::size_t kLongestReason = 300;
 
 tl::unexpected<RpcError> wrong(int code, std::string message) {
   return tl::unexpected<RpcError>(RpcError{code, std::move(message), MinorCode::InvalidParameter});
@@ -79,15 +82,6 @@ const char* hint_for(std::string_view line) {
   return "";
 }
 
-/// The reader's own message, printable whatever bytes it quotes.
-std::string printable(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7e) c = '?';
-  }
-  if (text.size() > 300) text.resize(300);
-  return text;
-}
-
 }  // namespace
 
 tl::expected<json, RpcError> parse_line(std::string_view line) {
@@ -106,8 +100,12 @@ tl::expected<json, RpcError> parse_line(std::string_view line) {
     }
     return parsed;
   } catch (const json::exception& error) {
+    // The reader's message begins with its own name and the number of the line, which is always 1.
+    const std::string_view what = error.what();
+    const auto place = what.find("column");
     return wrong(rpc_code::kParseError,
-                 fmt::format("the line is not JSON: {}{}", printable(error.what()), hint_for(line)));
+                 fmt::format("the line is not JSON: {}{}",
+                             printable(what.substr(place == what.npos ? 0 : place), kLongestReason), hint_for(line)));
   }
 }
 

@@ -9,6 +9,8 @@
 #include <system_error>
 #include <vector>
 
+#include "gateway/configuration/printable.hpp"
+
 namespace rmac::gateway {
 namespace {
 
@@ -83,8 +85,8 @@ class StrictReader final : public nlohmann::json_sax<nlohmann::json> {
     levels_.pop_back();
     return true;
   }
-  bool fail(std::string message) {
-    problem_ = std::move(message);
+  bool fail(const std::string& message) {
+    problem_ = printable(message);
     return false;
   }
   [[nodiscard]] std::string pointer() const {
@@ -104,9 +106,11 @@ Expected<std::string> read_text(const std::filesystem::path& file) {
   std::error_code code;
   // A pipe or a device would block the gateway; only a file has an end.
   if (!std::filesystem::is_regular_file(file, code)) {
-    return failure(MinorCode::InvalidParameter,
-                   fmt::format("{}: there is no such file{}", file.string(),
-                               code && code.value() != ENOENT ? " (" + code.message() + ")" : ""));
+    const bool exists = std::filesystem::exists(file, code);
+    return failure(MinorCode::InvalidParameter, fmt::format("{}: {}", file.string(),
+                                                            exists ? "this is a folder or a device, not a file"
+                                                            : code ? "cannot be read: " + code.message()
+                                                                   : "there is no such file"));
   }
   const std::uintmax_t size = std::filesystem::file_size(file, code);
   if (!code && size > kMaxFileBytes) {

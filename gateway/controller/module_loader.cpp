@@ -14,6 +14,8 @@
 namespace rmac::gateway {
 namespace {
 
+constexpr std::uintmax_t kMostBytes = 64 << 20;  // what is larger is no module, and would keep the gateway from ending
+
 namespace fs = std::filesystem;
 
 struct CloseLibrary {
@@ -171,7 +173,13 @@ Expected<fs::path> ModuleLoader::find_file(const std::string& subfolder, const s
   for (const fs::path& parent : folders_) {
     const fs::path folder = subfolder.empty() ? parent : parent / subfolder;
     const fs::path file = folder / (name + extension);
-    if (std::error_code ignored; fs::is_regular_file(file, ignored)) return file;
+    if (std::error_code problem; fs::is_regular_file(file, problem)) {
+      if (const auto bytes = fs::file_size(file, problem); !problem && bytes > kMostBytes) {
+        return failure(MinorCode::InvalidParameterValue, fmt::format("{} {}: {} has {} bytes; at most {} are read",
+                                                                     what, name, file.string(), bytes, kMostBytes));
+      }
+      return file;
+    }
     searched += (searched.empty() ? "" : ", ") + folder.string();
   }
   return failure(MinorCode::InvalidParameterValue,

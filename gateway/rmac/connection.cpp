@@ -1,6 +1,7 @@
 #include "gateway/rmac/connection.hpp"
 
 #include <fmt/format.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <asio/local/stream_protocol.hpp>
@@ -13,6 +14,9 @@ namespace {
 
 constexpr std::size_t kMaxLineBytes = 64U << 20U;
 constexpr auto kCallBound = std::chrono::seconds(60);
+/// A machine is verified first, by processes of low priority with bounds of their own: on a computer that is busy for
+/// minutes.
+constexpr auto kVerifyingCallBound = std::chrono::seconds(600);
 
 }  // namespace
 
@@ -34,9 +38,10 @@ Connection::Connection(Endpoint endpoint) : endpoint_(std::move(endpoint)) {
 Result<std::unique_ptr<Connection>> Connection::open(const Endpoint& endpoint) {
   std::unique_ptr<Connection> connection(new Connection(endpoint));
   asio::error_code error;
-  if (!endpoint.socket.empty()) {
-    const asio::local::stream_protocol::endpoint address(endpoint.socket);
-    connection->socket_.connect(address, error);
+  if (endpoint.socket.size() >= sizeof(sockaddr_un::sun_path)) {
+    error = asio::error::name_too_long;
+  } else if (!endpoint.socket.empty()) {
+    connection->socket_.connect(asio::local::stream_protocol::endpoint(endpoint.socket), error);
   } else {
     asio::ip::tcp::resolver resolver(connection->io_);
     const auto addresses = resolver.resolve(endpoint.host, std::to_string(endpoint.port), error);
@@ -75,7 +80,8 @@ void Connection::send(const std::string& method, const nlohmann::json& params, A
   if (!params.is_null()) {
     request["params"] = params;
   }
-  output_.push_back(request.dump() + '\n');
+  // Words of a command line may be no UTF-8.
+  output_.push_back(request.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
   if (output_.size() == 1) {
     write();
   }
@@ -85,12 +91,13 @@ Connection::Answer Connection::call(const std::string& method, const nlohmann::j
   // Shared, because an answer that comes after the bound must not write into a dead frame.
   auto slot = std::make_shared<std::optional<Answer>>();
   send(method, params, [slot](const Answer& received) { *slot = received; });
-  const auto answered = wait([&] { return slot->has_value(); }, kCallBound);
+  const auto bound = method == "Device.Load" || method == "Device.Verify" ? kVerifyingCallBound : kCallBound;
+  const auto answered = wait([&] { return slot->has_value(); }, bound);
   if (!answered) {
     return tl::unexpected(answered.error());
   }
   if (!*answered) {
-    return fail(fmt::format("{} did not answer {} within {} s", to_string(endpoint_), method, kCallBound.count()));
+    return fail(fmt::format("{} did not answer {} within {} s", to_string(endpoint_), method, bound.count()));
   }
   return std::move(**slot);
 }

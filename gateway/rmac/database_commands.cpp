@@ -287,7 +287,7 @@ Result<> show_machine(Connection& connection, const std::string& name, bool json
     return tl::unexpected(rows.error());
   }
   if (rows->empty()) {
-    return fail(fmt::format("no machine is called {}: `rmac machines` lists them", name));
+    return fail(fmt::format("no machine is called \"{}\": `rmac machines` lists them", name));
   }
   auto machine = rows->front();
   const auto joints = joints_if_loaded(connection, name);

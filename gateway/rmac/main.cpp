@@ -2,17 +2,19 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <functional>
 #include <memory>
 
+#include "gateway/configuration/finite_numbers.hpp"
+#include "gateway/configuration/printable.hpp"
 #include "gateway/rmac/commands.hpp"
 
 namespace {
 
 using namespace rmac::cli;
+namespace gateway = rmac::gateway;
 
 using Command = std::function<Result<>(Connection&)>;
 using OfflineCommand = std::function<Result<>()>;
@@ -105,8 +107,10 @@ void add_operating_commands(CLI::App& app, Arguments& arguments, Command& comman
   auto* jog_command = app.add_subcommand("jog", "move one joint, or the tool straight, from rest");
   auto* what = jog_command->add_option_group("what")->require_option(1);
   what->add_option("--joint", request.joint, "counted from 0")->check(CLI::Range(0, 31));
-  what->add_option("--direction", request.direction, "X Y Z of the tool's way, in the part frame")->expected(3);
-  jog_command->add_flag("--tool", request.in_tool_frame, "the direction is the tool's own, Z along its axis");
+  auto* direction =
+      what->add_option("--direction", request.direction, "X Y Z of the tool's way, in the part frame")->expected(3);
+  jog_command->add_flag("--tool", request.in_tool_frame, "the direction is the tool's own, Z along its axis")
+      ->needs(direction);
   auto* how = jog_command->add_option_group("how")->require_option(1);
   how->add_option("--distance", request.distance, "mm or degrees, signed");
   how->add_option("--velocity", request.velocity, "mm/s or degrees/s, signed; until Ctrl-C");
@@ -333,10 +337,17 @@ void add_offline_commands(CLI::App& app, Arguments& arguments, std::function<Res
 
 int report(const Failure& failure) {
   // One line, whatever the message held: scripts read it so.
-  auto message = failure.message;
-  std::replace(message.begin(), message.end(), '\n', ' ');
+  const auto message = gateway::printable(failure.message.substr(0, failure.message.find_last_not_of('\n') + 1));
   fmt::print(stderr, "rmac: {}\n", message);
   return kExitFailed;
+}
+
+int report(const CLI::App& app, const CLI::ParseError& error) {
+  // Of a word that is no command CLI11 tells only that a command is missing.
+  const auto left = app.remaining(true);
+  if (error.get_name() != "RequiredError" || left.empty()) return app.exit(error) == 0 ? kExitDone : kExitUsage;
+  fmt::print(stderr, "rmac: there is no {}; rmac --help lists what there is\n", gateway::printable(left.front()));
+  return kExitUsage;
 }
 
 int run(int count, char** words) {
@@ -361,19 +372,18 @@ int run(int count, char** words) {
   std::function<Result<>()> offline_command;
   add_offline_commands(app, arguments, offline_command, command);
   add_bus_commands(app, arguments, offline_command);
+  gateway::take_finite_numbers_only(app);
   try {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitUsage;
+    return report(app, error);
   }
   if (offline_command) {
     const auto done = offline_command();
     return done ? kExitDone : report(done.error());
   }
   auto connection = Connection::open(arguments.endpoint);
-  if (!connection) {
-    return report(connection.error());
-  }
+  if (!connection) return report(connection.error());
   const auto done = command(**connection);
   return done ? kExitDone : report(done.error());
 }

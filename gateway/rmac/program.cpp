@@ -69,7 +69,7 @@ Result<Request> read_request(const std::string& text, const std::string& place) 
     return fail(fmt::format("{}: not JSON at column {}: write one JSON-RPC request a line", place, error.byte));
   }
   if (!json.is_object()) {
-    return fail(fmt::format("{}: a request is one JSON object, this is {}", place, json.type_name()));
+    return fail(fmt::format("{}: a request is one JSON object, no {}", place, json.type_name()));
   }
   if (!json.contains("method") || !json["method"].is_string()) {
     return fail(fmt::format("{}: the request has no \"method\": a program holds requests only", place));

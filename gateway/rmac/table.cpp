@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "gateway/configuration/printable.hpp"
+
 namespace rmac::cli {
 
 namespace {
@@ -13,15 +15,22 @@ bool is_number(const std::string& cell) {
   return !cell.empty() && (std::isdigit(static_cast<unsigned char>(cell[0])) != 0 || cell[0] == '-' || cell[0] == '.');
 }
 
+/// Characters, each of which a terminal gives one column: bytes, but those that go on with a character.
+std::size_t width(const std::string& cell) {
+  return static_cast<std::size_t>(
+      std::count_if(cell.begin(), cell.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
 }  // namespace
 
-std::string table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> width(header.size());
+std::string table(const std::vector<std::string>& header, std::vector<std::vector<std::string>> rows) {
+  std::vector<std::size_t> widest(header.size());
   std::vector<bool> right(header.size(), !rows.empty());
   for (std::size_t column = 0; column < header.size(); ++column) {
-    width[column] = header[column].size();
-    for (const auto& row : rows) {
-      width[column] = std::max(width[column], row[column].size());
+    widest[column] = width(header[column]);
+    for (auto& row : rows) {
+      row[column] = gateway::printable(row[column]);
+      widest[column] = std::max(widest[column], width(row[column]));
       right[column] = right[column] && (row[column].empty() || is_number(row[column]));
     }
   }
@@ -30,8 +39,8 @@ std::string table(const std::vector<std::string>& header, const std::vector<std:
     std::string line;
     for (std::size_t column = 0; column < header.size(); ++column) {
       line += column == 0 ? "" : "  ";
-      line += right[column] ? fmt::format("{:>{}}", row[column], width[column])
-                            : fmt::format("{:<{}}", row[column], width[column]);
+      const std::string blanks(widest[column] - width(row[column]), ' ');
+      line += right[column] ? blanks + row[column] : row[column] + blanks;
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + '\n';

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 
+#include "gateway/api/enumeration.hpp"
 #include "gateway/rmac/commands.hpp"
 #include "gateway/rmac/notes.hpp"
 #include "gateway/rmac/table.hpp"
@@ -19,6 +20,12 @@ std::string list(const std::vector<double>& values) {
     text += (text.empty() ? "" : "  ") + number(value, 4);
   }
   return text.empty() ? "-" : text;
+}
+
+/// As RMAC_CAM.StatusMinorCode names it.
+std::string minor_code(int code) {
+  const auto* value = gateway::kMinorCodeValues.find(code);
+  return code == 0 ? "none" : value == nullptr ? std::to_string(code) : value->name;
 }
 
 /// What stopped the machine last, in some lines below the table.
@@ -51,8 +58,7 @@ std::string state_table(const StateNote& state) {
                               {"deadlines missed", std::to_string(state.deadline_misses), ""},
                               {"to do", state.tool_prompt.empty() ? "-" : state.tool_prompt, ""},
                               {"authority", state.authority.empty() ? "nobody" : state.authority, ""},
-                              {"last error", state.status_minor == 0 ? "none" : std::to_string(state.status_minor),
-                               state.status_minor == 0 ? "" : "StatusMinorCode"}}) +
+                              {"last error", minor_code(state.status_minor), ""}}) +
          last_stop(state);
 }
 

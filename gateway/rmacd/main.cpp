@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
   app.add_flag("--print-openrpc", wishes.print_openrpc, "Print the API as an OpenRPC document and end");
   app.add_option("--port", wishes.port, "TCP port; 0: any free one");
   app.add_option("--unix-socket", wishes.unix_socket, "Path of the UNIX socket");
-  app.add_option("--state-dir", wishes.state_dir, "Folder for the database");
+  app.add_option("--state-dir", wishes.state_dir, "Folder of what it keeps: database, tool tables, flight records");
   app.add_option("--device-tree", wishes.device_tree, "Folder that holds <type>/<configuration>/<Mechanism>");
   app.add_option("--pace", wishes.pace, "What paces the servo loop")
       ->check(CLI::IsMember({"real-time", "as-fast-as-computed"}));

@@ -125,7 +125,7 @@ void Connection::refuse_and_leave(RpcError error) {
   spdlog::warn("{} is disconnected: {}", name(), error.message);
   pending_.clear();
   input_ = {};
-  send(to_response(nullptr, tl::unexpected<RpcError>(std::move(error))).dump());
+  send(text_of(to_response(nullptr, tl::unexpected<RpcError>(std::move(error)))));
   phase_ = Phase::Leaving;
   server_.lose_lease(*this, "was disconnected with");
   // Closing with input unread would reset the connection, and the client would never see why. So what it still sends is

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gateway/api/state_json.hpp"
+#include "gateway/configuration/printable.hpp"
 #include "gateway/server/connection.hpp"
 #include "gateway/server/server.hpp"
 
@@ -20,7 +21,7 @@ constexpr std::size_t kLongestName = 64;
 }  // namespace
 
 void Connection::introduce(const std::string& client, const std::string& version) {
-  client_ = (version.empty() ? client : client + " " + version).substr(0, kLongestName);
+  client_ = printable(version.empty() ? client : client + " " + version, kLongestName);
 }
 
 nlohmann::json Connection::greeting() const {
@@ -83,7 +84,7 @@ tl::expected<void, RpcError> Connection::subscribe(const std::vector<std::string
       return tl::unexpected<RpcError>(
           RpcError{rpc_code::kInvalidParams,
                    fmt::format("parameter \"topics\" has \"{}\", expected state, joints, drives or events",
-                               topic.substr(0, kLongestName)),
+                               printable(topic, kLongestName)),
                    MinorCode::InvalidParameterValue});
     }
   }
@@ -143,7 +144,7 @@ void Connection::push_sample(const CycleSample& sample) {
   if (state_.due(sample.cycle)) {
     state_now_ = false;
     Dispatcher& api = server_.dispatcher();
-    send(notification("state", state_to_json(api.machine(), sample, api.status(), authority_holder()).dump()));
+    send(notification("state", text_of(state_to_json(api.machine(), sample, api.status(), authority_holder()))));
   }
   if (joints_batch_.size() + drives_batch_.size() > kBatchBytes) flush_topics();
 }
@@ -168,7 +169,7 @@ void Connection::flush_topics() {
     state_now_ = false;
     Dispatcher& api = server_.dispatcher();
     send(notification("state",
-                      state_to_json(api.machine(), api.machine().sample(), api.status(), authority_holder()).dump()));
+                      text_of(state_to_json(api.machine(), api.machine().sample(), api.status(), authority_holder()))));
   }
 }
 

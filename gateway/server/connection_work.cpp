@@ -47,10 +47,6 @@ bool is_slow(const Request& request) {
   return request.method != nullptr && (request.method->slow || (request.large && request.queues_a_move()));
 }
 
-std::string text_of(const nlohmann::json& json) {
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
 }  // namespace
 
 void Connection::take_line(std::string_view line) {
@@ -185,7 +181,7 @@ void Connection::carry_out_aside(const std::shared_ptr<Work>& work) {
 
 bool Connection::settle(Work& work, Answer answer) {
   const Request& request = work.requests[work.next];
-  if (work.batch && answer && answer->is_structured()) work.answer_bytes += answer->dump().size();
+  if (work.batch && answer && answer->is_structured()) work.answer_bytes += text_of(*answer).size();
   const bool full = !answer && answer.error().minor == MinorCode::CommandQueueFull && request.queues_a_move();
   if (full && !work.refuse_moves) {
     if (must_wait(work)) return false;

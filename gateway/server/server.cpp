@@ -99,9 +99,8 @@ void Server::welcome(asio::generic::stream_protocol::socket socket, const char* 
     const std::string why = fmt::format("{} clients are connected, which is the limit", connections_.size());
     spdlog::warn("a client was turned away: {}", why);
     const std::string line =
-        to_response(nullptr,
-                    tl::unexpected<RpcError>(RpcError{rpc_code::kInvalidRequest, why, MinorCode::UnsupportedOperation}))
-            .dump() +
+        text_of(to_response(nullptr, tl::unexpected<RpcError>(
+                                         RpcError{rpc_code::kInvalidRequest, why, MinorCode::UnsupportedOperation}))) +
         '\n';
     asio::error_code ignored;
     socket.write_some(asio::buffer(line), ignored);  // a new socket's buffer has room for one line

@@ -111,12 +111,16 @@ const char* drive_state(std::uint16_t statusword) noexcept {
   }
 }
 
+std::string text_of(const nlohmann::json& json) {
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 std::string notification(const char* topic, const std::string& params) {
   return fmt::format("{{\"jsonrpc\":\"2.0\",\"method\":\"{}\",\"params\":{}}}", topic, params);
 }
 
 std::string event_notification(const Event& event) {
-  return notification("events", event_to_json(event).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  return notification("events", text_of(event_to_json(event)));
 }
 
 }  // namespace rmac::gateway

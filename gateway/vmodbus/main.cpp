@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "gateway/configuration/configuration.hpp"
+#include "gateway/configuration/finite_numbers.hpp"
 #include "gateway/vmodbus/endpoints.hpp"
 #include "vdrive/command.hpp"
 #include "vdrive/line_input.hpp"
@@ -61,7 +62,7 @@ Expected<std::string> find_map(const std::string& name) {
   const std::filesystem::path shipped = folder / (name + ".json");
   std::error_code ignored;
   if (std::filesystem::exists(shipped, ignored)) return shipped.string();
-  if (std::filesystem::exists(name, ignored)) return name;
+  if (std::filesystem::is_regular_file(name, ignored)) return name;
   return refuse(fmt::format("\"{}\" is neither a register map in {} nor a file", name, folder.string()));
 }
 
@@ -242,6 +243,7 @@ int main(int count, char** words) {
   app.add_option("--commands", arguments.commands, "read commands from this FIFO, or - for standard input");
   app.add_flag("--quiet", arguments.quiet, "do not print what changes");
   app.footer(kCommands);
+  gateway::take_finite_numbers_only(app);
   try {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {

@@ -55,7 +55,8 @@ class Appliance:
     def __enter__(self):
         self.process = subprocess.Popen(
             [self.program, "--config", self.configuration],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+            errors="backslashreplace")
         lines = queue.Queue()
         self._reader = threading.Thread(target=self._read_log, args=(lines,))
         self._reader.start()

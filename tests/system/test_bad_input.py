@@ -1,6 +1,7 @@
 """Bad input: each kind gets its own error, and nothing else changes."""
 
 import json
+import os
 import pathlib
 import select
 import socket
@@ -174,6 +175,36 @@ def flood(port, megabytes):
                     view = view[sender.send(view):]
         sender.sendall(b"\n")
         return json.loads(sender.makefile("rb").readline())
+
+
+class FilesThatAreNoText(unittest.TestCase):
+    """Their names and contents come back in messages."""
+
+    def test_are_told_of_in_single_requests_and_in_batches(self):
+        with Appliance(own_tree=True) as appliance:
+            folder = pathlib.Path(os.fsdecode(os.fsencode(appliance.tree) + b"/mill/2-axis/\xff\xfe"))
+            folder.mkdir()
+            (folder / "device.json").write_bytes(b'{"MechanismName": "\xff\n')
+            (appliance.folder / "state/tools").mkdir()
+            (appliance.folder / "state/tools/DMACXYZ.json").write_bytes(b"\xff\x1b")
+            client = appliance.client()
+            client.call("authority.acquire")
+            told = client.exchange('[{"jsonrpc": "2.0", "id": 1, "method": "DeviceDriverManager.Rescan"}]')
+            self.assertEqual(len(told[0]["result"]["problems"]), 1)
+            self.assertIn("?", told[0]["result"]["problems"][0]["message"])
+            refusal = client.refusal("Device.Load", Name="DMACXYZ")
+            self.assertIn("DMACXYZ.json: line 1, column 1 is not JSON", refusal.message)
+            self.assertNotIn("\x1b", refusal.message)
+            self.assertTrue(client.call("DeviceDriverManager.Rescan"))
+
+    def test_module_of_gigabytes_is_refused_without_being_read(self):
+        with Appliance(own_tree=True) as appliance:
+            client = appliance.client()
+            client.call("authority.acquire")
+            with open(appliance.tree / "mill/2-axis/DMACXY/DMACXYKinematics.so", "r+b") as module:
+                module.truncate(3 << 30)
+            refusal = client.refusal("Device.Load", Name="DMACXY")
+            self.assertIn("DMACXYKinematics.so has 3221225472 bytes; at most 67108864 are read", refusal.message)
 
 
 class MotionAfterBadInput(unittest.TestCase):

@@ -44,6 +44,16 @@ class Usage(unittest.TestCase):
             self.assertEqual(done.stdout, "")
             self.assertTrue(done.stderr)
 
+    def test_what_is_no_command_and_no_number_is_named(self):
+        for words, named in ((["fly"], "fly"), (["bus", "fly"], "fly"), (["--fly"], "--fly"),
+                             (["override", "nan"], "nan"), (["jog", "--joint", "0", "--distance", "inf"], "inf"),
+                             (["jog", "--direction", "1", "nan", "0", "--distance", "1"], "nan"),
+                             (["bus", "load", "device.json", "--period", "nan"], "nan"),
+                             (["jog", "--joint", "0", "--distance", "1", "--tool"], "--direction")):
+            done = self.rmac(*words)
+            self.assertEqual(done.returncode, USAGE, words)
+            self.assertIn(named, done.stderr, words)
+
     def test_help_and_version_are_no_errors(self):
         self.assertEqual(self.rmac("--help").returncode, DONE)
         self.assertEqual(self.rmac("run", "--help").returncode, DONE)
@@ -54,6 +64,7 @@ class Usage(unittest.TestCase):
         self.assertEqual((done.returncode, done.stdout), (FAILED, ""))
         self.assertEqual(len(done.stderr.splitlines()), 1)
         self.assertIn("/nonexistent/rmacd.sock", done.stderr)
+        self.assertIn("no appliance answers at " + "a" * 300, self.rmac("--socket", "a" * 300, "status").stderr)
 
 
 class Operating(unittest.TestCase):
@@ -95,7 +106,9 @@ class Operating(unittest.TestCase):
         self.assertAlmostEqual(self.state()["joints"][0], 0, delta=0.02)
 
     def test_moving_what_is_not_loaded_fails(self):
+        self.assertRegex(self.rmac("status"), r"last error +none")
         self.assert_fails("jog", "--joint", "0", "--distance", "1")
+        self.assertRegex(self.rmac("status"), r"last error +MACHINE_ERR_")
         self.assert_fails("load", "Nonsense")
 
     def test_hold_resume_override_and_stop_are_accepted_at_rest(self):

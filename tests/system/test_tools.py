@@ -35,6 +35,12 @@ class Table(unittest.TestCase):
     def appliance(self):
         return Appliance(state_folder=self.state)
 
+    def test_name_of_a_tool_stays_within_its_line(self):
+        with self.appliance() as appliance:
+            appliance.rmac("load", "DMACXYZ")
+            appliance.rmac("tools", "set", "7", "--length", "20", "--name", "ball\n6\x1b[31m")
+            self.assertRegex(appliance.rmac("tools").stdout, r"(?m)^ +7  ball\?6\?\[31m +20 ")
+
     def test_tools_are_kept_and_listed_after_a_restart(self):
         with self.appliance() as appliance:
             self.assertEqual(appliance.rmac("load", "DMACXYZ").returncode, DONE)

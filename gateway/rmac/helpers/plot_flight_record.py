@@ -47,6 +47,7 @@ def draw_states(axes, time, columns):
             axes.broken_barh([(begin, max(end - begin, 1e-9))], (height + 0.1, 0.8), facecolors=colour)
     axes.set_yticks([0.5, 1.5, 2.5], ["fault", "servo loop", "cycle"])
     handles = [plt.Rectangle((0, 0), 1, 1, color=colour) for colour in known.values()]
+    axes.set_ylim(0, 3.6)  # the legend has its place above the bands
     axes.legend(handles, known, loc="upper left", fontsize=7, ncols=max(len(known), 1))
 
 

@@ -12,6 +12,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 SLIDE, TURN = "#2a6f97", "#c06030"
 LIMITS = (("MaxSpeed", ""), ("MaxAcceleration", "²"), ("MaxJerk", "³"))
@@ -49,10 +50,14 @@ def draw_reach(axes, device):
                     axes.plot(*line, color=colour, linewidth=width, linestyle="-" if box is ends else "--")
     names = [joint["Name"] for joint in slides(device)] + ["", "", ""]
     axes.set(xlabel=f"{names[0]}, mm", ylabel=f"{names[1]}, mm", zlabel=f"{names[2]}, mm" if names[2] else "")
+    axes.xaxis.labelpad = axes.yaxis.labelpad = 4
+    axes.tick_params(labelsize=8, pad=-1)
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 2.5, 5, 10]))
     if not names[2]:
         axes.set_zticks([])
     spans = np.array([max(high - low, high_in - low_in, 1) for (low, high), (low_in, high_in) in zip(ends, inner)])
-    axes.set_box_aspect(spans / spans.max())
+    axes.set_box_aspect(spans / spans.max(), zoom=0.85)
     axes.set_title("Travel of the slides\n(dashed: working volume)", fontsize=9)
 
 

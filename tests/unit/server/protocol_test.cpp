@@ -28,6 +28,18 @@ TEST(ServerProtocol, GreetsWithVersionUnitsAndLimits) {
   EXPECT_EQ(greeting["limits"]["queue_capacity"], 10000);
 }
 
+TEST(ServerProtocol, ShowsNamesThatAreOneLineAndWhole) {
+  ServerBench bench;
+  Client holder(bench.port()), watcher(bench.port());
+  std::string name = "ab\\n";
+  for (int i = 0; i < 100; ++i) name += "é";  // of which an odd number of bytes would be cut
+  holder.call("hello", R"({"client":")" + name + "\"}");
+  holder.call("authority.acquire");
+  watcher.call("subscribe", R"({"topics":["state"],"rate_hz":100})");
+  EXPECT_THAT(watcher.json_line()["params"]["authority"].get<std::string>(), testing::StartsWith("ab?é"));
+  EXPECT_EQ(watcher.call("RMAC_CAM.Ok")["result"], true);
+}
+
 TEST(ServerProtocol, AnswersMalformedJsonAndGoesOn) {
   ServerBench bench;
   Client client(bench.port());
