@@ -186,7 +186,7 @@ Result<> tune(Connection& connection, const TuneRequest& request, bool json) {
   const TemporaryFile record;
   const std::string picture = request.picture.empty() ? fmt::format("tune-{}.png", request.joint) : request.picture;
   if (auto fine = check_picture(picture); !fine) return fine;  // before anything moves
-  if (!std::isfinite(request.travel) || request.travel == 0) {
+  if (request.travel == 0) {
     return fail(fmt::format("--travel {}: give the way that the joint may go, in mm or degrees, negative the other way",
                             request.travel));
   }

@@ -8,6 +8,9 @@
 #include <iostream>
 #include <string_view>
 
+#include "gateway/api/dispatcher.hpp"
+#include "gateway/configuration/printable.hpp"
+
 namespace rmac::cli {
 
 namespace {
@@ -37,6 +40,11 @@ constexpr std::array kMoves{"MoveAlong"sv,      "MoveToPathTarget"sv, "MoveToJoi
                             "MoveRotaryAxis"sv, "MoveInArc"sv,        "MoveAllAxis"sv,       "AutoMeasure"sv,
                             "Machine_MoveIn"sv, "Machine_MoveTo"sv};
 
+constexpr std::array kMembers{"jsonrpc"sv, "id"sv, "method"sv, "params"sv};
+
+/// What the appliance takes (`limits.line_bytes` of its greeting).
+constexpr std::size_t kLongestLine = 8U << 20U;
+
 /// Queued behind the moves before it, and the moves after it wait for it.
 constexpr std::string_view kToolChange = "DoToolChange";
 
@@ -61,15 +69,17 @@ std::optional<std::int64_t> move_id_of(const nlohmann::json& params) {
   return std::nullopt;
 }
 
-Result<Request> read_request(const std::string& text, const std::string& place) {
-  nlohmann::json json;
-  try {
-    json = nlohmann::json::parse(text);
-  } catch (const nlohmann::json::parse_error& error) {
-    return fail(fmt::format("{}: not JSON at column {}: write one JSON-RPC request a line", place, error.byte));
-  }
+Result<Request> read_request(std::string_view text, const std::string& place) {
+  const auto parsed = gateway::parse_line(text);  // as strictly as the appliance, which sees it written anew
+  if (!parsed) return fail(fmt::format("{}: {}; write one JSON-RPC request a line", place, parsed.error().message));
+  const nlohmann::json& json = *parsed;
   if (!json.is_object()) {
     return fail(fmt::format("{}: a request is one JSON object, no {}", place, json.type_name()));
+  }
+  for (const auto& [key, value] : json.items()) {
+    if (std::find(kMembers.begin(), kMembers.end(), key) != kMembers.end()) continue;
+    return fail(fmt::format("{}: a request has no member \"{}\"; it has \"jsonrpc\", \"id\", \"method\" and \"params\"",
+                            place, gateway::printable(key)));
   }
   if (!json.contains("method") || !json["method"].is_string()) {
     return fail(fmt::format("{}: the request has no \"method\": a program holds requests only", place));
@@ -119,9 +129,12 @@ Result<Program> read_program(const std::string& file) {
   std::istream& input = file == "-" ? std::cin : opened;
   Program program;
   program.file = file == "-" ? "standard input" : file;
-  std::string text;
-  for (int line = 1; std::getline(input, text); ++line) {
-    if (text.find_first_not_of(" \t\r") == std::string::npos) {
+  std::vector<char> buffer(kLongestLine + 1);
+  int line = 1;
+  for (; input.getline(buffer.data(), static_cast<std::streamsize>(buffer.size())); ++line) {
+    const auto taken = static_cast<std::size_t>(input.gcount());  // with the newline, where there is one
+    const std::string_view text(buffer.data(), input.eof() ? taken : taken - 1);
+    if (text.find_first_not_of(" \t\r") == std::string_view::npos) {
       continue;
     }
     auto request = read_request(text, fmt::format("{}:{}", program.file, line));
@@ -137,6 +150,8 @@ Result<Program> read_program(const std::string& file) {
   if (input.bad()) {
     return fail(fmt::format("{}: cannot be read: {}", program.file, std::generic_category().message(errno)));
   }
+  if (!input.eof())
+    return fail(fmt::format("{}:{}: more than {} bytes are no request", program.file, line, kLongestLine));
   if (program.requests.empty()) {
     return fail(fmt::format("{}: holds no request", program.file));
   }

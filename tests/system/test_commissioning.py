@@ -201,8 +201,7 @@ class Commands(unittest.TestCase):
         self.assertEqual(far.returncode, 1)
         self.assertIn("limit", far.stderr)
         before = self.rmac(appliance, "--json", "status")
-        for words, said in ((("tune", "0", "--travel", "nan"), "give the way"),
-                            (("tune", "0", "--travel", "0"), "give the way"),
+        for words, said in ((("tune", "0", "--travel", "0"), "give the way"),
                             (("tune", "0", "--travel", "5", "-o", "/nowhere/tune.png"), "cannot be written"),
                             (("tune", "0", "--travel", "5", "-o", "tune.bmp"), "ends in .png, .svg or .pdf"),
                             (("measure-following", "-o", "/nowhere/circle.png"), "cannot be written"),

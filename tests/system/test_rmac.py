@@ -47,6 +47,7 @@ class Usage(unittest.TestCase):
     def test_what_is_no_command_and_no_number_is_named(self):
         for words, named in ((["fly"], "fly"), (["bus", "fly"], "fly"), (["--fly"], "--fly"),
                              (["override", "nan"], "nan"), (["jog", "--joint", "0", "--distance", "inf"], "inf"),
+                             (["tune", "0", "--travel", "nan"], "nan"),
                              (["jog", "--direction", "1", "nan", "0", "--distance", "1"], "nan"),
                              (["bus", "load", "device.json", "--period", "nan"], "nan"),
                              (["jog", "--joint", "0", "--distance", "1", "--tool"], "--direction")):
@@ -257,6 +258,13 @@ class Programs(unittest.TestCase):
         self.assert_run_fails("part.rmac:7", request("RMAC_CAM.SetFeedrate", Feedrate=1500), *self.square(), "{broken")
         state = json.loads(self.appliance.rmac("--json", "status").stdout)
         self.assertAlmostEqual(state["joints"][0], 0, delta=0.02)
+
+    def test_what_no_appliance_would_take_is_found_before_anything_moves(self):
+        feed = request("RMAC_CAM.SetFeedrate", Feedrate=1500)
+        twice = '{"jsonrpc": "2.0", "id": 1, "method": "RMAC_CAM.SetFeedrate", "params": {"Feedrate": 1, "Feedrate": 2}}'
+        for bad, reason in ((twice, '"Feedrate" stands twice'), (feed.replace("params", "parms"), 'no member "parms"'),
+                            ("[" * 100, "nested"), ("x" * (9 << 20), "8388608"), ("\0", "JSON")):
+            self.assertIn(reason, self.assert_run_fails("part.rmac:7", feed, *self.square(), bad))
 
     def test_refused_request_names_its_line_and_the_machines_reason(self):
         message = self.assert_run_fails("part.rmac:3", request("RMAC_CAM.SetFeedrate", Feedrate=1500),
