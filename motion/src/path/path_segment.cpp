@@ -33,11 +33,7 @@ std::uint32_t PathSegment::moves_ended(double from, double to) const noexcept {
     const auto index = &stretch_at(s) - stretches_.data();
     return ended_before_[static_cast<std::size_t>(index)];
   };
-  if (!(to > from)) return 0;
-  // From one cycle to the next nothing ends mostly.
-  const MoveStretch* const stretch = &stretch_at(from);
-  const double stretch_end = stretch == &stretches_.back() ? length_ : stretch[1].begin;
-  return to < stretch_end ? 0 : ended(to) - ended(from);
+  return to > from ? ended(to) - ended(from) : 0;
 }
 
 KinematicsStatus PathSegment::resolve(std::span<const double> start_joints, double& s_failed) {
