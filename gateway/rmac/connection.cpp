@@ -14,9 +14,8 @@ namespace {
 
 constexpr std::size_t kMaxLineBytes = 64U << 20U;
 constexpr auto kCallBound = std::chrono::seconds(60);
-/// A machine is verified first, by processes of low priority with bounds of their own: on a computer that is busy for
-/// minutes.
-constexpr auto kVerifyingCallBound = std::chrono::seconds(600);
+/// A machine is verified first, by processes of low priority: longer than the appliance's own patience with them.
+constexpr auto kVerifyingCallBound = std::chrono::seconds(660);
 
 }  // namespace
 

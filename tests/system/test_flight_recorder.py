@@ -75,8 +75,9 @@ class FlightRecorder(unittest.TestCase):
         self.assertEqual(empty.returncode, 1)
         self.assertIn("no flight record yet", empty.stderr)
         client = appliance.operator()
+        recorded = client.state()["cycle"] + 100  # From here on the mechanism is in, whenever that was.
         client.call("subscribe", topics=["state"])
-        client.wait_note("state", lambda state: state["cycle"] > 200)  # Of which the mechanism is in for 100.
+        client.wait_note("state", lambda state: state["cycle"] > recorded)
         client.call("unsubscribe")
         for _ in range(2):
             told = self.rmac(appliance, "trace", "record")

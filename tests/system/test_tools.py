@@ -291,7 +291,9 @@ class Changer(unittest.TestCase):
 
     def change(self, number):
         self.operator.call("RMAC_CAM.DoToolChange", ToolNumber=number)
-        self.watcher.wait_note("events", lambda event: event["kind"] == "ToolChanged")
+        # By its name: the event of the change before may come behind the move that followed that.
+        tool = f"tool {number} is in" if number else "no tool is in"
+        self.watcher.wait_note("events", lambda event: event["kind"] == "ToolChanged" and event["message"].startswith(tool))
 
     def table(self):
         return kept(self.appliance.folder / "state", "DMACXYZA")
