@@ -218,7 +218,9 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
 
   for (const ServoSpindle& spindle : parts.spindles) spindles.emplace_back(spindle, parts.period_s);
   for (const ServoActuator& actuator : parts.actuators) {
-    if (actuator.mode == DriveMode::CyclicSyncTorque) torque_drives |= std::uint32_t{1} << latches.size();
+    const std::uint32_t bit = std::uint32_t{1} << latches.size();
+    if (actuator.mode == DriveMode::CyclicSyncTorque) torque_drives |= bit;
+    if (actuator.bus->interface->answers_late(actuator.axis)) late_drives |= bit;
     latches.push_back(actuator.probe_edge ? std::optional(ProbeLatch(*actuator.probe_edge)) : std::nullopt);
   }
 
@@ -238,6 +240,7 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
       reached[i] = true;
       sense[i] = static_cast<std::int8_t>(shared ? 0 : torques[i] > 0 ? 1 : -1);
     }
+    if ((actuators_of[j] & late_drives) != 0) late_joints |= std::uint32_t{1} << j;
     corrections.emplace_back(parts.axes[j].mechanics);
     force_loops.emplace_back(parts.axes[j].force, parts.period_s);
     filters.emplace_back(parts.axes[j].mechanics, parts.period_s);

@@ -136,8 +136,8 @@ ServoInput ServoLoop::Impl::input(std::size_t joint) const noexcept {
   return {.position_setpoint = hold[joint],
           .velocity_setpoint = set_velocity[joint] + corrections[joint].crossing_velocity(),
           .acceleration_setpoint = set_acceleration[joint] + corrections[joint].crossing_acceleration(),
-          .position = position[joint],
-          .velocity = velocity[joint] + corrections[joint].crossing_velocity(),
+          .position = position[joint] + gone_on[joint],
+          .velocity = velocity[joint] + velocity_gone_on[joint] + corrections[joint].crossing_velocity(),
           .effort = effort[joint],
           .period_s = parts.period_s};
 }
@@ -162,6 +162,8 @@ bool ServoLoop::Impl::operable(std::size_t joint) const noexcept {
 void ServoLoop::Impl::make_live() noexcept {
   if (!driving() || state == ServoState::Homing) return;
   bool all = true;
+  gone_on.fill(0);
+  velocity_gone_on.fill(0);
   for (std::size_t j = 0; j < axes; ++j) {
     if (!live[j] && operable(j)) {
       live[j] = true;
@@ -279,8 +281,9 @@ void ServoLoop::Impl::command_aim(std::size_t actuator, DriveCommand& words) con
     const auto wide = static_cast<std::uint64_t>(std::llround(shaft_counts(actuator, aim[actuator])));
     words.target_position_counts = static_cast<std::int32_t>(static_cast<std::uint32_t>(wide));
   } else {
-    const double wanted = (aim[actuator] - aim_before[actuator]) / parts.period_s +
-                          part.position_gain * (aim[actuator] - shaft[actuator]);
+    const double when_it_told = (late_drives >> actuator & 1U) != 0 ? aim_before[actuator] : aim[actuator];
+    const double wanted =
+        (aim[actuator] - aim_before[actuator]) / parts.period_s + part.position_gain * (when_it_told - shaft[actuator]);
     words.target_velocity_rpm = part.scale.direction * wanted * 30 / std::numbers::pi;
   }
 }

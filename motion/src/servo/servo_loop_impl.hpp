@@ -48,6 +48,7 @@ struct ServoLoop::Impl {
   void watch_spindles(const ServoCommand& command) noexcept;
   void make_live() noexcept;
   void make_setpoints(const ServoCommand& command, ServoReport& report) noexcept;
+  void choose_setpoints(const ServoCommand& command, ServoReport& report) noexcept;
   void follow_force(std::size_t joint, double wanted) noexcept;
   void follow_velocity(std::size_t joint, double wanted, double acceleration) noexcept;
   void run_laws() noexcept;
@@ -90,6 +91,10 @@ struct ServoLoop::Impl {
   [[nodiscard]] bool answering(std::size_t joint) const noexcept;
   [[nodiscard]] double resting_effort(std::size_t joint) const noexcept;
   [[nodiscard]] ServoInput input(std::size_t joint) const noexcept;
+  /// Of the cycle in which the drives were where they say.
+  [[nodiscard]] double following_error(std::size_t joint) const noexcept {
+    return hold[joint] - gone_on[joint] - position[joint];
+  }
   [[nodiscard]] const DriveFeedback& feedback(std::size_t actuator) const noexcept;
   [[nodiscard]] const DriveFeedback& spindle_feedback(std::size_t spindle) const noexcept;
   [[nodiscard]] double wanted_rpm(std::size_t spindle, const ServoCommand& command) const noexcept;
@@ -145,6 +150,9 @@ struct ServoLoop::Impl {
   std::int64_t second_cycles = 0;                        ///< of that second
   std::array<double, kMaxJoints> hold{};
   std::array<double, kMaxJoints> set_velocity{}, set_acceleration{};
+  std::uint32_t late_drives = 0, late_joints = 0;  ///< bit i, j: it tells where it was a cycle before
+  /// How far the setpoints of such joints went in this cycle.
+  std::array<double, kMaxJoints> gone_on{}, velocity_gone_on{};
   std::array<double, kMaxJoints> effort{}, torque{};
   /// Where drives that follow setpoints themselves are sent, and were; `aimed`: they were in the cycle before.
   std::array<double, kMaxJoints> aim{}, aim_before{};

@@ -21,6 +21,17 @@ double speed_before_end(double way, double deceleration, double period_s) noexce
 }  // namespace
 
 void ServoLoop::Impl::make_setpoints(const ServoCommand& command, ServoReport& report) noexcept {
+  const auto before = hold;
+  const auto velocity_before = set_velocity;
+  choose_setpoints(command, report);
+  for (std::size_t j = 0; j < axes; ++j) {
+    if ((late_joints >> j & 1U) == 0) continue;
+    gone_on[j] = hold[j] - before[j];
+    velocity_gone_on[j] = set_velocity[j] - velocity_before[j];
+  }
+}
+
+void ServoLoop::Impl::choose_setpoints(const ServoCommand& command, ServoReport& report) noexcept {
   if (parts.virtual_mode) follows = state == ServoState::Engaged;
   report.follows = follows;
   if (braking) {

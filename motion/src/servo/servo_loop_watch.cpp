@@ -114,7 +114,7 @@ void ServoLoop::Impl::watch_joints() noexcept {
     }
     watch_jump(j);
     watch_sensor(j);
-    const double error = hold[j] - position[j];
+    const double error = following_error(j);
     const double bound = parts.axes[j].max_following_error;
     if (!(std::abs(error) <= bound)) {
       raise({ServoFault::Kind::FollowingError, ServoFault::Part::Joint, static_cast<std::uint32_t>(j), error, bound});

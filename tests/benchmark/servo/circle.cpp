@@ -5,12 +5,22 @@ namespace rmac::bench {
 
 using namespace mill_test;
 
+namespace {
+
+class LateMillRun : public MillRun {
+ public:
+  LateMillRun() { simulated_->set_answers_late(true); }
+};
+
+}  // namespace
+
 void circle_rows(Figures& figures) {
   const char* const note = "50 mm at 6 m/min, 1 kHz, torque mode, friction 19 N, at the shafts";
   const Ballbar pid = MillRun().measure_circle({});
   const Ballbar fuzzy = MillRun().measure_circle([](nlohmann::json& device) { choose_fuzzy(device, 120); });
   const Ballbar exact = MillRun().measure_circle([](nlohmann::json& device) { choose_feedforward(device); });
   const Ballbar wrong = MillRun().measure_circle([](nlohmann::json& device) { choose_feedforward(device, 0.9); });
+  const Ballbar late = LateMillRun().measure_circle([](nlohmann::json& device) { choose_feedforward(device); });
   figures.inform("circle_contour_pid", 1e3 * pid.contour_error(), "um", note);
   figures.inform("circle_contour_fuzzy", 1e3 * fuzzy.contour_error(), "um", "PID's gains at its centre");
   figures.at_most("circle_contour_feedforward", 1e3 * exact.contour_error(), 5, "um", note);
@@ -19,6 +29,9 @@ void circle_rows(Figures& figures) {
   figures.at_most("circle_reversal_spike_feedforward", 1e3 * exact.reversal_spike(), 3, "um", note);
   figures.at_most("circle_reversal_spike_feedforward_model_10_percent_low", 1e3 * wrong.reversal_spike(), 3, "um",
                   note);
+  const char* const late_note = "drives answer a cycle late, as on CAN";
+  figures.at_most("circle_contour_feedforward_late_answers", 1e3 * late.contour_error(), 5, "um", late_note);
+  figures.at_most("circle_reversal_spike_feedforward_late_answers", 1e3 * late.reversal_spike(), 3, "um", late_note);
   LawChanges all;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const LawChanges changes = LawChangesOnMill().change_laws_on_circle(seed);

@@ -18,6 +18,15 @@ TEST_F(LawsOnMill, FeedforwardHoldsACircleWithinFiveMicrometresAtSixMetresAMinut
   record(ballbar);
 }
 
+// As on CAN: a drive's answer is one cycle old when it is read.
+TEST_F(LawsOnMill, FeedforwardHoldsItWithDrivesThatAnswerACycleLate) {
+  simulated_->set_answers_late(true);
+  const Ballbar ballbar = measure_circle([](nlohmann::json& device) { choose_feedforward(device); });
+  EXPECT_LT(ballbar.contour_error(), 0.005);
+  EXPECT_LT(ballbar.reversal_spike(), 0.003);
+  record(ballbar);
+}
+
 // No axis is known exactly: friction alone changes by more than that between a cold and a warm machine.
 TEST_F(LawsOnMill, FeedforwardThatIsATenthTooSmallStillHoldsIt) {
   const Ballbar ballbar = measure_circle([](nlohmann::json& device) { choose_feedforward(device, 0.9); });

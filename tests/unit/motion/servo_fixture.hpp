@@ -124,6 +124,7 @@ class FakeBus : public DigitalControlInterface {
     }
     return works;
   }
+  [[nodiscard]] bool answers_late(std::size_t /*axis*/) const noexcept override { return late; }
 
   struct Drive {
     DriveFeedback words{.statusword = 0x40, .online = true};
@@ -132,6 +133,7 @@ class FakeBus : public DigitalControlInterface {
   };
   std::vector<Drive> drives;
   bool works = true;
+  bool late = false;
   int exchanges = 0;
 
  private:

@@ -47,6 +47,7 @@ class SimulatedInterface : public DigitalControlInterface {
   }
   [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override { return modes_[axis]; }
   [[nodiscard]] bool tells_torque(std::size_t /*axis*/) const noexcept override { return true; }
+  [[nodiscard]] bool answers_late(std::size_t /*axis*/) const noexcept override { return !before_.empty(); }
   [[nodiscard]] bool latches(std::size_t axis, TouchProbeEdge /*edge*/) const noexcept override {
     return !is_spindle(axis);
   }
@@ -67,8 +68,8 @@ class SimulatedInterface : public DigitalControlInterface {
   void set_sensor_lost(bool lost) noexcept { sensor_lost_ = lost; }
   /// Puts a part under the tool. Before the first exchange.
   void set_contact(const SimulatedContact& contact) noexcept { contact_ = contact; }
-  /// Answers are those of the exchange before, as on a bus whose drives answer a SYNC while nobody reads on. Before the
-  /// first exchange.
+  /// Answers are those of the exchange before, as on a bus whose drives answer a SYNC while nobody reads on. Before a
+  /// servo loop is made with it.
   void set_answers_late(bool late) { before_.resize(late ? drives_.size() : 0); }
   /// The bus itself fails, as on bus-off; and works again.
   void set_bus_failed(bool failed) noexcept { bus_failed_ = failed; }

@@ -45,6 +45,7 @@ class CanopenInterface final : public DigitalControlInterface {
                               std::span<DriveFeedback> feedback) noexcept override;
   [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override;
   [[nodiscard]] bool tells_torque(std::size_t axis) const noexcept override;
+  [[nodiscard]] bool answers_late(std::size_t /*axis*/) const noexcept override { return true; }
   [[nodiscard]] std::uint32_t input_bits(std::size_t axis) const noexcept override;
   /// By its encoder resolution, gear ratio and feed constant.
   [[nodiscard]] double counts_per_revolution(std::size_t axis) const noexcept override;

@@ -92,6 +92,9 @@ class DigitalControlInterface {
   [[nodiscard]] virtual double counts_per_revolution(std::size_t /*axis*/) const noexcept { return 0; }
   /// Whether the answers of this axis hold its torque (6077h).
   [[nodiscard]] virtual bool tells_torque(std::size_t /*axis*/) const noexcept { return false; }
+  /// Whether this axis tells in an exchange where it was one cycle before: where the SYNC of an exchange has the drives
+  /// measure, and the next exchange reads what they answered.
+  [[nodiscard]] virtual bool answers_late(std::size_t /*axis*/) const noexcept { return false; }
   /// Whether this axis can latch its position at `edge`.
   [[nodiscard]] virtual bool latches(std::size_t /*axis*/, TouchProbeEdge /*edge*/) const noexcept { return false; }
 };

@@ -12,9 +12,11 @@ struct ServoInput {
   double velocity_setpoint = 0;
   double acceleration_setpoint = 0;
   double effort_setpoint = 0;  ///< wanted contact force, for force control
-  double position = 0;         ///< measured
-  double velocity = 0;         ///< measured
-  double effort = 0;           ///< measured by a force sensor where there is one, else by the drive
+  /// Measured. Where the drives tell what was a cycle before, moved on by what the setpoint did since: the difference
+  /// to the setpoint is what it was when they measured.
+  double position = 0;
+  double velocity = 0;  ///< the same
+  double effort = 0;    ///< measured by a force sensor where there is one, else by the drive
   double period_s = 0.001;
 };
 
