@@ -57,7 +57,9 @@ struct Controller::Impl {
   void dispatch();
   void deliver_samples_until(std::int64_t cycle);
   void tell(Event event);
-  void tell_faults();
+  /// Faults, and these, in the order in which they happened.
+  void take_events(const std::vector<Event>& events);
+  void tell_events_before(std::int64_t cycle);
   void tell_records();
   /// Has the cycles up to that of `event` written; the name of the record.
   [[nodiscard]] Expected<std::string> record(FlightCause cause, const Event& event);
@@ -83,6 +85,7 @@ struct Controller::Impl {
   std::vector<std::function<void(const Event&)>> event_listeners;
   std::vector<std::function<void(const CycleSample&)>> sample_listeners;
   std::deque<CycleSample> waiting_samples;
+  std::deque<Event> waiting_events;
   std::optional<Event> last_stop;
   MoveLedger ledger;
 };

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "gateway/controller/controller_impl.hpp"
@@ -27,23 +28,34 @@ void Controller::Impl::deliver_samples_until(std::int64_t cycle) {
   while (!waiting_samples.empty() && waiting_samples.front().cycle <= cycle) {
     const CycleSample sample = waiting_samples.front();
     waiting_samples.pop_front();
+    tell_events_before(sample.cycle);
     for (const auto& listener : sample_listeners) listener(sample);
     ledger.read(sample, [this](const Event& event) { tell(event); });
     measuring.read(sample, [this](Event event) { tell(std::move(event)); });
   }
 }
 
-void Controller::Impl::tell_faults() {
+void Controller::Impl::take_events(const std::vector<Event>& events) {
   FaultRecord record;
   while (link->faults.pop(record)) {
     const Mechanism* mechanism = in_force && record.generation == generation ? in_force.get() : nullptr;
-    tell({Event::Kind::Fault,
-          record.t_s,
-          record.move_id,
-          describe(record.fault, mechanism),
-          record.cycle,
-          {},
-          code_of(record.fault.kind)});
+    waiting_events.push_back({Event::Kind::Fault,
+                              record.t_s,
+                              record.move_id,
+                              describe(record.fault, mechanism),
+                              record.cycle,
+                              {},
+                              code_of(record.fault.kind)});
+  }
+  waiting_events.insert(waiting_events.end(), events.begin(), events.end());
+  std::ranges::stable_sort(waiting_events, {}, &Event::cycle);
+}
+
+void Controller::Impl::tell_events_before(std::int64_t cycle) {
+  while (!waiting_events.empty() && waiting_events.front().cycle < cycle) {
+    const Event event = std::move(waiting_events.front());
+    waiting_events.pop_front();
+    tell(event);
   }
 }
 
@@ -89,6 +101,7 @@ void Controller::Impl::dispatch() {
   // News first, samples second: then every sample that a piece of news follows from is among them, and told before it.
   const MotionSupervisor::News news = supervisor.take_news();
   drain();
+  take_events(news.events);
   using Kind = MotionSupervisor::QueueChange::Kind;
   for (const MotionSupervisor::QueueChange& change : news.queue) {
     if (change.kind == Kind::Added || change.kind == Kind::Still) {
@@ -102,9 +115,9 @@ void Controller::Impl::dispatch() {
       ledger.restart();
     }
   }
-  deliver_samples_until(std::numeric_limits<std::int64_t>::max());
-  tell_faults();
-  for (const Event& event : news.events) tell(event);
+  constexpr auto kAll = std::numeric_limits<std::int64_t>::max();
+  deliver_samples_until(kAll);
+  tell_events_before(kAll);
   tell_records();
   measuring.advance();
 }

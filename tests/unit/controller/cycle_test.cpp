@@ -47,6 +47,26 @@ TEST_F(Cycle, AMoveToWhereTheToolWillStandIsDoneInItsTurn) {
   EXPECT_THAT(done, testing::ElementsAre(1, 2, 3, 4));
 }
 
+TEST_F(Cycle, EventsAreToldInTheOrderInWhichTheyHappenedHoweverLate) {
+  constexpr std::int64_t kNearlyAll = 4000;  // cycles that the machine may be ahead
+  Vector at{0, 0, 0};
+  for (std::int64_t id = 1; id <= 6; ++id) {
+    const Vector next{id % 2 == 0 ? 0.0 : 5.0, static_cast<double>(id), 0};
+    ASSERT_TRUE(machine_.line(id, at, next));
+    at = next;
+  }
+  ASSERT_TRUE(machine_.run_until([&] { return !machine_.samples.empty(); }));
+  machine_.events.clear();
+  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  while (cam().moves_in_buffer() > 0) {
+    const bool waits = machine_.controller.sample().cycle - machine_.samples.back().cycle >= kNearlyAll;
+    if (waits) machine_.controller.dispatch();
+  }
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 6));
+  EXPECT_EQ(machine_.count(Event::Kind::CycleStateChanged), 1) << "Idle to Running";
+  EXPECT_TRUE(std::ranges::is_sorted(machine_.events, {}, &Event::cycle));
+}
+
 TEST_F(Cycle, MovesWithoutMotionCountAsQueuedUntilTheirTurn) {
   const ToolPose corner{{10, 0, 0}, {0, 0, 1}};
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, corner.tip));
