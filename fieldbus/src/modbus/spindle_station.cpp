@@ -141,6 +141,13 @@ void SpindleStation::check_read_back() noexcept {
   if (to_words(place, image_.number(place)) != *speed_) speed_.reset();
 }
 
+/// The drive tripped between the reading of its code and that of its state.
+bool SpindleStation::lacks_its_code() const noexcept {
+  const SpindleMap& map = config_.map;
+  const bool told = (values_.load(std::memory_order_relaxed) & kTripped) != 0;
+  return !told && map.tripped && map.fault_code && image_.holds(*map.tripped) && image_.raw(*map.fault_code) == 0;
+}
+
 /// A stop goes out before anything is asked, in doubt too: once, and then again seldom, because a slave may have to be
 /// left alone before its answers can be trusted again.
 Answer<> SpindleStation::stop_at_once(Client& client) {
@@ -156,7 +163,8 @@ Answer<> SpindleStation::stop_at_once(Client& client) {
 Answer<> SpindleStation::serve(Client& client) {
   if (auto stopped = stop_at_once(client); !stopped) return stopped;
   if (auto sure = image_.resynchronise(client, config_.slave); !sure) return sure;
-  const auto asked = image_.read(client, config_.slave);
+  auto asked = image_.read(client, config_.slave);
+  if (asked && lacks_its_code()) asked = image_.read(client, config_.slave);
   if (!asked) return tl::unexpected(asked.error());
   check_read_back();
   publish(*asked);

@@ -44,6 +44,7 @@ class SpindleStation final : public Station {
   Answer<> apply(Client& client, std::int32_t rpm);
   Answer<> reset_if_asked(Client& client);
   void check_read_back() noexcept;
+  [[nodiscard]] bool lacks_its_code() const noexcept;
   void publish(Clock::time_point asked) noexcept;
 
   SpindleConfig config_;

@@ -60,7 +60,7 @@ class ModbusSpindle : public testing::TestWithParam<Wire> {
     peer.respond([this](const Bytes& request) { return bank.answer(request); });
   }
 
-  void bring_up(std::chrono::milliseconds stale = 30s) {
+  void bring_up(std::chrono::milliseconds stale = 30s, const SpindleMap& drives_map = map()) {
     SpindleLineConfig config;
     config.line.endpoint = peer.endpoint();
     config.line.deadline = 50ms;
@@ -69,7 +69,7 @@ class ModbusSpindle : public testing::TestWithParam<Wire> {
     config.line.longest_pause = 5ms;
     config.stale = stale;
     config.boot_timeout = 60s;
-    config.axes = {{.slave = 4, .rpm_per_hz = 60, .maximum_hz = 0, .map = map()}};
+    config.axes = {{.slave = 4, .rpm_per_hz = 60, .maximum_hz = 0, .map = drives_map}};
     spindle = std::make_unique<SpindleInterface>(std::move(config));
     const auto started = spindle->start();
     ASSERT_TRUE(started) << started.error().message;
@@ -176,6 +176,29 @@ TEST_P(ModbusSpindle, ReportsAFaultInItsDrivesWordsUntilItIsReset) {
       DriveWish::QuickStop, 1500, [&](const DriveFeedback& words) { return !in_fault(words); }, true));
   EXPECT_EQ(bank.get(kHolding, kActual), 0) << "nothing starts by itself";
   EXPECT_TRUE(run_at(1500));
+}
+
+TEST_P(ModbusSpindle, TellsTheCodeOfATripThatCameAfterItsCodeWasRead) {
+  constexpr std::uint16_t kEarlyFault = kStatus - 1;
+  SpindleMap one_by_one = map();
+  one_by_one.most_per_read = 1;
+  one_by_one.fault_code = Place{kHolding, kEarlyFault};
+  std::atomic<bool> trips{false};
+  peer.respond([&](const Bytes& request) {
+    const Bytes answer = bank.answer(request);
+    if (request[1] == 3 && request[3] == kEarlyFault && trips.exchange(false)) {
+      bank.set(kHolding, kEarlyFault, 7);
+      bank.set(kHolding, kStatus, 4);
+    }
+    return answer;
+  });
+  bring_up(30s, one_by_one);
+  ASSERT_TRUE(run_at(1500));
+  trips = true;
+  ASSERT_TRUE(run_until(DriveWish::Operational, 1500,
+                        [](const DriveFeedback& words) { return drive_state(words.statusword) == DriveState::Fault; }));
+  EXPECT_EQ(feedback[0].error_code, 7);
+  spindle->stop();  // before what it asks is gone
 }
 
 TEST_P(ModbusSpindle, ThatSomeoneElseStoppedIsDropped) {
