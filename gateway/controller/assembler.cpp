@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "gateway/controller/bus_choice.hpp"
+#include "gateway/controller/exchangeable_law.hpp"
 #include "gateway/controller/simulated_io.hpp"
 #include "rmac/sdk/servo_law_names.hpp"
 
@@ -60,9 +61,9 @@ Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loade
                  joint.max_effort, joint.mechanics, bounds(joint, period_s),
                  std::nullopt,     force(joint)};
   if (joint.servo_law.name.empty()) return axis;
-  auto law = load_law(joint.servo_law, joint.gains, "joint " + joint.limits.name, loader, modules);
+  auto law = load_joint_law(joint, loader, modules);
   if (!law) return tl::unexpected(law.error());
-  axis.law = std::move(*law);
+  axis.law = std::make_shared<ExchangeableLaw>(std::move(*law));
   return axis;
 }
 
@@ -333,6 +334,11 @@ Expected<> add_geometry(const sdk::DeviceObject& device, const ModuleLoader& loa
 }
 
 }  // namespace
+
+Expected<std::shared_ptr<ServoLaw>> load_joint_law(const sdk::Joint& joint, const ModuleLoader& loader,
+                                                   std::vector<ModuleInUse>& modules) {
+  return load_law(joint.servo_law, joint.gains, "joint " + joint.limits.name, loader, modules);
+}
 
 Expected<std::shared_ptr<Mechanism>> assemble(const sdk::DeviceObject& device, const AssemblyOptions& options,
                                               const ModuleLoader& loader, BusRegistry& registry) {

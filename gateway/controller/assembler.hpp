@@ -27,4 +27,8 @@ struct AssemblyOptions {
                                                             const AssemblyOptions& options, const ModuleLoader& loader,
                                                             BusRegistry& registry);
 
+/// The law that a joint names, with its gains; adds its module to `modules`. Gateway thread.
+[[nodiscard]] Expected<std::shared_ptr<ServoLaw>> load_joint_law(const sdk::Joint& joint, const ModuleLoader& loader,
+                                                                 std::vector<ModuleInUse>& modules);
+
 }  // namespace rmac::gateway

@@ -26,7 +26,7 @@ Controller::Impl::Impl(ControllerOptions controller_options)
       supervisor({.period_s = options.period_s, .queue_capacity = options.queue_capacity}, *link),
       thread(thread_options(options), *link, supervisor),
       draft(
-          {[this](const sdk::DeviceObject& device, bool fresh) { return put_in(device, fresh); },
+          {[this](const sdk::DeviceObject& device, ConfigDraft::Extent extent) { return apply(device, extent); },
            [this](const sdk::ModuleChoice& choice) { return registry.check_control_interface(choice, loader(folder)); },
            [this](const sdk::ModuleChoice& choice) { return registry.check_io_interface(choice, loader(folder)); }}),
       rack(options.tools_folder),

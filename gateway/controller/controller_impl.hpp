@@ -28,19 +28,27 @@ struct Controller::Impl {
 
   // Changing mechanisms (mechanism_change.cpp).
   [[nodiscard]] Expected<> put_in(const sdk::DeviceObject& device, bool fresh);
+  /// Puts a draft in force as far as it goes beyond what is.
+  [[nodiscard]] Expected<> apply(const sdk::DeviceObject& device, ConfigDraft::Extent extent);
   [[nodiscard]] Expected<> take_out();
   /// Takes the power off the mechanism in force, and the servo thread away from it.
   [[nodiscard]] Expected<> switch_off();
   /// Puts in the mechanism in force with another interface to its drives (interface_change.cpp).
   [[nodiscard]] Expected<> exchange_interface(const sdk::DeviceObject& device);
-  [[nodiscard]] static bool same_interface(const sdk::DeviceObject& one, const sdk::DeviceObject& other);
+  [[nodiscard]] static bool same_choice(const sdk::ModuleChoice& one, const sdk::ModuleChoice& other);
+  /// Laws of the mechanism in force (law_change.cpp): joints whose law or gains `device` has otherwise, and what puts
+  /// these in, at rest or in motion.
+  [[nodiscard]] std::vector<std::size_t> joints_with_other_laws(const sdk::DeviceObject& device) const;
+  [[nodiscard]] Expected<> exchange_laws(const sdk::DeviceObject& device, const std::vector<std::size_t>& joints);
   void bound_spindles(const sdk::DeviceObject& device);
   [[nodiscard]] Expected<> reset();
   void come_to_rest() noexcept;
   void tell_of_mechanism(std::string message);
 
   void tell_cam(const sdk::DeviceObject* device, bool fresh);
+  [[nodiscard]] Expected<> fit_for_change(const char* what);
   [[nodiscard]] Expected<> ready_for_change(const char* what);
+  [[nodiscard]] Expected<> ask_servo_thread(SwapRequest& request);
   [[nodiscard]] Expected<> swap(Mechanism* next);
   [[nodiscard]] Expected<> switch_to(std::shared_ptr<Mechanism> next, bool keep_running);
   [[nodiscard]] Expected<> power_on();

@@ -8,9 +8,8 @@
 
 namespace rmac::gateway {
 
-bool Controller::Impl::same_interface(const sdk::DeviceObject& one, const sdk::DeviceObject& other) {
-  const sdk::ModuleChoice &a = one.digital_control_interface, &b = other.digital_control_interface;
-  return a.name == b.name && a.numbers == b.numbers && a.texts == b.texts;
+bool Controller::Impl::same_choice(const sdk::ModuleChoice& one, const sdk::ModuleChoice& other) {
+  return one.name == other.name && one.numbers == other.numbers && one.texts == other.texts;
 }
 
 Expected<> Controller::Impl::exchange_interface(const sdk::DeviceObject& device) {

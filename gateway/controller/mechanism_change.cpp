@@ -53,34 +53,41 @@ bool Controller::Impl::wait_for(Reached&& reached) {
   return true;
 }
 
-Expected<> Controller::Impl::ready_for_change(const char* what) {
+Expected<> Controller::Impl::fit_for_change(const char* what) {
   if (!running) return failure(MinorCode::Other, fmt::format("{}: the controller is not running; start it", what));
   const CycleState state = supervisor.state();
   if (is_faulted(state)) {
     return failure(MinorCode::Other,
                    fmt::format("{}: the machine is {}; remove the cause and reset first", what, to_string(state)));
   }
-  return supervisor.require_rest(what);
+  return {};
 }
 
-Expected<> Controller::Impl::swap(Mechanism* next) {
-  SwapRequest request;
-  request.next = next;
-  request.generation = generation + 1;
+Expected<> Controller::Impl::ready_for_change(const char* what) {
+  return fit_for_change(what).and_then([&] { return supervisor.require_rest(what); });
+}
+
+Expected<> Controller::Impl::ask_servo_thread(SwapRequest& request) {
   link->swap.store(&request, std::memory_order_release);
   const auto answered = [&] { return request.result.load(std::memory_order_acquire) != SwapRequest::Result::Waiting; };
   if (!wait_for(answered)) {
     // Taken back unless the servo thread got hold of it just now; then its answer is certain, and near.
     if (link->swap.exchange(nullptr, std::memory_order_acq_rel) == &request) {
-      return failure(MinorCode::ResponseTimeout, "the servo thread does not run cycles, so no mechanism can be put in");
+      return failure(MinorCode::ResponseTimeout, "the servo thread does not run cycles, so nothing can be put in");
     }
     while (!answered()) std::this_thread::yield();
   }
   if (request.result.load(std::memory_order_acquire) == SwapRequest::Result::Refused) {
     return failure(MinorCode::Other, "the machine is moving; a mechanism is put in at rest only");
   }
-  ++generation;
   return {};
+}
+
+Expected<> Controller::Impl::swap(Mechanism* next) {
+  SwapRequest request;
+  request.next = next;
+  request.generation = generation + 1;
+  return ask_servo_thread(request).map([this] { ++generation; });
 }
 
 Expected<> Controller::Impl::switch_to(std::shared_ptr<Mechanism> next, bool keep_running) {
@@ -143,6 +150,14 @@ void Controller::Impl::leave_fault() {
   });
 }
 
+Expected<> Controller::Impl::apply(const sdk::DeviceObject& device, ConfigDraft::Extent extent) {
+  if (extent == ConfigDraft::Extent::Laws) {
+    const std::vector<std::size_t> joints = joints_with_other_laws(device);
+    if (!joints.empty()) return exchange_laws(device, joints);
+  }
+  return put_in(device, extent == ConfigDraft::Extent::Mechanism);
+}
+
 Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh) {
   if (auto ready = ready_for_change("putting in a configuration"); !ready) return ready;
   // The same machine in another role: part and tool are where they were, and what its outputs hold stays held.
@@ -153,7 +168,8 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
   auto tools = rack.read(device.machine());
   if (!tools) return tl::unexpected(tools.error());
   const bool virtual_before = in_force && in_force->virtual_mode();
-  const bool on_its_buses = fresh || !in_force || virtual_mode || same_interface(in_force->device, device);
+  const bool on_its_buses = fresh || !in_force || virtual_mode ||
+                            same_choice(in_force->device.digital_control_interface, device.digital_control_interface);
   if (!on_its_buses) return exchange_interface(device);
   auto before = in_force;
   auto next = assemble(device, assembly_options(virtual_mode), loader(folder), registry);

@@ -21,6 +21,11 @@ void ServoCycle::run(std::uint64_t missed) noexcept {
 void ServoCycle::serve_swap() noexcept {
   SwapRequest* const request = link_.swap.exchange(nullptr, std::memory_order_acq_rel);
   if (request == nullptr) return;
+  if (!request->laws.empty()) {
+    for (SwapRequest::Law& other : request->laws) other.joint->exchange(other.law);
+    request->result.store(SwapRequest::Result::Done, std::memory_order_release);
+    return;
+  }
   if (status_.moving) {
     request->result.store(SwapRequest::Result::Refused, std::memory_order_release);
     return;

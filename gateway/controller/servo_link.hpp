@@ -4,9 +4,12 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <memory>
+#include <span>
 
 #include "gateway/controller/cycle_history.hpp"
 #include "gateway/controller/cycle_times.hpp"
+#include "gateway/controller/exchangeable_law.hpp"
 #include "gateway/controller/machine_state.hpp"
 #include "gateway/controller/mechanism.hpp"
 #include "gateway/controller/snapshot.hpp"
@@ -54,8 +57,14 @@ struct FaultRecord {
 };
 
 /// Another mechanism for the servo loop, or none. It is put in between two cycles, at standstill; `refused` otherwise.
+/// Or, where there are `laws`, these for joints of the mechanism in force, at standstill or in motion.
 struct SwapRequest {
   enum class Result : std::uint8_t { Waiting, Done, Refused };
+  struct Law {
+    ExchangeableLaw* joint = nullptr;
+    std::shared_ptr<ServoLaw> law;  ///< for it; afterwards the one that it had
+  };
+  std::span<Law> laws;
   Mechanism* next = nullptr;
   std::uint64_t generation = 0;
   std::atomic<Result> result{Result::Waiting};

@@ -13,9 +13,10 @@ Expected<> Cam::set_joint_force(int joint, double force) {
   const sdk::Joint& there = device_->joints[*found];
   if (there.method != ControlMethod::Force || !there.force) {
     return failure(MinorCode::UnsupportedOperation,
-                   fmt::format("{}: joint {} ({}) is under position control; choose DMAC_FORCE_CONTROL with "
+                   fmt::format("{}: joint {} ({}) is under {} control; choose DMAC_FORCE_CONTROL with "
                                "SetMechanismJointControlMethod and Apply first",
-                               kFunction, joint, there.limits.name));
+                               kFunction, joint, there.limits.name,
+                               there.method == ControlMethod::Velocity ? "velocity" : "position"));
   }
   const double least = there.force->contact_force, most = there.force->max_force;
   if (!std::isfinite(force) || (force != 0 && !(std::abs(force) >= least && std::abs(force) <= most))) {

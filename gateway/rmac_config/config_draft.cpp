@@ -41,7 +41,12 @@ sdk::Joint without_what_is_set(const sdk::Joint& joint) {
 void ConfigDraft::discard(const sdk::DeviceObject* in_force) {
   draft_ = in_force != nullptr ? *in_force : sdk::DeviceObject{};
   begun_ = in_force != nullptr;
-  new_mechanism_ = false;
+  extent_ = Extent::Laws;
+}
+
+sdk::DeviceObject& ConfigDraft::edit() noexcept {
+  extent_ = std::max(extent_, Extent::Configuration);
+  return draft_;
 }
 
 Expected<> ConfigDraft::begin(const sdk::DeviceObject& device) {
@@ -49,6 +54,7 @@ Expected<> ConfigDraft::begin(const sdk::DeviceObject& device) {
   // The rest is for the device driver to set, joint by joint; what no setter sets stays as device.json has it.
   described_.clear();
   for (const sdk::Joint& joint : device.joints) described_.push_back(without_what_is_set(joint));
+  described_spindles_ = device.spindles;
   draft_.joints.clear();
   for (sdk::Joint& joint : draft_.held_joints) joint = without_what_is_set(joint);
   draft_.kinematics = {};
@@ -56,7 +62,7 @@ Expected<> ConfigDraft::begin(const sdk::DeviceObject& device) {
   draft_.digital_control_interface = {};
   draft_.digital_io_interface = {};
   begun_ = true;
-  new_mechanism_ = true;
+  extent_ = Extent::Mechanism;
   return {};
 }
 
@@ -65,7 +71,7 @@ Expected<> ConfigDraft::apply() {
     return failure(MinorCode::Other,
                    "Apply: there is no mechanism to configure; load a device driver with Device.Load");
   }
-  return controller_.apply(draft_, new_mechanism_).map([this] { new_mechanism_ = false; });
+  return controller_.apply(draft_, extent_).map([this] { extent_ = Extent::Laws; });
 }
 
 Expected<sdk::Joint*> ConfigDraft::joint(int number, const char* function) {
@@ -82,7 +88,10 @@ Expected<sdk::Joint*> ConfigDraft::joint(int number, const char* function) {
 
 template <typename Change>
 Expected<> ConfigDraft::change_joint(int number, const char* function, Change&& change) {
-  return joint(number, function).map([&](sdk::Joint* found) { change(*found); });
+  return joint(number, function).map([&](sdk::Joint* found) {
+    (void)edit();
+    change(*found);
+  });
 }
 
 Expected<> ConfigDraft::set_limit(int number, const char* function, const char* key, double value,
@@ -93,31 +102,36 @@ Expected<> ConfigDraft::set_limit(int number, const char* function, const char* 
 }
 
 Expected<> ConfigDraft::set_kinematics(const sdk::ModuleChoice& module) {
-  return set_module("SetMechanismKinematics", module, draft_.kinematics);
+  return set_module("SetMechanismKinematics", module, edit().kinematics);
 }
 
 Expected<> ConfigDraft::set_actuator_map(const sdk::ModuleChoice& module) {
-  return set_module("SetMechanismActuatorMap", module, draft_.actuator_map);
+  return set_module("SetMechanismActuatorMap", module, edit().actuator_map);
 }
 
 Expected<> ConfigDraft::set_number_of_joints(int count) {
   return check_count("SetMechanismNumberOfJoints", count, 1, kMaxJoints - draft_.held_joints.size()).map([&] {
-    for (std::size_t i = draft_.joints.size(); i < static_cast<std::size_t>(count); ++i) {
-      draft_.joints.push_back(i < described_.size() ? described_[i] : sdk::Joint{});
+    auto& joints = edit().joints;
+    for (std::size_t i = joints.size(); i < static_cast<std::size_t>(count); ++i) {
+      joints.push_back(i < described_.size() ? described_[i] : sdk::Joint{});
     }
-    draft_.joints.resize(static_cast<std::size_t>(count));
+    joints.resize(static_cast<std::size_t>(count));
   });
 }
 
 Expected<> ConfigDraft::set_number_of_spindles(int count) {
   return check_count("SetMechanismNumberOfSpindles", count, 0, kMaxSpindles).map([&] {
-    draft_.spindles.resize(static_cast<std::size_t>(count));
+    auto& spindles = edit().spindles;
+    for (std::size_t i = spindles.size(); i < static_cast<std::size_t>(count); ++i) {
+      spindles.push_back(i < described_spindles_.size() ? described_spindles_[i] : sdk::Spindle{});
+    }
+    spindles.resize(static_cast<std::size_t>(count));
   });
 }
 
 Expected<> ConfigDraft::set_number_of_actuators(int count) {
   return check_count("SetMechanismNumberOfActuators", count, 1, kMaxJoints).map([&] {
-    draft_.actuators.resize(static_cast<std::size_t>(count));
+    edit().actuators.resize(static_cast<std::size_t>(count));
   });
 }
 
@@ -157,7 +171,7 @@ Expected<> ConfigDraft::set_joint_maximum_jerk(int number, double value) {
 
 Expected<> ConfigDraft::set_maximum_feedrate(double mm_min) {
   return check_device_range("MaxFeedrate", mm_min, "SetMechanismMaxFeedrate").map([&] {
-    draft_.max_feedrate_mm_min = mm_min;
+    edit().max_feedrate_mm_min = mm_min;
   });
 }
 
@@ -167,6 +181,7 @@ Expected<> ConfigDraft::set_joint_control_method(int number, ControlMethod metho
 
 Expected<> ConfigDraft::set_joint_servo_control_law(int number, const sdk::ModuleChoice& module) {
   return joint(number, "SetMechanismJointServoControlLaw").and_then([&](sdk::Joint* found) {
+    if (found->servo_law.name.empty()) (void)edit();  // a loop that its drive closed so far
     return set_module("SetMechanismJointServoControlLaw", module, found->servo_law);
   });
 }
@@ -176,8 +191,9 @@ Expected<> ConfigDraft::set_joint_servo_control_gains(int number, std::span<cons
     if (auto sound = check_device_range("joint/Gains", gain, "SetMechanismJointServoControlGains"); !sound)
       return sound;
   }
-  return change_joint(number, "SetMechanismJointServoControlGains",
-                      [&](sdk::Joint& found) { found.gains.assign(gains.begin(), gains.end()); });
+  return joint(number, "SetMechanismJointServoControlGains").map([&](sdk::Joint* found) {
+    found->gains.assign(gains.begin(), gains.end());
+  });
 }
 
 Expected<> ConfigDraft::set_joint_watch(int number, double max_following_error, double max_effort) {
@@ -197,7 +213,7 @@ Expected<> ConfigDraft::set_joint_mechanics(int number, const JointMechanics& me
 }
 
 Expected<> ConfigDraft::set_digital_control_interface(const sdk::ModuleChoice& module) {
-  return set_module("SetDigitalControlInterface", module, draft_.digital_control_interface);
+  return set_module("SetDigitalControlInterface", module, edit().digital_control_interface);
 }
 
 Expected<> ConfigDraft::initialize_digital_control_interface() {
@@ -210,7 +226,7 @@ Expected<> ConfigDraft::initialize_digital_control_interface() {
 
 Expected<> ConfigDraft::set_digital_io_interface(const sdk::ModuleChoice& module) {
   // A mechanism without digital I/O names no interface.
-  draft_.digital_io_interface = module;
+  edit().digital_io_interface = module;
   return {};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 
 #include "rmac/sdk/rmac_config.hpp"
@@ -10,9 +11,15 @@ namespace rmac::gateway {
 /// whether they fit together is found out by `apply`. Gateway thread only.
 class ConfigDraft final : public sdk::RmacConfig {
  public:
+  /// How far a draft goes beyond what is in force.
+  enum class Extent : std::uint8_t {
+    Laws,           ///< servo laws of joints, their parameters and gains at most; none comes or goes
+    Configuration,  ///< the same mechanism, with anything changed
+    Mechanism,      ///< another one
+  };
   struct Controller {
-    /// Puts a device object in force. `new_mechanism`: it replaces the mechanism, instead of changing it.
-    std::function<Expected<>(const sdk::DeviceObject& device, bool new_mechanism)> apply;
+    /// Puts a device object in force.
+    std::function<Expected<>(const sdk::DeviceObject& device, Extent extent)> apply;
     std::function<Expected<>(const sdk::ModuleChoice& choice)> check_control_interface;
     std::function<Expected<>(const sdk::ModuleChoice& choice)> check_io_interface;
   };
@@ -57,6 +64,8 @@ class ConfigDraft final : public sdk::RmacConfig {
  private:
   /// Joints count first, held joints follow.
   [[nodiscard]] Expected<sdk::Joint*> joint(int number, const char* function);
+  /// The draft, for whatever is more than a law.
+  [[nodiscard]] sdk::DeviceObject& edit() noexcept;
   template <typename Change>
   Expected<> change_joint(int number, const char* function, Change&& change);
   [[nodiscard]] Expected<sdk::Spindle*> spindle(int number, const char* function);
@@ -65,8 +74,9 @@ class ConfigDraft final : public sdk::RmacConfig {
   Controller controller_;
   sdk::DeviceObject draft_;
   std::vector<sdk::Joint> described_;  ///< what device.json says of each joint that no setter does
+  std::vector<sdk::Spindle> described_spindles_;
   bool begun_ = false;
-  bool new_mechanism_ = false;
+  Extent extent_ = Extent::Laws;
 };
 
 }  // namespace rmac::gateway

@@ -9,7 +9,7 @@ namespace rmac::gateway {
 Expected<sdk::Spindle*> ConfigDraft::spindle(int number, const char* function) {
   const std::size_t count = draft_.spindles.size();
   if (number >= 0 && static_cast<std::size_t>(number) < count) {
-    return &draft_.spindles[static_cast<std::size_t>(number)];
+    return &edit().spindles[static_cast<std::size_t>(number)];
   }
   return failure(MinorCode::InvalidParameterValue,
                  count == 0

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 
 namespace rmac::verifier {
@@ -12,6 +14,9 @@ namespace {
 constexpr double kLimit = 100;
 /// Beyond what gains make of the inputs here, so that the limit does not hide or make a jump.
 constexpr double kFarLimit = 1e12;
+/// Cycles at the limit: more than a useful integral needs to get there.
+constexpr int kSaturated = 2000;
+constexpr int kMostLeaving = 20'000;
 
 NamedNumbers named_input(const char* name, const ServoInput& input) {
   return {
@@ -36,6 +41,7 @@ class ServoLawCheck {
         .and_then([&] { return check_resting(); })
         .and_then([&] { return check_new_gains(); })
         .and_then([&] { return check_refused_gains(); })
+        .and_then([&] { return check_windup(); })
         .and_then([&] { return check_no_number(); });
   }
 
@@ -172,6 +178,36 @@ class ServoLawCheck {
     }
     if (again == first && law_.update(input) - first == step) return {};
     return found("gains", "gains that were refused changed something", 0, {named_input("input", input)});
+  }
+
+  /// Cycles at its limit that an error takes to leave it the other way, after so many cycles at it; the most that are
+  /// looked at when it does not. An error that does not take it to its limit says nothing.
+  std::optional<int> cycles_to_leave(int saturated, double error) {
+    const ServoInput ahead{.position_setpoint = error}, behind{.position_setpoint = -error};
+    law_.set_effort_limit(kLimit);
+    law_.engage({}, 0);
+    double held = 0;
+    for (int i = 0; i < saturated; ++i) held = law_.update(ahead);
+    if (std::abs(held) < kLimit) return {};
+    for (int i = 0; i < kMostLeaving; ++i) {
+      if (law_.update(behind) != held) return i;
+    }
+    return kMostLeaving;
+  }
+
+  /// However long the output was at its limit, it leaves it as soon.
+  Checked check_windup() {
+    for (const double size : {0.01, 0.1, 1.0, 10.0}) {
+      for (const double error : {size, -size}) {
+        const auto soon = cycles_to_leave(kSaturated, error), late = cycles_to_leave(10 * kSaturated, error);
+        if (!soon || !late || *late <= *soon + 1) continue;
+        return found("windup",
+                     fmt::format("at its limit for {} cycles it leaves it after {}, for {} cycles after {}", kSaturated,
+                                 *soon, 10 * kSaturated, *late),
+                     -1, {named("error", std::array{error})});
+      }
+    }
+    return {};
   }
 
   Checked check_no_number() {

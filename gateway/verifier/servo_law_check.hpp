@@ -14,9 +14,9 @@ struct ServoLawCase {
 };
 
 /// What every servo law must keep, over seeded random inputs: its gains are named, wrong ones change nothing, its
-/// output stays within the limit, engaging continues from the effort given, new gains do not make it jump, NaN and
-/// infinity come out as no number and leave nothing behind, and at rest it goes on with the effort that it says holds
-/// the joint.
+/// output stays within the limit and does not wind up at it, engaging continues from the effort given, new gains do not
+/// make it jump, NaN and infinity come out as no number and leave nothing behind, and at rest it goes on with the
+/// effort that it says holds the joint.
 [[nodiscard]] Checked check_servo_law(ServoLaw& law, const ServoLawCase& given);
 
 }  // namespace rmac::verifier

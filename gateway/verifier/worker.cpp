@@ -207,7 +207,8 @@ void check_driver_module(const Task& task, Watch& watch, ModuleReport& report, c
     // Interfaces are taken at their names here: their own checks load them.
     const auto named_one = [](const sdk::ModuleChoice&) { return Expected<>(); };
     gateway::ConfigDraft draft(
-        {[](const sdk::DeviceObject& drafted, bool) { return gateway::check_device(drafted); }, named_one, named_one});
+        {[](const sdk::DeviceObject& drafted, gateway::ConfigDraft::Extent) { return gateway::check_device(drafted); },
+         named_one, named_one});
     watch.step("configure_motion_planner, configure_servo_controller and configure_digital_control_interface");
     const auto done = draft.begin(task.device)
                           .and_then([&] { return driver->configure_motion_planner(task.device, draft); })

@@ -11,7 +11,7 @@ import unittest
 
 import numpy as np
 
-from appliance import Appliance
+from appliance import Appliance, line
 from simulated_joint import PERIOD, Joint, excitation
 
 sys.path.insert(0, str(pathlib.Path(os.environ["RMAC_SOURCE"], "gateway/rmac/helpers")))
@@ -158,6 +158,35 @@ class Commands(unittest.TestCase):
             self.assertGreaterEqual(min(wanted), low - 0.01)
             self.assertLessEqual(max(wanted), high + 0.01)
             self.assertGreater(max(map(abs, wanted)), abs(travel) - 0.01 if other == joint else -1)
+
+    def test_laws_and_gains_change_in_motion_without_a_step(self):
+        """As a client does it: the plan goes on, and no joint's effort jumps where its law changes."""
+        appliance = self.enterContext(Appliance(pace="real-time", flight_recorder={"seconds": 30}))
+        client = appliance.operator()
+        client.call("subscribe", topics=["state"], rate_hz=100)
+        client.call("RMAC_CAM.SetFeedrate", Feedrate=120)
+        client.call("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (40, 20, 0)))
+        client.call("RMAC_CAM.CycleStart", Mode="AUTOMATIC")
+        client.wait_note("state", lambda state: state["pose"][0] > 1)
+        changes = []
+        for law, gains in (("DMAC_PID_CONTROL", [1000, 75000, 10]), ("DMAC_FUZZY_CONTROL", [0.16, 22, 120, 140000]),
+                           ("DMAC_FEEDFORWARDFEEDBACK_CONTROL", [1550, 140000, 11.1, 0.16, 0.035, 19, 0])):
+            client.call("RMAC_Config.SetMechanismJointServoControlLaw", JntNum=0, ControlLaw=law)
+            client.call("RMAC_Config.SetMechanismJointServoControlGains", JntNum=0, ServoControlGains=gains)
+            before = client.state()["cycle"]
+            client.call("RMAC_Config.Apply")
+            changes.append((before, client.state()["cycle"]))
+            self.assertTrue(client.state()["moving"])
+        name = json.loads(self.rmac(appliance, "--json", "trace", "record"))["name"]
+        head = json.loads(client.call("FlightRecorder.Read", Name=name, Offset=0)["text"].splitlines()[0])
+        self.assertEqual((head["joints"][0]["law"], head["joints"][0]["gains"]),
+                         ("FeedforwardFeedbackServoControlLaw", gains))
+        rows = list(csv.DictReader(self.rmac(appliance, "trace", "export", name, "-o", "-").splitlines()))
+        efforts = {int(row["cycle"]): float(row["effort1"]) for row in rows}
+        rated = 0.318 * RAD_PER_MM * 1000  # N
+        for before, after in changes:
+            for cycle in range(before, after + 5):
+                self.assertLess(abs(efforts[cycle + 1] - efforts[cycle]), 0.02 * rated, cycle)
 
     def test_measure_following_draws_the_circle_and_its_reversals(self):
         appliance = self.enterContext(Appliance())

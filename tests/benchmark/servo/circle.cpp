@@ -39,12 +39,18 @@ void circle_rows(Figures& figures) {
     all.gain_count += changes.gain_count;
     all.largest_gain_step_nm = std::max(all.largest_gain_step_nm, changes.largest_gain_step_nm);
     all.largest_step_nm = std::max(all.largest_step_nm, changes.largest_step_nm);
+    all.largest_soon_nm = std::max(all.largest_soon_nm, changes.largest_soon_nm);
+    all.largest_ever_nm = std::max(all.largest_ever_nm, changes.largest_ever_nm);
     all.rated_nm = changes.rated_nm;
   }
   figures.at_most("torque_step_where_laws_change", 100 * all.largest_step_nm / all.rated_nm, 1, "% of rated",
                   std::to_string(all.count) + " changes on the circle");
   figures.at_most("torque_step_where_gains_change", 100 * all.largest_gain_step_nm / all.rated_nm, 1, "% of rated",
                   std::to_string(all.gain_count) + " changes on the circle, to 0.6 to 1.1 of what they are");
+  figures.inform("torque_change_a_cycle_soon_after_changes", 100 * all.largest_soon_nm / all.rated_nm, "% of rated",
+                 "largest, in the three cycles after one");
+  figures.inform("torque_change_a_cycle_elsewhere", 100 * all.largest_ever_nm / all.rated_nm, "% of rated",
+                 "largest, in all other cycles");
 }
 
 }  // namespace rmac::bench

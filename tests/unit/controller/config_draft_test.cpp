@@ -11,13 +11,15 @@ namespace {
 
 using testing::HasSubstr;
 
+using Extent = ConfigDraft::Extent;
+
 /// A draft whose controller takes everything and remembers it.
 class Draft : public testing::Test {
  protected:
   Draft()
-      : draft_({[this](const sdk::DeviceObject& device, bool fresh) -> Expected<> {
+      : draft_({[this](const sdk::DeviceObject& device, ConfigDraft::Extent extent) -> Expected<> {
                   applied_.push_back(device.joints.size());
-                  fresh_.push_back(fresh);
+                  extents_.push_back(extent);
                   return {};
                 },
                 [](const sdk::ModuleChoice&) -> Expected<> { return {}; },
@@ -30,7 +32,7 @@ class Draft : public testing::Test {
   }
   ConfigDraft draft_;
   std::vector<std::size_t> applied_;
-  std::vector<bool> fresh_;
+  std::vector<ConfigDraft::Extent> extents_;
 };
 
 TEST_F(Draft, HeldJointsFollowTheJoints) {
@@ -63,8 +65,52 @@ TEST_F(Draft, NothingActsBeforeApply) {
 
 TEST_F(Draft, OnlyTheFirstApplyAfterBeginIsANewMechanism) {
   ASSERT_TRUE(draft_.apply());
+  ASSERT_TRUE(draft_.set_joint_maximum_speed(0, 10));
   ASSERT_TRUE(draft_.apply());
-  EXPECT_THAT(fresh_, testing::ElementsAre(true, false));
+  EXPECT_THAT(extents_, testing::ElementsAre(Extent::Mechanism, Extent::Configuration));
+}
+
+TEST_F(Draft, LawsAloneAreToldFromWhateverElseIsSetBesideThem) {
+  ASSERT_TRUE(draft_.set_joint_servo_control_law(0, {"PIDServoControlLaw", {}, {}}));
+  ASSERT_TRUE(draft_.apply());
+  const std::vector<double> gains{1, 2, 3};
+  const auto set_law = [&] {
+    ASSERT_TRUE(draft_.set_joint_servo_control_law(0, {"FuzzyServoControlLaw", {}, {}}));
+    ASSERT_TRUE(draft_.set_joint_servo_control_gains(0, gains));
+  };
+  set_law();
+  ASSERT_TRUE(draft_.apply());
+  EXPECT_EQ(extents_.back(), Extent::Laws);
+  const std::vector<std::function<Expected<>()>> others{
+      [&] {
+        return draft_.set_kinematics({"K", {}, {}});
+      },
+      [&] {
+        return draft_.set_actuator_map({"M", {}, {}});
+      },
+      [&] { return draft_.set_number_of_joints(2); },
+      [&] { return draft_.set_number_of_spindles(0); },
+      [&] { return draft_.set_number_of_actuators(3); },
+      [&] { return draft_.set_joint_name(0, "A"); },
+      [&] { return draft_.set_joint_maximum_jerk(1, 100); },
+      [&] { return draft_.set_maximum_feedrate(100); },
+      [&] { return draft_.set_joint_control_method(0, ControlMethod::Velocity); },
+      [&] { return draft_.set_joint_watch(0, 1, 1); },
+      [&] { return draft_.set_joint_mechanics(0, {}); },
+      [&] {
+        return draft_.set_joint_servo_control_law(1, {"PIDServoControlLaw", {}, {}});
+      },
+      [&] {
+        return draft_.set_digital_control_interface({"I", {}, {}});
+      },
+      [&] { return draft_.set_digital_io_interface({}); }};
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    set_law();
+    const auto changed = others[i]();
+    ASSERT_TRUE(changed) << i << ": " << changed.error().message;
+    ASSERT_TRUE(draft_.apply());
+    EXPECT_EQ(extents_.back(), Extent::Configuration) << i;
+  }
 }
 
 TEST_F(Draft, ApplyNeedsAMechanism) {

@@ -2,10 +2,15 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace rmac::gateway {
 namespace {
@@ -16,6 +21,37 @@ std::string locked_memory() {
     if (line.starts_with("VmLck:")) return line;
   }
   return {};
+}
+
+/// Share of this thread's stack that is in memory.
+double resident_stack() {
+  pthread_attr_t attributes;
+  void* begin = nullptr;
+  std::size_t size = 0;
+  if (::pthread_getattr_np(::pthread_self(), &attributes) != 0) return -1;
+  ::pthread_attr_getstack(&attributes, &begin, &size);
+  ::pthread_attr_destroy(&attributes);
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  std::vector<unsigned char> pages(size / page);
+  if (::mincore(begin, pages.size() * page, pages.data()) != 0) return -1;
+  const auto there = std::count_if(pages.begin(), pages.end(), [](unsigned char bits) { return (bits & 1U) != 0; });
+  return static_cast<double>(there) / static_cast<double>(pages.size());
+}
+
+TEST(RealTime, HasAllOfTheThreadsStackInMemoryBeforeItsFirstCycle) {
+  std::vector<std::string> missing;
+  double before = 0, after = 0;
+  std::thread([&] {
+    before = resident_stack();
+    missing = enter_real_time({.priority = 1, .cpu = -1, .lock_memory = true});
+    after = resident_stack();
+  }).join();
+  ::munlockall();
+  if (std::any_of(missing.begin(), missing.end(), [](const std::string& what) { return what.starts_with("memory"); })) {
+    GTEST_SKIP() << "whoever runs this may not lock memory";
+  }
+  EXPECT_LT(before, 0.5);
+  EXPECT_EQ(after, 1) << "a cycle that goes deeper than any before it would wait for a page";
 }
 
 TEST(RealTime, LeavesMemoryUnlockedAndSaysNothingOfItWhenThatIsWished) {

@@ -58,6 +58,7 @@ TEST_F(LawsOnMill, ChangeInMotionWithoutAStepOfTorque) {
   EXPECT_LT(changes.contour_error, 0.05);
   EXPECT_LT(changes.largest_step_nm, 0.01 * changes.rated_nm);
   EXPECT_LT(changes.largest_gain_step_nm, 0.01 * changes.rated_nm);
+  EXPECT_LT(changes.largest_soon_nm, changes.largest_ever_nm + 0.01 * changes.rated_nm) << "nor after it";
 }
 
 }  // namespace

@@ -118,22 +118,39 @@ TEST_F(ServoThreadUnderTrap, NeitherAllocatesNorLocksNorCallsTheSystem) {
     expect_clean(law);
   }
 
+  ASSERT_TRUE(machine_.line(5, {0, 0, 0}, {20, 0, 0}));
+  ASSERT_TRUE(machine_.line(6, {20, 0, 0}, {0, 0, 0}));
+  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveStarted, 5));
+  for (const int joint : {0, 1}) {
+    ASSERT_TRUE(machine_.controller.config().set_joint_servo_control_law(joint, {"DMAC_PID_CONTROL", {}, {}}));
+    const std::array<double, 3> gains{1550, 140000, 11.1};
+    ASSERT_TRUE(machine_.controller.config().set_joint_servo_control_gains(joint, gains));
+    const auto changed = machine_.controller.config().apply();
+    ASSERT_TRUE(changed) << changed.error().message;
+    let_run(50);
+  }
+  EXPECT_TRUE(machine_.controller.sample().moving);
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 6)) << machine_.last(Event::Kind::Fault);
+  stop();
+  expect_clean("two changes of law in motion");
+
   const auto plane = machine_.load(TestMachine::plane_mill());
   ASSERT_TRUE(plane) << plane.error().message;
   let_run(100);
   expect_clean("another mechanism");
 
   ASSERT_TRUE(cam().set_feedrate(3000));
-  ASSERT_TRUE(machine_.line(5, machine_.controller.sample().pose_set.tip, {20, 0, 0}));
+  ASSERT_TRUE(machine_.line(7, machine_.controller.sample().pose_set.tip, {20, 0, 0}));
   ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
-  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveStarted, 5));
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveStarted, 7));
   let_run(50);
   ASSERT_TRUE(machine_.controller.record_flight());
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::FlightRecord));
   expect_clean("a flight record that was asked for");
   machine_.events.clear();
   machine_.bus->trip(1, 0x2310);
-  ASSERT_TRUE(machine_.run_until_event(Event::Kind::Fault, 5));
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::Fault, 7));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::FlightRecord));
   let_run(100);
   expect_clean("a drive's fault and its flight record");

@@ -1,0 +1,66 @@
+// Other servo laws, or gains, for joints of the mechanism in force, and nothing else: the servo thread exchanges them
+// between two cycles, in motion too, and all that is planned goes on.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "gateway/controller/controller_impl.hpp"
+
+namespace rmac::gateway {
+
+namespace {
+
+/// Joints count first, held joints follow.
+auto& joint_of(auto& device, std::size_t number) {
+  const std::size_t moved = device.joints.size();
+  return number < moved ? device.joints[number] : device.held_joints[number - moved];
+}
+
+}  // namespace
+
+std::vector<std::size_t> Controller::Impl::joints_with_other_laws(const sdk::DeviceObject& device) const {
+  std::vector<std::size_t> joints;
+  for (std::size_t j = 0; j < in_force->loop->axis_count(); ++j) {
+    const sdk::Joint &now = joint_of(in_force->device, j), &wanted = joint_of(device, j);
+    if (!same_choice(now.servo_law, wanted.servo_law) || now.gains != wanted.gains) joints.push_back(j);
+  }
+  return joints;
+}
+
+Expected<> Controller::Impl::exchange_laws(const sdk::DeviceObject& device, const std::vector<std::size_t>& joints) {
+  if (auto ready = fit_for_change("other servo laws").and_then([&] { return check_device(device); }); !ready) {
+    return ready;
+  }
+  std::vector<SwapRequest::Law> laws;
+  std::vector<ModuleInUse> modules;
+  std::vector<std::string> names;
+  for (const std::size_t j : joints) {
+    const sdk::Joint& joint = joint_of(device, j);
+    auto law = load_joint_law(joint, loader(folder_in_force), modules);
+    if (!law) return tl::unexpected(law.error());
+    (*law)->set_effort_limit(joint.max_effort);
+    // The assembler made it.
+    auto* const now = static_cast<ExchangeableLaw*>(in_force->loop->parts().axes[j].law.get());
+    laws.push_back({now, std::move(*law)});
+    names.push_back(joint.limits.name);
+  }
+  SwapRequest request;
+  request.laws = laws;
+  if (auto exchanged = ask_servo_thread(request); !exchanged) return exchanged;
+  for (const std::size_t j : joints) {
+    sdk::Joint& now = joint_of(in_force->device, j);
+    now.servo_law = joint_of(device, j).servo_law;
+    now.gains = joint_of(device, j).gains;
+  }
+  for (const ModuleInUse& used : modules) {
+    const auto same_role = [&](const ModuleInUse& before) { return before.role == used.role; };
+    std::replace_if(in_force->modules.begin(), in_force->modules.end(), same_role, used);
+  }
+  draft.discard(&in_force->device);
+  tell_of_mechanism(
+      fmt::format("{} is configured: servo law of joint {}", in_force->device.name, fmt::join(names, ", ")));
+  return {};
+}
+
+}  // namespace rmac::gateway
