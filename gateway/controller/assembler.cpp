@@ -21,12 +21,12 @@ namespace {
 JointBounds bounds(const sdk::Joint& joint, double period_s) {
   constexpr double kSpeedShare = 1.2, kJumpCycles = 3;
   const double speed = joint.limits.max_speed;
-  constexpr double kNoEnd = std::numeric_limits<double>::infinity();
+  const double no_end = std::numeric_limits<double>::infinity();
   return {.velocity = joint.max_measured_speed > 0 ? joint.max_measured_speed : kSpeedShare * speed,
           .jump = joint.max_jump > 0 ? joint.max_jump : kJumpCycles * speed * period_s,
           .stop_deceleration = joint.limits.max_acceleration,
-          .min_position = ends_below(joint.limits) ? joint.limits.min : -kNoEnd,
-          .max_position = ends_above(joint.limits) ? joint.limits.max : kNoEnd};
+          .min_position = ends_below(joint.limits) ? joint.limits.min : -no_end,
+          .max_position = ends_above(joint.limits) ? joint.limits.max : no_end};
 }
 
 ForceControl force(const sdk::Joint& joint) {

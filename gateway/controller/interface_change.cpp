@@ -13,7 +13,7 @@ bool Controller::Impl::same_choice(const sdk::ModuleChoice& one, const sdk::Modu
 }
 
 Expected<> Controller::Impl::exchange_interface(const sdk::DeviceObject& device) {
-  const auto may = check_device(device).and_then(
+  auto may = check_device(device).and_then(
       [&] { return registry.check_control_interface(device.digital_control_interface, loader(folder)); });
   if (!may) return may;
   const sdk::DeviceObject before = in_force->device;
