@@ -178,7 +178,7 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
     const ServoStatus now = link->status.read();
     standing = standing_after(*before, {now.position_set.data(), now.axis_count}, **next);
   }
-  const auto may_go_in = !next      ? Expected<>(tl::unexpected(next.error()))
+  auto may_go_in = !next      ? Expected<>(tl::unexpected(next.error()))
                          : standing ? check_standing(device, *standing, fresh)
                                     : Expected<>{};
   if (!may_go_in) {
