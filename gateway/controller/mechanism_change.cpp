@@ -179,8 +179,8 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
     standing = standing_after(*before, {now.position_set.data(), now.axis_count}, **next);
   }
   auto may_go_in = !next      ? Expected<>(tl::unexpected(next.error()))
-                         : standing ? check_standing(device, *standing, fresh)
-                                    : Expected<>{};
+                   : standing ? check_standing(device, *standing, fresh)
+                              : Expected<>{};
   if (!may_go_in) {
     next = tl::unexpected(may_go_in.error());  // gives its buses back
     registry.stop_unused();
