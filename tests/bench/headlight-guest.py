@@ -1,8 +1,7 @@
 #!/usr/bin/python3
 """Inside the emulated machine, under systemd: the installed appliance cuts the demo's headlight over vcan0 (three axes), a Modbus spindle behind
-a pseudo-terminal and GPIO signals: its first sweeps, because all of it takes the emulation most of an hour. It is killed in mid-cut, and held so
-that systemd's watchdog has to kill it; each time it comes back, and nothing moves by that. Then the emergency stop stops it in mid-cut. The argument is
-the build folder and, where the whole sweep is to be cut before that, `whole`."""
+a pseudo-terminal and GPIO signals: its first sweeps, because all of it would take the emulation most of an hour. It is killed in mid-cut, and held so
+that systemd's watchdog has to kill it; each time it comes back, and nothing moves by that. Then the emergency stop stops it in mid-cut."""
 
 import json
 import os
@@ -16,8 +15,7 @@ import time
 from guest import (CONFIGURATION, HEARTBEAT_MS, PREFIX, RUN, Drives, Peer, answers, call, emergency_stop_on_gpio, install,
                    make_can, make_gpio, milliseconds, on_buses, rmac, status, stop_by_emergency, wait_for)
 
-FOLDER, WHOLE = sys.argv[1].split(",")
-BUILD = pathlib.Path(FOLDER)
+BUILD = pathlib.Path(sys.argv[1])
 SWEEP = BUILD / "tests/bench/headlight/headlight-sweep.rmac"
 FIRST_CUT = 3  # the first move that cuts: before it the tool comes down
 CUTS_MM_MIN = 1500  # of 2000
@@ -133,18 +131,6 @@ def cut_part(seconds):
     print(f"cut on for {seconds} s: moves {before['move_id']} to {now['move_id']}, {now['deadline_misses'] - misses} deadlines missed")
 
 
-def cut_whole():
-    """To the end of the program."""
-    cut, before = begin_cut()
-    begun = time.monotonic()
-    if cut.wait() != 0:
-        raise SystemExit(f"the cut ended: {cut.communicate()[1]}")
-    now = status()
-    print(f"cut on to the end: {before['moves_in_buffer']} moves in {time.monotonic() - begun:.0f} s, "
-          f"{now['deadline_misses'] - before['deadline_misses']} deadlines missed")
-    assert now["state"] == "Idle" and now["moves_in_buffer"] == 0 and now["deadline_misses"] == before["deadline_misses"], now
-
-
 def lift():
     rmac("jog", "--joint", 2, "--distance", 20)
 
@@ -159,9 +145,6 @@ def main():
     lift()
     die(drives, spindle, signal.SIGSTOP)
     lift()
-    if WHOLE:
-        cut_whole()
-        lift()
     cut_part(3)
     stop_by_emergency(drives)
     print("ok")
