@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 
 namespace rmac::gateway {
 namespace {
@@ -47,6 +48,10 @@ std::string printable(std::string_view text, std::size_t longest) {
     text.remove_prefix(next.bytes);
   }
   return line;
+}
+
+std::string text_of(const nlohmann::json& json) {
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace rmac::gateway

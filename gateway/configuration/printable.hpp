@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
@@ -10,5 +11,9 @@ namespace rmac::gateway {
 /// `longest` bytes. Control characters and bytes that are no UTF-8 become '?'; a character that would be cut in its
 /// midst is left out.
 [[nodiscard]] std::string printable(std::string_view text, std::size_t longest = std::string_view::npos);
+
+/// JSON as it goes to somebody else, in one line. Bytes of its texts that are no UTF-8 (a file's, an operating
+/// system's) go as U+FFFD.
+[[nodiscard]] std::string text_of(const nlohmann::json& json);
 
 }  // namespace rmac::gateway

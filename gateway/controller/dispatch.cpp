@@ -53,9 +53,9 @@ void Controller::Impl::take_events(const std::vector<Event>& events) {
 
 void Controller::Impl::tell_events_before(std::int64_t cycle) {
   while (!waiting_events.empty() && waiting_events.front().cycle < cycle) {
-    const Event event = std::move(waiting_events.front());
+    Event event = std::move(waiting_events.front());
     waiting_events.pop_front();
-    tell(event);
+    tell(std::move(event));
   }
 }
 

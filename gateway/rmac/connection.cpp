@@ -8,6 +8,8 @@
 #include <csignal>
 #include <istream>
 
+#include "gateway/configuration/printable.hpp"
+
 namespace rmac::cli {
 
 namespace {
@@ -80,7 +82,7 @@ void Connection::send(const std::string& method, const nlohmann::json& params, A
     request["params"] = params;
   }
   // Words of a command line may be no UTF-8.
-  output_.push_back(request.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
+  output_.push_back(gateway::text_of(request) + '\n');
   if (output_.size() == 1) {
     write();
   }

@@ -10,11 +10,17 @@
 #include "gateway/configuration/finite_numbers.hpp"
 #include "gateway/configuration/printable.hpp"
 #include "gateway/rmac/commands.hpp"
+#include "rmac/motion/pose.hpp"
 
 namespace {
 
 using namespace rmac::cli;
 namespace gateway = rmac::gateway;
+
+/// Of any machine; what the one that is loaded has, it says itself.
+CLI::Range joint_numbers() {
+  return {0, static_cast<int>(rmac::kMaxJoints) - 1};
+}
 
 using Command = std::function<Result<>(Connection&)>;
 using OfflineCommand = std::function<Result<>()>;
@@ -106,7 +112,7 @@ void add_operating_commands(CLI::App& app, Arguments& arguments, Command& comman
   JogRequest& request = arguments.jog;
   auto* jog_command = app.add_subcommand("jog", "move one joint, or the tool straight, from rest");
   auto* what = jog_command->add_option_group("what")->require_option(1);
-  what->add_option("--joint", request.joint, "counted from 0")->check(CLI::Range(0, 31));
+  what->add_option("--joint", request.joint, "counted from 0")->check(joint_numbers());
   auto* direction =
       what->add_option("--direction", request.direction, "X Y Z of the tool's way, in the part frame")->expected(3);
   jog_command->add_flag("--tool", request.in_tool_frame, "the direction is the tool's own, Z along its axis")
@@ -202,7 +208,7 @@ void add_commissioning_commands(CLI::App& app, Arguments& arguments, Command& co
   auto* tune_command = app.add_subcommand(
       "tune",
       "move a joint, find its mass, friction and delay, and propose gains; needs python3-scipy and -matplotlib");
-  tune_command->add_option("JOINT", request.joint, "counted from 0")->required()->check(CLI::Range(0, 31));
+  tune_command->add_option("JOINT", request.joint, "counted from 0")->required()->check(joint_numbers());
   tune_command->add_option("--travel", request.travel, "mm or degrees that it may go from where it stands, signed")
       ->required();
   tune_command->add_option("--bandwidth", request.bandwidth_hz, "Hz; nine tenths of what its delay allows unless given")

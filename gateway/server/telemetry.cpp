@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gateway/api/state_json.hpp"
+#include "gateway/configuration/printable.hpp"
 
 namespace rmac::gateway {
 
@@ -109,10 +110,6 @@ const char* drive_state(std::uint16_t statusword) noexcept {
     default:
       return "unknown";
   }
-}
-
-std::string text_of(const nlohmann::json& json) {
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 std::string notification(const char* topic, const std::string& params) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -18,10 +17,6 @@ void append_drives(const CycleSample& sample, std::string& out);
 
 /// The state that CiA 402 gives a status word, e.g. "operation enabled".
 [[nodiscard]] const char* drive_state(std::uint16_t statusword) noexcept;
-
-/// JSON as it goes to a client. Texts may hold bytes that are no UTF-8 (of a file, of an operating system); they go as
-/// U+FFFD.
-[[nodiscard]] std::string text_of(const nlohmann::json& json);
 
 /// A notification's line: `{"jsonrpc":"2.0","method":topic,"params":params}` without a newline.
 [[nodiscard]] std::string notification(const char* topic, const std::string& params);

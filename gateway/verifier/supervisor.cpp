@@ -16,6 +16,8 @@
 #include <memory>
 #include <new>
 
+#include "gateway/configuration/printable.hpp"
+
 namespace rmac::verifier {
 namespace {
 
@@ -59,9 +61,7 @@ nlohmann::json found_so_far(const ModuleReport& report) {
   (void)prepare_trap();
   ModuleReport report;
   report.module = job.module;
-  job.run(task, watch, report, [&] {
-    send(pipe, found_so_far(report).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-  });
+  job.run(task, watch, report, [&] { send(pipe, gateway::text_of(found_so_far(report)) + "\n"); });
   watch.step("end");
   _exit(0);  // what other modules registered to do at the end is not waited for
 }

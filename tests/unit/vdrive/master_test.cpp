@@ -77,6 +77,22 @@ TEST_F(MasterOverVirtualDrives, MovesByTorquePositionAndVelocity) {
   stop();
 }
 
+TEST_F(MasterOverVirtualDrives, TellsInACycleWhereADriveWasAtTheSyncOfTheOneBefore) {
+  constexpr std::int32_t kShift = 5000, kStands = 100;
+  Node& node = wire_.add(1);
+  make({{"node", {1}}}, {{"eds", "rmac-vdrive"}});
+  ASSERT_TRUE(start().has_value());
+  cycles(20, DriveWish::Off);
+  const std::int32_t before = feedback_[0].position_counts;
+  node.shift_encoder(kShift);
+  cycles(1, DriveWish::Off);
+  EXPECT_NEAR(feedback_[0].position_counts, before, kStands);
+  cycles(1, DriveWish::Off);
+  EXPECT_NEAR(feedback_[0].position_counts, before + kShift, kStands);
+  EXPECT_TRUE(master_->answers_late(0));
+  stop();
+}
+
 TEST_F(MasterOverVirtualDrives, MovesTwoThatShareAnRpdoEachByItsOwnWords) {
   wire_.add(1);
   wire_.add(2);
