@@ -23,6 +23,17 @@ const char* lock_memory() {
   return mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? nullptr : std::strerror(errno);
 }
 
+/// Has every page of the calling thread's stack in memory, also where it may not be locked there; nullptr, or why not.
+const char* prefault_stack() {
+  pthread_attr_t attributes;
+  if (const int error = pthread_getattr_np(pthread_self(), &attributes); error != 0) return std::strerror(error);
+  void* lowest = nullptr;
+  std::size_t size = 0;
+  pthread_attr_getstack(&attributes, &lowest, &size);
+  pthread_attr_destroy(&attributes);
+  return madvise(lowest, size, MADV_POPULATE_WRITE) == 0 ? nullptr : std::strerror(errno);
+}
+
 }  // namespace
 
 std::vector<std::string> enter_real_time(const RealTimeWish& wish) {
@@ -30,6 +41,9 @@ std::vector<std::string> enter_real_time(const RealTimeWish& wish) {
   if (const char* reason = wish.lock_memory ? lock_memory() : nullptr) {
     missing.push_back(fmt::format(
         "memory is not locked ({}): set LimitMEMLOCK=infinity in the unit, or `ulimit -l unlimited`", reason));
+  }
+  if (const char* reason = wish.lock_memory ? prefault_stack() : nullptr) {
+    missing.push_back(fmt::format("memory of the cycle's stack is not there beforehand ({}): free some", reason));
   }
   sched_param parameter{};
   parameter.sched_priority = wish.priority;

@@ -11,8 +11,9 @@ struct RealTimeWish {
   bool lock_memory = true;
 };
 
-/// Locks the process' memory, where that is wished, and gives the calling thread its priority and CPU. What was not
-/// granted, each with how to grant it; empty when all was. See docs/real-time.md.
+/// Locks the process' memory and has all of the calling thread's stack there beforehand, where that is wished, and
+/// gives the calling thread its priority and CPU. What was not granted, each with how to grant it; empty when all was.
+/// See docs/real-time.md.
 [[nodiscard]] std::vector<std::string> enter_real_time(const RealTimeWish& wish);
 
 }  // namespace rmac::gateway
