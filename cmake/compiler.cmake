@@ -25,5 +25,7 @@ if(RMAC_COVERAGE)
 endif()
 find_program(RMAC_CCACHE ccache)
 if(RMAC_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${RMAC_CCACHE})
+  # One checkout finds what another one compiled.
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+    ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${RMAC_CCACHE})
 endif()
