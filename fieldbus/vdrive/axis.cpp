@@ -130,6 +130,7 @@ Axis::Parameters Axis::parameters() const {
                       .shutdown = static_cast<int>(of(0x605B)),
                       .disable_operation = static_cast<int>(of(0x605C)),
                       .fault_reaction = static_cast<int>(of(0x605E))},
+          .halting = braking_of(static_cast<int>(of(0x605D))),
           .homing_method = static_cast<int>(of(0x6098)),
           .controlword = static_cast<std::uint16_t>(dictionary_.number(0x6040))};
 }
@@ -257,7 +258,7 @@ void Axis::watch(const Parameters& parameters, double dt) {
   following_error_s_ = following_error_ ? following_error_s_ + dt : 0;
   if (following_error_ && following_error_s_ > parameters.error_s) trip(kFollowingError);
 
-  const bool halt = (parameters.controlword & kHalt) != 0;
+  const bool halt = parameters.halts();
   bool within = false;
   double needed_s = 0;
   if (halt) {
@@ -288,7 +289,7 @@ unsigned Axis::mode_bits() const {
       return bit(10, standing()) | bit(12, power_.operating() && (parameters_->controlword & 0x10) != 0) |
              bit(13, following_error_);
     case Mode::Homing:
-      return bit(10, homing_.state() != Homing::State::Running && demand_.velocity == 0) |
+      return bit(10, (homing_.state() != Homing::State::Running || parameters_->halts()) && demand_.velocity == 0) |
              bit(12, homing_.state() == Homing::State::Attained) | bit(13, homing_.state() == Homing::State::Failed);
     case Mode::CyclicSyncPosition:
     case Mode::CyclicSyncVelocity:

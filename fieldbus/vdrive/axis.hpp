@@ -65,6 +65,8 @@ class Axis {
   void step(const Parameters& parameters, double dt);
   void operate(const Parameters& parameters, double dt);
   void brake(const Parameters& parameters, double dt);
+  /// How fast it slows down, in counts/s²; `slow_down` is the ramp where no other is asked for.
+  [[nodiscard]] double deceleration(Braking by, double slow_down, const Parameters& parameters) const;
   void home(const Parameters& parameters, double dt);
   void position_profile(const Parameters& parameters, double dt);
   void follow_setpoint(double dt);

@@ -14,7 +14,7 @@ constexpr double kIntegral = 50;            // 1/s
 }  // namespace
 
 void Axis::operate(const Parameters& parameters, double dt) {
-  const bool halt = (parameters.controlword & kHalt) != 0;
+  const bool halt = parameters.halts();
   switch (mode_) {
     case Mode::ProfileTorque:
       torque_profile(parameters, dt);
@@ -47,12 +47,13 @@ void Axis::operate(const Parameters& parameters, double dt) {
     case Mode::ProfileVelocity: {
       const double wanted = halt ? 0 : parameters.target_velocity;
       const bool slows = std::abs(wanted) < std::abs(demand_.velocity) || wanted * demand_.velocity < 0;
-      demand_.ramp(wanted, slows ? parameters.deceleration : parameters.acceleration, dt);
+      const Braking by = halt ? parameters.halting : Braking::SlowDown;
+      demand_.ramp(wanted, slows ? deceleration(by, parameters.deceleration, parameters) : parameters.acceleration, dt);
       break;
     }
     case Mode::ProfilePosition:
       if (halt) {
-        demand_.ramp(0, parameters.deceleration, dt);
+        demand_.ramp(0, deceleration(parameters.halting, parameters.deceleration, parameters), dt);
       } else {
         position_profile(parameters, dt);
       }
@@ -81,17 +82,17 @@ void Axis::follow_setpoint(double dt) {
 
 /// Towards the target torque (or none, on a halt) by the torque slope (CiA 402-2, profile torque).
 void Axis::torque_profile(const Parameters& parameters, double dt) {
-  const bool halt = (parameters.controlword & kHalt) != 0;
-  const double wanted = halt ? 0 : parameters.target_torque;
+  const double wanted = parameters.halts() ? 0 : parameters.target_torque;
   const double step = parameters.torque_slope * dt;
   profile_nm_ += std::clamp(wanted - profile_nm_, -step, step);
 }
 
 /// While bit 4 of the controlword is on; else it comes to rest, and stays.
 void Axis::interpolate(const Parameters& parameters, double dt) {
-  const bool runs = (parameters.controlword & 0x10) != 0 && (parameters.controlword & kHalt) == 0;
-  if (!runs) {
-    demand_.ramp(0, parameters.deceleration, dt);
+  const bool halt = parameters.halts();
+  if ((parameters.controlword & 0x10) == 0 || halt) {
+    const Braking by = halt ? parameters.halting : Braking::SlowDown;
+    demand_.ramp(0, deceleration(by, parameters.deceleration, parameters), dt);
     setpoint_ = demand_.position;
     setpoint_left_s_ = 0;
     return;
@@ -152,9 +153,12 @@ void Axis::home(const Parameters& parameters, double dt) {
                                       .index = turn != index_turn_,
                                       .standing = standing()});
   index_turn_ = turn;
-  const bool halt = (parameters.controlword & kHalt) != 0;
-  const double velocity = halt ? 0 : direction * (homing_.fast() ? parameters.fast : parameters.slow);
-  demand_.ramp(velocity, parameters.homing_acceleration, dt);
+  if (parameters.halts()) {
+    demand_.ramp(0, deceleration(parameters.halting, parameters.homing_acceleration, parameters), dt);
+  } else {
+    const double velocity = direction * (homing_.fast() ? parameters.fast : parameters.slow);
+    demand_.ramp(velocity, parameters.homing_acceleration, dt);
+  }
   if (homing_.found()) {
     // Zero lies at home plus the home offset (607Ch); what the loops follow moves with it.
     const double shift = -parameters_->home_offset - position();
@@ -174,12 +178,14 @@ void Axis::stop_at_limits(const Demand& before, const Parameters& parameters, do
 }
 
 void Axis::brake(const Parameters& parameters, double dt) {
-  double deceleration = parameters.quick_stop;
-  if (power_.braking() == Braking::SlowDown) deceleration = parameters.deceleration;
-  const double possible = mechanics_.rated_torque_nm / mechanics_.inertia_kg_m2() * counts_per_radian();
-  if (power_.braking() == Braking::Torque) deceleration = possible;
-  demand_.ramp(0, std::min(deceleration, possible), dt);
+  demand_.ramp(0, deceleration(power_.braking(), parameters.deceleration, parameters), dt);
   torque_nm_ = loops(parameters, dt);
+}
+
+double Axis::deceleration(Braking by, double slow_down, const Parameters& parameters) const {
+  const double possible = mechanics_.rated_torque_nm / mechanics_.inertia_kg_m2() * counts_per_radian();
+  if (by == Braking::Torque) return possible;
+  return std::min(by == Braking::SlowDown ? slow_down : parameters.quick_stop, possible);
 }
 
 double Axis::loops(const Parameters& parameters, double dt) {

@@ -4,8 +4,6 @@
 
 namespace rmac::vdrive {
 
-inline constexpr std::uint16_t kHalt = 0x0100;  ///< bit of the controlword
-
 /// What the steps of one advance need of the dictionary.
 struct Axis::Parameters {
   double velocity, acceleration, deceleration, quick_stop, homing_acceleration, fast, slow, top_velocity;
@@ -14,8 +12,12 @@ struct Axis::Parameters {
   double negative_limit, positive_limit, cam_from, cam_to, index, touches_from, touches_to;
   double home_offset, slow_velocity;
   OptionCodes options;
+  Braking halting;
   int homing_method;
   std::uint16_t controlword;
+
+  /// Bit 8 of the controlword.
+  [[nodiscard]] bool halts() const { return (controlword & 0x0100) != 0; }
 };
 
 }  // namespace rmac::vdrive

@@ -14,15 +14,14 @@ constexpr unsigned kFaultReset = 0x80;
 
 constexpr int kStaysInQuickStop = 5;  // option codes from here on
 
-/// Codes 1 to 4 of the quick stop, and 5 to 8 alike, but staying there; those of the fault reaction are the same.
+}  // namespace
+
 Braking braking_of(int code) {
   if (code >= kStaysInQuickStop) code -= 4;
   constexpr std::array kBraking{Braking::Coast, Braking::SlowDown, Braking::QuickStop, Braking::Torque,
                                 Braking::Torque};
   return kBraking.at(static_cast<std::size_t>(code));
 }
-
-}  // namespace
 
 void PowerStates::enter(State state) {
   state_ = state;

@@ -21,6 +21,10 @@ struct OptionCodes {
   int fault_reaction = 2;
 };
 
+/// By codes 1 to 4 of the quick stop, and 5 to 8 alike, but staying there; those of halt and fault reaction are the
+/// same.
+[[nodiscard]] Braking braking_of(int code);
+
 /// The power state machine of CiA 402-2, figure 3, with all its transitions. Written from the standard's tables and not
 /// from the master's code.
 class PowerStates {

@@ -8,6 +8,12 @@ namespace {
 // More than any object of this device holds; who sends more is refused before it fills the memory.
 constexpr std::size_t kMostBytes = 65536;
 constexpr std::uint32_t kOutOfMemory = 0x05040005;
+constexpr std::uint32_t kBadBlockSize = 0x05040002;
+constexpr std::uint32_t kBadSequence = 0x05040003;
+
+bool sound_block_size(int size) {
+  return size >= 1 && size <= 127;
+}
 
 std::uint32_t number(const std::uint8_t* at, int bytes) {
   std::uint32_t value = 0;
@@ -133,7 +139,7 @@ std::vector<CanFrame> SdoServer::initiate_upload(const CanFrame& frame, bool blo
   toggle_ = false;
   if (block && data_.size() > frame.data[5]) {
     client_block_ = frame.data[4];
-    if (client_block_ < 1 || client_block_ > 127) return abort(0x05040002);
+    if (!sound_block_size(client_block_)) return abort(kBadBlockSize);
     crc_ = knows_crc && (frame.data[0] & 4) != 0;
     mode_ = Mode::BlockUpload;
     sent_ = 0;
@@ -175,6 +181,7 @@ std::vector<CanFrame> SdoServer::block_download_segment(const CanFrame& frame) {
   const int sequence = frame.data[0] & 0x7F;
   const bool last = (frame.data[0] & 0x80) != 0;
   bool complete = false;
+  if (sequence == 0 || sequence > block_size) return abort(kBadSequence);
   if (data_.size() >= kMostBytes) return abort(kOutOfMemory);
   if (sequence == expected_) {
     data_.insert(data_.end(), frame.data.begin() + 1, frame.data.end());
@@ -205,7 +212,8 @@ std::vector<CanFrame> SdoServer::block_upload(const CanFrame& frame) {
     case 3:
       return mode_ == Mode::BlockUpload ? send_block() : abort(0x05040001);
     case 2: {
-      if (mode_ != Mode::BlockUpload || frame.data[1] > sent_) return abort(0x05040003);
+      if (mode_ != Mode::BlockUpload || frame.data[1] > sent_) return abort(kBadSequence);
+      if (!sound_block_size(frame.data[2])) return abort(kBadBlockSize);
       position_ = std::min(position_ + std::size_t{frame.data[1]} * 7, data_.size());
       client_block_ = frame.data[2];
       const bool all = frame.data[1] == sent_ && position_ == data_.size();

@@ -68,6 +68,20 @@ TEST_F(NodeCommunication, RefusesWritesByTheirAbortCodes) {
   EXPECT_EQ(write(0x1016, 2, 127 << 16 | 50, 4), 0x06040043U) << "the same node watched twice";
 }
 
+TEST_F(NodeCommunication, AbortsBlockTransfersThatBreakTheProtocol) {
+  const auto ask = [this](const Bytes& request) {
+    receive(0x600 + kId, request);
+    return last(0x580 + kId);
+  };
+  for (const int size : {0, 128}) {
+    EXPECT_EQ(ask({0xA4, 0x08, 0x10, 0, 127, 0, 0, 0}).data[0] & 0xE1, 0xC0) << "the name of the device, in blocks";
+    EXPECT_EQ(ask({0xA3, 0, 0, 0, 0, 0, 0, 0}).data[0], 0x82) << "two segments, the last one";
+    EXPECT_EQ(number(ask({0xA2, 2, static_cast<std::uint8_t>(size), 0, 0, 0, 0, 0}), 4, 4), 0x05040002U);
+  }
+  EXPECT_EQ(ask({0xC6, 0x85, 0x60, 0, 4, 0, 0, 0}).data[0] & 0xE3, 0xA0);
+  EXPECT_EQ(number(ask({0x00, 1, 2, 3, 4, 0, 0, 0}), 4, 4), 0x05040003U) << "segments count from 1";
+}
+
 TEST_F(NodeCommunication, ChangesAMappingInTheStandardsOrderOnly) {
   EXPECT_EQ(write(0x1600, 0, 0, 1), kStateForbids) << "the PDO is valid";
   EXPECT_EQ(write(0x1400, 1, 0x206, 4), kBadValue) << "the identifier of a PDO that is valid";

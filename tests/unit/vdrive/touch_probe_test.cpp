@@ -96,6 +96,37 @@ TEST_F(DriveModes, RampsToATorqueBySlope) {
   EXPECT_EQ(read(0x6074), 0);
 }
 
+TEST_F(DriveModes, HaltAsTheOptionCodeSaysAndGoOnAfterwards) {
+  EXPECT_EQ(write(0x6084, 0, 20000000, 4), 0U);  // half of what the quick stop does
+  EXPECT_EQ(write(0x6085, 0, 40000000, 4), 0U);
+  EXPECT_EQ(write(0x609A, 0, 20000000, 4), 0U);
+  EXPECT_EQ(write(0x6098, 0, 18, 1), 0U);  // towards the positive limit switch
+  EXPECT_EQ(write(0x6099, 1, 1000000, 4), 0U);
+  EXPECT_EQ(write(0x60FF, 0, 1000000, 4), 0U);
+  EXPECT_EQ(write(0x6081, 0, 1000000, 4), 0U);
+  EXPECT_EQ(write(0x607A, 0, 2000000000, 4), 0U);
+  for (const int mode : {1, 3, 6}) {
+    enable(mode);
+    for (const int code : {1, 2, 3, 4}) {
+      SCOPED_TRACE("mode " + std::to_string(mode) + ", code " + std::to_string(code));
+      EXPECT_EQ(write(0x605D, 0, code, 2), 0U);
+      const int begin = mode == 3 ? 0 : 0x10;
+      control(static_cast<std::uint16_t>(0x0F | begin));
+      pass(0.4);
+      EXPECT_NEAR(static_cast<double>(read(0x606C)), 1e6, 5000);
+      EXPECT_EQ(write(0x6040, 0, 0x10F | begin, 2), 0U);
+      double stopped_s = 0;
+      for (; std::abs(read(0x606C)) > 3000 && stopped_s < 1; stopped_s += 0.0005) pass(0.0005);
+      const double expected_s = code == 1 ? 0.05 : code == 2 ? 0.025 : 0.005;
+      EXPECT_NEAR(stopped_s, expected_s, 0.006);
+      pass(0.1);
+      EXPECT_EQ(state(), 0x27) << "it stays enabled";
+      EXPECT_EQ(status() & (mode == 6 ? 0x3400 : 0x0400), 0x0400) << "at rest, and homing is not through";
+    }
+    control(0x00);
+  }
+}
+
 TEST_F(DriveModes, InterpolatesBetweenSetpointsWhileItIsTold) {
   EXPECT_EQ(write(0x60C2, 1, 10, 1), 0U);  // 10 ms
   enable(7);
