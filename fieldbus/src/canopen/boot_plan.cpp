@@ -127,7 +127,7 @@ class Plan {
     write({communication, 1}, 4, cob_id);
   }
 
-  /// The period, for drives that interpolate or watch it: 60C2h as value times a power of ten, in s, and 1006h in µs.
+  /// The period, for drives that interpolate: 60C2h as value times a power of ten, in s, where one of 8 bits says it.
   void interpolation(std::uint16_t offset) {
     auto value = config_.period.count();  // ns
     int exponent = -9;

@@ -37,9 +37,16 @@ bool is_setpoint(ObjectAddress address) {
                      [&](const MappedObject& word) { return word.object == address; });
 }
 
+/// A data type, which fills room. A file without [DummyUsage] does not say which the drive can do.
+Expected<> check_dummy(const DeviceDescription& description, ObjectAddress address) {
+  const auto found = description.dummies.find(address.index);
+  if (found == description.dummies.end() || found->second.mappable) return {};
+  return refusal(named(description, address, found->second) + " cannot fill room in a PDO");
+}
+
 Expected<> check_mapped(const DeviceDescription& description, const MappedObject& object, std::uint16_t offset,
                         bool setpoint) {
-  if (object.object.index < 0x1000) return {};  // a dummy, which fills room
+  if (object.object.index < 0x1000) return check_dummy(description, object.object);
   const ObjectAddress address = of_axis(object.object, offset);
   const ObjectEntry* entry = description.find(address);
   if (entry == nullptr) return absent(description, address, setpoint ? "mapped by rpdo" : "mapped by tpdo");

@@ -100,9 +100,10 @@ class Master {
     const auto done = ask(request, static_cast<Command>(*request.begin()));
     if (!done) return failure(MinorCode::CommTimeout, fmt::format("the node did not answer when {}", what));
     if (done->data[1] == 0) return {};
-    constexpr std::uint8_t kOfItsOwn = 0xFF;
-    const std::string why = done->data[1] == kOfItsOwn ? fmt::format("error {} of its maker", done->data[2])
-                                                       : std::string("out of its range, or not supported");
+    constexpr std::uint8_t kNotKept = 2, kOfItsOwn = 0xFF;
+    const std::string why = done->data[1] == kOfItsOwn  ? fmt::format("error {} of its maker", done->data[2])
+                            : done->data[1] == kNotKept ? "its memory cannot be written"
+                                                        : "out of its range, or not supported";
     return failure(MinorCode::Other, fmt::format("the node refused when {}: {}", what, why));
   }
 

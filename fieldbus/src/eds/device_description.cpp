@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "eds/compact_pdo.hpp"
 #include "eds/ini.hpp"
 #include "eds/object_reader.hpp"
 #include "eds/value.hpp"
@@ -25,8 +26,9 @@ class Reader {
   }
 
   Expected<DeviceDescription> read() {
-    for (const auto part : {&Reader::read_device, &Reader::read_commissioning, &Reader::read_lists,
-                            &Reader::read_objects, &Reader::check_lists}) {
+    for (const auto part :
+         {&Reader::read_device, &Reader::read_commissioning, &Reader::read_lists, &Reader::read_objects,
+          &Reader::check_lists, &Reader::read_dummies, &Reader::read_compact_pdos}) {
       if (auto done = (this->*part)(); !done) return tl::unexpected(done.error());
     }
     return std::move(description_);
@@ -124,6 +126,35 @@ class Reader {
         return mistake(file_, line, fmt::format("the object is listed, and there is no section [{:04X}]", index));
       }
     }
+    return {};
+  }
+
+  /// [DummyUsage]: which data types can fill room in an RPDO.
+  Expected<> read_dummies() {
+    const auto found = document_.find("dummyusage");
+    if (found == document_.end()) return {};
+    for (const DataType type : {DataType::Integer8, DataType::Integer16, DataType::Integer32, DataType::Unsigned8,
+                                DataType::Unsigned16, DataType::Unsigned32}) {
+      const std::string name = fmt::format("Dummy{:04X}", static_cast<unsigned>(type));
+      ObjectEntry dummy;
+      dummy.name = name;
+      dummy.type = type;
+      if (auto read = number(found->second, lower_case(name).c_str(), 1, dummy.mappable); !read) return read;
+      const IniValue* value = found->second.find(lower_case(name));
+      dummy.line = value != nullptr ? value->line : found->second.line;
+      description_.dummies[static_cast<std::uint16_t>(type)] = std::move(dummy);
+    }
+    return {};
+  }
+
+  Expected<> read_compact_pdos() {
+    const IniSection& device = document_.find("deviceinfo")->second;
+    CompactPdos pdos;
+    if (auto read = number(device, "compactpdo", 0xFF, pdos.subs); !read || pdos.subs == 0) return read;
+    if (auto read = number(device, "nrofrxpdo", kMostPdos, pdos.rpdos); !read) return read;
+    if (auto read = number(device, "nroftxpdo", kMostPdos, pdos.tpdos); !read) return read;
+    pdos.line = device.find("compactpdo")->line;
+    add_compact_pdos(pdos, description_.entries);
     return {};
   }
 

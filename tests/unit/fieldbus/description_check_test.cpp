@@ -74,6 +74,16 @@ TEST(DeviceDescriptionCheck, NamesTheLineOfWhatCannotBeMapped) {
             kAt + "tpdo: 6041h:00 is mapped twice");
 }
 
+TEST(DeviceDescriptionCheck, NamesTheLineOfADummyThatTheDriveCannotMap) {
+  const std::string good = sheet_of_virtual_drive();
+  const Texts texts{{"eds", "drive"}, {"rpdo", "6040:00/16 0006:00/16 6071:00/16"}};
+  EXPECT_EQ(answer(good, texts), "accepted");
+  const std::string without = changed(good, "DummyUsage", "Dummy0006=1", "Dummy0006=0");
+  const auto line = std::count(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(good.find("Dummy0006")), '\n');
+  EXPECT_EQ(answer(without, texts),
+            kAt + "axis 0: drive.eds:" + std::to_string(1 + line) + ": 0006h:00 (Dummy0006) cannot fill room in a PDO");
+}
+
 TEST(DeviceDescriptionCheck, NamesTheLineOfWhatCannotBeWritten) {
   const std::string good = sheet_of_virtual_drive();
   EXPECT_EQ(answer(good, {{"eds", "drive"}, {"setup", "6502:00/32=1"}}),

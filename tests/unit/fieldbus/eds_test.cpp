@@ -95,6 +95,35 @@ TEST(Eds, ReadsTheCompactWritingOfArraysAndTheirConfiguredValues) {
   EXPECT_EQ(drive.bit_rate, 500'000U);
 }
 
+TEST(Eds, KnowsThePdosThatAreNotWrittenOut) {
+  const std::string counts = "NrOfRXPDO=3\nNrOfTXPDO=5\n";
+  const std::string written = "DataType=7\nAccessType=ro\n";
+  std::string text = "[DeviceInfo]\nCompactPDO=0x13\n" + counts +
+                     "[OptionalObjects]\nSupportedObjects=2\n1=0x1401\n2=0x1601\n[1401]\n" + written + "[1601]\n" +
+                     written;
+  const DeviceDescription drive = parsed(text);
+  // One of three RPDOs is written out, and of five TPDOs none.
+  for (const int pdo : {0, 2}) {
+    const ObjectEntry* id = drive.find({static_cast<std::uint16_t>(0x1400 + pdo), 1});
+    ASSERT_NE(id, nullptr) << pdo;
+    EXPECT_EQ(id->initial->number_for(5, id->type), 0x205 + 0x100 * pdo) << "the predefined connection set";
+    EXPECT_TRUE(writable(id->access));
+    EXPECT_NE(drive.find({static_cast<std::uint16_t>(0x1400 + pdo), 2}), nullptr);
+    EXPECT_EQ(drive.find({static_cast<std::uint16_t>(0x1400 + pdo), 3}), nullptr) << "its bit is off";
+    EXPECT_EQ(drive.find({static_cast<std::uint16_t>(0x1400 + pdo), 5})->type, DataType::Unsigned16);
+    EXPECT_EQ(drive.find({static_cast<std::uint16_t>(0x1400 + pdo), 0})->initial->bytes.at(0), 5);
+    EXPECT_EQ(drive.find({static_cast<std::uint16_t>(0x1600 + pdo), 64})->type, DataType::Unsigned32);
+  }
+  EXPECT_FALSE(writable(drive.find({0x1401, 0})->access)) << "as it is written out";
+  EXPECT_FALSE(drive.has(0x1403));
+  EXPECT_EQ(drive.find({0x1804, 1})->initial->number_for(5, DataType::Unsigned32), 0x80000000) << "beyond four, off";
+  EXPECT_FALSE(drive.has(0x1805));
+  EXPECT_EQ(refusal("[DeviceInfo]\nCompactPDO=1\nNrOfRXPDO=513\n"),
+            "drive.eds:3: \"513\" is no whole number from 0 to 512");
+  text.erase(text.find("CompactPDO=0x13\n"), 16);
+  EXPECT_FALSE(parsed(text).has(0x1400));
+}
+
 TEST(Eds, NamesTheLineThatIsWrong) {
   const std::string good = "DataType=0x0003\nAccessType=rw\n";
   EXPECT_EQ(refusal(sheet(good)), "accepted");

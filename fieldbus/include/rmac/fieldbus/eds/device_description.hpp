@@ -22,6 +22,7 @@ struct DeviceDescription {
   std::optional<std::uint8_t> node;       ///< of a DCF
   std::optional<std::uint32_t> bit_rate;  ///< bit/s, of a DCF
   std::map<ObjectAddress, ObjectEntry> entries;
+  std::map<std::uint16_t, ObjectEntry> dummies;  ///< data types, mappable where they fill room in an RPDO
 
   [[nodiscard]] const ObjectEntry* find(ObjectAddress address) const;
   [[nodiscard]] bool has(std::uint16_t index) const;
