@@ -7,6 +7,8 @@
 #include <thread>
 #include <utility>
 
+#include "rmac/motion/move_name.hpp"
+
 namespace rmac::gateway {
 
 namespace {
@@ -246,10 +248,9 @@ Expected<std::size_t> MotionSupervisor::build_and_add(const std::vector<PartOfMo
   // Built to follow a queue that is gone.
   if (rebase_ || (sequencer_.state() == CycleState::Stopping && sequencer_.clears_at_rest())) {
     rebase_ = true;
-    return failure(MinorCode::Other,
-                   fmt::format("move {}: the machine was stopped and its queue emptied before the move was ready; "
-                               "nothing was queued",
-                               parts.front().move->id));
+    return failure(MinorCode::Other, move_name(parts.front().move->id) +
+                                         ": the machine was stopped and its queue emptied before the move was "
+                                         "ready; nothing was queued");
   }
   std::size_t moving = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {

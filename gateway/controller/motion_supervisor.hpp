@@ -22,9 +22,6 @@
 
 namespace rmac::gateway {
 
-/// Id of the moves that jogs and `home` make; clients' own ids are what they chose.
-inline constexpr std::int64_t kPositioningMoveId = -1;
-
 /// Joins cycle states, planner and servo wishes under one lock. The gateway thread commands it; `advance` runs on the
 /// planner thread, or, in virtual time, between two servo cycles. Never called by a servo thread in real pace.
 class MotionSupervisor {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "gateway/controller/motion_supervisor.hpp"
+#include "rmac/motion/move_name.hpp"
 
 namespace rmac::gateway {
 namespace {

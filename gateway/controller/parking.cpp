@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "gateway/controller/motion_supervisor.hpp"
+#include "rmac/motion/move_name.hpp"
 
 namespace rmac::gateway {
 namespace {

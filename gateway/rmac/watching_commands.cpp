@@ -137,7 +137,7 @@ Result<> show_events(Connection& connection, bool json) {
       fmt::print("{}\n", params.dump());
     } else {
       fmt::print("{:>12}  {:>10}  {:<18}{}{}{}\n", number(event.t_s), event.cycle, event.kind,
-                 event.move_id != 0 ? fmt::format("move {}  ", event.move_id) : "", event.message,
+                 event.move_id > 0 ? fmt::format("move {}  ", event.move_id) : "", event.message,
                  event.kind == "Fault" && !event.record.empty() ? "; flight record " + event.record : "");
     }
     std::fflush(stdout);

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "gateway/controller/motion_supervisor.hpp"
+#include "rmac/motion/move_name.hpp"
 
 namespace rmac::gateway {
 namespace {

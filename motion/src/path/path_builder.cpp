@@ -9,6 +9,7 @@
 #include "path/travel.hpp"
 #include "path/trimmed_curve.hpp"
 #include "rmac/motion/frame.hpp"
+#include "rmac/motion/move_name.hpp"
 #include "rmac/motion/planner.hpp"
 
 namespace rmac {
@@ -28,7 +29,7 @@ const char* unit(const JointLimits& joint) {
 Expected<> check_demand(const Move& move, bool joint_move) {
   const auto bad = [&](const char* what, double value, const char* rule) {
     return failure(MinorCode::InvalidParameterValue,
-                   text("move %lld: %s is %g; %s", static_cast<long long>(move.id), what, value, rule));
+                   text("%s: %s is %g; %s", move_name(move.id).c_str(), what, value, rule));
   };
   if (!joint_move && !(move.feed_mm_s > 0 && std::isfinite(move.feed_mm_s))) {
     return bad("the feed", move.feed_mm_s * 60, "set one above 0 mm/min with SetFeedrate");
@@ -49,14 +50,14 @@ Error unreachable(const Move& move, const PathSegment& segment, KinematicsStatus
   const std::string place = text(
       "tip x %.4f y %.4f z %.4f, axis i %.4f j %.4f k %.4f (part frame), %.4f mm along the move", pose.tip[0],
       pose.tip[1], pose.tip[2], pose.axis[0], pose.axis[1], pose.axis[2], segment.stretches().front().s_begin_mm + s);
-  const long long id = move.id;
+  const std::string name = move_name(move.id);
   if (status == KinematicsStatus::Singular) {
     return {MinorCode::TravelLimit,
-            text("move %lld passes a singular pose of this mechanism at %s; keep away from it or reorient the part", id,
-                 place.c_str())};
+            text("%s passes a singular pose of this mechanism at %s; keep away from it or reorient the part",
+                 name.c_str(), place.c_str())};
   }
-  return {MinorCode::TravelLimit,
-          text("move %lld is out of this mechanism's reach at %s; no joint values give this pose", id, place.c_str())};
+  return {MinorCode::TravelLimit, text("%s is out of this mechanism's reach at %s; no joint values give this pose",
+                                       name.c_str(), place.c_str())};
 }
 
 Error beyond_pole(const Move& move, const Curve& near, double s_mm, double deviation) {
@@ -65,10 +66,10 @@ Error beyond_pole(const Move& move, const Curve& near, double s_mm, double devia
   near.evaluate(near.length() / 2, 0, 1, point);
   return {
       MinorCode::TravelLimit,
-      text("move %lld passes the pole, where the tool stands along a rotary axis, at tip x %.4f y %.4f z %.4f (part "
+      text("%s passes the pole, where the tool stands along a rotary axis, at tip x %.4f y %.4f z %.4f (part "
            "frame), %.4f mm along the move; the tool axis would leave the programmed one by %.3f degrees there, and "
            "may by %.3f; lead it past the pole further off, or straight through",
-           static_cast<long long>(move.id), point.d[0][0], point.d[0][1], point.d[0][2], s_mm, deviation * kDegrees,
+           move_name(move.id).c_str(), point.d[0][0], point.d[0][1], point.d[0][2], s_mm, deviation * kDegrees,
            kPoleDeviation * kDegrees)};
 }
 
@@ -149,12 +150,12 @@ Expected<std::vector<std::shared_ptr<const PathSegment>>> PathBuilder::build(con
     if (found) {
       const TravelOffence& offence = *found;
       const JointLimits& joint = model_.joints[offence.joint];
-      return failure(MinorCode::TravelLimit,
-                     text("move %lld takes joint %s to %.4f %s, %.4f %s beyond its limit of %.4f %s, %.4f mm along the "
-                          "move; nothing was queued",
-                          static_cast<long long>(move.id), joint.name.c_str(), offence.position, unit(joint),
-                          std::abs(offence.amount), unit(joint), offence.amount > 0 ? joint.max : joint.min,
-                          unit(joint), stretch.s_begin_mm + offence.s));
+      return failure(
+          MinorCode::TravelLimit,
+          text("%s takes joint %s to %.4f %s, %.4f %s beyond its limit of %.4f %s, %.4f mm along the "
+               "move; nothing was queued",
+               move_name(move.id).c_str(), joint.name.c_str(), offence.position, unit(joint), std::abs(offence.amount),
+               unit(joint), offence.amount > 0 ? joint.max : joint.min, unit(joint), stretch.s_begin_mm + offence.s));
     }
     const auto end = segment->joints_at_node(curve->nodes().size() - 1);
     std::copy(end.begin(), end.end(), joints.begin());

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "planner_bench.hpp"
+#include "rmac/motion/move_name.hpp"
 
 namespace rmac {
 namespace {
@@ -375,6 +376,9 @@ TEST(PathBuilder, RefusesTravelBeyondALimitNamingJointAmountAndPlace) {
   EXPECT_EQ(refused.error().message,
             "move 7 takes joint Y to 52.5000 mm, 2.5000 mm beyond its limit of 50.0000 mm, 52.5000 mm along the move; "
             "nothing was queued");
+  // A jog has no number of a client.
+  move.id = kPositioningMoveId;
+  EXPECT_TRUE(bench.queue(move).error().message.starts_with("this move takes joint Y to 52.5000 mm"));
   // The queue's end is where it was: the next move starts from there.
   move.geometry = LineGeometry{{{0, 0, 0}, kUp}, {{0, 10, 0}, kUp}};
   EXPECT_TRUE(bench.queue(move));

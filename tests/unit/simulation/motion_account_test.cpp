@@ -4,8 +4,8 @@
 
 #include <numeric>
 
-#include "gateway/controller/motion_supervisor.hpp"
 #include "rmac/modules/chain_kinematics.hpp"
+#include "rmac/motion/move_name.hpp"
 #include "rmac/motion/planner.hpp"
 
 namespace rmac::gateway {
