@@ -2,8 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <utility>
-
 #include "gateway/configuration/configuration.hpp"
 #include "gateway/rmac/simulator.hpp"
 
@@ -16,7 +14,7 @@ Fit fit_of(const Program& program, const std::string& machine, const std::filesy
   if (!simulation) return {false, 0, simulation.error().message};
   Program on_it = program;
   std::erase_if(on_it.requests, [](const Request& request) { return request.method == "Device.Load"; });
-  const auto report = Simulator(**simulation, "").run(std::move(on_it));
+  const auto report = Simulator(**simulation, "").run(on_it);
   if (!report) return {false, 0, report.error().message};
   return {true, report->cycle_time_s, ""};
 }

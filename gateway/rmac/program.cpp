@@ -86,14 +86,15 @@ Result<Request> read_request(std::string_view text, const std::string& place) {
   }
   Request request;
   request.method = json["method"].get<std::string>();
-  request.params = json.value("params", nlohmann::json());
-  if (!request.params.is_null() && !request.params.is_structured()) {
+  request.text = text;
+  const auto params = json.value("params", nlohmann::json());
+  if (!params.is_null() && !params.is_structured()) {
     return fail(fmt::format("{}: \"params\" of {} is neither an object nor an array", place, request.method));
   }
   request.timing = timing_of(request.method);
   request.tool_change = function_of(request.method) == kToolChange;
   if (request.timing == Timing::Move && !request.tool_change) {
-    const auto id = move_id_of(request.params);
+    const auto id = move_id_of(params);
     if (!id) {
       return fail(fmt::format("{}: {} needs an integer MoveID", place, request.method));
     }
@@ -103,6 +104,10 @@ Result<Request> read_request(std::string_view text, const std::string& place) {
 }
 
 }  // namespace
+
+nlohmann::json Request::params() const {
+  return nlohmann::json::parse(text).value("params", nlohmann::json());
+}
 
 Timing timing_of(const std::string& method) {
   const auto function = function_of(method);

@@ -18,14 +18,17 @@ enum class Timing {
   Settled,  ///< acts on the machine at once (spindle, frames, configuration, loading): sent when all before it is done
 };
 
-/// One request of a `.rmac` file.
+/// One request of a `.rmac` file. A program may have millions: what is parsed is ten times what is written.
 struct Request {
   int line = 0;
+  std::string text;  ///< the whole request, as the file has it
   std::string method;
-  nlohmann::json params;
   Timing timing = Timing::Settled;
   std::int64_t move_id = 0;  ///< of a `Move`
   bool tool_change = false;  ///< a `Move` without an id
+
+  /// Null where it has none.
+  [[nodiscard]] nlohmann::json params() const;
 };
 
 /// A `.rmac` file: one JSON-RPC request a line, empty lines allowed.

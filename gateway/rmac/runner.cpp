@@ -162,7 +162,7 @@ Result<> Runner::submit(const Program& program, const Request& request) {
   if (auto waited = wait(room); !waited) {
     return waited;
   }
-  auto params = request.params;
+  auto params = request.params();
   if (request.method == "Device.Load" && options_.virtual_mode && params.is_object()) {
     params["Virtual"] = true;
   }

@@ -81,7 +81,7 @@ Result<> simulate_program(const std::string& file, const SimulateOptions& option
       {.device_tree = tree, .tools_folder = options.tools, .period_s = options.period_s}, options.machine);
   if (!simulation) return fail(simulation.error().message);
   Simulator simulator(**simulation, options.record_file);
-  const auto report = simulator.run(std::move(*program));
+  const auto report = simulator.run(*program);
   if (!report) return tl::unexpected(report.error());
   (json ? print_json : print_table)(*report, cpu_time_s() - began_s);
   return {};

@@ -41,12 +41,12 @@ Simulator::Simulator(gateway::Simulation& simulation, const std::string& record_
   controller.on_queued([this](const auto& move, auto segments) { account_.queued(move, segments); });
 }
 
-Result<SimulationReport> Simulator::run(Program program) {
+Result<SimulationReport> Simulator::run(const Program& program) {
   file_ = program.file;
   if (record_) {
     if (auto opened = record_->open(); !opened) return tl::unexpected(opened.error());
   }
-  for (Request& request : program.requests) {
+  for (const Request& request : program.requests) {
     line_ = request.line;
     if (auto done = submit(program, request); !done) return tl::unexpected(done.error());
   }
@@ -65,7 +65,7 @@ Result<SimulationReport> Simulator::run(Program program) {
   return report_;
 }
 
-Result<> Simulator::submit(const Program& program, Request& request) {
+Result<> Simulator::submit(const Program& program, const Request& request) {
   const bool is_move = request.timing == Timing::Move;
   if (request.timing == Timing::Settled && !unfinished_.empty() && !started_) {
     return fail_at(line_, fmt::format("{} needs the moves before it done, but the program starts its cycle later",
@@ -82,7 +82,7 @@ Result<> Simulator::submit(const Program& program, Request& request) {
   if (is_move) unfinished_.push_back({request.move_id, request.line, request.tool_change});
   started_ = started_ || request.timing == Timing::Start;
   unsettled_ = request.timing == Timing::Settled || (unsettled_ && request.timing == Timing::Stream);
-  return call(request.method, std::move(request.params));
+  return call(request.method, request.params());
 }
 
 Result<> Simulator::make_room(const Request& request) {

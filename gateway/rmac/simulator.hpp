@@ -32,7 +32,7 @@ class Simulator {
   Simulator(gateway::Simulation& simulation, const std::string& record_file);
 
   /// An error names the program's line.
-  [[nodiscard]] Result<SimulationReport> run(Program program);
+  [[nodiscard]] Result<SimulationReport> run(const Program& program);
 
  private:
   struct Pending {
@@ -41,7 +41,7 @@ class Simulator {
     bool tool_change = false;
   };
 
-  [[nodiscard]] Result<> submit(const Program& program, Request& request);
+  [[nodiscard]] Result<> submit(const Program& program, const Request& request);
   [[nodiscard]] Result<> make_room(const Request& request);
   [[nodiscard]] Result<> start_cycle();
   [[nodiscard]] Result<> settle();

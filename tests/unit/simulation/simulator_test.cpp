@@ -6,9 +6,9 @@
 namespace rmac::cli {
 namespace {
 
-Request request(int line, const std::string& method, nlohmann::json params) {
-  Request made{line, method, std::move(params), timing_of(method)};
-  if (made.timing == Timing::Move) made.move_id = made.params.at("MoveID");
+Request request(int line, const std::string& method, const nlohmann::json& params) {
+  Request made{line, nlohmann::json{{"method", method}, {"params", params}}.dump(), method, timing_of(method)};
+  if (made.timing == Timing::Move) made.move_id = params.at("MoveID");
   return made;
 }
 
@@ -23,11 +23,11 @@ Program strokes(int count) {
   return program;
 }
 
-Result<SimulationReport> simulate(Program program, std::size_t queue_capacity) {
+Result<SimulationReport> simulate(const Program& program, std::size_t queue_capacity) {
   auto simulation = gateway::Simulation::open(
       {.device_tree = RMAC_BINARY_DIR "/drivers", .queue_capacity = queue_capacity}, "BenchXYZ");
   if (!simulation) return fail(simulation.error().message);
-  return Simulator(**simulation, "").run(std::move(program));
+  return Simulator(**simulation, "").run(program);
 }
 
 TEST(Simulator, WaitsForRoomInTheQueue) {
