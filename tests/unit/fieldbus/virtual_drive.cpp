@@ -19,46 +19,6 @@ std::uint16_t pdo(int axis, int index) {
 
 }  // namespace
 
-void PowerStates::control(std::uint16_t word) {
-  const bool reset = (word & 0x80) != 0;
-  const bool reset_rose = reset && !reset_before_;
-  reset_before_ = reset;
-  if (state == NotReady || state == FaultReaction) return;
-  if (state == Fault) {
-    if (reset_rose) state = SwitchOnDisabled;  // 15
-    return;
-  }
-  if ((word & 0x02) == 0) {         // disable voltage
-    state = SwitchOnDisabled;       // 7, 9, 10, 12
-  } else if ((word & 0x04) == 0) {  // quick stop
-    if (state == OperationEnabled) {
-      state = QuickStop;  // 11
-    } else if (state != QuickStop) {
-      state = SwitchOnDisabled;  // 7, 10
-    }
-  } else if ((word & 0x01) == 0) {                                                  // shutdown
-    if (state != QuickStop) state = ReadyToSwitchOn;                                // 2, 6, 8
-  } else if ((word & 0x08) == 0) {                                                  // switch on, disable operation
-    if (state == ReadyToSwitchOn || state == OperationEnabled) state = SwitchedOn;  // 3, 5
-  } else {                                                                          // enable operation
-    if (state == ReadyToSwitchOn) {
-      state = SwitchedOn;  // 3, and 4 with the next word
-    } else if (state == SwitchedOn || state == QuickStop) {
-      state = OperationEnabled;  // 4, 16
-    }
-  }
-}
-
-void PowerStates::proceed() {
-  if (state == NotReady) state = SwitchOnDisabled;
-  if (state == FaultReaction) state = Fault;
-}
-
-std::uint16_t PowerStates::statusword() const {
-  constexpr std::uint16_t kWords[] = {0x0200, 0x0240, 0x0231, 0x0233, 0x0237, 0x0217, 0x021F, 0x0218};
-  return kWords[state];
-}
-
 VirtualDrive::VirtualDrive(std::uint8_t node, int axes)
     : node_(node), axes_(static_cast<std::size_t>(axes)), server_(node, bank_) {
   set(0x1000, 0, 0x00020192, 4);
@@ -168,7 +128,10 @@ std::vector<CanFrame> VirtualDrive::take_output() {
 
 void VirtualDrive::power_on(Time now) {
   powered_ = true;
-  for (Axis& axis : axes_) axis.power.state = PowerStates::SwitchOnDisabled;
+  for (Axis& axis : axes_) {
+    axis.power = PowerStates();
+    axis.power.proceed(true, kOptions);
+  }
   reset(now);
 }
 
@@ -188,7 +151,7 @@ void VirtualDrive::emergency(std::uint16_t code) {
 }
 
 void VirtualDrive::trip(std::uint16_t error_code) {
-  for (Axis& axis : axes_) axis.power.raise_fault();
+  for (Axis& axis : axes_) axis.power.raise_fault(kOptions);
   emergency(error_code);
 }
 
@@ -207,7 +170,7 @@ void VirtualDrive::receive(const CanFrame& frame, Time now) {
         break;
       case 129:
       case 130:
-        for (Axis& axis : axes_) axis.power.quick_stop();
+        abort_connection();
         reset(now);
         break;
       default:
@@ -260,11 +223,12 @@ void VirtualDrive::sync(Time now) {
         }
         at += bytes;
       }
-      axes_[static_cast<std::size_t>(a)].power.control(static_cast<std::uint16_t>(value(profile(a, 0x6040), 0)));
+      axes_[static_cast<std::size_t>(a)].power.control(static_cast<std::uint16_t>(value(profile(a, 0x6040), 0)),
+                                                       kOptions);
     }
   }
   waiting_.clear();
-  for (Axis& axis : axes_) axis.power.proceed();
+  for (Axis& axis : axes_) axis.power.proceed(true, kOptions);
   publish();
 }
 
@@ -300,7 +264,7 @@ void VirtualDrive::move(Time now) {
   for (int a = 0; a < static_cast<int>(axes_.size()); ++a) {
     Axis& axis = axes_[static_cast<std::size_t>(a)];
     const auto mode = static_cast<std::int8_t>(value(profile(a, 0x6060), 0));
-    if (axis.power.state == PowerStates::OperationEnabled) {
+    if (axis.power.operating()) {
       const double before = axis.position;
       if (mode == 10) {
         const auto torque = static_cast<std::int16_t>(value(profile(a, 0x6071), 0));
@@ -321,27 +285,19 @@ void VirtualDrive::move(Time now) {
   }
 }
 
+void VirtualDrive::abort_connection() {
+  for (int a = 0; a < static_cast<int>(axes_.size()); ++a) {
+    const auto option = static_cast<int>(value(profile(a, 0x6007), 0));
+    axes_[static_cast<std::size_t>(a)].power.abort_connection(option, kOptions);
+  }
+}
+
 void VirtualDrive::watch_master(Time now) {
   const Time limit = std::chrono::milliseconds(value(0x1016, 1) & 0xFFFF);
   if (!watches_ || now - master_heard_ <= limit) return;
   watches_ = false;
   nmt_ = kPreOperational;  // 1029h at its default
-  for (int a = 0; a < static_cast<int>(axes_.size()); ++a) {
-    PowerStates& power = axes_[static_cast<std::size_t>(a)].power;
-    switch (value(profile(a, 0x6007), 0)) {
-      case 1:
-        power.raise_fault();
-        break;
-      case 2:
-        power.control(0);
-        break;
-      case 3:
-        power.quick_stop();
-        break;
-      default:
-        break;
-    }
-  }
+  abort_connection();
   emergency(0x8130);
 }
 

@@ -6,38 +6,14 @@
 #include <vector>
 
 #include "unit/fieldbus/object_bank.hpp"
+#include "vdrive/power_states.hpp"
 
 namespace rmac::fieldbus::test {
 
-/// The power state machine of CiA 402-2, figure 3, written from the standard's tables and not from the master's code.
-class PowerStates {
- public:
-  enum State {
-    NotReady,
-    SwitchOnDisabled,
-    ReadyToSwitchOn,
-    SwitchedOn,
-    OperationEnabled,
-    QuickStop,
-    FaultReaction,
-    Fault
-  };
+using vdrive::PowerStates;
 
-  void control(std::uint16_t word);
-  void raise_fault() { state = FaultReaction; }
-  /// What goes on by itself: transitions 1 and 14.
-  void proceed();
-  [[nodiscard]] std::uint16_t statusword() const;
-  /// Asks for a quick stop as an abort of the connection does.
-  void quick_stop() {
-    if (state == OperationEnabled) state = QuickStop;
-  }
-
-  State state = NotReady;
-
- private:
-  bool reset_before_ = false;
-};
+/// A quick stop stays until it is left by command, and nothing slows down first.
+inline constexpr vdrive::OptionCodes kOptions{.quick_stop = 6, .disable_operation = 0};
 
 /// A CANopen node with one or more CiA 402 axes: object dictionary, SDO server, PDOs as its dictionary says, NMT,
 /// heartbeat produced and watched, EMCY, and an axis that moves. It shares no protocol code with the master.
@@ -59,7 +35,7 @@ class VirtualDrive {
 
   [[nodiscard]] std::uint8_t node() const { return node_; }
   [[nodiscard]] PowerStates::State state(int axis = 0) const {
-    return axes_.at(static_cast<std::size_t>(axis)).power.state;
+    return axes_.at(static_cast<std::size_t>(axis)).power.state();
   }
   [[nodiscard]] double position(int axis = 0) const { return axes_.at(static_cast<std::size_t>(axis)).position; }
   [[nodiscard]] double velocity(int axis = 0) const { return axes_.at(static_cast<std::size_t>(axis)).velocity; }
@@ -91,6 +67,7 @@ class VirtualDrive {
   void act_on(const CanFrame& frame);
   void move(Time now);
   void publish();
+  void abort_connection();
   void watch_master(Time now);
   [[nodiscard]] std::uint32_t check_write(Object object, const Bytes& bytes);
   void send(std::uint16_t id, std::vector<std::uint8_t> data);
