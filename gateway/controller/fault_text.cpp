@@ -23,7 +23,33 @@ std::string joint_name(std::uint32_t index, const sdk::DeviceObject* device) {
   return fmt::format("joint {}", index);
 }
 
-std::string where(const ServoFault& fault, const sdk::DeviceObject* device) {
+struct NamedBus {
+  const ServoBus* bus;
+  std::string name;
+};
+
+/// A bus of the servo loop, which counts them as actuators, spindles and force sensors name them first.
+std::optional<NamedBus> bus_at(std::uint32_t index, const Mechanism* mechanism) {
+  if (mechanism == nullptr) return {};
+  const ServoLoopParts& parts = mechanism->loop->parts();
+  const sdk::DeviceObject& device = mechanism->device;
+  std::vector<NamedBus> buses;
+  const auto add = [&buses](const std::shared_ptr<ServoBus>& bus, const std::string& name) {
+    const auto same = [&bus](const NamedBus& known) { return known.bus == bus.get(); };
+    if (std::none_of(buses.begin(), buses.end(), same)) buses.push_back({bus.get(), name});
+  };
+  for (std::size_t i = 0; i < parts.actuators.size(); ++i) add(parts.actuators[i].bus, device.actuators.at(i).bus);
+  for (std::size_t i = 0; i < parts.spindles.size(); ++i) add(parts.spindles[i].bus, device.spindles.at(i).bus);
+  for (std::size_t j = 0; j < parts.axes.size(); ++j) {
+    const std::size_t moved = device.joints.size();
+    const sdk::Joint& joint = j < moved ? device.joints[j] : device.held_joints.at(j - moved);
+    if (parts.axes[j].force_sensor) add(parts.axes[j].force_sensor->bus, joint.force_sensor->bus);
+  }
+  return index < buses.size() ? std::optional(buses[index]) : std::nullopt;
+}
+
+std::string where(const ServoFault& fault, const Mechanism* mechanism) {
+  const sdk::DeviceObject* device = mechanism != nullptr ? &mechanism->device : nullptr;
   switch (fault.part) {
     case ServoFault::Part::Joint:
       return joint_name(fault.index, device);
@@ -39,8 +65,10 @@ std::string where(const ServoFault& fault, const sdk::DeviceObject* device) {
         return fmt::format("drive of spindle {} (bus {}, axis {})", fault.index, spindle.bus, spindle.axis);
       }
       return fmt::format("drive of spindle {}", fault.index);
-    case ServoFault::Part::Bus:
-      return fmt::format("bus {}", fault.index);
+    case ServoFault::Part::Bus: {
+      const auto bus = bus_at(fault.index, mechanism);
+      return bus ? "bus " + bus->name : fmt::format("bus {}", fault.index);
+    }
     case ServoFault::Part::Io:
       return "digital I/O";
     case ServoFault::Part::Clock:
@@ -66,10 +94,22 @@ bool holds_back(std::uint32_t bit, const Mechanism* mechanism) {
                      [bit](const ServoLimit& limit) { return limit.input == std::uint64_t{1} << bit; });
 }
 
+/// Why the exchange with an interface failed.
+template <typename Interface>
+std::string exchange_text(const Interface* interface, const char* otherwise) {
+  const auto* told = dynamic_cast<const fieldbus::ExchangeFaultText*>(interface);
+  return told != nullptr ? told->fault_text() : otherwise;
+}
+
 std::string io_text(const Mechanism* mechanism) {
-  const auto* told =
-      mechanism == nullptr ? nullptr : dynamic_cast<const fieldbus::IoFaultText*>(mechanism->loop->parts().io.get());
-  return told != nullptr ? told->fault_text() : "the device failed; check it";
+  const DigitalIoInterface* io = mechanism == nullptr ? nullptr : mechanism->loop->parts().io.get();
+  return exchange_text(io, "the device failed; check it");
+}
+
+std::string bus_text(std::uint32_t index, const Mechanism* mechanism) {
+  const auto bus = bus_at(index, mechanism);
+  const DigitalControlInterface* interface = bus ? bus->bus->interface.get() : nullptr;
+  return exchange_text(interface, "the bus failed; check the interface");
 }
 
 /// A drive's error code, as its interface tells it or else as CiA 402 does.
@@ -118,7 +158,7 @@ std::optional<std::string> spindle_cause(const ServoFault& fault, const std::str
 }
 
 std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
-  std::string at = where(fault, mechanism != nullptr ? &mechanism->device : nullptr);
+  std::string at = where(fault, mechanism);
   const auto word = static_cast<unsigned>(std::lround(std::abs(fault.value)));
   if (fault.part == ServoFault::Part::Spindle) {
     if (auto text = spindle_cause(fault, at, mechanism)) return *text;
@@ -189,7 +229,7 @@ std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
           "chain, then reset",
           at, fault.bound, rmac::to_string(drive_state(static_cast<std::uint16_t>(word))));
     case ServoFault::Kind::BusFailure:
-      return fmt::format("{}: the bus failed; check the interface, then reset", at);
+      return fmt::format("{}: {}, then reset", at, bus_text(fault.index, mechanism));
     case ServoFault::Kind::IoFailure:
       return fmt::format("{}: {}, then reset", at, io_text(mechanism));
     case ServoFault::Kind::EmergencyStop:

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "canopen/bus_axis.hpp"
+#include "canopen/bus_trouble.hpp"
 #include "canopen/node_boot.hpp"
 #include "canopen/pdo.hpp"
 #include "rmac/fieldbus/can/socket_can_port.hpp"
@@ -81,6 +82,7 @@ struct CanopenInterface::Impl {
   std::vector<BusAxis> axes;
   std::vector<std::size_t> rpdos;  ///< the first axis of each
   CanopenCounters counters;
+  BusTrouble trouble;
   std::chrono::nanoseconds next_heartbeat{0};
   std::chrono::nanoseconds next_time{0};
   std::size_t recovering = 0;  ///< whose turn it is to send a frame of its boot
@@ -236,7 +238,14 @@ bool CanopenInterface::exchange(std::span<const DriveCommand> commands, std::spa
   bus.fill(feedback);
   const bool sent = bus.send_cycle(commands, now);
   bus.recover(now);
-  return sent && bus.port->health().usable();
+  const CanHealth health = bus.port->health();
+  if (sent && health.usable()) return true;
+  bus.trouble.note(health, bus.counters.unsent);
+  return false;
+}
+
+std::string CanopenInterface::fault_text() const {
+  return impl_->trouble.text(impl_->config.interface);
 }
 
 void CanopenInterface::Impl::fetch(std::chrono::nanoseconds now) noexcept {

@@ -50,6 +50,14 @@ TEST(Watching, SaysWhatHappenedInWhichCycleAndWhatToDo) {
                                   HasSubstr("check the sensor"), HasSubstr("then reset"), HasSubstr("category 1")));
 }
 
+TEST(Watching, NamesTheBusThatFailed) {
+  TestMachine machine;
+  ASSERT_TRUE(machine.load_at_zero(mill_with_sensor()));
+  machine.bus->set_bus_failed(true);
+  ASSERT_TRUE(machine.run_until([&] { return !machine.last(Event::Kind::Fault).empty(); }));
+  EXPECT_THAT(machine.last(Event::Kind::Fault), HasSubstr("bus test: the bus failed; check the interface, then reset"));
+}
+
 TEST(Watching, StopsUnderTheConfiguredCategoryAndGoesOnAfterAReset) {
   ControllerOptions options = TestMachine::options();
   options.stop_categories.sensor_lost = StopCategory::StopKeepPower;

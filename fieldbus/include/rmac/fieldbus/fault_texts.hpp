@@ -14,10 +14,10 @@ class FaultTexts {
   [[nodiscard]] virtual std::string fault_text(std::size_t axis, std::uint16_t error_code) const = 0;
 };
 
-/// What an I/O interface implements beside its port when it can say why `exchange` fails.
-class IoFaultText {
+/// What an interface, of drives or of I/O, implements beside its port when it can say why `exchange` fails.
+class ExchangeFaultText {
  public:
-  virtual ~IoFaultText() = default;
+  virtual ~ExchangeFaultText() = default;
   /// What is wrong, and what to do. Any thread but the servo thread.
   [[nodiscard]] virtual std::string fault_text() const = 0;
 };

@@ -5,6 +5,7 @@
 
 #include "rmac/fieldbus/can/can_port.hpp"
 #include "rmac/fieldbus/canopen/canopen_config.hpp"
+#include "rmac/fieldbus/fault_texts.hpp"
 
 namespace rmac::fieldbus::canopen {
 
@@ -25,7 +26,7 @@ struct CanopenCounters {
 /// decide.
 ///
 /// No thread of its own: `start` and `stop` run on their caller's, `exchange` on the servo thread, never at once.
-class CanopenInterface final : public DigitalControlInterface {
+class CanopenInterface final : public DigitalControlInterface, public ExchangeFaultText {
  public:
   /// Opens the bus for the identifiers that the drives send; `queue_frames` as `SocketCanPort::open` takes it.
   using OpenPort = std::function<Expected<std::unique_ptr<CanPort>>(std::span<const std::uint16_t> wanted,
@@ -50,6 +51,8 @@ class CanopenInterface final : public DigitalControlInterface {
   /// By its encoder resolution, gear ratio and feed constant.
   [[nodiscard]] double counts_per_revolution(std::size_t axis) const noexcept override;
   [[nodiscard]] bool latches(std::size_t axis, TouchProbeEdge edge) const noexcept override;
+
+  [[nodiscard]] std::string fault_text() const override;
 
   [[nodiscard]] const CanopenCounters& counters() const noexcept;
 

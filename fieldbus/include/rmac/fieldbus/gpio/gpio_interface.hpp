@@ -13,7 +13,7 @@ namespace rmac::fieldbus::gpio {
 /// GPIO lines behind the I/O port. It has no thread: each cycle takes the edges that the kernel has kept, so that an
 /// input acts in the cycle after its edge. `exchange` fails, with outputs inactive, while the contacts of an input
 /// disagree or the chip does not answer.
-class GpioInterface final : public DigitalIoInterface, public IoFaultText {
+class GpioInterface final : public DigitalIoInterface, public ExchangeFaultText {
  public:
   GpioInterface(GpioConfig config, std::unique_ptr<LinePort> port);
   ~GpioInterface() override;
