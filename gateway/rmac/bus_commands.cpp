@@ -17,11 +17,16 @@ namespace {
 using fieldbus::canopen::BusLoad;
 using fieldbus::canopen::CanopenConfig;
 
-/// The buses that a machine's drives are on.
+/// The buses that a machine's drives and force sensors are on.
 std::set<std::string> buses_of(const sdk::DeviceObject& device) {
   std::set<std::string> names;
   for (const sdk::Actuator& actuator : device.actuators) names.insert(actuator.bus);
   for (const sdk::Spindle& spindle : device.spindles) names.insert(spindle.bus);
+  for (const auto* joints : {&device.joints, &device.held_joints}) {
+    for (const sdk::Joint& joint : *joints) {
+      if (joint.force_sensor) names.insert(joint.force_sensor->bus);
+    }
+  }
   return names;
 }
 

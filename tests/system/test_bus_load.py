@@ -19,9 +19,10 @@ class BusLoad(unittest.TestCase):
         self.file = pathlib.Path(folder.name) / "device.json"
         self.device = json.loads((SOURCE / "drivers/mill/3-axis/DMACXYZ/device.json").read_text())
 
-    def load(self, parameters, *options, spindle_bus="can0"):
+    def load(self, parameters, *options, spindle_bus="can0", sensor_bus="can0"):
         for actuator in self.device["Actuators"]:
             actuator["Bus"] = "can0"
+        self.device["Joints"][2]["ForceSensor"]["Bus"] = sensor_bus
         self.device["Spindles"][0].update(Bus=spindle_bus, Axis=3 if spindle_bus == "can0" else 0)
         self.device["DigitalControlInterface"] = {"Module": "CANopenInterface", "Parameters": parameters}
         self.file.write_text(json.dumps(self.device))
@@ -36,6 +37,12 @@ class BusLoad(unittest.TestCase):
         self.assertEqual((table["bus"], table["axes"], table["cyclic_bits"]), ("can0", 3, 53 + (92 + 93 + 92) + (111 + 112 + 111)))
         self.assertEqual((head["bus"], head["axes"], head["cyclic_bits"]), ("can1", 1, 53 + 112 + 111))
         self.assertTrue(table["fits"] and head["fits"])
+
+    def test_counts_a_bus_that_a_force_sensor_has_for_itself(self):
+        parameters = {"can0.node": [1, 2, 3, 4], "can1.node": 5, "can1.second_tpdo": "6401:01/16"}
+        done = self.load(parameters, "--json", "--period", "0.002", sensor_bus="can1")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual([(bus["bus"], bus["axes"]) for bus in json.loads(done.stdout)], [("can0", 4), ("can1", 1)])
 
     def test_fails_above_the_share_and_says_what_helps(self):
         parameters = {"node": [1, 2, 3, 4], "mode": [10, 10, 10, 3], "rpdo": "6040:00/16 607A:00/32 6071:00/16"}
