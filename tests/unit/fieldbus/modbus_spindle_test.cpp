@@ -351,8 +351,7 @@ TEST(ModbusSpindleLine, OfTwoDrivesOneMuteLeavesTheOtherAtWork) {
     ASSERT_TRUE(spindle.exchange(commands, feedback));
     ASSERT_LT(Clock::now(), give_up);
     std::this_thread::yield();
-  } while (feedback[0].online);
-  EXPECT_TRUE(feedback[1].online);
+  } while (feedback[0].online || !feedback[1].online);
 }
 
 }  // namespace
