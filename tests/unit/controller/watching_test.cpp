@@ -95,10 +95,10 @@ TEST(Watching, CategoryOneTakesThePowerAway) {
 TEST(Watching, SilentDriveStopsTheOthersOnTheirPath) {
   TestMachine machine;
   ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
-  ASSERT_TRUE(machine.controller.cam().set_feedrate(3000));
+  ASSERT_TRUE(machine.controller.cam().set_feedrate(1500));
   ASSERT_TRUE(machine.line(kMove, {0, 0, 0}, {40, 20, 10}));
   ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
-  ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().position_set[0] > 10; }));
+  ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().position_set[0] > 1; }));
   machine.bus->set_online(2, false);
   ASSERT_TRUE(machine.run_until([&] { return machine.count(Event::Kind::Fault, kMove) > 0; }));
   EXPECT_THAT(machine.controller.last_stop()->message,
