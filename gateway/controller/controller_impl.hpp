@@ -38,8 +38,9 @@ struct Controller::Impl {
   [[nodiscard]] static bool same_choice(const sdk::ModuleChoice& one, const sdk::ModuleChoice& other);
   /// Laws of the mechanism in force (law_change.cpp): joints whose law or gains `device` has otherwise, and what puts
   /// these in, at rest or in motion.
-  [[nodiscard]] std::vector<std::size_t> joints_with_other_laws(const sdk::DeviceObject& device) const;
-  [[nodiscard]] Expected<> exchange_laws(const sdk::DeviceObject& device, const std::vector<std::size_t>& joints);
+  [[nodiscard]] static bool other_law(const sdk::Joint& now, const sdk::Joint& wanted);
+  [[nodiscard]] std::vector<std::size_t> joints_with_other_loops(const sdk::DeviceObject& device) const;
+  [[nodiscard]] Expected<> change_loops(const sdk::DeviceObject& device, const std::vector<std::size_t>& joints);
   void bound_spindles(const sdk::DeviceObject& device);
   [[nodiscard]] Expected<> reset();
   void come_to_rest() noexcept;

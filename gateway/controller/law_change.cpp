@@ -1,5 +1,5 @@
-// Other servo laws, or gains, for joints of the mechanism in force, and nothing else: the servo thread exchanges them
-// between two cycles, in motion too, and all that is planned goes on.
+// Other servo laws, gains or control methods for joints of the mechanism in force, and nothing else: the servo thread
+// exchanges them between two cycles, in motion too, and all that is planned goes on.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -19,39 +19,55 @@ auto& joint_of(auto& device, std::size_t number) {
 
 }  // namespace
 
-std::vector<std::size_t> Controller::Impl::joints_with_other_laws(const sdk::DeviceObject& device) const {
+bool Controller::Impl::other_law(const sdk::Joint& now, const sdk::Joint& wanted) {
+  return !same_choice(now.servo_law, wanted.servo_law) || now.gains != wanted.gains;
+}
+
+std::vector<std::size_t> Controller::Impl::joints_with_other_loops(const sdk::DeviceObject& device) const {
   std::vector<std::size_t> joints;
   for (std::size_t j = 0; j < in_force->loop->axis_count(); ++j) {
     const sdk::Joint &now = joint_of(in_force->device, j), &wanted = joint_of(device, j);
-    if (!same_choice(now.servo_law, wanted.servo_law) || now.gains != wanted.gains) joints.push_back(j);
+    if (other_law(now, wanted) || now.method != wanted.method) joints.push_back(j);
   }
   return joints;
 }
 
-Expected<> Controller::Impl::exchange_laws(const sdk::DeviceObject& device, const std::vector<std::size_t>& joints) {
-  if (auto ready = fit_for_change("other servo laws").and_then([&] { return check_device(device); }); !ready) {
+Expected<> Controller::Impl::change_loops(const sdk::DeviceObject& device, const std::vector<std::size_t>& joints) {
+  if (auto ready = fit_for_change("other servo loops").and_then([&] { return check_device(device); }); !ready) {
     return ready;
   }
+  const auto other_method = [&](std::size_t j) {
+    return joint_of(in_force->device, j).method != joint_of(device, j).method;
+  };
+  // At rest a joint that has slipped takes its place along.
+  if (std::ranges::any_of(joints, other_method) && supervisor.require_rest("another control method")) {
+    return put_in(device, false);
+  }
   std::vector<SwapRequest::Law> laws;
+  std::vector<SwapRequest::Method> methods;
   std::vector<ModuleInUse> modules;
   std::vector<std::string> names;
   for (const std::size_t j : joints) {
     const sdk::Joint& joint = joint_of(device, j);
+    names.push_back(joint.limits.name);
+    if (other_method(j)) methods.push_back({j, joint.method});
+    if (!other_law(joint_of(in_force->device, j), joint)) continue;
     auto law = load_joint_law(joint, loader(folder_in_force), modules);
     if (!law) return tl::unexpected(law.error());
     (*law)->set_effort_limit(joint.max_effort);
     // The assembler made it.
     auto* const now = static_cast<ExchangeableLaw*>(in_force->loop->parts().axes[j].law.get());
     laws.push_back({now, std::move(*law)});
-    names.push_back(joint.limits.name);
   }
   SwapRequest request;
   request.laws = laws;
+  request.methods = methods;
   if (auto exchanged = ask_servo_thread(request); !exchanged) return exchanged;
   for (const std::size_t j : joints) {
     sdk::Joint& now = joint_of(in_force->device, j);
     now.servo_law = joint_of(device, j).servo_law;
     now.gains = joint_of(device, j).gains;
+    now.method = joint_of(device, j).method;
   }
   for (const ModuleInUse& used : modules) {
     const auto same_role = [&](const ModuleInUse& before) { return before.role == used.role; };
@@ -59,7 +75,7 @@ Expected<> Controller::Impl::exchange_laws(const sdk::DeviceObject& device, cons
   }
   draft.discard(&in_force->device);
   tell_of_mechanism(
-      fmt::format("{} is configured: servo law of joint {}", in_force->device.name, fmt::join(names, ", ")));
+      fmt::format("{} is configured: servo loop of joint {}", in_force->device.name, fmt::join(names, ", ")));
   return {};
 }
 

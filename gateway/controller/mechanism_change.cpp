@@ -78,7 +78,10 @@ Expected<> Controller::Impl::ask_servo_thread(SwapRequest& request) {
     while (!answered()) std::this_thread::yield();
   }
   if (request.result.load(std::memory_order_acquire) == SwapRequest::Result::Refused) {
-    return failure(MinorCode::Other, "the machine is moving; a mechanism is put in at rest only");
+    return failure(MinorCode::Other, request.methods.empty()
+                                         ? "the machine is moving; a mechanism is put in at rest only"
+                                         : "a joint that is to be under position control again has slipped off the "
+                                           "plan; change it with the machine at rest");
   }
   return {};
 }
@@ -151,9 +154,9 @@ void Controller::Impl::leave_fault() {
 }
 
 Expected<> Controller::Impl::apply(const sdk::DeviceObject& device, ConfigDraft::Extent extent) {
-  if (extent == ConfigDraft::Extent::Laws) {
-    const std::vector<std::size_t> joints = joints_with_other_laws(device);
-    if (!joints.empty()) return exchange_laws(device, joints);
+  if (extent == ConfigDraft::Extent::Loops) {
+    const std::vector<std::size_t> joints = joints_with_other_loops(device);
+    if (!joints.empty()) return change_loops(device, joints);
   }
   return put_in(device, extent == ConfigDraft::Extent::Mechanism);
 }

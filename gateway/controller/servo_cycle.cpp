@@ -1,6 +1,7 @@
 #include "gateway/controller/servo_cycle.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "rmac/motion/frame.hpp"
 
@@ -21,9 +22,8 @@ void ServoCycle::run(std::uint64_t missed) noexcept {
 void ServoCycle::serve_swap() noexcept {
   SwapRequest* const request = link_.swap.exchange(nullptr, std::memory_order_acq_rel);
   if (request == nullptr) return;
-  if (!request->laws.empty()) {
-    for (SwapRequest::Law& other : request->laws) other.joint->exchange(other.law);
-    request->result.store(SwapRequest::Result::Done, std::memory_order_release);
+  if (!request->laws.empty() || !request->methods.empty()) {
+    request->result.store(change_loops(*request), std::memory_order_release);
     return;
   }
   if (status_.moving) {
@@ -34,6 +34,18 @@ void ServoCycle::serve_swap() noexcept {
   status_.generation = request->generation;
   // Whoever asked may destroy the old mechanism, and the request, from here on.
   request->result.store(SwapRequest::Result::Done, std::memory_order_release);
+}
+
+SwapRequest::Result ServoCycle::change_loops(const SwapRequest& request) noexcept {
+  constexpr double kOnPlan = 1e-6;  // mm or degrees
+  ServoLoop& loop = *mechanism_->loop;
+  for (const SwapRequest::Method& other : request.methods) {
+    const bool keeps_position = other.method == ControlMethod::Position;
+    if (keeps_position && std::abs(loop.slipped(other.joint)) > kOnPlan) return SwapRequest::Result::Refused;
+  }
+  for (const SwapRequest::Method& other : request.methods) loop.set_control_method(other.joint, other.method);
+  for (SwapRequest::Law& other : request.laws) other.joint->exchange(other.law);
+  return SwapRequest::Result::Done;
 }
 
 void ServoCycle::take_over(Mechanism* next) noexcept {

@@ -19,6 +19,7 @@ class ServoCycle {
 
  private:
   void serve_swap() noexcept;
+  [[nodiscard]] SwapRequest::Result change_loops(const SwapRequest& request) noexcept;
   void take_over(Mechanism* next) noexcept;
   void move(const ServoWishes& wishes) noexcept;
   void fill_pose_set() noexcept;

@@ -57,14 +57,20 @@ struct FaultRecord {
 };
 
 /// Another mechanism for the servo loop, or none. It is put in between two cycles, at standstill; `refused` otherwise.
-/// Or, where there are `laws`, these for joints of the mechanism in force, at standstill or in motion.
+/// Or, where there are `laws` or `methods`, these for joints of the mechanism in force, at standstill or in motion;
+/// refused where a joint has slipped off the plan that is to keep its position.
 struct SwapRequest {
   enum class Result : std::uint8_t { Waiting, Done, Refused };
   struct Law {
     ExchangeableLaw* joint = nullptr;
     std::shared_ptr<ServoLaw> law;  ///< for it; afterwards the one that it had
   };
+  struct Method {
+    std::size_t joint = 0;
+    ControlMethod method = ControlMethod::Position;  ///< or velocity
+  };
   std::span<Law> laws;
+  std::span<const Method> methods;
   Mechanism* next = nullptr;
   std::uint64_t generation = 0;
   std::atomic<Result> result{Result::Waiting};

@@ -41,7 +41,7 @@ sdk::Joint without_what_is_set(const sdk::Joint& joint) {
 void ConfigDraft::discard(const sdk::DeviceObject* in_force) {
   draft_ = in_force != nullptr ? *in_force : sdk::DeviceObject{};
   begun_ = in_force != nullptr;
-  extent_ = Extent::Laws;
+  extent_ = Extent::Loops;
 }
 
 sdk::DeviceObject& ConfigDraft::edit() noexcept {
@@ -71,7 +71,7 @@ Expected<> ConfigDraft::apply() {
     return failure(MinorCode::Other,
                    "Apply: there is no mechanism to configure; load a device driver with Device.Load");
   }
-  return controller_.apply(draft_, extent_).map([this] { extent_ = Extent::Laws; });
+  return controller_.apply(draft_, extent_).map([this] { extent_ = Extent::Loops; });
 }
 
 Expected<sdk::Joint*> ConfigDraft::joint(int number, const char* function) {
@@ -176,7 +176,11 @@ Expected<> ConfigDraft::set_maximum_feedrate(double mm_min) {
 }
 
 Expected<> ConfigDraft::set_joint_control_method(int number, ControlMethod method) {
-  return change_joint(number, "SetMechanismJointControlMethod", [&](sdk::Joint& found) { found.method = method; });
+  return joint(number, "SetMechanismJointControlMethod").map([&](sdk::Joint* found) {
+    // A joint under force control is out of the plan.
+    if (method == ControlMethod::Force || found->method == ControlMethod::Force) (void)edit();
+    found->method = method;
+  });
 }
 
 Expected<> ConfigDraft::set_joint_servo_control_law(int number, const sdk::ModuleChoice& module) {

@@ -13,7 +13,7 @@ class ConfigDraft final : public sdk::RmacConfig {
  public:
   /// How far a draft goes beyond what is in force.
   enum class Extent : std::uint8_t {
-    Laws,           ///< servo laws of joints, their parameters and gains at most; none comes or goes
+    Loops,          ///< servo laws of joints and what belongs to them; none comes or goes, and no joint leaves the plan
     Configuration,  ///< the same mechanism, with anything changed
     Mechanism,      ///< another one
   };
@@ -76,7 +76,7 @@ class ConfigDraft final : public sdk::RmacConfig {
   std::vector<sdk::Joint> described_;  ///< what device.json says of each joint that no setter does
   std::vector<sdk::Spindle> described_spindles_;
   bool begun_ = false;
-  Extent extent_ = Extent::Laws;
+  Extent extent_ = Extent::Loops;
 };
 
 }  // namespace rmac::gateway

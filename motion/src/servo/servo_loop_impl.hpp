@@ -50,7 +50,7 @@ struct ServoLoop::Impl {
   void make_setpoints(const ServoCommand& command, ServoReport& report) noexcept;
   void choose_setpoints(const ServoCommand& command, ServoReport& report) noexcept;
   void follow_force(std::size_t joint, double wanted) noexcept;
-  void follow_velocity(std::size_t joint, double wanted, double acceleration) noexcept;
+  void follow_velocity(std::size_t joint, const Setpoint& wanted) noexcept;
   void run_laws() noexcept;
   void engage_law(std::size_t joint, double from_effort) noexcept;
   void shafts_for(std::span<const double> joint_positions, std::span<double> shafts) const noexcept;
@@ -150,6 +150,8 @@ struct ServoLoop::Impl {
   std::int64_t second_cycles = 0;                        ///< of that second
   std::array<double, kMaxJoints> hold{};
   std::array<double, kMaxJoints> set_velocity{}, set_acceleration{};
+  std::array<double, kMaxJoints> slip{};      ///< of a joint under velocity control: `hold` less where the plan has it
+  std::array<bool, kMaxJoints> on_the_way{};  ///< it followed the plan in the cycle before
   std::uint32_t late_drives = 0, late_joints = 0;  ///< bit i, j: it tells where it was a cycle before
   /// How far the setpoints of such joints went in this cycle.
   std::array<double, kMaxJoints> gone_on{}, velocity_gone_on{};

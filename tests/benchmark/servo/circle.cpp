@@ -33,10 +33,14 @@ void circle_rows(Figures& figures) {
   figures.at_most("circle_contour_feedforward_late_answers", 1e3 * late.contour_error(), 5, "um", late_note);
   figures.at_most("circle_reversal_spike_feedforward_late_answers", 1e3 * late.reversal_spike(), 3, "um", late_note);
   LawChanges all;
+  double method_difference_nm = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const LawChanges changes = LawChangesOnMill().change_laws_on_circle(seed);
     all.count += changes.count;
     all.gain_count += changes.gain_count;
+    all.method_count += changes.method_count;
+    const LawChanges same_methods = LawChangesOnMill().change_laws_on_circle(seed, false);
+    method_difference_nm = std::max(method_difference_nm, largest_difference_nm(changes, same_methods));
     all.largest_gain_step_nm = std::max(all.largest_gain_step_nm, changes.largest_gain_step_nm);
     all.largest_step_nm = std::max(all.largest_step_nm, changes.largest_step_nm);
     all.largest_soon_nm = std::max(all.largest_soon_nm, changes.largest_soon_nm);
@@ -47,6 +51,11 @@ void circle_rows(Figures& figures) {
                   std::to_string(all.count) + " changes on the circle");
   figures.at_most("torque_step_where_gains_change", 100 * all.largest_gain_step_nm / all.rated_nm, 1, "% of rated",
                   std::to_string(all.gain_count) + " changes on the circle, to 0.6 to 1.1 of what they are");
+  figures.at_most(
+      "torque_step_where_methods_change", 100 * method_difference_nm / all.rated_nm, 1, "% of rated",
+      std::to_string(all.method_count) +
+          " changes on the circle, between position and velocity control: largest difference of any cycle to "
+          "the same run without them");
   figures.inform("torque_change_a_cycle_soon_after_changes", 100 * all.largest_soon_nm / all.rated_nm, "% of rated",
                  "largest, in the three cycles after one");
   figures.inform("torque_change_a_cycle_elsewhere", 100 * all.largest_ever_nm / all.rated_nm, "% of rated",

@@ -70,7 +70,7 @@ TEST_F(Draft, OnlyTheFirstApplyAfterBeginIsANewMechanism) {
   EXPECT_THAT(extents_, testing::ElementsAre(Extent::Mechanism, Extent::Configuration));
 }
 
-TEST_F(Draft, LawsAloneAreToldFromWhateverElseIsSetBesideThem) {
+TEST_F(Draft, LoopsAloneAreToldFromWhateverElseIsSetBesideThem) {
   ASSERT_TRUE(draft_.set_joint_servo_control_law(0, {"PIDServoControlLaw", {}, {}}));
   ASSERT_TRUE(draft_.apply());
   const std::vector<double> gains{1, 2, 3};
@@ -79,8 +79,9 @@ TEST_F(Draft, LawsAloneAreToldFromWhateverElseIsSetBesideThem) {
     ASSERT_TRUE(draft_.set_joint_servo_control_gains(0, gains));
   };
   set_law();
+  ASSERT_TRUE(draft_.set_joint_control_method(0, ControlMethod::Velocity));
   ASSERT_TRUE(draft_.apply());
-  EXPECT_EQ(extents_.back(), Extent::Laws);
+  EXPECT_EQ(extents_.back(), Extent::Loops);
   const std::vector<std::function<Expected<>()>> others{
       [&] {
         return draft_.set_kinematics({"K", {}, {}});
@@ -94,7 +95,7 @@ TEST_F(Draft, LawsAloneAreToldFromWhateverElseIsSetBesideThem) {
       [&] { return draft_.set_joint_name(0, "A"); },
       [&] { return draft_.set_joint_maximum_jerk(1, 100); },
       [&] { return draft_.set_maximum_feedrate(100); },
-      [&] { return draft_.set_joint_control_method(0, ControlMethod::Velocity); },
+      [&] { return draft_.set_joint_control_method(0, ControlMethod::Force); },
       [&] { return draft_.set_joint_watch(0, 1, 1); },
       [&] { return draft_.set_joint_mechanics(0, {}); },
       [&] {

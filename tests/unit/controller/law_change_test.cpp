@@ -47,7 +47,7 @@ TEST_F(LawChange, GainsActInMotionAndThePlanGoesOn) {
   EXPECT_THAT(machine_.controller.mechanism()->joints[0].gains, ElementsAre(600, 8));
   EXPECT_THAT(machine_.controller.mechanism()->joints[1].gains, ElementsAre(300, 4));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove)) << machine_.last(Event::Kind::Fault);
-  EXPECT_THAT(machine_.last(Event::Kind::Mechanism), HasSubstr("Mill is configured: servo law of joint X"));
+  EXPECT_THAT(machine_.last(Event::Kind::Mechanism), HasSubstr("Mill is configured: servo loop of joint X"));
   EXPECT_NEAR(following_error(after + 100) / following_error(before - 300), 0.5, 0.1) << "twice as stiff a spring";
   for (std::size_t i = 1; i < machine_.samples.size(); ++i) {
     const CycleSample &last = machine_.samples[i - 1], &now = machine_.samples[i];
@@ -86,6 +86,50 @@ TEST_F(LawChange, WithAnythingElseBesideItNeedsRest) {
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("needs the machine at rest"));
   EXPECT_THAT(machine_.controller.mechanism()->joints[0].gains, ElementsAre(300, 4));
+  EXPECT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove));
+}
+
+TEST_F(LawChange, VelocityAndPositionTakeTurnsInMotionAndThePlanGoesOn) {
+  start_moving();
+  for (const ControlMethod method : {ControlMethod::Velocity, ControlMethod::Position, ControlMethod::Velocity}) {
+    ASSERT_TRUE(config().set_joint_control_method(1, method));
+    const auto applied = config().apply();
+    ASSERT_TRUE(applied) << applied.error().message;
+    EXPECT_TRUE(machine_.controller.sample().moving);
+    EXPECT_EQ(machine_.controller.mechanism()->joints[1].method, method);
+    const std::int64_t cycle = machine_.controller.sample().cycle;
+    ASSERT_TRUE(machine_.run_until([&] { return machine_.controller.sample().cycle > cycle + 50; }));
+  }
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove)) << machine_.last(Event::Kind::Fault);
+  for (const CycleSample& sample : machine_.samples) {
+    ASSERT_NEAR(sample.position_set[0], 2 * sample.position_set[1], 1e-9) << "cycle " << sample.cycle;
+  }
+}
+
+TEST_F(LawChange, AJointThatSlippedIsGivenBackToPositionControlAtRestOnly) {
+  start_moving();
+  ASSERT_TRUE(config().set_joint_control_method(1, ControlMethod::Velocity));
+  ASSERT_TRUE(config().apply());
+  machine_.bus->freeze_encoder(1, true);  // to the loop the joint stands, whatever it does
+  const auto behind = [&] {
+    return machine_.controller.sample().position_set[0] / 2 - machine_.controller.sample().position[1];
+  };
+  ASSERT_TRUE(machine_.run_until([&] { return behind() > 2; })) << machine_.last(Event::Kind::Fault);
+  ASSERT_TRUE(config().set_joint_control_method(1, ControlMethod::Position));
+  const auto refused = config().apply();
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("has slipped off the plan; change it with the machine at rest"));
+  EXPECT_EQ(machine_.controller.mechanism()->joints[1].method, ControlMethod::Velocity);
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove)) << machine_.last(Event::Kind::Fault);
+  ASSERT_TRUE(machine_.run_until([&] { return !machine_.controller.sample().moving; }));
+  const auto applied = config().apply();
+  EXPECT_TRUE(applied) << applied.error().message;
+}
+
+TEST_F(LawChange, ForceControlNeedsRest) {
+  start_moving();
+  ASSERT_TRUE(config().set_joint_control_method(2, ControlMethod::Force));
+  EXPECT_FALSE(config().apply());
   EXPECT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove));
 }
 

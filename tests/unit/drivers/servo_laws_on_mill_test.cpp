@@ -55,9 +55,12 @@ TEST_F(LawsOnMill, ChangeInMotionWithoutAStepOfTorque) {
   const LawChanges changes = change_laws_on_circle(1);
   EXPECT_GT(changes.count, 25);
   EXPECT_GT(changes.gain_count, 25);
+  EXPECT_GT(changes.method_count, 25);
   EXPECT_LT(changes.contour_error, 0.05);
   EXPECT_LT(changes.largest_step_nm, 0.01 * changes.rated_nm);
   EXPECT_LT(changes.largest_gain_step_nm, 0.01 * changes.rated_nm);
+  // Between position and velocity control a joint stays on the plan, so nothing is other than without the change.
+  EXPECT_EQ(largest_difference_nm(changes, LawChangesOnMill().change_laws_on_circle(1, false)), 0);
   EXPECT_LT(changes.largest_soon_nm, changes.largest_ever_nm + 0.01 * changes.rated_nm) << "nor after it";
 }
 

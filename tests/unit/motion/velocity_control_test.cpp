@@ -101,6 +101,29 @@ TEST_F(VelocityControlled, StandsWhenTheMachineNoLongerFollows) {
   EXPECT_EQ(report.velocity_set[0], 0);
 }
 
+TEST_F(VelocityControlled, GoesBackToItsPositionInMotionWithoutAStepUnlessItSlippedOverSeededPlans) {
+  start();
+  std::mt19937 random(5);
+  double speed = 0;
+  for (int i = 0; i < 200; ++i) {
+    loop->set_control_method(0, i % 2 == 0 ? ControlMethod::Velocity : ControlMethod::Position);
+    const double next = std::uniform_real_distribution(-20.0, 20.0)(random);
+    for (int part = 0; part < 20; ++part) {
+      const double before = wanted();
+      speed += std::clamp(next - speed, -1.0, 1.0);
+      run(1, speed);
+      EXPECT_NEAR(wanted() - before, speed * kPeriod, 1e-12) << "cycle " << part << " of change " << i;
+      EXPECT_EQ(report.position_set[0], command.setpoint.position[0]) << "it is where the plan has it";
+      EXPECT_EQ(loop->slipped(0), 0);
+    }
+  }
+  loop->set_control_method(0, ControlMethod::Velocity);
+  blocked = true;
+  run(2000, 10);
+  EXPECT_NEAR(loop->slipped(0), wanted() - command.setpoint.position[0], 1e-9);
+  EXPECT_LT(loop->slipped(0), -15) << "of the 20 mm that were planned";
+}
+
 TEST_F(VelocityControlled, TakesItsPlaceAlongToPositionControl) {
   start();
   run(100, 10);

@@ -236,6 +236,12 @@ class ServoLoop {
 
   void cycle(const ServoCommand& command, ServoReport& report) noexcept;
 
+  /// How far a joint under velocity control is off the plan, mm or degrees; 0 of other joints.
+  [[nodiscard]] double slipped(std::size_t joint) const noexcept;
+  /// What the joint's loop controls from the next cycle on, at rest or in motion: its position or its velocity. A joint
+  /// that has not slipped goes on where it is, without a step.
+  void set_control_method(std::size_t joint, ControlMethod method) noexcept;
+
   [[nodiscard]] ServoState state() const noexcept;
   /// Where the loop holds its axes: the last setpoint, or the measured position where there is no torque. axis_count()
   /// values, the kinematic joints first; zero before the first cycle unless `engage` was called.
