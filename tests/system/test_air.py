@@ -49,7 +49,7 @@ class Air(unittest.TestCase):
         self.client.call("RMAC_CAM.SetFeedrate", Feedrate=6)
         self.client.call("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (30, 0, 0)))
         self.client.call("RMAC_CAM.CycleStart", Mode="AUTOMATIC")
-        self.client.wait_note("events", lambda event: event["kind"] == "MoveStarted")
+        self.client.wait_note("events", lambda event: event["kind"] == "MoveStarted" and event["move_id"] == 1)
         self.client.call("RMAC_CAM.TurnCoolantOff")
         stopped = self.client.wait_note("events", lambda event: event["kind"] == "Stopped")
         self.assertIn("compressed air went off", stopped["message"])
