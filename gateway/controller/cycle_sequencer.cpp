@@ -47,6 +47,9 @@ const char* describe(StopCause cause) noexcept {
              "where the part is, or give a longer search distance";
     case StopCause::ProbeLost:
       return "the probe lost its power during a search, and the machine was stopped; its queue is empty. Switch it on";
+    case StopCause::ProbeDeflected:
+      return "the probe was deflected before it could touch the part, and the machine was stopped; its queue is empty. "
+             "Look what holds it, and jog it free";
     case StopCause::ProbeStuck:
       return "the probe still touches after its way back, and the machine was stopped; its queue is empty. Jog it "
              "free, or give a longer retract distance";
@@ -71,6 +74,7 @@ MinorCode code_of(StopCause cause) noexcept {
     case StopCause::AirLost:
       return MinorCode::NoAir;
     case StopCause::ProbeLost:
+    case StopCause::ProbeDeflected:
     case StopCause::ProbeStuck:
       return MinorCode::ProbeNotArmed;
     default:

@@ -41,6 +41,7 @@ enum class StopCause : std::uint8_t {
   AirLost,
   Parked,
   ProbeLost,
+  ProbeDeflected,
   ProbeStuck
 };
 

@@ -13,11 +13,12 @@ void Measurement::retract() noexcept {
 }
 
 Measurement::Verdict Measurement::search(const Seen& seen, bool hit) noexcept {
-  if (hit) {
+  const bool over = seen.moves_left == 0 && seen.at_rest;
+  // Before the search moves, and while it is held, what touches is not the part.
+  if (hit && (over || !seen.at_rest)) {
     phase_ = Phase::Touched;
     return Verdict::Touched;
   }
-  const bool over = seen.moves_left == 0 && seen.at_rest;
   if (!over && seen.probe.ready) return Verdict::Nothing;
   phase_ = Phase::None;
   return over ? Verdict::NotFound : Verdict::ProbeLost;
@@ -29,6 +30,10 @@ Measurement::Verdict Measurement::step(const Seen& seen) noexcept {
   if (phase_ == Phase::Approach && seen.moves_left <= 1) {
     phase_ = Phase::Search;
     steps_ = 1;
+  }
+  if ((phase_ == Phase::Approach || phase_ == Phase::Search) && seen.probe.touching && !hit && !seen.at_rest) {
+    phase_ = Phase::None;
+    return Verdict::NotArmed;
   }
   switch (phase_) {
     case Phase::Search:

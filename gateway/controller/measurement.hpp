@@ -30,6 +30,7 @@ class Measurement {
     NotFound,       ///< the search ended without a hit
     ProbeLost,      ///< the probe lost its power
     Unexpected,     ///< a hit in motion that is no search
+    NotArmed,       ///< deflected before it touched: it could not tell of a hit
     StillTouching,  ///< after the way back
     Done,
   };

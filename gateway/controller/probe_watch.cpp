@@ -35,6 +35,9 @@ void MotionSupervisor::watch_probe(const CycleObservation& seen, const ServoStat
     case Measurement::Verdict::ProbeLost:
       stop(StopCause::ProbeLost);
       break;
+    case Measurement::Verdict::NotArmed:
+      stop(StopCause::ProbeDeflected);
+      break;
     case Measurement::Verdict::Unexpected:
       stop(StopCause::UnexpectedHit);
       break;

@@ -350,6 +350,50 @@ TEST(MeasuringProbe, IsMissedWhereThereIsNone) {
   EXPECT_THAT(refused.error().message, HasSubstr("Mill has no probe"));
 }
 
+TEST(MeasuringProbe, ThatIsBrushedBeforeItSearchesHasNotFoundThePart) {
+  TestMachine machine;
+  sdk::DeviceObject device = TestMachine::mill();
+  device.inputs = {{"Probe", 3}};
+  ASSERT_TRUE(machine.load_at_zero(device));
+  sdk::Measuring& measuring = machine.controller.measuring();
+  ASSERT_TRUE(measuring.set_parameter(MeasureParameter::PrehitDistance, 20));
+  ASSERT_TRUE(measuring.auto_measure(7, {0, 0, -1}, 5));
+  for (const std::uint64_t inputs : {std::uint64_t{1} << 3, std::uint64_t{0}}) {
+    machine.io->set_inputs(inputs);
+    ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().inputs == inputs; }));
+  }
+  const double let_go_s = machine.controller.sample().t_s;
+  ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().t_s > let_go_s + 0.1; })) << "it settles";
+  EXPECT_EQ(measuring.control_mode(), ControlMode::AutomaticMeasure) << "it has still to be measured";
+  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.run_until_event(Event::Kind::Stopped));
+  EXPECT_EQ(std::ranges::find(machine.events, Event::Kind::Stopped, &Event::kind)->code, MinorCode::PartNotFound);
+  EXPECT_EQ(machine.count(Event::Kind::MoveDone, 7), 0);
+}
+
+TEST(MeasuringProbe, ThatIsDeflectedAlreadyIsNotDrivenIntoThePart) {
+  // Found on the approach, and at the begin of a search that needs none.
+  for (const double prehit_mm : {3.0, 20.0}) {
+    TestMachine machine;
+    sdk::DeviceObject device = TestMachine::mill();
+    device.inputs = {{"Probe", 3}};
+    ASSERT_TRUE(machine.load_at_zero(device));
+    sdk::Measuring& measuring = machine.controller.measuring();
+    ASSERT_TRUE(measuring.set_parameter(MeasureParameter::PrehitDistance, prehit_mm));
+    ASSERT_TRUE(measuring.auto_measure(7, {0, 0, -10}, 5));
+    machine.io->set_inputs(1U << 3);
+    ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().inputs != 0; }));
+    ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+    ASSERT_TRUE(machine.run_until_event(Event::Kind::Stopped));
+    EXPECT_THAT(machine.last(Event::Kind::Stopped), HasSubstr("deflected before it could touch"));
+    const auto stop = std::ranges::find(machine.events, Event::Kind::Stopped, &Event::kind);
+    EXPECT_EQ(stop->code, MinorCode::ProbeNotArmed);
+    EXPECT_GT(machine.controller.sample().position_set[2], -1) << "prehit " << prehit_mm;
+    EXPECT_EQ(machine.controller.cam().moves_in_buffer(), 0);
+    EXPECT_TRUE(machine.controller.cam().jog_path({{0, 0, 1}}, 5)) << "off it is free";
+  }
+}
+
 TEST(MeasuringProbe, IsTheClientsInVirtualMode) {
   TestMachine machine;
   machine.controller.set_mechanism_folder("", true);
