@@ -20,6 +20,7 @@ struct MachineSearch {
   std::string sql;                    ///< instead of all of the above
   std::string program;                ///< what they shall machine, a .rmac file; empty: nothing
   std::filesystem::path device_tree;  ///< in which they are simulated; empty: the installation's
+  std::filesystem::path tools;        ///< folder of their tool tables then; empty: no tools but the program's own
 };
 
 /// Each command of the client: does its work, prints, and says why it could not. `json` prints for programs.
@@ -98,6 +99,17 @@ struct MeasureRequest {
 };
 /// Measures the points of a plan, and tells how far the part and its features are off.
 [[nodiscard]] Result<> measure(Connection& connection, const MeasureRequest& request, bool json);
+
+/// A reference sphere, and the probe that touches it. Part frame, mm.
+struct QualifyRequest {
+  std::vector<double> sphere;           ///< its centre and its radius
+  std::optional<double> tip_radius_mm;  ///< about; none: that of the tool in the spindle
+  double clearance_mm = 5;
+  double speed_mm_s = 20;
+  bool apply = false;  ///< correct the tool in the spindle
+};
+/// Touches a sphere that is known, and tells the radius of the probe's tip and how far its centre is off.
+[[nodiscard]] Result<> qualify(Connection& connection, const QualifyRequest& request, bool json);
 
 /// What `rmac tune` moves, and what it aims at.
 struct TuneRequest {

@@ -222,7 +222,7 @@ Result<> add_fits(const MachineSearch& search, nlohmann::json& machines) {
     return tl::unexpected(program.error());
   }
   for (auto& machine : machines) {
-    const Fit fit = fit_of(*program, machine.at("Name").get<std::string>(), search.device_tree);
+    const Fit fit = fit_of(*program, machine.at("Name").get<std::string>(), search.device_tree, search.tools);
     machine["Fits"] = fit.fits;
     if (fit.fits) {
       machine["CycleTime_s"] = fit.cycle_time_s;

@@ -7,10 +7,11 @@
 
 namespace rmac::cli {
 
-Fit fit_of(const Program& program, const std::string& machine, const std::filesystem::path& device_tree) {
+Fit fit_of(const Program& program, const std::string& machine, const std::filesystem::path& device_tree,
+           const std::filesystem::path& tools) {
   spdlog::set_level(spdlog::level::off);  // what is wrong with other machines of the tree is not asked here
   const auto tree = device_tree.empty() ? gateway::default_folders().device_tree : device_tree;
-  auto simulation = gateway::Simulation::open({.device_tree = tree}, machine);
+  auto simulation = gateway::Simulation::open({.device_tree = tree, .tools_folder = tools}, machine);
   if (!simulation) return {false, 0, simulation.error().message};
   Program on_it = program;
   std::erase_if(on_it.requests, [](const Request& request) { return request.method == "Device.Load"; });

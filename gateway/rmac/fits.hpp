@@ -16,7 +16,8 @@ struct Fit {
 };
 
 /// Plans the program on a machine of the device tree as `rmac simulate` does. Machines that the program itself would
-/// load are passed over: which one it runs on is the question.
-[[nodiscard]] Fit fit_of(const Program& program, const std::string& machine, const std::filesystem::path& device_tree);
+/// load are passed over: which one it runs on is the question. `tools`: folder of tool tables, or empty.
+[[nodiscard]] Fit fit_of(const Program& program, const std::string& machine, const std::filesystem::path& device_tree,
+                         const std::filesystem::path& tools);
 
 }  // namespace rmac::cli

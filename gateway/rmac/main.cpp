@@ -10,6 +10,7 @@
 #include "gateway/configuration/finite_numbers.hpp"
 #include "gateway/configuration/printable.hpp"
 #include "gateway/rmac/commands.hpp"
+#include "gateway/rmac/measuring_options.hpp"
 #include "rmac/motion/pose.hpp"
 
 namespace {
@@ -22,7 +23,6 @@ CLI::Range joint_numbers() {
   return {0, static_cast<int>(rmac::kMaxJoints) - 1};
 }
 
-using Command = std::function<Result<>(Connection&)>;
 using OfflineCommand = std::function<Result<>()>;
 
 /// The command line as a person typed it; each option is bound to one of these.
@@ -40,6 +40,7 @@ struct Arguments {
   JogRequest jog;
   TuneRequest tune;
   MeasureRequest measure;
+  QualifyRequest qualify;
   ToolRequest tool;
   std::optional<double> back_from_mm;
   std::optional<int> tool_number;
@@ -62,6 +63,9 @@ void add_database_commands(CLI::App& app, Arguments& arguments, Command& command
                        "simulate this .rmac file on each that is found: how long it takes, or why it cannot");
   machines->add_option("--device-tree", search.device_tree,
                        "where they are looked for to be simulated; the installation's unless given");
+  machines
+      ->add_option("--tools", search.tools, "folder of tool tables (tools/ of an appliance's state folder); only read")
+      ->check(CLI::ExistingDirectory);
   machines->callback([&] { command = [&](auto& to) { return list_machines(to, arguments.search, arguments.json); }; });
 
   auto* show = app.add_subcommand("show", "a machine's characteristics; of the loaded one its joints too");
@@ -171,17 +175,6 @@ void add_tool_commands(CLI::App& app, Arguments& arguments, Command& command) {
       ->add_option("NUMBER", arguments.tool_number, "the tool that is there; 0: none; the one asked for unless given")
       ->check(CLI::Range(0, 9999));
   confirm->callback([&] { command = [&](auto& to) { return confirm_tool(to, arguments.tool_number); }; });
-}
-
-void add_measure_command(CLI::App& app, Arguments& arguments, Command& command) {
-  MeasureRequest& request = arguments.measure;
-  auto* measured =
-      app.add_subcommand("measure", "measure the points of a plan: where the part lies, how far it is off");
-  measured->add_option("PLAN", request.plan, "the measuring plan, a JSON file")->required();
-  measured->add_flag("--apply", request.apply, "set the part frame to where the part lies; without it nothing is set");
-  measured->add_flag("--upright", request.upright,
-                     "leave out the part's tilt against the tool's axis, which a machine of slides cannot follow");
-  measured->callback([&] { command = [&](auto& to) { return measure(to, request, arguments.json); }; });
 }
 
 void add_trace_commands(CLI::App& app, Arguments& arguments, Command& command) {
@@ -372,7 +365,7 @@ int run(int count, char** words) {
   add_database_commands(app, arguments, command);
   add_operating_commands(app, arguments, command);
   add_tool_commands(app, arguments, command);
-  add_measure_command(app, arguments, command);
+  add_measuring_commands(app, arguments.measure, arguments.qualify, arguments.json, command);
   add_trace_commands(app, arguments, command);
   add_commissioning_commands(app, arguments, command);
   std::function<Result<>()> offline_command;

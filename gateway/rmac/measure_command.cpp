@@ -11,9 +11,10 @@
 #include "gateway/rmac/authority.hpp"
 #include "gateway/rmac/commands.hpp"
 #include "gateway/rmac/measuring_plan.hpp"
-#include "gateway/rmac/notes.hpp"
+#include "gateway/rmac/prober.hpp"
 #include "gateway/rmac/rest.hpp"
 #include "gateway/rmac/table.hpp"
+#include "gateway/rmac/tool_table.hpp"
 #include "rmac/motion/frame.hpp"
 
 namespace rmac::cli {
@@ -23,74 +24,31 @@ namespace {
 using gateway::FeatureDeviation;
 using nlohmann::json;
 
-/// Measures point by point, each move done before the next is asked for. Needs motion authority.
-class Prober {
- public:
-  Prober(Connection& connection, MeasuringPlan& plan) : connection_(connection), plan_(plan) {
-    connection_.on_notification([this](const std::string& topic, const json& note) { take(topic, note); });
-  }
-  ~Prober() { connection_.on_notification({}); }
-  Prober(const Prober&) = delete;
-  Prober& operator=(const Prober&) = delete;
+/// Where the tip's centre is at a hit on the nominal point.
+Vector tip_at(const gateway::SurfacePoint& point, double tip_radius_mm) {
+  Vector place = point.nominal;
+  for (std::size_t i = 0; i < 3; ++i) place[i] += tip_radius_mm * point.normal[i];
+  return place;
+}
 
-  [[nodiscard]] Result<> measure_all() {
-    for (const auto& [method, params] : {std::pair("subscribe", json{{"topics", {"events"}}}),
-                                         std::pair("RMAC_CAM.CycleStart", json{{"Mode", "AUTOMATIC"}})}) {
-      if (auto done = connection_.call(method, params); !done) return tl::unexpected(done.error());
-    }
-    auto state = wait_for_rest(connection_, failure_);
-    if (!state) return tl::unexpected(state.error());
-    Vector at{state->pose[0], state->pose[1], state->pose[2]};
-    for (gateway::SurfacePoint& point : plan_.points) {
-      const Vector over = off(point, plan_.tip_radius_mm + plan_.clearance_mm);
-      const double height = plan_.safe_height_mm;
-      for (const Vector& way : {Vector{at[0], at[1], height}, Vector{over[0], over[1], height}, over}) {
-        if (auto gone = move("RMAC_CAM.MoveToXYZ", way); !gone) return gone;
-      }
-      hit_.reset();
-      if (auto touched = move("RMAC_CAM.AutoMeasure", off(point, plan_.tip_radius_mm)); !touched) return touched;
-      if (!hit_) return fail(fmt::format("a point of {} was measured, and no hit was told", point.feature));
-      point.measured = gateway::touched_along_normal(*hit_, point.normal, plan_.tip_radius_mm);
-      at = over;
-    }
-    return move("RMAC_CAM.MoveToXYZ", {at[0], at[1], plan_.safe_height_mm});
+Result<> measure_all(Connection& connection, MeasuringPlan& plan, double tip_radius_mm) {
+  Prober prober(connection, plan.ways);
+  if (auto begun = prober.begin(); !begun) return begun;
+  for (gateway::SurfacePoint& point : plan.points) {
+    const auto hit = prober.touch(tip_at(point, tip_radius_mm), point.normal);
+    if (!hit) return tl::unexpected(hit.error());
+    point.measured = gateway::touched_along_normal(*hit, point.normal, tip_radius_mm);
   }
+  return prober.leave();
+}
 
- private:
-  static Vector off(const gateway::SurfacePoint& point, double by) {
-    Vector place = point.nominal;
-    for (std::size_t i = 0; i < 3; ++i) place[i] += by * point.normal[i];
-    return place;
-  }
-
-  [[nodiscard]] Result<> move(const char* method, const Vector& to) {
-    done_ = false;
-    ++move_id_;
-    const auto queued = connection_.call(
-        method, {{"MoveID", move_id_}, {"x", to[0]}, {"y", to[1]}, {"z", to[2]}, {"Speed", plan_.speed_mm_s}});
-    if (!queued) return tl::unexpected(queued.error());
-    auto waited = connection_.wait([this] { return done_ || !failure_.empty(); });
-    if (!waited) return waited;
-    return failure_.empty() ? Result<>() : fail(failure_);
-  }
-
-  void take(const std::string& topic, const json& note) {
-    if (topic != "events") return;
-    const EventNote event = read_event(note);
-    if (event.kind == "MoveDone" && event.move_id == move_id_) done_ = true;
-    if (event.kind == "Fault" || event.kind == "Stopped") failure_ = event.message;
-    if (event.kind == "Hit" && note.contains("pose")) {
-      hit_ = Vector{note["pose"][0].get<double>(), note["pose"][1].get<double>(), note["pose"][2].get<double>()};
-    }
-  }
-
-  Connection& connection_;
-  MeasuringPlan& plan_;
-  std::int64_t move_id_ = 0;
-  bool done_ = false;
-  std::string failure_;
-  std::optional<Vector> hit_;  ///< the tip's centre, part frame
-};
+/// The plan's, or that of the probe in the spindle.
+Result<double> tip_radius(Connection& connection, const MeasuringPlan& plan) {
+  if (plan.tip_radius_mm) return *plan.tip_radius_mm;
+  const auto probe = read_tool_in_spindle(connection);
+  if (!probe) return fail(fmt::format("the plan gives no TipRadius, and {}", probe.error().message));
+  return probe->at("Radius").get<double>();
+}
 
 Result<Frame> read_part_frame(Connection& connection) {
   const auto answer = connection.call("RMAC_CAM.GetPartFrame");
@@ -157,20 +115,28 @@ Frame without_tilt(const Frame& frame, const Vector& axis, const std::vector<gat
   return upright;
 }
 
-/// Puts what was found into the tool table; a tool that is in the spindle has its new length at once.
-Result<> apply_tools(Connection& connection, const std::vector<ToolFound>& tools) {
-  const auto table = connection.call("RMAC_CAM.GetTools");
-  if (!table) return tl::unexpected(table.error());
-  for (const auto& [number, offset] : tools) {
-    const auto& all = table->at("Tools");
-    const auto known = std::ranges::find_if(all, [&](const json& tool) { return tool.at("ToolNumber") == number; });
-    if (known == all.end()) {
-      return fail(fmt::format("tool {} is not in the tool table, so that it cannot be corrected there", number));
-    }
-    json tool = *known;
-    tool["Length"] = known->at("Length").get<double>() + offset.length_mm.value_or(0);
-    tool["Radius"] = std::max(known->at("Radius").get<double>() + offset.radius_mm.value_or(0), 0.0);
-    if (auto set = connection.call("RMAC_CAM.SetTool", tool); !set) return tl::unexpected(set.error());
+/// The tools of the table with what was found; nothing is set yet, so that one that is missing leaves all as they were.
+Result<std::vector<json>> corrected(Connection& connection, const std::vector<ToolFound>& found) {
+  std::vector<json> tools;
+  for (const auto& [number, offset] : found) {
+    auto tool = read_tool(connection, number);
+    if (!tool) return tl::unexpected(tool.error());
+    (*tool)["Length"] = tool->at("Length").get<double>() + offset.length_mm.value_or(0);
+    (*tool)["Radius"] = std::max(tool->at("Radius").get<double>() + offset.radius_mm.value_or(0), 0.0);
+    tools.push_back(std::move(*tool));
+  }
+  return tools;
+}
+
+/// Puts frame and tools in force; a tool that is in the spindle has its new length at once.
+Result<> apply(Connection& connection, const Report& report) {
+  const auto tools = corrected(connection, report.tools);
+  if (!tools) return tl::unexpected(tools.error());
+  const auto set =
+      connection.call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json(*report.part_frame)}});
+  if (!set) return tl::unexpected(set.error());
+  for (const json& tool : *tools) {
+    if (auto done = connection.call("RMAC_CAM.SetTool", tool); !done) return tl::unexpected(done.error());
   }
   return {};
 }
@@ -254,10 +220,9 @@ Result<> measure(Connection& connection, const MeasureRequest& request, bool jso
   auto done = with_authority(connection, [&]() -> Result<> {
     const auto frame = read_part_frame(connection);
     if (!frame) return tl::unexpected(frame.error());
-    {
-      Prober prober(connection, *plan);
-      if (auto measured = prober.measure_all(); !measured) return measured;
-    }
+    const auto tip_radius_mm = tip_radius(connection, *plan);
+    if (!tip_radius_mm) return tl::unexpected(tip_radius_mm.error());
+    if (auto measured = measure_all(connection, *plan, *tip_radius_mm); !measured) return measured;
     const auto stands = wait_for_rest(connection, "");
     if (!stands) return tl::unexpected(stands.error());
     const Vector axis{stands->pose[3], stands->pose[4], stands->pose[5]};
@@ -274,10 +239,7 @@ Result<> measure(Connection& connection, const MeasureRequest& request, bool jso
     report.after = gateway::feature_deviations(plan->points, *report.off);
     report.tools = find_tools(*plan, *report.off, axis);
     if (!request.apply) return {};
-    if (auto applied = apply_tools(connection, report.tools); !applied) return applied;
-    const auto set =
-        connection.call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json(*report.part_frame)}});
-    if (!set) return tl::unexpected(set.error());
+    if (auto applied = apply(connection, report); !applied) return applied;
     report.applied = true;
     return {};
   });

@@ -14,10 +14,10 @@ Result<MeasuringPlan> read_measuring_plan(const std::string& file) {
   const auto document = gateway::read_json_document(file, schema);
   if (!document) return fail(document.error().message);
   MeasuringPlan plan;
-  plan.safe_height_mm = (*document)["SafeHeight"];
-  plan.clearance_mm = document->value("Clearance", plan.clearance_mm);
-  plan.tip_radius_mm = (*document)["TipRadius"];
-  plan.speed_mm_s = document->value("Speed", plan.speed_mm_s);
+  plan.ways.safe_height_mm = (*document)["SafeHeight"];
+  plan.ways.clearance_mm = document->value("Clearance", plan.ways.clearance_mm);
+  plan.ways.speed_mm_s = document->value("Speed", plan.ways.speed_mm_s);
+  if (document->contains("TipRadius")) plan.tip_radius_mm = (*document)["TipRadius"];
   std::size_t feature_number = 0;
   for (const auto& feature : (*document)["Features"]) {
     std::size_t point_number = 0;

@@ -66,6 +66,18 @@ class Machines(unittest.TestCase):
         self.assertIn("50.0000 mm beyond", machines["SuginoXYZAC"]["WhyNot"])
         self.assertIn("joint X", machines["CMM"]["WhyNot"])
 
+    def test_fits_takes_tools_from_tables(self):
+        change = {"method": "RMAC_CAM.DoToolChange", "params": {"ToolNumber": 7}}
+        move = {"method": "RMAC_CAM.MoveToJointTarget",
+                "params": {"MoveID": 1, "JointTargetFrame": {"p": [10, 0, -40], "axis": [0, 0, 1]}}}
+        for machine in self.fits([change, move], "--joints", "3").values():
+            self.assertIn("no tool 7", machine["WhyNot"])
+        tables = self.appliance.folder / "tables"
+        tables.mkdir()
+        (tables / "SuginoXYZ.json").write_text(json.dumps({"Tools": [{"ToolNumber": 7, "Length": 42}], "Mounted": 0}))
+        machines = self.fits([change, move], "--joints", "3", "--tools", str(tables))
+        self.assertEqual({name for name, machine in machines.items() if machine["Fits"]}, {"SuginoXYZ"})
+
     def test_page_shows_each_machine_with_its_picture_and_its_figures(self):
         sections = (SOURCE / "docs/machines.md").read_text().split("\n### ")[1:]
         pages = {section.split("\n", 1)[0]: section for section in sections}

@@ -108,9 +108,15 @@ class Measure(unittest.TestCase):
         for point in told["points"]:
             if point["feature"] in ("top", "left", "front"):
                 self.assertLess(abs(point["deviation_mm"]), 5e-4, "tools do not move the part")
-        unknown = self.appliance.rmac("measure", self.plan(TOP, LEFT, FRONT, dict(floor, Tool=8)), "--apply")
+        frame = self.watcher.call("RMAC_CAM.GetPartFrame")
+        self.assertEqual(frame, told["part_frame"])
+        unknown = self.appliance.rmac("measure", self.plan(TOP, LEFT, FRONT, dict(wall, Tool=7), dict(floor, Tool=8)),
+                                      "--apply")
         self.assertEqual(unknown.returncode, FAILED)
         self.assertIn("tool 8 is not in the tool table", unknown.stderr)
+        after = {entry["ToolNumber"]: entry for entry in self.watcher.call("RMAC_CAM.GetTools")["Tools"]}
+        self.assertEqual(after, table, "what cannot be applied as a whole is not applied")
+        self.assertEqual(self.watcher.call("RMAC_CAM.GetPartFrame"), frame)
 
     def test_part_that_is_not_there_ends_the_plan_with_the_machines_reason(self):
         beside = {"Name": "air", "Points": [{"Point": [40, -40, -20], "Normal": [0, 0, 1]}]}
@@ -129,6 +135,107 @@ class Measure(unittest.TestCase):
         flat = {"Name": "top", "Points": [{"Point": [0, 0, -20], "Normal": [0, 0, 0]}]}
         self.assertIn("/Features/0/Points/0/Normal", self.appliance.rmac("measure", self.plan(flat)).stderr)
         self.assertEqual(self.watcher.state()["joints"], before)
+
+
+class Qualify(unittest.TestCase):
+    """`rmac qualify`: what the probe's tip is, found on a sphere that is known."""
+
+    STYLUS, SPHERE = [0.05, -0.03, -29.98], ["20", "20", "-30", "8"]
+
+    def setUp(self):
+        self.appliance = Appliance(own_tree=True)
+        for name, more in (("cmm/3-axis/CMM", {}), ("mill/5-axis/SuginoXYZAC", {"probe_input": 0, "probe_radius_mm": 1})):
+            file = self.appliance.tree / name / "device.json"
+            device = json.loads(file.read_text())
+            inputs = device["DigitalIOInterface"]
+            inputs["Parameters"] = {**inputs.get("Parameters", {}), **more, "part_place": [0] * 6,
+                                    "probe_stylus_mm": self.STYLUS, "sphere_mm": [20, 20, -30, 8]}
+            inputs["Parameters"].pop("part_block_mm", None)
+            inputs["Parameters"].pop("part_bore_mm", None)
+            file.write_text(json.dumps(device))
+        self.enterContext(self.appliance)
+
+    def mount(self, machine):
+        """The probe as the table has it: 30 mm long, upright, with a tip of 1.2 mm."""
+        client = self.appliance.operator(machine)
+        client.call("RMAC_CAM.SetTool", ToolNumber=5, Length=30, Radius=1.2, NeedsSpindle=False)
+        client.call("RMAC_CAM.DoToolChange", ToolNumber=5)
+        client.call("subscribe", topics=["events"])
+        client.call("RMAC_CAM.CycleStart", Mode="AUTOMATIC")
+        client.wait_note("events", lambda event: event["kind"] == "ToolWanted")
+        client.call("RMAC_CAM.ConfirmToolChange", ToolNumber=5)
+        client.wait_note("events", lambda event: event["kind"] == "ToolChanged")
+        client.call("authority.release")
+        return client
+
+    def qualified(self, *words):
+        done = self.appliance.rmac("qualify", "--sphere", *self.SPHERE, *words, "--json")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        return json.loads(done.stdout)
+
+    def test_tip_is_found_and_put_into_the_tool_table(self):
+        client = self.mount("CMM")
+        told = self.qualified()
+        self.assertFalse(told["applied"])
+        self.assertAlmostEqual(told["tip_radius_mm"], 1, delta=3e-4)
+        for value, wanted in zip(told["offset_mm"], (0.05, -0.03, 0.02)):
+            self.assertAlmostEqual(value, wanted, delta=3e-4)
+        tool, = client.call("RMAC_CAM.GetTools")["Tools"]
+        self.assertEqual((tool["Length"], tool["Radius"]), (30, 1.2))
+        self.assertTrue(self.qualified("--apply")["applied"])
+        tool, = client.call("RMAC_CAM.GetTools")["Tools"]
+        self.assertAlmostEqual(tool["Radius"], 1, delta=3e-4)
+        self.assertAlmostEqual(tool["Length"], 29.98, delta=3e-4)
+        for value, wanted in zip(tool["Frame"]["p"], (0.05, -0.03, 0)):
+            self.assertAlmostEqual(value, wanted, delta=3e-4)
+        again = self.qualified()
+        for value in again["offset_mm"]:
+            self.assertAlmostEqual(value, 0, delta=3e-4, msg="the tip is where the table has it now")
+
+    def test_plan_without_a_tip_radius_has_that_of_the_probe_in_the_spindle(self):
+        self.mount("CMM")
+        plan = self.appliance.folder / "plan.json"
+        top = {"Name": "sphere", "Points": [{"Point": [20, 20, -22], "Normal": [0, 0, 1]}]}
+        plan.write_text(json.dumps({"SafeHeight": 0, "Features": [top]}))
+        for radius in (1.2, 1.0):
+            self.assertEqual(self.appliance.rmac("tools", "set", "5", "--radius", str(radius)).returncode, DONE)
+            told = json.loads(self.appliance.rmac("measure", str(plan), "--json").stdout)
+            # The tip is 1 mm in truth and 0.02 mm higher than the table has it: the machine stands so much lower.
+            self.assertAlmostEqual(told["features"][0]["before"]["mean_mm"], 1 - radius - 0.02, delta=1e-3)
+
+    def test_offset_goes_with_the_part_frame_and_not_with_a_turned_head(self):
+        client = self.mount("SuginoXYZAC")
+        client.call("authority.acquire")
+        # A quarter about Z, the sphere's centre being the part's zero.
+        half = math.sqrt(0.5)
+        client.call("RMAC_CAM.SetPartFrame", PartFrame={"p": [20, 20, -30], "q": [half, 0, 0, half]})
+        client.call("authority.release")
+        self.SPHERE = ["0", "0", "0", "8"]
+        told = self.qualified("--apply")
+        for value, wanted in zip(told["offset_mm"], (-0.03, -0.05, 0.02)):
+            self.assertAlmostEqual(value, wanted, delta=1e-3)
+        tool, = client.call("RMAC_CAM.GetTools")["Tools"]
+        for value, wanted in zip(tool["Frame"]["p"], (0.05, -0.03, 0)):
+            self.assertAlmostEqual(value, wanted, delta=1e-3)
+        self.assertEqual(self.appliance.rmac("jog", "--joint", "4", "--distance", "30").returncode, DONE)
+        refused = self.appliance.rmac("qualify", "--sphere", *self.SPHERE, "--apply")
+        self.assertEqual(refused.returncode, FAILED)
+        self.assertIn("with every turn at 0", refused.stderr)
+
+    def test_what_cannot_be_qualified_is_told_and_changes_nothing(self):
+        self.assertEqual(self.appliance.rmac("load", "CMM").returncode, DONE)
+        empty = self.appliance.rmac("qualify", "--sphere", *self.SPHERE, "--apply")
+        self.assertEqual(empty.returncode, FAILED)
+        self.assertIn("rmac tools set", empty.stderr)
+        client = self.mount("CMM")
+        elsewhere = self.appliance.rmac("qualify", "--sphere", "-20", "-20", "-30", "8", "--apply")
+        self.assertEqual(elsewhere.returncode, FAILED)
+        self.assertIn("not where it was looked for", elsewhere.stderr)
+        smaller = self.appliance.rmac("qualify", "--sphere", *self.SPHERE[:3], "10", "--tip-radius", "1", "--apply")
+        self.assertEqual(smaller.returncode, FAILED)
+        self.assertIn("the reference's radius is wrong", smaller.stderr)
+        tool, = client.call("RMAC_CAM.GetTools")["Tools"]
+        self.assertEqual((tool["Length"], tool["Radius"], tool["Frame"]["p"]), (30, 1.2, [0, 0, 0]))
 
 
 if __name__ == "__main__":
