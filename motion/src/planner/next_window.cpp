@@ -55,7 +55,9 @@ WindowEnd next_window_end(LaidPath& path, const std::vector<JointLimits>& joints
 
 std::optional<std::vector<LawPiece>> law_from_rest(const PathView& path, const std::vector<JointLimits>& joints,
                                                    double s, WindowEnd& end, const FeedRule& feed) {
-  const auto law_to = [&](double s_end) { return plan_window(path, joints, {{s, 0, 0}, s_end, feed}); };
+  const auto law_to = [&](double s_end) {
+    return plan_window(path, joints, {{s, 0, 0}, s_end, feed, nullptr, false, true});
+  };
   if (auto law = law_to(end.s)) return law;
   for (const double part : {0.5, 0.4, 0.35, 0.3}) {
     const double nearer = s + part * (end.s - s);

@@ -168,7 +168,7 @@ struct Planner::Impl {
     } else {
       for (const double ramps : {kRampsAhead, kRampsAtOnce}) {
         end = window_end(from.s, ramps);
-        law = plan_window(path().view(), model.joints, {from, end.s, feed(factor), &p.law, true});
+        law = plan_window(path().view(), model.joints, {from, end.s, feed(factor), &p.law, true, true});
         if (law) break;
       }
     }

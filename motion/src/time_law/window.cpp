@@ -14,7 +14,7 @@ namespace {
 /// Planning stays this part inside the limits, so that what a check finds between grid points still keeps the limits
 /// themselves.
 constexpr double kMargin = 0.9985;
-constexpr int kTightenings = 6;
+constexpr int kTightenings = 6, kPatientTightenings = 12;
 constexpr double kGrading = 0.35;  ///< grid steps grow by this part of the distance from a point of rest
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -40,7 +40,7 @@ struct RestEnd {
 };
 
 std::optional<RestEnd> rest_end(const PathView& path, const std::vector<JointLimits>& joints, double s_rest,
-                                int direction, double available, double grid_step, const FeedRule& feed) {
+                                int direction, double available, double longest, const FeedRule& feed) {
   JointPoint point;
   if (path.derivatives(s_rest, direction, point) != KinematicsStatus::Ok) return std::nullopt;
   const PathSegment& segment = path.segment(path.find(s_rest, direction));
@@ -55,7 +55,7 @@ std::optional<RestEnd> rest_end(const PathView& path, const std::vector<JointLim
   RestEnd end;
   end.jerk = 0.97 * jerk;
   const double speed = speed_bound(segment, point, joints, feed);
-  const double step = std::min(grid_step, available / 40);
+  const double step = std::min(longest, available / 40);
   end.time =
       std::min({0.3 * acceleration / end.jerk, std::sqrt(0.2 * speed / end.jerk), std::cbrt(6 * step / end.jerk)});
   for (int attempt = 0; attempt < 40; ++attempt, end.time *= 0.7, end.jerk = 0.9 * jerk) {
@@ -259,16 +259,9 @@ std::vector<LawPiece> with_rest_ends(std::vector<LawPiece> law, const std::optio
   return law;
 }
 
-}  // namespace
-
-double ramp_length(double v, double a, double j) noexcept {
-  // Jerk up, constant acceleration, jerk down; the mean speed is v/2 whether or not the acceleration limit is reached.
-  const double time = v * j >= a * a ? v / a + a / j : 2 * std::sqrt(v / j);
-  return 0.5 * v * time;
-}
-
-std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std::vector<JointLimits>& joints,
-                                                 const Window& window) {
+/// As `plan_window`, with this part of the longest stretches at constant jerk that may lead from and to rest.
+std::optional<std::vector<LawPiece>> law_of_window(const PathView& path, const std::vector<JointLimits>& joints,
+                                                   const Window& window, double rest_part) {
   const bool from_rest = window.begin.v == 0 && window.begin.a == 0;
   const double s_begin = from_rest ? on_border(path, window.begin.s) : window.begin.s;
   const double s_end = on_border(path, window.s_end);
@@ -289,11 +282,11 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
   double a = s_begin, b = s_end;
   std::optional<RestEnd> first, last;
   if (from_rest) {
-    first = rest_end(path, joints, a, 1, length, coarsest, feed);
+    first = rest_end(path, joints, a, 1, rest_part * length, rest_part * coarsest, feed);
     if (!first) return std::nullopt;
     a += first->length;
   }
-  last = rest_end(path, joints, b, -1, length, coarsest, feed);
+  last = rest_end(path, joints, b, -1, rest_part * length, rest_part * coarsest, feed);
   if (!last) return std::nullopt;
   b -= last->length;
   if (!(b > a)) return std::nullopt;
@@ -332,7 +325,7 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
   std::vector<LawPiece> law = law_pieces(problem, coefficients, t_first);
   std::vector<double> excess(law.size());
   std::vector<IntervalRange> changed{{0, law.size()}};
-  for (int round = 0; round < kTightenings; ++round) {
+  for (int round = 0; round < (window.patient ? kPatientTightenings : kTightenings); ++round) {
     for (const auto& [begin, end] : changed) {
       const auto from = static_cast<std::ptrdiff_t>(begin), to = static_cast<std::ptrdiff_t>(end);
       const LawExcess found = check_law(path, joints, {law.begin() + from, law.begin() + to}, programmed);
@@ -344,6 +337,25 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
     changed = mend_law(problem, excess, coefficients);
     if (changed.empty()) return std::nullopt;
     law = law_pieces(problem, coefficients, t_first);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+double ramp_length(double v, double a, double j) noexcept {
+  // Jerk up, constant acceleration, jerk down; the mean speed is v/2 whether or not the acceleration limit is reached.
+  const double time = v * j >= a * a ? v / a + a / j : 2 * std::sqrt(v / j);
+  return 0.5 * v * time;
+}
+
+std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std::vector<JointLimits>& joints,
+                                                 const Window& window) {
+  // What jerk a stretch next to rest has used up, the path behind it may need: where it bends to and fro within a few
+  // of its lengths, no law follows it, and one follows a shorter stretch.
+  for (const double rest_part : {1.0, 0.1, 0.01}) {
+    if (auto law = law_of_window(path, joints, window, rest_part)) return law;
+    if (!window.patient) break;
   }
   return std::nullopt;
 }

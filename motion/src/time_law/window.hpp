@@ -19,6 +19,7 @@ struct Window {
   const std::vector<LawPiece>* before =
       nullptr;             ///< the law that the window's begin state was taken from: a good first guess
   bool same_feed = false;  ///< `before` was made for this feed: where it is still faster, this law may be so too
+  bool patient = false;    ///< there is time to look further for a law
 };
 
 /// The fastest checked time law of a window, beginning at time 0, or nothing when none passed its check. From rest

@@ -322,8 +322,8 @@ Trace rose(double line_mm, double rounding_mm = 0) {
 }
 
 /// Queues lines through corners, and checks that the path keeps their tolerance and the limits.
-double machined(const Trace& corners, double tolerance_mm, int cycles_between = 0) {
-  PlannerBench bench(mill(50000));
+double machined(const Trace& corners, double tolerance_mm, int cycles_between = 0, double jerk_mm_s3 = 50000) {
+  PlannerBench bench(mill(jerk_mm_s3));
   if (cycles_between > 0) bench.planner.command(PathCommand::Run);
   Move move;
   move.feed_mm_s = 100;
@@ -370,6 +370,45 @@ TEST(ShortLines, WhoseChordsMissTheCurveByMoreThanTheToleranceAreNotStoppedAtEac
   EXPECT_LT(machined(rose(0.3), 0.01), 1.15 * fine);
   EXPECT_LT(machined(rose(0.5), 0.01), 1.5 * fine);
 }
+
+/// A closed curve in a plane, of five waves each way, in lines.
+Trace waves(unsigned seed, double line_mm) {
+  std::mt19937 random(seed);
+  std::array<std::array<double, 5>, 2> height{}, phase{};
+  for (std::size_t c = 0; c < 2; ++c) {
+    for (std::size_t k = 0; k < 5; ++k) {
+      height[c][k] = std::uniform_real_distribution<double>(-12, 12)(random) / static_cast<double>(k + 1);
+      phase[c][k] = std::uniform_real_distribution<double>(0, 2 * std::numbers::pi)(random);
+    }
+  }
+  Trace corners;
+  Vector start{}, before{};
+  for (int i = 0; i <= 200000; ++i) {
+    Vector here{};
+    for (std::size_t c = 0; c < 2; ++c) {
+      for (std::size_t k = 0; k < 5; ++k)
+        here[c] += height[c][k] * std::sin(static_cast<double>(k + 1) * i * std::numbers::pi / 100000 + phase[c][k]);
+    }
+    if (i == 0) start = here;
+    for (std::size_t c = 0; c < 2; ++c) here[c] -= start[c];
+    if (i > 0 && distance(before, here) < line_mm) continue;
+    before = here;
+    corners.push_back(here);
+  }
+  return corners;
+}
+
+class CoarseLines : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(CoarseLines, FindALawAlsoWhereJerkIsLow) {
+  for (const double line_mm : {0.8, 1.2, 1.8}) {
+    const Trace corners = waves(GetParam(), line_mm);
+    // A law that is slowed down by the third root of what the jerk is less by keeps every limit.
+    EXPECT_LT(machined(corners, 0.04, 0, 10000), 1.01 * std::cbrt(5) * machined(corners, 0.04, 0, 50000)) << line_mm;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, CoarseLines, ::testing::Range(1U, 9U));
 
 /// Lines of all lengths and directions in space, now dense, now coarse, with corners among them.
 Trace wandering(unsigned seed) {
