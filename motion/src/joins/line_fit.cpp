@@ -42,6 +42,8 @@ constexpr double kSpansALine = 3;
 /// the tube is made narrower.
 constexpr double kTubePart = 0.97;
 constexpr int kTubeTrials = 3;
+/// Lines from which on a law with open ends says how fast a spline is: fewer are mostly ramps.
+constexpr std::size_t kWorthALaw = 20;
 
 double largest(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
@@ -253,12 +255,22 @@ bool LineFit::fit_tube(std::size_t lines, bool ends, Fit& fit) const {
     for (double& width : widths) width *= 0.995 * tolerance / deviation;
   }
 
+  if (lines >= kWorthALaw) make_faster(widths, fit);
+
   std::vector<std::size_t> cuts;
   const auto knot_at = [&](double place) { return quintic::span_of(fit.knots, fit.points.size(), place); };
   if (!goes_on()) cuts.push_back(knot_at(places[1]));
   if (ends && knot_at(places[lines - 1]) > (cuts.empty() ? kDegree : cuts.back()))
     cuts.push_back(knot_at(places[lines - 1]));
   return make_segments(std::move(cuts), kTube.overlap, ends, fit);
+}
+
+void LineFit::make_faster(const std::vector<double>& widths, Fit& fit) const {
+  auto lines = line_limits({waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(fit.polyline.lines())});
+  if (!lines) return;
+  DraftLaw law(fit.knots, fit.polyline, std::move(*lines), joints_);
+  fastest_in_tube(fit.knots, fit.polyline, widths, waiting_[0]->demand().tolerance_mm, kept_points(), law, fit.points);
+  fit.deviations_mm = tube_distances(fit.knots, fit.points, fit.polyline, waiting_[0]->demand().tolerance_mm);
 }
 
 bool LineFit::fit(bool finish, Fit& fit) const {

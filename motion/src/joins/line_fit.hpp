@@ -36,7 +36,7 @@ class LineFit {
     std::size_t lines, overlap;
   };
   static constexpr Window kDense{240, 60};
-  static constexpr Window kTube{60, 12};       ///< more would hold the planner up for longer
+  static constexpr Window kTube{60, 24};       ///< more would hold the planner up for longer
   static constexpr std::size_t kShortest = 6;  ///< lines that are worth a fit
 
   /// A spline by chord length, counted from the start of the first waiting line, and the path that it makes.
@@ -60,6 +60,8 @@ class LineFit {
   [[nodiscard]] bool fit(bool finish, Fit& fit) const;
   [[nodiscard]] bool fit_dense(std::size_t lines, bool ends, Fit& fit) const;
   [[nodiscard]] bool fit_tube(std::size_t lines, bool ends, Fit& fit) const;
+  /// A spline in the tube becomes one that is faster to travel, where that is found.
+  void make_faster(const std::vector<double>& widths, Fit& fit) const;
   [[nodiscard]] bool least_squares(double step, Fit& fit) const;
   /// The knots that the window before keeps, these, and the end's; false where there are too few.
   [[nodiscard]] bool set_knots(const std::vector<double>& inner, Fit& fit) const;

@@ -40,22 +40,22 @@ Basis basis(const std::vector<double>& knots, std::size_t count, double x) {
   return {span - kDegree, functions(knots, span, x, kDegree)};
 }
 
-Basis third_derivatives(const std::vector<double>& knots, std::size_t count, double x) {
+Basis derivatives(const std::vector<double>& knots, std::size_t count, double x, std::size_t order) {
   const std::size_t span = span_of(knots, count, x);
   Basis result{span - kDegree, {}};
-  const auto quadratic = functions(knots, span, x, kDegree - 3);
+  const auto lower = functions(knots, span, x, kDegree - order);
   for (std::size_t a = 0; a <= kDegree; ++a) {
     // The control points of the derivatives (The NURBS Book, eq. 3.8) where this control point is 1, and the others 0.
     std::array<double, kDegree + 1> points{};
     points[a] = 1;
-    for (std::size_t k = 1; k <= 3; ++k) {
+    for (std::size_t k = 1; k <= order; ++k) {
       for (std::size_t i = 0; i + k <= kDegree; ++i) {
         const std::size_t at = span - kDegree + i;
         points[i] = static_cast<double>(kDegree - k + 1) * (points[i + 1] - points[i]) /
                     (knots[at + kDegree + 1] - knots[at + k]);
       }
     }
-    for (std::size_t i = 0; i + 3 <= kDegree; ++i) result.values[a] += quadratic[i] * points[i];
+    for (std::size_t i = 0; i + order <= kDegree; ++i) result.values[a] += lower[i] * points[i];
   }
   return result;
 }

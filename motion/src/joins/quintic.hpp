@@ -22,8 +22,8 @@ struct Basis {
 [[nodiscard]] std::size_t span_of(const std::vector<double>& knots, std::size_t count, double x);
 /// The NURBS Book, A2.2.
 [[nodiscard]] Basis basis(const std::vector<double>& knots, std::size_t count, double x);
-/// Third derivatives of the same functions.
-[[nodiscard]] Basis third_derivatives(const std::vector<double>& knots, std::size_t count, double x);
+/// Derivatives of the same functions, of order 1 to 3.
+[[nodiscard]] Basis derivatives(const std::vector<double>& knots, std::size_t count, double x, std::size_t order);
 [[nodiscard]] Vector value(const Basis& basis, const std::vector<Vector>& points);
 /// Length of each control point of the second derivative: on the span that begins with knot k, |S''| is at most the
 /// largest of those from k - 5 to k - 2.

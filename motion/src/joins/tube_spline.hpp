@@ -1,19 +1,12 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
+#include "joins/draft_law.hpp"
+#include "joins/polyline.hpp"
 #include "rmac/motion/pose.hpp"
 
 namespace rmac {
-
-/// A polyline, and the parameter of a spline at each of its vertices. Line k goes from vertex k to k + 1.
-struct Polyline {
-  std::vector<Vector> vertices;
-  std::vector<double> places;
-  std::optional<Vector> previous;  ///< the vertex before the first, where a spline comes from there
-  [[nodiscard]] std::size_t lines() const noexcept { return vertices.size() - 1; }
-};
 
 /// The smoothest quintic spline over `knots` (least ∫|S'''|²) that stays within widths_mm[k] of line k of the polyline,
 /// and near each vertex where it should (docs/derivations/joins.md, section 7). It begins in the middle of line 0 where
@@ -22,6 +15,11 @@ struct Polyline {
 [[nodiscard]] bool smoothest_in_tube(const std::vector<double>& knots, const Polyline& polyline,
                                      const std::vector<double>& widths_mm, std::size_t kept,
                                      std::vector<Vector>& points);
+
+/// Makes a spline in the tube, with what is as in `smoothest_in_tube`, faster to travel: within the tolerance by
+/// `tube_distances`, or left as it is.
+void fastest_in_tube(const std::vector<double>& knots, const Polyline& polyline, std::vector<double> widths_mm,
+                     double tolerance_mm, std::size_t kept, DraftLaw& law, std::vector<Vector>& points);
 
 /// For each line a bound of the distance between the spline's stretch and the polyline, both ways; rigorous up to
 /// `most_mm`, and above that only more than `most_mm` (eq. 14).

@@ -30,6 +30,7 @@ struct LawProblem {
       tightening;  ///< an interval: joint bounds are multiplied by it; 1 at first, less where the check found excess
   std::vector<double> max_acceleration, max_jerk;  ///< a joint
   PathState begin, end;
+  bool draft = false;  ///< of a path that is still being shaped: both end states are free, and jerk has its price told
   std::vector<double>
       travelled_before;  ///< empty, or a coefficient each: what an earlier law had here; 0 where it had nothing
 
@@ -46,6 +47,9 @@ struct LawSolution {
   bool converged = false;
   int iterations = 0;
   std::vector<double> coefficients;
+  /// Of a draft: how much travel time the bound of a joint's jerk costs, as a part of the bound; an interval: left,
+  /// right, each joint_count values.
+  std::vector<double> jerk_prices;
 };
 
 /// Solves by a primal-dual interior point method. `guess` may hold coefficients of an earlier solve of the same grid,

@@ -53,11 +53,8 @@ void joint_acceleration_rows(const LawProblem& p, const Basis& b, const JointDer
 void jerk_rows(const LawProblem& p, std::size_t k, const Basis& left, const Basis& right, std::vector<Rows>& all) {
   static_assert(kLanes == 2, "a lane for each end of the interval");
   const JointDerivatives at_left = p.at(k, false), at_right = p.at(k, true);
-  const auto rests = [](const JointDerivatives& d, std::size_t j) {
-    return std::abs(d.d1[j]) < 1e-12 && std::abs(d.d2[j]) < 1e-12 && std::abs(d.d3[j]) < 1e-12;
-  };
   for (std::size_t j = 0; j < p.joint_count; ++j) {
-    if (rests(at_left, j) && rests(at_right, j)) continue;
+    if (!moves_on(p, k, j)) continue;
     const double scale = 1 / (p.max_jerk[j] * p.tightening[k]);
     const auto weight = [&](const Basis& b, const JointDerivatives& d, std::size_t i) {
       return (d.d3[j] * b.q[i] + 1.5 * d.d2[j] * b.dq[i] + 0.5 * d.d1[j] * b.ddq[i]) * scale;
@@ -70,6 +67,13 @@ void jerk_rows(const LawProblem& p, std::size_t k, const Basis& left, const Basi
 
 }  // namespace
 
+bool moves_on(const LawProblem& p, std::size_t k, std::size_t j) noexcept {
+  const auto moves = [j](const JointDerivatives& d) {
+    return std::abs(d.d1[j]) >= 1e-12 || std::abs(d.d2[j]) >= 1e-12 || std::abs(d.d3[j]) >= 1e-12;
+  };
+  return moves(p.at(k, false)) || moves(p.at(k, true));
+}
+
 LawRows::LawRows(const LawProblem& p) {
   const std::size_t n = p.intervals();
   all.reserve(n * ((p.joint_count + 2) / kLanes + 1 + p.joint_count));
@@ -78,7 +82,7 @@ LawRows::LawRows(const LawProblem& p) {
     intervals[k].linear = all.size();
     RowCollector rows(all);
     // Nothing bounds the coefficients from below: the travel time does, which goes to infinity there.
-    if (k > 0 && k + 1 < n) rows.add({0, 1, 0}, -p.speed_cap[k], p.speed_cap[k]);
+    if (p.draft || (k > 0 && k + 1 < n)) rows.add({0, 1, 0}, -p.speed_cap[k], p.speed_cap[k]);
     const Basis left = basis(p, k, false), right = basis(p, k, true);
     if (k > 0) {
       const double cap = std::min(p.speed_cap[k], p.speed_cap[k - 1]);

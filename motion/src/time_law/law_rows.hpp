@@ -33,6 +33,9 @@ struct IntervalRows {
   LaneTriple q{};
 };
 
+/// Whether a joint has a row of jerk on an interval: not where it rests.
+[[nodiscard]] bool moves_on(const LawProblem& problem, std::size_t interval, std::size_t joint) noexcept;
+
 /// What bounds a law: everything that `LawProblem` says, but for the end states, which fix two coefficients each.
 struct LawRows {
   std::vector<Rows> all;

@@ -58,6 +58,7 @@ class Solver {
     }
     if (!result.converged) result.converged = infeasible_ <= 1e-5;  // feasible, if not proven optimal
     result.coefficients = std::move(c_);
+    if (p_.draft) result.jerk_prices = jerk_prices();
     return result;
   }
 
@@ -72,12 +73,31 @@ class Solver {
       guess_coefficients(p_, c_);
       for (std::size_t i = 0; i < p_.travelled_before.size(); ++i) c_[i] = std::max(c_[i], p_.travelled_before[i]);
     }
+    if (p_.draft) {
+      if (guess.empty()) c_.front() = c_[1], c_.back() = c_[n_ - 2];
+      end_free_ = n_;
+      return;
+    }
     c_[0] = p_.begin.v * p_.begin.v;
     c_[1] = c_[0] + p_.begin.a * p_.step(0);
     c_[n_ - 1] = p_.end.v * p_.end.v;
     c_[n_ - 2] = c_[n_ - 1] - p_.end.a * p_.step(last);
     first_free_ = 2;
     end_free_ = n_ - 2;
+  }
+
+  [[nodiscard]] std::vector<double> jerk_prices() const {
+    std::vector<double> prices(p_.intervals() * 2 * p_.joint_count, 0.0);
+    for (std::size_t k = 0; k < p_.intervals(); ++k) {
+      std::size_t row = rows_.intervals[k].jerk;
+      for (std::size_t j = 0; j < p_.joint_count; ++j) {
+        if (!moves_on(p_, k, j)) continue;
+        const Lanes both = rows_.all[row].above.dual + rows_.all[row].below.dual;
+        for (std::size_t side = 0; side < 2; ++side) prices[(2 * k + side) * p_.joint_count + j] = both[side];
+        ++row;
+      }
+    }
+    return prices;
   }
 
   /// Slacks that the rows have at the guess, or a least one, and duals that make all products alike.

@@ -52,7 +52,7 @@ void guess_coefficients(const LawProblem& p, std::vector<double>& c) {
     }
     slope[k] = 0.5 * limit;
   }
-  const double first = p.begin.v * p.begin.v, last = p.end.v * p.end.v;
+  const double first = p.draft ? node[0] : p.begin.v * p.begin.v, last = p.draft ? node[n] : p.end.v * p.end.v;
   node[0] = first;
   for (std::size_t k = 0; k < n; ++k) node[k + 1] = std::min(node[k + 1], node[k] + slope[k] * p.step(k));
   node[n] = last;

@@ -2,8 +2,9 @@
 """What the rose in 1 mm lines takes at least, about, on any path within 0.01 mm of them.
 
 A circle of chords stands for each place of the rose. In a period of one line, the curve swings about the arc within the
-tube; a linear program finds the swing with the least third derivative, which jerk bounds at an even speed. Neither the
-start nor the end counts. Shares nothing with the planner. Prints one line of JSON.
+tube; a linear program finds the swing with the least third derivative, which jerk bounds at an even speed. Jerk and
+acceleration are each axis' own: across the path there is the more of them the less it runs along an axis, up to √2
+times as much, where what is beside it along the path does not matter. Neither the start nor the end counts. Shares nothing with the planner. Prints one line of JSON.
 """
 import json
 
@@ -40,8 +41,10 @@ def main():
     table = np.linspace(0, 0.6, 25)
     third, largest = np.array([least_swing(value) for value in table]).T
     third, largest = np.interp(curvature, table, third), np.interp(curvature, table, largest)
-    speed = np.minimum(FEED_MM_S, np.minimum(np.sqrt(ACCELERATION / np.maximum(largest, 1e-9)),
-                                             np.cbrt(JERK / np.maximum(third, 1e-9))))
+    heading = angle + np.arctan2(r, slope)
+    across = np.abs(np.sin(heading)) + np.abs(np.cos(heading))
+    speed = np.minimum(FEED_MM_S, np.minimum(np.sqrt(across * ACCELERATION / np.maximum(largest, 1e-9)),
+                                             np.cbrt(across * JERK / np.maximum(third, 1e-9))))
     print(json.dumps({"name": "rose_lines_1mm_estimate", "value": round(float(np.trapz(rate / speed, angle)), 3),
                       "unit": "s", "target": "", "ok": True, "note": "any path in the tube, start and end apart"}))
 
