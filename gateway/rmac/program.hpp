@@ -18,7 +18,7 @@ enum class Timing {
   Settled,  ///< acts on the machine at once (spindle, frames, configuration, loading): sent when all before it is done
 };
 
-/// One request of a `.rmac` file. A program may have millions: what is parsed is ten times what is written.
+/// One request of a `.rmac` file. A program may have millions, and parsed they take several times as much.
 struct Request {
   int line = 0;
   std::string text;  ///< the whole request, as the file has it
