@@ -228,7 +228,8 @@ void add_config_methods(std::vector<Method>& table) {
   add_interface_setters(add);
   add(method("RMAC_Config.Apply",
              "Checks the draft as a whole and puts it in at standstill, or in motion too where servo laws of joints, "
-             "their parameters and gains are all that changed; or changes nothing and says why.")
+             "their parameters and gains, and position or velocity as what is controlled, are all that changed; or "
+             "changes nothing and says why.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
           .may_be_slow()

@@ -36,8 +36,8 @@ struct Controller::Impl {
   /// Puts in the mechanism in force with another interface to its drives (interface_change.cpp).
   [[nodiscard]] Expected<> exchange_interface(const sdk::DeviceObject& device);
   [[nodiscard]] static bool same_choice(const sdk::ModuleChoice& one, const sdk::ModuleChoice& other);
-  /// Laws of the mechanism in force (law_change.cpp): joints whose law or gains `device` has otherwise, and what puts
-  /// these in, at rest or in motion.
+  /// Loops of the mechanism in force (law_change.cpp): joints whose law, gains or control method `device` has
+  /// otherwise, and what puts these in, at rest or in motion.
   [[nodiscard]] static bool other_law(const sdk::Joint& now, const sdk::Joint& wanted);
   [[nodiscard]] std::vector<std::size_t> joints_with_other_loops(const sdk::DeviceObject& device) const;
   [[nodiscard]] Expected<> change_loops(const sdk::DeviceObject& device, const std::vector<std::size_t>& joints);

@@ -17,6 +17,16 @@ auto& joint_of(auto& device, std::size_t number) {
   return number < moved ? device.joints[number] : device.held_joints[number - moved];
 }
 
+/// Only a joint that goes back to position control is refused.
+std::string slipped_text(const sdk::DeviceObject& device, const std::vector<SwapRequest::Method>& methods) {
+  std::vector<std::string> names;
+  for (const SwapRequest::Method& other : methods) {
+    if (other.method == ControlMethod::Position) names.push_back(joint_of(device, other.joint).limits.name);
+  }
+  return fmt::format("{} {} has slipped off the plan; change it with the machine at rest",
+                     names.size() == 1 ? "joint" : "one of the joints", fmt::join(names, ", "));
+}
+
 }  // namespace
 
 bool Controller::Impl::other_law(const sdk::Joint& now, const sdk::Joint& wanted) {
@@ -62,7 +72,10 @@ Expected<> Controller::Impl::change_loops(const sdk::DeviceObject& device, const
   SwapRequest request;
   request.laws = laws;
   request.methods = methods;
-  if (auto exchanged = ask_servo_thread(request); !exchanged) return exchanged;
+  if (auto exchanged = ask_servo_thread(request); !exchanged) {
+    if (request.result != SwapRequest::Result::Refused) return exchanged;
+    return failure(MinorCode::Other, slipped_text(device, methods));
+  }
   for (const std::size_t j : joints) {
     sdk::Joint& now = joint_of(in_force->device, j);
     now.servo_law = joint_of(device, j).servo_law;

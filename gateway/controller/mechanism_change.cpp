@@ -78,10 +78,7 @@ Expected<> Controller::Impl::ask_servo_thread(SwapRequest& request) {
     while (!answered()) std::this_thread::yield();
   }
   if (request.result.load(std::memory_order_acquire) == SwapRequest::Result::Refused) {
-    return failure(MinorCode::Other, request.methods.empty()
-                                         ? "the machine is moving; a mechanism is put in at rest only"
-                                         : "a joint that is to be under position control again has slipped off the "
-                                           "plan; change it with the machine at rest");
+    return failure(MinorCode::Other, "the machine is moving; a mechanism is put in at rest only");
   }
   return {};
 }

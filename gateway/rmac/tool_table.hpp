@@ -1,7 +1,6 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "gateway/rmac/connection.hpp"
 #include "gateway/rmac/failure.hpp"

@@ -136,7 +136,6 @@ std::vector<SplineDemand> DraftLaw::demands(const std::vector<Vector>& points) {
       for (std::size_t j = 0; j < joint_count; ++j) {
         const Vector rate = curves::scaled(1 / joints_[j].max_jerk, lines_[nodes_[k].line].rates[j]);
         const double price = prices_[(2 * k + (right ? 1U : 0U)) * joint_count + j], jerk = dot(rate, here);
-
         for (std::size_t c = 0; c < 3; ++c) demand.weight[c] = along(demand.weight[c], (price + stay) * rate[c], rate);
         demand.pull = along(demand.pull, stay * jerk, rate);
         demand.constant += 0.5 * stay * jerk * jerk;

@@ -269,8 +269,8 @@ void LineFit::make_faster(const std::vector<double>& widths, Fit& fit) const {
   auto lines = line_limits({waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(fit.polyline.lines())});
   if (!lines) return;
   DraftLaw law(fit.knots, fit.polyline, std::move(*lines), joints_);
-  fastest_in_tube(fit.knots, fit.polyline, widths, waiting_[0]->demand().tolerance_mm, kept_points(), law, fit.points);
-  fit.deviations_mm = tube_distances(fit.knots, fit.points, fit.polyline, waiting_[0]->demand().tolerance_mm);
+  fastest_in_tube(fit.knots, fit.polyline, widths, waiting_[0]->demand().tolerance_mm, kept_points(), law, fit.points,
+                  fit.deviations_mm);
 }
 
 bool LineFit::fit(bool finish, Fit& fit) const {

@@ -151,14 +151,16 @@ bool smoothest_in_tube(const std::vector<double>& knots, const Polyline& polylin
 }
 
 void fastest_in_tube(const std::vector<double>& knots, const Polyline& polyline, std::vector<double> widths_mm,
-                     double tolerance_mm, std::size_t kept, DraftLaw& law, std::vector<Vector>& points) {
+                     double tolerance_mm, std::size_t kept, DraftLaw& law, std::vector<Vector>& points,
+                     std::vector<double>& deviations_mm) {
   for (int trial = 0; trial < kTrials; ++trial) {
     std::vector<Vector> faster = points;
     if (!make_faster(knots, polyline, widths_mm, kept, law, faster)) return;
-    const auto distances = tube_distances(knots, faster, polyline, tolerance_mm);
+    auto distances = tube_distances(knots, faster, polyline, tolerance_mm);
     const double distance = *std::max_element(distances.begin(), distances.end());
     if (distance <= tolerance_mm) {
       points = std::move(faster);
+      deviations_mm = std::move(distances);
       return;
     }
     for (double& width : widths_mm) width *= 0.995 * tolerance_mm / distance;

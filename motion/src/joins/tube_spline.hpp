@@ -17,9 +17,10 @@ namespace rmac {
                                      std::vector<Vector>& points);
 
 /// Makes a spline in the tube, with what is as in `smoothest_in_tube`, faster to travel: within the tolerance by
-/// `tube_distances`, or left as it is.
+/// `tube_distances`, which then become `deviations_mm`, or all is left as it is.
 void fastest_in_tube(const std::vector<double>& knots, const Polyline& polyline, std::vector<double> widths_mm,
-                     double tolerance_mm, std::size_t kept, DraftLaw& law, std::vector<Vector>& points);
+                     double tolerance_mm, std::size_t kept, DraftLaw& law, std::vector<Vector>& points,
+                     std::vector<double>& deviations_mm);
 
 /// For each line a bound of the distance between the spline's stretch and the polyline, both ways; rigorous up to
 /// `most_mm`, and above that only more than `most_mm` (eq. 14).

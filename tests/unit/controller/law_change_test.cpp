@@ -118,7 +118,8 @@ TEST_F(LawChange, AJointThatSlippedIsGivenBackToPositionControlAtRestOnly) {
   ASSERT_TRUE(config().set_joint_control_method(1, ControlMethod::Position));
   const auto refused = config().apply();
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().message, HasSubstr("has slipped off the plan; change it with the machine at rest"));
+  EXPECT_THAT(refused.error().message,
+              HasSubstr("joint Y has slipped off the plan; change it with the machine at rest"));
   EXPECT_EQ(machine_.controller.mechanism()->joints[1].method, ControlMethod::Velocity);
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove)) << machine_.last(Event::Kind::Fault);
   ASSERT_TRUE(machine_.run_until([&] { return !machine_.controller.sample().moving; }));
