@@ -8,7 +8,7 @@
 
 #include "gateway/api/decode.hpp"
 #include "gateway/api/method_table.hpp"
-#include "gateway/configuration/printable.hpp"
+#include "gateway/json/printable.hpp"
 
 namespace rmac::gateway {
 

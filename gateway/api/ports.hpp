@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "gateway/api/rpc_error.hpp"
-#include "gateway/controller/cycle_times.hpp"
-#include "gateway/controller/machine_state.hpp"
-#include "gateway/controller/module_loader.hpp"
+#include "gateway/servo/cycle_times.hpp"
+#include "gateway/state/machine_state.hpp"
+#include "gateway/modules/module_loader.hpp"
 #include "gateway/device_driver_manager/device_driver_manager.hpp"
 #include "gateway/record/flight_record.hpp"
 #include "gateway/tools/tool.hpp"

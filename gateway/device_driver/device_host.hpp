@@ -5,7 +5,7 @@
 #include <string>
 
 #include "gateway/controller/controller.hpp"
-#include "gateway/device_driver/verification.hpp"
+#include "gateway/verification/verification.hpp"
 #include "gateway/device_driver_manager/device_driver_manager.hpp"
 #include "rmac/sdk/device_driver.hpp"
 

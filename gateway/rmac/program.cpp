@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "gateway/api/dispatcher.hpp"
-#include "gateway/configuration/printable.hpp"
+#include "gateway/json/printable.hpp"
 
 namespace rmac::cli {
 

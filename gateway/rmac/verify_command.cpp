@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "gateway/configuration/configuration.hpp"
-#include "gateway/device_driver/verification.hpp"
+#include "gateway/verification/verification.hpp"
 #include "gateway/rmac/authority.hpp"
 #include "gateway/rmac/commands.hpp"
 

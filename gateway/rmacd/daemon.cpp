@@ -11,8 +11,8 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "gateway/controller/sync_clock.hpp"
-#include "gateway/rmacd/machine.hpp"
+#include "gateway/servo/sync_clock.hpp"
+#include "gateway/appliance/machine.hpp"
 #include "gateway/server/server.hpp"
 
 namespace rmac::gateway {

@@ -8,7 +8,7 @@ import unittest
 
 BUILD = pathlib.Path(os.environ["RMAC_BUILD"])
 SOURCE = pathlib.Path(os.environ["RMAC_SOURCE"])
-SHEET = SOURCE / "fieldbus/vdrive/rmac-vdrive.eds"
+SHEET = SOURCE / "gateway/simulators/vdrive/rmac-vdrive.eds"
 
 
 def call(program, *words):

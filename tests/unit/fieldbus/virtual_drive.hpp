@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "unit/fieldbus/object_bank.hpp"
-#include "vdrive/power_states.hpp"
+#include "gateway/simulators/vdrive/power_states.hpp"
 
 namespace rmac::fieldbus::test {
 
