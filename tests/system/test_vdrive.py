@@ -21,7 +21,7 @@ class VirtualDrive(unittest.TestCase):
         self.assertEqual((done.returncode, done.stdout), (0, SHEET.read_text()))
 
     def test_shares_no_protocol_code_with_the_master(self):
-        included = [line for file in (SOURCE / "fieldbus/vdrive").glob("*.?pp") for line in file.read_text().splitlines()
+        included = [line for file in (SOURCE / "gateway/simulators/vdrive").glob("*.?pp") for line in file.read_text().splitlines()
                     if line.startswith("#include") and "canopen" in line]
         self.assertEqual(included, [])
 

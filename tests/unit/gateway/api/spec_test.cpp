@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 
 json fixture(const std::string& name) {
-  std::ifstream file(std::string(RMAC_SOURCE_DIR) + "/tests/unit/api/fixtures/" + name);
+  std::ifstream file(std::string(RMAC_SOURCE_DIR) + "/tests/unit/gateway/api/fixtures/" + name);
   EXPECT_TRUE(file) << name;
   return json::parse(file);
 }

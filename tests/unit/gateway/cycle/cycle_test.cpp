@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "test_machine.hpp"
+#include "unit/gateway/test_machine.hpp"
 
 namespace rmac::gateway {
 namespace {

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "rmac/motion/drive_power.hpp"
-#include "test_machine.hpp"
+#include "unit/gateway/test_machine.hpp"
 
 namespace rmac::gateway {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "gateway/api/enumeration.hpp"
-#include "test_machine.hpp"
+#include "unit/gateway/test_machine.hpp"
 
 namespace rmac::gateway {
 namespace {

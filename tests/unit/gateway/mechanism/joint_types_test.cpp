@@ -1,7 +1,7 @@
 // Joints that are neither a slide nor a limited turn: screws, and those without an end.
 #include <gmock/gmock.h>
 
-#include "test_machine.hpp"
+#include "unit/gateway/test_machine.hpp"
 
 namespace rmac::gateway {
 namespace {

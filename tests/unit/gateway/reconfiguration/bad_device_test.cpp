@@ -3,7 +3,7 @@
 #include <limits>
 #include <random>
 
-#include "test_machine.hpp"
+#include "unit/gateway/test_machine.hpp"
 
 namespace rmac::gateway {
 namespace {

@@ -1,7 +1,7 @@
 // A mill whose drives follow velocities or positions themselves: what a client sees is the machine that it knows.
 #include <gmock/gmock.h>
 
-#include "test_machine.hpp"
+#include "unit/gateway/test_machine.hpp"
 
 namespace rmac::gateway {
 namespace {

@@ -1,7 +1,7 @@
 // Servo laws and gains that are changed while the machine moves.
 #include <gmock/gmock.h>
 
-#include "test_machine.hpp"
+#include "unit/gateway/test_machine.hpp"
 
 namespace rmac::gateway {
 namespace {

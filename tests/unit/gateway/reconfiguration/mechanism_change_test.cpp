@@ -3,7 +3,7 @@
 #include <atomic>
 #include <thread>
 
-#include "test_machine.hpp"
+#include "unit/gateway/test_machine.hpp"
 
 namespace rmac::gateway {
 namespace {

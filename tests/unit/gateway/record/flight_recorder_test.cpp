@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "gateway/record/flight_record.hpp"
-#include "test_machine.hpp"
+#include "unit/gateway/test_machine.hpp"
 #include "unit/gateway/device_driver_manager/fixtures.hpp"
 
 namespace rmac::gateway {

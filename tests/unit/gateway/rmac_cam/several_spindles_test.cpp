@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "places.hpp"
-#include "test_machine.hpp"
+#include "unit/gateway/test_machine.hpp"
 
 namespace rmac::gateway {
 namespace {

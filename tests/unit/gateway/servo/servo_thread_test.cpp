@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "test_machine.hpp"
+#include "unit/gateway/test_machine.hpp"
 
 namespace rmac::gateway {
 namespace {

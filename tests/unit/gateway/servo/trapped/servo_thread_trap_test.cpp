@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "places.hpp"
-#include "test_machine.hpp"
+#include "unit/gateway/test_machine.hpp"
 #include "trapping_clock.hpp"
 #include "unit/gateway/device_driver_manager/fixtures.hpp"
 
