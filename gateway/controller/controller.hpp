@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "gateway/buses/bus_registry.hpp"
+#include "gateway/record/flight_recorder_options.hpp"
 #include "gateway/servo/clock.hpp"
 #include "gateway/servo/cycle_times.hpp"
 #include "gateway/state/machine_state.hpp"
-#include "gateway/record/flight_recorder_options.hpp"
 #include "gateway/tools/tool.hpp"
 #include "rmac/motion/error.hpp"
 #include "rmac/motion/servo_loop.hpp"

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "gateway/device_database/device_checks.hpp"
 #include "gateway/json/json_document.hpp"
 #include "gateway/json/schemas.hpp"
-#include "gateway/device_database/device_checks.hpp"
 
 namespace rmac::gateway {
 namespace {

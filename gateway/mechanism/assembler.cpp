@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "gateway/buses/bus_choice.hpp"
-#include "gateway/mechanism/exchangeable_law.hpp"
 #include "gateway/buses/simulated_io.hpp"
+#include "gateway/mechanism/exchangeable_law.hpp"
 #include "rmac/sdk/servo_law_names.hpp"
 
 namespace rmac::gateway {

@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "gateway/configuration/configuration.hpp"
 #include "gateway/buses/bus_choice.hpp"
 #include "gateway/buses/device_descriptions.hpp"
+#include "gateway/configuration/configuration.hpp"
 #include "gateway/device_database/device_database.hpp"
 #include "gateway/rmac/commands.hpp"
 #include "gateway/rmac/table.hpp"

@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "gateway/state/machine_state.hpp"
 #include "gateway/servo/snapshot.hpp"
+#include "gateway/state/machine_state.hpp"
 
 namespace rmac::gateway {
 

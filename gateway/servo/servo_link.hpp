@@ -7,12 +7,12 @@
 #include <memory>
 #include <span>
 
+#include "gateway/mechanism/exchangeable_law.hpp"
+#include "gateway/mechanism/mechanism.hpp"
 #include "gateway/servo/cycle_history.hpp"
 #include "gateway/servo/cycle_times.hpp"
-#include "gateway/mechanism/exchangeable_law.hpp"
-#include "gateway/state/machine_state.hpp"
-#include "gateway/mechanism/mechanism.hpp"
 #include "gateway/servo/snapshot.hpp"
+#include "gateway/state/machine_state.hpp"
 
 namespace rmac::gateway {
 

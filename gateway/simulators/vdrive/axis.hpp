@@ -4,12 +4,12 @@
 #include <functional>
 #include <memory>
 
-#include "rmac/fieldbus/simulated_plant.hpp"
 #include "gateway/simulators/vdrive/dictionary.hpp"
 #include "gateway/simulators/vdrive/homing.hpp"
 #include "gateway/simulators/vdrive/power_states.hpp"
 #include "gateway/simulators/vdrive/profile.hpp"
 #include "gateway/simulators/vdrive/touch_probe.hpp"
+#include "rmac/fieldbus/simulated_plant.hpp"
 
 namespace rmac::vdrive {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "rmac/motion/error.hpp"
 #include "gateway/simulators/vdrive/node.hpp"
+#include "rmac/motion/error.hpp"
 
 namespace rmac::vdrive {
 

@@ -4,8 +4,8 @@
 #include <map>
 #include <optional>
 
-#include "rmac/fieldbus/eds/device_description.hpp"
 #include "gateway/simulators/vdrive/sdo_server.hpp"
+#include "rmac/fieldbus/eds/device_description.hpp"
 
 namespace rmac::vdrive {
 

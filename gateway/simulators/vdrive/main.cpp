@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <set>
 
-#include "rmac/fieldbus/can/socket_can_port.hpp"
-#include "gateway/simulators/vdrive/command.hpp"
 #include "gateway/simulators/console/line_input.hpp"
+#include "gateway/simulators/vdrive/command.hpp"
 #include "gateway/simulators/vdrive/sheet.hpp"
+#include "rmac/fieldbus/can/socket_can_port.hpp"
 
 // rmac-vdrive: CiA 402 drives that are simulated, on a CAN interface (docs/vdrive.md).
 namespace {

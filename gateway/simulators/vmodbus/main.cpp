@@ -10,9 +10,9 @@
 
 #include "gateway/configuration/configuration.hpp"
 #include "gateway/json/finite_numbers.hpp"
-#include "gateway/simulators/vmodbus/endpoints.hpp"
-#include "gateway/simulators/vdrive/command.hpp"
 #include "gateway/simulators/console/line_input.hpp"
+#include "gateway/simulators/vdrive/command.hpp"
+#include "gateway/simulators/vmodbus/endpoints.hpp"
 
 // rmac-vmodbus: spindle drives and remote I/O that are simulated, on Modbus (docs/vmodbus.md).
 namespace {

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "gateway/record/flight_record.hpp"
-#include "unit/gateway/test_machine.hpp"
 #include "unit/gateway/device_driver_manager/fixtures.hpp"
+#include "unit/gateway/test_machine.hpp"
 
 namespace rmac::gateway {
 namespace {

@@ -6,10 +6,10 @@
 #include <functional>
 #include <vector>
 
+#include "gateway/appliance/machine.hpp"
 #include "gateway/controller/controller.hpp"
 #include "gateway/device_driver/device_host.hpp"
 #include "gateway/device_driver_manager/device_driver_manager.hpp"
-#include "gateway/appliance/machine.hpp"
 #include "rmac/fieldbus/simulated_interface.hpp"
 #include "rmac/fieldbus/simulated_io_interface.hpp"
 #include "unit/gateway/api/session.hpp"

@@ -5,9 +5,9 @@
 #include <mutex>
 
 #include "places.hpp"
-#include "unit/gateway/test_machine.hpp"
 #include "trapping_clock.hpp"
 #include "unit/gateway/device_driver_manager/fixtures.hpp"
+#include "unit/gateway/test_machine.hpp"
 
 namespace rmac::gateway {
 namespace {
