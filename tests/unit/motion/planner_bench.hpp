@@ -8,6 +8,7 @@
 
 #include "rmac/modules/chain_kinematics.hpp"
 #include "rmac/motion/plan_follower.hpp"
+#include "rmac/motion/path_builder.hpp"
 #include "rmac/motion/planner.hpp"
 
 namespace rmac::test {

@@ -82,7 +82,7 @@ class RetraceBench {
   }
 
   std::mt19937 random_;
-  std::map<std::int64_t, std::vector<std::shared_ptr<const PathSegment>>> moves_;
+  std::map<std::int64_t, PathSegments> moves_;
 };
 
 class Retrace : public ::testing::TestWithParam<unsigned> {};

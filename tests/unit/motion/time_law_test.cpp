@@ -87,7 +87,7 @@ TEST(TimeLaw, OfAStraightLineIsWithinThreePercentOfTheClosedForm) {
 // way.
 TEST(TimeLaw, BeginsAndEndsAtBordersThatRoundingMisses) {
   test::PlannerBench bench(test::mill());
-  std::vector<std::shared_ptr<const PathSegment>> segments;
+  PathSegments segments;
   std::vector<double> starts{0};
   const std::array<Vector, 5> corners{{{-45, 0, 0}, {45, 3, 0}, {-45, 6, 0}, {45, 9, 0}, {40, -40, 0}}};
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
