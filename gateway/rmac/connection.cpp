@@ -8,7 +8,7 @@
 #include <csignal>
 #include <istream>
 
-#include "gateway/configuration/printable.hpp"
+#include "gateway/json/printable.hpp"
 
 namespace rmac::cli {
 

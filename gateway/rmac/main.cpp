@@ -7,8 +7,8 @@
 #include <functional>
 #include <memory>
 
-#include "gateway/configuration/finite_numbers.hpp"
-#include "gateway/configuration/printable.hpp"
+#include "gateway/json/finite_numbers.hpp"
+#include "gateway/json/printable.hpp"
 #include "gateway/rmac/commands.hpp"
 #include "gateway/rmac/measuring_options.hpp"
 #include "rmac/motion/pose.hpp"

@@ -8,8 +8,8 @@
 #include <iostream>
 #include <string_view>
 
-#include "gateway/api/dispatcher.hpp"
-#include "gateway/configuration/printable.hpp"
+#include "gateway/api/dispatch/dispatcher.hpp"
+#include "gateway/json/printable.hpp"
 
 namespace rmac::cli {
 

@@ -27,7 +27,7 @@ struct IniSection {
 using IniDocument = std::map<std::string, IniSection>;
 
 /// The layer below EDS files (CiA 306-1, 4.2): sections, keys in any case, comments behind a semicolon at the start of
-/// a line. An error names the line. Why no library does this: docs/decisions/0006-ini-reader.md.
+/// a line. An error names the line. Why no library does this: docs/decisions/0007-ini-reader.md.
 [[nodiscard]] Expected<IniDocument> parse_ini(std::string_view text, const std::string& file);
 
 [[nodiscard]] std::string lower_case(std::string_view text);

@@ -7,13 +7,15 @@
 #include <iterator>
 #include <random>
 
+#include "places.hpp"
+
 namespace rmac::fieldbus::eds {
 namespace {
 
 using testing::HasSubstr;
 
 std::string sheet_of_virtual_drive() {
-  std::ifstream stream(RMAC_SOURCE_DIR "/fieldbus/vdrive/rmac-vdrive.eds", std::ios::binary);
+  std::ifstream stream(RMAC_SOURCE_DIR "/gateway/simulators/vdrive/rmac-vdrive.eds", std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
