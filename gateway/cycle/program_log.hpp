@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "rmac/motion/planner.hpp"
+#include "rmac/motion/path_builder.hpp"
 
 namespace rmac::gateway {
 

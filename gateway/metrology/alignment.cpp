@@ -9,10 +9,6 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-tl::unexpected<Error> refuse(std::string message) {
-  return failure(MinorCode::InvalidParameterValue, std::move(message));
-}
-
 struct Rigid {
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
   Vector3d p = Vector3d::Zero();
@@ -35,7 +31,7 @@ Rigid least_distance(const Cloud& from, const Cloud& to) {
   const Eigen::Matrix3d covariance = to.about * from.about.transpose();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d mirror = Eigen::Matrix3d::Identity();
-  // Of noise, or of points in a plane, the best orthogonal matrix may be a reflection.
+  // The best orthogonal matrix of noise, or of points in a plane, may be a reflection.
   mirror(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
   const Eigen::Quaterniond q(Eigen::Matrix3d(svd.matrixU() * mirror * svd.matrixV().transpose()));
   return {q, to.centroid - q * from.centroid};
@@ -68,12 +64,6 @@ struct SurfaceFit {
     return {(by * pose.q).normalized(), by * (pose.p - centre) + centre + shift};
   }
 };
-
-Vector3d oriented(const Vector3d& way) {
-  Index largest = 0;
-  way.cwiseAbs().maxCoeff(&largest);
-  return way[largest] < 0 ? Vector3d(-way) : way;
-}
 
 /// The motions that `loose` (shifts and turns, one a column) spans, in words: pure shifts first.
 std::string motions_in_words(const Eigen::MatrixXd& loose, const SurfaceFit& fit) {
@@ -114,29 +104,7 @@ std::vector<Vector> each(std::span<const SurfacePoint> points, Vector SurfacePoi
 
 }  // namespace
 
-Expected<Alignment> fit_points(std::span<const Vector> measured, std::span<const Vector> nominal) {
-  if (measured.size() != nominal.size()) {
-    return refuse(fmt::format("{} points were measured, and {} are nominal; each needs its partner", measured.size(),
-                              nominal.size()));
-  }
-  for (const auto& points : {measured, nominal}) {
-    if (auto enough = check_points(points, 3, "an alignment"); !enough) return tl::unexpected(enough.error());
-  }
-  const Cloud from(nominal), to(measured);
-  const Eigen::JacobiSVD<Eigen::Matrix3Xd> shape(from.about, Eigen::ComputeFullU);
-  if (shape.singularValues()[1] <= kHeld * shape.singularValues()[0]) {
-    return refuse("the part's turn about the line " + in_words(Vector3d(shape.matrixU().col(0))) +
-                  " is not held: the nominal points lie on that line; add points beside it");
-  }
-  const Rigid pose = least_distance(from, to);
-  std::vector<double> distances;
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    distances.push_back((to_eigen(measured[i]) - pose * to_eigen(nominal[i])).norm());
-  }
-  return Alignment{pose.frame(), fit_quality(std::move(distances))};
-}
-
-Expected<Alignment> fit_surfaces(std::span<const SurfacePoint> points) {
+Expected<Frame> fit_surfaces(std::span<const SurfacePoint> points) {
   const std::vector<Vector> measured = each(points, &SurfacePoint::measured);
   const std::vector<Vector> nominal = each(points, &SurfacePoint::nominal);
   for (const auto* all : {&measured, &nominal}) {
@@ -155,8 +123,7 @@ Expected<Alignment> fit_surfaces(std::span<const SurfacePoint> points) {
         fmt::format("the part is not held by these points: free are {}. Measure surfaces whose normals hold it",
                     motions_in_words(loose, fit)));
   }
-  return Alignment{pose.inverse().frame(),
-                   fit_quality({at.residuals.data(), at.residuals.data() + at.residuals.size()})};
+  return pose.inverse().frame();
 }
 
 std::vector<FeatureDeviation> feature_deviations(std::span<const SurfacePoint> points, const Frame& frame) {

@@ -4,22 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "gateway/metrology/shapes.hpp"
+#include "rmac/motion/error.hpp"
+#include "rmac/motion/pose.hpp"
 
 // Where a part lies, from points that were measured on it: the rigid transform that fits them best. machine = frame ·
 // part, what SetPartFrame takes. mm.
 
 namespace rmac::gateway {
-
-struct Alignment {
-  Frame frame;
-  FitQuality quality;
-};
-
-/// Best fit of points to points: the sum of squared distances between `measured` and frame · `nominal` is least (Arun,
-/// Huang and Blostein 1987, with Umeyama's sign). Deviations are distances. Points on one line are refused: the turn
-/// about it is not held.
-[[nodiscard]] Expected<Alignment> fit_points(std::span<const Vector> measured, std::span<const Vector> nominal);
 
 /// A point that was measured on a surface: where it should be and the surface's outward unit normal there, both in the
 /// part frame, and where it is, in the machine frame. `feature` groups points in the report.
@@ -32,12 +23,13 @@ struct SurfacePoint {
 
 /// Best fit of points to surfaces: the sum of squares of their distances along the nominal normals is least; along the
 /// surface they may lie anywhere, so that a probe that lands beside its nominal point shifts nothing. Exact for planes;
-/// on curved surfaces to second order in the way beside it. Gauss-Newton on SE(3) with damping. Deviations are along
-/// the normal, positive where there is too much material. A set that lets the part shift or turn is refused, and the
-/// message says along or about what.
-[[nodiscard]] Expected<Alignment> fit_surfaces(std::span<const SurfacePoint> points);
+/// on curved surfaces to second order in the way beside it. Gauss-Newton on SE(3) with damping, from the best fit of
+/// points to points (Arun, Huang and Blostein 1987, with Umeyama's sign). A set that lets the part shift or turn is
+/// refused, and the message says along or about what.
+[[nodiscard]] Expected<Frame> fit_surfaces(std::span<const SurfacePoint> points);
 
-/// Deviations of one feature's points from nominal, once the part is aligned.
+/// Deviations of one feature's points from nominal, once the part is aligned: along the normals, positive where there
+/// is too much material.
 struct FeatureDeviation {
   std::string feature;
   std::size_t points = 0;
@@ -45,7 +37,7 @@ struct FeatureDeviation {
   double rms_mm = 0;
   double worst_mm = 0;  ///< the one of largest absolute value, with its sign
 };
-/// Of `points` in a part that lies at `frame`, in the order in which features come first.
+/// The features of `points` in a part that lies at `frame`, in the order in which they come first.
 [[nodiscard]] std::vector<FeatureDeviation> feature_deviations(std::span<const SurfacePoint> points,
                                                                const Frame& frame);
 

@@ -5,9 +5,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "rmac/motion/error.hpp"
 #include "rmac/motion/pose.hpp"
@@ -23,6 +23,16 @@ inline Vector from_eigen(const Eigen::Vector3d& v) {
 inline std::string in_words(const Eigen::Vector3d& v) {
   const auto shown = [](double c) { return std::abs(c) < 0.0005 ? 0.0 : c; };  // no "-0.000"
   return fmt::format("({:.3f}, {:.3f}, {:.3f})", shown(v.x()), shown(v.y()), shown(v.z()));
+}
+
+/// Of a direction and its opposite, the one with the larger positive coordinate.
+inline Eigen::Vector3d oriented(const Eigen::Vector3d& way) {
+  Eigen::Index largest = 0;
+  way.cwiseAbs().maxCoeff(&largest);
+  return way[largest] < 0 ? Eigen::Vector3d(-way) : way;
+}
+inline tl::unexpected<Error> refuse(std::string message) {
+  return failure(MinorCode::InvalidParameterValue, std::move(message));
 }
 
 /// Points as the columns of a matrix, about their centroid: coordinates of a large machine keep their digits.
@@ -44,12 +54,11 @@ struct Cloud {
 /// A shape needs so many points, all of finite coordinates.
 [[nodiscard]] inline Expected<> check_points(std::span<const Vector> points, std::size_t least, const char* shape) {
   if (points.size() < least) {
-    return failure(MinorCode::InvalidParameterValue,
-                   fmt::format("{} needs {} points, and there are {}", shape, least, points.size()));
+    return refuse(fmt::format("{} needs {} points, and there are {}", shape, least, points.size()));
   }
   for (const Vector& point : points) {
     if (!std::ranges::all_of(point, [](double c) { return std::isfinite(c); })) {
-      return failure(MinorCode::InvalidParameterValue, fmt::format("{}: a point is not finite", shape));
+      return refuse(fmt::format("{}: a point is not finite", shape));
     }
   }
   return {};

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "gateway/metrology/shapes.hpp"
+#include "gateway/metrology/sphere.hpp"
 
 // A touch probe with a ball tip: what it touches is a tip radius away from where its centre is. mm.
 
@@ -10,9 +10,6 @@ namespace rmac::gateway {
 
 /// The point that was touched, along the surface's outward normal there: exact where the normal is.
 [[nodiscard]] Vector touched_along_normal(const Vector& tip_centre, const Vector& outward_normal, double tip_radius_mm);
-/// The same where only the way of the approach is known: exact when it is square to the surface; leaning by an angle a,
-/// it is off by r (1/cos a - 1) along the normal.
-[[nodiscard]] Vector touched_along_approach(const Vector& tip_centre, const Vector& approach, double tip_radius_mm);
 
 /// What the hits on a reference sphere say of a probe.
 struct ProbeQualification {

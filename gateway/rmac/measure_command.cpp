@@ -228,13 +228,13 @@ Result<> measure(Connection& connection, const MeasureRequest& request, bool jso
     const Vector axis{stands->pose[3], stands->pose[4], stands->pose[5]};
     report.before = gateway::feature_deviations(plan->points, {});
     const auto datums = points_of(*plan, std::nullopt);
-    // Of a plan for tools alone the part lies where it is taken to lie.
-    const auto fit = datums.empty() ? Expected<gateway::Alignment>() : gateway::fit_surfaces(datums);
+    // With a plan for tools alone the part lies where it is taken to lie.
+    const auto fit = datums.empty() ? Expected<Frame>() : gateway::fit_surfaces(datums);
     if (!fit) {
       report.why_not = fit.error().message;
       return request.apply ? fail(fmt::format("nothing is applied: {}", report.why_not)) : Result<>();
     }
-    report.off = request.upright && !datums.empty() ? without_tilt(fit->frame, axis, datums) : fit->frame;
+    report.off = request.upright && !datums.empty() ? without_tilt(*fit, axis, datums) : *fit;
     report.part_frame = compose(*frame, *report.off);
     report.after = gateway::feature_deviations(plan->points, *report.off);
     report.tools = find_tools(*plan, *report.off, axis);

@@ -94,7 +94,7 @@ void print(const ProbeQualification& found, const json& tool, bool applied, bool
                     {"offset_mm", offset},
                     {"rms_mm", found.quality.rms_mm},
                     {"worst_mm", found.quality.worst_mm},
-                    {"points", found.quality.deviations_mm.size()},
+                    {"points", found.quality.points},
                     {"tool", tool.is_null() ? json() : tool.at("ToolNumber")},
                     {"applied", applied}};
     fmt::print("{}\n", line.dump());

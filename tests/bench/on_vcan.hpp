@@ -11,7 +11,7 @@
 #include "rmac/fieldbus/can/socket_can_port.hpp"
 #include "rmac/fieldbus/canopen/canopen_interface.hpp"
 #include "rmac/motion/drive_power.hpp"
-#include "unit/fieldbus/virtual_drive.hpp"
+#include "unit/fieldbus/canopen/virtual_drive.hpp"
 
 // The CANopen master on a real CAN interface of the kernel, against virtual drives on another socket. Interfaces go
 // down and up, so it wants a virtual one, and the right to do that. Cycles keep real time.

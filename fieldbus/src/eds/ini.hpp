@@ -27,8 +27,7 @@ struct IniSection {
 using IniDocument = std::map<std::string, IniSection>;
 
 /// The layer below EDS files (CiA 306-1, 4.2): sections, keys in any case, comments behind a semicolon at the start of
-/// a line. Debian's parsers (inih, libini_config, Boost) keep no line numbers of values, and a mistake in one must be
-/// named by its line.
+/// a line. An error names the line. Why no library does this: docs/decisions/0007-ini-reader.md.
 [[nodiscard]] Expected<IniDocument> parse_ini(std::string_view text, const std::string& file);
 
 [[nodiscard]] std::string lower_case(std::string_view text);

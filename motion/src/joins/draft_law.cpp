@@ -24,7 +24,7 @@ constexpr double kLastLaw = 0.5;
 
 }  // namespace
 
-std::optional<std::vector<LineLimits>> line_limits(const std::vector<std::shared_ptr<const PathSegment>>& lines) {
+std::optional<std::vector<LineLimits>> line_limits(const PathSegments& lines) {
   std::vector<LineLimits> all;
   for (const auto& line : lines) {
     const PathDemand& demand = line->demand();

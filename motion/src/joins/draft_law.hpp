@@ -22,8 +22,7 @@ struct LineLimits {
 };
 
 /// Of each line; nothing where the joints' rates cannot be had.
-[[nodiscard]] std::optional<std::vector<LineLimits>> line_limits(
-    const std::vector<std::shared_ptr<const PathSegment>>& lines);
+[[nodiscard]] std::optional<std::vector<LineLimits>> line_limits(const PathSegments& lines);
 
 /// The time law of a spline that is still being shaped, from open to open end, and what the bounds of jerk cost there
 /// (docs/derivations/joins.md, section 7). Only as good as is needed to compare splines: the joints' rates are taken as

@@ -345,7 +345,7 @@ std::shared_ptr<const PathSegment> LineFit::segment(const Fit& fit, std::shared_
   return segment;
 }
 
-void LineFit::take(Fit fit, Segments& out) {
+void LineFit::take(Fit fit, SegmentQueue& out) {
   for (auto& head : fit.heads) out.push_back(std::move(head));
   step_ = fit.knots[fit.cut] - fit.knots[fit.cut - 1];
   no_coarser_for_ = fit.coarser_failed ? kWindowsAsFine : std::max(no_coarser_for_ - 1, 0);
@@ -372,7 +372,7 @@ void LineFit::take(Fit fit, Segments& out) {
   drop_lines(done);
 }
 
-void LineFit::advance(bool finish, Segments& out) {
+void LineFit::advance(bool finish, SegmentQueue& out) {
   if (waiting_.empty() || !(finish || ready())) return;
   Fit found;
   if (fit(finish, found)) {

@@ -16,7 +16,7 @@ namespace rmac {
 /// smoothly from the one before. What is no such run passes unchanged, in order. Planner thread.
 class LineFit {
  public:
-  using Segments = std::deque<std::shared_ptr<const PathSegment>>;
+  using SegmentQueue = std::deque<std::shared_ptr<const PathSegment>>;
 
   explicit LineFit(std::vector<JointLimits> joints) : joints_(std::move(joints)) {}
 
@@ -28,7 +28,7 @@ class LineFit {
     return !waiting_.empty() && (complete() || waiting_.size() > kDense.lines);
   }
   /// Appends the next segments; `finish`: the run ends with what is there.
-  void advance(bool finish, Segments& out);
+  void advance(bool finish, SegmentQueue& out);
 
  private:
   /// Lines in one fit, and how many of these at its end are fitted again with what follows.
@@ -44,8 +44,8 @@ class LineFit {
     Polyline polyline;
     std::vector<double> knots;
     std::vector<Vector> points;
-    std::vector<double> deviations_mm;                      ///< bound of its distance from each line
-    std::vector<std::shared_ptr<const PathSegment>> heads;  ///< final
+    std::vector<double> deviations_mm;        ///< bound of its distance from each line
+    PathSegments heads;                       ///< final
     std::shared_ptr<const PathSegment> tail;  ///< to the end of the last line; what follows may find a better way
     std::size_t cut = 0;                      ///< knot between the two
     bool coarser_failed = false;              ///< wider spaced knots were tried in vain
@@ -70,11 +70,11 @@ class LineFit {
   [[nodiscard]] bool make_segments(std::vector<std::size_t> cuts, std::size_t overlap, bool ends, Fit& fit) const;
   [[nodiscard]] std::shared_ptr<const PathSegment> segment(const Fit& fit, std::shared_ptr<const Curve> curve,
                                                            double from, double to) const;
-  void take(Fit fit, Segments& out);
+  void take(Fit fit, SegmentQueue& out);
   void drop_lines(std::size_t count);
 
   std::vector<JointLimits> joints_;
-  Segments waiting_;
+  SegmentQueue waiting_;
   mutable std::size_t checked_ = 0;  ///< lines at the front of `waiting_` known to belong together
   /// The window before: its knots and control points from five before the cut on, and its tail.
   Fit before_;

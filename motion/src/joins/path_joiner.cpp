@@ -31,7 +31,7 @@ bool PathJoiner::ready() const noexcept {
   return current_ != nullptr && lines_.empty() && !(current_->demand().tolerance_mm > 0);
 }
 
-void PathJoiner::emit(double begin, double end, Segments& out) {
+void PathJoiner::emit(double begin, double end, PathSegments& out) {
   if (begin == 0 && end == current_->length()) {
     out.push_back(current_);
     return;
@@ -39,7 +39,7 @@ void PathJoiner::emit(double begin, double end, Segments& out) {
   if (end > begin) out.push_back(part_of(*current_, begin, end));
 }
 
-void PathJoiner::advance(Segments& out) {
+void PathJoiner::advance(PathSegments& out) {
   if (incoming_.empty()) lines_.advance(false, incoming_);
   if (current_ == nullptr) {
     if (incoming_.empty()) return;
@@ -76,7 +76,7 @@ void PathJoiner::advance(Segments& out) {
   begin_ = blend.reach;
 }
 
-void PathJoiner::release(Segments& out) {
+void PathJoiner::release(PathSegments& out) {
   if (incoming_.empty()) lines_.advance(true, incoming_);
   if (current_ != nullptr && !incoming_.empty()) {
     advance(out);

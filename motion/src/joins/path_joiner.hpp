@@ -16,8 +16,6 @@ namespace rmac {
 /// until the machine would have to slow down for it. Planner thread.
 class PathJoiner {
  public:
-  using Segments = std::vector<std::shared_ptr<const PathSegment>>;
-
   explicit PathJoiner(std::vector<JointLimits> joints, double period_s);
 
   void add(std::shared_ptr<const PathSegment> segment) { lines_.add(std::move(segment)); }
@@ -28,13 +26,13 @@ class PathJoiner {
   /// `advance` has something to give.
   [[nodiscard]] bool ready() const noexcept;
   /// Appends the next piece of path for certain; call while `ready`.
-  void advance(Segments& out);
+  void advance(PathSegments& out);
   /// Appends a piece of what is held back without waiting for what follows: first the half that no join can touch, then
   /// the rest, to the exact end of the move.
-  void release(Segments& out);
+  void release(PathSegments& out);
 
  private:
-  void emit(double begin, double end, Segments& out);
+  void emit(double begin, double end, PathSegments& out);
 
   std::vector<JointLimits> joints_;
   double period_s_;

@@ -17,7 +17,7 @@ constexpr std::size_t kRemembered = 1000;
 LaidPath::LaidPath(std::vector<JointLimits> joints, double period_s)
     : joints_(std::move(joints)), period_s_(period_s), joiner_(joints_, period_s) {}
 
-void LaidPath::add(std::vector<std::shared_ptr<const PathSegment>> moves) {
+void LaidPath::add(PathSegments moves) {
   for (auto& segment : moves) {
     moves_left_ += segment->moves_ended(-1, segment->length());
     joiner_.add(std::move(segment));
@@ -42,19 +42,19 @@ void LaidPath::append(std::shared_ptr<const PathSegment> segment) {
   segments_.push_back(std::move(segment));
 }
 
-void LaidPath::lay(const PathJoiner::Segments& fresh) {
+void LaidPath::lay(const PathSegments& fresh) {
   for (const auto& segment : fresh) append(segment);
 }
 
 bool LaidPath::supply() {
-  PathJoiner::Segments fresh;
+  PathSegments fresh;
   while (fresh.empty() && joiner_.ready()) joiner_.advance(fresh);
   lay(fresh);
   return !fresh.empty();
 }
 
 void LaidPath::release() {
-  PathJoiner::Segments fresh;
+  PathSegments fresh;
   joiner_.release(fresh);
   lay(fresh);
 }

@@ -23,7 +23,7 @@ class LaidPath {
  public:
   LaidPath(std::vector<JointLimits> joints, double period_s);
 
-  void add(std::vector<std::shared_ptr<const PathSegment>> moves);
+  void add(PathSegments moves);
   /// Drops everything; the path goes on from path length `s`.
   void clear(double s);
 
@@ -66,13 +66,13 @@ class LaidPath {
   [[nodiscard]] LaidPath backward(double s, double distance) const;
 
  private:
-  void lay(const PathJoiner::Segments& fresh);
+  void lay(const PathSegments& fresh);
   void append(std::shared_ptr<const PathSegment> segment);
 
   std::vector<JointLimits> joints_;
   double period_s_;
   PathJoiner joiner_;
-  std::vector<std::shared_ptr<const PathSegment>> segments_;
+  PathSegments segments_;
   std::vector<double> starts_;
   std::vector<char> rest_after_;
   double origin_ = 0;  ///< path length at which the first segment ever laid begins

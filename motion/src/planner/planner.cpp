@@ -358,7 +358,7 @@ struct Planner::Impl {
 Planner::Planner(PlannerModel model, PlanChannel& channel) : impl_(std::make_unique<Impl>(std::move(model), channel)) {}
 Planner::~Planner() = default;
 
-void Planner::add(std::vector<std::shared_ptr<const PathSegment>> segments) {
+void Planner::add(PathSegments segments) {
   impl_->forward.add(std::move(segments));
 }
 
@@ -394,17 +394,6 @@ std::size_t Planner::moves_left() const noexcept {
 
 std::optional<PathPlace> Planner::farthest_place() const {
   return impl_->forward.place_at(std::max(impl_->place_s(), impl_->forward.farthest()));
-}
-
-std::vector<double> Planner::rest_joints() const {
-  const auto* base = impl_->base();
-  if (base == nullptr) return {};
-  const Plan& plan = *base->plan;
-  const PathView path(plan.segments, plan.segment_start);
-  const LawPiece& last = plan.law.back();
-  JointPoint point;
-  if (path.evaluate(last.at(last.duration).s, 0, -1, point) != KinematicsStatus::Ok) return {};
-  return {point.d[0].begin(), point.d[0].begin() + static_cast<std::ptrdiff_t>(impl_->model.joints.size())};
 }
 
 }  // namespace rmac

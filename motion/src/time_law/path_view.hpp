@@ -21,8 +21,7 @@ namespace rmac {
 /// Segments laid end to end on one path length. Read only; whoever owns the vectors keeps them alive.
 class PathView {
  public:
-  PathView(const std::vector<std::shared_ptr<const PathSegment>>& segments, const std::vector<double>& starts)
-      : segments_(segments), starts_(starts) {}
+  PathView(const PathSegments& segments, const std::vector<double>& starts) : segments_(segments), starts_(starts) {}
 
   /// Index of the segment that holds s; at a boundary the one before (side -1) or after (+1).
   [[nodiscard]] std::size_t find(double s, int side) const noexcept {
@@ -44,7 +43,7 @@ class PathView {
   [[nodiscard]] double end() const noexcept { return starts_.back() + segments_.back()->length(); }
 
  private:
-  const std::vector<std::shared_ptr<const PathSegment>>& segments_;
+  const PathSegments& segments_;
   const std::vector<double>& starts_;
 };
 

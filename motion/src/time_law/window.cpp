@@ -5,84 +5,17 @@
 #include <limits>
 
 #include "time_law/law_check.hpp"
+#include "time_law/law_grid.hpp"
 #include "time_law/law_mend.hpp"
 #include "time_law/law_problem.hpp"
+#include "time_law/rest_end.hpp"
+#include "time_law/speed_bound.hpp"
 
 namespace rmac {
 namespace {
 
-/// Planning stays this part inside the limits, so that what a check finds between grid points still keeps the limits
-/// themselves.
-constexpr double kMargin = 0.9985;
 constexpr int kTightenings = 6, kPatientTightenings = 12;
-constexpr double kGrading = 0.35;  ///< grid steps grow by this part of the distance from a point of rest
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Speed bound at a point of the path: feed and joint speeds.
-double speed_bound(const PathSegment& segment, const JointPoint& point, const std::vector<JointLimits>& joints,
-                   const FeedRule& feed) {
-  const PathDemand& demand = segment.demand();
-  double v = feed.bound(segment);
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    const double d = std::abs(point.d[1][j]);
-    if (d * v > joints[j].max_speed * kMargin) v = joints[j].max_speed * kMargin / d;
-    if (segment.curve().in_joint_space())
-      v = std::min(
-          v, joints[j].max_speed * kMargin * demand.joint_speed_fraction * feed.override_factor / std::max(d, 1e-12));
-  }
-  return v;
-}
-
-/// The stretch next to a point of rest, travelled at constant jerk: q ~ s^(4/3) there, which no spline follows (eq.
-/// 12).
-struct RestEnd {
-  double length = 0, time = 0, speed = 0, acceleration = 0, jerk = 0;
-};
-
-std::optional<RestEnd> rest_end(const PathView& path, const std::vector<JointLimits>& joints, double s_rest,
-                                int direction, double available, double longest, const FeedRule& feed) {
-  JointPoint point;
-  if (path.derivatives(s_rest, direction, point) != KinematicsStatus::Ok) return std::nullopt;
-  const PathSegment& segment = path.segment(path.find(s_rest, direction));
-  const PathDemand& demand = segment.demand();
-  double jerk = kInfinity,
-         acceleration = or_unbounded(direction > 0 ? demand.accel_rise_mm_s2 : demand.accel_fall_mm_s2);
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    const double d = std::max(std::abs(point.d[1][j]), 1e-12);
-    jerk = std::min(jerk, joints[j].max_jerk * kMargin / d);
-    acceleration = std::min(acceleration, joints[j].max_acceleration * kMargin / d);
-  }
-  RestEnd end;
-  end.jerk = 0.97 * jerk;
-  const double speed = speed_bound(segment, point, joints, feed);
-  const double step = std::min(longest, available / 40);
-  end.time =
-      std::min({0.3 * acceleration / end.jerk, std::sqrt(0.2 * speed / end.jerk), std::cbrt(6 * step / end.jerk)});
-  for (int attempt = 0; attempt < 40; ++attempt, end.time *= 0.7, end.jerk = 0.9 * jerk) {
-    end.length = end.jerk * end.time * end.time * end.time / 6;
-    end.speed = end.jerk * end.time * end.time / 2;
-    end.acceleration = end.jerk * end.time;
-    const double room = s_rest + direction * end.length;
-    if (path.find(room, -direction) != path.find(s_rest, direction)) continue;  // stay inside one segment
-    bool fits = true;
-    for (int i = 1; i <= 4 && fits; ++i) {
-      const double t = end.time * i / 4;
-      const double v = end.jerk * t * t / 2, a = end.jerk * t;
-      if (path.derivatives(s_rest + direction * end.jerk * t * t * t / 6, direction, point) != KinematicsStatus::Ok)
-        return std::nullopt;
-      for (std::size_t j = 0; j < joints.size() && fits; ++j) {
-        // Mirrored at an end: t runs backwards, so speed and jerk keep their sign and the acceleration changes it (eq.
-        // 13).
-        const double sign = direction;
-        fits = std::abs(point.d[3][j] * v * v * v + 3 * sign * point.d[2][j] * v * a + point.d[1][j] * end.jerk) <=
-                   joints[j].max_jerk * kMargin &&
-               std::abs(point.d[2][j] * v * v + sign * point.d[1][j] * a) <= 0.5 * joints[j].max_acceleration;
-      }
-    }
-    if (fits) return end;
-  }
-  return std::nullopt;
-}
 
 /// A place of rest that misses the border of two segments by rounding is meant to be that. Beside it, what is left of a
 /// segment would be shorter than any step that changes s.
@@ -90,82 +23,6 @@ double on_border(const PathView& path, double s) {
   constexpr double kRounding_mm = 1e-9;
   const double border = path.start(path.find(s + kRounding_mm, 1));
   return std::abs(border - s) <= kRounding_mm ? border : s;
-}
-
-double rounding(double s) {
-  return 1e-12 * (1 + std::abs(s));
-}
-
-/// Whether s lies behind `before` by more than rounding.
-bool apart(double before, double s) {
-  return s > before + rounding(s);
-}
-
-/// Grid from a to b: segment ends and breaks on it, as fine as the geometry asks and no coarser than `coarsest`, graded
-/// towards the window's ends at rest_a and rest_b.
-std::vector<double> make_grid(const PathView& path, double a, double b, double rest_a, double rest_b, double finest_a,
-                              double finest_b, double coarsest) {
-  std::vector<double> fixed{a};
-  std::vector<double> asked;  // the nodes of the geometry
-  for (std::size_t i = path.find(a, 1); i <= path.find(b, -1); ++i) {
-    const double start = path.start(i);
-    const auto keep = [&](double s) {
-      if (apart(fixed.back(), s) && s < b) fixed.push_back(s);
-    };
-    keep(start);
-    for (const double s : path.segment(i).curve().breaks()) keep(start + s);
-    for (const double s : path.segment(i).curve().nodes()) asked.push_back(start + s);
-  }
-  fixed.push_back(b);
-  // A step into an interval between the geometry's nodes is no longer than that interval, and steps grow with the
-  // distance from it: a sharp bend is never stepped over, and next to one the speed changes as fast as next to a rest.
-  std::vector<double> finest(asked.size(), coarsest);
-  for (std::size_t i = 0; i + 1 < asked.size(); ++i) {
-    const double width = asked[i + 1] - asked[i];
-    // Where segments meet, the last node of one and the first of the next differ by rounding.
-    if (!apart(asked[i], asked[i + 1])) continue;
-    finest[i] = std::min(finest[i], width);
-    finest[i + 1] = std::min(finest[i + 1], width);
-  }
-  for (std::size_t i = 1; i < asked.size(); ++i)
-    finest[i] = std::min(finest[i], finest[i - 1] + kGrading * (asked[i] - asked[i - 1]));
-  for (std::size_t i = asked.size() - 1; i-- > 0;)
-    finest[i] = std::min(finest[i], finest[i + 1] + kGrading * (asked[i + 1] - asked[i]));
-  std::size_t node = 0;  // the last one at or before the place
-  const auto step_from = [&](double s) {
-    while (node + 1 < asked.size() && asked[node + 1] <= s) ++node;
-    double h = std::min({coarsest, finest_a + kGrading * (s - rest_a), finest_b + kGrading * (rest_b - s)});
-    h = std::min(h, finest[node] + kGrading * std::abs(s - asked[node]));
-    if (node + 1 < asked.size()) h = std::min(h, finest[node + 1] + kGrading * (asked[node + 1] - s));
-    return h;
-  };
-  std::vector<double> nodes{a};
-  std::vector<double> stretch;
-  for (std::size_t i = 0; i + 1 < fixed.size(); ++i) {
-    const double from = fixed[i], to = fixed[i + 1];
-    stretch.clear();
-    for (double s = from; s < to;) {
-      s += std::max(step_from(s), rounding(s));  // a shorter step would not get on
-      stretch.push_back(s);
-    }
-    // The last step is cut short; were it much shorter than the one before, the two share their length.
-    stretch.back() = to;
-    if (const std::size_t n = stretch.size(); n >= 2) {
-      const double before = n >= 3 ? stretch[n - 3] : from;
-      if (to - stretch[n - 2] < 0.5 * (stretch[n - 2] - before)) stretch[n - 2] = before + 0.5 * (to - before);
-    }
-    nodes.insert(nodes.end(), stretch.begin(), stretch.end());
-  }
-  // The spline's end coefficients are fixed by the end states; a law needs some that are free.
-  while (nodes.size() < 6) {
-    std::vector<double> finer{nodes.front()};
-    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-      finer.push_back(0.5 * (nodes[i] + nodes[i + 1]));
-      finer.push_back(nodes[i + 1]);
-    }
-    nodes = std::move(finer);
-  }
-  return nodes;
 }
 
 bool fill(LawProblem& problem, const PathView& path, const std::vector<JointLimits>& joints, const FeedRule& feed) {
@@ -177,8 +34,8 @@ bool fill(LawProblem& problem, const PathView& path, const std::vector<JointLimi
   problem.fall.resize(intervals);
   problem.tightening.assign(intervals, 1.0);
   for (const JointLimits& joint : joints) {
-    problem.max_acceleration.push_back(joint.max_acceleration * kMargin);
-    problem.max_jerk.push_back(joint.max_jerk * kMargin);
+    problem.max_acceleration.push_back(joint.max_acceleration * kLawMargin);
+    problem.max_jerk.push_back(joint.max_jerk * kLawMargin);
   }
   JointPoint point;
   for (std::size_t k = 0; k < intervals; ++k) {
@@ -229,7 +86,7 @@ void yield_to_begin(LawProblem& problem) {
 /// use most of the margin that the law before left; and what that law had is the first guess (eq. 8). Where a feed
 /// gives way to that law (`yields`), it does so as far as the law went.
 void resume_from(LawProblem& problem, const std::vector<LawPiece>& before, bool yields) {
-  constexpr double kRelaxed = 0.9997 / kMargin;
+  constexpr double kRelaxed = 0.9997 / kLawMargin;
   constexpr double kEasing = 0.1;  ///< of the window
   const double span = problem.nodes.back() - problem.nodes.front();
   problem.travelled_before.assign(problem.intervals() + 2, 0.0);
@@ -251,94 +108,109 @@ void resume_from(LawProblem& problem, const std::vector<LawPiece>& before, bool 
   }
 }
 
-/// The law of the grid with the stretches next to rest.
-std::vector<LawPiece> with_rest_ends(std::vector<LawPiece> law, const std::optional<LawPiece>& first, LawPiece last) {
-  last.t0 = law.back().t0 + law.back().duration;
-  law.push_back(last);
-  if (first) law.insert(law.begin(), *first);
-  return law;
+/// Grid steps of this length resolve the ramps to full speed.
+double coarsest_step(const PathView& path, const std::vector<JointLimits>& joints, const Window& window, double s_begin,
+                     double s_end) {
+  double acceleration = kInfinity, jerk = kInfinity, fastest = kInfinity;
+  for (const JointLimits& joint : joints) {
+    acceleration = std::min(acceleration, joint.max_acceleration);
+    jerk = std::min(jerk, joint.max_jerk);
+    fastest = std::min(fastest, 2 * joint.max_speed);
+  }
+  double speed = window.begin.v;
+  for (std::size_t i = path.find(s_begin, 1); i <= path.find(s_end, -1); ++i)
+    speed = std::max(speed, window.feed.bound(path.segment(i)));
+  const double ramp = ramp_length(std::min(speed, fastest), acceleration, jerk);
+  return std::min((s_end - s_begin) / (window.from_rest() ? 12 : 40), std::max(ramp / 8, 0.01));
+}
+
+/// The first grid step of a window that begins in motion, which is graded too. Its first spline coefficients are fixed
+/// by its state, which may lie at the edge of what the limits allow: on a coarse grid most such states have no way to a
+/// stop. Nor may they reach over the feed.
+double moving_start_step(const PathView& path, const std::vector<JointLimits>& joints, const Window& window,
+                         double coarsest) {
+  constexpr double kFinerAtStart = 48;
+  const PathState& begin = window.begin;
+  const double step = coarsest / kFinerAtStart;
+  JointPoint point;
+  if (!(begin.a > 0) || path.evaluate(begin.s, 1, 1, point) != KinematicsStatus::Ok) return step;
+  const double cap = speed_bound(path.segment(path.find(begin.s, 1)), point, joints, window.feed);
+  const double room = cap * cap - begin.v * begin.v;
+  // Without room, the feed gives way.
+  return room > 0 ? std::clamp(0.5 * room / begin.a, std::min(1e-4, step), step) : step;
+}
+
+/// Solves the problem, and tightens it where the law is found in excess, until it passes its check. The law begins at
+/// time `t0`.
+std::optional<std::vector<LawPiece>> checked_law(LawProblem& problem, const PathView& path,
+                                                 const std::vector<JointLimits>& joints, const FeedRule* feed,
+                                                 double t0, int tightenings) {
+  const LawSolution solution = solve_law(problem, {});
+  if (!solution.converged) return std::nullopt;
+  std::vector<double> coefficients = solution.coefficients;
+  std::vector<LawPiece> law = law_pieces(problem, coefficients, t0);
+  std::vector<double> excess(law.size());
+  std::vector<IntervalRange> changed{{0, law.size()}};
+  for (int round = 0; round < tightenings; ++round) {
+    for (const auto& [begin, end] : changed) {
+      const auto from = static_cast<std::ptrdiff_t>(begin), to = static_cast<std::ptrdiff_t>(end);
+      const LawExcess found = check_law(path, joints, {law.begin() + from, law.begin() + to}, feed);
+      if (!std::isfinite(found.worst)) return std::nullopt;
+      std::copy(found.by_piece.begin(), found.by_piece.end(), excess.begin() + from);
+    }
+    if (*std::max_element(excess.begin(), excess.end()) <= 1.0) return law;
+    changed = mend_law(problem, excess, coefficients);
+    if (changed.empty()) return std::nullopt;
+    law = law_pieces(problem, coefficients, t0);
+  }
+  return std::nullopt;
 }
 
 /// As `plan_window`, with this part of the longest stretches at constant jerk that may lead from and to rest.
 std::optional<std::vector<LawPiece>> law_of_window(const PathView& path, const std::vector<JointLimits>& joints,
                                                    const Window& window, double rest_part) {
-  const bool from_rest = window.begin.v == 0 && window.begin.a == 0;
+  const bool from_rest = window.from_rest();
   const double s_begin = from_rest ? on_border(path, window.begin.s) : window.begin.s;
   const double s_end = on_border(path, window.s_end);
   const double length = s_end - s_begin;
-  const FeedRule& feed = window.feed;
   if (!(length > 0)) return std::nullopt;
 
-  double coarsest = length / (from_rest ? 12 : 40);
-  {  // grid steps resolve the ramps to full speed
-    double a = kInfinity, j = kInfinity;
-    for (const JointLimits& joint : joints) a = std::min(a, joint.max_acceleration), j = std::min(j, joint.max_jerk);
-    double v = window.begin.v;
-    for (std::size_t i = path.find(s_begin, 1); i <= path.find(s_end, -1); ++i)
-      v = std::max(v, feed.bound(path.segment(i)));
-    for (const JointLimits& joint : joints) v = std::min(v, 2 * joint.max_speed);
-    coarsest = std::min(coarsest, std::max(ramp_length(v, a, j) / 8, 0.01));
-  }
-  double a = s_begin, b = s_end;
-  std::optional<RestEnd> first, last;
+  const double coarsest = coarsest_step(path, joints, window, s_begin, s_end);
+  const auto end_at = [&](double s_rest, int direction) {
+    return rest_end(path, joints, s_rest, direction, rest_part * length, rest_part * coarsest, window.feed);
+  };
+  std::optional<RestEnd> first;
   if (from_rest) {
-    first = rest_end(path, joints, a, 1, rest_part * length, rest_part * coarsest, feed);
+    first = end_at(s_begin, 1);
     if (!first) return std::nullopt;
-    a += first->length;
   }
-  last = rest_end(path, joints, b, -1, rest_part * length, rest_part * coarsest, feed);
+  const std::optional<RestEnd> last = end_at(s_end, -1);
   if (!last) return std::nullopt;
-  b -= last->length;
-  if (!(b > a)) return std::nullopt;
 
   LawProblem problem;
-  problem.begin = first ? PathState{a, first->speed, first->acceleration} : window.begin;
-  problem.end = {b, last->speed, -last->acceleration};
-  // A moving start is graded too. Its first spline coefficients are fixed by its state, which may lie at the edge of
-  // what the limits allow: on a coarse grid most such states have no way to a stop. Nor may they reach over the feed.
-  constexpr double kFinerAtStart = 48;
-  double start_step = first ? first->length : coarsest / kFinerAtStart;
-  if (JointPoint point; !first && window.begin.a > 0 && path.evaluate(a, 1, 1, point) == KinematicsStatus::Ok) {
-    const double cap = speed_bound(path.segment(path.find(a, 1)), point, joints, feed);
-    const double room = cap * cap - window.begin.v * window.begin.v;
-    // Without room, the feed gives way.
-    if (room > 0) start_step = std::clamp(0.5 * room / window.begin.a, std::min(1e-4, start_step), start_step);
-  }
-  problem.nodes = make_grid(path, a, b, s_begin, s_end, start_step, last->length, coarsest);
-  if (!fill(problem, path, joints, feed)) return std::nullopt;
+  problem.begin = first ? first->inner() : window.begin;
+  problem.end = last->inner();
+  if (!(problem.end.s > problem.begin.s)) return std::nullopt;
+  const double start_step = first ? first->length : moving_start_step(path, joints, window, coarsest);
+  problem.nodes =
+      law_grid(path, {problem.begin.s, s_begin, start_step}, {problem.end.s, s_end, last->length}, coarsest);
+  if (!fill(problem, path, joints, window.feed)) return std::nullopt;
   const bool yields = problem.begin.v * problem.begin.v > problem.speed_cap[0] * (1 + 1e-5);
   if (yields) yield_to_begin(problem);
   if (window.before != nullptr && !from_rest) resume_from(problem, *window.before, yields && window.same_feed);
 
-  std::optional<LawPiece> from_standing;
-  if (first) from_standing = {0, {s_begin, 0, 0}, first->jerk, first->time, LawPiece::Kind::Jerk};
-  const LawPiece to_standing{0, problem.end, last->jerk, last->time, LawPiece::Kind::Jerk};
-  const FeedRule* const programmed = yields ? nullptr : &feed;
-  std::vector<LawPiece> ends{to_standing};
-  if (from_standing) ends.push_back(*from_standing);
+  const FeedRule* const programmed = yields ? nullptr : &window.feed;
+  std::vector<LawPiece> ends{last->piece()};
+  if (first) ends.push_back(first->piece());
   if (check_law(path, joints, ends, programmed).worst > 1) return std::nullopt;
-
-  const LawSolution solution = solve_law(problem, {});
-  if (!solution.converged) return std::nullopt;
-  std::vector<double> coefficients = solution.coefficients;
-  const double t_first = first ? first->time : 0;
-  std::vector<LawPiece> law = law_pieces(problem, coefficients, t_first);
-  std::vector<double> excess(law.size());
-  std::vector<IntervalRange> changed{{0, law.size()}};
-  for (int round = 0; round < (window.patient ? kPatientTightenings : kTightenings); ++round) {
-    for (const auto& [begin, end] : changed) {
-      const auto from = static_cast<std::ptrdiff_t>(begin), to = static_cast<std::ptrdiff_t>(end);
-      const LawExcess found = check_law(path, joints, {law.begin() + from, law.begin() + to}, programmed);
-      if (!std::isfinite(found.worst)) return std::nullopt;
-      std::copy(found.by_piece.begin(), found.by_piece.end(), excess.begin() + from);
-    }
-    if (*std::max_element(excess.begin(), excess.end()) <= 1.0)
-      return with_rest_ends(std::move(law), from_standing, to_standing);
-    changed = mend_law(problem, excess, coefficients);
-    if (changed.empty()) return std::nullopt;
-    law = law_pieces(problem, coefficients, t_first);
-  }
-  return std::nullopt;
+  auto law = checked_law(problem, path, joints, programmed, first ? first->time : 0,
+                         window.patient ? kPatientTightenings : kTightenings);
+  if (!law) return std::nullopt;
+  LawPiece stop = last->piece();
+  stop.t0 = law->back().t0 + law->back().duration;
+  law->push_back(stop);
+  if (first) law->insert(law->begin(), first->piece());
+  return law;
 }
 
 }  // namespace

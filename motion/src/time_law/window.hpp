@@ -20,6 +20,8 @@ struct Window {
       nullptr;             ///< the law that the window's begin state was taken from: a good first guess
   bool same_feed = false;  ///< `before` was made for this feed: where it is still faster, this law may be so too
   bool patient = false;    ///< there is time to look further for a law
+
+  [[nodiscard]] bool from_rest() const noexcept { return begin.v == 0 && begin.a == 0; }
 };
 
 /// The fastest checked time law of a window, beginning at time 0, or nothing when none passed its check. From rest

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "rows.hpp"
-#include "unit/fieldbus/modbus_peer.hpp"
+#include "unit/fieldbus/modbus/modbus_peer.hpp"
 
 namespace rmac::bench {
 namespace {

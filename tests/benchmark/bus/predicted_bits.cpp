@@ -12,7 +12,7 @@
 #include "rmac/fieldbus/canopen/canopen_interface.hpp"
 #include "rmac/motion/drive_power.hpp"
 #include "rows.hpp"
-#include "unit/fieldbus/can_wire.hpp"
+#include "unit/fieldbus/canopen/can_wire.hpp"
 
 namespace rmac::bench {
 namespace {

@@ -3,6 +3,7 @@
 #include <deque>
 #include <functional>
 
+#include "rmac/motion/path_builder.hpp"
 #include "rmac/motion/plan_follower.hpp"
 #include "rmac/motion/planner.hpp"
 

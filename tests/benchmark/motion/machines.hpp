@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "rmac/modules/chain_kinematics.hpp"
-#include "rmac/motion/planner.hpp"
+#include "rmac/motion/planner_model.hpp"
 
 namespace rmac::bench {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "rows.hpp"
-#include "unit/motion/state_to_state_cases.hpp"
+#include "unit/motion/state_to_state/state_to_state_cases.hpp"
 
 namespace rmac::bench {
 namespace {

@@ -86,4 +86,7 @@ class PathSegment {
   std::vector<double> seeds_;  ///< joint_count_ values a node of the curve
 };
 
+/// Segments in the order in which they are travelled.
+using PathSegments = std::vector<std::shared_ptr<const PathSegment>>;
+
 }  // namespace rmac

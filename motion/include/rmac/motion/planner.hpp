@@ -1,54 +1,16 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
 
-#include "rmac/motion/error.hpp"
-#include "rmac/motion/move.hpp"
 #include "rmac/motion/path_segment.hpp"
-#include "rmac/motion/plan.hpp"
 #include "rmac/motion/plan_channel.hpp"
+#include "rmac/motion/planner_model.hpp"
+#include "rmac/motion/pose.hpp"
 
 namespace rmac {
-
-/// The mechanism as the planner sees it.
-struct PlannerModel {
-  std::shared_ptr<const Kinematics> kinematics;
-  std::vector<JointLimits> joints;  ///< kinematic joints only
-  double period_s = 0.001;
-  double max_feed_mm_s = std::numeric_limits<double>::infinity();  ///< of the tool tip, whatever the override says
-};
-
-/// Turns moves into checked path segments. Knows where the queue ends. Gateway thread.
-class PathBuilder {
- public:
-  explicit PathBuilder(PlannerModel model);
-
-  /// Forgets the queue: the next move starts from these joints. Frames may change only when the machine is at rest and
-  /// the queue empty.
-  void restart(std::span<const double> joints, const Frames& frames);
-
-  /// Segments of one move (none for a positioning move to where the queue ends already), checked for geometry, reach,
-  /// singularity and joint travel before anything moves. An error names the joint, the amount and the path length of
-  /// the first offence; then the queue's end is unchanged.
-  /// With `from_mm` only what lies from there on along the move, which was begun before.
-  [[nodiscard]] Expected<std::vector<std::shared_ptr<const PathSegment>>> build(const Move& move, double from_mm = 0);
-
-  /// Tool pose (part frame) and joints at the end of what was built.
-  [[nodiscard]] const ToolPose& end_pose() const noexcept { return end_pose_; }
-  [[nodiscard]] std::span<const double> end_joints() const noexcept { return end_joints_; }
-  [[nodiscard]] const Frames& frames() const noexcept { return map_->frames(); }
-
- private:
-  PlannerModel model_;
-  std::vector<double> end_joints_;
-  std::shared_ptr<const PoseToJoints> map_;
-  ToolPose end_pose_;
-};
 
 /// What the servo loop tells the planner: read from its snapshot.
 struct ServoProgress {
@@ -81,7 +43,7 @@ class Planner {
   Planner(const Planner&) = delete;
   Planner& operator=(const Planner&) = delete;
 
-  void add(std::vector<std::shared_ptr<const PathSegment>> segments);
+  void add(PathSegments segments);
   /// Drops everything that is not yet travelled. Only at rest.
   void clear();
   /// Readies the way back along up to `distance_mm` of what was travelled, for `PathCommand::Retrace`. Its length; 0
@@ -102,8 +64,6 @@ class Planner {
   [[nodiscard]] bool at_rest(const ServoProgress& progress) const noexcept;
   /// Moves added and not yet done.
   [[nodiscard]] std::size_t moves_left() const noexcept;
-  /// Where the path stands when at rest: joints at the end of what was travelled.
-  [[nodiscard]] std::vector<double> rest_joints() const;
   /// The farthest place that the tool has come to, at rest: where the first move goes on that is not done. Nothing when
   /// none was begun.
   [[nodiscard]] std::optional<PathPlace> farthest_place() const;

@@ -6,7 +6,7 @@
 
 #include "rmac/modules/chain_kinematics.hpp"
 #include "rmac/motion/move_name.hpp"
-#include "rmac/motion/planner.hpp"
+#include "rmac/motion/path_builder.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -35,7 +35,7 @@ CycleSample moving(const std::vector<double>& velocities, const std::vector<doub
 }
 
 /// What a move from the origin becomes.
-std::vector<std::shared_ptr<const PathSegment>> curves(const Move& move) {
+PathSegments curves(const Move& move) {
   PlannerModel model;
   model.kinematics = std::make_shared<modules::ChainKinematics>(modules::cartesian(2));
   for (const sdk::Joint& joint : device({"X", "Y"}).joints) model.joints.push_back(joint.limits);
@@ -43,7 +43,7 @@ std::vector<std::shared_ptr<const PathSegment>> curves(const Move& move) {
   builder.restart(std::vector<double>(2, 0.0), {});
   auto built = builder.build(move);
   EXPECT_TRUE(built) << built.error().message;
-  return built ? *built : std::vector<std::shared_ptr<const PathSegment>>{};
+  return built ? *built : PathSegments{};
 }
 
 class Account : public testing::Test {

@@ -3,7 +3,7 @@
 #include <random>
 
 #include "rmac/fieldbus/canopen/bus_scan.hpp"
-#include "unit/fieldbus/noisy_port.hpp"
+#include "unit/fieldbus/can/noisy_port.hpp"
 #include "unit/gateway/simulators/vdrive/wire.hpp"
 
 // CiA 305: the master's layer setting services against nodes that know nothing of it.

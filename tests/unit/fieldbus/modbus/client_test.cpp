@@ -1,0 +1,309 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "rmac/fieldbus/modbus/backoff.hpp"
+#include "unit/fieldbus/modbus/modbus_peer.hpp"
+
+namespace rmac::fieldbus::modbus {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+using Kind = Failure::Kind;
+using Manner = ModbusPeer::Manner;
+using Wire = ModbusPeer::Wire;
+
+constexpr int kSlave = 17;
+constexpr std::size_t kProbe = 9;  ///< more than any read here
+// What a transaction may take beyond its deadline on a machine that does much else. A peer that drips a whole answer
+// byte by byte would take several times as long.
+constexpr auto kGrace = 1s;
+
+std::string wire_name(const testing::TestParamInfo<Wire>& wire) {
+  return wire.param == Wire::Tcp ? "Tcp" : "Rtu";
+}
+
+class OnAWire : public testing::TestWithParam<Wire> {
+ protected:
+  OnAWire() : peer(GetParam()) {}
+
+  void open(std::chrono::milliseconds deadline) {
+    auto made = Client::create(peer.endpoint(), deadline);
+    ASSERT_TRUE(made) << made.error().message;
+    client = std::move(*made);
+    ASSERT_TRUE(client->connect());
+  }
+  /// As its owner would: connects where that is needed, ends doubt, then reads.
+  Answer<Clock::time_point> read_registers(std::span<std::uint16_t> values) {
+    if (!client->connected()) {
+      if (auto connected = client->connect(); !connected) return tl::unexpected(connected.error());
+    }
+    if (auto sure = client->resynchronise(kSlave, Table::HoldingRegisters, 0, kProbe); !sure) {
+      return tl::unexpected(sure.error());
+    }
+    return client->read(kSlave, Table::HoldingRegisters, 0, values);
+  }
+
+  ModbusPeer peer;
+  std::unique_ptr<Client> client;
+};
+
+using ModbusClient = OnAWire;
+INSTANTIATE_TEST_SUITE_P(Wires, ModbusClient, testing::Values(Wire::Tcp, Wire::Rtu), wire_name);
+
+TEST_P(ModbusClient, ReadsAndWritesAllTables) {
+  open(10s);
+  ASSERT_TRUE(client->resynchronise(kSlave, Table::HoldingRegisters, 0, kProbe));
+  peer.respond([](const Bytes& request) -> Bytes {
+    switch (request[1]) {
+      case 1:
+      case 2:
+        return {kSlave, request[1], 2, 0b10000101, 0b00000010};
+      case 3:
+      case 4:
+        return {kSlave, request[1], 4, 0x12, 0x34, 0xFE, 0xDC};
+      default:
+        return {request.begin(), request.begin() + 6};
+    }
+  });
+  std::array<std::uint16_t, 10> bits{};
+  std::array<std::uint16_t, 2> words{};
+  for (const Table table : {Table::Coils, Table::DiscreteInputs}) {
+    bits.fill(7);
+    ASSERT_TRUE(client->read(kSlave, table, 3, bits));
+    EXPECT_EQ(bits, (std::array<std::uint16_t, 10>{1, 0, 1, 0, 0, 0, 0, 1, 0, 1}));
+  }
+  for (const Table table : {Table::InputRegisters, Table::HoldingRegisters}) {
+    words.fill(0);
+    ASSERT_TRUE(client->read(kSlave, table, 0xFFFE, words));
+    EXPECT_EQ(words, (std::array<std::uint16_t, 2>{0x1234, 0xFEDC}));
+  }
+  static_cast<void>(peer.take_requests());
+  const std::array<std::uint16_t, 3> values{1, 0, 1};
+  ASSERT_TRUE(client->write(kSlave, Table::Coils, 0x100, {values.data(), 1}));
+  ASSERT_TRUE(client->write(kSlave, Table::Coils, 0x100, values));
+  ASSERT_TRUE(client->write(kSlave, Table::HoldingRegisters, 0x2000, {values.data(), 1}));
+  ASSERT_TRUE(client->write(kSlave, Table::HoldingRegisters, 0x2000, {values.data(), 2}));
+  EXPECT_EQ(peer.take_requests(), (std::vector<Bytes>{{kSlave, 5, 1, 0, 0xFF, 0},
+                                                      {kSlave, 15, 1, 0, 0, 3, 1, 0b101},
+                                                      {kSlave, 6, 0x20, 0, 0, 1},
+                                                      {kSlave, 16, 0x20, 0, 0, 2, 4, 0, 1, 0, 0}}));
+}
+
+TEST_P(ModbusClient, SaysWhoRefusedWhatAndWhy) {
+  open(10s);
+  ASSERT_TRUE(client->resynchronise(kSlave, Table::HoldingRegisters, 0, kProbe));
+  peer.respond([](const Bytes& request) { return Bytes{kSlave, static_cast<std::uint8_t>(request[1] | 0x80U), 2}; });
+  std::array<std::uint16_t, 2> words{};
+  const auto refused = client->read(kSlave, Table::InputRegisters, 0x2103, words);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, Kind::Exception);
+  EXPECT_EQ(refused.error().exception_code, 2);
+  EXPECT_THAT(refused.error().message, HasSubstr("slave 17, reading 2 input registers from 2103h: refused with "
+                                                 "exception 2: it has no such address"));
+}
+
+TEST_P(ModbusClient, SendsNothingThatBreaksTheProtocol) {
+  open(10s);
+  std::array<std::uint16_t, 126> words{};
+  const std::uint64_t before = peer.requests();
+  const auto kind = [](const auto& answer) { return answer ? Kind::Timeout : answer.error().kind; };
+  EXPECT_EQ(kind(client->read(kSlave, Table::HoldingRegisters, 0, words)), Kind::BadRequest);
+  EXPECT_EQ(kind(client->read(kSlave, Table::HoldingRegisters, 0, {})), Kind::BadRequest);
+  EXPECT_EQ(kind(client->read(kSlave, Table::HoldingRegisters, 0xFFFF, {words.data(), 2})), Kind::BadRequest);
+  EXPECT_EQ(kind(client->read(0, Table::HoldingRegisters, 0, {words.data(), 1})), Kind::BadRequest);
+  EXPECT_EQ(kind(client->read(248, Table::HoldingRegisters, 0, {words.data(), 1})), Kind::BadRequest);
+  EXPECT_EQ(kind(client->write(kSlave, Table::InputRegisters, 0, {words.data(), 1})), Kind::BadRequest);
+  EXPECT_EQ(kind(client->write(kSlave, Table::HoldingRegisters, 0, {words.data(), 124})), Kind::BadRequest);
+  EXPECT_EQ(peer.requests(), before);
+}
+
+/// One peer of bad manners, asked again and again: each transaction ends in time, and what is accepted answers the very
+/// question that was asked last.
+void expect_nothing_stale(ModbusPeer& peer,
+                          const std::function<Answer<Clock::time_point>(std::span<std::uint16_t>)>& ask,
+                          std::chrono::milliseconds deadline, int rounds) {
+  for (int round = 0; round < rounds; ++round) {
+    std::array<std::uint16_t, 2> words{};
+    const auto begun = Clock::now();
+    const auto answer = ask(words);
+    // Up to three transactions: connect, resynchronise, read.
+    ASSERT_LT(Clock::now() - begun, 3 * (deadline + kGrace)) << "round " << round;
+    if (!answer) continue;
+    ASSERT_GE(*answer, begun);
+    ASSERT_EQ(words[0], static_cast<std::uint16_t>(peer.requests())) << "an old answer was taken in round " << round;
+  }
+}
+
+TEST_P(ModbusClient, EndsInTimeWhateverThePeerDoes) {
+  constexpr auto kDeadline = 20ms;
+  open(kDeadline);
+  const auto ask = [this](std::span<std::uint16_t> words) { return read_registers(words); };
+  for (const Manner manner : {Manner::Silent, Manner::WrongId, Manner::Garbage, Manner::Resetting}) {
+    SCOPED_TRACE(testing::Message() << "manner " << static_cast<int>(manner));
+    peer.behave(manner);
+    expect_nothing_stale(peer, ask, kDeadline, 20);
+  }
+}
+
+TEST_P(ModbusClient, EndsInTimeWhileAnAnswerDrips) {
+  constexpr auto kDeadline = 50ms;
+  open(10s);
+  client = std::move(*Client::create(peer.endpoint(), kDeadline));
+  ASSERT_TRUE(client->connect());
+  // 250 bytes: were the time counted from byte to byte, this would take ten seconds.
+  peer.behave(Manner::Dripping, 40ms);
+  std::array<std::uint16_t, 120> words{};
+  const auto begun = Clock::now();
+  const auto answer = read_registers(words);
+  EXPECT_LT(Clock::now() - begun, 2 * (kDeadline + kGrace));
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().kind, Kind::Timeout);
+}
+
+TEST_P(ModbusClient, TakesNoLateAnswerForANewOne) {
+  constexpr auto kDeadline = 10ms;
+  open(kDeadline);
+  std::mt19937 random(20260501);  // NOLINT: the same peers in every run
+  const auto ask = [this](std::span<std::uint16_t> words) { return read_registers(words); };
+  for (int peers = 0; peers < 40; ++peers) {
+    const std::chrono::microseconds pause(std::uniform_int_distribution(0, 30'000)(random));
+    SCOPED_TRACE(testing::Message() << "answers after " << pause.count() << " us");
+    peer.behave(Manner::Late, pause);
+    expect_nothing_stale(peer, ask, kDeadline, 8);
+  }
+}
+
+TEST_P(ModbusClient, TakesNoAnswerFromAQueueOfLateOnes) {
+  // Asked faster than it answers, all the time: the questions queue up in front of it.
+  constexpr auto kDeadline = 2ms;
+  open(kDeadline);
+  peer.behave(Manner::Late, 4ms);
+  const auto ask = [this](std::span<std::uint16_t> words) { return read_registers(words); };
+  expect_nothing_stale(peer, ask, kDeadline, 400);
+}
+
+TEST_P(ModbusClient, WorksAgainOnceThePeerBehaves) {
+  open(20ms);
+  std::array<std::uint16_t, 2> words{};
+  for (const Manner manner : {Manner::Silent, Manner::WrongId, Manner::Garbage, Manner::Resetting}) {
+    peer.behave(manner);
+    EXPECT_FALSE(read_registers(words));
+    peer.behave(Manner::Honest);
+    int tries = 0;
+    while (!read_registers(words)) ASSERT_LT(++tries, 1000) << "after manner " << static_cast<int>(manner);
+    EXPECT_EQ(words[0], static_cast<std::uint16_t>(peer.requests()));
+  }
+}
+
+TEST_P(ModbusClient, SaysThatThePeerWentAway) {
+  open(10s);
+  std::array<std::uint16_t, 2> words{};
+  ASSERT_TRUE(read_registers(words));
+  peer.vanish();
+  const auto gone = read_registers(words);
+  ASSERT_FALSE(gone);
+  EXPECT_EQ(gone.error().kind, Kind::Disconnected) << gone.error().message;
+  EXPECT_FALSE(client->connected());
+  const auto again = read_registers(words);
+  ASSERT_FALSE(again);
+  EXPECT_THAT(again.error().message, HasSubstr("cannot be opened: "));
+}
+
+TEST(ModbusClientRtu, AsksNothingInDoubtAndBelievesNoConfirmation) {
+  ModbusPeer peer(Wire::Rtu);
+  const auto client = std::move(*Client::create(peer.endpoint(), 500ms));
+  ASSERT_TRUE(client->connect());
+  EXPECT_TRUE(client->in_doubt(kSlave)) << "what the line was used for before is not known";
+  std::array<std::uint16_t, 2> words{};
+  const auto read = client->read(kSlave, Table::HoldingRegisters, 0, words);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().kind, Kind::InDoubt);
+  EXPECT_EQ(peer.requests(), 0U);
+  // A stop is sent all the same.
+  const auto stop = client->write(kSlave, Table::HoldingRegisters, 0x2000, {words.data(), 1});
+  ASSERT_FALSE(stop);
+  EXPECT_EQ(stop.error().kind, Kind::InDoubt);
+  EXPECT_EQ(peer.requests(), 1U);
+}
+
+TEST(ModbusClientRtu, DoubtOfOneSlaveIsNotTheOthers) {
+  ModbusPeer peer(Wire::Rtu);
+  const auto client = std::move(*Client::create(peer.endpoint(), 500ms));
+  ASSERT_TRUE(client->connect());
+  for (const int slave : {1, 2}) ASSERT_TRUE(client->resynchronise(slave, Table::HoldingRegisters, 0, kProbe));
+  peer.respond([](const Bytes& request) { return request[0] == 1 ? Bytes() : Bytes{2, 3, 2, 0, 42}; });
+  std::array<std::uint16_t, 1> word{};
+  EXPECT_FALSE(client->read(1, Table::HoldingRegisters, 0, word));
+  EXPECT_TRUE(client->in_doubt(1));
+  EXPECT_FALSE(client->in_doubt(2));
+  ASSERT_TRUE(client->read(2, Table::HoldingRegisters, 0, word));
+  EXPECT_EQ(word[0], 42);
+}
+
+TEST(ModbusClientRtu, TakesNoExceptionForTheEndOfDoubtWhileAnotherMayBeUnderWay) {
+  ModbusPeer peer(Wire::Rtu);
+  const auto client = std::move(*Client::create(peer.endpoint(), 200ms));
+  ASSERT_TRUE(client->connect());
+  // A slave that gives one register at a time.
+  peer.respond([](const Bytes& request) {
+    return request[5] == 1 ? Bytes{kSlave, 3, 2, 0, 42} : Bytes{kSlave, 0x83, 3};
+  });
+  ASSERT_TRUE(client->resynchronise(kSlave, Table::HoldingRegisters, 0, 2)) << "nothing was asked before";
+  std::array<std::uint16_t, 1> word{};
+  ASSERT_TRUE(client->read(kSlave, Table::HoldingRegisters, 0, word));
+  EXPECT_EQ(word[0], 42);
+  peer.behave(Manner::Silent);
+  ASSERT_FALSE(client->read(kSlave, Table::HoldingRegisters, 0, word));
+  peer.behave(Manner::Honest);
+  const std::uint64_t before = peer.requests();
+  for (int i = 0; i < 10; ++i) {
+    const auto sure = client->resynchronise(kSlave, Table::HoldingRegisters, 0, 2);
+    ASSERT_FALSE(sure);
+    EXPECT_TRUE(client->in_doubt(kSlave));
+  }
+  EXPECT_LE(peer.requests(), before + 1) << "it is left alone until nothing late can come";
+}
+
+TEST(ModbusClientRtu, SaysThatThereIsNoSuchPort) {
+  const auto client = std::move(*Client::create(RtuEndpoint{"/dev/no-such-port"}, 20ms));
+  const auto opened = client->connect();
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().message, "/dev/no-such-port: cannot be opened: No such file or directory");
+}
+
+TEST(ModbusClientCreation, NamesWhatIsWrongInAnEndpoint) {
+  const auto error = [](Endpoint endpoint, std::chrono::milliseconds deadline = 100ms) {
+    const auto made = Client::create(std::move(endpoint), deadline);
+    return made ? std::string("made") : made.error().message;
+  };
+  EXPECT_EQ(error(TcpEndpoint{"spindle.local"}),
+            "Modbus line spindle.local port 502: \"spindle.local\" is no numeric IP address, for example 192.168.1.20; "
+            "names are not looked up");
+  EXPECT_EQ(error(TcpEndpoint{"::1"}), "made");
+  EXPECT_THAT(error(RtuEndpoint{"/dev/ttyS0", 31250}), HasSubstr("bit rate 31250; there are 1200, 2400"));
+  EXPECT_THAT(error(RtuEndpoint{"/dev/ttyS0", 9600, 'X'}), HasSubstr("parity 'X'"));
+  EXPECT_THAT(error(RtuEndpoint{"/dev/ttyS0", 9600, 'N', 3}), HasSubstr("3 stop bits"));
+  EXPECT_THAT(error(TcpEndpoint{"127.0.0.1"}, 0ms), HasSubstr("a deadline of 0 ms"));
+}
+
+TEST(ModbusBackoff, DoublesItsPausesUpToTheLongest) {
+  Backoff backoff(100ms, 350ms);
+  Clock::time_point now{};
+  EXPECT_TRUE(backoff.due(now));
+  for (const auto pause : {100ms, 200ms, 350ms, 350ms}) {
+    backoff.failed(now);
+    EXPECT_FALSE(backoff.due(now + pause - 1ms));
+    EXPECT_TRUE(backoff.due(now + pause));
+    now += pause;
+  }
+  backoff.succeeded();
+  EXPECT_TRUE(backoff.due(now));
+  backoff.failed(now);
+  EXPECT_TRUE(backoff.due(now + 100ms));
+}
+
+}  // namespace
+}  // namespace rmac::fieldbus::modbus

@@ -1,0 +1,106 @@
+#include "rmac/fieldbus/modbus/io_interface.hpp"
+
+#include <gtest/gtest.h>
+
+#include "conformance/digital_io_conformance.hpp"
+#include "unit/fieldbus/modbus/register_bank.hpp"
+
+namespace rmac::fieldbus::modbus {
+namespace {
+
+using namespace std::chrono_literals;
+using Wire = ModbusPeer::Wire;
+
+/// Two inputs as bits, four in a register, inverted; outputs likewise.
+IoMap map() {
+  return {"a device",
+          "",
+          8,
+          {{{Table::DiscreteInputs, 3, 1}, 2, 0, false}, {{Table::InputRegisters, 9}, 4, 8, true}},
+          {{{Table::Coils, 5, 1}, 3, 0, false}, {{Table::HoldingRegisters, 7}, 20, 16, false}}};
+}
+
+class ModbusIo : public testing::TestWithParam<Wire> {
+ protected:
+  ModbusIo() : peer(GetParam()) {
+    peer.respond([this](const Bytes& request) { return bank.answer(request); });
+    IoLineConfig config;
+    config.line.endpoint = peer.endpoint();
+    config.line.deadline = 50ms;
+    config.line.period = 2ms;
+    config.stale = 500ms;
+    config.boot_timeout = 60s;
+    config.slave = 1;
+    config.map = map();
+    io = std::make_unique<IoInterface>(std::move(config));
+  }
+  /// Cycles until the inputs are as wanted.
+  bool inputs_become(std::uint64_t outputs, std::uint64_t wanted) {
+    const auto give_up = Clock::now() + 60s;
+    std::uint64_t inputs = 0;
+    while (!io->exchange(outputs, inputs) || inputs != wanted) {
+      if (Clock::now() > give_up) return false;
+      std::this_thread::yield();
+    }
+    return true;
+  }
+
+  RegisterBank bank;
+  ModbusPeer peer;
+  std::unique_ptr<IoInterface> io;
+};
+
+INSTANTIATE_TEST_SUITE_P(Wires, ModbusIo, testing::Values(Wire::Tcp, Wire::Rtu),
+                         [](const auto& wire) { return wire.param == Wire::Tcp ? "Tcp" : "Rtu"; });
+
+TEST_P(ModbusIo, ConformsToThePort) {
+  conformance::DigitalIoConformance(*io, {.input = 1,
+                                          .output = 2,
+                                          .turn_input = [this](bool on) { bank.set(Table::DiscreteInputs, 4, on); },
+                                          .output_is_on = [this] { return bank.get(Table::Coils, 7) != 0; },
+                                          .pass = [] { std::this_thread::yield(); }})
+      .check();
+}
+
+TEST_P(ModbusIo, CarriesBitsBothWays) {
+  ASSERT_TRUE(io->start());
+  EXPECT_TRUE(inputs_become(0, 0xF00)) << "inverted ones are on while they read 0";
+  bank.set(Table::DiscreteInputs, 4, 1);
+  bank.set(Table::InputRegisters, 9, 0b0101);
+  EXPECT_TRUE(inputs_become(0, 0xA02));
+  static_cast<void>(peer.take_requests());
+  std::uint64_t inputs = 0;
+  EXPECT_TRUE(io->exchange(std::uint64_t{0b101} | std::uint64_t{0x81234} << 16U, inputs));
+  EXPECT_TRUE(peer.wait_for([](const Bytes& request) { return request[1] == 16; }));
+  EXPECT_EQ(bank.get(Table::Coils, 5), 1);
+  EXPECT_EQ(bank.get(Table::Coils, 6), 0);
+  EXPECT_EQ(bank.get(Table::Coils, 7), 1);
+  const auto written = peer.take_requests();
+  EXPECT_EQ(written.back()[1] == 16 ? written.back() : Bytes(), (Bytes{1, 16, 0, 7, 0, 2, 4, 0x12, 0x34, 0, 8}));
+}
+
+TEST_P(ModbusIo, SwitchesItsOutputsOffWhenItEnds) {
+  ASSERT_TRUE(io->start());
+  std::uint64_t inputs = 0;
+  ASSERT_TRUE(io->exchange(0b111, inputs));
+  ASSERT_TRUE(peer.wait_for([](const Bytes& request) { return request[1] == 15 && request.back() == 0b111; }));
+  io->stop();
+  for (std::uint16_t address = 5; address < 8; ++address) EXPECT_EQ(bank.get(Table::Coils, address), 0);
+  EXPECT_FALSE(io->exchange(0b111, inputs)) << "what is not running has no inputs";
+}
+
+TEST_P(ModbusIo, FailsWhenItsInputsGrowOldAndLetsItsOutputsFall) {
+  ASSERT_TRUE(io->start());
+  std::uint64_t inputs = 0;
+  ASSERT_TRUE(io->exchange(0b111, inputs));
+  ASSERT_TRUE(peer.wait_for([](const Bytes& request) { return request[1] == 15 && request.back() == 0b111; }));
+  peer.behave(ModbusPeer::Manner::Silent);
+  const auto give_up = Clock::now() + 60s;
+  while (io->exchange(0b111, inputs)) ASSERT_LT(Clock::now(), give_up);
+  static_cast<void>(peer.take_requests());
+  peer.behave(ModbusPeer::Manner::Honest);
+  EXPECT_TRUE(peer.wait_for([](const Bytes& request) { return request[1] == 15 && request.back() == 0; }));
+}
+
+}  // namespace
+}  // namespace rmac::fieldbus::modbus

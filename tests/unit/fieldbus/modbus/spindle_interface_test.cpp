@@ -1,0 +1,359 @@
+#include "rmac/fieldbus/modbus/spindle_interface.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "rmac/motion/drive_power.hpp"
+#include "unit/fieldbus/modbus/register_bank.hpp"
+
+namespace rmac::fieldbus::modbus {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+using Wire = ModbusPeer::Wire;
+using Manner = ModbusPeer::Manner;
+
+constexpr auto kHolding = Table::HoldingRegisters;
+constexpr std::uint16_t kCommand = 0x10, kSpeedCommand = 0x11, kReset = 0x12;
+constexpr std::uint16_t kStatus = 0x20, kActual = 0x21, kTaken = 0x22, kFault = 0x23;
+constexpr std::uint16_t kStop = 1, kForward = 2, kBackward = 3;
+
+/// A drive with all that a map can have: 0.1 Hz, a status of bit 0 runs, bit 1 backward, bit 2 tripped.
+SpindleMap map() {
+  SpindleMap made;
+  made.name = "a drive";
+  made.most_per_read = 8;
+  made.speed_command = {{kHolding, kSpeedCommand}, 10};
+  made.speed_read_back = Place{kHolding, kTaken};
+  made.speed = {{kHolding, kActual}, 10};
+  made.running = Condition{{kHolding, kStatus, 16, false, false, 1}, {1}};
+  made.backward = Condition{{kHolding, kStatus, 16, false, false, 2}, {2}};
+  made.tripped = Condition{{kHolding, kStatus, 16, false, false, 4}, {4}};
+  made.fault_code = Place{kHolding, kFault};
+  made.fault_texts = {{7, "over-voltage"}};
+  made.forward_run = {{kHolding, kCommand, kForward}};
+  made.backward_run = {{kHolding, kCommand, kBackward}};
+  made.stop = {{kHolding, kCommand, kStop}};
+  made.reset_fault = {{kHolding, kReset, 1}};
+  return made;
+}
+
+/// What the drive does with what is written to it: it turns at once.
+void drive(RegisterBank& bank, Table, std::uint16_t address, std::uint16_t value) {
+  if (address == kReset) {
+    bank.set(kHolding, kStatus, 0);
+    bank.set(kHolding, kFault, 0);
+  }
+  if (address == kSpeedCommand) bank.set(kHolding, kTaken, value);
+  const std::uint16_t command = bank.get(kHolding, kCommand);
+  const bool tripped = (bank.get(kHolding, kStatus) & 4U) != 0;
+  const bool runs = (command == kForward || command == kBackward) && !tripped;
+  const unsigned status = (runs ? 1U : 0U) | (runs && command == kBackward ? 2U : 0U) | (tripped ? 4U : 0U);
+  bank.set(kHolding, kStatus, static_cast<std::uint16_t>(status));
+  bank.set(kHolding, kActual, runs ? bank.get(kHolding, kSpeedCommand) : 0);
+}
+
+class ModbusSpindle : public testing::TestWithParam<Wire> {
+ protected:
+  ModbusSpindle() : peer(GetParam()) {
+    bank.on_write = drive;
+    peer.respond([this](const Bytes& request) { return bank.answer(request); });
+  }
+
+  void bring_up(std::chrono::milliseconds stale = 30s, const SpindleMap& drives_map = map()) {
+    SpindleLineConfig config;
+    config.line.endpoint = peer.endpoint();
+    config.line.deadline = 50ms;
+    config.line.period = 2ms;
+    config.line.first_pause = 1ms;
+    config.line.longest_pause = 5ms;
+    config.stale = stale;
+    config.boot_timeout = 60s;
+    config.axes = {{.slave = 4, .rpm_per_hz = 60, .maximum_hz = 0, .map = drives_map}};
+    spindle = std::make_unique<SpindleInterface>(std::move(config));
+    const auto started = spindle->start();
+    ASSERT_TRUE(started) << started.error().message;
+  }
+
+  /// One cycle of a master with that wish.
+  const DriveFeedback& cycle(DriveWish wish, std::int32_t rpm, bool reset = false) {
+    command[0].controlword = next_controlword(feedback[0].statusword, wish, reset, command[0].controlword);
+    command[0].mode = DriveMode::ProfileVelocity;
+    command[0].target_velocity_rpm = rpm;
+    EXPECT_TRUE(spindle->exchange(command, feedback));
+    return feedback[0];
+  }
+  /// Cycles until `reached`; false when a minute did not do.
+  bool run_until(DriveWish wish, std::int32_t rpm, const std::function<bool(const DriveFeedback&)>& reached,
+                 bool reset = false) {
+    const auto give_up = Clock::now() + 60s;
+    while (!reached(cycle(wish, rpm, reset))) {
+      if (Clock::now() > give_up) return false;
+      std::this_thread::yield();
+    }
+    return true;
+  }
+  bool run_at(std::int32_t rpm) {
+    return run_until(DriveWish::Operational, rpm, [rpm](const DriveFeedback& words) {
+      return words.online && words.velocity_rpm == rpm && drive_state(words.statusword) == DriveState::OperationEnabled;
+    });
+  }
+  bool drive_was_told(std::uint16_t command_value) {
+    return peer.wait_for([command_value](const Bytes& request) {
+      return request == Bytes{4, 6, 0, kCommand, 0, static_cast<std::uint8_t>(command_value)};
+    });
+  }
+
+  RegisterBank bank;
+  ModbusPeer peer;
+  std::unique_ptr<SpindleInterface> spindle;
+  std::array<DriveCommand, 1> command{};
+  std::array<DriveFeedback, 1> feedback{};
+};
+
+INSTANTIATE_TEST_SUITE_P(Wires, ModbusSpindle, testing::Values(Wire::Tcp, Wire::Rtu),
+                         [](const auto& wire) { return wire.param == Wire::Tcp ? "Tcp" : "Rtu"; });
+
+TEST_P(ModbusSpindle, TurnsAtTheSpeedThatIsWanted) {
+  bring_up();
+  ASSERT_TRUE(run_at(1500));
+  EXPECT_EQ(bank.get(kHolding, kSpeedCommand), 250);
+  EXPECT_EQ(bank.get(kHolding, kCommand), kForward);
+  ASSERT_TRUE(run_at(3000));
+  ASSERT_TRUE(run_at(-600));
+  EXPECT_EQ(bank.get(kHolding, kCommand), kBackward);
+  ASSERT_TRUE(run_at(0));
+  EXPECT_EQ(bank.get(kHolding, kCommand), kStop);
+}
+
+TEST_P(ModbusSpindle, IsToldItsSpeedBeforeItRuns) {
+  bring_up();
+  static_cast<void>(peer.take_requests());
+  ASSERT_TRUE(run_at(1500));
+  std::vector<std::uint8_t> order;
+  for (const Bytes& request : peer.take_requests()) {
+    if (request[1] == 6) order.push_back(request[3]);
+  }
+  const auto run = std::find(order.begin(), order.end(), kCommand);
+  EXPECT_NE(std::find(order.begin(), run, kSpeedCommand), run);
+}
+
+TEST_P(ModbusSpindle, StopsOnEveryWishButOperational) {
+  bring_up();
+  for (const DriveWish wish : {DriveWish::QuickStop, DriveWish::Off}) {
+    ASSERT_TRUE(run_at(1500));
+    static_cast<void>(peer.take_requests());
+    cycle(wish, 1500);
+    EXPECT_TRUE(drive_was_told(kStop));
+    EXPECT_TRUE(run_until(wish, 1500, [](const DriveFeedback& words) { return words.velocity_rpm == 0; }));
+  }
+}
+
+TEST_P(ModbusSpindle, StopsWithTheAppliance) {
+  bring_up();
+  ASSERT_TRUE(run_at(1500));
+  spindle->stop();
+  EXPECT_EQ(bank.get(kHolding, kCommand), kStop);
+  EXPECT_FALSE(cycle(DriveWish::Operational, 1500).online);
+  EXPECT_NE(drive_state(feedback[0].statusword), DriveState::OperationEnabled);
+  EXPECT_TRUE(spindle->start());
+  EXPECT_TRUE(run_at(1500)) << "and starts anew when it is told";
+}
+
+TEST_P(ModbusSpindle, ReportsAFaultInItsDrivesWordsUntilItIsReset) {
+  bring_up();
+  ASSERT_TRUE(run_at(1500));
+  bank.set(kHolding, kFault, 7);
+  bank.set(kHolding, kStatus, 4);
+  bank.set(kHolding, kActual, 0);
+  const auto in_fault = [](const DriveFeedback& words) { return drive_state(words.statusword) == DriveState::Fault; };
+  ASSERT_TRUE(run_until(DriveWish::Operational, 1500, in_fault));
+  EXPECT_EQ(feedback[0].error_code, 7);
+  EXPECT_EQ(spindle->fault_text(0, feedback[0].error_code), "a drive: over-voltage");
+  EXPECT_EQ(spindle->fault_text(0, 8), "a drive: see its manual");
+  EXPECT_TRUE(drive_was_told(kStop)) << "it must not run on when its fault is reset";
+  ASSERT_TRUE(run_until(
+      DriveWish::QuickStop, 1500, [&](const DriveFeedback& words) { return !in_fault(words); }, true));
+  EXPECT_EQ(bank.get(kHolding, kActual), 0) << "nothing starts by itself";
+  EXPECT_TRUE(run_at(1500));
+}
+
+TEST_P(ModbusSpindle, TellsTheCodeOfATripThatCameAfterItsCodeWasRead) {
+  constexpr std::uint16_t kEarlyFault = kStatus - 1;
+  SpindleMap one_by_one = map();
+  one_by_one.most_per_read = 1;
+  one_by_one.fault_code = Place{kHolding, kEarlyFault};
+  std::atomic<bool> trips{false};
+  peer.respond([&](const Bytes& request) {
+    const Bytes answer = bank.answer(request);
+    if (request[1] == 3 && request[3] == kEarlyFault && trips.exchange(false)) {
+      bank.set(kHolding, kEarlyFault, 7);
+      bank.set(kHolding, kStatus, 4);
+    }
+    return answer;
+  });
+  bring_up(30s, one_by_one);
+  ASSERT_TRUE(run_at(1500));
+  trips = true;
+  ASSERT_TRUE(run_until(DriveWish::Operational, 1500,
+                        [](const DriveFeedback& words) { return drive_state(words.statusword) == DriveState::Fault; }));
+  EXPECT_EQ(feedback[0].error_code, 7);
+  spindle->stop();  // before what it asks is gone
+}
+
+TEST_P(ModbusSpindle, ThatSomeoneElseStoppedIsDropped) {
+  bring_up();
+  ASSERT_TRUE(run_at(1500));
+  bank.set(kHolding, kCommand, 0);
+  bank.set(kHolding, kStatus, 0);
+  bank.set(kHolding, kActual, 0);
+  EXPECT_TRUE(run_until(DriveWish::Operational, 1500, [](const DriveFeedback& words) {
+    return words.online && drive_state(words.statusword) == DriveState::SwitchOnDisabled;
+  }));
+  EXPECT_TRUE(drive_was_told(kStop));
+}
+
+TEST_P(ModbusSpindle, ThatSomeoneElseStoppedIsDroppedThoughAnswersAreLostJustThen) {
+  bring_up();
+  ASSERT_TRUE(run_at(1500));
+  peer.behave(Manner::Silent);
+  bank.set(kHolding, kCommand, 0);
+  bank.set(kHolding, kStatus, 0);
+  bank.set(kHolding, kActual, 0);
+  static_cast<void>(peer.take_requests());
+  const std::uint64_t before = peer.requests();
+  ASSERT_TRUE(
+      run_until(DriveWish::Operational, 1500, [&](const DriveFeedback&) { return peer.requests() > before + 2; }));
+  peer.behave(Manner::Honest);
+  EXPECT_TRUE(run_until(DriveWish::Operational, 1500, [](const DriveFeedback& words) {
+    return words.online && drive_state(words.statusword) == DriveState::SwitchOnDisabled;
+  }));
+  for (const Bytes& request : peer.take_requests()) {
+    EXPECT_NE(request, (Bytes{4, 6, 0, kCommand, 0, static_cast<std::uint8_t>(kForward)})) << "it is told to run again";
+  }
+}
+
+TEST_P(ModbusSpindle, IsToldAgainWhatItDidNotTake) {
+  bring_up();
+  ASSERT_TRUE(run_at(1500));
+  bank.set(kHolding, kTaken, 1);
+  static_cast<void>(peer.take_requests());
+  EXPECT_TRUE(peer.wait_for([](const Bytes& request) { return request == Bytes{4, 6, 0, kSpeedCommand, 0, 250}; }));
+}
+
+TEST_P(ModbusSpindle, GoesOfflineWhenWhatWasReadGrowsOldAndComesBackDisabled) {
+  constexpr auto kStale = 400ms;
+  bring_up(kStale);
+  ASSERT_TRUE(run_at(1500));
+  for (const Manner manner : {Manner::Silent, Manner::WrongId, Manner::Garbage, Manner::Resetting}) {
+    SCOPED_TRACE(testing::Message() << "manner " << static_cast<int>(manner));
+    peer.behave(manner);
+    // Whatever comes from now on is of no use: nothing is online once all before is stale.
+    const auto stale_at = Clock::now() + kStale;
+    ASSERT_TRUE(run_until(DriveWish::Operational, 1500, [&](const DriveFeedback& words) {
+      EXPECT_FALSE(words.online && Clock::now() > stale_at + 10s);
+      return !words.online;
+    }));
+    EXPECT_NE(drive_state(feedback[0].statusword), DriveState::OperationEnabled);
+    EXPECT_EQ(feedback[0].velocity_rpm, 0) << "an old speed is none";
+    peer.behave(Manner::Honest);
+    ASSERT_TRUE(run_until(DriveWish::Off, 1500, [](const DriveFeedback& words) { return words.online; }));
+    ASSERT_TRUE(run_until(DriveWish::Off, 1500, [](const DriveFeedback& words) { return words.velocity_rpm == 0; }))
+        << "it is stopped as soon as it can be reached";
+    ASSERT_TRUE(run_at(1500));
+  }
+}
+
+TEST_P(ModbusSpindle, IsOfflineWhenTheLineIsGone) {
+  bring_up(400ms);
+  ASSERT_TRUE(run_at(1500));
+  peer.vanish();
+  EXPECT_TRUE(run_until(DriveWish::QuickStop, 0, [](const DriveFeedback& words) { return !words.online; }));
+  spindle->stop();  // in bounded time, though nobody answers
+}
+
+TEST(ModbusSpindleStart, ReachesADriveThatGivesOneRegisterAtATime) {
+  RegisterBank bank;  // outlives the peer, which answers from it
+  bank.most_per_read = 1;
+  ModbusPeer peer(Wire::Rtu);
+  peer.respond([&](const Bytes& request) { return bank.answer(request); });
+  SpindleLineConfig config;
+  config.line.endpoint = peer.endpoint();
+  config.line.period = 5ms;
+  config.boot_timeout = 60s;
+  config.axes = {{.slave = 9, .rpm_per_hz = 60, .maximum_hz = 0, .map = map()}};
+  config.axes[0].map.most_per_read = 1;
+  SpindleInterface spindle(std::move(config));
+  const auto started = spindle.start();
+  EXPECT_TRUE(started) << started.error().message;
+}
+
+TEST(ModbusSpindleLine, IsOpenedAgainWithPausesThatDouble) {
+  ModbusPeer peer(Wire::Tcp);
+  peer.behave(Manner::Resetting);
+  SpindleLineConfig config;
+  config.line.endpoint = peer.endpoint();
+  config.line.period = 1ms;
+  config.line.first_pause = 40ms;
+  config.boot_timeout = 60s;
+  config.axes = {{.slave = 1, .rpm_per_hz = 60, .maximum_hz = 0, .map = map()}};
+  SpindleInterface spindle(std::move(config));
+  const auto begun = Clock::now();
+  // After the fourth request three pauses have passed.
+  std::thread behave([&peer] {
+    for (int requests = 0; requests < 4; requests = static_cast<int>(peer.requests())) std::this_thread::yield();
+    peer.respond([](const Bytes& request) { return RegisterBank().answer(request); });
+    peer.behave(Manner::Honest);
+  });
+  EXPECT_TRUE(spindle.start());
+  behave.join();
+  EXPECT_GE(Clock::now() - begun, 40ms + 80ms + 160ms);
+}
+
+TEST(ModbusSpindleStart, NamesTheSlaveThatDoesNotAnswer) {
+  ModbusPeer peer(Wire::Rtu);
+  peer.behave(Manner::Silent);
+  SpindleLineConfig config;
+  config.line.endpoint = peer.endpoint();
+  config.line.deadline = 20ms;
+  config.line.period = 5ms;
+  config.boot_timeout = 200ms;
+  config.axes = {{.slave = 9, .rpm_per_hz = 60, .maximum_hz = 0, .map = map()}};
+  SpindleInterface spindle(std::move(config));
+  const auto started = spindle.start();
+  ASSERT_FALSE(started);
+  EXPECT_EQ(started.error().code, MinorCode::CommTimeout);
+  EXPECT_THAT(started.error().message, HasSubstr("slave 9 at /dev/pts/"));
+  EXPECT_THAT(started.error().message, HasSubstr("was not reached within 0.2 s: "));
+  EXPECT_THAT(started.error().message, HasSubstr("no whole answer within 20 ms"));
+}
+
+TEST(ModbusSpindleLine, OfTwoDrivesOneMuteLeavesTheOtherAtWork) {
+  RegisterBank bank;
+  bank.on_write = drive;
+  std::atomic<bool> mute{false};
+  ModbusPeer peer(Wire::Rtu);
+  peer.respond([&](const Bytes& request) { return request[0] == 1 && mute ? Bytes() : bank.answer(request); });
+  SpindleLineConfig config;
+  config.line.endpoint = peer.endpoint();
+  config.line.deadline = 20ms;
+  config.line.period = 2ms;
+  config.stale = 2s;
+  config.boot_timeout = 60s;
+  for (const int slave : {1, 2}) config.axes.push_back({slave, 60, 0, map()});
+  SpindleInterface spindle(std::move(config));
+  ASSERT_TRUE(spindle.start());
+  mute = true;
+  const std::array<DriveCommand, 2> commands{};
+  std::array<DriveFeedback, 2> feedback{};
+  const auto give_up = Clock::now() + 60s;
+  do {
+    ASSERT_TRUE(spindle.exchange(commands, feedback));
+    ASSERT_LT(Clock::now(), give_up);
+    std::this_thread::yield();
+  } while (feedback[0].online || !feedback[1].online);
+}
+
+}  // namespace
+}  // namespace rmac::fieldbus::modbus

@@ -1,0 +1,145 @@
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "unit/motion/curves/shapes.hpp"
+
+namespace rmac::test {
+namespace {
+
+using std::numbers::pi;
+using testing::HasSubstr;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+using Arc = Shapes;
+
+TEST_F(Arc, KeepsRadiusPlaneAndSense) {
+  for (int i = 0; i < 300; ++i) {
+    const Vector center = vector();
+    const Vector normal = axis();
+    const double radius = 0.05 + 100 * std::abs(number());
+    // Two directions across the normal.
+    const double lean = std::hypot(normal[2], normal[0]);
+    const Vector x{normal[2] / lean, 0, -normal[0] / lean};
+    const Vector y{normal[1] * x[2] - normal[2] * x[1], normal[2] * x[0] - normal[0] * x[2],
+                   normal[0] * x[1] - normal[1] * x[0]};
+    const double height = 10 * number();
+    const auto on_circle = [&](double angle) {
+      Vector p{};
+      for (std::size_t c = 0; c < 3; ++c) {
+        p[c] = center[c] + height * normal[c] + radius * (std::cos(angle) * x[c] + std::sin(angle) * y[c]);
+      }
+      return p;
+    };
+    const double from = pi * number();
+    const double sweep = 0.05 + 3.1 * (1 + number());
+    const int rotation = i % 2 == 0 ? 1 : -1;
+    const ToolPose start{on_circle(from), axis()};
+    const ToolPose end{on_circle(from + rotation * sweep), axis()};
+    const auto curves = built(ArcGeometry{center, normal, rotation, false, start, end}, {start, {}});
+    ASSERT_EQ(curves.size(), 1U);
+    EXPECT_NEAR(curves[0]->length(), radius * sweep, 1e-9);
+    expect_ends(*curves[0], start, end);
+    expect_steady(*curves[0]);
+    expect_sound(*curves[0], 1e-8);
+    for (int k = 0; k <= 20; ++k) {
+      CurvePoint point;
+      curves[0]->evaluate(curves[0]->length() * k / 20, 0, 1, point);
+      const Vector wanted = on_circle(from + rotation * sweep * k / 20);
+      for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(point.d[0][c], wanted[c], 1e-9);
+    }
+  }
+}
+
+TEST_F(Arc, RunsAllAroundWhenClosed) {
+  const ToolPose start{{12, 0, 3}, {0, 0, 1}};
+  const auto curves = built(ArcGeometry{{2, 0, 0}, {0, 0, 2}, -1, true, start, start}, {start, {}});
+  ASSERT_EQ(curves.size(), 1U);
+  EXPECT_NEAR(curves[0]->length(), 20 * pi, 1e-12);
+  CurvePoint quarter;
+  curves[0]->evaluate(5 * pi, 0, 1, quarter);
+  EXPECT_NEAR(quarter.d[0][0], 2, 1e-13);
+  EXPECT_NEAR(quarter.d[0][1], -10, 1e-13);
+  EXPECT_NEAR(quarter.d[0][2], 3, 1e-13);
+  expect_ends(*curves[0], start, start);
+}
+
+TEST_F(Arc, EndsExactlyWhereAskedThoughItsCentreIsRounded) {
+  const ToolPose start{{10, 0, 0}, {0, 0, 1}};
+  const ToolPose end{{0, 10.0008, 0.0005}, {0, 0, 1}};
+  const auto curves = built(ArcGeometry{{0, 0, 0}, {0, 0, 1}, 1, false, start, end}, {start, {}});
+  ASSERT_EQ(curves.size(), 1U);
+  expect_ends(*curves[0], start, end);
+  expect_steady(*curves[0]);
+}
+
+TEST_F(Arc, IsRefusedWithAmountsWhenItIsAHelixOrASpiral) {
+  const ToolPose start{{10, 0, 0}, {0, 0, 1}};
+  const auto with_end = [&](const Vector& end) {
+    return refusal(ArcGeometry{{0, 0, 0}, {0, 0, 1}, 1, false, start, {end, {0, 0, 1}}}, {start, {}});
+  };
+  EXPECT_THAT(with_end({0, 10, 0.5}), HasSubstr("0.5 mm apart along its normal"));
+  EXPECT_THAT(with_end({0, 10.25, 0}), HasSubstr("radius 10 mm about its centre and its end 10.25 mm"));
+  EXPECT_THAT(with_end({10.0000, 0.0005, 0}), HasSubstr("coincide (0.0005 mm apart); a full circle needs Closed"));
+  // Nearly all around with a radius that changes: no circle through both has its centre there.
+  EXPECT_THAT(with_end({10.0009, -0.002, 0}), HasSubstr("fit no circle about its centre"));
+}
+
+TEST_F(Arc, IsRefusedWhenDegenerate) {
+  const ToolPose start{{10, 0, 0}, {0, 0, 1}};
+  const ToolPose end{{0, 10, 0}, {0, 0, 1}};
+  const CurveStart queue{start, {}};
+  EXPECT_THAT(refusal(ArcGeometry{{0, 0, 0}, {0, 0, 0}, 1, false, start, end}, queue),
+              HasSubstr("normal has no length"));
+  EXPECT_THAT(refusal(ArcGeometry{{0, 0, 0}, {0, 0, 1}, 0, false, start, end}, queue), HasSubstr("rotation is 0"));
+  EXPECT_THAT(refusal(ArcGeometry{{kNan, 0, 0}, {0, 0, 1}, 1, false, start, end}, queue), HasSubstr("not finite"));
+  EXPECT_THAT(refusal(ArcGeometry{{10, 0, 0}, {0, 0, 1}, 1, true, start, start}, queue), HasSubstr("radius is 0 mm"));
+  EXPECT_THAT(refusal(ArcGeometry{{0, 0, 0}, {0, 0, 1}, 1, true, start, end}, queue),
+              HasSubstr("closed, but its end is 14.14214 mm from its start"));
+}
+
+TEST_F(Arc, PassesThroughThreePoints) {
+  for (int i = 0; i < 300; ++i) {
+    const ToolPose start = pose();
+    const ToolPose end = pose();
+    const Vector via = vector();
+    const auto curves = built(Arc3Geometry{via, start, end}, {start, {}});
+    ASSERT_EQ(curves.size(), 1U);
+    expect_ends(*curves[0], start, end);
+    expect_steady(*curves[0]);
+    // The via point lies between: the nearest point of a fine walk is within half a step of it.
+    double nearest = 1e9;
+    constexpr int kSteps = 20000;
+    for (int k = 0; k <= kSteps; ++k) {
+      CurvePoint point;
+      curves[0]->evaluate(curves[0]->length() * k / kSteps, 0, 1, point);
+      nearest = std::min(nearest, std::hypot(point.d[0][0] - via[0], point.d[0][1] - via[1], point.d[0][2] - via[2]));
+    }
+    EXPECT_LE(nearest, 0.51 * curves[0]->length() / kSteps + 1e-9);
+  }
+}
+
+TEST_F(Arc, ThroughThreePointsIsRefusedWhenTheyAreInLineOrCoincide) {
+  const ToolPose start{{0, 0, 0}, {0, 0, 1}};
+  const ToolPose end{{10, 0, 0}, {0, 0, 1}};
+  const CurveStart queue{start, {}};
+  EXPECT_THAT(refusal(Arc3Geometry{{5, 0, 0}, start, end}, queue), HasSubstr("lie on one line"));
+  EXPECT_THAT(refusal(Arc3Geometry{{15, 1e-9, 0}, start, end}, queue), HasSubstr("lie on one line"));
+  EXPECT_THAT(refusal(Arc3Geometry{{10, 0, 0.0005}, start, end}, queue), HasSubstr("coincide (0.0005 mm apart)"));
+  EXPECT_THAT(refusal(Arc3Geometry{{5, 5, 0}, start, start}, queue), HasSubstr("coincide (0 mm apart)"));
+  EXPECT_THAT(refusal(Arc3Geometry{{kNan, 5, 0}, start, end}, queue), HasSubstr("not finite"));
+}
+
+TEST_F(Arc, HasNodesAtMostATenthOfARadianApart) {
+  const ToolPose start{{5, 0, 0}, {0, 0, 1}};
+  const auto curves = built(ArcGeometry{{0, 0, 0}, {0, 0, 1}, 1, true, start, start}, {start, {}});
+  ASSERT_EQ(curves.size(), 1U);
+  const auto nodes = curves[0]->nodes();
+  for (std::size_t i = 0; i + 1 < nodes.size(); ++i) EXPECT_LE((nodes[i + 1] - nodes[i]) / 5, 0.1 + 1e-12);
+}
+
+}  // namespace
+}  // namespace rmac::test
