@@ -3,7 +3,7 @@
 #include <atomic>
 #include <memory>
 
-#include "gateway/controller/clock.hpp"
+#include "gateway/servo/clock.hpp"
 #include "gateway/verifier/trap.hpp"
 
 namespace rmac::gateway {

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "gateway/api/rpc_error.hpp"
-#include "gateway/controller/cycle_times.hpp"
-#include "gateway/controller/machine_state.hpp"
-#include "gateway/controller/module_loader.hpp"
 #include "gateway/device_driver_manager/device_driver_manager.hpp"
+#include "gateway/modules/module_loader.hpp"
 #include "gateway/record/flight_record.hpp"
+#include "gateway/servo/cycle_times.hpp"
+#include "gateway/state/machine_state.hpp"
 #include "gateway/tools/tool.hpp"
 #include "rmac/sdk/device_object.hpp"
 #include "rmac/sdk/measuring.hpp"

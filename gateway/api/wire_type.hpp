@@ -4,7 +4,7 @@
 #include <string>
 
 #include "gateway/api/enumeration.hpp"
-#include "gateway/configuration/range.hpp"
+#include "gateway/json/range.hpp"
 
 namespace rmac::gateway {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "gateway/configuration/json_document.hpp"
-#include "gateway/configuration/schemas.hpp"
+#include "gateway/json/json_document.hpp"
+#include "gateway/json/schemas.hpp"
 
 namespace rmac::gateway {
 namespace {

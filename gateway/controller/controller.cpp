@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "gateway/buses/built_in_interfaces.hpp"
 #include "gateway/controller/controller_impl.hpp"
 
 namespace rmac::gateway {

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "gateway/controller/bus_registry.hpp"
-#include "gateway/controller/clock.hpp"
-#include "gateway/controller/cycle_times.hpp"
-#include "gateway/controller/machine_state.hpp"
+#include "gateway/buses/bus_registry.hpp"
 #include "gateway/record/flight_recorder_options.hpp"
+#include "gateway/servo/clock.hpp"
+#include "gateway/servo/cycle_times.hpp"
+#include "gateway/state/machine_state.hpp"
 #include "gateway/tools/tool.hpp"
 #include "rmac/motion/error.hpp"
 #include "rmac/motion/servo_loop.hpp"

@@ -3,20 +3,17 @@
 #include <deque>
 #include <optional>
 
-#include "gateway/controller/assembler.hpp"
 #include "gateway/controller/controller.hpp"
-#include "gateway/controller/motion_supervisor.hpp"
-#include "gateway/controller/move_ledger.hpp"
-#include "gateway/controller/servo_thread.hpp"
+#include "gateway/cycle/motion_supervisor.hpp"
+#include "gateway/events/move_ledger.hpp"
+#include "gateway/mechanism/assembler.hpp"
 #include "gateway/record/flight_recorder.hpp"
 #include "gateway/rmac_cam/cam.hpp"
 #include "gateway/rmac_cam/measuring_machine.hpp"
 #include "gateway/rmac_config/config_draft.hpp"
+#include "gateway/servo/servo_thread.hpp"
 
 namespace rmac::gateway {
-
-/// Registers the interfaces that the appliance brings along.
-void add_built_in_interfaces(BusRegistry& registry, double period_s);
 
 struct Controller::Impl {
   explicit Impl(ControllerOptions controller_options);

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "gateway/controller/controller_impl.hpp"
-#include "gateway/controller/fault_text.hpp"
+#include "gateway/events/fault_text.hpp"
 #include "rmac/sdk/servo_law_names.hpp"
 
 namespace rmac::gateway {

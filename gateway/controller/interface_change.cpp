@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "gateway/controller/controller_impl.hpp"
-#include "gateway/controller/standing.hpp"
+#include "gateway/mechanism/standing.hpp"
 
 namespace rmac::gateway {
 

@@ -5,8 +5,8 @@
 #include <thread>
 
 #include "gateway/controller/controller_impl.hpp"
-#include "gateway/controller/fault_text.hpp"
-#include "gateway/controller/standing.hpp"
+#include "gateway/events/fault_text.hpp"
+#include "gateway/mechanism/standing.hpp"
 
 namespace rmac::gateway {
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "gateway/device_driver/device_database.hpp"
+#include "gateway/device_database/device_database.hpp"
 
 namespace rmac::gateway {
 

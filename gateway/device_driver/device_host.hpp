@@ -5,8 +5,8 @@
 #include <string>
 
 #include "gateway/controller/controller.hpp"
-#include "gateway/device_driver/verification.hpp"
 #include "gateway/device_driver_manager/device_driver_manager.hpp"
+#include "gateway/verification/verification.hpp"
 #include "rmac/sdk/device_driver.hpp"
 
 namespace rmac::gateway {

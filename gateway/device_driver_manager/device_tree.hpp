@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "gateway/device_driver/device_database.hpp"
+#include "gateway/device_database/device_database.hpp"
 #include "gateway/device_driver_manager/device_driver_manager.hpp"
 
 namespace rmac::gateway {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gateway/controller/machine_state.hpp"
+#include "gateway/state/machine_state.hpp"
 #include "rmac/motion/error.hpp"
 
 namespace rmac::gateway {

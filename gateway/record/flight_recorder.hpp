@@ -9,9 +9,9 @@
 #include <thread>
 #include <vector>
 
-#include "gateway/controller/cycle_history.hpp"
 #include "gateway/record/flight_record.hpp"
 #include "gateway/record/flight_recorder_options.hpp"
+#include "gateway/servo/cycle_history.hpp"
 #include "rmac/motion/error.hpp"
 
 namespace rmac::gateway {

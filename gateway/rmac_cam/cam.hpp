@@ -5,7 +5,7 @@
 #include <span>
 #include <variant>
 
-#include "gateway/controller/motion_supervisor.hpp"
+#include "gateway/cycle/motion_supervisor.hpp"
 #include "gateway/tools/tool_rack.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "gateway/controller/mechanism.hpp"
+#include "gateway/mechanism/mechanism.hpp"
 #include "gateway/rmac_cam/cam.hpp"
 #include "rmac/motion/frame.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gateway/controller/mechanism.hpp"
+#include "gateway/mechanism/mechanism.hpp"
 #include "gateway/rmac_cam/cam.hpp"
 #include "rmac/motion/frame.hpp"
 #include "rmac/motion/move_name.hpp"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "gateway/controller/mechanism.hpp"
+#include "gateway/mechanism/mechanism.hpp"
 #include "rmac/motion/frame.hpp"
 
 namespace rmac::gateway {

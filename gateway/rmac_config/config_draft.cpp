@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "gateway/configuration/range.hpp"
+#include "gateway/json/range.hpp"
 #include "rmac/motion/servo_loop.hpp"
 
 namespace rmac::gateway {

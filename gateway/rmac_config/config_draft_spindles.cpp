@@ -1,7 +1,7 @@
 // What RMAC_Config says of spindles.
 #include <fmt/format.h>
 
-#include "gateway/configuration/range.hpp"
+#include "gateway/json/range.hpp"
 #include "gateway/rmac_config/config_draft.hpp"
 
 namespace rmac::gateway {

@@ -11,9 +11,9 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "gateway/controller/sync_clock.hpp"
-#include "gateway/rmacd/machine.hpp"
+#include "gateway/appliance/machine.hpp"
 #include "gateway/server/server.hpp"
+#include "gateway/servo/sync_clock.hpp"
 
 namespace rmac::gateway {
 

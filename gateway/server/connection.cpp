@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "gateway/configuration/printable.hpp"
+#include "gateway/json/printable.hpp"
 #include "gateway/server/server.hpp"
 
 namespace rmac::gateway {

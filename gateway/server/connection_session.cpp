@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "gateway/api/state_json.hpp"
-#include "gateway/configuration/printable.hpp"
+#include "gateway/json/printable.hpp"
 #include "gateway/server/connection.hpp"
 #include "gateway/server/server.hpp"
 

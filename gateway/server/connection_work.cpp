@@ -1,7 +1,7 @@
 // From lines to answers: order, stops that overtake, moves that wait for room.
 #include <fmt/format.h>
 
-#include "gateway/configuration/printable.hpp"
+#include "gateway/json/printable.hpp"
 #include "gateway/server/connection.hpp"
 #include "gateway/server/server.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "gateway/configuration/printable.hpp"
+#include "gateway/json/printable.hpp"
 #include "gateway/server/connection.hpp"
 
 namespace rmac::gateway {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gateway/api/state_json.hpp"
-#include "gateway/configuration/printable.hpp"
+#include "gateway/json/printable.hpp"
 
 namespace rmac::gateway {
 

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "gateway/device_driver/device_database.hpp"
-#include "gateway/rmacd/machine.hpp"
+#include "gateway/appliance/machine.hpp"
+#include "gateway/device_database/device_database.hpp"
 
 namespace rmac::gateway {
 namespace {

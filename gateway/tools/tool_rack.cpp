@@ -7,8 +7,8 @@
 #include <cerrno>
 #include <system_error>
 
-#include "gateway/configuration/json_document.hpp"
-#include "gateway/configuration/schemas.hpp"
+#include "gateway/json/json_document.hpp"
+#include "gateway/json/schemas.hpp"
 #include "rmac/motion/frame.hpp"
 
 namespace rmac::gateway {

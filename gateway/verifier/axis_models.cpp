@@ -1,6 +1,6 @@
 #include "gateway/verifier/axis_models.hpp"
 
-#include "gateway/controller/bus_choice.hpp"
+#include "gateway/buses/bus_choice.hpp"
 
 namespace rmac::verifier {
 

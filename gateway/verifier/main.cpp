@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "gateway/configuration/configuration.hpp"
-#include "gateway/controller/assembler.hpp"
-#include "gateway/device_driver/device_database.hpp"
+#include "gateway/device_database/device_database.hpp"
+#include "gateway/mechanism/assembler.hpp"
 #include "gateway/verifier/supervisor.hpp"
 
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <tuple>
 
-#include "gateway/controller/assembler.hpp"
-#include "gateway/controller/controller_impl.hpp"
-#include "gateway/controller/fault_text.hpp"
+#include "gateway/buses/built_in_interfaces.hpp"
+#include "gateway/events/fault_text.hpp"
+#include "gateway/mechanism/assembler.hpp"
 #include "gateway/verifier/axis_models.hpp"
 
 namespace rmac::verifier {

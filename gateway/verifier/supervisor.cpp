@@ -16,7 +16,7 @@
 #include <memory>
 #include <new>
 
-#include "gateway/configuration/printable.hpp"
+#include "gateway/json/printable.hpp"
 
 namespace rmac::verifier {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gateway/verifier/check.hpp"
+#include "gateway/verification/checks/check.hpp"
 #include "gateway/verifier/trap.hpp"
 
 namespace rmac::verifier {

@@ -7,13 +7,13 @@
 #include <fstream>
 #include <numbers>
 
-#include "gateway/controller/assembler.hpp"
-#include "gateway/controller/bus_registry.hpp"
-#include "gateway/controller/controller_impl.hpp"
+#include "gateway/buses/built_in_interfaces.hpp"
+#include "gateway/buses/bus_registry.hpp"
+#include "gateway/mechanism/assembler.hpp"
 #include "gateway/rmac_config/config_draft.hpp"
-#include "gateway/verifier/actuator_map_check.hpp"
-#include "gateway/verifier/kinematics_check.hpp"
-#include "gateway/verifier/servo_law_check.hpp"
+#include "gateway/verification/checks/actuator_map_check.hpp"
+#include "gateway/verification/checks/kinematics_check.hpp"
+#include "gateway/verification/checks/servo_law_check.hpp"
 #include "gateway/verifier/servo_loop_check.hpp"
 #include "gateway/verifier/watched_ports.hpp"
 #include "rmac/motion/frame.hpp"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "gateway/controller/module_loader.hpp"
-#include "gateway/verifier/report.hpp"
+#include "gateway/modules/module_loader.hpp"
+#include "gateway/verification/report.hpp"
 #include "gateway/verifier/watch.hpp"
 #include "rmac/sdk/device_object.hpp"
 

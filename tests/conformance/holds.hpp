@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gateway/verifier/check.hpp"
+#include "gateway/verification/checks/check.hpp"
 
 namespace rmac::conformance {
 

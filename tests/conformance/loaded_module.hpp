@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "places.hpp"
 #include "rmac/sdk/module.hpp"
 
 namespace rmac::conformance {

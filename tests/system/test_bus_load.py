@@ -63,7 +63,7 @@ class BusLoad(unittest.TestCase):
     def test_holds_the_drives_against_their_data_sheet(self):
         folder = self.file.parent / "canopen"
         folder.mkdir()
-        sheet = (SOURCE / "fieldbus/vdrive/rmac-vdrive.eds").read_text()
+        sheet = (SOURCE / "gateway/simulators/vdrive/rmac-vdrive.eds").read_text()
         (folder / "servo.eds").write_text(sheet)
         parameters = {"node": [1, 2, 3, 4], "mode": [10, 10, 10, 3], "eds": "servo"}
         self.assertEqual(self.load(parameters, "--period", "0.002").stderr, "")
@@ -82,7 +82,7 @@ class BusLoad(unittest.TestCase):
         shared.mkdir(exist_ok=True)
         sheet = shared / f"{name}.eds"
         self.addCleanup(sheet.unlink)
-        shutil.copy(SOURCE / "fieldbus/vdrive/rmac-vdrive.eds", sheet)
+        shutil.copy(SOURCE / "gateway/simulators/vdrive/rmac-vdrive.eds", sheet)
         self.assertEqual(self.load({"node": [1, 2, 3, 4], "mode": [10, 10, 10, 3], "eds": name}, "--period", "0.002").stderr, "")
 
     def test_refuses_a_machine_without_a_can_bus(self):

@@ -77,7 +77,7 @@ class LifeCycle(unittest.TestCase):
             pass
 
     def test_discover_lists_every_function_once(self):
-        spec = json.loads((SOURCE / "tests/unit/api/fixtures/rmac_api.json").read_text())
+        spec = json.loads((SOURCE / "tests/unit/gateway/api/fixtures/rmac_api.json").read_text())
         wanted = {f"{function['interface']}.{function['name']}" for function in spec["functions"]}
         with Appliance() as appliance:
             document = appliance.client().call("rpc.discover")

@@ -8,7 +8,7 @@ import unittest
 
 BUILD = pathlib.Path(os.environ["RMAC_BUILD"])
 SOURCE = pathlib.Path(os.environ["RMAC_SOURCE"])
-SHEET = SOURCE / "fieldbus/vdrive/rmac-vdrive.eds"
+SHEET = SOURCE / "gateway/simulators/vdrive/rmac-vdrive.eds"
 
 
 def call(program, *words):
@@ -21,7 +21,7 @@ class VirtualDrive(unittest.TestCase):
         self.assertEqual((done.returncode, done.stdout), (0, SHEET.read_text()))
 
     def test_shares_no_protocol_code_with_the_master(self):
-        included = [line for file in (SOURCE / "fieldbus/vdrive").glob("*.?pp") for line in file.read_text().splitlines()
+        included = [line for file in (SOURCE / "gateway/simulators/vdrive").glob("*.?pp") for line in file.read_text().splitlines()
                     if line.startswith("#include") and "canopen" in line]
         self.assertEqual(included, [])
 

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <exception>
 
-#include "gateway/configuration/finite_numbers.hpp"
-#include "gateway/configuration/printable.hpp"
+#include "gateway/json/finite_numbers.hpp"
+#include "gateway/json/printable.hpp"
 
 namespace rmac::cli {
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "gateway/configuration/json_document.hpp"
-#include "gateway/configuration/schemas.hpp"
+#include "gateway/json/json_document.hpp"
+#include "gateway/json/schemas.hpp"
 
 namespace rmac::cli {
 

@@ -8,9 +8,9 @@
 #include <iostream>
 #include <string_view>
 
-#include "gateway/api/dispatcher.hpp"
-#include "gateway/api/method_table.hpp"
-#include "gateway/configuration/printable.hpp"
+#include "gateway/api/dispatch/dispatcher.hpp"
+#include "gateway/api/methods/method_table.hpp"
+#include "gateway/json/printable.hpp"
 #include "gateway/rmac/wire/requests.hpp"
 
 namespace rmac::cli {

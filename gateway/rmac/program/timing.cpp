@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 #include "gateway/rmac/wire/requests.hpp"
 
 namespace rmac::cli {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "gateway/configuration/printable.hpp"
+#include "gateway/json/printable.hpp"
 
 namespace rmac::cli {
 

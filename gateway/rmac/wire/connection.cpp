@@ -8,8 +8,8 @@
 #include <csignal>
 #include <istream>
 
-#include "gateway/api/method_table.hpp"
-#include "gateway/configuration/printable.hpp"
+#include "gateway/api/methods/method_table.hpp"
+#include "gateway/json/printable.hpp"
 
 namespace rmac::cli {
 

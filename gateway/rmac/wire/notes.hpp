@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gateway/controller/machine_state.hpp"
+#include "gateway/state/machine_state.hpp"
 
 namespace rmac::cli {
 

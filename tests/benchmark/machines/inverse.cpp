@@ -6,6 +6,7 @@
 #include <random>
 
 #include "conformance/loaded_module.hpp"
+#include "places.hpp"
 #include "rmac/motion/frame.hpp"
 #include "rmac/motion/ports/kinematics.hpp"
 #include "rows.hpp"

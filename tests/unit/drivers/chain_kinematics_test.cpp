@@ -7,7 +7,7 @@
 
 #include "conformance/holds.hpp"
 #include "conformance/loaded_module.hpp"
-#include "gateway/verifier/kinematics_check.hpp"
+#include "gateway/verification/checks/kinematics_check.hpp"
 #include "rmac/motion/frame.hpp"
 
 namespace {

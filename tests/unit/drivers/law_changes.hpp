@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "gateway/controller/exchangeable_law.hpp"
+#include "gateway/mechanism/exchangeable_law.hpp"
 #include "mill_on_simulated_bus.hpp"
 
 namespace rmac::mill_test {

@@ -14,6 +14,7 @@
 
 #include "circle.hpp"
 #include "conformance/loaded_module.hpp"
+#include "places.hpp"
 #include "rmac/fieldbus/simulated_interface.hpp"
 #include "rmac/motion/servo_loop.hpp"
 #include "rmac/sdk/servo_law_names.hpp"

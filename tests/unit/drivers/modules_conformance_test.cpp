@@ -5,8 +5,8 @@
 
 #include "conformance/holds.hpp"
 #include "conformance/loaded_module.hpp"
-#include "gateway/verifier/actuator_map_check.hpp"
-#include "gateway/verifier/kinematics_check.hpp"
+#include "gateway/verification/checks/actuator_map_check.hpp"
+#include "gateway/verification/checks/kinematics_check.hpp"
 
 namespace {
 

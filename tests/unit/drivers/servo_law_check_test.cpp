@@ -1,5 +1,5 @@
 // The laws' conformance suite, held against laws that break one rule each: a check that finds nothing is worth nothing.
-#include "gateway/verifier/servo_law_check.hpp"
+#include "gateway/verification/checks/servo_law_check.hpp"
 
 #include <gmock/gmock.h>
 
@@ -10,7 +10,7 @@
 #include <memory>
 #include <utility>
 
-#include "gateway/controller/exchangeable_law.hpp"
+#include "gateway/mechanism/exchangeable_law.hpp"
 
 namespace rmac {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "conformance/holds.hpp"
 #include "conformance/loaded_module.hpp"
-#include "gateway/verifier/servo_law_check.hpp"
+#include "gateway/verification/checks/servo_law_check.hpp"
 #include "rmac/modules/fuzzy_surface.hpp"
 #include "rmac/sdk/servo_law_names.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "conformance/holds.hpp"
 #include "conformance/loaded_module.hpp"
-#include "gateway/verifier/actuator_map_check.hpp"
+#include "gateway/verification/checks/actuator_map_check.hpp"
 
 namespace {
 

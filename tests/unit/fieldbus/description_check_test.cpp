@@ -3,6 +3,7 @@
 #include <iterator>
 
 #include "canopen/boot_plan.hpp"
+#include "places.hpp"
 #include "unit/fieldbus/canopen_bench.hpp"
 
 namespace {
@@ -13,7 +14,7 @@ using namespace rmac::fieldbus::test;
 using rmac::fieldbus::canopen::FindDescription;
 
 std::string sheet_of_virtual_drive() {
-  std::ifstream stream(RMAC_SOURCE_DIR "/fieldbus/vdrive/rmac-vdrive.eds", std::ios::binary);
+  std::ifstream stream(RMAC_SOURCE_DIR "/gateway/simulators/vdrive/rmac-vdrive.eds", std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <random>
 
+#include "places.hpp"
 #include "rmac/fieldbus/eds/device_description.hpp"
 
 namespace rmac::fieldbus::eds {
@@ -13,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string sheet_of_virtual_drive() {
-  std::ifstream stream(RMAC_SOURCE_DIR "/fieldbus/vdrive/rmac-vdrive.eds", std::ios::binary);
+  std::ifstream stream(RMAC_SOURCE_DIR "/gateway/simulators/vdrive/rmac-vdrive.eds", std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 

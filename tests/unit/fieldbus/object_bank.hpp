@@ -4,7 +4,7 @@
 #include <functional>
 #include <map>
 
-#include "vdrive/sdo_server.hpp"
+#include "gateway/simulators/vdrive/sdo_server.hpp"
 
 namespace rmac::fieldbus::test {
 

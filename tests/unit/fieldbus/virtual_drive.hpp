@@ -5,8 +5,8 @@
 #include <set>
 #include <vector>
 
+#include "gateway/simulators/vdrive/power_states.hpp"
 #include "unit/fieldbus/object_bank.hpp"
-#include "vdrive/power_states.hpp"
 
 namespace rmac::fieldbus::test {
 

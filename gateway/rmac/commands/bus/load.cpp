@@ -3,10 +3,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "gateway/buses/bus_choice.hpp"
+#include "gateway/buses/device_descriptions.hpp"
 #include "gateway/configuration/configuration.hpp"
-#include "gateway/controller/bus_choice.hpp"
-#include "gateway/controller/device_descriptions.hpp"
-#include "gateway/device_driver/device_database.hpp"
+#include "gateway/device_database/device_database.hpp"
 #include "gateway/rmac/commands/bus/registrations.hpp"
 #include "gateway/rmac/terminal/table.hpp"
 #include "rmac/fieldbus/canopen/bus_load.hpp"

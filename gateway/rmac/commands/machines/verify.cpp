@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include "gateway/configuration/configuration.hpp"
-#include "gateway/device_driver/verification.hpp"
 #include "gateway/rmac/commands/machines/registrations.hpp"
 #include "gateway/rmac/wire/authority.hpp"
+#include "gateway/verification/verification.hpp"
 
 namespace rmac::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 #include "gateway/api/state_json.hpp"
 
 namespace rmac::cli {

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "gateway/api/dispatcher.hpp"
+#include "gateway/api/dispatch/dispatcher.hpp"
 #include "gateway/rmac/wire/connection.hpp"
 
 namespace rmac::cli {

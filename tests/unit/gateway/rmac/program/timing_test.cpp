@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 
 namespace rmac::cli {
 namespace {
@@ -15,7 +15,8 @@ TEST(Timing, IsAMoveForEveryMethodThatQueuesOne) {
 
 TEST(Timing, NeverSendsAheadWhatStartsOrStopsMotion) {
   for (const gateway::Method& method : gateway::method_table()) {
-    if (timing_of(method.name) == Timing::Stream) EXPECT_EQ(method.effect, gateway::Effect::None) << method.name;
+    if (timing_of(method.name) != Timing::Stream) continue;
+    EXPECT_EQ(method.effect, gateway::Effect::None) << method.name;
   }
 }
 

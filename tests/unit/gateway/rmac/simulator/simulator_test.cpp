@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include "places.hpp"
+
 namespace rmac::cli {
 namespace {
 

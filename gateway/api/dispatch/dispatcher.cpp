@@ -1,0 +1,224 @@
+#include "gateway/api/dispatch/dispatcher.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include "gateway/api/decode.hpp"
+#include "gateway/api/methods/method_table.hpp"
+#include "gateway/json/printable.hpp"
+
+namespace rmac::gateway {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kLongestReason = 300;
+
+tl::unexpected<RpcError> wrong(int code, std::string message) {
+  return tl::unexpected<RpcError>(RpcError{code, std::move(message), MinorCode::InvalidParameter});
+}
+
+/// What one look at the characters tells of a line, before anything is built from it.
+struct Outline {
+  int nesting = 0;          ///< deepest, of brackets outside texts
+  std::size_t members = 0;  ///< of all objects together
+};
+
+Outline outline_of(std::string_view line) {
+  Outline outline;
+  int depth = 0;
+  bool in_text = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (in_text) {
+      if (c == '\\') ++i;
+      if (c == '"') in_text = false;
+    } else if (c == '"') {
+      in_text = true;
+    } else if (c == '[' || c == '{') {
+      outline.nesting = std::max(outline.nesting, ++depth);
+    } else if (c == ':') {
+      ++outline.members;
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+  return outline;
+}
+
+std::size_t members_in(const json& value) {
+  if (!value.is_structured()) return 0;
+  std::size_t members = value.is_object() ? value.size() : 0;
+  for (const json& element : value) members += members_in(element);
+  return members;
+}
+
+/// A key that stands twice in one object of a line that has such.
+std::string repeated_key(std::string_view line) {
+  std::vector<std::set<std::string>> open;
+  std::string repeated;
+  const auto watch = [&](int, json::parse_event_t event, json& value) {
+    if (event == json::parse_event_t::object_start) open.emplace_back();
+    if (event == json::parse_event_t::object_end) open.pop_back();
+    if (event == json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second) {
+      repeated = shortened(value);
+    }
+    return true;
+  };
+  const json again = json::parse(line, watch);
+  return repeated;
+}
+
+/// NaN and Infinity are what people send most often that is not JSON, so they are named.
+const char* hint_for(std::string_view line) {
+  for (const char* word : {"NaN", "nan", "Infinity", "inf"}) {
+    if (line.find(word) != std::string_view::npos)
+      return "; JSON has no NaN and no Infinity, every number must be finite";
+  }
+  return "";
+}
+
+}  // namespace
+
+tl::expected<json, RpcError> parse_line(std::string_view line) {
+  const Outline outline = outline_of(line);
+  if (outline.nesting > kLargestNesting) {
+    return wrong(rpc_code::kParseError,
+                 fmt::format("nested {} deep, at most {} objects and arrays within each other are read",
+                             outline.nesting, kLargestNesting));
+  }
+  try {
+    json parsed = json::parse(line);
+    // Of two members with one name a reader keeps one, so then the line has more than what was read from it.
+    if (members_in(parsed) != outline.members) {
+      return wrong(rpc_code::kInvalidRequest,
+                   fmt::format("the member {} stands twice in one object; say what it is once", repeated_key(line)));
+    }
+    return parsed;
+  } catch (const json::exception& error) {
+    // The reader's message begins with its own name and the number of the line, which is always 1.
+    const std::string_view what = error.what();
+    const auto place = what.find("column");
+    return wrong(rpc_code::kParseError,
+                 fmt::format("the line is not JSON: {}{}",
+                             printable(what.substr(place == what.npos ? 0 : place), kLongestReason), hint_for(line)));
+  }
+}
+
+Request read_request(json message) {
+  Request request;
+  const auto refuse = [&](std::string why) {
+    request.error = RpcError{rpc_code::kInvalidRequest, std::move(why), MinorCode::InvalidParameter};
+    request.notification = false;
+  };
+  if (!message.is_object()) {
+    refuse(fmt::format("{} is not a request; expected {}", shortened(message),
+                       R"({"jsonrpc": "2.0", "id": 1, "method": "...", "params": {...}})"));
+    return request;
+  }
+  request.notification = !message.contains("id");
+  if (!request.notification) {
+    json& id = message["id"];
+    // A number that no 64 bits hold, or a fraction, would come back as another.
+    if (!id.is_string() && !id.is_number_integer() && !id.is_null()) {
+      refuse(fmt::format("\"id\" is {}, expected a text, an integer from -2^63 to 2^64-1, or null", shortened(id)));
+      return request;
+    }
+    request.id = std::move(id);
+  }
+  for (const auto& [key, value] : message.items()) {
+    if (key == "jsonrpc" || key == "id" || key == "method" || key == "params") continue;
+    refuse(fmt::format("a request has no member {}; it has \"jsonrpc\", \"id\", \"method\" and \"params\"",
+                       shortened(key)));
+    return request;
+  }
+  if (!message.contains("jsonrpc") || message["jsonrpc"] != "2.0") {
+    refuse(R"(a request needs "jsonrpc": "2.0")");
+    return request;
+  }
+  if (!message.contains("method") || !message["method"].is_string()) {
+    refuse(R"(a request needs "method", a text)");
+    return request;
+  }
+  const std::string& name = message["method"].get_ref<const std::string&>();
+  request.method = find_method(name);
+  if (request.method == nullptr) {
+    request.error = RpcError{rpc_code::kMethodNotFound,
+                             fmt::format("there is no method {}; rpc.discover lists all", shortened(message["method"])),
+                             MinorCode::UnsupportedOperation};
+  }
+  if (message.contains("params")) request.params = std::move(message["params"]);
+  return request;
+}
+
+Effect Request::effect() const {
+  if (method == nullptr) return Effect::None;
+  if (!method->harmless) return method->effect;
+  const auto arguments = arrange(*method, params);
+  const bool harmless = arguments && *(*arguments)[method->harmless->parameter] == method->harmless->value;
+  return harmless ? Effect::None : method->effect;
+}
+
+Answer Dispatcher::execute(const Request& request, SessionPort& session) {
+  if (auto refusal = refusal_of(request, session)) return std::move(*refusal);
+  if (auto failed = prepare(request, session, status_)) return std::move(*failed);
+  return carry_out(request, session, status_);
+}
+
+std::optional<Answer> Dispatcher::refusal_of(const Request& request, const SessionPort& session) {
+  if (request.error) return tl::unexpected<RpcError>(*request.error);
+  const Method& method = *request.method;
+  const auto arguments = arrange(method, request.params);
+  if (!arguments) return tl::unexpected<RpcError>(arguments.error());
+  const bool writes_property = method.property && arguments->back() != nullptr;
+  if ((method.permission == Permission::Authority || writes_property) && !session.has_authority()) {
+    const std::string holder = session.authority_holder();
+    return tl::unexpected<RpcError>(RpcError{
+        rpc_code::kAuthorityRequired,
+        fmt::format("{} needs motion authority; {}", method.name,
+                    holder.empty() ? "call authority.acquire first"
+                                   : fmt::format("{} holds it: call authority.acquire when it is free", holder)),
+        MinorCode::UnsupportedOperation});
+  }
+  return std::nullopt;
+}
+
+std::optional<Answer> Dispatcher::prepare(const Request& request, SessionPort& session, MachineStatus& status) {
+  if (!request.method->preparation) return std::nullopt;
+  Answer prepared = run(request.method->preparation, request, session, status);
+  return prepared ? std::nullopt : std::optional<Answer>(std::move(prepared));
+}
+
+Answer Dispatcher::carry_out(const Request& request, SessionPort& session, MachineStatus& status) {
+  return run(request.method->handler, request, session, status);
+}
+
+Answer Dispatcher::run(const Method::Handler& handler, const Request& request, SessionPort& session,
+                       MachineStatus& status) {
+  const Method& method = *request.method;
+  Call call{machine_, status, session};
+  try {
+    return handler(call, *arrange(method, request.params));
+  } catch (const std::exception& error) {
+    // Nothing below is meant to throw; a client gets an answer all the same, and the daemon lives on.
+    return tl::unexpected<RpcError>(RpcError{rpc_code::kInternalError,
+                                             fmt::format("{} failed: {}", method.name, printable(error.what())),
+                                             MinorCode::Unknown});
+  }
+}
+
+json to_response(const json& id, const Answer& answer) {
+  json response{{"jsonrpc", "2.0"}, {"id", id}};
+  if (answer) {
+    response["result"] = *answer;
+  } else {
+    response["error"] = to_json(answer.error());
+  }
+  return response;
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,150 @@
+// RMAC_CAM.*: starting, stopping, holding and resuming.
+#include "gateway/api/method_builder.hpp"
+#include "gateway/api/methods/method_table.hpp"
+#include "gateway/api/state_json.hpp"
+
+namespace rmac::gateway {
+
+namespace {
+
+Expected<> start(Call& call, std::int64_t mode) {
+  return call.machine.cam().cycle_start(static_cast<sdk::CycleMode>(mode));
+}
+
+nlohmann::json to_json(const sdk::ParkedProgram& parked) {
+  const ToolPose& place = parked.place;
+  return {{"mechanism", parked.mechanism},
+          {"moves", parked.moves},
+          {"move_id", parked.move_id},
+          {"s_mm", parked.s_mm},
+          {"pose", {place.tip[0], place.tip[1], place.tip[2], place.axis[0], place.axis[1], place.axis[2]}},
+          {"off_mm", parked.off_mm}};
+}
+
+void add_parking_methods(const auto& add) {
+  add(method("RMAC_CAM.ParkProgram",
+             "Sets the program that is held aside, from its place on. The queue is empty then, spindle and coolant go "
+             "off, and the machine may be jogged, measured with, and loaded in another role.")
+          .gives(WireType::Boolean)
+          .needs(Permission::Authority)
+          .extension()
+          .does([](Call& call) { return call.machine.cam().park_program(); }));
+  add(method("RMAC_CAM.TakeUpProgram",
+             "Queues the parked program again, in the part frame and with the tool in force now, and holds it; nothing "
+             "moves before FeedResume, which switches spindle and coolant on again. The tool must stand within 1 mm of "
+             "the place. When refused, the program stays parked.")
+          .gives(WireType::Boolean)
+          .causes(Effect::Starts)
+          .may_be_slow()
+          .extension()
+          .does([](Call& call) { return call.machine.cam().take_up_program(); }));
+  add(method("RMAC_CAM.DropParkedProgram", "Forgets the parked program.")
+          .gives(WireType::Boolean)
+          .needs(Permission::Authority)
+          .extension()
+          .does([](Call& call) { return call.machine.cam().drop_parked_program(); }));
+  add(method(
+          "RMAC_CAM.GetParkedProgram",
+          "The parked program: `mechanism`, `moves` to do, `move_id` and `s_mm` of the one that was begun, the `pose` "
+          "in the part frame where it goes on, and how far the tool is `off_mm` it. Empty when none is parked.")
+          .gives(WireType::Object)
+          .extension()
+          .does([](Call& call) {
+            const auto parked = call.machine.cam().parked_program();
+            return parked ? to_json(*parked) : nlohmann::json::object();
+          }));
+}
+
+}  // namespace
+
+void add_cycle_methods(std::vector<Method>& table) {
+  const auto add = [&](Method entry) { table.push_back(std::move(entry)); };
+  add(method("RMAC_CAM.CycleStart",
+             "Starts the cycle: AUTOMATIC runs the queue and what comes after it, MANUAL runs one move.")
+          .takes(choice("Mode", kCycleModeValues))
+          .gives(WireType::Boolean)
+          .causes(Effect::Starts)
+          .does(start));
+  add(method("RMAC_CAM.SetCycleStartStatus",
+             "The start button as an HMI sees it: true does what CycleStart(AUTOMATIC) does; false, its release, moves "
+             "and stops nothing.")
+          .takes(boolean("status"))
+          .causes(Effect::Starts)
+          .except(false)
+          .does([](Call& call, bool pressed) { return pressed ? start(call, 1) : Expected<>{}; }));
+  add(method("RMAC_CAM.GetCycleStartStatus", "Whether the cycle is started.")
+          .gives(WireType::Boolean)
+          .does([](Call& call) { return call.machine.cam().cycle_start_status(); }));
+  add(method("RMAC_CAM.CycleStop",
+             "Stops on the path, whatever the mode, and keeps the rest of the queue; a new CycleStart goes on.")
+          .takes(choice("Mode", kCycleModeValues))
+          .gives(WireType::Boolean)
+          .causes(Effect::Holds)
+          .does([](Call& call, std::int64_t) { return call.machine.cam().cycle_stop(); }));
+  add(method("RMAC_CAM.SetCycleStopStatus",
+             "The stop button as an HMI sees it: true does what CycleStop does; false, its release, does not start "
+             "anything.")
+          .takes(boolean("status"))
+          .causes(Effect::Holds)
+          .except(false)
+          .does([](Call& call, bool pressed) { return pressed ? call.machine.cam().cycle_stop() : Expected<>{}; }));
+  add(method("RMAC_CAM.GetCycleStopStatus", "Whether the cycle is stopped.")
+          .gives(WireType::Boolean)
+          .does([](Call& call) { return call.machine.cam().cycle_stop_status(); }));
+  add(method("RMAC_CAM.StopNow", "Stops as fast as the limits allow and empties the queue.")
+          .gives(WireType::Boolean)
+          .causes(Effect::Stops)
+          .does([](Call& call) { return call.machine.cam().stop_now(); }));
+  add(method("RMAC_CAM.FeedHold", "Comes to rest on the path; FeedResume goes on from there.")
+          .gives(WireType::Boolean)
+          .causes(Effect::Holds)
+          .extension()
+          .does([](Call& call) { return call.machine.cam().feed_hold(); }));
+  add(method("RMAC_CAM.FeedResume", "Goes on after a FeedHold.")
+          .gives(WireType::Boolean)
+          .causes(Effect::Starts)
+          .extension()
+          .does([](Call& call) { return call.machine.cam().feed_resume(); }));
+  add(method("RMAC_CAM.FeedRetrace",
+             "Runs back along the path of what is held, then holds again; FeedResume runs forward from there.")
+          .takes(number("Distance", "mm").within(0.001, kPlaces.max))
+          .gives(WireType::Number, "mm")
+          .causes(Effect::Starts)
+          .extension()
+          .does([](Call& call, double distance) { return call.machine.cam().feed_retrace(distance); }));
+  add_parking_methods(add);
+  add(method("RMAC_CAM.Reset", "Leaves a fault or emergency stop whose cause is gone; nothing moves by it.")
+          .gives(WireType::Boolean)
+          .causes(Effect::Starts)
+          .may_be_slow()
+          .extension()
+          .does([](Call& call) { return call.machine.cam().reset(); }));
+  add(method("RMAC_CAM.SetFeedOverride", "Percentage of the programmed feed at which moves run, at once; 0 waits.")
+          .takes(number("Percent", "%").within(0, 200))
+          .needs(Permission::Authority)
+          .extension()
+          .does([](Call& call, double percent) { return call.machine.cam().set_feed_override(percent); }));
+  add(method("RMAC_CAM.GetState", "The machine's state now: what the topic `state` pushes.")
+          .gives(WireType::Object)
+          .extension()
+          .does([](Call& call) {
+            CycleSample now = call.machine.sample();
+            now.state = call.machine.cycle_now().state;  // a start that was just accepted is not in the sample yet
+            return state_to_json(call.machine, now, call.status, call.session.authority_holder());
+          }));
+  add(method("RMAC_CAM.GetCycleTimes",
+             "Where the servo thread's time goes, since the mechanism was put in: `deadline_misses`, and of `wake_up` "
+             "(from when a cycle was due), `compute` (without the bus) and `bus` each `count`, `median_us`, `p99_us`, "
+             "`p999_us`, `largest_us`, and `bins`, pairs of a bin's largest time in µs and how often it occurred.")
+          .gives(WireType::Object)
+          .extension()
+          .does([](Call& call) {
+            const CycleTimes& times = call.machine.cycle_times();
+            return nlohmann::json{{"deadline_misses", call.machine.sample().deadline_misses},
+                                  {"wake_up", times_to_json(times.wake_up.read())},
+                                  {"compute", times_to_json(times.compute.read())},
+                                  {"bus", times_to_json(times.bus.read())}};
+          }));
+}
+
+}  // namespace rmac::gateway

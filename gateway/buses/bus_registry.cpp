@@ -1,0 +1,157 @@
+#include "gateway/buses/bus_registry.hpp"
+
+#include <fmt/format.h>
+
+#include "gateway/buses/bus_choice.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+/// Has axes to name, and nothing behind them.
+class NoBus final : public DigitalControlInterface {
+ public:
+  std::size_t axis_count() const noexcept override { return kAxes; }
+  Expected<> start() override { return {}; }
+  void stop() noexcept override {}
+  bool exchange(std::span<const DriveCommand>, std::span<DriveFeedback>) noexcept override { return true; }
+
+ private:
+  static constexpr std::size_t kAxes = 256;
+};
+
+bool same(const sdk::ModuleChoice& a, const sdk::ModuleChoice& b) {
+  return a.name == b.name && a.numbers == b.numbers && a.texts == b.texts;
+}
+
+tl::unexpected<Error> no_interface(const char* what, const sdk::ModuleChoice& choice, const std::string& built_in,
+                                   const Error& loading) {
+  return failure(loading.code, fmt::format("no {} \"{}\": built in are {}; as a module: {}", what, choice.name,
+                                           built_in, loading.message));
+}
+
+template <typename Map>
+std::string names(const Map& map) {
+  std::string text;
+  for (const auto& [name, ignored] : map) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "none" : text;
+}
+
+}  // namespace
+
+void BusRegistry::add_control_interface(const std::string& name, ControlFactory factory) {
+  control_factories_[name] = std::move(factory);
+}
+
+void BusRegistry::add_io_interface(const std::string& name, IoFactory factory) {
+  io_factories_[name] = std::move(factory);
+}
+
+Expected<std::shared_ptr<DigitalControlInterface>> BusRegistry::make_control(const std::string& bus,
+                                                                             const sdk::ModuleChoice& choice,
+                                                                             const ModuleLoader& loader) const {
+  if (const auto built_in = control_factories_.find(choice.name); built_in != control_factories_.end()) {
+    return built_in->second(bus, choice, loader);
+  }
+  auto loaded = loader.load<DigitalControlInterface>(choice);
+  if (!loaded) {
+    return no_interface("digital control interface", choice, names(control_factories_), loaded.error());
+  }
+  return std::move(loaded->object);
+}
+
+Expected<std::shared_ptr<DigitalIoInterface>> BusRegistry::make_io(const sdk::ModuleChoice& choice,
+                                                                   const ModuleLoader& loader) const {
+  if (const auto built_in = io_factories_.find(choice.name); built_in != io_factories_.end()) {
+    return built_in->second(choice, loader);
+  }
+  auto loaded = loader.load<DigitalIoInterface>(choice);
+  if (!loaded) return no_interface("digital I/O interface", choice, names(io_factories_), loaded.error());
+  return std::move(loaded->object);
+}
+
+Expected<> BusRegistry::check_control_interface(const sdk::ModuleChoice& choice, const ModuleLoader& loader) const {
+  if (control_factories_.contains(choice.name)) return {};
+  return make_control("", interface_of_bus("", choice), loader).map([](const auto&) {});
+}
+
+Expected<> BusRegistry::check_io_interface(const sdk::ModuleChoice& choice, const ModuleLoader& loader) const {
+  return make_io(choice, loader).map([](const auto&) {});
+}
+
+Expected<std::shared_ptr<ServoBus>> BusRegistry::acquire(const std::string& name, const sdk::ModuleChoice& choice,
+                                                         const ModuleLoader& loader) {
+  auto known = buses_.find(name);
+  if (known != buses_.end() && !same(known->second.choice, choice)) {
+    if (known->second.bus.use_count() > 1) {
+      return failure(MinorCode::InvalidParameterValue,
+                     fmt::format("bus {} is run by {} for the mechanism in force; unload that before the bus is given "
+                                 "to {} or to other parameters",
+                                 name, known->second.choice.name, choice.name));
+    }
+    if (known->second.started) known->second.bus->interface->stop();
+    buses_.erase(known);
+    known = buses_.end();
+  }
+  if (known == buses_.end()) {
+    auto made = make_control(name, choice, loader);
+    if (!made) return tl::unexpected(made.error());
+    known = buses_.emplace(name, Bus{choice, std::make_shared<ServoBus>(std::move(*made)), false}).first;
+  }
+  Bus& bus = known->second;
+  if (!bus.started) {
+    if (auto started = bus.bus->interface->start(); !started) {
+      return failure(started.error().code, fmt::format("bus {} did not come up: {}", name, started.error().message));
+    }
+    bus.started = true;
+  }
+  return bus.bus;
+}
+
+std::shared_ptr<ServoBus> BusRegistry::virtual_bus(const std::string& name) {
+  std::shared_ptr<ServoBus>& bus = virtual_buses_[name];
+  if (!bus) bus = std::make_shared<ServoBus>(std::make_shared<NoBus>());
+  return bus;
+}
+
+Expected<std::shared_ptr<DigitalIoInterface>> BusRegistry::acquire_io(const sdk::ModuleChoice& choice,
+                                                                      const ModuleLoader& loader) {
+  auto known = ios_.find(choice.name);
+  if (known != ios_.end() && !same(known->second.choice, choice)) {
+    if (known->second.interface.use_count() > 1) {
+      return failure(MinorCode::InvalidParameterValue,
+                     fmt::format("{} is in use by the mechanism in force; unload that before it gets other parameters",
+                                 choice.name));
+    }
+    if (known->second.started) known->second.interface->stop();
+    ios_.erase(known);
+    known = ios_.end();
+  }
+  if (known == ios_.end()) {
+    auto made = make_io(choice, loader);
+    if (!made) return tl::unexpected(made.error());
+    known = ios_.emplace(choice.name, Io{choice, std::move(*made), false}).first;
+  }
+  Io& io = known->second;
+  if (!io.started) {
+    if (auto started = io.interface->start(); !started) return tl::unexpected(started.error());
+    io.started = true;
+  }
+  return io.interface;
+}
+
+void BusRegistry::stop_unused() noexcept {
+  for (auto& [name, bus] : buses_) {
+    if (bus.started && bus.bus.use_count() == 1) {
+      bus.bus->interface->stop();
+      bus.started = false;
+    }
+  }
+  for (auto& [name, io] : ios_) {
+    if (io.started && io.interface.use_count() == 1) {
+      io.interface->stop();
+      io.started = false;
+    }
+  }
+}
+
+}  // namespace rmac::gateway

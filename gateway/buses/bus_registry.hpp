@@ -1,0 +1,70 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "gateway/modules/module_loader.hpp"
+#include "rmac/motion/servo_loop.hpp"
+
+namespace rmac::gateway {
+
+/// The buses of the appliance. They outlive mechanisms, which borrow axes of them: a drive that two mechanisms share
+/// stays operational while one replaces the other. Interfaces are built in and chosen by name, or come as modules.
+/// Gateway thread only.
+class BusRegistry {
+ public:
+  /// Makes the interface to one bus, which `device.json` names. The name may say which of the machine's interfaces it
+  /// is; the loader finds what else it needs in the mechanism's folder and the shared ones.
+  using ControlFactory = std::function<Expected<std::shared_ptr<DigitalControlInterface>>(
+      const std::string& bus, const sdk::ModuleChoice& choice, const ModuleLoader& loader)>;
+  using IoFactory = std::function<Expected<std::shared_ptr<DigitalIoInterface>>(const sdk::ModuleChoice& choice,
+                                                                                const ModuleLoader& loader)>;
+
+  void add_control_interface(const std::string& name, ControlFactory factory);
+  void add_io_interface(const std::string& name, IoFactory factory);
+
+  /// Whether an interface of this name is built in or can be loaded. A built-in one's parameters are its buses', and
+  /// are checked with them.
+  [[nodiscard]] Expected<> check_control_interface(const sdk::ModuleChoice& choice, const ModuleLoader& loader) const;
+  [[nodiscard]] Expected<> check_io_interface(const sdk::ModuleChoice& choice, const ModuleLoader& loader) const;
+
+  /// The bus, brought up. A bus that runs already is shared as long as the same interface is wanted of it.
+  [[nodiscard]] Expected<std::shared_ptr<ServoBus>> acquire(const std::string& bus, const sdk::ModuleChoice& choice,
+                                                            const ModuleLoader& loader);
+  /// What stands for a bus in virtual mode: axes and nothing behind them. The same one each time, so that a mechanism
+  /// that replaces another one takes over where its drives stand.
+  [[nodiscard]] std::shared_ptr<ServoBus> virtual_bus(const std::string& bus);
+  [[nodiscard]] Expected<std::shared_ptr<DigitalIoInterface>> acquire_io(const sdk::ModuleChoice& choice,
+                                                                         const ModuleLoader& loader);
+
+  /// Stops what no mechanism borrows any more: drives disabled, outputs safe. What is behind it stays known.
+  void stop_unused() noexcept;
+
+ private:
+  struct Bus {
+    sdk::ModuleChoice choice;
+    std::shared_ptr<ServoBus> bus;
+    bool started = false;
+  };
+  struct Io {
+    sdk::ModuleChoice choice;
+    std::shared_ptr<DigitalIoInterface> interface;
+    bool started = false;
+  };
+
+  [[nodiscard]] Expected<std::shared_ptr<DigitalControlInterface>> make_control(const std::string& bus,
+                                                                                const sdk::ModuleChoice& choice,
+                                                                                const ModuleLoader& loader) const;
+  [[nodiscard]] Expected<std::shared_ptr<DigitalIoInterface>> make_io(const sdk::ModuleChoice& choice,
+                                                                      const ModuleLoader& loader) const;
+
+  std::map<std::string, ControlFactory> control_factories_;
+  std::map<std::string, IoFactory> io_factories_;
+  std::map<std::string, Bus> buses_;
+  std::map<std::string, std::shared_ptr<ServoBus>> virtual_buses_;
+  std::map<std::string, Io> ios_;
+};
+
+}  // namespace rmac::gateway

@@ -1,0 +1,301 @@
+#include "gateway/events/fault_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "rmac/fieldbus/canopen/emergency.hpp"
+#include "rmac/fieldbus/fault_texts.hpp"
+#include "rmac/motion/drive_power.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+std::string joint_name(std::uint32_t index, const sdk::DeviceObject* device) {
+  if (device == nullptr) return fmt::format("joint {}", index);
+  const std::size_t moved = device->joints.size();
+  if (index < moved) return fmt::format("joint {} ({})", index, device->joints[index].limits.name);
+  if (index - moved < device->held_joints.size()) {
+    return fmt::format("held joint {} ({})", index, device->held_joints[index - moved].limits.name);
+  }
+  return fmt::format("joint {}", index);
+}
+
+struct NamedBus {
+  const ServoBus* bus;
+  std::string name;
+};
+
+/// A bus of the servo loop, which counts them as actuators, spindles and force sensors name them first.
+std::optional<NamedBus> bus_at(std::uint32_t index, const Mechanism* mechanism) {
+  if (mechanism == nullptr) return {};
+  const ServoLoopParts& parts = mechanism->loop->parts();
+  const sdk::DeviceObject& device = mechanism->device;
+  std::vector<NamedBus> buses;
+  const auto add = [&buses](const std::shared_ptr<ServoBus>& bus, const std::string& name) {
+    const auto same = [&bus](const NamedBus& known) { return known.bus == bus.get(); };
+    if (std::none_of(buses.begin(), buses.end(), same)) buses.push_back({bus.get(), name});
+  };
+  for (std::size_t i = 0; i < parts.actuators.size(); ++i) add(parts.actuators[i].bus, device.actuators.at(i).bus);
+  for (std::size_t i = 0; i < parts.spindles.size(); ++i) add(parts.spindles[i].bus, device.spindles.at(i).bus);
+  for (std::size_t j = 0; j < parts.axes.size(); ++j) {
+    const std::size_t moved = device.joints.size();
+    const sdk::Joint& joint = j < moved ? device.joints[j] : device.held_joints.at(j - moved);
+    if (parts.axes[j].force_sensor) add(parts.axes[j].force_sensor->bus, joint.force_sensor->bus);
+  }
+  return index < buses.size() ? std::optional(buses[index]) : std::nullopt;
+}
+
+std::string where(const ServoFault& fault, const Mechanism* mechanism) {
+  const sdk::DeviceObject* device = mechanism != nullptr ? &mechanism->device : nullptr;
+  switch (fault.part) {
+    case ServoFault::Part::Joint:
+      return joint_name(fault.index, device);
+    case ServoFault::Part::Actuator:
+      if (device != nullptr && fault.index < device->actuators.size()) {
+        const sdk::Actuator& actuator = device->actuators[fault.index];
+        return fmt::format("drive of actuator {} (bus {}, axis {})", fault.index, actuator.bus, actuator.axis);
+      }
+      return fmt::format("drive of actuator {}", fault.index);
+    case ServoFault::Part::Spindle:
+      if (device != nullptr && fault.index < device->spindles.size()) {
+        const sdk::Spindle& spindle = device->spindles[fault.index];
+        return fmt::format("drive of spindle {} (bus {}, axis {})", fault.index, spindle.bus, spindle.axis);
+      }
+      return fmt::format("drive of spindle {}", fault.index);
+    case ServoFault::Part::Bus: {
+      const auto bus = bus_at(fault.index, mechanism);
+      return bus ? "bus " + bus->name : fmt::format("bus {}", fault.index);
+    }
+    case ServoFault::Part::Io:
+      return "digital I/O";
+    case ServoFault::Part::Clock:
+      return "servo thread";
+  }
+  return "somewhere";
+}
+
+std::string input_name(std::uint32_t bit, const Mechanism* mechanism) {
+  if (mechanism != nullptr) {
+    for (const auto& [name, at] : mechanism->device.inputs) {
+      if (static_cast<std::uint32_t>(at) == bit) return fmt::format("{} (input {})", name, bit);
+    }
+  }
+  return fmt::format("input {}", bit);
+}
+
+/// A limit switch of a known joint and end, towards which that joint moves no further.
+bool holds_back(std::uint32_t bit, const Mechanism* mechanism) {
+  if (mechanism == nullptr) return false;
+  const auto& limits = mechanism->loop->parts().limits;
+  return std::any_of(limits.begin(), limits.end(),
+                     [bit](const ServoLimit& limit) { return limit.input == std::uint64_t{1} << bit; });
+}
+
+/// Why the exchange with an interface failed.
+template <typename Interface>
+std::string exchange_text(const Interface* interface, const char* otherwise) {
+  const auto* told = dynamic_cast<const fieldbus::ExchangeFaultText*>(interface);
+  return told != nullptr ? told->fault_text() : otherwise;
+}
+
+std::string io_text(const Mechanism* mechanism) {
+  const DigitalIoInterface* io = mechanism == nullptr ? nullptr : mechanism->loop->parts().io.get();
+  return exchange_text(io, "the device failed; check it");
+}
+
+std::string bus_text(std::uint32_t index, const Mechanism* mechanism) {
+  const auto bus = bus_at(index, mechanism);
+  const DigitalControlInterface* interface = bus ? bus->bus->interface.get() : nullptr;
+  return exchange_text(interface, "the bus failed; check the interface");
+}
+
+/// A drive's error code, as its interface tells it or else as CiA 402 does.
+std::string code_text(const ServoFault& fault, std::uint16_t code, const Mechanism* mechanism) {
+  const auto told_by = [code](const auto& drive) -> std::optional<std::string> {
+    const auto* texts = dynamic_cast<const fieldbus::FaultTexts*>(drive.bus->interface.get());
+    if (texts == nullptr) return {};
+    return texts->fault_text(drive.axis, code);
+  };
+  std::optional<std::string> text;
+  if (mechanism != nullptr) {
+    const ServoLoopParts& parts = mechanism->loop->parts();
+    if (fault.part == ServoFault::Part::Spindle && fault.index < parts.spindles.size()) {
+      text = told_by(parts.spindles[fault.index]);
+    } else if (fault.part == ServoFault::Part::Actuator && fault.index < parts.actuators.size()) {
+      text = told_by(parts.actuators[fault.index]);
+    }
+  }
+  return text ? *text : fieldbus::canopen::emergency_text(code);
+}
+
+/// What only a spindle's own watch finds; nothing for what any drive may have.
+std::optional<std::string> spindle_cause(const ServoFault& fault, const std::string& at, const Mechanism* mechanism) {
+  switch (fault.kind) {
+    case ServoFault::Kind::FollowingError:
+      return fmt::format(
+          "{}: its angle is {:.4g} degrees off, beyond the bound of {:.4g}; look for a blocked spindle or weak gains, "
+          "then reset",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::VelocityBound:
+      return fmt::format(
+          "{}: it turns at {:.4g} rpm, a fifth beyond its {:.4g} rpm; look for a drive that runs away, or a wrong "
+          "scale or direction, then reset",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::TorqueBound: {
+      const bool own = mechanism == nullptr || fault.index >= mechanism->device.spindles.size() ||
+                       fault.bound >= mechanism->device.spindles[fault.index].max_torque_nm;
+      return fmt::format(
+          "{}: it gave {:.3g} N·m for a tenth of a second, and {} {:.3g} N·m; look at the tool, which may be blunt or "
+          "stuck, and cut less at once, then reset",
+          at, fault.value, own ? "may give" : "its tool bears", fault.bound);
+    }
+    default:
+      return {};
+  }
+}
+
+std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
+  std::string at = where(fault, mechanism);
+  const auto word = static_cast<unsigned>(std::lround(std::abs(fault.value)));
+  if (fault.part == ServoFault::Part::Spindle) {
+    if (auto text = spindle_cause(fault, at, mechanism)) return *text;
+  }
+  switch (fault.kind) {
+    case ServoFault::Kind::None:
+      return "no fault";
+    case ServoFault::Kind::FollowingError:
+      return fmt::format(
+          "{}: following error {:.4g} is beyond the bound of {:.4g}; look for a blocked axis, a wrong "
+          "scale or weak gains, then reset",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::VelocityBound:
+      return fmt::format(
+          "{}: it moves at {:.4g} per second, beyond the bound of {:.4g}; look for a drive that runs away, a wrong "
+          "scale or a wrong direction, then reset",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::TorqueBound:
+      return fmt::format(
+          "{}: it gives {:.3g} N·m, beyond the bound of {:.3g} N·m; look for a collision or a drive whose current loop "
+          "is out of order, then reset",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::EncoderJump:
+      return fmt::format(
+          "{}: its position jumped by {:.4g} within a cycle, and motion explains {:.4g}; check the encoder, its cable "
+          "and its screen, then reset and find the reference again",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::SensorLost:
+      if (fault.part != ServoFault::Part::Joint) {
+        return fmt::format(
+            "{}: the drive has lost its encoder (error {:04X}h, {}); check the encoder and its cable, "
+            "then reset",
+            at, word, code_text(fault, static_cast<std::uint16_t>(word), mechanism));
+      }
+      return fmt::format(
+          "{}: its force sensor gives no valid value; check the sensor, its amplifier and its cable, "
+          "then reset",
+          at);
+    case ServoFault::Kind::ForceLimit:
+      return fmt::format(
+          "{}: it pushes with {:.4g}, beyond the bound of {:.4g}; look at what it met, back off, then "
+          "reset",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::ContactLost:
+      return fmt::format("{}: it went {:.4g} without contact, as far as it may; look where the part is, then reset", at,
+                         fault.value);
+    case ServoFault::Kind::CyclesLost:
+      return fmt::format(
+          "{}: {:.0f} deadlines were missed within a second, and {:.0f} are allowed; look at the load of the "
+          "controller and at docs/real-time.md, then reset",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::NotANumber:
+      return fmt::format("{}: the servo loop computed no number; check gains and feedback, then reset", at);
+    case ServoFault::Kind::DriveFault:
+      return fmt::format(
+          "{}: the drive reports error {:04X}h ({}); look it up in its manual, remove the cause, then reset", at, word,
+          code_text(fault, static_cast<std::uint16_t>(word), mechanism));
+    case ServoFault::Kind::DriveOffline:
+      return fmt::format("{}: the drive does not answer; check its power and its cable, then reset", at);
+    case ServoFault::Kind::DriveDropped:
+      return fmt::format(
+          "{}: the drive left Operation Enabled by itself and is in {}; check its enable chain, then "
+          "reset",
+          at, rmac::to_string(drive_state(static_cast<std::uint16_t>(word))));
+    case ServoFault::Kind::EnableTimeout:
+      return fmt::format(
+          "{}: the drive was not enabled within {:.3g} s, it stays in {}; check its power and its enable "
+          "chain, then reset",
+          at, fault.bound, rmac::to_string(drive_state(static_cast<std::uint16_t>(word))));
+    case ServoFault::Kind::BusFailure:
+      return fmt::format("{}: {}, then reset", at, bus_text(fault.index, mechanism));
+    case ServoFault::Kind::IoFailure:
+      return fmt::format("{}: {}, then reset", at, io_text(mechanism));
+    case ServoFault::Kind::EmergencyStop:
+      return fmt::format("{} stopped the machine; release it, then reset", input_name(fault.index, mechanism));
+    case ServoFault::Kind::HomingFailed:
+      return fault.bound > 0
+                 ? fmt::format(
+                       "{}: the drive found no home within {:.3g} s (statusword {:04X}h); check its switch and "
+                       "its homing speeds, then reset",
+                       at, fault.bound, word)
+                 : fmt::format(
+                       "{}: the drive gave up looking for home (statusword {:04X}h); check its switch and its "
+                       "homing method, then reset",
+                       at, word);
+    case ServoFault::Kind::LimitSwitch:
+      return fmt::format("{} is reached; reset, then jog the axis off it{}", input_name(fault.index, mechanism),
+                         holds_back(fault.index, mechanism) ? "" : ": nothing keeps it from moving on towards it");
+  }
+  return at;
+}
+
+}  // namespace
+
+std::string describe(const ServoFault& fault, const Mechanism* mechanism) {
+  if (fault.kind == ServoFault::Kind::None) return "no fault";
+  if (fault.stop == StopCategory::StopThenRemovePower) {
+    return cause(fault, mechanism) + ". Stop category 1: the drives brake, and lose their power at rest";
+  }
+  const bool but_one = fault.kind == ServoFault::Kind::DriveOffline && fault.part == ServoFault::Part::Actuator;
+  return cause(fault, mechanism) + ". Stop category 2: every " + (but_one ? "other " : "") +
+         "joint brakes and is held under power";
+}
+
+MinorCode code_of(ServoFault::Kind kind) noexcept {
+  using Kind = ServoFault::Kind;
+  switch (kind) {
+    case Kind::None:
+      return MinorCode::None;
+    case Kind::EmergencyStop:
+      return MinorCode::EmergencyStop;
+    case Kind::LimitSwitch:
+      return MinorCode::TravelLimit;
+    case Kind::VelocityBound:
+      return MinorCode::SpeedLimit;
+    case Kind::EncoderJump:
+    case Kind::SensorLost:
+      return MinorCode::Scale;
+    case Kind::DriveOffline:
+    case Kind::BusFailure:
+    case Kind::IoFailure:
+      return MinorCode::CommTimeout;
+    case Kind::EnableTimeout:
+    case Kind::HomingFailed:
+      return MinorCode::ResponseTimeout;
+    case Kind::DriveDropped:  // and does not say why
+      return MinorCode::Unknown;
+    case Kind::FollowingError:
+    case Kind::TorqueBound:
+    case Kind::ForceLimit:
+    case Kind::ContactLost:
+    case Kind::CyclesLost:
+    case Kind::NotANumber:
+    case Kind::DriveFault:
+      break;
+  }
+  return MinorCode::Other;
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,34 @@
+#include "gateway/events/move_ledger.hpp"
+
+#include <fmt/format.h>
+
+#include "rmac/motion/move_name.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+Event make_event(Event::Kind kind, const CycleSample& sample, std::int64_t id) {
+  const char* what = kind == Event::Kind::MoveStarted ? "started" : "done";
+  return {kind,         sample.t_s,
+          id,           id == kPositioningMoveId ? fmt::format("jog {}", what) : fmt::format("move {} {}", id, what),
+          sample.cycle, {}};
+}
+
+}  // namespace
+
+void MoveLedger::read(const CycleSample& sample, const std::function<void(const Event&)>& tell) {
+  const auto start = [&](Entry& entry) {
+    if (!entry.started) tell(make_event(Event::Kind::MoveStarted, sample, entry.id));
+    entry.started = true;
+  };
+  while (!moves_.empty() && (moves_.front().still || done_ < sample.moves_done)) {
+    start(moves_.front());
+    if (moves_.front().tells_done) tell(make_event(Event::Kind::MoveDone, sample, moves_.front().id));
+    if (!moves_.front().still) ++done_;
+    moves_.pop_front();
+  }
+  if (sample.moves_done > done_) done_ = sample.moves_done;
+  if (sample.moving && !moves_.empty() && moves_.front().id == sample.move_id) start(moves_.front());
+}
+
+}  // namespace rmac::gateway

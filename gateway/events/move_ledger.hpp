@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+
+#include "gateway/cycle/motion_supervisor.hpp"
+
+namespace rmac::gateway {
+
+/// Tells from samples which move began and which ended. Samples carry a count of moves done, so that nothing is missed
+/// when some were dropped or many short moves end in one cycle. Gateway thread.
+class MoveLedger {
+ public:
+  /// `still`: the move has no motion, so no sample counts it; it is done in its turn.
+  /// Of a move in parts, the first one tells that it began, the last one that it is done.
+  void add(std::int64_t move_id, bool still, MovePart part = {}) {
+    moves_.push_back({move_id, !part.first, still, part.last});
+  }
+  /// What is not done will not be done.
+  void clear() { moves_.clear(); }
+  /// Another mechanism: its count begins at zero.
+  void restart() {
+    moves_.clear();
+    done_ = 0;
+  }
+  void read(const CycleSample& sample, const std::function<void(const Event&)>& tell);
+
+ private:
+  struct Entry {
+    std::int64_t id;
+    bool started;  ///< told
+    bool still;
+    bool tells_done;
+  };
+  std::deque<Entry> moves_;
+  std::uint64_t done_ = 0;
+};
+
+}  // namespace rmac::gateway

@@ -1,0 +1,163 @@
+#include "gateway/servo/servo_cycle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rmac/motion/frame.hpp"
+
+namespace rmac::gateway {
+
+void ServoCycle::run(std::uint64_t missed) noexcept {
+  serve_swap();
+  ++cycle_;
+  const ServoWishes& wishes = link_.wishes.read();
+  sample_.cycle = cycle_;
+  sample_.t_s = static_cast<double>(cycle_) * period_s_;
+  sample_.deadline_misses += missed;
+  command_.cycles_missed = missed;
+  if (mechanism_ != nullptr) move(wishes);
+  publish(wishes);
+}
+
+void ServoCycle::serve_swap() noexcept {
+  SwapRequest* const request = link_.swap.exchange(nullptr, std::memory_order_acq_rel);
+  if (request == nullptr) return;
+  if (!request->laws.empty() || !request->methods.empty()) {
+    request->result.store(change_loops(*request), std::memory_order_release);
+    return;
+  }
+  if (status_.moving) {
+    request->result.store(SwapRequest::Result::Refused, std::memory_order_release);
+    return;
+  }
+  take_over(request->next);
+  status_.generation = request->generation;
+  // Whoever asked may destroy the old mechanism, and the request, from here on.
+  request->result.store(SwapRequest::Result::Done, std::memory_order_release);
+}
+
+SwapRequest::Result ServoCycle::change_loops(const SwapRequest& request) noexcept {
+  constexpr double kOnPlan = 1e-6;  // mm or degrees
+  ServoLoop& loop = *mechanism_->loop;
+  for (const SwapRequest::Method& other : request.methods) {
+    const bool keeps_position = other.method == ControlMethod::Position;
+    if (keeps_position && std::abs(loop.slipped(other.joint)) > kOnPlan) return SwapRequest::Result::Refused;
+  }
+  for (const SwapRequest::Method& other : request.methods) loop.set_control_method(other.joint, other.method);
+  for (SwapRequest::Law& other : request.laws) other.joint->exchange(other.law);
+  return SwapRequest::Result::Done;
+}
+
+void ServoCycle::take_over(Mechanism* next) noexcept {
+  if (next != nullptr && mechanism_ != nullptr && next->loop != mechanism_->loop) {
+    next->loop->engage(mechanism_->loop->handover());
+  }
+  const bool same_loop = next != nullptr && mechanism_ != nullptr && next->loop == mechanism_->loop;
+  mechanism_ = next;
+  const std::uint64_t misses = sample_.deadline_misses;
+  const std::uint64_t lost = sample_.samples_lost;
+  sample_ = CycleSample{};
+  sample_.deadline_misses = misses;
+  sample_.samples_lost = lost;
+  status_ = ServoStatus{};
+  if (!same_loop) {
+    report_ = ServoReport{};
+    link_.times.clear();
+  }
+  // The first cycle puts the follower where the joints hold.
+  report_.follows = false;
+}
+
+void ServoCycle::move(const ServoWishes& wishes) noexcept {
+  ServoLoop& loop = *mechanism_->loop;
+  command_.frames = wishes.frames;
+  command_.power = wishes.power;
+  command_.reset = wishes.reset;
+  command_.home = wishes.home;
+  command_.spindle_rpm = wishes.spindle_rpm;
+  command_.tool_torque_nm = wishes.tool_torque_nm;
+  command_.outputs = wishes.outputs;
+  command_.force = wishes.force;
+  if (!report_.follows) mechanism_->follower.hold_at(loop.hold_position().first(loop.joint_count()));
+  mechanism_->follower.sample(cycle_, command_.setpoint);
+
+  const ServoFault::Kind before = report_.fault.kind;
+  loop.cycle(command_, report_);
+
+  const Setpoint& setpoint = command_.setpoint;
+  status_.progress = {cycle_, mechanism_->follower.accepted_plan(), mechanism_->follower.last_refused()};
+  status_.state = report_.state;
+  status_.fault = report_.fault;
+  status_.follows = report_.follows;
+  status_.moving = (report_.follows && setpoint.moving) || report_.state == ServoState::Homing;
+  status_.homings = report_.homings;
+  status_.probe = report_.probe;
+  if (report_.follows) status_.moves_done += setpoint.moves_done;
+  status_.joint_count = static_cast<std::uint32_t>(loop.joint_count());
+  status_.axis_count = static_cast<std::uint32_t>(loop.axis_count());
+  status_.position_set = report_.position_set;
+  status_.spindle_rpm = report_.spindle_rpm;
+
+  if (report_.fault.kind != before && report_.fault.kind != ServoFault::Kind::None) {
+    // A full ring holds 64 faults that nobody has read: the first ones are those that matter.
+    (void)link_.faults.push({cycle_, sample_.t_s, status_.generation, setpoint.move_id, setpoint.s_mm, report_.fault});
+  }
+}
+
+void ServoCycle::fill_pose_set() noexcept {
+  if (status_.moving && status_.follows) {
+    sample_.pose_set = command_.setpoint.pose;
+    return;
+  }
+  const ServoLoop& loop = *mechanism_->loop;
+  ToolPose machine;
+  loop.parts().kinematics->forward({report_.position_set.data(), loop.joint_count()}, command_.frames.tool, machine);
+  sample_.pose_set = apply_to_pose(inverse(command_.frames.part), machine);
+}
+
+void ServoCycle::publish(const ServoWishes& wishes) noexcept {
+  status_.t_s = sample_.t_s;
+  status_.progress.cycle = cycle_;
+  sample_.state = wishes.state;
+  if (status_.state == ServoState::Faulted) {
+    const bool pressed = status_.fault.kind == ServoFault::Kind::EmergencyStop;
+    sample_.state = pressed ? CycleState::EmergencyStop : CycleState::Faulted;
+  }
+  if (mechanism_ != nullptr) {
+    sample_.joint_count = status_.joint_count;
+    sample_.axis_count = status_.axis_count;
+    sample_.actuator_count = static_cast<std::uint32_t>(mechanism_->loop->parts().actuators.size());
+    sample_.servo_state = status_.state;
+    sample_.fault = status_.fault;
+    sample_.moving = status_.moving;
+    sample_.move_id = command_.setpoint.move_id;
+    sample_.s_mm = command_.setpoint.s_mm;
+    sample_.feed_set_mm_s = status_.moving && status_.follows ? command_.setpoint.feed_mm_s : 0;
+    sample_.feed_actual_mm_s = report_.feed_mm_s;
+    fill_pose_set();
+    sample_.pose_actual = report_.pose;
+    sample_.position_set = report_.position_set;
+    sample_.velocity_set = report_.velocity_set;
+    sample_.acceleration_set = report_.acceleration_set;
+    sample_.position = report_.position;
+    sample_.velocity = report_.velocity;
+    sample_.effort = report_.effort;
+    sample_.force = report_.force;
+    sample_.contact = report_.contact;
+    sample_.statusword = report_.statusword;
+    sample_.error_code = report_.error_code;
+    sample_.torque_permille = report_.torque_permille;
+    std::copy(report_.spindle_rpm.begin(), report_.spindle_rpm.end(), sample_.spindle_rpm.begin());
+    std::copy(report_.spindle_torque_nm.begin(), report_.spindle_torque_nm.end(), sample_.spindle_torque_nm.begin());
+    sample_.inputs = report_.inputs;
+    sample_.probe = report_.probe;
+    sample_.outputs = wishes.outputs;
+    sample_.moves_done = status_.moves_done;
+  }
+  const auto kept = static_cast<std::int64_t>(link_.history.capacity());
+  if (cycle_ - link_.delivered.load(std::memory_order_relaxed) > kept) ++sample_.samples_lost;
+  link_.history.add(sample_);
+  link_.status.write(status_);
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,311 @@
+#include "gateway/verification/checks/kinematics_check.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <random>
+
+namespace rmac::verifier {
+namespace {
+
+constexpr double kTipBound_mm = 1e-9, kAxisBound_rad = 1e-9;
+/// How much the pose must change, mm and rad alike, a mm or degree of a joint in the worst direction, for the inverse
+/// to be held to giving the joints back: to what the bounds above leave open.
+constexpr double kDetermined = 1e-4;
+constexpr std::size_t kMostSolutions = 16;
+
+using Joints = std::vector<double>;
+
+double distance(const Vector& a, const Vector& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+NamedNumbers named_pose(const char* name, const ToolPose& pose) {
+  return {name, {pose.tip[0], pose.tip[1], pose.tip[2], pose.axis[0], pose.axis[1], pose.axis[2]}};
+}
+
+class KinematicsCheck {
+ public:
+  KinematicsCheck(const Kinematics& kinematics, const KinematicsCase& given)
+      : kinematics_(kinematics),
+        given_(given),
+        n_(given.ranges.size()),
+        random_(given.seed),
+        jacobian_(6 * n_),
+        all_(kMostSolutions * n_) {}
+
+  Checked run() {
+    if (kinematics_.joint_count() != n_) {
+      return found("joints", fmt::format("it has {} joints, {} are wanted", kinematics_.joint_count(), n_), -1, {});
+    }
+    for (const Joints& joints : special_joints()) {
+      if (auto fine = at(joints); !fine) return fine;
+    }
+    for (int i = 0; i < given_.samples; ++i) {
+      if (auto fine = at(random_joints()); !fine) return fine;
+    }
+    if (determined_ == 0 && n_ <= 5) {
+      return found("Jacobian", "it says of no joint vector that the pose determines it", -1, {});
+    }
+    return check_no_number();
+  }
+
+ private:
+  double random(double least, double most) { return std::uniform_real_distribution<>(least, most)(random_); }
+  Joints random_joints() {
+    Joints joints;
+    for (const JointRange& range : given_.ranges) joints.push_back(random(range.min, range.max));
+    return joints;
+  }
+  [[nodiscard]] bool turns(std::size_t joint) const { return kinematics_.joint_type(joint) == JointType::Rotary; }
+
+  /// Where geometries break: corners, ends, quarter turns, and what is close to those.
+  std::vector<Joints> special_joints() {
+    std::vector<Joints> result;
+    for (std::size_t corner = 0; corner < std::size_t{1} << std::min<std::size_t>(n_, 6); ++corner) {
+      Joints joints;
+      for (std::size_t j = 0; j < n_; ++j) {
+        joints.push_back((corner >> j & 1U) != 0 ? given_.ranges[j].max : given_.ranges[j].min);
+      }
+      result.push_back(joints);
+    }
+    for (std::size_t j = 0; j < n_; ++j) {
+      const auto add = [&](double value) {
+        if (value < given_.ranges[j].min || value > given_.ranges[j].max) return;
+        Joints joints = random_joints();
+        joints[j] = value;
+        result.push_back(std::move(joints));
+      };
+      add(given_.ranges[j].min);
+      add(given_.ranges[j].max);
+      constexpr double kQuarter = 90;
+      for (int turn = -8; turns(j) && turn <= 8; ++turn) {
+        for (const double off : {0.0, 1e-9, -1e-6, 1e-4}) add(turn * kQuarter + off);
+      }
+    }
+    Joints zero;
+    for (const JointRange& range : given_.ranges) zero.push_back(std::clamp(0.0, range.min, range.max));
+    result.push_back(zero);
+    return result;
+  }
+
+  Checked at(const Joints& joints) {
+    joints_ = joints;
+    tool_ = given_.tools[static_cast<std::size_t>(sample_) % given_.tools.size()];
+    kinematics_.forward(joints_, tool_, pose_);
+    const double length = std::hypot(pose_.axis[0], pose_.axis[1], pose_.axis[2]);
+    if (!(std::abs(length - 1) <= kAxisBound_rad) || !std::isfinite(pose_.tip[0] + pose_.tip[1] + pose_.tip[2])) {
+      return fault("forward", fmt::format("the tool axis has length {}, or the tip is no number", length),
+                   {named_pose("pose", pose_)});
+    }
+    // The solutions cost as much as all else together, and are the same code for each sample.
+    constexpr int kSolutionsEvery = 5;
+    auto fine = check_jacobian().and_then([&] { return check_types(); }).and_then([&] { return check_inverse(); });
+    if (fine && sample_ % kSolutionsEvery == 0) fine = check_solutions();
+    ++sample_;
+    return fine;
+  }
+
+  [[nodiscard]] tl::unexpected<CounterExample> fault(const char* check, std::string what,
+                                                     std::vector<NamedNumbers> more = {}) const {
+    std::vector<NamedNumbers> values{
+        named("joints", joints_),
+        {"tool", {tool_.p[0], tool_.p[1], tool_.p[2], tool_.q[0], tool_.q[1], tool_.q[2], tool_.q[3]}}};
+    for (NamedNumbers& value : more) values.push_back(std::move(value));
+    return found(check, std::move(what), sample_, std::move(values));
+  }
+
+  Checked check_jacobian() {
+    std::fill(jacobian_.begin(), jacobian_.end(), std::nan(""));
+    kinematics_.jacobian(joints_, tool_, jacobian_);
+    if (kinematics_.constant_jacobian()) {
+      Joints elsewhere(6 * n_, std::nan(""));
+      kinematics_.jacobian(Joints(n_, 0.0), tool_, elsewhere);
+      if (jacobian_ != elsewhere) {
+        return fault("Jacobian", "it is not what it is at zero, and is said to be the same at all joints");
+      }
+    }
+    constexpr double kStep = 1e-4, kBound = 1e-6;
+    Joints moved = joints_;
+    for (std::size_t j = 0; j < n_; ++j) {
+      ToolPose above, below;
+      moved[j] = joints_[j] + kStep;
+      kinematics_.forward(moved, tool_, above);
+      moved[j] = joints_[j] - kStep;
+      kinematics_.forward(moved, tool_, below);
+      moved[j] = joints_[j];
+      for (std::size_t row = 0; row < 6; ++row) {
+        const double rise = row < 3 ? above.tip[row] - below.tip[row] : above.axis[row - 3] - below.axis[row - 3];
+        const double derivative = rise / (2 * kStep), off = jacobian_[row * n_ + j] - derivative;
+        if (!(std::abs(off) <= kBound)) {
+          return fault("Jacobian", fmt::format("row {}, column {} is {}, the forward changes by {} a mm or degree", row,
+                                               j, jacobian_[row * n_ + j], derivative));
+        }
+      }
+    }
+    return {};
+  }
+
+  /// A slide carries tip and axis along by as much as it moves, and turns nothing; a turn turns the axis by no more
+  /// than itself.
+  Checked check_types() {
+    for (std::size_t j = 0; j < n_; ++j) {
+      const auto length = [&](std::size_t row) {
+        return std::hypot(jacobian_[row * n_ + j], jacobian_[(row + 1) * n_ + j], jacobian_[(row + 2) * n_ + j]);
+      };
+      const double tip = length(0), axis = length(3);
+      if (kinematics_.joint_type(j) == JointType::Linear && !(std::abs(tip - 1) <= 1e-9 && axis <= 1e-9)) {
+        return fault("joint types",
+                     fmt::format("joint {} is said to slide, but moves the tip by {} mm a mm and turns the axis by {}",
+                                 j, tip, axis));
+      }
+      if (turns(j) && !(axis <= std::numbers::pi / 180 + 1e-9)) {
+        return fault("joint types",
+                     fmt::format("joint {} is said to turn, but turns the axis by {} rad a degree", j, axis));
+      }
+    }
+    return {};
+  }
+
+  /// Least change of the pose a unit of joint motion, in the worst direction of the joints.
+  [[nodiscard]] double determination() const {
+    const auto n = static_cast<Eigen::Index>(n_);
+    const Eigen::MatrixXd rows =
+        Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(jacobian_.data(), 6,
+                                                                                                 n);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(rows.transpose() * rows, Eigen::EigenvaluesOnly);
+    return std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
+  }
+
+  /// By how much the forward of `joints` misses the pose, in words; nothing where it does not.
+  [[nodiscard]] std::optional<std::string> miss(std::span<const double> joints) const {
+    ToolPose again;
+    kinematics_.forward(joints, tool_, again);
+    const double tip = distance(again.tip, pose_.tip), axis = distance(again.axis, pose_.axis);
+    if (tip <= kTipBound_mm && axis <= kAxisBound_rad) return std::nullopt;
+    return fmt::format(
+        "the forward of its joints is {} mm and {} rad off the pose asked for; {} mm and {} rad are "
+        "allowed",
+        tip, axis, kTipBound_mm, kAxisBound_rad);
+  }
+
+  Checked check_inverse() {
+    constexpr double kNearby = 1e-3;
+    Joints seed = joints_, answer(n_, std::nan(""));
+    for (double& joint : seed) joint += random(-kNearby, kNearby);
+    const auto shown = [&] {
+      return std::vector{named_pose("pose", pose_), named("seed", seed), named("answer", answer)};
+    };
+    if (kinematics_.inverse(pose_, tool_, seed, answer) != KinematicsStatus::Ok) {
+      return fault("inverse", "it finds no joints for a pose that joints within their travel give", shown());
+    }
+    if (const auto off = miss(answer)) return fault("inverse", *off, shown());
+    const double determined = determination();
+    if (determined < kDetermined) return {};
+    ++determined_;
+    for (std::size_t j = 0; j < n_; ++j) {
+      const double off = std::abs(answer[j] - joints_[j]), bound = kTipBound_mm * std::max(1.0, 1 / determined);
+      if (!(off <= bound)) {
+        return fault("seeded inverse",
+                     fmt::format("joint {} comes back {} off where it was, seeded within {} of it", j, off, kNearby),
+                     shown());
+      }
+    }
+    return {};
+  }
+
+  Checked check_solutions() {
+    const Joints seed = random_joints();
+    const auto shown = [&](std::span<const double> solution) {
+      return std::vector{named_pose("pose", pose_), named("seed", seed), named("solution", solution)};
+    };
+    std::fill(all_.begin(), all_.end(), std::nan(""));
+    const std::size_t count = kinematics_.solutions(pose_, tool_, seed, all_);
+    if (count == 0 || count > kMostSolutions) {
+      return fault("solutions",
+                   fmt::format("there are said to be {}; there is one at least, and {} at most", count, kMostSolutions),
+                   {named_pose("pose", pose_), named("seed", seed)});
+    }
+    const bool determined = determination() >= kDetermined;
+    double way_before = 0;
+    bool found_again = false;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::span<const double> solution(all_.data() + i * n_, n_);
+      if (const auto off = miss(solution)) return fault("solutions", *off, shown(solution));
+      double way = 0, off = 0;
+      for (std::size_t j = 0; j < n_; ++j) {
+        const double turn = solution[j] - seed[j], by = solution[j] - joints_[j];
+        off = std::max(off, std::abs(turns(j) ? std::remainder(by, 360) : by));
+        if (!turns(j)) continue;
+        way += turn * turn;
+        if (!(std::abs(turn) <= 180 + 1e-6)) {
+          return fault("solutions", fmt::format("joint {} is {} degrees from the seed, more than half a turn", j, turn),
+                       shown(solution));
+        }
+      }
+      if (way < way_before - 1e-6) {
+        return fault("solutions", "one comes after another that is further from the seed", shown(solution));
+      }
+      way_before = way;
+      found_again = found_again || off <= kTipBound_mm / kDetermined;
+    }
+    if (determined && !found_again) {
+      return fault("solutions", fmt::format("the joints that the pose was made of are not among the {}", count),
+                   {named_pose("pose", pose_), named("seed", seed)});
+    }
+    return determined ? check_nearest(seed) : Checked();
+  }
+
+  /// The inverse finds the first of the solutions; of two as near as each other, either.
+  Checked check_nearest(const Joints& seed) {
+    Joints answer(n_, std::nan(""));
+    const bool reached = kinematics_.inverse(pose_, tool_, seed, answer) == KinematicsStatus::Ok;
+    double way = 0, shortest = 0;
+    for (std::size_t j = 0; j < n_; ++j) {
+      if (!turns(j)) continue;
+      way += (answer[j] - seed[j]) * (answer[j] - seed[j]);
+      shortest += (all_[j] - seed[j]) * (all_[j] - seed[j]);
+    }
+    if (reached && way <= shortest + 1e-6) return {};
+    return fault("inverse", "it does not give the solution that is nearest to the seed",
+                 {named_pose("pose", pose_), named("seed", seed), named("answer", answer),
+                  named("nearest", std::span(all_).first(n_))});
+  }
+
+  Checked check_no_number() {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    Joints answer(n_);
+    for (const ToolPose& pose : {ToolPose{{0, 0, nan}, {0, 0, 1}}, ToolPose{{0, 0, 0}, {nan, 0, 1}}}) {
+      if (kinematics_.inverse(pose, {}, Joints(n_, 0.0), answer) == KinematicsStatus::Ok) {
+        return found("inverse", "it finds joints for a pose that is no number", sample_, {named_pose("pose", pose)});
+      }
+    }
+    return {};
+  }
+
+  const Kinematics& kinematics_;
+  const KinematicsCase& given_;
+  std::size_t n_;
+  std::mt19937_64 random_;
+  std::int64_t sample_ = 0;
+  std::int64_t determined_ = 0;  ///< samples whose joints the pose determines
+
+  Joints joints_;  ///< of the sample at hand, with the three below
+  Frame tool_;
+  ToolPose pose_;
+  std::vector<double> jacobian_;
+  std::vector<double> all_;
+};
+
+}  // namespace
+
+Checked check_kinematics(const Kinematics& kinematics, const KinematicsCase& given) {
+  return KinematicsCheck(kinematics, given).run();
+}
+
+}  // namespace rmac::verifier

@@ -1,0 +1,144 @@
+#include "gateway/verification/verification.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "gateway/device_database/device_database.hpp"
+#include "gateway/modules/module_loader.hpp"
+#include "gateway/verification/child_process.hpp"
+#include "rmac/sdk/servo_law_names.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// FNV-1a with 64 bits: tells files that changed from those that did not, and does no more.
+class Hash {
+ public:
+  void add(std::string_view bytes) noexcept {
+    for (const char byte : bytes) value_ = (value_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
+  }
+  /// False when it cannot be read.
+  bool add_file(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::array<char, 65536> buffer{};
+    while (stream.read(buffer.data(), buffer.size()) || stream.gcount() > 0) {
+      add({buffer.data(), static_cast<std::size_t>(stream.gcount())});
+    }
+    return stream.eof();
+  }
+  [[nodiscard]] std::string text() const { return fmt::format("{:016x}", value_); }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325U;
+};
+
+std::set<std::string> modules_of(const sdk::DeviceObject& device) {
+  std::set<std::string> names{device.device_driver, device.kinematics.name, device.actuator_map.name};
+  for (const auto* joints : {&device.joints, &device.held_joints}) {
+    for (const sdk::Joint& joint : *joints) names.insert(sdk::servo_law_module(joint.servo_law.name));
+  }
+  names.erase("");  // of a joint whose drive closes the loop itself
+  return names;
+}
+
+/// One file a verdict: a mechanism may go back to a build that passed.
+fs::path verdict_file(const fs::path& folder, const std::string& mechanism, const std::string& fingerprint) {
+  return folder / (mechanism + "@" + fingerprint + ".json");
+}
+
+/// The verdicts on one mechanism beyond the newest few go.
+void forget_old(const fs::path& folder, const std::string& mechanism) {
+  constexpr std::size_t kKept = 16;
+  std::error_code ignored;
+  std::vector<std::pair<fs::file_time_type, fs::path>> verdicts;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (!entry.path().filename().string().starts_with(mechanism + "@")) continue;
+    verdicts.emplace_back(entry.last_write_time(ignored), entry.path());
+  }
+  std::sort(verdicts.rbegin(), verdicts.rend());
+  for (std::size_t i = kKept; i < verdicts.size(); ++i) fs::remove(verdicts[i].second, ignored);
+}
+
+/// A verdict that cannot be kept costs time at the next loading, and nothing else.
+void keep(const fs::path& folder, const verifier::Report& report, const std::string& fingerprint) {
+  std::error_code ignored;
+  fs::create_directories(folder, ignored);
+  const fs::path file = verdict_file(folder, report.mechanism, fingerprint);
+  const fs::path unfinished = folder / fmt::format(".{}-{}", report.mechanism, ::getpid());
+  std::ofstream(unfinished) << verifier::to_json(report).dump(2) << '\n';
+  fs::rename(unfinished, file, ignored);
+  forget_old(folder, report.mechanism);
+}
+
+}  // namespace
+
+std::string Verification::fingerprint(const fs::path& device_json, const sdk::DeviceObject& device) const {
+  std::vector<fs::path> folders{device_json.parent_path()};
+  folders.insert(folders.end(), options_.module_folders.begin(), options_.module_folders.end());
+  const ModuleLoader loader(folders);
+  Hash hash;
+  if (!hash.add_file(options_.program) || !hash.add_file(device_json)) return "";
+  for (const std::string& name : modules_of(device)) {
+    const auto file = loader.find_file("", name, ".so", "module");
+    hash.add(name);
+    if (!file || !hash.add_file(*file)) return "";
+  }
+  // Interfaces are modules only where they are not built in.
+  for (const sdk::ModuleChoice* interface : {&device.digital_control_interface, &device.digital_io_interface}) {
+    if (const auto file = loader.find_file("", interface->name, ".so", "module"); file && !hash.add_file(*file)) {
+      return "";
+    }
+  }
+  return hash.text();
+}
+
+Expected<verifier::Report> Verification::verify(const fs::path& device_json) const {
+  const auto device = read_device_database(device_json);
+  if (!device) return tl::unexpected(device.error());
+  // Before it runs: what changes meanwhile is not what passed.
+  const std::string before = fingerprint(device_json, *device);
+  std::vector<std::string> words{options_.program.string(), device_json.string(), "--json"};
+  for (const fs::path& folder : options_.module_folders) {
+    words.emplace_back("--modules");
+    words.push_back(folder.string());
+  }
+  const auto done = run_child(words, options_.patience, cancelled_);
+  if (!done) return tl::unexpected(done.error());
+  const Json json = Json::parse(done->output, nullptr, false);
+  if (json.is_discarded()) {
+    std::string why = done->complaint;
+    while (!why.empty() && why.back() == '\n') why.pop_back();
+    return failure(
+        MinorCode::InvalidParameterValue,
+        why.empty() ? fmt::format("the verifier {} ended without a report", options_.program.string()) : why);
+  }
+  verifier::Report report = verifier::report_of(json);
+  if (report.passed() && !before.empty() && !options_.verdicts.empty()) keep(options_.verdicts, report, before);
+  return report;
+}
+
+Expected<> Verification::require(const fs::path& device_json) const {
+  const auto device = read_device_database(device_json);
+  if (!device) return tl::unexpected(device.error());
+  const std::string now = fingerprint(device_json, *device);
+  std::error_code ignored;
+  if (!now.empty() && !options_.verdicts.empty() &&
+      fs::exists(verdict_file(options_.verdicts, device->name, now), ignored)) {
+    return {};
+  }
+  const auto report = verify(device_json);
+  if (!report) return tl::unexpected(report.error());
+  if (report->passed()) return {};
+  return failure(MinorCode::InvalidParameterValue, "its verification refuses it: " + report->refusal());
+}
+
+}  // namespace rmac::gateway

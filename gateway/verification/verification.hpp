@@ -1,0 +1,47 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "gateway/verification/report.hpp"
+#include "rmac/motion/error.hpp"
+#include "rmac/sdk/device_object.hpp"
+
+namespace rmac::gateway {
+
+/// Has the verifier, a program of its own, check a mechanism's modules before they go live: a module that crashes does
+/// so there. What passed is remembered until its files change. Blocks while the verifier runs; one thread at a time.
+class Verification {
+ public:
+  struct Options {
+    std::filesystem::path program;                      ///< rmac-verify
+    std::filesystem::path verdicts;                     ///< folder for what passed; empty: nothing is remembered
+    std::vector<std::filesystem::path> module_folders;  ///< searched after the mechanism's own
+    std::chrono::seconds patience{600};                 ///< then the verifier is killed
+  };
+
+  explicit Verification(Options options) : options_(std::move(options)) {}
+
+  /// What the verifier finds out now. An error when it cannot be run, or the device database makes no sense.
+  [[nodiscard]] Expected<verifier::Report> verify(const std::filesystem::path& device_json) const;
+
+  /// Nothing when this mechanism passed before and none of its files changed since, or passes now; otherwise the first
+  /// counter-example.
+  [[nodiscard]] Expected<> require(const std::filesystem::path& device_json) const;
+
+  /// Ends a verification that runs, and has none begin any more: the process is about to end. Any thread.
+  void cancel() noexcept { cancelled_ = true; }
+
+ private:
+  /// Changes with the device database, with every module it names, and with the verifier; empty when a file is missing.
+  [[nodiscard]] std::string fingerprint(const std::filesystem::path& device_json,
+                                        const sdk::DeviceObject& device) const;
+
+  Options options_;
+  std::atomic<bool> cancelled_{false};
+};
+
+}  // namespace rmac::gateway

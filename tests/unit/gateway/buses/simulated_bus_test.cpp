@@ -1,0 +1,106 @@
+#include "gateway/buses/simulated_bus.hpp"
+
+#include <gmock/gmock.h>
+
+namespace rmac::gateway {
+namespace {
+
+using fieldbus::AxisPlantParameters;
+using fieldbus::SpindlePlantParameters;
+using testing::HasSubstr;
+
+sdk::ModuleChoice bus(std::map<std::string, std::vector<double>> numbers) {
+  return {"SimulatedInterface", std::move(numbers), {}};
+}
+
+TEST(SimulatedBus, HasTheExampleMachinesAxesWithoutParameters) {
+  const auto axes = simulated_axes(bus({}));
+  ASSERT_TRUE(axes);
+  ASSERT_EQ(axes->size(), 8U);
+  EXPECT_TRUE(std::holds_alternative<SpindlePlantParameters>((*axes)[3]));
+  EXPECT_GT(std::get<AxisPlantParameters>((*axes)[2]).gravity_nm, 0);
+}
+
+TEST(SimulatedBus, TakesWhatIsSaidOfEachAxis) {
+  const auto axes = simulated_axes(bus({{"axes", {3}},
+                                        {"spindle", {1}},
+                                        {"spindle_max_rpm", {4000}},
+                                        {"spindle_max_torque_nm", {10}},
+                                        {"rated_torque_nm", {2, 0, 4}},
+                                        {"inertia_kg_m2", {1e-3, 0, 2e-3}},
+                                        {"friction_nm", {0.1, 0, 0}},
+                                        {"gravity_nm", {0, 0, -0.5}},
+                                        {"counts_per_revolution", {1000, 0, 2000}}}));
+  ASSERT_TRUE(axes) << axes.error().message;
+  ASSERT_EQ(axes->size(), 3U);
+  const auto& first = std::get<AxisPlantParameters>((*axes)[0]);
+  const auto& last = std::get<AxisPlantParameters>((*axes)[2]);
+  EXPECT_EQ(first.rated_torque_nm, 2);
+  EXPECT_EQ(first.peak_torque_nm, 6);
+  EXPECT_DOUBLE_EQ(first.inertia_kg_m2(), 1e-3);
+  EXPECT_DOUBLE_EQ(first.static_nm, 0.12);
+  EXPECT_EQ(last.gravity_nm, -0.5);
+  EXPECT_EQ(last.counts_per_revolution, 2000);
+  const auto& spindle = std::get<SpindlePlantParameters>((*axes)[1]);
+  EXPECT_EQ(spindle.max_speed_rpm, 4000);
+  EXPECT_EQ(spindle.max_torque_nm, 10);
+}
+
+TEST(SimulatedBus, AnswersLateWhereItIsSaid) {
+  EXPECT_EQ(simulated_answers_late(bus({})), false);
+  EXPECT_EQ(simulated_answers_late(bus({{"late_answers", {1}}})), true);
+  const auto two = simulated_answers_late(bus({{"late_answers", {2}}}));
+  ASSERT_FALSE(two);
+  EXPECT_THAT(two.error().message, HasSubstr("\"late_answers\" must be one whole number from 0 to 1"));
+}
+
+TEST(SimulatedBus, CanDoWithoutASpindle) {
+  const auto axes = simulated_axes(bus({{"spindle", {-1}}}));
+  ASSERT_TRUE(axes);
+  for (const auto& axis : *axes) EXPECT_TRUE(std::holds_alternative<AxisPlantParameters>(axis));
+}
+
+TEST(SimulatedBus, RefusesWhatItCannotBe) {
+  const std::vector<std::pair<std::map<std::string, std::vector<double>>, const char*>> cases{
+      {{{"axes", {0}}}, "\"axes\" must be one whole number"},
+      {{{"axes", {2.5}}}, "\"axes\" must be one whole number"},
+      {{{"axes", {2}}, {"spindle", {2}}}, "the spindle is axis 2, and there are 2"},
+      {{{"spindle_max_rpm", {0}}}, "\"spindle_max_rpm\" must be one number"},
+      {{{"inertia_kg_m2", {1e-3}}}, "has 1 numbers; give one for each of the 8 axes"},
+      {{{"axes", {1}}, {"inertia_kg_m2", {0}}}, "0 of axis 0 must be"},
+      {{{"axis", {1}}}, "\"axis\" is not understood; there are axes, spindle"},
+  };
+  for (const auto& [numbers, message] : cases) {
+    const auto axes = simulated_axes(bus(numbers));
+    ASSERT_FALSE(axes) << message;
+    EXPECT_THAT(axes.error().message, HasSubstr(message));
+  }
+}
+
+TEST(SimulatedBus, HasAPartUnderTheToolWhenOneIsDescribed) {
+  EXPECT_EQ(*simulated_contact(bus({})), std::nullopt);
+  const auto contact = simulated_contact(bus({{"contact_surface_mm", {-12}}, {"contact_along", {1}}}));
+  ASSERT_TRUE(contact && *contact);
+  EXPECT_EQ((*contact)->surface_mm, -12);
+  EXPECT_EQ((*contact)->axis, 2U);
+  EXPECT_EQ((*contact)->along, 1U);
+  EXPECT_EQ((*contact)->stiffness_n_mm, 1000) << "unless said";
+}
+
+TEST(SimulatedBus, RefusesAPartThatCannotBe) {
+  const std::vector<std::pair<std::map<std::string, std::vector<double>>, const char*>> cases{
+      {{{"contact_surface", {1}}}, "\"contact_surface\" is not understood"},
+      {{{"contact_stiffness_n_mm", {0}}}, "\"contact_stiffness_n_mm\" must be one number"},
+      {{{"contact_axis", {8}}}, "\"contact_axis\" must be one whole number from 0 to 7"},
+      {{{"contact_axis", {3}}}, "axis 3 is no servo axis"},
+      {{{"contact_axis", {0}}}, "must be two axes"},
+  };
+  for (const auto& [numbers, message] : cases) {
+    const auto contact = simulated_contact(bus(numbers));
+    ASSERT_FALSE(contact) << message;
+    EXPECT_THAT(contact.error().message, HasSubstr(message));
+  }
+}
+
+}  // namespace
+}  // namespace rmac::gateway

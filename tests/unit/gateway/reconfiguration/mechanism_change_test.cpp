@@ -1,0 +1,278 @@
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <thread>
+
+#include "unit/gateway/test_machine.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+using testing::HasSubstr;
+
+/// Each case breaks one step of putting a mechanism in.
+struct Defect {
+  const char* name;
+  void (*make)(sdk::DeviceObject& device);
+  const char* message;
+};
+
+void PrintTo(const Defect& defect, std::ostream* out) {
+  *out << defect.name;
+}
+
+TEST(MechanismChange, MayBeStoppedMeanwhileFromAnotherThread) {
+  // As the gateway does while the thread beside it changes the mechanism. No stop leaves anything behind.
+  TestMachine machine;
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  std::atomic<bool> changing = true;
+  std::thread gateway([&] {
+    int turn = 0;
+    do {
+      const auto stopped = turn % 2 == 0 ? machine.controller.cam().stop_now() : machine.controller.cam().cycle_stop();
+      EXPECT_TRUE(stopped);
+      (void)machine.controller.sample();
+      (void)machine.controller.cycle_now();
+      (void)machine.controller.cam().cycle_start_status();
+      (void)machine.controller.cam().moves_in_buffer();
+      ++turn;
+    } while (changing);
+  });
+  for (int i = 0; i < 6; ++i) {
+    const auto loaded = machine.load(i % 2 == 0 ? TestMachine::plane_mill() : TestMachine::mill());
+    // A stop that has not come to rest when the change begins is a reason to refuse it, and the only one.
+    if (!loaded) {
+      EXPECT_THAT(loaded.error().message, HasSubstr("machine at rest"));
+    }
+  }
+  changing = false;
+  gateway.join();
+  const auto loaded = machine.load(TestMachine::mill());
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  ASSERT_TRUE(machine.controller.cam().set_feed_override(0));
+  ASSERT_TRUE(machine.line(1, {0, 0, 0}, {1, 0, 0}));
+  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.controller.cam().cycle_stop());
+  ASSERT_TRUE(machine.run_until([&] { return machine.controller.cycle_now().state == CycleState::Idle; }));
+  EXPECT_EQ(machine.controller.cam().moves_in_buffer(), 1) << "an earlier stop's order to clear is still in force";
+}
+
+class FailedChange : public testing::TestWithParam<Defect> {};
+
+TEST_P(FailedChange, LeavesTheOldMechanismInForce) {
+  TestMachine machine;
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  const std::int64_t before = machine.controller.sample().cycle;
+  sdk::DeviceObject broken = TestMachine::plane_mill();
+  GetParam().make(broken);
+  const auto refused = machine.load(broken);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr(GetParam().message));
+
+  ASSERT_NE(machine.controller.mechanism(), nullptr);
+  EXPECT_EQ(machine.controller.mechanism()->name, "Mill");
+  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  const auto queued = machine.line(1, {0, 0, 0}, {1, 1, 1});
+  ASSERT_TRUE(queued) << queued.error().message;
+  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 1));
+  for (const CycleSample& sample : machine.samples) {
+    if (sample.cycle <= before) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      ASSERT_EQ(sample.statusword[i] & 0x6F, 0x27)
+          << "drive " << i << " left Operation Enabled in cycle " << sample.cycle;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Steps, FailedChange,
+    testing::Values(
+        Defect{"Kinematics", [](sdk::DeviceObject& d) { d.kinematics.name = "Gone"; },
+               "there is no kinematics module Gone"},
+        Defect{"KinematicsOfAnotherMachine", [](sdk::DeviceObject& d) { d.kinematics.name = "TestKinematics3"; },
+               "TestKinematics3 has 3 joints, but 2 are configured"},
+        Defect{"ActuatorMap", [](sdk::DeviceObject& d) { d.actuator_map.name = "Gone"; },
+               "there is no actuator map module Gone"},
+        Defect{"ActuatorMapOfAnotherSize", [](sdk::DeviceObject& d) { d.actuator_map.numbers["joints"] = {2}; },
+               "TestMap maps 2 joints to 2 actuators"},
+        Defect{"MapParameters", [](sdk::DeviceObject& d) { d.actuator_map.numbers.clear(); },
+               "joints must be 1 or more"},
+        Defect{"Law", [](sdk::DeviceObject& d) { d.joints[1].servo_law.name = "Gone"; },
+               "there is no servo control law module Gone"},
+        Defect{"LawOfAppendixIV", [](sdk::DeviceObject& d) { d.joints[1].servo_law.name = "DMAC_FUZZY_CONTROL"; },
+               "there is no servo control law module FuzzyServoControlLaw"},
+        Defect{"Gains",
+               [](sdk::DeviceObject& d) {
+                 d.joints[0].gains = {1, 2, 3};
+               },
+               "it takes 2: stiffness (N/mm), damping (N·s/mm)"},
+        Defect{"Limits", [](sdk::DeviceObject& d) { d.joints[0].limits.min = 60; },
+               "the minimum limit 60 must be below the maximum limit 50"},
+        Defect{"Mechanics", [](sdk::DeviceObject& d) { d.joints[1].mechanics.backlash = -1; },
+               "joint 1: a backlash must be 0 to 10"},
+        Defect{"Jerk", [](sdk::DeviceObject& d) { d.held_joints[0].limits.max_jerk = 0; },
+               "SetMechanismJointMaximumJerk is 0"},
+        Defect{"ForceControl", [](sdk::DeviceObject& d) { d.joints[0].method = ControlMethod::Force; },
+               "which needs an approach speed"},
+        Defect{"AxisTakenTwice", [](sdk::DeviceObject& d) { d.actuators[2].axis = 0; },
+               "axis 0 of bus test is taken already"},
+        Defect{"AxisThatIsNotThere", [](sdk::DeviceObject& d) { d.actuators[2].axis = 40; },
+               "has no axis 40; it has 8"},
+        Defect{"Interface", [](sdk::DeviceObject& d) { d.digital_control_interface.name = "Gone"; },
+               "no digital control interface \"Gone\""},
+        Defect{"InterfaceOfABusInUse",
+               [](sdk::DeviceObject& d) { d.digital_control_interface.name = "SimulatedInterface"; },
+               "bus test is run by TestBus"},
+        Defect{"IoInterface", [](sdk::DeviceObject& d) { d.digital_io_interface.name = "Gone"; },
+               "no digital I/O interface \"Gone\""},
+        Defect{"IoBit", [](sdk::DeviceObject& d) { d.outputs["Coolant"] = 64; }, "bit 64 must be 0 to 63"}),
+    [](const testing::TestParamInfo<Defect>& defect) { return std::string(defect.param.name); });
+
+TEST(MechanismChange, TakesWhatTheMechanicsOfAJointDoWrong) {
+  // The drives stay where they are: the joint stands elsewhere than thought.
+  TestMachine machine;
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  sdk::DeviceObject measured = TestMachine::mill();
+  measured.joints[0].mechanics.pitch = {0, 1, {0.5}};
+  const auto loaded = machine.load(measured);
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  const CycleSample now = machine.controller.sample();
+  EXPECT_NEAR(now.position[0], 0.5, 0.01);
+  EXPECT_NEAR(now.position_set[0], 0.5, 0.01);
+  EXPECT_NEAR(now.position[1], 0, 0.01);
+}
+
+TEST(MechanismChange, FailsWhenTheBusDoesNotComeUp) {
+  TestMachine machine;
+  machine.bus_trouble = "node 3 does not answer";
+  const auto refused = machine.load(TestMachine::mill());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "bus test did not come up: node 3 does not answer");
+  EXPECT_FALSE(machine.controller.mechanism_loaded());
+}
+
+TEST(MechanismChange, PutsTheOldMechanismBackWhenADriveOfTheNewOneFails) {
+  TestMachine machine;
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  sdk::DeviceObject wider = TestMachine::plane_mill();
+  wider.actuators[2].axis = 5;
+  machine.bus->set_online(5, false);
+  const auto refused = machine.load(wider);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("axis 5"));
+  EXPECT_THAT(refused.error().message, HasSubstr("Mill is in force again"));
+  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  const auto queued = machine.line(1, machine.controller.sample().pose_set.tip, {1, 1, 1});
+  ASSERT_TRUE(queued) << queued.error().message;
+  const auto started = machine.controller.cam().cycle_start(sdk::CycleMode::Automatic);
+  ASSERT_TRUE(started) << started.error().message;
+  EXPECT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 1));
+}
+
+TEST(MechanismChange, KeepsSharedDrivesOperationalAndHoldsTheThird) {
+  TestMachine machine;
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  ASSERT_TRUE(machine.line(1, {0, 0, 0}, {3, 4, -7}));
+  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 1));
+  const std::int64_t before = machine.samples.back().cycle;
+  const double z_before = machine.samples.back().position[2];
+
+  const auto loaded = machine.load(TestMachine::plane_mill());
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_EQ(machine.controller.mechanism()->name, "PlaneMill");
+  ASSERT_TRUE(machine.run_until([&] {
+    const CycleSample& now = machine.samples.back();
+    return now.joint_count == 2 && now.state == CycleState::Idle;  // another mechanism does not move until told
+  }));
+  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  EXPECT_FALSE(machine.line(2, {3, 4, 0}, {0, 0, 1})) << "off the plane";
+  ASSERT_TRUE(machine.line(2, {3, 4, 0}, {0, 0, 0}));
+  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 2));
+
+  for (const CycleSample& sample : machine.samples) {
+    if (sample.cycle <= before) continue;
+    ASSERT_EQ(sample.axis_count, 3U);
+    for (std::size_t i = 0; i < 3; ++i) ASSERT_EQ(sample.statusword[i] & 0x6F, 0x27) << "cycle " << sample.cycle;
+    ASSERT_NEAR(sample.position_set[2], -7, 1e-6);
+    ASSERT_NEAR(sample.position[2], z_before, 0.01);
+    ASSERT_LT(std::abs(sample.position_set[0] - sample.position[0]), 1.0);
+  }
+  EXPECT_EQ(machine.samples.back().cycle - machine.samples.front().cycle + 1,
+            static_cast<std::int64_t>(machine.samples.size()))
+      << "a cycle was missed";
+}
+
+TEST(MechanismChange, IsRefusedWhileTheMachineMoves) {
+  TestMachine machine;
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  ASSERT_TRUE(machine.controller.cam().set_feedrate(600));
+  ASSERT_TRUE(machine.line(1, {0, 0, 0}, {40, 0, 0}));
+  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().moving; }));
+  const auto refused = machine.load(TestMachine::plane_mill());
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("needs the machine at rest"));
+  EXPECT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 1));
+}
+
+TEST(MechanismChange, ALimitActsOnMotionOnceApplied) {
+  TestMachine machine;
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  sdk::RmacConfig& config = machine.controller.config();
+  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(config.set_joint_maximum_speed(0, 25));
+  const auto applied = config.apply();
+  ASSERT_TRUE(applied) << applied.error().message;
+  ASSERT_TRUE(machine.line(1, {0, 0, 0}, {20, 0, 0}));
+  ASSERT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 1)) << "the cycle was running, and still is";
+  EXPECT_NEAR(machine.peak_velocity(0), 25, 0.1);
+}
+
+TEST(MechanismChange, AVirtualMechanismLeavesTheBusAlone) {
+  TestMachine machine;
+  machine.controller.set_mechanism_folder("", true);
+  const auto loaded = machine.load_at_zero(TestMachine::mill());
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  ASSERT_TRUE(machine.line(1, {0, 0, 0}, {20, 0, 0}));
+  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 1));
+  for (const CycleSample& sample : machine.samples) EXPECT_EQ(sample.position[0], sample.position_set[0]);
+  EXPECT_EQ(machine.bus, nullptr) << "a virtual machine has a bus behind it";
+}
+
+TEST(MechanismChange, AVirtualMechanismStandsWhereTheOneBeforeItStood) {
+  TestMachine machine;
+  machine.controller.set_mechanism_folder("", true);
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  ASSERT_TRUE(machine.controller.cam().jog_joint(1, 12));
+  ASSERT_TRUE(machine.run_until([&] { return machine.count(Event::Kind::Stopped) > 0; }));
+  ASSERT_TRUE(machine.controller.config().set_joint_maximum_speed(0, 25));
+  const auto applied = machine.controller.config().apply();
+  ASSERT_TRUE(applied) << applied.error().message;
+  EXPECT_NEAR(machine.controller.sample().position_set[1], 12, 1e-9) << "after a change of its own limits";
+  const auto loaded = machine.load(TestMachine::plane_mill());
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_NEAR(machine.controller.sample().position_set[1], 12, 1e-9) << "under another mechanism on the same drives";
+}
+
+TEST(MechanismChange, UnloadingDisablesTheDrives) {
+  TestMachine machine;
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  ASSERT_TRUE(machine.controller.unload());
+  EXPECT_FALSE(machine.controller.mechanism_loaded());
+  machine.controller.dispatch();
+  EXPECT_EQ(machine.samples.back().axis_count, 0U);
+  EXPECT_FALSE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  const auto again = machine.load_at_zero(TestMachine::mill());
+  EXPECT_TRUE(again) << again.error().message;
+}
+
+}  // namespace
+}  // namespace rmac::gateway

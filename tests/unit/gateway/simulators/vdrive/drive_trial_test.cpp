@@ -1,0 +1,103 @@
+#include "rmac/fieldbus/canopen/drive_trial.hpp"
+
+#include "unit/gateway/simulators/vdrive/wire.hpp"
+
+// The master's modes, one by one, against drives that know nothing of it.
+namespace rmac::vdrive::test {
+namespace {
+
+using fieldbus::CanPort;
+using fieldbus::canopen::CanopenConfig;
+using fieldbus::canopen::CanopenInterface;
+using fieldbus::canopen::DriveTrial;
+using fieldbus::canopen::DriveTrialResult;
+using std::chrono::milliseconds;
+
+class DriveTrials : public testing::Test {
+ protected:
+  Expected<DriveTrialResult> attempt(const DriveTrial& trial, const std::string& setup = "") {
+    std::map<std::string, std::string> texts{{"eds", "rmac-vdrive"}, {"tpdo", "6041:00/16 6064:00/32"}};
+    if (!setup.empty()) texts["setup"] = setup;
+    auto config = fieldbus::canopen::read_canopen_config(
+        "can0", {{"node", {1}}, {"mode", {static_cast<double>(trial.mode)}}}, texts, 0.005,
+        [](const std::string&, const std::string&) -> Expected<fieldbus::eds::DeviceDescription> { return sheet(); });
+    if (!config) return tl::unexpected(config.error());
+    CanopenInterface master(*config, [this](std::span<const std::uint16_t>, std::size_t) {
+      return Expected<std::unique_ptr<CanPort>>(wire_.open());
+    });
+    if (auto started = master.start(); !started) return tl::unexpected(started.error());
+    return try_drive(master, *config, trial, [this] { wire_.pass(milliseconds(5)); });
+  }
+
+  Wire wire_;
+  Node& node_ = wire_.add(1);
+};
+
+TEST_F(DriveTrials, GoByEachModeOfPositionAsFarAsTheyAreTold) {
+  for (const DriveMode mode :
+       {DriveMode::ProfilePosition, DriveMode::InterpolatedPosition, DriveMode::CyclicSyncPosition}) {
+    for (const int way : {30000, -45000}) {
+      SCOPED_TRACE(static_cast<int>(mode));
+      const auto done =
+          attempt({.mode = mode, .amount = way, .seconds = 0.5, .most_counts = 50000}, "6081:00/32=200000");
+      ASSERT_TRUE(done) << done.error().message;
+      EXPECT_NEAR(done->to_counts - done->from_counts, way, 300);
+      EXPECT_EQ(node_.axis().state(), PowerStates::SwitchOnDisabled) << "it is left without power";
+      EXPECT_EQ(node_.axis().velocity(), 0);
+    }
+  }
+}
+
+TEST_F(DriveTrials, RunByEachModeOfVelocityAndTorqueForTheirTime) {
+  for (const auto& [mode, amount] :
+       {std::pair{DriveMode::ProfileVelocity, 100000}, std::pair{DriveMode::CyclicSyncVelocity, 100000},
+        std::pair{DriveMode::ProfileTorque, 80}, std::pair{DriveMode::CyclicSyncTorque, 80}}) {
+    SCOPED_TRACE(static_cast<int>(mode));
+    const auto done =
+        attempt({.mode = mode, .amount = amount, .seconds = 0.2, .most_counts = 500000}, "6087:00/32=2000");
+    ASSERT_TRUE(done) << done.error().message;
+    EXPECT_GT(done->to_counts - done->from_counts, 2000);
+    EXPECT_NEAR(done->seconds, 0.2, 0.01);
+    EXPECT_EQ(node_.axis().state(), PowerStates::SwitchOnDisabled);
+  }
+}
+
+TEST_F(DriveTrials, StopADriveThatGoesTooFar) {
+  const auto done = attempt({.mode = DriveMode::CyclicSyncTorque, .amount = 500, .seconds = 3, .most_counts = 20000});
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().message.find("and 20000 are allowed; it was stopped"), std::string::npos)
+      << done.error().message;
+  EXPECT_EQ(node_.axis().state(), PowerStates::SwitchOnDisabled);
+  EXPECT_LT(node_.axis().position(), 200000);
+}
+
+TEST_F(DriveTrials, SayWhatTheDriveDidInstead) {
+  node_.set_overheated(true);
+  const auto hot = attempt({.mode = DriveMode::ProfilePosition, .amount = 100, .most_counts = 200});
+  ASSERT_FALSE(hot);
+  EXPECT_NE(hot.error().message.find("4310h"), std::string::npos) << hot.error().message;
+}
+
+TEST_F(DriveTrials, AreNotBegunWhereTheyCouldNotEnd) {
+  const auto far = attempt({.mode = DriveMode::ProfilePosition, .amount = 300, .most_counts = 200});
+  ASSERT_FALSE(far);
+  EXPECT_EQ(far.error().message, "a way of 300 counts is more than the 200 that are allowed");
+  const auto slow =
+      attempt({.mode = DriveMode::ProfilePosition, .amount = 500000, .seconds = 0.1, .most_counts = 1000000},
+              "6081:00/32=1000");
+  ASSERT_FALSE(slow);
+  EXPECT_NE(slow.error().message.find("did not say in 5.1 s that it is through"), std::string::npos)
+      << slow.error().message;
+}
+
+TEST_F(DriveTrials, RefuseADriveThatCannotDoTheMode) {
+  node_.dictionary().set(0x6502, 0x3A5);  // neither profile torque nor interpolated position
+  const auto refused = attempt({.mode = DriveMode::InterpolatedPosition, .amount = 100, .most_counts = 200});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message,
+            "node 1 (axis 0) cannot do interpolated position (mode 7): 6502h:00 says that it does the modes 1, 3, 6, "
+            "8, 9, 10");
+}
+
+}  // namespace
+}  // namespace rmac::vdrive::test
