@@ -14,7 +14,7 @@ import numpy as np
 from appliance import Appliance, line
 from simulated_joint import PERIOD, Joint, excitation
 
-sys.path.insert(0, str(pathlib.Path(os.environ["RMAC_SOURCE"], "gateway/rmac/helpers")))
+sys.path.insert(0, str(pathlib.Path(os.environ["RMAC_SOURCE"], "gateway/rmac/plots")))
 import servo_model  # noqa: E402
 
 PNG = b"\x89PNG\r\n\x1a\n"

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "gateway/rmac/commands/command.hpp"
+
+namespace rmac::cli {
+
+/// `rmac bus`: what commissions a fieldbus, by itself and without an appliance.
+void add_bus(Command& rmac);
+
+// The commands within it.
+void add_bus_load(Command& bus);
+void add_bus_lss(Command& bus);
+void add_bus_move(Command& bus);
+void add_bus_scan(Command& bus);
+void add_bus_store(Command& bus);
+
+/// How a CAN interface is asked for.
+inline constexpr const char* kInterfaceMeaning = "a CAN interface that is up: can0";
+
+}  // namespace rmac::cli

@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "gateway/rmac/commands/programs/registrations.hpp"
+#include "gateway/rmac/program/runner.hpp"
+#include "gateway/rmac/terminal/table.hpp"
+
+namespace rmac::cli {
+
+namespace {
+
+struct Options {
+  std::string file;
+  RunOptions run;
+};
+
+void print_json(const RunReport& report) {
+  const nlohmann::json line{{"ok", true},
+                            {"requests", report.requests},
+                            {"moves", report.moves},
+                            {"cycle_time_s", report.cycle_time_s},
+                            {"wall_time_s", report.wall_time_s},
+                            {"following_error", report.following_error},
+                            {"following_error_of_every_cycle", report.every_cycle_seen},
+                            {"record_rows", report.record_rows},
+                            {"record_files", report.record_files}};
+  fmt::print("{}\n", line.dump());
+}
+
+void print_table(const RunReport& report) {
+  std::vector<std::vector<std::string>> rows{{"requests", std::to_string(report.requests), ""},
+                                             {"moves", std::to_string(report.moves), ""},
+                                             {"cycle time", number(report.cycle_time_s), "s"},
+                                             {"took", number(report.wall_time_s), "s"}};
+  const std::string of = report.every_cycle_seen ? "" : ", of samples";
+  for (std::size_t joint = 0; joint < report.following_error.size(); ++joint) {
+    rows.push_back(
+        {fmt::format("following error, joint {}", joint), number(report.following_error[joint], 6), "mm or deg" + of});
+  }
+  for (const auto& record : report.record_files) {
+    rows.push_back({"record", record, fmt::format("{} rows in all", report.record_rows)});
+  }
+  fmt::print("{}", table({"", "", ""}, rows));
+}
+
+Result<> run_program(Connection& connection, const Options& options, bool json) {
+  const auto program = read_program(options.file);
+  if (!program) return tl::unexpected(program.error());
+  RunOptions run = options.run;
+  run.show_progress = !json && isatty(STDERR_FILENO) == 1;
+  if (isatty(STDIN_FILENO) == 1) run.terminal = STDIN_FILENO;
+  const auto report = Runner(connection, *program, run).run();
+  if (!report) return tl::unexpected(report.error());
+  (json ? print_json : print_table)(*report);
+  return {};
+}
+
+}  // namespace
+
+void add_run(Command& rmac) {
+  const auto options = std::make_shared<Options>();
+  Command run = rmac.add("run",
+                         "machine a program, one JSON-RPC request a line; when held, Enter goes on, a distance in mm "
+                         "runs back, p parks it");
+  run.option("FILE", &options->file, "the .rmac file, - for standard input").required();
+  run.flag("--virtual", &options->run.virtual_mode, "in virtual mode: drives stay untouched");
+  run.option("--record", &options->run.record_file, "write every cycle's setpoints and measured joints to this CSV");
+  run.option("--machine", &options->run.machine, "load this machine first");
+  run.does(
+      with_appliance([options](Connection& appliance, bool json) { return run_program(appliance, *options, json); }));
+}
+
+}  // namespace rmac::cli

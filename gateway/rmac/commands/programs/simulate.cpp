@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <ctime>
+
+#include "gateway/configuration/configuration.hpp"
+#include "gateway/rmac/commands/programs/registrations.hpp"
+#include "gateway/rmac/simulator/simulator.hpp"
+#include "gateway/rmac/terminal/table.hpp"
+
+namespace rmac::cli {
+namespace {
+
+struct Options {
+  std::string file;
+  std::string machine;                ///< a name in the device tree, or the path of a device.json; empty: the program's
+  std::filesystem::path device_tree;  ///< empty: the installation's
+  std::string record_file;            ///< empty: none
+  std::filesystem::path tools;        ///< folder of tool tables; empty: no tools but the program's own
+  double period_s = 0.001;
+};
+
+/// CPU time of this program, s: what else the computer does does not count.
+double cpu_time_s() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+void print_json(const SimulationReport& report, double took_s) {
+  nlohmann::json joints = nlohmann::json::array();
+  for (const auto& joint : report.joints) {
+    joints.push_back({{"name", joint.name},
+                      {"peak_velocity", joint.peak_velocity},
+                      {"peak_acceleration", joint.peak_acceleration},
+                      {"peak_jerk", joint.peak_jerk}});
+  }
+  nlohmann::json limited_by = nlohmann::json::object();
+  for (const auto& [limit, time_s] : report.limited_by) limited_by[limit] = time_s;
+  nlohmann::json line{{"cycle_time_s", report.cycle_time_s}, {"moves", report.moves},
+                      {"tool_changes", report.tool_changes}, {"length_mm", report.length_mm},
+                      {"joints", std::move(joints)},         {"limited_by_s", std::move(limited_by)},
+                      {"collisions", "not checked"},         {"cpu_time_s", took_s}};
+  if (!report.record_files.empty()) {
+    line["record_rows"] = report.record_rows;
+    line["record_files"] = report.record_files;
+  }
+  fmt::print("{}\n", line.dump());
+}
+
+void print_table(const SimulationReport& report, double took_s) {
+  std::vector<std::vector<std::string>> rows{
+      {"moves", std::to_string(report.moves), ""},
+      {"tool changes", std::to_string(report.tool_changes), report.tool_changes > 0 ? "in no time" : ""},
+      {"length", number(report.length_mm), "mm"},
+      {"cycle time", number(report.cycle_time_s), "s"},
+      {"computed in", number(took_s),
+       fmt::format("s of CPU time, {:.0f} times real time", report.cycle_time_s / took_s)},
+      {"collisions", "not checked", ""}};
+  for (const auto& record : report.record_files) {
+    rows.push_back({"record", record, fmt::format("{} rows in all", report.record_rows)});
+  }
+  fmt::print("{}\n", table({"", "", ""}, rows));
+  rows.clear();
+  for (const auto& joint : report.joints) {
+    rows.push_back({joint.name, number(joint.peak_velocity), number(joint.peak_acceleration), number(joint.peak_jerk)});
+  }
+  fmt::print("{}\n", table({"joint", "peak velocity /s", "acceleration /s²", "jerk /s³"}, rows));
+  rows.clear();
+  double in_motion_s = 0;
+  for (const auto& share : report.limited_by) in_motion_s += share.time_s;
+  for (const auto& [limit, time_s] : report.limited_by) {
+    rows.push_back({limit, number(time_s), number(100 * time_s / in_motion_s, 1)});
+  }
+  fmt::print("{}", table({"limited by", "s", "%"}, rows));
+}
+
+Result<> simulate_program(const Options& options, bool json) {
+  const double began_s = cpu_time_s();
+  const auto program = read_program(options.file);
+  if (!program) return tl::unexpected(program.error());
+  if (options.machine.empty() && !program->loads_mechanism) {
+    return fail(fmt::format("{}: the program loads no machine; name one with --machine", program->file));
+  }
+  spdlog::set_level(spdlog::level::off);  // what is wrong with other machines of the tree is not asked here
+  const auto tree = options.device_tree.empty() ? gateway::default_folders().device_tree : options.device_tree;
+  auto simulation = gateway::Simulation::open(
+      {.device_tree = tree, .tools_folder = options.tools, .period_s = options.period_s}, options.machine);
+  if (!simulation) return fail(simulation.error().message);
+  const auto report = Simulator(**simulation, *program, options.record_file).run();
+  if (!report) return tl::unexpected(report.error());
+  (json ? print_json : print_table)(*report, cpu_time_s() - began_s);
+  return {};
+}
+
+}  // namespace
+
+void add_simulate(Command& rmac) {
+  const auto options = std::make_shared<Options>();
+  Command simulate =
+      rmac.add("simulate", "only plan a program, faster than real time: cycle time, limits; needs no appliance");
+  simulate.option("FILE", &options->file, "the .rmac file, - for standard input").required();
+  simulate.option("--machine", &options->machine,
+                  "a machine's name, or the path of its device.json; needed unless the program loads one");
+  simulate.option("--record", &options->record_file, "write every cycle's setpoints to this CSV");
+  simulate
+      .option("--tools", &options->tools, "folder of tool tables (tools/ of an appliance's state folder); only read")
+      .existing_folder();
+  simulate.option("--device-tree", &options->device_tree,
+                  "where machines are looked for; the installation's unless given");
+  simulate.option("--period", &options->period_s, "cycle of the servo loop, s (period_s in rmacd.json)")
+      .within(0.0001, 0.1)
+      .shows_default();
+  simulate.does(without_appliance([options](bool json) { return simulate_program(*options, json); }));
+}
+
+}  // namespace rmac::cli

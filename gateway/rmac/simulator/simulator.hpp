@@ -1,0 +1,65 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/rmac/program/program.hpp"
+#include "gateway/rmac/program/record.hpp"
+#include "gateway/rmac/program/request_order.hpp"
+#include "gateway/rmac/program/unfinished_moves.hpp"
+#include "gateway/simulation/motion_account.hpp"
+#include "gateway/simulation/simulation.hpp"
+
+namespace rmac::cli {
+
+struct SimulationReport {
+  std::size_t moves = 0;
+  std::size_t tool_changes = 0;  ///< a person takes no time here
+  double cycle_time_s = 0;       ///< from the first move's start to the last one's end, as `rmac run` counts it
+  double length_mm = 0;
+  std::vector<gateway::MotionAccount::Joint> joints;
+  std::vector<gateway::MotionAccount::Share> limited_by;
+  std::size_t record_rows = 0;
+  std::vector<std::string> record_files;
+};
+
+/// Plans one program on a simulated appliance as `rmac run` would have it machined: moves are queued as far as the
+/// queue has room, and what acts on the machine waits until all before it is done.
+class Simulator {
+ public:
+  /// `record_file`: of the setpoints; empty: none. The others outlive the simulator.
+  Simulator(gateway::Simulation& simulation, const Program& program, const std::string& record_file);
+
+  /// Once. An error names the program's line.
+  [[nodiscard]] Result<SimulationReport> run();
+
+ private:
+  [[nodiscard]] Result<> submit(const Request& request);
+  [[nodiscard]] Result<> make_room(const Request& request);
+  [[nodiscard]] Result<> start_cycle_of_moves();
+  [[nodiscard]] Result<> settle();
+  /// Lets machine time go on until `reached`; an error when nothing moves any more before it is.
+  [[nodiscard]] Result<> run_until(const std::function<bool()>& reached);
+  [[nodiscard]] Result<> call(const std::string& method, nlohmann::json params);
+  [[nodiscard]] bool at_rest();
+  [[nodiscard]] std::string stuck();
+  [[nodiscard]] tl::unexpected<Failure> fail_at(int line, const std::string& message) const;
+
+  void take(const gateway::CycleSample& sample);
+  void take(const gateway::Event& event);
+
+  gateway::Simulation& simulation_;
+  const Program& program_;
+  gateway::MotionAccount account_;
+  std::optional<Record> record_;
+  RequestOrder order_;
+  UnfinishedMoves moves_;
+  int line_ = 0;  ///< of the request under way
+  std::string failure_;
+  bool moving_ = false;
+  bool tool_asked_for_ = false;
+};
+
+}  // namespace rmac::cli

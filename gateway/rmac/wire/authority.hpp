@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+
+#include "gateway/rmac/wire/connection.hpp"
+#include "gateway/rmac/wire/failure.hpp"
+
+namespace rmac::cli {
+
+/// The motion lease: taken, kept and given back. Giving it back stops motion.
+inline constexpr const char* kAcquireAuthority = "authority.acquire";
+inline constexpr const char* kRenewAuthority = "authority.renew";
+inline constexpr const char* kReleaseAuthority = "authority.release";
+
+/// Takes the motion lease, does `work`, gives the lease back: `work` ends at rest.
+[[nodiscard]] Result<> with_authority(Connection& connection, const std::function<Result<>()>& work);
+
+/// Sends one command with the lease, for which it is given back at once.
+[[nodiscard]] Result<> command_with_authority(Connection& connection, const std::string& method,
+                                              const nlohmann::json& params = nlohmann::json::object());
+
+/// Sends what an operator changes beside a running program: with the lease only where nobody holds it, because taking
+/// it and giving it back must not disturb the program's client.
+[[nodiscard]] Result<> command_beside_program(Connection& connection, const std::string& method,
+                                              const nlohmann::json& params = nlohmann::json::object());
+
+}  // namespace rmac::cli

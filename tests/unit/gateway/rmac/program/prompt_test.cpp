@@ -1,0 +1,89 @@
+// What the terminal tells; what its lines do to the machine is in runner_test.cpp.
+#include "gateway/rmac/program/prompt.hpp"
+
+#include <gmock/gmock.h>
+
+#include "unit/gateway/rmac/fake_appliance.hpp"
+
+namespace rmac::cli {
+namespace {
+
+class PromptTest : public testing::Test {
+ protected:
+  PromptTest() : connection_(std::move(*Connection::open(appliance_.endpoint()))), prompt_(*connection_, moves_) {}
+
+  void hear(const nlohmann::json& members) { prompt_.hear(read_state(state(members))); }
+  /// Until the appliance has answered what was asked.
+  void settle() { ASSERT_TRUE(connection_->call("RMAC_CAM.Ok")); }
+
+  FakeAppliance appliance_;
+  std::unique_ptr<Connection> connection_;
+  UnfinishedMoves moves_;
+  Prompt prompt_;
+};
+
+TEST_F(PromptTest, TellsTheFeedWhileTheMachineMoves) {
+  hear({{"state", "Running"}, {"feed_actual_mm_min", 1200.4}});
+  EXPECT_EQ(prompt_.text(), "1200 mm/min");
+}
+
+TEST_F(PromptTest, TellsWhatAPersonMayDoWhenHeld) {
+  hear({{"state", "Holding"}});
+  EXPECT_EQ(prompt_.text(), "held: Enter goes on, a distance in mm runs back, p parks");
+}
+
+TEST_F(PromptTest, AsksForATool) {
+  hear({{"state", "Holding"}, {"tool_prompt", "put tool 4 into the spindle"}});
+  EXPECT_EQ(prompt_.text(), "put tool 4 into the spindle, or Enter");
+}
+
+TEST_F(PromptTest, SaysThatAWordIsNoDistanceAndSendsNothing) {
+  hear({{"state", "Holding"}});
+  prompt_.obey("3x");
+  EXPECT_EQ(prompt_.text(), "\"3x\" is no distance in mm");
+  settle();
+  EXPECT_THAT(appliance_.methods(), testing::ElementsAre("RMAC_CAM.Ok"));
+}
+
+TEST_F(PromptTest, TellsWhyTheMachineDoesNotRunBack) {
+  appliance_.refuses("RMAC_CAM.FeedRetrace", -32013, "there are 2 mm to run back along");
+  hear({{"state", "Holding"}});
+  prompt_.obey("5");
+  settle();
+  EXPECT_EQ(prompt_.text(), "there are 2 mm to run back along");
+  prompt_.obey("");
+  EXPECT_EQ(prompt_.text(), "held: Enter goes on, a distance in mm runs back, p parks") << "the next line is another";
+}
+
+TEST_F(PromptTest, TellsHowToTakeUpWhatIsParked) {
+  hear({});
+  prompt_.obey("p");
+  EXPECT_TRUE(prompt_.parked());
+  EXPECT_EQ(prompt_.text(), "parked: Enter takes it up again");
+}
+
+TEST_F(PromptTest, TakesNoOrdersButTheTakingUpWhileParked) {
+  hear({});
+  prompt_.obey("p");
+  prompt_.obey("p");
+  prompt_.obey("7");
+  settle();
+  EXPECT_THAT(appliance_.params_of("RMAC_CAM.ParkProgram"), testing::SizeIs(1));
+  EXPECT_THAT(appliance_.params_of("RMAC_CAM.FeedRetrace"), testing::IsEmpty());
+}
+
+TEST_F(PromptTest, StaysParkedWhereTheMachineCannotTakeTheProgramUp) {
+  appliance_.refuses("RMAC_CAM.TakeUpProgram", -32014, "the tool is 12 mm from the place");
+  hear({});
+  prompt_.obey("p");
+  settle();
+  prompt_.obey("");
+  for (int answers = 0; answers < 3; ++answers) settle();  // each answer is followed by a request
+  EXPECT_TRUE(prompt_.parked());
+  EXPECT_EQ(prompt_.text(), "the tool is 12 mm from the place");
+  EXPECT_THAT(appliance_.params_of("authority.release"), testing::SizeIs(2)) << "the machine is others' again";
+  EXPECT_THAT(appliance_.params_of("RMAC_CAM.FeedResume"), testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace rmac::cli

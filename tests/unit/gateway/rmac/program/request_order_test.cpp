@@ -1,0 +1,93 @@
+#include "gateway/rmac/program/request_order.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rmac::cli {
+namespace {
+
+Request request(const std::string& method) {
+  return {7, "", method, timing_of(method)};
+}
+
+const Request kMove = request("RMAC_CAM.MoveToXYZ");
+const Request kMeasure = request("RMAC_CAM.AutoMeasure");
+const Request kStart = request("RMAC_CAM.CycleStart");
+const Request kFeed = request("RMAC_CAM.SetFeedrate");
+const Request kHome = request("RMAC_CAM.Home");
+
+class RequestOrderTest : public testing::Test {
+ protected:
+  Program program_{.file = "p.rmac"};
+  RequestOrder order_{program_};
+};
+
+TEST_F(RequestOrderTest, AFirstMoveWaitsForRestAndTheNextOnesDoNot) {
+  EXPECT_TRUE(order_.waits_for_rest(kMove)) << "somebody may have jogged";
+  order_.sent(kMove);
+  EXPECT_FALSE(order_.waits_for_rest(kMove));
+}
+
+TEST_F(RequestOrderTest, WhatActsOnTheMachineWaitsForRestAndSoDoesTheMoveBehindIt) {
+  order_.sent(kMove);
+  EXPECT_TRUE(order_.waits_for_rest(kHome));
+  order_.sent(kHome);
+  EXPECT_TRUE(order_.waits_for_rest(kMove));
+  EXPECT_TRUE(order_.waits_for_rest(kStart));
+}
+
+TEST_F(RequestOrderTest, WhatHoldsForLaterMovesWaitsForNothingAndSettlesNothing) {
+  order_.sent(kHome);
+  EXPECT_FALSE(order_.waits_for_rest(kFeed));
+  order_.sent(kFeed);
+  EXPECT_TRUE(order_.waits_for_rest(kMove));
+}
+
+TEST_F(RequestOrderTest, TheCycleIsStartedForAProgramThatDoesNotStartIt) {
+  EXPECT_TRUE(order_.needs_cycle(kMove));
+  EXPECT_FALSE(order_.needs_cycle(kFeed));
+  order_.cycle_started();
+  order_.sent(kMove);
+  EXPECT_FALSE(order_.needs_cycle(kMove));
+  order_.sent(kHome);
+  EXPECT_TRUE(order_.needs_cycle(kMove)) << "homing ends the cycle";
+}
+
+TEST_F(RequestOrderTest, AProgramThatStartsItsCycleDoesSoItself) {
+  program_.starts_cycle = true;
+  EXPECT_FALSE(order_.needs_cycle(kMove));
+  EXPECT_FALSE(order_.started());
+  order_.sent(kStart);
+  EXPECT_TRUE(order_.started());
+}
+
+TEST_F(RequestOrderTest, WhatFollowsAMeasuredPointWaitsForItOnceTheCycleRuns) {
+  order_.sent(kMeasure);
+  EXPECT_FALSE(order_.waits_for_measurement()) << "it would wait for ever";
+  order_.cycle_started();
+  EXPECT_TRUE(order_.waits_for_measurement());
+  order_.sent(kMove);
+  EXPECT_FALSE(order_.waits_for_measurement());
+}
+
+TEST_F(RequestOrderTest, RefusesToWaitForMovesThatAreStartedLater) {
+  const auto refused = order_.check(kHome, true);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message,
+            "p.rmac:7: RMAC_CAM.Home needs the moves before it done, but the program starts its cycle later");
+  EXPECT_TRUE(order_.check(kHome, false)) << "nothing is queued";
+  EXPECT_TRUE(order_.check(kMove, true));
+  order_.cycle_started();
+  EXPECT_TRUE(order_.check(kHome, true));
+}
+
+TEST_F(RequestOrderTest, RefusesAnEndThatLeavesMovesInTheQueue) {
+  const auto refused = order_.check_end(true);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "p.rmac: the program ends without starting its cycle");
+  EXPECT_TRUE(order_.check_end(false));
+  order_.cycle_started();
+  EXPECT_TRUE(order_.check_end(true));
+}
+
+}  // namespace
+}  // namespace rmac::cli
