@@ -10,6 +10,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "rmac/fieldbus/modbus/backoff.hpp"
 
@@ -36,6 +37,7 @@ struct Line::Impl {
   std::mutex mutex{};
   std::condition_variable news{};
   std::vector<Known> known{};
+  bool tried = false;  ///< a first round has ended, under the lock
   std::thread thread{};
 
   void run() {
@@ -51,6 +53,7 @@ struct Line::Impl {
         }
       }
       ++rounds;
+      note_round();
       pause(begun + config.period);
     }
     finish();
@@ -88,6 +91,11 @@ struct Line::Impl {
     known[station].served = known[station].served || served.has_value();
     if (!served) known[station].trouble = served.error().message;
     news.notify_all();
+  }
+
+  void note_round() {
+    const std::lock_guard lock(mutex);
+    if (!std::exchange(tried, true)) news.notify_all();
   }
 
   /// Until then, or until woken.
@@ -129,13 +137,17 @@ Expected<> Line::start(std::chrono::milliseconds patience) {
   if (!client) return tl::unexpected(client.error());
   line.client = std::move(*client);
   line.known.assign(line.stations.size(), {});
+  line.tried = false;
   line.ending = false;
   line.thread = std::thread([&line] { line.run(); });
   std::unique_lock lock(line.mutex);
   const auto all_served = [&] {
     return std::all_of(line.known.begin(), line.known.end(), [](const Impl::Known& one) { return one.served; });
   };
+  // A busy computer may not even have begun by then: a first round, which the deadline bounds, says what is wrong.
   if (line.news.wait_for(lock, patience, all_served)) return {};
+  line.news.wait(lock, [&] { return line.tried; });
+  if (all_served()) return {};
   for (std::size_t i = 0; i < line.known.size(); ++i) {
     if (line.known[i].served) continue;
     const int slave = line.stations[i]->slave();

@@ -328,6 +328,42 @@ TEST_F(CanopenBench, ReportsWhatADriveSaysInAnEmergency) {
   EXPECT_EQ(drive.state(), PowerStates::SwitchOnDisabled);
 }
 
+// Red when an error code that a drive tells in its PDO gives way to the code of an emergency message.
+TEST_F(CanopenBench, BelievesTheErrorCodeOfAPdoRatherThanThatOfAnEmergency) {
+  VirtualDrive& drive = wire_.add(1);
+  make({{"node", {1}}}, {{"tpdo_0", "6041:00/16 6064:00/32 603F:00/16"}});
+  start();
+  drive.set(0x603F, 0, 0x7305, 2);
+  wire_.inject({.id = 0x81, .size = 8, .data = {0x10, 0x81, 0x11}});
+  cycles(3, DriveWish::Off);
+  EXPECT_EQ(feedback_[0].error_code, 0x7305);
+  EXPECT_EQ(master_->counters().emergencies, 1U);
+}
+
+// Red when what a node that is away still sends counts: it would be online again with positions from before.
+TEST_F(CanopenBench, TakesNoAnswerFromANodeThatIsNotUp) {
+  VirtualDrive& drive = wire_.add(2);
+  make({{"node", {2}}, {"heartbeat_ms", {20}}});
+  start();
+  enable_all();
+  drive.power_off();
+  cycles(100, DriveWish::Off);
+  ASSERT_EQ(master_->counters().nodes_lost, 1U);
+  const DriveFeedback before = feedback_[0];
+  wire_.inject({.id = 0x182, .size = 8, .data = {0x27, 0x02, 0x39, 0x30}});
+  cycles(2, DriveWish::Off);
+  EXPECT_EQ(feedback_[0].statusword, before.statusword);
+  EXPECT_EQ(feedback_[0].position_counts, before.position_counts);
+  drive.answers_sync = false;
+  drive.power_on(wire_.now());
+  for (int i = 0; i < 3000 && master_->counters().nodes_recovered == 0; ++i) cycle(DriveWish::Off);
+  ASSERT_EQ(master_->counters().nodes_recovered, 1U);
+  EXPECT_FALSE(feedback_[0].online) << "it has not answered since it came up";
+  drive.answers_sync = true;
+  cycles(3, DriveWish::Off);
+  EXPECT_TRUE(feedback_[0].online);
+}
+
 TEST_F(CanopenBench, CountsAFullQueueAsAFaultOfItsCycleAndNeverRetries) {
   wire_.add(1);
   make({{"node", {1}}});

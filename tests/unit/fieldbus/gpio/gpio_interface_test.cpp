@@ -142,6 +142,16 @@ TEST(GpioInputSignal, OfTwoContactsIsActiveWithEitherAndBrokenOnlyWhenTheyDisagr
   }
 }
 
+// Red when a disagreement that is there when the lines are claimed counts from the clock's zero.
+TEST(GpioInputSignal, CountsADisagreementThatItBeginsWithFromTheBeginning) {
+  InputSignal signal(2, kDebounce, kDisagreement);
+  signal.begin(0, true, 1h);
+  signal.begin(1, false, 1h);
+  EXPECT_FALSE(signal.broken(1h));
+  EXPECT_FALSE(signal.broken(1h + kDisagreement));
+  EXPECT_TRUE(signal.broken(1h + kDisagreement + 1ns));
+}
+
 /// An emergency stop of two contacts (bit 0: one opens, one closes), a probe (bit 5), coolant (bit 1) and a tool
 /// release that is active low (bit 3).
 class GpioInterfaceTest : public testing::Test {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "conformance/digital_io_conformance.hpp"
 #include "unit/fieldbus/modbus/register_bank.hpp"
 
@@ -24,11 +26,15 @@ class ModbusIo : public testing::TestWithParam<Wire> {
  protected:
   ModbusIo() : peer(GetParam()) {
     peer.respond([this](const Bytes& request) { return bank.answer(request); });
+    make(60s, 60s);
+  }
+  /// However busy the computer is, an honest peer answers within a minute.
+  void make(std::chrono::milliseconds deadline, std::chrono::milliseconds stale) {
     IoLineConfig config;
     config.line.endpoint = peer.endpoint();
-    config.line.deadline = 50ms;
+    config.line.deadline = deadline;
     config.line.period = 2ms;
-    config.stale = 500ms;
+    config.stale = stale;
     config.boot_timeout = 60s;
     config.slave = 1;
     config.map = map();
@@ -71,12 +77,15 @@ TEST_P(ModbusIo, CarriesBitsBothWays) {
   static_cast<void>(peer.take_requests());
   std::uint64_t inputs = 0;
   EXPECT_TRUE(io->exchange(std::uint64_t{0b101} | std::uint64_t{0x81234} << 16U, inputs));
-  EXPECT_TRUE(peer.wait_for([](const Bytes& request) { return request[1] == 16; }));
+  Bytes written;
+  EXPECT_TRUE(peer.wait_for([&](const Bytes& request) {
+    if (request[1] == 16) written = request;
+    return request[1] == 16;
+  }));
+  EXPECT_EQ(written, (Bytes{1, 16, 0, 7, 0, 2, 4, 0x12, 0x34, 0, 8}));
   EXPECT_EQ(bank.get(Table::Coils, 5), 1);
   EXPECT_EQ(bank.get(Table::Coils, 6), 0);
   EXPECT_EQ(bank.get(Table::Coils, 7), 1);
-  const auto written = peer.take_requests();
-  EXPECT_EQ(written.back()[1] == 16 ? written.back() : Bytes(), (Bytes{1, 16, 0, 7, 0, 2, 4, 0x12, 0x34, 0, 8}));
 }
 
 TEST_P(ModbusIo, SwitchesItsOutputsOffWhenItEnds) {
@@ -90,10 +99,16 @@ TEST_P(ModbusIo, SwitchesItsOutputsOffWhenItEnds) {
 }
 
 TEST_P(ModbusIo, FailsWhenItsInputsGrowOldAndLetsItsOutputsFall) {
+  make(50ms, 500ms);
   ASSERT_TRUE(io->start());
   std::uint64_t inputs = 0;
-  ASSERT_TRUE(io->exchange(0b111, inputs));
-  ASSERT_TRUE(peer.wait_for([](const Bytes& request) { return request[1] == 15 && request.back() == 0b111; }));
+  const auto tell = [&](const Bytes& request) { return request[1] == 15 && request.back() == 0b111; };
+  for (bool told = false; !told;) {  // a busy computer may take longer over a cycle than inputs stay fresh
+    std::this_thread::yield();
+    if (!io->exchange(0b111, inputs)) continue;
+    const auto seen = peer.take_requests();
+    told = std::any_of(seen.begin(), seen.end(), tell);
+  }
   peer.behave(ModbusPeer::Manner::Silent);
   const auto give_up = Clock::now() + 60s;
   while (io->exchange(0b111, inputs)) ASSERT_LT(Clock::now(), give_up);
