@@ -13,13 +13,9 @@ namespace rmac::gateway {
 template <typename Device>
 [[nodiscard]] auto joint_of(Device& device, std::int64_t number) -> Expected<decltype(device.joints.data())> {
   const auto index = static_cast<std::size_t>(number);
-  if (index < device.joints.size()) return &device.joints[index];
-  if (index < device.joints.size() + device.held_joints.size()) {
-    return &device.held_joints[index - device.joints.size()];
-  }
-  return failure(MinorCode::InvalidParameterValue,
-                 fmt::format("joint {} does not exist: {} has joints 0 to {}", number, device.name,
-                             device.joints.size() + device.held_joints.size() - 1));
+  if (index < device.joint_count_with_held()) return &sdk::joint_at(device, index);
+  return failure(MinorCode::InvalidParameterValue, fmt::format("joint {} does not exist: {} has joints 0 to {}", number,
+                                                               device.name, device.joint_count_with_held() - 1));
 }
 
 }  // namespace rmac::gateway

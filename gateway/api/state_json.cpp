@@ -96,7 +96,7 @@ nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, co
                        {"wake_up", brief(machine.cycle_times().wake_up.read())},
                        {"compute", brief(machine.cycle_times().compute.read())},
                        {"bus", brief(machine.cycle_times().bus.read())},
-                       {"moves_in_buffer", machine.cam().moves_in_buffer()},
+                       {"moves_in_buffer", machine.cam().queue().moves_left()},
                        {"status_major", status.major},
                        {"status_minor", status.minor},
                        {"authority", authority_holder},

@@ -81,7 +81,7 @@ sdk::Measuring& Controller::measuring() noexcept {
 }
 
 ToolPort& Controller::tools() noexcept {
-  return impl_->cam;
+  return impl_->cam.tools();
 }
 
 void Controller::set_mechanism_folder(std::string folder, bool virtual_mode) {

@@ -9,7 +9,7 @@
 #include "gateway/mechanism/assembler.hpp"
 #include "gateway/record/flight_recorder.hpp"
 #include "gateway/rmac_cam/cam.hpp"
-#include "gateway/rmac_cam/measuring_machine.hpp"
+#include "gateway/rmac_cam/measuring/measuring_machine.hpp"
 #include "gateway/rmac_config/config_draft.hpp"
 #include "gateway/servo/servo_thread.hpp"
 

@@ -19,7 +19,7 @@ void Controller::Impl::tell(Event event) {
   }
   if (event.kind == Event::Kind::Fault || event.kind == Event::Kind::Stopped) last_stop = event;
   if (event.kind == Event::Kind::ToolChanged || event.kind == Event::Kind::ToolChangeDropped) {
-    if (auto kept = cam.keep_mounted(); !kept) event.message += "; that is not kept: " + kept.error().message;
+    if (auto kept = cam.tools().keep_mounted(); !kept) event.message += "; that is not kept: " + kept.error().message;
   }
   for (const auto& listener : event_listeners) listener(event);
 }

@@ -164,7 +164,7 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
   const bool role =
       fresh && in_force && device.machine() == in_force->device.machine() && device.name != in_force->device.name;
   const Frames frames_before = supervisor.wishes().frames;
-  if (role) (void)cam.keep_mounted();  // before the table is read that says so
+  if (role) (void)cam.tools().keep_mounted();  // before the table is read that says so
   auto tools = rack.read(device.machine());
   if (!tools) return tl::unexpected(tools.error());
   const bool virtual_before = in_force && in_force->virtual_mode();
@@ -224,7 +224,7 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
     const auto keeps = !virtual_mode     ? ToolRack::Keeps::Everything
                        : options.stepped ? ToolRack::Keeps::Nothing
                                          : ToolRack::Keeps::Tools;
-    (void)cam.keep_mounted();  // of the mechanism before
+    (void)cam.tools().keep_mounted();  // of the mechanism before
     rack.adopt(device.machine(), std::move(*tools), keeps);
   }
   bound_spindles(device);
@@ -280,7 +280,7 @@ Expected<> Controller::Impl::take_out() {
   supervisor.wish([](ServoWishes& wishes) { wishes.outputs = 0; });
   const std::string name = in_force->device.name;
   if (auto off = switch_off(); !off) return off;
-  (void)cam.keep_mounted();
+  (void)cam.tools().keep_mounted();
   supervisor.drop_parked(name + " was unloaded");
   tell_cam(nullptr, true);
   in_force.reset();
@@ -312,7 +312,7 @@ Expected<> Controller::Impl::reset() {
 void Controller::Impl::come_to_rest() noexcept {
   // Ending cannot fail: whatever does not work, the threads end and the buses stop.
   try {
-    (void)cam.stop_now();
+    (void)cam.cycle().stop_now();
     (void)wait_for([&] {
       const CycleState state = supervisor.state();
       return state == CycleState::Idle || is_faulted(state);

@@ -79,10 +79,8 @@ std::string check_bus_names(const DeviceObject& device) {
   std::set<std::string> buses;
   for (const sdk::Actuator& actuator : device.actuators) buses.insert(actuator.bus);
   for (const sdk::Spindle& spindle : device.spindles) buses.insert(spindle.bus);
-  for (const auto* joints : {&device.joints, &device.held_joints}) {
-    for (const sdk::Joint& joint : *joints) {
-      if (joint.force_sensor) buses.insert(joint.force_sensor->bus);
-    }
+  for (std::size_t j = 0; j < device.joint_count_with_held(); ++j) {
+    if (const auto& sensor = sdk::joint_at(device, j).force_sensor) buses.insert(sensor->bus);
   }
   const auto check = [&](const auto& parameters) -> std::string {
     for (const auto& [key, ignored] : parameters) {

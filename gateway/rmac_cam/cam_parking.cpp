@@ -1,13 +1,14 @@
+#include "gateway/rmac_cam/cam_parking.hpp"
+
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "gateway/mechanism/mechanism.hpp"
-#include "gateway/rmac_cam/cam.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac::gateway {
 namespace {
+
+constexpr const char* kTakeUp = "TakeUpProgram";
 
 tl::unexpected<Error> nothing_parked(const char* function) {
   return failure(
@@ -17,63 +18,72 @@ tl::unexpected<Error> nothing_parked(const char* function) {
 
 }  // namespace
 
-Expected<> Cam::park_program() {
-  if (auto loaded = require_mechanism("ParkProgram"); !loaded) return loaded;
-  let_go_of_forces();
-  return supervisor_.park(begin_change().outputs_off).map([&] { parked_settings_ = settings_; });
+Expected<> CamParking::park() {
+  if (auto loaded = device_.require("ParkProgram"); !loaded) return loaded;
+  parts_.forces.let_go();
+  return supervisor_.park(device_.coolant()).map([&] {
+    settings_ = {parts_.path.values(), parts_.joints.values(), parts_.spindles.largest_rpm()};
+  });
 }
 
-Expected<> Cam::take_up_program() {
-  constexpr const char* kFunction = "TakeUpProgram";
-  if (auto loaded = require_mechanism(kFunction); !loaded) return loaded;
-  const auto& parked = supervisor_.parked();
-  if (!parked) return nothing_parked(kFunction);
-  if (parked->mechanism != device_->name || parked->virtual_mode != supervisor_.mechanism()->virtual_mode()) {
-    return failure(MinorCode::Other, fmt::format("{}: the program was parked on {}{}; load that first", kFunction,
-                                                 parked->mechanism, parked->virtual_mode ? " in virtual mode" : ""));
+Expected<> CamParking::check_take_up(const MotionSupervisor::Parked& parked) {
+  if (parked.mechanism != device_.get()->name || parked.virtual_mode != supervisor_.mechanism()->virtual_mode()) {
+    return failure(MinorCode::Other, fmt::format("{}: the program was parked on {}{}; load that first", kTakeUp,
+                                                 parked.mechanism, parked.virtual_mode ? " in virtual mode" : ""));
   }
   if (supervisor_.state() != CycleState::Idle) {
-    return failure(MinorCode::Other, fmt::format("{}: the cycle is under way; stop it first", kFunction));
+    return failure(MinorCode::Other, fmt::format("{}: the cycle is under way; stop it first", kTakeUp));
   }
-  auto queued = supervisor_.require_rest(kFunction).and_then([&] { return supervisor_.prepare_move(); }).and_then([&] {
-    return supervisor_.add_rest_of(parked->steps.front());
-  });
-  const bool begins_with_tool = std::holds_alternative<int>(parked->steps.front().what);
-  for (std::size_t i = begins_with_tool ? 0 : 1; queued && i < parked->steps.size(); ++i) {
-    const auto& what = parked->steps[i].what;
-    const Move* const move = std::get_if<Move>(&what);
-    queued = move != nullptr ? supervisor_.add_move(*move).map([](bool) {}) : change_tool(std::get<int>(what));
-  }
-  if (queued && !supervisor_.hold_taken_up()) {
-    queued = failure(MinorCode::Other, fmt::format("{}: the machine was stopped meanwhile", kFunction));
-  }
-  if (!queued) {
-    supervisor_.drop_taken_up();
-    (void)keep_mounted();
-    return failure(queued.error().code, fmt::format("{}; the program stays parked", queued.error().message));
-  }
-  settings_ = parked_settings_;
-  settings_.max_feedrate_mm_min = std::min(settings_.max_feedrate_mm_min, device_->max_feedrate_mm_min);
   return {};
 }
 
-Expected<> Cam::drop_parked_program() {
+Expected<> CamParking::queue_again(const MotionSupervisor::Parked& parked) {
+  auto queued = supervisor_.require_rest(kTakeUp).and_then([&] { return supervisor_.prepare_move(); }).and_then([&] {
+    return supervisor_.add_rest_of(parked.steps.front());
+  });
+  const bool begins_with_tool = std::holds_alternative<int>(parked.steps.front().what);
+  for (std::size_t i = begins_with_tool ? 0 : 1; queued && i < parked.steps.size(); ++i) {
+    const auto& what = parked.steps[i].what;
+    const Move* const move = std::get_if<Move>(&what);
+    queued =
+        move != nullptr ? supervisor_.add_move(*move).map([](bool) {}) : parts_.tools.change_tool(std::get<int>(what));
+  }
+  if (queued && !supervisor_.hold_taken_up()) {
+    return failure(MinorCode::Other, fmt::format("{}: the machine was stopped meanwhile", kTakeUp));
+  }
+  return queued;
+}
+
+Expected<> CamParking::take_up() {
+  if (auto loaded = device_.require(kTakeUp); !loaded) return loaded;
+  const auto& parked = supervisor_.parked();
+  if (!parked) return nothing_parked(kTakeUp);
+  if (auto fits = check_take_up(*parked); !fits) return fits;
+  if (auto queued = queue_again(*parked); !queued) {
+    supervisor_.drop_taken_up();
+    (void)parts_.tools.keep_mounted();
+    return failure(queued.error().code, fmt::format("{}; the program stays parked", queued.error().message));
+  }
+  parts_.path.take_up(settings_.path);
+  parts_.joints.take_up(settings_.joints);
+  parts_.spindles.take_up(settings_.spindle_max_rpm);
+  return {};
+}
+
+Expected<> CamParking::drop() {
   if (!supervisor_.parked()) return nothing_parked("DropParkedProgram");
   supervisor_.drop_parked("a client asked for it");
   return {};
 }
 
-std::optional<sdk::ParkedProgram> Cam::parked_program() const {
+std::optional<sdk::ParkedProgram> CamParking::parked() const {
   const auto& parked = supervisor_.parked();
   if (!parked) return {};
   const ProgramStep& first = parked->steps.front();
   const Move* const move = std::get_if<Move>(&first.what);
   sdk::ParkedProgram told{parked->mechanism, parked->steps.size(), move != nullptr ? move->id : 0,
                           first.from_mm,     parked->place,        0};
-  if (device_ == nullptr) return told;
-  const Vector& at = tool_pose_set().tip;
-  const Vector& place = told.place.tip;
-  told.off_mm = std::hypot(at[0] - place[0], at[1] - place[1], at[2] - place[2]);
+  if (device_.get() != nullptr) told.off_mm = distance(tool_.in_part().tip, told.place.tip);
   return told;
 }
 

@@ -1,73 +1,175 @@
+#include "gateway/rmac_cam/cam_positioning.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "gateway/mechanism/mechanism.hpp"
-#include "gateway/rmac_cam/cam.hpp"
 #include "rmac/motion/frame.hpp"
 #include "rmac/motion/move_name.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac::gateway {
-Expected<std::size_t> Cam::find_joint(int joint, const char* function) const {
-  if (auto loaded = require_mechanism(function); !loaded) return tl::unexpected(loaded.error());
-  const auto count = static_cast<int>(device_->joints.size());
-  if (joint >= 0 && joint < count) return static_cast<std::size_t>(joint);
-  return failure(MinorCode::InvalidParameterValue,
-                 fmt::format("{}: there is no joint {}; joints are 0 to {}", function, joint, count - 1));
+namespace {
+
+/// A jog without a limit on its way ends after so much, in mm or degrees.
+constexpr double kFarAway = 1e5;
+/// A joint so near to its limit, in mm or degrees, stands at it.
+constexpr double kAtTheLimit = 1e-6;
+/// To so much the way to a limit is found, in mm.
+constexpr double kReachFound = 1e-3;
+
+double travel_end(const JointLimits& limits, double from, bool positive) {
+  const bool bounded = positive ? ends_above(limits) : ends_below(limits);
+  if (!bounded) return from + (positive ? kFarAway : -kFarAway);
+  return positive ? limits.max : limits.min;
 }
 
-Expected<> Cam::set_joint_accel(std::vector<double>& accel, const char* function, int joint, double value) {
-  const auto found = find_joint(joint, function);
+}  // namespace
+
+JointTargetGeometry CamPositioning::joints_now() const {
+  const ServoStatus now = link_.status.read();
+  return {{now.position_set.begin(), now.position_set.begin() + device_.get()->joints.size()}};
+}
+
+Expected<> CamPositioning::jog_joint(int joint, double distance) {
+  const auto found = device_.find_joint(joint, "JogJoint");
   if (!found) return tl::unexpected(found.error());
-  return check_accel(function, value, device_->joints[*found].limits.max_acceleration).map([&] {
-    accel[*found] = value;
-  });
-}
-
-Expected<> Cam::set_joint_accel_rise(int joint, double value) {
-  return set_joint_accel(settings_.joint_accel_rise, "SetJointAccelRise", joint, value);
-}
-
-Expected<double> Cam::joint_accel_rise(int joint) const {
-  return find_joint(joint, "GetJointAccelRise").map([&](std::size_t found) {
-    return settings_.joint_accel_rise[found];
-  });
-}
-
-Expected<> Cam::set_joint_accel_fall(int joint, double value) {
-  return set_joint_accel(settings_.joint_accel_fall, "SetJointAccelFall", joint, value);
-}
-
-Expected<double> Cam::joint_accel_fall(int joint) const {
-  return find_joint(joint, "GetJointAccelFall").map([&](std::size_t found) {
-    return settings_.joint_accel_fall[found];
-  });
-}
-
-Move Cam::make_joint_move(std::int64_t id, const JointTargetGeometry& target, std::span<const double> from) const {
-  Move move = make_move(id, target);
-  // All joints go in proportion on a line in joint space, so a joint's bound is one along that line, whatever
-  // SetPathAccelRise says of the tool tip.
-  const std::size_t count = std::min({target.joints.size(), from.size(), settings_.joint_accel_rise.size()});
-  double square = 0;
-  for (std::size_t i = 0; i < count; ++i) square += (target.joints[i] - from[i]) * (target.joints[i] - from[i]);
-  move.accel_rise_mm_s2 = move.accel_fall_mm_s2 = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double share = std::abs(target.joints[i] - from[i]) / std::sqrt(square);
-    if (!(share > 0)) continue;
-    const auto tighten = [&](double& bound, double accel) {
-      bound = bound > 0 ? std::min(bound, accel / share) : accel / share;
-    };
-    tighten(move.accel_rise_mm_s2, settings_.joint_accel_rise[i]);
-    tighten(move.accel_fall_mm_s2, settings_.joint_accel_fall[i]);
+  if (!std::isfinite(distance) || distance == 0) {
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("JogJoint: the distance {} must be a number other than 0", distance));
   }
+  if (auto free = check_limit_switches(*found, distance > 0); !free) return free;
+  const JointTargetGeometry now = joints_now();
+  JointTargetGeometry target = now;
+  target.joints[*found] += distance;
+  return supervisor_.run_positioning(maker_.joint_move(kPositioningMoveId, target, now.joints));
+}
+
+Expected<> CamPositioning::check_limit_switches(std::size_t joint, bool positive) const {
+  const std::uint64_t on = link_.history.latest().inputs;
+  for (const ServoLimit& limit : supervisor_.mechanism()->loop->parts().limits) {
+    if (limit.joint != joint || (limit.direction > 0) != positive || (on & limit.input) == 0) continue;
+    return failure(MinorCode::TravelLimit,
+                   fmt::format("JogJoint: joint {} stands on its limit switch at the {} end; jog the other way",
+                               device_.get()->joints[joint].limits.name, positive ? "positive" : "negative"));
+  }
+  return {};
+}
+
+Expected<Move> CamPositioning::move_to_end(std::size_t joint, bool positive) const {
+  const JointLimits& limits = device_.get()->joints[joint].limits;
+  const JointTargetGeometry now = joints_now();
+  const double from = now.joints[joint];
+  const double to = travel_end(limits, from, positive);
+  if (!(std::abs(to - from) > kAtTheLimit) || (to > from) != positive) {
+    return failure(MinorCode::TravelLimit,
+                   fmt::format("JogJoint: joint {} stands at its limit of {}; jog the other way", limits.name, to));
+  }
+  JointTargetGeometry target = now;
+  target.joints[joint] = to;
+  Move move = maker_.joint_move(kPositioningMoveId, target, now.joints);
+  move.joint_speed_fraction = 1;
   return move;
 }
 
-Expected<> Cam::home() {
-  if (auto loaded = require_mechanism("Home"); !loaded) return loaded;
-  const bool by_drives = std::any_of(device_->actuators.begin(), device_->actuators.end(),
+Expected<> CamPositioning::jog_joint_at(int joint, double velocity) {
+  const auto found = device_.find_joint(joint, "JogJoint");
+  if (!found) return tl::unexpected(found.error());
+  const bool positive = velocity > 0;
+  const double fastest = device_.get()->joints[*found].limits.max_speed;
+  return jog_at("JogJoint", {joint, positive, fastest}, velocity, [&] {
+    return check_limit_switches(*found, positive).and_then([&] { return move_to_end(*found, positive); });
+  });
+}
+
+Expected<Vector> CamPositioning::part_direction(const sdk::JogDirection& direction) const {
+  const Vector& v = direction.vector;
+  const double length = norm(v);
+  if (!std::isfinite(length) || !(length > 1e-9)) {
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("JogPath: the direction ({}, {}, {}) has no length", v[0], v[1], v[2]));
+  }
+  const Vector way = scaled(1 / length, v);
+  return direction.in_tool_frame ? rotate(frame_from_axis({}, tool_.in_part().axis).q, way) : way;
+}
+
+Move CamPositioning::move_by(const ToolPose& from, const Vector& direction, double mm) const {
+  return maker_.straight_move({along(from.tip, mm, direction), from.axis});
+}
+
+Expected<> CamPositioning::jog_path(const sdk::JogDirection& direction, double distance_mm) {
+  if (auto loaded = device_.require("JogPath"); !loaded) return loaded;
+  if (!std::isfinite(distance_mm) || distance_mm == 0) {
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("JogPath: the distance {} must be a number other than 0", distance_mm));
+  }
+  return part_direction(direction).and_then(
+      [&](const Vector& way) { return supervisor_.run_positioning(move_by(tool_.in_part(), way, distance_mm)); });
+}
+
+Expected<> CamPositioning::jog_path_at(const sdk::JogDirection& direction, double velocity_mm_s) {
+  if (auto loaded = device_.require("JogPath"); !loaded) return loaded;
+  const double fastest = path_.max_feed_mm_s();
+  return jog_at("JogPath", {direction, velocity_mm_s > 0, fastest}, velocity_mm_s, [&]() -> Expected<Move> {
+    auto way = part_direction(direction);
+    if (!way) return tl::unexpected(way.error());
+    if (velocity_mm_s < 0) way = scaled(-1, *way);
+    return straight_reach(*way).map([&](double reach) {
+      Move move = move_by(tool_.in_part(), *way, reach);
+      move.feed_mm_s = fastest;
+      return move;
+    });
+  });
+}
+
+Expected<double> CamPositioning::straight_reach(const Vector& direction) const {
+  const auto mechanism = supervisor_.mechanism();
+  const ToolPose from = tool_.in_part();
+  const ServoStatus now = link_.status.read();
+  const Frames frames = supervisor_.wishes().frames;
+  const auto try_length = [&](double mm) {
+    PathBuilder builder(mechanism->planner_model);
+    builder.restart({now.position_set.data(), now.joint_count}, frames);
+    return builder.build(move_by(from, direction, mm));
+  };
+  double good = 0;
+  double bad = kReachFound;
+  auto refusal = try_length(bad);
+  if (!refusal) return tl::unexpected(refusal.error());
+  while (refusal && bad < kFarAway) {
+    good = bad;
+    bad *= 2;
+    refusal = try_length(bad);
+  }
+  // What can be reached is a first part of the way, so halving finds its end.
+  while (bad - good > kReachFound) {
+    const double middle = (good + bad) / 2;
+    (try_length(middle) ? good : bad) = middle;
+  }
+  return good;
+}
+
+Expected<> CamPositioning::jog_at(const char* function, const Jog& jog, double velocity,
+                                  const std::function<Expected<Move>()>& begin) {
+  const double speed = std::abs(velocity);
+  if (!(speed <= jog.fastest)) {
+    return failure(MinorCode::SpeedLimit, fmt::format("{}: the velocity {} is more than {}, the fastest that it can be",
+                                                      function, velocity, jog.fastest));
+  }
+  const bool same = jog_ && jog_->what == jog.what && jog_->positive == jog.positive;
+  if (speed == 0) return supervisor_.end_jog();
+  if (same && supervisor_.renew_jog(speed / jog.fastest)) return {};
+  return begin().and_then([&](const Move& move) {
+    return supervisor_.run_positioning(move, speed / jog.fastest).map([&] { jog_ = jog; });
+  });
+}
+
+Expected<> CamPositioning::home() {
+  if (auto loaded = device_.require("Home"); !loaded) return loaded;
+  const sdk::DeviceObject& device = *device_.get();
+  const bool by_drives = std::any_of(device.actuators.begin(), device.actuators.end(),
                                      [](const sdk::Actuator& actuator) { return actuator.homing_turn > 0; });
   if (by_drives && !supervisor_.mechanism()->virtual_mode()) {
     return supervisor_.require_rest("Home").and_then([&] {
@@ -75,100 +177,24 @@ Expected<> Cam::home() {
           [](CycleSequencer& cycle, const CycleObservation& seen) { return cycle.start_homing(seen); });
     });
   }
-  const std::size_t count = device_->joints.size();
-  const ServoStatus now = link_.status.read();
+  const JointTargetGeometry now = joints_now();
   const bool there =
-      std::all_of(now.position_set.begin(), now.position_set.begin() + static_cast<std::ptrdiff_t>(count),
-                  [](double position) { return std::abs(position) < 1e-9; });
+      std::all_of(now.joints.begin(), now.joints.end(), [](double position) { return std::abs(position) < 1e-9; });
   if (there) return supervisor_.require_rest("Home");
-  return supervisor_.run_positioning(
-      make_joint_move(kPositioningMoveId, JointTargetGeometry{std::vector<double>(count, 0.0)}, now.position_set));
+  const JointTargetGeometry zero{std::vector<double>(now.joints.size(), 0.0)};
+  return supervisor_.run_positioning(maker_.joint_move(kPositioningMoveId, zero, now.joints));
 }
 
-ToolPose Cam::tool_pose_in_machine() const {
-  // Not from a sample: frames set just now are not in it yet.
-  const ServoStatus now = link_.status.read();
-  const Frames frames = this->frames();
-  ToolPose at;
-  supervisor_.mechanism()->planner_model.kinematics->forward({now.position_set.data(), now.joint_count}, frames.tool,
-                                                             at);
-  return at;
+Expected<> CamPositioning::move_to_reference_point() {
+  if (auto loaded = device_.require("MoveToReferencePoint"); !loaded) return loaded;
+  return supervisor_.run_positioning(maker_.straight_move({{0, 0, 0}, tool_.in_part().axis}));
 }
 
-ToolPose Cam::tool_pose_set() const {
-  return apply_to_pose(inverse(frames().part), tool_pose_in_machine());
-}
-
-ToolPose Cam::tool_pose_at(std::span<const double> joints) const {
-  const Frames frames = this->frames();
-  ToolPose at;
-  supervisor_.mechanism()->planner_model.kinematics->forward(joints, frames.tool, at);
-  return apply_to_pose(inverse(frames.part), at);
-}
-
-Expected<Move> Cam::path_move_at(const char* function, std::int64_t id, const Geometry& geometry,
-                                 double speed_mm_s) const {
-  if (auto loaded = require_mechanism(function); !loaded) return tl::unexpected(loaded.error());
-  if (!std::isfinite(speed_mm_s) || !(speed_mm_s > 0)) {
-    return failure(MinorCode::InvalidParameterValue, fmt::format("{}: the speed must be above 0 mm/s", function));
-  }
-  if (const double fastest = settings_.max_feedrate_mm_min / kSecondsPerMinute; speed_mm_s > fastest) {
-    return failure(MinorCode::SpeedLimit,
-                   fmt::format("{}: {} mm/s is above the maximum feed of {} mm/s", function, speed_mm_s, fastest));
-  }
-  Move move = make_move(id, geometry);
-  move.feed_mm_s = speed_mm_s;
-  return move;
-}
-
-Expected<> Cam::queue_joints_at(const char* function, std::int64_t id, const JointTargetGeometry& target,
-                                double speed) {
-  if (auto loaded = require_mechanism(function); !loaded) return loaded;
-  const std::size_t count = device_->joints.size();
-  if (target.joints.size() != count) {
-    return failure(MinorCode::InvalidParameterValue,
-                   fmt::format("{}: {} positions are given, and the mechanism has {} joints", function,
-                               target.joints.size(), count));
-  }
-  if (!std::isfinite(speed) || !(speed > 0)) {
-    return failure(MinorCode::InvalidParameterValue, fmt::format("{}: the speed must be above 0", function));
-  }
-  if (auto ready = supervisor_.prepare_move(); !ready) return ready;
-  const std::span<const double> from = supervisor_.mechanism()->builder.end_joints();
-  double linear = 0, all = 0;
-  for (std::size_t j = 0; j < count; ++j) {
-    const double way = target.joints[j] - from[j];
-    all = std::hypot(all, way);
-    if (device_->joints[j].limits.type != JointType::Rotary) linear = std::hypot(linear, way);
-  }
-  const double takes_s = (linear > 0 ? linear : all) / speed;
-  Move move = make_joint_move(id, target, from);
-  double fraction = 0;
-  for (std::size_t j = 0; j < count && takes_s > 0; ++j) {
-    const JointLimits& joint = device_->joints[j].limits;
-    const double wanted = std::abs(target.joints[j] - from[j]) / takes_s;
-    if (wanted > joint.max_speed * (1 + 1e-12)) {
-      return failure(MinorCode::SpeedLimit,
-                     fmt::format("{}: joint {} would go at {:.6g} a second, and its limit is {:.6g}", function,
-                                 joint.name, wanted, joint.max_speed));
-    }
-    fraction = std::max(fraction, wanted / joint.max_speed);
-  }
-  if (fraction > 0) move.joint_speed_fraction = std::min(fraction, 1.0);
-  return supervisor_.add_move(move).map([](bool) {});
-}
-
-Move Cam::make_straight_move(const ToolPose& target) const {
-  Move move = make_move(kPositioningMoveId, PathTargetGeometry{target});
-  // Without a feed in force, as fast as joint moves are allowed to be.
-  if (!(move.feed_mm_s > 0))
-    move.feed_mm_s = settings_.max_feedrate_mm_min / kSecondsPerMinute * settings_.joint_interp_percent / 100;
-  return move;
-}
-
-Expected<> Cam::move_to_reference_point() {
-  if (auto loaded = require_mechanism("MoveToReferencePoint"); !loaded) return loaded;
-  return supervisor_.run_positioning(make_straight_move({{0, 0, 0}, tool_pose_set().axis}));
+Expected<std::vector<double>> CamPositioning::current_position() const {
+  return device_.require("GetCurrentPosition").map([&] {
+    const CycleSample now = link_.history.latest();
+    return std::vector<double>(now.position.begin(), now.position.begin() + now.joint_count);
+  });
 }
 
 }  // namespace rmac::gateway

@@ -1,47 +1,45 @@
+#include "gateway/rmac_cam/cam_tools.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "gateway/mechanism/mechanism.hpp"
-#include "gateway/rmac_cam/cam.hpp"
 #include "rmac/motion/frame.hpp"
-#include "rmac/motion/move_name.hpp"
 
 namespace rmac::gateway {
-namespace {
 
-std::string described(const Tool& tool) {
-  if (tool.number == kNoTool) return "no tool";
-  return tool.name.empty() ? fmt::format("tool {}", tool.number) : fmt::format("tool {} ({})", tool.number, tool.name);
+void CamTools::mechanism_changed(bool fresh) {
+  if (!fresh) return;
+  // The tool stays in the spindle whoever was loaded meanwhile.
+  const auto mounted = device_.get() != nullptr ? rack_.mounted() : kNoTool;
+  const auto tool = mounted && *mounted != kNoTool ? rack_.tool(*mounted) : std::nullopt;
+  supervisor_.set_mounted(mounted, tool ? tool->max_torque_nm : 0);
+  if (tool) supervisor_.set_frames({{}, tip_on_interface(*tool)});
 }
 
-Frame tip_of(const Tool& tool) {
-  return tool.number == kNoTool ? Frame{} : tip_on_interface(tool);
-}
-
-MountTool mount(const Tool& tool) {
-  return {tool.number, tip_of(tool), described(tool), tool.max_torque_nm};
-}
-
-}  // namespace
-
-Expected<Tool> Cam::find_tool(int number, const char* function) const {
-  if (auto loaded = require_mechanism(function); !loaded) return tl::unexpected(loaded.error());
+Expected<Tool> CamTools::find(int number, const char* function) const {
+  if (auto loaded = device_.require(function); !loaded) return tl::unexpected(loaded.error());
   if (number == kNoTool) return Tool{.number = kNoTool, .needs_spindle = false};
   return rack_.find(number, function);
 }
 
-Expected<std::vector<Tool>> Cam::tools() const {
-  return require_mechanism("GetTools").map([&] {
+void CamTools::put_in_spindle(const Tool& tool) {
+  supervisor_.set_mounted(tool.number, tool.max_torque_nm);
+  supervisor_.set_frames({supervisor_.wishes().frames.part, tip_on_interface(tool)});
+}
+
+Expected<std::vector<Tool>> CamTools::tools() const {
+  return device_.require("GetTools").map([&] {
     std::vector<Tool> all;
     for (const auto& [number, tool] : rack_.tools()) all.push_back(tool);
     return all;
   });
 }
 
-Expected<> Cam::set_tool(const Tool& tool) {
-  if (auto loaded = require_mechanism("SetTool"); !loaded) return loaded;
+Expected<> CamTools::set_tool(const Tool& tool) {
+  if (auto loaded = device_.require("SetTool"); !loaded) return loaded;
   if (auto fine = check_frame(tool.frame, "SetTool: Frame"); !fine) return fine;
   const ToolsNow now = supervisor_.tools_now();
   const bool in_use = now.mounted == tool.number || now.wanted;
@@ -49,73 +47,20 @@ Expected<> Cam::set_tool(const Tool& tool) {
   Tool set = tool;
   set.frame = normalized(tool.frame);
   return rack_.set(set).map([&] {
-    if (now.mounted != set.number) return;
-    supervisor_.set_mounted(set.number, set.max_torque_nm);
-    supervisor_.set_frames({frames().part, tip_of(set)});
+    if (now.mounted == set.number) put_in_spindle(set);
   });
 }
 
-Expected<> Cam::remove_tool(int number) {
-  if (auto loaded = require_mechanism("RemoveTool"); !loaded) return loaded;
+Expected<> CamTools::remove_tool(int number) {
+  if (auto loaded = device_.require("RemoveTool"); !loaded) return loaded;
   if (supervisor_.tools_now().wanted) {
     return failure(MinorCode::Other, "RemoveTool: a tool change is queued; remove tools when it is done");
   }
   return rack_.remove(number);
 }
 
-BeginToolChange Cam::begin_change() const {
-  const auto coolant = device_->outputs.find(kCoolantOutput);
-  return {coolant == device_->outputs.end() ? 0 : std::uint64_t{1} << coolant->second};
-}
-
-std::vector<QueueStep> Cam::change_by_hand(const Tool& tool) const {
-  const std::string what = tool.number == kNoTool ? "take the tool out" : fmt::format("insert {}", described(tool));
-  return {begin_change(), AskPerson{fmt::format("{}, then confirm: rmac confirm {}", what, tool.number)}, mount(tool)};
-}
-
-Expected<QueueStep> Cam::changer_step(const sdk::ToolChangeStep& step, int number) {
-  using Kind = sdk::ToolChangeStep::Kind;
-  if (step.kind == Kind::MoveTo) {
-    PathBuilder& builder = supervisor_.mechanism()->builder;
-    Move move = make_joint_move(kPositioningMoveId, JointTargetGeometry{step.joints}, builder.end_joints());
-    move.joint_speed_fraction = 1;
-    return builder.build(move).map([](auto&& segments) {
-      return QueueStep(QueuedPath{kPositioningMoveId, {}, std::move(segments)});
-    });
-  }
-  if (step.kind == Kind::Await) {
-    return AwaitInput{std::uint64_t{1} << device_->inputs.at(step.input), step.on, step.timeout_s, step.input};
-  }
-  if (step.kind == Kind::Select && number >= 1 << step.outputs.size()) {
-    return failure(MinorCode::InvalidParameterValue,
-                   fmt::format("DoToolChange: tool {} has no place in the changer, which knows tools up to {}", number,
-                               (1 << step.outputs.size()) - 1));
-  }
-  SwitchOutputs outputs;
-  for (std::size_t i = 0; i < step.outputs.size(); ++i) {
-    const std::uint64_t bit = std::uint64_t{1} << device_->outputs.at(step.outputs[i]);
-    outputs.mask |= bit;
-    if (step.kind == Kind::Select ? ((number >> i) & 1) != 0 : step.on) outputs.values |= bit;
-  }
-  return outputs;
-}
-
-Expected<std::vector<QueueStep>> Cam::change_by_changer(int old, const Tool& tool) {
-  using Whose = sdk::ToolChangeStep::Whose;
-  std::vector<QueueStep> steps{begin_change()};
-  for (const sdk::ToolChangeStep& step : device_->tool_change) {
-    const int number = step.whose == Whose::Old ? old : tool.number;
-    if (step.whose != Whose::Both && number == kNoTool) continue;
-    auto made = changer_step(step, number);
-    if (!made) return tl::unexpected(made.error());
-    steps.push_back(std::move(*made));
-  }
-  steps.emplace_back(mount(tool));
-  return steps;
-}
-
-Expected<> Cam::change_tool(int number) {
-  const auto tool = find_tool(number, "DoToolChange");
+Expected<> CamTools::change_tool(int number) {
+  const auto tool = find(number, "DoToolChange");
   if (!tool) return tl::unexpected(tool.error());
   if (auto ready = supervisor_.prepare_move(); !ready) return ready;
   const ToolsNow now = supervisor_.tools_now();
@@ -126,35 +71,40 @@ Expected<> Cam::change_tool(int number) {
   const std::vector<double> before = joints();
   const Frames frames_before = builder.frames();
   ProgramStep as_sent = step_at(builder, number);
-  const Frames frames_after{frames_before.part, tip_of(*tool)};
-  Expected<std::vector<QueueStep>> steps;
-  if (there) {
-    steps->emplace_back(mount(*tool));
-  } else {
-    steps =
-        device_->tool_changer ? change_by_changer(now.last ? *now.last : *now.mounted, *tool) : change_by_hand(*tool);
-    // Whoever ends in the midst of the change, the power included, must not be believed to have the old tool.
-    if (auto noted = steps ? rack_.set_mounted(std::nullopt) : Expected<>(); !noted)
-      steps = tl::unexpected(noted.error());
-  }
+  auto steps = there ? Expected<std::vector<QueueStep>>(std::vector<QueueStep>{ToolChangeSteps::mount(*tool)})
+                     : make_change(now, *tool);
   if (!steps) {
     builder.restart(before, frames_before);
     return tl::unexpected(steps.error());
   }
-  builder.restart(joints(), frames_after);
+  builder.restart(joints(), {frames_before.part, tip_on_interface(*tool)});
   auto added = supervisor_.add_steps(std::move(*steps), std::move(as_sent));
   if (!added) (void)keep_mounted();
   return added;
 }
 
-Expected<> Cam::check_changer(const ToolsNow& now) const {
-  if (!device_->tool_changer) return {};
-  if (device_->tool_change.empty()) {
+Expected<std::vector<QueueStep>> CamTools::make_change(const ToolsNow& now, const Tool& tool) {
+  Expected<std::vector<QueueStep>> steps;
+  if (device_.get()->tool_changer) {
+    steps = steps_.by_changer(now.last ? *now.last : *now.mounted, tool, supervisor_.mechanism()->builder);
+  } else {
+    steps = steps_.by_hand(tool);
+  }
+  if (!steps) return steps;
+  // Whoever ends in the midst of the change, the power included, must not be believed to have the old tool.
+  if (auto noted = rack_.set_mounted(std::nullopt); !noted) return tl::unexpected(noted.error());
+  return steps;
+}
+
+Expected<> CamTools::check_changer(const ToolsNow& now) const {
+  const sdk::DeviceObject& device = *device_.get();
+  if (!device.tool_changer) return {};
+  if (device.tool_change.empty()) {
     return failure(
         MinorCode::UnsupportedOperation,
         fmt::format("DoToolChange: device.json of {} says that it has a tool changer, and not what that does; "
                     "give it the steps of ToolChange, or \"ToolChanger\": false for a change by hand",
-                    device_->name));
+                    device.name));
   }
   if (now.last || now.mounted) return {};
   return failure(MinorCode::Other,
@@ -162,8 +112,8 @@ Expected<> Cam::check_changer(const ToolsNow& now) const {
                  "changer must put it back; say it with ConfirmToolChange");
 }
 
-Expected<> Cam::confirm_tool(int number) {
-  const auto tool = find_tool(number, "ConfirmToolChange");
+Expected<> CamTools::confirm_tool(int number) {
+  const auto tool = find(number, "ConfirmToolChange");
   if (!tool) return tl::unexpected(tool.error());
   const ToolsNow now = supervisor_.tools_now();
   if (now.wanted) return supervisor_.confirm_tool(number);
@@ -176,18 +126,17 @@ Expected<> Cam::confirm_tool(int number) {
                     *now.mounted));
   }
   return supervisor_.require_rest("ConfirmToolChange").and_then([&] { return rack_.set_mounted(number); }).map([&] {
-    supervisor_.set_mounted(number, tool->max_torque_nm);
-    supervisor_.set_frames({frames().part, tip_of(*tool)});
+    put_in_spindle(*tool);
   });
 }
 
-Expected<> Cam::keep_mounted() {
-  if (device_ == nullptr) return {};
+Expected<> CamTools::keep_mounted() {
+  if (device_.get() == nullptr) return {};
   const ToolsNow now = supervisor_.tools_now();
   return rack_.set_mounted(now.wanted ? std::nullopt : now.mounted);
 }
 
-Expected<> Cam::check_tool(std::int64_t move_id, bool feeds) const {
+Expected<> CamTools::check_move(std::int64_t move_id, bool feeds) const {
   const ToolsNow now = supervisor_.tools_now();
   if (!now.last && !now.mounted) {
     return failure(
@@ -197,7 +146,7 @@ Expected<> Cam::check_tool(std::int64_t move_id, bool feeds) const {
                     move_id));
   }
   const int number = now.last ? *now.last : *now.mounted;
-  if (!feeds || number == kNoTool || device_->spindles.empty()) return {};
+  if (!feeds || number == kNoTool || device_.get()->spindles.empty()) return {};
   const auto tool = rack_.tool(number);
   if (!tool || !tool->needs_spindle) return {};
   const ServoWishes wishes = supervisor_.wishes();
@@ -210,7 +159,7 @@ Expected<> Cam::check_tool(std::int64_t move_id, bool feeds) const {
                              now.last ? " when the change is done" : ""));
 }
 
-Expected<> Cam::check_tool_speed(double rpm) const {
+Expected<> CamTools::check_speed(double rpm) const {
   if (rpm == 0) return {};
   const ToolsNow now = supervisor_.tools_now();
   if (now.changing) return failure(MinorCode::Other, "SetSpindleRPM: a tool change is under way; wait for its end");

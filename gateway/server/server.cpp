@@ -280,12 +280,12 @@ void Server::stop_for_lease(std::string message) {
   // The sample may be a cycle old: a start that came along with the goodbye is not in it, but the cam knows.
   const CycleSample sample = machine.sample();
   const bool runs = sample.state == CycleState::Running || sample.state == CycleState::Holding || sample.moving ||
-                    machine.cam().cycle_start_status();
-  dropped_moves_ = machine.cam().moves_in_buffer();
+                    machine.cam().cycle().started();
+  dropped_moves_ = machine.cam().queue().moves_left();
   const bool power_off = runs && options_.lease_lost == LeaseLostAction::StopAndPowerOff;
   // A move that is being built now must find that its queue is gone, too.
   const Expected<> stopped =
-      runs || dropped_moves_ > 0 || machine_away_ ? machine.cam().stop_now() : machine.cam().cycle_stop();
+      runs || dropped_moves_ > 0 || machine_away_ ? machine.cam().cycle().stop_now() : machine.cam().cycle().stop();
   if (!stopped) {
     message += "; stopping failed: " + stopped.error().message;
     dispatcher_.status().fail(stopped.error().code);

@@ -43,8 +43,8 @@ class Hash {
 
 std::set<std::string> modules_of(const sdk::DeviceObject& device) {
   std::set<std::string> names{device.device_driver, device.kinematics.name, device.actuator_map.name};
-  for (const auto* joints : {&device.joints, &device.held_joints}) {
-    for (const sdk::Joint& joint : *joints) names.insert(sdk::servo_law_module(joint.servo_law.name));
+  for (std::size_t j = 0; j < device.joint_count_with_held(); ++j) {
+    names.insert(sdk::servo_law_module(sdk::joint_at(device, j).servo_law.name));
   }
   names.erase("");  // of a joint whose drive closes the loop itself
   return names;

@@ -21,10 +21,8 @@ std::string put_on_models(sdk::DeviceObject& device) {
   };
   for (sdk::Actuator& actuator : device.actuators) put(actuator.bus);
   for (sdk::Spindle& spindle : device.spindles) put(spindle.bus);
-  for (auto* joints : {&device.joints, &device.held_joints}) {
-    for (sdk::Joint& joint : *joints) {
-      if (joint.force_sensor) put(joint.force_sensor->bus);
-    }
+  for (std::size_t j = 0; j < device.joint_count_with_held(); ++j) {
+    if (auto& sensor = sdk::joint_at(device, j).force_sensor) put(sensor->bus);
   }
   return without;
 }

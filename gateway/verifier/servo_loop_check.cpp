@@ -124,9 +124,8 @@ class ServoLoopCheck {
   }
 
  private:
-  [[nodiscard]] const sdk::Joint& joint_of(std::size_t axis) const {
-    const sdk::DeviceObject& device = mechanism_.device;
-    return axis < device.joints.size() ? device.joints[axis] : device.held_joints[axis - device.joints.size()];
+  [[nodiscard]] const sdk::Joint& joint_of(std::size_t number) const {
+    return sdk::joint_at(mechanism_.device, number);
   }
   void hold_still() {
     const auto hold = loop_.hold_position();

@@ -169,12 +169,10 @@ void check_map_module(const Task& task, Watch& watch, ModuleReport& report, cons
   const auto check = [&](const std::shared_ptr<ActuatorMap>& map) {
     const WatchedActuatorMap watched(map, watch);
     ActuatorMapCase given{{}, device.actuators.size(), task.samples, task.seed};
-    for (const auto* joints : {&device.joints, &device.held_joints}) {
-      for (const sdk::Joint& joint : *joints) {
-        const JointRange range = range_of(joint.limits);
-        given.joints.push_back(
-            {range.min, range.max, joint.limits.type == JointType::Rotary ? std::numbers::pi / 180 : 1e-3});
-      }
+    for (std::size_t j = 0; j < device.joint_count_with_held(); ++j) {
+      const JointLimits& limits = sdk::joint_at(device, j).limits;
+      const JointRange range = range_of(limits);
+      given.joints.push_back({range.min, range.max, limits.type == JointType::Rotary ? std::numbers::pi / 180 : 1e-3});
     }
     const Checked mapped = check_actuator_map(watched, given);
     const Checked real_time = mapped ? watch.misdeed() : Checked();
@@ -252,8 +250,9 @@ std::vector<Job> jobs_for(const sdk::DeviceObject& device) {
            check_law_module(task, choice, gains, watch, report, tell);
          }});
   };
-  for (const auto* joints : {&device.joints, &device.held_joints}) {
-    for (const sdk::Joint& joint : *joints) add_law("joint " + joint.limits.name, joint);
+  for (std::size_t j = 0; j < device.joint_count_with_held(); ++j) {
+    const sdk::Joint& joint = sdk::joint_at(device, j);
+    add_law("joint " + joint.limits.name, joint);
   }
   for (std::size_t i = 0; i < device.spindles.size(); ++i) add_law(fmt::format("spindle {}", i), device.spindles[i]);
   jobs.push_back({"digital control interface", device.digital_control_interface.name, check_interface});

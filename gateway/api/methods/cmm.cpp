@@ -36,10 +36,10 @@ MethodBuilder<> command(const char* name, const char* meaning, Effect effect) {
 void add_status(const auto& add) {
   add(method("RMAC_CAM.CurrentPosition", "Measured joint positions, joint 0 first.")
           .gives(WireType::Numbers, "mm or deg")
-          .does([](Call& call) { return call.machine.cam().current_position(); }));
+          .does([](Call& call) { return call.machine.cam().positioning().current_position(); }));
   add(method("RMAC_CAM.NumMovesInBuffer", "Moves queued and not yet done.")
           .gives(WireType::Integer)
-          .does([](Call& call) { return call.machine.cam().moves_in_buffer(); }));
+          .does([](Call& call) { return call.machine.cam().queue().moves_left(); }));
   add(status_property("RMAC_CAM.StatusMajorCode", "Whether the machine met an error since the code was cleared.",
                       kMajorCodeValues, &MachineStatus::major));
   add(status_property("RMAC_CAM.StatusMinorCode", "Which error the machine met last.", kMinorCodeValues,
@@ -92,19 +92,19 @@ void add_cmm_moves(const auto& add) {
               "Has the drives look for home that device.json gives a HomingTurn; where there are none, moves all "
               "joints to their home position, zero. From rest.",
               Effect::Starts)
-          .does([](Call& call) { return call.machine.cam().home(); }));
+          .does([](Call& call) { return call.machine.cam().positioning().home(); }));
   add(command("RMAC_CAM.MoveToXYZ", "Moves the tip to a point at a speed.", Effect::Queues)
           .takes(move_id(), x(), y(), z(), speed())
           .does([](Call& call, std::int64_t id, double px, double py, double pz, double mm_s) {
-            return call.machine.measuring().move_to_point(id, {px, py, pz}, mm_s);
+            return call.machine.cam().cmm_moves().to_point(id, {px, py, pz}, mm_s);
           }));
   add(command("RMAC_CAM.MoveRotaryAxis", "Turns one rotary joint to a position.", Effect::Queues)
           .takes(move_id(), joint_number("JointNum"), place("JointPose", "deg"),
                  choice("Direction", kRotaryDirectionValues), number("Speed", "deg/s").within(kSpeeds))
           .does([](Call& call, std::int64_t id, std::int64_t joint, double position, std::int64_t direction,
                    double deg_s) {
-            return call.machine.measuring().move_rotary_axis(id, static_cast<int>(joint), position,
-                                                             static_cast<int>(direction), deg_s);
+            return call.machine.cam().cmm_moves().rotary_joint(id, static_cast<int>(joint), position,
+                                                               static_cast<int>(direction), deg_s);
           }));
   add(command("RMAC_CAM.AutoMeasure", "Moves towards a point until the probe is hit, then backs off.", Effect::Queues)
           .takes(move_id(), x(), y(), z(), speed())
@@ -116,12 +116,12 @@ void add_cmm_moves(const auto& add) {
                  place("j", ""), place("k", ""), speed())
           .does([](Call& call, std::int64_t id, double px, double py, double pz, double cx, double cy, double cz,
                    double i, double j, double k, double mm_s) {
-            return call.machine.measuring().move_in_arc(id, {{px, py, pz}, {cx, cy, cz}, {i, j, k}}, mm_s);
+            return call.machine.cam().cmm_moves().in_arc(id, {{px, py, pz}, {cx, cy, cz}, {i, j, k}}, mm_s);
           }));
   add(command("RMAC_CAM.MoveAllAxis", "Moves all joints to their positions at a speed.", Effect::Queues)
           .takes(move_id(), numbers("Position", "mm or deg").within(kPlaces), speed("LinearSpeed"))
           .does([](Call& call, std::int64_t id, const std::vector<double>& joints, double mm_s) {
-            return call.machine.measuring().move_all_axes(id, joints, mm_s);
+            return call.machine.cam().cmm_moves().all_joints(id, joints, mm_s);
           }));
   add(command("RMAC_CAM.SendConditionChangedEvent",
               "In virtual mode: the probe is deflected with the joints there, or lets go.", Effect::None)
@@ -178,8 +178,8 @@ void add_jogs(const auto& add) {
             const auto number = static_cast<int>(joint);
             return jog(
                 "RMAC_CAM.JogJoint", distance, velocity,
-                [&](double mm) { return call.machine.cam().jog_joint(number, mm); },
-                [&](double mm_s) { return call.machine.cam().jog_joint_at(number, mm_s); });
+                [&](double mm) { return call.machine.cam().positioning().jog_joint(number, mm); },
+                [&](double mm_s) { return call.machine.cam().positioning().jog_joint_at(number, mm_s); });
           }));
   add(command("RMAC_CAM.JogPath",
               "Moves the tool tip straight from rest, the tool axis staying as it is: by a distance at the feed in "
@@ -195,13 +195,13 @@ void add_jogs(const auto& add) {
             const sdk::JogDirection direction{vector, in_tool_frame.value_or(false)};
             return jog(
                 "RMAC_CAM.JogPath", distance, velocity,
-                [&](double mm) { return call.machine.cam().jog_path(direction, mm); },
-                [&](double mm_s) { return call.machine.cam().jog_path_at(direction, mm_s); });
+                [&](double mm) { return call.machine.cam().positioning().jog_path(direction, mm); },
+                [&](double mm_s) { return call.machine.cam().positioning().jog_path_at(direction, mm_s); });
           }));
   add(command("RMAC_CAM.MoveToReferencePoint", "Moves the tip straight to the zero of the part frame, from rest.",
               Effect::Starts)
           .extension()
-          .does([](Call& call) { return call.machine.cam().move_to_reference_point(); }));
+          .does([](Call& call) { return call.machine.cam().positioning().move_to_reference_point(); }));
   add(command("RMAC_CAM.SetJointForce", "Contact force that a joint under force control keeps.", Effect::Starts)
           .takes(joint_number(), number("Force", "N or N·m")
                                      .within({-1e7, 1e7})
@@ -209,7 +209,7 @@ void add_jogs(const auto& add) {
                                             "positions"))
           .extension()
           .does([](Call& call, std::int64_t joint, double force) {
-            return call.machine.cam().set_joint_force(static_cast<int>(joint), force);
+            return call.machine.cam().forces().set(static_cast<int>(joint), force);
           }));
 }
 

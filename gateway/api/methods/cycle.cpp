@@ -8,7 +8,7 @@ namespace rmac::gateway {
 namespace {
 
 Expected<> start(Call& call, std::int64_t mode) {
-  return call.machine.cam().cycle_start(static_cast<sdk::CycleMode>(mode));
+  return call.machine.cam().cycle().start(static_cast<sdk::CycleMode>(mode));
 }
 
 nlohmann::json to_json(const sdk::ParkedProgram& parked) {
@@ -28,7 +28,7 @@ void add_parking_methods(const auto& add) {
           .gives(WireType::Boolean)
           .needs(Permission::Authority)
           .extension()
-          .does([](Call& call) { return call.machine.cam().park_program(); }));
+          .does([](Call& call) { return call.machine.cam().parking().park(); }));
   add(method("RMAC_CAM.TakeUpProgram",
              "Queues the parked program again, in the part frame and with the tool in force now, and holds it; nothing "
              "moves before FeedResume, which switches spindle and coolant on again. The tool must stand within 1 mm of "
@@ -37,12 +37,12 @@ void add_parking_methods(const auto& add) {
           .causes(Effect::Starts)
           .may_be_slow()
           .extension()
-          .does([](Call& call) { return call.machine.cam().take_up_program(); }));
+          .does([](Call& call) { return call.machine.cam().parking().take_up(); }));
   add(method("RMAC_CAM.DropParkedProgram", "Forgets the parked program.")
           .gives(WireType::Boolean)
           .needs(Permission::Authority)
           .extension()
-          .does([](Call& call) { return call.machine.cam().drop_parked_program(); }));
+          .does([](Call& call) { return call.machine.cam().parking().drop(); }));
   add(method(
           "RMAC_CAM.GetParkedProgram",
           "The parked program: `mechanism`, `moves` to do, `move_id` and `s_mm` of the one that was begun, the `pose` "
@@ -50,7 +50,7 @@ void add_parking_methods(const auto& add) {
           .gives(WireType::Object)
           .extension()
           .does([](Call& call) {
-            const auto parked = call.machine.cam().parked_program();
+            const auto parked = call.machine.cam().parking().parked();
             return parked ? to_json(*parked) : nlohmann::json::object();
           }));
 }
@@ -74,56 +74,56 @@ void add_cycle_methods(std::vector<Method>& table) {
           .does([](Call& call, bool pressed) { return pressed ? start(call, 1) : Expected<>{}; }));
   add(method("RMAC_CAM.GetCycleStartStatus", "Whether the cycle is started.")
           .gives(WireType::Boolean)
-          .does([](Call& call) { return call.machine.cam().cycle_start_status(); }));
+          .does([](Call& call) { return call.machine.cam().cycle().started(); }));
   add(method("RMAC_CAM.CycleStop",
              "Stops on the path, whatever the mode, and keeps the rest of the queue; a new CycleStart goes on.")
           .takes(choice("Mode", kCycleModeValues))
           .gives(WireType::Boolean)
           .causes(Effect::Holds)
-          .does([](Call& call, std::int64_t) { return call.machine.cam().cycle_stop(); }));
+          .does([](Call& call, std::int64_t) { return call.machine.cam().cycle().stop(); }));
   add(method("RMAC_CAM.SetCycleStopStatus",
              "The stop button as an HMI sees it: true does what CycleStop does; false, its release, does not start "
              "anything.")
           .takes(boolean("status"))
           .causes(Effect::Holds)
           .except(false)
-          .does([](Call& call, bool pressed) { return pressed ? call.machine.cam().cycle_stop() : Expected<>{}; }));
+          .does([](Call& call, bool pressed) { return pressed ? call.machine.cam().cycle().stop() : Expected<>{}; }));
   add(method("RMAC_CAM.GetCycleStopStatus", "Whether the cycle is stopped.")
           .gives(WireType::Boolean)
-          .does([](Call& call) { return call.machine.cam().cycle_stop_status(); }));
+          .does([](Call& call) { return !call.machine.cam().cycle().started(); }));
   add(method("RMAC_CAM.StopNow", "Stops as fast as the limits allow and empties the queue.")
           .gives(WireType::Boolean)
           .causes(Effect::Stops)
-          .does([](Call& call) { return call.machine.cam().stop_now(); }));
+          .does([](Call& call) { return call.machine.cam().cycle().stop_now(); }));
   add(method("RMAC_CAM.FeedHold", "Comes to rest on the path; FeedResume goes on from there.")
           .gives(WireType::Boolean)
           .causes(Effect::Holds)
           .extension()
-          .does([](Call& call) { return call.machine.cam().feed_hold(); }));
+          .does([](Call& call) { return call.machine.cam().cycle().hold(); }));
   add(method("RMAC_CAM.FeedResume", "Goes on after a FeedHold.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
           .extension()
-          .does([](Call& call) { return call.machine.cam().feed_resume(); }));
+          .does([](Call& call) { return call.machine.cam().cycle().resume(); }));
   add(method("RMAC_CAM.FeedRetrace",
              "Runs back along the path of what is held, then holds again; FeedResume runs forward from there.")
           .takes(number("Distance", "mm").within(0.001, kPlaces.max))
           .gives(WireType::Number, "mm")
           .causes(Effect::Starts)
           .extension()
-          .does([](Call& call, double distance) { return call.machine.cam().feed_retrace(distance); }));
+          .does([](Call& call, double distance) { return call.machine.cam().cycle().retrace(distance); }));
   add_parking_methods(add);
   add(method("RMAC_CAM.Reset", "Leaves a fault or emergency stop whose cause is gone; nothing moves by it.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
           .may_be_slow()
           .extension()
-          .does([](Call& call) { return call.machine.cam().reset(); }));
+          .does([](Call& call) { return call.machine.cam().cycle().reset(); }));
   add(method("RMAC_CAM.SetFeedOverride", "Percentage of the programmed feed at which moves run, at once; 0 waits.")
           .takes(number("Percent", "%").within(0, 200))
           .needs(Permission::Authority)
           .extension()
-          .does([](Call& call, double percent) { return call.machine.cam().set_feed_override(percent); }));
+          .does([](Call& call, double percent) { return call.machine.cam().cycle().set_feed_override(percent); }));
   add(method("RMAC_CAM.GetState", "The machine's state now: what the topic `state` pushes.")
           .gives(WireType::Object)
           .extension()

@@ -9,7 +9,7 @@ namespace {
 /// Straight to RMAC_CAM.
 struct ToCam {
   Expected<> operator()(Call& call, std::int64_t id, const Geometry& geometry) const {
-    return call.machine.cam().queue_move(id, geometry);
+    return call.machine.cam().queue().add(id, geometry);
   }
 };
 
@@ -78,9 +78,12 @@ void add_move_methods(std::vector<Method>& table) {
             if (const auto* joints = std::get_if<std::vector<double>>(&target)) {
               return ToCam{}(call, id, JointTargetGeometry{*joints});
             }
-            return call.machine.cam().joints_at(std::get<ToolPose>(target)).and_then([&](std::vector<double> joints) {
-              return ToCam{}(call, id, JointTargetGeometry{std::move(joints)});
-            });
+            return call.machine.cam()
+                .queue()
+                .joints_at(std::get<ToolPose>(target))
+                .and_then([&](std::vector<double> joints) {
+                  return ToCam{}(call, id, JointTargetGeometry{std::move(joints)});
+                });
           }));
 }
 
@@ -94,11 +97,11 @@ void add_device_services(std::vector<Method>& table) {
           .takes(number("Feedrate", "mm/min").within(device_range("MaxFeedrate")))
           .needs(Permission::Authority)
           .extension()
-          .does([](Call& call, double feed) { return call.machine.cam().set_feedrate(feed); }));
+          .does([](Call& call, double feed) { return call.machine.cam().path().set_feedrate(feed); }));
   add(method("Device.Machine_GetFeedrate", "Actual speed of the tool tip, from measured joints.")
           .gives(WireType::Number, "mm/min")
           .extension()
-          .does([](Call& call) { return call.machine.cam().feedrate(); }));
+          .does([](Call& call) { return call.machine.cam().path().feedrate(); }));
 }
 
 }  // namespace rmac::gateway

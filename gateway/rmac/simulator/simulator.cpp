@@ -81,11 +81,11 @@ Result<> Simulator::submit(const Request& request) {
 Result<> Simulator::make_room(const Request& request) {
   // A measured point ends where the part is: what comes next begins there, once the machine has seen that it stands.
   if (order_.waits_for_measurement()) {
-    return run_until([this] { return moves_.empty() && simulation_.controller().cam().moves_in_buffer() == 0; });
+    return run_until([this] { return moves_.empty() && simulation_.controller().cam().queue().moves_left() == 0; });
   }
   if (request.timing == Timing::Move && order_.started()) {
     const auto capacity = static_cast<int>(simulation_.queue_capacity());
-    return run_until([&] { return simulation_.controller().cam().moves_in_buffer() < capacity; });
+    return run_until([&] { return simulation_.controller().cam().queue().moves_left() < capacity; });
   }
   if (request.timing == Timing::Start) {
     // In manual mode a start is for one move: the one before must be over.
@@ -137,7 +137,7 @@ Result<> Simulator::run_until(const std::function<bool()>& reached) {
 
 bool Simulator::at_rest() {
   gateway::Controller& controller = simulation_.controller();
-  return !moving_ && controller.cam().moves_in_buffer() == 0 &&
+  return !moving_ && controller.cam().queue().moves_left() == 0 &&
          controller.cycle_now().state != gateway::CycleState::Stopping;
 }
 

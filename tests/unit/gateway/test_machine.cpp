@@ -52,7 +52,7 @@ Expected<> TestMachine::draft(const sdk::DeviceObject& device) {
 }
 
 Expected<> TestMachine::load_at_zero(const sdk::DeviceObject& device) {
-  auto ready = load(device).and_then([&] { return controller.cam().home(); });
+  auto ready = load(device).and_then([&] { return controller.cam().positioning().home(); });
   if (!ready) return ready;
   const auto at_zero = [&] {
     const CycleSample now = controller.sample();

@@ -103,7 +103,7 @@ class TestMachine {
     return message;
   }
   Expected<> line(std::int64_t id, const Vector& from, const Vector& to) {
-    return controller.cam().queue_move(id, LineGeometry{{from, {0, 0, 1}}, {to, {0, 0, 1}}});
+    return controller.cam().queue().add(id, LineGeometry{{from, {0, 0, 1}}, {to, {0, 0, 1}}});
   }
   [[nodiscard]] double peak_velocity(std::size_t joint_number) const {
     double peak = 0;

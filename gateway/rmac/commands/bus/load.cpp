@@ -22,10 +22,8 @@ std::set<std::string> buses_of(const sdk::DeviceObject& device) {
   std::set<std::string> names;
   for (const sdk::Actuator& actuator : device.actuators) names.insert(actuator.bus);
   for (const sdk::Spindle& spindle : device.spindles) names.insert(spindle.bus);
-  for (const auto* joints : {&device.joints, &device.held_joints}) {
-    for (const sdk::Joint& joint : *joints) {
-      if (joint.force_sensor) names.insert(joint.force_sensor->bus);
-    }
+  for (std::size_t j = 0; j < device.joint_count_with_held(); ++j) {
+    if (const auto& sensor = sdk::joint_at(device, j).force_sensor) names.insert(sensor->bus);
   }
   return names;
 }

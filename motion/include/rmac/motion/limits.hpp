@@ -29,6 +29,11 @@ struct JointLimits {
   return joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfinitePositive;
 }
 
+/// Whether a position lies within the travel, its ends included.
+[[nodiscard]] inline bool within_travel(const JointLimits& joint, double position) noexcept {
+  return !(ends_below(joint) && position < joint.min) && !(ends_above(joint) && position > joint.max);
+}
+
 /// The position of a rotary joint, brought by as few whole turns as it takes into its travel, or to beyond the other
 /// end where its travel is shorter than that.
 [[nodiscard]] inline double unwound(const JointLimits& joint, double position) noexcept {

@@ -124,10 +124,12 @@ TEST(CamApi, AnimationStreamsJointsToItsCaller) {
 
 TEST(CamApi, JogsByDistanceOrAtAVelocity) {
   Api api;
-  EXPECT_CALL(api.machine.cam_mock, jog_joint(1, -2.5)).WillOnce(Return(Expected<>{}));
-  EXPECT_CALL(api.machine.cam_mock, jog_joint_at(2, 4)).WillOnce(Return(Expected<>{}));
-  EXPECT_CALL(api.machine.cam_mock, jog_path(sdk::JogDirection{{1, 0, 0}, false}, 3)).WillOnce(Return(Expected<>{}));
-  EXPECT_CALL(api.machine.cam_mock, jog_path_at(sdk::JogDirection{{0, 0, 1}, true}, -5)).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(api.machine.cam_mock.positioning_mock, jog_joint(1, -2.5)).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(api.machine.cam_mock.positioning_mock, jog_joint_at(2, 4)).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(api.machine.cam_mock.positioning_mock, jog_path(sdk::JogDirection{{1, 0, 0}, false}, 3))
+      .WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(api.machine.cam_mock.positioning_mock, jog_path_at(sdk::JogDirection{{0, 0, 1}, true}, -5))
+      .WillOnce(Return(Expected<>{}));
   EXPECT_EQ(api.result("RMAC_CAM.JogJoint", R"({"JntNum":1,"Distance":-2.5})"), true);
   EXPECT_EQ(api.result("RMAC_CAM.JogJoint", R"({"JntNum":2,"Velocity":4})"), true);
   EXPECT_EQ(api.result("RMAC_CAM.JogPath", R"({"Direction":[1,0,0],"Distance":3})"), true);
@@ -139,7 +141,7 @@ TEST(CamApi, JogsByDistanceOrAtAVelocity) {
 
 TEST(CamApi, RetracesAndAnswersTheWay) {
   Api api;
-  EXPECT_CALL(api.machine.cam_mock, feed_retrace(7)).WillOnce(Return(Expected<double>(4.5)));
+  EXPECT_CALL(api.machine.cam_mock.cycle_mock, retrace(7)).WillOnce(Return(Expected<double>(4.5)));
   EXPECT_EQ(api.result("RMAC_CAM.FeedRetrace", R"({"Distance":7})"), 4.5);
   api.refusal("RMAC_CAM.FeedRetrace", R"({"Distance":0})", -32602);
 }
@@ -161,8 +163,8 @@ TEST(CamApi, StateTellsMechanismJointsAndStatus) {
 
 TEST(CamApi, StateIsTheControllersNotTheLastSamplesNorWhatWasSetLast) {
   Api api;
-  EXPECT_CALL(api.machine.cam_mock, set_feed_override(50)).WillOnce(Return(Expected<>{}));
-  EXPECT_CALL(api.machine.cam_mock, cycle_start(_)).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(api.machine.cam_mock.cycle_mock, set_feed_override(50)).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(api.machine.cam_mock.cycle_mock, start(_)).WillOnce(Return(Expected<>{}));
   EXPECT_TRUE(api.result("RMAC_CAM.SetFeedOverride", "[50]").is_null());
   EXPECT_EQ(api.result("RMAC_CAM.CycleStart", "[0]"), true);
   api.machine.now.state = CycleState::Idle;

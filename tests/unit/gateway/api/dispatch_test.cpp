@@ -88,7 +88,7 @@ TEST(Dispatcher, NamesAnUnknownMethod) {
 
 TEST(Dispatcher, TakesParametersByNameAndByPosition) {
   Api api;
-  EXPECT_CALL(api.machine.cam_mock, set_spindle_rpm(2, 900)).Times(2).WillRepeatedly(Return(Expected<>{}));
+  EXPECT_CALL(api.machine.cam_mock.spindles_mock, set_rpm(2, 900)).Times(2).WillRepeatedly(Return(Expected<>{}));
   EXPECT_TRUE(api.result("RMAC_CAM.SetSpindleRPM", R"({"RPM":900,"SpindleNumber":2})").is_null());
   EXPECT_TRUE(api.result("RMAC_CAM.SetSpindleRPM", "[2, 900]").is_null());
 }
@@ -105,7 +105,7 @@ TEST(Dispatcher, NamesUnknownMissingAndSurplusParameters) {
 
 TEST(Dispatcher, NamesParameterValueAndWhatIsExpected) {
   Api api;
-  EXPECT_CALL(api.machine.cam_mock, set_feedrate(_)).Times(0);
+  EXPECT_CALL(api.machine.cam_mock.path_mock, set_feedrate(_)).Times(0);
   EXPECT_EQ(api.refusal("RMAC_CAM.SetFeedrate", R"({"Feedrate":"fast"})", rpc_code::kInvalidParams),
             "parameter \"Feedrate\" is \"fast\", expected a number 0.01 to 1000000 mm/min");
   EXPECT_EQ(api.refusal("RMAC_CAM.SetFeedrate", R"({"Feedrate":0})", rpc_code::kInvalidParams),
@@ -122,7 +122,7 @@ TEST(Dispatcher, NamesParameterValueAndWhatIsExpected) {
 
 TEST(Dispatcher, TakesNamedValuesByNumberAndByName) {
   Api api;
-  EXPECT_CALL(api.machine.cam_mock, cycle_start(sdk::CycleMode::Automatic))
+  EXPECT_CALL(api.machine.cam_mock.cycle_mock, start(sdk::CycleMode::Automatic))
       .Times(2)
       .WillRepeatedly(Return(Expected<>{}));
   EXPECT_EQ(api.result("RMAC_CAM.CycleStart", R"({"Mode":1})"), true);
@@ -134,10 +134,10 @@ TEST(Dispatcher, TakesNamedValuesByNumberAndByName) {
 TEST(Dispatcher, RefusesToMoveWithoutAuthorityButStopsForAnyone) {
   Api api;
   api.session.authority = false;
-  EXPECT_CALL(api.machine.cam_mock, queue_move(_, _)).Times(0);
-  EXPECT_CALL(api.machine.cam_mock, cycle_stop()).WillOnce(Return(Expected<>{}));
-  EXPECT_CALL(api.machine.cam_mock, feed_hold()).WillOnce(Return(Expected<>{}));
-  EXPECT_CALL(api.machine.cam_mock, stop_now()).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(api.machine.cam_mock.queue_mock, add(_, _)).Times(0);
+  EXPECT_CALL(api.machine.cam_mock.cycle_mock, stop()).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(api.machine.cam_mock.cycle_mock, hold()).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(api.machine.cam_mock.cycle_mock, stop_now()).WillOnce(Return(Expected<>{}));
   EXPECT_THAT(api.refusal("RMAC_CAM.MoveToPathTarget", R"({"MoveID":1,"TargetFrame":{"p":[0,0,0],"axis":[0,0,1]}})",
                           rpc_code::kAuthorityRequired),
               HasSubstr("another holds it"));
@@ -148,7 +148,7 @@ TEST(Dispatcher, RefusesToMoveWithoutAuthorityButStopsForAnyone) {
 
 TEST(Dispatcher, PassesTheMachinesRefusalOnWithItsMinorCode) {
   Api api;
-  EXPECT_CALL(api.machine.cam_mock, set_feedrate(9000))
+  EXPECT_CALL(api.machine.cam_mock.path_mock, set_feedrate(9000))
       .WillOnce(Return(failure(MinorCode::SpeedLimit, "9000 mm/min is over the maximum of 2000 mm/min")));
   const json error = api.call("RMAC_CAM.SetFeedrate", "[9000]")["error"];
   EXPECT_EQ(error["code"], -32005);
@@ -160,7 +160,7 @@ TEST(Dispatcher, PassesTheMachinesRefusalOnWithItsMinorCode) {
 TEST(Dispatcher, KeepsTheLastErrorOfTheMachineUntilItIsCleared) {
   Api api;
   EXPECT_EQ(api.result("RMAC_CAM.Ok"), true);
-  EXPECT_CALL(api.machine.cam_mock, home()).WillOnce(Return(failure(MinorCode::TravelLimit, "no")));
+  EXPECT_CALL(api.machine.cam_mock.positioning_mock, home()).WillOnce(Return(failure(MinorCode::TravelLimit, "no")));
   EXPECT_TRUE(api.call("RMAC_CAM.Home").contains("error"));
   EXPECT_EQ(api.result("RMAC_CAM.Ok"), false);
   EXPECT_EQ(api.result("RMAC_CAM.StatusMajorCode"), 1);
@@ -211,10 +211,10 @@ TEST(Dispatcher, AnswersUnsupportedForNoFunctionOfTheSpec) {
   for (const Method& entry : method_table()) {
     Api api;
     EXPECT_TRUE(api.session.records_fake.open());
-    ON_CALL(api.machine.cam_mock, current_position()).WillByDefault(Return(std::vector<double>{}));
-    ON_CALL(api.machine.cam_mock, spindle_rpm(_)).WillByDefault(Return(0.0));
-    ON_CALL(api.machine.cam_mock, spindle_max_rpm(_)).WillByDefault(Return(0.0));
-    ON_CALL(api.machine.cam_mock, joints_at(_)).WillByDefault(Return(std::vector<double>{}));
+    ON_CALL(api.machine.cam_mock.positioning_mock, current_position()).WillByDefault(Return(std::vector<double>{}));
+    ON_CALL(api.machine.cam_mock.spindles_mock, rpm(_)).WillByDefault(Return(0.0));
+    ON_CALL(api.machine.cam_mock.spindles_mock, max_rpm(_)).WillByDefault(Return(0.0));
+    ON_CALL(api.machine.cam_mock.queue_mock, joints_at(_)).WillByDefault(Return(std::vector<double>{}));
     const sdk::DeviceObject draft;
     ON_CALL(api.machine.config_mock, draft()).WillByDefault(testing::ReturnRef(draft));
     json params = json::object();

@@ -8,67 +8,126 @@
 
 namespace rmac::gateway::fakes {
 
-class MockCam : public sdk::RmacCam {
+class MockCycle : public sdk::CycleControl {
  public:
-  MOCK_METHOD(Expected<>, cycle_start, (sdk::CycleMode), (override));
-  MOCK_METHOD(Expected<>, cycle_stop, (), (override));
-  MOCK_METHOD(Expected<>, feed_hold, (), (override));
-  MOCK_METHOD(Expected<>, feed_resume, (), (override));
-  MOCK_METHOD(Expected<double>, feed_retrace, (double), (override));
-  MOCK_METHOD(Expected<>, set_joint_force, (int, double), (override));
-  MOCK_METHOD(Expected<>, jog_joint_at, (int, double), (override));
-  MOCK_METHOD(Expected<>, jog_path, (const sdk::JogDirection&, double), (override));
-  MOCK_METHOD(Expected<>, jog_path_at, (const sdk::JogDirection&, double), (override));
+  MOCK_METHOD(Expected<>, start, (sdk::CycleMode), (override));
+  MOCK_METHOD(Expected<>, stop, (), (override));
+  MOCK_METHOD(Expected<>, hold, (), (override));
+  MOCK_METHOD(Expected<>, resume, (), (override));
+  MOCK_METHOD(Expected<double>, retrace, (double), (override));
   MOCK_METHOD(Expected<>, stop_now, (), (override));
   MOCK_METHOD(Expected<>, reset, (), (override));
-  MOCK_METHOD(bool, cycle_start_status, (), (const, override));
-  MOCK_METHOD(bool, cycle_stop_status, (), (const, override));
-  MOCK_METHOD(Expected<>, queue_move, (std::int64_t, const Geometry&), (override));
-  MOCK_METHOD(int, moves_in_buffer, (), (const, override));
+  MOCK_METHOD(bool, started, (), (const, override));
+  MOCK_METHOD(Expected<>, set_feed_override, (double), (override));
+};
+
+class MockQueue : public sdk::MoveQueue {
+ public:
+  MOCK_METHOD(Expected<>, add, (std::int64_t, const Geometry&), (override));
+  MOCK_METHOD(int, moves_left, (), (const, override));
   MOCK_METHOD(Expected<std::vector<double>>, joints_at, (const ToolPose&), (const, override));
+};
+
+class MockCmmMoves : public sdk::CmmMoves {
+ public:
+  MOCK_METHOD(Expected<>, to_point, (std::int64_t, const Vector&, double), (override));
+  MOCK_METHOD(Expected<>, in_arc, (std::int64_t, const sdk::ArcTo&, double), (override));
+  MOCK_METHOD(Expected<>, all_joints, (std::int64_t, std::vector<double>, double), (override));
+  MOCK_METHOD(Expected<>, rotary_joint, (std::int64_t, int, double, int, double), (override));
+};
+
+class MockPath : public sdk::PathSettings {
+ public:
   MOCK_METHOD(Expected<>, set_feedrate, (double), (override));
   MOCK_METHOD(double, feedrate, (), (const, override));
   MOCK_METHOD(Expected<>, set_max_feedrate, (double), (override));
   MOCK_METHOD(double, max_feedrate, (), (const, override));
-  MOCK_METHOD(Expected<>, set_feed_override, (double), (override));
-  MOCK_METHOD(Expected<>, set_path_accel_rise, (double), (override));
-  MOCK_METHOD(double, path_accel_rise, (), (const, override));
-  MOCK_METHOD(Expected<>, set_path_accel_fall, (double), (override));
-  MOCK_METHOD(double, path_accel_fall, (), (const, override));
-  MOCK_METHOD(Expected<>, set_joint_interp_speed, (double), (override));
-  MOCK_METHOD(double, joint_interp_speed, (), (const, override));
-  MOCK_METHOD(Expected<>, set_path_tolerance, (double), (override));
-  MOCK_METHOD(double, path_tolerance, (), (const, override));
-  MOCK_METHOD(Expected<>, set_part_frame, (const Frame&), (override));
-  MOCK_METHOD(Frame, part_frame, (), (const, override));
-  MOCK_METHOD(Expected<>, set_tool_interface_frame, (const Frame&), (override));
-  MOCK_METHOD(Frame, tool_interface_frame, (), (const, override));
-  MOCK_METHOD(Expected<>, set_spindle_rpm, (int, double), (override));
-  MOCK_METHOD(Expected<double>, spindle_rpm, (int), (const, override));
-  MOCK_METHOD(Expected<>, set_spindle_max_rpm, (int, double), (override));
-  MOCK_METHOD(Expected<double>, spindle_max_rpm, (int), (const, override));
+  MOCK_METHOD(Expected<>, set_accel_rise, (double), (override));
+  MOCK_METHOD(double, accel_rise, (), (const, override));
+  MOCK_METHOD(Expected<>, set_accel_fall, (double), (override));
+  MOCK_METHOD(double, accel_fall, (), (const, override));
+  MOCK_METHOD(Expected<>, set_tolerance, (double), (override));
+  MOCK_METHOD(double, tolerance, (), (const, override));
+};
+
+class MockJoints : public sdk::JointSettings {
+ public:
+  MOCK_METHOD(Expected<>, set_interp_speed, (double), (override));
+  MOCK_METHOD(double, interp_speed, (), (const, override));
+  MOCK_METHOD(Expected<>, set_accel_rise, (int, double), (override));
+  MOCK_METHOD(Expected<double>, accel_rise, (int), (const, override));
+  MOCK_METHOD(Expected<>, set_accel_fall, (int, double), (override));
+  MOCK_METHOD(Expected<double>, accel_fall, (int), (const, override));
+};
+
+class MockFrames : public sdk::FrameSettings {
+ public:
+  MOCK_METHOD(Expected<>, set_part, (const Frame&), (override));
+  MOCK_METHOD(Frame, part, (), (const, override));
+  MOCK_METHOD(Expected<>, set_tool_interface, (const Frame&), (override));
+  MOCK_METHOD(Frame, tool_interface, (), (const, override));
+};
+
+class MockSpindles : public sdk::SpindleControl {
+ public:
+  MOCK_METHOD(Expected<>, set_rpm, (int, double), (override));
+  MOCK_METHOD(Expected<double>, rpm, (int), (const, override));
+  MOCK_METHOD(Expected<>, set_max_rpm, (int, double), (override));
+  MOCK_METHOD(Expected<double>, max_rpm, (int), (const, override));
   MOCK_METHOD(Expected<>, set_coolant, (bool), (override));
+};
+
+class MockPositioning : public sdk::Positioning {
+ public:
   MOCK_METHOD(Expected<>, jog_joint, (int, double), (override));
+  MOCK_METHOD(Expected<>, jog_joint_at, (int, double), (override));
+  MOCK_METHOD(Expected<>, jog_path, (const sdk::JogDirection&, double), (override));
+  MOCK_METHOD(Expected<>, jog_path_at, (const sdk::JogDirection&, double), (override));
   MOCK_METHOD(Expected<>, home, (), (override));
   MOCK_METHOD(Expected<>, move_to_reference_point, (), (override));
-  MOCK_METHOD(Expected<>, set_joint_accel_rise, (int, double), (override));
-  MOCK_METHOD(Expected<double>, joint_accel_rise, (int), (const, override));
-  MOCK_METHOD(Expected<>, set_joint_accel_fall, (int, double), (override));
-  MOCK_METHOD(Expected<double>, joint_accel_fall, (int), (const, override));
   MOCK_METHOD(Expected<std::vector<double>>, current_position, (), (const, override));
-  MOCK_METHOD(Expected<>, set_animation, (bool), (override));
-  MOCK_METHOD(Expected<>, park_program, (), (override));
-  MOCK_METHOD(Expected<>, take_up_program, (), (override));
-  MOCK_METHOD(Expected<>, drop_parked_program, (), (override));
-  MOCK_METHOD(std::optional<sdk::ParkedProgram>, parked_program, (), (const, override));
+};
+
+class MockParking : public sdk::Parking {
+ public:
+  MOCK_METHOD(Expected<>, park, (), (override));
+  MOCK_METHOD(Expected<>, take_up, (), (override));
+  MOCK_METHOD(Expected<>, drop, (), (override));
+  MOCK_METHOD(std::optional<sdk::ParkedProgram>, parked, (), (const, override));
+};
+
+class MockForces : public sdk::JointForces {
+ public:
+  MOCK_METHOD(Expected<>, set, (int, double), (override));
+};
+
+class MockCam : public sdk::RmacCam {
+ public:
+  sdk::CycleControl& cycle() override { return cycle_mock; }
+  sdk::MoveQueue& queue() override { return queue_mock; }
+  sdk::CmmMoves& cmm_moves() override { return cmm_moves_mock; }
+  sdk::PathSettings& path() override { return path_mock; }
+  sdk::JointSettings& joints() override { return joints_mock; }
+  sdk::FrameSettings& frames() override { return frames_mock; }
+  sdk::SpindleControl& spindles() override { return spindles_mock; }
+  sdk::Positioning& positioning() override { return positioning_mock; }
+  sdk::Parking& parking() override { return parking_mock; }
+  sdk::JointForces& forces() override { return forces_mock; }
+
+  testing::NiceMock<MockCycle> cycle_mock;
+  testing::NiceMock<MockQueue> queue_mock;
+  testing::NiceMock<MockCmmMoves> cmm_moves_mock;
+  testing::NiceMock<MockPath> path_mock;
+  testing::NiceMock<MockJoints> joints_mock;
+  testing::NiceMock<MockFrames> frames_mock;
+  testing::NiceMock<MockSpindles> spindles_mock;
+  testing::NiceMock<MockPositioning> positioning_mock;
+  testing::NiceMock<MockParking> parking_mock;
+  testing::NiceMock<MockForces> forces_mock;
 };
 
 class MockMeasuring : public sdk::Measuring {
  public:
-  MOCK_METHOD(Expected<>, move_to_point, (std::int64_t, const Vector&, double), (override));
-  MOCK_METHOD(Expected<>, move_in_arc, (std::int64_t, const sdk::ArcTo&, double), (override));
-  MOCK_METHOD(Expected<>, move_all_axes, (std::int64_t, std::vector<double>, double), (override));
-  MOCK_METHOD(Expected<>, move_rotary_axis, (std::int64_t, int, double, int, double), (override));
   MOCK_METHOD(Expected<>, auto_measure, (std::int64_t, const Vector&, double), (override));
   MOCK_METHOD(Expected<>, manual_measure, (), (override));
   MOCK_METHOD(Expected<>, spin_probe, (double, double), (override));
@@ -83,39 +142,70 @@ class MockMeasuring : public sdk::Measuring {
   MOCK_METHOD(Expected<>, set_parameter, (sdk::MeasureParameter, double), (override));
 };
 
-class MockConfig : public sdk::RmacConfig {
+class MockMechanismConfig : public sdk::MechanismConfig {
  public:
-  MOCK_METHOD(Expected<>, begin, (const sdk::DeviceObject&), (override));
   MOCK_METHOD(Expected<>, set_kinematics, (const sdk::ModuleChoice&), (override));
   MOCK_METHOD(Expected<>, set_actuator_map, (const sdk::ModuleChoice&), (override));
   MOCK_METHOD(Expected<>, set_number_of_joints, (int), (override));
   MOCK_METHOD(Expected<>, set_number_of_spindles, (int), (override));
   MOCK_METHOD(Expected<>, set_number_of_actuators, (int), (override));
-  MOCK_METHOD(Expected<>, set_joint_name, (int, std::string_view), (override));
-  MOCK_METHOD(Expected<>, set_joint_type, (int, JointType), (override));
-  MOCK_METHOD(Expected<>, set_joint_limit_type, (int, JointLimitType), (override));
-  MOCK_METHOD(Expected<>, set_joint_maximum_limit, (int, double), (override));
-  MOCK_METHOD(Expected<>, set_joint_minimum_limit, (int, double), (override));
-  MOCK_METHOD(Expected<>, set_joint_maximum_speed, (int, double), (override));
-  MOCK_METHOD(Expected<>, set_joint_maximum_acceleration, (int, double), (override));
-  MOCK_METHOD(Expected<>, set_joint_maximum_jerk, (int, double), (override));
   MOCK_METHOD(Expected<>, set_maximum_feedrate, (double), (override));
-  MOCK_METHOD(Expected<>, set_spindle_maximum_torque, (int, double), (override));
-  MOCK_METHOD(Expected<>, set_spindle_control_method, (int, ControlMethod), (override));
-  MOCK_METHOD(Expected<>, set_spindle_servo_control_law, (int, const sdk::ModuleChoice&), (override));
-  MOCK_METHOD(Expected<>, set_spindle_servo_control_gains, (int, std::span<const double>), (override));
-  MOCK_METHOD(Expected<>, set_spindle_maximum_rpm, (int, double), (override));
-  MOCK_METHOD(Expected<>, set_joint_control_method, (int, ControlMethod), (override));
-  MOCK_METHOD(Expected<>, set_joint_servo_control_law, (int, const sdk::ModuleChoice&), (override));
-  MOCK_METHOD(Expected<>, set_joint_servo_control_gains, (int, std::span<const double>), (override));
-  MOCK_METHOD(Expected<>, set_joint_watch, (int, double, double), (override));
-  MOCK_METHOD(Expected<>, set_joint_mechanics, (int, const JointMechanics&), (override));
-  MOCK_METHOD(Expected<>, set_digital_control_interface, (const sdk::ModuleChoice&), (override));
-  MOCK_METHOD(Expected<>, initialize_digital_control_interface, (), (override));
-  MOCK_METHOD(Expected<>, set_digital_io_interface, (const sdk::ModuleChoice&), (override));
-  MOCK_METHOD(Expected<>, initialize_digital_io_interface, (), (override));
+};
+
+class MockJointConfig : public sdk::JointConfig {
+ public:
+  MOCK_METHOD(Expected<>, set_name, (int, std::string_view), (override));
+  MOCK_METHOD(Expected<>, set_type, (int, JointType), (override));
+  MOCK_METHOD(Expected<>, set_limit_type, (int, JointLimitType), (override));
+  MOCK_METHOD(Expected<>, set_maximum_limit, (int, double), (override));
+  MOCK_METHOD(Expected<>, set_minimum_limit, (int, double), (override));
+  MOCK_METHOD(Expected<>, set_maximum_speed, (int, double), (override));
+  MOCK_METHOD(Expected<>, set_maximum_acceleration, (int, double), (override));
+  MOCK_METHOD(Expected<>, set_maximum_jerk, (int, double), (override));
+};
+
+class MockLoopConfig : public sdk::LoopConfig {
+ public:
+  MOCK_METHOD(Expected<>, set_control_method, (int, ControlMethod), (override));
+  MOCK_METHOD(Expected<>, set_servo_law, (int, const sdk::ModuleChoice&), (override));
+  MOCK_METHOD(Expected<>, set_gains, (int, std::span<const double>), (override));
+  MOCK_METHOD(Expected<>, set_watch, (int, double, double), (override));
+  MOCK_METHOD(Expected<>, set_mechanics, (int, const JointMechanics&), (override));
+};
+
+class MockSpindleConfig : public sdk::SpindleConfig {
+ public:
+  MOCK_METHOD(Expected<>, set_maximum_rpm, (int, double), (override));
+  MOCK_METHOD(Expected<>, set_maximum_torque, (int, double), (override));
+  MOCK_METHOD(Expected<>, set_control_method, (int, ControlMethod), (override));
+  MOCK_METHOD(Expected<>, set_servo_law, (int, const sdk::ModuleChoice&), (override));
+  MOCK_METHOD(Expected<>, set_gains, (int, std::span<const double>), (override));
+};
+
+class MockInterfaceConfig : public sdk::InterfaceConfig {
+ public:
+  MOCK_METHOD(Expected<>, set_control, (const sdk::ModuleChoice&), (override));
+  MOCK_METHOD(Expected<>, initialize_control, (), (override));
+  MOCK_METHOD(Expected<>, set_io, (const sdk::ModuleChoice&), (override));
+  MOCK_METHOD(Expected<>, initialize_io, (), (override));
+};
+
+class MockConfig : public sdk::RmacConfig {
+ public:
+  sdk::MechanismConfig& mechanism() override { return mechanism_mock; }
+  sdk::JointConfig& joints() override { return joints_mock; }
+  sdk::LoopConfig& loops() override { return loops_mock; }
+  sdk::SpindleConfig& spindles() override { return spindles_mock; }
+  sdk::InterfaceConfig& interfaces() override { return interfaces_mock; }
+  MOCK_METHOD(Expected<>, begin, (const sdk::DeviceObject&), (override));
   MOCK_METHOD(const sdk::DeviceObject&, draft, (), (const, override));
   MOCK_METHOD(Expected<>, apply, (), (override));
+
+  testing::NiceMock<MockMechanismConfig> mechanism_mock;
+  testing::NiceMock<MockJointConfig> joints_mock;
+  testing::NiceMock<MockLoopConfig> loops_mock;
+  testing::NiceMock<MockSpindleConfig> spindles_mock;
+  testing::NiceMock<MockInterfaceConfig> interfaces_mock;
 };
 
 /// A device with two joints, a held one and a spindle.

@@ -20,14 +20,14 @@ using testing::SaveArg;
 Geometry queued(const std::string& method, const std::string& params) {
   Api api;
   Geometry geometry;
-  EXPECT_CALL(api.machine.cam_mock, queue_move(7, _)).WillOnce(DoAll(SaveArg<1>(&geometry), Return(Expected<>{})));
+  EXPECT_CALL(api.machine.cam_mock.queue_mock, add(7, _)).WillOnce(DoAll(SaveArg<1>(&geometry), Return(Expected<>{})));
   EXPECT_EQ(api.result(method, params), true);
   return geometry;
 }
 
 std::string refused(const std::string& method, const std::string& params) {
   Api api;
-  EXPECT_CALL(api.machine.cam_mock, queue_move(_, _)).Times(0);
+  EXPECT_CALL(api.machine.cam_mock.queue_mock, add(_, _)).Times(0);
   return api.refusal(method, params, rpc_code::kInvalidParams);
 }
 
@@ -100,8 +100,8 @@ TEST(Wire, ReadsJointTargetsAsJointsOrAsAPose) {
   EXPECT_EQ(target.joints, (std::vector<double>{1, 2, 3}));
   Api api;
   Geometry geometry;
-  EXPECT_CALL(api.machine.cam_mock, joints_at(_)).WillOnce(Return(std::vector<double>{4, 5}));
-  EXPECT_CALL(api.machine.cam_mock, queue_move(8, _)).WillOnce(DoAll(SaveArg<1>(&geometry), Return(Expected<>{})));
+  EXPECT_CALL(api.machine.cam_mock.queue_mock, joints_at(_)).WillOnce(Return(std::vector<double>{4, 5}));
+  EXPECT_CALL(api.machine.cam_mock.queue_mock, add(8, _)).WillOnce(DoAll(SaveArg<1>(&geometry), Return(Expected<>{})));
   EXPECT_EQ(api.result("RMAC_CAM.MoveToJointTarget", R"([8, {"p":[1,2,3],"q":[1,0,0,0]}])"), true);
   EXPECT_EQ(std::get<JointTargetGeometry>(geometry).joints, (std::vector<double>{4, 5}));
 }
@@ -136,7 +136,7 @@ TEST(Wire, RefusesFramesThatAreNone) {
 
 TEST(Wire, NeedsAWholeFrameForThePartFrame) {
   Api api;
-  EXPECT_CALL(api.machine.cam_mock, set_part_frame(_)).Times(0);
+  EXPECT_CALL(api.machine.cam_mock.frames_mock, set_part(_)).Times(0);
   api.refusal("RMAC_CAM.SetPartFrame", R"({"PartFrame":{"p":[0,0,0],"axis":[0,0,1]}})", rpc_code::kInvalidParams);
 }
 
@@ -155,7 +155,7 @@ TEST(Wire, ReadsMasksAsIntegersAndAsHexadecimalTexts) {
 
 TEST(Wire, SendsMovesOfTheDeviceThroughItsDriver) {
   Api api;
-  EXPECT_CALL(api.machine.cam_mock, queue_move(_, _)).Times(0);
+  EXPECT_CALL(api.machine.cam_mock.queue_mock, add(_, _)).Times(0);
   EXPECT_CALL(api.machine.device_fake, move(3, _)).WillOnce(Return(Expected<>{}));
   EXPECT_EQ(
       api.result("Device.Machine_MoveInNurbs", R"([3, {"degree":1,"knots":[0,0,1,1],"points":[[0,0,0],[1,0,0]]}])"),

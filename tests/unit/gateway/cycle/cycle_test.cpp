@@ -13,15 +13,15 @@ class Cycle : public testing::Test {
   void SetUp() override {
     const auto loaded = machine_.load_at_zero(TestMachine::mill());
     ASSERT_TRUE(loaded) << loaded.error().message;
-    ASSERT_TRUE(cam().set_feedrate(6000));
+    ASSERT_TRUE(cam().path().set_feedrate(6000));
   }
   sdk::RmacCam& cam() { return machine_.controller.cam(); }
   /// Under way on a line so slow that the machine cannot be at its end before the test has looked: in virtual time it
   /// is at most the sample ring's 4096 cycles ahead of what was dispatched.
   void start_slow_line() {
-    ASSERT_TRUE(cam().set_feedrate(120));
+    ASSERT_TRUE(cam().path().set_feedrate(120));
     ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {40, 0, 0}));
-    ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+    ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
     ASSERT_TRUE(machine_.run_until([&] { return !machine_.samples.empty() && machine_.samples.back().moving; }));
   }
   CycleState state() { return machine_.controller.sample().state; }
@@ -31,12 +31,12 @@ class Cycle : public testing::Test {
 TEST_F(Cycle, AMoveToWhereTheToolWillStandIsDoneInItsTurn) {
   const ToolPose corner{{10, 0, 0}, {0, 0, 1}};
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, corner.tip));
-  ASSERT_TRUE(cam().queue_move(2, PathTargetGeometry{corner}));
-  ASSERT_TRUE(cam().queue_move(3, JointTargetGeometry{{10, 0, 0}}));
+  ASSERT_TRUE(cam().queue().add(2, PathTargetGeometry{corner}));
+  ASSERT_TRUE(cam().queue().add(3, JointTargetGeometry{{10, 0, 0}}));
   ASSERT_TRUE(machine_.line(4, corner.tip, {10, 5, 0}));
   machine_.controller.dispatch();
   EXPECT_EQ(machine_.count(Event::Kind::MoveDone, 2), 0) << "move 1 is before it";
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 4));
   std::vector<std::int64_t> begun, done;
   for (const Event& event : machine_.events) {
@@ -57,8 +57,8 @@ TEST_F(Cycle, EventsAreToldInTheOrderInWhichTheyHappenedHoweverLate) {
   }
   ASSERT_TRUE(machine_.run_until([&] { return !machine_.samples.empty(); }));
   machine_.events.clear();
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
-  while (cam().moves_in_buffer() > 0) {
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
+  while (cam().queue().moves_left() > 0) {
     const bool waits = machine_.controller.sample().cycle - machine_.samples.back().cycle >= kNearlyAll;
     if (waits) machine_.controller.dispatch();
   }
@@ -70,24 +70,24 @@ TEST_F(Cycle, EventsAreToldInTheOrderInWhichTheyHappenedHoweverLate) {
 TEST_F(Cycle, MovesWithoutMotionCountAsQueuedUntilTheirTurn) {
   const ToolPose corner{{10, 0, 0}, {0, 0, 1}};
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, corner.tip));
-  for (std::int64_t id = 2; id <= 4; ++id) ASSERT_TRUE(cam().queue_move(id, PathTargetGeometry{corner}));
+  for (std::int64_t id = 2; id <= 4; ++id) ASSERT_TRUE(cam().queue().add(id, PathTargetGeometry{corner}));
   ASSERT_TRUE(machine_.line(5, corner.tip, {0, 0, 0}));
-  ASSERT_TRUE(cam().queue_move(6, JointTargetGeometry{{0, 0, 0}}));
-  EXPECT_EQ(cam().moves_in_buffer(), 6);
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Manual));
+  ASSERT_TRUE(cam().queue().add(6, JointTargetGeometry{{0, 0, 0}}));
+  EXPECT_EQ(cam().queue().moves_left(), 6);
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Manual));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 4));
-  ASSERT_TRUE(machine_.run_until([&] { return cam().moves_in_buffer() == 2; })) << "5, and 6 behind it";
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine_.run_until([&] { return cam().queue().moves_left() == 2; })) << "5, and 6 behind it";
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 6));
-  EXPECT_EQ(cam().moves_in_buffer(), 0);
+  EXPECT_EQ(cam().queue().moves_left(), 0);
 
-  ASSERT_TRUE(cam().set_feed_override(0));
+  ASSERT_TRUE(cam().cycle().set_feed_override(0));
   ASSERT_TRUE(machine_.line(7, {0, 0, 0}, corner.tip));
-  ASSERT_TRUE(cam().queue_move(8, PathTargetGeometry{corner}));
-  EXPECT_EQ(cam().moves_in_buffer(), 2);
-  ASSERT_TRUE(cam().stop_now());
+  ASSERT_TRUE(cam().queue().add(8, PathTargetGeometry{corner}));
+  EXPECT_EQ(cam().queue().moves_left(), 2);
+  ASSERT_TRUE(cam().cycle().stop_now());
   ASSERT_TRUE(machine_.run_until([&] { return state() == CycleState::Idle; }));
-  EXPECT_EQ(cam().moves_in_buffer(), 0) << "dropped with the rest";
+  EXPECT_EQ(cam().queue().moves_left(), 0) << "dropped with the rest";
 }
 
 TEST(Queue, IsFullOfMovesWithoutMotionToo) {
@@ -96,23 +96,23 @@ TEST(Queue, IsFullOfMovesWithoutMotionToo) {
   TestMachine machine(options);
   ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
   sdk::RmacCam& cam = machine.controller.cam();
-  ASSERT_TRUE(cam.set_feedrate(6000));
+  ASSERT_TRUE(cam.path().set_feedrate(6000));
   ASSERT_TRUE(machine.line(1, {0, 0, 0}, {1, 0, 0}));
-  for (std::int64_t id = 2; id <= 5; ++id) ASSERT_TRUE(cam.queue_move(id, JointTargetGeometry{{1, 0, 0}}));
-  const auto sixth = cam.queue_move(6, JointTargetGeometry{{1, 0, 0}});
+  for (std::int64_t id = 2; id <= 5; ++id) ASSERT_TRUE(cam.queue().add(id, JointTargetGeometry{{1, 0, 0}}));
+  const auto sixth = cam.queue().add(6, JointTargetGeometry{{1, 0, 0}});
   ASSERT_FALSE(sixth);
   EXPECT_EQ(sixth.error().code, MinorCode::CommandQueueFull);
   EXPECT_THAT(sixth.error().message, HasSubstr("the queue holds 5 moves"));
 }
 
 TEST_F(Cycle, AMoveToWhereTheToolStandsIsDoneAtOnceAndTheNextOneRuns) {
-  ASSERT_TRUE(cam().queue_move(5, PathTargetGeometry{{{0, 0, 0}, {0, 0, 1}}}));
+  ASSERT_TRUE(cam().queue().add(5, PathTargetGeometry{{{0, 0, 0}, {0, 0, 1}}}));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 5));
-  EXPECT_EQ(cam().moves_in_buffer(), 0);
-  ASSERT_TRUE(cam().jog_joint(0, 1e-9)) << "nor does a jog that goes nowhere wait for ever";
+  EXPECT_EQ(cam().queue().moves_left(), 0);
+  ASSERT_TRUE(cam().positioning().jog_joint(0, 1e-9)) << "nor does a jog that goes nowhere wait for ever";
   EXPECT_EQ(state(), CycleState::Idle);
   ASSERT_TRUE(machine_.line(6, {0, 0, 0}, {1, 0, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Manual));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Manual));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 6));
   EXPECT_NEAR(machine_.samples.back().position_set[0], 1, 1e-6);
 }
@@ -120,7 +120,7 @@ TEST_F(Cycle, AMoveToWhereTheToolStandsIsDoneAtOnceAndTheNextOneRuns) {
 TEST_F(Cycle, RunsTheQueueInOrderWhenStartedAutomatically) {
   ASSERT_TRUE(machine_.line(7, {0, 0, 0}, {10, 0, 0}));
   ASSERT_TRUE(machine_.line(8, {10, 0, 0}, {10, 5, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 8));
   std::vector<std::pair<Event::Kind, std::int64_t>> moves;
   for (const Event& event : machine_.events) {
@@ -138,7 +138,7 @@ TEST_F(Cycle, RunsTheQueueInOrderWhenStartedAutomatically) {
 
 TEST_F(Cycle, MeasuredPositionsFollowTheSetpoints) {
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {20, 0, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 1));
   double worst = 0;
   double feed = 0;
@@ -156,30 +156,30 @@ TEST_F(Cycle, NothingMovesBeforeCycleStart) {
   const std::int64_t before = machine_.controller.sample().cycle;
   ASSERT_TRUE(machine_.run_until([&] { return machine_.controller.sample().cycle > before + 20; }));
   EXPECT_EQ(machine_.peak_velocity(0), 0);
-  EXPECT_EQ(cam().moves_in_buffer(), 1);
+  EXPECT_EQ(cam().queue().moves_left(), 1);
 }
 
 TEST_F(Cycle, RunsOneMoveWhenStartedManually) {
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {10, 0, 0}));
   ASSERT_TRUE(machine_.line(2, {10, 0, 0}, {20, 0, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Manual));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Manual));
   ASSERT_TRUE(machine_.run_until([&] { return machine_.count(Event::Kind::Stopped) > 0; }));
   EXPECT_EQ(machine_.count(Event::Kind::MoveDone, 1), 1);
   EXPECT_EQ(machine_.count(Event::Kind::MoveDone, 2), 0);
   EXPECT_NEAR(machine_.controller.sample().position_set[0], 10, 1e-6);
-  EXPECT_EQ(cam().moves_in_buffer(), 1);
+  EXPECT_EQ(cam().queue().moves_left(), 1);
 }
 
 TEST_F(Cycle, HoldStopsOnThePathAndResumeGoesOn) {
   start_slow_line();
-  ASSERT_TRUE(cam().feed_hold());
+  ASSERT_TRUE(cam().cycle().hold());
   ASSERT_TRUE(machine_.run_until([&] {
     const CycleSample now = machine_.controller.sample();
     return now.state == CycleState::Holding && !now.moving;
   }));
   EXPECT_LT(machine_.controller.sample().position_set[0], 40);
-  ASSERT_TRUE(cam().feed_resume());
-  ASSERT_TRUE(cam().set_feed_override(200));
+  ASSERT_TRUE(cam().cycle().resume());
+  ASSERT_TRUE(cam().cycle().set_feed_override(200));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 1));
   EXPECT_NEAR(machine_.controller.sample().position_set[0], 40, 1e-6);
 }
@@ -188,11 +188,11 @@ TEST_F(Cycle, IsToldAsItIsNowNotAsTheLastSampleSawIt) {
   EXPECT_EQ(machine_.controller.cycle_now().state, CycleState::Idle);
   EXPECT_STREQ(machine_.controller.cycle_now().mode, "");
   start_slow_line();
-  ASSERT_TRUE(cam().cycle_stop());
+  ASSERT_TRUE(cam().cycle().stop());
   ASSERT_TRUE(machine_.run_until([&] { return machine_.count(Event::Kind::Stopped) > 0; }));
   EXPECT_EQ(machine_.controller.cycle_now().state, CycleState::Idle);
-  ASSERT_TRUE(cam().set_feed_override(50));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().set_feed_override(50));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   const CycleNow now = machine_.controller.cycle_now();
   EXPECT_EQ(now.state, CycleState::Running);
   EXPECT_STREQ(now.mode, "AUTOMATIC");
@@ -201,37 +201,37 @@ TEST_F(Cycle, IsToldAsItIsNowNotAsTheLastSampleSawIt) {
 
 TEST_F(Cycle, StopKeepsTheRestOfTheQueue) {
   start_slow_line();
-  ASSERT_TRUE(cam().cycle_stop());
+  ASSERT_TRUE(cam().cycle().stop());
   ASSERT_TRUE(machine_.run_until([&] { return machine_.count(Event::Kind::Stopped) > 0; }));
-  EXPECT_EQ(cam().moves_in_buffer(), 1);
-  const auto refused = cam().feed_resume();
+  EXPECT_EQ(cam().queue().moves_left(), 1);
+  const auto refused = cam().cycle().resume();
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("nothing is held"));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 1));
 }
 
 TEST_F(Cycle, StopNowEmptiesTheQueueAndTheNextMoveBeginsWhereTheMachineStands) {
   start_slow_line();
   ASSERT_TRUE(machine_.line(2, {40, 0, 0}, {0, 0, 0}));
-  ASSERT_TRUE(cam().stop_now());
+  ASSERT_TRUE(cam().cycle().stop_now());
   EXPECT_FALSE(machine_.line(4, {0, 0, 0}, {1, 0, 0})) << "it would be dropped with the rest";
   ASSERT_TRUE(machine_.run_until([&] { return machine_.count(Event::Kind::Stopped) > 0; }));
-  EXPECT_EQ(cam().moves_in_buffer(), 0);
+  EXPECT_EQ(cam().queue().moves_left(), 0);
   const double at = machine_.controller.sample().position_set[0];
   EXPECT_FALSE(machine_.line(3, {40, 0, 0}, {0, 0, 0}));
   ASSERT_TRUE(machine_.line(3, {at, 0, 0}, {0, 0, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 3));
   EXPECT_EQ(machine_.count(Event::Kind::MoveDone, 1), 0);
 }
 
 TEST_F(Cycle, RefusesAFeedThatIsZeroOrAboveTheMaximum) {
-  EXPECT_FALSE(cam().set_feedrate(0));
-  const auto refused = cam().set_feedrate(12001);
+  EXPECT_FALSE(cam().path().set_feedrate(0));
+  const auto refused = cam().path().set_feedrate(12001);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, MinorCode::SpeedLimit);
-  ASSERT_TRUE(cam().set_max_feedrate(3000));
+  ASSERT_TRUE(cam().path().set_max_feedrate(3000));
   const auto move = machine_.line(1, {0, 0, 0}, {10, 0, 0});
   ASSERT_FALSE(move);
   EXPECT_EQ(move.error().code, MinorCode::SpeedLimit);
@@ -242,7 +242,7 @@ TEST_F(Cycle, RefusesMovesBeyondTheQueueCapacity) {
   options.queue_capacity = 2;
   TestMachine small(options);
   ASSERT_TRUE(small.load_at_zero(TestMachine::mill()));
-  ASSERT_TRUE(small.controller.cam().set_feedrate(6000));
+  ASSERT_TRUE(small.controller.cam().path().set_feedrate(6000));
   ASSERT_TRUE(small.line(1, {0, 0, 0}, {1, 0, 0}));
   ASSERT_TRUE(small.line(2, {1, 0, 0}, {2, 0, 0}));
   const auto refused = small.line(3, {2, 0, 0}, {3, 0, 0});
@@ -251,39 +251,39 @@ TEST_F(Cycle, RefusesMovesBeyondTheQueueCapacity) {
 }
 
 TEST_F(Cycle, OverrideScalesTheFeed) {
-  ASSERT_TRUE(cam().set_feed_override(50));
+  ASSERT_TRUE(cam().cycle().set_feed_override(50));
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {40, 0, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 1));
   EXPECT_NEAR(machine_.peak_velocity(0), 50, 0.1);
-  EXPECT_FALSE(cam().set_feed_override(201));
+  EXPECT_FALSE(cam().cycle().set_feed_override(201));
 }
 
 TEST_F(Cycle, JogMovesOneJointFromRest) {
-  ASSERT_TRUE(cam().set_joint_interp_speed(20));
-  ASSERT_TRUE(cam().jog_joint(1, -12.5));
+  ASSERT_TRUE(cam().joints().set_interp_speed(20));
+  ASSERT_TRUE(cam().positioning().jog_joint(1, -12.5));
   ASSERT_TRUE(machine_.run_until([&] { return machine_.count(Event::Kind::Stopped) > 0; }));
   EXPECT_NEAR(machine_.controller.sample().position_set[1], -12.5, 1e-6);
   EXPECT_LE(machine_.peak_velocity(1), 40.001);
   EXPECT_EQ(machine_.peak_velocity(0), 0);
-  ASSERT_TRUE(cam().home());
+  ASSERT_TRUE(cam().positioning().home());
   ASSERT_TRUE(machine_.run_until([&] { return machine_.count(Event::Kind::Stopped) > 1; }));
   EXPECT_NEAR(machine_.controller.sample().position_set[1], 0, 1e-6);
 }
 
 TEST_F(Cycle, RefusesAJogOutsideTheLimitsOrWhileAProgramRuns) {
-  const auto outside = cam().jog_joint(0, 51);
+  const auto outside = cam().positioning().jog_joint(0, 51);
   ASSERT_FALSE(outside);
   EXPECT_EQ(outside.error().code, MinorCode::TravelLimit) << outside.error().message;
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
-  EXPECT_FALSE(cam().jog_joint(0, 1));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
+  EXPECT_FALSE(cam().positioning().jog_joint(0, 1));
 }
 
 TEST_F(Cycle, PartFrameMovesTheProgramOnTheMachine) {
-  ASSERT_TRUE(cam().set_part_frame({{5, -3, 0}, {1, 0, 0, 0}}));
+  ASSERT_TRUE(cam().frames().set_part({{5, -3, 0}, {1, 0, 0, 0}}));
   ASSERT_TRUE(machine_.line(1, {-5, 3, 0}, {10, 0, 0}));
-  EXPECT_FALSE(cam().set_part_frame({})) << "a move is queued";
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  EXPECT_FALSE(cam().frames().set_part({})) << "a move is queued";
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 1));
   EXPECT_NEAR(machine_.controller.sample().position_set[0], 15, 1e-6);
   EXPECT_NEAR(machine_.controller.sample().position_set[1], -3, 1e-6);
@@ -291,39 +291,39 @@ TEST_F(Cycle, PartFrameMovesTheProgramOnTheMachine) {
 }
 
 TEST_F(Cycle, CoolantSwitchesItsOutput) {
-  ASSERT_TRUE(cam().set_coolant(true));
+  ASSERT_TRUE(cam().spindles().set_coolant(true));
   EXPECT_TRUE(machine_.run_until([&] { return machine_.io->outputs() == std::uint64_t{1} << 5; }));
-  ASSERT_TRUE(cam().set_coolant(false));
+  ASSERT_TRUE(cam().spindles().set_coolant(false));
   EXPECT_TRUE(machine_.run_until([&] { return machine_.io->outputs() == 0; }));
 }
 
 TEST_F(Cycle, MotionWaitsForTheSpindle) {
-  ASSERT_TRUE(cam().set_spindle_rpm(0, 900));
+  ASSERT_TRUE(cam().spindles().set_rpm(0, 900));
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {10, 0, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 1));
   for (const CycleSample& sample : machine_.samples) {
     if (!sample.moving) continue;
     EXPECT_NEAR(sample.spindle_rpm[0], 900, 20);
   }
-  EXPECT_FALSE(cam().set_spindle_rpm(0, 1001));
-  EXPECT_FALSE(cam().set_spindle_rpm(1, 100));
+  EXPECT_FALSE(cam().spindles().set_rpm(0, 1001));
+  EXPECT_FALSE(cam().spindles().set_rpm(1, 100));
 }
 
 TEST_F(Cycle, ASpindleThatNeverGetsToSpeedFaultsTheMachine) {
   sdk::DeviceObject device = TestMachine::mill();
   device.spindles[0].speed_timeout_s = 0.001;
   ASSERT_TRUE(machine_.load_at_zero(device));
-  ASSERT_TRUE(cam().set_feedrate(6000));
-  ASSERT_TRUE(cam().set_spindle_rpm(0, 1000));
+  ASSERT_TRUE(cam().path().set_feedrate(6000));
+  ASSERT_TRUE(cam().spindles().set_rpm(0, 1000));
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {10, 0, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until([&] { return machine_.count(Event::Kind::Fault) > 0; }));
   EXPECT_THAT(machine_.last(Event::Kind::Fault), HasSubstr("of 1000 rpm"));
   EXPECT_EQ(machine_.peak_velocity(0), 0);
-  EXPECT_FALSE(cam().cycle_start(sdk::CycleMode::Automatic));
-  ASSERT_TRUE(cam().reset());
-  EXPECT_EQ(cam().moves_in_buffer(), 0);
+  EXPECT_FALSE(cam().cycle().start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().reset());
+  EXPECT_EQ(cam().queue().moves_left(), 0);
 }
 
 TEST_F(Cycle, ADriveFaultStopsEverythingUntilReset) {
@@ -335,22 +335,22 @@ TEST_F(Cycle, ADriveFaultStopsEverythingUntilReset) {
   ASSERT_TRUE(machine_.run_until([&] { return state() == CycleState::Faulted; }));
   EXPECT_FALSE(machine_.line(2, {40, 0, 0}, {0, 0, 0}));
 
-  const auto reset = cam().reset();
+  const auto reset = cam().cycle().reset();
   ASSERT_TRUE(reset) << reset.error().message;
-  EXPECT_EQ(cam().moves_in_buffer(), 0);
+  EXPECT_EQ(cam().queue().moves_left(), 0);
   ASSERT_TRUE(machine_.run_until([&] { return state() == CycleState::Idle; }));
   const double at = machine_.controller.sample().position_set[0];
   EXPECT_LT(at, 39);
   ASSERT_TRUE(machine_.line(
       2, {at, machine_.controller.sample().position_set[1], machine_.controller.sample().position_set[2]}, {0, 0, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 2));
 }
 
 TEST_F(Cycle, EverySampleIsThereInVirtualTime) {
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {40, 0, 0}));
   ASSERT_TRUE(machine_.line(2, {40, 0, 0}, {-40, 0, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 2));
   for (std::size_t i = 1; i < machine_.samples.size(); ++i) {
     ASSERT_EQ(machine_.samples[i].cycle, machine_.samples[i - 1].cycle + 1);

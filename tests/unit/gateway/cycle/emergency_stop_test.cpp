@@ -22,9 +22,9 @@ class EmergencyStop : public testing::Test {
   sdk::RmacCam& cam() { return machine_.controller.cam(); }
   CycleState state() { return machine_.controller.sample().state; }
   void start_line() {
-    ASSERT_TRUE(cam().set_feedrate(120));
+    ASSERT_TRUE(cam().path().set_feedrate(120));
     ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {40, 0, 0}));
-    ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+    ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
     ASSERT_TRUE(machine_.run_until([&] { return !machine_.samples.empty() && machine_.samples.back().moving; }));
   }
   sdk::DeviceObject device_;
@@ -32,7 +32,7 @@ class EmergencyStop : public testing::Test {
 };
 
 TEST_F(EmergencyStop, StopsAMoveDropsOutputsAndHoldsUntilItIsReleasedAndReset) {
-  ASSERT_TRUE(cam().set_coolant(true));
+  ASSERT_TRUE(cam().spindles().set_coolant(true));
   ASSERT_TRUE(machine_.run_until([&] { return machine_.io->outputs() == 1U << 5U; }));
   start_line();
   machine_.io->set_inputs(kPressed);
@@ -41,16 +41,16 @@ TEST_F(EmergencyStop, StopsAMoveDropsOutputsAndHoldsUntilItIsReleasedAndReset) {
   EXPECT_THAT(machine_.last(Event::Kind::Fault), HasSubstr("EmergencyStop (input 2) stopped the machine; release it"));
   ASSERT_TRUE(machine_.run_until([&] { return machine_.io->outputs() == 0; })) << "coolant";
 
-  const auto early = cam().reset();
+  const auto early = cam().cycle().reset();
   ASSERT_FALSE(early);
   EXPECT_EQ(early.error().code, MinorCode::EmergencyStop);
   EXPECT_EQ(state(), CycleState::EmergencyStop);
-  const auto refused = cam().cycle_start(sdk::CycleMode::Automatic);
+  const auto refused = cam().cycle().start(sdk::CycleMode::Automatic);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, MinorCode::EmergencyStop);
 
   machine_.io->set_inputs(0);
-  const auto reset = cam().reset();
+  const auto reset = cam().cycle().reset();
   ASSERT_TRUE(reset) << reset.error().message;
   ASSERT_TRUE(machine_.run_until([&] { return state() == CycleState::Idle; }));
   const std::int64_t idle = machine_.controller.sample().cycle;
@@ -77,9 +77,9 @@ TEST_F(EmergencyStop, OfALimitSwitchIsAFaultThatCanBeResetToMoveOff) {
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::Fault, 1));
   EXPECT_THAT(machine_.last(Event::Kind::Fault), HasSubstr("LimitX (input 3) is reached"));
   EXPECT_EQ(state(), CycleState::Faulted);
-  const auto reset = cam().reset();
+  const auto reset = cam().cycle().reset();
   ASSERT_TRUE(reset) << reset.error().message;
-  ASSERT_TRUE(cam().jog_joint(0, -1));
+  ASSERT_TRUE(cam().positioning().jog_joint(0, -1));
 }
 
 /// A mill whose X drive has a limit switch at four turns, 20 mm, and tells of it.
@@ -105,26 +105,26 @@ TEST(LimitSwitchOfADrive, HoldsEveryJogBackThatGoesOnTowardsIt) {
     machine.controller.dispatch();
     return machine.controller.cycle_now().state == CycleState::Idle && !machine.controller.sample().moving;
   };
-  ASSERT_TRUE(cam.jog_joint(0, 25));
+  ASSERT_TRUE(cam.positioning().jog_joint(0, 25));
   ASSERT_TRUE(machine.run_until_event(Event::Kind::Fault, -1));
   EXPECT_THAT(machine.last(Event::Kind::Fault), HasSubstr("LimitXPositive (input 63) is reached; reset, then jog"));
   EXPECT_NEAR(machine.controller.sample().position[0], 20, 1);
-  ASSERT_TRUE(machine.run_until([&] { return cam.reset().has_value() && idle(); }));
+  ASSERT_TRUE(machine.run_until([&] { return cam.cycle().reset().has_value() && idle(); }));
   ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().servo_state == ServoState::Engaged; }));
 
-  const auto refused = cam.jog_joint(0, 1);
+  const auto refused = cam.positioning().jog_joint(0, 1);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, MinorCode::TravelLimit);
   EXPECT_EQ(refused.error().message,
             "JogJoint: joint X stands on its limit switch at the positive end; jog the other way");
-  EXPECT_FALSE(cam.jog_joint_at(0, 5));
+  EXPECT_FALSE(cam.positioning().jog_joint_at(0, 5));
   machine.events.clear();
-  ASSERT_TRUE(cam.jog_path({{1, 1, 0}}, 2));
+  ASSERT_TRUE(cam.positioning().jog_path({{1, 1, 0}}, 2));
   ASSERT_TRUE(machine.run_until_event(Event::Kind::Fault, -1)) << "whatever moves it there";
   EXPECT_THAT(machine.last(Event::Kind::Fault), HasSubstr("LimitXPositive"));
-  ASSERT_TRUE(machine.run_until([&] { return cam.reset().has_value() && idle(); }));
+  ASSERT_TRUE(machine.run_until([&] { return cam.cycle().reset().has_value() && idle(); }));
   ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().servo_state == ServoState::Engaged; }));
-  ASSERT_TRUE(cam.jog_joint(0, -5));
+  ASSERT_TRUE(cam.positioning().jog_joint(0, -5));
   ASSERT_TRUE(machine.run_until([&] { return idle() && machine.controller.sample().position[0] < 17; }));
   EXPECT_EQ(machine.controller.sample().inputs, 0U);
 }

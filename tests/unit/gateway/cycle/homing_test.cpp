@@ -80,7 +80,7 @@ class Homing : public testing::Test {
 };
 
 TEST_F(Homing, HasTheDrivesHomeAndTheMachineGoOnFromThere) {
-  const auto homed = cam().home();
+  const auto homed = cam().positioning().home();
   ASSERT_TRUE(homed) << homed.error().message;
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::Stopped));
   EXPECT_THAT(machine_.last(Event::Kind::Stopped), HasSubstr("the drives have found home"));
@@ -92,31 +92,31 @@ TEST_F(Homing, HasTheDrivesHomeAndTheMachineGoOnFromThere) {
 
   // The next move begins where the joints stand now.
   machine_.events.clear();
-  ASSERT_TRUE(cam().jog_joint(0, 3));
+  ASSERT_TRUE(cam().positioning().jog_joint(0, 3));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::Stopped));
   EXPECT_EQ(machine_.count(Event::Kind::Fault), 0) << machine_.last(Event::Kind::Fault);
 }
 
 TEST_F(Homing, RefusesWhateverElseMovesMeanwhile) {
-  ASSERT_TRUE(cam().home());
-  EXPECT_FALSE(cam().jog_joint(2, 1));
-  EXPECT_FALSE(cam().cycle_start(sdk::CycleMode::Automatic));
-  EXPECT_FALSE(cam().home());
+  ASSERT_TRUE(cam().positioning().home());
+  EXPECT_FALSE(cam().positioning().jog_joint(2, 1));
+  EXPECT_FALSE(cam().cycle().start(sdk::CycleMode::Automatic));
+  EXPECT_FALSE(cam().positioning().home());
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::Stopped));
   EXPECT_EQ(bus_->homings(0), 1);
 }
 
 TEST_F(Homing, IsEndedByAStopAndCanBeginAnew) {
-  for (const auto stop : {&sdk::RmacCam::cycle_stop, &sdk::RmacCam::stop_now, &sdk::RmacCam::feed_hold}) {
+  for (const auto stop : {&sdk::CycleControl::stop, &sdk::CycleControl::stop_now, &sdk::CycleControl::hold}) {
     machine_.events.clear();
-    ASSERT_TRUE(cam().home());
-    ASSERT_TRUE((cam().*stop)());
+    ASSERT_TRUE(cam().positioning().home());
+    ASSERT_TRUE((cam().cycle().*stop)());
     ASSERT_TRUE(machine_.run_until([&] { return state() == CycleState::Idle; }));
     ASSERT_TRUE(machine_.run_until_event(Event::Kind::Stopped));
     EXPECT_EQ(machine_.last(Event::Kind::Stopped).find("found home"), std::string::npos);
   }
   machine_.events.clear();
-  ASSERT_TRUE(cam().home());
+  ASSERT_TRUE(cam().positioning().home());
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::Stopped));
   EXPECT_THAT(machine_.last(Event::Kind::Stopped), HasSubstr("the drives have found home"));
   EXPECT_EQ(machine_.count(Event::Kind::Fault), 0);

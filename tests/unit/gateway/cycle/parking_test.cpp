@@ -36,16 +36,16 @@ class Parking : public testing::Test {
   }
   /// A quarter of an arc between two lines, a positioning move and one of the joints.
   void queue(double feed_mm_min = 300) {
-    ASSERT_TRUE(cam().set_feedrate(feed_mm_min));
+    ASSERT_TRUE(cam().path().set_feedrate(feed_mm_min));
     ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {8, 0, 0}));
-    ASSERT_TRUE(cam().queue_move(2, ArcGeometry{{8, 4, 0}, {0, 0, 1}, 1, false, at(8, 0, 0), at(12, 4, 0)}));
+    ASSERT_TRUE(cam().queue().add(2, ArcGeometry{{8, 4, 0}, {0, 0, 1}, 1, false, at(8, 0, 0), at(12, 4, 0)}));
     ASSERT_TRUE(machine_.line(3, {12, 4, 0}, {12, 12, 2}));
-    ASSERT_TRUE(cam().queue_move(4, PathTargetGeometry{at(4, 12, 2)}));
-    ASSERT_TRUE(cam().queue_move(5, JointTargetGeometry{{-2, 6, 1}}));
-    ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+    ASSERT_TRUE(cam().queue().add(4, PathTargetGeometry{at(4, 12, 2)}));
+    ASSERT_TRUE(cam().queue().add(5, JointTargetGeometry{{-2, 6, 1}}));
+    ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   }
   void hold() {
-    ASSERT_TRUE(cam().feed_hold());
+    ASSERT_TRUE(cam().cycle().hold());
     ASSERT_TRUE(machine_.run_until([&] { return !machine_.controller.sample().moving && rests(); }));
   }
   [[nodiscard]] bool rests() {
@@ -65,18 +65,18 @@ class Parking : public testing::Test {
     // Hold and rest are told by different threads.
     Expected<> parked;
     ASSERT_TRUE(machine_.run_until([&] {
-      parked = cam().park_program();
+      parked = cam().parking().park();
       return parked || parked.error().message.find("coming to rest") == std::string::npos;
     }));
     ASSERT_TRUE(parked) << parked.error().message;
   }
   void take_up() {
-    const auto taken = cam().take_up_program();
+    const auto taken = cam().parking().take_up();
     ASSERT_TRUE(taken) << taken.error().message;
     EXPECT_EQ(state(), CycleState::Holding);
   }
   void finish() {
-    ASSERT_TRUE(cam().feed_resume());
+    ASSERT_TRUE(cam().cycle().resume());
     ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 5));
     ASSERT_TRUE(machine_.run_until([&] { return rests(); }));
   }
@@ -115,10 +115,10 @@ TEST_F(Parking, GoesOnFromItsPlaceWhereverItWasHeld) {
   std::mt19937 random(20261122);  // NOLINT(cert-msc51-cpp): the same instants every time
   for (int round = 0; round < 12; ++round) {
     SCOPED_TRACE(round);
-    ASSERT_TRUE(cam().queue_move(6, JointTargetGeometry{{0, 0, 0}}));
-    ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+    ASSERT_TRUE(cam().queue().add(6, JointTargetGeometry{{0, 0, 0}}));
+    ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
     ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 6));
-    ASSERT_TRUE(cam().cycle_stop());
+    ASSERT_TRUE(cam().cycle().stop());
     ASSERT_TRUE(machine_.run_until([&] { return state() == CycleState::Idle && rests(); }));
     machine_.events.clear();
     machine_.samples.clear();
@@ -128,7 +128,7 @@ TEST_F(Parking, GoesOnFromItsPlaceWhereverItWasHeld) {
     hold();
     if (done().size() < 5) {
       park();
-      EXPECT_EQ(cam().moves_in_buffer(), 0);
+      EXPECT_EQ(cam().queue().moves_left(), 0);
       EXPECT_EQ(state(), CycleState::Idle);
       take_up();
       finish();
@@ -156,8 +156,8 @@ TEST_F(Parking, LaysWhatIsLeftInTheFrameThatIsInForceThen) {
   found.p = {0.3, -0.2, 0.1};
   const double half = 0.1 * 3.14159265358979 / 180;
   found.q = {std::cos(half), 0, 0, std::sin(half)};
-  ASSERT_TRUE(cam().set_part_frame(found));
-  const auto parked = cam().parked_program();
+  ASSERT_TRUE(cam().frames().set_part(found));
+  const auto parked = cam().parking().parked();
   ASSERT_TRUE(parked);
   EXPECT_EQ(parked->move_id, 2);
   EXPECT_EQ(parked->moves, 4U);
@@ -181,15 +181,15 @@ TEST_F(Parking, LaysWhatIsLeftInTheFrameThatIsInForceThen) {
 TEST_F(Parking, TakesNothingUpWhereTheToolStandsElsewhere) {
   queue_and_hold_in(3);
   park();
-  ASSERT_TRUE(cam().jog_joint(2, 5));
+  ASSERT_TRUE(cam().positioning().jog_joint(2, 5));
   ASSERT_TRUE(machine_.run_until([&] { return state() == CycleState::Idle && rests(); }));
-  const auto refused = cam().take_up_program();
+  const auto refused = cam().parking().take_up();
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("stands 5.000 mm from where the program goes on, 12.0000"));
   EXPECT_THAT(refused.error().message, HasSubstr("stays parked"));
-  EXPECT_EQ(cam().moves_in_buffer(), 0);
-  EXPECT_NEAR(cam().parked_program()->off_mm, 5, 1e-6);
-  ASSERT_TRUE(cam().jog_joint(2, -5));
+  EXPECT_EQ(cam().queue().moves_left(), 0);
+  EXPECT_NEAR(cam().parking().parked()->off_mm, 5, 1e-6);
+  ASSERT_TRUE(cam().positioning().jog_joint(2, -5));
   ASSERT_TRUE(machine_.run_until([&] { return state() == CycleState::Idle && rests(); }));
   take_up();
   finish();
@@ -197,28 +197,28 @@ TEST_F(Parking, TakesNothingUpWhereTheToolStandsElsewhere) {
 }
 
 TEST_F(Parking, RefusesAFrameInWhichTheRestCannotBeReached) {
-  ASSERT_TRUE(cam().set_feedrate(120));
+  ASSERT_TRUE(cam().path().set_feedrate(120));
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {20, 0, 0}));
   ASSERT_TRUE(machine_.line(2, {20, 0, 0}, {20, 49.9, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   hold_in(1);
   park();
   Frame shifted;
   shifted.p = {0, 0.5, 0};
-  ASSERT_TRUE(cam().set_part_frame(shifted));
-  const auto refused = cam().take_up_program();
+  ASSERT_TRUE(cam().frames().set_part(shifted));
+  const auto refused = cam().parking().take_up();
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("move 2 takes joint Y"));
-  EXPECT_EQ(cam().moves_in_buffer(), 0);
-  ASSERT_TRUE(cam().parked_program());
-  ASSERT_TRUE(cam().set_part_frame({}));
+  EXPECT_EQ(cam().queue().moves_left(), 0);
+  ASSERT_TRUE(cam().parking().parked());
+  ASSERT_TRUE(cam().frames().set_part({}));
   take_up();
-  EXPECT_EQ(cam().moves_in_buffer(), 2);
+  EXPECT_EQ(cam().queue().moves_left(), 2);
 }
 
 TEST_F(Parking, StopsTheSpindleAndHasItTurningAgainBeforeItGoesOn) {
-  ASSERT_TRUE(cam().set_spindle_rpm(0, 800));
-  ASSERT_TRUE(cam().set_coolant(true));
+  ASSERT_TRUE(cam().spindles().set_rpm(0, 800));
+  ASSERT_TRUE(cam().spindles().set_coolant(true));
   queue_and_hold_in(2);
   EXPECT_NEAR(machine_.controller.sample().spindle_rpm[0], 800, 25);
   park();
@@ -241,22 +241,22 @@ TEST_F(Parking, StopsTheSpindleAndHasItTurningAgainBeforeItGoesOn) {
 TEST_F(Parking, OutlastsAnotherRoleOfTheSameMachine) {
   Frame part;
   part.p = {1, 2, 0};
-  ASSERT_TRUE(cam().set_part_frame(part));
-  ASSERT_TRUE(cam().set_feedrate(300));
-  ASSERT_TRUE(cam().queue_move(6, PathTargetGeometry{at(0, 0, 0)}));
+  ASSERT_TRUE(cam().frames().set_part(part));
+  ASSERT_TRUE(cam().path().set_feedrate(300));
+  ASSERT_TRUE(cam().queue().add(6, PathTargetGeometry{at(0, 0, 0)}));
   queue_and_hold_in(2);
   park();
   const auto loaded = machine_.load(measuring_role());
   ASSERT_TRUE(loaded) << loaded.error().message;
-  EXPECT_EQ(cam().part_frame().p, part.p);
-  const auto refused = cam().take_up_program();
+  EXPECT_EQ(cam().frames().part().p, part.p);
+  const auto refused = cam().parking().take_up();
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("parked on Mill; load that first"));
   Frame corrected;
   corrected.p = {1.2, 2, 0};
-  ASSERT_TRUE(cam().set_part_frame(corrected));
+  ASSERT_TRUE(cam().frames().set_part(corrected));
   ASSERT_TRUE(machine_.load(TestMachine::mill()));
-  EXPECT_EQ(cam().part_frame().p, corrected.p);
+  EXPECT_EQ(cam().frames().part().p, corrected.p);
   take_up();
   machine_.samples.clear();
   finish();
@@ -276,9 +276,9 @@ TEST_F(Parking, EndsWhenAnotherMachineIsLoadedAndSurvivesOneThatCannotBe) {
   broken.kinematics.name = "NoSuchModule";
   ASSERT_FALSE(machine_.load(broken));
   machine_.controller.discard_draft();
-  ASSERT_TRUE(cam().parked_program());
+  ASSERT_TRUE(cam().parking().parked());
   ASSERT_TRUE(machine_.load(TestMachine::plane_mill()));
-  EXPECT_FALSE(cam().parked_program());
+  EXPECT_FALSE(cam().parking().parked());
   machine_.controller.dispatch();
   bool told = false;
   for (const Event& event : machine_.events)
@@ -287,18 +287,18 @@ TEST_F(Parking, EndsWhenAnotherMachineIsLoadedAndSurvivesOneThatCannotBe) {
 }
 
 TEST_F(Parking, SetsAsideOnlyWhatIsHeld) {
-  EXPECT_THAT(cam().park_program().error().message, HasSubstr("nothing is queued"));
+  EXPECT_THAT(cam().parking().park().error().message, HasSubstr("nothing is queued"));
   queue(30);
-  EXPECT_THAT(cam().park_program().error().message, HasSubstr("FeedHold first"));
+  EXPECT_THAT(cam().parking().park().error().message, HasSubstr("FeedHold first"));
   hold_in(2);
   park();
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
-  EXPECT_THAT(cam().take_up_program().error().message, HasSubstr("the cycle is under way"));
-  ASSERT_TRUE(cam().cycle_stop());
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
+  EXPECT_THAT(cam().parking().take_up().error().message, HasSubstr("the cycle is under way"));
+  ASSERT_TRUE(cam().cycle().stop());
   ASSERT_TRUE(machine_.run_until([&] { return state() == CycleState::Idle; }));
-  ASSERT_TRUE(cam().drop_parked_program());
-  EXPECT_FALSE(cam().parked_program());
-  EXPECT_THAT(cam().take_up_program().error().message, HasSubstr("no program is parked"));
+  ASSERT_TRUE(cam().parking().drop());
+  EXPECT_FALSE(cam().parking().parked());
+  EXPECT_THAT(cam().parking().take_up().error().message, HasSubstr("no program is parked"));
 }
 
 TEST_F(Parking, CanBeRepeatedOnTheWayBack) {

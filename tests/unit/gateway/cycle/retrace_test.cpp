@@ -15,16 +15,16 @@ class FeedRetrace : public testing::Test {
   void SetUp() override {
     const auto loaded = machine_.load_at_zero(TestMachine::mill());
     ASSERT_TRUE(loaded) << loaded.error().message;
-    ASSERT_TRUE(cam().set_feedrate(120));
+    ASSERT_TRUE(cam().path().set_feedrate(120));
     ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {5, 0, 0}));
     ASSERT_TRUE(machine_.line(2, {5, 0, 0}, {45, 0, 0}));
     ASSERT_TRUE(machine_.line(3, {45, 0, 0}, {45, 1, 0}));
-    ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+    ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
     ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveStarted, 2));
     hold();
   }
   void hold() {
-    ASSERT_TRUE(cam().feed_hold());
+    ASSERT_TRUE(cam().cycle().hold());
     ASSERT_TRUE(machine_.run_until([&] { return !machine_.samples.back().moving; }));
   }
   sdk::RmacCam& cam() { return machine_.controller.cam(); }
@@ -32,7 +32,7 @@ class FeedRetrace : public testing::Test {
   [[nodiscard]] double x() { return machine_.controller.sample().position_set[0]; }
   void retrace_to_rest(double distance) {
     const int before = machine_.count(Event::Kind::Stopped);
-    const auto way = cam().feed_retrace(distance);
+    const auto way = cam().cycle().retrace(distance);
     ASSERT_TRUE(way) << way.error().message;
     ASSERT_TRUE(machine_.run_until([&] { return machine_.count(Event::Kind::Stopped) > before; }));
   }
@@ -54,22 +54,22 @@ TEST_F(FeedRetrace, GoesBackTheDistanceHoldsThereAndFinishesTheProgramForward) {
   retrace_to_rest(1000);
   EXPECT_NEAR(x(), 0, 1e-6) << "the way back ends where the path began";
   EXPECT_THAT(done(), ElementsAre(1));
-  ASSERT_TRUE(cam().set_feed_override(200));
-  ASSERT_TRUE(cam().feed_resume());
+  ASSERT_TRUE(cam().cycle().set_feed_override(200));
+  ASSERT_TRUE(cam().cycle().resume());
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 3));
   EXPECT_THAT(done(), ElementsAre(1, 2, 3));
   EXPECT_NEAR(x(), 45, 1e-6);
 }
 
 TEST_F(FeedRetrace, IsTurnedForwardByAResumeUnderWay) {
-  ASSERT_TRUE(cam().feed_retrace(4));
-  const auto start = cam().cycle_start(sdk::CycleMode::Automatic);
+  ASSERT_TRUE(cam().cycle().retrace(4));
+  const auto start = cam().cycle().start(sdk::CycleMode::Automatic);
   if (state() == CycleState::Running) {
     ASSERT_FALSE(start);
     EXPECT_THAT(start.error().message, HasSubstr("FeedResume turns it forward"));
   }
-  ASSERT_TRUE(cam().set_feed_override(200));
-  ASSERT_TRUE(cam().feed_resume());
+  ASSERT_TRUE(cam().cycle().set_feed_override(200));
+  ASSERT_TRUE(cam().cycle().resume());
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 3));
   EXPECT_THAT(done(), ElementsAre(1, 2, 3));
 }
@@ -78,25 +78,25 @@ TEST_F(FeedRetrace, LeavesTheQueueToBeEmptiedAndAJogToBeginWhereTheToolStands) {
   retrace_to_rest(2);
   const double here = x();
   const int before = machine_.count(Event::Kind::Stopped);
-  ASSERT_TRUE(cam().stop_now());
+  ASSERT_TRUE(cam().cycle().stop_now());
   ASSERT_TRUE(machine_.run_until([&] { return machine_.count(Event::Kind::Stopped) > before; }));
-  ASSERT_TRUE(cam().jog_joint(0, -1));
+  ASSERT_TRUE(cam().positioning().jog_joint(0, -1));
   ASSERT_TRUE(machine_.run_until([&] { return machine_.count(Event::Kind::Stopped) > before + 1; }));
   EXPECT_NEAR(x(), here - 1, 1e-6);
-  EXPECT_THAT(cam().feed_retrace(1).error().message, HasSubstr("send FeedHold first"));
+  EXPECT_THAT(cam().cycle().retrace(1).error().message, HasSubstr("send FeedHold first"));
 }
 
 TEST_F(FeedRetrace, IsRefusedWhereThereIsNothingBehind) {
   retrace_to_rest(1000);
-  const auto refused = cam().feed_retrace(1);
+  const auto refused = cam().cycle().retrace(1);
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("no path behind the tool"));
   EXPECT_EQ(state(), CycleState::Holding);
 }
 
 TEST_F(FeedRetrace, IsRefusedInMotion) {
-  ASSERT_TRUE(cam().feed_resume());
-  const auto refused = cam().feed_retrace(1);
+  ASSERT_TRUE(cam().cycle().resume());
+  const auto refused = cam().cycle().retrace(1);
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("the machine is Running"));
 }

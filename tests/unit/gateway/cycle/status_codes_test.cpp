@@ -42,11 +42,11 @@ class Running : public TestMachine {
     EXPECT_TRUE(loaded) << loaded.error().message;
     io->set_inputs(kAir);
     EXPECT_TRUE(run_until([&] { return (controller.sample().inputs & kAir) != 0; }));
-    const auto started = controller.cam().home().and_then([&] {
+    const auto started = controller.cam().positioning().home().and_then([&] {
       EXPECT_TRUE(run_until([&] { return std::abs(controller.sample().position_set[2]) < 1e-9; }));
       EXPECT_TRUE(run_until([&] { return controller.sample().state == CycleState::Idle; }));
-      return controller.cam().set_feedrate(1200).and_then(
-          [&] { return controller.cam().cycle_start(sdk::CycleMode::Automatic); });
+      return controller.cam().path().set_feedrate(1200).and_then(
+          [&] { return controller.cam().cycle().start(sdk::CycleMode::Automatic); });
     });
     EXPECT_TRUE(started) << started.error().message;
     events.clear();
@@ -105,9 +105,9 @@ const std::vector<Cause> kCauses{
        return refused(Running().line(1, {0, 0, 0}, {51, 0, 0}));
      }},
     {MinorCode::SpeedLimit, "AFeedIsBeyondTheMachines",
-     [] { return refused(Running().controller.cam().set_feedrate(12001)); }},
+     [] { return refused(Running().controller.cam().path().set_feedrate(12001)); }},
     {MinorCode::AccelerationLimit, "AnAccelerationIsBeyondTheJoints",
-     [] { return refused(Running().controller.cam().set_joint_accel_rise(0, 1001)); }},
+     [] { return refused(Running().controller.cam().joints().set_accel_rise(0, 1001)); }},
     {MinorCode::ProbeNotArmed, "ThereIsNoProbe",
      [] {
        sdk::DeviceObject device = wired_mill();
@@ -129,7 +129,7 @@ const std::vector<Cause> kCauses{
     {MinorCode::UnexpectedHit, "TheProbeTouchesOnItsWay",
      [] {
        Running machine;
-       EXPECT_TRUE(machine.controller.measuring().move_to_point(1, {30, 0, 0}, 5));
+       EXPECT_TRUE(machine.controller.cam().cmm_moves().to_point(1, {30, 0, 0}, 5));
        EXPECT_TRUE(machine.run_until([&] { return machine.controller.sample().position[0] > 1; }));
        machine.io->set_inputs(kAir | kTouching);
        return machine.stops();
@@ -145,23 +145,23 @@ const std::vector<Cause> kCauses{
        sdk::DeviceObject device = wired_mill();
        device.spindles[0].speed_timeout_s = 0.1;
        Running machine(device);
-       EXPECT_TRUE(machine.controller.cam().set_spindle_rpm(0, 1000));
+       EXPECT_TRUE(machine.controller.cam().spindles().set_rpm(0, 1000));
        return machine.stops();
      }},
     {MinorCode::InvalidParameter, "AnInterfaceIsInitializedThatNobodyChose",
      [] {
        TestMachine machine;
        EXPECT_TRUE(machine.controller.config().begin(wired_mill()));
-       return refused(machine.controller.config().initialize_digital_control_interface());
+       return refused(machine.controller.config().interfaces().initialize_control());
      }},
     {MinorCode::InvalidParameterValue, "AFeedIsNone",
-     [] { return refused(Running().controller.cam().set_feedrate(0)); }},
+     [] { return refused(Running().controller.cam().path().set_feedrate(0)); }},
     {MinorCode::CommandQueueFull, "TheQueueIsFull",
      [] {
        ControllerOptions options = TestMachine::options();
        options.queue_capacity = 2;
        Running machine(wired_mill(), options);
-       EXPECT_TRUE(machine.controller.cam().feed_hold());
+       EXPECT_TRUE(machine.controller.cam().cycle().hold());
        MinorCode code = MinorCode::None;
        for (int i = 0; i < 4 && code == MinorCode::None; ++i) {
          code = refused(machine.line(1, {0, 0, 0.01 * i}, {0, 0, 0.01 * (i + 1)}));

@@ -70,13 +70,13 @@ class DeviceTree : public testing::Test {
   void load(const std::string& name, bool virtual_mode) {
     const auto loaded = host_->load(name, virtual_mode);
     ASSERT_TRUE(loaded) << loaded.error().message;
-    const auto started = controller_->cam().set_feedrate(1500).and_then(
-        [&] { return controller_->cam().cycle_start(sdk::CycleMode::Automatic); });
+    const auto started = controller_->cam().path().set_feedrate(1500).and_then(
+        [&] { return controller_->cam().cycle().start(sdk::CycleMode::Automatic); });
     ASSERT_TRUE(started) << started.error().message;
   }
   void move(const Geometry& geometry) {
     const int before = done_;
-    const auto queued = controller_->cam().queue_move(1, geometry);
+    const auto queued = controller_->cam().queue().add(1, geometry);
     ASSERT_TRUE(queued) << queued.error().message;
     EXPECT_TRUE(run_until([&] { return done_ > before || !fault_.empty(); }));
     EXPECT_EQ(fault_, "");
@@ -114,7 +114,7 @@ TEST_P(EveryMechanism, LoadsAndMovesEachOfItsJoints) {
 TEST_P(EveryMechanism, TurnsItsSpindleAtFullSpeed) {
   ASSERT_NO_FATAL_FAILURE(load(GetParam(), false));
   const sdk::Spindle spindle = controller_->mechanism()->spindles.at(0);
-  ASSERT_TRUE(controller_->cam().set_spindle_rpm(0, spindle.max_speed_rpm));
+  ASSERT_TRUE(controller_->cam().spindles().set_rpm(0, spindle.max_speed_rpm));
   EXPECT_TRUE(run_until([&] {
     return std::abs(controller_->sample().spindle_rpm[0] - spindle.max_speed_rpm) <= spindle.speed_tolerance_rpm;
   }));
@@ -170,12 +170,12 @@ TEST_F(DeviceTree, CmmAloneMeasuresThePartOfItsOwnFile) {
   EXPECT_EQ(controller_->mechanism()->actuators[0].bus, "sugino0");
   sdk::Measuring& measuring = controller_->measuring();
   // Its block's top is at -20, the tip's radius 1 mm, and (15, 0) beside the bore.
-  const auto there = measuring.move_to_point(1, {15, 0, -10}, 20);
+  const auto there = cam.cmm_moves().to_point(1, {15, 0, -10}, 20);
   ASSERT_TRUE(there) << there.error().message;
-  ASSERT_TRUE(run_until([&] { return controller_->cam().moves_in_buffer() == 0; }));
+  ASSERT_TRUE(run_until([&] { return controller_->cam().queue().moves_left() == 0; }));
   const auto queued = measuring.auto_measure(2, {15, 0, -19}, 20);
   ASSERT_TRUE(queued) << queued.error().message;
-  ASSERT_TRUE(run_until([&] { return controller_->cam().moves_in_buffer() == 0; }));
+  ASSERT_TRUE(run_until([&] { return controller_->cam().queue().moves_left() == 0; }));
   ASSERT_TRUE(measuring.new_hit());
   EXPECT_NEAR(measuring.last_hit()->pose.tip[2], -19, 1.2e-4);
 }

@@ -16,20 +16,21 @@ class JointTypes : public testing::Test {
   }
   [[nodiscard]] bool jog(std::size_t joint, double distance) {
     const double there = machine_.controller.sample().position_set[joint] + distance;
-    return machine_.controller.cam().jog_joint(static_cast<int>(joint), distance) && machine_.run_until([&] {
-      const CycleSample now = machine_.controller.sample();
-      return !now.moving && std::abs(now.position_set[joint] - there) < 1e-6;
-    });
+    return machine_.controller.cam().positioning().jog_joint(static_cast<int>(joint), distance) &&
+           machine_.run_until([&] {
+             const CycleSample now = machine_.controller.sample();
+             return !now.moving && std::abs(now.position_set[joint] - there) < 1e-6;
+           });
   }
   TestMachine machine_;
 };
 
 TEST_F(JointTypes, ScrewCountsMillimetresAsASlideDoes) {
   load([](sdk::DeviceObject& device) { device.joints[2].limits.type = JointType::Screw; });
-  const auto feed = machine_.controller.cam().set_feedrate(3000);
+  const auto feed = machine_.controller.cam().path().set_feedrate(3000);
   ASSERT_TRUE(feed) << feed.error().message;
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {10, 0, -7}));
-  ASSERT_TRUE(machine_.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine_.controller.cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 1)) << machine_.last(Event::Kind::Fault);
   EXPECT_NEAR(machine_.controller.sample().position_set[2], -7, 1e-6);
 }
@@ -47,10 +48,10 @@ TEST_F(JointTypes, OneEndIsKeptWhereTheOtherIsFree) {
   });
   EXPECT_TRUE(jog(0, 1000));
   EXPECT_TRUE(jog(1, -1000));
-  const auto below = machine_.controller.cam().jog_joint(0, -1051);
+  const auto below = machine_.controller.cam().positioning().jog_joint(0, -1051);
   ASSERT_FALSE(below);
   EXPECT_THAT(below.error().message, testing::HasSubstr("X"));
-  EXPECT_FALSE(machine_.controller.cam().jog_joint(1, 1051));
+  EXPECT_FALSE(machine_.controller.cam().positioning().jog_joint(1, 1051));
   EXPECT_TRUE(jog(0, -1049));
 }
 

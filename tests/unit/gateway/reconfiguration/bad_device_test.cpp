@@ -64,18 +64,18 @@ TEST(BadDevice, EachAbsurdNumberIsRefusedAndTheMechanismInForceStays) {
     }
   }
   machine.controller.discard_draft();
-  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(6000));
   ASSERT_TRUE(machine.line(1, {0, 0, 0}, {1, 1, 1}));
-  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
   EXPECT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 1));
 }
 
 TEST(BadDevice, LimitsThatExcludeWhereAJointStandsAreRefusedWhenItIsLoaded) {
   TestMachine machine;
   ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
-  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(6000));
   ASSERT_TRUE(machine.line(1, {0, 0, 0}, {0, -30, 0}));
-  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 1));
   DeviceObject narrow = TestMachine::mill();
   narrow.name = "Narrow";

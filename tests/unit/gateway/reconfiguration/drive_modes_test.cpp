@@ -46,11 +46,11 @@ TEST_P(DriveModes, RunAProgramAndFollowIt) {
   const auto loaded = machine.load_at_zero(mill_of(GetParam().mode));
   ASSERT_TRUE(loaded) << loaded.error().message;
   auto& cam = machine.controller.cam();
-  ASSERT_TRUE(cam.set_feedrate(6000));
+  ASSERT_TRUE(cam.path().set_feedrate(6000));
   ASSERT_TRUE(machine.line(1, {0, 0, 0}, {20, 0, 0}));
   ASSERT_TRUE(machine.line(2, {20, 0, 0}, {20, 15, -5}));
   ASSERT_TRUE(machine.line(3, {20, 15, -5}, {0, 0, 0}));
-  ASSERT_TRUE(cam.cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam.cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 3)) << machine.last(Event::Kind::Fault);
   EXPECT_GT(machine.peak_velocity(0), 90);
   EXPECT_LT(worst_error(), 100 * GetParam().lag_s + 0.1);
@@ -66,9 +66,9 @@ TEST_P(DriveModes, RunAProgramAndFollowIt) {
 TEST_P(DriveModes, BlockedJointStopsTheMachine) {
   const auto loaded = machine.load_at_zero(mill_of(GetParam().mode));
   ASSERT_TRUE(loaded) << loaded.error().message;
-  ASSERT_TRUE(machine.controller.cam().set_feedrate(3000));
+  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(3000));
   ASSERT_TRUE(machine.line(1, {0, 0, 0}, {40, 0, 0}));
-  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().position[0] > 5; }));
   machine.bus->push(0, -5);
   ASSERT_TRUE(machine.run_until_event(Event::Kind::Fault, 1));

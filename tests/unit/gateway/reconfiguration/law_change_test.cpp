@@ -16,15 +16,15 @@ class LawChange : public testing::Test {
  protected:
   void start_moving() {
     ASSERT_TRUE(machine_.load_at_zero(TestMachine::mill()));
-    ASSERT_TRUE(cam().set_feedrate(60));  // so slow that it is under way for long, as fast as it is computed
+    ASSERT_TRUE(cam().path().set_feedrate(60));  // so slow that it is under way for long, as fast as it is computed
     ASSERT_TRUE(machine_.line(kMove, {0, 0, 0}, {40, 20, 10}));
-    ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+    ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
     ASSERT_TRUE(machine_.run_until([&] { return machine_.controller.sample().position_set[0] > 1; }));
   }
   [[nodiscard]] sdk::RmacCam& cam() { return machine_.controller.cam(); }
   [[nodiscard]] sdk::RmacConfig& config() { return machine_.controller.config(); }
   [[nodiscard]] Expected<> gains(int joint, const std::vector<double>& values) {
-    return config().set_joint_servo_control_gains(joint, values).and_then([&] { return config().apply(); });
+    return config().loops().set_gains(joint, values).and_then([&] { return config().apply(); });
   }
   /// Of joint X, on the average over the 300 cycles after `cycle`.
   [[nodiscard]] double following_error(std::int64_t cycle) {
@@ -59,7 +59,7 @@ TEST_F(LawChange, GainsActInMotionAndThePlanGoesOn) {
 
 TEST_F(LawChange, AnotherLawIsWhatTheMechanismHasFromThenOn) {
   start_moving();
-  ASSERT_TRUE(config().set_joint_servo_control_law(1, {"TestLaw", {}, {}}));
+  ASSERT_TRUE(config().loops().set_servo_law(1, {"TestLaw", {}, {}}));
   ASSERT_TRUE(gains(1, {500, 6}));
   const auto modules = machine_.controller.modules();
   const auto of_y = std::count_if(modules.begin(), modules.end(),
@@ -74,14 +74,14 @@ TEST_F(LawChange, RefusedGainsChangeNothing) {
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, AllOf(HasSubstr("joint X"), HasSubstr("it takes 2: stiffness (N/mm)")));
   EXPECT_THAT(machine_.controller.mechanism()->joints[0].gains, ElementsAre(300, 4));
-  ASSERT_TRUE(config().set_joint_servo_control_law(0, {"Gone", {}, {}}));
+  ASSERT_TRUE(config().loops().set_servo_law(0, {"Gone", {}, {}}));
   EXPECT_THAT(config().apply().error().message, HasSubstr("there is no servo control law module Gone"));
   EXPECT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove));
 }
 
 TEST_F(LawChange, WithAnythingElseBesideItNeedsRest) {
   start_moving();
-  ASSERT_TRUE(config().set_joint_maximum_speed(0, 50));
+  ASSERT_TRUE(config().joints().set_maximum_speed(0, 50));
   const auto refused = gains(0, {600, 8});
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("needs the machine at rest"));
@@ -92,7 +92,7 @@ TEST_F(LawChange, WithAnythingElseBesideItNeedsRest) {
 TEST_F(LawChange, VelocityAndPositionTakeTurnsInMotionAndThePlanGoesOn) {
   start_moving();
   for (const ControlMethod method : {ControlMethod::Velocity, ControlMethod::Position, ControlMethod::Velocity}) {
-    ASSERT_TRUE(config().set_joint_control_method(1, method));
+    ASSERT_TRUE(config().loops().set_control_method(1, method));
     const auto applied = config().apply();
     ASSERT_TRUE(applied) << applied.error().message;
     EXPECT_TRUE(machine_.controller.sample().moving);
@@ -108,14 +108,14 @@ TEST_F(LawChange, VelocityAndPositionTakeTurnsInMotionAndThePlanGoesOn) {
 
 TEST_F(LawChange, AJointThatSlippedIsGivenBackToPositionControlAtRestOnly) {
   start_moving();
-  ASSERT_TRUE(config().set_joint_control_method(1, ControlMethod::Velocity));
+  ASSERT_TRUE(config().loops().set_control_method(1, ControlMethod::Velocity));
   ASSERT_TRUE(config().apply());
   machine_.bus->freeze_encoder(1, true);  // to the loop the joint stands, whatever it does
   const auto behind = [&] {
     return machine_.controller.sample().position_set[0] / 2 - machine_.controller.sample().position[1];
   };
   ASSERT_TRUE(machine_.run_until([&] { return behind() > 2; })) << machine_.last(Event::Kind::Fault);
-  ASSERT_TRUE(config().set_joint_control_method(1, ControlMethod::Position));
+  ASSERT_TRUE(config().loops().set_control_method(1, ControlMethod::Position));
   const auto refused = config().apply();
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message,
@@ -129,7 +129,7 @@ TEST_F(LawChange, AJointThatSlippedIsGivenBackToPositionControlAtRestOnly) {
 
 TEST_F(LawChange, ForceControlNeedsRest) {
   start_moving();
-  ASSERT_TRUE(config().set_joint_control_method(2, ControlMethod::Force));
+  ASSERT_TRUE(config().loops().set_control_method(2, ControlMethod::Force));
   EXPECT_FALSE(config().apply());
   EXPECT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove));
 }

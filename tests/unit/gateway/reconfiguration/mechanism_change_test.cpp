@@ -29,12 +29,13 @@ TEST(MechanismChange, MayBeStoppedMeanwhileFromAnotherThread) {
   std::thread gateway([&] {
     int turn = 0;
     do {
-      const auto stopped = turn % 2 == 0 ? machine.controller.cam().stop_now() : machine.controller.cam().cycle_stop();
+      const auto stopped =
+          turn % 2 == 0 ? machine.controller.cam().cycle().stop_now() : machine.controller.cam().cycle().stop();
       EXPECT_TRUE(stopped);
       (void)machine.controller.sample();
       (void)machine.controller.cycle_now();
-      (void)machine.controller.cam().cycle_start_status();
-      (void)machine.controller.cam().moves_in_buffer();
+      (void)machine.controller.cam().cycle().started();
+      (void)machine.controller.cam().queue().moves_left();
       ++turn;
     } while (changing);
   });
@@ -49,13 +50,13 @@ TEST(MechanismChange, MayBeStoppedMeanwhileFromAnotherThread) {
   gateway.join();
   const auto loaded = machine.load(TestMachine::mill());
   ASSERT_TRUE(loaded) << loaded.error().message;
-  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
-  ASSERT_TRUE(machine.controller.cam().set_feed_override(0));
+  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(6000));
+  ASSERT_TRUE(machine.controller.cam().cycle().set_feed_override(0));
   ASSERT_TRUE(machine.line(1, {0, 0, 0}, {1, 0, 0}));
-  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
-  ASSERT_TRUE(machine.controller.cam().cycle_stop());
+  ASSERT_TRUE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.controller.cam().cycle().stop());
   ASSERT_TRUE(machine.run_until([&] { return machine.controller.cycle_now().state == CycleState::Idle; }));
-  EXPECT_EQ(machine.controller.cam().moves_in_buffer(), 1) << "an earlier stop's order to clear is still in force";
+  EXPECT_EQ(machine.controller.cam().queue().moves_left(), 1) << "an earlier stop's order to clear is still in force";
 }
 
 class FailedChange : public testing::TestWithParam<Defect> {};
@@ -72,10 +73,10 @@ TEST_P(FailedChange, LeavesTheOldMechanismInForce) {
 
   ASSERT_NE(machine.controller.mechanism(), nullptr);
   EXPECT_EQ(machine.controller.mechanism()->name, "Mill");
-  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(6000));
   const auto queued = machine.line(1, {0, 0, 0}, {1, 1, 1});
   ASSERT_TRUE(queued) << queued.error().message;
-  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 1));
   for (const CycleSample& sample : machine.samples) {
     if (sample.cycle <= before) continue;
@@ -163,10 +164,10 @@ TEST(MechanismChange, PutsTheOldMechanismBackWhenADriveOfTheNewOneFails) {
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("axis 5"));
   EXPECT_THAT(refused.error().message, HasSubstr("Mill is in force again"));
-  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(6000));
   const auto queued = machine.line(1, machine.controller.sample().pose_set.tip, {1, 1, 1});
   ASSERT_TRUE(queued) << queued.error().message;
-  const auto started = machine.controller.cam().cycle_start(sdk::CycleMode::Automatic);
+  const auto started = machine.controller.cam().cycle().start(sdk::CycleMode::Automatic);
   ASSERT_TRUE(started) << started.error().message;
   EXPECT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 1));
 }
@@ -174,9 +175,9 @@ TEST(MechanismChange, PutsTheOldMechanismBackWhenADriveOfTheNewOneFails) {
 TEST(MechanismChange, KeepsSharedDrivesOperationalAndHoldsTheThird) {
   TestMachine machine;
   ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
-  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(6000));
   ASSERT_TRUE(machine.line(1, {0, 0, 0}, {3, 4, -7}));
-  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 1));
   const std::int64_t before = machine.samples.back().cycle;
   const double z_before = machine.samples.back().position[2];
@@ -188,10 +189,10 @@ TEST(MechanismChange, KeepsSharedDrivesOperationalAndHoldsTheThird) {
     const CycleSample& now = machine.samples.back();
     return now.joint_count == 2 && now.state == CycleState::Idle;  // another mechanism does not move until told
   }));
-  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(6000));
   EXPECT_FALSE(machine.line(2, {3, 4, 0}, {0, 0, 1})) << "off the plane";
   ASSERT_TRUE(machine.line(2, {3, 4, 0}, {0, 0, 0}));
-  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 2));
 
   for (const CycleSample& sample : machine.samples) {
@@ -210,9 +211,9 @@ TEST(MechanismChange, KeepsSharedDrivesOperationalAndHoldsTheThird) {
 TEST(MechanismChange, IsRefusedWhileTheMachineMoves) {
   TestMachine machine;
   ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
-  ASSERT_TRUE(machine.controller.cam().set_feedrate(600));
+  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(600));
   ASSERT_TRUE(machine.line(1, {0, 0, 0}, {40, 0, 0}));
-  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().moving; }));
   const auto refused = machine.load(TestMachine::plane_mill());
   ASSERT_FALSE(refused);
@@ -224,9 +225,9 @@ TEST(MechanismChange, ALimitActsOnMotionOnceApplied) {
   TestMachine machine;
   ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
   sdk::RmacConfig& config = machine.controller.config();
-  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
-  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
-  ASSERT_TRUE(config.set_joint_maximum_speed(0, 25));
+  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(6000));
+  ASSERT_TRUE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(config.joints().set_maximum_speed(0, 25));
   const auto applied = config.apply();
   ASSERT_TRUE(applied) << applied.error().message;
   ASSERT_TRUE(machine.line(1, {0, 0, 0}, {20, 0, 0}));
@@ -239,9 +240,9 @@ TEST(MechanismChange, AVirtualMechanismLeavesTheBusAlone) {
   machine.controller.set_mechanism_folder("", true);
   const auto loaded = machine.load_at_zero(TestMachine::mill());
   ASSERT_TRUE(loaded) << loaded.error().message;
-  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(6000));
   ASSERT_TRUE(machine.line(1, {0, 0, 0}, {20, 0, 0}));
-  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 1));
   for (const CycleSample& sample : machine.samples) EXPECT_EQ(sample.position[0], sample.position_set[0]);
   EXPECT_EQ(machine.bus, nullptr) << "a virtual machine has a bus behind it";
@@ -251,9 +252,9 @@ TEST(MechanismChange, AVirtualMechanismStandsWhereTheOneBeforeItStood) {
   TestMachine machine;
   machine.controller.set_mechanism_folder("", true);
   ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
-  ASSERT_TRUE(machine.controller.cam().jog_joint(1, 12));
+  ASSERT_TRUE(machine.controller.cam().positioning().jog_joint(1, 12));
   ASSERT_TRUE(machine.run_until([&] { return machine.count(Event::Kind::Stopped) > 0; }));
-  ASSERT_TRUE(machine.controller.config().set_joint_maximum_speed(0, 25));
+  ASSERT_TRUE(machine.controller.config().joints().set_maximum_speed(0, 25));
   const auto applied = machine.controller.config().apply();
   ASSERT_TRUE(applied) << applied.error().message;
   EXPECT_NEAR(machine.controller.sample().position_set[1], 12, 1e-9) << "after a change of its own limits";
@@ -269,7 +270,7 @@ TEST(MechanismChange, UnloadingDisablesTheDrives) {
   EXPECT_FALSE(machine.controller.mechanism_loaded());
   machine.controller.dispatch();
   EXPECT_EQ(machine.samples.back().axis_count, 0U);
-  EXPECT_FALSE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  EXPECT_FALSE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
   const auto again = machine.load_at_zero(TestMachine::mill());
   EXPECT_TRUE(again) << again.error().message;
 }

@@ -75,9 +75,9 @@ class FlightRecord : public testing::Test {
     ASSERT_TRUE(loaded) << loaded.error().message;
   }
   void start_line() {
-    ASSERT_TRUE(cam().set_feedrate(600));
+    ASSERT_TRUE(cam().path().set_feedrate(600));
     ASSERT_TRUE(machine_->line(1, {0, 0, 0}, {40, 0, 0}));
-    ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+    ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
     ASSERT_TRUE(machine_->run_until_event(Event::Kind::MoveStarted, 1));
   }
   /// The event that tells what became of the last record.
@@ -200,11 +200,11 @@ TEST_F(FlightRecord, ThatCannotBeWrittenIsToldAndChangesNothingElse) {
   EXPECT_EQ(failed.record, wait_for(Event::Kind::Fault).record);
   EXPECT_TRUE(folder().list().empty());
 
-  ASSERT_TRUE(cam().reset());
+  ASSERT_TRUE(cam().cycle().reset());
   ASSERT_TRUE(machine_->run_until([&] { return machine_->controller.sample().state == CycleState::Idle; }));
   const CycleSample now = machine_->controller.sample();
   ASSERT_TRUE(machine_->line(2, {now.position_set[0], now.position_set[1], now.position_set[2]}, {0, 0, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   EXPECT_TRUE(machine_->run_until_event(Event::Kind::MoveDone, 2));
 }
 
@@ -289,7 +289,7 @@ TEST_F(FlightRecord, LastStopSaysWhatHappenedAndInWhichCycle) {
   start();
   EXPECT_THAT(machine_->controller.last_stop()->message, HasSubstr("one move")) << "homing, so far";
   start_line();
-  ASSERT_TRUE(cam().cycle_stop());
+  ASSERT_TRUE(cam().cycle().stop());
   const Event stopped = wait_for(Event::Kind::Stopped);
   EXPECT_THAT(stopped.message, HasSubstr("after a CycleStop; what is queued goes on with CycleStart"));
   ASSERT_TRUE(machine_->run_until([&] { return machine_->samples.back().cycle >= stopped.cycle; }));
@@ -299,7 +299,7 @@ TEST_F(FlightRecord, LastStopSaysWhatHappenedAndInWhichCycle) {
     }
   }
   EXPECT_EQ(machine_->controller.last_stop()->cycle, stopped.cycle);
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   machine_->bus->set_online(2, false);
   const Event fault = wait_for(Event::Kind::Fault);
   EXPECT_EQ(machine_->controller.last_stop()->message, fault.message);

@@ -38,30 +38,30 @@ class SeveralSpindles : public testing::Test {
     return machine_.run_until([&] { return std::abs(rpm(spindle) - wanted) < 5; });
   }
   [[nodiscard]] Expected<> number_of_spindles(int count) {
-    return machine_.controller.config().set_number_of_spindles(count).and_then(
+    return machine_.controller.config().mechanism().set_number_of_spindles(count).and_then(
         [&] { return machine_.controller.config().apply(); });
   }
   TestMachine machine_{with_shared_modules()};
 };
 
 TEST_F(SeveralSpindles, EachTurnsAsItIsTold) {
-  ASSERT_TRUE(cam().set_spindle_rpm(0, 600));
-  ASSERT_TRUE(cam().set_spindle_rpm(1, -300));
+  ASSERT_TRUE(cam().spindles().set_rpm(0, 600));
+  ASSERT_TRUE(cam().spindles().set_rpm(1, -300));
   EXPECT_TRUE(reaches(0, 600));
   EXPECT_TRUE(reaches(1, -300));
-  ASSERT_TRUE(cam().set_spindle_rpm(0, 0));
+  ASSERT_TRUE(cam().spindles().set_rpm(0, 0));
   EXPECT_TRUE(reaches(0, 0));
   EXPECT_NEAR(rpm(1), -300, 5);
-  EXPECT_THAT(cam().set_spindle_rpm(1, 901).error().message, HasSubstr("900"));
-  EXPECT_FALSE(cam().set_spindle_rpm(2, 100));
+  EXPECT_THAT(cam().spindles().set_rpm(1, 901).error().message, HasSubstr("900"));
+  EXPECT_FALSE(cam().spindles().set_rpm(2, 100));
 }
 
 TEST_F(SeveralSpindles, FeedWaitsForTheSlowestOfThem) {
-  ASSERT_TRUE(cam().set_feedrate(3000));
-  ASSERT_TRUE(cam().set_spindle_rpm(0, 200));
-  ASSERT_TRUE(cam().set_spindle_rpm(1, 800));
+  ASSERT_TRUE(cam().path().set_feedrate(3000));
+  ASSERT_TRUE(cam().spindles().set_rpm(0, 200));
+  ASSERT_TRUE(cam().spindles().set_rpm(1, 800));
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {5, 0, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 1)) << machine_.last(Event::Kind::Fault);
   bool moved = false;
   for (const CycleSample& sample : machine_.samples) {
@@ -74,19 +74,19 @@ TEST_F(SeveralSpindles, FeedWaitsForTheSlowestOfThem) {
 }
 
 TEST_F(SeveralSpindles, TheirNumberLeavesTheOthersTurningAndBringsThemBack) {
-  ASSERT_TRUE(cam().set_spindle_rpm(0, 600));
-  ASSERT_TRUE(cam().set_spindle_rpm(1, 300));
+  ASSERT_TRUE(cam().spindles().set_rpm(0, 600));
+  ASSERT_TRUE(cam().spindles().set_rpm(1, 300));
   ASSERT_TRUE(reaches(0, 600));
   ASSERT_TRUE(reaches(1, 300));
   const auto one = number_of_spindles(1);
   ASSERT_TRUE(one) << one.error().message;
   EXPECT_EQ(machine_.controller.mechanism()->spindles.size(), 1U);
   EXPECT_NEAR(rpm(0), 600, 5);
-  EXPECT_FALSE(cam().set_spindle_rpm(1, 100));
+  EXPECT_FALSE(cam().spindles().set_rpm(1, 100));
   const auto two = number_of_spindles(2);
   ASSERT_TRUE(two) << two.error().message;
   EXPECT_NEAR(rpm(0), 600, 5);
-  ASSERT_TRUE(cam().set_spindle_rpm(1, 300));
+  ASSERT_TRUE(cam().spindles().set_rpm(1, 300));
   EXPECT_TRUE(reaches(1, 300));
   const auto three = number_of_spindles(3);
   ASSERT_FALSE(three);
@@ -94,7 +94,7 @@ TEST_F(SeveralSpindles, TheirNumberLeavesTheOthersTurningAndBringsThemBack) {
 }
 
 TEST_F(SeveralSpindles, AFaultNamesTheOneThatHasIt) {
-  ASSERT_TRUE(cam().set_spindle_rpm(1, 300));
+  ASSERT_TRUE(cam().spindles().set_rpm(1, 300));
   ASSERT_TRUE(reaches(1, 300));
   machine_.bus->trip(4, 0x2310);
   ASSERT_TRUE(machine_.run_until([&] { return !machine_.last(Event::Kind::Fault).empty(); }));

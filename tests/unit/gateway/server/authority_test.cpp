@@ -39,9 +39,9 @@ TEST(Authority, IsHeldByOneClientAndNamesItToTheSecond) {
 TEST(Authority, SecondClientMayNotJogButMayStop) {
   ServerBench bench;
   bench.on_gateway([](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, jog_joint(_, _)).Times(0);
-    EXPECT_CALL(machine.cam_mock, stop_now()).WillOnce(Return(Expected<>{}));
-    EXPECT_CALL(machine.cam_mock, feed_hold()).WillOnce(Return(Expected<>{}));
+    EXPECT_CALL(machine.cam_mock.positioning_mock, jog_joint(_, _)).Times(0);
+    EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now()).WillOnce(Return(Expected<>{}));
+    EXPECT_CALL(machine.cam_mock.cycle_mock, hold()).WillOnce(Return(Expected<>{}));
   });
   Client first(bench.port());
   EXPECT_TRUE(first.call("authority.acquire").contains("result"));
@@ -56,9 +56,9 @@ TEST(Authority, LossInMidCutStopsTheMachineDropsItsQueueAndTellsThat) {
   ServerBench bench;
   std::promise<void> stopped;
   bench.on_gateway([&](Server&, FakeMachine& machine) {
-    ON_CALL(machine.cam_mock, moves_in_buffer()).WillByDefault(Return(3));
+    ON_CALL(machine.cam_mock.queue_mock, moves_left()).WillByDefault(Return(3));
     // The watcher's own authority, taken at the end, is lost with the bench: that stop is of a machine at rest.
-    EXPECT_CALL(machine.cam_mock, stop_now())
+    EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now())
         .WillOnce([&]() -> Expected<> {
           machine.now.state = CycleState::Idle;
           machine.now.moving = false;
@@ -89,11 +89,11 @@ TEST(Authority, LossInMidCutStopsTheMachineDropsItsQueueAndTellsThat) {
 TEST(Authority, LossStopsAMachineWhoseSampleDoesNotShowItsStartYet) {
   ServerBench bench;
   bench.on_gateway([](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, cycle_start(_)).WillOnce([&]() -> Expected<> {
-      ON_CALL(machine.cam_mock, cycle_start_status()).WillByDefault(Return(true));
+    EXPECT_CALL(machine.cam_mock.cycle_mock, start(_)).WillOnce([&]() -> Expected<> {
+      ON_CALL(machine.cam_mock.cycle_mock, started()).WillByDefault(Return(true));
       return {};
     });
-    EXPECT_CALL(machine.cam_mock, stop_now()).WillOnce(Return(Expected<>{}));
+    EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now()).WillOnce(Return(Expected<>{}));
   });
   Client watcher(bench.port());
   EXPECT_EQ(watcher.call("subscribe", R"({"topics":["events"]})")["result"], true);
@@ -121,7 +121,7 @@ TEST(Authority, LossPowersOffAtRestWhereConfiguredSo) {
   options.lease_lost = LeaseLostAction::StopAndPowerOff;
   ServerBench bench(options);
   bench.on_gateway([](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, stop_now()).WillOnce([&]() -> Expected<> {
+    EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now()).WillOnce([&]() -> Expected<> {
       EXPECT_TRUE(machine.device_fake.device) << "power must stay on until the machine rests";
       machine.now.state = CycleState::Stopping;
       return {};
@@ -151,9 +151,9 @@ TEST(Overtaken, WhatStartsMotionDoesNotRunAfterAStopSentBehindIt) {
         SCOPED_TRACE(std::string(start) + ", " + stop + (batch ? " in a batch" : ""));
         ServerBench bench;
         bench.on_gateway([](Server&, FakeMachine& machine) {
-          EXPECT_CALL(machine.cam_mock, cycle_start(_)).Times(0);
-          EXPECT_CALL(machine.cam_mock, feed_resume()).Times(0);
-          EXPECT_CALL(machine.cam_mock, jog_joint(_, _)).Times(0);
+          EXPECT_CALL(machine.cam_mock.cycle_mock, start(_)).Times(0);
+          EXPECT_CALL(machine.cam_mock.cycle_mock, resume()).Times(0);
+          EXPECT_CALL(machine.cam_mock.positioning_mock, jog_joint(_, _)).Times(0);
         });
         Client client(bench.port());
         EXPECT_TRUE(client.call("authority.acquire").contains("result"));
@@ -180,7 +180,7 @@ TEST(Overtaken, WhatStartsMotionDoesNotRunAfterAStopSentBehindIt) {
 TEST(Overtaken, LettingAStopButtonGoOvertakesNothing) {
   ServerBench bench;
   bench.on_gateway([](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, cycle_start(_)).WillOnce(Return(Expected<>{}));
+    EXPECT_CALL(machine.cam_mock.cycle_mock, start(_)).WillOnce(Return(Expected<>{}));
   });
   Client client(bench.port());
   EXPECT_TRUE(client.call("authority.acquire").contains("result"));
@@ -194,14 +194,14 @@ TEST(Turn, AStopOfAnotherClientIsServedInsideALongBatch) {
   std::atomic<int> run = 0;
   std::atomic<int> run_at_stop = -1;
   bench.on_gateway([&](Server&, FakeMachine& machine) {
-    ON_CALL(machine.cam_mock, set_feedrate(_)).WillByDefault([&](double) -> Expected<> {
+    ON_CALL(machine.cam_mock.path_mock, set_feedrate(_)).WillByDefault([&](double) -> Expected<> {
       if (run++ == 0) sent.get_future().wait();
       const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(6);  // longer than a turn
       while (std::chrono::steady_clock::now() < end) {
       }
       return {};
     });
-    ON_CALL(machine.cam_mock, stop_now()).WillByDefault([&]() -> Expected<> {
+    ON_CALL(machine.cam_mock.cycle_mock, stop_now()).WillByDefault([&]() -> Expected<> {
       run_at_stop = run.load();
       return {};
     });
@@ -228,8 +228,8 @@ TEST(QueueWait, StopOvertakesAMoveThatWaitsForRoom) {
   options.queue_wait = std::chrono::hours(1);
   ServerBench bench(options);
   bench.on_gateway([](Server&, FakeMachine& machine) {
-    ON_CALL(machine.cam_mock, queue_move(_, _)).WillByDefault(Return(failure(MinorCode::CommandQueueFull, "full")));
-    ON_CALL(machine.cam_mock, cycle_stop()).WillByDefault([&]() -> Expected<> {
+    ON_CALL(machine.cam_mock.queue_mock, add(_, _)).WillByDefault(Return(failure(MinorCode::CommandQueueFull, "full")));
+    ON_CALL(machine.cam_mock.cycle_mock, stop()).WillByDefault([&]() -> Expected<> {
       machine.now.state = CycleState::Stopping;
       return {};
     });
@@ -255,9 +255,9 @@ TEST(QueueWait, StopInsideABatchOvertakesToo) {
   ServerBench bench(options);
   std::promise<void> stopped;
   bench.on_gateway([&](Server&, FakeMachine& machine) {
-    ON_CALL(machine.cam_mock, queue_move(_, _)).WillByDefault(Return(failure(MinorCode::CommandQueueFull, "full")));
+    ON_CALL(machine.cam_mock.queue_mock, add(_, _)).WillByDefault(Return(failure(MinorCode::CommandQueueFull, "full")));
     // The lease that is lost with the client stops once more.
-    ON_CALL(machine.cam_mock, stop_now()).WillByDefault([&, told = false]() mutable -> Expected<> {
+    ON_CALL(machine.cam_mock.cycle_mock, stop_now()).WillByDefault([&, told = false]() mutable -> Expected<> {
       machine.now.state = CycleState::Stopping;
       if (!std::exchange(told, true)) stopped.set_value();
       return {};
@@ -281,7 +281,7 @@ TEST(QueueWait, MoveIsTakenWhenThereIsRoomAgain) {
   options.queue_wait = std::chrono::hours(1);
   ServerBench bench(options);
   bench.on_gateway([](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, queue_move(_, _))
+    EXPECT_CALL(machine.cam_mock.queue_mock, add(_, _))
         .WillOnce(Return(failure(MinorCode::CommandQueueFull, "full")))
         .WillOnce(Return(failure(MinorCode::CommandQueueFull, "full")))
         .WillOnce(Return(Expected<>{}));
@@ -312,7 +312,7 @@ TEST(QueueWait, FullQueueIsRefusedAtOnceBeforeCycleStart) {
   options.queue_wait = std::chrono::hours(1);
   ServerBench bench(options);
   bench.on_gateway([](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, queue_move(_, _)).WillOnce(Return(failure(MinorCode::CommandQueueFull, "full")));
+    EXPECT_CALL(machine.cam_mock.queue_mock, add(_, _)).WillOnce(Return(failure(MinorCode::CommandQueueFull, "full")));
   });
   Client client(bench.port());
   EXPECT_TRUE(client.call("authority.acquire").contains("result"));
@@ -326,7 +326,7 @@ TEST(QueueWait, GivesUpAfterItsTime) {
   options.queue_wait = std::chrono::milliseconds(0);
   ServerBench bench(options);
   bench.on_gateway([](Server&, FakeMachine& machine) {
-    ON_CALL(machine.cam_mock, queue_move(_, _)).WillByDefault(Return(failure(MinorCode::CommandQueueFull, "full")));
+    ON_CALL(machine.cam_mock.queue_mock, add(_, _)).WillByDefault(Return(failure(MinorCode::CommandQueueFull, "full")));
   });
   set_running(bench);
   Client client(bench.port());
@@ -340,7 +340,7 @@ TEST(QueueWait, MovesBehindARefusedOneAreNotTakenInItsPlace) {
   options.queue_wait = std::chrono::milliseconds(0);
   ServerBench bench(options);
   bench.on_gateway([](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, queue_move(_, _)).WillOnce(Return(failure(MinorCode::CommandQueueFull, "full")));
+    EXPECT_CALL(machine.cam_mock.queue_mock, add(_, _)).WillOnce(Return(failure(MinorCode::CommandQueueFull, "full")));
   });
   Client client(bench.port());
   EXPECT_TRUE(client.call("authority.acquire").contains("result"));

@@ -22,8 +22,8 @@ using testing::Return;
 TEST(Lease, LossAtRestDropsTheQueueToo) {
   ServerBench bench;
   bench.on_gateway([](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, moves_in_buffer()).WillOnce(Return(2)).WillRepeatedly(Return(0));
-    EXPECT_CALL(machine.cam_mock, stop_now()).WillOnce(Return(Expected<>{}));
+    EXPECT_CALL(machine.cam_mock.queue_mock, moves_left()).WillOnce(Return(2)).WillRepeatedly(Return(0));
+    EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now()).WillOnce(Return(Expected<>{}));
   });
   Client client(bench.port());
   EXPECT_TRUE(client.call("authority.acquire").contains("result"));
@@ -69,8 +69,8 @@ TEST(Lease, IsTheDaemonsWhenItEnds) {
   EXPECT_TRUE(holder.call("authority.acquire").contains("result"));
   set_running(bench);
   bench.on_gateway([](Server& server, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, stop_now()).WillOnce(Return(Expected<>{}));
-    EXPECT_CALL(machine.cam_mock, cycle_start(_)).Times(0);
+    EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now()).WillOnce(Return(Expected<>{}));
+    EXPECT_CALL(machine.cam_mock.cycle_mock, start(_)).Times(0);
     server.retire();
   });
   EXPECT_EQ(holder.call("RMAC_CAM.CycleStart", "[1]")["error"]["code"], rpc_code::kAuthorityRequired);
@@ -112,7 +112,7 @@ TEST(LeaseTimeout, EndsTheLeaseOfASilentHolderAndStopsTheMachine) {
   EXPECT_EQ(holder.call("authority.acquire")["result"]["timeout_s"], 5);
   set_running(bench);
   bench.on_gateway([](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, stop_now()).WillOnce([&]() -> Expected<> {
+    EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now()).WillOnce([&]() -> Expected<> {
       machine.now = {};
       return {};
     });

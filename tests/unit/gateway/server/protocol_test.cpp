@@ -186,7 +186,7 @@ TEST(ServerProtocol, SurvivesRandomBytes) {
 TEST(ServerProtocol, SurvivesMutatedRequests) {
   ServerBench bench;
   bench.on_gateway([](Server&, FakeMachine& machine) {
-    ON_CALL(machine.cam_mock, queue_move(_, _)).WillByDefault(Return(Expected<>{}));
+    ON_CALL(machine.cam_mock.queue_mock, add(_, _)).WillByDefault(Return(Expected<>{}));
   });
   const std::string seedling =
       std::string(R"({"jsonrpc":"2.0","id":1,"method":"RMAC_CAM.MoveToPathTarget","params":)") + kMove + "}";

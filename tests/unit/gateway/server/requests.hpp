@@ -23,7 +23,7 @@ inline std::future<void> keep_queue_full(ServerBench& bench) {
   const auto tried = std::make_shared<std::promise<void>>();
   bench.on_gateway([&tried](Server&, FakeMachine& machine) {
     const auto full = failure(MinorCode::CommandQueueFull, "full");
-    EXPECT_CALL(machine.cam_mock, queue_move(testing::_, testing::_))
+    EXPECT_CALL(machine.cam_mock.queue_mock, add(testing::_, testing::_))
         .WillOnce([tried, full](std::int64_t, const Geometry&) -> Expected<> {
           tried->set_value();
           return full;

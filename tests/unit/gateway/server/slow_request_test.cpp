@@ -45,7 +45,7 @@ TEST(SlowRequest, LetsAnotherClientStopDuringASearch) {
   Slow slow;
   ServerBench bench;
   bench.on_gateway([&](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, stop_now()).WillOnce(Return(Expected<>{}));
+    EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now()).WillOnce(Return(Expected<>{}));
     machine.during_search = [&] { slow.run(); };
   });
   Client searcher(bench.port());
@@ -63,7 +63,7 @@ TEST(SlowRequest, LetsAnotherClientStopWhileTheMechanismChanges) {
   Slow slow;
   ServerBench bench;
   bench.on_gateway([&](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, stop_now()).WillRepeatedly(Return(Expected<>{}));
+    EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now()).WillRepeatedly(Return(Expected<>{}));
     machine.device_fake.during_load = [&] { slow.run(); };
   });
   Client holder(bench.port());
@@ -85,7 +85,7 @@ TEST(SlowRequest, IsRefusedWhenAStopCameWhileItWasPrepared) {
   ServerBench bench;
   bool loaded = false;
   bench.on_gateway([&](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, stop_now()).WillRepeatedly(Return(Expected<>{}));
+    EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now()).WillRepeatedly(Return(Expected<>{}));
     machine.device_fake.during_preparation = [&] { slow.run(); };
     machine.device_fake.during_load = [&] { loaded = true; };
   });
@@ -130,7 +130,7 @@ TEST(SlowRequest, LetsOthersInBeforeTheSameClientsNext) {
       machine.during_search = [&] {
         if (searches++ == 0) slow.run();
       };
-      EXPECT_CALL(machine.cam_mock, cycle_start_status()).WillRepeatedly([&] {
+      EXPECT_CALL(machine.cam_mock.cycle_mock, started()).WillRepeatedly([&] {
         before_the_other = searches.load();
         return false;
       });
@@ -164,8 +164,10 @@ TEST(SlowRequest, LetsAnyoneStopWhileALargeMoveIsBuilt) {
     Slow slow;
     ServerBench bench;
     bench.on_gateway([&](Server&, FakeMachine& machine) {
-      EXPECT_CALL(machine.cam_mock, stop_now()).Times(testing::AtLeast(1)).WillRepeatedly(Return(Expected<>{}));
-      EXPECT_CALL(machine.cam_mock, queue_move(1, _)).WillOnce([&](std::int64_t, const Geometry&) -> Expected<> {
+      EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now())
+          .Times(testing::AtLeast(1))
+          .WillRepeatedly(Return(Expected<>{}));
+      EXPECT_CALL(machine.cam_mock.queue_mock, add(1, _)).WillOnce([&](std::int64_t, const Geometry&) -> Expected<> {
         slow.run();
         return failure(MinorCode::Other, "its queue is gone");
       });
@@ -189,13 +191,13 @@ TEST(SlowRequest, OfAClientThatLeavesIsFollowedByAStopThatDropsIt) {
   std::promise<void> stopped;
   ServerBench bench;
   bench.on_gateway([&](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, queue_move(1, _)).WillOnce([&](std::int64_t, const Geometry&) -> Expected<> {
+    EXPECT_CALL(machine.cam_mock.queue_mock, add(1, _)).WillOnce([&](std::int64_t, const Geometry&) -> Expected<> {
       slow.run();
       return {};
     });
-    ON_CALL(machine.cam_mock, moves_in_buffer()).WillByDefault(Return(1));
+    ON_CALL(machine.cam_mock.queue_mock, moves_left()).WillByDefault(Return(1));
     // The watcher's own lease, taken at the end, is lost with the bench.
-    EXPECT_CALL(machine.cam_mock, stop_now())
+    EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now())
         .WillOnce([&]() -> Expected<> {
           stopped.set_value();
           return {};

@@ -28,18 +28,19 @@ class StopOfAnother : public testing::Test {
   }
   void SetUp() override {
     bench_.on_gateway([this](Server&, FakeMachine& machine) {
-      ON_CALL(machine.cam_mock, queue_move(_, _)).WillByDefault([this](std::int64_t, const Geometry&) -> Expected<> {
-        if (room_) return {};
-        if (!std::exchange(tried_once_, true)) tried_.set_value();
-        return failure(MinorCode::CommandQueueFull, "full");
-      });
-      EXPECT_CALL(machine.cam_mock, cycle_start(_)).Times(starts_);
-      EXPECT_CALL(machine.cam_mock, home()).Times(starts_);
-      EXPECT_CALL(machine.cam_mock, jog_joint(_, _)).Times(starts_);
-      EXPECT_CALL(machine.cam_mock, set_feedrate(_)).Times(1);
+      ON_CALL(machine.cam_mock.queue_mock, add(_, _))
+          .WillByDefault([this](std::int64_t, const Geometry&) -> Expected<> {
+            if (room_) return {};
+            if (!std::exchange(tried_once_, true)) tried_.set_value();
+            return failure(MinorCode::CommandQueueFull, "full");
+          });
+      EXPECT_CALL(machine.cam_mock.cycle_mock, start(_)).Times(starts_);
+      EXPECT_CALL(machine.cam_mock.positioning_mock, home()).Times(starts_);
+      EXPECT_CALL(machine.cam_mock.positioning_mock, jog_joint(_, _)).Times(starts_);
+      EXPECT_CALL(machine.cam_mock.path_mock, set_feedrate(_)).Times(1);
       // The spindle may be switched off, not on.
-      EXPECT_CALL(machine.cam_mock, set_spindle_rpm(0, 0)).Times(1);
-      EXPECT_CALL(machine.cam_mock, set_spindle_rpm(0, 500)).Times(starts_);
+      EXPECT_CALL(machine.cam_mock.spindles_mock, set_rpm(0, 0)).Times(1);
+      EXPECT_CALL(machine.cam_mock.spindles_mock, set_rpm(0, 500)).Times(starts_);
     });
     set_running(bench_);
     panel_.call("hello", R"({"client":"panel"})");
@@ -114,12 +115,12 @@ TEST(StopOfAnotherInTime, RefusesWhatHadArrivedAndWasNotReadYet) {
   EXPECT_TRUE(holder.call("authority.acquire").contains("result"));
   EXPECT_EQ(panel.call("RMAC_CAM.Ok")["result"], true);
   bench.on_gateway([&](Server&, FakeMachine& machine) {
-    EXPECT_CALL(machine.cam_mock, stop_now()).WillOnce([&]() -> Expected<> {
+    EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now()).WillOnce([&]() -> Expected<> {
       holder.send(line_of(20, "RMAC_CAM.CycleStart", "[1]"));  // arrives before the stop is through
       return {};
     });
-    EXPECT_CALL(machine.cam_mock, cycle_start(sdk::CycleMode::Automatic)).Times(0);
-    EXPECT_CALL(machine.cam_mock, cycle_start(sdk::CycleMode::Manual)).WillOnce(Return(Expected<>{}));
+    EXPECT_CALL(machine.cam_mock.cycle_mock, start(sdk::CycleMode::Automatic)).Times(0);
+    EXPECT_CALL(machine.cam_mock.cycle_mock, start(sdk::CycleMode::Manual)).WillOnce(Return(Expected<>{}));
   });
   EXPECT_EQ(panel.call("RMAC_CAM.StopNow")["result"], true);
   EXPECT_THAT(holder.answer(20)["error"]["message"].get<std::string>(), HasSubstr("overtaken by a stop"));

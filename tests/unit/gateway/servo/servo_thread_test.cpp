@@ -29,10 +29,10 @@ TEST(RealPace, RunsAMovePlannedOnAnotherThread) {
   TestMachine machine(options);
   const auto loaded = machine.load_at_zero(TestMachine::mill());
   ASSERT_TRUE(loaded) << loaded.error().message;
-  ASSERT_TRUE(machine.controller.cam().set_feedrate(6000));
+  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(6000));
   ASSERT_TRUE(machine.line(1, {0, 0, 0}, {2, 0, 0}));
   ASSERT_TRUE(machine.line(2, {2, 0, 0}, {2, 2, 0}));
-  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 2));
   EXPECT_NEAR(machine.controller.sample().position_set[1], 2, 1e-6);
 }

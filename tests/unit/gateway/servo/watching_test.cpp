@@ -21,9 +21,9 @@ sdk::DeviceObject mill_with_sensor() {
 /// A machine on its way, so slow that a fault finds it moving.
 void start_slow_line(TestMachine& machine) {
   ASSERT_TRUE(machine.load_at_zero(mill_with_sensor()));
-  ASSERT_TRUE(machine.controller.cam().set_feedrate(120));
+  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(120));
   ASSERT_TRUE(machine.line(kMove, {0, 0, 0}, {40, 0, 0}));
-  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine.run_until([&] { return !machine.samples.empty() && machine.samples.back().moving; }));
 }
 
@@ -75,10 +75,10 @@ TEST(Watching, StopsUnderTheConfiguredCategoryAndGoesOnAfterAReset) {
 
   EXPECT_FALSE(machine.line(8, {0, 0, 0}, {1, 0, 0})) << "nothing moves before a reset";
   machine.bus->set_sensor_lost(false);
-  const auto reset = machine.controller.cam().reset();
+  const auto reset = machine.controller.cam().cycle().reset();
   ASSERT_TRUE(reset) << reset.error().message;
   const double x = machine.controller.sample().position_set[0];
-  ASSERT_TRUE(machine.controller.cam().jog_joint(0, 2));
+  ASSERT_TRUE(machine.controller.cam().positioning().jog_joint(0, 2));
   ASSERT_TRUE(machine.run_until([&] { return std::abs(machine.controller.sample().position[0] - x - 2) < 0.1; }));
 }
 
@@ -95,9 +95,9 @@ TEST(Watching, CategoryOneTakesThePowerAway) {
 TEST(Watching, SilentDriveStopsTheOthersOnTheirPath) {
   TestMachine machine;
   ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
-  ASSERT_TRUE(machine.controller.cam().set_feedrate(1500));
+  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(1500));
   ASSERT_TRUE(machine.line(kMove, {0, 0, 0}, {40, 20, 10}));
-  ASSERT_TRUE(machine.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().position_set[0] > 1; }));
   machine.bus->set_online(2, false);
   ASSERT_TRUE(machine.run_until([&] { return machine.count(Event::Kind::Fault, kMove) > 0; }));
@@ -124,7 +124,7 @@ TEST(Watching, OverloadedSpindleStopsTheMachineUnderPower) {
   sdk::DeviceObject device = TestMachine::mill();
   device.spindles[0].scale.rated_torque_nm = 5;
   ASSERT_TRUE(machine.load_at_zero(device));
-  ASSERT_TRUE(machine.controller.cam().set_spindle_rpm(0, 600));
+  ASSERT_TRUE(machine.controller.cam().spindles().set_rpm(0, 600));
   ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().spindle_rpm[0] > 595; }));
   machine.bus->push(3, 7);
   ASSERT_TRUE(machine.run_until([&] { return !machine.last(Event::Kind::Fault).empty(); }));

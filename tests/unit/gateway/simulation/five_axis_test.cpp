@@ -89,27 +89,27 @@ class FiveAxes : public testing::TestWithParam<Machine> {
     simulation_->controller().on_sample([this](const CycleSample& sample) {
       if (sample.moving) trace_.push_back(sample);
     });
-    expect(cam().set_feedrate(6000).and_then([&] { return cam().cycle_start(sdk::CycleMode::Automatic); }));
+    expect(cam().path().set_feedrate(6000).and_then([&] { return cam().cycle().start(sdk::CycleMode::Automatic); }));
   }
   sdk::RmacCam& cam() { return simulation_->controller().cam(); }
   static void expect(const Expected<>& done) { ASSERT_TRUE(done) << done.error().message; }
   /// Puts the tool at a pose by turning joints.
   void go_to(const ToolPose& pose) {
-    const auto joints = cam().joints_at(pose);
+    const auto joints = cam().queue().joints_at(pose);
     ASSERT_TRUE(joints) << joints.error().message;
-    ASSERT_NO_FATAL_FAILURE(expect(cam().queue_move(1, JointTargetGeometry{*joints})));
+    ASSERT_NO_FATAL_FAILURE(expect(cam().queue().add(1, JointTargetGeometry{*joints})));
     ASSERT_TRUE(run());
   }
   bool run() {
     for (int i = 0; i < 200'000; ++i) {
       simulation_->cycle();
       const CycleSample now = simulation_->controller().sample();
-      if (cam().moves_in_buffer() == 0 && !now.moving) return true;
+      if (cam().queue().moves_left() == 0 && !now.moving) return true;
     }
     return false;
   }
   void line(const ToolPose& from, const ToolPose& to) {
-    ASSERT_NO_FATAL_FAILURE(expect(cam().queue_move(2, LineGeometry{from, to})));
+    ASSERT_NO_FATAL_FAILURE(expect(cam().queue().add(2, LineGeometry{from, to})));
   }
   /// Where these joints put the tool in the part frame, by the test's own geometry.
   [[nodiscard]] ToolPose where(const Joints& joints) const {
@@ -176,7 +176,7 @@ TEST_P(FiveAxes, HoldTheTipOnItsLineWhileTheToolTurnsWhereverPartAndToolAre) {
     const double aslant = between(-5, 5) * kRad / 2;
     tool_ = {{between(-3, 3), between(-3, 3), -between(20, 80)}, {std::cos(aslant), std::sin(aslant), 0, 0}};
     ASSERT_NO_FATAL_FAILURE(
-        expect(cam().set_tool_interface_frame(tool_).and_then([&] { return cam().set_part_frame(part_); })));
+        expect(cam().frames().set_tool_interface(tool_).and_then([&] { return cam().frames().set_part(part_); })));
     // On one side of the pole, and 15 degrees off it at least.
     const double around = between(-180, 180);
     const auto somewhere = [&] {
@@ -212,7 +212,7 @@ TEST_P(FiveAxes, FollowANurbsOfTipAndAxis) {
   const ToolPose from{{first[0], first[1], first[2]}, {first[3], first[4], first[5]}};
   ASSERT_NO_FATAL_FAILURE(go_to(from));
   trace_.clear();
-  ASSERT_NO_FATAL_FAILURE(expect(cam().queue_move(3, NurbsGeometry{NurbsSpace::Pose, curve})));
+  ASSERT_NO_FATAL_FAILURE(expect(cam().queue().add(3, NurbsGeometry{NurbsSpace::Pose, curve})));
   ASSERT_TRUE(run());
   ASSERT_GT(trace_.size(), 200U);
   for (const CycleSample& sample : trace_) {
@@ -243,7 +243,7 @@ TEST_P(FiveAxes, RefuseByNameAmountAndPlaceWhatAJointCannotReach) {
   ASSERT_NO_FATAL_FAILURE(load());
   const ToolPose from{{0, 0, 0}, leaning(100, 90)}, to{{20, 0, 0}, leaning(125, 90)};
   ASSERT_NO_FATAL_FAILURE(go_to(from));
-  const auto refused = cam().queue_move(2, LineGeometry{from, to});
+  const auto refused = cam().queue().add(2, LineGeometry{from, to});
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message,
               testing::ContainsRegex("joint A to -?11[0-9.]+ degrees, [0-9.]+ degrees beyond"));
@@ -303,7 +303,7 @@ TEST_P(PastThePole, SeededLinesKeepTipAndLimits) {
     SCOPED_TRACE("round " + std::to_string(round));
     ASSERT_NO_FATAL_FAILURE(load());
     tool_ = {{0, 0, -between(20, 80)}, {1, 0, 0, 0}};
-    ASSERT_NO_FATAL_FAILURE(expect(cam().set_tool_interface_frame(tool_)));
+    ASSERT_NO_FATAL_FAILURE(expect(cam().frames().set_tool_interface(tool_)));
     const auto somewhere = [&] {
       return ToolPose{{between(-25, 25), between(-25, 25), between(-20, 20)},
                       leaning(between(0, 12), between(-180, 180))};
@@ -321,7 +321,7 @@ TEST_P(PastThePole, SeededLinesKeepTipAndLimits) {
 TEST_P(PastThePole, StraightThroughItGoesOnWithoutAStop) {
   ASSERT_NO_FATAL_FAILURE(load());
   const ToolPose from{{-20, 0, 0}, leaning(15, 60)}, to{{20, 0, 0}, leaning(15, 240)};
-  ASSERT_NO_FATAL_FAILURE(expect(cam().set_feedrate(600)));
+  ASSERT_NO_FATAL_FAILURE(expect(cam().path().set_feedrate(600)));
   ASSERT_NO_FATAL_FAILURE(go_to(from));
   ASSERT_NO_FATAL_FAILURE(follow(from, to));
   for (const CycleSample& sample : trace_) {
@@ -341,17 +341,17 @@ TEST_P(PastThePole, AHeldMachineRunsBackThroughItAndForwardAgain) {
     return stops == count;
   };
   trace_.clear();
-  ASSERT_NO_FATAL_FAILURE(expect(cam().set_feedrate(600)));
+  ASSERT_NO_FATAL_FAILURE(expect(cam().path().set_feedrate(600)));
   ASSERT_NO_FATAL_FAILURE(line(from, to));
   while (simulation_->controller().sample().s_mm < 10) simulation_->cycle();
-  ASSERT_NO_FATAL_FAILURE(expect(cam().feed_hold()));
+  ASSERT_NO_FATAL_FAILURE(expect(cam().cycle().hold()));
   while (simulation_->controller().sample().moving) simulation_->cycle();
   EXPECT_LT(simulation_->controller().sample().s_mm, 15);
-  const auto way = cam().feed_retrace(1000);
+  const auto way = cam().cycle().retrace(1000);
   ASSERT_TRUE(way) << way.error().message;
   ASSERT_TRUE(stopped(1));
   EXPECT_NEAR(where(simulation_->controller().sample().position_set).tip[0], from.tip[0], 1e-6);
-  ASSERT_NO_FATAL_FAILURE(expect(cam().feed_resume()));
+  ASSERT_NO_FATAL_FAILURE(expect(cam().cycle().resume()));
   ASSERT_TRUE(run());
   check_line(from, to, kDeviation);
   check_limits();
@@ -373,7 +373,7 @@ TEST_P(PastThePole, WhatWouldLeaveTheAxisMoreThanItMayIsRefusedWithPlaceAndAmoun
   curve.knots = {0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 7, 7};
   const ToolPose from{{-20, 0, 0}, leaning(10, 40)};
   ASSERT_NO_FATAL_FAILURE(go_to(from));
-  const auto refused = cam().queue_move(3, NurbsGeometry{NurbsSpace::Pose, curve});
+  const auto refused = cam().queue().add(3, NurbsGeometry{NurbsSpace::Pose, curve});
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message,
               testing::AllOf(testing::HasSubstr("move 3 passes the pole"), testing::HasSubstr("may by 0.200"),
@@ -384,7 +384,7 @@ TEST_P(PastThePole, WhatWouldLeaveTheAxisMoreThanItMayIsRefusedWithPlaceAndAmoun
 
 TEST_P(PastThePole, ACornerBesideItIsTakenExactlyAndNotRounded) {
   ASSERT_NO_FATAL_FAILURE(load());
-  ASSERT_NO_FATAL_FAILURE(expect(cam().set_path_tolerance(0.05)));
+  ASSERT_NO_FATAL_FAILURE(expect(cam().path().set_tolerance(0.05)));
   const ToolPose from{{-10, 0, 0}, leaning(8, 30)}, corner{{0, 0, 0}, {0, 0, 1}}, to{{0, 10, 0}, leaning(8, 120)};
   ASSERT_NO_FATAL_FAILURE(go_to(from));
   trace_.clear();
@@ -418,7 +418,7 @@ TEST_P(FiveAxes, ACThatHasWoundUpIsRefusedByNameAndUnwoundByAJointTarget) {
     next.tip[1] = 1.0 * (i % 2 == 0);
     ToolPose here = around(i);
     here.tip[1] = 1.0 * (i % 2 == 1);
-    const auto queued = cam().queue_move(2, LineGeometry{here, next});
+    const auto queued = cam().queue().add(2, LineGeometry{here, next});
     if (!queued) refusal = queued.error().message;
     ASSERT_TRUE(run());
     if (refusal.empty()) continue;
@@ -451,10 +451,10 @@ TEST_P(FiveAxes, JointTargetsTakeTheQuickestSolutionInsideTheTravel) {
       wanted[j] = std::uniform_real_distribution<>(min, max)(random);
       start.push_back(std::uniform_real_distribution<>(min, max)(random));
     }
-    ASSERT_NO_FATAL_FAILURE(expect(cam().queue_move(1, JointTargetGeometry{start})));
+    ASSERT_NO_FATAL_FAILURE(expect(cam().queue().add(1, JointTargetGeometry{start})));
     ASSERT_TRUE(run());
     const ToolPose pose = where(wanted);
-    const auto found = cam().joints_at(pose);
+    const auto found = cam().queue().joints_at(pose);
     ASSERT_TRUE(found) << found.error().message;
     Joints taken{};
     std::copy(found->begin(), found->end(), taken.begin());

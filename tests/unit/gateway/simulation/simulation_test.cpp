@@ -39,7 +39,7 @@ class Simulated : public testing::Test {
   bool run() {
     for (int i = 0; i < 60'000; ++i) {
       simulation_->cycle();
-      if (simulation_->controller().cam().moves_in_buffer() == 0 && !simulation_->controller().sample().moving) {
+      if (simulation_->controller().cam().queue().moves_left() == 0 && !simulation_->controller().sample().moving) {
         return true;
       }
     }

@@ -33,27 +33,15 @@ struct Hit {
   ToolPose pose;               ///< of the tool at these joints, in the part frame
 };
 
-/// An arc from where the queue ends, about an axis, counter-clockwise seen against `normal`.
-struct ArcTo {
-  Vector end{}, center{}, normal{};
-};
-
 /// A bit of a machine's condition: the probe is deflected.
 inline constexpr std::uint64_t kConditionProbe = 1;
 
 /// The measuring part of RMAC_CAM (Appendix IV, 5.2.3), on whatever mechanism is loaded: it moves by the kinematics and
-/// the joints of that. Speeds are mm/s, or degrees/s. Gateway thread only.
+/// the joints of that. Speeds are mm/s. Gateway thread only.
 class Measuring {
  public:
   virtual ~Measuring() = default;
 
-  /// Queue positioning moves, from rest to rest, at a speed of their own; the tool axis stays as it is.
-  virtual Expected<> move_to_point(std::int64_t id, const Vector& point, double speed) = 0;
-  virtual Expected<> move_in_arc(std::int64_t id, const ArcTo& arc, double speed) = 0;
-  /// All joints together; `speed` is that of the linear ones together, or of all where there is none.
-  virtual Expected<> move_all_axes(std::int64_t id, std::vector<double> joints, double speed) = 0;
-  /// One rotary joint, to a position or whole turns from it: `direction` is the sense of turning, 0 the shortest way.
-  virtual Expected<> move_rotary_axis(std::int64_t id, int joint, double position, int direction, double speed) = 0;
   /// Queues the measurement of a point: straight towards it at `speed` as far as the prehit distance, on at the scan
   /// speed until the probe touches or the search distance beyond is done, and back by the retract distance.
   virtual Expected<> auto_measure(std::int64_t id, const Vector& point, double speed) = 0;

@@ -12,96 +12,95 @@ namespace rmac::sdk {
 class StandardDeviceDriver : public DeviceDriver {
  public:
   Expected<> configure_motion_planner(const DeviceObject& device, RmacConfig& config) override {
-    return config.set_number_of_joints(static_cast<int>(device.joints.size()))
-        .and_then([&] { return config.set_number_of_spindles(static_cast<int>(device.spindles.size())); })
-        .and_then([&] { return config.set_kinematics(device.kinematics); })
-        .and_then([&] { return config.set_actuator_map(device.actuator_map); })
-        .and_then([&] { return config.set_maximum_feedrate(device.max_feedrate_mm_min); })
-        .and_then([&] { return set_spindle_bounds(device.spindles, config); })
+    MechanismConfig& mechanism = config.mechanism();
+    return mechanism.set_number_of_joints(static_cast<int>(device.joints.size()))
+        .and_then([&] { return mechanism.set_number_of_spindles(static_cast<int>(device.spindles.size())); })
+        .and_then([&] { return mechanism.set_kinematics(device.kinematics); })
+        .and_then([&] { return mechanism.set_actuator_map(device.actuator_map); })
+        .and_then([&] { return mechanism.set_maximum_feedrate(device.max_feedrate_mm_min); })
+        .and_then([&] { return set_spindle_bounds(device.spindles, config.spindles()); })
         .and_then([&] {
-          return for_each_joint(device.joints, 0, [&](int number, const Joint& joint) {
-            return set_limits(config, number, joint.limits);
+          return for_each_joint(device, [&](int number, const Joint& joint) {
+            return set_limits(config.joints(), number, joint.limits);
           });
-        })
-        .and_then([&] {
-          return for_each_joint(
-              device.held_joints, static_cast<int>(device.joints.size()),
-              [&](int number, const Joint& joint) { return set_limits(config, number, joint.limits); });
         });
   }
 
   Expected<> configure_servo_controller(const DeviceObject& device, RmacConfig& config) override {
-    const auto set_loop = [&](int number, const Joint& joint) {
-      return config.set_joint_control_method(number, joint.method)
-          .and_then([&] { return set_law(config, number, joint); })
-          .and_then([&] { return config.set_joint_watch(number, joint.max_following_error, joint.max_effort); })
-          .and_then([&] { return config.set_joint_mechanics(number, joint.mechanics); });
-    };
-    return config.set_number_of_actuators(static_cast<int>(device.actuators.size()))
-        .and_then([&] { return for_each_joint(device.joints, 0, set_loop); })
-        .and_then([&] { return for_each_joint(device.held_joints, static_cast<int>(device.joints.size()), set_loop); })
-        .and_then([&] { return set_spindle_loops(device.spindles, config); });
+    return config.mechanism()
+        .set_number_of_actuators(static_cast<int>(device.actuators.size()))
+        .and_then([&] {
+          return for_each_joint(
+              device, [&](int number, const Joint& joint) { return set_loop(config.loops(), number, joint); });
+        })
+        .and_then([&] { return set_spindle_loops(device.spindles, config.spindles()); });
   }
 
   Expected<> configure_digital_control_interface(const DeviceObject& device, RmacConfig& config) override {
-    return config.set_digital_control_interface(device.digital_control_interface)
-        .and_then([&] { return config.set_digital_io_interface(device.digital_io_interface); })
-        .and_then([&] { return config.initialize_digital_control_interface(); })
-        .and_then([&] { return config.initialize_digital_io_interface(); });
+    InterfaceConfig& interfaces = config.interfaces();
+    return interfaces.set_control(device.digital_control_interface)
+        .and_then([&] { return interfaces.set_io(device.digital_io_interface); })
+        .and_then([&] { return interfaces.initialize_control(); })
+        .and_then([&] { return interfaces.initialize_io(); });
   }
 
   Expected<> move(std::int64_t id, const Geometry& geometry, RmacCam& cam) override {
-    return cam.queue_move(id, geometry);
+    return cam.queue().add(id, geometry);
   }
 
  private:
-  /// None where the joint's drive closes the loop itself.
-  static Expected<> set_law(RmacConfig& config, int number, const Joint& joint) {
-    if (joint.servo_law.name.empty()) return {};
-    return config.set_joint_servo_control_law(number, joint.servo_law).and_then([&] {
-      return config.set_joint_servo_control_gains(number, joint.gains);
-    });
+  static Expected<> set_loop(LoopConfig& loops, int number, const Joint& joint) {
+    return loops.set_control_method(number, joint.method)
+        .and_then([&] { return set_law(loops, number, joint); })
+        .and_then([&] { return loops.set_watch(number, joint.max_following_error, joint.max_effort); })
+        .and_then([&] { return loops.set_mechanics(number, joint.mechanics); });
   }
-  static Expected<> set_spindle_bounds(const std::vector<Spindle>& spindles, RmacConfig& config) {
+  /// None where the joint's drive closes the loop itself.
+  static Expected<> set_law(LoopConfig& loops, int number, const Joint& joint) {
+    if (joint.servo_law.name.empty()) return {};
+    return loops.set_servo_law(number, joint.servo_law).and_then([&] { return loops.set_gains(number, joint.gains); });
+  }
+  static Expected<> set_spindle_bounds(const std::vector<Spindle>& spindles, SpindleConfig& config) {
     int number = 0;
     for (const Spindle& spindle : spindles) {
-      auto done = config.set_spindle_maximum_rpm(number, spindle.max_speed_rpm).and_then([&] {
-        return config.set_spindle_maximum_torque(number, spindle.max_torque_nm);
+      auto done = config.set_maximum_rpm(number, spindle.max_speed_rpm).and_then([&] {
+        return config.set_maximum_torque(number, spindle.max_torque_nm);
       });
       if (!done) return done;
       ++number;
     }
     return {};
   }
-  static Expected<> set_spindle_loops(const std::vector<Spindle>& spindles, RmacConfig& config) {
+  static Expected<> set_spindle_loops(const std::vector<Spindle>& spindles, SpindleConfig& config) {
     int number = 0;
     for (const Spindle& spindle : spindles) {
-      auto done = config.set_spindle_control_method(number, spindle.method)
-                      .and_then([&] { return config.set_spindle_servo_control_law(number, spindle.servo_law); })
-                      .and_then([&] { return config.set_spindle_servo_control_gains(number, spindle.gains); });
+      auto done = config.set_control_method(number, spindle.method)
+                      .and_then([&] { return config.set_servo_law(number, spindle.servo_law); })
+                      .and_then([&] { return config.set_gains(number, spindle.gains); });
       if (!done) return done;
       ++number;
     }
     return {};
   }
 
+  /// Held joints follow those that are moved.
   template <typename Function>
-  static Expected<> for_each_joint(const std::vector<Joint>& joints, int first, Function&& set) {
-    for (const Joint& joint : joints) {
-      if (auto done = set(first++, joint); !done) return done;
+  static Expected<> for_each_joint(const DeviceObject& device, Function&& set) {
+    for (std::size_t number = 0; number < device.joint_count_with_held(); ++number) {
+      if (auto done = set(static_cast<int>(number), joint_at(device, number)); !done) return done;
     }
     return {};
   }
 
-  static Expected<> set_limits(RmacConfig& config, int number, const JointLimits& limits) {
-    return config.set_joint_name(number, limits.name)
-        .and_then([&] { return config.set_joint_type(number, limits.type); })
-        .and_then([&] { return config.set_joint_limit_type(number, limits.limit_type); })
-        .and_then([&] { return config.set_joint_minimum_limit(number, limits.min); })
-        .and_then([&] { return config.set_joint_maximum_limit(number, limits.max); })
-        .and_then([&] { return config.set_joint_maximum_speed(number, limits.max_speed); })
-        .and_then([&] { return config.set_joint_maximum_acceleration(number, limits.max_acceleration); })
-        .and_then([&] { return config.set_joint_maximum_jerk(number, limits.max_jerk); });
+  static Expected<> set_limits(JointConfig& joints, int number, const JointLimits& limits) {
+    return joints.set_name(number, limits.name)
+        .and_then([&] { return joints.set_type(number, limits.type); })
+        .and_then([&] { return joints.set_limit_type(number, limits.limit_type); })
+        .and_then([&] { return joints.set_minimum_limit(number, limits.min); })
+        .and_then([&] { return joints.set_maximum_limit(number, limits.max); })
+        .and_then([&] { return joints.set_maximum_speed(number, limits.max_speed); })
+        .and_then([&] { return joints.set_maximum_acceleration(number, limits.max_acceleration); })
+        .and_then([&] { return joints.set_maximum_jerk(number, limits.max_jerk); });
   }
 };
 

@@ -8,7 +8,7 @@ class CarefulDriver final : public rmac::sdk::StandardDeviceDriver {
   rmac::Expected<> configure_motion_planner(const rmac::sdk::DeviceObject& device,
                                             rmac::sdk::RmacConfig& config) override {
     return StandardDeviceDriver::configure_motion_planner(device, config).and_then([&] {
-      return config.set_joint_maximum_speed(0, device.joints[0].limits.max_speed / 2);
+      return config.joints().set_maximum_speed(0, device.joints[0].limits.max_speed / 2);
     });
   }
 };

@@ -64,7 +64,7 @@ class ServoThreadUnderTrap : public testing::Test {
     ASSERT_TRUE(machine_.run_until([&] { return clock_->cycles() >= until; }));
   }
   void stop() {
-    ASSERT_TRUE(cam().stop_now());
+    ASSERT_TRUE(cam().cycle().stop_now());
     const auto at_rest = [&] {
       const CycleSample now = machine_.controller.sample();
       return !now.moving && now.state == CycleState::Idle;
@@ -89,16 +89,16 @@ TEST_F(ServoThreadUnderTrap, NeitherAllocatesNorLocksNorCallsTheSystem) {
   ASSERT_TRUE(machine_.load_at_zero(TestMachine::mill()));
   expect_clean("loading and homing");
 
-  ASSERT_TRUE(cam().set_feedrate(3000));
+  ASSERT_TRUE(cam().path().set_feedrate(3000));
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {20, 5, 0}));
   ASSERT_TRUE(machine_.line(2, {20, 5, 0}, {0, 0, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveStarted, 1));
   let_run(50);
-  ASSERT_TRUE(cam().feed_hold());
+  ASSERT_TRUE(cam().cycle().hold());
   let_run(200);
-  ASSERT_TRUE(cam().feed_resume());
-  ASSERT_TRUE(cam().set_feed_override(150));
+  ASSERT_TRUE(cam().cycle().resume());
+  ASSERT_TRUE(cam().cycle().set_feed_override(150));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 2));
   stop();
   expect_clean("two moves with a hold, an override and a stop");
@@ -109,10 +109,10 @@ TEST_F(ServoThreadUnderTrap, NeitherAllocatesNorLocksNorCallsTheSystem) {
            {"DMAC_FUZZY_CONTROL", {0.16, 22, 120, 140000}}}) {
     const auto changed = machine_.load(with_law(TestMachine::mill(), law, gains));
     ASSERT_TRUE(changed) << changed.error().message;
-    ASSERT_TRUE(cam().set_feedrate(3000));
+    ASSERT_TRUE(cam().path().set_feedrate(3000));
     ASSERT_TRUE(machine_.line(3, machine_.controller.sample().pose_set.tip, {2, 0, 0}));
     ASSERT_TRUE(machine_.line(4, {2, 0, 0}, {0, 0, 0}));
-    ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+    ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
     machine_.events.clear();
     ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 4)) << law;
     stop();
@@ -121,12 +121,12 @@ TEST_F(ServoThreadUnderTrap, NeitherAllocatesNorLocksNorCallsTheSystem) {
 
   ASSERT_TRUE(machine_.line(5, {0, 0, 0}, {20, 0, 0}));
   ASSERT_TRUE(machine_.line(6, {20, 0, 0}, {0, 0, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveStarted, 5));
   for (const int joint : {0, 1}) {
-    ASSERT_TRUE(machine_.controller.config().set_joint_servo_control_law(joint, {"DMAC_PID_CONTROL", {}, {}}));
+    ASSERT_TRUE(machine_.controller.config().loops().set_servo_law(joint, {"DMAC_PID_CONTROL", {}, {}}));
     const std::array<double, 3> gains{1550, 140000, 11.1};
-    ASSERT_TRUE(machine_.controller.config().set_joint_servo_control_gains(joint, gains));
+    ASSERT_TRUE(machine_.controller.config().loops().set_gains(joint, gains));
     const auto changed = machine_.controller.config().apply();
     ASSERT_TRUE(changed) << changed.error().message;
     let_run(50);
@@ -141,9 +141,9 @@ TEST_F(ServoThreadUnderTrap, NeitherAllocatesNorLocksNorCallsTheSystem) {
   let_run(100);
   expect_clean("another mechanism");
 
-  ASSERT_TRUE(cam().set_feedrate(3000));
+  ASSERT_TRUE(cam().path().set_feedrate(3000));
   ASSERT_TRUE(machine_.line(7, machine_.controller.sample().pose_set.tip, {20, 0, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveStarted, 7));
   let_run(50);
   ASSERT_TRUE(machine_.controller.record_flight());

@@ -1,0 +1,57 @@
+#include "gateway/rmac_cam/cam_cycle.hpp"
+
+#include <fmt/format.h>
+
+namespace rmac::gateway {
+
+void CamCycle::mechanism_changed(bool fresh) {
+  if (fresh) supervisor_.set_override(100);
+}
+
+Expected<> CamCycle::start(sdk::CycleMode mode) {
+  return device_.require("CycleStart").and_then([&] {
+    return supervisor_.command(
+        [mode](CycleSequencer& cycle, const CycleObservation& seen) { return cycle.start(mode, seen); });
+  });
+}
+
+Expected<> CamCycle::stop() {
+  forces_.let_go();
+  return supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.stop(); });
+}
+
+Expected<> CamCycle::hold() {
+  return supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.hold(); });
+}
+
+Expected<> CamCycle::resume() {
+  return supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.resume(); });
+}
+
+Expected<double> CamCycle::retrace(double distance_mm) {
+  return device_.require("FeedRetrace").and_then([&] { return supervisor_.retrace(distance_mm); });
+}
+
+Expected<> CamCycle::stop_now() {
+  forces_.let_go();
+  return supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.stop_and_clear(); });
+}
+
+bool CamCycle::started() const {
+  const CycleState state = supervisor_.state();
+  return state == CycleState::Running || state == CycleState::Holding;
+}
+
+Expected<> CamCycle::set_feed_override(double percent) {
+  constexpr double kSlowestPercent = 0.01;
+  const bool waits = percent == 0;
+  if (!waits && !(percent >= kSlowestPercent && percent <= 200)) {
+    return failure(
+        MinorCode::InvalidParameterValue,
+        fmt::format("SetFeedOverride: {} percent must be 0, which waits, or {} to 200", percent, kSlowestPercent));
+  }
+  supervisor_.set_override(percent);
+  return {};
+}
+
+}  // namespace rmac::gateway

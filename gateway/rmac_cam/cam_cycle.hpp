@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+
+#include "gateway/rmac_cam/cam_forces.hpp"
+#include "rmac/sdk/cam/cycle_control.hpp"
+
+namespace rmac::gateway {
+
+/// Passes commands of the cycle on to the motion supervisor. Gateway thread only; the stops and `started` also while
+/// another thread uses RMAC_CAM.
+class CamCycle final : public sdk::CycleControl {
+ public:
+  /// `reset` brings the machine back after a fault.
+  CamCycle(const DeviceInForce& device, MotionSupervisor& supervisor, CamForces& forces,
+           std::function<Expected<>()> reset)
+      : device_(device), supervisor_(supervisor), forces_(forces), reset_(std::move(reset)) {}
+
+  /// `fresh`: it is another mechanism, and the feed override starts anew.
+  void mechanism_changed(bool fresh);
+
+  Expected<> start(sdk::CycleMode mode) override;
+  Expected<> stop() override;
+  Expected<> hold() override;
+  Expected<> resume() override;
+  Expected<double> retrace(double distance_mm) override;
+  Expected<> stop_now() override;
+  Expected<> reset() override { return reset_(); }
+  [[nodiscard]] bool started() const override;
+  Expected<> set_feed_override(double percent) override;
+
+ private:
+  const DeviceInForce& device_;
+  MotionSupervisor& supervisor_;
+  CamForces& forces_;
+  std::function<Expected<>()> reset_;
+};
+
+}  // namespace rmac::gateway

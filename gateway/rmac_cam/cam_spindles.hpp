@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "gateway/rmac_cam/cam_tools.hpp"
+#include "gateway/servo/cycle_history.hpp"
+#include "rmac/sdk/cam/spindle_control.hpp"
+
+namespace rmac::gateway {
+
+/// Commands spindles and the coolant, as the mechanism, the tool in the spindle and the largest speeds in force allow.
+/// Gateway thread only.
+class CamSpindles final : public sdk::SpindleControl {
+ public:
+  CamSpindles(const DeviceInForce& device, MotionSupervisor& supervisor, const CycleHistory& history,
+              const CamTools& tools)
+      : device_(device), supervisor_(supervisor), history_(history), tools_(tools) {}
+
+  /// The mechanism's largest speeds are in force again.
+  void mechanism_changed();
+
+  Expected<> set_rpm(int spindle, double rpm) override;
+  [[nodiscard]] Expected<double> rpm(int spindle) const override;
+  Expected<> set_max_rpm(int spindle, double rpm) override;
+  [[nodiscard]] Expected<double> max_rpm(int spindle) const override;
+  Expected<> set_coolant(bool on) override;
+
+  /// The largest speeds in force, one a spindle.
+  [[nodiscard]] const std::vector<double>& largest_rpm() const noexcept { return max_rpm_; }
+  /// Puts in force again what was before.
+  void take_up(const std::vector<double>& largest_rpm) { max_rpm_ = largest_rpm; }
+
+ private:
+  const DeviceInForce& device_;
+  MotionSupervisor& supervisor_;
+  const CycleHistory& history_;
+  const CamTools& tools_;
+  std::vector<double> max_rpm_;
+};
+
+}  // namespace rmac::gateway

@@ -1,0 +1,59 @@
+#include "gateway/rmac_config/mechanism_editor.hpp"
+
+#include <fmt/format.h>
+
+#include "gateway/json/range.hpp"
+#include "rmac/motion/servo_loop.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+Expected<> check_count(const char* function, int count, int least, std::size_t most) {
+  if (count >= least && static_cast<std::size_t>(count) <= most) return {};
+  return failure(MinorCode::InvalidParameterValue,
+                 fmt::format("{}: {} must be {} to {}", function, count, least, most));
+}
+
+/// Makes them so many; those that come are as device.json describes them, as far as it does.
+template <typename Part>
+void resize(std::vector<Part>& parts, std::size_t count, const std::vector<Part>& described) {
+  for (std::size_t i = parts.size(); i < count; ++i) parts.push_back(i < described.size() ? described[i] : Part{});
+  parts.resize(count);
+}
+
+}  // namespace
+
+Expected<> MechanismEditor::set_kinematics(const sdk::ModuleChoice& module) {
+  return choose_module("SetMechanismKinematics", module, draft_.edit().kinematics);
+}
+
+Expected<> MechanismEditor::set_actuator_map(const sdk::ModuleChoice& module) {
+  return choose_module("SetMechanismActuatorMap", module, draft_.edit().actuator_map);
+}
+
+Expected<> MechanismEditor::set_number_of_joints(int count) {
+  const std::size_t most = kMaxJoints - draft_.device.held_joints.size();
+  return check_count("SetMechanismNumberOfJoints", count, 1, most).map([&] {
+    resize(draft_.edit().joints, static_cast<std::size_t>(count), draft_.described);
+  });
+}
+
+Expected<> MechanismEditor::set_number_of_spindles(int count) {
+  return check_count("SetMechanismNumberOfSpindles", count, 0, kMaxSpindles).map([&] {
+    resize(draft_.edit().spindles, static_cast<std::size_t>(count), draft_.described_spindles);
+  });
+}
+
+Expected<> MechanismEditor::set_number_of_actuators(int count) {
+  return check_count("SetMechanismNumberOfActuators", count, 1, kMaxJoints).map([&] {
+    draft_.edit().actuators.resize(static_cast<std::size_t>(count));
+  });
+}
+
+Expected<> MechanismEditor::set_maximum_feedrate(double mm_min) {
+  return check_device_range("MaxFeedrate", mm_min, "SetMechanismMaxFeedrate").map([&] {
+    draft_.edit().max_feedrate_mm_min = mm_min;
+  });
+}
+
+}  // namespace rmac::gateway
