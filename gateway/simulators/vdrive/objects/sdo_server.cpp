@@ -1,4 +1,4 @@
-#include "gateway/simulators/vdrive/sdo_server.hpp"
+#include "gateway/simulators/vdrive/objects/sdo_server.hpp"
 
 #include <algorithm>
 

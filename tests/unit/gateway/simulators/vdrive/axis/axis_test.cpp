@@ -44,7 +44,7 @@ TEST_F(DriveAxis, GoesThroughThePowerStatesByTheControlword) {
 
 TEST_F(DriveAxis, LeavesAFaultOnARisingEdgeOnly) {
   enable(3);
-  node_.trip(0x7305);
+  node_.axis().trip(0x7305);
   pass(0.01);
   EXPECT_EQ(state(), kFault);
   EXPECT_EQ(read(0x603F), 0x7305);
@@ -56,7 +56,7 @@ TEST_F(DriveAxis, LeavesAFaultOnARisingEdgeOnly) {
   EXPECT_EQ(state(), kSwitchOnDisabled);
   EXPECT_EQ(number(last(0x085), 0, 2), 0U) << "error reset";
   EXPECT_EQ(read(0x1001), 0);
-  node_.trip(0x7305);
+  node_.axis().trip(0x7305);
   pass(0.01);
   control(0x80);
   EXPECT_EQ(state(), kFault) << "bit 7 did not rise";
@@ -239,7 +239,7 @@ TEST_F(DriveAxis, StopsAtItsSoftwareLimits) {
 
 TEST_F(DriveAxis, StaysInFaultWhileItIsTooHot) {
   enable(3);
-  node_.set_overheated(true);
+  node_.axis().set_overheated(true);
   pass(0.05);
   EXPECT_EQ(state(), kFault);
   EXPECT_EQ(read(0x603F), 0x4310);
@@ -248,14 +248,14 @@ TEST_F(DriveAxis, StaysInFaultWhileItIsTooHot) {
   pass(0.01);
   EXPECT_EQ(state(), kFault);
   control(0x00);
-  node_.set_overheated(false);
+  node_.axis().set_overheated(false);
   control(0x80);
   EXPECT_EQ(state(), kSwitchOnDisabled);
 }
 
 TEST_F(DriveAxis, TellsAJumpOfItsEncoderAndNotOfItsShaft) {
   const std::int64_t before = read(0x6064);
-  node_.shift_encoder(12345);
+  node_.axis().shift_encoder(12345);
   EXPECT_EQ(read(0x6064), before + 12345);
   EXPECT_EQ(node_.axis().shaft(), 0);
 }

@@ -1,4 +1,4 @@
-#include "gateway/simulators/vdrive/power_states.hpp"
+#include "gateway/simulators/vdrive/axis/power_states.hpp"
 
 #include <array>
 

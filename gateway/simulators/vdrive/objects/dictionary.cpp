@@ -1,4 +1,4 @@
-#include "gateway/simulators/vdrive/dictionary.hpp"
+#include "gateway/simulators/vdrive/objects/dictionary.hpp"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <optional>
 
-#include "gateway/simulators/vdrive/sdo_server.hpp"
+#include "gateway/simulators/vdrive/objects/sdo_server.hpp"
 #include "rmac/fieldbus/eds/device_description.hpp"
 
 namespace rmac::vdrive {

@@ -1,4 +1,4 @@
-#include "gateway/simulators/vdrive/homing.hpp"
+#include "gateway/simulators/vdrive/axis/homing.hpp"
 
 namespace rmac::vdrive {
 
