@@ -263,7 +263,7 @@ Frame Cam::tool_interface_frame() const {
 }
 
 Expected<std::vector<double>> Cam::current_position() const {
-  if (auto loaded = require_mechanism("GetCurrentPosition"); !loaded) return tl::unexpected(loaded.error());
+  if (auto loaded = require_mechanism("CurrentPosition"); !loaded) return tl::unexpected(loaded.error());
   const CycleSample now = link_.history.latest();
   return std::vector<double>(now.position.begin(), now.position.begin() + now.joint_count);
 }

@@ -63,15 +63,16 @@ Expected<double> Cam::spindle_max_rpm(int spindle) const {
 }
 
 Expected<> Cam::set_coolant(bool on) {
-  if (auto loaded = require_mechanism("SetCoolant"); !loaded) return loaded;
+  const char* function = on ? "TurnCoolantOn" : "TurnCoolantOff";
+  if (auto loaded = require_mechanism(function); !loaded) return loaded;
   const auto output = device_->outputs.find(kCoolantOutput);
   if (output == device_->outputs.end()) {
-    return failure(
-        MinorCode::UnsupportedOperation,
-        fmt::format("SetCoolant: {} has no output named {} in its DigitalIOInterface", device_->name, kCoolantOutput));
+    return failure(MinorCode::UnsupportedOperation,
+                   fmt::format("{}: {} has no output named {} in its DigitalIOInterface", function, device_->name,
+                               kCoolantOutput));
   }
   if (on && supervisor_.tools_now().changing) {
-    return failure(MinorCode::Other, "SetCoolant: a tool change is under way; wait for its end");
+    return failure(MinorCode::Other, "TurnCoolantOn: a tool change is under way; wait for its end");
   }
   const std::uint64_t bit = std::uint64_t{1} << output->second;
   supervisor_.wish([&](ServoWishes& wishes) { wishes.outputs = on ? wishes.outputs | bit : wishes.outputs & ~bit; });

@@ -110,7 +110,7 @@ Expected<> ConfigDraft::set_actuator_map(const sdk::ModuleChoice& module) {
 }
 
 Expected<> ConfigDraft::set_number_of_joints(int count) {
-  return check_count("SetMechanismNumberOfJoints", count, 1, kMaxJoints - draft_.held_joints.size()).map([&] {
+  return check_count("SetMechanismNumJnts", count, 1, kMaxJoints - draft_.held_joints.size()).map([&] {
     auto& joints = edit().joints;
     for (std::size_t i = joints.size(); i < static_cast<std::size_t>(count); ++i) {
       joints.push_back(i < described_.size() ? described_[i] : sdk::Joint{});
@@ -120,7 +120,7 @@ Expected<> ConfigDraft::set_number_of_joints(int count) {
 }
 
 Expected<> ConfigDraft::set_number_of_spindles(int count) {
-  return check_count("SetMechanismNumberOfSpindles", count, 0, kMaxSpindles).map([&] {
+  return check_count("SetMechanismNumSpindle", count, 0, kMaxSpindles).map([&] {
     auto& spindles = edit().spindles;
     for (std::size_t i = spindles.size(); i < static_cast<std::size_t>(count); ++i) {
       spindles.push_back(i < described_spindles_.size() ? described_spindles_[i] : sdk::Spindle{});
@@ -130,14 +130,14 @@ Expected<> ConfigDraft::set_number_of_spindles(int count) {
 }
 
 Expected<> ConfigDraft::set_number_of_actuators(int count) {
-  return check_count("SetMechanismNumberOfActuators", count, 1, kMaxJoints).map([&] {
+  return check_count("SetMechanismNumActuators", count, 1, kMaxJoints).map([&] {
     edit().actuators.resize(static_cast<std::size_t>(count));
   });
 }
 
 Expected<> ConfigDraft::set_joint_name(int number, std::string_view name) {
-  if (name.empty()) return refuse("SetMechanismJointName: a name must have a letter at least");
-  return change_joint(number, "SetMechanismJointName", [&](sdk::Joint& found) { found.limits.name = name; });
+  if (name.empty()) return refuse("joint name: a name must have a letter at least");
+  return change_joint(number, "joint name", [&](sdk::Joint& found) { found.limits.name = name; });
 }
 
 Expected<> ConfigDraft::set_joint_type(int number, JointType type) {
@@ -217,13 +217,14 @@ Expected<> ConfigDraft::set_joint_mechanics(int number, const JointMechanics& me
 }
 
 Expected<> ConfigDraft::set_digital_control_interface(const sdk::ModuleChoice& module) {
-  return set_module("SetDigitalControlInterface", module, edit().digital_control_interface);
+  return set_module("SetMechanismDigitalControlInterface", module, edit().digital_control_interface);
 }
 
 Expected<> ConfigDraft::initialize_digital_control_interface() {
   if (draft_.digital_control_interface.name.empty()) {
     return failure(MinorCode::InvalidParameter,
-                   "InitializeDigitalControlInterface: choose one with SetDigitalControlInterface first");
+                   "InitializeMechanismDigitalControlInterface: choose one with SetMechanismDigitalControlInterface "
+                   "first");
   }
   return controller_.check_control_interface(draft_.digital_control_interface);
 }

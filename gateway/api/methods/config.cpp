@@ -21,7 +21,7 @@ ModuleChoice chosen(const ModuleChoice& present, const std::string& name) {
   return ModuleChoice{name, {}, {}};
 }
 
-/// Of a joint or a held one; none where there is no such joint, which the setter says.
+/// The law of a joint, moved or held; none where there is no such joint, which the setter says.
 ModuleChoice law_of(const sdk::DeviceObject& draft, std::int64_t joint) {
   const auto index = static_cast<std::size_t>(joint);
   const std::size_t moved = draft.joints.size();
