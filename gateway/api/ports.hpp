@@ -49,7 +49,7 @@ class DevicePort {
   virtual Expected<> ready_to_load(const std::string& name) = 0;
   virtual Expected<> load(const std::string& name, bool virtual_mode) = 0;
   virtual Expected<> unload() = 0;
-  /// Of what is loaded.
+  /// The modules of what is loaded.
   [[nodiscard]] virtual Expected<std::vector<ModuleInUse>> modules() const = 0;
   [[nodiscard]] virtual bool virtual_mode() const = 0;
   [[nodiscard]] virtual Expected<const sdk::DeviceObject*> database() const = 0;

@@ -191,7 +191,7 @@ Expected<> CamPositioning::move_to_reference_point() {
 }
 
 Expected<std::vector<double>> CamPositioning::current_position() const {
-  return device_.require("GetCurrentPosition").map([&] {
+  return device_.require("CurrentPosition").map([&] {
     const CycleSample now = link_.history.latest();
     return std::vector<double>(now.position.begin(), now.position.begin() + now.joint_count);
   });

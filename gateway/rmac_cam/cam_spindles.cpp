@@ -53,15 +53,16 @@ Expected<double> CamSpindles::max_rpm(int spindle) const {
 }
 
 Expected<> CamSpindles::set_coolant(bool on) {
-  if (auto loaded = device_.require("SetCoolant"); !loaded) return loaded;
+  const char* function = on ? "TurnCoolantOn" : "TurnCoolantOff";
+  if (auto loaded = device_.require(function); !loaded) return loaded;
   const std::uint64_t bit = device_.coolant();
   if (bit == 0) {
     return failure(
         MinorCode::UnsupportedOperation,
-        fmt::format("SetCoolant: {} has no output named Coolant in its DigitalIOInterface", device_.get()->name));
+        fmt::format("{}: {} has no output named Coolant in its DigitalIOInterface", function, device_.get()->name));
   }
   if (on && supervisor_.tools_now().changing) {
-    return failure(MinorCode::Other, "SetCoolant: a tool change is under way; wait for its end");
+    return failure(MinorCode::Other, "TurnCoolantOn: a tool change is under way; wait for its end");
   }
   supervisor_.wish([&](ServoWishes& wishes) { wishes.outputs = on ? wishes.outputs | bit : wishes.outputs & ~bit; });
   return {};

@@ -3,14 +3,15 @@
 namespace rmac::gateway {
 
 Expected<> InterfaceEditor::set_control(const sdk::ModuleChoice& module) {
-  return choose_module("SetDigitalControlInterface", module, draft_.edit().digital_control_interface);
+  return choose_module("SetMechanismDigitalControlInterface", module, draft_.edit().digital_control_interface);
 }
 
 Expected<> InterfaceEditor::initialize_control() {
   const sdk::ModuleChoice& chosen = draft_.device.digital_control_interface;
   if (!chosen.name.empty()) return check_control_(chosen);
-  return failure(MinorCode::InvalidParameter,
-                 "InitializeDigitalControlInterface: choose one with SetDigitalControlInterface first");
+  return failure(
+      MinorCode::InvalidParameter,
+      "InitializeMechanismDigitalControlInterface: choose one with SetMechanismDigitalControlInterface first");
 }
 
 Expected<> InterfaceEditor::set_io(const sdk::ModuleChoice& module) {

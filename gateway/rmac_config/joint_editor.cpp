@@ -12,7 +12,7 @@ Expected<> JointEditor::set(int joint, const char* function, const char* key, do
 }
 
 Expected<> JointEditor::set_name(int joint, std::string_view name) {
-  constexpr const char* kFunction = "SetMechanismJointName";
+  constexpr const char* kFunction = "joint name";
   if (name.empty()) {
     return failure(MinorCode::InvalidParameterValue, std::string(kFunction) + ": a name must have a letter at least");
   }

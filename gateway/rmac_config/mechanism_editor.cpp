@@ -33,19 +33,19 @@ Expected<> MechanismEditor::set_actuator_map(const sdk::ModuleChoice& module) {
 
 Expected<> MechanismEditor::set_number_of_joints(int count) {
   const std::size_t most = kMaxJoints - draft_.device.held_joints.size();
-  return check_count("SetMechanismNumberOfJoints", count, 1, most).map([&] {
+  return check_count("SetMechanismNumJnts", count, 1, most).map([&] {
     resize(draft_.edit().joints, static_cast<std::size_t>(count), draft_.described);
   });
 }
 
 Expected<> MechanismEditor::set_number_of_spindles(int count) {
-  return check_count("SetMechanismNumberOfSpindles", count, 0, kMaxSpindles).map([&] {
+  return check_count("SetMechanismNumSpindle", count, 0, kMaxSpindles).map([&] {
     resize(draft_.edit().spindles, static_cast<std::size_t>(count), draft_.described_spindles);
   });
 }
 
 Expected<> MechanismEditor::set_number_of_actuators(int count) {
-  return check_count("SetMechanismNumberOfActuators", count, 1, kMaxJoints).map([&] {
+  return check_count("SetMechanismNumActuators", count, 1, kMaxJoints).map([&] {
     draft_.edit().actuators.resize(static_cast<std::size_t>(count));
   });
 }

@@ -1,14 +1,10 @@
-// Reading and writing. What is done with requests stands in connection_work.cpp, what a method asks of its connection
-// in connection_session.cpp.
 #include "gateway/server/connection.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
-
+#include "gateway/api/state_json.hpp"
 #include "gateway/json/printable.hpp"
-#include "gateway/server/server.hpp"
 
 namespace rmac::gateway {
 
@@ -18,27 +14,29 @@ constexpr std::size_t kDiscardLimitBytes = std::size_t{256} << 20;
 constexpr std::chrono::seconds kLeaveTime{5};
 constexpr std::chrono::seconds kDrainTime{30};
 constexpr std::chrono::seconds kDismissTime{2};
-constexpr std::size_t kBuffersPerWrite = 64;
+
+/// The topic `state` as everybody sees it.
+std::string state_text(const ConnectionContext& context, const CycleSample& sample) {
+  Dispatcher& api = context.dispatcher;
+  return text_of(state_to_json(api.machine(), sample, api.status(), context.lease.holder_name()));
+}
 
 }  // namespace
 
-Connection::Connection(Server& server, Socket socket, std::uint64_t id, std::string where)
-    : server_(server),
+Connection::Connection(const ConnectionContext& context, Socket socket, std::uint64_t id, std::string where)
+    : context_(context),
       socket_(std::move(socket)),
-      id_(id),
-      where_(std::move(where)),
-      records_(server.make_records()),
-      leaving_(socket_.get_executor()),
-      last_progress_(std::chrono::steady_clock::now()) {}
+      topics_(context.options.cycle_hz, [&context](const CycleSample& sample) { return state_text(context, sample); }),
+      session_(context, id, std::move(where), topics_),
+      requests_(*this, context.dispatcher, context.aside, context.options.queue_wait),
+      lines_(context.options.line_limit_bytes),
+      outbox_(std::chrono::steady_clock::now()),
+      leaving_(socket_.get_executor()) {}
 
 void Connection::start() {
   asio::error_code ignored;  // a UNIX socket has no such option
   socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
   read();
-}
-
-std::string Connection::name() const {
-  return client_.empty() ? where_ : fmt::format("{} ({})", client_, where_);
 }
 
 void Connection::abort() {
@@ -48,9 +46,9 @@ void Connection::abort() {
   asio::error_code ignored;
   socket_.close(ignored);
   leaving_.cancel();
-  pending_.clear();
-  server_.lose_lease(*this, "disconnected with");
-  server_.forget(*this);
+  requests_.clear();
+  context_.lease.lose(id(), name(), "disconnected with");
+  context_.peers.forget(id());
 }
 
 std::uint64_t Connection::arrived_bytes() const {
@@ -61,74 +59,63 @@ std::uint64_t Connection::arrived_bytes() const {
 
 void Connection::read() {
   // Reading pauses while too much waits; TCP then holds the client back.
-  if (reading_ || phase_ != Phase::Open || pending_bytes_ > server_.options().pending_limit_bytes) return;
+  if (reading_ || phase_ != Phase::Open || requests_.bytes() > context_.options.pending_limit_bytes) return;
   reading_ = true;
-  socket_.async_read_some(asio::buffer(buffer_),
-                          [self = shared_from_this()](asio::error_code problem, std::size_t bytes) {
-                            self->reading_ = false;
-                            self->read_bytes_ += bytes;
-                            if (self->phase_ == Phase::Leaving && !problem) self->discard_input();
-                            if (self->phase_ != Phase::Open) return;
-                            if (problem == asio::error::eof) {
-                              self->end_of_input();
-                            } else if (problem) {
-                              self->abort();
-                            } else {
-                              self->take_input(bytes);
-                              self->pump();
-                              self->read();
-                            }
-                          });
+  socket_.async_read_some(
+      asio::buffer(buffer_),
+      [self = shared_from_this()](asio::error_code problem, std::size_t bytes) { self->arrived(problem, bytes); });
+}
+
+void Connection::arrived(asio::error_code problem, std::size_t bytes) {
+  reading_ = false;
+  read_bytes_ += bytes;
+  if (phase_ == Phase::Leaving && !problem) discard_input();
+  if (phase_ != Phase::Open) return;
+  if (problem == asio::error::eof) {
+    end_of_input();
+  } else if (problem) {
+    abort();
+  } else {
+    take_input(bytes);
+    pump();
+    read();
+  }
 }
 
 void Connection::take_input(std::size_t bytes) {
-  std::string_view chunk(buffer_.data(), bytes);
-  const std::size_t limit = server_.options().line_limit_bytes;
+  lines_.take({buffer_.data(), bytes});
   while (phase_ == Phase::Open) {
-    const std::size_t end = chunk.find('\n');
-    const std::string_view part = chunk.substr(0, end);
-    if (input_.size() + part.size() > limit) {
-      refuse_and_leave(
-          {rpc_code::kRequestTooLarge,
-           fmt::format("a line is longer than {} bytes; send smaller requests, e.g. one move a line", limit),
-           MinorCode::InvalidParameterValue});
-      return;
-    }
-    if (end == std::string_view::npos) {
-      input_.append(part);
-      return;
-    }
-    if (input_.empty()) {
-      take_line(part);
-    } else {
-      input_.append(part);
-      const std::string line = std::move(input_);
-      input_.clear();
-      take_line(line);
-    }
-    chunk.remove_prefix(end + 1);
+    const auto line = lines_.next();
+    if (!line) break;
+    take_line(*line);
   }
+  if (!lines_.too_long() || phase_ != Phase::Open) return;
+  refuse_and_leave({rpc_code::kRequestTooLarge,
+                    fmt::format("a line is longer than {} bytes; send smaller requests, e.g. one move a line",
+                                context_.options.line_limit_bytes),
+                    MinorCode::InvalidParameterValue});
+}
+
+void Connection::take_line(const LineReader::Line& line) {
+  context_.lease.heard(id());
+  requests_.take(line.text, line.position);
 }
 
 void Connection::end_of_input() {
-  if (!input_.empty()) {
-    const std::string line = std::move(input_);  // a last line without its newline counts
-    input_.clear();
-    take_line(line);
-  }
+  if (const auto line = lines_.last()) take_line(*line);  // a last line without its newline counts
   phase_ = Phase::Draining;
-  unsubscribe({});
+  topics_.stop({});
   leave_within(kDrainTime);
   pump();
 }
 
 void Connection::refuse_and_leave(RpcError error) {
   spdlog::warn("{} is disconnected: {}", name(), error.message);
-  pending_.clear();
-  input_ = {};
+  requests_.clear();
+  lines_.clear();
   send(text_of(to_response(nullptr, tl::unexpected<RpcError>(std::move(error)))));
   phase_ = Phase::Leaving;
-  server_.lose_lease(*this, "was disconnected with");
+  context_.lease.lose(id(), name(), "was disconnected with");
   // Closing with input unread would reset the connection, and the client would never see why. So what it still sends is
   // thrown away for a while.
   leave_within(kLeaveTime);
@@ -137,10 +124,10 @@ void Connection::refuse_and_leave(RpcError error) {
 
 void Connection::dismiss() {
   if (phase_ == Phase::Closed) return;
-  state_now_ = state_now_ || state_.on();  // how everything ended
+  topics_.owe_state();  // how everything ended
   flush_topics();
-  pending_.clear();
-  input_ = {};
+  requests_.clear();
+  lines_.clear();
   const bool reads = reading_ || phase_ == Phase::Leaving;
   phase_ = Phase::Leaving;
   leave_within(kDismissTime);
@@ -167,18 +154,57 @@ void Connection::discard_input() {
                           });
 }
 
+void Connection::pump() {
+  switch (requests_.carry_out()) {
+    case RequestQueue::Progress::Waits:
+      return;
+    case RequestQueue::Progress::TurnOver:
+      if (std::exchange(pump_posted_, true)) return;
+      asio::post(socket_.get_executor(), [self = shared_from_this()] {
+        self->pump_posted_ = false;
+        self->pump();
+      });
+      return;
+    case RequestQueue::Progress::Done:
+      break;
+  }
+  if (phase_ == Phase::Draining) context_.lease.lose(id(), name(), "disconnected with");
+  finish_if_drained();
+  read();
+}
+
+void Connection::has_stopped(const Request& stop, std::uint64_t position) {
+  context_.peers.overtake(id(), name(), stop, position);
+}
+
+void Connection::push_sample(const CycleSample& sample) {
+  if (auto line = topics_.take(sample)) send(std::move(*line));
+  if (topics_.is_full()) flush_topics();
+}
+
+void Connection::push_event(const std::string& line) {
+  if (!topics_.has_events()) return;
+  // What happened after a sample is told after it.
+  flush_topics();
+  send(line);
+}
+
+void Connection::flush_topics() {
+  for (std::string& line : topics_.batches()) send(std::move(line));
+  if (topics_.owes_state() && !context_.aside.mechanism_changes()) {
+    send(topics_.state_line(context_.dispatcher.machine().sample()));
+  }
+}
+
 void Connection::send(std::string line) {
   if (phase_ == Phase::Closed) return;
-  line += '\n';
-  output_bytes_ += line.size();
-  if (output_.empty()) last_progress_ = std::chrono::steady_clock::now();
-  output_.push_back(std::move(line));
-  if (output_bytes_ > server_.options().output_limit_bytes) {
+  outbox_.add(std::move(line), std::chrono::steady_clock::now());
+  if (outbox_.bytes() > context_.options.output_limit_bytes) {
     // Not from inside a loop over the connections, which closing changes.
     asio::post(socket_.get_executor(), [self = shared_from_this()] {
       if (self->phase_ == Phase::Closed) return;
       spdlog::warn("{} was cut off: it does not read what it asked for, {} bytes wait", self->name(),
-                   self->output_bytes_);
+                   self->outbox_.bytes());
       self->abort();
     });
     return;
@@ -187,28 +213,23 @@ void Connection::send(std::string line) {
 }
 
 void Connection::write() {
-  if (writing_ != 0 || output_.empty() || phase_ == Phase::Closed) return;
-  writing_ = std::min(output_.size(), kBuffersPerWrite);
-  std::vector<asio::const_buffer> buffers;
-  buffers.reserve(writing_);
-  for (std::size_t i = 0; i < writing_; ++i) buffers.push_back(asio::buffer(output_[i]));
-  asio::async_write(socket_, buffers, [self = shared_from_this()](asio::error_code problem, std::size_t bytes) {
+  if (phase_ == Phase::Closed) return;
+  const auto buffers = outbox_.begin_write();
+  if (buffers.empty()) return;
+  asio::async_write(socket_, buffers, [self = shared_from_this()](asio::error_code problem, std::size_t) {
     if (self->phase_ == Phase::Closed) return;
     if (problem) {
       self->abort();
       return;
     }
-    self->last_progress_ = std::chrono::steady_clock::now();
-    self->output_bytes_ -= bytes;
-    self->output_.erase(self->output_.begin(), self->output_.begin() + static_cast<std::ptrdiff_t>(self->writing_));
-    self->writing_ = 0;
+    self->outbox_.written(std::chrono::steady_clock::now());
     self->write();
     self->finish_if_drained();
   });
 }
 
 void Connection::finish_if_drained() {
-  if (!output_.empty() || !pending_.empty()) return;
+  if (!outbox_.empty() || !requests_.empty()) return;
   if (phase_ == Phase::Draining) {
     abort();
   } else if (phase_ == Phase::Leaving) {
@@ -218,11 +239,11 @@ void Connection::finish_if_drained() {
 }
 
 bool Connection::behind() const noexcept {
-  return output_bytes_ > server_.options().high_water_bytes;
+  return outbox_.bytes() > context_.options.high_water_bytes;
 }
 
 bool Connection::stalled(std::chrono::steady_clock::time_point now) const noexcept {
-  return behind() && now - last_progress_ > server_.options().stall_limit;
+  return behind() && outbox_.standstill(now) > context_.options.stall_limit;
 }
 
 }  // namespace rmac::gateway

@@ -11,7 +11,7 @@ namespace rmac::fieldbus::canopen {
 /// Why a bus failed in a cycle: the servo thread notes it, others ask.
 class BusTrouble {
  public:
-  /// Of a cycle that failed; `unsent` frames were not taken since the bus was started. Real-time safe.
+  /// Notes a cycle that failed; `unsent` frames were not taken since the bus was started. Real-time safe.
   void note(const CanHealth& health, std::uint64_t unsent) noexcept {
     unsent_.store(unsent, std::memory_order_relaxed);
     kind_.store(health.link_down ? Kind::LinkDown

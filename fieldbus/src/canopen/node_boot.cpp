@@ -29,7 +29,7 @@ constexpr std::array kModeNames{"",
                                 "cyclic synchronous velocity",
                                 "cyclic synchronous torque"};
 
-/// Of a drive whose supported modes (6502h, bit 0 is mode 1) lack one that it is to run in.
+/// Tells that a drive's supported modes (6502h, bit 0 is mode 1) lack one that it is to run in.
 std::string cannot_do(const BootProblem& problem, const std::string& object) {
   std::string wanted, there;
   for (unsigned mode = 1; mode < kModeNames.size(); ++mode) {

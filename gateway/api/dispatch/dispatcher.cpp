@@ -93,7 +93,7 @@ tl::expected<json, RpcError> parse_line(std::string_view line) {
   }
   try {
     json parsed = json::parse(line);
-    // Of two members with one name a reader keeps one, so then the line has more than what was read from it.
+    // A reader keeps one of two members with the same name, so then the line has more than what was read from it.
     if (members_in(parsed) != outline.members) {
       return wrong(rpc_code::kInvalidRequest,
                    fmt::format("the member {} stands twice in one object; say what it is once", repeated_key(line)));

@@ -39,11 +39,11 @@ Expected<Action> action_of(const std::string& what, const std::string& how, Time
   constexpr int kMostBytes = 8;
   constexpr std::int32_t kMostCounts = 1'000'000'000;
   if (what == "mute") {
-    return on_or_off(how).map([](bool on) -> Action { return [on](Node& node) { node.set_mute(on); }; });
+    return on_or_off(how).map([](bool on) -> Action { return [on](Node& node) { node.outlet().set_mute(on); }; });
   }
   if (what == "slow") {
     return number(how, 0, kMostDelayMs).map([](int ms) -> Action {
-      return [ms](Node& node) { node.set_delay(std::chrono::milliseconds(ms)); };
+      return [ms](Node& node) { node.outlet().set_delay(std::chrono::milliseconds(ms)); };
     });
   }
   if (what == "pdo") {
@@ -53,18 +53,18 @@ Expected<Action> action_of(const std::string& what, const std::string& how, Time
   }
   if (what == "jump") {
     return number(how, -kMostCounts, kMostCounts).map([](std::int32_t counts) -> Action {
-      return [counts](Node& node) { node.shift_encoder(counts); };
+      return [counts](Node& node) { node.axis().shift_encoder(counts); };
     });
   }
   if (what == "hot") {
-    return on_or_off(how).map([](bool on) -> Action { return [on](Node& node) { node.set_overheated(on); }; });
+    return on_or_off(how).map([](bool on) -> Action { return [on](Node& node) { node.axis().set_overheated(on); }; });
   }
   if (what == "touch") {
-    return on_or_off(how).map([](bool on) -> Action { return [on](Node& node) { node.touch(on); }; });
+    return on_or_off(how).map([](bool on) -> Action { return [on](Node& node) { node.axis().touch(on); }; });
   }
   if (what == "trip") {
     return number(how, 1, 0xFFFF).map([](int code) -> Action {
-      return [code](Node& node) { node.trip(static_cast<std::uint16_t>(code)); };
+      return [code](Node& node) { node.axis().trip(static_cast<std::uint16_t>(code)); };
     });
   }
   if (what == "power") {

@@ -10,21 +10,12 @@ namespace {
 constexpr std::uint16_t kHeartbeatError = 0x8130;
 constexpr std::uint16_t kPdoTooShort = 0x8210;
 constexpr std::uint16_t kPdoTooLong = 0x8220;
-// Bits of the error register (7.5.2.2)
-constexpr std::uint16_t kGeneric = 0x01;
-constexpr std::uint16_t kTemperature = 0x08;
-constexpr std::uint16_t kCommunication = 0x10;
 
 constexpr std::uint32_t kBadValue = 0x06090030;
 constexpr std::uint32_t kIncompatible = 0x06040043;
 constexpr std::uint32_t kCannotStore = 0x08000020;
 constexpr std::int64_t kSave = 0x65766173;  // "save"
 constexpr std::int64_t kLoad = 0x64616F6C;  // "load"
-
-std::uint16_t register_bits(std::uint16_t code) {
-  if ((code & 0xF000U) == 0x8000 && (code & 0xFF00U) <= 0x8200) return kGeneric | kCommunication;
-  return (code & 0xF000U) == 0x4000 ? kGeneric | kTemperature : kGeneric;
-}
 
 }  // namespace
 
@@ -36,7 +27,11 @@ Node::Node(const fieldbus::eds::DeviceDescription& sheet, std::uint8_t id, const
       dictionary_(sheet, id, serial_number),
       pdos_(dictionary_),
       server_(std::in_place, id, dictionary_),
-      axis_(dictionary_, plant, [this](std::uint16_t code) { report_error(code); }) {
+      errors_(dictionary_),
+      axis_(dictionary_, plant, [this](std::uint16_t code) {
+        dictionary_.set(0x603F, code);
+        emergency(code);
+      }) {
   attach();
 }
 
@@ -67,8 +62,7 @@ void Node::power_on(Time now) {
 void Node::power_off() {
   powered_ = false;
   nmt_ = NmtState::Initialising;
-  output_.clear();
-  delayed_.clear();
+  outlet_.clear();
 }
 
 void Node::reset_application(Time now) {
@@ -80,16 +74,13 @@ void Node::reset_application(Time now) {
 
 void Node::reset_communication(Time now) {
   dictionary_.restore(true);
-  // What is wrong with the communication ends with it; what is wrong with the drive does not.
-  const bool faulty = axis_.state() == PowerStates::Fault || axis_.state() == PowerStates::FaultReaction;
-  error_register_ = faulty ? static_cast<std::uint16_t>(error_register_ & ~kCommunication) : std::uint16_t{0};
-  dictionary_.set(0x1001, error_register_);
+  errors_.reset_communication(axis_.state() == PowerStates::Fault || axis_.state() == PowerStates::FaultReaction);
   server_->reset();
   pdos_.reload();
-  for (std::uint16_t i = 0; i < watched_.size(); ++i) take_write({0x1016, static_cast<std::uint8_t>(i + 1)});
+  for (std::uint8_t sub = 1; sub <= HeartbeatWatch::kWatched; ++sub) take_write({0x1016, sub});
   next_heartbeat_ = now;
   nmt_ = NmtState::Initialising;
-  send(static_cast<std::uint16_t>(0x700 + id_), {0});
+  outlet_.send(static_cast<std::uint16_t>(0x700 + id_), {0});
   enter(NmtState::PreOperational);
 }
 
@@ -126,7 +117,7 @@ void Node::hear_lss(const CanFrame& frame, Time now) {
   for (std::uint8_t part = 0; part < identity.size(); ++part) {
     identity.at(part) = static_cast<std::uint32_t>(dictionary_.number(0x1018, static_cast<std::uint8_t>(part + 1)));
   }
-  if (const auto answer = lss_.receive(frame, identity, now)) output_.push_back(*answer);
+  if (const auto answer = lss_.receive(frame, identity, now)) outlet_.send(*answer);
   if (!lss_.may_begin()) return;
   renumber(lss_.adopt());
   reset_application(now);
@@ -146,10 +137,10 @@ void Node::receive(const CanFrame& frame, Time now) {
   if (frame.id == 0x600 + id_) {
     if (nmt_ == NmtState::Stopped) return;
     move(now);
-    for (const CanFrame& reply : server_->receive(frame)) output_.push_back(reply);
+    for (const CanFrame& reply : server_->receive(frame)) outlet_.send(reply);
     return;
   }
-  if (frame.id > 0x700 && frame.id < 0x780) return hear(frame, now);
+  if (frame.id > 0x700 && frame.id < 0x780) return heartbeats_.hear(frame, now);
   if (nmt_ != NmtState::Operational) return;
   if (frame.id == (dictionary_.number(0x1005) & 0x7FF)) return sync(now);
   const PdoSet::Fit fit = pdos_.receive(frame);
@@ -161,22 +152,11 @@ void Node::sync(Time now) {
   move(now);
   pdos_.act_on_sync();
   axis_.publish();
-  pdos_.tell_on_sync(output_);
+  pdos_.tell_on_sync(outlet_.frames());
 }
 
-void Node::hear(const CanFrame& heartbeat, Time now) {
-  if (heartbeat.size != 1) return;
-  for (Watched& watched : watched_) {
-    if (watched.limit.count() == 0 || heartbeat.id != 0x700 + watched.node) continue;
-    watched.heard = now;
-    watched.runs = true;  // from the first one on (7.2.8.3.2.2)
-  }
-}
-
-void Node::watch(Time now) {
-  for (Watched& watched : watched_) {
-    if (!watched.runs || now - watched.heard <= watched.limit) continue;
-    watched.runs = false;
+void Node::watch_heartbeats(Time now) {
+  for (int lost = heartbeats_.lost(now); lost > 0; --lost) {
     emergency(kHeartbeatError);
     axis_.abort_connection();
     // Error behavior (1029h): 0 to Pre-operational, if it was Operational; 1 stays; 2 to Stopped.
@@ -196,14 +176,14 @@ void Node::poll(Time now) {
   // With SYNC the axis moves anyway; a poll between two of them is not worth the steps.
   constexpr Time kWorthMoving = std::chrono::microseconds(400);
   if (now - now_ >= kWorthMoving) move(now);
-  watch(now);
+  watch_heartbeats(now);
   if (nmt_ == NmtState::Operational && pdos_.tells_events()) {
     axis_.publish();
-    pdos_.tell_events(now, output_);
+    pdos_.tell_events(now, outlet_.frames());
   }
   const Time interval = std::chrono::milliseconds(dictionary_.number(0x1017));
   if (interval.count() == 0 || now < next_heartbeat_ || lss_.silent(now)) return;
-  send(static_cast<std::uint16_t>(0x700 + id_), {static_cast<std::uint8_t>(nmt_)});
+  outlet_.send(static_cast<std::uint16_t>(0x700 + id_), {static_cast<std::uint8_t>(nmt_)});
   next_heartbeat_ = std::max(next_heartbeat_ + interval, now);
 }
 
@@ -243,7 +223,7 @@ std::uint32_t Node::check_write(ObjectAddress object, std::int64_t value) const 
 void Node::take_write(ObjectAddress object) {
   switch (object.index) {
     case 0x1003:
-      for (std::uint8_t sub = 1; sub <= 8; ++sub) dictionary_.set({0x1003, sub}, 0);
+      errors_.clear_list();
       break;
     case 0x1010:
       dictionary_.set({0x1010, 1}, 1);
@@ -253,13 +233,9 @@ void Node::take_write(ObjectAddress object) {
       dictionary_.set({0x1011, 1}, 1);
       dictionary_.forget();
       break;
-    case 0x1016: {
-      const std::int64_t value = dictionary_.number(0x1016, object.sub);
-      Watched& watched = watched_.at(object.sub - 1U);
-      watched = {.node = static_cast<std::uint8_t>(value >> 16), .limit = std::chrono::milliseconds(value & 0xFFFF)};
-      if (watched.node == 0) watched.limit = Time{0};
+    case 0x1016:
+      heartbeats_.configure(object.sub, dictionary_.number(0x1016, object.sub));
       break;
-    }
     case 0x1017:
       next_heartbeat_ = now_;
       break;
@@ -270,46 +246,11 @@ void Node::take_write(ObjectAddress object) {
   }
 }
 
-void Node::report_error(std::uint16_t code) {
-  dictionary_.set(0x603F, code);
-  emergency(code);
-}
-
 void Node::emergency(std::uint16_t code) {
-  error_register_ = code == 0 ? std::uint16_t{0} : static_cast<std::uint16_t>(error_register_ | register_bits(code));
-  dictionary_.set(0x1001, error_register_);
-  if (code != 0) {
-    // The latest error comes first (7.5.2.3).
-    for (std::uint8_t sub = 8; sub > 1; --sub)
-      dictionary_.set({0x1003, sub}, dictionary_.number(0x1003, static_cast<std::uint8_t>(sub - 1)));
-    dictionary_.set({0x1003, 1}, code);
-    dictionary_.set(0x1003, std::min<std::int64_t>(dictionary_.number(0x1003) + 1, 8));
-  }
+  errors_.note(code);
   const std::int64_t id = dictionary_.number(0x1014);
   if ((id & 0x80000000) != 0 || nmt_ == NmtState::Stopped || nmt_ == NmtState::Initialising) return;
-  send(static_cast<std::uint16_t>(id & 0x7FF), {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8),
-                                                static_cast<std::uint8_t>(error_register_), 0, 0, 0, 0, 0});
-}
-
-void Node::send(std::uint16_t id, const Bytes& data) {
-  CanFrame frame;
-  frame.id = id;
-  frame.size = static_cast<std::uint8_t>(data.size());
-  std::copy(data.begin(), data.end(), frame.data.begin());
-  output_.push_back(frame);
-}
-
-std::vector<CanFrame> Node::take_output(Time now) {
-  std::vector<CanFrame> frames = std::exchange(output_, {});
-  if (mute_) frames.clear();
-  if (delay_.count() == 0 && delayed_.empty()) return frames;
-  for (const CanFrame& frame : frames) delayed_.emplace_back(now + delay_, frame);
-  frames.clear();
-  while (!delayed_.empty() && delayed_.front().first <= now) {
-    frames.push_back(delayed_.front().second);
-    delayed_.pop_front();
-  }
-  return frames;
+  outlet_.send(static_cast<std::uint16_t>(id & 0x7FF), errors_.emergency(code));
 }
 
 }  // namespace rmac::vdrive

@@ -1,9 +1,13 @@
 #pragma once
 
-#include <deque>
+#include <optional>
+#include <vector>
 
-#include "gateway/simulators/vdrive/axis.hpp"
+#include "gateway/simulators/vdrive/axis/axis.hpp"
+#include "gateway/simulators/vdrive/error_log.hpp"
+#include "gateway/simulators/vdrive/heartbeat_watch.hpp"
 #include "gateway/simulators/vdrive/lss_slave.hpp"
+#include "gateway/simulators/vdrive/outlet.hpp"
 #include "gateway/simulators/vdrive/pdo_set.hpp"
 
 namespace rmac::vdrive {
@@ -26,16 +30,12 @@ class Node {
   /// Lets time pass: heartbeats, the moving axis. To be called every millisecond or so.
   void poll(Time now);
   /// What it wants to send by now, in order.
-  [[nodiscard]] std::vector<CanFrame> take_output(Time now);
+  [[nodiscard]] std::vector<CanFrame> take_output(Time now) { return outlet_.take(now); }
 
-  // Faults on demand
-  void set_mute(bool mute) { mute_ = mute; }      ///< it hears and moves, and sends nothing
-  void set_delay(Time delay) { delay_ = delay; }  ///< all that it sends comes so much later
+  // Where faults on demand are put in: what it sends, how long its PDOs are, and the drive.
+  [[nodiscard]] Outlet& outlet() noexcept { return outlet_; }
   void set_pdo_length_change(int bytes) { pdos_.length_change = bytes; }
-  void set_overheated(bool hot) { axis_.set_overheated(hot); }
-  void touch(bool closed) { axis_.touch(0, closed); }  ///< the contact at touch probe 1
-  void shift_encoder(std::int32_t counts) { axis_.shift_encoder(counts); }
-  void trip(std::uint16_t error_code) { axis_.trip(error_code); }
+  [[nodiscard]] Axis& axis() noexcept { return axis_; }
 
   [[nodiscard]] std::uint8_t id() const { return id_; }
   [[nodiscard]] const LssSlave& lss() const { return lss_; }
@@ -45,13 +45,6 @@ class Node {
   [[nodiscard]] Dictionary& dictionary() { return dictionary_; }
 
  private:
-  struct Watched {
-    std::uint8_t node = 0;
-    Time limit{0};
-    Time heard{0};
-    bool runs = false;
-  };
-
   void attach();
   void renumber(std::uint8_t id);
   void hear_lss(const CanFrame& frame, Time now);
@@ -61,13 +54,10 @@ class Node {
   void reset_communication(Time now);
   void enter(NmtState state);
   void sync(Time now);
-  void hear(const CanFrame& heartbeat, Time now);
-  void watch(Time now);
+  void watch_heartbeats(Time now);
   [[nodiscard]] std::uint32_t check_write(ObjectAddress object, std::int64_t value) const;
   void take_write(ObjectAddress object);
-  void report_error(std::uint16_t code);
   void emergency(std::uint16_t code);
-  void send(std::uint16_t id, const Bytes& data);
   void move(Time now);
 
   fieldbus::eds::DeviceDescription sheet_;
@@ -76,17 +66,14 @@ class Node {
   Dictionary dictionary_;
   PdoSet pdos_;
   std::optional<SdoServer> server_;
+  ErrorLog errors_;
+  HeartbeatWatch heartbeats_;
+  Outlet outlet_;
   Axis axis_;
-  std::vector<CanFrame> output_;
-  std::deque<std::pair<Time, CanFrame>> delayed_;
-  std::array<Watched, 2> watched_;
   NmtState nmt_ = NmtState::Initialising;
   bool powered_ = false;
-  bool mute_ = false;
-  Time delay_{0};
   Time now_{0};  ///< up to which the axis has moved
   Time next_heartbeat_{0};
-  std::uint16_t error_register_ = 0;
 };
 
 }  // namespace rmac::vdrive

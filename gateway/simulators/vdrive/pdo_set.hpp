@@ -1,13 +1,11 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 
-#include "gateway/simulators/vdrive/dictionary.hpp"
+#include "gateway/simulators/vdrive/objects/dictionary.hpp"
+#include "gateway/simulators/vdrive/outlet.hpp"
 
 namespace rmac::vdrive {
-
-using Time = std::chrono::nanoseconds;
 
 /// The process data objects of a node as its dictionary configures them: 1400h to 1403h, 1600h to 1603h, 1800h to 1803h
 /// and 1A00h to 1A03h (CiA 301, 7.5.2.35 to 7.5.2.38).

@@ -35,7 +35,7 @@ class NoisyPort final : public CanPort {
   [[nodiscard]] CanHealth health() const noexcept override { return {}; }
 
  private:
-  /// Of SDO and LSS; to NMT some node's heartbeat.
+  /// Where SDO and LSS answer; to NMT, some node's heartbeat.
   [[nodiscard]] std::uint16_t answer_id() noexcept {
     if (asked_.id == 0x7E5) return 0x7E4;
     if (asked_.id > 0x600 && asked_.id < 0x680) return static_cast<std::uint16_t>(asked_.id - 0x80);

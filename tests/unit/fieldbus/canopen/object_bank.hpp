@@ -4,7 +4,7 @@
 #include <functional>
 #include <map>
 
-#include "gateway/simulators/vdrive/sdo_server.hpp"
+#include "gateway/simulators/vdrive/objects/sdo_server.hpp"
 
 namespace rmac::fieldbus::test {
 

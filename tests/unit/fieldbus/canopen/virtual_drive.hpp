@@ -5,7 +5,7 @@
 #include <set>
 #include <vector>
 
-#include "gateway/simulators/vdrive/power_states.hpp"
+#include "gateway/simulators/vdrive/axis/power_states.hpp"
 #include "unit/fieldbus/canopen/object_bank.hpp"
 
 namespace rmac::fieldbus::test {

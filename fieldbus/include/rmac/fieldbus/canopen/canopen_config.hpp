@@ -102,7 +102,7 @@ using FindDescription =
 [[nodiscard]] inline std::uint16_t answer_id(const AxisConfig& axis) noexcept {
   return static_cast<std::uint16_t>(0x180 + 0x100 * axis.axis_in_node + axis.node);
 }
-/// Of the second TPDO, which only a drive of one axis can have: the identifier is that of a second axis.
+/// The second TPDO's identifier, which is that of a second axis: only a drive of one axis can have it.
 [[nodiscard]] inline std::uint16_t more_answers_id(const AxisConfig& axis) noexcept {
   return static_cast<std::uint16_t>(0x280 + axis.node);
 }

@@ -239,15 +239,15 @@ TEST_F(NodeCommunication, IsWhatItsDataSheetSays) {
 
 TEST_F(NodeCommunication, ShowsFaultsOnDemand) {
   nmt(1);
-  node_.set_mute(true);
+  node_.outlet().set_mute(true);
   receive(0x605, {0x2B, 0x17, 0x10, 0, 10, 0, 0, 0});
   const std::size_t before = sent_.size();
   pass(0.1);
   EXPECT_EQ(sent_.size(), before);
-  node_.set_mute(false);
+  node_.outlet().set_mute(false);
   pass(0.02);
   EXPECT_GT(sent_.size(), before);
-  node_.set_delay(std::chrono::milliseconds(30));
+  node_.outlet().set_delay(std::chrono::milliseconds(30));
   pass(0.05);
   const std::size_t delayed = count(0x585);
   receive(0x605, {0x40, 0, 0x10, 0, 0, 0, 0, 0});

@@ -72,7 +72,7 @@ TEST_F(DriveTrials, StopADriveThatGoesTooFar) {
 }
 
 TEST_F(DriveTrials, SayWhatTheDriveDidInstead) {
-  node_.set_overheated(true);
+  node_.axis().set_overheated(true);
   const auto hot = attempt({.mode = DriveMode::ProfilePosition, .amount = 100, .most_counts = 200});
   ASSERT_FALSE(hot);
   EXPECT_NE(hot.error().message.find("4310h"), std::string::npos) << hot.error().message;

@@ -163,7 +163,7 @@ TEST_F(HomingByDrive, StopsAllWhenADriveFaultsMeanwhile) {
   engage();
   command_.home = true;
   ASSERT_TRUE(run_until(5, [&] { return report_.position[0] < -1; }));
-  nodes_[0]->set_overheated(true);
+  nodes_[0]->axis().set_overheated(true);
   ASSERT_TRUE(run_until(0.1, [&] { return report_.state == ServoState::Faulted; }));
   EXPECT_EQ(report_.fault.kind, ServoFault::Kind::DriveFault);
   command_.home = false;

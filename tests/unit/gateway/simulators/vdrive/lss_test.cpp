@@ -47,7 +47,7 @@ TEST_F(LayerSetting, FindsEveryNodeWithoutAnIdByItsIdentity) {
 
 TEST_F(LayerSetting, FindsNodesOfWhichEachAnswersInItsOwnTime) {
   std::uint32_t serial = 0x55AA0000;
-  for (const int ms : {0, 3, 17, 40}) unconfigured(++serial).set_delay(milliseconds(ms));
+  for (const int ms : {0, 3, 17, 40}) unconfigured(++serial).outlet().set_delay(milliseconds(ms));
   const auto found = lss_scan(*wire_.open());
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_EQ(found->size(), 4U) << "a late answer was taken for that to the next step";

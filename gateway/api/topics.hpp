@@ -1,0 +1,14 @@
+#pragma once
+
+#include <array>
+
+/// What `subscribe` knows.
+namespace rmac::gateway::topic {
+
+inline constexpr const char* kState = "state";
+inline constexpr const char* kJoints = "joints";
+inline constexpr const char* kDrives = "drives";
+inline constexpr const char* kEvents = "events";
+inline constexpr std::array kAll{kState, kJoints, kDrives, kEvents};
+
+}  // namespace rmac::gateway::topic

@@ -1,0 +1,60 @@
+#include "gateway/requests/machine_aside.hpp"
+
+#include <memory>
+
+namespace rmac::gateway {
+
+MachineAside::MachineAside(asio::io_context& io, Dispatcher& dispatcher, std::function<void()> on_back)
+    : io_(io), dispatcher_(dispatcher), on_back_(std::move(on_back)) {}
+
+void MachineAside::run(std::function<void()> work, std::function<void()> done) {
+  asio::post(thread_, [this, work = std::move(work), done = std::move(done)]() mutable {
+    work();
+    work = nullptr;
+    asio::post(io_, std::move(done));
+  });
+}
+
+void MachineAside::take_machine(std::uint64_t client, std::function<void(MachineStatus&)> work,
+                                std::function<bool()> done) {
+  last_served_ = client;
+  away_ = true;
+  auto status = std::make_shared<MachineStatus>();
+  run([work = std::move(work), status] { work(*status); },
+      [this, status, done = std::move(done)] {
+        away_ = mechanism_changes_ = false;
+        if (status->major != 0) dispatcher_.status().fail(static_cast<MinorCode>(status->minor));
+        // A move that must wait for room is tried again at the next tick, not at once.
+        if (done()) on_back_();
+      });
+}
+
+void MachineAside::prepare(const Request& request, SessionPort& session, std::uint64_t client,
+                           std::function<bool(std::optional<Answer>)> done) {
+  auto failed = std::make_shared<std::optional<Answer>>();
+  take_machine(
+      client,
+      [this, &request, &session, failed](MachineStatus& status) {
+        *failed = dispatcher_.prepare(request, session, status);
+      },
+      [failed, done = std::move(done)] { return done(std::move(*failed)); });
+}
+
+void MachineAside::carry_out(const Request& request, SessionPort& session, std::uint64_t client,
+                             std::function<bool(Answer)> done) {
+  mechanism_changes_ = request.method->slow && request.effect() == Effect::Starts;
+  auto answer = std::make_shared<Answer>();
+  take_machine(
+      client,
+      [this, &request, &session, answer](MachineStatus& status) {
+        *answer = dispatcher_.carry_out(request, session, status);
+      },
+      [answer, done = std::move(done)] { return done(std::move(*answer)); });
+}
+
+void MachineAside::stop() {
+  thread_.stop();
+  thread_.join();
+}
+
+}  // namespace rmac::gateway

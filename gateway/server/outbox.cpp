@@ -1,0 +1,37 @@
+#include "gateway/server/outbox.hpp"
+
+#include <algorithm>
+
+namespace rmac::gateway {
+
+namespace {
+
+constexpr std::size_t kBuffersPerWrite = 64;
+
+}  // namespace
+
+void Outbox::add(std::string line, Time now) {
+  line += '\n';
+  bytes_ += line.size();
+  if (lines_.empty()) last_progress_ = now;
+  lines_.push_back(std::move(line));
+}
+
+std::vector<asio::const_buffer> Outbox::begin_write() {
+  if (writing_ != 0) return {};
+  writing_ = std::min(lines_.size(), kBuffersPerWrite);
+  std::vector<asio::const_buffer> buffers;
+  buffers.reserve(writing_);
+  for (std::size_t i = 0; i < writing_; ++i) buffers.push_back(asio::buffer(lines_[i]));
+  return buffers;
+}
+
+void Outbox::written(Time now) {
+  last_progress_ = now;
+  for (; writing_ != 0; --writing_) {
+    bytes_ -= lines_.front().size();
+    lines_.pop_front();
+  }
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,39 @@
+#include "gateway/simulators/vdrive/axis/drive_loops.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace rmac::vdrive {
+namespace {
+
+TEST(DriveLoops, BringTheShaftToAPositionAndHoldItAgainstALoad) {
+  fieldbus::AxisPlantParameters hanging;
+  hanging.gravity_nm = 0.05;
+  Shaft shaft{hanging};
+  DriveLoops loops;
+  loops.start(hanging.gravity_nm);
+  Demand demand{.position = 500};
+  for (int step = 0; step < 8000; ++step) {
+    shaft.advance(loops.torque(demand, shaft, 0.3, 125e-6), false, 125e-6);
+  }
+  EXPECT_NEAR(shaft.position(), 500, 2);
+  EXPECT_TRUE(shaft.stands());
+}
+
+TEST(DriveLoops, BeginWithTheTorqueThatHoldsTheLoad) {
+  DriveLoops loops;
+  loops.start(0.05);
+  EXPECT_NEAR(loops.torque({}, Shaft{fieldbus::AxisPlantParameters()}, 0.3, 125e-6), 0.05, 1e-9);
+}
+
+TEST(DriveLoops, DoNotWindUpBeyondTheTorqueThatTheyMayUse) {
+  const Shaft blocked{fieldbus::AxisPlantParameters()};
+  DriveLoops loops;
+  Demand demand{.position = 1000};
+  for (int step = 0; step < 100'000; ++step) static_cast<void>(loops.torque(demand, blocked, 0.3, 125e-6));
+  EXPECT_NEAR(loops.torque({}, blocked, 0.3, 125e-6), 0.3, 1e-9) << "what is left when the error is gone";
+}
+
+}  // namespace
+}  // namespace rmac::vdrive
