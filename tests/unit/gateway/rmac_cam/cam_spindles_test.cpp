@@ -73,7 +73,7 @@ TEST_F(Spindles, SwitchTheCoolantAndNothingElse) {
   dry.outputs.clear();
   device_.change(&dry);
   EXPECT_EQ(spindles_.set_coolant(true).error().message,
-            "SetCoolant: Mill has no output named Coolant in its DigitalIOInterface");
+            "TurnCoolantOn: Mill has no output named Coolant in its DigitalIOInterface");
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ TEST_F(Joints, HaveEachLimitInItsPlace) {
 }
 
 TEST_F(Joints, StayAsTheyAreOnARefusal) {
-  EXPECT_EQ(editor_.set_name(0, "").error().message, "SetMechanismJointName: a name must have a letter at least");
+  EXPECT_EQ(editor_.set_name(0, "").error().message, "joint name: a name must have a letter at least");
   EXPECT_FALSE(editor_.set_maximum_speed(0, 0));
   EXPECT_FALSE(editor_.set_maximum_acceleration(0, -1));
   EXPECT_FALSE(editor_.set_maximum_jerk(0, std::numeric_limits<double>::infinity()));

@@ -34,7 +34,7 @@ TEST_F(Mechanism, HasAtMostSoManyJointsAsThereIsRoomForBesideHeldOnes) {
   EXPECT_FALSE(editor_.set_number_of_joints(0));
   EXPECT_TRUE(editor_.set_number_of_joints(static_cast<int>(kMaxJoints) - 1));
   EXPECT_EQ(editor_.set_number_of_joints(static_cast<int>(kMaxJoints)).error().message,
-            "SetMechanismNumberOfJoints: 32 must be 1 to 31");
+            "SetMechanismNumJnts: 32 must be 1 to 31");
 }
 
 TEST_F(Mechanism, HasSoManySpindlesAsDeviceJsonDescribesThem) {
