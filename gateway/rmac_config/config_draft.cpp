@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "gateway/json/range.hpp"
-#include "rmac/motion/servo_loop.hpp"
+#include "rmac/motion/machine_size.hpp"
 
 namespace rmac::gateway {
 namespace {
