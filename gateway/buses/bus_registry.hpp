@@ -6,7 +6,7 @@
 #include <string>
 
 #include "gateway/modules/module_loader.hpp"
-#include "rmac/motion/servo_loop.hpp"
+#include "rmac/motion/servo/servo_bus.hpp"
 
 namespace rmac::gateway {
 

@@ -18,7 +18,7 @@ TouchProbeModel::TouchProbeModel(std::shared_ptr<fieldbus::SimulatedIoInterface>
       probe_(*io_->probe()),
       kinematics_(parts.kinematics),
       map_(parts.actuator_map),
-      axes_(parts.axes.size()),
+      axes_(parts.joints.size()),
       period_s_(parts.period_s),
       shafts_(std::move(shafts)),
       spindle_(std::move(spindle)),

@@ -6,7 +6,7 @@
 
 #include "rmac/fieldbus/simulated_interface.hpp"
 #include "rmac/fieldbus/simulated_io_interface.hpp"
-#include "rmac/motion/servo_loop.hpp"
+#include "rmac/motion/servo/servo_loop_parts.hpp"
 
 namespace rmac::gateway {
 

@@ -9,7 +9,7 @@
 
 #include "gateway/record/flight_recorder_options.hpp"
 #include "rmac/motion/error.hpp"
-#include "rmac/motion/servo_loop.hpp"
+#include "rmac/motion/servo/servo_fault.hpp"
 
 namespace rmac::gateway {
 

@@ -15,7 +15,7 @@
 #include "gateway/state/machine_state.hpp"
 #include "gateway/tools/tool.hpp"
 #include "rmac/motion/error.hpp"
-#include "rmac/motion/servo_loop.hpp"
+#include "rmac/motion/servo/servo_fault.hpp"
 #include "rmac/sdk/measuring.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
 #include "rmac/sdk/rmac_config.hpp"

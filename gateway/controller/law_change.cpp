@@ -35,7 +35,7 @@ bool Controller::Impl::other_law(const sdk::Joint& now, const sdk::Joint& wanted
 
 std::vector<std::size_t> Controller::Impl::joints_with_other_loops(const sdk::DeviceObject& device) const {
   std::vector<std::size_t> joints;
-  for (std::size_t j = 0; j < in_force->loop->axis_count(); ++j) {
+  for (std::size_t j = 0; j < in_force->loop->joint_count_with_held(); ++j) {
     const sdk::Joint &now = joint_of(in_force->device, j), &wanted = joint_of(device, j);
     if (other_law(now, wanted) || now.method != wanted.method) joints.push_back(j);
   }
@@ -66,7 +66,7 @@ Expected<> Controller::Impl::change_loops(const sdk::DeviceObject& device, const
     if (!law) return tl::unexpected(law.error());
     (*law)->set_effort_limit(joint.max_effort);
     // The assembler made it.
-    auto* const now = static_cast<ExchangeableLaw*>(in_force->loop->parts().axes[j].law.get());
+    auto* const now = static_cast<ExchangeableLaw*>(in_force->loop->parts().joints[j].law.get());
     laws.push_back({now, std::move(*law)});
   }
   SwapRequest request;

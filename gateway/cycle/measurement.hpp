@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "rmac/motion/servo_loop.hpp"
+#include "rmac/motion/servo/servo_inputs.hpp"
 
 namespace rmac::gateway {
 

@@ -40,10 +40,10 @@ std::optional<NamedBus> bus_at(std::uint32_t index, const Mechanism* mechanism) 
   };
   for (std::size_t i = 0; i < parts.actuators.size(); ++i) add(parts.actuators[i].bus, device.actuators.at(i).bus);
   for (std::size_t i = 0; i < parts.spindles.size(); ++i) add(parts.spindles[i].bus, device.spindles.at(i).bus);
-  for (std::size_t j = 0; j < parts.axes.size(); ++j) {
+  for (std::size_t j = 0; j < parts.joints.size(); ++j) {
     const std::size_t moved = device.joints.size();
     const sdk::Joint& joint = j < moved ? device.joints[j] : device.held_joints.at(j - moved);
-    if (parts.axes[j].force_sensor) add(parts.axes[j].force_sensor->bus, joint.force_sensor->bus);
+    if (parts.joints[j].force_sensor) add(parts.joints[j].force_sensor->bus, joint.force_sensor->bus);
   }
   return index < buses.size() ? std::optional(buses[index]) : std::nullopt;
 }

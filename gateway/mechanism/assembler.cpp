@@ -55,11 +55,11 @@ Expected<std::shared_ptr<ServoLaw>> load_law(const sdk::ModuleChoice& choice, co
   return std::move(law->object);
 }
 
-Expected<ServoAxis> make_axis(const sdk::Joint& joint, const ModuleLoader& loader, double period_s,
-                              std::vector<ModuleInUse>& modules) {
-  ServoAxis axis{nullptr,          joint.method,    joint.max_following_error,
-                 joint.max_effort, joint.mechanics, bounds(joint, period_s),
-                 std::nullopt,     force(joint)};
+Expected<ServoJoint> make_axis(const sdk::Joint& joint, const ModuleLoader& loader, double period_s,
+                               std::vector<ModuleInUse>& modules) {
+  ServoJoint axis{nullptr,          joint.method,    joint.max_following_error,
+                  joint.max_effort, joint.mechanics, bounds(joint, period_s),
+                  std::nullopt,     force(joint)};
   if (joint.servo_law.name.empty()) return axis;
   auto law = load_joint_law(joint, loader, modules);
   if (!law) return tl::unexpected(law.error());
@@ -73,7 +73,7 @@ Expected<> add_axes(const sdk::DeviceObject& device, const ModuleLoader& loader,
     for (const sdk::Joint& joint : *joints) {
       auto axis = make_axis(joint, loader, parts.period_s, modules);
       if (!axis) return tl::unexpected(axis.error());
-      parts.axes.push_back(std::move(*axis));
+      parts.joints.push_back(std::move(*axis));
       parts.virtual_start.push_back(joint.limits.limit_type == JointLimitType::Limited
                                         ? std::clamp(0.0, joint.limits.min, joint.limits.max)
                                         : 0.0);
@@ -175,7 +175,7 @@ Expected<> add_spindles(const sdk::DeviceObject& device, const ModuleLoader& loa
 Expected<> add_sensors(const sdk::DeviceObject& device, const ModuleLoader& loader, BusRegistry& registry,
                        ServoLoopParts& parts) {
   if (parts.virtual_mode) return {};
-  for (std::size_t j = 0; j < parts.axes.size(); ++j) {
+  for (std::size_t j = 0; j < parts.joints.size(); ++j) {
     const std::size_t moved = device.joints.size();
     const sdk::Joint& joint = j < moved ? device.joints[j] : device.held_joints[j - moved];
     if (!joint.force_sensor) continue;
@@ -187,7 +187,7 @@ Expected<> add_sensors(const sdk::DeviceObject& device, const ModuleLoader& load
                      fmt::format("force sensor of joint \"{}\": bus {} has no axis {}; it has {}", joint.limits.name,
                                  sensor.bus, sensor.axis, there));
     }
-    parts.axes[j].force_sensor =
+    parts.joints[j].force_sensor =
         ServoForceSensor{std::move(*bus), sensor.axis, sensor.newton_per_count, sensor.zero_counts};
   }
   return {};

@@ -7,7 +7,8 @@
 #include "rmac/motion/plan_channel.hpp"
 #include "rmac/motion/plan_follower.hpp"
 #include "rmac/motion/planner.hpp"
-#include "rmac/motion/servo_loop.hpp"
+#include "rmac/motion/servo/servo_loop.hpp"
+#include "rmac/motion/servo/servo_loop_parts.hpp"
 #include "rmac/sdk/device_object.hpp"
 
 namespace rmac::gateway {

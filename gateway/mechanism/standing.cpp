@@ -4,22 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 
 namespace rmac::gateway {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 /// mm or degrees: what a position loses on its way through maps and encoders.
 constexpr double kRounding = 1e-6;
-
-double counts_of(const DriveScale& scale, double shaft_rad) {
-  return scale.home_counts + scale.direction * shaft_rad * scale.counts_per_revolution / kTurn;
-}
-
-double shaft_of(const DriveScale& scale, double counts) {
-  return scale.direction * (counts - scale.home_counts) * kTurn / scale.counts_per_revolution;
-}
 
 }  // namespace
 
@@ -37,9 +27,9 @@ std::optional<std::vector<double>> standing_after(const Mechanism& now, std::spa
     });
     if (shared == drives_now.end()) return std::nullopt;
     const auto index = static_cast<std::size_t>(shared - drives_now.begin());
-    shafts_next[i] = shaft_of(drives_next[i].scale, counts_of(shared->scale, shafts_now[index]));
+    shafts_next[i] = shaft_rad(drives_next[i].scale, shaft_counts(shared->scale, shafts_now[index]));
   }
-  std::vector<double> joints(next.loop->axis_count());
+  std::vector<double> joints(next.loop->joint_count_with_held());
   next.loop->parts().actuator_map->joint_positions({shafts_next.data(), drives_next.size()}, joints);
   return joints;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rmac/motion/frame.hpp"
+#include "rmac/motion/servo/servo_handover.hpp"
 
 namespace rmac::gateway {
 
@@ -94,7 +95,7 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
   status_.probe = report_.probe;
   if (report_.follows) status_.moves_done += setpoint.moves_done;
   status_.joint_count = static_cast<std::uint32_t>(loop.joint_count());
-  status_.axis_count = static_cast<std::uint32_t>(loop.axis_count());
+  status_.axis_count = static_cast<std::uint32_t>(loop.joint_count_with_held());
   status_.position_set = report_.position_set;
   status_.spindle_rpm = report_.spindle_rpm;
 

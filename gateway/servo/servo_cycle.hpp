@@ -1,6 +1,8 @@
 #pragma once
 
 #include "gateway/servo/servo_link.hpp"
+#include "rmac/motion/servo/servo_command.hpp"
+#include "rmac/motion/servo/servo_report.hpp"
 
 namespace rmac::gateway {
 

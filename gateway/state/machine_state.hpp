@@ -9,10 +9,11 @@
 #include <string>
 
 #include "rmac/motion/force_control.hpp"
+#include "rmac/motion/machine_size.hpp"
 #include "rmac/motion/move.hpp"
 #include "rmac/motion/path_segment.hpp"
-#include "rmac/motion/servo_fault.hpp"
-#include "rmac/motion/servo_loop.hpp"
+#include "rmac/motion/servo/servo_fault.hpp"
+#include "rmac/motion/servo/servo_inputs.hpp"
 #include "rmac/sdk/measuring.hpp"
 
 namespace rmac::gateway {

@@ -136,7 +136,7 @@ class ServoLoopCheck {
   }
   [[nodiscard]] tl::unexpected<CounterExample> fault(std::string what) const {
     const auto shown = [&](const char* name, const auto& values) {
-      return named(name, std::span(values).first(loop_.axis_count()));
+      return named(name, std::span(values).first(loop_.joint_count_with_held()));
     };
     return found("stability", std::move(what), cycles_,
                  {shown("setpoint", report_.position_set), shown("position", report_.position),
@@ -206,7 +206,7 @@ class ServoLoopCheck {
     constexpr int kSettle = 500, kWatched = 500;
     for (int i = 0; i < kSettle + kWatched; ++i) {
       if (auto fine = cycle(); !fine) return fine;
-      for (std::size_t j = 0; i >= kSettle && j < loop_.axis_count(); ++j) {
+      for (std::size_t j = 0; i >= kSettle && j < loop_.joint_count_with_held(); ++j) {
         const sdk::Joint& joint = joint_of(j);
         const double off = std::abs(report_.position[j] - report_.position_set[j]);
         const double bound = kRestShare * joint.max_following_error;

@@ -109,10 +109,10 @@ class WatchedServoLaw final : public ServoLaw {
     return {input.position_setpoint,
             input.velocity_setpoint,
             input.acceleration_setpoint,
-            input.effort_setpoint,
             input.position,
             input.velocity,
             input.effort,
+            input.effort_measured ? 1.0 : 0.0,
             input.period_s};
   }
 

@@ -3,7 +3,7 @@
 
 #include "gateway/api/method_builder.hpp"
 #include "gateway/api/methods/method_table.hpp"
-#include "rmac/motion/servo_loop.hpp"
+#include "rmac/motion/machine_size.hpp"
 
 namespace rmac::gateway {
 

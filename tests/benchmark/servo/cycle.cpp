@@ -7,7 +7,10 @@
 #include "rmac/modules/proportional_transmissions.hpp"
 #include "rmac/modules/transmission_map.hpp"
 #include "rmac/motion/frame.hpp"
-#include "rmac/motion/servo_loop.hpp"
+#include "rmac/motion/servo/servo_command.hpp"
+#include "rmac/motion/servo/servo_loop.hpp"
+#include "rmac/motion/servo/servo_loop_parts.hpp"
+#include "rmac/motion/servo/servo_report.hpp"
 #include "rows.hpp"
 
 namespace rmac::bench {
@@ -102,7 +105,7 @@ Cycles run_cycles(std::size_t joints, int count) {
     auto law = std::make_shared<modules::FeedforwardFeedbackServoLaw>(modules::ErrorSignal::Parameters{0.001, 0},
                                                                       modules::FeedforwardModel::Parameters{});
     (void)law->set_gains(std::array{50.0, 500.0, 0.5, 0.1, 0.01, 2.0, 0.0});
-    parts.axes.push_back({law, ControlMethod::Position, 5, 500});
+    parts.joints.push_back({law, ControlMethod::Position, 5, 500});
     parts.actuators.push_back({bus, static_cast<std::uint32_t>(j), {kCountsPerTurn, 1, 1, 0}});
   }
   parts.actuator_map = std::make_shared<modules::TransmissionMap>(std::move(gears));

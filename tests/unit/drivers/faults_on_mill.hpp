@@ -83,12 +83,12 @@ class FaultOnMill : public MillRun {
   static constexpr int kRestCycles = 300;
 
   void watch(const nlohmann::json& device, ServoLoopParts& parts, bool keep_power) {
-    for (std::size_t j = 0; j < parts.axes.size(); ++j) {
+    for (std::size_t j = 0; j < parts.joints.size(); ++j) {
       const auto& joint = device["Joints"][j];
-      parts.axes[j].bounds = {1.2 * joint["MaxSpeed"].get<double>(), kJump, joint["MaxAcceleration"]};
+      parts.joints[j].bounds = {1.2 * joint["MaxSpeed"].get<double>(), kJump, joint["MaxAcceleration"]};
     }
     for (ServoActuator& actuator : parts.actuators) actuator.max_torque_nm = kTorque;
-    parts.axes[2].force_sensor = ServoForceSensor{bus_, 2, 0.01, 0};
+    parts.joints[2].force_sensor = ServoForceSensor{bus_, 2, 0.01, 0};
     parts.max_cycles_lost = 5;
     if (!keep_power) {
       parts.stop_categories.drive_silent = StopCategory::StopThenRemovePower;

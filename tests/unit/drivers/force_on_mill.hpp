@@ -38,18 +38,18 @@ class ForceOnMill : public MillRun {
 
   void press_with_z(const nlohmann::json& joint, const fieldbus::SimulatedContact& sheet, ServoLoopParts& parts) const {
     const auto& force = joint["ForceControl"];
-    parts.axes[2].method = ControlMethod::Force;
-    parts.axes[2].force = {.approach_speed = force["ApproachSpeed"],
-                           .contact_force = force["ContactForce"],
-                           .gain = 20 / sheet.stiffness_n_mm,  // as docs/servo.md says
-                           .reset_time_s = force["ResetTime"],
-                           .max_speed = force["MaxSpeed"],
-                           .max_force = force["MaxForce"],
-                           .max_search = force["MaxSearch"],
-                           .max_acceleration = joint["MaxAcceleration"]};
-    parts.axes[2].bounds.min_position = joint["Min"];
-    parts.axes[2].bounds.max_position = joint["Max"];
-    parts.axes[2].force_sensor = ServoForceSensor{bus_, 2, joint["ForceSensor"]["NewtonPerCount"], 0};
+    parts.joints[2].method = ControlMethod::Force;
+    parts.joints[2].force = {.approach_speed = force["ApproachSpeed"],
+                             .contact_force = force["ContactForce"],
+                             .gain = 20 / sheet.stiffness_n_mm,  // as docs/servo.md says
+                             .reset_time_s = force["ResetTime"],
+                             .max_speed = force["MaxSpeed"],
+                             .max_force = force["MaxForce"],
+                             .max_search = force["MaxSearch"],
+                             .max_acceleration = joint["MaxAcceleration"]};
+    parts.joints[2].bounds.min_position = joint["Min"];
+    parts.joints[2].bounds.max_position = joint["Max"];
+    parts.joints[2].force_sensor = ServoForceSensor{bus_, 2, joint["ForceSensor"]["NewtonPerCount"], 0};
   }
   /// What the axis really presses with.
   [[nodiscard]] double pressed_n() const { return simulated_->plant(2).contact_nm() * 2 * std::numbers::pi / 5e-3; }

@@ -9,7 +9,7 @@ class MechanicsOnMill : public testing::Test, protected MillRun {
   Ballbar measure(const JointMechanics& declared) {
     return measure_circle([](nlohmann::json& device) { choose_feedforward(device); },
                           [&](Mill&, ServoLoopParts& parts) {
-                            for (std::size_t j = 0; j < 2; ++j) parts.axes[j].mechanics = declared;
+                            for (std::size_t j = 0; j < 2; ++j) parts.joints[j].mechanics = declared;
                           });
   }
 };

@@ -28,9 +28,9 @@ class LawChangesOnMill : public MillRun {
     methods_too_ = methods_too;
     Mill mill("mill/3-axis/DMACXYZ", bus_, {}, [this](Mill&, ServoLoopParts& parts) {
       for (std::size_t j = 0; j < kAxes; ++j) {
-        const auto law = std::make_shared<gateway::ExchangeableLaw>(parts.axes[j].law);
+        const auto law = std::make_shared<gateway::ExchangeableLaw>(parts.joints[j].law);
         exchangeable_[j] = law.get();
-        parts.axes[j].law = law;
+        parts.joints[j].law = law;
       }
     });
     devices_ = {mill.device(), mill.device(), mill.device()};
@@ -82,14 +82,14 @@ class LawChangesOnMill : public MillRun {
         ++changes_.count;
         break;
       default:
-        if (methods_too_) mill.loop().set_control_method(j, other_than(mill.loop().parts().axes[j].method));
+        if (methods_too_) mill.loop().set_control_method(j, other_than(mill.loop().parts().joints[j].method));
         ++changes_.method_count;
         return;
     }
     nlohmann::json joint = devices_[law_[j]]["Joints"][j];
     for (nlohmann::json& gain : joint["Gains"]) gain = factor * gain.get<double>();
     auto law = mill.make_law(joint);
-    law->set_effort_limit(mill.loop().parts().axes[j].max_effort);
+    law->set_effort_limit(mill.loop().parts().joints[j].max_effort);
     exchangeable_[j]->exchange(law);
     since_[j] = 0;
   }

@@ -16,7 +16,10 @@
 #include "conformance/loaded_module.hpp"
 #include "places.hpp"
 #include "rmac/fieldbus/simulated_interface.hpp"
-#include "rmac/motion/servo_loop.hpp"
+#include "rmac/motion/servo/servo_command.hpp"
+#include "rmac/motion/servo/servo_loop.hpp"
+#include "rmac/motion/servo/servo_loop_parts.hpp"
+#include "rmac/motion/servo/servo_report.hpp"
 #include "rmac/sdk/servo_law_names.hpp"
 
 namespace rmac::mill_test {
@@ -72,7 +75,7 @@ class Mill {
     parts.actuator_map = make<ActuatorMap>(device_["ActuatorMap"]);
     for (const char* list : {"Joints", "HeldJoints"}) {
       for (const auto& joint : device_[list]) {
-        parts.axes.push_back(
+        parts.joints.push_back(
             {make_law(joint), ControlMethod::Position, joint["MaxFollowingError"], joint["MaxEffort"]});
       }
     }
@@ -143,7 +146,7 @@ class MillRun {
     EXPECT_FALSE(failed_) << "fault " << static_cast<int>(report_.fault.kind) << " of index " << report_.fault.index
                           << ", value " << report_.fault.value;
     if (!report_.follows) return;
-    for (std::size_t j = 0; j < mill.loop().axis_count(); ++j) {
+    for (std::size_t j = 0; j < mill.loop().joint_count_with_held(); ++j) {
       const double error = std::abs(report_.position_set[j] - report_.position[j]);
       largest_error_[j] = std::max(largest_error_[j], error);
     }

@@ -10,7 +10,8 @@
 #include "places.hpp"
 #include "rmac/fieldbus/simulated_interface.hpp"
 #include "rmac/fieldbus/simulated_io_interface.hpp"
-#include "rmac/motion/servo_loop.hpp"
+#include "rmac/motion/servo/servo_bus.hpp"
+#include "rmac/motion/servo/servo_loop.hpp"
 
 namespace rmac::gateway {
 

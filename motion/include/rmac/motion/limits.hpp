@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "rmac/motion/axis.hpp"
+#include "rmac/motion/joint.hpp"
 
 namespace rmac {
 

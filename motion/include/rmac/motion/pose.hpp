@@ -3,10 +3,9 @@
 #include <array>
 #include <cstddef>
 
-namespace rmac {
+#include "rmac/motion/machine_size.hpp"
 
-/// Most joints a mechanism may have (the dissertation's DMAC_MAX_JNT).
-inline constexpr std::size_t kMaxJoints = 32;
+namespace rmac {
 
 using Vector = std::array<double, 3>;
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "rmac/motion/axis.hpp"
+#include "rmac/motion/joint.hpp"
 #include "rmac/motion/pose.hpp"
 
 namespace rmac::modules {

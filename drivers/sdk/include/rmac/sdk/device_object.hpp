@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "rmac/motion/axis.hpp"
+#include "rmac/motion/drive_scale.hpp"
 #include "rmac/motion/force_control.hpp"
+#include "rmac/motion/joint.hpp"
 #include "rmac/motion/joint_mechanics.hpp"
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/ports/digital_control_interface.hpp"

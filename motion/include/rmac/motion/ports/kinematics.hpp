@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-#include "rmac/motion/axis.hpp"
+#include "rmac/motion/joint.hpp"
 #include "rmac/motion/pose.hpp"
 
 namespace rmac {

@@ -11,12 +11,16 @@ struct ServoInput {
   double position_setpoint = 0;
   double velocity_setpoint = 0;
   double acceleration_setpoint = 0;
-  double effort_setpoint = 0;  ///< wanted contact force, for force control
   /// Measured. Where the drives tell what was a cycle before, moved on by what the setpoint did since: the difference
   /// to the setpoint is what it was when they measured.
   double position = 0;
   double velocity = 0;  ///< the same
-  double effort = 0;    ///< measured by a force sensor where there is one, else by the drive
+  /// What the joint is pushed with, or the spindle turned. Measured where `effort_measured` says so: by the drives,
+  /// from their motors' current (6077h), through the actuator map, friction of the transmission included; drives that
+  /// tell what was a cycle before do so of this too. Elsewhere the effort that was commanded in the cycle before. A
+  /// joint's force sensor has no part in it: the loop of its contact force is around this law.
+  double effort = 0;
+  bool effort_measured = false;
   double period_s = 0.001;
 };
 

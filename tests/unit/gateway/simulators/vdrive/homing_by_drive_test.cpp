@@ -52,7 +52,7 @@ class HomingByDrive : public testing::Test {
     parts_.actuator_map = std::move(map);
     const auto bus = std::make_shared<ServoBus>(master_);
     for (std::uint8_t i = 0; i < 3; ++i) {
-      parts_.axes.push_back({std::make_shared<StiffLaw>(), ControlMethod::Position, 1, 0.9});
+      parts_.joints.push_back({std::make_shared<StiffLaw>(), ControlMethod::Position, 1, 0.9});
       parts_.actuators.push_back(
           {bus, i, {131072, 0.318, 1, 0}, i == 2 ? std::uint8_t{0} : static_cast<std::uint8_t>(i + 1)});
     }

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "rmac/motion/servo/servo_loop_parts.hpp"
+#include "servo/faults/fault_sink.hpp"
+
+namespace rmac {
+
+/// Words out to all buses of the mechanism and to its I/O, and answers in. Real-time safe but for its making.
+class Exchange {
+ public:
+  /// `parts` must outlive it.
+  explicit Exchange(const ServoLoopParts& parts);
+
+  /// One exchange; the machine's inputs, those that drives tell among them. The first one of a loop that took nothing
+  /// over sends words that ask for nothing.
+  [[nodiscard]] std::uint64_t run(std::uint64_t outputs, FaultSink& faults) noexcept;
+  /// Another loop's words stand: those for drives that this loop has go on, the others ask for nothing.
+  void take_over() noexcept;
+  /// Time that the last exchange took.
+  [[nodiscard]] std::int64_t took_ns() const noexcept { return took_ns_; }
+
+ private:
+  [[nodiscard]] bool owns(const ServoBus* bus, std::uint32_t axis) const noexcept;
+
+  const ServoLoopParts& parts_;
+  std::vector<std::shared_ptr<ServoBus>>
+      buses_;  ///< each once, in the order in which actuators, spindles, sensors come
+  bool fresh_ = true;
+  std::int64_t took_ns_ = 0;
+};
+
+}  // namespace rmac

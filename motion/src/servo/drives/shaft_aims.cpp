@@ -1,0 +1,37 @@
+#include "servo/drives/shaft_aims.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "rmac/motion/drive_scale.hpp"
+
+namespace rmac {
+
+void ShaftAims::step(std::span<const double> wanted, IndexSet followed, FaultSink& faults) noexcept {
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    if (has(followed, i) && !std::isfinite(wanted[i])) {
+      faults.raise(
+          {ServoFault::Kind::NotANumber, ServoFault::Part::Actuator, static_cast<std::uint32_t>(i), wanted[i], 0});
+      aimed_ = 0;
+      return;
+    }
+    aim_before_[i] = has(aimed_, i) ? aim_[i] : wanted[i];
+    aim_[i] = wanted[i];
+  }
+  aimed_ = followed;
+}
+
+void ShaftAims::command(std::size_t actuator, double measured_rad, DriveCommand& words) const noexcept {
+  const ServoActuator& part = actuators_[actuator];
+  const double aim = aim_[actuator];
+  if (part.mode == DriveMode::CyclicSyncPosition) {
+    words.target_position_counts = position_word(shaft_counts(part.scale, aim));
+    return;
+  }
+  const double before = aim_before_[actuator];
+  const double when_it_told = has(late_, actuator) ? before : aim;
+  const double wanted_rad_s = (aim - before) / period_s_ + part.position_gain * (when_it_told - measured_rad);
+  words.target_velocity_rpm = part.scale.direction * wanted_rad_s * 30 / std::numbers::pi;
+}
+
+}  // namespace rmac

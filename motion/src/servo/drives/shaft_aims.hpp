@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "rmac/motion/machine_size.hpp"
+#include "rmac/motion/servo/servo_loop_parts.hpp"
+#include "servo/faults/fault_sink.hpp"
+#include "servo/joints/index_set.hpp"
+
+namespace rmac {
+
+/// Where the drives are sent that follow a position or a velocity themselves: shaft angles, in rad. Real-time safe.
+class ShaftAims {
+ public:
+  /// `actuators` must outlive it. `late`: those that tell in a cycle where they were one cycle before.
+  ShaftAims(std::span<const ServoActuator> actuators, IndexSet late, double period_s) noexcept
+      : actuators_(actuators), late_(late), period_s_(period_s) {}
+
+  /// One cycle: `wanted` shaft angles of all actuators; those in `followed` are under control and go there. Where there
+  /// is no number for one of these, that is a fault, and none is sent anywhere.
+  void step(std::span<const double> wanted, IndexSet followed, FaultSink& faults) noexcept;
+  [[nodiscard]] bool sends(std::size_t actuator) const noexcept { return has(aimed_, actuator); }
+  [[nodiscard]] double operator[](std::size_t actuator) const noexcept { return aim_[actuator]; }
+  /// The drive's setpoint, as its mode takes it; `measured_rad`: where it says that its shaft is.
+  void command(std::size_t actuator, double measured_rad, DriveCommand& words) const noexcept;
+
+ private:
+  std::span<const ServoActuator> actuators_;
+  IndexSet late_;
+  double period_s_;
+  std::array<double, kMaxJoints> aim_{}, aim_before_{};
+  IndexSet aimed_ = 0;  ///< sent there in the last cycle
+};
+
+}  // namespace rmac

@@ -1,0 +1,38 @@
+#include "servo/drives/shaft_reader.hpp"
+
+#include <algorithm>
+
+namespace rmac {
+
+void ShaftReader::read(const DriveFeedback& words) noexcept {
+  if (!words.online) {
+    history_ = 0;
+    rad_s_ = 0;
+    return;
+  }
+  const std::int64_t last = seen_ ? counts_ : std::int64_t{scale_.home_counts};
+  counts_ = last + counts_gone(last, words.position_counts);
+  const double now = shaft_rad(scale_, static_cast<double>(counts_));
+  const double back1 = now - rad_;
+  const double back2 = rad_ - rad_before_;
+  const double moved = history_ == 0 ? 0 : history_ == 1 ? back1 : (3 * back1 - back2) / 2;
+  rad_s_ = moved / period_s_;
+  history_ = static_cast<std::uint8_t>(std::min(history_ + 1, 2));
+  rad_before_ = rad_;
+  rad_ = now;
+  seen_ = true;
+}
+
+void ShaftReader::forget() noexcept {
+  seen_ = false;
+  history_ = 0;
+}
+
+void ShaftReader::take_over(std::int64_t counts, bool seen) noexcept {
+  seen_ = seen;
+  history_ = seen ? 1 : 0;
+  counts_ = counts;
+  rad_ = shaft_rad(scale_, static_cast<double>(counts));
+}
+
+}  // namespace rmac

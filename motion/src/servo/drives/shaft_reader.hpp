@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+
+#include "rmac/motion/drive_scale.hpp"
+#include "rmac/motion/ports/digital_control_interface.hpp"
+
+namespace rmac {
+
+/// Where the shaft of one motor is, and how fast it turns, from the words of its drive. Real-time safe.
+class ShaftReader {
+ public:
+  ShaftReader(const DriveScale& scale, double period_s) noexcept : scale_(scale), period_s_(period_s) {}
+
+  /// The words of this cycle. While the drive does not answer the shaft is taken to stand.
+  void read(const DriveFeedback& words) noexcept;
+  /// The counter is about to jump, and none of that is motion.
+  void forget() noexcept;
+  /// As another loop left it; `seen`: its counts hold a reading.
+  void take_over(std::int64_t counts, bool seen) noexcept;
+
+  [[nodiscard]] double rad() const noexcept { return rad_; }
+  [[nodiscard]] double rad_s() const noexcept { return rad_s_; }
+  [[nodiscard]] std::int64_t counts() const noexcept { return counts_; }  ///< unwrapped
+  [[nodiscard]] bool seen() const noexcept { return seen_; }              ///< a position was read
+
+ private:
+  DriveScale scale_;
+  double period_s_;
+  bool seen_ = false;
+  std::int64_t counts_ = 0;
+  std::uint8_t history_ = 0;  ///< readings before the next one that its velocity may use, 2 at most
+  double rad_ = 0, rad_before_ = 0, rad_s_ = 0;
+};
+
+}  // namespace rmac

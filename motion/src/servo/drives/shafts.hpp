@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "rmac/motion/machine_size.hpp"
+#include "rmac/motion/servo/servo_loop_parts.hpp"
+#include "servo/drives/shaft_reader.hpp"
+
+namespace rmac {
+
+/// The shafts of all motors, in the order of the actuator map. Real-time safe but for its making.
+class Shafts {
+ public:
+  /// `actuators` must outlive it.
+  Shafts(std::span<const ServoActuator> actuators, double period_s);
+
+  /// One cycle: takes what the drives told.
+  void read() noexcept;
+  [[nodiscard]] ShaftReader& operator[](std::size_t actuator) noexcept { return readers_[actuator]; }
+  [[nodiscard]] const ShaftReader& operator[](std::size_t actuator) const noexcept { return readers_[actuator]; }
+  /// Of the last `read`.
+  [[nodiscard]] std::span<const double> rad() const noexcept { return {rad_.data(), readers_.size()}; }
+  [[nodiscard]] std::span<const double> rad_s() const noexcept { return {rad_s_.data(), readers_.size()}; }
+
+ private:
+  std::span<const ServoActuator> actuators_;
+  std::vector<ShaftReader> readers_;
+  std::array<double, kMaxJoints> rad_{}, rad_s_{};
+};
+
+}  // namespace rmac

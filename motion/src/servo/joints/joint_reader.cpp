@@ -1,0 +1,44 @@
+#include "servo/joints/joint_reader.hpp"
+
+#include <algorithm>
+
+namespace rmac {
+
+JointReader::JointReader(const ServoLoopParts& parts, const Wiring& wiring, Transmission& transmission)
+    : joints_(parts.joints),
+      period_s_(parts.period_s),
+      transmission_(transmission),
+      efforts_(*parts.actuator_map, wiring, parts.actuators) {}
+
+void JointReader::read(std::span<const double> shafts, std::span<const double> shaft_velocities, IndexSet live,
+                       IndexSet steady, std::span<const double> velocity_set) noexcept {
+  const std::size_t count = joints_.size();
+  transmission_.map().joint_positions(shafts, {position_.data(), count});
+  transmission_.map().joint_velocities(shafts, shaft_velocities, {velocity_.data(), count});
+  for (std::size_t j = 0; j < count; ++j) {
+    read_jump(j, position_[j], has(steady, j));
+    if (const auto& sensor = joints_[j].force_sensor) {
+      const DriveFeedback& words = sensor->bus->feedback[sensor->axis];
+      force_[j] = (static_cast<double>(words.sensor_counts) - sensor->zero_counts) * sensor->newton_per_count;
+    }
+    PositionCorrection& correction = transmission_.correction(j);
+    correction.follow(has(live, j) ? velocity_set[j] : 0, period_s_);
+    velocity_[j] = correction.actual_velocity(position_[j], velocity_[j]);
+    position_[j] = correction.actual(position_[j]);
+  }
+  efforts_.read(positions());
+}
+
+void JointReader::read_jump(std::size_t joint, double shown, bool steady) noexcept {
+  jump_[joint] = shown_history_[joint] == 2 ? shown - 2 * shown1_[joint] + shown2_[joint] : 0;
+  shown2_[joint] = shown1_[joint];
+  shown1_[joint] = shown;
+  shown_history_[joint] = steady ? static_cast<std::uint8_t>(std::min(shown_history_[joint] + 1, 2)) : std::uint8_t{0};
+}
+
+void JointReader::reflect(std::span<const double> position_set, std::span<const double> velocity_set) noexcept {
+  std::copy(position_set.begin(), position_set.end(), position_.begin());
+  std::copy(velocity_set.begin(), velocity_set.end(), velocity_.begin());
+}
+
+}  // namespace rmac

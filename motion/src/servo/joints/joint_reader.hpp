@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "rmac/motion/machine_size.hpp"
+#include "rmac/motion/servo/servo_loop_parts.hpp"
+#include "servo/joints/index_set.hpp"
+#include "servo/joints/measured_efforts.hpp"
+#include "servo/joints/transmission.hpp"
+
+namespace rmac {
+
+/// Where the joints are and how fast, as their drives show it after what the mechanics do wrong; what their motors push
+/// with, and what their force sensors measure. mm or degrees, N or N·m. Real-time safe but for its making.
+class JointReader {
+ public:
+  /// All must outlive it. It moves the corrections of `transmission` on, cycle by cycle.
+  JointReader(const ServoLoopParts& parts, const Wiring& wiring, Transmission& transmission);
+
+  /// One cycle. `live`: joints under control, whose `velocity_set` says which flank of a backlash carries. `steady`:
+  /// those of them all of whose drives answer; the counter of another one may change by more than its shaft.
+  void read(std::span<const double> shafts, std::span<const double> shaft_velocities, IndexSet live, IndexSet steady,
+            std::span<const double> velocity_set) noexcept;
+  /// Where there are no drives: the joints are where they are wanted.
+  void reflect(std::span<const double> position_set, std::span<const double> velocity_set) noexcept;
+
+  [[nodiscard]] std::span<const double> positions() const noexcept { return {position_.data(), joints_.size()}; }
+  [[nodiscard]] const std::array<double, kMaxJoints>& position() const noexcept { return position_; }
+  [[nodiscard]] const std::array<double, kMaxJoints>& velocity() const noexcept { return velocity_; }
+  [[nodiscard]] const std::array<double, kMaxJoints>& force() const noexcept { return force_; }
+  /// What the joint's motors push it with; none where their drives do not tell.
+  [[nodiscard]] std::optional<double> measured_effort(std::size_t joint) const noexcept {
+    return efforts_.told(joint) ? std::optional(efforts_[joint]) : std::nullopt;
+  }
+  /// Change of the joint's step from the last cycle to this one, before corrections.
+  [[nodiscard]] double jump(std::size_t joint) const noexcept { return jump_[joint]; }
+
+ private:
+  void read_jump(std::size_t joint, double shown, bool steady) noexcept;
+
+  std::span<const ServoJoint> joints_;
+  double period_s_;
+  Transmission& transmission_;
+  MeasuredEfforts efforts_;
+  std::array<double, kMaxJoints> position_{}, velocity_{};
+  std::array<double, kMaxJoints> force_{};
+  std::array<double, kMaxJoints> jump_{};
+  std::array<double, kMaxJoints> shown1_{}, shown2_{};    ///< positions one and two cycles ago, uncorrected
+  std::array<std::uint8_t, kMaxJoints> shown_history_{};  ///< how many of the two there are
+};
+
+}  // namespace rmac

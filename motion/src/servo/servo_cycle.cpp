@@ -1,0 +1,324 @@
+#include <utility>
+
+#include "servo/servo_loop_impl.hpp"
+#include "servo/watch/drive_watch.hpp"
+
+namespace rmac {
+
+ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
+    : parts(std::move(loop_parts)),
+      wiring(*parts.actuator_map, parts.joints.size(), parts.actuators),
+      state(parts, wiring),
+      exchange(parts),
+      inputs(parts),
+      probe(parts, wiring),
+      shafts(parts.actuators, parts.period_s),
+      transmission(*parts.actuator_map, parts.joints),
+      joints(parts, wiring, transmission),
+      homing(parts.actuators, parts.homing_timeout_s, parts.period_s),
+      setpoints(parts, wiring.late_joints()),
+      torque_watch(parts.actuators),
+      deadlines(parts.max_cycles_lost, parts.period_s),
+      laws(parts.joints, parts.period_s),
+      spindles(parts.spindles, parts.period_s, state),
+      rest(parts.actuators.size() + parts.spindles.size(), parts.period_s),
+      torques(*parts.actuator_map, parts.actuators.size()),
+      aims(parts.actuators, wiring.late_actuators(), parts.period_s) {
+  for (std::size_t j = 0; j < parts.joints.size(); ++j) joint_watches.emplace_back(parts.joints[j], j);
+  if (parts.virtual_mode) joints.reflect(setpoints.position(), setpoints.velocity());
+}
+
+void ServoLoop::Impl::cycle(const ServoCommand& command, ServoReport& report) noexcept {
+  state.begin_cycle();
+  if (parts.virtual_mode) {
+    move_without_drives(command);
+  } else {
+    exchange_words(command);
+    obey(command);
+    read();
+    watch_drives(command);
+    finish_reset();
+    run_homing(command);
+    go_live();
+    choose_setpoints(command);
+    watch_motion(command);
+    run_laws();
+    spindles.run(command);
+    watch_power();
+    make_setpoints_of_drives();
+    write();
+  }
+  fill(command, report);
+}
+
+void ServoLoop::Impl::move_without_drives(const ServoCommand& command) noexcept {
+  obey(command);
+  finish_reset();
+  state.arrive_without_drives();
+  choose_setpoints(command);
+  joints.reflect(setpoints.position(), setpoints.velocity());
+}
+
+void ServoLoop::Impl::settle() noexcept {
+  if (!state.powered()) {
+    live.let_go(live.all());
+    setpoints.let_go();
+    laws.let_go();
+  }
+  if (!state.take_new_stop()) return;
+  rest.begin();
+  if (!state.braking()) return;
+  if (const auto silent = state.actuator_given_up()) {
+    live.let_go(only(wiring.joint_of(*silent)));
+    setpoints.give_up(wiring.joint_of(*silent));
+  }
+  setpoints.begin_braking();
+}
+
+void ServoLoop::Impl::exchange_words(const ServoCommand& command) noexcept {
+  const std::uint64_t now = exchange.run(command.outputs, state);
+  const bool homes = state.state() == ServoState::Homing;
+  inputs.step(now, homes ? wiring.joints_of(homing.drives()) : 0, state);
+  probe.read(now);
+}
+
+void ServoLoop::Impl::obey(const ServoCommand& command) noexcept {
+  const ServoState before = state.state();
+  state.obey(command, setpoints.braked());
+  settle();
+  if (state.state() != ServoState::Homing || before == ServoState::Homing) return;
+  if (homing.begin() == Homing::Progress::Over) state.homing_is_over();
+  live.let_go(wiring.joints_of(homing.drives()));
+}
+
+const DriveFeedback& ServoLoop::Impl::told(std::size_t actuator) const noexcept {
+  const ServoActuator& part = parts.actuators[actuator];
+  return part.bus->feedback[part.axis];
+}
+
+IndexSet ServoLoop::Impl::answering() const noexcept {
+  IndexSet silent = 0;
+  for (std::size_t i = 0; i < wiring.actuators(); ++i) {
+    if (!told(i).online) silent |= only(i);
+  }
+  return silent == 0 ? ~IndexSet{0} : ~wiring.joints_of(silent);
+}
+
+void ServoLoop::Impl::read() noexcept {
+  shafts.read();
+  joints.read(shafts.rad(), shafts.rad_s(), live.all(), live.all() & answering(), setpoints.velocity());
+  spindles.read();
+}
+
+void ServoLoop::Impl::watch_drives(const ServoCommand& command) noexcept {
+  if (state.powered()) {
+    IndexSet in_use = state.state() == ServoState::Homing ? homing.drives() : 0;
+    for (std::size_t j = 0; j < wiring.joints(); ++j) {
+      if (live[j]) in_use |= wiring.actuators_of(j);
+    }
+    for (std::size_t i = 0; i < wiring.actuators(); ++i) {
+      watch_drive(told(i), has(in_use, i), ServoFault::Part::Actuator, i, state);
+    }
+    for (std::size_t i = 0; i < spindles.size(); ++i) {
+      const bool needed =
+          state.state() == ServoState::Engaged || (state.braking() && !state.given_up(ServoFault::Part::Spindle, i));
+      watch_drive(spindles.told(i), needed, ServoFault::Part::Spindle, i, state);
+    }
+  }
+  deadlines.step(command.cycles_missed, state.driving(), state);
+  settle();
+}
+
+bool ServoLoop::Impl::stands() const noexcept {
+  return state.braking() ? setpoints.braked() : parts.virtual_mode || rest.all_reached();
+}
+
+void ServoLoop::Impl::finish_reset() noexcept {
+  if (!state.resetting()) return;
+  bool clear = !inputs.emergency_stop();
+  if (!parts.virtual_mode) {
+    for (std::size_t i = 0; i < wiring.actuators(); ++i) clear = clear && !is_faulted(told(i));
+    for (std::size_t i = 0; i < spindles.size(); ++i) clear = clear && !is_faulted(spindles.told(i));
+  }
+  state.finish_reset(stands(), clear);
+  settle();
+}
+
+void ServoLoop::Impl::run_homing(const ServoCommand& command) noexcept {
+  if (state.state() != ServoState::Homing) return;
+  const Homing::Progress progress = homing.step(command.home, shafts, state);
+  if (progress == Homing::Progress::Over) state.homing_is_over();
+  live.let_go(wiring.joints_of(homing.drives()));
+  settle();
+}
+
+bool ServoLoop::Impl::operable(std::size_t joint) const noexcept {
+  for (std::size_t i = 0; i < wiring.actuators(); ++i) {
+    if (!has(wiring.actuators_of(joint), i)) continue;
+    const DriveFeedback& words = told(i);
+    const bool in_mode = words.mode == DriveMode::None || words.mode == parts.actuators[i].mode;
+    if (!in_mode || !operates(words)) return false;
+  }
+  return true;
+}
+
+void ServoLoop::Impl::go_live() noexcept {
+  if (!state.driving() || state.state() == ServoState::Homing) return;
+  setpoints.begin_cycle();
+  for (std::size_t j = 0; j < wiring.joints(); ++j) {
+    if (!live[j] && operable(j)) {
+      live.take(j);
+      setpoints.hold_at(j, joints.position()[j]);
+      laws.engage(j, input(j), laws.resting_effort(j));
+    } else if (live.handed(j)) {
+      laws.engage(j, input(j), laws.effort()[j]);
+    }
+  }
+  live.engaged();
+  bool all = live.all() == first(wiring.joints());
+  for (std::size_t i = 0; i < spindles.size(); ++i) all = all && operates(spindles.told(i));
+  state.arrive(all);
+}
+
+void ServoLoop::Impl::choose_setpoints(const ServoCommand& command) noexcept {
+  if (state.braking()) {
+    setpoints.brake();
+    return;
+  }
+  setpoints.step({.plan = command.setpoint,
+                  .wanted_force = command.force,
+                  .position = joints.position(),
+                  .force = joints.force(),
+                  .live = live.all(),
+                  .follows = state.follows()},
+                 state);
+}
+
+JointSeen ServoLoop::Impl::seen(std::size_t joint) const noexcept {
+  const ForceLoop& force_loop = setpoints.force_loop(joint);
+  return {.jump = joints.jump(joint),
+          .velocity = joints.velocity()[joint],
+          .following_error = setpoints.position()[joint] - setpoints.gone_on(joint) - joints.position()[joint],
+          .position_set = setpoints.position()[joint],
+          .velocity_set = setpoints.velocity()[joint],
+          .force = joints.force()[joint],
+          .contact = force_loop.state(),
+          .searched = force_loop.searched()};
+}
+
+void ServoLoop::Impl::watch_motion(const ServoCommand& command) noexcept {
+  if (state.state() == ServoState::Engaged) inputs.hold_back(live.all(), setpoints.velocity(), state);
+  for (std::size_t j = 0; j < wiring.joints(); ++j) {
+    if (state.powered() && live[j]) {
+      joint_watches[j].step(seen(j), state);
+    } else {
+      joint_watches[j].rest();
+    }
+  }
+  if (state.powered()) {
+    torque_watch.step(state);
+  } else {
+    torque_watch.rest();
+  }
+  spindles.watch(command);
+  settle();
+}
+
+ServoInput ServoLoop::Impl::input(std::size_t joint) const noexcept {
+  const PositionCorrection& correction = transmission.correction(joint);
+  const std::optional<double> measured = joints.measured_effort(joint);
+  return {.position_setpoint = setpoints.position()[joint],
+          .velocity_setpoint = setpoints.velocity()[joint] + correction.crossing_velocity(),
+          .acceleration_setpoint = setpoints.acceleration()[joint] + correction.crossing_acceleration(),
+          .position = joints.position()[joint] + setpoints.gone_on(joint),
+          .velocity = joints.velocity()[joint] + setpoints.velocity_gone_on(joint) + correction.crossing_velocity(),
+          .effort = measured.value_or(laws.effort()[joint]),
+          .effort_measured = measured.has_value(),
+          .period_s = parts.period_s};
+}
+
+void ServoLoop::Impl::run_laws() noexcept {
+  for (std::size_t j = 0; j < wiring.joints(); ++j) {
+    if (!state.powered() || !laws.has_law(j)) {
+      laws.let_go(j);
+    } else if (live[j]) {
+      if (!laws.run(j, input(j), state)) return;
+    } else if (state.braking()) {
+      laws.let_go(j);
+    } else {
+      laws.rest(j);
+    }
+  }
+}
+
+void ServoLoop::Impl::watch_power() noexcept {
+  if (state.enables_too_long()) {
+    const auto watch = [this](const DriveFeedback& words, ServoFault::Part part, std::size_t index) {
+      watch_enabled(words, parts.enable_timeout_s, part, index, state);
+    };
+    for (std::size_t i = 0; i < wiring.actuators(); ++i) watch(told(i), ServoFault::Part::Actuator, i);
+    for (std::size_t i = 0; i < spindles.size(); ++i) watch(spindles.told(i), ServoFault::Part::Spindle, i);
+  }
+  settle();
+  if (state.state() != ServoState::Faulted || state.braking()) return;
+  rest.begin_cycle();
+  for (std::size_t i = 0; i < wiring.actuators(); ++i) {
+    rest.look_at_counts(i, shafts[i].counts(), parts.actuators[i].scale.counts_per_revolution);
+  }
+  for (std::size_t i = 0; i < spindles.size(); ++i) {
+    const std::size_t drive = wiring.actuators() + i;
+    if (spindles[i].has_encoder()) {
+      rest.look_at_counts(drive, spindles[i].counts(), parts.spindles[i].scale.counts_per_revolution);
+    } else {
+      rest.look_at_speed(drive, spindles[i].rpm());
+    }
+  }
+}
+
+IndexSet ServoLoop::Impl::controlled() const noexcept {
+  return state.powered() ? wiring.actuators_within(live.all()) : 0;
+}
+
+void ServoLoop::Impl::make_setpoints_of_drives() noexcept {
+  torques.let_go();
+  if (state.powered()) torques.make(joints.positions(), {laws.effort().data(), wiring.joints()}, state);
+  if (!wiring.all_take_torque()) {
+    std::array<double, kMaxJoints> wanted{};
+    transmission.shafts_for(setpoints.positions(), {wanted.data(), wiring.actuators()});
+    aims.step(wanted, controlled() & ~wiring.torque_drives(), state);
+  }
+  settle();
+}
+
+DriveWish ServoLoop::Impl::wish(ServoFault::Part part, std::size_t index) const noexcept {
+  if (state.given_up(part, index)) return DriveWish::QuickStop;
+  if (state.powered()) return DriveWish::Operational;
+  const std::size_t drive = part == ServoFault::Part::Spindle ? wiring.actuators() + index : index;
+  const bool rests = state.state() == ServoState::Faulted && rest.reached(drive);
+  return state.state() == ServoState::Off || rests ? DriveWish::Off : DriveWish::QuickStop;
+}
+
+void ServoLoop::Impl::write() noexcept {
+  for (std::size_t i = 0; i < wiring.actuators(); ++i) {
+    const ServoActuator& part = parts.actuators[i];
+    const DriveFeedback& from = told(i);
+    DriveCommand& words = part.bus->commands[part.axis];
+    words.controlword =
+        next_controlword(from.statusword, wish(ServoFault::Part::Actuator, i), state.resetting(), words.controlword);
+    words.mode = part.mode;
+    if (state.state() == ServoState::Homing) homing.command(i, words);
+    words.target_position_counts = from.position_counts;
+    words.target_velocity_rpm = 0;
+    if (aims.sends(i)) aims.command(i, shafts[i].rad(), words);
+    words.touch_probe = probe.function(i);
+    words.target_torque_permille = torque_word(part.scale, torques[i]);
+  }
+  for (std::size_t i = 0; i < spindles.size(); ++i) {
+    DriveCommand& words = parts.spindles[i].bus->commands[parts.spindles[i].axis];
+    words.controlword = next_controlword(spindles.told(i).statusword, wish(ServoFault::Part::Spindle, i),
+                                         state.resetting(), words.controlword);
+    spindles.write(i, words);
+  }
+}
+
+}  // namespace rmac

@@ -1,0 +1,122 @@
+#include "servo/setpoint/setpoints.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace rmac {
+
+Setpoints::Setpoints(const ServoLoopParts& parts, IndexSet late)
+    : joints_(parts.joints),
+      kinematic_joints_(parts.kinematics->joint_count()),
+      period_s_(parts.period_s),
+      virtual_mode_(parts.virtual_mode),
+      late_(late) {
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    followers_.emplace_back(joints_[j], period_s_);
+    force_loops_.emplace_back(joints_[j].force, period_s_);
+    decelerations_[j] = joints_[j].bounds.stop_deceleration;
+  }
+  if (virtual_mode_) hold_at(parts.virtual_start);
+}
+
+void Setpoints::step(const Seen& seen, FaultSink& faults) noexcept {
+  if (late_ == 0) {
+    choose(seen, faults);
+    return;
+  }
+  const auto before = position_;
+  const auto velocity_before = velocity_;
+  choose(seen, faults);
+  for (std::size_t j = 0; j < joints_.size(); ++j) note_way(j, before[j], velocity_before[j]);
+}
+
+void Setpoints::note_way(std::size_t joint, double position_before, double velocity_before) noexcept {
+  if (!has(late_, joint)) return;
+  gone_on_[joint] = position_[joint] - position_before;
+  velocity_gone_on_[joint] = velocity_[joint] - velocity_before;
+}
+
+void Setpoints::choose(const Seen& seen, FaultSink& faults) noexcept {
+  const IndexSet followed_before = std::exchange(on_the_way_, 0);
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    if (joints_[j].method == ControlMethod::Force && has(seen.live, j)) {
+      follow_force(j, seen.follows ? seen.wanted_force[j] : 0, seen.force[j]);
+    } else if (seen.follows && j < kinematic_joints_) {
+      if (!follow(j, seen, has(followed_before, j), faults)) return;
+    } else {
+      if (!has(seen.live, j) && !virtual_mode_) position_[j] = seen.position[j];
+      velocity_[j] = acceleration_[j] = 0;
+    }
+  }
+}
+
+bool Setpoints::follow(std::size_t joint, const Seen& seen, bool followed_before, FaultSink& faults) noexcept {
+  const JointSetpoint planned{seen.plan.position[joint], seen.plan.velocity[joint], seen.plan.acceleration[joint]};
+  if (!std::isfinite(planned.position) || !std::isfinite(planned.velocity) || !std::isfinite(planned.acceleration)) {
+    faults.raise({ServoFault::Kind::NotANumber, ServoFault::Part::Joint, static_cast<std::uint32_t>(joint),
+                  planned.position, 0});
+    return false;
+  }
+  on_the_way_ |= only(joint);
+  VelocityFollower& follower = followers_[joint];
+  if (joints_[joint].method == ControlMethod::Velocity && has(seen.live, joint)) {
+    if (!followed_before) follower.begin(position_[joint], planned.position);
+    set(joint, follower.step(planned, position_[joint], seen.position[joint]));
+  } else {
+    follower.on_plan();
+    set(joint, planned);
+  }
+  return true;
+}
+
+// A joint under force control is out of the plan: its setpoint goes where its force sends it.
+void Setpoints::follow_force(std::size_t joint, double wanted, double measured) noexcept {
+  const double velocity = force_loops_[joint].step(std::isfinite(wanted) ? wanted : 0, measured);
+  set(joint, {position_[joint] + velocity * period_s_, velocity, 0});
+}
+
+void Setpoints::brake() noexcept {
+  on_the_way_ = 0;
+  brake_.step(period_s_);
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const double before = position_[j], velocity_before = velocity_[j];
+    const double velocity = brake_.velocity(j);
+    set(j, {before + velocity * period_s_, velocity, brake_.acceleration(j)});
+    note_way(j, before, velocity_before);
+  }
+}
+
+void Setpoints::set(std::size_t joint, const JointSetpoint& wanted) noexcept {
+  position_[joint] = wanted.position;
+  velocity_[joint] = wanted.velocity;
+  acceleration_[joint] = wanted.acceleration;
+}
+
+void Setpoints::begin_cycle() noexcept {
+  gone_on_.fill(0);
+  velocity_gone_on_.fill(0);
+}
+
+void Setpoints::hold_at(std::size_t joint, double position) noexcept {
+  set(joint, {position, 0, 0});
+}
+
+void Setpoints::hold_at(std::span<const double> positions) noexcept {
+  std::copy(positions.begin(), positions.end(), position_.begin());
+}
+
+void Setpoints::give_up(std::size_t joint) noexcept {
+  velocity_[joint] = acceleration_[joint] = 0;
+  force_loops_[joint].restart();
+}
+
+void Setpoints::let_go() noexcept {
+  for (ForceLoop& loop : force_loops_) loop.restart();
+}
+
+void Setpoints::begin_braking() noexcept {
+  brake_.begin({velocity_.data(), joints_.size()}, {decelerations_.data(), joints_.size()});
+}
+
+}  // namespace rmac

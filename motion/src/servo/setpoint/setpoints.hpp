@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "rmac/motion/machine_size.hpp"
+#include "rmac/motion/plan.hpp"
+#include "rmac/motion/servo/servo_loop_parts.hpp"
+#include "servo/faults/fault_sink.hpp"
+#include "servo/joints/index_set.hpp"
+#include "servo/setpoint/brake.hpp"
+#include "servo/setpoint/force_loop.hpp"
+#include "servo/setpoint/velocity_follower.hpp"
+
+namespace rmac {
+
+/// Where each joint is wanted in a cycle: on the plan, where its force sends it, where the plan's velocity takes it, on
+/// the way of a stop, or where it is held. mm or degrees and s. Real-time safe but for its making.
+class Setpoints {
+ public:
+  /// What there is to follow in one cycle, and what the joints do.
+  struct Seen {
+    const Setpoint& plan;  ///< of the kinematic joints
+    std::span<const double> wanted_force;
+    std::span<const double> position;  ///< measured
+    std::span<const double> force;     ///< measured
+    IndexSet live;                     ///< joints under control
+    bool follows = false;              ///< the plan, and the wanted forces, count
+  };
+
+  /// `parts` must outlive it. `late`: joints that tell in a cycle where they were one cycle before.
+  Setpoints(const ServoLoopParts& parts, IndexSet late);
+
+  /// One cycle. Where the plan has no number for a joint, that is a fault, and this joint and those after it are wanted
+  /// where they were.
+  void step(const Seen& seen, FaultSink& faults) noexcept;
+  /// One cycle of a stop that keeps power.
+  void brake() noexcept;
+
+  /// Before joints go under control in a cycle: so far none of their setpoints has gone anywhere in it.
+  void begin_cycle() noexcept;
+  /// The joint is wanted at rest there.
+  void hold_at(std::size_t joint, double position) noexcept;
+  /// All joints are held there; nothing else changes.
+  void hold_at(std::span<const double> positions) noexcept;
+  /// The joint's drive is out of reach, and stops it by its own watch over the appliance.
+  void give_up(std::size_t joint) noexcept;
+  /// No joint is under control.
+  void let_go() noexcept;
+  void begin_braking() noexcept;
+  [[nodiscard]] bool braked() const noexcept { return brake_.done(); }
+
+  [[nodiscard]] std::span<const double> positions() const noexcept { return {position_.data(), joints_.size()}; }
+  [[nodiscard]] const std::array<double, kMaxJoints>& position() const noexcept { return position_; }
+  [[nodiscard]] const std::array<double, kMaxJoints>& velocity() const noexcept { return velocity_; }
+  [[nodiscard]] const std::array<double, kMaxJoints>& acceleration() const noexcept { return acceleration_; }
+  /// How far the setpoint of a joint that answers late went in this cycle; 0 of others.
+  [[nodiscard]] double gone_on(std::size_t joint) const noexcept { return gone_on_[joint]; }
+  [[nodiscard]] double velocity_gone_on(std::size_t joint) const noexcept { return velocity_gone_on_[joint]; }
+  [[nodiscard]] double slip(std::size_t joint) const noexcept { return followers_[joint].slip(); }
+  [[nodiscard]] const ForceLoop& force_loop(std::size_t joint) const noexcept { return force_loops_[joint]; }
+
+ private:
+  void choose(const Seen& seen, FaultSink& faults) noexcept;
+  [[nodiscard]] bool follow(std::size_t joint, const Seen& seen, bool followed_before, FaultSink& faults) noexcept;
+  void note_way(std::size_t joint, double position_before, double velocity_before) noexcept;
+  void follow_force(std::size_t joint, double wanted, double measured) noexcept;
+  void set(std::size_t joint, const JointSetpoint& wanted) noexcept;
+
+  std::span<const ServoJoint> joints_;
+  std::size_t kinematic_joints_;
+  double period_s_;
+  bool virtual_mode_;
+  IndexSet late_;
+  std::array<double, kMaxJoints> position_{}, velocity_{}, acceleration_{};
+  std::array<double, kMaxJoints> gone_on_{}, velocity_gone_on_{};
+  std::array<double, kMaxJoints> decelerations_{};  ///< of a stop that keeps power
+  IndexSet on_the_way_ = 0;                         ///< joints that followed the plan in the cycle before
+  std::vector<VelocityFollower> followers_;
+  std::vector<ForceLoop> force_loops_;
+  Brake brake_;
+};
+
+}  // namespace rmac

@@ -1,0 +1,47 @@
+#include "servo/watch/joint_watch.hpp"
+
+#include <cmath>
+
+namespace rmac {
+
+void JointWatch::raise(ServoFault::Kind kind, double value, double bound, FaultSink& faults) const noexcept {
+  faults.raise({kind, ServoFault::Part::Joint, index_, value, bound});
+}
+
+void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
+  const JointBounds& bounds = joint_->bounds;
+  if (bounds.jump > 0 && std::abs(seen.jump) > bounds.jump) {
+    raise(ServoFault::Kind::EncoderJump, seen.jump, bounds.jump, faults);
+  }
+  watch_sensor(faults);
+  if (!(std::abs(seen.following_error) <= joint_->max_following_error)) {
+    raise(ServoFault::Kind::FollowingError, seen.following_error, joint_->max_following_error, faults);
+  }
+  if (too_fast_.step(seen.velocity, bounds.velocity)) {
+    raise(ServoFault::Kind::VelocityBound, seen.velocity, bounds.velocity, faults);
+  }
+  if (joint_->method == ControlMethod::Force) watch_contact(seen, faults);
+}
+
+void JointWatch::watch_sensor(FaultSink& faults) const noexcept {
+  const auto& sensor = joint_->force_sensor;
+  if (!sensor) return;
+  const DriveFeedback& words = sensor->bus->feedback[sensor->axis];
+  if (!words.online || !words.sensor_valid) raise(ServoFault::Kind::SensorLost, 0, 0, faults);
+}
+
+void JointWatch::watch_contact(const JointSeen& seen, FaultSink& faults) const noexcept {
+  const ForceControl& control = joint_->force;
+  if (!(std::abs(seen.force) <= control.max_force)) {
+    raise(ServoFault::Kind::ForceLimit, seen.force, control.max_force, faults);
+  }
+  const JointBounds& bounds = joint_->bounds;
+  const bool at_end = (seen.position_set > bounds.max_position && seen.velocity_set > 0) ||
+                      (seen.position_set < bounds.min_position && seen.velocity_set < 0);
+  const bool searching = seen.contact == ContactState::Approaching;
+  if (at_end || (searching && seen.searched > control.max_search)) {
+    raise(ServoFault::Kind::ContactLost, seen.searched, control.max_search, faults);
+  }
+}
+
+}  // namespace rmac

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+
+#include "rmac/motion/force_control.hpp"
+#include "rmac/motion/servo/servo_loop_parts.hpp"
+#include "servo/faults/fault_sink.hpp"
+#include "servo/watch/cycles_beyond.hpp"
+
+namespace rmac {
+
+/// What the watch over a joint looks at in one cycle: mm or degrees and s, N or N·m.
+struct JointSeen {
+  double jump = 0;             ///< change of its position's step
+  double velocity = 0;         ///< measured
+  double following_error = 0;  ///< of the cycle in which the drives were where they say
+  double position_set = 0, velocity_set = 0;
+  double force = 0;  ///< measured
+  ContactState contact = ContactState::None;
+  double searched = 0;  ///< way without contact
+};
+
+/// Watches one joint under control. Real-time safe.
+class JointWatch {
+ public:
+  /// `joint` must outlive it; `index` names it in faults.
+  JointWatch(const ServoJoint& joint, std::size_t index) noexcept
+      : joint_(&joint), index_(static_cast<std::uint32_t>(index)) {}
+
+  void step(const JointSeen& seen, FaultSink& faults) noexcept;
+  /// The joint is not under control.
+  void rest() noexcept { too_fast_.restart(); }
+
+ private:
+  void watch_sensor(FaultSink& faults) const noexcept;
+  void watch_contact(const JointSeen& seen, FaultSink& faults) const noexcept;
+  void raise(ServoFault::Kind kind, double value, double bound, FaultSink& faults) const noexcept;
+
+  const ServoJoint* joint_;
+  std::uint32_t index_;
+  CyclesBeyond too_fast_;
+};
+
+}  // namespace rmac

@@ -1,0 +1,98 @@
+#include "servo/drives/shaft_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "servo/drives/shafts.hpp"
+#include "unit/motion/servo/servo_fixture.hpp"
+
+namespace rmac::servo_test {
+namespace {
+
+constexpr double kPeriod = 0.001;
+constexpr double kRadPerCount = 2 * std::numbers::pi / 1000;
+
+class ShaftReading : public testing::Test {
+ protected:
+  void read(std::int32_t counts, bool online = true) { reader_.read({.position_counts = counts, .online = online}); }
+  ShaftReader reader_{{1000, 1, 1, 200}, kPeriod};
+};
+
+TEST_F(ShaftReading, CountsFromHome) {
+  read(450);
+  EXPECT_TRUE(reader_.seen());
+  EXPECT_EQ(reader_.counts(), 450);
+  EXPECT_NEAR(reader_.rad(), 250 * kRadPerCount, 1e-12);
+}
+
+TEST_F(ShaftReading, FirstReadingHasNoVelocityTheSecondOneADifferenceTheThirdNoLag) {
+  read(0);
+  EXPECT_EQ(reader_.rad_s(), 0);
+  read(10);
+  EXPECT_NEAR(reader_.rad_s(), 10 * kRadPerCount / kPeriod, 1e-9);
+  read(30);
+  EXPECT_NEAR(reader_.rad_s(), (3 * 20 - 10) / 2.0 * kRadPerCount / kPeriod, 1e-9);
+}
+
+TEST_F(ShaftReading, SilentDriveStandsAndItsVelocityBeginsAnew) {
+  for (const int counts : {0, 10, 20}) read(counts);
+  read(500, false);
+  EXPECT_EQ(reader_.rad_s(), 0);
+  EXPECT_EQ(reader_.counts(), 20);
+  read(60);
+  EXPECT_EQ(reader_.rad_s(), 0);
+  EXPECT_EQ(reader_.counts(), 60);
+  read(70);
+  EXPECT_NEAR(reader_.rad_s(), 10 * kRadPerCount / kPeriod, 1e-9);
+}
+
+TEST_F(ShaftReading, WrapIsFollowed) {
+  read(2147483640);
+  read(-2147483640);
+  EXPECT_EQ(reader_.counts(), 2147483656);
+  EXPECT_NEAR(reader_.rad_s(), 16 * kRadPerCount / kPeriod, 1e-4);  // angles of some 1e7 rad are rounded to 1e-9
+}
+
+TEST_F(ShaftReading, ForgottenCounterBeginsAnewNearHome) {
+  read(2147483640);
+  read(-2147483640);
+  reader_.forget();
+  EXPECT_FALSE(reader_.seen());
+  read(90);
+  EXPECT_EQ(reader_.counts(), 90);
+  EXPECT_EQ(reader_.rad_s(), 0);
+}
+
+TEST_F(ShaftReading, GoesOnFromWhereAnotherLoopLeftIt) {
+  reader_.take_over((std::int64_t{1} << 32) + 500, true);
+  EXPECT_NEAR(reader_.rad(), ((1LL << 32) + 300) * kRadPerCount, 1e-3);
+  read(510);
+  EXPECT_EQ(reader_.counts(), (std::int64_t{1} << 32) + 510);
+  EXPECT_NEAR(reader_.rad_s(), 10 * kRadPerCount / kPeriod, 1e-3);
+}
+
+TEST_F(ShaftReading, WhatAnotherLoopNeverReadIsCountedFromHome) {
+  reader_.take_over(std::int64_t{1} << 32, false);
+  read(510);
+  EXPECT_EQ(reader_.counts(), 510);
+  EXPECT_EQ(reader_.rad_s(), 0);
+}
+
+TEST(Shafts, AreReadInTheOrderOfTheMapFromTheirOwnDrives) {
+  const auto bus = std::make_shared<ServoBus>(std::make_shared<FakeBus>(3));
+  const std::vector<ServoActuator> actuators{{bus, 2, {1000, 1, 1, 0}}, {bus, 0, {1000, 1, -1, 0}}};
+  Shafts shafts(actuators, kPeriod);
+  for (const std::int32_t way : {0, 10}) {
+    bus->feedback[2] = {.position_counts = 100 + way, .online = true};
+    bus->feedback[0] = {.position_counts = 40 + 2 * way, .online = true};
+    shafts.read();
+  }
+  EXPECT_NEAR(shafts.rad()[0], 110 * kRadPerCount, 1e-12);
+  EXPECT_NEAR(shafts.rad()[1], -60 * kRadPerCount, 1e-12);
+  EXPECT_NEAR(shafts.rad_s()[0], 10 * kRadPerCount / kPeriod, 1e-9);
+  EXPECT_NEAR(shafts.rad_s()[1], -20 * kRadPerCount / kPeriod, 1e-9);
+}
+
+}  // namespace
+}  // namespace rmac::servo_test

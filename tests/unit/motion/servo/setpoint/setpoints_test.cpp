@@ -1,0 +1,199 @@
+#include "servo/setpoint/setpoints.hpp"
+
+#include "unit/motion/servo/recorded_faults.hpp"
+#include "unit/motion/servo/servo_fixture.hpp"
+
+namespace rmac::servo_test {
+namespace {
+
+constexpr double kPeriod = 0.001;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Two kinematic joints and a held one.
+class ChosenSetpoints : public testing::Test {
+ protected:
+  ChosenSetpoints() {
+    parts_.kinematics = std::make_shared<PlaneKinematics>();
+    parts_.joints.resize(3);
+    for (ServoJoint& joint : parts_.joints) {
+      joint.max_following_error = 10;
+      joint.bounds.stop_deceleration = 1000;
+      joint.force = {.approach_speed = 10,
+                     .contact_force = 5,
+                     .gain = 0.05,
+                     .reset_time_s = 0.5,
+                     .max_speed = 20,
+                     .max_force = 200,
+                     .max_search = 100,
+                     .max_acceleration = 1e5};
+    }
+    for (std::size_t j = 0; j < 3; ++j) {
+      plan_.position[j] = 1 + static_cast<double>(j);
+      plan_.velocity[j] = 10 + static_cast<double>(j);
+      plan_.acceleration[j] = 100 + static_cast<double>(j);
+    }
+  }
+  void make(IndexSet late = 0) { setpoints_.emplace(parts_, late); }
+  void step(bool follows, IndexSet live = 0b111) {
+    setpoints_->step({.plan = plan_,
+                      .wanted_force = wanted_force_,
+                      .position = measured_,
+                      .force = force_,
+                      .live = live,
+                      .follows = follows},
+                     faults_);
+  }
+  ServoLoopParts parts_;
+  Setpoint plan_;
+  std::array<double, 3> wanted_force_{}, measured_{-7, -8, -9}, force_{};
+  RecordedFaults faults_;
+  std::optional<Setpoints> setpoints_;
+};
+
+TEST_F(ChosenSetpoints, FollowThePlanWithTheKinematicJointsAndHoldTheOthers) {
+  make();
+  setpoints_->hold_at(2, 5);
+  step(true);
+  EXPECT_THAT(setpoints_->positions(), testing::ElementsAre(1, 2, 5));
+  EXPECT_EQ(setpoints_->velocity()[1], 11);
+  EXPECT_EQ(setpoints_->acceleration()[1], 101);
+  EXPECT_EQ(setpoints_->velocity()[2], 0);
+}
+
+TEST_F(ChosenSetpoints, HoldWhereTheyWereWhenThePlanIsNotFollowed) {
+  make();
+  step(true);
+  step(false);
+  EXPECT_THAT(setpoints_->positions(), testing::ElementsAre(1, 2, 0));
+  EXPECT_EQ(setpoints_->velocity()[0], 0);
+  EXPECT_EQ(setpoints_->acceleration()[0], 0);
+}
+
+TEST_F(ChosenSetpoints, AreWhereTheJointIsWhileItIsNotUnderControl) {
+  make();
+  step(true);
+  step(false, 0b110);
+  EXPECT_THAT(setpoints_->positions(), testing::ElementsAre(-7, 2, 0));
+}
+
+TEST_F(ChosenSetpoints, StayInVirtualModeWhereNoJointIsEverUnderControl) {
+  parts_.virtual_mode = true;
+  parts_.virtual_start = {4, 5, 6};
+  make();
+  step(false, 0);
+  EXPECT_THAT(setpoints_->positions(), testing::ElementsAre(4, 5, 6));
+}
+
+TEST_F(ChosenSetpoints, PlanWithoutANumberIsAFaultAndFollowedNoFurther) {
+  make();
+  plan_.acceleration[1] = kNaN;
+  plan_.position[1] = 33;
+  step(true);
+  EXPECT_THAT(setpoints_->positions(), testing::ElementsAre(1, 0, 0));
+  EXPECT_THAT(faults_.raised,
+              testing::ElementsAre(is_fault(ServoFault::Kind::NotANumber, ServoFault::Part::Joint, 1, 33, 0)));
+}
+
+TEST_F(ChosenSetpoints, JointUnderForceControlGoesWhereItsForceSendsIt) {
+  parts_.joints[1].method = ControlMethod::Force;
+  make();
+  wanted_force_[1] = -50;
+  step(true);
+  EXPECT_NEAR(setpoints_->velocity()[1], -10, 1e-12) << "it approaches";
+  EXPECT_NEAR(setpoints_->position()[1], -10 * kPeriod, 1e-12);
+  EXPECT_EQ(setpoints_->force_loop(1).state(), ContactState::Approaching);
+  force_[1] = -49;
+  step(true);
+  EXPECT_EQ(setpoints_->force_loop(1).state(), ContactState::Touching);
+  step(false);
+  EXPECT_EQ(setpoints_->force_loop(1).state(), ContactState::Holding) << "no plan, no force";
+}
+
+TEST_F(ChosenSetpoints, WantedForceWithoutANumberIsNone) {
+  parts_.joints[1].method = ControlMethod::Force;
+  make();
+  wanted_force_[1] = kNaN;
+  step(true);
+  EXPECT_EQ(setpoints_->velocity()[1], 0);
+}
+
+TEST_F(ChosenSetpoints, JointUnderVelocityControlSlipsFromWhereItWasHeld) {
+  parts_.joints[0].method = ControlMethod::Velocity;
+  make();
+  setpoints_->hold_at(0, -7.5);
+  step(true);
+  EXPECT_NEAR(setpoints_->slip(0), -8.5, 1e-12);
+  EXPECT_NEAR(setpoints_->position()[0], -7.5, 1e-12);
+  plan_.position[0] = 1.01;
+  step(true);
+  EXPECT_NEAR(setpoints_->position()[0], -7.49, 1e-12);
+  parts_.joints[0].method = ControlMethod::Position;
+  step(true);
+  EXPECT_EQ(setpoints_->slip(0), 0);
+  EXPECT_EQ(setpoints_->position()[0], 1.01);
+}
+
+TEST_F(ChosenSetpoints, SlipIsTakenAnewWhenThePlanIsFollowedAgain) {
+  parts_.joints[0].method = ControlMethod::Velocity;
+  make();
+  measured_[0] = 0;
+  setpoints_->hold_at(0, 0);
+  step(true);
+  step(false);
+  plan_.position[0] = 6;
+  step(true);
+  EXPECT_NEAR(setpoints_->position()[0], 0, 1e-12);
+  EXPECT_NEAR(setpoints_->slip(0), -6, 1e-12);
+}
+
+TEST_F(ChosenSetpoints, TellHowFarJointsThatAnswerLateWentInTheCycle) {
+  make(0b001);
+  setpoints_->hold_at(0, 0.9);
+  step(true);
+  EXPECT_NEAR(setpoints_->gone_on(0), 0.1, 1e-12);
+  EXPECT_EQ(setpoints_->velocity_gone_on(0), 10);
+  EXPECT_EQ(setpoints_->gone_on(1), 0);
+  setpoints_->begin_cycle();
+  EXPECT_EQ(setpoints_->gone_on(0), 0);
+  EXPECT_EQ(setpoints_->velocity_gone_on(0), 0);
+}
+
+TEST_F(ChosenSetpoints, BrakeFromThePlansVelocities) {
+  make(0b001);
+  step(true);
+  setpoints_->begin_braking();
+  EXPECT_FALSE(setpoints_->braked());
+  setpoints_->brake();  // 11 mm/s at 1000 mm/s² take 11 ms
+  EXPECT_NEAR(setpoints_->velocity()[0], 10 * (1 - 1.0 / 11), 1e-9);
+  EXPECT_NEAR(setpoints_->position()[0], 1 + setpoints_->velocity()[0] * kPeriod, 1e-12);
+  EXPECT_NEAR(setpoints_->acceleration()[1], -1000, 1e-9);
+  EXPECT_NEAR(setpoints_->gone_on(0), setpoints_->velocity()[0] * kPeriod, 1e-12);
+  EXPECT_NEAR(setpoints_->velocity_gone_on(0), -10.0 / 11, 1e-9);
+  for (int i = 0; i < 11; ++i) setpoints_->brake();
+  EXPECT_TRUE(setpoints_->braked());
+  EXPECT_EQ(setpoints_->velocity()[1], 0);
+}
+
+TEST_F(ChosenSetpoints, JointThatIsGivenUpHasNoPartInBraking) {
+  make();
+  step(true);
+  setpoints_->give_up(1);
+  setpoints_->begin_braking();
+  setpoints_->brake();
+  EXPECT_EQ(setpoints_->velocity()[1], 0);
+  EXPECT_EQ(setpoints_->position()[1], 2);
+  EXPECT_GT(setpoints_->velocity()[0], 0);
+}
+
+TEST_F(ChosenSetpoints, ForceIsLetGoWithAllJoints) {
+  parts_.joints[1].method = ControlMethod::Force;
+  make();
+  wanted_force_[1] = -50;
+  step(true);
+  setpoints_->let_go();
+  EXPECT_EQ(setpoints_->force_loop(1).state(), ContactState::Holding);
+  EXPECT_EQ(setpoints_->force_loop(1).searched(), 0);
+}
+
+}  // namespace
+}  // namespace rmac::servo_test

@@ -1,0 +1,129 @@
+#include "servo/watch/joint_watch.hpp"
+
+#include "unit/motion/servo/recorded_faults.hpp"
+#include "unit/motion/servo/servo_fixture.hpp"
+
+namespace rmac::servo_test {
+namespace {
+
+using Kind = ServoFault::Kind;
+using testing::ElementsAre, testing::IsEmpty;
+
+/// Joint 4: 1 mm, 100 mm/s, 0.1 mm, -20 to 30 mm; 200 N and 5 mm of search under force control.
+class WatchedJoint : public testing::Test {
+ protected:
+  ServoJoint joint_ = [] {
+    ServoJoint made;
+    made.max_following_error = 1;
+    made.bounds = {.velocity = 100, .jump = 0.1, .min_position = -20, .max_position = 30};
+    made.force.max_force = 200;
+    made.force.max_search = 5;
+    return made;
+  }();
+  JointWatch watch_{joint_, 4};
+  RecordedFaults faults_;
+  static auto fault(Kind kind, double value, double bound) {
+    return is_fault(kind, ServoFault::Part::Joint, 4, value, bound);
+  }
+};
+
+TEST_F(WatchedJoint, IsFineWithinAllBounds) {
+  for (int i = 0; i < 10; ++i) {
+    watch_.step(
+        {.jump = -0.1, .velocity = -100, .following_error = 1, .position_set = 90, .velocity_set = 1, .force = 900},
+        faults_);
+  }
+  EXPECT_THAT(faults_.raised, IsEmpty()) << "ends and forces are watched under force control";
+}
+
+TEST_F(WatchedJoint, JumpsInOneCycle) {
+  watch_.step({.jump = -0.11}, faults_);
+  EXPECT_THAT(faults_.raised, ElementsAre(fault(Kind::EncoderJump, -0.11, 0.1)));
+}
+
+TEST_F(WatchedJoint, WithoutABoundMayJumpAndRun) {
+  joint_.bounds.jump = joint_.bounds.velocity = 0;
+  for (int i = 0; i < 5; ++i) watch_.step({.jump = 50, .velocity = 1e6}, faults_);
+  EXPECT_THAT(faults_.raised, IsEmpty());
+}
+
+TEST_F(WatchedJoint, IsBehindInOneCycleEitherWayAndWithoutANumber) {
+  watch_.step({.following_error = -1.01}, faults_);
+  watch_.step({.following_error = 1.01}, faults_);
+  watch_.step({.following_error = std::nan("")}, faults_);
+  ASSERT_EQ(faults_.raised.size(), 3U);
+  EXPECT_THAT(faults_.raised[0], fault(Kind::FollowingError, -1.01, 1));
+  EXPECT_THAT(faults_.raised[1], fault(Kind::FollowingError, 1.01, 1));
+  EXPECT_EQ(faults_.raised[2].kind, Kind::FollowingError);
+}
+
+TEST_F(WatchedJoint, IsTooFastAfterThreeCyclesOnEnd) {
+  watch_.step({.velocity = -101}, faults_);
+  watch_.step({.velocity = -101}, faults_);
+  watch_.step({.velocity = -99}, faults_);
+  watch_.step({.velocity = -101}, faults_);
+  watch_.step({.velocity = -101}, faults_);
+  EXPECT_THAT(faults_.raised, IsEmpty());
+  watch_.step({.velocity = -101}, faults_);
+  EXPECT_THAT(faults_.raised, ElementsAre(fault(Kind::VelocityBound, -101, 100)));
+}
+
+TEST_F(WatchedJoint, CyclesBeyondDoNotOutlastItsControl) {
+  watch_.step({.velocity = 101}, faults_);
+  watch_.step({.velocity = 101}, faults_);
+  watch_.rest();
+  watch_.step({.velocity = 101}, faults_);
+  EXPECT_THAT(faults_.raised, IsEmpty());
+}
+
+TEST_F(WatchedJoint, NeedsAValueOfItsForceSensor) {
+  const auto bus = std::make_shared<ServoBus>(std::make_shared<FakeBus>(2));
+  joint_.force_sensor = ServoForceSensor{bus, 1, 1, 0};
+  for (const auto& [online, valid] : {std::pair{true, true}, {true, false}, {false, true}}) {
+    faults_.raised.clear();
+    bus->feedback[1].online = online;
+    bus->feedback[1].sensor_valid = valid;
+    watch_.step({}, faults_);
+    if (online && valid) {
+      EXPECT_THAT(faults_.raised, IsEmpty());
+    } else {
+      EXPECT_THAT(faults_.raised, ElementsAre(fault(Kind::SensorLost, 0, 0)));
+    }
+  }
+}
+
+TEST_F(WatchedJoint, UnderForceControlHasALargestForce) {
+  joint_.method = ControlMethod::Force;
+  watch_.step({.force = -200}, faults_);
+  EXPECT_THAT(faults_.raised, IsEmpty());
+  watch_.step({.force = -201}, faults_);
+  EXPECT_THAT(faults_.raised, ElementsAre(fault(Kind::ForceLimit, -201, 200)));
+}
+
+TEST_F(WatchedJoint, UnderForceControlSearchesNoFurtherThanItMay) {
+  joint_.method = ControlMethod::Force;
+  watch_.step({.contact = ContactState::Approaching, .searched = 5}, faults_);
+  watch_.step({.contact = ContactState::Touching, .searched = 6}, faults_);
+  EXPECT_THAT(faults_.raised, IsEmpty());
+  watch_.step({.contact = ContactState::Approaching, .searched = 6}, faults_);
+  EXPECT_THAT(faults_.raised, ElementsAre(fault(Kind::ContactLost, 6, 5)));
+}
+
+TEST_F(WatchedJoint, UnderForceControlGoesNoFurtherBeyondItsTravel) {
+  joint_.method = ControlMethod::Force;
+  watch_.step({.position_set = 31, .velocity_set = -1}, faults_);
+  watch_.step({.position_set = -21, .velocity_set = 1}, faults_);
+  watch_.step({.position_set = 29, .velocity_set = 1}, faults_);
+  EXPECT_THAT(faults_.raised, IsEmpty());
+  watch_.step({.position_set = 31, .velocity_set = 1}, faults_);
+  watch_.step({.position_set = -21, .velocity_set = -1}, faults_);
+  EXPECT_THAT(faults_.raised, ElementsAre(fault(Kind::ContactLost, 0, 5), fault(Kind::ContactLost, 0, 5)));
+}
+
+TEST_F(WatchedJoint, TellsAJumpBeforeTheFollowingErrorThatItMakes) {
+  watch_.step({.jump = 5, .following_error = -5}, faults_);
+  EXPECT_THAT(faults_.raised, ElementsAre(fault(Kind::EncoderJump, 5, 0.1), fault(Kind::FollowingError, -5, 1)));
+}
+
+}  // namespace
+}  // namespace rmac::servo_test
