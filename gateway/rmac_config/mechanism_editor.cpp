@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "gateway/json/range.hpp"
-#include "rmac/motion/servo_loop.hpp"
+#include "rmac/motion/machine_size.hpp"
 
 namespace rmac::gateway {
 namespace {
