@@ -2,7 +2,7 @@
 
 #include "rmac/fieldbus/canopen/canopen_interface.hpp"
 #include "unit/gateway/simulators/vdrive/wire.hpp"
-#include "unit/motion/servo_fixture.hpp"
+#include "unit/motion/servo/servo_fixture.hpp"
 
 // The servo loop has drives look for home: over the CANopen master, which knows nothing of these drives but the
 // standards.

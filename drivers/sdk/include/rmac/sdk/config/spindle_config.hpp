@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "rmac/motion/axis.hpp"
+#include "rmac/motion/joint.hpp"
 #include "rmac/motion/error.hpp"
 #include "rmac/sdk/config/module_choice.hpp"
 
