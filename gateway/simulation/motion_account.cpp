@@ -17,7 +17,7 @@ double distance(const Vector& a, const Vector& b) {
   return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
 }
 
-/// The tool tip's way along a segment. Of one in joint space the length is the joints', so the tip's is that of chords.
+/// The tool tip's way along a segment. One in joint space has the joints' length, so the tip's is that of chords.
 double tip_length(const PathSegment& segment) {
   if (!segment.curve().in_joint_space()) return segment.length();
   constexpr int kChords = 1000;

@@ -261,6 +261,9 @@ std::size_t ServoLoop::axis_count() const noexcept {
 const ServoLoopParts& ServoLoop::parts() const noexcept {
   return impl_->parts;
 }
+const ServoBus* ServoLoop::bus(std::size_t index) const noexcept {
+  return index < impl_->buses.size() ? impl_->buses[index].get() : nullptr;
+}
 ServoState ServoLoop::state() const noexcept {
   return impl_->state;
 }

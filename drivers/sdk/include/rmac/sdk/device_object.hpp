@@ -19,6 +19,8 @@ struct ModuleChoice {
   std::string name;
   std::map<std::string, std::vector<double>> numbers;
   std::map<std::string, std::string> texts;
+
+  [[nodiscard]] bool operator==(const ModuleChoice& other) const = default;
 };
 
 /// Where a joint's force sensor is read: a word beside those of a drive.
@@ -135,8 +137,17 @@ struct DeviceObject {
   std::map<int, DriveInput> drive_inputs;   ///< bits of `inputs` that drives tell; the I/O interface tells the others
   std::vector<ToolChangeStep> tool_change;  ///< of a tool changer; the spindles stand by then
 
+  [[nodiscard]] std::size_t joint_count_with_held() const noexcept { return joints.size() + held_joints.size(); }
+
   /// The mechanism whose joints, drives and tools these are.
   [[nodiscard]] const std::string& machine() const noexcept { return overlay_of.empty() ? name : overlay_of; }
 };
+
+/// A joint of a device object by its number: joints count first, held joints follow. `number` is below
+/// `joint_count_with_held`.
+[[nodiscard]] auto& joint_at(auto& device, std::size_t number) {
+  const std::size_t moved = device.joints.size();
+  return number < moved ? device.joints[number] : device.held_joints[number - moved];
+}
 
 }  // namespace rmac::sdk
