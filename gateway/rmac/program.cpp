@@ -8,7 +8,7 @@
 #include <iostream>
 #include <string_view>
 
-#include "gateway/api/dispatcher.hpp"
+#include "gateway/api/dispatch/dispatcher.hpp"
 #include "gateway/json/printable.hpp"
 
 namespace rmac::cli {

@@ -7,7 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "gateway/api/openrpc.hpp"
+#include "gateway/api/methods/openrpc.hpp"
 #include "gateway/rmacd/daemon.hpp"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gateway/api/dispatcher.hpp"
+#include "gateway/api/dispatch/dispatcher.hpp"
 #include "gateway/server/telemetry.hpp"
 
 namespace rmac::gateway {

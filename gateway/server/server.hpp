@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "gateway/api/dispatcher.hpp"
+#include "gateway/api/dispatch/dispatcher.hpp"
 #include "gateway/server/lease.hpp"
 
 namespace rmac::gateway {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "gateway/api/dispatcher.hpp"
+#include "gateway/api/dispatch/dispatcher.hpp"
 #include "gateway/controller/controller.hpp"
 
 namespace rmac::gateway {

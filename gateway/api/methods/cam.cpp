@@ -1,6 +1,6 @@
 // RMAC_CAM.*: what holds for the moves that follow, and the machine's auxiliaries.
 #include "gateway/api/method_builder.hpp"
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 
 namespace rmac::gateway {
 

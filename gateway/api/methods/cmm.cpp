@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "gateway/api/method_builder.hpp"
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 
 namespace rmac::gateway {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "gateway/api/method_builder.hpp"
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 #include "rmac/motion/servo_loop.hpp"
 
 namespace rmac::gateway {

@@ -1,6 +1,6 @@
 // RMAC_CAM.*: starting, stopping, holding and resuming.
 #include "gateway/api/method_builder.hpp"
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 #include "gateway/api/state_json.hpp"
 
 namespace rmac::gateway {

@@ -1,7 +1,7 @@
 // Device.*: loading a mechanism, and the getters of Appendix III.
 #include "gateway/api/joint_of.hpp"
 #include "gateway/api/method_builder.hpp"
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 
 namespace rmac::gateway {
 

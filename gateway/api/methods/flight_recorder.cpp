@@ -1,6 +1,6 @@
 // Methods of the flight recorder: the last seconds of every servo cycle, as files.
 #include "gateway/api/method_builder.hpp"
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 
 namespace rmac::gateway {
 

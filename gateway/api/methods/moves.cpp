@@ -1,6 +1,6 @@
 // RMAC_CAM.Move… and their twins through the device driver, Device.Machine_MoveIn… (section 3.3.2).
 #include "gateway/api/method_builder.hpp"
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 
 namespace rmac::gateway {
 

@@ -1,7 +1,7 @@
 // Methods that concern the connection rather than the machine.
 #include "gateway/api/method_builder.hpp"
-#include "gateway/api/method_table.hpp"
-#include "gateway/api/openrpc.hpp"
+#include "gateway/api/methods/method_table.hpp"
+#include "gateway/api/methods/openrpc.hpp"
 
 namespace rmac::gateway {
 

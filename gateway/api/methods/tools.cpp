@@ -1,6 +1,6 @@
 // RMAC_CAM.*: the tool table, and changing tools.
 #include "gateway/api/method_builder.hpp"
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 
 namespace rmac::gateway {
 

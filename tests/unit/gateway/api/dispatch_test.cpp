@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 #include "session.hpp"
 
 namespace rmac::gateway {

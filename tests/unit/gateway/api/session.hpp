@@ -3,7 +3,7 @@
 #include <string>
 
 #include "fakes.hpp"
-#include "gateway/api/dispatcher.hpp"
+#include "gateway/api/dispatch/dispatcher.hpp"
 
 namespace rmac::gateway::fakes {
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "gateway/api/method_table.hpp"
-#include "gateway/api/openrpc.hpp"
+#include "gateway/api/methods/method_table.hpp"
+#include "gateway/api/methods/openrpc.hpp"
 #include "places.hpp"
 
 namespace rmac::gateway {

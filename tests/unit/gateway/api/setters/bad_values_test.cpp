@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 #include "unit/gateway/api/setters/setter_bench.hpp"
 
 namespace rmac::gateway {

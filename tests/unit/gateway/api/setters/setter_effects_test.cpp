@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 #include "unit/gateway/api/setters/setter_bench.hpp"
 
 namespace rmac::gateway {

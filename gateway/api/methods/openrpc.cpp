@@ -1,8 +1,8 @@
-#include "gateway/api/openrpc.hpp"
+#include "gateway/api/methods/openrpc.hpp"
 
 #include <cmath>
 
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 
 namespace rmac::gateway {
 

@@ -1,4 +1,4 @@
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 
 #include <unordered_map>
 

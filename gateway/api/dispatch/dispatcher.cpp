@@ -1,4 +1,4 @@
-#include "gateway/api/dispatcher.hpp"
+#include "gateway/api/dispatch/dispatcher.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gateway/api/decode.hpp"
-#include "gateway/api/method_table.hpp"
+#include "gateway/api/methods/method_table.hpp"
 #include "gateway/json/printable.hpp"
 
 namespace rmac::gateway {

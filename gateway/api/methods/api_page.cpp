@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-#include "gateway/api/method_table.hpp"
-#include "gateway/api/openrpc.hpp"
+#include "gateway/api/methods/method_table.hpp"
+#include "gateway/api/methods/openrpc.hpp"
 
 namespace rmac::gateway {
 
