@@ -89,7 +89,7 @@ nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, co
                        {"pose", {tool.tip[0], tool.tip[1], tool.tip[2], tool.axis[0], tool.axis[1], tool.axis[2]}},
                        {"joints", first(sample.position, sample.joint_count)},
                        {"held_joints", std::vector<double>(sample.position.begin() + sample.joint_count,
-                                                           sample.position.begin() + sample.axis_count)},
+                                                           sample.position.begin() + sample.joint_count_with_held)},
                        {"inputs", sample.inputs},
                        {"outputs", sample.outputs},
                        {"deadline_misses", sample.deadline_misses},

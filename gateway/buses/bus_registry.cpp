@@ -19,10 +19,6 @@ class NoBus final : public DigitalControlInterface {
   static constexpr std::size_t kAxes = 256;
 };
 
-bool same(const sdk::ModuleChoice& a, const sdk::ModuleChoice& b) {
-  return a.name == b.name && a.numbers == b.numbers && a.texts == b.texts;
-}
-
 tl::unexpected<Error> no_interface(const char* what, const sdk::ModuleChoice& choice, const std::string& built_in,
                                    const Error& loading) {
   return failure(loading.code, fmt::format("no {} \"{}\": built in are {}; as a module: {}", what, choice.name,
@@ -81,7 +77,7 @@ Expected<> BusRegistry::check_io_interface(const sdk::ModuleChoice& choice, cons
 Expected<std::shared_ptr<ServoBus>> BusRegistry::acquire(const std::string& name, const sdk::ModuleChoice& choice,
                                                          const ModuleLoader& loader) {
   auto known = buses_.find(name);
-  if (known != buses_.end() && !same(known->second.choice, choice)) {
+  if (known != buses_.end() && known->second.choice != choice) {
     if (known->second.bus.use_count() > 1) {
       return failure(MinorCode::InvalidParameterValue,
                      fmt::format("bus {} is run by {} for the mechanism in force; unload that before the bus is given "
@@ -116,7 +112,7 @@ std::shared_ptr<ServoBus> BusRegistry::virtual_bus(const std::string& name) {
 Expected<std::shared_ptr<DigitalIoInterface>> BusRegistry::acquire_io(const sdk::ModuleChoice& choice,
                                                                       const ModuleLoader& loader) {
   auto known = ios_.find(choice.name);
-  if (known != ios_.end() && !same(known->second.choice, choice)) {
+  if (known != ios_.end() && known->second.choice != choice) {
     if (known->second.interface.use_count() > 1) {
       return failure(MinorCode::InvalidParameterValue,
                      fmt::format("{} is in use by the mechanism in force; unload that before it gets other parameters",

@@ -2,12 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <thread>
+
 #include "gateway/buses/built_in_interfaces.hpp"
-#include "gateway/controller/controller_impl.hpp"
+#include "gateway/cycle/motion_supervisor.hpp"
+#include "gateway/events/announcer.hpp"
+#include "gateway/mechanism/assembler.hpp"
+#include "gateway/reconfiguration/reconfiguration.hpp"
+#include "gateway/record/flight_reporter.hpp"
+#include "gateway/rmac_cam/cam.hpp"
+#include "gateway/rmac_cam/measuring/measuring_machine.hpp"
+#include "gateway/rmac_config/config_draft.hpp"
+#include "gateway/servo/servo_thread.hpp"
 
 namespace rmac::gateway {
 
 namespace {
+
+constexpr std::chrono::microseconds kLookAgain{100};
 
 ServoThread::Options thread_options(const ControllerOptions& options) {
   return {.period_s = options.period_s,
@@ -19,26 +32,107 @@ ServoThread::Options thread_options(const ControllerOptions& options) {
           .clock = options.clock};
 }
 
+AssemblyOptions assembly_options(const ControllerOptions& options) {
+  return {.virtual_mode = false,
+          .period_s = options.period_s,
+          .stop_categories = options.stop_categories,
+          .max_cycles_lost = options.max_cycles_lost};
+}
+
+/// Tells the client's interfaces which mechanism is in force.
+class ClientInterfaces final : public MechanismUsers {
+ public:
+  ClientInterfaces(ConfigDraft& draft, Cam& cam, MeasuringMachine& measuring)
+      : draft_(draft), cam_(cam), measuring_(measuring) {}
+  void mechanism_changed(const sdk::DeviceObject* device, bool fresh) override {
+    cam_.mechanism_changed(device, fresh);
+    measuring_.mechanism_changed(device, fresh);
+  }
+  void draft_from(const sdk::DeviceObject* device) override { draft_.discard(device); }
+  void keep_mounted() override { (void)cam_.tools().keep_mounted(); }
+
+ private:
+  ConfigDraft& draft_;
+  Cam& cam_;
+  MeasuringMachine& measuring_;
+};
+
 }  // namespace
+
+/// In the order in which they need each other.
+struct Controller::Impl {
+  explicit Impl(ControllerOptions controller_options);
+
+  [[nodiscard]] Expected<> apply(const sdk::DeviceObject& device, ConfigDraft::Extent extent);
+  /// While the servo thread is waited for.
+  void let_time_pass();
+  void add_to(Event& event);
+  [[nodiscard]] ModuleLoader loader() const { return assembler.loader(source.folder); }
+
+  ControllerOptions options;
+  std::unique_ptr<ServoLink> link;
+  MotionSupervisor supervisor;
+  ServoThread thread;
+  FlightReporter flights;
+  Announcer announcer;
+  BusRegistry registry;
+  Assembler assembler;
+  ConfigDraft draft;
+  ToolRack rack;
+  Cam cam;
+  MeasuringMachine measuring;
+  ClientInterfaces interfaces;
+  Reconfiguration reconfiguration;
+  MechanismSource source;  ///< where the mechanism about to be configured comes from
+  bool running = false;
+};
 
 Controller::Impl::Impl(ControllerOptions controller_options)
     : options(std::move(controller_options)),
       link(std::make_unique<ServoLink>(FlightRecorder::history_cycles(options.flight_recorder, options.period_s))),
       supervisor({.period_s = options.period_s, .queue_capacity = options.queue_capacity}, *link),
       thread(thread_options(options), *link, supervisor),
-      draft(
-          {[this](const sdk::DeviceObject& device, ConfigDraft::Extent extent) { return apply(device, extent); },
-           [this](const sdk::ModuleChoice& choice) { return registry.check_control_interface(choice, loader(folder)); },
-           [this](const sdk::ModuleChoice& choice) { return registry.check_io_interface(choice, loader(folder)); }}),
+      flights(options.flight_recorder, options.period_s, link->history),
+      announcer(*link, [this](std::uint64_t generation) { return reconfiguration.of_generation(generation); }),
+      assembler(assembly_options(options), options.module_folders, registry),
+      draft({[this](const sdk::DeviceObject& device, ConfigDraft::Extent extent) { return apply(device, extent); },
+             [this](const sdk::ModuleChoice& choice) { return registry.check_control_interface(choice, loader()); },
+             [this](const sdk::ModuleChoice& choice) { return registry.check_io_interface(choice, loader()); }}),
       rack(options.tools_folder),
-      cam(supervisor, *link, rack, [this] { return reset(); }),
-      measuring(supervisor, *link, cam, options.stepped) {
-  if (options.flight_recorder.wanted()) {
-    recorder = std::make_unique<FlightRecorder>(options.flight_recorder, options.period_s, link->history);
-  }
+      cam(supervisor, *link, rack, [this] { return reconfiguration.reset(); }),
+      measuring(supervisor, *link, cam, options.stepped),
+      interfaces(draft, cam, measuring),
+      reconfiguration(
+          {*link, supervisor, assembler, registry, rack, interfaces}, [this] { let_time_pass(); }, options.stepped) {
   add_built_in_interfaces(registry, options.period_s);
   for (const auto& [name, factory] : options.control_interfaces) registry.add_control_interface(name, factory);
   for (const auto& [name, factory] : options.io_interfaces) registry.add_io_interface(name, factory);
+  announcer.before_event([this](Event& event) { add_to(event); });
+  announcer.after_sample(
+      [this](const CycleSample& sample, const Announcer::Tell& tell) { measuring.read(sample, tell); });
+}
+
+Expected<> Controller::Impl::apply(const sdk::DeviceObject& device, ConfigDraft::Extent extent) {
+  if (!running) {
+    return failure(MinorCode::Other, "putting in a configuration: the controller is not running; start it");
+  }
+  if (extent == ConfigDraft::Extent::Loops) return reconfiguration.change_loops(device, source);
+  return reconfiguration.put_in(device, source, extent == ConfigDraft::Extent::Mechanism);
+}
+
+void Controller::Impl::let_time_pass() {
+  announcer.take_over_samples();
+  if (options.stepped) {
+    thread.step();
+  } else {
+    std::this_thread::sleep_for(kLookAgain);
+  }
+}
+
+void Controller::Impl::add_to(Event& event) {
+  flights.annotate(event, reconfiguration.device());
+  if (event.kind != Event::Kind::ToolChanged && event.kind != Event::Kind::ToolChangeDropped) return;
+  if (auto kept = cam.tools().keep_mounted(); !kept) event.message += "; that is not kept: " + kept.error().message;
 }
 
 Controller::Controller(ControllerOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
@@ -58,12 +152,15 @@ Expected<> Controller::start() {
 
 void Controller::stop() noexcept {
   if (!impl_->running) return;
-  impl_->come_to_rest();
+  // Ending cannot fail: whatever does not work, the threads end and the buses stop.
+  try {
+    (void)impl_->cam.cycle().stop_now();
+    impl_->reconfiguration.come_to_rest();
+  } catch (...) {
+  }
   impl_->thread.stop();
   impl_->running = false;
-  impl_->in_force.reset();
-  (void)impl_->supervisor.install(nullptr, ++impl_->generation, false);
-  impl_->registry.stop_unused();
+  impl_->reconfiguration.abandon();
 }
 
 const std::vector<std::string>& Controller::real_time_shortcomings() const noexcept {
@@ -85,19 +182,18 @@ ToolPort& Controller::tools() noexcept {
 }
 
 void Controller::set_mechanism_folder(std::string folder, bool virtual_mode) {
-  impl_->folder = std::move(folder);
-  impl_->virtual_mode = virtual_mode || impl_->options.stepped;
+  impl_->source = {std::move(folder), virtual_mode || impl_->options.stepped};
 }
 
 const std::string& Controller::mechanism_folder() const noexcept {
-  return impl_->folder;
+  return impl_->source.folder;
 }
 bool Controller::virtual_mode() const noexcept {
-  return impl_->virtual_mode;
+  return impl_->source.virtual_mode;
 }
 
 Expected<ModuleObject<sdk::DeviceDriver>> Controller::load_device_driver(const sdk::ModuleChoice& choice) const {
-  return impl_->loader(impl_->folder).load<sdk::DeviceDriver>(choice);
+  return impl_->loader().load<sdk::DeviceDriver>(choice);
 }
 
 void Controller::discard_draft() {
@@ -105,18 +201,19 @@ void Controller::discard_draft() {
 }
 
 Expected<> Controller::unload() {
-  return impl_->take_out();
+  return impl_->reconfiguration.unload();
 }
 bool Controller::mechanism_loaded() const noexcept {
-  return impl_->in_force != nullptr;
+  return mechanism() != nullptr;
 }
 
 const sdk::DeviceObject* Controller::mechanism() const noexcept {
-  return impl_->in_force ? &impl_->in_force->device : nullptr;
+  return impl_->reconfiguration.device();
 }
 
 std::vector<ModuleInUse> Controller::modules() const {
-  return impl_->in_force ? impl_->in_force->modules : std::vector<ModuleInUse>();
+  const Mechanism* const in_force = impl_->reconfiguration.mechanism();
+  return in_force == nullptr ? std::vector<ModuleInUse>() : in_force->modules;
 }
 
 CycleSample Controller::sample() const noexcept {
@@ -132,7 +229,7 @@ CycleNow Controller::cycle_now() const {
 }
 
 const std::optional<Event>& Controller::last_stop() const noexcept {
-  return impl_->last_stop;
+  return impl_->announcer.last_stop();
 }
 
 Expected<std::string> Controller::record_flight() {
@@ -141,19 +238,19 @@ Expected<std::string> Controller::record_flight() {
   asked.t_s = now.t_s;
   asked.cycle = now.cycle;
   asked.message = "asked for by a client";
-  return impl_->record(FlightCause::Demand, asked);
+  return impl_->flights.record(FlightCause::Demand, asked, mechanism());
 }
 
 const FlightFolder* Controller::flight_records() const noexcept {
-  return impl_->recorder ? &impl_->recorder->folder() : nullptr;
+  return impl_->flights.folder();
 }
 
 void Controller::on_event(std::function<void(const Event&)> listener) {
-  impl_->event_listeners.push_back(std::move(listener));
+  impl_->announcer.on_event(std::move(listener));
 }
 
 void Controller::on_sample(std::function<void(const CycleSample&)> listener) {
-  impl_->sample_listeners.push_back(std::move(listener));
+  impl_->announcer.on_sample(std::move(listener));
 }
 
 void Controller::on_queued(QueueListener listener) {
@@ -162,11 +259,13 @@ void Controller::on_queued(QueueListener listener) {
 
 void Controller::cycle() {
   impl_->thread.step();
-  impl_->dispatch();
+  dispatch();
 }
 
 void Controller::dispatch() {
-  impl_->dispatch();
+  impl_->announcer.announce(impl_->supervisor.take_news());
+  for (Event& event : impl_->flights.take_events()) impl_->announcer.tell(std::move(event));
+  impl_->measuring.advance();
 }
 
 }  // namespace rmac::gateway

@@ -12,7 +12,10 @@
 #include "gateway/record/flight_recorder_options.hpp"
 #include "gateway/servo/clock.hpp"
 #include "gateway/servo/cycle_times.hpp"
-#include "gateway/state/machine_state.hpp"
+#include "gateway/state/cycle_sample.hpp"
+#include "gateway/state/cycle_state.hpp"
+#include "gateway/state/event.hpp"
+#include "gateway/state/queue_listener.hpp"
 #include "gateway/tools/tool.hpp"
 #include "rmac/motion/error.hpp"
 #include "rmac/motion/servo/servo_fault.hpp"
@@ -41,7 +44,7 @@ struct ControllerOptions {
   int max_cycles_lost = 0;       ///< missed deadlines within a second; beyond it the machine stops; 0: not watched
   std::shared_ptr<Clock> clock;  ///< paces the servo thread; null: the monotonic clock
   FlightRecorderOptions flight_recorder{};
-  std::filesystem::path tools_folder{};  ///< of the tool tables; empty: none is read or kept
+  std::filesystem::path tools_folder{};  ///< where the tool tables lie; empty: none is read or kept
   /// Interfaces beside the built-in ones, by name.
   std::map<std::string, BusRegistry::ControlFactory> control_interfaces;
   std::map<std::string, BusRegistry::IoFactory> io_interfaces;

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "gateway/state/machine_state.hpp"
+#include "gateway/state/cycle_state.hpp"
 #include "rmac/motion/error.hpp"
 #include "rmac/motion/planner.hpp"
 #include "rmac/sdk/rmac_cam.hpp"

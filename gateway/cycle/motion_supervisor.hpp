@@ -18,6 +18,8 @@
 #include "gateway/cycle/program_log.hpp"
 #include "gateway/cycle/queue_step.hpp"
 #include "gateway/servo/planning.hpp"
+#include "gateway/state/event.hpp"
+#include "gateway/state/queue_listener.hpp"
 #include "gateway/tools/tool.hpp"
 
 namespace rmac::gateway {

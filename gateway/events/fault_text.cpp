@@ -15,37 +15,32 @@ namespace {
 
 std::string joint_name(std::uint32_t index, const sdk::DeviceObject* device) {
   if (device == nullptr) return fmt::format("joint {}", index);
-  const std::size_t moved = device->joints.size();
-  if (index < moved) return fmt::format("joint {} ({})", index, device->joints[index].limits.name);
-  if (index - moved < device->held_joints.size()) {
-    return fmt::format("held joint {} ({})", index, device->held_joints[index - moved].limits.name);
-  }
-  return fmt::format("joint {}", index);
+  if (index >= device->joint_count_with_held()) return fmt::format("joint {}", index);
+  return fmt::format("{}joint {} ({})", index < device->joints.size() ? "" : "held ", index,
+                     joint_at(*device, index).limits.name);
 }
 
-struct NamedBus {
-  const ServoBus* bus;
-  std::string name;
-};
+const ServoBus* bus_at(std::uint32_t index, const Mechanism* mechanism) {
+  return mechanism == nullptr ? nullptr : mechanism->loop->bus(index);
+}
 
-/// A bus of the servo loop, which counts them as actuators, spindles and force sensors name them first.
-std::optional<NamedBus> bus_at(std::uint32_t index, const Mechanism* mechanism) {
-  if (mechanism == nullptr) return {};
+/// As the actuator, spindle or force sensor that is on it names it.
+std::string bus_name(std::uint32_t index, const Mechanism* mechanism) {
+  const ServoBus* const bus = bus_at(index, mechanism);
+  if (bus == nullptr) return fmt::format("bus {}", index);
   const ServoLoopParts& parts = mechanism->loop->parts();
   const sdk::DeviceObject& device = mechanism->device;
-  std::vector<NamedBus> buses;
-  const auto add = [&buses](const std::shared_ptr<ServoBus>& bus, const std::string& name) {
-    const auto same = [&bus](const NamedBus& known) { return known.bus == bus.get(); };
-    if (std::none_of(buses.begin(), buses.end(), same)) buses.push_back({bus.get(), name});
-  };
-  for (std::size_t i = 0; i < parts.actuators.size(); ++i) add(parts.actuators[i].bus, device.actuators.at(i).bus);
-  for (std::size_t i = 0; i < parts.spindles.size(); ++i) add(parts.spindles[i].bus, device.spindles.at(i).bus);
-  for (std::size_t j = 0; j < parts.joints.size(); ++j) {
-    const std::size_t moved = device.joints.size();
-    const sdk::Joint& joint = j < moved ? device.joints[j] : device.held_joints.at(j - moved);
-    if (parts.joints[j].force_sensor) add(parts.joints[j].force_sensor->bus, joint.force_sensor->bus);
+  for (std::size_t i = 0; i < parts.actuators.size(); ++i) {
+    if (parts.actuators[i].bus.get() == bus) return "bus " + device.actuators.at(i).bus;
   }
-  return index < buses.size() ? std::optional(buses[index]) : std::nullopt;
+  for (std::size_t i = 0; i < parts.spindles.size(); ++i) {
+    if (parts.spindles[i].bus.get() == bus) return "bus " + device.spindles.at(i).bus;
+  }
+  for (std::size_t j = 0; j < parts.joints.size(); ++j) {
+    const auto& sensor = parts.joints[j].force_sensor;
+    if (sensor && sensor->bus.get() == bus) return "bus " + joint_at(device, j).force_sensor->bus;
+  }
+  return fmt::format("bus {}", index);
 }
 
 std::string where(const ServoFault& fault, const Mechanism* mechanism) {
@@ -65,10 +60,8 @@ std::string where(const ServoFault& fault, const Mechanism* mechanism) {
         return fmt::format("drive of spindle {} (bus {}, axis {})", fault.index, spindle.bus, spindle.axis);
       }
       return fmt::format("drive of spindle {}", fault.index);
-    case ServoFault::Part::Bus: {
-      const auto bus = bus_at(fault.index, mechanism);
-      return bus ? "bus " + bus->name : fmt::format("bus {}", fault.index);
-    }
+    case ServoFault::Part::Bus:
+      return bus_name(fault.index, mechanism);
     case ServoFault::Part::Io:
       return "digital I/O";
     case ServoFault::Part::Clock:
@@ -107,8 +100,8 @@ std::string io_text(const Mechanism* mechanism) {
 }
 
 std::string bus_text(std::uint32_t index, const Mechanism* mechanism) {
-  const auto bus = bus_at(index, mechanism);
-  const DigitalControlInterface* interface = bus ? bus->bus->interface.get() : nullptr;
+  const ServoBus* const bus = bus_at(index, mechanism);
+  const DigitalControlInterface* interface = bus == nullptr ? nullptr : bus->interface.get();
   return exchange_text(interface, "the bus failed; check the interface");
 }
 
@@ -157,15 +150,9 @@ std::optional<std::string> spindle_cause(const ServoFault& fault, const std::str
   }
 }
 
-std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
-  std::string at = where(fault, mechanism);
-  const auto word = static_cast<unsigned>(std::lround(std::abs(fault.value)));
-  if (fault.part == ServoFault::Part::Spindle) {
-    if (auto text = spindle_cause(fault, at, mechanism)) return *text;
-  }
+/// What a joint's motion or measurement has beyond its bound.
+std::string joint_cause(const ServoFault& fault, const std::string& at) {
   switch (fault.kind) {
-    case ServoFault::Kind::None:
-      return "no fault";
     case ServoFault::Kind::FollowingError:
       return fmt::format(
           "{}: following error {:.4g} is beyond the bound of {:.4g}; look for a blocked axis, a wrong "
@@ -187,12 +174,6 @@ std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
           "and its screen, then reset and find the reference again",
           at, fault.value, fault.bound);
     case ServoFault::Kind::SensorLost:
-      if (fault.part != ServoFault::Part::Joint) {
-        return fmt::format(
-            "{}: the drive has lost its encoder (error {:04X}h, {}); check the encoder and its cable, "
-            "then reset",
-            at, word, code_text(fault, static_cast<std::uint16_t>(word), mechanism));
-      }
       return fmt::format(
           "{}: its force sensor gives no valid value; check the sensor, its amplifier and its cable, "
           "then reset",
@@ -205,35 +186,36 @@ std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
     case ServoFault::Kind::ContactLost:
       return fmt::format("{}: it went {:.4g} without contact, as far as it may; look where the part is, then reset", at,
                          fault.value);
-    case ServoFault::Kind::CyclesLost:
+    default:
+      return at;
+  }
+}
+
+/// What a drive says, or does not say, by itself.
+std::string drive_cause(const ServoFault& fault, const std::string& at, const Mechanism* mechanism) {
+  const auto word = static_cast<std::uint16_t>(std::lround(std::abs(fault.value)));
+  switch (fault.kind) {
+    case ServoFault::Kind::SensorLost:
       return fmt::format(
-          "{}: {:.0f} deadlines were missed within a second, and {:.0f} are allowed; look at the load of the "
-          "controller and at docs/real-time.md, then reset",
-          at, fault.value, fault.bound);
-    case ServoFault::Kind::NotANumber:
-      return fmt::format("{}: the servo loop computed no number; check gains and feedback, then reset", at);
+          "{}: the drive has lost its encoder (error {:04X}h, {}); check the encoder and its cable, "
+          "then reset",
+          at, word, code_text(fault, word, mechanism));
     case ServoFault::Kind::DriveFault:
       return fmt::format(
           "{}: the drive reports error {:04X}h ({}); look it up in its manual, remove the cause, then reset", at, word,
-          code_text(fault, static_cast<std::uint16_t>(word), mechanism));
+          code_text(fault, word, mechanism));
     case ServoFault::Kind::DriveOffline:
       return fmt::format("{}: the drive does not answer; check its power and its cable, then reset", at);
     case ServoFault::Kind::DriveDropped:
       return fmt::format(
           "{}: the drive left Operation Enabled by itself and is in {}; check its enable chain, then "
           "reset",
-          at, rmac::to_string(drive_state(static_cast<std::uint16_t>(word))));
+          at, drive_state_text(word));
     case ServoFault::Kind::EnableTimeout:
       return fmt::format(
           "{}: the drive was not enabled within {:.3g} s, it stays in {}; check its power and its enable "
           "chain, then reset",
-          at, fault.bound, rmac::to_string(drive_state(static_cast<std::uint16_t>(word))));
-    case ServoFault::Kind::BusFailure:
-      return fmt::format("{}: {}, then reset", at, bus_text(fault.index, mechanism));
-    case ServoFault::Kind::IoFailure:
-      return fmt::format("{}: {}, then reset", at, io_text(mechanism));
-    case ServoFault::Kind::EmergencyStop:
-      return fmt::format("{} stopped the machine; release it, then reset", input_name(fault.index, mechanism));
+          at, fault.bound, drive_state_text(word));
     case ServoFault::Kind::HomingFailed:
       return fault.bound > 0
                  ? fmt::format(
@@ -244,7 +226,49 @@ std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
                        "{}: the drive gave up looking for home (statusword {:04X}h); check its switch and its "
                        "homing method, then reset",
                        at, word);
-    case ServoFault::Kind::LimitSwitch:
+    default:
+      return at;
+  }
+}
+
+std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
+  const std::string at = where(fault, mechanism);
+  if (fault.part == ServoFault::Part::Spindle) {
+    if (auto text = spindle_cause(fault, at, mechanism)) return *text;
+  }
+  using Kind = ServoFault::Kind;
+  switch (fault.kind) {
+    case Kind::None:
+      return "no fault";
+    case Kind::SensorLost:
+      return fault.part == ServoFault::Part::Joint ? joint_cause(fault, at) : drive_cause(fault, at, mechanism);
+    case Kind::FollowingError:
+    case Kind::VelocityBound:
+    case Kind::TorqueBound:
+    case Kind::EncoderJump:
+    case Kind::ForceLimit:
+    case Kind::ContactLost:
+      return joint_cause(fault, at);
+    case Kind::DriveFault:
+    case Kind::DriveOffline:
+    case Kind::DriveDropped:
+    case Kind::EnableTimeout:
+    case Kind::HomingFailed:
+      return drive_cause(fault, at, mechanism);
+    case Kind::CyclesLost:
+      return fmt::format(
+          "{}: {:.0f} deadlines were missed within a second, and {:.0f} are allowed; look at the load of the "
+          "controller and at docs/real-time.md, then reset",
+          at, fault.value, fault.bound);
+    case Kind::NotANumber:
+      return fmt::format("{}: the servo loop computed no number; check gains and feedback, then reset", at);
+    case Kind::BusFailure:
+      return fmt::format("{}: {}, then reset", at, bus_text(fault.index, mechanism));
+    case Kind::IoFailure:
+      return fmt::format("{}: {}, then reset", at, io_text(mechanism));
+    case Kind::EmergencyStop:
+      return fmt::format("{} stopped the machine; release it, then reset", input_name(fault.index, mechanism));
+    case Kind::LimitSwitch:
       return fmt::format("{} is reached; reset, then jog the axis off it{}", input_name(fault.index, mechanism),
                          holds_back(fault.index, mechanism) ? "" : ": nothing keeps it from moving on towards it");
   }
@@ -296,6 +320,11 @@ MinorCode code_of(ServoFault::Kind kind) noexcept {
       break;
   }
   return MinorCode::Other;
+}
+
+Event event_of(const FaultRecord& record, const Mechanism* mechanism) {
+  return {Event::Kind::Fault,        record.t_s, record.move_id, describe(record.fault, mechanism), record.cycle, {},
+          code_of(record.fault.kind)};
 }
 
 }  // namespace rmac::gateway

@@ -4,6 +4,7 @@
 
 #include "gateway/mechanism/mechanism.hpp"
 #include "gateway/servo/servo_link.hpp"
+#include "gateway/state/event.hpp"
 
 namespace rmac::gateway {
 
@@ -13,5 +14,8 @@ namespace rmac::gateway {
 
 /// The status that it leaves (Appendix IV).
 [[nodiscard]] MinorCode code_of(ServoFault::Kind kind) noexcept;
+
+/// The event that tells of a fault.
+[[nodiscard]] Event event_of(const FaultRecord& record, const Mechanism* mechanism);
 
 }  // namespace rmac::gateway

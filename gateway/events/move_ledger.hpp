@@ -12,8 +12,8 @@ namespace rmac::gateway {
 /// when some were dropped or many short moves end in one cycle. Gateway thread.
 class MoveLedger {
  public:
-  /// `still`: the move has no motion, so no sample counts it; it is done in its turn.
-  /// Of a move in parts, the first one tells that it began, the last one that it is done.
+  /// `still`: the move has no motion, so no sample counts it; it is done in its turn. The first part of a move tells
+  /// that it began, the last one that it is done.
   void add(std::int64_t move_id, bool still, MovePart part = {}) {
     moves_.push_back({move_id, !part.first, still, part.last});
   }

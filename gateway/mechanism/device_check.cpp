@@ -1,3 +1,5 @@
+#include "gateway/mechanism/device_check.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -5,7 +7,7 @@
 #include <set>
 
 #include "gateway/json/range.hpp"
-#include "gateway/mechanism/assembler.hpp"
+#include "rmac/motion/pose.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -55,7 +57,7 @@ Expected<> check_joint(const sdk::Joint& joint, const std::string& who) {
 }
 
 Expected<> check_joints(const sdk::DeviceObject& device) {
-  const std::size_t count = device.joints.size() + device.held_joints.size();
+  const std::size_t count = device.joint_count_with_held();
   if (device.joints.empty() || count > kMaxJoints) {
     return refuse(fmt::format("{}: {} joints and {} held ones; there must be 1 joint at least, and {} at most together",
                               device.name, device.joints.size(), device.held_joints.size(), kMaxJoints));
@@ -63,7 +65,7 @@ Expected<> check_joints(const sdk::DeviceObject& device) {
   std::set<std::string> names;
   for (std::size_t i = 0; i < count; ++i) {
     const bool held = i >= device.joints.size();
-    const sdk::Joint& joint = held ? device.held_joints[i - device.joints.size()] : device.joints[i];
+    const sdk::Joint& joint = joint_at(device, i);
     const std::string who = fmt::format("{} {} \"{}\"", held ? "held joint" : "joint", i, joint.limits.name);
     if (joint.limits.name.empty() || !names.insert(joint.limits.name).second) {
       return refuse(who + ": every joint needs a name of its own");

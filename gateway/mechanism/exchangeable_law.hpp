@@ -7,8 +7,7 @@
 namespace rmac::gateway {
 
 /// The law of a joint, which another one may take the place of between two cycles, in motion too: the other one goes on
-/// from the effort that the first one ended with. Of its functions `exchange`, `engage` and `update` are the servo
-/// thread's.
+/// from the effort that the first one ended with. `exchange`, `engage` and `update` are the servo thread's.
 class ExchangeableLaw final : public ServoLaw {
  public:
   explicit ExchangeableLaw(std::shared_ptr<ServoLaw> law) noexcept : law_(std::move(law)) {}
@@ -36,7 +35,7 @@ class ExchangeableLaw final : public ServoLaw {
 
  private:
   std::shared_ptr<ServoLaw> law_;
-  double effort_ = 0;  ///< of the last cycle
+  double effort_ = 0;  ///< what the last cycle gave
   bool exchanged_ = false;
 };
 

@@ -9,8 +9,8 @@
 namespace rmac::gateway {
 
 /// Where the joints of `next` (held ones included) stand while those of `now` stand at `position`: back through `now`'s
-/// actuator map to the encoders, and forth through `next`'s. Nothing when `next` has a drive that `now` has not, or one
-/// of them is virtual.
+/// actuator map to the encoders, and forth through `next`'s. Nothing when `next` has a drive that `now` has not, or
+/// when either mechanism is virtual.
 [[nodiscard]] std::optional<std::vector<double>> standing_after(const Mechanism& now, std::span<const double> position,
                                                                 const Mechanism& next);
 

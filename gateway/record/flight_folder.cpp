@@ -13,7 +13,7 @@ namespace rmac::gateway {
 namespace {
 
 constexpr const char* kExtension = ".flight";
-/// Of a record's text in one answer.
+/// One answer holds at most so much of a record's text.
 constexpr std::size_t kPartBytes = 256U << 10U;
 /// A head is far shorter; a file that is none is not read to its end.
 constexpr std::size_t kLongestHead = 64U << 10U;

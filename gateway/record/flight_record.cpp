@@ -23,7 +23,7 @@ void append_words(const std::array<T, kMaxJoints>& words, std::size_t count, std
 }
 
 void append_header(const CycleSample& sample, std::string& out) {
-  const std::size_t joints = sample.axis_count;
+  const std::size_t joints = sample.joint_count_with_held;
   const std::size_t drives = sample.actuator_count;
   append_setpoint_header(joints, true, out);
   for (const char* quantity : {"ad", "effort", "force"}) append_columns(quantity, joints, out);
@@ -33,7 +33,7 @@ void append_header(const CycleSample& sample, std::string& out) {
 }
 
 void append_row(const CycleSample& sample, std::string& out) {
-  const std::size_t joints = sample.axis_count;
+  const std::size_t joints = sample.joint_count_with_held;
   const std::size_t drives = sample.actuator_count;
   const auto of_joints = [joints](const std::array<double, kMaxJoints>& values) {
     return std::span(values).first(joints);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gateway/state/machine_state.hpp"
+#include "gateway/state/cycle_sample.hpp"
 #include "rmac/motion/error.hpp"
 
 namespace rmac::gateway {
@@ -22,7 +22,7 @@ struct FlightHead {
     std::string name, unit;
     std::string law;  ///< module of the servo law
     std::vector<double> gains;
-    std::map<std::string, std::vector<double>> parameters;  ///< of the law, by name
+    std::map<std::string, std::vector<double>> parameters;  ///< those of the law, by name
     double max_speed = 0, max_acceleration = 0, max_effort = 0;
   };
   std::string name;

@@ -136,8 +136,8 @@ std::vector<CycleSample> FlightRecorder::samples_of(const Request& request) cons
   samples.reserve(static_cast<std::size_t>(std::max<std::int64_t>(0, request.last - first + 1)));
   CycleSample sample;
   const auto add = [&](std::int64_t cycle) {
-    const bool fits = history_.read(cycle, sample) && sample.axis_count > 0 &&
-                      (samples.empty() || (sample.axis_count == samples.front().axis_count &&
+    const bool fits = history_.read(cycle, sample) && sample.joint_count_with_held > 0 &&
+                      (samples.empty() || (sample.joint_count_with_held == samples.front().joint_count_with_held &&
                                            sample.actuator_count == samples.front().actuator_count));
     if (fits) samples.push_back(sample);
     return fits;

@@ -8,6 +8,7 @@
 
 #include "gateway/api/state_json.hpp"
 #include "gateway/json/printable.hpp"
+#include "rmac/motion/drive_power.hpp"
 
 namespace rmac::gateway {
 
@@ -45,7 +46,7 @@ void append_head(const CycleSample& sample, std::string& out) {
 
 void append_joints(const CycleSample& sample, std::string& out) {
   const std::size_t joints = sample.joint_count;
-  const std::size_t axes = sample.axis_count;
+  const std::size_t with_held = sample.joint_count_with_held;
   append_head(sample, out);
   fmt::format_to(std::back_inserter(out), ",\"moving\":{},\"move_id\":{}", sample.moving, sample.move_id);
   append_member("s_mm", sample.s_mm, out);
@@ -61,55 +62,27 @@ void append_joints(const CycleSample& sample, std::string& out) {
   append_list("effort", sample.effort, 0, joints, out);
   append_list("force", sample.force, 0, joints, out);
   std::array<double, kMaxJoints> error{};
-  for (std::size_t i = 0; i < axes; ++i) error[i] = sample.position_set[i] - sample.position[i];
+  for (std::size_t i = 0; i < with_held; ++i) error[i] = sample.position_set[i] - sample.position[i];
   append_list("error", error, 0, joints, out);
-  if (axes > joints) {
-    append_list("held", sample.position, joints, axes, out);
-    append_list("held_set", sample.position_set, joints, axes, out);
-    append_list("held_effort", sample.effort, joints, axes, out);
+  if (with_held > joints) {
+    append_list("held", sample.position, joints, with_held, out);
+    append_list("held_set", sample.position_set, joints, with_held, out);
+    append_list("held_effort", sample.effort, joints, with_held, out);
   }
   out += '}';
 }
 
 void append_drives(const CycleSample& sample, std::string& out) {
   append_head(sample, out);
-  append_list("statusword", sample.statusword, 0, sample.axis_count, out);
+  append_list("statusword", sample.statusword, 0, sample.actuator_count, out);
   out += ",\"state\":[";
-  for (std::size_t i = 0; i < sample.axis_count; ++i) {
-    fmt::format_to(std::back_inserter(out), "{}\"{}\"", i == 0 ? "" : ",", drive_state(sample.statusword[i]));
+  for (std::size_t i = 0; i < sample.actuator_count; ++i) {
+    fmt::format_to(std::back_inserter(out), "{}\"{}\"", i == 0 ? "" : ",", drive_state_text(sample.statusword[i]));
   }
   out += ']';
-  append_list("position", sample.position, 0, sample.axis_count, out);
+  append_list("position", sample.position, 0, sample.joint_count_with_held, out);
   fmt::format_to(std::back_inserter(out), ",\"inputs\":{},\"outputs\":{},\"deadline_misses\":{},\"samples_lost\":{}}}",
                  sample.inputs, sample.outputs, sample.deadline_misses, sample.samples_lost);
-}
-
-const char* drive_state(std::uint16_t statusword) noexcept {
-  // CiA 402-2, table 29: bits 0-3, 5 and 6 tell the state.
-  switch (statusword & 0x6f) {
-    case 0x21:
-      return "ready to switch on";
-    case 0x23:
-      return "switched on";
-    case 0x27:
-      return "operation enabled";
-    case 0x07:
-      return "quick stop active";
-    default:
-      break;
-  }
-  switch (statusword & 0x4f) {
-    case 0x00:
-      return "not ready to switch on";
-    case 0x40:
-      return "switch on disabled";
-    case 0x0f:
-      return "fault reaction active";
-    case 0x08:
-      return "fault";
-    default:
-      return "unknown";
-  }
 }
 
 std::string notification(const char* topic, const std::string& params) {

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "gateway/state/machine_state.hpp"
+#include "gateway/state/cycle_sample.hpp"
+#include "gateway/state/event.hpp"
 
 namespace rmac::gateway {
 
@@ -14,9 +15,6 @@ void append_joints(const CycleSample& sample, std::string& out);
 
 /// One sample of the topic `drives`.
 void append_drives(const CycleSample& sample, std::string& out);
-
-/// The state that CiA 402 gives a status word, e.g. "operation enabled".
-[[nodiscard]] const char* drive_state(std::uint16_t statusword) noexcept;
 
 /// A notification's line: `{"jsonrpc":"2.0","method":topic,"params":params}` without a newline.
 [[nodiscard]] std::string notification(const char* topic, const std::string& params);

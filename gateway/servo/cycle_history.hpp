@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gateway/servo/snapshot.hpp"
-#include "gateway/state/machine_state.hpp"
+#include "gateway/state/cycle_sample.hpp"
 
 namespace rmac::gateway {
 

@@ -95,7 +95,7 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
   status_.probe = report_.probe;
   if (report_.follows) status_.moves_done += setpoint.moves_done;
   status_.joint_count = static_cast<std::uint32_t>(loop.joint_count());
-  status_.axis_count = static_cast<std::uint32_t>(loop.joint_count_with_held());
+  status_.joint_count_with_held = static_cast<std::uint32_t>(loop.joint_count_with_held());
   status_.position_set = report_.position_set;
   status_.spindle_rpm = report_.spindle_rpm;
 
@@ -126,7 +126,7 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
   }
   if (mechanism_ != nullptr) {
     sample_.joint_count = status_.joint_count;
-    sample_.axis_count = status_.axis_count;
+    sample_.joint_count_with_held = status_.joint_count_with_held;
     sample_.actuator_count = static_cast<std::uint32_t>(mechanism_->loop->parts().actuators.size());
     sample_.servo_state = status_.state;
     sample_.fault = status_.fault;

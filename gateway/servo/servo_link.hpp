@@ -12,7 +12,7 @@
 #include "gateway/servo/cycle_history.hpp"
 #include "gateway/servo/cycle_times.hpp"
 #include "gateway/servo/snapshot.hpp"
-#include "gateway/state/machine_state.hpp"
+#include "gateway/state/cycle_state.hpp"
 
 namespace rmac::gateway {
 
@@ -42,7 +42,7 @@ struct ServoStatus {
   std::uint32_t homings = 0;
   ProbeReport probe;
   std::uint32_t joint_count = 0;
-  std::uint32_t axis_count = 0;
+  std::uint32_t joint_count_with_held = 0;
   std::array<double, kMaxJoints> position_set{};
   std::array<double, kMaxSpindles> spindle_rpm{};
 };

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array kQuantities{"velocity", "acceleration", "jerk"};
 
-/// The tool tip's way along a segment. Of one in joint space the length is the joints', so the tip's is that of chords.
+/// The tool tip's way along a segment. One in joint space has the joints' length, so the tip's is that of chords.
 double tip_length(const PathSegment& segment) {
   if (!segment.curve().in_joint_space()) return segment.length();
   constexpr int kChords = 1000;

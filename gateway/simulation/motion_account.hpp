@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "gateway/state/machine_state.hpp"
+#include "gateway/state/cycle_sample.hpp"
+#include "rmac/motion/move.hpp"
+#include "rmac/motion/path_segment.hpp"
 #include "rmac/sdk/device_object.hpp"
 
 namespace rmac::gateway {
@@ -51,7 +53,7 @@ class MotionAccount {
   /// What a move allows along its path; 0: as much as the joints can.
   struct PathBounds {
     double feed_mm_s = 0, rise_mm_s2 = 0, fall_mm_s2 = 0;
-    double joint_fraction = 0;  ///< of a move in joint space: of the joints' speed limits
+    double joint_fraction = 0;  ///< in joint space: the share of the joints' speed limits
   };
   static constexpr std::size_t kFeed = 0, kPathAcceleration = 1, kJointLimits = 2;
 
@@ -61,11 +63,11 @@ class MotionAccount {
   double period_s_;
   double max_feed_mm_s_ = 0;
   std::vector<Joint> joints_;
-  std::vector<Bounds> bounds_;        ///< of the mechanism in force, joint by joint
+  std::vector<Bounds> bounds_;        ///< those of the mechanism in force, joint by joint
   std::vector<double> time_s_;        ///< feed, path acceleration, then velocity, acceleration and jerk of each joint
-  std::deque<PathBounds> path_;       ///< of the moves that are not done
-  std::vector<double> jerk_;          ///< of the cycle
-  std::vector<double> acceleration_;  ///< of the cycle before
+  std::deque<PathBounds> path_;       ///< those of the moves that are not done
+  std::vector<double> jerk_;          ///< in the cycle
+  std::vector<double> acceleration_;  ///< in the cycle before
   double none_s_ = 0, length_mm_ = 0, feed_before_mm_s_ = 0;
 };
 

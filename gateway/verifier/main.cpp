@@ -8,7 +8,7 @@
 
 #include "gateway/configuration/configuration.hpp"
 #include "gateway/device_database/device_database.hpp"
-#include "gateway/mechanism/assembler.hpp"
+#include "gateway/mechanism/device_check.hpp"
 #include "gateway/verifier/supervisor.hpp"
 
 namespace {

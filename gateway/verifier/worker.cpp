@@ -9,7 +9,7 @@
 
 #include "gateway/buses/built_in_interfaces.hpp"
 #include "gateway/buses/bus_registry.hpp"
-#include "gateway/mechanism/assembler.hpp"
+#include "gateway/mechanism/device_check.hpp"
 #include "gateway/rmac_config/config_draft.hpp"
 #include "gateway/verification/checks/actuator_map_check.hpp"
 #include "gateway/verification/checks/kinematics_check.hpp"

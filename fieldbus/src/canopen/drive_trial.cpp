@@ -72,7 +72,7 @@ class Trial {
         return failure(MinorCode::ResponseTimeout,
                        fmt::format("the drive was not enabled within {:g} s, it stays in {}; check its power and its "
                                    "enable chain",
-                                   kPatience_s, to_string(drive_state(feedback_.statusword))));
+                                   kPatience_s, drive_state_text(feedback_.statusword)));
       }
     }
     return {};
@@ -85,7 +85,7 @@ class Trial {
     if (auto fine = sound(); !fine) return fine;
     if (drive_state(feedback_.statusword) != DriveState::OperationEnabled) {
       return failure(MinorCode::Other, fmt::format("the drive left Operation Enabled by itself and is in {}",
-                                                   to_string(drive_state(feedback_.statusword))));
+                                                   drive_state_text(feedback_.statusword)));
     }
     const std::int64_t went = std::abs(std::int64_t{feedback_.position_counts} - result_.from_counts);
     result_.farthest_counts = std::max(result_.farthest_counts, went);

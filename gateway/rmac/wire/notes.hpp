@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "gateway/state/machine_state.hpp"
+#include "gateway/state/cycle_state.hpp"
+#include "gateway/state/event.hpp"
 
 namespace rmac::cli {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "gateway/state/machine_state.hpp"
+#include "gateway/state/cycle_sample.hpp"
 
 namespace rmac::gateway {
 

@@ -31,6 +31,9 @@ std::size_t ServoLoop::joint_count_with_held() const noexcept {
 const ServoLoopParts& ServoLoop::parts() const noexcept {
   return impl_->parts;
 }
+const ServoBus* ServoLoop::bus(std::size_t index) const noexcept {
+  return impl_->exchange.bus(index);
+}
 ServoState ServoLoop::state() const noexcept {
   return impl_->state.state();
 }

@@ -50,7 +50,8 @@ inline constexpr std::uint16_t kHomingError = 1U << 13;
 [[nodiscard]] std::uint16_t next_controlword(std::uint16_t statusword, DriveWish wish, bool reset_fault,
                                              std::uint16_t previous) noexcept;
 
-/// The state's name, for messages to people.
-[[nodiscard]] const char* to_string(DriveState state) noexcept;
+/// The name of the state that a statusword tells, as clients and people read it: "operation enabled"; "unknown" where
+/// the standard leaves the pattern undefined.
+[[nodiscard]] const char* drive_state_text(std::uint16_t statusword) noexcept;
 
 }  // namespace rmac

@@ -1,9 +1,16 @@
 #include "rmac/motion/drive_power.hpp"
 
+#include <optional>
+
 namespace rmac {
 
-DriveState drive_state(std::uint16_t statusword) noexcept {
+namespace {
+
+/// Nothing for a pattern that the standard leaves undefined (CiA 402-2, table 29: bits 0 to 3, 5 and 6).
+std::optional<DriveState> defined_state(std::uint16_t statusword) noexcept {
   switch (statusword & 0x4F) {
+    case 0x00:
+      return DriveState::NotReadyToSwitchOn;
     case 0x40:
       return DriveState::SwitchOnDisabled;
     case 0x0F:
@@ -23,8 +30,14 @@ DriveState drive_state(std::uint16_t statusword) noexcept {
     case 0x07:
       return DriveState::QuickStopActive;
     default:
-      return DriveState::NotReadyToSwitchOn;
+      return {};
   }
+}
+
+}  // namespace
+
+DriveState drive_state(std::uint16_t statusword) noexcept {
+  return defined_state(statusword).value_or(DriveState::NotReadyToSwitchOn);
 }
 
 namespace {
@@ -75,24 +88,26 @@ std::uint16_t next_controlword(std::uint16_t statusword, DriveWish wish, bool re
   return kDisableVoltage;
 }
 
-const char* to_string(DriveState state) noexcept {
-  switch (state) {
+const char* drive_state_text(std::uint16_t statusword) noexcept {
+  const auto state = defined_state(statusword);
+  if (!state) return "unknown";
+  switch (*state) {
     case DriveState::NotReadyToSwitchOn:
-      return "Not Ready To Switch On";
+      return "not ready to switch on";
     case DriveState::SwitchOnDisabled:
-      return "Switch On Disabled";
+      return "switch on disabled";
     case DriveState::ReadyToSwitchOn:
-      return "Ready To Switch On";
+      return "ready to switch on";
     case DriveState::SwitchedOn:
-      return "Switched On";
+      return "switched on";
     case DriveState::OperationEnabled:
-      return "Operation Enabled";
+      return "operation enabled";
     case DriveState::QuickStopActive:
-      return "Quick Stop Active";
+      return "quick stop active";
     case DriveState::FaultReactionActive:
-      return "Fault Reaction Active";
+      return "fault reaction active";
     case DriveState::Fault:
-      return "Fault";
+      return "fault";
   }
   return "unknown";
 }

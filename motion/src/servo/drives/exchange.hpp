@@ -20,6 +20,10 @@ class Exchange {
   [[nodiscard]] std::uint64_t run(std::uint64_t outputs, FaultSink& faults) noexcept;
   /// Another loop's words stand: those for drives that this loop has go on, the others ask for nothing.
   void take_over() noexcept;
+  /// The bus that a fault of a bus names by `index`; nullptr where there is none.
+  [[nodiscard]] const ServoBus* bus(std::size_t index) const noexcept {
+    return index < buses_.size() ? buses_[index].get() : nullptr;
+  }
   /// Time that the last exchange took.
   [[nodiscard]] std::int64_t took_ns() const noexcept { return took_ns_; }
 
@@ -27,8 +31,8 @@ class Exchange {
   [[nodiscard]] bool owns(const ServoBus* bus, std::uint32_t axis) const noexcept;
 
   const ServoLoopParts& parts_;
-  std::vector<std::shared_ptr<ServoBus>>
-      buses_;  ///< each once, in the order in which actuators, spindles, sensors come
+  /// Each once, in the order in which actuators, spindles and sensors name them.
+  std::vector<std::shared_ptr<ServoBus>> buses_;
   bool fresh_ = true;
   std::int64_t took_ns_ = 0;
 };

@@ -149,7 +149,7 @@ TEST(CamApi, RetracesAndAnswersTheWay) {
 TEST(CamApi, StateTellsMechanismJointsAndStatus) {
   Api api;
   api.machine.now.joint_count = 2;
-  api.machine.now.axis_count = 3;
+  api.machine.now.joint_count_with_held = 3;
   api.machine.now.position = {1, 2, 3};
   api.machine.now.feed_actual_mm_s = 10;
   const json state = api.result("RMAC_CAM.GetState");

@@ -172,6 +172,21 @@ TEST(MechanismChange, PutsTheOldMechanismBackWhenADriveOfTheNewOneFails) {
   EXPECT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 1));
 }
 
+TEST(MechanismChange, TakesAFirstMechanismOutAgainWhenADriveOfItFails) {
+  TestMachine machine;
+  ASSERT_TRUE(machine.load(TestMachine::mill()));
+  ASSERT_TRUE(machine.controller.unload());
+  machine.bus->set_online(1, false);
+  const auto refused = machine.load(TestMachine::mill());
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("axis 1"));
+  EXPECT_FALSE(machine.controller.mechanism_loaded());
+  EXPECT_EQ(machine.controller.cycle_now().state, CycleState::Idle) << "nothing is in force that could be at fault";
+  machine.bus->set_online(1, true);
+  const auto loaded = machine.load(TestMachine::mill());
+  EXPECT_TRUE(loaded) << loaded.error().message;
+}
+
 TEST(MechanismChange, KeepsSharedDrivesOperationalAndHoldsTheThird) {
   TestMachine machine;
   ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
@@ -197,7 +212,7 @@ TEST(MechanismChange, KeepsSharedDrivesOperationalAndHoldsTheThird) {
 
   for (const CycleSample& sample : machine.samples) {
     if (sample.cycle <= before) continue;
-    ASSERT_EQ(sample.axis_count, 3U);
+    ASSERT_EQ(sample.joint_count_with_held, 3U);
     for (std::size_t i = 0; i < 3; ++i) ASSERT_EQ(sample.statusword[i] & 0x6F, 0x27) << "cycle " << sample.cycle;
     ASSERT_NEAR(sample.position_set[2], -7, 1e-6);
     ASSERT_NEAR(sample.position[2], z_before, 0.01);
@@ -269,7 +284,7 @@ TEST(MechanismChange, UnloadingDisablesTheDrives) {
   ASSERT_TRUE(machine.controller.unload());
   EXPECT_FALSE(machine.controller.mechanism_loaded());
   machine.controller.dispatch();
-  EXPECT_EQ(machine.samples.back().axis_count, 0U);
+  EXPECT_EQ(machine.samples.back().joint_count_with_held, 0U);
   EXPECT_FALSE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
   const auto again = machine.load_at_zero(TestMachine::mill());
   EXPECT_TRUE(again) << again.error().message;

@@ -39,7 +39,7 @@ class StandingMill : public testing::Test {
     status_.generation = 1;
     status_.state = ServoState::Engaged;
     status_.follows = true;
-    status_.joint_count = status_.axis_count = static_cast<std::uint32_t>(joints.size());
+    status_.joint_count = status_.joint_count_with_held = static_cast<std::uint32_t>(joints.size());
     std::copy(joints.begin(), joints.end(), status_.position_set.begin());
     link_.status.write(status_);
   }

@@ -56,7 +56,7 @@ TEST(FlightRecorder, MissesNoCycleOfAServoThreadThatWaitsForIt) {
     FlightRecorder recorder(options, kPeriod_s, history);
     std::thread servo([&] {
       CycleSample sample;
-      sample.axis_count = sample.joint_count = sample.actuator_count = 2;
+      sample.joint_count_with_held = sample.joint_count = sample.actuator_count = 2;
       while (!ends) {
         if (history.would_overwrite()) {
           std::this_thread::yield();

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "gateway/simulation/simulation.hpp"
-#include "gateway/state/machine_state.hpp"
+#include "gateway/state/cycle_sample.hpp"
 #include "places.hpp"
 #include "rmac/motion/frame.hpp"
 

@@ -10,6 +10,7 @@
 
 namespace rmac {
 
+struct ServoBus;
 struct ServoCommand;
 struct ServoHandover;
 struct ServoLoopParts;
@@ -42,6 +43,8 @@ class ServoLoop {
   [[nodiscard]] std::size_t joint_count() const noexcept;  ///< of the kinematics
   [[nodiscard]] std::size_t joint_count_with_held() const noexcept;
   [[nodiscard]] const ServoLoopParts& parts() const noexcept;
+  /// The bus that a fault of a bus names by `index`; nullptr where there is none.
+  [[nodiscard]] const ServoBus* bus(std::size_t index) const noexcept;
 
   /// Takes over from another loop between two cycles, before this one's first cycle. Drives that both have stay
   /// operational, with their setpoint and torque; drives of the same buses that this loop does not have go off.

@@ -37,7 +37,7 @@ void becomes_planar_by(SetterBench& bench, const std::string& setter, const std:
   EXPECT_THAT(bench.tip_refusal(0, 0, 2), HasSubstr("reach"));
   const Trace trace = bench.tip_to(3, 4, 0);
   EXPECT_NEAR(trace.back().position_set[1], 4, 1e-5);
-  EXPECT_EQ(trace.back().axis_count, 2U);
+  EXPECT_EQ(trace.back().joint_count_with_held, 2U);
 }
 
 /// Puts the spindle's drive into torque mode, behind a PID with these gains.

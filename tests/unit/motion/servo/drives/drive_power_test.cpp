@@ -27,8 +27,20 @@ TEST(DriveState, IgnoresAllOtherBits) {
   EXPECT_EQ(drive_state(0x40 | kOther), DriveState::SwitchOnDisabled);
 }
 
-TEST(DriveState, HasANameForEveryValue) {
-  for (std::uint16_t word = 0; word < 0x80; ++word) EXPECT_STRNE(to_string(drive_state(word)), "unknown");
+TEST(DriveState, HasTheTextThatClientsRead) {
+  EXPECT_STREQ(drive_state_text(0x0000), "not ready to switch on");
+  EXPECT_STREQ(drive_state_text(0x0040), "switch on disabled");
+  EXPECT_STREQ(drive_state_text(0x0021), "ready to switch on");
+  EXPECT_STREQ(drive_state_text(0x0023), "switched on");
+  EXPECT_STREQ(drive_state_text(0x0627), "operation enabled") << "whatever the other bits say";
+  EXPECT_STREQ(drive_state_text(0x0007), "quick stop active");
+  EXPECT_STREQ(drive_state_text(0x000F), "fault reaction active");
+  EXPECT_STREQ(drive_state_text(0x0028), "fault");
+}
+
+TEST(DriveState, IsWaitedForWhereTheStandardLeavesThePatternUndefined) {
+  EXPECT_EQ(drive_state(0x0001), DriveState::NotReadyToSwitchOn);
+  EXPECT_STREQ(drive_state_text(0x0001), "unknown");
 }
 
 std::uint16_t towards(DriveWish wish, std::uint16_t statusword) {

@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "rmac/motion/joint.hpp"
 #include "rmac/motion/error.hpp"
+#include "rmac/motion/joint.hpp"
 #include "rmac/motion/joint_mechanics.hpp"
 #include "rmac/sdk/config/module_choice.hpp"
 

@@ -1,4 +1,4 @@
-#include "gateway/state/machine_state.hpp"
+#include "gateway/state/cycle_state.hpp"
 
 namespace rmac::gateway {
 

@@ -9,7 +9,7 @@ namespace {
 struct Mode {
   const char* name;
   DriveMode mode;
-  double lag_s;  ///< of the drives' own loops: how far behind a joint may be at a steady speed
+  double lag_s;  ///< what the drives' own loops add: how far behind a joint may be at a steady speed
 };
 
 void PrintTo(const Mode& mode, std::ostream* out) {

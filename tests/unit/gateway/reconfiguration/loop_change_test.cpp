@@ -12,7 +12,7 @@ using testing::HasSubstr;
 
 constexpr std::int64_t kMove = 3;
 
-class LawChange : public testing::Test {
+class LoopChange : public testing::Test {
  protected:
   void start_moving() {
     ASSERT_TRUE(machine_.load_at_zero(TestMachine::mill()));
@@ -26,7 +26,7 @@ class LawChange : public testing::Test {
   [[nodiscard]] Expected<> gains(int joint, const std::vector<double>& values) {
     return config().loops().set_gains(joint, values).and_then([&] { return config().apply(); });
   }
-  /// Of joint X, on the average over the 300 cycles after `cycle`.
+  /// Joint X, on the average over the 300 cycles after `cycle`.
   [[nodiscard]] double following_error(std::int64_t cycle) {
     double sum = 0;
     for (const CycleSample& sample : machine_.samples) {
@@ -37,7 +37,7 @@ class LawChange : public testing::Test {
   TestMachine machine_;
 };
 
-TEST_F(LawChange, GainsActInMotionAndThePlanGoesOn) {
+TEST_F(LoopChange, GainsActInMotionAndThePlanGoesOn) {
   start_moving();
   const std::int64_t before = machine_.controller.sample().cycle;
   const auto applied = gains(0, {600, 8});
@@ -57,7 +57,7 @@ TEST_F(LawChange, GainsActInMotionAndThePlanGoesOn) {
   }
 }
 
-TEST_F(LawChange, AnotherLawIsWhatTheMechanismHasFromThenOn) {
+TEST_F(LoopChange, AnotherLawIsWhatTheMechanismHasFromThenOn) {
   start_moving();
   ASSERT_TRUE(config().loops().set_servo_law(1, {"TestLaw", {}, {}}));
   ASSERT_TRUE(gains(1, {500, 6}));
@@ -68,7 +68,7 @@ TEST_F(LawChange, AnotherLawIsWhatTheMechanismHasFromThenOn) {
   EXPECT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove));
 }
 
-TEST_F(LawChange, RefusedGainsChangeNothing) {
+TEST_F(LoopChange, RefusedGainsChangeNothing) {
   start_moving();
   const auto refused = gains(0, {-1, 4});
   ASSERT_FALSE(refused);
@@ -79,7 +79,7 @@ TEST_F(LawChange, RefusedGainsChangeNothing) {
   EXPECT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove));
 }
 
-TEST_F(LawChange, WithAnythingElseBesideItNeedsRest) {
+TEST_F(LoopChange, WithAnythingElseBesideItNeedsRest) {
   start_moving();
   ASSERT_TRUE(config().joints().set_maximum_speed(0, 50));
   const auto refused = gains(0, {600, 8});
@@ -89,7 +89,7 @@ TEST_F(LawChange, WithAnythingElseBesideItNeedsRest) {
   EXPECT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove));
 }
 
-TEST_F(LawChange, VelocityAndPositionTakeTurnsInMotionAndThePlanGoesOn) {
+TEST_F(LoopChange, VelocityAndPositionTakeTurnsInMotionAndThePlanGoesOn) {
   start_moving();
   for (const ControlMethod method : {ControlMethod::Velocity, ControlMethod::Position, ControlMethod::Velocity}) {
     ASSERT_TRUE(config().loops().set_control_method(1, method));
@@ -106,7 +106,7 @@ TEST_F(LawChange, VelocityAndPositionTakeTurnsInMotionAndThePlanGoesOn) {
   }
 }
 
-TEST_F(LawChange, AJointThatSlippedIsGivenBackToPositionControlAtRestOnly) {
+TEST_F(LoopChange, AJointThatSlippedIsGivenBackToPositionControlAtRestOnly) {
   start_moving();
   ASSERT_TRUE(config().loops().set_control_method(1, ControlMethod::Velocity));
   ASSERT_TRUE(config().apply());
@@ -127,14 +127,14 @@ TEST_F(LawChange, AJointThatSlippedIsGivenBackToPositionControlAtRestOnly) {
   EXPECT_TRUE(applied) << applied.error().message;
 }
 
-TEST_F(LawChange, ForceControlNeedsRest) {
+TEST_F(LoopChange, ForceControlNeedsRest) {
   start_moving();
   ASSERT_TRUE(config().loops().set_control_method(2, ControlMethod::Force));
   EXPECT_FALSE(config().apply());
   EXPECT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove));
 }
 
-TEST_F(LawChange, IsRefusedWhileTheMachineIsFaulted) {
+TEST_F(LoopChange, IsRefusedWhileTheMachineIsFaulted) {
   start_moving();
   machine_.bus->trip(1, 0x2310);
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::Fault, kMove));
@@ -143,7 +143,7 @@ TEST_F(LawChange, IsRefusedWhileTheMachineIsFaulted) {
   EXPECT_THAT(refused.error().message, HasSubstr("reset first"));
 }
 
-TEST_F(LawChange, HeldJointsAreCountedBehindTheOthers) {
+TEST_F(LoopChange, HeldJointsAreCountedBehindTheOthers) {
   ASSERT_TRUE(machine_.load_at_zero(TestMachine::mill()));
   ASSERT_TRUE(machine_.load(TestMachine::plane_mill()));
   ASSERT_TRUE(gains(2, {400, 5}));

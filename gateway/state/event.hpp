@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "rmac/motion/error.hpp"
+#include "rmac/sdk/measuring.hpp"
+
+namespace rmac::gateway {
+
+/// What happened, in order. Made off the servo thread from what its fault ring reports.
+struct Event {
+  enum class Kind : std::uint8_t {
+    MoveStarted,
+    MoveDone,
+    Hit,
+    Stopped,
+    Fault,
+    Authority,
+    Mechanism,
+    CycleStateChanged,
+    FlightRecord,
+    FlightRecordFailed,
+    ToolWanted,
+    ToolChanged,
+    ToolChangeDropped
+  };
+  Kind kind = Kind::Stopped;
+  double t_s = 0;
+  std::int64_t move_id = 0;
+  std::string message;               ///< for a person: what happened, where, what to do
+  std::int64_t cycle = 0;            ///< in which it happened, or was noticed off the servo thread
+  std::string record;                ///< name of the flight record that shows it; empty: none
+  MinorCode code = MinorCode::None;  ///< the status that it leaves
+  std::optional<sdk::Hit> hit{};     ///< what a `Kind::Hit` found
+};
+
+}  // namespace rmac::gateway

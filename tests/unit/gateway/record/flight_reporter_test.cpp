@@ -1,0 +1,131 @@
+// Flight records of events, from cycles that the test wrote.
+#include "gateway/record/flight_reporter.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "unit/gateway/device_driver_manager/fixtures.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double kPeriod_s = 0.001;
+
+sdk::DeviceObject gantry() {
+  sdk::DeviceObject device;
+  device.name = "Gantry";
+  device.joints.resize(1);
+  device.joints[0].limits.name = "X";
+  device.joints[0].gains = {300, 4};
+  device.held_joints.resize(1);
+  device.held_joints[0].limits.name = "C";
+  device.held_joints[0].limits.type = JointType::Rotary;
+  return device;
+}
+
+class FlightReporterTest : public testing::Test {
+ protected:
+  void run_cycles(int count, std::uint32_t actuators) {
+    for (int i = 0; i < count; ++i) {
+      CycleSample sample;
+      sample.cycle = ++cycle_;
+      sample.t_s = static_cast<double>(cycle_) * kPeriod_s;
+      sample.joint_count = 1;
+      sample.joint_count_with_held = 2;
+      sample.actuator_count = actuators;
+      sample.statusword = {0x27, 0x08, 0x40};
+      history_.add(sample);
+    }
+  }
+  [[nodiscard]] Event fault() const {
+    Event event;
+    event.kind = Event::Kind::Fault;
+    event.cycle = cycle_;
+    event.message = "it broke";
+    return event;
+  }
+  /// The recorder writes on a thread of its own.
+  Event outcome() {
+    std::vector<Event> events;
+    while (events.empty()) events = reporter_.take_events();
+    return events.front();
+  }
+  std::string text_of(const std::string& name) {
+    const auto part = reporter_.folder()->read(name, 0);
+    return part ? (*part)["text"].get<std::string>() : part.error().message;
+  }
+
+  std::int64_t cycle_ = 0;
+  test::TemporaryFolder folder_;
+  CycleHistory history_{1000};
+  FlightReporter reporter_{{folder_.path() / "records", 0.01, 20}, kPeriod_s, history_};
+  sdk::DeviceObject device_ = gantry();
+};
+
+TEST_F(FlightReporterTest, RecordsBothMotorsOfAGantryAndDescribesHeldJointsLast) {
+  run_cycles(20, 3);
+  Event asked;
+  asked.cycle = cycle_;
+  const auto name = reporter_.record(FlightCause::Demand, asked, &device_);
+  ASSERT_TRUE(name) << name.error().message;
+  const Event written = outcome();
+  EXPECT_EQ(written.kind, Event::Kind::FlightRecord);
+  EXPECT_EQ(written.record, *name);
+  EXPECT_THAT(written.message, HasSubstr("cycles 11 to 20"));
+  const std::string text = text_of(*name);
+  EXPECT_THAT(text, HasSubstr(",statusword1,statusword2,statusword3,error_code1,"));
+  EXPECT_THAT(text, HasSubstr(",39,8,64,"));
+  const auto head = nlohmann::json::parse(text.substr(0, text.find('\n')));
+  EXPECT_EQ(head["mechanism"], "Gantry");
+  EXPECT_EQ(head["joints"][0]["name"], "X");
+  EXPECT_EQ(head["joints"][0]["gains"], nlohmann::json::parse("[300,4]"));
+  EXPECT_EQ(head["joints"][1]["name"], "C");
+  EXPECT_EQ(head["joints"][1]["unit"], "deg");
+}
+
+TEST_F(FlightReporterTest, ARecordBeginsWhereTheNumberOfDrivesChanged) {
+  run_cycles(5, 2);
+  run_cycles(4, 3);
+  Event asked;
+  asked.cycle = cycle_;
+  ASSERT_TRUE(reporter_.record(FlightCause::Demand, asked, &device_));
+  EXPECT_THAT(outcome().message, HasSubstr("cycles 6 to 9")) << "those before it have other columns";
+}
+
+TEST_F(FlightReporterTest, AddsTheRecordsNameToAFaultAndToNothingElse) {
+  run_cycles(20, 1);
+  Event event = fault();
+  reporter_.annotate(event, &device_);
+  EXPECT_THAT(event.record, HasSubstr("-fault-20"));
+  EXPECT_EQ(event.message, "it broke");
+  Event stopped;
+  stopped.cycle = cycle_;
+  reporter_.annotate(stopped, &device_);
+  EXPECT_THAT(stopped.record, IsEmpty());
+}
+
+TEST_F(FlightReporterTest, SaysWhyAFaultIsNotRecorded) {
+  Event event = fault();
+  reporter_.annotate(event, nullptr);
+  EXPECT_THAT(event.record, IsEmpty());
+  EXPECT_EQ(event.message, "it broke; it is not recorded: there is nothing to record: no mechanism is loaded");
+}
+
+TEST_F(FlightReporterTest, MakesNoneWhereNoneAreWanted) {
+  FlightReporter none({{}, 10, 20}, kPeriod_s, history_);
+  Event event = fault();
+  none.annotate(event, &device_);
+  EXPECT_EQ(event.message, "it broke") << "nobody asked for records, so that none is no news";
+  EXPECT_EQ(none.folder(), nullptr);
+  EXPECT_THAT(none.take_events(), IsEmpty());
+  const auto refused = none.record(FlightCause::Demand, event, &device_);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("seconds above 0 in rmacd.json"));
+}
+
+}  // namespace
+}  // namespace rmac::gateway
