@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mill_on_simulated_bus.hpp"
+#include "rmac/motion/servo/servo_handover.hpp"
 
 namespace rmac::mill_test {
 
