@@ -11,6 +11,8 @@
 #include "gateway/events/fault_text.hpp"
 #include "gateway/mechanism/assembler.hpp"
 #include "gateway/verifier/axis_models.hpp"
+#include "rmac/motion/servo/servo_command.hpp"
+#include "rmac/motion/servo/servo_report.hpp"
 
 namespace rmac::verifier {
 namespace {
