@@ -202,7 +202,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Choice{"TorqueOfAJoint", {Kind::TorqueBound, Part::Actuator, 0}, nullptr},
                     Choice{"FollowingError", {Kind::FollowingError, Part::Joint, 0}, nullptr},
                     Choice{"EmergencyStop", {Kind::EmergencyStop, Part::Io, 0}, nullptr}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& choice) { return choice.param.name; });
 
 TEST_F(StateOfLoop, PowerIsKeptOnlyOfAMachineThatWasEngaged) {
   command_.power = true;
