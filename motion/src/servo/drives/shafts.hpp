@@ -20,7 +20,7 @@ class Shafts {
   void read() noexcept;
   [[nodiscard]] ShaftReader& operator[](std::size_t actuator) noexcept { return readers_[actuator]; }
   [[nodiscard]] const ShaftReader& operator[](std::size_t actuator) const noexcept { return readers_[actuator]; }
-  /// Of the last `read`.
+  /// As the last `read` found them.
   [[nodiscard]] std::span<const double> rad() const noexcept { return {rad_.data(), readers_.size()}; }
   [[nodiscard]] std::span<const double> rad_s() const noexcept { return {rad_s_.data(), readers_.size()}; }
 

@@ -11,9 +11,6 @@ namespace {
 
 constexpr double kDegreesPerTurn = 360;
 constexpr double kDegSPerRpm = kDegreesPerTurn / 60;
-constexpr double kOverloadS = 0.1;
-/// A drive that gives all that it may measures it but for rounding.
-constexpr double kAtBound = 0.999;
 constexpr double kTooFast = 1.2;
 constexpr int kCyclesBeyond = 3;
 
@@ -72,40 +69,26 @@ Expected<> check_spindle(const ServoSpindle& spindle, const std::string& who) {
 }
 
 SpindleLoop::SpindleLoop(const ServoSpindle& spindle, double period_s) noexcept
-    : part_(spindle), period_s_(period_s), tells_torque_(spindle.bus->interface->tells_torque(spindle.axis)) {
+    : part_(spindle),
+      period_s_(period_s),
+      tells_torque_(spindle.bus->interface->tells_torque(spindle.axis)),
+      turns_(spindle.scale, period_s),
+      overload_(spindle.speed_tolerance_rpm, spindle.speed_timeout_s, period_s) {
   if (part_.law) part_.law->set_effort_limit(part_.max_torque_nm);
 }
 
 double SpindleLoop::angle_deg() const noexcept {
-  return shaft_turns(part_.scale, counts_) * kDegreesPerTurn;
+  return shaft_turns(part_.scale, turns_.counts()) * kDegreesPerTurn;
 }
 
 void SpindleLoop::read(const DriveFeedback& words) noexcept {
   measured_nm_ = shaft_nm(part_.scale, words.torque_permille);
   if (has_encoder()) {
-    read_encoder(words);
+    turns_.read(words);
+    rpm_ = turns_.rpm();
   } else {
     rpm_ = part_.scale.direction * words.velocity_rpm;
   }
-}
-
-void SpindleLoop::read_encoder(const DriveFeedback& words) noexcept {
-  if (!words.online) {
-    history_ = 0;
-    return;
-  }
-  const std::int32_t moved = counts_gone(last_counts_, words.position_counts);
-  last_counts_ = words.position_counts;
-  if (seen_) counts_ += moved;
-  seen_ = true;
-  const double before = step_;
-  step_ = shaft_turns(part_.scale, moved);
-  if (history_ > 0) {
-    const double now = (history_ == 1 ? step_ : (3 * step_ - before) / 2) / period_s_ * 60;
-    rpm_per_s_ = history_ == 1 ? 0 : (now - rpm_) / period_s_;
-    rpm_ = now;
-  }
-  history_ = static_cast<std::uint8_t>(std::min(history_ + 1, 2));
 }
 
 double SpindleLoop::following_error() const noexcept {
@@ -126,7 +109,7 @@ ServoInput SpindleLoop::input() const noexcept {
   return {.position_setpoint = rpm_set_,
           .velocity_setpoint = rpm_per_s_set_,
           .position = rpm_,
-          .velocity = rpm_per_s_,
+          .velocity = turns_.rpm_per_s(),
           .effort = effort,
           .effort_measured = tells_torque_,
           .period_s = period_s_};
@@ -138,7 +121,7 @@ bool SpindleLoop::follow(double wanted_rpm, const DriveCommand& words) noexcept 
     return true;
   }
   // Before its speed is known a spindle that another mechanism turned goes on as it was told.
-  if (has_encoder() && history_ < 2) {
+  if (has_encoder() && !turns_.settled()) {
     torque_nm_ = shaft_nm(part_.scale, words.target_torque_permille);
     return true;
   }
@@ -173,20 +156,6 @@ void SpindleLoop::command(DriveCommand& words) const noexcept {
   words.target_velocity_rpm = part_.mode == DriveMode::ProfileVelocity ? std::round(speed) : speed;
   if (!has_encoder()) return;
   words.target_torque_permille = torque_word(part_.scale, torque_nm_);
-}
-
-bool SpindleLoop::overloaded(double wanted_rpm, double bound_nm) noexcept {
-  if (wanted_rpm != watched_rpm_) {
-    watched_rpm_ = wanted_rpm;
-    since_change_s_ = 0;
-    arrived_ = false;
-  }
-  since_change_s_ += period_s_;
-  arrived_ =
-      arrived_ || since_change_s_ > part_.speed_timeout_s || std::abs(rpm_ - wanted_rpm) <= part_.speed_tolerance_rpm;
-  const bool over = bound_nm > 0 && arrived_ && std::abs(measured_nm_) >= kAtBound * bound_nm;
-  over_s_ = over ? over_s_ + period_s_ : 0;
-  return over_s_ >= kOverloadS;
 }
 
 bool SpindleLoop::too_fast() noexcept {

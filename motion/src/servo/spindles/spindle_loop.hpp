@@ -3,6 +3,8 @@
 #include <cstdint>
 
 #include "rmac/motion/servo/servo_spindle.hpp"
+#include "servo/spindles/overload_watch.hpp"
+#include "servo/spindles/turn_reader.hpp"
 
 namespace rmac {
 
@@ -21,41 +23,35 @@ class SpindleLoop {
   /// Speed and torque for the drive.
   void command(DriveCommand& words) const noexcept;
   /// Its measured torque has been at `bound_nm` for a tenth of a second, and not because it is changing its speed.
-  [[nodiscard]] bool overloaded(double wanted_rpm, double bound_nm) noexcept;
+  [[nodiscard]] bool overloaded(double wanted_rpm, double bound_nm) noexcept {
+    return overload_.step(wanted_rpm, rpm_, measured_nm_, bound_nm);
+  }
   /// It turns faster than it may by a fifth, for three cycles on end.
   [[nodiscard]] bool too_fast() noexcept;
 
   [[nodiscard]] double rpm() const noexcept { return rpm_; }
   [[nodiscard]] double torque_nm() const noexcept { return measured_nm_; }
-  /// Of the angle under position control, in degrees; 0 otherwise.
+  /// How far the angle is behind under position control, in degrees; 0 otherwise.
   [[nodiscard]] double following_error() const noexcept;
-  [[nodiscard]] std::int64_t counts() const noexcept { return counts_; }
+  [[nodiscard]] std::int64_t counts() const noexcept { return turns_.counts(); }
   /// Its place is known by its encoder, and not only its speed.
   [[nodiscard]] bool has_encoder() const noexcept { return part_.mode == DriveMode::CyclicSyncTorque; }
 
  private:
-  void read_encoder(const DriveFeedback& words) noexcept;
   [[nodiscard]] double angle_deg() const noexcept;
   [[nodiscard]] ServoInput input() const noexcept;
 
   ServoSpindle part_;
   double period_s_;
   bool tells_torque_;
-
-  bool seen_ = false;
-  std::int32_t last_counts_ = 0;
-  std::int64_t counts_ = 0;   ///< since the first reading
-  std::uint8_t history_ = 0;  ///< readings one after the other before the next, 2 at most
-  double step_ = 0;           ///< turns in the last cycle
-  double rpm_ = 0, rpm_per_s_ = 0, measured_nm_ = 0;
+  TurnReader turns_;
+  double rpm_ = 0, measured_nm_ = 0;
 
   bool live_ = false;  ///< the speed follows what is wanted
   double rpm_set_ = 0, rpm_per_s_set_ = 0, angle_set_deg_ = 0;
   double torque_nm_ = 0;
 
-  double watched_rpm_ = 0;  ///< wanted in the cycle before
-  double since_change_s_ = 0, over_s_ = 0;
-  bool arrived_ = false;
+  OverloadWatch overload_;
   int fast_cycles_ = 0;
 };
 

@@ -6,8 +6,8 @@ namespace rmac {
 
 namespace {
 
-/// Of the faults that a category is chosen for, those that do not end a stop that keeps power: it may have begun
-/// without the sensor, or beyond the bound. A second silent drive does.
+/// A stop that keeps power may have begun without the sensor, or beyond the bound: such faults do not end it. They are
+/// those that a category is chosen for, but for a second silent drive.
 bool allows_braking(const ServoFault& found) noexcept {
   switch (found.kind) {
     case ServoFault::Kind::ForceLimit:

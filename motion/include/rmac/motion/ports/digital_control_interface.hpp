@@ -70,8 +70,9 @@ namespace touch_probe {
 }
 }  // namespace touch_probe
 
-/// Port: the drives of one bus, axis by axis. Lives in the gateway's bus registry and outlives mechanisms, which borrow
-/// axes of it.
+/// Port: the drives of one bus. An axis is the place of one drive on it, as `Axis` in `device.json` counts them from 0;
+/// which joint its motor moves is not known here. Lives in the gateway's bus registry and outlives mechanisms, which
+/// borrow axes of it.
 class DigitalControlInterface {
  public:
   virtual ~DigitalControlInterface() = default;
