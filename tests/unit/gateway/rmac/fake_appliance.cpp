@@ -94,6 +94,10 @@ void FakeAppliance::hang_up() {
   hung_up_ = true;
 }
 
+void FakeAppliance::hang_up_behind_this() {
+  says_last_ = true;
+}
+
 void FakeAppliance::type(const std::string& line) {
   const std::string entered = line + "\n";
   ASSERT_EQ(::write(terminal_[1], entered.data(), entered.size()), static_cast<ssize_t>(entered.size()));
@@ -134,7 +138,7 @@ void FakeAppliance::set_client(int client) {
 void FakeAppliance::serve_client(int client) {
   std::string input;
   std::array<char, 4096> piece{};
-  hung_up_ = false;
+  hung_up_ = says_last_ = false;
   while (!hung_up_) {
     const auto got = ::recv(client, piece.data(), piece.size(), 0);
     if (got <= 0) return;
@@ -143,6 +147,7 @@ void FakeAppliance::serve_client(int client) {
       const std::string out = answer(input.substr(0, end));
       input.erase(0, end + 1);
       if (!hung_up_ && ::send(client, out.data(), out.size(), MSG_NOSIGNAL) < 0) return;
+      hung_up_ = hung_up_ || says_last_;
     }
   }
 }

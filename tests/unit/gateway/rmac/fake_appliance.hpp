@@ -37,6 +37,8 @@ class FakeAppliance {
   void push(const std::string& topic, const nlohmann::json& params);
   void push_event(gateway::Event::Kind kind, nlohmann::json members = nlohmann::json::object());
   void hang_up();
+  /// Hangs up when the answer and what is pushed is sent.
+  void hang_up_behind_this();
   /// Enters a line at the terminal.
   void type(const std::string& line);
   /// Where these lines come out.
@@ -62,11 +64,11 @@ class FakeAppliance {
   int listener_ = -1;
   int terminal_[2] = {-1, -1};
   mutable std::mutex mutex_;
-  std::map<std::string, Handler> handlers_;  ///< guarded by mutex_
-  std::vector<Heard> heard_;                 ///< guarded by mutex_
-  int client_ = -1;                          ///< guarded by mutex_
-  std::string pushed_;                       ///< what goes behind the answer; the fake's thread alone
-  bool hung_up_ = false;                     ///< the fake's thread alone
+  std::map<std::string, Handler> handlers_;   ///< guarded by mutex_
+  std::vector<Heard> heard_;                  ///< guarded by mutex_
+  int client_ = -1;                           ///< guarded by mutex_
+  std::string pushed_;                        ///< what goes behind the answer; the fake's thread alone
+  bool hung_up_ = false, says_last_ = false;  ///< the fake's thread alone
   std::thread thread_;
 };
 

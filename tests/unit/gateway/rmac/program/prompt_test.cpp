@@ -12,7 +12,7 @@ class PromptTest : public testing::Test {
  protected:
   PromptTest() : connection_(std::move(*Connection::open(appliance_.endpoint()))), prompt_(*connection_, moves_) {}
 
-  void hear(const nlohmann::json& members) { prompt_.hear(read_state(state(members))); }
+  void hear(const nlohmann::json& members = nlohmann::json::object()) { prompt_.hear(read_state(state(members))); }
   /// Until the appliance has answered what was asked.
   void settle() { ASSERT_TRUE(connection_->call("RMAC_CAM.Ok")); }
 
@@ -56,14 +56,14 @@ TEST_F(PromptTest, TellsWhyTheMachineDoesNotRunBack) {
 }
 
 TEST_F(PromptTest, TellsHowToTakeUpWhatIsParked) {
-  hear({});
+  hear();
   prompt_.obey("p");
   EXPECT_TRUE(prompt_.parked());
   EXPECT_EQ(prompt_.text(), "parked: Enter takes it up again");
 }
 
 TEST_F(PromptTest, TakesNoOrdersButTheTakingUpWhileParked) {
-  hear({});
+  hear();
   prompt_.obey("p");
   prompt_.obey("p");
   prompt_.obey("7");
@@ -74,7 +74,7 @@ TEST_F(PromptTest, TakesNoOrdersButTheTakingUpWhileParked) {
 
 TEST_F(PromptTest, StaysParkedWhereTheMachineCannotTakeTheProgramUp) {
   appliance_.refuses("RMAC_CAM.TakeUpProgram", -32014, "the tool is 12 mm from the place");
-  hear({});
+  hear();
   prompt_.obey("p");
   settle();
   prompt_.obey("");

@@ -17,7 +17,9 @@ const Request kHome = request("RMAC_CAM.Home");
 
 class RequestOrderTest : public testing::Test {
  protected:
-  Program program_{.file = "p.rmac"};
+  RequestOrderTest() { program_.file = "p.rmac"; }
+
+  Program program_;
   RequestOrder order_{program_};
 };
 
