@@ -1,4 +1,5 @@
 #include "mill_on_simulated_bus.hpp"
+
 #include "rmac/motion/servo/servo_handover.hpp"
 
 namespace rmac::mill_test {

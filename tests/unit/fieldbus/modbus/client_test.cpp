@@ -17,9 +17,8 @@ using Wire = ModbusPeer::Wire;
 
 constexpr int kSlave = 17;
 constexpr std::size_t kProbe = 9;  ///< more than any read here
-// What a transaction may take beyond its deadline on a machine that does much else. A peer that drips a whole answer
-// byte by byte would take several times as long.
-constexpr auto kGrace = 1s;
+// What a transaction may take beyond its deadline on a computer that does much else: one that ignores it never ends.
+constexpr auto kGrace = 20s;
 
 std::string wire_name(const testing::TestParamInfo<Wire>& wire) {
   return wire.param == Wire::Tcp ? "Tcp" : "Rtu";
@@ -153,12 +152,10 @@ TEST_P(ModbusClient, EndsInTimeWhileAnAnswerDrips) {
   open(10s);
   client = std::move(*Client::create(peer.endpoint(), kDeadline));
   ASSERT_TRUE(client->connect());
-  // 250 bytes: were the time counted from byte to byte, this would take ten seconds.
+  // 250 bytes: were the time counted from byte to byte, they would all come, in ten seconds.
   peer.behave(Manner::Dripping, 40ms);
   std::array<std::uint16_t, 120> words{};
-  const auto begun = Clock::now();
   const auto answer = read_registers(words);
-  EXPECT_LT(Clock::now() - begun, 2 * (kDeadline + kGrace));
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error().kind, Kind::Timeout);
 }
@@ -192,8 +189,11 @@ TEST_P(ModbusClient, WorksAgainOnceThePeerBehaves) {
     peer.behave(manner);
     EXPECT_FALSE(read_registers(words));
     peer.behave(Manner::Honest);
-    int tries = 0;
-    while (!read_registers(words)) ASSERT_LT(++tries, 1000) << "after manner " << static_cast<int>(manner);
+    const auto give_up = Clock::now() + 60s;
+    while (!read_registers(words)) {
+      ASSERT_LT(Clock::now(), give_up) << "after manner " << static_cast<int>(manner);
+      std::this_thread::yield();
+    }
     EXPECT_EQ(words[0], static_cast<std::uint16_t>(peer.requests()));
   }
 }
@@ -214,7 +214,7 @@ TEST_P(ModbusClient, SaysThatThePeerWentAway) {
 
 TEST(ModbusClientRtu, AsksNothingInDoubtAndBelievesNoConfirmation) {
   ModbusPeer peer(Wire::Rtu);
-  const auto client = std::move(*Client::create(peer.endpoint(), 500ms));
+  const auto client = std::move(*Client::create(peer.endpoint(), 60s));
   ASSERT_TRUE(client->connect());
   EXPECT_TRUE(client->in_doubt(kSlave)) << "what the line was used for before is not known";
   std::array<std::uint16_t, 2> words{};
@@ -231,10 +231,10 @@ TEST(ModbusClientRtu, AsksNothingInDoubtAndBelievesNoConfirmation) {
 
 TEST(ModbusClientRtu, DoubtOfOneSlaveIsNotTheOthers) {
   ModbusPeer peer(Wire::Rtu);
-  const auto client = std::move(*Client::create(peer.endpoint(), 500ms));
+  const auto client = std::move(*Client::create(peer.endpoint(), 60s));
   ASSERT_TRUE(client->connect());
   for (const int slave : {1, 2}) ASSERT_TRUE(client->resynchronise(slave, Table::HoldingRegisters, 0, kProbe));
-  peer.respond([](const Bytes& request) { return request[0] == 1 ? Bytes() : Bytes{2, 3, 2, 0, 42}; });
+  peer.respond([](const Bytes& request) { return request[0] == 1 ? Bytes{9, 3, 2, 0, 42} : Bytes{2, 3, 2, 0, 42}; });
   std::array<std::uint16_t, 1> word{};
   EXPECT_FALSE(client->read(1, Table::HoldingRegisters, 0, word));
   EXPECT_TRUE(client->in_doubt(1));
@@ -245,7 +245,7 @@ TEST(ModbusClientRtu, DoubtOfOneSlaveIsNotTheOthers) {
 
 TEST(ModbusClientRtu, TakesNoExceptionForTheEndOfDoubtWhileAnotherMayBeUnderWay) {
   ModbusPeer peer(Wire::Rtu);
-  const auto client = std::move(*Client::create(peer.endpoint(), 200ms));
+  const auto client = std::move(*Client::create(peer.endpoint(), 60s));
   ASSERT_TRUE(client->connect());
   // A slave that gives one register at a time.
   peer.respond([](const Bytes& request) {
@@ -255,7 +255,7 @@ TEST(ModbusClientRtu, TakesNoExceptionForTheEndOfDoubtWhileAnotherMayBeUnderWay)
   std::array<std::uint16_t, 1> word{};
   ASSERT_TRUE(client->read(kSlave, Table::HoldingRegisters, 0, word));
   EXPECT_EQ(word[0], 42);
-  peer.behave(Manner::Silent);
+  peer.behave(Manner::WrongId);
   ASSERT_FALSE(client->read(kSlave, Table::HoldingRegisters, 0, word));
   peer.behave(Manner::Honest);
   const std::uint64_t before = peer.requests();

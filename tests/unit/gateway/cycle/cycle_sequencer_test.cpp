@@ -31,6 +31,39 @@ TEST(CycleSequencer, WaitsForASpindleOnlyWhileNothingMoves) {
   EXPECT_EQ(cycle.state(), CycleState::Faulted);
 }
 
+// Red when a CycleStart that is repeated starts anew: the wait for the spindle would never end.
+TEST(CycleSequencer, WaitsNoLongerForASpindleWhenCycleStartIsRepeated) {
+  CycleSequencer cycle;
+  CycleObservation seen;
+  seen.moves_left = 1;
+  seen.spindles_at_speed = false;
+  ASSERT_TRUE(cycle.start(sdk::CycleMode::Automatic, seen));
+  cycle.spindle_commanded(2.0);
+  for (; seen.t_s < 1.9; seen.t_s += 0.5) {
+    EXPECT_FALSE(cycle.step(seen).spindle_timed_out);
+    ASSERT_TRUE(cycle.start(sdk::CycleMode::Automatic, seen));
+  }
+  seen.t_s = 2.1;
+  EXPECT_TRUE(cycle.step(seen).spindle_timed_out);
+}
+
+// Red when a CycleStart that is repeated starts anew: the move that ends meanwhile would not count as the one.
+TEST(CycleSequencer, RunsNoSecondMoveInManualModeWhenCycleStartIsRepeated) {
+  CycleSequencer cycle;
+  CycleObservation seen;
+  seen.moves_left = 2;
+  ASSERT_TRUE(cycle.start(sdk::CycleMode::Manual, seen));
+  EXPECT_EQ(cycle.step(seen).command, PathCommand::RunOne);
+  seen.at_rest = false;
+  seen.moves_left = 1;
+  seen.moves_done = 1;
+  (void)cycle.step(seen);
+  ASSERT_TRUE(cycle.start(sdk::CycleMode::Manual, seen));
+  seen.at_rest = true;
+  EXPECT_EQ(cycle.step(seen).came_to_rest, StopCause::MoveDone);
+  EXPECT_EQ(cycle.state(), CycleState::Idle);
+}
+
 TEST(CycleSequencer, RunsAJogOnlyWhileItIsRenewed) {
   CycleSequencer cycle;
   CycleObservation seen;

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <array>
+
 #include "unit/gateway/test_machine.hpp"
 
 namespace rmac::gateway {
@@ -65,6 +67,39 @@ TEST_F(Cycle, EventsAreToldInTheOrderInWhichTheyHappenedHoweverLate) {
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 6));
   EXPECT_EQ(machine_.count(Event::Kind::CycleStateChanged), 1) << "Idle to Running";
   EXPECT_TRUE(std::ranges::is_sorted(machine_.events, {}, &Event::cycle));
+}
+
+// Red when what the servo loop reports is told before what happened earlier elsewhere.
+TEST_F(Cycle, AFaultIsToldAfterWhatHappenedBeforeItThoughBothAreToldAtOnce) {
+  start_slow_line();
+  machine_.events.clear();
+  ASSERT_TRUE(cam().feed_hold());
+  machine_.bus->trip(1, 0x2310);
+  // Other gains have the machine go on though nobody is told of its cycles yet.
+  for (double gain = 300; machine_.controller.sample().servo_state != ServoState::Faulted; gain += 0.001) {
+    ASSERT_LT(gain, 310);
+    ASSERT_TRUE(machine_.controller.config().set_joint_servo_control_gains(0, std::array{gain, 4.0}));
+    (void)machine_.controller.config().apply();
+  }
+  EXPECT_TRUE(machine_.events.empty());
+  ASSERT_TRUE(machine_.run_until([&] { return !machine_.last(Event::Kind::Fault).empty(); }));
+  EXPECT_TRUE(std::ranges::is_sorted(machine_.events, {}, &Event::cycle));
+  EXPECT_EQ(machine_.events.front().kind, Event::Kind::CycleStateChanged) << "held, then faulted";
+}
+
+// Red when an event is told before its own cycle's sample, or after a later one.
+TEST_F(Cycle, AnEventIsToldBetweenTheSampleOfItsCycleAndTheNext) {
+  std::vector<std::pair<std::int64_t, std::int64_t>> told;  // cycle of the event, and of the last sample before it
+  machine_.controller.on_event([&](const Event& event) {
+    if (!machine_.samples.empty()) told.emplace_back(event.cycle, machine_.samples.back().cycle);
+  });
+  start_slow_line();
+  ASSERT_TRUE(cam().feed_hold());
+  ASSERT_TRUE(machine_.run_until([&] { return !machine_.samples.back().moving; }));
+  ASSERT_TRUE(cam().stop_now());
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::Stopped));
+  ASSERT_GE(told.size(), 4U);
+  for (const auto& [event, sample] : told) EXPECT_EQ(event, sample);
 }
 
 TEST_F(Cycle, MovesWithoutMotionCountAsQueuedUntilTheirTurn) {

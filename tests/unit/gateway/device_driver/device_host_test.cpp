@@ -89,6 +89,18 @@ TEST_F(Host, HasTheDriverOfTheMachineConfigureItUnderAnOverlayToo) {
   EXPECT_EQ(controller_->mechanism()->joints[0].limits.max_speed, 30);
 }
 
+// Red when an overlay moves as fast as the machine below may, or as it may itself.
+TEST_F(Host, MovesAnOverlayWithTheLowerOfBothFeeds) {
+  replace_in_device_json("CMM", "\"MaxFeedrate\": 2000", "\"MaxFeedrate\": 900");
+  ASSERT_TRUE(host_->load("DMACXYZ", false));
+  ASSERT_TRUE(host_->load("CMM", false));
+  EXPECT_EQ(controller_->mechanism()->max_feedrate_mm_min, 900);
+  replace_in_device_json("DMACXYZ", "\"MaxFeedrate\": 2000", "\"MaxFeedrate\": 700");
+  ASSERT_TRUE(host_->load("DMACXYZ", false));
+  ASSERT_TRUE(host_->load("CMM", false));
+  EXPECT_EQ(controller_->mechanism()->max_feedrate_mm_min, 700);
+}
+
 TEST_F(Host, KeepsTheLoadedMechanismWhenAnotherCannotBeLoaded) {
   ASSERT_TRUE(host_->load("DMACXYZ", false));
   replace_in_device_json("SuginoXYZ", "\"Module\": \"ChainKinematics\"", "\"Module\": \"LostKinematics\"");

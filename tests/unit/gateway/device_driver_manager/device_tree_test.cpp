@@ -170,7 +170,7 @@ TEST_F(DeviceTree, CmmAloneMeasuresThePartOfItsOwnFile) {
   EXPECT_EQ(controller_->mechanism()->actuators[0].bus, "sugino0");
   sdk::Measuring& measuring = controller_->measuring();
   // Its block's top is at -20, the tip's radius 1 mm, and (15, 0) beside the bore.
-  const auto there = cam.cmm_moves().to_point(1, {15, 0, -10}, 20);
+  const auto there = controller_->cam().cmm_moves().to_point(1, {15, 0, -10}, 20);
   ASSERT_TRUE(there) << there.error().message;
   ASSERT_TRUE(run_until([&] { return controller_->cam().queue().moves_left() == 0; }));
   const auto queued = measuring.auto_measure(2, {15, 0, -19}, 20);

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <thread>
 
+#include "unit/gateway/device_driver_manager/fixtures.hpp"
 #include "unit/gateway/test_machine.hpp"
 
 namespace rmac::gateway {
@@ -226,7 +227,8 @@ TEST(MechanismChange, KeepsSharedDrivesOperationalAndHoldsTheThird) {
 TEST(MechanismChange, IsRefusedWhileTheMachineMoves) {
   TestMachine machine;
   ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
-  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(600));
+  // So slow that it is not at its end before it was asked: unheard the machine runs 4096 cycles ahead at most.
+  ASSERT_TRUE(machine.controller.cam().path().set_feedrate(120));
   ASSERT_TRUE(machine.line(1, {0, 0, 0}, {40, 0, 0}));
   ASSERT_TRUE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().moving; }));
@@ -234,6 +236,37 @@ TEST(MechanismChange, IsRefusedWhileTheMachineMoves) {
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("needs the machine at rest"));
   EXPECT_TRUE(machine.run_until_event(Event::Kind::MoveDone, 1));
+}
+
+// Red when the frames of before are not put back: the tool that stays in the spindle brings frames without a part.
+TEST(MechanismChange, KeepsThePartFrameInAnotherRoleWithAToolInTheSpindle) {
+  const test::TemporaryFolder tables;
+  ControllerOptions options = TestMachine::options();
+  options.tools_folder = tables.path();
+  TestMachine machine(options);
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  sdk::RmacCam& cam = machine.controller.cam();
+  ToolPort& tools = machine.controller.tools();
+  ASSERT_TRUE(tools.set_tool({.number = 3, .length_mm = 20}));
+  ASSERT_TRUE(tools.change_tool(3));
+  ASSERT_TRUE(cam.cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine.run_until([&] { return !tools.tools_now().prompt.empty(); }));
+  ASSERT_TRUE(tools.confirm_tool(3));
+  ASSERT_TRUE(machine.run_until([&] { return tools.tools_now().mounted == 3; }));
+  ASSERT_TRUE(cam.cycle_stop());
+  ASSERT_TRUE(machine.run_until([&] { return machine.controller.cycle_now().state == CycleState::Idle; }));
+  Frame part;
+  part.p = {1, 2, 0};
+  ASSERT_TRUE(cam.set_part_frame(part));
+
+  sdk::DeviceObject measurer = TestMachine::mill();
+  measurer.name = "Measurer";
+  measurer.overlay = true;
+  measurer.overlay_of = "Mill";
+  const auto loaded = machine.load(measurer);
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_EQ(tools.tools_now().mounted, 3);
+  EXPECT_EQ(cam.part_frame().p, part.p);
 }
 
 TEST(MechanismChange, ALimitActsOnMotionOnceApplied) {

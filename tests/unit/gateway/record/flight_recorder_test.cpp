@@ -1,4 +1,6 @@
 // The flight recorder in a real controller: what it writes, when, and what happens where it cannot.
+#include "gateway/record/flight_recorder.hpp"
+
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
@@ -174,6 +176,55 @@ TEST_F(FlightRecord, BeginsWithTheMechanismThatItIsOf) {
   EXPECT_GT(record.cycle(0), loaded) << "the cycles with three joints have other columns";
   EXPECT_THAT(record.columns, testing::Contains("q2"));
   EXPECT_THAT(record.columns, Not(testing::Contains("q3")));
+}
+
+/// A cycle of a machine with two joints.
+CycleSample with_drives(std::int64_t cycle, std::uint32_t drives) {
+  CycleSample sample;
+  sample.cycle = cycle;
+  sample.joint_count = sample.axis_count = 2;
+  sample.actuator_count = drives;
+  for (std::uint32_t i = 0; i < drives; ++i) {
+    sample.statusword[i] = static_cast<std::uint16_t>(100 + i);
+    sample.error_code[i] = static_cast<std::uint16_t>(200 + i);
+    sample.torque_permille[i] = static_cast<std::int16_t>(300 + i);
+  }
+  return sample;
+}
+
+/// The record up to cycle 20 of a machine that has `now` drives, and had `before` until cycle 10.
+ReadRecord record_of_drives(const FlightFolder& folder, const std::filesystem::path& path, std::uint32_t before,
+                            std::uint32_t now) {
+  CycleHistory history(100);
+  for (std::int64_t cycle = 1; cycle <= 20; ++cycle) history.add(with_drives(cycle, cycle <= 10 ? before : now));
+  std::string name;
+  {
+    FlightRecorder recorder({path, 0.015, 20}, 0.001, history);
+    FlightHead head;
+    head.cycle = 20;
+    name = recorder.request(std::move(head)).value_or("");
+  }
+  return read_record(folder, name);
+}
+
+// Red when the columns of drives are counted as joints.
+TEST_F(FlightRecord, HasAColumnForEachDriveOfAGantry) {
+  const ReadRecord record = record_of_drives(FlightFolder(folder_.path()), folder_.path(), 3, 3);
+  EXPECT_THAT(record.columns, testing::Contains("q2"));
+  EXPECT_THAT(record.columns, Not(testing::Contains("q3")));
+  EXPECT_THAT(record.columns, Not(testing::Contains("statusword4")));
+  ASSERT_EQ(record.rows.size(), 15U);
+  EXPECT_EQ(record.rows[0].at("statusword3"), "102");
+  EXPECT_EQ(record.rows[0].at("error_code3"), "202");
+  EXPECT_EQ(record.rows[0].at("torque_permille3"), "302");
+}
+
+// Red when only joints tell one mechanism from another: rows with other columns would follow.
+TEST_F(FlightRecord, BeginsWithTheDrivesThatItIsOf) {
+  const ReadRecord record = record_of_drives(FlightFolder(folder_.path()), folder_.path(), 3, 2);
+  EXPECT_THAT(record.columns, Not(testing::Contains("statusword3")));
+  ASSERT_EQ(record.rows.size(), 10U);
+  EXPECT_EQ(record.cycle(0), 11);
 }
 
 TEST_F(FlightRecord, TheOldestMakeWayAndFaultsAreNotPushedOutByThoseAskedFor) {

@@ -40,12 +40,29 @@ TEST(DrivesTopic, TellsOfNoMoreDrivesThanThereAreWhereOneMovesSeveralJoints) {
   EXPECT_EQ(told["position"], json::parse("[1,2]")) << "held joints count";
 }
 
-TEST(DrivesTopic, NamesEachStateAsTheStandardDoes) {
-  CycleSample sample;
-  sample.actuator_count = 4;
-  sample.statusword = {0x07, 0x0F, 0x23, 0x01};
-  EXPECT_EQ(drives_of(sample)["state"],
-            json::parse(R"(["quick stop active","fault reaction active","switched on","unknown"])"));
+// Red when a state of a drive has another's text, or takes bits into account that say nothing of it.
+TEST(DrivesTopic, NamesEachStateAsTheStandardDoesWhateverTheOtherBits) {
+  // CiA 402-2, statuswords and states.
+  const std::pair<std::uint16_t, const char*> states[] = {
+      {0x00, "not ready to switch on"}, {0x40, "switch on disabled"},
+      {0x21, "ready to switch on"},     {0x23, "switched on"},
+      {0x27, "operation enabled"},      {0x07, "quick stop active"},
+      {0x0F, "fault reaction active"},  {0x08, "fault"}};
+  const auto named = [](unsigned word) {
+    CycleSample sample;
+    sample.actuator_count = 1;
+    sample.statusword = {static_cast<std::uint16_t>(word)};
+    return drives_of(sample)["state"][0].get<std::string>();
+  };
+  for (const auto& [word, text] : states) {
+    for (const unsigned others : {0x0000U, 0x0010U, 0x0080U, 0x0290U, 0xFF90U}) {
+      EXPECT_EQ(named(word | others), text) << std::hex << (word | others);
+    }
+  }
+  for (const unsigned word : {0x00U, 0x40U, 0x0FU, 0x08U}) {  // bit 5 is of no account there
+    EXPECT_EQ(named(word | 0x20U), named(word)) << std::hex << word;
+  }
+  EXPECT_EQ(named(0x01), "unknown");
 }
 
 }  // namespace
