@@ -73,7 +73,7 @@ TEST_F(Cycle, EventsAreToldInTheOrderInWhichTheyHappenedHoweverLate) {
 TEST_F(Cycle, AFaultIsToldAfterWhatHappenedBeforeItThoughBothAreToldAtOnce) {
   start_slow_line();
   machine_.events.clear();
-  ASSERT_TRUE(cam().feed_hold());
+  ASSERT_TRUE(cam().cycle().hold());
   machine_.bus->trip(1, 0x2310);
   // Other gains have the machine go on though nobody is told of its cycles yet.
   for (double gain = 300; machine_.controller.sample().servo_state != ServoState::Faulted; gain += 0.001) {
@@ -94,9 +94,9 @@ TEST_F(Cycle, AnEventIsToldBetweenTheSampleOfItsCycleAndTheNext) {
     if (!machine_.samples.empty()) told.emplace_back(event.cycle, machine_.samples.back().cycle);
   });
   start_slow_line();
-  ASSERT_TRUE(cam().feed_hold());
+  ASSERT_TRUE(cam().cycle().hold());
   ASSERT_TRUE(machine_.run_until([&] { return !machine_.samples.back().moving; }));
-  ASSERT_TRUE(cam().stop_now());
+  ASSERT_TRUE(cam().cycle().stop_now());
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::Stopped));
   ASSERT_GE(told.size(), 4U);
   for (const auto& [event, sample] : told) EXPECT_EQ(event, sample);

@@ -31,10 +31,10 @@ class InterfaceChangeTest : public testing::Test {
   }
   [[nodiscard]] std::string interface() { return machine_.controller.mechanism()->digital_control_interface.name; }
   void expect_that_it_moves() {
-    ASSERT_TRUE(machine_.controller.cam().set_feedrate(6000));
+    ASSERT_TRUE(machine_.controller.cam().path().set_feedrate(6000));
     const auto queued = machine_.line(1, machine_.controller.sample().pose_set.tip, {1, 1, 1});
     ASSERT_TRUE(queued) << queued.error().message;
-    ASSERT_TRUE(machine_.controller.cam().cycle_start(sdk::CycleMode::Automatic));
+    ASSERT_TRUE(machine_.controller.cam().cycle().start(sdk::CycleMode::Automatic));
     EXPECT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 1)) << machine_.last(Event::Kind::Fault);
   }
 

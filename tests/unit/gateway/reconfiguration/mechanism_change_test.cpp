@@ -249,15 +249,15 @@ TEST(MechanismChange, KeepsThePartFrameInAnotherRoleWithAToolInTheSpindle) {
   ToolPort& tools = machine.controller.tools();
   ASSERT_TRUE(tools.set_tool({.number = 3, .length_mm = 20}));
   ASSERT_TRUE(tools.change_tool(3));
-  ASSERT_TRUE(cam.cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam.cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine.run_until([&] { return !tools.tools_now().prompt.empty(); }));
   ASSERT_TRUE(tools.confirm_tool(3));
   ASSERT_TRUE(machine.run_until([&] { return tools.tools_now().mounted == 3; }));
-  ASSERT_TRUE(cam.cycle_stop());
+  ASSERT_TRUE(cam.cycle().stop());
   ASSERT_TRUE(machine.run_until([&] { return machine.controller.cycle_now().state == CycleState::Idle; }));
   Frame part;
   part.p = {1, 2, 0};
-  ASSERT_TRUE(cam.set_part_frame(part));
+  ASSERT_TRUE(cam.frames().set_part(part));
 
   sdk::DeviceObject measurer = TestMachine::mill();
   measurer.name = "Measurer";

@@ -14,9 +14,9 @@ class ReconfigurationTest : public testing::Test {
  protected:
   void SetUp() override { ASSERT_TRUE(machine_.load_at_zero(TestMachine::mill())); }
   void start_line() {
-    ASSERT_TRUE(cam().set_feedrate(600));
+    ASSERT_TRUE(cam().path().set_feedrate(600));
     ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {40, 0, 0}));
-    ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+    ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
     ASSERT_TRUE(machine_.run_until([&] { return machine_.controller.sample().position_set[0] > 1; }));
   }
   void fault() {
@@ -33,12 +33,12 @@ TEST_F(ReconfigurationTest, AResetDropsWhatWasPlannedAndEnablesTheDrivesWhereThe
   const auto reset = cam().reset();
   ASSERT_TRUE(reset) << reset.error().message;
   EXPECT_EQ(machine_.controller.cycle_now().state, CycleState::Idle);
-  EXPECT_EQ(cam().moves_in_buffer(), 0);
+  EXPECT_EQ(cam().queue().moves_left(), 0);
   const CycleSample now = machine_.controller.sample();
   EXPECT_EQ(now.servo_state, ServoState::Engaged);
   EXPECT_GT(now.position_set[0], 1);
   ASSERT_TRUE(machine_.line(2, now.pose_set.tip, {0, 0, 0}));
-  ASSERT_TRUE(cam().cycle_start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   EXPECT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 2));
 }
 
@@ -70,7 +70,7 @@ TEST_F(ReconfigurationTest, AFaultedMechanismMayBeTakenOutAndOneInMotionMayNot) 
 }
 
 TEST_F(ReconfigurationTest, ASpindleThatIsFasterThanItMayBeFromNowOnSlowsDown) {
-  ASSERT_TRUE(cam().set_spindle_rpm(0, 900));
+  ASSERT_TRUE(cam().spindles().set_rpm(0, 900));
   ASSERT_TRUE(machine_.run_until([&] { return machine_.controller.sample().spindle_rpm[0] > 890; }));
   ASSERT_TRUE(machine_.controller.config().set_spindle_maximum_rpm(0, 400));
   const auto applied = machine_.controller.config().apply();
