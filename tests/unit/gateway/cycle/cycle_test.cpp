@@ -78,7 +78,7 @@ TEST_F(Cycle, AFaultIsToldAfterWhatHappenedBeforeItThoughBothAreToldAtOnce) {
   // Other gains have the machine go on though nobody is told of its cycles yet.
   for (double gain = 300; machine_.controller.sample().servo_state != ServoState::Faulted; gain += 0.001) {
     ASSERT_LT(gain, 310);
-    ASSERT_TRUE(machine_.controller.config().set_joint_servo_control_gains(0, std::array{gain, 4.0}));
+    ASSERT_TRUE(machine_.controller.config().loops().set_gains(0, std::array{gain, 4.0}));
     (void)machine_.controller.config().apply();
   }
   EXPECT_TRUE(machine_.events.empty());

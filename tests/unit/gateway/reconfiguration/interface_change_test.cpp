@@ -27,7 +27,7 @@ class InterfaceChangeTest : public testing::Test {
   }
   Expected<> choose(const std::string& interface) {
     sdk::RmacConfig& config = machine_.controller.config();
-    return config.set_digital_control_interface({interface, {}, {}}).and_then([&] { return config.apply(); });
+    return config.interfaces().set_control({interface, {}, {}}).and_then([&] { return config.apply(); });
   }
   [[nodiscard]] std::string interface() { return machine_.controller.mechanism()->digital_control_interface.name; }
   void expect_that_it_moves() {

@@ -266,7 +266,7 @@ TEST(MechanismChange, KeepsThePartFrameInAnotherRoleWithAToolInTheSpindle) {
   const auto loaded = machine.load(measurer);
   ASSERT_TRUE(loaded) << loaded.error().message;
   EXPECT_EQ(tools.tools_now().mounted, 3);
-  EXPECT_EQ(cam.part_frame().p, part.p);
+  EXPECT_EQ(cam.frames().part().p, part.p);
 }
 
 TEST(MechanismChange, ALimitActsOnMotionOnceApplied) {

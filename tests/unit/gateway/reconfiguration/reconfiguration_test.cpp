@@ -30,7 +30,7 @@ class ReconfigurationTest : public testing::Test {
 TEST_F(ReconfigurationTest, AResetDropsWhatWasPlannedAndEnablesTheDrivesWhereTheyStand) {
   start_line();
   fault();
-  const auto reset = cam().reset();
+  const auto reset = cam().cycle().reset();
   ASSERT_TRUE(reset) << reset.error().message;
   EXPECT_EQ(machine_.controller.cycle_now().state, CycleState::Idle);
   EXPECT_EQ(cam().queue().moves_left(), 0);
@@ -43,7 +43,7 @@ TEST_F(ReconfigurationTest, AResetDropsWhatWasPlannedAndEnablesTheDrivesWhereThe
 }
 
 TEST_F(ReconfigurationTest, AResetNeedsAFault) {
-  const auto reset = cam().reset();
+  const auto reset = cam().cycle().reset();
   ASSERT_FALSE(reset);
   EXPECT_EQ(reset.error().message, "reset: there is no fault to reset, the machine is Idle");
 }
@@ -72,7 +72,7 @@ TEST_F(ReconfigurationTest, AFaultedMechanismMayBeTakenOutAndOneInMotionMayNot) 
 TEST_F(ReconfigurationTest, ASpindleThatIsFasterThanItMayBeFromNowOnSlowsDown) {
   ASSERT_TRUE(cam().spindles().set_rpm(0, 900));
   ASSERT_TRUE(machine_.run_until([&] { return machine_.controller.sample().spindle_rpm[0] > 890; }));
-  ASSERT_TRUE(machine_.controller.config().set_spindle_maximum_rpm(0, 400));
+  ASSERT_TRUE(machine_.controller.config().spindles().set_maximum_rpm(0, 400));
   const auto applied = machine_.controller.config().apply();
   ASSERT_TRUE(applied) << applied.error().message;
   EXPECT_TRUE(machine_.run_until([&] { return std::abs(machine_.controller.sample().spindle_rpm[0] - 400) < 5; }));

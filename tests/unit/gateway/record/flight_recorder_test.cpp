@@ -182,7 +182,7 @@ TEST_F(FlightRecord, BeginsWithTheMechanismThatItIsOf) {
 CycleSample with_drives(std::int64_t cycle, std::uint32_t drives) {
   CycleSample sample;
   sample.cycle = cycle;
-  sample.joint_count = sample.axis_count = 2;
+  sample.joint_count = sample.joint_count_with_held = 2;
   sample.actuator_count = drives;
   for (std::uint32_t i = 0; i < drives; ++i) {
     sample.statusword[i] = static_cast<std::uint16_t>(100 + i);
