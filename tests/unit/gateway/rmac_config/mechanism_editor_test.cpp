@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "rmac/motion/machine_size.hpp"
+
 namespace rmac::gateway {
 namespace {
 

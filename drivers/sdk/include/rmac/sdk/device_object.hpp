@@ -27,9 +27,9 @@ struct ForceSensor {
 /// One joint: its limits, its loop, and the drive behind it.
 struct Joint {
   JointLimits limits;
-  ModuleChoice servo_law{};  ///< no name: the joint's drives close its loop themselves
+  ModuleChoice servo_law;  ///< no name: the joint's drives close its loop themselves
   ControlMethod method = ControlMethod::Position;
-  std::vector<double> gains{};
+  std::vector<double> gains;
   double max_following_error = 0;  ///< mm or degrees; beyond it the machine stops
   double max_effort = 0;           ///< N or N·m at the joint
   JointMechanics mechanics{};
@@ -83,9 +83,9 @@ struct ToolChangeStep {
   enum class Whose : std::uint8_t { Both, Old, New };
   Kind kind = Kind::Switch;
   Whose whose = Whose::Both;  ///< taken only where there is such a tool, and not an empty spindle
-  std::vector<double> joints{};
-  std::vector<std::string> outputs{};
-  std::string input{};
+  std::vector<double> joints;
+  std::vector<std::string> outputs;
+  std::string input;
   bool on = true;
   double timeout_s = 0;
 };
