@@ -86,17 +86,17 @@ TEST(ConfigApi, PassesLimitsGainsAndModulesToTheDraft) {
   sdk::DeviceObject draft;
   draft.actuator_map = {"Map", {{"pitch_mm", {5}}}, {}};
   ON_CALL(config, draft()).WillByDefault(testing::ReturnRef(draft));
-  EXPECT_CALL(config, set_joint_maximum_jerk(1, 4000)).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(config.joints_mock, set_maximum_jerk(1, 4000)).WillOnce(Return(Expected<>{}));
   EXPECT_TRUE(api.result("RMAC_Config.SetMechanismJointMaximumJerk", "[1, 4000]").is_null());
-  EXPECT_CALL(config, set_joint_servo_control_gains(0, testing::ElementsAre(1, 2, 3))).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(config.loops_mock, set_gains(0, testing::ElementsAre(1, 2, 3))).WillOnce(Return(Expected<>{}));
   EXPECT_TRUE(api.result("RMAC_Config.SetMechanismJointServoControlGains", "[0, [1,2,3]]").is_null());
-  EXPECT_CALL(config, set_joint_limit_type(0, JointLimitType::InfinitePositive)).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(config.joints_mock, set_limit_type(0, JointLimitType::InfinitePositive)).WillOnce(Return(Expected<>{}));
   EXPECT_TRUE(api.result("RMAC_Config.SetMechanismJointLimitType", "[0, 2]").is_null());
   // Naming the module that the draft has keeps its parameters; another one starts without.
-  EXPECT_CALL(config, set_actuator_map(testing::Field(&sdk::ModuleChoice::numbers, testing::SizeIs(1))))
+  EXPECT_CALL(config.mechanism_mock, set_actuator_map(testing::Field(&sdk::ModuleChoice::numbers, testing::SizeIs(1))))
       .WillOnce(Return(Expected<>{}));
   EXPECT_TRUE(api.result("RMAC_Config.SetMechanismActuatorMap", R"(["Map"])").is_null());
-  EXPECT_CALL(config, set_actuator_map(testing::Field(&sdk::ModuleChoice::numbers, testing::IsEmpty())))
+  EXPECT_CALL(config.mechanism_mock, set_actuator_map(testing::Field(&sdk::ModuleChoice::numbers, testing::IsEmpty())))
       .WillOnce(Return(Expected<>{}));
   EXPECT_TRUE(api.result("RMAC_Config.SetMechanismActuatorMap", R"(["Other"])").is_null());
   EXPECT_CALL(config, apply()).WillOnce(Return(failure(MinorCode::InvalidParameterValue, "joint 0: min over max")));
@@ -106,10 +106,10 @@ TEST(ConfigApi, PassesLimitsGainsAndModulesToTheDraft) {
 TEST(CamApi, ButtonsDoWhatTheirFunctionsDo) {
   Api api;
   auto& cam = api.machine.cam_mock;
-  EXPECT_CALL(cam, cycle_start(sdk::CycleMode::Automatic)).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(cam.cycle_mock, start(sdk::CycleMode::Automatic)).WillOnce(Return(Expected<>{}));
   EXPECT_TRUE(api.result("RMAC_CAM.SetCycleStartStatus", "[true]").is_null());
   EXPECT_TRUE(api.result("RMAC_CAM.SetCycleStartStatus", "[false]").is_null());
-  EXPECT_CALL(cam, cycle_stop()).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(cam.cycle_mock, stop()).WillOnce(Return(Expected<>{}));
   EXPECT_TRUE(api.result("RMAC_CAM.SetCycleStopStatus", "[true]").is_null());
   EXPECT_TRUE(api.result("RMAC_CAM.SetCycleStopStatus", "[false]").is_null());
 }

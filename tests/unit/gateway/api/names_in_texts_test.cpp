@@ -55,7 +55,7 @@ std::vector<std::string> literals_of(const std::string& source) {
       R"re(//[^\n]*|/\*[^]*?\*/|#include[^\n]*|'(?:\\.|[^'\\\n])'|R"(\w*)\(([^]*?)\)\1"|"((?:\\.|[^"\\\n])*)")re");
   std::vector<std::string> literals;
   for (std::sregex_iterator token(source.begin(), source.end(), kToken), end; token != end; ++token) {
-    for (const std::size_t group : {2, 3}) {
+    for (const std::size_t group : {std::size_t{2}, std::size_t{3}}) {
       if ((*token)[group].length() > 0) literals.push_back((*token)[group].str());
     }
   }

@@ -48,8 +48,8 @@ TEST(LeaseKeeper, AnnouncesWhoTookTheLeaseOnce) {
 
 TEST(LeaseKeeper, LeavesTheMachineAloneWhenWhoGoesHoldsNothing) {
   Keeper bench;
-  EXPECT_CALL(bench.machine.cam_mock, stop_now()).Times(0);
-  EXPECT_CALL(bench.machine.cam_mock, cycle_stop()).Times(0);
+  EXPECT_CALL(bench.machine.cam_mock.cycle_mock, stop_now()).Times(0);
+  EXPECT_CALL(bench.machine.cam_mock.cycle_mock, stop()).Times(0);
   EXPECT_TRUE(bench.lease.acquire(kClient, "cam-tool"));
   bench.run();
   bench.lease.lose(kOther, "panel", "disconnected with");
@@ -58,8 +58,8 @@ TEST(LeaseKeeper, LeavesTheMachineAloneWhenWhoGoesHoldsNothing) {
 
 TEST(LeaseKeeper, StopsTheCycleOfAMachineThatRestsWithoutMoves) {
   Keeper bench;
-  EXPECT_CALL(bench.machine.cam_mock, cycle_stop()).WillOnce(Return(Expected<>{}));
-  EXPECT_CALL(bench.machine.cam_mock, stop_now()).Times(0);
+  EXPECT_CALL(bench.machine.cam_mock.cycle_mock, stop()).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(bench.machine.cam_mock.cycle_mock, stop_now()).Times(0);
   EXPECT_TRUE(bench.lease.acquire(kClient, "cam-tool"));
   bench.lease.lose(kClient, "cam-tool", "gave back");
   EXPECT_EQ(bench.told.back(), "cam-tool gave back motion authority");
@@ -67,7 +67,7 @@ TEST(LeaseKeeper, StopsTheCycleOfAMachineThatRestsWithoutMoves) {
 
 TEST(LeaseKeeper, SaysThatStoppingFailedAndKeepsTheError) {
   Keeper bench;
-  EXPECT_CALL(bench.machine.cam_mock, stop_now())
+  EXPECT_CALL(bench.machine.cam_mock.cycle_mock, stop_now())
       .WillOnce(Return(failure(MinorCode::CommTimeout, "the bus is silent")));
   EXPECT_TRUE(bench.lease.acquire(kClient, "cam-tool"));
   bench.run();
@@ -91,8 +91,8 @@ TEST(LeaseKeeper, IsOverdueOnlyAfterItsTimeAndNotAfterASignOfLife) {
 
 TEST(LeaseKeeper, TellsTheNextHolderHowManyMovesWereDroppedOnce) {
   Keeper bench;
-  EXPECT_CALL(bench.machine.cam_mock, moves_in_buffer()).WillOnce(Return(3));
-  EXPECT_CALL(bench.machine.cam_mock, stop_now()).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(bench.machine.cam_mock.queue_mock, moves_left()).WillOnce(Return(3));
+  EXPECT_CALL(bench.machine.cam_mock.cycle_mock, stop_now()).WillOnce(Return(Expected<>{}));
   EXPECT_TRUE(bench.lease.acquire(kClient, "cam-tool"));
   bench.lease.lose(kClient, "cam-tool", "gave back");
   EXPECT_EQ(bench.told.back(), "cam-tool gave back motion authority; 3 queued moves are dropped");
@@ -144,7 +144,7 @@ TEST(LeaseKeeper, GivesTheLeaseToNobodyAfterTheEndEvenWhenTheDrivesAreOff) {
 
 TEST(LeaseKeeper, DropsALeaseWithoutAStop) {
   Keeper bench;
-  EXPECT_CALL(bench.machine.cam_mock, stop_now()).Times(0);
+  EXPECT_CALL(bench.machine.cam_mock.cycle_mock, stop_now()).Times(0);
   EXPECT_TRUE(bench.lease.acquire(kClient, "cam-tool"));
   bench.run();
   bench.lease.drop(kClient);
