@@ -80,7 +80,7 @@ TEST(RequestQueue, AnswersInOrder) {
 
 TEST(RequestQueue, AnswersAStopAtOnceAndTellsWhereItStood) {
   QueueBench bench;
-  EXPECT_CALL(bench.machine.cam_mock, stop_now()).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(bench.machine.cam_mock.cycle_mock, stop_now()).WillOnce(Return(Expected<>{}));
   bench.take(1, "RMAC_CAM.Ok", "[]", 0);
   bench.take(2, "RMAC_CAM.StopNow", "[]", 60);
   EXPECT_EQ(bench.answered(), (Ids{2}));
@@ -92,7 +92,7 @@ TEST(RequestQueue, AStopThatWasNoneStopsNobody) {
   bench.take(1, "RMAC_CAM.StopNow", R"({"speed":5})");
   EXPECT_TRUE(bench.client.answers.at(0).contains("error"));
   EXPECT_TRUE(bench.client.stops.empty());
-  EXPECT_CALL(bench.machine.cam_mock, stop_now())
+  EXPECT_CALL(bench.machine.cam_mock.cycle_mock, stop_now())
       .WillOnce(Return(failure(MinorCode::CommTimeout, "the bus is silent")));
   bench.take(2, "RMAC_CAM.StopNow");
   EXPECT_EQ(bench.client.stops.size(), 1U)
@@ -101,7 +101,7 @@ TEST(RequestQueue, AStopThatWasNoneStopsNobody) {
 
 TEST(RequestQueue, RefusesAStartThatStandsBeforeAStop) {
   QueueBench bench;
-  EXPECT_CALL(bench.machine.cam_mock, cycle_start(_)).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(bench.machine.cam_mock.cycle_mock, start(_)).WillOnce(Return(Expected<>{}));
   bench.take(1, "RMAC_CAM.CycleStart", "[1]", 99);
   bench.take(2, "RMAC_CAM.CycleStart", "[1]", 100);
   bench.queue.stopped(Effect::Holds, "RMAC_CAM.FeedHold of panel", 100);
@@ -199,7 +199,7 @@ TEST(RequestQueue, WaitsWhileAnothersRequestHasTheMachine) {
 
 TEST(RequestQueue, ReadsALongLineAsideAndKeepsItsPlace) {
   QueueBench bench;
-  EXPECT_CALL(bench.machine.cam_mock, stop_now()).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(bench.machine.cam_mock.cycle_mock, stop_now()).WillOnce(Return(Expected<>{}));
   bench.queue.take(
       R"({"jsonrpc":"2.0","id":1,"method":"RMAC_CAM.StopNow")" + std::string(RequestLine::kLongBytes, ' ') + "}", 5);
   bench.take(2, "RMAC_CAM.Ok");
