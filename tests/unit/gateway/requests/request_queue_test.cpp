@@ -115,7 +115,7 @@ TEST(RequestQueue, RefusesAStartThatStandsBeforeAStop) {
 TEST(RequestQueue, AMoveWaitsForRoomAndWhatIsBehindItWaitsToo) {
   QueueBench bench;
   bench.machine.now.state = CycleState::Running;
-  EXPECT_CALL(bench.machine.cam_mock, queue_move(_, _))
+  EXPECT_CALL(bench.machine.cam_mock.queue_mock, add(_, _))
       .WillOnce(Return(failure(MinorCode::CommandQueueFull, "full")))
       .WillOnce(Return(Expected<>{}));
   bench.take_move(1);
@@ -133,7 +133,7 @@ TEST(RequestQueue, AMoveDoesNotWaitWhereNoRoomWillComeOrNobodyStaysOrTimeIsUp) {
     QueueBench bench(why == std::string("late") ? std::chrono::milliseconds(0) : std::chrono::hours(1));
     bench.machine.now.state = why == std::string("at rest") ? CycleState::Idle : CycleState::Holding;
     bench.client.here = why != std::string("gone");
-    EXPECT_CALL(bench.machine.cam_mock, queue_move(_, _))
+    EXPECT_CALL(bench.machine.cam_mock.queue_mock, add(_, _))
         .WillOnce(Return(failure(MinorCode::CommandQueueFull, "full")));
     bench.take_move(1);
     bench.take_move(2);
