@@ -18,7 +18,7 @@ Expected<> InterfaceChange::put_in(const sdk::DeviceObject& device, const Mechan
   });
   if (!may) return may;
   auto before = slot_.predecessor();
-  before->called = fmt::format("{} over {}", before->device.name, before->device.digital_control_interface.name);
+  before->over = " over " + before->device.digital_control_interface.name;
   before->mechanism.reset();  // whoever borrows a bus keeps it: nobody may hold the mechanism in force now
   auto done = slot_.switch_off();
   slot_.drop(false);

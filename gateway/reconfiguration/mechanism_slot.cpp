@@ -80,7 +80,7 @@ void MechanismSlot::abandon() {
 
 std::optional<MechanismSlot::Predecessor> MechanismSlot::predecessor() const {
   if (!in_force_) return {};
-  return Predecessor{in_force_, in_force_->device, {folder_, in_force_->virtual_mode()}, in_force_->device.name};
+  return Predecessor{in_force_, in_force_->device, {folder_, in_force_->virtual_mode()}, {}};
 }
 
 void MechanismSlot::settle(std::optional<Predecessor> gone, bool fresh, const std::string& message) {
@@ -97,7 +97,7 @@ Error MechanismSlot::undo(std::optional<Predecessor> before, const Error& why) {
   if (before && (!before->mechanism || before->mechanism != in_force_)) {
     const auto back = put_back(*before);
     error.message += back
-                         ? fmt::format("; {} is in force again", before->called)
+                         ? fmt::format("; {} is in force again{}", before->device.name, before->over)
                          : fmt::format("; and {} could not be put back: {}", before->device.name, back.error().message);
   } else if (!before && in_force_) {
     if (auto out = unload(); !out) {

@@ -57,7 +57,7 @@ class MechanismSlot {
     std::shared_ptr<Mechanism> mechanism;  ///< kept so that its users may use it until they are told; may be null
     sdk::DeviceObject device;
     MechanismSource source;
-    std::string called;  ///< for people
+    std::string over;  ///< for people: " over" the interface to its drives, where that is what was exchanged
   };
   [[nodiscard]] std::optional<Predecessor> predecessor() const;
   /// After a change that worked: users and listeners are told, and what was there before goes.

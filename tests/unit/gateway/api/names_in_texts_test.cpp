@@ -22,7 +22,7 @@ const std::set<std::string> kOtherWords{"ControlMethod", "CycleDeadline", "Cycle
                                         "ResetFault",    "ResetTime",     "SearchDistance"};
 
 struct Names {
-  std::set<std::string> methods, interfaces, functions, verbs;
+  std::set<std::string> methods, interfaces, functions, verbs, parameters;
 };
 
 /// "Set" of "SetFeedrate" and of "Machine_SetMechanismJointType"; empty for a word of one part, such as "Home".
@@ -41,6 +41,7 @@ const Names& names() {
       const std::string function = dot == std::string::npos ? method.name : method.name.substr(dot + 1);
       result.methods.insert(method.name);
       result.functions.insert(function);
+      for (const auto& parameter : method.parameters) result.parameters.insert(parameter.name);
       if (dot != std::string::npos) result.interfaces.insert(method.name.substr(0, dot));
       if (const std::string verb = verb_of(function); !verb.empty()) result.verbs.insert(verb);
     }
@@ -71,7 +72,8 @@ std::set<std::string> strangers_among(const std::string& text) {
     const std::size_t dot = word.find('.');
     const bool strange = dot != std::string::npos
                              ? names().interfaces.contains(word.substr(0, dot)) && !names().methods.contains(word)
-                             : names().verbs.contains(verb_of(word)) && !names().functions.contains(word);
+                             : names().verbs.contains(verb_of(word)) && !names().functions.contains(word) &&
+                                   !names().parameters.contains(word);
     if (strange && !kOtherWords.contains(word)) strangers.insert(word);
   }
   return strangers;

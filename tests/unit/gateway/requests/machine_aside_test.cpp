@@ -17,6 +17,7 @@ Request request_of(const std::string& method, const std::string& params) {
 struct AsideBench {
   /// Runs the gateway's thread until `done`.
   void run_until(const bool& done) {
+    io.restart();  // it stopped when the last work was done
     const auto working = asio::make_work_guard(io);
     while (!done) io.run_one();
   }

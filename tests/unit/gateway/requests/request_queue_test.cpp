@@ -45,6 +45,7 @@ struct QueueBench {
   }
   /// Runs the gateway's thread until the client is to be pumped, or what was away is back.
   void run_until_back() {
+    io.restart();  // it stopped when the last work was done
     const auto working = asio::make_work_guard(io);
     for (const int before = client.pumped; client.pumped == before;) io.run_one();
   }

@@ -28,7 +28,7 @@ TEST_F(CycleCommands, IsStartedUntilItIsStoppedAHoldIncluded) {
   EXPECT_FALSE(cycle_.started());
   ASSERT_TRUE(cycle_.start(sdk::CycleMode::Manual));
   EXPECT_TRUE(cycle_.started());
-  EXPECT_STREQ(supervisor_.now().mode, "MANUAL_MODE");
+  EXPECT_STREQ(supervisor_.now().mode, "MANUAL");
   ASSERT_TRUE(cycle_.hold());
   EXPECT_EQ(supervisor_.state(), CycleState::Holding);
   EXPECT_TRUE(cycle_.started());

@@ -379,7 +379,7 @@ TEST(Planner, LeavesMoreTimeAfterEachPlanThatCameTooLate) {
   std::vector<std::int64_t> leads;
   for (int refusal = 0; refusal < 10; ++refusal) {
     ++progress.cycle;
-    ASSERT_TRUE(planner.step(progress));
+    ASSERT_TRUE(planner.step(progress)) << refusal;
     const Plan* plan = nullptr;
     ASSERT_TRUE(channel.published.pop(plan));
     leads.push_back(plan->start_cycle - progress.cycle);

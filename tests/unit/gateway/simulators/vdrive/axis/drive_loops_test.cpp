@@ -14,7 +14,7 @@ TEST(DriveLoops, BringTheShaftToAPositionAndHoldItAgainstALoad) {
   DriveLoops loops;
   loops.start(hanging.gravity_nm);
   Demand demand{.position = 500};
-  for (int step = 0; step < 8000; ++step) {
+  for (int step = 0; step < 24000; ++step) {
     shaft.advance(loops.torque(demand, shaft, 0.3, 125e-6), false, 125e-6);
   }
   EXPECT_NEAR(shaft.position(), 500, 2);
