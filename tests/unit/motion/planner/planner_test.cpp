@@ -363,31 +363,5 @@ TEST(Planner, ShapesMovesByPathAcceleration) {
   EXPECT_GT(peak(0, 0).first, 500);
 }
 
-// Red when a planner that was too late is as late again: nothing it makes would ever be followed.
-TEST(Planner, LeavesMoreTimeAfterEachPlanThatCameTooLate) {
-  const PlannerModel model = mill();
-  PathBuilder builder(model);
-  builder.restart(std::vector<double>{0, 0, 0}, {});
-  auto segments =
-      builder.build({.id = 1, .geometry = LineGeometry{{{0, 0, 0}, kUp}, {{20, 0, 0}, kUp}}, .feed_mm_s = 20});
-  ASSERT_TRUE(segments) << segments.error().message;
-  PlanChannel channel;
-  Planner planner(model, channel);
-  planner.add(std::move(*segments));
-  planner.command(PathCommand::Run);
-  ServoProgress progress;
-  std::vector<std::int64_t> leads;
-  for (int refusal = 0; refusal < 10; ++refusal) {
-    ++progress.cycle;
-    ASSERT_TRUE(planner.step(progress)) << refusal;
-    const Plan* plan = nullptr;
-    ASSERT_TRUE(channel.published.pop(plan));
-    leads.push_back(plan->start_cycle - progress.cycle);
-    progress.last_refused = plan->id;
-    ASSERT_TRUE(channel.retired.push(plan));
-  }
-  EXPECT_EQ(leads, (std::vector<std::int64_t>{2, 3, 5, 9, 17, 33, 65, 66, 66, 66})) << "and never more than so much";
-}
-
 }  // namespace
 }  // namespace rmac

@@ -82,32 +82,6 @@ TEST(TimeLaw, BeginsAndEndsAtBordersThatRoundingMisses) {
 }
 
 /// A state that speeds up and will just not pass its feed.
-struct NearItsFeed {
-  double v, a, feed, length;
-};
-
-// Red when the first interval of the grid is longer than the room that such a state has below its feed.
-TEST(TimeLaw, IsFoundFromAStateThatSpeedsUpToJustBelowItsFeed) {
-  test::PlannerBench bench(test::mill());
-  bench.builder.restart(std::vector<double>{-45, 0, 0}, {});
-  const ToolPose begin{{-45, 0, 0}, {0, 0, 1}}, end{{45, 0, 0}, {0, 0, 1}};
-  auto arc = bench.builder.build(
-      {.id = 1, .geometry = ArcGeometry{{0, 0, 0}, {0, 0, 1}, 1, false, begin, end}, .feed_mm_s = 100});
-  ASSERT_TRUE(arc) << arc.error().message;
-  ASSERT_EQ(arc->size(), 1U);
-  const std::vector<double> starts{0};
-  const PathView path(*arc, starts);
-  const auto joints = test::mill().joints;
-  for (const auto& [v, a, feed, length] : {NearItsFeed{62.20403, 0.631974022, 62.2040936, 28.7108275},
-                                           NearItsFeed{67.1534505, 0.301775065, 67.1534757, 32.7251036},
-                                           NearItsFeed{29.6467793, 0.960930807, 29.6469154, 34.7611942},
-                                           NearItsFeed{17.7967027, 0.396360497, 17.7967224, 24.046401},
-                                           NearItsFeed{69.8905679, 0.391247634, 69.8905804, 33.1453375}}) {
-    const auto law = plan_window(path, joints, {{10, v, a}, 10 + length, {feed / 100}});
-    ASSERT_TRUE(law) << v;
-    EXPECT_LE(check_law(path, joints, *law, nullptr).worst, 1);
-  }
-}
 
 }  // namespace
 }  // namespace rmac

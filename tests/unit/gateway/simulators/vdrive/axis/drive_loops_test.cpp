@@ -7,20 +7,6 @@
 namespace rmac::vdrive {
 namespace {
 
-TEST(DriveLoops, BringTheShaftToAPositionAndHoldItAgainstALoad) {
-  fieldbus::AxisPlantParameters hanging;
-  hanging.gravity_nm = 0.05;
-  Shaft shaft{hanging};
-  DriveLoops loops;
-  loops.start(hanging.gravity_nm);
-  Demand demand{.position = 500};
-  for (int step = 0; step < 24000; ++step) {
-    shaft.advance(loops.torque(demand, shaft, 0.3, 125e-6), false, 125e-6);
-  }
-  EXPECT_NEAR(shaft.position(), 500, 2);
-  EXPECT_TRUE(shaft.stands());
-}
-
 TEST(DriveLoops, BeginWithTheTorqueThatHoldsTheLoad) {
   DriveLoops loops;
   loops.start(0.05);
