@@ -62,7 +62,7 @@ TEST_F(InterfaceChangeTest, PutsTheMechanismBackOverTheOldOneWhenTheOtherDoesNot
   const auto refused = choose("OtherBus");
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, MinorCode::CommTimeout);
-  EXPECT_THAT(refused.error().message, HasSubstr("no card in slot 2; Mill over TestBus is in force again"));
+  EXPECT_THAT(refused.error().message, HasSubstr("no card in slot 2; Mill is in force again over TestBus"));
   EXPECT_EQ(interface(), "TestBus");
   expect_that_it_moves();
 }
@@ -72,7 +72,7 @@ TEST_F(InterfaceChangeTest, PutsTheMechanismBackWhenADriveOfTheOtherFails) {
   offline_ = 1;
   const auto refused = choose("OtherBus");
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().message, HasSubstr("Mill over TestBus is in force again"));
+  EXPECT_THAT(refused.error().message, HasSubstr("Mill is in force again over TestBus"));
   EXPECT_EQ(machine_.controller.cycle_now().state, CycleState::Idle) << "the failed attempt's fault went with it";
   expect_that_it_moves();
 }

@@ -81,7 +81,6 @@ TEST(TimeLaw, BeginsAndEndsAtBordersThatRoundingMisses) {
   }
 }
 
-/// A state that speeds up and will just not pass its feed.
 
 }  // namespace
 }  // namespace rmac

@@ -10,7 +10,9 @@ namespace {
 
 class PromptTest : public testing::Test {
  protected:
-  PromptTest() : connection_(std::move(*Connection::open(appliance_.endpoint()))), prompt_(*connection_, moves_) {}
+  PromptTest() : connection_(std::move(*Connection::open(appliance_.endpoint()))), prompt_(*connection_, moves_) {
+    appliance_.answers("RMAC_CAM.GetParkedProgram", {{"moves", 0}});
+  }
 
   void hear(const nlohmann::json& members = nlohmann::json::object()) { prompt_.hear(read_state(state(members))); }
   /// Until the appliance has answered what was asked.
