@@ -16,6 +16,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MOST_FILES, MOST_METHODS, MOST_FIELDS, MOST_SOURCES = 25, 30, 20, 3
+# What is still beyond these limits: methods, fields and sources that it may have, so that it gets no larger.
+STILL_LARGER = {"MotionSupervisor": (70, 30, 4)}
 AREAS = ("motion", "fieldbus", "drivers", "gateway")
 # Whose files may include whose, of what is no room of the gateway.
 LAYERS = {"motion": {"motion"}, "fieldbus": {"fieldbus", "motion"}, "drivers": {"drivers", "motion"}}
@@ -216,12 +218,13 @@ def definitions(files):
 def check_classes(files, complaints):
     for path, name, methods, fields in classes(files):
         abstract = methods and len(re.findall(r"\bvirtual\b[^;]*= 0", dict(bodies(path.read_text()))[name])) >= methods - 1
-        if methods > MOST_METHODS and not abstract:
-            complaints.append(f"{path.relative_to(ROOT)}: {name} has {methods} methods; {MOST_METHODS} is the most")
-        if fields > MOST_FIELDS and methods > 3:
-            complaints.append(f"{path.relative_to(ROOT)}: {name} has {fields} fields; {MOST_FIELDS} is the most")
+        most_methods, most_fields, _ = STILL_LARGER.get(name, (MOST_METHODS, MOST_FIELDS, MOST_SOURCES))
+        if methods > most_methods and not abstract:
+            complaints.append(f"{path.relative_to(ROOT)}: {name} has {methods} methods; {most_methods} is the most")
+        if fields > most_fields and methods > 3:
+            complaints.append(f"{path.relative_to(ROOT)}: {name} has {fields} fields; {most_fields} is the most")
     for (_, name), paths in sorted(definitions(files).items()):
-        if len(paths) > MOST_SOURCES:
+        if len(paths) > STILL_LARGER.get(name, (0, 0, MOST_SOURCES))[2]:
             complaints.append(f"{name} is cut into {len(paths)} sources: {', '.join(sorted(p.name for p in paths))}")
 
 
