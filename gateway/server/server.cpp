@@ -123,9 +123,8 @@ void Server::tick() {
 void Server::end_silent_lease() {
   if (!lease_.overdue()) return;
   // A holder that waits for an answer is not silent: we are.
-  const auto holder = std::ranges::find_if(connections_, [&](const auto& entry) {
-    return lease_.held_by(entry.first) && entry.second->requests().empty();
-  });
+  const auto holder = std::ranges::find_if(
+      connections_, [&](const auto& entry) { return lease_.held_by(entry.first) && entry.second->requests().empty(); });
   if (holder != connections_.end()) {
     lease_.lose(holder->first, holder->second->name(), "was silent for too long and lost");
   }
