@@ -81,6 +81,5 @@ TEST(TimeLaw, BeginsAndEndsAtBordersThatRoundingMisses) {
   }
 }
 
-
 }  // namespace
 }  // namespace rmac
