@@ -18,13 +18,25 @@ for option in "$@"; do
   esac
 done
 
+# Says what begins, and how long the stage before it took.
+stage=
+begin() {
+  [ -z "$stage" ] || printf '   %s: %d s\n' "$stage" $((SECONDS - begun))
+  stage=$1
+  begun=$SECONDS
+  [ -z "$stage" ] || echo "== $stage"
+}
+
+begin "packages"
 ./packages.sh
 
-echo "== layout: clang-format"
+begin "layout: clang-format, rooms"
+python3 tests/layout/check.py
+python3 -m unittest discover -s tests/layout -q
 find motion fieldbus drivers gateway tests -name '*.[ch]pp' -print0 | xargs -0 clang-format --dry-run --Werror
 
 build() { # preset
-  echo "== $1: configure and build"
+  begin "$1: configure and build"
   cmake --preset "$1" --log-level=WARNING
   cmake --build --preset "$1" --parallel "$(nproc)" -- --quiet
 }
@@ -32,16 +44,20 @@ build() { # preset
 for preset in "${presets[@]}"; do
   build "$preset"
   if [ "$preset" = release ]; then
-    echo "== bench: the emulated machine"
+    begin "bench: the emulated machine"
     # Where one cannot be run in that many seconds, it says so.
     LIMIT=240 tests/bench/run canopen || [ $? -eq 77 ]
     LIMIT=420 tests/bench/run headlight || [ $? -eq 77 ]
   fi
-  echo "== $preset: tests"
+  begin "$preset: tests"
   ctest --preset "$preset"
 done
 if [ -n "${lint:-}" ]; then
-  echo "== lint: clang-tidy"
+  begin "lint: clang-tidy, which proves what locks guard too"
+  if clang-tidy --quiet tests/layout/unguarded_field.cpp -- -std=c++20 -I. >/dev/null 2>&1; then
+    echo "lint: a field that is touched without its lock passed; see ExtraArgs of .clang-tidy" >&2
+    exit 1
+  fi
   # clang 14 stops at the one option of g++ that it does not know.
   mkdir -p build/lint
   sed 's/ -fno-gnu-unique//g' build/release/compile_commands.json > build/lint/compile_commands.json
@@ -50,6 +66,6 @@ if [ -n "${lint:-}" ]; then
 fi
 if [ -n "${thread_sanitizer:-}" ]; then
   build tsan
-  echo "== tsan: tests"
+  begin "tsan: tests"
   ctest --preset tsan --tests-regex 'Controller|Server|Channel|Ring|Thread'
 fi

@@ -1,4 +1,4 @@
-"""A CAM program's side of the wire: JSON-RPC 2.0, one object a line over TCP, with the standard library alone."""
+"""A CAM program's side of the wire: JSON-RPC 2.0, one object a line over TCP, with the standard library and numpy."""
 
 import array
 import collections

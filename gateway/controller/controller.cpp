@@ -24,7 +24,7 @@ ServoThread::Options thread_options(const ControllerOptions& options) {
 Controller::Impl::Impl(ControllerOptions controller_options)
     : options(std::move(controller_options)),
       link(std::make_unique<ServoLink>(FlightRecorder::history_cycles(options.flight_recorder, options.period_s))),
-      supervisor({.period_s = options.period_s, .queue_capacity = options.queue_capacity}, *link),
+      supervisor({.queue_capacity = options.queue_capacity}, *link),
       thread(thread_options(options), *link, supervisor),
       draft(
           {[this](const sdk::DeviceObject& device, ConfigDraft::Extent extent) { return apply(device, extent); },

@@ -102,8 +102,8 @@ void Controller::Impl::dispatch() {
   const MotionSupervisor::News news = supervisor.take_news();
   drain();
   take_events(news.events);
-  using Kind = MotionSupervisor::QueueChange::Kind;
-  for (const MotionSupervisor::QueueChange& change : news.queue) {
+  using Kind = QueueChange::Kind;
+  for (const QueueChange& change : news.queue) {
     if (change.kind == Kind::Added || change.kind == Kind::Still) {
       ledger.add(change.move_id, change.kind == Kind::Still, change.part);
       continue;

@@ -219,7 +219,7 @@ Expected<> Controller::Impl::put_in(const sdk::DeviceObject& device, bool fresh)
     if (!role) {
       supervisor.wish([](ServoWishes& wishes) { wishes.outputs = 0; });
       supervisor.set_frames({});
-      supervisor.drop_parked(device.name + " was loaded anew");
+      supervisor.parking().drop(device.name + " was loaded anew");
     }
     const auto keeps = !virtual_mode     ? ToolRack::Keeps::Everything
                        : options.stepped ? ToolRack::Keeps::Nothing
@@ -281,7 +281,7 @@ Expected<> Controller::Impl::take_out() {
   const std::string name = in_force->device.name;
   if (auto off = switch_off(); !off) return off;
   (void)cam.keep_mounted();
-  supervisor.drop_parked(name + " was unloaded");
+  supervisor.parking().drop(name + " was unloaded");
   tell_cam(nullptr, true);
   in_force.reset();
   draft.discard(nullptr);

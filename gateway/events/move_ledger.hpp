@@ -4,7 +4,8 @@
 #include <deque>
 #include <functional>
 
-#include "gateway/cycle/motion_supervisor.hpp"
+#include "gateway/queue/queue_step.hpp"
+#include "gateway/state/machine_state.hpp"
 
 namespace rmac::gateway {
 
@@ -13,7 +14,7 @@ namespace rmac::gateway {
 class MoveLedger {
  public:
   /// `still`: the move has no motion, so no sample counts it; it is done in its turn.
-  /// Of a move in parts, the first one tells that it began, the last one that it is done.
+  /// The first part of a move in parts tells that it began, the last one that it is done.
   void add(std::int64_t move_id, bool still, MovePart part = {}) {
     moves_.push_back({move_id, !part.first, still, part.last});
   }

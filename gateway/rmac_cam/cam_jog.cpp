@@ -54,7 +54,7 @@ Expected<> Cam::jog_joint(int joint, double distance) {
   const ServoStatus now = link_.status.read();
   JointTargetGeometry target{{now.position_set.begin(), now.position_set.begin() + device_->joints.size()}};
   target.joints[*found] += distance;
-  return supervisor_.run_positioning(make_joint_move(kPositioningMoveId, target, now.position_set));
+  return supervisor_.jogging().run(make_joint_move(kPositioningMoveId, target, now.position_set));
 }
 
 Expected<> Cam::check_limit_switches(std::size_t joint, bool positive) const {
@@ -108,7 +108,7 @@ Expected<> Cam::jog_path(const sdk::JogDirection& direction, double distance_mm)
                    fmt::format("JogPath: the distance {} must be a number other than 0", distance_mm));
   }
   return part_direction("JogPath", direction).and_then([&](const Vector& way) {
-    return supervisor_.run_positioning(make_straight_move(shifted(tool_pose_set(), way, distance_mm)));
+    return supervisor_.jogging().run(make_straight_move(shifted(tool_pose_set(), way, distance_mm)));
   });
 }
 
@@ -162,11 +162,10 @@ Expected<> Cam::jog_at(const char* function, const Jog& jog, double velocity,
                                                       function, velocity, jog.fastest));
   }
   const bool same = jog_ && jog_->what == jog.what && jog_->positive == jog.positive;
-  if (speed == 0) return supervisor_.end_jog();
-  if (same && supervisor_.renew_jog(speed / jog.fastest)) return {};
-  return begin().and_then([&](const Move& move) {
-    return supervisor_.run_positioning(move, speed / jog.fastest).map([&] { jog_ = jog; });
-  });
+  if (speed == 0) return supervisor_.jogging().end();
+  if (same && supervisor_.jogging().renew(speed / jog.fastest)) return {};
+  return begin().and_then(
+      [&](const Move& move) { return supervisor_.jogging().run(move, speed / jog.fastest).map([&] { jog_ = jog; }); });
 }
 
 }  // namespace rmac::gateway

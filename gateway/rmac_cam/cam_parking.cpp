@@ -20,13 +20,13 @@ tl::unexpected<Error> nothing_parked(const char* function) {
 Expected<> Cam::park_program() {
   if (auto loaded = require_mechanism("ParkProgram"); !loaded) return loaded;
   let_go_of_forces();
-  return supervisor_.park(begin_change().outputs_off).map([&] { parked_settings_ = settings_; });
+  return supervisor_.parking().park(begin_change().outputs_off).map([&] { parked_settings_ = settings_; });
 }
 
 Expected<> Cam::take_up_program() {
   constexpr const char* kFunction = "TakeUpProgram";
   if (auto loaded = require_mechanism(kFunction); !loaded) return loaded;
-  const auto& parked = supervisor_.parked();
+  const auto& parked = supervisor_.parking().parked();
   if (!parked) return nothing_parked(kFunction);
   if (parked->mechanism != device_->name || parked->virtual_mode != supervisor_.mechanism()->virtual_mode()) {
     return failure(MinorCode::Other, fmt::format("{}: the program was parked on {}{}; load that first", kFunction,
@@ -36,7 +36,7 @@ Expected<> Cam::take_up_program() {
     return failure(MinorCode::Other, fmt::format("{}: the cycle is under way; stop it first", kFunction));
   }
   auto queued = supervisor_.require_rest(kFunction).and_then([&] { return supervisor_.prepare_move(); }).and_then([&] {
-    return supervisor_.add_rest_of(parked->steps.front());
+    return supervisor_.parking().add_rest_of(parked->steps.front());
   });
   const bool begins_with_tool = std::holds_alternative<int>(parked->steps.front().what);
   for (std::size_t i = begins_with_tool ? 0 : 1; queued && i < parked->steps.size(); ++i) {
@@ -44,11 +44,11 @@ Expected<> Cam::take_up_program() {
     const Move* const move = std::get_if<Move>(&what);
     queued = move != nullptr ? supervisor_.add_move(*move).map([](bool) {}) : change_tool(std::get<int>(what));
   }
-  if (queued && !supervisor_.hold_taken_up()) {
+  if (queued && !supervisor_.parking().hold_taken_up()) {
     queued = failure(MinorCode::Other, fmt::format("{}: the machine was stopped meanwhile", kFunction));
   }
   if (!queued) {
-    supervisor_.drop_taken_up();
+    supervisor_.parking().drop_taken_up();
     (void)keep_mounted();
     return failure(queued.error().code, fmt::format("{}; the program stays parked", queued.error().message));
   }
@@ -58,13 +58,13 @@ Expected<> Cam::take_up_program() {
 }
 
 Expected<> Cam::drop_parked_program() {
-  if (!supervisor_.parked()) return nothing_parked("DropParkedProgram");
-  supervisor_.drop_parked("a client asked for it");
+  if (!supervisor_.parking().parked()) return nothing_parked("DropParkedProgram");
+  supervisor_.parking().drop("a client asked for it");
   return {};
 }
 
 std::optional<sdk::ParkedProgram> Cam::parked_program() const {
-  const auto& parked = supervisor_.parked();
+  const auto& parked = supervisor_.parking().parked();
   if (!parked) return {};
   const ProgramStep& first = parked->steps.front();
   const Move* const move = std::get_if<Move>(&first.what);

@@ -81,7 +81,7 @@ Expected<> Cam::home() {
       std::all_of(now.position_set.begin(), now.position_set.begin() + static_cast<std::ptrdiff_t>(count),
                   [](double position) { return std::abs(position) < 1e-9; });
   if (there) return supervisor_.require_rest("Home");
-  return supervisor_.run_positioning(
+  return supervisor_.jogging().run(
       make_joint_move(kPositioningMoveId, JointTargetGeometry{std::vector<double>(count, 0.0)}, now.position_set));
 }
 
@@ -168,7 +168,7 @@ Move Cam::make_straight_move(const ToolPose& target) const {
 
 Expected<> Cam::move_to_reference_point() {
   if (auto loaded = require_mechanism("MoveToReferencePoint"); !loaded) return loaded;
-  return supervisor_.run_positioning(make_straight_move({{0, 0, 0}, tool_pose_set().axis}));
+  return supervisor_.jogging().run(make_straight_move({{0, 0, 0}, tool_pose_set().axis}));
 }
 
 }  // namespace rmac::gateway
