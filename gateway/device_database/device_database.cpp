@@ -44,13 +44,6 @@ sdk::ModuleChoice module_choice(const Json& object) {
   return choice;
 }
 
-bool has_lower_end(JointLimitType type) {
-  return type == JointLimitType::Limited || type == JointLimitType::InfinitePositive;
-}
-bool has_upper_end(JointLimitType type) {
-  return type == JointLimitType::Limited || type == JointLimitType::InfiniteNegative;
-}
-
 JointLimits limits(const Json& joint) {
   JointLimits limits;
   limits.name = text(joint, "Name");
@@ -280,9 +273,9 @@ std::string missing_end(const Json& file, const sdk::DeviceObject& device) {
     for (std::size_t i = 0; i < list.size(); ++i) {
       const JointLimitType type = list[i].limits.limit_type;
       const Json& entry = file[key][i];
-      const char* missing = has_lower_end(type) && !entry.contains("Min")   ? "Min"
-                            : has_upper_end(type) && !entry.contains("Max") ? "Max"
-                                                                            : nullptr;
+      const char* missing = ends_below(type) && !entry.contains("Min")   ? "Min"
+                            : ends_above(type) && !entry.contains("Max") ? "Max"
+                                                                         : nullptr;
       if (missing != nullptr) {
         return fmt::format("/{}/{} lacks the key \"{}\", a number (mm or deg), which LimitType \"{}\" needs", key, i,
                            missing, text(entry, "LimitType"));

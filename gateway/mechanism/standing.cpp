@@ -49,10 +49,8 @@ Expected<> check_standing(const sdk::DeviceObject& device, std::span<const doubl
   for (std::size_t i = 0; i < device.joints.size(); ++i) {
     const JointLimits& joint = device.joints[i].limits;
     const double slack = as_measured ? device.joints[i].max_following_error : kRounding;
-    const bool below_ends =
-        joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfinitePositive;
-    const bool above_ends =
-        joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfiniteNegative;
+    const bool below_ends = ends_below(joint);
+    const bool above_ends = ends_above(joint);
     const bool outside =
         (below_ends && position[i] < joint.min - slack) || (above_ends && position[i] > joint.max + slack);
     if (!outside) continue;

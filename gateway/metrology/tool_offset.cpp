@@ -3,16 +3,13 @@
 #include <cmath>
 
 #include "rmac/motion/frame.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac::gateway {
 namespace {
 
 constexpr double kCosine = 0.99619469809174555;  // of 5 degrees
 constexpr double kSine = 0.087155742747658174;
-
-double dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 struct Mean {
   double sum = 0;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "rmac/motion/frame.hpp"
+#include "rmac/motion/frame_check.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -111,9 +112,7 @@ Move Cam::make_move(std::int64_t id, const Geometry& geometry) const {
 
 Expected<> Cam::queue_move(std::int64_t id, const Geometry& geometry) {
   if (auto loaded = require_mechanism("move"); !loaded) return loaded;
-  const auto* nurbs = std::get_if<NurbsGeometry>(&geometry);
-  const bool in_joints =
-      std::holds_alternative<JointTargetGeometry>(geometry) || (nurbs != nullptr && nurbs->space == NurbsSpace::Joint);
+  const bool in_joints = in_joint_space(geometry);
   if (!in_joints && !(settings_.feedrate_mm_min > 0)) {
     return failure(MinorCode::SpeedLimit,
                    fmt::format("move {}: no feed is set; use SetFeedrate before the first move", id));

@@ -7,6 +7,7 @@
 #include "gateway/rmac_cam/cam.hpp"
 #include "rmac/motion/frame.hpp"
 #include "rmac/motion/move_name.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -20,10 +21,7 @@ constexpr double kReachFound = 1e-3;
 
 /// Where joint travel ends on one side.
 double travel_end(const JointLimits& limits, double from, bool positive) {
-  const bool bounded =
-      limits.limit_type == JointLimitType::Limited ||
-      limits.limit_type == (positive ? JointLimitType::InfiniteNegative : JointLimitType::InfinitePositive);
-  if (!bounded) return from + (positive ? kFarAway : -kFarAway);
+  if (!(positive ? ends_above(limits) : ends_below(limits))) return from + (positive ? kFarAway : -kFarAway);
   return positive ? limits.max : limits.min;
 }
 
@@ -37,8 +35,7 @@ std::array<double, 4> turn_z_to(const Vector& axis) {
 }
 
 ToolPose shifted(const ToolPose& pose, const Vector& direction, double by) {
-  return {{pose.tip[0] + by * direction[0], pose.tip[1] + by * direction[1], pose.tip[2] + by * direction[2]},
-          pose.axis};
+  return {plus(pose.tip, by, direction), pose.axis};
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "gateway/mechanism/mechanism.hpp"
 #include "gateway/rmac_cam/cam.hpp"
 #include "rmac/motion/frame.hpp"
+#include "rmac/motion/frame_check.hpp"
 #include "rmac/motion/move_name.hpp"
 
 namespace rmac::gateway {

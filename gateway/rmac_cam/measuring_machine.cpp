@@ -6,6 +6,7 @@
 
 #include "gateway/mechanism/mechanism.hpp"
 #include "rmac/motion/frame.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -27,12 +28,8 @@ double sdk::Probing::*member(MeasureParameter number) {
   return &sdk::Probing::scan_speed_mm_s;
 }
 
-Vector shifted(const Vector& from, const Vector& direction, double by) {
-  return {from[0] + by * direction[0], from[1] + by * direction[1], from[2] + by * direction[2]};
-}
-
 double along(const Vector& way, const Vector& from, const Vector& to) {
-  return way[0] * (to[0] - from[0]) + way[1] * (to[1] - from[1]) + way[2] * (to[2] - from[2]);
+  return dot(way, difference(to, from));
 }
 
 }  // namespace
@@ -163,7 +160,7 @@ Expected<> MeasuringMachine::auto_measure(std::int64_t id, const Vector& point, 
   }
   const Vector direction{way[0] / length, way[1] / length, way[2] / length};
   const double approach_mm = length - settings_.prehit_distance_mm;
-  const auto target = [&](double mm) { return PathTargetGeometry{{shifted(from->tip, direction, mm), from->axis}}; };
+  const auto target = [&](double mm) { return PathTargetGeometry{{plus(from->tip, mm, direction), from->axis}}; };
   std::optional<Move> approach;
   if (approach_mm > 1e-6) {
     auto made = cam_.path_move_at(kFunction, id, target(approach_mm), speed);
@@ -229,7 +226,7 @@ void MeasuringMachine::advance() {
   const double hit_mm = along(point_.direction, point_.from, point_.hit->pose.tip);
   const double back_to_mm = std::max(hit_mm - settings_.retract_distance_mm, 0.0);
   const double here_mm = along(point_.direction, point_.from, stands.tip);
-  const PathTargetGeometry target{{shifted(stands.tip, point_.direction, back_to_mm - here_mm), stands.axis}};
+  const PathTargetGeometry target{{plus(stands.tip, back_to_mm - here_mm, point_.direction), stands.axis}};
   // A refusal passes: the machine is still coming to rest, or its drives are.
   (void)cam_.path_move_at("AutoMeasure", point_.id, target, point_.speed).and_then([&](const Move& move) {
     return supervisor_.add_retract(move);

@@ -7,15 +7,12 @@
 #include <cmath>
 
 #include "rmac/motion/move_name.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac::gateway {
 namespace {
 
 constexpr std::array kQuantities{"velocity", "acceleration", "jerk"};
-
-double distance(const Vector& a, const Vector& b) {
-  return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
-}
 
 /// The tool tip's way along a segment. Of one in joint space the length is the joints', so the tip's is that of chords.
 double tip_length(const PathSegment& segment) {

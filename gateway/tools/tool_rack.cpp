@@ -10,6 +10,7 @@
 #include "gateway/json/json_document.hpp"
 #include "gateway/json/schemas.hpp"
 #include "rmac/motion/frame.hpp"
+#include "rmac/motion/frame_check.hpp"
 
 namespace rmac::gateway {
 namespace {

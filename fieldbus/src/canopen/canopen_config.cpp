@@ -163,6 +163,17 @@ Expected<std::optional<MappedObject>> sensor_among(Parameters& parameters, std::
       });
 }
 
+void read_identity(Parameters& parameters, std::size_t axis, AxisConfig& config) {
+  const auto number = [&](const char* name) {
+    constexpr double kMost = 4294967295.0;
+    return static_cast<std::uint32_t>(parameters.number_of_axis(name, axis, 0, 0, kMost));
+  };
+  config.identity.vendor_id = number("vendor_id");
+  config.identity.product_code = number("product_code");
+  config.identity.revision_number = number("revision_number");
+  config.identity.serial_number = number("serial_number");
+}
+
 Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const FindDescription& find) {
   AxisConfig config;
   config.node = static_cast<std::uint8_t>(parameters.number_of_axis("node", axis, 0, 1, 127));
@@ -179,14 +190,7 @@ Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const F
   }
   config.velocity_units_per_rpm =
       parameters.number_of_axis("velocity_units_per_rpm", axis, 1, 1e-6, 1e9, Parameters::Kind::Any);
-  constexpr double kMost = 4294967295.0;
-  config.identity.vendor_id = static_cast<std::uint32_t>(parameters.number_of_axis("vendor_id", axis, 0, 0, kMost));
-  config.identity.product_code =
-      static_cast<std::uint32_t>(parameters.number_of_axis("product_code", axis, 0, 0, kMost));
-  config.identity.revision_number =
-      static_cast<std::uint32_t>(parameters.number_of_axis("revision_number", axis, 0, 0, kMost));
-  config.identity.serial_number =
-      static_cast<std::uint32_t>(parameters.number_of_axis("serial_number", axis, 0, 0, kMost));
+  read_identity(parameters, axis, config);
   read_homing(parameters, axis, config);
   read_units(parameters, axis, config);
   if (!parameters.sound()) return failure(MinorCode::InvalidParameterValue, parameters.problem());

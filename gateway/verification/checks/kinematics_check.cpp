@@ -10,6 +10,8 @@
 #include <optional>
 #include <random>
 
+#include "rmac/motion/vector.hpp"
+
 namespace rmac::verifier {
 namespace {
 
@@ -20,10 +22,6 @@ constexpr double kDetermined = 1e-4;
 constexpr std::size_t kMostSolutions = 16;
 
 using Joints = std::vector<double>;
-
-double distance(const Vector& a, const Vector& b) {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-}
 
 NamedNumbers named_pose(const char* name, const ToolPose& pose) {
   return {name, {pose.tip[0], pose.tip[1], pose.tip[2], pose.axis[0], pose.axis[1], pose.axis[2]}};

@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "axis_turn.hpp"
-#include "vector.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac::curves {
 namespace {
@@ -20,7 +20,7 @@ struct Circle {
 
   [[nodiscard]] Vector at(double angle) const noexcept {
     const double half = std::sin(angle / 2);
-    return along(along(start, radius_mm * std::sin(angle), ahead), -2 * radius_mm * half * half, outward);
+    return plus(plus(start, radius_mm * std::sin(angle), ahead), -2 * radius_mm * half * half, outward);
   }
 };
 
@@ -69,7 +69,7 @@ double stray(const Circle& circle, const Vector& center, const Vector& normal, c
   const auto cylinder = [&](const Vector& point) {
     const Vector r = difference(point, center);
     const double height = dot(r, normal);
-    return std::array{norm(along(r, -height, normal)), height};
+    return std::array{norm(plus(r, -height, normal)), height};
   };
   const auto [radius, height] = cylinder(reference);
   double worst = 0;
@@ -87,11 +87,11 @@ Expected<Circle> circle_about(const Vector& center, Vector normal, const Vector&
   Vector middle = center;
   const Vector chord = difference(end, start);
   if (!closed) {
-    normal = unit(along(normal, -dot(normal, chord) / dot(chord, chord), chord));
-    const Vector to_chord = along(difference(start, center), 0.5, chord);
-    middle = along(center, dot(to_chord, chord) / dot(chord, chord), chord);
+    normal = unit(plus(normal, -dot(normal, chord) / dot(chord, chord), chord));
+    const Vector to_chord = plus(difference(start, center), 0.5, chord);
+    middle = plus(center, dot(to_chord, chord) / dot(chord, chord), chord);
   }
-  middle = along(middle, dot(difference(start, middle), normal), normal);
+  middle = plus(middle, dot(difference(start, middle), normal), normal);
   const Vector outward = difference(start, middle);
   Circle circle;
   circle.start = start;
@@ -140,8 +140,8 @@ Expected<CurvePtr> make_arc(const ArcGeometry& arc, const ToolPose& start) {
   const Vector end_from_center = difference(arc.end.tip, arc.center);
   const double start_height = dot(from_center, normal);
   const double end_height = dot(end_from_center, normal);
-  const double start_radius = norm(along(from_center, -start_height, normal));
-  const double end_radius = norm(along(end_from_center, -end_height, normal));
+  const double start_radius = norm(plus(from_center, -start_height, normal));
+  const double end_radius = norm(plus(end_from_center, -end_height, normal));
   const double allowed = kArcTolerance_mm + 1e-6 * start_radius;
   if (std::abs(start_height - end_height) > allowed) {
     return refuse("the arc's start and end are " + text(std::abs(start_height - end_height)) +
@@ -180,8 +180,8 @@ Expected<CurvePtr> make_arc3(const Arc3Geometry& arc, const ToolPose& start) {
     return refuse("the arc's three points lie on one line (via is " + text(area / norm(to_end)) +
                   " mm off the line from start to end); use MoveAlongLine");
   }
-  const Vector center = along(start.tip, 0.5 / (area * area),
-                              cross(along(scaled(dot(to_via, to_via), to_end), -dot(to_end, to_end), to_via), normal));
+  const Vector center = plus(start.tip, 0.5 / (area * area),
+                             cross(plus(scaled(dot(to_via, to_via), to_end), -dot(to_end, to_end), to_via), normal));
   const auto circle = circle_about(center, scaled(1 / area, normal), start.tip, arc.end.tip, false);
   if (!circle) return tl::unexpected(circle.error());
   return arc_on(*circle, start.axis, arc.end.axis);

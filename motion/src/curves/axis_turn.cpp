@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "vector.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac::curves {
 

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cmath>
+#include <cstdio>
 #include <memory>
+#include <string>
 #include <vector>
 
-#include "rmac/motion/curve.hpp"
+#include "rmac/motion/make_curves.hpp"
 
 namespace rmac::curves {
 
@@ -22,6 +25,16 @@ inline constexpr double kNodeSpacing = 1e-5;
 /// Nodes at most this far apart in turn of the tangent or the tool axis.
 inline constexpr double kNodeTurn_rad = 0.1;
 
+[[nodiscard]] inline bool finite(const Vector& a) noexcept {
+  return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]);
+}
+
+/// A number for a message: as many digits as a person needs.
+[[nodiscard]] inline std::string text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.7g", value);
+  return buffer;
+}
 [[nodiscard]] inline tl::unexpected<Error> refuse(std::string message) {
   return failure(MinorCode::InvalidParameterValue, std::move(message));
 }

@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "axis_turn.hpp"
-#include "vector.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac::curves {
 namespace {

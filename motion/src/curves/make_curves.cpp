@@ -1,5 +1,5 @@
 #include "build.hpp"
-#include "vector.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac {
 namespace curves {

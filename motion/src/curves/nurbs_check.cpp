@@ -4,7 +4,7 @@
 
 #include "bspline.hpp"
 #include "build.hpp"
-#include "vector.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac::curves {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "nurbs_check.hpp"
-#include "vector.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac::curves {
 namespace {

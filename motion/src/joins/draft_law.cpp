@@ -5,15 +5,13 @@
 #include <limits>
 #include <utility>
 
-#include "curves/vector.hpp"
+#include "rmac/motion/vector.hpp"
 #include "time_law/feed_rule.hpp"
 #include "time_law/law_spline.hpp"
 
 namespace rmac {
 namespace {
 
-using curves::along;
-using curves::dot;
 using quintic::kDegree;
 
 constexpr int kIntervalsASpan = 2;
@@ -134,10 +132,10 @@ std::vector<SplineDemand> DraftLaw::demands(const std::vector<Vector>& points) {
       }
       const Vector here = quintic::value(demand.basis, points);
       for (std::size_t j = 0; j < joint_count; ++j) {
-        const Vector rate = curves::scaled(1 / joints_[j].max_jerk, lines_[nodes_[k].line].rates[j]);
+        const Vector rate = scaled(1 / joints_[j].max_jerk, lines_[nodes_[k].line].rates[j]);
         const double price = prices_[(2 * k + (right ? 1U : 0U)) * joint_count + j], jerk = dot(rate, here);
-        for (std::size_t c = 0; c < 3; ++c) demand.weight[c] = along(demand.weight[c], (price + stay) * rate[c], rate);
-        demand.pull = along(demand.pull, stay * jerk, rate);
+        for (std::size_t c = 0; c < 3; ++c) demand.weight[c] = plus(demand.weight[c], (price + stay) * rate[c], rate);
+        demand.pull = plus(demand.pull, stay * jerk, rate);
         demand.constant += 0.5 * stay * jerk * jerk;
       }
       demands.push_back(demand);

@@ -5,18 +5,15 @@
 #include <cmath>
 
 #include "curves/nurbs_curve.hpp"
-#include "curves/vector.hpp"
 #include "joins/banded.hpp"
 #include "joins/quintic.hpp"
 #include "path/part_of.hpp"
 #include "path/travel.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac {
 namespace {
 
-using curves::along;
-using curves::difference;
-using curves::distance;
 using quintic::Basis;
 using quintic::kDegree;
 
@@ -57,8 +54,7 @@ Vector point_of(const PathSegment& line, double s) {
 
 /// On its first line.
 Vector point_at(const Polyline& polyline, double place) {
-  return along(polyline.vertices[0], place / polyline.places[1],
-               difference(polyline.vertices[1], polyline.vertices[0]));
+  return plus(polyline.vertices[0], place / polyline.places[1], difference(polyline.vertices[1], polyline.vertices[0]));
 }
 
 bool same(const PathSegment& a, const PathSegment& b) {
@@ -187,7 +183,7 @@ bool LineFit::least_squares(double step, Fit& fit) const {
     const Basis basis = quintic::basis(fit.knots, count, place);
     for (std::size_t a = 0; a <= kDegree; ++a) {
       const std::size_t row = basis.first + a;
-      right[row] = along(right[row], basis.values[a], target);
+      right[row] = plus(right[row], basis.values[a], target);
       for (std::size_t b = 0; b <= a; ++b) normal.at(row, a - b) += basis.values[a] * basis.values[b];
     }
   }
@@ -202,7 +198,7 @@ bool LineFit::least_squares(double step, Fit& fit) const {
   normal.fix(count - 1, difference(fit.polyline.vertices.back(), origin), right);
   if (!normal.factorise()) return false;
   normal.substitute(right);
-  for (std::size_t i = 0; i < count; ++i) fit.points[i] = along(origin, 1, right[i]);
+  for (std::size_t i = 0; i < count; ++i) fit.points[i] = plus(origin, 1, right[i]);
   return true;
 }
 

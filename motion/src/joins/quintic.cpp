@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "curves/vector.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac::quintic {
 namespace {
@@ -62,7 +62,7 @@ Basis derivatives(const std::vector<double>& knots, std::size_t count, double x,
 
 Vector value(const Basis& basis, const std::vector<Vector>& points) {
   Vector sum{};
-  for (std::size_t a = 0; a <= kDegree; ++a) sum = curves::along(sum, basis.values[a], points[basis.first + a]);
+  for (std::size_t a = 0; a <= kDegree; ++a) sum = plus(sum, basis.values[a], points[basis.first + a]);
   return sum;
 }
 
@@ -71,9 +71,9 @@ std::vector<double> second_derivative_hull(const std::vector<double>& knots, con
   for (std::size_t i = 0; i + 2 < points.size(); ++i) {
     const double w0 = knots[i + 6] - knots[i + 1], w1 = knots[i + 7] - knots[i + 2], w = knots[i + 6] - knots[i + 2];
     if (!(w > 0)) continue;
-    const Vector d0 = curves::scaled(5 / w0, curves::difference(points[i + 1], points[i]));
-    const Vector d1 = curves::scaled(5 / w1, curves::difference(points[i + 2], points[i + 1]));
-    hull[i] = 4 * curves::distance(d1, d0) / w;
+    const Vector d0 = scaled(5 / w0, difference(points[i + 1], points[i]));
+    const Vector d1 = scaled(5 / w1, difference(points[i + 2], points[i + 1]));
+    hull[i] = 4 * distance(d1, d0) / w;
   }
   return hull;
 }

@@ -1,18 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "curves/vector.hpp"
 #include "joins/quintic.hpp"
 #include "joins/tube_spline.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac {
 namespace {
-
-using curves::along;
-using curves::difference;
-using curves::distance;
-using curves::dot;
-using curves::unit;
 
 constexpr int kMostHalvings = 10;
 constexpr int kNewtonSteps = 4;
@@ -20,7 +14,7 @@ constexpr int kNewtonSteps = 4;
 double distance_to_line(const Vector& p, const Vector& a, const Vector& b) {
   const Vector line = difference(b, a);
   const double part = std::clamp(dot(difference(p, a), line) / dot(line, line), 0.0, 1.0);
-  return distance(p, along(a, part, line));
+  return distance(p, plus(a, part, line));
 }
 
 class TubeCheck {
@@ -54,8 +48,8 @@ class TubeCheck {
     double place = polyline_.places[vertex];
     if (vertex == 0 || vertex == polyline_.lines() || place <= begin) return 0;
     const Vector& corner = polyline_.vertices[vertex];
-    const Vector ahead = unit(along(unit(difference(corner, polyline_.vertices[vertex - 1])), 1,
-                                    unit(difference(polyline_.vertices[vertex + 1], corner))));
+    const Vector ahead = unit(plus(unit(difference(corner, polyline_.vertices[vertex - 1])), 1,
+                                   unit(difference(polyline_.vertices[vertex + 1], corner))));
     // The spline's parameter is about its length.
     for (int i = 0; i < kNewtonSteps; ++i)
       place = std::clamp(place - dot(ahead, difference(at(place), corner)), begin, end);

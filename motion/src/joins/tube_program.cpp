@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "curves/vector.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac {
 
-using curves::along;
-using curves::difference;
-using curves::dot;
 using quintic::Basis;
 using quintic::kDegree;
 
@@ -56,7 +53,7 @@ bool TubeProgram::factorise(Banded& matrix, const Weight& weight) const {
     std::array<Vector, 3> square{};
     for (const TubeBound& bound : sample.used()) {
       const double w = weight(bound);
-      for (std::size_t c = 0; c < 3; ++c) square[c] = along(square[c], w * bound.direction[c], bound.direction);
+      for (std::size_t c = 0; c < 3; ++c) square[c] = plus(square[c], w * bound.direction[c], bound.direction);
     }
     weigh(sample.basis, square, matrix);
   }
@@ -67,7 +64,7 @@ template <class Factor>
 void TubeProgram::gather(const Factor& factor, std::vector<double>& right) const {
   for (const TubeSample& sample : samples_) {
     Vector sum{};
-    for (const TubeBound& bound : sample.used()) sum = along(sum, factor(bound), bound.direction);
+    for (const TubeBound& bound : sample.used()) sum = plus(sum, factor(bound), bound.direction);
     pull(sample.basis, sum, right);
   }
 }
@@ -80,7 +77,7 @@ double TubeProgram::objective(const std::vector<SplineDemand>& demands, std::vec
   for (const SplineDemand& demand : demands) {
     Vector x{};
     for (std::size_t a = 0; a <= kDegree; ++a)
-      x = along(x, demand.basis.values[a], difference(points_[demand.basis.first + a], origin));
+      x = plus(x, demand.basis.values[a], difference(points_[demand.basis.first + a], origin));
     const Vector bent{dot(demand.weight[0], x), dot(demand.weight[1], x), dot(demand.weight[2], x)};
     value += 0.5 * dot(bent, x) - dot(demand.pull, x) + demand.constant;
     pull(demand.basis, difference(demand.pull, bent), right);
@@ -93,7 +90,7 @@ Vector TubeProgram::step_of(const Basis& basis) const {
   for (std::size_t a = 0; a <= kDegree; ++a) {
     if (!is_free(basis.first + a)) continue;
     const std::size_t at = 3 * (basis.first + a - kept_);
-    sum = along(sum, basis.values[a], {step_[at], step_[at + 1], step_[at + 2]});
+    sum = plus(sum, basis.values[a], {step_[at], step_[at + 1], step_[at + 2]});
   }
   return sum;
 }
@@ -107,7 +104,7 @@ void TubeProgram::measure() {
 
 void TubeProgram::go(double reach) {
   for (std::size_t i = 0; i < free_; ++i)
-    points_[kept_ + i] = along(points_[kept_ + i], reach, {step_[3 * i], step_[3 * i + 1], step_[3 * i + 2]});
+    points_[kept_ + i] = plus(points_[kept_ + i], reach, {step_[3 * i], step_[3 * i + 1], step_[3 * i + 2]});
   measure();
 }
 

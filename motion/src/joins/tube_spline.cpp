@@ -5,19 +5,13 @@
 #include <cmath>
 #include <utility>
 
-#include "curves/vector.hpp"
 #include "joins/quintic.hpp"
 #include "joins/tube_program.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac {
 namespace {
 
-using curves::along;
-using curves::cross;
-using curves::difference;
-using curves::dot;
-using curves::scaled;
-using curves::unit;
 using quintic::Basis;
 using quintic::kDegree;
 
@@ -49,13 +43,13 @@ std::vector<LineFrame> frames_of(const Polyline& polyline) {
   for (std::size_t k = 0; k < lines; ++k) {
     const Vector& t = tangents[k];
     Vector bend = difference(tangents[std::min(k + 1, lines - 1)], tangents[k > 0 ? k - 1 : 0]);
-    bend = along(bend, -dot(bend, t), t);
+    bend = plus(bend, -dot(bend, t), t);
     if (dot(bend, bend) < 1e-12) {
       Vector least{};
       least[static_cast<std::size_t>(
           std::min_element(t.begin(), t.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }) -
           t.begin())] = 1;
-      bend = along(least, -dot(least, t), t);
+      bend = plus(least, -dot(least, t), t);
     }
     bend = unit(bend);
     frames.push_back({t, bend, cross(t, bend)});
@@ -83,8 +77,8 @@ TubeSample across(const Basis& basis, const Vector& point, const LineFrame& fram
   TubeSample sample{basis, point, {}, 4};
   sample.bounds[0].direction = scaled(scale, frame.bend);
   sample.bounds[1].direction = scaled(scale, frame.side);
-  sample.bounds[2].direction = along(scaled(diagonal, frame.bend), diagonal, frame.side);
-  sample.bounds[3].direction = along(scaled(diagonal, frame.bend), -diagonal, frame.side);
+  sample.bounds[2].direction = plus(scaled(diagonal, frame.bend), diagonal, frame.side);
+  sample.bounds[3].direction = plus(scaled(diagonal, frame.bend), -diagonal, frame.side);
   return sample;
 }
 
@@ -113,7 +107,7 @@ void lay_samples(const std::vector<double>& knots, const Polyline& polyline, con
         std::min(polyline.places[k] - polyline.places[k - 1], polyline.places[k + 1] - polyline.places[k]);
     const double slack = std::min(kVertexSlack * widths[k], 0.2 * shorter);
     TubeSample sample{basis, vertex, {}, 1};
-    sample.bounds[0].direction = scaled(1 / slack, unit(along(frames[k - 1].tangent, 1, frames[k].tangent)));
+    sample.bounds[0].direction = scaled(1 / slack, unit(plus(frames[k - 1].tangent, 1, frames[k].tangent)));
     program.add(sample);
   }
 }

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "curves/vector.hpp"
 #include "path/travel.hpp"
 #include "rmac/motion/frame.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac {
 namespace {
@@ -33,12 +33,12 @@ Vector axis_of(const CurvePoint& point, std::size_t order = 0) {
 
 /// Angle between two directions, in rad.
 double angle(const Vector& a, const Vector& b) {
-  return std::atan2(curves::norm(curves::cross(a, b)), curves::dot(a, b));
+  return std::atan2(norm(cross(a, b)), dot(a, b));
 }
 
 /// From the line of the pole, whichever of its ends is nearer.
 double lean_of(const Vector& axis, const Vector& pole) {
-  return std::atan2(curves::norm(curves::cross(axis, pole)), std::abs(curves::dot(axis, pole)));
+  return std::atan2(norm(cross(axis, pole)), std::abs(dot(axis, pole)));
 }
 
 /// Where, between a point outside of the cap and one inside, its border is.
@@ -59,7 +59,7 @@ bool turns(const Curve& curve) {
   const auto nodes = curve.nodes();
   return std::any_of(nodes.begin(), nodes.end(), [&](double s) {
     curve.evaluate(s, 1, s > 0 ? -1 : 1, here);
-    return angle(axis_of(first), axis_of(here)) > kStill || curves::norm(axis_of(here, 1)) > kStill;
+    return angle(axis_of(first), axis_of(here)) > kStill || norm(axis_of(here, 1)) > kStill;
   });
 }
 
@@ -75,8 +75,8 @@ PoleMap map_pole(const Curve& curve, const Vector& pole) {
   bool was_inside = false;
   // A lean on the other side of the pole is no turn: there the other joint changes its sign.
   const auto turned = [&](const Vector& a, const Vector& b) {
-    const Vector p = curves::cross(pole, a), q = curves::cross(pole, b);
-    const double across = curves::norm(curves::cross(p, q)), along = std::abs(curves::dot(p, q));
+    const Vector p = cross(pole, a), q = cross(pole, b);
+    const double across = norm(cross(p, q)), along = std::abs(dot(p, q));
     return std::atan2(across, along);
   };
   curve.evaluate(0, 0, 1, point);
@@ -90,7 +90,7 @@ PoleMap map_pole(const Curve& curve, const Vector& pole) {
     was_inside = inside;
     before = s;
     if (next >= nodes.size()) break;
-    const double rate = curves::norm(axis_of(point, 1));
+    const double rate = norm(axis_of(point, 1));
     const double turn = std::max(kPartOfLean * lean, kPartOfCap * kPoleCap);
     const double step = lean < kFarFromPole && rate > 0 ? turn / rate : curve.length();
     const bool far = turned(at_node, axis_of(point)) > kNodeTurn;
@@ -199,7 +199,7 @@ std::vector<double> end_joints(const Curve& stretch, bool curve_ends, const Pose
   ToolPose pose = apply_to_pose(map.frames().part, {{point.d[0][0], point.d[0][1], point.d[0][2]}, axis_of(point)});
   Vector pole{};
   if (kinematics.pole(pole) && curve_ends && lean_of(pose.axis, pole) < kOnPole) {
-    pose.axis = curves::scaled(curves::dot(pose.axis, pole) < 0 ? -1 : 1, pole);
+    pose.axis = scaled(dot(pose.axis, pole) < 0 ? -1 : 1, pole);
   }
   std::vector<double> all(kMostSolutions * kinematics.joint_count());
   all.resize(kinematics.solutions(pose, map.frames().tool, seed, all) * kinematics.joint_count());

@@ -5,6 +5,7 @@
 
 #include "exact_nurbs.hpp"
 #include "rmac/motion/curve.hpp"
+#include "rmac/motion/make_curves.hpp"
 #include "rows.hpp"
 #include "shapes.hpp"
 

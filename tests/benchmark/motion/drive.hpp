@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "rmac/motion/path_builder.hpp"
+#include "rmac/motion/plan.hpp"
 #include "rmac/motion/plan_follower.hpp"
 #include "rmac/motion/planner.hpp"
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <random>
 
+#include "rmac/motion/frame_check.hpp"
+
 namespace rmac {
 namespace {
 

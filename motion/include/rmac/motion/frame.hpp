@@ -1,15 +1,14 @@
 #pragma once
 
+#include <array>
 #include <cmath>
-#include <string>
 
-#include "rmac/motion/error.hpp"
 #include "rmac/motion/pose.hpp"
 
 namespace rmac {
 
-/// Algebra of rigid frames. All of it is pure, allocates nothing and is real-time safe, except `check_frame`, which
-/// words an error. Quaternions are taken to be unit; `check_frame` and `normalized` see to that at the border.
+/// Algebra of rigid frames: pure, and real-time safe. Quaternions are taken to be unit; `check_frame` and `normalized`
+/// see to that at the border.
 
 /// Turns a free vector of the frame into the parent's: q v q*.
 [[nodiscard]] inline Vector rotate(const std::array<double, 4>& q, const Vector& v) noexcept {
@@ -82,27 +81,6 @@ namespace rmac {
   // Half of the angle from z, by atan2 so that axes close to ±z keep all their digits.
   const double half = std::atan2(lean, a[2]) / 2;
   return {p, {std::cos(half), -std::sin(half) * a[1] / lean, std::sin(half) * a[0] / lean, 0}};
-}
-
-/// Refuses a frame that is not finite, or whose quaternion's length is further than 1e-6 from 1. `name` says which
-/// frame in the message.
-[[nodiscard]] inline Expected<> check_frame(const Frame& frame, const std::string& name) {
-  double sum = 0;
-  for (const double c : frame.p) {
-    if (!std::isfinite(c)) {
-      return failure(MinorCode::InvalidParameterValue, name + ": the origin p holds a number that is not finite");
-    }
-  }
-  for (const double c : frame.q) sum += c * c;
-  if (!std::isfinite(sum)) {
-    return failure(MinorCode::InvalidParameterValue, name + ": the quaternion q holds a number that is not finite");
-  }
-  if (std::abs(std::sqrt(sum) - 1) > 1e-6) {
-    return failure(MinorCode::InvalidParameterValue, name + ": the quaternion q has length " +
-                                                         std::to_string(std::sqrt(sum)) +
-                                                         ", it must be 1 (to 1e-6): divide w, x, y, z by its length");
-  }
-  return {};
 }
 
 }  // namespace rmac

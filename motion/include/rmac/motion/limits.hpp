@@ -22,11 +22,17 @@ struct JointLimits {
 };
 
 /// Whether the travel has an upper, or a lower, end.
+[[nodiscard]] inline bool ends_above(JointLimitType type) noexcept {
+  return type == JointLimitType::Limited || type == JointLimitType::InfiniteNegative;
+}
+[[nodiscard]] inline bool ends_below(JointLimitType type) noexcept {
+  return type == JointLimitType::Limited || type == JointLimitType::InfinitePositive;
+}
 [[nodiscard]] inline bool ends_above(const JointLimits& joint) noexcept {
-  return joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfiniteNegative;
+  return ends_above(joint.limit_type);
 }
 [[nodiscard]] inline bool ends_below(const JointLimits& joint) noexcept {
-  return joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfinitePositive;
+  return ends_below(joint.limit_type);
 }
 
 /// The position of a rotary joint, brought by as few whole turns as it takes into its travel, or to beyond the other

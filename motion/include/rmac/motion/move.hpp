@@ -55,6 +55,13 @@ struct JointTargetGeometry {
 using Geometry =
     std::variant<LineGeometry, ArcGeometry, Arc3Geometry, NurbsGeometry, PathTargetGeometry, JointTargetGeometry>;
 
+/// Along the joints instead of the tool: its feed follows from the joints' speeds.
+[[nodiscard]] inline bool in_joint_space(const Geometry& geometry) noexcept {
+  const auto* nurbs = std::get_if<NurbsGeometry>(&geometry);
+  return std::holds_alternative<JointTargetGeometry>(geometry) ||
+         (nurbs != nullptr && nurbs->space == NurbsSpace::Joint);
+}
+
 /// One move with everything that was in force when it was queued.
 struct Move {
   std::int64_t id = 0;              ///< the client's number

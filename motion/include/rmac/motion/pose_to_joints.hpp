@@ -9,12 +9,6 @@
 
 namespace rmac {
 
-/// Frames in force for a move: machine = part · program, and the tool tip on the tool interface.
-struct Frames {
-  Frame part;
-  Frame tool;
-};
-
 /// A point of a path in joint space with derivatives by path length: `d[k][j]` is the k-th derivative of joint j, in mm
 /// or deg.
 struct JointPoint {

@@ -11,8 +11,6 @@
 #include "rmac/motion/axis.hpp"
 #include "rmac/motion/force_control.hpp"
 #include "rmac/motion/joint_mechanics.hpp"
-#include "rmac/motion/path_segment.hpp"
-#include "rmac/motion/plan.hpp"
 #include "rmac/motion/ports/actuator_map.hpp"
 #include "rmac/motion/ports/digital_control_interface.hpp"
 #include "rmac/motion/ports/digital_io_interface.hpp"
@@ -20,6 +18,7 @@
 #include "rmac/motion/ports/servo_law.hpp"
 #include "rmac/motion/servo_fault.hpp"
 #include "rmac/motion/servo_spindle.hpp"
+#include "rmac/motion/setpoint.hpp"
 
 namespace rmac {
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "rmac/motion/frame.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac::gateway {
 
@@ -33,12 +34,6 @@ class Chance {
 
 inline Vector plus(const Vector& a, const Vector& b, double times = 1) {
   return {a[0] + times * b[0], a[1] + times * b[1], a[2] + times * b[2]};
-}
-inline double dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline double distance(const Vector& a, const Vector& b) {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 /// The angle by which two frames are turned against each other.
 inline double turned(const Frame& a, const Frame& b) {

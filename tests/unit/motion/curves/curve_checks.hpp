@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rmac/motion/curve.hpp"
+#include "rmac/motion/make_curves.hpp"
 
 namespace rmac::test {
 

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "rmac/motion/make_curves.hpp"
 #include "unit/motion/joins/traces.hpp"
 
 namespace rmac::test {

@@ -4,16 +4,13 @@
 #include <cmath>
 #include <vector>
 
+#include "rmac/motion/vector.hpp"
 #include "unit/motion/planner/planner_bench.hpp"
 
 namespace rmac::test {
 
 inline constexpr Vector kUp{0, 0, 1};
 inline constexpr double kAtMost = 1.0005;
-
-inline double distance(const Vector& a, const Vector& b) {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-}
 
 inline double distance_to_chord(const Vector& p, const Vector& a, const Vector& b) {
   double along = 0, length = 0;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "rmac/modules/chain_kinematics.hpp"
+#include "rmac/motion/frame_check.hpp"
 #include "rmac/sdk/module.hpp"
 
 namespace rmac::modules {

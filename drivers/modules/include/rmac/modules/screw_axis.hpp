@@ -5,25 +5,15 @@
 
 #include "rmac/motion/axis.hpp"
 #include "rmac/motion/pose.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac::modules {
 
 inline constexpr double kRadPerDegree = std::numbers::pi / 180;
 
-[[nodiscard]] inline double dot(const Vector& a, const Vector& b) noexcept {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-[[nodiscard]] inline Vector cross(const Vector& a, const Vector& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 [[nodiscard]] inline double length(const Vector& a) noexcept {
   return std::sqrt(dot(a, a));
 }
-/// a + factor · b
-[[nodiscard]] inline Vector plus(const Vector& a, double factor, const Vector& b) noexcept {
-  return {a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]};
-}
-
 /// The axis of one joint in the machine frame, where it lies while all joints of its chain stand at 0: a slide along
 /// `direction`, or a turn about the line through `point`. It tells how the tool moves against the part, whichever of
 /// the two the joint really carries. `direction` has unit length.
