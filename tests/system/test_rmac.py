@@ -347,11 +347,11 @@ class InterruptedProgram(unittest.TestCase):
             self.assertAlmostEqual(value, wanted, delta=0.02)
 
     def test_program_that_waits_keeps_its_lease_where_silence_ends_it(self):
-        with Appliance(pace="real-time", lease_timeout_s=0.5) as appliance:
+        with Appliance(pace="real-time", lease_timeout_s=2) as appliance:
             self.assertEqual(appliance.rmac("load", "DMACXYZ").returncode, DONE)
             self.file.write_text(request("RMAC_CAM.SetFeedrate", Feedrate=120) + "\n" +
-                                 request("RMAC_CAM.MoveToPathTarget", MoveID=1, TargetFrame=pose(4, 0, 0)) + "\n")
-            done = appliance.rmac("run", str(self.file))  # 2 s
+                                 request("RMAC_CAM.MoveToPathTarget", MoveID=1, TargetFrame=pose(10, 0, 0)) + "\n")
+            done = appliance.rmac("run", str(self.file))  # 5 s
             self.assertEqual(done.returncode, DONE, done.stderr)
 
     def test_hold_from_another_terminal_is_resumed_by_enter(self):

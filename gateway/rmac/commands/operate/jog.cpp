@@ -23,8 +23,10 @@ struct Options {
 /// Sent again for as long as this program lives: should it die, or its network, the machine stops.
 Result<> jog_until_interrupted(Connection& connection, const char* method, nlohmann::json params) {
   for (;;) {
-    if (auto sent = connection.command(method, params); !sent) return sent;
-    if (auto waited = connection.wait([] { return false; }, kJogAgain); !waited) break;
+    auto sent = connection.command(method, params);
+    if (!sent && !connection.interrupted()) return sent;
+    // Ctrl-C may also come while the answer is under way.
+    if (!sent || !connection.wait([] { return false; }, kJogAgain)) break;
   }
   params["Velocity"] = 0;
   if (auto ended = connection.command(method, params); !ended) return ended;

@@ -94,6 +94,10 @@ void FakeAppliance::hang_up() {
   hung_up_ = true;
 }
 
+void FakeAppliance::keep_silent() {
+  silent_ = true;
+}
+
 void FakeAppliance::hang_up_behind_this() {
   says_last_ = true;
 }
@@ -164,7 +168,9 @@ std::string FakeAppliance::answer(const std::string& line) {
     if (const auto known = handlers_.find(method); known != handlers_.end()) handler = known->second;
   }
   pushed_.clear();
+  silent_ = false;
   const gateway::Answer answer = handler ? handler(params) : gateway::Answer(true);
+  if (silent_) return pushed_;
   return gateway::to_response(request.at("id"), answer).dump() + "\n" + pushed_;
 }
 

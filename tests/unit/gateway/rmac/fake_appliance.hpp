@@ -37,6 +37,8 @@ class FakeAppliance {
   void push(const std::string& topic, const nlohmann::json& params);
   void push_event(gateway::Event::Kind kind, nlohmann::json members = nlohmann::json::object());
   void hang_up();
+  /// The request has no answer.
+  void keep_silent();
   /// Hangs up when the answer and what is pushed is sent.
   void hang_up_behind_this();
   /// Enters a line at the terminal.
@@ -69,6 +71,7 @@ class FakeAppliance {
   int client_ = -1;                           ///< guarded by mutex_
   std::string pushed_;                        ///< what goes behind the answer; the fake's thread alone
   bool hung_up_ = false, says_last_ = false;  ///< the fake's thread alone
+  bool silent_ = false;                       ///< the fake's thread alone
   std::thread thread_;
 };
 

@@ -90,6 +90,19 @@ TEST_F(RunnerTest, StartsTheCycleOfAProgramThatDoesNotAndCountsItsMoves) {
   EXPECT_THAT(appliance_.params_of(kStart), ElementsAre(json{{"Mode", "AUTOMATIC"}}));
 }
 
+TEST_F(RunnerTest, RenewsALeaseThatEndsBySilenceWhileItWaits) {
+  appliance_.answers(kAcquireAuthority, {{"timeout_s", 0.03}, {"dropped_moves", 0}});
+  appliance_.handles(kMove, [](const json&) { return Answer(true); });
+  appliance_.handles(kRenewAuthority, [this](const json&) {
+    if (count(kRenewAuthority) == 3) move_is_done(1);
+    return Answer(true);
+  });
+  move(1);
+  const auto report = run();
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->moves, 1U);
+}
+
 TEST_F(RunnerTest, LeavesTheStartToAProgramThatHasOne) {
   move(1);
   line(kStart, {{"Mode", "MANUAL"}});

@@ -68,6 +68,20 @@ TEST_F(JogCommand, AtAVelocityIsSentAgainUntilAPersonInterruptsIt) {
   EXPECT_EQ(sent.back(), (json{{"JntNum", 0}, {"Velocity", 0}}));
 }
 
+TEST_F(JogCommand, AtAVelocityEndsInOrderWhereThePersonDoesNotWaitForAnAnswer) {
+  appliance_.handles("RMAC_CAM.JogJoint", [&](const json& params) {
+    if (params.at("Velocity") != 0) {
+      appliance_.keep_silent();
+      ::kill(::getpid(), SIGINT);
+    }
+    return gateway::Answer(true);
+  });
+  const auto ended = run({"jog", "--joint", "0", "--velocity", "2"});
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(appliance_.params_of("RMAC_CAM.JogJoint"),
+              ElementsAre(json{{"JntNum", 0}, {"Velocity", 2.0}}, json{{"JntNum", 0}, {"Velocity", 0}}));
+}
+
 TEST_F(JogCommand, MovesNothingWithoutTheLease) {
   appliance_.refuses(kAcquireAuthority, -32041, "the panel has it");
   EXPECT_EQ(run({"jog", "--joint", "0", "--distance", "1"}).err, "rmac: the panel has it\n");
