@@ -53,7 +53,11 @@ for preset in "${presets[@]}"; do
   ctest --preset "$preset"
 done
 if [ -n "${lint:-}" ]; then
-  begin "lint: clang-tidy"
+  begin "lint: clang-tidy, which proves what locks guard too"
+  if clang-tidy --quiet tests/layout/unguarded_field.cpp -- -std=c++20 -I. >/dev/null 2>&1; then
+    echo "lint: a field that is touched without its lock passed; see ExtraArgs of .clang-tidy" >&2
+    exit 1
+  fi
   # clang 14 stops at the one option of g++ that it does not know.
   mkdir -p build/lint
   sed 's/ -fno-gnu-unique//g' build/release/compile_commands.json > build/lint/compile_commands.json

@@ -90,7 +90,7 @@ struct Controller::Impl {
 Controller::Impl::Impl(ControllerOptions controller_options)
     : options(std::move(controller_options)),
       link(std::make_unique<ServoLink>(FlightRecorder::history_cycles(options.flight_recorder, options.period_s))),
-      supervisor({.period_s = options.period_s, .queue_capacity = options.queue_capacity}, *link),
+      supervisor({.queue_capacity = options.queue_capacity}, *link),
       thread(thread_options(options), *link, supervisor),
       flights(options.flight_recorder, options.period_s, link->history),
       announcer(*link, [this](std::uint64_t generation) { return reconfiguration.of_generation(generation); }),

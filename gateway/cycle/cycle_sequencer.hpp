@@ -3,7 +3,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "gateway/state/cycle_state.hpp"
+#include "gateway/cycle/cycle_phase.hpp"
+#include "gateway/cycle/spindle_wait.hpp"
 #include "rmac/motion/error.hpp"
 #include "rmac/motion/planner.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
@@ -26,33 +27,9 @@ struct CycleObservation {
   bool measures = false;      ///< what is left in the queue is a measurement, which counts as one move
 };
 
-/// Why the machine came to rest.
-enum class StopCause : std::uint8_t {
-  CycleStop,
-  StopNow,
-  JogLapsed,
-  JogEnded,
-  MoveDone,
-  RetraceEnded,
-  Homed,
-  HitByHand,
-  UnexpectedHit,
-  PartNotFound,
-  AirLost,
-  Parked,
-  ProbeLost,
-  ProbeDeflected,
-  ProbeStuck
-};
-
-/// What happened, and what to do to go on.
-[[nodiscard]] const char* describe(StopCause cause) noexcept;
-/// The status that such a stop leaves; None where nothing went wrong.
-[[nodiscard]] MinorCode code_of(StopCause cause) noexcept;
-
 /// The machine's cycle states and what they mean for the path (contract "Cycle"):
-/// Idle → Running ⇄ Holding, any → Stopping → Idle, any → Faulted, left by a reset alone. A pure state machine: the
-/// motion supervisor asks it under its lock.
+/// Idle → Running ⇄ Holding, any → Stopping → Idle, any → Faulted, left by a reset alone. A pure state machine: it is
+/// asked under the lock of the machine's cycle.
 class CycleSequencer {
  public:
   [[nodiscard]] Expected<> start(sdk::CycleMode mode, const CycleObservation& seen);
@@ -61,34 +38,35 @@ class CycleSequencer {
   /// Runs one move that needs no spindle: a jog. With `lasts_s` it stops when it was not renewed for so long.
   [[nodiscard]] Expected<> start_positioning(const CycleObservation& seen, std::optional<double> lasts_s);
   /// A jog that lasts while it is renewed is under way, and not yet told to stop.
-  [[nodiscard]] bool jogs() const noexcept { return state_ == CycleState::Running && jog_until_s_.has_value(); }
-  void renew_jog(const CycleObservation& seen, double lasts_s) noexcept { jog_until_s_ = seen.t_s + lasts_s; }
-  /// A jog, or another move outside of the cycle, is under way.
-  [[nodiscard]] bool positions() const noexcept { return positioning_; }
+  [[nodiscard]] bool jogs() const noexcept { return phase_.runs<CyclePhase::Jog>() != nullptr; }
+  /// Has no effect when no jog is under way.
+  void renew_jog(const CycleObservation& seen, double lasts_s) noexcept;
+  /// A jog, or another move outside of the cycle, is under way, held, or coming to rest.
+  [[nodiscard]] bool positions() const noexcept { return phase_.positions(); }
   /// Has the drives home, from rest.
   [[nodiscard]] Expected<> start_homing(const CycleObservation& seen);
-  [[nodiscard]] bool homes() const noexcept { return homing_; }
+  [[nodiscard]] bool homes() const noexcept { return phase_.runs<CyclePhase::Homing>() != nullptr; }
   /// Whether a retrace may begin.
   [[nodiscard]] Expected<> check_retrace(const CycleObservation& seen) const;
   /// Runs back what the planner readied; then the machine is Holding again.
-  void retrace() noexcept;
+  void retrace() noexcept { phase_.run(CyclePhase::Retrace{}); }
   [[nodiscard]] Expected<> stop();
   [[nodiscard]] Expected<> stop_and_clear(StopCause cause = StopCause::StopNow);
   /// The probe has touched: a jog ends; a search ends where it is, and the cycle goes on with what is queued then.
-  void touched() noexcept;
+  void touched() noexcept { phase_.touch(); }
   [[nodiscard]] Expected<> hold();
   /// A program that was parked is queued again, and held.
   void take_up(sdk::CycleMode mode, const CycleObservation& seen) noexcept;
   [[nodiscard]] Expected<> resume();
   /// Leaves Faulted or EmergencyStop; the path was emptied before.
   [[nodiscard]] Expected<> reset();
-  void fault(CycleState to = CycleState::Faulted) noexcept;
+  void fault(bool emergency_stop = false) noexcept { phase_.fault(emergency_stop); }
   /// Another mechanism went in: `keep_running` when it is the same one, configured anew.
   void mechanism_changed(bool keep_running) noexcept;
   /// What is no move, and done by itself in manual mode, is done: a tool change.
-  void one_done() noexcept { one_done_ = true; }
+  void one_done() noexcept { one_move_.done = true; }
   /// A spindle was told another speed: motion that has not begun waits for it, at most `timeout_s`.
-  void spindle_commanded(double timeout_s) noexcept;
+  void spindle_commanded(double timeout_s) noexcept { spindle_wait_.begin(timeout_s); }
 
   struct Verdict {
     std::optional<PathCommand> command;  ///< for the planner, when it changes
@@ -98,34 +76,28 @@ class CycleSequencer {
   };
   [[nodiscard]] Verdict step(const CycleObservation& seen) noexcept;
 
-  [[nodiscard]] CycleState state() const noexcept { return state_; }
+  [[nodiscard]] CycleState state() const noexcept { return phase_.state(); }
+  /// The mode of the cycle that was started last; a positioning counts as manual.
   [[nodiscard]] sdk::CycleMode mode() const noexcept { return mode_; }
-  /// Whether the stop under way empties the queue.
-  [[nodiscard]] bool clears_at_rest() const noexcept { return clear_at_rest_; }
-  [[nodiscard]] bool waits_for_spindle() const noexcept { return spindle_wait_; }
+  /// A stop is under way at whose end the queue is emptied.
+  [[nodiscard]] bool empties_queue() const noexcept { return phase_.empties_queue(); }
+  [[nodiscard]] bool waits_for_spindle() const noexcept { return spindle_wait_.waiting(); }
 
  private:
-  [[nodiscard]] Expected<> refuse_when_faulted(const char* what) const;
-  /// Also where the machine lacks what it needs to move.
-  [[nodiscard]] Expected<> refuse_when_unfit(const char* what, const CycleObservation& seen) const;
-  [[nodiscard]] PathCommand wanted(const CycleObservation& seen) noexcept;
+  struct OneMove {
+    std::uint64_t done_before = 0;  ///< moves done when it was started
+    bool done = false;              ///< what is no move
+  };
 
-  CycleState state_ = CycleState::Idle;
+  void count_from(const CycleObservation& seen) noexcept { one_move_ = {seen.moves_done, false}; }
+  void end_what_is_done(const CycleObservation& seen, Verdict& verdict) noexcept;
+  [[nodiscard]] PathCommand wanted(const CycleObservation& seen) const noexcept;
+
+  CyclePhase phase_;
   sdk::CycleMode mode_ = sdk::CycleMode::Automatic;
   PathCommand commanded_ = PathCommand::Stop;
-  bool clear_at_rest_ = false;
-  StopCause stop_cause_ = StopCause::CycleStop;  ///< of the stop under way
-  bool positioning_ = false;
-  bool retracing_ = false;
-  bool homing_ = false;
-  bool ends_search_ = false;  ///< at rest the rest of the queue, a search, is dropped
-  std::uint32_t homings_before_ = 0;
-  std::optional<double> jog_until_s_;
-  bool spindle_wait_ = false;
-  double spindle_timeout_s_ = 0;
-  std::optional<double> waiting_since_s_;
-  std::uint64_t done_at_start_ = 0;
-  bool one_done_ = false;
+  OneMove one_move_;  ///< in manual mode
+  SpindleWait spindle_wait_;
 };
 
 }  // namespace rmac::gateway

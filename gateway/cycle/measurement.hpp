@@ -8,7 +8,7 @@
 namespace rmac::gateway {
 
 /// One point measured by touch: the approach, the search at whose end the probe touches, the way back. Also tells hits
-/// that nobody asked for. A pure state machine: the motion supervisor steps it under its lock.
+/// that nobody asked for. A pure state machine: the probe watch steps it.
 class Measurement {
  public:
   enum class Phase : std::uint8_t {

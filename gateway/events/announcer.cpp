@@ -6,12 +6,12 @@
 
 namespace rmac::gateway {
 
-void Announcer::announce(const MotionSupervisor::News& news) {
+void Announcer::announce(const CycleNews::Taken& news) {
   samples_.take_over();
   take_faults();
   for (const Event& event : news.events) events_.add(event);
-  using Kind = MotionSupervisor::QueueChange::Kind;
-  for (const MotionSupervisor::QueueChange& change : news.queue) {
+  using Kind = QueueChange::Kind;
+  for (const QueueChange& change : news.queue) {
     if (change.kind == Kind::Added || change.kind == Kind::Still) {
       ledger_.add(change.move_id, change.kind == Kind::Still, change.part);
       continue;

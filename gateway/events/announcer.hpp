@@ -4,10 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "gateway/cycle/motion_supervisor.hpp"
 #include "gateway/events/event_queue.hpp"
 #include "gateway/events/move_ledger.hpp"
 #include "gateway/events/sample_inbox.hpp"
+#include "gateway/mechanism/mechanism.hpp"
+#include "gateway/queue/cycle_news.hpp"
 
 namespace rmac::gateway {
 
@@ -35,7 +36,7 @@ class Announcer {
   void take_over_samples() { samples_.take_over(); }
   /// Tells of all that happened since the last announcement. `news` was taken just now, before this is called: then
   /// every sample that a piece of news follows from is there, and told before it.
-  void announce(const MotionSupervisor::News& news);
+  void announce(const CycleNews::Taken& news);
   /// Tells of an event at once.
   void tell(Event event);
 

@@ -4,7 +4,9 @@
 #include <deque>
 #include <functional>
 
-#include "gateway/cycle/motion_supervisor.hpp"
+#include "gateway/queue/queue_step.hpp"
+#include "gateway/state/cycle_sample.hpp"
+#include "gateway/state/event.hpp"
 
 namespace rmac::gateway {
 

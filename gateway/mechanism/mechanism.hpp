@@ -14,8 +14,8 @@
 namespace rmac::gateway {
 
 /// One mechanism, assembled: its modules in a servo loop, and the chain from moves to setpoints. Built and destroyed on
-/// the gateway thread; while it is in force the servo thread uses `loop` and `follower`, and `builder` and `planner`
-/// are used under the motion supervisor's lock.
+/// the gateway thread. While it is in force the servo thread uses `loop` and `follower`; `planner` is used under the
+/// lock of the machine's cycle, by whoever has a turn; `builder` is the gateway thread's alone, and needs no lock.
 struct Mechanism {
   Mechanism(sdk::DeviceObject device_object, PlannerModel model, std::shared_ptr<ServoLoop> servo_loop,
             std::vector<ModuleInUse> modules_in_use)

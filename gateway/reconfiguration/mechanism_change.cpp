@@ -73,7 +73,7 @@ Expected<> MechanismChange::put_to_work(Candidate candidate, bool fresh) {
 void MechanismChange::begin_anew(const std::string& name) {
   supervisor_.wish([](ServoWishes& wishes) { wishes.outputs = 0; });
   supervisor_.set_frames({});
-  supervisor_.drop_parked(name + " was loaded anew");
+  supervisor_.parking().drop(name + " was loaded anew");
 }
 
 void MechanismChange::adopt_tools(const sdk::DeviceObject& device, ToolTable table, bool virtual_mode) {

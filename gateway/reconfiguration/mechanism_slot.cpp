@@ -65,7 +65,7 @@ Expected<> MechanismSlot::unload() {
   const std::string name = in_force_->device.name;
   if (auto off = switch_off(); !off) return off;
   users_.keep_mounted();
-  supervisor_.drop_parked(name + " was unloaded");
+  supervisor_.parking().drop(name + " was unloaded");
   drop(true);
   users_.draft_from(nullptr);
   report(name + " is unloaded");

@@ -21,12 +21,12 @@ tl::unexpected<Error> nothing_parked(const char* function) {
 Expected<> CamParking::park() {
   if (auto loaded = device_.require("ParkProgram"); !loaded) return loaded;
   parts_.forces.let_go();
-  return supervisor_.park(device_.coolant()).map([&] {
+  return supervisor_.parking().park(device_.coolant()).map([&] {
     settings_ = {parts_.path.values(), parts_.joints.values(), parts_.spindles.largest_rpm()};
   });
 }
 
-Expected<> CamParking::check_take_up(const MotionSupervisor::Parked& parked) {
+Expected<> CamParking::check_take_up(const gateway::Parking::Program& parked) {
   if (parked.mechanism != device_.get()->name || parked.virtual_mode != supervisor_.mechanism()->virtual_mode()) {
     return failure(MinorCode::Other, fmt::format("{}: the program was parked on {}{}; load that first", kTakeUp,
                                                  parked.mechanism, parked.virtual_mode ? " in virtual mode" : ""));
@@ -37,9 +37,9 @@ Expected<> CamParking::check_take_up(const MotionSupervisor::Parked& parked) {
   return {};
 }
 
-Expected<> CamParking::queue_again(const MotionSupervisor::Parked& parked) {
+Expected<> CamParking::queue_again(const gateway::Parking::Program& parked) {
   auto queued = supervisor_.require_rest(kTakeUp).and_then([&] { return supervisor_.prepare_move(); }).and_then([&] {
-    return supervisor_.add_rest_of(parked.steps.front());
+    return supervisor_.parking().add_rest_of(parked.steps.front());
   });
   const bool begins_with_tool = std::holds_alternative<int>(parked.steps.front().what);
   for (std::size_t i = begins_with_tool ? 0 : 1; queued && i < parked.steps.size(); ++i) {
@@ -48,7 +48,7 @@ Expected<> CamParking::queue_again(const MotionSupervisor::Parked& parked) {
     queued =
         move != nullptr ? supervisor_.add_move(*move).map([](bool) {}) : parts_.tools.change_tool(std::get<int>(what));
   }
-  if (queued && !supervisor_.hold_taken_up()) {
+  if (queued && !supervisor_.parking().hold_taken_up()) {
     return failure(MinorCode::Other, fmt::format("{}: the machine was stopped meanwhile", kTakeUp));
   }
   return queued;
@@ -56,11 +56,11 @@ Expected<> CamParking::queue_again(const MotionSupervisor::Parked& parked) {
 
 Expected<> CamParking::take_up() {
   if (auto loaded = device_.require(kTakeUp); !loaded) return loaded;
-  const auto& parked = supervisor_.parked();
+  const auto& parked = supervisor_.parking().parked();
   if (!parked) return nothing_parked(kTakeUp);
   if (auto fits = check_take_up(*parked); !fits) return fits;
   if (auto queued = queue_again(*parked); !queued) {
-    supervisor_.drop_taken_up();
+    supervisor_.parking().drop_taken_up();
     (void)parts_.tools.keep_mounted();
     return failure(queued.error().code, fmt::format("{}; the program stays parked", queued.error().message));
   }
@@ -71,13 +71,13 @@ Expected<> CamParking::take_up() {
 }
 
 Expected<> CamParking::drop() {
-  if (!supervisor_.parked()) return nothing_parked("DropParkedProgram");
-  supervisor_.drop_parked("a client asked for it");
+  if (!supervisor_.parking().parked()) return nothing_parked("DropParkedProgram");
+  supervisor_.parking().drop("a client asked for it");
   return {};
 }
 
 std::optional<sdk::ParkedProgram> CamParking::parked() const {
-  const auto& parked = supervisor_.parked();
+  const auto& parked = supervisor_.parking().parked();
   if (!parked) return {};
   const ProgramStep& first = parked->steps.front();
   const Move* const move = std::get_if<Move>(&first.what);

@@ -36,8 +36,8 @@ class CamParking final : public sdk::Parking {
   };
 
   /// Refuses to take the parked program up on what is loaded, or in the midst of a cycle.
-  [[nodiscard]] Expected<> check_take_up(const MotionSupervisor::Parked& parked);
-  [[nodiscard]] Expected<> queue_again(const MotionSupervisor::Parked& parked);
+  [[nodiscard]] Expected<> check_take_up(const gateway::Parking::Program& parked);
+  [[nodiscard]] Expected<> queue_again(const gateway::Parking::Program& parked);
 
   const DeviceInForce& device_;
   MotionSupervisor& supervisor_;

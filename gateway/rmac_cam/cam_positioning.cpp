@@ -44,7 +44,7 @@ Expected<> CamPositioning::jog_joint(int joint, double distance) {
   const JointTargetGeometry now = joints_now();
   JointTargetGeometry target = now;
   target.joints[*found] += distance;
-  return supervisor_.run_positioning(maker_.joint_move(kPositioningMoveId, target, now.joints));
+  return supervisor_.jogging().run(maker_.joint_move(kPositioningMoveId, target, now.joints));
 }
 
 Expected<> CamPositioning::check_limit_switches(std::size_t joint, bool positive) const {
@@ -106,7 +106,7 @@ Expected<> CamPositioning::jog_path(const sdk::JogDirection& direction, double d
                    fmt::format("JogPath: the distance {} must be a number other than 0", distance_mm));
   }
   return part_direction(direction).and_then(
-      [&](const Vector& way) { return supervisor_.run_positioning(move_by(tool_.in_part(), way, distance_mm)); });
+      [&](const Vector& way) { return supervisor_.jogging().run(move_by(tool_.in_part(), way, distance_mm)); });
 }
 
 Expected<> CamPositioning::jog_path_at(const sdk::JogDirection& direction, double velocity_mm_s) {
@@ -159,11 +159,10 @@ Expected<> CamPositioning::jog_at(const char* function, const Jog& jog, double v
                                                       function, velocity, jog.fastest));
   }
   const bool same = jog_ && jog_->what == jog.what && jog_->positive == jog.positive;
-  if (speed == 0) return supervisor_.end_jog();
-  if (same && supervisor_.renew_jog(speed / jog.fastest)) return {};
-  return begin().and_then([&](const Move& move) {
-    return supervisor_.run_positioning(move, speed / jog.fastest).map([&] { jog_ = jog; });
-  });
+  if (speed == 0) return supervisor_.jogging().end();
+  if (same && supervisor_.jogging().renew(speed / jog.fastest)) return {};
+  return begin().and_then(
+      [&](const Move& move) { return supervisor_.jogging().run(move, speed / jog.fastest).map([&] { jog_ = jog; }); });
 }
 
 Expected<> CamPositioning::home() {
@@ -182,12 +181,12 @@ Expected<> CamPositioning::home() {
       std::all_of(now.joints.begin(), now.joints.end(), [](double position) { return std::abs(position) < 1e-9; });
   if (there) return supervisor_.require_rest("Home");
   const JointTargetGeometry zero{std::vector<double>(now.joints.size(), 0.0)};
-  return supervisor_.run_positioning(maker_.joint_move(kPositioningMoveId, zero, now.joints));
+  return supervisor_.jogging().run(maker_.joint_move(kPositioningMoveId, zero, now.joints));
 }
 
 Expected<> CamPositioning::move_to_reference_point() {
   if (auto loaded = device_.require("MoveToReferencePoint"); !loaded) return loaded;
-  return supervisor_.run_positioning(maker_.straight_move({{0, 0, 0}, tool_.in_part().axis}));
+  return supervisor_.jogging().run(maker_.straight_move({{0, 0, 0}, tool_.in_part().axis}));
 }
 
 Expected<std::vector<double>> CamPositioning::current_position() const {

@@ -16,7 +16,8 @@
 
 namespace rmac::gateway {
 
-/// What the servo loop is to do beside following plans. Written whole under the motion supervisor's lock.
+/// What the servo loop is to do beside following plans. Written whole under the lock of the machine's
+/// cycle.
 struct ServoWishes {
   bool power = false;
   bool reset = false;

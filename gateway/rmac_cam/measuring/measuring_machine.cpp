@@ -43,7 +43,7 @@ void MeasuringMachine::mechanism_changed(const sdk::DeviceObject* device, bool f
   if (!fresh) return;
   settings_ = device != nullptr ? device->probing : sdk::Probing{};
   mode_ = ControlMode::AutomaticMove;
-  supervisor_.expect_hits_by_hand(false);
+  supervisor_.probing().expect_hits_by_hand(false);
   last_hit_.reset();
   new_hit_ = false;
   spins_until_s_.reset();
@@ -106,7 +106,7 @@ Expected<> MeasuringMachine::auto_measure(std::int64_t id, const Vector& point, 
                                                      std::min(speed, settings_.scan_speed_mm_s));
   if (!search) return tl::unexpected(search.error());
   const Point before = std::exchange(point_, Point{id, from->tip, direction, speed, length, {}});
-  auto queued = supervisor_.add_measurement(approach, *search);
+  auto queued = supervisor_.probing().add(approach, *search);
   if (!queued) point_ = before;
   return queued;
 }
@@ -118,13 +118,13 @@ void MeasuringMachine::take(const HitFinder::Found& found) {
 }
 
 void MeasuringMachine::assume_hit(const CycleSample& sample) {
-  const Measurement::Phase phase = supervisor_.measurement();
-  if (phase == Measurement::Phase::Standing) supervisor_.simulate_probe(false);
+  const Measurement::Phase phase = supervisor_.probing().phase();
+  if (phase == Measurement::Phase::Standing) supervisor_.probing().simulate(false);
   if (phase != Measurement::Phase::Search || point_.hit) return;
   if (point_.way_to(sample.pose_set.tip) < point_.length_mm) return;
   take({sample.t_s, {sample.position_set.begin(), sample.position_set.begin() + sample.joint_count}});
   untold_.push_back(*last_hit_);
-  supervisor_.simulate_probe(true);
+  supervisor_.probing().simulate(true);
 }
 
 void MeasuringMachine::read(const CycleSample& sample, const std::function<void(Event)>& tell) {
@@ -155,7 +155,7 @@ void MeasuringMachine::advance() {
     spins_until_s_.reset();
     supervisor_.set_spindle(0, 0);
   }
-  if (supervisor_.measurement() != Measurement::Phase::Standing || !point_.hit) return;
+  if (supervisor_.probing().phase() != Measurement::Phase::Standing || !point_.hit) return;
   const ToolPose stands = tool_.in_part();
   // From the hit, but never further than where the approach began: what lies behind is not known.
   const double hit_mm = point_.way_to(point_.hit->pose.tip);
@@ -164,14 +164,14 @@ void MeasuringMachine::advance() {
   const PathTargetGeometry target{{along(stands.tip, back_to_mm - here_mm, point_.direction), stands.axis}};
   // A refusal passes: the machine is still coming to rest, or its drives are.
   (void)cam_.move_maker().path_move_at("AutoMeasure", point_.id, target, point_.speed).and_then([&](const Move& move) {
-    return supervisor_.add_retract(move);
+    return supervisor_.probing().add_retract(move);
   });
 }
 
 Expected<> MeasuringMachine::manual_measure() {
   return require_probe("ManualMeasure").map([&] {
     mode_ = ControlMode::Manual;
-    supervisor_.expect_hits_by_hand(true);
+    supervisor_.probing().expect_hits_by_hand(true);
   });
 }
 
@@ -205,7 +205,7 @@ Expected<> MeasuringMachine::simulate_probe(std::vector<double> joints, bool tou
     take({link_.status.read().t_s, std::move(joints)});
     untold_.push_back(*last_hit_);
   }
-  supervisor_.simulate_probe(touching);
+  supervisor_.probing().simulate(touching);
   return {};
 }
 
@@ -229,7 +229,7 @@ Expected<sdk::Hit> MeasuringMachine::last_hit() {
 
 ControlMode MeasuringMachine::control_mode() const {
   if (device_ == nullptr) return ControlMode::Inactive;
-  return supervisor_.measurement() == Measurement::Phase::None ? mode_ : ControlMode::AutomaticMeasure;
+  return supervisor_.probing().phase() == Measurement::Phase::None ? mode_ : ControlMode::AutomaticMeasure;
 }
 
 Expected<> MeasuringMachine::set_control_mode(ControlMode mode) {
@@ -254,7 +254,7 @@ Expected<> MeasuringMachine::set_control_mode(ControlMode mode) {
       return ready;
     }
   }
-  supervisor_.expect_hits_by_hand(mode_ == ControlMode::Manual);
+  supervisor_.probing().expect_hits_by_hand(mode_ == ControlMode::Manual);
   return {};
 }
 

@@ -1,6 +1,9 @@
 #include "gateway/cycle/cycle_sequencer.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+
+#include <random>
+#include <sstream>
 
 namespace rmac::gateway {
 namespace {
@@ -130,6 +133,209 @@ TEST(CycleSequencer, SaysWhyTheMachineCameToRest) {
   EXPECT_EQ(cause_of(stop_now, {}), StopCause::StopNow);
   EXPECT_EQ(cause_of(stop, 0.2), StopCause::JogEnded);
   EXPECT_EQ(cause_of(time_passes, 0.2), StopCause::JogLapsed);
+}
+
+TEST(CycleSequencer, MakesNoProgramOfAMoveOutsideOfTheCycleThatIsHeld) {
+  for (const auto lasts_s : {std::optional<double>(), std::optional(0.2)}) {
+    CycleSequencer cycle;
+    CycleObservation seen;
+    seen.moves_left = 1;
+    ASSERT_TRUE(cycle.start_positioning(seen, lasts_s));
+    seen.at_rest = false;
+    (void)cycle.step(seen);
+    ASSERT_TRUE(cycle.hold());
+    seen.at_rest = true;
+    (void)cycle.step(seen);
+    const auto started = cycle.start(sdk::CycleMode::Automatic, seen);
+    ASSERT_FALSE(started);
+    EXPECT_THAT(started.error().message, testing::HasSubstr("a jog is held"));
+    ASSERT_TRUE(cycle.stop());
+    EXPECT_TRUE(cycle.step(seen).clear_queue) << "what is left of it must not run at the next start";
+    EXPECT_TRUE(cycle.start(sdk::CycleMode::Automatic, seen));
+  }
+}
+
+TEST(CycleSequencer, LetsAJogThatWasHeldLapse) {
+  CycleSequencer cycle;
+  CycleObservation seen;
+  seen.moves_left = 1;
+  ASSERT_TRUE(cycle.start_positioning(seen, 0.2));
+  seen.at_rest = false;
+  (void)cycle.step(seen);
+  ASSERT_TRUE(cycle.hold());
+  seen.at_rest = true;
+  seen.t_s = 1;
+  (void)cycle.step(seen);
+  ASSERT_TRUE(cycle.resume());
+  const auto verdict = cycle.step(seen);
+  EXPECT_EQ(verdict.came_to_rest, StopCause::JogLapsed) << "nobody renewed it";
+  EXPECT_TRUE(verdict.clear_queue) << "what is left of a jog must not run at the next start";
+}
+
+TEST(CycleSequencer, TakesNoRetraceWhileASearchIsStillToBeDropped) {
+  CycleSequencer cycle;
+  CycleObservation seen;
+  seen.at_rest = false;
+  ASSERT_TRUE(cycle.start(sdk::CycleMode::Automatic, seen));
+  cycle.touched();
+  ASSERT_TRUE(cycle.hold());
+  seen.at_rest = true;
+  EXPECT_FALSE(cycle.check_retrace(seen));
+  EXPECT_TRUE(cycle.step(seen).clear_queue);
+  EXPECT_TRUE(cycle.check_retrace(seen));
+}
+
+/// Commands and observations at random; what must hold whatever comes.
+class RandomCycle {
+ public:
+  explicit RandomCycle(unsigned seed) : random_(seed) {}
+
+  void step() {
+    observe();
+    const CycleState before = cycle_.state();
+    const int command = pick(16);
+    act(command);
+    trace_ << ' ' << command;
+    const bool reset = before != cycle_.state() && cycle_.state() == CycleState::Idle && is_faulted(before);
+    if (is_faulted(before)) {
+      EXPECT_TRUE(reset || is_faulted(cycle_.state())) << "a fault is left by a reset alone";
+    }
+    if (is_faulted(cycle_.state())) {
+      EXPECT_FALSE(cycle_.positions() || cycle_.empties_queue());
+    }
+    const bool stopping = cycle_.state() == CycleState::Stopping;
+    const bool emptying = cycle_.empties_queue();
+    const auto verdict = cycle_.step(seen_);
+    if (verdict.command) planner_ = *verdict.command;
+    check(verdict, stopping, emptying);
+  }
+  [[nodiscard]] std::string trace() const { return trace_.str(); }
+
+ private:
+  int pick(int count) { return static_cast<int>(random_() % static_cast<unsigned>(count)); }
+  bool once_in(int count) { return pick(count) == 0; }
+
+  void observe() {
+    seen_.t_s += 0.01 * pick(8);
+    if (once_in(3)) seen_.at_rest = !seen_.at_rest;
+    seen_.moves_left = static_cast<std::size_t>(pick(3));
+    if (once_in(6)) ++seen_.moves_done;
+    seen_.faulted = once_in(50);
+    seen_.emergency_stop = seen_.faulted && once_in(2);
+    if (once_in(8)) seen_.spindles_at_speed = !seen_.spindles_at_speed;
+    if (once_in(10)) seen_.follows = !seen_.follows;
+    if (once_in(20)) ++seen_.homings;
+    seen_.air = !once_in(40);
+    seen_.measures = once_in(10);
+    seen_.retraced = seen_.at_rest && once_in(3);
+  }
+
+  void act(int command) {
+    switch (command) {
+      case 0:
+      case 1:
+        (void)cycle_.start(command == 0 ? sdk::CycleMode::Automatic : sdk::CycleMode::Manual, seen_);
+        break;
+      case 2:
+        (void)cycle_.start_positioning(seen_, std::nullopt);
+        break;
+      case 3:
+        (void)cycle_.start_positioning(seen_, kJogLasts_s);
+        break;
+      case 4:
+        cycle_.renew_jog(seen_, kJogLasts_s);
+        break;
+      case 5:
+        (void)cycle_.start_homing(seen_);
+        break;
+      case 6:
+        if (cycle_.check_retrace(seen_)) cycle_.retrace();
+        break;
+      case 7:
+        (void)cycle_.stop();
+        break;
+      case 8:
+        (void)cycle_.stop_and_clear();
+        break;
+      case 9:
+        cycle_.touched();
+        break;
+      case 10:
+        (void)cycle_.hold();
+        break;
+      case 11:
+        (void)cycle_.resume();
+        break;
+      case 12:
+        if (cycle_.reset()) planner_ = PathCommand::Stop;
+        break;
+      case 13:
+        cycle_.spindle_commanded(0.1);
+        break;
+      case 14:
+        cycle_.mechanism_changed(once_in(2));
+        planner_ = PathCommand::Stop;
+        break;
+      default:
+        cycle_.one_done();
+        break;
+    }
+  }
+
+  void check(const CycleSequencer::Verdict& verdict, bool was_stopping, bool was_emptying) {
+    const CycleState state = cycle_.state();
+    if (verdict.clear_queue) {
+      EXPECT_TRUE(seen_.at_rest) << "only at rest can a queue be emptied";
+    }
+    if (was_stopping && seen_.at_rest && !seen_.faulted) {
+      EXPECT_EQ(state, CycleState::Idle);
+      EXPECT_TRUE(verdict.came_to_rest) << "a stop says why it was";
+      if (was_emptying) {
+        EXPECT_TRUE(verdict.clear_queue);
+      }
+    }
+    if (was_stopping && !seen_.at_rest && !seen_.faulted) {
+      EXPECT_EQ(state, CycleState::Stopping);
+    }
+    if (state != CycleState::Running) {
+      EXPECT_EQ(planner_, PathCommand::Stop) << "nothing but a running cycle moves";
+      EXPECT_FALSE(cycle_.jogs() || cycle_.homes());
+    }
+    if (state == CycleState::Idle) {
+      EXPECT_FALSE(cycle_.positions());
+    }
+    EXPECT_TRUE(!cycle_.empties_queue() || state == CycleState::Stopping);
+    if (cycle_.homes()) {
+      EXPECT_EQ(planner_, PathCommand::Stop) << "the drives move, no path does";
+    }
+    if (cycle_.jogs() || cycle_.homes()) {
+      EXPECT_TRUE(cycle_.positions());
+    }
+    if (seen_.faulted) {
+      EXPECT_TRUE(is_faulted(state));
+    }
+    if (!seen_.air) {
+      EXPECT_NE(state, CycleState::Running);
+    }
+    if (planner_ == PathCommand::Retrace) {
+      EXPECT_FALSE(cycle_.positions());
+    }
+  }
+
+  static constexpr double kJogLasts_s = 0.2;
+  std::mt19937 random_;
+  std::ostringstream trace_;
+  CycleObservation seen_;
+  CycleSequencer cycle_;
+  PathCommand planner_ = PathCommand::Stop;
+};
+
+TEST(CycleSequencer, KeepsItsPromisesWhateverIsCommandedAndSeen) {
+  for (unsigned seed = 1; seed <= 3000 && !testing::Test::HasFailure(); ++seed) {
+    RandomCycle cycle(seed);
+    for (int i = 0; i < 100 && !testing::Test::HasFailure(); ++i) cycle.step();
+    EXPECT_FALSE(testing::Test::HasFailure()) << "seed " << seed << ", commands" << cycle.trace();
+  }
 }
 
 }  // namespace

@@ -8,7 +8,6 @@ namespace rmac::gateway {
 namespace {
 
 using testing::ElementsAre;
-using QueueChange = MotionSupervisor::QueueChange;
 
 class AnnouncerTest : public testing::Test {
  protected:

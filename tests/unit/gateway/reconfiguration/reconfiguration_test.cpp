@@ -36,7 +36,7 @@ TEST_F(ReconfigurationTest, AResetDropsWhatWasPlannedAndEnablesTheDrivesWhereThe
   EXPECT_EQ(cam().queue().moves_left(), 0);
   const CycleSample now = machine_.controller.sample();
   EXPECT_EQ(now.servo_state, ServoState::Engaged);
-  EXPECT_GT(now.position_set[0], 1);
+  EXPECT_GT(now.position_set[0], 0.5) << "where the drives stand, a following error behind";
   ASSERT_TRUE(machine_.line(2, now.pose_set.tip, {0, 0, 0}));
   ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   EXPECT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, 2));

@@ -15,7 +15,7 @@ namespace rmac::gateway {
 // What a tool change is made of, and what waits behind it. Each step but a path is taken at rest, when all before it is
 // done, and while the cycle runs.
 
-/// Of a client's move that is several of the planner's.
+/// One client move may be several of the planner's: which of them this is.
 struct MovePart {
   bool first = true, last = true;
 };
@@ -41,18 +41,18 @@ struct AwaitInput {
   std::uint64_t bit = 0;
   bool on = true;
   double timeout_s = 0;
-  std::string name;
+  std::string name{};
   std::optional<double> since_s{};
 };
 /// Waits for a person.
 struct AskPerson {
-  std::string text;
+  std::string text{};
 };
 /// The tool is in the spindle, and its tip where `tip` says on the tool interface.
 struct MountTool {
   int number = 0;
   Frame tip{};
-  std::string text;          ///< the tool, for people
+  std::string text{};        ///< the tool, for people
   double max_torque_nm = 0;  ///< that it bears; 0: not given
 };
 

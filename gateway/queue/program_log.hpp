@@ -14,7 +14,7 @@ struct ProgramStep {
   std::variant<Move, int> what;  ///< a move, or a change to this tool
   ToolPose start;                ///< part frame
   std::vector<double> start_joints;
-  double from_mm = 0;      ///< of a move that was begun before: what lies before is done
+  double from_mm = 0;      ///< a move that was begun before goes on from here: what lies before is done
   bool way_back = false;   ///< the machine's own way to where a program goes on, no step of that
   std::size_t counts = 1;  ///< moves of the queue that it is
 };

@@ -1,4 +1,4 @@
-#include "gateway/cycle/program_log.hpp"
+#include "gateway/queue/program_log.hpp"
 
 #include <utility>
 

@@ -1,0 +1,313 @@
+#include "gateway/cycle/machine_cycle.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "rmac/motion/move_name.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+/// With this many moves ahead, a client that pauses cannot make the queue run dry.
+constexpr std::size_t kAmpleMoves = 256;
+
+bool spindles_at_speed(const Mechanism& mechanism, const ServoWishes& wishes, const ServoStatus& status) {
+  if (mechanism.virtual_mode()) return true;
+  const auto& spindles = mechanism.device.spindles;
+  for (std::size_t i = 0; i < spindles.size(); ++i) {
+    if (!(std::abs(status.spindle_rpm[i] - wishes.spindle_rpm[i]) <= spindles[i].speed_tolerance_rpm)) return false;
+  }
+  return true;
+}
+
+bool has_air(const Mechanism& mechanism, const CycleHistory& history) {
+  const auto& inputs = mechanism.device.inputs;
+  const auto air = inputs.find("Air");
+  // No device is behind the inputs in virtual mode.
+  if (air == inputs.end() || mechanism.virtual_mode()) return true;
+  return (history.latest().inputs & (std::uint64_t{1} << air->second)) != 0;
+}
+
+}  // namespace
+
+MachineCycle::MachineCycle(Options options, ServoLink& link)
+    : wishes(link.wishes), queue(news), tools(wishes, news), options_(options), link_(link) {}
+
+CycleObservation MachineCycle::observe(const ServoStatus& status) {
+  CycleObservation seen;
+  seen.t_s = status.t_s;
+  news.set_time(status.t_s, status.progress.cycle);
+  if (!mechanism_) return seen;
+  seen.moves_left = queue.planned();
+  if (status.generation != generation_) return seen;
+  const Planner& planner = mechanism_->planner;
+  seen.at_rest = !status.moving && planner.at_rest(status.progress);
+  seen.retraced = seen.at_rest && planner.retraced(status.progress);
+  seen.moves_done = status.moves_done;
+  seen.follows = status.follows;
+  seen.homings = status.homings;
+  seen.faulted = status.state == ServoState::Faulted;
+  seen.emergency_stop = seen.faulted && status.fault.kind == ServoFault::Kind::EmergencyStop;
+  seen.spindles_at_speed = spindles_at_speed(*mechanism_, wishes.now(), status);
+  seen.air = has_air(*mechanism_, link_.history);
+  const Measurement& measurement = probe.measurement();
+  seen.measures = measurement.pending() && seen.moves_left <= measurement.steps();
+  return seen;
+}
+
+void MachineCycle::settle(const ServoStatus& status) {
+  if (mechanism_ && sequencer.state() == CycleState::Running && wishes.turn_on_again()) await_spindles();
+  const CycleObservation seen = observe(status);
+  watch_probe(seen, status);
+  apply_verdict(sequencer.step(seen), status);
+  take_steps(status);
+}
+
+void MachineCycle::notice_fault() {
+  // Whatever else the servo loop reports counts when the planner has taken note of it too: in `advance`.
+  const ServoStatus now = status();
+  if (now.state == ServoState::Faulted) settle(now);
+}
+
+void MachineCycle::watch_probe(const CycleObservation& seen, const ServoStatus& status) {
+  if (!mechanism_) return;
+  if (status.generation != generation_) {
+    probe.measurement().abandon();
+    return;
+  }
+  const bool given_up = is_faulted(sequencer.state()) || sequencer.empties_queue();
+  const ProbeWatch::Verdict verdict =
+      probe.step({seen.moves_left, seen.at_rest, status.probe, sequencer.positions(), given_up});
+  if (verdict.touched) sequencer.touched();
+  if (verdict.stop) (void)sequencer.stop_and_clear(*verdict.stop);
+}
+
+void MachineCycle::apply_verdict(const CycleSequencer::Verdict& verdict, const ServoStatus& status) {
+  if (const bool homes = sequencer.homes(); wishes.now().home != homes) {
+    queue.begin_anew();
+    wishes.change([homes](ServoWishes& wish) { wish.home = homes; });
+  }
+  if (mechanism_ && verdict.command) mechanism_->planner.command(*verdict.command);
+  if (mechanism_ && verdict.clear_queue) empty_queue(status.progress.cycle);
+  if (verdict.spindle_timed_out) tell_spindle_timeout(status);
+  if (verdict.came_to_rest) {
+    news.tell(Event::Kind::Stopped, describe(*verdict.came_to_rest), code_of(*verdict.came_to_rest));
+  }
+  if (sequencer.state() == CycleState::Idle && feed.end_jog()) apply_feed();
+  tell_state();
+}
+
+void MachineCycle::tell_spindle_timeout(const ServoStatus& status) {
+  std::string speeds;
+  for (std::size_t i = 0; i < mechanism_->device.spindles.size(); ++i) {
+    speeds += fmt::format("{}spindle {} turns at {:.0f} of {:.0f} rpm", i == 0 ? "" : ", ", i, status.spindle_rpm[i],
+                          wishes.now().spindle_rpm[i]);
+  }
+  news.tell(Event::Kind::Fault,
+            fmt::format("{}: not at speed within the time allowed, so no move was begun; check the spindle's drive, "
+                        "then reset",
+                        speeds),
+            MinorCode::ResponseTimeout);
+}
+
+void MachineCycle::tell_state() {
+  const CycleState state = sequencer.state();
+  if (state == reported_state_) return;
+  news.tell(Event::Kind::CycleStateChanged, fmt::format("{} to {}", to_string(reported_state_), to_string(state)));
+  reported_state_ = state;
+  wishes.change([state](ServoWishes& wish) {
+    wish.state = state;
+    if (is_faulted(state)) {
+      wish.spindle_rpm.fill(0);
+      wish.force.fill(0);
+    }
+    // Nothing may flow, open or close when the stop is released.
+    if (state == CycleState::EmergencyStop) wish.outputs = 0;
+  });
+}
+
+void MachineCycle::take_steps(const ServoStatus& status) {
+  while (!queue.steps().empty() && mechanism_ && status.generation == generation_ && !is_faulted(sequencer.state())) {
+    // A path is planned as soon as no other step is before it; the others wait for rest at its end.
+    if (std::holds_alternative<QueuedPath>(queue.next_step())) {
+      queue.plan_next_step();
+      continue;
+    }
+    const CycleObservation seen = observe(status);
+    // A tool that a person put in is in, whether the cycle runs or not.
+    const bool confirmed = std::holds_alternative<MountTool>(queue.next_step()) && tools.changing();
+    const bool rests = seen.at_rest && seen.moves_left == 0 && !sequencer.waits_for_spindle();
+    if (!rests || !(confirmed || sequencer.state() == CycleState::Running)) return;
+    if (!take_step(seen.t_s)) return;
+    queue.step_done();
+  }
+}
+
+bool MachineCycle::take_step(double t_s) {
+  switch (tools.take(queue.next_step(), {t_s, link_.history.latest().inputs, mechanism_->virtual_mode()})) {
+    case ToolChange::Outcome::Waits:
+      return false;
+    case ToolChange::Outcome::Done:
+      return true;
+    case ToolChange::Outcome::Begun:
+      await_spindles();
+      return true;
+    case ToolChange::Outcome::Mounted:
+      mechanism_->planner.clear();  // what was cut with another tool is not retraced with this one
+      sequencer.one_done();
+      return true;
+    case ToolChange::Outcome::Failed:
+      sequencer.fault();
+      tell_state();
+      return false;
+  }
+  return false;
+}
+
+Planning::Pace MachineCycle::advance(const ServoStatus& status) {
+  settle(status);
+  if (!mechanism_ || status.generation != generation_) return Planning::Pace::Calm;
+  if (!is_faulted(sequencer.state())) {
+    mechanism_->planner.step(status.progress);
+    if (!mechanism_->planner.idle(status.progress)) return Planning::Pace::Planning;
+  }
+  return pace(status);
+}
+
+Planning::Pace MachineCycle::pace(const ServoStatus& status) {
+  const CycleState state = sequencer.state();
+  const std::size_t left = queue.planned();
+  if (state == CycleState::Running && left > 0 && left < kAmpleMoves && left < options_.queue_capacity &&
+      sequencer.mode() == sdk::CycleMode::Automatic &&
+      std::chrono::steady_clock::now() - queue.last_added() < options_.client_grace) {
+    return Planning::Pace::Sending;
+  }
+  const bool steps = !queue.steps().empty() && !tools.asked();
+  const bool waiting = state == CycleState::Running && (left > 0 || steps || sequencer.waits_for_spindle());
+  const bool coming_to_rest = status.moving || !mechanism_->planner.at_rest(status.progress);
+  const bool busy = waiting || coming_to_rest || sequencer.homes() || state == CycleState::Stopping ||
+                    status.state == ServoState::Enabling;
+  return busy && !is_faulted(state) ? Planning::Pace::Busy : Planning::Pace::Calm;
+}
+
+Expected<> MachineCycle::ready_for_move() {
+  if (!mechanism_) {
+    return failure(MinorCode::Other, "there is no mechanism; load one with Device.Load before sending moves");
+  }
+  const CycleState state = sequencer.state();
+  if (is_faulted(state)) {
+    return failure(
+        state == CycleState::Faulted ? MinorCode::Other : MinorCode::EmergencyStop,
+        fmt::format("no moves are taken while the machine is {}; remove the cause, then reset", to_string(state)));
+  }
+  if (sequencer.empties_queue()) {
+    return failure(MinorCode::Other, "the queue is being emptied; send moves when the machine has stopped");
+  }
+  if (const std::size_t left = moves_left(); left >= options_.queue_capacity) {
+    return failure(
+        MinorCode::CommandQueueFull,
+        fmt::format("the queue holds {} moves, as many as it can; send the next one when a move is done", left));
+  }
+  if (!queue.begins_anew()) return {};
+  const ServoStatus now = status();
+  const CycleObservation seen = observe(now);
+  if (state == CycleState::Stopping || !seen.at_rest) {
+    return failure(MinorCode::Other, "the machine is still coming to rest; send moves when it has stopped");
+  }
+  if (now.generation != generation_ || !now.follows) {
+    return failure(MinorCode::Other, "the drives are not enabled yet; send moves when they are");
+  }
+  queue.begin_here();
+  builder().restart({now.position_set.data(), now.joint_count}, wishes.now().frames);
+  return {};
+}
+
+bool MachineCycle::queue_is_gone() {
+  if (!queue.begins_anew() && !sequencer.empties_queue()) return false;
+  queue.begin_anew();
+  return true;
+}
+
+Expected<std::size_t> MachineCycle::add(std::vector<BuiltMove> built) {
+  if (queue_is_gone()) {
+    return failure(MinorCode::Other, move_name(std::get<Move>(built.front().as_sent.what).id) +
+                                         ": the machine was stopped and its queue emptied before the move was "
+                                         "ready; nothing was queued");
+  }
+  std::size_t moving = 0;
+  for (BuiltMove& move : built) {
+    if (queue.add(std::move(move))) ++moving;
+  }
+  return moving;
+}
+
+Expected<> MachineCycle::require_rest(const char* what) {
+  if (!mechanism_) return {};
+  const CycleObservation seen = observe(status());
+  if (probe.measurement().pending()) {
+    return failure(MinorCode::Other,
+                   fmt::format("{} needs the machine at rest, and a point is being measured; wait until that is done, "
+                               "or drop it with StopNow",
+                               what));
+  }
+  if (!seen.at_rest || sequencer.state() == CycleState::Stopping) {
+    return failure(MinorCode::Other,
+                   fmt::format("{} needs the machine at rest, and it is moving; wait for its moves or "
+                               "stop it first",
+                               what));
+  }
+  if (const std::size_t left = queue.planned() + queue.waiting(); left > 0) {
+    return failure(MinorCode::Other,
+                   fmt::format("{} needs an empty queue, and {} moves are still in it; run them, park "
+                               "them with ParkProgram, or drop them with StopNow",
+                               what, left));
+  }
+  return {};
+}
+
+std::size_t MachineCycle::moves_left() {
+  const std::size_t left = queue.left();
+  const Measurement& measurement = probe.measurement();
+  if (!measurement.pending()) return left;
+  return left - std::min(left, measurement.steps()) + 1;  // the client's is one
+}
+
+void MachineCycle::empty_queue(std::int64_t cycle) {
+  wishes.forget_later();
+  tools.drop(queue.clear(cycle));
+}
+
+void MachineCycle::apply_feed() {
+  if (mechanism_) mechanism_->planner.set_override(feed.effective_percent());
+}
+
+void MachineCycle::await_spindles() {
+  double patience_s = 0;
+  for (const sdk::Spindle& spindle : mechanism_->device.spindles) {
+    patience_s = std::max(patience_s, spindle.speed_timeout_s);
+  }
+  sequencer.spindle_commanded(patience_s);
+}
+
+std::shared_ptr<Mechanism> MachineCycle::install(std::shared_ptr<Mechanism> next, std::uint64_t generation,
+                                                 bool keep_running) {
+  std::swap(mechanism_, next);
+  generation_ = generation;
+  builder_ = mechanism_ ? &mechanism_->builder : nullptr;
+  wishes.forget_later();
+  tools.drop(queue.forget());
+  queue.install(mechanism_ ? &mechanism_->planner : nullptr);
+  apply_feed();
+  const ServoStatus now = status();
+  probe.install(mechanism_ && mechanism_->virtual_mode(), now.probe);
+  sequencer.mechanism_changed(keep_running);
+  news.tell({QueueChange::Kind::Replaced, 0, now.progress.cycle, {}});
+  settle(now);
+  return next;
+}
+
+}  // namespace rmac::gateway

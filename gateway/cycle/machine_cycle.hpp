@@ -1,0 +1,113 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "gateway/cycle/cycle_sequencer.hpp"
+#include "gateway/cycle/feed_override.hpp"
+#include "gateway/cycle/probe_watch.hpp"
+#include "gateway/cycle/standing_wishes.hpp"
+#include "gateway/cycle/tool_change.hpp"
+#include "gateway/mechanism/mechanism.hpp"
+#include "gateway/queue/move_queue.hpp"
+#include "gateway/servo/planning.hpp"
+#include "gateway/servo/servo_link.hpp"
+#include "gateway/threads/turn_lock.hpp"
+
+namespace rmac::gateway {
+
+/// The machine's cycle: its parts, the one lock that guards them all, and the way of what is seen of the machine
+/// through them. The gateway and the planner take turns (`GatewayTurn`, `PlannerTurn`); clang proves that whoever
+/// touches a part has one. Beside the parts the lock guards the planner of the mechanism in force; its path builder is
+/// the gateway thread's alone.
+class MachineCycle {
+ public:
+  struct Options {
+    std::size_t queue_capacity = Planner::kQueueCapacity;
+    /// Virtual time stands still this long (of real time) after a move was queued while few moves are: a client that is
+    /// still sending must not find its queue run dry because time flew.
+    std::chrono::milliseconds client_grace{20};
+  };
+
+  MachineCycle(Options options, ServoLink& link);
+
+  TurnLock lock;
+
+  StandingWishes wishes GUARDED_BY(lock);
+  CycleNews news GUARDED_BY(lock);
+  CycleSequencer sequencer GUARDED_BY(lock);
+  MoveQueue queue GUARDED_BY(lock);
+  ToolChange tools GUARDED_BY(lock);
+  ProbeWatch probe GUARDED_BY(lock);
+  FeedOverride feed GUARDED_BY(lock);
+
+  /// Takes a turn of the gateway: `function(sequencer, observation)` commands the cycle states; then acts on what it
+  /// changed.
+  template <typename Function>
+  auto command(Function&& function) EXCLUDES(lock) {
+    const GatewayTurn turn(lock);
+    notice_fault();
+    auto result = function(sequencer, observe(status()));
+    settle(status());
+    return result;
+  }
+
+  /// One bounded piece of planning, and the cycle states.
+  [[nodiscard]] Planning::Pace advance(const ServoStatus& status) REQUIRES(lock);
+  /// Takes note of a fault that samples, and so clients, show already.
+  void notice_fault() REQUIRES(lock);
+  /// Has every part see `status`, and does what they make of it.
+  void settle(const ServoStatus& status) REQUIRES(lock);
+  /// Takes the steps of the queue whose turn has come.
+  void take_steps(const ServoStatus& status) REQUIRES(lock);
+
+  /// As the servo loop tells it; needs no turn.
+  [[nodiscard]] ServoStatus status() const noexcept { return link_.status.read(); }
+  [[nodiscard]] CycleObservation observe(const ServoStatus& status) REQUIRES(lock);
+
+  /// Refuses when a move cannot be taken now; then readies the path builder to begin where the machine stands, if it
+  /// must. Gateway thread.
+  [[nodiscard]] Expected<> ready_for_move() REQUIRES(lock);
+  /// What was built to follow the queue does not any more: it was emptied, or is being. Then the next move begins anew.
+  [[nodiscard]] bool queue_is_gone() REQUIRES(lock);
+  /// Queues what was built, all of it or nothing; how many have motion.
+  [[nodiscard]] Expected<std::size_t> add(std::vector<BuiltMove> built) REQUIRES(lock);
+  /// True when nothing moves and nothing is queued; otherwise an error that says what `what` must wait for.
+  [[nodiscard]] Expected<> require_rest(const char* what) REQUIRES(lock);
+  /// Moves queued and not yet done, those without motion included. A measurement is one.
+  [[nodiscard]] std::size_t moves_left() REQUIRES(lock);
+  /// Drops what is queued, at rest.
+  void empty_queue(std::int64_t cycle) REQUIRES(lock);
+  /// Hands the override on to the planner.
+  void apply_feed() REQUIRES(lock);
+  /// Spindles were told another speed: motion waits for the slowest of them.
+  void await_spindles() REQUIRES(lock);
+
+  /// Puts a mechanism in force, or none; the one before.
+  [[nodiscard]] std::shared_ptr<Mechanism> install(std::shared_ptr<Mechanism> next, std::uint64_t generation,
+                                                   bool keep_running) REQUIRES(lock);
+  [[nodiscard]] const std::shared_ptr<Mechanism>& mechanism() const REQUIRES(lock) { return mechanism_; }
+  /// Of the mechanism in force, which there must be. Gateway thread, with a turn or without: building takes long, and
+  /// planning goes on meanwhile.
+  [[nodiscard]] PathBuilder& builder() noexcept { return *builder_; }
+
+ private:
+  void watch_probe(const CycleObservation& seen, const ServoStatus& status) REQUIRES(lock);
+  void apply_verdict(const CycleSequencer::Verdict& verdict, const ServoStatus& status) REQUIRES(lock);
+  void tell_spindle_timeout(const ServoStatus& status) REQUIRES(lock);
+  void tell_state() REQUIRES(lock);
+  /// The next step, which is no path; true when it is done.
+  [[nodiscard]] bool take_step(double t_s) REQUIRES(lock);
+  [[nodiscard]] Planning::Pace pace(const ServoStatus& status) REQUIRES(lock);
+
+  const Options options_;
+  ServoLink& link_;  ///< free of locks itself
+  std::shared_ptr<Mechanism> mechanism_ GUARDED_BY(lock);
+  std::uint64_t generation_ GUARDED_BY(lock) = 0;
+  PathBuilder* builder_ = nullptr;  ///< the gateway thread's alone
+  CycleState reported_state_ GUARDED_BY(lock) = CycleState::Idle;
+};
+
+}  // namespace rmac::gateway

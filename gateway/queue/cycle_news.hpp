@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gateway/queue/queue_step.hpp"
+#include "gateway/state/event.hpp"
+
+namespace rmac::gateway {
+
+/// What happened to the queue: a move was added (`Still`: one without motion), or (at `cycle`) everything not done was
+/// dropped, or another mechanism's queue began.
+struct QueueChange {
+  enum class Kind : std::uint8_t { Added, Still, Cleared, Replaced };
+  Kind kind = Kind::Added;
+  std::int64_t move_id = 0;
+  std::int64_t cycle = 0;
+  MovePart part{};
+};
+
+/// What the gateway has not been told yet: events, and changes of the queue, each in their order.
+class CycleNews {
+ public:
+  struct Taken {
+    std::vector<QueueChange> queue;
+    std::vector<Event> events;
+  };
+
+  /// What is told from now on happens at this time and in this cycle.
+  void set_time(double t_s, std::int64_t cycle) noexcept {
+    t_s_ = t_s;
+    cycle_ = cycle;
+  }
+  void tell(Event::Kind kind, std::string message, MinorCode code = MinorCode::None) {
+    news_.events.push_back({kind, t_s_, 0, std::move(message), cycle_, {}, code});
+  }
+  void tell(Event event) { news_.events.push_back(std::move(event)); }
+  void tell(const QueueChange& change) { news_.queue.push_back(change); }
+  [[nodiscard]] Taken take() { return std::exchange(news_, {}); }
+
+ private:
+  Taken news_;
+  double t_s_ = 0;
+  std::int64_t cycle_ = 0;
+};
+
+}  // namespace rmac::gateway
