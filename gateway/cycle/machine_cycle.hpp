@@ -89,8 +89,8 @@ class MachineCycle {
   [[nodiscard]] std::shared_ptr<Mechanism> install(std::shared_ptr<Mechanism> next, std::uint64_t generation,
                                                    bool keep_running) REQUIRES(lock);
   [[nodiscard]] const std::shared_ptr<Mechanism>& mechanism() const REQUIRES(lock) { return mechanism_; }
-  /// Of the mechanism in force, which there must be. Gateway thread, with a turn or without: building takes long, and
-  /// planning goes on meanwhile.
+  /// That of the mechanism in force, which there must be. Gateway thread, with a turn or without: building takes long,
+  /// and planning goes on meanwhile.
   [[nodiscard]] PathBuilder& builder() noexcept { return *builder_; }
 
  private:

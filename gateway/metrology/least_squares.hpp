@@ -25,7 +25,7 @@ inline std::string in_words(const Eigen::Vector3d& v) {
   return fmt::format("({:.3f}, {:.3f}, {:.3f})", shown(v.x()), shown(v.y()), shown(v.z()));
 }
 
-/// Of a direction and its opposite, the one with the larger positive coordinate.
+/// A direction or its opposite, whichever is the one with the larger positive coordinate.
 inline Eigen::Vector3d oriented(const Eigen::Vector3d& way) {
   Eigen::Index largest = 0;
   way.cwiseAbs().maxCoeff(&largest);

@@ -16,7 +16,7 @@ class ServoCycle {
   void run(std::uint64_t missed) noexcept;
   /// What the last cycle left.
   [[nodiscard]] const ServoStatus& status() const noexcept { return status_; }
-  /// Of the last cycle's time, that the exchange with buses and I/O took.
+  /// How long the exchange with buses and I/O took in the last cycle.
   [[nodiscard]] std::int64_t exchange_ns() const noexcept { return report_.exchange_ns; }
 
  private:

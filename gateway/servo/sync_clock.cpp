@@ -39,7 +39,7 @@ std::uint64_t SyncClock::wait_for_cycle() noexcept {
   const auto soonest = begun_ + (without_ ? period_ * 2 / 5 : period_ * 9 / 10);
   const auto overdue = begun_ + period_ * 3 / 2;
   for (bool heard = false;;) {
-    // Of several that wait, the last one begins the cycle.
+    // Where several wait, the last one begins the cycle.
     for (fieldbus::CanFrame sync; port_->receive(sync);) {
       const auto came = port_->now() - age(sync, 4 * period_);
       if (heard || came < soonest) ++missed;

@@ -33,7 +33,7 @@ struct Report {
 };
 
 [[nodiscard]] nlohmann::json to_json(const Report& report);
-/// Of what `to_json` made; an exception of the library where it is something else.
+/// The report that `to_json` was given; an exception of the library where it is something else.
 [[nodiscard]] Report report_of(const nlohmann::json& json);
 /// As a person reads it.
 [[nodiscard]] std::string to_text(const Report& report);

@@ -18,11 +18,12 @@ namespace rmac::verifier {
 namespace {
 
 constexpr double kPeriod_s = 0.001;
-/// Of a joint's following-error bound, what is left half a second after a move.
+/// The part of a joint's following-error bound that may be left half a second after a move.
 constexpr double kRestShare = 0.2;
 
-/// Of a joint's largest effort, how much the effort may swing at a steady speed: friction does not change there, which
-/// could hold a loop that is unstable by itself, and what the encoder's steps make of a loop that is stable is less.
+/// The part of a joint's largest effort by which the effort may swing at a steady speed: friction does not change
+/// there, which could hold a loop that is unstable by itself, and what the encoder's steps make of a loop that is
+/// stable is less.
 constexpr double kSwingShare = 0.25;
 
 /// What a way may ask for of a joint's limits, and how far it goes, in mm or degrees.

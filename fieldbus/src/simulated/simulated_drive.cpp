@@ -60,7 +60,7 @@ void SimulatedServoDrive::freeze_encoder(bool frozen) noexcept {
   }
 }
 
-/// Of the shaft where the encoder reads this: of all such angles, the one within half of its range.
+/// The shaft's angle where the encoder reads this: among all such angles, the one within half of its range.
 double SimulatedServoDrive::angle_of(std::int32_t counts) const noexcept {
   const auto way = static_cast<std::int32_t>(static_cast<std::uint32_t>(counts) -
                                              static_cast<std::uint32_t>(counts_at(plant_.angle_rad())));

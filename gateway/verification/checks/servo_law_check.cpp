@@ -46,7 +46,7 @@ class ServoLawCheck {
   }
 
  private:
-  /// Of gains that it took before.
+  /// Sets gains that it took before.
   [[nodiscard]] Checked set(const std::vector<double>& gains) {
     if (law_.set_gains(gains)) return {};
     return found("gains", "it refuses gains that it takes at other times", -1, {named("gains", gains)});

@@ -17,7 +17,7 @@ using curves::dot;
 using quintic::kDegree;
 
 constexpr int kIntervalsASpan = 2;
-/// Of the mean price, what is asked for staying near: prices hold for the spline that they were found on.
+/// How much of the mean price is asked for staying near: prices hold for the spline that they were found on.
 constexpr double kStay = 30;
 /// Where jerk binds changes from one law to the next: what counts is the mean of the laws so far, the last for most.
 constexpr double kLastLaw = 0.5;

@@ -21,7 +21,7 @@ struct LineLimits {
   double rise_mm_s2 = 0, fall_mm_s2 = 0;  ///< infinity where the joints alone bound it
 };
 
-/// Of each line; nothing where the joints' rates cannot be had.
+/// The limits of each line; nothing where the joints' rates cannot be had.
 [[nodiscard]] std::optional<std::vector<LineLimits>> line_limits(const PathSegments& lines);
 
 /// The time law of a spline that is still being shaped, from open to open end, and what the bounds of jerk cost there

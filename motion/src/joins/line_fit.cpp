@@ -20,7 +20,8 @@ using curves::distance;
 using quintic::Basis;
 using quintic::kDegree;
 
-/// Of the tolerance: something is left for the blend where the spline meets another move at a corner.
+/// The part of the tolerance that is used: something is left for the blend where the spline meets another move at a
+/// corner.
 constexpr double kPart = 0.95;
 /// Lines that turn by more meet in a corner that was meant.
 constexpr double kMostTurn = 0.35;
@@ -38,8 +39,8 @@ constexpr std::ptrdiff_t kKeptKnots = 10;
 /// serves.
 constexpr int kWindowsAsFine = 4;
 constexpr double kSpansALine = 3;
-/// Of the tolerance, at the samples: between them the spline goes out further. Where that leaves the tolerance,
-/// the tube is made narrower.
+/// The part of the tolerance that is used at the samples: between them the spline goes out further. Where that leaves
+/// the tolerance, the tube is made narrower.
 constexpr double kTubePart = 0.97;
 constexpr int kTubeTrials = 3;
 /// Lines from which on a law with open ends says how fast a spline is: fewer are mostly ramps.

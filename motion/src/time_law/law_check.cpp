@@ -21,8 +21,8 @@ struct Peak {
   double unevenness = 0;  ///< largest third difference: what a parabola does not see
 };
 
-/// Of every `stride`th sample, where between them the curve is taken for the parabola through three neighbours, so that
-/// a peak between samples counts.
+/// The peak over every `stride`th sample. Between them the curve is taken for the parabola through three neighbours, so
+/// that a peak between samples counts.
 Peak peak_of(const Demand& demand, std::size_t stride) {
   Peak peak{std::max(std::abs(demand.front()), std::abs(demand.back())), 0};
   double bend_before = 0;
@@ -38,9 +38,9 @@ Peak peak_of(const Demand& demand, std::size_t stride) {
   return peak;
 }
 
-/// Of the third difference of the samples, what is added for doubt: an error of the parabola is a sixteenth of it where
-/// the next difference is small, which it is not everywhere. With a quarter, one stop in 10 000 went over a limit by
-/// 0.09 %.
+/// The part of the samples' third difference that is added for doubt: an error of the parabola is a sixteenth of it
+/// where the next difference is small, which it is not everywhere. With a quarter, one stop in 10 000 went over a limit
+/// by 0.09 %.
 constexpr double kDoubt = 0.5;
 
 class PieceCheck {

@@ -47,8 +47,8 @@ struct LawSolution {
   bool converged = false;
   int iterations = 0;
   std::vector<double> coefficients;
-  /// Of a draft: how much travel time the bound of a joint's jerk costs, as a part of the bound; an interval: left,
-  /// right, each joint_count values.
+  /// In a draft, how much travel time the bound of a joint's jerk costs, as a part of the bound; for each interval left
+  /// and right, each joint_count values.
   std::vector<double> jerk_prices;
 };
 

@@ -33,7 +33,7 @@ class PathView {
     const std::size_t i = find(s, side);
     return segments_[i]->evaluate(std::clamp(s - starts_[i], 0.0, segments_[i]->length()), order, side, point);
   }
-  /// Of the joints by path length, to the third: d[0] may be left as it was.
+  /// The joints' derivatives by path length, to the third: d[0] may be left as it was.
   [[nodiscard]] KinematicsStatus derivatives(double s, int side, JointPoint& point) const noexcept {
     const std::size_t i = find(s, side);
     return segments_[i]->derivatives(std::clamp(s - starts_[i], 0.0, segments_[i]->length()), side, point);

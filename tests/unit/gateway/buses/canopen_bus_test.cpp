@@ -31,7 +31,7 @@ TEST(CanopenBus, IsRefusedWithAWrongParameterThatIsNamed) {
 }
 
 TEST(CanopenBus, SaysWhichInterfaceIsNotThere) {
-  // Of this name there is none, whether the kernel knows CAN or not.
+  // No interface has this name, whether the kernel knows CAN or not.
   EXPECT_THAT(answer({"CANopenInterface", {{"node", {1}}}, {}}, "no-such-can"),
               HasSubstr("bus no-such-can did not come up: CAN interface no-such-can: "));
 }

@@ -30,7 +30,7 @@ struct BallScrewMapFactory {
   }
 
  private:
-  /// Of mm a turn, and of motor turns a turn of the screw: far beyond what is built.
+  /// Bounds of mm a turn, and of motor turns a turn of the screw: far beyond what is built.
   static constexpr double kLeast = 1e-3;
   static constexpr double kMost = 1e4;
 
