@@ -67,5 +67,5 @@ fi
 if [ -n "${thread_sanitizer:-}" ]; then
   build tsan
   begin "tsan: tests"
-  ctest --preset tsan --tests-regex 'Controller|Server|Channel|Ring|Thread'
+  ctest --preset tsan --tests-regex 'Controller|Server|Channel|Ring|Thread|TurnLock|Aside|Lease|Cycle|Announcer|Recorder'
 fi
