@@ -232,7 +232,7 @@ std::string drive_cause(const ServoFault& fault, const std::string& at, const Me
 }
 
 std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
-  const std::string at = where(fault, mechanism);
+  std::string at = where(fault, mechanism);
   if (fault.part == ServoFault::Part::Spindle) {
     if (auto text = spindle_cause(fault, at, mechanism)) return *text;
   }

@@ -29,7 +29,7 @@ Expected<QueueStep> ToolChangeSteps::make_step(const sdk::ToolChangeStep& step, 
   if (step.kind == Kind::MoveTo) {
     Move move = maker_.joint_move(kPositioningMoveId, JointTargetGeometry{step.joints}, builder.end_joints());
     move.joint_speed_fraction = 1;
-    return builder.build(move).map([](auto&& segments) {
+    return builder.build(move).map([](PathSegments segments) {
       return QueueStep(QueuedPath{kPositioningMoveId, {}, std::move(segments)});
     });
   }
