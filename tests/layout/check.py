@@ -4,7 +4,7 @@
   rooms    at most 25 source files a folder, and one CMake target
   arrows   a file includes only of its own room and of the rooms that its CMakeLists.txt names; no circle of folders
   layers   motion knows nobody; fieldbus and drivers know motion (drivers the SDK too); nobody includes a program's folder
-  classes  at most 30 methods and 20 fields, defined in at most 3 sources
+  classes  at most 30 methods and 20 fields, in headers and sources alike; defined in at most 3 sources
 
 --table prints the figures of docs/architecture.md instead.
 """
@@ -145,10 +145,13 @@ def inherited(text, wanted):
     return bool(wanted & {"rmac_motion", "rmac_sdk"}) and "rmac_" in text
 
 
+# What only looks like code: literals and comments, whichever begins first. A quote behind a digit parts thousands.
+NO_CODE = re.compile(r'''R"(?P<mark>[^\s()"]*)\(.*?\)(?P=mark)"|"(?:\\.|[^"\\])*"|(?<![0-9a-fA-F])'(?:\\.|[^'\\])+'|//[^\n]*|/\*.*?\*/''', re.S)
+
+
 def bodies(text):
-    """Name and body of each class or struct of a header; nested ones apart, and taken out of what holds them."""
-    text = re.sub(r'//[^\n]*|/\*.*?\*/', '', text, flags=re.S)
-    text = re.sub(r'"(\\.|[^"\\])*"', '""', text)
+    """Name and body of each class or struct of a file; nested ones apart, and taken out of what holds them."""
+    text = NO_CODE.sub(lambda match: "" if match[0].startswith("/") else '""', text)
     text = LOCK_WORDS.sub('', text)
     found = []
 
@@ -202,10 +205,9 @@ def members(body):
 
 def classes(files):
     for path in files:
-        if path.suffix == ".hpp":
-            for name, body in bodies(path.read_text()):
-                methods, fields = members(body)
-                yield path, name, methods, fields
+        for name, body in bodies(path.read_text()):
+            methods, fields = members(body)
+            yield path, name, methods, fields
 
 
 def definitions(files):

@@ -67,6 +67,20 @@ class Layout(unittest.TestCase):
         inline = "class X {\n" + "".join(f"  int m{i}() const {{ return f(); }}\n" for i in range(31)) + "};\n"
         self.assertIn("X has 31 methods", self.complaints({"gateway/a/x.hpp": inline})[0])
 
+    def test_counts_members_of_a_class_that_a_source_keeps_to_itself(self):
+        def source(methods, fields):
+            return "struct X::Impl {\n" + "".join(f"  void m{i}() {{ f(); }}\n" for i in range(methods)) + \
+                "".join(f"  int f{i} = 0;\n" for i in range(fields)) + "};\nvoid X::call() { impl_->m0(); }\n"
+        self.assertEqual(self.complaints({"gateway/a/x.cpp": source(30, 20)}), [])
+        self.assertEqual(self.complaints({"gateway/a/x.cpp": source(31, 20)}), ["gateway/a/x.cpp: X::Impl has 31 methods; 30 is the most"])
+        self.assertEqual(self.complaints({"gateway/a/x.cpp": source(30, 21)}), ["gateway/a/x.cpp: X::Impl has 21 fields; 20 is the most"])
+
+    def test_takes_no_literal_and_no_comment_for_code(self):
+        for text in ('R"({"a": {")"', 'R"x({ )" )x"', '"https://a{"', '"\\"{"', "'{'", "'\"'", "'\\''", "10'000 + 1'0", "0; // {\n  int c = 0", "0 /* { */"):
+            source = f"class X {{\n  T a = {text};\n  int b = 0;\n}};\nclass Y {{\n  int c = 0;\n}};\n"
+            found = [(name, check.members(body)[0]) for name, body in check.bodies(source)]
+            self.assertEqual(found, [("X", 0), ("Y", 0)], text)
+
     def test_refuses_a_class_that_is_cut_into_many_sources(self):
         found = self.complaints({f"gateway/a/x{i}.cpp": f"void Slice::part{i}() {{\n}}\n" for i in range(4)})
         self.assertEqual(found, ["Slice is cut into 4 sources: x0.cpp, x1.cpp, x2.cpp, x3.cpp"])

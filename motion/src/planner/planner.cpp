@@ -4,8 +4,10 @@
 #include <cmath>
 #include <optional>
 
+#include "planner/failed_attempt.hpp"
 #include "planner/laid_path.hpp"
 #include "planner/next_window.hpp"
+#include "planner/planning_time.hpp"
 #include "planner/published_plan.hpp"
 #include "planner/stop_distance.hpp"
 #include "time_law/window.hpp"
@@ -15,14 +17,15 @@ namespace {
 
 /// Plans are made this far ahead of the servo loop; more would only be thrown away by a hold or an override.
 constexpr double kHorizon_s = 0.4;
-constexpr std::int64_t kLeadAtFirst = 2;
-constexpr std::int64_t kLongestLead = 64;
-/// A window that found no plan is tried again from another state, after so many cycles.
-constexpr std::int64_t kRetryAfter = 10;
 /// Path length is counted from a new origin once the tool is so far from the last: its rounding stays below 1e-12 mm.
 constexpr double kFarthest_mm = 1000;
 /// What is held back for the sake of a join is given out so long before the machine would have to brake for its lack.
 constexpr double kRelease_s = 0.05;
+
+/// The cycle from which on a plan can follow `p`, which itself may not have started.
+std::int64_t earliest(const PublishedPlan& p, std::int64_t cycle) {
+  return std::max(cycle, p.plan->start_cycle);
+}
 
 }  // namespace
 
@@ -37,12 +40,8 @@ struct Planner::Impl {
 
   std::vector<PublishedPlan> alive;  ///< in order of publication; the last is the base of what is planned next
   std::uint64_t next_id = 1;
-  std::uint64_t refused_seen = 0;
-  double work_cycles = 0;                ///< cycles that went by while a plan was made, lately
-  std::int64_t work_began = -1;          ///< cycle in which the last plan was begun
-  std::int64_t tried_at = -kRetryAfter;  ///< cycle of the last attempt that found no plan
-  bool tried_from_rest = false;
-  std::uint64_t tried_base = 0;  ///< the plan that was the base then
+  PlanningTime planning_time;
+  FailedAttempt attempt;
   PathCommand wanted = PathCommand::Stop;
   double factor = 1;     ///< the override
   double limit_s = 0;    ///< path length at which RunOne ends
@@ -52,7 +51,6 @@ struct Planner::Impl {
 
   [[nodiscard]] FeedRule feed(double override_factor) const { return {override_factor, model.max_feed_mm_s}; }
   [[nodiscard]] double period() const { return model.period_s; }
-  [[nodiscard]] PublishedPlan* base() { return alive.empty() ? nullptr : &alive.back(); }
   [[nodiscard]] const PublishedPlan* base() const { return alive.empty() ? nullptr : &alive.back(); }
   [[nodiscard]] double now_s(const PublishedPlan& p, std::int64_t cycle) const {
     return static_cast<double>(cycle - p.plan->start_cycle) * period();
@@ -76,29 +74,13 @@ struct Planner::Impl {
     return backward ? backward->begin() + backward->end() - base_end_s() : base_end_s();
   }
 
-  /// Cycles from now after which a plan begun now will have reached the servo loop.
-  [[nodiscard]] std::int64_t lead() const { return kLeadAtFirst + static_cast<std::int64_t>(std::ceil(work_cycles)); }
-
-  /// The cycle from which on a plan can follow `p`, which itself may not have started.
-  [[nodiscard]] static std::int64_t earliest(const PublishedPlan& p, std::int64_t cycle) {
-    return std::max(cycle, p.plan->start_cycle);
-  }
-
   void collect(const ServoProgress& progress) {
     const Plan* plan = nullptr;
     while (channel.retired.pop(plan)) {
       std::erase_if(alive, [&](const PublishedPlan& p) { return p.plan.get() == plan; });
     }
-    // A refused plan never acted: `alive` ends again with the plan that is followed. The next attempt leaves more time.
-    if (work_began >= 0) {
-      work_cycles = std::max(0.9 * work_cycles, static_cast<double>(progress.cycle - work_began - 1));
-      work_began = -1;
-    }
-    if (progress.last_refused != refused_seen) {
-      refused_seen = progress.last_refused;
-      work_cycles = 2 * work_cycles + 1;
-    }
-    work_cycles = std::min(work_cycles, static_cast<double>(kLongestLead));
+    // A refused plan never acted: `alive` ends again with the plan that is followed.
+    planning_time.learn(progress);
   }
 
   [[nodiscard]] WindowEnd window_end(double s, double ramps) {
@@ -141,7 +123,7 @@ struct Planner::Impl {
     auto law = law_from_rest(path().view(), model.joints, s, end, feed(factor));
     if (!law) return no_plan(progress);
     auto plan = std::make_unique<Plan>();
-    plan->start_cycle = progress.cycle + lead();
+    plan->start_cycle = progress.cycle + planning_time.lead();
     plan->latest_cycle = plan->start_cycle;
     plan->law = std::move(*law);
     return publish(std::move(plan), false, end, s);
@@ -153,12 +135,12 @@ struct Planner::Impl {
     const PublishedPlan& p = *base();
     const std::int64_t now = earliest(p, progress.cycle);
     const double t_now = now_s(p, now);
-    const double t_soonest = t_now + static_cast<double>(lead()) * period();
+    const double t_soonest = t_now + static_cast<double>(planning_time.lead()) * period();
     // Too near the end to be there in time: the machine comes to rest, and starts again from there.
     if (t_soonest > p.plan->end_time_s) return no_plan(progress);
     double t_from = p.plan->end_time_s;
     // A state from which no window was found is not asked again: the next attempt is from a sooner one.
-    if (!p.hard_end) t_from = std::clamp(tried_base == p.plan->id ? t_soonest : p.commit_t, t_soonest, t_from);
+    if (!p.hard_end) t_from = std::clamp(attempt.was_based_on(p.plan->id) ? t_soonest : p.commit_t, t_soonest, t_from);
     const PathState from = p.state_at(t_from);
     WindowEnd end;
     std::optional<std::vector<LawPiece>> law;
@@ -181,10 +163,10 @@ struct Planner::Impl {
     return publish(std::move(plan), false, end, from.s);
   }
 
-  /// Leaves the plan `lead()` cycles from now: for a new override, or (s_end given) to stop there.
+  /// Leaves the plan `planning_time.lead()` cycles from now: for a new override, or (s_end given) to stop there.
   bool divert(const ServoProgress& progress, std::optional<double> s_stop) {
     const PublishedPlan& p = *base();
-    const std::int64_t cycle = earliest(p, progress.cycle + lead());
+    const std::int64_t cycle = earliest(p, progress.cycle + planning_time.lead());
     const PathState from = p.state_at(now_s(p, cycle));
     const WindowEnd end = s_stop ? WindowEnd{*s_stop, false} : window_end(from.s, kRampsAtOnce);
     const double allowed = s_stop ? std::max(factor, p.override_factor) : factor;
@@ -199,7 +181,7 @@ struct Planner::Impl {
 
   bool stop(const ServoProgress& progress) {
     const PublishedPlan& p = *base();
-    const PathState from = p.state_at(now_s(p, earliest(p, progress.cycle + lead())));
+    const PathState from = p.state_at(now_s(p, earliest(p, progress.cycle + planning_time.lead())));
     if (from.v <= 0) return no_plan(progress);
     const double shortest = stop_distance(path().view(), model.joints, from);
     // The next demanded rest on the followed plan ends every search: the plan itself comes to rest there.
@@ -217,7 +199,7 @@ struct Planner::Impl {
   bool end_at_rest(const ServoProgress& progress, double rest) {
     const PublishedPlan& p = *base();
     if (rest >= base_end_s() - kSamePlace) {
-      base()->stops = true;
+      alive.back().stops = true;
       return true;
     }
     const double t_rest = p.time_at(rest - kSamePlace);
@@ -243,9 +225,7 @@ struct Planner::Impl {
   }
 
   bool no_plan(const ServoProgress& progress) {
-    tried_at = progress.cycle;
-    tried_base = base() == nullptr ? 0 : base()->plan->id;
-    tried_from_rest = ended(progress);
+    attempt.record(progress.cycle, base() == nullptr ? 0 : base()->plan->id, ended(progress));
     return false;
   }
 
@@ -257,8 +237,7 @@ struct Planner::Impl {
     const bool at_end = ended(progress);
     const bool this_way = backward.has_value() == (wanted == PathCommand::Retrace);
     const bool run = wanted != PathCommand::Stop && factor > 0 && this_way;
-    // What found no plan in motion may find one from rest.
-    if (progress.cycle < tried_at + kRetryAfter && tried_from_rest == at_end) return Task::None;
+    if (attempt.too_early(progress.cycle, at_end)) return Task::None;
     // A plan is left only once it is followed: what replaces it begins somewhere along it.
     const bool begun = base() == nullptr || progress.cycle >= base()->plan->start_cycle;
     if (!run && at_end) {
@@ -282,7 +261,8 @@ struct Planner::Impl {
     if (factor != p->override_factor) return begun ? Task::Override : Task::None;
     const double t_decide = p->hard_end ? p->plan->end_time_s : p->commit_t;
     if (more && t_decide - t_now < kHorizon_s) return Task::Extend;
-    if (dry && path().has_more() && t_decide - t_now < kRelease_s + static_cast<double>(lead()) * period())
+    if (dry && path().has_more() &&
+        t_decide - t_now < kRelease_s + static_cast<double>(planning_time.lead()) * period())
       return Task::Supply;
     return Task::None;
   }
@@ -294,7 +274,7 @@ struct Planner::Impl {
     if (base() != nullptr && acknowledged(progress) && base()->backward == backward.has_value())
       travelled(base()->state_at(now_s(*base(), progress.cycle)).s);
     const Task next = task(progress);
-    if (next != Task::None && next != Task::Supply && next != Task::Turn) work_began = progress.cycle;
+    if (next != Task::None && next != Task::Supply && next != Task::Turn) planning_time.begin(progress.cycle);
     switch (next) {
       case Task::None:
         return false;
@@ -344,13 +324,13 @@ struct Planner::Impl {
 
   void command(PathCommand command) {
     if (command == PathCommand::RunOne) limit_run();
-    if (command != wanted) tried_at = -kRetryAfter;  // what failed was another wish
+    if (command != wanted) attempt.forget();
     wanted = command;
   }
 
   void set_override(double percent) {
     const double wish = std::clamp(percent, 0.0, 200.0) / 100;
-    if (wish != factor) tried_at = -kRetryAfter;
+    if (wish != factor) attempt.forget();
     factor = wish;
   }
 };

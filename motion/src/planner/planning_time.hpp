@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+
+namespace rmac {
+
+struct ServoProgress;
+
+/// How long planning takes, in servo cycles: a plan must begin so far ahead of the servo loop to be there in time.
+/// Learns from the cycles that go by while a plan is made, and from plans that came too late.
+class PlanningTime {
+ public:
+  /// A plan is begun in this cycle.
+  void begin(std::int64_t cycle) noexcept { began_ = cycle; }
+  /// Takes up what the servo loop tells afterwards. A refused plan came too late: the next one is left more time.
+  void learn(const ServoProgress& progress) noexcept;
+  /// Cycles from now after which a plan begun now will have reached the servo loop.
+  [[nodiscard]] std::int64_t lead() const noexcept;
+
+ private:
+  double cycles_ = 0;               ///< that went by while a plan was made, lately
+  std::int64_t began_ = -1;         ///< cycle in which the last plan was begun; -1 once its time is known
+  std::uint64_t last_refused_ = 0;  ///< the last plan that came too late
+};
+
+}  // namespace rmac
