@@ -2,16 +2,14 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <sys/signalfd.h>
 #include <systemd/sd-daemon.h>
 
 #include <asio.hpp>
-#include <cerrno>
-#include <csignal>
 #include <cstdlib>
 #include <system_error>
 
 #include "gateway/appliance/machine.hpp"
+#include "gateway/rmacd/end_signals.hpp"
 #include "gateway/server/server.hpp"
 #include "gateway/servo/sync_clock.hpp"
 
@@ -74,29 +72,24 @@ ServerOptions server_options(const Configuration& configuration) {
   return options;
 }
 
-/// Blocks SIGTERM and SIGINT in this thread and in all that it will start, for good; gives the descriptor that they are
-/// read from. So they interrupt no cycle, and however many come, none turns an orderly end into a kill.
-Expected<int> catch_end_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGINT);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  const int descriptor = signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
-  if (descriptor < 0) {
-    return failure(MinorCode::Other, fmt::format("SIGTERM and SIGINT cannot be read from a descriptor: {}",
-                                                 std::generic_category().message(errno)));
-  }
-  return descriptor;
+/// Nothing of the daemon outlives this, and so no service manager has to kill it (TimeoutStopSec of the unit is 30 s).
+constexpr std::chrono::seconds kEndBound{25};
+
+[[noreturn]] void give_up() {
+  spdlog::critical(
+      "the daemon did not end in {} s, something in it hangs; ending at once, and the drives stop by their "
+      "heartbeat",
+      kEndBound.count());
+  std::_Exit(1);
 }
 
 /// The parts, in the order in which they need each other.
 class Daemon {
  public:
-  /// `signals`: see catch_end_signals(). `clock`: null for the timer.
-  Daemon(int signals, std::unique_ptr<DeviceDriverManager> manager, const Configuration& configuration,
-         std::shared_ptr<Clock> clock, ServerOptions options)
-      : signals_(io_, signals),
+  /// `clock`: null for the timer.
+  Daemon(std::unique_ptr<DeviceDriverManager> manager, const Configuration& configuration, std::shared_ptr<Clock> clock,
+         ServerOptions options)
+      : signals_([this](const char* signal) { asio::post(io_, [this, signal] { end(signal); }); }, kEndBound, give_up),
         manager_(std::move(manager)),
         controller_(controller_options(configuration, std::move(clock))),
         verification_(verification_options(configuration)),
@@ -116,8 +109,7 @@ class Daemon {
   void end_when_at_rest();
 
   asio::io_context io_;
-  asio::posix::stream_descriptor signals_;
-  signalfd_siginfo signal_{};
+  EndSignals signals_;
   std::unique_ptr<DeviceDriverManager> manager_;
   Controller controller_;
   Verification verification_;
@@ -159,9 +151,6 @@ Expected<> Daemon::run(const Configuration& configuration) {
   if (std::uint64_t limit_us = 0; sd_watchdog_enabled(0, &limit_us) > 0) {
     watchdog_period_ = std::chrono::microseconds(limit_us / 3);
   }
-  signals_.async_read_some(asio::buffer(&signal_, sizeof signal_), [this](asio::error_code problem, std::size_t) {
-    if (!problem) end(signal_.ssi_signo == SIGTERM ? "SIGTERM" : "SIGINT");
-  });
   schedule_tick();
   io_.run();
   server_.close();
@@ -226,8 +215,7 @@ void Daemon::end_when_at_rest() {
 }  // namespace
 
 Expected<> run_daemon(const Configuration& configuration) {
-  auto signals = catch_end_signals();
-  if (!signals) return tl::unexpected<Error>(std::move(signals.error()));
+  EndSignals::block();
   std::error_code problem;
   std::filesystem::create_directories(configuration.state_folder, problem);
   if (!configuration.unix_socket.empty()) {
@@ -236,7 +224,7 @@ Expected<> run_daemon(const Configuration& configuration) {
   auto manager = DeviceDriverManager::open({configuration.device_tree, configuration.database});
   if (!manager) return tl::unexpected<Error>(std::move(manager.error()));
   return clock_for(configuration).and_then([&](std::shared_ptr<Clock> clock) {
-    return Daemon(*signals, std::move(*manager), configuration, std::move(clock), server_options(configuration))
+    return Daemon(std::move(*manager), configuration, std::move(clock), server_options(configuration))
         .run(configuration);
   });
 }

@@ -5,8 +5,8 @@
 
 namespace rmac::gateway {
 
-/// Runs the appliance until SIGTERM or SIGINT asks it to end, which it does at standstill. The error says what did not
-/// start.
+/// Runs the appliance until SIGTERM, SIGINT or SIGHUP asks it to end, which it does at standstill. The error says what
+/// did not start.
 [[nodiscard]] Expected<> run_daemon(const Configuration& configuration);
 
 }  // namespace rmac::gateway

@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import socket
 import subprocess
 import tempfile
@@ -71,6 +72,22 @@ class LifeCycle(unittest.TestCase):
                     self.assertEqual(daemon.wait(timeout=60), DONE)
                 finally:
                     daemon.kill()
+
+    def test_hang_up_stops_the_machine_on_its_path_and_ends(self):
+        with Appliance(pace="real-time") as appliance:
+            client = appliance.client()
+            client.call("authority.acquire")
+            client.call("Device.Load", Name="BenchXYZ")
+            client.call("RMAC_CAM.SetFeedrate", Feedrate=600)
+            client.call("RMAC_CAM.MoveToXYZ", MoveID=1, x=40, y=0, z=0, Speed=10)
+            client.call("RMAC_CAM.CycleStart", Mode="AUTOMATIC")
+            client.call("subscribe", topics=["state"], rate_hz=50)
+            client.wait_note("state", lambda state: state["moving"])
+            appliance.process.send_signal(signal.SIGPIPE)
+            appliance.process.send_signal(signal.SIGHUP)
+            self.assertEqual(appliance.process.wait(timeout=60), DONE)
+        self.assertIn("SIGHUP: stopping the machine and ending", "".join(appliance.log))
+        self.assertIn("the machine is stopped on its path", "".join(appliance.log))
 
     def read_until(self, manager, word):
         while word not in manager.recv(4096).decode().splitlines():
