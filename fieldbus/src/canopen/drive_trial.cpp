@@ -14,12 +14,23 @@ namespace {
 constexpr double kPatience_s = 5;  // for a drive to do what it was told
 // Bits of controlword and statusword that belong to a mode (CiA 402-2, 10 and 12).
 constexpr std::uint16_t kNewSetpoint = 1U << 4, kAtOnce = 1U << 5, kInterpolates = 1U << 4;
-constexpr std::uint16_t kAcknowledged = 1U << 12;
+constexpr std::uint16_t kInternalLimit = 1U << 11, kAcknowledged = 1U << 12;
 
 /// From 0 to 1 with velocity and acceleration zero at both ends.
 double smooth(double share) noexcept {
   const double u = std::clamp(share, 0.0, 1.0);
   return u * u * u * (10 + u * (-15 + 6 * u));
+}
+
+bool is_position(DriveMode mode) noexcept {
+  return mode == DriveMode::ProfilePosition || mode == DriveMode::InterpolatedPosition ||
+         mode == DriveMode::CyclicSyncPosition;
+}
+
+std::int64_t tolerance(const DriveTrial& trial) noexcept {
+  constexpr std::int64_t kLeast = 10, kPart = 100;
+  if (trial.tolerance_counts > 0) return trial.tolerance_counts;
+  return std::max(kLeast, std::abs(std::int64_t{trial.amount}) / kPart);
 }
 
 class Trial {
@@ -30,10 +41,10 @@ class Trial {
   }
 
   Expected<DriveTrialResult> run() {
-    auto done = enable().and_then([&] { return move(); });
+    auto done = enable().and_then([&] { return move(); }).and_then([&] { return arrived(); });
+    result_.to_counts = feedback_.position_counts;
     disable();
     if (!done) return tl::unexpected(done.error());
-    result_.to_counts = feedback_.position_counts;
     return result_;
   }
 
@@ -154,6 +165,20 @@ class Trial {
     return {};
   }
 
+  /// Whether a mode of position ended where it was to.
+  Expected<> arrived() const {
+    if (!is_position(wanted_.mode)) return {};
+    const std::int64_t went = std::int64_t{feedback_.position_counts} - result_.from_counts;
+    const std::int64_t off = std::abs(went - wanted_.amount);
+    if (off <= tolerance(wanted_)) return {};
+    return failure(
+        MinorCode::Other,
+        fmt::format("the drive went {} counts and not {}: it stands {} off, and {} are allowed (statusword {:04X}h{}); "
+                    "look for a limit switch, a block, or limits of the drive's own",
+                    went, wanted_.amount, off, tolerance(wanted_), feedback_.statusword,
+                    (feedback_.statusword & kInternalLimit) != 0 ? ", internal limit active" : ""));
+  }
+
   /// By a quick stop to rest, then off; nothing that fails here changes that the bus is stopped next.
   void disable() {
     command_.target_torque_permille = 0;
@@ -191,10 +216,8 @@ Expected<DriveTrialResult> try_drive(CanopenInterface& bus, const CanopenConfig&
   if (trial.mode == DriveMode::None || trial.mode == DriveMode::Homing) {
     return refuse("a trial is by a mode of position, velocity or torque");
   }
-  const bool position = trial.mode == DriveMode::ProfilePosition || trial.mode == DriveMode::InterpolatedPosition ||
-                        trial.mode == DriveMode::CyclicSyncPosition;
   if (!(trial.seconds > 0) || trial.most_counts <= 0) return refuse("a trial needs a time and a way above 0");
-  if (position && std::abs(std::int64_t{trial.amount}) > trial.most_counts) {
+  if (is_position(trial.mode) && std::abs(std::int64_t{trial.amount}) > trial.most_counts) {
     return refuse(
         fmt::format("a way of {} counts is more than the {} that are allowed", trial.amount, trial.most_counts));
   }

@@ -37,7 +37,7 @@ struct DriveMove {
   int node = 0;
   std::int32_t amount = 0;
   double seconds = 1;
-  std::int64_t within = 0;
+  std::int64_t within = 0, tolerance = 0;
 };
 
 Result<canopen::CanopenConfig> config_of(const DriveMove& move) {
@@ -70,10 +70,13 @@ Result<> move_drive(const DriveMove& move) {
   const auto period = std::chrono::duration_cast<std::chrono::steady_clock::duration>(config->period);
   auto next = std::chrono::steady_clock::now();
   const auto pass = [&] { std::this_thread::sleep_until(next += period); };
-  const auto done = canopen::try_drive(
-      *bus, *config,
-      {.mode = modes().at(move.mode), .amount = move.amount, .seconds = move.seconds, .most_counts = move.within},
-      pass);
+  const auto done = canopen::try_drive(*bus, *config,
+                                       {.mode = modes().at(move.mode),
+                                        .amount = move.amount,
+                                        .seconds = move.seconds,
+                                        .most_counts = move.within,
+                                        .tolerance_counts = move.tolerance},
+                                       pass);
   bus->stop();
   if (!done) return fail(fmt::format("node {}: {}", move.node, done.error().message));
   fmt::print("node {} went from {} to {} counts, {} at the farthest, in {:.3g} s\n", move.node, done->from_counts,
@@ -97,6 +100,10 @@ void add_bus_move(Command& bus) {
       .required();
   move.option("--within", &options->within, "counts from where it stands; beyond them it is stopped")
       .required()
+      .within(std::int64_t{1}, std::int64_t{2147483647});
+  move.option(
+          "--tolerance", &options->tolerance,
+          "counts off the place asked for at which it still is reached; by default a hundredth of the way, at least 10")
       .within(std::int64_t{1}, std::int64_t{2147483647});
   move.option("--seconds", &options->seconds, "how long the way, the velocity or the torque lasts")
       .within(0.01, 600.0)

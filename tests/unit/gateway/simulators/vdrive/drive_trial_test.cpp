@@ -71,6 +71,32 @@ TEST_F(DriveTrials, StopADriveThatGoesTooFar) {
   EXPECT_LT(node_.axis().position(), 200000);
 }
 
+TEST_F(DriveTrials, FailWhereTheDriveEndsElsewhereWhateverItSays) {
+  for (const DriveMode mode :
+       {DriveMode::ProfilePosition, DriveMode::InterpolatedPosition, DriveMode::CyclicSyncPosition}) {
+    SCOPED_TRACE(static_cast<int>(mode));
+    const auto limited = attempt({.mode = mode, .amount = 30000, .seconds = 0.5, .most_counts = 50000},
+                                 "6081:00/32=200000 607D:01/32=-20000 607D:02/32=20000");
+    ASSERT_FALSE(limited) << "went to " << limited->to_counts;
+    EXPECT_LE(node_.axis().position(), 21000);
+    const auto back = attempt({.mode = mode, .amount = -15000, .seconds = 0.5, .most_counts = 50000},
+                              "6081:00/32=200000 607D:01/32=-20000 607D:02/32=20000");
+    EXPECT_TRUE(back) << back.error().message;
+    node_.dictionary().set({0x607D, 1}, 0);
+    node_.dictionary().set({0x607D, 2}, 0);
+  }
+}
+
+TEST_F(DriveTrials, TakeAPlaceForReachedThatIsWithinWhatIsAsked) {
+  const auto done = attempt({.mode = DriveMode::CyclicSyncPosition,
+                             .amount = 30000,
+                             .seconds = 0.5,
+                             .most_counts = 50000,
+                             .tolerance_counts = 15000},
+                            "6081:00/32=200000 607D:01/32=-20000 607D:02/32=20000");
+  EXPECT_TRUE(done) << done.error().message;
+}
+
 TEST_F(DriveTrials, SayWhatTheDriveDidInstead) {
   node_.axis().set_overheated(true);
   const auto hot = attempt({.mode = DriveMode::ProfilePosition, .amount = 100, .most_counts = 200});
