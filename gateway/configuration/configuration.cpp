@@ -111,6 +111,7 @@ Configuration from_document(const Json& document, const std::filesystem::path& f
                             const ConfigurationOverrides& overrides) {
   Configuration configuration;
   const Json listen = group(document, "listen");
+  configuration.tcp = listen.value("tcp", configuration.tcp) || overrides.port.has_value();
   configuration.address = listen.value("address", configuration.address);
   configuration.port = overrides.port.value_or(listen.value("port", configuration.port));
   Paths(file_folder, document).fill(configuration, overrides);
@@ -143,6 +144,12 @@ Expected<> check(const Configuration& configuration, const std::string& file) {
                     "Clients are not authenticated yet, so whoever reached another address could move the "
                     "machine; let them come through an SSH tunnel",
                     file, configuration.address));
+  }
+  if (!configuration.tcp && configuration.unix_socket.empty()) {
+    return failure(MinorCode::InvalidParameterValue,
+                   fmt::format("{}: /listen/tcp is false and /listen/unix_socket is empty, so nobody could connect; "
+                               "give one of them",
+                               file));
   }
   constexpr std::size_t kLongestSocketPath = sizeof(sockaddr_un::sun_path) - 1;
   if (configuration.unix_socket.native().size() > kLongestSocketPath) {

@@ -34,6 +34,7 @@ struct Autoload {
 /// The daemon's configuration, `rmacd.json`, complete: every value that the file leaves out has its default. Paths are
 /// absolute.
 struct Configuration {
+  bool tcp = true;                    ///< a TCP port beside the UNIX socket
   std::string address = "127.0.0.1";  ///< a loopback address
   std::uint16_t port = 7402;          ///< 0: the system picks a free one
   std::filesystem::path unix_socket;  ///< empty: none

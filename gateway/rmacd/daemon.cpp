@@ -54,6 +54,7 @@ Verification::Options verification_options(const Configuration& configuration) {
 
 ServerOptions server_options(const Configuration& configuration) {
   ServerOptions options;
+  options.tcp = configuration.tcp;
   options.address = configuration.address;
   options.port = configuration.port;
   options.unix_socket = configuration.unix_socket;
@@ -70,6 +71,13 @@ ServerOptions server_options(const Configuration& configuration) {
       break;
   }
   return options;
+}
+
+/// Where clients connect, for people.
+std::string places_of(const Configuration& configuration, std::uint16_t port) {
+  const std::string tcp = configuration.tcp ? fmt::format("{}:{}", configuration.address, port) : "";
+  const std::string file = configuration.unix_socket.string();
+  return tcp + (tcp.empty() || file.empty() ? "" : " and ") + file;
 }
 
 /// Nothing of the daemon outlives this, and so no service manager has to kill it (TimeoutStopSec of the unit is 30 s).
@@ -144,10 +152,9 @@ Expected<> Daemon::run(const Configuration& configuration) {
     controller_.stop();
     return listening;
   }
-  spdlog::info("rmacd {} listens on {}:{}{}", RMAC_VERSION, configuration.address, server_.port(),
-               configuration.unix_socket.empty() ? "" : " and " + configuration.unix_socket.string());
-  sd_notifyf(0, "READY=1\nSTATUS=Listening on %s:%u", configuration.address.c_str(),
-             static_cast<unsigned>(server_.port()));
+  const std::string places = places_of(configuration, server_.port());
+  spdlog::info("rmacd {} listens on {}", RMAC_VERSION, places);
+  sd_notifyf(0, "READY=1\nSTATUS=Listening on %s", places.c_str());
   if (std::uint64_t limit_us = 0; sd_watchdog_enabled(0, &limit_us) > 0) {
     watchdog_period_ = std::chrono::microseconds(limit_us / 3);
   }

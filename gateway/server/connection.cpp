@@ -21,6 +21,17 @@ std::string state_text(const ConnectionContext& context, const CycleSample& samp
   return text_of(state_to_json(api.machine(), sample, api.status(), context.lease.holder_name()));
 }
 
+/// Longer first lines are held to their first character alone: reading them takes long.
+constexpr std::size_t kLongFirstLine = 65536;
+
+/// Whether a client may begin so. What a web page has a browser send (HTTP) begins with lines that are no JSON, and may
+/// have requests in its body.
+bool is_json(std::string_view line) {
+  const auto begin = line.find_first_not_of(" \t");
+  if (begin == std::string_view::npos || (line[begin] != '{' && line[begin] != '[')) return false;
+  return line.size() > kLongFirstLine || nlohmann::json::accept(line);
+}
+
 }  // namespace
 
 Connection::Connection(const ConnectionContext& context, Socket socket, std::uint64_t id, std::string where)
@@ -97,6 +108,14 @@ void Connection::take_input(std::size_t bytes) {
 }
 
 void Connection::take_line(const LineReader::Line& line) {
+  if (!spoke_ && !is_json(line.text)) {
+    refuse_and_leave({rpc_code::kParseError,
+                      "the first line is not JSON: this is no client of the appliance; it is sent one JSON-RPC request "
+                      "a line",
+                      MinorCode::InvalidParameter});
+    return;
+  }
+  spoke_ = true;
   context_.lease.heard(id());
   requests_.take(line.text, line.position);
 }
@@ -155,7 +174,11 @@ void Connection::discard_input() {
 }
 
 void Connection::pump() {
-  switch (requests_.carry_out()) {
+  const bool waits = !requests_.empty();
+  const RequestQueue::Progress progress = requests_.carry_out();
+  // However long an answer took, the client could not say anything meanwhile.
+  if (waits) context_.lease.heard(id());
+  switch (progress) {
     case RequestQueue::Progress::Waits:
       return;
     case RequestQueue::Progress::TurnOver:

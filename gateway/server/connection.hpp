@@ -85,6 +85,7 @@ class Connection final : public Requester, public std::enable_shared_from_this<C
   Phase phase_ = Phase::Open;
   std::array<char, 65536> buffer_{};
   bool reading_ = false;
+  bool spoke_ = false;            ///< its first line was JSON
   std::uint64_t read_bytes_ = 0;  ///< of the input so far
   std::size_t discarded_ = 0;
   bool pump_posted_ = false;

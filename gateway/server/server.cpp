@@ -24,9 +24,9 @@ Server::~Server() {
 }
 
 Expected<> Server::listen() {
-  return listeners_.listen_on_tcp(options_.address, options_.port).and_then([this]() -> Expected<> {
-    return options_.unix_socket.empty() ? Expected<>{} : listeners_.listen_on_unix(options_.unix_socket);
-  });
+  const auto tcp = options_.tcp ? listeners_.listen_on_tcp(options_.address, options_.port) : Expected<>{};
+  if (!tcp || options_.unix_socket.empty()) return tcp;
+  return listeners_.listen_on_unix(options_.unix_socket);
 }
 
 void Server::welcome(Listeners::Socket socket, const char* what) {

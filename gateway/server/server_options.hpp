@@ -15,6 +15,7 @@ enum class LeaseLostAction {
 };
 
 struct ServerOptions {
+  bool tcp = true;                    ///< listen on a TCP port too
   std::string address = "127.0.0.1";  ///< loopback: clients are not authenticated
   std::uint16_t port = 7402;          ///< 0: the system picks a free one
   std::filesystem::path unix_socket;  ///< empty: none

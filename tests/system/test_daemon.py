@@ -89,6 +89,29 @@ class LifeCycle(unittest.TestCase):
         self.assertIn("SIGHUP: stopping the machine and ending", "".join(appliance.log))
         self.assertIn("the machine is stopped on its path", "".join(appliance.log))
 
+    def test_without_tcp_clients_come_by_the_unix_socket_alone(self):
+        with tempfile.TemporaryDirectory() as folder:
+            config = os.path.join(folder, "rmacd.json")
+            with open(config, "w", encoding="utf-8") as file:
+                json.dump({"listen": {"tcp": False, "unix_socket": "s"}, "state_folder": "state",
+                           "real_time": {"lock_memory": False}}, file)
+            with subprocess.Popen([RMACD, "--config", config], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                  text=True) as daemon:
+                try:
+                    line = next(line for line in daemon.stderr if "listens on" in line)
+                    self.assertTrue(line.rstrip().endswith("listens on " + os.path.join(folder, "s")), line)
+                    done = subprocess.run([BUILD / "bin" / "rmac", "--socket", os.path.join(folder, "s"), "status"],
+                                          capture_output=True, text=True, timeout=60, check=False)
+                    self.assertEqual(done.returncode, DONE, done.stderr)
+                    sockets = {os.readlink(f"/proc/{daemon.pid}/fd/{fd}") for fd in os.listdir(f"/proc/{daemon.pid}/fd")}
+                    with open(f"/proc/{daemon.pid}/net/tcp", encoding="ascii") as table:
+                        inodes = {f"socket:[{row.split()[9]}]" for row in table.readlines()[1:]}
+                    self.assertFalse(sockets & inodes)
+                    daemon.terminate()
+                    self.assertEqual(daemon.wait(timeout=60), DONE)
+                finally:
+                    daemon.kill()
+
     def read_until(self, manager, word):
         while word not in manager.recv(4096).decode().splitlines():
             pass

@@ -168,6 +168,15 @@ TEST(Configuration, SocketPathThatTheSystemCannotTakeIsRefused) {
   EXPECT_EQ(read(R"({"listen": {"unix_socket": ")" + path.substr(0, 107) + "\"}}").unix_socket, path.substr(0, 107));
 }
 
+TEST(Configuration, MayHaveNoTcpPort) {
+  EXPECT_TRUE(read("{}").tcp);
+  EXPECT_FALSE(read(R"({"listen": {"tcp": false}})").tcp);
+  ConfigurationOverrides port;
+  port.port = 0;
+  EXPECT_TRUE(read(R"({"listen": {"tcp": false}})", port).tcp) << "who names a port wants one";
+  EXPECT_THAT(problem_of(R"({"listen": {"tcp": false, "unix_socket": ""}})"), HasSubstr("nobody could connect"));
+}
+
 TEST(Configuration, TheOneThatIsInstalledIsSound) {
   const auto configuration = read_configuration(RMAC_SOURCE_DIR "/etc/rmacd.json");
   ASSERT_TRUE(configuration) << configuration.error().message;

@@ -151,6 +151,24 @@ TEST(LeaseTimeout, IsOffUnlessConfigured) {
   EXPECT_EQ(holder.call("authority.renew")["result"], true);
 }
 
+TEST(LeaseTimeout, SilenceBeginsWithTheAnswer) {
+  LeaseClock clock;
+  ServerBench bench(clock.options());
+  bench.on_gateway([&](Server&, FakeMachine& machine) {
+    EXPECT_CALL(machine.cam_mock.cycle_mock, resume()).WillOnce([&]() -> Expected<> {
+      clock.now += std::chrono::hours(2);
+      return {};
+    });
+  });
+  Client holder(bench.port()), other(bench.port());
+  EXPECT_TRUE(holder.call("authority.acquire").contains("result"));
+  EXPECT_EQ(holder.call("RMAC_CAM.FeedResume")["result"], true);
+  clock.pass(bench, std::chrono::seconds(4));
+  EXPECT_EQ(other.call("authority.acquire")["error"]["code"], rpc_code::kAuthorityHeld);
+  clock.pass(bench, std::chrono::seconds(2));
+  EXPECT_TRUE(other.call("authority.acquire").contains("result"));
+}
+
 TEST(LeaseTimeout, AHolderThatWaitsForRoomIsNotSilent) {
   LeaseClock clock;
   ServerOptions options = clock.options();

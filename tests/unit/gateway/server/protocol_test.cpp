@@ -40,9 +40,40 @@ TEST(ServerProtocol, ShowsNamesThatAreOneLineAndWhole) {
   EXPECT_EQ(watcher.call("RMAC_CAM.Ok")["result"], true);
 }
 
+TEST(ServerProtocol, TakesNothingFromWhoDoesNotBeginWithJson) {
+  const std::string request = R"({"jsonrpc":"2.0","id":1,"method":"RMAC_CAM.StopNow","params":{}})"
+                              "\n";
+  const std::string post = "POST / HTTP/1.1\r\nHost: 127.0.0.1:7402\r\nContent-Type: text/plain\r\n\r\n" + request;
+  for (const std::string& sent : {post, "\r\n" + post, "hello\n" + request, "{\"jsonrpc\":\n" + request,
+                                  "{} HTTP/1.1\n" + request, "42\n" + request, "\xEF\xBB\xBF" + request}) {
+    SCOPED_TRACE(sent);
+    ServerBench bench;
+    bench.on_gateway([](Server&, FakeMachine& machine) {
+      EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now()).Times(0);
+    });
+    Client client(bench.port());
+    client.send(sent);
+    const json error = client.json_line()["error"];
+    EXPECT_EQ(error["code"], rpc_code::kParseError);
+    EXPECT_THAT(error["message"].get<std::string>(), HasSubstr("the first line is not JSON"));
+    EXPECT_EQ(client.line(), "") << "and it is closed";
+  }
+}
+
+TEST(ServerProtocol, TakesABatchFirst) {
+  ServerBench bench;
+  Client client(bench.port());
+  client.send(
+      "  ["
+      R"({"jsonrpc":"2.0","id":1,"method":"RMAC_CAM.Ok","params":{}}])"
+      "\n");
+  EXPECT_EQ(client.json_line()[0]["result"], true);
+}
+
 TEST(ServerProtocol, AnswersMalformedJsonAndGoesOn) {
   ServerBench bench;
   Client client(bench.port());
+  client.call("hello", R"({"client":"test"})");
   client.send("{\"jsonrpc\":\n");
   EXPECT_EQ(client.json_line()["error"]["code"], rpc_code::kParseError);
   client.send(R"({"jsonrpc":"2.0","id":1,"method":"RMAC_CAM.SetFeedrate","params":[NaN]})"
@@ -178,6 +209,7 @@ TEST(ServerProtocol, SurvivesRandomBytes) {
     std::string noise;
     for (int i = 0; i < 5000; ++i) noise += static_cast<char>(byte(random));
     Client client(bench.port());
+    client.call("hello", R"({"client":"test"})");
     client.send(noise + "\n");
     EXPECT_EQ(client.call("RMAC_CAM.Ok")["result"], true);
   }
