@@ -1,5 +1,6 @@
 #include "rmac/motion/path_builder.hpp"
 
+#include "curves/make_curves.hpp"
 #include "path/move_refusal.hpp"
 #include "path/move_segments.hpp"
 #include "path/part_of.hpp"
