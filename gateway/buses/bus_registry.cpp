@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "gateway/buses/bus_choice.hpp"
+#include "rmac/motion/ports/digital_io_interface.hpp"
 
 namespace rmac::gateway {
 namespace {

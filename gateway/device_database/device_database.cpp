@@ -44,13 +44,6 @@ sdk::ModuleChoice module_choice(const Json& object) {
   return choice;
 }
 
-bool has_lower_end(JointLimitType type) {
-  return type == JointLimitType::Limited || type == JointLimitType::InfinitePositive;
-}
-bool has_upper_end(JointLimitType type) {
-  return type == JointLimitType::Limited || type == JointLimitType::InfiniteNegative;
-}
-
 JointLimits limits(const Json& joint) {
   JointLimits limits;
   limits.name = text(joint, "Name");
@@ -278,11 +271,11 @@ sdk::DeviceObject device_object(const Json& file) {
 std::string missing_end(const Json& file, const sdk::DeviceObject& device) {
   const auto search = [&](const char* key, const std::vector<sdk::Joint>& list) -> std::string {
     for (std::size_t i = 0; i < list.size(); ++i) {
-      const JointLimitType type = list[i].limits.limit_type;
+      const JointLimits& limits = list[i].limits;
       const Json& entry = file[key][i];
-      const char* missing = has_lower_end(type) && !entry.contains("Min")   ? "Min"
-                            : has_upper_end(type) && !entry.contains("Max") ? "Max"
-                                                                            : nullptr;
+      const char* missing = ends_below(limits) && !entry.contains("Min")   ? "Min"
+                            : ends_above(limits) && !entry.contains("Max") ? "Max"
+                                                                           : nullptr;
       if (missing != nullptr) {
         return fmt::format("/{}/{} lacks the key \"{}\", a number (mm or deg), which LimitType \"{}\" needs", key, i,
                            missing, text(entry, "LimitType"));

@@ -39,19 +39,15 @@ Expected<> check_standing(const sdk::DeviceObject& device, std::span<const doubl
   for (std::size_t i = 0; i < device.joints.size(); ++i) {
     const JointLimits& joint = device.joints[i].limits;
     const double slack = as_measured ? device.joints[i].max_following_error : kRounding;
-    const bool below_ends =
-        joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfinitePositive;
-    const bool above_ends =
-        joint.limit_type == JointLimitType::Limited || joint.limit_type == JointLimitType::InfiniteNegative;
-    const bool outside =
-        (below_ends && position[i] < joint.min - slack) || (above_ends && position[i] > joint.max + slack);
+    const bool outside = (ends_below(joint) && position[i] < joint.min - slack) ||
+                         (ends_above(joint) && position[i] > joint.max + slack);
     if (!outside) continue;
     return failure(
         MinorCode::TravelLimit,
         fmt::format("joint {} \"{}\" stands at {:.4f}, outside of its limits {} to {}; move it inside first, "
                     "or choose limits that include it",
-                    i, joint.name, position[i], below_ends ? fmt::format("{}", joint.min) : "-infinity",
-                    above_ends ? fmt::format("{}", joint.max) : "infinity"));
+                    i, joint.name, position[i], ends_below(joint) ? fmt::format("{}", joint.min) : "-infinity",
+                    ends_above(joint) ? fmt::format("{}", joint.max) : "infinity"));
   }
   return {};
 }

@@ -6,14 +6,18 @@
 #include <vector>
 
 #include "rmac/motion/error.hpp"
-#include "rmac/motion/ports/actuator_map.hpp"
-#include "rmac/motion/ports/digital_control_interface.hpp"
-#include "rmac/motion/ports/digital_io_interface.hpp"
-#include "rmac/motion/ports/kinematics.hpp"
-#include "rmac/motion/ports/servo_law.hpp"
-#include "rmac/sdk/device_driver.hpp"
-#include "rmac/sdk/device_object.hpp"
+#include "rmac/sdk/config/module_choice.hpp"
 #include "rmac/sdk/module.hpp"
+
+namespace rmac {
+class ActuatorMap;
+class DigitalControlInterface;
+class DigitalIoInterface;
+class ServoLaw;
+}  // namespace rmac
+namespace rmac::sdk {
+class DeviceDriver;
+}
 
 namespace rmac::gateway {
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "rmac/motion/move_name.hpp"
+#include "rmac/motion/vector.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -18,16 +19,6 @@ constexpr double kWayBack_axis = 0.02;
 /// Joints at the end of that way and at the begin of the path: mm or degrees.
 constexpr double kSameJoints = 1e-5;
 constexpr double kSlowest_mm_s = 1;
-
-double distance(const Vector& a, const Vector& b) {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-}
-
-bool in_joint_space(const Geometry& geometry) {
-  const auto* nurbs = std::get_if<NurbsGeometry>(&geometry);
-  return std::holds_alternative<JointTargetGeometry>(geometry) ||
-         (nurbs != nullptr && nurbs->space == NurbsSpace::Joint);
-}
 
 struct Place {
   ToolPose pose;
@@ -100,7 +91,7 @@ Expected<BuiltMove> build_way(PathBuilder back, const Place& place, const Move* 
 
 Expected<std::vector<BuiltMove>> build_rest_of(PathBuilder& builder, const ProgramStep& first) {
   const Move* const move = std::get_if<Move>(&first.what);
-  const bool in_joints = move != nullptr && in_joint_space(move->geometry);
+  const bool in_joints = move != nullptr && is_joint_move(move->geometry);
   PathBuilder ahead = builder;
   auto rest = build_remainder(ahead, first, move, in_joints);
   if (!rest) return tl::unexpected(rest.error());

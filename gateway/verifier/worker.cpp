@@ -17,6 +17,7 @@
 #include "gateway/verifier/servo_loop_check.hpp"
 #include "gateway/verifier/watched_ports.hpp"
 #include "rmac/motion/frame.hpp"
+#include "rmac/sdk/device_driver.hpp"
 #include "rmac/sdk/servo_law_names.hpp"
 
 namespace rmac::verifier {

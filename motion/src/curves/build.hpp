@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "rmac/motion/curve.hpp"
+#include "make_curves.hpp"
 
 namespace rmac::curves {
 

@@ -29,18 +29,12 @@ std::optional<TravelOffence> still_outside(std::span<const double> excess, const
 
 }  // namespace
 
-bool is_joint_move(const Move& move) noexcept {
-  const auto* nurbs = std::get_if<NurbsGeometry>(&move.geometry);
-  return std::holds_alternative<JointTargetGeometry>(move.geometry) ||
-         (nurbs != nullptr && nurbs->space == NurbsSpace::Joint);
-}
-
 MoveSegments::MoveSegments(const Move& move, const PlannerModel& model, std::shared_ptr<const PoseToJoints> map,
                            std::span<const double> start_joints)
     : move_(move),
       model_(model),
       map_(std::move(map)),
-      joint_move_(is_joint_move(move)),
+      joint_move_(is_joint_move(move.geometry)),
       positioning_(is_positioning(move)),
       joints_(start_joints.begin(), start_joints.end()),
       excess_(excess_of(joints_, model.joints)) {

@@ -12,9 +12,6 @@
 
 namespace rmac {
 
-/// Along the joints instead of the tool: its feed follows from the joints' speeds.
-[[nodiscard]] bool is_joint_move(const Move& move) noexcept;
-
 /// The segments of one move, laid curve by curve behind each other. One smooth curve in, one segment out; a curve is
 /// cut where the joints' acceleration would have to jump, and led past the pole where its tool axis comes near it. Each
 /// segment is checked for reach and joint travel as it is laid. What it refers to must outlive it.

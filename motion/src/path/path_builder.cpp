@@ -1,5 +1,6 @@
 #include "rmac/motion/path_builder.hpp"
 
+#include "curves/make_curves.hpp"
 #include "path/move_refusal.hpp"
 #include "path/move_segments.hpp"
 #include "path/part_of.hpp"
@@ -40,7 +41,7 @@ void PathBuilder::restart(std::span<const double> joints, const Frames& frames) 
 }
 
 Expected<PathSegments> PathBuilder::build(const Move& move, double from_mm) {
-  if (auto checked = check_demand(move, is_joint_move(move)); !checked) return tl::unexpected(checked.error());
+  if (auto checked = check_demand(move, is_joint_move(move.geometry)); !checked) return tl::unexpected(checked.error());
   auto curves = make_curves(move, {end_pose_, end_joints_});
   if (!curves) return tl::unexpected(curves.error());
   if (curves->empty()) return PathSegments{};

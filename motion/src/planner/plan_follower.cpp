@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "rmac/motion/plan.hpp"
+
 namespace rmac {
 namespace {
 

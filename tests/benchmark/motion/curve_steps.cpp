@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "curves/make_curves.hpp"
 #include "exact_nurbs.hpp"
-#include "rmac/motion/curve.hpp"
 #include "rows.hpp"
 #include "shapes.hpp"
 

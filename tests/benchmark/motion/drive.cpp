@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <ctime>
 
+#include "rmac/motion/plan.hpp"
+
 namespace rmac::bench {
 namespace {
 

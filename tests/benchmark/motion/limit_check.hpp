@@ -4,6 +4,7 @@
 
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/plan.hpp"
+#include "rmac/motion/servo/setpoint.hpp"
 
 namespace rmac::bench {
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
-#include "rmac/motion/plan.hpp"
 #include "rmac/motion/plan_channel.hpp"
+#include "rmac/motion/servo/setpoint.hpp"
 
 namespace rmac {
 

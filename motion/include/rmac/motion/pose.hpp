@@ -15,6 +15,12 @@ struct Frame {
   std::array<double, 4> q{1, 0, 0, 0};
 };
 
+/// Frames in force for a move: machine = part · program, and the tool tip on the tool interface.
+struct Frames {
+  Frame part;
+  Frame tool;
+};
+
 /// The tool as a five-axis path sees it: tip in mm, and the unit axis that points from the tip to the spindle.
 struct ToolPose {
   Vector tip{0, 0, 0};

@@ -6,14 +6,9 @@
 
 #include "rmac/motion/curve.hpp"
 #include "rmac/motion/ports/kinematics.hpp"
+#include "rmac/motion/pose.hpp"
 
 namespace rmac {
-
-/// Frames in force for a move: machine = part · program, and the tool tip on the tool interface.
-struct Frames {
-  Frame part;
-  Frame tool;
-};
 
 /// A point of a path in joint space with derivatives by path length: `d[k][j]` is the k-th derivative of joint j, in mm
 /// or deg.

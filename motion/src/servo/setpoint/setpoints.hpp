@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "rmac/motion/machine_size.hpp"
-#include "rmac/motion/plan.hpp"
 #include "rmac/motion/servo/servo_loop_parts.hpp"
+#include "rmac/motion/servo/setpoint.hpp"
 #include "servo/faults/fault_sink.hpp"
 #include "servo/joints/index_set.hpp"
 #include "servo/setpoint/brake.hpp"

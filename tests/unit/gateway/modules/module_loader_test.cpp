@@ -9,6 +9,9 @@
 #include <filesystem>
 
 #include "places.hpp"
+#include "rmac/motion/ports/actuator_map.hpp"
+#include "rmac/motion/ports/kinematics.hpp"
+#include "rmac/motion/ports/servo_law.hpp"
 
 namespace rmac::gateway {
 namespace {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "rmac/motion/curve.hpp"
+#include "curves/make_curves.hpp"
 
 namespace rmac::test {
 

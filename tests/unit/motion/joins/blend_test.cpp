@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "curves/make_curves.hpp"
 #include "unit/motion/joins/traces.hpp"
 
 namespace rmac::test {

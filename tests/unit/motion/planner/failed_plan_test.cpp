@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "planner/failed_attempt.hpp"
+#include "rmac/motion/plan.hpp"
 #include "unit/motion/planner/planner_bench.hpp"
 
 namespace rmac {

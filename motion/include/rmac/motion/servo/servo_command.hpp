@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "rmac/motion/machine_size.hpp"
-#include "rmac/motion/path_segment.hpp"
-#include "rmac/motion/plan.hpp"
+#include "rmac/motion/pose.hpp"
+#include "rmac/motion/servo/setpoint.hpp"
 
 namespace rmac {
 
