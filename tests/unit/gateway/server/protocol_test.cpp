@@ -48,9 +48,8 @@ TEST(ServerProtocol, TakesNothingFromWhoDoesNotBeginWithJson) {
                                   "{} HTTP/1.1\n" + request, "42\n" + request, "\xEF\xBB\xBF" + request}) {
     SCOPED_TRACE(sent);
     ServerBench bench;
-    bench.on_gateway([](Server&, FakeMachine& machine) {
-      EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now()).Times(0);
-    });
+    bench.on_gateway(
+        [](Server&, FakeMachine& machine) { EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now()).Times(0); });
     Client client(bench.port());
     client.send(sent);
     const json error = client.json_line()["error"];
