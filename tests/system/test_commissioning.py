@@ -177,6 +177,8 @@ class Commands(unittest.TestCase):
             client.call("RMAC_Config.Apply")
             changes.append((before, client.state()["cycle"]))
             self.assertTrue(client.state()["moving"])
+        # A record ends with the cycle in which it is asked for.
+        client.wait_note("state", lambda state: state["cycle"] > changes[-1][1] + 5)
         name = json.loads(self.rmac(appliance, "--json", "trace", "record"))["name"]
         head = json.loads(client.call("FlightRecorder.Read", Name=name, Offset=0)["text"].splitlines()[0])
         self.assertEqual((head["joints"][0]["law"], head["joints"][0]["gains"]),
