@@ -24,7 +24,13 @@ class LeastSquares {
     for (std::size_t j = 0; j < n_; ++j) {
       order_[kinematics.joint_type(j) == JointType::Rotary ? --turns : slides++] = j;
     }
+    // Of all columns: against those before it alone, a free joint's rounding errors would look like motion.
     double most = 0;
+    for (std::size_t j = 0; j < n_; ++j) {
+      double sum = 0;
+      for (std::size_t r = 0; r < 6; ++r) sum += jacobian[r * n_ + j] * jacobian[r * n_ + j];
+      most = std::max(most, sum);
+    }
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t k = 0; k <= i; ++k) {
         double sum = 0;
@@ -36,7 +42,6 @@ class LeastSquares {
           diagonal_[i] = sum;
         }
       }
-      most = std::max(most, diagonal_[i]);
       if (diagonal_[i] > kSingularPivot * most) {
         inverse_[i] = 1 / diagonal_[i];
         continue;
