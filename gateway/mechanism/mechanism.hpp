@@ -5,7 +5,7 @@
 #include "gateway/modules/module_loader.hpp"
 #include "rmac/motion/path_builder.hpp"
 #include "rmac/motion/plan_channel.hpp"
-#include "rmac/motion/plan_follower.hpp"
+#include "rmac/motion/follower/plan_follower.hpp"
 #include "rmac/motion/planner.hpp"
 #include "rmac/motion/servo/servo_loop.hpp"
 #include "rmac/motion/servo/servo_loop_parts.hpp"
@@ -22,7 +22,7 @@ struct Mechanism {
       : device(std::move(device_object)),
         modules(std::move(modules_in_use)),
         loop(std::move(servo_loop)),
-        follower(channel, loop->joint_count(), model.period_s),
+        follower(channel, model.joints, model.period_s),
         builder(model),
         planner(model, channel),
         planner_model(std::move(model)) {}

@@ -129,4 +129,18 @@ LaidPath LaidPath::backward(double s, double distance) const {
   return back;
 }
 
+LaidPath LaidPath::way_to(double s, const PathSegments& away) const {
+  LaidPath way(joints_, period_s_);
+  way.origin_ = s;
+  for (const auto& segment : away) way.origin_ -= segment->length();
+  for (auto segment = away.rbegin(); segment != away.rend(); ++segment) {
+    way.append(part_of(**segment, 0, (*segment)->length(), Direction::Backward));
+  }
+  return way;
+}
+
+const PoseToJoints* LaidPath::map_at(double s) const {
+  return segments_.empty() ? nullptr : segments_[view().find(s + kSamePlace, 1)]->map().get();
+}
+
 }  // namespace rmac

@@ -64,6 +64,10 @@ class LaidPath {
   /// What lies up to `distance` behind s, as a path of its own that ends no moves and runs the other way: it begins at
   /// path length s - (its length) and ends at s. Empty when nothing is remembered.
   [[nodiscard]] LaidPath backward(double s, double distance) const;
+  /// What leads away from the place at s, as a path of its own that leads there, and ends no moves either.
+  [[nodiscard]] LaidPath way_to(double s, const PathSegments& away) const;
+  /// The pose to joints map of what lies at s; nullptr where nothing is laid.
+  [[nodiscard]] const PoseToJoints* map_at(double s) const;
 
  private:
   void lay(const PathSegments& fresh);

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "planner/failed_attempt.hpp"
-#include "planner/laid_path.hpp"
 #include "planner/next_window.hpp"
 #include "planner/planning_time.hpp"
 #include "planner/published_plan.hpp"
+#include "planner/route.hpp"
 #include "planner/stop_distance.hpp"
 #include "time_law/window.hpp"
 
@@ -33,23 +34,25 @@ struct Planner::Impl {
   PlannerModel model;
   PlanChannel& channel;
 
-  LaidPath forward;
-  std::optional<LaidPath> backward;  ///< a retrace: what lies behind the place on `forward` where it began
-  /// After a turn to another path, until a plan is published on it: where on it the machine stands.
-  std::optional<double> turned_to;
+  Route route;
 
-  std::vector<PublishedPlan> alive;  ///< in order of publication; the last is the base of what is planned next
+  std::vector<PublishedPlan> alive;      ///< in order of publication; the last is the base of what is planned next
+  std::vector<PublishedPlan> abandoned;  ///< when the path was left; still the follower's
+  std::uint64_t departures = 0;          ///< of the path, that are known
   std::uint64_t next_id = 1;
   PlanningTime planning_time;
   FailedAttempt attempt;
+  bool stop_came_late = false;  ///< of the stops tried since the last command: the next is left the time it takes
   PathCommand wanted = PathCommand::Stop;
   double factor = 1;     ///< the override
   double limit_s = 0;    ///< path length at which RunOne ends
-  double origin_mm = 0;  ///< of `forward`'s path length: so far behind the first one's
+  double origin_mm = 0;  ///< of the forward path's length: so far behind the first one's
 
-  Impl(PlannerModel m, PlanChannel& c) : model(std::move(m)), channel(c), forward(model.joints, model.period_s) {}
+  Impl(PlannerModel m, PlanChannel& c) : model(std::move(m)), channel(c), route(model) {}
 
   [[nodiscard]] FeedRule feed(double override_factor) const { return {override_factor, model.max_feed_mm_s}; }
+  [[nodiscard]] LaidPath& path() { return route.path(); }
+  [[nodiscard]] const LaidPath& path() const { return route.path(); }
   [[nodiscard]] double period() const { return model.period_s; }
   [[nodiscard]] const PublishedPlan* base() const { return alive.empty() ? nullptr : &alive.back(); }
   [[nodiscard]] double now_s(const PublishedPlan& p, std::int64_t cycle) const {
@@ -61,36 +64,34 @@ struct Planner::Impl {
   [[nodiscard]] bool ended(const ServoProgress& progress) const {
     return base() == nullptr || (acknowledged(progress) && now_s(*base(), progress.cycle) >= base()->plan->end_time_s);
   }
-  /// The path that is travelled, or will be from rest.
-  [[nodiscard]] LaidPath& path() { return backward ? *backward : forward; }
-  [[nodiscard]] const LaidPath& path() const { return backward ? *backward : forward; }
   /// Where on it everything ends that is published.
   [[nodiscard]] double base_end_s() const {
-    if (turned_to) return *turned_to;
+    if (route.turned_to()) return *route.turned_to();
     return base() == nullptr ? path().begin() : base()->end_s();
   }
-  /// The place on `forward` where the machine stands at rest.
-  [[nodiscard]] double place_s() const {
-    return backward ? backward->begin() + backward->end() - base_end_s() : base_end_s();
-  }
+  /// The place on `forward` where the machine stands at rest, or is to go on.
+  [[nodiscard]] double place_s() const { return route.on_forward(base_end_s()); }
 
   void collect(const ServoProgress& progress) {
     const Plan* plan = nullptr;
     while (channel.retired.pop(plan)) {
-      std::erase_if(alive, [&](const PublishedPlan& p) { return p.plan.get() == plan; });
+      for (auto* plans : {&alive, &abandoned}) {
+        std::erase_if(*plans, [&](const PublishedPlan& p) { return p.plan.get() == plan; });
+      }
     }
     // A refused plan never acted: `alive` ends again with the plan that is followed.
     planning_time.learn(progress);
   }
 
   [[nodiscard]] WindowEnd window_end(double s, double ramps) {
-    const auto limit = wanted == PathCommand::RunOne ? std::optional(limit_s) : std::nullopt;
+    const auto limit = wanted == PathCommand::RunOne && !route.on_detour() ? std::optional(limit_s) : std::nullopt;
     return next_window_end(path(), model.joints, s, ramps, factor, limit);
   }
 
   bool publish(std::unique_ptr<Plan> plan, bool stops, const WindowEnd& end, double window_begin) {
     plan->id = next_id;
     plan->origin_mm = origin_mm;
+    plan->departures = departures;
     const LawPiece& last = plan->law.back();
     plan->end_time_s = last.t0 + last.duration;
     const double s_begin = plan->law.front().start.s, s_end = last.at(last.duration).s;
@@ -104,7 +105,7 @@ struct Planner::Impl {
     PublishedPlan p;
     p.stops = stops;
     p.hard_end = end.hard;
-    p.backward = backward.has_value();
+    p.on_detour = route.on_detour();
     p.override_factor = factor;
     p.commit_t = commit_time(*plan, window_begin, end.planned_again);
     p.law = plan->law;
@@ -112,8 +113,9 @@ struct Planner::Impl {
     if (!channel.published.push(p.plan.get()))
       return false;  // the servo loop does not take plans: it stands still or is gone
     ++next_id;
-    turned_to.reset();
+    route.planned();
     alive.push_back(std::move(p));
+    if (stops) channel.stopping.store(alive.back().plan->id, std::memory_order_release);
     return true;
   }
 
@@ -163,10 +165,9 @@ struct Planner::Impl {
     return publish(std::move(plan), false, end, from.s);
   }
 
-  /// Leaves the plan `planning_time.lead()` cycles from now: for a new override, or (s_end given) to stop there.
-  bool divert(const ServoProgress& progress, std::optional<double> s_stop) {
+  /// Leaves the plan in `cycle`: for a new override, or (s_stop given) to stop there.
+  bool divert(std::int64_t cycle, std::optional<double> s_stop) {
     const PublishedPlan& p = *base();
-    const std::int64_t cycle = earliest(p, progress.cycle + planning_time.lead());
     const PathState from = p.state_at(now_s(p, cycle));
     const WindowEnd end = s_stop ? WindowEnd{*s_stop, false} : window_end(from.s, kRampsAtOnce);
     const double allowed = s_stop ? std::max(factor, p.override_factor) : factor;
@@ -181,7 +182,9 @@ struct Planner::Impl {
 
   bool stop(const ServoProgress& progress) {
     const PublishedPlan& p = *base();
-    const PathState from = p.state_at(now_s(p, earliest(p, progress.cycle + planning_time.lead())));
+    const std::int64_t lead = stop_came_late ? planning_time.lead() : PlanningTime::kShortestLead;
+    const std::int64_t cycle = earliest(p, progress.cycle + lead);
+    const PathState from = p.state_at(now_s(p, cycle));
     if (from.v <= 0) return no_plan(progress);
     const double shortest = stop_distance(path().view(), model.joints, from);
     // The next demanded rest on the followed plan ends every search: the plan itself comes to rest there.
@@ -189,7 +192,7 @@ struct Planner::Impl {
     for (const double stretch : {1.02, 1.08, 1.2, 1.4, 1.8, 2.5, 4.0, 7.0}) {
       const double s_end = from.s + shortest * stretch;
       if (s_end >= rest - kSamePlace) return end_at_rest(progress, rest);
-      if (divert(progress, s_end)) return true;
+      if (divert(cycle, s_end)) return true;
     }
     // This state, at the edge of what the limits allow, has no way out but the plan's own; one a little later may.
     return no_plan(progress);
@@ -200,6 +203,7 @@ struct Planner::Impl {
     const PublishedPlan& p = *base();
     if (rest >= base_end_s() - kSamePlace) {
       alive.back().stops = true;
+      channel.stopping.store(alive.back().plan->id, std::memory_order_release);
       return true;
     }
     const double t_rest = p.time_at(rest - kSamePlace);
@@ -216,9 +220,9 @@ struct Planner::Impl {
   /// The machine has come to path length s.
   void travelled(double s) {
     path().travelled(s, base()->law.front().start.s);
-    if (backward || turned_to || s < kFarthest_mm) return;
+    if (route.on_detour() || route.turned_to() || s < kFarthest_mm) return;
     const double by = std::floor(s);
-    forward.move_origin(by);
+    route.forward.move_origin(by);
     for (PublishedPlan& p : alive) p.move_origin(by);
     limit_s -= by;
     origin_mm += by;
@@ -235,20 +239,24 @@ struct Planner::Impl {
   [[nodiscard]] Task task(const ServoProgress& progress) const {
     if (!acknowledged(progress)) return Task::None;
     const bool at_end = ended(progress);
-    const bool this_way = backward.has_value() == (wanted == PathCommand::Retrace);
+    const bool this_way = route.retraces() == (wanted == PathCommand::Retrace);
+    if (route.beside()) return Task::None;
     const bool run = wanted != PathCommand::Stop && factor > 0 && this_way;
     if (attempt.too_early(progress.cycle, at_end)) return Task::None;
     // A plan is left only once it is followed: what replaces it begins somewhere along it.
     const bool begun = base() == nullptr || progress.cycle >= base()->plan->start_cycle;
     if (!run && at_end) {
-      const bool forward_again = backward && (wanted == PathCommand::Run || wanted == PathCommand::RunOne);
+      const bool forward_again = route.retraces() && (wanted == PathCommand::Run || wanted == PathCommand::RunOne);
       return forward_again ? Task::Turn : Task::None;
     }
     if (!run) return base()->stops || !begun ? Task::None : Task::Stop;
-    const double limit = wanted == PathCommand::RunOne ? std::min(limit_s, path().end()) : path().end();
+    const bool one = wanted == PathCommand::RunOne && !route.on_detour();
+    const double limit = one ? std::min(limit_s, path().end()) : path().end();
     const double planned_to = base_end_s();
+    const bool rejoined = route.rejoins() && at_end && planned_to >= path().end() - kSamePlace;
+    if (rejoined) return Task::Turn;
     const bool more = planned_to < limit - kSamePlace;
-    const bool one_done = wanted == PathCommand::RunOne && planned_to >= limit_s - kSamePlace;
+    const bool one_done = one && planned_to >= limit_s - kSamePlace;
     const bool dry = planned_to >= path().end() - kSamePlace && !one_done;
     if (dry && path().can_supply()) return Task::Supply;
     const PublishedPlan* const p = base();
@@ -268,23 +276,29 @@ struct Planner::Impl {
   }
 
   bool step(const ServoProgress& progress) {
+    take_note_of(progress);
     collect(progress);
-    if (base() != nullptr && acknowledged(progress) && progress.last_refused == base()->plan->id)
+    if (base() != nullptr && acknowledged(progress) && progress.last_refused == base()->plan->id) {
+      stop_came_late = base()->stops;
       return false;  // comes back through `retired`
-    if (base() != nullptr && acknowledged(progress) && base()->backward == backward.has_value())
+    }
+    if (base() != nullptr && acknowledged(progress) && base()->on_detour == route.on_detour())
       travelled(base()->state_at(now_s(*base(), progress.cycle)).s);
     const Task next = task(progress);
-    if (next != Task::None && next != Task::Supply && next != Task::Turn) planning_time.begin(progress.cycle);
+    if (next != Task::None && next != Task::Supply && next != Task::Turn) {
+      planning_time.begin(progress.cycle, next == Task::Stop && !stop_came_late);
+    }
     switch (next) {
       case Task::None:
         return false;
       case Task::Stop:
         return stop(progress);
       case Task::Turn:
-        turn_forward();
+        route.turn_forward(base_end_s());
+        if (wanted == PathCommand::RunOne) limit_run();
         return false;
       case Task::Override:
-        return divert(progress, std::nullopt) || no_plan(progress);
+        return divert(earliest(*base(), progress.cycle + planning_time.lead()), std::nullopt) || no_plan(progress);
       case Task::Supply:
         if (!path().supply()) path().release();
         return false;
@@ -297,35 +311,29 @@ struct Planner::Impl {
   }
 
   /// Sets RunOne's limit. After a retrace, the move that is run is the one not yet done.
-  void limit_run() { limit_s = forward.next_move_end(std::max(place_s(), forward.farthest())); }
+  void limit_run() { limit_s = route.forward.next_move_end(std::max(place_s(), route.forward.farthest())); }
 
-  /// Readies the way back from where the machine stands; its length.
-  double turn_back(double distance) {
-    LaidPath back = forward.backward(place_s(), distance);
-    if (back.size() == 0) return 0;
-    backward = std::move(back);
-    turned_to = backward->begin();
-    return backward->end() - backward->begin();
-  }
-
-  void turn_forward() {
-    turned_to = place_s();
-    backward.reset();
-    if (wanted == PathCommand::RunOne) limit_run();
-  }
-
-  /// Path length goes on counting, so that plans before and after never disagree about places, nor about what was done.
-  void clear() {
-    const double s = std::max(place_s(), forward.farthest());
-    backward.reset();
-    forward.clear(s);
-    turned_to = s;
+  /// Where on its path the follower left it, everything ends that was published.
+  void take_note_of(const ServoProgress& progress) {
+    const PathDeparture& last = progress.departure;
+    if (last.count == departures) return;
+    departures = last.count;
+    const auto left = std::find_if(alive.begin(), alive.end(),
+                                   [&](const PublishedPlan& p) { return p.plan->id == last.plan; });
+    const double s = left == alive.end() ? base_end_s() : left->state_at(now_s(*left, last.cycle)).s;
+    if (!route.on_detour() && left != alive.end()) route.forward.travelled(s, left->law.front().start.s);
+    route.leave(s);
+    std::move(alive.begin(), alive.end(), std::back_inserter(abandoned));
+    alive.clear();
+    attempt.forget();
   }
 
   void command(PathCommand command) {
     if (command == PathCommand::RunOne) limit_run();
     if (command != wanted) attempt.forget();
+    if (command != wanted) stop_came_late = false;
     wanted = command;
+    if (command != PathCommand::Stop) channel.stopping.store(0, std::memory_order_release);
   }
 
   void set_override(double percent) {
@@ -339,19 +347,28 @@ Planner::Planner(PlannerModel model, PlanChannel& channel) : impl_(std::make_uni
 Planner::~Planner() = default;
 
 void Planner::add(PathSegments segments) {
-  impl_->forward.add(std::move(segments));
+  impl_->route.forward.add(std::move(segments));
 }
 
 void Planner::clear() {
-  impl_->clear();
+  impl_->route.clear(impl_->base_end_s());
 }
 
 double Planner::turn_back(double distance_mm) {
-  return impl_->turn_back(distance_mm);
+  return impl_->route.turn_back(impl_->base_end_s(), distance_mm);
 }
 bool Planner::retraced(const ServoProgress& progress) const noexcept {
   const Impl& i = *impl_;
-  return i.backward && i.ended(progress) && i.base_end_s() >= i.backward->end() - kSamePlace;
+  return i.route.retraces() && i.ended(progress) && i.base_end_s() >= i.path().end() - kSamePlace;
+}
+bool Planner::off_path() const noexcept {
+  return impl_->route.beside();
+}
+double Planner::distance_to_path(std::span<const double> joints) const {
+  return impl_->route.distance_to(joints);
+}
+Expected<> Planner::rejoin(std::span<const double> joints) {
+  return impl_->route.rejoin(impl_->model, joints, kRejoinSpeed);
 }
 void Planner::command(PathCommand command) noexcept {
   impl_->command(command);
@@ -369,11 +386,11 @@ bool Planner::at_rest(const ServoProgress& progress) const noexcept {
   return impl_->ended(progress);
 }
 std::size_t Planner::moves_left() const noexcept {
-  return impl_->forward.moves_left();
+  return impl_->route.forward.moves_left();
 }
 
 std::optional<PathPlace> Planner::farthest_place() const {
-  return impl_->forward.place_at(std::max(impl_->place_s(), impl_->forward.farthest()));
+  return impl_->route.forward.place_at(std::max(impl_->place_s(), impl_->route.forward.farthest()));
 }
 
 }  // namespace rmac

@@ -8,7 +8,6 @@
 namespace rmac {
 namespace {
 
-constexpr std::int64_t kLeadAtFirst = 2;
 constexpr double kLongest = 64;
 /// Of the longest time seen, this much is still believed after each shorter one.
 constexpr double kRemembered = 0.9;
@@ -22,13 +21,13 @@ void PlanningTime::learn(const ServoProgress& progress) noexcept {
   }
   if (progress.last_refused != last_refused_) {
     last_refused_ = progress.last_refused;
-    cycles_ = 2 * cycles_ + 1;
+    if (!in_haste_) cycles_ = 2 * cycles_ + 1;
   }
   cycles_ = std::min(cycles_, kLongest);
 }
 
 std::int64_t PlanningTime::lead() const noexcept {
-  return kLeadAtFirst + static_cast<std::int64_t>(std::ceil(cycles_));
+  return kShortestLead + static_cast<std::int64_t>(std::ceil(cycles_));
 }
 
 }  // namespace rmac

@@ -37,7 +37,7 @@ double CpuTime::since_s() const {
 Drive::Drive(const PlannerModel& model, const std::vector<double>& start_joints)
     : builder(model),
       planner(model, to_tap_),
-      follower_(to_follower_, model.joints.size(), model.period_s),
+      follower_(to_follower_, model.joints, model.period_s),
       period_s_(model.period_s) {
   builder.restart(start_joints, Frames{});
   follower_.hold_at(start_joints);
@@ -52,7 +52,7 @@ Expected<> Drive::queue(const Move& move) {
 }
 
 ServoProgress Drive::progress() const {
-  return {cycle_, follower_.accepted_plan(), follower_.last_refused()};
+  return {cycle_, follower_.accepted_plan(), follower_.last_refused(), follower_.departure()};
 }
 
 void Drive::pass_plans() {

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "rmac/motion/path_builder.hpp"
-#include "rmac/motion/plan_follower.hpp"
+#include "rmac/motion/follower/plan_follower.hpp"
 #include "rmac/motion/planner.hpp"
 
 namespace rmac::bench {

@@ -16,6 +16,7 @@ struct Plan {
   std::int64_t start_cycle = 0;  ///< time 0 of the law
   /// Last cycle in which it may be taken over: until then it agrees with the plan before it.
   std::int64_t latest_cycle = 0;
+  std::uint64_t departures = 0;  ///< what `PathDeparture::count` was when it was made; else it is not taken over
   PathSegments segments;
   /// Where path length is counted from, as far along the path as plans before it have moved their zero, in whole mm: a
   /// path length never grows so long that its rounding shows in what the joints are asked.

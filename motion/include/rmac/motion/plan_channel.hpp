@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 
 namespace rmac {
 
@@ -42,6 +43,8 @@ struct Plan;
 struct PlanChannel {
   SpscRing<const Plan*, 16> published;
   SpscRing<const Plan*, 64> retired;
+  /// Id of the plan by which the motion ends as `PathCommand::Stop` asked; 0 while none was asked for, or is found.
+  std::atomic<std::uint64_t> stopping{0};
 };
 
 }  // namespace rmac

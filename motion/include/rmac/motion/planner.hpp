@@ -3,8 +3,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "rmac/motion/error.hpp"
+#include "rmac/motion/follower/path_departure.hpp"
 #include "rmac/motion/path_segment.hpp"
 #include "rmac/motion/plan_channel.hpp"
 #include "rmac/motion/planner_model.hpp"
@@ -17,6 +20,7 @@ struct ServoProgress {
   std::int64_t cycle = 0;           ///< the cycle that is being executed
   std::uint64_t accepted_plan = 0;  ///< `PlanFollower::accepted_plan`
   std::uint64_t last_refused = 0;   ///< `PlanFollower::last_refused`
+  PathDeparture departure{};        ///< `PlanFollower::departure`
 };
 
 /// A place on the path, within one of the client's moves.
@@ -51,6 +55,15 @@ class Planner {
   double turn_back(double distance_mm);
   /// The machine rests at the end of a retrace.
   [[nodiscard]] bool retraced(const ServoProgress& progress) const noexcept;
+  /// Joints were braked beside the path (`PathDeparture`): nothing is planned until `rejoin` or `clear`.
+  [[nodiscard]] bool off_path() const noexcept;
+  /// How far joints that rest beside the path are from where they left it, joint by joint, mm or degrees: the largest.
+  [[nodiscard]] double distance_to_path(std::span<const double> joints) const;
+  /// Has joints that rest beside the path go back to where they left it, all together on the straight line through the
+  /// joints' space at `kRejoinSpeed` of their speeds, as soon as the path is commanded to run; from there it goes on.
+  /// An error leaves everything as it was.
+  [[nodiscard]] Expected<> rejoin(std::span<const double> joints);
+  static constexpr double kRejoinSpeed = 0.1;
   void command(PathCommand command) noexcept;
   /// 0 to 200 percent of the programmed feed, from as soon as the limits allow.
   void set_override(double percent) noexcept;

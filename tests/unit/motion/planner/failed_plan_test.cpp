@@ -51,7 +51,7 @@ class FailedPlan : public ::testing::Test {
   }
 
   void no_plan(bool fails) { *fails_ = fails; }
-  [[nodiscard]] ServoProgress at(std::int64_t cycle) const { return {cycle, accepted_, 0}; }
+  [[nodiscard]] ServoProgress at(std::int64_t cycle) const { return {cycle, accepted_, 0, {}}; }
   [[nodiscard]] bool idle(std::int64_t cycle) const { return planner.idle(at(cycle)); }
 
   /// The plan that is published when there is something to do in this cycle, and is taken at once; else nullptr.

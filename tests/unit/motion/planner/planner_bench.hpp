@@ -8,7 +8,7 @@
 
 #include "rmac/modules/chain_kinematics.hpp"
 #include "rmac/motion/path_builder.hpp"
-#include "rmac/motion/plan_follower.hpp"
+#include "rmac/motion/follower/plan_follower.hpp"
 #include "rmac/motion/planner.hpp"
 
 namespace rmac::test {
@@ -28,7 +28,7 @@ class PlannerBench {
   explicit PlannerBench(PlannerModel model)
       : builder(model),
         planner(model, channel_),
-        follower_(channel_, model.joints.size(), model.period_s),
+        follower_(channel_, model.joints, model.period_s),
         joints_(model.joints) {
     follower_.hold_at(std::vector<double>(model.joints.size(), 0.0));
   }
@@ -53,6 +53,12 @@ class PlannerBench {
     planner.step(known);
   }
 
+  /// Cycles in which the planner does nothing any more: it hangs.
+  void cycles_without_planner(int cycles) {
+    for (int i = 0; i < cycles; ++i) servo_cycle();
+  }
+  [[nodiscard]] PlanFollower& follower() { return follower_; }
+
   /// Runs until the machine rests and nothing is left to plan; false when it has not after `most` cycles.
   bool run(std::int64_t most = 2000000) {
     for (std::int64_t i = 0; i < most; ++i) {
@@ -62,7 +68,7 @@ class PlannerBench {
     return false;
   }
 
-  [[nodiscard]] ServoProgress progress() const { return {cycle_, follower_.accepted_plan(), follower_.last_refused()}; }
+  [[nodiscard]] ServoProgress progress() const { return {cycle_, follower_.accepted_plan(), follower_.last_refused(), follower_.departure()}; }
   [[nodiscard]] std::uint64_t refused() const { return follower_.last_refused(); }
 
   struct Peaks {

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "planner/laid_path.hpp"
+#include "rmac/motion/error.hpp"
+#include "rmac/motion/planner_model.hpp"
+
+namespace rmac {
+
+/// Which path is travelled: the queue's, `forward`; or a detour from it: back over what lies behind the tool, or from
+/// beside the path to where it was left. Planner thread.
+class Route {
+ public:
+  explicit Route(const PlannerModel& model) : forward(model.joints, model.period_s) {}
+
+  LaidPath forward;
+
+  /// The path that is travelled, or will be from rest.
+  [[nodiscard]] LaidPath& path() noexcept { return detour_ ? detour_->path : forward; }
+  [[nodiscard]] const LaidPath& path() const noexcept { return detour_ ? detour_->path : forward; }
+  [[nodiscard]] bool on_detour() const noexcept { return detour_.has_value(); }
+  [[nodiscard]] bool retraces() const noexcept { return detour_ && detour_->retraces; }
+  [[nodiscard]] bool rejoins() const noexcept { return detour_ && !detour_->retraces; }
+  /// The place on `forward` of a place on the path that is travelled, or at which the detour will come to it.
+  [[nodiscard]] double on_forward(double s) const noexcept;
+  /// The joints rest, or brake, beside the path, which was left at `turned_to`.
+  [[nodiscard]] bool beside() const noexcept { return beside_; }
+  /// After a turn to another path, until a plan is published on it: where on it the machine stands, or was left.
+  [[nodiscard]] const std::optional<double>& turned_to() const noexcept { return turned_to_; }
+  void planned() noexcept { turned_to_.reset(); }
+
+  // Only at rest, `s` being the place on the path that is travelled:
+
+  /// Readies the way back; its length, 0 when there is none.
+  double turn_back(double s, double distance);
+  /// Leaves the detour.
+  void turn_forward(double s);
+  /// Drops all paths; path length goes on counting.
+  void clear(double s);
+
+  /// The joints left the path at `s` of it, in motion.
+  void leave(double s);
+  /// How far joints are from where the path was left: the largest of all, mm or degrees.
+  [[nodiscard]] double distance_to(std::span<const double> joints) const;
+  /// Readies the way back to there, at `speed` of the joints' speeds; an error leaves everything as it was.
+  [[nodiscard]] Expected<> rejoin(const PlannerModel& model, std::span<const double> joints, double speed);
+
+ private:
+  struct Detour {
+    LaidPath path;
+    bool retraces = false;
+    double joins_at = 0;  ///< the place on `forward` to which it leads, unless it retraces
+  };
+  void take(Detour detour);
+
+  std::optional<Detour> detour_;
+  std::optional<double> turned_to_;
+  bool beside_ = false;
+};
+
+}  // namespace rmac
