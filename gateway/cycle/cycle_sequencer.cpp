@@ -204,6 +204,7 @@ CycleSequencer::Verdict CycleSequencer::step(const CycleObservation& seen) noexc
     commanded_ = command;
     verdict.command = command;
   }
+  if (const auto* jog = phase_.runs<Phase::Jog>()) verdict.jog_until_s = jog->until_s;
   return verdict;
 }
 

@@ -73,6 +73,7 @@ class CycleSequencer {
     bool clear_queue = false;
     std::optional<StopCause> came_to_rest;  ///< a stop is complete
     bool spindle_timed_out = false;         ///< now Faulted
+    std::optional<double> jog_until_s;      ///< machine time at which the jog under way lapses
   };
   [[nodiscard]] Verdict step(const CycleObservation& seen) noexcept;
 
@@ -82,6 +83,8 @@ class CycleSequencer {
   /// A stop is under way at whose end the queue is emptied.
   [[nodiscard]] bool empties_queue() const noexcept { return phase_.empties_queue(); }
   [[nodiscard]] bool waits_for_spindle() const noexcept { return spindle_wait_.waiting(); }
+  /// The planner was told to travel the path, one way or the other.
+  [[nodiscard]] bool travels() const noexcept { return commanded_ != PathCommand::Stop; }
 
  private:
   struct OneMove {

@@ -48,7 +48,7 @@ bool Jogging::renew(double share) {
 }
 
 Expected<> Jogging::end() {
-  return cycle_.command(
+  return cycle_.stop_command(
       [](CycleSequencer& cycle, const CycleObservation&) { return cycle.jogs() ? cycle.stop() : Expected<>{}; });
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -63,8 +64,54 @@ void MachineCycle::settle(const ServoStatus& status) {
   if (mechanism_ && sequencer.state() == CycleState::Running && wishes.turn_on_again()) await_spindles();
   const CycleObservation seen = observe(status);
   watch_probe(seen, status);
+  watch_path(seen, status);
   apply_verdict(sequencer.step(seen), status);
+  lead_back(seen, status);
   take_steps(status);
+}
+
+void MachineCycle::watch_path(const CycleObservation& seen, const ServoStatus& status) {
+  if (!mechanism_ || status.generation != generation_) return;
+  const bool waits = sequencer.waits_for_spindle() && !sequencer.positions() && seen.at_rest;
+  const bool should_move = sequencer.travels() && sequencer.state() == CycleState::Running && seen.follows && !waits &&
+                           queue.planned() > 0 && feed.effective_percent() > 0;
+  const auto wrong = path_watch_.step(
+      {status.t_s, should_move, status.move_id, status.s_mm, status.progress.departure});
+  if (!wrong || is_faulted(sequencer.state())) return;
+  news.tell(Event::Kind::Fault, *wrong, MinorCode::Other);
+  sequencer.fault();
+}
+
+void MachineCycle::lead_back(const CycleObservation& seen, const ServoStatus& status) {
+  if (!mechanism_ || status.generation != generation_ || !mechanism_->planner.off_path()) {
+    told_beside_ = false;
+    return;
+  }
+  if (!seen.at_rest || is_faulted(sequencer.state())) return;
+  if (!sequencer.travels()) {
+    if (!std::exchange(told_beside_, true)) {
+      news.tell(Event::Kind::CycleStateChanged, fmt::format("{}{}", to_string(sequencer.state()), beside_path(status)));
+    }
+    return;
+  }
+  auto led = mechanism_->planner.rejoin({status.position_set.data(), status.joint_count});
+  if (led) return;
+  news.tell(Event::Kind::Fault,
+            fmt::format("going back to the path, which a stop has left: {}; jog away from there, and send the program "
+                        "again, after a reset",
+                        led.error().message),
+            led.error().code);
+  sequencer.fault();
+  tell_state();
+}
+
+std::string MachineCycle::beside_path(const ServoStatus& status) const {
+  return fmt::format(
+      ", beside the path: no plan to stop on it was there within two cycles, so each joint came to rest by itself; the "
+      "farthest is {:.3f} mm or degrees from where it left. FeedResume and CycleStart go back there first, at {:.0f} % "
+      "of the joints' speeds",
+      mechanism_->planner.distance_to_path({status.position_set.data(), status.joint_count}),
+      100 * Planner::kRejoinSpeed);
 }
 
 void MachineCycle::notice_fault() {
@@ -91,11 +138,21 @@ void MachineCycle::apply_verdict(const CycleSequencer::Verdict& verdict, const S
     queue.begin_anew();
     wishes.change([homes](ServoWishes& wish) { wish.home = homes; });
   }
-  if (mechanism_ && verdict.command) mechanism_->planner.command(*verdict.command);
+  if (const double until_s = verdict.jog_until_s.value_or(std::numeric_limits<double>::infinity());
+      wishes.now().moves_until_s != until_s) {
+    wishes.change([until_s](ServoWishes& wish) { wish.moves_until_s = until_s; });
+  }
+  if (mechanism_ && verdict.command) {
+    link_.stops.planned.store(*verdict.command == PathCommand::Stop, std::memory_order_release);
+    mechanism_->planner.command(*verdict.command);
+  }
   if (mechanism_ && verdict.clear_queue) empty_queue(status.progress.cycle);
   if (verdict.spindle_timed_out) tell_spindle_timeout(status);
   if (verdict.came_to_rest) {
-    news.tell(Event::Kind::Stopped, describe(*verdict.came_to_rest), code_of(*verdict.came_to_rest));
+    const bool beside = mechanism_ && mechanism_->planner.off_path();
+    told_beside_ = beside;
+    news.tell(Event::Kind::Stopped, describe(*verdict.came_to_rest) + (beside ? beside_path(status) : std::string()),
+              code_of(*verdict.came_to_rest));
   }
   if (sequencer.state() == CycleState::Idle && feed.end_jog()) apply_feed();
   tell_state();
@@ -300,6 +357,7 @@ std::shared_ptr<Mechanism> MachineCycle::install(std::shared_ptr<Mechanism> next
   builder_ = mechanism_ ? &mechanism_->builder : nullptr;
   wishes.forget_later();
   tools.drop(queue.forget());
+  path_watch_.restart();
   queue.install(mechanism_ ? &mechanism_->planner : nullptr);
   apply_feed();
   const ServoStatus now = status();

@@ -7,7 +7,8 @@
 
 #include "gateway/cycle/cycle_sequencer.hpp"
 #include "gateway/cycle/feed_override.hpp"
-#include "gateway/cycle/probe_watch.hpp"
+#include "gateway/cycle/watch/path_watch.hpp"
+#include "gateway/cycle/watch/probe_watch.hpp"
 #include "gateway/cycle/standing_wishes.hpp"
 #include "gateway/cycle/tool_change.hpp"
 #include "gateway/mechanism/mechanism.hpp"
@@ -54,6 +55,16 @@ class MachineCycle {
     return result;
   }
 
+  /// As `command`, for what stops the machine: the servo thread knows before the lock is waited for, and knows it still
+  /// where the planner hangs with it.
+  template <typename Function>
+  auto stop_command(Function&& function) EXCLUDES(lock) {
+    link_.stops.asked.store(true, std::memory_order_release);
+    auto result = command(std::forward<Function>(function));
+    link_.stops.asked.store(false, std::memory_order_release);
+    return result;
+  }
+
   /// One bounded piece of planning, and the cycle states.
   [[nodiscard]] Planning::Pace advance(const ServoStatus& status) REQUIRES(lock);
   /// Takes note of a fault that samples, and so clients, show already.
@@ -97,6 +108,11 @@ class MachineCycle {
   void watch_probe(const CycleObservation& seen, const ServoStatus& status) REQUIRES(lock);
   void apply_verdict(const CycleSequencer::Verdict& verdict, const ServoStatus& status) REQUIRES(lock);
   void tell_spindle_timeout(const ServoStatus& status) REQUIRES(lock);
+  /// Faulted where the path is left, or does not get on.
+  void watch_path(const CycleObservation& seen, const ServoStatus& status) REQUIRES(lock);
+  /// From beside the path the way back to it comes first.
+  void lead_back(const CycleObservation& seen, const ServoStatus& status) REQUIRES(lock);
+  [[nodiscard]] std::string beside_path(const ServoStatus& status) const REQUIRES(lock);
   void tell_state() REQUIRES(lock);
   /// The next step, which is no path; true when it is done.
   [[nodiscard]] bool take_step(double t_s) REQUIRES(lock);
@@ -107,6 +123,8 @@ class MachineCycle {
   std::shared_ptr<Mechanism> mechanism_ GUARDED_BY(lock);
   std::uint64_t generation_ GUARDED_BY(lock) = 0;
   PathBuilder* builder_ = nullptr;  ///< the gateway thread's alone
+  PathWatch path_watch_ GUARDED_BY(lock);
+  bool told_beside_ GUARDED_BY(lock) = false;  ///< that the machine rests beside its path
   CycleState reported_state_ GUARDED_BY(lock) = CycleState::Idle;
 };
 

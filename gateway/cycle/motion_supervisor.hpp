@@ -38,6 +38,13 @@ class MotionSupervisor final : public Planning {
   auto command(Function&& function) {
     return cycle_.command(std::forward<Function>(function));
   }
+  /// The same, of what stops the machine: the servo thread knows at once, whoever holds the lock.
+  template <typename Function>
+  auto stop_command(Function&& function) {
+    return cycle_.stop_command(std::forward<Function>(function));
+  }
+  /// The planner is in a module that does not return: nothing here can be done any more. Needs no lock.
+  [[nodiscard]] bool planner_hangs() { return cycle_.lock.planner_hangs(); }
   [[nodiscard]] Parking& parking() noexcept { return parking_; }
   [[nodiscard]] Probing& probing() noexcept { return probing_; }
   [[nodiscard]] Jogging& jogging() noexcept { return jogging_; }

@@ -16,12 +16,14 @@ Expected<> CamCycle::start(sdk::CycleMode mode) {
 }
 
 Expected<> CamCycle::stop() {
+  // Before the forces, for which the lock is waited.
+  auto stopped = supervisor_.stop_command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.stop(); });
   forces_.let_go();
-  return supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.stop(); });
+  return stopped;
 }
 
 Expected<> CamCycle::hold() {
-  return supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.hold(); });
+  return supervisor_.stop_command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.hold(); });
 }
 
 Expected<> CamCycle::resume() {
@@ -33,8 +35,10 @@ Expected<double> CamCycle::retrace(double distance_mm) {
 }
 
 Expected<> CamCycle::stop_now() {
+  auto stopped = supervisor_.stop_command(
+      [](CycleSequencer& cycle, const CycleObservation&) { return cycle.stop_and_clear(); });
   forces_.let_go();
-  return supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.stop_and_clear(); });
+  return stopped;
 }
 
 bool CamCycle::started() const {

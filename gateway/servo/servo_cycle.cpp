@@ -7,6 +7,12 @@
 #include "rmac/motion/servo/servo_handover.hpp"
 
 namespace rmac::gateway {
+namespace {
+
+/// A stop on the path is waited for so long. The planner aims at this (`PlanningTime::kShortestLead`).
+constexpr std::int64_t kStopsOnPath = 2;
+
+}  // namespace
 
 void ServoCycle::run(std::uint64_t missed) noexcept {
   serve_swap();
@@ -72,7 +78,7 @@ void ServoCycle::take_over(Mechanism* next) noexcept {
 void ServoCycle::move(const ServoWishes& wishes) noexcept {
   ServoLoop& loop = *mechanism_->loop;
   command_.frames = wishes.frames;
-  command_.power = wishes.power;
+  command_.power = wishes.power && !link_.stops.power_off.load(std::memory_order_acquire);
   command_.reset = wishes.reset;
   command_.home = wishes.home;
   command_.spindle_rpm = wishes.spindle_rpm;
@@ -80,17 +86,21 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
   command_.outputs = wishes.outputs;
   command_.force = wishes.force;
   if (!report_.follows) mechanism_->follower.hold_at(loop.hold_position().first(loop.joint_count()));
+  see_to_stop(wishes);
   mechanism_->follower.sample(cycle_, command_.setpoint);
 
   const ServoFault::Kind before = report_.fault.kind;
   loop.cycle(command_, report_);
 
   const Setpoint& setpoint = command_.setpoint;
-  status_.progress = {cycle_, mechanism_->follower.accepted_plan(), mechanism_->follower.last_refused()};
+  status_.progress = {cycle_, mechanism_->follower.accepted_plan(), mechanism_->follower.last_refused(),
+                      mechanism_->follower.departure()};
   status_.state = report_.state;
   status_.fault = report_.fault;
   status_.follows = report_.follows;
   status_.moving = (report_.follows && setpoint.moving) || report_.state == ServoState::Homing;
+  status_.move_id = setpoint.move_id;
+  status_.s_mm = setpoint.s_mm;
   status_.homings = report_.homings;
   status_.probe = report_.probe;
   if (report_.follows) status_.moves_done += setpoint.moves_done;
@@ -105,8 +115,17 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
   }
 }
 
+void ServoCycle::see_to_stop(const ServoWishes& wishes) noexcept {
+  if (!link_.stops.stop() && sample_.t_s <= wishes.moves_until_s) {
+    stop_seen_ = kNever;
+    return;
+  }
+  if (stop_seen_ == kNever) stop_seen_ = cycle_;
+  if (cycle_ - stop_seen_ >= kStopsOnPath) mechanism_->follower.leave();
+}
+
 void ServoCycle::fill_pose_set() noexcept {
-  if (status_.moving && status_.follows) {
+  if (status_.moving && status_.follows && !mechanism_->follower.off_path()) {
     sample_.pose_set = command_.setpoint.pose;
     return;
   }

@@ -20,10 +20,13 @@ class ServoCycle {
   [[nodiscard]] std::int64_t exchange_ns() const noexcept { return report_.exchange_ns; }
 
  private:
+  static constexpr std::int64_t kNever = -1;
   void serve_swap() noexcept;
   [[nodiscard]] SwapRequest::Result change_loops(const SwapRequest& request) noexcept;
   void take_over(Mechanism* next) noexcept;
   void move(const ServoWishes& wishes) noexcept;
+  /// A stop that the planner does not serve in time is the joints' own.
+  void see_to_stop(const ServoWishes& wishes) noexcept;
   void fill_pose_set() noexcept;
   void publish(const ServoWishes& wishes) noexcept;
 
@@ -31,6 +34,7 @@ class ServoCycle {
   double period_s_;
   Mechanism* mechanism_ = nullptr;
   std::int64_t cycle_ = 0;
+  std::int64_t stop_seen_ = kNever;  ///< cycle from which on a stop is wanted
   ServoCommand command_;
   ServoReport report_;
   ServoStatus status_;

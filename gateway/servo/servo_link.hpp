@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -28,6 +29,19 @@ struct ServoWishes {
   std::uint64_t outputs = 0;
   std::array<double, kMaxJoints> force{};  ///< of joints under force control
   CycleState state = CycleState::Idle;     ///< goes into the samples
+  /// Machine time at which motion is to end by itself: a jog's, unless it is renewed.
+  double moves_until_s = std::numeric_limits<double>::infinity();
+};
+
+/// What the servo loop is to do whoever holds the lock of the machine's cycle: the planner may hang with it.
+struct StopWishes {
+  std::atomic<bool> planned{false};  ///< the planner was told to stop; by who has the lock
+  std::atomic<bool> asked{false};    ///< the gateway is about to tell it, or cannot
+  std::atomic<bool> power_off{false};
+
+  [[nodiscard]] bool stop() const noexcept {
+    return planned.load(std::memory_order_acquire) || asked.load(std::memory_order_acquire);
+  }
 };
 
 /// The little of a cycle that planning and the cycle states need.
@@ -39,6 +53,8 @@ struct ServoStatus {
   ServoFault fault;
   bool follows = false;  ///< joints follow the plan, and may be moved
   bool moving = false;
+  std::int64_t move_id = 0;  ///< the place on the path, with the next
+  double s_mm = 0;
   std::uint64_t moves_done = 0;
   std::uint32_t homings = 0;
   ProbeReport probe;
@@ -87,6 +103,7 @@ struct ServoLink {
       : history(std::max(history_cycles, static_cast<std::size_t>(kMostUndelivered))) {}
 
   LatestValue<ServoWishes> wishes;
+  StopWishes stops;
   std::atomic<SwapRequest*> swap{nullptr};
 
   SequenceLocked<ServoStatus> status;

@@ -21,6 +21,7 @@
 /// The caller must not hold the lock: the function takes it.
 #define EXCLUDES(...) RMAC_THREAD_SAFETY(locks_excluded(__VA_ARGS__))
 #define ACQUIRE(...) RMAC_THREAD_SAFETY(acquire_capability(__VA_ARGS__))
+#define TRY_ACQUIRE(...) RMAC_THREAD_SAFETY(try_acquire_capability(__VA_ARGS__))
 #define RELEASE(...) RMAC_THREAD_SAFETY(release_capability(__VA_ARGS__))
 /// The body of a lock itself, which rests on a std::mutex that has no words.
 #define NO_THREAD_SAFETY_ANALYSIS RMAC_THREAD_SAFETY(no_thread_safety_analysis)

@@ -1,35 +1,92 @@
 #include "gateway/threads/turn_lock.hpp"
 
-#include <thread>
+#include <time.h>
 
 namespace rmac::gateway {
+namespace {
+
+/// How often whoever waits for the planner looks whether it still gets on.
+constexpr std::chrono::milliseconds kLookAgain{20};
+
+std::chrono::nanoseconds read(clockid_t clock) {
+  timespec now{};
+  (void)clock_gettime(clock, &now);
+  return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
+}
+
+}  // namespace
+
+PlannerHangs::PlannerHangs()
+    : std::runtime_error(
+          "the planner hangs in a module of the mechanism (its kinematics), so this cannot be done; the machine is "
+          "brought to rest without it, and the daemon ends: start it again, and have the module mended") {}
+
+bool TurnLock::turn_is_over(std::unique_lock<std::mutex>& hold, std::chrono::nanoseconds most) {
+  ++gateway_waits_;
+  const bool over = free_.wait_for(hold, most, [this] { return !taken_; });
+  --gateway_waits_;
+  return over;
+}
+
+bool TurnLock::hangs() const {
+  if (!planners_) return false;
+  clockid_t clock{};
+  // The thread lives: it has its turn.
+  if (pthread_getcpuclockid(planners_->thread, &clock) != 0) return false;
+  return read(clock) - planners_->cpu > patience_.cpu ||
+         std::chrono::steady_clock::now() - planners_->begin > patience_.wall;
+}
+
+bool TurnLock::planner_hangs() {
+  const std::lock_guard hold(mutex_);
+  return hangs();
+}
 
 void TurnLock::lock_as_gateway() NO_THREAD_SAFETY_ANALYSIS {
-  gateway_waits_.fetch_add(1, std::memory_order_relaxed);
-  mutex_.lock();
-  gateway_waits_.fetch_sub(1, std::memory_order_relaxed);
+  std::unique_lock hold(mutex_);
+  while (taken_ && !turn_is_over(hold, kLookAgain)) {
+    if (hangs()) throw PlannerHangs();
+  }
+  taken_ = true;
+}
+
+bool TurnLock::try_lock_as_gateway(std::chrono::nanoseconds most) NO_THREAD_SAFETY_ANALYSIS {
+  std::unique_lock hold(mutex_);
+  if (taken_ && !turn_is_over(hold, most)) return false;
+  taken_ = true;
+  return true;
 }
 
 void TurnLock::unlock_as_gateway() NO_THREAD_SAFETY_ANALYSIS {
-  work_to_do_ = true;
-  mutex_.unlock();
+  {
+    const std::lock_guard hold(mutex_);
+    work_to_do_ = true;
+    taken_ = false;
+  }
+  free_.notify_all();
   work_.notify_one();
 }
 
 void TurnLock::lock_as_planner() NO_THREAD_SAFETY_ANALYSIS {
-  // Yielding to a waiting gateway costs at most one scheduling round; barging ahead could starve it for ever.
-  while (gateway_waits_.load(std::memory_order_relaxed) > 0) std::this_thread::yield();
-  mutex_.lock();
+  std::unique_lock hold(mutex_);
+  free_.wait(hold, [this] { return !taken_ && gateway_waits_ == 0; });
+  taken_ = true;
+  planners_ = {pthread_self(), read(CLOCK_THREAD_CPUTIME_ID), std::chrono::steady_clock::now()};
   work_to_do_ = false;
 }
 
 void TurnLock::unlock_as_planner() NO_THREAD_SAFETY_ANALYSIS {
-  mutex_.unlock();
+  {
+    const std::lock_guard hold(mutex_);
+    planners_.reset();
+    taken_ = false;
+  }
+  free_.notify_all();
 }
 
 bool TurnLock::wait_for_work(std::chrono::nanoseconds period) {
-  std::unique_lock lock(mutex_);
-  return work_.wait_for(lock, period, [this] { return work_to_do_; });
+  std::unique_lock hold(mutex_);
+  return work_.wait_for(hold, period, [this] { return work_to_do_; });
 }
 
 }  // namespace rmac::gateway

@@ -6,7 +6,7 @@
 
 int main() {
   rmac::JointState from, to;
-  rmac::JointBounds b;
+  rmac::MotionBounds b;
   while (std::cin >> from.position >> from.velocity >> from.acceleration >> to.position >> to.velocity >>
          to.acceleration >> b.min_velocity >> b.max_velocity >> b.min_acceleration >> b.max_acceleration >>
          b.max_jerk) {

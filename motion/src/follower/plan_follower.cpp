@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "rmac/motion/plan.hpp"
 
@@ -151,10 +152,7 @@ void PlanFollower::follow(std::int64_t cycle, Setpoint& setpoint) noexcept {
   placed_ = false;
 }
 
-void PlanFollower::leave() noexcept {
-  if (last_.moving && !off_path_) depart(PathDeparture::Cause::Stop, 0);
-}
-
+/// The motion under way ends as the planner was told to end it.
 bool PlanFollower::stops() const noexcept {
   return active_ != nullptr && active_->id == channel_.stopping.load(std::memory_order_acquire);
 }
@@ -182,6 +180,7 @@ void PlanFollower::brake(std::int64_t cycle, Setpoint& setpoint) noexcept {
 
 void PlanFollower::sample(std::int64_t cycle, Setpoint& setpoint) noexcept {
   receive(cycle);
+  if (std::exchange(leaves_, false) && last_.moving && !off_path_ && !stops()) depart(PathDeparture::Cause::Stop, 0);
   if (active_ == nullptr) {
     setpoint = last_;
   } else if (off_path_) {

@@ -52,7 +52,7 @@ Phases mixed(const Phases& one, const Phases& other, double share) noexcept {
 class JointWay {
  public:
   JointWay() = default;
-  JointWay(const JointState& from, const JointState& to, const JointBounds& bounds) noexcept;
+  JointWay(const JointState& from, const JointState& to, const MotionBounds& bounds) noexcept;
 
   /// The shortest duration.
   [[nodiscard]] double fastest() noexcept;
@@ -82,7 +82,7 @@ class JointWay {
   Phases fastest_phases_;
 };
 
-JointWay::JointWay(const JointState& from, const JointState& to, const JointBounds& bounds) noexcept
+JointWay::JointWay(const JointState& from, const JointState& to, const MotionBounds& bounds) noexcept
     : from_(from), jerk_(bounds.max_jerk) {
   const double unit = 1 / jerk_;
   transfer_ = {from.velocity * unit,           from.acceleration * unit,       to.velocity * unit,
@@ -185,11 +185,11 @@ JerkProfile JointWay::profile(double duration) noexcept {
 
 }  // namespace
 
-JerkProfile fastest_profile(const JointState& from, const JointState& to, const JointBounds& bounds) noexcept {
+JerkProfile fastest_profile(const JointState& from, const JointState& to, const MotionBounds& bounds) noexcept {
   return JointWay(from, to, bounds).fastest_profile();
 }
 
-JerkProfile velocity_profile(const JointState& from, double velocity, const JointBounds& bounds) noexcept {
+JerkProfile velocity_profile(const JointState& from, double velocity, const MotionBounds& bounds) noexcept {
   const double unit = 1 / bounds.max_jerk;
   Transfer x{from.velocity * unit,
              from.acceleration * unit,
@@ -211,7 +211,7 @@ JerkProfile velocity_profile(const JointState& from, double velocity, const Join
 }
 
 double synchronise(std::span<const JointState> from, std::span<const JointState> to,
-                   std::span<const JointBounds> bounds, std::span<JerkProfile> profiles) noexcept {
+                   std::span<const MotionBounds> bounds, std::span<JerkProfile> profiles) noexcept {
   constexpr std::size_t kMostJoints = 32;
   std::array<JointWay, kMostJoints> ways;
   const std::size_t count = std::min({from.size(), to.size(), bounds.size(), profiles.size(), kMostJoints});

@@ -39,7 +39,7 @@ void state_to_state_rows(Figures& figures, const Extent& extent) {
   constexpr std::size_t kJoints = 7;
   std::vector<StateToStateCase> joints(kJoints);
   std::vector<JointState> from(kJoints), to(kJoints);
-  std::vector<JointBounds> bounds(kJoints);
+  std::vector<MotionBounds> bounds(kJoints);
   std::vector<JerkProfile> profiles(kJoints);
   us.clear();
   wrong = 0;

@@ -14,7 +14,7 @@ struct JointState {
 };
 
 /// Bounds of one joint. The minima are below zero, the others above it, all finite.
-struct JointBounds {
+struct MotionBounds {
   double min_velocity = 0;
   double max_velocity = 0;
   double min_acceleration = 0;
@@ -55,14 +55,14 @@ class JerkProfile {
 /// The fastest motion from any state to any state (docs/derivations/state-to-state.md). A state outside of the bounds
 /// is brought inside as fast as they allow, and left likewise at the end; all else stays inside. Real-time safe.
 [[nodiscard]] JerkProfile fastest_profile(const JointState& from, const JointState& to,
-                                          const JointBounds& bounds) noexcept;
+                                          const MotionBounds& bounds) noexcept;
 
 /// The fastest motion to a velocity that is then kept, wherever that is. Real-time safe.
-[[nodiscard]] JerkProfile velocity_profile(const JointState& from, double velocity, const JointBounds& bounds) noexcept;
+[[nodiscard]] JerkProfile velocity_profile(const JointState& from, double velocity, const MotionBounds& bounds) noexcept;
 
 /// Motions of several joints that begin and end together, in the least duration that all of them can take: each joint
 /// has durations that it cannot, so it may be longer than that of the slowest. Returns the duration. Real-time safe.
 double synchronise(std::span<const JointState> from, std::span<const JointState> to,
-                   std::span<const JointBounds> bounds, std::span<JerkProfile> profiles) noexcept;
+                   std::span<const MotionBounds> bounds, std::span<JerkProfile> profiles) noexcept;
 
 }  // namespace rmac

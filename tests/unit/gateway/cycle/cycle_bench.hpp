@@ -40,10 +40,15 @@ class CycleBench {
     ++status.progress.cycle;
     status.t_s += 0.001;
     Setpoint setpoint;
+    if (link.stops.stop() && ++stop_wanted > 2) mechanism->follower.leave();
+    if (!link.stops.stop()) stop_wanted = 0;
     mechanism->follower.sample(status.progress.cycle, setpoint);
     status.progress.accepted_plan = mechanism->follower.accepted_plan();
     status.progress.last_refused = mechanism->follower.last_refused();
+    status.progress.departure = mechanism->follower.departure();
     status.moving = setpoint.moving;
+    status.move_id = setpoint.move_id;
+    status.s_mm = setpoint.s_mm;
     status.moves_done += setpoint.moves_done;
     std::copy(setpoint.position.begin(), setpoint.position.begin() + 3, status.position_set.begin());
     publish();
@@ -116,6 +121,7 @@ class CycleBench {
 
   ServoLink link{1};
   ServoStatus status;
+  int stop_wanted = 0;  ///< cycles since
   std::shared_ptr<Mechanism> mechanism;
   MachineCycle cycle{{}, link};
   MoveEntry entry{cycle};

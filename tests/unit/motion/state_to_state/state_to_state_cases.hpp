@@ -11,7 +11,7 @@ namespace rmac {
 
 struct StateToStateCase {
   JointState from, to;
-  JointBounds bounds;
+  MotionBounds bounds;
 };
 
 /// Bounds over two decades, distances that matter to them, states inside of the bounds and (one in five) outside.
@@ -41,14 +41,14 @@ inline StateToStateCase random_case(std::mt19937_64& random) {
 }
 
 /// Whether a state can be kept inside of the bounds for all time to come.
-inline bool stays_inside(const JointState& s, const JointBounds& b) {
+inline bool stays_inside(const JointState& s, const MotionBounds& b) {
   const double settled = s.velocity + s.acceleration * std::abs(s.acceleration) / (2 * b.max_jerk);
   return std::max(s.velocity, settled) <= b.max_velocity && std::min(s.velocity, settled) >= b.min_velocity &&
          s.acceleration <= b.max_acceleration && s.acceleration >= b.min_acceleration;
 }
 
 /// Whether a state can be the end of a motion inside of the bounds.
-inline bool came_from_inside(const JointState& s, const JointBounds& b) {
+inline bool came_from_inside(const JointState& s, const MotionBounds& b) {
   return stays_inside({s.position, s.velocity, -s.acceleration},
                       {b.min_velocity, b.max_velocity, -b.max_acceleration, -b.min_acceleration, b.max_jerk});
 }

@@ -39,7 +39,7 @@ TEST(StateToState, TheWayBackInTimeTakesAsLong) {
   std::mt19937_64 random(2);
   for (int i = 0; i < 20'000; ++i) {
     const StateToStateCase c = random_case(random);
-    JointBounds bounds = c.bounds;
+    MotionBounds bounds = c.bounds;
     std::swap(bounds.min_acceleration, bounds.max_acceleration);
     bounds.min_acceleration *= -1, bounds.max_acceleration *= -1;
     const JointState from{-c.to.position, c.to.velocity, -c.to.acceleration};
@@ -98,7 +98,7 @@ TEST(Synchronise, AllJointsArriveTogetherWithinTheirBounds) {
   for (int i = 0; i < 10'000; ++i) {
     std::vector<StateToStateCase> cases;
     std::vector<JointState> from, to;
-    std::vector<JointBounds> bounds;
+    std::vector<MotionBounds> bounds;
     std::vector<JerkProfile> profiles(kJoints);
     double slowest = 0;
     for (std::size_t k = 0; k < kJoints; ++k) {
@@ -125,7 +125,7 @@ TEST(Synchronise, AJointThatCannotTakeTheTimeLengthensItForAll) {
   // At its largest speed, 1 mm ahead of where it shall have this speed: there in 1 s. Braking and speeding up again
   // with 1 mm/s³ loses T³/32 in a time T, so 1.5 s are too long not to pass the place and too short to come back.
   const JointState from[2] = {{0, 1, 0}, {0, 0, 0}}, to[2] = {{1, 1, 0}, {2 * std::pow(1.5 / 4, 3), 0, 0}};
-  const JointBounds bounds[2] = {{-1, 1, -2, 2, 1}, {-9, 9, -9, 9, 1}};
+  const MotionBounds bounds[2] = {{-1, 1, -2, 2, 1}, {-9, 9, -9, 9, 1}};
   EXPECT_NEAR(fastest_profile(from[0], to[0], bounds[0]).duration(), 1, 1e-9);
   EXPECT_NEAR(fastest_profile(from[1], to[1], bounds[1]).duration(), 1.5, 1e-9);
   JerkProfile profiles[2];

@@ -25,7 +25,7 @@ class JointBrake {
   void at(double t, Setpoint& setpoint) const noexcept;
 
  private:
-  std::vector<JointBounds> bounds_;
+  std::vector<MotionBounds> bounds_;
   std::vector<JerkProfile> profiles_;
   double duration_ = 0;
 };

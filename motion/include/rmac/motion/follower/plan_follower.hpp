@@ -34,10 +34,9 @@ class PlanFollower {
   /// `last_refused`.
   void sample(std::int64_t cycle, Setpoint& setpoint) noexcept;
 
-  /// The path is not to be followed any further, from the next sample on. Without effect at rest.
-  void leave() noexcept;
-  /// The motion under way ends as the planner was told to end it: by a plan made to stop.
-  [[nodiscard]] bool stops() const noexcept;
+  /// The path is not to be followed any further, from the next sample on, unless a plan made to stop is under way then.
+  /// Without effect at rest.
+  void leave() noexcept { leaves_ = true; }
   /// The setpoints are not the path's: joints brake, or rest after that.
   [[nodiscard]] bool off_path() const noexcept { return off_path_; }
   /// When, and why, it left the path last.
@@ -49,6 +48,7 @@ class PlanFollower {
 
  private:
   void receive(std::int64_t cycle) noexcept;
+  [[nodiscard]] bool stops() const noexcept;
   void activate(const Plan* plan) noexcept;
   void retire(const Plan* plan) noexcept;
   void follow(std::int64_t cycle, Setpoint& setpoint) noexcept;
@@ -73,6 +73,7 @@ class PlanFollower {
   std::int64_t cycle_ = 0;  ///< of the last sample
   Setpoint last_;
   bool placed_ = true;  ///< `last_` is where the joints were put, not where a plan led them
+  bool leaves_ = false;
   bool off_path_ = false;
   PathDeparture departure_;
 };

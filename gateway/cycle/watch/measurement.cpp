@@ -1,4 +1,4 @@
-#include "gateway/cycle/measurement.hpp"
+#include "gateway/cycle/watch/measurement.hpp"
 
 namespace rmac::gateway {
 

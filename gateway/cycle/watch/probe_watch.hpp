@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "gateway/cycle/measurement.hpp"
+#include "gateway/cycle/watch/measurement.hpp"
 #include "gateway/state/stop_cause.hpp"
 
 namespace rmac::gateway {

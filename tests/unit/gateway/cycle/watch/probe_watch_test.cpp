@@ -1,4 +1,4 @@
-#include "gateway/cycle/probe_watch.hpp"
+#include "gateway/cycle/watch/probe_watch.hpp"
 
 #include <gtest/gtest.h>
 
