@@ -220,6 +220,22 @@ CycleSample Controller::sample() const noexcept {
   return impl_->link->history.latest();
 }
 
+LastResort Controller::last_resort() const noexcept {
+  return {impl_->supervisor, impl_->link->stops};
+}
+
+bool LastResort::planner_hangs() const {
+  return supervisor_.planner_hangs();
+}
+
+void LastResort::keep_at_rest() const noexcept {
+  stops_.kept.store(true, std::memory_order_release);
+}
+
+void LastResort::cut_power() const noexcept {
+  stops_.power_off.store(true, std::memory_order_release);
+}
+
 const CycleTimes& Controller::cycle_times() const noexcept {
   return impl_->link->times;
 }

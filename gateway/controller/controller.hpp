@@ -25,6 +25,9 @@
 
 namespace rmac::gateway {
 
+class MotionSupervisor;
+struct StopWishes;
+
 struct ControllerOptions {
   std::vector<std::string> module_folders;  ///< searched in order, the mechanism's own first
   double period_s = 0.001;
@@ -51,6 +54,23 @@ struct ControllerOptions {
 };
 
 class FlightFolder;
+
+/// For whoever watches that nothing hangs: nothing here waits for anybody. Any thread.
+class LastResort {
+ public:
+  LastResort(MotionSupervisor& supervisor, StopWishes& stops) noexcept : supervisor_(supervisor), stops_(stops) {}
+
+  /// A module that the planner called does not return. What needs the planner throws PlannerHangs then.
+  [[nodiscard]] bool planner_hangs() const;
+  /// The servo thread brings the machine to rest, and keeps it there, whatever else is commanded.
+  void keep_at_rest() const noexcept;
+  /// Takes the power off all drives, for good.
+  void cut_power() const noexcept;
+
+ private:
+  MotionSupervisor& supervisor_;
+  StopWishes& stops_;
+};
 
 /// The RMAC controller (dissertation 4.6): configuration system, planner and servo threads, bus registry. One an
 /// appliance. One thread at a time uses it: the gateway's, or the one beside it that carries out what takes long.
@@ -96,6 +116,7 @@ class Controller {
   [[nodiscard]] std::vector<ModuleInUse> modules() const;
 
   [[nodiscard]] CycleSample sample() const noexcept;
+  [[nodiscard]] LastResort last_resort() const noexcept;
   [[nodiscard]] const CycleTimes& cycle_times() const noexcept;
   /// The cycle's state, which follows an accepted command at once; the sample follows some cycles later.
   [[nodiscard]] CycleNow cycle_now() const;

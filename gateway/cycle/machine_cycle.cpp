@@ -75,8 +75,8 @@ void MachineCycle::watch_path(const CycleObservation& seen, const ServoStatus& s
   const bool waits = sequencer.waits_for_spindle() && !sequencer.positions() && seen.at_rest;
   const bool should_move = sequencer.travels() && sequencer.state() == CycleState::Running && seen.follows && !waits &&
                            queue.planned() > 0 && feed.effective_percent() > 0;
-  const auto wrong = path_watch_.step(
-      {status.t_s, should_move, status.move_id, status.s_mm, status.progress.departure});
+  const auto wrong =
+      path_watch_.step({status.t_s, should_move, status.move_id, status.s_mm, status.progress.departure});
   if (!wrong || is_faulted(sequencer.state())) return;
   news.tell(Event::Kind::Fault, *wrong, MinorCode::Other);
   sequencer.fault();

@@ -7,10 +7,10 @@
 
 #include "gateway/cycle/cycle_sequencer.hpp"
 #include "gateway/cycle/feed_override.hpp"
-#include "gateway/cycle/watch/path_watch.hpp"
-#include "gateway/cycle/watch/probe_watch.hpp"
 #include "gateway/cycle/standing_wishes.hpp"
 #include "gateway/cycle/tool_change.hpp"
+#include "gateway/cycle/watch/path_watch.hpp"
+#include "gateway/cycle/watch/probe_watch.hpp"
 #include "gateway/mechanism/mechanism.hpp"
 #include "gateway/queue/move_queue.hpp"
 #include "gateway/servo/planning.hpp"

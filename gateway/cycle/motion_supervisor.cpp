@@ -3,6 +3,11 @@
 #include <utility>
 
 namespace rmac::gateway {
+namespace {
+
+constexpr std::chrono::milliseconds kNewsWait{5};
+
+}  // namespace
 
 MotionSupervisor::Pace MotionSupervisor::advance(const ServoStatus& status) {
   const PlannerTurn turn(cycle_.lock);
@@ -14,8 +19,10 @@ Expected<double> MotionSupervisor::retrace(double distance_mm) {
   if (auto fine = cycle_.sequencer.check_retrace(cycle_.observe(cycle_.status())); !fine) {
     return tl::unexpected(fine.error());
   }
-  const double way = cycle_.mechanism()->planner.turn_back(distance_mm);
-  if (!(way > 0)) {
+  const ServoStatus now = cycle_.status();
+  const auto way = cycle_.mechanism()->planner.turn_back(distance_mm, {now.position_set.data(), now.joint_count});
+  if (!way) return way;
+  if (!(*way > 0)) {
     return failure(MinorCode::Other,
                    "FeedRetrace: there is no path behind the tool; it stands where its path began, or where the queue "
                    "was emptied");
@@ -121,8 +128,11 @@ std::shared_ptr<Mechanism> MotionSupervisor::mechanism() {
 }
 
 MotionSupervisor::News MotionSupervisor::take_news() {
-  const GatewayTurn turn(cycle_.lock);
-  return cycle_.news.take();
+  // The gateway has other things to do than to wait for news.
+  if (!cycle_.lock.try_lock_as_gateway(kNewsWait)) return {};
+  News news = cycle_.news.take();
+  cycle_.lock.unlock_as_gateway();
+  return news;
 }
 
 void MotionSupervisor::on_queued(QueueListener listener) {

@@ -81,6 +81,7 @@ class MotionSupervisor final : public Planning {
   std::shared_ptr<Mechanism> install(std::shared_ptr<Mechanism> next, std::uint64_t generation, bool keep_running);
   [[nodiscard]] std::shared_ptr<Mechanism> mechanism();
 
+  /// Nothing while the planner has a turn that lasts.
   [[nodiscard]] News take_news();
   void on_queued(QueueListener listener);
   void report(Event event);

@@ -35,8 +35,8 @@ Expected<double> CamCycle::retrace(double distance_mm) {
 }
 
 Expected<> CamCycle::stop_now() {
-  auto stopped = supervisor_.stop_command(
-      [](CycleSequencer& cycle, const CycleObservation&) { return cycle.stop_and_clear(); });
+  auto stopped =
+      supervisor_.stop_command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.stop_and_clear(); });
   forces_.let_go();
   return stopped;
 }

@@ -6,12 +6,18 @@
 
 #include <asio.hpp>
 #include <cstdlib>
+#include <optional>
+#include <string>
 #include <system_error>
+#include <thread>
 
 #include "gateway/appliance/machine.hpp"
 #include "gateway/rmacd/end_signals.hpp"
 #include "gateway/server/server.hpp"
 #include "gateway/servo/sync_clock.hpp"
+#include "gateway/threads/cpu_progress.hpp"
+#include "gateway/threads/hang_watch.hpp"
+#include "gateway/threads/turn_lock.hpp"
 
 namespace rmac::gateway {
 
@@ -91,6 +97,26 @@ constexpr std::chrono::seconds kEndBound{25};
   std::_Exit(1);
 }
 
+/// CPU time that a request may take: building the longest curves is far below it.
+constexpr std::chrono::seconds kGatewayPatience{10};
+constexpr std::chrono::seconds kCyclePatience{5};
+constexpr std::chrono::milliseconds kPowerBound{1000};
+constexpr std::chrono::milliseconds kRestLook{5};
+
+/// Whether servo cycles go on, look by look: a process that was stopped did not look either. One thread.
+class CycleCount {
+ public:
+  [[nodiscard]] bool stand(std::int64_t cycle) noexcept {
+    same_ = cycle == last_ ? same_ + 1 : 0;
+    last_ = cycle;
+    return same_ * HangWatch::kLook > kCyclePatience;
+  }
+
+ private:
+  std::int64_t last_ = -1;
+  int same_ = 0;
+};
+
 /// The parts, in the order in which they need each other.
 class Daemon {
  public:
@@ -115,9 +141,12 @@ class Daemon {
   void dispatch();
   void end(const char* why);
   void end_when_at_rest();
+  [[nodiscard]] std::optional<std::string> what_hangs();
+  [[noreturn]] void end_without(const std::string& what);
 
   asio::io_context io_;
   EndSignals signals_;
+  CpuProgress gateway_{kGatewayPatience};
   std::unique_ptr<DeviceDriverManager> manager_;
   Controller controller_;
   Verification verification_;
@@ -130,6 +159,8 @@ class Daemon {
   std::chrono::steady_clock::time_point end_by_;
   std::chrono::steady_clock::time_point last_watchdog_;
   std::chrono::microseconds watchdog_period_{0};
+  std::optional<CycleCount> cycles_;  ///< in real pace
+  std::optional<HangWatch> hangs_;    ///< last: it looks at all the others
 };
 
 Expected<> Daemon::run(const Configuration& configuration) {
@@ -158,8 +189,17 @@ Expected<> Daemon::run(const Configuration& configuration) {
   if (std::uint64_t limit_us = 0; sd_watchdog_enabled(0, &limit_us) > 0) {
     watchdog_period_ = std::chrono::microseconds(limit_us / 3);
   }
+  if (!fast_) cycles_.emplace();
+  hangs_.emplace([this] { return what_hangs(); }, [this](const std::string& what) { end_without(what); });
   schedule_tick();
-  io_.run();
+  while (!io_.stopped()) {
+    try {
+      io_.run();
+    } catch (const PlannerHangs&) {
+      schedule_tick();  // the watch ends the daemon
+    }
+  }
+  hangs_.reset();
   server_.close();
   controller_.stop();
   return {};
@@ -175,12 +215,44 @@ void Daemon::schedule_tick() {
   });
 }
 
+std::optional<std::string> Daemon::what_hangs() {
+  if (controller_.last_resort().planner_hangs()) return "the planner hangs in a module of the mechanism";
+  if (gateway_.stuck()) {
+    return fmt::format("a request has computed for {} s: a module of the mechanism hangs", kGatewayPatience.count());
+  }
+  if (cycles_ && cycles_->stand(controller_.sample().cycle)) {
+    return fmt::format("the servo thread has begun no cycle for {} s: a module or a bus hangs", kCyclePatience.count());
+  }
+  return std::nullopt;
+}
+
+void Daemon::end_without(const std::string& what) {
+  controller_.last_resort().keep_at_rest();
+  const std::string told = what +
+                           "; the machine is brought to rest without it, and the daemon ends: start it again, "
+                           "and have the module mended";
+  spdlog::critical("{}", told);
+  asio::post(io_, [this, told] { server_.announce(Event::Kind::Fault, told); });
+  const std::int64_t cycle = controller_.sample().cycle;
+  const auto wait_until = [](std::chrono::milliseconds most, auto&& reached) {
+    const auto end = std::chrono::steady_clock::now() + most;
+    while (!reached() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(kRestLook);
+  };
+  wait_until(kPowerBound, [&] { return controller_.sample().cycle != cycle; });
+  const bool cycles_go_on = controller_.sample().cycle != cycle;
+  wait_until(cycles_go_on ? kStopBound : kPowerBound, [this] { return !controller_.sample().moving; });
+  controller_.last_resort().cut_power();
+  wait_until(kPowerBound, [this] { return controller_.sample().servo_state == ServoState::Off; });
+  std::_Exit(1);
+}
+
 void Daemon::dispatch() {
   // Whoever changes the mechanism has the controller until that is done; its samples wait.
   if (!server_.mechanism_changes()) controller_.dispatch();
 }
 
 void Daemon::tick() {
+  gateway_.made();
   if (server_.may_dispatch() || phase_ != Phase::Serving) dispatch();
   server_.tick();
   // From the tick, so that a gateway thread that hangs is noticed.

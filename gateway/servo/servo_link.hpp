@@ -37,10 +37,12 @@ struct ServoWishes {
 struct StopWishes {
   std::atomic<bool> planned{false};  ///< the planner was told to stop; by who has the lock
   std::atomic<bool> asked{false};    ///< the gateway is about to tell it, or cannot
+  std::atomic<bool> kept{false};     ///< for good: something hangs
   std::atomic<bool> power_off{false};
 
   [[nodiscard]] bool stop() const noexcept {
-    return planned.load(std::memory_order_acquire) || asked.load(std::memory_order_acquire);
+    return planned.load(std::memory_order_acquire) || asked.load(std::memory_order_acquire) ||
+           kept.load(std::memory_order_acquire);
   }
 };
 

@@ -30,9 +30,8 @@ std::optional<std::string> describe(const PathDeparture& departure) {
       what = "gave a place that the joint could not have come to within a cycle";
       break;
   }
-  const std::string joint = departure.cause == PathDeparture::Cause::NoSolution
-                                ? ""
-                                : fmt::format(" for joint {}", departure.joint);
+  const std::string joint =
+      departure.cause == PathDeparture::Cause::NoSolution ? "" : fmt::format(" for joint {}", departure.joint);
   return fmt::format(
       "cycle {}: the kinematics {}{}, so every joint was stopped by itself, within its limits; have their module "
       "mended (rmac verify), then reset",

@@ -129,14 +129,21 @@ LaidPath LaidPath::backward(double s, double distance) const {
   return back;
 }
 
-LaidPath LaidPath::way_to(double s, const PathSegments& away) const {
-  LaidPath way(joints_, period_s_);
-  way.origin_ = s;
-  for (const auto& segment : away) way.origin_ -= segment->length();
+LaidPath LaidPath::place(double s) const {
+  LaidPath nothing(joints_, period_s_);
+  nothing.origin_ = s;
+  return nothing;
+}
+
+void LaidPath::lead_in(const PathSegments& away) {
+  double begin = origin_;
+  for (const auto& segment : away) begin -= segment->length();
+  LaidPath way = place(begin);
   for (auto segment = away.rbegin(); segment != away.rend(); ++segment) {
     way.append(part_of(**segment, 0, (*segment)->length(), Direction::Backward));
   }
-  return way;
+  way.lay(segments_);
+  *this = std::move(way);
 }
 
 const PoseToJoints* LaidPath::map_at(double s) const {

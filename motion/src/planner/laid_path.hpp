@@ -64,8 +64,11 @@ class LaidPath {
   /// What lies up to `distance` behind s, as a path of its own that ends no moves and runs the other way: it begins at
   /// path length s - (its length) and ends at s. Empty when nothing is remembered.
   [[nodiscard]] LaidPath backward(double s, double distance) const;
-  /// What leads away from the place at s, as a path of its own that leads there, and ends no moves either.
-  [[nodiscard]] LaidPath way_to(double s, const PathSegments& away) const;
+  /// A path without length at s, which something may be led in to.
+  [[nodiscard]] LaidPath place(double s) const;
+  /// What leads away from where this path begins leads there first, the other way; that ends no moves either. The path
+  /// then begins so much before.
+  void lead_in(const PathSegments& away);
   /// The pose to joints map of what lies at s; nullptr where nothing is laid.
   [[nodiscard]] const PoseToJoints* map_at(double s) const;
 

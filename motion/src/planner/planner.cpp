@@ -318,8 +318,8 @@ struct Planner::Impl {
     const PathDeparture& last = progress.departure;
     if (last.count == departures) return;
     departures = last.count;
-    const auto left = std::find_if(alive.begin(), alive.end(),
-                                   [&](const PublishedPlan& p) { return p.plan->id == last.plan; });
+    const auto left =
+        std::find_if(alive.begin(), alive.end(), [&](const PublishedPlan& p) { return p.plan->id == last.plan; });
     const double s = left == alive.end() ? base_end_s() : left->state_at(now_s(*left, last.cycle)).s;
     if (!route.on_detour() && left != alive.end()) route.forward.travelled(s, left->law.front().start.s);
     route.leave(s);
@@ -354,8 +354,8 @@ void Planner::clear() {
   impl_->route.clear(impl_->base_end_s());
 }
 
-double Planner::turn_back(double distance_mm) {
-  return impl_->route.turn_back(impl_->base_end_s(), distance_mm);
+Expected<double> Planner::turn_back(double distance_mm, std::span<const double> joints) {
+  return impl_->route.turn_back(impl_->base_end_s(), distance_mm, {impl_->model, joints, kRejoinSpeed});
 }
 bool Planner::retraced(const ServoProgress& progress) const noexcept {
   const Impl& i = *impl_;
@@ -368,7 +368,7 @@ double Planner::distance_to_path(std::span<const double> joints) const {
   return impl_->route.distance_to(joints);
 }
 Expected<> Planner::rejoin(std::span<const double> joints) {
-  return impl_->route.rejoin(impl_->model, joints, kRejoinSpeed);
+  return impl_->route.rejoin({impl_->model, joints, kRejoinSpeed});
 }
 void Planner::command(PathCommand command) noexcept {
   impl_->command(command);

@@ -15,8 +15,8 @@ class PlanningTime {
     began_ = cycle;
     in_haste_ = in_haste;
   }
-  /// Takes up what the servo loop tells afterwards. A refused plan came too late: the next one is left more time, unless
-  /// it was tried in haste.
+  /// Takes up what the servo loop tells afterwards. A refused plan came too late: the next one is left more time,
+  /// unless it was tried in haste.
   void learn(const ServoProgress& progress) noexcept;
   /// Cycles from now after which a plan begun now will have reached the servo loop.
   [[nodiscard]] std::int64_t lead() const noexcept;

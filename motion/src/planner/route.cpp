@@ -10,7 +10,7 @@ namespace rmac {
 
 double Route::on_forward(double s) const noexcept {
   if (!detour_) return s;
-  return detour_->retraces ? detour_->path.begin() + detour_->path.end() - s : detour_->joins_at;
+  return detour_->retraces ? detour_->place - std::max(s - detour_->meets_at, 0.0) : detour_->place;
 }
 
 void Route::take(Detour detour) {
@@ -18,12 +18,42 @@ void Route::take(Detour detour) {
   turned_to_ = detour_->path.begin();
 }
 
-double Route::turn_back(double s, double distance) {
-  if (beside_ || rejoins()) return 0;
-  LaidPath back = forward.backward(on_forward(s), distance);
+Expected<double> Route::turn_back(double s, double distance, const WayBack& way) {
+  if (rejoins()) leave(s);
+  const double place = beside_ ? *turned_to_ : on_forward(s);
+  LaidPath back = forward.backward(place, distance);
   if (back.size() == 0) return 0;
-  take({std::move(back), true, 0});
-  return detour_->path.end() - detour_->path.begin();
+  const double begin = back.begin(), length = back.end() - begin;
+  return away(way).map([&](const PathSegments& segments) {
+    back.lead_in(segments);
+    take({std::move(back), true, begin, place});
+    beside_ = false;
+    return length;
+  });
+}
+
+Expected<> Route::rejoin(const WayBack& way) {
+  if (!beside_) return {};
+  return away(way).map([&](const PathSegments& segments) {
+    if (!segments.empty()) {
+      LaidPath to = forward.place(*turned_to_);
+      to.lead_in(segments);
+      take({std::move(to), false, *turned_to_, *turned_to_});
+    }
+    beside_ = false;
+  });
+}
+
+Expected<PathSegments> Route::away(const WayBack& way) const {
+  const auto place = beside_ ? forward.place_at(*turned_to_) : std::nullopt;
+  if (!place) return PathSegments{};
+  PathBuilder builder(way.model);
+  builder.restart(place->joints, forward.map_at(*turned_to_)->frames());
+  Move move;
+  move.id = place->move_id;
+  move.geometry = JointTargetGeometry{{way.from.begin(), way.from.end()}};
+  move.joint_speed_fraction = way.speed;
+  return builder.build(move);
 }
 
 void Route::turn_forward(double s) {
@@ -51,24 +81,6 @@ double Route::distance_to(std::span<const double> joints) const {
     most = std::max(most, std::abs(joints[j] - place->joints[j]));
   }
   return most;
-}
-
-Expected<> Route::rejoin(const PlannerModel& model, std::span<const double> joints, double speed) {
-  if (!beside_) return {};
-  const double s = *turned_to_;
-  if (const auto place = forward.place_at(s)) {
-    PathBuilder builder(model);
-    builder.restart(place->joints, forward.map_at(s)->frames());
-    Move away;
-    away.id = place->move_id;
-    away.geometry = JointTargetGeometry{{joints.begin(), joints.end()}};
-    away.joint_speed_fraction = speed;
-    const auto built = builder.build(away);
-    if (!built) return tl::unexpected(built.error());
-    if (!built->empty()) take({forward.way_to(s, *built), false, s});
-  }
-  beside_ = false;
-  return {};
 }
 
 }  // namespace rmac

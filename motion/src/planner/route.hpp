@@ -32,28 +32,38 @@ class Route {
   [[nodiscard]] const std::optional<double>& turned_to() const noexcept { return turned_to_; }
   void planned() noexcept { turned_to_.reset(); }
 
-  // Only at rest, `s` being the place on the path that is travelled:
+  /// The joints left the path at `s` of it, in motion.
+  void leave(double s);
 
-  /// Readies the way back; its length, 0 when there is none.
-  double turn_back(double s, double distance);
+  // Only at rest, `s` being the place on the path that is travelled, or was left. `way`: from beside the path to where
+  // it was left.
+
+  struct WayBack {
+    const PlannerModel& model;
+    std::span<const double> from;  ///< joints
+    double speed = 1;              ///< share of the joints' speeds
+  };
+  /// Readies the way back over what lies behind; its length, 0 when there is none.
+  [[nodiscard]] Expected<double> turn_back(double s, double distance, const WayBack& way);
+  /// From beside the path, readies the way to where it was left. An error leaves everything as it was.
+  [[nodiscard]] Expected<> rejoin(const WayBack& way);
   /// Leaves the detour.
   void turn_forward(double s);
   /// Drops all paths; path length goes on counting.
   void clear(double s);
 
-  /// The joints left the path at `s` of it, in motion.
-  void leave(double s);
   /// How far joints are from where the path was left: the largest of all, mm or degrees.
   [[nodiscard]] double distance_to(std::span<const double> joints) const;
-  /// Readies the way back to there, at `speed` of the joints' speeds; an error leaves everything as it was.
-  [[nodiscard]] Expected<> rejoin(const PlannerModel& model, std::span<const double> joints, double speed);
 
  private:
   struct Detour {
     LaidPath path;
     bool retraces = false;
-    double joins_at = 0;  ///< the place on `forward` to which it leads, unless it retraces
+    double meets_at = 0;  ///< path length on it, at which it comes to
+    double place = 0;     ///< this place on `forward`, to go back from there where it retraces
   };
+  /// What leads from where the path was left to `way.from`; nothing where the joints are there.
+  [[nodiscard]] Expected<PathSegments> away(const WayBack& way) const;
   void take(Detour detour);
 
   std::optional<Detour> detour_;

@@ -1,12 +1,17 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <cstdlib>
 #include <ctime>
+#include <optional>
+#include <utility>
 
 #include "gateway/configuration/configuration.hpp"
 #include "gateway/rmac/commands/programs/registrations.hpp"
 #include "gateway/rmac/simulator/simulator.hpp"
 #include "gateway/rmac/terminal/table.hpp"
+#include "gateway/threads/cpu_progress.hpp"
+#include "gateway/threads/hang_watch.hpp"
 
 namespace rmac::cli {
 namespace {
@@ -75,6 +80,35 @@ void print_table(const SimulationReport& report, double took_s) {
   fmt::print("{}", table({"limited by", "s", "%"}, rows));
 }
 
+/// Ends the program with exit code 1 where the simulation computes and computes, and machine time stands.
+class StandstillWatch {
+ public:
+  /// Watches the calling thread.
+  explicit StandstillWatch(const gateway::Controller& controller)
+      : controller_(controller), watch_([this] { return look(); }, give_up) {}
+
+ private:
+  static constexpr std::chrono::seconds kPatience{10};
+
+  [[nodiscard]] std::optional<std::string> look() {
+    const std::int64_t cycle = controller_.sample().cycle;
+    if (std::exchange(cycle_, cycle) != cycle) progress_.made();
+    if (!progress_.stuck()) return std::nullopt;
+    return fmt::format(
+        "no progress in {} s of CPU time, in cycle {}: the planner, or a module of the mechanism that it calls, hangs",
+        kPatience.count(), cycle);
+  }
+  static void give_up(const std::string& what) {
+    fmt::print(stderr, "rmac: {}\n", what);
+    std::_Exit(1);
+  }
+
+  const gateway::Controller& controller_;
+  std::int64_t cycle_ = -1;
+  gateway::CpuProgress progress_{kPatience};
+  gateway::HangWatch watch_;  // last: it looks at the others
+};
+
 Result<> simulate_program(const Options& options, bool json) {
   const double began_s = cpu_time_s();
   const auto program = read_program(options.file);
@@ -87,6 +121,7 @@ Result<> simulate_program(const Options& options, bool json) {
   auto simulation = gateway::Simulation::open(
       {.device_tree = tree, .tools_folder = options.tools, .period_s = options.period_s}, options.machine);
   if (!simulation) return fail(simulation.error().message);
+  const StandstillWatch watch((*simulation)->controller());
   const auto report = Simulator(**simulation, *program, options.record_file).run();
   if (!report) return tl::unexpected(report.error());
   (json ? print_json : print_table)(*report, cpu_time_s() - began_s);

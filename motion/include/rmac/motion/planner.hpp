@@ -51,8 +51,9 @@ class Planner {
   /// Drops everything that is not yet travelled. Only at rest.
   void clear();
   /// Readies the way back along up to `distance_mm` of what was travelled, for `PathCommand::Retrace`. Its length; 0
-  /// when nothing is remembered, which is so after `clear`. Only at rest.
-  double turn_back(double distance_mm);
+  /// when nothing is remembered, which is so after `clear`. Only at rest, where `joints` are: from beside the path
+  /// (`off_path`) the way to it comes first, as of `rejoin`. An error leaves everything as it was.
+  [[nodiscard]] Expected<double> turn_back(double distance_mm, std::span<const double> joints);
   /// The machine rests at the end of a retrace.
   [[nodiscard]] bool retraced(const ServoProgress& progress) const noexcept;
   /// Joints were braked beside the path (`PathDeparture`): nothing is planned until `rejoin` or `clear`.

@@ -174,19 +174,56 @@ TEST(LeavingThePath, EndsForGoodWhenTheQueueIsEmptied) {
   EXPECT_NEAR(bench.record.back().position[0], 0, 1e-9);
 }
 
-TEST(LeavingThePath, LeavesNoWayBackUntilItIsRejoined) {
+TEST(LeavingThePath, IsRetracedByWayOfWhereItWasLeft) {
   PlannerBench bench(mill());
   queue_line(bench);
   run_to(bench, 10);
+  const Setpoint left = bench.record.back();
   bench.follower().leave();
   bench.planner.command(PathCommand::Stop);
   ASSERT_TRUE(bench.run(2000));
-  EXPECT_EQ(bench.planner.turn_back(5), 0);
-  const auto rest = bench.record.back().position;
-  ASSERT_TRUE(bench.planner.rejoin({rest.data(), 3}));
+  EXPECT_NEAR(bench.turn_back(5), 5, 1e-9);
+  EXPECT_FALSE(bench.planner.off_path());
+  bench.planner.command(PathCommand::Retrace);
+  const std::size_t begin = bench.record.size();
+  ASSERT_TRUE(bench.run());
+  EXPECT_TRUE(bench.planner.retraced(bench.progress()));
+  double nearest = 1;
+  for (std::size_t i = begin; i < bench.record.size(); ++i) {
+    nearest = std::min(nearest, std::abs(bench.record[i].position[0] - left.position[0]));
+  }
+  EXPECT_LT(nearest, 1e-6) << "it rests there in between";
+  const double share = 30 / std::hypot(30.0, 20.0);
+  EXPECT_NEAR(bench.record.back().position[0], left.position[0] - 5 * share, 1e-6);
   bench.planner.command(PathCommand::Run);
   ASSERT_TRUE(bench.run());
+  EXPECT_EQ(bench.moves_done(), 1U);
   EXPECT_NEAR(bench.record.back().position[0], 30, 1e-9);
+  expect_within_limits(bench);
+}
+
+TEST(LeavingThePath, IsRetracedFromTheWayBackToItToo) {
+  PlannerBench bench(mill());
+  queue_line(bench);
+  run_to(bench, 10);
+  const Setpoint left = bench.record.back();
+  bench.follower().leave();
+  bench.planner.command(PathCommand::Stop);
+  ASSERT_TRUE(bench.run(2000));
+  ASSERT_TRUE(bench.planner.rejoin({bench.record.back().position.data(), 3}));
+  bench.planner.command(PathCommand::Run);
+  for (int i = 0; i < 100; ++i) bench.cycle();
+  bench.planner.command(PathCommand::Stop);
+  ASSERT_TRUE(bench.run(2000));
+  ASSERT_GT(bench.record.back().position[0], left.position[0] + 0.1) << "still on the way";
+  EXPECT_NEAR(bench.turn_back(5), 5, 1e-9);
+  bench.planner.command(PathCommand::Retrace);
+  ASSERT_TRUE(bench.run());
+  bench.planner.command(PathCommand::Run);
+  ASSERT_TRUE(bench.run());
+  EXPECT_EQ(bench.moves_done(), 1U);
+  EXPECT_NEAR(bench.record.back().position[0], 30, 1e-9);
+  expect_within_limits(bench);
 }
 
 /// Kinematics that are right until they are told otherwise, and then wrong in one way.

@@ -124,7 +124,7 @@ TEST_P(LongWay, IsAsExactAtItsEndAsAtItsBeginning) {
     run_for(cycles(1, 4000));
     bench_.planner.command(PathCommand::Stop);
     ASSERT_TRUE(bench_.run(20'000));
-    if (cycles(0, 1) == 0 || bench_.planner.turn_back(cycles(1, 1500)) == 0) continue;
+    if (cycles(0, 1) == 0 || bench_.turn_back(cycles(1, 1500)) == 0) continue;
     bench_.planner.command(PathCommand::Retrace);
     run_for(cycles(1, 4000));
     bench_.planner.command(PathCommand::Stop);

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "rmac/modules/chain_kinematics.hpp"
-#include "rmac/motion/path_builder.hpp"
 #include "rmac/motion/follower/plan_follower.hpp"
+#include "rmac/motion/path_builder.hpp"
 #include "rmac/motion/planner.hpp"
 
 namespace rmac::test {
@@ -57,6 +57,11 @@ class PlannerBench {
   void cycles_without_planner(int cycles) {
     for (int i = 0; i < cycles; ++i) servo_cycle();
   }
+  /// The way back from where the joints rest.
+  double turn_back(double distance_mm) {
+    const auto way = planner.turn_back(distance_mm, {record.back().position.data(), joints_.size()});
+    return way ? *way : -1;
+  }
   [[nodiscard]] PlanFollower& follower() { return follower_; }
 
   /// Runs until the machine rests and nothing is left to plan; false when it has not after `most` cycles.
@@ -68,7 +73,9 @@ class PlannerBench {
     return false;
   }
 
-  [[nodiscard]] ServoProgress progress() const { return {cycle_, follower_.accepted_plan(), follower_.last_refused(), follower_.departure()}; }
+  [[nodiscard]] ServoProgress progress() const {
+    return {cycle_, follower_.accepted_plan(), follower_.last_refused(), follower_.departure()};
+  }
   [[nodiscard]] std::uint64_t refused() const { return follower_.last_refused(); }
 
   struct Peaks {

@@ -96,7 +96,7 @@ TEST_P(Retrace, RunsBackAndForwardWithinLimitsAndCountsEachMoveOnce) {
     ASSERT_TRUE(machine.hold());
     const std::size_t done = bench.moves_done();
     const double asked = std::exp(machine.uniform(std::log(0.01), std::log(200)));
-    const double way = bench.planner.turn_back(asked);
+    const double way = bench.turn_back(asked);
     EXPECT_LE(way, asked + 1e-9);
     bench.planner.command(PathCommand::Retrace);
     if (round % 2 == 0) {
@@ -105,7 +105,7 @@ TEST_P(Retrace, RunsBackAndForwardWithinLimitsAndCountsEachMoveOnce) {
     } else {  // held on the way back, and gone back further
       machine.run_for(machine.uniform(1, 400));
       ASSERT_TRUE(machine.hold());
-      (void)bench.planner.turn_back(asked);
+      (void)bench.turn_back(asked);
       bench.planner.command(PathCommand::Retrace);
       machine.run_for(machine.uniform(1, 400));  // and told to go on while it still goes back
     }
@@ -135,17 +135,17 @@ TEST(Retracing, EndsAfterTheDistanceAskedFor) {
   bench.planner.command(PathCommand::Stop);
   ASSERT_TRUE(bench.run());
   const double held = bench.record.back().position[0];
-  EXPECT_DOUBLE_EQ(bench.planner.turn_back(9), 9);
+  EXPECT_DOUBLE_EQ(bench.turn_back(9), 9);
   bench.planner.command(PathCommand::Retrace);
   ASSERT_TRUE(bench.run());
   EXPECT_NEAR(bench.record.back().position[0], held - 9, 1e-9);
   EXPECT_EQ(bench.record.back().move_id, 1);
   // The rest of the way ends where the path began.
-  EXPECT_NEAR(bench.planner.turn_back(1000), held - 9, 1e-6);
+  EXPECT_NEAR(bench.turn_back(1000), held - 9, 1e-6);
   bench.planner.command(PathCommand::Retrace);
   ASSERT_TRUE(bench.run());
   EXPECT_NEAR(bench.record.back().position[0], 0, 1e-9);
-  EXPECT_EQ(bench.planner.turn_back(1), 0);
+  EXPECT_EQ(bench.turn_back(1), 0);
 }
 
 TEST(Retracing, LeavesAOneMoveRunToEndTheMoveThatWasHeld) {
@@ -157,7 +157,7 @@ TEST(Retracing, LeavesAOneMoveRunToEndTheMoveThatWasHeld) {
   while (bench.record.back().position[0] < 7) bench.cycle();
   bench.planner.command(PathCommand::Stop);
   ASSERT_TRUE(bench.run());
-  ASSERT_GT(bench.planner.turn_back(6), 5);
+  ASSERT_GT(bench.turn_back(6), 5);
   bench.planner.command(PathCommand::Retrace);
   ASSERT_TRUE(bench.run());
   bench.planner.command(PathCommand::RunOne);
@@ -173,12 +173,12 @@ TEST(Retracing, IsForgottenWhenTheQueueIsEmptied) {
   while (bench.record.empty() || bench.record.back().position[0] < 11) bench.cycle();
   bench.planner.command(PathCommand::Stop);
   ASSERT_TRUE(bench.run());
-  ASSERT_GT(bench.planner.turn_back(8), 0);
+  ASSERT_GT(bench.turn_back(8), 0);
   bench.planner.command(PathCommand::Retrace);
   ASSERT_TRUE(bench.run());
   const double x = bench.record.back().position[0];
   bench.planner.clear();
-  EXPECT_EQ(bench.planner.turn_back(1), 0);
+  EXPECT_EQ(bench.turn_back(1), 0);
   // What comes next is counted, although it lies on ground that was travelled before.
   const std::size_t done = bench.moves_done();
   bench.builder.restart(std::vector<double>{x, 0, 0}, {});

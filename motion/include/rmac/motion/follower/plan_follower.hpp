@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "rmac/motion/follower/joint_brake.hpp"
-#include "rmac/motion/limits.hpp"
 #include "rmac/motion/follower/path_departure.hpp"
+#include "rmac/motion/limits.hpp"
 #include "rmac/motion/plan_channel.hpp"
 #include "rmac/motion/servo/setpoint.hpp"
 
