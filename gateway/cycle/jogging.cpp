@@ -42,6 +42,7 @@ bool Jogging::renew(double share) {
   cycle_.settle(now);  // it may have ended since
   if (!cycle_.sequencer.jogs()) return false;
   cycle_.sequencer.renew_jog(cycle_.observe(now), kJogLasts_s);
+  cycle_.settle(now);  // the servo thread knows its end too
   cycle_.feed.jog_at(share);
   cycle_.apply_feed();
   return true;

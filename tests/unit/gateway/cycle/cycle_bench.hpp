@@ -37,6 +37,11 @@ class CycleBench {
       const PlannerTurn turn(cycle.lock);
       pace = cycle.advance(status);
     }
+    follow();
+    return pace;
+  }
+  /// One cycle in which the planner has no turn.
+  void follow() {
     ++status.progress.cycle;
     status.t_s += 0.001;
     Setpoint setpoint;
@@ -52,7 +57,6 @@ class CycleBench {
     status.moves_done += setpoint.moves_done;
     std::copy(setpoint.position.begin(), setpoint.position.begin() + 3, status.position_set.begin());
     publish();
-    return pace;
   }
   /// False when it is not so after a machine's minute.
   template <typename Reached>
