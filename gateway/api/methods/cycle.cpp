@@ -76,7 +76,8 @@ void add_cycle_methods(std::vector<Method>& table) {
           .gives(WireType::Boolean)
           .does([](Call& call) { return call.machine.cam().cycle().started(); }));
   add(method("RMAC_CAM.CycleStop",
-             "Stops on the path, whatever the mode, and keeps the rest of the queue; a new CycleStart goes on.")
+             "Stops, whatever the mode, and keeps the rest of the queue; a new CycleStart goes on. On the path, as "
+             "FeedHold.")
           .takes(choice("Mode", kCycleModeValues))
           .gives(WireType::Boolean)
           .causes(Effect::Holds)
@@ -95,12 +96,17 @@ void add_cycle_methods(std::vector<Method>& table) {
           .gives(WireType::Boolean)
           .causes(Effect::Stops)
           .does([](Call& call) { return call.machine.cam().cycle().stop_now(); }));
-  add(method("RMAC_CAM.FeedHold", "Comes to rest on the path; FeedResume goes on from there.")
+  add(method(
+          "RMAC_CAM.FeedHold",
+          "Comes to rest on the path, or, where no plan for that is there within two cycles, joint by joint beside it "
+          "(docs/safety.md); FeedResume goes on from there.")
           .gives(WireType::Boolean)
           .causes(Effect::Holds)
           .extension()
           .does([](Call& call) { return call.machine.cam().cycle().hold(); }));
-  add(method("RMAC_CAM.FeedResume", "Goes on after a FeedHold.")
+  add(method(
+          "RMAC_CAM.FeedResume",
+          "Goes on after a FeedHold; from beside the path by way of where it was left, at 10 % of the joints' speeds.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
           .extension()
