@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "gateway/modules/module_loader.hpp"
+#include "rmac/motion/follower/plan_follower.hpp"
 #include "rmac/motion/path_builder.hpp"
 #include "rmac/motion/plan_channel.hpp"
-#include "rmac/motion/follower/plan_follower.hpp"
 #include "rmac/motion/planner.hpp"
 #include "rmac/motion/servo/servo_loop.hpp"
 #include "rmac/motion/servo/servo_loop_parts.hpp"

@@ -3,8 +3,8 @@
 #include <deque>
 #include <functional>
 
-#include "rmac/motion/path_builder.hpp"
 #include "rmac/motion/follower/plan_follower.hpp"
+#include "rmac/motion/path_builder.hpp"
 #include "rmac/motion/planner.hpp"
 
 namespace rmac::bench {

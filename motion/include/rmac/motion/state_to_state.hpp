@@ -58,7 +58,8 @@ class JerkProfile {
                                           const MotionBounds& bounds) noexcept;
 
 /// The fastest motion to a velocity that is then kept, wherever that is. Real-time safe.
-[[nodiscard]] JerkProfile velocity_profile(const JointState& from, double velocity, const MotionBounds& bounds) noexcept;
+[[nodiscard]] JerkProfile velocity_profile(const JointState& from, double velocity,
+                                           const MotionBounds& bounds) noexcept;
 
 /// Motions of several joints that begin and end together, in the least duration that all of them can take: each joint
 /// has durations that it cannot, so it may be longer than that of the slowest. Returns the duration. Real-time safe.
