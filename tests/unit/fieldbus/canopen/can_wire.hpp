@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -29,6 +30,9 @@ class CanWire {
       now_ = std::min(now_ + kStep, end);
       for (auto& drive : drives_) drive->poll(now_);
       deliver();
+      for (auto due = delayed_.begin(); due != delayed_.end() && due->first <= now_; due = delayed_.erase(due)) {
+        received_.push_back(due->second);
+      }
     }
   }
   [[nodiscard]] Time now() const { return now_; }
@@ -38,6 +42,9 @@ class CanWire {
   bool full = false;                            ///< the transmit queue takes nothing
   bool cut = false;                             ///< nothing passes either way
   std::function<void(const CanFrame&)> listen;  ///< everything that passes
+  /// A gateway on the way from the drives: after which times it hands the frame on, once for each. None: there is no
+  /// gateway.
+  std::function<std::vector<Time>(const CanFrame&)> gateway;
 
  private:
   class Port final : public CanPort {
@@ -76,13 +83,24 @@ class CanWire {
       for (const CanFrame& frame : drive->take_output()) {
         if (cut) continue;
         if (listen) listen(frame);
-        received_.push_back(frame);
+        if (!gateway) {
+          received_.push_back(frame);
+          continue;
+        }
+        for (const Time delay : gateway(frame)) {
+          if (delay.count() <= 0) {
+            received_.push_back(frame);
+          } else {
+            delayed_.emplace(now_ + delay, frame);
+          }
+        }
       }
     }
   }
 
   std::vector<std::unique_ptr<VirtualDrive>> drives_;
   std::deque<CanFrame> received_;
+  std::multimap<Time, CanFrame> delayed_;
   Time now_{std::chrono::seconds(1)};
 };
 
