@@ -185,6 +185,12 @@ std::string joint_cause(const ServoFault& fault, const std::string& at) {
           "{}: its position jumped by {:.4g} within a cycle, and motion explains {:.4g}; check the encoder, its cable "
           "and its screen, then reset and find the reference again",
           at, fault.value, fault.bound);
+    case ServoFault::Kind::Displaced:
+      return fmt::format(
+          "{}: it stands {:.4g} from where the machine was left, or from where its drive would be sent, and {:.4g} is "
+          "allowed (MaxJump), so it is not enabled; look where it really is, and at its encoder, then reset and find "
+          "the reference again",
+          at, fault.value, fault.bound);
     case ServoFault::Kind::SensorLost:
       return fmt::format(
           "{}: its force sensor gives no valid value; check the sensor, its amplifier and its cable, "
@@ -258,6 +264,7 @@ std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
     case Kind::VelocityBound:
     case Kind::TorqueBound:
     case Kind::EncoderJump:
+    case Kind::Displaced:
     case Kind::ForceLimit:
     case Kind::ContactLost:
       return joint_cause(fault, at);
@@ -311,6 +318,7 @@ MinorCode code_of(ServoFault::Kind kind) noexcept {
     case Kind::VelocityBound:
       return MinorCode::SpeedLimit;
     case Kind::EncoderJump:
+    case Kind::Displaced:
     case Kind::SensorLost:
       return MinorCode::Scale;
     case Kind::DriveOffline:

@@ -11,6 +11,7 @@
 #include "canopen/node_boot.hpp"
 #include "canopen/pdo.hpp"
 #include "canopen/watch/node_trouble.hpp"
+#include "canopen/watch/position_reader.hpp"
 #include "rmac/fieldbus/can/socket_can_port.hpp"
 #include "rmac/fieldbus/canopen/bus_load.hpp"
 
@@ -21,12 +22,14 @@ namespace {
 constexpr int kMostFramesPerCycle = 512;
 
 struct Node {
-  Node(const CanopenConfig& config, std::uint8_t id) : boot(config, id) {}
+  Node(const CanopenConfig& config, std::uint8_t id) : boot(config, id), positions(id) {}
   NodeBoot boot;
+  PositionReader positions;
   NodeTrouble trouble;
   std::chrono::nanoseconds heard{0};
   std::uint16_t error_code = 0;
   bool up = false;
+  bool told_position = false;  ///< in this cycle: whoever asked does not know yet
 };
 
 }  // namespace
@@ -83,7 +86,9 @@ struct CanopenInterface::Impl {
   }
   void take_from_node(Node& node, const CanFrame& frame, std::chrono::nanoseconds now) noexcept;
   void watch(std::chrono::nanoseconds now) noexcept;
-  void recover(std::chrono::nanoseconds now) noexcept;
+  void ask_positions(std::span<const DriveCommand> commands, std::chrono::nanoseconds now) noexcept;
+  void take_positions() noexcept;
+  void send_asides(std::chrono::nanoseconds now) noexcept;
   void lose(Node& node, std::chrono::nanoseconds now) noexcept;
   void fill(std::span<DriveFeedback> feedback) noexcept;
   [[nodiscard]] bool send(const CanFrame& frame) noexcept;
@@ -100,7 +105,7 @@ struct CanopenInterface::Impl {
   BusTrouble trouble;
   std::chrono::nanoseconds next_heartbeat{0};
   std::chrono::nanoseconds next_time{0};
-  std::size_t recovering = 0;  ///< whose turn it is to send a frame of its boot
+  std::size_t aside = 0;  ///< whose turn it is to send a frame beside those of the cycle
   bool running = false;
   bool fresh = false;  ///< no cycle since start
 };
@@ -126,6 +131,10 @@ DriveMode CanopenInterface::mode(std::size_t axis) const noexcept {
 
 bool CanopenInterface::tells_torque(std::size_t axis) const noexcept {
   return impl_->axes[axis].tells(0x6077);
+}
+
+bool CanopenInterface::reads_positions(std::size_t axis) const noexcept {
+  return impl_->axes[axis].tells(0x6064);
 }
 
 double CanopenInterface::counts_per_revolution(std::size_t axis) const noexcept {
@@ -258,9 +267,11 @@ bool CanopenInterface::exchange(std::span<const DriveCommand> commands, std::spa
   ++bus.counters.cycles;
   bus.fetch(now);
   bus.watch(now);
+  bus.take_positions();
   bus.fill(feedback);
   const bool sent = bus.send_cycle(commands, now);
-  bus.recover(now);
+  bus.ask_positions(commands, now);
+  bus.send_asides(now);
   const CanHealth health = bus.port->health();
   if (sent && health.usable()) return true;
   bus.trouble.note(health, bus.counters.unsent);
@@ -328,6 +339,7 @@ void CanopenInterface::Impl::take_from_node(Node& node, const CanFrame& frame, s
     if (node.up && said != NmtState::Operational && said != NmtState::BootUp) lose(node, now);
   }
   node.boot.receive(frame, now);
+  if (node.up && frame.id == kSdoAnswerId + id) node.positions.receive(frame, now);
   if (!node.up || node.boot.state() == NodeBoot::State::Operational) return;
   lose(node, now);
   // A boot-up message: it has started anew by itself, and waits for what it is to be told.
@@ -342,6 +354,7 @@ void CanopenInterface::Impl::lose(Node& node, std::chrono::nanoseconds now) noex
   for (BusAxis& axis : axes) {
     if (&nodes[axis.node] == &node) axis.forget();
   }
+  node.positions.abandon();
   node.boot.begin(now);
 }
 
@@ -366,8 +379,10 @@ void CanopenInterface::Impl::fill(std::span<DriveFeedback> feedback) noexcept {
   for (std::size_t i = 0; i < axes.size(); ++i) {
     BusAxis& axis = axes[i];
     const Node& node = nodes[axis.node];
-    if (axis.answered() && axis.unanswered() > 0) ++counters.missed_answers;
+    const bool missed = axis.answered() && axis.unanswered() > 0;
+    if (missed) ++counters.missed_answers;
     feedback[i] = axis.feedback;
+    feedback[i].missed = missed;
     feedback[i].online = node.up && axis.answered() && axis.unanswered() <= config.missed_answers;
     if (!axis.tells(0x603F)) feedback[i].error_code = node.error_code;
   }
@@ -411,13 +426,36 @@ bool CanopenInterface::Impl::send_setpoints(std::size_t first, std::span<const D
   return !any || send(frame);
 }
 
-void CanopenInterface::Impl::recover(std::chrono::nanoseconds now) noexcept {
-  // One frame a cycle, in turn, so that bringing up a node takes little from the cycles of the others.
+void CanopenInterface::Impl::ask_positions(std::span<const DriveCommand> commands,
+                                           std::chrono::nanoseconds now) noexcept {
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    Node& node = nodes[axes[i].node];
+    if (!commands[i].read_position || !node.up || node.told_position || node.positions.busy()) continue;
+    const auto offset = static_cast<std::uint16_t>(kAxisOffset * axes[i].config.axis_in_node);
+    node.positions.begin(i, of_axis({0x6064, 0}, offset), now);
+  }
+}
+
+void CanopenInterface::Impl::take_positions() noexcept {
+  for (Node& node : nodes) {
+    const auto reading = node.positions.take();
+    node.told_position = reading.has_value();
+    if (!reading) continue;
+    DriveFeedback& words = axes[reading->axis].feedback;
+    // A drive that refuses to tell it by SDO is left to its PDOs.
+    words.position_read_counts = reading->counts.value_or(words.position_counts);
+    ++words.position_reads;
+  }
+}
+
+/// One frame a cycle, in turn, so that bringing up a node, or reading a position, takes little from the cycles of the
+/// others.
+void CanopenInterface::Impl::send_asides(std::chrono::nanoseconds now) noexcept {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    recovering = (recovering + 1) % nodes.size();
-    Node& node = nodes[recovering];
+    aside = (aside + 1) % nodes.size();
+    Node& node = nodes[aside];
     CanFrame frame;
-    if (!node.up && node.boot.next_frame(now, frame)) {
+    if (node.up ? node.positions.next_frame(now, frame) : node.boot.next_frame(now, frame)) {
       port->send(frame);
       return;
     }

@@ -42,9 +42,9 @@ class CanWire {
   bool full = false;                            ///< the transmit queue takes nothing
   bool cut = false;                             ///< nothing passes either way
   std::function<void(const CanFrame&)> listen;  ///< everything that passes
-  /// A gateway on the way from the drives: after which times it hands the frame on, once for each. None: there is no
-  /// gateway.
-  std::function<std::vector<Time>(const CanFrame&)> gateway;
+  /// A gateway on the way from the drives: what it makes of a frame, and after which times it hands it on, once for
+  /// each. None: there is no gateway.
+  std::function<std::vector<Time>(CanFrame&)> gateway;
 
  private:
   class Port final : public CanPort {
@@ -80,7 +80,7 @@ class CanWire {
 
   void deliver() {
     for (auto& drive : drives_) {
-      for (const CanFrame& frame : drive->take_output()) {
+      for (CanFrame& frame : drive->take_output()) {
         if (cut) continue;
         if (listen) listen(frame);
         if (!gateway) {

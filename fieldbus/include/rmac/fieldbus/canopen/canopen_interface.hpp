@@ -48,6 +48,8 @@ class CanopenInterface final : public DigitalControlInterface, public ExchangeFa
   [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override;
   [[nodiscard]] bool tells_torque(std::size_t axis) const noexcept override;
   [[nodiscard]] bool answers_late(std::size_t /*axis*/) const noexcept override { return true; }
+  /// By SDO, a frame a cycle.
+  [[nodiscard]] bool reads_positions(std::size_t axis) const noexcept override;
   [[nodiscard]] std::uint32_t input_bits(std::size_t axis) const noexcept override;
   /// By its encoder resolution, gear ratio and feed constant.
   [[nodiscard]] double counts_per_revolution(std::size_t axis) const noexcept override;
