@@ -23,6 +23,11 @@ constexpr double kMaxJump = 0.6;      // mm
 class ImpossiblePositions : public testing::Test {
  protected:
   void SetUp() override { build(); }
+  /// The master stops only after the test's body, whose variables a listener or a gateway may use.
+  void TearDown() override {
+    wire_.listen = nullptr;
+    wire_.gateway = nullptr;
+  }
 
   void build() {
     loop_.reset();
