@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <bit>
+
 namespace rmac::gateway {
 namespace {
 
@@ -28,8 +30,19 @@ Expected<> refuse_when_unfit(const char* what, const Phase& phase, const CycleOb
 
 }  // namespace
 
+Expected<> require_references(const char* what, std::uint32_t lost) {
+  if (lost == 0) return {};
+  return failure(
+      MinorCode::Scale,
+      fmt::format("{}: joint {} has lost its reference, because its position jumped or was not where the machine was "
+                  "left; find it again (rmac home), or, where its drive does not look for home, see that it stands "
+                  "where rmac status says, and unload and load the machine",
+                  what, std::countr_zero(lost)));
+}
+
 Expected<> CycleSequencer::start(sdk::CycleMode mode, const CycleObservation& seen) {
   if (auto fine = refuse_when_unfit("CycleStart", phase_, seen); !fine) return fine;
+  if (auto known = require_references("CycleStart", seen.reference_lost); !known) return known;
   if (phase_.in<Phase::Stopping>()) {
     return failure(MinorCode::Other, "CycleStart: the machine is still stopping; start it when it has come to rest");
   }

@@ -21,11 +21,15 @@ struct CycleObservation {
   bool faulted = false;          ///< the servo loop is
   bool emergency_stop = false;   ///< and that is why
   bool spindles_at_speed = true;
-  bool follows = false;       ///< joints follow the plan
-  std::uint32_t homings = 0;  ///< that the drives have completed
-  bool air = true;            ///< the machine has its compressed air, or needs none
-  bool measures = false;      ///< what is left in the queue is a measurement, which counts as one move
+  bool follows = false;              ///< joints follow the plan
+  std::uint32_t homings = 0;         ///< that the drives have completed
+  std::uint32_t reference_lost = 0;  ///< bit j: joint j's position is not to be relied on
+  bool air = true;                   ///< the machine has its compressed air, or needs none
+  bool measures = false;             ///< what is left in the queue is a measurement, which counts as one move
 };
+
+/// Refuses what goes to a place while joints (bits of `lost`) have lost their reference; jogs and homing go by none.
+[[nodiscard]] Expected<> require_references(const char* what, std::uint32_t lost);
 
 /// The machine's cycle states and what they mean for the path (contract "Cycle"):
 /// Idle → Running ⇄ Holding, any → Stopping → Idle, any → Faulted, left by a reset alone. A pure state machine: it is

@@ -51,6 +51,7 @@ CycleObservation MachineCycle::observe(const ServoStatus& status) {
   seen.moves_done = status.moves_done;
   seen.follows = status.follows;
   seen.homings = status.homings;
+  seen.reference_lost = status.reference_lost;
   seen.faulted = status.state == ServoState::Faulted;
   seen.emergency_stop = seen.faulted && status.fault.kind == ServoFault::Kind::EmergencyStop;
   seen.spindles_at_speed = spindles_at_speed(*mechanism_, wishes.now(), status);

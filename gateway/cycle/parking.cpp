@@ -65,6 +65,7 @@ Expected<> Parking::park(std::uint64_t outputs_off) {
 }
 
 Expected<> Parking::add_rest_of(const ProgramStep& first) {
+  if (auto known = require_references("TakeUpProgram", cycle_.status().reference_lost); !known) return known;
   auto rest = build_rest_of(cycle_.builder(), first);
   if (!rest) return tl::unexpected(rest.error());
   const GatewayTurn turn(cycle_.lock);

@@ -105,23 +105,35 @@ std::string bus_text(std::uint32_t index, const Mechanism* mechanism) {
   return exchange_text(interface, "the bus failed; check the interface");
 }
 
+/// The drive that a fault names: its bus, and its place there.
+struct DriveOnBus {
+  const DigitalControlInterface* interface = nullptr;
+  std::uint32_t axis = 0;
+};
+DriveOnBus drive_of(const ServoFault& fault, const Mechanism* mechanism) {
+  if (mechanism == nullptr) return {};
+  const auto in = [&fault](const auto& drives) -> DriveOnBus {
+    if (fault.index >= drives.size()) return {};
+    return {drives[fault.index].bus->interface.get(), drives[fault.index].axis};
+  };
+  const ServoLoopParts& parts = mechanism->loop->parts();
+  if (fault.part == ServoFault::Part::Spindle) return in(parts.spindles);
+  return fault.part == ServoFault::Part::Actuator ? in(parts.actuators) : DriveOnBus{};
+}
+
 /// A drive's error code, as its interface tells it or else as CiA 402 does.
 std::string code_text(const ServoFault& fault, std::uint16_t code, const Mechanism* mechanism) {
-  const auto told_by = [code](const auto& drive) -> std::optional<std::string> {
-    const auto* texts = dynamic_cast<const fieldbus::FaultTexts*>(drive.bus->interface.get());
-    if (texts == nullptr) return {};
-    return texts->fault_text(drive.axis, code);
-  };
-  std::optional<std::string> text;
-  if (mechanism != nullptr) {
-    const ServoLoopParts& parts = mechanism->loop->parts();
-    if (fault.part == ServoFault::Part::Spindle && fault.index < parts.spindles.size()) {
-      text = told_by(parts.spindles[fault.index]);
-    } else if (fault.part == ServoFault::Part::Actuator && fault.index < parts.actuators.size()) {
-      text = told_by(parts.actuators[fault.index]);
-    }
-  }
-  return text ? *text : fieldbus::canopen::emergency_text(code);
+  const DriveOnBus drive = drive_of(fault, mechanism);
+  const auto* texts = dynamic_cast<const fieldbus::FaultTexts*>(drive.interface);
+  return texts != nullptr ? texts->fault_text(drive.axis, code) : fieldbus::canopen::emergency_text(code);
+}
+
+/// Why a drive is silent, as far as its interface knows.
+std::string silence_text(const ServoFault& fault, const Mechanism* mechanism) {
+  const DriveOnBus drive = drive_of(fault, mechanism);
+  const auto* texts = dynamic_cast<const fieldbus::SilenceText*>(drive.interface);
+  const auto text = texts != nullptr ? texts->silence_text(drive.axis) : std::nullopt;
+  return text.value_or("the drive does not answer; check its power and its cable");
 }
 
 /// What only a spindle's own watch finds; nothing for what any drive may have.
@@ -173,6 +185,12 @@ std::string joint_cause(const ServoFault& fault, const std::string& at) {
           "{}: its position jumped by {:.4g} within a cycle, and motion explains {:.4g}; check the encoder, its cable "
           "and its screen, then reset and find the reference again",
           at, fault.value, fault.bound);
+    case ServoFault::Kind::Displaced:
+      return fmt::format(
+          "{}: it stands {:.4g} from where the machine was left, or from where its drive would be sent, and {:.4g} is "
+          "allowed (MaxJump), so it is not enabled; look where it really is, and at its encoder, then reset and find "
+          "the reference again",
+          at, fault.value, fault.bound);
     case ServoFault::Kind::SensorLost:
       return fmt::format(
           "{}: its force sensor gives no valid value; check the sensor, its amplifier and its cable, "
@@ -205,7 +223,7 @@ std::string drive_cause(const ServoFault& fault, const std::string& at, const Me
           "{}: the drive reports error {:04X}h ({}); look it up in its manual, remove the cause, then reset", at, word,
           code_text(fault, word, mechanism));
     case ServoFault::Kind::DriveOffline:
-      return fmt::format("{}: the drive does not answer; check its power and its cable, then reset", at);
+      return fmt::format("{}: {}, then reset", at, silence_text(fault, mechanism));
     case ServoFault::Kind::DriveDropped:
       return fmt::format(
           "{}: the drive left Operation Enabled by itself and is in {}; check its enable chain, then "
@@ -246,6 +264,7 @@ std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
     case Kind::VelocityBound:
     case Kind::TorqueBound:
     case Kind::EncoderJump:
+    case Kind::Displaced:
     case Kind::ForceLimit:
     case Kind::ContactLost:
       return joint_cause(fault, at);
@@ -299,6 +318,7 @@ MinorCode code_of(ServoFault::Kind kind) noexcept {
     case Kind::VelocityBound:
       return MinorCode::SpeedLimit;
     case Kind::EncoderJump:
+    case Kind::Displaced:
     case Kind::SensorLost:
       return MinorCode::Scale;
     case Kind::DriveOffline:

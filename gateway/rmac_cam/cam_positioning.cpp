@@ -176,6 +176,7 @@ Expected<> CamPositioning::home() {
           [](CycleSequencer& cycle, const CycleObservation& seen) { return cycle.start_homing(seen); });
     });
   }
+  if (auto known = require_references("Home", link_.status.read().reference_lost); !known) return known;
   const JointTargetGeometry now = joints_now();
   const bool there =
       std::all_of(now.joints.begin(), now.joints.end(), [](double position) { return std::abs(position) < 1e-9; });
@@ -186,6 +187,7 @@ Expected<> CamPositioning::home() {
 
 Expected<> CamPositioning::move_to_reference_point() {
   if (auto loaded = device_.require("MoveToReferencePoint"); !loaded) return loaded;
+  if (auto known = require_references("MoveToReferencePoint", link_.status.read().reference_lost); !known) return known;
   return supervisor_.jogging().run(maker_.straight_move({{0, 0, 0}, tool_.in_part().axis}));
 }
 

@@ -102,6 +102,7 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
   status_.move_id = setpoint.move_id;
   status_.s_mm = setpoint.s_mm;
   status_.homings = report_.homings;
+  status_.reference_lost = report_.reference_lost;
   status_.probe = report_.probe;
   if (report_.follows) status_.moves_done += setpoint.moves_done;
   status_.joint_count = static_cast<std::uint32_t>(loop.joint_count());

@@ -59,6 +59,7 @@ struct ServoStatus {
   double s_mm = 0;
   std::uint64_t moves_done = 0;
   std::uint32_t homings = 0;
+  std::uint32_t reference_lost = 0;  ///< bit j: joint j has to find home again
   ProbeReport probe;
   std::uint32_t joint_count = 0;
   std::uint32_t joint_count_with_held = 0;

@@ -11,7 +11,6 @@ using Kind = BootStep::Kind;
 
 constexpr std::uint32_t kInvalidPdo = 0x80000000;
 constexpr std::uint32_t kNoRemoteRequest = 0x40000000;
-constexpr std::uint8_t kEverySync = 1;
 
 class Plan {
  public:
@@ -24,8 +23,14 @@ class Plan {
     const std::array numbers{first.identity.vendor_id, first.identity.product_code, first.identity.revision_number,
                              first.identity.serial_number};
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-      if (numbers[i] != 0) check({0x1018, static_cast<std::uint8_t>(i + 1)}, numbers[i], 0xFFFFFFFF);
+      const ObjectAddress object{0x1018, static_cast<std::uint8_t>(i + 1)};
+      numbers[i] != 0 ? check(object, numbers[i], 0xFFFFFFFF) : read(object);
     }
+  }
+
+  /// Once more who it is: two devices may have taken turns to answer.
+  void read_identity() {
+    for (std::uint8_t sub = 1; sub <= 4; ++sub) read({0x1018, sub});
   }
 
   /// From the fall of its voltage to the fall of the master: what a drive does when nobody speaks to it any more.
@@ -34,6 +39,7 @@ class Plan {
           static_cast<std::uint32_t>(config_.master_node) << 16 |
               static_cast<std::uint32_t>(config_.heartbeat_deadline().count()));
     write({0x1017, 0}, 2, static_cast<std::uint32_t>(config_.heartbeat.count()));
+    read({0x1017, 0});  // some round it
   }
 
   void add_axis(const AxisConfig& axis) {
@@ -43,8 +49,10 @@ class Plan {
     const auto number = static_cast<std::uint16_t>(kPdoOffset * axis.axis_in_node);
     map(static_cast<std::uint16_t>(0x1400 + number), setpoint_id(axis), axis.setpoints, offset);
     map(static_cast<std::uint16_t>(0x1800 + number), kNoRemoteRequest | answer_id(axis), axis.answers, offset);
+    read(transmission_type(axis, false));
     if (!axis.more_answers.empty()) {
       map(0x1801, kNoRemoteRequest | more_answers_id(axis), axis.more_answers, offset);
+      read(transmission_type(axis, true));
     }
     if (config_.abort_connection >= 0) {
       write(of_axis({0x6007, 0}, offset), 2, static_cast<std::uint32_t>(config_.abort_connection));
@@ -160,6 +168,7 @@ std::vector<BootStep> boot_plan(const CanopenConfig& config, std::uint8_t node) 
     first = false;
     plan.add_axis(axis);
   }
+  plan.read_identity();
   plan.watch_master();
   plan.read_error();
   return std::move(plan).steps();

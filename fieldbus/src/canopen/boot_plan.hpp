@@ -23,7 +23,6 @@ struct BootStep {
 };
 
 inline constexpr std::uint16_t kPdoOffset = 0x40;  ///< between the PDO numbers of two axes of a node (CiA 402-3)
-inline constexpr std::uint16_t kFirstProfileObject = 0x6000;
 
 /// The same object of another axis of a node; objects of the communication and the maker's own belong to the node.
 [[nodiscard]] inline ObjectAddress of_axis(ObjectAddress object, std::uint16_t offset) noexcept {
@@ -34,6 +33,12 @@ inline constexpr std::uint16_t kFirstProfileObject = 0x6000;
 /// By which a drive makes units of position of its encoder's counts: encoder resolution, gear ratio, feed constant.
 inline constexpr std::array<ObjectAddress, 6> kScaleObjects{
     {{0x608F, 1}, {0x608F, 2}, {0x6091, 1}, {0x6091, 2}, {0x6092, 1}, {0x6092, 2}}};
+
+inline constexpr std::uint8_t kEverySync = 1;  ///< a transmission type (CiA 301, 7.5.2.35): sent with every SYNC
+/// The transmission type of an axis's TPDO, or of its second one. It is read back when it was written.
+[[nodiscard]] inline ObjectAddress transmission_type(const AxisConfig& axis, bool second) noexcept {
+  return {static_cast<std::uint16_t>(second ? 0x1801 : 0x1800 + kPdoOffset * axis.axis_in_node), 2};
+}
 
 /// All steps for `node`, in order: who it is, what its DCF says, what it can, its PDOs, its mode and setup, its watch
 /// over the master.

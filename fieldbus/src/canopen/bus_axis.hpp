@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "canopen/watch/sync_answers.hpp"
 #include "rmac/fieldbus/canopen/canopen_config.hpp"
 #include "rmac/motion/ports/digital_control_interface.hpp"
 
@@ -18,12 +19,18 @@ struct BusAxis {
     std::vector<MappedObject> contents;
     std::uint32_t unanswered = 0;  ///< SYNCs
     bool answered = false;         ///< since its node came up
+    ObjectAddress transmission_type;
+    SyncAnswers count;
   };
   std::vector<Answer> answers;
   DriveFeedback feedback;
 
   void forget() noexcept {
     for (Answer& answer : answers) answer.answered = false;
+  }
+  /// A SYNC was sent: each PDO is to come once more.
+  void sync() noexcept {
+    for (Answer& answer : answers) answer.count.sync();
   }
   [[nodiscard]] bool answered() const noexcept {
     return std::all_of(answers.begin(), answers.end(), [](const Answer& answer) { return answer.answered; });

@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 
+#include "canopen/watch/identity_record.hpp"
 #include "rmac/fieldbus/canopen/sdo_client.hpp"
 
 namespace rmac::fieldbus::canopen {
@@ -13,9 +14,12 @@ namespace {
 
 constexpr std::uint8_t kMostNodes = 127;
 
-/// What is asked of each node, in order.
+/// What is asked of each node, in order; who it is twice, for two devices of one id may take turns.
 constexpr std::array kQuestions{ObjectAddress{0x1000, 0}, ObjectAddress{0x1018, 1}, ObjectAddress{0x1018, 2},
-                                ObjectAddress{0x1018, 3}, ObjectAddress{0x1018, 4}, ObjectAddress{0x1008, 0}};
+                                ObjectAddress{0x1018, 3}, ObjectAddress{0x1018, 4}, ObjectAddress{0x1008, 0},
+                                ObjectAddress{0x1018, 1}, ObjectAddress{0x1018, 2}, ObjectAddress{0x1018, 3},
+                                ObjectAddress{0x1018, 4}};
+constexpr int kQuestionsOfIdentity = kQuestions.size() - 1;
 
 SdoClient::Options sdo_options(const ScanOptions& options) {
   // Segmented only: block transfer is the less common of the two, and a name is short.
@@ -29,7 +33,13 @@ class Probe {
   Probe(std::uint8_t node, const ScanOptions& options) : sdo_(node, sdo_options(options)) { found_.node = node; }
 
   void receive(const CanFrame& frame, std::chrono::nanoseconds now) noexcept {
-    if (frame.id == kSdoAnswerId + found_.node) sdo_.receive(frame, now);
+    if (frame.id == kSdoAnswerId + found_.node) {
+      if (identity_.take(frame)) found_.two_identities = true;
+      const std::uint16_t index = frame.size == 8 ? word_at(&frame.data[1]) : std::uint16_t{0};
+      if (index == 0x1000 || index == 0x1018) ++told_;
+      found_.answers_twice = told_ >= 2 * kQuestionsOfIdentity;
+      sdo_.receive(frame, now);
+    }
     if (frame.id == kHeartbeatId + found_.node && frame.size == 1) found_.state = heartbeat_state(frame);
   }
   /// The next frame of the conversation, if there is one now.
@@ -73,6 +83,8 @@ class Probe {
   }
 
   SdoClient sdo_;
+  IdentityRecord identity_;
+  int told_ = 0;  ///< answers to who it is
   ScannedNode found_;
   std::array<std::uint8_t, 128> buffer_{};
   std::size_t question_ = 0;

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <set>
 
 #include "canopen/bus_axis.hpp"
 #include "canopen/bus_trouble.hpp"
 #include "canopen/node_boot.hpp"
 #include "canopen/pdo.hpp"
+#include "canopen/watch/node_trouble.hpp"
+#include "canopen/watch/position_reader.hpp"
 #include "rmac/fieldbus/can/socket_can_port.hpp"
 #include "rmac/fieldbus/canopen/bus_load.hpp"
 
@@ -19,11 +22,14 @@ namespace {
 constexpr int kMostFramesPerCycle = 512;
 
 struct Node {
-  Node(const CanopenConfig& config, std::uint8_t id) : boot(config, id) {}
+  Node(const CanopenConfig& config, std::uint8_t id) : boot(config, id), positions(id) {}
   NodeBoot boot;
+  PositionReader positions;
+  NodeTrouble trouble;
   std::chrono::nanoseconds heard{0};
   std::uint16_t error_code = 0;
   bool up = false;
+  bool told_position = false;  ///< in this cycle: whoever asked does not know yet
 };
 
 }  // namespace
@@ -32,13 +38,20 @@ struct CanopenInterface::Impl {
   Impl(CanopenConfig configuration, OpenPort opener) : config(std::move(configuration)), open(std::move(opener)) {
     for (const AxisConfig& axis : config.axes) {
       auto at = std::find_if(nodes.begin(), nodes.end(), [&](const Node& n) { return n.boot.node() == axis.node; });
-      if (at == nodes.end()) at = nodes.emplace(nodes.end(), config, axis.node);
+      const auto place = static_cast<std::size_t>(at - nodes.begin());
+      if (at == nodes.end()) nodes.emplace_back(config, axis.node);
       const auto same = [&](std::size_t other) { return setpoint_id(axes[other].config) == setpoint_id(axis); };
       if (std::none_of(rpdos.begin(), rpdos.end(), same)) rpdos.push_back(axes.size());
-      BusAxis made{.config = axis, .node = static_cast<std::size_t>(at - nodes.begin()), .answers = {}, .feedback = {}};
-      made.answers.push_back({.id = answer_id(axis), .contents = axis.answers});
+      BusAxis made{.config = axis, .node = place, .answers = {}, .feedback = {}};
+      made.answers.push_back({.id = answer_id(axis),
+                              .contents = axis.answers,
+                              .transmission_type = transmission_type(axis, false),
+                              .count = {}});
       if (!axis.more_answers.empty()) {
-        made.answers.push_back({.id = more_answers_id(axis), .contents = axis.more_answers});
+        made.answers.push_back({.id = more_answers_id(axis),
+                                .contents = axis.more_answers,
+                                .transmission_type = transmission_type(axis, true),
+                                .count = {}});
       }
       axes.push_back(std::move(made));
     }
@@ -54,6 +67,7 @@ struct CanopenInterface::Impl {
     for (const BusAxis& axis : axes) {
       for (const BusAxis::Answer& answer : axis.answers) ids.push_back(answer.id);
     }
+    if (config.sync == SyncOrder::External) ids.push_back(kSyncId);
     return ids;
   }
 
@@ -66,9 +80,15 @@ struct CanopenInterface::Impl {
   void fetch(std::chrono::nanoseconds now) noexcept;
   void take(const CanFrame& frame, std::chrono::nanoseconds now) noexcept;
   void take_answer(BusAxis& axis, BusAxis::Answer& answer, const CanFrame& frame) noexcept;
+  /// A SYNC is on the bus, whoever sent it.
+  void count_sync() noexcept {
+    for (BusAxis& axis : axes) axis.sync();
+  }
   void take_from_node(Node& node, const CanFrame& frame, std::chrono::nanoseconds now) noexcept;
   void watch(std::chrono::nanoseconds now) noexcept;
-  void recover(std::chrono::nanoseconds now) noexcept;
+  void ask_positions(std::span<const DriveCommand> commands, std::chrono::nanoseconds now) noexcept;
+  void take_positions() noexcept;
+  void send_asides(std::chrono::nanoseconds now) noexcept;
   void lose(Node& node, std::chrono::nanoseconds now) noexcept;
   void fill(std::span<DriveFeedback> feedback) noexcept;
   [[nodiscard]] bool send(const CanFrame& frame) noexcept;
@@ -78,14 +98,14 @@ struct CanopenInterface::Impl {
   CanopenConfig config;
   OpenPort open;
   std::unique_ptr<CanPort> port;
-  std::vector<Node> nodes;
+  std::deque<Node> nodes;
   std::vector<BusAxis> axes;
   std::vector<std::size_t> rpdos;  ///< the first axis of each
   CanopenCounters counters;
   BusTrouble trouble;
   std::chrono::nanoseconds next_heartbeat{0};
   std::chrono::nanoseconds next_time{0};
-  std::size_t recovering = 0;  ///< whose turn it is to send a frame of its boot
+  std::size_t aside = 0;  ///< whose turn it is to send a frame beside those of the cycle
   bool running = false;
   bool fresh = false;  ///< no cycle since start
 };
@@ -111,6 +131,10 @@ DriveMode CanopenInterface::mode(std::size_t axis) const noexcept {
 
 bool CanopenInterface::tells_torque(std::size_t axis) const noexcept {
   return impl_->axes[axis].tells(0x6077);
+}
+
+bool CanopenInterface::reads_positions(std::size_t axis) const noexcept {
+  return impl_->axes[axis].tells(0x6064);
 }
 
 double CanopenInterface::counts_per_revolution(std::size_t axis) const noexcept {
@@ -156,13 +180,21 @@ Expected<> CanopenInterface::start() {
 Expected<> CanopenInterface::Impl::boot_all() {
   for (Node& node : nodes) {
     node.up = false;
+    node.trouble.forget();
+    node.boot.forget_identity();
     node.boot.begin(port->now());
   }
   const auto settled = [](const Node& node) {
     return node.boot.state() == NodeBoot::State::Operational || node.boot.state() == NodeBoot::State::Failed;
   };
+  std::chrono::nanoseconds next_sync = port->now();
   while (!std::all_of(nodes.begin(), nodes.end(), settled)) {
     fetch(port->now());
+    // What drives answer to SYNC shows whether one of them is two.
+    if (config.sync != SyncOrder::External && port->now() >= next_sync) {
+      if (port->send(sync_frame())) count_sync();
+      next_sync = std::max(next_sync + config.period, port->now());
+    }
     for (Node& node : nodes) {
       CanFrame frame;
       while (node.boot.next_frame(port->now(), frame)) port->send(frame);
@@ -235,9 +267,11 @@ bool CanopenInterface::exchange(std::span<const DriveCommand> commands, std::spa
   ++bus.counters.cycles;
   bus.fetch(now);
   bus.watch(now);
+  bus.take_positions();
   bus.fill(feedback);
   const bool sent = bus.send_cycle(commands, now);
-  bus.recover(now);
+  bus.ask_positions(commands, now);
+  bus.send_asides(now);
   const CanHealth health = bus.port->health();
   if (sent && health.usable()) return true;
   bus.trouble.note(health, bus.counters.unsent);
@@ -248,12 +282,20 @@ std::string CanopenInterface::fault_text() const {
   return impl_->trouble.text(impl_->config.interface);
 }
 
+std::optional<std::string> CanopenInterface::silence_text(std::size_t axis) const {
+  const Node& node = impl_->nodes[impl_->axes[axis].node];
+  const BootProblem problem = node.trouble.problem();
+  if (problem.kind == BootProblem::Kind::None) return {};
+  return describe(problem, node.boot.node(), impl_->config);
+}
+
 void CanopenInterface::Impl::fetch(std::chrono::nanoseconds now) noexcept {
   CanFrame frame;
   for (int i = 0; i < kMostFramesPerCycle && port->receive(frame); ++i) take(frame, now);
 }
 
 void CanopenInterface::Impl::take(const CanFrame& frame, std::chrono::nanoseconds now) noexcept {
+  if (frame.id == kSyncId) return count_sync();  // asked for where another node produces it
   for (BusAxis& axis : axes) {
     for (BusAxis::Answer& answer : axis.answers) {
       if (frame.id == answer.id) return take_answer(axis, answer, frame);
@@ -269,7 +311,12 @@ void CanopenInterface::Impl::take(const CanFrame& frame, std::chrono::nanosecond
 }
 
 void CanopenInterface::Impl::take_answer(BusAxis& axis, BusAxis::Answer& answer, const CanFrame& frame) noexcept {
-  if (!nodes[axis.node].up) return;
+  Node& node = nodes[axis.node];
+  if (!node.boot.watched()) return answer.count.restart();
+  if (answer.count.take(frame) && node.boot.reading(answer.transmission_type) == kEverySync) {
+    return node.boot.answered_twice();
+  }
+  if (!node.up) return;
   if (!unpack_answers(axis.config, answer.contents, frame, axis.feedback)) {
     ++counters.short_answers;
     return;
@@ -288,30 +335,43 @@ void CanopenInterface::Impl::take_from_node(Node& node, const CanFrame& frame, s
   }
   if (frame.id == kHeartbeatId + id && frame.size == 1) {
     node.heard = now;
-    if (node.up && heartbeat_state(frame) != NmtState::Operational) lose(node, now);
+    const NmtState said = heartbeat_state(frame);
+    if (node.up && said != NmtState::Operational && said != NmtState::BootUp) lose(node, now);
   }
   node.boot.receive(frame, now);
+  if (node.up && frame.id == kSdoAnswerId + id) node.positions.receive(frame, now);
+  if (!node.up || node.boot.state() == NodeBoot::State::Operational) return;
+  lose(node, now);
+  // A boot-up message: it has started anew by itself, and waits for what it is to be told.
+  if (node.trouble.problem().kind == BootProblem::Kind::Restarted) node.boot.receive(frame, now);
 }
 
 void CanopenInterface::Impl::lose(Node& node, std::chrono::nanoseconds now) noexcept {
   ++counters.nodes_lost;
+  if (shows_two(node.boot.problem().kind)) ++counters.duplicates;
+  node.trouble.note(node.boot.problem());
   node.up = false;
   for (BusAxis& axis : axes) {
     if (&nodes[axis.node] == &node) axis.forget();
   }
+  node.positions.abandon();
   node.boot.begin(now);
 }
 
 void CanopenInterface::Impl::watch(std::chrono::nanoseconds now) noexcept {
   for (Node& node : nodes) {
     if (node.up && now - node.heard > config.heartbeat_deadline()) lose(node, now);
+    if (node.up && node.boot.state() == NodeBoot::State::Failed) lose(node, now);
     if (!node.up && node.boot.state() == NodeBoot::State::Operational) {
       node.up = true;
+      node.trouble.forget();
       node.heard = now;
       node.error_code = node.boot.error_code();
       ++counters.nodes_recovered;
     }
-    if (node.boot.state() == NodeBoot::State::Failed) node.boot.begin(now);
+    if (node.boot.state() != NodeBoot::State::Failed) continue;
+    node.trouble.note(node.boot.problem());
+    node.boot.begin(now);
   }
 }
 
@@ -319,8 +379,10 @@ void CanopenInterface::Impl::fill(std::span<DriveFeedback> feedback) noexcept {
   for (std::size_t i = 0; i < axes.size(); ++i) {
     BusAxis& axis = axes[i];
     const Node& node = nodes[axis.node];
-    if (axis.answered() && axis.unanswered() > 0) ++counters.missed_answers;
+    const bool missed = axis.answered() && axis.unanswered() > 0;
+    if (missed) ++counters.missed_answers;
     feedback[i] = axis.feedback;
+    feedback[i].missed = missed;
     feedback[i].online = node.up && axis.answered() && axis.unanswered() <= config.missed_answers;
     if (!axis.tells(0x603F)) feedback[i].error_code = node.error_code;
   }
@@ -336,6 +398,7 @@ bool CanopenInterface::Impl::send_cycle(std::span<const DriveCommand> commands, 
   bool all = config.sync != SyncOrder::First || send(sync_frame());
   for (const std::size_t first : rpdos) all = send_setpoints(first, commands) && all;
   if (config.sync == SyncOrder::Last) all = send(sync_frame()) && all;
+  if (config.sync != SyncOrder::External) count_sync();
   for (BusAxis& axis : axes) {
     for (BusAxis::Answer& answer : axis.answers) ++answer.unanswered;
   }
@@ -363,13 +426,36 @@ bool CanopenInterface::Impl::send_setpoints(std::size_t first, std::span<const D
   return !any || send(frame);
 }
 
-void CanopenInterface::Impl::recover(std::chrono::nanoseconds now) noexcept {
-  // One frame a cycle, in turn, so that bringing up a node takes little from the cycles of the others.
+void CanopenInterface::Impl::ask_positions(std::span<const DriveCommand> commands,
+                                           std::chrono::nanoseconds now) noexcept {
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    Node& node = nodes[axes[i].node];
+    if (!commands[i].read_position || !node.up || node.told_position || node.positions.busy()) continue;
+    const auto offset = static_cast<std::uint16_t>(kAxisOffset * axes[i].config.axis_in_node);
+    node.positions.begin(i, of_axis({0x6064, 0}, offset), now);
+  }
+}
+
+void CanopenInterface::Impl::take_positions() noexcept {
+  for (Node& node : nodes) {
+    const auto reading = node.positions.take();
+    node.told_position = reading.has_value();
+    if (!reading) continue;
+    DriveFeedback& words = axes[reading->axis].feedback;
+    // A drive that refuses to tell it by SDO is left to its PDOs.
+    words.position_read_counts = reading->counts.value_or(words.position_counts);
+    ++words.position_reads;
+  }
+}
+
+/// One frame a cycle, in turn, so that bringing up a node, or reading a position, takes little from the cycles of the
+/// others.
+void CanopenInterface::Impl::send_asides(std::chrono::nanoseconds now) noexcept {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    recovering = (recovering + 1) % nodes.size();
-    Node& node = nodes[recovering];
+    aside = (aside + 1) % nodes.size();
+    Node& node = nodes[aside];
     CanFrame frame;
-    if (!node.up && node.boot.next_frame(now, frame)) {
+    if (node.up ? node.positions.next_frame(now, frame) : node.boot.next_frame(now, frame)) {
       port->send(frame);
       return;
     }

@@ -13,18 +13,18 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
       inputs(parts),
       probe(parts, wiring),
       shafts(parts.actuators, parts.period_s),
+      positions(parts, wiring),
       transmission(*parts.actuator_map, parts.joints),
       joints(parts, wiring, transmission),
       homing(parts.actuators, parts.homing_timeout_s, parts.period_s),
       setpoints(parts, wiring.late_joints()),
-      torque_watch(parts.actuators),
+      motion_watch(parts),
       deadlines(parts.max_cycles_lost, parts.period_s),
       laws(parts.joints, parts.period_s),
       spindles(parts.spindles, parts.period_s, state),
       rest(parts.actuators.size() + parts.spindles.size(), parts.period_s),
       torques(*parts.actuator_map, parts.actuators.size()),
       aims(parts.actuators, wiring.late_actuators(), parts.period_s) {
-  for (std::size_t j = 0; j < parts.joints.size(); ++j) joint_watches.emplace_back(parts.joints[j], j);
   if (parts.virtual_mode) joints.reflect(setpoints.position(), setpoints.velocity());
 }
 
@@ -106,11 +106,13 @@ IndexSet ServoLoop::Impl::answering() const noexcept {
 
 void ServoLoop::Impl::read() noexcept {
   shafts.read();
+  positions.step(shafts, joints.velocity());
   joints.read(shafts.rad(), shafts.rad_s(), live.all(), live.all() & answering(), setpoints.velocity());
   spindles.read();
 }
 
 void ServoLoop::Impl::watch_drives(const ServoCommand& command) noexcept {
+  if (state.state() == ServoState::Enabling) positions.check_standing(live.all(), state);
   if (state.powered()) {
     IndexSet in_use = state.state() == ServoState::Homing ? homing.drives() : 0;
     for (std::size_t j = 0; j < wiring.joints(); ++j) {
@@ -140,14 +142,19 @@ void ServoLoop::Impl::finish_reset() noexcept {
     for (std::size_t i = 0; i < wiring.actuators(); ++i) clear = clear && !is_faulted(told(i));
     for (std::size_t i = 0; i < spindles.size(); ++i) clear = clear && !is_faulted(spindles.told(i));
   }
+  const ServoFault before = state.fault();
   state.finish_reset(stands(), clear);
+  if (before.kind != ServoFault::Kind::None && state.state() == ServoState::Off) positions.forgive(before);
   settle();
 }
 
 void ServoLoop::Impl::run_homing(const ServoCommand& command) noexcept {
   if (state.state() != ServoState::Homing) return;
+  const std::uint32_t completed = homing.completed();
+  positions.forget(homing.drives());
   const Homing::Progress progress = homing.step(command.home, shafts, state);
   if (progress == Homing::Progress::Over) state.homing_is_over();
+  if (homing.completed() != completed) positions.homed();
   live.let_go(wiring.joints_of(homing.drives()));
   settle();
 }
@@ -155,6 +162,7 @@ void ServoLoop::Impl::run_homing(const ServoCommand& command) noexcept {
 bool ServoLoop::Impl::operable(std::size_t joint) const noexcept {
   for (std::size_t i = 0; i < wiring.actuators(); ++i) {
     if (!has(wiring.actuators_of(joint), i)) continue;
+    if (!positions.believes(i)) return false;
     const DriveFeedback& words = told(i);
     const bool in_mode = words.mode == DriveMode::None || words.mode == parts.actuators[i].mode;
     if (!in_mode || !operates(words)) return false;
@@ -165,9 +173,12 @@ bool ServoLoop::Impl::operable(std::size_t joint) const noexcept {
 void ServoLoop::Impl::go_live() noexcept {
   if (!state.driving() || state.state() == ServoState::Homing) return;
   setpoints.begin_cycle();
+  IndexSet engaged = 0;
   for (std::size_t j = 0; j < wiring.joints(); ++j) {
     if (!live[j] && operable(j)) {
       live.take(j);
+      positions.engaged(j);
+      if (!laws.has_law(j)) engaged |= only(j);
       setpoints.hold_at(j, joints.position()[j]);
       laws.engage(j, input(j), laws.resting_effort(j));
     } else if (live.handed(j)) {
@@ -178,6 +189,13 @@ void ServoLoop::Impl::go_live() noexcept {
   bool all = live.all() == first(wiring.joints());
   for (std::size_t i = 0; i < spindles.size(); ++i) all = all && operates(spindles.told(i));
   state.arrive(all);
+  if (engaged == 0) return;
+  // Drives that follow positions begin where they stand, whatever the actuator map says of that.
+  std::array<double, kMaxJoints> wanted{};
+  const std::span<double> aimed(wanted.data(), wiring.actuators());
+  transmission.shafts_for(setpoints.positions(), aimed);
+  positions.check_aims(aimed, shafts.rad(), engaged, state);
+  settle();
 }
 
 void ServoLoop::Impl::choose_setpoints(const ServoCommand& command) noexcept {
@@ -196,7 +214,7 @@ void ServoLoop::Impl::choose_setpoints(const ServoCommand& command) noexcept {
 
 JointSeen ServoLoop::Impl::seen(std::size_t joint) const noexcept {
   const ForceLoop& force_loop = setpoints.force_loop(joint);
-  return {.jump = joints.jump(joint),
+  return {.jump = positions.jump(joint) != 0 ? positions.jump(joint) : joints.jump(joint),
           .velocity = joints.velocity()[joint],
           .following_error = setpoints.position()[joint] - setpoints.gone_on(joint) - joints.position()[joint],
           .position_set = setpoints.position()[joint],
@@ -210,15 +228,15 @@ void ServoLoop::Impl::watch_motion(const ServoCommand& command) noexcept {
   if (state.state() == ServoState::Engaged) inputs.hold_back(live.all(), setpoints.velocity(), state);
   for (std::size_t j = 0; j < wiring.joints(); ++j) {
     if (state.powered() && live[j]) {
-      joint_watches[j].step(seen(j), state);
+      motion_watch.joint(j).step(seen(j), state);
     } else {
-      joint_watches[j].rest();
+      motion_watch.joint(j).rest();
     }
   }
   if (state.powered()) {
-    torque_watch.step(state);
+    motion_watch.torques().step(state);
   } else {
-    torque_watch.rest();
+    motion_watch.torques().rest();
   }
   spindles.watch(command);
   settle();
@@ -292,7 +310,8 @@ void ServoLoop::Impl::make_setpoints_of_drives() noexcept {
 
 DriveWish ServoLoop::Impl::wish(ServoFault::Part part, std::size_t index) const noexcept {
   if (state.given_up(part, index)) return DriveWish::QuickStop;
-  if (state.powered()) return DriveWish::Operational;
+  const bool unknown = part == ServoFault::Part::Actuator && !positions.believes(index) && !operates(told(index));
+  if (state.powered()) return unknown ? DriveWish::Off : DriveWish::Operational;
   const std::size_t drive = part == ServoFault::Part::Spindle ? wiring.actuators() + index : index;
   const bool rests = state.state() == ServoState::Faulted && rest.reached(drive);
   return state.state() == ServoState::Off || rests ? DriveWish::Off : DriveWish::QuickStop;
@@ -307,10 +326,13 @@ void ServoLoop::Impl::write() noexcept {
         next_controlword(from.statusword, wish(ServoFault::Part::Actuator, i), state.resetting(), words.controlword);
     words.mode = part.mode;
     if (state.state() == ServoState::Homing) homing.command(i, words);
-    words.target_position_counts = from.position_counts;
+    // Where it stands, and not what it says of that, which may not be believed.
+    words.target_position_counts =
+        shafts[i].seen() ? position_word(static_cast<double>(shafts[i].counts())) : from.position_counts;
     words.target_velocity_rpm = 0;
     if (aims.sends(i)) aims.command(i, shafts[i].rad(), words);
     words.touch_probe = probe.function(i);
+    words.read_position = positions.asks(i);
     words.target_torque_permille = torque_word(part.scale, torques[i]);
   }
   for (std::size_t i = 0; i < spindles.size(); ++i) {

@@ -13,6 +13,7 @@ ServoHandover ServoLoop::Impl::handover() const noexcept {
   for (std::size_t i = 0; i < wiring.actuators(); ++i) {
     const ServoActuator& part = parts.actuators[i];
     const int sense = part.scale.direction * wiring.sense(i);
+    const PositionWatch::Known known = positions.known(i);
     result.drives[i] = {.bus = part.bus.get(),
                         .axis = part.axis,
                         .counts = shafts[i].counts(),
@@ -20,7 +21,10 @@ ServoHandover ServoLoop::Impl::handover() const noexcept {
                         .torque_nm = part.scale.direction * torques[i],
                         .backlash_side = sense * transmission.correction(wiring.joint_of(i)).side(),
                         .live = has(under_control, i),
-                        .seen = shafts[i].seen()};
+                        .seen = shafts[i].seen(),
+                        .believed = known.believed,
+                        .referenced = known.referenced,
+                        .reference_lost = known.lost};
   }
   return result;
 }
@@ -38,6 +42,7 @@ void ServoLoop::Impl::take_over(const ServoHandover& previous) noexcept {
     if (found == drives.end()) continue;
     ++known;
     shafts[i].take_over(found->counts, found->seen);
+    positions.take_over(i, {found->believed, found->referenced, found->reference_lost}, found->live);
     torques.take_over(i, part.scale.direction * found->torque_nm);
     shaft_set[i] = shaft_rad(part.scale, found->setpoint_counts);
     if (const int sense = part.scale.direction * wiring.sense(i); sense != 0) {
@@ -45,6 +50,7 @@ void ServoLoop::Impl::take_over(const ServoHandover& previous) noexcept {
     }
     if (found->live) live_drives |= only(i);
   }
+  positions.go_on_from(shafts);
   const std::span<const double> shaft_span(shaft_set.data(), wiring.actuators());
   if (!parts.virtual_mode) {
     exchange.take_over();

@@ -25,8 +25,8 @@
 #include "servo/stop/rest_watch.hpp"
 #include "servo/watch/deadline_watch.hpp"
 #include "servo/watch/input_watch.hpp"
-#include "servo/watch/joint_watch.hpp"
-#include "servo/watch/torque_watch.hpp"
+#include "servo/watch/motion_watch.hpp"
+#include "servo/watch/position_watch.hpp"
 
 namespace rmac {
 
@@ -76,13 +76,13 @@ struct ServoLoop::Impl {
   InputWatch inputs;
   Probe probe;
   Shafts shafts;
+  PositionWatch positions;
   Transmission transmission;
   JointReader joints;
   LiveJoints live;
   Homing homing;
   Setpoints setpoints;
-  std::vector<JointWatch> joint_watches;
-  TorqueWatch torque_watch;
+  MotionWatch motion_watch;
   DeadlineWatch deadlines;
   JointLaws laws;
   Spindles spindles;

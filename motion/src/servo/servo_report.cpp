@@ -34,6 +34,7 @@ void ServoLoop::Impl::fill(const ServoCommand& command, ServoReport& report) con
   report.inputs = inputs.inputs();
   report.exchange_ns = exchange.took_ns();
   report.homings = homing.completed();
+  report.reference_lost = positions.lost();
   report.probe = probe.report(shafts, transmission);
   report.position_set = setpoints.position();
   report.velocity_set = setpoints.velocity();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace rmac::fieldbus {
@@ -20,6 +21,15 @@ class ExchangeFaultText {
   virtual ~ExchangeFaultText() = default;
   /// What is wrong, and what to do. Any thread but the servo thread.
   [[nodiscard]] virtual std::string fault_text() const = 0;
+};
+
+/// What a control interface implements beside its port when it may know why a drive counts as silent.
+class SilenceText {
+ public:
+  virtual ~SilenceText() = default;
+  /// What is wrong with the drive that does not answer, or did not last, and what to do; nothing where that is unknown.
+  /// Any thread but the servo thread.
+  [[nodiscard]] virtual std::optional<std::string> silence_text(std::size_t axis) const = 0;
 };
 
 }  // namespace rmac::fieldbus

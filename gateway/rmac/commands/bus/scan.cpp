@@ -65,7 +65,11 @@ std::vector<std::string> files_of(const ScannedNode& node, const std::vector<Dev
 }
 
 nlohmann::json to_json(const ScannedNode& node, const std::vector<DeviceDescription>& sheets) {
-  nlohmann::json entry{{"node", node.node}, {"state", state_text(node)}, {"answers", node.answers}};
+  nlohmann::json entry{{"node", node.node},
+                       {"state", state_text(node)},
+                       {"answers", node.answers},
+                       {"two_identities", node.two_identities},
+                       {"answers_twice", node.answers_twice}};
   if (node.answers) {
     entry["device_type"] = node.device_type;
     entry["device"] = fieldbus::canopen::device_type_text(node.device_type);
@@ -93,6 +97,17 @@ std::vector<std::string> to_row(const ScannedNode& node, const std::vector<Devic
           hexadecimal(node.identity.serial_number),
           node.name,
           files};
+}
+
+/// What a row cannot say; empty where nothing is wrong.
+std::string warning(const ScannedNode& node) {
+  if (node.two_identities) {
+    return fmt::format("node {}: two devices have this id, and a machine with it is refused; give each its own\n",
+                       node.node);
+  }
+  if (!node.answers_twice) return {};
+  return fmt::format(
+      "node {}: each question was answered twice: two devices have this id, or a gateway repeats frames\n", node.node);
 }
 
 struct Options {
@@ -124,6 +139,7 @@ Result<> scan_bus(const Options& options, bool json) {
   std::vector<std::vector<std::string>> rows;
   for (const ScannedNode& node : *nodes) rows.push_back(to_row(node, *sheets));
   fmt::print("{}", table({"node", "state", "device", "vendor", "product", "revision", "serial", "name", "file"}, rows));
+  for (const ScannedNode& node : *nodes) fmt::print("{}", warning(node));
   return {};
 }
 

@@ -11,6 +11,7 @@ void ShaftReader::read(const DriveFeedback& words) noexcept {
     return;
   }
   const std::int64_t last = seen_ ? counts_ : std::int64_t{scale_.home_counts};
+  counts_before_ = last;
   counts_ = last + counts_gone(last, words.position_counts);
   const double now = shaft_rad(scale_, static_cast<double>(counts_));
   const double back1 = now - rad_;
@@ -21,6 +22,24 @@ void ShaftReader::read(const DriveFeedback& words) noexcept {
   rad_before_ = rad_;
   rad_ = now;
   seen_ = true;
+}
+
+void ShaftReader::refuse() noexcept {
+  counts_ = counts_before_;
+  rad_ = shaft_rad(scale_, static_cast<double>(counts_));
+  rad_s_ = 0;
+  history_ = 0;
+}
+
+void ShaftReader::put_at(const DriveFeedback& words) noexcept {
+  counts_ += counts_gone(counts_, words.position_counts);
+  rad_ = rad_before_ = shaft_rad(scale_, static_cast<double>(counts_));
+  rad_s_ = 0;
+  history_ = 1;
+}
+
+double ShaftReader::rad_at(std::int32_t position_counts) const noexcept {
+  return shaft_rad(scale_, static_cast<double>(counts_ + counts_gone(counts_, position_counts)));
 }
 
 void ShaftReader::forget() noexcept {

@@ -14,6 +14,12 @@ class ShaftReader {
 
   /// The words of this cycle. While the drive does not answer the shaft is taken to stand.
   void read(const DriveFeedback& words) noexcept;
+  /// What was read in this cycle is not believed: the shaft stands where it was.
+  void refuse() noexcept;
+  /// The shaft is where these words say, however far that is; its velocity begins anew.
+  void put_at(const DriveFeedback& words) noexcept;
+  /// The shaft's angle where the drive's word reads so, by the nearer way from here.
+  [[nodiscard]] double rad_at(std::int32_t position_counts) const noexcept;
   /// The counter is about to jump, and none of that is motion.
   void forget() noexcept;
   /// As another loop left it; `seen`: its counts hold a reading.
@@ -31,6 +37,7 @@ class ShaftReader {
   std::int64_t counts_ = 0;
   std::uint8_t history_ = 0;  ///< readings before the next one that its velocity may use, 2 at most
   double rad_ = 0, rad_before_ = 0, rad_s_ = 0;
+  std::int64_t counts_before_ = 0;  ///< the last reading, for `refuse`
 };
 
 }  // namespace rmac

@@ -9,8 +9,7 @@ Shafts::Shafts(std::span<const ServoActuator> actuators, double period_s) : actu
 void Shafts::read() noexcept {
   for (std::size_t i = 0; i < readers_.size(); ++i) {
     readers_[i].read(actuators_[i].bus->feedback[actuators_[i].axis]);
-    rad_[i] = readers_[i].rad();
-    rad_s_[i] = readers_[i].rad_s();
+    show(i);
   }
 }
 

@@ -20,11 +20,24 @@ class Shafts {
   void read() noexcept;
   [[nodiscard]] ShaftReader& operator[](std::size_t actuator) noexcept { return readers_[actuator]; }
   [[nodiscard]] const ShaftReader& operator[](std::size_t actuator) const noexcept { return readers_[actuator]; }
-  /// As the last `read` found them.
+  void refuse(std::size_t actuator) noexcept {
+    readers_[actuator].refuse();
+    show(actuator);
+  }
+  void put_at(std::size_t actuator, const DriveFeedback& words) noexcept {
+    readers_[actuator].put_at(words);
+    show(actuator);
+  }
+  /// As the last `read` found them, but for what was refused or put elsewhere since.
   [[nodiscard]] std::span<const double> rad() const noexcept { return {rad_.data(), readers_.size()}; }
   [[nodiscard]] std::span<const double> rad_s() const noexcept { return {rad_s_.data(), readers_.size()}; }
 
  private:
+  void show(std::size_t actuator) noexcept {
+    rad_[actuator] = readers_[actuator].rad();
+    rad_s_[actuator] = readers_[actuator].rad_s();
+  }
+
   std::span<const ServoActuator> actuators_;
   std::vector<ShaftReader> readers_;
   std::array<double, kMaxJoints> rad_{}, rad_s_{};

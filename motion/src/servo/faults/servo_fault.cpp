@@ -32,6 +32,8 @@ const char* to_string(ServoFault::Kind kind) noexcept {
       return "TorqueBound";
     case ServoFault::Kind::EncoderJump:
       return "EncoderJump";
+    case ServoFault::Kind::Displaced:
+      return "Displaced";
     case ServoFault::Kind::SensorLost:
       return "SensorLost";
     case ServoFault::Kind::ForceLimit:

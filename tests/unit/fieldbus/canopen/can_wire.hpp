@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -29,6 +30,9 @@ class CanWire {
       now_ = std::min(now_ + kStep, end);
       for (auto& drive : drives_) drive->poll(now_);
       deliver();
+      for (auto due = delayed_.begin(); due != delayed_.end() && due->first <= now_; due = delayed_.erase(due)) {
+        received_.push_back(due->second);
+      }
     }
   }
   [[nodiscard]] Time now() const { return now_; }
@@ -38,6 +42,9 @@ class CanWire {
   bool full = false;                            ///< the transmit queue takes nothing
   bool cut = false;                             ///< nothing passes either way
   std::function<void(const CanFrame&)> listen;  ///< everything that passes
+  /// A gateway on the way from the drives: what it makes of a frame, and after which times it hands it on, once for
+  /// each. None: there is no gateway.
+  std::function<std::vector<Time>(CanFrame&)> gateway;
 
  private:
   class Port final : public CanPort {
@@ -73,16 +80,27 @@ class CanWire {
 
   void deliver() {
     for (auto& drive : drives_) {
-      for (const CanFrame& frame : drive->take_output()) {
+      for (CanFrame& frame : drive->take_output()) {
         if (cut) continue;
         if (listen) listen(frame);
-        received_.push_back(frame);
+        if (!gateway) {
+          received_.push_back(frame);
+          continue;
+        }
+        for (const Time delay : gateway(frame)) {
+          if (delay.count() <= 0) {
+            received_.push_back(frame);
+          } else {
+            delayed_.emplace(now_ + delay, frame);
+          }
+        }
       }
     }
   }
 
   std::vector<std::unique_ptr<VirtualDrive>> drives_;
   std::deque<CanFrame> received_;
+  std::multimap<Time, CanFrame> delayed_;
   Time now_{std::chrono::seconds(1)};
 };
 

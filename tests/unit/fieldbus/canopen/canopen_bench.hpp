@@ -16,8 +16,11 @@ class CanopenBench : public testing::Test {
  protected:
   static constexpr double kPeriodS = 0.001;
 
-  /// The master stops only after the test's body, whose variables a listener may use.
-  void TearDown() override { wire_.listen = nullptr; }
+  /// The master stops only after the test's body, whose variables a listener or a gateway may use.
+  void TearDown() override {
+    wire_.listen = nullptr;
+    wire_.gateway = nullptr;
+  }
 
   void make(const Numbers& numbers, const Texts& texts = {}) {
     auto config = canopen::read_canopen_config("can0", numbers, texts, kPeriodS);

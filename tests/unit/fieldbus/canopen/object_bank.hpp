@@ -20,8 +20,10 @@ class ObjectBank final : public vdrive::SdoObjects {
 
   explicit ObjectBank(ObjectDictionary& dictionary) : dictionary_(dictionary) {}
   WriteCheck write_check;
+  std::map<Object, std::uint32_t> unreadable;  ///< by abort code
 
   std::uint32_t read(Object object, Bytes& bytes) override {
+    if (const auto refused = unreadable.find(object); refused != unreadable.end()) return refused->second;
     const auto entry = dictionary_.find(object);
     if (entry == dictionary_.end()) return absent(object);
     bytes = entry->second;

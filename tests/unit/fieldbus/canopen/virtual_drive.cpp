@@ -81,6 +81,11 @@ void VirtualDrive::remove(std::uint16_t index) {
   }
 }
 
+void VirtualDrive::remove(std::uint16_t index, std::uint8_t sub) {
+  dictionary_.erase({index, sub});
+  defaults_.erase({index, sub});
+}
+
 std::uint32_t VirtualDrive::check_write(Object object, const Bytes& bytes) {
   if (on_write) on_write(object, bytes);
   const auto [index, sub] = object;
@@ -140,8 +145,19 @@ void VirtualDrive::reset(Time now) {
   waiting_.clear();
   watches_ = false;
   moved_ = now;
-  nmt_ = kPreOperational;
-  send(static_cast<std::uint16_t>(0x700 + node_), {0});
+  nmt_ = 0;
+  boot_ups_left_ = boot_ups;
+  next_boot_up_ = now + boot_time;
+  boot_up(now);
+}
+
+void VirtualDrive::boot_up(Time now) {
+  while (boot_ups_left_ > 0 && now >= next_boot_up_) {
+    if (nmt_ == 0) nmt_ = kPreOperational;
+    send(static_cast<std::uint16_t>(0x700 + node_), {0});
+    --boot_ups_left_;
+    next_boot_up_ = now + boot_up_gap;
+  }
 }
 
 void VirtualDrive::emergency(std::uint16_t code) {
@@ -178,9 +194,11 @@ void VirtualDrive::receive(const CanFrame& frame, Time now) {
     }
     return;
   }
-  if (frame.id == 0x600 + node_ && nmt_ != kStopped) {
+  if (frame.id == 0x600 + node_ && nmt_ != kStopped && nmt_ != 0) {
     if (!answers_sdo) return;
     for (const CanFrame& reply : server_.receive(frame)) output_.push_back(reply);
+    if (event_driven) set(0x1800, 2, 255, 1);
+    set(0x1017, 0, value(0x1017, 0) / heartbeat_step * heartbeat_step, 2);
     return;
   }
   if (frame.id > 0x700 && frame.id < 0x780 && frame.size == 1 && frame.id - 0x700U == (value(0x1016, 1) >> 16 & 0x7F)) {
@@ -244,7 +262,7 @@ void VirtualDrive::publish() {
       dictionary_[{profile(a, 0x606C), 0}][i] = static_cast<std::uint8_t>(speed >> (8 * i));
     }
     const std::uint32_t id = value(pdo(a, 0x1800), 1);
-    if ((id & 0x80000000U) != 0 || value(pdo(a, 0x1800), 2) != 1 || !answers_sync) continue;
+    if ((id & 0x80000000U) != 0 || (value(pdo(a, 0x1800), 2) != 1 && !event_driven) || !answers_sync) continue;
     std::vector<std::uint8_t> data;
     for (std::uint8_t i = 1; i <= value(pdo(a, 0x1A00), 0); ++i) {
       const std::uint32_t entry = value(pdo(a, 0x1A00), i);
@@ -303,7 +321,12 @@ void VirtualDrive::watch_master(Time now) {
 
 void VirtualDrive::poll(Time now) {
   if (!powered_) return;
+  boot_up(now);
   move(now);
+  if (event_driven && nmt_ == kOperational && now >= next_event_) {
+    publish();
+    next_event_ = now + std::chrono::microseconds(700);
+  }
   watch_master(now);
   const Time interval = std::chrono::milliseconds(value(0x1017, 0));
   if (interval.count() > 0 && now >= next_heartbeat_) {

@@ -45,12 +45,24 @@ class VirtualDrive {
   /// Also from the next reset on, while it is without power.
   void set_bytes(Object object, const Bytes& bytes) { dictionary_[object] = defaults_[object] = bytes; }
   void remove(std::uint16_t index);
+  void remove(std::uint16_t index, std::uint8_t sub);
+  void refuse_reading(Object object, std::uint32_t abort_code) { bank_.unreadable[object] = abort_code; }
+  /// The shaft, at rest.
+  void put_at(double counts, int axis = 0) {
+    axes_.at(static_cast<std::size_t>(axis)).position = counts;
+    axes_.at(static_cast<std::size_t>(axis)).velocity = 0;
+  }
 
   vdrive::SdoServer& server() { return server_; }
   double acceleration_counts_s2 = 2e6;  ///< at rated torque, and while braking
   bool answers_sdo = true;
   bool answers_sync = true;
   bool sends_heartbeats = true;
+  bool event_driven = false;            ///< keeps its TPDOs at 255, and sends them by the clock, too
+  int boot_ups = 1;                     ///< messages of each boot, the later ones
+  Time boot_up_gap{0};                  ///< so long after one another
+  Time boot_time{0};                    ///< from a reset to the first of them
+  std::uint32_t heartbeat_step = 1;     ///< ms: 1017h keeps multiples of it
   std::uint8_t tpdo_length_change = 0;  ///< bytes that its TPDOs are too short by
   std::function<void(Object, const Bytes&)> on_write;
 
@@ -62,6 +74,7 @@ class VirtualDrive {
   };
 
   void reset(Time now);
+  void boot_up(Time now);
   void emergency(std::uint16_t code);
   void sync(Time now);
   void act_on(const CanFrame& frame);
@@ -83,6 +96,9 @@ class VirtualDrive {
   int nmt_ = 0;
   bool powered_ = false;
   Time moved_{0};
+  int boot_ups_left_ = 0;
+  Time next_boot_up_{0};
+  Time next_event_{0};
   Time next_heartbeat_{0};
   Time master_heard_{0};
   bool watches_ = false;

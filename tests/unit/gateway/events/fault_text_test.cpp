@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "gateway/mechanism/assembler.hpp"
+#include "rmac/fieldbus/fault_texts.hpp"
 #include "unit/gateway/test_machine.hpp"
 
 namespace rmac::gateway {
@@ -54,6 +55,35 @@ TEST_F(FaultText, NamesADrivesStateAsTheTopicOfDrivesDoes) {
   const ServoFault dropped{ServoFault::Kind::DriveDropped, ServoFault::Part::Actuator, 1, 0x0007};
   EXPECT_THAT(text(dropped), HasSubstr("drive of actuator 1 (bus far, axis 1): the drive left Operation Enabled by "
                                        "itself and is in quick stop active"));
+}
+
+/// A bus that knows why its drives are silent.
+class TellingBus final : public DigitalControlInterface, public fieldbus::SilenceText {
+ public:
+  std::size_t axis_count() const noexcept override { return 3; }
+  Expected<> start() override { return {}; }
+  void stop() noexcept override {}
+  bool exchange(std::span<const DriveCommand>, std::span<DriveFeedback>) noexcept override { return true; }
+  std::optional<std::string> silence_text(std::size_t axis) const override {
+    if (axis != 1) return {};
+    return "node 7: two devices have this node id; give each an id of its own";
+  }
+};
+
+// Red when the reason of an interface is not asked for, or asked of another axis.
+TEST_F(FaultText, SaysWhyADriveIsSilentWhereItsBusKnows) {
+  ServoLoopParts parts = mechanism_->loop->parts();
+  const auto bus = std::make_shared<ServoBus>(std::make_shared<TellingBus>());
+  for (ServoActuator& actuator : parts.actuators) actuator.bus = bus;
+  auto loop = ServoLoop::create(std::move(parts));
+  ASSERT_TRUE(loop) << loop.error().message;
+  mechanism_->loop = std::move(*loop);
+  const auto silent = [](std::uint32_t index) {
+    return ServoFault{ServoFault::Kind::DriveOffline, ServoFault::Part::Actuator, index};
+  };
+  EXPECT_THAT(text(silent(1)), HasSubstr("(bus far, axis 1): node 7: two devices have this node id; give each an id of "
+                                         "its own, then reset"));
+  EXPECT_THAT(text(silent(0)), HasSubstr("the drive does not answer; check its power and its cable, then reset"));
 }
 
 TEST_F(FaultText, NamesInputs) {

@@ -20,6 +20,8 @@ struct ScannedNode {
   std::uint32_t device_type = 0;  ///< 1000h
   Identity identity;              ///< 1018h; 0 where the node does not tell
   std::string name;               ///< 1008h, printable characters only
+  bool two_identities = false;    ///< two devices have this id: it told two values of 1000h or 1018h
+  bool answers_twice = false;     ///< each question; two devices that tell no difference, or a gateway that repeats
 };
 
 struct ScanOptions {

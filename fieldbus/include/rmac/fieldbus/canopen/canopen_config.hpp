@@ -14,6 +14,7 @@
 
 namespace rmac::fieldbus::canopen {
 
+inline constexpr std::uint16_t kFirstProfileObject = 0x6000;
 inline constexpr std::uint16_t kAxisOffset = 0x800;  ///< between the objects of two axes of a node (CiA 402-2, 5.2)
 inline constexpr std::size_t kMostAxesPerNode = 4;   ///< as many as have identifiers in the predefined connection set
 

@@ -17,16 +17,17 @@ struct CanopenCounters {
   std::uint64_t short_answers = 0;    ///< PDOs shorter than what is mapped; passed over
   std::uint64_t emergencies = 0;      ///< EMCY messages with an error
   std::uint64_t nodes_lost = 0;       ///< heartbeat gone, or a node left Operational by itself
+  std::uint64_t duplicates = 0;       ///< nodes lost because two devices have their id
   std::uint64_t nodes_recovered = 0;  ///< brought up again by the cycle
 };
 
 /// CiA 402 drives on one CAN bus, behind the control interface port. The cycle produces SYNC, the setpoints and the
 /// master's heartbeat, so that drives stop by themselves when the cycle ends, whatever ended it. A node that went away
 /// and comes back is configured and started again by the cycle; whether its drive is enabled is not this class's to
-/// decide.
+/// decide. Two devices of one node id are refused by `start`; in operation the node counts as gone, until one is left.
 ///
 /// No thread of its own: `start` and `stop` run on their caller's, `exchange` on the servo thread, never at once.
-class CanopenInterface final : public DigitalControlInterface, public ExchangeFaultText {
+class CanopenInterface final : public DigitalControlInterface, public ExchangeFaultText, public SilenceText {
  public:
   /// Opens the bus for the identifiers that the drives send; `queue_frames` as `SocketCanPort::open` takes it.
   using OpenPort = std::function<Expected<std::unique_ptr<CanPort>>(std::span<const std::uint16_t> wanted,
@@ -47,12 +48,15 @@ class CanopenInterface final : public DigitalControlInterface, public ExchangeFa
   [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override;
   [[nodiscard]] bool tells_torque(std::size_t axis) const noexcept override;
   [[nodiscard]] bool answers_late(std::size_t /*axis*/) const noexcept override { return true; }
+  /// By SDO, a frame a cycle.
+  [[nodiscard]] bool reads_positions(std::size_t axis) const noexcept override;
   [[nodiscard]] std::uint32_t input_bits(std::size_t axis) const noexcept override;
   /// By its encoder resolution, gear ratio and feed constant.
   [[nodiscard]] double counts_per_revolution(std::size_t axis) const noexcept override;
   [[nodiscard]] bool latches(std::size_t axis, TouchProbeEdge edge) const noexcept override;
 
   [[nodiscard]] std::string fault_text() const override;
+  [[nodiscard]] std::optional<std::string> silence_text(std::size_t axis) const override;
 
   [[nodiscard]] const CanopenCounters& counters() const noexcept;
 

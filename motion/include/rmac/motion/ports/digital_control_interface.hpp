@@ -30,6 +30,7 @@ struct DriveCommand {
   std::int32_t target_position_counts = 0;  ///< 607Ah; 60C1h:01 in interpolated position
   double target_velocity_rpm = 0;           ///< 60FFh
   std::uint16_t touch_probe = 0;            ///< 60B8h
+  bool read_position = false;  ///< 6064h is to be read by a service of its own, beside the answers of the cycle
 };
 
 /// Words from one drive.
@@ -41,10 +42,13 @@ struct DriveFeedback {
   std::int16_t torque_permille = 0;  ///< 6077h
   DriveMode mode = DriveMode::None;  ///< 6061h; None where the interface does not tell
   bool online = false;               ///< the drive answered in this cycle
-  std::int32_t sensor_counts = 0;    ///< a sensor beside the drive, such as one of force
-  bool sensor_valid = false;         ///< there is one, and its value is good
-  std::uint32_t inputs = 0;          ///< 60FDh
-  std::uint16_t touch_probe = 0;     ///< 60B9h
+  bool missed = false;               ///< or it did not, which may happen, and the words are those of a cycle before
+  std::uint32_t position_reads = 0;  ///< how often `read_position` was done, and what was found last
+  std::int32_t position_read_counts = 0;
+  std::int32_t sensor_counts = 0;  ///< a sensor beside the drive, such as one of force
+  bool sensor_valid = false;       ///< there is one, and its value is good
+  std::uint32_t inputs = 0;        ///< 60FDh
+  std::uint16_t touch_probe = 0;   ///< 60B9h
   /// Positions that an edge of a touch probe latched: 60BAh to 60BDh, in the order of `TouchProbeEdge`.
   std::array<std::int32_t, 4> latched_counts{};
 };
@@ -96,6 +100,8 @@ class DigitalControlInterface {
   /// Whether this axis tells in an exchange where it was one cycle before: where the SYNC of an exchange has the drives
   /// measure, and the next exchange reads what they answered.
   [[nodiscard]] virtual bool answers_late(std::size_t /*axis*/) const noexcept { return false; }
+  /// Whether this axis does `DriveCommand::read_position`.
+  [[nodiscard]] virtual bool reads_positions(std::size_t /*axis*/) const noexcept { return false; }
   /// Whether this axis can latch its position at `edge`.
   [[nodiscard]] virtual bool latches(std::size_t /*axis*/, TouchProbeEdge /*edge*/) const noexcept { return false; }
 };

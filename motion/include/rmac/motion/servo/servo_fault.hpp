@@ -29,15 +29,17 @@ struct ServoFault {
     VelocityBound,   ///< value: the measured velocity, bound: what is allowed (mm/s or deg/s; of a spindle rpm)
     TorqueBound,     ///< value: the torque that the drive measures, bound: what is allowed (N·m); of a spindle too
     EncoderJump,     ///< value: the jump, bound: what motion can explain within a cycle (mm or deg)
-    SensorLost,      ///< a joint's force sensor gives no valid value, or a drive reports its encoder gone
-    ForceLimit,      ///< value: the measured force, bound: what is allowed (N or N·m)
-    ContactLost,     ///< a joint found nothing to push against; value: the way it went, bound: what is allowed
-    CyclesLost,      ///< value: deadlines missed within a second, bound: what is allowed
-    NotANumber,      ///< a law or a setpoint gave NaN or infinity
-    DriveFault,      ///< value: the drive's error code (603Fh)
-    DriveOffline,    ///< the drive did not answer
-    DriveDropped,    ///< the drive left Operation Enabled by itself; value: its statusword
-    EnableTimeout,   ///< value: the statusword it is stuck at, bound: seconds waited
+    Displaced,    ///< a joint is not where it was left, or not where it would be sent; value: how far it is from there,
+                  ///< bound: what is allowed (mm or deg)
+    SensorLost,   ///< a joint's force sensor gives no valid value, or a drive reports its encoder gone
+    ForceLimit,   ///< value: the measured force, bound: what is allowed (N or N·m)
+    ContactLost,  ///< a joint found nothing to push against; value: the way it went, bound: what is allowed
+    CyclesLost,   ///< value: deadlines missed within a second, bound: what is allowed
+    NotANumber,   ///< a law or a setpoint gave NaN or infinity
+    DriveFault,   ///< value: the drive's error code (603Fh)
+    DriveOffline,   ///< the drive did not answer
+    DriveDropped,   ///< the drive left Operation Enabled by itself; value: its statusword
+    EnableTimeout,  ///< value: the statusword it is stuck at, bound: seconds waited
     BusFailure,
     IoFailure,
     EmergencyStop,  ///< index: the input; told whatever else is wrong

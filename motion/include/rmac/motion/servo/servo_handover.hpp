@@ -21,6 +21,9 @@ struct ServoHandover {
     double backlash_side = 0;    ///< flank that carries, -1 to 1 in the drive's sense; 0 where several joints share it
     bool live = false;           ///< was under control
     bool seen = false;           ///< `counts` holds a reading
+    bool believed = false;       ///< it was confirmed
+    bool referenced = false;     ///< the drive found home, or needs none
+    bool reference_lost = false;
   };
   std::array<Drive, kMaxJoints> drives{};
   std::size_t count = 0;

@@ -30,8 +30,9 @@ struct ServoReport {
   ToolPose pose;         ///< measured, part frame
   double feed_mm_s = 0;  ///< tool tip, from measured joints
   std::uint64_t inputs = 0;
-  std::uint32_t homings = 0;     ///< that were completed
-  std::int64_t exchange_ns = 0;  ///< of the cycle's time, that the exchange with buses and I/O took
+  std::uint32_t homings = 0;         ///< that were completed
+  std::uint32_t reference_lost = 0;  ///< bit j: joint j's position is not to be relied on before it found home again
+  std::int64_t exchange_ns = 0;      ///< of the cycle's time, that the exchange with buses and I/O took
   ProbeReport probe;
 };
 

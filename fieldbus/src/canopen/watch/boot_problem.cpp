@@ -1,0 +1,113 @@
+#include "canopen/watch/boot_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace rmac::fieldbus::canopen {
+namespace {
+
+/// The index of the same object of a node's first axis.
+std::uint16_t object_of_first_axis(std::uint16_t index) noexcept {
+  if (index < kFirstProfileObject) return index;
+  return static_cast<std::uint16_t>(kFirstProfileObject + (index - kFirstProfileObject) % kAxisOffset);
+}
+
+/// Modes of operation by their numbers (CiA 402-2, 6060h).
+constexpr std::array kModeNames{"",
+                                "profile position",
+                                "velocity",
+                                "profile velocity",
+                                "profile torque",
+                                "",
+                                "homing",
+                                "interpolated position",
+                                "cyclic synchronous position",
+                                "cyclic synchronous velocity",
+                                "cyclic synchronous torque"};
+
+/// Tells that a drive's supported modes (6502h, bit 0 is mode 1) lack one that it is to run in.
+std::string cannot_do(const BootProblem& problem, const std::string& object) {
+  std::string wanted, there;
+  for (unsigned mode = 1; mode < kModeNames.size(); ++mode) {
+    const std::uint32_t bit = 1U << (mode - 1);
+    if ((problem.expected & ~problem.found & bit) != 0) {
+      wanted += fmt::format("{}{} (mode {})", wanted.empty() ? "" : " and ", kModeNames.at(mode), mode);
+    }
+    if ((problem.found & bit) != 0) there += fmt::format("{}{}", there.empty() ? "" : ", ", mode);
+  }
+  return fmt::format(" cannot do {}: {} says that it does the modes {}", wanted, object,
+                     there.empty() ? "of its maker only" : there);
+}
+
+}  // namespace
+
+std::string describe(const BootProblem& problem, std::uint8_t node, const CanopenConfig& config) {
+  std::string axes;
+  for (std::size_t i = 0; i < config.axes.size(); ++i) {
+    if (config.axes[i].node == node) axes += fmt::format("{}{}", axes.empty() ? "" : ", ", i);
+  }
+  const std::string who = fmt::format("node {} (axis {})", node, axes);
+  const double waited_s = std::chrono::duration<double>(config.boot_timeout).count();
+  const std::string object = to_string(problem.object);
+  switch (problem.kind) {
+    case BootProblem::Kind::None:
+      return who + " came up";
+    case BootProblem::Kind::NoBootUp:
+      return fmt::format(
+          "{} is missing: no boot-up message in {:g} s; check its power, its cable, its node id, and that it is set to "
+          "{} bit/s",
+          who, waited_s, config.bit_rate);
+    case BootProblem::Kind::NoAnswer:
+      return fmt::format("{} did not answer when {} was {}: {}", who, object, problem.writing ? "written" : "read",
+                         sdo_abort_text(problem.found));
+    case BootProblem::Kind::Refused:
+      return problem.writing ? fmt::format("{} refused {:X}h for {}: {} ({:08X}h)", who, problem.expected, object,
+                                           sdo_abort_text(problem.found), problem.found)
+                             : fmt::format("{} refused to tell {}: {} ({:08X}h)", who, object,
+                                           sdo_abort_text(problem.found), problem.found);
+    case BootProblem::Kind::Different:
+      if (problem.object.index == 0x1000) {
+        return fmt::format("{} is not a drive: its device type (1000h) is {:08X}h, and a CiA 402 drive ends in 0192h",
+                           who, problem.found);
+      }
+      if (problem.object.index == 0x1018) {
+        constexpr std::array kNames{"", "vendor id", "product code", "revision number", "serial number"};
+        return fmt::format("{} is another device than configured: its {} ({}) is {:X}h, not {:X}h", who,
+                           kNames.at(problem.object.sub), object, problem.found, problem.expected);
+      }
+      if (object_of_first_axis(problem.object.index) == 0x6502) return who + cannot_do(problem, object);
+      if (object_of_first_axis(problem.object.index) == 0x607E) {
+        return fmt::format(
+            "{} turns its positions round ({} is {:X}h), and follows torques, so it could run away; set polarity to 0 "
+            "and the actuator's Direction to -1, or polarity to {} where the drive turns its torques round, too",
+            who, object, problem.found, problem.found & 0xFFU);
+      }
+      return fmt::format("{} does not support what is asked of it: {} is {:X}h, and {:X}h is needed in it", who, object,
+                         problem.found, problem.expected);
+    case BootProblem::Kind::NoStart:
+      return fmt::format("{} is set up, but did not become operational in {:g} s", who, waited_s);
+    case BootProblem::Kind::Restarts:
+      return who + " starts anew again and again while it is set up; check its supply";
+    case BootProblem::Kind::Restarted:
+      return who +
+             " sent a boot-up message in operation: it started anew, or another device came up with its node id; "
+             "check its supply, and with rmac bus scan who is there";
+    case BootProblem::Kind::TwoIdentities:
+      return fmt::format(
+          "{}: two devices have this node id: {} was told as {:X}h and as {:X}h; give each an id of its own (rmac bus "
+          "scan shows them). Where the drive was exchanged, unload and load the machine",
+          who, object, problem.expected, problem.found);
+    case BootProblem::Kind::TwoAnswers:
+      return who +
+             ": two devices have this node id: one SYNC was answered more than once, and differently; give each "
+             "an id of its own (rmac bus scan shows them)";
+    case BootProblem::Kind::TwoHeartbeats:
+      return who +
+             ": two devices have this node id: there are twice the heartbeats of one; give each an id of its own "
+             "(rmac bus scan shows them)";
+  }
+  return who;
+}
+
+}  // namespace rmac::fieldbus::canopen

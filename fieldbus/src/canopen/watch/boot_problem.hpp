@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "rmac/fieldbus/canopen/canopen_config.hpp"
+
+namespace rmac::fieldbus::canopen {
+
+/// Why a node did not come up, or is away again.
+struct BootProblem {
+  enum class Kind : std::uint8_t {
+    None,
+    NoBootUp,   ///< it never spoke
+    NoAnswer,   ///< it spoke, but did not answer for `object`
+    Refused,    ///< it refused `object`; `found` is its abort code
+    Different,  ///< `object` is `found` where `expected` was
+    NoStart,    ///< it is set up, and does not become operational
+    Restarts,   ///< it started anew, again and again, while it was set up
+    Restarted,  ///< it started anew while it was operational
+    // What shows two devices of one node id:
+    TwoIdentities,  ///< `object` was told as `expected`, and as `found`
+    TwoAnswers,     ///< one SYNC is answered twice, and differently
+    TwoHeartbeats,  ///< more heartbeats than one node makes
+  };
+  Kind kind = Kind::None;
+  ObjectAddress object;
+  std::uint32_t expected = 0;
+  std::uint32_t found = 0;
+  bool writing = false;
+};
+
+/// Two devices have the node's id.
+[[nodiscard]] constexpr bool shows_two(BootProblem::Kind kind) noexcept {
+  return kind >= BootProblem::Kind::TwoIdentities;
+}
+
+/// What went wrong and what to do, for a person.
+[[nodiscard]] std::string describe(const BootProblem& problem, std::uint8_t node, const CanopenConfig& config);
+
+}  // namespace rmac::fieldbus::canopen

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "servo/watch/joint_watch.hpp"
+#include "servo/watch/torque_watch.hpp"
+
+namespace rmac {
+
+/// Watches all joints under control, and what their motors give. Real-time safe but for its making.
+class MotionWatch {
+ public:
+  /// `parts` must outlive it.
+  explicit MotionWatch(const ServoLoopParts& parts) : torques_(parts.actuators) {
+    for (std::size_t j = 0; j < parts.joints.size(); ++j) joints_.emplace_back(parts.joints[j], j);
+  }
+  [[nodiscard]] JointWatch& joint(std::size_t joint) noexcept { return joints_[joint]; }
+  [[nodiscard]] TorqueWatch& torques() noexcept { return torques_; }
+
+ private:
+  std::vector<JointWatch> joints_;
+  TorqueWatch torques_;
+};
+
+}  // namespace rmac
