@@ -1,15 +1,16 @@
-"""Kinematics that passed verification and hang later: the machine rests, and nobody waits for them."""
+"""Kinematics that passed verification and hang, or lie, later: the machine rests, and nobody waits for them."""
 
 import json
 import shutil
 import subprocess
 import unittest
 
-from appliance import BUILD, Appliance, line, pose
+from appliance import BUILD, Appliance, line, pose, wait_for_rest
 from client import Refused
 
 TOOL = 77.125  # of bad_kinematics.cpp: and 1 mm more for the next thread that asks
 GATEWAY, PLANNER, SERVO = 0, 1, 2
+LIES_TO_SERVO = 3
 ENDS_WITHIN_S = 100.0
 
 
@@ -75,6 +76,21 @@ class HangingModules(unittest.TestCase):
         appliance, client = self.start(SERVO)
         self.move(client, SERVO)
         self.assert_ended(appliance, "the servo thread has begun no cycle")
+
+    def test_lie_on_the_way_is_a_fault_that_a_reset_leaves(self):
+        appliance, client = self.start(LIES_TO_SERVO)
+        appliance.ends_with = 0
+        client.call("subscribe", topics=["events", "state"], rate_hz=50)
+        self.move(client, LIES_TO_SERVO)
+        fault = client.wait_note("events", lambda event: event["kind"] == "Fault")
+        self.assertIn("could not have come to within a cycle for joint 1", fault["message"])
+        client.wait_note("state", lambda state: state["state"] == "Faulted" and not state["moving"])
+        client.call("RMAC_CAM.Reset")
+        client.call("RMAC_CAM.SetToolInterfaceFrame", ToolInterfaceFrame={"p": [0, 0, 0], "q": [1, 0, 0, 0]})
+        rests_at = client.state()["joints"][0]
+        self.assertTrue(0.1 < rests_at < 29, rests_at)
+        client.call("RMAC_CAM.JogJoint", JntNum=0, Distance=2)
+        self.assertAlmostEqual(wait_for_rest(client)["joints"][0], rests_at + 2, delta=0.01)
 
     def test_signal_ends_what_hangs(self):
         appliance, client = self.start(PLANNER)
