@@ -28,13 +28,14 @@ bool TurnLock::turn_is_over(std::unique_lock<std::mutex>& hold, std::chrono::nan
   return over;
 }
 
-bool TurnLock::hangs() const {
-  if (!planners_) return false;
+bool TurnLock::hangs() {
+  if (!planner_) return false;
   clockid_t clock{};
   // The thread lives: it has its turn.
-  if (pthread_getcpuclockid(planners_->thread, &clock) != 0) return false;
-  return read(clock) - planners_->cpu > patience_.cpu ||
-         std::chrono::steady_clock::now() - planners_->begin > patience_.wall;
+  if (pthread_getcpuclockid(*planner_, &clock) != 0) return false;
+  const Look now{turn_, read(clock), std::chrono::steady_clock::now()};
+  if (look_.turn != turn_) look_ = now;
+  return now.cpu - look_.cpu > patience_.cpu || now.at - look_.at > patience_.wall;
 }
 
 bool TurnLock::planner_hangs() {
@@ -71,14 +72,15 @@ void TurnLock::lock_as_planner() NO_THREAD_SAFETY_ANALYSIS {
   std::unique_lock hold(mutex_);
   free_.wait(hold, [this] { return !taken_ && gateway_waits_ == 0; });
   taken_ = true;
-  planners_ = {pthread_self(), read(CLOCK_THREAD_CPUTIME_ID), std::chrono::steady_clock::now()};
+  planner_ = pthread_self();
+  ++turn_;
   work_to_do_ = false;
 }
 
 void TurnLock::unlock_as_planner() NO_THREAD_SAFETY_ANALYSIS {
   {
     const std::lock_guard hold(mutex_);
-    planners_.reset();
+    planner_.reset();
     taken_ = false;
   }
   free_.notify_all();

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -49,20 +50,23 @@ class CAPABILITY("mutex") TurnLock {
   [[nodiscard]] bool planner_hangs();
 
  private:
-  struct PlannersTurn {
-    pthread_t thread{};
-    std::chrono::nanoseconds cpu{};  ///< of the thread, when the turn began
-    std::chrono::steady_clock::time_point begin;
+  /// The first look at a turn of the planner: who takes it does not pay for that.
+  struct Look {
+    std::uint64_t turn = 0;
+    std::chrono::nanoseconds cpu{};  ///< of the planner's thread
+    std::chrono::steady_clock::time_point at;
   };
   [[nodiscard]] bool turn_is_over(std::unique_lock<std::mutex>& hold, std::chrono::nanoseconds most);
-  [[nodiscard]] bool hangs() const;
+  [[nodiscard]] bool hangs();
 
   Patience patience_;
   std::mutex mutex_;  ///< of what follows; held for moments only
   std::condition_variable free_;
   std::condition_variable work_;
   bool taken_ = false;
-  std::optional<PlannersTurn> planners_;  ///< while it is the planner's
+  std::optional<pthread_t> planner_;  ///< its thread, while it has its turn
+  std::uint64_t turn_ = 0;            ///< of the planner
+  Look look_;
   int gateway_waits_ = 0;
   bool work_to_do_ = false;
 };
