@@ -20,7 +20,7 @@ Expected<double> MotionSupervisor::retrace(double distance_mm) {
     return tl::unexpected(fine.error());
   }
   const ServoStatus now = cycle_.status();
-  const auto way = cycle_.mechanism()->planner.turn_back(distance_mm, {now.position_set.data(), now.joint_count});
+  auto way = cycle_.mechanism()->planner.turn_back(distance_mm, {now.position_set.data(), now.joint_count});
   if (!way) return way;
   if (!(*way > 0)) {
     return failure(MinorCode::Other,
