@@ -13,6 +13,7 @@
 
 #include "gateway/appliance/machine.hpp"
 #include "gateway/rmacd/end_signals.hpp"
+#include "gateway/rmacd/state_lock.hpp"
 #include "gateway/server/server.hpp"
 #include "gateway/servo/sync_clock.hpp"
 #include "gateway/threads/cpu_progress.hpp"
@@ -300,6 +301,8 @@ Expected<> run_daemon(const Configuration& configuration) {
   if (!configuration.unix_socket.empty()) {
     std::filesystem::create_directories(configuration.unix_socket.parent_path(), problem);
   }
+  const auto lock = StateLock::take(configuration.state_folder);
+  if (!lock) return tl::unexpected(lock.error());
   auto manager = DeviceDriverManager::open({configuration.device_tree, configuration.database});
   if (!manager) return tl::unexpected<Error>(std::move(manager.error()));
   return clock_for(configuration).and_then([&](std::shared_ptr<Clock> clock) {

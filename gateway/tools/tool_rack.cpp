@@ -129,8 +129,12 @@ Expected<> write_tool_table(const fs::path& file, const ToolTable& table) {
                    fmt::format("{}: cannot be made: {}", file.parent_path().string(), code.message()));
   }
   const fs::path part = file.string() + ".part";
-  if (auto written = write_durably(part, document.dump(2) + "\n"); !written) return written;
-  if (::rename(part.c_str(), file.c_str()) != 0) return cannot(part, "cannot be renamed");
+  auto written = write_durably(part, document.dump(2) + "\n");
+  if (written && ::rename(part.c_str(), file.c_str()) != 0) written = cannot(part, "cannot be renamed");
+  if (!written) {
+    ::unlink(part.c_str());  // on a full disk it would keep what little there is
+    return written;
+  }
   // The new name is on the disk only when its folder is.
   const Descriptor folder(::open(file.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   return folder.get() >= 0 && ::fsync(folder.get()) == 0 ? Expected<>() : cannot(file, "cannot be made durable");

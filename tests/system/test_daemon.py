@@ -112,6 +112,18 @@ class LifeCycle(unittest.TestCase):
                 finally:
                     daemon.kill()
 
+    def test_state_folder_belongs_to_one_daemon(self):
+        with Appliance() as appliance:
+            other = json.loads(appliance.configuration.read_text())
+            other["listen"]["unix_socket"] = "other.sock"
+            config = appliance.folder / "other.json"
+            config.write_text(json.dumps(other))
+            refused = rmacd("--config", str(config))
+            self.assertEqual(refused.returncode, FAILED)
+            self.assertIn(f"in use by another rmacd (process {appliance.process.pid})", refused.stderr)
+            self.assertFalse((appliance.folder / "other.sock").exists())
+            self.assertEqual(appliance.client().state()["state"], "Idle")
+
     def read_until(self, manager, word):
         while word not in manager.recv(4096).decode().splitlines():
             pass

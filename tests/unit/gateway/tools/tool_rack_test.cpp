@@ -94,6 +94,14 @@ TEST_F(ToolRackTest, ChangesNothingWhereTheFileCannotBeWritten) {
   EXPECT_EQ(rack.mounted(), kNoTool);
 }
 
+TEST_F(ToolRackTest, LeavesNoPartOfATableThatCannotBeWritten) {
+  fs::create_directories(folder_ / "Mill.json" / "in the way");
+  ToolRack rack(folder_);
+  rack.adopt("Mill", {}, ToolRack::Keeps::Everything);
+  EXPECT_FALSE(rack.set({.number = 3, .length_mm = 30}));
+  EXPECT_FALSE(fs::exists(folder_ / "Mill.json.part"));
+}
+
 TEST_F(ToolRackTest, RemovesNoToolThatIsInTheSpindleHereOrInTheFile) {
   ToolRack rack(folder_);
   ToolTable table;
