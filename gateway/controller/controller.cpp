@@ -279,7 +279,9 @@ void Controller::cycle() {
 }
 
 void Controller::dispatch() {
-  impl_->announcer.announce(impl_->supervisor.take_news());
+  auto news = impl_->supervisor.take_news();
+  if (!news) return;  // without the news of moves that were queued, samples would tell of others
+  impl_->announcer.announce(std::move(*news));
   for (Event& event : impl_->flights.take_events()) impl_->announcer.tell(std::move(event));
   impl_->measuring.advance();
 }

@@ -32,6 +32,7 @@ Expected<> Jogging::start(std::optional<double> share) {
   cycle_.apply_feed();
   auto started = cycle_.sequencer.start_positioning(cycle_.observe(cycle_.status()),
                                                     share ? std::optional(kJogLasts_s) : std::nullopt);
+  if (!started) cycle_.empty_queue(cycle_.status().progress.cycle);  // its move is no program's
   cycle_.settle(cycle_.status());
   return started;
 }
@@ -49,6 +50,8 @@ bool Jogging::renew(double share) {
 }
 
 Expected<> Jogging::end() {
+  // A program that runs is not to be touched.
+  if (!cycle_.jogs()) return {};
   return cycle_.stop_command(
       [](CycleSequencer& cycle, const CycleObservation&) { return cycle.jogs() ? cycle.stop() : Expected<>{}; });
 }

@@ -44,7 +44,10 @@ CycleObservation MachineCycle::observe(const ServoStatus& status) {
   news.set_time(status.t_s, status.progress.cycle);
   if (!mechanism_) return seen;
   seen.moves_left = queue.planned();
-  if (status.generation != generation_) return seen;
+  if (status.generation != generation_) {
+    seen.spindles_at_speed = false;  // nobody knows
+    return seen;
+  }
   const Planner& planner = mechanism_->planner;
   seen.at_rest = !status.moving && planner.at_rest(status.progress);
   seen.retraced = seen.at_rest && planner.retraced(status.progress);
@@ -75,7 +78,7 @@ void MachineCycle::watch_path(const CycleObservation& seen, const ServoStatus& s
   if (!mechanism_ || status.generation != generation_) return;
   const bool waits = sequencer.waits_for_spindle() && !sequencer.positions() && seen.at_rest;
   const bool should_move = sequencer.travels() && sequencer.state() == CycleState::Running && seen.follows && !waits &&
-                           queue.planned() > 0 && feed.effective_percent() > 0;
+                           queue.planned() > 0 && feed.effective_percent() > 0 && !mechanism_->planner.off_path();
   const auto wrong =
       path_watch_.step({status.t_s, should_move, status.move_id, status.s_mm, status.progress.departure});
   if (!wrong || is_faulted(sequencer.state())) return;
@@ -142,6 +145,7 @@ void MachineCycle::apply_verdict(const CycleSequencer::Verdict& verdict, const S
   if (const double until_s = verdict.jog_until_s.value_or(std::numeric_limits<double>::infinity());
       wishes.now().moves_until_s != until_s) {
     wishes.change([until_s](ServoWishes& wish) { wish.moves_until_s = until_s; });
+    link_.stops.jogs.store(verdict.jog_until_s.has_value(), std::memory_order_release);
   }
   if (mechanism_ && verdict.command) {
     link_.stops.planned.store(*verdict.command == PathCommand::Stop, std::memory_order_release);

@@ -60,10 +60,20 @@ class MachineCycle {
   template <typename Function>
   auto stop_command(Function&& function) EXCLUDES(lock) {
     link_.stops.asked.store(true, std::memory_order_release);
-    auto result = command(std::forward<Function>(function));
-    link_.stops.asked.store(false, std::memory_order_release);
-    return result;
+    try {
+      auto result = command(std::forward<Function>(function));
+      link_.stops.asked.store(false, std::memory_order_release);
+      return result;
+    } catch (const PlannerHangs&) {
+      throw;
+    } catch (...) {
+      link_.stops.asked.store(false, std::memory_order_release);
+      throw;
+    }
   }
+
+  /// A jog that lasts while it is renewed is under way; needs no turn.
+  [[nodiscard]] bool jogs() const noexcept { return link_.stops.jogs.load(std::memory_order_acquire); }
 
   /// One bounded piece of planning, and the cycle states.
   [[nodiscard]] Planning::Pace advance(const ServoStatus& status) REQUIRES(lock);

@@ -127,9 +127,9 @@ std::shared_ptr<Mechanism> MotionSupervisor::mechanism() {
   return cycle_.mechanism();
 }
 
-MotionSupervisor::News MotionSupervisor::take_news() {
+std::optional<MotionSupervisor::News> MotionSupervisor::take_news() {
   // The gateway has other things to do than to wait for news.
-  if (!cycle_.lock.try_lock_as_gateway(kNewsWait)) return {};
+  if (!cycle_.lock.try_lock_as_gateway(kNewsWait)) return std::nullopt;
   News news = cycle_.news.take();
   cycle_.lock.unlock_as_gateway();
   return news;

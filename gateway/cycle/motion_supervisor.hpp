@@ -81,8 +81,8 @@ class MotionSupervisor final : public Planning {
   std::shared_ptr<Mechanism> install(std::shared_ptr<Mechanism> next, std::uint64_t generation, bool keep_running);
   [[nodiscard]] std::shared_ptr<Mechanism> mechanism();
 
-  /// Nothing while the planner has a turn that lasts.
-  [[nodiscard]] News take_news();
+  /// Nothing while the planner has a turn that lasts: what happened meanwhile is told with the next.
+  [[nodiscard]] std::optional<News> take_news();
   void on_queued(QueueListener listener);
   void report(Event event);
 

@@ -28,9 +28,10 @@ class StandingWishes {
     servo_.write(now_);
   }
 
-  /// Stops the spindles, and switches `outputs` (the coolant) off; what was on.
+  /// Stops the spindles, and switches `outputs` (the coolant) off; what was on, or was kept for later.
   TurnedOff turn_off(std::uint64_t outputs) {
-    const TurnedOff was{now_.spindle_rpm, now_.outputs & outputs};
+    TurnedOff was{now_.spindle_rpm, now_.outputs & outputs};
+    if (later_) was = {later_->spindle_rpm, was.outputs | later_->outputs};
     change([&](ServoWishes& wishes) {
       wishes.spindle_rpm.fill(0);
       wishes.outputs &= ~outputs;

@@ -52,6 +52,8 @@ void LeaseKeeper::stop_machine(std::string message) {
   MachinePort& machine = dispatcher_.machine();
   // The sample may be a cycle old: a start that came along with the goodbye is not in it, but the cam knows.
   const CycleSample sample = machine.sample();
+  // At once: all that follows waits for the planner's turn.
+  static_cast<void>(machine.cam().cycle().hold());
   const bool runs = sample.state == CycleState::Running || sample.state == CycleState::Holding || sample.moving ||
                     machine.cam().cycle().started();
   dropped_moves_ = machine.cam().queue().moves_left();

@@ -333,7 +333,9 @@ struct Planner::Impl {
     if (command != wanted) attempt.forget();
     if (command != wanted) stop_came_late = false;
     wanted = command;
-    if (command != PathCommand::Stop) channel.stopping.store(0, std::memory_order_release);
+    // A stop that is under way still, though something else was commanded meanwhile, is the one that is asked for.
+    const bool stops = command == PathCommand::Stop && base() != nullptr && base()->stops;
+    channel.stopping.store(stops ? base()->plan->id : 0, std::memory_order_release);
   }
 
   void set_override(double percent) {
@@ -359,6 +361,7 @@ Expected<double> Planner::turn_back(double distance_mm, std::span<const double> 
 }
 bool Planner::retraced(const ServoProgress& progress) const noexcept {
   const Impl& i = *impl_;
+  if (i.wanted == PathCommand::Retrace && !i.route.retraces()) return i.ended(progress);  // a stop took it off its way
   return i.route.retraces() && i.ended(progress) && i.base_end_s() >= i.path().end() - kSamePlace;
 }
 bool Planner::off_path() const noexcept {

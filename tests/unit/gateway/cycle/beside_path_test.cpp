@@ -134,6 +134,23 @@ TEST_F(Watched, KinematicsThatFailOnTheWayAreAFault) {
   EXPECT_THAT(bench_.told(Event::Kind::Fault), HasSubstr("found no joints"));
 }
 
+TEST(JogWish, EndsNothingButAJog) {
+  CycleBench bench;
+  Jogging jogging(bench.cycle, bench.entry);
+  EXPECT_FALSE(bench.cycle.jogs());
+  ASSERT_TRUE(jogging.run(CycleBench::move_to(-1, 40), 0.5));
+  EXPECT_TRUE(bench.cycle.jogs());
+  ASSERT_TRUE(jogging.end());
+  EXPECT_FALSE(bench.cycle.jogs());
+  ASSERT_TRUE(bench.run_to_rest());
+  ASSERT_TRUE(bench.queue(1, 40));
+  ASSERT_TRUE(bench.start());
+  bench.run(100);
+  ASSERT_TRUE(jogging.end()) << "the key of a jog that is no more";
+  EXPECT_EQ(bench.state(), CycleState::Running);
+  EXPECT_FALSE(bench.link.stops.stop());
+}
+
 TEST(JogWish, HasTheServoThreadEndAJogThatIsNotRenewed) {
   CycleBench bench;
   Jogging jogging(bench.cycle, bench.entry);

@@ -119,6 +119,20 @@ TEST_F(MachineCycleRuns, NoMoveBeforeTheSpindleIsAtSpeedAndTellsWhichWasNot) {
   EXPECT_THAT(bench_.told(Event::Kind::Fault), HasSubstr("spindle 0 turns at 400 of 500 rpm"));
 }
 
+TEST_F(MachineCycleRuns, NoMoveWhileNobodyKnowsTheSpindlesSpeed) {
+  {
+    const GatewayTurn turn(bench_.cycle.lock);
+    bench_.cycle.wishes.change([](ServoWishes& wish) { wish.spindle_rpm[0] = 500; });
+    bench_.cycle.await_spindles();
+  }
+  bench_.status.generation = 0;  // the servo loop has not told of this mechanism yet
+  {
+    const GatewayTurn turn(bench_.cycle.lock);
+    bench_.cycle.settle(bench_.status);
+    EXPECT_TRUE(bench_.cycle.sequencer.waits_for_spindle());
+  }
+}
+
 TEST_F(MachineCycleRuns, TheQueueEmptyWhenItIsStoppedNowAndTheNextMoveFromWhereItStands) {
   ASSERT_TRUE(bench_.queue(1, 30));
   ASSERT_TRUE(bench_.start());

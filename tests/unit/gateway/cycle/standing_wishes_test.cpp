@@ -44,6 +44,14 @@ TEST_F(Wishes, TurnOnAgainOnceWhatWasKeptForLater) {
   EXPECT_EQ(servo_.read().spindle_rpm[0], 0);
 }
 
+TEST_F(Wishes, AreKeptAcrossASecondTurnOff) {
+  wishes_.keep_for_later(wishes_.turn_off(0b10));
+  wishes_.keep_for_later(wishes_.turn_off(0b110));
+  EXPECT_TRUE(wishes_.turn_on_again());
+  EXPECT_EQ(servo_.read().spindle_rpm[0], 800) << "it was off already when it was turned off again";
+  EXPECT_EQ(servo_.read().outputs, 0b111U);
+}
+
 TEST_F(Wishes, StayOffWhenWhatWasKeptIsForgotten) {
   wishes_.keep_for_later(wishes_.turn_off(0b10));
   wishes_.forget_later();

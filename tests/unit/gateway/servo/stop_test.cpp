@@ -92,6 +92,20 @@ TEST(Stop, TakesThePathsOwnLawWhereItIsThere) {
   EXPECT_EQ(bench.departures(), 0U);
 }
 
+TEST(Stop, ThatIsAskedForAgainWhileItIsUnderWayStaysOnThePath) {
+  StopBench bench;
+  bench.run_planned(300);
+  for (const PathCommand command : {PathCommand::Stop, PathCommand::Run, PathCommand::Stop}) {
+    bench.link.stops.planned = command == PathCommand::Stop;
+    bench.mechanism->planner.command(command);
+    bench.run_planned(20);
+    ASSERT_TRUE(bench.moving());
+  }
+  bench.run_planned(2000);
+  EXPECT_FALSE(bench.moving());
+  EXPECT_EQ(bench.departures(), 0U);
+}
+
 TEST(Stop, IsNoneOnceItIsTakenBack) {
   StopBench bench;
   bench.run_planned(300);

@@ -202,6 +202,29 @@ TEST(LeavingThePath, IsRetracedByWayOfWhereItWasLeft) {
   expect_within_limits(bench);
 }
 
+TEST(LeavingThePath, EndsARetrace) {
+  PlannerBench bench(mill());
+  queue_line(bench);
+  run_to(bench, 20);
+  bench.planner.command(PathCommand::Stop);
+  ASSERT_TRUE(bench.run(2000));
+  ASSERT_GT(bench.turn_back(15), 0);
+  bench.planner.command(PathCommand::Retrace);
+  for (int i = 0; i < 150; ++i) bench.cycle();
+  const double left_at = bench.record.back().position[0];
+  bench.follower().leave();
+  ASSERT_TRUE(bench.run(2000));
+  EXPECT_TRUE(bench.planner.retraced(bench.progress()));
+  ASSERT_TRUE(bench.planner.off_path());
+  EXPECT_LT(bench.record.back().position[0], left_at);
+  ASSERT_TRUE(bench.planner.rejoin({bench.record.back().position.data(), 3}));
+  bench.planner.command(PathCommand::Run);
+  ASSERT_TRUE(bench.run());
+  EXPECT_EQ(bench.moves_done(), 1U);
+  EXPECT_NEAR(bench.record.back().position[0], 30, 1e-9);
+  expect_within_limits(bench);
+}
+
 TEST(LeavingThePath, IsRetracedFromTheWayBackToItToo) {
   PlannerBench bench(mill());
   queue_line(bench);
