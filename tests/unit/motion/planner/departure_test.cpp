@@ -81,6 +81,7 @@ TEST_P(Departure, JointsRestInTheTimeTheirLimitsNeedAndThePathGoesOnWhereItWasLe
   bench.planner.command(PathCommand::Run);
   ASSERT_TRUE(bench.run());
   EXPECT_GT(departures, 0U);
+  RecordProperty("departures", std::to_string(departures));
   EXPECT_EQ(bench.moves_done(), queued);
   EXPECT_EQ(bench.planner.moves_left(), 0U);
   for (std::size_t j = 0; j < 3; ++j) {
