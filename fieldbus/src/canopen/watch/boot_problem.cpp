@@ -47,7 +47,7 @@ std::string describe(const BootProblem& problem, std::uint8_t node, const Canope
   for (std::size_t i = 0; i < config.axes.size(); ++i) {
     if (config.axes[i].node == node) axes += fmt::format("{}{}", axes.empty() ? "" : ", ", i);
   }
-  const std::string who = fmt::format("node {} (axis {})", node, axes);
+  std::string who = fmt::format("node {} (axis {})", node, axes);
   const double waited_s = std::chrono::duration<double>(config.boot_timeout).count();
   const std::string object = to_string(problem.object);
   switch (problem.kind) {

@@ -10,7 +10,7 @@ namespace rmac::fieldbus::canopen {
 class NodeTrouble {
  public:
   void note(const BootProblem& problem) noexcept {
-    object_.store(problem.object.index << 8U | problem.object.sub, std::memory_order_relaxed);
+    object_.store((std::uint32_t{problem.object.index} << 8U) | problem.object.sub, std::memory_order_relaxed);
     expected_.store(problem.expected, std::memory_order_relaxed);
     found_.store(problem.found, std::memory_order_relaxed);
     kind_.store(problem.kind, std::memory_order_release);
