@@ -176,7 +176,7 @@ TEST_F(Measuring, AHitThatIsNoSearchStopsTheMachine) {
   ASSERT_FALSE(refused) << "the probe touches";
   EXPECT_EQ(refused.error().code, MinorCode::ProbeNotArmed);
   ASSERT_TRUE(cam().positioning().jog_path({{0, 0, 1}}, 5)) << "off it is free";
-  rest();
+  ASSERT_TRUE(machine_.run_until([&] { return machine_.controller.cycle_now().state == CycleState::Idle; }));
   start(sdk::CycleMode::Automatic);
   go({0, 0, -10});
   EXPECT_EQ(machine_.controller.cycle_now().state, CycleState::Running);
