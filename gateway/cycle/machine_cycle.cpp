@@ -145,7 +145,7 @@ void MachineCycle::apply_verdict(const CycleSequencer::Verdict& verdict, const S
   if (const double until_s = verdict.jog_until_s.value_or(std::numeric_limits<double>::infinity());
       wishes.now().moves_until_s != until_s) {
     wishes.change([until_s](ServoWishes& wish) { wish.moves_until_s = until_s; });
-    link_.stops.jogs.store(verdict.jog_until_s.has_value(), std::memory_order_release);
+    jogs_.store(verdict.jog_until_s.has_value(), std::memory_order_release);
   }
   if (mechanism_ && verdict.command) {
     link_.stops.planned.store(*verdict.command == PathCommand::Stop, std::memory_order_release);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -73,7 +74,7 @@ class MachineCycle {
   }
 
   /// A jog that lasts while it is renewed is under way; needs no turn.
-  [[nodiscard]] bool jogs() const noexcept { return link_.stops.jogs.load(std::memory_order_acquire); }
+  [[nodiscard]] bool jogs() const noexcept { return jogs_.load(std::memory_order_acquire); }
 
   /// One bounded piece of planning, and the cycle states.
   [[nodiscard]] Planning::Pace advance(const ServoStatus& status) REQUIRES(lock);
@@ -133,6 +134,7 @@ class MachineCycle {
   std::shared_ptr<Mechanism> mechanism_ GUARDED_BY(lock);
   std::uint64_t generation_ GUARDED_BY(lock) = 0;
   PathBuilder* builder_ = nullptr;  ///< the gateway thread's alone
+  std::atomic<bool> jogs_{false};   ///< written with a turn, read without
   PathWatch path_watch_ GUARDED_BY(lock);
   bool told_beside_ GUARDED_BY(lock) = false;  ///< that the machine rests beside its path
   CycleState reported_state_ GUARDED_BY(lock) = CycleState::Idle;

@@ -39,7 +39,6 @@ struct StopWishes {
   std::atomic<bool> asked{false};    ///< the gateway is about to tell it, or cannot
   std::atomic<bool> kept{false};     ///< for good: something hangs
   std::atomic<bool> power_off{false};
-  std::atomic<bool> jogs{false};  ///< a jog that lasts while it is renewed is under way
 
   [[nodiscard]] bool stop() const noexcept {
     return planned.load(std::memory_order_acquire) || asked.load(std::memory_order_acquire) ||

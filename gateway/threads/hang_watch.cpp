@@ -5,6 +5,7 @@
 #include <utility>
 
 namespace rmac::gateway {
+
 HangWatch::HangWatch(std::function<std::optional<std::string>()> look,
                      std::function<void(const std::string& what)> found)
     : look_(std::move(look)), found_(std::move(found)), thread_([this](const std::stop_token& stop) { watch(stop); }) {}

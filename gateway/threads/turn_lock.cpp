@@ -1,18 +1,12 @@
 #include "gateway/threads/turn_lock.hpp"
 
-#include <time.h>
+#include "gateway/threads/cpu_time.hpp"
 
 namespace rmac::gateway {
 namespace {
 
 /// How often whoever waits for the planner looks whether it still gets on.
 constexpr std::chrono::milliseconds kLookAgain{20};
-
-std::chrono::nanoseconds read(clockid_t clock) {
-  timespec now{};
-  (void)clock_gettime(clock, &now);
-  return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
-}
 
 }  // namespace
 
@@ -33,7 +27,7 @@ bool TurnLock::hangs() {
   clockid_t clock{};
   // The thread lives: it has its turn.
   if (pthread_getcpuclockid(*planner_, &clock) != 0) return false;
-  const Look now{turn_, read(clock), std::chrono::steady_clock::now()};
+  const Look now{turn_, cpu_time(clock), std::chrono::steady_clock::now()};
   if (look_.turn != turn_) look_ = now;
   return now.cpu - look_.cpu > patience_.cpu || now.at - look_.at > patience_.wall;
 }

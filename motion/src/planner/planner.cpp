@@ -330,8 +330,10 @@ struct Planner::Impl {
 
   void command(PathCommand command) {
     if (command == PathCommand::RunOne) limit_run();
-    if (command != wanted) attempt.forget();
-    if (command != wanted) stop_came_late = false;
+    if (command != wanted) {
+      attempt.forget();
+      stop_came_late = false;
+    }
     wanted = command;
     // A stop that is under way still, though something else was commanded meanwhile, is the one that is asked for.
     const bool stops = command == PathCommand::Stop && base() != nullptr && base()->stops;

@@ -2,7 +2,6 @@
 #include <spdlog/spdlog.h>
 
 #include <cstdlib>
-#include <ctime>
 #include <optional>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include "gateway/rmac/simulator/simulator.hpp"
 #include "gateway/rmac/terminal/table.hpp"
 #include "gateway/threads/cpu_progress.hpp"
+#include "gateway/threads/cpu_time.hpp"
 #include "gateway/threads/hang_watch.hpp"
 
 namespace rmac::cli {
@@ -27,9 +27,7 @@ struct Options {
 
 /// CPU time of this program, s: what else the computer does does not count.
 double cpu_time_s() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  return std::chrono::duration<double>(gateway::cpu_time(CLOCK_PROCESS_CPUTIME_ID)).count();
 }
 
 void print_json(const SimulationReport& report, double took_s) {

@@ -72,14 +72,16 @@ void PositionWatch::step(Shafts& shafts, std::span<const double> velocity) noexc
     if (!told(i).online && has(online_, i)) notice_loss(i);
   }
   online_ = online;
-  judge(shafts);
+  JointArray now = joints_at(shafts.rad());
+  judge(now, shafts);
+  const bool put_elsewhere = held_ != 0;  // refused, or about to be believed
   for (std::size_t i = 0; i < wiring_.actuators(); ++i) {
     if (!has(online, i)) continue;
     if (has(doubtful_, i) && !told(i).missed) resolve(i, shafts);
     known_ |= only(i);
     if (!told(i).missed && !has(held_, i)) doubts_[i].missed = 0;
   }
-  const JointArray now = joints_at(shafts.rad());
+  if (put_elsewhere) now = joints_at(shafts.rad());
   for (std::size_t j = 0; j < wiring_.joints(); ++j) {
     joints_[j].step = now[j] - joints_[j].last;
     joints_[j].last = now[j];
@@ -87,8 +89,7 @@ void PositionWatch::step(Shafts& shafts, std::span<const double> velocity) noexc
   forgotten_ = 0;
 }
 
-void PositionWatch::judge(Shafts& shafts) noexcept {
-  const JointArray now = joints_at(shafts.rad());
+void PositionWatch::judge(const JointArray& now, Shafts& shafts) noexcept {
   IndexSet unexplained = 0;
   for (std::size_t j = 0; j < wiring_.joints(); ++j) {
     const IndexSet actuators = wiring_.actuators_of(j);

@@ -67,7 +67,8 @@ class PositionWatch {
  private:
   using JointArray = std::array<double, kMaxJoints>;
 
-  void judge(Shafts& shafts) noexcept;
+  /// `now`: where the shafts put the joints.
+  void judge(const JointArray& now, Shafts& shafts) noexcept;
   void resolve(std::size_t actuator, Shafts& shafts) noexcept;
   void believe(std::size_t actuator, Shafts& shafts) noexcept;
   void doubt(std::size_t actuator, bool unsettles) noexcept;
