@@ -64,6 +64,7 @@ void PlanFollower::activate(const Plan* plan) noexcept {
   piece_ = 0;
   segment_ = 0;
   off_path_ = false;
+  rests_s_ = plan->law.empty() ? counted_s_ : plan->law.back().at(plan->law.back().duration).s;
 }
 
 void PlanFollower::receive(std::int64_t cycle) noexcept {
@@ -140,7 +141,9 @@ void PlanFollower::follow(std::int64_t cycle, Setpoint& setpoint) noexcept {
     brake(cycle, setpoint);
     return;
   }
-  setpoint.moves_done = count_done(at.s);
+  // What ends where the machine comes to rest is done when it rests, not the few cycles before in which it is as good
+  // as there: who was told that the last move is done may ask for what needs rest.
+  setpoint.moves_done = count_done(ended ? at.s : std::min(at.s, rests_s_ - 2 * kSamePlace));
   segment_ = segment;
   setpoint.pose = on.pose(local);
   const MoveStretch& stretch = on.stretch_at(local);

@@ -114,6 +114,21 @@ TEST_P(PlannerProperty, KeepsEveryLimitAndFinishesEveryMove) {
   for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(bench.record.back().position[j], end[j], 1e-9);
 }
 
+TEST_P(PlannerProperty, TellsThatAMoveIsDoneWhenTheMachineRestsAtItsEnd) {
+  PlannerBench bench(mill());
+  RandomProgram program(GetParam() + 7000);
+  queue_program(bench, program, 4);
+  while (bench.planner.moves_left() > 0) {
+    bench.planner.command(PathCommand::RunOne);
+    const std::size_t before = bench.moves_done();
+    while (bench.moves_done() == before) bench.cycle();
+    EXPECT_FALSE(bench.record.back().moving) << "seed " << GetParam();
+    EXPECT_TRUE(bench.planner.at_rest(bench.progress())) << "seed " << GetParam();
+    ASSERT_TRUE(bench.run());
+    bench.planner.command(PathCommand::Stop);
+  }
+}
+
 TEST_P(PlannerProperty, HoldsAndResumesAtAnyInstantOnThePathWithinLimits) {
   PlannerBench bench(mill());
   RandomProgram program(GetParam() + 1000);

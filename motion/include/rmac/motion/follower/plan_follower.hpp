@@ -66,6 +66,7 @@ class PlanFollower {
   const Plan* next_ = nullptr;
   std::size_t piece_ = 0;
   std::size_t segment_ = 0;
+  double rests_s_ = 0;    ///< path length at which the active plan ends at rest
   double counted_s_ = 0;  ///< path length up to which ended moves were reported, from `origin_mm_`
   double origin_mm_ = 0;  ///< of the active plan
   std::uint64_t accepted_ = 0;
