@@ -71,8 +71,8 @@ nlohmann::json event_to_json(const Event& event) {
   return json;
 }
 
-nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, const MachineStatus& status,
-                             const std::string& authority_holder) {
+nlohmann::json state_to_json(MachinePort& machine, int moves_left, const CycleSample& sample,
+                             const MachineStatus& status, const std::string& authority_holder) {
   const sdk::DeviceObject* mechanism = machine.mechanism();
   const CycleNow cycle = machine.cycle_now();
   const ToolPose& tool = sample.pose_actual;
@@ -96,7 +96,7 @@ nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, co
                        {"wake_up", brief(machine.cycle_times().wake_up.read())},
                        {"compute", brief(machine.cycle_times().compute.read())},
                        {"bus", brief(machine.cycle_times().bus.read())},
-                       {"moves_in_buffer", machine.cam().queue().moves_left()},
+                       {"moves_in_buffer", moves_left},
                        {"status_major", status.major},
                        {"status_minor", status.minor},
                        {"authority", authority_holder},

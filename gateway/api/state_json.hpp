@@ -12,9 +12,10 @@ namespace rmac::gateway {
 /// An entry of the topic `events`, and `last_stop` of the topic `state`.
 [[nodiscard]] nlohmann::json event_to_json(const Event& event);
 
-/// The topic `state`: docs/protocol.md lists its members.
-[[nodiscard]] nlohmann::json state_to_json(MachinePort& machine, const CycleSample& sample, const MachineStatus& status,
-                                           const std::string& authority_holder);
+/// The topic `state`: docs/protocol.md lists its members. `moves_left` is asked before the sample is taken: of a move
+/// that is gone from the queue, the sample shows where it ended.
+[[nodiscard]] nlohmann::json state_to_json(MachinePort& machine, int moves_left, const CycleSample& sample,
+                                           const MachineStatus& status, const std::string& authority_holder);
 
 /// In µs; bins without a time are left out.
 [[nodiscard]] nlohmann::json times_to_json(const TimeCounts& counts);

@@ -18,7 +18,8 @@ constexpr std::chrono::seconds kDismissTime{2};
 /// The topic `state` as everybody sees it.
 std::string state_text(const ConnectionContext& context, const CycleSample& sample) {
   Dispatcher& api = context.dispatcher;
-  return text_of(state_to_json(api.machine(), sample, api.status(), context.lease.holder_name()));
+  const int left = api.machine().cam().queue().moves_left();
+  return text_of(state_to_json(api.machine(), left, sample, api.status(), context.lease.holder_name()));
 }
 
 /// Longer first lines are held to their first character alone: reading them takes long.

@@ -134,9 +134,10 @@ void add_cycle_methods(std::vector<Method>& table) {
           .gives(WireType::Object)
           .extension()
           .does([](Call& call) {
+            const int left = call.machine.cam().queue().moves_left();
             CycleSample now = call.machine.sample();
             now.state = call.machine.cycle_now().state;  // a start that was just accepted is not in the sample yet
-            return state_to_json(call.machine, now, call.status, call.session.authority_holder());
+            return state_to_json(call.machine, left, now, call.status, call.session.authority_holder());
           }));
   add(method("RMAC_CAM.GetCycleTimes",
              "Where the servo thread's time goes, since the mechanism was put in: `deadline_misses`, and of `wake_up` "

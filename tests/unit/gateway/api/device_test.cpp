@@ -161,6 +161,21 @@ TEST(CamApi, StateTellsMechanismJointsAndStatus) {
   EXPECT_EQ(state["spindle_rpm"].size(), 1U);
 }
 
+TEST(CamApi, StateShowsWhereAMoveEndedThatIsGoneFromTheQueue) {
+  Api api;
+  api.machine.now.joint_count = api.machine.now.joint_count_with_held = 1;
+  api.machine.now.moving = true;
+  EXPECT_CALL(api.machine.cam_mock.queue_mock, moves_left()).WillRepeatedly([&api] {
+    api.machine.now.moving = false;  // a cycle went by
+    api.machine.now.position = {5};
+    return 0;
+  });
+  const json state = api.result("RMAC_CAM.GetState");
+  EXPECT_EQ(state["moves_in_buffer"], 0);
+  EXPECT_EQ(state["moving"], false);
+  EXPECT_EQ(state["joints"], json::parse("[5.0]"));
+}
+
 TEST(CamApi, StateIsTheControllersNotTheLastSamplesNorWhatWasSetLast) {
   Api api;
   EXPECT_CALL(api.machine.cam_mock.cycle_mock, set_feed_override(50)).WillOnce(Return(Expected<>{}));
