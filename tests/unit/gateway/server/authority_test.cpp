@@ -18,6 +18,7 @@ using fakes::ServerBench;
 using fakes::set_running;
 using nlohmann::json;
 using testing::_;
+using testing::AtLeast;
 using testing::HasSubstr;
 using testing::Return;
 
@@ -39,9 +40,10 @@ TEST(Authority, IsHeldByOneClientAndNamesItToTheSecond) {
 TEST(Authority, SecondClientMayNotJogButMayStop) {
   ServerBench bench;
   bench.on_gateway([](Server&, FakeMachine& machine) {
+    // Authority that is lost with the bench may stop the machine once more.
     EXPECT_CALL(machine.cam_mock.positioning_mock, jog_joint(_, _)).Times(0);
-    EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now()).WillOnce(Return(Expected<>{}));
-    EXPECT_CALL(machine.cam_mock.cycle_mock, hold()).WillOnce(Return(Expected<>{}));
+    EXPECT_CALL(machine.cam_mock.cycle_mock, stop_now()).Times(AtLeast(1)).WillRepeatedly(Return(Expected<>{}));
+    EXPECT_CALL(machine.cam_mock.cycle_mock, hold()).Times(AtLeast(1)).WillRepeatedly(Return(Expected<>{}));
   });
   Client first(bench.port());
   EXPECT_TRUE(first.call("authority.acquire").contains("result"));
