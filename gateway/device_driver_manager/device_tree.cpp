@@ -42,10 +42,18 @@ std::string misplaced(const std::filesystem::path& folder, const sdk::DeviceObje
 
 class Scan {
  public:
+  explicit Scan(const std::filesystem::path& root) : root_(std::filesystem::weakly_canonical(root)) {}
+
   void read(const std::filesystem::path& folder) {
     const std::filesystem::path file = folder / "device.json";
     std::error_code code;
     if (!std::filesystem::exists(file, code)) return;
+    if (const auto place = std::filesystem::canonical(file, code); code || !is_in_tree(place)) {
+      return report(file,
+                    fmt::format("{}: a link leads out of the device tree, to {}; put the mechanism's folder itself "
+                                "into the tree",
+                                file.string(), place.string()));
+    }
     Expected<DeviceDatabase> database = read_device_json(file);
     if (!database) return report(file, database.error().message);
     if (const std::string problem = misplaced(folder, database->device); !problem.empty()) {
@@ -67,6 +75,11 @@ class Scan {
   DeviceTree result() && { return std::move(tree_); }
 
  private:
+  [[nodiscard]] bool is_in_tree(const std::filesystem::path& place) const {
+    return std::mismatch(root_.begin(), root_.end(), place.begin(), place.end()).first == root_.end();
+  }
+
+  std::filesystem::path root_;  ///< without links
   DeviceTree tree_;
   std::map<std::string, std::filesystem::path> folders_;
 };
@@ -75,7 +88,7 @@ class Scan {
 
 Expected<DeviceTree> scan_device_tree(const std::filesystem::path& root) {
   constexpr int kLevels = 3;  // type, configuration, mechanism
-  Scan scan;
+  Scan scan(root);
   Folders level{root};
   for (int depth = 0; depth < kLevels; ++depth) {
     Folders next;

@@ -11,6 +11,8 @@
 #include <fstream>
 #include <system_error>
 
+#include "gateway/modules/trusted_place.hpp"
+
 namespace rmac::gateway {
 namespace {
 
@@ -158,7 +160,7 @@ const char* to_string(sdk::ModuleKind kind) noexcept {
   return "unknown kind";
 }
 
-ModuleLoader::ModuleLoader(std::vector<fs::path> folders) : folders_(std::move(folders)) {}
+ModuleLoader::ModuleLoader(std::vector<fs::path> folders, Opens opens) : folders_(std::move(folders)), opens_(opens) {}
 
 Expected<fs::path> ModuleLoader::find_file(const std::string& subfolder, const std::string& name,
                                            const std::string& extension, const std::string& what) const {
@@ -194,6 +196,9 @@ Expected<fs::path> ModuleLoader::find_module(const std::string& name, sdk::Modul
 Expected<OpenModule> ModuleLoader::open(const std::string& name, sdk::ModuleKind kind) const {
   const auto file = find_module(name, kind);
   if (!file) return tl::unexpected(file.error());
+  if (opens_ == Opens::Trusted) {
+    if (auto trusted = check_trusted(*file, folders_); !trusted) return tl::unexpected(trusted.error());
+  }
   auto opened = open_private_copy(*file);
   if (!opened) return tl::unexpected(opened.error());
 

@@ -65,8 +65,12 @@ struct OpenModule {
 /// descriptor is checked before anything of the module runs. Gateway thread only.
 class ModuleLoader {
  public:
+  /// Which modules are opened: those that nobody else may have written (`check_trusted`), or, in a process that is
+  /// confined, whichever there are.
+  enum class Opens { Trusted, Whichever };
+
   /// `folders` are searched in order; the mechanism's own comes first.
-  explicit ModuleLoader(std::vector<std::filesystem::path> folders);
+  explicit ModuleLoader(std::vector<std::filesystem::path> folders, Opens opens = Opens::Trusted);
 
   /// Opens `choice.name`.so from a private copy, so that a module rebuilt since its last use really is the new one, and
   /// makes its object with the choice's parameters. The error says which folders were searched, or what does not fit.
@@ -90,6 +94,7 @@ class ModuleLoader {
 
  private:
   std::vector<std::filesystem::path> folders_;
+  Opens opens_;
 };
 
 }  // namespace rmac::gateway

@@ -38,7 +38,8 @@ Expected<verifier::Report> verify(const Wishes& wishes) {
 
   verifier::Report report{
       device->name, fs::absolute(file).lexically_normal().string(), wishes.samples, wishes.seed, {}};
-  const verifier::Task task{*device, gateway::ModuleLoader(folders), wishes.samples, wishes.seed};
+  const verifier::Task task{*device, gateway::ModuleLoader(folders, gateway::ModuleLoader::Opens::Whichever),
+                            wishes.samples, wishes.seed};
   for (const verifier::Job& job : verifier::jobs_for(*device)) {
     // All modules together are run once each of them is fit for it.
     if (job.module.empty() && !report.passed()) continue;

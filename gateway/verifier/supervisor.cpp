@@ -23,6 +23,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// A line of a report is shorter by far.
+constexpr std::size_t kMostUnread = std::size_t{1} << 20U;
+
+const std::string kNotConfined =
+    "nothing is run that cannot be kept apart from everything else, and this system does not let it be (see "
+    "user_namespaces(7), kernel.unprivileged_userns_clone, and RestrictNamespaces= of a unit): ";
+
 struct Unmap {
   void operator()(Place* place) const noexcept { munmap(place, sizeof(Place)); }
 };
@@ -48,20 +55,31 @@ nlohmann::json found_so_far(const ModuleReport& report) {
   return json;
 }
 
+/// Leaves open the pipe alone: what a module prints is not part of the report, and what else is open is not its own.
+void close_files(int pipe) noexcept {
+  const int nowhere = open("/dev/null", O_RDWR);
+  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, standard);
+  const auto kept = static_cast<unsigned>(pipe);
+  if (kept > STDERR_FILENO + 1) close_range(STDERR_FILENO + 1, kept - 1, 0);
+  close_range(kept + 1, ~0U, 0);
+}
+
 [[noreturn]] void work(const Job& job, const Task& task, const Bounds& bounds, Place& place, int pipe) noexcept {
-  confine(bounds);
-  // What a module prints is not part of the report.
-  if (const int nowhere = open("/dev/null", O_RDWR); nowhere >= 0) {
-    for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, standard);
-  }
+  close_files(pipe);
   // A sanitizer's handlers would turn a crash into an exit.
   for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) signal(crash, SIG_DFL);
   Watch watch(place);
   watch.step("start");
-  (void)prepare_trap();
   ModuleReport report;
   report.module = job.module;
-  job.run(task, watch, report, [&] { send(pipe, gateway::text_of(found_so_far(report)) + "\n"); });
+  const auto tell = [&] { send(pipe, gateway::text_of(found_so_far(report)) + "\n"); };
+  (void)prepare_trap();
+  if (const auto refused = confine(bounds, place.forbidden_call)) {
+    report.refusal = CounterExample{"start", kNotConfined + *refused, -1, {}};
+    tell();
+  } else {
+    job.run(task, watch, report, tell);
+  }
   watch.step("end");
   _exit(0);  // what other modules registered to do at the end is not waited for
 }
@@ -87,7 +105,10 @@ class Watcher {
       constexpr int kLook_ms = 20;
       const int ready = poll(&waiting, 1, kLook_ms);
       if (ready < 0 && errno != EINTR) break;
-      if (ready > 0 && !read_some()) break;
+      if (ready > 0 && !read_some()) {
+        kill(worker_, SIGKILL);  // who ends by itself has its exit code by now
+        break;
+      }
       why = hangs();
       if (!why.empty()) {
         kill(worker_, SIGKILL);
@@ -106,6 +127,7 @@ class Watcher {
     const ssize_t got = read(pipe_, buffer, sizeof(buffer));
     if (got <= 0) return got < 0 && errno == EINTR;
     unread_.append(buffer, static_cast<std::size_t>(got));
+    if (unread_.size() > kMostUnread) return false;
     for (std::size_t end = 0; (end = unread_.find('\n')) != std::string::npos;) {
       line_ = unread_.substr(0, end);
       unread_.erase(0, end + 1);
@@ -141,22 +163,28 @@ class Watcher {
   Clock::time_point since_ = Clock::now();
 };
 
-std::string ending(int status, const Bounds& bounds) {
+std::string ending(int status, double cpu_s, const Bounds& bounds) {
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kAborted) return "it crashes (ABRT, Aborted)";
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
+    if (signal == SIGKILL && cpu_s < 0.9 * bounds.cpu_s) return "it does something to the pipe for its report";
     if (signal == SIGXCPU || signal == SIGKILL) return fmt::format("it uses more than {} s of CPU time", bounds.cpu_s);
     return fmt::format("it crashes ({}, {})", sigabbrev_np(signal), sigdescr_np(signal));
   }
   return fmt::format("it ends the process with exit code {}", WEXITSTATUS(status));
 }
 
-void take_line(const std::string& line, ModuleReport& report) {
-  if (line.empty()) return;
+/// False where the line is none of a report: a module wrote to the pipe.
+bool take_line(const std::string& line, ModuleReport& report) try {
+  if (line.empty()) return true;
   const auto json = nlohmann::json::parse(line);
   report.build_id = json.at("build_id");
   report.passed = json.at("passed").get<std::vector<std::string>>();
   report.not_checked = json.at("not_checked").get<std::vector<std::string>>();
   if (json.contains("refusal")) report.refusal = example_of(json["refusal"]);
+  return true;
+} catch (const nlohmann::json::exception&) {
+  return false;
 }
 
 }  // namespace
@@ -166,10 +194,10 @@ ModuleReport supervise(const Job& job, const Task& task, const Bounds& bounds) {
   const auto place = shared_place();
   int ends[2];
   const bool piped = pipe2(ends, O_CLOEXEC) == 0;
-  const pid_t worker = piped ? fork() : -1;
+  const pid_t worker = piped ? fork_apart() : -1;
   if (worker < 0) {
-    report.refusal =
-        CounterExample{"start", fmt::format("no process can be started: {}", std::strerror(errno)), -1, {}};
+    report.refusal = CounterExample{
+        "start", kNotConfined + fmt::format("starting a process apart: {}", std::strerror(errno)), -1, {}};
     return report;
   }
   if (worker == 0) {
@@ -186,13 +214,19 @@ ModuleReport supervise(const Job& job, const Task& task, const Bounds& bounds) {
   }
   report.cpu_s = static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
                  1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
-  take_line(watcher.last_line(), report);
+  if (!take_line(watcher.last_line(), report)) {
+    report.refusal = example_at(*place, "confinement", "it writes into the report on itself");
+  }
   // A refusal goes before what came of it, such as a crash while the object was destroyed.
   if (report.refusal) return report;
   if (!killed_for.empty()) {
     report.refusal = example_at(*place, "hang", killed_for);
+  } else if (WIFEXITED(status) && WEXITSTATUS(status) == kForbiddenCall) {
+    report.refusal = example_at(*place, "confinement",
+                                fmt::format("it asks the system for {}, which no module may while it is verified,",
+                                            system_call_name(place->forbidden_call)));
   } else if (status != 0 || std::strcmp(place->call, "end") != 0) {
-    report.refusal = example_at(*place, "crash", ending(status, bounds));
+    report.refusal = example_at(*place, "crash", ending(status, report.cpu_s, bounds));
   }
   return report;
 }

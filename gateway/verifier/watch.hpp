@@ -22,6 +22,7 @@ struct Place {
   };
 
   std::atomic<std::uint64_t> steps;  ///< grows with each call, so a call that does not return shows
+  std::atomic<int> forbidden_call;   ///< number of the system call that it may not make, and made
   char call[64];
   std::uint32_t values_count;
   Numbers values[3];

@@ -10,8 +10,9 @@ import unittest
 
 from appliance import BUILD
 
-# Highest exposure, tenths, that `systemd-analyze security` may give.
-DAEMON_EXPOSURE, CAN_EXPOSURE = 20, 18
+# Highest exposure, tenths, that `systemd-analyze security` may give. The daemon's was 20 without the namespaces and mounts
+# in which it confines modules that are being verified.
+DAEMON_EXPOSURE, CAN_EXPOSURE = 26, 18
 
 
 class Installation(unittest.TestCase):

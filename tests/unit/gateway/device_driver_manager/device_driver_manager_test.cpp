@@ -92,6 +92,20 @@ TEST_F(DeviceDriverManagerTest, LeavesABadFolderOutAndReportsIt) {
   EXPECT_THAT(manager->problems()[3].message, HasSubstr("/ConfigurationType is \"3-axis\"; allowed is \"9-axis\""));
 }
 
+TEST_F(DeviceDriverManagerTest, TakesLinksWithinTheTreeAlone) {
+  write_tree(folder_, {sound_device("Good")});
+  const std::filesystem::path mills = folder_.path() / "tree/mill/3-axis";
+  folder_.write("elsewhere/Strange/device.json", sound_device("Strange").dump());
+  folder_.write("tree/shelf/Kept/device.json", sound_device("Kept").dump());  // no mechanism at this depth
+  std::filesystem::create_directory_symlink(folder_.path() / "elsewhere/Strange", mills / "Strange");
+  std::filesystem::create_directory_symlink("../../shelf/Kept", mills / "Kept");
+  const auto manager = open();
+  ASSERT_TRUE(manager);
+  EXPECT_THAT(numbers(*manager), ElementsAre(Pair(1, "Good"), Pair(2, "Kept")));
+  ASSERT_EQ(manager->problems().size(), 1U);
+  EXPECT_THAT(manager->problems()[0].message, HasSubstr("a link leads out of the device tree"));
+}
+
 TEST_F(DeviceDriverManagerTest, ANameThatStandsTwiceIsListedOnce) {
   json mill = sound_device("Twin");
   json cmm = sound_device("Twin");

@@ -77,6 +77,47 @@ TEST_F(ModuleFolder, RefusesAHalfCopiedModule) {
   }
 }
 
+/// Why the kinematics in a folder are not opened.
+std::string distrust(const fs::path& folder, ModuleLoader::Opens opens = ModuleLoader::Opens::Trusted) {
+  const auto made = ModuleLoader({folder}, opens).load<Kinematics>({"TestKinematics3", {}, {}});
+  return made ? "it was loaded" : made.error().message;
+}
+
+TEST_F(ModuleFolder, IsTrustedWhereNobodyElseMayWrite) {
+  const fs::path inner = folder_ / "a" / "b", file = inner / "TestKinematics3.so";
+  fs::create_directories(inner);
+  fs::copy_file(kModules / "good" / "TestKinematics3.so", file);
+  EXPECT_EQ(distrust(inner), "it was loaded");
+  for (const fs::path& place : {file, inner, folder_ / "a"}) {
+    for (const auto writers : {fs::perms::others_write, fs::perms::others_write | fs::perms::group_write}) {
+      fs::permissions(place, writers, fs::perm_options::add);
+      EXPECT_THAT(distrust(inner), HasSubstr(place.string() + " (mode")) << place;
+      EXPECT_THAT(distrust(inner), HasSubstr("chmod go-w")) << place;
+      EXPECT_EQ(distrust(inner, ModuleLoader::Opens::Whichever), "it was loaded") << place;
+      fs::permissions(place, writers, fs::perm_options::remove);
+    }
+  }
+  if (::geteuid() != 0) return;  // nobody else gives files away
+  constexpr uid_t kStranger = 54321;
+  for (const fs::path& place : {file, inner}) {
+    ASSERT_EQ(::chown(place.c_str(), kStranger, 0), 0);
+    EXPECT_THAT(distrust(inner), HasSubstr(place.string() + " belongs to 54321")) << place;
+    ASSERT_EQ(::chown(place.c_str(), 0, 0), 0);
+  }
+  EXPECT_EQ(distrust(inner), "it was loaded");
+}
+
+TEST_F(ModuleFolder, TakesNoLinkThatLeadsOutOfTheFolders) {
+  const fs::path shared = folder_ / "shared", mechanism = folder_ / "mechanism";
+  fs::create_directories(shared);
+  fs::create_directories(mechanism);
+  fs::copy_file(kModules / "good" / "TestKinematics3.so", shared / "TestKinematics3.so");
+  fs::create_symlink(shared / "TestKinematics3.so", mechanism / "TestKinematics3.so");
+  EXPECT_THAT(distrust(mechanism), HasSubstr("it is a link to " + fs::canonical(shared).string()));
+  const auto made = ModuleLoader({mechanism, shared}).load<Kinematics>({"TestKinematics3", {}, {}});
+  EXPECT_TRUE(made) << made.error().message;
+}
+
 TEST_F(ModuleFolder, LeavesNoCopyBehind) {
   ::setenv("TMPDIR", folder_.c_str(), 1);
   const auto made = ModuleLoader({kModules / "good"}).load<ServoLaw>({"TestLaw", {}, {}});
