@@ -58,16 +58,22 @@ struct Planner::Impl {
   [[nodiscard]] double now_s(const PublishedPlan& p, std::int64_t cycle) const {
     return static_cast<double>(cycle - p.plan->start_cycle) * period();
   }
+  /// A refused plan never acts; it is the base until it is collected.
+  [[nodiscard]] bool refused(const ServoProgress& progress) const {
+    return base() != nullptr && progress.last_refused == base()->plan->id;
+  }
   [[nodiscard]] bool acknowledged(const ServoProgress& progress) const {
-    return base() == nullptr || progress.accepted_plan >= base()->plan->id || progress.last_refused == base()->plan->id;
+    return base() == nullptr || progress.accepted_plan >= base()->plan->id || refused(progress);
   }
   [[nodiscard]] bool ended(const ServoProgress& progress) const {
-    return base() == nullptr || (acknowledged(progress) && now_s(*base(), progress.cycle) >= base()->plan->end_time_s);
+    if (base() == nullptr) return true;
+    return acknowledged(progress) && !refused(progress) && now_s(*base(), progress.cycle) >= base()->plan->end_time_s;
   }
-  /// Where on it everything ends that is published.
+  /// The base is a plan on the path that is travelled, not one on the path before the last turn.
+  [[nodiscard]] bool on_path() const { return base() != nullptr && base()->turns == route.turns(); }
+  /// Where on the path that is travelled everything ends that is published.
   [[nodiscard]] double base_end_s() const {
-    if (route.turned_to()) return *route.turned_to();
-    return base() == nullptr ? path().begin() : base()->end_s();
+    return on_path() ? base()->end_s() : route.turned_to().value_or(path().begin());
   }
   /// The place on `forward` where the machine stands at rest, or is to go on.
   [[nodiscard]] double place_s() const { return route.on_forward(base_end_s()); }
@@ -79,7 +85,6 @@ struct Planner::Impl {
         std::erase_if(*plans, [&](const PublishedPlan& p) { return p.plan.get() == plan; });
       }
     }
-    // A refused plan never acted: `alive` ends again with the plan that is followed.
     planning_time.learn(progress);
   }
 
@@ -105,7 +110,7 @@ struct Planner::Impl {
     PublishedPlan p;
     p.stops = stops;
     p.hard_end = end.hard;
-    p.on_detour = route.on_detour();
+    p.turns = route.turns();
     p.override_factor = factor;
     p.commit_t = commit_time(*plan, window_begin, end.planned_again);
     p.law = plan->law;
@@ -113,7 +118,6 @@ struct Planner::Impl {
     if (!channel.published.push(p.plan.get()))
       return false;  // the servo loop does not take plans: it stands still or is gone
     ++next_id;
-    route.planned();
     alive.push_back(std::move(p));
     if (stops) channel.stopping.store(alive.back().plan->id, std::memory_order_release);
     return true;
@@ -220,7 +224,7 @@ struct Planner::Impl {
   /// The machine has come to path length s.
   void travelled(double s) {
     path().travelled(s, base()->law.front().start.s);
-    if (route.on_detour() || route.turned_to() || s < kFarthest_mm) return;
+    if (route.on_detour() || s < kFarthest_mm) return;
     const double by = std::floor(s);
     route.forward.move_origin(by);
     for (PublishedPlan& p : alive) p.move_origin(by);
@@ -277,13 +281,10 @@ struct Planner::Impl {
 
   bool step(const ServoProgress& progress) {
     take_note_of(progress);
+    if (refused(progress)) stop_came_late = base()->stops;
     collect(progress);
-    if (base() != nullptr && acknowledged(progress) && progress.last_refused == base()->plan->id) {
-      stop_came_late = base()->stops;
-      return false;  // comes back through `retired`
-    }
-    if (base() != nullptr && acknowledged(progress) && base()->on_detour == route.on_detour())
-      travelled(base()->state_at(now_s(*base(), progress.cycle)).s);
+    if (refused(progress)) return false;  // it is still to come back through `retired`
+    if (on_path() && acknowledged(progress)) travelled(base()->state_at(now_s(*base(), progress.cycle)).s);
     const Task next = task(progress);
     if (next != Task::None && next != Task::Supply && next != Task::Turn) {
       planning_time.begin(progress.cycle, next == Task::Stop && !stop_came_late);

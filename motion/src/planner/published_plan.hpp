@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -13,7 +14,7 @@ struct PublishedPlan {
   std::vector<LawPiece> law;  ///< the plan's, by the path length of today, whose origin may have moved since
   bool stops = false;         ///< made to stop: the path goes on behind its end, but motion does not
   bool hard_end = false;      ///< it ends where the path demands rest
-  bool on_detour = false;     ///< its path length is the detour's
+  std::uint64_t turns = 0;    ///< of the route, when it was made
   double override_factor = 1;
   double commit_t = 0;  ///< up to here a following window keeps it
 

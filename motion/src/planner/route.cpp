@@ -15,7 +15,7 @@ double Route::on_forward(double s) const noexcept {
 
 void Route::take(Detour detour) {
   detour_ = std::move(detour);
-  turned_to_ = detour_->path.begin();
+  turn_to(detour_->path.begin());
 }
 
 Expected<double> Route::turn_back(double s, double distance, const WayBack& way) {
@@ -57,7 +57,7 @@ Expected<PathSegments> Route::away(const WayBack& way) const {
 }
 
 void Route::turn_forward(double s) {
-  turned_to_ = on_forward(s);
+  turn_to(on_forward(s));
   detour_.reset();
 }
 
@@ -66,7 +66,7 @@ void Route::clear(double s) {
   detour_.reset();
   beside_ = false;
   forward.clear(place);
-  turned_to_ = place;
+  turn_to(place);
 }
 
 void Route::leave(double s) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,9 +29,11 @@ class Route {
   [[nodiscard]] double on_forward(double s) const noexcept;
   /// The joints rest, or brake, beside the path, which was left at `turned_to`.
   [[nodiscard]] bool beside() const noexcept { return beside_; }
-  /// After a turn to another path, until a plan is published on it: where on it the machine stands, or was left.
+  /// Where on the path that was last turned to the machine stood then, or had left it; nothing before the first turn.
   [[nodiscard]] const std::optional<double>& turned_to() const noexcept { return turned_to_; }
-  void planned() noexcept { turned_to_.reset(); }
+  /// How often it turned to another path. Path lengths are one path's: those of plans from before the last turn say
+  /// nothing about the one that is travelled.
+  [[nodiscard]] std::uint64_t turns() const noexcept { return turns_; }
 
   /// The joints left the path at `s` of it, in motion.
   void leave(double s);
@@ -65,9 +68,14 @@ class Route {
   /// What leads from where the path was left to `way.from`; nothing where the joints are there.
   [[nodiscard]] Expected<PathSegments> away(const WayBack& way) const;
   void take(Detour detour);
+  void turn_to(double s) noexcept {
+    turned_to_ = s;
+    ++turns_;
+  }
 
   std::optional<Detour> detour_;
   std::optional<double> turned_to_;
+  std::uint64_t turns_ = 0;
   bool beside_ = false;
 };
 
