@@ -40,7 +40,11 @@ void Watch::note(const char* call, std::initializer_list<Argument> arguments) no
   place_.steps.fetch_add(1, std::memory_order_release);
 }
 
-void Watch::keep_misdeed() noexcept {
+void Watch::keep(const char* check, std::string what) noexcept {
+  if (!what.empty()) misdeed_ = example_at(place_, check, std::move(what));
+}
+
+void Watch::keep_trapped() noexcept {
   const TrapCounts counts = take_trap_counts();
   std::string what = "on the cycle it ";
   const char* join = "";
@@ -53,7 +57,7 @@ void Watch::keep_misdeed() noexcept {
   add(counts.locks, "locks");
   add(counts.system_calls, "calls the system");
   if (const std::string line = line_of_module(counts.first); !line.empty()) what += ", first from " + line;
-  misdeed_ = example_at(place_, "real time", std::move(what));
+  keep("real time", std::move(what));
 }
 
 Checked Watch::misdeed() const {

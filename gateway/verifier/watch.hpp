@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "gateway/verification/checks/check.hpp"
+#include "gateway/verifier/call_times.hpp"
+#include "gateway/verifier/guarded_output.hpp"
 #include "gateway/verifier/trap.hpp"
 
 namespace rmac::verifier {
@@ -50,7 +52,17 @@ class Watch {
     return function();
   }
 
-  /// The first call of the cycle that allocated, locked or called the system, and how.
+  /// A call of a port that has no state: `function` is given an output in place of `output`, and may be called again.
+  template <typename Function>
+  auto stateless(const char* call, std::initializer_list<Argument> arguments, std::span<double> output,
+                 Function&& function) noexcept {
+    const std::span<double> lent = output_.lend(output);
+    const Judged judged(*this, call, output, [&] { (void)function(lent); });
+    return on_cycle(call, arguments, [&] { return function(lent); });
+  }
+
+  /// What is wrong with the calls so far: the first that allocated, locked, called the system, wrote beyond its output,
+  /// or took too long.
   [[nodiscard]] Checked misdeed() const;
 
  private:
@@ -63,15 +75,46 @@ class Watch {
     Armed& operator=(const Armed&) = delete;
     ~Armed() {
       disarm_trap();
-      if (trap_caught()) watch.keep_misdeed();
+      if (trap_caught()) watch.keep_trapped();
     }
     Watch& watch;
   };
 
+  /// Looks at a call of a port without state once it is done.
+  template <typename Again>
+  struct Judged {
+    Judged(Watch& owner, const char* name, std::span<double> result, Again call_again)
+        : watch(owner), call(name), output(result), again(call_again) {}
+    Judged(const Judged&) = delete;
+    Judged& operator=(const Judged&) = delete;
+    ~Judged() {
+      const auto took = std::chrono::steady_clock::now() - begun;
+      watch.output_.give_back(output);
+      if (watch.misdeed_) return;
+      if (watch.output_.overrun()) {
+        watch.keep("overrun", "it writes outside of its output");
+      } else {
+        watch.keep("call time", watch.times_.judge(call, took, [this] {
+          watch.place_.steps.fetch_add(1, std::memory_order_release);
+          again();
+        }));
+      }
+    }
+    Watch& watch;
+    const char* call;
+    std::span<double> output;
+    Again again;
+    std::chrono::steady_clock::time_point begun = std::chrono::steady_clock::now();
+  };
+
   void note(const char* call, std::initializer_list<Argument> arguments) noexcept;
-  void keep_misdeed() noexcept;
+  void keep_trapped() noexcept;
+  /// A misdeed of the call at hand, unless there is nothing to say.
+  void keep(const char* check, std::string what) noexcept;
 
   Place& place_;
+  GuardedOutput output_;
+  CallTimes times_;
   std::optional<CounterExample> misdeed_;
 };
 

@@ -20,25 +20,25 @@ class WatchedKinematics final : public Kinematics {
   std::size_t joint_count() const noexcept override { return kinematics_->joint_count(); }
   JointType joint_type(std::size_t joint) const noexcept override { return kinematics_->joint_type(joint); }
   void forward(std::span<const double> joints, const Frame& tool, ToolPose& pose) const noexcept override {
-    watch_.on_cycle("forward", {{"joints", joints}, {"tool", numbers(tool)}},
-                    [&] { kinematics_->forward(joints, tool, pose); });
+    watch_.stateless("forward", {{"joints", joints}, {"tool", numbers(tool)}}, {},
+                     [&](std::span<double>) { kinematics_->forward(joints, tool, pose); });
   }
   KinematicsStatus inverse(const ToolPose& pose, const Frame& tool, std::span<const double> seed,
                            std::span<double> joints) const noexcept override {
-    return watch_.on_cycle("inverse", {{"pose", numbers(pose)}, {"tool", numbers(tool)}, {"seed", seed}},
-                           [&] { return kinematics_->inverse(pose, tool, seed, joints); });
+    return watch_.stateless("inverse", {{"pose", numbers(pose)}, {"tool", numbers(tool)}, {"seed", seed}}, joints,
+                            [&](std::span<double> out) { return kinematics_->inverse(pose, tool, seed, out); });
   }
   void jacobian(std::span<const double> joints, const Frame& tool, std::span<double> jacobian) const noexcept override {
-    watch_.on_cycle("jacobian", {{"joints", joints}, {"tool", numbers(tool)}},
-                    [&] { kinematics_->jacobian(joints, tool, jacobian); });
+    watch_.stateless("jacobian", {{"joints", joints}, {"tool", numbers(tool)}}, jacobian,
+                     [&](std::span<double> out) { kinematics_->jacobian(joints, tool, out); });
   }
   bool pole(Vector& axis) const noexcept override {
-    return watch_.on_cycle("pole", {}, [&] { return kinematics_->pole(axis); });
+    return watch_.stateless("pole", {}, {}, [&](std::span<double>) { return kinematics_->pole(axis); });
   }
   std::size_t solutions(const ToolPose& pose, const Frame& tool, std::span<const double> seed,
                         std::span<double> joints) const noexcept override {
-    return watch_.on_cycle("solutions", {{"pose", numbers(pose)}, {"tool", numbers(tool)}, {"seed", seed}},
-                           [&] { return kinematics_->solutions(pose, tool, seed, joints); });
+    return watch_.stateless("solutions", {{"pose", numbers(pose)}, {"tool", numbers(tool)}, {"seed", seed}}, joints,
+                            [&](std::span<double> out) { return kinematics_->solutions(pose, tool, seed, out); });
   }
   bool constant_jacobian() const noexcept override { return kinematics_->constant_jacobian(); }
 
@@ -60,20 +60,23 @@ class WatchedActuatorMap final : public ActuatorMap {
   std::size_t joint_count() const noexcept override { return map_->joint_count(); }
   std::size_t actuator_count() const noexcept override { return map_->actuator_count(); }
   void actuator_positions(std::span<const double> joints, std::span<double> actuators) const noexcept override {
-    watch_.on_cycle("actuator_positions", {{"joints", joints}}, [&] { map_->actuator_positions(joints, actuators); });
+    watch_.stateless("actuator_positions", {{"joints", joints}}, actuators,
+                     [&](std::span<double> out) { map_->actuator_positions(joints, out); });
   }
   void joint_positions(std::span<const double> actuators, std::span<double> joints) const noexcept override {
-    watch_.on_cycle("joint_positions", {{"actuators", actuators}}, [&] { map_->joint_positions(actuators, joints); });
+    watch_.stateless("joint_positions", {{"actuators", actuators}}, joints,
+                     [&](std::span<double> out) { map_->joint_positions(actuators, out); });
   }
   void joint_velocities(std::span<const double> actuators, std::span<const double> actuator_velocities,
                         std::span<double> joint_velocities) const noexcept override {
-    watch_.on_cycle("joint_velocities", {{"actuators", actuators}, {"velocities", actuator_velocities}},
-                    [&] { map_->joint_velocities(actuators, actuator_velocities, joint_velocities); });
+    watch_.stateless("joint_velocities", {{"actuators", actuators}, {"velocities", actuator_velocities}},
+                     joint_velocities,
+                     [&](std::span<double> out) { map_->joint_velocities(actuators, actuator_velocities, out); });
   }
   void actuator_efforts(std::span<const double> joints, std::span<const double> joint_efforts,
                         std::span<double> actuator_efforts) const noexcept override {
-    watch_.on_cycle("actuator_efforts", {{"joints", joints}, {"efforts", joint_efforts}},
-                    [&] { map_->actuator_efforts(joints, joint_efforts, actuator_efforts); });
+    watch_.stateless("actuator_efforts", {{"joints", joints}, {"efforts", joint_efforts}}, actuator_efforts,
+                     [&](std::span<double> out) { map_->actuator_efforts(joints, joint_efforts, out); });
   }
 
  private:

@@ -125,6 +125,27 @@ void check_module(const Task& task, const sdk::ModuleChoice& choice, Watch& watc
   take(check_unmapped(), "it is gone once it is closed", report, tell);
 }
 
+Misdeed misdeed_of(const Watch& watch) {
+  return [&watch] { return watch.misdeed(); };
+}
+
+constexpr const char* kRealTime = "on the cycle it neither allocates nor locks nor calls the system";
+
+/// How the calls of a port without state were made, none of which was found wanting.
+bool take_conduct(const Watch& watch, ModuleReport& report, const Tell& tell) {
+  if (!take(watch.misdeed(), kRealTime, report, tell)) return false;
+  report.passed.emplace_back("it writes nothing beside its outputs");
+  const std::string times = fmt::format("a call takes {} us of CPU time in the median at most, {} us at worst",
+                                        CallTimes::kMedian.count(), CallTimes::kWorst.count());
+  if (CallTimes::kMeasured) {
+    report.passed.push_back(times);
+  } else {
+    report.not_checked.push_back(times + ": this is a sanitizer's build");
+  }
+  tell();
+  return true;
+}
+
 JointRange range_of(const JointLimits& limits) {
   constexpr double kRound = 720;
   const double least = ends_below(limits) ? limits.min : (ends_above(limits) ? limits.max - kRound : -kRound);
@@ -141,7 +162,7 @@ void check_kinematics_module(const Task& task, Watch& watch, ModuleReport& repor
   const sdk::DeviceObject& device = task.device;
   const auto check = [&](const std::shared_ptr<Kinematics>& kinematics) {
     const WatchedKinematics watched(kinematics, watch);
-    KinematicsCase given{{}, tools(), task.samples, task.seed};
+    KinematicsCase given{{}, tools(), task.samples, task.seed, misdeed_of(watch)};
     for (const sdk::Joint& joint : device.joints) given.ranges.push_back(range_of(joint.limits));
     Checked types;
     for (std::size_t j = 0; types && j < std::min(device.joints.size(), kinematics->joint_count()); ++j) {
@@ -152,15 +173,12 @@ void check_kinematics_module(const Task& task, Watch& watch, ModuleReport& repor
                     -1, {});
     }
     if (!take(types, "joints are of the types in device.json", report, tell)) return false;
-    const Checked geometry = check_kinematics(watched, given);
-    // A misdeed that is noted goes before what it led to.
-    const Checked real_time = geometry ? watch.misdeed() : Checked();
-    return take(geometry,
+    return take(check_kinematics(watched, given),
                 fmt::format("forward, inverse, Jacobian and solutions agree at {} joint vectors, corners, ends and "
                             "poles among them",
                             task.samples),
                 report, tell) &&
-           take(real_time, "on the cycle it neither allocates nor locks nor calls the system", report, tell);
+           take_conduct(watch, report, tell);
   };
   check_module<Kinematics>(task, device.kinematics, watch, report, tell, {}, check);
 }
@@ -169,17 +187,16 @@ void check_map_module(const Task& task, Watch& watch, ModuleReport& report, cons
   const sdk::DeviceObject& device = task.device;
   const auto check = [&](const std::shared_ptr<ActuatorMap>& map) {
     const WatchedActuatorMap watched(map, watch);
-    ActuatorMapCase given{{}, device.actuators.size(), task.samples, task.seed};
+    ActuatorMapCase given{{}, device.actuators.size(), task.samples, task.seed, misdeed_of(watch)};
     for (std::size_t j = 0; j < device.joint_count_with_held(); ++j) {
       const JointLimits& limits = sdk::joint_at(device, j).limits;
       const JointRange range = range_of(limits);
       given.joints.push_back({range.min, range.max, limits.type == JointType::Rotary ? std::numbers::pi / 180 : 1e-3});
     }
-    const Checked mapped = check_actuator_map(watched, given);
-    const Checked real_time = mapped ? watch.misdeed() : Checked();
-    return take(mapped, fmt::format("positions come back and power is conserved at {} joint vectors", task.samples),
-                report, tell) &&
-           take(real_time, "on the cycle it neither allocates nor locks nor calls the system", report, tell);
+    return take(check_actuator_map(watched, given),
+                fmt::format("positions come back and power is conserved at {} joint vectors", task.samples), report,
+                tell) &&
+           take_conduct(watch, report, tell);
   };
   check_module<ActuatorMap>(task, device.actuator_map, watch, report, tell, {}, check);
 }
@@ -195,7 +212,7 @@ void check_law_module(const Task& task, const sdk::ModuleChoice& choice, const s
     const Checked kept = check_servo_law(watched, given);
     const Checked real_time = kept ? watch.misdeed() : Checked();
     return take(kept, "its output is bounded and does not jump, and no number in gives none out", report, tell) &&
-           take(real_time, "on the cycle it neither allocates nor locks nor calls the system", report, tell);
+           take(real_time, kRealTime, report, tell);
   };
   const auto use = [&](void* object) { (void)static_cast<ServoLaw*>(object)->set_gains(gains); };
   check_module<ServoLaw>(task, choice, watch, report, tell, use, check);

@@ -29,7 +29,7 @@ class ActuatorMapCheck {
       auto fine = check_inverse().and_then([&] { return check_velocities_and_power(); }).and_then([&] {
         return check_efforts();
       });
-      if (!fine) return fine;
+      if (fine = misdeed_or(given_.misdeed, std::move(fine)); !fine) return fine;
     }
     return {};
   }

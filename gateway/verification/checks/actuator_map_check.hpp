@@ -18,6 +18,7 @@ struct ActuatorMapCase {
   std::size_t actuators = 0;  ///< 0: any
   int samples = 100'000;
   std::uint64_t seed = 1;
+  Misdeed misdeed{};
 };
 
 /// What every actuator map must keep, over seeded random joints within their travel: positions go there and back, shaft

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <tl/expected.hpp>
@@ -25,6 +26,17 @@ struct CounterExample {
 
 /// Nothing, or the first counter-example that was found.
 using Checked = tl::expected<void, CounterExample>;
+
+/// What else is wrong with the calls that a check made, where somebody watches them: asked after each sample. It goes
+/// before what it led to.
+using Misdeed = std::function<Checked()>;
+
+/// Of one sample: its misdeed, or else what was found.
+[[nodiscard]] inline Checked misdeed_or(const Misdeed& misdeed, Checked checked) {
+  if (!misdeed) return checked;
+  if (auto proper = misdeed(); !proper) return proper;
+  return checked;
+}
 
 [[nodiscard]] inline NamedNumbers named(std::string name, std::span<const double> numbers) {
   return {std::move(name), {numbers.begin(), numbers.end()}};

@@ -92,7 +92,9 @@ class KinematicsCheck {
     return result;
   }
 
-  Checked at(const Joints& joints) {
+  Checked at(const Joints& joints) { return misdeed_or(given_.misdeed, holds_at(joints)); }
+
+  Checked holds_at(const Joints& joints) {
     joints_ = joints;
     tool_ = given_.tools[static_cast<std::size_t>(sample_) % given_.tools.size()];
     kinematics_.forward(joints_, tool_, pose_);

@@ -17,6 +17,7 @@ struct KinematicsCase {
   std::vector<Frame> tools = {Frame{}};  ///< that the machine can carry
   int samples = 100'000;
   std::uint64_t seed = 1;
+  Misdeed misdeed{};
 };
 
 /// What every kinematics must keep, at the corners of the joints' travel, at its ends, with rotary joints at quarter

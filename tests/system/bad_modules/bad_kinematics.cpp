@@ -35,7 +35,10 @@ enum class Defect {
   HasAnotherAbi,
   StaysMapped,
   EatsMemory,
-  HangsWhenTold
+  HangsWhenTold,
+  IsSlow,
+  IsSlowInASlab,
+  OverrunsJacobian
 };
 constexpr Defect kDefect = Defect::DEFECT;
 /// Where on the first joint's travel the defect shows.
@@ -71,6 +74,15 @@ bool lies_as_told(const Frame& tool) {
   return tool.p[2] == kLyingTool_mm && number_of_caller() == 2 && ++answers > kTrueAnswers;
 }
 
+/// A turn takes a nanosecond or two.
+void compute(int turns) noexcept {
+  volatile double sum = 0;
+  for (int i = 0; i < turns; ++i) {
+    const double before = sum;
+    sum = before + 1;
+  }
+}
+
 /// Not at zero, where a sanitizer would have its say.
 [[gnu::noinline]] void crash() {
   volatile std::uintptr_t nothing_there = 64;
@@ -101,6 +113,11 @@ class BadKinematics final : public Kinematics {
   KinematicsStatus inverse(const ToolPose& pose, const Frame& tool, std::span<const double>,
                            std::span<double> joints) const noexcept override {
     if (kDefect == Defect::HangsWhenTold) hang_if_told(tool);
+    if (kDefect == Defect::IsSlow) compute(25'000);
+    constexpr double kSlab_mm = 0.1;
+    if (kDefect == Defect::IsSlowInASlab && std::abs(pose.tip[0] - kFrom_mm) < kSlab_mm) {
+      compute(1'000'000);
+    }
     const ToolPose at_zero = tool_at_zero(tool);
     for (std::size_t i = 0; i < 3; ++i) joints[i] = pose.tip[i] - at_zero.tip[i];
     if (kDefect == Defect::HangsWhenTold && lies_as_told(tool)) joints[1] += 5;
@@ -115,6 +132,7 @@ class BadKinematics final : public Kinematics {
   void jacobian(std::span<const double> joints, const Frame&, std::span<double> jacobian) const noexcept override {
     std::fill(jacobian.begin(), jacobian.end(), 0.0);
     for (std::size_t i = 0; i < 3; ++i) jacobian[i * 3 + i] = 1;
+    if (kDefect == Defect::OverrunsJacobian) jacobian.data()[jacobian.size()] = 0;
     if (kDefect == Defect::LiesAboutJacobian && joints[0] > kFrom_mm) jacobian[1] = 1e-3;
   }
 
