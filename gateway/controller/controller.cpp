@@ -14,6 +14,7 @@
 #include "gateway/rmac_cam/cam.hpp"
 #include "gateway/rmac_cam/measuring/measuring_machine.hpp"
 #include "gateway/rmac_config/config_draft.hpp"
+#include "gateway/rmac_config/verified_bounds.hpp"
 #include "gateway/servo/servo_thread.hpp"
 
 namespace rmac::gateway {
@@ -84,6 +85,7 @@ struct Controller::Impl {
   ClientInterfaces interfaces;
   Reconfiguration reconfiguration;
   MechanismSource source;  ///< where the mechanism about to be configured comes from
+  std::shared_ptr<const sdk::DeviceObject> verified;
   bool running = false;
 };
 
@@ -115,6 +117,9 @@ Controller::Impl::Impl(ControllerOptions controller_options)
 Expected<> Controller::Impl::apply(const sdk::DeviceObject& device, ConfigDraft::Extent extent) {
   if (!running) {
     return failure(MinorCode::Other, "putting in a configuration: the controller is not running; start it");
+  }
+  if (verified) {
+    if (auto within = check_within_verified(device, *verified); !within) return within;
   }
   if (extent == ConfigDraft::Extent::Loops) return reconfiguration.change_loops(device, source);
   return reconfiguration.put_in(device, source, extent == ConfigDraft::Extent::Mechanism);
@@ -181,7 +186,9 @@ ToolPort& Controller::tools() noexcept {
   return impl_->cam.tools();
 }
 
-void Controller::set_mechanism_folder(std::string folder, bool virtual_mode) {
+void Controller::set_mechanism_folder(std::string folder, bool virtual_mode,
+                                      std::shared_ptr<const sdk::DeviceObject> verified) {
+  impl_->verified = std::move(verified);
   impl_->source = {std::move(folder), virtual_mode || impl_->options.stepped};
 }
 

@@ -99,8 +99,10 @@ class Controller {
   [[nodiscard]] sdk::Measuring& measuring() noexcept;
 
   /// Modules of the mechanism about to be configured are looked for here first. Virtual: setpoints are reflected as
-  /// joint values.
-  void set_mechanism_folder(std::string folder, bool virtual_mode);
+  /// joint values. What is put in force from then on is no more than `verified` (`check_within_verified`); null: it may
+  /// be anything, as where there is no verifier.
+  void set_mechanism_folder(std::string folder, bool virtual_mode,
+                            std::shared_ptr<const sdk::DeviceObject> verified = nullptr);
   [[nodiscard]] const std::string& mechanism_folder() const noexcept;
   [[nodiscard]] bool virtual_mode() const noexcept;
   /// A module of a device driver, found as the mechanism's other modules are.

@@ -67,6 +67,12 @@ struct DeviceHost::Impl {
   Expected<Loaded*> require_loaded();
   Expected<> load(const std::string& what, const std::filesystem::path& device_json, bool virtual_mode);
   Expected<Loaded> configure_anew(const std::filesystem::path& device_json, const std::optional<Base>& base_before);
+  /// Nothing beyond what was verified is put in force, where there is a verifier.
+  void hold_to(const sdk::DeviceObject& verified) const {
+    if (verification == nullptr) return;
+    controller.set_mechanism_folder(controller.mechanism_folder(), controller.virtual_mode(),
+                                    std::make_shared<const sdk::DeviceObject>(verified));
+  }
   Expected<> require_verified(const std::filesystem::path& device_json) const;
   /// Why `what` is not loaded, and what is instead.
   tl::unexpected<Error> not_loaded(const std::string& what, const Error& why) const;
@@ -104,6 +110,7 @@ Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(const std::f
     driver = load_driver(under->device.device_driver);
     if (!driver) return tl::unexpected(driver.error());
   }
+  hold_to(*device);
   sdk::RmacConfig& config = controller.config();
   auto done = config.begin(*device)
                   .and_then([&] { return driver->object->configure_motion_planner(*device, config); })
@@ -164,6 +171,7 @@ Expected<> DeviceHost::Impl::load(const std::string& what, const std::filesystem
     controller.set_mechanism_folder(folder_before, virtual_before);
     controller.discard_draft();
     if (controller.mechanism() == nullptr) loaded.reset();
+    if (loaded) hold_to(loaded->database);
     return not_loaded(what, made.error());
   }
   loaded = std::move(*made);

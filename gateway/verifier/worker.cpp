@@ -11,6 +11,7 @@
 #include "gateway/buses/bus_registry.hpp"
 #include "gateway/mechanism/device_check.hpp"
 #include "gateway/rmac_config/config_draft.hpp"
+#include "gateway/rmac_config/verified_bounds.hpp"
 #include "gateway/verification/checks/actuator_map_check.hpp"
 #include "gateway/verification/checks/kinematics_check.hpp"
 #include "gateway/verification/checks/servo_law_check.hpp"
@@ -230,7 +231,8 @@ void check_driver_module(const Task& task, Watch& watch, ModuleReport& report, c
                           .and_then([&] { return driver->configure_motion_planner(task.device, draft); })
                           .and_then([&] { return driver->configure_servo_controller(task.device, draft); })
                           .and_then([&] { return driver->configure_digital_control_interface(task.device, draft); })
-                          .and_then([&] { return draft.apply(); });
+                          .and_then([&] { return draft.apply(); })
+                          .and_then([&] { return gateway::check_within_verified(draft.draft(), task.device); });
     return take(done ? Checked() : Checked(refused("configuring", done.error())),
                 "what it configures of device.json is a whole mechanism", report, tell);
   };

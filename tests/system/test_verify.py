@@ -87,6 +87,18 @@ class Verify(unittest.TestCase):
         operator.call("RMAC_CAM.MoveAlongLine", **line((2, 0, 3), (0, 0, 0)))
         self.assertAlmostEqual(run_to_rest(operator)["joints"][2], 0, delta=0.02)
 
+    def test_limits_stay_within_what_was_verified(self):
+        operator = self.appliance.operator("DMACXYZ")
+
+        def apply(limit):
+            operator.call("RMAC_Config.SetMechanismJointMaximumLimit", JntNum=0, MaxJntLimit=limit)
+            return operator.refusal("RMAC_Config.Apply") if limit > 50 else operator.call("RMAC_Config.Apply")
+        apply(20)
+        message = apply(250).message
+        for word in ("joint X", "250", "verified", "Device.Verify"):
+            self.assertIn(word, message)
+        apply(50)
+
     def test_report_holds_the_counter_example_as_numbers(self):
         operator = self.appliance.operator("DMACXYZ")
         self.choose("Kinematics", "BadKinematics", "LiesAboutInverse")

@@ -1,10 +1,12 @@
 #include "gateway/device_driver/device_host.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 
 #include "places.hpp"
@@ -87,6 +89,84 @@ TEST_F(Host, HasTheDriverOfTheMachineConfigureItUnderAnOverlayToo) {
   (*host_->wanted())->joints[0].limits.max_speed = 60;
   ASSERT_TRUE(host_->configure_motion_planner());
   EXPECT_EQ(controller_->mechanism()->joints[0].limits.max_speed, 30);
+}
+
+/// A host whose verifier passes everything, at once.
+class VerifiedHost : public Host {
+ protected:
+  void SetUp() override {
+    Host::SetUp();
+    const fs::path program = folder_ / "verifier";
+    std::ofstream(program) << "#!/bin/sh\n"
+                              R"(echo '{"mechanism": "", "file": "", "samples": 1, "seed": 1, "modules": []}')"
+                              "\n";
+    fs::permissions(program, fs::perms::owner_all);
+    verification_ = std::make_unique<Verification>(Verification::Options{program, {}, {}, std::chrono::seconds(60)});
+    host_ = std::make_unique<DeviceHost>(*manager_, *controller_, verification_.get());
+    ASSERT_TRUE(host_->load("DMACXYZ", false));
+  }
+  sdk::RmacConfig& config() { return controller_->config(); }
+
+  std::unique_ptr<Verification> verification_;
+};
+
+// Red when what was verified is not what runs: wider travel took an arm past its own length.
+TEST_F(VerifiedHost, PutsNothingInThatIsMoreThanWasVerified) {
+  const JointLimits verified = controller_->mechanism()->joints[1].limits;
+  const std::vector<std::function<Expected<>()>> more{
+      [&] { return config().joints().set_maximum_limit(1, verified.max + 0.1); },
+      [&] { return config().joints().set_minimum_limit(1, verified.min - 0.1); },
+      [&] { return config().joints().set_limit_type(1, JointLimitType::InfinitePositive); },
+      [&] { return config().joints().set_maximum_speed(1, verified.max_speed * 1.01); },
+      [&] { return config().joints().set_maximum_acceleration(1, verified.max_acceleration * 1.01); },
+      [&] { return config().joints().set_maximum_jerk(1, verified.max_jerk * 1.01); },
+      [&] {
+        return config().mechanism().set_kinematics({"ChainKinematics", {{"offset", {1}}}, {}});
+      },
+      [&] {
+        return config().mechanism().set_actuator_map({"TransmissionMap", {{"t1", {1, 2}}}, {}});
+      }};
+  for (std::size_t i = 0; i < more.size(); ++i) {
+    ASSERT_TRUE(more[i]()) << i;
+    const auto done = config().apply();
+    ASSERT_FALSE(done) << i;
+    EXPECT_THAT(done.error().message, HasSubstr("Device.Verify")) << i;
+    controller_->discard_draft();
+  }
+  EXPECT_EQ(controller_->mechanism()->joints[1].limits.max, verified.max);
+  EXPECT_EQ(controller_->mechanism()->joints[1].limits.max_speed, verified.max_speed);
+}
+
+TEST_F(VerifiedHost, TellsWhatWasVerifiedAndHowToHaveMore) {
+  const JointLimits verified = controller_->mechanism()->joints[1].limits;
+  ASSERT_TRUE(config().joints().set_maximum_limit(1, 250));
+  EXPECT_EQ(config().apply().error().message,
+            fmt::format("joint {}: the maximum limit 250 is beyond {}, which was verified. DMACXYZ was verified as its "
+                        "device.json has it: change that file, have it verified (Device.Verify) and load it anew "
+                        "(Device.Load)",
+                        verified.name, verified.max));
+}
+
+TEST_F(VerifiedHost, GoesBackToWhatWasVerifiedAfterLess) {
+  const JointLimits verified = controller_->mechanism()->joints[1].limits;
+  for (const double max : {verified.max / 2, verified.max}) {
+    ASSERT_TRUE(config().joints().set_maximum_limit(1, max));
+    const auto done = config().apply();
+    ASSERT_TRUE(done) << done.error().message;
+    EXPECT_EQ(controller_->mechanism()->joints[1].limits.max, max);
+  }
+}
+
+TEST_F(VerifiedHost, HoldsWhatStaysLoadedToItsOwnVerification) {
+  replace_in_device_json("SuginoXYZ", "\"Module\": \"ChainKinematics\"", "\"Module\": \"LostKinematics\"");
+  ASSERT_FALSE(host_->load("SuginoXYZ", false));
+  const double verified = controller_->mechanism()->joints[1].limits.max;
+  ASSERT_TRUE(config().joints().set_maximum_limit(1, verified + 1));
+  EXPECT_FALSE(config().apply());
+  controller_->discard_draft();
+  ASSERT_TRUE(config().joints().set_maximum_limit(1, verified));
+  const auto done = config().apply();
+  EXPECT_TRUE(done) << done.error().message;
 }
 
 // Red when an overlay moves as fast as the machine below may, or as it may itself.
