@@ -54,6 +54,7 @@ struct Method {
   std::optional<Harmless> harmless;
   bool property = false;  ///< reads without `newVal`; with it writes, gives true, and needs authority
   bool slow = false;      ///< may take so long that others' stops must not wait for it
+  bool apart = false;     ///< slow, and needs nothing of the machine: nobody waits for it but its client
   Handler preparation;  ///< of a slow method: what comes before the handler and touches nothing that moves; may be none
   Handler handler;
 };

@@ -206,6 +206,11 @@ class MethodBuilder {
     method_.slow = true;
     return std::move(*this);
   }
+  /// Slow too, but it touches nothing of the machine, only what belongs to its connection.
+  MethodBuilder runs_apart() && {
+    method_.apart = true;
+    return std::move(*this).may_be_slow();
+  }
   /// Does the part of it that takes long and touches nothing that moves, before the machine is its own. An error ends
   /// the call.
   template <typename Function>

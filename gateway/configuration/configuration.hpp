@@ -71,6 +71,7 @@ struct DefaultFolders {
   std::filesystem::path runtime_folder;  ///< holds the UNIX socket
   std::filesystem::path helpers;         ///< programs that ours start
   std::filesystem::path verifier;        ///< the one of them that checks modules
+  std::filesystem::path searcher;        ///< the one of them that runs clients' SQL
 };
 
 /// A daemon in a build tree uses that tree; an installed one the folders of its installation, and under systemd the

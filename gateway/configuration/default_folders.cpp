@@ -28,12 +28,14 @@ DefaultFolders default_folders() {
     folders.runtime_folder = folders.state_folder;
     folders.helpers = build_folder / "helpers";
     folders.verifier = build_folder / "bin" / "rmac-verify";
+    folders.searcher = build_folder / "bin" / "rmac-search";
   } else {
     folders.device_tree = (program_folder / RMAC_DRIVERS_FROM_SBIN).lexically_normal();
     folders.state_folder = RMAC_STATE_FOLDER;
     folders.runtime_folder = "/run/rmac";
     folders.helpers = (program_folder / RMAC_HELPERS_FROM_SBIN).lexically_normal();
     folders.verifier = folders.helpers / "rmac-verify";
+    folders.searcher = folders.helpers / "rmac-search";
   }
   folders.state_folder = from_environment("STATE_DIRECTORY", folders.state_folder);
   folders.runtime_folder = from_environment("RUNTIME_DIRECTORY", folders.runtime_folder);

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "gateway/device_driver_manager/device_tree.hpp"
+#include "gateway/device_driver_manager/driver_search.hpp"
 #include "gateway/device_driver_manager/driver_table.hpp"
-#include "gateway/device_driver_manager/guarded_search.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -159,7 +159,7 @@ Expected<std::vector<DriverRecord>> DeviceDriverManager::all() const {
 }
 
 Expected<std::vector<DriverRecord>> DeviceDriverManager::search(const std::string& sql) const {
-  const Expected<std::vector<std::int64_t>> numbers = search_mechanisms(impl_->options.database, sql);
+  const Expected<std::vector<std::int64_t>> numbers = search_mechanisms(impl_->options, sql);
   if (!numbers) return tl::make_unexpected(numbers.error());
   const Expected<std::vector<DriverRecord>> records = all();
   if (!records) return tl::make_unexpected(records.error());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -29,12 +30,14 @@ struct DriverRecord {
 class DriverRecordSet;
 
 /// The device driver manager (dissertation 4.2): scans the device tree into the device driver database and answers
-/// searches. Gateway thread only.
+/// searches. Gateway thread, except for `all` and `search`, which any thread may call.
 class DeviceDriverManager {
  public:
   struct Options {
-    std::filesystem::path device_tree;  ///< holds <type>/<configuration>/<Mechanism>/device.json
-    std::string database;               ///< path of the SQLite file, or a "postgresql://…" connection
+    std::filesystem::path device_tree;            ///< holds <type>/<configuration>/<Mechanism>/device.json
+    std::string database;                         ///< path of the SQLite file, or a "postgresql://…" connection
+    std::filesystem::path searcher{};             ///< the program rmac-search; without it nobody may search
+    std::chrono::milliseconds search_limit{200};  ///< CPU time that a search may take
   };
   struct ScanProblem {
     std::filesystem::path file;
@@ -49,8 +52,8 @@ class DeviceDriverManager {
   [[nodiscard]] Expected<int> rescan();
   [[nodiscard]] const std::vector<ScanProblem>& problems() const noexcept;
   [[nodiscard]] Expected<std::vector<DriverRecord>> all() const;
-  /// Rows that a client's own SQL selects: read-only, one statement, the DeviceDrivers table alone, bounded in time and
-  /// size.
+  /// Rows that a client's own SQL selects: one statement that reads the DeviceDrivers table alone, bounded in time and
+  /// size. Blocks; a program of its own runs it, and is killed at the limit.
   [[nodiscard]] Expected<std::vector<DriverRecord>> search(const std::string& sql) const;
   /// The folder of a mechanism, or an error that lists the names there are.
   [[nodiscard]] Expected<std::filesystem::path> folder_of(const std::string& mechanism) const;

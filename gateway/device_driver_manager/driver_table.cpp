@@ -5,6 +5,7 @@
 #include <soci/sqlite3/soci-sqlite3.h>
 
 #include <filesystem>
+#include <mutex>
 #include <system_error>
 
 namespace rmac::gateway {
@@ -53,6 +54,7 @@ DriverRecord record_from(const soci::row& row) {
 
 struct DriverTable::Impl {
   std::string file;
+  std::mutex mutex;  ///< of the session: searches come from a thread of their own
   soci::session session;
 
   void prepare() {
@@ -65,6 +67,13 @@ struct DriverTable::Impl {
     session << kMakeNumbers;
     session << fmt::format("PRAGMA user_version = {}", kLayout);
     transaction.commit();
+  }
+
+  [[nodiscard]] std::vector<DriverRecord> rows() {
+    std::vector<DriverRecord> records;
+    const soci::rowset<soci::row> found = session.prepare << kSelect;
+    for (const soci::row& row : found) records.push_back(record_from(row));
+    return records;
   }
 
   void insert(const DriverRecord& record) {
@@ -105,6 +114,7 @@ Expected<std::unique_ptr<DriverTable>> DriverTable::open(const std::string& file
 }
 
 Expected<std::map<std::string, std::int64_t>> DriverTable::numbers() {
+  const std::lock_guard hold(impl_->mutex);
   try {
     std::map<std::string, std::int64_t> numbers;
     std::string name;
@@ -120,9 +130,10 @@ Expected<std::map<std::string, std::int64_t>> DriverTable::numbers() {
 }
 
 Expected<> DriverTable::replace(const std::vector<DriverRecord>& records) {
-  // A scan that finds nothing new shall not wear the appliance's flash.
-  if (const auto rows = all(); rows && *rows == records) return {};
+  const std::lock_guard hold(impl_->mutex);
   try {
+    // A scan that finds nothing new shall not wear the appliance's flash.
+    if (impl_->rows() == records) return {};
     soci::transaction transaction(impl_->session);
     impl_->session << "DELETE FROM DeviceDrivers";
     for (const DriverRecord& record : records) impl_->insert(record);
@@ -134,11 +145,9 @@ Expected<> DriverTable::replace(const std::vector<DriverRecord>& records) {
 }
 
 Expected<std::vector<DriverRecord>> DriverTable::all() {
+  const std::lock_guard hold(impl_->mutex);
   try {
-    std::vector<DriverRecord> records;
-    const soci::rowset<soci::row> rows = impl_->session.prepare << kSelect;
-    for (const soci::row& row : rows) records.push_back(record_from(row));
-    return records;
+    return impl_->rows();
   } catch (const std::exception& error) {
     return impl_->failed(error);
   }

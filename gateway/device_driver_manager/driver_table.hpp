@@ -10,7 +10,7 @@
 namespace rmac::gateway {
 
 /// The device driver database on disk: the table DeviceDrivers (Table 4-1), and beside it which number a name was
-/// given, so that a mechanism that leaves the tree and comes back is the same one to its clients.
+/// given, so that a mechanism that leaves the tree and comes back is the same one to its clients. Any thread.
 class DriverTable {
  public:
   /// Opens the SQLite file, or makes it with its folder.

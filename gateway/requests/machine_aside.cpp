@@ -8,7 +8,11 @@ MachineAside::MachineAside(asio::io_context& io, Dispatcher& dispatcher, std::fu
     : io_(io), dispatcher_(dispatcher), on_back_(std::move(on_back)) {}
 
 void MachineAside::run(std::function<void()> work, std::function<void()> done) {
-  asio::post(thread_, [this, work = std::move(work), done = std::move(done)]() mutable {
+  run_on(thread_, std::move(work), std::move(done));
+}
+
+void MachineAside::run_on(asio::thread_pool& thread, std::function<void()> work, std::function<void()> done) {
+  asio::post(thread, [this, work = std::move(work), done = std::move(done)]() mutable {
     work();
     work = nullptr;
     asio::post(io_, std::move(done));
@@ -52,9 +56,28 @@ void MachineAside::carry_out(const Request& request, SessionPort& session, std::
       [answer, done = std::move(done)] { return done(std::move(*answer)); });
 }
 
+void MachineAside::carry_out_apart(const Request& request, SessionPort& session, std::function<void(Answer)> done) {
+  struct Outcome {
+    Answer answer;
+    MachineStatus status;
+  };
+  auto outcome = std::make_shared<Outcome>();
+  run_on(
+      apart_,
+      [this, &request, &session, outcome] {
+        outcome->answer = dispatcher_.carry_out(request, session, outcome->status);
+      },
+      [this, outcome, done = std::move(done)] {
+        if (outcome->status.major != 0) dispatcher_.status().fail(static_cast<MinorCode>(outcome->status.minor));
+        done(std::move(outcome->answer));
+      });
+}
+
 void MachineAside::stop() {
-  thread_.stop();
-  thread_.join();
+  for (asio::thread_pool* thread : {&thread_, &apart_}) {
+    thread->stop();
+    thread->join();
+  }
 }
 
 }  // namespace rmac::gateway

@@ -89,6 +89,15 @@ bool RequestQueue::carry_out(const Line& line) {
 }
 
 void RequestQueue::carry_out_aside(const Line& line, const Request& request) {
+  if (request.method->apart) {
+    line->set_stage(RequestLine::Stage::Away);
+    aside_.carry_out_apart(request, client_.session(), [this, held = client_.hold(), line](Answer answer) {
+      line->set_stage(RequestLine::Stage::Here);
+      (void)settle(*line, std::move(answer));  // it is no move: its answer is final
+      client_.pump();
+    });
+    return;
+  }
   const bool prepared = line->stage() == RequestLine::Stage::Prepared;
   line->set_stage(RequestLine::Stage::Away);
   if (request.method->preparation && !prepared) {

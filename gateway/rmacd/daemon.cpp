@@ -303,7 +303,9 @@ Expected<> run_daemon(const Configuration& configuration) {
   }
   const auto lock = StateLock::take(configuration.state_folder);
   if (!lock) return tl::unexpected(lock.error());
-  auto manager = DeviceDriverManager::open({configuration.device_tree, configuration.database});
+  auto manager = DeviceDriverManager::open({.device_tree = configuration.device_tree,
+                                            .database = configuration.database,
+                                            .searcher = default_folders().searcher});
   if (!manager) return tl::unexpected<Error>(std::move(manager.error()));
   return clock_for(configuration).and_then([&](std::shared_ptr<Clock> clock) {
     return Daemon(std::move(*manager), configuration, std::move(clock), server_options(configuration))

@@ -115,7 +115,9 @@ Expected<std::unique_ptr<Simulation>> Simulation::open(const Options& options, c
                    fmt::format("no folder for the device driver database can be made in {}: {}",
                                fs::temp_directory_path().string(), std::generic_category().message(errno)));
   }
-  auto manager = DeviceDriverManager::open({options.device_tree, (folder->path() / "drivers.sqlite").string()});
+  auto manager = DeviceDriverManager::open({.device_tree = options.device_tree,
+                                            .database = (folder->path() / "drivers.sqlite").string(),
+                                            .searcher = options.searcher});
   if (!manager) return tl::unexpected(manager.error());
   std::vector<fs::path> module_folders;
   if (is_path(machine)) {

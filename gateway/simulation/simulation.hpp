@@ -16,6 +16,7 @@ class Simulation {
  public:
   struct Options {
     std::filesystem::path device_tree;     ///< holds <type>/<configuration>/<Mechanism>/device.json
+    std::filesystem::path searcher{};      ///< the program rmac-search; without it there are no searches
     std::filesystem::path tools_folder{};  ///< tool tables, only read; empty: none
     double period_s = 0.001;
     std::size_t queue_capacity = 10'000;  ///< moves

@@ -11,7 +11,7 @@
 
 #include "gateway/device_database/device_database.hpp"
 #include "gateway/modules/module_loader.hpp"
-#include "gateway/verification/child_process.hpp"
+#include "gateway/processes/child_process.hpp"
 #include "rmac/sdk/servo_law_names.hpp"
 
 namespace rmac::gateway {

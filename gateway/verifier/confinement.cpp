@@ -2,20 +2,17 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <linux/capability.h>
 #include <sched.h>
 #include <signal.h>
 #include <sys/mount.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 
+#include "gateway/processes/rights.hpp"
 #include "gateway/verifier/system_call_filter.hpp"
 
 namespace rmac::verifier {
@@ -69,34 +66,6 @@ std::optional<std::string> close_file_system(const Bounds& bounds) {
   return {};
 }
 
-void limit(__rlimit_resource resource, rlim_t most) noexcept {
-  const rlimit wanted{most, most};
-  (void)setrlimit(resource, &wanted);
-}
-
-void limit_resources(const Bounds& bounds) noexcept {
-  constexpr rlim_t kFiles = 64, kFileBytes = rlim_t{256} << 20U;
-  limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_NOFILE, kFiles);
-  limit(RLIMIT_FSIZE, kFileBytes);
-  limit(RLIMIT_RTPRIO, 0);
-  limit(RLIMIT_CPU, static_cast<rlim_t>(bounds.cpu_s));
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  limit(RLIMIT_AS, bounds.memory_bytes);
-#endif
-  constexpr int kNice = 5;
-  (void)setpriority(PRIO_PROCESS, 0, kNice);
-}
-
-std::optional<std::string> drop_capabilities() {
-  (void)prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
-  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
-  std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> none{};
-  if (syscall(SYS_capset, &header, none.data()) != 0) return refused("giving up its capabilities");
-  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return refused("giving up the right to gain privileges");
-  return {};
-}
-
 /// The first process of a namespace is not ended by signals that it leaves to the system, those that it sends to itself
 /// among them.
 void end_when_aborted() noexcept {
@@ -116,13 +85,11 @@ pid_t fork_apart() noexcept {
 }
 
 std::optional<std::string> confine(const Bounds& bounds, std::atomic<int>& forbidden) {
-  (void)prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (setsid() < 0) return refused("leaving its process group, which signals reach across namespaces");
   end_when_aborted();
   if (auto problem = keep_identity()) return problem;
   if (auto problem = close_file_system(bounds)) return problem;
-  limit_resources(bounds);
-  if (auto problem = drop_capabilities()) return problem;
+  if (auto problem = gateway::give_up_rights(bounds.cpu_s, bounds.memory_bytes)) return problem;
   return filter_system_calls(forbidden);
 }
 

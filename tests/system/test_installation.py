@@ -33,6 +33,7 @@ class Installation(unittest.TestCase):
         self.one("usr/sbin/rmacd")
         self.one("usr/bin/rmac")
         self.one("usr/libexec/rmac/rmac-verify")
+        self.one("usr/libexec/rmac/rmac-search")
         self.one("usr/bin/rmac-vdrive")
         self.one("usr/bin/rmac-vmodbus")
         self.one("usr/share/rmac/rmac-vdrive.eds")

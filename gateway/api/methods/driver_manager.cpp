@@ -56,9 +56,10 @@ void add_driver_manager_methods(std::vector<Method>& table) {
   add(method("DeviceDriverManager.SearchDatabaseRecordSet",
              "Replaces the record set by the mechanisms that a SELECT on the table DeviceDrivers finds; gives their "
              "number.")
-          .takes(text("MachineSQLStatement").noted("one read-only SELECT that yields MechanismID (or *)"))
+          .takes(
+              text("MachineSQLStatement").noted("one read-only SELECT that yields MechanismID (or *), within 200 ms"))
           .gives(WireType::Integer)
-          .may_be_slow()
+          .runs_apart()
           .does([](Call& call, const std::string& sql) { return call.session.records().search(sql); }));
   add(method("DeviceDriverManager.GetDatabaseRecordSetColumns",
              "Checks that the record set has a current row; the getters below read it.")

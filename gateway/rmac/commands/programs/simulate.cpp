@@ -116,8 +116,11 @@ Result<> simulate_program(const Options& options, bool json) {
   }
   spdlog::set_level(spdlog::level::off);  // what is wrong with other machines of the tree is not asked here
   const auto tree = options.device_tree.empty() ? gateway::default_folders().device_tree : options.device_tree;
-  auto simulation = gateway::Simulation::open(
-      {.device_tree = tree, .tools_folder = options.tools, .period_s = options.period_s}, options.machine);
+  auto simulation = gateway::Simulation::open({.device_tree = tree,
+                                               .searcher = gateway::default_folders().searcher,
+                                               .tools_folder = options.tools,
+                                               .period_s = options.period_s},
+                                              options.machine);
   if (!simulation) return fail(simulation.error().message);
   const StandstillWatch watch((*simulation)->controller());
   const auto report = Simulator(**simulation, *program, options.record_file).run();

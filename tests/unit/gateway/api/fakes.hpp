@@ -232,6 +232,7 @@ inline sdk::DeviceObject two_joint_device() {
 class FakeDevice : public DevicePort {
  public:
   Expected<nlohmann::json> verify(const std::string& name) override {
+    if (during_verification) during_verification();
     return nlohmann::json{{"mechanism", name}, {"ok", true}};
   }
   Expected<> ready_to_load(const std::string& /*name*/) override {
@@ -272,7 +273,7 @@ class FakeDevice : public DevicePort {
   bool is_virtual = false;
   std::string unload_refusal;        ///< why it cannot be taken out; empty: it can
   std::string verification_refusal;  ///< empty: what is loaded passes
-  std::function<void()> during_preparation, during_load;
+  std::function<void()> during_verification, during_preparation, during_load;
 };
 
 class MockTools : public ToolPort {

@@ -24,7 +24,9 @@ class DeviceDriverManagerTest : public testing::Test {
     return manager ? std::move(*manager) : nullptr;
   }
   [[nodiscard]] DeviceDriverManager::Options options() const {
-    return {folder_.path() / "tree", (folder_.path() / "state/drivers.sqlite").string()};
+    return {.device_tree = folder_.path() / "tree",
+            .database = (folder_.path() / "state/drivers.sqlite").string(),
+            .searcher = test::kSearcher};
   }
   static std::vector<std::pair<std::int64_t, std::string>> numbers(const DeviceDriverManager& manager) {
     std::vector<std::pair<std::int64_t, std::string>> found;
@@ -198,7 +200,8 @@ TEST_F(DeviceDriverManagerTest, AFailedRescanLeavesTheOldListAlone) {
 TEST_F(DeviceDriverManagerTest, KeepsItsFileWhateverTheFoldersName) {
   write_tree(folder_, {sound_device("A")});
   const auto file = folder_.path() / "a folder; with=signs & 'quotes'" / "drivers.sqlite";
-  const auto manager = DeviceDriverManager::open({folder_.path() / "tree", file.string()});
+  const auto manager = DeviceDriverManager::open(
+      {.device_tree = folder_.path() / "tree", .database = file.string(), .searcher = test::kSearcher});
   ASSERT_TRUE(manager) << manager.error().message;
   EXPECT_TRUE(std::filesystem::exists(file));
   EXPECT_EQ((*manager)->search("SELECT * FROM DeviceDrivers").value().size(), 1U);

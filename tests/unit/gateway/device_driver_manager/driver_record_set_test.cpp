@@ -13,7 +13,9 @@ class DriverRecordSetTest : public testing::Test {
  protected:
   DriverRecordSetTest() {
     write_tree(folder_, test::table_4_1());
-    auto opened = DeviceDriverManager::open({folder_.path() / "tree", (folder_.path() / "drivers.sqlite").string()});
+    auto opened = DeviceDriverManager::open({.device_tree = folder_.path() / "tree",
+                                             .database = (folder_.path() / "drivers.sqlite").string(),
+                                             .searcher = test::kSearcher});
     if (!opened) throw std::runtime_error(opened.error().message);
     manager_ = std::move(*opened);
   }

@@ -8,7 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "places.hpp"
+
 namespace rmac::test {
+
+inline const std::filesystem::path kSearcher = std::filesystem::path(RMAC_BINARY_DIR) / "bin/rmac-search";
 
 /// A folder of its own for one test, gone with it.
 class TemporaryFolder {

@@ -19,7 +19,8 @@ class Search : public testing::Test {
  protected:
   Search() {
     write_tree(folder_, test::table_4_1());
-    auto opened = DeviceDriverManager::open({folder_.path() / "tree", database().string()});
+    auto opened = DeviceDriverManager::open(
+        {.device_tree = folder_.path() / "tree", .database = database().string(), .searcher = test::kSearcher});
     if (!opened) throw std::runtime_error(opened.error().message);
     manager_ = std::move(*opened);
   }
@@ -113,6 +114,13 @@ std::string doubling_tables(int count) {
   return sql + " SELECT * FROM t" + std::to_string(count);
 }
 
+/// A table whose text `n` is the column, doubled `times` over.
+std::string doubled(const std::string& column, int times) {
+  std::string table = "(SELECT " + column + " n FROM DeviceDrivers LIMIT 9)";
+  for (int i = 0; i < times; ++i) table = "(SELECT n||n n FROM " + table + " LIMIT 9)";
+  return table;
+}
+
 std::string selecting(const std::string& expression) {
   return "SELECT MechanismID, " + expression + " FROM DeviceDrivers";
 }
@@ -170,6 +178,8 @@ std::vector<Hostile> hostile_statements() {
       {"DoublingTablesBehindAComment", "/* ' */ -- '\n" + doubling_tables(40), "WITH"},
       {"DoublingTablesBehindATrickyText", all + " WHERE Name = 'a''b' OR Name IN (" + doubling_tables(40) + ")",
        "WITH"},
+      {"TrimOfLongTexts",
+       all + " a, " + doubled("Name", 9) + " x, " + doubled("Name", 9) + " y WHERE trim(x.n, y.n)='q'", ""},
       {"ZeroBlob", selecting("zeroblob(1000000000)"), "zeroblob"},
       {"RandomBlob", selecting("randomblob(1000000000)"), "randomblob"},
       {"Printf", selecting("printf('%.*c', 1000000000, 'x')"), "printf"},

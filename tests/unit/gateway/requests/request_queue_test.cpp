@@ -190,12 +190,23 @@ TEST(RequestQueue, WaitsWhileAnothersRequestHasTheMachine) {
   QueueBench bench;
   ListedClient other;
   RequestQueue others(other, bench.dispatcher, bench.aside, std::chrono::hours(1));
-  others.take(R"({"jsonrpc":"2.0","id":1,"method":"DeviceDriverManager.SearchDatabaseRecordSet","params":["x"]})", 0);
+  others.take(R"({"jsonrpc":"2.0","id":1,"method":"Device.Verify","params":["x"]})", 0);
   EXPECT_EQ(others.carry_out(), Progress::Waits);
   bench.take(1, "RMAC_CAM.Ok");
   EXPECT_EQ(bench.queue.carry_out(), Progress::Waits);
   bench.run_until_back();
   EXPECT_EQ(bench.queue.carry_out(), Progress::Done);
+}
+
+TEST(RequestQueue, DoesNotWaitWhileAnotherSearches) {
+  QueueBench bench;
+  ListedClient other;
+  RequestQueue others(other, bench.dispatcher, bench.aside, std::chrono::hours(1));
+  others.take(R"({"jsonrpc":"2.0","id":1,"method":"DeviceDriverManager.SearchDatabaseRecordSet","params":["x"]})", 0);
+  EXPECT_EQ(others.carry_out(), Progress::Waits);
+  bench.take(1, "RMAC_CAM.Ok");
+  EXPECT_EQ(bench.queue.carry_out(), Progress::Done);
+  bench.aside.stop();
 }
 
 TEST(RequestQueue, ReadsALongLineAsideAndKeepsItsPlace) {

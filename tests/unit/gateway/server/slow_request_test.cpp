@@ -41,6 +41,21 @@ struct Slow {
   }
 };
 
+TEST(SlowRequest, KeepsNobodyWaitingWhileItSearches) {
+  Slow slow;
+  ServerBench bench;
+  bench.on_gateway([&](Server&, FakeMachine& machine) { machine.during_search = [&] { slow.run(); }; });
+  Client searcher(bench.port());
+  Client operator_(bench.port());
+  searcher.send(line_of(1, "DeviceDriverManager.SearchDatabaseRecordSet", R"(["SELECT 1"])"));
+  slow.begun.get_future().wait();
+  EXPECT_TRUE(operator_.call("RMAC_CAM.GetState").contains("result"));
+  EXPECT_TRUE(operator_.call("authority.acquire").contains("result"));
+  EXPECT_EQ(operator_.call("Device.Load", R"(["Fake"])")["result"], true) << "slow requests of others, too";
+  slow.end.set_value();
+  EXPECT_EQ(searcher.json_line()["id"], 1);
+}
+
 TEST(SlowRequest, LetsAnotherClientStopDuringASearch) {
   Slow slow;
   ServerBench bench;
@@ -121,17 +136,17 @@ TEST(SlowRequest, LetsOthersInBeforeTheSameClientsNext) {
   // The first client (both orders) sends many; what another one sent meanwhile comes before its second.
   for (const bool first_connected : {true, false}) {
     SCOPED_TRACE(first_connected ? "the busy client connected first" : "the busy client connected last");
-    constexpr int kSearches = 5;
+    constexpr int kChecks = 5;
     Slow slow;
-    std::atomic<int> searches = 0;
+    std::atomic<int> checks = 0;
     std::atomic<int> before_the_other = 0;
     ServerBench bench;
     bench.on_gateway([&](Server&, FakeMachine& machine) {
-      machine.during_search = [&] {
-        if (searches++ == 0) slow.run();
+      machine.device_fake.during_verification = [&] {
+        if (checks++ == 0) slow.run();
       };
       EXPECT_CALL(machine.cam_mock.cycle_mock, started()).WillRepeatedly([&] {
-        before_the_other = searches.load();
+        before_the_other = checks.load();
         return false;
       });
     });
@@ -141,9 +156,10 @@ TEST(SlowRequest, LetsOthersInBeforeTheSameClientsNext) {
     EXPECT_TRUE(two.call("hello", R"({"client":"two"})").contains("result"));
     Client& busy = first_connected ? one : two;
     Client& other = first_connected ? two : one;
+    EXPECT_TRUE(busy.call("authority.acquire").contains("result"));
     std::string lines;
-    for (int i = 1; i <= kSearches; ++i) {
-      lines += line_of(i, "DeviceDriverManager.SearchDatabaseRecordSet", R"(["SELECT 1"])");
+    for (int i = 1; i <= kChecks; ++i) {
+      lines += line_of(i, "Device.Verify", R"(["Fake"])");
     }
     busy.send(lines);
     slow.begun.get_future().wait();
@@ -153,7 +169,7 @@ TEST(SlowRequest, LetsOthersInBeforeTheSameClientsNext) {
     EXPECT_TRUE(other.answer(31).contains("result"));
     slow.end.set_value();
     EXPECT_EQ(other.answer(30)["result"], false);
-    for (int i = 1; i <= kSearches; ++i) EXPECT_EQ(busy.json_line()["id"], i);
+    for (int i = 1; i <= kChecks; ++i) EXPECT_EQ(busy.json_line()["id"], i);
     EXPECT_EQ(before_the_other, 1);
   }
 }

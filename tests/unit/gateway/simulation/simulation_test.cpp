@@ -23,7 +23,8 @@ const fs::path kSourceTree = fs::path(RMAC_SOURCE_DIR) / "drivers";
 class Simulated : public testing::Test {
  protected:
   void load(const std::string& machine) {
-    auto opened = Simulation::open({.device_tree = kTree}, machine);
+    auto opened =
+        Simulation::open({.device_tree = kTree, .searcher = fs::path(RMAC_BINARY_DIR) / "bin/rmac-search"}, machine);
     ASSERT_TRUE(opened) << opened.error().message;
     simulation_ = std::move(*opened);
     simulation_->controller().on_sample([this](const CycleSample& sample) {

@@ -19,7 +19,7 @@ struct ChildOutcome {
 /// Runs a program to its end, with nothing of this process open in it; the first of `words` is its path. Killed, with
 /// what it started in its process group, when it takes longer than `patience`, or soon after `cancelled` is set.
 /// Blocks.
-[[nodiscard]] Expected<ChildOutcome> run_child(const std::vector<std::string>& words, std::chrono::seconds patience,
-                                               const std::atomic<bool>& cancelled);
+[[nodiscard]] Expected<ChildOutcome> run_child(const std::vector<std::string>& words,
+                                               std::chrono::milliseconds patience, const std::atomic<bool>& cancelled);
 
 }  // namespace rmac::gateway

@@ -1,4 +1,4 @@
-#include "gateway/verification/child_process.hpp"
+#include "gateway/processes/child_process.hpp"
 
 #include <gmock/gmock.h>
 

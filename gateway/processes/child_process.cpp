@@ -1,4 +1,4 @@
-#include "gateway/verification/child_process.hpp"
+#include "gateway/processes/child_process.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -106,7 +106,7 @@ bool read_all(Pipe& output, Pipe& complaint, ChildOutcome& outcome, Clock::time_
 
 }  // namespace
 
-Expected<ChildOutcome> run_child(const std::vector<std::string>& words, std::chrono::seconds patience,
+Expected<ChildOutcome> run_child(const std::vector<std::string>& words, std::chrono::milliseconds patience,
                                  const std::atomic<bool>& cancelled) {
   Pipe output, complaint;
   if (!output.made() || !complaint.made()) return cannot_run(words.front(), errno);
@@ -133,7 +133,7 @@ Expected<ChildOutcome> run_child(const std::vector<std::string>& words, std::chr
     return failure(MinorCode::ResponseTimeout,
                    cancelled
                        ? fmt::format("{} was killed: nobody waits for it any more", words.front())
-                       : fmt::format("{} was killed: it did not end within {} s", words.front(), patience.count()));
+                       : fmt::format("{} was killed: it did not end within {} ms", words.front(), patience.count()));
   }
   outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   return outcome;

@@ -1,0 +1,56 @@
+#include "gateway/processes/rights.hpp"
+
+#include <fmt/format.h>
+#include <linux/capability.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+namespace rmac::gateway {
+namespace {
+
+void limit(__rlimit_resource resource, rlim_t most) noexcept {
+  const rlimit wanted{most, most};
+  (void)setrlimit(resource, &wanted);
+}
+
+void limit_resources(double cpu_s, std::size_t memory_bytes) noexcept {
+  constexpr rlim_t kFiles = 64, kFileBytes = rlim_t{256} << 20U;
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_NOFILE, kFiles);
+  limit(RLIMIT_FSIZE, kFileBytes);
+  limit(RLIMIT_RTPRIO, 0);
+  limit(RLIMIT_CPU, static_cast<rlim_t>(cpu_s));
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  limit(RLIMIT_AS, memory_bytes);
+#else
+  (void)memory_bytes;
+#endif
+  constexpr int kNice = 5;
+  (void)setpriority(PRIO_PROCESS, 0, kNice);
+}
+
+}  // namespace
+
+std::optional<std::string> give_up_rights(double cpu_s, std::size_t memory_bytes) {
+  (void)prctl(PR_SET_PDEATHSIG, SIGKILL);
+  limit_resources(cpu_s, memory_bytes);
+  (void)prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
+  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+  std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> none{};
+  if (syscall(SYS_capset, &header, none.data()) != 0) {
+    return fmt::format("giving up its capabilities: {}", std::strerror(errno));
+  }
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) {
+    return fmt::format("giving up the right to gain privileges: {}", std::strerror(errno));
+  }
+  return {};
+}
+
+}  // namespace rmac::gateway
