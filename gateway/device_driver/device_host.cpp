@@ -145,8 +145,9 @@ Expected<> DeviceHost::ready_to_load(const std::string& name) const {
   const auto folder = impl_->manager.folder_of(name);
   if (!folder) return tl::unexpected(folder.error());
   auto verified = impl_->require_verified(*folder / "device.json");
-  if (!verified) return impl_->not_loaded(name, verified.error());
-  return {};
+  if (verified) return {};
+  return failure(verified.error().code,
+                 fmt::format("{} is not loaded: {} (what is loaded stays loaded)", name, verified.error().message));
 }
 
 Expected<> DeviceHost::load(const std::string& name, bool virtual_mode) {

@@ -12,17 +12,17 @@
 namespace rmac::gateway {
 
 /// Hosts the one device driver that is loaded (dissertation 4.3): reads its device database, loads its module, and lets
-/// it configure the controller. Gateway thread only.
+/// it configure the controller. Gateway thread, except for what any thread may call.
 class DeviceHost {
  public:
   /// `verification`: of what is to be loaded; null: there is none, as where nothing moves.
   DeviceHost(DeviceDriverManager& manager, Controller& controller, const Verification* verification = nullptr);
   ~DeviceHost();
 
-  /// The verifier's report on mechanism `name`, made anew. Does not touch the controller.
+  /// The verifier's report on mechanism `name`, made anew. Does not touch the controller. Any thread.
   [[nodiscard]] Expected<verifier::Report> verify(const std::string& name) const;
   /// Whether mechanism `name` passed its verification, or passes it now: the long half of `load`, which does not touch
-  /// the controller. `load` asks again.
+  /// the controller. `load` asks again. Any thread.
   [[nodiscard]] Expected<> ready_to_load(const std::string& name) const;
   /// Loads mechanism `name`: the driver configures planner, servo controller and interfaces into a draft, which is
   /// applied at standstill. On any failure the mechanism that was loaded stays loaded, and the error says what failed.

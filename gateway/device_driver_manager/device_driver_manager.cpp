@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <mutex>
 #include <set>
 
 #include "gateway/device_driver_manager/device_tree.hpp"
@@ -88,6 +89,7 @@ class Numbering {
 struct DeviceDriverManager::Impl {
   Options options;
   std::unique_ptr<DriverTable> table;
+  std::mutex mutex;  ///< of what the last scan found
   std::vector<ScanProblem> problems;
   std::map<std::string, std::filesystem::path> folders;
 
@@ -139,10 +141,11 @@ Expected<int> DeviceDriverManager::rescan() {
   if (const Expected<> replaced = impl_->table->replace(records); !replaced) {
     return tl::make_unexpected(replaced.error());
   }
-  impl_->problems = std::move(tree->problems);
-  for (const ScanProblem& problem : impl_->problems) {
+  for (const ScanProblem& problem : tree->problems) {
     spdlog::warn("left out of the device driver database: {}", problem.message);
   }
+  const std::lock_guard hold(impl_->mutex);
+  impl_->problems = std::move(tree->problems);
   impl_->folders.clear();
   for (const DeviceTree::Mechanism& mechanism : tree->mechanisms) {
     impl_->folders[mechanism.database.device.name] = mechanism.folder;
@@ -180,6 +183,7 @@ Expected<std::vector<DriverRecord>> DeviceDriverManager::search(const std::strin
 }
 
 Expected<std::filesystem::path> DeviceDriverManager::folder_of(const std::string& mechanism) const {
+  const std::lock_guard hold(impl_->mutex);
   if (const auto folder = impl_->folders.find(mechanism); folder != impl_->folders.end()) return folder->second;
   for (const ScanProblem& problem : problems()) {
     if (problem.file.parent_path().filename() == mechanism) {

@@ -30,7 +30,7 @@ struct DriverRecord {
 class DriverRecordSet;
 
 /// The device driver manager (dissertation 4.2): scans the device tree into the device driver database and answers
-/// searches. Gateway thread, except for `all` and `search`, which any thread may call.
+/// searches. Gateway thread, except for `all`, `search` and `folder_of`, which any thread may call.
 class DeviceDriverManager {
  public:
   struct Options {

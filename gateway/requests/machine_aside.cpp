@@ -33,17 +33,6 @@ void MachineAside::take_machine(std::uint64_t client, std::function<void(Machine
       });
 }
 
-void MachineAside::prepare(const Request& request, SessionPort& session, std::uint64_t client,
-                           std::function<bool(std::optional<Answer>)> done) {
-  auto failed = std::make_shared<std::optional<Answer>>();
-  take_machine(
-      client,
-      [this, &request, &session, failed](MachineStatus& status) {
-        *failed = dispatcher_.prepare(request, session, status);
-      },
-      [failed, done = std::move(done)] { return done(std::move(*failed)); });
-}
-
 void MachineAside::carry_out(const Request& request, SessionPort& session, std::uint64_t client,
                              std::function<bool(Answer)> done) {
   mechanism_changes_ = request.method->slow && request.effect() == Effect::Starts;
@@ -56,21 +45,29 @@ void MachineAside::carry_out(const Request& request, SessionPort& session, std::
       [answer, done = std::move(done)] { return done(std::move(*answer)); });
 }
 
-void MachineAside::carry_out_apart(const Request& request, SessionPort& session, std::function<void(Answer)> done) {
-  struct Outcome {
-    Answer answer;
-    MachineStatus status;
-  };
-  auto outcome = std::make_shared<Outcome>();
+void MachineAside::run_apart(std::function<void(MachineStatus&)> work, std::function<void()> done) {
+  auto status = std::make_shared<MachineStatus>();
   run_on(
-      apart_,
-      [this, &request, &session, outcome] {
-        outcome->answer = dispatcher_.carry_out(request, session, outcome->status);
-      },
-      [this, outcome, done = std::move(done)] {
-        if (outcome->status.major != 0) dispatcher_.status().fail(static_cast<MinorCode>(outcome->status.minor));
-        done(std::move(outcome->answer));
+      apart_, [work = std::move(work), status] { work(*status); },
+      [this, status, done = std::move(done)] {
+        if (status->major != 0) dispatcher_.status().fail(static_cast<MinorCode>(status->minor));
+        done();
       });
+}
+
+void MachineAside::carry_out_apart(const Request& request, SessionPort& session, std::function<void(Answer)> done) {
+  auto answer = std::make_shared<Answer>();
+  run_apart([this, &request, &session,
+             answer](MachineStatus& status) { *answer = dispatcher_.carry_out(request, session, status); },
+            [answer, done = std::move(done)] { done(std::move(*answer)); });
+}
+
+void MachineAside::prepare(const Request& request, SessionPort& session,
+                           std::function<void(std::optional<Answer>)> done) {
+  auto failed = std::make_shared<std::optional<Answer>>();
+  run_apart([this, &request, &session,
+             failed](MachineStatus& status) { *failed = dispatcher_.prepare(request, session, status); },
+            [failed, done = std::move(done)] { done(std::move(*failed)); });
 }
 
 void MachineAside::stop() {

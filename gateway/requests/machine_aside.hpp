@@ -9,10 +9,10 @@
 
 namespace rmac::gateway {
 
-/// The thread beside the gateway's: what would keep that one from the next stop for long runs there, one piece at a
-/// time. While a request has the machine there, the gateway carries out nothing but stops, so that the machine still
-/// has one user besides them. What needs nothing of the machine has another such thread, so that it holds up nobody.
-/// Everything is called on the gateway thread.
+/// The threads beside the gateway's: what would keep that one from the next stop for long runs there. One of them does
+/// what needs the machine, one piece at a time: meanwhile the gateway carries out nothing but stops, so that the
+/// machine still has one user besides them. What needs nothing of the machine runs apart, on others, and holds up
+/// nobody. Everything is called on the gateway thread.
 class MachineAside {
  public:
   /// `on_back` runs when a request gave the machine back, and whatever waits may go on.
@@ -23,11 +23,10 @@ class MachineAside {
   /// Carries a slow request of a client out. `done` tells whether the answer is final. Request and session must last
   /// until then.
   void carry_out(const Request& request, SessionPort& session, std::uint64_t client, std::function<bool(Answer)> done);
-  /// Carries out one that needs nothing of the machine, on a thread that these share: everything else goes on.
+  /// Carries out one that needs nothing of the machine, apart.
   void carry_out_apart(const Request& request, SessionPort& session, std::function<void(Answer)> done);
-  /// Likewise what it needs before it has the machine; `done` is told where that failed. Samples go on meanwhile.
-  void prepare(const Request& request, SessionPort& session, std::uint64_t client,
-               std::function<bool(std::optional<Answer>)> done);
+  /// Does, apart, what a request needs before it has the machine; `done` is told where that failed.
+  void prepare(const Request& request, SessionPort& session, std::function<void(std::optional<Answer>)> done);
 
   /// Whether a request has the machine.
   [[nodiscard]] bool is_away() const noexcept { return away_; }
@@ -41,13 +40,14 @@ class MachineAside {
 
  private:
   void run_on(asio::thread_pool& thread, std::function<void()> work, std::function<void()> done);
+  void run_apart(std::function<void(MachineStatus&)> work, std::function<void()> done);
   void take_machine(std::uint64_t client, std::function<void(MachineStatus&)> work, std::function<bool()> done);
 
   asio::io_context& io_;
   Dispatcher& dispatcher_;
   std::function<void()> on_back_;
   asio::thread_pool thread_{1};
-  asio::thread_pool apart_{1};
+  asio::thread_pool apart_{2};  ///< a verification, which takes authority, keeps one at most from searches
   bool away_ = false;
   bool mechanism_changes_ = false;
   std::uint64_t last_served_ = 0;

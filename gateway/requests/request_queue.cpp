@@ -102,11 +102,11 @@ void RequestQueue::carry_out_aside(const Line& line, const Request& request) {
   line->set_stage(RequestLine::Stage::Away);
   if (request.method->preparation && !prepared) {
     // Its turn comes again after it: a stop may have overtaken it by then, or the lease be gone.
-    aside_.prepare(request, client_.session(), client_.id(),
-                   [this, held = client_.hold(), line](std::optional<Answer> failed) {
-                     line->set_stage(failed ? RequestLine::Stage::Here : RequestLine::Stage::Prepared);
-                     return !failed || settle(*line, std::move(*failed));
-                   });
+    aside_.prepare(request, client_.session(), [this, held = client_.hold(), line](std::optional<Answer> failed) {
+      line->set_stage(failed ? RequestLine::Stage::Here : RequestLine::Stage::Prepared);
+      if (failed) (void)settle(*line, std::move(*failed));
+      client_.pump();
+    });
     return;
   }
   aside_.carry_out(request, client_.session(), client_.id(), [this, held = client_.hold(), line](Answer answer) {

@@ -19,8 +19,8 @@ class Connection;
 
 /// The sockets of the gateway: newline JSON-RPC over TCP and a UNIX socket. Everything runs on the thread of the
 /// io_context, except what would keep it from the next stop for long: reading a long line, decoding and building a
-/// large move, changing the mechanism. That runs on one thread beside it, one piece at a time; searches of the database
-/// on another one.
+/// large move, changing the mechanism, which run on one thread beside it, one piece at a time; and verifications and
+/// searches of the database, on others.
 class Server : private Peers {
  public:
   using MakeRecords = std::function<std::unique_ptr<RecordCursor>()>;

@@ -73,7 +73,7 @@ void keep(const fs::path& folder, const verifier::Report& report, const std::str
   std::error_code ignored;
   fs::create_directories(folder, ignored);
   const fs::path file = verdict_file(folder, report.mechanism, fingerprint);
-  const fs::path unfinished = folder / fmt::format(".{}-{}", report.mechanism, ::getpid());
+  const fs::path unfinished = folder / fmt::format(".{}-{}", report.mechanism, ::gettid());
   std::ofstream(unfinished) << verifier::to_json(report).dump(2) << '\n';
   fs::rename(unfinished, file, ignored);
   forget_old(folder, report.mechanism);

@@ -13,7 +13,7 @@
 namespace rmac::gateway {
 
 /// Has the verifier, a program of its own, check a mechanism's modules before they go live: a module that crashes does
-/// so there. What passed is remembered until its files change. Blocks while the verifier runs; one thread at a time.
+/// so there. What passed is remembered until its files change. Blocks while the verifier runs. Any thread.
 class Verification {
  public:
   struct Options {

@@ -64,7 +64,7 @@ void add_life_cycle(const auto& add) {
           .takes(text("Name"))
           .gives(WireType::Object)
           .needs(Permission::Authority)
-          .may_be_slow()
+          .runs_apart()
           .extension()
           .does([](Call& call, const std::string& name) { return call.machine.device().verify(name); }));
   add(method(

@@ -63,21 +63,15 @@ TEST(MachineAside, HasTheMachineAwayUntilTheAnswerIsThere) {
   EXPECT_EQ(bench.back, 1) << "whatever waits may go on";
 }
 
-TEST(MachineAside, LeavesTheMechanismReadableDuringASearchAndAPreparation) {
+TEST(MachineAside, LeavesTheMachineToOthersDuringAPreparation) {
   AsideBench bench;
-  const Request search = request_of("DeviceDriverManager.SearchDatabaseRecordSet", R"(["SELECT 1"])");
-  bool done = false;
-  bench.aside.carry_out(search, bench.session, 1, [&](const Answer&) { return done = true; });
-  EXPECT_FALSE(bench.aside.mechanism_changes());
-  bench.run_until(done);
   const Request load = request_of("Device.Load", R"(["Fake"])");
-  done = false;
-  bench.aside.prepare(load, bench.session, 1, [&](const std::optional<Answer>& failed) {
+  bool done = false;
+  bench.aside.prepare(load, bench.session, [&](const std::optional<Answer>& failed) {
     EXPECT_FALSE(failed);
-    return done = true;
+    done = true;
   });
-  EXPECT_TRUE(bench.aside.is_away());
-  EXPECT_FALSE(bench.aside.mechanism_changes());
+  EXPECT_FALSE(bench.aside.is_away()) << "others are served meanwhile";
   bench.run_until(done);
 }
 
@@ -86,9 +80,9 @@ TEST(MachineAside, TellsWhyAPreparationFailedAndKeepsTheMachinesError) {
   bench.machine.device_fake.verification_refusal = "its module crashes";
   const Request load = request_of("Device.Load", R"(["Fake"])");
   bool done = false;
-  bench.aside.prepare(load, bench.session, 1, [&](const std::optional<Answer>& failed) {
+  bench.aside.prepare(load, bench.session, [&](const std::optional<Answer>& failed) {
     EXPECT_TRUE(failed && failed->error().message == "its module crashes");
-    return done = true;
+    done = true;
   });
   bench.run_until(done);
   EXPECT_EQ(bench.dispatcher.status().minor, static_cast<int>(MinorCode::InvalidParameterValue));

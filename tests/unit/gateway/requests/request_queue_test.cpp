@@ -190,7 +190,7 @@ TEST(RequestQueue, WaitsWhileAnothersRequestHasTheMachine) {
   QueueBench bench;
   ListedClient other;
   RequestQueue others(other, bench.dispatcher, bench.aside, std::chrono::hours(1));
-  others.take(R"({"jsonrpc":"2.0","id":1,"method":"Device.Verify","params":["x"]})", 0);
+  others.take(R"({"jsonrpc":"2.0","id":1,"method":"Device.Machine_ConfigureMotionPlanner"})", 0);
   EXPECT_EQ(others.carry_out(), Progress::Waits);
   bench.take(1, "RMAC_CAM.Ok");
   EXPECT_EQ(bench.queue.carry_out(), Progress::Waits);

@@ -56,6 +56,26 @@ TEST(SlowRequest, KeepsNobodyWaitingWhileItSearches) {
   EXPECT_EQ(searcher.json_line()["id"], 1);
 }
 
+TEST(SlowRequest, KeepsNobodyWaitingWhileModulesAreVerified) {
+  for (const bool loads : {false, true}) {
+    SCOPED_TRACE(loads ? "before they are loaded" : "alone");
+    Slow slow;
+    ServerBench bench;
+    bench.on_gateway([&](Server&, FakeMachine& machine) {
+      (loads ? machine.device_fake.during_preparation : machine.device_fake.during_verification) = [&] { slow.run(); };
+    });
+    Client holder(bench.port());
+    Client panel(bench.port());
+    EXPECT_TRUE(holder.call("authority.acquire").contains("result"));
+    holder.send(line_of(1, loads ? "Device.Load" : "Device.Verify", R"(["Fake"])"));
+    slow.begun.get_future().wait();
+    EXPECT_TRUE(panel.call("RMAC_CAM.GetState").contains("result"));
+    EXPECT_EQ(panel.call("DeviceDriverManager.SearchDatabaseRecordSet", R"(["SELECT 1"])")["result"], 1);
+    slow.end.set_value();
+    EXPECT_TRUE(holder.answer(1).contains("result"));
+  }
+}
+
 TEST(SlowRequest, LetsAnotherClientStopDuringASearch) {
   Slow slow;
   ServerBench bench;
@@ -136,17 +156,17 @@ TEST(SlowRequest, LetsOthersInBeforeTheSameClientsNext) {
   // The first client (both orders) sends many; what another one sent meanwhile comes before its second.
   for (const bool first_connected : {true, false}) {
     SCOPED_TRACE(first_connected ? "the busy client connected first" : "the busy client connected last");
-    constexpr int kChecks = 5;
+    constexpr int kLoads = 5;
     Slow slow;
-    std::atomic<int> checks = 0;
+    std::atomic<int> loads = 0;
     std::atomic<int> before_the_other = 0;
     ServerBench bench;
     bench.on_gateway([&](Server&, FakeMachine& machine) {
-      machine.device_fake.during_verification = [&] {
-        if (checks++ == 0) slow.run();
+      machine.device_fake.during_load = [&] {
+        if (loads++ == 0) slow.run();
       };
       EXPECT_CALL(machine.cam_mock.cycle_mock, started()).WillRepeatedly([&] {
-        before_the_other = checks.load();
+        before_the_other = loads.load();
         return false;
       });
     });
@@ -158,8 +178,8 @@ TEST(SlowRequest, LetsOthersInBeforeTheSameClientsNext) {
     Client& other = first_connected ? two : one;
     EXPECT_TRUE(busy.call("authority.acquire").contains("result"));
     std::string lines;
-    for (int i = 1; i <= kChecks; ++i) {
-      lines += line_of(i, "Device.Verify", R"(["Fake"])");
+    for (int i = 1; i <= kLoads; ++i) {
+      lines += line_of(i, "Device.Load", R"(["Fake"])");
     }
     busy.send(lines);
     slow.begun.get_future().wait();
@@ -169,7 +189,7 @@ TEST(SlowRequest, LetsOthersInBeforeTheSameClientsNext) {
     EXPECT_TRUE(other.answer(31).contains("result"));
     slow.end.set_value();
     EXPECT_EQ(other.answer(30)["result"], false);
-    for (int i = 1; i <= kChecks; ++i) EXPECT_EQ(busy.json_line()["id"], i);
+    for (int i = 1; i <= kLoads; ++i) EXPECT_EQ(busy.json_line()["id"], i);
     EXPECT_EQ(before_the_other, 1);
   }
 }
