@@ -116,6 +116,11 @@ void RequestQueue::carry_out_aside(const Line& line, const Request& request) {
 }
 
 std::optional<Answer> RequestQueue::refusal_of(const RequestLine& line, const Request& request) const {
+  if (only_stops_ && request.method != nullptr && request.method->name != "hello") {
+    return refused(MinorCode::UnsupportedOperation,
+                   fmt::format("{} was not carried out: {}; from here the machine can be stopped, and nothing else",
+                               request.method->name, *only_stops_));
+  }
   if (const std::string* stop = stop_mark_.overtaker(request.effect(), line.next_position())) {
     return refused(MinorCode::Other,
                    fmt::format("{} was overtaken by a stop: {} came before it was carried out; send it again if it "

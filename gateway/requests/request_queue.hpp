@@ -27,6 +27,8 @@ class RequestQueue {
   /// `queue_wait` is how long a move waits for room.
   RequestQueue(Requester& client, Dispatcher& dispatcher, MachineAside& aside, std::chrono::milliseconds queue_wait);
 
+  /// From now on refuses all but stops, and the greeting, because of `why`.
+  void take_only_stops(std::string why) { only_stops_ = std::move(why); }
   /// Takes a line, which begins at `position` of the client's input: its stops are carried out at once.
   void take(std::string_view line, std::uint64_t position);
   /// Carries out what waits, as far as it goes.
@@ -60,6 +62,7 @@ class RequestQueue {
   std::deque<Line> lines_;
   std::size_t bytes_ = 0;
   StopMark stop_mark_;
+  std::optional<std::string> only_stops_;  ///< why nothing else is carried out, where it is not
 };
 
 }  // namespace rmac::gateway

@@ -35,17 +35,29 @@ bool is_json(std::string_view line) {
 
 }  // namespace
 
-Connection::Connection(const ConnectionContext& context, Socket socket, std::uint64_t id, std::string where)
+Connection::Connection(const ConnectionContext& context, Socket socket, Visitor visitor)
     : context_(context),
       socket_(std::move(socket)),
       topics_(context.options.cycle_hz, [&context](const CycleSample& sample) { return state_text(context, sample); }),
-      session_(context, id, std::move(where), topics_),
+      session_(context, visitor.id, std::move(visitor.where), topics_),
       requests_(*this, context.dispatcher, context.aside, context.options.queue_wait),
       lines_(context.options.line_limit_bytes),
       outbox_(std::chrono::steady_clock::now()),
+      peer_(std::move(visitor.peer)),
+      came_(std::chrono::steady_clock::now()),
       leaving_(socket_.get_executor()) {}
 
-void Connection::start() {
+Guest Connection::guest() const {
+  return {id(), peer_, spoke_, only_stops_};
+}
+
+bool Connection::overstays(std::chrono::steady_clock::time_point now) const noexcept {
+  return (!spoke_ || only_stops_) && phase_ == Phase::Open && now - came_ > context_.options.silence_limit;
+}
+
+void Connection::start(std::optional<std::string> only_stops) {
+  only_stops_ = only_stops.has_value();
+  if (only_stops) requests_.take_only_stops(*only_stops);
   asio::error_code ignored;  // a UNIX socket has no such option
   socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
   read();

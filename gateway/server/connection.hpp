@@ -9,6 +9,7 @@
 
 #include "gateway/requests/request_queue.hpp"
 #include "gateway/requests/requester.hpp"
+#include "gateway/server/admission.hpp"
 #include "gateway/server/connection_context.hpp"
 #include "gateway/server/line_reader.hpp"
 #include "gateway/server/outbox.hpp"
@@ -23,9 +24,16 @@ class Connection final : public Requester, public std::enable_shared_from_this<C
  public:
   using Socket = asio::generic::stream_protocol::socket;
 
-  Connection(const ConnectionContext& context, Socket socket, std::uint64_t id, std::string where);
+  /// Who came: `where` tells it from others that give no name, `peer` is the user or address it comes from.
+  struct Visitor {
+    std::uint64_t id = 0;
+    std::string where, peer;
+  };
 
-  void start();
+  Connection(const ConnectionContext& context, Socket socket, Visitor visitor);
+
+  /// `only_stops`: why it may do nothing but stop the machine, where it may not.
+  void start(std::optional<std::string> only_stops);
   /// Closes at once; nothing more is written.
   void abort();
   /// Closes once everything that was to be sent is sent, or some seconds have passed.
@@ -37,6 +45,9 @@ class Connection final : public Requester, public std::enable_shared_from_this<C
   void flush_topics();
 
   [[nodiscard]] std::string name() const { return session_.name(); }
+  [[nodiscard]] Guest guest() const;
+  /// Connected for longer than the limit without a request, or in a place for stops.
+  [[nodiscard]] bool overstays(std::chrono::steady_clock::time_point now) const noexcept;
   [[nodiscard]] bool watches_fast() const noexcept { return topics_.is_fast(); }
   /// Whether it has much to read.
   [[nodiscard]] bool behind() const noexcept;
@@ -85,7 +96,10 @@ class Connection final : public Requester, public std::enable_shared_from_this<C
   Phase phase_ = Phase::Open;
   std::array<char, 65536> buffer_{};
   bool reading_ = false;
-  bool spoke_ = false;            ///< its first line was JSON
+  std::string peer_;
+  std::chrono::steady_clock::time_point came_;
+  bool spoke_ = false;  ///< its first line was JSON
+  bool only_stops_ = false;
   std::uint64_t read_bytes_ = 0;  ///< of the input so far
   std::size_t discarded_ = 0;
   bool pump_posted_ = false;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 
 #include <utility>
@@ -13,6 +14,18 @@ namespace {
 template <typename... Arguments>
 tl::unexpected<Error> cannot(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   return failure(MinorCode::Other, fmt::format(format, std::forward<Arguments>(arguments)...));
+}
+
+std::string peer_of(const asio::ip::tcp::socket& socket) {
+  asio::error_code gone;
+  return socket.remote_endpoint(gone).address().to_string();
+}
+
+std::string peer_of(asio::local::stream_protocol::socket& socket) {
+  ucred who{};
+  socklen_t size = sizeof(who);
+  if (getsockopt(socket.native_handle(), SOL_SOCKET, SO_PEERCRED, &who, &size) != 0) return "somebody unknown";
+  return fmt::format("user {}", who.uid);
 }
 
 }  // namespace
@@ -67,7 +80,8 @@ void Listeners::accept(Acceptor& acceptor, const char* what) {
   acceptor.async_accept([this, &acceptor, what](asio::error_code problem, auto socket) {
     if (problem == asio::error::operation_aborted) return;
     if (!problem) {
-      welcome_(std::move(socket), what);
+      std::string peer = peer_of(socket);
+      welcome_(std::move(socket), what, std::move(peer));
     } else {
       spdlog::warn("accepting a client failed: {}", problem.message());
     }

@@ -14,8 +14,8 @@ namespace rmac::gateway {
 class Listeners {
  public:
   using Socket = asio::generic::stream_protocol::socket;
-  /// Told of each client, and through what it came.
-  using Welcome = std::function<void(Socket socket, const char* what)>;
+  /// Told of each client, through what it came, and from where: a user, or an address.
+  using Welcome = std::function<void(Socket socket, const char* what, std::string peer)>;
 
   Listeners(asio::io_context& io, Welcome welcome);
 

@@ -16,7 +16,8 @@ Server::Server(asio::io_context& io, MachinePort& machine, MakeRecords make_reco
       aside_(io, dispatcher_, [this] { pump(); }),
       lease_(dispatcher_, aside_, options_,
              [this](Event::Kind kind, std::string message) { announce(kind, std::move(message)); }),
-      listeners_(io, [this](Listeners::Socket socket, const char* what) { welcome(std::move(socket), what); }),
+      listeners_(io, [this](Listeners::Socket socket, const char* what,
+                            std::string peer) { welcome(std::move(socket), what, std::move(peer)); }),
       context_{dispatcher_, aside_, lease_, *this, options_, std::move(make_records)} {}
 
 Server::~Server() {
@@ -29,23 +30,24 @@ Expected<> Server::listen() {
   return listeners_.listen_on_unix(options_.unix_socket);
 }
 
-void Server::welcome(Listeners::Socket socket, const char* what) {
-  if (connections_.size() >= options_.connection_limit) {
-    const std::string why = fmt::format("{} clients are connected, which is the limit", connections_.size());
-    spdlog::warn("a client was turned away: {}", why);
-    const std::string line =
-        text_of(to_response(nullptr, tl::unexpected<RpcError>(
-                                         RpcError{rpc_code::kInvalidRequest, why, MinorCode::UnsupportedOperation}))) +
-        '\n';
-    asio::error_code ignored;
-    socket.write_some(asio::buffer(line), ignored);  // a new socket's buffer has room for one line
-    return;
+void Server::welcome(Listeners::Socket socket, const char* what, std::string peer) {
+  std::vector<Guest> guests;
+  guests.reserve(connections_.size());
+  for (const auto& [id, connection] : connections_) guests.push_back(connection->guest());
+  Admission admission = admit(guests, peer, options_);
+  if (admission.gives_way) {
+    const auto leaves = connections_.at(*admission.gives_way);
+    spdlog::warn("{} gives way to another client: it has {}", leaves->name(),
+                 admission.only_stops ? "one of the places for stops" : "sent nothing");
+    leaves->abort();
   }
   const std::uint64_t id = next_id_++;
+  const std::string where = fmt::format("{} client {}", what, id);
+  if (admission.only_stops) spdlog::warn("{} may do nothing but stop: {}", where, *admission.only_stops);
   auto connection =
-      std::make_shared<Connection>(context_, std::move(socket), id, fmt::format("{} client {}", what, id));
+      std::make_shared<Connection>(context_, std::move(socket), Connection::Visitor{id, where, std::move(peer)});
   connections_.emplace(id, connection);
-  connection->start();
+  connection->start(std::move(admission.only_stops));
 }
 
 void Server::close() {
@@ -111,9 +113,14 @@ void Server::tick() {
   const auto open = connections_;  // those that are cut off leave the map
   for (const auto& [id, connection] : open) {
     connection->flush_topics();
-    if (!connection->stalled(now)) continue;
-    spdlog::warn("{} was cut off: it has not read for {} ms", connection->name(), options_.stall_limit.count());
-    connection->abort();
+    if (connection->overstays(now)) {
+      spdlog::info("{} is disconnected: it has no business here after {} ms", connection->name(),
+                   options_.silence_limit.count());
+      connection->abort();
+    } else if (connection->stalled(now)) {
+      spdlog::warn("{} was cut off: it has not read for {} ms", connection->name(), options_.stall_limit.count());
+      connection->abort();
+    }
   }
   pump();
   end_silent_lease();

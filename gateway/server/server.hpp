@@ -57,7 +57,7 @@ class Server : private Peers {
   void tick();
 
  private:
-  void welcome(Listeners::Socket socket, const char* what);
+  void welcome(Listeners::Socket socket, const char* what, std::string peer);
   void end_silent_lease();
   /// Lets every connection carry out what waits there.
   void pump();

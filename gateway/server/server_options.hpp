@@ -32,6 +32,9 @@ struct ServerOptions {
   std::chrono::milliseconds queue_wait{1000};               ///< for room in a full queue of moves
   std::chrono::milliseconds stall_limit{10'000};            ///< of a watcher that virtual time waits for
   std::size_t connection_limit = 64;
+  std::size_t peer_share = 48;                      ///< of them, for one user or address
+  std::size_t stop_places = 8;                      ///< beside them, for who only stops the machine
+  std::chrono::milliseconds silence_limit{30'000};  ///< before the first request; and for each of `stop_places`
 };
 
 }  // namespace rmac::gateway

@@ -11,14 +11,16 @@ using testing::HasSubstr;
 struct ListenersBench {
   asio::io_context io;
   std::vector<std::string> came;
-  Listeners listeners{io, [this](Listeners::Socket, const char* what) { came.emplace_back(what); }};
+  Listeners listeners{io, [this](Listeners::Socket, const char* what, const std::string& peer) {
+                        came.push_back(std::string(what) + " from " + peer);
+                      }};
 };
 
 std::filesystem::path socket_path() {
   return std::filesystem::temp_directory_path() / ("rmac-listeners-" + std::to_string(::getpid()) + ".sock");
 }
 
-TEST(Listeners, TellThroughWhatEachClientCame) {
+TEST(Listeners, TellThroughWhatAndFromWhereEachClientCame) {
   ListenersBench bench;
   ASSERT_TRUE(bench.listeners.listen_on_tcp("127.0.0.1", 0));
   ASSERT_TRUE(bench.listeners.listen_on_unix(socket_path()));
@@ -28,7 +30,8 @@ TEST(Listeners, TellThroughWhatEachClientCame) {
   asio::local::stream_protocol::socket local(bench.io);
   local.connect(asio::local::stream_protocol::endpoint(socket_path().string()));
   while (bench.came.size() < 2) bench.io.run_one();
-  EXPECT_EQ(bench.came, (std::vector<std::string>{"TCP", "UNIX socket"}));
+  EXPECT_EQ(bench.came,
+            (std::vector<std::string>{"TCP from 127.0.0.1", "UNIX socket from user " + std::to_string(::geteuid())}));
   bench.listeners.close();
 }
 

@@ -253,16 +253,6 @@ TEST(ServerProtocol, CutsOffAClientThatDoesNotReadItsAnswers) {
   EXPECT_EQ(other.call("authority.renew")["result"], true);
 }
 
-TEST(ServerProtocol, TurnsAwayClientsOverTheLimit) {
-  ServerOptions options;
-  options.connection_limit = 1;
-  ServerBench bench(options);
-  Client first(bench.port());
-  EXPECT_EQ(first.call("RMAC_CAM.Ok")["result"], true);
-  Client second(bench.port());
-  EXPECT_THAT(second.json_line()["error"]["message"].get<std::string>(), HasSubstr("limit"));
-}
-
 TEST(Server, RefusesToListenForTheNetwork) {
   asio::io_context io;
   FakeMachine machine;
