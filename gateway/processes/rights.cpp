@@ -1,5 +1,6 @@
 #include "gateway/processes/rights.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <linux/capability.h>
 #include <signal.h>
@@ -11,6 +12,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <string_view>
 
 namespace rmac::gateway {
 namespace {
@@ -51,6 +53,14 @@ std::optional<std::string> give_up_rights(double cpu_s, std::size_t memory_bytes
     return fmt::format("giving up the right to gain privileges: {}", std::strerror(errno));
   }
   return {};
+}
+
+void offer_memory() noexcept {
+  constexpr std::string_view kFirst = "1000";
+  const int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+  if (file < 0) return;
+  (void)!write(file, kFirst.data(), kFirst.size());
+  close(file);
 }
 
 }  // namespace rmac::gateway

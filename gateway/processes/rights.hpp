@@ -11,4 +11,7 @@ namespace rmac::gateway {
 /// dies with its parent. What the system refuses, for a person.
 [[nodiscard]] std::optional<std::string> give_up_rights(double cpu_s, std::size_t memory_bytes);
 
+/// Where memory runs out, this process and what it starts are ended first, and not the one that moves the machine.
+void offer_memory() noexcept;
+
 }  // namespace rmac::gateway

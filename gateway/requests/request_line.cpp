@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <new>
+
 #include "gateway/json/printable.hpp"
 
 namespace rmac::gateway {
@@ -37,7 +39,7 @@ Answer refused(MinorCode minor, std::string message) {
 RequestLine::RequestLine(std::uint64_t position, std::size_t bytes, Time received)
     : position_(position), bytes_(bytes), received_(received) {}
 
-void RequestLine::read(std::string_view text) {
+void RequestLine::read(std::string_view text) try {
   auto parsed = parse_line(text);
   if (!parsed) {
     requests_.push_back(not_a_request(std::move(parsed.error())));
@@ -56,6 +58,12 @@ void RequestLine::read(std::string_view text) {
     for (Request& request : requests_) request.large = values_in(request.params) > kManyValues;
   }
   answers_.resize(requests_.size());
+} catch (const std::bad_alloc&) {
+  requests_.assign(1, not_a_request({rpc_code::kRequestTooLarge,
+                                     fmt::format("the line of {} bytes cannot be read, for want of memory", bytes_),
+                                     MinorCode::Other}));
+  batch_ = false;
+  answers_.assign(1, std::nullopt);
 }
 
 void RequestLine::answer_stops(const std::function<Answer(const Request& stop, std::uint64_t position)>& carry_out) {

@@ -36,7 +36,10 @@ class RequestQueue {
   /// A stop that `name` names took effect: what stands before `position` of the input must start nothing.
   void stopped(Effect stop, const std::string& name, std::uint64_t position) { stop_mark_.set(stop, name, position); }
   /// Drops what waits, unanswered.
-  void clear() noexcept { lines_.clear(); }
+  void clear() noexcept {
+    lines_.clear();
+    bytes_ = 0;
+  }
 
   [[nodiscard]] bool empty() const noexcept { return lines_.empty(); }
   /// Length of the lines that wait.

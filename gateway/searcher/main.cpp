@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: rmac-search LIMIT_MS DATABASE SQL, with 1 to {} ms", kMostMs);
     return kUsage;
   }
+  rmac::gateway::offer_memory();
   if (const auto refused = rmac::gateway::give_up_rights(limit_ms / 1000.0 + 2, kMostBytes)) {
     fmt::print(stderr, "{}", *refused);
     return kFailed;

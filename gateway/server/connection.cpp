@@ -15,6 +15,9 @@ constexpr std::chrono::seconds kLeaveTime{5};
 constexpr std::chrono::seconds kDrainTime{30};
 constexpr std::chrono::seconds kDismissTime{2};
 
+/// What is read of a text takes several times its memory.
+constexpr std::size_t kTreePerText = 8;
+
 /// The topic `state` as everybody sees it.
 std::string state_text(const ConnectionContext& context, const CycleSample& sample) {
   Dispatcher& api = context.dispatcher;
@@ -90,7 +93,7 @@ void Connection::read() {
       [self = shared_from_this()](asio::error_code problem, std::size_t bytes) { self->arrived(problem, bytes); });
 }
 
-void Connection::arrived(asio::error_code problem, std::size_t bytes) {
+void Connection::arrived(asio::error_code problem, std::size_t bytes) try {
   reading_ = false;
   read_bytes_ += bytes;
   if (phase_ == Phase::Leaving && !problem) discard_input();
@@ -104,6 +107,9 @@ void Connection::arrived(asio::error_code problem, std::size_t bytes) {
     pump();
     read();
   }
+} catch (const std::bad_alloc&) {
+  spdlog::error("{} is disconnected: there is no memory for what it sends", name());
+  abort();
 }
 
 void Connection::take_input(std::size_t bytes) {
@@ -272,6 +278,24 @@ void Connection::finish_if_drained() {
     asio::error_code ignored;
     socket_.shutdown(Socket::shutdown_send, ignored);
   }
+}
+
+std::size_t Connection::held_bytes() const noexcept {
+  return lines_.held_bytes() + kTreePerText * requests_.bytes() + outbox_.bytes();
+}
+
+void Connection::cut_off() {
+  const ServerOptions& options = context_.options;
+  const std::string why = fmt::format(
+      "what it sent and does not read takes {} MiB, more than any other's; all clients "
+      "together may take {} MiB",
+      held_bytes() >> 20U, options.memory_limit_bytes >> 20U);
+  if (phase_ == Phase::Open && outbox_.bytes() < held_bytes() / 2) {
+    refuse_and_leave({rpc_code::kRequestTooLarge, why + "; send smaller requests", MinorCode::Other});
+    return;
+  }
+  spdlog::warn("{} was cut off: {}", name(), why);
+  abort();
 }
 
 bool Connection::behind() const noexcept {

@@ -53,6 +53,10 @@ class Connection final : public Requester, public std::enable_shared_from_this<C
   [[nodiscard]] bool behind() const noexcept;
   /// Behind for longer than the limit, without reading a byte.
   [[nodiscard]] bool stalled(std::chrono::steady_clock::time_point now) const noexcept;
+  /// Memory that its input and output take.
+  [[nodiscard]] std::size_t held_bytes() const noexcept;
+  /// Lets it go for the memory that it takes, and tells it, where it is not its output that takes it.
+  void cut_off();
   /// Bytes that the client has sent so far, read by us or not.
   [[nodiscard]] std::uint64_t arrived_bytes() const;
   /// What waits for its answer.

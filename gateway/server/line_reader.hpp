@@ -25,6 +25,8 @@ class LineReader {
   [[nodiscard]] std::optional<Line> last();
   /// Whether a line is longer than the limit: `next` gives no more then.
   [[nodiscard]] bool too_long() const noexcept { return too_long_; }
+  /// Of the line whose end has not arrived.
+  [[nodiscard]] std::size_t held_bytes() const noexcept { return begun_.capacity(); }
   /// Forgets what it holds.
   void clear() noexcept;
 

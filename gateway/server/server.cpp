@@ -122,9 +122,24 @@ void Server::tick() {
       connection->abort();
     }
   }
+  bound_memory();
   pump();
   end_silent_lease();
   lease_.power_off_at_rest();
+}
+
+void Server::bound_memory() {
+  const auto held = [this] {
+    std::size_t sum = 0;
+    for (const auto& [id, connection] : connections_) sum += connection->held_bytes();
+    return sum;
+  };
+  while (held() > options_.memory_limit_bytes) {
+    const auto takes_most =
+        std::ranges::max_element(connections_, {}, [](const auto& entry) { return entry.second->held_bytes(); });
+    const std::shared_ptr<Connection> greediest = takes_most->second;  // leaving takes it out of the map
+    greediest->cut_off();
+  }
 }
 
 void Server::end_silent_lease() {

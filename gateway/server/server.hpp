@@ -59,6 +59,8 @@ class Server : private Peers {
  private:
   void welcome(Listeners::Socket socket, const char* what, std::string peer);
   void end_silent_lease();
+  /// Cuts off who takes most, until what all take is within its limit.
+  void bound_memory();
   /// Lets every connection carry out what waits there.
   void pump();
 

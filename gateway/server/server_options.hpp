@@ -26,8 +26,9 @@ struct ServerOptions {
   std::chrono::milliseconds lease_timeout{0};  ///< silence of its holder that ends the lease; 0: none
   std::function<std::chrono::steady_clock::time_point()> now = std::chrono::steady_clock::now;  ///< of the lease
   std::size_t line_limit_bytes = std::size_t{8} << 20;
-  std::size_t pending_limit_bytes = std::size_t{32} << 20;  ///< of requests that wait, before reading pauses
+  std::size_t pending_limit_bytes = std::size_t{8} << 20;   ///< of requests that wait, before reading pauses
   std::size_t output_limit_bytes = std::size_t{64} << 20;   ///< unread output, before the client is cut off
+  std::size_t memory_limit_bytes = std::size_t{256} << 20;  ///< that all clients' input and output may take together
   std::size_t high_water_bytes = std::size_t{4} << 20;      ///< unread output, before virtual time waits
   std::chrono::milliseconds queue_wait{1000};               ///< for room in a full queue of moves
   std::chrono::milliseconds stall_limit{10'000};            ///< of a watcher that virtual time waits for

@@ -9,6 +9,7 @@
 #include "gateway/configuration/configuration.hpp"
 #include "gateway/device_database/device_database.hpp"
 #include "gateway/mechanism/device_check.hpp"
+#include "gateway/processes/rights.hpp"
 #include "gateway/verifier/supervisor.hpp"
 
 namespace {
@@ -21,7 +22,7 @@ constexpr int kPassed = 0, kRefused = 1, kUsage = 2;
 struct Wishes {
   std::string device_json;
   std::vector<std::string> module_folders;
-  int samples = 100'000;
+  int samples = verifier::kSamples;
   std::uint64_t seed = 1;
   bool json = false;
 };
@@ -82,6 +83,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kPassed : kUsage;
   }
+  gateway::offer_memory();
   try {
     return run(wishes);
   } catch (const std::exception& error) {

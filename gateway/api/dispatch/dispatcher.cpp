@@ -17,6 +17,12 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kLongestReason = 300;
+/// What a value in an array takes, which grows by doubling; and what arrays, objects, their members and texts take
+/// beside that.
+constexpr std::size_t kElementBytes = 2 * sizeof(json), kArrayBytes = 32, kObjectBytes = 64, kMemberBytes = 96,
+                      kTextBytes = 48;
+/// A line of 8 MiB takes as much where it is all coordinates; `[[],[],…` would take more.
+constexpr std::size_t kLargestTree = std::size_t{128} << 20;
 
 tl::unexpected<RpcError> wrong(int code, std::string message) {
   return tl::unexpected<RpcError>(RpcError{code, std::move(message), MinorCode::InvalidParameter});
@@ -26,6 +32,7 @@ tl::unexpected<RpcError> wrong(int code, std::string message) {
 struct Outline {
   int nesting = 0;          ///< deepest, of brackets outside texts
   std::size_t members = 0;  ///< of all objects together
+  std::size_t bytes = 0;    ///< that what is read from it takes, at most
 };
 
 Outline outline_of(std::string_view line) {
@@ -39,10 +46,15 @@ Outline outline_of(std::string_view line) {
       if (c == '"') in_text = false;
     } else if (c == '"') {
       in_text = true;
+      outline.bytes += kTextBytes;
     } else if (c == '[' || c == '{') {
       outline.nesting = std::max(outline.nesting, ++depth);
+      outline.bytes += c == '[' ? kArrayBytes : kObjectBytes;
+    } else if (c == ',') {
+      outline.bytes += kElementBytes;
     } else if (c == ':') {
       ++outline.members;
+      outline.bytes += kMemberBytes;
     } else if (c == ']' || c == '}') {
       --depth;
     }
@@ -90,6 +102,13 @@ tl::expected<json, RpcError> parse_line(std::string_view line) {
     return wrong(rpc_code::kParseError,
                  fmt::format("nested {} deep, at most {} objects and arrays within each other are read",
                              outline.nesting, kLargestNesting));
+  }
+  if (outline.bytes > kLargestTree) {
+    return wrong(
+        rpc_code::kRequestTooLarge,
+        fmt::format("the line holds so many objects, arrays and texts that it would take {} MiB of memory, more "
+                    "than {}; send smaller requests",
+                    outline.bytes >> 20U, kLargestTree >> 20U));
   }
   try {
     json parsed = json::parse(line);

@@ -32,6 +32,21 @@ TEST(ParseLine, RefusesDeepNesting) {
   EXPECT_THAT(parsed.error().message, HasSubstr("nested 100000 deep"));
 }
 
+// Red when a line of 8 MiB took 200 of memory.
+TEST(ParseLine, RefusesWhatWouldGrowBeyondMeasure) {
+  for (const std::string element : {"[]", "{}", R"("")", R"({"":0})"}) {
+    std::string line = "[" + element;
+    while (line.size() < std::size_t{8} << 20U) line += "," + element;
+    const auto parsed = parse_line(line + "]");
+    ASSERT_FALSE(parsed) << element;
+    EXPECT_EQ(parsed.error().code, rpc_code::kRequestTooLarge) << element;
+    EXPECT_THAT(parsed.error().message, HasSubstr("MiB of memory")) << element;
+  }
+  std::string points = "[[0.125,0.5,0.25]";
+  while (points.size() < (std::size_t{8} << 20U) - 1) points += ",[0.125,0.5,0.25]";
+  EXPECT_TRUE(parse_line(points + "]")) << "a long curve";
+}
+
 TEST(ParseLine, DoesNotCountBracketsInsideTexts) {
   EXPECT_TRUE(parse_line("\"" + std::string(1000, '[') + R"(\"[[[")"));
 }

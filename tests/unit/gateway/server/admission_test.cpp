@@ -14,6 +14,7 @@ namespace {
 
 using fakes::Client;
 using fakes::FakeMachine;
+using fakes::line_of;
 using fakes::ServerBench;
 using testing::HasSubstr;
 using testing::Return;
@@ -103,6 +104,21 @@ TEST(Crowd, OfBusyClientsKeepsNobodyFromStopping) {
     EXPECT_EQ(panel.call("RMAC_CAM.StopNow")["result"], true);
   }
   EXPECT_EQ(one.call("RMAC_CAM.Ok")["result"], true) << "who works stays";
+}
+
+// Red when sixty clients with a line of 7 MB each, without its end, took all the memory that there was.
+TEST(Crowd, LosesWhoTakesMostMemoryFirst) {
+  ServerOptions options;
+  options.memory_limit_bytes = 256U << 10U;
+  ServerBench bench(options);
+  Client modest(bench.port()), greedy(bench.port());
+  modest.send(std::string(64U << 10U, ' ') + R"({"jsonrpc":"2.0","id":1,"method":"RMAC_CAM.Ok")");
+  greedy.send(line_of(1, "RMAC_CAM.Ok") + std::string(1U << 20U, 'x'));
+  EXPECT_EQ(greedy.json_line()["result"], true);
+  EXPECT_THAT(greedy.json_line()["error"]["message"].get<std::string>(), HasSubstr("more than any other's"));
+  EXPECT_EQ(greedy.line(), "") << "closed";
+  modest.send("}\n");
+  EXPECT_EQ(modest.json_line()["result"], true);
 }
 
 TEST(Crowd, LosesWhoSaysNothingForTooLong) {
