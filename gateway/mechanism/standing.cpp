@@ -44,8 +44,8 @@ Expected<> check_standing(const sdk::DeviceObject& device, std::span<const doubl
     if (!outside) continue;
     return failure(
         MinorCode::TravelLimit,
-        fmt::format("joint {} \"{}\" stands at {:.4f}, outside of its limits {} to {}; move it inside first, "
-                    "or choose limits that include it",
+        fmt::format("joint {} \"{}\" stands at {:.4f}, outside of its limits {} to {}; bring it inside by "
+                    "hand, or with a mechanism that may be there, or choose limits that include it",
                     i, joint.name, position[i], ends_below(joint) ? fmt::format("{}", joint.min) : "-infinity",
                     ends_above(joint) ? fmt::format("{}", joint.max) : "infinity"));
   }

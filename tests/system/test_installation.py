@@ -44,7 +44,8 @@ class Installation(unittest.TestCase):
         self.one("usr/lib/systemd/system/rmac-can@.service")
         self.one("usr/lib/sysusers.d/rmac.conf")
         self.one("usr/include/rmac/sdk/module.hpp")
-        self.one("**/etc/rmac/rmacd.json")
+        self.one("etc/rmac/rmacd.json")
+        self.one("etc/rmac/can-can0.conf.example")
 
     def test_installed_daemon_accepts_the_installed_configuration(self):
         done = subprocess.run([self.one("usr/sbin/rmacd"), "--check", "--config", self.one("**/etc/rmac/rmacd.json")],
@@ -58,6 +59,18 @@ class Installation(unittest.TestCase):
                               input=json.dumps(move), capture_output=True, text=True, timeout=60, check=False)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(json.loads(done.stdout)["moves"], 1)
+
+    def test_another_prefix_has_everything_below_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run(["cmake", "--install", BUILD, "--prefix", "/opt/rmac"], env=os.environ | {"DESTDIR": folder},
+                           check=True, stdout=subprocess.DEVNULL)
+            root = pathlib.Path(folder)
+            self.assertEqual([str(path.relative_to(root)) for path in root.rglob("*")
+                              if path.is_file() and not path.is_relative_to(root / "opt/rmac")], [])
+            unit = (root / "opt/rmac/lib/systemd/system/rmacd.service").read_text()
+            self.assertIn("\nExecStart=/opt/rmac/sbin/rmacd --config /opt/rmac/etc/rmac/rmacd.json\n", unit)
+            for file in ("rmacd.json", "can-can0.conf.example"):
+                self.assertTrue((root / "opt/rmac/etc/rmac" / file).is_file(), file)
 
     def test_nothing_of_the_tests_is_installed(self):
         self.assertEqual([str(path) for path in self.root.rglob("*test*")], [])
