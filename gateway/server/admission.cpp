@@ -29,4 +29,8 @@ Admission admit(std::span<const Guest> guests, const std::string& peer, const Se
   return admission;
 }
 
+bool overstays(const Guest& guest, std::chrono::steady_clock::time_point now, const ServerOptions& options) noexcept {
+  return (!guest.spoke || guest.only_stops) && now - guest.came > options.silence_limit;
+}
+
 }  // namespace rmac::gateway

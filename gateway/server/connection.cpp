@@ -51,11 +51,14 @@ Connection::Connection(const ConnectionContext& context, Socket socket, Visitor 
       leaving_(socket_.get_executor()) {}
 
 Guest Connection::guest() const {
-  return {id(), peer_, spoke_, only_stops_};
-}
-
-bool Connection::overstays(std::chrono::steady_clock::time_point now) const noexcept {
-  return (!spoke_ || only_stops_) && phase_ == Phase::Open && now - came_ > context_.options.silence_limit;
+  return {.id = id(),
+          .peer = peer_,
+          .spoke = spoke_,
+          .only_stops = only_stops_,
+          .fast = topics_.is_fast(),
+          .held_bytes = lines_.held_bytes() + kTreePerText * requests_.bytes() + outbox_.bytes(),
+          .unread_bytes = outbox_.bytes(),
+          .came = came_};
 }
 
 void Connection::start(std::optional<std::string> only_stops) {
@@ -148,6 +151,10 @@ void Connection::end_of_input() {
 }
 
 void Connection::refuse_and_leave(RpcError error) {
+  if (phase_ != Phase::Open) {
+    abort();
+    return;
+  }
   spdlog::warn("{} is disconnected: {}", name(), error.message);
   requests_.clear();
   lines_.clear();
@@ -278,24 +285,6 @@ void Connection::finish_if_drained() {
     asio::error_code ignored;
     socket_.shutdown(Socket::shutdown_send, ignored);
   }
-}
-
-std::size_t Connection::held_bytes() const noexcept {
-  return lines_.held_bytes() + kTreePerText * requests_.bytes() + outbox_.bytes();
-}
-
-void Connection::cut_off() {
-  const ServerOptions& options = context_.options;
-  const std::string why = fmt::format(
-      "what it sent and does not read takes {} MiB, more than any other's; all clients "
-      "together may take {} MiB",
-      held_bytes() >> 20U, options.memory_limit_bytes >> 20U);
-  if (phase_ == Phase::Open && outbox_.bytes() < held_bytes() / 2) {
-    refuse_and_leave({rpc_code::kRequestTooLarge, why + "; send smaller requests", MinorCode::Other});
-    return;
-  }
-  spdlog::warn("{} was cut off: {}", name(), why);
-  abort();
 }
 
 bool Connection::behind() const noexcept {

@@ -36,6 +36,8 @@ class Connection final : public Requester, public std::enable_shared_from_this<C
   void start(std::optional<std::string> only_stops);
   /// Closes at once; nothing more is written.
   void abort();
+  /// Drops what it sent, tells it why, and closes once it has read that, or some seconds have passed.
+  void refuse_and_leave(RpcError error);
   /// Closes once everything that was to be sent is sent, or some seconds have passed.
   void dismiss();
 
@@ -46,17 +48,10 @@ class Connection final : public Requester, public std::enable_shared_from_this<C
 
   [[nodiscard]] std::string name() const { return session_.name(); }
   [[nodiscard]] Guest guest() const;
-  /// Connected for longer than the limit without a request, or in a place for stops.
-  [[nodiscard]] bool overstays(std::chrono::steady_clock::time_point now) const noexcept;
-  [[nodiscard]] bool watches_fast() const noexcept { return topics_.is_fast(); }
   /// Whether it has much to read.
   [[nodiscard]] bool behind() const noexcept;
   /// Behind for longer than the limit, without reading a byte.
   [[nodiscard]] bool stalled(std::chrono::steady_clock::time_point now) const noexcept;
-  /// Memory that its input and output take.
-  [[nodiscard]] std::size_t held_bytes() const noexcept;
-  /// Lets it go for the memory that it takes, and tells it, where it is not its output that takes it.
-  void cut_off();
   /// Bytes that the client has sent so far, read by us or not.
   [[nodiscard]] std::uint64_t arrived_bytes() const;
   /// What waits for its answer.
@@ -84,7 +79,6 @@ class Connection final : public Requester, public std::enable_shared_from_this<C
   void take_input(std::size_t bytes);
   void take_line(const LineReader::Line& line);
   void end_of_input();
-  void refuse_and_leave(RpcError error);
   void discard_input();
   void leave_within(std::chrono::seconds bound);
   void write();

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "gateway/json/printable.hpp"
 #include "gateway/server/connection.hpp"
@@ -113,7 +114,7 @@ void Server::tick() {
   const auto open = connections_;  // those that are cut off leave the map
   for (const auto& [id, connection] : open) {
     connection->flush_topics();
-    if (connection->overstays(now)) {
+    if (overstays(connection->guest(), now, options_)) {
       spdlog::info("{} is disconnected: it has no business here after {} ms", connection->name(),
                    options_.silence_limit.count());
       connection->abort();
@@ -129,16 +130,28 @@ void Server::tick() {
 }
 
 void Server::bound_memory() {
-  const auto held = [this] {
-    std::size_t sum = 0;
-    for (const auto& [id, connection] : connections_) sum += connection->held_bytes();
-    return sum;
-  };
-  while (held() > options_.memory_limit_bytes) {
-    const auto takes_most =
-        std::ranges::max_element(connections_, {}, [](const auto& entry) { return entry.second->held_bytes(); });
-    const std::shared_ptr<Connection> greediest = takes_most->second;  // leaving takes it out of the map
-    greediest->cut_off();
+  std::vector<Guest> guests;
+  std::size_t held = 0;
+  for (const auto& [id, connection] : connections_) held += guests.emplace_back(connection->guest()).held_bytes;
+  std::ranges::sort(guests, std::greater{}, &Guest::held_bytes);
+  for (const Guest& greediest : guests) {
+    if (held <= options_.memory_limit_bytes) return;
+    held -= greediest.held_bytes;
+    cut_off(greediest);
+  }
+}
+
+void Server::cut_off(const Guest& greediest) {
+  const std::shared_ptr<Connection> connection = connections_.at(greediest.id);  // leaving takes it out of the map
+  const std::string why = fmt::format(
+      "what it sent and does not read takes {} KiB, more than any other's; all clients together may take {} "
+      "KiB",
+      greediest.held_bytes >> 10U, options_.memory_limit_bytes >> 10U);
+  if (greediest.unread_bytes < greediest.held_bytes / 2) {
+    connection->refuse_and_leave({rpc_code::kRequestTooLarge, why + "; send smaller requests", MinorCode::Other});
+  } else {
+    spdlog::warn("{} was cut off: {}", connection->name(), why);
+    connection->abort();
   }
 }
 
@@ -161,7 +174,7 @@ void Server::overtake(std::uint64_t who, const std::string& name, const Request&
 
 std::optional<std::string> Server::fast_watcher_beside(std::uint64_t who) const {
   for (const auto& [id, other] : connections_) {
-    if (id != who && other->watches_fast()) return other->name();
+    if (id != who && other->guest().fast) return other->name();
   }
   return std::nullopt;
 }

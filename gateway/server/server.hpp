@@ -16,6 +16,7 @@
 namespace rmac::gateway {
 
 class Connection;
+struct Guest;
 
 /// The sockets of the gateway: newline JSON-RPC over TCP and a UNIX socket. Everything runs on the thread of the
 /// io_context, except what would keep it from the next stop for long: reading a long line, decoding and building a
@@ -61,6 +62,7 @@ class Server : private Peers {
   void end_silent_lease();
   /// Cuts off who takes most, until what all take is within its limit.
   void bound_memory();
+  void cut_off(const Guest& greediest);
   /// Lets every connection carry out what waits there.
   void pump();
 

@@ -112,7 +112,7 @@ TEST(Crowd, LosesWhoTakesMostMemoryFirst) {
   options.memory_limit_bytes = 256U << 10U;
   ServerBench bench(options);
   Client modest(bench.port()), greedy(bench.port());
-  modest.send(std::string(64U << 10U, ' ') + R"({"jsonrpc":"2.0","id":1,"method":"RMAC_CAM.Ok")");
+  modest.send(std::string(1U << 10U, ' ') + R"({"jsonrpc":"2.0","id":1,"method":"RMAC_CAM.Ok")");
   greedy.send(line_of(1, "RMAC_CAM.Ok") + std::string(1U << 20U, 'x'));
   EXPECT_EQ(greedy.json_line()["result"], true);
   EXPECT_THAT(greedy.json_line()["error"]["message"].get<std::string>(), HasSubstr("more than any other's"));
