@@ -113,7 +113,8 @@ class SessionPort {
   virtual void animate(bool on) = 0;
 };
 
-/// The error the machine met last (StatusMajorCode, StatusMinorCode, Ok). One a machine, whoever asks.
+/// The error the machine, or who may move it, met last (StatusMajorCode, StatusMinorCode, Ok). One a machine, whoever
+/// asks.
 struct MachineStatus {
   std::int64_t major = 0;
   std::int64_t minor = 0;

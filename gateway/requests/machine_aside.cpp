@@ -45,29 +45,36 @@ void MachineAside::carry_out(const Request& request, SessionPort& session, std::
       [answer, done = std::move(done)] { return done(std::move(*answer)); });
 }
 
-void MachineAside::run_apart(std::function<void(MachineStatus&)> work, std::function<void()> done) {
+void MachineAside::run_apart(bool changes_status, std::function<void(MachineStatus&)> work,
+                             std::function<void()> done) {
   auto status = std::make_shared<MachineStatus>();
   run_on(
       apart_, [work = std::move(work), status] { work(*status); },
-      [this, status, done = std::move(done)] {
-        if (status->major != 0) dispatcher_.status().fail(static_cast<MinorCode>(status->minor));
+      [this, changes_status, status, done = std::move(done)] {
+        if (changes_status && status->major != 0) dispatcher_.status().fail(static_cast<MinorCode>(status->minor));
         done();
       });
 }
 
 void MachineAside::carry_out_apart(const Request& request, SessionPort& session, std::function<void(Answer)> done) {
   auto answer = std::make_shared<Answer>();
-  run_apart([this, &request, &session,
-             answer](MachineStatus& status) { *answer = dispatcher_.carry_out(request, session, status); },
-            [answer, done = std::move(done)] { done(std::move(*answer)); });
+  run_apart(
+      Dispatcher::changes_status(request, session),
+      [this, &request, &session, answer](MachineStatus& status) {
+        *answer = dispatcher_.carry_out(request, session, status);
+      },
+      [answer, done = std::move(done)] { done(std::move(*answer)); });
 }
 
 void MachineAside::prepare(const Request& request, SessionPort& session,
                            std::function<void(std::optional<Answer>)> done) {
   auto failed = std::make_shared<std::optional<Answer>>();
-  run_apart([this, &request, &session,
-             failed](MachineStatus& status) { *failed = dispatcher_.prepare(request, session, status); },
-            [failed, done = std::move(done)] { done(std::move(*failed)); });
+  run_apart(
+      Dispatcher::changes_status(request, session),
+      [this, &request, &session, failed](MachineStatus& status) {
+        *failed = dispatcher_.prepare(request, session, status);
+      },
+      [failed, done = std::move(done)] { done(std::move(*failed)); });
 }
 
 void MachineAside::stop() {

@@ -40,7 +40,7 @@ class MachineAside {
 
  private:
   void run_on(asio::thread_pool& thread, std::function<void()> work, std::function<void()> done);
-  void run_apart(std::function<void(MachineStatus&)> work, std::function<void()> done);
+  void run_apart(bool changes_status, std::function<void(MachineStatus&)> work, std::function<void()> done);
   void take_machine(std::uint64_t client, std::function<void(MachineStatus&)> work, std::function<bool()> done);
 
   asio::io_context& io_;

@@ -184,8 +184,14 @@ Effect Request::effect() const {
 
 Answer Dispatcher::execute(const Request& request, SessionPort& session) {
   if (auto refusal = refusal_of(request, session)) return std::move(*refusal);
-  if (auto failed = prepare(request, session, status_)) return std::move(*failed);
-  return carry_out(request, session, status_);
+  MachineStatus nobodys = status_;
+  MachineStatus& status = changes_status(request, session) ? status_ : nobodys;
+  if (auto failed = prepare(request, session, status)) return std::move(*failed);
+  return carry_out(request, session, status);
+}
+
+bool Dispatcher::changes_status(const Request& request, const SessionPort& session) {
+  return request.is_urgent() || session.has_authority();
 }
 
 std::optional<Answer> Dispatcher::refusal_of(const Request& request, const SessionPort& session) {

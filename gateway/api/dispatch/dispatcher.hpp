@@ -48,6 +48,9 @@ class Dispatcher {
   [[nodiscard]] static std::optional<Answer> refusal_of(const Request& request, const SessionPort& session);
   [[nodiscard]] std::optional<Answer> prepare(const Request& request, SessionPort& session, MachineStatus& status);
   [[nodiscard]] Answer carry_out(const Request& request, SessionPort& session, MachineStatus& status);
+  /// Whether an error of it is the machine's: of a stop, or of who may move the machine. What others get wrong stands
+  /// in their answers alone.
+  [[nodiscard]] static bool changes_status(const Request& request, const SessionPort& session);
   [[nodiscard]] MachineStatus& status() noexcept { return status_; }
   [[nodiscard]] MachinePort& machine() noexcept { return machine_; }
 

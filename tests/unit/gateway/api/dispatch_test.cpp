@@ -185,6 +185,17 @@ TEST(Dispatcher, KeepsTheLastErrorOfTheMachineUntilItIsCleared) {
   EXPECT_EQ(api.result("RMAC_CAM.StatusMinorCode"), 0);
 }
 
+// Red when a stranger's OnNextRecord made the holder's Ok false.
+TEST(Dispatcher, KeepsWhatAStrangerGetsWrongFromTheMachinesStatus) {
+  Api api;
+  api.session.authority = false;
+  EXPECT_TRUE(api.call("DeviceDriverManager.OnNextRecord").contains("error"));
+  EXPECT_EQ(api.result("RMAC_CAM.Ok"), true);
+  EXPECT_CALL(api.machine.cam_mock.cycle_mock, stop_now()).WillOnce(Return(failure(MinorCode::Other, "no")));
+  EXPECT_TRUE(api.call("RMAC_CAM.StopNow").contains("error"));
+  EXPECT_EQ(api.result("RMAC_CAM.Ok"), false) << "a stop that failed is everybody's business";
+}
+
 TEST(Dispatcher, NeedsAuthorityToWriteAPropertyButNotToReadIt) {
   Api api;
   api.session.authority = false;
