@@ -7,7 +7,8 @@ const char* describe(StopCause cause) noexcept {
     case StopCause::CycleStop:
       return "the machine has come to rest after a CycleStop; what is queued goes on with CycleStart";
     case StopCause::StopNow:
-      return "the machine has come to rest after a StopNow, or because motion authority was lost; its queue is empty";
+      return "the machine has come to rest after a StopNow, or because motion authority was given back or lost; its "
+             "queue is empty";
     case StopCause::JogLapsed:
       return "the jog came to rest because it was not renewed in time: its key, its client or the network let go; jog "
              "again to go on";
