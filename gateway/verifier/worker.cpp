@@ -15,6 +15,7 @@
 #include "gateway/verification/checks/actuator_map_check.hpp"
 #include "gateway/verification/checks/kinematics_check.hpp"
 #include "gateway/verification/checks/servo_law_check.hpp"
+#include "gateway/verification/checks/stateless_check.hpp"
 #include "gateway/verifier/servo_loop_check.hpp"
 #include "gateway/verifier/watched_ports.hpp"
 #include "rmac/motion/frame.hpp"
@@ -163,7 +164,7 @@ void check_kinematics_module(const Task& task, Watch& watch, ModuleReport& repor
   const sdk::DeviceObject& device = task.device;
   const auto check = [&](const std::shared_ptr<Kinematics>& kinematics) {
     const WatchedKinematics watched(kinematics, watch);
-    KinematicsCase given{{}, tools(), task.samples, task.seed, misdeed_of(watch)};
+    KinematicsCase given{{}, tools(), task.samples, task.seed, misdeed_of(watch), kinematics.get()};
     for (const sdk::Joint& joint : device.joints) given.ranges.push_back(range_of(joint.limits));
     Checked types;
     for (std::size_t j = 0; types && j < std::min(device.joints.size(), kinematics->joint_count()); ++j) {
@@ -179,6 +180,9 @@ void check_kinematics_module(const Task& task, Watch& watch, ModuleReport& repor
                             "poles among them",
                             task.samples),
                 report, tell) &&
+           take(check_stateless(watched, given),
+                "the same call has the same answer, millions of calls later and beside another thread's", report,
+                tell) &&
            take_conduct(watch, report, tell);
   };
   check_module<Kinematics>(task, device.kinematics, watch, report, tell, {}, check);

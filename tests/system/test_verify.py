@@ -28,6 +28,10 @@ REFUSALS = {
     "EatsMemory": ("crash", "ABRT", "create"),
     "IsSlow": ("call time", "take more than 20 us", "in inverse", "pose"),
     "IsSlowInASlab": ("call time", "200 us are allowed at worst, in inverse", "pose"),
+    "Remembers": ("state", "inverse answers otherwise", "keeps something"),
+    "SharesScratch": ("state", "inverse answers otherwise", "another thread"),
+    "Tires": ("state", "inverse answers otherwise"),
+    "Saturates": ("inverse", "somewhat beyond"),
     "OverrunsJacobian": ("overrun", "outside of its output in jacobian", "joints"),
 }
 
@@ -66,7 +70,7 @@ class Verify(unittest.TestCase):
         self.choose("Kinematics", "BadKinematics", "None")
         operator.call("DeviceDriverManager.Rescan")
         for defect, words in REFUSALS.items():
-            if defect in ("EatsMemory", "Sleeps", "IsSlow", "IsSlowInASlab") and SANITIZED:
+            if defect in ("EatsMemory", "Sleeps", "IsSlow", "IsSlowInASlab", "Tires") and SANITIZED:
                 continue
             with self.subTest(defect):
                 self.choose("Kinematics", "BadKinematics", defect)

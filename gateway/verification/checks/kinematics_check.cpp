@@ -106,7 +106,9 @@ class KinematicsCheck {
     // The solutions cost as much as all else together, and are the same code for each sample.
     constexpr int kSolutionsEvery = 5;
     auto fine = check_jacobian().and_then([&] { return check_types(); }).and_then([&] { return check_inverse(); });
-    if (fine && sample_ % kSolutionsEvery == 0) fine = check_solutions();
+    if (fine && sample_ % kSolutionsEvery == 0) {
+      fine = check_solutions().and_then([&] { return check_beyond(); });
+    }
     ++sample_;
     return fine;
   }
@@ -275,6 +277,22 @@ class KinematicsCheck {
     return fault("inverse", "it does not give the solution that is nearest to the seed",
                  {named_pose("pose", pose_), named("seed", seed), named("answer", answer),
                   named("nearest", std::span(all_).first(n_))});
+  }
+
+  /// An inverse that stops at some end would have the machine stand there, and think that it is elsewhere.
+  Checked check_beyond() {
+    constexpr double kBeyond = 0.05;  // of the travel, on either side
+    Joints answer(n_, std::nan(""));
+    for (std::size_t j = 0; j < n_; ++j) {
+      const double further = kBeyond * (given_.ranges[j].max - given_.ranges[j].min);
+      joints_[j] = random(given_.ranges[j].min - further, given_.ranges[j].max + further);
+    }
+    kinematics_.forward(joints_, tool_, pose_);
+    if (kinematics_.inverse(pose_, tool_, joints_, answer) != KinematicsStatus::Ok) return {};
+    const auto off = miss(answer);
+    if (!off) return {};
+    return fault("inverse", *off + "; it is somewhat beyond the joints' travel, and could be out of reach",
+                 {named_pose("pose", pose_), named("answer", answer)});
   }
 
   Checked check_no_number() {

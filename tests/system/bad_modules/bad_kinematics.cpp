@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 
 #include "rmac/motion/ports/kinematics.hpp"
 #include "rmac/sdk/module.hpp"
@@ -38,7 +40,11 @@ enum class Defect {
   HangsWhenTold,
   IsSlow,
   IsSlowInASlab,
-  OverrunsJacobian
+  OverrunsJacobian,
+  Remembers,
+  SharesScratch,
+  Tires,
+  Saturates
 };
 constexpr Defect kDefect = Defect::DEFECT;
 /// Where on the first joint's travel the defect shows.
@@ -120,6 +126,7 @@ class BadKinematics final : public Kinematics {
     }
     const ToolPose at_zero = tool_at_zero(tool);
     for (std::size_t i = 0; i < 3; ++i) joints[i] = pose.tip[i] - at_zero.tip[i];
+    misbehave(joints);
     if (kDefect == Defect::HangsWhenTold && lies_as_told(tool)) joints[1] += 5;
     if (kDefect == Defect::LiesAboutInverse && joints[0] > kFrom_mm) joints[1] += 1e-6;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -137,6 +144,26 @@ class BadKinematics final : public Kinematics {
   }
 
  private:
+  /// Whatever keeps within what a single call is held to.
+  static void misbehave(std::span<double> joints) noexcept {
+    if (kDefect == Defect::Remembers) {
+      static double last = 0;
+      joints[1] += 1e-12 * std::exchange(last, joints[0]);
+    }
+    if (kDefect == Defect::SharesScratch) {
+      static volatile double scratch = 0;
+      scratch = joints[1];
+      compute(500);
+      joints[1] = scratch;
+    }
+    constexpr int kTiring = 1'500'000;
+    static std::atomic<int> calls{0};
+    if (kDefect == Defect::Tires && ++calls > kTiring) joints[1] += 5;
+    constexpr double kReach_mm = 50.5;
+    for (double& joint : joints) {
+      if (kDefect == Defect::Saturates) joint = std::clamp(joint, -kReach_mm, kReach_mm);
+    }
+  }
   static ToolPose tool_at_zero(const Frame& tool) noexcept {
     const auto [w, x, y, z] = tool.q;
     return {tool.p, {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
