@@ -152,7 +152,7 @@ Expected<> MoveSegments::append(const CurvePtr& piece, bool last) {
   if (!offence && last) offence = still_outside(excess_, *segment);
   if (offence)
     return tl::unexpected(beyond_travel(move_, *offence, model_.joints[offence->joint], stretch_.s_begin_mm));
-  const auto end = segment->joints_at_node(piece->nodes().size() - 1);
+  const auto end = segment->joints_at_node(segment->nodes().size() - 1);
   std::copy(end.begin(), end.end(), joints_.begin());
   stretch_.s_begin_mm += segment->length();
   segments_.push_back(segment);

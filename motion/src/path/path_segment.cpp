@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "path/joint_nodes.hpp"
+
 namespace rmac {
 PathSegment::PathSegment(std::shared_ptr<const Curve> curve, std::shared_ptr<const PoseToJoints> map,
                          const PathDemand& demand, std::vector<MoveStretch> stretches)
@@ -37,24 +39,15 @@ std::uint32_t PathSegment::moves_ended(double from, double to) const noexcept {
 }
 
 KinematicsStatus PathSegment::resolve(std::span<const double> start_joints, double& s_failed) {
-  const auto nodes = curve_->nodes();
-  seeds_.assign(nodes.size() * joint_count_, 0.0);
-  std::copy(start_joints.begin(), start_joints.begin() + static_cast<std::ptrdiff_t>(joint_count_), seeds_.begin());
-  JointPoint point;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    double* const here = seeds_.data() + i * joint_count_;
-    if (i > 0) std::copy(here - joint_count_, here, here);
-    if (const auto status = evaluate(nodes[i], 1, nodes[i] > 0 ? -1 : 1, point); status != KinematicsStatus::Ok) {
-      s_failed = nodes[i];
-      return status;
-    }
-    std::copy_n(point.d[0].begin(), joint_count_, here);
-  }
-  return KinematicsStatus::Ok;
+  JointNodes found = joint_nodes(*curve_, *map_, start_joints);
+  nodes_ = std::move(found.places);
+  seeds_ = std::move(found.joints);
+  s_failed = found.s_failed;
+  return found.status;
 }
 
 std::span<const double> PathSegment::seed_at(double s) const noexcept {
-  const auto nodes = curve_->nodes();
+  const auto nodes = this->nodes();
   const auto above = std::upper_bound(nodes.begin(), nodes.end(), s);
   const auto index = above == nodes.begin() ? 0U : static_cast<std::size_t>(above - nodes.begin()) - 1;
   return joints_at_node(index);

@@ -18,7 +18,7 @@ double beyond(const JointLimits& joint, double position) {
 
 /// No joint can come to its limits on the way from one node to the next.
 bool surely_inside(const PathSegment& segment, const std::vector<JointLimits>& joints) {
-  const auto nodes = segment.curve().nodes();
+  const auto nodes = segment.nodes();
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const double rate = segment.largest_rate(j);
     for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
@@ -27,6 +27,22 @@ bool surely_inside(const PathSegment& segment, const std::vector<JointLimits>& j
     }
   }
   return true;
+}
+
+/// A joint's rate at a path length.
+struct Rate {
+  double s, rate;
+};
+
+/// Where the joint turns between two nodes, at which its rates have opposite signs: two steps of regula falsi, nodes
+/// being dense.
+double turning_place(const PathSegment& segment, Rate left, Rate right, std::size_t joint) {
+  const auto secant_zero = [&] { return left.s + (right.s - left.s) * left.rate / (left.rate - right.rate); };
+  const double s = secant_zero();
+  JointPoint there;
+  if (segment.evaluate(s, 1, 1, there) != KinematicsStatus::Ok || there.d[1][joint] == 0) return s;
+  (there.d[1][joint] * left.rate > 0 ? left : right) = {s, there.d[1][joint]};
+  return secant_zero();
 }
 
 }  // namespace
@@ -47,7 +63,7 @@ std::optional<TravelOffence> find_offence(const PathSegment& segment, const std:
                                           std::span<double> excess) {
   const bool starts_inside = std::all_of(excess.begin(), excess.end(), [](double amount) { return amount == 0; });
   if (starts_inside && surely_inside(segment, joints)) return std::nullopt;
-  const auto nodes = segment.curve().nodes();
+  const auto nodes = segment.nodes();
   JointPoint left, right, turn;
   TravelOffence offence;
   const auto offends = [&](const JointPoint& point, double s) {
@@ -64,14 +80,11 @@ std::optional<TravelOffence> find_offence(const PathSegment& segment, const std:
   };
   if (segment.evaluate(nodes[0], 1, 1, left) != KinematicsStatus::Ok || offends(left, nodes[0])) return offence;
   for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-    const double h = nodes[i + 1] - nodes[i];
     if (segment.evaluate(nodes[i + 1], 1, -1, right) != KinematicsStatus::Ok) return offence;
     for (std::size_t j = 0; j < joints.size(); ++j) {
-      // Where the joint turns between the nodes: the zero of the secant of its derivative is near enough, nodes being
-      // dense.
       const double a = left.d[1][j], b = right.d[1][j];
       if (a * b >= 0) continue;
-      const double s = nodes[i] + h * a / (a - b);
+      const double s = turning_place(segment, {nodes[i], a}, {nodes[i + 1], b}, j);
       if (segment.evaluate(s, 0, 1, turn) == KinematicsStatus::Ok && offends(turn, s)) return offence;
     }
     if (offends(right, nodes[i + 1])) return offence;

@@ -33,7 +33,7 @@ Bounds constant_bounds(const PathView& path, const std::vector<JointLimits>& joi
     bounds.speed = std::min(bounds.speed, feed.bound(path.segment(i)));
     if (demand.accel_rise_mm_s2 > 0) bounds.acceleration = std::min(bounds.acceleration, demand.accel_rise_mm_s2);
     if (demand.accel_fall_mm_s2 > 0) bounds.acceleration = std::min(bounds.acceleration, demand.accel_fall_mm_s2);
-    const auto nodes = path.segment(i).curve().nodes();
+    const auto nodes = path.segment(i).nodes();
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       take(path.start(i) + nodes[k], k == 0 ? 1 : -1);
       if (k + 1 < nodes.size()) {

@@ -40,7 +40,7 @@ class GeometrySteps {
  public:
   GeometrySteps(const PathView& path, double begin, double end, double coarsest) {
     for (std::size_t i = path.find(begin, 1); i <= path.find(end, -1); ++i)
-      for (const double s : path.segment(i).curve().nodes()) nodes_.push_back(path.start(i) + s);
+      for (const double s : path.segment(i).nodes()) nodes_.push_back(path.start(i) + s);
     longest_.assign(nodes_.size(), coarsest);
     for (std::size_t i = 0; i + 1 < nodes_.size(); ++i) {
       // Where segments meet, the last node of one and the first of the next differ by rounding.

@@ -52,7 +52,7 @@ class PathSegment {
   [[nodiscard]] std::uint32_t moves_ended(double from, double to) const noexcept;
 
   /// Finds the joints along the whole segment, node by node from `start_joints`, so that `evaluate` has seeds. Called
-  /// once before use; the status of the first node that has no solution, and its path length, otherwise.
+  /// once before use; the status of the first place that has no solution, and its path length, otherwise.
   [[nodiscard]] KinematicsStatus resolve(std::span<const double> start_joints, double& s_failed);
 
   /// Joints and their derivatives up to `order` (0 to 3) at s in [0, length()]; `side` as in `Curve::evaluate`.
@@ -61,7 +61,12 @@ class PathSegment {
   /// As `evaluate` to the third order, without the joints themselves, d[0], where the derivatives can be had without.
   [[nodiscard]] KinematicsStatus derivatives(double s, int side, JointPoint& point) const noexcept;
 
-  /// The joints at a node of the curve, found by `resolve`.
+  /// Path lengths at which `resolve` found the joints: the curve's nodes, and others where the joints bend more than
+  /// the curve does. Ascending, the ends among them.
+  [[nodiscard]] std::span<const double> nodes() const noexcept {
+    return nodes_.empty() ? curve_->nodes() : std::span<const double>(nodes_);
+  }
+  /// The joints at one of them.
   [[nodiscard]] std::span<const double> joints_at_node(std::size_t node) const noexcept {
     return {seeds_.data() + node * joint_count_, joint_count_};
   }
@@ -83,7 +88,8 @@ class PathSegment {
   std::vector<std::uint32_t> ended_before_;  ///< moves that end before each stretch begins
   double length_ = 0;
   std::size_t joint_count_ = 0;
-  std::vector<double> seeds_;  ///< joint_count_ values a node of the curve
+  std::vector<double> nodes_;  ///< empty: the curve's
+  std::vector<double> seeds_;  ///< joint_count_ values a node
 };
 
 /// Segments in the order in which they are travelled.

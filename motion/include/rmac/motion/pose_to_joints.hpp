@@ -33,6 +33,8 @@ class PoseToJoints {
   /// d[1] to d[3] of `point` alone, at a curve's point with derivatives up to the third, where they do not depend on
   /// where the joints are. False where they do: then nothing is done. Real-time safe.
   [[nodiscard]] bool derivatives(const CurvePoint& curve, JointPoint& point) const noexcept;
+  /// Joints follow poses linearly: their derivatives depend on where the curve goes alone.
+  [[nodiscard]] bool linear() const noexcept { return coordinates_ > 0; }
   /// On a curve by the length of the tip's path, a joint moves by at most this much a mm; infinite where it depends on
   /// where the joints are.
   [[nodiscard]] double largest_rate(std::size_t joint) const noexcept;
