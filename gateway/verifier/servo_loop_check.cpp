@@ -7,17 +7,13 @@
 #include <limits>
 #include <tuple>
 
-#include "gateway/buses/built_in_interfaces.hpp"
-#include "gateway/events/fault_text.hpp"
-#include "gateway/mechanism/assembler.hpp"
 #include "gateway/verifier/axis_models.hpp"
-#include "rmac/motion/servo/servo_command.hpp"
-#include "rmac/motion/servo/servo_report.hpp"
+#include "gateway/verifier/machine_rig.hpp"
 
 namespace rmac::verifier {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+constexpr double kPeriod_s = MachineRig::kPeriod_s;
 /// The part of a joint's following-error bound that may be left half a second after a move.
 constexpr double kRestShare = 0.2;
 
@@ -96,20 +92,14 @@ struct SteadyWay {
 
 class ServoLoopCheck {
  public:
-  ServoLoopCheck(gateway::Mechanism& mechanism, Watch& watch)
-      : mechanism_(mechanism), loop_(*mechanism.loop), watch_(watch) {}
+  explicit ServoLoopCheck(MachineRig& rig)
+      : rig_(rig), device_(rig.mechanism().device), loop_(*rig.mechanism().loop), command_(rig.command) {}
 
   Checked run() {
-    command_.power = true;
-    constexpr int kMostCycles = 20'000;
-    for (int i = 0; !report_.follows; ++i) {
-      if (i == kMostCycles) return found("power", "the drives do not come up within 20 s", -1, {});
-      if (auto fine = cycle(); !fine) return fine;
-      hold_still();
-    }
+    if (auto fine = rig_.power_up(); !fine) return fine;
     if (auto fine = rest(); !fine) return fine;
     for (std::size_t j = 0; j < loop_.joint_count(); ++j) {
-      const sdk::Joint& joint = mechanism_.device.joints[j];
+      const sdk::Joint& joint = device_.joints[j];
       if (joint.method == ControlMethod::Force) continue;
       const Way way = Way::within(joint, command_.setpoint.position[j]);
       for (const bool back : {false, true}) {
@@ -118,8 +108,8 @@ class ServoLoopCheck {
       const SteadyWay steady = SteadyWay::within(joint, command_.setpoint.position[j]);
       if (auto fine = go_steadily(j, steady).and_then([&] { return rest(); }); !fine) return fine;
     }
-    for (std::size_t i = 0; i < mechanism_.device.spindles.size(); ++i) {
-      for (const double rpm : {mechanism_.device.spindles[i].max_speed_rpm, 0.0}) {
+    for (std::size_t i = 0; i < device_.spindles.size(); ++i) {
+      for (const double rpm : {device_.spindles[i].max_speed_rpm, 0.0}) {
         if (auto fine = turn(i, rpm); !fine) return fine;
       }
     }
@@ -127,31 +117,9 @@ class ServoLoopCheck {
   }
 
  private:
-  [[nodiscard]] const sdk::Joint& joint_of(std::size_t number) const {
-    return sdk::joint_at(mechanism_.device, number);
-  }
-  void hold_still() {
-    const auto hold = loop_.hold_position();
-    std::copy(hold.begin(), hold.begin() + static_cast<std::ptrdiff_t>(loop_.joint_count()),
-              command_.setpoint.position.begin());
-    command_.setpoint.velocity.fill(0);
-    command_.setpoint.acceleration.fill(0);
-  }
+  [[nodiscard]] const sdk::Joint& joint_of(std::size_t number) const { return sdk::joint_at(device_, number); }
   [[nodiscard]] tl::unexpected<CounterExample> fault(std::string what) const {
-    const auto shown = [&](const char* name, const auto& values) {
-      return named(name, std::span(values).first(loop_.joint_count_with_held()));
-    };
-    return found("stability", std::move(what), cycles_,
-                 {shown("setpoint", report_.position_set), shown("position", report_.position),
-                  shown("effort", report_.effort)});
-  }
-
-  Checked cycle() {
-    watch_.step("a servo cycle on the axis models");
-    loop_.cycle(command_, report_);
-    ++cycles_;
-    if (report_.fault.kind != ServoFault::Kind::None) return fault(gateway::describe(report_.fault, &mechanism_));
-    return {};
+    return rig_.fault("stability", std::move(what));
   }
 
   Checked go(std::size_t j, const Way& way, bool back) {
@@ -165,7 +133,7 @@ class ServoLoopCheck {
   Checked follow(std::size_t j, const std::array<double, 3>& setpoint) {
     std::tie(command_.setpoint.position[j], command_.setpoint.velocity[j], command_.setpoint.acceleration[j]) =
         std::tuple_cat(setpoint);
-    return cycle();
+    return rig_.cycle();
   }
 
   /// At a steady speed the effort hardly changes.
@@ -175,8 +143,8 @@ class ServoLoopCheck {
     for (int i = 1; i <= cycles; ++i) {
       if (auto fine = follow(j, way.at(i * kPeriod_s)); !fine) return fine;
       if (!way.is_settled(i * kPeriod_s)) continue;
-      least = std::min(least, report_.effort[j]);
-      most = std::max(most, report_.effort[j]);
+      least = std::min(least, rig_.report().effort[j]);
+      most = std::max(most, rig_.report().effort[j]);
     }
     const sdk::Joint& joint = joint_of(j);
     if (most - least <= kSwingShare * joint.max_effort) return {};
@@ -188,19 +156,19 @@ class ServoLoopCheck {
 
   /// A spindle comes to a speed in its time, and has it a second later.
   Checked turn(std::size_t i, double rpm) {
-    const sdk::Spindle& spindle = mechanism_.device.spindles[i];
-    const auto reached = [&] { return std::abs(report_.spindle_rpm[i] - rpm) <= spindle.speed_tolerance_rpm; };
+    const sdk::Spindle& spindle = device_.spindles[i];
+    const auto reached = [&] { return std::abs(rig_.report().spindle_rpm[i] - rpm) <= spindle.speed_tolerance_rpm; };
     command_.spindle_rpm[i] = rpm;
     const auto cycles = static_cast<int>(std::ceil(spindle.speed_timeout_s / kPeriod_s));
     for (int k = 0; k < cycles && (k == 0 || !reached()); ++k) {
-      if (auto fine = cycle(); !fine) return fine;
+      if (auto fine = rig_.cycle(); !fine) return fine;
     }
     const bool in_time = reached();
     if (auto fine = rest(); !fine) return fine;
     if (in_time && reached()) return {};
     return fault(
         fmt::format("spindle {} {} {} rpm; it turns at {}, its SpeedTolerance is {} rpm, and its SpeedTimeout {} s", i,
-                    in_time ? "does not stay at" : "does not come to", rpm, report_.spindle_rpm[i],
+                    in_time ? "does not stay at" : "does not come to", rpm, rig_.report().spindle_rpm[i],
                     spindle.speed_tolerance_rpm, spindle.speed_timeout_s));
   }
 
@@ -208,10 +176,10 @@ class ServoLoopCheck {
   Checked rest() {
     constexpr int kSettle = 500, kWatched = 500;
     for (int i = 0; i < kSettle + kWatched; ++i) {
-      if (auto fine = cycle(); !fine) return fine;
+      if (auto fine = rig_.cycle(); !fine) return fine;
       for (std::size_t j = 0; i >= kSettle && j < loop_.joint_count_with_held(); ++j) {
         const sdk::Joint& joint = joint_of(j);
-        const double off = std::abs(report_.position[j] - report_.position_set[j]);
+        const double off = std::abs(rig_.report().position[j] - rig_.report().position_set[j]);
         const double bound = kRestShare * joint.max_following_error;
         if (off <= bound || joint.method == ControlMethod::Force || joint.max_following_error == 0) continue;
         return fault(
@@ -223,12 +191,10 @@ class ServoLoopCheck {
     return {};
   }
 
-  gateway::Mechanism& mechanism_;
-  ServoLoop& loop_;
-  Watch& watch_;
-  ServoCommand command_;
-  ServoReport report_;
-  std::int64_t cycles_ = 0;
+  MachineRig& rig_;
+  const sdk::DeviceObject& device_;
+  const ServoLoop& loop_;
+  ServoCommand& command_;
 };
 
 }  // namespace
@@ -243,17 +209,8 @@ void check_servo_loops(const Task& task, Watch& watch, ModuleReport& report, con
     tell();
     return;
   }
-  // Inputs and outputs are not these loops' business, and their device may not be here.
-  device.digital_io_interface = {};
-  device.inputs.clear();
-  device.drive_inputs.clear();
-  device.outputs.clear();
-  gateway::BusRegistry registry;
-  gateway::add_built_in_interfaces(registry, kPeriod_s);
-  watch.step("assembling");
-  auto mechanism = gateway::assemble(device, {.period_s = kPeriod_s}, task.loader, registry);
-  Checked checked = mechanism ? ServoLoopCheck(**mechanism, watch).run()
-                              : Checked(found("assembling", mechanism.error().message, -1, {}));
+  auto rig = MachineRig::assemble(task, device, false, watch);
+  const Checked checked = rig ? ServoLoopCheck(**rig).run() : Checked(tl::unexpected(rig.error()));
   if (checked) {
     report.passed.emplace_back("on the axis models each joint goes there and back, follows and comes to rest");
     if (!device.spindles.empty()) report.passed.emplace_back("each spindle comes to its full speed, and to rest");

@@ -225,7 +225,7 @@ ModuleReport supervise(const Job& job, const Task& task, const Bounds& bounds) {
     report.refusal = example_at(*place, "confinement",
                                 fmt::format("it asks the system for {}, which no module may while it is verified,",
                                             system_call_name(place->forbidden_call)));
-  } else if (status != 0 || std::strcmp(place->call, "end") != 0) {
+  } else if (status != 0 || std::strcmp(place->doing, "end") != 0) {
     report.refusal = example_at(*place, "crash", ending(status, report.cpu_s, bounds));
   }
   return report;

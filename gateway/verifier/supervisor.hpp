@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gateway/verifier/confinement.hpp"
+#include "gateway/verifier/confinement/confinement.hpp"
 #include "gateway/verifier/worker.hpp"
 
 namespace rmac::verifier {

@@ -27,6 +27,12 @@ std::string line_of_module(const std::string& stack) {
 
 }  // namespace
 
+void Watch::step(const char* doing) noexcept {
+  copy_text(doing, place_.doing);
+  place_.in_call.store(false, std::memory_order_relaxed);
+  place_.steps.fetch_add(1, std::memory_order_release);
+}
+
 void Watch::note(const char* call, std::initializer_list<Argument> arguments) noexcept {
   copy_text(call, place_.call);
   place_.values_count = 0;
@@ -65,7 +71,9 @@ Checked Watch::misdeed() const {
 }
 
 CounterExample example_at(const Place& place, std::string check, std::string what) {
-  CounterExample example{std::move(check), fmt::format("{} in {}", what, place.call), -1, {}};
+  const bool in_call = place.in_call.load(std::memory_order_relaxed);
+  CounterExample example{std::move(check), fmt::format("{} in {}", what, in_call ? place.call : place.doing), -1, {}};
+  if (!in_call) return example;
   for (std::uint32_t i = 0; i < std::min<std::size_t>(place.values_count, std::size(place.values)); ++i) {
     const Place::Numbers& value = place.values[i];
     example.values.push_back(named(

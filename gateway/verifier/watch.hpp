@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <optional>
 #include <span>
@@ -25,7 +26,9 @@ struct Place {
 
   std::atomic<std::uint64_t> steps;  ///< grows with each call, so a call that does not return shows
   std::atomic<int> forbidden_call;   ///< number of the system call that it may not make, and made
-  char call[64];
+  char doing[64];                    ///< what the worker is at
+  char call[64];                     ///< of the module, last
+  std::atomic<bool> in_call;         ///< it has not come back
   std::uint32_t values_count;
   Numbers values[3];
 };
@@ -42,20 +45,27 @@ class Watch {
   explicit Watch(Place& place) : place_(place) {}
 
   /// A call off the cycle, or a step that is no call of the module.
-  void step(const char* call) noexcept { note(call, {}); }
+  void step(const char* doing) noexcept;
 
   /// A call of the cycle, with what it is given.
   template <typename Function>
   decltype(auto) on_cycle(const char* call, std::initializer_list<Argument> arguments, Function&& function) noexcept {
+    const InCall in_call(place_);
     note(call, arguments);
     const Armed armed(*this);
     return function();
+  }
+
+  /// Calls of the cycle in great number, which are not watched one by one.
+  void calls_on_cycle(const char* call, const std::function<void()>& calls) noexcept {
+    on_cycle(call, {}, [&] { calls(); });
   }
 
   /// A call of a port that has no state: `function` is given an output in place of `output`, and may be called again.
   template <typename Function>
   auto stateless(const char* call, std::initializer_list<Argument> arguments, std::span<double> output,
                  Function&& function) noexcept {
+    const InCall in_call(place_);
     const std::span<double> lent = output_.lend(output);
     const Judged judged(*this, call, output, [&] { (void)function(lent); });
     return on_cycle(call, arguments, [&] { return function(lent); });
@@ -66,6 +76,15 @@ class Watch {
   [[nodiscard]] Checked misdeed() const;
 
  private:
+  struct InCall {
+    explicit InCall(Place& where) : place(where), before(place.in_call.exchange(true, std::memory_order_relaxed)) {}
+    InCall(const InCall&) = delete;
+    InCall& operator=(const InCall&) = delete;
+    ~InCall() { place.in_call.store(before, std::memory_order_relaxed); }
+    Place& place;
+    bool before;
+  };
+
   struct Armed {
     /// The first misdeed is enough; looking where others come from takes long.
     explicit Armed(Watch& owner) : watch(owner) {
@@ -118,7 +137,8 @@ class Watch {
   std::optional<CounterExample> misdeed_;
 };
 
-/// What the place shows, in the words of a counter-example.
+/// What the place shows, in the words of a counter-example: the call that has not come back, with what it was given, or
+/// else what the worker is at.
 [[nodiscard]] CounterExample example_at(const Place& place, std::string check, std::string what);
 
 }  // namespace rmac::verifier

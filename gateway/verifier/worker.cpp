@@ -14,11 +14,13 @@
 #include "gateway/rmac_config/verified_bounds.hpp"
 #include "gateway/verification/checks/actuator_map_check.hpp"
 #include "gateway/verification/checks/kinematics_check.hpp"
+#include "gateway/verification/checks/port_calls.hpp"
+#include "gateway/verification/checks/reach_check.hpp"
 #include "gateway/verification/checks/servo_law_check.hpp"
-#include "gateway/verification/checks/stateless_check.hpp"
+#include "gateway/verifier/planned_moves.hpp"
+#include "gateway/verifier/samples.hpp"
 #include "gateway/verifier/servo_loop_check.hpp"
 #include "gateway/verifier/watched_ports.hpp"
-#include "rmac/motion/frame.hpp"
 #include "rmac/sdk/device_driver.hpp"
 #include "rmac/sdk/servo_law_names.hpp"
 
@@ -133,6 +135,22 @@ Misdeed misdeed_of(const Watch& watch) {
 
 constexpr const char* kRealTime = "on the cycle it neither allocates nor locks nor calls the system";
 
+/// That a port keeps nothing between its calls.
+bool take_stateless(std::vector<PortCall> calls, Watch& watch, ModuleReport& report, const Tell& tell) {
+  StatelessCase given{std::move(calls)};
+  given.misdeed = misdeed_of(watch);
+  given.makes_calls = [&watch](const char* function, const std::function<void()>& make) {
+    watch.calls_on_cycle(function, make);
+  };
+  watch.step("calls that are repeated");
+  const auto made = check_stateless(given);
+  return take(made ? Checked() : Checked(tl::unexpected(made.error())),
+              fmt::format("the same call has the same answer, {} calls of each function later and beside another "
+                          "thread's",
+                          made.value_or(0)),
+              report, tell);
+}
+
 /// How the calls of a port without state were made, none of which was found wanting.
 bool take_conduct(const Watch& watch, ModuleReport& report, const Tell& tell) {
   if (!take(watch.misdeed(), kRealTime, report, tell)) return false;
@@ -148,23 +166,11 @@ bool take_conduct(const Watch& watch, ModuleReport& report, const Tell& tell) {
   return true;
 }
 
-JointRange range_of(const JointLimits& limits) {
-  constexpr double kRound = 720;
-  const double least = ends_below(limits) ? limits.min : (ends_above(limits) ? limits.max - kRound : -kRound);
-  const double most = ends_above(limits) ? limits.max : least + 2 * kRound;
-  return {least, most};
-}
-
-/// None, a long one off the spindle's line, and an angle head.
-std::vector<Frame> tools() {
-  return {Frame{}, {{1, -2, 300}, {1, 0, 0, 0}}, normalized({{3, 0, 60}, {0.98, 0.1, -0.05, 0.1642}})};
-}
-
 void check_kinematics_module(const Task& task, Watch& watch, ModuleReport& report, const Tell& tell) {
   const sdk::DeviceObject& device = task.device;
   const auto check = [&](const std::shared_ptr<Kinematics>& kinematics) {
     const WatchedKinematics watched(kinematics, watch);
-    KinematicsCase given{{}, tools(), task.samples, task.seed, misdeed_of(watch), kinematics.get()};
+    KinematicsCase given{{}, sample_tools(), task.samples, task.seed, misdeed_of(watch)};
     for (const sdk::Joint& joint : device.joints) given.ranges.push_back(range_of(joint.limits));
     Checked types;
     for (std::size_t j = 0; types && j < std::min(device.joints.size(), kinematics->joint_count()); ++j) {
@@ -180,10 +186,9 @@ void check_kinematics_module(const Task& task, Watch& watch, ModuleReport& repor
                             "poles among them",
                             task.samples),
                 report, tell) &&
-           take(check_stateless(watched, given),
-                "the same call has the same answer, millions of calls later and beside another thread's", report,
+           take(check_reach(watched, given), "what is beyond its reach is found out of reach, however little", report,
                 tell) &&
-           take_conduct(watch, report, tell);
+           take_stateless(calls_of(*kinematics, given), watch, report, tell) && take_conduct(watch, report, tell);
   };
   check_module<Kinematics>(task, device.kinematics, watch, report, tell, {}, check);
 }
@@ -284,6 +289,7 @@ std::vector<Job> jobs_for(const sdk::DeviceObject& device) {
     jobs.push_back({"digital I/O interface", device.digital_io_interface.name, check_interface});
   }
   jobs.push_back({"servo loops", "", check_servo_loops});
+  jobs.push_back({"planned moves", "", check_planned_moves});
   return jobs;
 }
 

@@ -28,10 +28,10 @@ REFUSALS = {
     "EatsMemory": ("crash", "ABRT", "create"),
     "IsSlow": ("call time", "take more than 20 us", "in inverse", "pose"),
     "IsSlowInASlab": ("call time", "200 us are allowed at worst, in inverse", "pose"),
-    "Remembers": ("state", "inverse answers otherwise", "keeps something"),
-    "SharesScratch": ("state", "inverse answers otherwise", "another thread"),
-    "Tires": ("state", "inverse answers otherwise"),
-    "Saturates": ("inverse", "somewhat beyond"),
+    "Remembers": ("state", "answers otherwise", "keeps something"),
+    "SharesScratch": ("state", "answers otherwise", "another thread"),
+    "Tires": ("state", "answers otherwise"),
+    "Saturates": ("inverse", "beyond its reach"),
     "OverrunsJacobian": ("overrun", "outside of its output in jacobian", "joints"),
 }
 

@@ -10,22 +10,18 @@
 #include <optional>
 #include <random>
 
-#include "rmac/motion/vector.hpp"
+#include "gateway/verification/checks/pose_bounds.hpp"
 
 namespace rmac::verifier {
 namespace {
 
-constexpr double kTipBound_mm = 1e-9, kAxisBound_rad = 1e-9;
+constexpr double kTipBound_mm = kExact.tip_mm, kAxisBound_rad = kExact.axis_rad;
 /// How much the pose must change, mm and rad alike, a mm or degree of a joint in the worst direction, for the inverse
 /// to be held to giving the joints back: to what the bounds above leave open.
 constexpr double kDetermined = 1e-4;
 constexpr std::size_t kMostSolutions = 16;
 
 using Joints = std::vector<double>;
-
-NamedNumbers named_pose(const char* name, const ToolPose& pose) {
-  return {name, {pose.tip[0], pose.tip[1], pose.tip[2], pose.axis[0], pose.axis[1], pose.axis[2]}};
-}
 
 class KinematicsCheck {
  public:
@@ -107,7 +103,7 @@ class KinematicsCheck {
     constexpr int kSolutionsEvery = 5;
     auto fine = check_jacobian().and_then([&] { return check_types(); }).and_then([&] { return check_inverse(); });
     if (fine && sample_ % kSolutionsEvery == 0) {
-      fine = check_solutions().and_then([&] { return check_beyond(); });
+      fine = check_solutions();
     }
     ++sample_;
     return fine;
@@ -115,9 +111,7 @@ class KinematicsCheck {
 
   [[nodiscard]] tl::unexpected<CounterExample> fault(const char* check, std::string what,
                                                      std::vector<NamedNumbers> more = {}) const {
-    std::vector<NamedNumbers> values{
-        named("joints", joints_),
-        {"tool", {tool_.p[0], tool_.p[1], tool_.p[2], tool_.q[0], tool_.q[1], tool_.q[2], tool_.q[3]}}};
+    std::vector<NamedNumbers> values{named("joints", joints_), named_tool(tool_)};
     for (NamedNumbers& value : more) values.push_back(std::move(value));
     return found(check, std::move(what), sample_, std::move(values));
   }
@@ -184,16 +178,9 @@ class KinematicsCheck {
     return std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
   }
 
-  /// By how much the forward of `joints` misses the pose, in words; nothing where it does not.
+  /// By how much the forward of `joints` misses the pose at hand, in words; nothing where it does not.
   [[nodiscard]] std::optional<std::string> miss(std::span<const double> joints) const {
-    ToolPose again;
-    kinematics_.forward(joints, tool_, again);
-    const double tip = distance(again.tip, pose_.tip), axis = distance(again.axis, pose_.axis);
-    if (tip <= kTipBound_mm && axis <= kAxisBound_rad) return std::nullopt;
-    return fmt::format(
-        "the forward of its joints is {} mm and {} rad off the pose asked for; {} mm and {} rad are "
-        "allowed",
-        tip, axis, kTipBound_mm, kAxisBound_rad);
+    return verifier::miss(kinematics_, joints, tool_, pose_);
   }
 
   Checked check_inverse() {
@@ -277,22 +264,6 @@ class KinematicsCheck {
     return fault("inverse", "it does not give the solution that is nearest to the seed",
                  {named_pose("pose", pose_), named("seed", seed), named("answer", answer),
                   named("nearest", std::span(all_).first(n_))});
-  }
-
-  /// An inverse that stops at some end would have the machine stand there, and think that it is elsewhere.
-  Checked check_beyond() {
-    constexpr double kBeyond = 0.05;  // of the travel, on either side
-    Joints answer(n_, std::nan(""));
-    for (std::size_t j = 0; j < n_; ++j) {
-      const double further = kBeyond * (given_.ranges[j].max - given_.ranges[j].min);
-      joints_[j] = random(given_.ranges[j].min - further, given_.ranges[j].max + further);
-    }
-    kinematics_.forward(joints_, tool_, pose_);
-    if (kinematics_.inverse(pose_, tool_, joints_, answer) != KinematicsStatus::Ok) return {};
-    const auto off = miss(answer);
-    if (!off) return {};
-    return fault("inverse", *off + "; it is somewhat beyond the joints' travel, and could be out of reach",
-                 {named_pose("pose", pose_), named("answer", answer)});
   }
 
   Checked check_no_number() {

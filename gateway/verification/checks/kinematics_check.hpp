@@ -18,7 +18,6 @@ struct KinematicsCase {
   int samples = 100'000;
   std::uint64_t seed = 1;
   Misdeed misdeed{};
-  const Kinematics* unwatched = nullptr;  ///< the same, for calls from several threads; null: there are none
 };
 
 /// What every kinematics must keep, at the corners of the joints' travel, at its ends, with rotary joints at quarter
@@ -28,7 +27,6 @@ struct KinematicsCase {
 /// - the Jacobian is the derivative of the forward, and everywhere the same where that is claimed;
 /// - joints are of the type that they are said to be;
 /// - all solutions are solutions, the nearest first, the one that the pose was made of among them;
-/// - a pose somewhat beyond their travel is given by the joints that the inverse finds for it, or is out of reach;
 /// - a pose that is no number is out of reach.
 [[nodiscard]] Checked check_kinematics(const Kinematics& kinematics, const KinematicsCase& given);
 

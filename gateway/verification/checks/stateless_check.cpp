@@ -2,148 +2,134 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstring>
 #include <ctime>
-#include <optional>
+#include <map>
 #include <random>
+#include <string_view>
 #include <thread>
 
 namespace rmac::verifier {
 namespace {
 
-constexpr std::size_t kCalls = 500;  ///< that are made again and again
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kRepetitions = 20'000;
+constexpr std::int64_t kRepetitions = 20'000;
 #else
-constexpr int kRepetitions = 2'000'000;  ///< of forward and inverse each
+constexpr std::int64_t kRepetitions = 3'500'000;  ///< of each function
 #endif
-constexpr double kRepetition_s = 4;   ///< of CPU time at most
-constexpr double kBeside_s = 0.2;     ///< of CPU time, both threads together
-constexpr std::size_t kLook = 1'000;  ///< calls between looks at the time
+constexpr std::int64_t kAtOnce = 1'000;  ///< calls of one function between looks at the time
+constexpr double kBeside_s = 0.2;        ///< of CPU time, both threads together
 
-using Joints = std::vector<double>;
-
-/// A call of the forward, one of the inverse, and what they answered at first.
-struct Calls {
-  Joints joints;
-  Frame tool;
-  ToolPose pose;
-  Joints seed, answer;
-  KinematicsStatus status = KinematicsStatus::Ok;
-};
+using Answer = std::vector<double>;
 
 double cpu_time_s() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-bool same(std::span<const double> one, std::span<const double> other) {
-  return std::memcmp(one.data(), other.data(), one.size_bytes()) == 0;
-}
-
 class StatelessCheck {
  public:
-  StatelessCheck(const Kinematics& kinematics, const KinematicsCase& given)
-      : kinematics_(kinematics), given_(given), random_(given.seed + 1) {}
+  explicit StatelessCheck(const StatelessCase& given) : given_(given), random_(given.seed) {}
 
-  Checked run() {
-    for (std::size_t i = 0; i < kCalls; ++i) calls_.push_back(first_calls(i));
-    return again_and_again().and_then([&] { return from_two_threads(); });
+  tl::expected<std::int64_t, CounterExample> run() {
+    for (std::size_t i = 0; i < given_.calls.size(); ++i) take_first_answer(i);
+    if (auto fine = misdeed_or(given_.misdeed, {}); !fine) return tl::unexpected(fine.error());
+    const double begun_s = cpu_time_s();
+    std::int64_t made = 0;
+    for (; made < kRepetitions && cpu_time_s() - begun_s <= given_.most_cpu_s; made += kAtOnce) {
+      std::shuffle(functions_.begin(), functions_.end(), random_);
+      for (const std::vector<std::size_t>& calls : functions_) {
+        if (auto fine = misdeed_or(given_.misdeed, repeat(calls)); !fine) return tl::unexpected(fine.error());
+      }
+    }
+    if (auto fine = from_two_threads(); !fine) return tl::unexpected(fine.error());
+    return made;
   }
 
  private:
-  double random(double least, double most) { return std::uniform_real_distribution<>(least, most)(random_); }
-
-  Calls first_calls(std::size_t i) {
-    constexpr double kNearby = 1e-3;
-    Calls calls;
-    calls.tool = given_.tools[i % given_.tools.size()];
-    for (const JointRange& range : given_.ranges) {
-      calls.joints.push_back(random(range.min, range.max));
-      calls.seed.push_back(calls.joints.back() + random(-kNearby, kNearby));
-    }
-    kinematics_.forward(calls.joints, calls.tool, calls.pose);
-    calls.answer.resize(calls.joints.size());
-    calls.status = kinematics_.inverse(calls.pose, calls.tool, calls.seed, calls.answer);
-    return calls;
+  /// An answer's place, with what no port answers where nothing is.
+  static void make(const PortCall& call, std::span<double> answer) {
+    std::fill(answer.begin(), answer.end(), std::nan(""));
+    call.make(answer);
   }
 
-  /// Which function answers otherwise than at first; nullptr where none does. Any thread.
-  static const char* changed(const Kinematics& kinematics, const Calls& calls, std::span<double> answer) {
-    ToolPose pose;
-    kinematics.forward(calls.joints, calls.tool, pose);
-    if (!same(pose.tip, calls.pose.tip) || !same(pose.axis, calls.pose.axis)) return "forward";
-    const KinematicsStatus status = kinematics.inverse(calls.pose, calls.tool, calls.seed, answer);
-    const bool as_before = status == calls.status && (status != KinematicsStatus::Ok || same(answer, calls.answer));
-    return as_before ? nullptr : "inverse";
+  void take_first_answer(std::size_t i) {
+    const PortCall& call = given_.calls[i];
+    Answer& answer = answers_.emplace_back(call.answers);
+    most_answers_ = std::max(most_answers_, call.answers);
+    given_.makes_calls(call.function, [&] { make(call, answer); });
+    const auto [place, is_new] = places_.try_emplace(call.function, functions_.size());
+    if (is_new) functions_.emplace_back();
+    functions_[place->second].push_back(i);
   }
 
-  [[nodiscard]] Checked fault(const char* function, const char* when, const Calls& calls) const {
-    const auto& [tip, axis] = calls.pose;
-    return found("state", std::string(function) + " answers otherwise than before to the same arguments, " + when, -1,
-                 {named("joints", calls.joints),
-                  {"tool",
-                   {calls.tool.p[0], calls.tool.p[1], calls.tool.p[2], calls.tool.q[0], calls.tool.q[1],
-                    calls.tool.q[2], calls.tool.q[3]}},
-                  {"pose", {tip[0], tip[1], tip[2], axis[0], axis[1], axis[2]}},
-                  named("seed", calls.seed),
-                  named("answer before", calls.answer)});
+  [[nodiscard]] bool answers_as_before(std::size_t i, std::span<double> room) const {
+    const std::span<double> answer = room.first(given_.calls[i].answers);
+    make(given_.calls[i], answer);
+    return std::memcmp(answer.data(), answers_[i].data(), answer.size_bytes()) == 0;
   }
 
-  Checked again_and_again() {
-    Joints answer(given_.ranges.size());
-    const double begun_s = cpu_time_s();
-    for (int i = 0; i < kRepetitions; ++i) {
-      const Calls& calls = calls_[random_() % kCalls];
-      const char* const function = changed(kinematics_, calls, answer);
-      if (auto proper = misdeed_or(i % static_cast<int>(kLook) == 0 ? given_.misdeed : Misdeed(), {}); !proper) {
-        return proper;
+  [[nodiscard]] Checked fault(std::size_t i, const char* when) const {
+    const PortCall& call = given_.calls[i];
+    std::vector<NamedNumbers> values = call.arguments;
+    std::span<const double> answer = answers_[i];
+    while (answer.size() > 1 && answer.back() == 0) answer = answer.first(answer.size() - 1);
+    values.push_back(named("answer before", answer));
+    return found("state", std::string(call.function) + " answers otherwise than before to the same arguments, " + when,
+                 -1, std::move(values));
+  }
+
+  /// Calls of one function, in an order of their own.
+  Checked repeat(const std::vector<std::size_t>& calls) {
+    Answer room(most_answers_);
+    std::size_t odd = given_.calls.size();
+    given_.makes_calls(given_.calls[calls.front()].function, [&] {
+      for (std::int64_t made = 0; made < kAtOnce && odd == given_.calls.size(); ++made) {
+        const std::size_t i = calls[random_() % calls.size()];
+        if (!answers_as_before(i, room)) odd = i;
       }
-      if (function != nullptr) return fault(function, "after other calls: it keeps something between calls", calls);
-      if (i % static_cast<int>(kLook) == 0 && cpu_time_s() - begun_s > kRepetition_s) break;
-    }
-    return given_.misdeed ? given_.misdeed() : Checked();
+    });
+    if (odd == given_.calls.size()) return {};
+    return fault(odd, "after other calls: it keeps something between calls");
   }
 
-  /// The same calls in two orders at once, not watched: who watches is one thread's.
+  /// All calls in two orders at once.
   Checked from_two_threads() {
-    if (given_.unwatched == nullptr) return {};
+    if (!given_.from_two_threads) return {};
+    const std::size_t count = given_.calls.size();
     std::atomic<bool> over{false};
-    struct Found {
-      const char* function = nullptr;
-      std::size_t call = 0;
-    };
+    std::size_t odd_here = count, odd_there = count;
     const double begun_s = cpu_time_s();
-    const auto make_calls = [&](std::uint32_t seed, Found& found) {
+    const auto make_calls = [&](std::uint32_t seed, std::size_t& odd) {
       std::minstd_rand random(seed);
-      Joints answer(given_.ranges.size());
-      for (std::size_t made = 1; !over && found.function == nullptr; ++made) {
-        found.call = random() % kCalls;
-        found.function = changed(*given_.unwatched, calls_[found.call], answer);
-        if (made % kLook == 0 && cpu_time_s() - begun_s > kBeside_s) break;
+      Answer room(most_answers_);
+      for (std::int64_t made = 1; !over && odd == count; ++made) {
+        const std::size_t i = random() % count;
+        if (!answers_as_before(i, room)) odd = i;
+        if (made % kAtOnce == 0 && cpu_time_s() - begun_s > kBeside_s) break;
       }
       over = true;
     };
-    Found here, there;
-    std::thread beside([&] { make_calls(1, there); });
-    make_calls(2, here);
+    std::thread beside([&] { make_calls(1, odd_there); });
+    make_calls(2, odd_here);
     beside.join();
-    for (const Found& one : {here, there}) {
-      if (one.function == nullptr) continue;
-      return fault(one.function, "while another thread calls it: planner and servo thread share it", calls_[one.call]);
-    }
-    return {};
+    const std::size_t odd = std::min(odd_here, odd_there);
+    if (odd == count) return {};
+    return fault(odd, "while another thread calls it: planner and servo thread share it");
   }
 
-  const Kinematics& kinematics_;
-  const KinematicsCase& given_;
+  const StatelessCase& given_;
   std::mt19937_64 random_;
-  std::vector<Calls> calls_;
+  std::vector<Answer> answers_;  ///< of each call, at first
+  std::size_t most_answers_ = 0;
+  std::map<std::string_view, std::size_t> places_;   ///< of each function in `functions_`, until these are shuffled
+  std::vector<std::vector<std::size_t>> functions_;  ///< the calls of each
 };
 
 }  // namespace
 
-Checked check_stateless(const Kinematics& kinematics, const KinematicsCase& given) {
-  return StatelessCheck(kinematics, given).run();
+tl::expected<std::int64_t, CounterExample> check_stateless(const StatelessCase& given) {
+  return StatelessCheck(given).run();
 }
 
 }  // namespace rmac::verifier

@@ -1,4 +1,4 @@
-#include "gateway/verifier/confinement.hpp"
+#include "gateway/verifier/confinement/confinement.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 #include <cstring>
 
 #include "gateway/processes/rights.hpp"
-#include "gateway/verifier/system_call_filter.hpp"
+#include "gateway/verifier/confinement/system_call_filter.hpp"
 
 namespace rmac::verifier {
 namespace {

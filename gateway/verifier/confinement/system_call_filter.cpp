@@ -1,4 +1,4 @@
-#include "gateway/verifier/system_call_filter.hpp"
+#include "gateway/verifier/confinement/system_call_filter.hpp"
 
 #include <fmt/format.h>
 #include <sched.h>
@@ -11,7 +11,7 @@
 #include <cstring>
 #include <memory>
 
-#include "gateway/verifier/confinement.hpp"
+#include "gateway/verifier/confinement/confinement.hpp"
 
 namespace rmac::verifier {
 namespace {

@@ -156,7 +156,7 @@ class BadKinematics final : public Kinematics {
       compute(500);
       joints[1] = scratch;
     }
-    constexpr int kTiring = 1'500'000;
+    constexpr int kTiring = 3'000'000;
     static std::atomic<int> calls{0};
     if (kDefect == Defect::Tires && ++calls > kTiring) joints[1] += 5;
     constexpr double kReach_mm = 50.5;
