@@ -21,6 +21,7 @@ JointBounds bounds(const sdk::Joint& joint, double period_s) {
   return {.velocity = joint.max_measured_speed > 0 ? joint.max_measured_speed : kSpeedShare * speed,
           .jump = joint.max_jump > 0 ? joint.max_jump : kJumpCycles * speed * period_s,
           .stop_deceleration = joint.limits.max_acceleration,
+          .stop_jerk = joint.limits.max_jerk,
           .min_position = ends_below(joint.limits) ? joint.limits.min : -no_end,
           .max_position = ends_above(joint.limits) ? joint.limits.max : no_end};
 }

@@ -5,17 +5,30 @@
 #include <utility>
 
 namespace rmac {
+namespace {
+
+std::vector<MotionBounds> stop_bounds(std::span<const ServoJoint> joints) {
+  constexpr double kAnySpeed = 1e9;  // it falls only
+  std::vector<MotionBounds> result;
+  for (const ServoJoint& joint : joints) {
+    const double deceleration = joint.bounds.stop_deceleration;
+    result.push_back({-kAnySpeed, kAnySpeed, -deceleration, deceleration, joint.bounds.stop_jerk});
+  }
+  return result;
+}
+
+}  // namespace
 
 Setpoints::Setpoints(const ServoLoopParts& parts, IndexSet late)
     : joints_(parts.joints),
       kinematic_joints_(parts.kinematics->joint_count()),
       period_s_(parts.period_s),
       virtual_mode_(parts.virtual_mode),
-      late_(late) {
+      late_(late),
+      brake_(stop_bounds(parts.joints)) {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     followers_.emplace_back(joints_[j], period_s_);
     force_loops_.emplace_back(joints_[j].force, period_s_);
-    decelerations_[j] = joints_[j].bounds.stop_deceleration;
   }
   if (virtual_mode_) hold_at(parts.virtual_start);
 }
@@ -78,11 +91,11 @@ void Setpoints::follow_force(std::size_t joint, double wanted, double measured) 
 
 void Setpoints::brake() noexcept {
   on_the_way_ = 0;
-  brake_.step(period_s_);
+  braked_s_ += period_s_;
+  brake_.at(braked_s_, braking_);
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const double before = position_[j], velocity_before = velocity_[j];
-    const double velocity = brake_.velocity(j);
-    set(j, {before + velocity * period_s_, velocity, brake_.acceleration(j)});
+    set(j, {braking_.position[j], braking_.velocity[j], braking_.acceleration[j]});
     note_way(j, before, velocity_before);
   }
 }
@@ -116,7 +129,11 @@ void Setpoints::let_go() noexcept {
 }
 
 void Setpoints::begin_braking() noexcept {
-  brake_.begin({velocity_.data(), joints_.size()}, {decelerations_.data(), joints_.size()});
+  braking_.position = position_;
+  braking_.velocity = velocity_;
+  braking_.acceleration = acceleration_;
+  brake_.begin(braking_);
+  braked_s_ = 0;
 }
 
 }  // namespace rmac

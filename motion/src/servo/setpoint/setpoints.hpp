@@ -4,12 +4,12 @@
 #include <span>
 #include <vector>
 
+#include "rmac/motion/follower/joint_brake.hpp"
 #include "rmac/motion/machine_size.hpp"
 #include "rmac/motion/servo/servo_loop_parts.hpp"
 #include "rmac/motion/servo/setpoint.hpp"
 #include "servo/faults/fault_sink.hpp"
 #include "servo/joints/index_set.hpp"
-#include "servo/setpoint/brake.hpp"
 #include "servo/setpoint/force_loop.hpp"
 #include "servo/setpoint/velocity_follower.hpp"
 
@@ -35,7 +35,7 @@ class Setpoints {
   /// One cycle. Where the plan has no number for a joint, that is a fault, and this joint and those after it are wanted
   /// where they were.
   void step(const Seen& seen, FaultSink& faults) noexcept;
-  /// One cycle of a stop that keeps power.
+  /// One cycle of a stop that keeps power: each joint by itself, within its limits.
   void brake() noexcept;
 
   /// Before joints go under control in a cycle: so far none of their setpoints has gone anywhere in it.
@@ -49,7 +49,7 @@ class Setpoints {
   /// No joint is under control.
   void let_go() noexcept;
   void begin_braking() noexcept;
-  [[nodiscard]] bool braked() const noexcept { return brake_.done(); }
+  [[nodiscard]] bool braked() const noexcept { return braked_s_ >= brake_.duration(); }
 
   [[nodiscard]] std::span<const double> positions() const noexcept { return {position_.data(), joints_.size()}; }
   [[nodiscard]] const std::array<double, kMaxJoints>& position() const noexcept { return position_; }
@@ -75,11 +75,12 @@ class Setpoints {
   IndexSet late_;
   std::array<double, kMaxJoints> position_{}, velocity_{}, acceleration_{};
   std::array<double, kMaxJoints> gone_on_{}, velocity_gone_on_{};
-  std::array<double, kMaxJoints> decelerations_{};  ///< of a stop that keeps power
-  IndexSet on_the_way_ = 0;                         ///< joints that followed the plan in the cycle before
+  IndexSet on_the_way_ = 0;  ///< joints that followed the plan in the cycle before
   std::vector<VelocityFollower> followers_;
   std::vector<ForceLoop> force_loops_;
-  Brake brake_;
+  JointBrake brake_;
+  Setpoint braking_;  ///< of all joints; its positions, velocities and accelerations alone
+  double braked_s_ = 0;
 };
 
 }  // namespace rmac

@@ -13,10 +13,11 @@ class ServoWatch : public ServoLoopTest {
   static constexpr double kMaxVelocity = 200;  // mm/s
   static constexpr double kMaxJump = 0.6;      // mm
   static constexpr double kDeceleration = 1000;
+  static constexpr double kJerk = 20'000;
 
   ServoLoopParts watched_parts() {
     ServoLoopParts result = parts();
-    for (ServoJoint& axis : result.joints) axis.bounds = {kMaxVelocity, kMaxJump, kDeceleration};
+    for (ServoJoint& axis : result.joints) axis.bounds = {kMaxVelocity, kMaxJump, kDeceleration, kJerk};
     for (ServoActuator& actuator : result.actuators) actuator.max_torque_nm = 2;
     result.joints[2].force_sensor = ServoForceSensor{bus, 4, 0.01, 100};
     result.max_cycles_lost = 3;
@@ -196,7 +197,7 @@ TEST_F(ServoWatch, ResetWaitsUntilTheDrivesStand) {
   EXPECT_EQ(report.fault.kind, ServoFault::Kind::None);
 }
 
-TEST_F(ServoWatch, CategoryTwoBrakesJointsInStepAndHoldsThemUnderPower) {
+TEST_F(ServoWatch, CategoryTwoBrakesJointsWithinTheirLimitsAndHoldsThemUnderPower) {
   build_watched(StopCategory::StopKeepPower);
   engage();
   move(100, 20);
@@ -205,16 +206,19 @@ TEST_F(ServoWatch, CategoryTwoBrakesJointsInStepAndHoldsThemUnderPower) {
   expect_fault(ServoFault::Kind::SensorLost, ServoFault::Part::Joint, 2);
   EXPECT_EQ(report.fault.stop, StopCategory::StopKeepPower);
   const double began = report.position_set[0];
-  double velocity = 100;
+  double velocity = report.velocity_set[0], acceleration = report.acceleration_set[0];
   for (int i = 0; i < 300; ++i) {
     follow(1);
-    ASSERT_EQ(report.velocity_set[0], report.velocity_set[1]) << "in step";
+    ASSERT_EQ(report.velocity_set[0], report.velocity_set[1]) << "of the same limits";
     ASSERT_LE(velocity - report.velocity_set[0], kDeceleration * kPeriod * 1.0001);
+    ASSERT_LE(std::abs(report.acceleration_set[0] - acceleration), kJerk * kPeriod * 1.0001) << "cycle " << i;
     velocity = report.velocity_set[0];
+    acceleration = report.acceleration_set[0];
     ASSERT_TRUE(enabled(0) && enabled(1) && enabled(2)) << "cycle " << i;
   }
   EXPECT_EQ(velocity, 0);
-  EXPECT_NEAR(report.position_set[0] - began, 100.0 * 100 / (2 * kDeceleration), 0.1);
+  const double time_s = 100 / kDeceleration + kDeceleration / kJerk;
+  EXPECT_NEAR(report.position_set[0] - began, 100 * time_s / 2, 0.11);
 }
 
 TEST_F(ServoWatch, CategoryTwoGoesOverToOneWhenMoreGoesWrong) {
@@ -240,7 +244,7 @@ TEST_F(ServoWatch, SilentDriveIsLeftOutWhileTheOthersBrake) {
   expect_fault(ServoFault::Kind::DriveOffline, ServoFault::Part::Actuator, 0);
   EXPECT_EQ(report.fault.stop, StopCategory::StopKeepPower);
   double velocity = report.velocity_set[1];
-  EXPECT_NEAR(velocity, 100 - kDeceleration * kPeriod, 1e-9) << "at once";
+  EXPECT_NEAR(velocity, 100 - kJerk * kPeriod * kPeriod / 2, 1e-9) << "at once";
   for (int i = 0; i < 300; ++i) {
     if (i == 50) fake->drives[0].words.online = true;
     follow(1);
@@ -260,7 +264,7 @@ TEST_F(ServoWatch, SilentDriveIsLeftOutWhileTheOthersBrake) {
   EXPECT_TRUE(enabled(0));
 }
 
-TEST_F(ServoWatch, SilentSpindleLeavesEveryJointToBrakeInStep) {
+TEST_F(ServoWatch, SilentSpindleLeavesEveryJointToBrake) {
   build_watched(StopCategory::StopKeepPower);
   engage();
   move(100, 20);
@@ -271,7 +275,7 @@ TEST_F(ServoWatch, SilentSpindleLeavesEveryJointToBrakeInStep) {
   for (int i = 0; i < 300; ++i) {
     if (i == 50) fake->drives[3].words.online = true;
     follow(1);
-    ASSERT_EQ(report.velocity_set[0], report.velocity_set[1]) << "in step";
+    ASSERT_EQ(report.velocity_set[0], report.velocity_set[1]) << "of the same limits";
     ASSERT_TRUE(enabled(0) && enabled(1) && enabled(2)) << "cycle " << i;
     ASSERT_FALSE(enabled(3)) << "cycle " << i;
   }

@@ -16,6 +16,8 @@ namespace rmac {
 class JointBrake {
  public:
   explicit JointBrake(std::span<const JointLimits> joints);
+  /// A joint without a bound of its acceleration or jerk stands at once.
+  explicit JointBrake(std::vector<MotionBounds> bounds);
 
   /// Brakes from a setpoint, whose velocities and accelerations count.
   void begin(const Setpoint& from) noexcept;

@@ -34,6 +34,7 @@ struct JointBounds {
   double velocity = 0;           ///< beyond it for three cycles on end the machine stops
   double jump = 0;               ///< change of a position's step from cycle to cycle that no motion explains
   double stop_deceleration = 0;  ///< of a stop that keeps power; 0: the setpoint stands at once
+  double stop_jerk = 0;          ///< the same
   double min_position = -std::numeric_limits<double>::infinity();  ///< travel, where no plan keeps the joint in it
   double max_position = std::numeric_limits<double>::infinity();
 };
