@@ -17,7 +17,7 @@ namespace {
 constexpr double kFarAway = 1e5;
 /// A joint so near to its limit, in mm or degrees, stands at it.
 constexpr double kAtTheLimit = 1e-6;
-/// To so much the way to a limit is found, in mm.
+/// To so much the way to a limit is found, in mm or degrees.
 constexpr double kReachFound = 1e-3;
 
 double travel_end(const JointLimits& limits, double from, bool positive) {
@@ -67,11 +67,15 @@ Expected<Move> CamPositioning::move_to_end(std::size_t joint, bool positive) con
     return failure(MinorCode::TravelLimit,
                    fmt::format("JogJoint: joint {} stands at its limit of {}; jog the other way", limits.name, to));
   }
-  JointTargetGeometry target = now;
-  target.joints[joint] = to;
-  Move move = maker_.joint_move(kPositioningMoveId, target, now.joints);
-  move.joint_speed_fraction = 1;
-  return move;
+  const auto move_by = [&](double amount) {
+    JointTargetGeometry target = now;
+    target.joints[joint] = amount == std::abs(to - from) ? to : from + std::copysign(amount, to - from);
+    Move move = maker_.joint_move(kPositioningMoveId, target, now.joints);
+    move.joint_speed_fraction = 1;
+    return move;
+  };
+  // Before the end of its travel a parallel machine may come to where the tool has no pose.
+  return reach_of(move_by, std::abs(to - from)).map(move_by);
 }
 
 Expected<> CamPositioning::jog_joint_at(int joint, double velocity) {
@@ -116,31 +120,33 @@ Expected<> CamPositioning::jog_path_at(const sdk::JogDirection& direction, doubl
     auto way = part_direction(direction);
     if (!way) return tl::unexpected(way.error());
     if (velocity_mm_s < 0) way = scaled(-1, *way);
-    return straight_reach(*way).map([&](double reach) {
-      Move move = move_by(tool_.in_part(), *way, reach);
+    const ToolPose from = tool_.in_part();
+    const auto by = [&](double mm) {
+      Move move = move_by(from, *way, mm);
       move.feed_mm_s = fastest;
       return move;
-    });
+    };
+    return reach_of(by, kFarAway).map(by);
   });
 }
 
-Expected<double> CamPositioning::straight_reach(const Vector& direction) const {
+Expected<double> CamPositioning::reach_of(const std::function<Move(double)>& move_by, double most) const {
   const auto mechanism = supervisor_.mechanism();
-  const ToolPose from = tool_.in_part();
   const ServoStatus now = link_.status.read();
   const Frames frames = supervisor_.wishes().frames;
-  const auto try_length = [&](double mm) {
+  const auto try_length = [&](double length) {
     PathBuilder builder(mechanism->planner_model);
     builder.restart({now.position_set.data(), now.joint_count}, frames);
-    return builder.build(move_by(from, direction, mm));
+    return builder.build(move_by(length));
   };
+  if (try_length(most)) return most;
   double good = 0;
-  double bad = kReachFound;
+  double bad = std::min(kReachFound, most);
   auto refusal = try_length(bad);
   if (!refusal) return tl::unexpected(refusal.error());
-  while (refusal && bad < kFarAway) {
+  while (refusal && bad < most) {
     good = bad;
-    bad *= 2;
+    bad = std::min(2 * bad, most);
     refusal = try_length(bad);
   }
   // What can be reached is a first part of the way, so halving finds its end.

@@ -45,8 +45,9 @@ class CamPositioning final : public sdk::Positioning {
   [[nodiscard]] Move move_by(const ToolPose& from, const Vector& direction, double mm) const;
   /// Refuses a jog towards a limit switch that is on.
   [[nodiscard]] Expected<> check_limit_switches(std::size_t joint, bool positive) const;
-  /// How far the tip can go straight from where it stands before a joint leaves its travel or the reach ends.
-  [[nodiscard]] Expected<double> straight_reach(const Vector& direction) const;
+  /// How far a move can go from where the machine stands, before a joint leaves its travel or the reach ends;
+  /// `move_by` makes it so long.
+  [[nodiscard]] Expected<double> reach_of(const std::function<Move(double)>& move_by, double most) const;
 
   const DeviceInForce& device_;
   MotionSupervisor& supervisor_;

@@ -131,9 +131,9 @@ void ServoCycle::fill_pose_set() noexcept {
     return;
   }
   const ServoLoop& loop = *mechanism_->loop;
-  ToolPose machine;
-  loop.parts().kinematics->forward({report_.position_set.data(), loop.joint_count()}, command_.frames.tool, machine);
-  sample_.pose_set = apply_to_pose(inverse(command_.frames.part), machine);
+  const std::span<const double> joints(report_.position_set.data(), loop.joint_count());
+  sample_.pose_set =
+      apply_to_pose(inverse(command_.frames.part), pose_of(*loop.parts().kinematics, joints, command_.frames.tool));
 }
 
 void ServoCycle::publish(const ServoWishes& wishes) noexcept {

@@ -19,7 +19,7 @@ PlannedMovesCase case_of(const MachineRig& rig, const Task& task, Watch& watch) 
   PlannedMovesCase given;
   given.model = mechanism.planner_model;
   given.model.kinematics = std::make_shared<WatchedKinematics>(given.model.kinematics, watch);
-  given.tools = sample_tools();
+  given.tools = sample_tools(*mechanism.planner_model.kinematics);
   given.seed = task.seed;
   given.misdeed = [&watch] { return watch.misdeed(); };
   for (const JointLimits& limits : given.model.joints) given.ranges.push_back(range_of(limits));

@@ -18,9 +18,16 @@ namespace rmac::verifier {
   return {least, most};
 }
 
-/// None, a long one off the spindle's line, and an angle head.
-[[nodiscard]] inline std::vector<Frame> sample_tools() {
-  return {Frame{}, {{1, -2, 300}, {1, 0, 0, 0}}, normalized({{3, 0, 60}, {0.98, 0.1, -0.05, 0.1642}})};
+inline constexpr std::size_t kSampleTools = 4;
+
+/// Of none, a straight one, a long one off the spindle's line, and an angle head those that the geometry takes.
+[[nodiscard]] inline std::vector<Frame> sample_tools(const Kinematics& kinematics) {
+  std::vector<Frame> tools{Frame{},
+                           {{0, 0, -80}, {1, 0, 0, 0}},
+                           {{1, -2, 300}, {1, 0, 0, 0}},
+                           normalized({{3, 0, 60}, {0.98, 0.1, -0.05, 0.1642}})};
+  std::erase_if(tools, [&](const Frame& tool) { return !kinematics.takes(tool); });
+  return tools;
 }
 
 }  // namespace rmac::verifier

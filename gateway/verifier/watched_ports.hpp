@@ -40,6 +40,16 @@ class WatchedKinematics final : public Kinematics {
     return watch_.stateless("solutions", {{"pose", numbers(pose)}, {"tool", numbers(tool)}, {"seed", seed}}, joints,
                             [&](std::span<double> out) { return kinematics_->solutions(pose, tool, seed, out); });
   }
+  bool has_pose(std::span<const double> joints) const noexcept override {
+    return watch_.stateless("has_pose", {{"joints", joints}}, {},
+                            [&](std::span<double>) { return kinematics_->has_pose(joints); });
+  }
+  bool parallel() const noexcept override { return kinematics_->parallel(); }
+  std::optional<std::size_t> free_joint() const noexcept override { return kinematics_->free_joint(); }
+  bool takes(const Frame& tool) const noexcept override {
+    return watch_.stateless("takes", {{"tool", numbers(tool)}}, {},
+                            [&](std::span<double>) { return kinematics_->takes(tool); });
+  }
   bool constant_jacobian() const noexcept override { return kinematics_->constant_jacobian(); }
 
  private:

@@ -170,7 +170,13 @@ void check_kinematics_module(const Task& task, Watch& watch, ModuleReport& repor
   const sdk::DeviceObject& device = task.device;
   const auto check = [&](const std::shared_ptr<Kinematics>& kinematics) {
     const WatchedKinematics watched(kinematics, watch);
-    KinematicsCase given{{}, sample_tools(), task.samples, task.seed, misdeed_of(watch)};
+    watch.step("takes");
+    KinematicsCase given{{}, sample_tools(*kinematics), task.samples, task.seed, misdeed_of(watch)};
+    if (given.tools.size() < kSampleTools) {
+      report.not_checked.push_back(fmt::format("{} of {} tools: it says that it does not take them",
+                                               kSampleTools - given.tools.size(), kSampleTools));
+    }
+    if (given.tools.empty()) return take(found("tools", "it takes none", -1, {}), "", report, tell);
     for (const sdk::Joint& joint : device.joints) given.ranges.push_back(range_of(joint.limits));
     Checked types;
     for (std::size_t j = 0; types && j < std::min(device.joints.size(), kinematics->joint_count()); ++j) {

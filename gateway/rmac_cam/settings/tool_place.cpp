@@ -9,10 +9,8 @@ ToolPose ToolPlace::in_machine() const {
   // Not from a sample: frames set just now are not in it yet.
   const ServoStatus now = link_.status.read();
   const Frames frames = supervisor_.wishes().frames;
-  ToolPose at;
-  supervisor_.mechanism()->planner_model.kinematics->forward({now.position_set.data(), now.joint_count}, frames.tool,
-                                                             at);
-  return at;
+  return pose_of(*supervisor_.mechanism()->planner_model.kinematics, {now.position_set.data(), now.joint_count},
+                 frames.tool);
 }
 
 ToolPose ToolPlace::in_part() const {
@@ -21,9 +19,8 @@ ToolPose ToolPlace::in_part() const {
 
 ToolPose ToolPlace::at(std::span<const double> joints) const {
   const Frames frames = supervisor_.wishes().frames;
-  ToolPose at;
-  supervisor_.mechanism()->planner_model.kinematics->forward(joints, frames.tool, at);
-  return apply_to_pose(inverse(frames.part), at);
+  return apply_to_pose(inverse(frames.part),
+                       pose_of(*supervisor_.mechanism()->planner_model.kinematics, joints, frames.tool));
 }
 
 }  // namespace rmac::gateway

@@ -37,13 +37,18 @@ class KinematicsCheck {
     if (kinematics_.joint_count() != n_) {
       return found("joints", fmt::format("it has {} joints, {} are wanted", kinematics_.joint_count(), n_), -1, {});
     }
+    if (kinematics_.free_joint().value_or(0) >= n_) {
+      return found("joints", fmt::format("it leaves over joint {} of {}", *kinematics_.free_joint(), n_), -1, {});
+    }
     for (const Joints& joints : special_joints()) {
       if (auto fine = at(joints); !fine) return fine;
     }
     for (int i = 0; i < given_.samples; ++i) {
       if (auto fine = at(random_joints()); !fine) return fine;
     }
-    if (determined_ == 0 && n_ <= 5) {
+    if (const auto few = too_few_poses()) return *few;
+    const std::size_t by_pose = kinematics_.free_joint() ? n_ - 1 : n_;
+    if (determined_ == 0 && by_pose <= 5) {
       return found("Jacobian", "it says of no joint vector that the pose determines it", -1, {});
     }
     return check_no_number();
@@ -88,7 +93,38 @@ class KinematicsCheck {
     return result;
   }
 
-  Checked at(const Joints& joints) { return misdeed_or(given_.misdeed, holds_at(joints)); }
+  Checked at(const Joints& joints) {
+    ++asked_;
+    if (!has_room(joints)) return given_.misdeed ? given_.misdeed() : Checked();
+    ++with_pose_;
+    return misdeed_or(given_.misdeed, holds_at(joints));
+  }
+
+  /// Whether joints have a pose, and whatever is near: where poses end, the forward is too steep for differences.
+  bool has_room(const Joints& joints) const {
+    constexpr double kRoom = 1;  // mm or degrees
+    if (!kinematics_.has_pose(joints)) return false;
+    Joints moved = joints;
+    for (std::size_t j = 0; j < n_; ++j) {
+      for (const double by : {-kRoom, kRoom}) {
+        moved[j] = joints[j] + by;
+        if (!kinematics_.has_pose(moved)) return false;
+      }
+      moved[j] = joints[j];
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::optional<tl::unexpected<CounterExample>> too_few_poses() const {
+    constexpr double kLeast = 0.02;
+    const double share = static_cast<double>(with_pose_) / static_cast<double>(asked_);
+    if (share >= kLeast) return std::nullopt;
+    return found("poses",
+                 fmt::format("of {} joint vectors within their travel {} have a pose, {} % at least are to: narrow the "
+                             "travel to where the tool can be",
+                             asked_, with_pose_, 100 * kLeast),
+                 -1, {});
+  }
 
   Checked holds_at(const Joints& joints) {
     joints_ = joints;
@@ -148,8 +184,9 @@ class KinematicsCheck {
   }
 
   /// A slide carries tip and axis along by as much as it moves, and turns nothing; a turn turns the axis by no more
-  /// than itself.
+  /// than itself. Joints of a parallel machine do as they like.
   Checked check_types() {
+    if (kinematics_.parallel()) return {};
     for (std::size_t j = 0; j < n_; ++j) {
       const auto length = [&](std::size_t row) {
         return std::hypot(jacobian_[row * n_ + j], jacobian_[(row + 1) * n_ + j], jacobian_[(row + 2) * n_ + j]);
@@ -168,12 +205,16 @@ class KinematicsCheck {
     return {};
   }
 
-  /// Least change of the pose a unit of joint motion, in the worst direction of the joints.
+  /// Least change of the pose a unit of joint motion, in the worst direction of the joints but the one left over.
   [[nodiscard]] double determination() const {
-    const auto n = static_cast<Eigen::Index>(n_);
-    const Eigen::MatrixXd rows =
-        Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(jacobian_.data(), 6,
-                                                                                                 n);
+    Eigen::MatrixXd rows(6, static_cast<Eigen::Index>(n_));
+    Eigen::Index columns = 0;
+    for (std::size_t j = 0; j < n_; ++j) {
+      if (kinematics_.free_joint() == j) continue;
+      for (std::size_t r = 0; r < 6; ++r) rows(static_cast<Eigen::Index>(r), columns) = jacobian_[r * n_ + j];
+      ++columns;
+    }
+    rows.conservativeResize(Eigen::NoChange, columns);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(rows.transpose() * rows, Eigen::EigenvaluesOnly);
     return std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
   }
@@ -187,6 +228,7 @@ class KinematicsCheck {
     constexpr double kNearby = 1e-3;
     Joints seed = joints_, answer(n_, std::nan(""));
     for (double& joint : seed) joint += random(-kNearby, kNearby);
+    if (const auto left_over = kinematics_.free_joint()) seed[*left_over] = joints_[*left_over];
     const auto shown = [&] {
       return std::vector{named_pose("pose", pose_), named("seed", seed), named("answer", answer)};
     };
@@ -194,6 +236,7 @@ class KinematicsCheck {
       return fault("inverse", "it finds no joints for a pose that joints within their travel give", shown());
     }
     if (const auto off = miss(answer)) return fault("inverse", *off, shown());
+    if (const auto moved = free_moved(answer, seed)) return fault("inverse", *moved, shown());
     const double determined = determination();
     if (determined < kDetermined) return {};
     ++determined_;
@@ -208,8 +251,19 @@ class KinematicsCheck {
     return {};
   }
 
+  /// What is wrong with the joint that the pose leaves over, in words.
+  [[nodiscard]] std::optional<std::string> free_moved(std::span<const double> answer,
+                                                      std::span<const double> seed) const {
+    constexpr double kRounding = 1e-9;
+    const auto left_over = kinematics_.free_joint();
+    if (!left_over || std::abs(answer[*left_over] - seed[*left_over]) <= kRounding) return std::nullopt;
+    return fmt::format("it leaves joint {} over, and moves it from {} to {}", *left_over, seed[*left_over],
+                       answer[*left_over]);
+  }
+
   Checked check_solutions() {
-    const Joints seed = random_joints();
+    Joints seed = random_joints();
+    if (const auto left_over = kinematics_.free_joint()) seed[*left_over] = joints_[*left_over];
     const auto shown = [&](std::span<const double> solution) {
       return std::vector{named_pose("pose", pose_), named("seed", seed), named("solution", solution)};
     };
@@ -226,6 +280,7 @@ class KinematicsCheck {
     for (std::size_t i = 0; i < count; ++i) {
       const std::span<const double> solution(all_.data() + i * n_, n_);
       if (const auto off = miss(solution)) return fault("solutions", *off, shown(solution));
+      if (const auto moved = free_moved(solution, seed)) return fault("solutions", *moved, shown(solution));
       double way = 0, off = 0;
       for (std::size_t j = 0; j < n_; ++j) {
         const double turn = solution[j] - seed[j], by = solution[j] - joints_[j];
@@ -282,7 +337,8 @@ class KinematicsCheck {
   std::size_t n_;
   std::mt19937_64 random_;
   std::int64_t sample_ = 0;
-  std::int64_t determined_ = 0;  ///< samples whose joints the pose determines
+  std::int64_t determined_ = 0;             ///< samples whose joints the pose determines
+  std::int64_t asked_ = 0, with_pose_ = 0;  ///< joint vectors
 
   Joints joints_;  ///< of the sample at hand, with the three below
   Frame tool_;

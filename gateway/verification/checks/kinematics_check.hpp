@@ -25,7 +25,9 @@ struct KinematicsCase {
 /// - the forward of the inverse gives every pose back, to 1e-9 mm and 1e-9 rad;
 /// - the inverse, seeded nearby, gives the joints back wherever the Jacobian says that the pose determines them;
 /// - the Jacobian is the derivative of the forward, and everywhere the same where that is claimed;
-/// - joints are of the type that they are said to be;
+/// - joints are of the type that they are said to be, but those of a parallel machine;
+/// - the joint that is said to be left over stays where the seed has it;
+/// - two in a hundred joint vectors have a pose at least; the others are passed over;
 /// - all solutions are solutions, the nearest first, the one that the pose was made of among them;
 /// - a pose that is no number is out of reach.
 [[nodiscard]] Checked check_kinematics(const Kinematics& kinematics, const KinematicsCase& given);

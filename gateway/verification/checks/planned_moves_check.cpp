@@ -96,9 +96,7 @@ class PlannedMovesCheck {
     return result;
   }
   ToolPose pose_near(std::span<const double> joints) {
-    ToolPose pose;
-    given_.model.kinematics->forward(near(joints), frames_.tool, pose);
-    return pose;
+    return pose_of(*given_.model.kinematics, near(joints), frames_.tool);
   }
 
   Geometry joint_target() {
@@ -120,7 +118,7 @@ class PlannedMovesCheck {
         joints.push_back(from[j] +
                          (to[j] - from[j]) * (static_cast<double>(i) / (kPoints - 1) + random(-kBend, kBend)));
       }
-      if (i > 0) given_.model.kinematics->forward(joints, frames_.tool, pose);
+      if (i > 0) pose = pose_of(*given_.model.kinematics, joints, frames_.tool);
       geometry.curve.points.push_back(named_pose("", pose).numbers);
     }
     for (int i = 0; i < kPoints + kDegree + 1; ++i) {

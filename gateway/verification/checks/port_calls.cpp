@@ -28,9 +28,14 @@ std::vector<PortCall> calls_of(const Kinematics& kinematics, const KinematicsCas
     constexpr double kNearby = 1e-3;
     const Frame tool = given.tools[i % given.tools.size()];
     Joints joints, seed;
-    for (const JointRange& range : given.ranges) {
-      joints.push_back(std::uniform_real_distribution<>(range.min, range.max)(random));
-      seed.push_back(joints.back() + std::uniform_real_distribution<>(-kNearby, kNearby)(random));
+    do {
+      joints.clear();
+      for (const JointRange& range : given.ranges) {
+        joints.push_back(std::uniform_real_distribution<>(range.min, range.max)(random));
+      }
+    } while (!kinematics.has_pose(joints));
+    for (const double joint : joints) {
+      seed.push_back(joint + std::uniform_real_distribution<>(-kNearby, kNearby)(random));
     }
     ToolPose pose;
     kinematics.forward(joints, tool, pose);
@@ -43,6 +48,9 @@ std::vector<PortCall> calls_of(const Kinematics& kinematics, const KinematicsCas
                      }});
     calls.push_back({"jacobian", of_joints, 6 * n, [&kinematics, joints, tool](std::span<double> answer) {
                        kinematics.jacobian(joints, tool, answer);
+                     }});
+    calls.push_back({"has_pose", {named("joints", joints)}, 1, [&kinematics, joints](std::span<double> answer) {
+                       answer[0] = kinematics.has_pose(joints) ? 1 : 0;
                      }});
     calls.push_back({"inverse", of_pose, n, [&kinematics, pose, tool, seed](std::span<double> answer) {
                        // Joints without a solution say nothing.

@@ -8,6 +8,7 @@ namespace rmac::verifier {
 
 std::optional<std::string> miss(const Kinematics& kinematics, std::span<const double> joints, const Frame& tool,
                                 const ToolPose& pose, const PoseBounds& bounds) {
+  if (!kinematics.has_pose(joints)) return "it gives joints that have no pose";
   ToolPose again;
   kinematics.forward(joints, tool, again);
   const double tip = distance(again.tip, pose.tip), axis = distance(again.axis, pose.axis);

@@ -56,9 +56,12 @@ class ReachCheck {
  private:
   double random(double least, double most) { return std::uniform_real_distribution<>(least, most)(random_); }
   bool by_chance() { return random(0, 1) < 0.5; }
+  /// Some that have a pose.
   void random_joints() {
-    seed_.clear();
-    for (const JointRange& range : given_.ranges) seed_.push_back(random(range.min, range.max));
+    do {
+      seed_.clear();
+      for (const JointRange& range : given_.ranges) seed_.push_back(random(range.min, range.max));
+    } while (!kinematics_.has_pose(seed_));
   }
   Vector random_direction() {
     Vector direction;
@@ -92,6 +95,7 @@ class ReachCheck {
       joints[j] = by_chance() ? range.max + by : range.min - by;
       seed_[j] = std::clamp(joints[j], range.min, range.max);
     }
+    if (!kinematics_.has_pose(joints)) return {};
     kinematics_.forward(joints, tool_, pose_);
     return reached().and_then([&](bool) { return solutions_are_true(); });
   }

@@ -95,9 +95,12 @@ Expected<> check_start_axis(const Vector& axis, const CurveStart& start) {
 }  // namespace curves
 
 Expected<std::vector<std::unique_ptr<const Curve>>> make_curves(const Move& move, const CurveStart& start) {
-  const auto pose = curves::checked(start.pose, "end of the queue");
-  if (!pose) return tl::unexpected(pose.error());
-  const CurveStart begin{*pose, start.joints};
+  CurveStart begin = start;
+  if (!is_joint_move(move.geometry)) {
+    const auto pose = curves::checked(start.pose, "end of the queue");
+    if (!pose) return tl::unexpected(pose.error());
+    begin.pose = *pose;
+  }
   return std::visit([&](const auto& geometry) { return curves::curves_of(geometry, begin); }, move.geometry);
 }
 

@@ -14,7 +14,8 @@ using PoseRows = std::array<double, 6 * kMaxJoints>;  ///< row-major, 6 x n
 
 /// Least squares of J x = p by the normal equations and their LDLᵀ: matrices of a handful of rows, for which a
 /// library's general routines spend most of their time on copies. A column that depends on those before it is a joint
-/// that the pose leaves free; it stays at rest, which answers p only where p asks nothing of it.
+/// that the pose leaves free; it stays at rest, which answers p only where p asks nothing of it. The joint that the
+/// kinematics says to be left over stays at rest, too.
 class LeastSquares {
  public:
   LeastSquares(const PoseRows& jacobian, const Kinematics& kinematics) noexcept
@@ -41,6 +42,10 @@ class LeastSquares {
         } else {
           diagonal_[i] = sum;
         }
+      }
+      if (kinematics.free_joint() == order_[i]) {
+        diagonal_[i] = inverse_[i] = 0;
+        continue;
       }
       if (diagonal_[i] > kSingularPivot * most) {
         inverse_[i] = 1 / diagonal_[i];

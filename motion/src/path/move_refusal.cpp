@@ -20,6 +20,15 @@ const char* unit(const JointLimits& joint) {
   return joint.type == JointType::Rotary ? "degrees" : "mm";
 }
 
+/// All of them, with their names.
+std::string listed(std::span<const double> positions, const std::vector<JointLimits>& joints) {
+  std::string list;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    list += text("%s%s at %.4f %s", j == 0 ? "" : ", ", joints[j].name.c_str(), positions[j], unit(joints[j]));
+  }
+  return list;
+}
+
 }  // namespace
 
 Expected<> check_demand(const Move& move, bool joint_move) {
@@ -75,6 +84,28 @@ Error beyond_pole(const Move& move, const Curve& near, double s_mm, double devia
            "may by %.3f; lead it past the pole further off, or straight through",
            move_name(move.id).c_str(), point.d[0][0], point.d[0][1], point.d[0][2], s_mm, deviation * kDegrees,
            kPoleDeviation * kDegrees)};
+}
+
+Error without_pose(const Move& move, const PathSegment& segment, double s, const std::vector<JointLimits>& joints) {
+  JointPoint point;
+  (void)segment.evaluate(s, 0, -1, point);
+  return {MinorCode::TravelLimit, text("%s leads the joints to where the tool has no pose, %.4f along the move: ",
+                                       move_name(move.id).c_str(), segment.stretches().front().s_begin_mm + s) +
+                                      listed(point.d[0], joints) + "; nothing was queued"};
+}
+
+Error begins_without_pose(const Move& move, std::span<const double> positions, const std::vector<JointLimits>& joints) {
+  return {MinorCode::TravelLimit,
+          text("%s begins where the tool has no pose: ", move_name(move.id).c_str()) + listed(positions, joints) +
+              "; lead the joints to where it has one, by JogJoint or by MoveToJointTarget with joints"};
+}
+
+Error not_taken(const Move& move, const Frame& tool) {
+  return {
+      MinorCode::UnsupportedOperation,
+      text("%s: the kinematics of this mechanism cannot lead the tool in use, whose tip is at (%.4f, %.4f, %.4f) mm on "
+           "the tool interface; its documentation says which tools it takes",
+           move_name(move.id).c_str(), tool.p[0], tool.p[1], tool.p[2])};
 }
 
 }  // namespace rmac

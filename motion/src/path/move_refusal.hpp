@@ -25,4 +25,15 @@ namespace rmac {
 /// along the move.
 [[nodiscard]] Error beyond_pole(const Move& move, const Curve& near, double s_mm, double deviation);
 
+/// A segment through the joints' space has no pose of the tool at path length `s`.
+[[nodiscard]] Error without_pose(const Move& move, const PathSegment& segment, double s,
+                                 const std::vector<JointLimits>& joints);
+
+/// A move of the tool begins at joints that have no pose.
+[[nodiscard]] Error begins_without_pose(const Move& move, std::span<const double> positions,
+                                        const std::vector<JointLimits>& joints);
+
+/// A move of a tool that the kinematics does not take.
+[[nodiscard]] Error not_taken(const Move& move, const Frame& tool);
+
 }  // namespace rmac

@@ -6,6 +6,7 @@
 
 #include "path/join.hpp"
 #include "path/move_refusal.hpp"
+#include "path/pose_loss.hpp"
 #include "path/travel.hpp"
 #include "path/trimmed_curve.hpp"
 #include "rmac/motion/frame.hpp"
@@ -148,6 +149,8 @@ Expected<> MoveSegments::append(const CurvePtr& piece, bool last) {
   double s_failed = 0;
   if (const auto status = segment->resolve(joints_, s_failed); status != KinematicsStatus::Ok)
     return tl::unexpected(unreachable(move_, *segment, status, s_failed));
+  if (const auto lost = joint_move_ ? find_pose_loss(*segment) : std::nullopt)
+    return tl::unexpected(without_pose(move_, *segment, *lost, model_.joints));
   auto offence = find_offence(*segment, model_.joints, excess_);
   if (!offence && last) offence = still_outside(excess_, *segment);
   if (offence)

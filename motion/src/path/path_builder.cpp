@@ -41,7 +41,13 @@ void PathBuilder::restart(std::span<const double> joints, const Frames& frames) 
 }
 
 Expected<PathSegments> PathBuilder::build(const Move& move, double from_mm) {
-  if (auto checked = check_demand(move, is_joint_move(move.geometry)); !checked) return tl::unexpected(checked.error());
+  const bool joint_move = is_joint_move(move.geometry);
+  if (auto checked = check_demand(move, joint_move); !checked) return tl::unexpected(checked.error());
+  if (!joint_move) {
+    const Kinematics& kinematics = *model_.kinematics;
+    if (!kinematics.takes(map_->frames().tool)) return tl::unexpected(not_taken(move, map_->frames().tool));
+    if (!kinematics.has_pose(end_joints_)) return tl::unexpected(begins_without_pose(move, end_joints_, model_.joints));
+  }
   auto curves = make_curves(move, {end_pose_, end_joints_});
   if (!curves) return tl::unexpected(curves.error());
   if (curves->empty()) return PathSegments{};

@@ -212,9 +212,7 @@ KinematicsStatus PoseToJoints::solve(const CurvePoint& curve, std::size_t dimens
 }
 
 ToolPose PoseToJoints::pose(std::span<const double> joints) const noexcept {
-  ToolPose machine;
-  kinematics_->forward(joints, frames_.tool, machine);
-  return apply_to_pose(inverse(frames_.part), machine);
+  return apply_to_pose(inverse(frames_.part), pose_of(*kinematics_, joints, frames_.tool));
 }
 
 }  // namespace rmac

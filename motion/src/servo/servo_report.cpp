@@ -11,9 +11,9 @@ namespace {
 void fill_tool(const Kinematics& kinematics, const Frames& frames, std::span<const double> position,
                std::span<const double> velocity, ServoReport& report) noexcept {
   const std::size_t joints = position.size();
-  ToolPose in_machine;
-  kinematics.forward(position, frames.tool, in_machine);
-  report.pose = apply_to_pose(inverse(frames.part), in_machine);
+  report.pose = apply_to_pose(inverse(frames.part), pose_of(kinematics, position, frames.tool));
+  report.feed_mm_s = 0;
+  if (!kinematics.has_pose(position)) return;
   std::array<double, 6 * kMaxJoints> jacobian{};
   kinematics.jacobian(position, frames.tool, {jacobian.data(), 6 * joints});
   double squared = 0;

@@ -28,6 +28,10 @@ Json pose(double x, double y, double z, const std::vector<double>& axis) {
 /// Queues the way to where the tool stands, as nearly as a joint rests; then a quarter to get to speed, the turn that
 /// counts, and a quarter to stop.
 Result<> queue_circle(Connection& connection, const Options& options, const StateNote& now) {
+  constexpr std::size_t kPoseNumbers = 6;
+  if (now.pose.size() != kPoseNumbers) {
+    return fail("the tool has no pose where the joints stand; lead them to where it has one, as with rmac jog");
+  }
   const std::vector<double> axis(now.pose.begin() + 3, now.pose.begin() + 6);
   const double r = options.radius_mm, z = now.pose[2];
   // The tool stands at a quarter before the turn's beginning, so that the turn begins where X turns round.

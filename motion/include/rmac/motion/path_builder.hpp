@@ -26,7 +26,7 @@ class PathBuilder {
   /// With `from_mm` only what lies from there on along the move, which was begun before.
   [[nodiscard]] Expected<PathSegments> build(const Move& move, double from_mm = 0);
 
-  /// Tool pose (part frame) and joints at the end of what was built.
+  /// Tool pose (part frame; no numbers where the joints have none) and joints at the end of what was built.
   [[nodiscard]] const ToolPose& end_pose() const noexcept { return end_pose_; }
   [[nodiscard]] std::span<const double> end_joints() const noexcept { return end_joints_; }
   [[nodiscard]] const Frames& frames() const noexcept { return map_->frames(); }

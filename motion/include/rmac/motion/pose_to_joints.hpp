@@ -38,7 +38,7 @@ class PoseToJoints {
   /// On a curve by the length of the tip's path, a joint moves by at most this much a mm; infinite where it depends on
   /// where the joints are.
   [[nodiscard]] double largest_rate(std::size_t joint) const noexcept;
-  /// The pose in the part frame that joints give.
+  /// The pose in the part frame that joints give; no numbers where they have none.
   [[nodiscard]] ToolPose pose(std::span<const double> joints) const noexcept;
 
  private:

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
+#include <optional>
 #include <span>
 
 #include "rmac/motion/joint.hpp"
@@ -25,7 +27,8 @@ class Kinematics {
   /// What joint number `joint` does in this geometry; a mechanism whose device says otherwise is refused.
   [[nodiscard]] virtual JointType joint_type(std::size_t joint) const noexcept = 0;
 
-  /// Tool pose in the machine frame. `joints`: joint_count() values. Total: every joint vector has a pose.
+  /// Tool pose in the machine frame. `joints`: joint_count() values. Where they have no pose (`has_pose`), what it
+  /// gives is not used.
   virtual void forward(std::span<const double> joints, const Frame& tool, ToolPose& pose) const noexcept = 0;
 
   /// Joints that give `pose`; of several solutions the one whose rotary joints are nearest to `seed`, whole turns
@@ -50,9 +53,32 @@ class Kinematics {
     return inverse(pose, tool, seed, joints.first(joint_count())) == KinematicsStatus::Ok ? 1 : 0;
   }
 
+  /// Whether joints have a pose. Those of a chain always have one; the carriages of a delta may stand where its arms do
+  /// not meet. What `inverse` and `solutions` give has a pose. Joints are not led to where they have none.
+  [[nodiscard]] virtual bool has_pose(std::span<const double> /*joints*/) const noexcept { return true; }
+
+  /// Joints do not stand one on the other: a slide moves the tool by another way than its own, and may turn it.
+  [[nodiscard]] virtual bool parallel() const noexcept { return false; }
+
+  /// The joint that a pose leaves over: tip and axis are five numbers, and a robot has six joints. `inverse` and
+  /// `solutions` leave it where the seed has it, always, and find the others.
+  [[nodiscard]] virtual std::optional<std::size_t> free_joint() const noexcept { return std::nullopt; }
+
+  /// Whether the inverse knows how to lead this tool. Moves of a tool that it does not take are refused.
+  [[nodiscard]] virtual bool takes(const Frame& /*tool*/) const noexcept { return true; }
+
   /// The Jacobian is the same at all joints: slides alone, each along a direction of its own. Spares the planner a
   /// quarter of its work (bench_motion's planning row: 23 500 lines a second without, 31 100 with).
   [[nodiscard]] virtual bool constant_jacobian() const noexcept { return false; }
 };
+
+/// The tool's pose in the machine frame; no numbers where the joints have none. Real-time safe.
+[[nodiscard]] inline ToolPose pose_of(const Kinematics& kinematics, std::span<const double> joints,
+                                      const Frame& tool) noexcept {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  ToolPose pose{{kNone, kNone, kNone}, {kNone, kNone, kNone}};
+  if (kinematics.has_pose(joints)) kinematics.forward(joints, tool, pose);
+  return pose;
+}
 
 }  // namespace rmac
