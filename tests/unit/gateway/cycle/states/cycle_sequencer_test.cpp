@@ -144,7 +144,7 @@ TEST(CycleSequencer, SaysThatACycleWithNothingToDoHasEndedWhateverEndsIt) {
   ASSERT_TRUE(cycle.stop_and_clear(seen));
   EXPECT_EQ(cycle.step(seen).came_to_rest, StopCause::CycleEnded);
   ASSERT_TRUE(cycle.start(sdk::CycleMode::Automatic, seen));
-  seen.at_rest = false;  // it is not seen yet that the last move ended there
+  seen.at_rest = false;       // it is not seen yet that the last move ended there
   ASSERT_TRUE(cycle.hold());  // as the end of a lease does first
   ASSERT_TRUE(cycle.stop_and_clear(seen));
   seen.at_rest = true;
