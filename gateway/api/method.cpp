@@ -32,6 +32,8 @@ const char* to_string(Permission permission) noexcept {
       return "anyone";
     case Permission::Authority:
       return "authority";
+    case Permission::Operator:
+      return "operator";
     case Permission::Stop:
       return "stop";
   }

@@ -14,6 +14,7 @@ namespace rmac::gateway {
 enum class Permission {
   Anyone,     ///< reads
   Authority,  ///< moves or changes the machine: needs the lease
+  Operator,   ///< what a person at the machine does to the program's motion: needs the lease, or the operator's place
   Stop,       ///< stops: needs no lease, and overtakes what waits on its connection
 };
 

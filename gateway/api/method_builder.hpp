@@ -135,35 +135,34 @@ bool take(const nlohmann::json* argument, const ParameterSpec& spec, T& out, Rpc
 }
 
 /// Remembers the machine's last error. A full queue is one only when the server gives up waiting; it notes that itself.
-inline void note(const Error& error, MachineStatus& status) {
-  if (error.code != MinorCode::CommandQueueFull) status.fail(error.code);
+inline void note(const Error& error, const Call& call) {
+  if (error.code == MinorCode::CommandQueueFull) return;
+  call.status.fail(error.code, error.message, call.machine.sample().t_s);
 }
 
 /// What a handler returns, as JSON: nothing becomes `done` (null, or true where the declaration says boolean).
-inline tl::expected<nlohmann::json, RpcError> finish(Expected<> outcome, MachineStatus& status,
-                                                     const nlohmann::json& done) {
+inline tl::expected<nlohmann::json, RpcError> finish(Expected<> outcome, const Call& call, const nlohmann::json& done) {
   if (outcome) return done;
-  note(outcome.error(), status);
+  note(outcome.error(), call);
   return tl::unexpected<RpcError>(to_rpc_error(outcome.error()));
 }
 template <typename T>
-tl::expected<nlohmann::json, RpcError> finish(Expected<T> outcome, MachineStatus& status,
-                                              const nlohmann::json& /*done*/) {
+tl::expected<nlohmann::json, RpcError> finish(Expected<T> outcome, const Call& call, const nlohmann::json& /*done*/) {
   if (outcome) return nlohmann::json(std::move(*outcome));
-  note(outcome.error(), status);
+  note(outcome.error(), call);
   return tl::unexpected<RpcError>(to_rpc_error(outcome.error()));
 }
 inline tl::expected<nlohmann::json, RpcError> finish(tl::expected<nlohmann::json, RpcError> outcome,
-                                                     MachineStatus& /*status*/, const nlohmann::json& /*done*/) {
+                                                     const Call& /*call*/, const nlohmann::json& /*done*/) {
   return outcome;
 }
-inline tl::expected<nlohmann::json, RpcError> finish(tl::expected<void, RpcError> outcome, MachineStatus& /*status*/,
+inline tl::expected<nlohmann::json, RpcError> finish(tl::expected<void, RpcError> outcome, const Call& /*call*/,
                                                      const nlohmann::json& done) {
   if (outcome) return done;
   return tl::unexpected<RpcError>(std::move(outcome.error()));
 }
 template <typename T>
-tl::expected<nlohmann::json, RpcError> finish(T value, MachineStatus& /*status*/, const nlohmann::json& /*done*/) {
+tl::expected<nlohmann::json, RpcError> finish(T value, const Call& /*call*/, const nlohmann::json& /*done*/) {
   return nlohmann::json(std::move(value));
 }
 
@@ -250,7 +249,7 @@ class MethodBuilder {
     RpcError error;
     const bool taken = (detail::take(arguments[kIndex], specs[kIndex], std::get<kIndex>(values), error) && ...);
     if (!taken) return tl::unexpected<RpcError>(std::move(error));
-    return detail::finish(function(call, std::get<kIndex>(values)...), call.status, done);
+    return detail::finish(function(call, std::get<kIndex>(values)...), call, done);
   }
 
   Method method_;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gateway/api/rpc_error.hpp"
@@ -14,6 +15,7 @@
 #include "gateway/state/cycle_sample.hpp"
 #include "gateway/state/cycle_state.hpp"
 #include "gateway/state/event.hpp"
+#include "gateway/state/operator.hpp"
 #include "gateway/tools/tool.hpp"
 #include "rmac/sdk/device_object.hpp"
 #include "rmac/sdk/measuring.hpp"
@@ -73,6 +75,7 @@ class MachinePort {
  public:
   virtual ~MachinePort() = default;
   [[nodiscard]] virtual sdk::RmacCam& cam() = 0;
+  [[nodiscard]] virtual OperatorPort& operating() = 0;
   [[nodiscard]] virtual sdk::Measuring& measuring() = 0;
   [[nodiscard]] virtual sdk::RmacConfig& config() = 0;
   [[nodiscard]] virtual DevicePort& device() = 0;
@@ -82,7 +85,7 @@ class MachinePort {
   [[nodiscard]] virtual CycleSample sample() const = 0;
   [[nodiscard]] virtual const CycleTimes& cycle_times() const = 0;
   [[nodiscard]] virtual CycleNow cycle_now() const = 0;
-  /// What stopped the machine last.
+  /// What stopped the machine last, as long as it has not gone on since.
   [[nodiscard]] virtual const std::optional<Event>& last_stop() const = 0;
   /// Reads the device tree again.
   virtual Expected<ScanReport> rescan() = 0;
@@ -107,6 +110,16 @@ class SessionPort {
   virtual tl::expected<nlohmann::json, RpcError> acquire_authority() = 0;
   virtual tl::expected<void, RpcError> renew_authority() = 0;
   virtual tl::expected<void, RpcError> release_authority() = 0;
+  /// Takes the operator's place; its name there.
+  virtual tl::expected<std::string, RpcError> acquire_operator() = 0;
+  virtual tl::expected<void, RpcError> release_operator() = 0;
+  [[nodiscard]] virtual bool is_operator() const = 0;
+  /// Name of the client that is the operator, or empty.
+  [[nodiscard]] virtual std::string operator_name() const = 0;
+  /// As whom it holds the machine, so that an operator alone resumes; null: whoever may resume may.
+  [[nodiscard]] virtual OperatorRef holds_as() const = 0;
+  /// Tells everybody that this client did something to the program's motion; `what` continues its name.
+  virtual void tell(const std::string& what) = 0;
   virtual tl::expected<void, RpcError> subscribe(const std::vector<std::string>& topics, double rate_hz) = 0;
   virtual void unsubscribe(const std::vector<std::string>& topics) = 0;
   /// Streams the joints for an animation, or ends that; what the client subscribed to itself stays as it is.
@@ -118,11 +131,16 @@ class SessionPort {
 struct MachineStatus {
   std::int64_t major = 0;
   std::int64_t minor = 0;
+  std::string message{};  ///< what went wrong, for a person
+  double t_s = 0;         ///< the machine's time then
 
-  void fail(MinorCode code) {
+  void fail(MinorCode code, std::string what, double when_s) {
     major = 1;
     minor = static_cast<std::int64_t>(code);
+    message = std::move(what);
+    t_s = when_s;
   }
+  friend bool operator==(const MachineStatus&, const MachineStatus&) = default;
 };
 
 /// One call on its way to the machine.

@@ -41,13 +41,16 @@ constexpr std::array kMeanings{
     RpcErrorMeaning{rpc_code::kMachineBase, "Refused by the machine",
                     "-32001 to -32017: -32000 minus the minor code in `data`; the message says what to do."},
     RpcErrorMeaning{rpc_code::kAuthorityRequired, "Authority required",
-                    "The method moves or changes the machine: call `authority.acquire` first."},
+                    "The method moves or changes the machine: call `authority.acquire` first; what the operator may do "
+                    "too, by `operator.acquire`."},
     RpcErrorMeaning{rpc_code::kAuthorityHeld, "Authority held",
                     "Another client holds motion authority; the message says who."},
     RpcErrorMeaning{rpc_code::kRateTaken, "Rate taken",
                     "Another client already receives more than 100 samples a second."},
     RpcErrorMeaning{rpc_code::kRequestTooLarge, "Request too large",
-                    "A line is longer than the limit that `hello` tells; the connection is closed."}};
+                    "A line is longer than the limit that `hello` tells; the connection is closed."},
+    RpcErrorMeaning{rpc_code::kOperatorThere, "Operator there",
+                    "Another client is the operator; the message says who."}};
 
 }  // namespace
 

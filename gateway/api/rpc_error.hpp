@@ -21,6 +21,7 @@ inline constexpr int kAuthorityRequired = -32040;  ///< the method moves or chan
 inline constexpr int kAuthorityHeld = -32041;      ///< another client holds motion authority
 inline constexpr int kRateTaken = -32042;          ///< another client already receives every cycle
 inline constexpr int kRequestTooLarge = -32043;    ///< a line over the limit; the connection is closed
+inline constexpr int kOperatorThere = -32044;      ///< another client is the operator
 }  // namespace rpc_code
 
 struct RpcError {

@@ -37,6 +37,8 @@ const char* to_string(Event::Kind kind) noexcept {
       return "Fault";
     case Event::Kind::Authority:
       return "Authority";
+    case Event::Kind::Operator:
+      return "Operator";
     case Event::Kind::Mechanism:
       return "Mechanism";
     case Event::Kind::CycleStateChanged:
@@ -72,7 +74,7 @@ nlohmann::json event_to_json(const Event& event) {
 }
 
 nlohmann::json state_to_json(MachinePort& machine, int moves_left, const CycleSample& sample,
-                             const MachineStatus& status, const std::string& authority_holder) {
+                             const MachineStatus& status, const Parties& who) {
   const sdk::DeviceObject* mechanism = machine.mechanism();
   const CycleNow cycle = machine.cycle_now();
   const ToolPose& tool = sample.pose_actual;
@@ -99,7 +101,10 @@ nlohmann::json state_to_json(MachinePort& machine, int moves_left, const CycleSa
                        {"moves_in_buffer", moves_left},
                        {"status_major", status.major},
                        {"status_minor", status.minor},
-                       {"authority", authority_holder},
+                       {"authority", who.authority},
+                       {"operator", who.on_duty},
+                       {"held_by", cycle.held_by},
+                       {"waits_for", cycle.waits_for},
                        {"virtual", machine.device().virtual_mode()}};
   const ToolsNow tools = machine.tools().tools_now();
   state["tool"] = tools.mounted ? nlohmann::json(*tools.mounted) : nlohmann::json();
@@ -107,6 +112,10 @@ nlohmann::json state_to_json(MachinePort& machine, int moves_left, const CycleSa
   state["tool_prompt"] = tools.prompt;
   const std::optional<Event>& stop = machine.last_stop();
   state["last_stop"] = stop ? event_to_json(*stop) : nlohmann::json();
+  state["last_error"] =
+      status.major == 0
+          ? nlohmann::json()
+          : nlohmann::json{{"status_minor", status.minor}, {"t_s", status.t_s}, {"message", status.message}};
   state["mechanism"] = mechanism == nullptr ? nlohmann::json() : nlohmann::json(mechanism->name);
   const std::size_t spindles =
       mechanism == nullptr ? 0 : std::min(mechanism->spindles.size(), sample.spindle_rpm.size());

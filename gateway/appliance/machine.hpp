@@ -56,6 +56,7 @@ class Machine final : public MachinePort {
   Machine(Controller& controller, DeviceHost& host, DeviceDriverManager& manager)
       : controller_(controller), manager_(manager), device_(host) {}
   sdk::RmacCam& cam() override { return controller_.cam(); }
+  OperatorPort& operating() override { return controller_.operating(); }
   sdk::Measuring& measuring() override { return controller_.measuring(); }
   sdk::RmacConfig& config() override { return controller_.config(); }
   DevicePort& device() override { return device_; }

@@ -124,6 +124,8 @@ Configuration from_document(const Json& document, const std::filesystem::path& f
   configuration.queue_capacity = document.value("queue_capacity", configuration.queue_capacity);
   read_stop_categories(group(document, "stop_categories"), configuration);
   constexpr double kMillisecondsPerSecond = 1e3;
+  configuration.operator_alone_resumes = document.value("operator_alone_resumes", true);
+  configuration.jog_while_waiting = document.value("jog_while_waiting", false);
   configuration.lease_timeout =
       std::chrono::milliseconds(std::llround(document.value("lease_timeout_s", 0.0) * kMillisecondsPerSecond));
   const Json recorder = group(document, "flight_recorder");

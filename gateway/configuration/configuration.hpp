@@ -49,6 +49,8 @@ struct Configuration {
   StopCategory lease_lost = StopCategory::StopKeepPower;
   StopCategories stop_categories;
   std::chrono::milliseconds lease_timeout{0};  ///< silence of its holder that ends the lease; 0: none
+  bool operator_alone_resumes = true;          ///< what the operator holds; else the holder of authority, too
+  bool jog_while_waiting = false;              ///< a jog ends a cycle that has nothing queued
   FlightRecorderOptions flight_recorder;
   std::optional<Autoload> autoload;
 };

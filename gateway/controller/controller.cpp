@@ -92,7 +92,7 @@ struct Controller::Impl {
 Controller::Impl::Impl(ControllerOptions controller_options)
     : options(std::move(controller_options)),
       link(std::make_unique<ServoLink>(FlightRecorder::history_cycles(options.flight_recorder, options.period_s))),
-      supervisor({.queue_capacity = options.queue_capacity}, *link),
+      supervisor({.queue_capacity = options.queue_capacity, .jog_while_waiting = options.jog_while_waiting}, *link),
       thread(thread_options(options), *link, supervisor),
       flights(options.flight_recorder, options.period_s, link->history),
       announcer(*link, [this](std::uint64_t generation) { return reconfiguration.of_generation(generation); }),
@@ -182,6 +182,10 @@ sdk::Measuring& Controller::measuring() noexcept {
   return impl_->measuring;
 }
 
+OperatorPort& Controller::operating() noexcept {
+  return impl_->cam.cycle();
+}
+
 ToolPort& Controller::tools() noexcept {
   return impl_->cam.tools();
 }
@@ -209,9 +213,6 @@ void Controller::discard_draft() {
 
 Expected<> Controller::unload() {
   return impl_->reconfiguration.unload();
-}
-bool Controller::mechanism_loaded() const noexcept {
-  return mechanism() != nullptr;
 }
 
 const sdk::DeviceObject* Controller::mechanism() const noexcept {

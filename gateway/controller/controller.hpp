@@ -15,6 +15,7 @@
 #include "gateway/state/cycle_sample.hpp"
 #include "gateway/state/cycle_state.hpp"
 #include "gateway/state/event.hpp"
+#include "gateway/state/operator.hpp"
 #include "gateway/state/queue_listener.hpp"
 #include "gateway/tools/tool.hpp"
 #include "rmac/motion/error.hpp"
@@ -43,6 +44,7 @@ struct ControllerOptions {
   /// asked for.
   bool stepped = false;
   std::size_t queue_capacity = 10'000;  ///< moves
+  bool jog_while_waiting = false;       ///< a jog ends a cycle that is started and has nothing queued
   StopCategories stop_categories{};
   int max_cycles_lost = 0;       ///< missed deadlines within a second; beyond it the machine stops; 0: not watched
   std::shared_ptr<Clock> clock;  ///< paces the servo thread; null: the monotonic clock
@@ -95,6 +97,7 @@ class Controller {
 
   [[nodiscard]] sdk::RmacConfig& config() noexcept;
   [[nodiscard]] sdk::RmacCam& cam() noexcept;
+  [[nodiscard]] OperatorPort& operating() noexcept;
   [[nodiscard]] ToolPort& tools() noexcept;
   [[nodiscard]] sdk::Measuring& measuring() noexcept;
 
@@ -111,8 +114,7 @@ class Controller {
   void discard_draft();
   /// Takes the mechanism out at standstill: drives disabled, no motion until another is configured.
   [[nodiscard]] Expected<> unload();
-  [[nodiscard]] bool mechanism_loaded() const noexcept;
-  /// The mechanism that is in force.
+  /// The mechanism that is in force; nullptr: none.
   [[nodiscard]] const sdk::DeviceObject* mechanism() const noexcept;
   /// Its modules; none when nothing is in force.
   [[nodiscard]] std::vector<ModuleInUse> modules() const;
@@ -123,7 +125,7 @@ class Controller {
   /// The cycle's state, which follows an accepted command at once; the sample follows some cycles later.
   [[nodiscard]] CycleNow cycle_now() const;
 
-  /// What stopped the machine last: a fault, or a stop; none since the start.
+  /// What stopped the machine last, a fault or a stop; none before the first, and once the cycle runs again.
   [[nodiscard]] const std::optional<Event>& last_stop() const noexcept;
   /// Has the last seconds of every cycle written; the name of the record. An event tells when it is there, or why not.
   [[nodiscard]] Expected<std::string> record_flight();

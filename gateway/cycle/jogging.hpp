@@ -24,7 +24,8 @@ class Jogging {
  private:
   /// Refuses when no such move may begin now; otherwise the next move begins where the machine stands.
   [[nodiscard]] Expected<> begin();
-  [[nodiscard]] Expected<> start(std::optional<double> share);
+  /// Queues what was built, and runs it.
+  [[nodiscard]] Expected<> start(std::vector<BuiltMove> built, std::optional<double> share);
 
   MachineCycle& cycle_;
   MoveEntry& entry_;

@@ -36,7 +36,12 @@ bool has_air(const Mechanism& mechanism, const CycleHistory& history) {
 }  // namespace
 
 MachineCycle::MachineCycle(Options options, ServoLink& link)
-    : wishes(link.wishes), queue(news), tools(wishes, news), options_(options), link_(link) {}
+    : wishes(link.wishes),
+      sequencer(options.jog_while_waiting),
+      queue(news),
+      tools(wishes, news),
+      options_(options),
+      link_(link) {}
 
 CycleObservation MachineCycle::observe(const ServoStatus& status) {
   CycleObservation seen;
@@ -44,6 +49,7 @@ CycleObservation MachineCycle::observe(const ServoStatus& status) {
   news.set_time(status.t_s, status.progress.cycle);
   if (!mechanism_) return seen;
   seen.moves_left = queue.planned();
+  seen.done = queue.left() == 0 && queue.steps().empty();
   if (status.generation != generation_) {
     seen.spindles_at_speed = false;  // nobody knows
     return seen;
@@ -55,6 +61,7 @@ CycleObservation MachineCycle::observe(const ServoStatus& status) {
   seen.follows = status.follows;
   seen.homings = status.homings;
   seen.reference_lost = status.reference_lost;
+  seen.device = &mechanism_->device;
   seen.faulted = status.state == ServoState::Faulted;
   seen.emergency_stop = seen.faulted && status.fault.kind == ServoFault::Kind::EmergencyStop;
   seen.spindles_at_speed = spindles_at_speed(*mechanism_, wishes.now(), status);
@@ -76,7 +83,7 @@ void MachineCycle::settle(const ServoStatus& status) {
 
 void MachineCycle::watch_path(const CycleObservation& seen, const ServoStatus& status) {
   if (!mechanism_ || status.generation != generation_) return;
-  const bool waits = sequencer.waits_for_spindle() && !sequencer.positions() && seen.at_rest;
+  const bool waits = sequencer.waits_for_spindle() && !sequencer.phase().positions() && seen.at_rest;
   const bool should_move = sequencer.travels() && sequencer.state() == CycleState::Running && seen.follows && !waits &&
                            queue.planned() > 0 && feed.effective_percent() > 0 && !mechanism_->planner.off_path();
   const auto wrong =
@@ -130,15 +137,15 @@ void MachineCycle::watch_probe(const CycleObservation& seen, const ServoStatus& 
     probe.measurement().abandon();
     return;
   }
-  const bool given_up = is_faulted(sequencer.state()) || sequencer.empties_queue();
+  const bool given_up = is_faulted(sequencer.state()) || sequencer.phase().empties_queue();
   const ProbeWatch::Verdict verdict =
-      probe.step({seen.moves_left, seen.at_rest, status.probe, sequencer.positions(), given_up});
+      probe.step({seen.moves_left, seen.at_rest, status.probe, sequencer.phase().positions(), given_up});
   if (verdict.touched) sequencer.touched();
-  if (verdict.stop) (void)sequencer.stop_and_clear(*verdict.stop);
+  if (verdict.stop) (void)sequencer.stop_and_clear(seen, *verdict.stop);
 }
 
 void MachineCycle::apply_verdict(const CycleSequencer::Verdict& verdict, const ServoStatus& status) {
-  if (const bool homes = sequencer.homes(); wishes.now().home != homes) {
+  if (const bool homes = sequencer.phase().homes(); wishes.now().home != homes) {
     queue.begin_anew();
     wishes.change([homes](ServoWishes& wish) { wish.home = homes; });
   }
@@ -179,7 +186,8 @@ void MachineCycle::tell_spindle_timeout(const ServoStatus& status) {
 void MachineCycle::tell_state() {
   const CycleState state = sequencer.state();
   if (state == reported_state_) return;
-  news.tell(Event::Kind::CycleStateChanged, fmt::format("{} to {}", to_string(reported_state_), to_string(state)));
+  news.tell(Event::Kind::CycleStateChanged, fmt::format("{} to {}", to_string(reported_state_), to_string(state)),
+            MinorCode::None, state == CycleState::Running);
   reported_state_ = state;
   wishes.change([state](ServoWishes& wish) {
     wish.state = state;
@@ -251,7 +259,7 @@ Planning::Pace MachineCycle::pace(const ServoStatus& status) {
   const bool steps = !queue.steps().empty() && !tools.asked();
   const bool waiting = state == CycleState::Running && (left > 0 || steps || sequencer.waits_for_spindle());
   const bool coming_to_rest = status.moving || !mechanism_->planner.at_rest(status.progress);
-  const bool busy = waiting || coming_to_rest || sequencer.homes() || state == CycleState::Stopping ||
+  const bool busy = waiting || coming_to_rest || sequencer.phase().homes() || state == CycleState::Stopping ||
                     status.state == ServoState::Enabling;
   return busy && !is_faulted(state) ? Planning::Pace::Busy : Planning::Pace::Calm;
 }
@@ -266,7 +274,7 @@ Expected<> MachineCycle::ready_for_move() {
         state == CycleState::Faulted ? MinorCode::Other : MinorCode::EmergencyStop,
         fmt::format("no moves are taken while the machine is {}; remove the cause, then reset", to_string(state)));
   }
-  if (sequencer.empties_queue()) {
+  if (sequencer.phase().empties_queue()) {
     return failure(MinorCode::Other, "the queue is being emptied; send moves when the machine has stopped");
   }
   if (const std::size_t left = moves_left(); left >= options_.queue_capacity) {
@@ -289,7 +297,7 @@ Expected<> MachineCycle::ready_for_move() {
 }
 
 bool MachineCycle::queue_is_gone() {
-  if (!queue.begins_anew() && !sequencer.empties_queue()) return false;
+  if (!queue.begins_anew() && !sequencer.phase().empties_queue()) return false;
   queue.begin_anew();
   return true;
 }

@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "gateway/cycle/cycle_sequencer.hpp"
-#include "gateway/cycle/feed_override.hpp"
 #include "gateway/cycle/standing_wishes.hpp"
+#include "gateway/cycle/states/cycle_sequencer.hpp"
+#include "gateway/cycle/states/feed_override.hpp"
 #include "gateway/cycle/tool_change.hpp"
 #include "gateway/cycle/watch/path_watch.hpp"
 #include "gateway/cycle/watch/probe_watch.hpp"
@@ -31,6 +31,7 @@ class MachineCycle {
     /// Virtual time stands still this long (of real time) after a move was queued while few moves are: a client that is
     /// still sending must not find its queue run dry because time flew.
     std::chrono::milliseconds client_grace{20};
+    bool jog_while_waiting = false;  ///< see `CycleSequencer`
   };
 
   MachineCycle(Options options, ServoLink& link);

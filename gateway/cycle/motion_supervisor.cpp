@@ -7,29 +7,22 @@ namespace {
 
 constexpr std::chrono::milliseconds kNewsWait{5};
 
+/// What a cycle that runs waits for, in a word; empty when it does not.
+const char* waits_for(MachineCycle& cycle) REQUIRES(cycle.lock) {
+  if (cycle.sequencer.state() != CycleState::Running) return "";
+  const CycleObservation seen = cycle.observe(cycle.status());
+  if (waits_for_moves(cycle.sequencer.phase(), seen)) return "moves";
+  if (cycle.feed.percent() == 0) return "override";
+  if (!seen.at_rest || cycle.sequencer.phase().positions()) return "";
+  if (cycle.tools.asked()) return "tool";
+  return cycle.sequencer.waits_for_spindle() ? "spindle" : "";
+}
+
 }  // namespace
 
 MotionSupervisor::Pace MotionSupervisor::advance(const ServoStatus& status) {
   const PlannerTurn turn(cycle_.lock);
   return cycle_.advance(status);
-}
-
-Expected<double> MotionSupervisor::retrace(double distance_mm) {
-  const GatewayTurn turn(cycle_.lock);
-  if (auto fine = cycle_.sequencer.check_retrace(cycle_.observe(cycle_.status())); !fine) {
-    return tl::unexpected(fine.error());
-  }
-  const ServoStatus now = cycle_.status();
-  auto way = cycle_.mechanism()->planner.turn_back(distance_mm, {now.position_set.data(), now.joint_count});
-  if (!way) return way;
-  if (!(*way > 0)) {
-    return failure(MinorCode::Other,
-                   "FeedRetrace: there is no path behind the tool; it stands where its path began, or where the queue "
-                   "was emptied");
-  }
-  cycle_.sequencer.retrace();
-  cycle_.settle(cycle_.status());
-  return way;
 }
 
 Expected<> MotionSupervisor::add_steps(std::vector<QueueStep> steps, ProgramStep as_sent) {
@@ -83,12 +76,6 @@ void MotionSupervisor::set_frames(const Frames& frames) {
   cycle_.queue.begin_anew();
 }
 
-void MotionSupervisor::set_override(double percent) {
-  const GatewayTurn turn(cycle_.lock);
-  cycle_.feed.set(percent);
-  cycle_.apply_feed();
-}
-
 void MotionSupervisor::set_spindle(std::size_t spindle, double rpm) {
   const GatewayTurn turn(cycle_.lock);
   cycle_.wishes.change([&](ServoWishes& wishes) { wishes.spindle_rpm[spindle] = rpm; });
@@ -98,7 +85,7 @@ void MotionSupervisor::set_spindle(std::size_t spindle, double rpm) {
 
 std::size_t MotionSupervisor::moves_left() {
   const GatewayTurn turn(cycle_.lock);
-  return cycle_.moves_left() + (cycle_.sequencer.homes() ? 1 : 0);
+  return cycle_.moves_left() + (cycle_.sequencer.phase().homes() ? 1 : 0);
 }
 
 CycleState MotionSupervisor::state() {
@@ -113,7 +100,12 @@ CycleNow MotionSupervisor::now() {
   const CycleState state = cycle_.sequencer.state();
   const bool started = state == CycleState::Running || state == CycleState::Holding || state == CycleState::Stopping;
   const bool automatic = cycle_.sequencer.mode() == sdk::CycleMode::Automatic;
-  return {state, !started ? "" : automatic ? "AUTOMATIC" : "MANUAL", cycle_.feed.percent()};
+  const OperatorRef by = holder(cycle_);
+  return {state,
+          !started    ? ""
+          : automatic ? "AUTOMATIC"
+                      : "MANUAL",
+          cycle_.feed.percent(), waits_for(cycle_), by ? by->name() : ""};
 }
 
 std::shared_ptr<Mechanism> MotionSupervisor::install(std::shared_ptr<Mechanism> next, std::uint64_t generation,

@@ -11,6 +11,7 @@
 #include "gateway/cycle/jogging.hpp"
 #include "gateway/cycle/machine_cycle.hpp"
 #include "gateway/cycle/move_entry.hpp"
+#include "gateway/cycle/operating.hpp"
 #include "gateway/cycle/parking.hpp"
 #include "gateway/cycle/probing.hpp"
 #include "gateway/servo/planning.hpp"
@@ -48,12 +49,11 @@ class MotionSupervisor final : public Planning {
   [[nodiscard]] Parking& parking() noexcept { return parking_; }
   [[nodiscard]] Probing& probing() noexcept { return probing_; }
   [[nodiscard]] Jogging& jogging() noexcept { return jogging_; }
+  [[nodiscard]] Operating& operating() noexcept { return operating_; }
 
   /// See `MoveEntry`.
   [[nodiscard]] Expected<> prepare_move() { return entry_.prepare(); }
   [[nodiscard]] Expected<bool> add_move(const Move& move) { return entry_.add(move); }
-  /// Runs back along up to `distance_mm` of the path of what is held. The way it will go, in mm.
-  [[nodiscard]] Expected<double> retrace(double distance_mm);
 
   /// Adds what is to be done between moves: moves that are added from now on wait behind it. The caller has seen to it
   /// that `builder()` goes on where the steps leave the machine.
@@ -70,7 +70,6 @@ class MotionSupervisor final : public Planning {
   void wish(const std::function<void(ServoWishes&)>& change);
   [[nodiscard]] ServoWishes wishes();
   void set_frames(const Frames& frames);
-  void set_override(double percent);
   void set_spindle(std::size_t spindle, double rpm);
   /// Moves queued and not yet done, those without motion included; homing by the drives is one.
   [[nodiscard]] std::size_t moves_left();
@@ -92,6 +91,7 @@ class MotionSupervisor final : public Planning {
   Jogging jogging_{cycle_, entry_};
   Probing probing_{cycle_};
   Parking parking_{cycle_};
+  Operating operating_{cycle_};
 };
 
 }  // namespace rmac::gateway

@@ -16,7 +16,7 @@ Expected<> MoveEntry::prepare() {
 }
 
 Expected<bool> MoveEntry::add(const Move& move) {
-  auto built = build_moves(cycle_.builder(), {{&move, {}}});
+  auto built = build(move);
   if (!built) return tl::unexpected(built.error());
   const GatewayTurn turn(cycle_.lock);
   return cycle_.add(std::move(*built)).map([](std::size_t moving) { return moving > 0; });

@@ -15,6 +15,10 @@ class MoveEntry {
   /// Builds and queues a move that `prepare` let through. False when there is nothing to move: such a move is done as
   /// soon as those before it are.
   [[nodiscard]] Expected<bool> add(const Move& move);
+  /// The first half of it.
+  [[nodiscard]] Expected<std::vector<BuiltMove>> build(const Move& move) {
+    return build_moves(cycle_.builder(), {{&move, {}}});
+  }
 
  private:
   MachineCycle& cycle_;

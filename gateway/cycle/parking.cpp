@@ -25,8 +25,9 @@ Expected<> Parking::check_held(const ServoStatus& now) {
   if (state != CycleState::Holding && state != CycleState::Idle) {
     return refuse(fmt::format("the machine is {}; hold the program with FeedHold first", to_string(state)));
   }
+  if (auto free = refuse_when_held("ParkProgram", cycle_.sequencer.phase().held_by()); !free) return free;
   if (!cycle_.observe(now).at_rest) return refuse("the machine is still coming to rest; ask again when it stands");
-  if (cycle_.probe.measurement().pending() || cycle_.sequencer.positions()) {
+  if (cycle_.probe.measurement().pending() || cycle_.sequencer.phase().positions()) {
     return refuse("a jog or a measurement is held, not a program");
   }
   if (cycle_.tools.changing()) return refuse("a tool change is under way; park when it is done");
@@ -59,13 +60,19 @@ Expected<> Parking::park(std::uint64_t outputs_off) {
   program.override_percent = cycle_.feed.percent();
   program.turned_off = cycle_.wishes.turn_off(outputs_off);
   parked_ = std::move(program);
-  auto stopped = cycle_.sequencer.stop_and_clear(StopCause::Parked);
+  auto stopped = cycle_.sequencer.stop_and_clear(cycle_.observe(now), StopCause::Parked);
   if (stopped) cycle_.settle(now);
   return stopped;
 }
 
+Expected<> Parking::check_references() {
+  const GatewayTurn turn(cycle_.lock);
+  const CycleObservation seen = cycle_.observe(cycle_.status());
+  return require_references("TakeUpProgram", seen.reference_lost, seen.device);
+}
+
 Expected<> Parking::add_rest_of(const ProgramStep& first) {
-  if (auto known = require_references("TakeUpProgram", cycle_.status().reference_lost); !known) return known;
+  if (auto known = check_references(); !known) return known;
   auto rest = build_rest_of(cycle_.builder(), first);
   if (!rest) return tl::unexpected(rest.error());
   const GatewayTurn turn(cycle_.lock);
@@ -79,7 +86,7 @@ bool Parking::hold_taken_up() {
   if (!parked_ || cycle_.queue.begins_anew() || cycle_.sequencer.state() != CycleState::Idle) return false;
   const ServoStatus now = cycle_.status();
   cycle_.sequencer.take_up(parked_->mode, cycle_.observe(now));
-  cycle_.feed.set(parked_->override_percent);
+  (void)cycle_.feed.set(parked_->override_percent);  // unless the operator's stands
   cycle_.apply_feed();
   cycle_.wishes.keep_for_later(parked_->turned_off);
   parked_.reset();

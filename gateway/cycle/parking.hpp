@@ -40,6 +40,7 @@ class Parking {
   void drop(const std::string& why);
 
  private:
+  [[nodiscard]] Expected<> check_references() EXCLUDES(cycle_.lock);
   [[nodiscard]] Expected<> check_held(const ServoStatus& now) REQUIRES(cycle_.lock);
 
   MachineCycle& cycle_;

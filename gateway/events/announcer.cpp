@@ -50,6 +50,7 @@ void Announcer::tell_events_before(std::int64_t cycle) {
 void Announcer::tell(Event event) {
   for (const auto& annotate : annotators_) annotate(event);
   if (event.kind == Event::Kind::Fault || event.kind == Event::Kind::Stopped) last_stop_ = event;
+  if (event.goes_on) last_stop_.reset();
   for (const auto& listener : event_listeners_) listener(event);
 }
 

@@ -40,7 +40,7 @@ class Announcer {
   /// Tells of an event at once.
   void tell(Event event);
 
-  /// What stopped the machine last: a fault, or a stop.
+  /// What stopped the machine last, a fault or a stop, as long as it has not gone on since.
   [[nodiscard]] const std::optional<Event>& last_stop() const noexcept { return last_stop_; }
 
  private:

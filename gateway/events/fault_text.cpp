@@ -6,19 +6,13 @@
 #include <cmath>
 #include <optional>
 
+#include "gateway/mechanism/joint_name.hpp"
 #include "rmac/fieldbus/canopen/emergency.hpp"
 #include "rmac/fieldbus/fault_texts.hpp"
 #include "rmac/motion/drive_power.hpp"
 
 namespace rmac::gateway {
 namespace {
-
-std::string joint_name(std::uint32_t index, const sdk::DeviceObject* device) {
-  if (device == nullptr) return fmt::format("joint {}", index);
-  if (index >= device->joint_count_with_held()) return fmt::format("joint {}", index);
-  return fmt::format("{}joint {} ({})", index < device->joints.size() ? "" : "held ", index,
-                     joint_at(*device, index).limits.name);
-}
 
 const ServoBus* bus_at(std::uint32_t index, const Mechanism* mechanism) {
   return mechanism == nullptr ? nullptr : mechanism->loop->bus(index);

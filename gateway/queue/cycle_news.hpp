@@ -33,8 +33,8 @@ class CycleNews {
     t_s_ = t_s;
     cycle_ = cycle;
   }
-  void tell(Event::Kind kind, std::string message, MinorCode code = MinorCode::None) {
-    news_.events.push_back({kind, t_s_, 0, std::move(message), cycle_, {}, code});
+  void tell(Event::Kind kind, std::string message, MinorCode code = MinorCode::None, bool goes_on = false) {
+    news_.events.push_back({kind, t_s_, 0, std::move(message), cycle_, {}, code, {}, goes_on});
   }
   void tell(Event event) { news_.events.push_back(std::move(event)); }
   void tell(const QueueChange& change) { news_.queue.push_back(change); }

@@ -33,6 +33,9 @@ Expected<> Reconfiguration::change_loops(const sdk::DeviceObject& device, const 
 Expected<> Reconfiguration::reset() {
   const CycleState state = supervisor_.state();
   if (!is_faulted(state)) {
+    auto taken_over = supervisor_.operating().take_over();
+    if (!taken_over) return tl::unexpected(taken_over.error());
+    if (*taken_over) return {};
     return failure(MinorCode::Other,
                    fmt::format("reset: there is no fault to reset, the machine is {}", to_string(state)));
   }
@@ -46,6 +49,7 @@ Expected<> Reconfiguration::reset() {
     users_.mechanism_changed(device(), false);
   }
   auto left = supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.reset(); });
+  (void)supervisor_.operating().take_over();  // an operator who is there keeps what they held
   if (left && before) left = slot_.power_on();
   return left;
 }

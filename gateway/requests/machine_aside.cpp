@@ -23,14 +23,20 @@ void MachineAside::take_machine(std::uint64_t client, std::function<void(Machine
                                 std::function<bool()> done) {
   last_served_ = client;
   away_ = true;
-  auto status = std::make_shared<MachineStatus>();
+  auto status = std::make_shared<MachineStatus>(dispatcher_.status());
   run([work = std::move(work), status] { work(*status); },
-      [this, status, done = std::move(done)] {
+      [this, status, before = *status, done = std::move(done)] {
         away_ = mechanism_changes_ = false;
-        if (status->major != 0) dispatcher_.status().fail(static_cast<MinorCode>(status->minor));
+        take_over(before, *status);
         // A move that must wait for room is tried again at the next tick, not at once.
         if (done()) on_back_();
       });
+}
+
+void MachineAside::take_over(const MachineStatus& before, const MachineStatus& after) {
+  if (after == before) return;
+  // What went wrong here meanwhile is not cleared with what was known before.
+  if (after.major != 0 || dispatcher_.status() == before) dispatcher_.status() = after;
 }
 
 void MachineAside::carry_out(const Request& request, SessionPort& session, std::uint64_t client,
@@ -47,11 +53,11 @@ void MachineAside::carry_out(const Request& request, SessionPort& session, std::
 
 void MachineAside::run_apart(bool changes_status, std::function<void(MachineStatus&)> work,
                              std::function<void()> done) {
-  auto status = std::make_shared<MachineStatus>();
+  auto status = std::make_shared<MachineStatus>(dispatcher_.status());
   run_on(
       apart_, [work = std::move(work), status] { work(*status); },
-      [this, changes_status, status, done = std::move(done)] {
-        if (changes_status && status->major != 0) dispatcher_.status().fail(static_cast<MinorCode>(status->minor));
+      [this, changes_status, status, before = *status, done = std::move(done)] {
+        if (changes_status) take_over(before, *status);
         done();
       });
 }

@@ -41,6 +41,8 @@ class MachineAside {
  private:
   void run_on(asio::thread_pool& thread, std::function<void()> work, std::function<void()> done);
   void run_apart(bool changes_status, std::function<void(MachineStatus&)> work, std::function<void()> done);
+  /// Makes what a request did to its copy of the machine's status, as that was before, the machine's.
+  void take_over(const MachineStatus& before, const MachineStatus& after);
   void take_machine(std::uint64_t client, std::function<void(MachineStatus&)> work, std::function<bool()> done);
 
   asio::io_context& io_;

@@ -135,7 +135,7 @@ bool RequestQueue::settle(RequestLine& line, Answer answer) {
   const bool full = !answer && answer.error().minor == MinorCode::CommandQueueFull && request.queues_a_move();
   if (full && !line.refuses_moves()) {
     if (must_wait(line)) return false;
-    dispatcher_.status().fail(MinorCode::CommandQueueFull);
+    dispatcher_.status().fail(MinorCode::CommandQueueFull, answer.error().message, dispatcher_.machine().sample().t_s);
     for (const Line& waiting : lines_) waiting->refuse_moves();
   }
   line.answer_next(std::move(answer));

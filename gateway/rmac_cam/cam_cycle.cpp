@@ -5,7 +5,7 @@
 namespace rmac::gateway {
 
 void CamCycle::mechanism_changed(bool fresh) {
-  if (fresh) supervisor_.set_override(100);
+  if (fresh) (void)supervisor_.operating().set_override(100, nullptr);  // an operator's 0 stays
 }
 
 Expected<> CamCycle::start(sdk::CycleMode mode) {
@@ -22,21 +22,21 @@ Expected<> CamCycle::stop() {
   return stopped;
 }
 
-Expected<> CamCycle::hold() {
-  return supervisor_.stop_command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.hold(); });
+Expected<> CamCycle::hold(const OperatorRef& who) {
+  return supervisor_.stop_command([&who](CycleSequencer& cycle, const CycleObservation&) { return cycle.hold(who); });
 }
 
-Expected<> CamCycle::resume() {
-  return supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.resume(); });
+Expected<> CamCycle::resume(const OperatorRef& who) {
+  return supervisor_.command([&who](CycleSequencer& cycle, const CycleObservation&) { return cycle.resume(who); });
 }
 
-Expected<double> CamCycle::retrace(double distance_mm) {
-  return device_.require("FeedRetrace").and_then([&] { return supervisor_.retrace(distance_mm); });
+Expected<double> CamCycle::retrace(double distance_mm, const OperatorRef& who) {
+  return device_.require("FeedRetrace").and_then([&] { return supervisor_.operating().retrace(distance_mm, who); });
 }
 
 Expected<> CamCycle::stop_now() {
-  auto stopped =
-      supervisor_.stop_command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.stop_and_clear(); });
+  auto stopped = supervisor_.stop_command(
+      [](CycleSequencer& cycle, const CycleObservation& seen) { return cycle.stop_and_clear(seen); });
   forces_.let_go();
   return stopped;
 }
@@ -46,7 +46,7 @@ bool CamCycle::started() const {
   return state == CycleState::Running || state == CycleState::Holding;
 }
 
-Expected<> CamCycle::set_feed_override(double percent) {
+Expected<> CamCycle::set_feed_override(double percent, const OperatorRef& who) {
   constexpr double kSlowestPercent = 0.01;
   const bool waits = percent == 0;
   if (!waits && !(percent >= kSlowestPercent && percent <= 200)) {
@@ -54,8 +54,7 @@ Expected<> CamCycle::set_feed_override(double percent) {
         MinorCode::InvalidParameterValue,
         fmt::format("SetFeedOverride: {} percent must be 0, which waits, or {} to 200", percent, kSlowestPercent));
   }
-  supervisor_.set_override(percent);
-  return {};
+  return supervisor_.operating().set_override(percent, who);
 }
 
 }  // namespace rmac::gateway

@@ -30,8 +30,8 @@ Expected<> CamForces::set(int joint, double force) {
     return failure(MinorCode::Other,
                    fmt::format("{}: the machine is {}; remove the cause, then reset", kFunction, to_string(state)));
   }
-  supervisor_.wish([&](ServoWishes& wishes) { wishes.force[*found] = force; });
-  return {};
+  auto free = force == 0 ? Expected<>{} : supervisor_.operating().require_free(kFunction);
+  return free.map([&] { supervisor_.wish([&](ServoWishes& wishes) { wishes.force[*found] = force; }); });
 }
 
 void CamForces::let_go() {

@@ -177,12 +177,16 @@ Expected<> CamPositioning::home() {
   const bool by_drives = std::any_of(device.actuators.begin(), device.actuators.end(),
                                      [](const sdk::Actuator& actuator) { return actuator.homing_turn > 0; });
   if (by_drives && !supervisor_.mechanism()->virtual_mode()) {
-    return supervisor_.require_rest("Home").and_then([&] {
-      return supervisor_.command(
-          [](CycleSequencer& cycle, const CycleObservation& seen) { return cycle.start_homing(seen); });
-    });
+    // No feed override slows the drives, so one of 0 that an operator set keeps them from it.
+    return supervisor_.operating()
+        .require_free("Home")
+        .and_then([&] { return supervisor_.require_rest("Home"); })
+        .and_then([&] {
+          return supervisor_.command(
+              [](CycleSequencer& cycle, const CycleObservation& seen) { return cycle.start_homing(seen); });
+        });
   }
-  if (auto known = require_references("Home", link_.status.read().reference_lost); !known) return known;
+  if (auto known = require_references("Home", link_.status.read().reference_lost, device_.get()); !known) return known;
   const JointTargetGeometry now = joints_now();
   const bool there =
       std::all_of(now.joints.begin(), now.joints.end(), [](double position) { return std::abs(position) < 1e-9; });
@@ -193,7 +197,9 @@ Expected<> CamPositioning::home() {
 
 Expected<> CamPositioning::move_to_reference_point() {
   if (auto loaded = device_.require("MoveToReferencePoint"); !loaded) return loaded;
-  if (auto known = require_references("MoveToReferencePoint", link_.status.read().reference_lost); !known) return known;
+  if (auto known = require_references("MoveToReferencePoint", link_.status.read().reference_lost, device_.get());
+      !known)
+    return known;
   return supervisor_.jogging().run(maker_.straight_move({{0, 0, 0}, tool_.in_part().axis}));
 }
 

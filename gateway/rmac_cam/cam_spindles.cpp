@@ -22,7 +22,8 @@ Expected<> CamSpindles::set_rpm(int spindle, double rpm) {
   if (rpm != 0 && is_faulted(supervisor_.state())) {
     return failure(MinorCode::Other, "SetSpindleRPM: the machine is faulted; remove the cause, then reset");
   }
-  return tools_.check_speed(rpm).map([&] { supervisor_.set_spindle(*found, rpm); });
+  auto free = rpm == 0 ? Expected<>{} : supervisor_.operating().require_free("SetSpindleRPM");
+  return free.and_then([&] { return tools_.check_speed(rpm); }).map([&] { supervisor_.set_spindle(*found, rpm); });
 }
 
 Expected<double> CamSpindles::rpm(int spindle) const {

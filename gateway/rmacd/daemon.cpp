@@ -39,6 +39,7 @@ ControllerOptions controller_options(const Configuration& configuration, std::sh
   options.priority = configuration.real_time.priority;
   options.lock_memory = configuration.real_time.lock_memory;
   options.queue_capacity = static_cast<std::size_t>(configuration.queue_capacity);
+  options.jog_while_waiting = configuration.jog_while_waiting;
   options.stop_categories = configuration.stop_categories;
   options.max_cycles_lost = configuration.real_time.max_cycles_lost;
   options.flight_recorder = configuration.flight_recorder;
@@ -68,6 +69,7 @@ ServerOptions server_options(const Configuration& configuration) {
   options.cycle_hz = 1 / std::chrono::duration<double>(configuration.period).count();
   options.queue_capacity = configuration.queue_capacity;
   options.throttle_machine = configuration.pace == Pace::AsFastAsComputed;
+  options.operator_alone_resumes = configuration.operator_alone_resumes;
   options.lease_timeout = configuration.lease_timeout;
   switch (configuration.lease_lost) {
     case StopCategory::StopKeepPower:

@@ -21,8 +21,10 @@ constexpr std::size_t kTreePerText = 8;
 /// The topic `state` as everybody sees it.
 std::string state_text(const ConnectionContext& context, const CycleSample& sample) {
   Dispatcher& api = context.dispatcher;
+  const OperatorRef on_duty = context.operator_post.now();
   const int left = api.machine().cam().queue().moves_left();
-  return text_of(state_to_json(api.machine(), left, sample, api.status(), context.lease.holder_name()));
+  return text_of(state_to_json(api.machine(), left, sample, api.status(),
+                               {context.lease.holder_name(), on_duty ? on_duty->name() : ""}));
 }
 
 /// Longer first lines are held to their first character alone: reading them takes long.
@@ -77,7 +79,7 @@ void Connection::abort() {
   socket_.close(ignored);
   leaving_.cancel();
   requests_.clear();
-  context_.lease.lose(id(), name(), "disconnected with");
+  session_.leave_posts("disconnected with");
   context_.peers.forget(id());
 }
 
@@ -160,7 +162,7 @@ void Connection::refuse_and_leave(RpcError error) {
   lines_.clear();
   send(text_of(to_response(nullptr, tl::unexpected<RpcError>(std::move(error)))));
   phase_ = Phase::Leaving;
-  context_.lease.lose(id(), name(), "was disconnected with");
+  session_.leave_posts("was disconnected with");
   // Closing with input unread would reset the connection, and the client would never see why. So what it still sends is
   // thrown away for a while.
   leave_within(kLeaveTime);
@@ -217,7 +219,7 @@ void Connection::pump() {
     case RequestQueue::Progress::Done:
       break;
   }
-  if (phase_ == Phase::Draining) context_.lease.lose(id(), name(), "disconnected with");
+  if (phase_ == Phase::Draining) session_.leave_posts("disconnected with");
   finish_if_drained();
   read();
 }

@@ -8,6 +8,7 @@
 
 #include "gateway/api/dispatch/dispatcher.hpp"
 #include "gateway/requests/machine_aside.hpp"
+#include "gateway/server/authority/operator_post.hpp"
 #include "gateway/server/lease_keeper.hpp"
 #include "gateway/server/server_options.hpp"
 
@@ -22,6 +23,8 @@ class Peers {
   virtual void overtake(std::uint64_t who, const std::string& name, const Request& stop, std::uint64_t position) = 0;
   /// The name of another client that receives more than the watchers' rate, if there is one.
   [[nodiscard]] virtual std::optional<std::string> fast_watcher_beside(std::uint64_t who) const = 0;
+  /// Tells clients of something that is no report of the controller.
+  virtual void announce(Event::Kind kind, std::string message) = 0;
   /// Client `who` is gone.
   virtual void forget(std::uint64_t who) = 0;
 };
@@ -31,6 +34,7 @@ struct ConnectionContext {
   Dispatcher& dispatcher;
   MachineAside& aside;
   LeaseKeeper& lease;
+  OperatorPost& operator_post;
   Peers& peers;
   const ServerOptions& options;
   std::function<std::unique_ptr<RecordCursor>()> make_records;

@@ -62,9 +62,9 @@ void LeaseKeeper::stop_machine(std::string message) {
       runs || dropped_moves_ > 0 || aside_.is_away() ? machine.cam().cycle().stop_now() : machine.cam().cycle().stop();
   if (!stopped) {
     message += "; stopping failed: " + stopped.error().message;
-    dispatcher_.status().fail(stopped.error().code);
+    dispatcher_.status().fail(stopped.error().code, message, sample.t_s);
   } else if (runs) {
-    message += "; the machine is stopped on its path";
+    message += sample.moving || dropped_moves_ > 0 ? "; the machine is stopped on its path" : "; its cycle is ended";
   }
   if (dropped_moves_ > 0) message += fmt::format("; {} queued moves are dropped", dropped_moves_);
   if (runs && options_.lease_lost == LeaseLostAction::StopAndPowerOff) {

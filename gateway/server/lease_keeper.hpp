@@ -6,7 +6,7 @@
 
 #include "gateway/api/dispatch/dispatcher.hpp"
 #include "gateway/requests/machine_aside.hpp"
-#include "gateway/server/lease.hpp"
+#include "gateway/server/authority/lease.hpp"
 #include "gateway/server/server_options.hpp"
 
 namespace rmac::gateway {

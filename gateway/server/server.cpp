@@ -19,7 +19,7 @@ Server::Server(asio::io_context& io, MachinePort& machine, MakeRecords make_reco
              [this](Event::Kind kind, std::string message) { announce(kind, std::move(message)); }),
       listeners_(io, [this](Listeners::Socket socket, const char* what,
                             std::string peer) { welcome(std::move(socket), what, std::move(peer)); }),
-      context_{dispatcher_, aside_, lease_, *this, options_, std::move(make_records)} {}
+      context_{dispatcher_, aside_, lease_, operator_, *this, options_, std::move(make_records)} {}
 
 Server::~Server() {
   close();
@@ -86,9 +86,9 @@ void Server::on_sample(const CycleSample& sample) {
 
 void Server::on_event(const Event& event) {
   if (event.code != MinorCode::None) {
-    dispatcher_.status().fail(event.code);
+    dispatcher_.status().fail(event.code, event.message, event.t_s);
   } else if (event.kind == Event::Kind::Fault) {
-    dispatcher_.status().fail(MinorCode::Other);
+    dispatcher_.status().fail(MinorCode::Other, event.message, event.t_s);
   }
   const std::string line = event_notification(event);
   for (const auto& [id, connection] : connections_) connection->push_event(line);

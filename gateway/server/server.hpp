@@ -8,6 +8,7 @@
 
 #include "gateway/api/dispatch/dispatcher.hpp"
 #include "gateway/requests/machine_aside.hpp"
+#include "gateway/server/authority/operator_post.hpp"
 #include "gateway/server/connection_context.hpp"
 #include "gateway/server/lease_keeper.hpp"
 #include "gateway/server/listeners.hpp"
@@ -46,8 +47,7 @@ class Server : private Peers {
   /// Listeners for the controller's reports.
   void on_sample(const CycleSample& sample);
   void on_event(const Event& event);
-  /// Tells clients of something that is no report of the controller.
-  void announce(Event::Kind kind, std::string message);
+  void announce(Event::Kind kind, std::string message) override;
   /// False while a watcher is too far behind for virtual time to go on; the caller then leaves the controller's
   /// samples where they are.
   [[nodiscard]] bool may_dispatch() const noexcept;
@@ -74,6 +74,7 @@ class Server : private Peers {
   Dispatcher dispatcher_;
   MachineAside aside_;
   LeaseKeeper lease_;
+  OperatorPost operator_;
   Listeners listeners_;
   ConnectionContext context_;
   std::map<std::uint64_t, std::shared_ptr<Connection>> connections_;

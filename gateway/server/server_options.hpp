@@ -23,6 +23,7 @@ struct ServerOptions {
   int queue_capacity = 10'000;    ///< told to clients
   bool throttle_machine = false;  ///< virtual time: wait for slow watchers instead of cutting them off
   LeaseLostAction lease_lost = LeaseLostAction::Stop;
+  bool operator_alone_resumes = true;          ///< what the operator held; else whoever may resume at all
   std::chrono::milliseconds lease_timeout{0};  ///< silence of its holder that ends the lease; 0: none
   std::function<std::chrono::steady_clock::time_point()> now = std::chrono::steady_clock::now;  ///< of the lease
   std::size_t line_limit_bytes = std::size_t{8} << 20;

@@ -71,6 +71,46 @@ tl::expected<void, RpcError> Session::release_authority() {
   return context_.lease.confirm(id_).map([&] { context_.lease.lose(id_, name(), "gave back"); });
 }
 
+tl::expected<std::string, RpcError> Session::acquire_operator() {
+  const bool was = is_operator();
+  return context_.operator_post.acquire(id_, name()).map([&] {
+    if (!was) context_.peers.announce(Event::Kind::Authority, name() + " is the operator");
+    return operator_name();
+  });
+}
+
+tl::expected<void, RpcError> Session::release_operator() {
+  return context_.operator_post.confirm(id_).map([&] { leave_operators_post("gave up"); });
+}
+
+void Session::leave_posts(const char* why) {
+  context_.lease.lose(id_, name(), why);
+  leave_operators_post(why);
+}
+
+void Session::leave_operators_post(const char* why) {
+  if (!context_.operator_post.leave(id_)) return;
+  context_.peers.announce(Event::Kind::Authority,
+                          fmt::format("{} {} the operator's place; what it held stays held", name(), why));
+}
+
+bool Session::is_operator() const {
+  return context_.operator_post.held_by(id_);
+}
+
+std::string Session::operator_name() const {
+  const OperatorRef now = context_.operator_post.now();
+  return now ? now->name() : "";
+}
+
+OperatorRef Session::holds_as() const {
+  return is_operator() && context_.options.operator_alone_resumes ? context_.operator_post.now() : nullptr;
+}
+
+void Session::tell(const std::string& what) {
+  context_.peers.announce(Event::Kind::Operator, name() + " " + what);
+}
+
 tl::expected<void, RpcError> Session::subscribe(const std::vector<std::string>& topics, double rate_hz) {
   if (auto known = Subscriptions::check(topics); !known) return known;
   if (rate_hz > kWatchRateHz && Subscriptions::has_rate(topics)) {

@@ -19,6 +19,8 @@ class Session final : public SessionPort {
   [[nodiscard]] std::uint64_t id() const noexcept { return id_; }
   /// "cam-tool (TCP client 3)", for messages.
   [[nodiscard]] std::string name() const;
+  /// Its lease and the operator's place end, where it has them; `why` continues its name.
+  void leave_posts(const char* why);
 
   void introduce(const std::string& client, const std::string& version) override;
   [[nodiscard]] nlohmann::json greeting() const override;
@@ -28,11 +30,19 @@ class Session final : public SessionPort {
   tl::expected<nlohmann::json, RpcError> acquire_authority() override;
   tl::expected<void, RpcError> renew_authority() override;
   tl::expected<void, RpcError> release_authority() override;
+  tl::expected<std::string, RpcError> acquire_operator() override;
+  tl::expected<void, RpcError> release_operator() override;
+  [[nodiscard]] bool is_operator() const override;
+  [[nodiscard]] std::string operator_name() const override;
+  [[nodiscard]] OperatorRef holds_as() const override;
+  void tell(const std::string& what) override;
   tl::expected<void, RpcError> subscribe(const std::vector<std::string>& topics, double rate_hz) override;
   void unsubscribe(const std::vector<std::string>& topics) override;
   void animate(bool on) override;
 
  private:
+  void leave_operators_post(const char* why);
+
   const ConnectionContext& context_;
   std::uint64_t id_;
   std::string where_;

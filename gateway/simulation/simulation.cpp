@@ -47,6 +47,13 @@ class OnlyClient final : public SessionPort {
   }
   tl::expected<void, RpcError> renew_authority() override { return {}; }
   tl::expected<void, RpcError> release_authority() override { return {}; }
+  // Nobody stands beside it: as the operator it does what it may do anyway.
+  tl::expected<std::string, RpcError> acquire_operator() override { return authority_holder(); }
+  tl::expected<void, RpcError> release_operator() override { return {}; }
+  bool is_operator() const override { return false; }
+  std::string operator_name() const override { return {}; }
+  OperatorRef holds_as() const override { return nullptr; }
+  void tell(const std::string& /*what*/) override {}
   tl::expected<void, RpcError> subscribe(const std::vector<std::string>& /*topics*/, double /*rate_hz*/) override {
     return {};
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace rmac::gateway {
 
@@ -18,6 +19,9 @@ struct CycleNow {
   CycleState state = CycleState::Idle;
   const char* mode = "";  ///< Appendix IV's name of the mode of the cycle that is started; empty when none is
   double override_percent = 100;
+  const char* waits_for =
+      "";                 ///< what a cycle that runs waits for: moves, override, tool or spindle; empty: it does not
+  std::string held_by{};  ///< the operator who holds the machine; empty: none does
 };
 
 }  // namespace rmac::gateway

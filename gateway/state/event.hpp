@@ -18,6 +18,7 @@ struct Event {
     Stopped,
     Fault,
     Authority,
+    Operator,
     Mechanism,
     CycleStateChanged,
     FlightRecord,
@@ -34,6 +35,7 @@ struct Event {
   std::string record;                ///< name of the flight record that shows it; empty: none
   MinorCode code = MinorCode::None;  ///< the status that it leaves
   std::optional<sdk::Hit> hit{};     ///< what a `Kind::Hit` found
+  bool goes_on = false;              ///< the cycle runs from now on: what stopped it before is over
 };
 
 }  // namespace rmac::gateway

@@ -6,6 +6,8 @@ const char* describe(StopCause cause) noexcept {
   switch (cause) {
     case StopCause::CycleStop:
       return "the machine has come to rest after a CycleStop; what is queued goes on with CycleStart";
+    case StopCause::CycleEnded:
+      return "the cycle has ended: all that was queued is done";
     case StopCause::StopNow:
       return "the machine has come to rest after a StopNow, or because motion authority was given back or lost; its "
              "queue is empty";

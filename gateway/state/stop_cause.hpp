@@ -9,6 +9,7 @@ namespace rmac::gateway {
 /// Why the machine came to rest.
 enum class StopCause : std::uint8_t {
   CycleStop,
+  CycleEnded,
   StopNow,
   JogLapsed,
   JogEnded,

@@ -64,6 +64,47 @@ class Interruptions(unittest.TestCase):
         self.operator.call("RMAC_CAM.FeedResume")
         self.wait_state(lambda later: later["moving"] and later["pose"][0] > state["pose"][0] + 0.1)
 
+    # Red when what the operator holds is resumed by the program's client, which does not stand at the machine.
+    def test_what_the_operator_held_only_the_operator_resumes(self):
+        panel = self.appliance.client("panel")
+        panel.call("operator.acquire")
+        panel.call("RMAC_CAM.FeedHold")
+        state = self.rest()
+        for method, parameters in (("FeedResume", {}), ("CycleStart", {"Mode": "AUTOMATIC"}), ("Reset", {}),
+                                   ("FeedRetrace", {"Distance": 1}), ("ParkProgram", {})):
+            self.assertIn("panel (TCP", self.operator.refusal("RMAC_CAM." + method, **parameters).message)
+        self.assert_stays(state)
+        panel.call("RMAC_CAM.FeedResume")
+        self.wait_state(lambda later: later["moving"] and later["pose"][0] > state["pose"][0] + 0.1)
+
+    def test_hold_stays_when_the_operator_goes_and_a_reset_gives_it_to_the_program(self):
+        panel = self.appliance.client("panel")
+        panel.call("operator.acquire")
+        panel.call("RMAC_CAM.FeedHold")
+        state = self.rest()
+        panel.close()
+        self.wait_state(lambda later: later["operator"] == "")
+        self.assertIn("has left", self.operator.refusal("RMAC_CAM.FeedResume").message)
+        self.assert_stays(state)
+        self.operator.call("RMAC_CAM.Reset")
+        self.assert_stays(state)
+        self.operator.call("RMAC_CAM.FeedResume")
+        self.wait_state(lambda later: later["moving"] and later["pose"][0] > state["pose"][0] + 0.1)
+
+    def test_program_that_goes_away_under_an_operators_hold_is_dropped_and_the_hold_stays(self):
+        panel = self.appliance.client("panel")
+        panel.call("operator.acquire")
+        panel.call("RMAC_CAM.FeedHold")
+        self.rest()
+        self.operator.close()
+        state = self.wait_state(lambda later: later["state"] == "Idle" and later["authority"] == "")
+        self.assertIn("StopNow", state["last_stop"]["message"])
+        self.assertTrue(state["held_by"].startswith("panel"))
+        self.assertEqual(self.watcher.call("authority.acquire")["dropped_moves"], 1)
+        self.assertIn("panel", self.watcher.refusal("RMAC_CAM.JogJoint", JntNum=1, Distance=1).message)
+        panel.call("RMAC_CAM.FeedResume")
+        self.watcher.call("RMAC_CAM.JogJoint", JntNum=1, Distance=1)
+
     def test_client_that_goes_away_stops_the_machine_and_nothing_restarts_it(self):
         self.operator.close()
         event = self.watcher.wait_note("events", lambda event: event["kind"] == "Authority")

@@ -14,6 +14,7 @@ import unittest
 from appliance import BUILD, Appliance, line, pose
 
 DONE, FAILED, USAGE = 0, 1, 2
+HELD = ("holds the machine", "holds the machine as the operator")  # what a run is told of `rmac hold`
 
 
 def start_rmac(test, *words, stdin=subprocess.DEVNULL, **options):
@@ -303,10 +304,12 @@ class InterruptedProgram(unittest.TestCase):
         self.watcher.wait_note("state", lambda state: state["moving"] and state["pose"][0] > 0.2)
         return run
 
-    def assert_fails(self, run, message):
+    def assert_fails(self, run, message, told=()):
+        """`told`: what others did meanwhile, before the complaint."""
         lines = run.stderr.read().splitlines()
-        self.assertEqual(len(lines), 1, lines)
-        self.assertIn(message, lines[0])
+        self.assertEqual(len(lines), len(told) + 1, lines)
+        for line_told, words in zip(lines, (*told, message)):
+            self.assertIn(words, line_told)
         self.assertEqual(run.wait(timeout=60), FAILED)
         state = self.watcher.state()
         self.assertEqual((state["moving"], state["moves_in_buffer"], state["state"]), (False, 0, "Idle"))
@@ -359,12 +362,11 @@ class InterruptedProgram(unittest.TestCase):
         run = self.run_until_moving(stdin=terminal)
         self.assertEqual(self.appliance.rmac("hold").returncode, DONE)
         held = self.watcher.wait_note("state", lambda state: state["state"] == "Holding" and not state["moving"])
-        refused = self.appliance.rmac("resume")
-        self.assertEqual(refused.returncode, FAILED)
+        self.assertTrue(held["held_by"])
         os.write(keyboard, b"\n")
         self.watcher.wait_note("state", lambda state: state["moving"] and state["pose"][0] > held["pose"][0] + 0.1)
         run.send_signal(signal.SIGINT)
-        self.assert_fails(run, "interrupted")
+        self.assert_fails(run, "interrupted", HELD)
         os.close(keyboard)
         os.close(terminal)
 
@@ -383,13 +385,58 @@ class InterruptedProgram(unittest.TestCase):
             return state["state"] == "Holding" and not state["moving"] and state["pose"][0] < held["pose"][0] - 0.4
 
         back = self.watcher.wait_note("state", ran_back)
+        self.assertTrue(back["held_by"], "it is still the operator's")
         self.assertAlmostEqual(back["pose"][0], held["pose"][0] - 0.5, delta=0.05)
         os.write(keyboard, b"\n")
         self.watcher.wait_note("state", lambda state: state["pose"][0] > held["pose"][0] + 0.1)
         run.send_signal(signal.SIGINT)
+        self.assert_fails(run, "interrupted", HELD)
+        os.close(keyboard)
+        os.close(terminal)
+
+    # Red when a panel's commands are refused beside a program, or take its lease, which drops its queue.
+    def test_panel_sets_the_feed_holds_and_resumes_beside_a_run(self):
+        run = self.run_until_moving()
+        self.assertEqual(self.appliance.rmac("override", "50").returncode, DONE)
+        self.watcher.wait_note("state", lambda state: abs(state["feed_set_mm_min"] - 60) < 1)
+        self.assertEqual(self.appliance.rmac("hold").returncode, DONE)
+        held = self.watcher.wait_note("state", lambda state: state["state"] == "Holding" and not state["moving"])
+        self.assertRegex(self.appliance.rmac("status").stdout, r"rmac .* holds the machine; to go on: rmac resume")
+        self.assertEqual(self.appliance.rmac("resume").returncode, DONE)
+        self.watcher.wait_note("state", lambda state: state["moving"] and state["pose"][0] > held["pose"][0] + 0.1)
+        self.assertEqual(self.watcher.state()["held_by"], "")
+        run.send_signal(signal.SIGINT)
+        self.assert_fails(run, "interrupted", ("sets the feed override to 50 %", *HELD, "resumes"))
+
+    def test_prompt_of_a_run_holds_and_sets_the_feed(self):
+        keyboard, terminal = pty.openpty()
+        run = self.run_until_moving(stdin=terminal)
+        os.write(keyboard, b"50%\n")
+        self.watcher.wait_note("state", lambda state: abs(state["feed_set_mm_min"] - 60) < 1)
+        os.write(keyboard, b"h\n")
+        held = self.watcher.wait_note("state", lambda state: state["held_by"] and not state["moving"])
+        self.assertEqual(held["state"], "Holding")
+        self.watcher.wait_note("state", lambda state: state["operator"] == "")
+        os.write(keyboard, b"\n")
+        self.watcher.wait_note("state", lambda state: state["moving"] and state["pose"][0] > held["pose"][0] + 0.1)
+        run.send_signal(signal.SIGINT)
         self.assert_fails(run, "interrupted")
         os.close(keyboard)
         os.close(terminal)
+
+    # Red when a person takes the last stop of a run that went well for a fault, or an old error for one of it.
+    def test_run_that_went_well_leaves_no_stop_but_its_end(self):
+        self.assertEqual(self.appliance.rmac("jog", "--joint", "0", "--distance", "1000").returncode, FAILED)
+        self.assertRegex(self.appliance.rmac("status").stdout, r"last error, \S+ s ago: this move takes joint X")
+        self.assertEqual(self.appliance.rmac("reset").returncode, DONE)
+        self.file.write_text(request("RMAC_CAM.SetFeedrate", Feedrate=1500) + "\n" +
+                             request("RMAC_CAM.MoveToPathTarget", MoveID=1, TargetFrame=pose(0.5, 0, 0)) + "\n")
+        self.assertEqual(self.appliance.rmac("run", str(self.file)).returncode, DONE)
+        rest = self.watcher.wait_note("state", lambda state: state["state"] == "Idle" and state["last_stop"])
+        self.assertEqual(rest["last_stop"]["message"], "the cycle has ended: all that was queued is done")
+        status = self.appliance.rmac("status").stdout
+        self.assertRegex(status, r"last error +none")
+        self.assertRegex(status, r"last stop \(Stopped\), \S+ s ago: .*: the cycle has ended")
 
     def test_rmacd_that_ends_under_a_program_is_told(self):
         run = self.run_until_moving()

@@ -200,6 +200,14 @@ std::optional<Answer> Dispatcher::refusal_of(const Request& request, const Sessi
   const auto arguments = arrange(method, request.params);
   if (!arguments) return tl::unexpected<RpcError>(arguments.error());
   const bool writes_property = method.property && arguments->back() != nullptr;
+  if (method.permission == Permission::Operator && !session.has_authority() && !session.is_operator()) {
+    return tl::unexpected<RpcError>(
+        RpcError{rpc_code::kAuthorityRequired,
+                 fmt::format("{} needs the operator's place, or motion authority; {}", method.name,
+                             session.operator_name().empty() ? "call operator.acquire first"
+                                                             : session.operator_name() + " is the operator"),
+                 MinorCode::UnsupportedOperation});
+  }
   if ((method.permission == Permission::Authority || writes_property) && !session.has_authority()) {
     const std::string holder = session.authority_holder();
     return tl::unexpected<RpcError>(RpcError{

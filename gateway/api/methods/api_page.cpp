@@ -15,8 +15,8 @@ constexpr std::string_view kHead = R"(# The API
 Written by `rmacd --print-api` from the table that dispatches (`gateway/api`); do not edit. How to talk to the daemon, with
 examples, stands in [protocol.md](protocol.md). `rpc.discover` gives the same as an OpenRPC document.
 
-Permission: *anyone* may call it; *authority* needs the lease of `authority.acquire`; *stop* needs none and overtakes what
-waits on its connection. Effect on motion: what *starts* something and still waits, on any connection, when someone calls what
+Permission: *anyone* may call it; *authority* needs the lease of `authority.acquire`; *operator* needs that lease or the
+place of `operator.acquire`; *stop* needs neither and overtakes what waits on its connection. Effect on motion: what *starts* something and still waits, on any connection, when someone calls what
 *holds* or *stops* is refused, and after what *stops*, which empties the queue, so is what *queues* moves. A property reads without `newVal`; with it, it writes, gives `true` and needs authority. Methods
 marked † are ours, not the dissertation's. Lengths are mm, angles degrees, feeds mm/min.
 )";

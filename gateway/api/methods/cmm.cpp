@@ -20,7 +20,7 @@ Method status_property(const char* name, const char* meaning, const Enumeration&
       .does([code](Call& call, std::optional<std::int64_t> wanted) -> tl::expected<json, RpcError> {
         if (!wanted) return json(call.status.*code);
         if (*wanted == 0) {
-          call.status.major = call.status.minor = 0;
+          call.status = {};
         } else {
           call.status.*code = *wanted;
           call.status.major = 1;

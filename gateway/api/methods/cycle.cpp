@@ -1,4 +1,6 @@
 // RMAC_CAM.*: starting, stopping, holding and resuming.
+#include <fmt/format.h>
+
 #include "gateway/api/method_builder.hpp"
 #include "gateway/api/methods/method_table.hpp"
 #include "gateway/api/state_json.hpp"
@@ -7,7 +9,57 @@ namespace rmac::gateway {
 
 namespace {
 
+/// What the holder of authority holds as the operator does not stand in its own way.
+void let_go_of_own(Call& call) {
+  if (call.session.is_operator()) call.machine.operating().let_go();
+}
+
+/// The holder of authority, and who watches, are told who else did something to its motion.
+template <typename Outcome>
+Outcome told(Call& call, Outcome outcome, const std::string& what) {
+  if (outcome && !call.session.has_authority()) call.session.tell(what);
+  return outcome;
+}
+
+Expected<> hold(Call& call) {
+  const bool ran = call.machine.sample().state == CycleState::Running;
+  const OperatorRef who = call.session.holds_as();
+  auto held = who ? call.machine.operating().hold(who) : call.machine.cam().cycle().hold();
+  if (who) return told(call, std::move(held), "holds the machine as the operator");
+  return ran ? told(call, std::move(held), "holds the machine") : held;
+}
+
+Expected<> resume(Call& call) {
+  const OperatorRef who = call.session.holds_as();
+  return told(call, who ? call.machine.operating().resume(who) : call.machine.cam().cycle().resume(), "resumes");
+}
+
+Expected<double> retrace(Call& call, double distance_mm) {
+  const OperatorRef who = call.session.holds_as();
+  return told(
+      call, who ? call.machine.operating().retrace(distance_mm, who) : call.machine.cam().cycle().retrace(distance_mm),
+      fmt::format("runs back up to {:g} mm along the path", distance_mm));
+}
+
+Expected<> set_override(Call& call, double percent) {
+  const OperatorRef who = call.session.holds_as();
+  return told(call,
+              who ? call.machine.operating().set_feed_override(percent, who)
+                  : call.machine.cam().cycle().set_feed_override(percent),
+              fmt::format("sets the feed override to {:g} %", percent));
+}
+
+/// Where nothing is to be left, an error that the status codes still tell is acknowledged by it.
+Expected<> reset(Call& call) {
+  const CycleNow before = call.machine.cycle_now();
+  const bool nothing_to_leave = !is_faulted(before.state) && before.held_by.empty();
+  auto left = nothing_to_leave && call.status.major != 0 ? Expected<>{} : call.machine.cam().cycle().reset();
+  if (left) call.status = {};
+  return left;
+}
+
 Expected<> start(Call& call, std::int64_t mode) {
+  let_go_of_own(call);
   return call.machine.cam().cycle().start(static_cast<sdk::CycleMode>(mode));
 }
 
@@ -28,7 +80,10 @@ void add_parking_methods(const auto& add) {
           .gives(WireType::Boolean)
           .needs(Permission::Authority)
           .extension()
-          .does([](Call& call) { return call.machine.cam().parking().park(); }));
+          .does([](Call& call) {
+            let_go_of_own(call);
+            return call.machine.cam().parking().park();
+          }));
   add(method("RMAC_CAM.TakeUpProgram",
              "Queues the parked program again, in the part frame and with the tool in force now, and holds it; nothing "
              "moves before FeedResume, which switches spindle and coolant on again. The tool must stand within 1 mm of "
@@ -99,37 +154,47 @@ void add_cycle_methods(std::vector<Method>& table) {
   add(method(
           "RMAC_CAM.FeedHold",
           "Comes to rest on the path, or, where no plan for that is there within two cycles, joint by joint beside it "
-          "(docs/safety.md); FeedResume goes on from there.")
+          "(docs/safety.md); FeedResume goes on from there. The operator's also keeps everything from "
+          "starting, at rest too, until an operator resumes.")
           .gives(WireType::Boolean)
           .causes(Effect::Holds)
           .extension()
-          .does([](Call& call) { return call.machine.cam().cycle().hold(); }));
+          .does(hold));
   add(method(
           "RMAC_CAM.FeedResume",
-          "Goes on after a FeedHold; from beside the path by way of where it was left, at 10 % of the joints' speeds.")
+          "Goes on after a FeedHold; from beside the path by way of where it was left, at 10 % of the joints' speeds. "
+          "What the operator held only an operator resumes.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
+          .needs(Permission::Operator)
           .extension()
-          .does([](Call& call) { return call.machine.cam().cycle().resume(); }));
+          .does(resume));
   add(method("RMAC_CAM.FeedRetrace",
              "Runs back along the path of what is held, then holds again; FeedResume runs forward from there.")
           .takes(number("Distance", "mm").within(0.001, kPlaces.max))
           .gives(WireType::Number, "mm")
           .causes(Effect::Starts)
+          .needs(Permission::Operator)
           .extension()
-          .does([](Call& call, double distance) { return call.machine.cam().cycle().retrace(distance); }));
+          .does(retrace));
   add_parking_methods(add);
-  add(method("RMAC_CAM.Reset", "Leaves a fault or emergency stop whose cause is gone; nothing moves by it.")
+  add(method(
+          "RMAC_CAM.Reset",
+          "Leaves a fault or emergency stop whose cause is gone, takes over what an operator who has left holds, and "
+          "clears the status codes; nothing moves by it.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
           .may_be_slow()
           .extension()
-          .does([](Call& call) { return call.machine.cam().cycle().reset(); }));
-  add(method("RMAC_CAM.SetFeedOverride", "Percentage of the programmed feed at which moves run, at once; 0 waits.")
+          .does(reset));
+  add(method(
+          "RMAC_CAM.SetFeedOverride",
+          "Percentage of the programmed feed at which moves run, at once; 0 waits, and the 0 that an operator set only "
+          "an operator raises.")
           .takes(number("Percent", "%").within(0, 200))
-          .needs(Permission::Authority)
+          .needs(Permission::Operator)
           .extension()
-          .does([](Call& call, double percent) { return call.machine.cam().cycle().set_feed_override(percent); }));
+          .does(set_override));
   add(method("RMAC_CAM.GetState", "The machine's state now: what the topic `state` pushes.")
           .gives(WireType::Object)
           .extension()
@@ -137,7 +202,8 @@ void add_cycle_methods(std::vector<Method>& table) {
             const int left = call.machine.cam().queue().moves_left();
             CycleSample now = call.machine.sample();
             now.state = call.machine.cycle_now().state;  // a start that was just accepted is not in the sample yet
-            return state_to_json(call.machine, left, now, call.status, call.session.authority_holder());
+            return state_to_json(call.machine, left, now, call.status,
+                                 {call.session.authority_holder(), call.session.operator_name()});
           }));
   add(method("RMAC_CAM.GetCycleTimes",
              "Where the servo thread's time goes, since the mechanism was put in: `deadline_misses`, and of `wake_up` "

@@ -38,6 +38,24 @@ void add_session_methods(std::vector<Method>& table) {
           .causes(Effect::Stops)
           .extension()
           .does([](Call& call) { return call.session.release_authority(); }));
+  add(method("operator.acquire",
+             "Takes the operator's place beside the holder of authority, or together with authority; one client at a "
+             "time has it. Its holder may set the feed override, resume and retrace, and what it holds by FeedHold, or "
+             "by an override of 0, only an operator resumes. Gives `name`, and `held_by`, who holds the machine as "
+             "operator already, or empty.")
+          .gives(WireType::Object)
+          .extension()
+          .does([](Call& call) {
+            return call.session.acquire_operator().map([&](const std::string& name) {
+              return nlohmann::json{{"name", name}, {"held_by", call.machine.cycle_now().held_by}};
+            });
+          }));
+  add(method("operator.release",
+             "Gives the operator's place up, as the end of its connection does. Nothing moves or stops by it; what is "
+             "held stays held until the next operator resumes it, or the holder of authority after a Reset.")
+          .gives(WireType::Boolean)
+          .extension()
+          .does([](Call& call) { return call.session.release_operator(); }));
   add(method("subscribe", "Pushes topics to this connection: state, joints, drives, events.")
           .takes(texts("topics"),
                  number("rate_hz", "Hz").above(0).optional().noted("100 when left out; more for one client at a time"))

@@ -1,4 +1,6 @@
 // RMAC_CAM.*: the tool table, and changing tools.
+#include <fmt/format.h>
+
 #include "gateway/api/method_builder.hpp"
 #include "gateway/api/methods/method_table.hpp"
 
@@ -56,7 +58,11 @@ void add_tool_methods(std::vector<Method>& table) {
           .needs(Permission::Anyone)
           .extension()
           .does([](Call& call, std::int64_t number) {
-            return call.machine.tools().confirm_tool(static_cast<int>(number));
+            auto confirmed = call.machine.tools().confirm_tool(static_cast<int>(number));
+            if (confirmed && !call.session.has_authority()) {
+              call.session.tell(fmt::format("says that tool {} is in the spindle", number));
+            }
+            return confirmed;
           }));
   add(method("RMAC_CAM.GetTools",
              "The mechanism's tool table; the number of the tool in the spindle (0: none, null: not known) and of the "

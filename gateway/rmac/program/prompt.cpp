@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <string_view>
 
 #include "gateway/rmac/wire/authority.hpp"
 #include "gateway/rmac/wire/requests.hpp"
@@ -19,15 +20,16 @@ void Prompt::obey(const std::string& line) {
   note_.clear();
   if (line.empty() && state_ && !state_->tool_prompt.empty()) {
     ask(kConfirmToolChange, {{"ToolNumber", state_->tool_wanted}});
+  } else if (line == "h") {
+    hold();
   } else if (parked_) {
     if (line.empty()) take_up();
   } else if (line == "p") {
     park();
   } else if (line.empty()) {
-    // Whoever holds a program from another terminal cannot resume it there: this client has the lease.
-    connection_.send(kResumeFeed, kNothing, [](const Connection::Answer&) {});
+    as_operator([this] { ask(kResumeFeed); });
   } else {
-    retrace(line);
+    take_number(line);
   }
 }
 
@@ -35,34 +37,57 @@ std::string Prompt::text() const {
   if (!state_) return note_;
   if (!state_->tool_prompt.empty()) return state_->tool_prompt + ", or Enter";
   if (parked_) return note_.empty() ? "parked: Enter takes it up again" : note_;
-  if (!state_->is(gateway::CycleState::Holding)) return fmt::format("{:.0f} mm/min", state_->feed_actual);
-  return note_.empty() ? "held: Enter goes on, a distance in mm runs back, p parks" : note_;
+  if (!note_.empty()) return note_;
+  const bool held = state_->is(gateway::CycleState::Holding);
+  if (held) return "held: Enter goes on, a distance in mm runs back, p parks";
+  return fmt::format("{:.0f} mm/min, {:.0f} %: h holds, 50% slows down", state_->feed_actual, state_->override_percent);
 }
 
-void Prompt::retrace(const std::string& distance_mm) {
-  double mm = 0;
-  const char* const end_of_line = distance_mm.data() + distance_mm.size();
-  const auto [end, error] = std::from_chars(distance_mm.data(), end_of_line, mm);
-  if (error != std::errc() || end != end_of_line) {
-    note_ = fmt::format("\"{}\" is no distance in mm", distance_mm);
-    return;
+void Prompt::take_number(const std::string& line) {
+  double number = 0;
+  const char* const end_of_line = line.data() + line.size();
+  const auto [end, error] = std::from_chars(line.data(), end_of_line, number);
+  if (error == std::errc() && end == end_of_line) {
+    as_operator([&] { ask("RMAC_CAM.FeedRetrace", {{"Distance", number}}); });
+  } else if (error == std::errc() && std::string_view(end, end_of_line) == "%") {
+    as_operator([&] { ask(kSetOverride, {{"Percent", number}}); });
+  } else {
+    note_ = fmt::format("\"{}\" is no distance in mm, and no feed override as 50%", line);
   }
-  ask("RMAC_CAM.FeedRetrace", {{"Distance", mm}});
+}
+
+void Prompt::as_operator(const std::function<void()>& send) {
+  // Where another is the operator, what this client may do by its lease it does all the same.
+  connection_.send(kAcquireOperator, kNothing, [](const Connection::Answer&) {});
+  send();
+  connection_.send(kReleaseOperator, kNothing, [](const Connection::Answer&) {});
+}
+
+void Prompt::hold() {
+  // At once; then once more as the operator. Sent together with the request for the place, it would overtake that.
+  ask(kHoldFeed);
+  connection_.send(kAcquireOperator, kNothing, [this](const Connection::Answer& acquired) {
+    if (!acquired) return;
+    ask(kHoldFeed);
+    connection_.send(kReleaseOperator, kNothing, [](const Connection::Answer&) {});
+  });
 }
 
 void Prompt::park() {
   // Before the answer: the stop that parking is must not be taken for the program's end.
   parked_ = true;
-  connection_.send("RMAC_CAM.ParkProgram", kNothing, [this](const Connection::Answer& answer) {
-    if (refused(answer)) {
-      parked_ = false;
-      return;
-    }
-    connection_.send(kGetParkedProgram, kNothing, [this](const Connection::Answer& told) {
-      // What was done just before may not have been told yet, and what is told from now on is not the program's.
-      moves_.leave(told ? told->value("moves", moves_.size()) : moves_.size());
+  as_operator([this] {
+    connection_.send("RMAC_CAM.ParkProgram", kNothing, [this](const Connection::Answer& answer) {
+      if (refused(answer)) {
+        parked_ = false;
+        return;
+      }
+      connection_.send(kGetParkedProgram, kNothing, [this](const Connection::Answer& told) {
+        // What was done just before may not have been told yet, and what is told from now on is not the program's.
+        moves_.leave(told ? told->value("moves", moves_.size()) : moves_.size());
+      });
+      release();
     });
-    release();
   });
 }
 
@@ -75,7 +100,7 @@ void Prompt::take_up() {
         return;
       }
       parked_ = false;
-      ask(kResumeFeed);
+      as_operator([this] { ask(kResumeFeed); });
     });
   });
 }

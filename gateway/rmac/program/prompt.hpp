@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -29,7 +30,11 @@ class Prompt {
  private:
   void park();
   void take_up();
-  void retrace(const std::string& distance_mm);
+  void hold();
+  /// A distance to run back, or a feed override.
+  void take_number(const std::string& line);
+  /// What `send` sends is the operator's, where nobody else is.
+  void as_operator(const std::function<void()>& send);
   /// Sends a request whose refusal is told beside the progress.
   void ask(const char* method, const nlohmann::json& params = nlohmann::json::object());
   /// Notes the refusal, if the answer is one.

@@ -1,7 +1,5 @@
 #include "gateway/rmac/wire/authority.hpp"
 
-#include "gateway/api/rpc_error.hpp"
-
 namespace rmac::cli {
 
 Result<> with_authority(Connection& connection, const std::function<Result<>()>& work) {
@@ -15,10 +13,11 @@ Result<> command_with_authority(Connection& connection, const std::string& metho
   return with_authority(connection, [&] { return connection.command(method, params); });
 }
 
-Result<> command_beside_program(Connection& connection, const std::string& method, const nlohmann::json& params) {
+Result<> command_as_operator(Connection& connection, const std::string& method, const nlohmann::json& params) {
+  if (auto place = connection.command(kAcquireOperator); !place) return place;
   auto done = connection.command(method, params);
-  if (done || done.error().rpc_code != gateway::rpc_code::kAuthorityRequired) return done;
-  return command_with_authority(connection, method, params);
+  auto released = connection.command(kReleaseOperator);
+  return done ? released : done;
 }
 
 }  // namespace rmac::cli

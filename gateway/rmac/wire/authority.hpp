@@ -11,6 +11,9 @@ namespace rmac::cli {
 inline constexpr const char* kAcquireAuthority = "authority.acquire";
 inline constexpr const char* kRenewAuthority = "authority.renew";
 inline constexpr const char* kReleaseAuthority = "authority.release";
+/// The operator's place. Giving it up changes nothing.
+inline constexpr const char* kAcquireOperator = "operator.acquire";
+inline constexpr const char* kReleaseOperator = "operator.release";
 
 /// Takes the motion lease, does `work`, gives the lease back: `work` ends at rest.
 [[nodiscard]] Result<> with_authority(Connection& connection, const std::function<Result<>()>& work);
@@ -19,9 +22,9 @@ inline constexpr const char* kReleaseAuthority = "authority.release";
 [[nodiscard]] Result<> command_with_authority(Connection& connection, const std::string& method,
                                               const nlohmann::json& params = nlohmann::json::object());
 
-/// Sends what an operator changes beside a running program: with the lease only where nobody holds it, because taking
-/// it and giving it back must not disturb the program's client.
-[[nodiscard]] Result<> command_beside_program(Connection& connection, const std::string& method,
-                                              const nlohmann::json& params = nlohmann::json::object());
+/// Sends one command as the operator, whose place is given up at once: beside a program that runs, which keeps its
+/// lease.
+[[nodiscard]] Result<> command_as_operator(Connection& connection, const std::string& method,
+                                           const nlohmann::json& params = nlohmann::json::object());
 
 }  // namespace rmac::cli

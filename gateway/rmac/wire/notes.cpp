@@ -43,6 +43,9 @@ StateNote read_state(const nlohmann::json& params) {
   read(params, "mode", state.mode);
   read(params, "mechanism", state.mechanism);
   read(params, "authority", state.authority);
+  read(params, "operator", state.on_duty);
+  read(params, "held_by", state.held_by);
+  read(params, "waits_for", state.waits_for);
   read(params, "moving", state.moving);
   read(params, "virtual", state.virtual_mode);
   read(params, "move_id", state.move_id);
@@ -62,6 +65,9 @@ StateNote read_state(const nlohmann::json& params) {
   read(params, "tool_prompt", state.tool_prompt);
   if (const auto stop = params.find("last_stop"); stop != params.end() && stop->is_object()) {
     state.last_stop = read_event(*stop);
+  }
+  if (const auto error = params.find("last_error"); error != params.end() && error->is_object()) {
+    state.last_error = read_event(*error);
   }
   return state;
 }

@@ -29,6 +29,8 @@ struct EventNote {
 struct StateNote {
   std::string state, mode;           ///< of the cycle; mode of its last start
   std::string mechanism, authority;  ///< empty: none loaded; nobody holds it
+  std::string on_duty, held_by;      ///< operator there, and who holds the machine as one; empty: nobody
+  std::string waits_for;             ///< what a cycle that runs waits for; empty: it does not
   bool moving = false, virtual_mode = false;
   std::int64_t move_id = 0;
   int moves_in_buffer = 0, status_minor = 0;
@@ -38,7 +40,8 @@ struct StateNote {
   double wake_up_p999_us = 0;  ///< of the servo thread, after its cycle was due
   int tool_wanted = 0;         ///< by the tool change that comes next
   std::string tool_prompt;     ///< what a person is asked to do for it; empty: nothing
-  EventNote last_stop;         ///< without a kind: none yet
+  EventNote last_stop;         ///< without a kind: none, or it is over
+  EventNote last_error;        ///< without a message: none
 
   [[nodiscard]] bool is(gateway::CycleState wanted) const { return state == gateway::to_string(wanted); }
   [[nodiscard]] bool faulted() const {

@@ -60,8 +60,8 @@ Result<> run_program(Connection& connection, const Options& options, bool json) 
 void add_run(Command& rmac) {
   const auto options = std::make_shared<Options>();
   Command run = rmac.add("run",
-                         "machine a program, one JSON-RPC request a line; when held, Enter goes on, a distance in mm "
-                         "runs back, p parks it");
+                         "machine a program, one JSON-RPC request a line; at the terminal, h holds, 50% sets the feed "
+                         "override; when held, Enter goes on, a distance in mm runs back, p parks it");
   run.option("FILE", &options->file, "the .rmac file, - for standard input").required();
   run.flag("--virtual", &options->run.virtual_mode, "in virtual mode: drives stay untouched");
   run.option("--record", &options->run.record_file, "write every cycle's setpoints and measured joints to this CSV");

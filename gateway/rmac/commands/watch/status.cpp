@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "gateway/api/enumeration.hpp"
@@ -27,12 +28,41 @@ std::string minor_code(int code) {
   return code == 0 ? "none" : value == nullptr ? std::to_string(code) : value->name;
 }
 
+/// How long ago something happened, by the machine's own time.
+std::string ago(const EventNote& then, const StateNote& now) {
+  return fmt::format("{} s ago", number(std::max(0.0, now.t_s - then.t_s), 1));
+}
+
+/// Why the machine does not move, where it seems as if it should, and what a person does about it: lines below the
+/// table.
+std::string standstill(const StateNote& state) {
+  std::string text;
+  if (!state.held_by.empty()) {
+    text += fmt::format("\n{} holds the machine; to go on: rmac resume{}\n", state.held_by,
+                        state.override_percent == 0 ? ", and rmac override 100" : "");
+  }
+  if (state.waits_for == "moves") {
+    text += "\nthe cycle is started and waits for moves, so jog and home are refused; to end it: rmac stop\n";
+  } else if (state.waits_for == "override") {
+    text += "\nthe cycle waits for a feed override above 0: rmac override 100\n";
+  } else if (!state.waits_for.empty()) {
+    text += fmt::format("\nthe cycle waits for the {}\n", state.waits_for);
+  }
+  return text;
+}
+
+std::string last_error(const StateNote& state) {
+  const EventNote& error = state.last_error;
+  if (error.message.empty()) return "";
+  return fmt::format("\nlast error, {}: {}\nto clear it: rmac reset\n", ago(error, state), error.message);
+}
+
 /// What stopped the machine last, in some lines below the table.
 std::string last_stop(const StateNote& state) {
   const EventNote& stop = state.last_stop;
   if (stop.kind.empty()) return "";
-  std::string text =
-      fmt::format("\nlast stop ({}): cycle {}, {} s: {}\n", stop.kind, stop.cycle, number(stop.t_s, 4), stop.message);
+  std::string text = fmt::format("\nlast stop ({}), {}: cycle {}, {} s: {}\n", stop.kind, ago(stop, state), stop.cycle,
+                                 number(stop.t_s, 4), stop.message);
   if (!stop.record.empty()) {
     text += fmt::format("flight record {}: rmac trace plot {}\n", stop.record, stop.record);
   }
@@ -57,8 +87,9 @@ std::string state_table(const StateNote& state) {
                               {"deadlines missed", std::to_string(state.deadline_misses), ""},
                               {"to do", state.tool_prompt.empty() ? "-" : state.tool_prompt, ""},
                               {"authority", state.authority.empty() ? "nobody" : state.authority, ""},
+                              {"operator", state.on_duty.empty() ? "nobody" : state.on_duty, ""},
                               {"last error", minor_code(state.status_minor), ""}}) +
-         last_stop(state);
+         standstill(state) + last_error(state) + last_stop(state);
 }
 
 Result<> show_status(Connection& connection, bool watch, bool json) {

@@ -272,5 +272,106 @@ TEST(Dispatcher, ChecksTypesOfEveryParameterOfEveryMethod) {
   }
 }
 
+TEST(Operator, MayGoOnWithTheProgramBesideWhoHoldsAuthority) {
+  Api api;
+  api.session.authority = false;
+  for (const char* call : {"RMAC_CAM.FeedResume {}", "RMAC_CAM.FeedRetrace {\"Distance\":2}",
+                           "RMAC_CAM.SetFeedOverride {\"Percent\":50}"}) {
+    const std::string text(call);
+    const std::size_t space = text.find(' ');
+    EXPECT_THAT(api.refusal(text.substr(0, space), text.substr(space + 1), rpc_code::kAuthorityRequired),
+                HasSubstr("operator.acquire"));
+  }
+  EXPECT_CALL(api.machine.operating_mock, resume(_)).WillOnce(Return(Expected<>{}));
+  EXPECT_CALL(api.machine.operating_mock, retrace(2, _)).WillOnce(Return(Expected<double>(2)));
+  EXPECT_CALL(api.machine.operating_mock, set_feed_override(50, _)).WillOnce(Return(Expected<>{}));
+  api.session.client = "panel";
+  EXPECT_EQ(api.result("operator.acquire")["name"], "panel");
+  api.result("RMAC_CAM.FeedResume");
+  api.result("RMAC_CAM.FeedRetrace", R"({"Distance":2})");
+  api.result("RMAC_CAM.SetFeedOverride", R"({"Percent":50})");
+  EXPECT_THAT(api.session.told,
+              testing::ElementsAre("resumes", "runs back up to 2 mm along the path", "sets the feed override to 50 %"));
+  EXPECT_THAT(api.refusal("RMAC_CAM.JogJoint", "[0,1]", rpc_code::kAuthorityRequired), HasSubstr("motion authority"));
+}
+
+TEST(Operator, HoldsInTheirOwnNameAndOthersInNobodys) {
+  Api api;
+  api.session.authority = false;
+  api.machine.now.state = CycleState::Running;
+  EXPECT_CALL(api.machine.cam_mock.cycle_mock, hold()).WillOnce(Return(Expected<>{}));
+  api.result("RMAC_CAM.FeedHold");
+  api.result("operator.acquire");
+  EXPECT_CALL(api.machine.operating_mock, hold(api.session.holds_as())).WillOnce(Return(Expected<>{}));
+  api.result("RMAC_CAM.FeedHold");
+  EXPECT_EQ(api.session.told, (std::vector<std::string>{"holds the machine", "holds the machine as the operator"}));
+}
+
+// Red when a client that holds at every turn of its loop fills everybody's lines.
+TEST(Operator, IsNotToldOfAHoldThatHoldsNothing) {
+  Api api;
+  api.session.authority = false;
+  for (int i = 0; i < 3; ++i) api.result("RMAC_CAM.FeedHold");
+  EXPECT_TRUE(api.session.told.empty());
+}
+
+TEST(Operator, IsNotInItsOwnWayWhereItHoldsAuthorityToo) {
+  Api api;
+  api.result("operator.acquire");
+  {
+    const testing::InSequence order;
+    EXPECT_CALL(api.machine.operating_mock, let_go());
+    EXPECT_CALL(api.machine.cam_mock.cycle_mock, start(_)).WillOnce(Return(Expected<>{}));
+    EXPECT_CALL(api.machine.operating_mock, let_go());
+    EXPECT_CALL(api.machine.cam_mock.parking_mock, park()).WillOnce(Return(Expected<>{}));
+  }
+  api.result("RMAC_CAM.CycleStart", "[1]");
+  api.result("RMAC_CAM.ParkProgram");
+  api.result("operator.release");
+  EXPECT_CALL(api.machine.operating_mock, let_go()).Times(0);
+  EXPECT_CALL(api.machine.cam_mock.cycle_mock, start(_)).WillOnce(Return(Expected<>{}));
+  api.result("RMAC_CAM.CycleStart", "[1]");
+}
+
+TEST(LastError, IsToldWithItsTimeUntilAResetOrTheCodesAreCleared) {
+  Api api;
+  EXPECT_TRUE(api.result("RMAC_CAM.GetState")["last_error"].is_null());
+  api.machine.now.t_s = 12.5;
+  const auto fail = [&] {
+    EXPECT_CALL(api.machine.cam_mock.positioning_mock, home())
+        .WillOnce(Return(failure(MinorCode::TravelLimit, "Home: X is beyond its limit")));
+    api.call("RMAC_CAM.Home");
+  };
+  fail();
+  api.machine.now.t_s = 20;
+  EXPECT_EQ(api.result("RMAC_CAM.GetState")["last_error"],
+            (json{{"status_minor", 4}, {"t_s", 12.5}, {"message", "Home: X is beyond its limit"}}));
+  EXPECT_CALL(api.machine.cam_mock.cycle_mock, reset()).Times(0);
+  EXPECT_EQ(api.result("RMAC_CAM.Reset"), true) << "without a fault it acknowledges";
+  EXPECT_EQ(api.result("RMAC_CAM.Ok"), true);
+  EXPECT_TRUE(api.result("RMAC_CAM.GetState")["last_error"].is_null());
+  fail();
+  api.machine.cycle.state = CycleState::Faulted;
+  EXPECT_CALL(api.machine.cam_mock.cycle_mock, reset())
+      .WillOnce(Return(failure(MinorCode::Other, "reset: the stop is still pressed")))
+      .WillOnce(Return(Expected<>{}));
+  EXPECT_FALSE(api.call("RMAC_CAM.Reset").contains("result"));
+  EXPECT_EQ(api.result("RMAC_CAM.Ok"), false);
+  EXPECT_EQ(api.result("RMAC_CAM.Reset"), true);
+  EXPECT_EQ(api.result("RMAC_CAM.Ok"), true);
+}
+
+TEST(State, NamesOperatorHolderAndWhatTheCycleWaitsFor) {
+  Api api;
+  api.session.client = "panel";
+  api.result("operator.acquire");
+  api.machine.cycle.held_by = "panel";
+  api.machine.cycle.waits_for = "moves";
+  const json state = api.result("RMAC_CAM.GetState");
+  EXPECT_EQ(state["operator"], "panel");
+  EXPECT_EQ(state["held_by"], "panel");
+  EXPECT_EQ(state["waits_for"], "moves");
+}
+
 }  // namespace
 }  // namespace rmac::gateway

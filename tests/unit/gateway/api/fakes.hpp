@@ -21,6 +21,15 @@ class MockCycle : public sdk::CycleControl {
   MOCK_METHOD(Expected<>, set_feed_override, (double), (override));
 };
 
+class MockOperating : public OperatorPort {
+ public:
+  MOCK_METHOD(Expected<>, hold, (const OperatorRef&), (override));
+  MOCK_METHOD(Expected<>, resume, (const OperatorRef&), (override));
+  MOCK_METHOD(Expected<double>, retrace, (double, const OperatorRef&), (override));
+  MOCK_METHOD(Expected<>, set_feed_override, (double, const OperatorRef&), (override));
+  MOCK_METHOD(void, let_go, (), (override));
+};
+
 class MockQueue : public sdk::MoveQueue {
  public:
   MOCK_METHOD(Expected<>, add, (std::int64_t, const Geometry&), (override));
@@ -290,6 +299,7 @@ class FakeMachine : public MachinePort {
  public:
   ToolPort& tools() override { return tools_mock; }
   sdk::RmacCam& cam() override { return cam_mock; }
+  OperatorPort& operating() override { return operating_mock; }
   sdk::Measuring& measuring() override { return measuring_mock; }
   sdk::RmacConfig& config() override { return config_mock; }
   DevicePort& device() override { return device_fake; }
@@ -305,6 +315,7 @@ class FakeMachine : public MachinePort {
   }
 
   testing::NiceMock<MockCam> cam_mock;
+  testing::NiceMock<MockOperating> operating_mock;
   testing::NiceMock<MockMeasuring> measuring_mock;
   testing::NiceMock<MockConfig> config_mock;
   testing::NiceMock<FakeDevice> device_fake;

@@ -23,6 +23,18 @@ class FakeSession : public SessionPort {
     authority = false;
     return {};
   }
+  tl::expected<std::string, RpcError> acquire_operator() override {
+    on_duty = std::make_shared<Operator>(client);
+    return client;
+  }
+  tl::expected<void, RpcError> release_operator() override {
+    on_duty.reset();
+    return {};
+  }
+  bool is_operator() const override { return on_duty != nullptr; }
+  std::string operator_name() const override { return on_duty ? on_duty->name() : ""; }
+  OperatorRef holds_as() const override { return on_duty; }
+  void tell(const std::string& what) override { told.push_back(what); }
   tl::expected<void, RpcError> subscribe(const std::vector<std::string>& wanted, double rate_hz) override {
     topics = wanted;
     rate = rate_hz;
@@ -34,6 +46,8 @@ class FakeSession : public SessionPort {
   FakeRecords records_fake;
   std::string client;
   bool authority = true;
+  std::shared_ptr<Operator> on_duty;
+  std::vector<std::string> told;
   std::vector<std::string> topics;
   double rate = 0;
   bool animation = false;

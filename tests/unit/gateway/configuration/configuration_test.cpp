@@ -47,6 +47,8 @@ TEST(Configuration, HasADefaultForEveryKey) {
   EXPECT_EQ(configuration.queue_capacity, 10'000);
   EXPECT_EQ(configuration.lease_lost, StopCategory::StopKeepPower);
   EXPECT_EQ(configuration.lease_timeout, std::chrono::seconds(0));
+  EXPECT_TRUE(configuration.operator_alone_resumes);
+  EXPECT_FALSE(configuration.jog_while_waiting);
   EXPECT_EQ(configuration.flight_recorder.folder, default_folders().state_folder / "flight-records");
   EXPECT_EQ(configuration.flight_recorder.seconds, 10);
   EXPECT_EQ(configuration.flight_recorder.files_kept, 20U);
@@ -68,7 +70,7 @@ TEST(Configuration, TakesEveryKeyOfTheFile) {
     "real_time": {"cpu": 3, "priority": 42, "lock_memory": false, "degraded_allowed": false,
                   "max_cycles_lost": 9},
     "queue_capacity": 7,
-    "lease_timeout_s": 2.5,
+    "lease_timeout_s": 2.5, "operator_alone_resumes": false, "jog_while_waiting": true,
     "stop_categories": {"LeaseLost": 1, "DriveHeartbeatLost": 1, "BusLost": 1, "FollowingError": 1, "SensorLost": 2,
                         "ContactLost": 1, "CycleDeadline": 2},
     "flight_recorder": {"folder": "/f", "seconds": 2.5, "files": 3},
@@ -95,6 +97,8 @@ TEST(Configuration, TakesEveryKeyOfTheFile) {
   EXPECT_EQ(configuration.stop_categories.drive_silent, StopCategory::StopThenRemovePower);
   EXPECT_EQ(configuration.real_time.max_cycles_lost, 9);
   EXPECT_EQ(configuration.lease_timeout, std::chrono::milliseconds(2500));
+  EXPECT_FALSE(configuration.operator_alone_resumes);
+  EXPECT_TRUE(configuration.jog_while_waiting);
   EXPECT_EQ(configuration.flight_recorder.folder, "/f");
   EXPECT_EQ(configuration.flight_recorder.seconds, 2.5);
   EXPECT_EQ(configuration.flight_recorder.files_kept, 3U);

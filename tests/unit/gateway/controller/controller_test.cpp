@@ -30,7 +30,7 @@ TEST(Controller, LetsGoOfTheBusWhenItStopsAndTakesItUpAgainWhenItStarts) {
   TestMachine machine;
   ASSERT_TRUE(machine.load(TestMachine::mill()));
   machine.controller.stop();
-  EXPECT_FALSE(machine.controller.mechanism_loaded());
+  EXPECT_EQ(machine.controller.mechanism(), nullptr);
   machine.controller.stop();
   ASSERT_TRUE(machine.controller.start());
   const auto loaded = machine.load_at_zero(TestMachine::mill());

@@ -112,7 +112,7 @@ TEST_F(Watched, StandingWithoutAReasonIsAFault) {
 TEST_F(Watched, StandingAtAnOverrideOfZeroIsNone) {
   {
     const GatewayTurn turn(bench_.cycle.lock);
-    bench_.cycle.feed.set(0);
+    ASSERT_TRUE(bench_.cycle.feed.set(0));
     bench_.cycle.apply_feed();
   }
   bench_.run(500);

@@ -93,7 +93,7 @@ class CycleBench {
     return cycle.command([](CycleSequencer& sequencer, const auto&) { return sequencer.resume(); });
   }
   Expected<> stop_now() {
-    return cycle.command([](CycleSequencer& sequencer, const auto&) { return sequencer.stop_and_clear(); });
+    return cycle.command([](CycleSequencer& sequencer, const auto& seen) { return sequencer.stop_and_clear(seen); });
   }
 
   [[nodiscard]] CycleState state() {

@@ -30,13 +30,26 @@ TEST_F(LostReference, KeepsTheCycleFromStartingAfterAReset) {
   const auto started = controller.cam().cycle().start(sdk::CycleMode::Automatic);
   ASSERT_FALSE(started);
   EXPECT_EQ(started.error().code, MinorCode::Scale);
-  EXPECT_THAT(started.error().message, HasSubstr("CycleStart: joint 1 has lost its reference"));
+  EXPECT_THAT(started.error().message, HasSubstr("CycleStart: joint 1 (Y) has lost its reference"));
 }
 
 TEST_F(LostReference, KeepsTheMachineFromGoingToPlacesByItself) {
-  EXPECT_THAT(controller.cam().positioning().home().error().message, HasSubstr("Home: joint 1 has lost"));
+  EXPECT_THAT(controller.cam().positioning().home().error().message, HasSubstr("Home: joint 1 (Y) has lost"));
   EXPECT_THAT(controller.cam().positioning().move_to_reference_point().error().message,
-              HasSubstr("MoveToReferencePoint: joint 1 has lost"));
+              HasSubstr("MoveToReferencePoint: joint 1 (Y) has lost"));
+}
+
+// Red when "joint 2" is told to a person whose machine has two: the third of the machine before, which is held now.
+TEST(LostReferenceOfAHeldJoint, IsNamedAsWhatItIsAfterASwapToFewerJoints) {
+  TestMachine machine;
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  machine.bus->shift_encoder(2, 131072);
+  ASSERT_TRUE(machine.run_until([&] { return machine.controller.sample().state == CycleState::Faulted; }));
+  ASSERT_TRUE(machine.controller.cam().cycle().reset());
+  const auto loaded = machine.load(TestMachine::plane_mill());
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_THAT(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic).error().message,
+              HasSubstr("held joint 2 (Z) has lost its reference"));
 }
 
 TEST_F(LostReference, LeavesJogs) {

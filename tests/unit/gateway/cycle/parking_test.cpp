@@ -62,7 +62,7 @@ TEST_F(ParksAProgram, WithSpindleCoolantAndOverrideAndHasThemAgainWhenItGoesOn) 
       wish.spindle_rpm[0] = 500;
       wish.outputs = 0b11;
     });
-    bench_.cycle.feed.set(60);
+    ASSERT_TRUE(bench_.cycle.feed.set(60));
   }
   hold_at(8);
   park(0b10);
@@ -70,7 +70,7 @@ TEST_F(ParksAProgram, WithSpindleCoolantAndOverrideAndHasThemAgainWhenItGoesOn) 
   EXPECT_EQ(bench_.wishes().outputs, 0b01U);
   {
     const GatewayTurn turn(bench_.cycle.lock);
-    bench_.cycle.feed.set(100);
+    ASSERT_TRUE(bench_.cycle.feed.set(100));
   }
   take_up();
   EXPECT_EQ(bench_.wishes().spindle_rpm[0], 0) << "held, it cuts nothing";

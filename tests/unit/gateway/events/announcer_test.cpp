@@ -56,7 +56,7 @@ TEST_F(AnnouncerTest, TellsAFaultOfTheServoThreadInItsPlaceAndAsksWhoseItIs) {
   fault(2);
   announcer_.announce({{}, {event(2, "to Faulted")}});
   ASSERT_EQ(told_.size(), 5U);
-  EXPECT_THAT(told_[2], testing::HasSubstr("joint 0: the servo loop computed no number"));
+  EXPECT_THAT(told_[2], testing::HasSubstr("joint 0 of the mechanism before: the servo loop computed no number"));
   EXPECT_EQ(told_[3], "to Faulted");
   EXPECT_THAT(generations_, ElementsAre(3U));
   ASSERT_TRUE(announcer_.last_stop());

@@ -93,7 +93,7 @@ TEST(BadDevice, LimitsThatExcludeWhereAJointStandsAreRefusedWhenItIsLoaded) {
   const auto alone = machine.load(narrow);
   ASSERT_FALSE(alone);
   EXPECT_THAT(alone.error().message, HasSubstr("joint 1 \"Y\" stands at -"));
-  EXPECT_FALSE(machine.controller.mechanism_loaded());
+  EXPECT_EQ(machine.controller.mechanism(), nullptr);
 }
 
 }  // namespace

@@ -152,7 +152,7 @@ TEST(MechanismChange, FailsWhenTheBusDoesNotComeUp) {
   const auto refused = machine.load(TestMachine::mill());
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().message, "bus test did not come up: node 3 does not answer");
-  EXPECT_FALSE(machine.controller.mechanism_loaded());
+  EXPECT_EQ(machine.controller.mechanism(), nullptr);
 }
 
 TEST(MechanismChange, PutsTheOldMechanismBackWhenADriveOfTheNewOneFails) {
@@ -181,7 +181,7 @@ TEST(MechanismChange, TakesAFirstMechanismOutAgainWhenADriveOfItFails) {
   const auto refused = machine.load(TestMachine::mill());
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("axis 1"));
-  EXPECT_FALSE(machine.controller.mechanism_loaded());
+  EXPECT_EQ(machine.controller.mechanism(), nullptr);
   EXPECT_EQ(machine.controller.cycle_now().state, CycleState::Idle) << "nothing is in force that could be at fault";
   machine.bus->set_online(1, true);
   const auto loaded = machine.load(TestMachine::mill());
@@ -315,7 +315,7 @@ TEST(MechanismChange, UnloadingDisablesTheDrives) {
   TestMachine machine;
   ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
   ASSERT_TRUE(machine.controller.unload());
-  EXPECT_FALSE(machine.controller.mechanism_loaded());
+  EXPECT_EQ(machine.controller.mechanism(), nullptr);
   machine.controller.dispatch();
   EXPECT_EQ(machine.samples.back().joint_count_with_held, 0U);
   EXPECT_FALSE(machine.controller.cam().cycle().start(sdk::CycleMode::Automatic));

@@ -98,7 +98,7 @@ TEST_F(Tools, OfAnAutomaticChangeThatIsNotDescribedStayWhereTheyAre) {
   device.tool_change = {{.kind = sdk::ToolChangeStep::Kind::Switch, .outputs = {"Coolant"}}};
   supervisor_.set_mounted(std::nullopt);
   ASSERT_TRUE(
-      supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.stop_and_clear(); }));
+      supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) { return cycle.stop_and_clear({}); }));
   EXPECT_THAT(tools_.change_tool(1).error().message, HasSubstr("which tool is in the spindle is not known"));
 }
 

@@ -12,8 +12,10 @@ using testing::HasSubstr;
 struct OnePeer : Peers {
   void overtake(std::uint64_t, const std::string&, const Request&, std::uint64_t) override {}
   std::optional<std::string> fast_watcher_beside(std::uint64_t) const override { return fast; }
+  void announce(Event::Kind kind, std::string message) override { told.emplace_back(kind, std::move(message)); }
   void forget(std::uint64_t) override {}
   std::optional<std::string> fast;
+  std::vector<std::pair<Event::Kind, std::string>> told;
 };
 
 struct SessionBench {
@@ -23,9 +25,10 @@ struct SessionBench {
   MachineAside aside{io, dispatcher, [] {}};
   ServerOptions options;
   LeaseKeeper lease{dispatcher, aside, options, [](Event::Kind, const std::string&) {}};
+  OperatorPost post;
   OnePeer peers;
-  ConnectionContext context{dispatcher, aside,   lease,
-                            peers,      options, [] { return std::make_unique<fakes::FakeRecords>(); }};
+  ConnectionContext context{
+      dispatcher, aside, lease, post, peers, options, [] { return std::make_unique<fakes::FakeRecords>(); }};
   Subscriptions subscriptions{1000, [](const CycleSample&) { return std::string("0"); }};
   Session session{context, 7, "TCP client 7", subscriptions};
 };
@@ -48,6 +51,32 @@ TEST(Session, GreetsWithItsNumberAndTheLimitsInForce) {
   EXPECT_EQ(greeting["limits"]["queue_wait_s"], 1.5);
   EXPECT_EQ(greeting["limits"]["line_bytes"], 99);
   EXPECT_EQ(greeting["limits"]["watch_rate_hz"], 100);
+}
+
+TEST(Session, IsTheOperatorUntilItLeavesAndSaysBothOnce) {
+  SessionBench bench;
+  EXPECT_FALSE(bench.session.release_operator());
+  EXPECT_EQ(bench.session.acquire_operator(), "TCP client 7");
+  EXPECT_TRUE(bench.session.acquire_operator()) << "again is no error";
+  const OperatorRef held = bench.session.holds_as();
+  ASSERT_TRUE(held);
+  EXPECT_TRUE(held->present());
+  bench.session.leave_posts("disconnected with");
+  bench.session.leave_posts("disconnected with");
+  EXPECT_FALSE(held->present()) << "what they hold knows that they have left";
+  EXPECT_FALSE(bench.session.is_operator());
+  EXPECT_EQ(bench.session.holds_as(), nullptr);
+  ASSERT_EQ(bench.peers.told.size(), 2U);
+  EXPECT_THAT(bench.peers.told[0].second, HasSubstr("TCP client 7 is the operator"));
+  EXPECT_THAT(bench.peers.told[1].second, HasSubstr("TCP client 7 disconnected with the operator's place"));
+}
+
+TEST(Session, HoldsForNobodyWhereTheProgramMayResumeToo) {
+  SessionBench bench;
+  bench.options.operator_alone_resumes = false;
+  ASSERT_TRUE(bench.session.acquire_operator());
+  EXPECT_TRUE(bench.session.is_operator());
+  EXPECT_EQ(bench.session.holds_as(), nullptr);
 }
 
 TEST(Session, HoldsTheLeaseByItsNumber) {

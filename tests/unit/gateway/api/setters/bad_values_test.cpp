@@ -70,7 +70,7 @@ double bad_number(const Range& range, std::mt19937& random) {
 
 TEST(BadValues, EveryNumberThatChangesTheMachineHasDeclaredBounds) {
   for (const Method& method : method_table()) {
-    if (method.permission != Permission::Authority) continue;
+    if (method.permission != Permission::Authority && method.permission != Permission::Operator) continue;
     for (const ParameterSpec& parameter : method.parameters) {
       if (!holds_numbers(parameter)) continue;
       EXPECT_TRUE(std::isfinite(parameter.range.min) && std::isfinite(parameter.range.max))
@@ -86,7 +86,8 @@ TEST(BadValues, EachGetsAnErrorAndChangesNothing) {
   std::mt19937 random(20261121);
   int asked = 0;
   for (const Method& method : method_table()) {
-    if (method.permission != Permission::Authority || method.effect == Effect::Queues) continue;
+    const bool changes = method.permission == Permission::Authority || method.permission == Permission::Operator;
+    if (!changes || method.effect == Effect::Queues) continue;
     for (const ParameterSpec& bad : method.parameters) {
       if (!holds_numbers(bad)) continue;
       for (int i = 0; i < 40; ++i) {

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "gateway/api/rpc_error.hpp"
 #include "unit/gateway/rmac/fake_appliance.hpp"
 
 namespace rmac::cli {
@@ -25,8 +26,8 @@ class PromptTest : public testing::Test {
 };
 
 TEST_F(PromptTest, TellsTheFeedWhileTheMachineMoves) {
-  hear({{"state", "Running"}, {"feed_actual_mm_min", 1200.4}});
-  EXPECT_EQ(prompt_.text(), "1200 mm/min");
+  hear({{"state", "Running"}, {"feed_actual_mm_min", 1200.4}, {"override_percent", 80}});
+  EXPECT_EQ(prompt_.text(), "1200 mm/min, 80 %: h holds, 50% slows down");
 }
 
 TEST_F(PromptTest, TellsWhatAPersonMayDoWhenHeld) {
@@ -42,7 +43,7 @@ TEST_F(PromptTest, AsksForATool) {
 TEST_F(PromptTest, SaysThatAWordIsNoDistanceAndSendsNothing) {
   hear({{"state", "Holding"}});
   prompt_.obey("3x");
-  EXPECT_EQ(prompt_.text(), "\"3x\" is no distance in mm");
+  EXPECT_EQ(prompt_.text(), "\"3x\" is no distance in mm, and no feed override as 50%");
   settle();
   EXPECT_THAT(appliance_.methods(), testing::ElementsAre("RMAC_CAM.Ok"));
 }
@@ -55,6 +56,42 @@ TEST_F(PromptTest, TellsWhyTheMachineDoesNotRunBack) {
   EXPECT_EQ(prompt_.text(), "there are 2 mm to run back along");
   prompt_.obey("");
   EXPECT_EQ(prompt_.text(), "held: Enter goes on, a distance in mm runs back, p parks") << "the next line is another";
+}
+
+// Red when a hold waits for its place in the line, or is the program's to resume.
+TEST_F(PromptTest, HoldsAtOnceAndAsTheOperator) {
+  hear({{"state", "Running"}});
+  prompt_.obey("h");
+  for (int answers = 0; answers < 2; ++answers) settle();
+  EXPECT_THAT(appliance_.methods(), testing::ElementsAre("RMAC_CAM.FeedHold", "operator.acquire", "RMAC_CAM.Ok",
+                                                         "RMAC_CAM.FeedHold", "operator.release", "RMAC_CAM.Ok"));
+}
+
+TEST_F(PromptTest, HoldsWhereAnotherIsTheOperator) {
+  appliance_.refuses("operator.acquire", gateway::rpc_code::kOperatorThere, "panel is the operator");
+  hear({{"state", "Running"}});
+  prompt_.obey("h");
+  for (int answers = 0; answers < 2; ++answers) settle();
+  EXPECT_THAT(appliance_.params_of("RMAC_CAM.FeedHold"), testing::SizeIs(1));
+  EXPECT_THAT(appliance_.params_of("operator.release"), testing::IsEmpty()) << "the place is the other one's";
+}
+
+TEST_F(PromptTest, SetsTheFeedOverride) {
+  hear({{"state", "Running"}});
+  prompt_.obey("62.5%");
+  settle();
+  EXPECT_THAT(appliance_.params_of("RMAC_CAM.SetFeedOverride"),
+              testing::ElementsAre(nlohmann::json{{"Percent", 62.5}}));
+  EXPECT_THAT(appliance_.params_of("RMAC_CAM.FeedRetrace"), testing::IsEmpty());
+}
+
+TEST_F(PromptTest, TellsWhoHoldsWhenTheMachineDoesNotGoOn) {
+  appliance_.refuses("operator.acquire", gateway::rpc_code::kOperatorThere, "panel is the operator");
+  appliance_.refuses("RMAC_CAM.FeedResume", -32017, "FeedResume: panel, who is the operator, holds the machine");
+  hear({{"state", "Holding"}});
+  prompt_.obey("");
+  settle();
+  EXPECT_EQ(prompt_.text(), "FeedResume: panel, who is the operator, holds the machine");
 }
 
 TEST_F(PromptTest, TellsHowToTakeUpWhatIsParked) {

@@ -417,9 +417,9 @@ TEST_F(HeldRunnerTest, GivesTheMachineFreeWhenParkedAndTakesTheProgramUpAgain) {
   const auto methods = appliance_.methods();
   const auto parked = std::ranges::find(methods, "RMAC_CAM.ParkProgram");
   const std::vector<std::string> behind(parked, methods.end());
-  EXPECT_THAT(behind,
-              ElementsAre("RMAC_CAM.ParkProgram", "RMAC_CAM.GetParkedProgram", kReleaseAuthority, kAcquireAuthority,
-                          "RMAC_CAM.TakeUpProgram", "RMAC_CAM.FeedResume", "RMAC_CAM.GetState", kReleaseAuthority));
+  EXPECT_THAT(behind, ElementsAre("RMAC_CAM.ParkProgram", kReleaseOperator, "RMAC_CAM.GetParkedProgram",
+                                  kReleaseAuthority, kAcquireAuthority, "RMAC_CAM.TakeUpProgram", kAcquireOperator,
+                                  "RMAC_CAM.FeedResume", kReleaseOperator, "RMAC_CAM.GetState", kReleaseAuthority));
 }
 
 TEST_F(HeldRunnerTest, SendsNothingOfAParkedProgram) {

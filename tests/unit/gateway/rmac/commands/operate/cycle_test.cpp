@@ -13,19 +13,24 @@ using testing::ElementsAre;
 
 using CycleCommands = CommandBench;
 
-/// Refuses a method until the lease is taken.
-void needs_lease(FakeAppliance& appliance, const std::string& method) {
-  appliance.refuses(method, gateway::rpc_code::kAuthorityRequired, "needs motion authority");
-  appliance.handles(kAcquireAuthority, [&appliance, method](const json&) {
-    appliance.answers(method, true);
-    return gateway::Answer(json::object());
-  });
+TEST_F(CycleCommands, StopWithoutTheLease) {
+  EXPECT_EQ(run({"stop"}).exit_code, 0);
+  EXPECT_THAT(appliance_.methods(), ElementsAre("RMAC_CAM.StopNow"));
 }
 
-TEST_F(CycleCommands, StopAndHoldWithoutTheLease) {
-  EXPECT_EQ(run({"stop"}).exit_code, 0);
+// Red when the hold waits for anything, or is not the operator's.
+TEST_F(CycleCommands, HoldAtOnceAndThenAsTheOperator) {
   EXPECT_EQ(run({"hold"}).exit_code, 0);
-  EXPECT_THAT(appliance_.methods(), ElementsAre("RMAC_CAM.StopNow", "RMAC_CAM.FeedHold"));
+  EXPECT_THAT(appliance_.methods(),
+              ElementsAre("RMAC_CAM.FeedHold", kAcquireOperator, "RMAC_CAM.FeedHold", kReleaseOperator));
+}
+
+TEST_F(CycleCommands, HoldWhereAnotherIsTheOperatorAndSayWho) {
+  appliance_.refuses(kAcquireOperator, gateway::rpc_code::kOperatorThere, "panel is the operator");
+  const auto held = run({"hold"});
+  EXPECT_EQ(held.exit_code, 0);
+  EXPECT_EQ(held.err, "rmac: held, as anyone may; panel is the operator\n");
+  EXPECT_THAT(appliance_.methods(), ElementsAre("RMAC_CAM.FeedHold", kAcquireOperator));
 }
 
 TEST_F(CycleCommands, ResetWithTheLease) {
@@ -43,28 +48,25 @@ TEST_F(CycleCommands, GiveTheLeaseBackWhenTheResetIsRefused) {
 
 TEST_F(CycleCommands, ChangeTheOverrideBesideARunningProgramWithoutItsLease) {
   EXPECT_EQ(run({"override", "50"}).exit_code, 0);
-  EXPECT_THAT(appliance_.methods(), ElementsAre("RMAC_CAM.SetFeedOverride"));
+  EXPECT_THAT(appliance_.methods(), ElementsAre(kAcquireOperator, "RMAC_CAM.SetFeedOverride", kReleaseOperator));
   EXPECT_THAT(appliance_.params_of("RMAC_CAM.SetFeedOverride"), ElementsAre(json{{"Percent", 50.0}}));
 }
 
-TEST_F(CycleCommands, TakeTheLeaseForTheOverrideWhereNobodyHasIt) {
-  needs_lease(appliance_, "RMAC_CAM.SetFeedOverride");
-  EXPECT_EQ(run({"override", "0"}).exit_code, 0);
-  EXPECT_THAT(appliance_.methods(), ElementsAre("RMAC_CAM.SetFeedOverride", kAcquireAuthority,
-                                                "RMAC_CAM.SetFeedOverride", kReleaseAuthority));
-}
-
-TEST_F(CycleCommands, GoOnWithTheLeaseWhereNobodyHasIt) {
-  needs_lease(appliance_, "RMAC_CAM.FeedResume");
+TEST_F(CycleCommands, ResumeAsTheOperator) {
   EXPECT_EQ(run({"resume"}).exit_code, 0);
-  EXPECT_THAT(appliance_.methods(),
-              ElementsAre("RMAC_CAM.FeedResume", kAcquireAuthority, "RMAC_CAM.FeedResume", kReleaseAuthority));
+  EXPECT_THAT(appliance_.methods(), ElementsAre(kAcquireOperator, "RMAC_CAM.FeedResume", kReleaseOperator));
 }
 
-TEST_F(CycleCommands, TakeNoLeaseWhenGoingOnIsRefusedForAnotherReason) {
+TEST_F(CycleCommands, GiveTheOperatorsPlaceUpWhenGoingOnIsRefused) {
   appliance_.refuses("RMAC_CAM.FeedResume", -32001, "nothing is held");
   EXPECT_EQ(run({"resume"}).err, "rmac: nothing is held\n");
-  EXPECT_THAT(appliance_.methods(), ElementsAre("RMAC_CAM.FeedResume"));
+  EXPECT_EQ(appliance_.methods().back(), kReleaseOperator);
+}
+
+TEST_F(CycleCommands, ResumeNothingWhereAnotherIsTheOperator) {
+  appliance_.refuses(kAcquireOperator, gateway::rpc_code::kOperatorThere, "panel is the operator");
+  EXPECT_EQ(run({"resume"}).err, "rmac: panel is the operator\n");
+  EXPECT_THAT(appliance_.methods(), ElementsAre(kAcquireOperator));
 }
 
 TEST_F(CycleCommands, TakeAnOverrideOfUpToTwiceTheFeed) {

@@ -29,15 +29,37 @@ TEST_F(StatusCommand, ShowsTheStateOnce) {
   EXPECT_THAT(shown.out, HasSubstr("cycle             Running, moving"));
   EXPECT_THAT(shown.out, HasSubstr("override          80"));
   EXPECT_THAT(shown.out, HasSubstr("last error        MACHINE_ERR_UNEXPECTED_HIT"));
+  EXPECT_THAT(shown.out, HasSubstr("operator          nobody"));
   EXPECT_THAT(appliance_.params_of("subscribe"), ElementsAre(json{{"topics", {"state"}}, {"rate_hz", 5.0}}));
 }
 
 TEST_F(StatusCommand, SaysWhatStoppedTheMachineAndWhatToDo) {
   tells({{"state", "Faulted"},
+         {"t_s", 61.5},
          {"last_stop", {{"kind", "Fault"}, {"cycle", 7}, {"t_s", 1.5}, {"message", "late"}, {"record", "r-1"}}}});
   EXPECT_THAT(run({"status"}).out,
-              HasSubstr("\nlast stop (Fault): cycle 7, 1.5 s: late\nflight record r-1: rmac trace plot r-1\n"
+              HasSubstr("\nlast stop (Fault), 60 s ago: cycle 7, 1.5 s: late\nflight record r-1: rmac trace plot r-1\n"
                         "to go on, its cause removed: rmac reset\n"));
+}
+
+TEST_F(StatusCommand, SaysWhenTheLastErrorWasAndWhatClearsIt) {
+  tells({{"t_s", 10.0},
+         {"status_minor", 4},
+         {"last_error", {{"status_minor", 4}, {"t_s", 2.5}, {"message", "Home: X is beyond its limit"}}}});
+  EXPECT_THAT(run({"status"}).out,
+              HasSubstr("\nlast error, 7.5 s ago: Home: X is beyond its limit\nto clear it: rmac reset\n"));
+}
+
+TEST_F(StatusCommand, SaysWhoHoldsTheMachine) {
+  tells({{"state", "Idle"}, {"held_by", "panel (TCP client 3)"}, {"operator", "other"}, {"override_percent", 100}});
+  const auto held = run({"status"});
+  EXPECT_THAT(held.out, HasSubstr("\npanel (TCP client 3) holds the machine; to go on: rmac resume\n"));
+  EXPECT_THAT(held.out, HasSubstr("operator          other"));
+}
+
+TEST_F(StatusCommand, SaysWhyARunningMachineRefusesAJog) {
+  tells({{"state", "Running"}, {"waits_for", "moves"}});
+  EXPECT_THAT(run({"status"}).out, HasSubstr("waits for moves, so jog and home are refused; to end it: rmac stop\n"));
 }
 
 TEST_F(StatusCommand, PrintsForProgramsWhatWasPushed) {

@@ -1,4 +1,4 @@
-#include "gateway/server/lease.hpp"
+#include "gateway/server/authority/lease.hpp"
 
 namespace rmac::gateway {
 

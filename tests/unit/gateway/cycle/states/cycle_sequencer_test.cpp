@@ -1,7 +1,8 @@
-#include "gateway/cycle/cycle_sequencer.hpp"
+#include "gateway/cycle/states/cycle_sequencer.hpp"
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <random>
 #include <sstream>
 
@@ -76,13 +77,13 @@ TEST(CycleSequencer, RunsAJogOnlyWhileItIsRenewed) {
   for (int renewal = 0; renewal < 50; ++renewal) {
     seen.t_s += 0.19;
     EXPECT_TRUE(cycle.step(seen).command || renewal > 0);
-    ASSERT_TRUE(cycle.jogs());
+    ASSERT_TRUE(cycle.phase().jogs());
     cycle.renew_jog(seen, 0.2);
   }
   seen.t_s += 0.201;
   EXPECT_EQ(cycle.step(seen).command, PathCommand::Stop);
   EXPECT_EQ(cycle.state(), CycleState::Stopping);
-  EXPECT_FALSE(cycle.jogs()) << "a renewal that comes too late does not take the stop back";
+  EXPECT_FALSE(cycle.phase().jogs()) << "a renewal that comes too late does not take the stop back";
   seen.at_rest = true;
   EXPECT_TRUE(cycle.step(seen).clear_queue);
   EXPECT_EQ(cycle.state(), CycleState::Idle);
@@ -127,12 +128,81 @@ TEST(CycleSequencer, SaysWhyTheMachineCameToRest) {
     return cycle.step(seen).came_to_rest;
   };
   const auto stop = [](CycleSequencer& cycle, CycleObservation&) { EXPECT_TRUE(cycle.stop()); };
-  const auto stop_now = [](CycleSequencer& cycle, CycleObservation&) { EXPECT_TRUE(cycle.stop_and_clear()); };
+  const auto stop_now = [](CycleSequencer& cycle, CycleObservation& seen) { EXPECT_TRUE(cycle.stop_and_clear(seen)); };
   const auto time_passes = [](CycleSequencer&, CycleObservation& seen) { seen.t_s = 0.3; };
   EXPECT_EQ(cause_of(stop, {}), StopCause::CycleStop);
   EXPECT_EQ(cause_of(stop_now, {}), StopCause::StopNow);
   EXPECT_EQ(cause_of(stop, 0.2), StopCause::JogEnded);
   EXPECT_EQ(cause_of(time_passes, 0.2), StopCause::JogLapsed);
+}
+
+TEST(CycleSequencer, SaysThatACycleWithNothingToDoHasEndedWhateverEndsIt) {
+  CycleSequencer cycle;
+  CycleObservation seen;
+  ASSERT_TRUE(cycle.start(sdk::CycleMode::Automatic, seen));
+  (void)cycle.step(seen);
+  ASSERT_TRUE(cycle.stop_and_clear(seen));
+  EXPECT_EQ(cycle.step(seen).came_to_rest, StopCause::CycleEnded);
+  ASSERT_TRUE(cycle.start(sdk::CycleMode::Automatic, seen));
+  seen.at_rest = false;       // it is not seen yet that the last move ended there
+  ASSERT_TRUE(cycle.hold());  // as the end of a lease does first
+  ASSERT_TRUE(cycle.stop_and_clear(seen));
+  seen.at_rest = true;
+  EXPECT_EQ(cycle.step(seen).came_to_rest, StopCause::CycleEnded);
+  ASSERT_TRUE(cycle.start(sdk::CycleMode::Automatic, seen));
+  seen.done = false;
+  ASSERT_TRUE(cycle.stop_and_clear(seen));
+  EXPECT_EQ(cycle.step(seen).came_to_rest, StopCause::StopNow) << "something was dropped";
+}
+
+// Red when a person is told that the machine is Running, and not why.
+TEST(CycleSequencer, SaysThatTheCycleWaitsForMovesWhereItRefusesAJog) {
+  CycleSequencer cycle;
+  CycleObservation seen;
+  ASSERT_TRUE(cycle.start(sdk::CycleMode::Automatic, seen));
+  EXPECT_THAT(cycle.start_positioning(seen, {}).error().message,
+              testing::AllOf(testing::HasSubstr("waits for moves"), testing::HasSubstr("CycleStop")));
+  seen.done = false;
+  EXPECT_THAT(cycle.start_positioning(seen, {}).error().message, testing::HasSubstr("is Running"));
+}
+
+TEST(CycleSequencer, EndsACycleThatWaitsForMovesByAJogWhereThatIsConfigured) {
+  CycleSequencer cycle(true);
+  CycleObservation seen;
+  ASSERT_TRUE(cycle.start(sdk::CycleMode::Automatic, seen));
+  seen.done = false;
+  EXPECT_FALSE(cycle.start_positioning(seen, {})) << "a tool change is queued";
+  seen.done = true;
+  seen.at_rest = false;
+  EXPECT_FALSE(cycle.start_positioning(seen, {})) << "it comes to rest behind its last move";
+  seen.at_rest = true;
+  cycle.end_waiting(seen);
+  EXPECT_EQ(cycle.state(), CycleState::Idle);
+  ASSERT_TRUE(cycle.start_positioning(seen, {}));
+  EXPECT_TRUE(cycle.phase().positions());
+}
+
+TEST(CycleSequencer, NamesTheOperatorWhoHoldsToWhoeverStarts) {
+  const auto panel = std::make_shared<Operator>("panel");
+  CycleSequencer cycle;
+  CycleObservation seen;
+  seen.moves_left = 1;
+  seen.done = false;
+  ASSERT_TRUE(cycle.start(sdk::CycleMode::Automatic, seen));
+  ASSERT_TRUE(cycle.hold(panel));
+  const auto refusals = [&] {
+    return std::array{cycle.resume().error().message, cycle.start(sdk::CycleMode::Automatic, seen).error().message,
+                      cycle.check_retrace(seen).error().message};
+  };
+  EXPECT_THAT(refusals(), testing::Each(testing::HasSubstr("panel, who is the operator, holds the machine")));
+  panel->leave();
+  EXPECT_THAT(refusals(), testing::Each(testing::HasSubstr("panel, who was the operator and has left")));
+  ASSERT_TRUE(cycle.stop());
+  (void)cycle.step(seen);
+  EXPECT_THAT(cycle.start_positioning(seen, {}).error().message, testing::HasSubstr("panel"))
+      << "a stop is no way round it";
+  EXPECT_TRUE(cycle.resume(std::make_shared<Operator>("the next one"))) << "at rest it only lets go";
+  EXPECT_TRUE(cycle.start(sdk::CycleMode::Automatic, seen));
 }
 
 TEST(CycleSequencer, MakesNoProgramOfAMoveOutsideOfTheCycleThatIsHeld) {
@@ -193,18 +263,20 @@ class RandomCycle {
   void step() {
     observe();
     const CycleState before = cycle_.state();
-    const int command = pick(16);
+    const OperatorRef held_before = cycle_.phase().held_by();
+    const int command = pick(20);
     act(command);
+    check_hold(held_before, command);
     trace_ << ' ' << command;
     const bool reset = before != cycle_.state() && cycle_.state() == CycleState::Idle && is_faulted(before);
     if (is_faulted(before)) {
       EXPECT_TRUE(reset || is_faulted(cycle_.state())) << "a fault is left by a reset alone";
     }
     if (is_faulted(cycle_.state())) {
-      EXPECT_FALSE(cycle_.positions() || cycle_.empties_queue());
+      EXPECT_FALSE(cycle_.phase().positions() || cycle_.phase().empties_queue());
     }
     const bool stopping = cycle_.state() == CycleState::Stopping;
-    const bool emptying = cycle_.empties_queue();
+    const bool emptying = cycle_.phase().empties_queue();
     const auto verdict = cycle_.step(seen_);
     if (verdict.command) planner_ = *verdict.command;
     check(verdict, stopping, emptying);
@@ -255,7 +327,7 @@ class RandomCycle {
         (void)cycle_.stop();
         break;
       case 8:
-        (void)cycle_.stop_and_clear();
+        (void)cycle_.stop_and_clear(seen_);
         break;
       case 9:
         cycle_.touched();
@@ -276,9 +348,32 @@ class RandomCycle {
         cycle_.mechanism_changed(once_in(2));
         planner_ = PathCommand::Stop;
         break;
+      case kOperatorHolds:
+        (void)cycle_.hold(panel_);
+        break;
+      case kOperatorResumes:
+        (void)cycle_.resume(panel_);
+        break;
+      case kOperatorRunsBack:
+        if (cycle_.check_retrace(seen_, panel_)) cycle_.retrace(panel_);
+        break;
+      case kLetGo:
+        cycle_.let_go();
+        break;
       default:
         cycle_.one_done();
         break;
+    }
+  }
+
+  /// What an operator holds stays held whatever a program commands; then nothing but an operator's way back runs.
+  void check_hold(const OperatorRef& before, int command) const {
+    if (before && command != kOperatorResumes && command != kLetGo) {
+      EXPECT_EQ(cycle_.phase().held_by(), panel_);
+    }
+    if (command == kOperatorHolds) {
+      EXPECT_EQ(cycle_.phase().held_by(), panel_);
+      EXPECT_NE(cycle_.state(), CycleState::Running);
     }
   }
 
@@ -297,19 +392,23 @@ class RandomCycle {
     if (was_stopping && !seen_.at_rest && !seen_.faulted) {
       EXPECT_EQ(state, CycleState::Stopping);
     }
+    if (cycle_.phase().held_by()) {
+      EXPECT_TRUE(planner_ == PathCommand::Stop || planner_ == PathCommand::Retrace);
+      EXPECT_FALSE(cycle_.phase().jogs() || cycle_.phase().homes());
+    }
     if (state != CycleState::Running) {
       EXPECT_EQ(planner_, PathCommand::Stop) << "nothing but a running cycle moves";
-      EXPECT_FALSE(cycle_.jogs() || cycle_.homes());
+      EXPECT_FALSE(cycle_.phase().jogs() || cycle_.phase().homes());
     }
     if (state == CycleState::Idle) {
-      EXPECT_FALSE(cycle_.positions());
+      EXPECT_FALSE(cycle_.phase().positions());
     }
-    EXPECT_TRUE(!cycle_.empties_queue() || state == CycleState::Stopping);
-    if (cycle_.homes()) {
+    EXPECT_TRUE(!cycle_.phase().empties_queue() || state == CycleState::Stopping);
+    if (cycle_.phase().homes()) {
       EXPECT_EQ(planner_, PathCommand::Stop) << "the drives move, no path does";
     }
-    if (cycle_.jogs() || cycle_.homes()) {
-      EXPECT_TRUE(cycle_.positions());
+    if (cycle_.phase().jogs() || cycle_.phase().homes()) {
+      EXPECT_TRUE(cycle_.phase().positions());
     }
     if (seen_.faulted) {
       EXPECT_TRUE(is_faulted(state));
@@ -318,11 +417,13 @@ class RandomCycle {
       EXPECT_NE(state, CycleState::Running);
     }
     if (planner_ == PathCommand::Retrace) {
-      EXPECT_FALSE(cycle_.positions());
+      EXPECT_FALSE(cycle_.phase().positions());
     }
   }
 
   static constexpr double kJogLasts_s = 0.2;
+  static constexpr int kOperatorHolds = 16, kOperatorResumes = 17, kOperatorRunsBack = 18, kLetGo = 19;
+  const OperatorRef panel_ = std::make_shared<Operator>("panel");
   std::mt19937 random_;
   std::ostringstream trace_;
   CycleObservation seen_;

@@ -1,4 +1,4 @@
-#include "gateway/cycle/cycle_phase.hpp"
+#include "gateway/cycle/states/cycle_phase.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,6 +35,50 @@ TEST(CyclePhase, HoldsNoHomingAndNoRetrace) {
   retrace.hold();
   retrace.resume();
   EXPECT_NE(retrace.runs<Phase::Program>(), nullptr) << "held, it goes forward again";
+}
+
+TEST(CyclePhase, KeepsAnOperatorsHoldThroughStopsFaultsAndRest) {
+  const auto panel = std::make_shared<Operator>("panel");
+  Phase phase = running(Phase::Program{});
+  phase.hold_for(panel);
+  EXPECT_EQ(phase.state(), CycleState::Holding);
+  phase.stop_and_clear(StopCause::StopNow);
+  EXPECT_TRUE(phase.empties_queue()) << "a stop is a stop";
+  EXPECT_EQ(phase.held_by(), panel);
+  phase.rest();
+  EXPECT_EQ(phase.state(), CycleState::Idle);
+  EXPECT_EQ(phase.held_by(), panel);
+  phase.fault(true);
+  EXPECT_EQ(phase.held_by(), panel);
+  phase.rest();
+  EXPECT_TRUE(phase.let_go());
+  EXPECT_EQ(phase.held_by(), nullptr);
+  EXPECT_FALSE(phase.let_go());
+}
+
+TEST(CyclePhase, KeepsAnOperatorsHoldOverAWayBack) {
+  const auto panel = std::make_shared<Operator>("panel");
+  for (const auto end : {+[](Phase& phase) { phase.hold(); }, +[](Phase& phase) { phase.hold_program(); },
+                         +[](Phase& phase) { phase.touch(); }, +[](Phase& phase) { phase.stop(StopCause::AirLost); },
+                         +[](Phase& phase) { phase.fault(false); }}) {
+    Phase back = running(Phase::Retrace{panel});
+    EXPECT_EQ(back.held_by(), panel);
+    end(back);
+    EXPECT_EQ(back.held_by(), panel);
+  }
+  Phase back = running(Phase::Retrace{panel});
+  EXPECT_TRUE(back.let_go());
+  EXPECT_NE(back.runs<Phase::Retrace>(), nullptr) << "nothing stops by it";
+}
+
+TEST(CyclePhase, HoldsForAnOperatorWhateverItDoes) {
+  const auto panel = std::make_shared<Operator>("panel");
+  for (Phase phase : {Phase(), running(Phase::Program{}), running(Phase::Jog{1}), running(Phase::Positioning{}),
+                      running(Phase::Homing{1}), running(Phase::Retrace{})}) {
+    phase.hold_for(panel);
+    EXPECT_NE(phase.state(), CycleState::Running);
+    EXPECT_EQ(phase.held_by(), panel);
+  }
 }
 
 TEST(CyclePhase, EmptiesTheQueueAfterAJogWhateverStoppedIt) {

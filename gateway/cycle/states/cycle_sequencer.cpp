@@ -1,8 +1,10 @@
-#include "gateway/cycle/cycle_sequencer.hpp"
+#include "gateway/cycle/states/cycle_sequencer.hpp"
 
 #include <fmt/format.h>
 
 #include <bit>
+
+#include "gateway/mechanism/joint_name.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -30,23 +32,39 @@ Expected<> refuse_when_unfit(const char* what, const Phase& phase, const CycleOb
 
 }  // namespace
 
-Expected<> require_references(const char* what, std::uint32_t lost) {
+Expected<> require_references(const char* what, std::uint32_t lost, const sdk::DeviceObject* device) {
   if (lost == 0) return {};
   return failure(
       MinorCode::Scale,
-      fmt::format("{}: joint {} has lost its reference, because its position jumped or was not where the machine was "
+      fmt::format("{}: {} has lost its reference, because its position jumped or was not where the machine was "
                   "left; find it again (rmac home), or, where its drive does not look for home, see that it stands "
                   "where rmac status says, and unload and load the machine",
-                  what, std::countr_zero(lost)));
+                  what, joint_name(static_cast<std::size_t>(std::countr_zero(lost)), device)));
+}
+
+Expected<> refuse_when_held(const char* what, const OperatorRef& by) {
+  if (!by) return {};
+  return failure(
+      MinorCode::Other,
+      by->present()
+          ? fmt::format("{}: {}, who is the operator, holds the machine; resume there", what, by->name())
+          : fmt::format("{}: {}, who was the operator and has left, holds the machine; resume as the next operator "
+                        "(operator.acquire, then FeedResume; rmac resume), or take the hold over with Reset",
+                        what, by->name()));
+}
+
+bool waits_for_moves(const Phase& phase, const CycleObservation& seen) noexcept {
+  return phase.runs<Phase::Program>() && seen.at_rest && seen.done && !seen.measures && !phase.ends_search();
 }
 
 Expected<> CycleSequencer::start(sdk::CycleMode mode, const CycleObservation& seen) {
   if (auto fine = refuse_when_unfit("CycleStart", phase_, seen); !fine) return fine;
-  if (auto known = require_references("CycleStart", seen.reference_lost); !known) return known;
+  if (auto free = refuse_when_held("CycleStart", phase_.held_by()); !free) return free;
+  if (auto known = require_references("CycleStart", seen.reference_lost, seen.device); !known) return known;
   if (phase_.in<Phase::Stopping>()) {
     return failure(MinorCode::Other, "CycleStart: the machine is still stopping; start it when it has come to rest");
   }
-  if (positions()) {
+  if (phase_.positions()) {
     return failure(MinorCode::Other,
                    phase_.in<Phase::Holding>()
                        ? "CycleStart: a jog is held, no program; FeedResume goes on with it, CycleStop drops it"
@@ -66,9 +84,16 @@ Expected<> CycleSequencer::start(sdk::CycleMode mode, const CycleObservation& se
 
 Expected<> CycleSequencer::check_positioning(const CycleObservation& seen) const {
   if (auto fine = refuse_when_unfit("jog", phase_, seen); !fine) return fine;
-  if (positions()) {
+  if (phase_.positions()) {
     return failure(MinorCode::Other,
                    "jog: another jog is under way or coming to rest; jog again when the machine stands");
+  }
+  if (auto free = refuse_when_held("jog", phase_.held_by()); !free) return free;
+  if (waits_for_moves(phase_, seen)) {
+    if (jog_while_waiting_) return {};
+    return failure(MinorCode::Other,
+                   "jog: CycleStart was sent, and the cycle waits for moves with nothing queued; end it with CycleStop "
+                   "(rmac stop), then jog, or let a jog end it with jog_while_waiting in rmacd.json");
   }
   if (!phase_.in<Phase::Idle>()) {
     return failure(MinorCode::Other, fmt::format("jog: the machine is {}, a jog needs it Idle; stop the cycle first",
@@ -87,21 +112,22 @@ Expected<> CycleSequencer::start_positioning(const CycleObservation& seen, std::
 }
 
 void CycleSequencer::renew_jog(const CycleObservation& seen, double lasts_s) noexcept {
-  if (jogs()) phase_.run(Phase::Jog{seen.t_s + lasts_s});
+  if (phase_.jogs()) phase_.run(Phase::Jog{seen.t_s + lasts_s});
 }
 
 Expected<> CycleSequencer::start_homing(const CycleObservation& seen) {
   return start_positioning(seen, std::nullopt).map([&] { phase_.run(Phase::Homing{seen.homings}); });
 }
 
-Expected<> CycleSequencer::check_retrace(const CycleObservation& seen) const {
+Expected<> CycleSequencer::check_retrace(const CycleObservation& seen, const OperatorRef& by) const {
   if (auto fine = refuse_when_faulted("FeedRetrace", phase_); !fine) return fine;
+  if (auto free = by ? Expected<>{} : refuse_when_held("FeedRetrace", phase_.held_by()); !free) return free;
   if (!phase_.in<Phase::Holding>()) {
     return failure(MinorCode::Other, fmt::format("FeedRetrace: the machine is {}, and only what is held can be "
                                                  "retraced; send FeedHold first",
                                                  to_string(state())));
   }
-  if (positions()) {
+  if (phase_.positions()) {
     return failure(MinorCode::Other, "FeedRetrace: a jog is held, not a program; jog back instead");
   }
   if (!seen.at_rest || phase_.ends_search()) {
@@ -111,17 +137,28 @@ Expected<> CycleSequencer::check_retrace(const CycleObservation& seen) const {
 }
 
 Expected<> CycleSequencer::stop() {
-  phase_.stop(positions() ? StopCause::JogEnded : StopCause::CycleStop);
+  phase_.stop(phase_.positions() ? StopCause::JogEnded : StopCause::CycleStop);
   return {};
 }
 
-Expected<> CycleSequencer::stop_and_clear(StopCause cause) {
-  phase_.stop_and_clear(cause);
+void CycleSequencer::retrace(const OperatorRef& by) noexcept {
+  phase_.run(Phase::Retrace{by ? by : phase_.held_by()});
+}
+
+Expected<> CycleSequencer::stop_and_clear(const CycleObservation& seen, StopCause cause) {
+  // A move that ends at rest is done some cycles before rest is seen: nothing is cut short even then.
+  const bool program = phase_.runs<Phase::Program>() != nullptr || phase_.holds<Phase::Program>() != nullptr;
+  const bool over = program && seen.done && seen.moves_left == 0 && !seen.measures;
+  phase_.stop_and_clear(cause == StopCause::StopNow && over ? StopCause::CycleEnded : cause);
   return {};
 }
 
-Expected<> CycleSequencer::hold() {
-  phase_.hold();
+Expected<> CycleSequencer::hold(const OperatorRef& by) {
+  if (by) {
+    phase_.hold_for(by);
+  } else {
+    phase_.hold();
+  }
   return {};
 }
 
@@ -131,13 +168,16 @@ void CycleSequencer::take_up(sdk::CycleMode mode, const CycleObservation& seen) 
   count_from(seen);
 }
 
-Expected<> CycleSequencer::resume() {
+Expected<> CycleSequencer::resume(const OperatorRef& by) {
   if (auto fine = refuse_when_faulted("FeedResume", phase_); !fine) return fine;
+  if (auto free = by ? Expected<>{} : refuse_when_held("FeedResume", phase_.held_by()); !free) return free;
+  const bool let_go = phase_.let_go();
   if (phase_.runs<Phase::Retrace>()) phase_.run(Phase::Program{});
   if (phase_.in<Phase::Running>() || phase_.in<Phase::Holding>()) {
     phase_.resume();
     return {};
   }
+  if (let_go) return {};
   return failure(MinorCode::Other, fmt::format("FeedResume: nothing is held, the machine is {}; CycleStart runs the "
                                                "queue",
                                                to_string(state())));
@@ -167,9 +207,9 @@ void CycleSequencer::mechanism_changed(bool keep_running) noexcept {
 }
 
 PathCommand CycleSequencer::wanted(const CycleObservation& seen) const noexcept {
-  if (!phase_.in<Phase::Running>() || homes() || phase_.ends_search()) return PathCommand::Stop;
+  if (!phase_.in<Phase::Running>() || phase_.homes() || phase_.ends_search()) return PathCommand::Stop;
   // Motion under way is not interrupted by a spindle command: it began with the speed it needed.
-  if (waits_for_spindle() && !positions() && seen.at_rest) return PathCommand::Stop;
+  if (waits_for_spindle() && !phase_.positions() && seen.at_rest) return PathCommand::Stop;
   if (phase_.runs<Phase::Retrace>()) return PathCommand::Retrace;
   if (mode_ == sdk::CycleMode::Automatic || seen.measures) return PathCommand::Run;
   // The planner takes the move that is next when it is told: there must be one.
@@ -209,7 +249,7 @@ CycleSequencer::Verdict CycleSequencer::step(const CycleObservation& seen) noexc
   end_what_is_done(seen, verdict);
   if (seen.spindles_at_speed) spindle_wait_.end();
   // Only what waits for the spindle can wait too long: motion under way began with the speed it needed.
-  if (phase_.in<Phase::Running>() && !positions() && seen.at_rest && spindle_wait_.too_long(seen.t_s)) {
+  if (phase_.in<Phase::Running>() && !phase_.positions() && seen.at_rest && spindle_wait_.too_long(seen.t_s)) {
     fault();
     verdict.spindle_timed_out = true;
   }

@@ -1,4 +1,4 @@
-#include "gateway/cycle/spindle_wait.hpp"
+#include "gateway/cycle/states/spindle_wait.hpp"
 
 #include <gtest/gtest.h>
 

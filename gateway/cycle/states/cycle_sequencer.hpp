@@ -3,10 +3,11 @@
 #include <cstdint>
 #include <optional>
 
-#include "gateway/cycle/cycle_phase.hpp"
-#include "gateway/cycle/spindle_wait.hpp"
+#include "gateway/cycle/states/cycle_phase.hpp"
+#include "gateway/cycle/states/spindle_wait.hpp"
 #include "rmac/motion/error.hpp"
 #include "rmac/motion/planner.hpp"
+#include "rmac/sdk/device_object.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
 
 namespace rmac::gateway {
@@ -17,51 +18,67 @@ struct CycleObservation {
   bool at_rest = true;           ///< nothing moves and nothing published is still to move
   bool retraced = false;         ///< at rest at the end of a retrace
   std::size_t moves_left = 0;    ///< queued, the one under way included
+  bool done = true;              ///< nothing is queued, no tool change either
   std::uint64_t moves_done = 0;  ///< since the mechanism went in
   bool faulted = false;          ///< the servo loop is
   bool emergency_stop = false;   ///< and that is why
   bool spindles_at_speed = true;
-  bool follows = false;              ///< joints follow the plan
-  std::uint32_t homings = 0;         ///< that the drives have completed
-  std::uint32_t reference_lost = 0;  ///< bit j: joint j's position is not to be relied on
-  bool air = true;                   ///< the machine has its compressed air, or needs none
-  bool measures = false;             ///< what is left in the queue is a measurement, which counts as one move
+  bool follows = false;                       ///< joints follow the plan
+  std::uint32_t homings = 0;                  ///< that the drives have completed
+  std::uint32_t reference_lost = 0;           ///< bit j: joint j's position is not to be relied on
+  const sdk::DeviceObject* device = nullptr;  ///< whose joints these are
+  bool air = true;                            ///< the machine has its compressed air, or needs none
+  bool measures = false;                      ///< what is left in the queue is a measurement, which counts as one move
 };
 
-/// Refuses what goes to a place while joints (bits of `lost`) have lost their reference; jogs and homing go by none.
-[[nodiscard]] Expected<> require_references(const char* what, std::uint32_t lost);
+/// Refuses what goes to a place while joints (bits of `lost`) of the device have lost their reference; jogs and homing
+/// go by none.
+[[nodiscard]] Expected<> require_references(const char* what, std::uint32_t lost, const sdk::DeviceObject* device);
+
+/// Refuses what would start motion while an operator holds the machine; null: none does.
+[[nodiscard]] Expected<> refuse_when_held(const char* what, const OperatorRef& by);
+
+/// The cycle is started, and nothing is there for it to do.
+[[nodiscard]] bool waits_for_moves(const CyclePhase& phase, const CycleObservation& seen) noexcept;
 
 /// The machine's cycle states and what they mean for the path (contract "Cycle"):
 /// Idle → Running ⇄ Holding, any → Stopping → Idle, any → Faulted, left by a reset alone. A pure state machine: it is
 /// asked under the lock of the machine's cycle.
 class CycleSequencer {
  public:
+  /// `jog_while_waiting`: a jog from rest ends a cycle that is started and has nothing queued, where it is refused
+  /// otherwise.
+  explicit CycleSequencer(bool jog_while_waiting = false) : jog_while_waiting_(jog_while_waiting) {}
+
   [[nodiscard]] Expected<> start(sdk::CycleMode mode, const CycleObservation& seen);
+  /// A jog is about to begin, where `check_positioning` lets it: a cycle that only waits for moves ends.
+  void end_waiting(const CycleObservation& seen) noexcept {
+    if (waits_for_moves(phase_, seen)) phase_.rest();
+  }
   /// Whether a jog may begin.
   [[nodiscard]] Expected<> check_positioning(const CycleObservation& seen) const;
   /// Runs one move that needs no spindle: a jog. With `lasts_s` it stops when it was not renewed for so long.
   [[nodiscard]] Expected<> start_positioning(const CycleObservation& seen, std::optional<double> lasts_s);
-  /// A jog that lasts while it is renewed is under way, and not yet told to stop.
-  [[nodiscard]] bool jogs() const noexcept { return phase_.runs<CyclePhase::Jog>() != nullptr; }
   /// Has no effect when no jog is under way.
   void renew_jog(const CycleObservation& seen, double lasts_s) noexcept;
-  /// A jog, or another move outside of the cycle, is under way, held, or coming to rest.
-  [[nodiscard]] bool positions() const noexcept { return phase_.positions(); }
   /// Has the drives home, from rest.
   [[nodiscard]] Expected<> start_homing(const CycleObservation& seen);
-  [[nodiscard]] bool homes() const noexcept { return phase_.runs<CyclePhase::Homing>() != nullptr; }
-  /// Whether a retrace may begin.
-  [[nodiscard]] Expected<> check_retrace(const CycleObservation& seen) const;
-  /// Runs back what the planner readied; then the machine is Holding again.
-  void retrace() noexcept { phase_.run(CyclePhase::Retrace{}); }
+  /// Whether a retrace may begin. Here and below, `by` is the operator who commands it, or null.
+  [[nodiscard]] Expected<> check_retrace(const CycleObservation& seen, const OperatorRef& by = {}) const;
+  /// Runs back what the planner readied; then the machine is Holding again, for the operator where one did it.
+  void retrace(const OperatorRef& by = {}) noexcept;
   [[nodiscard]] Expected<> stop();
-  [[nodiscard]] Expected<> stop_and_clear(StopCause cause = StopCause::StopNow);
+  /// Where all that was queued is done, the cause told is the cycle's end.
+  [[nodiscard]] Expected<> stop_and_clear(const CycleObservation& seen, StopCause cause = StopCause::StopNow);
   /// The probe has touched: a jog ends; a search ends where it is, and the cycle goes on with what is queued then.
   void touched() noexcept { phase_.touch(); }
-  [[nodiscard]] Expected<> hold();
+  /// An operator's hold also keeps everything from starting, in whatever state, until an operator resumes or lets go.
+  [[nodiscard]] Expected<> hold(const OperatorRef& by = {});
   /// A program that was parked is queued again, and held.
   void take_up(sdk::CycleMode mode, const CycleObservation& seen) noexcept;
-  [[nodiscard]] Expected<> resume();
+  [[nodiscard]] Expected<> resume(const OperatorRef& by = {});
+  /// The operator's hold becomes one of the program's, where there is one; nothing moves. True when there was one.
+  bool let_go() noexcept { return phase_.let_go(); }
   /// Leaves Faulted or EmergencyStop; the path was emptied before.
   [[nodiscard]] Expected<> reset();
   void fault(bool emergency_stop = false) noexcept { phase_.fault(emergency_stop); }
@@ -82,10 +99,9 @@ class CycleSequencer {
   [[nodiscard]] Verdict step(const CycleObservation& seen) noexcept;
 
   [[nodiscard]] CycleState state() const noexcept { return phase_.state(); }
+  [[nodiscard]] const CyclePhase& phase() const noexcept { return phase_; }
   /// The mode of the cycle that was started last; a positioning counts as manual.
   [[nodiscard]] sdk::CycleMode mode() const noexcept { return mode_; }
-  /// A stop is under way at whose end the queue is emptied.
-  [[nodiscard]] bool empties_queue() const noexcept { return phase_.empties_queue(); }
   [[nodiscard]] bool waits_for_spindle() const noexcept { return spindle_wait_.waiting(); }
   /// The planner was told to travel the path, one way or the other.
   [[nodiscard]] bool travels() const noexcept { return commanded_ != PathCommand::Stop; }
@@ -100,6 +116,7 @@ class CycleSequencer {
   void end_what_is_done(const CycleObservation& seen, Verdict& verdict) noexcept;
   [[nodiscard]] PathCommand wanted(const CycleObservation& seen) const noexcept;
 
+  const bool jog_while_waiting_;
   CyclePhase phase_;
   sdk::CycleMode mode_ = sdk::CycleMode::Automatic;
   PathCommand commanded_ = PathCommand::Stop;

@@ -1,4 +1,4 @@
-#include "gateway/cycle/cycle_phase.hpp"
+#include "gateway/cycle/states/cycle_phase.hpp"
 
 namespace rmac::gateway {
 
@@ -13,6 +13,16 @@ CycleState CyclePhase::state() const noexcept {
     }
   };
   return std::visit(Name{}, state_);
+}
+
+OperatorRef CyclePhase::held_by() const noexcept {
+  if (const Retrace* const back = runs<Retrace>()) return back->held_by;
+  return std::visit(
+      [](const auto& state) -> OperatorRef {
+        if constexpr (requires { state.held_by; }) return state.held_by;
+        return {};
+      },
+      state_);
 }
 
 bool CyclePhase::positions() const noexcept {
@@ -42,8 +52,27 @@ void CyclePhase::hold() noexcept {
   } else if (runs<Positioning>()) {
     state_ = Holding{Positioning{}};
   } else {
-    state_ = Holding{Program{ends_search()}};  // a retrace ends
+    state_ = Holding{Program{ends_search()}, held_by()};  // a retrace ends
   }
+}
+
+void CyclePhase::hold_for(const OperatorRef& who) noexcept {
+  hold();
+  std::visit(
+      [&who](auto& state) {
+        if constexpr (requires { state.held_by; }) state.held_by = who;
+      },
+      state_);
+}
+
+bool CyclePhase::let_go() noexcept {
+  if (!held_by()) return false;
+  if (runs<Retrace>()) {
+    run(Retrace{});
+  } else {
+    hold_for({});
+  }
+  return true;
 }
 
 void CyclePhase::resume() noexcept {
@@ -54,25 +83,27 @@ void CyclePhase::resume() noexcept {
 
 void CyclePhase::stop(StopCause cause) noexcept {
   if (in<Running>() == nullptr && in<Holding>() == nullptr) return;
-  state_ = Stopping{cause, positions()     ? StopEnd::DropPositioning
-                           : ends_search() ? StopEnd::DropSearch
-                                           : StopEnd::KeepQueue};
+  state_ = Stopping{cause,
+                    positions()     ? StopEnd::DropPositioning
+                    : ends_search() ? StopEnd::DropSearch
+                                    : StopEnd::KeepQueue,
+                    held_by()};
 }
 
 void CyclePhase::stop_and_clear(StopCause cause) noexcept {
   if (in<Faulted>() != nullptr) return;
-  state_ = Stopping{cause, positions() ? StopEnd::DropPositioning : StopEnd::EmptyQueue};
+  state_ = Stopping{cause, positions() ? StopEnd::DropPositioning : StopEnd::EmptyQueue, held_by()};
 }
 
 void CyclePhase::touch() noexcept {
   if (positions()) {
-    state_ = Stopping{StopCause::HitByHand, StopEnd::DropPositioning};
+    state_ = Stopping{StopCause::HitByHand, StopEnd::DropPositioning, held_by()};
   } else if (runs<Program>()) {
     run(Program{.search_ends = true});
   } else if (holds<Program>() || runs<Retrace>()) {
-    state_ = Holding{Program{.search_ends = true}};
+    state_ = Holding{Program{.search_ends = true}, held_by()};
   } else if (const Stopping* const stopping = in<Stopping>(); stopping && stopping->end == StopEnd::KeepQueue) {
-    state_ = Stopping{stopping->cause, StopEnd::DropSearch};
+    state_ = Stopping{stopping->cause, StopEnd::DropSearch, held_by()};
   }
   // An idle machine has come to its search's end: nothing is left to drop.
 }
@@ -82,14 +113,14 @@ void CyclePhase::forget_search() noexcept {
   if (runs<Program>()) {
     run(Program{});
   } else if (const Stopping* const stopping = in<Stopping>()) {
-    state_ = Stopping{stopping->cause, StopEnd::KeepQueue};
+    state_ = Stopping{stopping->cause, StopEnd::KeepQueue, held_by()};
   } else {
     hold_program();
   }
 }
 
 void CyclePhase::fault(bool emergency_stop) noexcept {
-  if (state() != CycleState::EmergencyStop) state_ = Faulted{emergency_stop};
+  if (state() != CycleState::EmergencyStop) state_ = Faulted{emergency_stop, held_by()};
 }
 
 }  // namespace rmac::gateway
