@@ -1,6 +1,8 @@
 // Whether the servo loop believes what drives tell of their positions, and what it does where it does not.
 #include <gmock/gmock.h>
 
+#include <random>
+
 #include "unit/motion/servo/servo_fixture.hpp"
 
 namespace rmac::servo_test {
@@ -121,6 +123,37 @@ TEST_F(PositionDoubts, RandomWordsUnderPowerStopTheMachineAndCostTheReference) {
   EXPECT_EQ(report.reference_lost, 1U);
   engage();
   EXPECT_EQ(report.reference_lost, 1U) << "power gives no reference";
+}
+
+TEST_F(PositionDoubts, BurstsOfRandomWordsNeverMoveAJointWhereverAndWheneverTheyCome) {
+  for (unsigned seed = 1; seed <= 1000; ++seed) {
+    std::mt19937 random(seed);
+    const auto below = [&](int most) { return std::uniform_int_distribution<int>(0, most - 1)(random); };
+    const bool under_power = below(2) == 0;
+    const auto axis = static_cast<std::size_t>(below(2));
+    const std::array<double, 2> stands{0.1 * below(1000) - 50, 0.1 * below(1000) - 50};
+    build(bounded());
+    command = ServoCommand{};
+    report = ServoReport{};
+    for (std::size_t j = 0; j < 2; ++j) put_at(j, stands[j]);
+    cycle(20);
+    if (under_power) engage();
+    cycle(below(30));
+    random_words(axis, 1 + below(40), static_cast<unsigned>(random()));
+    cycle(20);
+    for (std::size_t j = 0; j < 2; ++j) ASSERT_NEAR(report.position[j], stands[j], 1e-6) << "seed " << seed;
+    if (under_power) {
+      ASSERT_STREQ(to_string(report.fault.kind), "EncoderJump") << "seed " << seed;
+      ASSERT_EQ(report.fault.index, axis) << "seed " << seed;
+      reset();
+      ASSERT_EQ(report.reference_lost, 1U << axis) << "seed " << seed;
+    }
+    engage();
+    for (std::size_t j = 0; j < 2; ++j) {
+      ASSERT_NEAR(report.position[j], stands[j], 1e-6) << "seed " << seed;
+      ASSERT_NEAR(report.position_set[j], stands[j], 1e-6) << "seed " << seed;
+    }
+  }
 }
 
 // Red when the first word is believed: the loop would begin somewhere else, and take its drive there.
