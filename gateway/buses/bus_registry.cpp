@@ -104,6 +104,26 @@ Expected<std::shared_ptr<ServoBus>> BusRegistry::acquire(const std::string& name
   return bus.bus;
 }
 
+bool BusRegistry::runs_otherwise(const sdk::DeviceObject& device) const {
+  const auto other = [&](const std::string& name) {
+    const auto known = buses_.find(name);
+    return known != buses_.end() && known->second.bus.use_count() > 1 &&
+           known->second.choice != interface_of_bus(name, device.digital_control_interface);
+  };
+  for (const sdk::Actuator& actuator : device.actuators) {
+    if (other(actuator.bus)) return true;
+  }
+  for (const sdk::Spindle& spindle : device.spindles) {
+    if (other(spindle.bus)) return true;
+  }
+  for (std::size_t j = 0; j < device.joint_count_with_held(); ++j) {
+    const auto& sensor = sdk::joint_at(device, j).force_sensor;
+    if (sensor && other(sensor->bus)) return true;
+  }
+  const auto io = ios_.find(device.digital_io_interface.name);
+  return io != ios_.end() && io->second.interface.use_count() > 1 && io->second.choice != device.digital_io_interface;
+}
+
 std::shared_ptr<ServoBus> BusRegistry::virtual_bus(const std::string& name) {
   std::shared_ptr<ServoBus>& bus = virtual_buses_[name];
   if (!bus) bus = std::make_shared<ServoBus>(std::make_shared<NoBus>());

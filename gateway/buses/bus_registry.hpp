@@ -7,6 +7,7 @@
 
 #include "gateway/modules/module_loader.hpp"
 #include "rmac/motion/servo/servo_bus.hpp"
+#include "rmac/sdk/device_object.hpp"
 
 namespace rmac::gateway {
 
@@ -33,6 +34,8 @@ class BusRegistry {
   /// The bus, brought up. A bus that runs already is shared as long as the same interface is wanted of it.
   [[nodiscard]] Expected<std::shared_ptr<ServoBus>> acquire(const std::string& bus, const sdk::ModuleChoice& choice,
                                                             const ModuleLoader& loader);
+  /// Whether a bus or an interface of the device's is in use with other parameters than it has them.
+  [[nodiscard]] bool runs_otherwise(const sdk::DeviceObject& device) const;
   /// What stands for a bus in virtual mode: axes and nothing behind them. The same one each time, so that a mechanism
   /// that replaces another one takes over where its drives stand.
   [[nodiscard]] std::shared_ptr<ServoBus> virtual_bus(const std::string& bus);

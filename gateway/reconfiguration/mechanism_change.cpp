@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "gateway/mechanism/device_check.hpp"
 #include "gateway/mechanism/standing.hpp"
 
 namespace rmac::gateway {
@@ -24,8 +25,13 @@ Expected<> MechanismChange::put_in(const sdk::DeviceObject& device, const Mechan
   if (!tools) return tl::unexpected(tools.error());
 
   auto before = slot_.predecessor();
+  const bool alone = fresh && before && !source.virtual_mode && registry_.runs_otherwise(device);
+  if (alone) {
+    if (auto left = leave_interfaces(device, source, *before); !left) return left;
+  }
   auto candidate = assemble(device, source, fresh);
   if (!candidate) {
+    if (alone) return tl::unexpected(slot_.undo(std::move(before), candidate.error()));
     registry_.stop_unused();
     return tl::unexpected(candidate.error());
   }
@@ -40,6 +46,22 @@ Expected<> MechanismChange::put_in(const sdk::DeviceObject& device, const Mechan
                fmt::format("{} is {}{}", device.name, fresh ? "loaded" : "configured",
                            source.virtual_mode ? " in virtual mode" : ""));
   if (role) supervisor_.set_frames(frames_before);
+  return {};
+}
+
+Expected<> MechanismChange::leave_interfaces(const sdk::DeviceObject& device, const MechanismSource& source,
+                                             MechanismSlot::Predecessor& before) {
+  const ModuleLoader loader = assembler_.loader(source.folder);
+  auto may = check_device(device)
+                 .and_then([&] { return registry_.check_control_interface(device.digital_control_interface, loader); })
+                 .and_then([&] {
+                   const bool io = !device.digital_io_interface.name.empty();
+                   return io ? registry_.check_io_interface(device.digital_io_interface, loader) : Expected<>();
+                 });
+  if (!may) return may;
+  if (auto off = slot_.switch_off(); !off) return off;
+  before.mechanism.reset();  // whoever borrows an interface keeps it
+  slot_.drop(false);
   return {};
 }
 

@@ -29,6 +29,10 @@ class MechanismChange {
     std::shared_ptr<Mechanism> mechanism;
     bool standing_checked = false;
   };
+  /// Has the mechanism in force give up its buses and interfaces, one of which the other needs with other parameters:
+  /// it comes down first then, and is put back where the other cannot come up.
+  [[nodiscard]] Expected<> leave_interfaces(const sdk::DeviceObject& device, const MechanismSource& source,
+                                            MechanismSlot::Predecessor& before);
   [[nodiscard]] Expected<Candidate> assemble(const sdk::DeviceObject& device, const MechanismSource& source,
                                              bool fresh) const;
   [[nodiscard]] Expected<> put_to_work(Candidate candidate, bool fresh);

@@ -35,6 +35,8 @@ Expected<> SimulatedInterface::start() {
   if (!(period_s_ > 0)) {
     return failure(MinorCode::InvalidParameterValue, "simulated bus: the period must be above 0 s");
   }
+  // Answers that were on their way when it stopped are no answers to what is sent from now on.
+  std::fill(before_.begin(), before_.end(), DriveFeedback{});
   return {};
 }
 

@@ -72,6 +72,17 @@ TEST_F(SimulatedBus, TellsOfTheCycleBeforeWhereItsAnswersAreLate) {
   EXPECT_NE(feedback_[kX].position_counts, 0) << "it moved";
 }
 
+TEST_F(SimulatedBus, TellsNothingOfBeforeItWasStartedAgain) {
+  bus_.set_answers_late(true);
+  ASSERT_TRUE(bus_.start());
+  for (int i = 0; i < 20; ++i) cycle(kX, DriveWish::Operational);
+  ASSERT_EQ(drive_state(feedback_[kX].statusword), DriveState::OperationEnabled);
+  bus_.stop();
+  ASSERT_TRUE(bus_.start());
+  EXPECT_NE(cycle(kX, DriveWish::Off), DriveState::OperationEnabled);
+  EXPECT_NE(cycle(kX, DriveWish::Off), DriveState::OperationEnabled);
+}
+
 TEST_F(SimulatedBus, CountsTheShaftInWholeEncoderCounts) {
   bus_.plant(kX).put_at(2 * M_PI * 1.5 / 131072);
   cycle(kX, DriveWish::Off);

@@ -124,9 +124,6 @@ INSTANTIATE_TEST_SUITE_P(
                "has no axis 40; it has 8"},
         Defect{"Interface", [](sdk::DeviceObject& d) { d.digital_control_interface.name = "Gone"; },
                "no digital control interface \"Gone\""},
-        Defect{"InterfaceOfABusInUse",
-               [](sdk::DeviceObject& d) { d.digital_control_interface.name = "SimulatedInterface"; },
-               "bus test is run by TestBus"},
         Defect{"IoInterface", [](sdk::DeviceObject& d) { d.digital_io_interface.name = "Gone"; },
                "no digital I/O interface \"Gone\""},
         Defect{"IoBit", [](sdk::DeviceObject& d) { d.outputs["Coolant"] = 64; }, "bit 64 must be 0 to 63"}),
@@ -144,6 +141,35 @@ TEST(MechanismChange, TakesWhatTheMechanicsOfAJointDoWrong) {
   EXPECT_NEAR(now.position[0], 0.5, 0.01);
   EXPECT_NEAR(now.position_set[0], 0.5, 0.01);
   EXPECT_NEAR(now.position[1], 0, 0.01);
+}
+
+TEST(MechanismChange, TakesABusOverForAnotherInterface) {
+  TestMachine machine;
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  sdk::DeviceObject other = TestMachine::mill();
+  other.name = "Other";
+  other.digital_control_interface.name = "SimulatedInterface";
+  const auto loaded = machine.load(other);
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_EQ(machine.controller.mechanism()->name, "Other");
+  EXPECT_EQ(machine.controller.cycle_now().state, CycleState::Idle);
+  ASSERT_TRUE(machine.load(TestMachine::mill())) << "and back";
+}
+
+TEST(MechanismChange, IsPutBackWhereTheOtherInterfaceCannotCarryTheOther) {
+  TestMachine machine;
+  ASSERT_TRUE(machine.load_at_zero(TestMachine::mill()));
+  sdk::DeviceObject other = TestMachine::mill();
+  other.name = "Other";
+  other.digital_control_interface.name = "SimulatedInterface";
+  other.actuators[0].axis = 40;
+  const auto refused = machine.load(other);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("has no axis 40"));
+  ASSERT_NE(machine.controller.mechanism(), nullptr);
+  EXPECT_EQ(machine.controller.mechanism()->name, "Mill");
+  EXPECT_EQ(machine.controller.cycle_now().state, CycleState::Idle);
+  EXPECT_EQ(machine.controller.sample().statusword[0] & 0x6F, 0x27) << "its drives hold it";
 }
 
 TEST(MechanismChange, FailsWhenTheBusDoesNotComeUp) {
