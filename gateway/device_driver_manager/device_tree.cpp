@@ -111,4 +111,29 @@ Expected<DeviceTree> scan_device_tree(const std::filesystem::path& root) {
   return std::move(scan).result();
 }
 
+bool is_path_of_machine(const std::string& machine) {
+  return machine.find('/') != std::string::npos || machine.ends_with(".json") || machine == ".";
+}
+
+Expected<std::filesystem::path> find_device_json(const std::string& machine, const std::filesystem::path& root) {
+  constexpr const char* kFile = "device.json";
+  if (is_path_of_machine(machine)) {
+    const std::filesystem::path path = std::filesystem::absolute(machine).lexically_normal();
+    std::error_code ignored;
+    return std::filesystem::is_directory(path, ignored) ? path / kFile : path;
+  }
+  const auto tree = scan_device_tree(root);
+  if (!tree) return tl::unexpected(tree.error());
+  std::vector<std::string> names;
+  for (const DeviceTree::Mechanism& found : tree->mechanisms) {
+    if (found.database.device.name == machine) return found.folder / kFile;
+    names.push_back(found.database.device.name);
+  }
+  for (const DeviceDriverManager::ScanProblem& problem : tree->problems) {
+    if (problem.file.parent_path().filename() == machine) return problem.file;  // whoever reads it says what is wrong
+  }
+  return failure(MinorCode::InvalidParameterValue, fmt::format("there is no machine \"{}\" in {}; there are: {}",
+                                                               machine, root.string(), fmt::join(names, ", ")));
+}
+
 }  // namespace rmac::gateway

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "gateway/device_database/device_database.hpp"
@@ -21,5 +22,11 @@ struct DeviceTree {
 /// Reads every `<type>/<configuration>/<Mechanism>/device.json` under `root`. A folder at that depth without one is no
 /// mechanism (the SDK lies in the same tree). Fails only when `root` itself cannot be read.
 [[nodiscard]] Expected<DeviceTree> scan_device_tree(const std::filesystem::path& root);
+
+/// Whether a machine is named by the path of its folder or of its device.json, instead of by its name in the tree.
+[[nodiscard]] bool is_path_of_machine(const std::string& machine);
+/// The device.json of a machine that is named either way; of a path it is not said that the file is there.
+[[nodiscard]] Expected<std::filesystem::path> find_device_json(const std::string& machine,
+                                                               const std::filesystem::path& root);
 
 }  // namespace rmac::gateway

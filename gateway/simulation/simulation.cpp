@@ -8,30 +8,13 @@
 
 #include "gateway/appliance/machine.hpp"
 #include "gateway/device_database/device_database.hpp"
+#include "gateway/device_driver_manager/device_tree.hpp"
+#include "gateway/processes/temporary_folder.hpp"
 
 namespace rmac::gateway {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder that ends with its owner: the device driver database of a simulation is nobody else's.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "rmac-simulation-XXXXXX").string();
-    if (mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] const fs::path& path() const noexcept { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// The only client there is. What it subscribes to reaches it as the controller's samples and events.
 class OnlyClient final : public SessionPort {
@@ -63,10 +46,6 @@ class OnlyClient final : public SessionPort {
  private:
   Records records_;
 };
-
-bool is_path(const std::string& machine) {
-  return machine.find('/') != std::string::npos || machine.ends_with(".json");
-}
 
 ControllerOptions controller_options(const Simulation::Options& options, const std::vector<fs::path>& folders) {
   ControllerOptions made;
@@ -116,7 +95,7 @@ Simulation::~Simulation() = default;
 
 Expected<std::unique_ptr<Simulation>> Simulation::open(const Options& options, const std::string& machine) {
   std::unique_ptr<Simulation> simulation(new Simulation(options));
-  auto folder = std::make_unique<TemporaryFolder>();
+  auto folder = std::make_unique<TemporaryFolder>("simulation");
   if (folder->path().empty()) {
     return failure(MinorCode::Other,
                    fmt::format("no folder for the device driver database can be made in {}: {}",
@@ -127,16 +106,18 @@ Expected<std::unique_ptr<Simulation>> Simulation::open(const Options& options, c
                                             .searcher = options.searcher});
   if (!manager) return tl::unexpected(manager.error());
   std::vector<fs::path> module_folders;
-  if (is_path(machine)) {
-    const auto device = read_device_database(machine);
+  Expected<fs::path> file;
+  if (is_path_of_machine(machine)) {
+    file = find_device_json(machine, options.device_tree);
+    const auto device = read_device_database(*file);
     if (!device) return tl::unexpected(device.error());
     module_folders = folders_for(*device, **manager);
   }
   simulation->parts_ = std::make_unique<Parts>(options, std::move(folder), std::move(*manager), module_folders);
   Parts& parts = *simulation->parts_;
   auto ready = parts.controller.start();
-  if (ready && is_path(machine)) {
-    ready = parts.host.load_file(machine, true);
+  if (ready && !file->empty()) {
+    ready = parts.host.load_file(*file, true);
   } else if (ready && !machine.empty()) {
     ready = parts.host.load(machine, true);
   }

@@ -21,7 +21,8 @@ const char* describe(StopCause cause) noexcept {
     case StopCause::Homed:
       return "the drives have found home, and the machine stands there";
     case StopCause::HitByHand:
-      return "the probe touched, and the machine has come to rest; jog on";
+      return "the probe touched, as ManualMeasure expects, and the machine has come to rest with an empty queue; jog "
+             "or move on";
     case StopCause::UnexpectedHit:
       return "the probe touched where nothing was expected, and the machine was stopped; its queue is empty. Look "
              "what is in the way, and jog off it";

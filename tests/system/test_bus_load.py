@@ -38,6 +38,21 @@ class BusLoad(unittest.TestCase):
         self.assertEqual((head["bus"], head["axes"], head["cyclic_bits"]), ("can1", 1, 53 + 112 + 111))
         self.assertTrue(table["fits"] and head["fits"])
 
+    def test_takes_a_machine_by_its_name_or_its_folder(self):
+        answers = []
+        for machine in ("TarusXYZCA", SOURCE / "drivers/mill/5-axis/TarusXYZCA"):
+            done = subprocess.run([BUILD / "bin" / "rmac", "bus", "load", machine, "--device-tree", BUILD / "drivers", "--json"],
+                                  capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            answers.append(json.loads(done.stdout))
+        self.assertEqual([bus["bus"] for bus in answers[0]], ["can0", "can1"])
+        self.assertEqual(answers[0], answers[1])
+        done = subprocess.run([BUILD / "bin" / "rmac", "bus", "load", "Nobody", "--device-tree", BUILD / "drivers"],
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn('there is no machine "Nobody"', done.stderr)
+        self.assertIn("TarusXYZCA", done.stderr)
+
     def test_counts_a_bus_that_a_force_sensor_has_for_itself(self):
         parameters = {"can0.node": [1, 2, 3, 4], "can1.node": 5, "can1.second_tpdo": "6401:01/16"}
         done = self.load(parameters, "--json", "--period", "0.002", sensor_bus="can1")

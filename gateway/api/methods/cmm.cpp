@@ -141,11 +141,16 @@ void add_cmm_moves(const auto& add) {
             }
             return call.machine.measuring().simulate_probe(joints, (condition.bits & sdk::kConditionProbe) != 0);
           }));
-  add(command("RMAC_CAM.SetCalibratedPartFrame",
-              "Puts the part frame where the tool tip is, its Z along the tool axis, at rest.", Effect::None)
+  add(command(
+          "RMAC_CAM.SetCalibratedPartFrame",
+          "Puts the part frame where the tool tip is, its Z along the tool axis, at rest: the tip's pose reads zero "
+          "there. CurrentPosition goes on to give the joints' own values (docs/decisions/0011).",
+          Effect::None)
           .does([](Call& call) { return call.machine.measuring().set_calibrated_part_frame(); }));
-  add(command("RMAC_CAM.ManualMeasure", "Lets a person jog the probe and expects hits, which end the jog.",
-              Effect::Starts)
+  add(command(
+          "RMAC_CAM.ManualMeasure",
+          "Lets a person jog the probe and expects hits, which end the jog, or a move and what is queued behind it.",
+          Effect::Starts)
           .does([](Call& call) { return call.machine.measuring().manual_measure(); }));
   add(command("RMAC_CAM.SpinProbe", "Spins the probe for a time.", Effect::Starts)
           .takes(number("RPM", "rpm").within(kPlaces), number("Seconds", "s").within({1e-3, 60}))

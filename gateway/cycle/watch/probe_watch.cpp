@@ -20,9 +20,8 @@ ProbeWatch::Verdict ProbeWatch::step(const Seen& seen) noexcept {
     case Measurement::Verdict::Done:
       break;
     case Measurement::Verdict::Touched:
-      // By hand a jog is meant: a program that runs meanwhile expects nothing.
       if (measurement_.pending() || seen.positions) return {true, {}};
-      return {false, StopCause::UnexpectedHit};
+      return {false, StopCause::HitByHand};  // a move of the queue: what was to follow knows nothing of the part
     case Measurement::Verdict::NotFound:
       return {false, StopCause::PartNotFound};
     case Measurement::Verdict::ProbeLost:

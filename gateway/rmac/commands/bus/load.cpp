@@ -7,6 +7,7 @@
 #include "gateway/buses/device_descriptions.hpp"
 #include "gateway/configuration/configuration.hpp"
 #include "gateway/device_database/device_database.hpp"
+#include "gateway/device_driver_manager/device_tree.hpp"
 #include "gateway/rmac/commands/bus/registrations.hpp"
 #include "gateway/rmac/terminal/table.hpp"
 #include "rmac/fieldbus/canopen/bus_load.hpp"
@@ -60,7 +61,8 @@ std::vector<std::string> to_row(const CanopenConfig& config, const BusLoad& load
 }
 
 struct Options {
-  std::string file;  ///< device.json
+  std::string machine;                ///< its name, or the path of its folder or of its device.json
+  std::filesystem::path device_tree;  ///< empty: the installation's
   double period_s = 0.001;
 };
 
@@ -71,16 +73,15 @@ struct Loads {
   std::string refusal;  ///< of the first bus that carries too much; empty: none
 };
 
-Result<Loads> loads_of(const sdk::DeviceObject& device, const Options& options) {
-  const gateway::ModuleLoader loader(
-      {std::filesystem::path(options.file).parent_path(), gateway::default_folders().device_tree / "modules"});
+Result<Loads> loads_of(const sdk::DeviceObject& device, const std::filesystem::path& file, const Options& options) {
+  const gateway::ModuleLoader loader({file.parent_path(), options.device_tree / "modules"});
   Loads loads;
   for (const std::string& bus : buses_of(device)) {
     const sdk::ModuleChoice choice = gateway::interface_of_bus(bus, device.digital_control_interface);
     if (choice.name != "CANopenInterface") continue;
     const auto config = fieldbus::canopen::read_canopen_config(bus, choice.numbers, choice.texts, options.period_s,
                                                                gateway::find_descriptions(loader));
-    if (!config) return fail(fmt::format("{}: {}", options.file, config.error().message));
+    if (!config) return fail(fmt::format("{}: {}", file.string(), config.error().message));
     const BusLoad load = bus_load(*config);
     loads.list.push_back(to_json(*config, load));
     loads.rows.push_back(to_row(*config, load));
@@ -90,13 +91,16 @@ Result<Loads> loads_of(const sdk::DeviceObject& device, const Options& options) 
 }
 
 /// Works out the load of a machine's CAN buses; fails where one exceeds its share.
-Result<> show_bus_load(const Options& options, bool json) {
-  const auto device = gateway::read_device_database(options.file);
+Result<> show_bus_load(Options options, bool json) {
+  if (options.device_tree.empty()) options.device_tree = gateway::default_folders().device_tree;
+  const auto file = gateway::find_device_json(options.machine, options.device_tree);
+  if (!file) return fail(file.error().message);
+  const auto device = gateway::read_device_database(*file);
   if (!device) return fail(device.error().message);
-  const auto loads = loads_of(*device, options);
+  const auto loads = loads_of(*device, *file, options);
   if (!loads) return tl::unexpected(loads.error());
   if (loads->rows.empty()) {
-    return fail(fmt::format("{}: its drives are reached by {}, which is no CAN bus", options.file,
+    return fail(fmt::format("{}: its drives are reached by {}, which is no CAN bus", file->string(),
                             device->digital_control_interface.name));
   }
   if (json) {
@@ -114,7 +118,8 @@ Result<> show_bus_load(const Options& options, bool json) {
 void add_bus_load(Command& bus) {
   const auto options = std::make_shared<Options>();
   Command load = bus.add("load", "the bits that a machine's CAN buses carry at worst; exit code 1 if too many");
-  load.option("FILE", &options->file, "the machine's device.json").required();
+  load.option("NAME", &options->machine, "a machine's name; or the path of its folder or its device.json").required();
+  load.option("--device-tree", &options->device_tree, "where machines are looked for; the installation's unless given");
   load.option("--period", &options->period_s, "cycle of the servo loop, s (period_s in rmacd.json)")
       .within(0.0001, 0.1)
       .shows_default();

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "gateway/configuration/configuration.hpp"
+#include "gateway/device_driver_manager/device_tree.hpp"
 #include "gateway/rmac/commands/machines/registrations.hpp"
 #include "gateway/rmac/wire/authority.hpp"
 #include "gateway/verification/verification.hpp"
@@ -21,18 +22,14 @@ Result<> show(const verifier::Report& report, bool json) {
   return fail(fmt::format("{} is refused: {}", report.mechanism, report.refusal()));
 }
 
-/// Whether a machine is named by its files instead of by its name in the database.
-bool is_path(const std::string& machine) {
-  return machine.find('/') != std::string::npos || machine.ends_with(".json") || machine == ".";
-}
-
 /// Modules that are not beside the file are looked for among the shared ones of the device tree.
 Result<> verify_files(const std::string& path, const fs::path& device_tree, bool json) {
   const auto folders = gateway::default_folders();
   const fs::path modules = (device_tree.empty() ? folders.device_tree : device_tree) / "modules";
   const gateway::Verification verification({.program = folders.verifier, .verdicts = {}, .module_folders = {modules}});
-  const fs::path file = fs::is_directory(path) ? fs::path(path) / "device.json" : fs::path(path);
-  const auto report = verification.verify(fs::absolute(file).lexically_normal());
+  const auto report = gateway::find_device_json(path, folders.device_tree).and_then([&](const fs::path& file) {
+    return verification.verify(file);
+  });
   return report ? show(*report, json) : fail(report.error().message);
 }
 
@@ -56,7 +53,8 @@ void add_verify(Command& rmac) {
   verify.option("--device-tree", &options->device_tree,
                 "with a path: the tree whose shared modules it may name; the installation's unless given");
   verify.does([options](Call& call) {
-    if (is_path(options->machine)) return verify_files(options->machine, options->device_tree, call.json());
+    if (gateway::is_path_of_machine(options->machine))
+      return verify_files(options->machine, options->device_tree, call.json());
     return call.appliance().and_then(
         [&](Connection* appliance) { return verify_machine(*appliance, options->machine, call.json()); });
   });

@@ -176,6 +176,7 @@ class AfterItsProgram : public BesideAProgram {
 };
 
 TEST_F(AfterItsProgram, TheCycleSaysThatItWaitsForMoves) {
+  ASSERT_TRUE(machine_.run_until([&] { return now().waits_for != nullptr; })) << "it comes to rest first";
   EXPECT_STREQ(now().waits_for, "moves");
   EXPECT_THAT(cam().positioning().jog_joint(1, 1).error().message, HasSubstr("waits for moves"));
 }

@@ -16,13 +16,13 @@ TEST(ProbeWatch, StopsAtAHitThatNobodyAskedFor) {
   EXPECT_FALSE(verdict.touched);
 }
 
-TEST(ProbeWatch, ExpectsAHitByHandOfAJogAndOfNoProgram) {
+TEST(ProbeWatch, EndsAJogAtAHitByHandAndEmptiesAQueue) {
   for (const bool jogs : {true, false}) {
     ProbeWatch watch;
     watch.measurement().expect_by_hand(true);
     const auto verdict = watch.step({.moves_left = 1, .at_rest = false, .probe = hit(1), .positions = jogs});
     EXPECT_EQ(verdict.touched, jogs);
-    EXPECT_EQ(verdict.stop, jogs ? std::nullopt : std::optional(StopCause::UnexpectedHit));
+    EXPECT_EQ(verdict.stop, jogs ? std::nullopt : std::optional(StopCause::HitByHand));
   }
 }
 

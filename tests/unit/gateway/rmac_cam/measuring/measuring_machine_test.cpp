@@ -258,11 +258,21 @@ TEST_F(Measuring, ByHandJogsUntilItTouches) {
   EXPECT_EQ(last_code(), MinorCode::None);
 }
 
-TEST_F(Measuring, ByHandExpectsNothingOfAProgram) {
+TEST_F(Measuring, ByHandAMoveEndsAtTheHitToo) {
+  go({0, 0, -15});
   ASSERT_TRUE(measuring().manual_measure());
   ASSERT_TRUE(cam().cmm_moves().to_point(3, {0, 0, -25}, 20));
-  ASSERT_TRUE(machine_.run_until([&] { return last_code() != MinorCode::None; }));
-  EXPECT_EQ(last_code(), MinorCode::UnexpectedHit);
+  ASSERT_TRUE(cam().cmm_moves().to_point(4, {5, 0, -25}, 20));
+  ASSERT_TRUE(machine_.run_until([&] { return measuring().new_hit(); }));
+  EXPECT_NEAR(measuring().last_hit()->pose.tip[2], -20 + kRadius, 1e-4 + kCount_mm);
+  ASSERT_TRUE(machine_.run_until([&] { return machine_.controller.last_stop().has_value(); }));
+  EXPECT_EQ(last_code(), MinorCode::None);
+  EXPECT_THAT(machine_.last(Event::Kind::Stopped), HasSubstr("as ManualMeasure expects"));
+  EXPECT_EQ(cam().queue().moves_left(), 0U) << "what was to follow knows nothing of the part";
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(cam().cmm_moves().to_point(5, {0, 0, -15}, 20)) << "from the part, while the probe still touches";
+  rest();
+  EXPECT_NEAR(machine_.controller.sample().position_set[2], -15, 1e-2);
 }
 
 TEST_F(Measuring, FramesStayUntilAPointIsMeasured) {
