@@ -8,8 +8,15 @@ class Figures:
         self.rows = []
 
     def add(self, name, value, unit, target=None, note=""):
+        """At most `target`, where there is one."""
         good = target is None or value <= target
-        row = {"name": name, "value": value, "unit": unit, "target": "" if target is None else f"<= {target:g}", "ok": good}
+        self._add(name, value, unit, "" if target is None else f"<= {target:g}", good, note)
+
+    def add_least(self, name, value, unit, target, note=""):
+        self._add(name, value, unit, f">= {target:g}", value >= target, note)
+
+    def _add(self, name, value, unit, target, good, note):
+        row = {"name": name, "value": value, "unit": unit, "target": target, "ok": good}
         self.rows.append(row | ({"note": note} if note else {}))
         print(json.dumps(self.rows[-1]), flush=True)
 
