@@ -117,6 +117,14 @@ void decode_into(const json& value, const ParameterSpec& /*spec*/, Decoded<std::
   out = std::move(texts);
 }
 
+void decode_into(const json& value, const ParameterSpec& spec, Decoded<JsonValue>& out) {
+  if (spec.type == WireType::Object ? value.is_object() : value.is_array()) {
+    out = JsonValue{value};
+  } else {
+    out = mismatch(value, spec.type == WireType::Object ? "an object" : "an array of objects");
+  }
+}
+
 void decode_into(const json& value, const ParameterSpec& /*spec*/, Decoded<Mask>& out) {
   constexpr const char* kExpected = "an integer from 0 to 2^53-1 or a text \"0x...\" of up to 16 hexadecimal digits";
   if (value.is_number_unsigned() && value.get<std::uint64_t>() <= static_cast<std::uint64_t>(kLargestInteger)) {

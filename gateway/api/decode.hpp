@@ -35,6 +35,11 @@ struct Mask {
   std::uint64_t bits = 0;
 };
 
+/// An object, or a list of them, that a schema describes.
+struct JsonValue {
+  nlohmann::json json;
+};
+
 /// The value as it may stand in a message: at most some eighty characters.
 [[nodiscard]] std::string shortened(const nlohmann::json& value);
 
@@ -45,6 +50,8 @@ void decode_into(const nlohmann::json& value, const ParameterSpec& spec, Decoded
 void decode_into(const nlohmann::json& value, const ParameterSpec& spec, Decoded<std::string>& out);
 void decode_into(const nlohmann::json& value, const ParameterSpec& spec, Decoded<std::vector<double>>& out);
 void decode_into(const nlohmann::json& value, const ParameterSpec& spec, Decoded<std::vector<std::string>>& out);
+/// An object, or an array of them, as it came.
+void decode_into(const nlohmann::json& value, const ParameterSpec& spec, Decoded<JsonValue>& out);
 void decode_into(const nlohmann::json& value, const ParameterSpec& spec, Decoded<Mask>& out);
 void decode_into(const nlohmann::json& value, const ParameterSpec& spec, Decoded<Vector>& out);
 /// A whole pose: needs `q`.

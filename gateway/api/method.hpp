@@ -39,6 +39,9 @@ struct Method {
   /// Arguments in the order of `parameters`; null pointers stand for optional ones that were left out.
   using Arguments = std::vector<const nlohmann::json*>;
   using Handler = std::function<tl::expected<nlohmann::json, RpcError>(Call&, const Arguments&)>;
+  /// Work that touches nothing of the machine; it has what it needs. Any thread.
+  using Job = std::function<Expected<>()>;
+  using Preparation = std::function<Job(Call&, const Arguments&)>;
 
   std::string name;  ///< "Interface.Function"
   std::string meaning;
@@ -53,10 +56,10 @@ struct Method {
     nlohmann::json value;
   };
   std::optional<Harmless> harmless;
-  bool property = false;  ///< reads without `newVal`; with it writes, gives true, and needs authority
-  bool slow = false;      ///< may take so long that others' stops must not wait for it
-  bool apart = false;     ///< slow, and needs nothing of the machine: nobody waits for it but its client
-  Handler preparation;  ///< of a slow method: what comes before the handler and touches nothing that moves; may be none
+  bool property = false;    ///< reads without `newVal`; with it writes, gives true, and needs authority
+  bool slow = false;        ///< may take so long that others' stops must not wait for it
+  bool apart = false;       ///< slow, and needs nothing of the machine: nobody waits for it but its client
+  Preparation preparation;  ///< of a slow method: says what is to be done before it has the machine; may be none
   Handler handler;
 };
 

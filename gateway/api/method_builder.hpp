@@ -72,6 +72,13 @@ inline auto numbers(const char* name, const char* unit) {
 inline auto texts(const char* name) {
   return declared<std::vector<std::string>>(name, WireType::Strings);
 }
+/// Objects whose members the schema of a file describes; the handler holds them to it.
+inline auto object(const char* name) {
+  return declared<JsonValue>(name, WireType::Object);
+}
+inline auto objects(const char* name) {
+  return declared<JsonValue>(name, WireType::Objects);
+}
 inline auto mask(const char* name) {
   return declared<Mask>(name, WireType::Mask);
 }
@@ -210,11 +217,17 @@ class MethodBuilder {
     method_.apart = true;
     return std::move(*this).may_be_slow();
   }
-  /// Does the part of it that takes long and touches nothing that moves, before the machine is its own. An error ends
-  /// the call.
+  /// Gives the part of it that takes long and touches nothing that moves, which is done before the machine is its own;
+  /// none where there is nothing to do. An error of it ends the call.
   template <typename Function>
   MethodBuilder prepared_by(Function function) && {
-    method_.preparation = handler_of(std::move(function), nlohmann::json());
+    method_.preparation = [function = std::move(function), specs = method_.parameters](
+                              Call& call, const Method::Arguments& arguments) -> Method::Job {
+      std::tuple<Ts...> values{};
+      // What is wrong with them the handler tells.
+      if (!take_all(specs, arguments, values, std::index_sequence_for<Ts...>{})) return {};
+      return std::apply([&](const Ts&... value) { return function(call, value...); }, values);
+    };
     return std::move(*this);
   }
   /// With this value of its last parameter it has no effect on motion.
@@ -239,6 +252,15 @@ class MethodBuilder {
       return invoke(function, specs, done, call, arguments, std::index_sequence_for<Ts...>{});
     };
   }
+  template <std::size_t... kIndex>
+  static tl::expected<void, RpcError> take_all(const std::vector<ParameterSpec>& specs,
+                                               const Method::Arguments& arguments, std::tuple<Ts...>& values,
+                                               std::index_sequence<kIndex...>) {
+    RpcError error;
+    const bool taken = (detail::take(arguments[kIndex], specs[kIndex], std::get<kIndex>(values), error) && ...);
+    if (!taken) return tl::unexpected<RpcError>(std::move(error));
+    return {};
+  }
   template <typename Function, std::size_t... kIndex>
   static tl::expected<nlohmann::json, RpcError> invoke(const Function& function,
                                                        const std::vector<ParameterSpec>& specs,
@@ -246,9 +268,8 @@ class MethodBuilder {
                                                        const Method::Arguments& arguments,
                                                        std::index_sequence<kIndex...>) {
     std::tuple<Ts...> values{};
-    RpcError error;
-    const bool taken = (detail::take(arguments[kIndex], specs[kIndex], std::get<kIndex>(values), error) && ...);
-    if (!taken) return tl::unexpected<RpcError>(std::move(error));
+    auto taken = take_all(specs, arguments, values, std::index_sequence<kIndex...>{});
+    if (!taken) return tl::unexpected<RpcError>(std::move(taken.error()));
     return detail::finish(function(call, std::get<kIndex>(values)...), call, done);
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,8 +50,12 @@ class DevicePort {
   virtual ~DevicePort() = default;
   /// The verifier's report, whether the mechanism passes or not. Touches nothing that moves.
   virtual Expected<nlohmann::json> verify(const std::string& name) = 0;
-  /// The half of `load` that takes long and touches nothing that moves.
-  virtual Expected<> ready_to_load(const std::string& name) = 0;
+  /// What takes long before `load`, before a draft is applied and before what is wanted is configured, and touches
+  /// nothing that moves; none where nothing is to be done.
+  using Job = std::function<Expected<>()>;
+  [[nodiscard]] virtual Job loading(const std::string& name) = 0;
+  [[nodiscard]] virtual Job applying() = 0;
+  [[nodiscard]] virtual Job configuring() = 0;
   virtual Expected<> load(const std::string& name, bool virtual_mode) = 0;
   virtual Expected<> unload() = 0;
   /// The modules of what is loaded.
@@ -103,6 +108,9 @@ class SessionPort {
   /// Who the daemon is, and its limits: the answer to `hello`.
   [[nodiscard]] virtual nlohmann::json greeting() const = 0;
   [[nodiscard]] virtual RecordCursor& records() = 0;
+  /// Whether this connection has the loaded mechanism's database open (Appendix III); at first it has.
+  [[nodiscard]] bool reads_device() const noexcept { return reads_device_; }
+  void read_device(bool reads) noexcept { reads_device_ = reads; }
   [[nodiscard]] virtual bool has_authority() const = 0;
   /// Name of the client that holds motion authority, or empty.
   [[nodiscard]] virtual std::string authority_holder() const = 0;
@@ -124,6 +132,9 @@ class SessionPort {
   virtual void unsubscribe(const std::vector<std::string>& topics) = 0;
   /// Streams the joints for an animation, or ends that; what the client subscribed to itself stays as it is.
   virtual void animate(bool on) = 0;
+
+ private:
+  bool reads_device_ = true;
 };
 
 /// The error the machine, or who may move it, met last (StatusMajorCode, StatusMinorCode, Ok). One a machine, whoever

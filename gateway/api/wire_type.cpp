@@ -30,6 +30,8 @@ const char* to_string(WireType type) noexcept {
       return "NurbsND";
     case WireType::Object:
       return "object";
+    case WireType::Objects:
+      return "array<object>";
   }
   return "null";
 }

@@ -24,6 +24,7 @@ enum class WireType {
   Nurbs,
   NurbsNd,
   Object,
+  Objects,  ///< array of objects
 };
 
 /// As the specification spells it, e.g. "array<number>".

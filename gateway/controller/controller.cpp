@@ -14,7 +14,6 @@
 #include "gateway/rmac_cam/cam.hpp"
 #include "gateway/rmac_cam/measuring/measuring_machine.hpp"
 #include "gateway/rmac_config/config_draft.hpp"
-#include "gateway/rmac_config/verified_bounds.hpp"
 #include "gateway/servo/servo_thread.hpp"
 
 namespace rmac::gateway {
@@ -85,7 +84,7 @@ struct Controller::Impl {
   ClientInterfaces interfaces;
   Reconfiguration reconfiguration;
   MechanismSource source;  ///< where the mechanism about to be configured comes from
-  std::shared_ptr<const sdk::DeviceObject> verified;
+  std::function<Expected<>(const sdk::DeviceObject&)> admit;
   bool running = false;
 };
 
@@ -118,8 +117,8 @@ Expected<> Controller::Impl::apply(const sdk::DeviceObject& device, ConfigDraft:
   if (!running) {
     return failure(MinorCode::Other, "putting in a configuration: the controller is not running; start it");
   }
-  if (verified) {
-    if (auto within = check_within_verified(device, *verified); !within) return within;
+  if (admit) {
+    if (auto admitted = admit(device); !admitted) return admitted;
   }
   if (extent == ConfigDraft::Extent::Loops) return reconfiguration.change_loops(device, source);
   return reconfiguration.put_in(device, source, extent == ConfigDraft::Extent::Mechanism);
@@ -191,8 +190,8 @@ ToolPort& Controller::tools() noexcept {
 }
 
 void Controller::set_mechanism_folder(std::string folder, bool virtual_mode,
-                                      std::shared_ptr<const sdk::DeviceObject> verified) {
-  impl_->verified = std::move(verified);
+                                      std::function<Expected<>(const sdk::DeviceObject&)> admit) {
+  impl_->admit = std::move(admit);
   impl_->source = {std::move(folder), virtual_mode || impl_->options.stepped};
 }
 

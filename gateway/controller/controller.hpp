@@ -102,10 +102,10 @@ class Controller {
   [[nodiscard]] sdk::Measuring& measuring() noexcept;
 
   /// Modules of the mechanism about to be configured are looked for here first. Virtual: setpoints are reflected as
-  /// joint values. What is put in force from then on is no more than `verified` (`check_within_verified`); null: it may
-  /// be anything, as where there is no verifier.
+  /// joint values. What is put in force from then on must pass `admit`; null: it may be anything, as where there is no
+  /// verifier.
   void set_mechanism_folder(std::string folder, bool virtual_mode,
-                            std::shared_ptr<const sdk::DeviceObject> verified = nullptr);
+                            std::function<Expected<>(const sdk::DeviceObject&)> admit = nullptr);
   [[nodiscard]] const std::string& mechanism_folder() const noexcept;
   [[nodiscard]] bool virtual_mode() const noexcept;
   /// A module of a device driver, found as the mechanism's other modules are.

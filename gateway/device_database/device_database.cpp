@@ -6,6 +6,8 @@
 #include <set>
 
 #include "gateway/device_database/device_checks.hpp"
+#include "gateway/device_database/device_parts.hpp"
+#include "gateway/device_database/part_names.hpp"
 #include "gateway/json/json_document.hpp"
 #include "gateway/json/schemas.hpp"
 
@@ -22,171 +24,14 @@ double number(const Json& object, const char* key, double otherwise = 0) {
   return object.value(key, otherwise);
 }
 
-/// The enumerator whose name stands in the file; the schema's `enum` lists the same names.
-template <typename Enumeration>
-Enumeration named(const Json& object, const char* key, const std::map<std::string, Enumeration>& names) {
-  return names.at(object.at(key).get<std::string>());
-}
-
-sdk::ModuleChoice module_choice(const Json& object) {
-  sdk::ModuleChoice choice;
-  choice.name = text(object, "Module");
-  const Json parameters = object.value("Parameters", Json::object());
-  for (const auto& [name, value] : parameters.items()) {
-    if (value.is_string()) {
-      choice.texts[name] = value.get<std::string>();
-    } else if (value.is_array()) {
-      choice.numbers[name] = value.get<std::vector<double>>();
-    } else {
-      choice.numbers[name] = {value.get<double>()};
-    }
-  }
-  return choice;
-}
-
-JointLimits limits(const Json& joint) {
-  JointLimits limits;
-  limits.name = text(joint, "Name");
-  limits.type = named<JointType>(
-      joint, "Type", {{"Rotary", JointType::Rotary}, {"Linear", JointType::Linear}, {"Screw", JointType::Screw}});
-  limits.limit_type = named<JointLimitType>(joint, "LimitType",
-                                            {{"Limited", JointLimitType::Limited},
-                                             {"Infinite", JointLimitType::Infinite},
-                                             {"InfinitePositive", JointLimitType::InfinitePositive},
-                                             {"InfiniteNegative", JointLimitType::InfiniteNegative}});
-  limits.min = number(joint, "Min");
-  limits.max = number(joint, "Max");
-  limits.max_speed = number(joint, "MaxSpeed");
-  limits.max_acceleration = number(joint, "MaxAcceleration");
-  limits.max_jerk = number(joint, "MaxJerk");
-  return limits;
-}
-
-JointMechanics mechanics(const Json& joint) {
-  JointMechanics result;
-  if (const auto table = joint.find("PitchErrors"); table != joint.end()) {
-    result.pitch = {number(*table, "First"), number(*table, "Step"), (*table)["Errors"].get<std::vector<double>>()};
-  }
-  result.backlash = joint.value("Backlash", 0.0);
-  for (const Json& entry : joint.value("Resonances", Json::array())) {
-    Resonance resonance;
-    resonance.frequency_hz = number(entry, "Frequency");
-    resonance.damping = number(entry, "Damping");
-    resonance.width = entry.value("Width", resonance.width);
-    result.resonances.push_back(resonance);
-  }
-  result.low_pass_hz = joint.value("LowPass", 0.0);
-  return result;
-}
-
-std::optional<sdk::ForceSensor> force_sensor(const Json& joint) {
-  const auto sensor = joint.find("ForceSensor");
-  if (sensor == joint.end()) return {};
-  return sdk::ForceSensor{.bus = text(*sensor, "Bus"),
-                          .axis = (*sensor)["Axis"].get<std::uint32_t>(),
-                          .newton_per_count = number(*sensor, "NewtonPerCount"),
-                          .zero_counts = sensor->value("ZeroCounts", std::int32_t{0})};
-}
-
-std::optional<ForceControl> force_control(const Json& joint) {
-  const auto force = joint.find("ForceControl");
-  if (force == joint.end()) return {};
-  ForceControl result;
-  result.approach_speed = number(*force, "ApproachSpeed");
-  result.contact_force = number(*force, "ContactForce");
-  result.gain = number(*force, "Gain");
-  result.reset_time_s = number(*force, "ResetTime");
-  result.max_speed = number(*force, "MaxSpeed");
-  result.max_force = number(*force, "MaxForce");
-  result.max_search = number(*force, "MaxSearch");
-  return result;
-}
-
-std::vector<sdk::Joint> joints(const Json& list) {
-  std::vector<sdk::Joint> result;
-  for (const Json& entry : list) {
-    sdk::Joint joint;
-    joint.limits = limits(entry);
-    if (const auto law = entry.find("ServoControlLaw"); law != entry.end()) joint.servo_law = module_choice(*law);
-    joint.method = named<ControlMethod>(entry, "ControlMethod",
-                                        {{"Position", ControlMethod::Position},
-                                         {"Velocity", ControlMethod::Velocity},
-                                         {"Force", ControlMethod::Force}});
-    joint.gains = entry.value("Gains", std::vector<double>());
-    joint.max_following_error = number(entry, "MaxFollowingError");
-    joint.max_effort = number(entry, "MaxEffort");
-    joint.mechanics = mechanics(entry);
-    joint.max_measured_speed = number(entry, "MaxMeasuredSpeed");
-    joint.max_jump = number(entry, "MaxJump");
-    joint.force_sensor = force_sensor(entry);
-    joint.force = force_control(entry);
-    result.push_back(std::move(joint));
-  }
-  return result;
-}
-
-std::vector<sdk::Actuator> actuators(const Json& list) {
-  std::vector<sdk::Actuator> result;
-  for (const Json& entry : list) {
-    sdk::Actuator actuator;
-    actuator.bus = text(entry, "Bus");
-    actuator.axis = entry["Axis"].get<std::uint32_t>();
-    actuator.scale.counts_per_revolution = number(entry, "CountsPerRevolution");
-    actuator.scale.rated_torque_nm = number(entry, "RatedTorque");
-    actuator.max_measured_torque_nm = number(entry, "MaxMeasuredTorque");
-    actuator.scale.direction = entry.value("Direction", 1);
-    actuator.scale.home_counts = entry.value("HomeCounts", std::int32_t{0});
-    actuator.homing_turn = entry.value("HomingTurn", 0);
-    actuator.position_gain = number(entry, "PositionGain");
-    static const std::map<int, TouchProbeEdge> kEdges{{1, TouchProbeEdge::FirstRising},
-                                                      {-1, TouchProbeEdge::FirstFalling},
-                                                      {2, TouchProbeEdge::SecondRising},
-                                                      {-2, TouchProbeEdge::SecondFalling}};
-    if (const auto probe = entry.find("TouchProbe"); probe != entry.end()) {
-      actuator.probe_edge = kEdges.at(probe->get<int>());
-    }
-    result.push_back(std::move(actuator));
-  }
-  return result;
-}
-
-std::vector<sdk::Spindle> spindles(const Json& list) {
-  std::vector<sdk::Spindle> result;
-  for (const Json& entry : list) {
-    sdk::Spindle spindle;
-    spindle.bus = text(entry, "Bus");
-    spindle.axis = entry["Axis"].get<std::uint32_t>();
-    spindle.max_speed_rpm = number(entry, "MaxSpeed");
-    spindle.max_torque_nm = number(entry, "MaxTorque");
-    spindle.horse_power = number(entry, "HorsePower");
-    constexpr double kSpeedToleranceRpm = 20;
-    constexpr double kSpeedTimeoutS = 5;
-    spindle.speed_tolerance_rpm = number(entry, "SpeedTolerance", kSpeedToleranceRpm);
-    spindle.speed_timeout_s = number(entry, "SpeedTimeout", kSpeedTimeoutS);
-    if (const auto law = entry.find("ServoControlLaw"); law != entry.end()) spindle.servo_law = module_choice(*law);
-    if (entry.value("ControlMethod", "") == "Position") spindle.method = ControlMethod::Position;
-    spindle.gains = entry.value("Gains", std::vector<double>());
-    spindle.scale = {number(entry, "CountsPerRevolution"), number(entry, "RatedTorque"), entry.value("Direction", 1)};
-    spindle.max_acceleration_rpm_s = number(entry, "MaxAcceleration");
-    constexpr double kFollowingErrorDeg = 90;
-    spindle.max_following_error_deg = number(entry, "MaxFollowingError", kFollowingErrorDeg);
-    result.push_back(std::move(spindle));
-  }
-  return result;
-}
-
 std::vector<sdk::ToolChangeStep> tool_change(const Json& list) {
   using Step = sdk::ToolChangeStep;
   constexpr double kTimeOutS = 10;
   std::vector<Step> result;
   for (const Json& entry : list) {
-    const std::string what = text(entry, "Do");
     const std::string whose = entry.value("For", "");
     Step step;
-    step.kind = what == "MoveTo"   ? Step::Kind::MoveTo
-                : what == "Switch" ? Step::Kind::Switch
-                : what == "Select" ? Step::Kind::Select
-                                   : Step::Kind::Await;
+    step.kind = named(std::string_view(entry.at("Do").get_ref<const std::string&>()), kToolChangeNames);
     step.whose = whose == "Old" ? Step::Whose::Old : whose == "New" ? Step::Whose::New : Step::Whose::Both;
     step.joints = entry.value("Joints", std::vector<double>());
     step.outputs = entry.value("Outputs", std::vector<std::string>());

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 
 #include "gateway/device_database/device_database.hpp"
+#include "gateway/rmac_config/verified_devices.hpp"
 
 namespace rmac::gateway {
 
@@ -67,12 +69,15 @@ struct DeviceHost::Impl {
   Expected<Loaded*> require_loaded();
   Expected<> load(const std::string& what, const std::filesystem::path& device_json, bool virtual_mode);
   Expected<Loaded> configure_anew(const std::filesystem::path& device_json, const std::optional<Base>& base_before);
-  /// Nothing beyond what was verified is put in force, where there is a verifier.
-  void hold_to(const sdk::DeviceObject& verified) const {
-    if (verification == nullptr) return;
-    controller.set_mechanism_folder(controller.mechanism_folder(), controller.virtual_mode(),
-                                    std::make_shared<const sdk::DeviceObject>(verified));
+  /// Modules are looked for in `folder`, and nothing beyond what was verified is put in force, where there is a
+  /// verifier.
+  void begin_in(std::string folder, bool virtual_mode) {
+    if (verification == nullptr) return controller.set_mechanism_folder(std::move(folder), virtual_mode);
+    controller.set_mechanism_folder(std::move(folder), virtual_mode,
+                                    [this](const sdk::DeviceObject& device) { return verified.admit(device); });
   }
+  /// The verification of what goes beyond what was verified; none where nothing does.
+  [[nodiscard]] std::function<Expected<>()> verification_of(const sdk::DeviceObject& device);
   Expected<> require_verified(const std::filesystem::path& device_json) const;
   /// Why `what` is not loaded, and what is instead.
   tl::unexpected<Error> not_loaded(const std::string& what, const Error& why) const;
@@ -87,11 +92,12 @@ struct DeviceHost::Impl {
   DeviceDriverManager& manager;
   Controller& controller;
   const Verification* verification;
-  std::optional<Loaded> loaded;
+  VerifiedDevices verified{};  ///< used by verifications too, on other threads
+  std::optional<Loaded> loaded{};
 };
 
 DeviceHost::DeviceHost(DeviceDriverManager& manager, Controller& controller, const Verification* verification)
-    : impl_(new Impl{manager, controller, verification, std::nullopt}) {}
+    : impl_(new Impl{manager, controller, verification}) {}
 DeviceHost::~DeviceHost() = default;
 
 Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(const std::filesystem::path& device_json,
@@ -105,12 +111,12 @@ Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(const std::f
   if (under) {
     device = overlaid(under->device, *device);
     if (!device) return tl::unexpected(device.error());
-    controller.set_mechanism_folder(under->folder, controller.virtual_mode());
+    begin_in(under->folder, controller.virtual_mode());
     high_level = std::move(*driver);
     driver = load_driver(under->device.device_driver);
     if (!driver) return tl::unexpected(driver.error());
   }
-  hold_to(*device);
+  verified.begin(*device);
   sdk::RmacConfig& config = controller.config();
   auto done = config.begin(*device)
                   .and_then([&] { return driver->object->configure_motion_planner(*device, config); })
@@ -150,6 +156,21 @@ Expected<> DeviceHost::ready_to_load(const std::string& name) const {
                  fmt::format("{} is not loaded: {} (what is loaded stays loaded)", name, verified.error().message));
 }
 
+std::function<Expected<>()> DeviceHost::Impl::verification_of(const sdk::DeviceObject& device) {
+  if (verification == nullptr || !loaded || !verified.lacks_verification(device)) return {};
+  return [this, device, folder = controller.mechanism_folder()] {
+    return verification->require(device, folder).map([&] { verified.add(device); });
+  };
+}
+
+std::function<Expected<>()> DeviceHost::verification_of_draft() const {
+  return impl_->verification_of(impl_->controller.config().draft());
+}
+
+std::function<Expected<>()> DeviceHost::verification_of_wanted() const {
+  return impl_->loaded ? impl_->verification_of(impl_->loaded->wanted) : nullptr;
+}
+
 Expected<> DeviceHost::load(const std::string& name, bool virtual_mode) {
   const auto folder = impl_->manager.folder_of(name);
   if (!folder) return tl::unexpected(folder.error());
@@ -162,17 +183,17 @@ Expected<> DeviceHost::load_file(const std::filesystem::path& device_json, bool 
 
 Expected<> DeviceHost::Impl::load(const std::string& what, const std::filesystem::path& device_json,
                                   bool virtual_mode) {
-  if (auto verified = require_verified(device_json); !verified) return not_loaded(what, verified.error());
+  if (auto passed = require_verified(device_json); !passed) return not_loaded(what, passed.error());
   const std::string folder_before = controller.mechanism_folder();
   const bool virtual_before = controller.virtual_mode();
   const std::optional<Base> base_before = base();
-  controller.set_mechanism_folder(device_json.parent_path().string(), virtual_mode);
+  begin_in(device_json.parent_path().string(), virtual_mode);
   auto made = configure_anew(device_json, base_before);
   if (!made) {
-    controller.set_mechanism_folder(folder_before, virtual_before);
+    begin_in(folder_before, virtual_before);
     controller.discard_draft();
     if (controller.mechanism() == nullptr) loaded.reset();
-    if (loaded) hold_to(loaded->database);
+    if (loaded) verified.begin(loaded->database);
     return not_loaded(what, made.error());
   }
   loaded = std::move(*made);

@@ -24,6 +24,10 @@ class DeviceHost {
   /// Whether mechanism `name` passed its verification, or passes it now: the long half of `load`, which does not touch
   /// the controller. `load` asks again. Any thread.
   [[nodiscard]] Expected<> ready_to_load(const std::string& name) const;
+  /// The verification of what is drafted, or wanted, where that goes beyond what was verified; none where it does not.
+  /// It does not touch the controller. What passes may be put in force.
+  [[nodiscard]] std::function<Expected<>()> verification_of_draft() const;
+  [[nodiscard]] std::function<Expected<>()> verification_of_wanted() const;
   /// Loads mechanism `name`: the driver configures planner, servo controller and interfaces into a draft, which is
   /// applied at standstill. On any failure the mechanism that was loaded stays loaded, and the error says what failed.
   [[nodiscard]] Expected<> load(const std::string& name, bool virtual_mode);

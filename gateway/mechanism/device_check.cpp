@@ -132,6 +132,11 @@ Expected<> check_io(const sdk::DeviceObject& device) {
       }
     }
   }
+  for (const auto& [bit, input] : device.drive_inputs) {
+    if (input.actuator < device.actuators.size()) continue;
+    return refuse(fmt::format("input on bit {} is told by actuator {}, and there are {}", bit, input.actuator,
+                              device.actuators.size()));
+  }
   const bool named = device.inputs.size() > device.drive_inputs.size() || !device.outputs.empty();
   if (device.digital_io_interface.name.empty() && named) {
     return refuse("I/O names are given, but no digital I/O interface is chosen");

@@ -72,13 +72,13 @@ void MachineAside::carry_out_apart(const Request& request, SessionPort& session,
       [answer, done = std::move(done)] { done(std::move(*answer)); });
 }
 
-void MachineAside::prepare(const Request& request, SessionPort& session,
+void MachineAside::prepare(const Request& request, SessionPort& session, Method::Job job,
                            std::function<void(std::optional<Answer>)> done) {
   auto failed = std::make_shared<std::optional<Answer>>();
   run_apart(
       Dispatcher::changes_status(request, session),
-      [this, &request, &session, failed](MachineStatus& status) {
-        *failed = dispatcher_.prepare(request, session, status);
+      [this, &request, job = std::move(job), failed](MachineStatus& status) {
+        *failed = dispatcher_.prepare(request, job, status);
       },
       [failed, done = std::move(done)] { done(std::move(*failed)); });
 }

@@ -26,7 +26,8 @@ class MachineAside {
   /// Carries out one that needs nothing of the machine, apart.
   void carry_out_apart(const Request& request, SessionPort& session, std::function<void(Answer)> done);
   /// Does, apart, what a request needs before it has the machine; `done` is told where that failed.
-  void prepare(const Request& request, SessionPort& session, std::function<void(std::optional<Answer>)> done);
+  void prepare(const Request& request, SessionPort& session, Method::Job job,
+               std::function<void(std::optional<Answer>)> done);
 
   /// Whether a request has the machine.
   [[nodiscard]] bool is_away() const noexcept { return away_; }

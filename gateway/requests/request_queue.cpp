@@ -100,13 +100,14 @@ void RequestQueue::carry_out_aside(const Line& line, const Request& request) {
   }
   const bool prepared = line->stage() == RequestLine::Stage::Prepared;
   line->set_stage(RequestLine::Stage::Away);
-  if (request.method->preparation && !prepared) {
+  if (Method::Job job = prepared ? nullptr : dispatcher_.preparation_of(request, client_.session())) {
     // Its turn comes again after it: a stop may have overtaken it by then, or the lease be gone.
-    aside_.prepare(request, client_.session(), [this, held = client_.hold(), line](std::optional<Answer> failed) {
+    const auto on_done = [this, held = client_.hold(), line](std::optional<Answer> failed) {
       line->set_stage(failed ? RequestLine::Stage::Here : RequestLine::Stage::Prepared);
       if (failed) (void)settle(*line, std::move(*failed));
       client_.pump();
-    });
+    };
+    aside_.prepare(request, client_.session(), std::move(job), on_done);
     return;
   }
   aside_.carry_out(request, client_.session(), client_.id(), [this, held = client_.hold(), line](Answer answer) {

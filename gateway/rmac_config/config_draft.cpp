@@ -16,7 +16,7 @@ Expected<> ConfigDraft::apply() {
     return failure(MinorCode::Other,
                    "Apply: there is no mechanism to configure; load a device driver with Device.Load");
   }
-  return apply_(draft_.device, draft_.extent).map([this] { draft_.extent = Draft::Extent::Loops; });
+  return apply_(draft_.device, draft_.extent).map([this] { draft_.applied(); });
 }
 
 }  // namespace rmac::gateway

@@ -18,6 +18,13 @@ sdk::Joint without_what_is_set(const sdk::Joint& joint) {
   return left;
 }
 
+/// Those beyond `parts` stay known as they were.
+template <typename Part>
+void remember(const std::vector<Part>& parts, std::vector<Part>& known) {
+  known.resize(std::max(known.size(), parts.size()));
+  std::copy(parts.begin(), parts.end(), known.begin());
+}
+
 }  // namespace
 
 void Draft::begin(const sdk::DeviceObject& from) {
@@ -26,6 +33,7 @@ void Draft::begin(const sdk::DeviceObject& from) {
   described.clear();
   for (const sdk::Joint& joint : from.joints) described.push_back(without_what_is_set(joint));
   described_spindles = from.spindles;
+  described_actuators = from.actuators;
   device.joints.clear();
   for (sdk::Joint& joint : device.held_joints) joint = without_what_is_set(joint);
   device.kinematics = {};
@@ -40,6 +48,13 @@ void Draft::restart(const sdk::DeviceObject* in_force) {
   device = in_force != nullptr ? *in_force : sdk::DeviceObject{};
   begun = in_force != nullptr;
   extent = Extent::Loops;
+}
+
+void Draft::applied() {
+  extent = Extent::Loops;
+  remember(device.joints, described);
+  remember(device.spindles, described_spindles);
+  remember(device.actuators, described_actuators);
 }
 
 sdk::DeviceObject& Draft::edit() noexcept {

@@ -20,8 +20,10 @@ struct Draft {
   };
 
   sdk::DeviceObject device;
-  std::vector<sdk::Joint> described;  ///< what device.json says of each joint that no setter does
+  /// What is known of parts that are not there, or not yet: of joints, until they are applied, what no setter says.
+  std::vector<sdk::Joint> described;
   std::vector<sdk::Spindle> described_spindles;
+  std::vector<sdk::Actuator> described_actuators;
   bool begun = false;
   Extent extent = Extent::Loops;
 
@@ -29,6 +31,8 @@ struct Draft {
   void begin(const sdk::DeviceObject& from);
   /// Goes on from what is in force, or from nothing.
   void restart(const sdk::DeviceObject* in_force);
+  /// It is in force now: what comes and goes from here on is what it was.
+  void applied();
   /// The device, for a change that is more than one of loops.
   [[nodiscard]] sdk::DeviceObject& edit() noexcept;
   /// Joints count first, held joints follow.

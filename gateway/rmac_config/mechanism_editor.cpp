@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "gateway/json/range.hpp"
 #include "rmac/motion/machine_size.hpp"
 
 namespace rmac::gateway {
 namespace {
 
-Expected<> check_count(const char* function, int count, int least, std::size_t most) {
-  if (count >= least && static_cast<std::size_t>(count) <= most) return {};
+/// `count` is any integer.
+Expected<> check_count(const char* function, auto count, int least, std::size_t most) {
+  if (std::cmp_greater_equal(count, least) && std::cmp_less_equal(count, most)) return {};
   return failure(MinorCode::InvalidParameterValue,
                  fmt::format("{}: {} must be {} to {}", function, count, least, most));
 }
@@ -46,7 +49,19 @@ Expected<> MechanismEditor::set_number_of_spindles(int count) {
 
 Expected<> MechanismEditor::set_number_of_actuators(int count) {
   return check_count("SetMechanismNumActuators", count, 1, kMaxJoints).map([&] {
-    draft_.edit().actuators.resize(static_cast<std::size_t>(count));
+    resize(draft_.edit().actuators, static_cast<std::size_t>(count), draft_.described_actuators);
+  });
+}
+
+Expected<> MechanismEditor::set_actuators(std::span<const sdk::Actuator> actuators) {
+  return check_count("SetMechanismNumActuators", actuators.size(), 1, kMaxJoints).map([&] {
+    draft_.edit().actuators.assign(actuators.begin(), actuators.end());
+  });
+}
+
+Expected<> MechanismEditor::set_spindles(std::span<const sdk::Spindle> spindles) {
+  return check_count("SetMechanismNumSpindle", spindles.size(), 0, kMaxSpindles).map([&] {
+    draft_.edit().spindles.assign(spindles.begin(), spindles.end());
   });
 }
 

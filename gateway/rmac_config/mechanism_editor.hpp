@@ -16,6 +16,8 @@ class MechanismEditor final : public sdk::MechanismConfig {
   Expected<> set_number_of_spindles(int count) override;
   Expected<> set_number_of_actuators(int count) override;
   Expected<> set_maximum_feedrate(double mm_min) override;
+  Expected<> set_actuators(std::span<const sdk::Actuator> actuators) override;
+  Expected<> set_spindles(std::span<const sdk::Spindle> spindles) override;
 
  private:
   Draft& draft_;

@@ -10,8 +10,10 @@
 #include <set>
 
 #include "gateway/device_database/device_database.hpp"
+#include "gateway/device_database/device_json.hpp"
 #include "gateway/modules/module_loader.hpp"
 #include "gateway/processes/child_process.hpp"
+#include "gateway/processes/temporary_folder.hpp"
 #include "rmac/sdk/servo_law_names.hpp"
 
 namespace rmac::gateway {
@@ -81,12 +83,16 @@ void keep(const fs::path& folder, const verifier::Report& report, const std::str
 
 }  // namespace
 
-std::string Verification::fingerprint(const fs::path& device_json, const sdk::DeviceObject& device) const {
-  std::vector<fs::path> folders{device_json.parent_path()};
-  folders.insert(folders.end(), options_.module_folders.begin(), options_.module_folders.end());
-  const ModuleLoader loader(folders);
+Verification::Subject Verification::beside(const fs::path& device_json) const {
+  Subject subject{device_json, {device_json.parent_path()}};
+  subject.folders.insert(subject.folders.end(), options_.module_folders.begin(), options_.module_folders.end());
+  return subject;
+}
+
+std::string Verification::fingerprint(const Subject& subject, const sdk::DeviceObject& device) const {
+  const ModuleLoader loader(subject.folders);
   Hash hash;
-  if (!hash.add_file(options_.program) || !hash.add_file(device_json)) return "";
+  if (!hash.add_file(options_.program) || !hash.add_file(subject.device_json)) return "";
   for (const std::string& name : modules_of(device)) {
     const auto file = loader.find_file("", name, ".so", "module");
     hash.add(name);
@@ -102,12 +108,16 @@ std::string Verification::fingerprint(const fs::path& device_json, const sdk::De
 }
 
 Expected<verifier::Report> Verification::verify(const fs::path& device_json) const {
-  const auto device = read_device_database(device_json);
+  return verify(beside(device_json));
+}
+
+Expected<verifier::Report> Verification::verify(const Subject& subject) const {
+  const auto device = read_device_database(subject.device_json);
   if (!device) return tl::unexpected(device.error());
   // Before it runs: what changes meanwhile is not what passed.
-  const std::string before = fingerprint(device_json, *device);
-  std::vector<std::string> words{options_.program.string(), device_json.string(), "--json"};
-  for (const fs::path& folder : options_.module_folders) {
+  const std::string before = fingerprint(subject, *device);
+  std::vector<std::string> words{options_.program.string(), subject.device_json.string(), "--json"};
+  for (const fs::path& folder : subject.folders) {
     words.emplace_back("--modules");
     words.push_back(folder.string());
   }
@@ -127,15 +137,33 @@ Expected<verifier::Report> Verification::verify(const fs::path& device_json) con
 }
 
 Expected<> Verification::require(const fs::path& device_json) const {
-  const auto device = read_device_database(device_json);
+  return require(beside(device_json));
+}
+
+Expected<> Verification::require(const sdk::DeviceObject& device, const fs::path& folder) const {
+  const TemporaryFolder room("draft");
+  Subject subject = beside(room.path() / "device.json");
+  subject.folders.front() = folder;
+  std::ofstream(subject.device_json) << to_device_json(device).dump(2) << '\n';
+  return require(subject).map_error([&](const Error& error) {
+    // The file is nobody's to look into.
+    const std::string file = subject.device_json.string();
+    std::string message = error.message;
+    if (const auto at = message.find(file); at != std::string::npos) message.replace(at, file.size(), "the draft");
+    return Error{error.code, message};
+  });
+}
+
+Expected<> Verification::require(const Subject& subject) const {
+  const auto device = read_device_database(subject.device_json);
   if (!device) return tl::unexpected(device.error());
-  const std::string now = fingerprint(device_json, *device);
+  const std::string now = fingerprint(subject, *device);
   std::error_code ignored;
   if (!now.empty() && !options_.verdicts.empty() &&
       fs::exists(verdict_file(options_.verdicts, device->name, now), ignored)) {
     return {};
   }
-  const auto report = verify(device_json);
+  const auto report = verify(subject);
   if (!report) return tl::unexpected(report.error());
   if (report->passed()) return {};
   return failure(MinorCode::InvalidParameterValue, "its verification refuses it: " + report->refusal());

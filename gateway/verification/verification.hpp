@@ -32,13 +32,23 @@ class Verification {
   /// counter-example.
   [[nodiscard]] Expected<> require(const std::filesystem::path& device_json) const;
 
+  /// The same of a mechanism that no file describes; `folder` is where its modules are looked for first.
+  [[nodiscard]] Expected<> require(const sdk::DeviceObject& device, const std::filesystem::path& folder) const;
+
   /// Ends a verification that runs, and has none begin any more: the process is about to end. Any thread.
   void cancel() noexcept { cancelled_ = true; }
 
  private:
+  /// A mechanism's device database, and where its modules are looked for, in order.
+  struct Subject {
+    std::filesystem::path device_json;
+    std::vector<std::filesystem::path> folders;
+  };
+  [[nodiscard]] Subject beside(const std::filesystem::path& device_json) const;
+  [[nodiscard]] Expected<verifier::Report> verify(const Subject& subject) const;
+  [[nodiscard]] Expected<> require(const Subject& subject) const;
   /// Changes with the device database, with every module it names, and with the verifier; empty when a file is missing.
-  [[nodiscard]] std::string fingerprint(const std::filesystem::path& device_json,
-                                        const sdk::DeviceObject& device) const;
+  [[nodiscard]] std::string fingerprint(const Subject& subject, const sdk::DeviceObject& device) const;
 
   Options options_;
   std::atomic<bool> cancelled_{false};

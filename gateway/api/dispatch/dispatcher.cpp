@@ -182,11 +182,24 @@ Effect Request::effect() const {
   return harmless ? Effect::None : method->effect;
 }
 
+namespace {
+
+/// Nothing below is meant to throw; a client gets an answer all the same, and the daemon lives on.
+Answer failed(const Method& method, const std::exception& error) {
+  return tl::unexpected<RpcError>(RpcError{rpc_code::kInternalError,
+                                           fmt::format("{} failed: {}", method.name, printable(error.what())),
+                                           MinorCode::Unknown});
+}
+
+}  // namespace
+
 Answer Dispatcher::execute(const Request& request, SessionPort& session) {
   if (auto refusal = refusal_of(request, session)) return std::move(*refusal);
   MachineStatus nobodys = status_;
   MachineStatus& status = changes_status(request, session) ? status_ : nobodys;
-  if (auto failed = prepare(request, session, status)) return std::move(*failed);
+  if (const Method::Job job = preparation_of(request, session)) {
+    if (auto failed = prepare(request, job, status)) return std::move(*failed);
+  }
   return carry_out(request, session, status);
 }
 
@@ -220,27 +233,34 @@ std::optional<Answer> Dispatcher::refusal_of(const Request& request, const Sessi
   return std::nullopt;
 }
 
-std::optional<Answer> Dispatcher::prepare(const Request& request, SessionPort& session, MachineStatus& status) {
-  if (!request.method->preparation) return std::nullopt;
-  Answer prepared = run(request.method->preparation, request, session, status);
-  return prepared ? std::nullopt : std::optional<Answer>(std::move(prepared));
+Method::Job Dispatcher::preparation_of(const Request& request, SessionPort& session) {
+  if (!request.method->preparation) return {};
+  Call call{machine_, status_, session};
+  try {
+    return request.method->preparation(call, *arrange(*request.method, request.params));
+  } catch (const std::exception&) {
+    return {};  // what is in its way the handler meets too, and tells
+  }
+}
+
+std::optional<Answer> Dispatcher::prepare(const Request& request, const Method::Job& job, MachineStatus& status) {
+  try {
+    const Expected<> done = job();
+    if (done) return std::nullopt;
+    status.fail(done.error().code, done.error().message, machine_.sample().t_s);
+    return tl::unexpected<RpcError>(to_rpc_error(done.error()));
+  } catch (const std::exception& error) {
+    return failed(*request.method, error);
+  }
 }
 
 Answer Dispatcher::carry_out(const Request& request, SessionPort& session, MachineStatus& status) {
-  return run(request.method->handler, request, session, status);
-}
-
-Answer Dispatcher::run(const Method::Handler& handler, const Request& request, SessionPort& session,
-                       MachineStatus& status) {
   const Method& method = *request.method;
   Call call{machine_, status, session};
   try {
-    return handler(call, *arrange(method, request.params));
+    return method.handler(call, *arrange(method, request.params));
   } catch (const std::exception& error) {
-    // Nothing below is meant to throw; a client gets an answer all the same, and the daemon lives on.
-    return tl::unexpected<RpcError>(RpcError{rpc_code::kInternalError,
-                                             fmt::format("{} failed: {}", method.name, printable(error.what())),
-                                             MinorCode::Unknown});
+    return failed(method, error);
   }
 }
 

@@ -43,10 +43,12 @@ class Dispatcher {
   explicit Dispatcher(MachinePort& machine) : machine_(machine) {}
 
   [[nodiscard]] Answer execute(const Request& request, SessionPort& session);
-  /// The parts of `execute`: why the request is refused before anything is done, if it is; what it needs before it has
-  /// the machine, where it fails; then carrying it out.
+  /// The parts of `execute`: why the request is refused before anything is done, if it is; what is to be done before it
+  /// has the machine, and where that fails; then carrying it out.
   [[nodiscard]] static std::optional<Answer> refusal_of(const Request& request, const SessionPort& session);
-  [[nodiscard]] std::optional<Answer> prepare(const Request& request, SessionPort& session, MachineStatus& status);
+  /// Gateway thread.
+  [[nodiscard]] Method::Job preparation_of(const Request& request, SessionPort& session);
+  [[nodiscard]] std::optional<Answer> prepare(const Request& request, const Method::Job& job, MachineStatus& status);
   [[nodiscard]] Answer carry_out(const Request& request, SessionPort& session, MachineStatus& status);
   /// Whether an error of it is the machine's: of a stop, or of who may move the machine. What others get wrong stands
   /// in their answers alone.
@@ -55,9 +57,6 @@ class Dispatcher {
   [[nodiscard]] MachinePort& machine() noexcept { return machine_; }
 
  private:
-  [[nodiscard]] Answer run(const Method::Handler& handler, const Request& request, SessionPort& session,
-                           MachineStatus& status);
-
   MachinePort& machine_;
   MachineStatus status_;
 };

@@ -1,8 +1,10 @@
 // RMAC_Config.*: the draft of a mechanism (Appendix IV). Nothing acts before RMAC_Config.Apply.
 #include <algorithm>
+#include <utility>
 
 #include "gateway/api/method_builder.hpp"
 #include "gateway/api/methods/method_table.hpp"
+#include "gateway/device_database/device_parts.hpp"
 #include "rmac/motion/machine_size.hpp"
 
 namespace rmac::gateway {
@@ -18,10 +20,24 @@ using sdk::RmacConfig;
 /// The laws themselves know narrower ones, which Apply holds their parameters to.
 constexpr Range kLawParameters{-1e6, 1e6};
 
-/// A module of this name; naming the one that the draft has already keeps its parameters.
-ModuleChoice chosen(const ModuleChoice& present, const std::string& name) {
-  if (present.name == name) return present;
-  return ModuleChoice{name, {}, {}};
+/// A module's parameters, as they stand in device.json.
+using Parameters = std::optional<JsonValue>;
+
+auto parameters() {
+  return object("Parameters")
+      .optional()
+      .noted(
+          "its parameters, as in device.json; left out, a module that was chosen already keeps those it has, and "
+          "another has none");
+}
+
+/// A module of this name.
+Expected<ModuleChoice> chosen(const ModuleChoice& present, const std::string& name, const Parameters& parameters) {
+  ModuleChoice choice = present.name == name && !parameters ? present : ModuleChoice{name, {}, {}};
+  if (!parameters) return choice;
+  return read_parameters(parameters->json, choice).map([&] { return choice; }).map_error([](const Error& error) {
+    return Error{error.code, "Parameters: " + error.message};
+  });
 }
 
 /// The servo law that a joint has in the draft; none where there is no such joint, which the setter says.
@@ -40,13 +56,29 @@ Method joint_number_setter(const char* name, const char* meaning, Parameter<doub
       });
 }
 
-template <typename Function>
-Method count_setter(const char* name, const char* meaning, Parameter<std::int64_t> parameter, Function function) {
+/// Sets how many there are of something that hangs on buses, and, where `Buses` tells it, where each hangs. `entries`
+/// names the list of device.json that `Buses` is like.
+template <typename SetCount, typename SetBuses>
+Method count_setter(const char* name, const char* meaning, Parameter<std::int64_t> parameter, const char* entries,
+                    SetCount set_count, SetBuses set_buses) {
+  const std::string count_name = parameter.spec.name;
   return method(name, meaning)
-      .takes(std::move(parameter))
+      .takes(std::move(parameter),
+             objects("Buses").optional().noted(
+                 fmt::format("for each its `Bus`, `Axis` and what else {} of device.json have (but for `Inputs`); what "
+                             "is left out stays as it is",
+                             entries)))
       .needs(Permission::Authority)
-      .does([function](Call& call, std::int64_t count) {
-        return (call.machine.config().mechanism().*function)(static_cast<int>(count));
+      .does([=](Call& call, std::int64_t count, const std::optional<JsonValue>& buses) -> Expected<> {
+        RmacConfig& config = call.machine.config();
+        if (!buses) return set_count(config.mechanism(), static_cast<int>(count));
+        if (std::cmp_not_equal(buses->json.size(), count)) {
+          return failure(MinorCode::InvalidParameterValue,
+                         fmt::format("Buses: there are {} for a {} of {}", buses->json.size(), count_name, count));
+        }
+        return set_buses(config, buses->json).map_error([](const Error& error) {
+          return Error{error.code, "Buses: " + error.message};
+        });
       });
 }
 
@@ -55,15 +87,24 @@ template <typename Part, typename Function>
 Method module_setter(const char* name, const char* meaning, const char* parameter,
                      ModuleChoice sdk::DeviceObject::*present, Part part, Function function) {
   return method(name, meaning)
-      .takes(text(parameter).noted("name of a module"))
+      .takes(text(parameter).noted("name of a module"), parameters())
       .needs(Permission::Authority)
-      .does([part, function, present](Call& call, const std::string& module) {
+      .does([part, function, present](Call& call, const std::string& module, const Parameters& parameters) {
         RmacConfig& config = call.machine.config();
-        return ((config.*part)().*function)(chosen(config.draft().*present, module));
+        return chosen(config.draft().*present, module, parameters).and_then([&](const ModuleChoice& choice) {
+          return ((config.*part)().*function)(choice);
+        });
       });
 }
 
 void add_joint_setters(const auto& add) {
+  add(method("RMAC_Config.SetMechanismJointName", "Name of a joint; every joint has one of its own.")
+          .takes(joint_number(), text("Name"))
+          .needs(Permission::Authority)
+          .extension()
+          .does([](Call& call, std::int64_t joint, const std::string& name) {
+            return call.machine.config().joints().set_name(static_cast<int>(joint), name);
+          }));
   add(method("RMAC_Config.SetMechanismJointType", "Whether a joint turns, slides or screws.")
           .takes(joint_number(), choice("JointType", kJointTypeValues))
           .needs(Permission::Authority)
@@ -110,13 +151,27 @@ void add_servo_setters(const auto& add) {
             return call.machine.config().loops().set_gains(static_cast<int>(joint), gains);
           }));
   add(method("RMAC_Config.SetMechanismJointServoControlLaw", "Servo law of a joint.")
-          .takes(joint_number(), text("ControlLaw")
-                                     .noted("DMAC_PID_CONTROL or another constant of Appendix IV, or "
-                                            "the name of a module"))
+          .takes(joint_number(),
+                 text("ControlLaw")
+                     .noted("DMAC_PID_CONTROL or another constant of Appendix IV, or "
+                            "the name of a module"),
+                 parameters())
           .needs(Permission::Authority)
-          .does([](Call& call, std::int64_t joint, const std::string& law) {
+          .does([](Call& call, std::int64_t joint, const std::string& law, const Parameters& parameters) {
             RmacConfig& config = call.machine.config();
-            return config.loops().set_servo_law(static_cast<int>(joint), chosen(law_of(config.draft(), joint), law));
+            return chosen(law_of(config.draft(), joint), law, parameters).and_then([&](const ModuleChoice& choice) {
+              return config.loops().set_servo_law(static_cast<int>(joint), choice);
+            });
+          }));
+  add(method("RMAC_Config.SetMechanismJointWatch",
+             "How far a joint may fall behind, and how hard it may be driven, before the machine stops.")
+          .takes(joint_number(),
+                 number("MaxFollowingError", "mm or deg").within(device_range("joint/MaxFollowingError")),
+                 number("MaxEffort", "N or N·m").within(device_range("joint/MaxEffort")))
+          .needs(Permission::Authority)
+          .extension()
+          .does([](Call& call, std::int64_t joint, double max_following_error, double max_effort) {
+            return call.machine.config().loops().set_watch(static_cast<int>(joint), max_following_error, max_effort);
           }));
   add(method("RMAC_Config.SetMechanismJointServoControlParameter",
              "A parameter of a joint's servo law beside its gains: lead_s, rest_band, … Another law forgets it.")
@@ -165,15 +220,16 @@ void add_spindle_setters(const auto& add) {
              "Servo law of every spindle, whose drives must take a torque; none where they follow speeds themselves.")
           .takes(text("ControlLaw")
                      .noted("DMAC_PID_CONTROL or another constant of Appendix IV, the name of a module, or "
-                            "empty for none"))
+                            "empty for none"),
+                 parameters())
           .needs(Permission::Authority)
-          .does([](Call& call, const std::string& law) {
-            return for_each_spindle(call, [&law](RmacConfig& config, int spindle) {
+          .does([](Call& call, const std::string& law, const Parameters& parameters) {
+            return for_each_spindle(call, [&](RmacConfig& config, int spindle) {
               const auto& spindles = config.draft().spindles;
               const auto index = static_cast<std::size_t>(spindle);
-              return config.spindles().set_servo_law(spindle, index < spindles.size()
-                                                                  ? chosen(spindles[index].servo_law, law)
-                                                                  : ModuleChoice{law, {}, {}});
+              return chosen(index < spindles.size() ? spindles[index].servo_law : ModuleChoice{}, law, parameters)
+                  .and_then(
+                      [&](const ModuleChoice& choice) { return config.spindles().set_servo_law(spindle, choice); });
             });
           }));
   add(method("RMAC_Config.SetMechanismSpindleServoControlGains",
@@ -193,14 +249,16 @@ void add_interface_setters(const auto& add) {
                     "Interface to the drives. Apply brings them down and up again, because two cannot run one bus.",
                     "DigitalControlInterface", &DeviceObject::digital_control_interface, &RmacConfig::interfaces,
                     &InterfaceConfig::set_control));
-  add(method("RMAC_Config.InitializeMechanismDigitalControlInterface", "Brings the interface to the drives up.")
+  add(method("RMAC_Config.InitializeMechanismDigitalControlInterface",
+             "Checks that the interface to the drives can be made with its parameters; Apply brings it up.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
           .does([](Call& call) { return call.machine.config().interfaces().initialize_control(); }));
   add(module_setter("RMAC_Config.SetMechanismDigitalIOInterface", "Interface to inputs and outputs.",
                     "DigitalIOInterface", &DeviceObject::digital_io_interface, &RmacConfig::interfaces,
                     &InterfaceConfig::set_io));
-  add(method("RMAC_Config.InitializeMechanismDigitalIOInterface", "Brings the interface to inputs and outputs up.")
+  add(method("RMAC_Config.InitializeMechanismDigitalIOInterface",
+             "Checks that the interface to inputs and outputs can be made with its parameters; Apply brings it up.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
           .does([](Call& call) { return call.machine.config().interfaces().initialize_io(); }));
@@ -215,12 +273,32 @@ void add_config_methods(std::vector<Method>& table) {
                     &DeviceObject::kinematics, &RmacConfig::mechanism, &MechanismConfig::set_kinematics));
   add(module_setter("RMAC_Config.SetMechanismActuatorMap", "Module that maps joints to actuators.", "DMACMachineActMap",
                     &DeviceObject::actuator_map, &RmacConfig::mechanism, &MechanismConfig::set_actuator_map));
-  add(count_setter("RMAC_Config.SetMechanismNumJnts", "Number of joints that the mechanism moves.",
-                   integer("NumJnts").within(1, kMaxJoints), &MechanismConfig::set_number_of_joints));
-  add(count_setter("RMAC_Config.SetMechanismNumSpindle", "Number of spindles.",
-                   integer("NumSpindle").within(0, kMaxSpindles), &MechanismConfig::set_number_of_spindles));
-  add(count_setter("RMAC_Config.SetMechanismNumActuators", "Number of actuators behind joints and held joints.",
-                   integer("NumActuators").within(1, kMaxJoints), &MechanismConfig::set_number_of_actuators));
+  add(method("RMAC_Config.SetMechanismNumJnts",
+             "Number of joints that the mechanism moves. One that comes is as device.json has it, or waits for its "
+             "setters.")
+          .takes(integer("NumJnts").within(1, kMaxJoints))
+          .needs(Permission::Authority)
+          .does([](Call& call, std::int64_t count) {
+            return call.machine.config().mechanism().set_number_of_joints(static_cast<int>(count));
+          }));
+  add(count_setter(
+      "RMAC_Config.SetMechanismNumSpindle", "Number of spindles.", integer("NumSpindle").within(0, kMaxSpindles),
+      "Spindles", [](MechanismConfig& mechanism, int count) { return mechanism.set_number_of_spindles(count); },
+      [](RmacConfig& config, const nlohmann::json& list) {
+        return read_spindles(list, config.draft().spindles).and_then([&](const std::vector<sdk::Spindle>& spindles) {
+          return config.mechanism().set_spindles(spindles);
+        });
+      }));
+  add(count_setter(
+      "RMAC_Config.SetMechanismNumActuators", "Number of actuators behind joints and held joints.",
+      integer("NumActuators").within(1, kMaxJoints), "Actuators",
+      [](MechanismConfig& mechanism, int count) { return mechanism.set_number_of_actuators(count); },
+      [](RmacConfig& config, const nlohmann::json& list) {
+        return read_actuators(list, config.draft().actuators)
+            .and_then([&](const std::vector<sdk::Actuator>& actuators) {
+              return config.mechanism().set_actuators(actuators);
+            });
+      }));
   add(method("RMAC_Config.SetMechanismMaxFeedrate", "Largest feed of the mechanism.")
           .takes(number("MaxFeedrate", "mm/min").within(device_range("MaxFeedrate")))
           .needs(Permission::Authority)
@@ -237,6 +315,7 @@ void add_config_methods(std::vector<Method>& table) {
           .causes(Effect::Starts)
           .may_be_slow()
           .extension()
+          .prepared_by([](Call& call) { return call.machine.device().applying(); })
           .does([](Call& call) { return call.machine.config().apply(); }));
 }
 

@@ -9,10 +9,19 @@ namespace {
 
 using sdk::DeviceObject;
 
+/// The mechanism's database, as far as this connection has it open.
+Expected<const DeviceObject*> database_of(Call& call) {
+  auto database = call.machine.device().database();
+  if (!database || call.session.reads_device()) return database;
+  return failure(MinorCode::Other,
+                 "this connection has closed the device database (Device.CloseDeviceDatabase); open it again with "
+                 "Device.OpenDeviceDatabase");
+}
+
 template <typename Function>
 Method whole(const char* name, const char* meaning, WireType type, const char* unit, Function function) {
   return method(name, meaning).gives(type, unit).does([function](Call& call) {
-    return call.machine.device().database().map([&](const DeviceObject* device) { return function(*device); });
+    return database_of(call).map([&](const DeviceObject* device) { return function(*device); });
   });
 }
 
@@ -23,8 +32,7 @@ Method of_joint(const char* name, const char* meaning, WireType type, const char
       .takes(joint_number())
       .gives(type, unit, enumeration)
       .does([function](Call& call, std::int64_t joint) {
-        return call.machine.device()
-            .database()
+        return database_of(call)
             .and_then([&](const DeviceObject* device) { return joint_of(*device, joint); })
             .map([&](const sdk::Joint* found) { return function(*found); });
       });
@@ -47,8 +55,8 @@ void add_life_cycle(const auto& add) {
           .causes(Effect::Starts)
           .may_be_slow()
           .extension()
-          .prepared_by([](Call& call, const std::string& name, std::optional<bool> /*virtual_mode*/) {
-            return call.machine.device().ready_to_load(name);
+          .prepared_by([](Call& call, const std::string& name, const std::optional<bool>& /*virtual_mode*/) {
+            return call.machine.device().loading(name);
           })
           .does([](Call& call, const std::string& name, std::optional<bool> virtual_mode) {
             return call.machine.device().load(name, virtual_mode.value_or(false));
@@ -82,23 +90,23 @@ void add_life_cycle(const auto& add) {
               return nlohmann::json{{"modules", std::move(list)}};
             });
           }));
-  add(method("Device.OpenDeviceDatabase", "Checks that a device database is there: that a mechanism is loaded.")
+  add(method("Device.OpenDeviceDatabase",
+             "Has this connection read the loaded mechanism's database, as it does at first; an error where none is "
+             "loaded.")
           .gives(WireType::Boolean)
           .does([](Call& call) {
-            return call.machine.device().database().map([](const DeviceObject*) { return true; });
+            return call.machine.device().database().map([&](const DeviceObject*) { call.session.read_device(true); });
           }));
   add(method("Device.CloseDeviceDatabase",
-             "Ends reading. The database was read when the mechanism was loaded, so there is no file to close.")
+             "Ends this connection's reading: the getters below refuse until it is opened again.")
           .gives(WireType::Boolean)
           .does([](Call& call) {
-            return call.machine.device().database().map([](const DeviceObject*) { return true; });
+            return database_of(call).map([&](const DeviceObject*) { call.session.read_device(false); });
           }));
   add(method("Device.GetDatabaseRecordSetMechanismColumns",
              "Checks that the mechanism's values are there; the getters below read them.")
           .gives(WireType::Boolean)
-          .does([](Call& call) {
-            return call.machine.device().database().map([](const DeviceObject*) { return true; });
-          }));
+          .does([](Call& call) { return database_of(call).map([](const DeviceObject*) { return true; }); }));
   add(of_joint("Device.GetDatabaseRecordSetJointColumns", "Checks that this joint's values are there.",
                WireType::Boolean, "", [](const sdk::Joint&) { return true; }));
 }

@@ -46,14 +46,16 @@ void add_device_setters(std::vector<Method>& table) {
   const auto add = [&](Method entry) { table.push_back(std::move(entry)); };
   using J = sdk::Joint;
   add(method("Device.Machine_SetMechanismNumberOfJoints",
-             "Wanted number of joints. Acts with the next Machine_Configure…, which refuses what modules do not fit.")
+             "Wanted number of joints. Acts with the next Machine_ConfigureMotionPlanner, which refuses what "
+             "modules do not fit.")
           .takes(integer("NumJnts").within(1, static_cast<double>(kMaxJoints)))
           .needs(Permission::Authority)
           .does([](Call& call, std::int64_t count) {
             return call.machine.device().wanted().map(
                 [&](DeviceObject* device) { device->joints.resize(static_cast<std::size_t>(count)); });
           }));
-  add(method("Device.Machine_SetMechanismMaxFeedrate", "Wanted largest feed. Acts with the next Machine_Configure….")
+  add(method("Device.Machine_SetMechanismMaxFeedrate",
+             "Wanted largest feed. Acts with the next Machine_ConfigureMotionPlanner.")
           .takes(number("MaxFeedrate", "mm/min").within(device_range("MaxFeedrate")))
           .needs(Permission::Authority)
           .does([](Call& call, double feed) {
@@ -61,7 +63,7 @@ void add_device_setters(std::vector<Method>& table) {
                 [&](DeviceObject* device) { device->max_feedrate_mm_min = feed; });
           }));
   add(method("Device.Machine_SetMechanismSpindleMaxSpeed",
-             "Wanted largest speed of spindle 0. Acts with the next Machine_Configure….")
+             "Wanted largest speed of spindle 0. Acts with the next Machine_ConfigureMotionPlanner.")
           .takes(number("MaxSpindleSpeed", "rpm").within(device_range("spindle/MaxSpeed")).at_least(1))
           .needs(Permission::Authority)
           .does([](Call& call, double rpm) {
@@ -72,7 +74,7 @@ void add_device_setters(std::vector<Method>& table) {
   add(method(
           "Device.Machine_SetMechanismSpindleMaxTorque",
           "Wanted largest torque of spindle 0: its servo law gives no more, and measured it is an overload that stops "
-          "the machine. Acts with the next Machine_Configure….")
+          "the machine. Acts with the next Machine_ConfigureMotionPlanner.")
           .takes(number("MaxSpindleTorque", "N·m").within(device_range("spindle/MaxTorque")).above(0))
           .needs(Permission::Authority)
           .does([](Call& call, double torque_nm) {
@@ -81,43 +83,49 @@ void add_device_setters(std::vector<Method>& table) {
             });
           }));
   add(joint_setter("Device.Machine_SetMechanismJntTypes",
-                   "Wanted type of a joint. Acts with the next Machine_Configure….",
+                   "Wanted type of a joint. Acts with the next Machine_ConfigureMotionPlanner.",
                    choice("JntType", kJointTypeValues),
                    [](J& joint, std::int64_t type) { joint.limits.type = static_cast<JointType>(type); }));
   add(joint_setter("Device.Machine_SetMechanismJntMaxLimit",
-                   "Wanted upper end of a joint's travel. Acts with the next Machine_Configure….",
+                   "Wanted upper end of a joint's travel. Acts with the next Machine_ConfigureMotionPlanner.",
                    number("MaxJntLimit", "mm or deg").within(device_range("joint/Max")),
                    [](J& joint, double value) { joint.limits.max = value; }));
   add(joint_setter("Device.Machine_SetMechanismJntMinLimit",
-                   "Wanted lower end of a joint's travel. Acts with the next Machine_Configure….",
+                   "Wanted lower end of a joint's travel. Acts with the next Machine_ConfigureMotionPlanner.",
                    number("MinJntLimit", "mm or deg").within(device_range("joint/Min")),
                    [](J& joint, double value) { joint.limits.min = value; }));
   add(joint_setter("Device.Machine_SetMechanismJntMaxSpeed",
-                   "Wanted largest speed of a joint. Acts with the next Machine_Configure….",
+                   "Wanted largest speed of a joint. Acts with the next Machine_ConfigureMotionPlanner.",
                    number("MaxJntSpeed", "mm/s or deg/s").within(device_range("joint/MaxSpeed")),
                    [](J& joint, double value) { joint.limits.max_speed = value; }));
   add(joint_setter("Device.Machine_SetMechanismJntMaxAccel",
-                   "Wanted largest acceleration of a joint. Acts with the next Machine_Configure….",
+                   "Wanted largest acceleration of a joint. Acts with the next Machine_ConfigureMotionPlanner.",
                    number("MaxJntAccel", "mm/s² or deg/s²").within(device_range("joint/MaxAcceleration")),
                    [](J& joint, double value) { joint.limits.max_acceleration = value; }));
   add(joint_setter("Device.Machine_SetMechanismJntMaxJerk",
-                   "Wanted largest jerk of a joint. Acts with the next Machine_Configure….",
+                   "Wanted largest jerk of a joint. Acts with the next Machine_ConfigureMotionPlanner.",
                    number("MaxJntJerk", "mm/s³ or deg/s³").within(device_range("joint/MaxJerk")),
                    [](J& joint, double value) { joint.limits.max_jerk = value; }));
-  add(method("Device.Machine_ConfigureMotionPlanner",
-             "The driver configures the motion planner by the wanted values, at standstill; or nothing changes.")
+  add(method(
+          "Device.Machine_ConfigureMotionPlanner",
+          "The driver configures the motion planner by the wanted values: joints, limits, largest feed and speeds, at "
+          "standstill; or nothing changes.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
           .may_be_slow()
+          .prepared_by([](Call& call) { return call.machine.device().configuring(); })
           .does([](Call& call) { return call.machine.device().configure_motion_planner(); }));
   add(method("Device.Machine_ConfigureServoController",
-             "The driver configures the servo controller by the wanted values, at standstill; or nothing changes.")
+             "The driver puts the database's control methods, servo laws, gains and bounds of the following error back "
+             "in, at standstill, whatever RMAC_Config made of them; or nothing changes. What the setters ask for waits "
+             "for Machine_ConfigureMotionPlanner.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
           .may_be_slow()
           .does([](Call& call) { return call.machine.device().configure_servo_controller(); }));
   add(method("Device.Machine_ConfigureDigitalControlInterface",
-             "The driver configures the interfaces to drives and I/O, at standstill; or nothing changes.")
+             "The driver puts the database's interfaces to drives and I/O back in, at standstill, whatever RMAC_Config "
+             "made of them; or nothing changes.")
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
           .may_be_slow()

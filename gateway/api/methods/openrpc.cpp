@@ -45,6 +45,8 @@ json schema_of(WireType type) {
       return reference("NurbsND");
     case WireType::Object:
       return {{"type", "object"}};
+    case WireType::Objects:
+      return {{"type", "array"}, {"items", {{"type", "object"}}}};
   }
   return json::object();
 }

@@ -51,6 +51,19 @@ TEST(DeviceApi, LoadsByNameAndSaysWhatThereIs) {
   EXPECT_TRUE(api.call("Device.OpenDeviceDatabase").contains("error"));
 }
 
+TEST(DeviceApi, ReadsNothingOnceItsDatabaseIsClosed) {
+  Api api;
+  EXPECT_EQ(api.result("Device.CloseDeviceDatabase"), true);
+  for (const char* reader : {"Device.Machine_GetMechanismName", "Device.Machine_GetMechanismMaxFeedrate",
+                             "Device.GetDatabaseRecordSetMechanismColumns", "Device.CloseDeviceDatabase"}) {
+    EXPECT_THAT(api.refusal(reader, "{}", -32017), HasSubstr("Device.OpenDeviceDatabase")) << reader;
+  }
+  EXPECT_THAT(api.refusal("Device.Machine_GetMechanismJntMaxLimit", "[0]", -32017),
+              HasSubstr("Device.OpenDeviceDatabase"));
+  EXPECT_EQ(api.result("Device.OpenDeviceDatabase"), true);
+  EXPECT_EQ(api.result("Device.Machine_GetMechanismName"), "Fake");
+}
+
 TEST(DeviceApi, ReadsJointsAndHeldJointsByNumber) {
   Api api;
   EXPECT_EQ(api.result("Device.Machine_GetMechanismNumberOfJoints"), 2);

@@ -158,6 +158,8 @@ class MockMechanismConfig : public sdk::MechanismConfig {
   MOCK_METHOD(Expected<>, set_number_of_joints, (int), (override));
   MOCK_METHOD(Expected<>, set_number_of_spindles, (int), (override));
   MOCK_METHOD(Expected<>, set_number_of_actuators, (int), (override));
+  MOCK_METHOD(Expected<>, set_actuators, (std::span<const sdk::Actuator>), (override));
+  MOCK_METHOD(Expected<>, set_spindles, (std::span<const sdk::Spindle>), (override));
   MOCK_METHOD(Expected<>, set_maximum_feedrate, (double), (override));
 };
 
@@ -244,11 +246,15 @@ class FakeDevice : public DevicePort {
     if (during_verification) during_verification();
     return nlohmann::json{{"mechanism", name}, {"ok", true}};
   }
-  Expected<> ready_to_load(const std::string& /*name*/) override {
-    if (during_preparation) during_preparation();
-    if (!verification_refusal.empty()) return failure(MinorCode::InvalidParameterValue, verification_refusal);
-    return {};
+  Job loading(const std::string& /*name*/) override {
+    return [this]() -> Expected<> {
+      if (during_preparation) during_preparation();
+      if (!verification_refusal.empty()) return failure(MinorCode::InvalidParameterValue, verification_refusal);
+      return {};
+    };
   }
+  Job applying() override { return {}; }
+  Job configuring() override { return {}; }
   Expected<> load(const std::string& name, bool virtual_mode) override {
     if (during_load) during_load();
     if (name != "Fake") return failure(MinorCode::InvalidParameterValue, "no mechanism " + name + "; there is Fake");

@@ -130,7 +130,8 @@ TEST_F(VerifiedHost, PutsNothingInThatIsMoreThanWasVerified) {
     ASSERT_TRUE(more[i]()) << i;
     const auto done = config().apply();
     ASSERT_FALSE(done) << i;
-    EXPECT_THAT(done.error().message, HasSubstr("Device.Verify")) << i;
+    EXPECT_THAT(done.error().message, HasSubstr(i < 6 ? "Device.Verify" : "verified before they put it in force")) << i;
+    EXPECT_EQ(host_->verification_of_draft() == nullptr, i < 6) << i << ": no verifier sees where a slide ends";
     controller_->discard_draft();
   }
   EXPECT_EQ(controller_->mechanism()->joints[1].limits.max, verified.max);
@@ -141,10 +142,28 @@ TEST_F(VerifiedHost, TellsWhatWasVerifiedAndHowToHaveMore) {
   const JointLimits verified = controller_->mechanism()->joints[1].limits;
   ASSERT_TRUE(config().joints().set_maximum_limit(1, 250));
   EXPECT_EQ(config().apply().error().message,
-            fmt::format("joint {}: the maximum limit 250 is beyond {}, which was verified. DMACXYZ was verified as its "
-                        "device.json has it: change that file, have it verified (Device.Verify) and load it anew "
-                        "(Device.Load)",
+            fmt::format("joint {}: the maximum limit 250 is beyond {}, which was verified. What the joints of DMACXYZ "
+                        "can is for its device.json to say: change that file, have it verified (Device.Verify) and "
+                        "load it anew (Device.Load)",
                         verified.name, verified.max));
+}
+
+TEST_F(VerifiedHost, PutsInWhatWasVerifiedAsADraft) {
+  // A part of the machine: without its third axis.
+  ASSERT_TRUE(config().mechanism().set_number_of_joints(2));
+  ASSERT_TRUE(config().mechanism().set_number_of_actuators(2));
+  ASSERT_TRUE(config().mechanism().set_kinematics({"ChainKinematics", {}, {{"joints", "X Y"}}}));
+  ASSERT_TRUE(config().mechanism().set_actuator_map(
+      {"TransmissionMap", {{"t1", {5, 1}}, {"t2", {5, 1}}}, {{"transmissions", "screw screw"}}}));
+  const auto job = host_->verification_of_draft();
+  ASSERT_TRUE(job);
+  EXPECT_FALSE(config().apply()) << "not before";
+  const auto passed = job();
+  ASSERT_TRUE(passed) << passed.error().message;
+  const auto done = config().apply();
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_EQ(controller_->mechanism()->joints.size(), 2U);
+  EXPECT_FALSE(host_->verification_of_draft()) << "once is enough";
 }
 
 TEST_F(VerifiedHost, GoesBackToWhatWasVerifiedAfterLess) {

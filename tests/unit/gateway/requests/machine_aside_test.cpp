@@ -67,10 +67,11 @@ TEST(MachineAside, LeavesTheMachineToOthersDuringAPreparation) {
   AsideBench bench;
   const Request load = request_of("Device.Load", R"(["Fake"])");
   bool done = false;
-  bench.aside.prepare(load, bench.session, [&](const std::optional<Answer>& failed) {
-    EXPECT_FALSE(failed);
-    done = true;
-  });
+  bench.aside.prepare(load, bench.session, bench.dispatcher.preparation_of(load, bench.session),
+                      [&](const std::optional<Answer>& failed) {
+                        EXPECT_FALSE(failed);
+                        done = true;
+                      });
   EXPECT_FALSE(bench.aside.is_away()) << "others are served meanwhile";
   bench.run_until(done);
 }
@@ -80,10 +81,11 @@ TEST(MachineAside, TellsWhyAPreparationFailedAndKeepsTheMachinesError) {
   bench.machine.device_fake.verification_refusal = "its module crashes";
   const Request load = request_of("Device.Load", R"(["Fake"])");
   bool done = false;
-  bench.aside.prepare(load, bench.session, [&](const std::optional<Answer>& failed) {
-    EXPECT_TRUE(failed && failed->error().message == "its module crashes");
-    done = true;
-  });
+  bench.aside.prepare(load, bench.session, bench.dispatcher.preparation_of(load, bench.session),
+                      [&](const std::optional<Answer>& failed) {
+                        EXPECT_TRUE(failed && failed->error().message == "its module crashes");
+                        done = true;
+                      });
   bench.run_until(done);
   EXPECT_EQ(bench.dispatcher.status().minor, static_cast<int>(MinorCode::InvalidParameterValue));
 }

@@ -212,6 +212,23 @@ const std::vector<SetterEffect>& config_setter_effects() {
          bench.call("RMAC_Config.SetMechanismJointType", R"({"JntNum": 1, "JointType": "DMAC_LIN_JNT"})");
          bench.apply();
        }},
+      {"RMAC_Config.SetMechanismJointName",
+       [](SetterBench& bench) {
+         bench.call("RMAC_Config.SetMechanismJointName", R"({"JntNum": 0, "Name": "Long"})");
+         bench.apply();
+         EXPECT_THAT(bench.tip_refusal(60, 0, 0), HasSubstr("Long"));
+         bench.call("RMAC_Config.SetMechanismJointName", R"({"JntNum": 1, "Name": "Long"})");
+         EXPECT_THAT(bench.refusal("RMAC_Config.Apply"), HasSubstr("a name of its own"));
+       }},
+      {"RMAC_Config.SetMechanismJointWatch",
+       [](SetterBench& bench) {
+         EXPECT_NEAR(bench.joints_to({30, 0, 0}).back().position[0], 30, 0.05);
+         bench.call("RMAC_Config.SetMechanismJointWatch", R"({"JntNum": 0, "MaxFollowingError": 0.2, "MaxEffort": 5})");
+         bench.apply();
+         bench.call("RMAC_CAM.MoveToJointTarget", R"({"MoveID": 2, "JointTargetFrame": {"joints": [0, 0, 0]}})");
+         bench.run_until([&] { return bench.now().fault.kind == ServoFault::Kind::FollowingError; });
+         EXPECT_EQ(bench.now().fault.bound, 0.2) << "5 N do not even overcome friction";
+       }},
       {"RMAC_Config.SetMechanismJointLimitType",
        [](SetterBench& bench) {
          EXPECT_THAT(bench.tip_refusal(60, 0, 0), HasSubstr("beyond its limit of 50"));
