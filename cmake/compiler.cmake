@@ -1,20 +1,27 @@
 # One interface target that every target of ours links: warnings as errors, sanitizers, coverage.
 add_library(rmac_compiler INTERFACE)
-target_compile_options(rmac_compiler INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual
-  -Wcast-align -Wduplicated-cond -Wlogical-op -Wnull-dereference -Werror)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(rmac_compiler INTERFACE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual
+    -Wcast-align -Wduplicated-cond -Wlogical-op -Wnull-dereference -Werror)
+  if(NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
+    # g++ 12 reports false null dereferences and overlaps from inlined library code when it optimises: Asio's scheduler, for
+    # one, and std::string::replace (GCC bug 105651).
+    target_compile_options(rmac_compiler INTERFACE -Wno-null-dereference -Wno-restrict)
+  endif()
+endif()
 # A fused multiply-add would make figures depend on the processor; limits are checked against differences of recorded setpoints.
 target_compile_options(rmac_compiler INTERFACE -ffp-contract=off)
 if(NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
-  # g++ 12 reports false null dereferences and overlaps from inlined library code when it optimises: Asio's scheduler, for
-  # one, and std::string::replace (GCC bug 105651).
-  target_compile_options(rmac_compiler INTERFACE -Wno-null-dereference -Wno-restrict -fno-math-errno)
+  target_compile_options(rmac_compiler INTERFACE -fno-math-errno)
 endif()
 if(RMAC_SANITIZE)
-  target_compile_options(rmac_compiler INTERFACE -fsanitize=${RMAC_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
-    -Wno-null-dereference -Wno-maybe-uninitialized)
+  target_compile_options(rmac_compiler INTERFACE -fsanitize=${RMAC_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(rmac_compiler INTERFACE -Wno-null-dereference -Wno-maybe-uninitialized)
+  endif()
   target_link_options(rmac_compiler INTERFACE -fsanitize=${RMAC_SANITIZE})
-  if(RMAC_SANITIZE MATCHES "thread")
+  if(RMAC_SANITIZE MATCHES "thread" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # Asio's fences beside its mutexes are what the thread sanitizer does not see; its mutexes order the same accesses.
     target_compile_options(rmac_compiler INTERFACE -Wno-tsan)
   endif()

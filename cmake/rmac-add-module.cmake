@@ -1,7 +1,8 @@
 # What drivers are built with, inside this repository and outside of it (find_package(rmac) includes this file).
 #
 # rmac_add_module(NAME SOURCES … FOLDER type/configuration/Mechanism): a shared object that the configuration system loads by name.
-# Built with -fno-gnu-unique and hidden visibility, so that dlclose unmaps it and a rebuilt one really replaces it.
+# Built with -fno-gnu-unique and hidden visibility, so that dlclose unmaps it and a rebuilt one really replaces it (clang++ makes
+# no such symbols).
 #
 # rmac_add_mechanism(FOLDER): puts the device.json of this source folder beside the mechanism's modules.
 #
@@ -15,7 +16,7 @@ function(rmac_add_module name)
   add_library(${name} MODULE ${MODULE_SOURCES})
   target_link_libraries(${name} PRIVATE rmac::sdk)
   target_compile_features(${name} PRIVATE cxx_std_20)
-  target_compile_options(${name} PRIVATE -fno-gnu-unique)
+  target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
   set_target_properties(${name} PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/drivers/${MODULE_FOLDER})
   install(TARGETS ${name} LIBRARY DESTINATION ${rmac_DRIVERS_DIR}/${MODULE_FOLDER})

@@ -83,7 +83,8 @@ std::string check_bus_names(const DeviceObject& device) {
     if (const auto& sensor = sdk::joint_at(device, j).force_sensor) buses.insert(sensor->bus);
   }
   const auto check = [&](const auto& parameters) -> std::string {
-    for (const auto& [key, ignored] : parameters) {
+    for (const auto& entry : parameters) {
+      const std::string& key = entry.first;
       const bool known = std::ranges::any_of(buses, [&](const std::string& bus) { return key.starts_with(bus + "."); });
       if (known || key.find('.') == std::string::npos) continue;
       return fmt::format(

@@ -76,7 +76,7 @@ void Server::pump() {
   for (const auto& [id, connection] : connections_) open.push_back(connection);
   const auto next =
       std::ranges::find_if(open, [this](const auto& entry) { return entry->id() > aside_.last_served(); });
-  std::ranges::rotate(open, next);
+  std::rotate(open.begin(), next, open.end());
   for (const auto& connection : open) connection->pump();
 }
 

@@ -157,7 +157,7 @@ void PoseToJoints::apply_rates(const CurvePoint& curve, JointPoint& point) const
 KinematicsStatus PoseToJoints::solve(const CurvePoint& curve, std::size_t dimension, const ToolPose& wanted, int order,
                                      std::span<const double> seed, JointPoint& point) const noexcept {
   const std::size_t n = joint_count_;
-  auto& [q, x1, x2, x3] = point.d;
+  JointColumn &q = point.d[0], &x1 = point.d[1], &x2 = point.d[2], &x3 = point.d[3];
   const JointEquations equations(*kinematics_, frames_.tool, curve, dimension > kPoseDimension);
   const auto status = equations.position(wanted, seed, q);
   if (status != KinematicsStatus::Ok || order == 0) return status;
