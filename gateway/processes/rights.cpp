@@ -14,6 +14,8 @@
 #include <cstring>
 #include <string_view>
 
+#include "gateway/processes/sanitized.hpp"
+
 namespace rmac::gateway {
 namespace {
 
@@ -29,11 +31,7 @@ void limit_resources(double cpu_s, std::size_t memory_bytes) noexcept {
   limit(RLIMIT_FSIZE, kFileBytes);
   limit(RLIMIT_RTPRIO, 0);
   limit(RLIMIT_CPU, static_cast<rlim_t>(cpu_s));
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  limit(RLIMIT_AS, memory_bytes);
-#else
-  (void)memory_bytes;
-#endif
+  if (!kSanitized) limit(RLIMIT_AS, memory_bytes);
   constexpr int kNice = 5;
   (void)setpriority(PRIO_PROCESS, 0, kNice);
 }

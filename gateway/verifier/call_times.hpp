@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "gateway/processes/sanitized.hpp"
 #include "gateway/threads/cpu_time.hpp"
 
 namespace rmac::verifier {
@@ -18,11 +19,7 @@ namespace rmac::verifier {
 class CallTimes {
  public:
   static constexpr std::chrono::microseconds kMedian{20}, kWorst{200};
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  static constexpr bool kMeasured = false;  ///< a sanitizer's code takes many times as long
-#else
-  static constexpr bool kMeasured = true;
-#endif
+  static constexpr bool kMeasured = !kSanitized;
 
   /// Counts a call that took `on_the_wall`; `again` makes it once more. Empty, or what is wrong with it.
   template <typename Again>

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gateway/modules/module_loader.hpp"
+#include "gateway/processes/sanitized.hpp"
 #include "gateway/verification/report.hpp"
 #include "gateway/verifier/watch.hpp"
 #include "rmac/sdk/device_object.hpp"
@@ -12,11 +13,7 @@
 namespace rmac::verifier {
 
 /// Joint vectors that a check takes, unless told; fewer where a sanitizer makes each take many times as long.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr int kSamples = 20'000;
-#else
-inline constexpr int kSamples = 100'000;
-#endif
+inline constexpr int kSamples = kSanitized ? 20'000 : 100'000;
 
 /// What to check a mechanism's modules with.
 struct Task {

@@ -12,14 +12,12 @@
 #include <string_view>
 #include <thread>
 
+#include "gateway/processes/sanitized.hpp"
+
 namespace rmac::verifier {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::int64_t kRepetitions = 20'000;
-#else
-constexpr std::int64_t kRepetitions = 3'500'000;  ///< of each function
-#endif
+constexpr std::int64_t kRepetitions = kSanitized ? 20'000 : 3'500'000;  ///< of each function
 constexpr std::int64_t kAtOnce = 1'000;  ///< calls of one function between looks at the time
 constexpr double kBeside_s = 0.2;        ///< of CPU time of each of two threads
 

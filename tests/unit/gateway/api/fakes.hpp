@@ -303,6 +303,12 @@ class MockTools : public ToolPort {
 
 class FakeMachine : public MachinePort {
  public:
+  // Not here: every file that includes this would compile all mocks anew.
+  FakeMachine();
+  FakeMachine(const FakeMachine&) = delete;
+  FakeMachine& operator=(const FakeMachine&) = delete;
+  ~FakeMachine() override;
+
   ToolPort& tools() override { return tools_mock; }
   sdk::RmacCam& cam() override { return cam_mock; }
   OperatorPort& operating() override { return operating_mock; }
