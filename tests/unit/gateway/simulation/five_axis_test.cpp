@@ -305,8 +305,9 @@ TEST_P(PastThePole, SeededLinesKeepTipAndLimits) {
     tool_ = {{0, 0, -between(20, 80)}, {1, 0, 0, 0}};
     ASSERT_NO_FATAL_FAILURE(expect(cam().frames().set_tool_interface(tool_)));
     const auto somewhere = [&] {
-      return ToolPose{{between(-25, 25), between(-25, 25), between(-20, 20)},
-                      leaning(between(0, 12), between(-180, 180))};
+      const Vector tip{between(-25, 25), between(-25, 25), between(-20, 20)};
+      const double around = between(-180, 180), by = between(0, 12);  // one after the other: arguments have no order
+      return ToolPose{tip, leaning(by, around)};
     };
     ToolPose from = somewhere();
     ASSERT_NO_FATAL_FAILURE(go_to(from));
