@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the packages, checks the layout of the code, builds, runs two scenarios in the emulated machine and every test: as released, then under the address and
-# undefined-behaviour sanitizers.
+# undefined-behaviour sanitizers, and feeds the fuzz targets.
 #   --fast   as released only
 #   --lint   clang-tidy over all our sources too
 #   --tsan   the tests that have threads under the thread sanitizer too
@@ -51,6 +51,10 @@ for preset in "${presets[@]}"; do
   fi
   begin "$preset: tests"
   ctest --preset "$preset"
+  if [ "$preset" = asan ]; then
+    begin "fuzz: strangers' bytes, 10 s a target"
+    tests/fuzz/run --seconds 10
+  fi
 done
 if [ -n "${lint:-}" ]; then
   begin "lint: clang-tidy, which proves what locks guard too"

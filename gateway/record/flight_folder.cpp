@@ -17,6 +17,8 @@ constexpr const char* kExtension = ".flight";
 constexpr std::size_t kPartBytes = 256U << 10U;
 /// A head is far shorter; a file that is none is not read to its end.
 constexpr std::size_t kLongestHead = 64U << 10U;
+/// Objects and arrays within each other that a head has room for; who writes out a list of more needs more stack.
+constexpr int kDeepestHead = 16;
 
 const char* word(FlightCause cause) {
   return cause == FlightCause::Fault ? "fault" : "demand";
@@ -26,6 +28,18 @@ const char* word(FlightCause cause) {
 bool is_name(const std::string& name) {
   static const std::regex kPattern(R"(\d{8}T\d{6}\.\d{3}Z-(fault|demand)-\d+)");
   return name.size() < 100 && std::regex_match(name, kPattern);
+}
+
+/// Null where it is none.
+nlohmann::json head_of(const std::string& line) {
+  using nlohmann::json;
+  bool too_deep = false;
+  const auto look = [&](int depth, json::parse_event_t /*event*/, json& /*value*/) {
+    too_deep = too_deep || depth > kDeepestHead;
+    return !too_deep;
+  };
+  json head = json::parse(line, look, false);
+  return head.is_object() && !too_deep ? head : json();
 }
 
 }  // namespace
@@ -62,8 +76,8 @@ nlohmann::json FlightFolder::list() const {
     std::string line(std::min<std::uintmax_t>(kLongestHead, problem ? 0 : bytes), '\0');
     file.read(line.data(), static_cast<std::streamsize>(line.size()));
     line.resize(std::min(line.find('\n'), static_cast<std::size_t>(file.gcount())));
-    auto head = nlohmann::json::parse(line, nullptr, false);
-    if (!head.is_object()) continue;
+    auto head = head_of(line);
+    if (head.is_null()) continue;
     head["name"] = name;
     head["bytes"] = bytes;
     records.push_back(std::move(head));

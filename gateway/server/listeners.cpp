@@ -5,6 +5,8 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 
+#include <cerrno>
+#include <cstring>
 #include <utility>
 
 namespace rmac::gateway {
@@ -67,10 +69,14 @@ Expected<> Listeners::listen_on_unix(const std::filesystem::path& path) {
   problem = {};
   unix_.open(endpoint.protocol(), problem);
   if (!problem) unix_.bind(endpoint, problem);
-  if (!problem) unix_.listen(asio::socket_base::max_listen_connections, problem);
   if (problem) return cannot("cannot listen on {}: {}", path.string(), problem.message());
   file_ = path;
-  ::chmod(path.c_str(), S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP);
+  // Nobody can connect before it listens, and by then its permissions rule, whatever the umask.
+  if (::chmod(path.c_str(), S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP) != 0) {
+    return cannot("cannot give {} its permissions: {}", path.string(), std::strerror(errno));
+  }
+  unix_.listen(asio::socket_base::max_listen_connections, problem);
+  if (problem) return cannot("cannot listen on {}: {}", path.string(), problem.message());
   accept(unix_, "UNIX socket");
   return {};
 }

@@ -55,6 +55,18 @@ std::string to_string(const Endpoint& endpoint) {
   return std::get<RtuEndpoint>(endpoint).device;
 }
 
+namespace {
+
+/// Whether a TCP frame begins with the header of an answer to us: transaction 0, which a raw question has, and nothing
+/// answers an earlier one on the same connection; protocol 0; and the bytes that follow. libmodbus looks at none of it.
+bool is_header_of(std::span<const std::uint8_t> frame) {
+  constexpr std::size_t kBeforeCounted = 6;
+  return std::all_of(frame.begin(), frame.begin() + 4, [](auto byte) { return byte == 0; }) &&
+         static_cast<std::size_t>(frame[4] << 8 | frame[5]) == frame.size() - kBeforeCounted;
+}
+
+}  // namespace
+
 struct Client::Impl {
   /// What is known of a slave on a serial line.
   struct Slave {
@@ -116,10 +128,11 @@ struct Client::Impl {
     const std::size_t checksum = serial() ? 2 : 0;
     const auto size = static_cast<std::size_t>(got);
     if (size < header + checksum + 1) return wrong(request, "another slave answered");
-    // A raw question has transaction number 0, and nothing answers an earlier one on the same connection.
-    const bool ours = serial() || std::all_of(frame.begin(), frame.begin() + 4, [](auto byte) { return byte == 0; });
+    if (!serial() && !is_header_of(std::span(frame).first(size))) {
+      return wrong(request, "the answer's header is another question's or counts other bytes than came");
+    }
     const auto answer = std::span(frame).subspan(header - 1, size - checksum - header + 1);
-    const Decoded decoded = ours ? decode(request, question, answer, values) : Decoded{};
+    const Decoded decoded = decode(request, question, answer, values);
     switch (decoded.verdict) {
       case Verdict::Fits:
         return {};

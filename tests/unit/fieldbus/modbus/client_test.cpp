@@ -147,6 +147,21 @@ TEST_P(ModbusClient, EndsInTimeWhateverThePeerDoes) {
   }
 }
 
+/// The byte that is counted and does not come would be taken for the first of the next answer.
+TEST(ModbusTcpClient, RefusesAnAnswerWhoseHeaderCountsOtherBytesThanCame) {
+  ModbusPeer peer(Wire::Tcp);
+  auto client = std::move(*Client::create(peer.endpoint(), 10s));
+  ASSERT_TRUE(client->connect());
+  peer.behave(Manner::WrongLength);
+  std::array<std::uint16_t, 2> words{7, 7};
+  const auto answer = client->read(kSlave, Table::HoldingRegisters, 0, words);
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().kind, Kind::WrongAnswer);
+  EXPECT_THAT(answer.error().message, HasSubstr("counts other bytes"));
+  EXPECT_EQ(words, (std::array<std::uint16_t, 2>{7, 7}));
+  EXPECT_FALSE(client->connected());
+}
+
 TEST_P(ModbusClient, EndsInTimeWhileAnAnswerDrips) {
   constexpr auto kDeadline = 50ms;
   open(10s);

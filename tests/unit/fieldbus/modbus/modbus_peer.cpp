@@ -205,7 +205,7 @@ Bytes ModbusPeer::frame(const Bytes& header, const Bytes& pdu) const {
   whole.insert(whole.end(), pdu.begin(), pdu.end());
   if (wire_ == Wire::Tcp) {
     whole[4] = static_cast<std::uint8_t>(pdu.size() >> 8U);
-    whole[5] = static_cast<std::uint8_t>(pdu.size());
+    whole[5] = static_cast<std::uint8_t>(pdu.size() + (manner_ == Manner::WrongLength ? 1 : 0));
   } else {
     const std::uint16_t crc = modbus_crc(pdu);
     whole.push_back(static_cast<std::uint8_t>(crc));

@@ -23,12 +23,13 @@ class ModbusPeer {
  public:
   enum class Manner {
     Honest,
-    Silent,    ///< never answers
-    Dripping,  ///< one byte each `pause`
-    Late,      ///< each whole answer after `pause`
-    WrongId,   ///< as another slave
-    Garbage,   ///< bytes of a seeded generator
-    Resetting  ///< closes the line in place of an answer (TCP resets it)
+    Silent,       ///< never answers
+    Dripping,     ///< one byte each `pause`
+    Late,         ///< each whole answer after `pause`
+    WrongId,      ///< as another slave
+    WrongLength,  ///< a header that counts a byte more than come (TCP)
+    Garbage,      ///< bytes of a seeded generator
+    Resetting     ///< closes the line in place of an answer (TCP resets it)
   };
   enum class Wire { Tcp, Rtu };
 

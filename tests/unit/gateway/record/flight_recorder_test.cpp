@@ -328,6 +328,14 @@ TEST_F(FlightRecord, IsReadByItsOwnNameAlone) {
   EXPECT_TRUE((*beyond)["next_offset"].is_null());
 }
 
+/// Who writes a list of them out calls himself as often as they are deep.
+TEST_F(FlightRecord, WhoseHeadIsDeeperThanAnyIsLeftOutOfTheList) {
+  start();
+  const std::string deep = R"({"joints":)" + std::string(30'000, '[') + std::string(30'000, ']') + "}\n";
+  folder_.write("records/20261121T000000.000Z-demand-1.flight", deep);
+  EXPECT_EQ(folder().list(), json::array());
+}
+
 TEST_F(FlightRecord, ThatADeadDaemonLeftUnfinishedGoesAtTheNextStart) {
   folder_.write("records/20261121T104600.123Z-fault-5.flight.part", "x");
   folder_.write("records/somebody-elses.part", "x");

@@ -1,0 +1,24 @@
+// Flight records in the daemon's folder, as whoever can write there leaves them.
+#include "gateway/record/flight_record.hpp"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "memory_file.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("rmac-fuzz-records-" + std::to_string(::getpid()));
+  static const bool made = std::filesystem::create_directories(folder);
+  static_cast<void>(made);
+  static const std::string name = "20261121T000000.000Z-demand-1";
+  const rmac::gateway::FlightFolder records(folder);
+  std::ofstream(records.file_of(name), std::ios::binary) << rmac::fuzz::text_of(data, size);
+  static_cast<void>(records.list().dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  static_cast<void>(records.read(name, static_cast<std::int64_t>(size / 2)));
+  static_cast<void>(records.read(std::string(rmac::fuzz::text_of(data, size)), 0));
+  return 0;
+}

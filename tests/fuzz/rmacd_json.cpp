@@ -1,0 +1,10 @@
+// The daemon's configuration.
+#include "gateway/configuration/configuration.hpp"
+#include "memory_file.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const rmac::fuzz::MemoryFile file;
+  file.hold(data, size);
+  static_cast<void>(rmac::gateway::read_configuration(file.path()));
+  return 0;
+}
