@@ -1,4 +1,4 @@
-"""What the dissertation's getters tell: what device.json says, what was set, and what the machine does."""
+"""The dissertation's functions: what its getters tell, and those that no other test asks for on the wire."""
 
 import json
 import math
@@ -178,6 +178,70 @@ class Getters(unittest.TestCase):
         self.assertTrue(client.call("RMAC_CAM.Ok"))
 
 
+class Moves(unittest.TestCase):
+    """The moves and configuring calls that no other test asks for on the wire."""
+
+    def setUp(self):
+        self.client = self.enterContext(Appliance()).operator()
+        self.client.call("RMAC_CAM.SetFeedrate", Feedrate=1200)
+
+    def way(self, until):
+        """Where the tip is, sample by sample, from the cycle's start to its end."""
+        client, seen = self.client, []
+        client.call("subscribe", topics=["state"], rate_hz=100)
+        client.call("RMAC_CAM.CycleStart", Mode="AUTOMATIC")
+        client.wait_note("state", lambda state: seen.append(state["pose"][:3]) or math.dist(seen[-1], until) < 0.01)
+        self.assertGreater(len(seen), 20)
+        return seen
+
+    def test_arc_leads_through_its_point(self):
+        self.client.call("RMAC_CAM.MoveAlongArc3", MoveID=1, StartPoint=pose(0, 0, 0), ViaPoint=[10, 10, 0],
+                         EndPoint=pose(20, 0, 0))
+        for x, y, z in self.way((20, 0, 0)):
+            self.assertAlmostEqual(math.dist((x, y, z), (10, 0, 0)), 10, delta=0.03)
+            self.assertGreater(y, -0.03)
+
+    def test_nurbs_of_joints_is_followed_by_the_joints(self):
+        # A parabola in X and Y, and Z evenly.
+        curve = {"degree": 2, "knots": [0, 0, 0, 1, 1, 1], "points": [[0, 0, 0], [10, 10, 2], [20, 0, 4]],
+                 "space": "joint"}
+        self.client.call("RMAC_CAM.MoveAlongNurbsND", MoveID=1, NurbsND=curve)
+        for x, y, z in self.way((20, 0, 4)):
+            t = x / 20
+            self.assertAlmostEqual(y, 20 * t * (1 - t), delta=0.03)
+            self.assertAlmostEqual(z, 4 * t, delta=0.03)
+
+    def gains_in_force(self):
+        """Of joint 0, as a flight record tells them."""
+        client = self.client
+        client.call("subscribe", topics=["events"])
+        client.call("FlightRecorder.Record")
+        name = client.wait_note("events", lambda event: event["kind"] == "FlightRecord")["record"]
+        return next(record["joints"][0]["gains"]
+                    for record in client.call("FlightRecorder.List")["records"] if record["name"] == name)
+
+    def test_driver_configures_servo_loops_and_interface_anew(self):
+        client = self.client
+        shipped = self.gains_in_force()
+        client.call("RMAC_Config.SetMechanismJointServoControlGains", JntNum=0,
+                    ServoControlGains=[gain / 2 for gain in shipped])
+        client.call("RMAC_Config.Apply")
+        self.assertNotEqual(self.gains_in_force(), shipped)
+        self.assertTrue(client.call("Device.Machine_ConfigureServoController"))
+        self.assertEqual(self.gains_in_force(), shipped)
+        self.assertTrue(client.call("Device.Machine_ConfigureDigitalControlInterface"))
+        client.call("RMAC_CAM.MoveAlongLine", **line((0, 0, 0), (5, 0, 0)))
+        self.way((5, 0, 0))
+
+    def test_interfaces_are_made_before_they_are_put_in(self):
+        client = self.client
+        self.assertTrue(client.call("RMAC_Config.InitializeMechanismDigitalControlInterface"))
+        self.assertTrue(client.call("RMAC_Config.InitializeMechanismDigitalIOInterface"))
+        client.call("RMAC_Config.SetMechanismDigitalControlInterface", DigitalControlInterface="NoSuchInterface")
+        self.assertIn("NoSuchInterface",
+                      client.refusal("RMAC_Config.InitializeMechanismDigitalControlInterface").message)
+
+
 class MeasuringMachine(unittest.TestCase):
     """The functions of chapter 5's measuring client that no other test asks for on the wire."""
 
@@ -203,6 +267,10 @@ class MeasuringMachine(unittest.TestCase):
         self.client.call("RMAC_CAM.MoveAllAxis", MoveID=1, Position=[12, -7, 3], LinearSpeed=30)
         for joint, wanted in zip(wait_for_rest(self.client)["joints"], (12, -7, 3)):
             self.assertAlmostEqual(joint, wanted, delta=0.01)
+
+    def test_probe_spins_for_its_time(self):
+        refusal = self.client.refusal("RMAC_CAM.SpinProbe", RPM=500, Seconds=1)
+        self.assertIn("spindle", refusal.message)
 
     def test_a_jog_into_the_part_ends_at_a_hit_that_is_expected(self):
         client = self.client
