@@ -29,7 +29,7 @@ if(RMAC_SANITIZE)
     target_compile_options(rmac_compiler INTERFACE -Wno-tsan)
   endif()
 endif()
-# What strangers' bytes come to is instrumented for tests/fuzz; the planner is not, whose tests would take twice as long.
+# What strangers' bytes come to is instrumented for tests/fuzz. The planner is not: each comparison of numbers would be a call.
 function(rmac_is_fuzzed target)
   if(RMAC_FUZZ)
     target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)

@@ -75,7 +75,9 @@ void Drive::plan_once() {
   const ServoProgress known = progress();
   const CpuTime time;
   planner.step(known);
-  planning_s_ += time.since_s();
+  const double taken_s = time.since_s();
+  planning_s_ += taken_s;
+  longest_step_s_ = std::max(longest_step_s_, taken_s);
   pass_plans();
 }
 

@@ -27,6 +27,8 @@ class Drive {
   [[nodiscard]] const std::shared_ptr<const Plan>& plan() const noexcept { return active_; }
   /// CPU time that the planner took, s.
   [[nodiscard]] double planning_s() const noexcept { return planning_s_; }
+  /// CPU time of its longest step, s.
+  [[nodiscard]] double longest_step_s() const noexcept { return longest_step_s_; }
   [[nodiscard]] std::uint64_t plans() const noexcept { return plans_; }
 
   /// Called with each stretch of a plan once it was travelled: the plan's times from and to.
@@ -58,7 +60,7 @@ class Drive {
   std::deque<std::shared_ptr<const Plan>> passed_;  ///< copies: the planner frees its own
   std::shared_ptr<const Plan> active_;
   std::int64_t active_since_ = 0;
-  double planning_s_ = 0;
+  double planning_s_ = 0, longest_step_s_ = 0;
   std::uint64_t plans_ = 0;
 };
 

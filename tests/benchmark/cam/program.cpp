@@ -1,0 +1,145 @@
+#include "program.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../motion/drive.hpp"
+#include "../motion/limit_check.hpp"
+#include "../motion/shapes.hpp"
+
+namespace rmac::bench {
+namespace {
+
+double distance(const Vector& a, const Vector& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+double distance_to_line(const Vector& p, const Vector& a, const Vector& b) {
+  double along = 0, length = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    along += (p[c] - a[c]) * (b[c] - a[c]);
+    length += (b[c] - a[c]) * (b[c] - a[c]);
+  }
+  const double part = length > 0 ? std::clamp(along / length, 0.0, 1.0) : 0;
+  return distance(p, {a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1]), a[2] + part * (b[2] - a[2])});
+}
+
+/// How far a tool is from the polyline that it is sent along, and how far it passes each corner. It goes forward only.
+class PathJudge {
+ public:
+  explicit PathJudge(const std::vector<Vector>& corners) : corners_(corners) {}
+
+  void tip(const Vector& at) {
+    // As far ahead as the tool may have come in a cycle, and until a line is as near as the tolerance could have it.
+    double least = 1e300;
+    std::size_t best = line_;
+    double ahead_mm = 0;
+    for (std::size_t k = line_; k + 1 < corners_.size() && ahead_mm < kAhead_mm; ++k) {
+      const double here = distance_to_line(at, corners_[k], corners_[k + 1]);
+      if (here < least) {
+        least = here;
+        best = k;
+      }
+      ahead_mm += distance(corners_[k], corners_[k + 1]);
+    }
+    worst_ = std::max(worst_, least);
+    // A corner that lies behind is as far off as the chord of the tool's way that passed it.
+    for (std::size_t k = line_; k < best; ++k) {
+      worst_ = std::max(worst_, distance_to_line(corners_[k + 1], before_, at));
+    }
+    line_ = best;
+    before_ = at;
+  }
+  void begin(const Vector& at) { before_ = at; }
+  [[nodiscard]] double worst_mm() const { return std::max(worst_, distance(before_, corners_.back())); }
+
+ private:
+  static constexpr double kAhead_mm = 2;
+  const std::vector<Vector>& corners_;
+  std::size_t line_ = 0;
+  Vector before_{};
+  double worst_ = 0;
+};
+
+class Judge {
+ public:
+  Judge(const PlannerModel& model, const Vector& start)
+      : drive(model, {start[0], start[1], start[2]}),
+        check_(model.joints, model.max_feed_mm_s),
+        period_s_(model.period_s) {
+    drive.on_travelled = [this](const Plan& plan, double from, double to) { check_.travelled(plan, from, to); };
+    drive.on_setpoint = [this](const Setpoint& setpoint) {
+      check_.setpoint(setpoint);
+      if (on_tip && setpoint.moving) on_tip({setpoint.position[0], setpoint.position[1], setpoint.position[2]});
+      if (moving_ && !setpoint.moving) ++stops_;
+      moving_ = setpoint.moving;
+      cycles_ += moving_ ? 1 : 0;
+    };
+  }
+  [[nodiscard]] tl::expected<Machined, std::string> run() {
+    drive.planner.command(PathCommand::Run);
+    if (!drive.run(kMostCycles)) return tl::unexpected(std::string("did not come to its end within 600 s"));
+    drive.finish();
+    return Machined{.time_s = static_cast<double>(cycles_) * period_s_,
+                    .planning_s = drive.planning_s(),
+                    .longest_step_s = drive.longest_step_s(),
+                    .limits = check_.worst(),
+                    .deviation_mm = 0,
+                    .rests = std::max(stops_ - 1, 0)};
+  }
+
+  Drive drive;
+  std::function<void(const Vector&)> on_tip;
+
+ private:
+  static constexpr std::int64_t kMostCycles = 600'000;
+  LimitCheck check_;
+  double period_s_;
+  std::int64_t cycles_ = 0;
+  bool moving_ = false;
+  int stops_ = 0;
+};
+
+}  // namespace
+
+std::vector<Vector> rounded(std::vector<Vector> corners, double to_mm) {
+  for (Vector& corner : corners) {
+    for (double& value : corner) value = std::round(value / to_mm) * to_mm;
+  }
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+tl::expected<Machined, std::string> machine(const Program& program, const PlannerModel& model) {
+  const auto& corners = program.corners;
+  Judge judge(model, corners.front());
+  PathJudge path(corners);
+  path.begin(corners.front());
+  judge.on_tip = [&path](const Vector& at) { path.tip(at); };
+  Move move;
+  move.feed_mm_s = program.feed_mm_s;
+  move.tolerance_mm = program.tolerance_mm;
+  for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+    move.id = static_cast<std::int64_t>(i) + 1;
+    move.geometry = LineGeometry{{corners[i], kUp}, {corners[i + 1], kUp}};
+    if (auto queued = judge.drive.queue(move); !queued) return tl::unexpected(queued.error().message);
+  }
+  auto done = judge.run();
+  if (done) done->deviation_mm = path.worst_mm();
+  return done;
+}
+
+tl::expected<Machined, std::string> machine(const Nurbs& nurbs, double tolerance_mm, double feed_mm_s,
+                                            const PlannerModel& model) {
+  const auto& start = nurbs.points.front();
+  Judge judge(model, {start[0], start[1], start[2]});
+  Move move;
+  move.id = 1;
+  move.feed_mm_s = feed_mm_s;
+  move.tolerance_mm = tolerance_mm;
+  move.geometry = NurbsGeometry{NurbsSpace::Tip, nurbs};
+  if (auto queued = judge.drive.queue(move); !queued) return tl::unexpected(queued.error().message);
+  return judge.run();
+}
+
+}  // namespace rmac::bench
