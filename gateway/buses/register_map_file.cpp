@@ -116,15 +116,15 @@ Expected<Map> checked(const std::filesystem::path& file, Map map) {
 }  // namespace
 
 Expected<SpindleMap> read_spindle_map(const std::filesystem::path& file) {
-  const JsonSchema schema(modbus_spindle_schema_text());
-  const auto document = read_json_document(file, schema);
+  static const JsonSchema kSchema(modbus_spindle_schema_text());
+  const auto document = read_json_document(file, kSchema);
   if (!document) return tl::unexpected(document.error());
   return checked(file, spindle_map(*document));
 }
 
 Expected<IoMap> read_io_map(const std::filesystem::path& file) {
-  const JsonSchema schema(modbus_io_schema_text());
-  const auto document = read_json_document(file, schema);
+  static const JsonSchema kSchema(modbus_io_schema_text());
+  const auto document = read_json_document(file, kSchema);
   if (!document) return tl::unexpected(document.error());
   return checked(file, io_map(*document));
 }

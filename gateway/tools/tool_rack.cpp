@@ -92,8 +92,8 @@ Frame tip_on_interface(const Tool& tool) {
 Expected<ToolTable> read_tool_table(const fs::path& file) {
   std::error_code code;
   if (!fs::exists(file, code) && !code) return ToolTable{};
-  const JsonSchema schema(tools_schema_text());
-  const auto document = read_json_document(file, schema);
+  static const JsonSchema kSchema(tools_schema_text());
+  const auto document = read_json_document(file, kSchema);
   if (!document) return tl::unexpected(document.error());
   ToolTable table;
   const Json& mounted = (*document)["Mounted"];

@@ -6,6 +6,7 @@
 #include <array>
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <string_view>
 
 #include "gateway/api/dispatch/dispatcher.hpp"
@@ -102,11 +103,11 @@ Result<Program> read_program(const std::string& file) {
   std::istream& input = file == "-" ? std::cin : opened;
   Program program;
   program.file = file == "-" ? "standard input" : file;
-  std::vector<char> buffer(kLongestLine + 1);
+  const auto buffer = std::make_unique_for_overwrite<char[]>(kLongestLine + 1);  // most of it is never touched
   int line = 1;
-  for (; input.getline(buffer.data(), static_cast<std::streamsize>(buffer.size())); ++line) {
+  for (; input.getline(buffer.get(), static_cast<std::streamsize>(kLongestLine + 1)); ++line) {
     const auto taken = static_cast<std::size_t>(input.gcount());  // with the newline, where there is one
-    const std::string_view text(buffer.data(), input.eof() ? taken : taken - 1);
+    const std::string_view text(buffer.get(), input.eof() ? taken : taken - 1);
     if (text.find_first_not_of(" \t\r") == std::string_view::npos) {
       continue;
     }
