@@ -50,6 +50,7 @@ class Appliance:
         self.configuration = self.folder / "rmacd.json"
         self.configuration.write_text(json.dumps(settings))
         self.log = []
+        self._logged = threading.Condition()
         self.clients = []
         self.port = None
         self.ends_with = 0
@@ -94,10 +95,18 @@ class Appliance:
 
     def _read_log(self, lines):
         for line in self.process.stderr:
-            self.log.append(line)
+            with self._logged:
+                self.log.append(line)
+                self._logged.notify_all()
             lines.put(line)
         self.process.stderr.close()
         lines.put(None)
+
+    def wait_for_log(self, text):
+        """Until a line of the daemon's log holds `text`."""
+        with self._logged:
+            if not self._logged.wait_for(lambda: any(text in line for line in self.log), START_BOUND_S):
+                raise AssertionError(f"rmacd did not log \"{text}\":\n" + "".join(self.log))
 
     def client(self, name="test", **options):
         client = Client(self.port, name, **options)

@@ -95,6 +95,7 @@ class HangingModules(unittest.TestCase):
     def test_signal_ends_what_hangs(self):
         appliance, client = self.start(PLANNER)
         self.move(client, PLANNER)
+        appliance.wait_for_log("BadKinematics hangs")
         self.assertEqual(appliance.end(), 1)
 
     def test_simulation_ends_after_ten_seconds_of_computing(self):

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <span>
 #include <utility>
 
@@ -70,8 +71,9 @@ int number_of_caller() {
 
 void hang_if_told(const Frame& tool) {
   const double told = tool.p[2] - kHangingTool_mm;
-  if (!(told >= 0 && told <= 2)) return;
-  for (volatile bool more = number_of_caller() == static_cast<int>(told); more;) {
+  if (!(told >= 0 && told <= 2) || number_of_caller() != static_cast<int>(told)) return;
+  std::fputs("BadKinematics hangs\n", stderr);  // who tests what comes of it wants to know when
+  for (volatile bool more = true; more;) {
   }
 }
 
