@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "gateway/buses/bus_choice.hpp"
 #include "rmac/motion/ports/digital_io_interface.hpp"
+#include "rmac/sdk/buses_of.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -110,16 +113,7 @@ bool BusRegistry::runs_otherwise(const sdk::DeviceObject& device) const {
     return known != buses_.end() && known->second.bus.use_count() > 1 &&
            known->second.choice != interface_of_bus(name, device.digital_control_interface);
   };
-  for (const sdk::Actuator& actuator : device.actuators) {
-    if (other(actuator.bus)) return true;
-  }
-  for (const sdk::Spindle& spindle : device.spindles) {
-    if (other(spindle.bus)) return true;
-  }
-  for (std::size_t j = 0; j < device.joint_count_with_held(); ++j) {
-    const auto& sensor = sdk::joint_at(device, j).force_sensor;
-    if (sensor && other(sensor->bus)) return true;
-  }
+  if (std::ranges::any_of(sdk::buses_of(device), other)) return true;
   const auto io = ios_.find(device.digital_io_interface.name);
   return io != ios_.end() && io->second.interface.use_count() > 1 && io->second.choice != device.digital_io_interface;
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "rmac/motion/pose.hpp"
+#include "rmac/sdk/buses_of.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -76,12 +77,7 @@ std::string check_bus_axes(const DeviceObject& device) {
 
 /// A parameter `BUS.name` of a bus that is not there would be passed over.
 std::string check_bus_names(const DeviceObject& device) {
-  std::set<std::string> buses;
-  for (const sdk::Actuator& actuator : device.actuators) buses.insert(actuator.bus);
-  for (const sdk::Spindle& spindle : device.spindles) buses.insert(spindle.bus);
-  for (std::size_t j = 0; j < device.joint_count_with_held(); ++j) {
-    if (const auto& sensor = sdk::joint_at(device, j).force_sensor) buses.insert(sensor->bus);
-  }
+  const std::set<std::string> buses = sdk::buses_of(device);
   const auto check = [&](const auto& parameters) -> std::string {
     for (const auto& entry : parameters) {
       const std::string& key = entry.first;

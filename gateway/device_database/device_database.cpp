@@ -7,6 +7,7 @@
 
 #include "gateway/device_database/device_checks.hpp"
 #include "gateway/device_database/device_parts.hpp"
+#include "gateway/device_database/json_values.hpp"
 #include "gateway/device_database/part_names.hpp"
 #include "gateway/json/json_document.hpp"
 #include "gateway/json/schemas.hpp"
@@ -16,13 +17,6 @@ namespace {
 
 // The functions below read a document that the schema has passed: what it requires is there and has its type.
 using Json = nlohmann::json;
-
-std::string text(const Json& object, const char* key) {
-  return object.value(key, std::string());
-}
-double number(const Json& object, const char* key, double otherwise = 0) {
-  return object.value(key, otherwise);
-}
 
 std::vector<sdk::ToolChangeStep> tool_change(const Json& list) {
   using Step = sdk::ToolChangeStep;

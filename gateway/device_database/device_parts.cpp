@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "gateway/device_database/device_json.hpp"
+#include "gateway/device_database/json_values.hpp"
 #include "gateway/device_database/part_names.hpp"
 #include "gateway/json/json_schema.hpp"
 #include "gateway/json/schemas.hpp"
@@ -15,13 +16,6 @@ namespace rmac::gateway {
 namespace {
 
 using Json = nlohmann::json;
-
-std::string text(const Json& object, const char* key) {
-  return object.value(key, std::string());
-}
-double number(const Json& object, const char* key, double otherwise = 0) {
-  return object.value(key, otherwise);
-}
 
 std::string_view name(const Json& object, const char* key) {
   return object.at(key).get_ref<const std::string&>();

@@ -14,7 +14,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "gateway/processes/sanitized.hpp"
+#include "gateway/threads/sanitized.hpp"
 
 namespace rmac::gateway {
 namespace {

@@ -14,8 +14,9 @@ class TemporaryFolder {
   /// `purpose` is part of its name.
   explicit TemporaryFolder(const std::string& purpose) {
     std::error_code none;
-    std::string name = (std::filesystem::temp_directory_path(none) / ("rmac-" + purpose + "-XXXXXX")).string();
-    if (mkdtemp(name.data()) != nullptr) path_ = name;
+    const std::filesystem::path under = std::filesystem::temp_directory_path(none);
+    std::string name = (under / ("rmac-" + purpose + "-XXXXXX")).string();
+    if (!none && mkdtemp(name.data()) != nullptr) path_ = name;
   }
   ~TemporaryFolder() {
     std::error_code ignored;

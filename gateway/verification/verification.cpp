@@ -142,6 +142,11 @@ Expected<> Verification::require(const fs::path& device_json) const {
 
 Expected<> Verification::require(const sdk::DeviceObject& device, const fs::path& folder) const {
   const TemporaryFolder room("draft");
+  if (room.path().empty()) {
+    return failure(MinorCode::Other,
+                   "no folder can be made to verify the draft in; see that the system's folder for "
+                   "temporary files ($TMPDIR, or /tmp) is there and has room");
+  }
   Subject subject = beside(room.path() / "device.json");
   subject.folders.front() = folder;
   std::ofstream(subject.device_json) << to_device_json(device).dump(2) << '\n';

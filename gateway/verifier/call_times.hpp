@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "gateway/processes/sanitized.hpp"
 #include "gateway/threads/cpu_time.hpp"
+#include "gateway/threads/sanitized.hpp"
 
 namespace rmac::verifier {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gateway/modules/module_loader.hpp"
-#include "gateway/processes/sanitized.hpp"
+#include "gateway/threads/sanitized.hpp"
 #include "gateway/verification/report.hpp"
 #include "gateway/verifier/watch.hpp"
 #include "rmac/sdk/device_object.hpp"

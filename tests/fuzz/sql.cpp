@@ -1,12 +1,11 @@
 // A stranger's SELECT, on a table of one row: on one of more rows a join may take hours, which is why the daemon has it
 // run by a program that it kills.
-#include <unistd.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
 
 #include "gateway/device_driver_manager/device_driver_manager.hpp"
+#include "gateway/processes/temporary_folder.hpp"
 #include "gateway/searcher/guarded_search.hpp"
 #include "memory_file.hpp"
 #include "places.hpp"
@@ -16,7 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string database_of_one_machine() {
-  const fs::path folder = fs::temp_directory_path() / ("rmac-fuzz-sql-" + std::to_string(::getpid()));
+  static const rmac::gateway::TemporaryFolder room("fuzz");
+  const fs::path& folder = room.path();
   const fs::path of_machine = "mill/3-axis/DMACXYZ";
   fs::create_directories(folder / "tree" / of_machine);
   fs::copy_file(fs::path(RMAC_BINARY_DIR) / "drivers" / of_machine / "device.json",

@@ -32,6 +32,14 @@ std::size_t probe_length(Table table, std::size_t count, std::size_t step) {
   return count + step;
 }
 
+/// Whether a TCP frame begins with the header of an answer to us: transaction 0, which a raw question has, and nothing
+/// answers an earlier one on the same connection; protocol 0; and the bytes that follow. libmodbus looks at none of it.
+bool is_header_of(std::span<const std::uint8_t> frame) {
+  constexpr std::size_t kBeforeCounted = 6;
+  return std::all_of(frame.begin(), frame.begin() + 4, [](auto byte) { return byte == 0; }) &&
+         static_cast<std::size_t>(frame[4] << 8 | frame[5]) == frame.size() - kBeforeCounted;
+}
+
 }  // namespace
 
 const char* to_string(Table table) noexcept {
@@ -54,18 +62,6 @@ std::string to_string(const Endpoint& endpoint) {
   }
   return std::get<RtuEndpoint>(endpoint).device;
 }
-
-namespace {
-
-/// Whether a TCP frame begins with the header of an answer to us: transaction 0, which a raw question has, and nothing
-/// answers an earlier one on the same connection; protocol 0; and the bytes that follow. libmodbus looks at none of it.
-bool is_header_of(std::span<const std::uint8_t> frame) {
-  constexpr std::size_t kBeforeCounted = 6;
-  return std::all_of(frame.begin(), frame.begin() + 4, [](auto byte) { return byte == 0; }) &&
-         static_cast<std::size_t>(frame[4] << 8 | frame[5]) == frame.size() - kBeforeCounted;
-}
-
-}  // namespace
 
 struct Client::Impl {
   /// What is known of a slave on a serial line.

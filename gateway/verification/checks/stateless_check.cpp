@@ -1,9 +1,8 @@
 #include "gateway/verification/checks/stateless_check.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <latch>
@@ -12,7 +11,8 @@
 #include <string_view>
 #include <thread>
 
-#include "gateway/processes/sanitized.hpp"
+#include "gateway/threads/cpu_time.hpp"
+#include "gateway/threads/sanitized.hpp"
 
 namespace rmac::verifier {
 namespace {
@@ -24,9 +24,7 @@ constexpr double kBeside_s = 0.2;        ///< of CPU time of each of two threads
 using Answer = std::vector<double>;
 
 double cpu_time_s(clockid_t clock) {
-  timespec time{};
-  (void)::clock_gettime(clock, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  return std::chrono::duration<double>(gateway::cpu_time(clock)).count();
 }
 
 class StatelessCheck {

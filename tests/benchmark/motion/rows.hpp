@@ -1,13 +1,8 @@
 #pragma once
 
-#include "figures.hpp"
+#include "run_rows.hpp"
 
 namespace rmac::bench {
-
-struct Extent {
-  bool quick = false;  ///< fewer cases
-  [[nodiscard]] int cases(int full, int few) const { return quick ? few : full; }
-};
 
 void rose_rows(Figures& figures, const Extent& extent);
 void spline_rows(Figures& figures, const Extent& extent);

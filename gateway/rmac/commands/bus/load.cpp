@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "gateway/buses/bus_choice.hpp"
 #include "gateway/buses/device_descriptions.hpp"
@@ -11,23 +10,13 @@
 #include "gateway/rmac/commands/bus/registrations.hpp"
 #include "gateway/rmac/terminal/table.hpp"
 #include "rmac/fieldbus/canopen/bus_load.hpp"
+#include "rmac/sdk/buses_of.hpp"
 
 namespace rmac::cli {
 namespace {
 
 using fieldbus::canopen::BusLoad;
 using fieldbus::canopen::CanopenConfig;
-
-/// Buses that a machine's drives and force sensors are on.
-std::set<std::string> buses_of(const sdk::DeviceObject& device) {
-  std::set<std::string> names;
-  for (const sdk::Actuator& actuator : device.actuators) names.insert(actuator.bus);
-  for (const sdk::Spindle& spindle : device.spindles) names.insert(spindle.bus);
-  for (std::size_t j = 0; j < device.joint_count_with_held(); ++j) {
-    if (const auto& sensor = sdk::joint_at(device, j).force_sensor) names.insert(sensor->bus);
-  }
-  return names;
-}
 
 nlohmann::json to_json(const CanopenConfig& config, const BusLoad& load) {
   return {{"bus", config.interface},
@@ -76,7 +65,7 @@ struct Loads {
 Result<Loads> loads_of(const sdk::DeviceObject& device, const std::filesystem::path& file, const Options& options) {
   const gateway::ModuleLoader loader({file.parent_path(), options.device_tree / "modules"});
   Loads loads;
-  for (const std::string& bus : buses_of(device)) {
+  for (const std::string& bus : sdk::buses_of(device)) {
     const sdk::ModuleChoice choice = gateway::interface_of_bus(bus, device.digital_control_interface);
     if (choice.name != "CANopenInterface") continue;
     const auto config = fieldbus::canopen::read_canopen_config(bus, choice.numbers, choice.texts, options.period_s,

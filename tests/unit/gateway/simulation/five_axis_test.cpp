@@ -5,9 +5,9 @@
 #include <numbers>
 #include <random>
 
-#include "gateway/processes/sanitized.hpp"
 #include "gateway/simulation/simulation.hpp"
 #include "gateway/state/cycle_sample.hpp"
+#include "gateway/threads/sanitized.hpp"
 #include "places.hpp"
 #include "rmac/motion/frame.hpp"
 
