@@ -34,7 +34,7 @@ std::optional<bool> fits(const RestEnd& end, const PathView& path, const std::ve
 }  // namespace
 
 std::optional<RestEnd> rest_end(const PathView& path, const std::vector<JointLimits>& joints, double s_rest,
-                                int direction, double available, double longest, const FeedRule& feed) {
+                                int direction, double longest, const FeedRule& feed) {
   JointPoint point;
   if (path.derivatives(s_rest, direction, point) != KinematicsStatus::Ok) return std::nullopt;
   const PathSegment& segment = path.segment(path.find(s_rest, direction));
@@ -47,13 +47,12 @@ std::optional<RestEnd> rest_end(const PathView& path, const std::vector<JointLim
     acceleration = std::min(acceleration, joints[j].max_acceleration * kLawMargin / d);
   }
   const double speed = speed_bound(segment, point, joints, feed);
-  const double step = std::min(longest, available / 40);
   RestEnd end;
   end.s_rest = s_rest;
   end.direction = direction;
   end.jerk = 0.97 * jerk;
   end.time =
-      std::min({0.3 * acceleration / end.jerk, std::sqrt(0.2 * speed / end.jerk), std::cbrt(6 * step / end.jerk)});
+      std::min({0.3 * acceleration / end.jerk, std::sqrt(0.2 * speed / end.jerk), std::cbrt(6 * longest / end.jerk)});
   for (int attempt = 0; attempt < 40; ++attempt, end.time *= 0.7, end.jerk = 0.9 * jerk) {
     end.length = end.jerk * end.time * end.time * end.time / 6;
     end.speed = end.jerk * end.time * end.time / 2;

@@ -27,10 +27,9 @@ struct RestEnd {
   }
 };
 
-/// The stretch that leaves `s_rest` (direction 1) or comes to it (-1): on one segment, at most a fortieth of
-/// `available` long and at most `longest`. Nothing where the limits leave none.
+/// The stretch that leaves `s_rest` (direction 1) or comes to it (-1): on one segment, at most `longest`
+/// long. Nothing where the limits leave none.
 [[nodiscard]] std::optional<RestEnd> rest_end(const PathView& path, const std::vector<JointLimits>& joints,
-                                              double s_rest, int direction, double available, double longest,
-                                              const FeedRule& feed);
+                                              double s_rest, int direction, double longest, const FeedRule& feed);
 
 }  // namespace rmac

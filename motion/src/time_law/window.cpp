@@ -15,6 +15,9 @@ namespace rmac {
 namespace {
 
 constexpr int kTightenings = 6, kPatientTightenings = 12;
+/// A stretch at constant jerk next to rest is at most this part of its segment: what it has used up of the limits, a
+/// sharp blend behind a short line needs.
+constexpr double kRestOfSegment = 0.01;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A place of rest that misses the border of two segments by rounding is meant to be that. Beside it, what is left of a
@@ -177,7 +180,9 @@ std::optional<std::vector<LawPiece>> law_of_window(const PathView& path, const s
 
   const double coarsest = coarsest_step(path, joints, window, s_begin, s_end);
   const auto end_at = [&](double s_rest, int direction) {
-    return rest_end(path, joints, s_rest, direction, rest_part * length, rest_part * coarsest, window.feed);
+    const std::size_t segment = path.find(s_rest, direction);
+    const double longest = std::min({coarsest, length / 40, kRestOfSegment * path.segment(segment).length()});
+    return rest_end(path, joints, s_rest, direction, rest_part * longest, window.feed);
   };
   std::optional<RestEnd> first;
   if (from_rest) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "joins/path_joiner.hpp"
 #include "time_law/law_check.hpp"
 #include "unit/motion/planner/planner_bench.hpp"
 
@@ -77,6 +78,41 @@ TEST(TimeLaw, BeginsAndEndsAtBordersThatRoundingMisses) {
       EXPECT_NEAR(law->front().start.s, starts[1], 1e-9);
       EXPECT_NEAR(law->back().at(law->back().duration).s, starts[2], 1e-9);
       EXPECT_LT(law->back().t0 + law->back().duration, 3.3) << "90 mm at 30 mm/s";
+    }
+  }
+}
+
+// The step over of a raster: what a ramp from rest uses up on a line much shorter than itself, the corner behind needs.
+TEST(TimeLaw, LeavesAndReachesRestOnALineMuchShorterThanARamp) {
+  for (const double step_over : {0.05, 0.07, 0.1, 0.15, 0.2, 0.3}) {
+    test::PlannerBench bench(test::mill());
+    auto joints = test::mill(50000).joints;
+    for (JointLimits& joint : joints) joint.max_acceleration = 2000;
+    PathJoiner joiner(joints, 1e-3);
+    const std::array<Vector, 4> corners{{{0, 0, 0}, {40, 0, 0}, {40, step_over, 0}, {0, step_over, 0}}};
+    for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+      Move move;
+      move.id = static_cast<std::int64_t>(i);
+      move.feed_mm_s = 200;
+      move.tolerance_mm = 0.01;
+      move.geometry = LineGeometry{{corners[i], {0, 0, 1}}, {corners[i + 1], {0, 0, 1}}};
+      const auto built = bench.builder.build(move);
+      ASSERT_TRUE(built);
+      for (const auto& segment : *built) joiner.add(segment);
+    }
+    PathSegments segments;
+    while (joiner.ready()) joiner.advance(segments);
+    while (!joiner.empty()) joiner.release(segments);
+    std::vector<double> starts{0};
+    for (const auto& segment : segments) starts.push_back(starts.back() + segment->length());
+    const double end = starts.back();
+    starts.pop_back();
+    const PathView path(segments, starts);
+    for (const double part : {0.3, 0.5, 0.7}) {
+      const double rest = 40 + part * step_over - 0.02;
+      SCOPED_TRACE(std::to_string(step_over) + " mm, rest at " + std::to_string(rest));
+      EXPECT_TRUE(plan_window(path, joints, {{rest, 0, 0}, end, {}}));
+      EXPECT_TRUE(plan_window(path, joints, {{0, 0, 0}, rest, {}}));
     }
   }
 }
