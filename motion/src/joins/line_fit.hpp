@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "joins/tube_spline.hpp"
+#include "joins/line_spline.hpp"
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/path_segment.hpp"
 
@@ -24,50 +24,42 @@ class LineFit {
   void clear();
   [[nodiscard]] bool empty() const noexcept { return waiting_.empty(); }
   /// `advance` would give something without waiting for more lines.
-  [[nodiscard]] bool ready() const noexcept {
-    return !waiting_.empty() && (complete() || waiting_.size() > kDense.lines);
-  }
+  [[nodiscard]] bool ready() const noexcept { return !waiting_.empty() && (complete() || checked_ > window_); }
   /// Appends the next segments; `finish`: the run ends with what is there.
   void advance(bool finish, SegmentQueue& out);
 
  private:
-  /// Lines in one fit, and how many of these at its end are fitted again with what follows.
-  struct Window {
-    std::size_t lines, overlap;
-  };
-  static constexpr Window kDense{240, 60};
-  static constexpr Window kTube{60, 24};       ///< more would hold the planner up for longer
+  /// The window of coarse lines, and how many of these at its end are fitted again with what follows; more would hold
+  /// the planner up for longer.
+  static constexpr std::size_t kTubeLines = 60, kTubeOverlap = 24;
+  /// The window of dense lines: this long, but as many as that at least, and so many at most. A third of it is fitted
+  /// again with what follows.
+  static constexpr double kWindow_mm = 24;
+  static constexpr std::size_t kMostLines = 2400;
   static constexpr std::size_t kShortest = 6;  ///< lines that are worth a fit
 
-  /// A spline by chord length, counted from the start of the first waiting line, and the path that it makes.
+  /// A spline along the waiting lines, and the path that it makes.
   struct Fit {
     Polyline polyline;
-    std::vector<double> knots;
-    std::vector<Vector> points;
-    std::vector<double> deviations_mm;        ///< bound of its distance from each line
+    LineSpline spline;
     PathSegments heads;                       ///< final
     std::shared_ptr<const PathSegment> tail;  ///< to the end of the last line; what follows may find a better way
     std::size_t cut = 0;                      ///< knot between the two
-    bool coarser_failed = false;              ///< wider spaced knots were tried in vain
   };
 
   [[nodiscard]] bool complete() const noexcept;
+  /// Lines at the front that belong together: up to one more than the window.
   [[nodiscard]] std::size_t run_length() const noexcept;
+  void count_line() const noexcept;
   [[nodiscard]] bool goes_on() const noexcept { return before_.tail != nullptr; }
-  /// Parameter on the first waiting line where the spline begins.
-  [[nodiscard]] double begin() const noexcept;
   [[nodiscard]] Polyline polyline(std::size_t lines) const;
   [[nodiscard]] bool fit(bool finish, Fit& fit) const;
   [[nodiscard]] bool fit_dense(std::size_t lines, bool ends, Fit& fit) const;
   [[nodiscard]] bool fit_tube(std::size_t lines, bool ends, Fit& fit) const;
   /// A spline in the tube becomes one that is faster to travel, where that is found.
   void make_faster(const std::vector<double>& widths, Fit& fit) const;
-  [[nodiscard]] bool least_squares(double step, Fit& fit) const;
-  /// The knots that the window before keeps, these, and the end's; false where there are too few.
-  [[nodiscard]] bool set_knots(const std::vector<double>& inner, Fit& fit) const;
-  [[nodiscard]] std::size_t kept_points() const noexcept;
-  /// Cuts it at these knots, and at the last one into head and tail unless it `ends`.
-  [[nodiscard]] bool make_segments(std::vector<std::size_t> cuts, std::size_t overlap, bool ends, Fit& fit) const;
+  /// Cuts it at these knots, and before this place into head and tail unless it `ends`.
+  [[nodiscard]] bool make_segments(std::vector<std::size_t> cuts, double tail, bool ends, Fit& fit) const;
   [[nodiscard]] std::shared_ptr<const PathSegment> segment(const Fit& fit, std::shared_ptr<const Curve> curve,
                                                            double from, double to) const;
   void take(Fit fit, SegmentQueue& out);
@@ -75,11 +67,12 @@ class LineFit {
 
   std::vector<JointLimits> joints_;
   SegmentQueue waiting_;
-  mutable std::size_t checked_ = 0;  ///< lines at the front of `waiting_` known to belong together
-  /// The window before: its knots and control points from five before the cut on, and its tail.
+  mutable std::size_t checked_ = 0;          ///< lines at the front of `waiting_` known to belong together
+  mutable double checked_mm_ = 0;            ///< their length
+  mutable std::size_t window_ = kMostLines;  ///< lines that fill the window, once so many are there
+  bool begins_at_join_ = false;              ///< something was given out that the first waiting line meets
+  /// The window before: what its spline leaves, and its tail.
   Fit before_;
-  double step_ = 0;         ///< knot spacing that served last
-  int no_coarser_for_ = 0;  ///< windows for which a wider one is not tried again
 };
 
 }  // namespace rmac

@@ -24,6 +24,13 @@ struct Basis {
 [[nodiscard]] Basis basis(const std::vector<double>& knots, std::size_t count, double x);
 /// Derivatives of the same functions, of order 1 to 3.
 [[nodiscard]] Basis derivatives(const std::vector<double>& knots, std::size_t count, double x, std::size_t order);
+/// A place in a span, as a part of it, and its share of an integral.
+struct Quadrature {
+  double place, share;
+};
+/// ∫ |S'''|² on a span is Σ share · span · |S'''|²: Gauss's of order 3, exact for a polynomial of degree 4.
+inline constexpr std::array<Quadrature, 3> kThirdDerivativeSquared{
+    Quadrature{0.1127016653792583, 5.0 / 18}, {0.5, 8.0 / 18}, {0.8872983346207417, 5.0 / 18}};
 [[nodiscard]] Vector value(const Basis& basis, const std::vector<Vector>& points);
 /// Length of each control point of the second derivative: on the span that begins with knot k, |S''| is at most the
 /// largest of those from k - 5 to k - 2.

@@ -31,9 +31,6 @@ constexpr int kTrials = 3;
 constexpr double kVertexSlack = 5;
 /// Control points that are given kept the tube of the fit before; its samples lay elsewhere.
 constexpr double kGivenSlack = 1.01;
-/// Gauss's points and weights of order 3 on [0, 1]: |S'''|² is a polynomial of degree 4.
-constexpr std::array<double, 3> kGaussPoints{0.1127016653792583, 0.5, 0.8872983346207417};
-constexpr std::array<double, 3> kGaussWeights{5.0 / 18, 8.0 / 18, 5.0 / 18};
 
 /// Lines' directions, and across each one the direction in which the polyline bends there and the third one.
 struct LineFrame {
@@ -68,9 +65,9 @@ std::vector<SplineDemand> demands_of_smoothness(const std::vector<double>& knots
   std::vector<SplineDemand> demands;
   for (std::size_t i = kDegree; i < count; ++i) {
     const double width = knots[i + 1] - knots[i];
-    for (std::size_t g = 0; g < kGaussPoints.size(); ++g) {
-      const double w = 2 * width * kGaussWeights[g];
-      demands.push_back({quintic::derivatives(knots, count, knots[i] + width * kGaussPoints[g], 3),
+    for (const auto& [place, share] : quintic::kThirdDerivativeSquared) {
+      const double w = 2 * width * share;
+      demands.push_back({quintic::derivatives(knots, count, knots[i] + width * place, 3),
                          {Vector{w, 0, 0}, Vector{0, w, 0}, Vector{0, 0, w}}});
     }
   }

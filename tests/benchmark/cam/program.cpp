@@ -24,42 +24,28 @@ double distance_to_line(const Vector& p, const Vector& a, const Vector& b) {
   return distance(p, {a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1]), a[2] + part * (b[2] - a[2])});
 }
 
-/// How far a tool is from the polyline that it is sent along, and how far it passes each corner. It goes forward only.
-class PathJudge {
- public:
-  explicit PathJudge(const std::vector<Vector>& corners) : corners_(corners) {}
-
-  void tip(const Vector& at) {
-    // As far ahead as the tool may have come in a cycle, and until a line is as near as the tolerance could have it.
-    double least = 1e300;
-    std::size_t best = line_;
-    double ahead_mm = 0;
-    for (std::size_t k = line_; k + 1 < corners_.size() && ahead_mm < kAhead_mm; ++k) {
-      const double here = distance_to_line(at, corners_[k], corners_[k + 1]);
+/// How far points that go along a polyline, forward only, are from it.
+double off(const std::vector<Vector>& points, const std::vector<Vector>& polyline) {
+  // As far ahead as a tool may have come in a cycle, and more.
+  constexpr double kAhead_mm = 2;
+  double worst = 0;
+  std::size_t line = 0;
+  for (const Vector& point : points) {
+    double least = 1e300, ahead_mm = 0;
+    std::size_t best = line;
+    for (std::size_t k = line; k + 1 < polyline.size() && ahead_mm < kAhead_mm; ++k) {
+      const double here = distance_to_line(point, polyline[k], polyline[k + 1]);
       if (here < least) {
         least = here;
         best = k;
       }
-      ahead_mm += distance(corners_[k], corners_[k + 1]);
+      ahead_mm += distance(polyline[k], polyline[k + 1]);
     }
-    worst_ = std::max(worst_, least);
-    // A corner that lies behind is as far off as the chord of the tool's way that passed it.
-    for (std::size_t k = line_; k < best; ++k) {
-      worst_ = std::max(worst_, distance_to_line(corners_[k + 1], before_, at));
-    }
-    line_ = best;
-    before_ = at;
+    worst = std::max(worst, least);
+    line = best;
   }
-  void begin(const Vector& at) { before_ = at; }
-  [[nodiscard]] double worst_mm() const { return std::max(worst_, distance(before_, corners_.back())); }
-
- private:
-  static constexpr double kAhead_mm = 2;
-  const std::vector<Vector>& corners_;
-  std::size_t line_ = 0;
-  Vector before_{};
-  double worst_ = 0;
-};
+  return worst;
+}
 
 class Judge {
  public:
@@ -92,7 +78,7 @@ class Judge {
   std::function<void(const Vector&)> on_tip;
 
  private:
-  static constexpr std::int64_t kMostCycles = 600'000;
+  static constexpr std::int64_t kMostCycles = 3'000'000;
   LimitCheck check_;
   double period_s_;
   std::int64_t cycles_ = 0;
@@ -113,9 +99,8 @@ std::vector<Vector> rounded(std::vector<Vector> corners, double to_mm) {
 tl::expected<Machined, std::string> machine(const Program& program, const PlannerModel& model) {
   const auto& corners = program.corners;
   Judge judge(model, corners.front());
-  PathJudge path(corners);
-  path.begin(corners.front());
-  judge.on_tip = [&path](const Vector& at) { path.tip(at); };
+  std::vector<Vector> way{corners.front()};
+  judge.on_tip = [&way](const Vector& at) { way.push_back(at); };
   Move move;
   move.feed_mm_s = program.feed_mm_s;
   move.tolerance_mm = program.tolerance_mm;
@@ -125,7 +110,8 @@ tl::expected<Machined, std::string> machine(const Program& program, const Planne
     if (auto queued = judge.drive.queue(move); !queued) return tl::unexpected(queued.error().message);
   }
   auto done = judge.run();
-  if (done) done->deviation_mm = path.worst_mm();
+  // Of the tool from the lines, and of each corner from the tool's way.
+  if (done) done->deviation_mm = std::max(off(way, corners), off(corners, way));
   return done;
 }
 

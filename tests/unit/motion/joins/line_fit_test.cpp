@@ -107,6 +107,32 @@ Trace waves(unsigned seed, double line_mm) {
   return corners;
 }
 
+Trace rounded(Trace corners, double step_mm) {
+  for (Vector& corner : corners)
+    for (double& c : corner) c = std::round(c / step_mm) * step_mm;
+  return corners;
+}
+
+class RoundedLines : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(RoundedLines, RunAsFastAsExactOnes) {
+  const double exact = machined(waves(GetParam(), 0.1), 0.01);
+  for (const double line_mm : {0.02, 0.05, 0.1})
+    EXPECT_LT(machined(rounded(waves(GetParam(), line_mm), 0.001), 0.01), 1.02 * exact) << line_mm;
+}
+
+TEST_P(RoundedLines, UseMoreTolerance) {
+  const Trace corners = rounded(waves(GetParam(), 0.1), 0.001);
+  double before = machined(corners, 0.003);
+  for (const double tolerance_mm : {0.01, 0.05}) {
+    const double now = machined(corners, tolerance_mm);
+    EXPECT_LT(now, 1.002 * before) << tolerance_mm;
+    before = now;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RoundedLines, ::testing::Range(1U, 9U));
+
 class CoarseLines : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(CoarseLines, FindALawAlsoWhereJerkIsLow) {
