@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "joins/line_fit.hpp"
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/path_segment.hpp"
+#include "short_lines/line_fit.hpp"
 
 namespace rmac {
 

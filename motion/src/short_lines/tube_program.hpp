@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "joins/banded.hpp"
-#include "joins/quintic.hpp"
+#include "short_lines/banded.hpp"
+#include "short_lines/quintic.hpp"
 
 namespace rmac {
 

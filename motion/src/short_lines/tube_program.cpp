@@ -1,4 +1,4 @@
-#include "joins/tube_program.hpp"
+#include "short_lines/tube_program.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "joins/draft_law.hpp"
-#include "joins/polyline.hpp"
 #include "rmac/motion/pose.hpp"
+#include "short_lines/draft_law.hpp"
+#include "short_lines/polyline.hpp"
 
 namespace rmac {
 

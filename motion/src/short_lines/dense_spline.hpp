@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "joins/line_spline.hpp"
-#include "joins/polyline.hpp"
+#include "short_lines/line_spline.hpp"
+#include "short_lines/polyline.hpp"
 
 namespace rmac {
 

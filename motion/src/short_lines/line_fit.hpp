@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "joins/line_spline.hpp"
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/path_segment.hpp"
+#include "short_lines/line_spline.hpp"
 
 namespace rmac {
 

@@ -1,4 +1,4 @@
-#include "joins/smoothing_spline.hpp"
+#include "short_lines/smoothing_spline.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "joins/line_spline.hpp"
+#include "short_lines/line_spline.hpp"
 
 #include <algorithm>
 
-#include "joins/quintic.hpp"
+#include "short_lines/quintic.hpp"
 
 namespace rmac {
 namespace {

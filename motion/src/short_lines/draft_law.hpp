@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "joins/polyline.hpp"
-#include "joins/tube_program.hpp"
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/path_segment.hpp"
+#include "short_lines/polyline.hpp"
+#include "short_lines/tube_program.hpp"
 #include "time_law/law_problem.hpp"
 
 namespace rmac {

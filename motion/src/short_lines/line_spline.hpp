@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "joins/polyline.hpp"
-#include "joins/smoothing_spline.hpp"
+#include "short_lines/polyline.hpp"
+#include "short_lines/smoothing_spline.hpp"
 
 namespace rmac {
 

@@ -1,10 +1,10 @@
-#include "joins/smoothing_spline.hpp"
+#include "short_lines/smoothing_spline.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "curves/vector.hpp"
-#include "joins/banded.hpp"
+#include "short_lines/banded.hpp"
 
 namespace rmac {
 namespace {

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "curves/vector.hpp"
-#include "joins/quintic.hpp"
-#include "joins/tube_spline.hpp"
+#include "short_lines/quintic.hpp"
+#include "short_lines/tube_spline.hpp"
 
 namespace rmac {
 namespace {

@@ -1,4 +1,4 @@
-#include "joins/dense_spline.hpp"
+#include "short_lines/dense_spline.hpp"
 
 #include <gtest/gtest.h>
 

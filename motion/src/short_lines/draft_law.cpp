@@ -1,4 +1,4 @@
-#include "joins/draft_law.hpp"
+#include "short_lines/draft_law.hpp"
 
 #include <algorithm>
 #include <cmath>

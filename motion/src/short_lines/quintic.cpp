@@ -1,4 +1,4 @@
-#include "joins/quintic.hpp"
+#include "short_lines/quintic.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "joins/quintic.hpp"
 #include "rmac/motion/pose.hpp"
+#include "short_lines/quintic.hpp"
 
 namespace rmac {
 

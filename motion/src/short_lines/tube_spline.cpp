@@ -1,4 +1,4 @@
-#include "joins/tube_spline.hpp"
+#include "short_lines/tube_spline.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "curves/vector.hpp"
-#include "joins/quintic.hpp"
-#include "joins/tube_program.hpp"
+#include "short_lines/quintic.hpp"
+#include "short_lines/tube_program.hpp"
 
 namespace rmac {
 namespace {

@@ -1,15 +1,15 @@
-#include "joins/line_fit.hpp"
+#include "short_lines/line_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "curves/nurbs_curve.hpp"
 #include "curves/vector.hpp"
-#include "joins/dense_spline.hpp"
-#include "joins/quintic.hpp"
-#include "joins/tube_spline.hpp"
 #include "path/part_of.hpp"
 #include "path/travel.hpp"
+#include "short_lines/dense_spline.hpp"
+#include "short_lines/quintic.hpp"
+#include "short_lines/tube_spline.hpp"
 
 namespace rmac {
 namespace {
