@@ -10,6 +10,9 @@ namespace rmac {
 namespace {
 
 constexpr double kStep_s = 1e-3;
+/// Who takes longer to brake is judged on a line: where the path leaves hardly any braking, a speed next to nothing
+/// would be followed without end.
+constexpr int kMostSteps = 20'000;
 
 /// What the joints allow at a place and speed.
 struct Allowed {
@@ -37,7 +40,8 @@ Allowed allowed_at(const JointPoint& p, const std::vector<JointLimits>& joints, 
 double brake(const PathView& path, const std::vector<JointLimits>& joints, const PathState& from, double part) {
   PathState at = from;
   JointPoint point;
-  while (at.s < path.end() && path.derivatives(at.s, 1, point) == KinematicsStatus::Ok) {
+  for (int step = 0; step < kMostSteps; ++step) {
+    if (!(at.s < path.end()) || path.derivatives(at.s, 1, point) != KinematicsStatus::Ok) break;
     const Allowed allowed = allowed_at(point, joints, at, part);
     // The last ramp takes the acceleration back to zero just when the speed is zero.
     const double release = std::max(allowed.most_jerk, 1e-9);

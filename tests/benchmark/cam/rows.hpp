@@ -7,5 +7,6 @@ namespace rmac::bench {
 void trefoil_rows(Figures& figures, const Extent& extent);
 void curve_rows(Figures& figures, const Extent& extent);
 void raster_rows(Figures& figures, const Extent& extent);
+void zigzag_rows(Figures& figures, const Extent& extent);
 
 }  // namespace rmac::bench
