@@ -105,7 +105,7 @@ CycleNow MotionSupervisor::now() {
           !started    ? ""
           : automatic ? "AUTOMATIC"
                       : "MANUAL",
-          cycle_.feed.percent(), waits_for(cycle_), by ? by->name() : ""};
+          cycle_.feed.percent(), waits_for(cycle_), by ? by->name() : "", cycle_.queue.cleaned()};
 }
 
 std::shared_ptr<Mechanism> MotionSupervisor::install(std::shared_ptr<Mechanism> next, std::uint64_t generation,

@@ -13,6 +13,7 @@ bool changes_tool(const QueueStep& step) {
 }  // namespace
 
 void MoveQueue::install(Planner* planner) noexcept {
+  if (planner != planner_) merged_before_ = cleaned().merged;
   planner_ = planner;
   begins_anew_ = true;
 }
@@ -64,9 +65,14 @@ void MoveQueue::hand_on(QueuedPath path) {
   if (moves) {
     ++moves_added_;
   } else {
+    ++without_motion_;
     still_moves_.push_back(moves_added_);
   }
   news_.tell({moves ? QueueChange::Kind::Added : QueueChange::Kind::Still, path.move_id, 0, path.part});
+}
+
+Cleaned MoveQueue::cleaned() const noexcept {
+  return {without_motion_, merged_before_ + (planner_ == nullptr ? 0 : planner_->lines_merged())};
 }
 
 std::size_t MoveQueue::waiting() const {

@@ -9,6 +9,7 @@
 #include "gateway/queue/cycle_news.hpp"
 #include "gateway/queue/program_log.hpp"
 #include "gateway/queue/queue_step.hpp"
+#include "gateway/state/cycle_state.hpp"
 #include "gateway/state/queue_listener.hpp"
 #include "rmac/motion/planner.hpp"
 
@@ -49,6 +50,8 @@ class MoveQueue {
   [[nodiscard]] std::size_t waiting() const;
   /// All of them, moves without motion too. A measurement counts as the moves that it is made of.
   [[nodiscard]] std::size_t left();
+  /// What was queued and needed no curve of its own, since the daemon began.
+  [[nodiscard]] Cleaned cleaned() const noexcept;
   /// Real time: when a move was added last.
   [[nodiscard]] std::chrono::steady_clock::time_point last_added() const noexcept { return last_added_; }
 
@@ -66,7 +69,9 @@ class MoveQueue {
   QueueListener listener_;
   Planner* planner_ = nullptr;
   bool begins_anew_ = true;
-  std::uint64_t moves_added_ = 0;          ///< with motion, since the queue was emptied last
+  std::uint64_t moves_added_ = 0;  ///< with motion, since the queue was emptied last
+  std::uint64_t without_motion_ = 0;
+  std::uint64_t merged_before_ = 0;        ///< lines, by the planners before
   std::deque<std::uint64_t> still_moves_;  ///< without motion, each by the number of those before it
   std::deque<QueueStep> steps_;            ///< the first is no path: it waits for what is planned to be done
   ProgramLog program_;

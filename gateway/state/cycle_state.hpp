@@ -14,6 +14,12 @@ enum class CycleState : std::uint8_t { Idle, Running, Holding, Stopping, Faulted
   return state == CycleState::Faulted || state == CycleState::EmergencyStop;
 }
 
+/// Moves that were queued and needed no curve of their own.
+struct Cleaned {
+  std::uint64_t without_motion = 0;  ///< they end where they begin
+  std::uint64_t merged = 0;          ///< lines much shorter than the tolerance, which became part of the next one
+};
+
 /// The cycle as the controller has it now; a sample is some cycles behind.
 struct CycleNow {
   CycleState state = CycleState::Idle;
@@ -22,6 +28,7 @@ struct CycleNow {
   const char* waits_for =
       "";                 ///< what a cycle that runs waits for: moves, override, tool or spindle; empty: it does not
   std::string held_by{};  ///< the operator who holds the machine; empty: none does
+  Cleaned cleaned{};
 };
 
 }  // namespace rmac::gateway

@@ -132,9 +132,6 @@ Expected<CurvePtr> make_arc(const ArcGeometry& arc, const ToolPose& start) {
   if (arc.closed && chord > kArcTolerance_mm) {
     return refuse("the arc is closed, but its end is " + text(chord) + " mm from its start; give the start as its end");
   }
-  if (!arc.closed && chord <= kArcTolerance_mm) {
-    return refuse("the arc's start and end coincide (" + text(chord) + " mm apart); a full circle needs Closed");
-  }
   const Vector normal = unit(arc.normal);
   const Vector from_center = difference(start.tip, arc.center);
   const Vector end_from_center = difference(arc.end.tip, arc.center);
@@ -152,6 +149,8 @@ Expected<CurvePtr> make_arc(const ArcGeometry& arc, const ToolPose& start) {
                   text(end_radius) + " mm, a difference of " + text(std::abs(start_radius - end_radius)) + " mm; " +
                   text(allowed) + " mm is allowed");
   }
+  // What rounding left of a short arc. Its sweep, next to nothing or a full turn, is not in its data.
+  if (!arc.closed && chord <= kArcTolerance_mm) return make_line(start, arc.end);
   const auto circle = circle_about(arc.center, scaled(arc.rotation, normal), start.tip, arc.end.tip, arc.closed);
   if (!circle) return tl::unexpected(circle.error());
   // Where the ends nearly meet, a centre moved to fit both can lie far off: the amounts above do not show it.
@@ -167,6 +166,7 @@ Expected<CurvePtr> make_arc3(const Arc3Geometry& arc, const ToolPose& start) {
   if (!finite(arc.via)) return refuse("the arc's via point holds a number that is not finite");
   const Vector to_via = difference(arc.via, start.tip);
   const Vector to_end = difference(arc.end.tip, start.tip);
+  if (std::max(norm(to_via), norm(to_end)) <= kArcTolerance_mm) return make_line(start, arc.end);
   const double shortest = std::min({norm(to_via), norm(to_end), distance(arc.via, arc.end.tip)});
   if (shortest <= kArcTolerance_mm) {
     return refuse("two of the arc's three points coincide (" + text(shortest) +

@@ -26,9 +26,9 @@ inline constexpr double kNodeTurn_rad = 0.1;
   return failure(MinorCode::InvalidParameterValue, std::move(message));
 }
 
-/// Each takes a geometry whose start has been checked, and begins exactly at `start`.
+/// Each takes a geometry whose start has been checked, and begins exactly at `start`. Null where it ends there too, as
+/// points that repeat in a program do.
 [[nodiscard]] Expected<CurvePtr> make_line(const ToolPose& start, const ToolPose& end);
-/// Null when every joint is at its target already.
 [[nodiscard]] Expected<CurvePtr> make_joint_line(std::span<const double> start, std::span<const double> end);
 [[nodiscard]] Expected<CurvePtr> make_arc(const ArcGeometry& arc, const ToolPose& start);
 [[nodiscard]] Expected<CurvePtr> make_arc3(const Arc3Geometry& arc, const ToolPose& start);

@@ -86,10 +86,7 @@ Expected<CurvePtr> make_line(const ToolPose& start, const ToolPose& end) {
   if (turns && tip_mm < kStartTolerance_mm) {
     return std::make_unique<LineCurve>(start.tip, end.tip, turn->angle_rad() * kDegree, *turn);
   }
-  if (tip_mm <= kZeroLength_mm) {
-    return refuse("the line has no length: start and end are " + text(tip_mm) +
-                  " mm apart and the tool axis stays; leave the move out");
-  }
+  if (tip_mm <= kZeroLength_mm) return CurvePtr{};
   return std::make_unique<LineCurve>(start.tip, end.tip, tip_mm, *turn);
 }
 

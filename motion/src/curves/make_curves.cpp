@@ -25,6 +25,7 @@ Expected<> check_start(const ToolPose& pose, const CurveStart& start) {
 
 Expected<CurveList> listed(Expected<CurvePtr> curve) {
   if (!curve) return tl::unexpected(curve.error());
+  if (*curve == nullptr) return CurveList{};
   CurveList list;
   list.push_back(std::move(*curve));
   return list;
@@ -62,16 +63,11 @@ Expected<CurveList> curves_of(const NurbsGeometry& nurbs, const CurveStart& star
 Expected<CurveList> curves_of(const PathTargetGeometry& move, const CurveStart& start) {
   const auto target = checked(move.target, "target");
   if (!target) return tl::unexpected(target.error());
-  const bool there = distance(start.pose.tip, target->tip) <= kZeroLength_mm &&
-                     distance(start.pose.axis, target->axis) <= kStartTolerance_axis;
-  if (there) return CurveList{};
   return listed(make_line(start.pose, *target));
 }
 
 Expected<CurveList> curves_of(const JointTargetGeometry& move, const CurveStart& start) {
-  auto curve = make_joint_line(start.joints, move.joints);
-  if (curve && *curve == nullptr) return CurveList{};
-  return listed(std::move(curve));
+  return listed(make_joint_line(start.joints, move.joints));
 }
 
 }  // namespace

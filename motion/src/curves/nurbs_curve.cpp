@@ -93,7 +93,8 @@ Expected<CurvePtr> line_along(const SpaceCurve& curve, std::size_t span) {
 
 /// Appends spans [begin, end), between which there is no corner. A straight one whose parameter stands still somewhere
 /// (where control points coincide) is travelled as the line it is (docs/derivations/curves.md, section 7). Which are
-/// straight is told by the curve as it was `given`, before its start was moved to where the queue ends.
+/// straight, and which stay in one place, is told by the curve as it was `given`, before its start was moved to where
+/// the queue ends.
 Expected<> append(const SpaceCurve& given, const std::shared_ptr<const SpaceCurve>& curve, std::size_t begin,
                   std::size_t end, CurveList& curves) {
   while (begin < end) {
@@ -103,7 +104,7 @@ Expected<> append(const SpaceCurve& given, const std::shared_ptr<const SpaceCurv
       return {};
     }
     const LengthTable::Flaw flaw = part.error();
-    if (!given.straight(flaw.span)) {
+    if (!given.straight(flaw.span) && !given.stays(flaw.span)) {
       return refuse("the curve stands still at parameter " + text(curve->spline().parameter(flaw.span, flaw.t)) +
                     " (its first derivative vanishes: control points that coincide, or a cusp) and is not straight "
                     "there, so its curvature may have no bound; give each control point a place of its own, such as a "
@@ -163,10 +164,7 @@ Expected<CurveList> make_nurbs(const NurbsGeometry& geometry, const CurveStart& 
   close_gap(first, geometry.space, start, nurbs);
 
   const auto curve = std::make_shared<const SpaceCurve>(nurbs, geometry.space, start.pose.axis);
-  if (curve->rests()) {
-    return refuse("the NURBS has no length: all of its points are the same to " + text(kZeroLength_mm) +
-                  "; leave the move out");
-  }
+  if (curve->rests()) return CurveList{};
   CurveList curves;
   const std::size_t spans = curve->spline().span_count();
   for (std::size_t begin = 0; begin < spans;) {

@@ -35,6 +35,8 @@ class SpaceCurve {
   /// The span is a straight line, however its parameter runs along it: its control points lie on one, in order, and the
   /// tool axis stays.
   [[nodiscard]] bool straight(std::size_t span) const;
+  /// All control points of the span are the same, so that nothing moves on it.
+  [[nodiscard]] bool stays(std::size_t span) const;
   /// A place where the axis of a pose curve shrinks to nothing, and so has no direction.
   [[nodiscard]] std::optional<LengthTable::Place> vanishing_axis() const;
 

@@ -114,6 +114,20 @@ double SpaceCurve::least_speed(std::size_t span) const noexcept {
   return 1e-12 * extent_ * unit_ / spline_.span_width(span);
 }
 
+bool SpaceCurve::stays(std::size_t span) const {
+  const auto alike = [&](std::size_t first, std::size_t last, double most) {
+    const std::vector<double> begin = spline_.control_point(span, 0, first, last);
+    for (std::size_t i = 1; i <= spline_.degree(); ++i) {
+      const std::vector<double> here = spline_.control_point(span, i, first, last);
+      for (std::size_t c = 0; c < here.size(); ++c) {
+        if (!(std::abs(here[c] - begin[c]) <= most)) return false;
+      }
+    }
+    return true;
+  };
+  return alike(first_, last_, kZeroLength_mm) && (space_ != NurbsSpace::Pose || alike(3, 6, kStartTolerance_axis));
+}
+
 bool SpaceCurve::straight(std::size_t span) const {
   if (unit_ != 1) return false;  // the tool axis measures the length
   const std::size_t degree = spline_.degree();

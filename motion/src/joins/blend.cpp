@@ -12,12 +12,17 @@ namespace rmac {
 namespace {
 
 /// A blend shorter than this each way is hardly faster than a stop, and strains the time law.
-constexpr double kLeastReach_mm = 0.05;
+constexpr double kLeastReach_mm = kShortestBlended_mm / 2;
 /// The tolerance of a direction: what moves a point this far from the tip by the tolerance, about the length of a tool.
 constexpr double kAxisLever_mm = 100;
 constexpr int kTrials = 12;
 /// A turn of the tangent below this is rounding, and what is left is a jump of curvature.
 constexpr double kNoTurn = 1e-6;
+/// The part of the tolerance that a turn may use on a blend that is long for the sake of curvature or of a gap.
+constexpr double kTurnUnnoticed = 0.25;
+constexpr double kLossUnnoticed_s = 1e-3;
+/// A blend over a gap at a corner reaches so many times as far as that is wide, where its speed asks for it.
+constexpr double kGapsAReach = 20;
 /// Near a reversal (here from 155 degrees on) a blend is nearly a cusp; stopping loses no more.
 constexpr double kReversal = 1.95;
 
@@ -47,6 +52,13 @@ struct Corner {
   double turn = 0;  ///< of the pose's tangent
   double feed_mm_s = 0;
 };
+
+/// No rest is asked for where they meet, both are seen through the same frames, and tip and axis are free.
+bool may_meet(const PathSegment& before, const PathSegment& after) {
+  if (before.demand().rest_after || after.demand().rest_before || before.map() != after.map()) return false;
+  if (before.curve().in_joint_space() || after.curve().in_joint_space()) return false;
+  return before.curve().dimension() <= 6 && after.curve().dimension() <= 6;  // past the pole, turns are not free
+}
 
 /// What the joints allow along both lines.
 struct LineLimits {
@@ -180,15 +192,41 @@ PathDemand common_demand(const PathDemand& a, const PathDemand& b) {
   return demand;
 }
 
+/// Lines between the two that a blend joins, which it takes the place of.
+using Passed = std::span<const std::shared_ptr<const PathSegment>>;
+
+double length_of(Passed over) {
+  double sum = 0;
+  for (const auto& line : over) sum += line->length();
+  return sum;
+}
+
+/// How far corners between these lines are from the straight way between their ends.
+double stray(Passed over, const CurvePoint& begin, const CurvePoint& end) {
+  double most = 0;
+  CurvePoint corner;
+  for (std::size_t i = 0; i + 1 < over.size(); ++i) {
+    over[i]->curve().evaluate(over[i]->length(), 0, -1, corner);
+    most = std::max(most, std::min(difference(corner, begin, 0), difference(corner, end, 0)));
+  }
+  return most;
+}
+
 std::shared_ptr<const PathSegment> as_segment(const std::shared_ptr<const Curve>& curve, const PathSegment& before,
-                                              const PathSegment& after, double reach,
+                                              Passed over, const PathSegment& after, double reach,
                                               const std::vector<JointLimits>& joints) {
   std::vector<MoveStretch> stretches;
-  const double length = curve->length();
-  append_stretches(before, before.length() - reach, before.length(), 0, length / 2, stretches);
-  append_stretches(after, 0, reach, length / 2, length, stretches);
-  auto segment = std::make_shared<PathSegment>(curve, before.map(), common_demand(before.demand(), after.demand()),
-                                               std::move(stretches));
+  const double rate = curve->length() / (2 * reach + length_of(over));
+  PathDemand demand = common_demand(before.demand(), after.demand());
+  double at = rate * reach;
+  append_stretches(before, before.length() - reach, before.length(), 0, at, stretches);
+  for (const auto& line : over) {
+    append_stretches(*line, 0, line->length(), at, at + rate * line->length(), stretches);
+    at += rate * line->length();
+    demand = common_demand(line->demand(), demand);
+  }
+  append_stretches(after, 0, reach, at, curve->length(), stretches);
+  auto segment = std::make_shared<PathSegment>(curve, before.map(), demand, std::move(stretches));
   JointPoint start;
   if (before.evaluate(before.length() - reach, 0, -1, start) != KinematicsStatus::Ok) return nullptr;
   double s_failed = 0;
@@ -197,16 +235,44 @@ std::shared_ptr<const PathSegment> as_segment(const std::shared_ptr<const Curve>
   return segment;
 }
 
+/// What is left of the tolerance by all that a blend joins; 0 where there is none.
+double tolerance_of(const PathSegment& before, Passed over, const PathSegment& after) {
+  if (!may_meet(before, over.empty() ? after : *over.front())) return 0;
+  double tolerance = after.demand().tolerance_mm - std::max(before.demand().deviation_mm, after.demand().deviation_mm);
+  for (std::size_t i = 0; i < over.size(); ++i) {
+    if (!may_meet(*over[i], i + 1 < over.size() ? *over[i + 1] : after)) return 0;
+    tolerance = std::min(tolerance, over[i]->demand().tolerance_mm - over[i]->demand().deviation_mm);
+  }
+  return tolerance;
+}
+
+/// Shape and reach to try first. `jump`: of curvature; `gap`: how far apart the two ends are.
+Choice first_choice(const Corner& corner, double jump, double gap, double tolerance, double room) {
+  const double feed = corner.feed_mm_s;
+  double jerk = 1e30;
+  for (const JointLimits& joint : corner.joints) jerk = std::min(jerk, joint.max_jerk);
+  // Long enough for twice the feed, which an override may ask for.
+  double smooth = 0;
+  if (jump > 0) smooth = std::min(4 * 8 * feed * feed * feed * jump / jerk, std::sqrt(20 * tolerance / jump));
+  if (gap > 0) smooth = std::max(smooth, 2 * feed * std::cbrt(8 * gap / jerk));
+  smooth = std::min(smooth, room);
+  // What turns by so little that neither tolerance nor time notices on that length is no corner.
+  const CornerShape& plain = corner_shapes().front();
+  if (smooth > 0 && corner.turn * smooth * plain.deviation <= kTurnUnnoticed * tolerance &&
+      loss(corner, line_limits(corner), plain, smooth) < kLossUnnoticed_s)
+    return {plain, smooth};
+  if (corner.turn <= kNoTurn) return {plain, room};
+  Choice choice = least_loss(corner, tolerance - gap / 2, room);
+  if (gap > 0) choice.reach = std::max(choice.reach, std::min(smooth, kGapsAReach * gap));
+  return choice;
+}
+
 }  // namespace
 
-Blend make_blend(const PathSegment& before, const PathSegment& after, double room,
+Blend make_blend(const PathSegment& before, Passed over, const PathSegment& after, double room,
                  const std::vector<JointLimits>& joints) {
-  const double tolerance =
-      after.demand().tolerance_mm - std::max(before.demand().deviation_mm, after.demand().deviation_mm);
-  if (!(tolerance > 0) || before.demand().rest_after || after.demand().rest_before) return {};
-  if (before.curve().in_joint_space() || after.curve().in_joint_space()) return {};
-  if (before.curve().dimension() > 6 || after.curve().dimension() > 6) return {};  // past the pole, turns are not free
-  if (before.map() != after.map()) return {};
+  const double tolerance = tolerance_of(before, over, after);
+  if (!(tolerance > 0)) return {};
   Meeting corner;
   before.curve().evaluate(before.length(), 2, -1, corner.before);
   after.curve().evaluate(0, 2, 1, corner.after);
@@ -216,32 +282,29 @@ Blend make_blend(const PathSegment& before, const PathSegment& after, double roo
       after.evaluate(0, 1, 1, above) != KinematicsStatus::Ok)
     return {};
 
-  const double feed = std::min(before.demand().feed_mm_s, after.demand().feed_mm_s);
+  const double gap = over.empty() ? 0 : difference(corner.before, corner.after, 0);
+  const double strayed = stray(over, corner.before, corner.after);
+  if (!(gap / 2 + strayed < tolerance)) return {};
   const double turn = difference(corner.before, corner.after, 1);
   double tip_turn = 0;
   for (std::size_t c = 0; c < 3; ++c)
     tip_turn += (corner.after.d[1][c] - corner.before.d[1][c]) * (corner.after.d[1][c] - corner.before.d[1][c]);
   if (tip_turn > kReversal * kReversal) return {};
-  Choice choice{corner_shapes().front(), room};
-  if (turn > kNoTurn) choice = least_loss({below, above, joints, turn, feed}, tolerance, room);
-  if (const double jump = difference(corner.before, corner.after, 2); jump > 0 && turn <= kNoTurn) {
-    // Long enough for twice the feed, which an override may ask for.
-    double jerk = 1e30;
-    for (const JointLimits& joint : joints) jerk = std::min(jerk, joint.max_jerk);
-    choice.reach = std::min({room, 4 * 8 * feed * feed * feed * jump / jerk, std::sqrt(20 * tolerance / jump)});
-  }
+  const double feed = std::min(before.demand().feed_mm_s, after.demand().feed_mm_s);
+  Choice choice = first_choice({below, above, joints, turn, feed}, difference(corner.before, corner.after, 2), gap,
+                               tolerance - strayed, room);
   for (int trial = 0; trial < kTrials && choice.reach > kLeastReach_mm; ++trial) {
     Meeting ends;
     before.curve().evaluate(before.length() - choice.reach, 2, -1, ends.before);
     after.curve().evaluate(choice.reach, 2, 1, ends.after);
     const BlendSpline spline(ends.before, ends.after, choice.reach, choice.shape);
-    const double bound = deviation_bound(spline, before.curve(), after.curve(), choice.reach);
+    const double bound = deviation_bound(spline, before.curve(), after.curve(), choice.reach) + strayed;
     if (bound > tolerance) {
       choice.reach *= std::clamp(0.99 * tolerance / bound, 0.5, 0.99);
       continue;
     }
     if (const auto curve = as_curve(spline, ends)) {
-      if (auto segment = as_segment(curve, before, after, choice.reach, joints))
+      if (auto segment = as_segment(curve, before, over, after, choice.reach, joints))
         return {choice.reach, std::move(segment)};
     }
     // At a joint's limit a blend that swings out leaves the travel, and one that does not may keep it.

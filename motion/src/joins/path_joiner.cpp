@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "joins/blend.hpp"
 #include "path/join.hpp"
 #include "path/part_of.hpp"
 
@@ -13,6 +12,8 @@ namespace {
 /// Each of a segment's two joins may take half of it; what remains between them is nothing, or at least this part.
 constexpr double kHalf = 0.5;
 constexpr double kLeastRest = 0.02;
+/// Lines that are too short for joins, and are waited for.
+constexpr std::size_t kMostPassed = 8;
 
 }  // namespace
 
@@ -25,8 +26,28 @@ void PathJoiner::clear() {
   current_ = nullptr;
 }
 
+std::size_t PathJoiner::lines_to_pass() const noexcept {
+  if (current_ == nullptr || incoming_.empty() || passes_at_speed(*current_, *incoming_.front(), joints_, period_s_))
+    return 0;
+  std::size_t count = 0;
+  double length = 0;
+  for (const auto& line : incoming_) {
+    length += line->length();
+    if (!(length < kShortestBlended_mm) || !line->curve().straight() || !(line->demand().tolerance_mm > 0) ||
+        line->demand().rest_after)
+      break;
+    ++count;
+  }
+  return count;
+}
+
+bool PathJoiner::looks_further() const noexcept {
+  return !incoming_.empty() && incoming_.size() <= kMostPassed && lines_to_pass() == incoming_.size();
+}
+
 bool PathJoiner::ready() const noexcept {
-  if (!incoming_.empty() || lines_.ready()) return true;
+  if (lines_.ready()) return true;
+  if (!incoming_.empty()) return !looks_further();
   // Without a tolerance of its own a move is not held back: its successor will hardly have one.
   return current_ != nullptr && lines_.empty() && !(current_->demand().tolerance_mm > 0);
 }
@@ -39,8 +60,30 @@ void PathJoiner::emit(double begin, double end, PathSegments& out) {
   if (end > begin) out.push_back(part_of(*current_, begin, end));
 }
 
+Blend PathJoiner::blend_over(std::size_t over) const {
+  const PathSegment& next = *incoming_[over];
+  const std::vector<std::shared_ptr<const PathSegment>> passed(incoming_.begin(),
+                                                               incoming_.begin() + static_cast<std::ptrdiff_t>(over));
+  const double length = current_->length();
+  double room = kHalf * std::min(length, next.length());
+  Blend blend = make_blend(*current_, passed, next, room, joints_);
+  const auto leaves_sliver = [&](double whole) {
+    return blend.reach < kHalf * whole && blend.reach > (kHalf - kLeastRest) * whole;
+  };
+  for (const double whole : {length, next.length()}) {
+    if (!leaves_sliver(whole)) continue;
+    room = std::min(room, (kHalf - kLeastRest) * whole);
+    blend = make_blend(*current_, passed, next, room, joints_);
+  }
+  return blend;
+}
+
 void PathJoiner::advance(PathSegments& out) {
-  if (incoming_.empty()) lines_.advance(false, incoming_);
+  while ((incoming_.empty() || looks_further()) && lines_.ready()) lines_.advance(false, incoming_);
+  if (!looks_further()) go_on(out);
+}
+
+void PathJoiner::go_on(PathSegments& out) {
   if (current_ == nullptr) {
     if (incoming_.empty()) return;
     current_ = std::move(incoming_.front());
@@ -55,31 +98,25 @@ void PathJoiner::advance(PathSegments& out) {
     current_ = nullptr;
     return;
   }
-  std::shared_ptr<const PathSegment> next = std::move(incoming_.front());
-  incoming_.pop_front();
   Blend blend;
-  if (next->demand().tolerance_mm > 0 && !passes_at_speed(*current_, *next, joints_, period_s_)) {
-    double room = kHalf * std::min(length, next->length());
-    blend = make_blend(*current_, *next, room, joints_);
-    const auto leaves_sliver = [&](double whole) {
-      return blend.reach < kHalf * whole && blend.reach > (kHalf - kLeastRest) * whole;
-    };
-    for (const double whole : {length, next->length()}) {
-      if (!leaves_sliver(whole)) continue;
-      room = std::min(room, (kHalf - kLeastRest) * whole);
-      blend = make_blend(*current_, *next, room, joints_);
-    }
+  std::size_t over = lines_to_pass();
+  if (over > 0 && over < incoming_.size()) blend = blend_over(over);
+  if (!blend.segment) {
+    over = 0;
+    const PathSegment& next = *incoming_.front();
+    if (next.demand().tolerance_mm > 0 && !passes_at_speed(*current_, next, joints_, period_s_)) blend = blend_over(0);
   }
   emit(begin_, length - blend.reach, out);
   if (blend.segment) out.push_back(std::move(blend.segment));
-  current_ = std::move(next);
+  current_ = std::move(incoming_[over]);
+  incoming_.erase(incoming_.begin(), incoming_.begin() + static_cast<std::ptrdiff_t>(over) + 1);
   begin_ = blend.reach;
 }
 
 void PathJoiner::release(PathSegments& out) {
-  if (incoming_.empty()) lines_.advance(true, incoming_);
+  if (incoming_.empty() || looks_further()) lines_.advance(true, incoming_);
   if (current_ != nullptr && !incoming_.empty()) {
-    advance(out);
+    go_on(out);
     return;
   }
   if (current_ == nullptr) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "joins/blend.hpp"
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/path_segment.hpp"
 #include "short_lines/line_fit.hpp"
@@ -21,6 +22,7 @@ class PathJoiner {
   void add(std::shared_ptr<const PathSegment> segment) { lines_.add(std::move(segment)); }
   void clear();
 
+  [[nodiscard]] std::uint64_t lines_merged() const noexcept { return lines_.merged(); }
   /// Nothing is held back or waits.
   [[nodiscard]] bool empty() const noexcept { return current_ == nullptr && incoming_.empty() && lines_.empty(); }
   /// `advance` has something to give.
@@ -32,7 +34,15 @@ class PathJoiner {
   void release(PathSegments& out);
 
  private:
+  /// With what is in `incoming_`, or nothing follows.
+  void go_on(PathSegments& out);
   void emit(double begin, double end, PathSegments& out);
+  /// Lines that are next, too short for joins and meeting in corners, which a blend may pass over.
+  [[nodiscard]] std::size_t lines_to_pass() const noexcept;
+  /// All that is there is such lines: what comes behind them decides.
+  [[nodiscard]] bool looks_further() const noexcept;
+  /// With `incoming_[over]`, in place of what is before it.
+  [[nodiscard]] Blend blend_over(std::size_t over) const;
 
   std::vector<JointLimits> joints_;
   double period_s_;

@@ -50,6 +50,7 @@ class LaidPath {
   /// Where the move ends that the machine is in, or stands before; lays path until it is known.
   [[nodiscard]] double next_move_end(double s);
 
+  [[nodiscard]] std::uint64_t lines_merged() const noexcept { return joiner_.lines_merged(); }
   /// Moves added and not yet done.
   [[nodiscard]] std::size_t moves_left() const noexcept { return moves_left_; }
   /// Counts path length from a place `distance_mm` further along; in whole mm, which rounds nothing ahead of it.

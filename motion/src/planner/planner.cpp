@@ -391,6 +391,10 @@ bool Planner::idle(const ServoProgress& progress) const noexcept {
 bool Planner::at_rest(const ServoProgress& progress) const noexcept {
   return impl_->ended(progress);
 }
+std::uint64_t Planner::lines_merged() const noexcept {
+  return impl_->route.forward.lines_merged();
+}
+
 std::size_t Planner::moves_left() const noexcept {
   return impl_->route.forward.moves_left();
 }

@@ -29,6 +29,8 @@ constexpr int kMostTrials = 30;
 /// A trial that is smoother by less than this ends the search.
 constexpr double kWorthATrial = 0.98;
 constexpr double kFarWithin = 0.5;
+/// Beside a corner with another move, where lines themselves used up what is left to a spline.
+constexpr double kLeastAtCorner = 0.1;
 
 /// The polyline's vertices from `begin` on, and places between them, each with the length it stands for.
 std::vector<SplineSample> samples_of(const Polyline& polyline, double begin) {
@@ -58,7 +60,9 @@ void set_bounds(const DenseLines& lines, bool goes_on, std::vector<SplineSample>
     const double to_end = end - sample.place, to_free_end = goes_on ? to_end : std::min(to_end, sample.place);
     sample.most_mm = std::min(kWidest * lines.overlap_mm, kFreeEnd_mm + kFreeEndSlope * to_free_end);
     const bool at_corner = sample.place < lines.start_corner_mm || to_end < lines.end_corner_mm;
-    sample.limit_mm = lines.tolerance_mm * (at_corner ? 0.5 : 1);
+    const double used_mm = lines.polyline.off_mm[sample.line];
+    sample.limit_mm = at_corner ? std::max(0.5 * lines.tolerance_mm - used_mm, kLeastAtCorner * lines.tolerance_mm)
+                                : lines.tolerance_mm - used_mm;
   }
 }
 

@@ -7,6 +7,7 @@
 #include "curves/vector.hpp"
 #include "path/part_of.hpp"
 #include "path/travel.hpp"
+#include "short_lines/alike.hpp"
 #include "short_lines/dense_spline.hpp"
 #include "short_lines/quintic.hpp"
 #include "short_lines/tube_spline.hpp"
@@ -38,20 +39,10 @@ constexpr int kTubeTrials = 3;
 /// Lines from which on a law with open ends says how fast a spline is: fewer are mostly ramps.
 constexpr std::size_t kWorthALaw = 20;
 
-double largest(const std::vector<double>& values) {
-  return *std::max_element(values.begin(), values.end());
-}
-
 Vector point_of(const PathSegment& line, double s) {
   CurvePoint point;
   line.curve().evaluate(s, 0, 1, point);
   return {point.d[0][0], point.d[0][1], point.d[0][2]};
-}
-
-bool same(const PathSegment& a, const PathSegment& b) {
-  const PathDemand &x = a.demand(), &y = b.demand();
-  return x.feed_mm_s == y.feed_mm_s && x.accel_rise_mm_s2 == y.accel_rise_mm_s2 &&
-         x.accel_fall_mm_s2 == y.accel_fall_mm_s2 && x.tolerance_mm == y.tolerance_mm && a.map() == b.map();
 }
 
 bool short_line(const PathSegment& segment) {
@@ -63,7 +54,7 @@ bool short_line(const PathSegment& segment) {
 /// A smooth curve through both lines' ends stays within tolerance of them (an arc of their turn is a quarter of turn
 /// times length away, halved where both are alike), or they are coarse, and a curve in the tube passes the corner.
 bool belong_together(const PathSegment& a, const PathSegment& b) {
-  if (!short_line(a) || !short_line(b) || !same(a, b)) return false;
+  if (!short_line(a) || !short_line(b) || !alike(a, b)) return false;
   CurvePoint before, after;
   a.curve().evaluate(a.length(), 1, -1, before);
   b.curve().evaluate(0, 1, 1, after);
@@ -83,6 +74,7 @@ std::size_t knot_at(const LineSpline& spline, double place) {
 }  // namespace
 
 void LineFit::clear() {
+  merger_.clear();
   drop_lines(waiting_.size());
   before_ = {};
   begins_at_join_ = false;
@@ -114,10 +106,10 @@ void LineFit::drop_lines(std::size_t count) {
 }
 
 Polyline LineFit::polyline(std::size_t lines) const {
-  Polyline polyline{{point_of(*waiting_[0], 0)}, {0}, before_.polyline.previous};
+  Polyline polyline{{point_of(*waiting_[0], 0)}, {0}, {}, before_.polyline.previous};
   for (std::size_t i = 0; i < lines; ++i) {
-    polyline.vertices.push_back(point_of(*waiting_[i], waiting_[i]->length()));
-    polyline.places.push_back(polyline.places.back() + waiting_[i]->length());
+    const PathSegment& line = *waiting_[i];
+    polyline.add(point_of(line, line.length()), line.length(), line.demand().deviation_mm);
   }
   return polyline;
 }
@@ -164,13 +156,14 @@ bool LineFit::fit_tube(std::size_t lines, bool ends, Fit& fit) const {
   std::vector<double> widths(lines, kTubePart * tolerance);
   if (!goes_on()) widths.front() = 0.5 * tolerance;
   if (ends) widths.back() = 0.5 * tolerance;
+  for (std::size_t k = 0; k < lines; ++k) widths[k] -= kTubePart * fit.polyline.off_mm[k];
   for (int trial = 0;; ++trial) {
     if (!smoothest_in_tube(spline.knots, fit.polyline, widths, before.kept_points(), spline.points)) return false;
     spline.deviations_mm = tube_distances(spline.knots, spline.points, fit.polyline, tolerance);
-    const double deviation = largest(spline.deviations_mm);
-    if (deviation <= tolerance) break;
-    if (trial == kTubeTrials || deviation > 1.2 * tolerance) return false;
-    for (double& width : widths) width *= 0.995 * tolerance / deviation;
+    const double part = largest_part(spline.deviations_mm, fit.polyline, tolerance);
+    if (part <= 1) break;
+    if (trial == kTubeTrials || part > 1.2) return false;
+    for (double& width : widths) width *= 0.995 / part;
   }
 
   if (lines >= kWorthALaw) make_faster(widths, fit);
@@ -241,7 +234,7 @@ std::shared_ptr<const PathSegment> LineFit::segment(const Fit& fit, std::shared_
   for (std::size_t k = 0; k + 1 < fit.polyline.places.size() && fit.polyline.places[k] < to; ++k) {
     if (fit.polyline.places[k + 1] <= from) continue;
     first = std::min(first, k);
-    deviation = std::max(deviation, fit.spline.deviations_mm[k]);
+    deviation = std::max(deviation, fit.spline.deviations_mm[k] + fit.polyline.off_mm[k]);
     const double a = std::max(fit.polyline.places[k], from) - fit.polyline.places[k];
     const double b = to < fit.polyline.places[k + 1] ? to - fit.polyline.places[k] : waiting_[k]->length();
     append_stretches(*waiting_[k], a, b, (fit.polyline.places[k] + a - from) * rate,
@@ -272,14 +265,16 @@ void LineFit::take(Fit fit, SegmentQueue& out) {
   while (fit.polyline.places[done + 1] <= cut) ++done;
   before_ = std::move(fit);
   before_.spline.leave(before_.cut, before_.polyline.places[done]);
-  auto& [vertices, places, previous] = before_.polyline;
+  auto& [vertices, places, off_mm, previous] = before_.polyline;
   if (done > 0) previous = vertices[done - 1];
   vertices.erase(vertices.begin(), vertices.begin() + static_cast<std::ptrdiff_t>(done));
   places.erase(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(done));
+  off_mm.erase(off_mm.begin(), off_mm.begin() + static_cast<std::ptrdiff_t>(done));
   drop_lines(done);
 }
 
 void LineFit::advance(bool finish, SegmentQueue& out) {
+  if (finish) merger_.flush(joints_, waiting_);
   if (waiting_.empty() || !(finish || ready())) return;
   Fit found;
   if (fit(finish, found)) {

@@ -6,6 +6,7 @@
 
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/path_segment.hpp"
+#include "short_lines/line_merger.hpp"
 #include "short_lines/line_spline.hpp"
 
 namespace rmac {
@@ -20,9 +21,11 @@ class LineFit {
 
   explicit LineFit(std::vector<JointLimits> joints) : joints_(std::move(joints)) {}
 
-  void add(std::shared_ptr<const PathSegment> segment) { waiting_.push_back(std::move(segment)); }
+  void add(std::shared_ptr<const PathSegment> segment) { merger_.add(std::move(segment), joints_, waiting_); }
   void clear();
-  [[nodiscard]] bool empty() const noexcept { return waiting_.empty(); }
+  [[nodiscard]] bool empty() const noexcept { return waiting_.empty() && merger_.empty(); }
+  /// Lines that were too short for a place of their own, and became part of another.
+  [[nodiscard]] std::uint64_t merged() const noexcept { return merger_.count(); }
   /// `advance` would give something without waiting for more lines.
   [[nodiscard]] bool ready() const noexcept { return !waiting_.empty() && (complete() || checked_ > window_); }
   /// Appends the next segments; `finish`: the run ends with what is there.
@@ -66,6 +69,7 @@ class LineFit {
   void drop_lines(std::size_t count);
 
   std::vector<JointLimits> joints_;
+  LineMerger merger_;
   SegmentQueue waiting_;
   mutable std::size_t checked_ = 0;          ///< lines at the front of `waiting_` known to belong together
   mutable double checked_mm_ = 0;            ///< their length

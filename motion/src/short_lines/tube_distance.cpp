@@ -35,6 +35,7 @@ class TubeCheck {
   /// From the spline's stretch of a line to the polyline: its bounds on pieces that are halved until they suffice.
   [[nodiscard]] double from_spline(std::size_t line) const {
     double largest = 0;
+    const double most = most_ - polyline_.off_mm[line];
     double from = std::max(polyline_.places[line], knots_[quintic::kDegree]);
     const double to = polyline_.places[line + 1];
     while (from < to) {
@@ -42,7 +43,7 @@ class TubeCheck {
       const double end = std::min(to, knots_[span + 1]);
       double bend = 0;
       for (std::size_t i = span - quintic::kDegree; i + 2 <= span; ++i) bend = std::max(bend, bends_[i]);
-      largest = std::max(largest, on_piece(line, from, end, at(from), at(end), bend, kMostHalvings));
+      largest = std::max(largest, on_piece({line, most, bend}, from, end, at(from), at(end), kMostHalvings));
       from = end;
     }
     return largest;
@@ -69,8 +70,14 @@ class TubeCheck {
 
   /// A piece is within h²/8 max |S''| of its chord, and distance to a line of the polyline is a convex function: on the
   /// chord no more than at its ends.
-  [[nodiscard]] double on_piece(std::size_t line, double from, double to, const Vector& a, const Vector& b, double bend,
+  struct Piece {
+    std::size_t line = 0;
+    double most = 0;
+    double bend = 0;  ///< max |S''|
+  };
+  [[nodiscard]] double on_piece(const Piece& piece, double from, double to, const Vector& a, const Vector& b,
                                 int halvings) const {
+    const std::size_t line = piece.line;
     double bound = 1e30;
     if (line == 0 && polyline_.previous) {
       const Vector &start = *polyline_.previous, &end = polyline_.vertices[0];
@@ -80,13 +87,13 @@ class TubeCheck {
       const Vector &start = polyline_.vertices[k], &end = polyline_.vertices[k + 1];
       bound = std::min(bound, std::max(distance_to_line(a, start, end), distance_to_line(b, start, end)));
     }
-    bound += (to - from) * (to - from) / 8 * bend;
-    if (bound <= most_ || halvings == 0) return bound;
+    bound += (to - from) * (to - from) / 8 * piece.bend;
+    if (bound <= piece.most || halvings == 0) return bound;
     const double middle = 0.5 * (from + to);
     const Vector m = at(middle);
-    const double left = on_piece(line, from, middle, a, m, bend, halvings - 1);
-    if (left > most_) return left;
-    return std::max(left, on_piece(line, middle, to, m, b, bend, halvings - 1));
+    const double left = on_piece(piece, from, middle, a, m, halvings - 1);
+    if (left > piece.most) return left;
+    return std::max(left, on_piece(piece, middle, to, m, b, halvings - 1));
   }
 
   const std::vector<double>& knots_;
@@ -105,6 +112,13 @@ std::vector<double> tube_distances(const std::vector<double>& knots, const std::
   for (std::size_t k = 0; k < polyline.lines(); ++k)
     distances.push_back(std::max({check.from_spline(k), check.from_vertex(k), check.from_vertex(k + 1)}));
   return distances;
+}
+
+double largest_part(const std::vector<double>& distances, const Polyline& polyline, double most_mm) {
+  double part = 0;
+  for (std::size_t k = 0; k < distances.size(); ++k)
+    part = std::max(part, distances[k] / (most_mm - polyline.off_mm[k]));
+  return part;
 }
 
 }  // namespace rmac

@@ -154,13 +154,13 @@ void fastest_in_tube(const std::vector<double>& knots, const Polyline& polyline,
     std::vector<Vector> faster = points;
     if (!make_faster(knots, polyline, widths_mm, kept, law, faster)) return;
     auto distances = tube_distances(knots, faster, polyline, tolerance_mm);
-    const double distance = *std::max_element(distances.begin(), distances.end());
-    if (distance <= tolerance_mm) {
+    const double part = largest_part(distances, polyline, tolerance_mm);
+    if (part <= 1) {
       points = std::move(faster);
       deviations_mm = std::move(distances);
       return;
     }
-    for (double& width : widths_mm) width *= 0.995 * tolerance_mm / distance;
+    for (double& width : widths_mm) width *= 0.995 / part;
   }
 }
 

@@ -26,5 +26,7 @@ void fastest_in_tube(const std::vector<double>& knots, const Polyline& polyline,
 /// `most_mm`, and above that only more than `most_mm` (eq. 14).
 [[nodiscard]] std::vector<double> tube_distances(const std::vector<double>& knots, const std::vector<Vector>& points,
                                                  const Polyline& polyline, double most_mm);
+/// The largest part of what the polyline, which itself misses what was sent by `off_mm`, leaves of `most_mm`.
+[[nodiscard]] double largest_part(const std::vector<double>& distances, const Polyline& polyline, double most_mm);
 
 }  // namespace rmac

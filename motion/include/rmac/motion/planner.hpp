@@ -78,6 +78,8 @@ class Planner {
   [[nodiscard]] bool at_rest(const ServoProgress& progress) const noexcept;
   /// Moves added and not yet done.
   [[nodiscard]] std::size_t moves_left() const noexcept;
+  /// Lines shorter than half of their tolerance that became part of the one behind them, since the planner was made.
+  [[nodiscard]] std::uint64_t lines_merged() const noexcept;
   /// The farthest place that the tool has come to, at rest: where the first move goes on that is not done. Nothing when
   /// none was begun.
   [[nodiscard]] std::optional<PathPlace> farthest_place() const;

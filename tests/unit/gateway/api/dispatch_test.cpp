@@ -363,16 +363,18 @@ TEST(LastError, IsToldWithItsTimeUntilAResetOrTheCodesAreCleared) {
   EXPECT_EQ(api.result("RMAC_CAM.Ok"), true);
 }
 
-TEST(State, NamesOperatorHolderAndWhatTheCycleWaitsFor) {
+TEST(State, NamesOperatorHolderWhatTheCycleWaitsForAndWhatWasCleaned) {
   Api api;
   api.session.client = "panel";
   api.result("operator.acquire");
   api.machine.cycle.held_by = "panel";
   api.machine.cycle.waits_for = "moves";
+  api.machine.cycle.cleaned = {3, 4};
   const json state = api.result("RMAC_CAM.GetState");
   EXPECT_EQ(state["operator"], "panel");
   EXPECT_EQ(state["held_by"], "panel");
   EXPECT_EQ(state["waits_for"], "moves");
+  EXPECT_EQ(state["cleaned"], (json{{"without_motion", 3}, {"merged", 4}}));
 }
 
 }  // namespace

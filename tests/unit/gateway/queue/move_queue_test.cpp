@@ -61,6 +61,30 @@ TEST_F(MoveQueueTest, CountsAMoveWithoutMotionAsDoneWithThoseBeforeIt) {
   EXPECT_EQ(queue_.left(), 0U);
 }
 
+TEST_F(MoveQueueTest, CountsWhatNeedsNoCurveOfItsOwn) {
+  const auto line_to = [&](std::int64_t id, const Vector& end) {
+    const ToolPose begin = builder_.end_pose();
+    const Move move{
+        .id = id, .geometry = LineGeometry{begin, {end, begin.axis}}, .feed_mm_s = 50, .tolerance_mm = 0.01};
+    auto built = build_moves(builder_, {{&move, {}}});
+    ASSERT_TRUE(built) << built.error().message;
+    queue_.add(std::move(built->front()));
+  };
+  line_to(1, {5, 0, 0});
+  line_to(2, {5, 0, 0});
+  line_to(3, {5, 0.002, 0});
+  line_to(4, {5, 8, 0});
+  EXPECT_EQ(queue_.cleaned().without_motion, 1U);
+  EXPECT_EQ(queue_.cleaned().merged, 1U);
+  EXPECT_EQ(queue_.left(), 4U) << "all of them are told done in their turn";
+  queue_.forget();
+  Planner next(model_, channel_);
+  queue_.install(&next);
+  EXPECT_EQ(queue_.cleaned().merged, 1U) << "another mechanism does not make them undone";
+  queue_.install(nullptr);
+  EXPECT_EQ(queue_.cleaned().merged, 1U);
+}
+
 TEST_F(MoveQueueTest, KeepsMovesBehindAToolChangeFromThePlanner) {
   EXPECT_TRUE(add(1, 5));
   add_tool_change(4);

@@ -83,9 +83,31 @@ TEST_F(Arc, IsRefusedWithAmountsWhenItIsAHelixOrASpiral) {
   };
   EXPECT_THAT(with_end({0, 10, 0.5}), HasSubstr("0.5 mm apart along its normal"));
   EXPECT_THAT(with_end({0, 10.25, 0}), HasSubstr("radius 10 mm about its centre and its end 10.25 mm"));
-  EXPECT_THAT(with_end({10.0000, 0.0005, 0}), HasSubstr("coincide (0.0005 mm apart); a full circle needs Closed"));
   // Nearly all around with a radius that changes: no circle through both has its centre there.
   EXPECT_THAT(with_end({10.0009, -0.002, 0}), HasSubstr("fit no circle about its centre"));
+}
+
+TEST_F(Arc, WhoseEndsMeetIsNoFullTurnUnlessClosed) {
+  const ToolPose start{{10, 0, 0}, {0, 0, 1}};
+  const auto with_end = [&](const Vector& end, int rotation) {
+    return built(ArcGeometry{{0, 0, 0}, {0, 0, 1}, rotation, false, start, {end, {0, 0, 1}}}, {start, {}});
+  };
+  for (const int rotation : {1, -1}) {
+    EXPECT_TRUE(with_end(start.tip, rotation).empty());
+    for (const double off_mm : {0.0005, -0.0005}) {
+      // Rounded to behind the start, it would nearly be a full turn.
+      const auto curves = with_end({10, off_mm, 0}, rotation);
+      ASSERT_EQ(curves.size(), 1U);
+      EXPECT_NEAR(curves[0]->length(), 0.0005, 1e-9);
+      expect_ends(*curves[0], start, {{10, off_mm, 0}, {0, 0, 1}});
+    }
+  }
+  const auto around = with_end({10 * std::cos(0.001), -10 * std::sin(0.001), 0}, 1);
+  ASSERT_EQ(around.size(), 1U);
+  EXPECT_NEAR(around[0]->length(), 20 * std::numbers::pi - 0.01, 1e-6) << "the sweep says so";
+  // Ends that meet make no sense of an arc that has none.
+  EXPECT_THAT(refusal(ArcGeometry{{0, 0, 0}, {0, 0, 0}, 1, false, start, start}, {start, {}}),
+              HasSubstr("normal has no length"));
 }
 
 TEST_F(Arc, IsRefusedWhenDegenerate) {
@@ -130,6 +152,7 @@ TEST_F(Arc, ThroughThreePointsIsRefusedWhenTheyAreInLineOrCoincide) {
   EXPECT_THAT(refusal(Arc3Geometry{{15, 1e-9, 0}, start, end}, queue), HasSubstr("lie on one line"));
   EXPECT_THAT(refusal(Arc3Geometry{{10, 0, 0.0005}, start, end}, queue), HasSubstr("coincide (0.0005 mm apart)"));
   EXPECT_THAT(refusal(Arc3Geometry{{5, 5, 0}, start, start}, queue), HasSubstr("coincide (0 mm apart)"));
+  EXPECT_TRUE(built(Arc3Geometry{start.tip, start, start}, queue).empty()) << "all three are one point";
   EXPECT_THAT(refusal(Arc3Geometry{{kNan, 5, 0}, start, end}, queue), HasSubstr("not finite"));
 }
 

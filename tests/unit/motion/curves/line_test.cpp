@@ -62,9 +62,11 @@ TEST_F(Line, IsRefusedWhenItStartsElsewhere) {
               HasSubstr("a tool axis 2e-06 from that at the end of the queue"));
 }
 
-TEST_F(Line, IsRefusedWithoutLength) {
+TEST_F(Line, HasNoCurveWhereAPointIsRepeated) {
   const ToolPose here{{1, 1, 1}, {0, 0, 1}};
-  EXPECT_THAT(refusal(LineGeometry{here, here}, {here, {}}), HasSubstr("the line has no length"));
+  EXPECT_TRUE(built(LineGeometry{here, here}, {here, {}}).empty());
+  const ToolPose rounded{{1, 1, 1 + 5e-7}, {0, 0, 1}};
+  EXPECT_TRUE(built(LineGeometry{here, rounded}, {here, {}}).empty());
 }
 
 TEST_F(Line, HasNoCurveForATargetWhereTheToolStands) {

@@ -81,18 +81,31 @@ TEST(Nurbs, IsRefusedWithBadNumbers) {
   EXPECT_THAT(refusal_of(nurbs), HasSubstr("weights differ by the factor 1e+12"));
 }
 
-TEST(Nurbs, IsRefusedWithoutLengthOrDirection) {
+TEST(Nurbs, HasNoCurveWhereAllOfItsPointsAreOne) {
   Nurbs nurbs = sound_cubic();
   nurbs.points.assign(5, {0, 0, 0});
-  EXPECT_THAT(refusal_of(nurbs), HasSubstr("the NURBS has no length"));
-  nurbs = sound_cubic();
+  const auto curves = make_curves(move_of(NurbsGeometry{NurbsSpace::Tip, nurbs}), at({0, 0, 0}));
+  ASSERT_TRUE(curves) << curves.error().message;
+  EXPECT_TRUE(curves->empty());
+}
+
+TEST(Nurbs, PassesOverASpanOfWhichAllPointsAreOne) {
+  const auto corner =
+      make_curves(move_of(NurbsGeometry{NurbsSpace::Tip,
+                                        {1, 3, {0, 0, 1, 2, 3, 3}, {{0, 0, 0}, {3, 0, 0}, {3, 0, 0}, {3, 9, 0}}, {}}}),
+                  at({0, 0, 0}));
+  ASSERT_TRUE(corner) << corner.error().message;
+  double length = 0;
+  for (const auto& curve : *corner) length += curve->length();
+  EXPECT_NEAR(length, 12, 1e-9);
+}
+
+TEST(Nurbs, IsRefusedWithoutDirection) {
+  Nurbs nurbs = sound_cubic();
   nurbs.points[1] = nurbs.points[0];
   EXPECT_THAT(refusal_of(nurbs), HasSubstr("stands still at parameter 0 "));
   const Nurbs cusp{3, 3, {2, 2, 2, 2, 5, 5, 5, 5}, {{0, 0, 0}, {10, 10, 0}, {0, 10, 0}, {10, 0, 0}}, {}};
   EXPECT_THAT(refusal_of(cusp), HasSubstr("stands still at parameter 3.5 "));
-  // Points that coincide over a whole span in the middle.
-  const Nurbs pause{1, 3, {0, 0, 1, 2, 3, 3}, {{0, 0, 0}, {3, 0, 0}, {3, 0, 0}, {3, 9, 0}}, {}};
-  EXPECT_THAT(refusal_of(pause), HasSubstr("stands still at parameter"));
 }
 
 TEST(Nurbs, IsRefusedAtCuspsBetweenRoundParameters) {

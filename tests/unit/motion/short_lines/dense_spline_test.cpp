@@ -22,8 +22,11 @@ Polyline circle(double line_mm, double rounding_mm) {
     Vector here{kRadius_mm * std::sin(angle), kRadius_mm * (1 - std::cos(angle)), 0};
     if (rounding_mm > 0)
       for (double& c : here) c = std::round(c / rounding_mm) * rounding_mm;
-    polyline.places.push_back(i == 0 ? 0 : polyline.places.back() + distance(polyline.vertices.back(), here));
-    polyline.vertices.push_back(here);
+    if (i == 0) {
+      polyline = {{here}, {0}, {}, {}};
+    } else {
+      polyline.add(here, distance(polyline.vertices.back(), here));
+    }
   }
   return polyline;
 }
@@ -81,11 +84,8 @@ TEST(DenseSplines, LeaveHalfOfTheToleranceBesideACorner) {
 }
 
 TEST(DenseSplines, AreNoneOfCornersThatTheToleranceCannotPass) {
-  Polyline zigzag{{{0, 0, 0}}, {0}, {}};
-  for (int i = 1; i <= 60; ++i) {
-    zigzag.vertices.push_back({0.3 * i, i % 2 == 0 ? 0 : 0.2, 0});
-    zigzag.places.push_back(zigzag.places.back() + std::hypot(0.3, 0.2));
-  }
+  Polyline zigzag{{{0, 0, 0}}, {0}, {}, {}};
+  for (int i = 1; i <= 60; ++i) zigzag.add({0.3 * i, i % 2 == 0 ? 0 : 0.2, 0}, std::hypot(0.3, 0.2));
   EXPECT_FALSE(smoothest_along({zigzag, 0.001, 6}, {}));
 }
 
