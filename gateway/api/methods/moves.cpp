@@ -40,14 +40,18 @@ void add_path_moves(const auto& add, Origin origin, const std::array<const char*
           .does([queue](Call& call, std::int64_t id, const Vector& via, const ToolPose& start, const ToolPose& end) {
             return queue(call, id, Arc3Geometry{via, start, end});
           }));
-  add(move_method(names[3], "Queues a circular arc about the axis of CenterPoint; Closed makes it a full circle.",
+  add(move_method(names[3],
+                  "Queues a circular arc about the axis of CenterPoint; Closed makes it a full circle. Where EndPoint "
+                  "lies off its plane, along the axis, it is a helix of even pitch.",
                   origin)
           .takes(move_id(), choice("RotSign", kRotationSignValues), boolean("Closed"), tool_pose("CenterPoint"),
-                 tool_pose("StartPoint"), tool_pose("EndPoint"))
+                 tool_pose("StartPoint"), tool_pose("EndPoint"),
+                 integer("Turns").within(0, ArcGeometry::kMostTurns).optional().noted("whole turns more"))
           .does([queue](Call& call, std::int64_t id, std::int64_t rotation, bool closed, const ToolPose& center,
-                        const ToolPose& start, const ToolPose& end) {
+                        const ToolPose& start, const ToolPose& end, std::optional<std::int64_t> turns) {
             return queue(call, id,
-                         ArcGeometry{center.tip, center.axis, static_cast<int>(rotation), closed, start, end});
+                         ArcGeometry{center.tip, center.axis, static_cast<int>(rotation), closed, start, end,
+                                     static_cast<int>(turns.value_or(0))});
           }));
   add(move_method(names[4], "Queues a straight line; the tool axis turns evenly along it.", origin)
           .takes(move_id(), tool_pose("StartPoint"), tool_pose("EndPoint"))

@@ -7,17 +7,24 @@
 namespace rmac::curves {
 namespace {
 
-/// Arcs may miss the given circle by this much where the client's start, end and centre do not quite fit each other.
+/// Ends nearer than this meet, and what keeps a plane to so much keeps it.
 constexpr double kArcTolerance_mm = 1e-3;
+/// Two radii may differ by this much, or by the tolerance of the move, where the client's start, end and centre do not
+/// quite fit each other: coordinates to a micrometre, six of them, make up to 2.83 µm.
+constexpr double kRounded_mm = 3e-3;
 
-/// A circle's stretch, seen from its start so that large radii lose no digits (docs/derivations/curves.md, eq. 3).
+/// A circle's stretch, seen from its start so that large radii lose no digits (docs/derivations/curves.md, eq. 3); a
+/// helix's with a rise.
 struct Circle {
   Vector start{};
   Vector outward{};  ///< unit, from the centre to the start
   Vector ahead{};    ///< unit tangent at the start
+  Vector rise{};     ///< mm, along the axis, of the whole sweep
   double radius_mm = 0;
   double sweep_rad = 0;
 
+  [[nodiscard]] double length() const noexcept { return std::hypot(radius_mm * sweep_rad, norm(rise)); }
+  /// In the plane: without the rise.
   [[nodiscard]] Vector at(double angle) const noexcept {
     const double half = std::sin(angle / 2);
     return along(along(start, radius_mm * std::sin(angle), ahead), -2 * radius_mm * half * half, outward);
@@ -28,7 +35,9 @@ class ArcCurve final : public Curve {
  public:
   ArcCurve(const Circle& circle, const AxisTurn& turn)
       : circle_(circle),
-        length_mm_(circle.radius_mm * circle.sweep_rad),
+        length_mm_(circle.length()),
+        turn_rad_mm_(circle.sweep_rad / length_mm_),
+        climb_(scaled(1 / length_mm_, circle.rise)),
         turn_(turn),
         nodes_(even_nodes(length_mm_, std::max(circle.sweep_rad, turn.angle_rad()))) {}
 
@@ -41,18 +50,19 @@ class ArcCurve final : public Curve {
   void evaluate(double s, int order, int /*side*/, CurvePoint& point) const noexcept override {
     s = std::clamp(s, 0.0, length_mm_);
     const double r = circle_.radius_mm;
-    const double half_sine = std::sin(s / r / 2);
-    const double half_cosine = std::cos(s / r / 2);
+    const double rate = turn_rad_mm_;
+    const double half_sine = std::sin(s * rate / 2);
+    const double half_cosine = std::cos(s * rate / 2);
     const double sine = 2 * half_sine * half_cosine;
     const double fall = 2 * half_sine * half_sine;  // 1 - cos
     const double cosine = 1 - fall;
     for (std::size_t c = 0; c < 3; ++c) {
       const double u = circle_.outward[c];
       const double v = circle_.ahead[c];
-      point.d[0][c] = circle_.start[c] + r * (v * sine - u * fall);
-      if (order >= 1) point.d[1][c] = v * cosine - u * sine;
-      if (order >= 2) point.d[2][c] = -(v * sine + u * cosine) / r;
-      if (order >= 3) point.d[3][c] = -(v * cosine - u * sine) / (r * r);
+      point.d[0][c] = circle_.start[c] + r * (v * sine - u * fall) + s * climb_[c];
+      if (order >= 1) point.d[1][c] = r * rate * (v * cosine - u * sine) + climb_[c];
+      if (order >= 2) point.d[2][c] = -r * rate * rate * (v * sine + u * cosine);
+      if (order >= 3) point.d[3][c] = -r * rate * rate * rate * (v * cosine - u * sine);
     }
     turn_.evaluate(s, length_mm_, order, point);
   }
@@ -60,6 +70,8 @@ class ArcCurve final : public Curve {
  private:
   Circle circle_;
   double length_mm_;
+  double turn_rad_mm_;  ///< about the axis, by arc length
+  Vector climb_;        ///< along the axis, by arc length
   AxisTurn turn_;
   std::vector<double> nodes_;
 };
@@ -117,9 +129,7 @@ Expected<CurvePtr> arc_on(const Circle& circle, const Vector& from, const Vector
   return std::make_unique<ArcCurve>(circle, *turn);
 }
 
-}  // namespace
-
-Expected<CurvePtr> make_arc(const ArcGeometry& arc, const ToolPose& start) {
+Expected<> check_numbers(const ArcGeometry& arc) {
   if (!finite(arc.center) || !finite(arc.normal)) {
     return refuse("the arc's centre or normal holds a number that is not finite");
   }
@@ -128,30 +138,47 @@ Expected<CurvePtr> make_arc(const ArcGeometry& arc, const ToolPose& start) {
     return refuse("the arc's rotation is " + std::to_string(arc.rotation) +
                   "; it must be 1 (counter-clockwise about the normal) or -1");
   }
-  const double chord = distance(start.tip, arc.end.tip);
-  if (arc.closed && chord > kArcTolerance_mm) {
-    return refuse("the arc is closed, but its end is " + text(chord) + " mm from its start; give the start as its end");
+  if (arc.turns < 0 || arc.turns > ArcGeometry::kMostTurns) {
+    return refuse("the arc's Turns are " + std::to_string(arc.turns) + "; 0 to " +
+                  std::to_string(ArcGeometry::kMostTurns) + " whole turns may be added");
   }
+  return {};
+}
+
+}  // namespace
+
+Expected<CurvePtr> make_arc(const ArcGeometry& arc, const ToolPose& start, double tolerance_mm) {
+  if (auto fine = check_numbers(arc); !fine) return tl::unexpected(fine.error());
   const Vector normal = unit(arc.normal);
-  const Vector from_center = difference(start.tip, arc.center);
-  const Vector end_from_center = difference(arc.end.tip, arc.center);
-  const double start_height = dot(from_center, normal);
-  const double end_height = dot(end_from_center, normal);
-  const double start_radius = norm(along(from_center, -start_height, normal));
-  const double end_radius = norm(along(end_from_center, -end_height, normal));
-  const double allowed = kArcTolerance_mm + 1e-6 * start_radius;
-  if (std::abs(start_height - end_height) > allowed) {
-    return refuse("the arc's start and end are " + text(std::abs(start_height - end_height)) +
-                  " mm apart along its normal; an arc stays in one plane (to " + text(allowed) + " mm)");
+  const double height = dot(difference(arc.end.tip, start.tip), normal);
+  // What the end is off the start's plane, along the axis, is a helix's rise.
+  const Vector end = along(arc.end.tip, -height, normal);
+  const double chord = distance(start.tip, end);
+  if (arc.closed && chord > kArcTolerance_mm) {
+    return refuse("the arc is closed, but its end is " + text(chord) +
+                  " mm from its start, seen along its axis; give the start as its end, or for a helix the place above "
+                  "or below it");
   }
+  const bool whole = chord <= kArcTolerance_mm;
+  if (whole && !arc.closed && arc.turns == 0) {
+    // What rounding left of a short arc. Its sweep, next to nothing or a full turn, is not in its data.
+    if (std::abs(height) <= kArcTolerance_mm) return make_line(start, arc.end);
+    return refuse(
+        "the arc's start and end coincide (" + text(chord) +
+        " mm apart, seen along its axis); a full circle needs Closed, a helix of whole turns Closed or Turns");
+  }
+  const auto radius_of = [&](const Vector& point) {
+    const Vector spoke = difference(point, arc.center);
+    return norm(along(spoke, -dot(spoke, normal), normal));
+  };
+  const double start_radius = radius_of(start.tip), end_radius = radius_of(end);
+  const double allowed = std::max(kRounded_mm, tolerance_mm) + 1e-6 * start_radius;
   if (std::abs(start_radius - end_radius) > allowed) {
     return refuse("the arc's start has radius " + text(start_radius) + " mm about its centre and its end " +
                   text(end_radius) + " mm, a difference of " + text(std::abs(start_radius - end_radius)) + " mm; " +
                   text(allowed) + " mm is allowed");
   }
-  // What rounding left of a short arc. Its sweep, next to nothing or a full turn, is not in its data.
-  if (!arc.closed && chord <= kArcTolerance_mm) return make_line(start, arc.end);
-  const auto circle = circle_about(arc.center, scaled(arc.rotation, normal), start.tip, arc.end.tip, arc.closed);
+  auto circle = circle_about(arc.center, scaled(arc.rotation, normal), start.tip, end, whole);
   if (!circle) return tl::unexpected(circle.error());
   // Where the ends nearly meet, a centre moved to fit both can lie far off: the amounts above do not show it.
   const double off = stray(*circle, arc.center, normal, start.tip);
@@ -159,6 +186,9 @@ Expected<CurvePtr> make_arc(const ArcGeometry& arc, const ToolPose& start) {
     return refuse("the arc's start and end fit no circle about its centre: the best through both is " + text(off) +
                   " mm off; give more digits");
   }
+  const double turn_rad = 2 * std::numbers::pi;
+  circle->sweep_rad = (whole && !arc.closed ? 0 : circle->sweep_rad) + turn_rad * arc.turns;
+  circle->rise = scaled(height, normal);
   return arc_on(*circle, start.axis, arc.end.axis);
 }
 

@@ -30,7 +30,7 @@ inline constexpr double kNodeTurn_rad = 0.1;
 /// points that repeat in a program do.
 [[nodiscard]] Expected<CurvePtr> make_line(const ToolPose& start, const ToolPose& end);
 [[nodiscard]] Expected<CurvePtr> make_joint_line(std::span<const double> start, std::span<const double> end);
-[[nodiscard]] Expected<CurvePtr> make_arc(const ArcGeometry& arc, const ToolPose& start);
+[[nodiscard]] Expected<CurvePtr> make_arc(const ArcGeometry& arc, const ToolPose& start, double tolerance_mm);
 [[nodiscard]] Expected<CurvePtr> make_arc3(const Arc3Geometry& arc, const ToolPose& start);
 /// Checks the curve's start too, because a NURBS' start is known only once its data are found sound.
 [[nodiscard]] Expected<CurveList> make_nurbs(const NurbsGeometry& geometry, const CurveStart& start);

@@ -49,7 +49,9 @@ Expected<CurveList> curves_of(const LineGeometry& line, const CurveStart& start)
 }
 
 Expected<CurveList> curves_of(const ArcGeometry& arc, const CurveStart& start) {
-  return joined(arc, start, make_arc);
+  return joined(arc, start, [&](const ArcGeometry& shape, const ToolPose& begin) {
+    return make_arc(shape, begin, start.tolerance_mm);
+  });
 }
 
 Expected<CurveList> curves_of(const Arc3Geometry& arc, const CurveStart& start) {
@@ -92,6 +94,7 @@ Expected<> check_start_axis(const Vector& axis, const CurveStart& start) {
 
 Expected<std::vector<std::unique_ptr<const Curve>>> make_curves(const Move& move, const CurveStart& start) {
   CurveStart begin = start;
+  begin.tolerance_mm = move.tolerance_mm;
   if (!is_joint_move(move.geometry)) {
     const auto pose = curves::checked(start.pose, "end of the queue");
     if (!pose) return tl::unexpected(pose.error());

@@ -14,6 +14,7 @@ namespace rmac {
 struct CurveStart {
   ToolPose pose;
   std::span<const double> joints;
+  double tolerance_mm = 0;  ///< by which data that do not quite fit each other may be missed
 };
 
 /// The curves of one move, in order: none for a positioning move to where the machine stands already. Where a curve has

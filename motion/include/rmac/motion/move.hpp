@@ -16,15 +16,19 @@ struct LineGeometry {
   ToolPose start, end;
 };
 
-/// Circular arc about an axis. `closed` makes a full circle, whose end is its start; `rotation` is +1 counter-clockwise
-/// about `normal`, -1 clockwise. Start and end may differ in radius and height about the axis by 1 µm and a millionth
-/// of the radius.
+/// Circular arc about an axis, and where its end differs from its start in height along the axis, a helix of even
+/// pitch. `closed` makes a full circle, whose end is its start, seen along the axis; `turns` whole turns are added;
+/// `rotation` is +1 counter-clockwise about `normal`, -1 clockwise. Start and end may differ in radius about the axis
+/// by 1 µm and a millionth of the radius.
 struct ArcGeometry {
+  static constexpr int kMostTurns = 1000;
+
   Vector center{};
   Vector normal{0, 0, 1};
   int rotation = 1;
   bool closed = false;
   ToolPose start, end;
+  int turns = 0;
 };
 
 /// Circular arc from start through a point to the end.

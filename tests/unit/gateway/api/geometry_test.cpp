@@ -57,6 +57,19 @@ TEST(Wire, ReadsAnArcAboutTheAxisOfItsCenter) {
   EXPECT_TRUE(arc.closed);
   EXPECT_EQ(arc.center, (Vector{1, 0, 0}));
   EXPECT_EQ(arc.normal, (Vector{0, 1, 0}));
+  EXPECT_EQ(arc.turns, 0);
+}
+
+TEST(Wire, ReadsTheTurnsOfAHelix) {
+  const std::string helix = R"({"MoveID":7,"RotSign":"clockwise","Closed":false,
+      "CenterPoint":{"p":[1,0,0],"axis":[0,0,1]},"StartPoint":{"p":[0,0,0],"axis":[0,0,1]},
+      "EndPoint":{"p":[2,0,5],"axis":[0,0,1]},"Turns":)";
+  const auto arc = std::get<ArcGeometry>(queued("RMAC_CAM.MoveAlongArc", helix + "3}"));
+  EXPECT_EQ(arc.turns, 3);
+  EXPECT_EQ(arc.end.tip, (Vector{2, 0, 5}));
+  for (const char* wrong : {"-1", "1001", "1.5", "\"two\"", "1e300"}) {
+    EXPECT_THAT(refused("RMAC_CAM.MoveAlongArc", helix + wrong + "}"), HasSubstr("Turns")) << wrong;
+  }
 }
 
 TEST(Wire, ReadsAnArcThroughAPoint) {

@@ -16,24 +16,26 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 using Arc = Shapes;
 
+/// A point of the cylinder of this radius about an axis; `angle` counts about it.
+Vector on_cylinder(const Vector& center, const Vector& normal, double radius, double angle, double height) {
+  const double lean = std::hypot(normal[2], normal[0]);
+  const Vector x{normal[2] / lean, 0, -normal[0] / lean};
+  const Vector y{normal[1] * x[2] - normal[2] * x[1], normal[2] * x[0] - normal[0] * x[2],
+                 normal[0] * x[1] - normal[1] * x[0]};
+  Vector p{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    p[c] = center[c] + height * normal[c] + radius * (std::cos(angle) * x[c] + std::sin(angle) * y[c]);
+  }
+  return p;
+}
+
 TEST_F(Arc, KeepsRadiusPlaneAndSense) {
   for (int i = 0; i < 300; ++i) {
     const Vector center = vector();
     const Vector normal = axis();
     const double radius = 0.05 + 100 * std::abs(number());
-    // Two directions across the normal.
-    const double lean = std::hypot(normal[2], normal[0]);
-    const Vector x{normal[2] / lean, 0, -normal[0] / lean};
-    const Vector y{normal[1] * x[2] - normal[2] * x[1], normal[2] * x[0] - normal[0] * x[2],
-                   normal[0] * x[1] - normal[1] * x[0]};
     const double height = 10 * number();
-    const auto on_circle = [&](double angle) {
-      Vector p{};
-      for (std::size_t c = 0; c < 3; ++c) {
-        p[c] = center[c] + height * normal[c] + radius * (std::cos(angle) * x[c] + std::sin(angle) * y[c]);
-      }
-      return p;
-    };
+    const auto on_circle = [&](double angle) { return on_cylinder(center, normal, radius, angle, height); };
     const double from = pi * number();
     const double sweep = 0.05 + 3.1 * (1 + number());
     const int rotation = i % 2 == 0 ? 1 : -1;
@@ -76,13 +78,14 @@ TEST_F(Arc, EndsExactlyWhereAskedThoughItsCentreIsRounded) {
   expect_steady(*curves[0]);
 }
 
-TEST_F(Arc, IsRefusedWithAmountsWhenItIsAHelixOrASpiral) {
+TEST_F(Arc, IsRefusedWithAmountsWhenItIsASpiral) {
   const ToolPose start{{10, 0, 0}, {0, 0, 1}};
   const auto with_end = [&](const Vector& end) {
     return refusal(ArcGeometry{{0, 0, 0}, {0, 0, 1}, 1, false, start, {end, {0, 0, 1}}}, {start, {}});
   };
-  EXPECT_THAT(with_end({0, 10, 0.5}), HasSubstr("0.5 mm apart along its normal"));
   EXPECT_THAT(with_end({0, 10.25, 0}), HasSubstr("radius 10 mm about its centre and its end 10.25 mm"));
+  EXPECT_THAT(with_end({0, 10.25, 5}), HasSubstr("radius 10 mm about its centre and its end 10.25 mm"));
+  EXPECT_THAT(with_end({10.0000, 0.0005, 0.5}), HasSubstr("coincide (0.0005 mm apart, seen along its axis)"));
   // Nearly all around with a radius that changes: no circle through both has its centre there.
   EXPECT_THAT(with_end({10.0009, -0.002, 0}), HasSubstr("fit no circle about its centre"));
 }
@@ -110,6 +113,33 @@ TEST_F(Arc, WhoseEndsMeetIsNoFullTurnUnlessClosed) {
               HasSubstr("normal has no length"));
 }
 
+TEST_F(Arc, IsTakenWithCoordinatesRoundedToAMicrometre) {
+  const auto rounded = [](Vector v) {
+    for (double& c : v) c = std::round(c * 1000) / 1000;
+    return v;
+  };
+  for (int i = 0; i < 3000; ++i) {
+    const double radius = 0.05 + 60 * std::abs(number()), from = 4 * number(), sweep = 0.4 + 2.6 * std::abs(number());
+    const Vector center = vector();
+    const auto at = [&](double angle) {
+      return Vector{center[0] + radius * std::cos(angle), center[1] + radius * std::sin(angle), center[2]};
+    };
+    const ToolPose start{rounded(at(from)), {0, 0, 1}}, end{rounded(at(from + sweep)), {0, 0, 1}};
+    const auto curves = built(ArcGeometry{rounded(center), {0, 0, 1}, 1, false, start, end}, {start, {}});
+    ASSERT_EQ(curves.size(), 1U);
+    expect_ends(*curves[0], start, end);
+    EXPECT_NEAR(curves[0]->length(), radius * sweep, 0.01);
+  }
+}
+
+TEST_F(Arc, MayMissItsCentreByItsTolerance) {
+  const ToolPose start{{10, 0, 0}, {0, 0, 1}}, end{{0, 10.015, 0}, {0, 0, 1}};
+  Move move = move_of(ArcGeometry{{0, 0, 0}, {0, 0, 1}, 1, false, start, end});
+  EXPECT_FALSE(make_curves(move, {start, {}}));
+  move.tolerance_mm = 0.02;
+  EXPECT_TRUE(make_curves(move, {start, {}}));
+}
+
 TEST_F(Arc, IsRefusedWhenDegenerate) {
   const ToolPose start{{10, 0, 0}, {0, 0, 1}};
   const ToolPose end{{0, 10, 0}, {0, 0, 1}};
@@ -121,6 +151,62 @@ TEST_F(Arc, IsRefusedWhenDegenerate) {
   EXPECT_THAT(refusal(ArcGeometry{{10, 0, 0}, {0, 0, 1}, 1, true, start, start}, queue), HasSubstr("radius is 0 mm"));
   EXPECT_THAT(refusal(ArcGeometry{{0, 0, 0}, {0, 0, 1}, 1, true, start, end}, queue),
               HasSubstr("closed, but its end is 14.14214 mm from its start"));
+}
+
+// Red when the pitch is not even, when it turns the other way, when a turn too many or too few is made, or when one of
+// its derivatives misses the rise.
+TEST_F(Arc, ClimbsEvenlyWhenItsEndIsOffItsPlane) {
+  for (int i = 0; i < 300; ++i) {
+    const Vector center = vector();
+    const Vector normal = axis();
+    const double radius = 0.05 + 100 * std::abs(number());
+    const double base = 10 * number(), rise = 40 * number();
+    const int turns = i % 5, rotation = i % 2 == 0 ? 1 : -1;
+    const bool closed = i % 3 == 0;
+    const double from = pi * number();
+    const double sweep = (closed ? 2 * pi : 0.05 + 3.1 * (1 + number())) + 2 * pi * turns;
+    const auto helix = [&](double f) {
+      return on_cylinder(center, normal, radius, from + rotation * sweep * f, base + rise * f);
+    };
+    const ToolPose start{helix(0), axis()}, end{helix(1), axis()};
+    const auto curves = built(ArcGeometry{center, normal, rotation, closed, start, end, turns}, {start, {}});
+    ASSERT_EQ(curves.size(), 1U);
+    EXPECT_NEAR(curves[0]->length(), std::hypot(radius * sweep, rise), 1e-9);
+    expect_ends(*curves[0], start, end);
+    expect_steady(*curves[0]);
+    expect_sound(*curves[0], 1e-8);
+    for (int k = 0; k <= 20; ++k) {
+      CurvePoint point;
+      curves[0]->evaluate(curves[0]->length() * k / 20, 0, 1, point);
+      const Vector wanted = helix(k / 20.0);
+      for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(point.d[0][c], wanted[c], 1e-9);
+    }
+  }
+}
+
+TEST_F(Arc, MakesAsManyWholeTurnsAsAskedWhereItsEndIsAboveItsStart) {
+  const ToolPose start{{10, 0, 0}, {0, 0, 1}};
+  const ToolPose above{{10, 0, 5}, {0, 0, 1}};
+  const auto length = [&](bool closed, int turns, const ToolPose& end) {
+    const auto curves = built(ArcGeometry{{0, 0, 0}, {0, 0, 1}, 1, closed, start, end, turns}, {start, {}});
+    return curves.empty() ? 0 : curves[0]->length();
+  };
+  EXPECT_NEAR(length(false, 1, above), std::hypot(20 * pi, 5), 1e-12);
+  EXPECT_NEAR(length(true, 0, above), std::hypot(20 * pi, 5), 1e-12);
+  EXPECT_NEAR(length(true, 2, above), std::hypot(60 * pi, 5), 1e-12);
+  // Without a rise, turns are laps.
+  EXPECT_NEAR(length(true, 2, start), 60 * pi, 1e-12);
+  EXPECT_NEAR(length(false, 2, start), 40 * pi, 1e-12);
+  EXPECT_THAT(refusal(ArcGeometry{{0, 0, 0}, {0, 0, 1}, 1, false, start, above}, {start, {}}),
+              HasSubstr("a helix of whole turns Closed or Turns"));
+}
+
+TEST_F(Arc, IsRefusedWhenItsTurnsAreOutOfRange) {
+  const ToolPose start{{10, 0, 0}, {0, 0, 1}}, end{{0, 10, 1}, {0, 0, 1}};
+  for (const int turns : {-1, 1001}) {
+    EXPECT_THAT(refusal(ArcGeometry{{0, 0, 0}, {0, 0, 1}, 1, false, start, end, turns}, {start, {}}),
+                HasSubstr("Turns are " + std::to_string(turns) + "; 0 to 1000"));
+  }
 }
 
 TEST_F(Arc, PassesThroughThreePoints) {

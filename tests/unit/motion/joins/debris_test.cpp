@@ -210,6 +210,45 @@ INSTANTIATE_TEST_SUITE_P(
                        ::testing::Range(1U, 7U)),
     [](const auto& row) { return std::get<0>(row.param).name + std::to_string(std::get<1>(row.param)); });
 
+/// Arcs that go on from each other without a corner, their coordinates rounded to `to_mm`, and lines among them.
+Program tangent_arcs(unsigned seed, double to_mm) {
+  std::mt19937 random(seed);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const auto written = [&](Vector v) {
+    if (to_mm > 0)
+      for (double& c : v) c = std::round(c / to_mm) * to_mm;
+    return v;
+  };
+  Program program;
+  Vector at{};
+  double heading = 0;
+  for (int i = 0; i < 12; ++i) {
+    if (i % 4 == 3) {
+      const double length = uniform(2, 6);
+      at = {at[0] + length * std::cos(heading), at[1] + length * std::sin(heading), 0};
+      program.line_to(written(at));
+      continue;
+    }
+    const int rotation = i % 2 == 0 ? 1 : -1;
+    const double r = uniform(1.5, 5), sweep = rotation * uniform(0.6, 1.4);
+    const Vector center{at[0] - rotation * r * std::sin(heading), at[1] + rotation * r * std::cos(heading), 0};
+    heading += sweep;
+    at = {center[0] + rotation * r * std::sin(heading), center[1] - rotation * r * std::cos(heading), 0};
+    program.arc_to(written(center), rotation, written(at));
+  }
+  return program;
+}
+
+class RoundedArcs : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(RoundedArcs, RunAsFastAsExactOnes) {
+  EXPECT_LT(run(tangent_arcs(GetParam(), 0.001)).time_s, 1.02 * run(tangent_arcs(GetParam(), 0)).time_s);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RoundedArcs, ::testing::Range(1U, 13U));
+
 TEST(TinyLine, ThatIsTheLastIsRunToItsExactEnd) {
   Program program;
   program.line_to({10, 0, 0});
