@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "curves/vector.hpp"
 
@@ -10,6 +11,8 @@ namespace {
 
 using curves::along;
 using curves::difference;
+using curves::dot;
+using curves::unit;
 
 constexpr double kSpacing_mm = 0.1;
 /// Widths: at most this part of the overlap, so that what comes behind it hardly shapes what goes before it; at a free
@@ -32,17 +35,35 @@ constexpr double kFarWithin = 0.5;
 /// Beside a corner with another move, where lines themselves used up what is left to a spline.
 constexpr double kLeastAtCorner = 0.1;
 
-/// The polyline's vertices from `begin` on, and places between them, each with the length it stands for.
-std::vector<SplineSample> samples_of(const Polyline& polyline, double begin) {
+/// How far along the first line the spline before is ahead of its parameter, as one in a tube may be; behind: negative.
+double lead_of(const LineSpline& before, const Polyline& polyline) {
+  if (before.empty()) return 0;
+  const double begin = before.begin();
+  const auto after = std::upper_bound(polyline.places.begin(), polyline.places.end(), begin);
+  const auto k = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - polyline.places.begin(), 1) - 1);
+  const Vector ahead = unit(difference(polyline.vertices[k + 1], polyline.vertices[k]));
+  const Vector here = along(polyline.vertices[k], begin - polyline.places[k], ahead);
+  const Vector spline = quintic::value(quintic::basis(before.knots, before.points.size(), begin), before.points);
+  return dot(difference(spline, here), ahead);
+}
+
+/// The polyline's vertices from where the spline begins, and places between them, each with the length it stands for.
+/// What the spline before is ahead of the polyline is made good little by little.
+std::vector<SplineSample> samples_of(const Polyline& polyline, const LineSpline& before) {
+  constexpr double kMadeGoodIn_mm = 2;
+  const double begin = before.begin(), lead = lead_of(before, polyline);
+  const auto place_of = [&](double q) { return q - lead * std::max(1 - (q - begin) / kMadeGoodIn_mm, 0.0); };
   std::vector<SplineSample> samples;
   for (std::size_t k = 0; k < polyline.lines(); ++k) {
-    const double line = polyline.places[k], end = polyline.places[k + 1], from = std::max(begin, line);
+    const double line = polyline.places[k], end = polyline.places[k + 1];
+    const double from = std::max(begin + std::max(lead, 0.0), line);
     if (!(from < end)) continue;
     const Vector chord = difference(polyline.vertices[k + 1], polyline.vertices[k]);
     const auto parts = std::max(1, static_cast<int>(std::round((end - from) / kSpacing_mm)));
     for (int i = 0; i < parts; ++i) {
-      const double place = from + (end - from) * i / parts;
-      samples.push_back({place, along(polyline.vertices[k], (place - line) / (end - line), chord), k});
+      const double q = from + (end - from) * i / parts;
+      const double place = std::max(place_of(q), begin);
+      samples.push_back({place, along(polyline.vertices[k], (q - line) / (end - line), chord), k});
     }
   }
   samples.push_back({polyline.places.back(), polyline.vertices.back(), polyline.lines() - 1});
@@ -54,15 +75,15 @@ std::vector<SplineSample> samples_of(const Polyline& polyline, double begin) {
   return samples;
 }
 
-void set_bounds(const DenseLines& lines, bool goes_on, std::vector<SplineSample>& samples) {
+void set_bounds(const DenseLines& lines, const LineSpline& before, std::vector<SplineSample>& samples) {
   const double end = lines.polyline.places.back();
   for (SplineSample& sample : samples) {
-    const double to_end = end - sample.place, to_free_end = goes_on ? to_end : std::min(to_end, sample.place);
+    const double to_end = end - sample.place, to_free_end = before.empty() ? std::min(to_end, sample.place) : to_end;
     sample.most_mm = std::min(kWidest * lines.overlap_mm, kFreeEnd_mm + kFreeEndSlope * to_free_end);
     const bool at_corner = sample.place < lines.start_corner_mm || to_end < lines.end_corner_mm;
     const double used_mm = lines.polyline.off_mm[sample.line];
     sample.limit_mm = at_corner ? std::max(0.5 * lines.tolerance_mm - used_mm, kLeastAtCorner * lines.tolerance_mm)
-                                : lines.tolerance_mm - used_mm;
+                                : (sample.place < before.free_from() ? lines.most_mm : lines.tolerance_mm) - used_mm;
   }
 }
 
@@ -139,15 +160,22 @@ double judge(const std::vector<SplineSample>& samples, std::size_t lines, std::v
   return worst;
 }
 
+/// The place of the first sample that is missed by more than it may.
+double kept_to(const std::vector<SplineSample>& samples) {
+  const auto out = std::find_if(samples.begin(), samples.end(),
+                                [](const SplineSample& sample) { return sample.off_mm > sample.limit_mm; });
+  return out == samples.end() ? samples.back().place : out->place;
+}
+
 }  // namespace
 
-std::optional<LineSpline> smoothest_along(const DenseLines& lines, const LineSpline& before) {
+tl::expected<LineSpline, double> smoothest_along(const DenseLines& lines, const LineSpline& before) {
   LineSpline trial;
-  trial.samples = samples_of(lines.polyline, before.begin());
-  set_bounds(lines, !before.empty(), trial.samples);
+  trial.samples = samples_of(lines.polyline, before);
+  set_bounds(lines, before, trial.samples);
   set_widths(lines, before.samples, trial.samples);
   std::optional<LineSpline> best;
-  double least = 0;
+  double least = 0, kept_mm = 0;
   for (int k = 0; k < kMostTrials; ++k) {
     if (!trial.go_on(before, knots_for(lines, trial.samples, before.free_from()), lines.polyline)) break;
     SmoothingSpline spline(trial.knots, trial.samples);
@@ -162,9 +190,11 @@ std::optional<LineSpline> smoothest_along(const DenseLines& lines, const LineSpl
       }
       if ((k > 0 && !worth_it) || worst < kFarWithin) break;
     }
+    kept_mm = std::max(kept_mm, kept_to(trial.samples));
     adapt(std::max(kAim - kLessATrial * k, kLeastAim), trial.samples);
   }
-  return best;
+  if (!best) return tl::unexpected(kept_mm);
+  return *std::move(best);
 }
 
 }  // namespace rmac

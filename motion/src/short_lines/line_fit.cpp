@@ -51,17 +51,20 @@ bool short_line(const PathSegment& segment) {
          !demand.rest_before && !demand.rest_after;
 }
 
+double turn_between(const PathSegment& a, const PathSegment& b) {
+  CurvePoint before, after;
+  a.curve().evaluate(a.length(), 1, -1, before);
+  b.curve().evaluate(0, 1, 1, after);
+  double square = 0;
+  for (std::size_t c = 0; c < 3; ++c) square += (after.d[1][c] - before.d[1][c]) * (after.d[1][c] - before.d[1][c]);
+  return std::sqrt(square);
+}
+
 /// A smooth curve through both lines' ends stays within tolerance of them (an arc of their turn is a quarter of turn
 /// times length away, halved where both are alike), or they are coarse, and a curve in the tube passes the corner.
 bool belong_together(const PathSegment& a, const PathSegment& b) {
   if (!short_line(a) || !short_line(b) || !alike(a, b)) return false;
-  CurvePoint before, after;
-  a.curve().evaluate(a.length(), 1, -1, before);
-  b.curve().evaluate(0, 1, 1, after);
-  double turn = 0;
-  for (std::size_t c = 0; c < 3; ++c) turn += (after.d[1][c] - before.d[1][c]) * (after.d[1][c] - before.d[1][c]);
-  turn = std::sqrt(turn);
-  const double tolerance = a.demand().tolerance_mm;
+  const double turn = turn_between(a, b), tolerance = a.demand().tolerance_mm;
   if (turn < kMostTurn && turn * std::max(a.length(), b.length()) / 6 < tolerance) return true;
   return turn < kMostCoarseTurn && std::min(a.length(), b.length()) > kCoarse * tolerance &&
          turn * std::max(a.length(), b.length()) / 8 < kMostSagitta * tolerance;
@@ -85,8 +88,27 @@ void LineFit::count_line() const noexcept {
   if (checked_ < window_ && checked_ >= kTubeLines && checked_mm_ >= kWindow_mm) window_ = checked_;
 }
 
+bool LineFit::end_at_corner() noexcept {
+  const std::size_t run = std::min(run_length(), window_);
+  if (run < 2 * kShortest || ++corners_made_ > kMostCorners) return false;
+  std::size_t first = 1, last = run - 1;
+  if (coarse_ < run) {
+    last = std::clamp<std::size_t>(coarse_, 1, last);
+    first = std::max(last, kBeforeCoarse + 1) - kBeforeCoarse;
+  }
+  double sharpest = 0;
+  for (std::size_t k = first; k <= last; ++k) {
+    const double turn = turn_between(*waiting_[k - 1], *waiting_[k]);
+    if (!(turn > sharpest)) continue;
+    sharpest = turn;
+    corner_ = k;
+  }
+  drop_lines(0);  // counts again
+  return sharpest > 0;
+}
+
 std::size_t LineFit::run_length() const noexcept {
-  while (checked_ < waiting_.size() && checked_ <= window_ &&
+  while (checked_ < waiting_.size() && checked_ <= window_ && checked_ < corner_ &&
          (checked_ == 0 || belong_together(*waiting_[checked_ - 1], *waiting_[checked_])))
     count_line();
   return checked_;
@@ -98,7 +120,9 @@ bool LineFit::complete() const noexcept {
 
 void LineFit::drop_lines(std::size_t count) {
   waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
-  const std::size_t known = checked_ - std::min(checked_, count);
+  coarse_ = coarse_ >= count && coarse_ != kNone ? coarse_ - count : kNone;
+  corner_ = corner_ > count && corner_ != kNone ? corner_ - count : kNone;
+  const std::size_t known = std::min(checked_ - std::min(checked_, count), corner_);
   checked_ = 0;
   checked_mm_ = 0;
   window_ = kMostLines;
@@ -114,15 +138,20 @@ Polyline LineFit::polyline(std::size_t lines) const {
   return polyline;
 }
 
-bool LineFit::fit_dense(std::size_t lines, bool ends, Fit& fit) const {
+bool LineFit::fit_dense(std::size_t lines, bool ends, Fit& fit) {
   fit.polyline = polyline(lines);
   const double tolerance = waiting_[0]->demand().tolerance_mm, length = fit.polyline.places.back();
   const double third = length / 3, corner = std::min(kCorner * tolerance, third);
-  DenseLines dense{fit.polyline, kPart * tolerance, third};
+  DenseLines dense{fit.polyline, kPart * tolerance, tolerance, third};
   if (!goes_on() && begins_at_join_) dense.start_corner_mm = corner;
   if (ends && lines < waiting_.size()) dense.end_corner_mm = corner;
   auto spline = smoothest_along(dense, before_.spline);
-  if (!spline) return false;
+  if (!spline) {
+    const auto& places = fit.polyline.places;
+    coarse_ =
+        static_cast<std::size_t>(std::upper_bound(places.begin(), places.end(), spline.error()) - places.begin()) - 1;
+    return false;
+  }
   fit.spline = std::move(*spline);
   std::vector<std::size_t> cuts;
   if (dense.start_corner_mm > 0) cuts.push_back(knot_at(fit.spline, dense.start_corner_mm));
@@ -183,13 +212,25 @@ void LineFit::make_faster(const std::vector<double>& widths, Fit& fit) const {
                   law, spline.points, spline.deviations_mm);
 }
 
-bool LineFit::fit(bool finish, Fit& fit) const {
+std::size_t LineFit::dense_lines(std::size_t run) const noexcept {
+  if (coarse_ >= run) return std::min(run, window_);
+  const std::size_t lines = coarse_ - std::min(coarse_, kBeforeCoarse);
+  double length = -before_.spline.free_from();
+  for (std::size_t i = 0; i < lines; ++i) length += waiting_[i]->length();
+  // Fewer than these are better off in the tube, together with what is too coarse.
+  return lines >= 2 * kTubeLines && length >= kWindow_mm / 2 ? lines : 0;
+}
+
+bool LineFit::fit(bool finish, Fit& fit) {
   const std::size_t run = run_length();
   if (run < kShortest && !goes_on()) return false;
   const bool whole = finish || complete();
-  const auto lines = [&](std::size_t most) { return std::min(run, most); };
-  return fit_dense(lines(window_), whole && run <= window_, fit) ||
-         fit_tube(lines(kTubeLines), whole && run <= kTubeLines, fit);
+  // Dense lines up to those that are too coarse, and these in the tube.
+  for (int trial = 0; trial < 2; ++trial) {
+    const std::size_t lines = dense_lines(run);
+    if (lines > 0 && fit_dense(lines, whole && run <= lines, fit)) return true;
+  }
+  return fit_tube(std::min(run, kTubeLines), whole && run <= kTubeLines, fit);
 }
 
 bool LineFit::make_segments(std::vector<std::size_t> cuts, double tail, bool ends, Fit& fit) const {
@@ -278,6 +319,8 @@ void LineFit::advance(bool finish, SegmentQueue& out) {
   if (waiting_.empty() || !(finish || ready())) return;
   Fit found;
   if (fit(finish, found)) {
+    corners_made_ = 0;
+    given_up_ = 0;
     take(std::move(found), out);
   } else if (goes_on()) {
     // No spline follows within tolerance: the window before ends as it was found, at the end of its last line.
@@ -285,8 +328,11 @@ void LineFit::advance(bool finish, SegmentQueue& out) {
     drop_lines(before_.polyline.places.size() - 1);
     before_ = {};
   } else {
-    // The whole run, as it is: less than a run would be no better.
-    const std::size_t count = finish || complete() ? std::min(run_length(), window_) : 1;
+    if (end_at_corner()) return advance(finish, out);
+    // Some lines as they are; more of them each time, so that lines which no spline follows do not cost a fit each.
+    corners_made_ = 0;
+    const std::size_t count = std::min({std::max<std::size_t>(run_length(), 1), window_, kShortest << given_up_});
+    given_up_ = std::min(given_up_ + 1, 8);
     for (std::size_t i = 0; i < count; ++i) out.push_back(waiting_[i]);
     drop_lines(count);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -40,6 +41,10 @@ class LineFit {
   static constexpr double kWindow_mm = 24;
   static constexpr std::size_t kMostLines = 2400;
   static constexpr std::size_t kShortest = 6;  ///< lines that are worth a fit
+  /// Where no spline follows a window, a corner ends the run, and what is left of it is tried again, so often.
+  static constexpr int kMostCorners = 3;
+  static constexpr std::size_t kBeforeCoarse = 3;  ///< lines between a dense fit and one that is too coarse
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
   /// A spline along the waiting lines, and the path that it makes.
   struct Fit {
@@ -56,8 +61,10 @@ class LineFit {
   void count_line() const noexcept;
   [[nodiscard]] bool goes_on() const noexcept { return before_.tail != nullptr; }
   [[nodiscard]] Polyline polyline(std::size_t lines) const;
-  [[nodiscard]] bool fit(bool finish, Fit& fit) const;
-  [[nodiscard]] bool fit_dense(std::size_t lines, bool ends, Fit& fit) const;
+  [[nodiscard]] bool fit(bool finish, Fit& fit);
+  /// Lines of the run to try a dense fit of: the window, or less before lines that were too coarse for one.
+  [[nodiscard]] std::size_t dense_lines(std::size_t run) const noexcept;
+  [[nodiscard]] bool fit_dense(std::size_t lines, bool ends, Fit& fit);
   [[nodiscard]] bool fit_tube(std::size_t lines, bool ends, Fit& fit) const;
   /// A spline in the tube becomes one that is faster to travel, where that is found.
   void make_faster(const std::vector<double>& widths, Fit& fit) const;
@@ -65,6 +72,9 @@ class LineFit {
   [[nodiscard]] bool make_segments(std::vector<std::size_t> cuts, double tail, bool ends, Fit& fit) const;
   [[nodiscard]] std::shared_ptr<const PathSegment> segment(const Fit& fit, std::shared_ptr<const Curve> curve,
                                                            double from, double to) const;
+  /// The run ends where it turns most, near the lines that were too coarse, as at a corner that was meant. False where
+  /// that was tried often enough.
+  [[nodiscard]] bool end_at_corner() noexcept;
   void take(Fit fit, SegmentQueue& out);
   void drop_lines(std::size_t count);
 
@@ -74,6 +84,10 @@ class LineFit {
   mutable std::size_t checked_ = 0;          ///< lines at the front of `waiting_` known to belong together
   mutable double checked_mm_ = 0;            ///< their length
   mutable std::size_t window_ = kMostLines;  ///< lines that fill the window, once so many are there
+  std::size_t coarse_ = kNone;               ///< the first line that was found too coarse for a dense fit
+  std::size_t corner_ = kNone;               ///< lines at the front, behind which a corner ends the run
+  int corners_made_ = 0;                     ///< since a spline was found, or lines were given up
+  int given_up_ = 0;                         ///< how often lines were, since a spline was found
   bool begins_at_join_ = false;              ///< something was given out that the first waiting line meets
   /// The window before: what its spline leaves, and its tail.
   Fit before_;

@@ -40,7 +40,7 @@ class DenseSpline : public ::testing::TestWithParam<Rounded> {};
 TEST_P(DenseSpline, BendsAsTheCircleThatTheRoundedLinesCameFrom) {
   const auto& [line_mm, rounding_mm, tolerance_mm] = GetParam();
   const Polyline polyline = circle(line_mm, rounding_mm);
-  const auto spline = smoothest_along({polyline, tolerance_mm, 8}, {});
+  const auto spline = smoothest_along({polyline, tolerance_mm, tolerance_mm, 8}, {});
   ASSERT_TRUE(spline);
   const auto of_order = [&](double place, std::size_t order) {
     return quintic::value(quintic::derivatives(spline->knots, spline->points.size(), place, order), spline->points);
@@ -55,7 +55,7 @@ TEST_P(DenseSpline, BendsAsTheCircleThatTheRoundedLinesCameFrom) {
 TEST_P(DenseSpline, IsWithinWhatItSaysOfEachLineAndThatWithinTheTolerance) {
   const auto& [line_mm, rounding_mm, tolerance_mm] = GetParam();
   const Polyline polyline = circle(line_mm, rounding_mm);
-  const auto spline = smoothest_along({polyline, tolerance_mm, 8}, {});
+  const auto spline = smoothest_along({polyline, tolerance_mm, tolerance_mm, 8}, {});
   ASSERT_TRUE(spline);
   ASSERT_EQ(spline->deviations_mm.size(), polyline.lines());
   for (std::size_t k = 0; k < polyline.lines(); ++k) {
@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(Roundings, DenseSpline,
 
 TEST(DenseSplines, LeaveHalfOfTheToleranceBesideACorner) {
   const Polyline polyline = circle(0.1, 0.01);
-  DenseLines lines{polyline, 0.02, 8, 2, 3};
+  DenseLines lines{polyline, 0.02, 0.02, 8, 2, 3};
   const auto spline = smoothest_along(lines, {});
   ASSERT_TRUE(spline);
   for (std::size_t k = 0; k < 20; ++k) EXPECT_LE(spline->deviations_mm[k], 0.01);
@@ -86,7 +86,7 @@ TEST(DenseSplines, LeaveHalfOfTheToleranceBesideACorner) {
 TEST(DenseSplines, AreNoneOfCornersThatTheToleranceCannotPass) {
   Polyline zigzag{{{0, 0, 0}}, {0}, {}, {}};
   for (int i = 1; i <= 60; ++i) zigzag.add({0.3 * i, i % 2 == 0 ? 0 : 0.2, 0}, std::hypot(0.3, 0.2));
-  EXPECT_FALSE(smoothest_along({zigzag, 0.001, 6}, {}));
+  EXPECT_FALSE(smoothest_along({zigzag, 0.001, 0.001, 6}, {}));
 }
 
 }  // namespace

@@ -131,6 +131,12 @@ TEST_P(RoundedLines, UseMoreTolerance) {
   }
 }
 
+// Where a bend is too tight for a spline within the tolerance, that costs time there and not for the lines around it.
+TEST_P(RoundedLines, AreNotSlowerTheFinerTheyAre) {
+  EXPECT_LT(machined(rounded(waves(GetParam(), 0.02), 0.001), 0.003),
+            1.02 * machined(rounded(waves(GetParam(), 0.2), 0.001), 0.003));
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, RoundedLines, ::testing::Range(1U, 9U));
 
 class CoarseLines : public ::testing::TestWithParam<unsigned> {};
