@@ -53,6 +53,8 @@ const char* to_string(Event::Kind kind) noexcept {
       return "ToolChanged";
     case Event::Kind::ToolChangeDropped:
       return "ToolChangeDropped";
+    case Event::Kind::ProgramStopped:
+      return "ProgramStopped";
   }
   return "unknown";
 }
@@ -78,36 +80,37 @@ nlohmann::json state_to_json(MachinePort& machine, int moves_left, const CycleSa
   const sdk::DeviceObject* mechanism = machine.mechanism();
   const CycleNow cycle = machine.cycle_now();
   const ToolPose& tool = sample.pose_actual;
-  nlohmann::json state{
-      {"t_s", sample.t_s},
-      {"cycle", sample.cycle},
-      {"state", to_string(sample.state)},
-      {"mode", cycle.mode},
-      {"moving", sample.moving},
-      {"move_id", sample.move_id},
-      {"s_mm", sample.s_mm},
-      {"feed_set_mm_min", sample.feed_set_mm_s * 60},
-      {"feed_actual_mm_min", sample.feed_actual_mm_s * 60},
-      {"override_percent", cycle.override_percent},
-      {"pose", {tool.tip[0], tool.tip[1], tool.tip[2], tool.axis[0], tool.axis[1], tool.axis[2]}},
-      {"joints", first(sample.position, sample.joint_count)},
-      {"held_joints", std::vector<double>(sample.position.begin() + sample.joint_count,
-                                          sample.position.begin() + sample.joint_count_with_held)},
-      {"inputs", sample.inputs},
-      {"outputs", sample.outputs},
-      {"deadline_misses", sample.deadline_misses},
-      {"wake_up", brief(machine.cycle_times().wake_up.read())},
-      {"compute", brief(machine.cycle_times().compute.read())},
-      {"bus", brief(machine.cycle_times().bus.read())},
-      {"moves_in_buffer", moves_left},
-      {"status_major", status.major},
-      {"status_minor", status.minor},
-      {"authority", who.authority},
-      {"operator", who.on_duty},
-      {"held_by", cycle.held_by},
-      {"waits_for", cycle.waits_for},
-      {"cleaned", {{"without_motion", cycle.cleaned.without_motion}, {"merged", cycle.cleaned.merged}}},
-      {"virtual", machine.device().virtual_mode()}};
+  nlohmann::json state{{"t_s", sample.t_s},
+                       {"cycle", sample.cycle},
+                       {"state", to_string(sample.state)},
+                       {"mode", cycle.mode},
+                       {"moving", sample.moving},
+                       {"move_id", sample.move_id},
+                       {"s_mm", sample.s_mm},
+                       {"feed_set_mm_min", sample.feed_set_mm_s * 60},
+                       {"feed_actual_mm_min", sample.feed_actual_mm_s * 60},
+                       {"override_percent", cycle.override_percent},
+                       {"pose", {tool.tip[0], tool.tip[1], tool.tip[2], tool.axis[0], tool.axis[1], tool.axis[2]}},
+                       {"joints", first(sample.position, sample.joint_count)},
+                       {"held_joints", std::vector<double>(sample.position.begin() + sample.joint_count,
+                                                           sample.position.begin() + sample.joint_count_with_held)},
+                       {"inputs", sample.inputs},
+                       {"outputs", sample.outputs},
+                       {"deadline_misses", sample.deadline_misses},
+                       {"wake_up", brief(machine.cycle_times().wake_up.read())},
+                       {"compute", brief(machine.cycle_times().compute.read())},
+                       {"bus", brief(machine.cycle_times().bus.read())},
+                       {"moves_in_buffer", moves_left},
+                       {"status_major", status.major},
+                       {"status_minor", status.minor},
+                       {"authority", who.authority},
+                       {"operator", who.on_duty},
+                       {"held_by", cycle.held_by},
+                       {"waits_for", cycle.waits_for},
+                       {"optional_stops", cycle.optional_stops},
+                       {"stop_prompt", cycle.stop_prompt},
+                       {"virtual", machine.device().virtual_mode()}};
+  state["cleaned"] = {{"without_motion", cycle.cleaned.without_motion}, {"merged", cycle.cleaned.merged}};
   const ToolsNow tools = machine.tools().tools_now();
   state["tool"] = tools.mounted ? nlohmann::json(*tools.mounted) : nlohmann::json();
   state["tool_wanted"] = tools.wanted ? nlohmann::json(*tools.wanted) : nlohmann::json();

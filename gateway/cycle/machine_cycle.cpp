@@ -40,6 +40,7 @@ MachineCycle::MachineCycle(Options options, ServoLink& link)
       sequencer(options.jog_while_waiting),
       queue(news),
       tools(wishes, news),
+      program_turn(wishes, news),
       options_(options),
       link_(link) {}
 
@@ -57,6 +58,7 @@ CycleObservation MachineCycle::observe(const ServoStatus& status) {
   const Planner& planner = mechanism_->planner;
   seen.at_rest = !status.moving && planner.at_rest(status.progress);
   seen.retraced = seen.at_rest && planner.retraced(status.progress);
+  seen.at_end = seen.at_rest && planner.at_end();
   seen.moves_done = status.moves_done;
   seen.follows = status.follows;
   seen.homings = status.homings;
@@ -202,40 +204,25 @@ void MachineCycle::tell_state() {
 
 void MachineCycle::take_steps(const ServoStatus& status) {
   while (!queue.steps().empty() && mechanism_ && status.generation == generation_ && !is_faulted(sequencer.state())) {
-    // A path is planned as soon as no other step is before it; the others wait for rest at its end.
-    if (std::holds_alternative<QueuedPath>(queue.next_step())) {
-      queue.plan_next_step();
-      continue;
-    }
+    steps_.hand_on();  // what is handed on is seen to be there
     const CycleObservation seen = observe(status);
-    // A tool that a person put in is in, whether the cycle runs or not.
-    const bool confirmed = std::holds_alternative<MountTool>(queue.next_step()) && tools.changing();
-    const bool rests = seen.at_rest && seen.moves_left == 0 && !sequencer.waits_for_spindle();
-    if (!rests || !(confirmed || sequencer.state() == CycleState::Running)) return;
-    if (!take_step(seen.t_s)) return;
-    queue.step_done();
+    switch (steps_.take(seen, {seen.t_s, link_.history.latest().inputs, mechanism_->virtual_mode()})) {
+      case QueueSteps::Came::Nothing:
+        return;
+      case QueueSteps::Came::Done:
+        continue;
+      case QueueSteps::Came::SpindlesTold:
+        await_spindles();
+        continue;
+      case QueueSteps::Came::ToolMounted:
+        mechanism_->planner.clear();  // what was cut with another tool is not retraced with this one
+        continue;
+      case QueueSteps::Came::Held:
+      case QueueSteps::Came::Failed:
+        tell_state();
+        return;
+    }
   }
-}
-
-bool MachineCycle::take_step(double t_s) {
-  switch (tools.take(queue.next_step(), {t_s, link_.history.latest().inputs, mechanism_->virtual_mode()})) {
-    case ToolChange::Outcome::Waits:
-      return false;
-    case ToolChange::Outcome::Done:
-      return true;
-    case ToolChange::Outcome::Begun:
-      await_spindles();
-      return true;
-    case ToolChange::Outcome::Mounted:
-      mechanism_->planner.clear();  // what was cut with another tool is not retraced with this one
-      sequencer.one_done();
-      return true;
-    case ToolChange::Outcome::Failed:
-      sequencer.fault();
-      tell_state();
-      return false;
-  }
-  return false;
 }
 
 Planning::Pace MachineCycle::advance(const ServoStatus& status) {
@@ -349,6 +336,7 @@ std::size_t MachineCycle::moves_left() {
 void MachineCycle::empty_queue(std::int64_t cycle) {
   wishes.forget_later();
   tools.drop(queue.clear(cycle));
+  program_turn.drop();
 }
 
 void MachineCycle::apply_feed() {
@@ -370,6 +358,7 @@ std::shared_ptr<Mechanism> MachineCycle::install(std::shared_ptr<Mechanism> next
   builder_ = mechanism_ ? &mechanism_->builder : nullptr;
   wishes.forget_later();
   tools.drop(queue.forget());
+  program_turn.drop();
   path_watch_.restart();
   queue.install(mechanism_ ? &mechanism_->planner : nullptr);
   apply_feed();

@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "gateway/cycle/program_turn.hpp"
+#include "gateway/cycle/queue_steps.hpp"
 #include "gateway/cycle/standing_wishes.hpp"
 #include "gateway/cycle/states/cycle_sequencer.hpp"
 #include "gateway/cycle/states/feed_override.hpp"
@@ -43,6 +45,7 @@ class MachineCycle {
   CycleSequencer sequencer GUARDED_BY(lock);
   MoveQueue queue GUARDED_BY(lock);
   ToolChange tools GUARDED_BY(lock);
+  ProgramTurn program_turn GUARDED_BY(lock);
   ProbeWatch probe GUARDED_BY(lock);
   FeedOverride feed GUARDED_BY(lock);
 
@@ -126,8 +129,6 @@ class MachineCycle {
   void lead_back(const CycleObservation& seen, const ServoStatus& status) REQUIRES(lock);
   [[nodiscard]] std::string beside_path(const ServoStatus& status) const REQUIRES(lock);
   void tell_state() REQUIRES(lock);
-  /// The next step, which is no path; true when it is done.
-  [[nodiscard]] bool take_step(double t_s) REQUIRES(lock);
   [[nodiscard]] Planning::Pace pace(const ServoStatus& status) REQUIRES(lock);
 
   const Options options_;
@@ -136,6 +137,7 @@ class MachineCycle {
   std::uint64_t generation_ GUARDED_BY(lock) = 0;
   PathBuilder* builder_ = nullptr;  ///< the gateway thread's alone
   std::atomic<bool> jogs_{false};   ///< written with a turn, read without
+  QueueSteps steps_ GUARDED_BY(lock){{queue, tools, program_turn, sequencer}};
   PathWatch path_watch_ GUARDED_BY(lock);
   bool told_beside_ GUARDED_BY(lock) = false;  ///< that the machine rests beside its path
   CycleState reported_state_ GUARDED_BY(lock) = CycleState::Idle;

@@ -15,6 +15,7 @@ const char* waits_for(MachineCycle& cycle) REQUIRES(cycle.lock) {
   if (cycle.feed.percent() == 0) return "override";
   if (!seen.at_rest || cycle.sequencer.phase().positions()) return "";
   if (cycle.tools.asked()) return "tool";
+  if (const char* const waits = cycle.program_turn.waits_for(); *waits != '\0') return waits;
   return cycle.sequencer.waits_for_spindle() ? "spindle" : "";
 }
 
@@ -25,14 +26,20 @@ MotionSupervisor::Pace MotionSupervisor::advance(const ServoStatus& status) {
   return cycle_.advance(status);
 }
 
-Expected<> MotionSupervisor::add_steps(std::vector<QueueStep> steps, ProgramStep as_sent) {
+Expected<> MotionSupervisor::add_steps(const char* function, std::vector<QueueStep> steps, ProgramStep as_sent) {
   const GatewayTurn turn(cycle_.lock);
   if (cycle_.queue_is_gone()) {
-    return failure(MinorCode::Other,
-                   "DoToolChange: the machine was stopped and its queue emptied meanwhile; nothing was queued");
+    return failure(MinorCode::Other, std::string(function) +
+                                         ": the machine was stopped and its queue emptied meanwhile; nothing was "
+                                         "queued");
   }
   cycle_.queue.add_steps(std::move(steps), std::move(as_sent));
   return {};
+}
+
+void MotionSupervisor::set_optional_stops(bool on) {
+  const GatewayTurn turn(cycle_.lock);
+  cycle_.program_turn.set_optional_stops(on);
 }
 
 ToolsNow MotionSupervisor::tools_now() {
@@ -105,7 +112,12 @@ CycleNow MotionSupervisor::now() {
           !started    ? ""
           : automatic ? "AUTOMATIC"
                       : "MANUAL",
-          cycle_.feed.percent(), waits_for(cycle_), by ? by->name() : "", cycle_.queue.cleaned()};
+          cycle_.feed.percent(),
+          waits_for(cycle_),
+          by ? by->name() : "",
+          cycle_.program_turn.optional_stops(),
+          cycle_.program_turn.prompt(),
+          cycle_.queue.cleaned()};
 }
 
 std::shared_ptr<Mechanism> MotionSupervisor::install(std::shared_ptr<Mechanism> next, std::uint64_t generation,

@@ -56,8 +56,10 @@ class MotionSupervisor final : public Planning {
   [[nodiscard]] Expected<bool> add_move(const Move& move) { return entry_.add(move); }
 
   /// Adds what is to be done between moves: moves that are added from now on wait behind it. The caller has seen to it
-  /// that `builder()` goes on where the steps leave the machine.
-  [[nodiscard]] Expected<> add_steps(std::vector<QueueStep> steps, ProgramStep as_sent);
+  /// that `builder()` goes on where the steps leave the machine. `function` is what an error names.
+  [[nodiscard]] Expected<> add_steps(const char* function, std::vector<QueueStep> steps, ProgramStep as_sent);
+  /// See `ProgramTurn`.
+  void set_optional_stops(bool on);
   [[nodiscard]] ToolsNow tools_now();
   /// The person who was asked says that this tool is in.
   [[nodiscard]] Expected<> confirm_tool(int number);

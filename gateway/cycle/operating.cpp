@@ -41,6 +41,9 @@ Expected<double> Operating::retrace(double distance_mm, const OperatorRef& by) {
   if (auto fine = cycle_.sequencer.check_retrace(cycle_.observe(cycle_.status()), by); !fine) {
     return tl::unexpected(fine.error());
   }
+  if (cycle_.tools.changing()) {
+    return failure(MinorCode::Other, "FeedRetrace: a tool change is under way; go back when it is done");
+  }
   const ServoStatus now = cycle_.status();
   auto way = cycle_.mechanism()->planner.turn_back(distance_mm, {now.position_set.data(), now.joint_count});
   if (!way) return way;

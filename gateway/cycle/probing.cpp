@@ -4,17 +4,16 @@
 
 namespace rmac::gateway {
 
-bool Probing::changes_tool() {
+bool Probing::waits_for_steps() {
   const GatewayTurn turn(cycle_.lock);
-  return cycle_.tools.now(cycle_.queue.steps()).wanted.has_value();
+  return !cycle_.queue.steps().empty();
 }
 
 Expected<> Probing::add(const std::optional<Move>& approach, const Move& search) {
-  if (changes_tool()) {
-    return failure(
-        MinorCode::CommandQueueFull,
-        "a point is measured with the tool that is in the spindle, and a tool change is queued; send it when "
-        "the tool is changed");
+  if (waits_for_steps()) {
+    return failure(MinorCode::CommandQueueFull,
+                   "a point is measured with the tool that is in the spindle, and from rest, and a tool change, a "
+                   "dwell, a stop or a wait for an input is queued; send it when that is done");
   }
   std::vector<PartOfMove> parts;
   if (approach) parts.push_back({&*approach, {.first = true, .last = false}});

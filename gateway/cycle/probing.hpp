@@ -27,7 +27,8 @@ class Probing {
  private:
   /// False when the measurement does not stand after its hit.
   [[nodiscard]] Expected<bool> ready_for_retract();
-  [[nodiscard]] bool changes_tool();
+  /// What is queued before it is not only moves.
+  [[nodiscard]] bool waits_for_steps();
 
   MachineCycle& cycle_;
 };

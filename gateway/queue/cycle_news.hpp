@@ -36,6 +36,12 @@ class CycleNews {
   void tell(Event::Kind kind, std::string message, MinorCode code = MinorCode::None, bool goes_on = false) {
     news_.events.push_back({kind, t_s_, 0, std::move(message), cycle_, {}, code, {}, goes_on});
   }
+  /// At the time that was set.
+  void tell_now(Event event) {
+    event.t_s = t_s_;
+    event.cycle = cycle_;
+    tell(std::move(event));
+  }
   void tell(Event event) { news_.events.push_back(std::move(event)); }
   void tell(const QueueChange& change) { news_.queue.push_back(change); }
   [[nodiscard]] Taken take() { return std::exchange(news_, {}); }

@@ -10,6 +10,22 @@ bool changes_tool(const QueueStep& step) {
   return std::holds_alternative<MountTool>(step);
 }
 
+bool counts(const QueueStep& step) {
+  return std::holds_alternative<QueuedPath>(step) || std::holds_alternative<InTurn>(step) || changes_tool(step);
+}
+
+/// The listener counts by moves what is done.
+void tell_of(const QueueStep& step, const QueueListener& listener) {
+  Move move;
+  if (const auto* path = std::get_if<QueuedPath>(&step)) {
+    move.id = path->move_id;
+    listener(move, path->segments);
+  } else if (const auto* turn = std::get_if<InTurn>(&step)) {
+    move.id = turn->move_id;
+    listener(move, {});
+  }
+}
+
 }  // namespace
 
 void MoveQueue::install(Planner* planner) noexcept {
@@ -42,11 +58,7 @@ bool MoveQueue::add(BuiltMove built) {
 void MoveQueue::add_steps(std::vector<QueueStep> steps, ProgramStep as_sent) {
   const std::size_t left_before = left();
   for (QueueStep& step : steps) {
-    if (const auto* path = std::get_if<QueuedPath>(&step); path != nullptr && listener_) {
-      Move move;
-      move.id = path->move_id;
-      listener_(move, path->segments);
-    }
+    if (listener_) tell_of(step, listener_);
     steps_.push_back(std::move(step));
   }
   const std::size_t left_now = left();
@@ -76,8 +88,7 @@ Cleaned MoveQueue::cleaned() const noexcept {
 }
 
 std::size_t MoveQueue::waiting() const {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      steps_, [](const QueueStep& step) { return std::holds_alternative<QueuedPath>(step) || changes_tool(step); }));
+  return static_cast<std::size_t>(std::ranges::count_if(steps_, counts));
 }
 
 std::size_t MoveQueue::left() {

@@ -15,8 +15,8 @@
 
 namespace rmac::gateway {
 
-/// What is queued and not done: moves that the planner has, then steps that wait for those to be done (a tool change
-/// and whatever is behind it), and beside both what clients sent. One thread at a time: the caller locks.
+/// What is queued and not done: moves that the planner has, then steps that wait for those to be done (a tool change, a
+/// dwell, and whatever is behind them), and beside both what clients sent. One thread at a time: the caller locks.
 class MoveQueue {
  public:
   explicit MoveQueue(CycleNews& news) : news_(news) {}
@@ -46,7 +46,7 @@ class MoveQueue {
 
   /// Moves that the planner has not done.
   [[nodiscard]] std::size_t planned() const noexcept { return planner_ == nullptr ? 0 : planner_->moves_left(); }
-  /// Moves and tool changes that wait behind a step.
+  /// Moves, tool changes and what is done in its turn, all that wait behind a step and it.
   [[nodiscard]] std::size_t waiting() const;
   /// All of them, moves without motion too. A measurement counts as the moves that it is made of.
   [[nodiscard]] std::size_t left();

@@ -4,7 +4,7 @@
 
 namespace rmac::gateway {
 
-ProgramStep step_at(const PathBuilder& builder, std::variant<Move, int> what) {
+ProgramStep step_at(const PathBuilder& builder, StepAsSent what) {
   const auto joints = builder.end_joints();
   return {.what = std::move(what), .start = builder.end_pose(), .start_joints = {joints.begin(), joints.end()}};
 }

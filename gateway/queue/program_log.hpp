@@ -5,14 +5,18 @@
 #include <variant>
 #include <vector>
 
+#include "gateway/queue/queue_step.hpp"
 #include "rmac/motion/path_builder.hpp"
 
 namespace rmac::gateway {
 
+/// A move, a change to this tool, or what is done in its turn between moves.
+using StepAsSent = std::variant<Move, int, InTurn>;
+
 /// What a client queued, and from where it begins: enough to queue it again, in another part frame too.
 struct ProgramStep {
-  std::variant<Move, int> what;  ///< a move, or a change to this tool
-  ToolPose start;                ///< part frame
+  StepAsSent what;
+  ToolPose start;  ///< part frame
   std::vector<double> start_joints;
   double from_mm = 0;      ///< a move that was begun before goes on from here: what lies before is done
   bool way_back = false;   ///< the machine's own way to where a program goes on, no step of that
@@ -20,7 +24,7 @@ struct ProgramStep {
 };
 
 /// As it is queued behind what `builder` built last.
-[[nodiscard]] ProgramStep step_at(const PathBuilder& builder, std::variant<Move, int> what);
+[[nodiscard]] ProgramStep step_at(const PathBuilder& builder, StepAsSent what);
 
 /// The steps that are queued and not done, in order.
 class ProgramLog {

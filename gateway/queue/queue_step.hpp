@@ -12,8 +12,8 @@
 
 namespace rmac::gateway {
 
-// What a tool change is made of, and what waits behind it. Each step but a path is taken at rest, when all before it is
-// done, and while the cycle runs.
+// What stands between moves: what a tool change is made of, what a program does in its turn, and what waits behind it.
+// Each step but a path is taken at rest, when all before it is done, and while the cycle runs.
 
 /// One client move may be several of the planner's: which of them this is.
 struct MovePart {
@@ -56,6 +56,23 @@ struct MountTool {
   double max_torque_nm = 0;  ///< that it bears; 0: not given
 };
 
-using QueueStep = std::variant<QueuedPath, BeginToolChange, SwitchOutputs, AwaitInput, AskPerson, MountTool>;
+/// The program rests for so long.
+struct Dwell {
+  double time_s = 0;
+};
+/// The program is held, until a person goes on. An optional stop only where those are switched on.
+struct ProgramStop {
+  bool optional = false;
+  std::string message{};
+};
+/// What a program does between two of its moves, with an id as a move has.
+struct InTurn {
+  std::int64_t move_id = 0;
+  std::variant<Dwell, ProgramStop, AwaitInput> what;
+};
+/// As events name it: "dwell 7".
+[[nodiscard]] std::string name_of(const InTurn& turn);
+
+using QueueStep = std::variant<QueuedPath, BeginToolChange, SwitchOutputs, AwaitInput, AskPerson, MountTool, InTurn>;
 
 }  // namespace rmac::gateway

@@ -7,6 +7,7 @@
 #include "gateway/rmac_cam/cam_forces.hpp"
 #include "gateway/rmac_cam/cam_parking.hpp"
 #include "gateway/rmac_cam/cam_positioning.hpp"
+#include "gateway/rmac_cam/cam_program_flow.hpp"
 #include "gateway/rmac_cam/cam_queue.hpp"
 #include "gateway/rmac_cam/cam_spindles.hpp"
 #include "gateway/rmac_cam/cam_tools.hpp"
@@ -36,6 +37,7 @@ class Cam final : public sdk::RmacCam {
   CamPositioning& positioning() override { return positioning_; }
   CamParking& parking() override { return parking_; }
   CamForces& forces() override { return forces_; }
+  CamProgramFlow& flow() override { return flow_; }
   CamTools& tools() { return tools_; }
 
   /// What the measuring part of RMAC_CAM is made of.
@@ -55,6 +57,7 @@ class Cam final : public sdk::RmacCam {
   CamQueue queue_;
   CamCmmMoves cmm_moves_;
   CamPositioning positioning_;
+  CamProgramFlow flow_;
   CamParking parking_;
 };
 

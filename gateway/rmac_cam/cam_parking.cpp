@@ -16,6 +16,13 @@ tl::unexpected<Error> nothing_parked(const char* function) {
       fmt::format("{}: no program is parked; hold one with FeedHold and park it with ParkProgram", function));
 }
 
+/// 0 of a tool change.
+std::int64_t id_of(const StepAsSent& step) {
+  if (const auto* move = std::get_if<Move>(&step)) return move->id;
+  const auto* turn = std::get_if<InTurn>(&step);
+  return turn != nullptr ? turn->move_id : 0;
+}
+
 }  // namespace
 
 Expected<> CamParking::park() {
@@ -41,17 +48,21 @@ Expected<> CamParking::queue_again(const gateway::Parking::Program& parked) {
   auto queued = supervisor_.require_rest(kTakeUp).and_then([&] { return supervisor_.prepare_move(); }).and_then([&] {
     return supervisor_.parking().add_rest_of(parked.steps.front());
   });
-  const bool begins_with_tool = std::holds_alternative<int>(parked.steps.front().what);
-  for (std::size_t i = begins_with_tool ? 0 : 1; queued && i < parked.steps.size(); ++i) {
-    const auto& what = parked.steps[i].what;
-    const Move* const move = std::get_if<Move>(&what);
-    queued =
-        move != nullptr ? supervisor_.add_move(*move).map([](bool) {}) : parts_.tools.change_tool(std::get<int>(what));
+  // What is left of a move is queued with the way to where it goes on.
+  const bool begins_with_move = std::holds_alternative<Move>(parked.steps.front().what);
+  for (std::size_t i = begins_with_move ? 1 : 0; queued && i < parked.steps.size(); ++i) {
+    queued = queue_again(parked.steps[i].what);
   }
   if (queued && !supervisor_.parking().hold_taken_up()) {
     return failure(MinorCode::Other, fmt::format("{}: the machine was stopped meanwhile", kTakeUp));
   }
   return queued;
+}
+
+Expected<> CamParking::queue_again(const StepAsSent& step) {
+  if (const auto* move = std::get_if<Move>(&step)) return supervisor_.add_move(*move).map([](bool) {});
+  if (const auto* tool = std::get_if<int>(&step)) return parts_.tools.change_tool(*tool);
+  return parts_.flow.queue_again(std::get<InTurn>(step));
 }
 
 Expected<> CamParking::take_up() {
@@ -80,9 +91,7 @@ std::optional<sdk::ParkedProgram> CamParking::parked() const {
   const auto& parked = supervisor_.parking().parked();
   if (!parked) return {};
   const ProgramStep& first = parked->steps.front();
-  const Move* const move = std::get_if<Move>(&first.what);
-  sdk::ParkedProgram told{parked->mechanism, parked->steps.size(), move != nullptr ? move->id : 0,
-                          first.from_mm,     parked->place,        0};
+  sdk::ParkedProgram told{parked->mechanism, parked->steps.size(), id_of(first.what), first.from_mm, parked->place, 0};
   if (device_.get() != nullptr) told.off_mm = distance(tool_.in_part().tip, told.place.tip);
   return told;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gateway/rmac_cam/cam_forces.hpp"
+#include "gateway/rmac_cam/cam_program_flow.hpp"
 #include "gateway/rmac_cam/cam_spindles.hpp"
 #include "gateway/rmac_cam/cam_tools.hpp"
 #include "gateway/rmac_cam/settings/tool_place.hpp"
@@ -18,6 +19,7 @@ class CamParking final : public sdk::Parking {
     CamSpindles& spindles;
     CamTools& tools;
     CamForces& forces;
+    CamProgramFlow& flow;
   };
 
   CamParking(const DeviceInForce& device, MotionSupervisor& supervisor, const ServoLink& link, Parts parts)
@@ -38,6 +40,7 @@ class CamParking final : public sdk::Parking {
   /// Refuses to take the parked program up on what is loaded, or in the midst of a cycle.
   [[nodiscard]] Expected<> check_take_up(const gateway::Parking::Program& parked);
   [[nodiscard]] Expected<> queue_again(const gateway::Parking::Program& parked);
+  [[nodiscard]] Expected<> queue_again(const StepAsSent& step);
 
   const DeviceInForce& device_;
   MotionSupervisor& supervisor_;

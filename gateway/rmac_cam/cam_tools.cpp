@@ -78,7 +78,7 @@ Expected<> CamTools::change_tool(int number) {
     return tl::unexpected(steps.error());
   }
   builder.restart(joints(), {frames_before.part, tip_on_interface(*tool)});
-  auto added = supervisor_.add_steps(std::move(*steps), std::move(as_sent));
+  auto added = supervisor_.add_steps("DoToolChange", std::move(*steps), std::move(as_sent));
   if (!added) (void)keep_mounted();
   return added;
 }

@@ -151,8 +151,9 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
     sample_.servo_state = status_.state;
     sample_.fault = status_.fault;
     sample_.moving = status_.moving;
-    sample_.move_id = command_.setpoint.move_id;
-    sample_.s_mm = command_.setpoint.s_mm;
+    const bool in_turn = wishes.in_turn && !status_.moving;
+    sample_.move_id = in_turn ? *wishes.in_turn : command_.setpoint.move_id;
+    sample_.s_mm = in_turn ? 0 : command_.setpoint.s_mm;
     sample_.feed_set_mm_s = status_.moving && status_.follows ? command_.setpoint.feed_mm_s : 0;
     sample_.feed_actual_mm_s = report_.feed_mm_s;
     fill_pose_set();

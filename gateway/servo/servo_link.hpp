@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "gateway/mechanism/exchangeable_law.hpp"
@@ -28,7 +29,8 @@ struct ServoWishes {
   double tool_torque_nm = 0;  ///< most that the tool in spindle 0 bears; 0: not given
   std::uint64_t outputs = 0;
   std::array<double, kMaxJoints> force{};  ///< of joints under force control
-  CycleState state = CycleState::Idle;     ///< goes into the samples
+  CycleState state = CycleState::Idle;     ///< goes into the samples, with the next
+  std::optional<std::int64_t> in_turn;     ///< at rest, what is done between moves: its id
   /// Machine time at which motion is to end by itself: a jog's, unless it is renewed.
   double moves_until_s = std::numeric_limits<double>::infinity();
 };

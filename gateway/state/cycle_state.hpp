@@ -25,9 +25,11 @@ struct CycleNow {
   CycleState state = CycleState::Idle;
   const char* mode = "";  ///< Appendix IV's name of the mode of the cycle that is started; empty when none is
   double override_percent = 100;
-  const char* waits_for =
-      "";                 ///< what a cycle that runs waits for: moves, override, tool or spindle; empty: it does not
-  std::string held_by{};  ///< the operator who holds the machine; empty: none does
+  /// What a cycle that runs waits for: moves, override, tool, spindle, dwell or input; empty: it does not.
+  const char* waits_for = "";
+  std::string held_by{};        ///< the operator who holds the machine; empty: none does
+  bool optional_stops = false;  ///< hold the program
+  std::string stop_prompt{};    ///< what a person is to see to before the program goes on; empty: nothing
   Cleaned cleaned{};
 };
 

@@ -25,7 +25,8 @@ struct Event {
     FlightRecordFailed,
     ToolWanted,
     ToolChanged,
-    ToolChangeDropped
+    ToolChangeDropped,
+    ProgramStopped
   };
   Kind kind = Kind::Stopped;
   double t_s = 0;

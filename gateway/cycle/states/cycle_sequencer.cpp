@@ -212,8 +212,8 @@ PathCommand CycleSequencer::wanted(const CycleObservation& seen) const noexcept 
   if (waits_for_spindle() && !phase_.positions() && seen.at_rest) return PathCommand::Stop;
   if (phase_.runs<Phase::Retrace>()) return PathCommand::Retrace;
   if (mode_ == sdk::CycleMode::Automatic || seen.measures) return PathCommand::Run;
-  // The planner takes the move that is next when it is told: there must be one.
-  return seen.moves_left > 0 ? PathCommand::RunOne : PathCommand::Stop;
+  // The planner takes the move that is next when it is told: there must be one, or the way to where the last one ended.
+  return seen.moves_left > 0 || !seen.at_end ? PathCommand::RunOne : PathCommand::Stop;
 }
 
 void CycleSequencer::end_what_is_done(const CycleObservation& seen, Verdict& verdict) noexcept {

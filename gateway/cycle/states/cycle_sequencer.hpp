@@ -17,6 +17,7 @@ struct CycleObservation {
   double t_s = 0;                ///< machine time
   bool at_rest = true;           ///< nothing moves and nothing published is still to move
   bool retraced = false;         ///< at rest at the end of a retrace
+  bool at_end = true;            ///< at rest where the path that is planned ends; the tool did not go back from there
   std::size_t moves_left = 0;    ///< queued, the one under way included
   bool done = true;              ///< nothing is queued, no tool change either
   std::uint64_t moves_done = 0;  ///< since the mechanism went in

@@ -39,7 +39,10 @@ std::string Prompt::text() const {
   if (parked_) return note_.empty() ? "parked: Enter takes it up again" : note_;
   if (!note_.empty()) return note_;
   const bool held = state_->is(gateway::CycleState::Holding);
-  if (held) return "held: Enter goes on, a distance in mm runs back, p parks";
+  if (held) {
+    return fmt::format("{}: Enter goes on, a distance in mm runs back, p parks",
+                       state_->stop_prompt.empty() ? "held" : state_->stop_prompt);
+  }
   return fmt::format("{:.0f} mm/min, {:.0f} %: h holds, 50% slows down", state_->feed_actual, state_->override_percent);
 }
 

@@ -16,6 +16,8 @@ Result<> RequestOrder::check_end(bool moves_unfinished) const {
 }
 
 bool RequestOrder::waits_for_rest(const Request& request) const {
+  // A point is measured with the tool that is in the spindle then, and from rest.
+  if (started_ && between_ && measures(request.method)) return true;
   return request.timing == Timing::Settled || (request.timing != Timing::Stream && unsettled_);
 }
 
@@ -25,6 +27,11 @@ bool RequestOrder::needs_cycle(const Request& request) const {
 
 void RequestOrder::sent(const Request& request) {
   measuring_ = measures(request.method);
+  if (stands_between_moves(request.method)) {
+    between_ = true;
+  } else if (measuring_ || request.timing == Timing::Settled) {
+    between_ = false;
+  }
   started_ = started_ || request.timing == Timing::Start;
   unsettled_ = request.timing == Timing::Settled || (unsettled_ && request.timing == Timing::Stream);
 }

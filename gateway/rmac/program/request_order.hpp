@@ -35,6 +35,7 @@ class RequestOrder {
   bool started_ = false;
   bool unsettled_ = true;   ///< something acted on the machine since the last move: its rest must be looked at
   bool measuring_ = false;  ///< the last request measures a point
+  bool between_ = false;    ///< something that is no move was queued, and may not be done
 };
 
 }  // namespace rmac::cli

@@ -246,7 +246,7 @@ void Runner::take(const EventNote& event) {
     moves_.started(event.t_s);
   } else if (event.is(Kind::MoveDone)) {
     moves_.done(event.move_id, event.t_s);
-  } else if (event.is(Kind::ToolWanted) || event.is(Kind::Operator)) {
+  } else if (event.is(Kind::ToolWanted) || event.is(Kind::Operator) || event.is(Kind::ProgramStopped)) {
     progress_.clear();
     fmt::print(stderr, "rmac: {}\n", event.message);
   } else if (event.is(Kind::ToolChanged)) {

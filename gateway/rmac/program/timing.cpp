@@ -28,6 +28,9 @@ constexpr std::array kAsksOfMoves{"RMAC_CAM.LastHitPosition"sv, "RMAC_CAM.NewHit
 // Questions that change the probing with `newVal`.
 constexpr std::array kProbing{"RMAC_CAM.ControlMode"sv, "RMAC_CAM.Parameter"sv};
 
+constexpr std::array kBetweenMoves{"RMAC_CAM.DoToolChange"sv, "RMAC_CAM.Dwell"sv, "RMAC_CAM.ProgramStop"sv,
+                                   "RMAC_CAM.AwaitInput"sv};
+
 bool is_one_of(const std::string& method, const auto& names) {
   return std::ranges::find(names, method) != names.end();
 }
@@ -43,6 +46,10 @@ Timing timing_of(const std::string& method) {
   const bool asks = found->permission == gateway::Permission::Anyone && !is_one_of(method, kAsksOfMoves) &&
                     !is_one_of(method, kProbing);
   return asks || is_one_of(method, kModal) ? Timing::Stream : Timing::Settled;
+}
+
+bool stands_between_moves(const std::string& method) {
+  return is_one_of(method, kBetweenMoves);
 }
 
 bool measures(const std::string& method) {

@@ -127,12 +127,22 @@ Result<> Simulator::run_until(const std::function<bool()>& reached) {
         return fail_at(line_, in.error().message);
       }
     }
+    if (std::exchange(stopped_, false)) {
+      // Nobody stands beside it who would have something to see to.
+      if (auto goes_on = simulation_.controller().cam().cycle().resume(); !goes_on) {
+        return fail_at(line_, goes_on.error().message);
+      }
+    }
     const int line = moves_.line().value_or(line_);
     if (!failure_.empty()) return fail_at(line, failure_);
-    still_s = moving_ ? 0 : still_s + simulation_.period_s();
+    still_s = moving_ || dwells() ? 0 : still_s + simulation_.period_s();
     if (still_s > kStuckAfter_s) return fail_at(line, stuck());
   }
   return {};
+}
+
+bool Simulator::dwells() {
+  return std::string_view(simulation_.controller().cycle_now().waits_for) == "dwell";
 }
 
 bool Simulator::at_rest() {
@@ -179,6 +189,8 @@ void Simulator::take(const gateway::Event& event) {
     tool_asked_for_ = true;
   } else if (event.kind == Kind::ToolChanged) {
     moves_.tool_changed();
+  } else if (event.kind == Kind::ProgramStopped && event.code == MinorCode::None) {
+    stopped_ = true;
   } else if ((event.kind == Kind::Fault || event.code != MinorCode::None) && failure_.empty()) {
     failure_ = event.message;
   }

@@ -16,7 +16,7 @@ namespace rmac::cli {
 
 struct SimulationReport {
   std::size_t moves = 0;
-  std::size_t tool_changes = 0;  ///< a person takes no time here
+  std::size_t tool_changes = 0;  ///< a person takes no time here, nor at a stop
   double cycle_time_s = 0;       ///< from the first move's start to the last one's end, as `rmac run` counts it
   double length_mm = 0;
   std::vector<gateway::MotionAccount::Joint> joints;
@@ -44,6 +44,7 @@ class Simulator {
   [[nodiscard]] Result<> run_until(const std::function<bool()>& reached);
   [[nodiscard]] Result<> call(const std::string& method, nlohmann::json params);
   [[nodiscard]] bool at_rest();
+  [[nodiscard]] bool dwells();
   [[nodiscard]] std::string stuck();
   [[nodiscard]] tl::unexpected<Failure> fail_at(int line, const std::string& message) const;
 
@@ -60,6 +61,7 @@ class Simulator {
   std::string failure_;
   bool moving_ = false;
   bool tool_asked_for_ = false;
+  bool stopped_ = false;  ///< at a stop of the program
 };
 
 }  // namespace rmac::cli

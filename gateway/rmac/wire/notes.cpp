@@ -63,6 +63,7 @@ StateNote read_state(const nlohmann::json& params) {
   if (const auto late = params.find("wake_up"); late != params.end()) read(*late, "p999_us", state.wake_up_p999_us);
   read(params, "tool_wanted", state.tool_wanted);
   read(params, "tool_prompt", state.tool_prompt);
+  read(params, "stop_prompt", state.stop_prompt);
   if (const auto stop = params.find("last_stop"); stop != params.end() && stop->is_object()) {
     state.last_stop = read_event(*stop);
   }

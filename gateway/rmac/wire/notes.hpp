@@ -40,6 +40,7 @@ struct StateNote {
   double wake_up_p999_us = 0;  ///< of the servo thread, after its cycle was due
   int tool_wanted = 0;         ///< by the tool change that comes next
   std::string tool_prompt;     ///< what a person is asked to do for it; empty: nothing
+  std::string stop_prompt;     ///< what a person is to see to before the program goes on; empty: nothing
   EventNote last_stop;         ///< without a kind: none, or it is over
   EventNote last_error;        ///< without a message: none
 

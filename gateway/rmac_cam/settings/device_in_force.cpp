@@ -2,7 +2,24 @@
 
 #include <fmt/format.h>
 
+#include "gateway/json/printable.hpp"
+
 namespace rmac::gateway {
+namespace {
+
+Expected<std::uint64_t> find_bit(const std::map<std::string, int>& bits, const char* what, const std::string& name,
+                                 const std::string& machine, const char* function) {
+  const auto found = bits.find(name);
+  if (found != bits.end()) return std::uint64_t{1} << found->second;
+  constexpr std::size_t kLongestName = 40;
+  std::string names;
+  for (const auto& [known, bit] : bits) names += (names.empty() ? "" : ", ") + known;
+  return failure(MinorCode::InvalidParameterValue,
+                 fmt::format("{}: there is no {} named \"{}\"; the DigitalIOInterface of {} has {}", function, what,
+                             printable(name, kLongestName), machine, names.empty() ? "none" : names));
+}
+
+}  // namespace
 
 const sdk::DeviceObject& DeviceInForce::get_or_empty() const noexcept {
   static const sdk::DeviceObject kEmpty;
@@ -30,6 +47,11 @@ Expected<std::size_t> DeviceInForce::find_spindle(int spindle, const char* funct
                  count == 0
                      ? fmt::format("{}: the mechanism has no spindle", function)
                      : fmt::format("{}: there is no spindle {}; spindles are 0 to {}", function, spindle, count - 1));
+}
+
+Expected<std::uint64_t> DeviceInForce::find_input(const std::string& name, const char* function) const {
+  if (auto loaded = require(function); !loaded) return tl::unexpected(loaded.error());
+  return find_bit(device_->inputs, "input", name, device_->name, function);
 }
 
 std::uint64_t DeviceInForce::coolant() const {

@@ -395,6 +395,11 @@ std::uint64_t Planner::lines_merged() const noexcept {
   return impl_->route.forward.lines_merged();
 }
 
+bool Planner::at_end() const noexcept {
+  const Impl& i = *impl_;
+  const bool elsewhere = i.route.on_detour() || i.route.beside();
+  return !elsewhere && !i.path().has_more() && i.base_end_s() >= i.path().end() - kSamePlace;
+}
 std::size_t Planner::moves_left() const noexcept {
   return impl_->route.forward.moves_left();
 }

@@ -70,6 +70,12 @@ std::string last_stop(const StateNote& state) {
   return text;
 }
 
+/// What a person is to see to.
+std::string to_do(const StateNote& state) {
+  if (!state.tool_prompt.empty()) return state.tool_prompt;
+  return state.stop_prompt.empty() ? "-" : state.stop_prompt;
+}
+
 std::string state_table(const StateNote& state) {
   const auto machine =
       state.mechanism.empty() ? "none loaded" : state.mechanism + (state.virtual_mode ? ", virtual" : "");
@@ -85,7 +91,7 @@ std::string state_table(const StateNote& state) {
                               {"spindle", list(state.spindle_rpm), "rpm"},
                               {"cycles begin", "99.9 % within " + number(state.wake_up_p999_us, 1), "µs"},
                               {"deadlines missed", std::to_string(state.deadline_misses), ""},
-                              {"to do", state.tool_prompt.empty() ? "-" : state.tool_prompt, ""},
+                              {"to do", to_do(state), ""},
                               {"authority", state.authority.empty() ? "nobody" : state.authority, ""},
                               {"operator", state.on_duty.empty() ? "nobody" : state.on_duty, ""},
                               {"last error", minor_code(state.status_minor), ""}}) +

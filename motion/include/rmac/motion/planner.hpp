@@ -76,6 +76,9 @@ class Planner {
   [[nodiscard]] bool idle(const ServoProgress& progress) const noexcept;
   /// The machine has come, or comes, to rest at the end of what is published by this cycle.
   [[nodiscard]] bool at_rest(const ServoProgress& progress) const noexcept;
+  /// All that was added is published, and nothing leads elsewhere: a retrace, or a way back to the path. At rest then,
+  /// the machine stands where the path ends.
+  [[nodiscard]] bool at_end() const noexcept;
   /// Moves added and not yet done.
   [[nodiscard]] std::size_t moves_left() const noexcept;
   /// Lines shorter than half of their tolerance that became part of the one behind them, since the planner was made.

@@ -110,6 +110,15 @@ class MockForces : public sdk::JointForces {
   MOCK_METHOD(Expected<>, set, (int, double), (override));
 };
 
+class MockFlow : public sdk::ProgramFlow {
+ public:
+  MOCK_METHOD(Expected<>, dwell, (std::int64_t, double), (override));
+  MOCK_METHOD(Expected<>, stop, (std::int64_t, bool, const std::string&), (override));
+  MOCK_METHOD(Expected<>, await_input, (std::int64_t, const std::string&, bool, double), (override));
+  MOCK_METHOD(void, set_optional_stops, (bool), (override));
+  MOCK_METHOD(bool, optional_stops, (), (const, override));
+};
+
 class MockCam : public sdk::RmacCam {
  public:
   sdk::CycleControl& cycle() override { return cycle_mock; }
@@ -122,6 +131,7 @@ class MockCam : public sdk::RmacCam {
   sdk::Positioning& positioning() override { return positioning_mock; }
   sdk::Parking& parking() override { return parking_mock; }
   sdk::JointForces& forces() override { return forces_mock; }
+  sdk::ProgramFlow& flow() override { return flow_mock; }
 
   testing::NiceMock<MockCycle> cycle_mock;
   testing::NiceMock<MockQueue> queue_mock;
@@ -133,6 +143,7 @@ class MockCam : public sdk::RmacCam {
   testing::NiceMock<MockPositioning> positioning_mock;
   testing::NiceMock<MockParking> parking_mock;
   testing::NiceMock<MockForces> forces_mock;
+  testing::NiceMock<MockFlow> flow_mock;
 };
 
 class MockMeasuring : public sdk::Measuring {

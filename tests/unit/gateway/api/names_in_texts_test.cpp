@@ -18,8 +18,8 @@ namespace {
 const std::set<std::string> kOtherWords{"ControlMethod", "CycleDeadline", "CycleMode",      "CycleStateChanged",
                                         "CycleTime_s",   "HomeCounts",    "Machine_MoveIn", "Machine_MoveTo",
                                         "MoveAlong",     "MoveDone",      "MoveID",         "MoveStarted",
-                                        "MoveTo",        "OpenRPC",       "ProbeReady",     "ReadBack",
-                                        "ResetFault",    "ResetTime",     "SearchDistance"};
+                                        "MoveTo",        "OpenRPC",       "ProbeReady",     "ProgramStopped",
+                                        "ReadBack",      "ResetFault",    "ResetTime",      "SearchDistance"};
 
 struct Names {
   std::set<std::string> methods, interfaces, functions, verbs, parameters;

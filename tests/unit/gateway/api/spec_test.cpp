@@ -104,8 +104,8 @@ TEST(MethodTable, LetsTheOperatorGoOnWithTheProgramAndNoMore) {
   for (const Method& entry : method_table()) {
     if (entry.permission == Permission::Operator) operators.insert(entry.name);
   }
-  EXPECT_EQ(operators,
-            (std::set<std::string>{"RMAC_CAM.FeedResume", "RMAC_CAM.FeedRetrace", "RMAC_CAM.SetFeedOverride"}));
+  EXPECT_EQ(operators, (std::set<std::string>{"RMAC_CAM.FeedResume", "RMAC_CAM.FeedRetrace", "RMAC_CAM.SetFeedOverride",
+                                              "RMAC_CAM.SetOptionalStop"}));
 }
 
 std::set<std::string> methods_that(Effect effect) {

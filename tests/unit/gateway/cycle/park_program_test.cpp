@@ -149,6 +149,38 @@ TEST_F(Parking, GoesOnFromItsPlaceWhereverItWasHeld) {
   }
 }
 
+// Red when what is done is done once more, or what was begun is lost.
+TEST_F(Parking, DoesWhatStandsBetweenItsMovesOnce) {
+  ASSERT_TRUE(cam().path().set_feedrate(1200));
+  ASSERT_TRUE(cam().flow().dwell(1, 0.2));
+  ASSERT_TRUE(machine_.line(2, {0, 0, 0}, {8, 0, 0}));
+  ASSERT_TRUE(cam().flow().stop(3, false, "look"));
+  ASSERT_TRUE(cam().flow().dwell(4, 30));
+  ASSERT_TRUE(machine_.line(5, {8, 0, 0}, {8, 4, 0}));
+  ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::ProgramStopped, 3));
+  EXPECT_EQ(state(), CycleState::Holding);
+  EXPECT_EQ(machine_.controller.cycle_now().stop_prompt, "program stop 3: look");
+  EXPECT_EQ(cam().queue().moves_left(), 3);
+  park();
+  EXPECT_EQ(machine_.controller.cycle_now().stop_prompt, "");
+  EXPECT_EQ(cam().parking().parked()->move_id, 3) << "nobody went on: it holds once more";
+  take_up();
+  ASSERT_TRUE(cam().cycle().resume());
+  ASSERT_TRUE(machine_.run_until([&] { return machine_.count(Event::Kind::ProgramStopped, 3) == 2; }));
+  ASSERT_TRUE(cam().cycle().resume());
+  ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveStarted, 4));
+  hold();
+  park();
+  EXPECT_EQ(cam().parking().parked()->move_id, 4);
+  EXPECT_EQ(cam().parking().parked()->moves, 2U);
+  take_up();
+  const double began_s = machine_.controller.sample().t_s;
+  finish();
+  EXPECT_GE(machine_.controller.sample().t_s - began_s, 30) << "all of its time, from its begin";
+  EXPECT_THAT(done(), ElementsAre(1, 2, 3, 4, 5));
+}
+
 TEST_F(Parking, LaysWhatIsLeftInTheFrameThatIsInForceThen) {
   queue_and_hold_in(2);
   park();

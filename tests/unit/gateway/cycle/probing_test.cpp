@@ -80,7 +80,7 @@ TEST_F(Probes, MeasuresNothingBehindAToolChange) {
   }
   const auto refused = probing_.add({}, CycleBench::move_to(7, 20));
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().message, HasSubstr("a tool change is queued"));
+  EXPECT_THAT(refused.error().message, HasSubstr("a tool change, a dwell"));
 }
 
 TEST(ProbesInVirtualMode, TouchWhereTheSimulatedOneDoes) {

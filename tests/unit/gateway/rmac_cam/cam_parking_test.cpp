@@ -26,7 +26,8 @@ class ParkedProgram : public StandingMill {
   }
   CamForces forces_{device_, supervisor_};
   CamSpindles spindles_{device_, supervisor_, link_.history, tools_};
-  CamParking parking_{device_, supervisor_, link_, {path_, joints_, spindles_, tools_, forces_}};
+  CamProgramFlow flow_{device_, supervisor_};
+  CamParking parking_{device_, supervisor_, link_, {path_, joints_, spindles_, tools_, forces_, flow_}};
 };
 
 TEST_F(ParkedProgram, EmptiesTheQueueAndTellsWhatIsParked) {
@@ -58,6 +59,55 @@ TEST_F(ParkedProgram, GivesBackTheSettingsThatTheProgramRanAt) {
   EXPECT_EQ(spindles_.max_rpm(0).value(), 700);
   EXPECT_EQ(supervisor_.state(), CycleState::Holding);
   EXPECT_FALSE(parking_.parked());
+}
+
+TEST_F(ParkedProgram, TakesWhatStandsBetweenItsMovesAlongInItsPlace) {
+  sdk::DeviceObject named = mechanism_->device;
+  named.inputs = {{"Clamped", 3}};
+  device_.change(&named);
+  ASSERT_TRUE(flow_.dwell(5, 1.5));
+  ASSERT_TRUE(queue_line(6, {10, 0, 0}, {10, 4, 0}));
+  ASSERT_TRUE(flow_.stop(7, true, "look"));
+  ASSERT_TRUE(flow_.await_input(8, "Clamped", false, 2));
+  ASSERT_TRUE(parking_.park());
+  EXPECT_EQ(supervisor_.moves_left(), 0U);
+  EXPECT_EQ(parking_.parked()->moves, 5U);
+  const auto ids = [&] {
+    std::vector<std::int64_t> found;
+    for (const Move& move : queued_) found.push_back(move.id);
+    return found;
+  };
+  queued_.clear();
+  named.inputs = {{"Other", 3}};
+  const auto refused = parking_.take_up();
+  ASSERT_FALSE(refused) << "the machine has another I/O interface now";
+  EXPECT_THAT(refused.error().message, HasSubstr("no input named \"Clamped\""));
+  EXPECT_EQ(supervisor_.moves_left(), 0U) << "nothing of it stays queued";
+  named.inputs = {{"Clamped", 2}};
+  queued_.clear();
+  const auto taken = parking_.take_up();
+  ASSERT_TRUE(taken) << taken.error().message;
+  EXPECT_EQ(supervisor_.moves_left(), 5U);
+  EXPECT_THAT(ids(), testing::ElementsAre(4, 5, 6, 7, 8));
+}
+
+TEST_F(ParkedProgram, GoesOnWithADwellAtItsPlace) {
+  ASSERT_TRUE(supervisor_.command(
+      [](CycleSequencer& cycle, const CycleObservation& seen) { return cycle.stop_and_clear(seen); }));
+  status_.t_s = 1;
+  link_.status.write(status_);
+  (void)supervisor_.advance(status_);
+  ASSERT_TRUE(flow_.dwell(5, 1.5));
+  ASSERT_TRUE(queue_line(6, {0, 0, 0}, {10, 4, 0}));
+  ASSERT_TRUE(parking_.park());
+  EXPECT_EQ(parking_.parked()->move_id, 5);
+  stand_at({0.5, 0, 0});
+  queued_.clear();
+  const auto taken = parking_.take_up();
+  ASSERT_TRUE(taken) << taken.error().message;
+  ASSERT_EQ(queued_.size(), 3U) << "the way back, the dwell, the move";
+  EXPECT_EQ(queued_[1].id, 5);
+  EXPECT_EQ(queued_[2].id, 6);
 }
 
 TEST_F(ParkedProgram, KeepsTheProgramAndTheSettingsInForceOnARefusal) {

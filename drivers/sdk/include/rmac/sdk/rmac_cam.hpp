@@ -9,6 +9,7 @@
 #include "rmac/sdk/cam/parking.hpp"
 #include "rmac/sdk/cam/path_settings.hpp"
 #include "rmac/sdk/cam/positioning.hpp"
+#include "rmac/sdk/cam/program_flow.hpp"
 #include "rmac/sdk/cam/spindle_control.hpp"
 
 namespace rmac::sdk {
@@ -29,6 +30,7 @@ class RmacCam {
   [[nodiscard]] virtual Positioning& positioning() = 0;
   [[nodiscard]] virtual Parking& parking() = 0;
   [[nodiscard]] virtual JointForces& forces() = 0;
+  [[nodiscard]] virtual ProgramFlow& flow() = 0;
 };
 
 }  // namespace rmac::sdk

@@ -162,6 +162,15 @@ const std::vector<SetterEffect>& cam_setter_effects() {
          bench.call("RMAC_CAM.SetSpindleRPM", R"({"SpindleNumber": 0, "RPM": 500})");
          bench.run_until([&] { return std::abs(bench.now().spindle_rpm[0] - 500) < 1; });
        }},
+      {"RMAC_CAM.SetOptionalStop",
+       [](SetterBench& bench) {
+         bench.call("RMAC_CAM.ProgramStop", R"({"MoveID": 1, "Optional": true})");
+         bench.tip_to(1, 0, 0);
+         EXPECT_EQ(bench.now().state, CycleState::Running) << "passed over";
+         bench.call("RMAC_CAM.SetOptionalStop", R"({"On": true})");
+         bench.call("RMAC_CAM.ProgramStop", R"({"MoveID": 2, "Optional": true})");
+         bench.run_until([&] { return bench.now().state == CycleState::Holding; });
+       }},
       {"RMAC_CAM.SetCycleStartStatus",
        [](SetterBench& bench) {
          bench.call("RMAC_CAM.CycleStop", R"({"Mode": "AUTOMATIC"})");

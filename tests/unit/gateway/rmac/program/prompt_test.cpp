@@ -35,6 +35,11 @@ TEST_F(PromptTest, TellsWhatAPersonMayDoWhenHeld) {
   EXPECT_EQ(prompt_.text(), "held: Enter goes on, a distance in mm runs back, p parks");
 }
 
+TEST_F(PromptTest, TellsWhatToSeeToAtAStopOfTheProgram) {
+  hear({{"state", "Holding"}, {"stop_prompt", "program stop 7: turn it over"}});
+  EXPECT_EQ(prompt_.text(), "program stop 7: turn it over: Enter goes on, a distance in mm runs back, p parks");
+}
+
 TEST_F(PromptTest, AsksForATool) {
   hear({{"state", "Holding"}, {"tool_prompt", "put tool 4 into the spindle"}});
   EXPECT_EQ(prompt_.text(), "put tool 4 into the spindle, or Enter");

@@ -54,6 +54,18 @@ TEST_F(RequestOrderTest, TheCycleIsStartedForAProgramThatDoesNotStartIt) {
   EXPECT_TRUE(order_.needs_cycle(kMove)) << "homing ends the cycle";
 }
 
+TEST_F(RequestOrderTest, APointIsMeasuredWhenWhatStandsBetweenMovesIsDone) {
+  order_.cycle_started();
+  order_.sent(kMove);
+  EXPECT_FALSE(order_.waits_for_rest(kMeasure));
+  order_.sent(request("RMAC_CAM.Dwell"));
+  order_.sent(kMove);
+  EXPECT_FALSE(order_.waits_for_rest(kMove));
+  EXPECT_TRUE(order_.waits_for_rest(kMeasure));
+  order_.sent(kMeasure);
+  EXPECT_FALSE(order_.waits_for_rest(kMeasure));
+}
+
 TEST_F(RequestOrderTest, AProgramThatStartsItsCycleDoesSoItself) {
   program_.starts_cycle = true;
   EXPECT_FALSE(order_.needs_cycle(kMove));

@@ -54,6 +54,15 @@ TEST(Timing, WaitsBeforeWhatTheTableDoesNotHave) {
   EXPECT_EQ(timing_of("CycleStart"), Timing::Settled) << "the appliance has no such method either";
 }
 
+TEST(Timing, KnowsWhatStandsBetweenMoves) {
+  for (const char* name : {"RMAC_CAM.Dwell", "RMAC_CAM.ProgramStop", "RMAC_CAM.AwaitInput", "RMAC_CAM.DoToolChange"}) {
+    EXPECT_TRUE(stands_between_moves(name)) << name;
+    EXPECT_EQ(timing_of(name), Timing::Move) << name;
+  }
+  EXPECT_FALSE(stands_between_moves("RMAC_CAM.MoveAlongLine"));
+  EXPECT_EQ(timing_of("RMAC_CAM.SetOptionalStop"), Timing::Settled) << "it is for the stops behind it";
+}
+
 TEST(Timing, KnowsTheMoveThatEndsAtThePart) {
   EXPECT_TRUE(measures("RMAC_CAM.AutoMeasure"));
   EXPECT_FALSE(measures("RMAC_CAM.MoveToXYZ"));

@@ -42,6 +42,35 @@ TEST(Simulator, WaitsForRoomInTheQueue) {
   EXPECT_NEAR(narrow->cycle_time_s, wide->cycle_time_s, 0.02) << "no stroke waited for long";
 }
 
+// Red when a dwell takes no time or is taken for a machine that is stuck, or when a stop waits for a person.
+TEST(Simulator, CountsDwellsAndPassesStopsAndInputs) {
+  const auto plain = simulate(strokes(2), 100);
+  ASSERT_TRUE(plain) << plain.error().message;
+  Program program = strokes(2);
+  const auto last = program.requests.back();
+  program.requests.pop_back();
+  program.requests.push_back(request(3, "RMAC_CAM.Dwell", {{"MoveID", 10}, {"Time", 2.5}}));
+  program.requests.push_back(request(4, "RMAC_CAM.ProgramStop", {{"MoveID", 11}, {"Message", "look"}}));
+  program.requests.push_back(request(5, "RMAC_CAM.ProgramStop", {{"MoveID", 12}, {"Optional", true}}));
+  program.requests.push_back(last);
+  program.requests.push_back(request(7, "RMAC_CAM.Dwell", {{"MoveID", 13}, {"Time", 0.5}}));
+  const auto report = simulate(program, 100);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_NEAR(report->cycle_time_s, plain->cycle_time_s + 3, 0.05);
+  EXPECT_EQ(report->moves, 6U) << "each is done";
+  EXPECT_NEAR(report->length_mm, 2, 1e-9);
+}
+
+TEST(Simulator, NamesTheLineOfAnInputThatIsNot) {
+  Program program = strokes(1);
+  program.requests.push_back(
+      request(9, "RMAC_CAM.AwaitInput", {{"MoveID", 10}, {"Name", "Clampd"}, {"On", true}, {"TimeOut", 1}}));
+  const auto report = simulate(program, 100);
+  ASSERT_FALSE(report);
+  EXPECT_THAT(report.error().message,
+              testing::HasSubstr("strokes.rmac:9: RMAC_CAM.AwaitInput: AwaitInput: there is no"));
+}
+
 TEST(Simulator, DoesNotRunAQueueThatItsProgramNeverStarts) {
   Program program = strokes(2);
   program.starts_cycle = true;

@@ -13,7 +13,7 @@ namespace rmac::sdk {
 /// A program that was set aside in the midst of it.
 struct ParkedProgram {
   std::string mechanism;
-  std::size_t moves = 0;     ///< and tool changes to do, the move that was begun included
+  std::size_t moves = 0;     ///< to do, tool changes and what is between moves too, what was begun included
   std::int64_t move_id = 0;  ///< of that one
   double s_mm = 0;           ///< how far along it the tool was
   ToolPose place;            ///< where it goes on, in the part frame that is in force

@@ -1,0 +1,243 @@
+// What a program does between its moves, in the machine's cycle: at its place, once, and with the queue.
+#include <gmock/gmock.h>
+
+#include <random>
+
+#include "gateway/cycle/operating.hpp"
+#include "unit/gateway/cycle/cycle_bench.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+using testing::HasSubstr;
+
+class BetweenMoves : public testing::Test {
+ protected:
+  void add(InTurn step) {
+    const GatewayTurn turn(bench_.cycle.lock);
+    ProgramStep as_sent = step_at(bench_.cycle.builder(), step);
+    std::vector<QueueStep> steps;
+    steps.emplace_back(std::move(step));
+    bench_.cycle.queue.add_steps(std::move(steps), std::move(as_sent));
+  }
+  void add_dwell(std::int64_t id, double time_s) { add({id, Dwell{time_s}}); }
+  /// Runs until `reached`; how long it took.
+  template <typename Reached>
+  double time_until(Reached&& reached) {
+    const double begin = bench_.status.t_s;
+    EXPECT_TRUE(bench_.run_until(reached));
+    return bench_.status.t_s - begin;
+  }
+  [[nodiscard]] bool all_done() { return bench_.moves_left() == 0; }
+  void retrace(double distance_mm) {
+    Operating operating(bench_.cycle);
+    const auto way = operating.retrace(distance_mm, {});
+    ASSERT_TRUE(way) << way.error().message;
+    ASSERT_TRUE(bench_.run_until([&] { return bench_.state() == CycleState::Holding; }));
+  }
+  void keep_events() {
+    for (Event& event : bench_.events()) events_.push_back(std::move(event));
+  }
+  [[nodiscard]] int count(Event::Kind kind, std::int64_t id) {
+    keep_events();
+    return static_cast<int>(
+        std::ranges::count_if(events_, [&](const Event& event) { return event.kind == kind && event.move_id == id; }));
+  }
+
+  CycleBench bench_;
+  std::vector<Event> events_;
+};
+
+// Red when a dwell is left out, begins before the path rests, lasts longer than a few cycles more, or is not counted.
+TEST_F(BetweenMoves, ADwellIsARestOfItsLengthAtItsPlace) {
+  std::mt19937 random(7);  // NOLINT(cert-msc51-cpp): the same dwells every time
+  for (int round = 0; round < 10; ++round) {
+    const double dwell_s = std::uniform_real_distribution<double>(0.001, 0.5)(random);
+    const double from = bench_.x();
+    ASSERT_TRUE(bench_.queue(1, from + 2));
+    add_dwell(2, dwell_s);
+    ASSERT_TRUE(bench_.queue(3, from + 5));
+    EXPECT_EQ(bench_.moves_left(), 3U);
+    if (round == 0) {
+      ASSERT_TRUE(bench_.start());
+    }
+    ASSERT_TRUE(bench_.run_until([&] { return bench_.moves_left() == 2 && !bench_.status.moving; }));
+    EXPECT_NEAR(bench_.x(), from + 2, 1e-9);
+    const double rested = time_until([&] { return bench_.status.moving; });
+    EXPECT_NEAR(rested, dwell_s, 0.006) << "the rest, and a plan's lead";
+    EXPECT_GE(rested, dwell_s - 0.001);
+    ASSERT_TRUE(bench_.run_until([&] { return all_done(); }));
+    EXPECT_NEAR(bench_.x(), from + 5, 1e-9);
+  }
+}
+
+// Red when a step is taken for which the moves that another step let go have not been made.
+TEST_F(BetweenMoves, StepsAreTakenInTheirOrderEachBehindItsMoves) {
+  std::vector<double> at;
+  for (int i = 0; i < 6; ++i) {
+    add_dwell(10 + i, 0.01);
+    ASSERT_TRUE(bench_.queue(20 + i, i + 1));
+  }
+  add({30, ProgramStop{}});
+  ASSERT_TRUE(bench_.start());
+  ASSERT_TRUE(bench_.run_until([&] {
+    for (const Event& event : bench_.events()) {
+      if (event.kind == Event::Kind::MoveStarted) at.push_back(bench_.x());
+    }
+    return bench_.state() == CycleState::Holding;
+  }));
+  ASSERT_EQ(at.size(), 7U);
+  for (std::size_t i = 0; i < at.size(); ++i) EXPECT_NEAR(at[i], static_cast<double>(i), 1e-9);
+}
+
+TEST_F(BetweenMoves, AHoldStopsTheClockOfADwellAndNothingElse) {
+  ASSERT_TRUE(bench_.queue(1, 2));
+  add_dwell(2, 0.3);
+  ASSERT_TRUE(bench_.start());
+  ASSERT_TRUE(bench_.run_until([&] { return bench_.wishes().in_turn.has_value(); }));
+  bench_.run(100);
+  ASSERT_TRUE(bench_.hold());
+  bench_.run(1000);
+  EXPECT_EQ(count(Event::Kind::MoveDone, 2), 0);
+  ASSERT_TRUE(bench_.resume());
+  EXPECT_NEAR(time_until([&] { return all_done(); }), 0.2, 0.01);
+  EXPECT_EQ(count(Event::Kind::MoveDone, 2), 1);
+}
+
+TEST_F(BetweenMoves, AStopHoldsTheProgramAtItsPlaceUntilItIsResumed) {
+  ASSERT_TRUE(bench_.queue(1, 2));
+  add({2, ProgramStop{.message = "turn it over"}});
+  ASSERT_TRUE(bench_.queue(3, 5));
+  ASSERT_TRUE(bench_.start());
+  ASSERT_TRUE(bench_.run_until([&] { return bench_.state() == CycleState::Holding; }));
+  bench_.run(2000);
+  EXPECT_EQ(bench_.state(), CycleState::Holding);
+  EXPECT_NEAR(bench_.x(), 2, 1e-9);
+  EXPECT_EQ(count(Event::Kind::ProgramStopped, 2), 1);
+  EXPECT_EQ(count(Event::Kind::MoveDone, 2), 0) << "it is done when somebody goes on";
+  ASSERT_TRUE(bench_.resume());
+  ASSERT_TRUE(bench_.run_until([&] { return all_done(); }));
+  EXPECT_EQ(bench_.state(), CycleState::Running);
+  EXPECT_NEAR(bench_.x(), 5, 1e-9);
+  EXPECT_EQ(count(Event::Kind::ProgramStopped, 2), 1);
+  EXPECT_EQ(count(Event::Kind::MoveDone, 2), 1);
+}
+
+// Red when the stop is passed, or done, at the place to which the tool went back, and when it holds once more.
+TEST_F(BetweenMoves, AWayBackFromAStopLeadsToItsPlaceAgainBeforeTheProgramGoesOn) {
+  for (const auto mode : {sdk::CycleMode::Automatic, sdk::CycleMode::Manual}) {
+    SCOPED_TRACE(static_cast<int>(mode));
+    const double from = bench_.x();
+    ASSERT_TRUE(bench_.queue(1, from + 4));
+    add({2, ProgramStop{}});
+    ASSERT_TRUE(bench_.start(mode));
+    if (mode == sdk::CycleMode::Manual) {
+      ASSERT_TRUE(bench_.run_until([&] { return bench_.state() == CycleState::Idle; }));
+      ASSERT_TRUE(bench_.start(mode));
+    }
+    ASSERT_TRUE(bench_.run_until([&] { return bench_.state() == CycleState::Holding; }));
+    retrace(3);
+    EXPECT_NEAR(bench_.x(), from + 1, 1e-6);
+    EXPECT_EQ(count(Event::Kind::MoveDone, 2), 0);
+    ASSERT_TRUE(bench_.resume());
+    ASSERT_TRUE(bench_.run_until([&] { return count(Event::Kind::MoveDone, 2) == 1; }));
+    EXPECT_NEAR(bench_.x(), from + 4, 1e-9);
+    EXPECT_EQ(count(Event::Kind::ProgramStopped, 2), 1) << "held once";
+    ASSERT_TRUE(bench_.stop_now());
+    ASSERT_TRUE(bench_.run_until([&] { return bench_.state() == CycleState::Idle; }));
+    events_.clear();
+  }
+}
+
+// Red when a step that is done is queued anew by a way back over its place.
+TEST_F(BetweenMoves, AWayBackOverADwellDoesNotDwellAgain) {
+  ASSERT_TRUE(bench_.queue(1, 4));
+  add_dwell(2, 1);
+  ASSERT_TRUE(bench_.queue(3, 30, 5));
+  ASSERT_TRUE(bench_.start());
+  ASSERT_TRUE(bench_.run_until([&] { return bench_.x() > 8; }));
+  ASSERT_TRUE(bench_.hold());
+  ASSERT_TRUE(bench_.run_to_rest());
+  retrace(7);
+  EXPECT_LT(bench_.x(), 3);
+  const double before = bench_.status.t_s;
+  ASSERT_TRUE(bench_.resume());
+  ASSERT_TRUE(bench_.run_until([&] { return bench_.x() > 5; }));
+  EXPECT_LT(bench_.status.t_s - before, 0.8) << "there is no dwell of a second in it";
+  EXPECT_EQ(count(Event::Kind::MoveStarted, 2), 1);
+  EXPECT_EQ(count(Event::Kind::MoveDone, 2), 1);
+}
+
+TEST_F(BetweenMoves, AnInputThatDoesNotComeHoldsTheProgramWhichSaysWhatItWaitsFor) {
+  add({1, AwaitInput{.bit = 2, .on = true, .timeout_s = 0.5, .name = "Clamped"}});
+  ASSERT_TRUE(bench_.queue(2, 5));
+  ASSERT_TRUE(bench_.start());
+  bench_.run(450);
+  EXPECT_EQ(bench_.state(), CycleState::Running);
+  bench_.run(100);
+  EXPECT_EQ(bench_.state(), CycleState::Holding);
+  EXPECT_THAT(bench_.told(Event::Kind::ProgramStopped), HasSubstr("input Clamped did not go on within 0.5 s"));
+  EXPECT_EQ(bench_.x(), 0);
+  ASSERT_TRUE(bench_.resume());
+  bench_.run(450);
+  EXPECT_EQ(bench_.state(), CycleState::Running) << "it waits once more";
+  CycleSample sample;
+  sample.cycle = 1;
+  sample.inputs = 2;
+  bench_.link.history.add(sample);
+  ASSERT_TRUE(bench_.run_until([&] { return all_done(); }));
+  EXPECT_NEAR(bench_.x(), 5, 1e-9);
+}
+
+TEST_F(BetweenMoves, IsDroppedWithTheQueue) {
+  ASSERT_TRUE(bench_.queue(1, 2));
+  add_dwell(2, 10);
+  ASSERT_TRUE(bench_.queue(3, 5));
+  ASSERT_TRUE(bench_.start());
+  ASSERT_TRUE(bench_.run_until([&] { return bench_.wishes().in_turn.has_value(); }));
+  ASSERT_TRUE(bench_.stop_now());
+  ASSERT_TRUE(bench_.run_until([&] { return bench_.state() == CycleState::Idle; }));
+  EXPECT_EQ(bench_.moves_left(), 0U);
+  EXPECT_FALSE(bench_.wishes().in_turn);
+  ASSERT_TRUE(bench_.queue(4, 3));
+  ASSERT_TRUE(bench_.start());
+  EXPECT_LT(time_until([&] { return all_done(); }), 1);
+  EXPECT_EQ(count(Event::Kind::MoveDone, 2), 0);
+}
+
+TEST_F(BetweenMoves, EachIsOneStepOfAManualCycle) {
+  ASSERT_TRUE(bench_.queue(1, 2));
+  add_dwell(2, 0.1);
+  ASSERT_TRUE(bench_.queue(3, 5));
+  for (const std::size_t left : {2U, 1U, 0U}) {
+    ASSERT_TRUE(bench_.start(sdk::CycleMode::Manual));
+    ASSERT_TRUE(bench_.run_until([&] { return bench_.state() == CycleState::Idle; }));
+    EXPECT_EQ(bench_.moves_left(), left);
+  }
+}
+
+TEST_F(BetweenMoves, NothingIsTakenBeforeTheCycleRuns) {
+  add_dwell(1, 0.1);
+  add({2, ProgramStop{}});
+  bench_.run(500);
+  EXPECT_EQ(bench_.moves_left(), 2U);
+  EXPECT_TRUE(bench_.events().empty());
+}
+
+TEST_F(BetweenMoves, NoWayBackWhileAToolIsChanged) {
+  ASSERT_TRUE(bench_.queue(1, 5));
+  {
+    const GatewayTurn turn(bench_.cycle.lock);
+    bench_.cycle.queue.add_steps({BeginToolChange{}, AskPerson{"insert T4"}, MountTool{.number = 4}},
+                                 step_at(bench_.cycle.builder(), 4));
+  }
+  ASSERT_TRUE(bench_.start());
+  ASSERT_TRUE(bench_.run_until([&] { return bench_.told(Event::Kind::ToolWanted) == "insert T4"; }));
+  ASSERT_TRUE(bench_.hold());
+  ASSERT_TRUE(bench_.run_to_rest());
+  Operating operating(bench_.cycle);
+  EXPECT_THAT(operating.retrace(3, {}).error().message, HasSubstr("a tool change is under way"));
+}
+
+}  // namespace
+}  // namespace rmac::gateway
