@@ -18,7 +18,7 @@ ProgramTurn::Outcome ProgramTurn::take(const InTurn& turn, const Seen& seen) {
   begun_->seen_s = seen.t_s;
   prompt_.clear();
   const Outcome outcome = std::visit([&](const auto& what) { return go_on(turn, what, seen); }, turn.what);
-  if (outcome == Outcome::Done) end(turn);
+  if (outcome == Outcome::Done || outcome == Outcome::SpindlesTold) end(turn);
   return outcome;
 }
 
@@ -66,6 +66,15 @@ ProgramTurn::Outcome ProgramTurn::go_on(const InTurn& turn, const AwaitInput& in
               fmt::format("{}: input {} did not go {} within {:g} s", name_of(turn), input.name,
                           input.on ? "on" : "off", input.timeout_s),
               "see to it; FeedResume waits for it once more", MinorCode::ResponseTimeout);
+}
+
+ProgramTurn::Outcome ProgramTurn::go_on(const InTurn& /*turn*/, const Switch& switching, const Seen& /*seen*/) {
+  const SwitchOutputs outputs = outputs_of(switching);
+  wishes_.change([&](ServoWishes& wishes) {
+    for (const Switch::Speed& speed : switching.speeds) wishes.spindle_rpm[speed.spindle] = speed.rpm;
+    wishes.outputs = (wishes.outputs & ~outputs.mask) | outputs.values;
+  });
+  return switching.speeds.empty() ? Outcome::Done : Outcome::SpindlesTold;
 }
 
 ProgramTurn::Outcome ProgramTurn::hold(const InTurn& turn, std::string prompt, const char* how_it_goes_on,

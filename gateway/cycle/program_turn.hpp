@@ -17,7 +17,8 @@ class ProgramTurn {
   enum class Outcome : std::uint8_t {
     Waits,  ///< ask again
     Done,
-    Held,  ///< the program is to be held; asked again, it was told to go on
+    SpindlesTold,  ///< done, and motion is to wait for the spindles
+    Held,          ///< the program is to be held; asked again, it was told to go on
   };
   struct Seen {
     double t_s = 0;
@@ -55,6 +56,7 @@ class ProgramTurn {
   [[nodiscard]] Outcome go_on(const InTurn& turn, const Dwell& dwell, const Seen& seen);
   [[nodiscard]] Outcome go_on(const InTurn& turn, const ProgramStop& stop, const Seen& seen);
   [[nodiscard]] Outcome go_on(const InTurn& turn, const AwaitInput& input, const Seen& seen);
+  [[nodiscard]] Outcome go_on(const InTurn& turn, const Switch& switching, const Seen& seen);
   void begin(const InTurn& turn);
   void end(const InTurn& turn);
   [[nodiscard]] Outcome hold(const InTurn& turn, std::string prompt, const char* how_it_goes_on, MinorCode code);

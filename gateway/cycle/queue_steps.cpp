@@ -36,6 +36,9 @@ QueueSteps::Came QueueSteps::take(const InTurn& step, const Seen& seen) {
     case ProgramTurn::Outcome::Done:
       parts_.sequencer.one_done();
       return Came::Done;
+    case ProgramTurn::Outcome::SpindlesTold:
+      parts_.sequencer.one_done();
+      return Came::SpindlesTold;
     case ProgramTurn::Outcome::Held:
       (void)parts_.sequencer.hold();
       parts_.turn.pause();

@@ -13,8 +13,16 @@ void ToolChange::set_mounted(std::optional<int> number, double max_torque_nm) {
 }
 
 ToolsNow ToolChange::now(const std::deque<QueueStep>& queued) const {
-  ToolsNow now{mounted_, {}, {}, changing_, {}};
+  ToolsNow now;
+  now.mounted = mounted_;
+  now.changing = changing_;
+  now.spindle_rpm = wishes_.now().spindle_rpm;
   for (const QueueStep& step : queued) {
+    if (std::holds_alternative<BeginToolChange>(step)) now.spindle_rpm.fill(0);
+    const auto* const turn = std::get_if<InTurn>(&step);
+    if (const auto* switching = turn != nullptr ? std::get_if<Switch>(&turn->what) : nullptr) {
+      for (const Switch::Speed& speed : switching->speeds) now.spindle_rpm[speed.spindle] = speed.rpm;
+    }
     if (const auto* mount = std::get_if<MountTool>(&step)) {
       if (!now.wanted) now.wanted = mount->number;
       now.last = mount->number;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -65,10 +66,26 @@ struct ProgramStop {
   bool optional = false;
   std::string message{};
 };
+/// Spindles and outputs that are switched together, in this order.
+struct Switch {
+  struct Speed {
+    std::size_t spindle = 0;
+    double rpm = 0;
+  };
+  struct Output {
+    std::string name{};
+    bool on = false;
+    std::uint64_t bit = 0;
+  };
+  std::vector<Speed> speeds{};
+  std::vector<Output> outputs{};
+};
+[[nodiscard]] SwitchOutputs outputs_of(const Switch& switching);
+
 /// What a program does between two of its moves, with an id as a move has.
 struct InTurn {
   std::int64_t move_id = 0;
-  std::variant<Dwell, ProgramStop, AwaitInput> what;
+  std::variant<Dwell, ProgramStop, AwaitInput, Switch> what;
 };
 /// As events name it: "dwell 7".
 [[nodiscard]] std::string name_of(const InTurn& turn);

@@ -14,7 +14,7 @@ Cam::Cam(MotionSupervisor& supervisor, ServoLink& link, ToolRack& rack, std::fun
       queue_(device_, supervisor, path_, maker_, tools_),
       cmm_moves_(device_, supervisor, maker_),
       positioning_(device_, supervisor, link, path_, maker_),
-      flow_(device_, supervisor),
+      flow_(device_, supervisor, spindles_),
       parking_(device_, supervisor, link, {path_, joints_, spindles_, tools_, forces_, flow_}) {}
 
 void Cam::mechanism_changed(const sdk::DeviceObject* device, bool fresh) {

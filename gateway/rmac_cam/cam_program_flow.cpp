@@ -42,10 +42,37 @@ Expected<> CamProgramFlow::await_input(std::int64_t id, const std::string& name,
   return add("AwaitInput", {id, AwaitInput{.bit = *bit, .on = on, .timeout_s = timeout_s, .name = name}});
 }
 
+Expected<> CamProgramFlow::in_turn(std::int64_t id, const std::vector<sdk::CallInTurn>& calls) {
+  if (auto loaded = device_.require("InTurn"); !loaded) return loaded;
+  Switch switching;
+  for (const sdk::CallInTurn& call : calls) {
+    if (const auto* speed = std::get_if<sdk::SpindleCall>(&call)) {
+      auto switched = spindles_.in_turn(*speed);
+      if (!switched) return tl::unexpected(switched.error());
+      switching.speeds.push_back(*switched);
+    } else {
+      auto switched = spindles_.in_turn(std::get<sdk::OutputCall>(call));
+      if (!switched) return tl::unexpected(switched.error());
+      switching.outputs.push_back(std::move(*switched));
+    }
+  }
+  return add("InTurn", {id, std::move(switching)});
+}
+
 Expected<> CamProgramFlow::queue_again(const InTurn& turn) {
   if (const auto* dwelling = std::get_if<Dwell>(&turn.what)) return dwell(turn.move_id, dwelling->time_s);
   if (const auto* stopping = std::get_if<ProgramStop>(&turn.what)) {
     return stop(turn.move_id, stopping->optional, stopping->message);
+  }
+  if (const auto* switching = std::get_if<Switch>(&turn.what)) {
+    std::vector<sdk::CallInTurn> calls;
+    for (const Switch::Speed& speed : switching->speeds) {
+      calls.emplace_back(sdk::SpindleCall{static_cast<int>(speed.spindle), speed.rpm});
+    }
+    for (const Switch::Output& output : switching->outputs) {
+      calls.emplace_back(sdk::OutputCall{output.name, output.on});
+    }
+    return in_turn(turn.move_id, calls);
   }
   const auto& input = std::get<AwaitInput>(turn.what);
   return await_input(turn.move_id, input.name, input.on, input.timeout_s);

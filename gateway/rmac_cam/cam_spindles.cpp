@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace rmac::gateway {
@@ -11,14 +12,22 @@ void CamSpindles::mechanism_changed() {
   for (const sdk::Spindle& spindle : device_.get_or_empty().spindles) max_rpm_.push_back(spindle.max_speed_rpm);
 }
 
-Expected<> CamSpindles::set_rpm(int spindle, double rpm) {
-  const auto found = device_.find_spindle(spindle, "SetSpindleRPM");
-  if (!found) return tl::unexpected(found.error());
-  if (!std::isfinite(rpm)) return failure(MinorCode::InvalidParameterValue, "SetSpindleRPM: the speed must be finite");
+Expected<std::size_t> CamSpindles::check_rpm(const char* function, int spindle, double rpm) const {
+  auto found = device_.find_spindle(spindle, function);
+  if (!found) return found;
+  if (!std::isfinite(rpm)) {
+    return failure(MinorCode::InvalidParameterValue, fmt::format("{}: the speed must be finite", function));
+  }
   if (const double max = max_rpm_[*found]; std::abs(rpm) > max) {
     return failure(MinorCode::SpeedLimit,
-                   fmt::format("SetSpindleRPM: {} rpm is above spindle {}'s maximum of {} rpm", rpm, spindle, max));
+                   fmt::format("{}: {} rpm is above spindle {}'s maximum of {} rpm", function, rpm, spindle, max));
   }
+  return found;
+}
+
+Expected<> CamSpindles::set_rpm(int spindle, double rpm) {
+  const auto found = check_rpm("SetSpindleRPM", spindle, rpm);
+  if (!found) return tl::unexpected(found.error());
   if (rpm != 0 && is_faulted(supervisor_.state())) {
     return failure(MinorCode::Other, "SetSpindleRPM: the machine is faulted; remove the cause, then reset");
   }
@@ -62,11 +71,57 @@ Expected<> CamSpindles::set_coolant(bool on) {
         MinorCode::UnsupportedOperation,
         fmt::format("{}: {} has no output named Coolant in its DigitalIOInterface", function, device_.get()->name));
   }
+  return switch_output(function, bit, on);
+}
+
+Expected<> CamSpindles::set_output(const std::string& name, bool on) {
+  const auto bit = device_.find_output(name, "SetOutput");
+  if (!bit) return tl::unexpected(bit.error());
+  if (is_the_changers(name)) {
+    const auto& speeds = supervisor_.wishes().spindle_rpm;
+    const bool turns = std::ranges::any_of(speeds, [](double rpm) { return rpm != 0; });
+    auto rest = supervisor_.require_rest("SetOutput of what the tool changer switches");
+    if (!rest) return rest;
+    if (turns) {
+      return failure(MinorCode::Other, fmt::format("SetOutput: the tool changer switches {}, and a spindle turns; stop "
+                                                   "it first, or change tools with DoToolChange",
+                                                   name));
+    }
+  }
+  return switch_output("SetOutput", *bit, on);
+}
+
+Expected<> CamSpindles::switch_output(const char* function, std::uint64_t bit, bool on) {
+  if (on && is_faulted(supervisor_.state())) {
+    return failure(MinorCode::Other, fmt::format("{}: the machine is faulted; remove the cause, then reset", function));
+  }
   if (on && supervisor_.tools_now().changing) {
-    return failure(MinorCode::Other, "TurnCoolantOn: a tool change is under way; wait for its end");
+    return failure(MinorCode::Other, fmt::format("{}: a tool change is under way; wait for its end", function));
   }
   supervisor_.wish([&](ServoWishes& wishes) { wishes.outputs = on ? wishes.outputs | bit : wishes.outputs & ~bit; });
   return {};
+}
+
+bool CamSpindles::is_the_changers(const std::string& output) const {
+  return std::ranges::any_of(device_.get()->tool_change, [&](const sdk::ToolChangeStep& step) {
+    return std::ranges::find(step.outputs, output) != step.outputs.end();
+  });
+}
+
+Expected<Switch::Speed> CamSpindles::in_turn(const sdk::SpindleCall& call) const {
+  const auto found = check_rpm("InTurn", call.spindle, call.rpm);
+  if (!found) return tl::unexpected(found.error());
+  return tools_.check_speed_in_turn(call.rpm).map([&] { return Switch::Speed{*found, call.rpm}; });
+}
+
+Expected<Switch::Output> CamSpindles::in_turn(const sdk::OutputCall& call) const {
+  const auto bit = device_.find_output(call.name, "InTurn");
+  if (!bit) return tl::unexpected(bit.error());
+  if (is_the_changers(call.name)) {
+    return failure(MinorCode::UnsupportedOperation,
+                   fmt::format("InTurn: the tool changer switches {}; change tools with DoToolChange", call.name));
+  }
+  return Switch::Output{call.name, call.on, *bit};
 }
 
 }  // namespace rmac::gateway

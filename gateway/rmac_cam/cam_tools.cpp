@@ -149,12 +149,10 @@ Expected<> CamTools::check_move(std::int64_t move_id, bool feeds) const {
   if (!feeds || number == kNoTool || device_.get()->spindles.empty()) return {};
   const auto tool = rack_.tool(number);
   if (!tool || !tool->needs_spindle) return {};
-  const ServoWishes wishes = supervisor_.wishes();
-  const bool turns = std::ranges::any_of(wishes.spindle_rpm, [](double rpm) { return rpm != 0; });
-  if (turns && !now.last) return {};
+  if (std::ranges::any_of(now.spindle_rpm, [](double rpm) { return rpm != 0; })) return {};
   return failure(MinorCode::Other,
-                 fmt::format("move {}: {} needs the spindle turning{}; use SetSpindleRPM{} first, or give the tool "
-                             "\"NeedsSpindle\": false",
+                 fmt::format("move {}: {} needs the spindle turning{}; use SetSpindleRPM{} first, or queue it in the "
+                             "program with InTurn, or give the tool \"NeedsSpindle\": false",
                              move_id, described(*tool), now.last ? ", and its change stops it" : "",
                              now.last ? " when the change is done" : ""));
 }
@@ -168,9 +166,23 @@ Expected<> CamTools::check_speed(double rpm) const {
                    "SetSpindleRPM: which tool is in the spindle is not known, because a change was not completed; say "
                    "it with ConfirmToolChange");
   }
-  const auto tool = rack_.tool(*now.mounted);
+  return check_bears("SetSpindleRPM", *now.mounted, rpm);
+}
+
+Expected<> CamTools::check_speed_in_turn(double rpm) const {
+  const ToolsNow now = supervisor_.tools_now();
+  const auto number = now.last ? now.last : now.mounted;
+  if (rpm == 0) return {};
+  if (number) return check_bears("InTurn", *number, rpm);
+  return failure(MinorCode::Other,
+                 "InTurn: which tool is in the spindle is not known, because a change was not completed; say it with "
+                 "ConfirmToolChange");
+}
+
+Expected<> CamTools::check_bears(const char* function, int number, double rpm) const {
+  const auto tool = rack_.tool(number);
   if (!tool || tool->max_rpm == 0 || std::abs(rpm) <= tool->max_rpm) return {};
-  return failure(MinorCode::SpeedLimit, fmt::format("SetSpindleRPM: {} rpm is above the {} rpm that {} may turn", rpm,
+  return failure(MinorCode::SpeedLimit, fmt::format("{}: {} rpm is above the {} rpm that {} may turn", function, rpm,
                                                     tool->max_rpm, described(*tool)));
 }
 

@@ -28,6 +28,8 @@ class CamTools final : public ToolPort {
   [[nodiscard]] Expected<> check_move(std::int64_t move_id, bool feeds) const;
   /// Refuses a speed of the spindle that the tool in it does not bear.
   [[nodiscard]] Expected<> check_speed(double rpm) const;
+  /// The same of the tool that is to be in it when all that is queued is done.
+  [[nodiscard]] Expected<> check_speed_in_turn(double rpm) const;
 
  private:
   [[nodiscard]] Expected<Tool> find(int number, const char* function) const;
@@ -35,6 +37,7 @@ class CamTools final : public ToolPort {
   [[nodiscard]] Expected<> check_changer(const ToolsNow& now) const;
   /// The change to `tool`, which is not there yet; leaves the queue's end where the steps leave the machine.
   [[nodiscard]] Expected<std::vector<QueueStep>> make_change(const ToolsNow& now, const Tool& tool);
+  [[nodiscard]] Expected<> check_bears(const char* function, int number, double rpm) const;
   /// The tool is in the spindle now, at rest.
   void put_in_spindle(const Tool& tool);
 

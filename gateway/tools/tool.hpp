@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "rmac/motion/error.hpp"
+#include "rmac/motion/machine_size.hpp"
 #include "rmac/motion/pose.hpp"
 
 namespace rmac::gateway {
@@ -34,7 +36,9 @@ struct ToolsNow {
   std::optional<int> wanted;             ///< by the first change that is queued
   std::optional<int> last;               ///< by the last one
   bool changing = false;                 ///< a change has begun
-  std::string prompt;                    ///< what a person is to do; empty: nothing
+  std::string prompt;                  ///< what a person is to do; empty: nothing
+  /// As the spindles are told to turn when all that is queued is done.
+  std::array<double, kMaxSpindles> spindle_rpm{};
 };
 
 /// The tools of the mechanism in force. Gateway thread; `tools_now` from beside it too.

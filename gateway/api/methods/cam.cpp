@@ -144,6 +144,15 @@ void add_auxiliaries(const auto& add) {
             .needs(Permission::Authority)
             .does([on](Call& call) { return call.machine.cam().spindles().set_coolant(on); }));
   }
+  add(method("RMAC_CAM.SetOutput",
+             "Switches an output of the machine by its name, at once; within a program InTurn does it in its turn.")
+          .takes(text("Name").noted("of DigitalIOInterface/Outputs in device.json"), boolean("On"))
+          .gives(WireType::Boolean)
+          .needs(Permission::Authority)
+          .extension()
+          .does([](Call& call, const std::string& name, bool on) {
+            return call.machine.cam().spindles().set_output(name, on);
+          }));
   add(method("RMAC_CAM.SetAnimation",
              "True streams the joint values to this connection (topic joints, 50 Hz, or faster if it is subscribed to "
              "so) for "

@@ -29,7 +29,7 @@ constexpr std::array kAsksOfMoves{"RMAC_CAM.LastHitPosition"sv, "RMAC_CAM.NewHit
 constexpr std::array kProbing{"RMAC_CAM.ControlMode"sv, "RMAC_CAM.Parameter"sv};
 
 constexpr std::array kBetweenMoves{"RMAC_CAM.DoToolChange"sv, "RMAC_CAM.Dwell"sv, "RMAC_CAM.ProgramStop"sv,
-                                   "RMAC_CAM.AwaitInput"sv};
+                                   "RMAC_CAM.AwaitInput"sv, "RMAC_CAM.InTurn"sv};
 
 bool is_one_of(const std::string& method, const auto& names) {
   return std::ranges::find(names, method) != names.end();

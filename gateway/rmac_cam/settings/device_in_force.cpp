@@ -54,6 +54,11 @@ Expected<std::uint64_t> DeviceInForce::find_input(const std::string& name, const
   return find_bit(device_->inputs, "input", name, device_->name, function);
 }
 
+Expected<std::uint64_t> DeviceInForce::find_output(const std::string& name, const char* function) const {
+  if (auto loaded = require(function); !loaded) return tl::unexpected(loaded.error());
+  return find_bit(device_->outputs, "output", name, device_->name, function);
+}
+
 std::uint64_t DeviceInForce::coolant() const {
   const sdk::DeviceObject& device = get_or_empty();
   const auto output = device.outputs.find("Coolant");

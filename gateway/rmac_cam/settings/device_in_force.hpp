@@ -25,6 +25,7 @@ class DeviceInForce {
   [[nodiscard]] Expected<std::size_t> find_spindle(int spindle, const char* function) const;
   /// The input of this name, as a bit of the machine's inputs; an error tells which there are.
   [[nodiscard]] Expected<std::uint64_t> find_input(const std::string& name, const char* function) const;
+  [[nodiscard]] Expected<std::uint64_t> find_output(const std::string& name, const char* function) const;
   /// The output named Coolant, as a bit of the machine's outputs; 0 where there is none.
   [[nodiscard]] std::uint64_t coolant() const;
 

@@ -84,6 +84,7 @@ class MockSpindles : public sdk::SpindleControl {
   MOCK_METHOD(Expected<>, set_max_rpm, (int, double), (override));
   MOCK_METHOD(Expected<double>, max_rpm, (int), (const, override));
   MOCK_METHOD(Expected<>, set_coolant, (bool), (override));
+  MOCK_METHOD(Expected<>, set_output, (const std::string&, bool), (override));
 };
 
 class MockPositioning : public sdk::Positioning {
@@ -115,6 +116,7 @@ class MockFlow : public sdk::ProgramFlow {
   MOCK_METHOD(Expected<>, dwell, (std::int64_t, double), (override));
   MOCK_METHOD(Expected<>, stop, (std::int64_t, bool, const std::string&), (override));
   MOCK_METHOD(Expected<>, await_input, (std::int64_t, const std::string&, bool, double), (override));
+  MOCK_METHOD(Expected<>, in_turn, (std::int64_t, const std::vector<sdk::CallInTurn>&), (override));
   MOCK_METHOD(void, set_optional_stops, (bool), (override));
   MOCK_METHOD(bool, optional_stops, (), (const, override));
 };

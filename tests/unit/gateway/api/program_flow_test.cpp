@@ -37,6 +37,78 @@ TEST(ProgramFlow, RefusesWhatIsNoTimeBeforeTheMachineHearsOfIt) {
               HasSubstr("Seconds"));
 }
 
+/// What reached the machine of one `InTurn`.
+std::vector<sdk::CallInTurn> called(const std::string& calls) {
+  Api api;
+  std::vector<sdk::CallInTurn> found;
+  EXPECT_CALL(api.machine.cam_mock.flow_mock, in_turn(5, _))
+      .WillOnce(testing::DoAll(testing::SaveArg<1>(&found), Return(Expected<>{})));
+  EXPECT_EQ(api.result("RMAC_CAM.InTurn", R"({"MoveID":5,"Calls":)" + calls + "}"), true);
+  return found;
+}
+
+TEST(ProgramFlow, ReadsCallsAsTheyWouldBeSent) {
+  const auto calls = called(R"([{"method":"RMAC_CAM.SetSpindleRPM","params":{"SpindleNumber":1,"RPM":-800}},
+    {"method":"RMAC_CAM.TurnCoolantOn"},
+    {"method":"RMAC_CAM.TurnCoolantOff","params":{}},
+    {"method":"RMAC_CAM.SetOutput","params":["Laser",true]}])");
+  ASSERT_EQ(calls.size(), 4U);
+  EXPECT_EQ(std::get<sdk::SpindleCall>(calls[0]).spindle, 1);
+  EXPECT_EQ(std::get<sdk::SpindleCall>(calls[0]).rpm, -800);
+  EXPECT_EQ(std::get<sdk::OutputCall>(calls[1]).name, "Coolant");
+  EXPECT_TRUE(std::get<sdk::OutputCall>(calls[1]).on);
+  EXPECT_FALSE(std::get<sdk::OutputCall>(calls[2]).on);
+  EXPECT_EQ(std::get<sdk::OutputCall>(calls[3]).name, "Laser");
+  EXPECT_TRUE(std::get<sdk::OutputCall>(calls[3]).on);
+}
+
+TEST(ProgramFlow, RefusesCallsThatAreNoneByNameAndPlace) {
+  Api api;
+  EXPECT_CALL(api.machine.cam_mock.flow_mock, in_turn(_, _)).Times(0);
+  const auto refused = [&](const std::string& calls) {
+    return api.refusal("RMAC_CAM.InTurn", R"({"MoveID":5,"Calls":)" + calls + "}", rpc_code::kInvalidParams);
+  };
+  constexpr const char* kGood = R"({"method":"RMAC_CAM.TurnCoolantOn"})";
+  for (const char* other : {"RMAC_CAM.CycleStart", "RMAC_CAM.MoveAlongLine", "RMAC_CAM.InTurn", "SetSpindleRPM", "",
+                            "RMAC_CAM.StopNow", "Device.Unload"}) {
+    EXPECT_THAT(refused(std::string("[") + kGood + R"(,{"method":")" + other + R"("}])"),
+                testing::AllOf(HasSubstr("Calls[1]: " + std::string(other) + " is not called in turn"),
+                               HasSubstr("RMAC_CAM.SetSpindleRPM, TurnCoolantOn")))
+        << other;
+  }
+  EXPECT_THAT(refused("[]"), HasSubstr("0 Calls; there must be 1 to 64"));
+  std::string many = "[";
+  for (int i = 0; i < 65; ++i) many += std::string(i == 0 ? "" : ",") + kGood;
+  EXPECT_THAT(refused(many + "]"), HasSubstr("65 Calls"));
+  EXPECT_THAT(refused("7"), HasSubstr("\"Calls\""));
+  EXPECT_THAT(refused("[7]"), HasSubstr("Calls[0]: 7 is no object"));
+  EXPECT_THAT(refused("[{}]"), HasSubstr("Calls[0]: \"method\" is missing"));
+  EXPECT_THAT(refused(R"([{"method":7}])"), HasSubstr("Calls[0]: \"method\" is missing, or no text"));
+  EXPECT_THAT(refused(R"([{"method":"RMAC_CAM.TurnCoolantOn","id":3}])"), HasSubstr("no member \"id\""));
+  EXPECT_THAT(refused(R"([{"method":"RMAC_CAM.TurnCoolantOn","params":{"x":1}}])"), HasSubstr("\"x\""));
+  EXPECT_THAT(refused(R"([{"method":"RMAC_CAM.SetOutput","params":{"Name":"A"}}])"), HasSubstr("\"On\" is missing"));
+  EXPECT_THAT(refused(R"([{"method":"RMAC_CAM.SetOutput","params":["A",1]}])"), HasSubstr("\"On\""));
+  EXPECT_THAT(refused(R"([{"method":"RMAC_CAM.SetSpindleRPM","params":[4,100]}])"), HasSubstr("\"SpindleNumber\""));
+  EXPECT_THAT(refused(R"([{"method":"RMAC_CAM.SetSpindleRPM","params":[0,1e300]}])"), HasSubstr("\"RPM\""));
+}
+
+TEST(ProgramFlow, TellsTheMachinesRefusalAsItsLastError) {
+  Api api;
+  EXPECT_CALL(api.machine.cam_mock.flow_mock, in_turn(5, _))
+      .WillOnce(Return(failure(MinorCode::SpeedLimit, "InTurn: too fast")));
+  const auto call = api.call("RMAC_CAM.InTurn", R"({"MoveID":5,"Calls":[{"method":"RMAC_CAM.TurnCoolantOn"}]})");
+  EXPECT_EQ(call["error"]["message"], "InTurn: too fast");
+  EXPECT_EQ(api.dispatcher.status().minor, static_cast<std::int64_t>(MinorCode::SpeedLimit));
+}
+
+TEST(ProgramFlow, SwitchesAnOutputByName) {
+  Api api;
+  EXPECT_CALL(api.machine.cam_mock.spindles_mock, set_output("Laser", true)).WillOnce(Return(Expected<>{}));
+  EXPECT_EQ(api.result("RMAC_CAM.SetOutput", R"({"Name":"Laser","On":true})"), true);
+  (void)api.refusal("RMAC_CAM.SetOutput", R"({"Name":3,"On":true})", rpc_code::kInvalidParams);
+  (void)api.refusal("RMAC_CAM.SetOutput", R"({"Name":"Laser","On":"yes"})", rpc_code::kInvalidParams);
+}
+
 TEST(ProgramFlow, TellsAPersonOneShortLineAndNoMore) {
   Api api;
   fakes::MockFlow& flow = api.machine.cam_mock.flow_mock;

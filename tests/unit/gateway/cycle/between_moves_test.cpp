@@ -224,6 +224,60 @@ TEST_F(BetweenMoves, NothingIsTakenBeforeTheCycleRuns) {
   EXPECT_TRUE(bench_.events().empty());
 }
 
+// Red when a feed begins at the speed of the cut before, or the speed changes before its turn.
+TEST_F(BetweenMoves, ASpindlesSpeedIsWaitedForBeforeTheNextFeed) {
+  ASSERT_TRUE(bench_.queue(1, 5));
+  add({2, Switch{.speeds = {{0, 600}}}});
+  ASSERT_TRUE(bench_.queue(3, 9));
+  ASSERT_TRUE(bench_.start());
+  ASSERT_TRUE(bench_.run_until([&] { return bench_.wishes().spindle_rpm[0] != 0 || bench_.x() > 5; }));
+  EXPECT_NEAR(bench_.x(), 5, 1e-9);
+  EXPECT_FALSE(bench_.status.moving) << "the path rests there";
+  bench_.run(2000);
+  EXPECT_NEAR(bench_.x(), 5, 1e-9);
+  bench_.status.spindle_rpm[0] = 595;
+  ASSERT_TRUE(bench_.run_until([&] { return all_done(); }));
+  EXPECT_NEAR(bench_.x(), 9, 1e-9);
+  EXPECT_EQ(count(Event::Kind::MoveDone, 2), 1);
+}
+
+TEST_F(BetweenMoves, NoMoveIsBegunBehindASpindleThatDoesNotComeToItsSpeed) {
+  add({2, Switch{.speeds = {{0, 600}}}});
+  ASSERT_TRUE(bench_.queue(3, 9));
+  ASSERT_TRUE(bench_.start());
+  bench_.run(5100);
+  EXPECT_EQ(bench_.state(), CycleState::Faulted);
+  EXPECT_THAT(bench_.told(Event::Kind::Fault), HasSubstr("spindle 0 turns at 0 of 600 rpm"));
+  EXPECT_EQ(bench_.x(), 0);
+}
+
+// Red when a way back makes the calls once more.
+TEST_F(BetweenMoves, AWayBackOverCallsDoesNotMakeThemAgain) {
+  ASSERT_TRUE(bench_.queue(1, 5));
+  add({2, Switch{.speeds = {{0, 600}}, .outputs = {{"Coolant", true, 0b10}}}});
+  ASSERT_TRUE(bench_.queue(3, 30, 5));
+  bench_.status.spindle_rpm[0] = 600;
+  ASSERT_TRUE(bench_.start());
+  ASSERT_TRUE(bench_.run_until([&] { return bench_.x() > 8; }));
+  EXPECT_EQ(bench_.wishes().outputs, 0b10U);
+  ASSERT_TRUE(bench_.hold());
+  ASSERT_TRUE(bench_.run_to_rest());
+  {
+    const GatewayTurn turn(bench_.cycle.lock);
+    bench_.cycle.wishes.change([](ServoWishes& wish) {
+      wish.outputs = 0;
+      wish.spindle_rpm[0] = 300;
+    });
+  }
+  bench_.status.spindle_rpm[0] = 300;
+  retrace(7);
+  EXPECT_LT(bench_.x(), 3);
+  ASSERT_TRUE(bench_.resume());
+  ASSERT_TRUE(bench_.run_until([&] { return bench_.x() > 9; }));
+  EXPECT_EQ(bench_.wishes().outputs, 0U);
+  EXPECT_EQ(bench_.wishes().spindle_rpm[0], 300);
+}
+
 TEST_F(BetweenMoves, NoWayBackWhileAToolIsChanged) {
   ASSERT_TRUE(bench_.queue(1, 5));
   {

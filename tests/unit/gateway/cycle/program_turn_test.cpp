@@ -98,6 +98,26 @@ TEST_F(TurnOfAProgram, HoldsWhenAnInputDoesNotComeAndWaitsOnceMoreWhenAskedAgain
       << "no device is behind it";
 }
 
+TEST_F(TurnOfAProgram, SwitchesSpindlesAndOutputsTogetherInTheirOrder) {
+  wishes_.change([](ServoWishes& wish) {
+    wish.spindle_rpm = {100, 200};
+    wish.outputs = 0b1001;
+  });
+  const Switch outputs{.outputs = {{"A", true, 0b10}, {"B", false, 0b1}, {"C", true, 0b100}, {"C", false, 0b100}}};
+  EXPECT_EQ(take({1, outputs}, 1), Outcome::Done);
+  EXPECT_EQ(servo_.read().outputs, 0b1010U) << "the last word counts, and others stay";
+  EXPECT_EQ(servo_.read().spindle_rpm[0], 100);
+  const Switch both{.speeds = {{1, -500}}, .outputs = {{"B", true, 0b1}}};
+  EXPECT_EQ(take({2, both}, 2), Outcome::SpindlesTold);
+  EXPECT_EQ(servo_.read().spindle_rpm[0], 100);
+  EXPECT_EQ(servo_.read().spindle_rpm[1], -500);
+  EXPECT_EQ(servo_.read().outputs, 0b1011U);
+  const auto events = told();
+  ASSERT_EQ(events.size(), 4U);
+  EXPECT_EQ(events[3].kind, Event::Kind::MoveDone);
+  EXPECT_EQ(events[3].message, "calls in turn 2 (spindle 1 at -500 rpm, B on) done");
+}
+
 TEST_F(TurnOfAProgram, BeginsAnewAfterTheQueueWasEmptied) {
   EXPECT_EQ(take({1, Dwell{5}}, 1), Outcome::Waits);
   turn_.drop();

@@ -26,7 +26,7 @@ class ParkedProgram : public StandingMill {
   }
   CamForces forces_{device_, supervisor_};
   CamSpindles spindles_{device_, supervisor_, link_.history, tools_};
-  CamProgramFlow flow_{device_, supervisor_};
+  CamProgramFlow flow_{device_, supervisor_, spindles_};
   CamParking parking_{device_, supervisor_, link_, {path_, joints_, spindles_, tools_, forces_, flow_}};
 };
 
@@ -69,9 +69,10 @@ TEST_F(ParkedProgram, TakesWhatStandsBetweenItsMovesAlongInItsPlace) {
   ASSERT_TRUE(queue_line(6, {10, 0, 0}, {10, 4, 0}));
   ASSERT_TRUE(flow_.stop(7, true, "look"));
   ASSERT_TRUE(flow_.await_input(8, "Clamped", false, 2));
+  ASSERT_TRUE(flow_.in_turn(9, {sdk::SpindleCall{0, 300}, sdk::OutputCall{"Coolant", true}}));
   ASSERT_TRUE(parking_.park());
   EXPECT_EQ(supervisor_.moves_left(), 0U);
-  EXPECT_EQ(parking_.parked()->moves, 5U);
+  EXPECT_EQ(parking_.parked()->moves, 6U);
   const auto ids = [&] {
     std::vector<std::int64_t> found;
     for (const Move& move : queued_) found.push_back(move.id);
@@ -87,8 +88,8 @@ TEST_F(ParkedProgram, TakesWhatStandsBetweenItsMovesAlongInItsPlace) {
   queued_.clear();
   const auto taken = parking_.take_up();
   ASSERT_TRUE(taken) << taken.error().message;
-  EXPECT_EQ(supervisor_.moves_left(), 5U);
-  EXPECT_THAT(ids(), testing::ElementsAre(4, 5, 6, 7, 8));
+  EXPECT_EQ(supervisor_.moves_left(), 6U);
+  EXPECT_THAT(ids(), testing::ElementsAre(4, 5, 6, 7, 8, 9));
 }
 
 TEST_F(ParkedProgram, GoesOnWithADwellAtItsPlace) {

@@ -16,11 +16,14 @@ class ProgramFlowOfTheMill : public StandingMill {
     StandingMill::SetUp();
     named_ = mechanism_->device;
     named_.inputs = {{"Clamped", 3}, {"Door", 0}};
+    named_.outputs["Laser"] = 2;
     describe(named_);
+    spindles_.mechanism_changed();
     ASSERT_TRUE(path_.set_feedrate(600));
   }
   sdk::DeviceObject named_;
-  CamProgramFlow flow_{device_, supervisor_};
+  CamSpindles spindles_{device_, supervisor_, link_.history, tools_};
+  CamProgramFlow flow_{device_, supervisor_, spindles_};
 };
 
 TEST_F(ProgramFlowOfTheMill, QueuesEachBehindTheMovesBeforeItAndMovesBehindIt) {
@@ -61,6 +64,33 @@ TEST_F(ProgramFlowOfTheMill, SaysWhichInputsThereAre) {
   named_.inputs.clear();
   EXPECT_THAT(flow_.await_input(1, "Clamped", true, 2).error().message, HasSubstr("of Mill has none"));
   EXPECT_EQ(supervisor_.moves_left(), 0U);
+}
+
+TEST_F(ProgramFlowOfTheMill, QueuesCallsWithoutMakingThem) {
+  ASSERT_TRUE(queue_line(1, {0, 0, 0}, {10, 0, 0}));
+  ASSERT_TRUE(flow_.in_turn(2, {sdk::SpindleCall{0, 500}, sdk::OutputCall{"Laser", true}}));
+  EXPECT_EQ(supervisor_.moves_left(), 2U);
+  EXPECT_EQ(supervisor_.wishes().spindle_rpm[0], 0);
+  EXPECT_EQ(supervisor_.wishes().outputs, 0U);
+}
+
+TEST_F(ProgramFlowOfTheMill, RefusesCallsThatCannotWorkAllTogether) {
+  const auto refused = [&](const sdk::CallInTurn& call) {
+    const auto answer = flow_.in_turn(2, {sdk::OutputCall{"Laser", true}, call});
+    return answer ? std::string("taken") : answer.error().message;
+  };
+  EXPECT_EQ(refused(sdk::OutputCall{"Lazer", true}),
+            "InTurn: there is no output named \"Lazer\"; the DigitalIOInterface of Mill has Coolant, Laser");
+  EXPECT_EQ(refused(sdk::SpindleCall{1, 100}), "InTurn: there is no spindle 1; spindles are 0 to 0");
+  EXPECT_EQ(refused(sdk::SpindleCall{-1, 100}), "InTurn: there is no spindle -1; spindles are 0 to 0");
+  EXPECT_EQ(refused(sdk::SpindleCall{0, 1001}), "InTurn: 1001 rpm is above spindle 0's maximum of 1000 rpm");
+  EXPECT_EQ(refused(sdk::SpindleCall{0, std::nan("")}), "InTurn: the speed must be finite");
+  named_.tool_change = {{.kind = sdk::ToolChangeStep::Kind::Switch, .outputs = {"Laser"}}};
+  EXPECT_EQ(refused(sdk::SpindleCall{0, 1}), "InTurn: the tool changer switches Laser; change tools with DoToolChange");
+  named_.spindles.clear();
+  named_.tool_change.clear();
+  EXPECT_EQ(refused(sdk::SpindleCall{0, 1}), "InTurn: the mechanism has no spindle");
+  EXPECT_EQ(supervisor_.moves_left(), 0U) << "nothing of what was refused is queued";
 }
 
 TEST_F(ProgramFlowOfTheMill, NeedsAMechanismThatIsNotFaulted) {

@@ -50,6 +50,38 @@ TEST_F(Spindles, TellTheMeasuredSpeed) {
   EXPECT_FALSE(spindles_.rpm(1));
 }
 
+TEST_F(Spindles, HaveOutputsBesideThemThatAreSwitchedByName) {
+  sdk::DeviceObject device = mechanism_->device;
+  device.outputs["Laser"] = 2;
+  device.outputs["Drawbar"] = 3;
+  device.tool_change = {{.kind = sdk::ToolChangeStep::Kind::Switch, .outputs = {"Drawbar"}}};
+  device_.change(&device);
+  ASSERT_TRUE(spindles_.set_output("Laser", true));
+  EXPECT_EQ(supervisor_.wishes().outputs, 0b100U);
+  ASSERT_TRUE(spindles_.set_output("Coolant", true));
+  ASSERT_TRUE(spindles_.set_output("Laser", false));
+  EXPECT_EQ(supervisor_.wishes().outputs, 0b100000U);
+  EXPECT_EQ(
+      spindles_.set_output("laser", true).error().message,
+      "SetOutput: there is no output named \"laser\"; the DigitalIOInterface of Mill has Coolant, Drawbar, Laser");
+  ASSERT_TRUE(spindles_.set_output("Drawbar", true));
+  ASSERT_TRUE(spindles_.set_output("Drawbar", false));
+  ASSERT_TRUE(spindles_.set_rpm(0, 100));
+  EXPECT_THAT(spindles_.set_output("Drawbar", true).error().message,
+              HasSubstr("the tool changer switches Drawbar, and a spindle turns"));
+  EXPECT_EQ(supervisor_.wishes().outputs, 0b100000U);
+  device_.change(nullptr);
+  EXPECT_THAT(spindles_.set_output("Laser", true).error().message, HasSubstr("no mechanism is loaded"));
+}
+
+TEST_F(Spindles, HaveOutputsThatGoOffInAFaultAndNotOn) {
+  fail();
+  EXPECT_THAT(spindles_.set_output("Coolant", true).error().message, HasSubstr("SetOutput: the machine is faulted"));
+  EXPECT_THAT(spindles_.set_coolant(true).error().message, HasSubstr("TurnCoolantOn: the machine is faulted"));
+  EXPECT_EQ(supervisor_.wishes().outputs, 0U);
+  EXPECT_TRUE(spindles_.set_output("Coolant", false));
+}
+
 TEST_F(Spindles, StayOffInAFault) {
   fail();
   EXPECT_THAT(spindles_.set_rpm(0, 100).error().message, HasSubstr("the machine is faulted"));

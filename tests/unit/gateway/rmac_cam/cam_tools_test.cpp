@@ -1,5 +1,6 @@
 #include "gateway/rmac_cam/cam_tools.hpp"
 
+#include "gateway/rmac_cam/cam_program_flow.hpp"
 #include "unit/gateway/rmac_cam/standing_mill.hpp"
 
 namespace rmac::gateway {
@@ -139,6 +140,26 @@ TEST_F(Tools, CutWithTheSpindleTurningUnlessTheySayOtherwise) {
   EXPECT_TRUE(tools_.check_move(5, true)) << "a probe";
   ASSERT_TRUE(tools_.change_tool(1));
   EXPECT_THAT(tools_.check_move(6, true).error().message, HasSubstr("and its change stops it; use SetSpindleRPM when"));
+}
+
+// Red when a program cannot change its tool and go on cutting without a client that waits for the change.
+TEST_F(Tools, CutBehindTheSpeedThatTheProgramGivesThemInItsTurn) {
+  CamSpindles spindles{device_, supervisor_, link_.history, tools_};
+  spindles.mechanism_changed();
+  CamProgramFlow flow{device_, supervisor_, spindles};
+  supervisor_.set_mounted(1);
+  ASSERT_TRUE(flow.in_turn(1, {sdk::SpindleCall{0, 500}}));
+  EXPECT_EQ(supervisor_.wishes().spindle_rpm[0], 0) << "not before its turn";
+  EXPECT_TRUE(tools_.check_move(2, true));
+  ASSERT_TRUE(tools_.change_tool(2));
+  ASSERT_TRUE(tools_.change_tool(1));
+  EXPECT_FALSE(tools_.check_move(3, true)) << "the change stops the spindle";
+  EXPECT_EQ(flow.in_turn(4, {sdk::SpindleCall{0, 900}}).error().message,
+            "InTurn: 900 rpm is above the 800 rpm that tool 1 (end mill) may turn");
+  ASSERT_TRUE(flow.in_turn(4, {sdk::SpindleCall{0, -700}}));
+  EXPECT_TRUE(tools_.check_move(5, true));
+  ASSERT_TRUE(flow.in_turn(6, {sdk::SpindleCall{0, 0}}));
+  EXPECT_FALSE(tools_.check_move(7, true));
 }
 
 TEST_F(Tools, BoundTheSpindlesSpeed) {

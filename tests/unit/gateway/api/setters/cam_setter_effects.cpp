@@ -171,6 +171,14 @@ const std::vector<SetterEffect>& cam_setter_effects() {
          bench.call("RMAC_CAM.ProgramStop", R"({"MoveID": 2, "Optional": true})");
          bench.run_until([&] { return bench.now().state == CycleState::Holding; });
        }},
+      {"RMAC_CAM.SetOutput",
+       [](SetterBench& bench) {
+         const std::uint64_t before = bench.now().outputs;
+         bench.call("RMAC_CAM.SetOutput", R"({"Name": "Coolant", "On": true})");
+         bench.run_until([&] { return bench.now().outputs != before; });
+         bench.call("RMAC_CAM.SetOutput", R"({"Name": "Coolant", "On": false})");
+         bench.run_until([&] { return bench.now().outputs == before; });
+       }},
       {"RMAC_CAM.SetCycleStartStatus",
        [](SetterBench& bench) {
          bench.call("RMAC_CAM.CycleStop", R"({"Mode": "AUTOMATIC"})");

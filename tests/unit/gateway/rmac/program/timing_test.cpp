@@ -37,9 +37,9 @@ TEST(Timing, SendsWhatHoldsForLaterMovesWithoutWaiting) {
 TEST(Timing, WaitsBeforeWhatActsOnTheMachineAndBeforeQuestionsAboutTheMoves) {
   for (const char* name :
        {"RMAC_CAM.Home", "RMAC_CAM.JogJoint", "RMAC_CAM.SetSpindleRPM", "RMAC_CAM.SetPartFrame", "RMAC_CAM.SetTool",
-        "RMAC_CAM.TurnCoolantOn", "RMAC_Config.Apply", "Device.Load", "Device.Unload", "RMAC_CAM.CycleStop",
-        "RMAC_CAM.NewHit", "RMAC_CAM.LastHitPosition", "RMAC_CAM.ProbeActive", "RMAC_CAM.Parameter",
-        "RMAC_CAM.ControlMode", "FlightRecorder.Record"}) {
+        "RMAC_CAM.TurnCoolantOn", "RMAC_CAM.SetOutput", "RMAC_Config.Apply", "Device.Load", "Device.Unload",
+        "RMAC_CAM.CycleStop", "RMAC_CAM.NewHit", "RMAC_CAM.LastHitPosition", "RMAC_CAM.ProbeActive",
+        "RMAC_CAM.Parameter", "RMAC_CAM.ControlMode", "FlightRecorder.Record"}) {
     EXPECT_EQ(timing_of(name), Timing::Settled) << name;
   }
 }
@@ -55,7 +55,8 @@ TEST(Timing, WaitsBeforeWhatTheTableDoesNotHave) {
 }
 
 TEST(Timing, KnowsWhatStandsBetweenMoves) {
-  for (const char* name : {"RMAC_CAM.Dwell", "RMAC_CAM.ProgramStop", "RMAC_CAM.AwaitInput", "RMAC_CAM.DoToolChange"}) {
+  for (const char* name :
+       {"RMAC_CAM.Dwell", "RMAC_CAM.ProgramStop", "RMAC_CAM.AwaitInput", "RMAC_CAM.InTurn", "RMAC_CAM.DoToolChange"}) {
     EXPECT_TRUE(stands_between_moves(name)) << name;
     EXPECT_EQ(timing_of(name), Timing::Move) << name;
   }

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <string>
+
 #include "rmac/motion/error.hpp"
 
 namespace rmac::sdk {
 
-/// Spindles, numbered from 0, in rpm, and the coolant. Gateway thread only.
+/// Spindles, numbered from 0, in rpm, the coolant, and whatever else hangs at an output. Gateway thread only.
 class SpindleControl {
  public:
   virtual ~SpindleControl() = default;
@@ -18,6 +20,8 @@ class SpindleControl {
   [[nodiscard]] virtual Expected<double> max_rpm(int spindle) const = 0;
   /// Switches the output that is named Coolant.
   virtual Expected<> set_coolant(bool on) = 0;
+  /// Switches the output of this name.
+  virtual Expected<> set_output(const std::string& name, bool on) = 0;
 };
 
 }  // namespace rmac::sdk
