@@ -45,7 +45,7 @@ Expected<> Jogging::start(std::vector<BuiltMove> built, std::optional<double> sh
   cycle_.apply_feed();
   auto started = cycle_.sequencer.start_positioning(cycle_.observe(cycle_.status()),
                                                     share ? std::optional(kJogLasts_s) : std::nullopt);
-  if (!started) cycle_.empty_queue(cycle_.status().progress.cycle);  // its move is no program's
+  if (!started) cycle_.empty_queue(cycle_.status());  // its move is no program's
   cycle_.settle(cycle_.status());
   return started;
 }

@@ -41,6 +41,8 @@ MachineCycle::MachineCycle(Options options, ServoLink& link)
       queue(news),
       tools(wishes, news),
       program_turn(wishes, news),
+      marks(wishes, link.marks),
+      steps({queue, tools, program_turn, sequencer, marks}),
       options_(options),
       link_(link) {}
 
@@ -48,6 +50,7 @@ CycleObservation MachineCycle::observe(const ServoStatus& status) {
   CycleObservation seen;
   seen.t_s = status.t_s;
   news.set_time(status.t_s, status.progress.cycle);
+  marks.settle(status.marks_passed);
   if (!mechanism_) return seen;
   seen.moves_left = queue.planned();
   seen.done = queue.left() == 0 && queue.steps().empty();
@@ -160,7 +163,7 @@ void MachineCycle::apply_verdict(const CycleSequencer::Verdict& verdict, const S
     link_.stops.planned.store(*verdict.command == PathCommand::Stop, std::memory_order_release);
     mechanism_->planner.command(*verdict.command);
   }
-  if (mechanism_ && verdict.clear_queue) empty_queue(status.progress.cycle);
+  if (mechanism_ && verdict.clear_queue) empty_queue(status);
   if (verdict.spindle_timed_out) tell_spindle_timeout(status);
   if (verdict.came_to_rest) {
     const bool beside = mechanism_ && mechanism_->planner.off_path();
@@ -191,6 +194,7 @@ void MachineCycle::tell_state() {
   news.tell(Event::Kind::CycleStateChanged, fmt::format("{} to {}", to_string(reported_state_), to_string(state)),
             MinorCode::None, state == CycleState::Running);
   reported_state_ = state;
+  if (state == CycleState::EmergencyStop) marks.drop();
   wishes.change([state](ServoWishes& wish) {
     wish.state = state;
     if (is_faulted(state)) {
@@ -204,9 +208,9 @@ void MachineCycle::tell_state() {
 
 void MachineCycle::take_steps(const ServoStatus& status) {
   while (!queue.steps().empty() && mechanism_ && status.generation == generation_ && !is_faulted(sequencer.state())) {
-    steps_.hand_on();  // what is handed on is seen to be there
+    steps.hand_on();  // what is handed on is seen to be there
     const CycleObservation seen = observe(status);
-    switch (steps_.take(seen, {seen.t_s, link_.history.latest().inputs, mechanism_->virtual_mode()})) {
+    switch (steps.take(seen, {seen.t_s, link_.history.latest().inputs, mechanism_->virtual_mode()})) {
       case QueueSteps::Came::Nothing:
         return;
       case QueueSteps::Came::Done:
@@ -243,8 +247,8 @@ Planning::Pace MachineCycle::pace(const ServoStatus& status) {
       std::chrono::steady_clock::now() - queue.last_added() < options_.client_grace) {
     return Planning::Pace::Sending;
   }
-  const bool steps = !queue.steps().empty() && !tools.asked();
-  const bool waiting = state == CycleState::Running && (left > 0 || steps || sequencer.waits_for_spindle());
+  const bool between = !queue.steps().empty() && !tools.asked();
+  const bool waiting = state == CycleState::Running && (left > 0 || between || sequencer.waits_for_spindle());
   const bool coming_to_rest = status.moving || !mechanism_->planner.at_rest(status.progress);
   const bool busy = waiting || coming_to_rest || sequencer.phase().homes() || state == CycleState::Stopping ||
                     status.state == ServoState::Enabling;
@@ -278,7 +282,7 @@ Expected<> MachineCycle::ready_for_move() {
   if (now.generation != generation_ || !now.follows) {
     return failure(MinorCode::Other, "the drives are not enabled yet; send moves when they are");
   }
-  queue.begin_here();
+  queue.begin_here(now.moves_done);
   builder().restart({now.position_set.data(), now.joint_count}, wishes.now().frames);
   return {};
 }
@@ -333,9 +337,11 @@ std::size_t MachineCycle::moves_left() {
   return left - std::min(left, measurement.steps()) + 1;  // the client's is one
 }
 
-void MachineCycle::empty_queue(std::int64_t cycle) {
+void MachineCycle::empty_queue(const ServoStatus& status) {
   wishes.forget_later();
-  tools.drop(queue.clear(cycle));
+  marks.settle(status.marks_passed);
+  marks.drop();
+  tools.drop(queue.clear(status.progress.cycle, status.generation == generation_ ? status.moves_done : 0));
   program_turn.drop();
 }
 
@@ -359,6 +365,7 @@ std::shared_ptr<Mechanism> MachineCycle::install(std::shared_ptr<Mechanism> next
   wishes.forget_later();
   tools.drop(queue.forget());
   program_turn.drop();
+  marks.drop();
   path_watch_.restart();
   queue.install(mechanism_ ? &mechanism_->planner : nullptr);
   apply_feed();

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "gateway/cycle/output_marks.hpp"
 #include "gateway/cycle/program_turn.hpp"
 #include "gateway/cycle/queue_steps.hpp"
 #include "gateway/cycle/standing_wishes.hpp"
@@ -48,6 +49,8 @@ class MachineCycle {
   ProgramTurn program_turn GUARDED_BY(lock);
   ProbeWatch probe GUARDED_BY(lock);
   FeedOverride feed GUARDED_BY(lock);
+  OutputMarks marks GUARDED_BY(lock);
+  QueueSteps steps GUARDED_BY(lock);
 
   /// Takes a turn of the gateway: `function(sequencer, observation)` commands the cycle states; then acts on what it
   /// changed.
@@ -105,7 +108,7 @@ class MachineCycle {
   /// Moves queued and not yet done, those without motion included. A measurement is one.
   [[nodiscard]] std::size_t moves_left() REQUIRES(lock);
   /// Drops what is queued, at rest.
-  void empty_queue(std::int64_t cycle) REQUIRES(lock);
+  void empty_queue(const ServoStatus& status) REQUIRES(lock);
   /// Hands the override on to the planner.
   void apply_feed() REQUIRES(lock);
   /// Spindles were told another speed: motion waits for the slowest of them.
@@ -137,7 +140,6 @@ class MachineCycle {
   std::uint64_t generation_ GUARDED_BY(lock) = 0;
   PathBuilder* builder_ = nullptr;  ///< the gateway thread's alone
   std::atomic<bool> jogs_{false};   ///< written with a turn, read without
-  QueueSteps steps_ GUARDED_BY(lock){{queue, tools, program_turn, sequencer}};
   PathWatch path_watch_ GUARDED_BY(lock);
   bool told_beside_ GUARDED_BY(lock) = false;  ///< that the machine rests beside its path
   CycleState reported_state_ GUARDED_BY(lock) = CycleState::Idle;

@@ -34,6 +34,7 @@ Expected<> MotionSupervisor::add_steps(const char* function, std::vector<QueueSt
                                          "queued");
   }
   cycle_.queue.add_steps(std::move(steps), std::move(as_sent));
+  cycle_.steps.hand_on();
   return {};
 }
 
@@ -69,6 +70,7 @@ Expected<> MotionSupervisor::require_rest(const char* what) {
 
 void MotionSupervisor::wish(const std::function<void(ServoWishes&)>& change) {
   const GatewayTurn turn(cycle_.lock);
+  cycle_.marks.settle(cycle_.status().marks_passed);  // what comes later counts
   cycle_.wishes.change(change);
 }
 

@@ -96,7 +96,7 @@ bool Parking::hold_taken_up() {
 
 void Parking::drop_taken_up() {
   const GatewayTurn turn(cycle_.lock);
-  if (cycle_.mechanism()) cycle_.empty_queue(cycle_.status().progress.cycle);
+  if (cycle_.mechanism()) cycle_.empty_queue(cycle_.status());
 }
 
 void Parking::drop(const std::string& why) {

@@ -1,10 +1,29 @@
 #include "gateway/cycle/queue_steps.hpp"
 
 namespace rmac::gateway {
+namespace {
+
+/// Outputs that switch on the way; null where the step is another, or a spindle's speed is to be waited for.
+const Switch* switches_outputs(const QueueStep& step) {
+  const auto* turn = std::get_if<InTurn>(&step);
+  const auto* switching = turn != nullptr ? std::get_if<Switch>(&turn->what) : nullptr;
+  return switching != nullptr && switching->speeds.empty() ? switching : nullptr;
+}
+
+}  // namespace
 
 void QueueSteps::hand_on() {
-  while (!parts_.queue.steps().empty() && std::holds_alternative<QueuedPath>(parts_.queue.next_step())) {
-    parts_.queue.plan_next_step();
+  MoveQueue& queue = parts_.queue;
+  while (!queue.steps().empty()) {
+    if (std::holds_alternative<QueuedPath>(queue.next_step())) {
+      queue.plan_next_step();
+      continue;
+    }
+    const Switch* const switching = switches_outputs(queue.next_step());
+    // Where no motion leads there, it is done when the cycle runs, as all else.
+    if (switching == nullptr || queue.planned() == 0) return;
+    parts_.marks.add(queue.done_at_end(), outputs_of(*switching));
+    queue.lay_next_step(name_of(std::get<InTurn>(queue.next_step())));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "gateway/cycle/output_marks.hpp"
 #include "gateway/cycle/program_turn.hpp"
 #include "gateway/cycle/states/cycle_sequencer.hpp"
 #include "gateway/cycle/tool_change.hpp"
@@ -19,6 +20,7 @@ class QueueSteps {
     ToolChange& tools;
     ProgramTurn& turn;
     CycleSequencer& sequencer;
+    OutputMarks& marks;
   };
   enum class Came : std::uint8_t {
     Nothing,       ///< none whose turn has come, or it waits
@@ -32,7 +34,7 @@ class QueueSteps {
 
   explicit QueueSteps(Parts parts) : parts_(parts) {}
 
-  /// Hands on what needs no rest: moves that wait behind no other step.
+  /// Hands on what needs no rest, as far as it waits behind no other step: moves, and outputs behind moves.
   void hand_on();
   /// Takes the next step, if its turn has come. `cycle` is as it is seen when nothing is left to be handed on.
   [[nodiscard]] Came take(const CycleObservation& cycle, const Seen& seen);

@@ -7,23 +7,23 @@
 namespace rmac::gateway {
 namespace {
 
-Event make_event(Event::Kind kind, const CycleSample& sample, std::int64_t id) {
+Event make_event(Event::Kind kind, const CycleSample& sample, std::int64_t id, const std::string& name) {
   const char* what = kind == Event::Kind::MoveStarted ? "started" : "done";
-  return {kind,         sample.t_s,
-          id,           id == kPositioningMoveId ? fmt::format("jog {}", what) : fmt::format("move {} {}", id, what),
-          sample.cycle, {}};
+  const std::string told = !name.empty() ? name : id == kPositioningMoveId ? "jog" : fmt::format("move {}", id);
+  return {kind, sample.t_s, id, fmt::format("{} {}", told, what), sample.cycle, {}};
 }
 
 }  // namespace
 
 void MoveLedger::read(const CycleSample& sample, const std::function<void(const Event&)>& tell) {
   const auto start = [&](Entry& entry) {
-    if (!entry.started) tell(make_event(Event::Kind::MoveStarted, sample, entry.id));
+    if (!entry.started) tell(make_event(Event::Kind::MoveStarted, sample, entry.id, entry.name));
     entry.started = true;
   };
   while (!moves_.empty() && (moves_.front().still || done_ < sample.moves_done)) {
     start(moves_.front());
-    if (moves_.front().tells_done) tell(make_event(Event::Kind::MoveDone, sample, moves_.front().id));
+    const Entry& done = moves_.front();
+    if (done.tells_done) tell(make_event(Event::Kind::MoveDone, sample, done.id, done.name));
     if (!moves_.front().still) ++done_;
     moves_.pop_front();
   }

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <string>
+#include <utility>
 
 #include "gateway/queue/queue_step.hpp"
 #include "gateway/state/cycle_sample.hpp"
@@ -16,8 +18,9 @@ class MoveLedger {
  public:
   /// `still`: the move has no motion, so no sample counts it; it is done in its turn. The first part of a move tells
   /// that it began, the last one that it is done.
-  void add(std::int64_t move_id, bool still, MovePart part = {}) {
-    moves_.push_back({move_id, !part.first, still, part.last});
+  /// `name`: as it is told; empty: "move 7".
+  void add(std::int64_t move_id, bool still, MovePart part = {}, std::string name = {}) {
+    moves_.push_back({move_id, !part.first, still, part.last, std::move(name)});
   }
   /// What is not done will not be done.
   void clear() { moves_.clear(); }
@@ -34,6 +37,7 @@ class MoveLedger {
     bool started;  ///< told
     bool still;
     bool tells_done;
+    std::string name;
   };
   std::deque<Entry> moves_;
   std::uint64_t done_ = 0;

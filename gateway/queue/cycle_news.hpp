@@ -18,6 +18,7 @@ struct QueueChange {
   std::int64_t move_id = 0;
   std::int64_t cycle = 0;
   MovePart part{};
+  std::string name{};  ///< as events name it; empty: "move 7"
 };
 
 /// What the gateway has not been told yet: events, and changes of the queue, each in their order.

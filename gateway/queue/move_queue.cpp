@@ -32,12 +32,17 @@ void MoveQueue::install(Planner* planner) noexcept {
   if (planner != planner_) merged_before_ = cleaned().merged;
   planner_ = planner;
   begins_anew_ = true;
+  done_before_ = 0;
+  moves_added_ = 0;
 }
 
-void MoveQueue::begin_here() {
+void MoveQueue::begin_here(std::uint64_t moves_done) {
   // After a retrace the path ends elsewhere than where the machine stands.
   planner_->clear();
   begins_anew_ = false;
+  done_before_ = moves_done;
+  moves_added_ = 0;
+  still_moves_.clear();
 }
 
 bool MoveQueue::add(BuiltMove built) {
@@ -71,6 +76,12 @@ void MoveQueue::plan_next_step() {
   steps_.pop_front();
 }
 
+void MoveQueue::lay_next_step(std::string name) {
+  still_moves_.push_back(moves_added_);
+  news_.tell({QueueChange::Kind::Still, std::get<InTurn>(steps_.front()).move_id, 0, {}, std::move(name)});
+  steps_.pop_front();
+}
+
 void MoveQueue::hand_on(QueuedPath path) {
   const bool moves = !path.segments.empty();
   planner_->add(std::move(path.segments));
@@ -80,7 +91,7 @@ void MoveQueue::hand_on(QueuedPath path) {
     ++without_motion_;
     still_moves_.push_back(moves_added_);
   }
-  news_.tell({moves ? QueueChange::Kind::Added : QueueChange::Kind::Still, path.move_id, 0, path.part});
+  news_.tell({moves ? QueueChange::Kind::Added : QueueChange::Kind::Still, path.move_id, 0, path.part, {}});
 }
 
 Cleaned MoveQueue::cleaned() const noexcept {
@@ -103,10 +114,11 @@ std::deque<ProgramStep> MoveQueue::take_program() {
   return program_.take();
 }
 
-bool MoveQueue::clear(std::int64_t cycle) {
+bool MoveQueue::clear(std::int64_t cycle, std::uint64_t moves_done) {
   planner_->clear();
   begins_anew_ = true;
-  news_.tell({QueueChange::Kind::Cleared, 0, cycle, {}});
+  done_before_ = moves_done;
+  news_.tell({QueueChange::Kind::Cleared, 0, cycle, {}, {}});
   return forget();
 }
 

@@ -29,8 +29,9 @@ class MoveQueue {
   /// The next move begins where the machine stands, not where the queue ended.
   [[nodiscard]] bool begins_anew() const noexcept { return begins_anew_; }
   void begin_anew() noexcept { begins_anew_ = true; }
-  /// The next move begins where the path ends now. Needs a planner, at rest.
-  void begin_here();
+  /// The next move begins where the path ends now. Needs a planner, at rest. Here and below, `moves_done` is what the
+  /// servo thread counts.
+  void begin_here(std::uint64_t moves_done);
 
   /// Adds what was built to follow the queue. True when it has motion. Needs a planner.
   bool add(BuiltMove built);
@@ -43,6 +44,11 @@ class MoveQueue {
   void step_done() { steps_.pop_front(); }
   /// The next step is a move, and its turn has come: hands it to the planner.
   void plan_next_step();
+
+  /// The next step needs no rest, and is done where the path that is planned ends: it is told as a move without motion.
+  void lay_next_step(std::string name);
+  /// What the servo thread counts when all that is planned is done.
+  [[nodiscard]] std::uint64_t done_at_end() const noexcept { return done_before_ + moves_added_; }
 
   /// Moves that the planner has not done.
   [[nodiscard]] std::size_t planned() const noexcept { return planner_ == nullptr ? 0 : planner_->moves_left(); }
@@ -58,7 +64,7 @@ class MoveQueue {
   /// The steps that are queued and not done, as clients sent them; afterwards they are forgotten here.
   [[nodiscard]] std::deque<ProgramStep> take_program();
   /// Drops what is queued, at rest, and tells so. True when a tool change was among it.
-  bool clear(std::int64_t cycle);
+  bool clear(std::int64_t cycle, std::uint64_t moves_done);
   /// The planner has nothing any more: forgets what was queued. True when a tool change was among it.
   bool forget();
 
@@ -69,8 +75,9 @@ class MoveQueue {
   QueueListener listener_;
   Planner* planner_ = nullptr;
   bool begins_anew_ = true;
-  std::uint64_t moves_added_ = 0;  ///< with motion, since the queue was emptied last
-  std::uint64_t without_motion_ = 0;
+  std::uint64_t done_before_ = 0;          ///< moves, when the queue was emptied last
+  std::uint64_t moves_added_ = 0;          ///< with motion, since the queue was emptied last
+  std::uint64_t without_motion_ = 0;       ///< since the daemon began
   std::uint64_t merged_before_ = 0;        ///< lines, by the planners before
   std::deque<std::uint64_t> still_moves_;  ///< without motion, each by the number of those before it
   std::deque<QueueStep> steps_;            ///< the first is no path: it waits for what is planned to be done

@@ -83,11 +83,12 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
   command_.home = wishes.home;
   command_.spindle_rpm = wishes.spindle_rpm;
   command_.tool_torque_nm = wishes.tool_torque_nm;
-  command_.outputs = wishes.outputs;
   command_.force = wishes.force;
   if (!report_.follows) mechanism_->follower.hold_at(loop.hold_position().first(loop.joint_count()));
   see_to_stop(wishes);
   mechanism_->follower.sample(cycle_, command_.setpoint);
+  const std::uint64_t done = report_.follows ? command_.setpoint.moves_done : 0;
+  command_.outputs = outputs_.step(wishes.outputs, wishes.marks_settled, status_.moves_done + done);
 
   const ServoFault::Kind before = report_.fault.kind;
   loop.cycle(command_, report_);
@@ -105,6 +106,7 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
   status_.reference_lost = report_.reference_lost;
   status_.probe = report_.probe;
   if (report_.follows) status_.moves_done += setpoint.moves_done;
+  status_.marks_passed = outputs_.passed();
   status_.joint_count = static_cast<std::uint32_t>(loop.joint_count());
   status_.joint_count_with_held = static_cast<std::uint32_t>(loop.joint_count_with_held());
   status_.position_set = report_.position_set;
@@ -173,7 +175,7 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
     std::copy(report_.spindle_torque_nm.begin(), report_.spindle_torque_nm.end(), sample_.spindle_torque_nm.begin());
     sample_.inputs = report_.inputs;
     sample_.probe = report_.probe;
-    sample_.outputs = wishes.outputs;
+    sample_.outputs = command_.outputs;
     sample_.moves_done = status_.moves_done;
   }
   const auto kept = static_cast<std::int64_t>(link_.history.capacity());

@@ -10,7 +10,7 @@ namespace rmac::gateway {
 /// reports. Without a thread or a clock, so that a test can step it. Real-time safe; one thread.
 class ServoCycle {
  public:
-  ServoCycle(ServoLink& link, double period_s) noexcept : link_(link), period_s_(period_s) {}
+  ServoCycle(ServoLink& link, double period_s) noexcept : link_(link), period_s_(period_s), outputs_(link.marks) {}
 
   /// `missed`: deadlines that passed since the last call.
   void run(std::uint64_t missed) noexcept;
@@ -35,6 +35,7 @@ class ServoCycle {
   Mechanism* mechanism_ = nullptr;
   std::int64_t cycle_ = 0;
   std::int64_t stop_seen_ = kNever;  ///< cycle from which on a stop is wanted
+  PathOutputs outputs_;
   ServoCommand command_;
   ServoReport report_;
   ServoStatus status_;

@@ -13,6 +13,7 @@
 #include "gateway/mechanism/mechanism.hpp"
 #include "gateway/servo/cycle_history.hpp"
 #include "gateway/servo/cycle_times.hpp"
+#include "gateway/servo/path_outputs.hpp"
 #include "gateway/servo/snapshot.hpp"
 #include "gateway/state/cycle_state.hpp"
 
@@ -28,6 +29,7 @@ struct ServoWishes {
   std::array<double, kMaxSpindles> spindle_rpm{};
   double tool_torque_nm = 0;  ///< most that the tool in spindle 0 bears; 0: not given
   std::uint64_t outputs = 0;
+  std::uint64_t marks_settled = 0;         ///< marks up to this one are in `outputs`, or are dropped
   std::array<double, kMaxJoints> force{};  ///< of joints under force control
   CycleState state = CycleState::Idle;     ///< goes into the samples, with the next
   std::optional<std::int64_t> in_turn;     ///< at rest, what is done between moves: its id
@@ -60,6 +62,7 @@ struct ServoStatus {
   std::int64_t move_id = 0;  ///< the place on the path, with the next
   double s_mm = 0;
   std::uint64_t moves_done = 0;
+  std::uint64_t marks_passed = 0;  ///< the last mark that the path has passed
   std::uint32_t homings = 0;
   std::uint32_t reference_lost = 0;  ///< bit j: joint j has to find home again
   ProbeReport probe;
@@ -108,6 +111,7 @@ struct ServoLink {
       : history(std::max(history_cycles, static_cast<std::size_t>(kMostUndelivered))) {}
 
   LatestValue<ServoWishes> wishes;
+  MarkRing marks;
   StopWishes stops;
   std::atomic<SwapRequest*> swap{nullptr};
 

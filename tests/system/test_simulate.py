@@ -32,7 +32,7 @@ def to(x, y, z, move_id=1):
 
 
 def mixed_program():
-    """Corners, an arc, a spline, a joint move, a frame and another feed. The cycle starts when all of it is queued, so
+    """Corners, an arc, a spline, a joint move, a frame, another feed, a dwell and a helix. The cycle starts when all of it is queued, so
     that on the appliance no move waits for a client on a busy computer."""
     return [
         request("RMAC_CAM.Home"),
@@ -50,6 +50,11 @@ def mixed_program():
             "points": [[0, 15, 0], [0, 5, 0], [-20, 5, 5], [-25, -5, 5], [-30, -30, 0]]}),
         request("RMAC_CAM.MoveToJointTarget", MoveID=5, JointTargetFrame={"joints": [10, 10, 10]}),
         to(0, 0, 0, 6),
+        request("RMAC_CAM.Dwell", MoveID=8, Time=0.4),
+        request("RMAC_CAM.MoveAlongArc", MoveID=9, CenterPoint=pose(-10, 0, 0), RotSign=-1, Closed=True,
+                StartPoint=pose(0, 0, 0), EndPoint=pose(0, 0, -6), Turns=1),
+        request("RMAC_CAM.InTurn", MoveID=10, Calls=[{"method": "RMAC_CAM.TurnCoolantOn"}]),
+        along((0, 0, -6), (5, 0, -6), 11),
         request("RMAC_CAM.CycleStart", Mode="AUTOMATIC"),
     ]
 

@@ -278,6 +278,177 @@ TEST_F(BetweenMoves, AWayBackOverCallsDoesNotMakeThemAgain) {
   EXPECT_EQ(bench_.wishes().spindle_rpm[0], 300);
 }
 
+/// Lines along X, smooth into each other, and behind some of them an output that switches.
+class OutputsOnTheWay : public BetweenMoves {
+ protected:
+  static constexpr std::uint64_t kLaser = 0b100;
+
+  void queue_line(std::int64_t id, double from, double to) {
+    const Move move{.id = id,
+                    .geometry = LineGeometry{{{from, 0, 0}, {0, 0, 1}}, {{to, 0, 0}, {0, 0, 1}}},
+                    .feed_mm_s = 50,
+                    .tolerance_mm = 0.01};
+    ASSERT_TRUE(bench_.entry.prepare());
+    const auto added = bench_.entry.add(move);
+    ASSERT_TRUE(added) << added.error().message;
+  }
+  void queue_switch(std::int64_t id, bool on) {
+    add({id, Switch{.outputs = {{"Laser", on, kLaser}}}});
+    const GatewayTurn turn(bench_.cycle.lock);
+    bench_.cycle.steps.hand_on();
+  }
+  [[nodiscard]] bool lit() const { return (bench_.outputs & kLaser) != 0; }
+};
+
+// Red when an output stops the path, or switches a cycle too late or too early.
+TEST_F(OutputsOnTheWay, SwitchInTheCycleThatPassesTheirPlaceAndStopNothing) {
+  std::mt19937 random(5);  // NOLINT(cert-msc51-cpp): the same lengths every time
+  std::vector<double> ends{0};
+  for (int i = 0; i < 40; ++i) ends.push_back(ends.back() + std::uniform_real_distribution<double>(0.2, 2)(random));
+  const auto run = [&](CycleBench& bench, bool with_outputs, const auto& each_cycle) {
+    std::int64_t id = 0;
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+      const Move move{.id = ++id,
+                      .geometry = LineGeometry{{{ends[i], 0, 0}, {0, 0, 1}}, {{ends[i + 1], 0, 0}, {0, 0, 1}}},
+                      .feed_mm_s = 50,
+                      .tolerance_mm = 0.01};
+      ASSERT_TRUE(bench.entry.prepare());
+      ASSERT_TRUE(bench.entry.add(move));
+      if (!with_outputs) continue;
+      const GatewayTurn turn(bench.cycle.lock);
+      const InTurn step{++id, Switch{.outputs = {{"Laser", i % 2 == 0, kLaser}}}};
+      bench.cycle.queue.add_steps({step}, step_at(bench.cycle.builder(), step));
+      bench.cycle.steps.hand_on();
+      ASSERT_TRUE(bench.cycle.queue.steps().empty()) << "it waits for no rest";
+    }
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(bench.run_until([&] {
+      each_cycle(bench);
+      return bench.moves_left() == 0 && !bench.status.moving;
+    }));
+  };
+  std::vector<double> without;
+  CycleBench plain;
+  run(plain, false, [&](CycleBench& bench) { without.push_back(bench.x()); });
+  std::size_t cycle = 0, passed = 0, switched = 0;
+  bool was = false;
+  run(bench_, true, [&](CycleBench& bench) {
+    ASSERT_LT(cycle, without.size());
+    ASSERT_EQ(bench.x(), without[cycle]) << "cycle " << cycle;
+    ++cycle;
+    while (passed + 1 < ends.size() && bench.x() >= ends[passed + 1] - 1e-6) ++passed;
+    const bool on = passed % 2 == 1;
+    // At the end the machine rests before its last move counts as done.
+    if (passed + 1 < ends.size()) {
+      ASSERT_EQ(lit(), on) << bench.x();
+    }
+    switched += lit() != was ? 1U : 0U;
+    was = lit();
+  });
+  EXPECT_EQ(switched, 40U);
+  EXPECT_FALSE(lit());
+}
+
+TEST_F(OutputsOnTheWay, SwitchOnceWhateverTheToolDoesOverTheirPlace) {
+  queue_line(1, 0, 5);
+  queue_switch(2, true);
+  queue_line(3, 5, 40);
+  ASSERT_TRUE(bench_.start());
+  ASSERT_TRUE(bench_.run_until([&] { return bench_.x() > 8; }));
+  EXPECT_TRUE(lit());
+  ASSERT_TRUE(bench_.hold());
+  ASSERT_TRUE(bench_.run_to_rest());
+  {
+    const GatewayTurn turn(bench_.cycle.lock);
+    bench_.cycle.wishes.change([](ServoWishes& wish) { wish.outputs = 0; });
+  }
+  bench_.step();
+  EXPECT_FALSE(lit());
+  retrace(bench_.x() - 2);
+  ASSERT_TRUE(bench_.resume());
+  ASSERT_TRUE(bench_.run_until([&] {
+    EXPECT_FALSE(lit()) << bench_.x();
+    return all_done() || lit();
+  }));
+}
+
+TEST_F(OutputsOnTheWay, AreDroppedWithTheQueueAndTheNextOnesAreNot) {
+  queue_line(1, 0, 30);
+  queue_switch(2, true);
+  queue_line(3, 30, 40);
+  ASSERT_TRUE(bench_.start());
+  ASSERT_TRUE(bench_.run_until([&] { return bench_.x() > 5; }));
+  ASSERT_TRUE(bench_.stop_now());
+  ASSERT_TRUE(bench_.run_until([&] { return bench_.state() == CycleState::Idle; }));
+  for (int round = 0; round < 3; ++round) {
+    const double from = bench_.x();
+    queue_line(4, from, from + 3);
+    queue_line(5, from + 3, from + 6);
+    queue_switch(6, round % 2 == 0);
+    queue_line(7, from + 6, from + 9);
+    ASSERT_TRUE(bench_.start());
+    ASSERT_TRUE(bench_.run_until([&] {
+      if (bench_.x() < from + 6 - 1e-6) {
+        EXPECT_EQ(lit(), round % 2 == 1) << bench_.x();
+      }
+      return all_done();
+    }));
+    EXPECT_EQ(lit(), round % 2 == 0);
+    ASSERT_TRUE(bench_.stop_now());
+    ASSERT_TRUE(bench_.run_until([&] { return bench_.state() == CycleState::Idle; }));
+  }
+}
+
+TEST_F(OutputsOnTheWay, WaitForTheCycleWhereNoMotionLeadsToThem) {
+  queue_switch(1, true);
+  queue_line(2, 0, 5);
+  queue_switch(3, false);
+  bench_.run(100);
+  EXPECT_FALSE(lit());
+  ASSERT_TRUE(bench_.start());
+  ASSERT_TRUE(bench_.run_until([&] { return lit(); }));
+  EXPECT_EQ(bench_.x(), 0);
+  ASSERT_TRUE(bench_.run_until([&] { return all_done(); }));
+  bench_.step();
+  EXPECT_FALSE(lit());
+  queue_switch(4, true);
+  bench_.run(3);
+  EXPECT_TRUE(lit()) << "the machine stands there already";
+  EXPECT_EQ(bench_.moves_left(), 0U);
+}
+
+TEST_F(OutputsOnTheWay, StayOffInAnEmergencyStopThatComesRightBehindTheirPlace) {
+  queue_line(1, 0, 5);
+  queue_switch(2, true);
+  queue_line(3, 5, 40);
+  ASSERT_TRUE(bench_.start());
+  ASSERT_TRUE(bench_.run_until([&] { return bench_.x() > 4.9; }));
+  for (int i = 0; i < 50 && !lit(); ++i) bench_.follow();  // the planner has no turn
+  ASSERT_TRUE(lit());
+  bench_.status.state = ServoState::Faulted;
+  bench_.status.fault.kind = ServoFault::Kind::EmergencyStop;
+  bench_.step();
+  bench_.follow();
+  EXPECT_EQ(bench_.state(), CycleState::EmergencyStop);
+  EXPECT_FALSE(lit());
+}
+
+TEST_F(OutputsOnTheWay, AreStepsOfTheProgramThatAreDoneWithTheMoveBefore) {
+  queue_line(1, 0, 5);
+  queue_switch(2, true);
+  queue_line(3, 5, 10);
+  EXPECT_EQ(bench_.moves_left(), 3U);
+  ASSERT_TRUE(bench_.start());
+  ASSERT_TRUE(bench_.run_until([&] { return lit(); }));
+  ASSERT_TRUE(bench_.hold());
+  ASSERT_TRUE(bench_.run_to_rest());
+  const GatewayTurn turn(bench_.cycle.lock);
+  EXPECT_EQ(bench_.cycle.moves_left(), 1U);
+  const auto left = bench_.cycle.queue.take_program();
+  ASSERT_EQ(left.size(), 1U);
+  EXPECT_EQ(std::get<Move>(left[0].what).id, 3);
+}
+
 TEST_F(BetweenMoves, NoWayBackWhileAToolIsChanged) {
   ASSERT_TRUE(bench_.queue(1, 5));
   {

@@ -55,6 +55,9 @@ class CycleBench {
     status.move_id = setpoint.move_id;
     status.s_mm = setpoint.s_mm;
     status.moves_done += setpoint.moves_done;
+    const ServoWishes& wished = link.wishes.read();
+    outputs = path_outputs.step(wished.outputs, wished.marks_settled, status.moves_done);
+    status.marks_passed = path_outputs.passed();
     std::copy(setpoint.position.begin(), setpoint.position.begin() + 3, status.position_set.begin());
     publish();
   }
@@ -124,6 +127,8 @@ class CycleBench {
   void publish() { link.status.write(status); }
 
   ServoLink link{1};
+  PathOutputs path_outputs{link.marks};
+  std::uint64_t outputs = 0;  ///< of the last cycle
   ServoStatus status;
   int stop_wanted = 0;  ///< cycles since
   std::shared_ptr<Mechanism> mechanism;

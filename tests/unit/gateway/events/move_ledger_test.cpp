@@ -35,6 +35,13 @@ TEST_F(MoveLedgerTest, AMoveWithoutMotionIsDoneInItsTurn) {
   EXPECT_THAT(read(1), ElementsAre("move 4 done", "move 5 started", "move 5 done"));
 }
 
+TEST_F(MoveLedgerTest, WhatIsDoneOnTheWayIsToldByItsName) {
+  ledger_.add(4, false);
+  ledger_.add(5, true, {}, "calls in turn 5 (Laser on)");
+  EXPECT_THAT(read(1), ElementsAre("move 4 started", "move 4 done", "calls in turn 5 (Laser on) started",
+                                   "calls in turn 5 (Laser on) done"));
+}
+
 TEST_F(MoveLedgerTest, AMoveInPartsBeginsAndEndsOnce) {
   ledger_.add(4, false, {.first = true, .last = false});
   ledger_.add(4, false, {.first = false, .last = true});

@@ -16,7 +16,7 @@ class MoveQueueTest : public testing::Test {
     const std::vector<double> zero(3, 0.0);
     builder_.restart(zero, {});
     queue_.install(&planner_);
-    queue_.begin_here();
+    queue_.begin_here(0);
   }
   bool add(std::int64_t id, double x) {
     const Move move{.id = id, .geometry = PathTargetGeometry{{{x, 0, 0}, {0, 0, 1}}}, .feed_mm_s = 50};
@@ -116,7 +116,7 @@ TEST_F(MoveQueueTest, BeginsAnewWhenItWasEmptied) {
   EXPECT_TRUE(add(1, 5));
   (void)told();
   EXPECT_FALSE(queue_.begins_anew());
-  EXPECT_FALSE(queue_.clear(77)) << "no tool change was in it";
+  EXPECT_FALSE(queue_.clear(77, 0)) << "no tool change was in it";
   EXPECT_TRUE(queue_.begins_anew());
   EXPECT_EQ(planner_.moves_left(), 0U);
   EXPECT_EQ(queue_.left(), 0U);

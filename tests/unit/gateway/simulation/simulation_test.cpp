@@ -70,6 +70,74 @@ TEST_F(Simulated, MovesWithinTheMachinesLimitsAndArrives) {
   EXPECT_LE(static_cast<double>(trace_.size()) * 0.001, 0.53);
 }
 
+// Red when a helix is cut into lines, climbs unevenly, or is planned without its rise.
+TEST_F(Simulated, FollowsAHelixExactlyAndWithinItsLimits) {
+  load("BenchXYZ");
+  call("RMAC_CAM.SetFeedrate", {{"Feedrate", 6000}});
+  const auto pose = [](double x, double y, double z) { return Json{{"p", {x, y, z}}, {"axis", {0, 0, 1}}}; };
+  call("RMAC_CAM.MoveToPathTarget", {{"MoveID", 1}, {"TargetFrame", pose(20, 0, 0)}});
+  call("RMAC_CAM.MoveAlongArc", {{"MoveID", 2},
+                                 {"RotSign", -1},
+                                 {"Closed", false},
+                                 {"CenterPoint", pose(0, 0, 0)},
+                                 {"StartPoint", pose(20, 0, 0)},
+                                 {"EndPoint", pose(0, 20, -14)},
+                                 {"Turns", 2}});
+  call("RMAC_CAM.CycleStart", {{"Mode", "AUTOMATIC"}});
+  ASSERT_TRUE(run());
+  const double sweep = 2.75 * 2 * M_PI;
+  std::size_t on_it = 0;
+  double largest_feed = 0;
+  std::array<double, 3> last{20, 0, 0};
+  for (const CycleSample& sample : trace_) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      EXPECT_LE(std::abs(sample.velocity_set[j]), 200);
+      EXPECT_LE(std::abs(sample.acceleration_set[j]), 1000);
+    }
+    if (sample.move_id != 2) continue;
+    ++on_it;
+    largest_feed = std::max(largest_feed, sample.feed_set_mm_s);
+    const double angle = -sweep * sample.s_mm / std::hypot(20 * sweep, 14);
+    const std::array<double, 3> wanted{20 * std::cos(angle), 20 * std::sin(angle), 14 * angle / sweep};
+    for (std::size_t j = 0; j < 3; ++j) {
+      ASSERT_NEAR(sample.position_set[j], wanted[j], 1e-9);
+      last[j] = sample.position_set[j];
+    }
+  }
+  EXPECT_GT(on_it, 1000U);
+  EXPECT_NEAR(largest_feed, 100, 1e-3);
+  EXPECT_NEAR(last[0], 0, 1e-6);
+  EXPECT_NEAR(last[1], 20, 1e-6);
+  EXPECT_NEAR(last[2], -14, 1e-6);
+}
+
+// Red when outputs on the way cost time, and when a dwell or a spindle's new speed does not bring the path to rest.
+TEST_F(Simulated, TakesNoTimeForOutputsOnTheWay) {
+  std::vector<std::size_t> cycles;
+  for (const bool with_outputs : {false, true}) {
+    trace_.clear();
+    load("BenchXYZ");
+    call("RMAC_CAM.SetFeedrate", {{"Feedrate", 3000}});
+    call("RMAC_CAM.SetPathTolerance", {{"Tolerance", 0.02}});
+    double x = 0;
+    for (int i = 0; i < 30; ++i) {
+      const auto pose = [](double at) { return Json{{"p", {at, at * at / 80, 0}}, {"axis", {0, 0, 1}}}; };
+      call("RMAC_CAM.MoveAlongLine", {{"MoveID", 2 * i}, {"StartPoint", pose(x)}, {"EndPoint", pose(x + 1)}});
+      x += 1;
+      if (!with_outputs) continue;
+      const Json one{{"method", i % 2 == 0 ? "RMAC_CAM.TurnCoolantOn" : "RMAC_CAM.TurnCoolantOff"}};
+      call("RMAC_CAM.InTurn", {{"MoveID", 2 * i + 1}, {"Calls", Json::array({one})}});
+    }
+    call("RMAC_CAM.CycleStart", {{"Mode", "AUTOMATIC"}});
+    ASSERT_TRUE(run());
+    cycles.push_back(trace_.size());
+  }
+  EXPECT_EQ(cycles[0], cycles[1]);
+  std::size_t switched = 0;
+  for (std::size_t i = 1; i < trace_.size(); ++i) switched += trace_[i].outputs != trace_[i - 1].outputs ? 1U : 0U;
+  EXPECT_GE(switched, 28U) << "the last ones fall together with rest, which is not traced";
+}
+
 TEST_F(Simulated, RunsTheSameTwice) {
   std::vector<double> first;
   for (int round = 0; round < 2; ++round) {

@@ -91,6 +91,7 @@ TEST_F(ServoThreadUnderTrap, NeitherAllocatesNorLocksNorCallsTheSystem) {
 
   ASSERT_TRUE(cam().path().set_feedrate(3000));
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {20, 5, 0}));
+  ASSERT_TRUE(machine_.controller.cam().flow().in_turn(8, {sdk::OutputCall{"Coolant", true}}));
   ASSERT_TRUE(machine_.line(2, {20, 5, 0}, {0, 0, 0}));
   ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::MoveStarted, 1));
