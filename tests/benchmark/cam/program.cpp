@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../motion/drive.hpp"
-#include "../motion/limit_check.hpp"
 #include "../motion/shapes.hpp"
+#include "judge.hpp"
 
 namespace rmac::bench {
 namespace {
@@ -66,45 +65,6 @@ std::vector<Vector> between_cycles(const std::vector<Vector>& way) {
   return finer;
 }
 
-class Judge {
- public:
-  Judge(const PlannerModel& model, const Vector& start)
-      : drive(model, {start[0], start[1], start[2]}),
-        check_(model.joints, model.max_feed_mm_s),
-        period_s_(model.period_s) {
-    drive.on_travelled = [this](const Plan& plan, double from, double to) { check_.travelled(plan, from, to); };
-    drive.on_setpoint = [this](const Setpoint& setpoint) {
-      check_.setpoint(setpoint);
-      if (on_tip && setpoint.moving) on_tip({setpoint.position[0], setpoint.position[1], setpoint.position[2]});
-      if (moving_ && !setpoint.moving) ++stops_;
-      moving_ = setpoint.moving;
-      cycles_ += moving_ ? 1 : 0;
-    };
-  }
-  [[nodiscard]] tl::expected<Machined, std::string> run() {
-    drive.planner.command(PathCommand::Run);
-    if (!drive.run(kMostCycles)) return tl::unexpected(std::string("did not come to its end within 600 s"));
-    drive.finish();
-    return Machined{.time_s = static_cast<double>(cycles_) * period_s_,
-                    .planning_s = drive.planning_s(),
-                    .longest_step_s = drive.longest_step_s(),
-                    .limits = check_.worst(),
-                    .deviation_mm = 0,
-                    .rests = std::max(stops_ - 1, 0)};
-  }
-
-  Drive drive;
-  std::function<void(const Vector&)> on_tip;
-
- private:
-  static constexpr std::int64_t kMostCycles = 3'000'000;
-  LimitCheck check_;
-  double period_s_;
-  std::int64_t cycles_ = 0;
-  bool moving_ = false;
-  int stops_ = 0;
-};
-
 }  // namespace
 
 std::vector<Vector> rounded(std::vector<Vector> corners, double to_mm) {
@@ -117,9 +77,9 @@ std::vector<Vector> rounded(std::vector<Vector> corners, double to_mm) {
 
 tl::expected<Machined, std::string> machine(const Program& program, const PlannerModel& model) {
   const auto& corners = program.corners;
-  Judge judge(model, corners.front());
+  Judge judge(model, {corners.front().begin(), corners.front().end()});
   std::vector<Vector> way{corners.front()};
-  judge.on_tip = [&way](const Vector& at) { way.push_back(at); };
+  judge.on_joints = [&way](std::span<const double> joints) { way.push_back({joints[0], joints[1], joints[2]}); };
   Move move;
   move.feed_mm_s = program.feed_mm_s;
   move.tolerance_mm = program.tolerance_mm;

@@ -8,5 +8,7 @@ void trefoil_rows(Figures& figures, const Extent& extent);
 void curve_rows(Figures& figures, const Extent& extent);
 void raster_rows(Figures& figures, const Extent& extent);
 void zigzag_rows(Figures& figures, const Extent& extent);
+void flow_line_rows(Figures& figures, const Extent& extent);
+void pole_rows(Figures& figures, const Extent& extent);
 
 }  // namespace rmac::bench

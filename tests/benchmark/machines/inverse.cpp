@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "conformance/loaded_module.hpp"
+#include "device_tree.hpp"
 #include "places.hpp"
 #include "rmac/motion/frame.hpp"
 #include "rmac/motion/ports/kinematics.hpp"
@@ -15,23 +15,6 @@ namespace rmac::bench {
 namespace {
 
 using Json = nlohmann::json;
-
-/// The kinematics that a device.json names, with its parameters.
-std::shared_ptr<Kinematics> kinematics_of(const Json& device, conformance::LoadedModule& module) {
-  const Json given = device["Kinematics"].value("Parameters", Json::object());
-  std::vector<std::string> names, texts;
-  std::vector<std::vector<double>> numbers;
-  for (const auto& [name, value] : given.items()) {
-    names.push_back(name);
-    texts.push_back(value.is_string() ? value.get<std::string>() : "");
-    numbers.push_back(value.is_array() ? value.get<std::vector<double>>() : std::vector<double>());
-  }
-  std::vector<sdk::Parameter> parameters;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    parameters.push_back({names[i].c_str(), numbers[i], texts[i].empty() ? nullptr : texts[i].c_str()});
-  }
-  return module.create<Kinematics>(parameters);
-}
 
 struct Worst {
   double tip_mm = 0, axis_rad = 0, joints = 0;
@@ -92,16 +75,13 @@ void inverse_rows(Figures& figures, int poses) {
   std::sort(files.begin(), files.end());
   for (const auto& file : files) {
     const Json device = Json::parse(std::ifstream(file));
-    const std::string name = device["MechanismName"], choice = device["Kinematics"]["Module"];
-    conformance::LoadedModule own(std::filesystem::relative(file.parent_path(), tree), choice);
-    conformance::LoadedModule shared("modules", choice);
-    const auto kinematics = kinematics_of(device, own.descriptor() != nullptr ? own : shared);
-    const std::string row = "inverse_" + name;
+    const auto kinematics = kinematics_of(device, std::filesystem::relative(file.parent_path(), tree));
+    const std::string row = "inverse_" + device["MechanismName"].get<std::string>();
     if (!kinematics) {
-      figures.missing(row, "<= 1e-09", "mm", shared.error());
+      figures.missing(row, "<= 1e-09", "mm", kinematics.error());
       continue;
     }
-    const Worst worst = round_trips(*kinematics, device["Joints"], poses);
+    const Worst worst = round_trips(**kinematics, device["Joints"], poses);
     const std::string cases = std::to_string(poses) + " poses";
     figures.at_most(row + "_tip", worst.tip_mm, 1e-9, "mm", cases);
     figures.at_most(row + "_axis", worst.axis_rad, 1e-9, "rad", cases);
