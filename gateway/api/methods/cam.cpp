@@ -88,6 +88,17 @@ void add_feeds(const auto& add) {
       getter("RMAC_CAM.GetPathTolerance", "What SetPathTolerance set.", "mm", &RmacCam::path, &PathSettings::tolerance);
   tolerance_now.origin = Origin::Extension;
   add(std::move(tolerance_now));
+  Method orientation = setter(
+      "RMAC_CAM.SetOrientationTolerance",
+      "How far the tool axis of moves queued from now on may be from what was programmed, beside SetPathTolerance of "
+      "the tip; 0.1 unless set. 0: the axis is met exactly, so that the path stops wherever it does not turn smoothly.",
+      number("Tolerance", "degrees").within(0, 10), &RmacCam::path, &PathSettings::set_orientation_tolerance);
+  orientation.origin = Origin::Extension;
+  add(std::move(orientation));
+  Method orientation_now = getter("RMAC_CAM.GetOrientationTolerance", "What SetOrientationTolerance set.", "degrees",
+                                  &RmacCam::path, &PathSettings::orientation_tolerance);
+  orientation_now.origin = Origin::Extension;
+  add(std::move(orientation_now));
 }
 
 void add_frames(const auto& add) {

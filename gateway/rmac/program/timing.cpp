@@ -17,9 +17,13 @@ constexpr std::array kCycleStarts{std::string_view(kStartCycle), "RMAC_CAM.SetCy
 
 // The table says that these do nothing to motion, not that they hold for the moves queued after them, so that the moves
 // under way need not end first.
-constexpr std::array kModal{"RMAC_CAM.SetFeedrate"sv,      "RMAC_CAM.SetPathTolerance"sv,
-                            "RMAC_CAM.SetPathAccelRise"sv, "RMAC_CAM.SetPathAccelFall"sv,
-                            "RMAC_CAM.SetFeedOverride"sv,  "RMAC_CAM.SetJointInterpSpeed"sv};
+constexpr std::array kModal{"RMAC_CAM.SetFeedrate"sv,
+                            "RMAC_CAM.SetPathTolerance"sv,
+                            "RMAC_CAM.SetPathAccelRise"sv,
+                            "RMAC_CAM.SetPathAccelFall"sv,
+                            "RMAC_CAM.SetFeedOverride"sv,
+                            "RMAC_CAM.SetJointInterpSpeed"sv,
+                            "RMAC_CAM.SetOrientationTolerance"sv};
 
 // Questions about what the moves before them did: they are asked when these are done.
 constexpr std::array kAsksOfMoves{"RMAC_CAM.LastHitPosition"sv, "RMAC_CAM.NewHit"sv, "RMAC_CAM.ProbeActive"sv,

@@ -88,6 +88,13 @@ Expected<> CamPathSettings::set_tolerance(double mm) {
   return {};
 }
 
+Expected<> CamPathSettings::set_orientation_tolerance(double degrees) {
+  if (!std::isfinite(degrees) || degrees < 0)
+    return refuse(fmt::format("SetOrientationTolerance: {} degrees must be 0 or more", degrees));
+  values_.orientation_tolerance_deg = degrees;
+  return {};
+}
+
 Expected<> CamPathSettings::check_feed(std::int64_t move_id) const {
   if (!(values_.feedrate_mm_min > 0)) {
     return failure(MinorCode::SpeedLimit,

@@ -4,11 +4,12 @@
 
 #include "gateway/rmac_cam/settings/device_in_force.hpp"
 #include "gateway/servo/cycle_history.hpp"
+#include "rmac/motion/move.hpp"
 #include "rmac/sdk/cam/path_settings.hpp"
 
 namespace rmac::gateway {
 
-/// Keeps feed, accelerations and tolerance for the next path move, bounded by the mechanism. Gateway thread only.
+/// Keeps feed, accelerations and tolerances for the next path move, bounded by the mechanism. Gateway thread only.
 class CamPathSettings final : public sdk::PathSettings {
  public:
   struct Values {
@@ -17,6 +18,7 @@ class CamPathSettings final : public sdk::PathSettings {
     double accel_rise_mm_s2 = 0;  ///< 0: the joints alone bound it
     double accel_fall_mm_s2 = 0;
     double tolerance_mm = 0;
+    double orientation_tolerance_deg = kOrientationTolerance_deg;
   };
 
   CamPathSettings(const DeviceInForce& device, const CycleHistory& history) : device_(device), history_(history) {}
@@ -35,6 +37,8 @@ class CamPathSettings final : public sdk::PathSettings {
   [[nodiscard]] double accel_fall() const override { return values_.accel_fall_mm_s2; }
   Expected<> set_tolerance(double mm) override;
   [[nodiscard]] double tolerance() const override { return values_.tolerance_mm; }
+  Expected<> set_orientation_tolerance(double degrees) override;
+  [[nodiscard]] double orientation_tolerance() const override { return values_.orientation_tolerance_deg; }
 
   /// Refuses a move along the path where no feed is in force, or one above the maximum.
   [[nodiscard]] Expected<> check_feed(std::int64_t move_id) const;

@@ -15,6 +15,7 @@ Move MoveMaker::path_move(std::int64_t id, const Geometry& geometry) const {
           .geometry = geometry,
           .feed_mm_s = path_.feed_mm_s(),
           .tolerance_mm = path.tolerance_mm,
+          .orientation_tolerance_deg = path.orientation_tolerance_deg,
           .accel_rise_mm_s2 = path.accel_rise_mm_s2,
           .accel_fall_mm_s2 = path.accel_fall_mm_s2,
           .joint_speed_fraction = joints_.values().interp_percent / 100};

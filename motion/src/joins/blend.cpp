@@ -13,8 +13,8 @@ namespace {
 
 /// A blend shorter than this each way is hardly faster than a stop, and strains the time law.
 constexpr double kLeastReach_mm = kShortestBlended_mm / 2;
-/// The tolerance of a direction: what moves a point this far from the tip by the tolerance, about the length of a tool.
-constexpr double kAxisLever_mm = 100;
+/// Lever of an axis that may not turn at all: what rounding leaves of it counts as nothing.
+constexpr double kLongestLever_mm = 1e9;
 constexpr int kTrials = 12;
 /// A turn of the tangent below this is rounding, and what is left is a jump of curvature.
 constexpr double kNoTurn = 1e-6;
@@ -30,13 +30,14 @@ struct Meeting {
   CurvePoint before, after;
 };
 
-double difference(const CurvePoint& a, const CurvePoint& b, std::size_t order) {
+/// By an axis' turn in rad times `lever_mm`, which brings the tolerance of the axis to that of the tip.
+double difference(const CurvePoint& a, const CurvePoint& b, std::size_t order, double lever_mm) {
   double tip = 0, axis = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     tip += (a.d[order][c] - b.d[order][c]) * (a.d[order][c] - b.d[order][c]);
     axis += (a.d[order][c + 3] - b.d[order][c + 3]) * (a.d[order][c + 3] - b.d[order][c + 3]);
   }
-  return std::max(std::sqrt(tip), kAxisLever_mm * std::sqrt(axis));
+  return std::max(std::sqrt(tip), lever_mm * std::sqrt(axis));
 }
 
 /// Where the tip rests, a step of path length is a turn in degrees, and no distance.
@@ -134,7 +135,8 @@ Choice least_loss(const Corner& corner, double tolerance, double room) {
 }
 
 /// No point of the blend is further from the programmed path than this, nor any of that from the blend (eq. 5 and 6).
-double deviation_bound(const BlendSpline& spline, const Curve& before, const Curve& after, double reach) {
+double deviation_bound(const BlendSpline& spline, const Curve& before, const Curve& after, double reach,
+                       double lever_mm) {
   constexpr int kSamples = 16;
   double tip = 0, axis = 0, bend_tip = 0, bend_axis = 0;
   CurvePoint point;
@@ -164,7 +166,7 @@ double deviation_bound(const BlendSpline& spline, const Curve& before, const Cur
   const double square = 1.2 * reach * reach;
   const double tip_bound = std::sqrt(tip) + grow * (spline.largest_second(0, 3) + square * std::sqrt(bend_tip));
   const double axis_bound = std::sqrt(axis) + grow * (spline.largest_second(3, 6) + square * std::sqrt(bend_axis));
-  return std::max(tip_bound, kAxisLever_mm * axis_bound);
+  return std::max(tip_bound, lever_mm * axis_bound);
 }
 
 std::shared_ptr<const Curve> as_curve(const BlendSpline& spline, const Meeting& ends) {
@@ -189,6 +191,8 @@ PathDemand common_demand(const PathDemand& a, const PathDemand& b) {
   demand.accel_fall_mm_s2 = lower(a.accel_fall_mm_s2, b.accel_fall_mm_s2);
   demand.tolerance_mm = b.tolerance_mm;
   demand.deviation_mm = std::max(a.deviation_mm, b.deviation_mm);
+  demand.tolerance_rad = b.tolerance_rad;
+  demand.deviation_rad = std::max(a.deviation_rad, b.deviation_rad);
   return demand;
 }
 
@@ -202,12 +206,12 @@ double length_of(Passed over) {
 }
 
 /// How far corners between these lines are from the straight way between their ends.
-double stray(Passed over, const CurvePoint& begin, const CurvePoint& end) {
+double stray(Passed over, const CurvePoint& begin, const CurvePoint& end, double lever_mm) {
   double most = 0;
   CurvePoint corner;
   for (std::size_t i = 0; i + 1 < over.size(); ++i) {
     over[i]->curve().evaluate(over[i]->length(), 0, -1, corner);
-    most = std::max(most, std::min(difference(corner, begin, 0), difference(corner, end, 0)));
+    most = std::max(most, std::min(difference(corner, begin, 0, lever_mm), difference(corner, end, 0, lever_mm)));
   }
   return most;
 }
@@ -235,15 +239,24 @@ std::shared_ptr<const PathSegment> as_segment(const std::shared_ptr<const Curve>
   return segment;
 }
 
-/// What is left of the tolerance by all that a blend joins; 0 where there is none.
-double tolerance_of(const PathSegment& before, Passed over, const PathSegment& after) {
-  if (!may_meet(before, over.empty() ? after : *over.front())) return 0;
-  double tolerance = after.demand().tolerance_mm - std::max(before.demand().deviation_mm, after.demand().deviation_mm);
+/// What may be missed: by the tip, and by a point of the tool axis so far from it.
+struct Allowed {
+  double tip_mm = 0, lever_mm = kLongestLever_mm;
+};
+
+/// What is left of the tolerances by all that a blend joins; none of the tip's where there is no blend.
+Allowed tolerance_of(const PathSegment& before, Passed over, const PathSegment& after) {
+  if (!may_meet(before, over.empty() ? after : *over.front())) return {};
+  const PathDemand &a = before.demand(), &b = after.demand();
+  double tip_mm = b.tolerance_mm - std::max(a.deviation_mm, b.deviation_mm);
+  double axis_rad = b.tolerance_rad - std::max(a.deviation_rad, b.deviation_rad);
   for (std::size_t i = 0; i < over.size(); ++i) {
-    if (!may_meet(*over[i], i + 1 < over.size() ? *over[i + 1] : after)) return 0;
-    tolerance = std::min(tolerance, over[i]->demand().tolerance_mm - over[i]->demand().deviation_mm);
+    if (!may_meet(*over[i], i + 1 < over.size() ? *over[i + 1] : after)) return {};
+    const PathDemand& line = over[i]->demand();
+    tip_mm = std::min(tip_mm, line.tolerance_mm - line.deviation_mm);
+    axis_rad = std::min(axis_rad, line.tolerance_rad - line.deviation_rad);
   }
-  return tolerance;
+  return {tip_mm, tip_mm > kLongestLever_mm * axis_rad ? kLongestLever_mm : tip_mm / axis_rad};
 }
 
 /// Shape and reach to try first. `jump`: of curvature; `gap`: how far apart the two ends are.
@@ -271,7 +284,7 @@ Choice first_choice(const Corner& corner, double jump, double gap, double tolera
 
 Blend make_blend(const PathSegment& before, Passed over, const PathSegment& after, double room,
                  const std::vector<JointLimits>& joints) {
-  const double tolerance = tolerance_of(before, over, after);
+  const auto [tolerance, lever_mm] = tolerance_of(before, over, after);
   if (!(tolerance > 0)) return {};
   Meeting corner;
   before.curve().evaluate(before.length(), 2, -1, corner.before);
@@ -282,23 +295,23 @@ Blend make_blend(const PathSegment& before, Passed over, const PathSegment& afte
       after.evaluate(0, 1, 1, above) != KinematicsStatus::Ok)
     return {};
 
-  const double gap = over.empty() ? 0 : difference(corner.before, corner.after, 0);
-  const double strayed = stray(over, corner.before, corner.after);
+  const double gap = over.empty() ? 0 : difference(corner.before, corner.after, 0, lever_mm);
+  const double strayed = stray(over, corner.before, corner.after, lever_mm);
   if (!(gap / 2 + strayed < tolerance)) return {};
-  const double turn = difference(corner.before, corner.after, 1);
+  const double turn = difference(corner.before, corner.after, 1, lever_mm);
   double tip_turn = 0;
   for (std::size_t c = 0; c < 3; ++c)
     tip_turn += (corner.after.d[1][c] - corner.before.d[1][c]) * (corner.after.d[1][c] - corner.before.d[1][c]);
   if (tip_turn > kReversal * kReversal) return {};
   const double feed = std::min(before.demand().feed_mm_s, after.demand().feed_mm_s);
-  Choice choice = first_choice({below, above, joints, turn, feed}, difference(corner.before, corner.after, 2), gap,
-                               tolerance - strayed, room);
+  Choice choice = first_choice({below, above, joints, turn, feed}, difference(corner.before, corner.after, 2, lever_mm),
+                               gap, tolerance - strayed, room);
   for (int trial = 0; trial < kTrials && choice.reach > kLeastReach_mm; ++trial) {
     Meeting ends;
     before.curve().evaluate(before.length() - choice.reach, 2, -1, ends.before);
     after.curve().evaluate(choice.reach, 2, 1, ends.after);
     const BlendSpline spline(ends.before, ends.after, choice.reach, choice.shape);
-    const double bound = deviation_bound(spline, before.curve(), after.curve(), choice.reach) + strayed;
+    const double bound = deviation_bound(spline, before.curve(), after.curve(), choice.reach, lever_mm) + strayed;
     if (bound > tolerance) {
       choice.reach *= std::clamp(0.99 * tolerance / bound, 0.5, 0.99);
       continue;

@@ -43,6 +43,8 @@ Expected<> check_demand(const Move& move, bool joint_move) {
     return bad("the joint speed", move.joint_speed_fraction * 100, "it must be above 0 and at most 100 percent");
   }
   if (!(move.tolerance_mm >= 0)) return bad("the path tolerance", move.tolerance_mm, "it cannot be negative");
+  if (!(move.orientation_tolerance_deg >= 0))
+    return bad("the orientation tolerance", move.orientation_tolerance_deg, "it cannot be negative");
   if (!(move.accel_rise_mm_s2 >= 0))
     return bad("the path acceleration rise", move.accel_rise_mm_s2, "it cannot be negative");
   if (!(move.accel_fall_mm_s2 >= 0))

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "path/join.hpp"
 #include "path/move_refusal.hpp"
@@ -43,6 +44,7 @@ MoveSegments::MoveSegments(const Move& move, const PlannerModel& model, std::sha
   demand_.accel_rise_mm_s2 = move.accel_rise_mm_s2;
   demand_.accel_fall_mm_s2 = move.accel_fall_mm_s2;
   demand_.tolerance_mm = move.tolerance_mm;
+  demand_.tolerance_rad = move.orientation_tolerance_deg * std::numbers::pi / 180;
   demand_.joint_speed_fraction = move.joint_speed_fraction;
   stretch_.move_id = move.id;
 }

@@ -24,8 +24,6 @@ constexpr double kPart = 0.5;
 constexpr std::size_t kMostLines = 64;
 /// A line has at least this much for each one that it stands for: far above what tells two places of a path apart.
 constexpr double kLeastStretch_mm = 1e-5;
-/// The tolerance of a direction is that of a point so far from the tip.
-constexpr double kAxisLever_mm = 100;
 
 bool may_merge(const PathSegment& line) {
   const PathDemand& demand = line.demand();
@@ -36,6 +34,9 @@ bool may_merge(const PathSegment& line) {
 
 double allowed_mm(const PathSegment& line) {
   return kPart * line.demand().tolerance_mm;
+}
+double allowed_rad(const PathSegment& line) {
+  return kPart * line.demand().tolerance_rad;
 }
 
 ToolPose pose_at(const PathSegment& line, double s) {
@@ -52,17 +53,20 @@ ToolPose end_of(Lines lines) {
   return pose_at(*lines.back(), lines.back()->length());
 }
 
-/// How far the corners between lines are from the straight way between their ends.
-double off(Lines lines) {
+/// How far tip and tool axis of the corners between lines are from the straight way between their ends.
+struct Off {
+  double mm = 0, rad = 0;
+};
+Off off(Lines lines) {
   const ToolPose begin = begin_of(lines), end = end_of(lines);
   const Vector ahead = difference(end.tip, begin.tip), turn = difference(end.axis, begin.axis);
   const double square = dot(ahead, ahead);
-  double off = 0;
+  Off off;
   for (const auto& line : lines.first(lines.size() - 1)) {
     const ToolPose corner = pose_at(*line, line->length());
     const double part = square > 0 ? std::clamp(dot(difference(corner.tip, begin.tip), ahead) / square, 0.0, 1.0) : 0;
-    off = std::max({off, distance(corner.tip, along(begin.tip, part, ahead)),
-                    kAxisLever_mm * distance(corner.axis, along(begin.axis, part, turn))});
+    off.mm = std::max(off.mm, distance(corner.tip, along(begin.tip, part, ahead)));
+    off.rad = std::max(off.rad, distance(corner.axis, along(begin.axis, part, turn)));
   }
   return off;
 }
@@ -84,7 +88,9 @@ std::shared_ptr<const PathSegment> one_line(Lines lines, const std::vector<Joint
     append_stretches(*line, 0, line->length(), from, to, stretches);
   }
   PathDemand demand = lines.back()->demand();
-  demand.deviation_mm = off(lines);
+  const auto [mm, rad] = off(lines);
+  demand.deviation_mm = mm;
+  demand.deviation_rad = rad;
   auto whole = std::make_shared<PathSegment>(std::move(*curve), lines.front()->map(), demand, std::move(stretches));
   double s_failed = 0;
   if (whole->resolve(lines.front()->joints_at_node(0), s_failed) != KinematicsStatus::Ok ||
@@ -100,8 +106,8 @@ void LineMerger::add(std::shared_ptr<const PathSegment> segment, const std::vect
   if (!chain_.empty()) {
     const double allowed = allowed_mm(*chain_.front());
     chain_.push_back(segment);
-    if (chain_.size() <= kMostLines && may_merge(*segment) && alike(*chain_.front(), *segment) &&
-        off(chain_) <= allowed) {
+    const bool one = chain_.size() <= kMostLines && may_merge(*segment) && alike(*chain_.front(), *segment);
+    if (const auto [mm, rad] = off(chain_); one && mm <= allowed && rad <= allowed_rad(*segment)) {
       if (distance(begin_of(chain_).tip, end_of(chain_).tip) >= allowed) flush(joints, out);
       return;
     }

@@ -66,12 +66,17 @@ using Geometry =
          (nurbs != nullptr && nurbs->space == NurbsSpace::Joint);
 }
 
+/// How far the tool axis may be from what was programmed, unless a move says otherwise.
+inline constexpr double kOrientationTolerance_deg = 0.1;
+
 /// One move with everything that was in force when it was queued.
 struct Move {
-  std::int64_t id = 0;              ///< the client's number
-  Geometry geometry;                ///< in the part frame
-  double feed_mm_s = 0;             ///< path feed; joint moves use `joint_speed_fraction`
-  double tolerance_mm = 0;          ///< how far the corner before this move may be rounded; 0: exact stop
+  std::int64_t id = 0;      ///< the client's number
+  Geometry geometry;        ///< in the part frame
+  double feed_mm_s = 0;     ///< path feed; joint moves use `joint_speed_fraction`
+  double tolerance_mm = 0;  ///< how far the corner before this move may be rounded; 0: exact stop
+  /// How far the tool axis may turn from the programmed one there; 0: not at all.
+  double orientation_tolerance_deg = kOrientationTolerance_deg;
   double accel_rise_mm_s2 = 0;      ///< path acceleration while the feed rises; 0: bounded by the joints alone
   double accel_fall_mm_s2 = 0;      ///< path acceleration while the feed falls; 0: bounded by the joints alone
   double joint_speed_fraction = 1;  ///< of each joint's speed limit, for joint moves

@@ -15,8 +15,10 @@ struct PathDemand {
   double feed_mm_s = 0;         ///< bound of ds/dt; for joint moves already reduced to the joints' allowed speed
   double accel_rise_mm_s2 = 0;  ///< 0: the joints alone bound it
   double accel_fall_mm_s2 = 0;
-  double tolerance_mm = 0;  ///< of the corner before it
-  double deviation_mm = 0;  ///< of the tolerance, what the segment itself has used: a spline through short lines
+  double tolerance_mm = 0;   ///< of the corner before it
+  double deviation_mm = 0;   ///< of the tolerance, what the segment itself has used: a spline through short lines
+  double tolerance_rad = 0;  ///< of the tool axis, likewise
+  double deviation_rad = 0;
   double joint_speed_fraction = 1;  ///< of the joints' speed limits
   bool rest_before = false;         ///< positioning moves start at rest
   bool rest_after = false;          ///< and end at rest

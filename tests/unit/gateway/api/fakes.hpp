@@ -57,6 +57,8 @@ class MockPath : public sdk::PathSettings {
   MOCK_METHOD(double, accel_fall, (), (const, override));
   MOCK_METHOD(Expected<>, set_tolerance, (double), (override));
   MOCK_METHOD(double, tolerance, (), (const, override));
+  MOCK_METHOD(Expected<>, set_orientation_tolerance, (double), (override));
+  MOCK_METHOD(double, orientation_tolerance, (), (const, override));
 };
 
 class MockJoints : public sdk::JointSettings {

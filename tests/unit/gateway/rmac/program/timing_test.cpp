@@ -28,8 +28,9 @@ TEST(Timing, SendsQuestionsWithoutWaiting) {
 }
 
 TEST(Timing, SendsWhatHoldsForLaterMovesWithoutWaiting) {
-  for (const char* name : {"RMAC_CAM.SetFeedrate", "RMAC_CAM.SetPathTolerance", "RMAC_CAM.SetPathAccelRise",
-                           "RMAC_CAM.SetPathAccelFall", "RMAC_CAM.SetFeedOverride", "RMAC_CAM.SetJointInterpSpeed"}) {
+  for (const char* name : {"RMAC_CAM.SetFeedrate", "RMAC_CAM.SetPathTolerance", "RMAC_CAM.SetOrientationTolerance",
+                           "RMAC_CAM.SetPathAccelRise", "RMAC_CAM.SetPathAccelFall", "RMAC_CAM.SetFeedOverride",
+                           "RMAC_CAM.SetJointInterpSpeed"}) {
     EXPECT_EQ(timing_of(name), Timing::Stream) << name;
   }
 }

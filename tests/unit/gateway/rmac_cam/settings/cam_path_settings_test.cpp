@@ -31,6 +31,7 @@ TEST_F(PathSettings, BeginWithTheMechanismsBoundsAndNoFeed) {
   EXPECT_EQ(settings_.accel_rise(), 800);
   EXPECT_EQ(settings_.accel_fall(), 900);
   EXPECT_EQ(settings_.tolerance(), 0);
+  EXPECT_EQ(settings_.orientation_tolerance(), 0.1);
   EXPECT_THAT(settings_.check_feed(4).error().message, HasSubstr("move 4: no feed is set"));
 }
 
@@ -39,12 +40,14 @@ TEST_F(PathSettings, AreKeptForTheNextMove) {
   ASSERT_TRUE(settings_.set_accel_rise(300));
   ASSERT_TRUE(settings_.set_accel_fall(400));
   ASSERT_TRUE(settings_.set_tolerance(0.05));
+  ASSERT_TRUE(settings_.set_orientation_tolerance(0.2));
   EXPECT_TRUE(settings_.check_feed(4));
   EXPECT_EQ(settings_.feed_mm_s(), 20);
   EXPECT_EQ(settings_.max_feed_mm_s(), 100);
   EXPECT_EQ(settings_.accel_rise(), 300);
   EXPECT_EQ(settings_.accel_fall(), 400);
   EXPECT_EQ(settings_.tolerance(), 0.05);
+  EXPECT_EQ(settings_.orientation_tolerance(), 0.2);
 }
 
 TEST_F(PathSettings, TellTheMeasuredFeed) {
@@ -65,6 +68,10 @@ TEST_F(PathSettings, RefuseWhatIsNoSpeedOrAcceleration) {
   EXPECT_FALSE(settings_.set_tolerance(-1e-9));
   EXPECT_FALSE(settings_.set_tolerance(kNotANumber));
   EXPECT_TRUE(settings_.set_tolerance(0));
+  EXPECT_EQ(settings_.set_orientation_tolerance(-0.1).error().message,
+            "SetOrientationTolerance: -0.1 degrees must be 0 or more");
+  EXPECT_FALSE(settings_.set_orientation_tolerance(kNotANumber));
+  EXPECT_TRUE(settings_.set_orientation_tolerance(0));
 }
 
 TEST_F(PathSettings, OnlyTightenTheMechanism) {
@@ -94,22 +101,26 @@ TEST_F(PathSettings, StayWhenTheSameMechanismIsConfiguredAnewButForItsMaximum) {
   ASSERT_TRUE(settings_.set_max_feedrate(2000));
   ASSERT_TRUE(settings_.set_accel_rise(300));
   ASSERT_TRUE(settings_.set_tolerance(0.1));
+  ASSERT_TRUE(settings_.set_orientation_tolerance(0.5));
   mill_.max_feedrate_mm_min = 9000;
   settings_.mechanism_changed(false);
   EXPECT_EQ(settings_.max_feedrate(), 9000) << "upwards too";
   EXPECT_EQ(settings_.feed_mm_s(), 20);
   EXPECT_EQ(settings_.accel_rise(), 300);
   EXPECT_EQ(settings_.tolerance(), 0.1);
+  EXPECT_EQ(settings_.orientation_tolerance(), 0.5);
 }
 
 TEST_F(PathSettings, StartAnewWithAnotherMechanism) {
   ASSERT_TRUE(settings_.set_feedrate(1200));
   ASSERT_TRUE(settings_.set_accel_fall(300));
   ASSERT_TRUE(settings_.set_tolerance(0.1));
+  ASSERT_TRUE(settings_.set_orientation_tolerance(0.5));
   settings_.mechanism_changed(true);
   EXPECT_FALSE(settings_.check_feed(1));
   EXPECT_EQ(settings_.accel_fall(), 900);
   EXPECT_EQ(settings_.tolerance(), 0);
+  EXPECT_EQ(settings_.orientation_tolerance(), 0.1);
 }
 
 TEST_F(PathSettings, AreTakenUpAgainAsFarAsTheMechanismLets) {

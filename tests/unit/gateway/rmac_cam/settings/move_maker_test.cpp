@@ -42,6 +42,7 @@ TEST_F(MakesMoves, OfWhatIsInForce) {
   ASSERT_TRUE(path_.set_accel_rise(300));
   ASSERT_TRUE(path_.set_accel_fall(400));
   ASSERT_TRUE(path_.set_tolerance(0.05));
+  ASSERT_TRUE(path_.set_orientation_tolerance(0.3));
   ASSERT_TRUE(joints_.set_interp_speed(30));
   const Move move = maker_.path_move(7, kLine);
   EXPECT_EQ(move.id, 7);
@@ -50,6 +51,7 @@ TEST_F(MakesMoves, OfWhatIsInForce) {
   EXPECT_EQ(move.accel_rise_mm_s2, 300);
   EXPECT_EQ(move.accel_fall_mm_s2, 400);
   EXPECT_EQ(move.tolerance_mm, 0.05);
+  EXPECT_EQ(move.orientation_tolerance_deg, 0.3);
   EXPECT_EQ(move.joint_speed_fraction, 0.3);
 }
 

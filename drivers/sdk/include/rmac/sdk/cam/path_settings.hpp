@@ -4,8 +4,8 @@
 
 namespace rmac::sdk {
 
-/// Feed, accelerations and tolerance of path moves that are queued from now on, in the wire's units: mm, mm/min, mm/s².
-/// What bounds the mechanism itself can only be tightened. Gateway thread only.
+/// Feed, accelerations and tolerances of path moves that are queued from now on, in the wire's units: mm, mm/min, mm/s²,
+/// degrees. What bounds the mechanism itself can only be tightened. Gateway thread only.
 class PathSettings {
  public:
   virtual ~PathSettings() = default;
@@ -24,6 +24,9 @@ class PathSettings {
   /// How far the path may be from what was programmed; 0: an exact stop wherever it is not smooth.
   virtual Expected<> set_tolerance(double mm) = 0;
   [[nodiscard]] virtual double tolerance() const = 0;
+  /// How far the tool axis may be from what was programmed; 0: not at all.
+  virtual Expected<> set_orientation_tolerance(double degrees) = 0;
+  [[nodiscard]] virtual double orientation_tolerance() const = 0;
 };
 
 }  // namespace rmac::sdk
