@@ -22,6 +22,7 @@ class LineCurve final : public Curve {
   [[nodiscard]] std::size_t dimension() const noexcept override { return 6; }
   [[nodiscard]] double length() const noexcept override { return ends_[1]; }
   [[nodiscard]] bool straight() const noexcept override { return turn_.angle_rad() == 0; }
+  [[nodiscard]] bool even() const noexcept override { return dot(step_, step_) > 0.5; }
   [[nodiscard]] std::span<const double> breaks() const noexcept override { return {}; }
   [[nodiscard]] std::span<const double> nodes() const noexcept override {
     if (nodes_.empty()) return ends_;

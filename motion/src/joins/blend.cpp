@@ -5,6 +5,7 @@
 
 #include "curves/nurbs_curve.hpp"
 #include "joins/blend_spline.hpp"
+#include "joins/pose_derivatives.hpp"
 #include "path/part_of.hpp"
 #include "path/travel.hpp"
 
@@ -58,7 +59,8 @@ struct Corner {
 bool may_meet(const PathSegment& before, const PathSegment& after) {
   if (before.demand().rest_after || after.demand().rest_before || before.map() != after.map()) return false;
   if (before.curve().in_joint_space() || after.curve().in_joint_space()) return false;
-  return before.curve().dimension() <= 6 && after.curve().dimension() <= 6;  // past the pole, turns are not free
+  const auto past_pole = [](const Curve& curve) { return &curve.programmed() != &curve; };
+  return !past_pole(before.curve()) && !past_pole(after.curve());  // turns are not free there
 }
 
 /// What the joints allow along both lines.
@@ -135,7 +137,7 @@ Choice least_loss(const Corner& corner, double tolerance, double room) {
 }
 
 /// No point of the blend is further from the programmed path than this, nor any of that from the blend (eq. 5 and 6).
-double deviation_bound(const BlendSpline& spline, const Curve& before, const Curve& after, double reach,
+double deviation_bound(const BlendSpline& spline, const PathSegment& before, const PathSegment& after, double reach,
                        double lever_mm) {
   constexpr int kSamples = 16;
   double tip = 0, axis = 0, bend_tip = 0, bend_axis = 0;
@@ -145,7 +147,8 @@ double deviation_bound(const BlendSpline& spline, const Curve& before, const Cur
       const double part = static_cast<double>(i) / kSamples;
       const double u = half == 0 ? part - 1 : part;
       const double s = half == 0 ? before.length() + reach * u : reach * u;
-      (half == 0 ? before : after).evaluate(s, 2, half == 0 ? -1 : 1, point);
+      if (pose_derivatives(half == 0 ? before : after, s, half == 0 ? -1 : 1, point) != KinematicsStatus::Ok)
+        return 1e30;
       const auto value = spline.at(u);
       double d = 0, a = 0, d2 = 0, a2 = 0;
       for (std::size_t c = 0; c < 3; ++c) {
@@ -287,11 +290,10 @@ Blend make_blend(const PathSegment& before, Passed over, const PathSegment& afte
   const auto [tolerance, lever_mm] = tolerance_of(before, over, after);
   if (!(tolerance > 0)) return {};
   Meeting corner;
-  before.curve().evaluate(before.length(), 2, -1, corner.before);
-  after.curve().evaluate(0, 2, 1, corner.after);
   JointPoint below, above;
-  if (!tip_moves(corner.before) || !tip_moves(corner.after) ||
-      before.evaluate(before.length(), 1, -1, below) != KinematicsStatus::Ok ||
+  if (pose_derivatives(before, before.length(), -1, corner.before) != KinematicsStatus::Ok ||
+      pose_derivatives(after, 0, 1, corner.after) != KinematicsStatus::Ok || !tip_moves(corner.before) ||
+      !tip_moves(corner.after) || before.evaluate(before.length(), 1, -1, below) != KinematicsStatus::Ok ||
       after.evaluate(0, 1, 1, above) != KinematicsStatus::Ok)
     return {};
 
@@ -308,10 +310,11 @@ Blend make_blend(const PathSegment& before, Passed over, const PathSegment& afte
                                gap, tolerance - strayed, room);
   for (int trial = 0; trial < kTrials && choice.reach > kLeastReach_mm; ++trial) {
     Meeting ends;
-    before.curve().evaluate(before.length() - choice.reach, 2, -1, ends.before);
-    after.curve().evaluate(choice.reach, 2, 1, ends.after);
+    if (pose_derivatives(before, before.length() - choice.reach, -1, ends.before) != KinematicsStatus::Ok ||
+        pose_derivatives(after, choice.reach, 1, ends.after) != KinematicsStatus::Ok)
+      return {};
     const BlendSpline spline(ends.before, ends.after, choice.reach, choice.shape);
-    const double bound = deviation_bound(spline, before.curve(), after.curve(), choice.reach, lever_mm) + strayed;
+    const double bound = deviation_bound(spline, before, after, choice.reach, lever_mm) + strayed;
     if (bound > tolerance) {
       choice.reach *= std::clamp(0.99 * tolerance / bound, 0.5, 0.99);
       continue;

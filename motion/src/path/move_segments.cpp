@@ -100,7 +100,8 @@ Expected<> MoveSegments::lay_past_poles(const CurvePtr& curve, const PoleMap& po
 }
 
 Expected<> MoveSegments::pass_pole(const CurvePtr& near, const PathSegment* before, const CurvePtr& next, bool last) {
-  const auto passages = pole_passages(near, {joints_, before}, next, map_, model_.joints);
+  const double smoothed = demand_.tolerance_mm > 0 ? demand_.tolerance_rad : 0;
+  const auto passages = pole_passages(near, {joints_, before, smoothed}, next, map_, model_.joints);
   Expected<> refused = tl::unexpected(beyond_pole(move_, *near, stretch_.s_begin_mm, kPoleDeviation));
   for (const auto& passage : passages) {
     const auto [deviation, s] = passage->largest_deviation();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "curves/vector.hpp"
 #include "path/travel.hpp"
@@ -26,6 +27,11 @@ constexpr double kLeastStretch_mm = 1e-4;
 constexpr double kPassageTurn = 3;
 constexpr double kLeastPassageNodes = 4;
 constexpr std::size_t kMostSolutions = 16;
+/// Lines that pass the pole nearer than this part of cap and tolerance are led straight over it.
+constexpr double kOver = 0.9;
+/// A line comes nearest to the pole where its way there, from straight ahead (-1) to straight behind (1), begins below
+/// this and ends above it.
+constexpr double kAside = -0.02;
 
 Vector axis_of(const CurvePoint& point, std::size_t order = 0) {
   return {point.d[order][3], point.d[order][4], point.d[order][5]};
@@ -187,8 +193,37 @@ namespace {
 struct PoleExit {
   std::vector<TurnState> turns;
   double time_s = 0;  ///< of the joint that takes longest at its limit of speed
+  double turn = 0;    ///< of the joint that turns most, in degrees
   bool offends = false;
 };
+
+/// How a curve's axis stands to the pole at one of its ends.
+struct Leaning {
+  double away = 0;   ///< -1 where it goes straight to the pole, 1 straight away from it
+  double least = 0;  ///< how near its great circle comes to the pole: the sine
+  Vector aside{};    ///< where it leans to, across the pole
+
+  Leaning(const Curve& curve, double s, const Vector& pole) {
+    CurvePoint point;
+    curve.evaluate(s, 1, s > 0 ? -1 : 1, point);
+    const Vector axis = axis_of(point), rate = axis_of(point, 1);
+    const double height = curves::dot(axis, pole), fast = curves::norm(rate);
+    aside = curves::along(axis, -height, pole);
+    const double across = curves::norm(aside);
+    if (fast * across > 0) away = -std::copysign(1.0, height) * curves::dot(rate, pole) / (fast * across);
+    least = fast > 0 ? std::abs(curves::dot(curves::cross(axis, rate), pole)) / fast : across;
+  }
+};
+
+/// The turn, in degrees, of the solution that leads straight over the pole, where lines are to be led so.
+std::optional<double> turn_over(const Curve& stretch, const Vector& pole, double tolerance_rad) {
+  if (!(tolerance_rad > 0) || !stretch.even()) return std::nullopt;
+  const Leaning begin(stretch, 0, pole), end(stretch, stretch.length(), pole);
+  if (!(begin.away < kAside && end.away >= kAside && begin.least < kOver * std::min(tolerance_rad, kPoleCap)))
+    return std::nullopt;
+  constexpr double kDegrees = 57.29577951308232;
+  return 180 - kDegrees * angle(begin.aside, end.aside);
+}
 
 /// Joints that put the tool where the stretch ends; on the pole itself if the curve ends that close to it.
 std::vector<double> end_joints(const Curve& stretch, bool curve_ends, const PoseToJoints& map,
@@ -239,6 +274,7 @@ std::vector<std::shared_ptr<const PolePassage>> pole_passages(const std::shared_
     PoleExit exit;
     for (const std::size_t j : turning) {
       exit.time_s = std::max(exit.time_s, std::abs(solution[j] - entry.joints[j]) / joints[j].max_speed);
+      exit.turn = std::max(exit.turn, std::abs(solution[j] - entry.joints[j]));
     }
     JointPoint end;
     std::copy(solution.begin(), solution.end(), end.d[0].begin());
@@ -256,8 +292,12 @@ std::vector<std::shared_ptr<const PolePassage>> pole_passages(const std::shared_
     exit.turns = states_of(end, next ? 4 : 1);
     exits.push_back(std::move(exit));
   }
-  std::stable_sort(exits.begin(), exits.end(), [](const PoleExit& a, const PoleExit& b) {
-    return std::pair(a.offends, a.time_s) < std::pair(b.offends, b.time_s);
+  Vector pole{};
+  (void)map->kinematics().pole(pole);
+  const auto over = turn_over(*stretch, apply_to_vector(inverse(map->frames().part), pole), entry.tolerance_rad);
+  std::stable_sort(exits.begin(), exits.end(), [&](const PoleExit& a, const PoleExit& b) {
+    const auto cost = [&](const PoleExit& exit) { return over ? std::abs(exit.turn - *over) : exit.time_s; };
+    return std::pair(a.offends, cost(a)) < std::pair(b.offends, cost(b));
   });
 
   std::vector<std::shared_ptr<const PolePassage>> passages;

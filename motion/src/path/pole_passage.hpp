@@ -51,6 +51,8 @@ class PolePassage final : public Curve {
   [[nodiscard]] bool in_joint_space() const noexcept override { return false; }
   [[nodiscard]] std::size_t dimension() const noexcept override { return 6 + turns_.size(); }
   [[nodiscard]] double length() const noexcept override { return stretch_->length(); }
+  [[nodiscard]] bool even() const noexcept override { return stretch_->even(); }
+  [[nodiscard]] const Curve& programmed() const noexcept override { return *stretch_; }
   /// The derivatives of i j k stay the programmed ones'.
   void evaluate(double s, int order, int side, CurvePoint& point) const noexcept override;
   [[nodiscard]] std::span<const double> breaks() const noexcept override { return stretch_->breaks(); }
@@ -70,10 +72,13 @@ class PolePassage final : public Curve {
 struct PoleEntry {
   std::vector<double> joints;
   const PathSegment* before = nullptr;  ///< the piece of the same curve that ends there; none at the curve's begin
+  /// By so much, in rad, lines may leave the programmed axis where they are smoothed (`short_lines`); 0: they are not.
+  double tolerance_rad = 0;
 };
 
 /// The passages that can lead past the pole from `entry`, the quickest for the rotary joints first: to each solution at
-/// the stretch's end, within the joints' travel where there is one. `next` is the rest of the curve up to the next
+/// the stretch's end, within the joints' travel where there is one. Of lines that will be smoothed, the one that comes
+/// nearest to the pole leads straight over it where the tolerance lets it: quickest for them all. `next` is the rest of the curve up to the next
 /// passage, or none where the curve ends with this one.
 [[nodiscard]] std::vector<std::shared_ptr<const PolePassage>> pole_passages(
     const std::shared_ptr<const Curve>& stretch, const PoleEntry& entry, const std::shared_ptr<const Curve>& next,

@@ -40,6 +40,7 @@ class TrimmedCurve final : public Curve {
   [[nodiscard]] bool in_joint_space() const noexcept override { return curve_->in_joint_space(); }
   [[nodiscard]] std::size_t dimension() const noexcept override { return curve_->dimension(); }
   [[nodiscard]] double length() const noexcept override { return end_ - begin_; }
+  [[nodiscard]] bool even() const noexcept override { return curve_->even(); }
   void evaluate(double s, int order, int side, CurvePoint& point) const noexcept override {
     // At its own ends only one side exists.
     if (s <= 0) side = 1;

@@ -17,7 +17,8 @@ class Banded {
   [[nodiscard]] double at(std::size_t row, std::size_t below) const { return values_[row * (band_ + 1) + below]; }
 
   /// Gives an unknown its value: its row becomes trivial, and its column goes to the right side.
-  void fix(std::size_t index, const Vector& value, std::vector<Vector>& right) {
+  template <class T>
+  void fix(std::size_t index, const T& value, std::vector<T>& right) {
     for (std::size_t k = 1; k <= band_; ++k) {
       if (index >= k) take(at(index, k), value, right[index - k]);
       if (index + k < size_) take(at(index + k, k), value, right[index + k]);
@@ -70,7 +71,8 @@ class Banded {
   static void divide(Vector& value, double by) {
     for (double& v : value) v /= by;
   }
-  static void take(double& entry, const Vector& value, Vector& right) {
+  template <class T>
+  static void take(double& entry, const T& value, T& right) {
     subtract(entry, value, right);
     entry = 0;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "curves/vector.hpp"
 
@@ -64,6 +65,7 @@ std::vector<SplineSample> samples_of(const Polyline& polyline, const LineSpline&
       const double q = from + (end - from) * i / parts;
       const double place = std::max(place_of(q), begin);
       samples.push_back({place, along(polyline.vertices[k], (q - line) / (end - line), chord), k});
+      samples.back().used = polyline.off_mm[k];
     }
   }
   samples.push_back({polyline.places.back(), polyline.vertices.back(), polyline.lines() - 1});
@@ -79,11 +81,10 @@ void set_bounds(const DenseLines& lines, const LineSpline& before, std::vector<S
   const double end = lines.polyline.places.back();
   for (SplineSample& sample : samples) {
     const double to_end = end - sample.place, to_free_end = before.empty() ? std::min(to_end, sample.place) : to_end;
-    sample.most_mm = std::min(kWidest * lines.overlap_mm, kFreeEnd_mm + kFreeEndSlope * to_free_end);
+    sample.most_mm = std::min({sample.most_mm, kWidest * lines.overlap_mm, kFreeEnd_mm + kFreeEndSlope * to_free_end});
     const bool at_corner = sample.place < lines.start_corner_mm || to_end < lines.end_corner_mm;
-    const double used_mm = lines.polyline.off_mm[sample.line];
-    sample.limit_mm = at_corner ? std::max(0.5 * lines.tolerance_mm - used_mm, kLeastAtCorner * lines.tolerance_mm)
-                                : (sample.place < before.free_from() ? lines.most_mm : lines.tolerance_mm) - used_mm;
+    sample.limit = at_corner ? std::max(0.5 * lines.tolerance - sample.used, kLeastAtCorner * lines.tolerance)
+                             : (sample.place < before.free_from() ? lines.most : lines.tolerance) - sample.used;
   }
 }
 
@@ -109,7 +110,7 @@ void adapt(double aim, std::vector<SplineSample>& samples) {
   // in fewer trials.
   constexpr double kNarrower = 1.0 / 4, kWider = 1.0 / 6, kLeast = 0.5, kMost = 1.2;
   std::vector<double> off;
-  for (const SplineSample& sample : samples) off.push_back(sample.off_mm / sample.limit_mm);
+  for (const SplineSample& sample : samples) off.push_back(sample.off / sample.limit);
   const auto far = [&](std::size_t k) {
     return std::exp(-(samples[k + 1].place - samples[k].place) / samples[k].width_mm);
   };
@@ -123,6 +124,13 @@ void adapt(double aim, std::vector<SplineSample>& samples) {
   }
 }
 
+/// Moves the knot that is nearest to a place there.
+void snap(double place, double from, std::vector<double>& knots) {
+  if (knots.empty() || place <= from) return;
+  *std::min_element(knots.begin(), knots.end(),
+                    [place](double a, double b) { return std::abs(a - place) < std::abs(b - place); }) = place;
+}
+
 /// Knots behind `from`, as far apart as the samples' widths ask for; empty where there is no room.
 std::vector<double> knots_for(const DenseLines& lines, const std::vector<SplineSample>& samples, double from) {
   // The overlap holds the knots that the next window keeps, and more.
@@ -130,7 +138,8 @@ std::vector<double> knots_for(const DenseLines& lines, const std::vector<SplineS
   const auto& places = lines.polyline.places;
   const auto step = [&](const SplineSample& sample) {
     const double line = places[sample.line + 1] - places[sample.line];
-    return std::min(longest, std::max(sample.width_mm / kKnotsAWidth, kLeastOfALine * line));
+    const double least = lines.least_step_mm.value_or(kLeastOfALine * line);
+    return std::min(longest, std::max(sample.width_mm / kKnotsAWidth, least));
   };
   const auto steps_from = [&](std::size_t k) {
     return std::max(samples[k + 1].place - std::max(samples[k].place, from), 0.0) / step(samples[k]);
@@ -146,16 +155,17 @@ std::vector<double> knots_for(const DenseLines& lines, const std::vector<SplineS
       knots.push_back(std::max(samples[k].place, from) + (next - done) * step(samples[k]));
     done += here;
   }
+  if (lines.knot_at) snap(*lines.knot_at, from, knots);
   return knots;
 }
 
 /// Notes for each line by how much the spline may miss it; the most of what it may.
-double judge(const std::vector<SplineSample>& samples, std::size_t lines, std::vector<double>& deviations_mm) {
-  deviations_mm.assign(lines, 0);
+double judge(const std::vector<SplineSample>& samples, std::size_t lines, std::vector<double>& deviations) {
+  deviations.assign(lines, 0);
   double worst = 0;
   for (const SplineSample& sample : samples) {
-    deviations_mm[sample.line] = std::max(deviations_mm[sample.line], sample.off_mm);
-    worst = std::max(worst, sample.off_mm / sample.limit_mm);
+    deviations[sample.line] = std::max(deviations[sample.line], sample.off);
+    worst = std::max(worst, sample.off / sample.limit);
   }
   return worst;
 }
@@ -163,30 +173,39 @@ double judge(const std::vector<SplineSample>& samples, std::size_t lines, std::v
 /// The place of the first sample that is missed by more than it may.
 double kept_to(const std::vector<SplineSample>& samples) {
   const auto out = std::find_if(samples.begin(), samples.end(),
-                                [](const SplineSample& sample) { return sample.off_mm > sample.limit_mm; });
+                                [](const SplineSample& sample) { return sample.off > sample.limit; });
   return out == samples.end() ? samples.back().place : out->place;
 }
 
 }  // namespace
 
 tl::expected<LineSpline, double> smoothest_along(const DenseLines& lines, const LineSpline& before) {
+  return smoothest_within(lines, before, samples_of(lines.polyline, before),
+                          [&](LineSpline& trial) -> std::optional<double> {
+                            SmoothingSpline spline(trial.knots, trial.samples);
+                            if (!spline.solve(before.kept_points(), trial.points)) return std::nullopt;
+                            return spline.roughness(trial.points);
+                          });
+}
+
+tl::expected<LineSpline, double> smoothest_within(const DenseLines& lines, const LineSpline& before,
+                                                  std::vector<SplineSample> samples, const SmoothFit& fit) {
   LineSpline trial;
-  trial.samples = samples_of(lines.polyline, before);
+  trial.samples = std::move(samples);
   set_bounds(lines, before, trial.samples);
   set_widths(lines, before.samples, trial.samples);
   std::optional<LineSpline> best;
   double least = 0, kept_mm = 0;
   for (int k = 0; k < kMostTrials; ++k) {
     if (!trial.go_on(before, knots_for(lines, trial.samples, before.free_from()), lines.polyline)) break;
-    SmoothingSpline spline(trial.knots, trial.samples);
-    if (!spline.solve(before.kept_points(), trial.points)) break;
-    const double worst = judge(trial.samples, lines.polyline.lines(), trial.deviations_mm);
+    const auto roughness = fit(trial);
+    if (!roughness) break;
+    const double worst = judge(trial.samples, lines.polyline.lines(), trial.deviations);
     if (worst <= 1) {
-      const double roughness = spline.roughness(trial.points);
-      const bool first = !best, worth_it = first || roughness < kWorthATrial * least;
-      if (first || roughness < least) {
+      const bool first = !best, worth_it = first || *roughness < kWorthATrial * least;
+      if (first || *roughness < least) {
         best = trial;
-        least = roughness;
+        least = *roughness;
       }
       if ((k > 0 && !worth_it) || worst < kFarWithin) break;
     }

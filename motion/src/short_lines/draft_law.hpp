@@ -8,7 +8,7 @@
 
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/path_segment.hpp"
-#include "short_lines/polyline.hpp"
+#include "short_lines/line_spline.hpp"
 #include "short_lines/tube_program.hpp"
 #include "time_law/law_problem.hpp"
 

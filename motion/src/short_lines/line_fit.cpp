@@ -11,6 +11,7 @@
 #include "short_lines/dense_spline.hpp"
 #include "short_lines/quintic.hpp"
 #include "short_lines/tube_spline.hpp"
+#include "short_lines/turning_curve.hpp"
 
 namespace rmac {
 namespace {
@@ -45,29 +46,52 @@ Vector point_of(const PathSegment& line, double s) {
   return {point.d[0][0], point.d[0][1], point.d[0][2]};
 }
 
-bool short_line(const PathSegment& segment) {
-  const PathDemand& demand = segment.demand();
-  return demand.tolerance_mm > 0 && segment.curve().straight() && segment.length() < kLongest_mm &&
-         !demand.rest_before && !demand.rest_after;
+/// A line on which the tool axis stays, or may be led by the rotary joints.
+bool may_be_fitted(const PathSegment& segment) {
+  return segment.curve().straight() ||
+         (segment.curve().even() && segment.demand().tolerance_rad > 0 && turns_lead(segment.map()->kinematics()));
 }
 
-double turn_between(const PathSegment& a, const PathSegment& b) {
-  CurvePoint before, after;
-  a.curve().evaluate(a.length(), 1, -1, before);
-  b.curve().evaluate(0, 1, 1, after);
-  double square = 0;
-  for (std::size_t c = 0; c < 3; ++c) square += (after.d[1][c] - before.d[1][c]) * (after.d[1][c] - before.d[1][c]);
-  return std::sqrt(square);
+bool short_line(const PathSegment& segment) {
+  const PathDemand& demand = segment.demand();
+  return demand.tolerance_mm > 0 && segment.length() < kLongest_mm && !demand.rest_before && !demand.rest_after &&
+         may_be_fitted(segment);
 }
+
+/// By how much tip and axis turn from one line to the next: tangents' difference, and that of the axis by mm.
+struct Corner {
+  double tip = 0, axis = 0;
+  Corner(const PathSegment& a, const PathSegment& b) {
+    CurvePoint before, after;
+    a.curve().programmed().evaluate(a.length(), 1, -1, before);
+    b.curve().programmed().evaluate(0, 1, 1, after);
+    const auto jump = [&](std::size_t first) {
+      double sum = 0;
+      for (std::size_t c = first; c < first + 3; ++c)
+        sum += (after.d[1][c] - before.d[1][c]) * (after.d[1][c] - before.d[1][c]);
+      return std::sqrt(sum);
+    };
+    tip = jump(0);
+    axis = jump(3);
+  }
+};
 
 /// A smooth curve through both lines' ends stays within tolerance of them (an arc of their turn is a quarter of turn
 /// times length away, halved where both are alike), or they are coarse, and a curve in the tube passes the corner.
 bool belong_together(const PathSegment& a, const PathSegment& b) {
   if (!short_line(a) || !short_line(b) || !alike(a, b)) return false;
-  const double turn = turn_between(a, b), tolerance = a.demand().tolerance_mm;
+  const auto [turn, axis_turn] = Corner(a, b);
+  const double tolerance = a.demand().tolerance_mm;
+  if (axis_turn * std::max(a.length(), b.length()) / 6 > a.demand().tolerance_rad) return false;
   if (turn < kMostTurn && turn * std::max(a.length(), b.length()) / 6 < tolerance) return true;
   return turn < kMostCoarseTurn && std::min(a.length(), b.length()) > kCoarse * tolerance &&
          turn * std::max(a.length(), b.length()) / 8 < kMostSagitta * tolerance;
+}
+
+bool turns_at_all(const PathSegment& line) {
+  CurvePoint point;
+  line.curve().programmed().evaluate(0, 1, 1, point);
+  return point.d[1][3] != 0 || point.d[1][4] != 0 || point.d[1][5] != 0;
 }
 
 std::size_t knot_at(const LineSpline& spline, double place) {
@@ -98,7 +122,7 @@ bool LineFit::end_at_corner() noexcept {
   }
   double sharpest = 0;
   for (std::size_t k = first; k <= last; ++k) {
-    const double turn = turn_between(*waiting_[k - 1], *waiting_[k]);
+    const double turn = Corner(*waiting_[k - 1], *waiting_[k]).tip;
     if (!(turn > sharpest)) continue;
     sharpest = turn;
     corner_ = k;
@@ -188,14 +212,15 @@ bool LineFit::fit_tube(std::size_t lines, bool ends, Fit& fit) const {
   for (std::size_t k = 0; k < lines; ++k) widths[k] -= kTubePart * fit.polyline.off_mm[k];
   for (int trial = 0;; ++trial) {
     if (!smoothest_in_tube(spline.knots, fit.polyline, widths, before.kept_points(), spline.points)) return false;
-    spline.deviations_mm = tube_distances(spline.knots, spline.points, fit.polyline, tolerance);
-    const double part = largest_part(spline.deviations_mm, fit.polyline, tolerance);
+    spline.deviations = tube_distances(spline.knots, spline.points, fit.polyline, tolerance);
+    const double part = largest_part(spline.deviations, fit.polyline, tolerance);
     if (part <= 1) break;
     if (trial == kTubeTrials || part > 1.2) return false;
     for (double& width : widths) width *= 0.995 / part;
   }
 
-  if (lines >= kWorthALaw) make_faster(widths, fit);
+  // The law knows nothing of the rotary joints.
+  if (lines >= kWorthALaw && !turns(lines)) make_faster(widths, fit);
 
   std::vector<std::size_t> cuts;
   if (!goes_on()) cuts.push_back(knot_at(spline, places[1]));
@@ -209,7 +234,7 @@ void LineFit::make_faster(const std::vector<double>& widths, Fit& fit) const {
   LineSpline& spline = fit.spline;
   DraftLaw law(spline.knots, fit.polyline, std::move(*lines), joints_);
   fastest_in_tube(spline.knots, fit.polyline, widths, waiting_[0]->demand().tolerance_mm, before_.spline.kept_points(),
-                  law, spline.points, spline.deviations_mm);
+                  law, spline.points, spline.deviations);
 }
 
 std::size_t LineFit::dense_lines(std::size_t run) const noexcept {
@@ -249,21 +274,63 @@ bool LineFit::make_segments(std::vector<std::size_t> cuts, double tail, bool end
     fit.cut = knot_at(fit.spline, std::max(tail, fit.spline.begin()));
     if (fit.cut <= kDegree) return false;
   }
-  const auto part = [&](std::size_t from, std::size_t to) -> std::shared_ptr<const PathSegment> {
-    auto curve = curves::NurbsCurve::make(space, from - kDegree, to - kDegree);
-    if (!curve) return nullptr;
-    return segment(fit, std::move(*curve), fit.spline.knots[from], fit.spline.knots[to]);
-  };
-  fit.heads.clear();
+  std::vector<std::size_t> ways{kDegree};
   cuts.push_back(fit.cut);
-  for (std::size_t from = kDegree; const std::size_t to : cuts) {
-    if (to <= from || to > fit.cut) continue;
-    fit.heads.push_back(part(from, to));
-    if (!fit.heads.back()) return false;
-    from = to;
+  for (const std::size_t to : cuts) {
+    if (to > ways.back() && to <= fit.cut) ways.push_back(to);
   }
-  if (!ends) fit.tail = part(fit.cut, last);
-  return ends || fit.tail != nullptr;
+  if (!ends) ways.push_back(last);
+  TipPath tip;
+  tip.from = fit.spline.begin();
+  for (std::size_t i = 0; i + 1 < ways.size(); ++i) {
+    auto curve = curves::NurbsCurve::make(space, ways[i] - kDegree, ways[i + 1] - kDegree);
+    if (!curve) return false;
+    tip.add(std::move(*curve));
+  }
+  if (turns(fit.polyline.lines()) && !turn(tip, ends, fit)) return false;
+  fit.heads.clear();
+  for (std::size_t i = 0; i < tip.pieces.size(); ++i) {
+    auto laid = segment(fit, tip.pieces[i], fit.spline.knots[ways[i]], fit.spline.knots[ways[i + 1]]);
+    if (!laid) return false;
+    if (ends || i + 1 < tip.pieces.size()) {
+      fit.heads.push_back(std::move(laid));
+    } else {
+      fit.tail = std::move(laid);
+    }
+  }
+  return true;
+}
+
+bool LineFit::turns(std::size_t lines) const {
+  return !before_.turns.empty() ||
+         std::any_of(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(lines),
+                     [](const auto& line) { return !line->curve().straight() && turns_at_all(*line); });
+}
+
+bool LineFit::turn(TipPath& tip, bool ends, Fit& fit) const {
+  const std::size_t lines = fit.polyline.lines();
+  const PathDemand& demand = waiting_[0]->demand();
+  const std::vector<std::shared_ptr<const PathSegment>> window(waiting_.begin(),
+                                                               waiting_.begin() + static_cast<std::ptrdiff_t>(lines));
+  LineSpline before = before_.turns;
+  if (goes_on() && before.empty()) before = resting_turns(*waiting_[0]);
+  fit.overs = before_.overs;
+  const auto turning = turning_lines({window, fit.polyline, tip, joints_, before}, fit.overs);
+  if (!turning) return false;
+  const double third = tip.length / 3, corner = std::min(kCorner * demand.tolerance_mm, third);
+  TurnBounds bounds{kPart * demand.tolerance_rad, third};
+  if (!goes_on() && begins_at_join_) bounds.start_corner_mm = corner;
+  if (ends && lines < waiting_.size()) bounds.end_corner_mm = corner;
+  fit.cut_mm = ends ? tip.length : tip.starts.back();
+  if (!ends) bounds.knot_at = fit.cut_mm;
+  auto spline = smoothest_turns(*turning, bounds, before);
+  if (!spline || (!ends && !std::binary_search(spline->knots.begin(), spline->knots.end(), fit.cut_mm))) return false;
+  fit.turns = std::move(*spline);
+  const auto& map = waiting_[0]->map();
+  const auto table = std::make_shared<const TurnTable>(fit.turns, rotary_joints(map->kinematics()).size());
+  for (std::size_t i = 0; i < tip.pieces.size(); ++i)
+    tip.pieces[i] = std::make_shared<const TurningCurve>(tip.pieces[i], table, tip.starts[i], map);
+  return true;
 }
 
 std::shared_ptr<const PathSegment> LineFit::segment(const Fit& fit, std::shared_ptr<const Curve> curve, double from,
@@ -271,11 +338,12 @@ std::shared_ptr<const PathSegment> LineFit::segment(const Fit& fit, std::shared_
   const double rate = curve->length() / (to - from);
   std::vector<MoveStretch> stretches;
   std::size_t first = fit.polyline.places.size();
-  double deviation = 0;
+  double deviation = 0, turn = 0;
   for (std::size_t k = 0; k + 1 < fit.polyline.places.size() && fit.polyline.places[k] < to; ++k) {
     if (fit.polyline.places[k + 1] <= from) continue;
     first = std::min(first, k);
-    deviation = std::max(deviation, fit.spline.deviations_mm[k] + fit.polyline.off_mm[k]);
+    deviation = std::max(deviation, fit.spline.deviations[k] + fit.polyline.off_mm[k]);
+    if (!fit.turns.empty()) turn = std::max(turn, fit.turns.deviations[k]);
     const double a = std::max(fit.polyline.places[k], from) - fit.polyline.places[k];
     const double b = to < fit.polyline.places[k + 1] ? to - fit.polyline.places[k] : waiting_[k]->length();
     append_stretches(*waiting_[k], a, b, (fit.polyline.places[k] + a - from) * rate,
@@ -284,6 +352,7 @@ std::shared_ptr<const PathSegment> LineFit::segment(const Fit& fit, std::shared_
   const PathSegment& line = *waiting_[first];
   PathDemand demand = line.demand();
   demand.deviation_mm = deviation;
+  demand.deviation_rad = turn;
   auto segment = std::make_shared<PathSegment>(std::move(curve), line.map(), demand, stretches);
   JointPoint joints;
   double s_failed = 0;
@@ -306,6 +375,8 @@ void LineFit::take(Fit fit, SegmentQueue& out) {
   while (fit.polyline.places[done + 1] <= cut) ++done;
   before_ = std::move(fit);
   before_.spline.leave(before_.cut, before_.polyline.places[done]);
+  if (LineSpline& turns = before_.turns; !turns.empty()) turns.leave(knot_at(turns, before_.cut_mm), before_.cut_mm);
+  for (OverPole& over : before_.overs) over.place -= before_.cut_mm;
   auto& [vertices, places, off_mm, previous] = before_.polyline;
   if (done > 0) previous = vertices[done - 1];
   vertices.erase(vertices.begin(), vertices.begin() + static_cast<std::ptrdiff_t>(done));

@@ -9,13 +9,15 @@
 #include "rmac/motion/path_segment.hpp"
 #include "short_lines/line_merger.hpp"
 #include "short_lines/line_spline.hpp"
+#include "short_lines/turn_spline.hpp"
 
 namespace rmac {
 
 /// Recognises runs of short lines as the smooth curve they came from: a quintic spline within the tolerance of every
 /// line, found by least squares where the lines are dense, or as the smoothest in the tube of the tolerance where they
-/// are coarse (docs/derivations/joins.md, sections 6 and 7). Streams: a run is fitted in windows, each going on
-/// smoothly from the one before. What is no such run passes unchanged, in order. Planner thread.
+/// are coarse (docs/derivations/joins.md, sections 6 and 7), with a spline of the rotary joints where the tool axis
+/// turns (section 8). Streams: a run is fitted in windows, each going on smoothly from the one before. What is no such
+/// run passes unchanged, in order. Planner thread.
 class LineFit {
  public:
   using SegmentQueue = std::deque<std::shared_ptr<const PathSegment>>;
@@ -50,9 +52,12 @@ class LineFit {
   struct Fit {
     Polyline polyline;
     LineSpline spline;
+    LineSpline turns;                         ///< of the rotary joints; empty where the tool axis stays
     PathSegments heads;                       ///< final
     std::shared_ptr<const PathSegment> tail;  ///< to the end of the last line; what follows may find a better way
     std::size_t cut = 0;                      ///< knot between the two
+    double cut_mm = 0;                        ///< length of the heads
+    std::vector<OverPole> overs;              ///< by the length of the tip's path
   };
 
   [[nodiscard]] bool complete() const noexcept;
@@ -68,6 +73,10 @@ class LineFit {
   [[nodiscard]] bool fit_tube(std::size_t lines, bool ends, Fit& fit) const;
   /// A spline in the tube becomes one that is faster to travel, where that is found.
   void make_faster(const std::vector<double>& widths, Fit& fit) const;
+  /// The first lines, or what goes on from before, turn the tool axis.
+  [[nodiscard]] bool turns(std::size_t lines) const;
+  /// Puts the rotary joints' spline along the tip's path into its pieces.
+  [[nodiscard]] bool turn(TipPath& tip, bool ends, Fit& fit) const;
   /// Cuts it at these knots, and before this place into head and tail unless it `ends`.
   [[nodiscard]] bool make_segments(std::vector<std::size_t> cuts, double tail, bool ends, Fit& fit) const;
   [[nodiscard]] std::shared_ptr<const PathSegment> segment(const Fit& fit, std::shared_ptr<const Curve> curve,

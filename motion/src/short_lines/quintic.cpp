@@ -60,6 +60,13 @@ Basis derivatives(const std::vector<double>& knots, std::size_t count, double x,
   return result;
 }
 
+void add_square(const Basis& basis, double weight, Banded& matrix) {
+  for (std::size_t a = 0; a <= kDegree; ++a) {
+    const double factor = weight * basis.values[a];
+    for (std::size_t b = 0; b <= a; ++b) matrix.at(basis.first + a, a - b) += factor * basis.values[b];
+  }
+}
+
 Vector value(const Basis& basis, const std::vector<Vector>& points) {
   Vector sum{};
   for (std::size_t a = 0; a <= kDegree; ++a) sum = curves::along(sum, basis.values[a], points[basis.first + a]);

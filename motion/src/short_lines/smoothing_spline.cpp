@@ -11,16 +11,8 @@ namespace {
 
 using curves::along;
 using curves::difference;
-using quintic::Basis;
+using quintic::add_square;
 using quintic::kDegree;
-
-/// Adds weight · basis basisᵀ.
-void add_square(const Basis& basis, double weight, Banded& matrix) {
-  for (std::size_t a = 0; a <= kDegree; ++a) {
-    const double factor = weight * basis.values[a];
-    for (std::size_t b = 0; b <= a; ++b) matrix.at(basis.first + a, a - b) += factor * basis.values[b];
-  }
-}
 
 }  // namespace
 
@@ -87,10 +79,10 @@ void SmoothingSpline::measure(const std::vector<Vector>& points) {
     double bend = 0;
     for (std::size_t i = at_samples_[k].first; i + 2 <= at_samples_[k + 1].first + kDegree; ++i)
       bend = std::max(bend, bends[i]);
-    samples_[k].off_mm = std::max(here, there) + h * h / 8 * bend;
+    samples_[k].off = std::max(here, there) + h * h / 8 * bend;
     here = there;
   }
-  samples_.back().off_mm = here;
+  samples_.back().off = here;
 }
 
 }  // namespace rmac

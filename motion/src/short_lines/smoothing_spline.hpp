@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "rmac/motion/pose.hpp"
@@ -15,9 +16,10 @@ struct SplineSample {
   std::size_t line = 0;  ///< of the polyline it is on; the first of two
   double share = 0;      ///< length that it stands for
   double width_mm = 0;
-  double most_mm = 0;   ///< that the width may be
-  double limit_mm = 0;  ///< that it may be missed by
-  double off_mm = 0;    ///< by how much the spline may miss what lies between it and the next sample
+  double most_mm = std::numeric_limits<double>::infinity();  ///< that the width may be
+  double limit = 0;                                          ///< that it may be missed by: mm, or rad of the tool axis
+  double used = 0;  ///< of that, by the line itself, which misses what was sent
+  double off = 0;   ///< by how much the spline may miss what lies between it and the next sample
 };
 
 /// The quintic spline that is as smooth as the samples' widths w allow (docs/derivations/joins.md, section 6):

@@ -4,7 +4,7 @@
 
 #include "rmac/motion/pose.hpp"
 #include "short_lines/draft_law.hpp"
-#include "short_lines/polyline.hpp"
+#include "short_lines/line_spline.hpp"
 
 namespace rmac {
 

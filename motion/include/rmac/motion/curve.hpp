@@ -16,10 +16,9 @@ struct CurvePoint {
 /// A curve parametrised by arc length s in [0, length()]. In pose space the coordinates are tip x y z (mm, part frame)
 /// and unit tool axis i j k, and s is the length of the tip's path (of the axis' turn in degrees where the tip rests);
 /// in joint space they are the joints and s is the Euclidean length in joint units. A curve in pose space may add the
-/// rotary joints, in their order, as coordinates 6 on: then they are what turns, and i j k only tells where to. Smooth
-/// inside; second and third
-/// derivatives may jump at `breaks()` only, never the first. Immutable; safe from every thread; `evaluate` is real-time
-/// safe.
+/// rotary joints, in their order, as coordinates 6 on: then they are what turns, and i j k only tells where to, without
+/// derivatives. Smooth inside; second and third derivatives may jump at `breaks()` only, never the first. Immutable;
+/// safe from every thread; `evaluate` is real-time safe.
 class Curve {
  public:
   virtual ~Curve() = default;
@@ -28,6 +27,11 @@ class Curve {
   [[nodiscard]] virtual double length() const noexcept = 0;
   /// The tip moves on a straight line and the tool axis stays.
   [[nodiscard]] virtual bool straight() const noexcept { return false; }
+  /// The tip moves on a straight line, and the tool axis stays or turns on a great circle in step with it, or was
+  /// programmed to.
+  [[nodiscard]] virtual bool even() const noexcept { return straight(); }
+  /// What was asked for, where this curve may leave it: past the pole.
+  [[nodiscard]] virtual const Curve& programmed() const noexcept { return *this; }
   /// Derivatives up to `order` (0 to 3). At a break (met to a few ulps)
   /// `side` chooses the limit from below (-1) or above (+1).
   virtual void evaluate(double s, int order, int side, CurvePoint& point) const noexcept = 0;

@@ -57,14 +57,14 @@ TEST_P(DenseSpline, IsWithinWhatItSaysOfEachLineAndThatWithinTheTolerance) {
   const Polyline polyline = circle(line_mm, rounding_mm);
   const auto spline = smoothest_along({polyline, tolerance_mm, tolerance_mm, 8}, {});
   ASSERT_TRUE(spline);
-  ASSERT_EQ(spline->deviations_mm.size(), polyline.lines());
+  ASSERT_EQ(spline->deviations.size(), polyline.lines());
   for (std::size_t k = 0; k < polyline.lines(); ++k) {
-    EXPECT_LE(spline->deviations_mm[k], tolerance_mm);
+    EXPECT_LE(spline->deviations[k], tolerance_mm);
     for (double part = 0; part <= 1; part += 0.125) {
       const double place = polyline.places[k] + part * (polyline.places[k + 1] - polyline.places[k]);
       const Vector here = quintic::value(quintic::basis(spline->knots, spline->points.size(), place), spline->points);
       EXPECT_LE(distance_to_chord(here, polyline.vertices[k], polyline.vertices[k + 1]),
-                spline->deviations_mm[k] + 1e-12);
+                spline->deviations[k] + 1e-12);
     }
   }
 }
@@ -79,8 +79,8 @@ TEST(DenseSplines, LeaveHalfOfTheToleranceBesideACorner) {
   DenseLines lines{polyline, 0.02, 0.02, 8, 2, 3};
   const auto spline = smoothest_along(lines, {});
   ASSERT_TRUE(spline);
-  for (std::size_t k = 0; k < 20; ++k) EXPECT_LE(spline->deviations_mm[k], 0.01);
-  for (std::size_t k = polyline.lines() - 29; k < polyline.lines(); ++k) EXPECT_LE(spline->deviations_mm[k], 0.01);
+  for (std::size_t k = 0; k < 20; ++k) EXPECT_LE(spline->deviations[k], 0.01);
+  for (std::size_t k = polyline.lines() - 29; k < polyline.lines(); ++k) EXPECT_LE(spline->deviations[k], 0.01);
 }
 
 TEST(DenseSplines, AreNoneOfCornersThatTheToleranceCannotPass) {

@@ -91,8 +91,8 @@ TEST(SmoothingSpline, TellsByHowMuchItMayMissEachStretchAndHardlyMore) {
         const double place = samples[k].place + part * (samples[k + 1].place - samples[k].place);
         off = std::max(off, norm(difference(at(knots, points, place), along(samples[k].point, part, chord))));
       }
-      EXPECT_LE(off, samples[k].off_mm + 1e-12);
-      EXPECT_LE(samples[k].off_mm, off + 0.01);
+      EXPECT_LE(off, samples[k].off + 1e-12);
+      EXPECT_LE(samples[k].off, off + 0.01);
     }
   }
 }
