@@ -215,14 +215,15 @@ struct Leaning {
   }
 };
 
-/// The turn, in degrees, of the solution that leads straight over the pole, where lines are to be led so.
-std::optional<double> turn_over(const Curve& stretch, const Vector& pole, double tolerance_rad) {
+/// The turn, in degrees, of the solution that a line that will be smoothed is to be led to where it comes nearest to
+/// the pole: straight over it if the tolerance lets it, or as its axis goes. Nothing elsewhere.
+std::optional<double> wanted_turn(const Curve& stretch, const Vector& pole, double tolerance_rad) {
   if (!(tolerance_rad > 0) || !stretch.even()) return std::nullopt;
   const Leaning begin(stretch, 0, pole), end(stretch, stretch.length(), pole);
-  if (!(begin.away < kAside && end.away >= kAside && begin.least < kOver * std::min(tolerance_rad, kPoleCap)))
-    return std::nullopt;
+  if (!(begin.away < kAside && end.away >= kAside)) return std::nullopt;
   constexpr double kDegrees = 57.29577951308232;
-  return 180 - kDegrees * angle(begin.aside, end.aside);
+  const double turn = kDegrees * angle(begin.aside, end.aside);
+  return begin.least < kOver * std::min(tolerance_rad, kPoleCap) ? 180 - turn : turn;
 }
 
 /// Joints that put the tool where the stretch ends; on the pole itself if the curve ends that close to it.
@@ -294,9 +295,9 @@ std::vector<std::shared_ptr<const PolePassage>> pole_passages(const std::shared_
   }
   Vector pole{};
   (void)map->kinematics().pole(pole);
-  const auto over = turn_over(*stretch, apply_to_vector(inverse(map->frames().part), pole), entry.tolerance_rad);
+  const auto wanted = wanted_turn(*stretch, apply_to_vector(inverse(map->frames().part), pole), entry.tolerance_rad);
   std::stable_sort(exits.begin(), exits.end(), [&](const PoleExit& a, const PoleExit& b) {
-    const auto cost = [&](const PoleExit& exit) { return over ? std::abs(exit.turn - *over) : exit.time_s; };
+    const auto cost = [&](const PoleExit& exit) { return wanted ? std::abs(exit.turn - *wanted) : exit.time_s; };
     return std::pair(a.offends, cost(a)) < std::pair(b.offends, cost(b));
   });
 

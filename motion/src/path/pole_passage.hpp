@@ -78,8 +78,8 @@ struct PoleEntry {
 
 /// The passages that can lead past the pole from `entry`, the quickest for the rotary joints first: to each solution at
 /// the stretch's end, within the joints' travel where there is one. Of lines that will be smoothed, the one that comes
-/// nearest to the pole leads straight over it where the tolerance lets it: quickest for them all. `next` is the rest of the curve up to the next
-/// passage, or none where the curve ends with this one.
+/// nearest to the pole leads straight over it where the tolerance lets it, and otherwise as its axis goes. `next` is
+/// the rest of the curve up to the next passage, or none where the curve ends with this one.
 [[nodiscard]] std::vector<std::shared_ptr<const PolePassage>> pole_passages(
     const std::shared_ptr<const Curve>& stretch, const PoleEntry& entry, const std::shared_ptr<const Curve>& next,
     const std::shared_ptr<const PoseToJoints>& map, const std::vector<JointLimits>& joints);

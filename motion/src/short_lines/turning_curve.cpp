@@ -11,6 +11,10 @@ namespace rmac {
 
 using quintic::kDegree;
 
+namespace {
+constexpr double kDense_mm = 0.5;
+}  // namespace
+
 std::vector<std::size_t> rotary_joints(const Kinematics& kinematics) {
   std::vector<std::size_t> joints;
   for (std::size_t j = 0; j < kinematics.joint_count(); ++j) {
@@ -63,7 +67,8 @@ void TurnTable::evaluate(double s, int order, CurvePoint& point) const noexcept 
 TurningCurve::TurningCurve(std::shared_ptr<const Curve> tip, std::shared_ptr<const TurnTable> turns, double offset,
                            std::shared_ptr<const PoseToJoints> map)
     : tip_(std::move(tip)), turns_(std::move(turns)), offset_(offset), map_(std::move(map)) {
-  // The turns' knots are as dense as they bend: between two nodes of the tip as many more, evenly.
+  // The turns' knots are as dense as they bend, and twice as many nodes as knots tell a law how, where they are dense:
+  // between two nodes of the tip as many more, evenly.
   const auto own = tip_->nodes();
   const std::vector<double>& knots = turns_->knots();
   nodes_.push_back(own[0]);
@@ -71,7 +76,8 @@ TurningCurve::TurningCurve(std::shared_ptr<const Curve> tip, std::shared_ptr<con
     auto knot = std::upper_bound(knots.begin(), knots.end(), offset_ + own[i]);
     double step = own[i + 1] - own[i];
     for (; knot != knots.begin() && knot != knots.end(); ++knot) {
-      step = std::min(step, *knot - *(knot - 1));
+      const double span = *knot - *(knot - 1);
+      step = std::min(step, span < kDense_mm ? span / 2 : span);
       if (*knot >= offset_ + own[i + 1]) break;
     }
     const double parts = std::ceil((own[i + 1] - own[i]) / step - 1e-6);

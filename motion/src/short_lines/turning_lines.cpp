@@ -22,16 +22,17 @@ using curves::norm;
 using curves::scaled;
 using curves::unit;
 
-/// Samples are this near to each other, or so that a joint turns by this between them.
+/// Samples are this near to each other, but no more than so many a line, or so that a joint turns by this between them,
+/// and then no more than so many.
 constexpr double kSpacing_mm = 0.1, kTurn_deg = 8;
-constexpr int kMostParts = 64;
+constexpr int kPlainParts = 10, kMostParts = 64;
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr std::size_t kMostTurns = 3, kSlides = 3;
 constexpr int kNewtonSteps = 3;
 /// Of the lines' lengths, what the tip's path along one is at least.
 constexpr double kLeastOfALine = 0.05;
-/// Widths where the joints are slower than the feed: this, less in the same part, and more by this slope beside it.
-constexpr double kWidth_mm = 1.2, kSlope = 0.3;
+/// Widths are no more than what the tool travels in this time, where it is slow, and more by this slope beside it.
+constexpr double kWidth_s = 0.025, kSlope = 0.3;
 /// Joints are followed by steps in which the axis turns by this part of its distance from the pole, but not less than
 /// that: nearer to it lines are no better known.
 constexpr double kPartOfLean = 0.3, kLeastTurn = 1e-5;
@@ -169,7 +170,7 @@ int parts_of(const PathSegment& line, double length, const std::vector<std::size
   double most = 0;
   for (const std::size_t j : turns) most = std::max(most, std::abs(end[j] - begin[j]));
   const int by_turn = std::clamp(static_cast<int>(std::ceil(most / kTurn_deg)), 1, kMostParts);
-  return std::max(static_cast<int>(std::round(length / kSpacing_mm)), by_turn);
+  return std::max(std::min(static_cast<int>(std::round(length / kSpacing_mm)), kPlainParts), by_turn);
 }
 
 /// Where a line passes the pole by less than the tolerance: nothing where it does not.
@@ -291,7 +292,7 @@ class Asking {
   Following following_;
 };
 
-/// Widths in proportion to the speed that the rotary joints allow, as a part of the feed: even ones in time.
+/// Widths by the speed that feed and rotary joints allow: what is even in time.
 void bound_widths(const TurnWindow& window, const std::vector<std::size_t>& turns, TurningLines& lines) {
   const double feed_mm_s = window.lines.front()->demand().feed_mm_s;
   auto& samples = lines.samples;
@@ -300,7 +301,7 @@ void bound_widths(const TurnWindow& window, const std::vector<std::size_t>& turn
     for (std::size_t i = 0; i < turns.size(); ++i) {
       if (std::min(lines.rates[k][i], lines.rates[k + 1][i]) < kUnknownRate) continue;
       const double turn = std::abs(samples[k + 1].point[i] - samples[k].point[i]);
-      const double width = kWidth_mm * window.joints[turns[i]].max_speed * step / std::max(feed_mm_s * turn, 1e-12);
+      const double width = kWidth_s * std::min(feed_mm_s, window.joints[turns[i]].max_speed * step / (turn + 1e-12));
       for (const std::size_t at : {k, k + 1}) samples[at].most_mm = std::min(samples[at].most_mm, width);
     }
   }

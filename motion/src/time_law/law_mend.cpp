@@ -8,6 +8,8 @@ namespace {
 
 /// Intervals on either side of one in excess that may give way to it.
 constexpr std::size_t kReach = 48;
+/// The square of a speed is capped by no less than this part of itself at a time: what goes beyond is not its doing.
+constexpr double kLeastCap = 0.98;
 
 template <typename T>
 std::vector<T> slice(const std::vector<T>& all, std::size_t first, std::size_t last) {
@@ -61,6 +63,8 @@ std::vector<IntervalRange> mend_law(LawProblem& problem, const std::vector<doubl
   for (const IntervalRange& range : ranges) {
     for (std::size_t k = range.first; k < range.last; ++k) {
       if (excess[k] > 0.9999) problem.tightening[k] *= std::max(0.5, 0.9992 / excess[k]);
+      // A joint may be faster between nodes than at both. Where the law begins, its speed is given.
+      if (excess[k] > 1 && k > 1) problem.speed_cap[k] *= std::max(kLeastCap, std::pow(0.9992 / excess[k], 2));
     }
   }
   const std::vector<double> before = coefficients;

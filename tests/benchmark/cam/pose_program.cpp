@@ -23,6 +23,12 @@ double angle_deg(const Vector& a, const Vector& b) {
   return std::atan2(norm(cross(a, b)), dot(a, b)) / kDegree;
 }
 
+double longest(const std::vector<ToolPose>& poses) {
+  double most = 0;
+  for (std::size_t i = 0; i + 1 < poses.size(); ++i) most = std::max(most, distance(poses[i].tip, poses[i + 1].tip));
+  return most;
+}
+
 struct Off {
   double tip_mm = 0, axis_deg = 0;
 };
@@ -30,14 +36,14 @@ struct Off {
 /// How far poses that go along a polyline, forward only, are from it: the tip from the nearest place, and the axis from
 /// what it is there, on the great circle between both corners.
 Off off(const std::vector<ToolPose>& poses, const std::vector<ToolPose>& polyline) {
-  // As far ahead as a tool may have come in a cycle, and more.
-  constexpr double kAhead_mm = 2;
+  // As far ahead as the next of them may be, and more.
+  const double most_mm = 2 + 1.5 * std::max(longest(poses), longest(polyline));
   Off worst;
   std::size_t line = 0;
   for (const ToolPose& pose : poses) {
     double least = 1e300, ahead_mm = 0, place = 0;
     std::size_t best = line;
-    for (std::size_t k = line; k + 1 < polyline.size() && ahead_mm < kAhead_mm; ++k) {
+    for (std::size_t k = line; k + 1 < polyline.size() && ahead_mm < most_mm; ++k) {
       const Vector& from = polyline[k].tip;
       const Vector way = difference(polyline[k + 1].tip, from);
       const double part = std::clamp(dot(difference(pose.tip, from), way) / std::max(dot(way, way), 1e-300), 0.0, 1.0);
@@ -106,6 +112,7 @@ tl::expected<PoseMachined, std::string> machine(const PoseProgram& program, cons
   Move move;
   move.feed_mm_s = program.feed_mm_s;
   move.tolerance_mm = program.tolerance_mm;
+  move.orientation_tolerance_deg = program.tolerance_deg;
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
     move.id = static_cast<std::int64_t>(i) + 1;
     move.geometry = LineGeometry{corners[i], corners[i + 1]};

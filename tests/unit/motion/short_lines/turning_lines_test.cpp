@@ -176,6 +176,18 @@ class Program {
     return 1e-3 * moving;
   }
 
+  /// Between begin and end of the lines.
+  [[nodiscard]] int rests() const {
+    int rests = 0;
+    bool moving = false;
+    for (const Setpoint& setpoint : bench.record) {
+      if (setpoint.move_id < 2) continue;
+      rests += moving && !setpoint.moving ? 1 : 0;
+      moving = setpoint.moving;
+    }
+    return rests - (moving ? 0 : 1);
+  }
+
   /// Tip and axis stay within these of the lines, and end where they end.
   void expect_along(const std::vector<ToolPose>& corners, double tip_mm, double axis_deg) const {
     double worst_tip = 0, worst_axis = 0;
@@ -252,6 +264,20 @@ TEST_P(TurningLines, PassThePoleAsFastAsTheCurve) {
     run.finish();
     run.expect_along(corners, kTolerance_mm, kTolerance_deg);
     EXPECT_LE(run.seconds(), 1.2 * as_curve) << off_deg;
+  }
+}
+
+TEST_P(TurningLines, PassBesideThePoleWithoutRest) {
+  for (const double off_deg : {0.08, 0.12, 0.155, 0.22, 0.3}) {
+    const PoseCurve curve = PoseCurve::past_pole(random_, off_deg);
+    const auto corners = curve.lines(random_, 0.1, 0.4, true);
+    Program run(machine_, corners.front());
+    run.move.feed_mm_s = PoseCurve::uniform(random_)(20, 100);
+    run.move.orientation_tolerance_deg = PoseCurve::uniform(random_)(0.03, 0.6);
+    run.queue(corners);
+    run.finish();
+    run.expect_along(corners, kTolerance_mm, run.move.orientation_tolerance_deg);
+    EXPECT_EQ(run.rests(), 0) << off_deg;
   }
 }
 
