@@ -45,6 +45,14 @@ class PathTolerance(unittest.TestCase):
         self.operator.refusal("RMAC_CAM.SetPathTolerance", Tolerance=-0.1)
         self.assertEqual(self.operator.call("RMAC_CAM.GetPathTolerance"), 0.1)
 
+    def test_the_axis_has_a_tolerance_of_its_own(self):
+        self.assertEqual(self.operator.call("RMAC_CAM.GetOrientationTolerance"), 0.1)
+        self.operator.call("RMAC_CAM.SetOrientationTolerance", Tolerance=0.5)
+        self.operator.refusal("RMAC_CAM.SetOrientationTolerance", Tolerance=-0.1)
+        self.operator.refusal("RMAC_CAM.SetOrientationTolerance", Tolerance=11)
+        self.assertEqual(self.operator.call("RMAC_CAM.GetOrientationTolerance"), 0.5)
+        self.assertEqual(self.operator.call("RMAC_CAM.GetPathTolerance"), 0)
+
 
 if __name__ == "__main__":
     unittest.main()

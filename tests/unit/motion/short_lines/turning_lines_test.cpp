@@ -6,6 +6,7 @@
 #include <random>
 
 #include "curves/make_curves.hpp"
+#include "rmac/motion/frame.hpp"
 #include "rmac/motion/vector.hpp"
 #include "unit/motion/joins/traces.hpp"
 
@@ -125,9 +126,12 @@ class PoseCurve {
 /// Runs programs of poses and judges them.
 class Program {
  public:
-  explicit Program(Machine machine, const ToolPose& start) : model_(five_axes(machine)), bench(model_) {
+  explicit Program(Machine machine, const ToolPose& start, const Frames& frames = {})
+      : model_(five_axes(machine)), frames_(frames), bench(model_) {
     std::vector<double> seed(5, 0.0), joints(5, 0.0);
-    EXPECT_EQ(model_.kinematics->inverse(start, {}, seed, joints), KinematicsStatus::Ok);
+    bench.builder.restart(seed, frames);
+    EXPECT_EQ(model_.kinematics->inverse(apply_to_pose(frames.part, start), frames.tool, seed, joints),
+              KinematicsStatus::Ok);
     move.id = 1;
     move.feed_mm_s = 100;
     move.tolerance_mm = kTolerance_mm;
@@ -166,8 +170,8 @@ class Program {
 
   [[nodiscard]] ToolPose pose(const Setpoint& setpoint) const {
     ToolPose pose;
-    model_.kinematics->forward({setpoint.position.data(), 5}, {}, pose);
-    return pose;
+    model_.kinematics->forward({setpoint.position.data(), 5}, frames_.tool, pose);
+    return apply_to_pose(inverse(frames_.part), pose);
   }
   /// Time from rest to rest behind the joint move.
   [[nodiscard]] double seconds() const {
@@ -222,6 +226,7 @@ class Program {
 
  private:
   PlannerModel model_;
+  Frames frames_;
 
  public:
   Move move;
@@ -289,6 +294,19 @@ TEST_P(TurningLines, KeepToleranceHoweverTheyArrive) {
   run.queue(corners, 5);
   run.finish();
   run.expect_along(corners, kTolerance_mm, kTolerance_deg);
+}
+
+TEST_P(TurningLines, KeepToleranceInAPartThatLiesAskewUnderALongTool) {
+  const PoseCurve curve = PoseCurve::flow_line(random_);
+  const auto corners = curve.lines(random_, 0.1, 0.8, true);
+  const double half = 4 * kRad;
+  const Frames frames{{{30, -20, 10}, {std::cos(half), std::sin(half) * 0.6, std::sin(half) * 0.8, 0}},
+                      {{0, 0, -120}, {1, 0, 0, 0}}};
+  Program run(machine_, corners.front(), frames);
+  run.queue(corners);
+  run.finish();
+  run.expect_along(corners, kTolerance_mm, kTolerance_deg);
+  EXPECT_EQ(run.rests(), 0);
 }
 
 TEST_P(TurningLines, LeaveTheAxisWhereItWasAskedWithoutToleranceOfIt) {
