@@ -17,6 +17,37 @@ Trace corner(SetterBench& bench) {
   return bench.run();
 }
 
+/// Changes over to a five-axis machine, and is ready to run.
+void load_five_axes(SetterBench& bench) {
+  bench.call("Device.Load", R"({"Name": "SuginoXYZAC", "Virtual": true})");
+  bench.call("RMAC_CAM.Home");
+  bench.run_until([&] { return !bench.now().moving && bench.now().state == CycleState::Idle; });
+  bench.call("RMAC_CAM.SetFeedrate", R"({"Feedrate": 1800})");
+  bench.call("RMAC_CAM.SetPathTolerance", R"({"Tolerance": 0.05})");
+  bench.call("RMAC_CAM.CycleStart", R"({"Mode": "AUTOMATIC"})");
+}
+
+/// Straight on by 20 mm with a leaning tool, which leans over further on the second half alone: the slowest in the
+/// middle.
+double slowest_where_the_axis_begins_to_turn(SetterBench& bench) {
+  const std::string start = R"({"p": [0, 0, 0], "axis": [0, 0.28, 0.96]})",
+                    half = R"({"p": [10, 0, 0], "axis": [0, 0.28, 0.96]})",
+                    end = R"({"p": [20, 0, 0], "axis": [0, 0.6, 0.8]})";
+  bench.call("RMAC_CAM.MoveToPathTarget", fmt::format(R"({{"MoveID": 1, "TargetFrame": {}}})", start));
+  bench.run();
+  const auto line = [&](int id, const std::string& from, const std::string& to) {
+    bench.call("RMAC_CAM.MoveAlongLine",
+               fmt::format(R"({{"MoveID": {}, "StartPoint": {}, "EndPoint": {}}})", id, from, to));
+  };
+  line(2, start, half);
+  line(3, half, end);
+  double slowest = 1e9;
+  for (const CycleSample& sample : bench.run()) {
+    if (std::abs(sample.pose_set.tip[0] - 10) < 0.2) slowest = std::min(slowest, sample.feed_set_mm_s);
+  }
+  return slowest;
+}
+
 double slowest_at_corner(const Trace& trace) {
   double slowest = 1e9;
   for (const CycleSample& sample : trace) {
@@ -102,6 +133,14 @@ const std::vector<SetterEffect>& cam_setter_effects() {
          bench.tip_to(0, 0, 0);
          bench.call("RMAC_CAM.SetPathTolerance", R"({"Tolerance": 0.05})");
          EXPECT_GT(slowest_at_corner(corner(bench)), 3) << "rounded";
+       }},
+      {"RMAC_CAM.SetOrientationTolerance",
+       [](SetterBench& bench) {
+         load_five_axes(bench);
+         bench.call("RMAC_CAM.SetOrientationTolerance", R"({"Tolerance": 0})");
+         EXPECT_LT(slowest_where_the_axis_begins_to_turn(bench), 0.1) << "an exact stop";
+         bench.call("RMAC_CAM.SetOrientationTolerance", R"({"Tolerance": 2})");
+         EXPECT_GT(slowest_where_the_axis_begins_to_turn(bench), 2) << "within it";
        }},
       {"RMAC_CAM.SetPartFrame",
        [](SetterBench& bench) {
