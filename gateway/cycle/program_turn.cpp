@@ -23,7 +23,7 @@ ProgramTurn::Outcome ProgramTurn::take(const InTurn& turn, const Seen& seen) {
 }
 
 void ProgramTurn::begin(const InTurn& turn) {
-  begun_.emplace();
+  begun_ = Begun{};
   wishes_.change([&](ServoWishes& wishes) { wishes.in_turn = turn.move_id; });
   tell(Event::Kind::MoveStarted, turn, name_of(turn) + " started");
 }
