@@ -319,6 +319,27 @@ TEST_P(TurningLines, LeaveTheAxisWhereItWasAskedWithoutToleranceOfIt) {
   run.expect_along(corners, kTolerance_mm, 0);
 }
 
+TEST_P(TurningLines, AreHeldAndOverriddenAnywhere) {
+  for (const double off_deg : {0.0, 0.3, 15.0}) {
+    const PoseCurve curve = PoseCurve::past_pole(random_, off_deg);
+    const auto corners = curve.lines(random_, 0.1, 0.6, true);
+    Program run(machine_, corners.front());
+    run.queue(corners);
+    const auto between = PoseCurve::uniform(random_);
+    run.bench.planner.command(PathCommand::Run);
+    for (int i = 0; i < 12; ++i) {
+      run.bench.planner.set_override(between(10, 200));
+      for (int k = 0; k < 1 + static_cast<int>(between(0, 300)); ++k) run.bench.cycle();
+      if (i % 3 != 0) continue;
+      run.bench.planner.command(PathCommand::Stop);
+      ASSERT_TRUE(run.bench.run());
+      run.bench.planner.command(PathCommand::Run);
+    }
+    run.finish();
+    run.expect_along(corners, kTolerance_mm, kTolerance_deg);
+  }
+}
+
 TEST_P(TurningLines, JoinWithWhatFollows) {
   const PoseCurve curve = PoseCurve::flow_line(random_);
   auto corners = curve.lines(random_, 0.1, 0.5, true);
