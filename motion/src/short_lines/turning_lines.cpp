@@ -246,11 +246,12 @@ class Asking {
     const bool fresh = window_.before.empty();
     for (std::size_t i = 0; i < turning_.samples.size(); ++i) {
       const double s = turning_.samples[i].place;
-      const double near_end = ramp((length - s) / kEnd_mm) * (fresh ? ramp(s / kEnd_mm) : 1);
       Vector axis = turning_.axes[i];
       for (const OverPole& over : overs) {
         const double off = (s - over.place) / kBell_mm;
-        axis = along(axis, -near_end * std::exp(-off * off), over.beside);
+        // Where it comes nearest it is led straight over, however near that is to an end.
+        const double ends = end_ramp(length - s, length - over.place) * (fresh ? end_ramp(s, over.place) : 1);
+        axis = along(axis, -ends * std::exp(-off * off), over.beside);
       }
       if (!following_.jump(unit(axis))) return false;
       take(i);
@@ -267,8 +268,10 @@ class Asking {
   }
 
  private:
-  static double ramp(double part) {
-    part = std::clamp(part, 0.0, 1.0);
+  /// From 0 at an end to 1, half way to a place at the latest.
+  static double end_ramp(double to_end, double place_to_end) {
+    const double width = std::clamp(place_to_end / 2, 1e-3, kEnd_mm);
+    const double part = std::clamp(to_end / width, 0.0, 1.0);
     return part * part * (3 - 2 * part);
   }
   bool begin() {

@@ -54,9 +54,11 @@ class PoseCurve {
   }
   /// It turns by 20 degrees on a great circle that passes the pole at `off_deg`.
   static PoseCurve past_pole(std::mt19937& random, double off_deg) {
-    const double around = uniform(random)(-3, 3), height = std::sin(off_deg * kRad);
+    // Some come to the pole where a window of the fit ends, 24 mm behind its begin.
+    const double around = uniform(random)(-3, 3), height = std::sin(off_deg * kRad),
+                 place = uniform(random)(0.36, 0.44);
     return PoseCurve(random, [=](double t) {
-      const double turn = 20 * kRad * (t - 0.5), ahead = std::sin(turn), aside = height * std::cos(turn);
+      const double turn = 20 * kRad * (t - place), ahead = std::sin(turn), aside = height * std::cos(turn);
       return Vector{ahead * std::cos(around) - aside * std::sin(around),
                     ahead * std::sin(around) + aside * std::cos(around), std::cos(turn)};
     });
