@@ -157,7 +157,8 @@ void PlanFollower::follow(std::int64_t cycle, Setpoint& setpoint) noexcept {
 
 /// The motion under way ends as the planner was told to end it.
 bool PlanFollower::stops() const noexcept {
-  return active_ != nullptr && active_->id == channel_.stopping.load(std::memory_order_acquire);
+  const std::uint64_t first = channel_.stopping.load(std::memory_order_acquire);
+  return active_ != nullptr && first != 0 && active_->id >= first;
 }
 
 void PlanFollower::depart(PathDeparture::Cause cause, std::size_t joint) noexcept {

@@ -1,14 +1,16 @@
 #include "rmac/motion/planner.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <iterator>
+#include <limits>
 #include <optional>
 
 #include "planner/failed_attempt.hpp"
 #include "planner/next_window.hpp"
 #include "planner/planning_time.hpp"
-#include "planner/published_plan.hpp"
+#include "planner/prompt_law.hpp"
+#include "planner/published_plans.hpp"
 #include "planner/route.hpp"
 #include "planner/stop_distance.hpp"
 #include "time_law/window.hpp"
@@ -23,6 +25,17 @@ constexpr double kFarthest_mm = 1000;
 /// What is held back for the sake of a join is given out so long before the machine would have to brake for its lack.
 constexpr double kRelease_s = 0.05;
 
+/// Stops that are looked for once one was found at once end after so much of the shortest way that is thought possible;
+/// so many windows are tried, and one is worth it that ends sooner by this part of what is left.
+constexpr std::array<double, 8> kStretches{1.02, 1.08, 1.2, 1.4, 1.8, 2.5, 4.0, 7.0};
+constexpr int kStopTries = 400;
+constexpr double kWorthIt = 0.05;
+/// And for an override.
+constexpr int kOverrideTries = 3;
+/// Braking for an override begins so many cycles later: mostly the law that is looked for meanwhile comes first, and
+/// finds its way more easily from the plan that is followed than from one that brakes.
+constexpr int kBeforeBraking = 6;
+
 /// The cycle from which on a plan can follow `p`, which itself may not have started.
 std::int64_t earliest(const PublishedPlan& p, std::int64_t cycle) {
   return std::max(cycle, p.plan->start_cycle);
@@ -32,14 +45,10 @@ std::int64_t earliest(const PublishedPlan& p, std::int64_t cycle) {
 
 struct Planner::Impl {
   PlannerModel model;
-  PlanChannel& channel;
 
   Route route;
 
-  std::vector<PublishedPlan> alive;      ///< in order of publication; the last is the base of what is planned next
-  std::vector<PublishedPlan> abandoned;  ///< when the path was left; still the follower's
-  std::uint64_t departures = 0;          ///< of the path, that are known
-  std::uint64_t next_id = 1;
+  PublishedPlans plans;
   PlanningTime planning_time;
   FailedAttempt attempt;
   bool stop_came_late = false;  ///< of the stops tried since the last command: the next is left the time it takes
@@ -48,27 +57,14 @@ struct Planner::Impl {
   double limit_s = 0;    ///< path length at which RunOne ends
   double origin_mm = 0;  ///< of the forward path's length: so far behind the first one's
 
-  Impl(PlannerModel m, PlanChannel& c) : model(std::move(m)), channel(c), route(model) {}
+  Impl(PlannerModel m, PlanChannel& channel) : model(std::move(m)), route(model), plans(channel, model.period_s) {}
 
   [[nodiscard]] FeedRule feed(double override_factor) const { return {override_factor, model.max_feed_mm_s}; }
   [[nodiscard]] LaidPath& path() { return route.path(); }
   [[nodiscard]] const LaidPath& path() const { return route.path(); }
   [[nodiscard]] double period() const { return model.period_s; }
-  [[nodiscard]] const PublishedPlan* base() const { return alive.empty() ? nullptr : &alive.back(); }
-  [[nodiscard]] double now_s(const PublishedPlan& p, std::int64_t cycle) const {
-    return static_cast<double>(cycle - p.plan->start_cycle) * period();
-  }
-  /// A refused plan never acts; it is the base until it is collected.
-  [[nodiscard]] bool refused(const ServoProgress& progress) const {
-    return base() != nullptr && progress.last_refused == base()->plan->id;
-  }
-  [[nodiscard]] bool acknowledged(const ServoProgress& progress) const {
-    return base() == nullptr || progress.accepted_plan >= base()->plan->id || refused(progress);
-  }
-  [[nodiscard]] bool ended(const ServoProgress& progress) const {
-    if (base() == nullptr) return true;
-    return acknowledged(progress) && !refused(progress) && now_s(*base(), progress.cycle) >= base()->plan->end_time_s;
-  }
+  [[nodiscard]] const PublishedPlan* base() const { return plans.base(); }
+  [[nodiscard]] double now_s(const PublishedPlan& p, std::int64_t cycle) const { return plans.now_s(p, cycle); }
   /// The base is a plan on the path that is travelled, not one on the path before the last turn.
   [[nodiscard]] bool on_path() const { return base() != nullptr && base()->turns == route.turns(); }
   /// Where on the path that is travelled everything ends that is published.
@@ -78,49 +74,21 @@ struct Planner::Impl {
   /// The place on `forward` where the machine stands at rest, or is to go on.
   [[nodiscard]] double place_s() const { return route.on_forward(base_end_s()); }
 
-  void collect(const ServoProgress& progress) {
-    const Plan* plan = nullptr;
-    while (channel.retired.pop(plan)) {
-      for (auto* plans : {&alive, &abandoned}) {
-        std::erase_if(*plans, [&](const PublishedPlan& p) { return p.plan.get() == plan; });
-      }
-    }
-    planning_time.learn(progress);
-  }
-
   [[nodiscard]] WindowEnd window_end(double s, double ramps) {
     const auto limit = wanted == PathCommand::RunOne && !route.on_detour() ? std::optional(limit_s) : std::nullopt;
     return next_window_end(path(), model.joints, s, ramps, factor, limit);
   }
 
-  bool publish(std::unique_ptr<Plan> plan, bool stops, const WindowEnd& end, double window_begin) {
-    plan->id = next_id;
+  bool publish(std::unique_ptr<Plan> plan, const WindowEnd& end, double window_begin, const Purpose& purpose = {}) {
     plan->origin_mm = origin_mm;
-    plan->departures = departures;
-    const LawPiece& last = plan->law.back();
-    plan->end_time_s = last.t0 + last.duration;
-    const double s_begin = plan->law.front().start.s, s_end = last.at(last.duration).s;
-    const PathView view = path().view();
-    // The cycle before may have seen the segment before, whose end the follower still has to count.
-    const double s_before = s_begin - 2 * plan->law.front().start.v * period();
-    for (std::size_t i = view.find(s_before, 1); i <= view.find(s_end, -1); ++i) {
-      plan->segments.push_back(path().segment(i));
-      plan->segment_start.push_back(path().start(i));
-    }
-    PublishedPlan p;
-    p.stops = stops;
-    p.hard_end = end.hard;
-    p.turns = route.turns();
-    p.override_factor = factor;
-    p.commit_t = commit_time(*plan, window_begin, end.planned_again);
-    p.law = plan->law;
-    p.plan = std::move(plan);
-    if (!channel.published.push(p.plan.get()))
-      return false;  // the servo loop does not take plans: it stands still or is gone
-    ++next_id;
-    alive.push_back(std::move(p));
-    if (stops) channel.stopping.store(alive.back().plan->id, std::memory_order_release);
-    return true;
+    lay_out(*plan, path(), period());
+    PublishedPlan about;
+    about.purpose = purpose;
+    about.hard_end = end.hard;
+    about.turns = route.turns();
+    about.override_factor = factor;
+    about.commit_t = commit_time(*plan, window_begin, end.planned_again);
+    return plans.publish(std::move(plan), std::move(about));
   }
 
   bool start_from_rest(const ServoProgress& progress) {
@@ -132,7 +100,7 @@ struct Planner::Impl {
     plan->start_cycle = progress.cycle + planning_time.lead();
     plan->latest_cycle = plan->start_cycle;
     plan->law = std::move(*law);
-    return publish(std::move(plan), false, end, s);
+    return publish(std::move(plan), end, s);
   }
 
   /// Adds the next window to the plan that is followed: behind its end where the path demands rest there, else from its
@@ -161,64 +129,106 @@ struct Planner::Impl {
       }
     }
     if (!law) return no_plan(progress);
-    auto plan = std::make_unique<Plan>();
-    plan->start_cycle = now;
-    plan->law = p.pieces_between(t_now, t_from);
-    plan->latest_cycle = now + static_cast<std::int64_t>(std::floor((t_from - t_now) / period() + 1e-9));
-    append_law(plan->law, *law, t_from - t_now);
-    return publish(std::move(plan), false, end, from.s);
+    return publish(go_on_as(p, now, t_from, *law, period()), end, from.s);
   }
 
-  /// Leaves the plan in `cycle`: for a new override, or (s_stop given) to stop there.
-  bool divert(std::int64_t cycle, std::optional<double> s_stop) {
+  /// Leaves the plan as soon as can be, for the window behind it or (s_stop given) to stop there.
+  bool divert(const ServoProgress& progress, std::optional<double> s_stop) {
     const PublishedPlan& p = *base();
-    const PathState from = p.state_at(now_s(p, cycle));
+    const std::int64_t cycle = earliest(p, progress.cycle + planning_time.lead());
+    const double t = now_s(p, cycle);
+    const PathState from = p.state_at(t);
     const WindowEnd end = s_stop ? WindowEnd{*s_stop, false} : window_end(from.s, kRampsAtOnce);
     const double allowed = s_stop ? std::max(factor, p.override_factor) : factor;
-    auto law = plan_window(path().view(), model.joints, {from, end.s, feed(allowed), &p.law, s_stop.has_value()});
+    const bool same_feed = s_stop.has_value() || p.override_factor == factor;
+    auto law = plan_window(path().view(), model.joints, {from, end.s, feed(allowed), &p.law, same_feed});
     if (!law) return false;
-    auto plan = std::make_unique<Plan>();
-    plan->start_cycle = cycle;
-    plan->latest_cycle = cycle;
-    plan->law = std::move(*law);
-    return publish(std::move(plan), s_stop.has_value(), end, from.s);
+    return publish(go_on_as(p, cycle, t, *law, period()), end, from.s, {s_stop.has_value(), 0});
+  }
+
+  /// Brakes as soon as can be, by a law that is found at once, before the path's next rest. `tries`: so often a better
+  /// one is looked for afterwards, unless this one brakes as hard as can be from its begin on and is asked to stop.
+  bool brake(const ServoProgress& progress, std::int64_t lead, double rest, Purpose purpose) {
+    const PublishedPlan& p = *base();
+    const std::int64_t cycle = earliest(p, progress.cycle + lead);
+    const FeedRule rule = feed(std::max(factor, p.override_factor));
+    const PathView view = path().view();
+    const auto found =
+        prompt_stop({view, model.joints, p, now_s(p, cycle), period()}, rest, rule, purpose.stops ? 0 : kBeforeBraking);
+    if (!found || (base()->purpose.stops && !ends_sooner(*found))) return false;
+    if (purpose.stops && !found->makeshift) purpose.better_tries = 0;
+    auto plan = go_on_as(p, cycle, found->leaves_t, found->law, period());
+    plans.go_on_from_base(*plan, progress);
+    return publish(std::move(plan), {rest, false}, p.state_at(found->leaves_t).s, purpose);
+  }
+
+  /// A lowered override is answered by braking at once, from where a law for it goes on. A raised one is no hurry: what
+  /// is planned keeps it; but where no law is found again and again, there is one from rest.
+  bool follow_override(const ServoProgress& progress) {
+    PublishedPlan& p = *plans.base();
+    int& tries = p.purpose.better_tries;
+    if (tries == 0) {
+      const double rest = rest_behind(p, earliest(p, progress.cycle + PlanningTime::kShortestLead));
+      const bool hurry = factor < p.override_factor || attempt.was_based_on(p.plan->id);
+      if (hurry && brake(progress, PlanningTime::kShortestLead, rest, {false, kOverrideTries})) return true;
+      tries = kOverrideTries;
+      if (hurry) return false;
+    }
+    if (divert(progress, std::nullopt)) return true;
+    --tries;
+    return no_plan(progress);
+  }
+
+  /// The next demanded rest on a plan that is followed, or its end, behind where it is in a cycle.
+  [[nodiscard]] double rest_behind(const PublishedPlan& p, std::int64_t cycle) const {
+    return path().next_rest(p.state_at(now_s(p, cycle)).s, base_end_s());
   }
 
   bool stop(const ServoProgress& progress) {
-    const PublishedPlan& p = *base();
     const std::int64_t lead = stop_came_late ? planning_time.lead() : PlanningTime::kShortestLead;
-    const std::int64_t cycle = earliest(p, progress.cycle + lead);
-    const PathState from = p.state_at(now_s(p, cycle));
-    if (from.v <= 0) return no_plan(progress);
-    const double shortest = stop_distance(path().view(), model.joints, from);
-    // The next demanded rest on the followed plan ends every search: the plan itself comes to rest there.
-    const double rest = path().next_rest(from.s, base_end_s());
-    for (const double stretch : {1.02, 1.08, 1.2, 1.4, 1.8, 2.5, 4.0, 7.0}) {
-      const double s_end = from.s + shortest * stretch;
-      if (s_end >= rest - kSamePlace) return end_at_rest(progress, rest);
-      if (divert(cycle, s_end)) return true;
-    }
-    // This state, at the edge of what the limits allow, has no way out but the plan's own; one a little later may.
-    return no_plan(progress);
+    // The rest ends every search: the plan itself comes to rest there.
+    const double rest = rest_behind(*base(), earliest(*base(), progress.cycle + lead));
+    return brake(progress, lead, rest, {true, kStopTries}) || end_at_rest(progress, rest);
   }
 
   /// Cuts the followed plan off at path length `rest`, where it stands still anyway.
   bool end_at_rest(const ServoProgress& progress, double rest) {
     const PublishedPlan& p = *base();
     if (rest >= base_end_s() - kSamePlace) {
-      alive.back().stops = true;
-      channel.stopping.store(alive.back().plan->id, std::memory_order_release);
+      plans.base_stops(kStopTries);
       return true;
     }
-    const double t_rest = p.time_at(rest - kSamePlace);
-    auto plan = std::make_unique<Plan>();
     const std::int64_t now = earliest(p, progress.cycle);
-    const double t_now = now_s(p, now);
-    plan->start_cycle = now;
-    plan->law = p.pieces_between(t_now, t_rest);
-    plan->latest_cycle = now + static_cast<std::int64_t>(std::floor((t_rest - t_now) / period()));
+    auto plan = go_on_as(p, now, p.time_at(rest - kSamePlace), {}, period());
     if (plan->law.empty()) return no_plan(progress);
-    return publish(std::move(plan), true, {rest, true}, rest);
+    plans.go_on_from_base(*plan, progress);
+    return publish(std::move(plan), {rest, true}, rest, {true, kStopTries});
+  }
+
+  [[nodiscard]] bool ends_sooner(const PromptLaw& found) const {
+    const PublishedPlan& p = *base();
+    const double end = found.law.back().at(found.law.back().duration).s, begin = p.state_at(found.leaves_t).s;
+    return end < base_end_s() - kWorthIt * (base_end_s() - begin);
+  }
+
+  /// Looks for a stop that ends sooner than the one that is under way: one window a step.
+  bool stop_sooner(const ServoProgress& progress) {
+    PublishedPlan& p = *plans.base();
+    const std::int64_t cycle = earliest(p, progress.cycle + planning_time.lead());
+    const PathState from = p.state_at(now_s(p, cycle));
+    const double shortest = from.v > 0 ? stop_distance(path().view(), model.joints, from) : 0;
+    int& tries = p.purpose.better_tries;
+    const std::size_t stretch = static_cast<std::size_t>(kStopTries - tries) % kStretches.size();
+    const double s_end = from.s + shortest * kStretches[stretch];
+    --tries;
+    if (stretch == 0 && brake(progress, planning_time.lead(), rest_behind(p, cycle), {true, tries})) return true;
+    if (from.v > 0 && s_end < base_end_s() - kWorthIt * (base_end_s() - from.s)) {
+      if (divert(progress, s_end)) return true;
+      if (stretch + 1 < kStretches.size()) return false;
+    } else {
+      tries -= static_cast<int>(kStretches.size() - 1 - stretch);  // the longer ones are no better
+    }
+    return no_plan(progress);
   }
 
   /// The machine has come to path length s.
@@ -227,22 +237,23 @@ struct Planner::Impl {
     if (route.on_detour() || s < kFarthest_mm) return;
     const double by = std::floor(s);
     route.forward.move_origin(by);
-    for (PublishedPlan& p : alive) p.move_origin(by);
+    plans.move_origin(by);
     limit_s -= by;
     origin_mm += by;
   }
 
   bool no_plan(const ServoProgress& progress) {
-    attempt.record(progress.cycle, base() == nullptr ? 0 : base()->plan->id, ended(progress));
+    attempt.record(progress.cycle, base() == nullptr ? 0 : base()->plan->id, plans.ended(progress));
     return false;
   }
 
   /// What there is to do, if anything; the order is the order of urgency.
-  enum class Task { None, Stop, Turn, Override, Supply, Start, Extend };
+  enum class Task { None, Stop, StopSooner, Turn, Override, Supply, Start, Extend };
 
   [[nodiscard]] Task task(const ServoProgress& progress) const {
-    if (!acknowledged(progress)) return Task::None;
-    const bool at_end = ended(progress);
+    const bool known = plans.acknowledged(progress);
+    if (!known && base()->plan->latest_cycle < progress.cycle + PlanningTime::kShortestLead) return Task::None;
+    const bool at_end = plans.ended(progress);
     const bool this_way = route.retraces() == (wanted == PathCommand::Retrace);
     if (route.beside()) return Task::None;
     const bool run = wanted != PathCommand::Stop && factor > 0 && this_way;
@@ -253,7 +264,9 @@ struct Planner::Impl {
       const bool forward_again = route.retraces() && (wanted == PathCommand::Run || wanted == PathCommand::RunOne);
       return forward_again ? Task::Turn : Task::None;
     }
-    if (!run) return base()->stops || !begun ? Task::None : Task::Stop;
+    if (!begun && !run) return Task::None;
+    if (!run && base()->purpose.stops) return known && base()->purpose.better_tries > 0 ? Task::StopSooner : Task::None;
+    if (!run) return Task::Stop;
     const bool one = wanted == PathCommand::RunOne && !route.on_detour();
     const double limit = one ? std::min(limit_s, path().end()) : path().end();
     const double planned_to = base_end_s();
@@ -264,13 +277,14 @@ struct Planner::Impl {
     const bool dry = planned_to >= path().end() - kSamePlace && !one_done;
     if (dry && path().can_supply()) return Task::Supply;
     const PublishedPlan* const p = base();
+    if (!known && !(factor < p->override_factor && p->purpose.better_tries == 0)) return Task::None;
     if (at_end || p == nullptr) {
       if (more) return Task::Start;
       return dry && path().has_more() ? Task::Supply : Task::None;
     }
-    if (p->stops) return Task::None;
+    if (p->purpose.stops) return Task::None;
     const double t_now = now_s(*p, progress.cycle);
-    if (factor != p->override_factor) return begun ? Task::Override : Task::None;
+    if (factor != p->override_factor || p->purpose.better_tries > 0) return begun ? Task::Override : Task::None;
     const double t_decide = p->hard_end ? p->plan->end_time_s : p->commit_t;
     if (more && t_decide - t_now < kHorizon_s) return Task::Extend;
     if (dry && path().has_more() &&
@@ -281,10 +295,11 @@ struct Planner::Impl {
 
   bool step(const ServoProgress& progress) {
     take_note_of(progress);
-    if (refused(progress)) stop_came_late = base()->stops;
-    collect(progress);
-    if (refused(progress)) return false;  // it is still to come back through `retired`
-    if (on_path() && acknowledged(progress)) travelled(base()->state_at(now_s(*base(), progress.cycle)).s);
+    if (plans.refused(progress)) stop_came_late = base()->purpose.stops;
+    plans.collect();
+    planning_time.learn(progress);
+    if (plans.refused(progress)) return false;  // it is still to come back through `retired`
+    if (on_path() && plans.acknowledged(progress)) travelled(base()->state_at(now_s(*base(), progress.cycle)).s);
     const Task next = task(progress);
     if (next != Task::None && next != Task::Supply && next != Task::Turn) {
       planning_time.begin(progress.cycle, next == Task::Stop && !stop_came_late);
@@ -298,8 +313,10 @@ struct Planner::Impl {
         route.turn_forward(base_end_s());
         if (wanted == PathCommand::RunOne) limit_run();
         return false;
+      case Task::StopSooner:
+        return stop_sooner(progress);
       case Task::Override:
-        return divert(earliest(*base(), progress.cycle + planning_time.lead()), std::nullopt) || no_plan(progress);
+        return follow_override(progress);
       case Task::Supply:
         if (!path().supply()) path().release();
         return false;
@@ -317,15 +334,12 @@ struct Planner::Impl {
   /// Where on its path the follower left it, everything ends that was published.
   void take_note_of(const ServoProgress& progress) {
     const PathDeparture& last = progress.departure;
-    if (last.count == departures) return;
-    departures = last.count;
-    const auto left =
-        std::find_if(alive.begin(), alive.end(), [&](const PublishedPlan& p) { return p.plan->id == last.plan; });
-    const double s = left == alive.end() ? base_end_s() : left->state_at(now_s(*left, last.cycle)).s;
-    if (!route.on_detour() && left != alive.end()) route.forward.travelled(s, left->law.front().start.s);
+    if (last.count == plans.departures()) return;
+    const PublishedPlan* const left = plans.find(last.plan);
+    const double s = left == nullptr ? base_end_s() : left->state_at(now_s(*left, last.cycle)).s;
+    if (!route.on_detour() && left != nullptr) route.forward.travelled(s, left->law.front().start.s);
     route.leave(s);
-    std::move(alive.begin(), alive.end(), std::back_inserter(abandoned));
-    alive.clear();
+    plans.abandon(last);
     attempt.forget();
   }
 
@@ -336,9 +350,7 @@ struct Planner::Impl {
       stop_came_late = false;
     }
     wanted = command;
-    // A stop that is under way still, though something else was commanded meanwhile, is the one that is asked for.
-    const bool stops = command == PathCommand::Stop && base() != nullptr && base()->stops;
-    channel.stopping.store(stops ? base()->plan->id : 0, std::memory_order_release);
+    plans.commanded(command == PathCommand::Stop);
   }
 
   void set_override(double percent) {
@@ -364,8 +376,9 @@ Expected<double> Planner::turn_back(double distance_mm, std::span<const double> 
 }
 bool Planner::retraced(const ServoProgress& progress) const noexcept {
   const Impl& i = *impl_;
-  if (i.wanted == PathCommand::Retrace && !i.route.retraces()) return i.ended(progress);  // a stop took it off its way
-  return i.route.retraces() && i.ended(progress) && i.base_end_s() >= i.path().end() - kSamePlace;
+  if (i.wanted == PathCommand::Retrace && !i.route.retraces())
+    return i.plans.ended(progress);  // a stop took it off its way
+  return i.route.retraces() && i.plans.ended(progress) && i.base_end_s() >= i.path().end() - kSamePlace;
 }
 bool Planner::off_path() const noexcept {
   return impl_->route.beside();
@@ -389,7 +402,7 @@ bool Planner::idle(const ServoProgress& progress) const noexcept {
   return impl_->task(progress) == Impl::Task::None;
 }
 bool Planner::at_rest(const ServoProgress& progress) const noexcept {
-  return impl_->ended(progress);
+  return impl_->plans.ended(progress);
 }
 std::uint64_t Planner::lines_merged() const noexcept {
   return impl_->route.forward.lines_merged();

@@ -1,6 +1,7 @@
 #include "planner/published_plan.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rmac {
 
@@ -42,6 +43,30 @@ void append_law(std::vector<LawPiece>& law, const std::vector<LawPiece>& tail, d
   for (LawPiece piece : tail) {
     piece.t0 += t0;
     law.push_back(piece);
+  }
+}
+
+std::unique_ptr<Plan> go_on_as(const PublishedPlan& before, std::int64_t cycle, double leaves_t,
+                               const std::vector<LawPiece>& law, double period_s) {
+  auto plan = std::make_unique<Plan>();
+  const double t_now = static_cast<double>(cycle - before.plan->start_cycle) * period_s;
+  const double kept = std::max(leaves_t - t_now, 0.0);
+  if (kept > 0) plan->law = before.pieces_between(t_now, leaves_t);
+  append_law(plan->law, law, kept);
+  plan->start_cycle = cycle;
+  plan->latest_cycle = cycle + static_cast<std::int64_t>(std::floor(kept / period_s + 1e-9));
+  return plan;
+}
+
+void lay_out(Plan& plan, const LaidPath& path, double period_s) {
+  const LawPiece &first = plan.law.front(), &last = plan.law.back();
+  plan.end_time_s = last.t0 + last.duration;
+  const PathView view = path.view();
+  // The cycle before may have seen the segment before, whose end the follower still has to count.
+  const double s_before = first.start.s - 2 * first.start.v * period_s;
+  for (std::size_t i = view.find(s_before, 1); i <= view.find(last.at(last.duration).s, -1); ++i) {
+    plan.segments.push_back(path.segment(i));
+    plan.segment_start.push_back(path.start(i));
   }
 }
 

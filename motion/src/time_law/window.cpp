@@ -85,6 +85,29 @@ void yield_to_begin(LawProblem& problem) {
   }
 }
 
+/// The square of the speed along a piece of law, and its slopes: q, q'/2 and q''/2.
+struct SquaredSpeed {
+  double q = 0, a = 0, bend = 0;
+};
+
+/// At path length s; nothing behind the end of the piece.
+std::optional<SquaredSpeed> squared_speed(const LawPiece& piece, double s) {
+  const PathState& begin = piece.start;
+  if (piece.kind == LawPiece::Kind::Linear) {
+    const double ds = s - begin.s;
+    return SquaredSpeed{begin.v * begin.v + ds * (2 * begin.a + ds * piece.slope), begin.a + piece.slope * ds,
+                        piece.slope};
+  }
+  if (s > piece.at(piece.duration).s) return std::nullopt;
+  double low = 0, high = piece.duration;
+  for (int i = 0; i < 30; ++i) {
+    const double middle = 0.5 * (low + high);
+    (piece.at(middle).s < s ? low : high) = middle;
+  }
+  const PathState at = piece.at(high);
+  return SquaredSpeed{at.v * at.v, at.a, 0};
+}
+
 /// Lets the next law start from the one before. Its state lies at the edge of what is viable, so the first stretch may
 /// use most of the margin that the law before left; and what that law had is the first guess (eq. 8). Where a feed
 /// gives way to that law (`yields`), it does so as far as the law went.
@@ -98,15 +121,13 @@ void resume_from(LawProblem& problem, const std::vector<LawPiece>& before, bool 
     if (problem.nodes[k] - problem.nodes.front() < 0.25 * span) problem.tightening[k] = kRelaxed;
     const double h = problem.step(k), middle = problem.nodes[k] + h / 2;
     while (piece + 1 < before.size() && before[piece + 1].start.s <= middle) ++piece;
-    const LawPiece& at = before[piece];
-    if (at.kind != LawPiece::Kind::Linear || piece + 1 == before.size()) continue;
-    const double ds = middle - at.start.s;
-    const double q = at.start.v * at.start.v + 2 * at.start.a * ds + at.slope * ds * ds;
+    const auto at = squared_speed(before[piece], middle);
+    if (!at || piece + 1 == before.size()) continue;
     // A little slower, which is inside the bounds; but not at once, which would be a jerk.
     const double into = std::min((middle - problem.nodes.front()) / (kEasing * span), 1.0);
     const double part = 1 - 0.005 * into * into * (3 - 2 * into);
-    problem.travelled_before[k + 1] = std::max(0.0, part * (q - h * h / 4 * at.slope));
-    const double most = q + h * std::abs(at.start.a + at.slope * ds) + h * h / 4 * std::abs(at.slope);
+    problem.travelled_before[k + 1] = std::max(0.0, part * (at->q - h * h / 4 * at->bend));
+    const double most = at->q + h * std::abs(at->a) + h * h / 4 * std::abs(at->bend);
     if (yields) problem.speed_cap[k] = std::max(problem.speed_cap[k], 1.01 * most);
   }
 }
@@ -134,8 +155,12 @@ double moving_start_step(const PathView& path, const std::vector<JointLimits>& j
                          double coarsest) {
   constexpr double kFinerAtStart = 48;
   const PathState& begin = window.begin;
-  const double step = coarsest / kFinerAtStart;
   JointPoint point;
+  double jerk = kInfinity;
+  for (const JointLimits& joint : joints) jerk = std::min(jerk, joint.max_jerk);
+  // Whoever creeps becomes much faster within hardly any length.
+  const double creeping = std::max(begin.v * std::sqrt(0.2 * begin.v / jerk), 1e-4);
+  const double step = std::min(coarsest / kFinerAtStart, creeping);
   if (!(begin.a > 0) || path.evaluate(begin.s, 1, 1, point) != KinematicsStatus::Ok) return step;
   const double cap = speed_bound(path.segment(path.find(begin.s, 1)), point, joints, window.feed);
   const double room = cap * cap - begin.v * begin.v;
@@ -220,10 +245,13 @@ std::optional<std::vector<LawPiece>> law_of_window(const PathView& path, const s
 
 }  // namespace
 
+double ramp_time(double v, double a, double j) noexcept {
+  return v * j >= a * a ? v / a + a / j : 2 * std::sqrt(v / j);
+}
+
 double ramp_length(double v, double a, double j) noexcept {
   // Jerk up, constant acceleration, jerk down; the mean speed is v/2 whether or not the acceleration limit is reached.
-  const double time = v * j >= a * a ? v / a + a / j : 2 * std::sqrt(v / j);
-  return 0.5 * v * time;
+  return 0.5 * v * ramp_time(v, a, j);
 }
 
 std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std::vector<JointLimits>& joints,

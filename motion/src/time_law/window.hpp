@@ -30,6 +30,8 @@ struct Window {
                                                                const std::vector<JointLimits>& joints,
                                                                const Window& window);
 
+/// Time that a change of speed by v takes under acceleration a and jerk j.
+[[nodiscard]] double ramp_time(double v, double a, double j) noexcept;
 /// Length of the ramp from rest to speed v (mm) under acceleration a and jerk j.
 [[nodiscard]] double ramp_length(double v, double a, double j) noexcept;
 

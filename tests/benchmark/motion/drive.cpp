@@ -81,8 +81,25 @@ void Drive::plan_once() {
   pass_plans();
 }
 
+double Drive::plan() {
+  const double before_s = planning_s_;
+  const std::uint64_t plans = plans_;
+  double answer_s = 0;
+  while (!planner.idle(progress())) {
+    const bool answered = plans_ != plans || to_tap_.stopping.load() != 0;
+    plan_once();
+    if (!answered) answer_s = planning_s_ - before_s;
+  }
+  return answer_s;
+}
+
+bool Drive::stops() const {
+  const std::uint64_t first = to_tap_.stopping.load();
+  return first != 0 && active_ != nullptr && active_->id >= first;
+}
+
 const Setpoint& Drive::cycle() {
-  while (!planner.idle(progress())) plan_once();
+  plan();
   ++cycle_;
   follower_.sample(cycle_, setpoint_);
   // As behind a servo loop, the planner hears at once what became of its plan.

@@ -18,13 +18,17 @@ class Drive {
   [[nodiscard]] Expected<> queue(const Move& move);
   /// One servo cycle, the planner having worked before it.
   const Setpoint& cycle();
+  /// The planner does all that it can now, which is what a cycle begins with; the CPU time up to its first plan, s.
+  double plan();
+  /// The plan that is followed ends as the last command to stop asks.
+  [[nodiscard]] bool stops() const;
   /// Cycles until the machine rests and nothing is left to plan; false when it has not after `most` cycles.
   bool run(std::int64_t most = 50'000'000);
   [[nodiscard]] bool resting();
   [[nodiscard]] std::int64_t now() const noexcept { return cycle_; }
   [[nodiscard]] const Setpoint& setpoint() const noexcept { return setpoint_; }
   /// The plan that is followed, or null.
-  [[nodiscard]] const std::shared_ptr<const Plan>& plan() const noexcept { return active_; }
+  [[nodiscard]] const std::shared_ptr<const Plan>& plan_followed() const noexcept { return active_; }
   /// CPU time that the planner took, s.
   [[nodiscard]] double planning_s() const noexcept { return planning_s_; }
   /// CPU time of its longest step, s.

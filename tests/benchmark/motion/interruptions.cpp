@@ -19,6 +19,7 @@ struct Outcome {
   int instants = 0, unfinished = 0, holds = 0, kept = 0;
   double worst = 0, off_nm = 0;
   std::vector<double> reaction_cycles, visible_cycles, stop_ratio, planning_ms;
+  std::vector<double> lowered_cycles, raised_cycles, override_ms;
 };
 
 /// Path length of a plan at a time, for a comparison with what came instead.
@@ -91,20 +92,38 @@ class Case {
 
   void override_step() {
     const double percent = random_.uniform(0, 1) < 0.1 ? 0 : random_.uniform(1, 200);
+    const auto before = drive_.plan_followed();
+    const bool measured = percent > 0 && before != nullptr && drive_.setpoint().feed_mm_s > 1;
+    const bool lowered = percent < override_percent_;
     drive_.planner.set_override(percent);
+    if (percent > 0) override_percent_ = percent;
+    if (measured) {
+      // Before the next cycle answers it, nothing else is asked.
+      const double answer_ms = 1e3 * drive_.plan();
+      const std::int64_t asked = drive_.now();
+      while (drive_.plan_followed() == before && drive_.setpoint().feed_mm_s > 0) drive_.cycle();
+      if (drive_.plan_followed() != before) {
+        (lowered ? outcome_.lowered_cycles : outcome_.raised_cycles)
+            .push_back(static_cast<double>(drive_.now() - asked));
+        outcome_.override_ms.push_back(answer_ms);
+      }
+    }
     if (percent > 0) return;
     const auto wait = static_cast<int>(random_.uniform(1, 600));
     for (int k = 0; k < wait; ++k) drive_.cycle();
-    drive_.planner.set_override(random_.uniform(1, 200));
+    override_percent_ = random_.uniform(1, 200);
+    drive_.planner.set_override(override_percent_);
   }
 
   /// Cycles after the command that still follow the plan in force when it came, and the way to rest from there.
   void hold() {
-    const auto before = drive_.plan();
+    const auto before = drive_.plan_followed();
     const std::int64_t asked = drive_.now();
     const bool measured = before != nullptr && drive_.setpoint().feed_mm_s > 1;
-    const double planning = drive_.planning_s();
     drive_.planner.command(PathCommand::Stop);
+    const double answer_ms = 1e3 * drive_.plan();
+    if (measured) outcome_.planning_ms.push_back(answer_ms);
+    std::int64_t answered = -1;  // cycles after the command from which the plan followed ends at rest for it
     const bool impatient = random_.uniform(0, 1) < 0.2;
     std::int64_t followed = -1;    // cycles after the command that show the plan in force before it
     std::int64_t taken_over = -1;  // cycles after the command in which another plan takes over
@@ -112,10 +131,10 @@ class Case {
     bool rested = false;
     for (std::size_t k = 0; k < most && !rested; ++k) {
       const Setpoint& setpoint = drive_.cycle();
-      if (k == 0) outcome_.planning_ms.push_back(1e3 * (drive_.planning_s() - planning));
+      if (answered < 0 && drive_.stops()) answered = drive_.now() - asked;
       if (measured && followed < 0) {
         const double t = static_cast<double>(drive_.now() - before->start_cycle) * model_.period_s;
-        if (taken_over < 0 && drive_.plan() != before) taken_over = drive_.now() - asked;
+        if (taken_over < 0 && drive_.plan_followed() != before) taken_over = drive_.now() - asked;
         if (std::abs(setpoint.s_mm - state_of(*before, t).s) > 1e-9) followed = drive_.now() - 1 - asked;
       }
       rested = drive_.resting();
@@ -123,7 +142,7 @@ class Case {
     if (measured && !impatient && rested) {
       ++outcome_.holds;
       if (taken_over < 0) ++outcome_.kept;
-      if (taken_over >= 0) outcome_.reaction_cycles.push_back(static_cast<double>(taken_over));
+      outcome_.reaction_cycles.push_back(answered < 0 ? 5000 : static_cast<double>(answered));
       if (followed >= 0) outcome_.visible_cycles.push_back(static_cast<double>(followed));
       // Both ways are measured from where a new plan may begin: what lies before it was under way already.
       const double t = static_cast<double>(asked + 2 - before->start_cycle) * model_.period_s;
@@ -143,6 +162,7 @@ class Case {
   Drive drive_;
   LimitCheck check_;
   Real u_ = 0;
+  double override_percent_ = 100;
   bool queued_ = false;
 };
 
@@ -150,7 +170,7 @@ class Case {
 
 void interruption_rows(Figures& figures, const Extent& extent) {
   const int wanted = extent.cases(10'000, 500);
-  RandomSplines random(17);
+  RandomSplines random(static_cast<unsigned>(16 + extent.seed));
   Outcome outcome;
   while (outcome.instants < wanted) Case(random, outcome).travel();
   const std::string note = std::to_string(outcome.instants) + " instants";
@@ -158,11 +178,15 @@ void interruption_rows(Figures& figures, const Extent& extent) {
   figures.at_most("interruptions_limits", outcome.worst, 1.001, "of limit", note);
   figures.at_most("interruptions_off_curve", outcome.off_nm, 1, "nm", note);
   figures.at_most("interruptions_unfinished", outcome.unfinished, 0, "programs", note);
+  // "Reaction": the cycles until the plan that is followed ends at rest for the hold, which may be the one before, up
+  // to where it is left or comes to rest.
   figures.at_most("hold_reaction_p50", quantile(outcome.reaction_cycles, 0.5), 2, "cycles", holds);
   figures.inform("hold_reaction_p95", quantile(outcome.reaction_cycles, 0.95), "cycles", holds);
   figures.at_most("hold_reaction_max", quantile(outcome.reaction_cycles, 1), 2, "cycles", holds);
-  const auto late = std::ranges::count_if(outcome.reaction_cycles, [](double cycles) { return cycles > 2; });
-  figures.inform("hold_late", static_cast<double>(late), "holds", holds + ", those with more than 2 cycles");
+  const auto late = [](const std::vector<double>& all) {
+    return static_cast<double>(std::ranges::count_if(all, [](double cycles) { return cycles > 2; }));
+  };
+  figures.inform("hold_late", late(outcome.reaction_cycles), "holds", holds + ", those with more than 2 cycles");
   figures.inform("hold_visible_p99", quantile(outcome.visible_cycles, 0.99), "cycles",
                  "until the setpoint differs by 1 pm");
   figures.inform("hold_kept_plan", outcome.kept, "holds", "no plan took over: the one in force came to rest");
@@ -170,6 +194,18 @@ void interruption_rows(Figures& figures, const Extent& extent) {
   figures.inform("hold_distance_p99", quantile(outcome.stop_ratio, 0.99), "of shortest", holds);
   figures.inform("hold_planning_p50", quantile(outcome.planning_ms, 0.5), "ms", "CPU time");
   figures.inform("hold_planning_p99", quantile(outcome.planning_ms, 0.99), "ms", "CPU time");
+  figures.at_most("hold_planning_max", quantile(outcome.planning_ms, 1), 1, "ms", "CPU time of the step that answers");
+  const std::string lowered = std::to_string(outcome.lowered_cycles.size()) + " overrides lowered";
+  const std::string raised = std::to_string(outcome.raised_cycles.size()) + " overrides raised";
+  figures.inform("override_lowered_late", late(outcome.lowered_cycles), "overrides", lowered);
+  figures.inform("override_raised_late", late(outcome.raised_cycles), "overrides", raised);
+  figures.inform("override_lowered_p99", quantile(outcome.lowered_cycles, 0.99), "cycles", lowered);
+  figures.at_most("override_lowered_max", quantile(outcome.lowered_cycles, 1), 2, "cycles", lowered);
+  figures.inform("override_raised_p99", quantile(outcome.raised_cycles, 0.99), "cycles", raised);
+  figures.inform("override_raised_max", quantile(outcome.raised_cycles, 1), "cycles", raised);
+  figures.inform("override_planning_p50", quantile(outcome.override_ms, 0.5), "ms", "CPU time");
+  figures.inform("override_planning_p99", quantile(outcome.override_ms, 0.99), "ms", "CPU time");
+  figures.at_most("override_planning_max", quantile(outcome.override_ms, 1), 1, "ms", "CPU time");
 }
 
 }  // namespace rmac::bench

@@ -43,7 +43,8 @@ struct Plan;
 struct PlanChannel {
   SpscRing<const Plan*, 16> published;
   SpscRing<const Plan*, 64> retired;
-  /// Id of the plan by which the motion ends as `PathCommand::Stop` asked; 0 while none was asked for, or is found.
+  /// Id of the first plan by which the motion ends as `PathCommand::Stop` asked, as by all behind it; 0 while none was
+  /// asked for, or is found.
   std::atomic<std::uint64_t> stopping{0};
 };
 

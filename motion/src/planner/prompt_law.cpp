@@ -1,0 +1,58 @@
+#include "planner/prompt_law.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "planner/laid_path.hpp"
+#include "time_law/braking_law.hpp"
+#include "time_law/law_check.hpp"
+
+namespace rmac {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Steps of all laws that are tried for one answer, those of a check among them.
+constexpr int kMostSteps = 2000;
+/// A piece is checked at five places or more, a step looks at one.
+constexpr int kStepsACheck = 4;
+constexpr std::size_t kCheckedAtOnce = 16;
+/// A way to brake: so many cycles later on the plan, by `Braking::most_slowing`.
+struct Way {
+  int later = 0;
+  double slowing = kInfinity;
+};
+/// In the order in which they are tried: who brakes gently takes long, and who brakes hard a little later often rests
+/// sooner.
+constexpr Way kWays[] = {{0},     {0, 8}, {0, 4}, {2},  {5},     {5, 4}, {10},   {20},
+                         {20, 4}, {40},   {0, 2}, {80}, {40, 4}, {160},  {0, 1}, {80, 4}};
+
+/// Checks piece by piece, so that one in excess is not paid for by all.
+bool keeps_limits(const LeftPlan& left, const std::vector<LawPiece>& law, const FeedRule& feed, int& steps_left) {
+  for (std::size_t first = 0; first < law.size() && steps_left > 0; first += kCheckedAtOnce) {
+    const std::size_t last = std::min(first + kCheckedAtOnce, law.size());
+    const auto from = law.begin() + static_cast<std::ptrdiff_t>(first);
+    const std::vector<LawPiece> some(from, law.begin() + static_cast<std::ptrdiff_t>(last));
+    steps_left -= kStepsACheck * static_cast<int>(some.size());
+    if (check_law(left.path, left.joints, some, &feed).worst > 1) return false;
+  }
+  return steps_left > 0;
+}
+
+}  // namespace
+
+std::optional<PromptLaw> prompt_stop(const LeftPlan& left, double rest, const FeedRule& feed, int later) {
+  int steps_left = kMostSteps;
+  for (const Way& way : kWays) {
+    if (steps_left <= 0) break;
+    const double t = left.t + (later + way.later) * left.period_s;
+    const PathState from = left.plan.state_at(t);
+    if (!(from.v > 0) || from.s >= rest - kSamePlace) continue;
+    auto law = braking_law(left.path, left.joints, {from, rest, left.plan.law, way.slowing}, steps_left);
+    if (law && keeps_limits(left, *law, feed, steps_left))
+      return PromptLaw{t, std::move(*law), way.later > 0 || way.slowing < kInfinity};
+  }
+  return std::nullopt;
+}
+
+}  // namespace rmac

@@ -1,0 +1,81 @@
+// Every hold is answered within two cycles: the plan that is followed then ends at rest for it.
+#include <gtest/gtest.h>
+
+#include "unit/motion/planner/program_fuzz.hpp"
+
+namespace rmac {
+namespace {
+
+using test::Action;
+using test::mill;
+using test::PlannerBench;
+
+constexpr int kCyclesOnPath = 2;
+
+void queue_program(PlannerBench& bench, unsigned seed) {
+  std::int64_t id = 0;
+  for (unsigned extra = 0; id < 6; ++extra) {
+    for (const Action& action : test::random_program(seed + 1000 * extra).actions) {
+      if (action.kind != Action::Kind::Queue) continue;
+      if (bench.queue(test::move_of(action, id + 1, bench.builder.end_pose()))) ++id;
+    }
+  }
+}
+
+class PromptStop : public ::testing::TestWithParam<unsigned> {};
+
+// As the servo thread does it: from the second cycle on it asks in each whether a plan stops the machine, and lets the
+// joints leave the path where none does. A better stop that takes the place of the first must not look like none.
+TEST_P(PromptStop, IsUnderWayFromTheSecondCycleOnUntilTheMachineRests) {
+  PlannerBench bench(mill(GetParam() % 2 == 0 ? 10000 : 50000));
+  std::mt19937 random(GetParam());
+  queue_program(bench, GetParam());
+  int holds = 0;
+  while (bench.planner.moves_left() > 0) {
+    bench.planner.command(PathCommand::Run);
+    for (int wait = std::uniform_int_distribution(1, 300)(random); wait > 0; --wait) bench.cycle();
+    if (!bench.record.back().moving) continue;
+    ++holds;
+    bench.planner.command(PathCommand::Stop);
+    for (int cycle = 1; bench.record.back().moving; ++cycle) {
+      ASSERT_LT(cycle, 20'000);
+      if (cycle >= kCyclesOnPath) bench.follower().leave();
+      bench.cycle();
+      ASSERT_EQ(bench.progress().departure.count, 0U) << "hold " << holds << ", cycle " << cycle;
+    }
+  }
+  EXPECT_GT(holds, 0);
+  const auto peaks = bench.peaks();
+  EXPECT_LE(peaks.velocity, 1.001);
+  EXPECT_LE(peaks.acceleration, 1.001);
+  EXPECT_LE(peaks.jerk, 1.001) << "in cycle " << peaks.jerk_cycle;
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, PromptStop, ::testing::Range(1U, 13U));
+
+TEST(Override, ThatIsLoweredIsFollowedWithinTwoCyclesAndTheLimits) {
+  PlannerBench bench(mill());
+  Move move;
+  move.id = 1;
+  move.feed_mm_s = 60;
+  move.geometry = LineGeometry{{{0, 0, 0}, {0, 0, 1}}, {{45, 20, 0}, {0, 0, 1}}};
+  ASSERT_TRUE(bench.queue(move));
+  bench.planner.command(PathCommand::Run);
+  while (bench.record.empty() || bench.record.back().feed_mm_s < 59) bench.cycle();
+  const std::uint64_t before = bench.progress().accepted_plan;
+  bench.planner.set_override(50);
+  for (int i = 0; i < 2; ++i) bench.cycle();
+  EXPECT_GT(bench.progress().accepted_plan, before);
+  double slowest = 1e9;
+  for (int i = 0; i < 250; ++i) {
+    bench.cycle();
+    slowest = std::min(slowest, bench.record.back().feed_mm_s);
+  }
+  EXPECT_NEAR(bench.record.back().feed_mm_s, 30, 0.1);
+  EXPECT_GT(slowest, 28) << "it does not stop for it";
+  ASSERT_TRUE(bench.run());
+  EXPECT_LE(bench.peaks().jerk, 1.001);
+}
+
+}  // namespace
+}  // namespace rmac
