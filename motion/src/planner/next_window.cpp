@@ -1,6 +1,7 @@
 #include "planner/next_window.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "time_law/law_check.hpp"
@@ -12,6 +13,11 @@ namespace {
 constexpr double kShortest_mm = 1.0;
 /// The last ramps brake for an end that the next window takes away: they are planned again.
 constexpr double kRampsPlannedAgain = 2;
+
+/// Nodes of the geometry after which a window ends, unless it is still shorter than these ramps from the speed at its
+/// begin: a law's grid has about three intervals to each.
+constexpr std::size_t kMostNodes = 300;
+constexpr double kRampsAtLeast = 4;
 
 /// Bounds of acceleration and jerk in which the weakest joint rules.
 struct Ramp {
@@ -25,10 +31,20 @@ struct Ramp {
   [[nodiscard]] double length(double v) const { return ramp_length(v, acceleration, jerk); }
 };
 
+/// Counts the nodes of a segment behind s; the place of the one that is too many, if that is there.
+double place_of_many(const LaidPath& path, std::size_t segment, double s, std::size_t& nodes) {
+  for (const double local : path.segment(segment)->nodes()) {
+    const double place = path.start(segment) + local;
+    if (place > s && ++nodes >= kMostNodes) return place;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
-WindowEnd next_window_end(LaidPath& path, const std::vector<JointLimits>& joints, double s, double ramps, double factor,
-                          std::optional<double> limit_s) {
+WindowEnd next_window_end(LaidPath& path, const std::vector<JointLimits>& joints, const PathState& from, double ramps,
+                          double factor, std::optional<double> limit_s) {
+  const double s = from.s;
   Ramp weakest;
   double fastest = 0;
   for (const JointLimits& joint : joints) {
@@ -37,11 +53,16 @@ WindowEnd next_window_end(LaidPath& path, const std::vector<JointLimits>& joints
   }
   std::optional<WindowEnd> found;
   double v = 0, reach = kShortest_mm;
+  // Where the path bends to and fro, full speed is far away.
+  const double least = s + kRampsAtLeast * weakest.length(from.v);
+  std::size_t nodes = 0;
+  double s_many = std::numeric_limits<double>::infinity();
   for (std::size_t i = path.view().find(s + kSamePlace, 1); !found; ++i) {
     if (i >= path.size() && !path.supply()) break;
     v = std::max(v, std::min(path.segment(i)->demand().feed_mm_s * std::max(factor, 1.0), 2 * fastest));
     reach = std::max(reach, ramps * weakest.length(v));
-    const bool enough = path.end(i) - s > 2 * reach;
+    if (nodes < kMostNodes) s_many = place_of_many(path, i, std::max(s, least), nodes);
+    const bool enough = path.end(i) - s > 2 * reach || nodes >= kMostNodes;
     // Whether the path goes on without rest is known once its next segment is there.
     if (i + 1 == path.size() && !path.rest_after(i) && !enough) path.supply();
     if (path.rest_after(i) || enough) found = WindowEnd{path.end(i), path.rest_after(i)};
@@ -49,22 +70,22 @@ WindowEnd next_window_end(LaidPath& path, const std::vector<JointLimits>& joints
   WindowEnd end = found.value_or(WindowEnd{path.end(), false});
   if (limit_s && *limit_s <= end.s) end = {*limit_s, true};
   if (end.s - s > 1.5 * reach) end = {s + reach, false};
+  if (end.s > s_many) end = {s_many, false};
   end.planned_again = reach / ramps * kRampsPlannedAgain;
   return end;
 }
 
 std::optional<std::vector<LawPiece>> law_from_rest(const PathView& path, const std::vector<JointLimits>& joints,
-                                                   double s, WindowEnd& end, const FeedRule& feed) {
-  const auto law_to = [&](double s_end) {
-    return plan_window(path, joints, {{s, 0, 0}, s_end, feed, nullptr, false, true});
-  };
-  if (auto law = law_to(end.s)) return law;
-  for (const double part : {0.5, 0.4, 0.35, 0.3}) {
-    const double nearer = s + part * (end.s - s);
-    if (nearer - s < 100 * kSamePlace) break;
-    end = {nearer, false, end.planned_again};
-    if (auto law = law_to(end.s)) return law;
+                                                   double s, WindowEnd& end, const FeedRule& feed,
+                                                   std::size_t attempt) {
+  constexpr std::array<double, kAttemptsFromRest> kParts{1, 0.5, 0.2, 0.07, 0.021};
+  const double nearer = s + kParts[attempt] * (end.s - s);
+  if (attempt > 0) end = {nearer, false, end.planned_again};
+  if (attempt == 0 || nearer - s >= 100 * kSamePlace) {
+    long work_left = kMostWorkOnLaw;
+    if (auto law = plan_window(path, joints, {{s, 0, 0}, end.s, feed, nullptr, false, true, &work_left})) return law;
   }
+  if (attempt + 1 < kAttemptsFromRest) return std::nullopt;
   auto law = cautious_law(path, joints, s, end.s, feed);
   if (check_law(path, joints, law, nullptr).worst <= 1.0) return law;
   return std::nullopt;

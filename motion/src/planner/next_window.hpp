@@ -22,15 +22,23 @@ struct WindowEnd {
 };
 
 /// Where the window that begins at s must or may end: at a demanded rest, at `limit_s`, at the end of the path, or
-/// where it is long enough, which takes `ramps` ramps to full speed. Lays path until it is known. `factor`: the
+/// where it is long enough, which takes `ramps` ramps to full speed, or where the path bends so much that a longer one
+/// would hold the planner up. Lays path until it is known. `from`: the state in which it begins; `factor`: the
 /// override.
-[[nodiscard]] WindowEnd next_window_end(LaidPath& path, const std::vector<JointLimits>& joints, double s, double ramps,
-                                        double factor, std::optional<double> limit_s);
+[[nodiscard]] WindowEnd next_window_end(LaidPath& path, const std::vector<JointLimits>& joints, const PathState& from,
+                                        double ramps, double factor, std::optional<double> limit_s);
+
+/// Work that one step of the planner may do on a law (`LawProblem::work_left`).
+inline constexpr long kMostWorkOnLaw = 80'000;
+/// Attempts at the law of a window from rest, one a step of the planner.
+inline constexpr std::size_t kAttemptsFromRest = 5;
 
 /// The law of a window from rest, which may end earlier than asked (`end.hard` is then cleared): what is too much for
-/// one window may be found in parts, and where nothing is found the cautious law creeps over a short part only.
+/// one window may be found in parts, a shorter one with each attempt, and where nothing is found the last creeps over a
+/// short part only, by the cautious law.
 [[nodiscard]] std::optional<std::vector<LawPiece>> law_from_rest(const PathView& path,
                                                                  const std::vector<JointLimits>& joints, double s,
-                                                                 WindowEnd& end, const FeedRule& feed);
+                                                                 WindowEnd& end, const FeedRule& feed,
+                                                                 std::size_t attempt);
 
 }  // namespace rmac

@@ -36,6 +36,9 @@ constexpr int kOverrideTries = 3;
 /// finds its way more easily from the plan that is followed than from one that brakes.
 constexpr int kBeforeBraking = 6;
 
+/// Ramps of a window that goes on in motion, an attempt.
+constexpr std::array kRampsInMotion{kRampsAhead, kRampsAtOnce};
+
 /// The cycle from which on a plan can follow `p`, which itself may not have started.
 std::int64_t earliest(const PublishedPlan& p, std::int64_t cycle) {
   return std::max(cycle, p.plan->start_cycle);
@@ -51,6 +54,7 @@ struct Planner::Impl {
   PublishedPlans plans;
   PlanningTime planning_time;
   FailedAttempt attempt;
+  std::size_t law_attempt = 0;  ///< at the law of a window, of several
   bool stop_came_late = false;  ///< of the stops tried since the last command: the next is left the time it takes
   PathCommand wanted = PathCommand::Stop;
   double factor = 1;     ///< the override
@@ -62,7 +66,6 @@ struct Planner::Impl {
   [[nodiscard]] FeedRule feed(double override_factor) const { return {override_factor, model.max_feed_mm_s}; }
   [[nodiscard]] LaidPath& path() { return route.path(); }
   [[nodiscard]] const LaidPath& path() const { return route.path(); }
-  [[nodiscard]] double period() const { return model.period_s; }
   [[nodiscard]] const PublishedPlan* base() const { return plans.base(); }
   [[nodiscard]] double now_s(const PublishedPlan& p, std::int64_t cycle) const { return plans.now_s(p, cycle); }
   /// The base is a plan on the path that is travelled, not one on the path before the last turn.
@@ -74,28 +77,29 @@ struct Planner::Impl {
   /// The place on `forward` where the machine stands at rest, or is to go on.
   [[nodiscard]] double place_s() const { return route.on_forward(base_end_s()); }
 
-  [[nodiscard]] WindowEnd window_end(double s, double ramps) {
+  [[nodiscard]] WindowEnd window_end(const PathState& from, double ramps) {
     const auto limit = wanted == PathCommand::RunOne && !route.on_detour() ? std::optional(limit_s) : std::nullopt;
-    return next_window_end(path(), model.joints, s, ramps, factor, limit);
+    return next_window_end(path(), model.joints, from, ramps, factor, limit);
   }
 
   bool publish(std::unique_ptr<Plan> plan, const WindowEnd& end, double window_begin, const Purpose& purpose = {}) {
     plan->origin_mm = origin_mm;
-    lay_out(*plan, path(), period());
+    lay_out(*plan, path(), model.period_s);
     PublishedPlan about;
     about.purpose = purpose;
     about.hard_end = end.hard;
     about.turns = route.turns();
     about.override_factor = factor;
     about.commit_t = commit_time(*plan, window_begin, end.planned_again);
+    law_attempt = 0;
     return plans.publish(std::move(plan), std::move(about));
   }
 
   bool start_from_rest(const ServoProgress& progress) {
     const double s = base_end_s();
-    WindowEnd end = window_end(s, kRampsAtOnce);
-    auto law = law_from_rest(path().view(), model.joints, s, end, feed(factor));
-    if (!law) return no_plan(progress);
+    WindowEnd end = window_end({s, 0, 0}, kRampsAtOnce);
+    auto law = law_from_rest(path().view(), model.joints, s, end, feed(factor), law_attempt);
+    if (!law) return next_attempt(progress, kAttemptsFromRest);
     auto plan = std::make_unique<Plan>();
     plan->start_cycle = progress.cycle + planning_time.lead();
     plan->latest_cycle = plan->start_cycle;
@@ -109,7 +113,7 @@ struct Planner::Impl {
     const PublishedPlan& p = *base();
     const std::int64_t now = earliest(p, progress.cycle);
     const double t_now = now_s(p, now);
-    const double t_soonest = t_now + static_cast<double>(planning_time.lead()) * period();
+    const double t_soonest = t_now + static_cast<double>(planning_time.lead()) * model.period_s;
     // Too near the end to be there in time: the machine comes to rest, and starts again from there.
     if (t_soonest > p.plan->end_time_s) return no_plan(progress);
     double t_from = p.plan->end_time_s;
@@ -118,18 +122,18 @@ struct Planner::Impl {
     const PathState from = p.state_at(t_from);
     WindowEnd end;
     std::optional<std::vector<LawPiece>> law;
-    if (from.v == 0 && from.a == 0) {
-      end = window_end(from.s, kRampsAtOnce);
-      law = law_from_rest(path().view(), model.joints, from.s, end, feed(factor));
+    const bool from_rest = from.v == 0 && from.a == 0;
+    if (from_rest) {
+      end = window_end(from, kRampsAtOnce);
+      law = law_from_rest(path().view(), model.joints, from.s, end, feed(factor), law_attempt);
     } else {
-      for (const double ramps : {kRampsAhead, kRampsAtOnce}) {
-        end = window_end(from.s, ramps);
-        law = plan_window(path().view(), model.joints, {from, end.s, feed(factor), &p.law, true, true});
-        if (law) break;
-      }
+      long work_left = kMostWorkOnLaw;
+      law_attempt = std::min(law_attempt, kRampsInMotion.size() - 1);
+      end = window_end(from, kRampsInMotion[law_attempt]);
+      law = plan_window(path().view(), model.joints, {from, end.s, feed(factor), &p.law, true, true, &work_left});
     }
-    if (!law) return no_plan(progress);
-    return publish(go_on_as(p, now, t_from, *law, period()), end, from.s);
+    if (!law) return next_attempt(progress, from_rest ? kAttemptsFromRest : kRampsInMotion.size());
+    return publish(go_on_as(p, now, t_from, *law, model.period_s), end, from.s);
   }
 
   /// Leaves the plan as soon as can be, for the window behind it or (s_stop given) to stop there.
@@ -138,12 +142,14 @@ struct Planner::Impl {
     const std::int64_t cycle = earliest(p, progress.cycle + planning_time.lead());
     const double t = now_s(p, cycle);
     const PathState from = p.state_at(t);
-    const WindowEnd end = s_stop ? WindowEnd{*s_stop, false} : window_end(from.s, kRampsAtOnce);
+    const WindowEnd end = s_stop ? WindowEnd{*s_stop, false} : window_end(from, kRampsAtOnce);
     const double allowed = s_stop ? std::max(factor, p.override_factor) : factor;
     const bool same_feed = s_stop.has_value() || p.override_factor == factor;
-    auto law = plan_window(path().view(), model.joints, {from, end.s, feed(allowed), &p.law, same_feed});
+    long work_left = kMostWorkOnLaw;
+    auto law =
+        plan_window(path().view(), model.joints, {from, end.s, feed(allowed), &p.law, same_feed, false, &work_left});
     if (!law) return false;
-    return publish(go_on_as(p, cycle, t, *law, period()), end, from.s, {s_stop.has_value(), 0});
+    return publish(go_on_as(p, cycle, t, *law, model.period_s), end, from.s, {s_stop.has_value(), 0});
   }
 
   /// Brakes as soon as can be, by a law that is found at once, before the path's next rest. `tries`: so often a better
@@ -153,11 +159,11 @@ struct Planner::Impl {
     const std::int64_t cycle = earliest(p, progress.cycle + lead);
     const FeedRule rule = feed(std::max(factor, p.override_factor));
     const PathView view = path().view();
-    const auto found =
-        prompt_stop({view, model.joints, p, now_s(p, cycle), period()}, rest, rule, purpose.stops ? 0 : kBeforeBraking);
+    const auto found = prompt_stop({view, model.joints, p, now_s(p, cycle), model.period_s}, rest, rule,
+                                   purpose.stops ? 0 : kBeforeBraking);
     if (!found || (base()->purpose.stops && !ends_sooner(*found))) return false;
     if (purpose.stops && !found->makeshift) purpose.better_tries = 0;
-    auto plan = go_on_as(p, cycle, found->leaves_t, found->law, period());
+    auto plan = go_on_as(p, cycle, found->leaves_t, found->law, model.period_s);
     plans.go_on_from_base(*plan, progress);
     return publish(std::move(plan), {rest, false}, p.state_at(found->leaves_t).s, purpose);
   }
@@ -199,7 +205,7 @@ struct Planner::Impl {
       return true;
     }
     const std::int64_t now = earliest(p, progress.cycle);
-    auto plan = go_on_as(p, now, p.time_at(rest - kSamePlace), {}, period());
+    auto plan = go_on_as(p, now, p.time_at(rest - kSamePlace), {}, model.period_s);
     if (plan->law.empty()) return no_plan(progress);
     plans.go_on_from_base(*plan, progress);
     return publish(std::move(plan), {rest, true}, rest, {true, kStopTries});
@@ -240,6 +246,13 @@ struct Planner::Impl {
     plans.move_origin(by);
     limit_s -= by;
     origin_mm += by;
+  }
+
+  /// The law that was to begin a window was not found; there may be others to be tried, one a step.
+  bool next_attempt(const ServoProgress& progress, std::size_t attempts) {
+    if (++law_attempt < attempts) return false;
+    law_attempt = 0;
+    return no_plan(progress);
   }
 
   bool no_plan(const ServoProgress& progress) {
@@ -288,7 +301,7 @@ struct Planner::Impl {
     const double t_decide = p->hard_end ? p->plan->end_time_s : p->commit_t;
     if (more && t_decide - t_now < kHorizon_s) return Task::Extend;
     if (dry && path().has_more() &&
-        t_decide - t_now < kRelease_s + static_cast<double>(planning_time.lead()) * period())
+        t_decide - t_now < kRelease_s + static_cast<double>(planning_time.lead()) * model.period_s)
       return Task::Supply;
     return Task::None;
   }

@@ -27,25 +27,24 @@ class Banded {
     right[index] = value;
   }
 
-  /// Replaces the entries by those of L and D; false where the matrix is not positive.
+  /// Replaces the entries by those of L and D; false where the matrix is not positive. Column by column, each taken off
+  /// what lies behind it: the inner loop goes over neighbours in memory.
   [[nodiscard]] bool factorise() {
-    for (std::size_t i = 0; i < size_; ++i) {
-      double* const row = &at(i, 0);
-      for (std::size_t k = band_ < i ? band_ : i; k > 0; --k) {
-        // L(i, j) D(j) with j = i - k; L(i, p) D(p) stands in the row until all of it is known.
-        const std::size_t j = i - k;
-        const double* const above = &at(j, 0);
-        double sum = row[k];
-        const std::size_t most = band_ < i ? band_ : i;
-        for (std::size_t m = k + 1; m <= most; ++m) sum -= row[m] * above[m - k];
-        row[k] = sum;
+    std::vector<double> column(band_);
+    for (std::size_t j = 0; j < size_; ++j) {
+      const double diagonal = at(j, 0);
+      if (!(diagonal > 0)) return false;
+      const double inverse = 1 / diagonal;
+      const std::size_t most = band_ < size_ - 1 - j ? band_ : size_ - 1 - j;
+      // The last first, as the entries of a row stand.
+      for (std::size_t k = 1; k <= most; ++k) column[most - k] = at(j + k, k);
+      for (std::size_t k = 1; k <= most; ++k) {
+        double* const row = &at(j + k, 0);
+        const double* const reversed = column.data() + (most - k);
+        const double factor = row[k] * inverse;
+        for (std::size_t below = 0; below < k; ++below) row[below] -= factor * reversed[below];
+        row[k] = factor;
       }
-      for (std::size_t k = 1; k <= band_ && k <= i; ++k) {
-        const double scaled = row[k];
-        row[k] /= at(i - k, 0);
-        row[0] -= row[k] * scaled;
-      }
-      if (!(row[0] > 0)) return false;
     }
     return true;
   }

@@ -27,17 +27,26 @@ void TubeProgram::add(const TubeSample& sample) {
 }
 
 void TubeProgram::weigh(const Basis& basis, const std::array<Vector, 3>& square, Banded& matrix) const {
+  const auto [xx, xy, xz] = square[0];
+  const double yy = square[1][1], yz = square[1][2], zz = square[2][2];
   for (std::size_t a = 0; a <= kDegree; ++a) {
     if (!is_free(basis.first + a)) continue;
     const std::size_t row = 3 * (basis.first + a - kept_);
-    for (std::size_t b = 0; b <= a; ++b) {
+    for (std::size_t b = 0; b < a; ++b) {
       if (!is_free(basis.first + b)) continue;
-      const double factor = basis.values[a] * basis.values[b];
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::size_t most = a == b ? c : 2;
-        for (std::size_t e = 0; e <= most; ++e) matrix.at(row + c, 3 * (a - b) + c - e) += factor * square[c][e];
-      }
+      const double f = basis.values[a] * basis.values[b];
+      // Rows of the block, whose columns stand in memory from the last to the first.
+      double *const x = &matrix.at(row, 3 * (a - b) - 2), *const y = &matrix.at(row + 1, 3 * (a - b) - 1);
+      double* const z = &matrix.at(row + 2, 3 * (a - b));
+      x[0] += f * xz, x[1] += f * xy, x[2] += f * xx;
+      y[0] += f * yz, y[1] += f * yy, y[2] += f * xy;
+      z[0] += f * zz, z[1] += f * yz, z[2] += f * xz;
     }
+    const double f = basis.values[a] * basis.values[a];
+    double *const x = &matrix.at(row, 0), *const y = &matrix.at(row + 1, 0), *const z = &matrix.at(row + 2, 0);
+    x[0] += f * xx;
+    y[0] += f * yy, y[1] += f * xy;
+    z[0] += f * zz, z[1] += f * yz, z[2] += f * xz;
   }
 }
 
@@ -147,7 +156,8 @@ double TubeProgram::direction(const Banded& matrix, const std::vector<double>& g
       [&](const TubeBound& bound) {
         std::array<double, 2> pull{};
         for (std::size_t i = 0; i < 2; ++i) {
-          pull[i] = bound.multiplier[i] + (bound.multiplier[i] * outside(bound, i) - excess(bound, i)) / bound.slack[i];
+          pull[i] = bound.multiplier[i] +
+                    (bound.multiplier[i] * outside(bound, i) - excess(bound, i)) * bound.inverse_slack[i];
         }
         return pull[1] - pull[0];
       },
@@ -156,7 +166,7 @@ double TubeProgram::direction(const Banded& matrix, const std::vector<double>& g
 
   double reach = 1;
   const auto keep_positive = [&reach](double value, double step) {
-    if (step < 0) reach = std::min(reach, -kToBorder * value / step);
+    if (-step * reach > kToBorder * value) reach = -kToBorder * value / step;
   };
   for (TubeSample& sample : samples_) {
     const Vector step = step_of(sample.basis);
@@ -164,7 +174,8 @@ double TubeProgram::direction(const Banded& matrix, const std::vector<double>& g
       const double move = dot(bound.direction, step);
       for (std::size_t i = 0; i < 2; ++i) {
         bound.slack_step[i] = -outside(bound, i) - (i == 0 ? move : -move);
-        bound.multiplier_step[i] = -(excess(bound, i) + bound.multiplier[i] * bound.slack_step[i]) / bound.slack[i];
+        bound.multiplier_step[i] =
+            -(excess(bound, i) + bound.multiplier[i] * bound.slack_step[i]) * bound.inverse_slack[i];
         keep_positive(bound.slack[i], bound.slack_step[i]);
         keep_positive(bound.multiplier[i], bound.multiplier_step[i]);
       }
@@ -174,7 +185,7 @@ double TubeProgram::direction(const Banded& matrix, const std::vector<double>& g
 }
 
 /// Mehrotra's predictor and corrector (eq. 13).
-bool TubeProgram::solve(const std::vector<SplineDemand>& demands, bool from_here) {
+bool TubeProgram::solve(const std::vector<SplineDemand>& demands, bool from_here, std::size_t& work) {
   objective_ = Banded(3 * free_, 3 * kDegree + 2);
   for (const SplineDemand& demand : demands) weigh(demand.basis, demand.weight, objective_);
   if (!start(demands, from_here)) return false;
@@ -182,20 +193,24 @@ bool TubeProgram::solve(const std::vector<SplineDemand>& demands, bool from_here
   Banded matrix = objective_;
   const auto count = static_cast<double>(bound_count_);
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    work += samples_.size();
     const double value = objective(demands, gradient);
     double product = 0, off = 0;
     for (TubeSample& sample : samples_) {
       for (TubeBound& bound : sample.used()) {
         off = std::max(off, std::abs(bound.at) - 1);
         bound.second_order = {};
-        for (std::size_t i = 0; i < 2; ++i) product += bound.slack[i] * bound.multiplier[i];
+        for (std::size_t i = 0; i < 2; ++i) {
+          product += bound.slack[i] * bound.multiplier[i];
+          bound.inverse_slack[i] = 1 / bound.slack[i];
+        }
       }
     }
     if (!std::isfinite(product)) return false;
     if (product <= kGap * value && off <= kOutside) return true;
 
     const auto stiffness = [](const TubeBound& bound) {
-      return bound.multiplier[0] / bound.slack[0] + bound.multiplier[1] / bound.slack[1];
+      return bound.multiplier[0] * bound.inverse_slack[0] + bound.multiplier[1] * bound.inverse_slack[1];
     };
     if (!factorise(matrix, stiffness)) return false;
     double reach = direction(matrix, gradient, 0);

@@ -24,7 +24,7 @@ struct SplineDemand {
 struct TubeBound {
   Vector direction{};
   double at = 0;
-  std::array<double, 2> slack{}, multiplier{}, slack_step{}, multiplier_step{}, second_order{};
+  std::array<double, 2> slack{}, inverse_slack{}, multiplier{}, slack_step{}, multiplier_step{}, second_order{};
 };
 
 /// A place of the spline, and what bounds it there.
@@ -46,8 +46,8 @@ class TubeProgram {
 
   void add(const TubeSample& sample);
   /// Whether the control points were found; otherwise they are left anywhere. `from_here`: they are in the tube, and
-  /// not far from what is looked for.
-  [[nodiscard]] bool solve(const std::vector<SplineDemand>& demands, bool from_here);
+  /// not far from what is looked for. `work` grows by what it took: samples gone through.
+  [[nodiscard]] bool solve(const std::vector<SplineDemand>& demands, bool from_here, std::size_t& work);
 
  private:
   static constexpr int kMostIterations = 60;

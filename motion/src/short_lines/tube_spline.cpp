@@ -24,6 +24,8 @@ using quintic::kDegree;
 constexpr int kSamplesASpan = 5;
 /// Laws and splines in turn; more bring next to nothing.
 constexpr int kRounds = 6;
+/// Work after which no other round is begun, of `TubeProgram::solve`: a window is not to hold the planner up for long.
+constexpr std::size_t kMostWork = 65'000;
 /// Tubes, each narrower by what the spline was outside between the samples.
 constexpr int kTrials = 3;
 /// How far along the path the spline may be from a vertex at its place, in widths: a vertex seen from too far aside is
@@ -116,14 +118,14 @@ void lay_samples(const std::vector<double>& knots, const Polyline& polyline, con
 }
 
 bool make_faster(const std::vector<double>& knots, const Polyline& polyline, const std::vector<double>& widths_mm,
-                 std::size_t kept, DraftLaw& law, std::vector<Vector>& points) {
+                 std::size_t kept, DraftLaw& law, std::vector<Vector>& points, std::size_t& work) {
   double least = law.solve(points);
   std::vector<Vector> trial = points;
   TubeProgram program(kept, trial);
   lay_samples(knots, polyline, widths_mm, kept, points.size(), program);
   bool faster = false;
   for (int round = 0; round < kRounds && std::isfinite(least); ++round) {
-    if (!program.solve(law.demands(trial), true)) break;
+    if (work > kMostWork || !program.solve(law.demands(trial), true, work)) break;
     const double time = law.solve(trial);
     if (!std::isfinite(time)) break;
     if (!(time < least)) continue;
@@ -144,15 +146,17 @@ bool smoothest_in_tube(const std::vector<double>& knots, const Polyline& polylin
   points.back() = polyline.vertices.back();
   TubeProgram program(kept, points);
   lay_samples(knots, polyline, widths_mm, kept, points.size(), program);
-  return program.solve(demands_of_smoothness(knots, points.size()), false);
+  std::size_t work = 0;
+  return program.solve(demands_of_smoothness(knots, points.size()), false, work);
 }
 
 void fastest_in_tube(const std::vector<double>& knots, const Polyline& polyline, std::vector<double> widths_mm,
                      double tolerance_mm, std::size_t kept, DraftLaw& law, std::vector<Vector>& points,
                      std::vector<double>& deviations_mm) {
+  std::size_t work = 0;
   for (int trial = 0; trial < kTrials; ++trial) {
     std::vector<Vector> faster = points;
-    if (!make_faster(knots, polyline, widths_mm, kept, law, faster)) return;
+    if (!make_faster(knots, polyline, widths_mm, kept, law, faster, work)) return;
     auto distances = tube_distances(knots, faster, polyline, tolerance_mm);
     const double part = largest_part(distances, polyline, tolerance_mm);
     if (part <= 1) {

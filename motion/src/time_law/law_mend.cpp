@@ -42,6 +42,7 @@ LawProblem part_of(const LawProblem& whole, const std::vector<double>& coefficie
   const std::size_t each = 6 * whole.joint_count;
   LawProblem part;
   part.joint_count = whole.joint_count;
+  part.work_left = whole.work_left;
   part.nodes = slice(whole.nodes, first, last + 1);
   part.derivatives = slice(whole.derivatives, first * each, last * each);
   part.speed_cap = slice(whole.speed_cap, first, last);

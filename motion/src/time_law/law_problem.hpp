@@ -31,6 +31,9 @@ struct LawProblem {
   std::vector<double> max_acceleration, max_jerk;  ///< a joint
   PathState begin, end;
   bool draft = false;  ///< of a path that is still being shaped: both end states are free, and jerk has its price told
+  /// Work that may still be done on it: falls by the intervals, an iteration; none is begun once it is used up. Null:
+  /// as much as it takes.
+  long* work_left = nullptr;
   std::vector<double>
       travelled_before;  ///< empty, or a coefficient each: what an earlier law had here; 0 where it had nothing
 

@@ -39,6 +39,8 @@ class Solver {
     const double count = 2 * static_cast<double>(kLanes * rows_.all.size());
     begin(count);
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+      if (p_.work_left != nullptr && *p_.work_left <= 0) return result;
+      if (p_.work_left != nullptr) *p_.work_left -= static_cast<long>(p_.intervals());
       result.iterations = iteration + 1;
       const double mu = gap_ / count;
       if (!factorise()) break;

@@ -225,6 +225,7 @@ std::optional<std::vector<LawPiece>> law_of_window(const PathView& path, const s
   problem.nodes =
       law_grid(path, {problem.begin.s, s_begin, start_step}, {problem.end.s, s_end, last->length}, coarsest);
   if (!fill(problem, path, joints, window.feed)) return std::nullopt;
+  problem.work_left = window.work_left;
   const bool yields = problem.begin.v * problem.begin.v > problem.speed_cap[0] * (1 + 1e-5);
   if (yields) yield_to_begin(problem);
   if (window.before != nullptr && !from_rest) resume_from(problem, *window.before, yields && window.same_feed);
@@ -260,7 +261,7 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
   // of its lengths, no law follows it, and one follows a shorter stretch.
   for (const double rest_part : {1.0, 0.1, 0.01}) {
     if (auto law = law_of_window(path, joints, window, rest_part)) return law;
-    if (!window.patient) break;
+    if (!window.patient || (window.work_left != nullptr && *window.work_left <= 0)) break;
   }
   return std::nullopt;
 }

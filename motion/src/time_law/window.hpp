@@ -17,9 +17,10 @@ struct Window {
   double s_end = 0;
   FeedRule feed;
   const std::vector<LawPiece>* before =
-      nullptr;             ///< the law that the window's begin state was taken from: a good first guess
-  bool same_feed = false;  ///< `before` was made for this feed: where it is still faster, this law may be so too
-  bool patient = false;    ///< there is time to look further for a law
+      nullptr;                ///< the law that the window's begin state was taken from: a good first guess
+  bool same_feed = false;     ///< `before` was made for this feed: where it is still faster, this law may be so too
+  bool patient = false;       ///< there is time to look further for a law
+  long* work_left = nullptr;  ///< `LawProblem::work_left`
 
   [[nodiscard]] bool from_rest() const noexcept { return begin.v == 0 && begin.a == 0; }
 };

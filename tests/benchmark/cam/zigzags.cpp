@@ -21,7 +21,7 @@ std::vector<Vector> zigzag(int lines, double height_mm, double pitch_mm) {
 }  // namespace
 
 void zigzag_rows(Figures& figures, const Extent&) {
-  double least = 1e300, longest_ms = 0, worst_limits = 0, worst_off = 0;
+  double time_s = 0, least = 1e300, longest_ms = 0, worst_limits = 0, worst_off = 0;
   std::string where, where_long, failures;
   for (const double jerk : {1000.0, 10'000.0, 50'000.0}) {
     for (const double pitch_mm : {0.02, 0.05, 0.1, 0.2}) {
@@ -34,6 +34,7 @@ void zigzag_rows(Figures& figures, const Extent&) {
           failures += name + ": " + done.error() + "; ";
           continue;
         }
+        time_s += done->time_s;
         const double times = done->time_s / done->planning_s;
         if (times < least) {
           least = times;
@@ -49,6 +50,7 @@ void zigzag_rows(Figures& figures, const Extent&) {
     }
   }
   if (!failures.empty()) figures.missing("zigzags", ">= 5", "times the motion", failures);
+  figures.inform("zigzags_time", time_s, "s", "all together");
   figures.at_least("zigzags_planned", least, kTimesFaster, "times the motion", where);
   figures.at_most("zigzags_longest_step", longest_ms, kLongestStep_ms, "ms", where_long);
   figures.at_most("zigzags_limits", worst_limits, 1.001, "of limit");

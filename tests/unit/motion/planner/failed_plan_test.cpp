@@ -55,9 +55,12 @@ class FailedPlan : public ::testing::Test {
   [[nodiscard]] bool idle(std::int64_t cycle) const { return planner.idle(at(cycle)); }
 
   /// The plan that is published when there is something to do in this cycle, and is taken at once; else nullptr.
+  /// Several steps may look for one.
   const Plan* plan(std::int64_t cycle) {
     const Plan* published = nullptr;
-    if (planner.step(at(cycle)) && channel_.published.pop(published)) accepted_ = published->id;
+    while (published == nullptr && !planner.idle(at(cycle))) {
+      if (planner.step(at(cycle)) && channel_.published.pop(published)) accepted_ = published->id;
+    }
     return published;
   }
   /// The first cycle from this one on in which there is something to do.
