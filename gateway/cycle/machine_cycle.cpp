@@ -360,6 +360,8 @@ void MachineCycle::await_spindles() {
 std::shared_ptr<Mechanism> MachineCycle::install(std::shared_ptr<Mechanism> next, std::uint64_t generation,
                                                  bool keep_running) {
   std::swap(mechanism_, next);
+  if (next) next->planner.give_way_to(nullptr);
+  if (mechanism_) mechanism_->planner.give_way_to(&interruption);
   generation_ = generation;
   builder_ = mechanism_ ? &mechanism_->builder : nullptr;
   wishes.forget_later();

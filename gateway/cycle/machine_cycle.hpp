@@ -40,6 +40,8 @@ class MachineCycle {
   MachineCycle(Options options, ServoLink& link);
 
   TurnLock lock;
+  /// Of the planner, by who waits for a turn to command something.
+  Interruption interruption;
 
   StandingWishes wishes GUARDED_BY(lock);
   CycleNews news GUARDED_BY(lock);
@@ -56,6 +58,7 @@ class MachineCycle {
   /// changed.
   template <typename Function>
   auto command(Function&& function) EXCLUDES(lock) {
+    const Interruption::Request urgent(interruption);
     const GatewayTurn turn(lock);
     notice_fault();
     auto result = function(sequencer, observe(status()));

@@ -13,6 +13,7 @@ Expected<> Operating::require_free(const char* what) {
 }
 
 Expected<> Operating::set_override(double percent, const OperatorRef& by) {
+  const Interruption::Request urgent(cycle_.interruption);
   const GatewayTurn turn(cycle_.lock);
   auto set = cycle_.feed.set(percent, by);
   if (set) cycle_.apply_feed();

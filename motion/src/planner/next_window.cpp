@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "gives_way.hpp"
 #include "time_law/law_check.hpp"
 #include "time_law/window.hpp"
 
@@ -85,7 +86,7 @@ std::optional<std::vector<LawPiece>> law_from_rest(const PathView& path, const s
     long work_left = kMostWorkOnLaw;
     if (auto law = plan_window(path, joints, {{s, 0, 0}, end.s, feed, nullptr, false, true, &work_left})) return law;
   }
-  if (attempt + 1 < kAttemptsFromRest) return std::nullopt;
+  if (attempt + 1 < kAttemptsFromRest || gives_way()) return std::nullopt;
   auto law = cautious_law(path, joints, s, end.s, feed);
   if (check_law(path, joints, law, nullptr).worst <= 1.0) return law;
   return std::nullopt;

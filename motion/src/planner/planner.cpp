@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "gives_way.hpp"
 #include "planner/failed_attempt.hpp"
 #include "planner/next_window.hpp"
 #include "planner/planning_time.hpp"
@@ -48,6 +49,7 @@ std::int64_t earliest(const PublishedPlan& p, std::int64_t cycle) {
 
 struct Planner::Impl {
   PlannerModel model;
+  const Interruption* interruption = nullptr;
 
   Route route;
 
@@ -250,12 +252,14 @@ struct Planner::Impl {
 
   /// The law that was to begin a window was not found; there may be others to be tried, one a step.
   bool next_attempt(const ServoProgress& progress, std::size_t attempts) {
+    if (gives_way()) return false;
     if (++law_attempt < attempts) return false;
     law_attempt = 0;
     return no_plan(progress);
   }
 
   bool no_plan(const ServoProgress& progress) {
+    if (gives_way()) return false;  // it was not tried to the end
     attempt.record(progress.cycle, base() == nullptr ? 0 : base()->plan->id, plans.ended(progress));
     return false;
   }
@@ -402,6 +406,9 @@ double Planner::distance_to_path(std::span<const double> joints) const {
 Expected<> Planner::rejoin(std::span<const double> joints) {
   return impl_->route.rejoin({impl_->model, joints, kRejoinSpeed});
 }
+void Planner::give_way_to(const Interruption* interruption) noexcept {
+  impl_->interruption = interruption;
+}
 void Planner::command(PathCommand command) noexcept {
   impl_->command(command);
 }
@@ -409,6 +416,7 @@ void Planner::set_override(double percent) noexcept {
   impl_->set_override(percent);
 }
 bool Planner::step(const ServoProgress& progress) {
+  const GivesWay now(impl_->interruption);
   return impl_->step(progress);
 }
 bool Planner::idle(const ServoProgress& progress) const noexcept {

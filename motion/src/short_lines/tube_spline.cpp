@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "curves/vector.hpp"
+#include "gives_way.hpp"
 #include "short_lines/quintic.hpp"
 #include "short_lines/tube_program.hpp"
 
@@ -125,7 +126,7 @@ bool make_faster(const std::vector<double>& knots, const Polyline& polyline, con
   lay_samples(knots, polyline, widths_mm, kept, points.size(), program);
   bool faster = false;
   for (int round = 0; round < kRounds && std::isfinite(least); ++round) {
-    if (work > kMostWork || !program.solve(law.demands(trial), true, work)) break;
+    if (work > kMostWork || gives_way() || !program.solve(law.demands(trial), true, work)) break;
     const double time = law.solve(trial);
     if (!std::isfinite(time)) break;
     if (!(time < least)) continue;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "gives_way.hpp"
 #include "lanes.hpp"
 #include "time_law/law_rows.hpp"
 #include "time_law/law_spline.hpp"
@@ -39,7 +40,7 @@ class Solver {
     const double count = 2 * static_cast<double>(kLanes * rows_.all.size());
     begin(count);
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-      if (p_.work_left != nullptr && *p_.work_left <= 0) return result;
+      if ((p_.work_left != nullptr && *p_.work_left <= 0) || gives_way()) return give_up(std::move(result));
       if (p_.work_left != nullptr) *p_.work_left -= static_cast<long>(p_.intervals());
       result.iterations = iteration + 1;
       const double mu = gap_ / count;
@@ -65,6 +66,13 @@ class Solver {
   }
 
  private:
+  /// As far as it came; whoever asks for coefficients finds some.
+  LawSolution give_up(LawSolution result) {
+    result.coefficients = std::move(c_);
+    if (p_.draft) result.jerk_prices = jerk_prices();
+    return result;
+  }
+
   void fix_ends(const std::vector<double>& guess) {
     c_.assign(n_, 0.0);
     const std::size_t last = p_.intervals() - 1;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "gives_way.hpp"
 #include "time_law/law_check.hpp"
 #include "time_law/law_grid.hpp"
 #include "time_law/law_mend.hpp"
@@ -179,7 +180,7 @@ std::optional<std::vector<LawPiece>> checked_law(LawProblem& problem, const Path
   std::vector<LawPiece> law = law_pieces(problem, coefficients, t0);
   std::vector<double> excess(law.size());
   std::vector<IntervalRange> changed{{0, law.size()}};
-  for (int round = 0; round < tightenings; ++round) {
+  for (int round = 0; round < tightenings && !gives_way(); ++round) {
     for (const auto& [begin, end] : changed) {
       const auto from = static_cast<std::ptrdiff_t>(begin), to = static_cast<std::ptrdiff_t>(end);
       const LawExcess found = check_law(path, joints, {law.begin() + from, law.begin() + to}, feed);
@@ -261,7 +262,7 @@ std::optional<std::vector<LawPiece>> plan_window(const PathView& path, const std
   // of its lengths, no law follows it, and one follows a shorter stretch.
   for (const double rest_part : {1.0, 0.1, 0.01}) {
     if (auto law = law_of_window(path, joints, window, rest_part)) return law;
-    if (!window.patient || (window.work_left != nullptr && *window.work_left <= 0)) break;
+    if (!window.patient || gives_way() || (window.work_left != nullptr && *window.work_left <= 0)) break;
   }
   return std::nullopt;
 }

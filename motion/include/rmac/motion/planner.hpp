@@ -8,6 +8,7 @@
 
 #include "rmac/motion/error.hpp"
 #include "rmac/motion/follower/path_departure.hpp"
+#include "rmac/motion/interruption.hpp"
 #include "rmac/motion/path_segment.hpp"
 #include "rmac/motion/plan_channel.hpp"
 #include "rmac/motion/planner_model.hpp"
@@ -66,6 +67,9 @@ class Planner {
   [[nodiscard]] Expected<> rejoin(std::span<const double> joints);
   static constexpr double kRejoinSpeed = 0.1;
   void command(PathCommand command) noexcept;
+  /// A step ends early, without a plan, while somebody waits there to command something; what it was about is done by a
+  /// later one. Null: nobody does. It must outlive the planner, or be taken away.
+  void give_way_to(const Interruption* interruption) noexcept;
   /// 0 to 200 percent of the programmed feed, from as soon as the limits allow.
   void set_override(double percent) noexcept;
 
