@@ -23,8 +23,9 @@ double distance_to_line(const Vector& p, const Vector& a, const Vector& b) {
   return distance(p, {a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1]), a[2] + part * (b[2] - a[2])});
 }
 
-/// How far points that go along a polyline, forward only, are from it.
-double off(const std::vector<Vector>& points, const std::vector<Vector>& polyline) {
+/// How far points that go along a polyline, forward only, are from it. One that is farther than `enough` from where the
+/// search has come to is looked for anywhere: paths that turn back on themselves lead a search astray.
+double off(const std::vector<Vector>& points, const std::vector<Vector>& polyline, double enough = 1e300) {
   // As far ahead as a tool may have come in a cycle, and more.
   constexpr double kAhead_mm = 2;
   double worst = 0;
@@ -32,13 +33,19 @@ double off(const std::vector<Vector>& points, const std::vector<Vector>& polylin
   for (const Vector& point : points) {
     double least = 1e300, ahead_mm = 0;
     std::size_t best = line;
-    for (std::size_t k = line; k + 1 < polyline.size() && ahead_mm < kAhead_mm; ++k) {
+    const auto look_at = [&](std::size_t k) {
       const double here = distance_to_line(point, polyline[k], polyline[k + 1]);
       if (here < least) {
         least = here;
         best = k;
       }
-      ahead_mm += distance(polyline[k], polyline[k + 1]);
+    };
+    for (std::size_t k = line; k + 1 < polyline.size() && ahead_mm < kAhead_mm; ++k) {
+      look_at(k);
+      if (k > line) ahead_mm += distance(polyline[k], polyline[k + 1]);
+    }
+    if (least > enough) {
+      for (std::size_t k = 0; k + 1 < polyline.size(); ++k) look_at(k);
     }
     worst = std::max(worst, least);
     line = best;
@@ -92,6 +99,48 @@ tl::expected<Machined, std::string> machine(const Program& program, const Planne
   // Of the tool from the lines, and of each corner from the tool's way.
   if (done) done->deviation_mm = std::max(off(way, corners), off(corners, between_cycles(way)));
   return done;
+}
+
+namespace {
+
+/// What was sent, as a polyline that misses it by less than a micrometre: finer where it bends.
+void append(std::vector<Vector>& polyline, const PathSegment& segment) {
+  constexpr double kStep_mm = 0.02, kLeastSteps = 8;
+  if (polyline.empty()) polyline.push_back(segment.pose(0).tip);
+  const auto nodes = segment.nodes();
+  for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
+    const double width = nodes[k + 1] - nodes[k];
+    const double steps = segment.curve().straight() ? 1 : std::max(std::ceil(width / kStep_mm), kLeastSteps);
+    for (double i = 1; i <= steps; ++i) polyline.push_back(segment.pose(nodes[k] + width * i / steps).tip);
+  }
+}
+
+}  // namespace
+
+tl::expected<Machined, NotMachined> machine(const std::vector<Move>& moves, const PlannerModel& model) {
+  const auto start_of = [](const Geometry& geometry) -> Vector {
+    if (const auto* line = std::get_if<LineGeometry>(&geometry)) return line->start.tip;
+    if (const auto* arc = std::get_if<ArcGeometry>(&geometry)) return arc->start.tip;
+    const auto& pole = std::get<NurbsGeometry>(geometry).curve.points.front();
+    return {pole[0], pole[1], pole[2]};
+  };
+  const Vector start = start_of(moves.front().geometry);
+  Judge judge(model, start);
+  std::vector<Vector> way{start}, sent;
+  judge.on_tip = [&way](const Vector& at) { way.push_back(at); };
+  PathBuilder builder(model);
+  builder.restart(std::vector<double>{start[0], start[1], start[2]}, Frames{});
+  for (const Move& move : moves) {
+    const auto segments = builder.build(move);
+    if (!segments) return tl::unexpected(NotMachined{true, segments.error().message});
+    for (const auto& segment : *segments) append(sent, *segment);
+    if (auto queued = judge.drive.queue(move); !queued)
+      return tl::unexpected(NotMachined{true, queued.error().message});
+  }
+  auto done = judge.run();
+  if (!done) return tl::unexpected(NotMachined{false, done.error()});
+  done->deviation_mm = off(way, sent, moves.front().tolerance_mm);
+  return *done;
 }
 
 tl::expected<Machined, std::string> machine(const Nurbs& nurbs, double tolerance_mm, double feed_mm_s,

@@ -31,6 +31,13 @@ struct Machined {
 
 /// Machines a program that is queued whole, from rest to rest; the message where it is refused or never ends.
 [[nodiscard]] tl::expected<Machined, std::string> machine(const Program& program, const PlannerModel& model);
+/// Why there is no such figure.
+struct NotMachined {
+  bool refused = false;  ///< a move of it was; otherwise it never ended
+  std::string why;
+};
+/// The same of moves of any kind. Its deviation is that from the moves as they were sent, place by place.
+[[nodiscard]] tl::expected<Machined, NotMachined> machine(const std::vector<Move>& moves, const PlannerModel& model);
 /// The same of one NURBS.
 [[nodiscard]] tl::expected<Machined, std::string> machine(const Nurbs& nurbs, double tolerance_mm, double feed_mm_s,
                                                           const PlannerModel& model);
