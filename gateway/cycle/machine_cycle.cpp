@@ -100,12 +100,12 @@ void MachineCycle::watch_path(const CycleObservation& seen, const ServoStatus& s
 
 void MachineCycle::lead_back(const CycleObservation& seen, const ServoStatus& status) {
   if (!mechanism_ || status.generation != generation_ || !mechanism_->planner.off_path()) {
-    told_beside_ = false;
+    told_.beside = false;
     return;
   }
   if (!seen.at_rest || is_faulted(sequencer.state())) return;
   if (!sequencer.travels()) {
-    if (!std::exchange(told_beside_, true)) {
+    if (!std::exchange(told_.beside, true)) {
       news.tell(Event::Kind::CycleStateChanged, fmt::format("{}{}", to_string(sequencer.state()), beside_path(status)));
     }
     return;
@@ -167,7 +167,7 @@ void MachineCycle::apply_verdict(const CycleSequencer::Verdict& verdict, const S
   if (verdict.spindle_timed_out) tell_spindle_timeout(status);
   if (verdict.came_to_rest) {
     const bool beside = mechanism_ && mechanism_->planner.off_path();
-    told_beside_ = beside;
+    told_.beside = beside;
     news.tell(Event::Kind::Stopped, describe(*verdict.came_to_rest) + (beside ? beside_path(status) : std::string()),
               code_of(*verdict.came_to_rest));
   }
@@ -190,10 +190,10 @@ void MachineCycle::tell_spindle_timeout(const ServoStatus& status) {
 
 void MachineCycle::tell_state() {
   const CycleState state = sequencer.state();
-  if (state == reported_state_) return;
-  news.tell(Event::Kind::CycleStateChanged, fmt::format("{} to {}", to_string(reported_state_), to_string(state)),
+  if (state == told_.state) return;
+  news.tell(Event::Kind::CycleStateChanged, fmt::format("{} to {}", to_string(told_.state), to_string(state)),
             MinorCode::None, state == CycleState::Running);
-  reported_state_ = state;
+  told_.state = state;
   if (state == CycleState::EmergencyStop) marks.drop();
   wishes.change([state](ServoWishes& wish) {
     wish.state = state;

@@ -137,6 +137,12 @@ class MachineCycle {
   void tell_state() REQUIRES(lock);
   [[nodiscard]] Planning::Pace pace(const ServoStatus& status) REQUIRES(lock);
 
+  /// What clients know already.
+  struct Told {
+    CycleState state = CycleState::Idle;
+    bool beside = false;  ///< the machine rests beside its path
+  };
+
   const Options options_;
   ServoLink& link_;  ///< free of locks itself
   std::shared_ptr<Mechanism> mechanism_ GUARDED_BY(lock);
@@ -144,8 +150,7 @@ class MachineCycle {
   PathBuilder* builder_ = nullptr;  ///< the gateway thread's alone
   std::atomic<bool> jogs_{false};   ///< written with a turn, read without
   PathWatch path_watch_ GUARDED_BY(lock);
-  bool told_beside_ GUARDED_BY(lock) = false;  ///< that the machine rests beside its path
-  CycleState reported_state_ GUARDED_BY(lock) = CycleState::Idle;
+  Told told_ GUARDED_BY(lock);
 };
 
 }  // namespace rmac::gateway

@@ -36,7 +36,7 @@ struct ToolsNow {
   std::optional<int> wanted;             ///< by the first change that is queued
   std::optional<int> last;               ///< by the last one
   bool changing = false;                 ///< a change has begun
-  std::string prompt;                  ///< what a person is to do; empty: nothing
+  std::string prompt;                    ///< what a person is to do; empty: nothing
   /// As the spindles are told to turn when all that is queued is done.
   std::array<double, kMaxSpindles> spindle_rpm{};
 };

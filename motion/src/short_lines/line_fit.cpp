@@ -9,9 +9,9 @@
 #include "path/travel.hpp"
 #include "short_lines/alike.hpp"
 #include "short_lines/dense_spline.hpp"
-#include "short_lines/quintic.hpp"
 #include "short_lines/tube_spline.hpp"
 #include "short_lines/turning_curve.hpp"
+#include "splines/quintic.hpp"
 
 namespace rmac {
 namespace {

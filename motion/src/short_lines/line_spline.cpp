@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "short_lines/quintic.hpp"
+#include "splines/quintic.hpp"
 
 namespace rmac {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "curves/vector.hpp"
-#include "short_lines/banded.hpp"
+#include "splines/banded.hpp"
 
 namespace rmac {
 namespace {

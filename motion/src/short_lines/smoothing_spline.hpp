@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "rmac/motion/pose.hpp"
-#include "short_lines/quintic.hpp"
+#include "splines/quintic.hpp"
 
 namespace rmac {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "short_lines/banded.hpp"
-#include "short_lines/quintic.hpp"
+#include "splines/banded.hpp"
+#include "splines/quintic.hpp"
 
 namespace rmac {
 

@@ -7,8 +7,8 @@
 
 #include "curves/vector.hpp"
 #include "gives_way.hpp"
-#include "short_lines/quintic.hpp"
 #include "short_lines/tube_program.hpp"
+#include "splines/quintic.hpp"
 
 namespace rmac {
 namespace {

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "curves/vector.hpp"
-#include "short_lines/banded.hpp"
-#include "short_lines/quintic.hpp"
 #include "short_lines/turning_curve.hpp"
+#include "splines/banded.hpp"
+#include "splines/quintic.hpp"
 
 namespace rmac {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "curves/vector.hpp"
-#include "short_lines/quintic.hpp"
+#include "splines/quintic.hpp"
 
 namespace rmac {
 

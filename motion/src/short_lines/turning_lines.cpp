@@ -7,9 +7,9 @@
 #include "curves/vector.hpp"
 #include "path/least_squares.hpp"
 #include "rmac/motion/frame.hpp"
-#include "short_lines/quintic.hpp"
 #include "short_lines/turn_spline.hpp"
 #include "short_lines/turning_curve.hpp"
+#include "splines/quintic.hpp"
 
 namespace rmac {
 namespace {

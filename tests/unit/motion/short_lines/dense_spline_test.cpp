@@ -63,8 +63,7 @@ TEST_P(DenseSpline, IsWithinWhatItSaysOfEachLineAndThatWithinTheTolerance) {
     for (double part = 0; part <= 1; part += 0.125) {
       const double place = polyline.places[k] + part * (polyline.places[k + 1] - polyline.places[k]);
       const Vector here = quintic::value(quintic::basis(spline->knots, spline->points.size(), place), spline->points);
-      EXPECT_LE(distance_to_chord(here, polyline.vertices[k], polyline.vertices[k + 1]),
-                spline->deviations[k] + 1e-12);
+      EXPECT_LE(distance_to_chord(here, polyline.vertices[k], polyline.vertices[k + 1]), spline->deviations[k] + 1e-12);
     }
   }
 }

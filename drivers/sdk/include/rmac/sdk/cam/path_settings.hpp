@@ -4,8 +4,8 @@
 
 namespace rmac::sdk {
 
-/// Feed, accelerations and tolerances of path moves that are queued from now on, in the wire's units: mm, mm/min, mm/s²,
-/// degrees. What bounds the mechanism itself can only be tightened. Gateway thread only.
+/// Feed, accelerations and tolerances of path moves that are queued from now on, in the wire's units: mm, mm/min,
+/// mm/s², degrees. What bounds the mechanism itself can only be tightened. Gateway thread only.
 class PathSettings {
  public:
   virtual ~PathSettings() = default;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "rmac/motion/pose.hpp"
-#include "short_lines/banded.hpp"
+#include "splines/banded.hpp"
 
 namespace rmac::quintic {
 

@@ -1,4 +1,4 @@
-#include "short_lines/quintic.hpp"
+#include "splines/quintic.hpp"
 
 #include <algorithm>
 #include <cmath>
