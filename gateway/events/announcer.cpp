@@ -13,7 +13,7 @@ void Announcer::announce(const CycleNews::Taken& news) {
   using Kind = QueueChange::Kind;
   for (const QueueChange& change : news.queue) {
     if (change.kind == Kind::Added || change.kind == Kind::Still) {
-      ledger_.add(change.move_id, change.kind == Kind::Still, change.part, change.name);
+      ledger_.add(change.move_id, change.kind == Kind::Still, change.part, change.name, change.cycle);
       continue;
     }
     tell_samples_until(change.cycle);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "rmac/motion/move_name.hpp"
 
 namespace rmac::gateway {
@@ -20,14 +22,14 @@ void MoveLedger::read(const CycleSample& sample, const std::function<void(const 
     if (!entry.started) tell(make_event(Event::Kind::MoveStarted, sample, entry.id, entry.name));
     entry.started = true;
   };
-  while (!moves_.empty() && (moves_.front().still || done_ < sample.moves_done)) {
+  while (!moves_.empty() && front_is_done(sample)) {
     start(moves_.front());
     const Entry& done = moves_.front();
     if (done.tells_done) tell(make_event(Event::Kind::MoveDone, sample, done.id, done.name));
     if (!moves_.front().still) ++done_;
     moves_.pop_front();
   }
-  if (sample.moves_done > done_) done_ = sample.moves_done;
+  if (moves_.empty()) done_ = std::max(done_, sample.moves_done);
   if (sample.moving && !moves_.empty() && moves_.front().id == sample.move_id) start(moves_.front());
 }
 

@@ -18,9 +18,10 @@ class MoveLedger {
  public:
   /// `still`: the move has no motion, so no sample counts it; it is done in its turn. The first part of a move tells
   /// that it began, the last one that it is done.
-  /// `name`: as it is told; empty: "move 7".
-  void add(std::int64_t move_id, bool still, MovePart part = {}, std::string name = {}) {
-    moves_.push_back({move_id, !part.first, still, part.last, std::move(name)});
+  /// `name`: as it is told; empty: "move 7". `since`: the cycle in which it was queued; a move without motion is told
+  /// by a later sample, behind what ended in that cycle.
+  void add(std::int64_t move_id, bool still, MovePart part = {}, std::string name = {}, std::int64_t since = -1) {
+    moves_.push_back({move_id, !part.first, still, part.last, std::move(name), since});
   }
   /// What is not done will not be done.
   void clear() { moves_.clear(); }
@@ -38,7 +39,12 @@ class MoveLedger {
     bool still;
     bool tells_done;
     std::string name;
+    std::int64_t since;
   };
+  [[nodiscard]] bool front_is_done(const CycleSample& sample) const noexcept {
+    const Entry& front = moves_.front();
+    return front.still ? sample.cycle > front.since : done_ < sample.moves_done;
+  }
   std::deque<Entry> moves_;
   std::uint64_t done_ = 0;
 };

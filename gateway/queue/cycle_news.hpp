@@ -10,8 +10,8 @@
 
 namespace rmac::gateway {
 
-/// What happened to the queue: a move was added (`Still`: one without motion), or (at `cycle`) everything not done was
-/// dropped, or another mechanism's queue began.
+/// What happened to the queue, and in which cycle: a move was added (`Still`: one without motion), or everything not
+/// done was dropped, or another mechanism's queue began.
 struct QueueChange {
   enum class Kind : std::uint8_t { Added, Still, Cleared, Replaced };
   Kind kind = Kind::Added;
@@ -44,7 +44,11 @@ class CycleNews {
     tell(std::move(event));
   }
   void tell(Event event) { news_.events.push_back(std::move(event)); }
-  void tell(const QueueChange& change) { news_.queue.push_back(change); }
+  /// What is added to the queue is so in the cycle that was set.
+  void tell(QueueChange change) {
+    if (change.kind == QueueChange::Kind::Added || change.kind == QueueChange::Kind::Still) change.cycle = cycle_;
+    news_.queue.push_back(std::move(change));
+  }
   [[nodiscard]] Taken take() { return std::exchange(news_, {}); }
 
  private:

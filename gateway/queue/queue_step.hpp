@@ -14,7 +14,7 @@
 namespace rmac::gateway {
 
 // What stands between moves: what a tool change is made of, what a program does in its turn, and what waits behind it.
-// Each step but a path is taken at rest, when all before it is done, and while the cycle runs.
+// Each but a path, and a switch of outputs alone, is taken at rest, when all before is done, and while the cycle runs.
 
 /// One client move may be several of the planner's: which of them this is.
 struct MovePart {

@@ -77,23 +77,18 @@ Expected<> CamSpindles::set_coolant(bool on) {
 Expected<> CamSpindles::set_output(const std::string& name, bool on) {
   const auto bit = device_.find_output(name, "SetOutput");
   if (!bit) return tl::unexpected(bit.error());
-  if (is_the_changers(name)) {
-    const auto& speeds = supervisor_.wishes().spindle_rpm;
-    const bool turns = std::ranges::any_of(speeds, [](double rpm) { return rpm != 0; });
-    auto rest = supervisor_.require_rest("SetOutput of what the tool changer switches");
-    if (!rest) return rest;
-    if (turns) {
-      return failure(MinorCode::Other, fmt::format("SetOutput: the tool changer switches {}, and a spindle turns; stop "
-                                                   "it first, or change tools with DoToolChange",
-                                                   name));
-    }
-  }
+  if (auto not_changers = check_not_the_changers("SetOutput", name); !not_changers) return not_changers;
+  // What an operator holds may be held by a clamp: nothing is switched, on or off, but by them.
+  if (auto free = supervisor_.operating().require_free("SetOutput"); !free) return free;
   return switch_output("SetOutput", *bit, on);
 }
 
 Expected<> CamSpindles::switch_output(const char* function, std::uint64_t bit, bool on) {
   if (on && is_faulted(supervisor_.state())) {
     return failure(MinorCode::Other, fmt::format("{}: the machine is faulted; remove the cause, then reset", function));
+  }
+  if (on) {
+    if (auto free = supervisor_.operating().require_free(function); !free) return free;
   }
   if (on && supervisor_.tools_now().changing) {
     return failure(MinorCode::Other, fmt::format("{}: a tool change is under way; wait for its end", function));
@@ -102,10 +97,13 @@ Expected<> CamSpindles::switch_output(const char* function, std::uint64_t bit, b
   return {};
 }
 
-bool CamSpindles::is_the_changers(const std::string& output) const {
-  return std::ranges::any_of(device_.get()->tool_change, [&](const sdk::ToolChangeStep& step) {
+Expected<> CamSpindles::check_not_the_changers(const char* function, const std::string& output) const {
+  const bool the_changers = std::ranges::any_of(device_.get()->tool_change, [&](const sdk::ToolChangeStep& step) {
     return std::ranges::find(step.outputs, output) != step.outputs.end();
   });
+  if (!the_changers) return {};
+  return failure(MinorCode::UnsupportedOperation,
+                 fmt::format("{}: the tool changer switches {}; change tools with DoToolChange", function, output));
 }
 
 Expected<Switch::Speed> CamSpindles::in_turn(const sdk::SpindleCall& call) const {
@@ -117,10 +115,8 @@ Expected<Switch::Speed> CamSpindles::in_turn(const sdk::SpindleCall& call) const
 Expected<Switch::Output> CamSpindles::in_turn(const sdk::OutputCall& call) const {
   const auto bit = device_.find_output(call.name, "InTurn");
   if (!bit) return tl::unexpected(bit.error());
-  if (is_the_changers(call.name)) {
-    return failure(MinorCode::UnsupportedOperation,
-                   fmt::format("InTurn: the tool changer switches {}; change tools with DoToolChange", call.name));
-  }
+  if (auto not_changers = check_not_the_changers("InTurn", call.name); !not_changers)
+    return tl::unexpected(not_changers.error());
   return Switch::Output{call.name, call.on, *bit};
 }
 

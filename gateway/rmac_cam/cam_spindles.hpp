@@ -38,7 +38,7 @@ class CamSpindles final : public sdk::SpindleControl {
 
  private:
   [[nodiscard]] Expected<std::size_t> check_rpm(const char* function, int spindle, double rpm) const;
-  [[nodiscard]] bool is_the_changers(const std::string& output) const;
+  [[nodiscard]] Expected<> check_not_the_changers(const char* function, const std::string& output) const;
   Expected<> switch_output(const char* function, std::uint64_t bit, bool on);
 
   const DeviceInForce& device_;

@@ -15,7 +15,7 @@ enum class Timing {
 /// By the API table; what is not in the table waits for all before it, and the appliance refuses it.
 [[nodiscard]] Timing timing_of(const std::string& method);
 
-/// Whether it queues what is done between moves, at rest.
+/// Whether it queues what is done between moves.
 [[nodiscard]] bool stands_between_moves(const std::string& method);
 
 /// Whether a move ends where the part is, so that what comes next begins there.

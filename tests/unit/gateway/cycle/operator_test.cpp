@@ -87,6 +87,17 @@ TEST_F(BesideAProgram, KeepsSpindlesOffButLetsThemBeStopped) {
   EXPECT_TRUE(cam().spindles().set_rpm(0, 100));
 }
 
+// Red when a clamp opens, or a laser goes on, under the hands of a person who holds the machine.
+TEST_F(BesideAProgram, SwitchesNothingWhileTheyHold) {
+  hold();
+  for (const bool on : {true, false})
+    EXPECT_THAT(cam().spindles().set_output("Coolant", on).error().message, HasSubstr("SetOutput: panel"));
+  EXPECT_THAT(cam().spindles().set_coolant(true).error().message, HasSubstr("TurnCoolantOn: panel"));
+  EXPECT_TRUE(cam().spindles().set_coolant(false));
+  ASSERT_TRUE(operating().resume(panel_));
+  EXPECT_TRUE(cam().spindles().set_output("Coolant", true));
+}
+
 TEST_F(BesideAProgram, LeavesTheHoldWhenTheyGoToTheNextOperator) {
   hold();
   panel_->leave();

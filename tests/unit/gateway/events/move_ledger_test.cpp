@@ -35,6 +35,24 @@ TEST_F(MoveLedgerTest, AMoveWithoutMotionIsDoneInItsTurn) {
   EXPECT_THAT(read(1), ElementsAre("move 4 done", "move 5 started", "move 5 done"));
 }
 
+// Red when what a dwell that ends in cycle 7 has behind it is told before the dwell is: a client that waits for its
+// moves in order then waits for ever.
+TEST_F(MoveLedgerTest, AMoveWithoutMotionIsToldAfterTheCycleInWhichItWasQueued) {
+  const auto read_cycle = [this](std::int64_t cycle, std::uint64_t moves_done) {
+    CycleSample sample;
+    sample.cycle = cycle;
+    sample.moves_done = moves_done;
+    std::vector<std::string> told;
+    ledger_.read(sample, [&](const Event& event) { told.push_back(event.message); });
+    return told;
+  };
+  ledger_.add(3, true, {}, {}, 7);
+  ledger_.add(4, false, {}, {}, 7);
+  EXPECT_THAT(read_cycle(6, 0), testing::IsEmpty());
+  EXPECT_THAT(read_cycle(7, 0), testing::IsEmpty());
+  EXPECT_THAT(read_cycle(8, 1), ElementsAre("move 3 started", "move 3 done", "move 4 started", "move 4 done"));
+}
+
 TEST_F(MoveLedgerTest, WhatIsDoneOnTheWayIsToldByItsName) {
   ledger_.add(4, false);
   ledger_.add(5, true, {}, "calls in turn 5 (Laser on)");

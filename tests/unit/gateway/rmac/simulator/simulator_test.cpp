@@ -61,6 +61,18 @@ TEST(Simulator, CountsDwellsAndPassesStopsAndInputs) {
   EXPECT_NEAR(report->length_mm, 2, 1e-9);
 }
 
+// Red when a move to where the tool stands is told done before the dwell in front of it: the end is waited for for
+// ever.
+TEST(Simulator, PassesAMoveToWhereTheToolStandsBehindADwell) {
+  Program program = strokes(1);
+  const nlohmann::json there{{"p", {1, 0, 0}}, {"axis", {0, 0, 1}}};
+  program.requests.push_back(request(3, "RMAC_CAM.Dwell", {{"MoveID", 10}, {"Time", 0.5}}));
+  program.requests.push_back(request(4, "RMAC_CAM.MoveToPathTarget", {{"MoveID", 11}, {"TargetFrame", there}}));
+  const auto report = simulate(program, 100);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->moves, 3U);
+}
+
 TEST(Simulator, NamesTheLineOfAnInputThatIsNot) {
   Program program = strokes(1);
   program.requests.push_back(

@@ -21,8 +21,8 @@ struct OutputCall {
 using CallInTurn = std::variant<SpindleCall, OutputCall>;
 
 /// What a program does between its moves, each in its turn: queued behind the moves before it, with an id that comes
-/// back in events as a move's does. The path comes to rest there. A full queue is CommandQueueFull, as of a move.
-/// Gateway thread only.
+/// back in events as a move's does. The path comes to rest there, but for outputs. A full queue is CommandQueueFull, as
+/// of a move. Gateway thread only.
 class ProgramFlow {
  public:
   virtual ~ProgramFlow() = default;
