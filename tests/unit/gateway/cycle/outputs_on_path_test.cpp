@@ -53,7 +53,8 @@ TEST_P(OutputsOnThePathOfAMill, SwitchInTheCycleThatPassesThem) {
     }
   }
   ASSERT_TRUE(cam().cycle().start(sdk::CycleMode::Automatic));
-  ASSERT_TRUE(machine_.run_until([&] { return machine_.samples.back().moves_done == before_it + kMoves; }));
+  ASSERT_TRUE(machine_.run_until(
+      [&] { return !machine_.samples.empty() && machine_.samples.back().moves_done == before_it + kMoves; }));
   std::size_t passed = 0;
   bool on = false;
   const CycleSample* before = nullptr;
