@@ -9,8 +9,8 @@ namespace {
 
 /// Ends nearer than this meet, and what keeps a plane to so much keeps it.
 constexpr double kArcTolerance_mm = 1e-3;
-/// Two radii may differ by this much, or by the tolerance of the move, where the client's start, end and centre do not
-/// quite fit each other: coordinates to a micrometre, six of them, make up to 2.83 µm.
+/// Two radii may differ by this much, or by half of the move's tolerance, where the client's start, end and centre do
+/// not quite fit each other: coordinates to a micrometre, six of them, make up to 2.83 µm.
 constexpr double kRounded_mm = 3e-3;
 
 /// A circle's stretch, seen from its start so that large radii lose no digits (docs/derivations/curves.md, eq. 3); a
@@ -172,7 +172,7 @@ Expected<CurvePtr> make_arc(const ArcGeometry& arc, const ToolPose& start, doubl
     return norm(along(spoke, -dot(spoke, normal), normal));
   };
   const double start_radius = radius_of(start.tip), end_radius = radius_of(end);
-  const double allowed = std::max(kRounded_mm, tolerance_mm) + 1e-6 * start_radius;
+  const double allowed = std::max(kRounded_mm, tolerance_mm / 2) + 1e-6 * start_radius;
   if (std::abs(start_radius - end_radius) > allowed) {
     return refuse("the arc's start has radius " + text(start_radius) + " mm about its centre and its end " +
                   text(end_radius) + " mm, a difference of " + text(std::abs(start_radius - end_radius)) + " mm; " +
@@ -182,7 +182,7 @@ Expected<CurvePtr> make_arc(const ArcGeometry& arc, const ToolPose& start, doubl
   if (!circle) return tl::unexpected(circle.error());
   // Where the ends nearly meet, a centre moved to fit both can lie far off: the amounts above do not show it.
   const double off = stray(*circle, arc.center, normal, start.tip);
-  if (off > 2 * allowed) {
+  if (off > std::max(2 * kRounded_mm, tolerance_mm / 2) + 2e-6 * start_radius) {
     return refuse("the arc's start and end fit no circle about its centre: the best through both is " + text(off) +
                   " mm off; give more digits");
   }

@@ -193,7 +193,9 @@ struct Planner::Impl {
   }
 
   bool stop(const ServoProgress& progress) {
-    const std::int64_t lead = stop_came_late ? planning_time.lead() : PlanningTime::kShortestLead;
+    // Of a plan that is not taken over yet, only what is the plan's before too is sure to be followed.
+    const bool patient = stop_came_late && plans.acknowledged(progress);
+    const std::int64_t lead = patient ? planning_time.lead() : PlanningTime::kShortestLead;
     // The rest ends every search: the plan itself comes to rest there.
     const double rest = rest_behind(*base(), earliest(*base(), progress.cycle + lead));
     return brake(progress, lead, rest, {true, kStopTries}) || end_at_rest(progress, rest);

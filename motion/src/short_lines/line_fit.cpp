@@ -37,6 +37,8 @@ constexpr double kSpansALine = 3;
 /// the tolerance, the tube is made narrower.
 constexpr double kTubePart = 0.97;
 constexpr int kTubeTrials = 3;
+/// A pole that was led over so far back shapes nothing any more.
+constexpr double kPoleForgotten_mm = 60;
 /// Lines from which on a law with open ends says how fast a spline is: fewer are mostly ramps.
 constexpr std::size_t kWorthALaw = 20;
 
@@ -163,6 +165,7 @@ Polyline LineFit::polyline(std::size_t lines) const {
 }
 
 bool LineFit::fit_dense(std::size_t lines, bool ends, Fit& fit) {
+  fit = {};
   fit.polyline = polyline(lines);
   const double tolerance = waiting_[0]->demand().tolerance_mm, length = fit.polyline.places.back();
   const double third = length / 3, corner = std::min(kCorner * tolerance, third);
@@ -184,8 +187,8 @@ bool LineFit::fit_dense(std::size_t lines, bool ends, Fit& fit) {
 }
 
 bool LineFit::fit_tube(std::size_t lines, bool ends, Fit& fit) const {
+  fit = {};
   fit.polyline = polyline(lines);
-  fit.spline = {};
   LineSpline& spline = fit.spline;
   const LineSpline& before = before_.spline;
   const std::vector<double>& places = fit.polyline.places;
@@ -251,9 +254,12 @@ bool LineFit::fit(bool finish, Fit& fit) {
   if (run < kShortest && !goes_on()) return false;
   const bool whole = finish || complete();
   // Dense lines up to those that are too coarse, and these in the tube.
+  std::size_t tried = 0;
   for (int trial = 0; trial < 2; ++trial) {
     const std::size_t lines = dense_lines(run);
-    if (lines > 0 && fit_dense(lines, whole && run <= lines, fit)) return true;
+    if (lines == tried) break;
+    if (fit_dense(lines, whole && run <= lines, fit)) return true;
+    tried = lines;
   }
   return fit_tube(std::min(run, kTubeLines), whole && run <= kTubeLines, fit);
 }
@@ -377,6 +383,7 @@ void LineFit::take(Fit fit, SegmentQueue& out) {
   before_.spline.leave(before_.cut, before_.polyline.places[done]);
   if (LineSpline& turns = before_.turns; !turns.empty()) turns.leave(knot_at(turns, before_.cut_mm), before_.cut_mm);
   for (OverPole& over : before_.overs) over.place -= before_.cut_mm;
+  std::erase_if(before_.overs, [](const OverPole& over) { return over.place < -kPoleForgotten_mm; });
   auto& [vertices, places, off_mm, previous] = before_.polyline;
   if (done > 0) previous = vertices[done - 1];
   vertices.erase(vertices.begin(), vertices.begin() + static_cast<std::ptrdiff_t>(done));

@@ -107,7 +107,8 @@ void LineMerger::add(std::shared_ptr<const PathSegment> segment, const std::vect
     const double allowed = allowed_mm(*chain_.front());
     chain_.push_back(segment);
     const bool one = chain_.size() <= kMostLines && may_merge(*segment) && alike(*chain_.front(), *segment);
-    if (const auto [mm, rad] = off(chain_); one && mm <= allowed && rad <= allowed_rad(*segment)) {
+    const Off missed = one ? off(chain_) : Off{};
+    if (one && missed.mm <= allowed && missed.rad <= allowed_rad(*segment)) {
       if (distance(begin_of(chain_).tip, end_of(chain_).tip) >= allowed) flush(joints, out);
       return;
     }

@@ -19,7 +19,7 @@ struct LineGeometry {
 /// Circular arc about an axis, and where its end differs from its start in height along the axis, a helix of even
 /// pitch. `closed` makes a full circle, whose end is its start, seen along the axis; `turns` whole turns are added;
 /// `rotation` is +1 counter-clockwise about `normal`, -1 clockwise. Start and end may differ in radius about the axis
-/// by 1 µm and a millionth of the radius.
+/// by 3 µm, or half of the tolerance, and a millionth of the radius.
 struct ArcGeometry {
   static constexpr int kMostTurns = 1000;
 

@@ -132,12 +132,14 @@ TEST_F(Arc, IsTakenWithCoordinatesRoundedToAMicrometre) {
   }
 }
 
-TEST_F(Arc, MayMissItsCentreByItsTolerance) {
-  const ToolPose start{{10, 0, 0}, {0, 0, 1}}, end{{0, 10.015, 0}, {0, 0, 1}};
+TEST_F(Arc, MayMissItsCentreByHalfOfItsTolerance) {
+  const ToolPose start{{10, 0, 0}, {0, 0, 1}}, end{{0, 10.008, 0}, {0, 0, 1}};
   Move move = move_of(ArcGeometry{{0, 0, 0}, {0, 0, 1}, 1, false, start, end});
   EXPECT_FALSE(make_curves(move, {start, {}}));
   move.tolerance_mm = 0.02;
   EXPECT_TRUE(make_curves(move, {start, {}}));
+  move.tolerance_mm = 0.015;
+  EXPECT_FALSE(make_curves(move, {start, {}}));
 }
 
 TEST_F(Arc, IsRefusedWhenDegenerate) {

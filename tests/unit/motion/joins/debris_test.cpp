@@ -1,5 +1,5 @@
 // What CAM systems leave in a program beside what is meant: points that repeat, lines shorter than the tolerance, arcs
-// that rounding made tiny. The machine runs as if they were not there, and every move is told done.
+// that rounding made tiny. The machine runs as if they were not there, and every move that moves is done.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -123,7 +123,7 @@ class Strewn : public ::testing::TestWithParam<std::tuple<Debris, unsigned>> {
  protected:
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
 
-  /// Leaves some here; without a generator of numbers, the place where it leads to alone.
+  /// Leaves some here.
   void strew(Program& program) {
     const auto& debris = std::get<0>(GetParam());
     const int count = std::uniform_int_distribution<int>(1, debris.most)(random_);

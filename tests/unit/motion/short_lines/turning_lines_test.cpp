@@ -331,7 +331,8 @@ TEST_P(TurningLines, AreHeldAndOverriddenAnywhere) {
     run.bench.planner.command(PathCommand::Run);
     for (int i = 0; i < 12; ++i) {
       run.bench.planner.set_override(between(10, 200));
-      for (int k = 0; k < 1 + static_cast<int>(between(0, 300)); ++k) run.bench.cycle();
+      const int cycles = 1 + static_cast<int>(between(0, 300));
+      for (int k = 0; k < cycles; ++k) run.bench.cycle();
       if (i % 3 != 0) continue;
       run.bench.planner.command(PathCommand::Stop);
       ASSERT_TRUE(run.bench.run());
