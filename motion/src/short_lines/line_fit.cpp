@@ -257,7 +257,7 @@ bool LineFit::fit(bool finish, Fit& fit) {
   std::size_t tried = 0;
   for (int trial = 0; trial < 2; ++trial) {
     const std::size_t lines = dense_lines(run);
-    if (lines == tried) break;
+    if (lines == 0 || lines == tried) break;
     if (fit_dense(lines, whole && run <= lines, fit)) return true;
     tried = lines;
   }
