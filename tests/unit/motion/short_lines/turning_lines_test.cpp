@@ -351,7 +351,7 @@ TEST_P(TurningLines, JoinWithWhatFollows) {
   // On with the axis at rest, in lines as short, around a corner, and back with it turning.
   const auto on = [&](const Vector& way, int lines, double turn) {
     for (int i = 0; i < lines; ++i) {
-      const ToolPose& last = corners.back();
+      const ToolPose last = corners.back();
       const Vector axis = unit(along(last.axis, turn, {0, 0, 1}));
       corners.push_back({along(last.tip, 1, way), axis});
       run.queue(LineGeometry{last, corners.back()});
