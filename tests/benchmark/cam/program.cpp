@@ -125,9 +125,9 @@ tl::expected<Machined, NotMachined> machine(const std::vector<Move>& moves, cons
     return {pole[0], pole[1], pole[2]};
   };
   const Vector start = start_of(moves.front().geometry);
-  Judge judge(model, start);
+  Judge judge(model, {start.begin(), start.end()});
   std::vector<Vector> way{start}, sent;
-  judge.on_tip = [&way](const Vector& at) { way.push_back(at); };
+  judge.on_joints = [&way](std::span<const double> joints) { way.push_back({joints[0], joints[1], joints[2]}); };
   PathBuilder builder(model);
   builder.restart(std::vector<double>{start[0], start[1], start[2]}, Frames{});
   for (const Move& move : moves) {
