@@ -19,6 +19,8 @@ constexpr double kFarAway = 1e5;
 constexpr double kAtTheLimit = 1e-6;
 /// To so much the way to a limit is found, in mm or degrees.
 constexpr double kReachFound = 1e-3;
+/// So far before it a jog ends: at the very end of reach, joints that friction holds a micrometre beyond have no pose.
+constexpr double kBesideReach = 1e-2;
 
 double travel_end(const JointLimits& limits, double from, bool positive) {
   const bool bounded = positive ? ends_above(limits) : ends_below(limits);
@@ -141,7 +143,7 @@ Expected<double> CamPositioning::reach_of(const std::function<Move(double)>& mov
   };
   if (try_length(most)) return most;
   double good = 0;
-  double bad = std::min(kReachFound, most);
+  double bad = std::min(kReachFound + kBesideReach, most);
   auto refusal = try_length(bad);
   if (!refusal) return tl::unexpected(refusal.error());
   while (refusal && bad < most) {
@@ -154,7 +156,7 @@ Expected<double> CamPositioning::reach_of(const std::function<Move(double)>& mov
     const double middle = (good + bad) / 2;
     (try_length(middle) ? good : bad) = middle;
   }
-  return good;
+  return good - kBesideReach;
 }
 
 Expected<> CamPositioning::jog_at(const char* function, const Jog& jog, double velocity,
