@@ -208,7 +208,8 @@ double length_of(Passed over) {
   return sum;
 }
 
-/// How far corners between these lines are from the straight way between their ends.
+/// How far corners between these lines are from the nearer one of their ends, and so from the way between these at
+/// most.
 double stray(Passed over, const CurvePoint& begin, const CurvePoint& end, double lever_mm) {
   double most = 0;
   CurvePoint corner;

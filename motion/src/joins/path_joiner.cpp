@@ -27,8 +27,7 @@ void PathJoiner::clear() {
 }
 
 std::size_t PathJoiner::lines_to_pass() const noexcept {
-  if (current_ == nullptr || incoming_.empty() || passes_at_speed(*current_, *incoming_.front(), joints_, period_s_))
-    return 0;
+  if (current_ == nullptr) return 0;
   std::size_t count = 0;
   double length = 0;
   for (const auto& line : incoming_) {
@@ -38,7 +37,8 @@ std::size_t PathJoiner::lines_to_pass() const noexcept {
       break;
     ++count;
   }
-  return count;
+  // Asked last: it takes kinematics, and hardly a segment comes so far.
+  return count > 0 && !passes_at_speed(*current_, *incoming_.front(), joints_, period_s_) ? count : 0;
 }
 
 bool PathJoiner::looks_further() const noexcept {

@@ -91,19 +91,13 @@ Ran run(const Program& program, int most_pause = 0, unsigned seed = 0) {
   off = 0;
   for (const Vector& p : vertices) off = std::max(off, distance_to_trace(p, path));
   EXPECT_LE(off, kTolerance_mm + 2e-4);
-  std::int64_t id = 0;
+  expect_limits_and_order(bench);
   int stops = 0;
   bool was_moving = false;
   for (const Setpoint& setpoint : bench.record) {
-    EXPECT_GE(setpoint.move_id, id);
-    id = setpoint.move_id;
     if (was_moving && !setpoint.moving) ++stops;
     was_moving = setpoint.moving;
   }
-  const auto peaks = bench.peaks();
-  EXPECT_LE(peaks.velocity, kAtMost);
-  EXPECT_LE(peaks.acceleration, kAtMost);
-  EXPECT_LE(peaks.jerk, kAtMost);
   return {seconds(bench), stops - 1};
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -45,6 +47,19 @@ inline Trace travelled(const PlannerBench& bench) {
     if (trace.empty() || distance(trace.back(), here) > 0) trace.push_back(here);
   }
   return trace;
+}
+
+/// What holds for every program: limits in every cycle, and moves told in their order.
+inline void expect_limits_and_order(const PlannerBench& bench) {
+  std::int64_t id = 0;
+  for (const Setpoint& setpoint : bench.record) {
+    EXPECT_GE(setpoint.move_id, id);
+    id = setpoint.move_id;
+  }
+  const auto peaks = bench.peaks();
+  EXPECT_LE(peaks.velocity, kAtMost);
+  EXPECT_LE(peaks.acceleration, kAtMost);
+  EXPECT_LE(peaks.jerk, kAtMost);
 }
 
 inline double seconds(const PlannerBench& bench) {

@@ -54,15 +54,7 @@ double machined(const Trace& corners, double tolerance_mm, int cycles_between = 
   off = 0;
   for (const Vector& p : corners) off = std::max(off, distance_to_trace(p, path));
   EXPECT_LE(off, tolerance_mm + 2e-4);
-  std::int64_t id = 0;
-  for (const Setpoint& setpoint : bench.record) {
-    EXPECT_GE(setpoint.move_id, id);
-    id = setpoint.move_id;
-  }
-  const auto peaks = bench.peaks();
-  EXPECT_LE(peaks.velocity, kAtMost);
-  EXPECT_LE(peaks.acceleration, kAtMost);
-  EXPECT_LE(peaks.jerk, kAtMost);
+  expect_limits_and_order(bench);
   return seconds(bench);
 }
 
