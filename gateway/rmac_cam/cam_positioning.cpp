@@ -133,11 +133,11 @@ Expected<> CamPositioning::jog_path_at(const sdk::JogDirection& direction, doubl
 }
 
 Expected<double> CamPositioning::reach_of(const std::function<Move(double)>& move_by, double most) const {
-  const auto mechanism = supervisor_.mechanism();
   const ServoStatus now = link_.status.read();
   const Frames frames = supervisor_.wishes().frames;
+  PlannerModel model = supervisor_.mechanism()->planner_model;
   const auto try_length = [&](double length) {
-    PathBuilder builder(mechanism->planner_model);
+    PathBuilder builder(model);
     builder.restart({now.position_set.data(), now.joint_count}, frames);
     return builder.build(move_by(length));
   };
@@ -156,7 +156,9 @@ Expected<double> CamPositioning::reach_of(const std::function<Move(double)>& mov
     const double middle = (good + bad) / 2;
     (try_length(middle) ? good : bad) = middle;
   }
-  return good - kBesideReach;
+  // Whether it is the end of a joint's travel or of the poses shows where no joint ends.
+  for (JointLimits& joint : model.joints) joint.limit_type = JointLimitType::Infinite;
+  return try_length(bad) ? good : good - kBesideReach;
 }
 
 Expected<> CamPositioning::jog_at(const char* function, const Jog& jog, double velocity,

@@ -45,8 +45,8 @@ class CamPositioning final : public sdk::Positioning {
   [[nodiscard]] Move move_by(const ToolPose& from, const Vector& direction, double mm) const;
   /// Refuses a jog towards a limit switch that is on.
   [[nodiscard]] Expected<> check_limit_switches(std::size_t joint, bool positive) const;
-  /// How far a move can go from where the machine stands, before a joint leaves its travel or the reach ends;
-  /// `move_by` makes it so long.
+  /// How far a move can go from where the machine stands, to where a joint's travel ends or a little before the poses
+  /// end; `move_by` makes it so long.
   [[nodiscard]] Expected<double> reach_of(const std::function<Move(double)>& move_by, double most) const;
 
   const DeviceInForce& device_;
