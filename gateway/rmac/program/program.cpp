@@ -6,7 +6,6 @@
 #include <array>
 #include <fstream>
 #include <iostream>
-#include <memory>
 #include <string_view>
 
 #include "gateway/api/dispatch/dispatcher.hpp"
@@ -82,6 +81,13 @@ Result<Request> read_request(std::string_view text, const std::string& place) {
   return request;
 }
 
+/// The next line without its end, or as much of it as shows that it is too long; false where nothing is left.
+bool next_line(std::istream& input, std::string& line) {
+  line.clear();
+  for (char next = 0; line.size() <= kLongestLine && input.get(next) && next != '\n';) line.push_back(next);
+  return !input.bad() && (input || !line.empty());
+}
+
 }  // namespace
 
 nlohmann::json Request::params() const {
@@ -103,12 +109,12 @@ Result<Program> read_program(const std::string& file) {
   std::istream& input = file == "-" ? std::cin : opened;
   Program program;
   program.file = file == "-" ? "standard input" : file;
-  const auto buffer = std::make_unique_for_overwrite<char[]>(kLongestLine + 1);  // most of it is never touched
-  int line = 1;
-  for (; input.getline(buffer.get(), static_cast<std::streamsize>(kLongestLine + 1)); ++line) {
-    const auto taken = static_cast<std::size_t>(input.gcount());  // with the newline, where there is one
-    const std::string_view text(buffer.get(), input.eof() ? taken : taken - 1);
-    if (text.find_first_not_of(" \t\r") == std::string_view::npos) {
+  std::string text;
+  for (int line = 1; next_line(input, text); ++line) {
+    if (text.size() > kLongestLine) {
+      return fail(fmt::format("{}:{}: more than {} bytes are no request", program.file, line, kLongestLine));
+    }
+    if (text.find_first_not_of(" \t\r") == std::string::npos) {
       continue;
     }
     auto request = read_request(text, fmt::format("{}:{}", program.file, line));
@@ -124,8 +130,6 @@ Result<Program> read_program(const std::string& file) {
   if (input.bad()) {
     return fail(fmt::format("{}: cannot be read: {}", program.file, std::generic_category().message(errno)));
   }
-  if (!input.eof())
-    return fail(fmt::format("{}:{}: more than {} bytes are no request", program.file, line, kLongestLine));
   if (program.requests.empty()) {
     return fail(fmt::format("{}: holds no request", program.file));
   }
