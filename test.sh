@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the packages, checks the layout of the code, builds, runs two scenarios in the emulated machine and every test: as released, then under the address and
+# Installs the packages, checks the layout of the code, builds, the benches too, runs two scenarios in the emulated machine and every test: as released, then under the address and
 # undefined-behaviour sanitizers, and feeds the fuzz targets.
 #   --fast   as released only
 #   --lint   clang-tidy over all our sources too
@@ -44,6 +44,8 @@ build() { # preset
 for preset in "${presets[@]}"; do
   build "$preset"
   if [ "$preset" = release ]; then
+    begin "benches: that they build"
+    cmake --build --preset "$preset" --parallel "$(nproc)" --target benches -- --quiet
     begin "bench: the emulated machine"
     # Where one cannot be run in that many seconds, it says so.
     LIMIT=240 tests/bench/run canopen || [ $? -eq 77 ]
