@@ -124,8 +124,8 @@ struct Planner::Impl {
     const PathState from = p.state_at(t_from);
     WindowEnd end;
     std::optional<std::vector<LawPiece>> law;
-    const bool from_rest = from.v == 0 && from.a == 0;
-    if (from_rest) {
+    std::size_t attempts = kAttemptsFromRest;
+    if (from.v == 0 && from.a == 0) {
       end = window_end(from, kRampsAtOnce);
       law = law_from_rest(path().view(), model.joints, from.s, end, feed(factor), law_attempt);
     } else {
@@ -133,8 +133,10 @@ struct Planner::Impl {
       law_attempt = std::min(law_attempt, kRampsInMotion.size() - 1);
       end = window_end(from, kRampsInMotion[law_attempt]);
       law = plan_window(path().view(), model.joints, {from, end.s, feed(factor), &p.law, true, true, &work_left});
+      // Where the path or its next rest is near, fewer ramps make the same window.
+      attempts = !law && window_end(from, kRampsInMotion.back()).s < end.s ? kRampsInMotion.size() : 1;
     }
-    if (!law) return next_attempt(progress, from_rest ? kAttemptsFromRest : kRampsInMotion.size());
+    if (!law) return next_attempt(progress, attempts);
     return publish(go_on_as(p, now, t_from, *law, model.period_s), end, from.s);
   }
 
