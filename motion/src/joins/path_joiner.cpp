@@ -79,7 +79,9 @@ Blend PathJoiner::blend_over(std::size_t over) const {
 }
 
 void PathJoiner::advance(PathSegments& out) {
-  while ((incoming_.empty() || looks_further()) && lines_.ready()) lines_.advance(false, incoming_);
+  const std::uint64_t work = lines_.work();
+  while ((incoming_.empty() || looks_further()) && lines_.ready() && lines_.work() == work)
+    lines_.advance(false, incoming_);
   if (!looks_further()) go_on(out);
 }
 
@@ -114,7 +116,10 @@ void PathJoiner::go_on(PathSegments& out) {
 }
 
 void PathJoiner::release(PathSegments& out) {
-  if (incoming_.empty() || looks_further()) lines_.advance(true, incoming_);
+  if (incoming_.empty() || looks_further()) {
+    lines_.advance(true, incoming_);
+    if ((incoming_.empty() || looks_further()) && lines_.ready()) return;
+  }
   if (current_ != nullptr && !incoming_.empty()) {
     go_on(out);
     return;

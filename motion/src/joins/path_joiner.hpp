@@ -25,12 +25,14 @@ class PathJoiner {
   [[nodiscard]] std::uint64_t lines_merged() const noexcept { return lines_.merged(); }
   /// Nothing is held back or waits.
   [[nodiscard]] bool empty() const noexcept { return current_ == nullptr && incoming_.empty() && lines_.empty(); }
-  /// `advance` has something to give.
+  /// Parts of fits of lines that were done: one is enough for a step of the planner.
+  [[nodiscard]] std::uint64_t work() const noexcept { return lines_.work(); }
+  /// `advance` has something to do.
   [[nodiscard]] bool ready() const noexcept;
-  /// Appends the next piece of path for certain; call while `ready`.
+  /// Appends the next piece of path for certain, or does a part of the work that it takes; call while `ready`.
   void advance(PathSegments& out);
   /// Appends a piece of what is held back without waiting for what follows: first the half that no join can touch, then
-  /// the rest, to the exact end of the move.
+  /// the rest, to the exact end of the move. Where that takes work, `advance` goes on with it.
   void release(PathSegments& out);
 
  private:

@@ -48,7 +48,8 @@ void LaidPath::lay(const PathSegments& fresh) {
 
 bool LaidPath::supply() {
   PathSegments fresh;
-  while (fresh.empty() && joiner_.ready()) joiner_.advance(fresh);
+  const std::uint64_t work = joiner_.work();
+  while (fresh.empty() && joiner_.ready() && joiner_.work() == work) joiner_.advance(fresh);
   lay(fresh);
   return !fresh.empty();
 }
@@ -69,7 +70,7 @@ double LaidPath::next_rest(double s, double otherwise) const noexcept {
 double LaidPath::next_move_end(double s) {
   for (std::size_t i = view().find(s + kSamePlace, 1);; ++i) {
     while (i >= size() && has_more()) {
-      if (!supply()) release();
+      if (!supply() && !can_supply()) release();
     }
     if (i >= size()) return end();
     const auto stretches = segments_[i]->stretches();

@@ -27,11 +27,14 @@ class LaidPath {
   /// Drops everything; the path goes on from path length `s`.
   void clear(double s);
 
-  /// Makes the path longer by what is certain; false when nothing is.
+  /// Makes the path longer by what is certain, or does a part of the work that it takes; false where it is as long as
+  /// before.
   bool supply();
-  /// Makes the path longer by what was held back for a join.
+  /// Parts of that work that were done; with one a step of the planner has done enough.
+  [[nodiscard]] std::uint64_t work() const noexcept { return joiner_.work(); }
+  /// Makes the path longer by what was held back for a join, where nothing can be supplied.
   void release();
-  /// There is more for certain.
+  /// There is more for certain, or in work.
   [[nodiscard]] bool can_supply() const noexcept { return joiner_.ready(); }
   /// Something is queued that is not laid yet.
   [[nodiscard]] bool has_more() const noexcept { return !joiner_.empty(); }

@@ -53,22 +53,24 @@ WindowEnd next_window_end(LaidPath& path, const std::vector<JointLimits>& joints
     fastest = std::max(fastest, joint.max_speed);
   }
   std::optional<WindowEnd> found;
+  const std::uint64_t work = path.work();
+  const auto supply = [&] { return path.work() == work && path.supply(); };
   double v = 0, reach = kShortest_mm;
   // Where the path bends to and fro, full speed is far away.
   const double least = s + kRampsAtLeast * weakest.length(from.v);
   std::size_t nodes = 0;
   double s_many = std::numeric_limits<double>::infinity();
   for (std::size_t i = path.view().find(s + kSamePlace, 1); !found; ++i) {
-    if (i >= path.size() && !path.supply()) break;
+    if (i >= path.size() && !supply()) break;
     v = std::max(v, std::min(path.segment(i)->demand().feed_mm_s * std::max(factor, 1.0), 2 * fastest));
     reach = std::max(reach, ramps * weakest.length(v));
     if (nodes < kMostNodes) s_many = place_of_many(path, i, std::max(s, least), nodes);
     const bool enough = path.end(i) - s > 2 * reach || nodes >= kMostNodes;
     // Whether the path goes on without rest is known once its next segment is there.
-    if (i + 1 == path.size() && !path.rest_after(i) && !enough) path.supply();
+    if (i + 1 == path.size() && !path.rest_after(i) && !enough) supply();
     if (path.rest_after(i) || enough) found = WindowEnd{path.end(i), path.rest_after(i)};
   }
-  WindowEnd end = found.value_or(WindowEnd{path.end(), false});
+  WindowEnd end = found.value_or(WindowEnd{path.end(), false, 0, path.can_supply()});
   if (limit_s && *limit_s <= end.s) end = {*limit_s, true};
   if (end.s - s > 1.5 * reach) end = {s + reach, false};
   if (end.s > s_many) end = {s_many, false};

@@ -19,12 +19,13 @@ struct WindowEnd {
   double s = 0;
   bool hard = false;
   double planned_again = 0;  ///< length before the end that a following window plans again
+  bool in_work = false;      ///< the path goes on behind the end, and is laid on with the next call
 };
 
 /// Where the window that begins at s must or may end: at a demanded rest, at `limit_s`, at the end of the path, or
 /// where it is long enough, which takes `ramps` ramps to full speed, or where the path bends so much that a longer one
-/// would hold the planner up. Lays path until it is known. `from`: the state in which it begins; `factor`: the
-/// override.
+/// would hold the planner up. Lays path until it is known, or the path has taken as much work as a step may do. `from`:
+/// the state in which it begins; `factor`: the override.
 [[nodiscard]] WindowEnd next_window_end(LaidPath& path, const std::vector<JointLimits>& joints, const PathState& from,
                                         double ramps, double factor, std::optional<double> limit_s);
 

@@ -100,6 +100,7 @@ struct Planner::Impl {
   bool start_from_rest(const ServoProgress& progress) {
     const double s = base_end_s();
     WindowEnd end = window_end({s, 0, 0}, kRampsAtOnce);
+    if (end.in_work) return false;
     auto law = law_from_rest(path().view(), model.joints, s, end, feed(factor), law_attempt);
     if (!law) return next_attempt(progress, kAttemptsFromRest);
     auto plan = std::make_unique<Plan>();
@@ -127,11 +128,13 @@ struct Planner::Impl {
     std::size_t attempts = kAttemptsFromRest;
     if (from.v == 0 && from.a == 0) {
       end = window_end(from, kRampsAtOnce);
+      if (end.in_work) return false;
       law = law_from_rest(path().view(), model.joints, from.s, end, feed(factor), law_attempt);
     } else {
       long work_left = kMostWorkOnLaw;
       law_attempt = std::min(law_attempt, kRampsInMotion.size() - 1);
       end = window_end(from, kRampsInMotion[law_attempt]);
+      if (end.in_work) return false;
       law = plan_window(path().view(), model.joints, {from, end.s, feed(factor), &p.law, true, true, &work_left});
       // Where the path or its next rest is near, fewer ramps make the same window.
       attempts = !law && window_end(from, kRampsInMotion.back()).s < end.s ? kRampsInMotion.size() : 1;
@@ -339,7 +342,7 @@ struct Planner::Impl {
       case Task::Override:
         return follow_override(progress);
       case Task::Supply:
-        if (!path().supply()) path().release();
+        if (!path().supply() && !path().can_supply()) path().release();
         return false;
       case Task::Start:
         return start_from_rest(progress);

@@ -5,7 +5,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "short_lines/line_spline.hpp"
+#include "splines/line_spline.hpp"
 
 namespace rmac {
 

@@ -9,7 +9,6 @@
 #include "path/travel.hpp"
 #include "short_lines/alike.hpp"
 #include "short_lines/dense_spline.hpp"
-#include "short_lines/tube_spline.hpp"
 #include "short_lines/turning_curve.hpp"
 #include "splines/quintic.hpp"
 
@@ -32,15 +31,12 @@ constexpr double kMostSagitta = 8;
 constexpr double kLongest_mm = 5;
 /// So far beside a corner with another move, in tolerances, a spline of dense lines leaves half of it for the blend.
 constexpr double kCorner = 40;
-constexpr double kSpansALine = 3;
-/// The part of the tolerance that is used at the samples: between them the spline goes out further. Where that leaves
-/// the tolerance, the tube is made narrower.
+/// The part of the tolerance that is used at the samples: between them the spline goes out further.
 constexpr double kTubePart = 0.97;
-constexpr int kTubeTrials = 3;
-/// A pole that was led over so far back shapes nothing any more.
-constexpr double kPoleForgotten_mm = 60;
 /// Lines from which on a law with open ends says how fast a spline is: fewer are mostly ramps.
 constexpr std::size_t kWorthALaw = 20;
+/// A pole that was led over so far back shapes nothing any more.
+constexpr double kPoleForgotten_mm = 60;
 
 Vector point_of(const PathSegment& line, double s) {
   CurvePoint point;
@@ -106,6 +102,7 @@ void LineFit::clear() {
   merger_.clear();
   drop_lines(waiting_.size());
   before_ = {};
+  tube_.reset();
   begins_at_join_ = false;
 }
 
@@ -186,58 +183,32 @@ bool LineFit::fit_dense(std::size_t lines, bool ends, Fit& fit) {
   return make_segments(std::move(cuts), length - dense.overlap_mm, ends, fit);
 }
 
-bool LineFit::fit_tube(std::size_t lines, bool ends, Fit& fit) const {
-  fit = {};
-  fit.polyline = polyline(lines);
-  LineSpline& spline = fit.spline;
-  const LineSpline& before = before_.spline;
-  const std::vector<double>& places = fit.polyline.places;
-  // The spline swings from one side of each line to the other: three spans do that as well as more. A line much shorter
-  // than its neighbours needs fewer.
-  const double from = before.free_from();
-  std::vector<double> inner;
-  for (std::size_t k = 0; k < lines; ++k) {
-    double longest = 0;
-    for (std::size_t i = k > 1 ? k - 2 : 0; i <= k + 2 && i < lines; ++i)
-      longest = std::max(longest, places[i + 1] - places[i]);
-    const double length = places[k + 1] - places[k];
-    const int spans = static_cast<int>(std::ceil(kSpansALine * length / longest - 1e-9));
-    for (int i = k == 0 ? 1 : 0; i < spans; ++i) inner.push_back(places[k] + length * i / spans);
-  }
-  std::erase_if(inner, [&](double knot) { return knot <= from + 0.05 * places.back() / static_cast<double>(lines); });
-  if (!spline.go_on(before, inner, fit.polyline)) return false;
-
-  // At either end half of the tolerance is left for the blend with another move.
+void LineFit::begin_tube(std::size_t lines, bool ends) {
   const double tolerance = waiting_[0]->demand().tolerance_mm;
-  std::vector<double> widths(lines, kTubePart * tolerance);
-  if (!goes_on()) widths.front() = 0.5 * tolerance;
-  if (ends) widths.back() = 0.5 * tolerance;
-  for (std::size_t k = 0; k < lines; ++k) widths[k] -= kTubePart * fit.polyline.off_mm[k];
-  for (int trial = 0;; ++trial) {
-    if (!smoothest_in_tube(spline.knots, fit.polyline, widths, before.kept_points(), spline.points)) return false;
-    spline.deviations = tube_distances(spline.knots, spline.points, fit.polyline, tolerance);
-    const double part = largest_part(spline.deviations, fit.polyline, tolerance);
-    if (part <= 1) break;
-    if (trial == kTubeTrials || part > 1.2) return false;
-    for (double& width : widths) width *= 0.995 / part;
+  TubeWindow window{polyline(lines), before_.spline, tolerance, {}, {}, joints_};
+  // At either end half of the tolerance is left for the blend with another move.
+  window.widths_mm.assign(lines, kTubePart * tolerance);
+  if (!goes_on()) window.widths_mm.front() = 0.5 * tolerance;
+  if (ends) window.widths_mm.back() = 0.5 * tolerance;
+  for (std::size_t k = 0; k < lines; ++k) window.widths_mm[k] -= kTubePart * window.polyline.off_mm[k];
+  if (lines >= kWorthALaw && !turns(lines)) {  // the law knows nothing of the rotary joints
+    auto limits = line_limits({waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(lines)});
+    if (limits) window.limits = std::move(*limits);
   }
-
-  // The law knows nothing of the rotary joints.
-  if (lines >= kWorthALaw && !turns(lines)) make_faster(widths, fit);
-
-  std::vector<std::size_t> cuts;
-  if (!goes_on()) cuts.push_back(knot_at(spline, places[1]));
-  if (ends) cuts.push_back(knot_at(spline, places[lines - 1]));
-  return make_segments(std::move(cuts), places[lines > kTubeOverlap ? lines - kTubeOverlap : 0], ends, fit);
+  tube_.emplace(Tube{TubeFit(std::move(window)), ends});
 }
 
-void LineFit::make_faster(const std::vector<double>& widths, Fit& fit) const {
-  auto lines = line_limits({waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(fit.polyline.lines())});
-  if (!lines) return;
-  LineSpline& spline = fit.spline;
-  DraftLaw law(spline.knots, fit.polyline, std::move(*lines), joints_);
-  fastest_in_tube(spline.knots, fit.polyline, widths, waiting_[0]->demand().tolerance_mm, before_.spline.kept_points(),
-                  law, spline.points, spline.deviations);
+bool LineFit::take_tube(Fit& fit) {
+  const bool ends = tube_->ends;
+  fit = {};
+  fit.polyline = tube_->fit.polyline();
+  fit.spline = tube_->fit.spline();
+  const std::vector<double>& places = fit.polyline.places;
+  const std::size_t lines = fit.polyline.lines();
+  std::vector<std::size_t> cuts;
+  if (!goes_on()) cuts.push_back(knot_at(fit.spline, places[1]));
+  if (ends) cuts.push_back(knot_at(fit.spline, places[lines - 1]));
+  return make_segments(std::move(cuts), places[lines > kTubeOverlap ? lines - kTubeOverlap : 0], ends, fit);
 }
 
 std::size_t LineFit::dense_lines(std::size_t run) const noexcept {
@@ -252,6 +223,7 @@ std::size_t LineFit::dense_lines(std::size_t run) const noexcept {
 bool LineFit::fit(bool finish, Fit& fit) {
   const std::size_t run = run_length();
   if (run < kShortest && !goes_on()) return false;
+  ++work_;
   const bool whole = finish || complete();
   // Dense lines up to those that are too coarse, and these in the tube.
   std::size_t tried = 0;
@@ -261,7 +233,8 @@ bool LineFit::fit(bool finish, Fit& fit) {
     if (fit_dense(lines, whole && run <= lines, fit)) return true;
     tried = lines;
   }
-  return fit_tube(std::min(run, kTubeLines), whole && run <= kTubeLines, fit);
+  begin_tube(std::min(run, kTubeLines), whole && run <= kTubeLines);
+  return false;
 }
 
 bool LineFit::make_segments(std::vector<std::size_t> cuts, double tail, bool ends, Fit& fit) const {
@@ -396,7 +369,18 @@ void LineFit::advance(bool finish, SegmentQueue& out) {
   if (finish) merger_.flush(joints_, waiting_);
   if (waiting_.empty() || !(finish || ready())) return;
   Fit found;
-  if (fit(finish, found)) {
+  bool fits = false;
+  if (tube_) {
+    ++work_;
+    const TubeFit::Progress progress = tube_->fit.step();
+    if (progress == TubeFit::Progress::InWork) return;
+    fits = progress == TubeFit::Progress::Found && take_tube(found);
+    tube_.reset();
+  } else {
+    fits = fit(finish, found);
+    if (tube_) return;
+  }
+  if (fits) {
     corners_made_ = 0;
     given_up_ = 0;
     take(std::move(found), out);
@@ -406,7 +390,7 @@ void LineFit::advance(bool finish, SegmentQueue& out) {
     drop_lines(before_.polyline.places.size() - 1);
     before_ = {};
   } else {
-    if (end_at_corner()) return advance(finish, out);
+    if (end_at_corner()) return;  // which the next step finds
     // Some lines as they are; more of them each time, so that lines which no spline follows do not cost a fit each.
     corners_made_ = 0;
     const std::size_t count = std::min({std::max<std::size_t>(run_length(), 1), window_, kShortest << given_up_});

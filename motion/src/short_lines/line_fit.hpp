@@ -3,13 +3,15 @@
 #include <deque>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/path_segment.hpp"
 #include "short_lines/line_merger.hpp"
-#include "short_lines/line_spline.hpp"
 #include "short_lines/turn_spline.hpp"
+#include "splines/line_spline.hpp"
+#include "tubes/tube_fit.hpp"
 
 namespace rmac {
 
@@ -29,10 +31,14 @@ class LineFit {
   [[nodiscard]] bool empty() const noexcept { return waiting_.empty() && merger_.empty(); }
   /// Lines that were too short for a place of their own, and became part of another.
   [[nodiscard]] std::uint64_t merged() const noexcept { return merger_.count(); }
-  /// `advance` would give something without waiting for more lines.
-  [[nodiscard]] bool ready() const noexcept { return !waiting_.empty() && (complete() || checked_ > window_); }
-  /// Appends the next segments; `finish`: the run ends with what is there.
+  /// `advance` would do something without waiting for more lines.
+  [[nodiscard]] bool ready() const noexcept {
+    return tube_ || (!waiting_.empty() && (complete() || checked_ > window_));
+  }
+  /// Appends the next segments, or goes on with the fit that they take; `finish`: the run ends with what is there.
   void advance(bool finish, SegmentQueue& out);
+  /// Parts of fits that were done: one is enough for a step of the planner.
+  [[nodiscard]] std::uint64_t work() const noexcept { return work_; }
 
  private:
   /// The window of coarse lines, and how many of these at its end are fitted again with what follows; more would hold
@@ -66,13 +72,14 @@ class LineFit {
   void count_line() const noexcept;
   [[nodiscard]] bool goes_on() const noexcept { return before_.tail != nullptr; }
   [[nodiscard]] Polyline polyline(std::size_t lines) const;
+  /// Whether a fit was found; false too where one is in work now.
   [[nodiscard]] bool fit(bool finish, Fit& fit);
   /// Lines of the run to try a dense fit of: the window, or less before lines that were too coarse for one.
   [[nodiscard]] std::size_t dense_lines(std::size_t run) const noexcept;
   [[nodiscard]] bool fit_dense(std::size_t lines, bool ends, Fit& fit);
-  [[nodiscard]] bool fit_tube(std::size_t lines, bool ends, Fit& fit) const;
-  /// A spline in the tube becomes one that is faster to travel, where that is found.
-  void make_faster(const std::vector<double>& widths, Fit& fit) const;
+  void begin_tube(std::size_t lines, bool ends);
+  /// What `tube_` has found.
+  [[nodiscard]] bool take_tube(Fit& fit);
   /// The first lines, or what goes on from before, turn the tool axis.
   [[nodiscard]] bool turns(std::size_t lines) const;
   /// Puts the rotary joints' spline along the tip's path into its pieces.
@@ -87,6 +94,12 @@ class LineFit {
   void take(Fit fit, SegmentQueue& out);
   void drop_lines(std::size_t count);
 
+  /// A fit of coarse lines at the front that is in work.
+  struct Tube {
+    TubeFit fit;
+    bool ends = false;
+  };
+
   std::vector<JointLimits> joints_;
   LineMerger merger_;
   SegmentQueue waiting_;
@@ -100,6 +113,8 @@ class LineFit {
   bool begins_at_join_ = false;              ///< something was given out that the first waiting line meets
   /// The window before: what its spline leaves, and its tail.
   Fit before_;
+  std::optional<Tube> tube_;
+  std::uint64_t work_ = 0;
 };
 
 }  // namespace rmac

@@ -8,7 +8,7 @@
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/path_segment.hpp"
 #include "short_lines/dense_spline.hpp"
-#include "short_lines/line_spline.hpp"
+#include "splines/line_spline.hpp"
 
 namespace rmac {
 

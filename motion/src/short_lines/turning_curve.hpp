@@ -6,7 +6,7 @@
 
 #include "rmac/motion/curve.hpp"
 #include "rmac/motion/pose_to_joints.hpp"
-#include "short_lines/line_spline.hpp"
+#include "splines/line_spline.hpp"
 
 namespace rmac {
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "time_law/window.hpp"
 #include "unit/motion/planner/planner_bench.hpp"
@@ -25,6 +26,28 @@ LaidPath zigzag(const PlannerModel& model, double pitch_mm, int bends) {
   move.geometry = NurbsGeometry{NurbsSpace::Tip, nurbs};
   LaidPath path(model.joints, model.period_s);
   path.add(builder.build(move).value());
+  return path;
+}
+
+/// A rose of five leaves, within `tolerance_mm` of lines of `line_mm`: coarse ones, which take a tube.
+LaidPath rose_in_lines(const PlannerModel& model, double line_mm, double tolerance_mm) {
+  const auto corner = [](double angle) {
+    const double r = 30 + 10 * std::cos(5 * angle);
+    return ToolPose{{r * std::cos(angle), r * std::sin(angle), 0}, {0, 0, 1}};
+  };
+  PathBuilder builder(model);
+  ToolPose from = corner(0);
+  builder.restart(std::vector<double>{from.tip[0], from.tip[1], 0}, {});
+  LaidPath path(model.joints, model.period_s);
+  for (double angle = 0; angle < 6;) {
+    angle += line_mm / std::hypot(30 + 10 * std::cos(5 * angle), 50 * std::sin(5 * angle));
+    Move move;
+    move.feed_mm_s = 200;
+    move.tolerance_mm = tolerance_mm;
+    move.geometry = LineGeometry{from, corner(angle)};
+    path.add(builder.build(move).value());
+    from = corner(angle);
+  }
   return path;
 }
 
@@ -75,6 +98,28 @@ TEST(NextWindow, IsGivenUpOnceItsWorkIsUsedUp) {
   EXPECT_FALSE(law(100));
   EXPECT_TRUE(law(kMostWorkOnLaw));
 }
+
+class CoarseRose : public testing::TestWithParam<std::pair<double, double>> {};
+
+TEST_P(CoarseRose, AreLaidByOnePartOfAFitAtATime) {
+  const PlannerModel model = test::mill();
+  LaidPath path = rose_in_lines(model, GetParam().first, GetParam().second);
+  int parts = 0;
+  for (WindowEnd end{0, false, 0, true}; end.in_work; ++parts) {
+    ASSERT_LT(parts, 300) << "it has an end";
+    const std::uint64_t before = path.work();
+    end = next_window_end(path, model.joints, {0, 0, 0}, kRampsAhead, 1, std::nullopt);
+    EXPECT_LE(path.work(), before + 1);
+  }
+  EXPECT_GT(parts, 5) << "several windows, each of several rounds";
+  const double laid = path.end();
+  const WindowEnd known = next_window_end(path, model.joints, {0, 0, 0}, kRampsAhead, 1, std::nullopt);
+  EXPECT_FALSE(known.in_work);
+  EXPECT_EQ(path.end(), laid) << "what is known takes no more";
+}
+
+INSTANTIATE_TEST_SUITE_P(Tubes, CoarseRose,
+                         testing::Values(std::pair{1.0, 0.01}, std::pair{0.7, 0.003}, std::pair{0.5, 0.002}));
 
 }  // namespace
 }  // namespace rmac

@@ -1,4 +1,4 @@
-#include "short_lines/tube_program.hpp"
+#include "tubes/tube_program.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "curves/vector.hpp"
-#include "short_lines/tube_spline.hpp"
 #include "splines/quintic.hpp"
+#include "tubes/tube_spline.hpp"
 
 namespace rmac {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/path_segment.hpp"
-#include "short_lines/line_spline.hpp"
-#include "short_lines/tube_program.hpp"
+#include "splines/line_spline.hpp"
 #include "time_law/law_problem.hpp"
+#include "tubes/tube_program.hpp"
 
 namespace rmac {
 
@@ -44,7 +44,7 @@ class DraftLaw {
     std::size_t line = 0;
   };
 
-  const std::vector<JointLimits>& joints_;
+  std::vector<JointLimits> joints_;
   std::vector<LineLimits> lines_;
   std::vector<Node> nodes_;
   LawProblem problem_;

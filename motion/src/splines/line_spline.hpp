@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "rmac/motion/pose.hpp"
-#include "short_lines/smoothing_spline.hpp"
+#include "splines/smoothing_spline.hpp"
 
 namespace rmac {
 

@@ -1,4 +1,4 @@
-#include "short_lines/draft_law.hpp"
+#include "tubes/draft_law.hpp"
 
 #include <algorithm>
 #include <cmath>

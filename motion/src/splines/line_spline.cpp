@@ -1,4 +1,4 @@
-#include "short_lines/line_spline.hpp"
+#include "splines/line_spline.hpp"
 
 #include <algorithm>
 

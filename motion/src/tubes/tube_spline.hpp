@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "rmac/motion/pose.hpp"
-#include "short_lines/draft_law.hpp"
-#include "short_lines/line_spline.hpp"
+#include "splines/line_spline.hpp"
+#include "tubes/tube_program.hpp"
 
 namespace rmac {
 
@@ -16,11 +16,9 @@ namespace rmac {
                                      const std::vector<double>& widths_mm, std::size_t kept,
                                      std::vector<Vector>& points);
 
-/// Makes a spline in the tube, with what is as in `smoothest_in_tube`, faster to travel: within the tolerance by
-/// `tube_distances`, which then become `deviations_mm`, or all is left as it is.
-void fastest_in_tube(const std::vector<double>& knots, const Polyline& polyline, std::vector<double> widths_mm,
-                     double tolerance_mm, std::size_t kept, DraftLaw& law, std::vector<Vector>& points,
-                     std::vector<double>& deviations_mm);
+/// Bounds of a spline over `knots` for `program`: those of `smoothest_in_tube`.
+void lay_tube_samples(const std::vector<double>& knots, const Polyline& polyline, const std::vector<double>& widths_mm,
+                      std::size_t kept, TubeProgram& program);
 
 /// For each line a bound of the distance between the spline's stretch and the polyline, both ways; rigorous up to
 /// `most_mm`, and above that only more than `most_mm` (eq. 14).

@@ -1,13 +1,10 @@
-#include "short_lines/tube_spline.hpp"
+#include "tubes/tube_spline.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "curves/vector.hpp"
-#include "gives_way.hpp"
-#include "short_lines/tube_program.hpp"
 #include "splines/quintic.hpp"
 
 namespace rmac {
@@ -23,12 +20,6 @@ using quintic::Basis;
 using quintic::kDegree;
 
 constexpr int kSamplesASpan = 5;
-/// Laws and splines in turn; more bring next to nothing.
-constexpr int kRounds = 6;
-/// Work after which no other round is begun, of `TubeProgram::solve`: a window is not to hold the planner up for long.
-constexpr std::size_t kMostWork = 65'000;
-/// Tubes, each narrower by what the spline was outside between the samples.
-constexpr int kTrials = 3;
 /// How far along the path the spline may be from a vertex at its place, in widths: a vertex seen from too far aside is
 /// seen from the wrong line.
 constexpr double kVertexSlack = 5;
@@ -88,8 +79,11 @@ TubeSample across(const Basis& basis, const Vector& point, const LineFrame& fram
   return sample;
 }
 
-void lay_samples(const std::vector<double>& knots, const Polyline& polyline, const std::vector<double>& widths,
-                 std::size_t kept, std::size_t count, TubeProgram& program) {
+}  // namespace
+
+void lay_tube_samples(const std::vector<double>& knots, const Polyline& polyline, const std::vector<double>& widths,
+                      std::size_t kept, TubeProgram& program) {
+  const std::size_t count = knots.size() - kDegree - 1;
   const auto frames = frames_of(polyline);
   const std::size_t lines = polyline.lines();
   const auto scale = [&](const Basis& basis, std::size_t line) {
@@ -118,27 +112,6 @@ void lay_samples(const std::vector<double>& knots, const Polyline& polyline, con
   }
 }
 
-bool make_faster(const std::vector<double>& knots, const Polyline& polyline, const std::vector<double>& widths_mm,
-                 std::size_t kept, DraftLaw& law, std::vector<Vector>& points, std::size_t& work) {
-  double least = law.solve(points);
-  std::vector<Vector> trial = points;
-  TubeProgram program(kept, trial);
-  lay_samples(knots, polyline, widths_mm, kept, points.size(), program);
-  bool faster = false;
-  for (int round = 0; round < kRounds && std::isfinite(least); ++round) {
-    if (work > kMostWork || gives_way() || !program.solve(law.demands(trial), true, work)) break;
-    const double time = law.solve(trial);
-    if (!std::isfinite(time)) break;
-    if (!(time < least)) continue;
-    least = time;
-    points = trial;
-    faster = true;
-  }
-  return faster;
-}
-
-}  // namespace
-
 bool smoothest_in_tube(const std::vector<double>& knots, const Polyline& polyline, const std::vector<double>& widths_mm,
                        std::size_t kept, std::vector<Vector>& points) {
   points.resize(knots.size() - kDegree - 1);
@@ -146,27 +119,9 @@ bool smoothest_in_tube(const std::vector<double>& knots, const Polyline& polylin
   if (kept == 1) points.front() = polyline.vertices.front();
   points.back() = polyline.vertices.back();
   TubeProgram program(kept, points);
-  lay_samples(knots, polyline, widths_mm, kept, points.size(), program);
+  lay_tube_samples(knots, polyline, widths_mm, kept, program);
   std::size_t work = 0;
   return program.solve(demands_of_smoothness(knots, points.size()), false, work);
-}
-
-void fastest_in_tube(const std::vector<double>& knots, const Polyline& polyline, std::vector<double> widths_mm,
-                     double tolerance_mm, std::size_t kept, DraftLaw& law, std::vector<Vector>& points,
-                     std::vector<double>& deviations_mm) {
-  std::size_t work = 0;
-  for (int trial = 0; trial < kTrials; ++trial) {
-    std::vector<Vector> faster = points;
-    if (!make_faster(knots, polyline, widths_mm, kept, law, faster, work)) return;
-    auto distances = tube_distances(knots, faster, polyline, tolerance_mm);
-    const double part = largest_part(distances, polyline, tolerance_mm);
-    if (part <= 1) {
-      points = std::move(faster);
-      deviations_mm = std::move(distances);
-      return;
-    }
-    for (double& width : widths_mm) width *= 0.995 / part;
-  }
 }
 
 }  // namespace rmac

@@ -1,4 +1,4 @@
-#include "short_lines/smoothing_spline.hpp"
+#include "splines/smoothing_spline.hpp"
 
 #include <gtest/gtest.h>
 
