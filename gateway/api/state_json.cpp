@@ -110,6 +110,8 @@ nlohmann::json state_to_json(MachinePort& machine, int moves_left, const CycleSa
                        {"optional_stops", cycle.optional_stops},
                        {"stop_prompt", cycle.stop_prompt},
                        {"virtual", machine.device().virtual_mode()}};
+  state["horizon_s"] = sample.horizon.s;
+  state["horizon_limit"] = to_string(sample.horizon.limit);
   state["cleaned"] = {{"without_motion", cycle.cleaned.without_motion}, {"merged", cycle.cleaned.merged}};
   const ToolsNow tools = machine.tools().tools_now();
   state["tool"] = tools.mounted ? nlohmann::json(*tools.mounted) : nlohmann::json();

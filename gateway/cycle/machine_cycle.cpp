@@ -233,6 +233,7 @@ Planning::Pace MachineCycle::advance(const ServoStatus& status) {
   settle(status);
   if (!mechanism_ || status.generation != generation_) return Planning::Pace::Calm;
   if (!is_faulted(sequencer.state())) {
+    mechanism_->planner.rest_follows(!queue.steps().empty());
     mechanism_->planner.step(status.progress);
     if (!mechanism_->planner.idle(status.progress)) return Planning::Pace::Planning;
   }

@@ -29,7 +29,9 @@ void append_header(const CycleSample& sample, std::string& out) {
   for (const char* quantity : {"ad", "effort", "force"}) append_columns(quantity, joints, out);
   for (const char* word : {"torque_permille", "statusword", "error_code"}) append_columns(word, drives, out);
   append_columns("rpm", sample.spindle_rpm.size(), out);
-  out += ",feed_actual_mm_s,cycle,state,servo_state,fault,fault_value,fault_bound,inputs,outputs,deadline_misses\n";
+  out +=
+      ",feed_actual_mm_s,cycle,state,servo_state,fault,fault_value,fault_bound,inputs,outputs,deadline_misses,"
+      "horizon_s,horizon_limit\n";
 }
 
 void append_row(const CycleSample& sample, std::string& out) {
@@ -52,9 +54,10 @@ void append_row(const CycleSample& sample, std::string& out) {
   append_words(sample.error_code, drives, out);
   append_numbers(sample.spindle_rpm, out);
   const ServoFault& fault = sample.fault;
-  fmt::format_to(std::back_inserter(out), ",{},{},{},{},{},{},{},{},{},{}\n", sample.feed_actual_mm_s, sample.cycle,
-                 to_string(sample.state), to_string(sample.servo_state), to_string(fault.kind), fault.value,
-                 fault.bound, sample.inputs, sample.outputs, sample.deadline_misses);
+  fmt::format_to(std::back_inserter(out), ",{},{},{},{},{},{},{},{},{},{},{},{}\n", sample.feed_actual_mm_s,
+                 sample.cycle, to_string(sample.state), to_string(sample.servo_state), to_string(fault.kind),
+                 fault.value, fault.bound, sample.inputs, sample.outputs, sample.deadline_misses, sample.horizon.s,
+                 to_string(sample.horizon.limit));
 }
 
 tl::unexpected<Error> cannot(const char* what, const std::filesystem::path& path) {

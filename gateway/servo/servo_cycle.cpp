@@ -158,6 +158,7 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
     sample_.s_mm = in_turn ? 0 : command_.setpoint.s_mm;
     sample_.feed_set_mm_s = status_.moving && status_.follows ? command_.setpoint.feed_mm_s : 0;
     sample_.feed_actual_mm_s = report_.feed_mm_s;
+    sample_.horizon = status_.follows ? mechanism_->follower.horizon() : Horizon{};
     fill_pose_set();
     sample_.pose_actual = report_.pose;
     sample_.position_set = report_.position_set;

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "gateway/state/cycle_state.hpp"
+#include "rmac/motion/follower/horizon.hpp"
 #include "rmac/motion/force_control.hpp"
 #include "rmac/motion/machine_size.hpp"
 #include "rmac/motion/pose.hpp"
@@ -29,6 +30,7 @@ struct CycleSample {
   double s_mm = 0;
   double feed_set_mm_s = 0;     ///< path speed of the setpoint
   double feed_actual_mm_s = 0;  ///< tool tip, from measured joints through the forward kinematics
+  Horizon horizon;              ///< none while the joints follow no plan
   ToolPose pose_set;            ///< part frame
   ToolPose pose_actual;         ///< part frame
   std::array<double, kMaxJoints> position_set{}, velocity_set{}, acceleration_set{};

@@ -22,7 +22,7 @@ def read(path):
         rows = csv.reader(file)
         names = next(rows)
         table = list(zip(*rows, strict=True))
-    words = ("state", "servo_state", "fault")
+    words = ("state", "servo_state", "fault", "horizon_limit")
     columns = {name: list(cells) if name in words else np.array(cells, dtype=float)
                for name, cells in zip(names, table, strict=True)}
     return head, columns
@@ -38,16 +38,18 @@ def spans(time, values):
 
 
 def draw_states(axes, time, columns):
-    """A band each for the cycle's state, the servo loop's and the fault."""
+    """A band each for the cycle's state, the servo loop's, the fault, and why motion was planned no further ahead."""
     palette = plt.get_cmap("tab10")
     known = {}
-    for height, name in enumerate(("fault", "servo_state", "state")):
+    bands = [("horizon_limit", "horizon"), ("fault", "fault"), ("servo_state", "servo loop"), ("state", "cycle")]
+    bands = [(name, title) for name, title in bands if name in columns]  # records had no horizon once
+    for height, (name, _) in enumerate(bands):
         for begin, end, value in spans(time, columns[name]):
             colour = known.setdefault(value, palette(len(known) % palette.N))
             axes.broken_barh([(begin, max(end - begin, 1e-9))], (height + 0.1, 0.8), facecolors=colour)
-    axes.set_yticks([0.5, 1.5, 2.5], ["fault", "servo loop", "cycle"])
+    axes.set_yticks([height + 0.5 for height in range(len(bands))], [title for _, title in bands])
     handles = [plt.Rectangle((0, 0), 1, 1, color=colour) for colour in known.values()]
-    axes.set_ylim(0, 3.6)  # the legend has its place above the bands
+    axes.set_ylim(0, len(bands) + 0.6)  # the legend has its place above the bands
     axes.legend(handles, known, loc="upper left", fontsize=7, ncols=max(len(known), 1))
 
 

@@ -51,7 +51,7 @@ def read_record(path, begin):
     with open(path, encoding="utf-8") as file:
         head = json.loads(file.readline())
         names = file.readline().strip().split(",")
-        words = {"state", "servo_state", "fault"}
+        words = {"state", "servo_state", "fault", "horizon_limit"}
         wanted = [index for index, name in enumerate(names) if name not in words]
         table = np.loadtxt(file, delimiter=",", usecols=wanted, ndmin=2)
     columns = {names[index]: table[:, column] for column, index in enumerate(wanted)}

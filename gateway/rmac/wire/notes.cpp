@@ -55,6 +55,8 @@ StateNote read_state(const nlohmann::json& params) {
   read(params, "feed_actual_mm_min", state.feed_actual);
   read(params, "feed_set_mm_min", state.feed_set);
   read(params, "override_percent", state.override_percent);
+  read(params, "horizon_s", state.horizon_s);
+  read(params, "horizon_limit", state.horizon_limit);
   read(params, "pose", state.pose);
   read(params, "joints", state.joints);
   read(params, "held_joints", state.held_joints);

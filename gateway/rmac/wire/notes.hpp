@@ -35,6 +35,8 @@ struct StateNote {
   std::int64_t move_id = 0;
   int moves_in_buffer = 0, status_minor = 0;
   double t_s = 0, feed_actual = 0, feed_set = 0, override_percent = 0;
+  std::string horizon_limit;  ///< why motion is planned no further than `horizon_s`; empty: the appliance does not tell
+  double horizon_s = 0;
   std::vector<double> pose, joints, held_joints, spindle_rpm;
   std::int64_t deadline_misses = 0;
   double wake_up_p999_us = 0;  ///< of the servo thread, after its cycle was due

@@ -43,7 +43,11 @@ bool goes_on(const Setpoint& before, const Setpoint& next, std::size_t joint, do
 }  // namespace
 
 PlanFollower::PlanFollower(PlanChannel& channel, std::span<const JointLimits> joints, double period_s)
-    : channel_(channel), joints_(joints.begin(), joints.end()), brake_(joints), period_s_(period_s) {}
+    : channel_(channel),
+      joints_(joints.begin(), joints.end()),
+      brake_(joints),
+      period_s_(period_s),
+      horizon_(period_s) {}
 
 void PlanFollower::hold_at(std::span<const double> joints) noexcept {
   std::copy_n(joints.begin(), joints_.size(), last_.position.begin());
@@ -182,6 +186,18 @@ void PlanFollower::brake(std::int64_t cycle, Setpoint& setpoint) noexcept {
   setpoint = last_;
 }
 
+/// What there is of a horizon, and what the planner says of it.
+Horizon PlanFollower::planned() const noexcept {
+  if (off_path_ && last_.moving) {
+    const double t = static_cast<double>(cycle_ - departure_.cycle) * period_s_;
+    return {std::max(brake_.duration() - t, 0.0), HorizonLimit::Stop};
+  }
+  const Plan* const newest = off_path_ ? nullptr : next_ != nullptr ? next_ : active_;
+  if (newest == nullptr) return {0, channel_.horizon.of(0, HorizonLimit::Stop)};
+  const double t = static_cast<double>(cycle_ - newest->start_cycle) * period_s_;
+  return {std::max(newest->end_time_s - t, 0.0), channel_.horizon.of(newest->id, newest->limit)};
+}
+
 void PlanFollower::sample(std::int64_t cycle, Setpoint& setpoint) noexcept {
   receive(cycle);
   if (std::exchange(leaves_, false) && last_.moving && !off_path_ && !stops()) depart(PathDeparture::Cause::Stop, 0);
@@ -193,6 +209,7 @@ void PlanFollower::sample(std::int64_t cycle, Setpoint& setpoint) noexcept {
     follow(cycle, setpoint);
   }
   cycle_ = cycle;
+  horizon_.step(cycle, planned());
 }
 
 }  // namespace rmac

@@ -8,6 +8,7 @@
 
 #include "gives_way.hpp"
 #include "planner/failed_attempt.hpp"
+#include "planner/horizon_limit.hpp"
 #include "planner/next_window.hpp"
 #include "planner/planning_time.hpp"
 #include "planner/prompt_law.hpp"
@@ -62,6 +63,7 @@ struct Planner::Impl {
   double factor = 1;     ///< the override
   double limit_s = 0;    ///< path length at which RunOne ends
   double origin_mm = 0;  ///< of the forward path's length: so far behind the first one's
+  bool rest_follows = false;
 
   Impl(PlannerModel m, PlanChannel& channel) : model(std::move(m)), route(model), plans(channel, model.period_s) {}
 
@@ -93,6 +95,8 @@ struct Planner::Impl {
     about.turns = route.turns();
     about.override_factor = factor;
     about.commit_t = commit_time(*plan, window_begin, end.planned_again);
+    const LawPiece& last = plan->law.back();
+    plan->limit = horizon_limit(route, {wanted, factor, limit_s, rest_follows}, last.at(last.duration).s, &about);
     law_attempt = 0;
     return plans.publish(std::move(plan), std::move(about));
   }
@@ -324,6 +328,11 @@ struct Planner::Impl {
     planning_time.learn(progress);
     if (plans.refused(progress)) return false;  // it is still to come back through `retired`
     if (on_path() && plans.acknowledged(progress)) travelled(base()->state_at(now_s(*base(), progress.cycle)).s);
+    // A plan that may still be refused has said of itself what there is to say.
+    if (plans.acknowledged(progress)) {
+      const PublishedPlan* const under_way = plans.ended(progress) ? nullptr : base();
+      plans.tell_limit(horizon_limit(route, {wanted, factor, limit_s, rest_follows}, base_end_s(), under_way));
+    }
     const Task next = task(progress);
     if (next != Task::None && next != Task::Supply && next != Task::Turn) {
       planning_time.begin(progress.cycle, next == Task::Stop && !stop_came_late);
@@ -421,6 +430,9 @@ void Planner::command(PathCommand command) noexcept {
 }
 void Planner::set_override(double percent) noexcept {
   impl_->set_override(percent);
+}
+void Planner::rest_follows(bool follows) noexcept {
+  impl_->rest_follows = follows;
 }
 bool Planner::step(const ServoProgress& progress) {
   const GivesWay now(impl_->interruption);

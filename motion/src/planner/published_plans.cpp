@@ -55,6 +55,10 @@ void PublishedPlans::commanded(bool stop) noexcept {
   }
 }
 
+void PublishedPlans::tell_limit(HorizonLimit limit) noexcept {
+  channel_.horizon.tell(base() == nullptr ? 0 : base()->plan->id, limit);
+}
+
 void PublishedPlans::collect() {
   const Plan* plan = nullptr;
   while (channel_.retired.pop(plan)) {

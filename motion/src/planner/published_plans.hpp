@@ -38,6 +38,8 @@ class PublishedPlans {
   void base_stops(int better_tries);
   /// A stop is commanded, or something else.
   void commanded(bool stop) noexcept;
+  /// Why nothing is planned beyond the base, as it is now.
+  void tell_limit(HorizonLimit limit) noexcept;
   /// Frees what the servo loop is through with.
   void collect();
   void move_origin(double distance_mm);

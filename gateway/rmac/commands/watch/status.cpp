@@ -76,6 +76,11 @@ std::string to_do(const StateNote& state) {
   return state.stop_prompt.empty() ? "-" : state.stop_prompt;
 }
 
+std::string ahead(const StateNote& state) {
+  if (state.horizon_limit.empty()) return "-";
+  return fmt::format("{} ms, {}", number(state.horizon_s * 1000, 0), state.horizon_limit);
+}
+
 std::string state_table(const StateNote& state) {
   const auto machine =
       state.mechanism.empty() ? "none loaded" : state.mechanism + (state.virtual_mode ? ", virtual" : "");
@@ -83,6 +88,7 @@ std::string state_table(const StateNote& state) {
                               {"cycle", state.state + (state.moving ? ", moving" : ", at rest"), ""},
                               {"move", std::to_string(state.move_id), ""},
                               {"queued", std::to_string(state.moves_in_buffer), "moves"},
+                              {"planned ahead", ahead(state), ""},
                               {"feed", number(state.feed_actual, 1) + " of " + number(state.feed_set, 1), "mm/min"},
                               {"override", number(state.override_percent, 1), "%"},
                               {"tool tip", list(state.pose), "mm, axis"},

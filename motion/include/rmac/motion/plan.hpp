@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "rmac/motion/follower/horizon.hpp"
 #include "rmac/motion/path_segment.hpp"
 #include "rmac/motion/time_law.hpp"
 
@@ -24,6 +25,7 @@ struct Plan {
   std::vector<double> segment_start;  ///< path length at which each segment begins; same origin as the law's s
   std::vector<LawPiece> law;  ///< in time order, without gaps; ends with v = 0; the first may begin before time 0
   double end_time_s = 0;
+  HorizonLimit limit = HorizonLimit::Planning;  ///< of what is planned, when it was published
 };
 
 }  // namespace rmac

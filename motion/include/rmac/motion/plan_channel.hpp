@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "rmac/motion/follower/horizon.hpp"
+
 namespace rmac {
 
 /// Bounded single-producer single-consumer queue of trivially copyable values. Lock-free, wait-free, no allocation.
@@ -46,6 +48,7 @@ struct PlanChannel {
   /// Id of the first plan by which the motion ends as `PathCommand::Stop` asked, as by all behind it; 0 while none was
   /// asked for, or is found.
   std::atomic<std::uint64_t> stopping{0};
+  HorizonNews horizon;
 };
 
 }  // namespace rmac

@@ -73,6 +73,9 @@ class Planner {
   /// 0 to 200 percent of the programmed feed, from as soon as the limits allow.
   void set_override(double percent) noexcept;
 
+  /// Behind what was added comes something that needs the machine at rest: `Horizon` tells of it.
+  void rest_follows(bool follows) noexcept;
+
   /// Does one bounded piece of work if there is any: plans a window, or the way to a stop. True when it published
   /// something.
   bool step(const ServoProgress& progress);

@@ -377,5 +377,13 @@ TEST(State, NamesOperatorHolderWhatTheCycleWaitsForAndWhatWasCleaned) {
   EXPECT_EQ(state["cleaned"], (json{{"without_motion", 3}, {"merged", 4}}));
 }
 
+TEST(State, TellsHowFarAheadMotionIsPlannedAndWhyNoFurther) {
+  Api api;
+  api.machine.now.horizon = {0.031, HorizonLimit::HeldBack};
+  const json state = api.result("RMAC_CAM.GetState");
+  EXPECT_EQ(state["horizon_s"], 0.031);
+  EXPECT_EQ(state["horizon_limit"], "held_back");
+}
+
 }  // namespace
 }  // namespace rmac::gateway

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "rmac/motion/follower/horizon.hpp"
 #include "rmac/motion/follower/joint_brake.hpp"
 #include "rmac/motion/follower/path_departure.hpp"
 #include "rmac/motion/limits.hpp"
@@ -42,6 +43,9 @@ class PlanFollower {
   /// When, and why, it left the path last.
   [[nodiscard]] const PathDeparture& departure() const noexcept { return departure_; }
 
+  /// How far ahead of the last sample motion is planned: by the newest plan accepted, or off the path by the brake.
+  [[nodiscard]] const Horizon& horizon() const noexcept { return horizon_.now(); }
+
   /// Id of the newest plan accepted, under way or about to be; 0 for none.
   [[nodiscard]] std::uint64_t accepted_plan() const noexcept { return accepted_; }
   [[nodiscard]] std::uint64_t last_refused() const noexcept { return last_refused_; }
@@ -51,6 +55,7 @@ class PlanFollower {
   [[nodiscard]] bool stops() const noexcept;
   void activate(const Plan* plan) noexcept;
   void retire(const Plan* plan) noexcept;
+  [[nodiscard]] Horizon planned() const noexcept;
   void follow(std::int64_t cycle, Setpoint& setpoint) noexcept;
   /// False where the kinematics tell no such place.
   [[nodiscard]] bool place(const PathSegment& segment, double s, const PathState& at, Setpoint& setpoint) noexcept;
@@ -77,6 +82,7 @@ class PlanFollower {
   bool leaves_ = false;
   bool off_path_ = false;
   PathDeparture departure_;
+  HorizonWatch horizon_;
 };
 
 }  // namespace rmac

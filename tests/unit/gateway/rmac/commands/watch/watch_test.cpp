@@ -62,6 +62,11 @@ TEST_F(StatusCommand, SaysWhyARunningMachineRefusesAJog) {
   EXPECT_THAT(run({"status"}).out, HasSubstr("waits for moves, so jog and home are refused; to end it: rmac stop\n"));
 }
 
+TEST_F(StatusCommand, SaysHowFarAheadMotionIsPlannedAndWhyNoFurther) {
+  tells({{"state", "Running"}, {"horizon_s", 0.0314}, {"horizon_limit", "queue"}});
+  EXPECT_THAT(run({"status"}).out, HasSubstr("planned ahead     31 ms, queue\n"));
+}
+
 TEST_F(StatusCommand, PrintsForProgramsWhatWasPushed) {
   tells({{"move_id", 5}});
   EXPECT_EQ(json::parse(run({"status", "--json"}).out), state({{"move_id", 5}}));
