@@ -149,6 +149,8 @@ TEST_F(FlightRecord, SaysOfEachCycleWhatItsSampleSaid) {
     ++compared;
     // All digits: not nearly the same but the same.
     ASSERT_EQ(std::stod(row.at("t_s")), sample.t_s);
+    ASSERT_EQ(std::stod(row.at("horizon_s")), sample.horizon.s);
+    ASSERT_EQ(row.at("horizon_limit"), to_string(sample.horizon.limit));
     for (std::size_t j = 0; j < 3; ++j) {
       const std::string number = std::to_string(j + 1);
       ASSERT_EQ(std::stod(row.at("q" + number)), sample.position_set[j]);
