@@ -19,7 +19,7 @@ class HorizonOfAMachine : public testing::Test {
     ASSERT_TRUE(opened) << opened.error().message;
     simulation_ = std::move(*opened);
     simulation_->controller().on_sample([this](const CycleSample& sample) { last_ = sample; });
-    call("RMAC_CAM.SetFeedrate", {{"Feedrate", 3000}});
+    call("RMAC_CAM.SetFeedrate", {{"Feedrate", 600}});
     call("RMAC_CAM.SetPathTolerance", {{"Tolerance", 0.01}});
   }
   Json call(const std::string& method, Json params = Json::object()) {
@@ -42,7 +42,7 @@ class HorizonOfAMachine : public testing::Test {
     EXPECT_EQ(state["cycle"], last_.cycle);
     EXPECT_EQ(state["horizon_s"], last_.horizon.s);
     EXPECT_EQ(state["horizon_limit"], to_string(last_.horizon.limit));
-    EXPECT_EQ(last_.moving, last_.horizon.s > 0) << "in cycle " << last_.cycle;
+    EXPECT_TRUE(!last_.moving || last_.horizon.s > 0) << "in cycle " << last_.cycle;
     return state["horizon_limit"];
   }
   void run_for(int cycles) {
@@ -68,7 +68,9 @@ TEST_F(HorizonOfAMachine, EndsAtADwellAndThenWithTheQueue) {
   while (call("RMAC_CAM.GetState")["moves_in_buffer"] > 0) {
     const std::string word = cycle();
     const std::string waits_for = call("RMAC_CAM.GetState")["waits_for"];
-    if (waits_for == "dwell") EXPECT_EQ(word, "rest") << "in cycle " << last_.cycle;
+    if (waits_for == "dwell") {
+      EXPECT_EQ(word, "rest") << "in cycle " << last_.cycle;
+    }
     if (last_.move_id < 20 && word == "rest") ++before;
     if (last_.move_id > 21 && word == "queue") ++behind;
     ASSERT_LT(last_.cycle, 20'000);
@@ -97,18 +99,18 @@ TEST_F(HorizonOfAMachine, EndsWithAHoldAndIsLongAgainWhenItIsOver) {
   EXPECT_GE(last_.horizon.s, kPromisedHorizon_s);
 }
 
-/// Lines of 4 ms each, one every 40 ms.
+/// Lines that take 20 ms at their feed, and less than 100 ms from rest to rest, one every 200 ms.
 TEST_F(HorizonOfAMachine, EndsWithTheQueueOfAClientThatIsTooSlow) {
   start();
   int too_short = 0;
   for (int i = 0; i < 2000; ++i) {
-    if (i % 40 == 0) queue_lines(1);
+    if (i % 200 == 0) queue_lines(1);
     const std::string word = cycle();
     if (!last_.moving || last_.horizon.s >= kPromisedHorizon_s) continue;
     ++too_short;
     ASSERT_EQ(word, "queue") << "in cycle " << last_.cycle;
   }
-  EXPECT_GT(too_short, 500);
+  EXPECT_GT(too_short, 400);
 }
 
 }  // namespace
