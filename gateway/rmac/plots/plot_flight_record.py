@@ -39,7 +39,7 @@ def spans(time, values):
 
 def draw_states(axes, time, columns):
     """A band each for the cycle's state, the servo loop's, the fault, and why motion was planned no further ahead."""
-    palette = plt.get_cmap("tab10")
+    palette = plt.get_cmap("tab20")
     known = {}
     bands = [("horizon_limit", "horizon"), ("fault", "fault"), ("servo_state", "servo loop"), ("state", "cycle")]
     bands = [(name, title) for name, title in bands if name in columns]  # records had no horizon once
