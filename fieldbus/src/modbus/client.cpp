@@ -40,6 +40,11 @@ bool is_header_of(std::span<const std::uint8_t> frame) {
          static_cast<std::size_t>(frame[4] << 8 | frame[5]) == frame.size() - kBeforeCounted;
 }
 
+/// It speaks for a slave that has not answered it (V1.1b3, 7).
+bool from_gateway(int exception_code) noexcept {
+  return exception_code == MODBUS_EXCEPTION_GATEWAY_PATH || exception_code == MODBUS_EXCEPTION_GATEWAY_TARGET;
+}
+
 }  // namespace
 
 const char* to_string(Table table) noexcept {
@@ -133,7 +138,7 @@ struct Client::Impl {
       case Verdict::Fits:
         return {};
       case Verdict::Exception:
-        doubt(request);
+        if (from_gateway(decoded.exception_code)) doubt(request);
         return fail(Kind::Exception, request,
                     fmt::format("refused with exception {}: {}", decoded.exception_code,
                                 exception_text(decoded.exception_code)),
@@ -264,9 +269,9 @@ Answer<> Client::resynchronise(int slave, Table table, std::uint16_t address, st
   *probed = now;
   std::array<std::uint16_t, MODBUS_MAX_READ_BITS> values{};
   auto answer = impl_->ask(request, {}, {values.data(), request.count});
-  const bool refused = !answer && answer.error().kind == Kind::Exception;
-  if (answer || refused) known.refuses_probes = refused;
-  if (!answer && !(refused && settled)) return answer;
+  const bool exception = !answer && answer.error().kind == Kind::Exception;
+  if (answer || (exception && !answer.error().busy())) known.refuses_probes = exception;
+  if (!answer && !(exception && settled)) return answer;
   known.doubt = false;
   return {};
 }

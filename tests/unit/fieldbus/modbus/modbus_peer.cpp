@@ -200,12 +200,18 @@ Bytes ModbusPeer::default_answer(const Bytes& request) const {
   return answer;
 }
 
-Bytes ModbusPeer::frame(const Bytes& header, const Bytes& pdu) const {
+std::uint32_t ModbusPeer::next_noise() {
+  return (noise_ = noise_ * 1664525U + 1013904223U) >> 16U;
+}
+
+Bytes ModbusPeer::frame(const Bytes& header, const Bytes& pdu) {
   Bytes whole = header;
   whole.insert(whole.end(), pdu.begin(), pdu.end());
   if (wire_ == Wire::Tcp) {
-    whole[4] = static_cast<std::uint8_t>(pdu.size() >> 8U);
-    whole[5] = static_cast<std::uint8_t>(pdu.size() + (manner_ == Manner::WrongLength ? 1 : 0));
+    std::size_t counted = pdu.size();
+    while (manner_ == Manner::WrongLength && counted == pdu.size()) counted = next_noise() % 512;
+    whole[4] = static_cast<std::uint8_t>(counted >> 8U);
+    whole[5] = static_cast<std::uint8_t>(counted);
   } else {
     const std::uint16_t crc = modbus_crc(pdu);
     whole.push_back(static_cast<std::uint8_t>(crc));
@@ -218,7 +224,10 @@ bool ModbusPeer::answer(int descriptor, const Bytes& header, const Bytes& reques
   Bytes pdu;
   {
     const std::lock_guard lock(mutex_);
-    pdu = responder_ ? responder_(request) : default_answer(request);
+    const bool busy = manner_ == Manner::Busy;
+    pdu = busy         ? Bytes{request[0], static_cast<std::uint8_t>(request[1] | 0x80U), 6}
+          : responder_ ? responder_(request)
+                       : default_answer(request);
   }
   const Manner manner = manner_;
   const std::chrono::microseconds pause(pause_us_);
@@ -227,8 +236,7 @@ bool ModbusPeer::answer(int descriptor, const Bytes& header, const Bytes& reques
   if (manner == Manner::WrongId) ++pdu[0];
   Bytes whole = frame(header, pdu);
   if (manner == Manner::Garbage) {
-    for (std::uint8_t& byte : whole)
-      byte = static_cast<std::uint8_t>((noise_ = noise_ * 1664525U + 1013904223U) >> 24U);
+    for (std::uint8_t& byte : whole) byte = static_cast<std::uint8_t>(next_noise() >> 8U);
   }
   if (manner == Manner::Late && !pause_for(pause)) return false;
   const std::size_t piece = manner == Manner::Dripping ? 1 : whole.size();

@@ -27,7 +27,8 @@ class ModbusPeer {
     Dripping,     ///< one byte each `pause`
     Late,         ///< each whole answer after `pause`
     WrongId,      ///< as another slave
-    WrongLength,  ///< a header that counts a byte more than come (TCP)
+    WrongLength,  ///< a header that counts other bytes than come, another number each time (TCP)
+    Busy,         ///< exception 6 for every request
     Garbage,      ///< bytes of a seeded generator
     Resetting     ///< closes the line in place of an answer (TCP resets it)
   };
@@ -64,7 +65,8 @@ class ModbusPeer {
   [[nodiscard]] bool wait_readable(int descriptor);
   [[nodiscard]] bool pause_for(std::chrono::microseconds pause);
   [[nodiscard]] bool answer(int descriptor, const Bytes& header, const Bytes& request);
-  [[nodiscard]] Bytes frame(const Bytes& header, const Bytes& pdu) const;
+  [[nodiscard]] Bytes frame(const Bytes& header, const Bytes& pdu);
+  [[nodiscard]] std::uint32_t next_noise();
   [[nodiscard]] Bytes default_answer(const Bytes& request) const;
 
   Wire wire_;

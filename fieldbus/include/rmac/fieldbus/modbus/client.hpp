@@ -55,6 +55,11 @@ struct Failure {
   Kind kind = Kind::Timeout;
   int exception_code = 0;
   std::string message;  ///< what was asked, of whom, and what came of it
+
+  /// The slave answers, and asks for patience: exceptions 5 and 6 (V1.1b3, 7).
+  [[nodiscard]] bool busy() const noexcept {
+    return kind == Kind::Exception && (exception_code == 5 || exception_code == 6);
+  }
 };
 
 template <typename T = void>
@@ -73,7 +78,8 @@ using Clock = std::chrono::steady_clock;
 /// goes down with it. An RTU line has no connection and its frames no numbers, so a late answer would be taken for the
 /// next one's. Therefore the slave is *in doubt* from then on: no read is sent to it and no answer to a write believed
 /// until `resynchronise` got the answer to a question of a length that no other question had within `kSettle`. A slave
-/// answers in the order in which it is asked, hence all that was late has come by then.
+/// answers in the order in which it is asked, hence all that was late has come by then. For the same reason an
+/// exception casts no doubt where there was none, but for a gateway's, whose slave may still answer.
 ///
 /// It belongs to one thread. Never on the servo thread.
 class Client {
@@ -100,8 +106,9 @@ class Client {
   [[nodiscard]] bool in_doubt(int slave) const noexcept;
   /// Asks for `count` values or some more: their answer ends the doubt. `count` must be above that of any read of this
   /// slave. Devices may refuse so many; an exception does not tell which question it belongs to, so it ends the doubt
-  /// only where the slave was asked nothing for `kSettle` before, and until then this fails without asking. It fails
-  /// likewise when it was called so often that no length is left. Nothing happens where there is no doubt.
+  /// only where the slave was asked nothing for `kSettle` before, and until then this fails without asking (one that is
+  /// busy is asked on: it does not refuse the length). It fails likewise when it was called so often that no length is
+  /// left. Nothing happens where there is no doubt.
   Answer<> resynchronise(int slave, Table table, std::uint16_t address, std::size_t count);
 
   /// No slave on a serial line answers later than this after it was asked.
