@@ -113,6 +113,11 @@ void IoInterface::stop() noexcept {
   impl_->station.forget();
 }
 
+std::string IoInterface::fault_text() const {
+  const auto text = impl_->line.trouble(0);
+  return text ? "the device " + *text : "what it told last is too old; see that the computer has time for its line";
+}
+
 bool IoInterface::exchange(std::uint64_t outputs, std::uint64_t& inputs) noexcept {
   IoStation& station = impl_->station;
   const Clock::time_point asked{Clock::duration(station.asked_at.load(std::memory_order_acquire))};

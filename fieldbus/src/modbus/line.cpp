@@ -18,14 +18,32 @@ namespace rmac::fieldbus::modbus {
 namespace {
 
 constexpr int kSafeTries = 3;
+constexpr std::chrono::seconds kSafePatience{3};  ///< with a device that is busy just then
+
+// Whoever asks why a drive was silent may ask when it has answered again.
+constexpr std::chrono::seconds kRemembered{10};
+
+/// What a device does that gives nothing.
+const char* manner(const Failure& failure) noexcept {
+  switch (failure.kind) {
+    case Failure::Kind::WrongAnswer:
+      return "is not understood";
+    case Failure::Kind::Exception:
+      return failure.busy() ? "is busy" : "refuses";
+    default:
+      return "does not answer";
+  }
+}
 
 }  // namespace
 
 struct Line::Impl {
-  /// What is known of a station, for whoever waits in `start`. Under the lock.
+  /// What is known of a station, for whoever waits in `start` or asks for its trouble. Under the lock.
   struct Known {
-    bool served = false;
-    std::string trouble = "the line was not opened yet";
+    bool served = false;  ///< once
+    bool works = true;    ///< the last time
+    Failure trouble{Failure::Kind::NotConnected, 0, "the line was not opened yet"};
+    std::optional<Clock::time_point> troubled{};  ///< last
   };
 
   LineConfig config;
@@ -34,6 +52,7 @@ struct Line::Impl {
   int wakeup = -1;
   std::atomic<bool> ending{false};
   std::atomic<std::uint64_t> rounds{0}, failures{0}, connected{0};
+  std::atomic<std::uint64_t> timeouts{0}, wrong_answers{0}, busy{0}, exceptions{0}, disconnects{0};
   std::mutex mutex{};
   std::condition_variable news{};
   std::vector<Known> known{};
@@ -63,6 +82,7 @@ struct Line::Impl {
     const auto opened = client->connect();
     if (!opened) {
       backoff.failed(Clock::now());
+      count(opened.error());
       for (std::size_t i = 0; i < stations.size(); ++i) note(i, opened);
       return false;
     }
@@ -79,6 +99,7 @@ struct Line::Impl {
       any = any || served.has_value();
       if (!served) {
         ++failures;
+        count(served.error());
         stations[i]->forget();
       }
       note(i, served);
@@ -86,10 +107,38 @@ struct Line::Impl {
     return any;
   }
 
+  void count(const Failure& failure) noexcept {
+    switch (failure.kind) {
+      case Failure::Kind::Timeout:
+        ++timeouts;
+        break;
+      case Failure::Kind::WrongAnswer:
+        ++wrong_answers;
+        break;
+      case Failure::Kind::Exception:
+        ++(failure.busy() ? busy : exceptions);
+        break;
+      case Failure::Kind::Disconnected:
+        ++disconnects;
+        break;
+      case Failure::Kind::BadRequest:
+      case Failure::Kind::NotConnected:
+      case Failure::Kind::InDoubt:  // what follows from one of the others
+        break;
+    }
+  }
+
   void note(std::size_t station, const Answer<>& served) {
     const std::lock_guard lock(mutex);
-    known[station].served = known[station].served || served.has_value();
-    if (!served) known[station].trouble = served.error().message;
+    Known& of = known[station];
+    if (!served) {
+      // Doubt follows from an answer that was lost, and says nothing of why.
+      const bool follows = served.error().kind == Failure::Kind::InDoubt && of.troubled && !of.works;
+      if (!follows) of.trouble = served.error();
+      of.troubled = Clock::now();
+    }
+    of.works = served.has_value();
+    of.served = of.served || of.works;
     news.notify_all();
   }
 
@@ -109,11 +158,19 @@ struct Line::Impl {
   }
 
   void finish() {
+    const auto patient_until = Clock::now() + kSafePatience;
     for (int tries = 0; tries < kSafeTries; ++tries) {
       if (!client->connected() && !client->connect()) continue;
-      bool all = true;
-      for (Station* station : stations) all = station->make_safe(*client).has_value() && all;
+      bool all = true, one_busy = false;
+      for (Station* station : stations) {
+        const auto safe = station->make_safe(*client);
+        all = all && safe;
+        one_busy = one_busy || (!safe && safe.error().busy());
+      }
       if (all) break;
+      if (!one_busy || Clock::now() >= patient_until) continue;
+      pause(Clock::now() + config.period);
+      tries = -1;  // a device that answers is worth the wait
     }
     client->disconnect();
   }
@@ -151,7 +208,7 @@ Expected<> Line::start(std::chrono::milliseconds patience) {
   for (std::size_t i = 0; i < line.known.size(); ++i) {
     if (line.known[i].served) continue;
     const int slave = line.stations[i]->slave();
-    const std::string trouble = line.known[i].trouble;
+    const std::string trouble = line.known[i].trouble.message;
     lock.unlock();
     stop();
     return failure(MinorCode::CommTimeout, fmt::format("slave {} at {} was not reached within {:g} s: {}", slave,
@@ -174,7 +231,23 @@ void Line::wake() noexcept {
 }
 
 LineCounters Line::counters() const noexcept {
-  return {impl_->rounds, impl_->failures, impl_->connected};
+  return {impl_->rounds,        impl_->failures, impl_->connected,  impl_->timeouts,
+          impl_->wrong_answers, impl_->busy,     impl_->exceptions, impl_->disconnects};
+}
+
+std::optional<std::string> Line::trouble(std::size_t station) const {
+  std::string text;
+  {
+    const std::lock_guard lock(impl_->mutex);
+    if (station >= impl_->known.size()) return {};
+    const Impl::Known& of = impl_->known[station];
+    if (!of.troubled || (of.works && Clock::now() - *of.troubled > kRemembered)) return {};
+    text = fmt::format("{}: {}", manner(of.trouble), of.trouble.message);
+  }
+  const LineCounters seen = counters();
+  return fmt::format(
+      "{} (since the start {} time-outs, {} wrong answers, {} times busy, {} other exceptions, {} disconnects)", text,
+      seen.timeouts, seen.wrong_answers, seen.busy, seen.exceptions, seen.disconnects);
 }
 
 }  // namespace rmac::fieldbus::modbus

@@ -94,6 +94,7 @@ Expected<SpindleLineConfig> read_spindle_line(const std::string& bus, const Numb
   Parameters parameters("ModbusInterface", "slave", bus, numbers, texts);
   SpindleLineConfig config;
   read_line(parameters, config);
+  config.busy = milliseconds(parameters.number("busy_ms", 3000, 0, kMostMilliseconds));
   const std::size_t axes = parameters.axes();
   if (axes == 0) parameters.refuse("slave is missing; it lists the slave number of each axis, for example [1]");
   std::set<int> slaves;

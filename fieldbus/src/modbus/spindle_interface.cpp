@@ -19,15 +19,24 @@ struct SpindleInterface::Impl {
   };
 
   std::chrono::milliseconds stale;
+  std::chrono::milliseconds busy;
   std::chrono::milliseconds boot_timeout;
   std::deque<Axis> axes;  ///< stations stay where they are
   std::unique_ptr<Line> line;
+
+  /// What was read last holds while it is new, and somewhat longer while the drive answers that it is busy.
+  [[nodiscard]] bool counts(const SpindleStation::Report& report, Clock::time_point now) const noexcept {
+    constexpr auto kNever = Clock::time_point::min();
+    if (report.asked == kNever) return false;
+    const bool says_busy = report.busy != kNever && now - report.busy <= stale;
+    return now - report.asked <= stale || (says_busy && now - report.asked <= busy);
+  }
 
   /// One axis in one cycle. True when its drive is to be told something new.
   [[nodiscard]] bool exchange(Axis& axis, const DriveCommand& command, DriveFeedback& feedback,
                               Clock::time_point now) const noexcept {
     const SpindleStation::Report report = axis.station.report();
-    const bool fresh = report.asked != Clock::time_point::min() && now - report.asked <= stale;
+    const bool fresh = counts(report, now);
     const bool reset = (command.controlword & ~axis.controlword & controlword::kFaultReset) != 0;
     axis.controlword = command.controlword;
     if (reset) axis.station.request_reset();
@@ -44,7 +53,7 @@ struct SpindleInterface::Impl {
 };
 
 SpindleInterface::SpindleInterface(SpindleLineConfig config)
-    : impl_(new Impl{config.stale, config.boot_timeout, {}, {}}) {
+    : impl_(new Impl{config.stale, config.busy, config.boot_timeout, {}, {}}) {
   std::vector<Station*> stations;
   for (SpindleConfig& axis : config.axes) {
     impl_->axes.emplace_back(std::move(axis));
@@ -90,6 +99,12 @@ std::string SpindleInterface::fault_text(std::size_t axis, std::uint16_t error_c
   const SpindleMap& map = impl_->axes[axis].station.map();
   const auto text = map.fault_texts.find(error_code);
   return fmt::format("{}: {}", map.name, text != map.fault_texts.end() ? text->second : "see its manual");
+}
+
+std::optional<std::string> SpindleInterface::silence_text(std::size_t axis) const {
+  auto text = impl_->line->trouble(axis);
+  if (text) text->insert(0, "the drive ");
+  return text;
 }
 
 LineCounters SpindleInterface::counters() const noexcept {

@@ -44,8 +44,12 @@ SpindleStation::Report SpindleStation::report() const noexcept {
   // The time first: what comes with it may then be newer than it says, and never older.
   const Clock::time_point asked{Clock::duration(asked_.load(std::memory_order_acquire))};
   const std::uint64_t values = values_.load(std::memory_order_acquire);
-  return {static_cast<std::int32_t>(static_cast<std::uint32_t>(values)), static_cast<std::uint16_t>(values >> 32U),
-          (values & kTripped) != 0, (values & kDropped) != 0, asked};
+  return {.rpm = static_cast<std::int32_t>(static_cast<std::uint32_t>(values)),
+          .error_code = static_cast<std::uint16_t>(values >> 32U),
+          .tripped = (values & kTripped) != 0,
+          .dropped = (values & kDropped) != 0,
+          .asked = asked,
+          .busy = Clock::time_point(Clock::duration(busy_.load(std::memory_order_acquire)))};
 }
 
 void SpindleStation::publish(Clock::time_point asked) noexcept {
@@ -72,7 +76,8 @@ void SpindleStation::publish(Clock::time_point asked) noexcept {
 void SpindleStation::clear() noexcept {
   wanted_rpm_ = 0;
   resets_done_ = resets_;
-  asked_ = Clock::time_point::min().time_since_epoch().count();
+  asked_ = kNever;
+  busy_ = kNever;
   applied_.reset();
   speed_.reset();
 }
@@ -149,7 +154,7 @@ bool SpindleStation::lacks_its_code() const noexcept {
 }
 
 /// A stop goes out before anything is asked, in doubt too: once, and then again seldom, because a slave may have to be
-/// left alone before its answers can be trusted again.
+/// left alone before its answers can be trusted again. A drive that is busy did not take it, and is told again.
 Answer<> SpindleStation::stop_at_once(Client& client) {
   const auto now = Clock::now();
   const bool wanted = wanted_rpm_.load(std::memory_order_acquire) == 0;
@@ -157,10 +162,20 @@ Answer<> SpindleStation::stop_at_once(Client& client) {
   stop_sent_at_ = now;
   auto stopped = apply(client, 0);
   if (!stopped && stopped.error().kind == Failure::Kind::InDoubt) return {};
-  return stopped;
+  if (stopped || !stopped.error().busy()) return stopped;
+  stop_sent_at_ = {};
+  return {};  // it may tell its state all the same
 }
 
 Answer<> SpindleStation::serve(Client& client) {
+  auto served = serve_once(client);
+  if (!served && served.error().busy()) {
+    busy_.store(Clock::now().time_since_epoch().count(), std::memory_order_release);
+  }
+  return served;
+}
+
+Answer<> SpindleStation::serve_once(Client& client) {
   if (auto stopped = stop_at_once(client); !stopped) return stopped;
   if (auto sure = image_.resynchronise(client, config_.slave); !sure) return sure;
   auto asked = image_.read(client, config_.slave);

@@ -20,6 +20,7 @@ class SpindleStation final : public Station {
     bool tripped = false;
     bool dropped = false;  ///< told to run, and stands: someone stopped it at its panel, or it does not take commands
     Clock::time_point asked = Clock::time_point::min();  ///< it is at least as new as this
+    Clock::time_point busy = Clock::time_point::min();   ///< when the drive said last that it is
   };
 
   // The servo thread's; real-time safe.
@@ -38,6 +39,8 @@ class SpindleStation final : public Station {
   [[nodiscard]] const SpindleMap& map() const noexcept { return config_.map; }
 
  private:
+  static constexpr Clock::rep kNever = Clock::time_point::min().time_since_epoch().count();
+
   [[nodiscard]] Answer<> write(Client& client, const std::vector<RegisterWrite>& writes) const;
   [[nodiscard]] Words speed_words(std::int32_t rpm) const noexcept;
   Answer<> stop_at_once(Client& client);
@@ -46,6 +49,7 @@ class SpindleStation final : public Station {
   void check_read_back() noexcept;
   [[nodiscard]] bool lacks_its_code() const noexcept;
   void publish(Clock::time_point asked) noexcept;
+  Answer<> serve_once(Client& client);
 
   SpindleConfig config_;
   Image image_;
@@ -59,7 +63,8 @@ class SpindleStation final : public Station {
   std::atomic<std::int32_t> wanted_rpm_{0};
   std::atomic<std::uint32_t> resets_{0};
   std::atomic<std::uint64_t> values_{0};  ///< rpm, error code, flags
-  std::atomic<Clock::rep> asked_{Clock::time_point::min().time_since_epoch().count()};
+  std::atomic<Clock::rep> asked_{kNever};
+  std::atomic<Clock::rep> busy_{kNever};
 };
 
 }  // namespace rmac::fieldbus::modbus

@@ -1,5 +1,6 @@
 #include "rmac/fieldbus/modbus/io_interface.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -112,6 +113,8 @@ TEST_P(ModbusIo, FailsWhenItsInputsGrowOldAndLetsItsOutputsFall) {
   peer.behave(ModbusPeer::Manner::Silent);
   const auto give_up = Clock::now() + 60s;
   while (io->exchange(0b111, inputs)) ASSERT_LT(Clock::now(), give_up);
+  EXPECT_THAT(io->fault_text(), testing::HasSubstr("the device does not answer: "));
+  EXPECT_THAT(io->fault_text(), testing::HasSubstr("no whole answer within 50 ms"));
   static_cast<void>(peer.take_requests());
   peer.behave(ModbusPeer::Manner::Honest);
   EXPECT_TRUE(peer.wait_for([](const Bytes& request) { return request[1] == 15 && request.back() == 0; }));

@@ -62,7 +62,7 @@ class ModbusSpindle : public testing::TestWithParam<Wire> {
   }
 
   void bring_up(std::chrono::milliseconds stale = 30s, const SpindleMap& drives_map = map(),
-                std::chrono::milliseconds deadline = 50ms) {
+                std::chrono::milliseconds deadline = 50ms, std::chrono::milliseconds busy = 60s) {
     SpindleLineConfig config;
     config.line.endpoint = peer.endpoint();
     config.line.deadline = deadline;
@@ -70,6 +70,7 @@ class ModbusSpindle : public testing::TestWithParam<Wire> {
     config.line.first_pause = 1ms;
     config.line.longest_pause = 5ms;
     config.stale = stale;
+    config.busy = busy;
     config.boot_timeout = 60s;
     config.axes = {{.slave = 4, .rpm_per_hz = 60, .maximum_hz = 0, .map = drives_map}};
     spindle = std::make_unique<SpindleInterface>(std::move(config));
@@ -264,6 +265,89 @@ TEST_P(ModbusSpindle, GoesOfflineWhenWhatWasReadGrowsOldAndComesBackDisabled) {
         << "it is stopped as soon as it can be reached";
     ASSERT_TRUE(run_at(1500));
   }
+}
+
+// Red when the cause is told at boot alone: a fault in operation said that the drive does not answer, whatever it did.
+TEST_P(ModbusSpindle, TellsInOperationWhyItIsSilentAndCountsIt) {
+  bring_up(700ms, map(), 300ms, 800ms);
+  ASSERT_TRUE(run_at(1500));
+  EXPECT_EQ(spindle->silence_text(1), std::nullopt);
+  struct Case {
+    Manner manner;
+    const char* says;
+    const char* why;
+    std::uint64_t LineCounters::*count;
+  };
+  const bool tcp = GetParam() == Wire::Tcp;
+  std::vector<Case> cases{
+      {Manner::Silent, "the drive does not answer: ", "no whole answer within 300 ms", &LineCounters::timeouts},
+      {Manner::WrongId, "the drive is not understood: ", "another slave answered", &LineCounters::wrong_answers},
+      {Manner::Busy, "the drive is busy: ", "refused with exception 6: it is busy", &LineCounters::busy}};
+  if (tcp) {
+    cases.push_back({Manner::WrongLength, "the drive is not understood: ", "counts other bytes than came",
+                     &LineCounters::wrong_answers});
+    cases.push_back(
+        {Manner::Resetting, "the drive does not answer: ", "the connection broke", &LineCounters::disconnects});
+  }
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.why);
+    const std::uint64_t before = spindle->counters().*one.count;
+    peer.behave(one.manner);
+    ASSERT_TRUE(run_until(DriveWish::Operational, 1500, [](const DriveFeedback& words) { return !words.online; }));
+    const std::string text = spindle->silence_text(0).value_or("");
+    EXPECT_THAT(text, testing::StartsWith(one.says));
+    EXPECT_THAT(text, HasSubstr(": slave 4, "));
+    EXPECT_THAT(text, HasSubstr(one.why));
+    EXPECT_THAT(text, HasSubstr("(since the start "));
+    EXPECT_GT(spindle->counters().*one.count, before);
+    peer.behave(Manner::Honest);
+    ASSERT_TRUE(run_until(DriveWish::Off, 0, [](const DriveFeedback& words) { return words.online; }));
+    EXPECT_THAT(spindle->silence_text(0).value_or(""), HasSubstr(one.why)) << "who asks late is told, too";
+    ASSERT_TRUE(run_at(1500));
+  }
+}
+
+// Red when a drive that answers "busy" counts as one that does not answer.
+TEST_P(ModbusSpindle, ThatIsBusyRunsOnAndTakesItsStopAsSoonAsItCan) {
+  bring_up(400ms);
+  ASSERT_TRUE(run_at(1500));
+  peer.behave(Manner::Busy);
+  const auto begun = Clock::now();
+  Clock::time_point looked = begun, busy_after = begun;  // it said that it is since then
+  for (std::uint64_t told = 0; looked - begun < 1s;) {
+    const DriveFeedback words = cycle(DriveWish::Operational, 1500);
+    // On a computer that has no time for the line nobody says anything.
+    if (told > 0 && Clock::now() - busy_after < 300ms) {
+      ASSERT_TRUE(words.online);
+      ASSERT_EQ(words.velocity_rpm, 1500);
+    }
+    const std::uint64_t so_far = spindle->counters().busy;
+    if (std::exchange(told, so_far) != so_far) busy_after = looked;
+    looked = Clock::now();
+  }
+  const std::uint64_t asked = peer.requests();
+  ASSERT_TRUE(run_until(DriveWish::Off, 0, [&](const DriveFeedback&) { return peer.requests() > asked + 6; }));
+  const auto refused = peer.take_requests();
+  const Bytes stop{4, 6, 0, kCommand, 0, kStop};
+  EXPECT_GT(std::count(refused.begin(), refused.end(), stop), 1) << "a stop that was not taken is told again";
+  peer.behave(Manner::Honest);
+  EXPECT_TRUE(run_until(DriveWish::Off, 0, [](const DriveFeedback& words) { return words.velocity_rpm == 0; }));
+  EXPECT_EQ(bank.get(kHolding, kCommand), kStop);
+}
+
+// Red when a drive that is busy just then is left turning by an appliance that ends.
+TEST_P(ModbusSpindle, ThatIsBusyIsStoppedWithTheApplianceAllTheSame) {
+  bring_up(30s, map(), 60s);
+  ASSERT_TRUE(run_at(1500));
+  std::atomic<int> refusals{8};
+  peer.respond([&](const Bytes& request) {
+    if (request[1] == 6 && refusals.fetch_sub(1) > 0) return Bytes{4, 0x86, 6};
+    return bank.answer(request);
+  });
+  spindle->stop();
+  EXPECT_EQ(bank.get(kHolding, kCommand), kStop);
+  spindle.reset();
+  peer.vanish();  // before what it asks is gone
 }
 
 TEST_P(ModbusSpindle, IsOfflineWhenTheLineIsGone) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,12 @@ struct LineCounters {
   std::uint64_t rounds = 0;     ///< of all stations
   std::uint64_t failures = 0;   ///< rounds of a station that failed
   std::uint64_t connected = 0;  ///< times the line was opened
+  // Why rounds failed, or the line was not opened:
+  std::uint64_t timeouts = 0;       ///< no answer within the deadline
+  std::uint64_t wrong_answers = 0;  ///< another slave's, or spoilt
+  std::uint64_t busy = 0;           ///< the slave asked for patience
+  std::uint64_t exceptions = 0;     ///< the slave refused for another reason
+  std::uint64_t disconnects = 0;    ///< the connection or the port failed
 };
 
 /// A Modbus line with the thread that owns it: serves its stations in turn, each round or when woken; opens the line
@@ -56,6 +63,9 @@ class Line {
   /// The next round begins at once. Any thread, real-time safe.
   void wake() noexcept;
   [[nodiscard]] LineCounters counters() const noexcept;
+  /// Why a station was not served last, as it goes on behind "the device", and what the line went through; nothing of
+  /// one that was served without trouble for a while. Any thread but the servo thread.
+  [[nodiscard]] std::optional<std::string> trouble(std::size_t station) const;
 
  private:
   struct Impl;

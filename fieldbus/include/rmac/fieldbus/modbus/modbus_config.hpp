@@ -20,6 +20,7 @@ struct SpindleConfig {
 struct SpindleLineConfig {
   LineConfig line;
   std::chrono::milliseconds stale{1000};  ///< age at which what was read counts for nothing
+  std::chrono::milliseconds busy{3000};   ///< the same, while the drive answers that it is busy
   std::chrono::milliseconds boot_timeout{5000};
   std::vector<SpindleConfig> axes;
 };

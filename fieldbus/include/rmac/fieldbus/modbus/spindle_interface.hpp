@@ -14,8 +14,9 @@ namespace rmac::fieldbus::modbus {
 /// growing old.
 ///
 /// `exchange` leaves commands to the line's thread and takes from it what was read last. It never waits. What is older
-/// than `stale` counts for nothing: its drive is offline, and comes back disabled.
-class SpindleInterface final : public DigitalControlInterface, public FaultTexts {
+/// than `stale` counts for nothing: its drive is offline, and comes back disabled. While a drive answers that it is
+/// busy, what it told last counts for `busy`.
+class SpindleInterface final : public DigitalControlInterface, public FaultTexts, public SilenceText {
  public:
   explicit SpindleInterface(SpindleLineConfig config);
   ~SpindleInterface() override;
@@ -30,6 +31,7 @@ class SpindleInterface final : public DigitalControlInterface, public FaultTexts
                               std::span<DriveFeedback> feedback) noexcept override;
   [[nodiscard]] DriveMode mode(std::size_t /*axis*/) const noexcept override { return DriveMode::ProfileVelocity; }
   [[nodiscard]] std::string fault_text(std::size_t axis, std::uint16_t error_code) const override;
+  [[nodiscard]] std::optional<std::string> silence_text(std::size_t axis) const override;
 
   [[nodiscard]] LineCounters counters() const noexcept;
 
