@@ -1,10 +1,12 @@
 #include "gateway/buses/bus_registry.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
 #include "gateway/buses/bus_choice.hpp"
+#include "rmac/fieldbus/fault_texts.hpp"
 #include "rmac/motion/ports/digital_io_interface.hpp"
 #include "rmac/sdk/buses_of.hpp"
 
@@ -103,6 +105,10 @@ Expected<std::shared_ptr<ServoBus>> BusRegistry::acquire(const std::string& name
       return failure(started.error().code, fmt::format("bus {} did not come up: {}", name, started.error().message));
     }
     bus.started = true;
+    const auto* told = dynamic_cast<const fieldbus::StartNotes*>(bus.bus->interface.get());
+    for (const std::string& note : told != nullptr ? told->start_notes() : std::vector<std::string>()) {
+      spdlog::warn("bus {}: {}", name, note);
+    }
   }
   return bus.bus;
 }

@@ -1,6 +1,7 @@
 #include "canopen/boot_plan.hpp"
 
 #include <array>
+#include <optional>
 
 #include "canopen/description_check.hpp"
 
@@ -12,6 +13,24 @@ using Kind = BootStep::Kind;
 constexpr std::uint32_t kInvalidPdo = 0x80000000;
 constexpr std::uint32_t kNoRemoteRequest = 0x40000000;
 
+struct InterpolationTime {
+  std::int64_t value;
+  int exponent;
+};
+
+/// As few digits as say it, in ms where they can: the exponent of 60C2h is -3 by default, and in some drives fixed.
+std::optional<InterpolationTime> interpolation_time(std::chrono::nanoseconds period) {
+  constexpr std::int64_t kMostValue = 255;
+  constexpr std::array kExponents{-3, -2, -1, 0, -4, -5, -6, -7, -8, -9};
+  for (const int exponent : kExponents) {
+    std::int64_t unit = 1;
+    for (int i = -9; i < exponent; ++i) unit *= 10;
+    const std::int64_t value = period.count() / unit;
+    if (period.count() % unit == 0 && value > 0 && value <= kMostValue) return InterpolationTime{value, exponent};
+  }
+  return std::nullopt;
+}
+
 class Plan {
  public:
   explicit Plan(const CanopenConfig& config) : config_(config) {}
@@ -19,12 +38,17 @@ class Plan {
   void check_node(const AxisConfig& first) {
     constexpr std::uint32_t kProfileMask = 0xFFFF;
     constexpr std::uint32_t kDriveProfile = 402;
-    check({0x1000, 0}, kDriveProfile, kProfileMask);
+    need("to know that it is a drive").check({0x1000, 0}, kDriveProfile, kProfileMask);
+    need("to know that it is the device that device.json names");
     const std::array numbers{first.identity.vendor_id, first.identity.product_code, first.identity.revision_number,
                              first.identity.serial_number};
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       const ObjectAddress object{0x1018, static_cast<std::uint8_t>(i + 1)};
-      numbers[i] != 0 ? check(object, numbers[i], 0xFFFFFFFF) : read(object);
+      if (numbers[i] == 0) {
+        read(object);
+      } else {
+        check(object, numbers[i], 0xFFFFFFFF);
+      }
     }
   }
 
@@ -35,10 +59,11 @@ class Plan {
 
   /// From the fall of its voltage to the fall of the master: what a drive does when nobody speaks to it any more.
   void watch_master() {
-    write({0x1016, 1}, 4,
-          static_cast<std::uint32_t>(config_.master_node) << 16 |
-              static_cast<std::uint32_t>(config_.heartbeat_deadline().count()));
-    write({0x1017, 0}, 2, static_cast<std::uint32_t>(config_.heartbeat.count()));
+    need("for it to stop when the master dies")
+        .write({0x1016, 1}, 4,
+               static_cast<std::uint32_t>(config_.master_node) << 16 |
+                   static_cast<std::uint32_t>(config_.heartbeat_deadline().count()));
+    need("to notice when it dies").write({0x1017, 0}, 2, static_cast<std::uint32_t>(config_.heartbeat.count()));
     read({0x1017, 0});  // some round it
   }
 
@@ -47,22 +72,25 @@ class Plan {
     supports(axis, offset);
     silence_others(axis);
     const auto number = static_cast<std::uint16_t>(kPdoOffset * axis.axis_in_node);
+    need("to send it its setpoints (rpdo)");
     map(static_cast<std::uint16_t>(0x1400 + number), setpoint_id(axis), axis.setpoints, offset);
+    need("to have its answers (tpdo)");
     map(static_cast<std::uint16_t>(0x1800 + number), kNoRemoteRequest | answer_id(axis), axis.answers, offset);
     read(transmission_type(axis, false));
     if (!axis.more_answers.empty()) {
+      need("to have its answers (second_tpdo)");
       map(0x1801, kNoRemoteRequest | more_answers_id(axis), axis.more_answers, offset);
       read(transmission_type(axis, true));
     }
     if (config_.abort_connection >= 0) {
+      need("for it to stop when the master dies (where abort_connection is -1 it is not written)");
       write(of_axis({0x6007, 0}, offset), 2, static_cast<std::uint32_t>(config_.abort_connection));
     }
-    write(of_axis({0x6060, 0}, offset), 1, static_cast<std::uint32_t>(axis.mode));
+    need("to set its mode").write(of_axis({0x6060, 0}, offset), 1, static_cast<std::uint32_t>(axis.mode));
     check_polarity(axis, offset);
-    interpolation(offset);
-    for (const SdoWrite& setup : axis.setup) {
-      steps_.push_back({.kind = Kind::Write, .object = of_axis(setup.object, offset), .bytes = setup.bytes});
-    }
+    interpolation(axis, offset);
+    need("because device.json sets it");
+    for (const SdoWrite& setup : axis.setup) write(of_axis(setup.object, offset), setup.bytes);
     if (axis.check_scale && axis.mode != DriveMode::ProfileVelocity) {
       for (const ObjectAddress object : kScaleObjects) read(of_axis(object, offset));
     }
@@ -71,8 +99,9 @@ class Plan {
   /// A DCF is of the whole node: its addresses stand as they are.
   void write_configured(const AxisConfig& axis) {
     if (!axis.description) return;
+    need("because its DCF sets it");
     for (SdoWrite& configured : configured_writes(*axis.description, axis.node)) {
-      steps_.push_back({.kind = Kind::Write, .object = configured.object, .bytes = std::move(configured.bytes)});
+      write(configured.object, std::move(configured.bytes));
     }
   }
 
@@ -80,42 +109,60 @@ class Plan {
   [[nodiscard]] std::vector<BootStep> steps() && { return std::move(steps_); }
 
  private:
-  void read(ObjectAddress object) {
-    steps_.push_back({.kind = Kind::Read, .object = object, .bytes = {}, .optional = true});
+  /// What the steps from here on are for; nothing: they are optional.
+  Plan& need(const char* what_for) {
+    needed_ = what_for;
+    return *this;
   }
-  void check(ObjectAddress object, std::uint32_t value, std::uint32_t mask, bool optional = false) {
-    steps_.push_back(
-        {.kind = Kind::Check, .object = object, .bytes = {}, .value = value, .mask = mask, .optional = optional});
+  Plan& like_to() { return need(nullptr); }
+
+  BootStep& add(Kind kind, ObjectAddress object) {
+    return steps_.emplace_back(BootStep{.kind = kind,
+                                        .object = object,
+                                        .bytes = {},
+                                        .optional = needed_ == nullptr,
+                                        .needed = needed_ != nullptr ? needed_ : ""});
   }
-  void write(ObjectAddress object, std::size_t size, std::uint32_t value, bool optional = false) {
+  void read(ObjectAddress object) { add(Kind::Read, object).optional = true; }
+  BootStep& check(ObjectAddress object, std::uint32_t value, std::uint32_t mask) {
+    BootStep& step = add(Kind::Check, object);
+    step.value = value;
+    step.mask = mask;
+    return step;
+  }
+  void write(ObjectAddress object, std::vector<std::uint8_t> bytes) {
+    add(Kind::Write, object).bytes = std::move(bytes);
+  }
+  void write(ObjectAddress object, std::size_t size, std::uint32_t value) {
     std::vector<std::uint8_t> bytes(size);
     for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
-    steps_.push_back({.kind = Kind::Write, .object = object, .bytes = std::move(bytes), .optional = optional});
+    write(object, std::move(bytes));
   }
 
   /// Supported drive modes: bit 0 is mode 1, and so on (CiA 402-2, 6502h).
   void supports(const AxisConfig& axis, std::uint16_t offset) {
     const std::uint32_t bit = 1U << (static_cast<unsigned>(axis.mode) - 1);
     const std::uint32_t homing = axis.homes ? 1U << (static_cast<unsigned>(DriveMode::Homing) - 1) : 0;
-    check(of_axis({0x6502, 0}, offset), bit | homing, bit | homing, true);
+    like_to().check(of_axis({0x6502, 0}, offset), bit | homing, bit | homing);
   }
 
   /// A drive that turns positions round and torques not would run away from its setpoint (607Eh, bit 7).
   void check_polarity(const AxisConfig& axis, std::uint16_t offset) {
     constexpr std::uint32_t kPosition = 0x80;
     if (axis.mode != DriveMode::CyclicSyncTorque || axis.sets_polarity) return;
-    check(of_axis({0x607E, 0}, offset), 0, kPosition, true);
+    like_to().check(of_axis({0x607E, 0}, offset), 0, kPosition);
   }
 
   /// PDOs that a drive has by default would load the bus beside what is counted.
   void silence_others(const AxisConfig& axis) {
     if (axis.axis_in_node != 0) return;
+    like_to();
     constexpr std::uint16_t kDefaultPdos = 4;
     for (std::uint16_t pdo = 1; pdo < kDefaultPdos; ++pdo) {
       const std::uint32_t setpoints = 0x200U + 0x100U * pdo + axis.node;
       const std::uint32_t answers = 0x180U + 0x100U * pdo + axis.node;
-      write({static_cast<std::uint16_t>(0x1400 + pdo), 1}, 4, kInvalidPdo | setpoints, true);
-      write({static_cast<std::uint16_t>(0x1800 + pdo), 1}, 4, kInvalidPdo | kNoRemoteRequest | answers, true);
+      write({static_cast<std::uint16_t>(0x1400 + pdo), 1}, 4, kInvalidPdo | setpoints);
+      write({static_cast<std::uint16_t>(0x1800 + pdo), 1}, 4, kInvalidPdo | kNoRemoteRequest | answers);
     }
   }
 
@@ -135,23 +182,28 @@ class Plan {
     write({communication, 1}, 4, cob_id);
   }
 
-  /// The period, for drives that interpolate: 60C2h as value times a power of ten, in s, where one of 8 bits says it.
-  void interpolation(std::uint16_t offset) {
-    auto value = config_.period.count();  // ns
-    int exponent = -9;
-    while (value % 10 == 0 && value > 0) {
-      value /= 10;
-      ++exponent;
-    }
-    constexpr std::int64_t kMostValue = 255;
-    if (value <= kMostValue) {
-      write(of_axis({0x60C2, 1}, offset), 1, static_cast<std::uint32_t>(value), true);
-      write(of_axis({0x60C2, 2}, offset), 1, static_cast<std::uint32_t>(exponent) & 0xFF, true);
+  /// The period, for drives that interpolate: 60C2h as value times a power of ten, in s. A drive may have it fixed, and
+  /// then it must be what is wanted where the drive moves from one setpoint to the next within it.
+  void interpolation(const AxisConfig& axis, std::uint16_t offset) {
+    const auto time = interpolation_time(config_.period);
+    if (!time) return;
+    constexpr std::uint32_t kByte = 0xFF;
+    const bool interpolates =
+        axis.mode == DriveMode::InterpolatedPosition || axis.mode == DriveMode::CyclicSyncPosition;
+    const std::array numbers{static_cast<std::uint32_t>(time->value), static_cast<std::uint32_t>(time->exponent)};
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const ObjectAddress object = of_axis({0x60C2, static_cast<std::uint8_t>(i + 1)}, offset);
+      like_to().write(object, 1, numbers[i] & kByte);
+      if (!interpolates) continue;
+      BootStep& told = check(object, numbers[i] & kByte, kByte);
+      told.after_refusal = true;
+      told.needed = "to interpolate between setpoints over a cycle (modes 7 and 8)";
     }
   }
 
   const CanopenConfig& config_;
   std::vector<BootStep> steps_;
+  const char* needed_ = nullptr;
 };
 
 }  // namespace

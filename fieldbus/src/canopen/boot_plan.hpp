@@ -19,7 +19,9 @@ struct BootStep {
   std::vector<std::uint8_t> bytes;
   std::uint32_t value = 0;
   std::uint32_t mask = 0xFFFFFFFF;
-  bool optional = false;  ///< passed over when the node does not have the object
+  bool optional = false;       ///< a refusal is noted and passed over, whatever its code
+  bool after_refusal = false;  ///< of the step before it alone: left out where that was not refused
+  const char* needed = "";     ///< for what, as it goes on behind "it is needed"
 };
 
 inline constexpr std::uint16_t kPdoOffset = 0x40;  ///< between the PDO numbers of two axes of a node (CiA 402-3)

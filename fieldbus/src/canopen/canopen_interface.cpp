@@ -102,6 +102,7 @@ struct CanopenInterface::Impl {
   std::vector<BusAxis> axes;
   std::vector<std::size_t> rpdos;  ///< the first axis of each
   CanopenCounters counters;
+  std::vector<std::string> notes;  ///< of the start
   BusTrouble trouble;
   std::chrono::nanoseconds next_heartbeat{0};
   std::chrono::nanoseconds next_time{0};
@@ -178,6 +179,7 @@ Expected<> CanopenInterface::start() {
 }
 
 Expected<> CanopenInterface::Impl::boot_all() {
+  notes.clear();
   for (Node& node : nodes) {
     node.up = false;
     node.trouble.forget();
@@ -207,6 +209,9 @@ Expected<> CanopenInterface::Impl::boot_all() {
   for (Node& node : nodes) {
     node.up = true;
     node.error_code = node.boot.error_code();
+    for (const BootProblem& refused : node.boot.notes()) {
+      notes.push_back(describe_note(refused, node.boot.node(), config));
+    }
   }
   return {};
 }
@@ -276,6 +281,10 @@ bool CanopenInterface::exchange(std::span<const DriveCommand> commands, std::spa
   if (sent && health.usable()) return true;
   bus.trouble.note(health, bus.counters.unsent);
   return false;
+}
+
+std::vector<std::string> CanopenInterface::start_notes() const {
+  return impl_->notes;
 }
 
 std::string CanopenInterface::fault_text() const {

@@ -25,6 +25,7 @@ NodeBoot::NodeBoot(const CanopenConfig& config, std::uint8_t node)
       echo_(2 * config.period),
       steps_(boot_plan(config, node)),
       readings_(steps_.size()),
+      refusals_(steps_.size()),
       sdo_(node) {}
 
 std::uint32_t NodeBoot::reading(ObjectAddress object) const noexcept {
@@ -32,6 +33,20 @@ std::uint32_t NodeBoot::reading(ObjectAddress object) const noexcept {
     if (steps_[i].kind == BootStep::Kind::Read && steps_[i].object == object) return readings_[i];
   }
   return 0;
+}
+
+std::vector<BootProblem> NodeBoot::notes() const {
+  std::vector<BootProblem> notes;
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    const std::uint32_t code = refusals_[i];
+    const auto known = [&](const BootProblem& note) { return note.object == steps_[i].object; };
+    if (code == 0 || code == sdo_abort::kNoObject || code == sdo_abort::kNoSubindex) continue;
+    if (std::any_of(notes.begin(), notes.end(), known)) continue;
+    notes.push_back(problem_of(steps_[i]));
+    notes.back().kind = BootProblem::Kind::Refused;
+    notes.back().found = code;
+  }
+  return notes;
 }
 
 void NodeBoot::enter(State state, std::chrono::nanoseconds now) noexcept {
@@ -90,14 +105,24 @@ void NodeBoot::take_heartbeat(NmtState said, std::chrono::nanoseconds now) noexc
   }
 }
 
+BootProblem NodeBoot::problem_of(const BootStep& step) const noexcept {
+  BootProblem problem{.object = step.object,
+                      .expected = step.value,
+                      .writing = step.kind == BootStep::Kind::Write,
+                      .needed = step.needed};
+  for (std::size_t i = 0; problem.writing && i < step.bytes.size() && i < 4; ++i) {
+    problem.expected |= static_cast<std::uint32_t>(step.bytes[i]) << (8 * i);
+  }
+  return problem;
+}
+
 void NodeBoot::begin_step(std::chrono::nanoseconds now) noexcept {
+  while (step_ < steps_.size() && steps_[step_].after_refusal && refusals_[step_ - 1] == 0) ++step_;
   if (step_ == steps_.size()) return enter(State::Starting, now);
   const BootStep& step = steps_[step_];
-  problem_ = {.object = step.object, .expected = step.value, .writing = step.kind == BootStep::Kind::Write};
+  problem_ = problem_of(step);
+  refusals_[step_] = 0;
   if (problem_.writing) {
-    for (std::size_t i = 0; i < step.bytes.size() && i < 4; ++i) {
-      problem_.expected |= static_cast<std::uint32_t>(step.bytes[i]) << (8 * i);
-    }
     sdo_.download(step.object, step.bytes, now);
   } else {
     bytes_.fill(0);
@@ -110,10 +135,9 @@ bool NodeBoot::passes() noexcept {
   if (step.kind == BootStep::Kind::Read) readings_[step_] = 0;
   if (sdo_.state() == SdoClient::State::Refused) {
     const std::uint32_t code = sdo_.abort_code();
-    const bool absent = code == sdo_abort::kNoObject || code == sdo_abort::kNoSubindex;
-    const bool passed_over = step.optional && (absent || step.kind == BootStep::Kind::Read);
-    if (!passed_over) fail(BootProblem::Kind::Refused, code);
-    return passed_over;
+    refusals_[step_] = code;
+    if (!step.optional) fail(BootProblem::Kind::Refused, code);
+    return step.optional;
   }
   if (sdo_.state() != SdoClient::State::Done) {
     fail(BootProblem::Kind::NoAnswer, sdo_.abort_code());

@@ -41,6 +41,8 @@ class NodeBoot {
   [[nodiscard]] bool watched() const noexcept { return state_ == State::Proving || state_ == State::Operational; }
   [[nodiscard]] std::uint8_t node() const noexcept { return node_; }
   [[nodiscard]] const BootProblem& problem() const noexcept { return problem_; }
+  /// What it has and refused when it came up, and could do without. Off the cycle.
+  [[nodiscard]] std::vector<BootProblem> notes() const;
   /// What was read of an object when it came up; 0 where it has none.
   [[nodiscard]] std::uint32_t reading(ObjectAddress object) const noexcept;
   /// The drive's error code (603Fh) when it came up.
@@ -53,6 +55,7 @@ class NodeBoot {
   void fail(BootProblem::Kind kind, std::uint32_t found = 0) noexcept;
   void begin_step(std::chrono::nanoseconds now) noexcept;
   void end_step(std::chrono::nanoseconds now) noexcept;
+  [[nodiscard]] BootProblem problem_of(const BootStep& step) const noexcept;
   [[nodiscard]] bool passes() noexcept;
 
   std::uint8_t node_;
@@ -61,6 +64,7 @@ class NodeBoot {
   std::chrono::nanoseconds echo_;     ///< so soon behind another, a heartbeat is a copy
   std::vector<BootStep> steps_;
   std::vector<std::uint32_t> readings_;  ///< one a step; 0 where the step reads nothing
+  std::vector<std::uint32_t> refusals_;  ///< abort codes, one a step; 0 where it was not refused
   SdoClient sdo_;
   IdentityRecord identity_;
   HeartbeatRate heartbeats_;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace rmac::fieldbus {
 
@@ -30,6 +31,14 @@ class SilenceText {
   /// What is wrong with the drive that does not answer, or did not last, and what to do; nothing where that is unknown.
   /// Any thread but the servo thread.
   [[nodiscard]] virtual std::optional<std::string> silence_text(std::size_t axis) const = 0;
+};
+
+/// What a control interface implements beside its port when it may have started with less than it asked for.
+class StartNotes {
+ public:
+  virtual ~StartNotes() = default;
+  /// One sentence each, of the last start. On the thread that starts it.
+  [[nodiscard]] virtual std::vector<std::string> start_notes() const = 0;
 };
 
 }  // namespace rmac::fieldbus

@@ -40,14 +40,40 @@ std::string cannot_do(const BootProblem& problem, const std::string& object) {
                      there.empty() ? "of its maker only" : there);
 }
 
-}  // namespace
-
-std::string describe(const BootProblem& problem, std::uint8_t node, const CanopenConfig& config) {
+std::string name_of(std::uint8_t node, const CanopenConfig& config) {
   std::string axes;
   for (std::size_t i = 0; i < config.axes.size(); ++i) {
     if (config.axes[i].node == node) axes += fmt::format("{}{}", axes.empty() ? "" : ", ", i);
   }
-  std::string who = fmt::format("node {} (axis {})", node, axes);
+  return fmt::format("node {} (axis {})", node, axes);
+}
+
+std::string refusal(const BootProblem& refused) {
+  const std::string object = to_string(refused.object);
+  const char* why = sdo_abort_text(refused.found);
+  return refused.writing
+             ? fmt::format("refused {:X}h for {}: {} ({:08X}h)", refused.expected, object, why, refused.found)
+             : fmt::format("refused to tell {}: {} ({:08X}h)", object, why, refused.found);
+}
+
+std::string need(const BootProblem& problem) {
+  return problem.needed[0] != '\0' ? fmt::format("; it is needed {}", problem.needed) : std::string();
+}
+
+/// Of one of the PDOs that a drive has by default.
+bool is_default_tpdo(ObjectAddress object) noexcept {
+  return object.index > 0x1800 && object.index < 0x1804;
+}
+
+}  // namespace
+
+std::string describe_note(const BootProblem& refused, std::uint8_t node, const CanopenConfig& config) {
+  return fmt::format("{} {}; it is not needed, and was passed over{}", name_of(node, config), refusal(refused),
+                     is_default_tpdo(refused.object) ? ". What that PDO sends is not counted in the load" : "");
+}
+
+std::string describe(const BootProblem& problem, std::uint8_t node, const CanopenConfig& config) {
+  const std::string who = name_of(node, config);
   const double waited_s = std::chrono::duration<double>(config.boot_timeout).count();
   const std::string object = to_string(problem.object);
   switch (problem.kind) {
@@ -62,10 +88,7 @@ std::string describe(const BootProblem& problem, std::uint8_t node, const Canope
       return fmt::format("{} did not answer when {} was {}: {}", who, object, problem.writing ? "written" : "read",
                          sdo_abort_text(problem.found));
     case BootProblem::Kind::Refused:
-      return problem.writing ? fmt::format("{} refused {:X}h for {}: {} ({:08X}h)", who, problem.expected, object,
-                                           sdo_abort_text(problem.found), problem.found)
-                             : fmt::format("{} refused to tell {}: {} ({:08X}h)", who, object,
-                                           sdo_abort_text(problem.found), problem.found);
+      return fmt::format("{} {}{}", who, refusal(problem), need(problem));
     case BootProblem::Kind::Different:
       if (problem.object.index == 0x1000) {
         return fmt::format("{} is not a drive: its device type (1000h) is {:08X}h, and a CiA 402 drive ends in 0192h",
@@ -83,8 +106,8 @@ std::string describe(const BootProblem& problem, std::uint8_t node, const Canope
             "and the actuator's Direction to -1, or polarity to {} where the drive turns its torques round, too",
             who, object, problem.found, problem.found & 0xFFU);
       }
-      return fmt::format("{} does not support what is asked of it: {} is {:X}h, and {:X}h is needed in it", who, object,
-                         problem.found, problem.expected);
+      return fmt::format("{} does not support what is asked of it: {} is {:X}h, and {:X}h is needed in it{}", who,
+                         object, problem.found, problem.expected, need(problem));
     case BootProblem::Kind::NoStart:
       return fmt::format("{} is set up, but did not become operational in {:g} s", who, waited_s);
     case BootProblem::Kind::Restarts:

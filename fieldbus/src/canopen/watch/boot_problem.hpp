@@ -28,12 +28,16 @@ struct BootProblem {
   std::uint32_t expected = 0;
   std::uint32_t found = 0;
   bool writing = false;
+  const char* needed = "";  ///< for what, of an object that was refused
 };
 
 /// Two devices have the node's id.
 [[nodiscard]] constexpr bool shows_two(BootProblem::Kind kind) noexcept {
   return kind >= BootProblem::Kind::TwoIdentities;
 }
+
+/// What a node refused that was not needed, for a person.
+[[nodiscard]] std::string describe_note(const BootProblem& refused, std::uint8_t node, const CanopenConfig& config);
 
 /// What went wrong and what to do, for a person.
 [[nodiscard]] std::string describe(const BootProblem& problem, std::uint8_t node, const CanopenConfig& config);

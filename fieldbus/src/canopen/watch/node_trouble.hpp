@@ -13,6 +13,8 @@ class NodeTrouble {
     object_.store((std::uint32_t{problem.object.index} << 8U) | problem.object.sub, std::memory_order_relaxed);
     expected_.store(problem.expected, std::memory_order_relaxed);
     found_.store(problem.found, std::memory_order_relaxed);
+    writing_.store(problem.writing, std::memory_order_relaxed);
+    needed_.store(problem.needed, std::memory_order_relaxed);
     kind_.store(problem.kind, std::memory_order_release);
   }
   void forget() noexcept { kind_.store(BootProblem::Kind::None, std::memory_order_release); }
@@ -22,12 +24,16 @@ class NodeTrouble {
     return {.kind = kind,
             .object = {static_cast<std::uint16_t>(object >> 8), static_cast<std::uint8_t>(object)},
             .expected = expected_.load(std::memory_order_relaxed),
-            .found = found_.load(std::memory_order_relaxed)};
+            .found = found_.load(std::memory_order_relaxed),
+            .writing = writing_.load(std::memory_order_relaxed),
+            .needed = needed_.load(std::memory_order_relaxed)};
   }
 
  private:
   std::atomic<BootProblem::Kind> kind_{BootProblem::Kind::None};
   std::atomic<std::uint32_t> object_{0}, expected_{0}, found_{0};
+  std::atomic<bool> writing_{false};
+  std::atomic<const char*> needed_{""};
 };
 
 }  // namespace rmac::fieldbus::canopen

@@ -67,6 +67,7 @@ Result<> move_drive(const DriveMove& move) {
   const auto bus = canopen::make_socketcan_interface(*config);
   if (auto started = bus->start(); !started)
     return fail(fmt::format("{}: {}", move.interface, started.error().message));
+  for (const std::string& note : bus->start_notes()) fmt::print("{}: {}\n", move.interface, note);
   const auto period = std::chrono::duration_cast<std::chrono::steady_clock::duration>(config->period);
   auto next = std::chrono::steady_clock::now();
   const auto pass = [&] { std::this_thread::sleep_until(next += period); };

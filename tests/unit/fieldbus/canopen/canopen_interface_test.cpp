@@ -191,8 +191,10 @@ TEST_F(CanopenBench, ReadsWhatADriveCountsInATurnOfItsMotor) {
 TEST_F(CanopenBench, SaysWhichObjectADriveRefusedAndWhy) {
   wire_.add(3).remove(0x6007);
   make({{"node", {3}}});
-  EXPECT_EQ(start_error(),
-            "node 3 (axis 0) refused 3h for 6007h:00: object does not exist in the object dictionary (06020000h)");
+  EXPECT_EQ(
+      start_error(),
+      "node 3 (axis 0) refused 3h for 6007h:00: object does not exist in the object dictionary (06020000h); it is "
+      "needed for it to stop when the master dies (where abort_connection is -1 it is not written)");
   make({{"node", {3}}, {"abort_connection", {-1}}});
   EXPECT_EQ(start_error(), "it started");
 }

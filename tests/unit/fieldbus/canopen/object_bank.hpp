@@ -20,7 +20,7 @@ class ObjectBank final : public vdrive::SdoObjects {
 
   explicit ObjectBank(ObjectDictionary& dictionary) : dictionary_(dictionary) {}
   WriteCheck write_check;
-  std::map<Object, std::uint32_t> unreadable;  ///< by abort code
+  std::map<Object, std::uint32_t> unreadable, unwritable;  ///< by abort code
 
   std::uint32_t read(Object object, Bytes& bytes) override {
     if (const auto refused = unreadable.find(object); refused != unreadable.end()) return refused->second;
@@ -30,6 +30,7 @@ class ObjectBank final : public vdrive::SdoObjects {
     return 0;
   }
   std::uint32_t write(Object object, const Bytes& bytes) override {
+    if (const auto refused = unwritable.find(object); refused != unwritable.end()) return refused->second;
     const auto entry = dictionary_.find(object);
     if (entry == dictionary_.end()) return absent(object);
     if (write_check) {

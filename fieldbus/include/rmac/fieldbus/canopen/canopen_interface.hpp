@@ -27,7 +27,10 @@ struct CanopenCounters {
 /// decide. Two devices of one node id are refused by `start`; in operation the node counts as gone, until one is left.
 ///
 /// No thread of its own: `start` and `stop` run on their caller's, `exchange` on the servo thread, never at once.
-class CanopenInterface final : public DigitalControlInterface, public ExchangeFaultText, public SilenceText {
+class CanopenInterface final : public DigitalControlInterface,
+                               public ExchangeFaultText,
+                               public SilenceText,
+                               public StartNotes {
  public:
   /// Opens the bus for the identifiers that the drives send; `queue_frames` as `SocketCanPort::open` takes it.
   using OpenPort = std::function<Expected<std::unique_ptr<CanPort>>(std::span<const std::uint16_t> wanted,
@@ -57,6 +60,8 @@ class CanopenInterface final : public DigitalControlInterface, public ExchangeFa
 
   [[nodiscard]] std::string fault_text() const override;
   [[nodiscard]] std::optional<std::string> silence_text(std::size_t axis) const override;
+  /// What its drives refused at boot, and could do without.
+  [[nodiscard]] std::vector<std::string> start_notes() const override;
 
   [[nodiscard]] const CanopenCounters& counters() const noexcept;
 
