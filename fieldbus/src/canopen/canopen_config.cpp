@@ -187,6 +187,8 @@ Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const F
       static_cast<std::uint32_t>(parameters.number_of_axis("revision_number", axis, 0, 0, kMost));
   config.identity.serial_number =
       static_cast<std::uint32_t>(parameters.number_of_axis("serial_number", axis, 0, 0, kMost));
+  config.sdo_timeout =
+      std::chrono::milliseconds(static_cast<int>(parameters.number_of_axis("sdo_timeout_ms", axis, 500, 10, 60000)));
   read_homing(parameters, axis, config);
   read_units(parameters, axis, config);
   if (!parameters.sound()) return failure(MinorCode::InvalidParameterValue, parameters.problem());
@@ -289,6 +291,14 @@ std::string check_shared(const CanopenConfig& config) {
 }
 
 }  // namespace
+
+std::chrono::milliseconds sdo_timeout(const CanopenConfig& config, std::uint8_t node) noexcept {
+  std::chrono::milliseconds longest{0};
+  for (const AxisConfig& axis : config.axes) {
+    if (axis.node == node) longest = std::max(longest, axis.sdo_timeout);
+  }
+  return longest;
+}
 
 std::size_t mapped_bytes(const std::vector<MappedObject>& objects) noexcept {
   return std::accumulate(objects.begin(), objects.end(), std::size_t{0},

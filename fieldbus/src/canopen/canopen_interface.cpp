@@ -22,7 +22,7 @@ namespace {
 constexpr int kMostFramesPerCycle = 512;
 
 struct Node {
-  Node(const CanopenConfig& config, std::uint8_t id) : boot(config, id), positions(id) {}
+  Node(const CanopenConfig& config, std::uint8_t id) : boot(config, id), positions(id, sdo_timeout(config, id)) {}
   NodeBoot boot;
   PositionReader positions;
   NodeTrouble trouble;

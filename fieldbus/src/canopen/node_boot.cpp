@@ -5,8 +5,11 @@
 namespace rmac::fieldbus::canopen {
 namespace {
 
-// A node may miss a command while it starts up; asked too often it would never be ready.
-constexpr std::chrono::seconds kCommandInterval{1};
+// A node may miss its start.
+constexpr std::chrono::seconds kBetweenStarts{1};
+
+// A frame may be lost, or a node has no time just then.
+constexpr int kMostTries = 3;
 
 // A node that starts anew more often than this while it is set up will not come up.
 constexpr int kMostRestarts = 8;
@@ -24,13 +27,12 @@ NodeBoot::NodeBoot(const CanopenConfig& config, std::uint8_t node)
           std::max<std::chrono::nanoseconds>(kProvingHeartbeats * config.heartbeat, kProvingSyncs * config.period)),
       echo_(2 * config.period),
       steps_(boot_plan(config, node)),
-      readings_(steps_.size()),
-      refusals_(steps_.size()),
-      sdo_(node) {}
+      outcomes_(steps_.size()),
+      sdo_(node, {.timeout = sdo_timeout(config, node)}) {}
 
 std::uint32_t NodeBoot::reading(ObjectAddress object) const noexcept {
   for (std::size_t i = 0; i < steps_.size(); ++i) {
-    if (steps_[i].kind == BootStep::Kind::Read && steps_[i].object == object) return readings_[i];
+    if (steps_[i].kind == BootStep::Kind::Read && steps_[i].object == object) return outcomes_[i].reading;
   }
   return 0;
 }
@@ -38,7 +40,7 @@ std::uint32_t NodeBoot::reading(ObjectAddress object) const noexcept {
 std::vector<BootProblem> NodeBoot::notes() const {
   std::vector<BootProblem> notes;
   for (std::size_t i = 0; i < steps_.size(); ++i) {
-    const std::uint32_t code = refusals_[i];
+    const std::uint32_t code = outcomes_[i].refusal;
     const auto known = [&](const BootProblem& note) { return note.object == steps_[i].object; };
     if (code == 0 || code == sdo_abort::kNoObject || code == sdo_abort::kNoSubindex) continue;
     if (std::any_of(notes.begin(), notes.end(), known)) continue;
@@ -52,19 +54,20 @@ std::vector<BootProblem> NodeBoot::notes() const {
 void NodeBoot::enter(State state, std::chrono::nanoseconds now) noexcept {
   state_ = state;
   entered_ = now;
-  next_command_ = now;
+  next_start_ = now;
 }
 
 void NodeBoot::begin(std::chrono::nanoseconds now) noexcept {
   problem_ = {};
   restarts_ = 0;
-  sdo_ = SdoClient(node_);
+  resets_.restart(now);
   enter(State::AwaitingBootUp, now);
 }
 
 void NodeBoot::configure(std::chrono::nanoseconds now) noexcept {
-  sdo_ = SdoClient(node_);
+  sdo_.abandon();
   step_ = 0;
+  answered_ = false;
   enter(State::Configuring, now);
   begin_step(now);
 }
@@ -76,7 +79,9 @@ void NodeBoot::fail(BootProblem::Kind kind, std::uint32_t found) noexcept {
 }
 
 void NodeBoot::receive(const CanFrame& frame, std::chrono::nanoseconds now) noexcept {
+  if (state_ == State::AwaitingBootUp) resets_.heard(now);
   if (frame.id == kSdoAnswerId + node_) {
+    answered_ = true;
     if (const auto contradiction = identity_.take(frame); contradiction && state_ != State::Idle) {
       problem_ = {.object = contradiction->object, .expected = contradiction->first};
       return fail(BootProblem::Kind::TwoIdentities, contradiction->second);
@@ -117,11 +122,17 @@ BootProblem NodeBoot::problem_of(const BootStep& step) const noexcept {
 }
 
 void NodeBoot::begin_step(std::chrono::nanoseconds now) noexcept {
-  while (step_ < steps_.size() && steps_[step_].after_refusal && refusals_[step_ - 1] == 0) ++step_;
+  while (step_ < steps_.size() && steps_[step_].after_refusal && outcomes_[step_ - 1].refusal == 0) ++step_;
   if (step_ == steps_.size()) return enter(State::Starting, now);
   const BootStep& step = steps_[step_];
   problem_ = problem_of(step);
-  refusals_[step_] = 0;
+  outcomes_[step_].refusal = 0;
+  tries_ = 0;
+  ask(now);
+}
+
+void NodeBoot::ask(std::chrono::nanoseconds now) noexcept {
+  const BootStep& step = steps_[step_];
   if (problem_.writing) {
     sdo_.download(step.object, step.bytes, now);
   } else {
@@ -130,21 +141,31 @@ void NodeBoot::begin_step(std::chrono::nanoseconds now) noexcept {
   }
 }
 
+/// One that has just sent its boot-up message may not be ready to answer; afterwards a few tries are enough.
+bool NodeBoot::asks_again(std::chrono::nanoseconds now) noexcept {
+  const bool timed_out = sdo_.state() == SdoClient::State::Refused && sdo_.abort_code() == sdo_abort::kTimeout;
+  if (sdo_.state() != SdoClient::State::Failed && !timed_out) return false;
+  if (!answered_) return now - entered_ < timeout_;
+  return ++tries_ < kMostTries;
+}
+
 bool NodeBoot::passes() noexcept {
   const BootStep& step = steps_[step_];
-  if (step.kind == BootStep::Kind::Read) readings_[step_] = 0;
+  if (step.kind == BootStep::Kind::Read) outcomes_[step_].reading = 0;
   if (sdo_.state() == SdoClient::State::Refused) {
     const std::uint32_t code = sdo_.abort_code();
-    refusals_[step_] = code;
+    outcomes_[step_].refusal = code;
     if (!step.optional) fail(BootProblem::Kind::Refused, code);
     return step.optional;
   }
   if (sdo_.state() != SdoClient::State::Done) {
+    outcomes_[step_].refusal = sdo_.abort_code();
+    if (step.optional && sdo_.abort_code() != sdo_abort::kTimeout) return true;  // what it answers is not understood
     fail(BootProblem::Kind::NoAnswer, sdo_.abort_code());
     return false;
   }
   const std::uint32_t found = long_at(bytes_.data());
-  if (step.kind == BootStep::Kind::Read) readings_[step_] = found;
+  if (step.kind == BootStep::Kind::Read) outcomes_[step_].reading = found;
   if (step.kind == BootStep::Kind::Check && (found & step.mask) != step.value) {
     fail(BootProblem::Kind::Different, found);
     return false;
@@ -153,9 +174,21 @@ bool NodeBoot::passes() noexcept {
 }
 
 void NodeBoot::end_step(std::chrono::nanoseconds now) noexcept {
+  if (asks_again(now)) return ask(now);
   if (!passes()) return;
   ++step_;
   begin_step(now);
+}
+
+bool NodeBoot::call(std::chrono::nanoseconds now, CanFrame& frame) noexcept {
+  if (resets_.due(now)) {
+    sdo_.abandon();
+    frame = nmt_frame(NmtCommand::ResetCommunication, node_);
+    return true;
+  }
+  if (!resets_.asks(now)) return false;
+  if (sdo_.finished()) sdo_.upload({0x1000, 0}, bytes_, now);
+  return sdo_.next_frame(now, frame);
 }
 
 bool NodeBoot::next_frame(std::chrono::nanoseconds now, CanFrame& frame) noexcept {
@@ -170,9 +203,10 @@ bool NodeBoot::next_frame(std::chrono::nanoseconds now, CanFrame& frame) noexcep
     fail(state_ == State::Starting ? BootProblem::Kind::NoStart : BootProblem::Kind::NoBootUp);
     return false;
   }
-  if (now < next_command_) return false;
-  next_command_ = now + kCommandInterval;
-  frame = nmt_frame(state_ == State::Starting ? NmtCommand::Start : NmtCommand::ResetCommunication, node_);
+  if (state_ == State::AwaitingBootUp) return call(now, frame);
+  if (now < next_start_) return false;
+  next_start_ = now + kBetweenStarts;
+  frame = nmt_frame(NmtCommand::Start, node_);
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include "canopen/watch/boot_problem.hpp"
 #include "canopen/watch/heartbeat_rate.hpp"
 #include "canopen/watch/identity_record.hpp"
+#include "canopen/watch/reset_calls.hpp"
 #include "rmac/fieldbus/canopen/nmt.hpp"
 #include "rmac/fieldbus/canopen/sdo_client.hpp"
 
@@ -14,8 +15,10 @@ namespace rmac::fieldbus::canopen {
 
 /// Brings one node from wherever it is to Operational, as configured (CiA 302-2, boot-up of an NMT slave): reset of
 /// its communication, boot-up message, the steps of its plan, start, first heartbeat; then it is watched for a while,
-/// as it is from then on, for a second device under its id. A state machine without clock or socket. Real-time safe
-/// once made, so that a node that comes back is brought up by the cycle itself.
+/// as it is from then on, for a second device under its id. A node that is silent after its reset may be booting, and
+/// one that boots may obey resets, so that it is reset again only when it shows that it has not been: it sends
+/// heartbeats, or answers what it is asked meanwhile. A question whose answer is lost is asked again. A state machine
+/// without clock or socket. Real-time safe once made, so that a node that comes back is brought up by the cycle itself.
 ///
 /// A boot-up message before it is Operational begins the plan anew, its identity included: some devices send two, and
 /// what decides is whether they tell two identities.
@@ -49,11 +52,20 @@ class NodeBoot {
   [[nodiscard]] std::uint16_t error_code() const noexcept { return static_cast<std::uint16_t>(reading({0x603F, 0})); }
 
  private:
+  struct Outcome {
+    std::uint32_t reading = 0;  ///< 0 where the step reads nothing
+    std::uint32_t refusal = 0;  ///< its abort code; 0 where it was not refused
+  };
+
   void enter(State state, std::chrono::nanoseconds now) noexcept;
   void configure(std::chrono::nanoseconds now) noexcept;
   void take_heartbeat(NmtState said, std::chrono::nanoseconds now) noexcept;
   void fail(BootProblem::Kind kind, std::uint32_t found = 0) noexcept;
+  /// A reset, where it is due, or a question whether the node is there.
+  [[nodiscard]] bool call(std::chrono::nanoseconds now, CanFrame& frame) noexcept;
   void begin_step(std::chrono::nanoseconds now) noexcept;
+  void ask(std::chrono::nanoseconds now) noexcept;
+  [[nodiscard]] bool asks_again(std::chrono::nanoseconds now) noexcept;
   void end_step(std::chrono::nanoseconds now) noexcept;
   [[nodiscard]] BootProblem problem_of(const BootStep& step) const noexcept;
   [[nodiscard]] bool passes() noexcept;
@@ -63,18 +75,20 @@ class NodeBoot {
   std::chrono::nanoseconds proving_;  ///< how long
   std::chrono::nanoseconds echo_;     ///< so soon behind another, a heartbeat is a copy
   std::vector<BootStep> steps_;
-  std::vector<std::uint32_t> readings_;  ///< one a step; 0 where the step reads nothing
-  std::vector<std::uint32_t> refusals_;  ///< abort codes, one a step; 0 where it was not refused
+  std::vector<Outcome> outcomes_;  ///< one a step
   SdoClient sdo_;
   IdentityRecord identity_;
   HeartbeatRate heartbeats_;
+  ResetCalls resets_;
   State state_ = State::Idle;
   int restarts_ = 0;  ///< since `begin`
   BootProblem problem_;
   std::size_t step_ = 0;
+  int tries_ = 0;          ///< of this step, unanswered
+  bool answered_ = false;  ///< an SDO, since its boot-up message
   std::array<std::uint8_t, 8> bytes_{};
   std::chrono::nanoseconds entered_{0};
-  std::chrono::nanoseconds next_command_{0};
+  std::chrono::nanoseconds next_start_{0};
 };
 
 }  // namespace rmac::fieldbus::canopen

@@ -12,7 +12,8 @@ namespace rmac::fieldbus::canopen {
 /// its PDOs. Frames go in, frames come out. Real-time safe.
 class PositionReader {
  public:
-  explicit PositionReader(std::uint8_t node) : node_(node), sdo_(node) {}
+  /// `timeout`: for each answer.
+  PositionReader(std::uint8_t node, std::chrono::nanoseconds timeout) : sdo_(node, {.timeout = timeout}) {}
 
   [[nodiscard]] bool busy() const noexcept { return busy_; }
   /// `axis`: whose position `object` is.
@@ -43,11 +44,10 @@ class PositionReader {
   /// The node is away.
   void abandon() noexcept {
     busy_ = false;
-    sdo_ = SdoClient(node_);
+    sdo_.abandon();
   }
 
  private:
-  std::uint8_t node_;
   SdoClient sdo_;
   std::array<std::uint8_t, 4> bytes_{};
   std::size_t axis_ = 0;

@@ -105,6 +105,17 @@ TEST(CanopenConfig, HasDrivesThatHomeTellTheirModeAndWritesHowTheyDo) {
   EXPECT_EQ(config->axes[1].setpoints.size(), 2U);
 }
 
+TEST(CanopenConfig, WaitsForAnSdoAnswerAsLongAsTheSlowestAxisOfANodeTakes) {
+  const auto config = read_canopen_config(
+      "can0", {{"node", {1, 1, 2}}, {"axis_in_node", {0, 1, 0}}, {"sdo_timeout_ms", {700, 900, 30}}}, {}, 0.004);
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_EQ(sdo_timeout(*config, 1).count(), 900);
+  EXPECT_EQ(sdo_timeout(*config, 2).count(), 30);
+  EXPECT_EQ(read_canopen_config("can0", {{"node", {1}}}, {}, 0.001)->axes[0].sdo_timeout.count(), 500);
+  EXPECT_EQ(refusal({{"node", {1}}, {"sdo_timeout_ms", {5}}}),
+            "CANopenInterface, bus can0: sdo_timeout_ms is 5; allowed is a whole number from 10 to 60000");
+}
+
 TEST(CanopenConfig, CountsAnRpdoThatTwoDrivesShareOnce) {
   const Texts halves{{"rpdo_0", "6040:00/16 6071:00/16 0007:00/32"},
                      {"rpdo_1", "0007:00/32 6040:00/16 6071:00/16"},

@@ -143,6 +143,7 @@ void VirtualDrive::power_on(Time now) {
 void VirtualDrive::reset(Time now) {
   dictionary_ = defaults_;
   waiting_.clear();
+  answers_.clear();
   watches_ = false;
   moved_ = now;
   nmt_ = 0;
@@ -153,7 +154,10 @@ void VirtualDrive::reset(Time now) {
 
 void VirtualDrive::boot_up(Time now) {
   while (boot_ups_left_ > 0 && now >= next_boot_up_) {
-    if (nmt_ == 0) nmt_ = kPreOperational;
+    if (nmt_ == 0) {
+      nmt_ = kPreOperational;
+      booted_ = now;
+    }
     send(static_cast<std::uint16_t>(0x700 + node_), {0});
     --boot_ups_left_;
     next_boot_up_ = now + boot_up_gap;
@@ -186,6 +190,10 @@ void VirtualDrive::receive(const CanFrame& frame, Time now) {
         break;
       case 129:
       case 130:
+        if (deaf_to_resets > 0) {
+          --deaf_to_resets;
+          break;
+        }
         abort_connection();
         reset(now);
         break;
@@ -195,11 +203,7 @@ void VirtualDrive::receive(const CanFrame& frame, Time now) {
     return;
   }
   if (frame.id == 0x600 + node_ && nmt_ != kStopped && nmt_ != 0) {
-    if (!answers_sdo) return;
-    for (const CanFrame& reply : server_.receive(frame)) output_.push_back(reply);
-    if (event_driven) set(0x1800, 2, 255, 1);
-    set(0x1017, 0, value(0x1017, 0) / heartbeat_step * heartbeat_step, 2);
-    return;
+    return answer_sdo(frame, now);
   }
   if (frame.id > 0x700 && frame.id < 0x780 && frame.size == 1 && frame.id - 0x700U == (value(0x1016, 1) >> 16 & 0x7F)) {
     master_heard_ = now;
@@ -209,6 +213,21 @@ void VirtualDrive::receive(const CanFrame& frame, Time now) {
   if (nmt_ != kOperational) return;
   if (frame.id == 0x80) return sync(now);
   act_on(frame);
+}
+
+void VirtualDrive::answer_sdo(const CanFrame& frame, Time now) {
+  if (!answers_sdo || now < booted_ + sdo_after) return;
+  answers_ = server_.receive(frame);
+  answer_at_ = now + sdo_time;
+  give_answers(now);
+  if (event_driven) set(0x1800, 2, 255, 1);
+  set(0x1017, 0, value(0x1017, 0) / heartbeat_step * heartbeat_step, 2);
+}
+
+void VirtualDrive::give_answers(Time now) {
+  if (now < answer_at_) return;
+  output_.insert(output_.end(), answers_.begin(), answers_.end());
+  answers_.clear();
 }
 
 void VirtualDrive::act_on(const CanFrame& frame) {
@@ -322,6 +341,7 @@ void VirtualDrive::watch_master(Time now) {
 void VirtualDrive::poll(Time now) {
   if (!powered_) return;
   boot_up(now);
+  give_answers(now);
   move(now);
   if (event_driven && nmt_ == kOperational && now >= next_event_) {
     publish();

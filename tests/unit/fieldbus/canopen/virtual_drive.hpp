@@ -63,6 +63,9 @@ class VirtualDrive {
   int boot_ups = 1;                     ///< messages of each boot, the later ones
   Time boot_up_gap{0};                  ///< so long after one another
   Time boot_time{0};                    ///< from a reset to the first of them
+  Time sdo_after{0};                    ///< its boot-up message: questions before are passed over
+  Time sdo_time{0};                     ///< for an answer; an abort meanwhile ends its work on it
+  int deaf_to_resets = 0;               ///< so many more it does not obey
   std::uint32_t heartbeat_step = 1;     ///< ms: 1017h keeps multiples of it
   std::uint8_t tpdo_length_change = 0;  ///< bytes that its TPDOs are too short by
   std::function<void(Object, const Bytes&)> on_write;
@@ -78,6 +81,8 @@ class VirtualDrive {
   void boot_up(Time now);
   void emergency(std::uint16_t code);
   void sync(Time now);
+  void answer_sdo(const CanFrame& frame, Time now);
+  void give_answers(Time now);
   void act_on(const CanFrame& frame);
   void move(Time now);
   void publish();
@@ -93,6 +98,9 @@ class VirtualDrive {
   ObjectBank bank_{dictionary_};
   vdrive::SdoServer server_;
   std::vector<CanFrame> output_;
+  std::vector<CanFrame> answers_;  ///< to SDOs, for `answer_at_`
+  Time answer_at_{0};
+  Time booted_{0};
   std::vector<CanFrame> waiting_;  ///< setpoints for the next SYNC
   int nmt_ = 0;
   bool powered_ = false;

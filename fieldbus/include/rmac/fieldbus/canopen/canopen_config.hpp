@@ -52,6 +52,7 @@ struct AxisConfig {
   std::optional<MappedObject> sensor;      ///< one of the answers, a sensor's reading with a sign
   double velocity_units_per_rpm = 1;       ///< of 60FFh and 606Ch
   Identity identity;
+  std::chrono::milliseconds sdo_timeout{500};  ///< for each of its SDO answers
   std::vector<SdoWrite> setup;
   bool sets_polarity = false;                                 ///< 607Eh is among `setup`
   bool check_scale = true;                                    ///< its factors are asked of it at boot
@@ -107,6 +108,9 @@ using FindDescription =
 [[nodiscard]] inline std::uint16_t more_answers_id(const AxisConfig& axis) noexcept {
   return static_cast<std::uint16_t>(0x280 + axis.node);
 }
+
+/// How long an SDO answer of a node may take: as long as the slowest of its axes.
+[[nodiscard]] std::chrono::milliseconds sdo_timeout(const CanopenConfig& config, std::uint8_t node) noexcept;
 
 /// Bytes of a PDO.
 [[nodiscard]] std::size_t mapped_bytes(const std::vector<MappedObject>& objects) noexcept;

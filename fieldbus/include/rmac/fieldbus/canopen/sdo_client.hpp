@@ -41,6 +41,12 @@ class SdoClient {
   /// Begins to write an object, once the transfer before is `finished`. `data` must live until the transfer is over.
   void download(ObjectAddress object, std::span<const std::uint8_t> data, std::chrono::nanoseconds now) noexcept;
 
+  /// Forgets the transfer that runs, if one does, and tells the server nothing.
+  void abandon() noexcept {
+    state_ = State::Idle;
+    pending_ = false;
+  }
+
   /// A frame of identifier 580h + node.
   void receive(const CanFrame& frame, std::chrono::nanoseconds now) noexcept;
   /// The next frame to send, if there is one. To be called until there is none, also while nothing is received: this is

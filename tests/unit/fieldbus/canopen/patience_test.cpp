@@ -1,0 +1,145 @@
+// Drives that take their time, or lose something: what a boot puts up with.
+#include <gmock/gmock.h>
+
+#include <random>
+
+#include "unit/fieldbus/canopen/canopen_bench.hpp"
+
+namespace rmac::fieldbus::canopen {
+namespace {
+
+using std::chrono::milliseconds;
+using test::CanopenBench;
+using test::CanWire;
+using test::VirtualDrive;
+using testing::HasSubstr;
+
+class PatientBoot : public CanopenBench {
+ protected:
+  VirtualDrive& fresh_drive() {
+    master_.reset();
+    wire_ = CanWire();
+    return wire_.add(1);
+  }
+  /// Hands on SDO answers but for those that `lost` names by their number, from 0.
+  void lose_answers(const std::function<bool(int number)>& lost) {
+    answers_ = 0;
+    wire_.gateway = [this, lost](const CanFrame& frame) {
+      const bool answer = frame.id >= 0x580 && frame.id < 0x600;
+      return answer && lost(answers_++) ? std::vector<CanWire::Time>() : std::vector<CanWire::Time>{{}};
+    };
+  }
+  /// Cycles until the drive answers.
+  [[nodiscard]] bool comes_back(int most_cycles) {
+    for (int i = 0; i < most_cycles && !feedback_[0].online; ++i) cycle(DriveWish::Off);
+    return feedback_[0].online;
+  }
+
+  int answers_ = 0;
+};
+
+// Red when a node is reset every second: one that obeys while it boots would never have booted.
+TEST_F(PatientBoot, LetsADriveBootThatObeysResetsMeanwhile) {
+  for (const int boot_ms : {0, 300, 999, 1001, 1500, 2500, 4900}) {
+    fresh_drive().boot_time = milliseconds(boot_ms);
+    make({{"node", {1}}, {"mode", {8}}});
+    ASSERT_EQ(start_error(), "it started") << boot_ms << " ms";
+    int resets = 0;
+    wire_.listen = [&](const CanFrame& frame) { resets += frame.id == 0 && frame.data[0] == 130 ? 1 : 0; };
+    cycle();
+    EXPECT_TRUE(comes_back(10));
+    wire_.pass(milliseconds(300));  // the drive misses its master
+    cycles(60, DriveWish::Off);
+    ASSERT_FALSE(feedback_[0].online);
+    ASSERT_TRUE(comes_back(boot_ms + 1500)) << boot_ms << " ms";
+    EXPECT_EQ(resets, 1) << boot_ms << " ms";
+    wire_.listen = nullptr;
+  }
+}
+
+// Red when it is not reset again, whether it shows by its heartbeats that it did not hear, or by nothing.
+TEST_F(PatientBoot, ResetsADriveAgainThatDidNotHear) {
+  for (const bool beats : {true, false}) {
+    for (const int deaf : {1, 2}) {
+      VirtualDrive& drive = fresh_drive();
+      drive.set(0x1017, 0, beats ? 100 : 0, 2);
+      drive.deaf_to_resets = deaf;
+      make({{"node", {1}}});
+      EXPECT_EQ(start_error(), "it started") << deaf << " times";
+    }
+  }
+}
+
+TEST_F(PatientBoot, PutsUpWithAnyOneLostSdoAnswer) {
+  int answers = 1;
+  for (int lost = 0; lost < answers; ++lost) {
+    fresh_drive();
+    lose_answers([lost](int number) { return number == lost; });
+    make({{"node", {1}}, {"mode", {8}}}, {{"setup", "6085:00/32=70000"}});
+    ASSERT_EQ(start_error(), "it started") << "without answer " << lost;
+    answers = answers_;
+  }
+  EXPECT_GT(answers, 40) << "hardly anything was lost";
+}
+
+TEST_F(PatientBoot, PutsUpWithSomeLostSdoAnswers) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    fresh_drive();
+    std::mt19937 random(seed);
+    int in_a_row = 0;
+    lose_answers([&](int) {
+      const bool lost = in_a_row < 2 && random() % 6 == 0;
+      in_a_row = lost ? in_a_row + 1 : 0;
+      return lost;
+    });
+    make({{"node", {1}}, {"mode", {8}}});
+    ASSERT_EQ(start_error(), "it started") << "seed " << seed;
+  }
+}
+
+// Red when tries have no bound.
+TEST_F(PatientBoot, GivesUpADriveThatFallsSilent) {
+  fresh_drive();
+  lose_answers([](int number) { return number >= 7; });
+  make({{"node", {1}}});
+  const auto before = wire_.now();
+  EXPECT_THAT(start_error(), HasSubstr("node 1 (axis 0) did not answer when "));
+  EXPECT_LT(wire_.now() - before, std::chrono::seconds(3));
+}
+
+TEST_F(PatientBoot, WaitsForADriveThatAnswersLongAfterItsBootUpMessage) {
+  fresh_drive().sdo_after = milliseconds(4000);
+  make({{"node", {1}}});
+  EXPECT_EQ(start_error(), "it started");
+}
+
+// Red when the time of an answer is the same for all drives.
+TEST_F(PatientBoot, WaitsForADriveThatIsKnownToBeSlow) {
+  fresh_drive().sdo_time = milliseconds(700);
+  make({{"node", {1}}});
+  EXPECT_EQ(start_error(), "node 1 (axis 0) did not answer when 1000h:00 was read: SDO protocol timed out");
+  make({{"node", {1}}, {"sdo_timeout_ms", {1000}}});
+  EXPECT_EQ(start_error(), "it started");
+}
+
+TEST_F(PatientBoot, PutsUpWithSdoAnswersThatComeTwice) {
+  fresh_drive();
+  wire_.gateway = [](const CanFrame&) { return std::vector<CanWire::Time>{{}, milliseconds(1)}; };
+  make({{"node", {1}}, {"mode", {8}}});
+  EXPECT_EQ(start_error(), "it started");
+}
+
+// Red when a later boot-up message takes a node that is set up for one that fell away.
+TEST_F(PatientBoot, PutsUpWithABootUpMessageThatIsRepeatedWhileItIsSlow) {
+  for (const int gap_ms : {1, 100, 700, 1500}) {
+    VirtualDrive& drive = fresh_drive();
+    drive.boot_ups = 4;
+    drive.boot_up_gap = milliseconds(gap_ms);
+    drive.sdo_time = milliseconds(150);
+    make({{"node", {1}}});
+    EXPECT_EQ(start_error(), "it started") << gap_ms << " ms after each other";
+  }
+}
+
+}  // namespace
+}  // namespace rmac::fieldbus::canopen
