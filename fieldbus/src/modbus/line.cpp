@@ -193,8 +193,11 @@ Expected<> Line::start(std::chrono::milliseconds patience) {
   auto client = Client::create(line.config.endpoint, line.config.deadline);
   if (!client) return tl::unexpected(client.error());
   line.client = std::move(*client);
-  line.known.assign(line.stations.size(), {});
-  line.tried = false;
+  {
+    const std::lock_guard lock(line.mutex);  // of someone who asks for the trouble of the last run
+    line.known.assign(line.stations.size(), {});
+    line.tried = false;
+  }
   line.ending = false;
   line.thread = std::thread([&line] { line.run(); });
   std::unique_lock lock(line.mutex);
