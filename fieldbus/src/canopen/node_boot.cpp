@@ -8,6 +8,10 @@ namespace {
 // A node may miss its start.
 constexpr std::chrono::seconds kBetweenStarts{1};
 
+// One that has just sent its boot-up message may refuse things for a while.
+constexpr std::chrono::seconds kReadyWithin{2};
+constexpr std::chrono::milliseconds kBetweenQuestions{100};
+
 // A frame may be lost, or a node has no time just then.
 constexpr int kMostTries = 3;
 
@@ -54,7 +58,7 @@ std::vector<BootProblem> NodeBoot::notes() const {
 void NodeBoot::enter(State state, std::chrono::nanoseconds now) noexcept {
   state_ = state;
   entered_ = now;
-  next_start_ = now;
+  next_ = now;
 }
 
 void NodeBoot::begin(std::chrono::nanoseconds now) noexcept {
@@ -149,6 +153,11 @@ bool NodeBoot::asks_again(std::chrono::nanoseconds now) noexcept {
   return ++tries_ < kMostTries;
 }
 
+bool NodeBoot::refuses_for_now(std::chrono::nanoseconds now) const noexcept {
+  if (sdo_.state() != SdoClient::State::Refused || now - entered_ >= kReadyWithin) return false;
+  return sdo_.abort_code() == sdo_abort::kPresentState || sdo_.abort_code() == sdo_abort::kNoResource;
+}
+
 bool NodeBoot::passes() noexcept {
   const BootStep& step = steps_[step_];
   if (step.kind == BootStep::Kind::Read) outcomes_[step_].reading = 0;
@@ -174,6 +183,15 @@ bool NodeBoot::passes() noexcept {
 }
 
 void NodeBoot::end_step(std::chrono::nanoseconds now) noexcept {
+  if (sdo_.state() == SdoClient::State::Idle) {  // refused for now
+    if (now >= next_) ask(now);
+    return;
+  }
+  if (refuses_for_now(now)) {
+    sdo_.abandon();
+    next_ = now + kBetweenQuestions;
+    return;
+  }
   if (asks_again(now)) return ask(now);
   if (!passes()) return;
   ++step_;
@@ -204,8 +222,8 @@ bool NodeBoot::next_frame(std::chrono::nanoseconds now, CanFrame& frame) noexcep
     return false;
   }
   if (state_ == State::AwaitingBootUp) return call(now, frame);
-  if (now < next_start_) return false;
-  next_start_ = now + kBetweenStarts;
+  if (now < next_) return false;
+  next_ = now + kBetweenStarts;
   frame = nmt_frame(NmtCommand::Start, node_);
   return true;
 }

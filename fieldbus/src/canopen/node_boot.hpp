@@ -65,6 +65,7 @@ class NodeBoot {
   [[nodiscard]] bool call(std::chrono::nanoseconds now, CanFrame& frame) noexcept;
   void begin_step(std::chrono::nanoseconds now) noexcept;
   void ask(std::chrono::nanoseconds now) noexcept;
+  [[nodiscard]] bool refuses_for_now(std::chrono::nanoseconds now) const noexcept;
   [[nodiscard]] bool asks_again(std::chrono::nanoseconds now) noexcept;
   void end_step(std::chrono::nanoseconds now) noexcept;
   [[nodiscard]] BootProblem problem_of(const BootStep& step) const noexcept;
@@ -88,7 +89,7 @@ class NodeBoot {
   bool answered_ = false;  ///< an SDO, since its boot-up message
   std::array<std::uint8_t, 8> bytes_{};
   std::chrono::nanoseconds entered_{0};
-  std::chrono::nanoseconds next_start_{0};
+  std::chrono::nanoseconds next_{0};  ///< when it is started or asked again
 };
 
 }  // namespace rmac::fieldbus::canopen

@@ -36,11 +36,11 @@ constexpr std::array kAbortTexts{
     AbortText{0x06090031, "value of parameter written too high"},
     AbortText{0x06090032, "value of parameter written too low"},
     AbortText{0x06090036, "maximum value is less than minimum value"},
-    AbortText{0x060A0023, "resource not available: SDO connection"},
+    AbortText{sdo_abort::kNoResource, "resource not available: SDO connection"},
     AbortText{sdo_abort::kGeneral, "general error"},
     AbortText{0x08000020, "data cannot be transferred or stored to the application"},
     AbortText{0x08000021, "data cannot be transferred or stored because of local control"},
-    AbortText{0x08000022, "data cannot be transferred or stored because of the present device state"},
+    AbortText{sdo_abort::kPresentState, "data cannot be transferred or stored because of the present device state"},
     AbortText{0x08000023, "object dictionary dynamic generation fails or no object dictionary is present"},
     AbortText{0x08000024, "no data available"},
 };

@@ -113,6 +113,19 @@ TEST_F(PatientBoot, WaitsForADriveThatAnswersLongAfterItsBootUpMessage) {
   EXPECT_EQ(start_error(), "it started");
 }
 
+// Red when a drive that is not ready is refused, or when what is optional is left out until it is.
+TEST_F(PatientBoot, WaitsForADriveWhoseStateForbidsToWriteAtFirst) {
+  VirtualDrive& drive = fresh_drive();
+  drive.writable_after = milliseconds(1500);
+  make({{"node", {1}}});
+  EXPECT_EQ(start_error(), "it started");
+  EXPECT_TRUE(master_->start_notes().empty());
+  EXPECT_EQ(drive.value(0x1801, 1) >> 31, 1U) << "a PDO that nobody counted stays valid";
+  master_->stop();
+  drive.writable_after = std::chrono::hours(1);
+  EXPECT_THAT(start_error(), HasSubstr("(08000022h); it is needed "));
+}
+
 // Red when the time of an answer is the same for all drives.
 TEST_F(PatientBoot, WaitsForADriveThatIsKnownToBeSlow) {
   fresh_drive().sdo_time = milliseconds(700);

@@ -89,6 +89,7 @@ void VirtualDrive::remove(std::uint16_t index, std::uint8_t sub) {
 std::uint32_t VirtualDrive::check_write(Object object, const Bytes& bytes) {
   if (on_write) on_write(object, bytes);
   const auto [index, sub] = object;
+  if (moved_ < booted_ + writable_after) return 0x08000022;
   if (bytes.size() != dictionary_.at(object).size()) return 0x06070010;
   const bool communication = (index & 0xFE00) == 0x1400 || (index & 0xFE00) == 0x1800;
   const bool contents = (index & 0xFE00) == 0x1600 || (index & 0xFE00) == 0x1A00;

@@ -19,7 +19,9 @@ inline constexpr std::uint32_t kMemory = 0x05040005;
 inline constexpr std::uint32_t kNoObject = 0x06020000;
 inline constexpr std::uint32_t kLength = 0x06070010;
 inline constexpr std::uint32_t kNoSubindex = 0x06090011;
+inline constexpr std::uint32_t kNoResource = 0x060A0023;
 inline constexpr std::uint32_t kGeneral = 0x08000000;
+inline constexpr std::uint32_t kPresentState = 0x08000022;
 }  // namespace sdo_abort
 
 /// What an abort code means, in the standard's words; codes of the maker's own are named as such.
