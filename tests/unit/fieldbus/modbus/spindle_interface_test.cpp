@@ -414,6 +414,28 @@ TEST(ModbusSpindleStart, NamesTheSlaveThatDoesNotAnswer) {
   EXPECT_THAT(started.error().message, HasSubstr("no whole answer within 20 ms"));
 }
 
+TEST(ModbusSpindleStart, SaysWhatTheSlaveDidInPlaceOfAnAnswer) {
+  for (const auto& [manner, why] : {std::pair(Manner::WrongId, "another slave answered"),
+                                    std::pair(Manner::WrongLength, "counts other bytes than came"),
+                                    std::pair(Manner::Busy, "refused with exception 6: it is busy")}) {
+    ModbusPeer peer(Wire::Tcp);
+    peer.behave(manner);
+    SpindleLineConfig config;
+    config.line.endpoint = peer.endpoint();
+    config.line.deadline = 30s;  // however busy the computer is, the peer answers
+    config.line.period = 5ms;
+    config.line.first_pause = 1ms;
+    config.line.longest_pause = 5ms;
+    config.boot_timeout = 100ms;
+    config.axes = {{.slave = 9, .rpm_per_hz = 60, .maximum_hz = 0, .map = map()}};
+    SpindleInterface spindle(std::move(config));
+    const auto started = spindle.start();
+    ASSERT_FALSE(started);
+    EXPECT_THAT(started.error().message, HasSubstr("was not reached within 0.1 s: "));
+    EXPECT_THAT(started.error().message, HasSubstr(why));
+  }
+}
+
 TEST(ModbusSpindleLine, OfTwoDrivesOneMuteLeavesTheOtherAtWork) {
   RegisterBank bank;
   bank.on_write = drive;

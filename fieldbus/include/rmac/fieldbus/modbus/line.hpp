@@ -57,7 +57,7 @@ class Line {
   /// Starts the thread and waits until every station was served once. The error names the first that was not, how long
   /// was waited, and why.
   [[nodiscard]] Expected<> start(std::chrono::milliseconds patience);
-  /// Makes every station safe and ends the thread. Takes a few deadlines at most.
+  /// Makes every station safe and ends the thread. Takes a few deadlines at most, and 3 s more where one is busy.
   void stop() noexcept;
 
   /// The next round begins at once. Any thread, real-time safe.
