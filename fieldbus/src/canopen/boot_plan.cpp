@@ -1,5 +1,6 @@
 #include "canopen/boot_plan.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -150,18 +151,29 @@ class Plan {
   void check_polarity(const AxisConfig& axis, std::uint16_t offset) {
     constexpr std::uint32_t kPosition = 0x80;
     if (axis.mode != DriveMode::CyclicSyncTorque || axis.sets_polarity) return;
-    like_to().check(of_axis({0x607E, 0}, offset), 0, kPosition);
+    need("to know that its positions run with its torques (where polarity is given it is not asked)")
+        .check(of_axis({0x607E, 0}, offset), 0, kPosition)
+        .may_be_absent = true;
   }
 
   /// PDOs that a drive has by default would load the bus beside what is counted.
   void silence_others(const AxisConfig& axis) {
     if (axis.axis_in_node != 0) return;
-    like_to();
     constexpr std::uint16_t kDefaultPdos = 4;
+    const auto of_another = [&](auto id_of, std::uint32_t id) {
+      return std::any_of(config_.axes.begin(), config_.axes.end(),
+                         [&](const AxisConfig& other) { return other.axis_in_node != 0 && id_of(other) == id; });
+    };
+    // What one axis sent there, or took from there, another would take or send.
+    const auto may_stay = [&](bool taken) {
+      return taken ? need("because another axis has its identifier") : like_to();
+    };
     for (std::uint16_t pdo = 1; pdo < kDefaultPdos; ++pdo) {
       const std::uint32_t setpoints = 0x200U + 0x100U * pdo + axis.node;
       const std::uint32_t answers = 0x180U + 0x100U * pdo + axis.node;
+      may_stay(of_another(setpoint_id, setpoints));
       write({static_cast<std::uint16_t>(0x1400 + pdo), 1}, 4, kInvalidPdo | setpoints);
+      may_stay(of_another(answer_id, answers));
       write({static_cast<std::uint16_t>(0x1800 + pdo), 1}, 4, kInvalidPdo | kNoRemoteRequest | answers);
     }
   }

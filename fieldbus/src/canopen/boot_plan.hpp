@@ -20,6 +20,7 @@ struct BootStep {
   std::uint32_t value = 0;
   std::uint32_t mask = 0xFFFFFFFF;
   bool optional = false;       ///< a refusal is noted and passed over, whatever its code
+  bool may_be_absent = false;  ///< of refusals, that it has no such object is passed over, and no other
   bool after_refusal = false;  ///< of the step before it alone: left out where that was not refused
   const char* needed = "";     ///< for what, as it goes on behind "it is needed"
 };

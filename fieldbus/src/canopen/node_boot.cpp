@@ -126,7 +126,9 @@ BootProblem NodeBoot::problem_of(const BootStep& step) const noexcept {
 }
 
 void NodeBoot::begin_step(std::chrono::nanoseconds now) noexcept {
-  while (step_ < steps_.size() && steps_[step_].after_refusal && outcomes_[step_ - 1].refusal == 0) ++step_;
+  while (step_ < steps_.size() && steps_[step_].after_refusal && outcomes_[step_ - 1].refusal == 0) {
+    outcomes_[step_++].refusal = 0;
+  }
   if (step_ == steps_.size()) return enter(State::Starting, now);
   const BootStep& step = steps_[step_];
   problem_ = problem_of(step);
@@ -164,8 +166,10 @@ bool NodeBoot::passes() noexcept {
   if (sdo_.state() == SdoClient::State::Refused) {
     const std::uint32_t code = sdo_.abort_code();
     outcomes_[step_].refusal = code;
-    if (!step.optional) fail(BootProblem::Kind::Refused, code);
-    return step.optional;
+    const bool absent = code == sdo_abort::kNoObject || code == sdo_abort::kNoSubindex;
+    const bool passed_over = step.optional || (step.may_be_absent && absent);
+    if (!passed_over) fail(BootProblem::Kind::Refused, code);
+    return passed_over;
   }
   if (sdo_.state() != SdoClient::State::Done) {
     outcomes_[step_].refusal = sdo_.abort_code();

@@ -262,8 +262,9 @@ Answer<> Client::resynchronise(int slave, Table table, std::uint16_t address, st
   const auto probed = std::find_if(known.probed.begin(), known.probed.end(), long_ago);
   const auto step = static_cast<std::size_t>(probed - known.probed.begin());
   const Request request{slave, false, table, address, probe_length(table, count, step)};
-  if (auto fine = impl_->check(request); !fine) return fine;
-  if (probed == known.probed.end() || (known.refuses_probes && !settled)) {
+  const auto fine = impl_->check(request);
+  if (!fine && step == 0) return fine;
+  if (!fine || probed == known.probed.end() || (known.refuses_probes && !settled)) {
     return impl_->fail(Kind::InDoubt, request, "not asked, an answer to an earlier question may still come");
   }
   *probed = now;

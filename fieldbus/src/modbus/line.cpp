@@ -198,6 +198,9 @@ Expected<> Line::start(std::chrono::milliseconds patience) {
     line.known.assign(line.stations.size(), {});
     line.tried = false;
   }
+  for (auto* counter : {&line.rounds, &line.failures, &line.connected, &line.timeouts, &line.wrong_answers, &line.busy,
+                        &line.exceptions, &line.disconnects})
+    *counter = 0;
   line.ending = false;
   line.thread = std::thread([&line] { line.run(); });
   std::unique_lock lock(line.mutex);

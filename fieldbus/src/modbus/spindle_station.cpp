@@ -169,7 +169,9 @@ Answer<> SpindleStation::stop_at_once(Client& client) {
 
 Answer<> SpindleStation::serve(Client& client) {
   auto served = serve_once(client);
-  if (!served && served.error().busy()) {
+  // What was read before it was told to run or stop does not hold on for its being busy.
+  const bool holds = Clock::time_point(Clock::duration(asked_.load(std::memory_order_relaxed))) >= applied_at_;
+  if (!served && served.error().busy() && holds) {
     busy_.store(Clock::now().time_since_epoch().count(), std::memory_order_release);
   }
   return served;

@@ -83,7 +83,9 @@ struct Planner::Impl {
 
   [[nodiscard]] WindowEnd window_end(const PathState& from, double ramps) {
     const auto limit = wanted == PathCommand::RunOne && !route.on_detour() ? std::optional(limit_s) : std::nullopt;
-    return next_window_end(path(), model.joints, from, ramps, factor, limit);
+    const WindowEnd end = next_window_end(path(), model.joints, from, ramps, factor, limit);
+    if (end.in_work) planning_time.withdraw();
+    return end;
   }
 
   bool publish(std::unique_ptr<Plan> plan, const WindowEnd& end, double window_begin, const Purpose& purpose = {}) {
@@ -344,7 +346,10 @@ struct Planner::Impl {
         return stop(progress);
       case Task::Turn:
         route.turn_forward(base_end_s());
-        if (wanted == PathCommand::RunOne) limit_run();
+        if (wanted == PathCommand::RunOne) {
+          const GivesWay to_nobody(nullptr);  // it lays path until the move's end is known
+          limit_run();
+        }
         return false;
       case Task::StopSooner:
         return stop_sooner(progress);

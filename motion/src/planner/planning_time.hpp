@@ -15,6 +15,8 @@ class PlanningTime {
     began_ = cycle;
     in_haste_ = in_haste;
   }
+  /// No plan comes of what was begun, and its time tells nothing of a plan's.
+  void withdraw() noexcept { began_ = -1; }
   /// Takes up what the servo loop tells afterwards. A refused plan came too late: the next one is left more time,
   /// unless it was tried in haste.
   void learn(const ServoProgress& progress) noexcept;

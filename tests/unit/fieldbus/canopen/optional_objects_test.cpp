@@ -77,11 +77,32 @@ TEST_F(OptionalObjects, MayBeRefusedByAnyCodeAndAreNoted) {
 TEST_F(OptionalObjects, MayBeRefusedInTorqueModeToo) {
   for (const std::uint32_t code : kAbortCodes) {
     VirtualDrive& drive = fresh_drive();
-    drive.refuse_reading({0x607E, 0}, code);
     drive.refuse_reading({0x6502, 0}, code);
     make({{"node", {1}}});
     ASSERT_EQ(start_error(), "it started");
-    ASSERT_EQ(master_->start_notes().size(), says_absent(code) ? 0U : 2U);
+    ASSERT_EQ(master_->start_notes().size(), says_absent(code) ? 0U : 1U);
+  }
+}
+
+// Red when a drive that has a polarity and does not tell it is taken: it may run away.
+TEST_F(OptionalObjects, AreNotThePolarityInTorqueModeWhereThereIsOne) {
+  for (const std::uint32_t code : kAbortCodes) {
+    fresh_drive().refuse_reading({0x607E, 0}, code);
+    make({{"node", {1}}});
+    if (says_absent(code)) {
+      ASSERT_EQ(start_error(), "it started");
+    } else {
+      ASSERT_THAT(start_error(), HasSubstr("it is needed to know that its positions run with its torques"));
+    }
+  }
+}
+
+// Red when a drive whose second default PDO stays is taken: what is sent to its second axis, its first one takes.
+TEST_F(OptionalObjects, AreNotPdosWhoseIdentifierIsAnotherAxiss) {
+  for (const std::uint16_t pdo : {std::uint16_t{0x1401}, std::uint16_t{0x1801}}) {
+    fresh_drive().refuse_writing({pdo, 1}, 0x06010002);
+    make({{"node", {1, 1}}, {"axis_in_node", {0, 1}}});
+    EXPECT_THAT(start_error(), HasSubstr("it is needed because another axis has its identifier"));
   }
 }
 
