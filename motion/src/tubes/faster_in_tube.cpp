@@ -1,5 +1,6 @@
 #include "tubes/faster_in_tube.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -12,7 +13,9 @@ namespace {
 /// Laws and splines in turn; more bring next to nothing.
 constexpr int kRounds = 6;
 /// Work after which no other round is begun, of `TubeProgram::solve`: a window is not to hold the planner up for long.
-constexpr std::size_t kMostWork = 65'000;
+constexpr double kMostWork = 65'000;
+/// And for a second of the window's motion: where many tiny lines are soon travelled, planning is to be faster still.
+constexpr double kMostWorkASecond = 100'000;
 /// Tubes, each narrower by what the spline was outside between the samples.
 constexpr int kTrials = 3;
 
@@ -43,7 +46,8 @@ void FasterInTube::begin_trial() {
 
 bool FasterInTube::round() {
   ++rounds_;
-  if (!std::isfinite(least_s_) || work_ > kMostWork) return false;
+  const double most_work = std::min(kMostWork, kMostWorkASecond * least_s_);
+  if (!std::isfinite(least_s_) || static_cast<double>(work_) > most_work) return false;
   if (!program_->solve(law_.demands(trial_), true, work_)) return false;
   const double time_s = law_.solve(trial_);
   if (!std::isfinite(time_s)) return false;
