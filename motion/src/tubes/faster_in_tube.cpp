@@ -12,7 +12,7 @@ namespace {
 
 /// Laws and splines in turn; more bring next to nothing.
 constexpr int kRounds = 6;
-/// Work after which no other round is begun, of `TubeProgram::solve`: a window is not to hold the planner up for long.
+/// Work after which no other round is begun, of `TubeProgram::solve`: what more would bring is not worth its time.
 constexpr double kMostWork = 65'000;
 /// And for a second of the window's motion: where many tiny lines are soon travelled, planning is to be faster still.
 constexpr double kMostWorkASecond = 100'000;
@@ -24,11 +24,11 @@ constexpr int kTrials = 3;
 FasterInTube::FasterInTube(SplineInTube spline, DraftLaw law) : spline_(std::move(spline)), law_(std::move(law)) {}
 
 bool FasterInTube::step() {
+  if (gives_way()) return true;  // later
   if (!program_) {
     begin_trial();
     return true;
   }
-  if (gives_way()) return true;  // later
   if (rounds_ < kRounds && round()) return true;
   return faster_ && goes_on_narrower();
 }

@@ -176,6 +176,11 @@ TEST_F(OptionalObjects, HoldTheCycleWhereADriveInterpolatesOverIt) {
         "to interpolate between setpoints over a cycle (modes 7 and 8)");
     right.refuse_reading({0x60C2, 1}, 0x08000000);
     EXPECT_EQ(start_error(), "it started") << "it has none that anybody could know of";
+    master_->stop();
+    right.allow({0x60C2, 1});
+    right.allow({0x60C2, 2});
+    EXPECT_EQ(start_error(), "it started");
+    EXPECT_THAT(master_->start_notes(), testing::IsEmpty()) << "what it refused before is no news of this start";
   }
 }
 

@@ -47,6 +47,11 @@ class VirtualDrive {
   void remove(std::uint16_t index);
   void remove(std::uint16_t index, std::uint8_t sub);
   void refuse_reading(Object object, std::uint32_t abort_code) { bank_.unreadable[object] = abort_code; }
+  /// It refuses it no more.
+  void allow(Object object) {
+    bank_.unreadable.erase(object);
+    bank_.unwritable.erase(object);
+  }
   void refuse_writing(Object object, std::uint32_t abort_code) { bank_.unwritable[object] = abort_code; }
   /// The shaft, at rest.
   void put_at(double counts, int axis = 0) {

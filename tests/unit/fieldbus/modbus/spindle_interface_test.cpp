@@ -305,6 +305,9 @@ TEST_P(ModbusSpindle, TellsInOperationWhyItIsSilentAndCountsIt) {
     EXPECT_THAT(spindle->silence_text(0).value_or(""), HasSubstr(one.why)) << "who asks late is told, too";
     ASSERT_TRUE(run_at(1500));
   }
+  spindle->stop();
+  ASSERT_TRUE(spindle->start());
+  EXPECT_EQ(spindle->counters().busy, 0U) << "counts are since the start";
 }
 
 // Red when a drive that answers "busy" counts as one that does not answer.

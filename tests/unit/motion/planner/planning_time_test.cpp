@@ -26,6 +26,18 @@ TEST(PlanningTime, DoesNotChangeWhileNoPlanIsMade) {
   EXPECT_EQ(time.lead(), 2 + 10);
 }
 
+TEST(PlanningTime, LearnsNothingFromWhatNoPlanCameOf) {
+  PlanningTime time;
+  time.begin(100);
+  time.learn({.cycle = 111});
+  for (std::int64_t cycle = 200; cycle < 220; ++cycle) {
+    time.begin(cycle);
+    time.withdraw();
+    time.learn({.cycle = cycle + 1});
+  }
+  EXPECT_EQ(time.lead(), 2 + 10);
+}
+
 TEST(PlanningTime, ForgetsALongOneBitByBit) {
   PlanningTime time;
   time.begin(100);
