@@ -10,42 +10,12 @@
 #include "gateway/device_database/device_database.hpp"
 #include "gateway/device_driver_manager/device_tree.hpp"
 #include "gateway/processes/temporary_folder.hpp"
+#include "gateway/simulation/only_client.hpp"
 
 namespace rmac::gateway {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The only client there is. What it subscribes to reaches it as the controller's samples and events.
-class OnlyClient final : public SessionPort {
- public:
-  explicit OnlyClient(const DeviceDriverManager& manager) : records_(manager) {}
-  void introduce(const std::string& /*client*/, const std::string& /*version*/) override {}
-  nlohmann::json greeting() const override { return {{"server", "rmac simulate"}, {"version", RMAC_VERSION}}; }
-  RecordCursor& records() override { return records_; }
-  bool has_authority() const override { return true; }
-  std::string authority_holder() const override { return "the simulation's client"; }
-  tl::expected<nlohmann::json, RpcError> acquire_authority() override {
-    return nlohmann::json{{"timeout_s", 0}, {"dropped_moves", 0}};
-  }
-  tl::expected<void, RpcError> renew_authority() override { return {}; }
-  tl::expected<void, RpcError> release_authority() override { return {}; }
-  // Nobody stands beside it: as the operator it does what it may do anyway.
-  tl::expected<std::string, RpcError> acquire_operator() override { return authority_holder(); }
-  tl::expected<void, RpcError> release_operator() override { return {}; }
-  bool is_operator() const override { return false; }
-  std::string operator_name() const override { return {}; }
-  OperatorRef holds_as() const override { return nullptr; }
-  void tell(const std::string& /*what*/) override {}
-  tl::expected<void, RpcError> subscribe(const std::vector<std::string>& /*topics*/, double /*rate_hz*/) override {
-    return {};
-  }
-  void unsubscribe(const std::vector<std::string>& /*topics*/) override {}
-  void animate(bool /*on*/) override {}
-
- private:
-  Records records_;
-};
 
 ControllerOptions controller_options(const Simulation::Options& options, const std::vector<fs::path>& folders) {
   ControllerOptions made;
@@ -79,7 +49,7 @@ struct Simulation::Parts {
         host(*manager, controller),
         machine(controller, host, *manager),
         dispatcher(machine),
-        client(*manager) {}
+        client(*manager, {{"server", "rmac simulate"}, {"version", RMAC_VERSION}}) {}
 
   std::unique_ptr<TemporaryFolder> folder;
   std::unique_ptr<DeviceDriverManager> manager;

@@ -1,11 +1,12 @@
-// Requests to a machine, one a line. The first byte says what it does when they come: it stands, or it moves, or it was
-// stopped in its move; the last byte of a line, where it is none of JSON's, how many cycles pass after it.
+// Requests to a machine. The first byte says what it does when they come: it stands, or it moves, or it was stopped in
+// its move.
 #include <cstdlib>
 #include <iostream>
 
 #include "gateway/simulation/simulation.hpp"
 #include "memory_file.hpp"
 #include "places.hpp"
+#include "requests.hpp"
 
 namespace {
 
@@ -22,6 +23,7 @@ std::unique_ptr<Simulation> machine() {
   return std::move(*made);
 }
 
+/// MoveAlongLine from the mill's zero along X.
 nlohmann::json line_to(double x) {
   const auto pose = [](double at) { return nlohmann::json{{"p", {at, 0, 0}}, {"axis", {0, 0, 1}}}; };
   return {{"MoveID", 1}, {"StartPoint", pose(0)}, {"EndPoint", pose(x)}};
@@ -57,21 +59,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (inputs++ % kInputsOfAMachine == 0) simulation.reset();
   if (!simulation) simulation = machine();
   begin(*simulation, data[0] % 3);
-  std::string_view rest = rmac::fuzz::text_of(data + 1, size - 1);
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    std::string_view text = rest.substr(0, end);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    int cycles = 1;
-    if (!text.empty() && text.back() != '}' && text.back() != ']') {
-      cycles = static_cast<unsigned char>(text.back()) % kMostCycles;
-      text.remove_suffix(1);
-    }
-    auto message = parse_line(text);
-    if (message && message->is_object() && message->contains("method") && (*message)["method"].is_string()) {
-      static_cast<void>(simulation->call((*message)["method"], message->value("params", nlohmann::json())));
-    }
-    pass(*simulation, cycles);
-  }
+  const rmac::fuzz::Requests requests(rmac::fuzz::text_of(data + 1, size - 1), kMostCycles);
+  requests.for_each([](const std::string& method,
+                       const nlohmann::json& params) { static_cast<void>(simulation->call(method, params)); },
+                    [](int cycles) { pass(*simulation, cycles); });
   return 0;
 }

@@ -5,6 +5,7 @@ import sys
 import time
 
 from appliance import Appliance, line, wait_for_rest
+from bare_thread import BareThread
 from crowd import Crowd, connect
 from figures import Figures
 from footprint import add_growth, footprint, growth_kib
@@ -37,6 +38,7 @@ def measure(figures, hours):
         crowd = Crowd(sockets)
         crowd.start()
         first = operator.state()
+        computer = BareThread()
         began = time.monotonic()
         next_print, prints, jobs = 0.0, [], 0
         while (elapsed := time.monotonic() - began) < 3600 * hours:
@@ -46,6 +48,7 @@ def measure(figures, hours):
                 next_print += EVERY_S
                 prints.append(footprint(appliance.process))
         missed = operator.state()["deadline_misses"] - first["deadline_misses"]
+        missed_by_computer = computer.misses()
         cut_off = crowd.stalled_is_cut_off()
         crowd.end()
         for client in sockets:
@@ -57,6 +60,9 @@ def measure(figures, hours):
     add_growth(figures, "jobs", settled, cases)
     figures.add("jobs_cycles_missed", missed, "cycles", 0,
                 f"load average {os.getloadavg()[2]:.1f}" + (", this system grants no real time" if degraded else ""))
+    if missed_by_computer is not None:
+        figures.add("jobs_missed_by_the_computer", missed_by_computer, "cycles", None,
+                    "by a process that only sleeps, at the highest priority, meanwhile")
     figures.add("jobs_cycles_lost", crowd.gaps, "gaps", 0, "in what the subscriber of every cycle was sent")
     figures.add("jobs_readers_cut_off", crowd.lost, "clients", 0, f"of those that read; {crowd.lines} notes in all")
     figures.add("jobs_stalled_kept", 0 if cut_off else 1, "clients", 0, "the one that does not read")
