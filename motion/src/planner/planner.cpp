@@ -32,8 +32,9 @@ constexpr double kRelease_s = 0.05;
 constexpr std::array<double, 8> kStretches{1.02, 1.08, 1.2, 1.4, 1.8, 2.5, 4.0, 7.0};
 constexpr int kStopTries = 400;
 constexpr double kWorthIt = 0.05;
-/// And for an override.
+/// And for an override. One that is lowered is tried again in the next cycle.
 constexpr int kOverrideTries = 3;
+constexpr std::int64_t kUrgent = 1;
 /// Braking for an override begins so many cycles later: mostly the law that is looked for meanwhile comes first, and
 /// finds its way more easily from the plan that is followed than from one that brakes.
 constexpr int kBeforeBraking = 6;
@@ -195,7 +196,7 @@ struct Planner::Impl {
     }
     if (divert(progress, std::nullopt)) return true;
     --tries;
-    return no_plan(progress);
+    return no_plan(progress, factor < p.override_factor ? kUrgent : FailedAttempt::kRetryAfter);
   }
 
   /// The next demanded rest on a plan that is followed, or its end, behind where it is in a cycle.
@@ -271,9 +272,9 @@ struct Planner::Impl {
     return no_plan(progress);
   }
 
-  bool no_plan(const ServoProgress& progress) {
+  bool no_plan(const ServoProgress& progress, std::int64_t retry_after = FailedAttempt::kRetryAfter) {
     if (gives_way()) return false;  // it was not tried to the end
-    attempt.record(progress.cycle, base() == nullptr ? 0 : base()->plan->id, plans.ended(progress));
+    attempt.record(progress.cycle, base() == nullptr ? 0 : base()->plan->id, plans.ended(progress), retry_after);
     return false;
   }
 

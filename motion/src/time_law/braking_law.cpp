@@ -23,6 +23,17 @@ constexpr double kLettingGo = 0.9;
 /// mm: nearer places are the same.
 constexpr double kSame = 1e-9;
 
+/// How steps are taken again that led to where no step keeps the limits.
+struct Retreat {
+  std::size_t steps = 0;  ///< so many
+  double slowing = 0;     ///< by how much they may become slower than the law before, as Braking::most_slowing
+  double jerk = 0;        ///< with which an acceleration is met that was needed there, as a part of what is allowed
+};
+/// One try after the other.
+constexpr Retreat kRetreats[] = {{5, 0.5, 0.7}, {10, 0.5, 0.6}, {20, 0.2, 0.5}, {40, 0.2, 0.3}, {80, 0, 0.2}};
+/// Braking stays gentle for so long behind the place.
+constexpr double kPastTrouble_s = 0.012;
+
 /// Bounds of one number.
 struct Bounds {
   double low = -kInfinity, high = kInfinity;
@@ -40,6 +51,22 @@ struct Bounds {
   [[nodiscard]] bool empty() const { return !(low <= high); }
 };
 
+/// The state of a piece of law at a path length.
+PathState state_where(const LawPiece& piece, double s) {
+  const double ds = s - piece.start.s;
+  if (piece.kind == LawPiece::Kind::Linear) {
+    const double a = piece.start.a + piece.slope * ds;
+    return {s, std::sqrt(std::max(piece.start.v * piece.start.v + ds * (piece.start.a + a), 0.0)), a};
+  }
+  PathState at = piece.start;
+  double t = 0;
+  for (int i = 0; i < 3 && at.v > 0; ++i) {
+    t += (s - at.s) / at.v;
+    at = piece.at(t);
+  }
+  return at;
+}
+
 class Brake {
  public:
   Brake(const PathView& path, const std::vector<JointLimits>& joints, const Braking& braking)
@@ -50,7 +77,7 @@ class Brake {
     for (; steps_left > 0; --steps_left) {
       if (at_.s >= braking_.s_latest) return false;
       if (comes_to_rest()) return true;
-      if (!go_on()) return false;
+      if (!go_on() && !retreat()) return false;
     }
     return false;
   }
@@ -66,6 +93,23 @@ class Brake {
     const auto next = std::upper_bound(breaks.begin(), breaks.end(), local + kSame);
     border_ = path_.start(index_) + (next == breaks.end() ? segment.length() : *next);
     return path_.derivatives(just_inside(at_.s, border_), 1, here_) == KinematicsStatus::Ok;
+  }
+
+  /// Where no step keeps the limits, those before were wrong: the last ones are taken again, more gently, and more of
+  /// them each time.
+  [[nodiscard]] bool retreat() {
+    if (law_.empty()) return false;
+    tries_ = at_.s < gentle_until_ ? tries_ + 1 : 0;
+    if (tries_ == std::size(kRetreats)) return false;
+    retreat_ = kRetreats[tries_];
+    gentle_until_ = std::max(gentle_until_, at_.s + kPastTrouble_s * at_.v);
+    const LawPiece again = law_[law_.size() - std::min(law_.size(), retreat_.steps)];
+    law_.resize(law_.size() - std::min(law_.size(), retreat_.steps));
+    at_ = again.start;
+    t_ = again.t0;
+    last_jerk_ = law_.empty() ? 0 : law_.back().slope;
+    piece_ = 0;
+    return enter_stretch();
   }
 
   /// How far the geometry lets a step go: not over a narrower interval between its nodes.
@@ -120,15 +164,20 @@ class Brake {
 
   /// The least acceleration at path length s and speed v that is not slower than the law before by more than it may.
   [[nodiscard]] double gentle(const PathState& then) {
-    if (!std::isfinite(braking_.most_slowing)) return -kInfinity;
+    const double slowing =
+        then.s < gentle_until_ ? std::min(retreat_.slowing, braking_.most_slowing) : braking_.most_slowing;
+    if (!std::isfinite(slowing)) return -kInfinity;
     const std::vector<LawPiece>& law = braking_.leaves;
     while (piece_ + 1 < law.size() && law[piece_ + 1].start.s <= then.s) ++piece_;
-    const LawPiece& piece = law[piece_];
-    if (piece.kind != LawPiece::Kind::Linear) return -kInfinity;
-    const double ds = then.s - piece.start.s;
-    const double q = piece.start.v * piece.start.v + ds * (2 * piece.start.a + ds * piece.slope);
-    if (!(q > 0)) return -kInfinity;
-    return (piece.start.a + piece.slope * ds) * then.v * then.v / q - braking_.most_slowing * std::sqrt(q);
+    const PathState before = state_where(law[piece_], then.s);
+    if (!(before.v > 0)) return -kInfinity;
+    return before.a * then.v * then.v / (before.v * before.v) - slowing * before.v;
+  }
+
+  /// The least acceleration from which the one can be reached that was needed further on.
+  [[nodiscard]] double in_time(const PathState& then) const {
+    if (then.s >= needed_.s) return -kInfinity;
+    return needed_.a - retreat_.jerk * needed_.most_jerk * (needed_.s - then.s) / then.v;
   }
 
   [[nodiscard]] PathState after(double dt, double jerk) const {
@@ -183,14 +232,19 @@ class Brake {
       allowed.take(bend * dt + d1, there_.d[3][j] * then.v * then.v * then.v + bend * at_.a,
                    kMostJerk * joints_[j].max_jerk);
     }
+    const Bounds allowed_jerk = allowed;
     const Bounds most = acceleration_bounds(there_, then.v, kMostAcceleration);
     allowed.low = std::max(allowed.low, (most.low - at_.a) / dt);
     allowed.high = std::min(allowed.high, (most.high - at_.a) / dt);
-    if (allowed.empty()) return std::nullopt;
+    if (allowed.empty()) {
+      if (const double most_jerk = allowed_jerk.high; (most.low - at_.a) / dt > most_jerk && most_jerk > 0)
+        needed_ = {then.s, most.low, most_jerk};
+      return std::nullopt;
+    }
     const double hardest = std::min(acceleration_bounds(there_, then.v, kPart).low, 0.0);
     const Bounds release = jerk_bounds(there_, then, kPart);
     const double let_go = letting_go(dt, std::max(release.high, -1e-3 * release.low));
-    const double wish = std::max({hardest, let_go, gentle(then)});
+    const double wish = std::max({hardest, let_go, gentle(then), in_time(then)});
     return std::clamp((wish - at_.a) / dt, allowed.low, allowed.high);
   }
 
@@ -221,10 +275,18 @@ class Brake {
   const Braking& braking_;
   PathState at_;
   double t_ = 0, last_jerk_ = 0;
-  std::size_t index_ = 0;    ///< of the segment that the state is on
-  double border_ = 0;        ///< where its smooth stretch ends
-  std::size_t piece_ = 0;    ///< of the law before
-  JointPoint here_, there_;  ///< at the state, and where the step ends
+  std::size_t index_ = 0;  ///< of the segment that the state is on
+  double border_ = 0;      ///< where its smooth stretch ends
+  std::size_t piece_ = 0;  ///< of the law before
+  /// Where a step failed for want of an acceleration, and the jerk that was allowed on the way to it.
+  struct Needed {
+    double s = -kInfinity, a = 0, most_jerk = 0;
+  };
+  Needed needed_;
+  Retreat retreat_;                   ///< the last one
+  std::size_t tries_ = 0;             ///< from one place
+  double gentle_until_ = -kInfinity;  ///< path length up to which steps are taken as it says
+  JointPoint here_, there_;           ///< at the state, and where the step ends
   std::vector<LawPiece> law_;
 };
 

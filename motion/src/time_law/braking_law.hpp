@@ -20,10 +20,10 @@ struct Braking {
   double most_slowing = std::numeric_limits<double>::infinity();
 };
 
-/// A law from a state in motion to rest, beginning at time 0, found in one pass, step by step: at each the path brakes
-/// as hard as the joints' limits allow where the step ends, and lets go in time (docs/derivations/time-law.md, section
-/// 7). There is not always one, nor is it always the shortest, but it is found at once: every step takes one from
-/// `steps_left`. It is not checked.
+/// A law from a state in motion to rest, beginning at time 0, found step by step: at each the path brakes as hard as
+/// the joints' limits allow where the step ends, and lets go in time; where that leads to no way on, the last steps are
+/// taken again, more gently (docs/derivations/time-law.md, section 7). There is not always one, nor is it always the
+/// shortest, but it is found at once: every step takes one from `steps_left`. It is not checked.
 [[nodiscard]] std::optional<std::vector<LawPiece>> braking_law(const PathView& path,
                                                                const std::vector<JointLimits>& joints,
                                                                const Braking& braking, int& steps_left);

@@ -21,6 +21,13 @@ TEST(FailedAttempt, IsRepeatedAfterTenCyclesAndNoSooner) {
   EXPECT_FALSE(attempt.too_early(110, kInMotion));
 }
 
+TEST(FailedAttempt, IsRepeatedSoonerWhereItIsUrgent) {
+  FailedAttempt attempt;
+  attempt.record(100, 7, kInMotion, 2);
+  EXPECT_TRUE(attempt.too_early(101, kInMotion));
+  EXPECT_FALSE(attempt.too_early(102, kInMotion));
+}
+
 TEST(FailedAttempt, HoldsBackForTenCyclesFromTheLastOne) {
   FailedAttempt attempt;
   attempt.record(100, 7, kFromRest);
