@@ -12,13 +12,14 @@ namespace rmac::fieldbus::canopen {
 /// Layer setting services (CiA 305): node ids and bit rates over the bus, for nodes that have no switches. Each
 /// function refuses a bus on which a machine runs, and leaves every node waiting, whatever happens. Off the cycle.
 struct LssOptions {
-  std::chrono::nanoseconds listen = std::chrono::milliseconds(500);  ///< before anything is sent
-  std::chrono::nanoseconds timeout =
-      std::chrono::milliseconds(50);  ///< for an answer; each of an identity's 128 bits costs it
+  std::chrono::nanoseconds listen = std::chrono::milliseconds(500);  ///< before anything is sent, and for the slowest
+  /// At least, for an answer of each of an identity's bits; twice as long as the slowest node took to the first.
+  std::chrono::nanoseconds timeout = std::chrono::milliseconds(50);
+  std::chrono::nanoseconds patience = std::chrono::seconds(1);  ///< for an answer of one node, which may write a memory
   std::chrono::nanoseconds boot_timeout = std::chrono::seconds(5);  ///< for a node to come up with its new id
 };
 
-/// Who of the nodes has no node id, by fast scan. One after the other: each is known by its whole identity.
+/// Who of the nodes has no node id, by fast scan. An identity that several nodes answer to is told several times.
 [[nodiscard]] Expected<std::vector<Identity>> lss_scan(CanPort& port, const LssOptions& options = {});
 
 struct LssAssigned {
