@@ -164,6 +164,7 @@ const CanopenCounters& CanopenInterface::counters() const noexcept {
 
 Expected<> CanopenInterface::start() {
   Impl& bus = *impl_;
+  bus.running = false;  // one that runs begins anew: the boot resets its nodes, whatever they do
   if (auto fits = check_bus_load(bus.config); !fits) return fits;
   auto port = bus.open(bus.wanted(), frames_of_cycle(bus.config));
   if (!port) return tl::unexpected(port.error());

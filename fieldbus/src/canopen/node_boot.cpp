@@ -15,6 +15,9 @@ constexpr std::chrono::milliseconds kBetweenQuestions{100};
 // A frame may be lost, or a node has no time just then.
 constexpr int kMostTries = 3;
 
+// Device type: each node tells it.
+constexpr ObjectAddress kAlwaysThere{0x1000, 0};
+
 // A node that starts anew more often than this while it is set up will not come up.
 constexpr int kMostRestarts = 8;
 
@@ -139,7 +142,9 @@ void NodeBoot::begin_step(std::chrono::nanoseconds now) noexcept {
 
 void NodeBoot::ask(std::chrono::nanoseconds now) noexcept {
   const BootStep& step = steps_[step_];
-  if (problem_.writing) {
+  if (doubted()) {
+    sdo_.upload(kAlwaysThere, bytes_, now);
+  } else if (problem_.writing) {
     sdo_.download(step.object, step.bytes, now);
   } else {
     bytes_.fill(0);
@@ -152,7 +157,7 @@ bool NodeBoot::asks_again(std::chrono::nanoseconds now) noexcept {
   const bool timed_out = sdo_.state() == SdoClient::State::Refused && sdo_.abort_code() == sdo_abort::kTimeout;
   if (sdo_.state() != SdoClient::State::Failed && !timed_out) return false;
   if (!answered_) return now - entered_ < timeout_;
-  return ++tries_ < kMostTries;
+  return ++tries_ < kMostTries || (doubted() && tries_ < 2 * kMostTries);
 }
 
 bool NodeBoot::refuses_for_now(std::chrono::nanoseconds now) const noexcept {
@@ -160,9 +165,17 @@ bool NodeBoot::refuses_for_now(std::chrono::nanoseconds now) const noexcept {
   return sdo_.abort_code() == sdo_abort::kPresentState || sdo_.abort_code() == sdo_abort::kNoResource;
 }
 
+bool NodeBoot::doubted() const noexcept {
+  return steps_[step_].optional && tries_ >= kMostTries;
+}
+
 bool NodeBoot::passes() noexcept {
   const BootStep& step = steps_[step_];
   if (step.kind == BootStep::Kind::Read) outcomes_[step_].reading = 0;
+  if (doubted() && sdo_.state() != SdoClient::State::Failed) {
+    outcomes_[step_].refusal = sdo_abort::kTimeout;
+    return true;
+  }
   if (sdo_.state() == SdoClient::State::Refused) {
     const std::uint32_t code = sdo_.abort_code();
     outcomes_[step_].refusal = code;
@@ -209,7 +222,7 @@ bool NodeBoot::call(std::chrono::nanoseconds now, CanFrame& frame) noexcept {
     return true;
   }
   if (!resets_.asks(now)) return false;
-  if (sdo_.finished()) sdo_.upload({0x1000, 0}, bytes_, now);
+  if (sdo_.finished()) sdo_.upload(kAlwaysThere, bytes_, now);
   return sdo_.next_frame(now, frame);
 }
 

@@ -67,6 +67,8 @@ class NodeBoot {
   void ask(std::chrono::nanoseconds now) noexcept;
   [[nodiscard]] bool refuses_for_now(std::chrono::nanoseconds now) const noexcept;
   [[nodiscard]] bool asks_again(std::chrono::nanoseconds now) noexcept;
+  /// What is not needed was not answered: it is asked whether it answers at all.
+  [[nodiscard]] bool doubted() const noexcept;
   void end_step(std::chrono::nanoseconds now) noexcept;
   [[nodiscard]] BootProblem problem_of(const BootStep& step) const noexcept;
   [[nodiscard]] bool passes() noexcept;

@@ -111,7 +111,11 @@ std::string describe(const BootProblem& problem, std::uint8_t node, const Canope
     case BootProblem::Kind::NoStart:
       return fmt::format("{} is set up, but did not become operational in {:g} s", who, waited_s);
     case BootProblem::Kind::Restarts:
-      return who + " starts anew again and again while it is set up; check its supply";
+      return who +
+             " sends one boot-up message after the other while it is set up: it starts anew, or another device comes "
+             "up "
+             "with its node id, or its firmware repeats the message without getting further; check its supply, with "
+             "rmac bus scan who is there, and its maker's notes";
     case BootProblem::Kind::Restarted:
       return who +
              " sent a boot-up message in operation: it started anew, or another device came up with its node id; "

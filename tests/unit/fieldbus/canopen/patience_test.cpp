@@ -104,6 +104,42 @@ TEST_F(PatientBoot, GivesUpADriveThatFallsSilent) {
   make({{"node", {1}}});
   const auto before = wire_.now();
   EXPECT_THAT(start_error(), HasSubstr("node 1 (axis 0) did not answer when "));
+  EXPECT_LT(wire_.now() - before, std::chrono::seconds(4));
+}
+
+// Red when a drive that tells all that is needed, and says nothing to a question that it does not know, is refused.
+TEST_F(PatientBoot, PassesOverWhatADriveDoesNotAnswerWhereItIsNotNeeded) {
+  for (const test::Object& object : {test::Object{0x603F, 0}, {0x1018, 4}, {0x6502, 0}, {0x60C2, 1}, {0x1802, 1}}) {
+    VirtualDrive& drive = fresh_drive();
+    drive.silent = {object};
+    make({{"node", {1}}, {"mode", {8}}});
+    const auto before = wire_.now();
+    ASSERT_EQ(start_error(), "it started") << to_string(object);
+    ASSERT_THAT(master_->start_notes(),
+                testing::Contains(testing::AllOf(HasSubstr(to_string(object)), HasSubstr("was passed over"))));
+    EXPECT_LT(wire_.now() - before, std::chrono::seconds(6)) << "tries are few";
+    enable_all();
+  }
+}
+
+// Red when what is needed may be passed over in silence.
+TEST_F(PatientBoot, RefusesADriveThatDoesNotAnswerToWhatIsNeeded) {
+  fresh_drive().silent = {{0x1016, 1}};
+  make({{"node", {1}}});
+  EXPECT_EQ(start_error(), "node 1 (axis 0) did not answer when 1016h:01 was written: SDO protocol timed out");
+}
+
+// Red when a boot-up message that never ends has no reason that helps.
+TEST_F(PatientBoot, SaysWhatABootUpMessageWithoutEndMayBe) {
+  VirtualDrive& drive = fresh_drive();
+  drive.boot_ups = 1000;
+  drive.boot_up_gap = milliseconds(20);
+  drive.sdo_time = milliseconds(15);
+  make({{"node", {1}}});
+  const auto before = wire_.now();
+  const std::string error = start_error();
+  EXPECT_THAT(error, HasSubstr("check its supply"));
+  EXPECT_THAT(error, HasSubstr("rmac bus scan"));
   EXPECT_LT(wire_.now() - before, std::chrono::seconds(3));
 }
 

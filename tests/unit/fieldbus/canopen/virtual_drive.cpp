@@ -218,6 +218,7 @@ void VirtualDrive::receive(const CanFrame& frame, Time now) {
 
 void VirtualDrive::answer_sdo(const CanFrame& frame, Time now) {
   if (!answers_sdo || now < booted_ + sdo_after) return;
+  if (silent.contains({static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8), frame.data[3]})) return;
   answers_ = server_.receive(frame);
   answer_at_ = now + sdo_time;
   give_answers(now);

@@ -71,6 +71,7 @@ class VirtualDrive {
   Time sdo_after{0};                    ///< its boot-up message: questions before are passed over
   Time sdo_time{0};                     ///< for an answer; an abort meanwhile ends its work on it
   Time writable_after{0};               ///< its boot-up message: its state forbids to write before
+  std::set<Object> silent;              ///< what is asked of these is passed over
   int deaf_to_resets = 0;               ///< so many more it does not obey
   std::uint32_t heartbeat_step = 1;     ///< ms: 1017h keeps multiples of it
   std::uint8_t tpdo_length_change = 0;  ///< bytes that its TPDOs are too short by
