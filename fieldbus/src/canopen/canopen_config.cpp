@@ -8,6 +8,7 @@
 #include <set>
 
 #include "canopen/description_check.hpp"
+#include "canopen/drives/drive_of_node.hpp"
 #include "canopen/object_list.hpp"
 #include "parameters.hpp"
 
@@ -187,8 +188,10 @@ Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const F
       static_cast<std::uint32_t>(parameters.number_of_axis("revision_number", axis, 0, 0, kMost));
   config.identity.serial_number =
       static_cast<std::uint32_t>(parameters.number_of_axis("serial_number", axis, 0, 0, kMost));
-  config.sdo_timeout =
-      std::chrono::milliseconds(static_cast<int>(parameters.number_of_axis("sdo_timeout_ms", axis, 500, 10, 60000)));
+  constexpr double kNotGiven = -1;
+  const double sdo_timeout = parameters.number_of_axis("sdo_timeout_ms", axis, kNotGiven, 10, 60000);
+  if (sdo_timeout != kNotGiven) config.sdo_timeout = std::chrono::milliseconds(static_cast<int>(sdo_timeout));
+  config.drive = parameters.text_of_axis("drive", axis, "");
   read_homing(parameters, axis, config);
   read_units(parameters, axis, config);
   if (!parameters.sound()) return failure(MinorCode::InvalidParameterValue, parameters.problem());
@@ -292,12 +295,17 @@ std::string check_shared(const CanopenConfig& config) {
 
 }  // namespace
 
-std::chrono::milliseconds sdo_timeout(const CanopenConfig& config, std::uint8_t node) noexcept {
-  std::chrono::milliseconds longest{0};
+Patience patience_with(const CanopenConfig& config, std::uint8_t node, const DriveDescription* drive) {
+  Patience patience;
+  const DriveManners manners = drive != nullptr ? drive->manners : DriveManners();
+  std::optional<std::chrono::milliseconds> given;
   for (const AxisConfig& axis : config.axes) {
-    if (axis.node == node) longest = std::max(longest, axis.sdo_timeout);
+    if (axis.node == node && axis.sdo_timeout) given = std::max(*axis.sdo_timeout, given.value_or(*axis.sdo_timeout));
   }
-  return longest;
+  patience.sdo_timeout = given.value_or(manners.sdo_timeout.value_or(patience.sdo_timeout));
+  patience.boot_timeout = config.boot_timeout.value_or(manners.boot_timeout.value_or(patience.boot_timeout));
+  if (manners.sdo_retries) patience.sdo_tries = 1 + *manners.sdo_retries;
+  return patience;
 }
 
 std::size_t mapped_bytes(const std::vector<MappedObject>& objects) noexcept {
@@ -308,9 +316,10 @@ std::size_t mapped_bytes(const std::vector<MappedObject>& objects) noexcept {
 Expected<CanopenConfig> read_canopen_config(const std::string& bus,
                                             const std::map<std::string, std::vector<double>>& numbers,
                                             const std::map<std::string, std::string>& texts, double period_s,
-                                            const FindDescription& find) {
+                                            const FindDescription& find, std::shared_ptr<const DriveLibrary> drives) {
   Parameters parameters("CANopenInterface", "node", bus, numbers, texts);
   CanopenConfig config;
+  config.drives = std::move(drives);
   config.interface = bus;
   config.period = std::chrono::nanoseconds(std::llround(period_s * 1e9));
   config.bit_rate = static_cast<std::uint32_t>(parameters.number("bit_rate", 1e6, 10e3, 1e6));
@@ -319,9 +328,11 @@ Expected<CanopenConfig> read_canopen_config(const std::string& bus,
   config.time_interval =
       std::chrono::nanoseconds(std::llround(parameters.number("time_s", 0, 0, 3600, Parameters::Kind::Any) * 1e9));
   config.master_node = static_cast<std::uint8_t>(parameters.number("master_node", 127, 1, 127));
-  config.boot_timeout = std::chrono::milliseconds(
-      std::llround(parameters.number("boot_timeout_s", 5, 0.1, 600, Parameters::Kind::Any) * 1e3));
-  config.abort_connection = static_cast<int>(parameters.number("abort_connection", 3, -1, 3));
+  constexpr double kNotGiven = -2;
+  const double boot_timeout_s = parameters.number("boot_timeout_s", kNotGiven, 0.1, 600, Parameters::Kind::Any);
+  if (boot_timeout_s != kNotGiven) config.boot_timeout = std::chrono::milliseconds(std::llround(boot_timeout_s * 1e3));
+  const double abort_connection = parameters.number("abort_connection", kNotGiven, -1, 3);
+  if (abort_connection != kNotGiven) config.abort_connection = static_cast<int>(abort_connection);
   config.missed_answers = static_cast<std::uint32_t>(parameters.number("missed_answers", 1, 0, 100));
   const std::string sync = parameters.text("sync", "last");
   if (sync != "first" && sync != "last" && sync != "external") {
@@ -338,6 +349,7 @@ Expected<CanopenConfig> read_canopen_config(const std::string& bus,
   parameters.refuse_unknown();
   if (parameters.sound()) parameters.refuse(check_nodes(config));
   if (parameters.sound()) parameters.refuse(check_shared(config));
+  if (parameters.sound()) parameters.refuse(check_named_drives(config));
   for (std::size_t axis = 0; axis < axes && parameters.sound(); ++axis) {
     if (auto fits = check_description(config, config.axes[axis]); !fits) {
       parameters.refuse(fmt::format("axis {}: {}", axis, fits.error().message));

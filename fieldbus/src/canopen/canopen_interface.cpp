@@ -8,6 +8,7 @@
 
 #include "canopen/bus_axis.hpp"
 #include "canopen/bus_trouble.hpp"
+#include "canopen/drives/drive_of_node.hpp"
 #include "canopen/node_boot.hpp"
 #include "canopen/pdo.hpp"
 #include "canopen/watch/node_trouble.hpp"
@@ -22,7 +23,7 @@ namespace {
 constexpr int kMostFramesPerCycle = 512;
 
 struct Node {
-  Node(const CanopenConfig& config, std::uint8_t id) : boot(config, id), positions(id, sdo_timeout(config, id)) {}
+  Node(const CanopenConfig& config, std::uint8_t id) : boot(config, id), positions(id) {}
   NodeBoot boot;
   PositionReader positions;
   NodeTrouble trouble;
@@ -180,7 +181,7 @@ Expected<> CanopenInterface::start() {
 }
 
 Expected<> CanopenInterface::Impl::boot_all() {
-  notes.clear();
+  notes = config.drives ? config.drives->unreadable : std::vector<std::string>();
   for (Node& node : nodes) {
     node.up = false;
     node.trouble.forget();
@@ -212,6 +213,9 @@ Expected<> CanopenInterface::Impl::boot_all() {
     node.error_code = node.boot.error_code();
     for (const BootProblem& refused : node.boot.notes()) {
       notes.push_back(describe_note(refused, node.boot.node(), config));
+    }
+    if (const DriveDescription* drive = node.boot.drive(); drive != nullptr) {
+      for (std::string& remark : remarks(*drive, node.boot.node())) notes.push_back(std::move(remark));
     }
   }
   return {};
@@ -442,7 +446,7 @@ void CanopenInterface::Impl::ask_positions(std::span<const DriveCommand> command
     Node& node = nodes[axes[i].node];
     if (!commands[i].read_position || !node.up || node.told_position || node.positions.busy()) continue;
     const auto offset = static_cast<std::uint16_t>(kAxisOffset * axes[i].config.axis_in_node);
-    node.positions.begin(i, of_axis({0x6064, 0}, offset), now);
+    node.positions.begin(i, of_axis({0x6064, 0}, offset), node.boot.patience().sdo_timeout, now);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "canopen/boot_plan.hpp"
+#include "canopen/drives/drive_of_node.hpp"
 #include "canopen/pdo.hpp"
 
 namespace rmac::fieldbus::canopen {
@@ -148,7 +149,7 @@ Expected<> check_description(const CanopenConfig& config, const AxisConfig& axis
       if (auto fits = check_mapped(description, object, offset, false); !fits) return fits;
     }
   }
-  for (const BootStep& step : boot_plan(config, axis.node)) {
+  for (const BootStep& step : boot_plan(config, axis.node, chosen_drive(config, axis.node))) {
     if (step.kind != BootStep::Kind::Write) continue;
     if (auto fits = check_written(description, step, axis.node); !fits) return fits;
   }

@@ -12,8 +12,8 @@ constexpr std::chrono::seconds kBetweenStarts{1};
 constexpr std::chrono::seconds kReadyWithin{2};
 constexpr std::chrono::milliseconds kBetweenQuestions{100};
 
-// A frame may be lost, or a node has no time just then.
-constexpr int kMostTries = 3;
+// Drives erase and write whole pages of flash.
+constexpr std::chrono::seconds kTimeToStore{10};
 
 // Device type: each node tells it.
 constexpr ObjectAddress kAlwaysThere{0x1000, 0};
@@ -29,29 +29,36 @@ constexpr int kProvingSyncs = 20;
 
 NodeBoot::NodeBoot(const CanopenConfig& config, std::uint8_t node)
     : node_(node),
-      timeout_(config.boot_timeout),
       proving_(
           std::max<std::chrono::nanoseconds>(kProvingHeartbeats * config.heartbeat, kProvingSyncs * config.period)),
       echo_(2 * config.period),
-      steps_(boot_plan(config, node)),
-      outcomes_(steps_.size()),
-      sdo_(node, {.timeout = sdo_timeout(config, node)}) {}
+      plans_(config, node),
+      outcomes_(plans_.longest()),
+      sdo_(node) {}
+
+void NodeBoot::forget_identity() noexcept {
+  identity_.forget();
+  plans_.forget();
+  for (Outcome& outcome : outcomes_) outcome.done = false;
+}
 
 std::uint32_t NodeBoot::reading(ObjectAddress object) const noexcept {
-  for (std::size_t i = 0; i < steps_.size(); ++i) {
-    if (steps_[i].kind == BootStep::Kind::Read && steps_[i].object == object) return outcomes_[i].reading;
+  const std::vector<BootStep>& steps = plans_.now().steps;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (steps[i].kind == BootStep::Kind::Read && steps[i].object == object) return outcomes_[i].reading;
   }
   return 0;
 }
 
 std::vector<BootProblem> NodeBoot::notes() const {
   std::vector<BootProblem> notes;
-  for (std::size_t i = 0; i < steps_.size(); ++i) {
+  const std::vector<BootStep>& steps = plans_.now().steps;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
     const std::uint32_t code = outcomes_[i].refusal;
-    const auto known = [&](const BootProblem& note) { return note.object == steps_[i].object; };
+    const auto known = [&](const BootProblem& note) { return note.object == steps[i].object; };
     if (code == 0 || code == sdo_abort::kNoObject || code == sdo_abort::kNoSubindex) continue;
     if (std::any_of(notes.begin(), notes.end(), known)) continue;
-    notes.push_back(problem_of(steps_[i]));
+    notes.push_back(problem_of(steps[i]));
     notes.back().kind = BootProblem::Kind::Refused;
     notes.back().found = code;
   }
@@ -74,6 +81,9 @@ void NodeBoot::begin(std::chrono::nanoseconds now) noexcept {
 void NodeBoot::configure(std::chrono::nanoseconds now) noexcept {
   sdo_.abandon();
   step_ = 0;
+  for (std::size_t i = 0; i < plans_.now().steps.size(); ++i) {
+    if (plans_.now().steps[i].kind == BootStep::Kind::Compare) outcomes_[i].done = false;
+  }
   answered_ = false;
   enter(State::Configuring, now);
   begin_step(now);
@@ -82,6 +92,8 @@ void NodeBoot::configure(std::chrono::nanoseconds now) noexcept {
 void NodeBoot::fail(BootProblem::Kind kind, std::uint32_t found) noexcept {
   problem_.kind = kind;
   problem_.found = found;
+  problem_.waited = patience().boot_timeout;
+  problem_.drive = drive();
   state_ = State::Failed;
 }
 
@@ -120,7 +132,7 @@ void NodeBoot::take_heartbeat(NmtState said, std::chrono::nanoseconds now) noexc
 BootProblem NodeBoot::problem_of(const BootStep& step) const noexcept {
   BootProblem problem{.object = step.object,
                       .expected = step.value,
-                      .writing = step.kind == BootStep::Kind::Write,
+                      .writing = step.kind == BootStep::Kind::Write || step.kind == BootStep::Kind::Store,
                       .needed = step.needed};
   for (std::size_t i = 0; problem.writing && i < step.bytes.size() && i < 4; ++i) {
     problem.expected |= static_cast<std::uint32_t>(step.bytes[i]) << (8 * i);
@@ -128,20 +140,41 @@ BootProblem NodeBoot::problem_of(const BootStep& step) const noexcept {
   return problem;
 }
 
-void NodeBoot::begin_step(std::chrono::nanoseconds now) noexcept {
-  while (step_ < steps_.size() && steps_[step_].after_refusal && outcomes_[step_ - 1].refusal == 0) {
-    outcomes_[step_++].refusal = 0;
+bool NodeBoot::done(BootStep::Kind kind) const noexcept {
+  const std::vector<BootStep>& steps = plans_.now().steps;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (steps[i].kind == kind && outcomes_[i].done) return true;
   }
-  if (step_ == steps_.size()) return enter(State::Starting, now);
-  const BootStep& step = steps_[step_];
+  return false;
+}
+
+bool NodeBoot::left_out(std::size_t step) const noexcept {
+  const BootStep& one = plans_.now().steps[step];
+  return (one.after_refusal && outcomes_[step - 1].refusal == 0) ||
+         (one.after_change && !done(BootStep::Kind::Compare));
+}
+
+void NodeBoot::begin_step(std::chrono::nanoseconds now) noexcept {
+  if (step_ == kIdentitySteps) plans_.choose(identity_.identity());
+  const std::vector<BootStep>& steps = plans_.now().steps;
+  while (step_ < steps.size() && left_out(step_)) outcomes_[step_++].refusal = 0;
+  if (step_ == steps.size()) return enter(State::Starting, now);
+  const BootStep& step = steps[step_];
   problem_ = problem_of(step);
   outcomes_[step_].refusal = 0;
   tries_ = 0;
+  if (step.kind == BootStep::Kind::Refuse) return fail(BootProblem::Kind::Unfit);
+  if (step.kind == BootStep::Kind::Reset) {
+    resets_.restart(now);
+    return enter(State::AwaitingBootUp, now);
+  }
+  sdo_.set_timeout(step.kind == BootStep::Kind::Store ? std::chrono::nanoseconds(kTimeToStore)
+                                                      : patience().sdo_timeout);
   ask(now);
 }
 
 void NodeBoot::ask(std::chrono::nanoseconds now) noexcept {
-  const BootStep& step = steps_[step_];
+  const BootStep& step = plans_.now().steps[step_];
   if (doubted()) {
     sdo_.upload(kAlwaysThere, bytes_, now);
   } else if (problem_.writing) {
@@ -156,8 +189,9 @@ void NodeBoot::ask(std::chrono::nanoseconds now) noexcept {
 bool NodeBoot::asks_again(std::chrono::nanoseconds now) noexcept {
   const bool timed_out = sdo_.state() == SdoClient::State::Refused && sdo_.abort_code() == sdo_abort::kTimeout;
   if (sdo_.state() != SdoClient::State::Failed && !timed_out) return false;
-  if (!answered_) return now - entered_ < timeout_;
-  return ++tries_ < kMostTries || (doubted() && tries_ < 2 * kMostTries);
+  if (!answered_) return now - entered_ < patience().boot_timeout;
+  const int most = patience().sdo_tries;
+  return ++tries_ < most || (doubted() && tries_ < 2 * most);
 }
 
 bool NodeBoot::refuses_for_now(std::chrono::nanoseconds now) const noexcept {
@@ -166,11 +200,22 @@ bool NodeBoot::refuses_for_now(std::chrono::nanoseconds now) const noexcept {
 }
 
 bool NodeBoot::doubted() const noexcept {
-  return steps_[step_].optional && tries_ >= kMostTries;
+  return plans_.now().steps[step_].optional && tries_ >= patience().sdo_tries;
+}
+
+bool NodeBoot::compared(const BootStep& step) noexcept {
+  const bool read = sdo_.state() == SdoClient::State::Done;
+  const std::uint32_t found = read ? long_at(bytes_.data()) : 0;
+  outcomes_[step_].done = !read || (found & step.mask) != step.value;
+  if (!outcomes_[step_].done || !done(BootStep::Kind::Store)) return true;
+  problem_.needed = "to be kept, and was not though it was stored (StoreAfterMapping)";
+  fail(BootProblem::Kind::Different, found);
+  return false;
 }
 
 bool NodeBoot::passes() noexcept {
-  const BootStep& step = steps_[step_];
+  const BootStep& step = plans_.now().steps[step_];
+  if (step.kind == BootStep::Kind::Compare && sdo_.state() != SdoClient::State::Failed) return compared(step);
   if (step.kind == BootStep::Kind::Read) outcomes_[step_].reading = 0;
   if (doubted() && sdo_.state() != SdoClient::State::Failed) {
     outcomes_[step_].refusal = sdo_abort::kTimeout;
@@ -192,6 +237,7 @@ bool NodeBoot::passes() noexcept {
   }
   const std::uint32_t found = long_at(bytes_.data());
   if (step.kind == BootStep::Kind::Read) outcomes_[step_].reading = found;
+  if (step.kind == BootStep::Kind::Store) outcomes_[step_].done = true;
   if (step.kind == BootStep::Kind::Check && (found & step.mask) != step.value) {
     fail(BootProblem::Kind::Different, found);
     return false;
@@ -234,7 +280,7 @@ bool NodeBoot::next_frame(std::chrono::nanoseconds now, CanFrame& frame) noexcep
   if (state_ == State::Proving && now - entered_ >= proving_) state_ = State::Operational;
   const bool commands = state_ == State::AwaitingBootUp || state_ == State::Starting;
   if (!commands) return false;
-  if (now - entered_ >= timeout_) {
+  if (now - entered_ >= patience().boot_timeout) {
     fail(state_ == State::Starting ? BootProblem::Kind::NoStart : BootProblem::Kind::NoBootUp);
     return false;
   }

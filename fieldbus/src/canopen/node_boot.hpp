@@ -20,6 +20,8 @@ namespace rmac::fieldbus::canopen {
 /// heartbeats, or answers what it is asked meanwhile. A question whose answer is lost is asked again. A state machine
 /// without clock or socket. Real-time safe once made, so that a node that comes back is brought up by the cycle itself.
 ///
+/// Who it is decides by which description it is treated, and so which plan is followed from there on.
+///
 /// A boot-up message before it is Operational begins the plan anew, its identity included: some devices send two, and
 /// what decides is whether they tell two identities.
 class NodeBoot {
@@ -31,7 +33,7 @@ class NodeBoot {
   /// From the start, whatever the node does now.
   void begin(std::chrono::nanoseconds now) noexcept;
   /// Whoever is there from now on counts as the device.
-  void forget_identity() noexcept { identity_.forget(); }
+  void forget_identity() noexcept;
   /// A heartbeat, boot-up message or SDO answer of this node.
   void receive(const CanFrame& frame, std::chrono::nanoseconds now) noexcept;
   /// Its synchronous PDOs show two devices.
@@ -44,6 +46,9 @@ class NodeBoot {
   [[nodiscard]] bool watched() const noexcept { return state_ == State::Proving || state_ == State::Operational; }
   [[nodiscard]] std::uint8_t node() const noexcept { return node_; }
   [[nodiscard]] const BootProblem& problem() const noexcept { return problem_; }
+  /// Its description; null where there is none.
+  [[nodiscard]] const DriveDescription* drive() const noexcept { return plans_.now().drive; }
+  [[nodiscard]] const Patience& patience() const noexcept { return plans_.now().patience; }
   /// What it has and refused when it came up, and could do without. Off the cycle.
   [[nodiscard]] std::vector<BootProblem> notes() const;
   /// What was read of an object when it came up; 0 where it has none.
@@ -55,8 +60,13 @@ class NodeBoot {
   struct Outcome {
     std::uint32_t reading = 0;  ///< 0 where the step reads nothing
     std::uint32_t refusal = 0;  ///< its abort code; 0 where it was not refused
+    /// Of a comparison: it differs. Of storing: once, lest a drive that keeps nothing has its memory worn out.
+    bool done = false;
   };
 
+  /// A step of the plan so far had this kind, and it came to something.
+  [[nodiscard]] bool done(BootStep::Kind kind) const noexcept;
+  [[nodiscard]] bool left_out(std::size_t step) const noexcept;
   void enter(State state, std::chrono::nanoseconds now) noexcept;
   void configure(std::chrono::nanoseconds now) noexcept;
   void take_heartbeat(NmtState said, std::chrono::nanoseconds now) noexcept;
@@ -64,6 +74,8 @@ class NodeBoot {
   /// A reset, where it is due, or a question whether the node is there.
   [[nodiscard]] bool call(std::chrono::nanoseconds now, CanFrame& frame) noexcept;
   void begin_step(std::chrono::nanoseconds now) noexcept;
+  /// A comparison is over: true, or it failed.
+  [[nodiscard]] bool compared(const BootStep& step) noexcept;
   void ask(std::chrono::nanoseconds now) noexcept;
   [[nodiscard]] bool refuses_for_now(std::chrono::nanoseconds now) const noexcept;
   [[nodiscard]] bool asks_again(std::chrono::nanoseconds now) noexcept;
@@ -74,10 +86,9 @@ class NodeBoot {
   [[nodiscard]] bool passes() noexcept;
 
   std::uint8_t node_;
-  std::chrono::nanoseconds timeout_;
   std::chrono::nanoseconds proving_;  ///< how long
   std::chrono::nanoseconds echo_;     ///< so soon behind another, a heartbeat is a copy
-  std::vector<BootStep> steps_;
+  BootPlans plans_;
   std::vector<Outcome> outcomes_;  ///< one a step
   SdoClient sdo_;
   IdentityRecord identity_;

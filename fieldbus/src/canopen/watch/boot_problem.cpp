@@ -65,16 +65,9 @@ bool is_default_tpdo(ObjectAddress object) noexcept {
   return object.index > 0x1800 && object.index < 0x1804;
 }
 
-}  // namespace
-
-std::string describe_note(const BootProblem& refused, std::uint8_t node, const CanopenConfig& config) {
-  return fmt::format("{} {}; it is not needed, and was passed over{}", name_of(node, config), refusal(refused),
-                     is_default_tpdo(refused.object) ? ". What that PDO sends is not counted in the load" : "");
-}
-
-std::string describe(const BootProblem& problem, std::uint8_t node, const CanopenConfig& config) {
+std::string describe_alone(const BootProblem& problem, std::uint8_t node, const CanopenConfig& config) {
   const std::string who = name_of(node, config);
-  const double waited_s = std::chrono::duration<double>(config.boot_timeout).count();
+  const double waited_s = std::chrono::duration<double>(problem.waited).count();
   const std::string object = to_string(problem.object);
   switch (problem.kind) {
     case BootProblem::Kind::None:
@@ -108,6 +101,8 @@ std::string describe(const BootProblem& problem, std::uint8_t node, const Canope
       }
       return fmt::format("{} does not support what is asked of it: {} is {:X}h, and {:X}h is needed in it{}", who,
                          object, problem.found, problem.expected, need(problem));
+    case BootProblem::Kind::Unfit:
+      return fmt::format("{} cannot be taken: {}", who, problem.needed);
     case BootProblem::Kind::NoStart:
       return fmt::format("{} is set up, but did not become operational in {:g} s", who, waited_s);
     case BootProblem::Kind::Restarts:
@@ -135,6 +130,21 @@ std::string describe(const BootProblem& problem, std::uint8_t node, const Canope
              "(rmac bus scan shows them)";
   }
   return who;
+}
+
+}  // namespace
+
+std::string describe_note(const BootProblem& refused, std::uint8_t node, const CanopenConfig& config) {
+  return fmt::format("{} {}; it is not needed, and was passed over{}", name_of(node, config), refusal(refused),
+                     is_default_tpdo(refused.object) ? ". What that PDO sends is not counted in the load" : "");
+}
+
+std::string describe(const BootProblem& problem, std::uint8_t node, const CanopenConfig& config) {
+  using Kind = BootProblem::Kind;
+  const bool by_file = problem.drive != nullptr && (problem.kind == Kind::NoAnswer || problem.kind == Kind::Refused ||
+                                                    problem.kind == Kind::Different);
+  const std::string what = describe_alone(problem, node, config);
+  return by_file ? fmt::format("{}. It is treated as {} says", what, problem.drive->file) : what;
 }
 
 }  // namespace rmac::fieldbus::canopen

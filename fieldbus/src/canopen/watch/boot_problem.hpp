@@ -15,6 +15,7 @@ struct BootProblem {
     NoAnswer,   ///< it spoke, but did not answer for `object`
     Refused,    ///< it refused `object`; `found` is its abort code
     Different,  ///< `object` is `found` where `expected` was
+    Unfit,      ///< its description does not fit: `needed` says why
     NoStart,    ///< it is set up, and does not become operational
     Restarts,   ///< it started anew, again and again, while it was set up
     Restarted,  ///< it started anew while it was operational
@@ -28,7 +29,9 @@ struct BootProblem {
   std::uint32_t expected = 0;
   std::uint32_t found = 0;
   bool writing = false;
-  const char* needed = "";  ///< for what, of an object that was refused
+  const char* needed = "";                  ///< for what, of an object that was refused
+  std::chrono::milliseconds waited{0};      ///< for what did not come
+  const DriveDescription* drive = nullptr;  ///< its description; null: none
 };
 
 /// Two devices have the node's id.

@@ -15,6 +15,8 @@ class NodeTrouble {
     found_.store(problem.found, std::memory_order_relaxed);
     writing_.store(problem.writing, std::memory_order_relaxed);
     needed_.store(problem.needed, std::memory_order_relaxed);
+    waited_.store(problem.waited, std::memory_order_relaxed);
+    drive_.store(problem.drive, std::memory_order_relaxed);
     kind_.store(problem.kind, std::memory_order_release);
   }
   void forget() noexcept { kind_.store(BootProblem::Kind::None, std::memory_order_release); }
@@ -26,7 +28,9 @@ class NodeTrouble {
             .expected = expected_.load(std::memory_order_relaxed),
             .found = found_.load(std::memory_order_relaxed),
             .writing = writing_.load(std::memory_order_relaxed),
-            .needed = needed_.load(std::memory_order_relaxed)};
+            .needed = needed_.load(std::memory_order_relaxed),
+            .waited = waited_.load(std::memory_order_relaxed),
+            .drive = drive_.load(std::memory_order_relaxed)};
   }
 
  private:
@@ -34,6 +38,8 @@ class NodeTrouble {
   std::atomic<std::uint32_t> object_{0}, expected_{0}, found_{0};
   std::atomic<bool> writing_{false};
   std::atomic<const char*> needed_{""};
+  std::atomic<std::chrono::milliseconds> waited_{std::chrono::milliseconds(0)};
+  std::atomic<const DriveDescription*> drive_{nullptr};
 };
 
 }  // namespace rmac::fieldbus::canopen

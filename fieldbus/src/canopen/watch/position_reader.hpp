@@ -12,13 +12,14 @@ namespace rmac::fieldbus::canopen {
 /// its PDOs. Frames go in, frames come out. Real-time safe.
 class PositionReader {
  public:
-  /// `timeout`: for each answer.
-  PositionReader(std::uint8_t node, std::chrono::nanoseconds timeout) : sdo_(node, {.timeout = timeout}) {}
+  explicit PositionReader(std::uint8_t node) : sdo_(node) {}
 
   [[nodiscard]] bool busy() const noexcept { return busy_; }
-  /// `axis`: whose position `object` is.
-  void begin(std::size_t axis, ObjectAddress object, std::chrono::nanoseconds now) noexcept {
+  /// `axis`: whose position `object` is; `timeout`: for its answer.
+  void begin(std::size_t axis, ObjectAddress object, std::chrono::nanoseconds timeout,
+             std::chrono::nanoseconds now) noexcept {
     axis_ = axis;
+    sdo_.set_timeout(timeout);
     bytes_.fill(0);
     sdo_.upload(object, bytes_, now);
     busy_ = true;

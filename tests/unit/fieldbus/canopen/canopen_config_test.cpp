@@ -109,9 +109,10 @@ TEST(CanopenConfig, WaitsForAnSdoAnswerAsLongAsTheSlowestAxisOfANodeTakes) {
   const auto config = read_canopen_config(
       "can0", {{"node", {1, 1, 2}}, {"axis_in_node", {0, 1, 0}}, {"sdo_timeout_ms", {700, 900, 30}}}, {}, 0.004);
   ASSERT_TRUE(config) << config.error().message;
-  EXPECT_EQ(sdo_timeout(*config, 1).count(), 900);
-  EXPECT_EQ(sdo_timeout(*config, 2).count(), 30);
-  EXPECT_EQ(read_canopen_config("can0", {{"node", {1}}}, {}, 0.001)->axes[0].sdo_timeout.count(), 500);
+  EXPECT_EQ(patience_with(*config, 1, nullptr).sdo_timeout.count(), 900);
+  EXPECT_EQ(patience_with(*config, 2, nullptr).sdo_timeout.count(), 30);
+  EXPECT_EQ(patience_with(*read_canopen_config("can0", {{"node", {1}}}, {}, 0.001), 1, nullptr).sdo_timeout.count(),
+            500);
   EXPECT_EQ(refusal({{"node", {1}}, {"sdo_timeout_ms", {5}}}),
             "CANopenInterface, bus can0: sdo_timeout_ms is 5; allowed is a whole number from 10 to 60000");
 }

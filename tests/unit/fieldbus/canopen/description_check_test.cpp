@@ -140,7 +140,7 @@ TEST(DeviceDescriptionCheck, WritesNoDomains) {
   file = changed(file, "6081", "DataType=0x0007", "DataType=0x000F\nParameterValue=firmware.bin");
   const auto config = canopen::read_canopen_config("can0", {{"node", {5}}}, {{"dcf", "x"}}, 0.001, holding(file));
   ASSERT_TRUE(config.has_value()) << config.error().message;
-  for (const auto& step : canopen::boot_plan(*config, 5)) EXPECT_NE(step.object, (ObjectAddress{0x6081, 0}));
+  for (const auto& step : canopen::boot_plan(*config, 5, nullptr)) EXPECT_NE(step.object, (ObjectAddress{0x6081, 0}));
 }
 
 TEST_F(CanopenBench, WritesTheValuesOfADcfAtBootBeforeTheSetup) {

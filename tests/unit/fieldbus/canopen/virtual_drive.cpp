@@ -90,6 +90,11 @@ std::uint32_t VirtualDrive::check_write(Object object, const Bytes& bytes) {
   if (on_write) on_write(object, bytes);
   const auto [index, sub] = object;
   if (moved_ < booted_ + writable_after) return 0x08000022;
+  if (stores && object == Object{0x1010, 1}) {
+    if (bytes != Bytes{'s', 'a', 'v', 'e'}) return 0x08000020;
+    defaults_ = dictionary_;
+    return 0;
+  }
   if (bytes.size() != dictionary_.at(object).size()) return 0x06070010;
   const bool communication = (index & 0xFE00) == 0x1400 || (index & 0xFE00) == 0x1800;
   const bool contents = (index & 0xFE00) == 0x1600 || (index & 0xFE00) == 0x1A00;
@@ -153,6 +158,13 @@ void VirtualDrive::reset(Time now) {
   boot_up(now);
 }
 
+void VirtualDrive::map_by_memory() {
+  for (auto& [object, bytes] : dictionary_) {
+    const bool contents = (object.index & 0xFE00) == 0x1600 || (object.index & 0xFE00) == 0x1A00;
+    if (contents) bytes = defaults_.at(object);
+  }
+}
+
 void VirtualDrive::boot_up(Time now) {
   while (boot_ups_left_ > 0 && now >= next_boot_up_) {
     if (nmt_ == 0) {
@@ -182,6 +194,7 @@ void VirtualDrive::receive(const CanFrame& frame, Time now) {
     switch (frame.data[0]) {
       case 1:
         nmt_ = kOperational;
+        if (maps_by_memory) map_by_memory();
         break;
       case 2:
         nmt_ = kStopped;

@@ -64,6 +64,8 @@ class VirtualDrive {
   bool answers_sdo = true;
   bool answers_sync = true;
   bool sends_heartbeats = true;
+  bool stores = false;                  ///< 1010h: what it is told stays beyond a reset
+  bool maps_by_memory = false;          ///< its PDOs have the contents that it stored, whatever it is told
   bool event_driven = false;            ///< keeps its TPDOs at 255, and sends them by the clock, too
   int boot_ups = 1;                     ///< messages of each boot, the later ones
   Time boot_up_gap{0};                  ///< so long after one another
@@ -86,6 +88,7 @@ class VirtualDrive {
 
   void reset(Time now);
   void boot_up(Time now);
+  void map_by_memory();
   void emergency(std::uint16_t code);
   void sync(Time now);
   void answer_sdo(const CanFrame& frame, Time now);

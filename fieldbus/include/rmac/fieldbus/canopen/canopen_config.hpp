@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "rmac/fieldbus/canopen/drive_library.hpp"
 #include "rmac/fieldbus/canopen/sdo.hpp"
 #include "rmac/fieldbus/eds/device_description.hpp"
 #include "rmac/motion/ports/digital_control_interface.hpp"
@@ -32,14 +33,6 @@ struct SdoWrite {
   std::vector<std::uint8_t> bytes;
 };
 
-/// Who a node is (1018h). 0: whoever it is.
-struct Identity {
-  std::uint32_t vendor_id = 0;
-  std::uint32_t product_code = 0;
-  std::uint32_t revision_number = 0;
-  std::uint32_t serial_number = 0;
-};
-
 /// One axis of the bus: a CiA 402 drive, or one axis of a drive for several.
 struct AxisConfig {
   std::uint8_t node = 0;
@@ -52,7 +45,8 @@ struct AxisConfig {
   std::optional<MappedObject> sensor;      ///< one of the answers, a sensor's reading with a sign
   double velocity_units_per_rpm = 1;       ///< of 60FFh and 606Ch
   Identity identity;
-  std::chrono::milliseconds sdo_timeout{500};  ///< for each of its SDO answers
+  std::string drive;                                     ///< its description's name, "none"; empty: by its identity
+  std::optional<std::chrono::milliseconds> sdo_timeout;  ///< for each of its SDO answers, where it is given
   std::vector<SdoWrite> setup;
   bool sets_polarity = false;                                 ///< 607Eh is among `setup`
   bool check_scale = true;                                    ///< its factors are asked of it at boot
@@ -74,10 +68,11 @@ struct CanopenConfig {
   std::chrono::milliseconds heartbeat{50};
   std::chrono::nanoseconds time_interval{0};  ///< between two TIME messages; 0: none
   std::uint8_t master_node = 127;
-  std::chrono::milliseconds boot_timeout{5000};
-  int abort_connection = 3;          ///< 6007h: quick stop; -1: not written
-  std::uint32_t missed_answers = 1;  ///< SYNCs in a row that a drive may leave unanswered
+  std::optional<std::chrono::milliseconds> boot_timeout;  ///< where it is given
+  std::optional<int> abort_connection;                    ///< 6007h, where it is given; -1: not written
+  std::uint32_t missed_answers = 1;                       ///< SYNCs in a row that a drive may leave unanswered
   SyncOrder sync = SyncOrder::Last;
+  std::shared_ptr<const DriveLibrary> drives;  ///< null: none is known
 
   /// How long a heartbeat may be absent before its producer counts as gone.
   [[nodiscard]] std::chrono::milliseconds heartbeat_deadline() const noexcept { return heartbeat * 3 / 2; }
@@ -89,11 +84,12 @@ using FindDescription =
 
 /// Reads the parameters of `CANopenInterface` in `device.json` (docs/canopen.md). A parameter named `bus.name` is for
 /// the bus `bus` alone and wins over `name`. The bus's name is the CAN interface's. The error names the parameter,
-/// its value and what is allowed. Drives that name an EDS or DCF are held against it.
+/// its value and what is allowed. Drives that name an EDS or DCF are held against it. `drives`: those that are known.
 [[nodiscard]] Expected<CanopenConfig> read_canopen_config(const std::string& bus,
                                                           const std::map<std::string, std::vector<double>>& numbers,
                                                           const std::map<std::string, std::string>& texts,
-                                                          double period_s, const FindDescription& find = {});
+                                                          double period_s, const FindDescription& find = {},
+                                                          std::shared_ptr<const DriveLibrary> drives = {});
 
 /// COB-IDs of an axis: the predefined connection set (CiA 301, 7.3.5), one pair for each axis of a node. Axes that
 /// share an RPDO have the same identifier of setpoints.
@@ -109,8 +105,14 @@ using FindDescription =
   return static_cast<std::uint16_t>(0x280 + axis.node);
 }
 
-/// How long an SDO answer of a node may take: as long as the slowest of its axes.
-[[nodiscard]] std::chrono::milliseconds sdo_timeout(const CanopenConfig& config, std::uint8_t node) noexcept;
+/// How long a node's answers may take.
+struct Patience {
+  std::chrono::milliseconds sdo_timeout{500};  ///< for each answer
+  int sdo_tries = 3;                           ///< of a question: a frame may be lost, or a node has no time just then
+  std::chrono::milliseconds boot_timeout{5000};
+};
+/// By `device.json` (the slowest of a node's axes), by the drive's description, which may be null, or by default.
+[[nodiscard]] Patience patience_with(const CanopenConfig& config, std::uint8_t node, const DriveDescription* drive);
 
 /// Bytes of a PDO.
 [[nodiscard]] std::size_t mapped_bytes(const std::vector<MappedObject>& objects) noexcept;

@@ -41,6 +41,9 @@ class SdoClient {
   /// Begins to write an object, once the transfer before is `finished`. `data` must live until the transfer is over.
   void download(ObjectAddress object, std::span<const std::uint8_t> data, std::chrono::nanoseconds now) noexcept;
 
+  /// For each answer of the transfers that are begun from now on.
+  void set_timeout(std::chrono::nanoseconds timeout) noexcept { timeout_ = timeout; }
+
   /// Forgets the transfer that runs, if one does, and tells the server nothing.
   void abandon() noexcept {
     state_ = State::Idle;

@@ -1,0 +1,83 @@
+#include "canopen/drives/drive_of_node.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rmac::fieldbus::canopen {
+namespace {
+
+constexpr const char* kNone = "none";
+
+/// The first axis of a node says who the node is.
+const AxisConfig& first_axis(const CanopenConfig& config, std::uint8_t node) {
+  return *std::find_if(config.axes.begin(), config.axes.end(),
+                       [node](const AxisConfig& axis) { return axis.node == node; });
+}
+
+/// What device.json says of the node's description; empty: nothing.
+std::string named_drive(const CanopenConfig& config, std::uint8_t node) {
+  for (const AxisConfig& axis : config.axes) {
+    if (axis.node == node && !axis.drive.empty()) return axis.drive;
+  }
+  return {};
+}
+
+}  // namespace
+
+const DriveDescription* chosen_drive(const CanopenConfig& config, std::uint8_t node) {
+  if (!config.drives) return nullptr;
+  const std::string name = named_drive(config, node);
+  if (name == kNone) return nullptr;
+  if (!name.empty()) return config.drives->find_name(name);
+  const Identity& given = first_axis(config, node).identity;
+  if (given.product_code == 0) return nullptr;
+  if (given.revision_number != 0) return config.drives->find(given);
+  return config.drives->find_product(given.vendor_id, given.product_code);
+}
+
+std::vector<const DriveDescription*> possible_drives(const CanopenConfig& config, std::uint8_t node) {
+  std::vector<const DriveDescription*> possible{chosen_drive(config, node)};
+  if (!config.drives || !named_drive(config, node).empty()) return possible;
+  if (possible.front() != nullptr) possible.push_back(nullptr);
+  const Identity& given = first_axis(config, node).identity;
+  const auto may_be = [](std::uint32_t known, std::uint32_t told) { return known == 0 || known == told; };
+  for (const DriveDescription& drive : config.drives->drives) {
+    if (&drive == possible.front()) continue;
+    if (may_be(given.vendor_id, drive.vendor_id) && may_be(given.product_code, drive.product_code)) {
+      possible.push_back(&drive);
+    }
+  }
+  return possible;
+}
+
+std::string check_named_drives(const CanopenConfig& config) {
+  for (const AxisConfig& axis : config.axes) {
+    if (axis.drive.empty() || axis.drive == kNone) continue;
+    const DriveDescription* drive = config.drives ? config.drives->find_name(axis.drive) : nullptr;
+    if (drive == nullptr) {
+      return fmt::format(
+          "drive is \"{}\" for node {}, and there is no such description; leave it out to have it found "
+          "by the node's identity (1018h), or say \"none\"",
+          axis.drive, axis.node);
+    }
+    if (!drive->refusal.empty()) return drive->refusal;
+  }
+  return {};
+}
+
+std::vector<std::string> remarks(const DriveDescription& drive, std::uint8_t node) {
+  std::vector<std::string> all{
+      fmt::format("node {} is treated as {}, by {} (tried: {})", node, drive.name, drive.file, drive.tried)};
+  if (!drive.manners.no_heartbeat_consumer.empty()) {
+    all.push_back(fmt::format("node {} does not watch its master (it has no 1016h). When the master dies: {}", node,
+                              drive.manners.no_heartbeat_consumer));
+  }
+  if (drive.manners.no_abort_connection) {
+    all.push_back(fmt::format(
+        "node {} has no 6007h, and is not told to make a quick stop when its master dies; test what it does", node));
+  }
+  return all;
+}
+
+}  // namespace rmac::fieldbus::canopen

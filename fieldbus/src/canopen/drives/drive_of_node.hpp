@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rmac/fieldbus/canopen/canopen_config.hpp"
+
+namespace rmac::fieldbus::canopen {
+
+/// The description that counts for a node before it told who it is: the one that `device.json` names, or the only one
+/// of the vendor and product that it gives. Null where there is none.
+[[nodiscard]] const DriveDescription* chosen_drive(const CanopenConfig& config, std::uint8_t node);
+
+/// Which descriptions a node may turn out to have, null for none at all; the first counts until it told who it is.
+[[nodiscard]] std::vector<const DriveDescription*> possible_drives(const CanopenConfig& config, std::uint8_t node);
+
+/// What is wrong with the names of descriptions in `device.json`; empty where nothing is.
+[[nodiscard]] std::string check_named_drives(const CanopenConfig& config);
+
+/// What is to be known of a node that is treated by a description.
+[[nodiscard]] std::vector<std::string> remarks(const DriveDescription& drive, std::uint8_t node);
+
+}  // namespace rmac::fieldbus::canopen
