@@ -11,7 +11,7 @@ INTRODUCTION = """# Configuration
 
 Two files configure the appliance: `rmacd.json` the daemon, `device.json` one mechanism each. Both are checked against the
 schemas in `etc/` (`rmacd.schema.json`, `device.schema.json`), which are compiled into the daemon; editors that know JSON
-schemas can use them as well. So are the register maps of Modbus devices ([modbus.md](modbus.md)). This page is made from
+schemas can use them as well. So are the register maps of Modbus devices ([modbus.md](modbus.md)) and the descriptions of CANopen drives ([fieldbus.md](fieldbus.md#a-drive-that-needs-to-be-told-about-ten-minutes)). This page is made from
 the schemas by `docs/generate_configuration.py`.
 
 A mistake is never passed over: an unknown key, a key that stands twice, a wrong type, a value out of range. The message
@@ -21,13 +21,14 @@ names file, key (as a JSON pointer), value and what is allowed; a syntax error i
     device.json: /Joints/0 has the unknown key "MaxSped"; did you mean "MaxSpeed"? allowed are ControlMethod, Gains, …
     device.json: line 12, column 7 is not JSON: syntax error while parsing object separator - …
 
-`rmacd --config FILE --check` reads the configuration, says what is wrong with it, and ends.
+`rmacd --config FILE --check` reads the configuration and the drives folder, says what is wrong with them, and ends.
 
 ## Where things are
 
 | | an installed daemon | a daemon in a build tree |
 | --- | --- | --- |
 | device tree | `lib/<architecture>/rmac/drivers` of the installation | `drivers` of the build tree |
+| drives folder | `etc/rmac/drives` of the installation; `/etc/rmac/drives` where the prefix is `/usr` | `etc/drives` of the source |
 | state folder | what systemd gives (`$STATE_DIRECTORY`), else `/var/lib/rmac` | `state` of the build tree |
 | runtime folder | what systemd gives (`$RUNTIME_DIRECTORY`), else `/run/rmac` | the state folder |
 
@@ -115,5 +116,5 @@ def section(name, text=""):
 
 
 if __name__ == "__main__":
-    page = INTRODUCTION + section("rmacd") + section("device", MECHANISMS) + section("modbus-spindle") + section("modbus-io") + section("tools") + section("measuring-plan")
+    page = INTRODUCTION + section("rmacd") + section("device", MECHANISMS) + section("modbus-spindle") + section("modbus-io") + section("drive") + section("tools") + section("measuring-plan")
     (FOLDER / "configuration.md").write_text(page, encoding="utf-8")

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gateway/buses/device_descriptions.hpp"
+#include "gateway/buses/drive_library_file.hpp"
 #include "gateway/buses/register_map_file.hpp"
 #include "gateway/buses/simulated_bus.hpp"
 #include "gateway/buses/simulated_io.hpp"
@@ -32,9 +33,11 @@ Expected<std::shared_ptr<DigitalControlInterface>> make_simulated(const sdk::Mod
 }
 
 Expected<std::shared_ptr<DigitalControlInterface>> make_canopen(const std::string& bus, const sdk::ModuleChoice& choice,
-                                                                const ModuleLoader& loader, double period_s) {
-  auto config =
-      fieldbus::canopen::read_canopen_config(bus, choice.numbers, choice.texts, period_s, find_descriptions(loader));
+                                                                const ModuleLoader& loader, double period_s,
+                                                                const std::filesystem::path& drives_folder) {
+  auto drives = std::make_shared<fieldbus::canopen::DriveLibrary>(read_drive_library(drives_folder));
+  auto config = fieldbus::canopen::read_canopen_config(bus, choice.numbers, choice.texts, period_s,
+                                                       find_descriptions(loader), std::move(drives));
   if (!config) return tl::unexpected(config.error());
   if (auto fits = fieldbus::canopen::check_bus_load(*config); !fits) return tl::unexpected(fits.error());
   return fieldbus::canopen::make_socketcan_interface(std::move(*config));
@@ -95,15 +98,17 @@ Expected<std::shared_ptr<DigitalIoInterface>> make_simulated_valves(const sdk::M
 
 }  // namespace
 
-void add_built_in_interfaces(BusRegistry& registry, double period_s) {
+void add_built_in_interfaces(BusRegistry& registry, double period_s, const std::filesystem::path& drives_folder) {
   registry.add_control_interface("SimulatedInterface",
                                  [period_s](const std::string&, const sdk::ModuleChoice& choice, const ModuleLoader&) {
                                    return make_simulated(choice, period_s);
                                  });
-  registry.add_control_interface("CANopenInterface", [period_s](const std::string& bus, const sdk::ModuleChoice& choice,
-                                                                const ModuleLoader& loader) {
-    return make_canopen(bus, choice, loader, period_s);
-  });
+  registry.add_control_interface(
+      "CANopenInterface",
+      [period_s, drives_folder](const std::string& bus, const sdk::ModuleChoice& choice, const ModuleLoader& loader) {
+        return make_canopen(bus, choice, loader, period_s, drives_folder);
+      },
+      BusRegistry::Unused::IsMadeAnew);
   registry.add_control_interface("ModbusInterface", make_modbus);
   registry.add_io_interface("GPIOInterface", make_gpio);
   registry.add_io_interface("ModbusIOInterface", make_modbus_io);

@@ -40,8 +40,9 @@ std::string names(const Map& map) {
 
 }  // namespace
 
-void BusRegistry::add_control_interface(const std::string& name, ControlFactory factory) {
+void BusRegistry::add_control_interface(const std::string& name, ControlFactory factory, Unused unused) {
   control_factories_[name] = std::move(factory);
+  if (unused == Unused::IsMadeAnew) made_anew_.insert(name);
 }
 
 void BusRegistry::add_io_interface(const std::string& name, IoFactory factory) {
@@ -80,8 +81,15 @@ Expected<> BusRegistry::check_io_interface(const sdk::ModuleChoice& choice, cons
   return make_io(choice, loader).map([](const auto&) {});
 }
 
+void BusRegistry::forget_outdated(const std::string& name) {
+  const auto known = buses_.find(name);
+  if (known == buses_.end() || known->second.started || known->second.bus.use_count() > 1) return;
+  if (made_anew_.contains(known->second.choice.name)) buses_.erase(known);
+}
+
 Expected<std::shared_ptr<ServoBus>> BusRegistry::acquire(const std::string& name, const sdk::ModuleChoice& choice,
                                                          const ModuleLoader& loader) {
+  forget_outdated(name);
   auto known = buses_.find(name);
   if (known != buses_.end() && known->second.choice != choice) {
     if (known->second.bus.use_count() > 1) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "gateway/modules/module_loader.hpp"
@@ -23,7 +24,11 @@ class BusRegistry {
   using IoFactory = std::function<Expected<std::shared_ptr<DigitalIoInterface>>(const sdk::ModuleChoice& choice,
                                                                                 const ModuleLoader& loader)>;
 
-  void add_control_interface(const std::string& name, ControlFactory factory);
+  /// What becomes of an interface that nothing uses any more: it stays, with what is behind it, or it is made anew for
+  /// its next use, because it is made from files that may be others by then.
+  enum class Unused { Stays, IsMadeAnew };
+
+  void add_control_interface(const std::string& name, ControlFactory factory, Unused unused = Unused::Stays);
   void add_io_interface(const std::string& name, IoFactory factory);
 
   /// Whether an interface of this name is built in or can be loaded. A built-in one's parameters are its buses', and
@@ -63,7 +68,11 @@ class BusRegistry {
   [[nodiscard]] Expected<std::shared_ptr<DigitalIoInterface>> make_io(const sdk::ModuleChoice& choice,
                                                                       const ModuleLoader& loader) const;
 
+  /// A bus that nothing uses and whose interface is to be made anew is forgotten.
+  void forget_outdated(const std::string& name);
+
   std::map<std::string, ControlFactory> control_factories_;
+  std::set<std::string> made_anew_;  ///< names of interfaces
   std::map<std::string, IoFactory> io_factories_;
   std::map<std::string, Bus> buses_;
   std::map<std::string, std::shared_ptr<ServoBus>> virtual_buses_;

@@ -48,6 +48,7 @@ class Paths {
     configuration.unix_socket =
         pick(overrides.unix_socket, group(document_, "listen"), "unix_socket", runtime / "rmacd.sock");
     configuration.device_tree = pick(overrides.device_tree, document_, "device_tree", folders.device_tree);
+    configuration.drives_folder = pick({}, document_, "drives_folder", folders.drives);
     configuration.flight_recorder.folder =
         pick({}, group(document_, "flight_recorder"), "folder", configuration.state_folder / "flight-records");
     if (document_.contains("module_folders")) {

@@ -41,6 +41,7 @@ struct Configuration {
   std::filesystem::path state_folder;
   std::filesystem::path device_tree;                  ///< holds <type>/<configuration>/<Mechanism>/device.json
   std::vector<std::filesystem::path> module_folders;  ///< where modules are looked for after the mechanism's own folder
+  std::filesystem::path drives_folder;                ///< holds descriptions of CANopen drives
   std::string database;                               ///< path of the SQLite file, or a "postgresql://…" connection
   std::chrono::nanoseconds period{1'000'000};
   Pace pace = Pace::RealTime;
@@ -69,6 +70,7 @@ struct ConfigurationOverrides {
 /// Where things are when neither file nor command line says so.
 struct DefaultFolders {
   std::filesystem::path device_tree;
+  std::filesystem::path drives;  ///< the library of CANopen drives
   std::filesystem::path state_folder;
   std::filesystem::path runtime_folder;  ///< holds the UNIX socket
   std::filesystem::path helpers;         ///< programs that ours start

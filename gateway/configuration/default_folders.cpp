@@ -15,6 +15,14 @@ std::filesystem::path from_environment(const char* variable, std::filesystem::pa
   return list.substr(0, list.find(':'));
 }
 
+/// As etc/install_folders.cmake has it, of the prefix that was installed to.
+std::filesystem::path etc_folder(const std::filesystem::path& prefix) {
+  const std::filesystem::path folder = RMAC_SYSCONFDIR;
+  if (folder.is_absolute()) return folder / "rmac";
+  const bool systems = prefix == "/usr" || prefix == "/";
+  return (systems ? "/" : prefix) / folder / "rmac";
+}
+
 }  // namespace
 
 DefaultFolders default_folders() {
@@ -24,6 +32,7 @@ DefaultFolders default_folders() {
   DefaultFolders folders;
   if (std::filesystem::exists(build_folder / "CMakeCache.txt", code)) {
     folders.device_tree = build_folder / "drivers";
+    folders.drives = build_folder / "etc" / "drives";
     folders.state_folder = build_folder / "state";
     folders.runtime_folder = folders.state_folder;
     folders.helpers = build_folder / "helpers";
@@ -31,6 +40,7 @@ DefaultFolders default_folders() {
     folders.searcher = build_folder / "bin" / "rmac-search";
   } else {
     folders.device_tree = (program_folder / RMAC_DRIVERS_FROM_SBIN).lexically_normal();
+    folders.drives = etc_folder(program_folder.parent_path()) / "drives";
     folders.state_folder = RMAC_STATE_FOLDER;
     folders.runtime_folder = "/run/rmac";
     folders.helpers = (program_folder / RMAC_HELPERS_FROM_SBIN).lexically_normal();

@@ -105,7 +105,7 @@ Controller::Impl::Impl(ControllerOptions controller_options)
       interfaces(draft, cam, measuring),
       reconfiguration(
           {*link, supervisor, assembler, registry, rack, interfaces}, [this] { let_time_pass(); }, options.stepped) {
-  add_built_in_interfaces(registry, options.period_s);
+  add_built_in_interfaces(registry, options.period_s, options.drives_folder);
   for (const auto& [name, factory] : options.control_interfaces) registry.add_control_interface(name, factory);
   for (const auto& [name, factory] : options.io_interfaces) registry.add_io_interface(name, factory);
   announcer.before_event([this](Event& event) { add_to(event); });

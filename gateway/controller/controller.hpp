@@ -49,7 +49,8 @@ struct ControllerOptions {
   int max_cycles_lost = 0;       ///< missed deadlines within a second; beyond it the machine stops; 0: not watched
   std::shared_ptr<Clock> clock;  ///< paces the servo thread; null: the monotonic clock
   FlightRecorderOptions flight_recorder{};
-  std::filesystem::path tools_folder{};  ///< where the tool tables lie; empty: none is read or kept
+  std::filesystem::path drives_folder{};  ///< the CANopen drives that are known; empty: none
+  std::filesystem::path tools_folder{};   ///< where the tool tables lie; empty: none is read or kept
   /// Interfaces beside the built-in ones, by name.
   std::map<std::string, BusRegistry::ControlFactory> control_interfaces;
   std::map<std::string, BusRegistry::IoFactory> io_interfaces;

@@ -9,6 +9,7 @@ namespace rmac::gateway {
 [[nodiscard]] std::string_view rmacd_schema_text();
 [[nodiscard]] std::string_view modbus_spindle_schema_text();
 [[nodiscard]] std::string_view modbus_io_schema_text();
+[[nodiscard]] std::string_view drive_schema_text();
 [[nodiscard]] std::string_view tools_schema_text();
 [[nodiscard]] std::string_view measuring_plan_schema_text();
 

@@ -43,6 +43,7 @@ ControllerOptions controller_options(const Configuration& configuration, std::sh
   options.stop_categories = configuration.stop_categories;
   options.max_cycles_lost = configuration.real_time.max_cycles_lost;
   options.flight_recorder = configuration.flight_recorder;
+  options.drives_folder = configuration.drives_folder;
   options.tools_folder = configuration.state_folder / "tools";
   return options;
 }

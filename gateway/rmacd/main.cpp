@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "gateway/api/methods/openrpc.hpp"
+#include "gateway/buses/drive_library_file.hpp"
 #include "gateway/rmacd/daemon.hpp"
 
 namespace {
@@ -54,6 +55,8 @@ int run(const Wishes& wishes) {
   auto configuration = rmac::gateway::read_configuration(wishes.config, overrides_of(wishes));
   if (!configuration) return fail(configuration.error().message);
   if (wishes.check) {
+    const auto drives = rmac::gateway::read_drive_library(configuration->drives_folder);
+    if (auto sound = rmac::gateway::check(drives); !sound) return fail(sound.error().message);
     fmt::print("{} is valid\n", wishes.config);
     return 0;
   }

@@ -39,8 +39,8 @@ def prepare():
 def check_scan(sheets):
     print(call("rmac", "bus", "scan", "vcan0", "--eds", sheets))
     found = json.loads(call("rmac", "--json", "bus", "scan", "vcan0", "--eds", sheets))
-    assert [(node["node"], node["name"], node["files"]) for node in found] == [
-        (node, "rmac-vdrive", ["rmac-vdrive.eds"]) for node in (1, 2, 3)], found
+    assert [(node["node"], node["name"], node["files"], pathlib.Path(node["drive"]).name) for node in found] == [
+        (node, "rmac-vdrive", ["rmac-vdrive.eds"], "rmac-vdrive.json") for node in (1, 2, 3)], found
 
 
 def main():

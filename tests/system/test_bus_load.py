@@ -28,6 +28,18 @@ class BusLoad(unittest.TestCase):
         self.file.write_text(json.dumps(self.device))
         return subprocess.run([BUILD / "bin" / "rmac", "bus", "load", self.file, *options], capture_output=True, text=True)
 
+    def test_knows_the_drives_of_a_library(self):
+        """A machine that names its drive is refused with a description that is wrong, and no other machine is."""
+        drives = self.file.parent / "drives"
+        drives.mkdir()
+        (drives / "maker-drive.json").write_text(json.dumps(
+            {"Name": "a", "Manual": "b", "Tried": "never", "VendorId": 1, "ProductCode": 2, "SdoTimeout": 0}))
+        parameters = {"node": [1, 2, 3, 4], "tpdo": "6041:00/16"}
+        self.assertEqual(self.load(parameters, "--drives", drives).stderr, "")
+        refused = self.load(parameters | {"drive_1": "maker-drive"}, "--drives", drives)
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("maker-drive.json: /SdoTimeout is 0", refused.stderr)
+
     def test_tells_each_bus_with_its_bits(self):
         done = self.load({"can0.node": [1, 2, 3], "can1.node": 4, "can1.mode": 3, "can0.tpdo": "6041:00/16 6064:00/32"},
                          "--json", spindle_bus="can1")

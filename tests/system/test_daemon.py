@@ -2,6 +2,7 @@
 
 import json
 import os
+import pathlib
 import signal
 import socket
 import subprocess
@@ -45,6 +46,22 @@ class CommandLine(unittest.TestCase):
         done = self.check({"listen": {"address": "0.0.0.0"}})
         self.assertEqual(done.returncode, FAILED)
         self.assertIn("authenticated", done.stderr)
+
+    def test_wrong_description_of_a_drive_is_told_by_check(self):
+        with tempfile.TemporaryDirectory() as folder:
+            def describe(name, **changes):
+                (pathlib.Path(folder) / name).write_text(json.dumps(
+                    {"Name": "a", "Manual": "b", "Tried": "never", "VendorId": 1, "ProductCode": 2} | changes))
+            describe("sound.json")
+            done = self.check({"drives_folder": folder})
+            self.assertEqual(done.returncode, DONE, done.stderr)
+            describe("wrong.json", ProductCode=3, SdoTimeout=0)
+            describe("double.json")
+            done = self.check({"drives_folder": folder})
+            self.assertEqual(done.returncode, FAILED)
+            for word in ("wrong.json: /SdoTimeout is 0; allowed is a number from 0.01 to 60 (s)", "double.json and ",
+                         "sound.json are for the same drive"):
+                self.assertIn(word, done.stderr)
 
     def test_unknown_option_is_a_usage_error(self):
         self.assertEqual(rmacd("--nonsense").returncode, USAGE)
@@ -111,6 +128,15 @@ class LifeCycle(unittest.TestCase):
                     self.assertEqual(daemon.wait(timeout=60), DONE)
                 finally:
                     daemon.kill()
+
+    def test_wrong_description_of_a_drive_is_nothing_to_a_machine_without_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "wrong.json").write_text("{")
+            with Appliance(drives_folder=folder) as appliance:
+                client = appliance.client()
+                client.call("authority.acquire")
+                client.call("Device.Load", Name="BenchXYZ")
+                self.assertEqual(client.state()["state"], "Idle")
 
     def test_state_folder_belongs_to_one_daemon(self):
         with Appliance() as appliance:

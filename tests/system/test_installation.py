@@ -45,6 +45,8 @@ class Installation(unittest.TestCase):
         self.one("usr/lib/sysusers.d/rmac.conf")
         self.one("usr/include/rmac/sdk/module.hpp")
         self.one("etc/rmac/rmacd.json")
+        self.one("etc/rmac/drives/rmac-vdrive.json")
+        self.one("usr/share/rmac/drive.schema.json")
         self.one("etc/rmac/can-can0.conf.example")
 
     def test_installed_daemon_accepts_the_installed_configuration(self):

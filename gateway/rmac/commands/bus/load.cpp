@@ -4,6 +4,7 @@
 
 #include "gateway/buses/bus_choice.hpp"
 #include "gateway/buses/device_descriptions.hpp"
+#include "gateway/buses/drive_library_file.hpp"
 #include "gateway/configuration/configuration.hpp"
 #include "gateway/device_database/device_database.hpp"
 #include "gateway/device_driver_manager/device_tree.hpp"
@@ -52,6 +53,7 @@ std::vector<std::string> to_row(const CanopenConfig& config, const BusLoad& load
 struct Options {
   std::string machine;                ///< its name, or the path of its folder or of its device.json
   std::filesystem::path device_tree;  ///< empty: the installation's
+  std::filesystem::path drives;       ///< those that are known; empty: the installation's
   double period_s = 0.001;
 };
 
@@ -64,12 +66,13 @@ struct Loads {
 
 Result<Loads> loads_of(const sdk::DeviceObject& device, const std::filesystem::path& file, const Options& options) {
   const gateway::ModuleLoader loader({file.parent_path(), options.device_tree / "modules"});
+  const auto drives = std::make_shared<fieldbus::canopen::DriveLibrary>(gateway::read_drive_library(options.drives));
   Loads loads;
   for (const std::string& bus : sdk::buses_of(device)) {
     const sdk::ModuleChoice choice = gateway::interface_of_bus(bus, device.digital_control_interface);
     if (choice.name != "CANopenInterface") continue;
     const auto config = fieldbus::canopen::read_canopen_config(bus, choice.numbers, choice.texts, options.period_s,
-                                                               gateway::find_descriptions(loader));
+                                                               gateway::find_descriptions(loader), drives);
     if (!config) return fail(fmt::format("{}: {}", file.string(), config.error().message));
     const BusLoad load = bus_load(*config);
     loads.list.push_back(to_json(*config, load));
@@ -82,6 +85,7 @@ Result<Loads> loads_of(const sdk::DeviceObject& device, const std::filesystem::p
 /// Works out the load of a machine's CAN buses; fails where one exceeds its share.
 Result<> show_bus_load(Options options, bool json) {
   if (options.device_tree.empty()) options.device_tree = gateway::default_folders().device_tree;
+  if (options.drives.empty()) options.drives = gateway::default_folders().drives;
   const auto file = gateway::find_device_json(options.machine, options.device_tree);
   if (!file) return fail(file.error().message);
   const auto device = gateway::read_device_database(*file);
@@ -109,6 +113,7 @@ void add_bus_load(Command& bus) {
   Command load = bus.add("load", "the bits that a machine's CAN buses carry at worst; exit code 1 if too many");
   load.option("NAME", &options->machine, "a machine's name; or the path of its folder or its device.json").required();
   load.option("--device-tree", &options->device_tree, "where machines are looked for; the installation's unless given");
+  load.option("--drives", &options->drives, kDrivesMeaning).existing_folder();
   load.option("--period", &options->period_s, "cycle of the servo loop, s (period_s in rmacd.json)")
       .within(0.0001, 0.1)
       .shows_default();

@@ -3,6 +3,8 @@
 #include <map>
 #include <thread>
 
+#include "gateway/buses/drive_library_file.hpp"
+#include "gateway/configuration/configuration.hpp"
 #include "gateway/rmac/commands/bus/registrations.hpp"
 #include "rmac/fieldbus/can/socket_can_port.hpp"
 #include "rmac/fieldbus/canopen/bus_scan.hpp"
@@ -34,6 +36,7 @@ std::vector<std::string> trial_modes() {
 /// A first motion of one drive by itself.
 struct DriveMove {
   std::string interface, mode, setup;
+  std::filesystem::path drives;  ///< those that are known; empty: the installation's
   int node = 0;
   std::int32_t amount = 0;
   double seconds = 1;
@@ -43,10 +46,12 @@ struct DriveMove {
 Result<canopen::CanopenConfig> config_of(const DriveMove& move) {
   std::map<std::string, std::string> texts{{"tpdo", "6041:00/16 6064:00/32"}};
   if (!move.setup.empty()) texts["setup"] = move.setup;
+  auto drives = std::make_shared<canopen::DriveLibrary>(
+      gateway::read_drive_library(move.drives.empty() ? gateway::default_folders().drives : move.drives));
   auto config = canopen::read_canopen_config(
       move.interface,
       {{"node", {static_cast<double>(move.node)}}, {"mode", {static_cast<double>(modes().at(move.mode))}}}, texts,
-      kPeriod_s);
+      kPeriod_s, {}, std::move(drives));
   if (!config) return fail(config.error().message);
   return std::move(*config);
 }
@@ -110,6 +115,7 @@ void add_bus_move(Command& bus) {
       .within(0.01, 600.0)
       .shows_default();
   move.option("--setup", &options->setup, "objects to write first, as in device.json: \"6081:00/32=20000\"");
+  move.option("--drives", &options->drives, kDrivesMeaning).existing_folder();
   move.does(without_appliance([options](bool) { return move_drive(*options); }));
 }
 

@@ -14,6 +14,8 @@ void add_bus_move(Command& bus);
 void add_bus_scan(Command& bus);
 void add_bus_store(Command& bus);
 
+/// How the library of drives is asked for.
+inline constexpr const char* kDrivesMeaning = "a folder of descriptions of drives; the installation's unless given";
 /// How a CAN interface is asked for.
 inline constexpr const char* kInterfaceMeaning = "a CAN interface that is up: can0";
 

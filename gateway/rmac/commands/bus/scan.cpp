@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "gateway/buses/drive_library_file.hpp"
+#include "gateway/configuration/configuration.hpp"
 #include "gateway/rmac/commands/bus/registrations.hpp"
 #include "gateway/rmac/terminal/table.hpp"
 #include "rmac/fieldbus/can/socket_can_port.hpp"
@@ -12,6 +14,8 @@ namespace rmac::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using fieldbus::canopen::DriveDescription;
+using fieldbus::canopen::DriveLibrary;
 using fieldbus::canopen::NmtState;
 using fieldbus::canopen::ScannedNode;
 using fieldbus::eds::DeviceDescription;
@@ -64,7 +68,18 @@ std::vector<std::string> files_of(const ScannedNode& node, const std::vector<Dev
   return files;
 }
 
-nlohmann::json to_json(const ScannedNode& node, const std::vector<DeviceDescription>& sheets) {
+/// What is known of the makes of nodes.
+struct Known {
+  std::vector<DeviceDescription> sheets;
+  DriveLibrary drives;
+};
+
+/// By which description a node would be treated; null: by none.
+const DriveDescription* drive_of(const ScannedNode& node, const Known& known) {
+  return node.answers ? known.drives.find(node.identity) : nullptr;
+}
+
+nlohmann::json to_json(const ScannedNode& node, const Known& known) {
   nlohmann::json entry{{"node", node.node},
                        {"state", state_text(node)},
                        {"answers", node.answers},
@@ -78,16 +93,19 @@ nlohmann::json to_json(const ScannedNode& node, const std::vector<DeviceDescript
     entry["revision_number"] = node.identity.revision_number;
     entry["serial_number"] = node.identity.serial_number;
     entry["name"] = node.name;
-    entry["files"] = files_of(node, sheets);
+    entry["files"] = files_of(node, known.sheets);
+    const DriveDescription* drive = drive_of(node, known);
+    entry["drive"] = drive != nullptr ? nlohmann::json(drive->file) : nlohmann::json();
   }
   return entry;
 }
 
-std::vector<std::string> to_row(const ScannedNode& node, const std::vector<DeviceDescription>& sheets) {
+std::vector<std::string> to_row(const ScannedNode& node, const Known& known) {
   const auto hexadecimal = [](std::uint32_t number) { return fmt::format("{:X}h", number); };
-  if (!node.answers) return {std::to_string(node.node), state_text(node), "answers no SDO", "", "", "", "", "", ""};
+  if (!node.answers) return {std::to_string(node.node), state_text(node), "answers no SDO", "", "", "", "", "", "", ""};
+  const DriveDescription* drive = drive_of(node, known);
   std::string files;
-  for (const std::string& file : files_of(node, sheets)) files += (files.empty() ? "" : ", ") + file;
+  for (const std::string& file : files_of(node, known.sheets)) files += (files.empty() ? "" : ", ") + file;
   return {std::to_string(node.node),
           state_text(node),
           fieldbus::canopen::device_type_text(node.device_type),
@@ -96,11 +114,15 @@ std::vector<std::string> to_row(const ScannedNode& node, const std::vector<Devic
           hexadecimal(node.identity.revision_number),
           hexadecimal(node.identity.serial_number),
           node.name,
-          files};
+          files,
+          drive != nullptr ? fs::path(drive->file).stem().string() : ""};
 }
 
 /// What a row cannot say; empty where nothing is wrong.
-std::string warning(const ScannedNode& node) {
+std::string warning(const ScannedNode& node, const Known& known) {
+  if (const DriveDescription* drive = drive_of(node, known); drive != nullptr && !drive->refusal.empty()) {
+    return fmt::format("node {}: a machine with it is refused: {}\n", node.node, drive->refusal);
+  }
   if (node.two_identities) {
     return fmt::format("node {}: two devices have this id, and a machine with it is refused; give each its own\n",
                        node.node);
@@ -112,13 +134,18 @@ std::string warning(const ScannedNode& node) {
 
 struct Options {
   std::string interface;
-  std::string folder;  ///< of data sheets; empty: none
+  std::string folder;            ///< of data sheets; empty: none
+  std::filesystem::path drives;  ///< descriptions of drives; empty: the installation's
 };
 
 Result<> scan_bus(const Options& options, bool json) {
-  const auto& [interface, folder] = options;
-  const auto sheets = read_sheets(folder);
+  const std::string& interface = options.interface;
+  auto sheets = read_sheets(options.folder);
   if (!sheets) return tl::unexpected(sheets.error());
+  const Known known{
+      std::move(*sheets),
+      gateway::read_drive_library(options.drives.empty() ? gateway::default_folders().drives : options.drives)};
+  for (const std::string& unreadable : known.drives.unreadable) fmt::print(stderr, "rmac: {}\n", unreadable);
   constexpr std::size_t kBurst = 4;
   auto port = fieldbus::SocketCanPort::open(interface, {}, kBurst);
   if (!port) return fail(port.error().message);
@@ -126,7 +153,7 @@ Result<> scan_bus(const Options& options, bool json) {
   if (!nodes) return fail(fmt::format("{}: {}", interface, nodes.error().message));
   if (json) {
     nlohmann::json list = nlohmann::json::array();
-    for (const ScannedNode& node : *nodes) list.push_back(to_json(node, *sheets));
+    for (const ScannedNode& node : *nodes) list.push_back(to_json(node, known));
     fmt::print("{}\n", list.dump());
     return {};
   }
@@ -137,9 +164,11 @@ Result<> scan_bus(const Options& options, bool json) {
                     interface));
   }
   std::vector<std::vector<std::string>> rows;
-  for (const ScannedNode& node : *nodes) rows.push_back(to_row(node, *sheets));
-  fmt::print("{}", table({"node", "state", "device", "vendor", "product", "revision", "serial", "name", "file"}, rows));
-  for (const ScannedNode& node : *nodes) fmt::print("{}", warning(node));
+  for (const ScannedNode& node : *nodes) rows.push_back(to_row(node, known));
+  fmt::print(
+      "{}",
+      table({"node", "state", "device", "vendor", "product", "revision", "serial", "name", "file", "drive"}, rows));
+  for (const ScannedNode& node : *nodes) fmt::print("{}", warning(node, known));
   return {};
 }
 
@@ -150,6 +179,7 @@ void add_bus_scan(Command& bus) {
   Command scan = bus.add("scan", "list the CANopen nodes on an interface; refuses a bus on which a machine runs");
   scan.option("INTERFACE", &options->interface, kInterfaceMeaning).required();
   scan.option("--eds", &options->folder, "a folder of EDS and DCF files: say which are the nodes'").existing_folder();
+  scan.option("--drives", &options->drives, kDrivesMeaning).existing_folder();
   scan.does(without_appliance([options](bool json) { return scan_bus(*options, json); }));
 }
 

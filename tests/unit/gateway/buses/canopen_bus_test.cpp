@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "gateway/buses/built_in_interfaces.hpp"
+#include "unit/gateway/device_driver_manager/fixtures.hpp"
 
 namespace {
 
@@ -34,6 +35,26 @@ TEST(CanopenBus, SaysWhichInterfaceIsNotThere) {
   // No interface has this name, whether the kernel knows CAN or not.
   EXPECT_THAT(answer({"CANopenInterface", {{"node", {1}}}, {}}, "no-such-can"),
               HasSubstr("bus no-such-can did not come up: CAN interface no-such-can: "));
+}
+
+// Red when a bus that is not in use keeps what it was made from: a description that was mended, or a data sheet, would
+// count only once the daemon was started anew.
+TEST(CanopenBus, ReadsWhatIsKnownOfDrivesAnewForEachStart) {
+  const test::TemporaryFolder folder;
+  BusRegistry registry;
+  add_built_in_interfaces(registry, 0.001, folder.path());
+  const auto refusal = [&] {
+    const sdk::ModuleChoice choice{"CANopenInterface", {{"node", {1}}}, {{"drive", "maker-drive"}}};
+    return registry.acquire("no-such-can", choice, ModuleLoader({})).error().message;
+  };
+  const std::string sound = R"({"Name": "a", "Manual": "b", "Tried": "never", "VendorId": 1, "ProductCode": 2)";
+  EXPECT_THAT(refusal(), HasSubstr("drive is \"maker-drive\" for node 1, and there is no such description"));
+  folder.write("maker-drive.json", sound + "}");
+  EXPECT_THAT(refusal(), HasSubstr("bus no-such-can did not come up"));
+  folder.write("maker-drive.json", sound + R"(, "SdoTimeout": 0})");
+  EXPECT_THAT(refusal(), HasSubstr("maker-drive.json: /SdoTimeout is 0"));
+  folder.write("maker-drive.json", sound + R"(, "SdoTimeout": 1})");
+  EXPECT_THAT(refusal(), HasSubstr("bus no-such-can did not come up"));
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ TEST(Configuration, HasADefaultForEveryKey) {
   EXPECT_EQ(configuration.state_folder, default_folders().state_folder);
   EXPECT_EQ(configuration.device_tree, default_folders().device_tree);
   EXPECT_EQ(configuration.module_folders, std::vector{default_folders().device_tree / "modules"});
+  EXPECT_EQ(configuration.drives_folder, default_folders().drives);
   EXPECT_EQ(configuration.database, (default_folders().state_folder / "device-drivers.sqlite").string());
   EXPECT_EQ(configuration.period, std::chrono::milliseconds(1));
   EXPECT_EQ(configuration.pace, Pace::RealTime);
@@ -58,6 +59,7 @@ TEST(Configuration, HasADefaultForEveryKey) {
 
 TEST(Configuration, DefaultFoldersAreAbsolute) {
   EXPECT_TRUE(default_folders().device_tree.is_absolute());
+  EXPECT_TRUE(default_folders().drives.is_absolute());
   EXPECT_TRUE(default_folders().state_folder.is_absolute());
   EXPECT_TRUE(default_folders().runtime_folder.is_absolute());
 }

@@ -84,6 +84,18 @@ TEST_F(BusCommand, RefusesAFolderOfDataSheetsThatIsNotThere) {
   takes({"bus", "scan", kNone, "--eds", testing::TempDir()});
 }
 
+TEST_F(BusCommand, RefusesAFolderOfDrivesThatIsNotThere) {
+  refuses({"bus", "scan", kNone, "--drives", "/nonexistent"});
+  takes({"bus", "scan", kNone, "--drives", testing::TempDir()});
+  const std::vector<std::string> move{"bus", "move", kNone, "5", "--mode", "pp", "--amount", "1", "--within", "2"};
+  for (const auto& [folder, right] :
+       {std::pair<std::string, bool>{testing::TempDir(), true}, {"/nonexistent", false}}) {
+    auto words = move;
+    words.insert(words.end(), {"--drives", folder});
+    right ? takes(words) : refuses(words);
+  }
+}
+
 TEST_F(BusCommand, SaysWhichFileItCannotReadTheLoadOf) {
   EXPECT_THAT(run({"bus", "load", "/nonexistent.json"}).err, HasSubstr("/nonexistent.json"));
   refuses({"bus", "load", "f.json", "--period", "0.00009"});
