@@ -349,7 +349,7 @@ Expected<CanopenConfig> read_canopen_config(const std::string& bus,
   parameters.refuse_unknown();
   if (parameters.sound()) parameters.refuse(check_nodes(config));
   if (parameters.sound()) parameters.refuse(check_shared(config));
-  if (parameters.sound()) parameters.refuse(check_named_drives(config));
+  if (parameters.sound()) parameters.refuse(check_chosen_drives(config));
   for (std::size_t axis = 0; axis < axes && parameters.sound(); ++axis) {
     if (auto fits = check_description(config, config.axes[axis]); !fits) {
       parameters.refuse(fmt::format("axis {}: {}", axis, fits.error().message));

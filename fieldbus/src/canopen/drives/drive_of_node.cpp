@@ -51,17 +51,17 @@ std::vector<const DriveDescription*> possible_drives(const CanopenConfig& config
   return possible;
 }
 
-std::string check_named_drives(const CanopenConfig& config) {
+std::string check_chosen_drives(const CanopenConfig& config) {
   for (const AxisConfig& axis : config.axes) {
-    if (axis.drive.empty() || axis.drive == kNone) continue;
-    const DriveDescription* drive = config.drives ? config.drives->find_name(axis.drive) : nullptr;
-    if (drive == nullptr) {
+    const DriveDescription* drive = chosen_drive(config, axis.node);
+    if (drive != nullptr && !drive->refusal.empty()) return drive->refusal;
+    const bool by_name = !axis.drive.empty() && axis.drive != kNone;
+    if (by_name && (!config.drives || config.drives->find_name(axis.drive) == nullptr)) {
       return fmt::format(
           "drive is \"{}\" for node {}, and there is no such description; leave it out to have it found "
           "by the node's identity (1018h), or say \"none\"",
           axis.drive, axis.node);
     }
-    if (!drive->refusal.empty()) return drive->refusal;
   }
   return {};
 }

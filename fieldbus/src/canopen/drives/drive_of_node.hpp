@@ -14,8 +14,8 @@ namespace rmac::fieldbus::canopen {
 /// Which descriptions a node may turn out to have, null for none at all; the first counts until it told who it is.
 [[nodiscard]] std::vector<const DriveDescription*> possible_drives(const CanopenConfig& config, std::uint8_t node);
 
-/// What is wrong with the names of descriptions in `device.json`; empty where nothing is.
-[[nodiscard]] std::string check_named_drives(const CanopenConfig& config);
+/// What is wrong with the descriptions that `device.json` chooses; empty where nothing is.
+[[nodiscard]] std::string check_chosen_drives(const CanopenConfig& config);
 
 /// What is to be known of a node that is treated by a description.
 [[nodiscard]] std::vector<std::string> remarks(const DriveDescription& drive, std::uint8_t node);

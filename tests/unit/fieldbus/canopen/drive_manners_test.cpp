@@ -105,6 +105,22 @@ TEST_F(KnownDrive, IsRefusedWithAFileThatIsWrong) {
   EXPECT_EQ(writes(0x1400), 0) << "it was written to all the same";
 }
 
+// Red when a machine that says who its drives are is refused only once their bus was reset.
+TEST_F(KnownDrive, IsRefusedBeforeAnythingIsSentWhereDeviceJsonSaysWhoItIs) {
+  DriveDescription wrong = description_of({});
+  wrong.refusal = "wrong";
+  const auto library = std::make_shared<DriveLibrary>(DriveLibrary{{wrong}, {}});
+  const auto refusal = [&](const Numbers& numbers, const Texts& texts) {
+    const auto config = read_canopen_config("can0", numbers, texts, kPeriodS, {}, library);
+    return config ? "no error" : config.error().message;
+  };
+  const Numbers named{{"node", {1}}, {"vendor_id", {0x101}}, {"product_code", {0x201}}};
+  EXPECT_EQ(refusal(named, {}), "CANopenInterface, bus can0: wrong");
+  EXPECT_EQ(refusal(named, {{"drive", "none"}}), "no error");
+  EXPECT_EQ(refusal({{"node", {1}}}, {{"drive", "maker-drive"}}), "CANopenInterface, bus can0: wrong");
+  EXPECT_EQ(refusal({{"node", {1}}}, {}), "no error");
+}
+
 TEST_F(KnownDrive, IsRefusedWithTwoFilesThatAreBothNamed) {
   fresh_drive();
   DriveLibrary library{{description_of({}, "a.json"), description_of({}, "b.json")}, {}};
