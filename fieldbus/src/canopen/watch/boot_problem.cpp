@@ -4,35 +4,18 @@
 
 #include <array>
 
+#include "canopen/objects/standard_objects.hpp"
+
 namespace rmac::fieldbus::canopen {
 namespace {
-
-/// The index of the same object of a node's first axis.
-std::uint16_t object_of_first_axis(std::uint16_t index) noexcept {
-  if (index < kFirstProfileObject) return index;
-  return static_cast<std::uint16_t>(kFirstProfileObject + (index - kFirstProfileObject) % kAxisOffset);
-}
-
-/// Modes of operation by their numbers (CiA 402-2, 6060h).
-constexpr std::array kModeNames{"",
-                                "profile position",
-                                "velocity",
-                                "profile velocity",
-                                "profile torque",
-                                "",
-                                "homing",
-                                "interpolated position",
-                                "cyclic synchronous position",
-                                "cyclic synchronous velocity",
-                                "cyclic synchronous torque"};
 
 /// Tells that a drive's supported modes (6502h, bit 0 is mode 1) lack one that it is to run in.
 std::string cannot_do(const BootProblem& problem, const std::string& object) {
   std::string wanted, there;
-  for (unsigned mode = 1; mode < kModeNames.size(); ++mode) {
+  for (unsigned mode = 1; mode <= kMostMode; ++mode) {
     const std::uint32_t bit = 1U << (mode - 1);
     if ((problem.expected & ~problem.found & bit) != 0) {
-      wanted += fmt::format("{}{} (mode {})", wanted.empty() ? "" : " and ", kModeNames.at(mode), mode);
+      wanted += fmt::format("{}{} (mode {})", wanted.empty() ? "" : " and ", mode_name(mode), mode);
     }
     if ((problem.found & bit) != 0) there += fmt::format("{}{}", there.empty() ? "" : ", ", mode);
   }
@@ -92,8 +75,8 @@ std::string describe_alone(const BootProblem& problem, std::uint8_t node, const 
         return fmt::format("{} is another device than configured: its {} ({}) is {:X}h, not {:X}h", who,
                            kNames.at(problem.object.sub), object, problem.found, problem.expected);
       }
-      if (object_of_first_axis(problem.object.index) == 0x6502) return who + cannot_do(problem, object);
-      if (object_of_first_axis(problem.object.index) == 0x607E) {
+      if (of_first_axis(problem.object).index == 0x6502) return who + cannot_do(problem, object);
+      if (of_first_axis(problem.object).index == 0x607E) {
         return fmt::format(
             "{} turns its positions round ({} is {:X}h), and follows torques, so it could run away; set polarity to 0 "
             "and the actuator's Direction to -1, or polarity to {} where the drive turns its torques round, too",

@@ -12,6 +12,7 @@ void add_bus_load(Command& bus);
 void add_bus_lss(Command& bus);
 void add_bus_move(Command& bus);
 void add_bus_scan(Command& bus);
+void add_bus_sdo(Command& bus);
 void add_bus_store(Command& bus);
 
 /// How the library of drives is asked for.

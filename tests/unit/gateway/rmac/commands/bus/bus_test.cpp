@@ -39,6 +39,40 @@ TEST_F(BusCommand, StoresParametersOfANodeThatMayBe) {
   refuses({"bus", "store", kNone});
 }
 
+TEST_F(BusCommand, ReadsObjectsOfANodeThatMayBe) {
+  for (const char* object : {"6041", "6041:00", "0x6041:0", "6041h"}) {
+    takes({"bus", "sdo", "read", kNone, "1", object});
+    takes({"bus", "sdo", "read", kNone, "127", object, "u16"});
+  }
+  for (const char* node : {"0", "128", "x"}) refuses({"bus", "sdo", "read", kNone, node, "6041"});
+  refuses({"bus", "sdo", "read", kNone, "1"});
+  refuses({"bus", "sdo"});
+}
+
+/// Before anything is sent.
+TEST_F(BusCommand, SaysWhichWordOfAnObjectIsWrong) {
+  const auto error = [this](std::vector<std::string> words) {
+    words.insert(words.begin(), {"bus", "sdo"});
+    const auto failed = run(words);
+    EXPECT_EQ(failed.exit_code, 1) << testing::PrintToString(words);
+    return failed.err;
+  };
+  EXPECT_THAT(error({"read", kNone, "1", "60410"}), HasSubstr("\"60410\" is no object"));
+  EXPECT_THAT(error({"read", kNone, "1", "6041", "uint16"}), HasSubstr("\"uint16\" is no data type; there are b, i8"));
+  EXPECT_THAT(error({"read", kNone, "1", "6041", "--eds", "/no/such.eds"}), HasSubstr("/no/such.eds"));
+  EXPECT_THAT(error({"write", kNone, "1", "6040", "70000"}), HasSubstr("\"70000\" is no UNSIGNED16"));
+  EXPECT_THAT(error({"write", kNone, "1", "6040", "-1"}), HasSubstr("\"-1\" is no UNSIGNED16"));
+  EXPECT_THAT(error({"write", kNone, "1", "6040", "i8", "1.5"}), HasSubstr("\"1.5\" is no INTEGER8"));
+  EXPECT_THAT(error({"write", kNone, "1", "2000", "5"}), HasSubstr("the type of 2000h:00 is unknown here"));
+}
+
+TEST_F(BusCommand, WritesAValueWithOrWithoutItsType) {
+  takes({"bus", "sdo", "write", kNone, "1", "6071", "-5"});
+  takes({"bus", "sdo", "write", kNone, "1", "2000:1", "i32", "-5"});
+  takes({"bus", "sdo", "write", kNone, "1", "2000:1", "vs", ""});
+  refuses({"bus", "sdo", "write", kNone, "1", "6071"});
+}
+
 TEST_F(BusCommand, GivesIdsThatADriveMayHave) {
   takes({"bus", "lss", "assign", kNone, "126"});
   takes({"bus", "lss", "assign", kNone, "5", "--identity", "1", "2", "0x3", "4"});
