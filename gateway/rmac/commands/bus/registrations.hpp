@@ -14,6 +14,7 @@ void add_bus_move(Command& bus);
 void add_bus_scan(Command& bus);
 void add_bus_sdo(Command& bus);
 void add_bus_store(Command& bus);
+void add_bus_trace(Command& bus);
 
 /// How the library of drives is asked for.
 inline constexpr const char* kDrivesMeaning = "a folder of descriptions of drives; the installation's unless given";

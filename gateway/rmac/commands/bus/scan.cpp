@@ -16,7 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using fieldbus::canopen::DriveDescription;
 using fieldbus::canopen::DriveLibrary;
-using fieldbus::canopen::NmtState;
 using fieldbus::canopen::ScannedNode;
 using fieldbus::eds::DeviceDescription;
 
@@ -46,18 +45,7 @@ Result<std::vector<DeviceDescription>> read_sheets(const std::string& folder) {
 }
 
 std::string state_text(const ScannedNode& node) {
-  if (!node.state) return "no heartbeat";
-  switch (*node.state) {
-    case NmtState::BootUp:
-      return "booting";
-    case NmtState::Stopped:
-      return "stopped";
-    case NmtState::Operational:
-      return "operational";
-    case NmtState::PreOperational:
-      return "pre-operational";
-  }
-  return "unknown";
+  return node.state ? to_text(*node.state) : "no heartbeat";
 }
 
 std::vector<std::string> files_of(const ScannedNode& node, const std::vector<DeviceDescription>& sheets) {

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 
 #include "rmac/fieldbus/can/can_port.hpp"
 
@@ -34,11 +35,13 @@ inline constexpr std::uint16_t kHeartbeatId = 0x700;
 [[nodiscard]] inline CanFrame sync_frame() noexcept {
   return {.id = kSyncId};
 }
+/// The first day of TIME_OF_DAY (7.1.6.5).
+inline constexpr std::chrono::sys_days kFirstDay{
+    std::chrono::year_month_day(std::chrono::year(1984), std::chrono::January, std::chrono::day(1))};
+
 /// TIME (7.2.6): TIME_OF_DAY, milliseconds since midnight in 28 bits and days since 1 January 1984 (7.1.6.5). UTC.
 [[nodiscard]] inline CanFrame time_frame(std::chrono::system_clock::time_point now) noexcept {
   using std::chrono::days;
-  constexpr std::chrono::sys_days kFirstDay{std::chrono::year_month_day(
-      std::chrono::year(1984), std::chrono::January, std::chrono::day(1))};  // NOLINT: the standard's
   const auto today = std::chrono::floor<days>(now);
   const auto ms = static_cast<std::uint32_t>(std::chrono::floor<std::chrono::milliseconds>(now - today).count());
   const auto day = static_cast<std::uint32_t>((today - kFirstDay).count());
@@ -47,9 +50,49 @@ inline constexpr std::uint16_t kHeartbeatId = 0x700;
   for (unsigned i = 0; i < 2; ++i) frame.data[4 + i] = static_cast<std::uint8_t>(day >> (8 * i));
   return frame;
 }
+/// The time that such a frame tells; none where it is too short.
+[[nodiscard]] inline std::optional<std::chrono::sys_time<std::chrono::milliseconds>> time_of(
+    const CanFrame& frame) noexcept {
+  constexpr std::uint8_t kBytes = 6, kTimeBits = 0x0F;  // the upper four bits are reserved
+  if (frame.size < kBytes) return {};
+  const auto& data = frame.data;
+  const std::uint32_t ms = data[0] | static_cast<std::uint32_t>(data[1]) << 8 |
+                           static_cast<std::uint32_t>(data[2]) << 16 |
+                           static_cast<std::uint32_t>(data[3] & kTimeBits) << 24;
+  return kFirstDay + std::chrono::days(data[4] | data[5] << 8) + std::chrono::milliseconds(ms);
+}
 /// The state in a heartbeat; bit 7 is reserved and passed over.
 [[nodiscard]] inline NmtState heartbeat_state(const CanFrame& frame) noexcept {
   return static_cast<NmtState>(frame.data[0] & 0x7F);
+}
+
+[[nodiscard]] inline const char* to_text(NmtState state) noexcept {
+  switch (state) {
+    case NmtState::BootUp:
+      return "booting";
+    case NmtState::Stopped:
+      return "stopped";
+    case NmtState::Operational:
+      return "operational";
+    case NmtState::PreOperational:
+      return "pre-operational";
+  }
+  return "unknown";
+}
+[[nodiscard]] inline const char* to_text(NmtCommand command) noexcept {
+  switch (command) {
+    case NmtCommand::Start:
+      return "start";
+    case NmtCommand::Stop:
+      return "stop";
+    case NmtCommand::EnterPreOperational:
+      return "enter pre-operational";
+    case NmtCommand::ResetNode:
+      return "reset node";
+    case NmtCommand::ResetCommunication:
+      return "reset communication";
+  }
+  return "unknown command";
 }
 
 }  // namespace rmac::fieldbus::canopen
