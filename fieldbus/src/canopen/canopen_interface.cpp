@@ -11,6 +11,8 @@
 #include "canopen/drives/drive_of_node.hpp"
 #include "canopen/node_boot.hpp"
 #include "canopen/pdo.hpp"
+#include "canopen/watch/bus_record.hpp"
+#include "canopen/watch/node_record.hpp"
 #include "canopen/watch/node_trouble.hpp"
 #include "canopen/watch/position_reader.hpp"
 #include "rmac/fieldbus/can/socket_can_port.hpp"
@@ -23,10 +25,22 @@ namespace {
 constexpr int kMostFramesPerCycle = 512;
 
 struct Node {
-  Node(const CanopenConfig& config, std::uint8_t id) : boot(config, id), positions(id) {}
+  Node(const CanopenConfig& config, const AxisConfig& first)
+      : boot(config, first.node),
+        positions(first.node),
+        record(config.period),
+        measured(answer_id(first)) {}
+  /// Where it is on its way to Operational, as a person reads it.
+  [[nodiscard]] const char* state() const noexcept {
+    constexpr std::array kStates{
+        "off", "awaiting boot-up", "being configured", "being started", "being watched", "operational", "failed"};
+    return up ? "operational" : kStates.at(static_cast<std::size_t>(boot.state()));
+  }
   NodeBoot boot;
   PositionReader positions;
   NodeTrouble trouble;
+  NodeRecord record;
+  std::uint16_t measured;  ///< the answer whose evenness is
   std::chrono::nanoseconds heard{0};
   std::uint16_t error_code = 0;
   bool up = false;
@@ -40,7 +54,7 @@ struct CanopenInterface::Impl {
     for (const AxisConfig& axis : config.axes) {
       auto at = std::find_if(nodes.begin(), nodes.end(), [&](const Node& n) { return n.boot.node() == axis.node; });
       const auto place = static_cast<std::size_t>(at - nodes.begin());
-      if (at == nodes.end()) nodes.emplace_back(config, axis.node);
+      if (at == nodes.end()) nodes.emplace_back(config, axis);
       const auto same = [&](std::size_t other) { return setpoint_id(axes[other].config) == setpoint_id(axis); };
       if (std::none_of(rpdos.begin(), rpdos.end(), same)) rpdos.push_back(axes.size());
       BusAxis made{.config = axis, .node = place, .answers = {}, .feedback = {}};
@@ -103,6 +117,7 @@ struct CanopenInterface::Impl {
   std::vector<BusAxis> axes;
   std::vector<std::size_t> rpdos;  ///< the first axis of each
   CanopenCounters counters;
+  BusRecord record;
   std::vector<std::string> notes;  ///< of the start
   BusTrouble trouble;
   std::chrono::nanoseconds next_heartbeat{0};
@@ -171,6 +186,7 @@ Expected<> CanopenInterface::start() {
   if (!port) return tl::unexpected(port.error());
   bus.port = std::move(*port);
   bus.counters = {};
+  bus.record.start(bus.port->now());
   if (auto booted = bus.boot_all(); !booted) {
     bus.reset_all();
     bus.port.reset();
@@ -185,6 +201,7 @@ Expected<> CanopenInterface::Impl::boot_all() {
   for (Node& node : nodes) {
     node.up = false;
     node.trouble.forget();
+    node.record.forget();
     node.boot.forget_identity();
     node.boot.begin(port->now());
   }
@@ -283,6 +300,7 @@ bool CanopenInterface::exchange(std::span<const DriveCommand> commands, std::spa
   bus.ask_positions(commands, now);
   bus.send_asides(now);
   const CanHealth health = bus.port->health();
+  bus.record.note(bus.counters, health, now);
   if (sent && health.usable()) return true;
   bus.trouble.note(health, bus.counters.unsent);
   return false;
@@ -290,6 +308,22 @@ bool CanopenInterface::exchange(std::span<const DriveCommand> commands, std::spa
 
 std::vector<std::string> CanopenInterface::start_notes() const {
   return impl_->notes;
+}
+
+BusReport CanopenInterface::report() const {
+  const Impl& bus = *impl_;
+  BusReport told = bus.record.report();
+  told.interface = bus.config.interface;
+  for (std::size_t place = 0; place < bus.nodes.size(); ++place) {
+    NodeReport node = bus.nodes[place].record.report(bus.record.run());
+    node.node = bus.nodes[place].boot.node();
+    for (std::size_t axis = 0; axis < bus.axes.size(); ++axis) {
+      if (bus.axes[axis].node == place) node.axes.push_back(axis);
+    }
+    node.problem = silence_text(node.axes.front());
+    told.nodes.push_back(std::move(node));
+  }
+  return told;
 }
 
 std::string CanopenInterface::fault_text() const {
@@ -331,6 +365,7 @@ void CanopenInterface::Impl::take_answer(BusAxis& axis, BusAxis::Answer& answer,
     return node.boot.answered_twice();
   }
   if (!node.up) return;
+  if (frame.id == node.measured) node.record.answer(frame.stamp);
   if (!unpack_answers(axis.config, answer.contents, frame, axis.feedback)) {
     ++counters.short_answers;
     return;
@@ -343,6 +378,7 @@ void CanopenInterface::Impl::take_from_node(Node& node, const CanFrame& frame, s
   const std::uint8_t id = node.boot.node();
   if (frame.id == kEmergencyId + id) {
     if (frame.size < 2) return;
+    node.record.emergency(frame, record.since_start(now));
     node.error_code = word_at(frame.data.data());
     if (node.error_code != 0) ++counters.emergencies;
     return;
@@ -352,6 +388,7 @@ void CanopenInterface::Impl::take_from_node(Node& node, const CanFrame& frame, s
     const NmtState said = heartbeat_state(frame);
     if (node.up && said != NmtState::Operational && said != NmtState::BootUp) lose(node, now);
   }
+  if (frame.id == kSdoAnswerId + id) node.record.sdo_answer(frame);
   node.boot.receive(frame, now);
   if (node.up && frame.id == kSdoAnswerId + id) node.positions.receive(frame, now);
   if (!node.up || node.boot.state() == NodeBoot::State::Operational) return;
@@ -362,6 +399,7 @@ void CanopenInterface::Impl::take_from_node(Node& node, const CanFrame& frame, s
 
 void CanopenInterface::Impl::lose(Node& node, std::chrono::nanoseconds now) noexcept {
   ++counters.nodes_lost;
+  node.record.lost();
   if (shows_two(node.boot.problem().kind)) ++counters.duplicates;
   node.trouble.note(node.boot.problem());
   node.up = false;
@@ -382,19 +420,25 @@ void CanopenInterface::Impl::watch(std::chrono::nanoseconds now) noexcept {
       node.heard = now;
       node.error_code = node.boot.error_code();
       ++counters.nodes_recovered;
+      node.record.recovered();
     }
-    if (node.boot.state() != NodeBoot::State::Failed) continue;
-    node.trouble.note(node.boot.problem());
-    node.boot.begin(now);
+    if (node.boot.state() == NodeBoot::State::Failed) {
+      node.trouble.note(node.boot.problem());
+      node.boot.begin(now);
+    }
+    node.record.state(node.state());
   }
 }
 
 void CanopenInterface::Impl::fill(std::span<DriveFeedback> feedback) noexcept {
   for (std::size_t i = 0; i < axes.size(); ++i) {
     BusAxis& axis = axes[i];
-    const Node& node = nodes[axis.node];
+    Node& node = nodes[axis.node];
     const bool missed = axis.answered() && axis.unanswered() > 0;
-    if (missed) ++counters.missed_answers;
+    if (missed) {
+      ++counters.missed_answers;
+      node.record.missed();
+    }
     feedback[i] = axis.feedback;
     feedback[i].missed = missed;
     feedback[i].online = node.up && axis.answered() && axis.unanswered() <= config.missed_answers;

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "rmac/fieldbus/bus_report.hpp"
 #include "rmac/fieldbus/can/can_port.hpp"
 #include "rmac/fieldbus/canopen/canopen_config.hpp"
 #include "rmac/fieldbus/fault_texts.hpp"
@@ -30,7 +31,8 @@ struct CanopenCounters {
 class CanopenInterface final : public DigitalControlInterface,
                                public ExchangeFaultText,
                                public SilenceText,
-                               public StartNotes {
+                               public StartNotes,
+                               public BusReports {
  public:
   /// Opens the bus for the identifiers that the drives send; `queue_frames` as `SocketCanPort::open` takes it.
   using OpenPort = std::function<Expected<std::unique_ptr<CanPort>>(std::span<const std::uint16_t> wanted,
@@ -62,6 +64,8 @@ class CanopenInterface final : public DigitalControlInterface,
   [[nodiscard]] std::optional<std::string> silence_text(std::size_t axis) const override;
   /// What its drives refused at boot, and could do without.
   [[nodiscard]] std::vector<std::string> start_notes() const override;
+
+  [[nodiscard]] BusReport report() const override;
 
   [[nodiscard]] const CanopenCounters& counters() const noexcept;
 
