@@ -231,7 +231,7 @@ Expected<> CanopenInterface::Impl::boot_all() {
     for (const BootProblem& refused : node.boot.notes()) {
       notes.push_back(describe_note(refused, node.boot.node(), config));
     }
-    if (const DriveDescription* drive = node.boot.drive(); drive != nullptr) {
+    if (const DriveDescription* drive = node.boot.plan().drive; drive != nullptr) {
       for (std::string& remark : remarks(*drive, node.boot.node())) notes.push_back(std::move(remark));
     }
   }
@@ -490,7 +490,7 @@ void CanopenInterface::Impl::ask_positions(std::span<const DriveCommand> command
     Node& node = nodes[axes[i].node];
     if (!commands[i].read_position || !node.up || node.told_position || node.positions.busy()) continue;
     const auto offset = static_cast<std::uint16_t>(kAxisOffset * axes[i].config.axis_in_node);
-    node.positions.begin(i, of_axis({0x6064, 0}, offset), node.boot.patience().sdo_timeout, now);
+    node.positions.begin(i, of_axis({0x6064, 0}, offset), node.boot.plan().patience.sdo_timeout, now);
   }
 }
 

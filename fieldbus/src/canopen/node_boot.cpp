@@ -43,7 +43,7 @@ void NodeBoot::forget_identity() noexcept {
 }
 
 std::uint32_t NodeBoot::reading(ObjectAddress object) const noexcept {
-  const std::vector<BootStep>& steps = plans_.now().steps;
+  const std::vector<BootStep>& steps = plan().steps;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (steps[i].kind == BootStep::Kind::Read && steps[i].object == object) return outcomes_[i].reading;
   }
@@ -52,7 +52,7 @@ std::uint32_t NodeBoot::reading(ObjectAddress object) const noexcept {
 
 std::vector<BootProblem> NodeBoot::notes() const {
   std::vector<BootProblem> notes;
-  const std::vector<BootStep>& steps = plans_.now().steps;
+  const std::vector<BootStep>& steps = plan().steps;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const std::uint32_t code = outcomes_[i].refusal;
     const auto known = [&](const BootProblem& note) { return note.object == steps[i].object; };
@@ -81,8 +81,8 @@ void NodeBoot::begin(std::chrono::nanoseconds now) noexcept {
 void NodeBoot::configure(std::chrono::nanoseconds now) noexcept {
   sdo_.abandon();
   step_ = 0;
-  for (std::size_t i = 0; i < plans_.now().steps.size(); ++i) {
-    if (plans_.now().steps[i].kind == BootStep::Kind::Compare) outcomes_[i].done = false;
+  for (std::size_t i = 0; i < plan().steps.size(); ++i) {
+    if (plan().steps[i].kind == BootStep::Kind::Compare) outcomes_[i].done = false;
   }
   answered_ = false;
   enter(State::Configuring, now);
@@ -92,8 +92,8 @@ void NodeBoot::configure(std::chrono::nanoseconds now) noexcept {
 void NodeBoot::fail(BootProblem::Kind kind, std::uint32_t found) noexcept {
   problem_.kind = kind;
   problem_.found = found;
-  problem_.waited = patience().boot_timeout;
-  problem_.drive = drive();
+  problem_.waited = plan().patience.boot_timeout;
+  problem_.drive = plan().drive;
   state_ = State::Failed;
 }
 
@@ -141,7 +141,7 @@ BootProblem NodeBoot::problem_of(const BootStep& step) const noexcept {
 }
 
 bool NodeBoot::done(BootStep::Kind kind) const noexcept {
-  const std::vector<BootStep>& steps = plans_.now().steps;
+  const std::vector<BootStep>& steps = plan().steps;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (steps[i].kind == kind && outcomes_[i].done) return true;
   }
@@ -149,14 +149,14 @@ bool NodeBoot::done(BootStep::Kind kind) const noexcept {
 }
 
 bool NodeBoot::left_out(std::size_t step) const noexcept {
-  const BootStep& one = plans_.now().steps[step];
+  const BootStep& one = plan().steps[step];
   return (one.after_refusal && outcomes_[step - 1].refusal == 0) ||
          (one.after_change && !done(BootStep::Kind::Compare));
 }
 
 void NodeBoot::begin_step(std::chrono::nanoseconds now) noexcept {
   if (step_ == kIdentitySteps) plans_.choose(identity_.identity());
-  const std::vector<BootStep>& steps = plans_.now().steps;
+  const std::vector<BootStep>& steps = plan().steps;
   while (step_ < steps.size() && left_out(step_)) outcomes_[step_++].refusal = 0;
   if (step_ == steps.size()) return enter(State::Starting, now);
   const BootStep& step = steps[step_];
@@ -169,12 +169,12 @@ void NodeBoot::begin_step(std::chrono::nanoseconds now) noexcept {
     return enter(State::AwaitingBootUp, now);
   }
   sdo_.set_timeout(step.kind == BootStep::Kind::Store ? std::chrono::nanoseconds(kTimeToStore)
-                                                      : patience().sdo_timeout);
+                                                      : plan().patience.sdo_timeout);
   ask(now);
 }
 
 void NodeBoot::ask(std::chrono::nanoseconds now) noexcept {
-  const BootStep& step = plans_.now().steps[step_];
+  const BootStep& step = plan().steps[step_];
   if (doubted()) {
     sdo_.upload(kAlwaysThere, bytes_, now);
   } else if (problem_.writing) {
@@ -189,8 +189,8 @@ void NodeBoot::ask(std::chrono::nanoseconds now) noexcept {
 bool NodeBoot::asks_again(std::chrono::nanoseconds now) noexcept {
   const bool timed_out = sdo_.state() == SdoClient::State::Refused && sdo_.abort_code() == sdo_abort::kTimeout;
   if (sdo_.state() != SdoClient::State::Failed && !timed_out) return false;
-  if (!answered_) return now - entered_ < patience().boot_timeout;
-  const int most = patience().sdo_tries;
+  if (!answered_) return now - entered_ < plan().patience.boot_timeout;
+  const int most = plan().patience.sdo_tries;
   return ++tries_ < most || (doubted() && tries_ < 2 * most);
 }
 
@@ -200,7 +200,8 @@ bool NodeBoot::refuses_for_now(std::chrono::nanoseconds now) const noexcept {
 }
 
 bool NodeBoot::doubted() const noexcept {
-  return plans_.now().steps[step_].optional && tries_ >= patience().sdo_tries;
+  const BootStep& step = plan().steps[step_];
+  return step.optional && step.kind != BootStep::Kind::Compare && tries_ >= plan().patience.sdo_tries;
 }
 
 bool NodeBoot::compared(const BootStep& step) noexcept {
@@ -214,7 +215,7 @@ bool NodeBoot::compared(const BootStep& step) noexcept {
 }
 
 bool NodeBoot::passes() noexcept {
-  const BootStep& step = plans_.now().steps[step_];
+  const BootStep& step = plan().steps[step_];
   if (step.kind == BootStep::Kind::Compare && sdo_.state() != SdoClient::State::Failed) return compared(step);
   if (step.kind == BootStep::Kind::Read) outcomes_[step_].reading = 0;
   if (doubted() && sdo_.state() != SdoClient::State::Failed) {
@@ -280,7 +281,7 @@ bool NodeBoot::next_frame(std::chrono::nanoseconds now, CanFrame& frame) noexcep
   if (state_ == State::Proving && now - entered_ >= proving_) state_ = State::Operational;
   const bool commands = state_ == State::AwaitingBootUp || state_ == State::Starting;
   if (!commands) return false;
-  if (now - entered_ >= patience().boot_timeout) {
+  if (now - entered_ >= plan().patience.boot_timeout) {
     fail(state_ == State::Starting ? BootProblem::Kind::NoStart : BootProblem::Kind::NoBootUp);
     return false;
   }

@@ -46,9 +46,8 @@ class NodeBoot {
   [[nodiscard]] bool watched() const noexcept { return state_ == State::Proving || state_ == State::Operational; }
   [[nodiscard]] std::uint8_t node() const noexcept { return node_; }
   [[nodiscard]] const BootProblem& problem() const noexcept { return problem_; }
-  /// Its description; null where there is none.
-  [[nodiscard]] const DriveDescription* drive() const noexcept { return plans_.now().drive; }
-  [[nodiscard]] const Patience& patience() const noexcept { return plans_.now().patience; }
+  /// By what it is brought up, since it told who it is: its description, and the patience with it.
+  [[nodiscard]] const BootPlans::Plan& plan() const noexcept { return plans_.now(); }
   /// What it has and refused when it came up, and could do without. Off the cycle.
   [[nodiscard]] std::vector<BootProblem> notes() const;
   /// What was read of an object when it came up; 0 where it has none.
