@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Inside the emulated machine: the appliance boots with a stranger's drive on its first axis, whatever that drive's manners, moves 1 mm and stops, or
-refuses the machine with a reason that a commissioner can act on. A line of JSON for each manner, and a table. The argument is the build folder, and of
-which kind alone, or which scenario by a part of its name, if not of every one."""
+refuses the machine with a reason that a commissioner can act on. A line of JSON for each manner, and a table. The argument is the build folder, and and
+which kinds alone, or which scenarios by a part of their names, joined by +, if not every one."""
 
 import contextlib
 import json
@@ -16,6 +16,7 @@ import time
 from guest import BENCH, COUNTS_PER_REVOLUTION, PITCH_MM, RUN, Drives, call, client, install, make_can, on_buses, operator, wait_for
 
 sys.path.insert(0, str(BENCH / "strangers"))
+import lss_scenarios  # noqa: E402
 import scenarios  # noqa: E402
 from scenarios import HEARTBEAT_MS, KINDS, LSS, MOVES, REFUSED  # noqa: E402
 
@@ -119,16 +120,32 @@ def run(scenario):
             "notes": notes[:4], "known": scenario.known}
 
 
+def run_lss(name, options, serials, act):
+    print(f"--- {name}: {options}", flush=True)
+    nodes = subprocess.Popen(["chrt", "--fifo", "40", "/usr/bin/python3", "-B", BENCH / "strangers/lss_nodes.py", "vcan0", *options.split(),
+                              *map(str, serials)], stdout=subprocess.PIPE, text=True)
+    nodes.stdout.readline()
+    begun = time.monotonic()
+    good, text = act()
+    nodes.kill()
+    nodes.wait()
+    return {"manner": name, "ok": good, "verdict": "as it must" if good else "fails", "wanted": "as it must", "load_s": round(time.monotonic() - begun, 1),
+            "text": text, "notes": [], "known": ""}
+
+
 def chosen():
-    if KIND in KINDS:
-        return scenarios.of(KIND), KIND == LSS
-    every = [scenario for kind in KINDS for scenario in scenarios.of(kind)]
-    if not KIND:
-        return every, True
-    found = [scenario for scenario in every if KIND.replace("_", " ") in scenario.name]
-    if not found:
-        raise SystemExit(f"there is no manner {KIND}, and no kind of them; kinds: {', '.join(KINDS)}")
-    return found, False
+    """Of each word of KIND, a kind or a part of a name: scenarios of drives, and those of LSS."""
+    words = KIND.split("+") if KIND else KINDS
+    drives, nodes = [], []
+    for word in words:
+        part = "" if word in KINDS else word.replace("_", " ")
+        found = [s for kind in KINDS for s in scenarios.of(kind) if (part in s.name if part else kind == word)]
+        found_nodes = [s for s in lss_scenarios.SCENARIOS if (part in s[0] if part else word == LSS)]
+        if not found and not found_nodes:
+            raise SystemExit(f"there is no manner {word}, and no kind of them; kinds: {', '.join(KINDS)}")
+        drives += found
+        nodes += found_nodes
+    return drives, nodes
 
 
 def prepare():
@@ -144,17 +161,20 @@ def main():
     (file,) = pathlib.Path("/usr/local/lib/rmac/drivers").glob("*/*/DMACXYZ/device.json")
     original = file.read_text()
     rows = []
-    wanted, with_lss = chosen()
-    for scenario in wanted:
+    drives, nodes = chosen()
+    for scenario in drives:
         file.write_text(original)
         with contextlib.suppress(FileNotFoundError):
             (RUN / "stranger.log").unlink()
         rows.append(run(scenario))
         print(json.dumps(rows[-1]), flush=True)
-    print(f"{'manner':<44} {'wanted':<8} {'verdict':<8} {'load':>6}  text")
+    for scenario in nodes:
+        rows.append(run_lss(*scenario))
+        print(json.dumps(rows[-1]), flush=True)
+    print(f"{'manner':<52} {'wanted':<8} {'verdict':<8} {'load':>6}  text")
     for row in rows:
         mark = "" if row["ok"] else "KNOWN " if row["known"] else "FAILED "
-        print(f"{row['manner']:<44} {row['wanted']:<8} {row['verdict']:<8} {row['load_s']:>5} s  {mark}{row['text'] or '; '.join(row['notes'])}"[:400])
+        print(f"{row['manner']:<52} {row['wanted']:<8} {row['verdict']:<8} {row['load_s']:>5} s  {mark}{row['text'] or '; '.join(row['notes'])}"[:400])
     sys.exit(0 if all(row["ok"] or row["known"] for row in rows) else 1)
 
 

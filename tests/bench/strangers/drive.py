@@ -85,7 +85,7 @@ class Drive:
         self.d.reset(application)
         self.sdo = Mailbox(StrangeServer(self.d, self.manners), self.manners)
         self._watched_until = None
-        self._arrived = {}
+        self._arrived, self._commanded = {}, False
         self._synced_at, self._syncs = None, 0
         self._statuses = collections.deque(maxlen=self.manners.status_delay + 1)
         self._skips = self.manners.skips_first_sync
@@ -124,7 +124,7 @@ class Drive:
         if self.manners.fault_at_boot:
             self.power.fail(int(self.manners.fault_at_boot, 16))
         if self.manners.quick_stop_at_boot:
-            self.power.state = Power.QUICK_STOP
+            self.power.stop_and_stay()
 
     def _reset_itself(self, now):
         if now < self._begun + self.manners.resets_itself_s:
@@ -168,7 +168,7 @@ class Drive:
                 elif pdo.synchronous:
                     self._arrived[number_] = pdo.unpack(data)
                 else:
-                    self.d.values |= pdo.unpack(data)
+                    self._command(pdo.unpack(data))
 
     def _synchronise(self, now):
         measured = now - self._synced_at if self._synced_at is not None else 0
@@ -178,9 +178,9 @@ class Drive:
         if self.nmt.state == State.OPERATIONAL:
             self._answer_sync(now)
             for values in self._arrived.values():
-                self.d.values.update(values)
+                self._command(values)
         self._arrived.clear()
-        self.power.obey(self.d.get(0x6040), now)
+        self._obey(now)
 
     def _coast(self, now):
         """What goes on without SYNC."""
@@ -188,10 +188,19 @@ class Drive:
         if self._synced_at is None or now - self._synced_at > 2 * COAST_S:
             self._synced_at = None
             self._step(COAST_S)
-            self.power.obey(self.d.get(0x6040), now)
+            self._obey(now)
 
-    def _controlword_written(self, word):
-        self.power.obey(word, self._now)
+    def _command(self, values):
+        self._commanded |= (0x6040, 0) in values
+        self.d.values.update(values)
+
+    def _controlword_written(self, _):
+        self._commanded = True
+        self._obey(self._now)
+
+    def _obey(self, now):
+        if self._commanded:  # the controlword of power-on is no command
+            self.power.obey(self.d.get(0x6040), now)
 
     def _step(self, measured):
         """The motor has had its set-point for a cycle: by 60C2h where somebody said how long that is, else as the SYNCs come."""

@@ -84,8 +84,6 @@ class Manners:
     tpdo_delay_ms: float = one(float, 0.0)
     skips_first_sync: int = one(int, 0)  # after the start, SYNCs without an answer
     chatters: bool = yes()  # a third TPDO, each 5 ms, whatever 1802h says
-    # LSS.
-    answers_when_selected: bool = yes()  # fast scan goes on for a node that was found, as with CANopenNode
 
 
 def add_arguments(parser):

@@ -60,12 +60,16 @@ class Automaton:
         self._enable_s, self._reset_s = enable_s, reset_s
         self.state = Power.NOT_READY
         self.error = 0  # 603Fh
+        self.stays = False  # in a quick stop that is over, as by option codes 5 to 8
         self._before = 0
         self._due = None
 
     def initialised(self):
         if self.state == Power.NOT_READY:
             self.state = Power.DISABLED  # 1
+
+    def stop_and_stay(self):
+        self.state, self.stays = Power.QUICK_STOP, True
 
     def fail(self, code):
         self.state, self.error, self._due = Power.FAULT, code, None
@@ -96,11 +100,11 @@ class Automaton:
         elif self._due is None:
             self._due = now + self._enable_s
         if wanted and (wanted != Power.ENABLED or now >= self._due):
-            self.state, self._due = wanted, None
+            self.state, self._due, self.stays = wanted, None, False
 
     def at_rest(self):
-        """A quick stop that is over, of option codes 1 to 3."""
-        if self.state == Power.QUICK_STOP:
+        """A quick stop that is over, of option codes 1 to 3 where it does not stay."""
+        if self.state == Power.QUICK_STOP and not self.stays:
             self.state = Power.DISABLED
 
     def statusword(self):

@@ -47,6 +47,9 @@ def dictionary():
     yield Scenario("has no serial number, no revision", "--absent 1018:03 1018:04")
     yield Scenario("has no 1018h", "--absent 1018")
     yield Scenario("another scale", "--value 608F:01=0x2710 6092:01=0x2710", REFUSED, r"(?s)node 1\b.*10000.*131072|(?s)node 1\b.*131072.*10000")
+    yield Scenario("6060h is fixed, as wanted", "--refuse-write 6060=06010002 --value 6060:00=8", REFUSED, named("6060"))
+    yield Scenario("answers by events alone", "--refuse-write 1800:02=06090030", REFUSED, named("1800"))
+    yield Scenario("identifiers are fixed, as wanted", "--refuse-write 1400:01=06010002", REFUSED, named("1400"))
     yield Scenario("mapping is fixed, as wanted", "--fixed-mapping")
     yield Scenario("mapping is fixed, another", "--fixed-mapping --tpdo 60410010", REFUSED, named("1A00"))
     yield Scenario("mapping is fixed, more than wanted", "--fixed-mapping --tpdo '60410010 60640020 60770010'", REFUSED, named("1A00"))
@@ -59,7 +62,7 @@ def sdo():
     yield Scenario("first 4 requests of a boot unanswered", "--sdo-ignore-first 4")
     yield Scenario("each 7th answer lost", "--sdo-lose-every 7")
     yield Scenario("each 2nd answer lost", "--sdo-lose-every 2")
-    yield Scenario("answers take 700 ms, known", "--sdo-delay-ms 700", parameters={"sdo_timeout_ms": [1500, 500, 500]})
+    yield Scenario("answers take 700 ms, known", "--sdo-delay-ms 700", parameters={"sdo_timeout_ms": [3000, 500, 500]})
     yield Scenario("answers take 1.5 s, known", "--sdo-delay-ms 1500", parameters={"sdo_timeout_ms": [3000, 500, 500]})
     yield Scenario("answers take 700 ms, not known, goes on", "--sdo-delay-ms 700 --sdo-deaf-to-abort")
     yield Scenario("answers take 700 ms, not known", "--sdo-delay-ms 700", REFUSED, r"(?s)node 1\b.*(sdo_timeout_ms|answer)")
@@ -102,10 +105,12 @@ def power():
     yield Scenario("fault at first, goes after 300 ms", "--fault-at-boot 3220 --fault-reset-s 0.3")
     yield Scenario("bits 14 and 15 set, 9 clear", "--status-set C000 --status-clear 0200")
     yield Scenario("bits 8, 9, 14, 15 set", "--status-set C300")
+    yield Scenario("bit 7 set: a warning", "--status-set 0080")
     yield Scenario("bit 4 clear", "--status-clear 0010")
     yield Scenario("quick stop active at first", "--quick-stop-at-boot")
     yield Scenario("not ready for 2 s", "--not-ready-s 2")
     yield Scenario("enabled after 500 ms", "--enable-s 0.5")
+    yield Scenario("enabled after 3 s", "--enable-s 3")
 
 
 def pdo():

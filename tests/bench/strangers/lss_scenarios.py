@@ -1,0 +1,51 @@
+"""What `rmac bus lss` must make of nodes without an id: of CANopenNode's manner, too. Each scenario gives (what came, what was to come) as text."""
+
+import json
+import re
+import subprocess
+
+
+def rmac(*words):
+    done = subprocess.run(["rmac", "--json", "bus", "lss", *map(str, words)], capture_output=True, text=True, timeout=200)
+    return done.returncode, done.stdout, done.stderr.strip()
+
+
+def serials(answer):
+    code, out, text = answer
+    return sorted(node["serial_number"] for node in json.loads(out)) if code == 0 else text
+
+
+def all_found(wanted):
+    def scan():
+        found = serials(rmac("scan", "vcan0"))
+        return found == sorted(wanted), f"scan: {found}"
+    return scan
+
+
+def found_or_told(wanted):
+    """All of them, or a reason that tells about nodes and what to do; one alone without a word would leave the others unnoticed."""
+    def scan():
+        found = serials(rmac("scan", "vcan0"))
+        return found == sorted(wanted) or (isinstance(found, str) and re.search(r"node|fast scan", found) is not None), f"scan: {found}"
+    return scan
+
+
+def assigned(*identity):
+    def assign():
+        words = ["--identity", *identity] if identity else []
+        code, out, text = rmac("assign", "vcan0", 9, *words)
+        asked = subprocess.run(["rmac", "bus", "scan", "vcan0"], capture_output=True, text=True)
+        return code == 0 and re.search(r"^9\s", asked.stdout, re.MULTILINE) is not None, text or out
+    return assign
+
+
+MANNER = "--answers-when-selected"
+IDENTITY = (0x2A5, 0x80000077, 0x00010002)
+# name, options of lss_nodes.py, serial numbers, what is done
+SCENARIOS = (
+    ("LSS by the standard, two nodes: scan", "", (7, 0x80000001), all_found((7, 0x80000001))),
+    ("LSS of CANopenNode, one node: scan", MANNER, (7,), all_found((7,))),
+    ("LSS of CANopenNode, one node: assign", MANNER, (7,), assigned()),
+    ("LSS of CANopenNode, two nodes: scan", MANNER, (7, 0x80000001), found_or_told((7, 0x80000001))),
+    ("LSS of CANopenNode, two nodes: assign by identity", MANNER, (7, 0x80000001), assigned(*IDENTITY, 7)),
+)
