@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Inside the emulated machine: the appliance boots with a stranger's drive on its first axis, whatever that drive's manners, moves 1 mm and stops, or
-refuses the machine with a reason that a commissioner can act on. A line of JSON for each manner, and a table. The argument is the build folder, and and
+refuses the machine with a reason that a commissioner can act on. A line of JSON for each manner, and a table. The argument is the build folder, and
 which kinds alone, or which scenarios by a part of their names, joined by +, if not every one."""
 
 import contextlib
@@ -115,7 +115,7 @@ def run(scenario):
     others.commands.unlink()
     if verdict == MOVES and abs(told["position"] / COUNTS_PER_REVOLUTION * PITCH_MM - JOG_MM) > AT_REST_MM:
         verdict, text = "fails", f"the drive itself stands at {told['position']} counts"
-    ok = verdict == scenario.verdict and (re.search(scenario.text, text if verdict == REFUSED else log) is not None)
+    ok = verdict == scenario.verdict and (re.search(scenario.text, text if verdict == REFUSED else log, re.DOTALL) is not None)
     return {"manner": scenario.name, "ok": ok, "verdict": verdict, "wanted": scenario.verdict, "load_s": round(took, 1), "text": text,
             "notes": notes[:4], "known": scenario.known}
 

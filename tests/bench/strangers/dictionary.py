@@ -17,6 +17,7 @@ class Dictionary:
     def __init__(self):
         self.values, self._defaults, self._access, self._checks, self._written = {}, {}, {}, {}, {}
         self.refuses, self.refuses_write = {}, {}  # (index, sub-index) or index: abort code
+        self.forbids = lambda index: False  # to write it in the present state
         self.blocks = self.sizes = True
 
     def add(self, index, sub, value, size, access="rw", check=None, written=None):
@@ -66,6 +67,8 @@ class Dictionary:
         self._refuse(self.refuses_write, key)
         if self._access[key] in ("ro", "const"):
             raise Abort(READ_ONLY)
+        if self.forbids(key[0]):
+            raise Abort(STATE_FORBIDS)
         if len(data) != len(before):
             raise Abort(TOO_LONG if len(data) > len(before) else TOO_SHORT)
         if self._checks[key]:

@@ -39,7 +39,8 @@ class Drive:
         self.events, self._order = [], itertools.count()
         self.counts = collections.Counter()
         self._told = None
-        self._begun = self._now = now
+        self.d.forbids = lambda index: manners.mapped_before_start and 0x1400 <= index < 0x1C00 and self.nmt.state == State.OPERATIONAL
+        self._resets_until, self._now = None, now
         self.reset(True, now)
 
     # What is to be done at a time.
@@ -78,8 +79,8 @@ class Drive:
         self.poll(now)
 
     # NMT.
-    def reset(self, application, now):
-        self.counts["resets"] += 1
+    def reset(self, application, now, told=False):
+        self.counts["resets" if told else "resets_by_itself"] += 1
         self.events.clear()
         self.left_operational()
         self.d.reset(application)
@@ -93,8 +94,10 @@ class Drive:
             self.power = Automaton(self.manners.enable_s, self.manners.fault_reset_s)
         self.nmt.boot(now)
         self.at(now + COAST_S, self._coast)
-        if self.manners.resets_itself_s and now < self._begun + self.manners.resets_itself_s:
-            self.at(now + 1, self._reset_itself)
+        if told and self._resets_until is None:
+            self._resets_until = now + self.manners.resets_itself_s
+        if self._resets_until is not None and now + self.manners.resets_each_s < self._resets_until:
+            self.at(now + self.manners.resets_each_s, lambda then: self.reset(True, then))
 
     def booted(self, now):
         """With the boot-up message."""
@@ -125,10 +128,6 @@ class Drive:
             self.power.fail(int(self.manners.fault_at_boot, 16))
         if self.manners.quick_stop_at_boot:
             self.power.stop_and_stay()
-
-    def _reset_itself(self, now):
-        if now < self._begun + self.manners.resets_itself_s:
-            self.reset(True, now)
 
     def _heartbeat_written(self, milliseconds):
         step = self.manners.heartbeat_step_ms

@@ -49,7 +49,8 @@ class Manners:
     sdo_ignore_first: int = one(int, 0)  # requests after each boot
     sdo_lose_every: int = one(int, 0)  # answer of so many
     sdo_delay_ms: float = one(float, 0.0)
-    sdo_deaf_to_abort: bool = yes()  # works on when the client gave up
+    sdo_deaf_to_abort: bool = yes()  # works on when the client gave up, and takes no other request meanwhile
+    sdo_queues: bool = yes()  # takes them, one after the other
     sdo_wrong_index_once: bool = yes()
     sdo_twice: bool = yes()  # each answer comes twice, as a gateway may have it
     expedited_only: bool = yes()
@@ -63,7 +64,9 @@ class Manners:
     boot_up_gap_ms: float = one(float, 100.0)
     obeys_start_while_booting: bool = yes()  # and is operational once it has booted
     starts_itself: bool = yes()  # CiA 302-2, 1F80h
-    resets_itself_s: float = one(float, 0.0)  # each second, for so long
+    mapped_before_start: bool = yes()  # 14xxh to 1Axxh are not to be written in Operational
+    resets_itself_s: float = one(float, 0.0)  # again and again, for so long after the first reset that it is told
+    resets_each_s: float = one(float, 1.0)
     heartbeat_toggles: bool = yes()
     heartbeat_step_ms: int = one(int, 1)  # periods are rounded up to whole ones
     guarding_only: bool = yes()  # 100Ch and 100Dh, no 1017h

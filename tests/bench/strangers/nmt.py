@@ -29,7 +29,7 @@ class Nmt:
         if len(data) != 2 or data[1] not in (0, self._drive.node):
             return
         if data[0] in (RESET_NODE, RESET_COMMUNICATION):
-            self._drive.reset(data[0] == RESET_NODE, now)
+            self._drive.reset(data[0] == RESET_NODE, now, told=True)
         elif self.state == State.INITIALISING:
             self._started_early |= data[0] == START and self._manners.obeys_start_while_booting
         elif data[0] in (START, STOP, PRE):

@@ -63,6 +63,8 @@ class Mailbox:
                 self._busy_until = now
             list(self._server.handle(request))
             return
+        if self._requests and self._manners.sdo_deaf_to_abort and not self._manners.sdo_queues:
+            return
         self._busy_until = max(self._busy_until, now) + self._manners.sdo_delay_ms / 1000
         self._requests.append((self._busy_until, request))
 

@@ -250,6 +250,15 @@ class Manners(unittest.TestCase):
         bench.run(1)
         self.assertEqual(bench.take(0x580 + NODE), [], "its client gave up")
 
+    def test_a_server_works_on_when_its_client_gave_up(self):
+        for manner, answers in (("", 1), ("--sdo-queues", 2)):
+            bench = Bench("--sdo-delay-ms", "700", "--sdo-deaf-to-abort", *manner.split())
+            bench.ask(b"\x40\x00\x10\0\0\0\0\0", 0.5)
+            bench.ask(b"\x80\x00\x10\0\0\0\x04\x05")
+            self.assertEqual(len(bench.ask(b"\x40\x00\x10\0\0\0\0\0", 0.25)), 1)
+            bench.run(2)
+            self.assertEqual(len(bench.take(0x580 + NODE)), answers - 1)
+
     def test_the_server_knows_expedited_transfers_alone(self):
         bench = Bench("--expedited-only", "--no-blocks")
         self.assertEqual(bench.value(0x1000), 0x20192)
@@ -276,7 +285,17 @@ class Manners(unittest.TestCase):
     def test_resets_itself_for_a_while(self):
         bench = Bench("--resets-itself-s", "3.5")
         bench.run(10)
+        self.assertEqual(len(bench.take(0x700 + NODE)), 1)
+        bench.put(0, [0x81, NODE])
+        bench.run(10)
         self.assertEqual(len(bench.take(0x700 + NODE)), 4)
+
+    def test_starts_itself_and_is_mapped_before(self):
+        bench = Bench("--starts-itself", "--mapped-before-start")
+        self.assertEqual(bench.drive.nmt.state, State.OPERATIONAL)
+        self.assertEqual(bench.write(0x1800, 1, 0xC0000185, 4), 0x08000022)
+        bench.put(0, [0x80, NODE])
+        self.assertEqual(bench.write(0x1800, 1, 0xC0000185, 4), 0)
 
     def test_guarding_toggles(self):
         bench = Bench("--guarding-only")
