@@ -20,7 +20,7 @@ import lss_scenarios  # noqa: E402
 import scenarios  # noqa: E402
 from scenarios import HEARTBEAT_MS, KINDS, LSS, MOVES, REFUSED  # noqa: E402
 
-BUILD, KIND = sys.argv[1].split(",")
+BUILD, KIND = sys.argv[1].split(",", 1)
 PERIOD_S = 0.002
 AT_REST_MM = 0.01
 JOG_MM = 1

@@ -4,9 +4,14 @@ import json
 import re
 import subprocess
 
+MOST_S = 60  # fast scan takes seven for each node, and as long again to see that there is no other
+
 
 def rmac(*words):
-    done = subprocess.run(["rmac", "--json", "bus", "lss", *map(str, words)], capture_output=True, text=True, timeout=200)
+    try:
+        done = subprocess.run(["rmac", "--json", "bus", "lss", *map(str, words)], capture_output=True, text=True, timeout=MOST_S)
+    except subprocess.TimeoutExpired:
+        return 1, "", f"rmac bus lss {words[0]} did not end in {MOST_S} s"
     return done.returncode, done.stdout, done.stderr.strip()
 
 
@@ -26,7 +31,7 @@ def found_or_told(wanted):
     """All of them, or a reason that tells about nodes and what to do; one alone without a word would leave the others unnoticed."""
     def scan():
         found = serials(rmac("scan", "vcan0"))
-        return found == sorted(wanted) or (isinstance(found, str) and re.search(r"node|fast scan", found) is not None), f"scan: {found}"
+        return found == sorted(wanted) or (isinstance(found, str) and re.search(r"node|fast scan", found) is not None and "did not end" not in found), f"scan: {found}"
     return scan
 
 
