@@ -46,11 +46,13 @@ def assigned(*identity):
 
 MANNER = "--answers-when-selected"
 IDENTITY = (0x2A5, 0x80000077, 0x00010002)
-# name, options of lss_nodes.py, serial numbers, what is done
+FOR_EVER = "a node that was found and goes on answering is found again, as if it were another, for ever"
+SEVERAL = "one node that goes on answering is taken for several"
+# name, options of lss_nodes.py, serial numbers, what is done, why it is known to fail
 SCENARIOS = (
-    ("LSS by the standard, two nodes: scan", "", (7, 0x80000001), all_found((7, 0x80000001))),
-    ("LSS of CANopenNode, one node: scan", MANNER, (7,), all_found((7,))),
-    ("LSS of CANopenNode, one node: assign", MANNER, (7,), assigned()),
-    ("LSS of CANopenNode, two nodes: scan", MANNER, (7, 0x80000001), found_or_told((7, 0x80000001))),
-    ("LSS of CANopenNode, two nodes: assign by identity", MANNER, (7, 0x80000001), assigned(*IDENTITY, 7)),
+    ("LSS by the standard, two nodes: scan", "", (7, 0x80000001), all_found((7, 0x80000001)), ""),
+    ("LSS of CANopenNode, one node: scan", MANNER, (7,), all_found((7,)), FOR_EVER),
+    ("LSS of CANopenNode, one node: assign", MANNER, (7,), assigned(), SEVERAL),
+    ("LSS of CANopenNode, two nodes: scan", MANNER, (7, 0x80000001), found_or_told((7, 0x80000001)), FOR_EVER),
+    ("LSS of CANopenNode, two nodes: assign by identity", MANNER, (7, 0x80000001), assigned(*IDENTITY, 7), ""),
 )
