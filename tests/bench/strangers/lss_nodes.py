@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Nodes without a node id, those of canopen_node.py, with a manner that CANopenNode has: one that fast scan has found, and that waits for its
-configuration, goes on answering fast scan. usage: lss_nodes.py INTERFACE [--answers-when-selected] SERIAL …"""
+"""Nodes without a node id, those of canopen_node.py, with manners of their own: one that fast scan has found, and that waits for its configuration, goes
+on answering fast scan. usage: lss_nodes.py INTERFACE [--when-selected matches|answers] SERIAL …"""
 
 import argparse
 import pathlib
@@ -11,8 +11,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
 from canopen_node import NO_NODE, LssSlave, Node  # noqa: E402
 
 
-class AnswersWhenSelected(LssSlave):
-    """CiA 305 has fast scan answered by nodes in LSS waiting alone."""
+class Matches(LssSlave):
+    """As if it had not been found. CiA 305 has fast scan answered by nodes in LSS waiting alone."""
 
     def fast_scan(self, asked, bit, part, following):
         selected, self.configures = self.configures, False
@@ -21,17 +21,26 @@ class AnswersWhenSelected(LssSlave):
         return answer
 
 
-def make(send, serial, answers_when_selected):
+class Answers(LssSlave):
+    """Whatever is asked for, as CANopenNode does: its slave compares in LSS waiting, and beyond that answers each fast scan with yes."""
+
+    def fast_scan(self, asked, bit, part, following):
+        return [0x4F] if self.configures else super().fast_scan(asked, bit, part, following)
+
+
+MANNERS = {"": LssSlave, "matches": Matches, "answers": Answers}
+
+
+def make(send, serial, when_selected=""):
     node = Node(send, NO_NODE, serial)
-    if answers_when_selected:
-        node.lss = AnswersWhenSelected(NO_NODE, node.objects.identity)
+    node.lss = MANNERS[when_selected](NO_NODE, node.objects.identity)
     return node
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("interface")
-    parser.add_argument("--answers-when-selected", action="store_true")
+    parser.add_argument("--when-selected", default="", choices=MANNERS)
     parser.add_argument("serials", nargs="+", type=lambda text: int(text, 0))
     options = parser.parse_args()
     import can
@@ -40,7 +49,7 @@ def main():
     def send(identifier, data):
         bus.send(can.Message(arbitration_id=identifier, data=bytes(data), is_extended_id=False))
 
-    nodes = [make(send, serial, options.answers_when_selected) for serial in options.serials]
+    nodes = [make(send, serial, options.when_selected) for serial in options.serials]
     print("up", flush=True)
     while True:
         message = bus.recv(0.01)

@@ -40,19 +40,21 @@ def assigned(*identity):
         words = ["--identity", *identity] if identity else []
         code, out, text = rmac("assign", "vcan0", 9, *words)
         asked = subprocess.run(["rmac", "bus", "scan", "vcan0"], capture_output=True, text=True)
-        return code == 0 and re.search(r"^9\s", asked.stdout, re.MULTILINE) is not None, text or out
+        return code == 0 and re.search(r"^9\s", asked.stdout, re.MULTILINE) is not None, f"assign: {text or out} scan: {asked.stderr or asked.stdout}"
     return assign
 
 
-MANNER = "--answers-when-selected"
+MATCHES, ANSWERS = "--when-selected matches", "--when-selected answers"
 IDENTITY = (0x2A5, 0x80000077, 0x00010002)
 FOR_EVER = "a node that was found and goes on answering is found again, as if it were another, for ever"
 SEVERAL = "one node that goes on answering is taken for several"
 # name, options of lss_nodes.py, serial numbers, what is done, why it is known to fail
 SCENARIOS = (
     ("LSS by the standard, two nodes: scan", "", (7, 0x80000001), all_found((7, 0x80000001)), ""),
-    ("LSS of CANopenNode, one node: scan", MANNER, (7,), all_found((7,)), FOR_EVER),
-    ("LSS of CANopenNode, one node: assign", MANNER, (7,), assigned(), SEVERAL),
-    ("LSS of CANopenNode, two nodes: scan", MANNER, (7, 0x80000001), found_or_told((7, 0x80000001)), FOR_EVER),
-    ("LSS of CANopenNode, two nodes: assign by identity", MANNER, (7, 0x80000001), assigned(*IDENTITY, 7), ""),
+    ("LSS by the standard, one node: assign", "", (7,), assigned(), ""),
+    *(row for who, manner in (("that matches on", MATCHES), ("of CANopenNode", ANSWERS)) for row in (
+        (f"LSS {who}, one node: scan", manner, (7,), found_or_told((7,)), FOR_EVER),
+        (f"LSS {who}, one node: assign", manner, (7,), assigned(), SEVERAL),
+        (f"LSS {who}, two nodes: scan", manner, (7, 0x80000001), found_or_told((7, 0x80000001)), FOR_EVER),
+        (f"LSS {who}, two nodes: assign by identity", manner, (7, 0x80000001), assigned(*IDENTITY, 7), ""))),
 )

@@ -12,9 +12,9 @@ def fast_scan(node, asked, bit, part, following):
     return len(node.frames) > before
 
 
-def make(serial, *, answers_when_selected):
+def make(serial, when_selected):
     frames = []
-    node = lss_nodes.make(lambda identifier, data: frames.append((identifier, bytes(data))), serial, answers_when_selected)
+    node = lss_nodes.make(lambda identifier, data: frames.append((identifier, bytes(data))), serial, when_selected)
     node.frames = frames
     return node
 
@@ -27,8 +27,8 @@ def find(node):
 
 class FastScan(unittest.TestCase):
     def test_selects_the_node_that_it_finds(self):
-        for manner in (False, True):
-            node = make(7, answers_when_selected=manner)
+        for manner in lss_nodes.MANNERS:
+            node = make(7, manner)
             self.assertTrue(fast_scan(node, 0, 0x80, 0, 0))
             self.assertFalse(fast_scan(node, 1, 0, 0, 1), "another vendor")
             find(node)
@@ -37,10 +37,12 @@ class FastScan(unittest.TestCase):
             self.assertFalse(fast_scan(node, 0, 0x80, 0, 0), "it has one")
 
     def test_a_selected_node_answers_as_its_manner_is(self):
-        for manner in (False, True):
-            node = make(7, answers_when_selected=manner)
+        for manner, same, other in (("", False, False), ("matches", True, False), ("answers", True, True)):
+            node = make(7, manner)
             find(node)
-            self.assertEqual(fast_scan(node, 0, 0x80, 0, 0), manner)
+            self.assertEqual(fast_scan(node, 0, 0x80, 0, 0), same)
+            self.assertEqual(fast_scan(node, 0x2A5, 0, 0, 0), same)
+            self.assertEqual(fast_scan(node, 0x2A4, 0, 0, 0), other, "another vendor")
             node.handle(0x7E5, bytes([4, 0, 0, 0, 0, 0, 0, 0]), 0.0)
             self.assertTrue(fast_scan(node, 0, 0x80, 0, 0), "it waits again")
 
