@@ -34,6 +34,7 @@ class FastScan(unittest.TestCase):
             find(node)
             node.handle(0x7E5, bytes([0x11, 9, 0, 0, 0, 0, 0, 0]), 0.0)
             self.assertEqual(node.frames[-1], (0x7E4, bytes([0x11]) + bytes(7)), "it takes a node id")
+            node.handle(0x7E5, bytes([4, 0, 0, 0, 0, 0, 0, 0]), 0.0)
             self.assertFalse(fast_scan(node, 0, 0x80, 0, 0), "it has one")
 
     def test_a_selected_node_answers_as_its_manner_is(self):
