@@ -40,7 +40,7 @@ def assigned(*identity):
         words = ["--identity", *identity] if identity else []
         code, out, text = rmac("assign", "vcan0", 9, *words)
         asked = subprocess.run(["rmac", "bus", "scan", "vcan0"], capture_output=True, text=True)
-        return code == 0 and re.search(r"^9\s", asked.stdout, re.MULTILINE) is not None, f"assign: {text or out} scan: {asked.stderr or asked.stdout}"
+        return code == 0 and re.search(r"^\s*9\s", asked.stdout, re.MULTILINE) is not None, f"assign: {text or out} scan: {asked.stderr or asked.stdout}"
     return assign
 
 
