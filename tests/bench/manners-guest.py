@@ -82,11 +82,23 @@ def jog(person):
     return person.state()["joints"][0] - before, now
 
 
-def try_out(person):
+@contextlib.contextmanager
+def sent_meanwhile(frame):
+    sender = subprocess.Popen(["sh", "-c", f"while :; do cansend vcan0 {frame}; sleep 0.1; done"]) if frame else None
+    try:
+        yield
+    finally:
+        if sender:
+            sender.kill()
+            sender.wait()
+
+
+def try_out(person, meanwhile):
     """(verdict, text, seconds of the load)"""
     begun = time.monotonic()
     try:
-        person.call("Device.Load", Name="DMACXYZ")
+        with sent_meanwhile(meanwhile):
+            person.call("Device.Load", Name="DMACXYZ")
     except client.Refused as refused:
         return REFUSED, refused.message, time.monotonic() - begun
     took = time.monotonic() - begun
@@ -105,7 +117,7 @@ def run(scenario):
     others = Drives("vcan0", 2, 3, name="others")
     stranger = Stranger(scenario.options)
     appliance = Appliance()
-    verdict, text, took = try_out(appliance.client)
+    verdict, text, took = try_out(appliance.client, scenario.meanwhile)
     log = appliance.log.read_text()
     notes = [line for line in log.splitlines() if "node 1" in line]
     appliance.end()

@@ -19,6 +19,7 @@ class Scenario:
     text: str = ""
     parameters: dict = dataclasses.field(default_factory=dict)
     mode: int = 8
+    meanwhile: str = ""  # a frame that somebody else sends each tenth of a second while the machine is loaded, as cansend takes it
     known: str = ""
 
 
@@ -87,7 +88,7 @@ def boot():
     yield Scenario("boots for 3 s", "--boot-s 3")
     yield Scenario("boots for 8 s, not known", "--boot-s 8", REFUSED, r"node 1\b.*boot")
     yield Scenario("boots for 8 s, known", "--boot-s 8", parameters={"boot_timeout_s": 12})
-    yield Scenario("obeys a start while it boots", "--boot-s 1 --obeys-start-while-booting")
+    yield Scenario("obeys a start while it boots", "--boot-s 1 --obeys-start-while-booting", meanwhile="000#0101")
     yield Scenario("starts by itself", "--starts-itself")
     yield Scenario("starts by itself, takes no mapping then", "--starts-itself --mapped-before-start")
     yield Scenario("resets itself each second for 4 s, boots for 0.8 s", "--resets-itself-s 4.5 --boot-s 0.8")
