@@ -41,6 +41,7 @@ class Drive:
         self._told = None
         self.d.forbids = lambda index: manners.mapped_before_start and 0x1400 <= index < 0x1C00 and self.nmt.state == State.OPERATIONAL
         self._resets_until, self._now = None, now
+        self._has_fault = bool(manners.fault_at_boot)
         self.reset(True, now)
 
     # What is to be done at a time.
@@ -124,7 +125,7 @@ class Drive:
 
     def _initialised(self, _):
         self.power.initialised()
-        if self.manners.fault_at_boot:
+        if self._has_fault:
             self.power.fail(int(self.manners.fault_at_boot, 16))
         if self.manners.quick_stop_at_boot:
             self.power.stop_and_stay()
@@ -200,6 +201,7 @@ class Drive:
     def _obey(self, now):
         if self._commanded:  # the controlword of power-on is no command
             self.power.obey(self.d.get(0x6040), now)
+            self._has_fault &= self.power.state in (Power.FAULT, Power.NOT_READY)
 
     def _step(self, measured):
         """The motor has had its set-point for a cycle: by 60C2h where somebody said how long that is, else as the SYNCs come."""

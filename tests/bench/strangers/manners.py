@@ -76,7 +76,7 @@ class Manners:
     history: list = many(lambda text: int(text, 16))  # 1003h, and 1001h not zero with it
     # Power states and statusword.
     not_ready_s: float = one(float, 0.0)
-    fault_at_boot: str = one(str, "")  # 603Fh
+    fault_at_boot: str = one(str, "")  # 603Fh; until the controlword resets it
     fault_reset_s: float = one(float, 0.0)
     quick_stop_at_boot: bool = yes()
     enable_s: float = one(float, 0.0)

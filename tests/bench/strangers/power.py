@@ -75,8 +75,8 @@ class Automaton:
         self.state, self.error, self._due = Power.FAULT, code, None
 
     def drop(self, option):
-        """What 6007h has it do when its master is gone; of use in the states that have power alone."""
-        if self.state not in POWERED:
+        """What 6007h has it do when its master is gone; of use in Operation enabled alone."""
+        if self.state != Power.ENABLED:
             return
         if option == 1:
             self.fail(0x8130)

@@ -19,6 +19,7 @@ class Scenario:
     text: str = ""
     parameters: dict = dataclasses.field(default_factory=dict)
     mode: int = 8
+    reset: bool = False  # the person does, where the refusal says so, and loads it again
     meanwhile: str = ""  # a frame that somebody else sends each tenth of a second while the machine is loaded, as cansend takes it
     known: str = ""
 
@@ -108,9 +109,10 @@ def heartbeat():
 def power():
     yield Scenario("status 1 cycle late", "--status-delay 1")
     yield Scenario("status 5 cycles late", "--status-delay 5")
-    yield Scenario("status 5 cycles late, fault at first", "--status-delay 5 --fault-at-boot 7305")
-    yield Scenario("fault at first", "--fault-at-boot 7305")
-    yield Scenario("fault at first, goes after 300 ms", "--fault-at-boot 3220 --fault-reset-s 0.3")
+    yield Scenario("status 5 cycles late, fault at first", "--status-delay 5 --fault-at-boot 7305", reset=True)
+    yield Scenario("fault at first", "--fault-at-boot 7305", reset=True)
+    yield Scenario("fault at first, of its master's death", "--fault-at-boot 8130", reset=True)
+    yield Scenario("fault at first, goes after 300 ms", "--fault-at-boot 3220 --fault-reset-s 0.3", reset=True)
     yield Scenario("bits 14 and 15 set, 9 clear", "--status-set C000 --status-clear 0200")
     yield Scenario("bits 8, 9, 14, 15 set", "--status-set C300")
     yield Scenario("bit 7 set: a warning", "--status-set 0080")

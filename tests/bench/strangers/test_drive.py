@@ -336,6 +336,10 @@ class Manners(unittest.TestCase):
         bench = Bench("--fault-at-boot", "2310", "--fault-reset-s", "0.02")
         bench.configure()
         bench.cycle(0x80)
+        bench.put(0, [0x81, NODE])
+        bench.configure()
+        self.assertEqual(bench.cycle(0)[0] & 0x4F, 0x08, "no reset of the node ends it")
+        bench.cycle(0x80)
         for _ in range(8):
             self.assertEqual(bench.cycle(0x80)[0] & 0x4F, 0x08)
         for _ in range(5):
