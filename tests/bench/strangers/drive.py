@@ -14,10 +14,9 @@ import sys
 import time
 
 import manners as manners_module
-import motor as motors
 import objects
+from axis import Axis
 from nmt import Nmt, State
-from power import Automaton, Power
 from sdo import Mailbox, StrangeServer
 
 GUARD_LOST, LENGTH_ERROR = 0x8130, 0x8210
@@ -32,16 +31,14 @@ class Drive:
     def __init__(self, send, node, manners, now, tell=lambda text: None):
         self.send, self.node, self.manners, self._tell = send, node, manners, tell
         self.d, self.rpdos, self.tpdos = objects.make(node, manners, {
-            "heartbeat": self._heartbeat_written, "watch": self._watch_written, "controlword": self._controlword_written})
-        self.motor = motors.Motor()
-        self.power = Automaton(manners.enable_s, manners.fault_reset_s)
+            "heartbeat": self._heartbeat_written, "watch": self._watch_written, "controlword": lambda _: self.axis.controlword_written(self._now)})
+        self.axis = Axis(self.d, manners)
         self.nmt = Nmt(self, manners)
         self.events, self._order = [], itertools.count()
         self.counts = collections.Counter()
         self._told = None
         self.d.forbids = lambda index: manners.mapped_before_start and 0x1400 <= index < 0x1C00 and self.nmt.state == State.OPERATIONAL
         self._resets_until, self._now = None, now
-        self._has_fault = bool(manners.fault_at_boot)
         self.reset(True, now)
 
     # What is to be done at a time.
@@ -83,16 +80,14 @@ class Drive:
     def reset(self, application, now, told=False):
         self.counts["resets" if told else "resets_by_itself"] += 1
         self.events.clear()
-        self.left_operational()
+        self.axis.drop()
         self.d.reset(application)
+        self.axis.reset(application)
         self.sdo = Mailbox(StrangeServer(self.d, self.manners), self.manners)
         self._watched_until = None
-        self._arrived, self._commanded = {}, False
+        self._arrived = {}
         self._synced_at, self._syncs = None, 0
-        self._statuses = collections.deque(maxlen=self.manners.status_delay + 1)
         self._skips = self.manners.skips_first_sync
-        if application:
-            self.power = Automaton(self.manners.enable_s, self.manners.fault_reset_s)
         self.nmt.boot(now)
         self.at(now + COAST_S, self._coast)
         if told and self._resets_until is None:
@@ -102,8 +97,7 @@ class Drive:
 
     def booted(self, now):
         """With the boot-up message."""
-        if self.power.state == Power.NOT_READY:
-            self.at(now + self.manners.not_ready_s, self._initialised)
+        self.at(now + self.manners.not_ready_s, lambda _: self.axis.initialise())
         for _ in range(self.manners.emcy_at_boot):
             self.emergency(int(self.manners.emcy_code, 16))
         if self.manners.chatters:
@@ -115,20 +109,9 @@ class Drive:
             if pdo.valid and not pdo.synchronous and pdo.contents():
                 self.send(pdo.identifier, pdo.pack())
 
-    def left_operational(self):
-        """Stopped or pre-operational by its master's word: a drive that is enabled does what 6007h says, with nobody to command it."""
-        self.power.drop(self.d.get(0x6007) if (0x6007, 0) in self.d.values else 0)
-
     def emergency(self, code):
         self.counts["emergencies"] += 1
         self.send(0x80 + self.node, code.to_bytes(2, "little") + bytes([0x81 if code else self.d.get(0x1001)]) + bytes(5))
-
-    def _initialised(self, _):
-        self.power.initialised()
-        if self._has_fault:
-            self.power.fail(int(self.manners.fault_at_boot, 16))
-        if self.manners.quick_stop_at_boot:
-            self.power.stop_and_stay()
 
     def _heartbeat_written(self, milliseconds):
         step = self.manners.heartbeat_step_ms
@@ -168,78 +151,27 @@ class Drive:
                 elif pdo.synchronous:
                     self._arrived[number_] = pdo.unpack(data)
                 else:
-                    self._command(pdo.unpack(data))
+                    self.axis.command(pdo.unpack(data))
 
     def _synchronise(self, now):
         measured = now - self._synced_at if self._synced_at is not None else 0
         self._synced_at = now
         self._syncs += 1
-        self._step(measured)
+        self.axis.step(measured)
         if self.nmt.state == State.OPERATIONAL:
             self._answer_sync(now)
             for values in self._arrived.values():
-                self._command(values)
+                self.axis.command(values)
         self._arrived.clear()
-        self._obey(now)
+        self.axis.obey(now)
 
     def _coast(self, now):
         """What goes on without SYNC."""
         self.at(now + COAST_S, self._coast)
         if self._synced_at is None or now - self._synced_at > 2 * COAST_S:
             self._synced_at = None
-            self._step(COAST_S)
-            self._obey(now)
-
-    def _command(self, values):
-        self._commanded |= (0x6040, 0) in values
-        self.d.values.update(values)
-
-    def _controlword_written(self, _):
-        self._commanded = True
-        self._obey(self._now)
-
-    def _obey(self, now):
-        if self._commanded:  # the controlword of power-on is no command
-            self.power.obey(self.d.get(0x6040), now)
-            self._has_fault &= self.power.state in (Power.FAULT, Power.NOT_READY)
-
-    def _step(self, measured):
-        """The motor has had its set-point for a cycle: by 60C2h where somebody said how long that is, else as the SYNCs come."""
-        seconds = self.cycle_s() or measured
-        mode = self.d.get(0x6060)
-        setpoint = self.d.get_signed({motors.POSITION: 0x607A, motors.VELOCITY: 0x60FF}.get(mode, 0x6071))
-        before = self.power.state
-        self.motor.step(seconds if measured else 0, self.power.state, mode, setpoint)
-        if self.motor.velocity == 0:
-            self.power.at_rest()
-        self._publish(mode, setpoint if before == Power.ENABLED and mode == motors.TORQUE else 0)
-
-    def cycle_s(self):
-        if self._told_cycle():
-            return self.d.get(0x60C2, 1) * 10.0 ** self.d.get_signed(0x60C2, 2)
-        return 0.0
-
-    def _told_cycle(self):
-        return (0x60C2, 1) in self.d.values and self.d.values[0x60C2, 1] != b"\x00" and not self._refuses(0x60C2)
-
-    def _refuses(self, index):
-        return index in self.d.refuses or index in self.d.refuses_write
-
-    def statusword(self):
-        word = self.power.statusword()
-        if self.power.state == Power.ENABLED and self.d.get(0x6060) in (motors.POSITION, motors.VELOCITY, motors.TORQUE):
-            word |= 1 << 12  # it follows what it is commanded
-        return (word | int(self.manners.status_set, 16)) & ~int(self.manners.status_clear, 16)
-
-    def _publish(self, mode, torque):
-        d = self.d
-        self._statuses.append(self.statusword())
-        d.set(0x6041, self._statuses[0])
-        d.set(0x603F, self.power.error)
-        d.set(0x6061, mode)
-        d.set(0x6064, round(self.motor.position))
-        d.set(0x606C, round(self.motor.velocity))
-        d.set(0x6077, torque)
+            self.axis.step(COAST_S)
+            self.axis.obey(now)
 
     def _answer_sync(self, now):
         if self._skips:
@@ -259,13 +191,13 @@ class Drive:
         self.at(now + CHATTER_S, self._chatter)
 
     def _tell_changes(self):
-        state = self.nmt.state.name, self.power.state.name
+        state = self.nmt.state.name, self.axis.power.state.name
         if state != self._told:
             self._told = state
             self._tell(" ".join(state))
 
     def summary(self):
-        return {"node": self.node, "nmt": self.nmt.state.name, "power": self.power.state.name, "position": round(self.motor.position),
+        return {"node": self.node, "nmt": self.nmt.state.name, "power": self.axis.power.state.name, "position": round(self.axis.motor.position),
                 "sdo_requests": self.sdo.requests, **self.counts}
 
 

@@ -42,7 +42,7 @@ class Nmt:
         if state == State.OPERATIONAL:
             self._drive.started()
         else:
-            self._drive.left_operational()
+            self._drive.axis.drop()
 
     def guarded(self, identifier):
         """A remote request for the state (7.2.8.3.2.1): bit 7 toggles from answer to answer."""

@@ -154,14 +154,14 @@ class Communication(unittest.TestCase):
         self.assertEqual(bench.drive.nmt.state, State.OPERATIONAL, "it watches from the first heartbeat on")
         bench.put(0x77F, [5])
         bench.enable()
-        self.assertEqual(bench.drive.power.state, Power.ENABLED)
+        self.assertEqual(bench.drive.axis.power.state, Power.ENABLED)
         bench.run(0.074 - 6 * CYCLE_S)
-        self.assertEqual(bench.drive.power.state, Power.ENABLED)
+        self.assertEqual(bench.drive.axis.power.state, Power.ENABLED)
         bench.run(0.002)
         self.assertEqual(bench.drive.nmt.state, State.PRE_OPERATIONAL)
         self.assertEqual(bench.take(0x80 + NODE)[0][:2], b"\x30\x81")
         bench.run(0.1)
-        self.assertEqual(bench.drive.power.state, Power.DISABLED, "by a quick stop")
+        self.assertEqual(bench.drive.axis.power.state, Power.DISABLED, "by a quick stop")
 
     def test_goes_back_to_power_on_values(self):
         bench = Bench("--value", "6502:00=80")
@@ -206,7 +206,7 @@ class Motion(unittest.TestCase):
         bench = Bench("--fault-at-boot", "7305")
         bench.configure()
         self.assertEqual(bench.cycle(0x80)[0] & 0x4F, 0x08)
-        bench.drive.power.fail(0x1000)
+        bench.drive.axis.power.fail(0x1000)
         for _ in range(3):
             self.assertEqual(bench.cycle(0x80)[0] & 0x4F, 0x08, "the bit stays where it was")
         bench.cycle(0)
