@@ -40,6 +40,11 @@ struct BusAxis {
     for (const Answer& answer : answers) most = std::max(most, answer.unanswered);
     return most;
   }
+  /// Among its setpoints.
+  [[nodiscard]] bool is_told(std::uint16_t index) const noexcept {
+    return std::any_of(config.setpoints.begin(), config.setpoints.end(),
+                       [index](const MappedObject& mapped) { return mapped.object.index == index; });
+  }
   /// Told in one of its PDOs.
   [[nodiscard]] bool tells(std::uint16_t index) const noexcept {
     return std::any_of(answers.begin(), answers.end(), [index](const Answer& answer) {

@@ -150,6 +150,10 @@ bool CanopenInterface::tells_torque(std::size_t axis) const noexcept {
   return impl_->axes[axis].tells(0x6077);
 }
 
+bool CanopenInterface::takes_torque_offset(std::size_t axis) const noexcept {
+  return impl_->axes[axis].is_told(0x60B2);
+}
+
 bool CanopenInterface::reads_positions(std::size_t axis) const noexcept {
   return impl_->axes[axis].tells(0x6064);
 }
@@ -169,9 +173,8 @@ double CanopenInterface::counts_per_revolution(std::size_t axis) const noexcept 
 
 bool CanopenInterface::latches(std::size_t axis, TouchProbeEdge edge) const noexcept {
   const BusAxis& of = impl_->axes[axis];
-  const bool commanded = std::any_of(of.config.setpoints.begin(), of.config.setpoints.end(),
-                                     [](const MappedObject& mapped) { return mapped.object.index == 0x60B8; });
-  return commanded && of.tells(0x60B9) && of.tells(static_cast<std::uint16_t>(0x60BA + static_cast<int>(edge)));
+  return of.is_told(0x60B8) && of.tells(0x60B9) &&
+         of.tells(static_cast<std::uint16_t>(0x60BA + static_cast<int>(edge)));
 }
 
 const CanopenCounters& CanopenInterface::counters() const noexcept {

@@ -24,6 +24,10 @@ std::uint32_t setpoint_word(const AxisConfig& axis, const DriveCommand& command,
       return static_cast<std::uint32_t>(command.target_position_counts);
     case 0x60FF:
       return static_cast<std::uint32_t>(to_long(command.target_velocity_rpm * axis.velocity_units_per_rpm));
+    case 0x60B1:
+      return static_cast<std::uint32_t>(to_long(command.velocity_offset_rpm * axis.velocity_units_per_rpm));
+    case 0x60B2:
+      return static_cast<std::uint32_t>(command.torque_offset_permille);
     case 0x60B8:
       return command.touch_probe;
     default:

@@ -10,11 +10,11 @@
 namespace rmac::fieldbus::canopen {
 
 /// Objects that carry a word of `DriveCommand`, and dummies: data types as entries, which fill room (CiA 301, 7.4.7).
-inline constexpr std::array kSetpointWords{MappedObject{{0x6040, 0}, 16}, MappedObject{{0x6060, 0}, 8},
-                                           MappedObject{{0x6071, 0}, 16}, MappedObject{{0x607A, 0}, 32},
-                                           MappedObject{{0x60FF, 0}, 32}, MappedObject{{0x60C1, 1}, 32},
-                                           MappedObject{{0x60B8, 0}, 16}, MappedObject{{0x0005, 0}, 8},
-                                           MappedObject{{0x0006, 0}, 16}, MappedObject{{0x0007, 0}, 32}};
+inline constexpr std::array kSetpointWords{
+    MappedObject{{0x6040, 0}, 16}, MappedObject{{0x6060, 0}, 8},  MappedObject{{0x6071, 0}, 16},
+    MappedObject{{0x607A, 0}, 32}, MappedObject{{0x60FF, 0}, 32}, MappedObject{{0x60C1, 1}, 32},
+    MappedObject{{0x60B1, 0}, 32}, MappedObject{{0x60B2, 0}, 16}, MappedObject{{0x60B8, 0}, 16},
+    MappedObject{{0x0005, 0}, 8},  MappedObject{{0x0006, 0}, 16}, MappedObject{{0x0007, 0}, 32}};
 
 /// Objects that carry a word of `DriveFeedback`.
 inline constexpr std::array kAnswerWords{

@@ -77,6 +77,7 @@ void SimulatedServoDrive::run_loops(const DriveCommand& command, double period_s
   const double step_s = period_s / steps;
   const bool to_position = command.mode == DriveMode::CyclicSyncPosition;
   const double aim = to_position ? angle_of(command.target_position_counts) : 0;
+  const double offset_nm = command.torque_offset_permille * parameters_.rated_torque_nm / 1000;
   const double from = to_position ? aim_rad_.value_or(aim) : 0;
   for (int i = 1; i <= steps; ++i) {
     double wanted = command.target_velocity_rpm * std::numbers::pi / 30;
@@ -86,7 +87,7 @@ void SimulatedServoDrive::run_loops(const DriveCommand& command, double period_s
     const double excess = std::clamp(wanted, -max_speed_rad_s, max_speed_rad_s) - plant_.speed_rad_s();
     const double gain = kVelocityRadS * parameters_.inertia_kg_m2();
     integral_nm_ = std::clamp(integral_nm_ + gain * kIntegralRadS * excess * step_s, -most_nm, most_nm);
-    plant_.advance(std::clamp(gain * excess + integral_nm_, -most_nm, most_nm), false, step_s);
+    plant_.advance(std::clamp(gain * excess + integral_nm_ + offset_nm, -most_nm, most_nm), false, step_s);
   }
   if (to_position) aim_rad_ = aim;
 }

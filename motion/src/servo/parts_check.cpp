@@ -168,11 +168,22 @@ Expected<> check_inputs(const ServoLoopParts& parts) {
   return {};
 }
 
-/// A joint has a law exactly where its drives take a torque.
+/// Actuators whose drives take a torque beside what they follow.
+IndexSet with_torque_offset(const ServoLoopParts& parts) {
+  IndexSet found = 0;
+  for (std::size_t i = 0; i < parts.actuators.size(); ++i) {
+    if (parts.actuators[i].bus->interface->takes_torque_offset(parts.actuators[i].axis)) found |= only(i);
+  }
+  return found;
+}
+
+/// A joint has a law where its drives take a torque, and may have one where they take one beside what they follow.
 Expected<> check_modes(const ServoLoopParts& parts, const Wiring& wiring) {
-  for (std::size_t j = 0; j < wiring.joints() && !parts.virtual_mode; ++j) {
+  if (parts.virtual_mode) return {};
+  const IndexSet offset = with_torque_offset(parts);
+  for (std::size_t j = 0; j < wiring.joints(); ++j) {
     const bool takes_torque = (wiring.actuators_of(j) & wiring.torque_drives()) != 0;
-    const bool follows_itself = (wiring.actuators_of(j) & ~wiring.torque_drives()) != 0;
+    const bool follows_itself = wiring.follows_itself(j);
     if (takes_torque && follows_itself) {
       return failure(MinorCode::InvalidParameterValue,
                      "servo loop: " + joint_text(j) +
@@ -183,11 +194,13 @@ Expected<> check_modes(const ServoLoopParts& parts, const Wiring& wiring) {
       return failure(MinorCode::InvalidParameter, "servo loop: " + joint_text(j) +
                                                       " has no servo law, and its drive takes a torque; choose one "
                                                       "(SetMechanismJointServoControlLaw)");
-    if (!takes_torque && parts.joints[j].law) {
-      return failure(MinorCode::InvalidParameterValue,
-                     "servo loop: " + joint_text(j) +
-                         " has a servo law, but its drive closes the loop itself (cyclic synchronous position or "
-                         "velocity); leave the law out, or put the drive in torque mode");
+    if (!takes_torque && parts.joints[j].law && (wiring.actuators_of(j) & ~offset) != 0) {
+      return failure(
+          MinorCode::InvalidParameterValue,
+          "servo loop: " + joint_text(j) +
+              " has a servo law, but its drive closes the loop itself (cyclic synchronous position or "
+              "velocity) and takes no torque beside; leave the law out, have its torque offset carried (60B2h in "
+              "rpdo), or put the drive in torque mode");
     }
   }
   return {};

@@ -170,6 +170,11 @@ bool ServoLoop::Impl::operable(std::size_t joint) const noexcept {
   return true;
 }
 
+void ServoLoop::Impl::engage_law(std::size_t joint, double from_effort) noexcept {
+  if (wiring.follows_itself(joint)) return laws.engage_beside(joint, from_effort);
+  laws.engage(joint, input(joint), from_effort);
+}
+
 void ServoLoop::Impl::go_live() noexcept {
   if (!state.driving() || state.state() == ServoState::Homing) return;
   setpoints.begin_cycle();
@@ -178,11 +183,11 @@ void ServoLoop::Impl::go_live() noexcept {
     if (!live[j] && operable(j)) {
       live.take(j);
       positions.engaged(j);
-      if (!laws.has_law(j)) engaged |= only(j);
       setpoints.hold_at(j, joints.position()[j]);
-      laws.engage(j, input(j), laws.resting_effort(j));
+      if (wiring.follows_itself(j)) engaged |= only(j);
+      engage_law(j, laws.resting_effort(j));
     } else if (live.handed(j)) {
-      laws.engage(j, input(j), laws.effort()[j]);
+      engage_law(j, laws.effort()[j]);
     }
   }
   live.engaged();
@@ -245,14 +250,21 @@ void ServoLoop::Impl::watch_motion(const ServoCommand& command) noexcept {
 ServoInput ServoLoop::Impl::input(std::size_t joint) const noexcept {
   const PositionCorrection& correction = transmission.correction(joint);
   const std::optional<double> measured = joints.measured_effort(joint);
-  return {.position_setpoint = setpoints.position()[joint],
-          .velocity_setpoint = setpoints.velocity()[joint] + correction.crossing_velocity(),
-          .acceleration_setpoint = setpoints.acceleration()[joint] + correction.crossing_acceleration(),
-          .position = joints.position()[joint] + setpoints.gone_on(joint),
-          .velocity = joints.velocity()[joint] + setpoints.velocity_gone_on(joint) + correction.crossing_velocity(),
-          .effort = measured.value_or(laws.effort()[joint]),
-          .effort_measured = measured.has_value(),
-          .period_s = parts.period_s};
+  ServoInput seen{
+      .position_setpoint = setpoints.position()[joint],
+      .velocity_setpoint = setpoints.velocity()[joint] + correction.crossing_velocity(),
+      .acceleration_setpoint = setpoints.acceleration()[joint] + correction.crossing_acceleration(),
+      .position = joints.position()[joint] + setpoints.gone_on(joint),
+      .velocity = joints.velocity()[joint] + setpoints.velocity_gone_on(joint) + correction.crossing_velocity(),
+      .effort = measured.value_or(laws.effort()[joint]),
+      .effort_measured = measured.has_value(),
+      .period_s = parts.period_s};
+  // What is amiss its drive makes good: the law is to add what the motion takes, and nothing for an error.
+  if (wiring.follows_itself(joint)) {
+    seen.position = seen.position_setpoint;
+    seen.velocity = seen.velocity_setpoint;
+  }
+  return seen;
 }
 
 void ServoLoop::Impl::run_laws() noexcept {
@@ -329,11 +341,14 @@ void ServoLoop::Impl::write() noexcept {
     // Where it stands, and not what it says of that, which may not be believed.
     words.target_position_counts =
         shafts[i].seen() ? position_word(static_cast<double>(shafts[i].counts())) : from.position_counts;
-    words.target_velocity_rpm = 0;
+    words.target_velocity_rpm = words.velocity_offset_rpm = 0;
     if (aims.sends(i)) aims.command(i, shafts[i].rad(), words);
     words.touch_probe = probe.function(i);
     words.read_position = positions.asks(i);
-    words.target_torque_permille = torque_word(part.scale, torques[i]);
+    const std::int16_t torque = torque_word(part.scale, torques[i]);
+    const bool alone = has(wiring.torque_drives(), i);
+    words.target_torque_permille = alone ? torque : std::int16_t{0};
+    words.torque_offset_permille = alone || words.mode != part.mode ? std::int16_t{0} : torque;
   }
   for (std::size_t i = 0; i < spindles.size(); ++i) {
     DriveCommand& words = parts.spindles[i].bus->commands[parts.spindles[i].axis];

@@ -65,6 +65,7 @@ struct ServoLoop::Impl {
   [[nodiscard]] bool operable(std::size_t joint) const noexcept;
   [[nodiscard]] IndexSet controlled() const noexcept;
   [[nodiscard]] ServoInput input(std::size_t joint) const noexcept;
+  void engage_law(std::size_t joint, double from_effort) noexcept;
   [[nodiscard]] JointSeen seen(std::size_t joint) const noexcept;
   [[nodiscard]] DriveWish wish(ServoFault::Part part, std::size_t index) const noexcept;
   [[nodiscard]] bool stands() const noexcept;

@@ -47,6 +47,7 @@ class SimulatedInterface : public DigitalControlInterface {
   }
   [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override { return modes_[axis]; }
   [[nodiscard]] bool tells_torque(std::size_t /*axis*/) const noexcept override { return true; }
+  [[nodiscard]] bool takes_torque_offset(std::size_t axis) const noexcept override { return !is_spindle(axis); }
   [[nodiscard]] bool answers_late(std::size_t /*axis*/) const noexcept override { return !before_.empty(); }
   [[nodiscard]] bool latches(std::size_t axis, TouchProbeEdge /*edge*/) const noexcept override {
     return !is_spindle(axis);

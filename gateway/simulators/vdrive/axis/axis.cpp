@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rmac::vdrive {
 namespace {
@@ -11,6 +12,10 @@ constexpr double kStep_s = 125e-6;  // of the drive's own loops
 
 constexpr std::uint16_t kFollowingError = 0x8611;
 constexpr std::uint16_t kOvertemperature = 0x4310;
+
+bool takes_torque_offset(Mode mode) {
+  return mode == Mode::CyclicSyncPosition || mode == Mode::CyclicSyncVelocity;
+}
 
 unsigned bit(unsigned number, bool set) {
   return set ? 1U << number : 0U;
@@ -101,7 +106,8 @@ void Axis::follow_actual() {
   demand_ = {.position = shaft_.position(), .velocity = shaft_.velocity(), .acceleration = 0};
   line_.stay(demand_.position);
   targets_.stay(demand_.position);
-  loops_.start(shaft_.mechanics().gravity_nm);
+  offset_nm_ = takes_torque_offset(mode_) ? parameters_.torque_offset : 0;
+  loops_.start(shaft_.mechanics().gravity_nm - offset_nm_);
   home_search_.start_from(shaft_, parameters_.switches.index);
   torque_nm_ = 0;
 }
@@ -125,10 +131,17 @@ void Axis::step(double dt) {
     operate(dt);
     const bool torque = mode_ == Mode::CyclicSyncTorque || mode_ == Mode::ProfileTorque || mode_ == Mode::None;
     if (!torque && mode_ != Mode::Homing) stop_at_limits(before, dt);
-    if (!torque) torque_nm_ = loops_.torque(demand_, shaft_, parameters_.most_torque, dt);
+    // What the master sends beside: a velocity to a position, a torque to both (60B1h, 60B2h).
+    Demand demand = demand_;
+    if (mode_ == Mode::CyclicSyncPosition) {
+      demand.velocity = parameters_.own_velocity * demand.velocity + parameters_.velocity_offset;
+    }
+    offset_nm_ = takes_torque_offset(mode_) ? parameters_.torque_offset : 0;
+    if (!torque) torque_nm_ = loops_.torque(demand, shaft_, parameters_.most_torque, dt) + offset_nm_;
   } else if (power_.powered()) {
     // From what it does, not from what it was asked to do: a setpoint may have been out of reach.
     if (!braking_) demand_ = {.position = shaft_.position(), .velocity = shaft_.velocity(), .acceleration = 0};
+    loops_.take_up(std::exchange(offset_nm_, 0));
     ramp_to_rest(power_.braking(), parameters_.deceleration, dt);
     torque_nm_ = loops_.torque(demand_, shaft_, parameters_.most_torque, dt);
   } else {

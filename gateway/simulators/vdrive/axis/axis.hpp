@@ -94,6 +94,7 @@ class Axis {
   Demand demand_;
   Mode mode_ = Mode::None;
   double torque_nm_ = 0;   ///< that the loops or the master want
+  double offset_nm_ = 0;   ///< of it, from the master (60B2h) beside the loops
   double profile_nm_ = 0;  ///< torque of profile torque
   bool limited_ = false;   ///< a limit switch or a software limit acts
   bool braking_ = false;   ///< in the step before

@@ -23,7 +23,8 @@ struct AxisSwitches {
 /// What a drive's steps need of the dictionary, in counts of the encoder, seconds and N·m.
 struct AxisParameters {
   double velocity, acceleration, deceleration, quick_stop, homing_acceleration, fast, slow, top_velocity;
-  double target_velocity, torque_slope, target_torque, most_torque, least_position, most_position;
+  double target_velocity, torque_slope, target_torque, torque_offset, velocity_offset, own_velocity, most_torque,
+      least_position, most_position;
   double window, window_s, velocity_window, velocity_window_s, error_window, error_s;
   double home_offset, slow_velocity;
   AxisSwitches switches;

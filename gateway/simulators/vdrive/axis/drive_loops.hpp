@@ -12,6 +12,8 @@ class DriveLoops {
  public:
   /// Power comes on where the load pulls with this torque.
   void start(double load_nm) noexcept { integral_nm_ = load_nm; }
+  /// A torque that stood beside these loops is theirs from now on.
+  void take_up(double torque_nm) noexcept { integral_nm_ += torque_nm; }
 
   /// The torque in N·m; the integral part keeps within `most_torque`.
   [[nodiscard]] double torque(const Demand& demand, const Shaft& shaft, double most_torque, double dt) noexcept {

@@ -23,15 +23,16 @@ void ShaftAims::step(std::span<const double> wanted, IndexSet followed, FaultSin
 
 void ShaftAims::command(std::size_t actuator, double measured_rad, DriveCommand& words) const noexcept {
   const ServoActuator& part = actuators_[actuator];
-  const double aim = aim_[actuator];
+  const double aim = aim_[actuator], before = aim_before_[actuator];
+  const double to_rpm = part.scale.direction * 30 / std::numbers::pi;
+  const double aim_rad_s = (aim - before) / period_s_;
   if (part.mode == DriveMode::CyclicSyncPosition) {
     words.target_position_counts = position_word(shaft_counts(part.scale, aim));
+    words.velocity_offset_rpm = to_rpm * aim_rad_s;
     return;
   }
-  const double before = aim_before_[actuator];
   const double when_it_told = has(late_, actuator) ? before : aim;
-  const double wanted_rad_s = (aim - before) / period_s_ + part.position_gain * (when_it_told - measured_rad);
-  words.target_velocity_rpm = part.scale.direction * wanted_rad_s * 30 / std::numbers::pi;
+  words.target_velocity_rpm = to_rpm * (aim_rad_s + part.position_gain * (when_it_told - measured_rad));
 }
 
 }  // namespace rmac

@@ -22,7 +22,8 @@ class ShaftAims {
   void step(std::span<const double> wanted, IndexSet followed, FaultSink& faults) noexcept;
   [[nodiscard]] bool sends(std::size_t actuator) const noexcept { return has(aimed_, actuator); }
   [[nodiscard]] double operator[](std::size_t actuator) const noexcept { return aim_[actuator]; }
-  /// The drive's setpoint, as its mode takes it; `measured_rad`: where it says that its shaft is.
+  /// The drive's setpoint, as its mode takes it, and beside a position how fast that goes: on the way to it within this
+  /// cycle, so that all of these velocities add up to the position; `measured_rad`: where it says that its shaft is.
   void command(std::size_t actuator, double measured_rad, DriveCommand& words) const noexcept;
 
  private:

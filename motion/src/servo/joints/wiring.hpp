@@ -35,6 +35,10 @@ class Wiring {
   /// Actuators whose drives take a torque; the others follow a position or a velocity themselves.
   [[nodiscard]] IndexSet torque_drives() const noexcept { return torque_drives_; }
   [[nodiscard]] bool all_take_torque() const noexcept { return torque_drives_ == first(actuators_); }
+  /// The drives of this joint follow its position or velocity themselves.
+  [[nodiscard]] bool follows_itself(std::size_t joint) const noexcept {
+    return (actuators_of_[joint] & ~torque_drives_) != 0;
+  }
   /// Actuators that move no joint outside of `joints`.
   [[nodiscard]] IndexSet actuators_within(IndexSet joints) const noexcept;
   /// Actuators, and joints, that tell in a cycle where they were one cycle before.

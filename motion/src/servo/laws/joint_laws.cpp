@@ -25,6 +25,10 @@ void JointLaws::engage(std::size_t joint, const ServoInput& input, double from_e
   filters_[joint].engage(from_effort);
 }
 
+void JointLaws::engage_beside(std::size_t joint, double from_effort) noexcept {
+  if (has_law(joint)) filters_[joint].engage(from_effort);
+}
+
 bool JointLaws::run(std::size_t joint, const ServoInput& input, FaultSink& faults) noexcept {
   const double wanted = joints_[joint].law->update(input);
   if (!std::isfinite(wanted)) {

@@ -23,6 +23,9 @@ class JointLaws {
   /// The law goes on from this effort.
   void engage(std::size_t joint, const ServoInput& input, double from_effort) noexcept;
 
+  /// A law beside a drive that closes the joint's loop itself: it begins anew, as it has nothing to go on from.
+  void engage_beside(std::size_t joint, double from_effort) noexcept;
+
   /// One cycle of a joint under control. False when its law gives no number, which is a fault: then no joint has an
   /// effort.
   [[nodiscard]] bool run(std::size_t joint, const ServoInput& input, FaultSink& faults) noexcept;

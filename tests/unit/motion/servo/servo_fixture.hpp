@@ -156,6 +156,7 @@ class FakeBus : public DigitalControlInterface {
   }
   [[nodiscard]] bool answers_late(std::size_t /*axis*/) const noexcept override { return late; }
   [[nodiscard]] bool tells_torque(std::size_t axis) const noexcept override { return (torque_told >> axis & 1U) != 0; }
+  [[nodiscard]] bool takes_torque_offset(std::size_t /*axis*/) const noexcept override { return torque_offset; }
 
   struct Drive {
     DriveFeedback words{.statusword = 0x40, .online = true};
@@ -164,6 +165,7 @@ class FakeBus : public DigitalControlInterface {
   };
   std::vector<Drive> drives;
   bool works = true;
+  bool torque_offset = false;  ///< they take one beside what they follow
   bool late = false;
   std::uint32_t torque_told = 0;  ///< bit i: the answers of axis i hold its torque
   int exchanges = 0;

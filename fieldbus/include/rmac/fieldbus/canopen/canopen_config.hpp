@@ -43,7 +43,7 @@ struct AxisConfig {
   std::vector<MappedObject> answers;       ///< the TPDO
   std::vector<MappedObject> more_answers;  ///< the second TPDO; empty: there is none
   std::optional<MappedObject> sensor;      ///< one of the answers, a sensor's reading with a sign
-  double velocity_units_per_rpm = 1;       ///< of 60FFh and 606Ch
+  double velocity_units_per_rpm = 1;       ///< of 60FFh, 60B1h and 606Ch
   Identity identity;
   std::string drive;                                     ///< its description's name, "none"; empty: by its identity
   std::optional<std::chrono::milliseconds> sdo_timeout;  ///< for each of its SDO answers, where it is given

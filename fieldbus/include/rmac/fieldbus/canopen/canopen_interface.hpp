@@ -52,6 +52,7 @@ class CanopenInterface final : public DigitalControlInterface,
                               std::span<DriveFeedback> feedback) noexcept override;
   [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override;
   [[nodiscard]] bool tells_torque(std::size_t axis) const noexcept override;
+  [[nodiscard]] bool takes_torque_offset(std::size_t axis) const noexcept override;
   [[nodiscard]] bool answers_late(std::size_t /*axis*/) const noexcept override { return true; }
   /// By SDO, a frame a cycle.
   [[nodiscard]] bool reads_positions(std::size_t axis) const noexcept override;

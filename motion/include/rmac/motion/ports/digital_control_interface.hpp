@@ -29,6 +29,8 @@ struct DriveCommand {
   std::int16_t target_torque_permille = 0;  ///< 6071h, of the drive's rated torque
   std::int32_t target_position_counts = 0;  ///< 607Ah; 60C1h:01 in interpolated position
   double target_velocity_rpm = 0;           ///< 60FFh
+  double velocity_offset_rpm = 0;           ///< 60B1h, beside a position
+  std::int16_t torque_offset_permille = 0;  ///< 60B2h, beside a position or a velocity
   std::uint16_t touch_probe = 0;            ///< 60B8h
   bool read_position = false;  ///< 6064h is to be read by a service of its own, beside the answers of the cycle
 };
@@ -100,6 +102,8 @@ class DigitalControlInterface {
   /// Whether this axis tells in an exchange where it was one cycle before: where the SYNC of an exchange has the drives
   /// measure, and the next exchange reads what they answered.
   [[nodiscard]] virtual bool answers_late(std::size_t /*axis*/) const noexcept { return false; }
+  /// Whether `DriveCommand::torque_offset_permille` reaches this axis, in a mode that has it.
+  [[nodiscard]] virtual bool takes_torque_offset(std::size_t /*axis*/) const noexcept { return false; }
   /// Whether this axis does `DriveCommand::read_position`.
   [[nodiscard]] virtual bool reads_positions(std::size_t /*axis*/) const noexcept { return false; }
   /// Whether this axis can latch its position at `edge`.

@@ -41,7 +41,8 @@ struct JointBounds {
 
 /// The loop of one joint.
 struct ServoJoint {
-  /// Gains set; the loop sets the effort limit. Null where the joint's drives close its loop themselves.
+  /// Gains set; the loop sets the effort limit. Null where the joint's drives close its loop themselves; or, where they
+  /// take a torque beside, what that torque is: the law is told then that the joint is where it is to be.
   std::shared_ptr<ServoLaw> law;
   ControlMethod method = ControlMethod::Position;
   double max_following_error = 0;  ///< mm or deg

@@ -168,6 +168,38 @@ TEST_F(DriveAxis, KeepsItsProfilesVelocityAndAcceleration) {
   EXPECT_EQ(status() & 0x0400, 0x0400);
 }
 
+// Red where an offset is not honoured, or where the brake opens with the load's torque twice.
+TEST_F(DriveAxis, FollowsNearerWithTheOffsetsOfVelocityAndTorque) {
+  EXPECT_EQ(write(0x60C2, 1, 1, 1), 0U);  // 1 ms
+  EXPECT_EQ(write(0x2002, 0, 0, 2), 0U);  // what it knows of the velocity is what the master tells
+  const fieldbus::AxisPlantParameters plant;
+  const double permille_per_count = plant.inertia_kg_m2() * 2 * M_PI / kTurn / plant.rated_torque_nm * 1000;
+  std::array<double, 3> largest{};
+  enable(8);
+  double from = static_cast<double>(read(0x6064));
+  for (std::size_t run = 0; run < largest.size(); ++run) {
+    for (int i = 1; i <= 400; ++i) {
+      const double w = 2 * M_PI / 0.2, t = i * 0.001, amplitude = 65536;
+      EXPECT_EQ(write(0x607A, 0, std::lround(from + amplitude * (1 - std::cos(w * t))), 4), 0U);
+      const double velocity = run > 0 ? amplitude * w * std::sin(w * (t - 0.0005)) : 0;
+      EXPECT_EQ(write(0x60B1, 0, std::lround(velocity), 4), 0U);
+      const double acceleration = run > 1 ? amplitude * w * w * std::cos(w * (t - 0.0005)) : 0;
+      EXPECT_EQ(write(0x60B2, 0, std::lround(permille_per_count * acceleration), 2), 0U);
+      pass(0.001);
+      if (i > 100) largest.at(run) = std::max(largest.at(run), std::abs(static_cast<double>(read(0x60F4))));
+    }
+    EXPECT_EQ(write(0x60B1, 0, 0, 4), 0U);
+    EXPECT_EQ(write(0x60B2, 0, 0, 2), 0U);
+    pass(0.3);
+    from = static_cast<double>(read(0x6064));
+  }
+  EXPECT_LT(largest[1], largest[0] / 3) << "velocity";
+  EXPECT_LT(largest[2], largest[1] / 2) << "torque";
+  RecordProperty("alone_counts", std::to_string(largest[0]));
+  RecordProperty("velocity_counts", std::to_string(largest[1]));
+  RecordProperty("velocity_and_torque_counts", std::to_string(largest[2]));
+}
+
 /// Cyclic modes by PDO, as a master does.
 TEST_F(DriveAxis, FollowsCyclicPositionsVelocitiesAndTorques) {
   EXPECT_EQ(write(0x60C2, 1, 2, 1), 0U);  // 2 ms
