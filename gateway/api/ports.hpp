@@ -18,6 +18,7 @@
 #include "gateway/state/event.hpp"
 #include "gateway/state/operator.hpp"
 #include "gateway/tools/tool.hpp"
+#include "rmac/fieldbus/bus_report.hpp"
 #include "rmac/sdk/device_object.hpp"
 #include "rmac/sdk/measuring.hpp"
 #include "rmac/sdk/rmac_cam.hpp"
@@ -89,6 +90,8 @@ class MachinePort {
   [[nodiscard]] virtual const sdk::DeviceObject* mechanism() const = 0;
   [[nodiscard]] virtual CycleSample sample() const = 0;
   [[nodiscard]] virtual const CycleTimes& cycle_times() const = 0;
+  /// What the buses that run went through, of those that watch their nodes.
+  [[nodiscard]] virtual std::vector<fieldbus::BusReport> bus_reports() const = 0;
   [[nodiscard]] virtual CycleNow cycle_now() const = 0;
   /// What stopped the machine last, as long as it has not gone on since.
   [[nodiscard]] virtual const std::optional<Event>& last_stop() const = 0;

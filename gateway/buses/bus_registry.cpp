@@ -121,6 +121,15 @@ Expected<std::shared_ptr<ServoBus>> BusRegistry::acquire(const std::string& name
   return bus.bus;
 }
 
+std::vector<fieldbus::BusReport> BusRegistry::reports() const {
+  std::vector<fieldbus::BusReport> told;
+  for (const auto& [name, bus] : buses_) {
+    const auto* watches = dynamic_cast<const fieldbus::BusReports*>(bus.bus->interface.get());
+    if (bus.started && watches != nullptr) told.push_back(watches->report());
+  }
+  return told;
+}
+
 bool BusRegistry::runs_otherwise(const sdk::DeviceObject& device) const {
   const auto other = [&](const std::string& name) {
     const auto known = buses_.find(name);

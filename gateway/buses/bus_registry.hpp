@@ -7,6 +7,7 @@
 #include <string>
 
 #include "gateway/modules/module_loader.hpp"
+#include "rmac/fieldbus/bus_report.hpp"
 #include "rmac/motion/servo/servo_bus.hpp"
 #include "rmac/sdk/device_object.hpp"
 
@@ -46,6 +47,9 @@ class BusRegistry {
   [[nodiscard]] std::shared_ptr<ServoBus> virtual_bus(const std::string& bus);
   [[nodiscard]] Expected<std::shared_ptr<DigitalIoInterface>> acquire_io(const sdk::ModuleChoice& choice,
                                                                          const ModuleLoader& loader);
+
+  /// What the buses that run went through, of those that watch their nodes, in the order of their names.
+  [[nodiscard]] std::vector<fieldbus::BusReport> reports() const;
 
   /// Stops what no mechanism borrows any more: drives disabled, outputs safe. What is behind it stays known.
   void stop_unused() noexcept;

@@ -247,6 +247,10 @@ const CycleTimes& Controller::cycle_times() const noexcept {
   return impl_->link->times;
 }
 
+std::vector<fieldbus::BusReport> bus_reports(const Controller& controller) {
+  return controller.impl_->registry.reports();
+}
+
 CycleNow Controller::cycle_now() const {
   return impl_->supervisor.now();
 }

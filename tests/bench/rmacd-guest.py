@@ -43,6 +43,47 @@ def check_scan(sheets):
         (node, "rmac-vdrive", ["rmac-vdrive.eds"], "rmac-vdrive.json") for node in (1, 2, 3)], found
 
 
+def check_objects(device):
+    """One object at a time, while nobody runs the bus."""
+    def sdo(*words):
+        return subprocess.run(["rmac", "--json", "bus", "sdo", *map(str, words)], text=True, capture_output=True)
+
+    def read(*words):
+        return json.loads(call("rmac", "--json", "bus", "sdo", "read", "vcan0", *words))
+
+    print(call("rmac", "bus", "sdo", "read", "vcan0", 2, "6041", "--machine", device))
+    assert read(2, "1008")["value"] == "rmac-vdrive", "segmented"
+    assert read(3, "0x1018:4")["value"] == 3
+    before = read(2, "6085", "--machine", device)
+    assert before["type"] == "UNSIGNED32", before
+    call("rmac", "bus", "sdo", "write", "vcan0", 2, "6085", before["value"] + 1)
+    assert read(2, "6085")["value"] == before["value"] + 1
+    call("rmac", "bus", "sdo", "write", "vcan0", 2, "6085h:00", "u32", before["value"])
+    for why, words in (("object does not exist", ("read", "vcan0", 2, "5FFF")), ("node 9 does not answer", ("read", "vcan0", 9, "6041")),
+                       ("rmac bus move", ("write", "vcan0", 2, "6040", "0x0F"))):
+        refused = sdo(*words)
+        print(refused.stderr.strip())
+        assert refused.returncode == 1 and why in refused.stderr, refused
+
+
+def check_trace(device):
+    """What passes while a machine runs: heard by itself, and from what candump recorded meanwhile."""
+    recorded, witnessed = RUN / "trace.log", RUN / "candump.log"
+    with witnessed.open("w") as log:
+        witness = subprocess.Popen(["candump", "-L", "vcan0"], stdout=log)
+        heard = call("rmac", "bus", "trace", "vcan0", "--machine", device, "--seconds", 2, "--record", recorded)
+        witness.terminate()
+        witness.wait()
+    print(heard[:600])
+    for words in ("SYNC", "RPDO1 node 1: Controlword", "TPDO1 node 3: Statusword", "(operation enabled)", "heartbeat node 127: operational"):
+        assert words in heard, words
+    lines = recorded.read_text().splitlines()
+    assert [line.split("  ")[0] for line in heard.splitlines()] == lines
+    assert set(lines) <= set(witnessed.read_text().splitlines()), "as candump writes it, to the microsecond"
+    again = call("rmac", "bus", "trace", "--file", recorded, "--machine", device)
+    assert again == heard, "what is recorded is told alike"
+
+
 def main():
     device = prepare()
     print(call("rmac", "bus", "load", device))
@@ -50,6 +91,7 @@ def main():
     head = Drives("vcan1", "--spindle", 4)
     check_scan(device.parent / "canopen")
     print(call("rmac", "bus", "store", "vcan0", 2))
+    check_objects(device)
     daemon = subprocess.Popen(["rmacd", "--config", RUN / "rmacd.json"])
     wait_for("the daemon answers", answers)
     rmac("load", "DMACXYZ")
@@ -64,6 +106,7 @@ def main():
     print("after a jog of 5 mm:", json.dumps(status())[:600])
     assert set(table.states().values()) == {"operation-enabled"}, table.states()
 
+    check_trace(device)
     scan = subprocess.run(["rmac", "bus", "scan", "vcan0"], capture_output=True, text=True)
     assert scan.returncode == 1 and "a machine runs on this bus" in scan.stderr, scan
     table.ask("1 status", "^node 1 operational operation-enabled")

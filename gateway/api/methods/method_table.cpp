@@ -19,6 +19,7 @@ const std::vector<Method>& method_table() {
     add_program_flow_methods(table);
     add_cmm_methods(table);
     add_flight_recorder_methods(table);
+    add_bus_methods(table);
     add_session_methods(table);
     return table;
   }();

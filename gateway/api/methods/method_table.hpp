@@ -25,6 +25,7 @@ void add_tool_methods(std::vector<Method>& table);
 void add_move_methods(std::vector<Method>& table);
 void add_program_flow_methods(std::vector<Method>& table);
 void add_cmm_methods(std::vector<Method>& table);
+void add_bus_methods(std::vector<Method>& table);
 void add_flight_recorder_methods(std::vector<Method>& table);
 void add_session_methods(std::vector<Method>& table);
 

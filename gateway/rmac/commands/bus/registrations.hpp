@@ -4,7 +4,7 @@
 
 namespace rmac::cli {
 
-/// `rmac bus`: what commissions a fieldbus, by itself and without an appliance.
+/// `rmac bus`: what commissions a fieldbus. All but `state` work by themselves, without an appliance.
 void add_bus(Command& rmac);
 
 // The commands within it.
@@ -13,6 +13,7 @@ void add_bus_lss(Command& bus);
 void add_bus_move(Command& bus);
 void add_bus_scan(Command& bus);
 void add_bus_sdo(Command& bus);
+void add_bus_state(Command& bus);
 void add_bus_store(Command& bus);
 void add_bus_trace(Command& bus);
 

@@ -1,0 +1,88 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "gateway/rmac/commands/bus/registrations.hpp"
+#include "gateway/rmac/terminal/table.hpp"
+#include "rmac/fieldbus/eds/object_entry.hpp"
+
+namespace rmac::cli {
+namespace {
+
+using nlohmann::json;
+
+std::string count(const json& of, const char* key) {
+  return std::to_string(of.at(key).get<std::uint64_t>());
+}
+
+std::string microseconds(const json& node, const char* key) {
+  constexpr double kPerSecond = 1e6;
+  return node.at("answers").get<std::uint64_t>() == 0 ? "-" : number(node.at(key).get<double>() * kPerSecond, 1);
+}
+
+std::string numbers(const json& list) {
+  std::string text;
+  for (const json& each : list) text += fmt::format("{}{}", text.empty() ? "" : ", ", each.get<std::uint64_t>());
+  return text;
+}
+
+void show_nodes(const json& nodes) {
+  std::vector<std::vector<std::string>> rows;
+  for (const json& node : nodes) {
+    rows.push_back({count(node, "node"), numbers(node.at("axes")), node.at("state").get<std::string>(),
+                    count(node, "lost"), count(node, "recovered"), count(node, "missed_answers"),
+                    microseconds(node, "jitter_mean_s"), microseconds(node, "jitter_most_s"),
+                    count(node, "emergency_count"), count(node, "abort_count")});
+  }
+  fmt::print("{}",
+             table({"node", "axes", "state", "lost", "back", "missed", "jitter µs", "most", "EMCY", "aborts"}, rows));
+}
+
+/// What a row cannot say.
+void show_history(const json& node) {
+  const std::string who = fmt::format("node {}: ", count(node, "node"));
+  if (!node.at("problem").is_null()) fmt::print("{}{}\n", who, node.at("problem").get<std::string>());
+  for (const json& each : node.at("emergencies")) {
+    fmt::print("{}EMCY {:04X}h ({}), error register {:02X}h, {} s ago\n", who, each.at("code").get<unsigned>(),
+               each.at("text").get<std::string>(), each.at("error_register").get<unsigned>(),
+               number(each.at("age_s").get<double>(), 1));
+  }
+  for (const json& each : node.at("aborts")) {
+    const fieldbus::ObjectAddress object{each.at("index").get<std::uint16_t>(), each.at("sub").get<std::uint8_t>()};
+    fmt::print("{}refused {}: {} ({:08X}h)\n", who, to_string(object), each.at("text").get<std::string>(),
+               each.at("code").get<std::uint32_t>());
+  }
+}
+
+void show_bus(const json& bus) {
+  fmt::print(
+      "{}: {} cycles, {} frames sent, {} received; {} unsent, {} too short, {} lost here, {} error frames, {} times "
+      "bus-off{}{}\n",
+      bus.at("interface").get<std::string>(), count(bus, "cycles"), count(bus, "sent"), count(bus, "received"),
+      count(bus, "unsent"), count(bus, "short_answers"), count(bus, "overflowed"), count(bus, "error_frames"),
+      count(bus, "bus_offs"), bus.at("bus_off").get<bool>() ? "; it is bus-off" : "",
+      bus.at("link_down").get<bool>() ? "; the interface is down" : "");
+  show_nodes(bus.at("nodes"));
+  for (const json& node : bus.at("nodes")) show_history(node);
+}
+
+Result<> show_state(Connection& appliance, bool as_json) {
+  return appliance.call("Bus.GetState").map([as_json](const json& answer) {
+    if (as_json) {
+      fmt::print("{}\n", answer.dump());
+      return;
+    }
+    const json& buses = answer.at("buses");
+    if (buses.empty()) fmt::print("no CANopen bus runs\n");
+    for (const json& bus : buses) show_bus(bus);
+  });
+}
+
+}  // namespace
+
+void add_bus_state(Command& bus) {
+  Command state = bus.add("state", "what the CANopen buses of the machine that is loaded went through");
+  state.does(with_appliance(show_state));
+}
+
+}  // namespace rmac::cli
