@@ -38,7 +38,7 @@ def aborts():
         for index in ("6007", "1016"):
             yield Scenario(f"aborts {index}h by {code}h", f"--refuse {index}={code}", REFUSED, named(index) + rf".*{code}")
     yield Scenario("aborts 60C2h by 06090011h, position mode", "--refuse 60C2=06090011")
-    yield Scenario("aborts 6007h by 06010000h, not wanted", "--refuse 6007=06010000", parameters={"abort_connection": [-1, 3, 3]})
+    yield Scenario("aborts 6007h by 06010000h, not wanted", "--refuse 6007=06010000", parameters={"abort_connection": -1})
 
 
 def dictionary():
