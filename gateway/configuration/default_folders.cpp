@@ -15,12 +15,11 @@ std::filesystem::path from_environment(const char* variable, std::filesystem::pa
   return list.substr(0, list.find(':'));
 }
 
-/// As etc/install_folders.cmake has it, of the prefix that was installed to.
+/// As etc/install_folders.cmake has it, of the prefix that was installed to; below DESTDIR, where that was given.
 std::filesystem::path etc_folder(const std::filesystem::path& prefix) {
   const std::filesystem::path folder = RMAC_SYSCONFDIR;
   if (folder.is_absolute()) return folder / "rmac";
-  const bool systems = prefix == "/usr" || prefix == "/";
-  return (systems ? "/" : prefix) / folder / "rmac";
+  return (prefix.filename() == "usr" ? prefix.parent_path() : prefix) / folder / "rmac";
 }
 
 }  // namespace

@@ -87,7 +87,9 @@ Expected<> MechanismChange::put_to_work(Candidate candidate, bool fresh) {
   if (fresh) {
     supervisor_.wish([](ServoWishes& wishes) { wishes.spindle_rpm.fill(0); });
   }
-  return slot_.put_in(mechanism, !fresh).and_then([&] { return slot_.power_on(); }).and_then([&] {
+  const bool drives_are_off = slot_.in_force() == nullptr;
+  const auto power_on = [&] { return drives_are_off ? slot_.power_on_anew() : slot_.power_on(); };
+  return slot_.put_in(mechanism, !fresh).and_then(power_on).and_then([&] {
     return candidate.standing_checked ? Expected<>{} : check_standing(mechanism->device, slot_.standing(), true);
   });
 }

@@ -122,6 +122,12 @@ Expected<> MechanismSlot::put_back(const Predecessor& before) {
       .map([this] { leave_fault(); });
 }
 
+Expected<> MechanismSlot::power_on_anew() {
+  auto on = power_on();
+  if (on || servo_.status().fault.kind != ServoFault::Kind::DriveFault) return on;
+  return clear_fault().and_then([this] { return power_on(); }).map([this] { leave_fault(); });
+}
+
 void MechanismSlot::leave_fault() {
   (void)supervisor_.command([](CycleSequencer& cycle, const CycleObservation&) {
     return is_faulted(cycle.state()) ? cycle.reset() : Expected<>{};

@@ -42,6 +42,9 @@ class MechanismSlot {
   [[nodiscard]] Expected<> put_in(std::shared_ptr<Mechanism> next, bool keep_running);
   /// Enables the drives.
   [[nodiscard]] Expected<> power_on() { return power_.on(in_force_.get()); }
+  /// The same where the drives were nobody's. One that is in fault is in it since before, as after the death of the
+  /// master that had it: it is reset, once; one that stays in it has the cause still there.
+  [[nodiscard]] Expected<> power_on_anew();
   [[nodiscard]] Expected<> clear_fault() { return power_.clear_fault(in_force_.get()); }
   /// Takes the power off the mechanism in force, and the servo thread away from it.
   [[nodiscard]] Expected<> switch_off();

@@ -22,6 +22,52 @@ void PrintTo(const Defect& defect, std::ostream* out) {
   *out << defect.name;
 }
 
+/// A drive of it is in fault when the bus comes up, and does not leave it where the cause stays.
+class BusWithAFault final : public fieldbus::SimulatedInterface {
+ public:
+  explicit BusWithAFault(bool stays) : SimulatedInterface(fieldbus::default_simulated_axes(), 0.001), stays_(stays) {
+    trip(1, 0x8130);
+  }
+  bool exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept override {
+    if (stays_) trip(1, 0x8130);
+    return SimulatedInterface::exchange(commands, feedback);
+  }
+
+ private:
+  bool stays_;
+};
+
+class FaultBeforeTheLoad : public testing::TestWithParam<bool> {
+ protected:
+  static ControllerOptions options() {
+    ControllerOptions made = TestMachine::options();
+    made.control_interfaces["BusWithAFault"] = [](const std::string&, const sdk::ModuleChoice&, const ModuleLoader&)
+        -> Expected<std::shared_ptr<DigitalControlInterface>> { return std::make_shared<BusWithAFault>(GetParam()); };
+    return made;
+  }
+  TestMachine machine_{options()};
+};
+
+// As after the death of a master: most drives keep their fault until a controlword resets it, whatever NMT says.
+TEST_P(FaultBeforeTheLoad, IsResetOnceAndRefusesTheMachineWhereItStays) {
+  sdk::DeviceObject mill = TestMachine::mill();
+  mill.digital_control_interface = {"BusWithAFault", {}, {}};
+  const auto loaded = machine_.load(mill);
+  const bool stays = GetParam();
+  EXPECT_EQ(loaded.has_value(), !stays);
+  if (stays) {
+    EXPECT_THAT(loaded.error().message, HasSubstr("8130h"));
+    EXPECT_EQ(machine_.controller.mechanism(), nullptr);
+  } else {
+    EXPECT_EQ(machine_.controller.sample().servo_state, ServoState::Engaged);
+  }
+  EXPECT_NE(machine_.controller.cycle_now().state, CycleState::Faulted);
+  machine_.controller.dispatch();
+  EXPECT_THAT(machine_.last(Event::Kind::Fault), HasSubstr("8130h")) << "it is told";
+}
+
+INSTANTIATE_TEST_SUITE_P(Causes, FaultBeforeTheLoad, testing::Bool());
+
 TEST(MechanismChange, MayBeStoppedMeanwhileFromAnotherThread) {
   // As the gateway does while the thread beside it changes the mechanism. No stop leaves anything behind.
   TestMachine machine;
