@@ -1,6 +1,7 @@
 #include "canopen/node_boot.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace rmac::fieldbus::canopen {
 namespace {
@@ -85,6 +86,7 @@ void NodeBoot::configure(std::chrono::nanoseconds now) noexcept {
     if (plan().steps[i].kind == BootStep::Kind::Compare) outcomes_[i].done = false;
   }
   answered_ = false;
+  held_back_ = false;
   enter(State::Configuring, now);
   begin_step(now);
 }
@@ -275,6 +277,11 @@ bool NodeBoot::call(std::chrono::nanoseconds now, CanFrame& frame) noexcept {
 
 bool NodeBoot::next_frame(std::chrono::nanoseconds now, CanFrame& frame) noexcept {
   if (state_ == State::Configuring) {
+    if (!std::exchange(held_back_, true)) {
+      // One that starts by itself may take the parameters of its PDOs in Pre-operational only.
+      frame = nmt_frame(NmtCommand::EnterPreOperational, node_);
+      return true;
+    }
     if (sdo_.finished()) end_step(now);
     if (state_ == State::Configuring) return sdo_.next_frame(now, frame);
   }

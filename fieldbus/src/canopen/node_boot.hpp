@@ -97,8 +97,9 @@ class NodeBoot {
   int restarts_ = 0;  ///< since `begin`
   BootProblem problem_;
   std::size_t step_ = 0;
-  int tries_ = 0;          ///< of this step, unanswered
-  bool answered_ = false;  ///< an SDO, since its boot-up message
+  int tries_ = 0;           ///< of this step, unanswered
+  bool answered_ = false;   ///< an SDO, since its boot-up message
+  bool held_back_ = false;  ///< it was told to wait in Pre-operational while it is set up
   std::array<std::uint8_t, 8> bytes_{};
   std::chrono::nanoseconds entered_{0};
   std::chrono::nanoseconds next_{0};  ///< when it is started or asked again

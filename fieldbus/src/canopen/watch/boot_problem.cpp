@@ -43,6 +43,11 @@ std::string need(const BootProblem& problem) {
   return problem.needed[0] != '\0' ? fmt::format("; it is needed {}", problem.needed) : std::string();
 }
 
+/// What to do about a drive whose answers come late, if they come.
+const char* patience(std::uint32_t abort_code) noexcept {
+  return abort_code == sdo_abort::kTimeout ? "; a drive that takes longer to answer needs a longer sdo_timeout_ms" : "";
+}
+
 /// Of one of the PDOs that a drive has by default.
 bool is_default_tpdo(ObjectAddress object) noexcept {
   return object.index > 0x1800 && object.index < 0x1804;
@@ -61,8 +66,8 @@ std::string describe_alone(const BootProblem& problem, std::uint8_t node, const 
           "{} bit/s",
           who, waited_s, config.bit_rate);
     case BootProblem::Kind::NoAnswer:
-      return fmt::format("{} did not answer when {} was {}: {}", who, object, problem.writing ? "written" : "read",
-                         sdo_abort_text(problem.found));
+      return fmt::format("{} did not answer when {} was {}: {}{}", who, object, problem.writing ? "written" : "read",
+                         sdo_abort_text(problem.found), patience(problem.found));
     case BootProblem::Kind::Refused:
       return fmt::format("{} {}{}", who, refusal(problem), need(problem));
     case BootProblem::Kind::Different:

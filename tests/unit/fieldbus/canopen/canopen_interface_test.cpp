@@ -222,7 +222,10 @@ TEST_F(CanopenBench, SaysWhichObjectADriveRefusedAndWhy) {
 TEST_F(CanopenBench, SaysWhatADriveLeftUnanswered) {
   wire_.add(3).answers_sdo = false;
   make({{"node", {3}}});
-  EXPECT_EQ(start_error(), "node 3 (axis 0) did not answer when 1000h:00 was read: SDO protocol timed out");
+  EXPECT_EQ(start_error(),
+            "node 3 (axis 0) did not answer when 1000h:00 was read: SDO protocol timed out; a drive that takes longer "
+            "to answer needs a "
+            "longer sdo_timeout_ms");
 }
 
 TEST_F(CanopenBench, MovesSeveralAxesOfOneNode) {

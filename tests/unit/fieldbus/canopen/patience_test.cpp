@@ -1,6 +1,7 @@
 // Drives that take their time, or lose something: what a boot puts up with.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <random>
 
 #include "unit/fieldbus/canopen/canopen_bench.hpp"
@@ -55,6 +56,25 @@ TEST_F(PatientBoot, LetsADriveBootThatObeysResetsMeanwhile) {
     EXPECT_EQ(resets, 1) << boot_ms << " ms";
     wire_.listen = nullptr;
   }
+}
+
+// Red when a node that starts by itself is set up in Operational, where it may refuse the parameters of its PDOs.
+TEST_F(PatientBoot, HoldsADriveInPreOperationalWhileItIsSetUp) {
+  fresh_drive();
+  make({{"node", {1}}, {"mode", {8}}});
+  std::vector<std::uint8_t> commands;  // of NMT, and 0 for a question
+  wire_.listen = [&](const CanFrame& frame) {
+    if (frame.id == 0 && frame.data[1] == 1) commands.push_back(frame.data[0]);
+    if (frame.id == 0x601 && (commands.empty() || commands.back() != 0)) commands.push_back(0);
+  };
+  ASSERT_EQ(start_error(), "it started");
+  wire_.listen = nullptr;
+  constexpr std::uint8_t kPreOperational = 128, kStart = 1;
+  ASSERT_GE(commands.size(), 3U);
+  const auto question = std::find(commands.begin(), commands.end(), 0);
+  ASSERT_NE(question, commands.begin());
+  EXPECT_EQ(*(question - 1), kPreOperational);
+  EXPECT_EQ(commands.back(), kStart);
 }
 
 // Red when it is not reset again, whether it shows by its heartbeats that it did not hear, or by nothing.
@@ -126,7 +146,10 @@ TEST_F(PatientBoot, PassesOverWhatADriveDoesNotAnswerWhereItIsNotNeeded) {
 TEST_F(PatientBoot, RefusesADriveThatDoesNotAnswerToWhatIsNeeded) {
   fresh_drive().silent = {{0x1016, 1}};
   make({{"node", {1}}});
-  EXPECT_EQ(start_error(), "node 1 (axis 0) did not answer when 1016h:01 was written: SDO protocol timed out");
+  EXPECT_EQ(start_error(),
+            "node 1 (axis 0) did not answer when 1016h:01 was written: SDO protocol timed out; a drive that takes "
+            "longer to answer needs a "
+            "longer sdo_timeout_ms");
 }
 
 // Red when a boot-up message that never ends has no reason that helps.
@@ -166,7 +189,10 @@ TEST_F(PatientBoot, WaitsForADriveWhoseStateForbidsToWriteAtFirst) {
 TEST_F(PatientBoot, WaitsForADriveThatIsKnownToBeSlow) {
   fresh_drive().sdo_time = milliseconds(700);
   make({{"node", {1}}});
-  EXPECT_EQ(start_error(), "node 1 (axis 0) did not answer when 1000h:00 was read: SDO protocol timed out");
+  EXPECT_EQ(start_error(),
+            "node 1 (axis 0) did not answer when 1000h:00 was read: SDO protocol timed out; a drive that takes longer "
+            "to answer needs a "
+            "longer sdo_timeout_ms");
   make({{"node", {1}}, {"sdo_timeout_ms", {1000}}});
   EXPECT_EQ(start_error(), "it started");
 }
