@@ -124,7 +124,11 @@ Expected<> MechanismSlot::put_back(const Predecessor& before) {
 
 Expected<> MechanismSlot::power_on_anew() {
   auto on = power_on();
-  if (on || servo_.status().fault.kind != ServoFault::Kind::DriveFault) return on;
+  const ServoFault fault = servo_.status().fault;
+  // A drive's fault of its encoder is told as the loss of a sensor.
+  const bool drives = fault.kind == ServoFault::Kind::DriveFault ||
+                      (fault.kind == ServoFault::Kind::SensorLost && fault.part != ServoFault::Part::Joint);
+  if (on || !drives) return on;
   return clear_fault().and_then([this] { return power_on(); }).map([this] { leave_fault(); });
 }
 

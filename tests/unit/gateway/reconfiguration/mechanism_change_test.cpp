@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -25,24 +26,31 @@ void PrintTo(const Defect& defect, std::ostream* out) {
 /// A drive of it is in fault when the bus comes up, and does not leave it where the cause stays.
 class BusWithAFault final : public fieldbus::SimulatedInterface {
  public:
-  explicit BusWithAFault(bool stays) : SimulatedInterface(fieldbus::default_simulated_axes(), 0.001), stays_(stays) {
-    trip(1, 0x8130);
+  BusWithAFault(std::uint16_t error_code, bool stays)
+      : SimulatedInterface(fieldbus::default_simulated_axes(), 0.001), error_code_(error_code), stays_(stays) {
+    trip(1, error_code);
   }
   bool exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept override {
-    if (stays_) trip(1, 0x8130);
+    if (stays_) trip(1, error_code_);
     return SimulatedInterface::exchange(commands, feedback);
   }
 
  private:
+  std::uint16_t error_code_;
   bool stays_;
 };
 
-class FaultBeforeTheLoad : public testing::TestWithParam<bool> {
+constexpr std::uint16_t kMasterDied = 0x8130, kEncoder = 0x7305;
+
+class FaultBeforeTheLoad : public testing::TestWithParam<std::tuple<std::uint16_t, bool>> {
  protected:
   static ControllerOptions options() {
     ControllerOptions made = TestMachine::options();
-    made.control_interfaces["BusWithAFault"] = [](const std::string&, const sdk::ModuleChoice&, const ModuleLoader&)
-        -> Expected<std::shared_ptr<DigitalControlInterface>> { return std::make_shared<BusWithAFault>(GetParam()); };
+    made.control_interfaces["BusWithAFault"] =
+        [](const std::string&, const sdk::ModuleChoice&,
+           const ModuleLoader&) -> Expected<std::shared_ptr<DigitalControlInterface>> {
+      return std::make_shared<BusWithAFault>(std::get<0>(GetParam()), std::get<1>(GetParam()));
+    };
     return made;
   }
   TestMachine machine_{options()};
@@ -53,20 +61,22 @@ TEST_P(FaultBeforeTheLoad, IsResetOnceAndRefusesTheMachineWhereItStays) {
   sdk::DeviceObject mill = TestMachine::mill();
   mill.digital_control_interface = {"BusWithAFault", {}, {}};
   const auto loaded = machine_.load(mill);
-  const bool stays = GetParam();
+  const auto [error_code, stays] = GetParam();
+  const std::string code = fmt::format("{:04X}h", error_code);
   EXPECT_EQ(loaded.has_value(), !stays);
   if (stays) {
-    EXPECT_THAT(loaded.error().message, HasSubstr("8130h"));
+    EXPECT_THAT(loaded.error().message, HasSubstr(code));
     EXPECT_EQ(machine_.controller.mechanism(), nullptr);
   } else {
     EXPECT_EQ(machine_.controller.sample().servo_state, ServoState::Engaged);
   }
   EXPECT_NE(machine_.controller.cycle_now().state, CycleState::Faulted);
   machine_.controller.dispatch();
-  EXPECT_THAT(machine_.last(Event::Kind::Fault), HasSubstr("8130h")) << "it is told";
+  EXPECT_THAT(machine_.last(Event::Kind::Fault), HasSubstr(code)) << "it is told";
 }
 
-INSTANTIATE_TEST_SUITE_P(Causes, FaultBeforeTheLoad, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(Causes, FaultBeforeTheLoad,
+                         testing::Combine(testing::Values(kMasterDied, kEncoder), testing::Bool()));
 
 TEST(MechanismChange, MayBeStoppedMeanwhileFromAnotherThread) {
   // As the gateway does while the thread beside it changes the mechanism. No stop leaves anything behind.
