@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "canopen/boot_plan.hpp"
 #include "canopen/watch/sync_answers.hpp"
 #include "rmac/fieldbus/canopen/canopen_config.hpp"
 #include "rmac/motion/ports/digital_control_interface.hpp"
@@ -24,6 +25,18 @@ struct BusAxis {
   };
   std::vector<Answer> answers;
   DriveFeedback feedback;
+
+  /// Axis of the node at `place`, with one answer or two.
+  [[nodiscard]] static BusAxis of(const AxisConfig& axis, std::size_t place) {
+    BusAxis made{.config = axis, .node = place, .answers = {}, .feedback = {}};
+    const auto answer = [&](std::uint16_t id, const std::vector<MappedObject>& contents, bool second) {
+      made.answers.push_back(
+          {.id = id, .contents = contents, .transmission_type = transmission_type(axis, second), .count = {}});
+    };
+    answer(answer_id(axis), axis.answers, false);
+    if (!axis.more_answers.empty()) answer(more_answers_id(axis), axis.more_answers, true);
+    return made;
+  }
 
   void forget() noexcept {
     for (Answer& answer : answers) answer.answered = false;

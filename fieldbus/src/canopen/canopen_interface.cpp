@@ -7,14 +7,11 @@
 #include <set>
 
 #include "canopen/bus_axis.hpp"
+#include "canopen/bus_node.hpp"
 #include "canopen/bus_trouble.hpp"
 #include "canopen/drives/drive_of_node.hpp"
-#include "canopen/node_boot.hpp"
 #include "canopen/pdo.hpp"
 #include "canopen/watch/bus_record.hpp"
-#include "canopen/watch/node_record.hpp"
-#include "canopen/watch/node_trouble.hpp"
-#include "canopen/watch/position_reader.hpp"
 #include "rmac/fieldbus/can/socket_can_port.hpp"
 #include "rmac/fieldbus/canopen/bus_load.hpp"
 
@@ -24,57 +21,23 @@ namespace {
 /// More frames than this in one cycle are left for the next: the cycle has a deadline.
 constexpr int kMostFramesPerCycle = 512;
 
-struct Node {
-  Node(const CanopenConfig& config, const AxisConfig& first)
-      : boot(config, first.node),
-        positions(first.node),
-        record(config.period),
-        measured(answer_id(first)) {}
-  /// Where it is on its way to Operational, as a person reads it.
-  [[nodiscard]] const char* state() const noexcept {
-    constexpr std::array kStates{
-        "off", "awaiting boot-up", "being configured", "being started", "being watched", "operational", "failed"};
-    return up ? "operational" : kStates.at(static_cast<std::size_t>(boot.state()));
-  }
-  NodeBoot boot;
-  PositionReader positions;
-  NodeTrouble trouble;
-  NodeRecord record;
-  std::uint16_t measured;  ///< the answer whose evenness is
-  std::chrono::nanoseconds heard{0};
-  std::uint16_t error_code = 0;
-  bool up = false;
-  bool told_position = false;  ///< in this cycle: whoever asked does not know yet
-};
-
 }  // namespace
 
 struct CanopenInterface::Impl {
   Impl(CanopenConfig configuration, OpenPort opener) : config(std::move(configuration)), open(std::move(opener)) {
     for (const AxisConfig& axis : config.axes) {
-      auto at = std::find_if(nodes.begin(), nodes.end(), [&](const Node& n) { return n.boot.node() == axis.node; });
+      auto at = std::find_if(nodes.begin(), nodes.end(), [&](const BusNode& n) { return n.boot.node() == axis.node; });
       const auto place = static_cast<std::size_t>(at - nodes.begin());
       if (at == nodes.end()) nodes.emplace_back(config, axis);
       const auto same = [&](std::size_t other) { return setpoint_id(axes[other].config) == setpoint_id(axis); };
       if (std::none_of(rpdos.begin(), rpdos.end(), same)) rpdos.push_back(axes.size());
-      BusAxis made{.config = axis, .node = place, .answers = {}, .feedback = {}};
-      made.answers.push_back({.id = answer_id(axis),
-                              .contents = axis.answers,
-                              .transmission_type = transmission_type(axis, false),
-                              .count = {}});
-      if (!axis.more_answers.empty()) {
-        made.answers.push_back({.id = more_answers_id(axis),
-                                .contents = axis.more_answers,
-                                .transmission_type = transmission_type(axis, true),
-                                .count = {}});
-      }
-      axes.push_back(std::move(made));
+      axes.push_back(BusAxis::of(axis, place));
     }
   }
 
   [[nodiscard]] std::vector<std::uint16_t> wanted() const {
     std::vector<std::uint16_t> ids;
-    for (const Node& node : nodes) {
+    for (const BusNode& node : nodes) {
       for (const std::uint16_t base : {kEmergencyId, kSdoAnswerId, kHeartbeatId}) {
         ids.push_back(static_cast<std::uint16_t>(base + node.boot.node()));
       }
@@ -99,12 +62,12 @@ struct CanopenInterface::Impl {
   void count_sync() noexcept {
     for (BusAxis& axis : axes) axis.sync();
   }
-  void take_from_node(Node& node, const CanFrame& frame, std::chrono::nanoseconds now) noexcept;
+  void take_from_node(BusNode& node, const CanFrame& frame, std::chrono::nanoseconds now) noexcept;
   void watch(std::chrono::nanoseconds now) noexcept;
   void ask_positions(std::span<const DriveCommand> commands, std::chrono::nanoseconds now) noexcept;
   void take_positions() noexcept;
   void send_asides(std::chrono::nanoseconds now) noexcept;
-  void lose(Node& node, std::chrono::nanoseconds now) noexcept;
+  void lose(BusNode& node, std::chrono::nanoseconds now) noexcept;
   void fill(std::span<DriveFeedback> feedback) noexcept;
   [[nodiscard]] bool send(const CanFrame& frame) noexcept;
   [[nodiscard]] bool send_setpoints(std::size_t first, std::span<const DriveCommand> commands) noexcept;
@@ -113,7 +76,7 @@ struct CanopenInterface::Impl {
   CanopenConfig config;
   OpenPort open;
   std::unique_ptr<CanPort> port;
-  std::deque<Node> nodes;
+  std::deque<BusNode> nodes;
   std::vector<BusAxis> axes;
   std::vector<std::size_t> rpdos;  ///< the first axis of each
   CanopenCounters counters;
@@ -160,15 +123,7 @@ bool CanopenInterface::reads_positions(std::size_t axis) const noexcept {
 
 double CanopenInterface::counts_per_revolution(std::size_t axis) const noexcept {
   const BusAxis& of = impl_->axes[axis];
-  const auto offset = static_cast<std::uint16_t>(kAxisOffset * of.config.axis_in_node);
-  const NodeBoot& boot = impl_->nodes[of.node].boot;
-  const auto ratio = [&](std::uint16_t index) {
-    const double over = boot.reading(of_axis({index, 1}, offset)), under = boot.reading(of_axis({index, 2}, offset));
-    return over > 0 && under > 0 ? over / under : 0;
-  };
-  // Units of position: counts x feed constant / (encoder resolution x gear ratio) (CiA 402-2, 6.3).
-  const double gear = ratio(0x6091), feed = ratio(0x6092);
-  return feed > 0 ? feed / (gear > 0 ? gear : 1) : ratio(0x608F);
+  return impl_->nodes[of.node].counts_per_revolution(of.config.axis_in_node);
 }
 
 bool CanopenInterface::latches(std::size_t axis, TouchProbeEdge edge) const noexcept {
@@ -201,14 +156,14 @@ Expected<> CanopenInterface::start() {
 
 Expected<> CanopenInterface::Impl::boot_all() {
   notes = config.drives ? config.drives->unreadable : std::vector<std::string>();
-  for (Node& node : nodes) {
+  for (BusNode& node : nodes) {
     node.up = false;
     node.trouble.forget();
     node.record.forget();
     node.boot.forget_identity();
     node.boot.begin(port->now());
   }
-  const auto settled = [](const Node& node) {
+  const auto settled = [](const BusNode& node) {
     return node.boot.state() == NodeBoot::State::Operational || node.boot.state() == NodeBoot::State::Failed;
   };
   std::chrono::nanoseconds next_sync = port->now();
@@ -219,16 +174,16 @@ Expected<> CanopenInterface::Impl::boot_all() {
       if (port->send(sync_frame())) count_sync();
       next_sync = std::max(next_sync + config.period, port->now());
     }
-    for (Node& node : nodes) {
+    for (BusNode& node : nodes) {
       CanFrame frame;
       while (node.boot.next_frame(port->now(), frame)) port->send(frame);
     }
     port->wait(std::chrono::milliseconds(1));
   }
   const bool all = std::all_of(nodes.begin(), nodes.end(),
-                               [](const Node& node) { return node.boot.state() == NodeBoot::State::Operational; });
+                               [](const BusNode& node) { return node.boot.state() == NodeBoot::State::Operational; });
   if (!all) return failure(MinorCode::CommTimeout, problems());
-  for (Node& node : nodes) {
+  for (BusNode& node : nodes) {
     node.up = true;
     node.error_code = node.boot.error_code();
     for (const BootProblem& refused : node.boot.notes()) {
@@ -243,7 +198,7 @@ Expected<> CanopenInterface::Impl::boot_all() {
 
 std::string CanopenInterface::Impl::problems() const {
   std::string text;
-  for (const Node& node : nodes) {
+  for (const BusNode& node : nodes) {
     if (node.boot.state() != NodeBoot::State::Failed) continue;
     text += (text.empty() ? "" : "; ") + describe(node.boot.problem(), node.boot.node(), config);
   }
@@ -257,7 +212,7 @@ std::string CanopenInterface::Impl::problems() const {
 
 void CanopenInterface::Impl::reset_all() noexcept {
   // Resetting its communication also ends a node's watch over this master (CiA 301, 7.3.2.2.1).
-  for (const Node& node : nodes) port->send(nmt_frame(NmtCommand::ResetCommunication, node.boot.node()));
+  for (const BusNode& node : nodes) port->send(nmt_frame(NmtCommand::ResetCommunication, node.boot.node()));
 }
 
 void CanopenInterface::stop() noexcept {
@@ -285,7 +240,7 @@ bool CanopenInterface::exchange(std::span<const DriveCommand> commands, std::spa
   }
   const std::chrono::nanoseconds now = bus.port->now();
   if (bus.fresh) {
-    for (Node& node : bus.nodes) node.heard = now;
+    for (BusNode& node : bus.nodes) node.heard = now;
     for (BusAxis& axis : bus.axes) {
       axis.feedback = {};
       axis.forget();
@@ -334,7 +289,7 @@ std::string CanopenInterface::fault_text() const {
 }
 
 std::optional<std::string> CanopenInterface::silence_text(std::size_t axis) const {
-  const Node& node = impl_->nodes[impl_->axes[axis].node];
+  const BusNode& node = impl_->nodes[impl_->axes[axis].node];
   const BootProblem problem = node.trouble.problem();
   if (problem.kind == BootProblem::Kind::None) return {};
   return describe(problem, node.boot.node(), impl_->config);
@@ -352,7 +307,7 @@ void CanopenInterface::Impl::take(const CanFrame& frame, std::chrono::nanosecond
       if (frame.id == answer.id) return take_answer(axis, answer, frame);
     }
   }
-  for (Node& node : nodes) {
+  for (BusNode& node : nodes) {
     const std::uint8_t id = node.boot.node();
     if (frame.id == kEmergencyId + id || frame.id == kSdoAnswerId + id || frame.id == kHeartbeatId + id) {
       take_from_node(node, frame, now);
@@ -362,7 +317,7 @@ void CanopenInterface::Impl::take(const CanFrame& frame, std::chrono::nanosecond
 }
 
 void CanopenInterface::Impl::take_answer(BusAxis& axis, BusAxis::Answer& answer, const CanFrame& frame) noexcept {
-  Node& node = nodes[axis.node];
+  BusNode& node = nodes[axis.node];
   if (!node.boot.watched()) return answer.count.restart();
   if (answer.count.take(frame) && node.boot.reading(answer.transmission_type) == kEverySync) {
     return node.boot.answered_twice();
@@ -377,7 +332,8 @@ void CanopenInterface::Impl::take_answer(BusAxis& axis, BusAxis::Answer& answer,
   answer.answered = true;
 }
 
-void CanopenInterface::Impl::take_from_node(Node& node, const CanFrame& frame, std::chrono::nanoseconds now) noexcept {
+void CanopenInterface::Impl::take_from_node(BusNode& node, const CanFrame& frame,
+                                            std::chrono::nanoseconds now) noexcept {
   const std::uint8_t id = node.boot.node();
   if (frame.id == kEmergencyId + id) {
     if (frame.size < 2) return;
@@ -400,7 +356,7 @@ void CanopenInterface::Impl::take_from_node(Node& node, const CanFrame& frame, s
   if (node.trouble.problem().kind == BootProblem::Kind::Restarted) node.boot.receive(frame, now);
 }
 
-void CanopenInterface::Impl::lose(Node& node, std::chrono::nanoseconds now) noexcept {
+void CanopenInterface::Impl::lose(BusNode& node, std::chrono::nanoseconds now) noexcept {
   ++counters.nodes_lost;
   node.record.lost();
   if (shows_two(node.boot.problem().kind)) ++counters.duplicates;
@@ -414,7 +370,7 @@ void CanopenInterface::Impl::lose(Node& node, std::chrono::nanoseconds now) noex
 }
 
 void CanopenInterface::Impl::watch(std::chrono::nanoseconds now) noexcept {
-  for (Node& node : nodes) {
+  for (BusNode& node : nodes) {
     if (node.up && now - node.heard > config.heartbeat_deadline()) lose(node, now);
     if (node.up && node.boot.state() == NodeBoot::State::Failed) lose(node, now);
     if (!node.up && node.boot.state() == NodeBoot::State::Operational) {
@@ -436,7 +392,7 @@ void CanopenInterface::Impl::watch(std::chrono::nanoseconds now) noexcept {
 void CanopenInterface::Impl::fill(std::span<DriveFeedback> feedback) noexcept {
   for (std::size_t i = 0; i < axes.size(); ++i) {
     BusAxis& axis = axes[i];
-    Node& node = nodes[axis.node];
+    BusNode& node = nodes[axis.node];
     const bool missed = axis.answered() && axis.unanswered() > 0;
     if (missed) {
       ++counters.missed_answers;
@@ -490,7 +446,7 @@ bool CanopenInterface::Impl::send_setpoints(std::size_t first, std::span<const D
 void CanopenInterface::Impl::ask_positions(std::span<const DriveCommand> commands,
                                            std::chrono::nanoseconds now) noexcept {
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    Node& node = nodes[axes[i].node];
+    BusNode& node = nodes[axes[i].node];
     if (!commands[i].read_position || !node.up || node.told_position || node.positions.busy()) continue;
     const auto offset = static_cast<std::uint16_t>(kAxisOffset * axes[i].config.axis_in_node);
     node.positions.begin(i, of_axis({0x6064, 0}, offset), node.boot.plan().patience.sdo_timeout, now);
@@ -498,7 +454,7 @@ void CanopenInterface::Impl::ask_positions(std::span<const DriveCommand> command
 }
 
 void CanopenInterface::Impl::take_positions() noexcept {
-  for (Node& node : nodes) {
+  for (BusNode& node : nodes) {
     const auto reading = node.positions.take();
     node.told_position = reading.has_value();
     if (!reading) continue;
@@ -514,7 +470,7 @@ void CanopenInterface::Impl::take_positions() noexcept {
 void CanopenInterface::Impl::send_asides(std::chrono::nanoseconds now) noexcept {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     aside = (aside + 1) % nodes.size();
-    Node& node = nodes[aside];
+    BusNode& node = nodes[aside];
     CanFrame frame;
     if (node.up ? node.positions.next_frame(now, frame) : node.boot.next_frame(now, frame)) {
       port->send(frame);

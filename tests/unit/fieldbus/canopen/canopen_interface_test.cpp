@@ -224,8 +224,7 @@ TEST_F(CanopenBench, SaysWhatADriveLeftUnanswered) {
   make({{"node", {3}}});
   EXPECT_EQ(start_error(),
             "node 3 (axis 0) did not answer when 1000h:00 was read: SDO protocol timed out; a drive that takes longer "
-            "to answer needs a "
-            "longer sdo_timeout_ms");
+            "to answer needs a longer sdo_timeout_ms");
 }
 
 TEST_F(CanopenBench, MovesSeveralAxesOfOneNode) {
@@ -240,44 +239,6 @@ TEST_F(CanopenBench, MovesSeveralAxesOfOneNode) {
   EXPECT_EQ(feedback_[0].position_counts, -4000);
   EXPECT_NEAR(drive.velocity(1), 2500, 1);
   EXPECT_GT(feedback_[1].position_counts, 200);
-}
-
-// Red with another object, unit or length, or where a word is cut off at its end.
-TEST_F(CanopenBench, SendsATorqueBesideAPositionAndAVelocity) {
-  for (const double mode : {8.0, 9.0}) {
-    master_.reset();
-    wire_ = CanWire();
-    VirtualDrive& drive = wire_.add(1);
-    drive.set_bytes({0x60B2, 0}, {0, 0});
-    drive.set_bytes({0x6502, 0}, {0xFF, 0x03, 0, 0});
-    make({{"node", {1}}, {"mode", {mode}}},
-         {{"rpdo", mode == 8 ? "6040:00/16 607A:00/32 60B2:00/16" : "6040:00/16 60FF:00/32 60B2:00/16"}});
-    EXPECT_TRUE(master_->takes_torque_offset(0));
-    start();
-    for (const std::int16_t permille : std::initializer_list<std::int16_t>{0, 1, -1, 32767, -32768}) {
-      commands_[0].torque_offset_permille = permille;
-      cycles(2, DriveWish::Operational);
-      EXPECT_EQ(static_cast<std::int16_t>(drive.value(0x60B2, 0)), permille) << "mode " << mode;
-    }
-  }
-}
-
-TEST_F(CanopenBench, TakesNoTorqueBesideWhereNoneIsMapped) {
-  wire_.add(1);
-  make({{"node", {1}}, {"mode", {8}}});
-  EXPECT_FALSE(master_->takes_torque_offset(0));
-}
-
-TEST_F(CanopenBench, SendsAVelocityOffsetInTheDrivesUnitsWithinItsWord) {
-  VirtualDrive& drive = wire_.add(1);
-  drive.set_bytes({0x60B1, 0}, {0, 0, 0, 0});
-  make({{"node", {1}}, {"velocity_units_per_rpm", {10}}}, {{"rpdo", "6040:00/16 6071:00/16 60B1:00/32"}});
-  start();
-  for (const auto& [rpm, word] : {std::pair{0.0, 0}, {12.34, 123}, {-600.0, -6000}, {1e12, 2147483647}}) {
-    commands_[0].velocity_offset_rpm = rpm;
-    cycles(2, DriveWish::Operational);
-    EXPECT_EQ(static_cast<std::int32_t>(drive.value(0x60B1, 0)), word);
-  }
 }
 
 TEST_F(CanopenBench, TurnsASpindleInItsDrivesOwnUnits) {

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+
+#include "canopen/node_boot.hpp"
+#include "canopen/pdo.hpp"
+#include "canopen/watch/node_record.hpp"
+#include "canopen/watch/node_trouble.hpp"
+#include "canopen/watch/position_reader.hpp"
+
+namespace rmac::fieldbus::canopen {
+
+/// A node as its bus has it: on its way up, or in operation.
+struct BusNode {
+  BusNode(const CanopenConfig& config, const AxisConfig& first)
+      : boot(config, first.node), positions(first.node), record(config.period), measured(answer_id(first)) {}
+  /// Where it is on its way to Operational, as a person reads it.
+  [[nodiscard]] const char* state() const noexcept {
+    constexpr std::array kStates{
+        "off", "awaiting boot-up", "being configured", "being started", "being watched", "operational", "failed"};
+    return up ? "operational" : kStates.at(static_cast<std::size_t>(boot.state()));
+  }
+  /// Units of position in a revolution of an axis's motor, by the drive's factors: counts x feed constant / (encoder
+  /// resolution x gear ratio) (CiA 402-2, 6.3); 0 where it does not tell them.
+  [[nodiscard]] double counts_per_revolution(std::size_t axis_in_node) const noexcept {
+    const auto ratio = [&](std::uint16_t index) {
+      const auto offset = static_cast<std::uint16_t>(kAxisOffset * axis_in_node);
+      const double over = boot.reading(of_axis({index, 1}, offset)), under = boot.reading(of_axis({index, 2}, offset));
+      return over > 0 && under > 0 ? over / under : 0;
+    };
+    const double gear = ratio(0x6091), feed = ratio(0x6092);
+    return feed > 0 ? feed / (gear > 0 ? gear : 1) : ratio(0x608F);
+  }
+
+  NodeBoot boot;
+  PositionReader positions;
+  NodeTrouble trouble;
+  NodeRecord record;
+  std::uint16_t measured;  ///< the answer whose evenness is
+  std::chrono::nanoseconds heard{0};
+  std::uint16_t error_code = 0;
+  bool up = false;
+  bool told_position = false;  ///< in this cycle: whoever asked does not know yet
+};
+
+}  // namespace rmac::fieldbus::canopen
