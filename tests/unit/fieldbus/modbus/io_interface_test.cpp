@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 using Wire = ModbusPeer::Wire;
 
 /// Two inputs as bits, four in a register, inverted; outputs likewise.
-IoMap map() {
+IoMap io_map() {
   return {"a device",
           "",
           8,
@@ -38,7 +38,7 @@ class ModbusIo : public testing::TestWithParam<Wire> {
     config.stale = stale;
     config.boot_timeout = 60s;
     config.slave = 1;
-    config.map = map();
+    config.map = io_map();
     io = std::make_unique<IoInterface>(std::move(config));
   }
   /// Cycles until the inputs are as wanted.

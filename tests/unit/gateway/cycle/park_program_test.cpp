@@ -28,7 +28,7 @@ sdk::DeviceObject measuring_role() {
   return device;
 }
 
-class Parking : public testing::Test {
+class ParkProgram : public testing::Test {
  protected:
   void SetUp() override {
     const auto loaded = machine_.load_at_zero(TestMachine::mill());
@@ -111,7 +111,7 @@ class Parking : public testing::Test {
   TestMachine machine_;
 };
 
-TEST_F(Parking, GoesOnFromItsPlaceWhereverItWasHeld) {
+TEST_F(ParkProgram, GoesOnFromItsPlaceWhereverItWasHeld) {
   std::mt19937 random(20261122);  // NOLINT(cert-msc51-cpp): the same instants every time
   for (int round = 0; round < 12; ++round) {
     SCOPED_TRACE(round);
@@ -150,7 +150,7 @@ TEST_F(Parking, GoesOnFromItsPlaceWhereverItWasHeld) {
 }
 
 // Red when what is done is done once more, or what was begun is lost.
-TEST_F(Parking, DoesWhatStandsBetweenItsMovesOnce) {
+TEST_F(ParkProgram, DoesWhatStandsBetweenItsMovesOnce) {
   ASSERT_TRUE(cam().path().set_feedrate(1200));
   ASSERT_TRUE(cam().flow().dwell(1, 0.2));
   ASSERT_TRUE(machine_.line(2, {0, 0, 0}, {8, 0, 0}));
@@ -181,7 +181,7 @@ TEST_F(Parking, DoesWhatStandsBetweenItsMovesOnce) {
   EXPECT_THAT(done(), ElementsAre(1, 2, 3, 4, 5));
 }
 
-TEST_F(Parking, LaysWhatIsLeftInTheFrameThatIsInForceThen) {
+TEST_F(ParkProgram, LaysWhatIsLeftInTheFrameThatIsInForceThen) {
   queue_and_hold_in(2);
   park();
   Frame found;
@@ -210,7 +210,7 @@ TEST_F(Parking, LaysWhatIsLeftInTheFrameThatIsInForceThen) {
   EXPECT_THAT(done(), ElementsAre(1, 2, 3, 4, 5));
 }
 
-TEST_F(Parking, TakesNothingUpWhereTheToolStandsElsewhere) {
+TEST_F(ParkProgram, TakesNothingUpWhereTheToolStandsElsewhere) {
   queue_and_hold_in(3);
   park();
   ASSERT_TRUE(cam().positioning().jog_joint(2, 5));
@@ -228,7 +228,7 @@ TEST_F(Parking, TakesNothingUpWhereTheToolStandsElsewhere) {
   EXPECT_THAT(done(), ElementsAre(1, 2, 3, 4, 5));
 }
 
-TEST_F(Parking, RefusesAFrameInWhichTheRestCannotBeReached) {
+TEST_F(ParkProgram, RefusesAFrameInWhichTheRestCannotBeReached) {
   ASSERT_TRUE(cam().path().set_feedrate(120));
   ASSERT_TRUE(machine_.line(1, {0, 0, 0}, {20, 0, 0}));
   ASSERT_TRUE(machine_.line(2, {20, 0, 0}, {20, 49.9, 0}));
@@ -248,7 +248,7 @@ TEST_F(Parking, RefusesAFrameInWhichTheRestCannotBeReached) {
   EXPECT_EQ(cam().queue().moves_left(), 2);
 }
 
-TEST_F(Parking, StopsTheSpindleAndHasItTurningAgainBeforeItGoesOn) {
+TEST_F(ParkProgram, StopsTheSpindleAndHasItTurningAgainBeforeItGoesOn) {
   ASSERT_TRUE(cam().spindles().set_rpm(0, 800));
   ASSERT_TRUE(cam().spindles().set_coolant(true));
   queue_and_hold_in(2);
@@ -270,7 +270,7 @@ TEST_F(Parking, StopsTheSpindleAndHasItTurningAgainBeforeItGoesOn) {
   }
 }
 
-TEST_F(Parking, OutlastsAnotherRoleOfTheSameMachine) {
+TEST_F(ParkProgram, OutlastsAnotherRoleOfTheSameMachine) {
   Frame part;
   part.p = {1, 2, 0};
   ASSERT_TRUE(cam().frames().set_part(part));
@@ -301,7 +301,7 @@ TEST_F(Parking, OutlastsAnotherRoleOfTheSameMachine) {
   EXPECT_LT(largest, 1e-6);
 }
 
-TEST_F(Parking, EndsWhenAnotherMachineIsLoadedAndSurvivesOneThatCannotBe) {
+TEST_F(ParkProgram, EndsWhenAnotherMachineIsLoadedAndSurvivesOneThatCannotBe) {
   queue_and_hold_in(2);
   park();
   sdk::DeviceObject broken = measuring_role();
@@ -318,7 +318,7 @@ TEST_F(Parking, EndsWhenAnotherMachineIsLoadedAndSurvivesOneThatCannotBe) {
   EXPECT_TRUE(told);
 }
 
-TEST_F(Parking, SetsAsideOnlyWhatIsHeld) {
+TEST_F(ParkProgram, SetsAsideOnlyWhatIsHeld) {
   EXPECT_THAT(cam().parking().park().error().message, HasSubstr("nothing is queued"));
   queue(30);
   EXPECT_THAT(cam().parking().park().error().message, HasSubstr("FeedHold first"));
@@ -333,7 +333,7 @@ TEST_F(Parking, SetsAsideOnlyWhatIsHeld) {
   EXPECT_THAT(cam().parking().take_up().error().message, HasSubstr("no program is parked"));
 }
 
-TEST_F(Parking, CanBeRepeatedOnTheWayBack) {
+TEST_F(ParkProgram, CanBeRepeatedOnTheWayBack) {
   queue_and_hold_in(2);
   for (int i = 0; i < 3; ++i) {
     park();

@@ -12,7 +12,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr int kTrials = 60;
+constexpr int kAlignments = 60;
 
 /// A face of a block: its normal, and the corner from which two ways go over it.
 struct Face {
@@ -45,7 +45,7 @@ std::vector<SurfacePoint> measure(Chance& chance, const std::vector<Face>& faces
 
 TEST(PointsToSurfaces, GiveBackTheTransformExactlyWhereverTheProbeLandsOnTheFaces) {
   Chance chance(13);
-  for (int i = 0; i < kTrials; ++i) {
+  for (int i = 0; i < kAlignments; ++i) {
     // 0.3 mm and 0.2 degrees off, and far beyond that: a part that was thrown onto the table.
     const Frame part = i % 2 == 0 ? chance.frame(0.3, 0.0035) : chance.frame(300, M_PI);
     const auto points = measure(chance, block(), part, 2 + i % 6, i % 3 == 0 ? 0.0 : 2.0, 0);
@@ -59,7 +59,7 @@ TEST(PointsToSurfaces, GiveBackTheTransformExactlyWhereverTheProbeLandsOnTheFace
 TEST(PointsToSurfaces, OfNominalPointsInOnePlaneAreNotMirrored) {
   Chance chance(12);
   const std::vector<Vector> normals{{0, 0, 1}, {0, -1, 0}, {-1, 0, 0}};
-  for (int i = 0; i < kTrials; ++i) {
+  for (int i = 0; i < kAlignments; ++i) {
     const Frame part = chance.frame(300, M_PI);
     std::vector<SurfacePoint> points;
     for (std::size_t j = 0; j < 12; ++j) {

@@ -11,11 +11,11 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr int kTrials = 60;
+constexpr int kProbes = 60;
 
 TEST(Probe, IsQualifiedOnASphere) {
   Chance chance(20);
-  for (int i = 0; i < kTrials; ++i) {
+  for (int i = 0; i < kProbes; ++i) {
     const Vector centre = chance.place(500), offset = chance.place(0.2);
     const double radius = chance.within(5, 25), tip = chance.within(0.5, 4);
     std::vector<Vector> hits;

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kTrials = 40;
+constexpr int kSpheres = 40;
 
 struct Ball {
   Vector centre;
@@ -48,7 +48,7 @@ std::vector<Vector> on_circle(Chance& chance, const Frame& frame, double radius,
 
 TEST(Sphere, IsFoundExactlyWithoutNoise) {
   Chance chance(1);
-  for (int i = 0; i < kTrials; ++i) {
+  for (int i = 0; i < kSpheres; ++i) {
     const Ball ball{chance.place(2000), chance.within(1, 100)};
     for (const auto& points : {on_sphere(chance, ball, 4 + i % 20, 0), on_cap(chance, ball, 12, 1.0)}) {
       const auto fit = fit_sphere(points);
@@ -85,7 +85,7 @@ TEST(Sphere, IsFoundWithoutBiasUnderNoise) {
 TEST(Sphere, OfPointsInOnePlaneIsRefusedWithTheFreedomThatIsNotHeld) {
   Chance chance(3);
   for (const double sigma : {0.0, 1e-6}) {
-    for (int i = 0; i < kTrials; ++i) {
+    for (int i = 0; i < kSpheres; ++i) {
       const Frame frame = chance.frame(500, M_PI);
       const auto fit = fit_sphere(on_circle(chance, frame, 12, 9, sigma));
       ASSERT_FALSE(fit) << "trial " << i;

@@ -12,7 +12,7 @@ using testing::HasSubstr;
 
 constexpr std::int64_t kMove = 3;
 
-class LoopChange : public testing::Test {
+class ChangesLoops : public testing::Test {
  protected:
   void start_moving() {
     ASSERT_TRUE(machine_.load_at_zero(TestMachine::mill()));
@@ -37,7 +37,7 @@ class LoopChange : public testing::Test {
   TestMachine machine_;
 };
 
-TEST_F(LoopChange, GainsActInMotionAndThePlanGoesOn) {
+TEST_F(ChangesLoops, GainsActInMotionAndThePlanGoesOn) {
   start_moving();
   const std::int64_t before = machine_.controller.sample().cycle;
   const auto applied = gains(0, {600, 8});
@@ -57,7 +57,7 @@ TEST_F(LoopChange, GainsActInMotionAndThePlanGoesOn) {
   }
 }
 
-TEST_F(LoopChange, AnotherLawIsWhatTheMechanismHasFromThenOn) {
+TEST_F(ChangesLoops, AnotherLawIsWhatTheMechanismHasFromThenOn) {
   start_moving();
   ASSERT_TRUE(config().loops().set_servo_law(1, {"TestLaw", {}, {}}));
   ASSERT_TRUE(gains(1, {500, 6}));
@@ -68,7 +68,7 @@ TEST_F(LoopChange, AnotherLawIsWhatTheMechanismHasFromThenOn) {
   EXPECT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove));
 }
 
-TEST_F(LoopChange, RefusedGainsChangeNothing) {
+TEST_F(ChangesLoops, RefusedGainsChangeNothing) {
   start_moving();
   const auto refused = gains(0, {-1, 4});
   ASSERT_FALSE(refused);
@@ -79,7 +79,7 @@ TEST_F(LoopChange, RefusedGainsChangeNothing) {
   EXPECT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove));
 }
 
-TEST_F(LoopChange, WithAnythingElseBesideItNeedsRest) {
+TEST_F(ChangesLoops, WithAnythingElseBesideItNeedsRest) {
   start_moving();
   ASSERT_TRUE(config().joints().set_maximum_speed(0, 50));
   const auto refused = gains(0, {600, 8});
@@ -89,7 +89,7 @@ TEST_F(LoopChange, WithAnythingElseBesideItNeedsRest) {
   EXPECT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove));
 }
 
-TEST_F(LoopChange, VelocityAndPositionTakeTurnsInMotionAndThePlanGoesOn) {
+TEST_F(ChangesLoops, VelocityAndPositionTakeTurnsInMotionAndThePlanGoesOn) {
   start_moving();
   for (const ControlMethod method : {ControlMethod::Velocity, ControlMethod::Position, ControlMethod::Velocity}) {
     ASSERT_TRUE(config().loops().set_control_method(1, method));
@@ -106,7 +106,7 @@ TEST_F(LoopChange, VelocityAndPositionTakeTurnsInMotionAndThePlanGoesOn) {
   }
 }
 
-TEST_F(LoopChange, AJointThatSlippedIsGivenBackToPositionControlAtRestOnly) {
+TEST_F(ChangesLoops, AJointThatSlippedIsGivenBackToPositionControlAtRestOnly) {
   start_moving();
   ASSERT_TRUE(config().loops().set_control_method(1, ControlMethod::Velocity));
   ASSERT_TRUE(config().apply());
@@ -127,14 +127,14 @@ TEST_F(LoopChange, AJointThatSlippedIsGivenBackToPositionControlAtRestOnly) {
   EXPECT_TRUE(applied) << applied.error().message;
 }
 
-TEST_F(LoopChange, ForceControlNeedsRest) {
+TEST_F(ChangesLoops, ForceControlNeedsRest) {
   start_moving();
   ASSERT_TRUE(config().loops().set_control_method(2, ControlMethod::Force));
   EXPECT_FALSE(config().apply());
   EXPECT_TRUE(machine_.run_until_event(Event::Kind::MoveDone, kMove));
 }
 
-TEST_F(LoopChange, IsRefusedWhileTheMachineIsFaulted) {
+TEST_F(ChangesLoops, IsRefusedWhileTheMachineIsFaulted) {
   start_moving();
   machine_.bus->trip(1, 0x2310);
   ASSERT_TRUE(machine_.run_until_event(Event::Kind::Fault, kMove));
@@ -143,7 +143,7 @@ TEST_F(LoopChange, IsRefusedWhileTheMachineIsFaulted) {
   EXPECT_THAT(refused.error().message, HasSubstr("reset first"));
 }
 
-TEST_F(LoopChange, HeldJointsAreCountedBehindTheOthers) {
+TEST_F(ChangesLoops, HeldJointsAreCountedBehindTheOthers) {
   ASSERT_TRUE(machine_.load_at_zero(TestMachine::mill()));
   ASSERT_TRUE(machine_.load(TestMachine::plane_mill()));
   ASSERT_TRUE(gains(2, {400, 5}));

@@ -10,7 +10,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-CycleSample sample_at(std::int64_t cycle) {
+CycleSample sample_of_cycle(std::int64_t cycle) {
   CycleSample sample;
   sample.cycle = cycle;
   return sample;
@@ -23,7 +23,7 @@ struct Topics : Subscriptions {
   /// How many samples each topic has in the batches after `count` cycles.
   std::map<std::string, std::size_t> batched(std::int64_t count) {
     for (std::int64_t end = cycle + count; cycle < end;) {
-      if (auto line = take(sample_at(++cycle))) states.push_back(json::parse(*line)["params"]);
+      if (auto line = take(sample_of_cycle(++cycle))) states.push_back(json::parse(*line)["params"]);
     }
     std::map<std::string, std::size_t> samples;
     for (const std::string& line : batches()) {
@@ -96,7 +96,7 @@ TEST(Subscriptions, OweTheFirstStateWithoutACycleAndTheLastOne) {
   EXPECT_FALSE(topics.owes_state()) << "nobody asked for it";
   topics.start({"state"}, 100);
   EXPECT_TRUE(topics.owes_state());
-  EXPECT_EQ(json::parse(topics.state_line(sample_at(7))),
+  EXPECT_EQ(json::parse(topics.state_line(sample_of_cycle(7))),
             json::parse(R"({"jsonrpc":"2.0","method":"state","params":7})"));
   EXPECT_FALSE(topics.owes_state()) << "told";
   topics.owe_state();
@@ -113,7 +113,7 @@ TEST(Subscriptions, AreFullBeforeABatchIsLargerThanASocketLikes) {
   topics.start({"joints", "drives"}, 1000);
   std::int64_t cycle = 0;
   while (!topics.is_full()) {
-    EXPECT_FALSE(topics.take(sample_at(++cycle)));
+    EXPECT_FALSE(topics.take(sample_of_cycle(++cycle)));
     ASSERT_LT(cycle, 10'000);
   }
   std::size_t bytes = 0;

@@ -12,8 +12,6 @@ namespace {
 using std::numbers::pi;
 using testing::HasSubstr;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 using Arc = Shapes;
 
 /// A point of the cylinder of this radius about an axis; `angle` counts about it.

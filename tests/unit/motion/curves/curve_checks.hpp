@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "curves/make_curves.hpp"
 
 namespace rmac::test {
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 using Curves = std::vector<std::unique_ptr<const Curve>>;
 

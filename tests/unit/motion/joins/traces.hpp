@@ -10,7 +10,6 @@
 
 namespace rmac::test {
 
-inline constexpr Vector kUp{0, 0, 1};
 inline constexpr double kAtMost = 1.0005;
 
 inline double distance(const Vector& a, const Vector& b) {

@@ -8,10 +8,9 @@
 namespace rmac {
 namespace {
 
+using test::kUp;
 using test::mill;
 using test::PlannerBench;
-
-constexpr Vector kUp{0, 0, 1};
 
 TEST(PathBuilder, RefusesTravelBeyondALimitNamingJointAmountAndPlace) {
   PlannerBench bench(mill());

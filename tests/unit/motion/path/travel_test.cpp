@@ -8,8 +8,6 @@
 namespace rmac::test {
 namespace {
 
-constexpr Vector kUp{0, 0, 1};
-
 /// A mill of which Z stands `excess_mm` beyond its upper limit of 50.
 class StandingOutside : public testing::Test {
  protected:

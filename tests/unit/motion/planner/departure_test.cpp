@@ -14,13 +14,13 @@ using test::Action;
 using test::mill;
 using test::PlannerBench;
 
-constexpr double kAtMost = 1.001;
+constexpr double kMostOnTheWayBack = 1.001;
 
 void expect_within_limits(const PlannerBench& bench) {
   const auto peaks = bench.peaks();
-  EXPECT_LE(peaks.velocity, kAtMost);
-  EXPECT_LE(peaks.acceleration, kAtMost);
-  EXPECT_LE(peaks.jerk, kAtMost) << "in cycle " << peaks.jerk_cycle;
+  EXPECT_LE(peaks.velocity, kMostOnTheWayBack);
+  EXPECT_LE(peaks.acceleration, kMostOnTheWayBack);
+  EXPECT_LE(peaks.jerk, kMostOnTheWayBack) << "in cycle " << peaks.jerk_cycle;
 }
 
 /// The cycles that a joint needs to come to rest from a setpoint, by the bounds that it has.
@@ -284,9 +284,9 @@ class Unfaithful final : public Kinematics {
   mutable double calls_ = 0;
 };
 
-class FailingKinematics : public ::testing::TestWithParam<std::tuple<Unfaithful::Fault, unsigned>> {};
+class KinematicsThatErr : public ::testing::TestWithParam<std::tuple<Unfaithful::Fault, unsigned>> {};
 
-TEST_P(FailingKinematics, LeaveTheJointsToComeToRestWithinTheirLimits) {
+TEST_P(KinematicsThatErr, LeaveTheJointsToComeToRestWithinTheirLimits) {
   const auto [fault, seed] = GetParam();
   PlannerModel model = mill(seed % 2 == 0 ? 10000 : 50000);
   const auto kinematics = std::make_shared<Unfaithful>(model.kinematics);
@@ -314,7 +314,7 @@ TEST_P(FailingKinematics, LeaveTheJointsToComeToRestWithinTheirLimits) {
   expect_within_limits(bench);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, FailingKinematics,
+INSTANTIATE_TEST_SUITE_P(Seeds, KinematicsThatErr,
                          ::testing::Combine(::testing::Values(Unfaithful::Fault::NoSolution,
                                                               Unfaithful::Fault::NotANumber, Unfaithful::Fault::Lie,
                                                               Unfaithful::Fault::Noise),

@@ -12,7 +12,7 @@
 namespace rmac {
 namespace {
 
-constexpr Vector kUp{0, 0, 1};
+using test::kUp;
 
 /// Three slides that have no solution while they are told to.
 class FailingKinematics final : public Kinematics {

@@ -8,7 +8,7 @@
 namespace rmac {
 namespace {
 
-constexpr Vector kUp{0, 0, 1};
+using test::kUp;
 
 class Interrupted : public ::testing::Test {
  protected:

@@ -13,6 +13,8 @@
 
 namespace rmac::test {
 
+inline constexpr Vector kUp{0, 0, 1};
+
 inline PlannerModel mill(double jerk = 10000) {
   PlannerModel model;
   model.kinematics = std::make_shared<modules::ChainKinematics>(modules::cartesian(3));

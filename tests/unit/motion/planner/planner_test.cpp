@@ -8,10 +8,10 @@
 namespace rmac {
 namespace {
 
+using test::kUp;
 using test::mill;
 using test::PlannerBench;
 
-constexpr Vector kUp{0, 0, 1};
 /// A limit may be passed by rounding in third differences of positions of up to 50 mm, and by nothing else.
 constexpr double kAtMost = 1.0005;
 

@@ -79,7 +79,6 @@ inline FuzzProgram random_program(unsigned seed) {
 }
 
 inline Move move_of(const Action& action, std::int64_t id, const ToolPose& from) {
-  constexpr Vector kUp{0, 0, 1};
   Move move;
   move.id = id;
   move.feed_mm_s = action.feed_mm_s;

@@ -12,7 +12,7 @@ using test::Action;
 using test::mill;
 using test::PlannerBench;
 
-constexpr double kAtMost = 1.001;
+constexpr double kMostInARetrace = 1.001;
 
 /// A bench with a random program in its queue that knows where its moves lie.
 class RetraceBench {
@@ -55,9 +55,9 @@ class RetraceBench {
     bench.planner.command(PathCommand::Run);
     ASSERT_TRUE(bench.run());
     const auto peaks = bench.peaks();
-    EXPECT_LE(peaks.velocity, kAtMost);
-    EXPECT_LE(peaks.acceleration, kAtMost);
-    EXPECT_LE(peaks.jerk, kAtMost) << "in cycle " << peaks.jerk_cycle;
+    EXPECT_LE(peaks.velocity, kMostInARetrace);
+    EXPECT_LE(peaks.acceleration, kMostInARetrace);
+    EXPECT_LE(peaks.jerk, kMostInARetrace) << "in cycle " << peaks.jerk_cycle;
     EXPECT_EQ(bench.moves_done(), queued);
     EXPECT_EQ(bench.planner.moves_left(), 0U);
     for (std::size_t j = 0; j < 3; ++j)

@@ -9,8 +9,6 @@
 namespace rmac::servo_test {
 namespace {
 
-constexpr double kPeriod = 0.001;
-
 /// Mass, damping and load, and a part for the error, which must not be seen.
 class ModelLaw : public RecordingLaw {
  public:

@@ -16,6 +16,8 @@
 
 namespace rmac::servo_test {
 
+inline constexpr double kPeriod = 0.001;  ///< of a cycle, s
+
 constexpr double kCountsPerMm = 1000;
 constexpr double kRatedNm = 1;
 

@@ -6,7 +6,6 @@
 namespace rmac::servo_test {
 namespace {
 
-constexpr double kPeriod = 0.001;
 constexpr double kCount = 1 / kCountsPerMm;
 
 class ServoLateAnswers : public ServoLoopTest {

@@ -5,8 +5,6 @@
 namespace rmac::servo_test {
 namespace {
 
-constexpr double kPeriod = 0.001;
-
 /// Joints with bounds, moved by hand; how the machine stops is the test's to say.
 class ServoWatch : public ServoLoopTest {
  protected:

@@ -13,7 +13,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 /// Sets one value of joint 0, and applies it.
-void set_joint(SetterBench& bench, const char* setter, const char* parameter, double value) {
+void apply_to_joint(SetterBench& bench, const char* setter, const char* parameter, double value) {
   bench.call(setter, fmt::format(R"({{"JntNum": 0, "{}": {}}})", parameter, value));
   bench.apply();
 }
@@ -240,34 +240,34 @@ const std::vector<SetterEffect>& config_setter_effects() {
        }},
       {"RMAC_Config.SetMechanismJointMaximumLimit",
        [](SetterBench& bench) {
-         set_joint(bench, "RMAC_Config.SetMechanismJointMaximumLimit", "MaxJntLimit", 20);
+         apply_to_joint(bench, "RMAC_Config.SetMechanismJointMaximumLimit", "MaxJntLimit", 20);
          EXPECT_THAT(bench.tip_refusal(30, 0, 0), HasSubstr("beyond its limit of 20"));
-         set_joint(bench, "RMAC_Config.SetMechanismJointMaximumLimit", "MaxJntLimit", 60);
+         apply_to_joint(bench, "RMAC_Config.SetMechanismJointMaximumLimit", "MaxJntLimit", 60);
          EXPECT_NEAR(bench.joints_to({55, 0, 0}).back().position[0], 55, 0.05);
        }},
       {"RMAC_Config.SetMechanismJointMinimumLimit",
        [](SetterBench& bench) {
-         set_joint(bench, "RMAC_Config.SetMechanismJointMinimumLimit", "MinJntLimit", -20);
+         apply_to_joint(bench, "RMAC_Config.SetMechanismJointMinimumLimit", "MinJntLimit", -20);
          EXPECT_THAT(bench.tip_refusal(-30, 0, 0), HasSubstr("beyond its limit of -20"));
-         set_joint(bench, "RMAC_Config.SetMechanismJointMinimumLimit", "MinJntLimit", -60);
+         apply_to_joint(bench, "RMAC_Config.SetMechanismJointMinimumLimit", "MinJntLimit", -60);
          EXPECT_NEAR(bench.joints_to({-55, 0, 0}).back().position[0], -55, 0.05);
        }},
       {"RMAC_Config.SetMechanismJointMaximumSpeed",
        [](SetterBench& bench) {
          EXPECT_GT(peak(bench.joints_to({40, 0, 0}), &CycleSample::velocity_set, 0), 140);
-         set_joint(bench, "RMAC_Config.SetMechanismJointMaximumSpeed", "MaxJntSpeed", 25);
+         apply_to_joint(bench, "RMAC_Config.SetMechanismJointMaximumSpeed", "MaxJntSpeed", 25);
          EXPECT_NEAR(peak(bench.joints_to({0, 0, 0}), &CycleSample::velocity_set, 0), 25, 0.1);
        }},
       {"RMAC_Config.SetMechanismJointMaximumAcceleration",
        [](SetterBench& bench) {
          EXPECT_NEAR(peak(bench.joints_to({40, 0, 0}), &CycleSample::acceleration_set, 0), 1000, 10);
-         set_joint(bench, "RMAC_Config.SetMechanismJointMaximumAcceleration", "MaxJntAccel", 250);
+         apply_to_joint(bench, "RMAC_Config.SetMechanismJointMaximumAcceleration", "MaxJntAccel", 250);
          EXPECT_NEAR(peak(bench.joints_to({0, 0, 0}), &CycleSample::acceleration_set, 0), 250, 2.5);
        }},
       {"RMAC_Config.SetMechanismJointMaximumJerk",
        [](SetterBench& bench) {
          EXPECT_NEAR(peak_jerk(bench.joints_to({40, 0, 0}), 0), 10000, 100);
-         set_joint(bench, "RMAC_Config.SetMechanismJointMaximumJerk", "MaxJntJerk", 2000);
+         apply_to_joint(bench, "RMAC_Config.SetMechanismJointMaximumJerk", "MaxJntJerk", 2000);
          EXPECT_NEAR(peak_jerk(bench.joints_to({0, 0, 0}), 0), 2000, 20);
        }},
       {"RMAC_Config.SetMechanismJointControlMethod",

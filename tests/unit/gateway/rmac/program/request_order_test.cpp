@@ -9,9 +9,9 @@ Request request(const std::string& method) {
   return {7, "", method, timing_of(method)};
 }
 
-const Request kMove = request("RMAC_CAM.MoveToXYZ");
+const Request kMoveRequest = request("RMAC_CAM.MoveToXYZ");
 const Request kMeasure = request("RMAC_CAM.AutoMeasure");
-const Request kStart = request("RMAC_CAM.CycleStart");
+const Request kStartRequest = request("RMAC_CAM.CycleStart");
 const Request kFeed = request("RMAC_CAM.SetFeedrate");
 const Request kHome = request("RMAC_CAM.Home");
 
@@ -24,43 +24,43 @@ class RequestOrderTest : public testing::Test {
 };
 
 TEST_F(RequestOrderTest, AFirstMoveWaitsForRestAndTheNextOnesDoNot) {
-  EXPECT_TRUE(order_.waits_for_rest(kMove)) << "somebody may have jogged";
-  order_.sent(kMove);
-  EXPECT_FALSE(order_.waits_for_rest(kMove));
+  EXPECT_TRUE(order_.waits_for_rest(kMoveRequest)) << "somebody may have jogged";
+  order_.sent(kMoveRequest);
+  EXPECT_FALSE(order_.waits_for_rest(kMoveRequest));
 }
 
 TEST_F(RequestOrderTest, WhatActsOnTheMachineWaitsForRestAndSoDoesTheMoveBehindIt) {
-  order_.sent(kMove);
+  order_.sent(kMoveRequest);
   EXPECT_TRUE(order_.waits_for_rest(kHome));
   order_.sent(kHome);
-  EXPECT_TRUE(order_.waits_for_rest(kMove));
-  EXPECT_TRUE(order_.waits_for_rest(kStart));
+  EXPECT_TRUE(order_.waits_for_rest(kMoveRequest));
+  EXPECT_TRUE(order_.waits_for_rest(kStartRequest));
 }
 
 TEST_F(RequestOrderTest, WhatHoldsForLaterMovesWaitsForNothingAndSettlesNothing) {
   order_.sent(kHome);
   EXPECT_FALSE(order_.waits_for_rest(kFeed));
   order_.sent(kFeed);
-  EXPECT_TRUE(order_.waits_for_rest(kMove));
+  EXPECT_TRUE(order_.waits_for_rest(kMoveRequest));
 }
 
 TEST_F(RequestOrderTest, TheCycleIsStartedForAProgramThatDoesNotStartIt) {
-  EXPECT_TRUE(order_.needs_cycle(kMove));
+  EXPECT_TRUE(order_.needs_cycle(kMoveRequest));
   EXPECT_FALSE(order_.needs_cycle(kFeed));
   order_.cycle_started();
-  order_.sent(kMove);
-  EXPECT_FALSE(order_.needs_cycle(kMove));
+  order_.sent(kMoveRequest);
+  EXPECT_FALSE(order_.needs_cycle(kMoveRequest));
   order_.sent(kHome);
-  EXPECT_TRUE(order_.needs_cycle(kMove)) << "homing ends the cycle";
+  EXPECT_TRUE(order_.needs_cycle(kMoveRequest)) << "homing ends the cycle";
 }
 
 TEST_F(RequestOrderTest, APointIsMeasuredWhenWhatStandsBetweenMovesIsDone) {
   order_.cycle_started();
-  order_.sent(kMove);
+  order_.sent(kMoveRequest);
   EXPECT_FALSE(order_.waits_for_rest(kMeasure));
   order_.sent(request("RMAC_CAM.Dwell"));
-  order_.sent(kMove);
-  EXPECT_FALSE(order_.waits_for_rest(kMove));
+  order_.sent(kMoveRequest);
+  EXPECT_FALSE(order_.waits_for_rest(kMoveRequest));
   EXPECT_TRUE(order_.waits_for_rest(kMeasure));
   order_.sent(kMeasure);
   EXPECT_FALSE(order_.waits_for_rest(kMeasure));
@@ -68,9 +68,9 @@ TEST_F(RequestOrderTest, APointIsMeasuredWhenWhatStandsBetweenMovesIsDone) {
 
 TEST_F(RequestOrderTest, AProgramThatStartsItsCycleDoesSoItself) {
   program_.starts_cycle = true;
-  EXPECT_FALSE(order_.needs_cycle(kMove));
+  EXPECT_FALSE(order_.needs_cycle(kMoveRequest));
   EXPECT_FALSE(order_.started());
-  order_.sent(kStart);
+  order_.sent(kStartRequest);
   EXPECT_TRUE(order_.started());
 }
 
@@ -79,7 +79,7 @@ TEST_F(RequestOrderTest, WhatFollowsAMeasuredPointWaitsForItOnceTheCycleRuns) {
   EXPECT_FALSE(order_.waits_for_measurement()) << "it would wait for ever";
   order_.cycle_started();
   EXPECT_TRUE(order_.waits_for_measurement());
-  order_.sent(kMove);
+  order_.sent(kMoveRequest);
   EXPECT_FALSE(order_.waits_for_measurement());
 }
 
@@ -89,7 +89,7 @@ TEST_F(RequestOrderTest, RefusesToWaitForMovesThatAreStartedLater) {
   EXPECT_EQ(refused.error().message,
             "p.rmac:7: RMAC_CAM.Home needs the moves before it done, but the program starts its cycle later");
   EXPECT_TRUE(order_.check(kHome, false)) << "nothing is queued";
-  EXPECT_TRUE(order_.check(kMove, true));
+  EXPECT_TRUE(order_.check(kMoveRequest, true));
   order_.cycle_started();
   EXPECT_TRUE(order_.check(kHome, true));
 }

@@ -10,7 +10,6 @@
 namespace rmac::servo_test {
 namespace {
 
-constexpr double kPeriod = 0.001;
 constexpr double kRadPerCount = 2 * std::numbers::pi / 1000;
 
 class ShaftReading : public testing::Test {

@@ -10,7 +10,6 @@
 namespace rmac::servo_test {
 namespace {
 
-constexpr double kPeriod = 0.001;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(ShaftTorques, AreThoseThatGiveTheJointsTheirEfforts) {

@@ -6,8 +6,6 @@
 namespace rmac::servo_test {
 namespace {
 
-constexpr double kPeriod = 0.001;
-
 /// Two joints with laws of 0.1 N/mm and a bound of 5 N, and one whose drive closes its loop itself.
 class LawsOfJoints : public testing::Test {
  protected:

@@ -7,7 +7,6 @@
 namespace rmac::servo_test {
 namespace {
 
-constexpr double kPeriod = 0.001;
 constexpr std::uint64_t kTouch = 0x10, kReady = 0x20;
 
 class Contact : public testing::Test {

@@ -8,7 +8,6 @@
 namespace rmac::servo_test {
 namespace {
 
-constexpr double kPeriod = 0.001;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Two kinematic joints and a held one.

@@ -7,7 +7,6 @@
 namespace rmac::servo_test {
 namespace {
 
-constexpr double kPeriod = 0.001;
 constexpr double kFollowingError = 1;  // mm, of the fixture's joints
 constexpr double kSlip = kFollowingError / 2;
 
