@@ -59,6 +59,8 @@ for preset in "${presets[@]}"; do
   fi
 done
 if [ -n "${lint:-}" ]; then
+  begin "lint: types of the Python package"
+  (cd clients/python && /usr/bin/python3 -m mypy --cache-dir ../../build/lint/mypy)
   begin "lint: clang-tidy, which proves what locks guard too"
   if clang-tidy --quiet tests/layout/unguarded_field.cpp -- -std=c++20 -I. >/dev/null 2>&1; then
     echo "lint: a field that is touched without its lock passed; see ExtraArgs of .clang-tidy" >&2

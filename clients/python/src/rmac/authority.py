@@ -1,0 +1,80 @@
+"""Motion authority, and the operator's place, for as long as a `with` block lasts."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any
+
+from rmac.errors import ConnectionLost, Refused
+from rmac.generated import calls
+from rmac.generated.types import BlockingCaller
+from rmac.wire.call import Call
+
+
+class Renewal:
+    """Keeps a lease that ends by silence, from a thread of its own."""
+
+    def __init__(self, renew: Callable[[], object], every_s: float) -> None:
+        self._ended = threading.Event()
+        self._renew = renew
+        self._every_s = every_s
+        threading.Thread(target=self._run, name="rmac lease", daemon=True).start()
+
+    def end(self) -> None:
+        self._ended.set()
+
+    def _run(self) -> None:
+        with contextlib.suppress(ConnectionLost, Refused):  # who moves next is told
+            while not self._ended.wait(self._every_s):
+                self._renew()
+
+
+class Authority:
+    """Taken at the beginning of the block and given back at its end, which stops a machine that still moves, and drops
+    what is queued: whoever leaves by an exception leaves a machine at rest."""
+
+    def __init__(self, call: BlockingCaller) -> None:
+        self._call = call
+        self._renewal: Renewal | None = None
+        self.dropped_moves = 0  # of whoever had it before
+
+    def __enter__(self) -> Authority:
+        given = self._call(calls.Lease.acquire())
+        self.dropped_moves = given["dropped_moves"]
+        if given["timeout_s"] > 0:
+            self._renewal = Renewal(lambda: self._call(calls.Lease.renew()), given["timeout_s"] / 3)
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        if self._renewal is not None:
+            self._renewal.end()
+        _give_back(self._call, calls.Lease.release(), error)
+
+
+class OperatorPlace:
+    """Holds, resumes and overrides beside the program's client, and stops nothing when it ends."""
+
+    def __init__(self, call: BlockingCaller) -> None:
+        self._call = call
+        self.held_by = ""  # who held the machine as the operator already
+
+    def __enter__(self) -> OperatorPlace:
+        self.held_by = self._call(calls.Post.acquire())["held_by"]
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        _give_back(self._call, calls.Post.release(), error)
+
+
+def _give_back(call: BlockingCaller, release: Call[Any], error: BaseException | None) -> None:
+    """The end of a connection gave it back already, and an error of the block is not hidden behind another one."""
+    try:
+        call(release)
+    except ConnectionLost:
+        pass
+    except Refused:
+        if error is None:
+            raise

@@ -1,0 +1,143 @@
+"""The blocking client."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Sequence
+from types import TracebackType
+from typing import Any, TypeVar
+
+from rmac.address import Address, parse_address
+from rmac.authority import Authority, OperatorPlace
+from rmac.connection import Connection
+from rmac.errors import CannotConnect, RmacError
+from rmac.generated.blocking import Methods
+from rmac.hearing import Hearer, Hearing
+from rmac.machines import LoadedMachine, Machine, Steps, describe_loaded, find_machines
+from rmac.wire.call import Call
+from rmac.wire.greeting import Greeting, check_version, hello
+
+T = TypeVar("T")
+
+
+class Client(Methods):
+    """One appliance. Every method of its API is below `cam`, `config`, `device`, `drivers` and so on; `close`, or the end
+    of a `with` block, ends the connection. Threads may share it: one may stop what another one feeds."""
+
+    def __init__(self, address: Address, name: str, check: bool, connect_within_s: float, answer_within_s: float) -> None:
+        super().__init__(self.call)
+        self.address = address
+        self.name = name
+        self._check = check
+        self._connect_within_s = connect_within_s
+        self._answer_within_s = answer_within_s
+        self._hearing = Hearing()
+        self._subscribing = threading.Lock()
+        self._connection: Connection
+        self.greeting: Greeting
+        self._open()
+
+    def __enter__(self) -> Client:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+    def close(self) -> None:
+        self._connection.close()
+
+    @property
+    def lost(self) -> RmacError | None:
+        """Why there is no connection any more; None while there is one."""
+        return self._connection.ended
+
+    def reconnect(self, patience_s: float = 0) -> None:
+        """Connects anew, trying for so long. Topics are heard as before. Authority ended with the connection before, and
+        so did every move: nothing is taken or sent again by this."""
+        self._connection.close()
+        until = time.monotonic() + patience_s
+        while True:
+            try:
+                return self._open()
+            except CannotConnect:
+                if time.monotonic() >= until:
+                    raise
+                time.sleep(min(0.2, patience_s))
+
+    def call(self, call: Call[T]) -> T:
+        """What any call of `rmac.calls` gives, or its refusal as an exception."""
+        return self._connection.call(call, self._answer_within_s)
+
+    def call_all(self, calls: Sequence[Call[Any]]) -> list[Any]:
+        """Sends them together, in their order; the first refusal is raised once all are answered."""
+        replies = [(self._connection.send(call), call) for call in calls]
+        for reply, _ in replies:
+            reply.exception(self._answer_within_s)
+        return [self._connection.wait(reply, call.method, self._answer_within_s) for reply, call in replies]
+
+    def authority(self) -> Authority:
+        return Authority(self.call)
+
+    def operator(self) -> OperatorPlace:
+        return OperatorPlace(self.call)
+
+    def machines(self, where: str = "") -> list[Machine]:
+        """Machines that the appliance knows; `where` is an SQL condition as `Type = 'Mill' AND NumberOfJoints = 5`."""
+        found: list[Machine] = self._follow(find_machines(where))
+        return found
+
+    def load(self, name: str, virtual: bool = False) -> LoadedMachine:
+        """Loads a machine's driver, at standstill; modules that are new are verified first, which takes its time."""
+        self.device.Load(name, virtual)
+        return self.machine()
+
+    def machine(self) -> LoadedMachine:
+        """The machine that is loaded; refused where none is."""
+        described: LoadedMachine = self._follow(describe_loaded())
+        return described
+
+    def state(self) -> dict[str, Any]:
+        """As the topic `state` tells it; docs/protocol.md names its members."""
+        return self.cam.GetState()
+
+    def hear(self, hearer: Hearer) -> None:
+        """Has a topic come; `take` is called in the thread that reads, and must not call back."""
+        with self._subscribing:
+            self.call(self._hearing.add(hearer))
+
+    def unhear(self, hearer: Hearer) -> None:
+        with self._subscribing:
+            call = self._hearing.remove(hearer)
+            if self.lost is None:
+                self.call(call)
+
+    def _open(self) -> None:
+        connection = Connection(self.address, self._connect_within_s, self._hearing.hear)
+        try:
+            self.greeting = connection.call(hello(self.name), self._connect_within_s)
+            if self._check:
+                check_version(self.greeting.version)
+            for call in self._hearing.subscriptions():
+                connection.call(call, self._answer_within_s)
+        except BaseException:
+            connection.close()
+            raise
+        self._connection = connection
+
+    def _follow(self, steps: Steps) -> Any:
+        try:
+            asked = next(steps)
+            while True:
+                asked = steps.send(self.call_all(asked))
+        except StopIteration as end:
+            return end.value
+
+
+def connect(
+    address: str, name: str = "python", *, check: bool = True, connect_within_s: float = 10, answer_within_s: float = 300
+) -> Client:
+    """Connects to `host:port` or `unix:/path`. `name` is what others see when this client holds authority; `check` refuses
+    an appliance whose API is another version's. Loading a machine whose modules are new verifies them first: answers may
+    take minutes."""
+    return Client(parse_address(address), name, check, connect_within_s, answer_within_s)

@@ -1,0 +1,80 @@
+"""Written by clients/python/generate.py from rpc.discover; do not edit."""
+
+from enum import IntEnum
+
+
+class ControlMode(IntEnum):
+    MODE_INACTIVE = 0
+    MODE_MANUAL = 1
+    MODE_AUTOMATIC_MOVE = 2
+    MODE_AUTOMATIC_MEASURE = 3
+    MODE_STARTUP = 4
+    MODE_SHUTDOWN = 5
+
+
+class CycleMode(IntEnum):
+    MANUAL = 0
+    AUTOMATIC = 1
+
+
+class Direction(IntEnum):
+    SHORTEST = 0
+    POSITIVE = 1
+    NEGATIVE = -1
+
+
+class JointLimitType(IntEnum):
+    DMAC_LIMITED_JNT = 0
+    DMAC_INFINITY_JNT = 1
+    DMAC_INFINITY_JNT_POS = 2
+    DMAC_INFINITY_JNT_NEG = 3
+
+
+class JointType(IntEnum):
+    DMAC_ROT_JNT = 0
+    DMAC_LIN_JNT = 1
+    DMAC_SCREW_JNT = 2
+
+
+class ParamNumber(IntEnum):
+    MACH_PREHIT_DISTANCE = 0
+    MACH_SEARCH_DISTANCE = 1
+    MACH_RETRACT_DISTANCE = 2
+    MACH_SCAN_SPEED = 3
+
+
+class RotSign(IntEnum):
+    COUNTER_CLOCKWISE = 1
+    CLOCKWISE = -1
+
+
+class ServoControlMethod(IntEnum):
+    DMAC_POSITION_CONTROL = 0
+    DMAC_VELOCITY_CONTROL = 1
+    DMAC_FORCE_CONTROL = 2
+
+
+class StatusMajorCode(IntEnum):
+    MACHINE_SUCCESS = 0
+    MACHINE_ERROR = 1
+
+
+class StatusMinorCode(IntEnum):
+    NONE = 0
+    MACHINE_ERR_UNKNOWN = 1
+    MACHINE_ERR_EMERGENCY_STOP = 2
+    MACHINE_ERR_NO_AIR = 3
+    MACHINE_ERR_TRAVEL_LIMIT = 4
+    MACHINE_ERR_SPEED_LIMIT = 5
+    MACHINE_ERR_ACCELERATION_LIMIT = 6
+    MACHINE_ERR_PROBE_NOT_ARMED = 7
+    MACHINE_ERR_SCALE = 8
+    MACHINE_ERR_PART_NOT_FOUND = 9
+    MACHINE_ERR_UNEXPECTED_HIT = 10
+    MACHINE_ERR_COMM_TIMEOUT = 11
+    MACHINE_ERR_RESPONSE_TIMEOUT = 12
+    MACHINE_ERR_INVALID_PARAMETER = 13
+    MACHINE_ERR_INVALID_PARAMETER_VALUE = 14
+    MACHINE_ERR_COMMAND_QUEUE_FULL = 15
+    MACHINE_ERR_UNSUPPORTED_OPERATION = 16
+    MACHINE_ERR_OTHER = 17
