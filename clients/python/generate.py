@@ -172,7 +172,9 @@ def generate(document):
     numbers = HEAD + "from enum import IntEnum\n"
     for name, values in sorted(enums.items()):
         numbers += f"\n\nclass {name}(IntEnum):\n" + "".join(f"    {label} = {number}\n" for label, number in values)
+    queueing = sorted(one["name"] for one in document["methods"] if one["x-effect"] == "queues")
     return {
+        "queueing.py": HEAD + "QUEUEING = frozenset(\n    {\n" + "".join(f'        "{name}",\n' for name in queueing) + "    }\n)\n",
         "__init__.py": HEAD + f'API_VERSION = "{document["info"]["version"]}"\n',
         "enums.py": numbers,
         "calls.py": calls,

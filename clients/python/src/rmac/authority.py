@@ -8,7 +8,7 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any
 
-from rmac.errors import ConnectionLost, Refused
+from rmac.errors import AuthorityRequired, ConnectionLost, Refused
 from rmac.generated import calls
 from rmac.generated.types import BlockingCaller
 from rmac.wire.call import Call
@@ -70,10 +70,11 @@ class OperatorPlace:
 
 
 def _give_back(call: BlockingCaller, release: Call[Any], error: BaseException | None) -> None:
-    """The end of a connection gave it back already, and an error of the block is not hidden behind another one."""
+    """The end of a connection, or a long silence, gave it back already, and an error of the block is not hidden behind
+    another one."""
     try:
         call(release)
-    except ConnectionLost:
+    except (ConnectionLost, AuthorityRequired):
         pass
     except Refused:
         if error is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from types import TracebackType
 from typing import Any, TypeVar
 
@@ -15,7 +15,12 @@ from rmac.errors import CannotConnect, RmacError
 from rmac.generated.blocking import Methods
 from rmac.hearing import Hearer, Hearing
 from rmac.machines import LoadedMachine, Machine, Steps, describe_loaded, find_machines
+from rmac.run import Run
+from rmac.streaming.progress import Interrupted
+from rmac.streaming.resuming import resume
+from rmac.streaming.stream import Stream
 from rmac.wire.call import Call
+from rmac.wire.exchange import Promise
 from rmac.wire.greeting import Greeting, check_version, hello
 
 T = TypeVar("T")
@@ -101,6 +106,28 @@ class Client(Methods):
         """As the topic `state` tells it; docs/protocol.md names its members."""
         return self.cam.GetState()
 
+    def run(self, moves: Iterable[Any], *, start: bool = True, first_id: int | None = None) -> Run:
+        """Feeds a program: moves, calls such as `calls.RMAC_CAM.SetFeedrate(1200)` and requests as in a `.rmac` program.
+        Nothing goes out before the run is iterated, or waited for. `start`: starts the cycle first. Needs authority."""
+        return Run(self, Stream(moves, self.state(), self.greeting.queue_capacity, first_id), start)
+
+    def resume(self, interrupted: Interrupted) -> Run:
+        """Goes on with a program whose connection ended, at the place where the machine stands; what was done is not done
+        again. `CannotResume` where that place is in doubt. Needs authority, on a connection that is there again."""
+        state = self.at_rest()
+        moves, index = resume(interrupted, state)
+        return Run(self, Stream(moves, state, self.greeting.queue_capacity, None, index), True)
+
+    def at_rest(self) -> dict[str, Any]:
+        """The state once nothing moves."""
+        while (state := self.state())["moving"] or state["state"] == "Stopping":
+            time.sleep(0.01)
+        return state
+
+    def send_batch(self, requests: Sequence[tuple[str, str]], promise: Promise) -> None:
+        """Of each its method and its parameters as JSON; the promise gets a list of outcomes."""
+        self._connection.send_batch(requests, promise)
+
     def hear(self, hearer: Hearer) -> None:
         """Has a topic come; `take` is called in the thread that reads, and must not call back."""
         with self._subscribing:
@@ -123,6 +150,7 @@ class Client(Methods):
         except BaseException:
             connection.close()
             raise
+        connection.on_end = self._hearing.lost
         self._connection = connection
 
     def _follow(self, steps: Steps) -> Any:

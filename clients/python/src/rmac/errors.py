@@ -34,6 +34,10 @@ class VersionMismatch(RmacError):
     """The appliance has another version of the API than this package was generated from."""
 
 
+class CannotResume(RmacError):
+    """Where an interrupted program stands cannot be told for sure, so nothing of it is sent again."""
+
+
 class Refused(RmacError):
     """The appliance answered with an error."""
 

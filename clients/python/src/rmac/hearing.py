@@ -6,10 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from rmac.errors import RmacError
 from rmac.generated import calls
 from rmac.wire.call import Call
 
 Take = Callable[[Any], None]
+Lost = Callable[[RmacError], None]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -17,6 +19,7 @@ class Hearer:
     topic: str
     rate_hz: float
     take: Take
+    lost: Lost  # the connection ended
 
 
 class Hearing:
@@ -37,6 +40,10 @@ class Hearing:
         for hearer in self._hearers:
             if hearer.topic == topic:
                 hearer.take(params)
+
+    def lost(self, error: RmacError) -> None:
+        for hearer in self._hearers:
+            hearer.lost(error)
 
     def subscriptions(self) -> list[Call[bool]]:
         """What a new connection is to be asked for."""

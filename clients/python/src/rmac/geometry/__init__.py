@@ -1,0 +1,1 @@
+"""Places and curves as moves take them."""

@@ -1,0 +1,114 @@
+"""A program that the blocking client feeds to the machine."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from rmac.errors import RmacError
+from rmac.hearing import Hearer
+from rmac.streaming.part import Part
+from rmac.streaming.stream import Stream
+from rmac.wire.exchange import Outcome
+
+if TYPE_CHECKING:
+    from rmac.client import Client
+
+STATE_RATE_HZ = 50
+
+
+class Run:
+    """Iterating feeds the program and gives each part of it when it is done, with its `index`, `move_id` and `move`; `wait`
+    feeds it to its end. `len` is known where the program's is, so `tqdm(run)` shows how far it is."""
+
+    def __init__(self, client: Client, stream: Stream, start: bool) -> None:
+        self._client = client
+        self._stream = stream
+        self._start = start
+        self._changed = threading.Condition()
+        self._parts = self._feed()
+
+    def __iter__(self) -> Iterator[Part]:
+        return self._parts
+
+    def __len__(self) -> int:
+        if self._stream.total is None:
+            raise TypeError("how long this program is is not known before its end")
+        return self._stream.total
+
+    @property
+    def done(self) -> int:
+        """Moves that are done; those that may not be are not counted."""
+        return self._stream.ledger.done
+
+    @property
+    def taken(self) -> int:
+        """Moves that the appliance has taken."""
+        return self._stream.ledger.taken
+
+    def wait(self) -> None:
+        """Until the program is done and the machine rests."""
+        for _ in self._parts:
+            pass
+
+    def set_result(self, outcomes: list[Outcome]) -> None:
+        """Answers to a batch, in the thread that reads."""
+        with self._changed:
+            self._stream.answered(outcomes)
+            self._changed.notify()
+
+    def set_exception(self, error: BaseException) -> None:
+        with self._changed:
+            self._stream.lost(error if isinstance(error, RmacError) else RmacError(str(error)))
+            self._changed.notify()
+
+    def _heard(self, state: dict[str, Any]) -> None:
+        with self._changed:
+            self._stream.heard(state)
+            self._changed.notify()
+
+    def _feed(self) -> Iterator[Part]:
+        hearer = Hearer("state", STATE_RATE_HZ, self._heard, self.set_exception)
+        self._client.hear(hearer)
+        try:
+            if self._start:
+                self._client.cam.CycleStart("AUTOMATIC")
+            while not self._stream.ended or self._stream.ledger.finished:
+                yield from self._step()
+            if self._stream.failure is not None:
+                raise self._stream.failure
+        finally:
+            with contextlib.suppress(RmacError):
+                self._client.unhear(hearer)
+
+    def _step(self) -> Iterator[Part]:
+        with self._changed:
+            batch = self._stream.next_batch()
+            finished = self._stream.ledger.finished
+            confirm = self._stream.asks_state
+            if not (batch or finished or confirm or self._stream.ended):
+                self._changed.wait()
+        if batch:
+            self._send(batch)
+        if confirm:
+            self._confirm()
+        while finished:
+            yield finished.popleft()
+
+    def _send(self, batch: list[tuple[str, str]]) -> None:
+        try:
+            self._client.send_batch(batch, self)
+        except RmacError as error:
+            self.set_exception(error)
+
+    def _confirm(self) -> None:
+        try:
+            state = self._client.state()
+        except RmacError as error:
+            return self.set_exception(error)
+        with self._changed:
+            self._stream.confirm(state)
+            if self._stream.asks_state:
+                self._changed.wait(1 / STATE_RATE_HZ)

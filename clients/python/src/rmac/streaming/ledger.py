@@ -1,0 +1,89 @@
+"""What the machine has of a program: taken, done, and how much may still stand in its queue.
+
+States come when they do, and tell of the time when they were made. So of what was taken since the state before, it is
+assumed here that a state does not tell yet: what is counted as done is done, and what may be queued is counted as queued.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any
+
+from rmac.moves.between import Request
+from rmac.moves.move import Move
+from rmac.streaming.part import Part
+
+
+class Ledger:
+    def __init__(self, state: dict[str, Any], first_id: int, first_index: int) -> None:
+        self.kept: deque[Part] = deque()  # taken and not known to be done, in order
+        self.finished: deque[Part] = deque()  # done, and not yet told
+        self.settings: dict[str, Move] = {}  # by method, as in force behind what is done
+        self.mechanism = state["mechanism"]
+        self.cycle: int = state["cycle"]
+        self.machine_id: int = state["move_id"]  # of the move that it was at last
+        self.first_machine_id = self.machine_id
+        self.done = self.taken = first_index
+        self.last_done_id: int | None = None
+        self.rests = False
+        self._base = first_id
+        self._index = first_index
+        self._own_ids = False  # the program brings ids with it, which need not count up
+        self._in_queue: int = state["moves_in_buffer"]
+        self._queued = self._queued_done = 0
+        self._queued_before = self._counted = 0
+
+    @property
+    def complete(self) -> bool:
+        return self.done == self.taken
+
+    @property
+    def most_in_queue(self) -> int:
+        return self._in_queue + self._queued - self._counted
+
+    def part(self, move: Move) -> Part:
+        """The program's next one."""
+        move_id = self._base + self._index
+        if isinstance(move, Request) and move.move_id is not None:
+            move_id = move.move_id
+            self._own_ids = True
+        part = Part(self._index, move_id, move, move.params(move_id))
+        self._index += 1
+        return part
+
+    def take(self, part: Part) -> None:
+        self.kept.append(part)
+        self.taken += 1
+        self._queued += part.move.queues
+        self.rests = False
+
+    def heard(self, state: dict[str, Any]) -> None:
+        self.cycle, self.machine_id = state["cycle"], state["move_id"]
+        self._in_queue = state["moves_in_buffer"]
+        self._counted, self._queued_before = self._queued_before, self._queued
+        self.rests = self._in_queue == 0 and not state["moving"] and state["waits_for"] in ("", "moves")
+        self._forget(self._counted - self._in_queue, self._before_machine_id())
+
+    def complete_all(self) -> None:
+        self._forget(self._queued, self._index)
+
+    def _before_machine_id(self) -> int:
+        """Index of the part that the machine is at: those before it are done."""
+        index = self.machine_id - self._base
+        if self._own_ids or self.machine_id == self.first_machine_id or index >= self._index:
+            return 0
+        return index
+
+    def _forget(self, queued: int, index: int) -> None:
+        """What is done: so many of those in the queue, and all before that index."""
+        while self.kept:
+            part = self.kept[0]
+            if part.move.queues:
+                if self._queued_done >= queued and part.index >= index:
+                    return
+                self._queued_done += 1
+                self.last_done_id = part.move_id
+            else:
+                self.settings[part.move.method] = part.move
+            self.finished.append(self.kept.popleft())
+            self.done += 1

@@ -1,0 +1,149 @@
+"""One program on its way: what to send next, and what answers and states mean for it.
+
+A transport asks `next_batch` for what may be sent now, sends it, and tells `answered` and `heard`; both clients share this.
+Never more is under way than the queue has room for, so that the appliance need not refuse; where it does, the refused ones
+go out again from the first one on. What is not done is kept for an interrupted program; what is done is forgotten.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence, Sized
+from typing import Any
+
+from rmac.errors import QueueFull, RmacError
+from rmac.moves import item
+from rmac.streaming.gaps import OpenEnds
+from rmac.streaming.ledger import Ledger
+from rmac.streaming.part import Part
+from rmac.streaming.progress import Interrupted, MachineStopped, MoveRefused
+from rmac.wire.exchange import Outcome
+
+_BATCH = 64
+_BATCH_BYTES = 1 << 18
+_WINDOW = 1024  # moves that wait for their answers
+
+
+class Stream:
+    """Not for two threads at once."""
+
+    def __init__(self, moves: Iterable[Any], state: dict[str, Any], capacity: int, first_id: int | None = None, first_index: int = 0) -> None:
+        self.total: int | None = len(moves) + first_index if isinstance(moves, Sized) else None
+        self.failure: RmacError | None = None
+        # Ids go on from the one that the machine worked on last, so that its `move_id` tells ours from those before.
+        id_of_first = max(0, state["move_id"]) + 1 if first_id is None else first_id
+        self.ledger = Ledger(state, id_of_first - first_index, first_index)
+        self._source: Iterator[Any] = iter(moves)
+        self._exhausted = False
+        self._capacity = capacity
+        self._ahead: deque[Part] = deque()  # to be sent next
+        self._under_way: deque[Part] = deque()
+        self._refused: deque[Part] = deque()  # for want of room, until nothing is under way
+        self._ends = OpenEnds()
+        self._full = False
+        self._refusal: MoveRefused | None = None  # that is to be told, unless it came of a stop
+        self._first_cycle: int = state["cycle"]
+
+    @property
+    def asks_state(self) -> bool:
+        """All was taken and the machine seems to be through, or a move was refused, perhaps because somebody stopped the
+        machine: ask for its state, and tell `confirm`."""
+        if self._refusal is not None:
+            return self.failure is None and not self._under_way
+        return self._all_taken() and self.ledger.rests and not self.ledger.complete
+
+    @property
+    def ended(self) -> bool:
+        if self.failure is not None:
+            return isinstance(self.failure, Interrupted) or not self._under_way
+        return self._refusal is None and self._all_taken() and self.ledger.complete
+
+    def next_batch(self) -> list[tuple[str, str]] | None:
+        """Requests that may go out now; None: nothing before something is heard."""
+        if self._full or self.failure is not None or self._refusal is not None:
+            return None
+        batch: list[tuple[str, str]] = []
+        room = min(_BATCH, _WINDOW - len(self._under_way), self._capacity - self.ledger.most_in_queue - len(self._under_way))
+        size = 0
+        while len(batch) < room and size < _BATCH_BYTES:
+            part = self._peek()
+            if part is None or not self._ends.may_follow(part.move.start):
+                break
+            self._ahead.popleft()
+            self._ends.add(part.move.end)
+            self._under_way.append(part)
+            batch.append((part.move.method, part.params))
+            size += len(part.params)
+        return batch or None
+
+    def answered(self, outcomes: Sequence[Outcome]) -> None:
+        """Of the first ones that are under way, in order."""
+        for outcome in outcomes:
+            part = self._under_way.popleft()
+            if outcome is None:
+                self._take(part)
+            elif self._refused or isinstance(outcome, QueueFull):
+                self._refused.append(part)  # also where it is refused because it does not join on
+                self._full = True
+            elif self._refusal is None:
+                self._refusal = MoveRefused(part.index, part.move, outcome)
+        if self._refused and not self._under_way:
+            self._ahead.extendleft(reversed(self._refused))
+            self._refused.clear()
+            self._ends = OpenEnds()
+
+    def heard(self, state: dict[str, Any]) -> None:
+        """A state of the machine, as pushed: it may be older than what was answered lately."""
+        self.ledger.heard(state)
+        if self.ledger.most_in_queue < self._capacity:
+            self._full = False
+        self._watch(state)
+
+    def confirm(self, state: dict[str, Any]) -> None:
+        """A state that was asked for after the last answer."""
+        self.heard(state)
+        if self.failure is not None:
+            return
+        if self._refusal is None:
+            if self.asks_state:
+                self.ledger.complete_all()
+        elif state["state"] == "Stopping":
+            self.failure = MachineStopped(state, self.ledger.done, str(self._refusal))
+        else:
+            self.failure = self._refusal
+
+    def lost(self, error: RmacError) -> None:
+        if self.failure is None:
+            self.failure = Interrupted(error, self.ledger, self.remaining())
+
+    def remaining(self) -> Iterator[Part | Any]:
+        """What is not known to be done, in order: parts that were sent, then the program's own rest."""
+        yield from self.ledger.kept
+        yield from self._refused
+        yield from self._under_way
+        yield from self._ahead
+        yield from self._source
+
+    def _all_taken(self) -> bool:
+        return self._peek() is None and not self._under_way and not self._refused
+
+    def _peek(self) -> Part | None:
+        if not self._ahead and not self._exhausted:
+            try:
+                self._ahead.append(self.ledger.part(item(next(self._source))))
+            except StopIteration:
+                self._exhausted = True
+        return self._ahead[0] if self._ahead else None
+
+    def _take(self, part: Part) -> None:
+        if self._refused:
+            self.failure = RmacError(f"move {part.index} was taken behind one that there was no room for; the machine must be stopped")
+        self._ends.answered(1)
+        self.ledger.take(part)
+
+    def _watch(self, state: dict[str, Any]) -> None:
+        """A cycle that waits for moves runs: one that rests otherwise was stopped."""
+        stop = state["last_stop"]
+        stopped = state["state"] == "Idle" and stop is not None and stop["cycle"] > self._first_cycle
+        if self.failure is None and (stopped or state["state"] in ("Faulted", "EmergencyStop")):
+            self.failure = MachineStopped(state, self.ledger.done, (stop or state["last_error"] or {}).get("message", "it does not tell why"))

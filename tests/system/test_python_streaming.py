@@ -1,0 +1,247 @@
+"""Programs that the Python package streams: done once and in order, refused, stopped, and interrupted in their midst."""
+
+import itertools
+import math
+import sys
+import threading
+import unittest
+
+from appliance import SOURCE, Appliance
+
+sys.path[:0] = [str(SOURCE / "clients/python/src")]
+
+import rmac  # noqa: E402
+from rmac.hearing import Hearer  # noqa: E402
+
+
+def spiral(count, step=0.02):
+    """Short lines that come back to no place."""
+    for number in range(count + 1):
+        angle, radius = number * step / 5, 5 + number * 1e-4
+        yield radius * math.cos(angle) - 5, radius * math.sin(angle), 0
+
+
+class Watcher:
+    """Another client, which hears what the machine does."""
+
+    def __init__(self, appliance, rate_hz=1000):
+        self.client = rmac.connect(f"127.0.0.1:{appliance.port}", "watcher")
+        self.events, self.samples = [], []
+        self.client.hear(Hearer("events", 100, self.events.append, lambda error: None))
+        self.client.hear(Hearer("joints", rate_hz, lambda params: self.samples.extend(params["samples"]), lambda error: None))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace):
+        self.client.close()
+
+    def catch_up(self):
+        """Until all has come that happened so far: a cycle's sample comes behind its events."""
+        cycle = self.client.state()["cycle"]
+        while not self.samples or self.samples[-1]["cycle"] < cycle:
+            self.client.state()
+
+    def done(self):
+        """Ids of moves that are done."""
+        self.catch_up()
+        return [event["move_id"] for event in self.events if event["kind"] == "MoveDone"]
+
+    def positions(self):
+        self.catch_up()
+        return [sample["q"][0] for sample in self.samples]
+
+
+class PythonStreamingTest(unittest.TestCase):
+    def start(self, **configuration):
+        self.appliance = self.enterContext(Appliance(**configuration))
+        self.address = f"127.0.0.1:{self.appliance.port}"
+        client = self.enterContext(rmac.connect(self.address, "streamer"))
+        self.lease = self.enterContext(client.authority())
+        client.load("DMACXYZ")
+        client.cam.SetFeedrate(1800)
+        client.cam.SetPathTolerance(0.01)
+        return client
+
+    def test_a_program_is_done_once_and_in_order(self):
+        client = self.start()
+        with Watcher(self.appliance) as watcher:
+            program = [rmac.MoveTo((0, 0, 0)), *rmac.polyline(spiral(2000))]
+            run = client.run(program)
+            self.assertEqual(len(run), len(program))
+            done = list(run)
+            self.assertEqual([part.index for part in done], list(range(len(program))))
+            self.assertIs(done[7].move, program[7])
+            told = watcher.done()
+            self.assertEqual(told, sorted(set(told)))
+            self.assertEqual(told[-1], done[-1].move_id)
+            self.assertEqual(client.state()["moves_in_buffer"], 0)
+
+    def test_ids_go_on_from_program_to_program(self):
+        client = self.start()
+        first = [part.move_id for part in client.run([rmac.MoveTo((1, 0, 0)), rmac.MoveTo((2, 0, 0))])]
+        second = [part.move_id for part in client.run([rmac.MoveTo((1, 0, 0))])]
+        chosen = [part.move_id for part in client.run([rmac.MoveTo((2, 0, 0))], first_id=500)]
+        self.assertEqual((first, second, chosen), ([1, 2], [3], [500]))
+
+    def test_nothing_of_a_long_program_is_kept_but_what_is_in_the_queue(self):
+        client = self.start(queue_capacity=100)
+        count = 5000
+        made = itertools.count()
+        run = client.run(itertools.chain([rmac.MoveTo((0, 0, 0))], (line for line, _ in zip(rmac.polyline(spiral(count)), made))))
+        with self.assertRaises(TypeError):
+            len(run)
+        most = ahead = done = 0
+        for part in run:
+            done += 1
+            most = max(most, len(run._stream.ledger.kept) + len(run._stream._under_way))
+            ahead = max(ahead, next(made) - 2 * done)  # `made` counts the lines that were asked for, and these calls
+        self.assertEqual(done, count + 1)
+        self.assertLessEqual(most, 100)
+        self.assertLessEqual(ahead, 110)
+
+    def test_a_full_queue_loses_and_repeats_nothing(self):
+        client = self.start(queue_capacity=50)
+        object.__setattr__(client.greeting, "queue_capacity", 5000)  # so that more is sent than there is room for
+        with Watcher(self.appliance) as watcher:
+            done = [part.move_id for part in client.run([rmac.MoveTo((0, 0, 0)), *rmac.polyline(spiral(600, step=0.1))])]
+            self.assertEqual(done, list(range(1, 602)))
+            self.assertEqual(watcher.done(), done)
+
+    def test_what_is_behind_a_refused_move_is_not_taken_wherever_it_begins(self):
+        # The third leaves the machine's travel; those behind it begin where the queue ends then, one of them again and again.
+        away, back = rmac.Line((0, 0, 0), (90, 0, 0)), rmac.Line((90, 0, 0), (0, 0, 0))
+        program = [rmac.MoveTo((0, 0, 0)), rmac.Line((0, 0, 0), (1, 0, 0)), rmac.Line((1, 0, 0), (0, 0, 0)), away, back]
+        client = self.start()
+        for behind in ([rmac.Line((0, 0, 0), (0, 1, 0))], [rmac.MoveTo((0, 1, 0))], [rmac.MoveJoints((0, 1, 0))],
+                       [rmac.Arc((0, 0, 0), (0, 0, 0), (0, 1, 0), closed=True)], [rmac.output("Coolant", True)]):
+            with self.subTest(behind=behind), self.assertRaises(rmac.MoveRefused) as caught:
+                client.run(program + behind).wait()
+            self.assertEqual((caught.exception.index, caught.exception.move), (3, away))
+            self.assertEqual(caught.exception.refusal.minor_name, "MACHINE_ERR_TRAVEL_LIMIT")
+            while (state := client.state())["moves_in_buffer"] or state["moving"]:
+                pass
+            self.assertEqual([round(place, 2) for place in state["joints"]], [0, 0, 0])
+            self.assertEqual(state["outputs"], 0)
+
+    def test_calls_and_requests_take_their_turn_among_moves(self):
+        client = self.start()
+        with Watcher(self.appliance) as watcher:
+            program = [
+                rmac.MoveTo((0, 0, 0)), rmac.calls.RMAC_CAM.SetFeedrate(600), rmac.Line((0, 0, 0), (1, 0, 0)), rmac.Dwell(0.01),
+                rmac.calls.RMAC_CAM.SetFeedrate(1200), rmac.Line((1, 0, 0), (20, 0, 0)),
+                {"method": "RMAC_CAM.MoveAlongLine", "params": rmac.Line((20, 0, 0), (21, 0, 0)).request(77)["params"]},
+            ]
+            done = list(client.run(program))
+            self.assertEqual([part.move_id for part in done], [1, 2, 3, 4, 5, 6, 77])
+            watcher.catch_up()
+            feeds = {number: max(sample["feed_mm_s"] for sample in watcher.samples if sample["move_id"] == number) for number in (3, 6)}
+        self.assertAlmostEqual(feeds[3], 10, places=3)
+        self.assertAlmostEqual(feeds[6], 20, places=3)
+
+    def test_a_machine_that_somebody_stops_ends_the_run(self):
+        client = self.start()
+        with rmac.connect(self.address, "panel") as panel, self.assertRaises(rmac.MachineStopped):
+            for part in client.run([rmac.MoveTo((0, 0, 0)), *rmac.polyline(spiral(5000))]):
+                if part.index == 20:
+                    panel.cam.StopNow()
+
+    def test_another_thread_may_stop_what_a_run_feeds(self):
+        client = self.start()
+        stopped = threading.Thread(target=client.cam.StopNow)
+        with self.assertRaises(rmac.MachineStopped):
+            for part in client.run([rmac.MoveTo((0, 0, 0)), *rmac.polyline(spiral(5000))]):
+                if part.index == 20:
+                    stopped.start()
+        stopped.join()
+
+    def interrupt(self, client, program, at):
+        """Runs it and cuts the connection when a part of it is done."""
+        with self.assertRaises(rmac.Interrupted) as caught:
+            for part in client.run(program):
+                if part.index == at:
+                    client._connection._socket.shutdown(2)
+        client.reconnect()
+        return caught.exception
+
+    def test_an_interrupted_program_goes_on_where_it_was_and_repeats_nothing(self):
+        client = self.start()
+        client.cam.SetFeedrate(120)
+        lines = 400
+        program = [rmac.MoveTo((-40, 0, 0)), *rmac.polyline((-40 + 80 * number / lines, 0, 0) for number in range(lines + 1))]
+        with Watcher(self.appliance) as watcher:
+            interrupted = self.interrupt(client, program, 150)
+            with client.authority():
+                rest = [part.index for part in client.resume(interrupted)]
+            places = watcher.positions()
+        began = places.index(min(places))
+        path = places[began:]
+        # It rests on a drive's own place, micrometres beside the path's; what is repeated would be a line of 0.2 mm.
+        back = max(before - after for before, after in zip(itertools.accumulate(path, max), path))
+        self.assertLess(back, 0.01)
+        self.assertAlmostEqual(path[-1], 40, places=6)
+        self.assertLess(max(after - before for before, after in zip(path, path[1:])), 120 / 60 / 1000 * 1.001, "a gap")
+        self.assertLess(rest[0], lines)
+
+    def test_an_interrupted_curve_goes_on_as_the_same_curve(self):
+        client = self.start()
+        curve = rmac.NurbsCurve(3, [0, 0, 0, 0, 1, 2, 3, 3, 3, 3], [(0, 0, 0), (5, 8, 0), (10, -8, 0), (15, 8, 0), (20, -8, 0), (25, 0, 0)], [1, 2, 1, 3, 1, 1])
+        with Watcher(self.appliance) as watcher:
+            before = len(watcher.samples)
+            client.run([rmac.MoveTo((0, 0, 0)), rmac.Nurbs(curve)]).wait()
+            watcher.catch_up()
+            whole = [sample["q"] for sample in watcher.samples[before:]]
+            client.run([rmac.MoveTo((0, 0, 0))]).wait()
+            watcher.catch_up()
+            before = len(watcher.samples)
+            interrupted = self.interrupt(client, [rmac.MoveTo((0, 0, 0)), rmac.Nurbs(curve)], 0)
+            with client.authority():
+                client.resume(interrupted).wait()
+            watcher.catch_up()
+            resumed = [sample["q"] for sample in watcher.samples[before:]]
+        self.assertAlmostEqual(resumed[-1][0], 25, places=6)
+        whole.sort()
+        for place in resumed[:: max(1, len(resumed) // 200)]:
+            near = [other for other in whole if abs(other[0] - place[0]) < 0.05]
+            self.assertLess(min(math.dist(place, other) for other in near), 0.03)
+
+    def test_the_feed_of_the_place_comes_back(self):
+        client = self.start()
+        feed = rmac.calls.RMAC_CAM.SetFeedrate
+        program = [feed(600), rmac.MoveTo((0, 0, 0)), rmac.Line((0, 0, 0), (30, 0, 0)), feed(1200), rmac.Line((30, 0, 0), (31, 0, 0))]
+        interrupted = self.interrupt(client, program, 1)
+        with client.authority(), Watcher(self.appliance) as watcher:
+            client.resume(interrupted).wait()
+            watcher.catch_up()
+            fastest = {round(sample["q"][0]) > 30: 0 for sample in watcher.samples}
+            for sample in watcher.samples:
+                fastest[sample["q"][0] > 30] = max(fastest.get(sample["q"][0] > 30, 0), sample["feed_mm_s"])
+        self.assertAlmostEqual(fastest[False], 10, places=3)
+        self.assertGreater(fastest[True], 10.5)
+
+    def test_a_place_in_doubt_is_not_taken_up(self):
+        client = self.start()
+        program = [rmac.MoveTo((0, 0, 0)), *rmac.polyline((number / 10, 0, 0) for number in range(400))]
+        interrupted = self.interrupt(client, program, 50)
+        with rmac.connect(self.address, "other") as other, other.authority():
+            other.run([rmac.MoveTo((-5, 0, 0))], first_id=5000).wait()
+        with client.authority(), self.assertRaisesRegex(rmac.CannotResume, "move 5000"):
+            client.resume(interrupted)
+        with rmac.connect(self.address, "other") as other, other.authority():
+            other.load("DMACXY")
+        with client.authority(), self.assertRaisesRegex(rmac.CannotResume, "DMACXY now"):
+            client.resume(interrupted)
+
+    def test_a_tool_that_was_moved_aside_is_not_sent_back_through_the_part(self):
+        client = self.start()
+        interrupted = self.interrupt(client, [rmac.MoveTo((0, 0, 0)), rmac.Line((0, 0, 0), (40, 0, 0))], 0)
+        with client.authority():
+            client.at_rest()
+            client.cam.JogJoint(1, 5)
+            client.at_rest()
+            with self.assertRaises(rmac.CannotResume):
+                client.resume(interrupted)
+
+
+if __name__ == "__main__":
+    unittest.main()
