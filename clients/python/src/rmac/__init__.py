@@ -16,6 +16,7 @@ from rmac.errors import (
     RmacError,
     VersionMismatch,
 )
+from rmac.events import Event
 from rmac.generated import API_VERSION, calls
 from rmac.geometry.nurbs import NurbsCurve
 from rmac.geometry.pose import Pose
@@ -39,6 +40,7 @@ from rmac.moves import (
     spindle,
     tool_change,
 )
+from rmac.records import FlightRecord, Record
 from rmac.run import Run
 from rmac.streaming.progress import Interrupted, MachineStopped, MoveRefused
 from rmac.wire.call import Call
@@ -56,6 +58,8 @@ __all__ = [
     "Client",
     "ConnectionLost",
     "Dwell",
+    "Event",
+    "FlightRecord",
     "InTurn",
     "Interrupted",
     "InvalidValue",
@@ -77,6 +81,7 @@ __all__ = [
     "PoseNurbs",
     "ProgramStop",
     "ProtocolError",
+    "Record",
     "Refused",
     "RequestRefused",
     "RmacError",

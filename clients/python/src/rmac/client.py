@@ -12,10 +12,13 @@ from rmac.address import Address, parse_address
 from rmac.authority import Authority, OperatorPlace
 from rmac.connection import Connection
 from rmac.errors import CannotConnect, RmacError
+from rmac.events import Event, read_event
 from rmac.generated.blocking import Methods
+from rmac.heard import Heard, Recording
 from rmac.hearing import Hearer, Hearing
 from rmac.machines import LoadedMachine, Machine, Steps, describe_loaded, find_machines
 from rmac.run import Run
+from rmac.records import FlightRecord, read_flight_record
 from rmac.streaming.progress import Interrupted
 from rmac.streaming.resuming import resume
 from rmac.streaming.stream import Stream
@@ -123,6 +126,24 @@ class Client(Methods):
         while (state := self.state())["moving"] or state["state"] == "Stopping":
             time.sleep(0.01)
         return state
+
+    def events(self) -> Heard[Event]:
+        """What happens, as it does: a `with` block, iterated."""
+        return Heard(self, "events", 100, read_event)
+
+    def states(self, rate_hz: float = 20) -> Heard[dict[str, Any]]:
+        """The topic `state`, so often a second of the machine's time."""
+        return Heard(self, "state", rate_hz, dict)
+
+    def record(self, rate_hz: float | None = None) -> Recording:
+        """Records joints within a `with` block: every cycle, which one client at a time may have more than 100 of a second,
+        or so many a second."""
+        return Recording(self, self.greeting.cycle_hz if rate_hz is None else rate_hz)
+
+    def flight_record(self, name: str) -> FlightRecord:
+        """A flight record, by its name in `recorder.List()` or in an event."""
+        found: FlightRecord = self._follow(read_flight_record(name))
+        return found
 
     def send_batch(self, requests: Sequence[tuple[str, str]], promise: Promise) -> None:
         """Of each its method and its parameters as JSON; the promise gets a list of outcomes."""

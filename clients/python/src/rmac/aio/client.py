@@ -1,0 +1,190 @@
+"""The asyncio client."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Iterable, Sequence
+from types import TracebackType
+from typing import Any, TypeVar
+
+from rmac.address import Address, parse_address
+from rmac.aio.authority import Authority, OperatorPlace
+from rmac.aio.connection import Connection
+from rmac.aio.heard import Heard, Recording
+from rmac.aio.run import Run
+from rmac.errors import CannotConnect, RmacError
+from rmac.events import Event, read_event
+from rmac.generated.awaiting import Methods
+from rmac.hearing import Hearer, Hearing
+from rmac.machines import LoadedMachine, Machine, Steps, describe_loaded, find_machines
+from rmac.records import FlightRecord, read_flight_record
+from rmac.streaming.progress import Interrupted
+from rmac.streaming.resuming import resume
+from rmac.streaming.stream import Stream
+from rmac.wire.call import Call
+from rmac.wire.exchange import Promise
+from rmac.wire.greeting import Greeting, check_version, hello
+
+T = TypeVar("T")
+
+
+class Client(Methods):
+    """As `rmac.Client`, awaited; of one event loop. `connect` makes it."""
+
+    def __init__(self, address: Address, name: str, check: bool, connect_within_s: float, answer_within_s: float) -> None:
+        super().__init__(self.call)
+        self.address = address
+        self.name = name
+        self._check = check
+        self._connect_within_s = connect_within_s
+        self._answer_within_s = answer_within_s
+        self._hearing = Hearing()
+        self._subscribing = asyncio.Lock()
+        self._connection: Connection
+        self.greeting: Greeting
+
+    async def __aenter__(self) -> Client:
+        return self
+
+    async def __aexit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        await self.close()
+
+    async def close(self) -> None:
+        await self._connection.close()
+
+    @property
+    def lost(self) -> RmacError | None:
+        """Why there is no connection any more; None while there is one."""
+        return self._connection.ended
+
+    async def reconnect(self, patience_s: float = 0) -> None:
+        """Connects anew, trying for so long. Topics are heard as before; nothing is taken or sent again by this."""
+        await self._connection.close()
+        until = time.monotonic() + patience_s
+        while True:
+            try:
+                return await self.open()
+            except CannotConnect:
+                if time.monotonic() >= until:
+                    raise
+                await asyncio.sleep(min(0.2, patience_s))
+
+    async def call(self, call: Call[T]) -> T:
+        """What any call of `rmac.calls` gives, or its refusal as an exception."""
+        return await self._connection.call(call, self._answer_within_s)
+
+    async def call_all(self, calls: Sequence[Call[Any]]) -> list[Any]:
+        """Sends them together, in their order; the first refusal is raised once all are answered."""
+        replies = [self._connection.send(call) for call in calls]
+        await asyncio.wait([reply.future for reply in replies], timeout=self._answer_within_s)
+        answers: list[Any] = await asyncio.gather(*(self._connection.wait(reply, call, 0) for reply, call in zip(replies, calls)), return_exceptions=True)
+        for answer in answers:
+            if isinstance(answer, BaseException):
+                raise answer
+        return answers
+
+    def authority(self) -> Authority:
+        return Authority(self.call)
+
+    def operator(self) -> OperatorPlace:
+        return OperatorPlace(self.call)
+
+    async def machines(self, where: str = "") -> list[Machine]:
+        """Machines that the appliance knows; `where` is an SQL condition as `Type = 'Mill' AND NumberOfJoints = 5`."""
+        found: list[Machine] = await self._follow(find_machines(where))
+        return found
+
+    async def load(self, name: str, virtual: bool = False) -> LoadedMachine:
+        """Loads a machine's driver, at standstill; modules that are new are verified first, which takes its time."""
+        await self.device.Load(name, virtual)
+        return await self.machine()
+
+    async def machine(self) -> LoadedMachine:
+        """The machine that is loaded; refused where none is."""
+        described: LoadedMachine = await self._follow(describe_loaded())
+        return described
+
+    async def state(self) -> dict[str, Any]:
+        """As the topic `state` tells it; docs/protocol.md names its members."""
+        return await self.cam.GetState()
+
+    async def run(self, moves: Iterable[Any], *, start: bool = True, first_id: int | None = None) -> Run:
+        """As `rmac.Client.run`: nothing goes out before the run is iterated, or waited for."""
+        return Run(self, Stream(moves, await self.state(), self.greeting.queue_capacity, first_id), start)
+
+    async def resume(self, interrupted: Interrupted) -> Run:
+        """As `rmac.Client.resume`: goes on at the place where the machine stands, or raises `CannotResume`."""
+        state = await self.at_rest()
+        moves, index = resume(interrupted, state)
+        return Run(self, Stream(moves, state, self.greeting.queue_capacity, None, index), True)
+
+    async def at_rest(self) -> dict[str, Any]:
+        """The state once nothing moves."""
+        while (state := await self.state())["moving"] or state["state"] == "Stopping":
+            await asyncio.sleep(0.01)
+        return state
+
+    def events(self) -> Heard[Event]:
+        """What happens, as it does: a `with` block, iterated."""
+        return Heard(self, "events", 100, read_event)
+
+    def states(self, rate_hz: float = 20) -> Heard[dict[str, Any]]:
+        """The topic `state`, so often a second of the machine's time."""
+        return Heard(self, "state", rate_hz, dict)
+
+    def record(self, rate_hz: float | None = None) -> Recording:
+        """Records joints within a `with` block: every cycle, which one client at a time may have more than 100 of a second,
+        or so many a second."""
+        return Recording(self, self.greeting.cycle_hz if rate_hz is None else rate_hz)
+
+    async def flight_record(self, name: str) -> FlightRecord:
+        """A flight record, by its name in `recorder.List()` or in an event."""
+        found: FlightRecord = await self._follow(read_flight_record(name))
+        return found
+
+    async def send_batch(self, requests: Sequence[tuple[str, str]], promise: Promise) -> None:
+        """Of each its method and its parameters as JSON; the promise gets a list of outcomes."""
+        await self._connection.send_batch(requests, promise)
+
+    async def hear(self, hearer: Hearer) -> None:
+        """Has a topic come; `take` is called in the loop."""
+        async with self._subscribing:
+            await self.call(self._hearing.add(hearer))
+
+    async def unhear(self, hearer: Hearer) -> None:
+        async with self._subscribing:
+            call = self._hearing.remove(hearer)
+            if self.lost is None:
+                await self.call(call)
+
+    async def open(self) -> None:
+        connection = await Connection.open(self.address, self._connect_within_s, self._hearing.hear)
+        try:
+            self.greeting = await connection.call(hello(self.name), self._connect_within_s)
+            if self._check:
+                check_version(self.greeting.version)
+            for call in self._hearing.subscriptions():
+                await connection.call(call, self._answer_within_s)
+        except BaseException:
+            await connection.close()
+            raise
+        connection.on_end = self._hearing.lost
+        self._connection = connection
+
+    async def _follow(self, steps: Steps) -> Any:
+        try:
+            asked = next(steps)
+            while True:
+                asked = steps.send(await self.call_all(asked))
+        except StopIteration as end:
+            return end.value
+
+
+async def connect(
+    address: str, name: str = "python", *, check: bool = True, connect_within_s: float = 10, answer_within_s: float = 300
+) -> Client:
+    """As `rmac.connect`, for asyncio."""
+    client = Client(parse_address(address), name, check, connect_within_s, answer_within_s)
+    await client.open()
+    return client

@@ -1,0 +1,98 @@
+"""A program that the asyncio client feeds to the machine."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator
+from typing import TYPE_CHECKING, Any
+
+from rmac.errors import RmacError
+from rmac.hearing import Hearer
+from rmac.run import STATE_RATE_HZ
+from rmac.streaming.part import Part
+from rmac.streaming.stream import Stream
+from rmac.wire.exchange import Outcome
+
+if TYPE_CHECKING:
+    from rmac.aio.client import Client
+
+
+class Run:
+    """`async for part in run` feeds the program and gives each part of it when it is done; `await run.wait()` feeds it to
+    its end."""
+
+    def __init__(self, client: Client, stream: Stream, start: bool) -> None:
+        self._client = client
+        self._stream = stream
+        self._start = start
+        self._changed = asyncio.Event()
+        self._parts = self._feed()
+
+    def __aiter__(self) -> AsyncIterator[Part]:
+        return self._parts
+
+    def __len__(self) -> int:
+        if self._stream.total is None:
+            raise TypeError("how long this program is is not known before its end")
+        return self._stream.total
+
+    @property
+    def done(self) -> int:
+        """Moves that are done; those that may not be are not counted."""
+        return self._stream.ledger.done
+
+    @property
+    def taken(self) -> int:
+        """Moves that the appliance has taken."""
+        return self._stream.ledger.taken
+
+    async def wait(self) -> None:
+        """Until the program is done and the machine rests."""
+        async for _ in self._parts:
+            pass
+
+    def set_result(self, outcomes: list[Outcome]) -> None:
+        self._stream.answered(outcomes)
+        self._changed.set()
+
+    def set_exception(self, error: BaseException) -> None:
+        self._stream.lost(error if isinstance(error, RmacError) else RmacError(str(error)))
+        self._changed.set()
+
+    def _heard(self, state: dict[str, Any]) -> None:
+        self._stream.heard(state)
+        self._changed.set()
+
+    async def _feed(self) -> AsyncIterator[Part]:
+        hearer = Hearer("state", STATE_RATE_HZ, self._heard, self.set_exception)
+        await self._client.hear(hearer)
+        try:
+            if self._start:
+                await self._client.cam.CycleStart("AUTOMATIC")
+            finished = self._stream.ledger.finished
+            while not self._stream.ended or finished:
+                await self._step()
+                while finished:
+                    yield finished.popleft()
+            if self._stream.failure is not None:
+                raise self._stream.failure
+        finally:
+            with contextlib.suppress(RmacError):
+                await self._client.unhear(hearer)
+
+    async def _step(self) -> None:
+        self._changed.clear()
+        try:
+            if batch := self._stream.next_batch():
+                await self._client.send_batch(batch, self)
+            elif self._stream.asks_state:
+                self._stream.confirm(await self._client.state())
+                if self._stream.asks_state:
+                    await asyncio.sleep(1 / STATE_RATE_HZ)
+            elif not (self._stream.ended or self._stream.ledger.finished):
+                await self._changed.wait()
+        except RmacError as error:
+            if self._client.lost is None:
+                raise
+            self.set_exception(error)

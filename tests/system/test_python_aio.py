@@ -1,0 +1,81 @@
+"""The asyncio client of the Python package: as the blocking one, awaited."""
+
+import asyncio
+import sys
+import unittest
+
+from appliance import SOURCE, Appliance
+
+sys.path[:0] = [str(SOURCE / "clients/python/src")]
+
+import rmac.aio  # noqa: E402
+
+
+class PythonAioTest(unittest.IsolatedAsyncioTestCase):
+    async def asyncSetUp(self):
+        self.appliance = self.enterContext(Appliance())
+        self.address = f"127.0.0.1:{self.appliance.port}"
+        self.client = await self.enterAsyncContext(await rmac.aio.connect(self.address, "loop"))
+
+    async def test_machines_authority_and_refusals(self):
+        self.assertEqual([machine.name for machine in await self.client.machines("Name = 'DMACXYZ'")], ["DMACXYZ"])
+        with self.assertRaises(rmac.AuthorityRequired):
+            await self.client.device.Load("DMACXYZ")
+        other = await self.enterAsyncContext(await rmac.aio.connect(f"unix:{self.appliance.folder}/state/rmacd.sock", "other"))
+        async with self.client.authority():
+            self.assertEqual(len((await self.client.load("DMACXYZ", virtual=True)).joints), 3)
+            with self.assertRaisesRegex(rmac.AuthorityHeld, "loop"):
+                async with other.authority():
+                    self.fail("both have it")
+        async with other.authority():
+            self.assertIn("other", (await other.state())["authority"])
+
+    async def test_a_second_task_watches_and_stops_what_the_first_feeds(self):
+        async with self.client.authority():
+            await self.client.load("DMACXYZ")
+            await self.client.cam.SetFeedrate(1200)
+            seen = []
+
+            async def feed():
+                async for part in await self.client.run([rmac.MoveTo((0, 0, 0)), *rmac.polyline((0.01 * n, 0, 0) for n in range(4000))]):
+                    seen.append(part.index)
+
+            feeding = asyncio.ensure_future(feed())
+            while len(seen) < 10:
+                await self.client.state()
+            await self.client.cam.StopNow()
+            with self.assertRaises(rmac.MachineStopped):
+                await feeding
+            self.assertEqual(seen, list(range(len(seen))))
+
+    async def test_a_program_is_done_and_an_interrupted_one_goes_on(self):
+        program = [rmac.MoveTo((0, 0, 0)), *rmac.polyline((0.1 * n, 0, 0) for n in range(400))]
+        async with self.client.authority():
+            await self.client.load("DMACXYZ")
+            await self.client.cam.SetFeedrate(1200)
+            run = await self.client.run(program)
+            self.assertEqual([part.index async for part in run], list(range(len(program))))
+            self.assertEqual((run.done, run.taken, len(run)), (400, 400, 400))
+            await self.client.cam.SetFeedrate(120)
+            with self.assertRaises(rmac.Interrupted) as caught:
+                async for part in await self.client.run(program):
+                    if part.index == 50:
+                        self.client._connection._writer.transport.abort()
+        await self.client.reconnect()
+        async with self.client.authority():
+            rest = [part.index async for part in await self.client.resume(caught.exception)]
+        self.assertGreaterEqual(rest[0], 50)
+        self.assertAlmostEqual((await self.client.state())["joints"][0], 39.9, places=2)
+
+    async def test_what_cannot_be_reached_or_is_lost_is_told(self):
+        with self.assertRaisesRegex(rmac.CannotConnect, "no such file"):
+            await rmac.aio.connect("unix:/nowhere")
+        with self.assertRaisesRegex(rmac.CannotConnect, "rmacd running"):
+            await rmac.aio.connect("127.0.0.1:1")
+        await self.client.close()
+        with self.assertRaises(rmac.ConnectionLost):
+            await self.client.state()
+
+
+if __name__ == "__main__":
+    unittest.main()
