@@ -13,18 +13,19 @@ import time
 
 import figures
 import toolpaths
-from client import Client, Recorder, Refused
+from recorder import Recorder
+
+import rmac  # from clients/python, where `recorder` found it
 
 HERE = pathlib.Path(__file__).parent
-FULL_RATE_HZ = 1000
 # The part needs 2 x (48 + overlap) mm of travel in x and 2 x 44 mm in y, 25 mm in z.
 SEARCH = (
-    "SELECT * FROM DeviceDrivers WHERE Type = 'Mill' AND ConfigurationType = '3-axis' "
+    "Type = 'Mill' AND ConfigurationType = '3-axis' "
     "AND Length >= 100 AND Width >= 90 AND Depth >= 30 AND PositioningTolerance <= 0.05 ORDER BY Length * Width * Depth"
 )
 # What each axis of the simulated bus is: N·s/mm of grease, N·s²/mm of mass, N of friction (docs/servo.md, docs/simulated-bus.md).
 AXES = ((0.158, 0.0347, 18.85), (0.158, 0.0407, 18.85), (0.158, 0.0267, 18.85))
-REFUSALS = {"MACHINE_ERR_TRAVEL_LIMIT", "MACHINE_ERR_INVALID_PARAMETER_VALUE", "MACHINE_ERR_UNSUPPORTED_OPERATION"}
+REFUSALS = (rmac.errors.TravelLimit, rmac.errors.InvalidParameterValue, rmac.errors.UnsupportedOperation)
 
 
 def say(text):
@@ -33,16 +34,8 @@ def say(text):
 
 def search(client):
     """Names of the mills that can do the work, the smallest first."""
-    client.call("DeviceDriverManager.OpenDeviceDriverDatabase")
-    total = client.call("DeviceDriverManager.GetTotalNumberOfRecords")
-    found = client.call("DeviceDriverManager.SearchDatabaseRecordSet", MachineSQLStatement=SEARCH)
-    names = []
-    for number in range(found):
-        if number:
-            client.call("DeviceDriverManager.OnNextRecord")
-        names.append(client.call("DeviceDriverManager.Machine_GetMechanismName"))
-    client.call("DeviceDriverManager.CloseDeviceDriverDatabase")
-    say(f"  {total} machines known, {found} fit: {', '.join(names)}")
+    names = [found.name for found in client.machines(SEARCH)]
+    say(f"  {len(client.machines())} machines known, {len(names)} fit: {', '.join(names)}")
     return names
 
 
@@ -51,9 +44,9 @@ def feed_forward(client, device_tree):
     joints = json.loads((pathlib.Path(device_tree) / "mill/3-axis/DMACXYZ/device.json").read_text(encoding="utf-8"))["Joints"]
     for number, (joint, axis) in enumerate(zip(joints, AXES)):
         gains = [*joint["Gains"], *axis, *joint["ServoControlLaw"]["Parameters"].get("load", [0])]
-        client.call("RMAC_Config.SetMechanismJointServoControlLaw", JntNum=number, ControlLaw="DMAC_FEEDFORWARDFEEDBACK_CONTROL")
-        client.call("RMAC_Config.SetMechanismJointServoControlGains", JntNum=number, ServoControlGains=gains)
-    client.call("RMAC_Config.Apply")
+        client.config.SetMechanismJointServoControlLaw(number, "DMAC_FEEDFORWARDFEEDBACK_CONTROL")
+        client.config.SetMechanismJointServoControlGains(number, gains)
+    client.config.Apply()
 
 
 def split(program):
@@ -62,39 +55,63 @@ def split(program):
     return program.requests[:first], program.requests[first:]
 
 
+def prepare(client, requests):
+    for request in requests:
+        client.call(rmac.Call(request["method"], request["params"]))
+
+
 def machine(client, requests):
     """Runs moves to their end while every cycle is recorded: (recorder, wall clock when the first was sent, state)."""
-    client.recorder = Recorder()
-    client.call("subscribe", topics=["joints"], rate_hz=FULL_RATE_HZ)
-    sent = time.monotonic()
-    client.run(requests)
-    state = client.wait_until_done()
-    client.call("unsubscribe", topics=["joints"])
-    recorder, client.recorder = client.recorder, None
+    with Recorder(client) as recorder:
+        sent = time.monotonic()
+        client.run(requests, start=False).wait()
     wall = time.monotonic() - sent
     say(f"  {len(requests)} requests done after {wall:.1f} s of wall time; {recorder.cycles} cycles watched")
-    return recorder, sent, state
+    return recorder, sent, client.state()
 
 
 def probe_off_plane(client, plan, session):
     """A move that leaves the plane of the two-axis mill must be refused, and nothing may move by it."""
     x, y = plan.wait_mm
-    before = client.call("RMAC_CAM.GetState")["joints"]
+    before = client.state()["joints"]
     try:
-        client.call(
-            "RMAC_CAM.MoveAlongLine", MoveID=999,
-            StartPoint=toolpaths.frame((x, y, 0)), EndPoint=toolpaths.frame((x, y, 5)),
-        )  # fmt: skip
+        client.cam.MoveAlongLine(999, rmac.Pose((x, y, 0)), rmac.Pose((x, y, 5)))
         session.problems.append("a move 5 mm off the plane of DMACXY was accepted")
-    except Refused as refusal:
+    except rmac.Refused as refusal:
         say(f"  {refusal}")
-        if refusal.minor in REFUSALS:
-            session.off_plane_refusal = f"refused: {refusal.minor}"
+        if isinstance(refusal, REFUSALS):
+            session.off_plane_refusal = f"refused: {refusal.minor_name}"
         else:
-            session.problems.append(f"the off-plane move was refused, but with {refusal.minor or 'no minor code'}")
-    after = client.call("RMAC_CAM.GetState")
+            session.problems.append(f"the off-plane move was refused, but with {refusal.minor_name or 'no minor code'}")
+    after = client.state()
     if after["moving"] or max(abs(a - b) for a, b in zip(before, after["joints"])) > 0.01:
         session.problems.append("the machine moved although the off-plane move was refused")
+
+
+def cut(client, device_tree, session, ready, plan, sweep, rim):
+    """The records, by the names of their files."""
+    say("DMACXYZ: sweep the headlight (ball end)")
+    preparation, moves = split(sweep)
+    prepare(client, preparation)
+    feed_forward(client, device_tree)
+    recorder, sent, _ = machine(client, moves)
+    session.plan_to_motion_ms = (recorder.first_motion - ready) * 1e3
+    session.send_to_motion_ms = (recorder.first_motion - sent) * 1e3
+    session.lost_samples += recorder.lost
+    records = {"record.csv": recorder.record()}
+
+    say("DMACXY: face-mill the rim (flat end), the appliance running on")
+    preparation, moves = split(rim)
+    prepare(client, preparation)
+    probe_off_plane(client, plan, session)
+    recorder, _, state = machine(client, moves)
+    session.lost_samples += recorder.lost
+    records["record-rim.csv"] = recorder.record()
+    say(f"  held drive stands at {state['held_joints']} mm")
+
+    client.cam.SetSpindleRPM(0, 0)
+    client.cam.TurnCoolantOff()
+    return records
 
 
 def run(host, port, out, device_tree):
@@ -109,38 +126,13 @@ def run(host, port, out, device_tree):
     ready = time.monotonic()
 
     say("Search for a machine")
-    client = Client(host, port)
-    names = search(client)
-    if "DMACXYZ" not in names:
-        raise RuntimeError(f"the search did not find DMACXYZ, but {names or 'nothing'}")
-    client.call("authority.acquire")
-    client.call("subscribe", topics=["events"])
-
-    say("DMACXYZ: sweep the headlight (ball end)")
-    preparation, moves = split(sweep)
-    client.run(preparation)
-    feed_forward(client, device_tree)
-    recorder, sent, _ = machine(client, moves)
-    session.plan_to_motion_ms = (recorder.first_motion - ready) * 1e3
-    session.send_to_motion_ms = (recorder.first_motion - sent) * 1e3
-    session.lost_samples += recorder.lost
-    records = {"record.csv": recorder.record()}
-
-    say("DMACXY: face-mill the rim (flat end), the appliance running on")
-    preparation, moves = split(rim)
-    client.run(preparation)
-    probe_off_plane(client, plan, session)
-    recorder, _, state = machine(client, moves)
-    session.lost_samples += recorder.lost
-    records["record-rim.csv"] = recorder.record()
-    say(f"  held drive stands at {state['held_joints']} mm")
-
-    client.call("RMAC_CAM.SetSpindleRPM", SpindleNumber=0, RPM=0)
-    client.call("RMAC_CAM.TurnCoolantOff")
-    client.call("authority.release")
-    faults = [e for e in client.events if "fault" in str(e.get("kind", "")).lower()]
-    session.problems += [f"fault: {e.get('message')}" for e in faults]
-    client.close()
+    with rmac.connect(f"{host}:{port}", "headlight demo") as client, client.events() as events:
+        names = search(client)
+        if "DMACXYZ" not in names:
+            raise RuntimeError(f"the search did not find DMACXYZ, but {names or 'nothing'}")
+        with client.authority():
+            records = cut(client, device_tree, session, ready, plan, sweep, rim)
+        session.problems += [f"fault: {event.message}" for event in events.so_far() if "fault" in event.kind.lower()]
 
     say("Checks")
     for name, record in records.items():
@@ -160,7 +152,7 @@ def main():
     arguments = parser.parse_args()
     try:
         line = run(arguments.host, arguments.port, arguments.out, arguments.device_tree)
-    except (Refused, RuntimeError, OSError, ValueError) as error:
+    except (rmac.RmacError, RuntimeError, OSError, ValueError) as error:
         print(f"run_demo: {error}", file=sys.stderr)
         print(json.dumps({"ok": False, "error": str(error)}))
         return 1

@@ -14,8 +14,10 @@ import time
 
 import groove
 import numpy as np
-from client import Client, Recorder, Refused
 from measure_report import draw
+from recorder import Recorder
+
+import rmac  # from clients/python, where `recorder` found it
 
 HERE = pathlib.Path(__file__).parent
 MILL, MEASURER = "DMACXYZ", "CMM"
@@ -31,22 +33,21 @@ def say(text):
 class Run:
     """One cut on a mill that was just loaded."""
 
-    def __init__(self, rmac, host, port, out):
-        self.rmac_program, self.host, self.port, self.out = rmac, host, port, out
-        self.client = Client(host, port, "measuring demo")
-
-    def call(self, function, **parameters):
-        return self.client.call("RMAC_CAM." + function, **parameters)
+    def __init__(self, program, host, port, out):
+        self.rmac_program, self.host, self.port, self.out = program, host, port, out
+        self.client = rmac.connect(f"{host}:{port}", "measuring demo")
+        self.cam = self.client.cam
+        self.events = self.client.events()
 
     def state(self):
-        return self.call("GetState")
+        return self.client.state()
 
     def rmac(self, *words):
         """The command line client's answer; it needs the lease for itself."""
-        self.client.call("authority.release")
+        self.client.lease.release()
         done = subprocess.run([self.rmac_program, "--host", self.host, "--port", str(self.port), "--json", *words],
                               stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
-        self.client.call("authority.acquire")
+        self.client.lease.acquire()
         if done.returncode != 0:
             raise RuntimeError(done.stderr.strip())
         return json.loads(done.stdout) if done.stdout.strip() else None
@@ -55,7 +56,7 @@ class Run:
         deadline = time.monotonic() + seconds
         while not reached():
             if time.monotonic() > deadline:
-                told = "; ".join(str(event.get("message", event)) for event in self.client.events[-3:])
+                told = "; ".join(event.message for event in self.events.so_far()[-3:])
                 raise TimeoutError(f"{what} did not come within {seconds} s: the machine is {self.state()['state']}; {told}")
             time.sleep(0.01)
 
@@ -63,65 +64,55 @@ class Run:
         """A change by hand, with the demo for the person; a tool stays in the spindle from one run to the next."""
         if self.state()["tool"] == tool:
             return
-        self.call("DoToolChange", ToolNumber=tool)
-        self.call("CycleStart", Mode="AUTOMATIC")
+        self.cam.DoToolChange(tool)
+        self.cam.CycleStart("AUTOMATIC")
         self.until(lambda: self.state()["tool_prompt"], "the question for the tool")
-        self.call("ConfirmToolChange", ToolNumber=tool)
+        self.cam.ConfirmToolChange(tool)
         self.until(lambda: self.state()["tool"] == tool, "the tool")
-        self.call("CycleStop", Mode="AUTOMATIC")
+        self.cam.CycleStop("AUTOMATIC")
         self.until(lambda: self.state()["state"] == "Idle", "rest")
 
     def begin(self):
         """Loads the mill, clear of the part and with the cutter in and turning."""
-        self.client.call("authority.acquire")
-        self.client.call("subscribe", topics=["events"])
-        self.client.call("Device.Load", Name=MILL)
-        self.call("SetTool", ToolNumber=groove.CUTTER, Name="end mill 4", Length=groove.CUTTER_LENGTH,
+        self.client.lease.acquire()
+        self.events.__enter__()
+        self.client.load(MILL)
+        self.cam.SetTool(ToolNumber=groove.CUTTER, Name="end mill 4", Length=groove.CUTTER_LENGTH,
                   Radius=groove.CUTTER_RADIUS)
-        self.call("SetTool", ToolNumber=groove.PROBE, Name="touch probe", Length=groove.PROBE_LENGTH,
+        self.cam.SetTool(ToolNumber=groove.PROBE, Name="touch probe", Length=groove.PROBE_LENGTH,
                   Radius=groove.TIP_RADIUS, NeedsSpindle=False)
-        self.call("JogJoint", JntNum=2, Distance=FIRST_RISE_MM - self.state()["joints"][2])
-        self.client.wait_until_done()
+        self.cam.JogJoint(2, Distance=FIRST_RISE_MM - self.state()["joints"][2])
+        self.client.until_done()
         self.until(lambda: self.state()["state"] == "Idle", "rest")
         self.put_in(groove.CUTTER)
-        self.call("SetSpindleRPM", SpindleNumber=0, RPM=SPINDLE_RPM)
-
-    def record(self):
-        self.client.recorder = Recorder()
-        self.client.call("subscribe", topics=["joints"], rate_hz=1000)
-
-    def recorded(self):
-        self.client.call("unsubscribe", topics=["joints"])
-        recorder, self.client.recorder = self.client.recorder, None
-        return recorder.record()
+        self.cam.SetSpindleRPM(0, SPINDLE_RPM)
 
     def cut(self, hold_in=None):
         """Sends the whole program and runs it; with `hold_in`, until that move is under way, and holds there."""
         # Whoever takes every cycle hears of events behind them all; this connection hears of them at once.
-        watcher = Client(self.host, self.port, "measuring demo, holding")
-        watcher.call("subscribe", topics=["events"])
-        self.record()
-        self.client.run(groove.program())
-        self.call("CycleStart", Mode="AUTOMATIC")
-        if hold_in is None:
-            self.client.wait_until_done()
-            return self.recorded()
-        begun = {"kind": "MoveStarted", "move_id": hold_in}
-        self.until(lambda: any(begun.items() <= event.items() for event in list(watcher.events)), f"move {hold_in}")
-        watcher.call("RMAC_CAM.FeedHold")
-        self.until(lambda: not self.state()["moving"], "rest")
-        return self.recorded()
+        with rmac.connect(f"{self.host}:{self.port}", "measuring demo, holding") as watcher, watcher.events() as events:
+            with Recorder(self.client) as recorder:
+                self.client.call_all([rmac.Call(request["method"], request["params"]) for request in groove.program()])
+                self.cam.CycleStart("AUTOMATIC")
+                if hold_in is None:
+                    self.client.until_done()
+                else:
+                    while (event := events.next(120)).kind != "MoveStarted" or event.move_id != hold_in:
+                        pass
+                    watcher.cam.FeedHold()
+                    self.until(lambda: not self.state()["moving"], "rest")
+            return recorder.record()
 
     def go_on(self):
-        self.record()
-        self.call("TakeUpProgram")
-        self.call("FeedResume")
-        self.client.wait_until_done()
-        return self.recorded()
+        with Recorder(self.client) as recorder:
+            self.cam.TakeUpProgram()
+            self.cam.FeedResume()
+            self.client.until_done()
+        return recorder.record()
 
     def measure(self, *options):
         """The probe's turn: in, over the part, and out again. Leaves the cutter in, over the part."""
-        self.client.call("Device.Load", Name=MEASURER)
+        self.client.load(MEASURER)
         self.put_in(groove.PROBE)
         plan = self.out / "measuring-plan.json"
         plan.write_text(json.dumps(groove.plan(), indent=2))
@@ -130,8 +121,8 @@ class Run:
         return told
 
     def end(self):
-        self.client.call("Device.Unload")
-        self.client.call("authority.release")
+        self.client.device.Unload()
+        self.client.lease.release()
         self.client.close()
 
 
@@ -147,13 +138,13 @@ def corrected(*where):
     run = Run(*where)
     run.begin()
     before = run.cut(hold_in=groove.PASSES["rough"][0] + 3)
-    run.call("ParkProgram")
-    parked = run.call("GetParkedProgram")
+    run.cam.ParkProgram()
+    parked = run.cam.GetParkedProgram()
     say(f"  held and parked {parked['s_mm']:.3f} mm along move {parked['move_id']}, {parked['moves']} moves to do")
     measured = run.measure("--apply", "--upright")
     place = run.rmac("parked", "--back", str(BACK_FROM_MM))
     say(f"  measured, and back {1000 * place['off_mm']:.1f} um from the place in the corrected frame")
-    run.client.call("Device.Load", Name=MILL)
+    run.client.load(MILL)
     after = run.go_on()
     again = run.measure()
     run.end()
@@ -194,9 +185,9 @@ def figures(first, measured, after, again):
     ]
 
 
-def run(rmac, host, port, out):
+def run(program, host, port, out):
     out.mkdir(parents=True, exist_ok=True)
-    where = (rmac, host, port, out)
+    where = (program, host, port, out)
     say(f"The part is clamped {np.linalg.norm(groove.PLACE_MM):.2f} mm and {groove.TURN_DEG} degrees off")
     say("Cut as it is taken to lie")
     first = uncorrected(*where)
@@ -237,7 +228,7 @@ def main():
         return 0
     try:
         return run(arguments.rmac, arguments.host, arguments.port, arguments.out)
-    except (Refused, RuntimeError, OSError, ValueError, TimeoutError) as error:
+    except (rmac.RmacError, RuntimeError, OSError, ValueError, TimeoutError) as error:
         print(f"run_measure: {error}", file=sys.stderr)
         print(json.dumps({"ok": False, "error": str(error)}))
         return 1

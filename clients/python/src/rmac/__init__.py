@@ -1,5 +1,6 @@
 """Talks to an RMAC appliance. `rmac.connect` gives a blocking client, `rmac.aio.connect` one for asyncio."""
 
+from rmac import errors
 from rmac.client import Client, connect
 from rmac.errors import (
     AuthorityHeld,
@@ -89,6 +90,7 @@ __all__ = [
     "VersionMismatch",
     "calls",
     "connect",
+    "errors",
     "output",
     "polyline",
     "spindle",

@@ -19,9 +19,9 @@ from rmac.hearing import Hearer, Hearing
 from rmac.machines import LoadedMachine, Machine, Steps, describe_loaded, find_machines
 from rmac.run import Run
 from rmac.records import FlightRecord, read_flight_record
-from rmac.streaming.progress import Interrupted
+from rmac.streaming.progress import Interrupted, is_done
 from rmac.streaming.resuming import resume
-from rmac.streaming.stream import Stream
+from rmac.streaming.stream import Stream, free_id
 from rmac.wire.call import Call
 from rmac.wire.exchange import Promise
 from rmac.wire.greeting import Greeting, check_version, hello
@@ -42,6 +42,7 @@ class Client(Methods):
         self._answer_within_s = answer_within_s
         self._hearing = Hearing()
         self._subscribing = threading.Lock()
+        self._latest: Stream | None = None
         self._connection: Connection
         self.greeting: Greeting
         self._open()
@@ -112,14 +113,21 @@ class Client(Methods):
     def run(self, moves: Iterable[Any], *, start: bool = True, first_id: int | None = None) -> Run:
         """Feeds a program: moves, calls such as `calls.RMAC_CAM.SetFeedrate(1200)` and requests as in a `.rmac` program.
         Nothing goes out before the run is iterated, or waited for. `start`: starts the cycle first. Needs authority."""
-        return Run(self, Stream(moves, self.state(), self.greeting.queue_capacity, first_id), start)
+        return self._run(moves, self.state(), first_id, 0, start)
 
     def resume(self, interrupted: Interrupted) -> Run:
         """Goes on with a program whose connection ended, at the place where the machine stands; what was done is not done
         again. `CannotResume` where that place is in doubt. Needs authority, on a connection that is there again."""
         state = self.at_rest()
         moves, index = resume(interrupted, state)
-        return Run(self, Stream(moves, state, self.greeting.queue_capacity, None, index), True)
+        return self._run(moves, state, None, index, True)
+
+    def until_done(self) -> dict[str, Any]:
+        """Waits until nothing is queued and nothing moves, and gives the state then; `MachineStopped` where the machine stops
+        before. For what is not a run: jogs, a program that was taken up again."""
+        while not is_done(state := self.state()):
+            time.sleep(0.01)
+        return state
 
     def at_rest(self) -> dict[str, Any]:
         """The state once nothing moves."""
@@ -173,6 +181,11 @@ class Client(Methods):
             raise
         connection.on_end = self._hearing.lost
         self._connection = connection
+
+    def _run(self, moves: Iterable[Any], state: dict[str, Any], first_id: int | None, index: int, start: bool) -> Run:
+        number = free_id(state, self._latest) if first_id is None else first_id
+        self._latest = Stream(moves, state, self.greeting.queue_capacity, number, index)
+        return Run(self, self._latest, start)
 
     def _follow(self, steps: Steps) -> Any:
         try:

@@ -50,6 +50,13 @@ class Heard(Generic[T]):
             raise come
         return come
 
+    def so_far(self) -> list[T]:
+        """What has come and was not taken; does not wait."""
+        come: list[T] = []
+        while not self._come.empty():
+            come.append(self.next())
+        return come
+
 
 class Recording:
     """Samples of the topic `joints` from the beginning of a `with` block to its end; `record` gives them as numpy arrays."""

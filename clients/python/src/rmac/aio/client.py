@@ -19,9 +19,9 @@ from rmac.generated.awaiting import Methods
 from rmac.hearing import Hearer, Hearing
 from rmac.machines import LoadedMachine, Machine, Steps, describe_loaded, find_machines
 from rmac.records import FlightRecord, read_flight_record
-from rmac.streaming.progress import Interrupted
+from rmac.streaming.progress import Interrupted, is_done
 from rmac.streaming.resuming import resume
-from rmac.streaming.stream import Stream
+from rmac.streaming.stream import Stream, free_id
 from rmac.wire.call import Call
 from rmac.wire.exchange import Promise
 from rmac.wire.greeting import Greeting, check_version, hello
@@ -41,6 +41,7 @@ class Client(Methods):
         self._answer_within_s = answer_within_s
         self._hearing = Hearing()
         self._subscribing = asyncio.Lock()
+        self._latest: Stream | None = None
         self._connection: Connection
         self.greeting: Greeting
 
@@ -111,13 +112,20 @@ class Client(Methods):
 
     async def run(self, moves: Iterable[Any], *, start: bool = True, first_id: int | None = None) -> Run:
         """As `rmac.Client.run`: nothing goes out before the run is iterated, or waited for."""
-        return Run(self, Stream(moves, await self.state(), self.greeting.queue_capacity, first_id), start)
+        return self._run(moves, await self.state(), first_id, 0, start)
 
     async def resume(self, interrupted: Interrupted) -> Run:
         """As `rmac.Client.resume`: goes on at the place where the machine stands, or raises `CannotResume`."""
         state = await self.at_rest()
         moves, index = resume(interrupted, state)
-        return Run(self, Stream(moves, state, self.greeting.queue_capacity, None, index), True)
+        return self._run(moves, state, None, index, True)
+
+    async def until_done(self) -> dict[str, Any]:
+        """Waits until nothing is queued and nothing moves, and gives the state then; `MachineStopped` where the machine stops
+        before. For what is not a run: jogs, a program that was taken up again."""
+        while not is_done(state := await self.state()):
+            await asyncio.sleep(0.01)
+        return state
 
     async def at_rest(self) -> dict[str, Any]:
         """The state once nothing moves."""
@@ -171,6 +179,11 @@ class Client(Methods):
             raise
         connection.on_end = self._hearing.lost
         self._connection = connection
+
+    def _run(self, moves: Iterable[Any], state: dict[str, Any], first_id: int | None, index: int, start: bool) -> Run:
+        number = free_id(state, self._latest) if first_id is None else first_id
+        self._latest = Stream(moves, state, self.greeting.queue_capacity, number, index)
+        return Run(self, self._latest, start)
 
     async def _follow(self, steps: Steps) -> Any:
         try:

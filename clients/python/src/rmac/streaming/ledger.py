@@ -38,6 +38,11 @@ class Ledger:
         return self.done == self.taken
 
     @property
+    def last_id(self) -> int:
+        """Given so far."""
+        return self._base + self._index - 1
+
+    @property
     def most_in_queue(self) -> int:
         return self._in_queue + self._queued - self._counted
 

@@ -24,8 +24,9 @@ class MoveRefused(RmacError):
 class MachineStopped(RmacError):
     """The machine came to rest before the program's end: somebody stopped it, or something went wrong."""
 
-    def __init__(self, state: dict[str, Any], done: int, why: str) -> None:
-        super().__init__(f"the machine is {state['state']} with {done} moves done: {why}")
+    def __init__(self, state: dict[str, Any], done: int | None, why: str) -> None:
+        progress = "" if done is None else f" with {done} moves done"
+        super().__init__(f"the machine is {state['state']}{progress}: {why}")
         self.state = state
         self.done = done
 
@@ -46,3 +47,12 @@ class Interrupted(ConnectionLost):
     def take_remaining(self) -> Iterator[Any]:
         """What is not known to be done, in order. What was taken from here is gone."""
         return self._remaining
+
+
+def is_done(state: dict[str, Any]) -> bool:
+    """Whether nothing is queued and nothing moves; raises `MachineStopped` where it will not come to that by itself."""
+    halted = state["state"] == "Idle" and state["moves_in_buffer"] > 0 and state["last_stop"] is not None
+    if halted or state["state"] in ("Faulted", "EmergencyStop"):
+        told = state["last_stop"] or state["last_error"] or {}
+        raise MachineStopped(state, None, told.get("message", "it does not tell why"))
+    return state["moves_in_buffer"] == 0 and not state["moving"] and state["state"] != "Stopping"

@@ -56,12 +56,12 @@ def _same_machine(ledger: Ledger, state: dict[str, Any]) -> None:
 
 
 def _place(ledger: Ledger, sent: list[Part], state: dict[str, Any]) -> int:
-    """Which of the parts the machine is at; one that it did not begin where it stands between two."""
+    """Which of the parts the machine is at; the first where it is still at what it was known to be at before them. What has
+    no motion, as a move to where the tool is, it is never at."""
     at = [number for number, part in enumerate(sent) if part.move.queues and part.move_id == state["move_id"]]
     if len(at) == 1:
         return at[0]
-    before = ledger.first_machine_id if ledger.last_done_id is None else ledger.last_done_id
-    if not at and state["move_id"] == before:
+    if not at and state["move_id"] in (ledger.machine_id, ledger.last_done_id):
         return 0
     raise CannotResume(f"the machine was at move {state['move_id']} last, which is none of those that the program waits for")
 

@@ -27,12 +27,10 @@ _WINDOW = 1024  # moves that wait for their answers
 class Stream:
     """Not for two threads at once."""
 
-    def __init__(self, moves: Iterable[Any], state: dict[str, Any], capacity: int, first_id: int | None = None, first_index: int = 0) -> None:
+    def __init__(self, moves: Iterable[Any], state: dict[str, Any], capacity: int, first_id: int = 1, first_index: int = 0) -> None:
         self.total: int | None = len(moves) + first_index if isinstance(moves, Sized) else None
         self.failure: RmacError | None = None
-        # Ids go on from the one that the machine worked on last, so that its `move_id` tells ours from those before.
-        id_of_first = max(0, state["move_id"]) + 1 if first_id is None else first_id
-        self.ledger = Ledger(state, id_of_first - first_index, first_index)
+        self.ledger = Ledger(state, first_id - first_index, first_index)
         self._source: Iterator[Any] = iter(moves)
         self._exhausted = False
         self._capacity = capacity
@@ -147,3 +145,9 @@ class Stream:
         stopped = state["state"] == "Idle" and stop is not None and stop["cycle"] > self._first_cycle
         if self.failure is None and (stopped or state["state"] in ("Faulted", "EmergencyStop")):
             self.failure = MachineStopped(state, self.ledger.done, (stop or state["last_error"] or {}).get("message", "it does not tell why"))
+
+
+def free_id(state: dict[str, Any], before: Stream | None) -> int:
+    """Ids go on from those of the machine's last move and of the program before, so that a `move_id` tells whose it is."""
+    last: int = max(0, state["move_id"])
+    return (last if before is None else max(last, before.ledger.last_id)) + 1
