@@ -97,12 +97,16 @@ class Plan {
     const auto number = static_cast<std::uint16_t>(kPdoOffset * axis.axis_in_node);
     need("to send it its setpoints (rpdo)");
     map(static_cast<std::uint16_t>(0x1400 + number), setpoint_id(axis), axis.setpoints, offset);
+    if (!axis.more_setpoints.empty()) {
+      need("to send it its setpoints (second_rpdo)");
+      map_second(0x1401, more_setpoints_id(axis), axis.more_setpoints, offset);
+    }
     need("to have its answers (tpdo)");
     map(static_cast<std::uint16_t>(0x1800 + number), kNoRemoteRequest | answer_id(axis), axis.answers, offset);
     read(transmission_type(axis, false));
     if (!axis.more_answers.empty()) {
       need("to have its answers (second_tpdo)");
-      map(0x1801, kNoRemoteRequest | more_answers_id(axis), axis.more_answers, offset);
+      map_second(0x1801, kNoRemoteRequest | more_answers_id(axis), axis.more_answers, offset);
       read(transmission_type(axis, true));
     }
     constexpr int kQuickStop = 3, kNotWritten = -1;
@@ -233,6 +237,14 @@ class Plan {
       write_contents(contents, entries);
     }
     write({communication, 1}, 4, cob_id);
+  }
+
+  void map_second(std::uint16_t communication, std::uint32_t cob_id, const std::vector<MappedObject>& objects,
+                  std::uint16_t offset) {
+    if (skips({communication, 1})) {
+      return refuse("its second PDO is to be left alone (Skip), and second_rpdo or second_tpdo maps it");
+    }
+    map(communication, cob_id, objects, offset);
   }
 
   void write_contents(std::uint16_t contents, const std::vector<std::uint32_t>& entries) {

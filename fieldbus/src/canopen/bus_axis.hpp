@@ -55,8 +55,9 @@ struct BusAxis {
   }
   /// Among its setpoints.
   [[nodiscard]] bool is_told(std::uint16_t index) const noexcept {
-    return std::any_of(config.setpoints.begin(), config.setpoints.end(),
-                       [index](const MappedObject& mapped) { return mapped.object.index == index; });
+    const auto same = [index](const MappedObject& mapped) { return mapped.object.index == index; };
+    return std::any_of(config.setpoints.begin(), config.setpoints.end(), same) ||
+           std::any_of(config.more_setpoints.begin(), config.more_setpoints.end(), same);
   }
   /// Told in one of its PDOs.
   [[nodiscard]] bool tells(std::uint16_t index) const noexcept {

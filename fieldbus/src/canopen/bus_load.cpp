@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "rmac/fieldbus/can/can_load.hpp"
@@ -18,6 +19,9 @@ BusLoad bus_load(const CanopenConfig& config) noexcept {
   for (const AxisConfig& axis : config.axes) {
     if (setpoints.insert(setpoint_id(axis)).second) {
       load.setpoint_bits += worst_frame_bits(setpoint_id(axis), mapped_bytes(axis.setpoints));
+    }
+    if (!axis.more_setpoints.empty()) {
+      load.setpoint_bits += worst_frame_bits(more_setpoints_id(axis), mapped_bytes(axis.more_setpoints));
     }
     load.answer_bits += worst_frame_bits(answer_id(axis), mapped_bytes(axis.answers));
     if (!axis.more_answers.empty()) {
@@ -50,7 +54,9 @@ Expected<> check_bus_load(const CanopenConfig& config) {
 
 std::size_t frames_of_cycle(const CanopenConfig& config) noexcept {
   constexpr std::size_t kSyncHeartbeatTimeAndBoot = 4;
-  return config.axes.size() + kSyncHeartbeatTimeAndBoot;
+  const auto second = std::count_if(config.axes.begin(), config.axes.end(),
+                                    [](const AxisConfig& axis) { return !axis.more_setpoints.empty(); });
+  return config.axes.size() + static_cast<std::size_t>(second) + kSyncHeartbeatTimeAndBoot;
 }
 
 }  // namespace rmac::fieldbus::canopen

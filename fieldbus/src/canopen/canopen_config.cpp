@@ -143,7 +143,7 @@ bool tells_mode(const AxisConfig& config) {
     return std::any_of(objects.begin(), objects.end(),
                        [index](const MappedObject& object) { return object.object.index == index; });
   };
-  return holds(config.setpoints, 0x6060) && holds(config.answers, 0x6061);
+  return holds(together(config.setpoints, config.more_setpoints), 0x6060) && holds(config.answers, 0x6061);
 }
 
 /// The answer that is a sensor's reading; none where none is named.
@@ -207,9 +207,14 @@ Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const F
   if (auto known = check_answers(*answers); !known) {
     return failure(known.error().code, parameters.place("tpdo: " + known.error().message));
   }
+  auto more_setpoints = mapping(parameters, "second_rpdo", axis, "");
+  if (!more_setpoints) return tl::unexpected(more_setpoints.error());
+  if (auto known = check_setpoints(together(*setpoints, *more_setpoints)); !known) {
+    return failure(known.error().code, parameters.place("second_rpdo: " + known.error().message));
+  }
   auto more = mapping(parameters, "second_tpdo", axis, "");
   if (!more) return tl::unexpected(more.error());
-  if (auto known = check_more_answers(*answers, *more); !known) {
+  if (auto known = check_answers(together(*answers, *more)); !known) {
     return failure(known.error().code, parameters.place("second_tpdo: " + known.error().message));
   }
   auto sensor = sensor_among(parameters, axis, *answers, *more);
@@ -217,6 +222,7 @@ Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const F
   auto setup = read_setup(parameters.text_of_axis("setup", axis, ""));
   if (!setup) return failure(setup.error().code, parameters.place("setup: " + setup.error().message));
   config.setpoints = std::move(*setpoints);
+  config.more_setpoints = std::move(*more_setpoints);
   config.answers = std::move(*answers);
   config.more_answers = std::move(*more);
   config.sensor = *sensor;
@@ -242,12 +248,16 @@ std::string check_nodes(const CanopenConfig& config) {
           "axis of a drive a number of its own",
           axis.node, axis.axis_in_node);
     }
-    const auto same = [&](const AxisConfig& other) { return other.node == axis.node; };
-    if (!axis.more_answers.empty() && std::count_if(config.axes.begin(), config.axes.end(), same) > 1) {
+    const auto of_several = [&](const AxisConfig& other) {
+      return other.node == axis.node && (&other != &axis || other.axis_in_node != 0);
+    };
+    const bool second_rpdo = !axis.more_setpoints.empty();
+    if ((second_rpdo || !axis.more_answers.empty()) &&
+        std::any_of(config.axes.begin(), config.axes.end(), of_several)) {
       return fmt::format(
-          "node {} has several axes and a second_tpdo, whose identifier is that of the second axis; map all that is "
-          "needed in tpdo",
-          axis.node);
+          "node {0} has several axes and a second_{1}, whose identifier is that of the second axis; map all that is "
+          "needed in {1}",
+          axis.node, second_rpdo ? "rpdo" : "tpdo");
     }
   }
   return {};

@@ -71,6 +71,7 @@ struct CanopenInterface::Impl {
   void fill(std::span<DriveFeedback> feedback) noexcept;
   [[nodiscard]] bool send(const CanFrame& frame) noexcept;
   [[nodiscard]] bool send_setpoints(std::size_t first, std::span<const DriveCommand> commands) noexcept;
+  [[nodiscard]] bool send_more_setpoints(std::span<const DriveCommand> commands) noexcept;
   [[nodiscard]] bool send_cycle(std::span<const DriveCommand> commands, std::chrono::nanoseconds now) noexcept;
 
   CanopenConfig config;
@@ -219,7 +220,10 @@ void CanopenInterface::stop() noexcept {
   Impl& bus = *impl_;
   if (!bus.running) return;
   bus.running = false;
-  for (const BusAxis& axis : bus.axes) bus.port->send(pack_setpoints(axis.config, DriveCommand{}));
+  for (const BusAxis& axis : bus.axes) {
+    bus.port->send(pack_setpoints(axis.config, DriveCommand{}));
+    if (!axis.config.more_setpoints.empty()) bus.port->send(pack_more_setpoints(axis.config, DriveCommand{}));
+  }
   if (bus.config.sync != SyncOrder::External) bus.port->send(sync_frame());
   const std::chrono::nanoseconds until = bus.port->now() + 2 * bus.config.period;
   while (bus.port->now() < until) {
@@ -414,6 +418,7 @@ bool CanopenInterface::Impl::send(const CanFrame& frame) noexcept {
 bool CanopenInterface::Impl::send_cycle(std::span<const DriveCommand> commands, std::chrono::nanoseconds now) noexcept {
   bool all = config.sync != SyncOrder::First || send(sync_frame());
   for (const std::size_t first : rpdos) all = send_setpoints(first, commands) && all;
+  all = send_more_setpoints(commands) && all;
   if (config.sync == SyncOrder::Last) all = send(sync_frame()) && all;
   if (config.sync != SyncOrder::External) count_sync();
   for (BusAxis& axis : axes) {
@@ -441,6 +446,15 @@ bool CanopenInterface::Impl::send_setpoints(std::size_t first, std::span<const D
     any = true;
   }
   return !any || send(frame);
+}
+
+bool CanopenInterface::Impl::send_more_setpoints(std::span<const DriveCommand> commands) noexcept {
+  bool all = true;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (axes[i].config.more_setpoints.empty() || !nodes[axes[i].node].up) continue;
+    all = send(pack_more_setpoints(axes[i].config, commands[i])) && all;
+  }
+  return all;
 }
 
 void CanopenInterface::Impl::ask_positions(std::span<const DriveCommand> commands,

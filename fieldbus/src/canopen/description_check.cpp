@@ -7,6 +7,7 @@
 
 #include "canopen/boot_plan.hpp"
 #include "canopen/drives/drive_of_node.hpp"
+#include "canopen/object_list.hpp"
 #include "canopen/pdo.hpp"
 
 namespace rmac::fieldbus::canopen {
@@ -141,13 +142,11 @@ Expected<> check_description(const CanopenConfig& config, const AxisConfig& axis
                                fmt::join(description.bit_rates, ", ")));
   }
   const auto offset = static_cast<std::uint16_t>(kAxisOffset * axis.axis_in_node);
-  for (const MappedObject& object : axis.setpoints) {
+  for (const MappedObject& object : together(axis.setpoints, axis.more_setpoints)) {
     if (auto fits = check_mapped(description, object, offset, true); !fits) return fits;
   }
-  for (const auto* answers : {&axis.answers, &axis.more_answers}) {
-    for (const MappedObject& object : *answers) {
-      if (auto fits = check_mapped(description, object, offset, false); !fits) return fits;
-    }
+  for (const MappedObject& object : together(axis.answers, axis.more_answers)) {
+    if (auto fits = check_mapped(description, object, offset, false); !fits) return fits;
   }
   for (const BootStep& step : boot_plan(config, axis.node, chosen_drive(config, axis.node))) {
     if (step.kind != BootStep::Kind::Write) continue;

@@ -127,10 +127,9 @@ Expected<> check_answers(const std::vector<MappedObject>& objects) {
   return check_words(objects, kAnswerWords, {0x6041, 0}, true);
 }
 
-Expected<> check_more_answers(const std::vector<MappedObject>& objects, const std::vector<MappedObject>& more) {
-  std::vector<MappedObject> together = objects;
-  together.insert(together.end(), more.begin(), more.end());
-  return check_answers(together);
+std::vector<MappedObject> together(std::vector<MappedObject> objects, const std::vector<MappedObject>& more) {
+  objects.insert(objects.end(), more.begin(), more.end());
+  return objects;
 }
 
 }  // namespace rmac::fieldbus::canopen

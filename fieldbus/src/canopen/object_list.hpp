@@ -17,8 +17,8 @@ namespace rmac::fieldbus::canopen {
 [[nodiscard]] Expected<> check_setpoints(const std::vector<MappedObject>& objects);
 /// Answers hold a statusword; what the master does not know it passes over.
 [[nodiscard]] Expected<> check_answers(const std::vector<MappedObject>& objects);
-/// What a second PDO adds to `objects`: nothing that is there already.
-[[nodiscard]] Expected<> check_more_answers(const std::vector<MappedObject>& objects,
-                                            const std::vector<MappedObject>& more);
+/// A first PDO's contents and a second one's, which are checked as one.
+[[nodiscard]] std::vector<MappedObject> together(std::vector<MappedObject> objects,
+                                                 const std::vector<MappedObject>& more);
 
 }  // namespace rmac::fieldbus::canopen

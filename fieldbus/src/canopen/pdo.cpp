@@ -72,17 +72,26 @@ void take_word(const AxisConfig& axis, std::uint16_t index, std::uint32_t word, 
   }
 }
 
-}  // namespace
-
-CanFrame pack_setpoints(const AxisConfig& axis, const DriveCommand& command) noexcept {
+CanFrame pack(const AxisConfig& axis, std::uint16_t id, const std::vector<MappedObject>& contents,
+              const DriveCommand& command) noexcept {
   CanFrame frame;
-  frame.id = setpoint_id(axis);
-  for (const MappedObject& mapped : axis.setpoints) {
+  frame.id = id;
+  for (const MappedObject& mapped : contents) {
     const std::uint32_t word = setpoint_word(axis, command, mapped.object.index);
     for (unsigned bit = 0; bit < mapped.bits; bit += 8)
       frame.data[frame.size++] = static_cast<std::uint8_t>(word >> bit);
   }
   return frame;
+}
+
+}  // namespace
+
+CanFrame pack_setpoints(const AxisConfig& axis, const DriveCommand& command) noexcept {
+  return pack(axis, setpoint_id(axis), axis.setpoints, command);
+}
+
+CanFrame pack_more_setpoints(const AxisConfig& axis, const DriveCommand& command) noexcept {
+  return pack(axis, more_setpoints_id(axis), axis.more_setpoints, command);
 }
 
 void add_setpoints(CanFrame& shared, const CanFrame& own) noexcept {

@@ -25,6 +25,8 @@ inline constexpr std::array kAnswerWords{
 
 /// Fills an axis's RPDO from the words of a cycle. Real-time safe.
 [[nodiscard]] CanFrame pack_setpoints(const AxisConfig& axis, const DriveCommand& command) noexcept;
+/// And its second one, where it has one. Real-time safe.
+[[nodiscard]] CanFrame pack_more_setpoints(const AxisConfig& axis, const DriveCommand& command) noexcept;
 
 /// Adds the words of an axis that shares an RPDO: its bytes are dummies, zeros, in the frames of the others.
 void add_setpoints(CanFrame& shared, const CanFrame& own) noexcept;

@@ -79,11 +79,12 @@ void SimulatedServoDrive::run_loops(const DriveCommand& command, double period_s
   const double aim = to_position ? angle_of(command.target_position_counts) : 0;
   const double offset_nm = command.torque_offset_permille * parameters_.rated_torque_nm / 1000;
   const double from = to_position ? aim_rad_.value_or(aim) : 0;
+  const double beside = parameters_.own_velocity * (aim - from) / period_s +
+                        parameters_.told_velocity * command.velocity_offset_rpm * std::numbers::pi / 30;
   for (int i = 1; i <= steps; ++i) {
     double wanted = command.target_velocity_rpm * std::numbers::pi / 30;
     // Between two positions it interpolates (60C2h).
-    if (to_position)
-      wanted = (aim - from) / period_s + kPositionRadS * (from + (aim - from) * i / steps - plant_.angle_rad());
+    if (to_position) wanted = beside + kPositionRadS * (from + (aim - from) * i / steps - plant_.angle_rad());
     const double excess = std::clamp(wanted, -max_speed_rad_s, max_speed_rad_s) - plant_.speed_rad_s();
     const double gain = kVelocityRadS * parameters_.inertia_kg_m2();
     integral_nm_ = std::clamp(integral_nm_ + gain * kIntegralRadS * excess * step_s, -most_nm, most_nm);

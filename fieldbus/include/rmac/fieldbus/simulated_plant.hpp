@@ -32,6 +32,9 @@ struct AxisPlantParameters {
   // Current loop of the drive, as a first-order lag.
   double torque_lag_s = 0.0002;                  ///< assumed: 800 Hz of current-loop bandwidth
   DriveMode mode = DriveMode::CyclicSyncTorque;  ///< in which the drive is used; velocity and position are the others
+  /// In which share the drive takes the velocity beside its positions from their differences, and from 60B1h.
+  double own_velocity = 1;
+  double told_velocity = 0;
 
   [[nodiscard]] double inertia_kg_m2() const noexcept;
 };

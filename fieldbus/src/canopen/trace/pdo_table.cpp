@@ -20,6 +20,7 @@ PdoTable::PdoTable(const CanopenConfig* config) {
   if (config == nullptr) return;
   for (const AxisConfig& axis : config->axes) {
     add(axis, setpoint_id(axis), axis.setpoints);
+    if (!axis.more_setpoints.empty()) add(axis, more_setpoints_id(axis), axis.more_setpoints);
     add(axis, answer_id(axis), axis.answers);
     if (!axis.more_answers.empty()) add(axis, more_answers_id(axis), axis.more_answers);
   }

@@ -74,6 +74,34 @@ TEST(CanopenConfig, HasASecondPdoOfAnswersThatCounts) {
                  "is needed in tpdo");
 }
 
+TEST(CanopenConfig, HasASecondPdoOfSetpointsThatCounts) {
+  const Texts more{{"second_rpdo", "60B1:00/32 60B2:00/16"}};
+  const auto config = read_canopen_config("can0", {{"node", {1}}}, more, 0.001);
+  ASSERT_TRUE(config) << config.error().message;
+  const auto without = read_canopen_config("can0", {{"node", {1}}}, {}, 0.001);
+  EXPECT_EQ(bus_load(*config).setpoint_bits, bus_load(*without).setpoint_bits + worst_frame_bits(0x301, 6));
+  EXPECT_EQ(frames_of_cycle(*config), frames_of_cycle(*without) + 1);
+  const std::string at = "CANopenInterface, bus can0: ";
+  EXPECT_EQ(refusal({{"node", {1}}}, {{"second_rpdo", "6040:00/16"}}), at + "second_rpdo: 6040h:00 is mapped twice");
+  EXPECT_EQ(refusal({{"node", {1}}}, {{"second_rpdo", "6081:00/32"}}),
+            at + "second_rpdo: 6081h:00 has no value that the master could send");
+  const auto fits = [](std::vector<double> nodes, double period_s) {
+    const Texts both{{"rpdo", "6040:00/16 607A:00/32"}, {"second_rpdo", "60B1:00/32 60B2:00/16"}};
+    const auto bus = read_canopen_config("can0", {{"node", std::move(nodes)}, {"mode", {8}}}, both, period_s);
+    return bus && check_bus_load(*bus).has_value();
+  };
+  EXPECT_TRUE(fits({1, 2}, 0.001));
+  EXPECT_FALSE(fits({1, 2, 3}, 0.001));
+  EXPECT_TRUE(fits({1, 2, 3, 4}, 0.002));
+  EXPECT_FALSE(fits({1, 2, 3, 4, 5}, 0.002));
+  const std::string several =
+      at +
+      "node 1 has several axes and a second_rpdo, whose identifier is that of the second axis; map all that is "
+      "needed in rpdo";
+  EXPECT_EQ(refusal({{"node", {1, 1}}, {"axis_in_node", {0, 1}}}, more), several);
+  EXPECT_EQ(refusal({{"node", {1}}, {"axis_in_node", {1}}}, more), several);
+}
+
 TEST(CanopenConfig, HasDrivesThatHomeTellTheirModeAndWritesHowTheyDo) {
   const auto config = read_canopen_config("can0",
                                           {{"node", {1, 2}},

@@ -108,6 +108,13 @@ TEST(FrameDecoder, TellsBothAxesThatShareAPdo) {
             "Target torque 2 \u2030 of rated torque");
 }
 
+TEST(FrameDecoder, TellsTheSecondPdoOfSetpoints) {
+  const CanopenConfig config = config_of({{"node", {1}}}, {{"second_rpdo", "60B1:00/32 60B2:00/16"}});
+  FrameDecoder decoder(&config);
+  const DecodedFrame decoded = decoder.decode({.id = 0x301, .size = 6, .data = {4, 0, 0, 0, 0xFE, 0xFF}});
+  EXPECT_EQ(decoded.text, "RPDO2 node 1: Velocity offset 4 velocity units, Torque offset -2 \u2030 of rated torque");
+}
+
 TEST(FrameDecoder, NamesObjectsByTheSheetOfTheirNode) {
   auto sheet = std::make_shared<eds::DeviceDescription>();
   sheet->entries[{0x6064, 0}].name = "Ist-Position";

@@ -8,6 +8,7 @@ namespace {
 
 using test::CanopenBench;
 using test::CanWire;
+using test::Texts;
 using test::VirtualDrive;
 
 class SetpointOffsets : public CanopenBench {};
@@ -48,6 +49,64 @@ TEST_F(SetpointOffsets, SendsAVelocityOffsetInTheDrivesUnitsWithinItsWord) {
     cycles(2, DriveWish::Operational);
     EXPECT_EQ(static_cast<std::int32_t>(drive.value(0x60B1, 0)), word);
   }
+}
+
+const Texts kBothOffsets{{"rpdo", "6040:00/16 607A:00/32"}, {"second_rpdo", "60B1:00/32 60B2:00/16"}};
+
+class SecondRpdo : public CanopenBench {
+ protected:
+  VirtualDrive& add_drive() {
+    VirtualDrive& drive = wire_.add(1);
+    drive.set_bytes({0x60B1, 0}, {0, 0, 0, 0});
+    drive.set_bytes({0x60B2, 0}, {0, 0});
+    return drive;
+  }
+};
+
+// Red where the second frame is not sent, is sent behind SYNC, or carries the words of another cycle.
+TEST_F(SecondRpdo, ActsWithTheSameSyncAsTheFirst) {
+  VirtualDrive& drive = add_drive();
+  make({{"node", {1}}, {"mode", {8}}}, kBothOffsets);
+  EXPECT_TRUE(master_->takes_torque_offset(0));
+  start();
+  enable_all();
+  EXPECT_EQ(drive.value(0x1401, 1), 0x301U);
+  for (int i = 1; i < 50; ++i) {
+    commands_[0].target_position_counts = 1000 * i;
+    commands_[0].velocity_offset_rpm = 100 * i;
+    commands_[0].torque_offset_permille = static_cast<std::int16_t>(-i);
+    cycle(DriveWish::Operational);
+    ASSERT_EQ(drive.value(0x607A, 0), 1000U * static_cast<unsigned>(i));
+    ASSERT_EQ(drive.value(0x60B1, 0), 100U * static_cast<unsigned>(i));
+    ASSERT_EQ(static_cast<std::int16_t>(drive.value(0x60B2, 0)), -i);
+  }
+  master_->stop();
+  EXPECT_EQ(drive.value(0x60B1, 0), 0U) << "nothing is left behind";
+}
+
+// Red where a frame is queued for a node that is away.
+TEST_F(SecondRpdo, IsNotSentToANodeThatIsAway) {
+  VirtualDrive& drive = add_drive();
+  make({{"node", {1}}, {"mode", {8}}}, kBothOffsets);
+  start();
+  enable_all();
+  drive.power_off();
+  cycles(100, DriveWish::Operational);
+  ASSERT_FALSE(feedback_[0].online);
+  int sent = 0;
+  wire_.listen = [&](const CanFrame& frame) { sent += frame.id == 0x301 ? 1 : 0; };
+  cycles(100, DriveWish::Operational);
+  EXPECT_EQ(sent, 0);
+}
+
+TEST_F(SecondRpdo, IsRefusedWhereTheDriveHasNone) {
+  VirtualDrive& drive = add_drive();
+  drive.remove(0x1401);
+  make({{"node", {1}}, {"mode", {8}}}, kBothOffsets);
+  EXPECT_EQ(start_error(),
+            "node 1 (axis 0) refused 80000301h for 1401h:01: object does not exist in the object dictionary "
+            "(06020000h); it is needed to send it its "
+            "setpoints (second_rpdo)");
 }
 
 }  // namespace

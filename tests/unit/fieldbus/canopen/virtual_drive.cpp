@@ -245,13 +245,20 @@ void VirtualDrive::give_answers(Time now) {
   answers_.clear();
 }
 
-void VirtualDrive::act_on(const CanFrame& frame) {
+std::vector<std::uint16_t> VirtualDrive::rpdo_numbers() const {
+  std::vector<std::uint16_t> numbers;
   for (int a = 0; a < static_cast<int>(axes_.size()); ++a) {
-    const std::uint16_t communication = pdo(a, 0x1400);
-    if (value(communication, 1) != frame.id) continue;
+    for (int n = 0; n < 2; ++n) numbers.push_back(static_cast<std::uint16_t>(pdo(a, 0) + n));
+  }
+  return numbers;
+}
+
+void VirtualDrive::act_on(const CanFrame& frame) {
+  for (const std::uint16_t number : rpdo_numbers()) {
+    if (value(static_cast<std::uint16_t>(0x1400 + number), 1) != frame.id) continue;
+    const auto contents = static_cast<std::uint16_t>(0x1600 + number);
     std::uint32_t bits = 0;
-    const std::uint32_t entries = value(pdo(a, 0x1600), 0);
-    for (std::uint8_t i = 1; i <= entries; ++i) bits += value(pdo(a, 0x1600), i) & 0xFF;
+    for (std::uint8_t i = 1; i <= value(contents, 0); ++i) bits += value(contents, i) & 0xFF;
     if (frame.size * 8U < bits) return emergency(0x8210);
     std::erase_if(waiting_, [&](const CanFrame& old) { return old.id == frame.id; });
     waiting_.push_back(frame);
@@ -261,11 +268,12 @@ void VirtualDrive::act_on(const CanFrame& frame) {
 void VirtualDrive::sync(Time now) {
   move(now);
   for (const CanFrame& frame : waiting_) {
-    for (int a = 0; a < static_cast<int>(axes_.size()); ++a) {
-      if (value(pdo(a, 0x1400), 1) != frame.id) continue;
+    for (const std::uint16_t number : rpdo_numbers()) {
+      if (value(static_cast<std::uint16_t>(0x1400 + number), 1) != frame.id) continue;
+      const auto contents = static_cast<std::uint16_t>(0x1600 + number);
       std::size_t at = 0;
-      for (std::uint8_t i = 1; i <= value(pdo(a, 0x1600), 0); ++i) {
-        const std::uint32_t entry = value(pdo(a, 0x1600), i);
+      for (std::uint8_t i = 1; i <= value(contents, 0); ++i) {
+        const std::uint32_t entry = value(contents, i);
         const std::size_t bytes = (entry & 0xFF) / 8;
         const auto object =
             dictionary_.find({static_cast<std::uint16_t>(entry >> 16), static_cast<std::uint8_t>(entry >> 8)});
@@ -275,6 +283,7 @@ void VirtualDrive::sync(Time now) {
         }
         at += bytes;
       }
+      const int a = number / 0x40;
       axes_[static_cast<std::size_t>(a)].power.control(static_cast<std::uint16_t>(value(profile(a, 0x6040), 0)),
                                                        kOptions);
     }

@@ -93,6 +93,8 @@ class VirtualDrive {
   void sync(Time now);
   void answer_sdo(const CanFrame& frame, Time now);
   void give_answers(Time now);
+  /// Of its RPDOs: two of each axis.
+  [[nodiscard]] std::vector<std::uint16_t> rpdo_numbers() const;
   void act_on(const CanFrame& frame);
   void move(Time now);
   void publish();

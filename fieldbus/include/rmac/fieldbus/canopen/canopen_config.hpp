@@ -39,11 +39,12 @@ struct AxisConfig {
   std::uint8_t axis_in_node = 0;
   std::uint8_t rpdo_node = 0;  ///< whose RPDO's identifier it listens to, sharing it by dummies; 0: its own
   DriveMode mode = DriveMode::CyclicSyncTorque;
-  std::vector<MappedObject> setpoints;     ///< the RPDO
-  std::vector<MappedObject> answers;       ///< the TPDO
-  std::vector<MappedObject> more_answers;  ///< the second TPDO; empty: there is none
-  std::optional<MappedObject> sensor;      ///< one of the answers, a sensor's reading with a sign
-  double velocity_units_per_rpm = 1;       ///< of 60FFh, 60B1h and 606Ch
+  std::vector<MappedObject> setpoints;       ///< the RPDO
+  std::vector<MappedObject> more_setpoints;  ///< the second RPDO; empty: there is none
+  std::vector<MappedObject> answers;         ///< the TPDO
+  std::vector<MappedObject> more_answers;    ///< the second TPDO; empty: there is none
+  std::optional<MappedObject> sensor;        ///< one of the answers, a sensor's reading with a sign
+  double velocity_units_per_rpm = 1;         ///< of 60FFh, 60B1h and 606Ch
   Identity identity;
   std::string drive;                                     ///< its description's name, "none"; empty: by its identity
   std::optional<std::chrono::milliseconds> sdo_timeout;  ///< for each of its SDO answers, where it is given
@@ -100,7 +101,10 @@ using FindDescription =
 [[nodiscard]] inline std::uint16_t answer_id(const AxisConfig& axis) noexcept {
   return static_cast<std::uint16_t>(0x180 + 0x100 * axis.axis_in_node + axis.node);
 }
-/// The second TPDO's identifier, which is that of a second axis: only a drive of one axis can have it.
+/// The second RPDO's and TPDO's identifiers, which are those of a second axis: only a drive of one axis can have them.
+[[nodiscard]] inline std::uint16_t more_setpoints_id(const AxisConfig& axis) noexcept {
+  return static_cast<std::uint16_t>(0x300 + axis.node);
+}
 [[nodiscard]] inline std::uint16_t more_answers_id(const AxisConfig& axis) noexcept {
   return static_cast<std::uint16_t>(0x280 + axis.node);
 }

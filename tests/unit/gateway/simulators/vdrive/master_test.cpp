@@ -162,6 +162,55 @@ TEST_F(MasterOverVirtualDrives, CarriesInputsAndTouchProbes) {
   stop();
 }
 
+/// A sine in position mode, with words beside the positions; how far the drive is behind at most.
+class OffsetsOverTheBus : public MasterOverVirtualDrives {
+ protected:
+  double farthest(bool velocity, bool torque) {
+    master_.reset();
+    wire_ = Wire();
+    Node& node = wire_.add(1);
+    std::string second = velocity ? "60B1:00/32" : "";
+    if (torque) second += " 60B2:00/16";
+    make({{"node", {1}}, {"mode", {8}}}, {{"rpdo", "6040:00/16 607A:00/32"},
+                                          {"second_rpdo", second},
+                                          {"tpdo", "6041:00/16 6064:00/32"},
+                                          {"setup", "2002:00/16=0"},  // no velocity of its own
+                                          {"eds", "rmac-vdrive"}});
+    EXPECT_TRUE(start().has_value());
+    commands_[0].mode = DriveMode::CyclicSyncPosition;
+    commands_[0].target_position_counts = feedback_[0].position_counts;
+    cycles(20, DriveWish::Operational);
+    EXPECT_EQ(drive_state(feedback_[0].statusword), DriveState::OperationEnabled);
+    const fieldbus::AxisPlantParameters plant;
+    const double permille_per_count =
+        plant.inertia_kg_m2() * 2 * M_PI / plant.counts_per_revolution / plant.rated_torque_nm * 1000;
+    const double from = feedback_[0].position_counts, w = 2 * M_PI / 0.2, amplitude = 65536;
+    double farthest = 0;
+    for (int i = 1; i <= 400; ++i) {
+      const double t = i * 0.001, half = 0.0005;
+      commands_[0].target_position_counts =
+          static_cast<std::int32_t>(std::lround(from + amplitude * (1 - std::cos(w * t))));
+      commands_[0].velocity_offset_rpm = amplitude * w * std::sin(w * (t - half));  // units of the drive: counts/s
+      commands_[0].torque_offset_permille =
+          static_cast<std::int16_t>(std::lround(permille_per_count * amplitude * w * w * std::cos(w * (t - half))));
+      cycles(1, DriveWish::Operational);
+      if (i > 100) farthest = std::max(farthest, std::abs(static_cast<double>(node.dictionary().number(0x60F4))));
+    }
+    stop();
+    return farthest;
+  }
+};
+
+// Red where one of the two words does not arrive, or not in the cycle of its position.
+TEST_F(OffsetsOverTheBus, FollowNearestWithBothInASecondRpdo) {
+  const double alone = farthest(false, false), velocity = farthest(true, false), both = farthest(true, true);
+  EXPECT_LT(velocity, alone / 3);
+  EXPECT_LT(both, velocity / 2);
+  RecordProperty("alone_counts", std::to_string(alone));
+  RecordProperty("velocity_counts", std::to_string(velocity));
+  RecordProperty("velocity_and_torque_counts", std::to_string(both));
+}
+
 TEST_F(MasterOverVirtualDrives, SeesFaultsAndGoesOnAfterThem) {
   Node& hot = wire_.add(1);
   Node& mute = wire_.add(2);
