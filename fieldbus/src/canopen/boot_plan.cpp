@@ -175,6 +175,15 @@ class Plan {
     for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
     write(object, std::move(bytes));
   }
+  /// A parameter of a PDO on its way to `last`, which a drive may have as a constant (CiA 301, 7.5.2.35 to 7.5.2.38).
+  void write_pdo(ObjectAddress object, std::size_t size, std::uint32_t value, std::uint32_t last,
+                 std::uint32_t mask = 0xFFFFFFFF) {
+    write(object, size, value);
+    BootStep& step = steps_.back();
+    step.may_be_constant = true;
+    step.mask = size == 1 ? 0xFFU : mask;
+    step.value = last & step.mask;
+  }
 
   /// Supported drive modes: bit 0 is mode 1, and so on (CiA 402-2, 6502h).
   void supports(const AxisConfig& axis, std::uint16_t offset) {
@@ -226,8 +235,8 @@ class Plan {
       entries.push_back(static_cast<std::uint32_t>(at.index) << 16 | at.sub << 8 | object.bits);
     }
     if (manners_.store_after_mapping) compare_contents(Kind::Compare, contents, entries);
-    write({communication, 1}, 4, kInvalidPdo | cob_id);
-    write({communication, 2}, 1, kEverySync);
+    write_pdo({communication, 1}, 4, kInvalidPdo | cob_id, cob_id, ~kNoRemoteRequest);
+    write_pdo({communication, 2}, 1, kEverySync, kEverySync);
     if (manners_.fixed_mapping) {
       const char* const what_for = needed_;
       need("because its mapping is fixed (FixedMapping): rpdo and tpdo must say what it has");
@@ -236,7 +245,7 @@ class Plan {
     } else {
       write_contents(contents, entries);
     }
-    write({communication, 1}, 4, cob_id);
+    write_pdo({communication, 1}, 4, cob_id, cob_id, ~kNoRemoteRequest);
   }
 
   void map_second(std::uint16_t communication, std::uint32_t cob_id, const std::vector<MappedObject>& objects,
@@ -249,10 +258,11 @@ class Plan {
 
   void write_contents(std::uint16_t contents, const std::vector<std::uint32_t>& entries) {
     const std::size_t first = steps_.size();
-    write({contents, 0}, 1, 0);
+    const auto count = static_cast<std::uint32_t>(entries.size());
+    write_pdo({contents, 0}, 1, 0, count);
     std::uint8_t sub = 0;
-    for (const std::uint32_t entry : entries) write({contents, ++sub}, 4, entry);
-    write({contents, 0}, 1, sub);
+    for (const std::uint32_t entry : entries) write_pdo({contents, ++sub}, 4, entry, entry);
+    write_pdo({contents, 0}, 1, count, count);
     for (std::size_t i = first; i < steps_.size(); ++i) steps_[i].after_change = manners_.store_after_mapping;
   }
 

@@ -23,11 +23,12 @@ struct BootStep {
   std::vector<std::uint8_t> bytes;
   std::uint32_t value = 0;
   std::uint32_t mask = 0xFFFFFFFF;
-  bool optional = false;       ///< a refusal is noted and passed over, whatever its code
-  bool may_be_absent = false;  ///< of refusals, that it has no such object is passed over, and no other
-  bool after_refusal = false;  ///< of the step before it alone: left out where that was not refused
-  bool after_change = false;   ///< left out where each `Compare` before it found what is wanted
-  const char* needed = "";     ///< for what, as it goes on behind "it is needed"
+  bool optional = false;         ///< a refusal is noted and passed over, whatever its code
+  bool may_be_absent = false;    ///< of refusals, that it has no such object is passed over, and no other
+  bool may_be_constant = false;  ///< of a refused write: it is passed over where (what is read & mask) is `value`
+  bool after_refusal = false;    ///< of the step before it alone: left out where that was not refused
+  bool after_change = false;     ///< left out where each `Compare` before it found what is wanted
+  const char* needed = "";       ///< for what, as it goes on behind "it is needed"
 };
 
 inline constexpr std::uint16_t kPdoOffset = 0x40;  ///< between the PDO numbers of two axes of a node (CiA 402-3)

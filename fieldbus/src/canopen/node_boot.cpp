@@ -56,11 +56,17 @@ std::vector<BootProblem> NodeBoot::notes() const {
   const std::vector<BootStep>& steps = plan().steps;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const std::uint32_t code = outcomes_[i].refusal;
-    const auto known = [&](const BootProblem& note) { return note.object == steps[i].object; };
+    const auto kind = steps[i].may_be_constant ? BootProblem::Kind::Constant : BootProblem::Kind::Refused;
+    // Entries of one mapping are one matter.
+    const auto known = [&](const BootProblem& note) {
+      const bool same = kind == BootProblem::Kind::Constant ? note.object.index == steps[i].object.index
+                                                            : note.object == steps[i].object;
+      return same && note.kind == kind;
+    };
     if (code == 0 || code == sdo_abort::kNoObject || code == sdo_abort::kNoSubindex) continue;
     if (std::any_of(notes.begin(), notes.end(), known)) continue;
     notes.push_back(problem_of(steps[i]));
-    notes.back().kind = BootProblem::Kind::Refused;
+    notes.back().kind = kind;
     notes.back().found = code;
   }
   return notes;
@@ -165,6 +171,7 @@ void NodeBoot::begin_step(std::chrono::nanoseconds now) noexcept {
   problem_ = problem_of(step);
   outcomes_[step_].refusal = 0;
   tries_ = 0;
+  refused_ = 0;
   if (step.kind == BootStep::Kind::Refuse) return fail(BootProblem::Kind::Unfit);
   if (step.kind == BootStep::Kind::Reset) {
     resets_.restart(now);
@@ -179,7 +186,7 @@ void NodeBoot::ask(std::chrono::nanoseconds now) noexcept {
   const BootStep& step = plan().steps[step_];
   if (doubted()) {
     sdo_.upload(kAlwaysThere, bytes_, now);
-  } else if (problem_.writing) {
+  } else if (problem_.writing && refused_ == 0) {
     sdo_.download(step.object, step.bytes, now);
   } else {
     bytes_.fill(0);
@@ -216,8 +223,29 @@ bool NodeBoot::compared(const BootStep& step) noexcept {
   return false;
 }
 
+bool NodeBoot::looks_for_constant(std::chrono::nanoseconds now) noexcept {
+  if (!plan().steps[step_].may_be_constant || refused_ != 0 || sdo_.state() != SdoClient::State::Refused) return false;
+  refused_ = sdo_.abort_code();
+  tries_ = 0;
+  ask(now);
+  return true;
+}
+
+bool NodeBoot::is_constant(const BootStep& step) noexcept {
+  const std::uint32_t found = long_at(bytes_.data());
+  const bool read = sdo_.state() == SdoClient::State::Done;
+  if (read && (found & step.mask) == step.value) {
+    outcomes_[step_].refusal = refused_;
+    return true;
+  }
+  if (read) problem_.kept = found;
+  fail(BootProblem::Kind::Refused, refused_);
+  return false;
+}
+
 bool NodeBoot::passes() noexcept {
   const BootStep& step = plan().steps[step_];
+  if (refused_ != 0) return is_constant(step);
   if (step.kind == BootStep::Kind::Compare && sdo_.state() != SdoClient::State::Failed) return compared(step);
   if (step.kind == BootStep::Kind::Read) outcomes_[step_].reading = 0;
   if (doubted() && sdo_.state() != SdoClient::State::Failed) {
@@ -259,6 +287,7 @@ void NodeBoot::end_step(std::chrono::nanoseconds now) noexcept {
     return;
   }
   if (asks_again(now)) return ask(now);
+  if (looks_for_constant(now)) return;
   if (!passes()) return;
   ++step_;
   begin_step(now);

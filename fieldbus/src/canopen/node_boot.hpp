@@ -77,6 +77,10 @@ class NodeBoot {
   [[nodiscard]] bool compared(const BootStep& step) noexcept;
   void ask(std::chrono::nanoseconds now) noexcept;
   [[nodiscard]] bool refuses_for_now(std::chrono::nanoseconds now) const noexcept;
+  /// What it refused to take may be there already: it is read.
+  [[nodiscard]] bool looks_for_constant(std::chrono::nanoseconds now) noexcept;
+  /// It was read: true, or the refusal counts.
+  [[nodiscard]] bool is_constant(const BootStep& step) noexcept;
   [[nodiscard]] bool asks_again(std::chrono::nanoseconds now) noexcept;
   /// What is not needed was not answered: it is asked whether it answers at all.
   [[nodiscard]] bool doubted() const noexcept;
@@ -97,9 +101,10 @@ class NodeBoot {
   int restarts_ = 0;  ///< since `begin`
   BootProblem problem_;
   std::size_t step_ = 0;
-  int tries_ = 0;           ///< of this step, unanswered
-  bool answered_ = false;   ///< an SDO, since its boot-up message
-  bool held_back_ = false;  ///< it was told to wait in Pre-operational while it is set up
+  int tries_ = 0;              ///< of this step, unanswered
+  std::uint32_t refused_ = 0;  ///< the abort code of this step's writing, while it is read what is there
+  bool answered_ = false;      ///< an SDO, since its boot-up message
+  bool held_back_ = false;     ///< it was told to wait in Pre-operational while it is set up
   std::array<std::uint8_t, 8> bytes_{};
   std::chrono::nanoseconds entered_{0};
   std::chrono::nanoseconds next_{0};  ///< when it is started or asked again

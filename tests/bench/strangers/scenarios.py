@@ -5,7 +5,6 @@ import dataclasses
 MOVES, REFUSED = "moves", "refused"
 ABORTS = ("06020000", "06010000", "06090011", "08000000", "08000022")
 HEARTBEAT_MS = 50
-NOT_READ_BACK = "CiA 301 lets a drive have these constant; the master refuses it, and does not look whether they are what it would write"
 
 
 @dataclasses.dataclass
@@ -52,8 +51,9 @@ def dictionary():
     yield Scenario("another scale", "--value 608F:01=0x2710 6092:01=0x2710", REFUSED, r"axis 0\b.*10000.*131072")
     yield Scenario("6060h is fixed, as wanted", "--refuse-write 6060=06010002 --value 6060:00=8", REFUSED, named("6060"))
     yield Scenario("answers by events alone", "--refuse-write 1800:02=06090030", REFUSED, named("1800"))
-    yield Scenario("identifiers are fixed, as wanted", "--refuse-write 1400:01=06010002", known=NOT_READ_BACK)
-    yield Scenario("mapping is fixed, as wanted", "--fixed-mapping", known=NOT_READ_BACK)
+    yield Scenario("identifiers are fixed, as wanted", "--refuse-write 1400:01=06010002", text=r"node 1\b.*keeps 1400h")
+    yield Scenario("identifiers are fixed, others", "--refuse-write 1400:01=06010002 --value 1400:01=0x205", REFUSED, named(1400, 1))
+    yield Scenario("mapping is fixed, as wanted", "--fixed-mapping", text=r"node 1\b.*keeps 1600h")
     yield Scenario("mapping is fixed, another", "--fixed-mapping --tpdo 60410010", REFUSED, named("1[6A]00"))
     yield Scenario("mapping is fixed, more than wanted", "--fixed-mapping --tpdo '60410010 60640020 60770010'", REFUSED, named("1[6A]00"))
     yield Scenario("device type has bits of the maker", "--value 1000:00=0x4420192")

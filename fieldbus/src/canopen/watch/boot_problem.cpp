@@ -35,7 +35,8 @@ std::string refusal(const BootProblem& refused) {
   const std::string object = to_string(refused.object);
   const char* why = sdo_abort_text(refused.found);
   return refused.writing
-             ? fmt::format("refused {:X}h for {}: {} ({:08X}h)", refused.expected, object, why, refused.found)
+             ? fmt::format("refused {:X}h for {}: {} ({:08X}h){}", refused.expected, object, why, refused.found,
+                           refused.kept ? fmt::format(", and has {:X}h there", *refused.kept) : "")
              : fmt::format("refused to tell {}: {} ({:08X}h)", object, why, refused.found);
 }
 
@@ -89,6 +90,9 @@ std::string describe_alone(const BootProblem& problem, std::uint8_t node, const 
       }
       return fmt::format("{} does not support what is asked of it: {} is {:X}h, and {:X}h is needed in it{}", who,
                          object, problem.found, problem.expected, need(problem));
+    case BootProblem::Kind::Constant:
+      return fmt::format("{} keeps {:04X}h as it is, which is what is wanted: {} ({:08X}h)", who, problem.object.index,
+                         sdo_abort_text(problem.found), problem.found);
     case BootProblem::Kind::Unfit:
       return fmt::format("{} cannot be taken: {}", who, problem.needed);
     case BootProblem::Kind::NoStart:
@@ -123,6 +127,7 @@ std::string describe_alone(const BootProblem& problem, std::uint8_t node, const 
 }  // namespace
 
 std::string describe_note(const BootProblem& refused, std::uint8_t node, const CanopenConfig& config) {
+  if (refused.kind == BootProblem::Kind::Constant) return describe_alone(refused, node, config);
   return fmt::format("{} {}; it is not needed, and was passed over{}", name_of(node, config), refusal(refused),
                      is_default_tpdo(refused.object) ? ". What that PDO sends is not counted in the load" : "");
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "rmac/fieldbus/canopen/canopen_config.hpp"
@@ -15,6 +16,7 @@ struct BootProblem {
     NoAnswer,   ///< it spoke, but did not answer for `object`
     Refused,    ///< it refused `object`; `found` is its abort code
     Different,  ///< `object` is `found` where `expected` was
+    Constant,   ///< it refused to take `object`, which is what is wanted; `found` is its abort code
     Unfit,      ///< its description does not fit: `needed` says why
     NoStart,    ///< it is set up, and does not become operational
     Restarts,   ///< it started anew, again and again, while it was set up
@@ -28,6 +30,7 @@ struct BootProblem {
   ObjectAddress object;
   std::uint32_t expected = 0;
   std::uint32_t found = 0;
+  std::optional<std::uint32_t> kept{};  ///< what `object` is, of one that could have been a constant
   bool writing = false;
   const char* needed = "";                  ///< for what, of an object that was refused
   std::chrono::milliseconds waited{0};      ///< for what did not come
@@ -39,7 +42,7 @@ struct BootProblem {
   return kind >= BootProblem::Kind::TwoIdentities;
 }
 
-/// What a node refused that was not needed, for a person.
+/// What a node refused, and was taken all the same, for a person.
 [[nodiscard]] std::string describe_note(const BootProblem& refused, std::uint8_t node, const CanopenConfig& config);
 
 /// What went wrong and what to do, for a person.

@@ -131,7 +131,9 @@ TEST_F(OptionalObjects, AreNotThoseWithoutWhichItDoesNotGo) {
                               Case{{0x6085, 0}, "because device.json sets it"}};
   for (const Case& one : kCases) {
     for (const std::uint32_t code : kAbortCodes) {
-      fresh_drive().refuse_writing(one.object, code);
+      VirtualDrive& drive = fresh_drive();
+      drive.set_bytes({0x1400, 1}, {5, 2, 0, 0});  // one that is already as wanted is no matter
+      drive.refuse_writing(one.object, code);
       make({{"node", {1}}}, {{"setup", "6085:00/32=70000"}});
       const std::string error = start_error();
       ASSERT_THAT(error, HasSubstr("node 1 (axis 0) refused "));
