@@ -14,6 +14,8 @@
 #include <ctime>
 #include <vector>
 
+#include "can/error_frame.hpp"
+
 namespace rmac::fieldbus {
 namespace {
 
@@ -89,7 +91,7 @@ Expected<std::unique_ptr<SocketCanPort>> SocketCanPort::open(const std::string& 
   }
   sockaddr_can address{};
   address.can_family = AF_CAN;
-  address.can_ifindex = request.ifr_ifindex;
+  address.can_ifindex = port->interface_index_ = request.ifr_ifindex;
   for (const std::string& problem :
        {check_interface(socket, request, queue_frames), set_filters(socket, wanted), set_options(socket)}) {
     if (!problem.empty()) return trouble(interface, problem);
@@ -157,7 +159,7 @@ bool SocketCanPort::receive(CanFrame& frame) noexcept {
       }
     }
     if ((raw.can_id & CAN_ERR_FLAG) != 0) {
-      take_error_frame(raw.can_id);
+      take_error_frame(raw, health_);
       continue;
     }
     if ((raw.can_id & (CAN_EFF_FLAG | CAN_RTR_FLAG)) != 0 || raw.can_dlc > CAN_MAX_DLEN) continue;
@@ -169,15 +171,6 @@ bool SocketCanPort::receive(CanFrame& frame) noexcept {
     return true;
   }
   return false;
-}
-
-void SocketCanPort::take_error_frame(std::uint32_t classes) noexcept {
-  ++health_.error_frames;
-  if ((classes & CAN_ERR_BUSOFF) != 0) {
-    ++health_.bus_offs;
-    health_.bus_off = true;
-  }
-  if ((classes & CAN_ERR_RESTARTED) != 0) health_.bus_off = false;
 }
 
 void SocketCanPort::take_failure(int error) noexcept {

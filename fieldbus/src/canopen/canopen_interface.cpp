@@ -276,6 +276,7 @@ BusReport CanopenInterface::report() const {
   const Impl& bus = *impl_;
   BusReport told = bus.record.report();
   told.interface = bus.config.interface;
+  if (bus.port) told.controller = bus.port->controller();
   for (std::size_t place = 0; place < bus.nodes.size(); ++place) {
     NodeReport node = bus.nodes[place].record.report(bus.record.run());
     node.node = bus.nodes[place].boot.node();

@@ -34,6 +34,16 @@ nlohmann::json to_json(const NodeReport& node) {
           {"aborts", std::move(aborts)}};
 }
 
+nlohmann::json to_json(const fieldbus::CanController& controller) {
+  nlohmann::json told{
+      {"state", to_string(controller.state)}, {"transmit_errors", nullptr}, {"receive_errors", nullptr}};
+  if (controller.errors) {
+    told["transmit_errors"] = controller.errors->transmit;
+    told["receive_errors"] = controller.errors->receive;
+  }
+  return told;
+}
+
 nlohmann::json to_json(const BusReport& bus) {
   nlohmann::json nodes = nlohmann::json::array();
   for (const NodeReport& node : bus.nodes) nodes.push_back(to_json(node));
@@ -47,9 +57,12 @@ nlohmann::json to_json(const BusReport& bus) {
           {"send_failures", bus.health.send_failures},
           {"overflowed", bus.health.overflowed},
           {"error_frames", bus.health.error_frames},
+          {"warnings", bus.health.warnings},
+          {"passives", bus.health.passives},
           {"bus_offs", bus.health.bus_offs},
           {"bus_off", bus.health.bus_off},
           {"link_down", bus.health.link_down},
+          {"controller", to_json(bus.controller)},
           {"nodes", std::move(nodes)}};
 }
 
@@ -59,7 +72,9 @@ void add_bus_methods(std::vector<Method>& table) {
   table.push_back(
       method("Bus.GetState",
              "What the CANopen buses that run went through since they were started, as `buses`; of each `interface`, "
-             "its counts, whether it is `bus_off` or `link_down`, and its `nodes` with `state`, `problem` (null: "
+             "its counts, whether it is `bus_off` or `link_down`, its `controller` with `state` and error counters "
+             "(null: the "
+             "interface has none, or does not tell), and its `nodes` with `state`, `problem` (null: "
              "none), how often they were `lost` and `recovered`, `missed_answers`, jitter, and the latest "
              "`emergencies` and `aborts`, newest first.")
           .gives(WireType::Object)

@@ -47,6 +47,7 @@ struct BusReport {
   std::uint64_t unsent = 0;         ///< frames of a cycle that the port did not take
   std::uint64_t short_answers = 0;  ///< PDOs shorter than what is mapped
   CanHealth health;
+  CanController controller;  ///< now
   std::vector<NodeReport> nodes;
 };
 

@@ -13,6 +13,8 @@ void BusRecord::note(const CanopenCounters& counters, const CanHealth& health, s
   send_failures_.set(health.send_failures);
   overflowed_.set(health.overflowed);
   error_frames_.set(health.error_frames);
+  warnings_.set(health.warnings);
+  passives_.set(health.passives);
   bus_offs_.set(health.bus_offs);
   bus_off_.set(health.bus_off ? 1 : 0);
   link_down_.set(health.link_down ? 1 : 0);
@@ -29,6 +31,8 @@ BusReport BusRecord::report() const {
   told.health.send_failures = send_failures_.get();
   told.health.overflowed = overflowed_.get();
   told.health.error_frames = error_frames_.get();
+  told.health.warnings = warnings_.get();
+  told.health.passives = passives_.get();
   told.health.bus_offs = bus_offs_.get();
   told.health.bus_off = bus_off_.get() != 0;
   told.health.link_down = link_down_.get() != 0;

@@ -27,7 +27,7 @@ class BusRecord {
  private:
   std::chrono::nanoseconds started_{0};
   Tally run_ns_, cycles_, unsent_, short_answers_;
-  Tally sent_, received_, queue_full_, send_failures_, overflowed_, error_frames_, bus_offs_;
+  Tally sent_, received_, queue_full_, send_failures_, overflowed_, error_frames_, warnings_, passives_, bus_offs_;
   Tally bus_off_, link_down_;  ///< 0 or 1
 };
 

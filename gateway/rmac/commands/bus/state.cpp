@@ -54,14 +54,25 @@ void show_history(const json& node) {
   }
 }
 
+std::string controller(const json& told) {
+  const auto state = told.at("state").get<std::string>();
+  if (told.at("transmit_errors").is_null()) {
+    return state == "unknown" ? "the interface tells of no controller"
+                              : fmt::format("controller {}, error counters not told", state);
+  }
+  return fmt::format("controller {}, error counters {} transmit, {} receive", state, count(told, "transmit_errors"),
+                     count(told, "receive_errors"));
+}
+
 void show_bus(const json& bus) {
   fmt::print(
       "{}: {} cycles, {} frames sent, {} received; {} unsent, {} too short, {} lost here, {} error frames, {} times "
-      "bus-off{}{}\n",
+      "error-warning, {} error-passive, {} bus-off{}{}\n{}\n",
       bus.at("interface").get<std::string>(), count(bus, "cycles"), count(bus, "sent"), count(bus, "received"),
       count(bus, "unsent"), count(bus, "short_answers"), count(bus, "overflowed"), count(bus, "error_frames"),
-      count(bus, "bus_offs"), bus.at("bus_off").get<bool>() ? "; it is bus-off" : "",
-      bus.at("link_down").get<bool>() ? "; the interface is down" : "");
+      count(bus, "warnings"), count(bus, "passives"), count(bus, "bus_offs"),
+      bus.at("bus_off").get<bool>() ? "; it is bus-off" : "",
+      bus.at("link_down").get<bool>() ? "; the interface is down" : "", controller(bus.at("controller")));
   show_nodes(bus.at("nodes"));
   for (const json& node : bus.at("nodes")) show_history(node);
 }

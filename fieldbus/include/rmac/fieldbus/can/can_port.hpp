@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 
+#include "rmac/fieldbus/can/can_controller.hpp"
 #include "rmac/motion/error.hpp"
 
 namespace rmac::fieldbus {
@@ -28,6 +29,8 @@ struct CanHealth {
   std::uint64_t send_failures = 0;  ///< frames not sent for another reason
   std::uint64_t overflowed = 0;     ///< frames lost because nobody fetched them in time (SO_RXQ_OVFL)
   std::uint64_t error_frames = 0;   ///< reports of the controller: warnings, protocol errors, bus-off
+  std::uint64_t warnings = 0;       ///< times that the controller reported its warning level
+  std::uint64_t passives = 0;       ///< times that it became error-passive
   std::uint64_t bus_offs = 0;
   bool bus_off = false;    ///< the controller left the bus
   bool link_down = false;  ///< the interface is down
@@ -36,7 +39,8 @@ struct CanHealth {
 };
 
 /// One end of a CAN bus: a raw socket, or a wire inside the process where the machine has no CAN. One thread at a time.
-/// All but `wait` are real-time safe.
+/// All but `wait` and
+/// `controller` are real-time safe.
 class CanPort {
  public:
   virtual ~CanPort() = default;
@@ -49,6 +53,9 @@ class CanPort {
   /// The clock that this bus lives by; monotonic.
   [[nodiscard]] virtual std::chrono::nanoseconds now() const noexcept = 0;
   [[nodiscard]] virtual CanHealth health() const noexcept = 0;
+  /// How the controller is now; unknown where there is none, as on a wire inside the process. Any thread; off the
+  /// cycle.
+  [[nodiscard]] virtual CanController controller() const noexcept { return {}; }
 };
 
 }  // namespace rmac::fieldbus

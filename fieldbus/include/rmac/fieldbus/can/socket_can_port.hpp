@@ -26,13 +26,14 @@ class SocketCanPort final : public CanPort {
   void wait(std::chrono::nanoseconds at_most) noexcept override;
   [[nodiscard]] std::chrono::nanoseconds now() const noexcept override;
   [[nodiscard]] CanHealth health() const noexcept override { return health_; }
+  [[nodiscard]] CanController controller() const noexcept override { return read_can_controller(interface_index_); }
 
  private:
   explicit SocketCanPort(int socket) noexcept : socket_(socket) {}
-  void take_error_frame(std::uint32_t classes) noexcept;
   void take_failure(int error) noexcept;
 
   int socket_;
+  int interface_index_ = 0;
   CanHealth health_;
 };
 

@@ -1,0 +1,146 @@
+#include "rmac/fieldbus/can/can_controller.hpp"
+
+#include <gtest/gtest.h>
+#include <linux/can/error.h>
+#include <linux/can/netlink.h>
+#include <linux/rtnetlink.h>
+#include <net/if.h>
+
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "can/error_frame.hpp"
+#include "can/link_answer.hpp"
+
+namespace rmac::fieldbus {
+namespace {
+
+using State = CanController::State;
+using Bytes = std::vector<std::byte>;
+
+template <typename Value>
+Bytes bytes_of(const Value& value) {
+  Bytes bytes(sizeof(value));
+  std::memcpy(bytes.data(), &value, sizeof(value));
+  return bytes;
+}
+
+Bytes text(const std::string& words) {
+  Bytes bytes(words.size() + 1);
+  std::memcpy(bytes.data(), words.c_str(), bytes.size());
+  return bytes;
+}
+
+Bytes operator+(Bytes left, const Bytes& right) {
+  left.insert(left.end(), right.begin(), right.end());
+  return left;
+}
+
+Bytes attribute(unsigned short type, const Bytes& payload) {
+  Bytes bytes = bytes_of(rtattr{static_cast<unsigned short>(RTA_LENGTH(payload.size())), type}) + payload;
+  bytes.resize(RTA_ALIGN(bytes.size()));
+  return bytes;
+}
+
+/// As rtnl_fill_ifinfo builds it: a name before, statistics behind.
+Bytes answer(const std::string& kind, const Bytes& data) {
+  const Bytes body =
+      bytes_of(ifinfomsg{}) + attribute(IFLA_IFNAME, text("can0")) +
+      attribute(IFLA_LINKINFO, attribute(IFLA_INFO_KIND, text(kind)) + attribute(IFLA_INFO_XSTATS, Bytes(24)) +
+                                   attribute(IFLA_INFO_DATA | NLA_F_NESTED, data)) +
+      attribute(IFLA_MTU, bytes_of(16U));
+  nlmsghdr head{};
+  head.nlmsg_len = static_cast<unsigned>(NLMSG_LENGTH(body.size()));
+  head.nlmsg_type = RTM_NEWLINK;
+  return bytes_of(head) + body;
+}
+
+Bytes controller(std::uint32_t state, can_berr_counter errors) {
+  return attribute(IFLA_CAN_BITTIMING, Bytes(32)) + attribute(IFLA_CAN_STATE, bytes_of(state)) +
+         attribute(IFLA_CAN_BERR_COUNTER, bytes_of(errors));
+}
+
+TEST(CanController, IsWhatTheKernelTells) {
+  const std::vector<std::pair<std::uint32_t, State>> states{{CAN_STATE_ERROR_ACTIVE, State::ErrorActive},
+                                                            {CAN_STATE_ERROR_WARNING, State::ErrorWarning},
+                                                            {CAN_STATE_ERROR_PASSIVE, State::ErrorPassive},
+                                                            {CAN_STATE_BUS_OFF, State::BusOff},
+                                                            {CAN_STATE_STOPPED, State::Stopped},
+                                                            {CAN_STATE_SLEEPING, State::Sleeping},
+                                                            {CAN_STATE_MAX, State::Unknown}};
+  for (const auto& [told, state] : states) {
+    const CanController read = controller_of(answer("can", controller(told, {.txerr = 128, .rxerr = 7})));
+    EXPECT_EQ(read.state, state) << told;
+    ASSERT_TRUE(read.errors);
+    EXPECT_EQ(read.errors->transmit, 128);
+    EXPECT_EQ(read.errors->receive, 7);
+  }
+}
+
+TEST(CanController, HasNoCountersWhereTheDriverTellsNone) {
+  const CanController read =
+      controller_of(answer("can", attribute(IFLA_CAN_STATE, bytes_of(std::uint32_t{CAN_STATE_BUS_OFF}))));
+  EXPECT_EQ(read.state, State::BusOff);
+  EXPECT_FALSE(read.errors);
+}
+
+TEST(CanController, IsUnknownWhereThereIsNone) {
+  // Another kind of link numbers its data otherwise: what stands at the same place is no state.
+  const CanController read = controller_of(answer("vcan", controller(CAN_STATE_ERROR_PASSIVE, {200, 200})));
+  EXPECT_EQ(read.state, State::Unknown);
+  EXPECT_FALSE(read.errors);
+  EXPECT_EQ(controller_of({}).state, State::Unknown);
+  EXPECT_EQ(read_can_controller(static_cast<int>(if_nametoindex("lo"))).state, State::Unknown);
+  EXPECT_EQ(read_can_controller(0x7FFFFFFF).state, State::Unknown) << "no such interface";
+}
+
+TEST(CanController, StandsAnAnswerThatIsCutShortOrSpoilt) {
+  const Bytes whole = answer("can", controller(CAN_STATE_ERROR_ACTIVE, {1, 2}));
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    // A copy of its own, so that a read behind it is one behind its end.
+    EXPECT_EQ(controller_of(Bytes(whole.begin(), whole.begin() + static_cast<long>(size))).state, State::Unknown);
+  }
+  std::mt19937 random(20);
+  for (int round = 0; round < 20000; ++round) {
+    Bytes spoilt = whole;
+    for (int i = 0; i < 3; ++i) spoilt[random() % spoilt.size()] = static_cast<std::byte>(random());
+    static_cast<void>(controller_of(spoilt));
+  }
+}
+
+CanHealth after(std::initializer_list<std::pair<canid_t, unsigned>> reports) {
+  CanHealth health;
+  for (const auto& [classes, details] : reports) {
+    can_frame report{};
+    report.can_id = CAN_ERR_FLAG | classes;
+    report.data[1] = static_cast<std::uint8_t>(details);
+    take_error_frame(report, health);
+  }
+  return health;
+}
+
+TEST(CanErrorFrame, CountsHowFarTheControllerGot) {
+  const CanHealth health = after({{CAN_ERR_CRTL, CAN_ERR_CRTL_TX_WARNING},
+                                  {CAN_ERR_CRTL | CAN_ERR_CNT, CAN_ERR_CRTL_RX_WARNING},
+                                  {CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE | CAN_ERR_CRTL_RX_PASSIVE},
+                                  {CAN_ERR_CRTL, CAN_ERR_CRTL_ACTIVE},
+                                  {CAN_ERR_CRTL, CAN_ERR_CRTL_RX_OVERFLOW},
+                                  {CAN_ERR_PROT, CAN_ERR_CRTL_RX_PASSIVE}});  // not of the class that fills the byte
+  EXPECT_EQ(health.error_frames, 6U);
+  EXPECT_EQ(health.warnings, 2U);
+  EXPECT_EQ(health.passives, 1U);
+  EXPECT_TRUE(health.usable());
+}
+
+TEST(CanErrorFrame, TellsThatTheControllerLeftTheBusUntilItIsRestarted) {
+  EXPECT_FALSE(after({{CAN_ERR_BUSOFF, 0}}).usable());
+  const CanHealth health =
+      after({{CAN_ERR_BUSOFF, 0}, {CAN_ERR_RESTARTED, 0}, {CAN_ERR_BUSOFF, 0}, {CAN_ERR_RESTARTED, 0}});
+  EXPECT_EQ(health.bus_offs, 2U);
+  EXPECT_TRUE(health.usable());
+}
+
+}  // namespace
+}  // namespace rmac::fieldbus
