@@ -56,7 +56,9 @@ struct Line::Impl {
   std::mutex mutex{};
   std::condition_variable news{};
   std::vector<Known> known{};
-  bool tried = false;  ///< a first round has ended, under the lock
+  std::size_t first = 0;  ///< station of the next round; line's thread
+  bool broke = true;      ///< the line was not open, or failed as a whole, since stations were told; line's thread
+  bool tried = false;     ///< a first round has ended, under the lock
   std::thread thread{};
 
   void run() {
@@ -79,31 +81,52 @@ struct Line::Impl {
   }
 
   bool open(Backoff& backoff) {
-    const auto opened = client->connect();
+    const auto opened = connect();
     if (!opened) {
       backoff.failed(Clock::now());
-      count(opened.error());
       for (std::size_t i = 0; i < stations.size(); ++i) note(i, opened);
       return false;
     }
-    ++connected;
-    for (Station* station : stations) station->forget();
+    if (std::exchange(broke, false)) {
+      for (Station* station : stations) station->forget();
+    }
     return true;
   }
+
+  Answer<> connect() {
+    auto opened = client->connect();
+    if (opened) {
+      ++connected;
+    } else {
+      count(opened.error());
+      broke = true;
+    }
+    return opened;
+  }
+
+  /// On TCP an answer that a slave lost takes the connection with it (see `Client`): the others behind the same gateway
+  /// are served over the next one. A line that broke waits for its pause.
+  [[nodiscard]] bool stands() { return client->connected() || (!broke && connect()); }
 
   /// True when at least one was served.
   bool serve_all() {
     bool any = false;
-    for (std::size_t i = 0; i < stations.size() && client->connected(); ++i) {
-      const auto served = stations[i]->serve(*client);
+    std::size_t next = first;
+    for (std::size_t i = 0; i < stations.size() && stands(); ++i) {
+      const std::size_t station = (first + i) % stations.size();
+      const auto served = stations[station]->serve(*client);
       any = any || served.has_value();
       if (!served) {
         ++failures;
         count(served.error());
-        stations[i]->forget();
+        broke = broke || served.error().kind == Failure::Kind::Disconnected;
+        stations[station]->forget();
       }
-      note(i, served);
+      note(station, served);
+      // Where the gateway does not take the next connection at once, the one behind has the first turn on that.
+      if (!client->connected()) next = (station + 1) % stations.size();
     }
+    first = next;
     return any;
   }
 
@@ -160,9 +183,12 @@ struct Line::Impl {
   void finish() {
     const auto patient_until = Clock::now() + kSafePatience;
     for (int tries = 0; tries < kSafeTries; ++tries) {
-      if (!client->connected() && !client->connect()) continue;
       bool all = true, one_busy = false;
       for (Station* station : stations) {
+        if (!client->connected() && !client->connect()) {
+          all = false;
+          break;
+        }
         const auto safe = station->make_safe(*client);
         all = all && safe;
         one_busy = one_busy || (!safe && safe.error().busy());
@@ -202,6 +228,7 @@ Expected<> Line::start(std::chrono::milliseconds patience) {
                         &line.exceptions, &line.disconnects})
     *counter = 0;
   line.ending = false;
+  line.broke = true;
   line.thread = std::thread([&line] { line.run(); });
   std::unique_lock lock(line.mutex);
   const auto all_served = [&] {

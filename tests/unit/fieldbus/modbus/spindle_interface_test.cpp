@@ -439,31 +439,64 @@ TEST(ModbusSpindleStart, SaysWhatTheSlaveDidInPlaceOfAnAnswer) {
   }
 }
 
-TEST(ModbusSpindleLine, OfTwoDrivesOneMuteLeavesTheOtherAtWork) {
-  RegisterBank bank;
-  bank.on_write = drive;
-  std::atomic<bool> mute{false};
-  ModbusPeer peer(Wire::Rtu);
-  peer.respond([&](const Bytes& request) { return request[0] == 1 && mute ? Bytes() : bank.answer(request); });
-  SpindleLineConfig config;
-  config.line.endpoint = peer.endpoint();
-  config.line.deadline = 20ms;
-  config.line.period = 2ms;
-  config.stale = 2s;
-  config.boot_timeout = 60s;
-  for (const int slave : {1, 2}) config.axes.push_back({slave, 60, 0, map()});
-  SpindleInterface spindle(std::move(config));
-  ASSERT_TRUE(spindle.start());
-  mute = true;
-  const std::array<DriveCommand, 2> commands{};
+/// Two drives behind one port, of which one may be mute.
+class ModbusTwoSpindles : public testing::TestWithParam<std::tuple<Wire, int>> {
+ protected:
+  ModbusTwoSpindles() : mute(std::get<int>(GetParam())), peer(std::get<Wire>(GetParam())) {
+    for (RegisterBank& bank : banks) bank.on_write = drive;
+    peer.respond([this](const Bytes& request) {
+      return request[0] == mute && silent ? Bytes() : banks[request[0] - 1U].answer(request);
+    });
+    SpindleLineConfig config;
+    config.line.endpoint = peer.endpoint();
+    config.line.deadline = 20ms;
+    config.line.period = 2ms;
+    config.stale = 2s;
+    config.boot_timeout = 60s;
+    for (const int slave : {1, 2}) config.axes.push_back({slave, 60, 0, map()});
+    spindle = std::make_unique<SpindleInterface>(std::move(config));
+  }
+  [[nodiscard]] std::size_t other() const noexcept { return mute == 1 ? 1 : 0; }
+  void run_until(const std::function<bool()>& reached) {
+    const auto give_up = Clock::now() + 60s;
+    do {
+      for (std::size_t i = 0; i < commands.size(); ++i) {
+        commands[i].controlword =
+            next_controlword(feedback[i].statusword, DriveWish::Operational, false, commands[i].controlword);
+        commands[i].mode = DriveMode::ProfileVelocity;
+        commands[i].target_velocity_rpm = 600;
+      }
+      ASSERT_TRUE(spindle->exchange(commands, feedback));
+      ASSERT_LT(Clock::now(), give_up);
+      std::this_thread::yield();
+    } while (!reached());
+  }
+
+  const int mute;
+  std::atomic<bool> silent{false};
+  std::array<RegisterBank, 2> banks;
+  ModbusPeer peer;
+  std::unique_ptr<SpindleInterface> spindle;
+  std::array<DriveCommand, 2> commands{};
   std::array<DriveFeedback, 2> feedback{};
-  const auto give_up = Clock::now() + 60s;
-  do {
-    ASSERT_TRUE(spindle.exchange(commands, feedback));
-    ASSERT_LT(Clock::now(), give_up);
-    std::this_thread::yield();
-  } while (feedback[0].online || !feedback[1].online);
+};
+
+TEST_P(ModbusTwoSpindles, OneMuteLeavesTheOtherAtWork) {
+  ASSERT_TRUE(spindle->start());
+  silent = true;
+  run_until([this] { return !feedback[static_cast<std::size_t>(mute) - 1].online && feedback[other()].online; });
 }
+
+TEST_P(ModbusTwoSpindles, OneMuteLeavesTheOtherToBeStoppedWithTheAppliance) {
+  ASSERT_TRUE(spindle->start());
+  run_until([this] { return feedback[0].velocity_rpm == 600 && feedback[1].velocity_rpm == 600; });
+  silent = true;
+  spindle->stop();
+  EXPECT_EQ(banks[other()].get(kHolding, kCommand), kStop);
+}
+
+INSTANTIATE_TEST_SUITE_P(Wires, ModbusTwoSpindles,
+                         testing::Combine(testing::Values(Wire::Tcp, Wire::Rtu), testing::Values(1, 2)));
 
 }  // namespace
 }  // namespace rmac::fieldbus::modbus
