@@ -15,13 +15,17 @@ using fieldbus::SimulatedAxis;
 using fieldbus::SimulatedContact;
 using fieldbus::SpindlePlantParameters;
 
+constexpr double kTurn = 2 * std::numbers::pi;
+
 struct Bounds {
   double min;
   double max;
 };
 
 constexpr Bounds kAxes{1, 64}, kSpindle{-1, 63}, kLateAnswers{0, 1};
+constexpr Bounds kSeed{0, 2147483647};
 constexpr const char* kLateAnswersName = "late_answers";
+constexpr const char* kSeedName = "seed";
 
 constexpr Bounds kModes{static_cast<double>(DriveMode::CyclicSyncPosition),
                         static_cast<double>(DriveMode::CyclicSyncTorque)};
@@ -53,15 +57,33 @@ const std::map<std::string, OfAxis> kOfAxis{
       }}},
     {"gravity_nm", {{-1e4, 1e4}, [](AxisPlantParameters& axis, double value) { axis.gravity_nm = value; }}},
     {"negative_switch_turns",
-     {{-1e6, 1e6},
-      [](AxisPlantParameters& axis, double value) { axis.negative_switch_rad = 2 * std::numbers::pi * value; }}},
+     {{-1e6, 1e6}, [](AxisPlantParameters& axis, double value) { axis.negative_switch_rad = kTurn * value; }}},
     {"positive_switch_turns",
-     {{-1e6, 1e6},
-      [](AxisPlantParameters& axis, double value) { axis.positive_switch_rad = 2 * std::numbers::pi * value; }}},
+     {{-1e6, 1e6}, [](AxisPlantParameters& axis, double value) { axis.positive_switch_rad = kTurn * value; }}},
     {"mode",
      {kModes, [](AxisPlantParameters& axis, double value) { axis.mode = static_cast<DriveMode>(std::lround(value)); }}},
     {"counts_per_revolution",
-     {{1, 4294967296.0}, [](AxisPlantParameters& axis, double value) { axis.counts_per_revolution = value; }}},
+     {{1, 4294967296.0}, [](AxisPlantParameters& axis, double value) { axis.encoder.counts_per_revolution = value; }}},
+    {"stiffness_nm_rad", {{0, 1e9}, [](AxisPlantParameters& axis, double value) { axis.stiffness_nm_rad = value; }}},
+    {"load_inertia_kg_m2",
+     {{0, 1e3}, [](AxisPlantParameters& axis, double value) { axis.load_inertia_kg_m2 = value; }}},
+    {"damping_ratio", {{0, 1}, [](AxisPlantParameters& axis, double value) { axis.damping_ratio = value; }}},
+    {"play_turns", {{0, 1}, [](AxisPlantParameters& axis, double value) { axis.play_rad = kTurn * value; }}},
+    {"friction_at_load", {{0, 1}, [](AxisPlantParameters& axis, double value) { axis.friction_at_load = value; }}},
+    {"presliding_turns",
+     {{1e-5, 1}, [](AxisPlantParameters& axis, double value) { axis.presliding_rad = kTurn * value; }}},
+    {"cogging", {{0, 1}, [](AxisPlantParameters& axis, double value) { axis.cogging = value; }}},
+    {"cogging_periods", {{1, 1e4}, [](AxisPlantParameters& axis, double value) { axis.cogging_periods = value; }}},
+    {"torque_ripple", {{0, 1}, [](AxisPlantParameters& axis, double value) { axis.torque_ripple = value; }}},
+    {"torque_ripple_periods",
+     {{1, 1e4}, [](AxisPlantParameters& axis, double value) { axis.torque_ripple_periods = value; }}},
+    {"encoder_noise_counts",
+     {{0, 1e6}, [](AxisPlantParameters& axis, double value) { axis.encoder.noise_counts = value; }}},
+    {"encoder_interpolation_counts",
+     {{0, 1e6}, [](AxisPlantParameters& axis, double value) { axis.encoder.interpolation_counts = value; }}},
+    {"encoder_signal_periods",
+     {{1, 1e6}, [](AxisPlantParameters& axis, double value) { axis.encoder.signal_periods = value; }}},
+    {"encoder_at_load", {{0, 1}, [](AxisPlantParameters& axis, double value) { axis.encoder.at_load = value >= 0.5; }}},
 };
 
 struct OfSpindle {
@@ -138,11 +160,47 @@ Expected<> set_spindle(const std::string& name, const std::vector<double>& numbe
 }
 
 tl::unexpected<Error> not_understood(const std::string& name) {
-  std::string known = "axes, spindle, late_answers, contact_axis, contact_along";
+  std::string known = "axes, spindle, late_answers, seed, contact_axis, contact_along";
   for (const auto& [key, ignored] : kOfSpindle) known += ", " + key;
   for (const auto& [key, ignored] : kOfContact) known += ", " + key;
   for (const auto& [key, ignored] : kOfAxis) known += ", " + key;
   return refuse(fmt::format("parameter \"{}\" is not understood; there are {}", name, known));
+}
+
+/// What gives way has two masses that a step can follow, and what has none is not told of what lies between them.
+Expected<> check_compliance(const sdk::ModuleChoice& choice, std::size_t axis, const AxisPlantParameters& plant) {
+  if (!plant.gives_way()) {
+    for (const char* name : {"load_inertia_kg_m2", "play_turns", "encoder_at_load"}) {
+      const auto given = choice.numbers.find(name);
+      if (given != choice.numbers.end() && given->second[axis] != 0)
+        return refuse(fmt::format("parameter \"{}\" of axis {} needs a \"stiffness_nm_rad\" above 0", name, axis));
+    }
+    return {};
+  }
+  const double whole = plant.inertia_kg_m2();
+  if (!(plant.load_inertia_kg_m2 > 0 && plant.load_inertia_kg_m2 < whole)) {
+    return refuse(fmt::format("\"load_inertia_kg_m2\": {} of axis {} must be above 0 and below the axis's {}",
+                              plant.load_inertia_kg_m2, axis, whole));
+  }
+  constexpr double kMostHz = 3000;
+  const double hz = plant.two_masses().resonance_rad_s() / kTurn;
+  if (hz <= kMostHz) return {};
+  return refuse(
+      fmt::format("axis {} would swing at {:.0f} Hz, and at most {} can be simulated; lower "
+                  "\"stiffness_nm_rad\", or give 0 for a rigid axis",
+                  axis, hz, kMostHz));
+}
+
+Expected<> finish_axes(const sdk::ModuleChoice& choice, std::vector<SimulatedAxis>& axes) {
+  const auto seed = whole(choice, kSeedName, kSeed, 1);
+  if (!seed) return tl::unexpected(seed.error());
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    auto* axis = std::get_if<AxisPlantParameters>(&axes[i]);
+    if (axis == nullptr) continue;
+    axis->encoder.seed = (static_cast<std::uint64_t>(*seed) << 32U) + i;
+    if (const auto sound = check_compliance(choice, i, *axis); !sound) return sound;
+  }
+  return {};
 }
 
 }  // namespace
@@ -163,7 +221,9 @@ Expected<std::vector<SimulatedAxis>> simulated_axes(const sdk::ModuleChoice& cho
     if (*spindle >= 0) axes[static_cast<std::size_t>(*spindle)] = SpindlePlantParameters{};
   }
   for (const auto& [name, numbers] : choice.numbers) {
-    if (name == "axes" || name == "spindle" || name == kLateAnswersName || name.starts_with("contact_")) continue;
+    if (name == "axes" || name == "spindle" || name == kLateAnswersName || name == kSeedName ||
+        name.starts_with("contact_"))
+      continue;
     const auto of_axis = kOfAxis.find(name);
     const auto of_spindle = kOfSpindle.find(name);
     Expected<> done;
@@ -176,6 +236,7 @@ Expected<std::vector<SimulatedAxis>> simulated_axes(const sdk::ModuleChoice& cho
     }
     if (!done) return tl::unexpected(done.error());
   }
+  if (const auto done = finish_axes(choice, axes); !done) return tl::unexpected(done.error());
   return axes;
 }
 

@@ -39,8 +39,8 @@ TouchProbeModel::Instant TouchProbeModel::look() const noexcept {
     const Shaft& at = shafts_[i];
     const fieldbus::AxisPlant& plant = at.bus->plant(at.axis);
     const double home = at.scale.home_counts * (2 * std::numbers::pi / at.scale.counts_per_revolution);
-    shaft[i] = at.scale.direction * (plant.angle_rad() - home);
-    speed[i] = at.scale.direction * plant.speed_rad_s();
+    shaft[i] = at.scale.direction * (plant.load_rad() - home);
+    speed[i] = at.scale.direction * plant.load_rad_s();
   }
   map_->joint_positions({shaft.data(), shafts_.size()}, {seen.position.data(), axes_});
   map_->joint_velocities({shaft.data(), shafts_.size()}, {speed.data(), shafts_.size()}, {seen.velocity.data(), axes_});

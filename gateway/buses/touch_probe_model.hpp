@@ -10,7 +10,7 @@
 
 namespace rmac::gateway {
 
-/// The simulated inputs with a touch probe that finds the simulated part: where the drives' shafts really are becomes,
+/// The simulated inputs with a touch probe that finds the simulated part: where the drives' loads really are becomes,
 /// through the mechanism's geometry, where the probe's tip really is. The one part of the simulation that knows the
 /// mechanism, and so is made with it. Within a cycle joints go on cubics between where they are at its ends, and the
 /// instant of contact is found on them. Every drive has the probe wired to its first touch probe input, too.

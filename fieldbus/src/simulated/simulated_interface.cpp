@@ -67,7 +67,7 @@ void SimulatedInterface::act_on_injected(std::size_t axis) noexcept {
 void SimulatedInterface::move_surface() noexcept {
   if (!contact_) return;
   const double rad_per_mm = 2 * std::numbers::pi / contact_->pitch_mm;
-  const double x = plant(contact_->along).angle_rad() / rad_per_mm;
+  const double x = plant(contact_->along).load_rad() / rad_per_mm;
   const double wave = contact_->wave_mm * std::sin(2 * std::numbers::pi * x / contact_->wave_length_mm);
   // N·m a rad from N a mm: once for the force's arm, once for the way.
   const double to_shaft = 1e-3 / (rad_per_mm * rad_per_mm);

@@ -7,6 +7,7 @@ int main(int count, char** words) {
   testing::InitGoogleTest(&count, words);  // the simulated mill checks itself with its assertions
   Figures figures;
   cycle_rows(figures);
+  plant_rows(figures);
   circle_rows(figures);
   force_rows(figures);
   fault_rows(figures);

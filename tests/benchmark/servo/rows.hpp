@@ -6,6 +6,8 @@ namespace rmac::bench {
 
 /// Time and allocations of one cycle.
 void cycle_rows(Figures& figures);
+/// Time that a simulated axis takes.
+void plant_rows(Figures& figures);
 /// A circle on the simulated mill, law by law, and laws that change meanwhile.
 void circle_rows(Figures& figures);
 void fault_rows(Figures& figures);

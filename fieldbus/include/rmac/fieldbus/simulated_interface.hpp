@@ -75,7 +75,7 @@ class SimulatedInterface : public DigitalControlInterface {
   /// The bus itself fails, as on bus-off; and works again.
   void set_bus_failed(bool failed) noexcept { bus_failed_ = failed; }
 
-  /// Between exchanges: an edge at the touch probe of a drive that is no spindle, while its shaft stood at `angle_rad`.
+  /// Between exchanges: an edge at the touch probe of a drive that is no spindle, while its load stood at `angle_rad`.
   void touch(std::size_t axis, TouchProbeEdge edge, double angle_rad) noexcept {
     std::get_if<SimulatedServoDrive>(&drives_[axis])->touch(edge, angle_rad);
   }

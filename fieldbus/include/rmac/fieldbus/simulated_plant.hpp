@@ -2,7 +2,10 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 
+#include "rmac/fieldbus/simulated_encoder.hpp"
+#include "rmac/fieldbus/two_masses.hpp"
 #include "rmac/motion/ports/digital_control_interface.hpp"
 
 namespace rmac::fieldbus {
@@ -16,7 +19,7 @@ struct AxisPlantParameters {
   double rotor_inertia_kg_m2 = 0.0364e-4 + 0.0085e-4;
   double max_speed_rpm = 5000;
   // The same series' encoder of 17 bits; which encoder a machine has is a choice of its builder, so: assumed.
-  double counts_per_revolution = 131072;
+  EncoderParameters encoder;
   // Assumed: screw of 12 mm diameter and 300 mm length, table with vice and part.
   double screw_inertia_kg_m2 = 4.8e-6;
   double pitch_mm = 5;
@@ -29,6 +32,17 @@ struct AxisPlantParameters {
   // Where the limit switches close, which the drive tells as bits 0 and 1 of its inputs: there are none by default.
   double negative_switch_rad = -std::numeric_limits<double>::infinity();
   double positive_switch_rad = std::numeric_limits<double>::infinity();
+  // What an axis does beyond a rigid one. Nothing of it is there unless it is said.
+  double stiffness_nm_rad = 0;        ///< between motor and load; 0: they are one
+  double load_inertia_kg_m2 = 0;      ///< of the whole, what is behind the spring
+  double damping_ratio = 0.02;        ///< assumed: of the free oscillation, motor against load
+  double play_rad = 0;                ///< between motor and load
+  double friction_at_load = 0.5;      ///< assumed: share of the friction that guides and wipers have
+  double presliding_rad = 0.00063;    ///< assumed: 0.5 µm at the table, before friction slides
+  double cogging = 0;                 ///< amplitude, share of the rated torque
+  double cogging_periods = 60;        ///< assumed: a turn; the least common multiple of 12 slots and 10 poles
+  double torque_ripple = 0;           ///< amplitude, share of the torque that the motor gives
+  double torque_ripple_periods = 30;  ///< assumed: a turn; six times five pole pairs
   // Current loop of the drive, as a first-order lag.
   double torque_lag_s = 0.0002;                  ///< assumed: 800 Hz of current-loop bandwidth
   DriveMode mode = DriveMode::CyclicSyncTorque;  ///< in which the drive is used; velocity and position are the others
@@ -36,40 +50,44 @@ struct AxisPlantParameters {
   double own_velocity = 1;
   double told_velocity = 0;
 
+  /// Of all that turns with the motor.
   [[nodiscard]] double inertia_kg_m2() const noexcept;
+  [[nodiscard]] bool gives_way() const noexcept { return stiffness_nm_rad > 0; }
+  /// Where it gives way.
+  [[nodiscard]] TwoMassParameters two_masses() const noexcept;
 };
 
-/// What a table or a head pushes against, seen at the motor shaft: a spring and a damper at angles below `surface_rad`.
-struct PlantContact {
-  double stiffness_nm_rad = 0;  ///< 0: nothing is there
-  double damping_nm_s_rad = 0;
-  double surface_rad = 0;
-};
-
-/// Rotor, screw and table as one inertia under motor torque, friction and gravity. Real-time safe.
+/// Rotor, screw and table under motor torque, friction and gravity: one inertia, or two with a spring between them.
+/// Real-time safe.
 class AxisPlant {
  public:
-  explicit AxisPlant(const AxisPlantParameters& parameters) noexcept
-      : parameters_(parameters), inertia_kg_m2_(parameters.inertia_kg_m2()) {}
+  explicit AxisPlant(const AxisPlantParameters& parameters) noexcept;
 
   /// `motor_nm` is the torque wanted of the current loop; with `braked` the holding brake is closed.
   void advance(double motor_nm, bool braked, double duration_s) noexcept;
 
+  /// Of the motor.
   [[nodiscard]] double angle_rad() const noexcept { return angle_rad_; }
   [[nodiscard]] double speed_rad_s() const noexcept { return speed_rad_s_; }
+  /// Of the load, as angles of the motor shaft: where the table really is.
+  [[nodiscard]] double load_rad() const noexcept { return masses_ ? masses_->load_rad() : angle_rad_; }
+  [[nodiscard]] double load_rad_s() const noexcept { return masses_ ? masses_->load_rad_s() : speed_rad_s_; }
   [[nodiscard]] double motor_nm() const noexcept { return motor_nm_; }
   void put_at(double angle_rad) noexcept;
-  /// Torque from outside, such as of a collision.
+  /// Torque from outside on the load, such as of a collision.
   void push(double nm) noexcept { push_nm_ = nm; }
   void touch(const PlantContact& contact) noexcept { contact_ = contact; }
   /// What the contact turns the shaft with; never negative, for nothing pulls.
-  [[nodiscard]] double contact_nm() const noexcept;
+  [[nodiscard]] double contact_nm() const noexcept { return contact_.torque_nm(load_rad(), load_rad_s()); }
 
  private:
   void step(bool braked, double dt) noexcept;
+  [[nodiscard]] double shaft_nm() const noexcept;
 
   AxisPlantParameters parameters_;
   double inertia_kg_m2_;
+  double largest_step_s_;
+  std::optional<TwoMasses> masses_;  ///< where it gives way
   double angle_rad_ = 0;
   double speed_rad_s_ = 0;
   double motor_nm_ = 0;

@@ -43,7 +43,7 @@ void Axis::reset() {
   shaft_.forget_shifts();
   mode_ = Mode::None;
   dictionary_.set(0x6076, std::llround(shaft_.mechanics().rated_torque_nm * 1000));
-  dictionary_.set({0x608F, 1}, std::llround(shaft_.mechanics().counts_per_revolution));
+  dictionary_.set({0x608F, 1}, std::llround(shaft_.mechanics().encoder.counts_per_revolution));
   follow_actual();
   publish();
 }

@@ -41,7 +41,7 @@ void Axis::push(double torque, double dt) {
   follow_actual();
   torque_nm_ = torque;
   const fieldbus::AxisPlantParameters& mechanics = shaft_.mechanics();
-  const double top = mechanics.max_speed_rpm / 60 * mechanics.counts_per_revolution;
+  const double top = mechanics.max_speed_rpm / 60 * mechanics.encoder.counts_per_revolution;
   const bool too_fast = std::abs(shaft_.velocity()) >= top && torque * shaft_.velocity() > 0;
   const double angle = shaft_.angle();
   limited_ = (torque > 0 && parameters_.switches.at_positive_limit(angle)) ||

@@ -12,7 +12,7 @@ constexpr double kStandingRevolutionsPerS = 0.02;
 }  // namespace
 
 double Shaft::counts_per_radian() const noexcept {
-  return mechanics_.counts_per_revolution / (2 * std::numbers::pi);
+  return mechanics_.encoder.counts_per_revolution / (2 * std::numbers::pi);
 }
 
 double Shaft::angle() const noexcept {
@@ -28,11 +28,11 @@ double Shaft::position_at(double angle) const noexcept {
 }
 
 double Shaft::turn_of(double angle, double index) const noexcept {
-  return std::floor((angle - index) / mechanics_.counts_per_revolution);
+  return std::floor((angle - index) / mechanics_.encoder.counts_per_revolution);
 }
 
 bool Shaft::stands() const noexcept {
-  return std::abs(velocity()) < kStandingRevolutionsPerS * mechanics_.counts_per_revolution;
+  return std::abs(velocity()) < kStandingRevolutionsPerS * mechanics_.encoder.counts_per_revolution;
 }
 
 double Shaft::nm_per_count() const noexcept {

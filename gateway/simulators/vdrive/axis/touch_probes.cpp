@@ -21,7 +21,7 @@ void TouchProbes::see(const Shaft& shaft, double angle_before, const AxisSwitche
   const double turn = shaft.turn_of(now, switches.index);
   if (turn == shaft.turn_of(angle_before, switches.index)) return;
   const double pulse =
-      switches.index + shaft.mechanics().counts_per_revolution * (now > angle_before ? turn : turn + 1);
+      switches.index + shaft.mechanics().encoder.counts_per_revolution * (now > angle_before ? turn : turn + 1);
   for (TouchProbe& probe : probes_) probe.see_index(in_units(shaft.position_at(pulse)));
 }
 

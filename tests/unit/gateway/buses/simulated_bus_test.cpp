@@ -40,10 +40,57 @@ TEST(SimulatedBus, TakesWhatIsSaidOfEachAxis) {
   EXPECT_DOUBLE_EQ(first.inertia_kg_m2(), 1e-3);
   EXPECT_DOUBLE_EQ(first.static_nm, 0.12);
   EXPECT_EQ(last.gravity_nm, -0.5);
-  EXPECT_EQ(last.counts_per_revolution, 2000);
+  EXPECT_EQ(last.encoder.counts_per_revolution, 2000);
   const auto& spindle = std::get<SpindlePlantParameters>((*axes)[1]);
   EXPECT_EQ(spindle.max_speed_rpm, 4000);
   EXPECT_EQ(spindle.max_torque_nm, 10);
+}
+
+TEST(SimulatedBus, TakesHowAnAxisGivesWaySticksAndCogs) {
+  const auto axes = simulated_axes(bus({{"axes", {2}},
+                                        {"spindle", {-1}},
+                                        {"seed", {7}},
+                                        {"rated_torque_nm", {0.318, 0.318}},
+                                        {"inertia_kg_m2", {2.2e-5, 2.2e-5}},
+                                        {"friction_nm", {0.015, 0.015}},
+                                        {"stiffness_nm_rad", {0, 15.8}},
+                                        {"load_inertia_kg_m2", {0, 1.27e-5}},
+                                        {"damping_ratio", {0, 0.01}},
+                                        {"play_turns", {0, 0.001}},
+                                        {"friction_at_load", {0, 0.8}},
+                                        {"presliding_turns", {0.001, 0.002}},
+                                        {"cogging", {0.02, 0}},
+                                        {"cogging_periods", {12, 60}},
+                                        {"torque_ripple", {0.03, 0}},
+                                        {"torque_ripple_periods", {6, 30}},
+                                        {"encoder_noise_counts", {2, 0}},
+                                        {"encoder_interpolation_counts", {3, 0}},
+                                        {"encoder_signal_periods", {512, 2048}},
+                                        {"encoder_at_load", {0, 1}}}));
+  ASSERT_TRUE(axes) << axes.error().message;
+  const auto& rigid = std::get<AxisPlantParameters>((*axes)[0]);
+  const auto& soft = std::get<AxisPlantParameters>((*axes)[1]);
+  EXPECT_FALSE(rigid.gives_way());
+  EXPECT_EQ(rigid.cogging, 0.02);
+  EXPECT_EQ(rigid.cogging_periods, 12);
+  EXPECT_EQ(rigid.torque_ripple, 0.03);
+  EXPECT_EQ(rigid.torque_ripple_periods, 6);
+  EXPECT_EQ(rigid.encoder.noise_counts, 2);
+  EXPECT_EQ(rigid.encoder.interpolation_counts, 3);
+  EXPECT_EQ(rigid.encoder.signal_periods, 512);
+  EXPECT_FALSE(rigid.encoder.at_load);
+  EXPECT_TRUE(soft.encoder.at_load);
+  EXPECT_NE(rigid.encoder.seed, soft.encoder.seed);
+  ASSERT_TRUE(soft.gives_way());
+  const fieldbus::TwoMassParameters masses = soft.two_masses();
+  EXPECT_DOUBLE_EQ(masses.motor_inertia_kg_m2 + masses.load_inertia_kg_m2, 2.2e-5);
+  EXPECT_DOUBLE_EQ(masses.load_inertia_kg_m2, 1.27e-5);
+  EXPECT_EQ(masses.stiffness_nm_rad, 15.8);
+  EXPECT_DOUBLE_EQ(masses.play_rad, 2 * M_PI * 0.001);
+  EXPECT_DOUBLE_EQ(masses.load_friction.coulomb_nm, 0.8 * 0.015);
+  EXPECT_DOUBLE_EQ(masses.motor_friction.coulomb_nm, 0.2 * 0.015);
+  EXPECT_DOUBLE_EQ(masses.load_friction.presliding_rad, 2 * M_PI * 0.002);
+  EXPECT_NEAR(masses.damping_nm_s_rad / (2 * std::sqrt(15.8 * 9.3e-6 * 1.27e-5 / 2.2e-5)), 0.01, 1e-9);
 }
 
 TEST(SimulatedBus, AnswersLateWhereItIsSaid) {
@@ -68,6 +115,14 @@ TEST(SimulatedBus, RefusesWhatItCannotBe) {
       {{{"spindle_max_rpm", {0}}}, "\"spindle_max_rpm\" must be one number"},
       {{{"inertia_kg_m2", {1e-3}}}, "has 1 numbers; give one for each of the 8 axes"},
       {{{"axes", {1}}, {"inertia_kg_m2", {0}}}, "0 of axis 0 must be"},
+      {{{"axes", {1}}, {"spindle", {-1}}, {"stiffness_nm_rad", {15}}},
+       "\"load_inertia_kg_m2\": 0 of axis 0 must be above 0"},
+      {{{"axes", {1}}, {"spindle", {-1}}, {"stiffness_nm_rad", {15}}, {"load_inertia_kg_m2", {1}}},
+       "and below the axis's"},
+      {{{"axes", {1}}, {"spindle", {-1}}, {"stiffness_nm_rad", {1e5}}, {"load_inertia_kg_m2", {1e-5}}}, "at most 3000"},
+      {{{"axes", {1}}, {"spindle", {-1}}, {"play_turns", {0.01}}}, "\"play_turns\" of axis 0 needs"},
+      {{{"axes", {1}}, {"spindle", {-1}}, {"encoder_at_load", {1}}}, "\"encoder_at_load\" of axis 0 needs"},
+      {{{"seed", {-1}}}, "\"seed\" must be one whole number"},
       {{{"axis", {1}}}, "\"axis\" is not understood; there are axes, spindle"},
   };
   for (const auto& [numbers, message] : cases) {

@@ -40,6 +40,7 @@ struct DriveFeedback {
   std::uint16_t statusword = 0;      ///< 6041h
   std::uint16_t error_code = 0;      ///< 603Fh
   std::int32_t position_counts = 0;  ///< 6064h; wraps
+  std::int32_t load_counts = 0;      ///< 60E4h, where the load is; for records, and no loop closes over it
   std::int32_t velocity_rpm = 0;     ///< 606Ch; spindles
   std::int16_t torque_permille = 0;  ///< 6077h
   DriveMode mode = DriveMode::None;  ///< 6061h; None where the interface does not tell
