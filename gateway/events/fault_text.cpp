@@ -174,6 +174,11 @@ std::string joint_cause(const ServoFault& fault, const std::string& at) {
           "{}: it gives {:.3g} N·m, beyond the bound of {:.3g} N·m; look for a collision or a drive whose current loop "
           "is out of order, then reset",
           at, fault.value, fault.bound);
+    case ServoFault::Kind::Oscillation:
+      return fmt::format(
+          "{}: its servo loop swings at about {:.3g} Hz, its effort by {:.3g} either way; lower its gains, or declare "
+          "the resonance (Resonances, LowPass), look for loose mechanics, then reset",
+          at, fault.value, fault.bound);
     case ServoFault::Kind::EncoderJump:
       return fmt::format(
           "{}: its position jumped by {:.4g} within a cycle, and motion explains {:.4g}; check the encoder, its cable "
@@ -257,6 +262,7 @@ std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
     case Kind::FollowingError:
     case Kind::VelocityBound:
     case Kind::TorqueBound:
+    case Kind::Oscillation:
     case Kind::EncoderJump:
     case Kind::Displaced:
     case Kind::ForceLimit:
@@ -326,6 +332,7 @@ MinorCode code_of(ServoFault::Kind kind) noexcept {
       return MinorCode::Unknown;
     case Kind::FollowingError:
     case Kind::TorqueBound:
+    case Kind::Oscillation:
     case Kind::ForceLimit:
     case Kind::ContactLost:
     case Kind::CyclesLost:

@@ -219,6 +219,7 @@ void ServoLoop::Impl::choose_setpoints(const ServoCommand& command) noexcept {
 
 JointSeen ServoLoop::Impl::seen(std::size_t joint) const noexcept {
   const ForceLoop& force_loop = setpoints.force_loop(joint);
+  const std::optional<double> measured = joints.measured_effort(joint);
   return {.jump = positions.jump(joint) != 0 ? positions.jump(joint) : joints.jump(joint),
           .velocity = joints.velocity()[joint],
           .following_error = setpoints.position()[joint] - setpoints.gone_on(joint) - joints.position()[joint],
@@ -226,7 +227,12 @@ JointSeen ServoLoop::Impl::seen(std::size_t joint) const noexcept {
           .velocity_set = setpoints.velocity()[joint],
           .force = joints.force()[joint],
           .contact = force_loop.state(),
-          .searched = force_loop.searched()};
+          .searched = force_loop.searched(),
+          .loop = {.effort = measured.value_or(laws.effort()[joint]),
+                   .effort_measured = measured.has_value(),
+                   .answers_late = has(wiring.late_joints(), joint),
+                   .position = joints.position()[joint],
+                   .acceleration_set = setpoints.acceleration()[joint]}};
 }
 
 void ServoLoop::Impl::watch_motion(const ServoCommand& command) noexcept {

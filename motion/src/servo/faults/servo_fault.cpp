@@ -30,6 +30,8 @@ const char* to_string(ServoFault::Kind kind) noexcept {
       return "VelocityBound";
     case ServoFault::Kind::TorqueBound:
       return "TorqueBound";
+    case ServoFault::Kind::Oscillation:
+      return "Oscillation";
     case ServoFault::Kind::EncoderJump:
       return "EncoderJump";
     case ServoFault::Kind::Displaced:

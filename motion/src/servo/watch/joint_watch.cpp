@@ -20,6 +20,7 @@ void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
   if (too_fast_.step(seen.velocity, bounds.velocity)) {
     raise(ServoFault::Kind::VelocityBound, seen.velocity, bounds.velocity, faults);
   }
+  oscillation_.step(seen.loop, faults);
   if (joint_->method == ControlMethod::Force) watch_contact(seen, faults);
 }
 

@@ -6,6 +6,7 @@
 #include "rmac/motion/servo/servo_loop_parts.hpp"
 #include "servo/faults/fault_sink.hpp"
 #include "servo/watch/cycles_beyond.hpp"
+#include "servo/watch/oscillation_watch.hpp"
 
 namespace rmac {
 
@@ -18,18 +19,22 @@ struct JointSeen {
   double force = 0;  ///< measured
   ContactState contact = ContactState::None;
   double searched = 0;  ///< way without contact
+  OscillationSeen loop{};
 };
 
 /// Watches one joint under control. Real-time safe.
 class JointWatch {
  public:
   /// `joint` must outlive it; `index` names it in faults.
-  JointWatch(const ServoJoint& joint, std::size_t index) noexcept
-      : joint_(&joint), index_(static_cast<std::uint32_t>(index)) {}
+  JointWatch(const ServoJoint& joint, std::size_t index, double period_s) noexcept
+      : joint_(&joint), index_(static_cast<std::uint32_t>(index)), oscillation_(joint, index, period_s) {}
 
   void step(const JointSeen& seen, FaultSink& faults) noexcept;
   /// The joint is not under control.
-  void rest() noexcept { too_fast_.restart(); }
+  void rest() noexcept {
+    too_fast_.restart();
+    oscillation_.rest();
+  }
 
  private:
   void watch_sensor(FaultSink& faults) const noexcept;
@@ -39,6 +44,7 @@ class JointWatch {
   const ServoJoint* joint_;
   std::uint32_t index_;
   CyclesBeyond too_fast_;
+  OscillationWatch oscillation_;
 };
 
 }  // namespace rmac

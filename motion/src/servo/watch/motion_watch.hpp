@@ -12,7 +12,7 @@ class MotionWatch {
  public:
   /// `parts` must outlive it.
   explicit MotionWatch(const ServoLoopParts& parts) : torques_(parts.actuators) {
-    for (std::size_t j = 0; j < parts.joints.size(); ++j) joints_.emplace_back(parts.joints[j], j);
+    for (std::size_t j = 0; j < parts.joints.size(); ++j) joints_.emplace_back(parts.joints[j], j, parts.period_s);
   }
   [[nodiscard]] JointWatch& joint(std::size_t joint) noexcept { return joints_[joint]; }
   [[nodiscard]] TorqueWatch& torques() noexcept { return torques_; }

@@ -28,7 +28,8 @@ struct ServoFault {
     FollowingError,  ///< value: the error, bound: what is allowed (mm or deg)
     VelocityBound,   ///< value: the measured velocity, bound: what is allowed (mm/s or deg/s; of a spindle rpm)
     TorqueBound,     ///< value: the torque that the drive measures, bound: what is allowed (N·m); of a spindle too
-    EncoderJump,     ///< value: the jump, bound: what motion can explain within a cycle (mm or deg)
+    Oscillation,  ///< a joint's loop swings; value: Hz, as the cycles show it, bound: amplitude of its effort (N, N·m)
+    EncoderJump,  ///< value: the jump, bound: what motion can explain within a cycle (mm or deg)
     Displaced,    ///< a joint is not where it was left, or not where it would be sent; value: how far it is from there,
                   ///< bound: what is allowed (mm or deg)
     SensorLost,   ///< a joint's force sensor gives no valid value, or a drive reports its encoder gone

@@ -20,7 +20,7 @@ class WatchedJoint : public testing::Test {
     made.force.max_search = 5;
     return made;
   }();
-  JointWatch watch_{joint_, 4};
+  JointWatch watch_{joint_, 4, 0.001};
   RecordedFaults faults_;
   static auto fault(Kind kind, double value, double bound) {
     return is_fault(kind, ServoFault::Part::Joint, 4, value, bound);

@@ -1,0 +1,96 @@
+#include "servo/watch/oscillation_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace rmac {
+
+namespace {
+
+constexpr double kLeastSwing = 0.2;     // of MaxEffort, peak to peak: less does no harm, and cutting does that
+constexpr double kLeastTimeS = 0.03;    // over which a quick swing is looked at, for it is seen by samples
+constexpr double kSlowestTurnS = 0.06;  // what turns round less often is left to the following error
+constexpr double kLasts = 0.8;          // a swing with a damping of 2.4 % falls to so much in a period and a half
+// Below, a loop with an integral part gives energy to what a slow force from outside moves, too: it has to grow.
+constexpr double kSlowHz = 40, kGrows = 1.3;
+constexpr double kPathTurn = 0.1;  // of the largest acceleration that the path asks for
+constexpr double kLeastAcceleration = 1e-3;
+
+}  // namespace
+
+/// What acted while the joint went its last way. A torque that drives measure is told with the position. What was
+/// commanded a cycle ago goes out now; what went out before acted.
+double OscillationWatch::acted(const OscillationSeen& seen) noexcept {
+  std::rotate(commanded_.begin(), commanded_.end() - 1, commanded_.end());
+  commanded_[0] = seen.effort;
+  return seen.effort_measured ? seen.effort : commanded_[seen.answers_late ? 2 : 1];
+}
+
+void OscillationWatch::begin() noexcept {
+  turned_ = path_turned_ = 0;
+  most_acceleration_ = 0;
+  cycles_ = last_turn_ = 0;
+  first_swings_ = work_ = 0;
+  path_turns_.restart();
+}
+
+void OscillationWatch::rest() noexcept {
+  begin();
+  turns_.restart();
+  commanded_.fill(0);
+  begun_ = false;
+}
+
+void OscillationWatch::add_turn() noexcept {
+  // The first turn may be where it left its rest, and then the swing to the second is half of one.
+  constexpr int kPassed = 2;
+  if (turned_ >= kPassed) {
+    const double swing = turns_.swing();
+    latest_[static_cast<std::size_t>(turned_ % kCompared)] = swing;
+    if (turned_ < kPassed + kCompared) first_swings_ += swing;
+  }
+  ++turned_;
+  last_turn_ = cycles_;
+}
+
+double OscillationWatch::hz() const noexcept {
+  return (turned_ - 1) / (2 * period_s_ * static_cast<double>(last_turn_ - 1));
+}
+
+double OscillationWatch::latest_swings() const noexcept {
+  return std::accumulate(latest_.begin(), latest_.end(), 0.0);
+}
+
+bool OscillationWatch::lasts() const noexcept {
+  if (turned_ < kTurns + 2 * path_turned_) return false;
+  if (static_cast<double>(cycles_) * period_s_ < kLeastTimeS) return false;
+  // Over half of all that it may be is enough, whoever drives it.
+  if (latest_swings() / kCompared > joint_->max_effort) return true;
+  return work_ > 0 && latest_swings() >= (hz() < kSlowHz ? kGrows : kLasts) * first_swings_;
+}
+
+void OscillationWatch::step(const OscillationSeen& seen, FaultSink& faults) noexcept {
+  const double way = begun_ ? seen.position - last_position_ : 0;
+  const double effort = acted(seen);
+  const double work = begun_ ? (effort - last_effort_) * (way - last_way_) : 0;
+  last_position_ = seen.position;
+  last_way_ = way;
+  last_effort_ = effort;
+  begun_ = true;
+  const bool turns = turns_.step(effort, kLeastSwing * joint_->max_effort);
+  if (turned_ == 0 && !turns) return;
+
+  ++cycles_;
+  work_ += work;
+  most_acceleration_ = std::max(most_acceleration_, std::abs(seen.acceleration_set));
+  if (path_turns_.step(seen.acceleration_set, std::max(kPathTurn * most_acceleration_, kLeastAcceleration)))
+    ++path_turned_;
+  if (turns) add_turn();
+  if (static_cast<double>(cycles_ - last_turn_) * period_s_ > kSlowestTurnS) return begin();
+  if (!turns || !lasts()) return;
+  faults.raise(
+      {ServoFault::Kind::Oscillation, ServoFault::Part::Joint, index_, hz(), latest_swings() / (2 * kCompared)});
+}
+
+}  // namespace rmac

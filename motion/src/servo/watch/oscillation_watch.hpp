@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "rmac/motion/servo/servo_loop_parts.hpp"
+#include "servo/faults/fault_sink.hpp"
+#include "servo/watch/turn_counter.hpp"
+
+namespace rmac {
+
+/// What it looks at in one cycle: N and mm, or N·m and degrees.
+struct OscillationSeen {
+  double effort = 0;             ///< measured in this cycle, or commanded in the one before
+  bool effort_measured = false;  ///< by drives, with the position
+  bool answers_late = false;     ///< the position is that of the cycle before
+  double position = 0;           ///< measured
+  double acceleration_set = 0;
+};
+
+/// Finds a joint whose loop swings: its effort turns round again and again, by much, without becoming less, and not
+/// because the path does; and it is the loop that drives it. A force from outside, such as of teeth that cut, makes an
+/// effort turn round as well, but then the effort takes energy out of the motion instead of putting it in. Found within
+/// three periods or 50 ms, whichever is later. Real-time safe.
+class OscillationWatch {
+ public:
+  /// `joint` must outlive it; `index` names it in faults.
+  OscillationWatch(const ServoJoint& joint, std::size_t index, double period_s) noexcept
+      : joint_(&joint), index_(static_cast<std::uint32_t>(index)), period_s_(period_s) {}
+
+  void step(const OscillationSeen& seen, FaultSink& faults) noexcept;
+  /// The joint is not under control.
+  void rest() noexcept;
+
+ private:
+  static constexpr int kTurns = 7;     ///< three periods
+  static constexpr int kCompared = 2;  ///< swings, the latest with the first
+
+  [[nodiscard]] double acted(const OscillationSeen& seen) noexcept;
+  void begin() noexcept;
+  void add_turn() noexcept;
+  [[nodiscard]] double hz() const noexcept;
+  [[nodiscard]] double latest_swings() const noexcept;
+  [[nodiscard]] bool lasts() const noexcept;
+
+  const ServoJoint* joint_;
+  std::uint32_t index_;
+  double period_s_;
+
+  TurnCounter turns_;
+  TurnCounter path_turns_;             ///< of the wanted acceleration
+  std::array<double, 3> commanded_{};  ///< efforts of the last cycles, the latest first
+  double last_effort_ = 0, last_way_ = 0, last_position_ = 0;
+  bool begun_ = false;  ///< there was a cycle before
+
+  // Since the first turn.
+  int turned_ = 0;
+  int path_turned_ = 0;
+  double most_acceleration_ = 0;
+  std::int64_t cycles_ = 0;
+  std::int64_t last_turn_ = 0;
+  std::array<double, kCompared> latest_{};
+  double first_swings_ = 0;  ///< the sum of so many
+  double work_ = 0;          ///< of the efforts' changes on the ways' changes
+};
+
+}  // namespace rmac
