@@ -15,7 +15,7 @@ namespace {
 using namespace rmac::fieldbus;
 
 constexpr double kStep = 25e-6;
-constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kRevolution = 2 * std::numbers::pi;
 
 /// DMACXYZ's X as docs/simulated-bus.md gives it: 25 N/µm, 274 Hz.
 TwoMassParameters frictionless() {
@@ -107,7 +107,7 @@ TEST(TwoMasses, FollowAnIndependentIntegrationWithFrictionAndPlay) {
     p.motor_friction = friction(0.01 * share(random), 1e-3 + 0.02 * share(random));
     p.load_friction = friction(0.01 * share(random), 1e-3 + 0.02 * share(random));
     const double hz = 3 + 20 * share(random), nm = 0.05 + 0.1 * share(random);
-    const auto motor = [&](double t) { return nm * std::sin(kTurn * hz * t); };
+    const auto motor = [&](double t) { return nm * std::sin(kRevolution * hz * t); };
     TwoMasses plant(p);
     Reference truth(p);
     double most = 0;
