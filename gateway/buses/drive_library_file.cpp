@@ -52,6 +52,9 @@ DriveManners manners(const Json& document) {
   read.fixed_mapping = document.value("FixedMapping", false);
   read.store_after_mapping = document.value("StoreAfterMapping", false);
   read.no_abort_connection = document.value("NoAbortConnection", false);
+  read.node_guarding = document.value("NodeGuarding", false);
+  read.quick_stop_inverted = document.value("QuickStopInverted", false);
+  read.homing_without_target_reached = document.value("HomingWithoutTargetReached", false);
   read.no_heartbeat_consumer = document.value("NoHeartbeatConsumer", std::string());
   if (document.contains("InterpolationTimePeriod")) {
     const Json& times = document["InterpolationTimePeriod"];

@@ -108,7 +108,7 @@ SocketCanPort::~SocketCanPort() {
 
 bool SocketCanPort::send(const CanFrame& frame) noexcept {
   can_frame raw{};
-  raw.can_id = frame.id & CAN_SFF_MASK;
+  raw.can_id = (frame.id & CAN_SFF_MASK) | (frame.remote ? CAN_RTR_FLAG : 0U);
   raw.can_dlc = frame.size;
   std::memcpy(raw.data, frame.data.data(), frame.data.size());
   if (write(socket_, &raw, sizeof(raw)) == static_cast<ssize_t>(sizeof(raw))) {
@@ -167,6 +167,7 @@ bool SocketCanPort::receive(CanFrame& frame) noexcept {
     health_.link_down = health_.bus_off = false;
     frame.id = static_cast<std::uint16_t>(raw.can_id & CAN_SFF_MASK);
     frame.size = raw.can_dlc;
+    frame.remote = false;
     std::memcpy(frame.data.data(), raw.data, frame.data.size());
     return true;
   }

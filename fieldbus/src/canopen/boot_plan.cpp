@@ -80,6 +80,13 @@ class Plan {
 
   /// From the fall of its voltage to the fall of the master: what a drive does when nobody speaks to it any more.
   void watch_master() {
+    if (manners_.node_guarding) {
+      constexpr std::uint32_t kLifeTimeFactor = 2;
+      need("for it to stop when the master dies (NodeGuarding)");
+      write({0x100C, 0}, 2, static_cast<std::uint32_t>(config_.heartbeat.count()));
+      write({0x100D, 0}, 1, kLifeTimeFactor);
+      return;
+    }
     if (manners_.no_heartbeat_consumer.empty()) {
       need("for it to stop when the master dies")
           .write({0x1016, 1}, 4,

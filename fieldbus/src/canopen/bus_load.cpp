@@ -56,7 +56,9 @@ std::size_t frames_of_cycle(const CanopenConfig& config) noexcept {
   constexpr std::size_t kSyncHeartbeatTimeAndBoot = 4;
   const auto second = std::count_if(config.axes.begin(), config.axes.end(),
                                     [](const AxisConfig& axis) { return !axis.more_setpoints.empty(); });
-  return config.axes.size() + static_cast<std::size_t>(second) + kSyncHeartbeatTimeAndBoot;
+  const bool guards = config.drives && std::any_of(config.drives->drives.begin(), config.drives->drives.end(),
+                                                   [](const auto& drive) { return drive.manners.node_guarding; });
+  return config.axes.size() * (guards ? 2 : 1) + static_cast<std::size_t>(second) + kSyncHeartbeatTimeAndBoot;
 }
 
 }  // namespace rmac::fieldbus::canopen

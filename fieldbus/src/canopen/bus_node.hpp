@@ -6,6 +6,7 @@
 
 #include "canopen/node_boot.hpp"
 #include "canopen/pdo.hpp"
+#include "canopen/watch/node_guard.hpp"
 #include "canopen/watch/node_record.hpp"
 #include "canopen/watch/node_trouble.hpp"
 #include "canopen/watch/position_reader.hpp"
@@ -15,7 +16,22 @@ namespace rmac::fieldbus::canopen {
 /// A node as its bus has it: on its way up, or in operation.
 struct BusNode {
   BusNode(const CanopenConfig& config, const AxisConfig& first)
-      : boot(config, first.node), positions(first.node), record(config.period), measured(answer_id(first)) {}
+      : boot(config, first.node),
+        guard(config.heartbeat),
+        positions(first.node),
+        record(config.period),
+        measured(answer_id(first)) {}
+  /// It makes no heartbeat, and is asked how it is, from its start on.
+  [[nodiscard]] bool guarded() const noexcept {
+    const bool asked = boot.watched() || boot.state() == NodeBoot::State::Starting;
+    return asked && boot.plan().drive != nullptr && boot.plan().drive->manners.node_guarding;
+  }
+  /// Its question, when one is due. Real-time safe.
+  [[nodiscard]] bool asks(std::chrono::nanoseconds now) noexcept {
+    if (guarded()) return guard.asks(now);
+    guard.restart(now);
+    return false;
+  }
   /// Where it is on its way to Operational, as a person reads it.
   [[nodiscard]] const char* state() const noexcept {
     constexpr std::array kStates{
@@ -35,6 +51,7 @@ struct BusNode {
   }
 
   NodeBoot boot;
+  NodeGuard guard;
   PositionReader positions;
   NodeTrouble trouble;
   NodeRecord record;

@@ -178,6 +178,7 @@ Expected<> CanopenInterface::Impl::boot_all() {
     for (BusNode& node : nodes) {
       CanFrame frame;
       while (node.boot.next_frame(port->now(), frame)) port->send(frame);
+      if (node.asks(port->now())) port->send(guard_frame(node.boot.node()));
     }
     port->wait(std::chrono::milliseconds(1));
   }
@@ -348,6 +349,7 @@ void CanopenInterface::Impl::take_from_node(BusNode& node, const CanFrame& frame
     return;
   }
   if (frame.id == kHeartbeatId + id && frame.size == 1) {
+    if (node.guarded() && heartbeat_state(frame) != NmtState::BootUp && !node.guard.take(frame)) return;
     node.heard = now;
     const NmtState said = heartbeat_state(frame);
     if (node.up && said != NmtState::Operational && said != NmtState::BootUp) lose(node, now);
@@ -404,6 +406,7 @@ void CanopenInterface::Impl::fill(std::span<DriveFeedback> feedback) noexcept {
       node.record.missed();
     }
     feedback[i] = axis.feedback;
+    feedback[i].statusword = status_by(node.boot.plan().drive, axis.feedback);
     feedback[i].missed = missed;
     feedback[i].online = node.up && axis.answered() && axis.unanswered() <= config.missed_answers;
     if (!axis.tells(0x603F)) feedback[i].error_code = node.error_code;
@@ -428,6 +431,9 @@ bool CanopenInterface::Impl::send_cycle(std::span<const DriveCommand> commands, 
   if (now >= next_heartbeat) {
     all = send(heartbeat_frame(config.master_node, NmtState::Operational)) && all;
     next_heartbeat = std::max(next_heartbeat + config.heartbeat, now);
+  }
+  for (BusNode& node : nodes) {
+    if (node.asks(now)) all = send(guard_frame(node.boot.node())) && all;
   }
   if (config.time_interval.count() > 0 && now >= next_time) {
     all = send(time_frame(std::chrono::system_clock::now())) && all;

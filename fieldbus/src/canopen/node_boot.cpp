@@ -170,8 +170,7 @@ void NodeBoot::begin_step(std::chrono::nanoseconds now) noexcept {
   const BootStep& step = steps[step_];
   problem_ = problem_of(step);
   outcomes_[step_].refusal = 0;
-  tries_ = 0;
-  refused_ = 0;
+  question_ = {};
   if (step.kind == BootStep::Kind::Refuse) return fail(BootProblem::Kind::Unfit);
   if (step.kind == BootStep::Kind::Reset) {
     resets_.restart(now);
@@ -186,7 +185,7 @@ void NodeBoot::ask(std::chrono::nanoseconds now) noexcept {
   const BootStep& step = plan().steps[step_];
   if (doubted()) {
     sdo_.upload(kAlwaysThere, bytes_, now);
-  } else if (problem_.writing && refused_ == 0) {
+  } else if (problem_.writing && question_.refused == 0) {
     sdo_.download(step.object, step.bytes, now);
   } else {
     bytes_.fill(0);
@@ -200,7 +199,7 @@ bool NodeBoot::asks_again(std::chrono::nanoseconds now) noexcept {
   if (sdo_.state() != SdoClient::State::Failed && !timed_out) return false;
   if (!answered_) return now - entered_ < plan().patience.boot_timeout;
   const int most = plan().patience.sdo_tries;
-  return ++tries_ < most || (doubted() && tries_ < 2 * most);
+  return ++question_.tries < most || (doubted() && question_.tries < 2 * most);
 }
 
 bool NodeBoot::refuses_for_now(std::chrono::nanoseconds now) const noexcept {
@@ -210,7 +209,7 @@ bool NodeBoot::refuses_for_now(std::chrono::nanoseconds now) const noexcept {
 
 bool NodeBoot::doubted() const noexcept {
   const BootStep& step = plan().steps[step_];
-  return step.optional && step.kind != BootStep::Kind::Compare && tries_ >= plan().patience.sdo_tries;
+  return step.optional && step.kind != BootStep::Kind::Compare && question_.tries >= plan().patience.sdo_tries;
 }
 
 bool NodeBoot::compared(const BootStep& step) noexcept {
@@ -223,29 +222,16 @@ bool NodeBoot::compared(const BootStep& step) noexcept {
   return false;
 }
 
-bool NodeBoot::looks_for_constant(std::chrono::nanoseconds now) noexcept {
-  if (!plan().steps[step_].may_be_constant || refused_ != 0 || sdo_.state() != SdoClient::State::Refused) return false;
-  refused_ = sdo_.abort_code();
-  tries_ = 0;
-  ask(now);
-  return true;
-}
-
-bool NodeBoot::is_constant(const BootStep& step) noexcept {
-  const std::uint32_t found = long_at(bytes_.data());
-  const bool read = sdo_.state() == SdoClient::State::Done;
-  if (read && (found & step.mask) == step.value) {
-    outcomes_[step_].refusal = refused_;
-    return true;
-  }
-  if (read) problem_.kept = found;
-  fail(BootProblem::Kind::Refused, refused_);
-  return false;
-}
-
 bool NodeBoot::passes() noexcept {
   const BootStep& step = plan().steps[step_];
-  if (refused_ != 0) return is_constant(step);
+  if (question_.refused != 0) {
+    const bool read = sdo_.state() == SdoClient::State::Done;
+    if (read) problem_.kept = long_at(bytes_.data());
+    outcomes_[step_].refusal = question_.refused;
+    const bool constant = read && (*problem_.kept & step.mask) == step.value;
+    if (!constant) fail(BootProblem::Kind::Refused, question_.refused);
+    return constant;
+  }
   if (step.kind == BootStep::Kind::Compare && sdo_.state() != SdoClient::State::Failed) return compared(step);
   if (step.kind == BootStep::Kind::Read) outcomes_[step_].reading = 0;
   if (doubted() && sdo_.state() != SdoClient::State::Failed) {
@@ -287,7 +273,10 @@ void NodeBoot::end_step(std::chrono::nanoseconds now) noexcept {
     return;
   }
   if (asks_again(now)) return ask(now);
-  if (looks_for_constant(now)) return;
+  if (plan().steps[step_].may_be_constant && question_.refused == 0 && sdo_.state() == SdoClient::State::Refused) {
+    question_ = {.refused = sdo_.abort_code()};
+    return ask(now);
+  }
   if (!passes()) return;
   ++step_;
   begin_step(now);

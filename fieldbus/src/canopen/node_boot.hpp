@@ -63,6 +63,12 @@ class NodeBoot {
     bool done = false;
   };
 
+  /// What became of the step in hand.
+  struct Question {
+    int tries = 0;              ///< unanswered
+    std::uint32_t refused = 0;  ///< the abort code of its writing, while it is read what is there already
+  };
+
   /// A step of the plan so far had this kind, and it came to something.
   [[nodiscard]] bool done(BootStep::Kind kind) const noexcept;
   [[nodiscard]] bool left_out(std::size_t step) const noexcept;
@@ -77,10 +83,6 @@ class NodeBoot {
   [[nodiscard]] bool compared(const BootStep& step) noexcept;
   void ask(std::chrono::nanoseconds now) noexcept;
   [[nodiscard]] bool refuses_for_now(std::chrono::nanoseconds now) const noexcept;
-  /// What it refused to take may be there already: it is read.
-  [[nodiscard]] bool looks_for_constant(std::chrono::nanoseconds now) noexcept;
-  /// It was read: true, or the refusal counts.
-  [[nodiscard]] bool is_constant(const BootStep& step) noexcept;
   [[nodiscard]] bool asks_again(std::chrono::nanoseconds now) noexcept;
   /// What is not needed was not answered: it is asked whether it answers at all.
   [[nodiscard]] bool doubted() const noexcept;
@@ -101,10 +103,9 @@ class NodeBoot {
   int restarts_ = 0;  ///< since `begin`
   BootProblem problem_;
   std::size_t step_ = 0;
-  int tries_ = 0;              ///< of this step, unanswered
-  std::uint32_t refused_ = 0;  ///< the abort code of this step's writing, while it is read what is there
-  bool answered_ = false;      ///< an SDO, since its boot-up message
-  bool held_back_ = false;     ///< it was told to wait in Pre-operational while it is set up
+  Question question_;
+  bool answered_ = false;   ///< an SDO, since its boot-up message
+  bool held_back_ = false;  ///< it was told to wait in Pre-operational while it is set up
   std::array<std::uint8_t, 8> bytes_{};
   std::chrono::nanoseconds entered_{0};
   std::chrono::nanoseconds next_{0};  ///< when it is started or asked again

@@ -21,7 +21,8 @@ bool overlap(const DriveDescription& one, const DriveDescription& other) noexcep
 /// Why the master cannot do without an object, or which key says that it must; empty where it can.
 std::string needed(std::uint16_t index) {
   constexpr std::uint16_t kFirstPdo = 0x1400, kAfterPdos = 0x1C00, kKind = 0xFE00, kNumber = 0x1FF;
-  constexpr std::array<std::uint16_t, 8> kAlways{0x1000, 0x1010, 0x1017, 0x1018, 0x6040, 0x6041, 0x6060, 0x6064};
+  constexpr std::array<std::uint16_t, 10> kAlways{0x1000, 0x100C, 0x100D, 0x1010, 0x1017,
+                                                  0x1018, 0x6040, 0x6041, 0x6060, 0x6064};
   if (index == 0x1016) return "; a drive without it is told by NoHeartbeatConsumer";
   if (index == 0x6007) return "; a drive without it is told by NoAbortConnection";
   if (index == 0x607E) return "; where it must not be asked for, device.json gives polarity";
@@ -75,6 +76,12 @@ Expected<> check(const DriveManners& manners) {
     if (const std::string why = needed(skipped.index); !why.empty()) {
       return failure(MinorCode::InvalidParameterValue, fmt::format("/Skip names {:04X}h{}", skipped.index, why));
     }
+  }
+  if (manners.node_guarding && !manners.no_heartbeat_consumer.empty()) {
+    return failure(
+        MinorCode::InvalidParameterValue,
+        "/NodeGuarding is true and /NoHeartbeatConsumer is given; a drive that is guarded knows by that that "
+        "its master lives");
   }
   if (manners.fixed_mapping && manners.store_after_mapping) {
     return failure(

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "rmac/motion/drive_power.hpp"
+
 namespace rmac::fieldbus::canopen {
 namespace {
 
@@ -66,12 +68,29 @@ std::string check_chosen_drives(const CanopenConfig& config) {
   return {};
 }
 
+std::uint16_t status_by(const DriveDescription* drive, const DriveFeedback& told) noexcept {
+  constexpr unsigned kNoQuickStop = 1U << 5U;
+  constexpr unsigned kFault = 1U << 3U;
+  unsigned word = told.statusword;
+  if (drive == nullptr) return told.statusword;
+  // In Fault and Switch on disabled the bit means nothing.
+  if (drive->manners.quick_stop_inverted) word ^= kNoQuickStop;
+  const bool homed = (word & (statusword::kHomingAttained | statusword::kHomingError)) != 0 && (word & kFault) == 0;
+  if (drive->manners.homing_without_target_reached && told.mode == DriveMode::Homing && homed) {
+    word |= statusword::kTargetReached;
+  }
+  return static_cast<std::uint16_t>(word);
+}
+
 std::vector<std::string> remarks(const DriveDescription& drive, std::uint8_t node) {
   std::vector<std::string> all{
       fmt::format("node {} is treated as {}, by {} (tried: {})", node, drive.name, drive.file, drive.tried)};
   if (!drive.manners.no_heartbeat_consumer.empty()) {
     all.push_back(fmt::format("node {} does not watch its master (it has no 1016h). When the master dies: {}", node,
                               drive.manners.no_heartbeat_consumer));
+  }
+  if (drive.manners.node_guarding) {
+    all.push_back(fmt::format("node {} makes no heartbeat (1017h): it is guarded, by remote frames", node));
   }
   if (drive.manners.no_abort_connection) {
     all.push_back(fmt::format(

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "rmac/fieldbus/canopen/canopen_config.hpp"
+#include "rmac/motion/ports/digital_control_interface.hpp"
 
 namespace rmac::fieldbus::canopen {
 
@@ -19,5 +20,8 @@ namespace rmac::fieldbus::canopen {
 
 /// What is to be known of a node that is treated by a description.
 [[nodiscard]] std::vector<std::string> remarks(const DriveDescription& drive, std::uint8_t node);
+
+/// The statusword as the standard has it. `drive` may be null. Real-time safe.
+[[nodiscard]] std::uint16_t status_by(const DriveDescription* drive, const DriveFeedback& told) noexcept;
 
 }  // namespace rmac::fieldbus::canopen

@@ -150,7 +150,7 @@ void VirtualDrive::reset(Time now) {
   dictionary_ = defaults_;
   waiting_.clear();
   answers_.clear();
-  watches_ = false;
+  watches_ = toggle_ = false;
   moved_ = now;
   nmt_ = 0;
   boot_ups_left_ = boot_ups;
@@ -190,6 +190,14 @@ void VirtualDrive::trip(std::uint16_t error_code) {
 
 void VirtualDrive::receive(const CanFrame& frame, Time now) {
   if (!powered_) return;
+  if (frame.remote) {
+    if (frame.id != 0x700 + node_ || nmt_ == 0 || !sends_heartbeats) return;
+    send(frame.id, {static_cast<std::uint8_t>(nmt_ | (toggle_ ? 0x80 : 0))});
+    if (!repeats_toggle) toggle_ = !toggle_;
+    master_heard_ = now;
+    watches_ = value(0x100C, 0) * value(0x100D, 0) != 0;
+    return;
+  }
   if (frame.id == 0 && frame.size == 2 && (frame.data[1] == 0 || frame.data[1] == node_)) {
     switch (frame.data[0]) {
       case 1:
@@ -296,8 +304,8 @@ void VirtualDrive::sync(Time now) {
 void VirtualDrive::publish() {
   for (int a = 0; a < static_cast<int>(axes_.size()); ++a) {
     const Axis& axis = axes_[static_cast<std::size_t>(a)];
-    dictionary_[{profile(a, 0x6041), 0}] = {static_cast<std::uint8_t>(axis.power.statusword()),
-                                            static_cast<std::uint8_t>(axis.power.statusword() >> 8)};
+    const unsigned status = axis.power.statusword() ^ quick_stop_mask;
+    dictionary_[{profile(a, 0x6041), 0}] = {static_cast<std::uint8_t>(status), static_cast<std::uint8_t>(status >> 8)};
     const auto counts = static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(axis.position)));
     const auto speed = static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(axis.velocity)));
     for (unsigned i = 0; i < 4; ++i) {
@@ -354,7 +362,8 @@ void VirtualDrive::abort_connection() {
 }
 
 void VirtualDrive::watch_master(Time now) {
-  const Time limit = std::chrono::milliseconds(value(0x1016, 1) & 0xFFFF);
+  const std::uint32_t guarded_ms = value(0x100C, 0) * value(0x100D, 0);
+  const Time limit = std::chrono::milliseconds(guarded_ms != 0 ? guarded_ms : value(0x1016, 1) & 0xFFFF);
   if (!watches_ || now - master_heard_ <= limit) return;
   watches_ = false;
   nmt_ = kPreOperational;  // 1029h at its default

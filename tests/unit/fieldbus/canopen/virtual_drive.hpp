@@ -64,6 +64,8 @@ class VirtualDrive {
   bool answers_sdo = true;
   bool answers_sync = true;
   bool sends_heartbeats = true;
+  bool repeats_toggle = false;          ///< of its answers to guarding
+  unsigned quick_stop_mask = 0;         ///< bits of its statusword that are the other way round
   bool stores = false;                  ///< 1010h: what it is told stays beyond a reset
   bool maps_by_memory = false;          ///< its PDOs have the contents that it stored, whatever it is told
   bool event_driven = false;            ///< keeps its TPDOs at 255, and sends them by the clock, too
@@ -123,6 +125,7 @@ class VirtualDrive {
   Time next_heartbeat_{0};
   Time master_heard_{0};
   bool watches_ = false;
+  bool toggle_ = false;
 };
 
 }  // namespace rmac::fieldbus::test

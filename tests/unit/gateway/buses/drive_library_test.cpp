@@ -90,6 +90,8 @@ TEST(DriveLibraries, AreReadAsTheyAreWritten) {
                    {"StoreAfterMapping", true},
                    {"NoHeartbeatConsumer", "it goes on"},
                    {"NoAbortConnection", true},
+                   {"QuickStopInverted", true},
+                   {"HomingWithoutTargetReached", true},
                    {"InterpolationTimePeriod", {{"Index", -4}, {"Values", {5, 10}}}},
                    {"Pages", {{"Skip", "page 12"}}}});
   Library library;
@@ -114,8 +116,21 @@ TEST(DriveLibraries, AreReadAsTheyAreWritten) {
   EXPECT_TRUE(manners.store_after_mapping);
   EXPECT_TRUE(manners.no_abort_connection);
   EXPECT_EQ(manners.no_heartbeat_consumer, "it goes on");
+  EXPECT_TRUE(manners.quick_stop_inverted);
+  EXPECT_TRUE(manners.homing_without_target_reached);
+  EXPECT_FALSE(manners.node_guarding);
   EXPECT_EQ(manners.interpolation->index, -4);
   EXPECT_EQ(manners.interpolation->values, (std::vector<std::uint8_t>{5, 10}));
+}
+
+TEST(DriveLibraries, SayWhoIsGuarded) {
+  json document = sound();
+  document["NodeGuarding"] = true;
+  Library library;
+  const DriveLibrary read = library.hold("maker-drive.json", document).read();
+  ASSERT_NE(read.find_name("maker-drive"), nullptr);
+  EXPECT_EQ(read.find_name("maker-drive")->refusal, "");
+  EXPECT_TRUE(read.find_name("maker-drive")->manners.node_guarding);
 }
 
 // Red when a mistake passes, or a message lacks file, key or what is allowed.

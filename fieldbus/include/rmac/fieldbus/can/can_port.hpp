@@ -9,15 +9,16 @@
 
 namespace rmac::fieldbus {
 
-/// A data frame with an 11-bit identifier: all that CANopen uses (CiA 301, 6.2).
+/// A frame with an 11-bit identifier: all that CANopen uses (CiA 301, 6.2).
 struct CanFrame {
   std::uint16_t id = 0;
   std::uint8_t size = 0;
   std::array<std::uint8_t, 8> data{};
+  bool remote = false;                ///< it asks for the data (RTR): sent only, for node guarding
   std::chrono::nanoseconds stamp{0};  ///< of a received frame: when the kernel took it, CLOCK_REALTIME
 
   [[nodiscard]] bool operator==(const CanFrame& other) const noexcept {
-    return id == other.id && size == other.size && data == other.data;
+    return id == other.id && size == other.size && data == other.data && remote == other.remote;
   }
 };
 

@@ -43,7 +43,10 @@ struct DriveManners {
   bool store_after_mapping = false;  ///< they count from the reset on that follows their storing (1010h)
   bool no_abort_connection = false;  ///< it has no 6007h
   std::string
-      no_heartbeat_consumer{};  ///< it has no 1016h, and this is what it does when the master dies; empty: it has
+      no_heartbeat_consumer{};       ///< it has no 1016h, and this is what it does when the master dies; empty: it has
+  bool node_guarding = false;        ///< it makes no heartbeat, and is asked for its state (100Ch, 100Dh)
+  bool quick_stop_inverted = false;  ///< bit 5 of its statusword is 0 where the standard has 1
+  bool homing_without_target_reached = false;  ///< bit 10 of its statusword does not tell that it is at rest at home
   std::optional<InterpolationTimes> interpolation{};  ///< none: whatever the standard allows
 };
 

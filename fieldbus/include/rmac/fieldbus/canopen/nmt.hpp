@@ -32,6 +32,10 @@ inline constexpr std::uint16_t kHeartbeatId = 0x700;
 [[nodiscard]] inline CanFrame heartbeat_frame(std::uint8_t node, NmtState state) noexcept {
   return {.id = static_cast<std::uint16_t>(kHeartbeatId + node), .size = 1, .data = {static_cast<std::uint8_t>(state)}};
 }
+/// Asks a node for its state (7.2.8.3.2.1): it answers as with a heartbeat, and turns bit 7 round each time.
+[[nodiscard]] inline CanFrame guard_frame(std::uint8_t node) noexcept {
+  return {.id = static_cast<std::uint16_t>(kHeartbeatId + node), .size = 1, .remote = true};
+}
 [[nodiscard]] inline CanFrame sync_frame() noexcept {
   return {.id = kSyncId};
 }
