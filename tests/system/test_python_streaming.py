@@ -146,6 +146,27 @@ class PythonStreamingTest(unittest.TestCase):
                 if part.index == 20:
                     panel.cam.StopNow()
 
+    def test_two_programs_are_not_mixed(self):
+        client = self.start()
+        first, second = client.run([rmac.MoveTo((1, 0, 0)), rmac.MoveTo((2, 0, 0))]), client.run([rmac.MoveTo((3, 0, 0))])
+        next(iter(first))
+        with self.assertRaisesRegex(rmac.RmacError, "another run"):
+            second.wait()
+        first.close()
+        client.until_done()
+        client.run([rmac.MoveTo((3, 0, 0))]).wait()
+
+    def test_an_appliance_that_was_started_anew_does_not_go_on(self):
+        client = self.start()
+        interrupted = self.interrupt(client, [rmac.MoveTo((0, 0, 0)), rmac.Line((0, 0, 0), (40, 0, 0))], 0)
+        client.close()
+        with Appliance() as anew, rmac.connect(f"127.0.0.1:{anew.port}") as client, client.authority():
+            with self.assertRaisesRegex(rmac.CannotResume, "None now"):
+                client.resume(interrupted)
+            client.load("DMACXYZ")
+            with self.assertRaises(rmac.CannotResume):
+                client.resume(interrupted)
+
     def test_another_thread_may_stop_what_a_run_feeds(self):
         client = self.start()
         stopped = threading.Thread(target=client.cam.StopNow)

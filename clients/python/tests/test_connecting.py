@@ -2,6 +2,7 @@
 
 import pathlib
 import tempfile
+import tomllib
 import unittest
 
 import rmac
@@ -64,6 +65,10 @@ class ConnectingTest(unittest.TestCase):
             kind = getattr(rmac, name)
             if isinstance(kind, type) and issubclass(kind, Exception):
                 self.assertTrue(issubclass(kind, rmac.RmacError), name)
+
+    def test_the_package_has_the_version_of_the_api_that_it_was_made_for(self):
+        project = tomllib.loads((pathlib.Path(__file__).parents[1] / "pyproject.toml").read_text())
+        self.assertEqual(project["project"]["version"], rmac.API_VERSION)
 
     def test_the_package_says_that_it_is_typed(self):
         self.assertTrue((pathlib.Path(rmac.__file__).parent / "py.typed").is_file())

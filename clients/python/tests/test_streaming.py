@@ -5,7 +5,8 @@ import unittest
 
 from machine_model import MachineModel
 from rmac.errors import ConnectionLost, InvalidValue
-from rmac.moves import Line, MoveTo
+from rmac.geometry.nurbs import NurbsCurve
+from rmac.moves import Line, MoveTo, Nurbs
 from rmac.streaming.gaps import OpenEnds
 from rmac.streaming.part import Part
 from rmac.streaming.progress import Interrupted, MoveRefused
@@ -121,6 +122,20 @@ class StreamTest(unittest.TestCase):
         with self.assertRaisesRegex(InvalidValue, "G1 X5"):
             for _ in range(5):
                 stream.next_batch()
+
+
+    def test_a_move_that_no_line_can_hold_is_told_and_batches_stay_small(self):
+        state = MachineModel(random.Random(1), 1000).state()
+        curve = NurbsCurve(1, [0, *range(5000), 4999], [(0.1 * number, 0, 0) for number in range(5000)])
+        with self.assertRaisesRegex(InvalidValue, "split the curve"):
+            Stream([Nurbs(curve)], state, 1000, line_bytes=50_000).next_batch()
+        stream = Stream([MoveTo((0, 0, 0))] + [Nurbs(curve)] * 5, state, 1000)
+        self.assertEqual(len(stream.next_batch()), 1)
+        stream.answered([None])
+        while batch := stream.next_batch():
+            self.assertEqual(len(batch), 1)
+            stream.answered([None])
+        self.assertEqual(stream.ledger.taken, 6)
 
 
 class OpenEndsTest(unittest.TestCase):

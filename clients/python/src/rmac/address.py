@@ -30,7 +30,7 @@ class Address:
         try:
             if not self.path:
                 connected = socket.create_connection((self.host, self.port), timeout=within_s)
-                connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                tune(connected)
             else:
                 connected = socket.socket(socket.AF_UNIX)
                 connected.settimeout(within_s)
@@ -54,6 +54,15 @@ class Address:
     def unreachable(self, error: OSError) -> CannotConnect:
         hint = "; is rmacd running there?" if isinstance(error, ConnectionRefusedError) else ""
         return CannotConnect(f"{self}: {error.strerror or error}{hint}")
+
+
+def tune(connected: socket.socket) -> None:
+    """Of TCP: nothing waits for more, and a peer that is silently gone is noticed within 20 s."""
+    connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    connected.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    for name, value in (("TCP_KEEPIDLE", 5), ("TCP_KEEPINTVL", 5), ("TCP_KEEPCNT", 3), ("TCP_USER_TIMEOUT", 20_000)):
+        if hasattr(socket, name):  # not on every system
+            connected.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
 
 
 def parse_address(text: str) -> Address:

@@ -43,6 +43,7 @@ class Client(Methods):
         self._hearing = Hearing()
         self._subscribing = threading.Lock()
         self._latest: Stream | None = None
+        self._fed: Run | None = None
         self._connection: Connection
         self.greeting: Greeting
         self._open()
@@ -153,6 +154,12 @@ class Client(Methods):
         found: FlightRecord = self._follow(read_flight_record(name))
         return found
 
+    def feeds(self, run: Run | None) -> None:
+        """One program at a time: two would come to the machine mixed."""
+        if run is not None and self._fed is not None:
+            raise RmacError("another run of this client is not at its end: wait for it, or close it")
+        self._fed = run
+
     def send_batch(self, requests: Sequence[tuple[str, str]], promise: Promise) -> None:
         """Of each its method and its parameters as JSON; the promise gets a list of outcomes."""
         self._connection.send_batch(requests, promise)
@@ -184,7 +191,7 @@ class Client(Methods):
 
     def _run(self, moves: Iterable[Any], state: dict[str, Any], first_id: int | None, index: int, start: bool) -> Run:
         number = free_id(state, self._latest) if first_id is None else first_id
-        self._latest = Stream(moves, state, self.greeting.queue_capacity, number, index)
+        self._latest = Stream(moves, state, self.greeting.queue_capacity, number, index, self.greeting.line_bytes)
         return Run(self, self._latest, start)
 
     def _follow(self, steps: Steps) -> Any:

@@ -25,7 +25,6 @@ class Connection:
         self.address = address
         self.on_end: Callable[[RmacError], None] = lambda error: None
         self._socket = address.connect(within_s)
-        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
         self._exchange = Exchange(hear)
         self._sending = threading.Lock()  # ids go out in their order; what ended is asked nothing
         self._ended: RmacError | None = None

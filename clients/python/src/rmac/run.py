@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from typing import TYPE_CHECKING, Any
 
 from rmac.errors import RmacError
@@ -48,6 +48,10 @@ class Run:
         """Moves that the appliance has taken."""
         return self._stream.ledger.taken
 
+    def close(self) -> None:
+        """Feeds no more of it. What was taken is machined, unless authority ends."""
+        self._parts.close()
+
     def wait(self) -> None:
         """Until the program is done and the machine rests."""
         for _ in self._parts:
@@ -69,7 +73,8 @@ class Run:
             self._stream.heard(state)
             self._changed.notify()
 
-    def _feed(self) -> Iterator[Part]:
+    def _feed(self) -> Generator[Part, None, None]:
+        self._client.feeds(self)
         hearer = Hearer("state", STATE_RATE_HZ, self._heard, self.set_exception)
         self._client.hear(hearer)
         try:
@@ -80,6 +85,7 @@ class Run:
             if self._stream.failure is not None:
                 raise self._stream.failure
         finally:
+            self._client.feeds(None)
             with contextlib.suppress(RmacError):
                 self._client.unhear(hearer)
 

@@ -7,7 +7,7 @@ import contextlib
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
-from rmac.address import Address
+from rmac.address import Address, tune
 from rmac.errors import CannotConnect, ConnectionLost, NotAnswered, RmacError
 from rmac.wire.call import Call
 from rmac.wire.exchange import Exchange, Promise
@@ -53,6 +53,8 @@ class Connection:
             raise CannotConnect(f"{address}: nobody answered within {within_s:g} s") from None
         except OSError as error:
             raise address.unreachable(error) from error
+        if not address.path:
+            tune(writer.get_extra_info("socket"))
         return cls(address, reader, writer, hear)
 
     def send(self, call: Call[Any]) -> Reply:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator
+from collections.abc import AsyncGenerator, AsyncIterator
 from typing import TYPE_CHECKING, Any
 
 from rmac.errors import RmacError
@@ -47,6 +47,10 @@ class Run:
         """Moves that the appliance has taken."""
         return self._stream.ledger.taken
 
+    async def close(self) -> None:
+        """Feeds no more of it. What was taken is machined, unless authority ends."""
+        await self._parts.aclose()
+
     async def wait(self) -> None:
         """Until the program is done and the machine rests."""
         async for _ in self._parts:
@@ -64,7 +68,8 @@ class Run:
         self._stream.heard(state)
         self._changed.set()
 
-    async def _feed(self) -> AsyncIterator[Part]:
+    async def _feed(self) -> AsyncGenerator[Part, None]:
+        self._client.feeds(self)
         hearer = Hearer("state", STATE_RATE_HZ, self._heard, self.set_exception)
         await self._client.hear(hearer)
         try:
@@ -78,6 +83,7 @@ class Run:
             if self._stream.failure is not None:
                 raise self._stream.failure
         finally:
+            self._client.feeds(None)
             with contextlib.suppress(RmacError):
                 await self._client.unhear(hearer)
 

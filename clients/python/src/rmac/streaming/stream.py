@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence, Sized
 from typing import Any
 
-from rmac.errors import QueueFull, RmacError
+from rmac.errors import InvalidValue, QueueFull, RmacError
 from rmac.moves import item
 from rmac.streaming.gaps import OpenEnds
 from rmac.streaming.ledger import Ledger
@@ -21,19 +21,23 @@ from rmac.wire.exchange import Outcome
 
 _BATCH = 64
 _BATCH_BYTES = 1 << 18
+_FRAME_BYTES = 200  # of a request beside its parameters
 _WINDOW = 1024  # moves that wait for their answers
 
 
 class Stream:
     """Not for two threads at once."""
 
-    def __init__(self, moves: Iterable[Any], state: dict[str, Any], capacity: int, first_id: int = 1, first_index: int = 0) -> None:
+    def __init__(
+        self, moves: Iterable[Any], state: dict[str, Any], capacity: int, first_id: int = 1, first_index: int = 0, line_bytes: int = 8 << 20
+    ) -> None:
         self.total: int | None = len(moves) + first_index if isinstance(moves, Sized) else None
         self.failure: RmacError | None = None
         self.ledger = Ledger(state, first_id - first_index, first_index)
         self._source: Iterator[Any] = iter(moves)
         self._exhausted = False
         self._capacity = capacity
+        self._line_bytes = line_bytes
         self._ahead: deque[Part] = deque()  # to be sent next
         self._under_way: deque[Part] = deque()
         self._refused: deque[Part] = deque()  # for want of room, until nothing is under way
@@ -63,15 +67,17 @@ class Stream:
         batch: list[tuple[str, str]] = []
         room = min(_BATCH, _WINDOW - len(self._under_way), self._capacity - self.ledger.most_in_queue - len(self._under_way))
         size = 0
-        while len(batch) < room and size < _BATCH_BYTES:
+        while len(batch) < room:
             part = self._peek()
             if part is None or not self._ends.may_follow(part.move.start):
+                break
+            size += len(part.params)
+            if batch and size > _BATCH_BYTES:
                 break
             self._ahead.popleft()
             self._ends.add(part.move.end)
             self._under_way.append(part)
             batch.append((part.move.method, part.params))
-            size += len(part.params)
         return batch or None
 
     def answered(self, outcomes: Sequence[Outcome]) -> None:
@@ -128,10 +134,15 @@ class Stream:
     def _peek(self) -> Part | None:
         if not self._ahead and not self._exhausted:
             try:
-                self._ahead.append(self.ledger.part(item(next(self._source))))
+                self._ahead.append(self._fitting(self.ledger.part(item(next(self._source)))))
             except StopIteration:
                 self._exhausted = True
         return self._ahead[0] if self._ahead else None
+
+    def _fitting(self, part: Part) -> Part:
+        if len(part.params) + _FRAME_BYTES > self._line_bytes:
+            raise InvalidValue(f"move {part.index} takes {len(part.params)} bytes, and a request may take {self._line_bytes}: split the curve")
+        return part
 
     def _take(self, part: Part) -> None:
         if self._refused:
