@@ -86,19 +86,25 @@ class PythonStreamingTest(unittest.TestCase):
 
     def test_nothing_of_a_long_program_is_kept_but_what_is_in_the_queue(self):
         client = self.start(queue_capacity=100)
-        count = 5000
-        made = itertools.count()
-        run = client.run(itertools.chain([rmac.MoveTo((0, 0, 0))], (line for line, _ in zip(rmac.polyline(spiral(count)), made))))
+        count, asked = 5000, 0
+
+        def program():
+            nonlocal asked
+            for move in itertools.chain([rmac.MoveTo((0, 0, 0))], rmac.polyline(spiral(count))):
+                asked += 1
+                yield move
+
+        run = client.run(program())
         with self.assertRaises(TypeError):
             len(run)
-        most = ahead = done = 0
-        for part in run:
-            done += 1
+        most = ahead = told = 0
+        for _ in run:
+            told += 1
             most = max(most, len(run._stream.ledger.kept) + len(run._stream._under_way))
-            ahead = max(ahead, next(made) - 2 * done)  # `made` counts the lines that were asked for, and these calls
-        self.assertEqual(done, count + 1)
+            ahead = max(ahead, asked - run.done)
+        self.assertEqual(told, count + 1)
         self.assertLessEqual(most, 100)
-        self.assertLessEqual(ahead, 110)
+        self.assertLessEqual(ahead, 101)
 
     def test_a_full_queue_loses_and_repeats_nothing(self):
         client = self.start(queue_capacity=50)
@@ -145,6 +151,17 @@ class PythonStreamingTest(unittest.TestCase):
             for part in client.run([rmac.MoveTo((0, 0, 0)), *rmac.polyline(spiral(5000))]):
                 if part.index == 20:
                     panel.cam.StopNow()
+
+    def test_a_program_may_ask_the_machine_while_it_is_made(self):
+        client = self.start()
+
+        def program():
+            yield rmac.MoveTo((0, 0, 0))
+            for line in rmac.polyline(spiral(300)):
+                self.assertEqual(client.state()["mechanism"], "DMACXYZ")
+                yield line
+
+        self.assertEqual([part.index for part in client.run(program())], list(range(301)))
 
     def test_two_programs_are_not_mixed(self):
         client = self.start()

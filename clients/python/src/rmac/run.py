@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import threading
-from collections.abc import Generator, Iterator
+from collections import deque
+from collections.abc import Callable, Generator, Iterator
 from typing import TYPE_CHECKING, Any
 
-from rmac.errors import RmacError
+from rmac.errors import ConnectionLost, RmacError
 from rmac.hearing import Hearer
 from rmac.streaming.part import Part
 from rmac.streaming.stream import Stream
@@ -28,6 +29,7 @@ class Run:
         self._stream = stream
         self._start = start
         self._changed = threading.Condition()
+        self._news: deque[tuple[Callable[[Any], None], Any]] = deque()  # for the stream, from the thread that reads
         self._parts = self._feed()
 
     def __iter__(self) -> Iterator[Part]:
@@ -58,19 +60,21 @@ class Run:
             pass
 
     def set_result(self, outcomes: list[Outcome]) -> None:
-        """Answers to a batch, in the thread that reads."""
-        with self._changed:
-            self._stream.answered(outcomes)
-            self._changed.notify()
+        """Answers to a batch."""
+        self._tell(self._stream.answered, outcomes)
 
     def set_exception(self, error: BaseException) -> None:
-        with self._changed:
-            self._stream.lost(error if isinstance(error, RmacError) else RmacError(str(error)))
-            self._changed.notify()
+        self._tell(self._stream.lost, error if isinstance(error, RmacError) else RmacError(str(error)))
 
     def _heard(self, state: dict[str, Any]) -> None:
+        self._tell(self._stream.heard, state)
+
+    def _tell(self, what: Callable[[Any], None], value: Any) -> None:
+        """By the thread that reads. The stream belongs to the one that iterates: it runs the program's own code."""
         with self._changed:
-            self._stream.heard(state)
+            if self._news and self._news[-1][0] == what == self._stream.heard:
+                self._news.pop()  # of states in a row the last one counts, and a run may be left alone for long
+            self._news.append((what, value))
             self._changed.notify()
 
     def _feed(self) -> Generator[Part, None, None]:
@@ -91,30 +95,31 @@ class Run:
 
     def _step(self) -> Iterator[Part]:
         with self._changed:
-            batch = self._stream.next_batch()
-            finished = self._stream.ledger.finished
-            confirm = self._stream.asks_state
-            if not (batch or finished or confirm or self._stream.ended):
-                self._changed.wait()
-        if batch:
+            news, self._news = self._news, deque()
+        for what, value in news:
+            what(value)
+        finished = self._stream.ledger.finished
+        if batch := self._stream.next_batch():
             self._send(batch)
-        if confirm:
+        elif self._stream.asks_state:
             self._confirm()
+        elif not (finished or self._stream.ended):
+            with self._changed:
+                self._changed.wait_for(lambda: self._news)
         while finished:
             yield finished.popleft()
 
     def _send(self, batch: list[tuple[str, str]]) -> None:
         try:
             self._client.send_batch(batch, self)
-        except RmacError as error:
-            self.set_exception(error)
+        except ConnectionLost as error:
+            self._stream.lost(error)
 
     def _confirm(self) -> None:
         try:
-            state = self._client.state()
-        except RmacError as error:
-            return self.set_exception(error)
-        with self._changed:
-            self._stream.confirm(state)
-            if self._stream.asks_state:
+            self._stream.confirm(self._client.state())
+        except ConnectionLost as error:
+            return self._stream.lost(error)
+        if self._stream.asks_state:
+            with self._changed:
                 self._changed.wait(1 / STATE_RATE_HZ)
