@@ -90,8 +90,8 @@ class MachinePort {
   [[nodiscard]] virtual const sdk::DeviceObject* mechanism() const = 0;
   [[nodiscard]] virtual CycleSample sample() const = 0;
   [[nodiscard]] virtual const CycleTimes& cycle_times() const = 0;
-  /// What the buses that run went through, of those that watch their nodes.
-  [[nodiscard]] virtual std::vector<fieldbus::BusReport> bus_reports() const = 0;
+  /// What the buses that run went through.
+  [[nodiscard]] virtual fieldbus::FieldbusReport bus_reports() const = 0;
   [[nodiscard]] virtual CycleNow cycle_now() const = 0;
   /// What stopped the machine last, as long as it has not gone on since.
   [[nodiscard]] virtual const std::optional<Event>& last_stop() const = 0;

@@ -121,11 +121,20 @@ Expected<std::shared_ptr<ServoBus>> BusRegistry::acquire(const std::string& name
   return bus.bus;
 }
 
-std::vector<fieldbus::BusReport> BusRegistry::reports() const {
-  std::vector<fieldbus::BusReport> told;
+fieldbus::FieldbusReport BusRegistry::reports() const {
+  fieldbus::FieldbusReport told;
+  const auto add_line = [&told](const auto& interface) {
+    const auto* line = dynamic_cast<const fieldbus::modbus::LineReports*>(&interface);
+    if (line != nullptr) told.modbus.push_back(line->line_report());
+  };
   for (const auto& [name, bus] : buses_) {
+    if (!bus.started) continue;
     const auto* watches = dynamic_cast<const fieldbus::BusReports*>(bus.bus->interface.get());
-    if (bus.started && watches != nullptr) told.push_back(watches->report());
+    if (watches != nullptr) told.can.push_back(watches->report());
+    add_line(*bus.bus->interface);
+  }
+  for (const auto& [name, io] : ios_) {
+    if (io.started) add_line(*io.interface);
   }
   return told;
 }

@@ -48,8 +48,8 @@ class BusRegistry {
   [[nodiscard]] Expected<std::shared_ptr<DigitalIoInterface>> acquire_io(const sdk::ModuleChoice& choice,
                                                                          const ModuleLoader& loader);
 
-  /// What the buses that run went through, of those that watch their nodes, in the order of their names.
-  [[nodiscard]] std::vector<fieldbus::BusReport> reports() const;
+  /// What the buses that run went through, those of I/O last, in the order of their names.
+  [[nodiscard]] fieldbus::FieldbusReport reports() const;
 
   /// Stops what no mechanism borrows any more: drives disabled, outputs safe. What is behind it stays known.
   void stop_unused() noexcept;

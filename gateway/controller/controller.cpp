@@ -247,7 +247,7 @@ const CycleTimes& Controller::cycle_times() const noexcept {
   return impl_->link->times;
 }
 
-std::vector<fieldbus::BusReport> bus_reports(const Controller& controller) {
+fieldbus::FieldbusReport bus_reports(const Controller& controller) {
   return controller.impl_->registry.reports();
 }
 

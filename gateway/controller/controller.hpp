@@ -145,12 +145,12 @@ class Controller {
   void cycle();
 
  private:
-  friend std::vector<fieldbus::BusReport> bus_reports(const Controller& controller);
+  friend fieldbus::FieldbusReport bus_reports(const Controller& controller);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-/// What a controller's buses that run went through, of those that watch their nodes.
-[[nodiscard]] std::vector<fieldbus::BusReport> bus_reports(const Controller& controller);
+/// What a controller's buses that run went through.
+[[nodiscard]] fieldbus::FieldbusReport bus_reports(const Controller& controller);
 
 }  // namespace rmac::gateway

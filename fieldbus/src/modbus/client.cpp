@@ -9,6 +9,7 @@
 
 #include "modbus/open_line.hpp"
 #include "modbus/pdu.hpp"
+#include "modbus/unit_record.hpp"
 
 namespace rmac::fieldbus::modbus {
 namespace {
@@ -69,6 +70,8 @@ std::string to_string(const Endpoint& endpoint) {
 }
 
 struct Client::Impl {
+  Impl(Endpoint of, std::chrono::milliseconds within) : endpoint(std::move(of)), deadline(within) {}
+
   /// What is known of a slave on a serial line.
   struct Slave {
     bool doubt = false;
@@ -79,9 +82,10 @@ struct Client::Impl {
 
   Endpoint endpoint;
   std::chrono::milliseconds deadline;
-  Context context;
+  Context context{};
   bool open = false;
   std::array<Slave, kAnyUnit + 1> slaves{};
+  UnitRecords records{};
 
   [[nodiscard]] bool serial() const noexcept { return std::holds_alternative<RtuEndpoint>(endpoint); }
   [[nodiscard]] Slave& slave(const Request& request) noexcept {
@@ -111,9 +115,17 @@ struct Client::Impl {
     return {};
   }
 
-  /// Asks `question`, and fills `values` where it reads.
   [[nodiscard]] Answer<> ask(const Request& request, std::span<const std::uint16_t> written,
                              std::span<std::uint16_t> values) {
+    records.asked(request.slave);
+    auto answer = transact(request, written, values);
+    records.ended(request.slave, answer, Clock::now());
+    return answer;
+  }
+
+  /// Sends what `request` is, and fills `values` where it reads.
+  [[nodiscard]] Answer<> transact(const Request& request, std::span<const std::uint16_t> written,
+                                  std::span<std::uint16_t> values) {
     modbus_set_slave(context.get(), request.slave);
     // What came since the last answer belongs to no question any more.
     if (serial()) static_cast<void>(modbus_flush(context.get()));
@@ -188,7 +200,7 @@ Expected<std::unique_ptr<Client>> Client::create(Endpoint endpoint, std::chrono:
                    fmt::format("Modbus line {}: a deadline of {} ms; allowed is 1 ms to 1 minute", to_string(endpoint),
                                deadline.count()));
   }
-  auto impl = std::make_unique<Impl>(Impl{std::move(endpoint), deadline, nullptr, false, {}});
+  auto impl = std::make_unique<Impl>(std::move(endpoint), deadline);
   impl->context = make_context(impl->endpoint);
   if (!impl->context) {
     return failure(MinorCode::Other, fmt::format("Modbus line {}: {}", to_string(impl->endpoint), error_text(errno)));
@@ -218,6 +230,10 @@ void Client::disconnect() noexcept {
 }
 bool Client::in_doubt(int slave) const noexcept {
   return slave > 0 && slave <= kAnyUnit && impl_->slaves[static_cast<std::size_t>(slave)].doubt;
+}
+
+UnitTraffic Client::traffic(int unit) const {
+  return impl_->records.traffic(unit, Clock::now());
 }
 
 Answer<> Client::connect() {

@@ -118,6 +118,10 @@ std::string IoInterface::fault_text() const {
   return text ? "the device " + *text : "what it told last is too old; see that the computer has time for its line";
 }
 
+LineReport IoInterface::line_report() const {
+  return impl_->line.report();
+}
+
 bool IoInterface::exchange(std::uint64_t outputs, std::uint64_t& inputs) noexcept {
   IoStation& station = impl_->station;
   const Clock::time_point asked{Clock::duration(station.asked_at.load(std::memory_order_acquire))};

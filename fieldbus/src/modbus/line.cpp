@@ -268,6 +268,19 @@ LineCounters Line::counters() const noexcept {
           impl_->wrong_answers, impl_->busy,     impl_->exceptions, impl_->disconnects};
 }
 
+LineReport Line::report() const {
+  LineReport told{to_string(impl_->config.endpoint), impl_->rounds, impl_->connected, {}};
+  for (std::size_t i = 0; i < impl_->stations.size(); ++i) {
+    UnitReport& unit = told.units.emplace_back(UnitReport{impl_->stations[i]->slave(), "off", {}});
+    if (!impl_->client) continue;
+    unit.traffic = impl_->client->traffic(unit.unit);
+    const std::lock_guard lock(impl_->mutex);
+    const Impl::Known& of = impl_->known[i];
+    unit.state = of.works ? "answers" : manner(of.trouble);
+  }
+  return told;
+}
+
 std::optional<std::string> Line::trouble(std::size_t station) const {
   std::string text;
   {

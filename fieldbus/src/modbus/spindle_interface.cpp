@@ -107,6 +107,10 @@ std::optional<std::string> SpindleInterface::silence_text(std::size_t axis) cons
   return text;
 }
 
+LineReport SpindleInterface::line_report() const {
+  return impl_->line->report();
+}
+
 LineCounters SpindleInterface::counters() const noexcept {
   return impl_->line->counters();
 }

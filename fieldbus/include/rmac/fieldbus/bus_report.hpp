@@ -7,6 +7,7 @@
 
 #include "rmac/fieldbus/can/can_port.hpp"
 #include "rmac/fieldbus/eds/object_entry.hpp"
+#include "rmac/fieldbus/modbus/line_report.hpp"
 
 namespace rmac::fieldbus {
 
@@ -49,6 +50,12 @@ struct BusReport {
   CanHealth health;
   CanController controller;  ///< now
   std::vector<NodeReport> nodes;
+};
+
+/// What all buses that run went through, of those that watch what hangs on them.
+struct FieldbusReport {
+  std::vector<BusReport> can;
+  std::vector<modbus::LineReport> modbus;
 };
 
 /// What a control interface implements beside its port when it watches the nodes of a bus.

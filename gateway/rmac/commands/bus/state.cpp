@@ -77,22 +77,51 @@ void show_bus(const json& bus) {
   for (const json& node : bus.at("nodes")) show_history(node);
 }
 
+void show_units(const json& units) {
+  std::vector<std::vector<std::string>> rows;
+  for (const json& unit : units) {
+    std::string exceptions;
+    for (const json& each : unit.at("exceptions")) {
+      exceptions +=
+          fmt::format("{}{}: {}", exceptions.empty() ? "" : ", ", each.at("code").get<int>(), count(each, "count"));
+    }
+    rows.push_back({count(unit, "unit"), unit.at("state").get<std::string>(), count(unit, "requests"),
+                    count(unit, "answers"), count(unit, "timeouts"), count(unit, "wrong_answers"),
+                    count(unit, "disconnects"), exceptions.empty() ? "-" : exceptions});
+  }
+  fmt::print("{}", table({"unit", "state", "requests", "answers", "time-outs", "wrong", "breaks", "exceptions"}, rows));
+}
+
+void show_line(const json& line) {
+  fmt::print("{}: {} rounds, opened {} times\n", line.at("endpoint").get<std::string>(), count(line, "rounds"),
+             count(line, "connections"));
+  show_units(line.at("units"));
+  for (const json& unit : line.at("units")) {
+    const json& last = unit.at("last_trouble");
+    if (last.is_null()) continue;
+    fmt::print("unit {}: {}, {} s ago\n", count(unit, "unit"), last.at("message").get<std::string>(),
+               number(last.at("age_s").get<double>(), 1));
+  }
+}
+
 Result<> show_state(Connection& appliance, bool as_json) {
   return appliance.call("Bus.GetState").map([as_json](const json& answer) {
     if (as_json) {
       fmt::print("{}\n", answer.dump());
       return;
     }
-    const json& buses = answer.at("buses");
-    if (buses.empty()) fmt::print("no CANopen bus runs\n");
-    for (const json& bus : buses) show_bus(bus);
+    if (answer.at("buses").empty() && answer.at("lines").empty())
+      fmt::print("no CANopen bus and no Modbus line runs\n");
+    for (const json& bus : answer.at("buses")) show_bus(bus);
+    for (const json& line : answer.at("lines")) show_line(line);
   });
 }
 
 }  // namespace
 
 void add_bus_state(Command& bus) {
-  Command state = bus.add("state", "what the CANopen buses of the machine that is loaded went through");
+  Command state =
+      bus.add("state", "what the CANopen buses and Modbus lines of the machine that is loaded went through");
   state.does(with_appliance(show_state));
 }
 

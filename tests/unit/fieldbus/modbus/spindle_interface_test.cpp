@@ -495,6 +495,24 @@ TEST_P(ModbusTwoSpindles, OneMuteLeavesTheOtherToBeStoppedWithTheAppliance) {
   EXPECT_EQ(banks[other()].get(kHolding, kCommand), kStop);
 }
 
+TEST_P(ModbusTwoSpindles, AreReportedEachByItself) {
+  ASSERT_TRUE(spindle->start());
+  silent = true;
+  run_until([this] { return !feedback[static_cast<std::size_t>(mute) - 1].online && feedback[other()].online; });
+  const LineReport line = spindle->line_report();
+  ASSERT_EQ(line.units.size(), 2U);
+  const UnitReport& away = line.units[static_cast<std::size_t>(mute) - 1];
+  const UnitReport& well = line.units[other()];
+  EXPECT_EQ(away.unit, mute);
+  EXPECT_EQ(away.state, "does not answer");
+  EXPECT_GT(away.traffic.timeouts, 0U);
+  ASSERT_TRUE(away.traffic.last_trouble);
+  EXPECT_THAT(away.traffic.last_trouble->message, HasSubstr("no whole answer"));
+  EXPECT_EQ(well.state, "answers");
+  EXPECT_GT(well.traffic.answers, 0U);
+  EXPECT_EQ(well.traffic.timeouts, 0U);
+}
+
 INSTANTIATE_TEST_SUITE_P(Wires, ModbusTwoSpindles,
                          testing::Combine(testing::Values(Wire::Tcp, Wire::Rtu), testing::Values(1, 2)));
 

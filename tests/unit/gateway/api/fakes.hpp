@@ -334,7 +334,7 @@ class FakeMachine : public MachinePort {
   CycleSample sample() const override { return now; }
   const CycleTimes& cycle_times() const override { return times; }
   CycleNow cycle_now() const override { return cycle; }
-  std::vector<fieldbus::BusReport> bus_reports() const override { return buses; }
+  fieldbus::FieldbusReport bus_reports() const override { return buses; }
   const std::optional<Event>& last_stop() const override { return stop; }
   Expected<std::string> record_flight() override { return std::string("20261121T000000.000Z-demand-1"); }
   const FlightFolder* flight_records() const override { return nullptr; }
@@ -351,7 +351,7 @@ class FakeMachine : public MachinePort {
   std::optional<Event> stop;
   CycleSample now;
   CycleTimes times;
-  std::vector<fieldbus::BusReport> buses;
+  fieldbus::FieldbusReport buses;
   CycleNow cycle;
   std::function<void()> during_search;
 };

@@ -7,6 +7,7 @@
 #include <string>
 #include <variant>
 
+#include "rmac/fieldbus/modbus/line_report.hpp"
 #include "rmac/motion/error.hpp"
 
 namespace rmac::fieldbus::modbus {
@@ -110,6 +111,9 @@ class Client {
   /// busy is asked on: it does not refuse the length). It fails likewise when it was called so often that no length is
   /// left. Nothing happens where there is no doubt.
   Answer<> resynchronise(int slave, Table table, std::uint16_t address, std::size_t count);
+
+  /// What passed with a unit since the client was made. Any thread but the servo thread.
+  [[nodiscard]] UnitTraffic traffic(int unit) const;
 
   /// No slave on a serial line answers later than this after it was asked.
   static constexpr std::chrono::seconds kSettle{2};

@@ -63,6 +63,8 @@ class Line {
   /// The next round begins at once. Any thread, real-time safe.
   void wake() noexcept;
   [[nodiscard]] LineCounters counters() const noexcept;
+  /// Any thread but the servo thread; never while it is started or stopped.
+  [[nodiscard]] LineReport report() const;
   /// Why a station was not served last, as it goes on behind "the device", and what the line went through; nothing of
   /// one that was served without trouble for a while. Any thread but the servo thread.
   [[nodiscard]] std::optional<std::string> trouble(std::size_t station) const;

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "rmac/fieldbus/fault_texts.hpp"
+#include "rmac/fieldbus/modbus/line_report.hpp"
 #include "rmac/fieldbus/modbus/modbus_config.hpp"
 #include "rmac/motion/ports/digital_control_interface.hpp"
 
@@ -16,7 +17,10 @@ namespace rmac::fieldbus::modbus {
 /// `exchange` leaves commands to the line's thread and takes from it what was read last. It never waits. What is older
 /// than `stale` counts for nothing: its drive is offline, and comes back disabled. While a drive answers that it is
 /// busy, what it told last counts for `busy`.
-class SpindleInterface final : public DigitalControlInterface, public FaultTexts, public SilenceText {
+class SpindleInterface final : public DigitalControlInterface,
+                               public FaultTexts,
+                               public SilenceText,
+                               public LineReports {
  public:
   explicit SpindleInterface(SpindleLineConfig config);
   ~SpindleInterface() override;
@@ -32,6 +36,8 @@ class SpindleInterface final : public DigitalControlInterface, public FaultTexts
   [[nodiscard]] DriveMode mode(std::size_t /*axis*/) const noexcept override { return DriveMode::ProfileVelocity; }
   [[nodiscard]] std::string fault_text(std::size_t axis, std::uint16_t error_code) const override;
   [[nodiscard]] std::optional<std::string> silence_text(std::size_t axis) const override;
+
+  [[nodiscard]] LineReport line_report() const override;
 
   [[nodiscard]] LineCounters counters() const noexcept;
 

@@ -28,7 +28,7 @@ json bus_with(json nodes, json controller = kUnknown) {
                  {"bus_off", false},
                  {"link_down", false},
                  {"nodes", std::move(nodes)}};
-  return {{"buses", {bus}}};
+  return {{"buses", {bus}}, {"lines", json::array()}};
 }
 
 TEST_F(CommandBench, BusStateTellsEachNodeAndItsHistory) {
@@ -73,9 +73,29 @@ TEST_F(CommandBench, BusStateTellsTheControllerAsFarAsItsInterfaceDoes) {
   EXPECT_THAT(told_of(kUnknown), HasSubstr("the interface tells of no controller\n"));
 }
 
+TEST_F(CommandBench, BusStateTellsEachUnitOfAModbusLine) {
+  const json unit{{"unit", 4},
+                  {"state", "is busy"},
+                  {"requests", 50},
+                  {"answers", 30},
+                  {"timeouts", 7},
+                  {"wrong_answers", 2},
+                  {"disconnects", 1},
+                  {"exceptions", {{{"code", 2}, {"count", 3}}, {{"code", 6}, {"count", 8}}}},
+                  {"last_trouble", {{"message", "slave 4: refused with exception 6: it is busy"}, {"age_s", 2.5}}}};
+  const json line{{"endpoint", "127.0.0.1 port 502"}, {"rounds", 40}, {"connections", 3}, {"units", {unit}}};
+  appliance_.answers("Bus.GetState", {{"buses", json::array()}, {"lines", {line}}});
+  const auto told = run({"bus", "state"});
+  EXPECT_EQ(told.exit_code, 0) << told.err;
+  for (const char* words : {"127.0.0.1 port 502: 40 rounds, opened 3 times", "is busy", "2: 3, 6: 8",
+                            "unit 4: slave 4: refused with exception 6: it is busy, 2.5 s ago"}) {
+    EXPECT_THAT(told.out, HasSubstr(words));
+  }
+}
+
 TEST_F(CommandBench, BusStateSaysThatNoBusRuns) {
-  appliance_.answers("Bus.GetState", {{"buses", json::array()}});
-  EXPECT_EQ(run({"bus", "state"}).out, "no CANopen bus runs\n");
+  appliance_.answers("Bus.GetState", {{"buses", json::array()}, {"lines", json::array()}});
+  EXPECT_EQ(run({"bus", "state"}).out, "no CANopen bus and no Modbus line runs\n");
   EXPECT_NE(run_at("/nonexistent/socket", {"bus", "state"}).exit_code, 0) << "it asks the appliance";
 }
 
