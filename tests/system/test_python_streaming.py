@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import random
 import sys
 import threading
 import unittest
@@ -220,6 +221,42 @@ class PythonStreamingTest(unittest.TestCase):
         self.assertAlmostEqual(path[-1], 40, places=6)
         self.assertLess(max(after - before for before, after in zip(path, path[1:])), 120 / 60 / 1000 * 1.001, "a gap")
         self.assertLess(rest[0], lines)
+
+    def test_a_program_that_is_interrupted_again_and_again_is_done_once(self):
+        client = self.start()
+        client.cam.SetFeedrate(120)
+        # Long and short lines, with rests between them, and a feed that changes.
+        program = [rmac.calls.RMAC_CAM.SetFeedrate(120), rmac.MoveTo((-40, 0, 0))]
+        place = -40.0
+        draw = random.Random(4)
+        while place < 38:
+            after = place + draw.choice((0.02, 0.3, 2.0))
+            program.append(rmac.Line((place, 0, 0), (after, 0, 0)))
+            if draw.random() < 0.2:
+                program.append(draw.choice((rmac.MoveTo((after, 0, 0)), rmac.Dwell(0.02), rmac.calls.RMAC_CAM.SetFeedrate(draw.choice((120, 180))))))
+            place = after
+        with Watcher(self.appliance) as watcher:
+            run, behind, cuts = client.run(program), 0, 0
+            while True:
+                try:
+                    left = draw.randint(1, 12)
+                    for part in run:
+                        behind += 1
+                        left -= 1
+                        if left == 0:
+                            client._connection._socket.shutdown(2)
+                    break
+                except rmac.Interrupted as interrupted:
+                    cuts += 1
+                    client.reconnect()
+                    client.lease.acquire()
+                    run = client.resume(interrupted)
+            path = watcher.positions()
+        path = path[path.index(min(path)) :]
+        self.assertGreater(cuts, 2)
+        self.assertAlmostEqual(path[-1], place, places=6)
+        self.assertLess(max(before - after for before, after in zip(itertools.accumulate(path, max), path)), 0.01)
+        self.assertLess(max(after - before for before, after in zip(path, path[1:])), 180 / 60 / 1000 * 1.001, "a gap")
 
     def test_an_interrupted_curve_goes_on_as_the_same_curve(self):
         client = self.start()

@@ -20,7 +20,7 @@ from rmac.machines import LoadedMachine, Machine, Steps, describe_loaded, find_m
 from rmac.run import Run
 from rmac.records import FlightRecord, read_flight_record
 from rmac.streaming.progress import Interrupted, is_done
-from rmac.streaming.resuming import resume
+from rmac.streaming.resuming import resume, runs
 from rmac.streaming.stream import Stream, free_id
 from rmac.wire.call import Call
 from rmac.wire.exchange import Promise
@@ -119,7 +119,7 @@ class Client(Methods):
     def resume(self, interrupted: Interrupted) -> Run:
         """Goes on with a program whose connection ended, at the place where the machine stands; what was done is not done
         again. `CannotResume` where that place is in doubt. Needs authority, on a connection that is there again."""
-        state = self.at_rest()
+        state = self._cycle_ended()
         moves, index = resume(interrupted, state)
         return self._run(moves, state, None, index, True)
 
@@ -188,6 +188,14 @@ class Client(Methods):
             raise
         connection.on_end = self._hearing.lost
         self._connection = connection
+
+    def _cycle_ended(self) -> dict[str, Any]:
+        """The state once the cycle of a lease that was lost is at its end: before, a state may be of a moment between two
+        moves, when nothing moved either."""
+        until = time.monotonic() + self._answer_within_s
+        while runs(state := self.state()) and time.monotonic() < until:
+            time.sleep(0.01)
+        return state
 
     def _run(self, moves: Iterable[Any], state: dict[str, Any], first_id: int | None, index: int, start: bool) -> Run:
         number = free_id(state, self._latest) if first_id is None else first_id

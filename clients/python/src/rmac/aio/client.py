@@ -20,7 +20,7 @@ from rmac.hearing import Hearer, Hearing
 from rmac.machines import LoadedMachine, Machine, Steps, describe_loaded, find_machines
 from rmac.records import FlightRecord, read_flight_record
 from rmac.streaming.progress import Interrupted, is_done
-from rmac.streaming.resuming import resume
+from rmac.streaming.resuming import resume, runs
 from rmac.streaming.stream import Stream, free_id
 from rmac.wire.call import Call
 from rmac.wire.exchange import Promise
@@ -117,7 +117,7 @@ class Client(Methods):
 
     async def resume(self, interrupted: Interrupted) -> Run:
         """As `rmac.Client.resume`: goes on at the place where the machine stands, or raises `CannotResume`."""
-        state = await self.at_rest()
+        state = await self._cycle_ended()
         moves, index = resume(interrupted, state)
         return self._run(moves, state, None, index, True)
 
@@ -186,6 +186,14 @@ class Client(Methods):
             raise
         connection.on_end = self._hearing.lost
         self._connection = connection
+
+    async def _cycle_ended(self) -> dict[str, Any]:
+        """The state once the cycle of a lease that was lost is at its end: before, a state may be of a moment between two
+        moves, when nothing moved either."""
+        until = time.monotonic() + self._answer_within_s
+        while runs(state := await self.state()) and time.monotonic() < until:
+            await asyncio.sleep(0.01)
+        return state
 
     def _run(self, moves: Iterable[Any], state: dict[str, Any], first_id: int | None, index: int, start: bool) -> Run:
         number = free_id(state, self._latest) if first_id is None else first_id

@@ -69,6 +69,13 @@ class Ledger:
         self.rests = self._in_queue == 0 and not state["moving"] and state["waits_for"] in ("", "moves")
         self._forget(self._counted - self._in_queue, self._before_machine_id())
 
+    def is_behind(self, move_id: int) -> bool:
+        """Whether a machine that is at this move has nothing begun of what is kept: it is the one that it was known to be at,
+        or one that is done. What has no motion a machine is never at, so that it need not be the last one that is done."""
+        if move_id == self.machine_id or self.last_done_id is None:
+            return move_id == self.machine_id
+        return move_id == self.last_done_id or (not self._own_ids and self.machine_id < move_id < self.last_done_id)
+
     def complete_all(self) -> None:
         self._forget(self._queued, self._index)
 

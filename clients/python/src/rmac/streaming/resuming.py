@@ -46,13 +46,17 @@ def resume(interrupted: Interrupted, state: dict[str, Any]) -> tuple[Iterator[An
     return rest, first.index if first is not None else ledger.taken
 
 
+def runs(state: dict[str, Any]) -> bool:
+    return state["moving"] or state["state"] in ("Running", "Holding", "Stopping")
+
+
 def _same_machine(ledger: Ledger, state: dict[str, Any]) -> None:
     if state["mechanism"] != ledger.mechanism:
         raise CannotResume(f"the machine is {state['mechanism']} now, and the program was for {ledger.mechanism}")
     if state["cycle"] < ledger.cycle:
         raise CannotResume("the appliance was started anew since, and does not know where the program was")
-    if state["moving"] or state["moves_in_buffer"]:
-        raise CannotResume("the machine moves, or has moves queued")
+    if runs(state) or state["moves_in_buffer"]:
+        raise CannotResume(f"the machine is {state['state']} with {state['moves_in_buffer']} moves queued; end that cycle first")
 
 
 def _place(ledger: Ledger, sent: list[Part], state: dict[str, Any]) -> int:
@@ -61,7 +65,7 @@ def _place(ledger: Ledger, sent: list[Part], state: dict[str, Any]) -> int:
     at = [number for number, part in enumerate(sent) if part.move.queues and part.move_id == state["move_id"]]
     if len(at) == 1:
         return at[0]
-    if not at and state["move_id"] in (ledger.machine_id, ledger.last_done_id):
+    if not at and ledger.is_behind(state["move_id"]):
         return 0
     raise CannotResume(f"the machine was at move {state['move_id']} last, which is none of those that the program waits for")
 
