@@ -33,7 +33,7 @@ class PythonAioTest(unittest.IsolatedAsyncioTestCase):
     async def test_a_second_task_watches_and_stops_what_the_first_feeds(self):
         async with self.client.authority():
             await self.client.load("DMACXYZ")
-            await self.client.cam.SetFeedrate(1200)
+            await self.client.cam.SetFeedrate(60)
             seen = []
 
             async def feed():
@@ -56,7 +56,7 @@ class PythonAioTest(unittest.IsolatedAsyncioTestCase):
             run = await self.client.run(program)
             self.assertEqual([part.index async for part in run], list(range(len(program))))
             self.assertEqual((run.done, run.taken, len(run)), (400, 400, 400))
-            await self.client.cam.SetFeedrate(120)
+            await self.client.cam.SetFeedrate(20)
             with self.assertRaises(rmac.Interrupted) as caught:
                 async for part in await self.client.run(program):
                     if part.index == 50:
