@@ -179,6 +179,17 @@ std::string joint_cause(const ServoFault& fault, const std::string& at) {
           "{}: its servo loop swings at about {:.3g} Hz, its effort by {:.3g} either way; lower its gains, or declare "
           "the resonance (Resonances, LowPass), look for loose mechanics, then reset",
           at, fault.value, fault.bound);
+    case ServoFault::Kind::WrongDirection:
+      return fmt::format(
+          "{}: it went {:.3g} faster and faster against an effort of {:.3g}; look for a motor or an encoder whose "
+          "direction is reversed (Direction, phases), or for what pushes it, then reset",
+          at, fault.value, fault.bound);
+    case ServoFault::Kind::StandsStill:
+      return fmt::format(
+          "{}: its position stands still for {:.3g} s, and it was to go {:.3g}; check the encoder and its coupling, "
+          "and "
+          "whether the axis is blocked, then reset",
+          at, fault.bound, fault.value);
     case ServoFault::Kind::EncoderJump:
       return fmt::format(
           "{}: its position jumped by {:.4g} within a cycle, and motion explains {:.4g}; check the encoder, its cable "
@@ -263,6 +274,8 @@ std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
     case Kind::VelocityBound:
     case Kind::TorqueBound:
     case Kind::Oscillation:
+    case Kind::WrongDirection:
+    case Kind::StandsStill:
     case Kind::EncoderJump:
     case Kind::Displaced:
     case Kind::ForceLimit:
@@ -333,6 +346,8 @@ MinorCode code_of(ServoFault::Kind kind) noexcept {
     case Kind::FollowingError:
     case Kind::TorqueBound:
     case Kind::Oscillation:
+    case Kind::WrongDirection:
+    case Kind::StandsStill:
     case Kind::ForceLimit:
     case Kind::ContactLost:
     case Kind::CyclesLost:

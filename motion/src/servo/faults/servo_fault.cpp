@@ -32,6 +32,10 @@ const char* to_string(ServoFault::Kind kind) noexcept {
       return "TorqueBound";
     case ServoFault::Kind::Oscillation:
       return "Oscillation";
+    case ServoFault::Kind::WrongDirection:
+      return "WrongDirection";
+    case ServoFault::Kind::StandsStill:
+      return "StandsStill";
     case ServoFault::Kind::EncoderJump:
       return "EncoderJump";
     case ServoFault::Kind::Displaced:

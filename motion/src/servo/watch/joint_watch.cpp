@@ -14,13 +14,20 @@ void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
     raise(ServoFault::Kind::EncoderJump, seen.jump, bounds.jump, faults);
   }
   watch_sensor(faults);
+  oscillation_.step(seen.loop, faults);
+  // Under force control the setpoint pushes against a part, which may stand still.
+  response_.step(
+      {.effort = oscillation_.acted(),
+       .position = seen.loop.position,
+       .position_set = joint_->method == ControlMethod::Force ? 0 : seen.following_error + seen.loop.position,
+       .out_of_bound = std::abs(seen.following_error) > joint_->max_following_error},
+      faults);
   if (!(std::abs(seen.following_error) <= joint_->max_following_error)) {
     raise(ServoFault::Kind::FollowingError, seen.following_error, joint_->max_following_error, faults);
   }
   if (too_fast_.step(seen.velocity, bounds.velocity)) {
     raise(ServoFault::Kind::VelocityBound, seen.velocity, bounds.velocity, faults);
   }
-  oscillation_.step(seen.loop, faults);
   if (joint_->method == ControlMethod::Force) watch_contact(seen, faults);
 }
 

@@ -7,6 +7,7 @@
 #include "servo/faults/fault_sink.hpp"
 #include "servo/watch/cycles_beyond.hpp"
 #include "servo/watch/oscillation_watch.hpp"
+#include "servo/watch/response_watch.hpp"
 
 namespace rmac {
 
@@ -27,13 +28,17 @@ class JointWatch {
  public:
   /// `joint` must outlive it; `index` names it in faults.
   JointWatch(const ServoJoint& joint, std::size_t index, double period_s) noexcept
-      : joint_(&joint), index_(static_cast<std::uint32_t>(index)), oscillation_(joint, index, period_s) {}
+      : joint_(&joint),
+        index_(static_cast<std::uint32_t>(index)),
+        oscillation_(joint, index, period_s),
+        response_(joint, index, period_s) {}
 
   void step(const JointSeen& seen, FaultSink& faults) noexcept;
   /// The joint is not under control.
   void rest() noexcept {
     too_fast_.restart();
     oscillation_.rest();
+    response_.rest();
   }
 
  private:
@@ -45,6 +50,7 @@ class JointWatch {
   std::uint32_t index_;
   CyclesBeyond too_fast_;
   OscillationWatch oscillation_;
+  ResponseWatch response_;
 };
 
 }  // namespace rmac

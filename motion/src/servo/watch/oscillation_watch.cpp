@@ -21,10 +21,10 @@ constexpr double kLeastAcceleration = 1e-3;
 
 /// What acted while the joint went its last way. A torque that drives measure is told with the position. What was
 /// commanded a cycle ago goes out now; what went out before acted.
-double OscillationWatch::acted(const OscillationSeen& seen) noexcept {
+void OscillationWatch::take_effort(const OscillationSeen& seen) noexcept {
   std::rotate(commanded_.begin(), commanded_.end() - 1, commanded_.end());
   commanded_[0] = seen.effort;
-  return seen.effort_measured ? seen.effort : commanded_[seen.answers_late ? 2 : 1];
+  last_effort_ = seen.effort_measured ? seen.effort : commanded_[seen.answers_late ? 2 : 1];
 }
 
 void OscillationWatch::begin() noexcept {
@@ -72,11 +72,12 @@ bool OscillationWatch::lasts() const noexcept {
 
 void OscillationWatch::step(const OscillationSeen& seen, FaultSink& faults) noexcept {
   const double way = begun_ ? seen.position - last_position_ : 0;
-  const double effort = acted(seen);
-  const double work = begun_ ? (effort - last_effort_) * (way - last_way_) : 0;
+  const double before = last_effort_;
+  take_effort(seen);
+  const double effort = last_effort_;
+  const double work = begun_ ? (effort - before) * (way - last_way_) : 0;
   last_position_ = seen.position;
   last_way_ = way;
-  last_effort_ = effort;
   begun_ = true;
   const bool turns = turns_.step(effort, kLeastSwing * joint_->max_effort);
   if (turned_ == 0 && !turns) return;

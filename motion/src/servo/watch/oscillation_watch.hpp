@@ -29,6 +29,8 @@ class OscillationWatch {
       : joint_(&joint), index_(static_cast<std::uint32_t>(index)), period_s_(period_s) {}
 
   void step(const OscillationSeen& seen, FaultSink& faults) noexcept;
+  /// The effort that acted while the joint went its last way.
+  [[nodiscard]] double acted() const noexcept { return last_effort_; }
   /// The joint is not under control.
   void rest() noexcept;
 
@@ -36,7 +38,7 @@ class OscillationWatch {
   static constexpr int kTurns = 7;     ///< three periods
   static constexpr int kCompared = 2;  ///< swings, the latest with the first
 
-  [[nodiscard]] double acted(const OscillationSeen& seen) noexcept;
+  void take_effort(const OscillationSeen& seen) noexcept;
   void begin() noexcept;
   void add_turn() noexcept;
   [[nodiscard]] double hz() const noexcept;

@@ -29,7 +29,10 @@ struct ServoFault {
     VelocityBound,   ///< value: the measured velocity, bound: what is allowed (mm/s or deg/s; of a spindle rpm)
     TorqueBound,     ///< value: the torque that the drive measures, bound: what is allowed (N·m); of a spindle too
     Oscillation,  ///< a joint's loop swings; value: Hz, as the cycles show it, bound: amplitude of its effort (N, N·m)
-    EncoderJump,  ///< value: the jump, bound: what motion can explain within a cycle (mm or deg)
+    WrongDirection,  ///< a joint goes faster and faster against its effort; value: the way, bound: the effort (N, N·m)
+    StandsStill,     ///< a joint is to move, and its position stays; value: the way that it was to go (mm or deg),
+                     ///< bound: for how many seconds it stands
+    EncoderJump,     ///< value: the jump, bound: what motion can explain within a cycle (mm or deg)
     Displaced,    ///< a joint is not where it was left, or not where it would be sent; value: how far it is from there,
                   ///< bound: what is allowed (mm or deg)
     SensorLost,   ///< a joint's force sensor gives no valid value, or a drive reports its encoder gone

@@ -1,0 +1,78 @@
+#include "servo/watch/response_watch.hpp"
+
+#include "unit/motion/servo/recorded_faults.hpp"
+#include "unit/motion/servo/servo_fixture.hpp"
+
+namespace rmac::servo_test {
+namespace {
+
+using Kind = ServoFault::Kind;
+using testing::IsEmpty;
+
+class AnsweringJoint : public testing::Test {
+ protected:
+  AnsweringJoint() { joint_.max_effort = 800; }
+  /// Cycles until something is found, or -1; the mass of 35 kg gets `share` of the effort.
+  int push(int cycles, double effort, double share) {
+    constexpr double kMass = 0.035, kCycle = 0.001;
+    for (int i = 1; i <= cycles; ++i) {
+      velocity_ += share * effort / kMass * kCycle;
+      position_ += velocity_ * kCycle;
+      watch_.step({.effort = effort, .position = position_, .position_set = position_}, faults_);
+      if (!faults_.raised.empty()) return i;
+    }
+    return -1;
+  }
+  ServoJoint joint_;
+  ResponseWatch watch_{joint_, 4, 0.001};
+  RecordedFaults faults_;
+  double position_ = 0, velocity_ = 0;
+};
+
+TEST_F(AnsweringJoint, IsFoundWithin10MsWhereItGoesTheWrongWayEitherWay) {
+  for (const double effort : {250.0, -250.0, 800.0}) {
+    watch_.rest();
+    faults_.raised.clear();
+    velocity_ = 0;
+    const int found = push(100, effort, -1);
+    ASSERT_GT(found, 0);
+    EXPECT_LE(found, 10);
+    EXPECT_EQ(faults_.raised[0].kind, Kind::WrongDirection);
+    EXPECT_EQ(faults_.raised[0].index, 4U);
+    EXPECT_LT(faults_.raised[0].value * effort, 0);
+  }
+}
+
+TEST_F(AnsweringJoint, MaySpeedUpWithItsEffortAndBrakeAgainstIt) {
+  EXPECT_EQ(push(50, 500, 1), -1);
+  EXPECT_EQ(push(50, -500, 1), -1);
+  EXPECT_EQ(push(50, 500, 0), -1) << "nor is it wrong to be held";
+}
+
+TEST_F(AnsweringJoint, MayBePushedAgainstALittleEffort) {
+  EXPECT_EQ(push(100, 199, -1), -1);
+}
+
+TEST_F(AnsweringJoint, StandsStillWhereItWasToGoAMillimetreOrLeavesItsBound) {
+  const auto go = [this](double step, double bound, bool moves) {
+    watch_.rest();
+    faults_.raised.clear();
+    for (int i = 0; i <= 3000; ++i) {
+      const double wanted = i * step;
+      watch_.step({.position = moves ? 0.5 * wanted : 7, .position_set = 7 + wanted, .out_of_bound = wanted > bound},
+                  faults_);
+      if (!faults_.raised.empty()) return i;
+    }
+    return -1;
+  };
+  EXPECT_EQ(go(0.2, 100, false), 20) << "20 ms, though it was to go a millimetre in five";
+  EXPECT_NEAR(go(0.01, 100, false), 100, 1) << "a millimetre, though it stands for longer";
+  EXPECT_NEAR(go(0.001, 0.5, false), 501, 1) << "its bound comes first";
+  EXPECT_EQ(faults_.raised[0].kind, Kind::StandsStill);
+  EXPECT_NEAR(faults_.raised[0].value, 0.5, 0.01);
+  EXPECT_EQ(go(0.01, 0.5, true), -1) << "it moves, by half";
+  EXPECT_EQ(go(0, 0, false), -1) << "it is to stand";
+}
+
+}  // namespace
+}  // namespace rmac::servo_test
