@@ -51,6 +51,19 @@ TEST_F(FaultText, NamesJointsThatAreHeld) {
   EXPECT_THAT(text(of_joint(3)), HasSubstr("joint 3: "));
 }
 
+TEST_F(FaultText, SaysOfALoopWhatIsWrongWithIt) {
+  const auto of_joint = [](ServoFault::Kind kind, double value, double bound) {
+    return ServoFault{kind, ServoFault::Part::Joint, 1, value, bound};
+  };
+  EXPECT_THAT(
+      text(of_joint(ServoFault::Kind::Oscillation, 274, 300)),
+      HasSubstr("joint 1 (Y): its servo loop swings at about 274 Hz, its effort by 300 either way; lower its gains"));
+  EXPECT_THAT(text(of_joint(ServoFault::Kind::WrongDirection, -0.1, 250)),
+              HasSubstr("joint 1 (Y): it went -0.1 faster and faster against an effort of 250; look for a motor"));
+  EXPECT_THAT(text(of_joint(ServoFault::Kind::StandsStill, 1, 0.02)),
+              HasSubstr("joint 1 (Y): its position stands still for 0.02 s, and it was to go 1; check the encoder"));
+}
+
 TEST_F(FaultText, NamesADrivesStateAsTheTopicOfDrivesDoes) {
   const ServoFault dropped{ServoFault::Kind::DriveDropped, ServoFault::Part::Actuator, 1, 0x0007};
   EXPECT_THAT(text(dropped), HasSubstr("drive of actuator 1 (bus far, axis 1): the drive left Operation Enabled by "
