@@ -151,7 +151,7 @@ TEST(Watching, BoundsThatAreNotDeclaredFollowFromTheJointsSpeed) {
 }
 
 /// The machine's clock, which misses so many deadlines when it is told to.
-class LateClock final : public Clock {
+class MissingClock final : public Clock {
  public:
   std::int64_t late_ns() const noexcept override { return 0; }
   void restart() noexcept override {}
@@ -164,7 +164,7 @@ class LateClock final : public Clock {
 
 TEST(Watching, MissedDeadlinesStopTheMachineBeyondTheirBound) {
   ControllerOptions options = TestMachine::options();
-  const auto clock = std::make_shared<LateClock>();
+  const auto clock = std::make_shared<MissingClock>();
   options.as_fast_as_computed = false;
   options.clock = clock;
   options.max_cycles_lost = 5;

@@ -183,7 +183,7 @@ class OffsetsOverTheBus : public MasterOverVirtualDrives {
     EXPECT_EQ(drive_state(feedback_[0].statusword), DriveState::OperationEnabled);
     const fieldbus::AxisPlantParameters plant;
     const double permille_per_count =
-        plant.inertia_kg_m2() * 2 * M_PI / plant.counts_per_revolution / plant.rated_torque_nm * 1000;
+        plant.inertia_kg_m2() * 2 * M_PI / plant.encoder.counts_per_revolution / plant.rated_torque_nm * 1000;
     const double from = feedback_[0].position_counts, w = 2 * M_PI / 0.2, amplitude = 65536;
     double farthest = 0;
     for (int i = 1; i <= 400; ++i) {
