@@ -38,7 +38,7 @@ class FlightRecorder(unittest.TestCase):
         appliance = self.start(flight_recorder={"seconds": 1})
         client, fault, record = self.fault(appliance)
         self.assertEqual((record["kind"], record["record"]), ("FlightRecord", fault["record"]))
-        self.assertIn("following error", fault["message"])
+        self.assertIn("stands still", fault["message"])
         self.assertEqual(client.state()["last_stop"], fault)
 
         status = self.rmac(appliance, "status")

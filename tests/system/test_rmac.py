@@ -127,7 +127,7 @@ class Operating(unittest.TestCase):
         weak.call("RMAC_Config.SetMechanismJointServoControlGains", JntNum=0, ServoControlGains=[15, 0, 0.1])
         weak.call("RMAC_Config.Apply")
         weak.call("authority.release")
-        self.assertIn("following error", self.assert_fails("jog", "--joint", "0", "--distance", "50"))
+        self.assertIn("stands still", self.assert_fails("jog", "--joint", "0", "--distance", "50"))
         self.assertEqual(self.state()["state"], "Faulted")
         self.assertIn("then reset", self.assert_fails("home"))
         self.rmac("reset")

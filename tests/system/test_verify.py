@@ -166,7 +166,7 @@ class Verify(unittest.TestCase):
         def gains_of_a_quicker_bus(device):
             for joint in device["Joints"]:
                 joint["Gains"][:3] = [gain * factor for gain, factor in zip(joint["Gains"], (4, 8, 3))]
-        self.assertIn("swings: at a steady speed", verify(gains_of_a_quicker_bus).stderr)
+        self.assertIn("swings", verify(gains_of_a_quicker_bus).stderr)
 
         def answer_at_once(device):
             gains_of_a_quicker_bus(device)

@@ -839,7 +839,7 @@ class Bus:
         self._call = call
 
     def GetState(self) -> dict[str, Any]:
-        """What the CANopen buses that run went through since they were started, as `buses`; of each `interface`, its counts, whether it is `bus_off` or `link_down`, and its `nodes` with `state`, `problem` (null: none), how often they were `lost` and `recovered`, `missed_answers`, jitter, and the latest `emergencies` and `aborts`, newest first."""
+        """What the buses that run went through since they were started. `buses`: of each CANopen `interface`, its counts, whether it is `bus_off` or `link_down`, its `controller` with `state` and error counters (null: it has none, or does not tell), and its `nodes` with `state`, `problem` (null: none), how often they were `lost` and `recovered`, `missed_answers`, jitter, and the latest `emergencies` and `aborts`, newest first. `lines`: of each Modbus `endpoint`, its `units` with `state`, requests and what came of them, `exceptions` by code, and the `last_trouble` (null: none)."""
         return self._call(calls.Bus.GetState())
 
 
