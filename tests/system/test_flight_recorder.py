@@ -61,7 +61,7 @@ class FlightRecorder(unittest.TestCase):
         cycles = [int(row["cycle"]) for row in rows]
         self.assertEqual(cycles, list(range(cycles[0], cycles[0] + len(cycles))))
         first = next(row for row in rows if row["fault"] != "None")
-        self.assertEqual((int(first["cycle"]), first["fault"]), (fault["cycle"], "FollowingError"))
+        self.assertEqual((int(first["cycle"]), first["fault"]), (fault["cycle"], "StandsStill"))
         error = max(abs(float(first[f"q{joint}"]) - float(first[f"a{joint}"])) for joint in (1, 2, 3))
         self.assertEqual(error, abs(float(first["fault_value"])))
         self.assertGreater(error, float(first["fault_bound"]))

@@ -7,7 +7,8 @@ namespace rmac {
 
 namespace {
 
-constexpr double kEffort = 0.25;     // of MaxEffort: less is what weight, blows and cuts may be
+constexpr double kEffort = 0.25;     // of MaxEffort: less is what blows and cuts may be
+constexpr double kAwayShare = 0.5;   // of the way against the effort by which it leaves its setpoint: weight has none
 constexpr double kAgainstS = 0.005;  // of speeding up against the effort
 constexpr int kAgainstCycles = 5;    // which are more than a word that came late explains
 constexpr double kStandsS = 0.02;
@@ -26,30 +27,35 @@ void ResponseWatch::rest() noexcept {
 void ResponseWatch::step(const ResponseSeen& seen, FaultSink& faults) noexcept {
   if (!begun_) {
     last_position_ = stood_at_ = seen.position;
+    error_before_ = seen.position_set - seen.position;
     wanted_at_ = seen.position_set;
     begun_ = true;
     return;
   }
   const double way = seen.position - last_position_;
   last_position_ = seen.position;
-  watch_direction(seen.effort, way, faults);
+  watch_direction(seen, way, faults);
   watch_standing(seen, faults);
   last_way_ = way;
 }
 
-void ResponseWatch::watch_direction(double effort, double way, FaultSink& faults) noexcept {
-  const bool pushed = joint_->max_effort > 0 && std::abs(effort) > kEffort * joint_->max_effort;
-  const bool faster = way * effort < 0 && std::abs(way) > std::abs(last_way_) && way * last_way_ >= 0;
+// A head that is let down speeds up against its effort, too, and goes where it is to go.
+void ResponseWatch::watch_direction(const ResponseSeen& seen, double way, FaultSink& faults) noexcept {
+  const double error = seen.position_set - seen.position;
+  const bool pushed = joint_->max_effort > 0 && std::abs(seen.effort) > kEffort * joint_->max_effort;
+  const bool faster = way * seen.effort < 0 && std::abs(way) > std::abs(last_way_) && way * last_way_ >= 0;
   if (!pushed || !faster) {
     against_ = 0;
     gone_ = 0;
+    error_before_ = error;
     return;
   }
   ++against_;
   gone_ += way;
   const int most = std::max(kAgainstCycles, static_cast<int>(std::ceil(kAgainstS / period_s_)));
-  if (against_ < most) return;
-  faults.raise({ServoFault::Kind::WrongDirection, ServoFault::Part::Joint, index_, gone_, effort});
+  const double away = (error_before_ - error) * (gone_ < 0 ? -1 : 1);
+  if (against_ < most || away < kAwayShare * std::abs(gone_)) return;
+  faults.raise({ServoFault::Kind::WrongDirection, ServoFault::Part::Joint, index_, gone_, seen.effort});
 }
 
 void ResponseWatch::watch_standing(const ResponseSeen& seen, FaultSink& faults) noexcept {

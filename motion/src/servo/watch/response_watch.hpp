@@ -15,8 +15,9 @@ struct ResponseSeen {
   bool out_of_bound = false;  ///< the following error is
 };
 
-/// Finds a joint that does not answer: it goes faster and faster against its effort, as with a motor or an encoder of
-/// the wrong sign; or it stands still while it is to move, as with an encoder that froze. Real-time safe.
+/// Finds a joint that does not answer: it goes faster and faster against its effort and away from its setpoint, as
+/// with a motor or an encoder of the wrong sign; or it stands still while it is to move, as with an encoder that froze.
+/// Real-time safe.
 class ResponseWatch {
  public:
   /// `joint` must outlive it; `index` names it in faults.
@@ -28,7 +29,7 @@ class ResponseWatch {
   void rest() noexcept;
 
  private:
-  void watch_direction(double effort, double way, FaultSink& faults) noexcept;
+  void watch_direction(const ResponseSeen& seen, double way, FaultSink& faults) noexcept;
   void watch_standing(const ResponseSeen& seen, FaultSink& faults) noexcept;
 
   const ServoJoint* joint_;
@@ -37,8 +38,9 @@ class ResponseWatch {
 
   bool begun_ = false;
   double last_position_ = 0, last_way_ = 0;
-  int against_ = 0;      ///< cycles on end
-  double gone_ = 0;      ///< way of them
+  int against_ = 0;  ///< cycles on end
+  double gone_ = 0;  ///< way of them
+  double error_before_ = 0;
   double stood_at_ = 0;  ///< where it stands, and was to stand when that began
   double wanted_at_ = 0;
   std::int64_t stands_ = 0;  ///< cycles

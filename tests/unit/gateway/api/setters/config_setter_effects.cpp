@@ -223,11 +223,11 @@ const std::vector<SetterEffect>& config_setter_effects() {
       {"RMAC_Config.SetMechanismJointWatch",
        [](SetterBench& bench) {
          EXPECT_NEAR(bench.joints_to({30, 0, 0}).back().position[0], 30, 0.05);
-         bench.call("RMAC_Config.SetMechanismJointWatch", R"({"JntNum": 0, "MaxFollowingError": 0.002, "MaxEffort": 5})");
+         bench.call("RMAC_Config.SetMechanismJointWatch", R"({"JntNum": 0, "MaxFollowingError": 0.2, "MaxEffort": 5})");
          bench.apply();
          bench.call("RMAC_CAM.MoveToJointTarget", R"({"MoveID": 2, "JointTargetFrame": {"joints": [0, 0, 0]}})");
-         bench.run_until([&] { return bench.now().fault.kind == ServoFault::Kind::FollowingError; });
-         EXPECT_EQ(bench.now().fault.bound, 0.002) << "5 N do not even overcome friction";
+         bench.run_until([&] { return bench.now().fault.kind == ServoFault::Kind::StandsStill; });
+         EXPECT_NEAR(bench.now().fault.value, -0.2, 0.02) << "5 N do not even overcome friction";
        }},
       {"RMAC_Config.SetMechanismJointLimitType",
        [](SetterBench& bench) {

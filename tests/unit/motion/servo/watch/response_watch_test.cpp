@@ -12,13 +12,14 @@ using testing::IsEmpty;
 class AnsweringJoint : public testing::Test {
  protected:
   AnsweringJoint() { joint_.max_effort = 800; }
-  /// Cycles until something is found, or -1; the mass of 35 kg gets `share` of the effort.
-  int push(int cycles, double effort, double share) {
+  /// Cycles until something is found, or -1; the mass of 35 kg gets `share` of the effort, and is to stand, or to go
+  /// so.
+  int push(int cycles, double effort, double share, bool is_to = false) {
     constexpr double kMass = 0.035, kCycle = 0.001;
     for (int i = 1; i <= cycles; ++i) {
       velocity_ += share * effort / kMass * kCycle;
       position_ += velocity_ * kCycle;
-      watch_.step({.effort = effort, .position = position_, .position_set = position_}, faults_);
+      watch_.step({.effort = effort, .position = position_, .position_set = is_to ? position_ : 0}, faults_);
       if (!faults_.raised.empty()) return i;
     }
     return -1;
@@ -44,9 +45,17 @@ TEST_F(AnsweringJoint, IsFoundWithin10MsWhereItGoesTheWrongWayEitherWay) {
 }
 
 TEST_F(AnsweringJoint, MaySpeedUpWithItsEffortAndBrakeAgainstIt) {
-  EXPECT_EQ(push(50, 500, 1), -1);
-  EXPECT_EQ(push(50, -500, 1), -1);
-  EXPECT_EQ(push(50, 500, 0), -1) << "nor is it wrong to be held";
+  EXPECT_EQ(push(50, 500, 1, true), -1);
+  EXPECT_EQ(push(50, -500, 1, true), -1);
+  EXPECT_EQ(push(50, 500, 0, true), -1) << "nor is it wrong to be held";
+}
+
+TEST_F(AnsweringJoint, MayLetAHeavyHeadDownAgainstAnyEffort) {
+  for (const double effort : {-790.0, -400.0, 400.0, 790.0}) {
+    watch_.rest();
+    velocity_ = 0;
+    EXPECT_EQ(push(200, effort, -0.3, true), -1) << effort;
+  }
 }
 
 TEST_F(AnsweringJoint, MayBePushedAgainstALittleEffort) {
