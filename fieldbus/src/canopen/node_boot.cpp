@@ -138,10 +138,10 @@ void NodeBoot::take_heartbeat(NmtState said, std::chrono::nanoseconds now) noexc
 }
 
 BootProblem NodeBoot::problem_of(const BootStep& step) const noexcept {
-  BootProblem problem{.object = step.object,
-                      .expected = step.value,
-                      .writing = step.kind == BootStep::Kind::Write || step.kind == BootStep::Kind::Store,
-                      .needed = step.needed};
+  const bool writing = step.kind == BootStep::Kind::Write || step.kind == BootStep::Kind::Store;
+  // `value` of a write is what may be there already.
+  BootProblem problem{
+      .object = step.object, .expected = writing ? 0 : step.value, .writing = writing, .needed = step.needed};
   for (std::size_t i = 0; problem.writing && i < step.bytes.size() && i < 4; ++i) {
     problem.expected |= static_cast<std::uint32_t>(step.bytes[i]) << (8 * i);
   }

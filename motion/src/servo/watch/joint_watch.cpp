@@ -15,13 +15,11 @@ void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
   }
   watch_sensor(faults);
   oscillation_.step(seen.loop, faults);
-  // Under force control the setpoint pushes against a part, which may stand still.
-  response_.step(
-      {.effort = oscillation_.acted(),
-       .position = seen.loop.position,
-       .position_set = joint_->method == ControlMethod::Force ? 0 : seen.following_error + seen.loop.position,
-       .out_of_bound = std::abs(seen.following_error) > joint_->max_following_error},
-      faults);
+  response_.step({.effort = oscillation_.acted(),
+                  .position = seen.loop.position,
+                  .position_set = seen.following_error + seen.loop.position,
+                  .out_of_bound = std::abs(seen.following_error) > joint_->max_following_error},
+                 faults);
   if (!(std::abs(seen.following_error) <= joint_->max_following_error)) {
     raise(ServoFault::Kind::FollowingError, seen.following_error, joint_->max_following_error, faults);
   }

@@ -12,6 +12,7 @@ constexpr double kAwayShare = 0.5;   // of the way against the effort by which i
 constexpr double kAgainstS = 0.005;  // of speeding up against the effort
 constexpr int kAgainstCycles = 5;    // which are more than a word that came late explains
 constexpr double kStandsS = 0.02;
+constexpr int kStandsCycles = 5;       // which are more than answers that come late, or once not, explain
 constexpr double kStandsWay = 1;       // mm or degrees that it was to go meanwhile
 constexpr double kStandsShare = 0.01;  // of what it was to go: less is standing
 
@@ -34,8 +35,11 @@ void ResponseWatch::step(const ResponseSeen& seen, FaultSink& faults) noexcept {
   }
   const double way = seen.position - last_position_;
   last_position_ = seen.position;
-  watch_direction(seen, way, faults);
-  watch_standing(seen, faults);
+  // Force control goes where the part lets it: down behind what it lets down, back where less is wanted, or nowhere.
+  if (joint_->method != ControlMethod::Force) {
+    watch_direction(seen, way, faults);
+    watch_standing(seen, faults);
+  }
   last_way_ = way;
 }
 
@@ -66,8 +70,12 @@ void ResponseWatch::watch_standing(const ResponseSeen& seen, FaultSink& faults) 
     wanted_at_ = seen.position_set;
     return;
   }
+  if (wanted == 0) {
+    stands_ = 0;  // as it is to
+    return;
+  }
   ++stands_;
-  if (wanted == 0 || static_cast<double>(stands_) * period_s_ < kStandsS) return;
+  if (stands_ < kStandsCycles || static_cast<double>(stands_) * period_s_ < kStandsS) return;
   if (std::abs(wanted) < kStandsWay && !seen.out_of_bound) return;
   faults.raise({ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, wanted,
                 static_cast<double>(stands_) * period_s_});

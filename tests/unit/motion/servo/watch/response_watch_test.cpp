@@ -58,6 +58,30 @@ TEST_F(AnsweringJoint, MayLetAHeavyHeadDownAgainstAnyEffort) {
   }
 }
 
+TEST_F(AnsweringJoint, GoesWhereThePartLetsItUnderForceControl) {
+  joint_.method = ControlMethod::Force;
+  EXPECT_EQ(push(100, 700, -1), -1);
+  for (int i = 0; i < 1000; ++i)
+    watch_.step({.effort = 700, .position = position_, .position_set = i * 0.1, .out_of_bound = true}, faults_);
+  EXPECT_THAT(faults_.raised, IsEmpty());
+}
+
+TEST_F(AnsweringJoint, MayStandForAnHourBeforeItGoesALongWayInTheFirstCycles) {
+  for (int i = 0; i < 3'600'000; ++i) watch_.step({.position = 7, .position_set = 7}, faults_);
+  for (int i = 1; i <= 15; ++i)  // until the first answer that is not of its rest
+    watch_.step({.position = 7, .position_set = 7 + 0.02 * i * i, .out_of_bound = i > 8}, faults_);
+  EXPECT_THAT(faults_.raised, IsEmpty());
+}
+
+TEST_F(AnsweringJoint, MayMissAnAnswerInSlowCycles) {
+  ResponseWatch slow{joint_, 4, 0.02};
+  for (int i = 0; i < 200; ++i) {
+    const double there = i % 4 == 3 ? i - 1 : i;
+    slow.step({.position = 2 * there, .position_set = 2.0 * i}, faults_);
+  }
+  EXPECT_THAT(faults_.raised, IsEmpty());
+}
+
 TEST_F(AnsweringJoint, MayBePushedAgainstALittleEffort) {
   EXPECT_EQ(push(100, 199, -1), -1);
 }
