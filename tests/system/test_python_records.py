@@ -64,6 +64,16 @@ class PythonRecordsTest(unittest.TestCase):
             with self.assertRaises(rmac.ConnectionLost):
                 for _ in events:
                     pass
+            with self.assertRaises(rmac.ConnectionLost):
+                next(events)
+
+    def test_a_rate_that_was_refused_is_not_asked_for_again(self):
+        with rmac.connect(self.address) as other, self.client.record():
+            with self.assertRaises(rmac.errors.RateTaken), other.record():
+                pass
+            with other.record(100):
+                pass
+            other.reconnect()
 
     def test_states_come_as_often_as_asked(self):
         with self.client.states(50) as states:

@@ -175,6 +175,54 @@ class PythonStreamingTest(unittest.TestCase):
         client.until_done()
         client.run([rmac.MoveTo((3, 0, 0))]).wait()
 
+    def test_a_run_made_before_another_one_counts_its_own_moves_only(self):
+        client = self.start()
+        program = [rmac.MoveTo((0, 0, 0)), *rmac.polyline((x, 0, 0) for x in range(11))]
+        with Watcher(self.appliance) as watcher:
+            first, second = client.run(program), client.run(program)
+            ids = [part.move_id for part in first]
+            for part in second:
+                ids.append(part.move_id)
+                self.assertGreaterEqual(client.state()["move_id"], part.move_id)  # what is given as done is begun at least
+            self.assertEqual(len(set(ids)), 2 * len(program))
+            self.assertEqual(client.state()["moves_in_buffer"], 0)
+            self.assertTrue(set(watcher.done()) <= set(ids))
+
+    def test_a_run_left_by_an_exception_stands_in_nobodys_way(self):
+        client = self.start()
+        with self.assertRaises(KeyError), client.authority():
+            for _ in client.run([rmac.MoveTo((1, 0, 0)), rmac.MoveTo((2, 0, 0)), rmac.MoveTo((3, 0, 0))]):
+                raise KeyError
+        with client.authority():
+            client.run([rmac.MoveTo((4, 0, 0))]).wait()
+            client.cam.SetFeedrate(5)
+            left = client.run([rmac.MoveTo((0, 0, 0)), rmac.Line((0, 0, 0), (40, 0, 0))])
+            next(iter(left))
+        with client.authority(), self.assertRaises(rmac.RmacError):
+            left.wait()
+
+    def test_a_connection_that_ends_before_a_run_begins_blocks_no_later_run(self):
+        client = self.start()
+        run = client.run([rmac.MoveTo((1, 0, 0))])
+        client.close()
+        with self.assertRaises(rmac.ConnectionLost):
+            run.wait()
+        client.reconnect()
+        with client.authority():
+            client.run([rmac.MoveTo((2, 0, 0))]).wait()
+
+    def test_what_could_not_be_taken_up_is_not_lost_and_is_taken_up_once(self):
+        client = self.start()
+        interrupted = self.interrupt(client, [rmac.MoveTo((0, 0, 0)), rmac.Line((0, 0, 0), (40, 0, 0)), rmac.Line((40, 0, 0), (40, 5, 0))], 0)
+        client.reconnect()
+        with self.assertRaises(rmac.AuthorityRequired):
+            client.resume(interrupted).wait()
+        with client.authority():
+            client.resume(interrupted).wait()
+            self.assertAlmostEqual(client.state()["joints"][1], 5, places=2)
+            with self.assertRaisesRegex(rmac.CannotResume, "already"):
+                client.resume(interrupted)
+
     def test_an_appliance_that_was_started_anew_does_not_go_on(self):
         client = self.start()
         interrupted = self.interrupt(client, [rmac.MoveTo((0, 0, 0)), rmac.Line((0, 0, 0), (40, 0, 0))], 0)

@@ -57,6 +57,15 @@ class ConnectingTest(unittest.TestCase):
             with rmac.connect(peer.address, answer_within_s=0.05) as client, self.assertRaisesRegex(rmac.NotAnswered, "GetState"):
                 client.state()
 
+    def test_many_answers_that_do_not_come_are_told_as_one(self):
+        with Peer(lambda request: GREETING if request["method"] == "hello" else b"") as peer:
+            with rmac.connect(peer.address, answer_within_s=0.05) as client, self.assertRaises(rmac.NotAnswered):
+                client.machines()
+
+    def test_what_is_no_name_of_a_host_is_told(self):
+        with self.assertRaisesRegex(rmac.CannotConnect, "no name"):
+            rmac.connect("a..b:7402")
+
     def test_all_that_can_go_wrong_is_an_rmac_error_and_what_python_has_of_it(self):
         self.assertTrue(issubclass(rmac.CannotConnect, ConnectionError))
         self.assertTrue(issubclass(rmac.InvalidValue, ValueError))

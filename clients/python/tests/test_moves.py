@@ -71,6 +71,12 @@ class MovesTest(unittest.TestCase):
         with self.assertRaisesRegex(InvalidValue, "not both"):
             Pose((0, 0, 0), (0, 0, 1), q=(1, 0, 0, 0))
 
+    def test_what_cannot_be_sent_between_moves_is_refused_where_it_is_made(self):
+        for make in (lambda: rmac.InTurn(rmac.calls.RMAC_CAM.SetFeedrate(math.nan)), lambda: rmac.ProgramStop(object()),
+                     lambda: rmac.MoveTo((10**400, 0, 0))):
+            with self.assertRaises(rmac.InvalidValue):
+                make()
+
     def test_curves_that_are_none_are_refused_with_the_reason(self):
         points = [(0, 0, 0), (1, 0, 0), (2, 0, 0)]
         for make, told in (

@@ -35,6 +35,8 @@ class Address:
                 connected = socket.socket(socket.AF_UNIX)
                 connected.settimeout(within_s)
                 connected.connect(self.path)
+        except UnicodeError:
+            raise self.no_name() from None
         except OSError as error:
             raise self.unreachable(error) from error
         connected.settimeout(None)
@@ -50,6 +52,9 @@ class Address:
             raise self.unreachable(error) from error
         if not stat.S_ISSOCK(mode):
             raise CannotConnect(f"{self}: this is a file, and no socket")
+
+    def no_name(self) -> CannotConnect:
+        return CannotConnect(f"{self}: this is no name of a host")
 
     def unreachable(self, error: OSError) -> CannotConnect:
         hint = "; is rmacd running there?" if isinstance(error, ConnectionRefusedError) else ""

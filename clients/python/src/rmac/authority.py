@@ -36,8 +36,9 @@ class Authority:
     """Taken at the beginning of the block and given back at its end, which stops a machine that still moves, and drops
     what is queued: whoever leaves by an exception leaves a machine at rest."""
 
-    def __init__(self, call: BlockingCaller) -> None:
+    def __init__(self, call: BlockingCaller, over: Callable[[], None]) -> None:
         self._call = call
+        self._over = over
         self._renewal: Renewal | None = None
         self.dropped_moves = 0  # of whoever had it before
 
@@ -51,7 +52,10 @@ class Authority:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         if self._renewal is not None:
             self._renewal.end()
-        _give_back(self._call, calls.Lease.release(), error)
+        try:
+            _give_back(self._call, calls.Lease.release(), error)
+        finally:
+            self._over()
 
 
 class OperatorPlace:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import concurrent.futures
 import threading
 import time
 from collections.abc import Iterable, Sequence
@@ -20,7 +21,7 @@ from rmac.machines import LoadedMachine, Machine, Steps, describe_loaded, find_m
 from rmac.run import Run
 from rmac.records import FlightRecord, read_flight_record
 from rmac.streaming.progress import Interrupted, is_done
-from rmac.streaming.resuming import resume, runs
+from rmac.streaming.resuming import check_left, resume, runs
 from rmac.streaming.stream import Stream, free_id
 from rmac.wire.call import Call
 from rmac.wire.exchange import Promise
@@ -82,12 +83,11 @@ class Client(Methods):
     def call_all(self, calls: Sequence[Call[Any]]) -> list[Any]:
         """Sends them together, in their order; the first refusal is raised once all are answered."""
         replies = [(self._connection.send(call), call) for call in calls]
-        for reply, _ in replies:
-            reply.exception(self._answer_within_s)
-        return [self._connection.wait(reply, call.method, self._answer_within_s) for reply, call in replies]
+        concurrent.futures.wait([reply for reply, _ in replies], self._answer_within_s)
+        return [self._connection.wait(reply, call.method, 0) for reply, call in replies]
 
     def authority(self) -> Authority:
-        return Authority(self.call)
+        return Authority(self.call, self._authority_over)
 
     def operator(self) -> OperatorPlace:
         return OperatorPlace(self.call)
@@ -119,6 +119,7 @@ class Client(Methods):
     def resume(self, interrupted: Interrupted) -> Run:
         """Goes on with a program whose connection ended, at the place where the machine stands; what was done is not done
         again. `CannotResume` where that place is in doubt. Needs authority, on a connection that is there again."""
+        check_left(interrupted)
         state = self._cycle_ended()
         moves, index = resume(interrupted, state)
         return self._run(moves, state, None, index, True)
@@ -154,11 +155,21 @@ class Client(Methods):
         found: FlightRecord = self._follow(read_flight_record(name))
         return found
 
-    def feeds(self, run: Run | None) -> None:
+    def feeds(self, run: Run) -> None:
         """One program at a time: two would come to the machine mixed."""
-        if run is not None and self._fed is not None:
+        if self._fed is not None:
             raise RmacError("another run of this client is not at its end: wait for it, or close it")
         self._fed = run
+
+    def feeds_no_more(self, run: Run) -> None:
+        if self._fed is run:
+            self._fed = None
+
+    def begin(self, stream: Stream, first_id: int | None) -> None:
+        """Nothing of it was sent. What the machine did since the run was made is none of it."""
+        state = self.state()
+        stream.begin(state, free_id(state, self._latest) if first_id is None else first_id)
+        self._latest = stream
 
     def send_batch(self, requests: Sequence[tuple[str, str]], promise: Promise) -> None:
         """Of each its method and its parameters as JSON; the promise gets a list of outcomes."""
@@ -167,7 +178,11 @@ class Client(Methods):
     def hear(self, hearer: Hearer) -> None:
         """Has a topic come; `take` is called in the thread that reads, and must not call back."""
         with self._subscribing:
-            self.call(self._hearing.add(hearer))
+            try:
+                self.call(self._hearing.add(hearer))
+            except BaseException:
+                self._hearing.forget(hearer)  # or it would be asked for with every topic that comes after
+                raise
 
     def unhear(self, hearer: Hearer) -> None:
         with self._subscribing:
@@ -189,6 +204,13 @@ class Client(Methods):
         connection.on_end = self._hearing.lost
         self._connection = connection
 
+    def _authority_over(self) -> None:
+        """A run that was left in its midst, by an exception in the body of its loop, stands in nobody's way from here on."""
+        run = self._fed
+        if run is not None and run.left:
+            self.feeds_no_more(run)
+            run.give_up(RmacError("the authority under which this program was fed is given back"))
+
     def _cycle_ended(self) -> dict[str, Any]:
         """The state once the cycle of a lease that was lost is at its end: before, a state may be of a moment between two
         moves, when nothing moved either."""
@@ -198,9 +220,8 @@ class Client(Methods):
         return state
 
     def _run(self, moves: Iterable[Any], state: dict[str, Any], first_id: int | None, index: int, start: bool) -> Run:
-        number = free_id(state, self._latest) if first_id is None else first_id
-        self._latest = Stream(moves, state, self.greeting.queue_capacity, number, index, self.greeting.line_bytes)
-        return Run(self, self._latest, start)
+        stream = Stream(moves, state, self.greeting.queue_capacity, first_id or 1, index, self.greeting.line_bytes)
+        return Run(self, stream, start, first_id)
 
     def _follow(self, steps: Steps) -> Any:
         try:

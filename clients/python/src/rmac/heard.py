@@ -42,6 +42,8 @@ class Heard(Generic[T]):
 
     def next(self, within_s: float | None = None) -> T:
         """The next one, or `NotAnswered` when none comes in time."""
+        if self._come.empty() and self._client.lost is not None:
+            raise self._client.lost
         try:
             come = self._come.get(timeout=within_s)
         except queue.Empty:

@@ -30,8 +30,11 @@ class Hearing:
         self._hearers += (hearer,)
         return self._subscription(hearer.topic)
 
-    def remove(self, hearer: Hearer) -> Call[bool]:
+    def forget(self, hearer: Hearer) -> None:
         self._hearers = tuple(one for one in self._hearers if one is not hearer)
+
+    def remove(self, hearer: Hearer) -> Call[bool]:
+        self.forget(hearer)
         if any(one.topic == hearer.topic for one in self._hearers):
             return self._subscription(hearer.topic)
         return calls.Connection.unsubscribe([hearer.topic])

@@ -24,12 +24,14 @@ class Run:
     """Iterating feeds the program and gives each part of it when it is done, with its `index`, `move_id` and `move`; `wait`
     feeds it to its end. `len` is known where the program's is, so `tqdm(run)` shows how far it is."""
 
-    def __init__(self, client: Client, stream: Stream, start: bool) -> None:
+    def __init__(self, client: Client, stream: Stream, start: bool, first_id: int | None) -> None:
         self._client = client
         self._stream = stream
         self._start = start
+        self._first_id = first_id
         self._changed = threading.Condition()
         self._news: deque[tuple[Callable[[Any], None], Any]] = deque()  # for the stream, from the thread that reads
+        self._hearer = Hearer("state", STATE_RATE_HZ, self._heard, self.set_exception)
         self._parts = self._feed()
 
     def __iter__(self) -> Iterator[Part]:
@@ -49,6 +51,20 @@ class Run:
     def taken(self) -> int:
         """Moves that the appliance has taken."""
         return self._stream.ledger.taken
+
+    @property
+    def left(self) -> bool:
+        """Nobody feeds it just now: the one that iterates is in the body of its loop, or out of it."""
+        return not self._parts.gi_running
+
+    def give_up(self, error: RmacError) -> None:
+        """Who iterates it once more is told why it is at its end."""
+        self._tell(self._stream.give_up, error)
+        self._unhear()
+
+    def _unhear(self) -> None:
+        with contextlib.suppress(RmacError):
+            self._client.unhear(self._hearer)
 
     def close(self) -> None:
         """Feeds no more of it. What was taken is machined, unless authority ends."""
@@ -79,9 +95,9 @@ class Run:
 
     def _feed(self) -> Generator[Part, None, None]:
         self._client.feeds(self)
-        hearer = Hearer("state", STATE_RATE_HZ, self._heard, self.set_exception)
-        self._client.hear(hearer)
         try:
+            self._client.begin(self._stream, self._first_id)
+            self._client.hear(self._hearer)
             if self._start:
                 self._client.cam.CycleStart("AUTOMATIC")
             while not self._stream.ended or self._stream.ledger.finished:
@@ -89,9 +105,8 @@ class Run:
             if self._stream.failure is not None:
                 raise self._stream.failure
         finally:
-            self._client.feeds(None)
-            with contextlib.suppress(RmacError):
-                self._client.unhear(hearer)
+            self._client.feeds_no_more(self)
+            self._unhear()
 
     def _step(self) -> Iterator[Part]:
         with self._changed:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+from collections.abc import Awaitable, Callable
 from types import TracebackType
 from typing import Any
 
@@ -16,8 +17,9 @@ from rmac.wire.call import Call
 class Authority:
     """As `rmac.authority.Authority`: its end stops a machine that still moves, and drops what is queued."""
 
-    def __init__(self, call: AwaitingCaller) -> None:
+    def __init__(self, call: AwaitingCaller, over: Callable[[], Awaitable[None]]) -> None:
         self._call = call
+        self._over = over
         self._renewal: asyncio.Task[None] | None = None
         self.dropped_moves = 0  # of whoever had it before
 
@@ -31,7 +33,10 @@ class Authority:
     async def __aexit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         if self._renewal is not None:
             self._renewal.cancel()
-        await _give_back(self._call, calls.Lease.release(), error)
+        try:
+            await _give_back(self._call, calls.Lease.release(), error)
+        finally:
+            await self._over()
 
     async def _renew(self, every_s: float) -> None:
         with contextlib.suppress(ConnectionLost, Refused):  # who moves next is told

@@ -20,7 +20,7 @@ from rmac.hearing import Hearer, Hearing
 from rmac.machines import LoadedMachine, Machine, Steps, describe_loaded, find_machines
 from rmac.records import FlightRecord, read_flight_record
 from rmac.streaming.progress import Interrupted, is_done
-from rmac.streaming.resuming import resume, runs
+from rmac.streaming.resuming import check_left, resume, runs
 from rmac.streaming.stream import Stream, free_id
 from rmac.wire.call import Call
 from rmac.wire.exchange import Promise
@@ -79,6 +79,8 @@ class Client(Methods):
     async def call_all(self, calls: Sequence[Call[Any]]) -> list[Any]:
         """Sends them together, in their order; the first refusal is raised once all are answered."""
         replies = [self._connection.send(call) for call in calls]
+        if not replies:
+            return []
         await asyncio.wait([reply.future for reply in replies], timeout=self._answer_within_s)
         answers: list[Any] = await asyncio.gather(*(self._connection.wait(reply, call, 0) for reply, call in zip(replies, calls)), return_exceptions=True)
         for answer in answers:
@@ -87,7 +89,7 @@ class Client(Methods):
         return answers
 
     def authority(self) -> Authority:
-        return Authority(self.call)
+        return Authority(self.call, self._authority_over)
 
     def operator(self) -> OperatorPlace:
         return OperatorPlace(self.call)
@@ -117,6 +119,7 @@ class Client(Methods):
 
     async def resume(self, interrupted: Interrupted) -> Run:
         """As `rmac.Client.resume`: goes on at the place where the machine stands, or raises `CannotResume`."""
+        check_left(interrupted)
         state = await self._cycle_ended()
         moves, index = resume(interrupted, state)
         return self._run(moves, state, None, index, True)
@@ -152,11 +155,21 @@ class Client(Methods):
         found: FlightRecord = await self._follow(read_flight_record(name))
         return found
 
-    def feeds(self, run: Run | None) -> None:
+    def feeds(self, run: Run) -> None:
         """One program at a time: two would come to the machine mixed."""
-        if run is not None and self._fed is not None:
+        if self._fed is not None:
             raise RmacError("another run of this client is not at its end: wait for it, or close it")
         self._fed = run
+
+    def feeds_no_more(self, run: Run) -> None:
+        if self._fed is run:
+            self._fed = None
+
+    async def begin(self, stream: Stream, first_id: int | None) -> None:
+        """Nothing of it was sent. What the machine did since the run was made is none of it."""
+        state = await self.state()
+        stream.begin(state, free_id(state, self._latest) if first_id is None else first_id)
+        self._latest = stream
 
     async def send_batch(self, requests: Sequence[tuple[str, str]], promise: Promise) -> None:
         """Of each its method and its parameters as JSON; the promise gets a list of outcomes."""
@@ -165,7 +178,11 @@ class Client(Methods):
     async def hear(self, hearer: Hearer) -> None:
         """Has a topic come; `take` is called in the loop."""
         async with self._subscribing:
-            await self.call(self._hearing.add(hearer))
+            try:
+                await self.call(self._hearing.add(hearer))
+            except BaseException:
+                self._hearing.forget(hearer)  # or it would be asked for with every topic that comes after
+                raise
 
     async def unhear(self, hearer: Hearer) -> None:
         async with self._subscribing:
@@ -187,6 +204,13 @@ class Client(Methods):
         connection.on_end = self._hearing.lost
         self._connection = connection
 
+    async def _authority_over(self) -> None:
+        """A run that was left in its midst, by an exception in the body of its loop, stands in nobody's way from here on."""
+        run = self._fed
+        if run is not None and run.left:
+            self.feeds_no_more(run)
+            await run.give_up(RmacError("the authority under which this program was fed is given back"))
+
     async def _cycle_ended(self) -> dict[str, Any]:
         """The state once the cycle of a lease that was lost is at its end: before, a state may be of a moment between two
         moves, when nothing moved either."""
@@ -196,9 +220,8 @@ class Client(Methods):
         return state
 
     def _run(self, moves: Iterable[Any], state: dict[str, Any], first_id: int | None, index: int, start: bool) -> Run:
-        number = free_id(state, self._latest) if first_id is None else first_id
-        self._latest = Stream(moves, state, self.greeting.queue_capacity, number, index, self.greeting.line_bytes)
-        return Run(self, self._latest, start)
+        stream = Stream(moves, state, self.greeting.queue_capacity, first_id or 1, index, self.greeting.line_bytes)
+        return Run(self, stream, start, first_id)
 
     async def _follow(self, steps: Steps) -> Any:
         try:

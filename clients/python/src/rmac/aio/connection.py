@@ -51,6 +51,8 @@ class Connection:
             reader, writer = await asyncio.wait_for(opening, within_s)
         except asyncio.TimeoutError:
             raise CannotConnect(f"{address}: nobody answered within {within_s:g} s") from None
+        except UnicodeError:
+            raise address.no_name() from None
         except OSError as error:
             raise address.unreachable(error) from error
         if not address.path:

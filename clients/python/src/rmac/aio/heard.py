@@ -36,6 +36,8 @@ class Heard(Generic[T]):
         return self
 
     async def __anext__(self) -> T:
+        if self._come.empty() and self._client.lost is not None:
+            raise self._client.lost
         come = await self._come.get()
         if isinstance(come, RmacError):
             raise come

@@ -22,11 +22,13 @@ class Run:
     """`async for part in run` feeds the program and gives each part of it when it is done; `await run.wait()` feeds it to
     its end."""
 
-    def __init__(self, client: Client, stream: Stream, start: bool) -> None:
+    def __init__(self, client: Client, stream: Stream, start: bool, first_id: int | None) -> None:
         self._client = client
         self._stream = stream
         self._start = start
+        self._first_id = first_id
         self._changed = asyncio.Event()
+        self._hearer = Hearer("state", STATE_RATE_HZ, self._heard, self.set_exception)
         self._parts = self._feed()
 
     def __aiter__(self) -> AsyncIterator[Part]:
@@ -46,6 +48,20 @@ class Run:
     def taken(self) -> int:
         """Moves that the appliance has taken."""
         return self._stream.ledger.taken
+
+    @property
+    def left(self) -> bool:
+        """Nobody feeds it just now: the one that iterates is in the body of its loop, or out of it."""
+        return not self._parts.ag_running
+
+    async def give_up(self, error: RmacError) -> None:
+        """Who iterates it once more is told why it is at its end."""
+        self._stream.give_up(error)
+        await self._unhear()
+
+    async def _unhear(self) -> None:
+        with contextlib.suppress(RmacError):
+            await self._client.unhear(self._hearer)
 
     async def close(self) -> None:
         """Feeds no more of it. What was taken is machined, unless authority ends."""
@@ -70,9 +86,9 @@ class Run:
 
     async def _feed(self) -> AsyncGenerator[Part, None]:
         self._client.feeds(self)
-        hearer = Hearer("state", STATE_RATE_HZ, self._heard, self.set_exception)
-        await self._client.hear(hearer)
         try:
+            await self._client.begin(self._stream, self._first_id)
+            await self._client.hear(self._hearer)
             if self._start:
                 await self._client.cam.CycleStart("AUTOMATIC")
             finished = self._stream.ledger.finished
@@ -83,9 +99,8 @@ class Run:
             if self._stream.failure is not None:
                 raise self._stream.failure
         finally:
-            self._client.feeds(None)
-            with contextlib.suppress(RmacError):
-                await self._client.unhear(hearer)
+            self._client.feeds_no_more(self)
+            await self._unhear()
 
     async def _step(self) -> None:
         self._changed.clear()

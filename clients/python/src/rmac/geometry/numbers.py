@@ -11,7 +11,7 @@ from rmac.errors import InvalidValue
 def finite(values: Any, what: str) -> tuple[float, ...]:
     try:
         numbers = tuple(map(float, values))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidValue(f"{what} is {_short(values)}: give numbers, one a coordinate") from None
     if not all(map(math.isfinite, numbers)):
         raise InvalidValue(f"{what} is {_short(numbers)}: numbers must be finite")

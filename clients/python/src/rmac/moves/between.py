@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, SupportsIndex
 
 from rmac.errors import InvalidValue
 from rmac.generated import calls
@@ -22,11 +22,8 @@ class Request(Move):
         self.method = method
         self.queues = method in QUEUEING
         own = params.get("MoveID")
-        self.move_id = own if isinstance(own, int) else None
-        try:
-            self._params = encoded(params)
-        except (ValueError, TypeError) as error:
-            raise InvalidValue(f"{method}: {error}") from None
+        self.move_id = int(own) if isinstance(own, SupportsIndex) else None  # numpy's too
+        self._params = _encoded(method, params)
 
     def params(self, move_id: int) -> str:
         return self._params
@@ -38,7 +35,7 @@ class _Queued(Move):
     __slots__ = ("_rest",)
 
     def __init__(self, **params: object) -> None:
-        self._rest = encoded({name: value for name, value in params.items() if value is not None})[1:]
+        self._rest = _encoded(type(self).__name__, {name: value for name, value in params.items() if value is not None})[1:]
 
     def params(self, move_id: int) -> str:
         return f'{{"MoveID":{move_id},{self._rest}'
@@ -81,6 +78,13 @@ class InTurn(_Queued):
 
     def __init__(self, *made: Call[Any]) -> None:
         super().__init__(Calls=[{"method": call.method, "params": call.given()} for call in made])
+
+
+def _encoded(what: str, params: Mapping[str, object]) -> str:
+    try:
+        return encoded(params)
+    except (ValueError, TypeError) as error:
+        raise InvalidValue(f"{what}: {error}") from None
 
 
 def output(name: str, on: bool) -> InTurn:

@@ -39,6 +39,8 @@ class Interrupted(ConnectionLost):
         super().__init__(f"{cause}; {ledger.done} moves of the program were known to be done, {ledger.taken} taken")
         self.ledger = ledger
         self._remaining = remaining
+        self.sent: tuple[list[Any], list[Any]] | None = None  # and the first one that was not, once asked for
+        self.taken_up = False
 
     @property
     def done(self) -> int:

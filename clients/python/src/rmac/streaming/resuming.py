@@ -26,13 +26,7 @@ def resume(interrupted: Interrupted, state: dict[str, Any]) -> tuple[Iterator[An
     """The rest of the program, with the way back onto its path before it, and the index of its first part."""
     ledger = interrupted.ledger
     _same_machine(ledger, state)
-    sent: list[Part] = []
-    unsent: list[Any] = []
-    for one in interrupted.take_remaining():
-        if not isinstance(one, Part):
-            unsent.append(one)  # the first one of the program's own rest: what follows stays where it is
-            break
-        sent.append(one)
+    sent, unsent = _sent(interrupted)
     begun = _place(ledger, sent, state)
     settings = _settings_at(ledger, sent, begun)
     first = sent[begun] if begun < len(sent) else None
@@ -43,7 +37,31 @@ def resume(interrupted: Interrupted, state: dict[str, Any]) -> tuple[Iterator[An
     elif first is not None and first.move.start is not None:
         back = [_approach(first.move.start, first.move, state)]
     rest = itertools.chain(settings, back, (part.move for part in sent[begun:]), unsent, interrupted.take_remaining())
-    return rest, first.index if first is not None else ledger.taken
+    return _once(interrupted, rest), first.index if first is not None else ledger.taken
+
+
+def _sent(interrupted: Interrupted) -> tuple[list[Part], list[Any]]:
+    """Kept, so that a program that could not be taken up may be another time."""
+    if interrupted.sent is None:
+        interrupted.sent = [], []
+        for one in interrupted.take_remaining():
+            if not isinstance(one, Part):
+                interrupted.sent[1].append(one)  # the first one of the program's own rest: what follows stays where it is
+                break
+            interrupted.sent[0].append(one)
+    return interrupted.sent
+
+
+def _once(interrupted: Interrupted, rest: Iterator[Any]) -> Iterator[Any]:
+    check_left(interrupted)
+    interrupted.taken_up = True
+    yield from rest
+
+
+def check_left(interrupted: Interrupted) -> None:
+    """Before anything is waited for: what was taken up once is at its end, or interrupted by another name."""
+    if interrupted.taken_up:
+        raise CannotResume("this program was taken up already")
 
 
 def runs(state: dict[str, Any]) -> bool:

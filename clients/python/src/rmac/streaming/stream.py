@@ -33,7 +33,8 @@ class Stream:
     ) -> None:
         self.total: int | None = len(moves) + first_index if isinstance(moves, Sized) else None
         self.failure: RmacError | None = None
-        self.ledger = Ledger(state, first_id - first_index, first_index)
+        self._first_index = first_index
+        self.begin(state, first_id)
         self._source: Iterator[Any] = iter(moves)
         self._exhausted = False
         self._capacity = capacity
@@ -44,6 +45,10 @@ class Stream:
         self._ends = OpenEnds()
         self._full = False
         self._refusal: MoveRefused | None = None  # that is to be told, unless it came of a stop
+
+    def begin(self, state: dict[str, Any], first_id: int) -> None:
+        """Before anything of it is sent: the machine from which it begins, and its ids."""
+        self.ledger = Ledger(state, first_id - self._first_index, self._first_index)
         self._first_cycle: int = state["cycle"]
 
     @property
@@ -115,6 +120,10 @@ class Stream:
             self.failure = MachineStopped(state, self.ledger.done, str(self._refusal))
         else:
             self.failure = self._refusal
+
+    def give_up(self, error: RmacError) -> None:
+        if self.failure is None:
+            self.failure = error
 
     def lost(self, error: RmacError) -> None:
         if self.failure is None:
