@@ -187,8 +187,7 @@ std::string joint_cause(const ServoFault& fault, const std::string& at) {
     case ServoFault::Kind::StandsStill:
       return fmt::format(
           "{}: its position stands still for {:.3g} s, and it was to go {:.3g}; check the encoder and its coupling, "
-          "and "
-          "whether the axis is blocked, then reset",
+          "and whether the axis is blocked, then reset",
           at, fault.bound, fault.value);
     case ServoFault::Kind::EncoderJump:
       return fmt::format(

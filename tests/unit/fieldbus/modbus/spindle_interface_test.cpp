@@ -1,10 +1,8 @@
-#include "rmac/fieldbus/modbus/spindle_interface.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "rmac/motion/drive_power.hpp"
-#include "unit/fieldbus/modbus/register_bank.hpp"
+#include "unit/fieldbus/modbus/spindle_drive.hpp"
 
 namespace rmac::fieldbus::modbus {
 namespace {
@@ -14,54 +12,14 @@ using testing::HasSubstr;
 using Wire = ModbusPeer::Wire;
 using Manner = ModbusPeer::Manner;
 
-constexpr auto kHolding = Table::HoldingRegisters;
-constexpr std::uint16_t kCommand = 0x10, kSpeedCommand = 0x11, kReset = 0x12;
-constexpr std::uint16_t kStatus = 0x20, kActual = 0x21, kTaken = 0x22, kFault = 0x23;
-constexpr std::uint16_t kStop = 1, kForward = 2, kBackward = 3;
-
-/// A drive with all that a map can have: 0.1 Hz, a status of bit 0 runs, bit 1 backward, bit 2 tripped.
-SpindleMap map() {
-  SpindleMap made;
-  made.name = "a drive";
-  made.most_per_read = 8;
-  made.speed_command = {{kHolding, kSpeedCommand}, 10};
-  made.speed_read_back = Place{kHolding, kTaken};
-  made.speed = {{kHolding, kActual}, 10};
-  made.running = Condition{{kHolding, kStatus, 16, false, false, 1}, {1}};
-  made.backward = Condition{{kHolding, kStatus, 16, false, false, 2}, {2}};
-  made.tripped = Condition{{kHolding, kStatus, 16, false, false, 4}, {4}};
-  made.fault_code = Place{kHolding, kFault};
-  made.fault_texts = {{7, "over-voltage"}};
-  made.forward_run = {{kHolding, kCommand, kForward}};
-  made.backward_run = {{kHolding, kCommand, kBackward}};
-  made.stop = {{kHolding, kCommand, kStop}};
-  made.reset_fault = {{kHolding, kReset, 1}};
-  return made;
-}
-
-/// What the drive does with what is written to it: it turns at once.
-void drive(RegisterBank& bank, Table, std::uint16_t address, std::uint16_t value) {
-  if (address == kReset) {
-    bank.set(kHolding, kStatus, 0);
-    bank.set(kHolding, kFault, 0);
-  }
-  if (address == kSpeedCommand) bank.set(kHolding, kTaken, value);
-  const std::uint16_t command = bank.get(kHolding, kCommand);
-  const bool tripped = (bank.get(kHolding, kStatus) & 4U) != 0;
-  const bool runs = (command == kForward || command == kBackward) && !tripped;
-  const unsigned status = (runs ? 1U : 0U) | (runs && command == kBackward ? 2U : 0U) | (tripped ? 4U : 0U);
-  bank.set(kHolding, kStatus, static_cast<std::uint16_t>(status));
-  bank.set(kHolding, kActual, runs ? bank.get(kHolding, kSpeedCommand) : 0);
-}
-
 class ModbusSpindle : public testing::TestWithParam<Wire> {
  protected:
   ModbusSpindle() : peer(GetParam()) {
-    bank.on_write = drive;
+    bank.on_write = turn;
     peer.respond([this](const Bytes& request) { return bank.answer(request); });
   }
 
-  void bring_up(std::chrono::milliseconds stale = 30s, const SpindleMap& drives_map = map(),
+  void bring_up(std::chrono::milliseconds stale = 30s, const SpindleMap& drives_map = spindle_map(),
                 std::chrono::milliseconds deadline = 50ms, std::chrono::milliseconds busy = 60s) {
     SpindleLineConfig config;
     config.line.endpoint = peer.endpoint();
@@ -153,7 +111,7 @@ TEST_P(ModbusSpindle, StopsOnEveryWishButOperational) {
 }
 
 TEST_P(ModbusSpindle, StopsWithTheAppliance) {
-  bring_up(30s, map(), 60s);  // however busy the computer is, what is told last is answered
+  bring_up(30s, spindle_map(), 60s);  // however busy the computer is, what is told last is answered
   ASSERT_TRUE(run_at(1500));
   spindle->stop();
   EXPECT_EQ(bank.get(kHolding, kCommand), kStop);
@@ -183,7 +141,7 @@ TEST_P(ModbusSpindle, ReportsAFaultInItsDrivesWordsUntilItIsReset) {
 
 TEST_P(ModbusSpindle, TellsTheCodeOfATripThatCameAfterItsCodeWasRead) {
   constexpr std::uint16_t kEarlyFault = kStatus - 1;
-  SpindleMap one_by_one = map();
+  SpindleMap one_by_one = spindle_map();
   one_by_one.most_per_read = 1;
   one_by_one.fault_code = Place{kHolding, kEarlyFault};
   std::atomic<bool> trips{false};
@@ -269,7 +227,7 @@ TEST_P(ModbusSpindle, GoesOfflineWhenWhatWasReadGrowsOldAndComesBackDisabled) {
 
 // Red when the cause is told at boot alone: a fault in operation said that the drive does not answer, whatever it did.
 TEST_P(ModbusSpindle, TellsInOperationWhyItIsSilentAndCountsIt) {
-  bring_up(700ms, map(), 300ms, 800ms);
+  bring_up(700ms, spindle_map(), 300ms, 800ms);
   ASSERT_TRUE(run_at(1500));
   EXPECT_EQ(spindle->silence_text(1), std::nullopt);
   struct Case {
@@ -340,7 +298,7 @@ TEST_P(ModbusSpindle, ThatIsBusyRunsOnAndTakesItsStopAsSoonAsItCan) {
 
 // Red when a drive that is busy just then is left turning by an appliance that ends.
 TEST_P(ModbusSpindle, ThatIsBusyIsStoppedWithTheApplianceAllTheSame) {
-  bring_up(30s, map(), 60s);
+  bring_up(30s, spindle_map(), 60s);
   ASSERT_TRUE(run_at(1500));
   std::atomic<int> refusals{8};
   peer.respond([&](const Bytes& request) {
@@ -370,7 +328,7 @@ TEST(ModbusSpindleStart, ReachesADriveThatGivesOneRegisterAtATime) {
   config.line.endpoint = peer.endpoint();
   config.line.period = 5ms;
   config.boot_timeout = 60s;
-  config.axes = {{.slave = 9, .rpm_per_hz = 60, .maximum_hz = 0, .map = map()}};
+  config.axes = {{.slave = 9, .rpm_per_hz = 60, .maximum_hz = 0, .map = spindle_map()}};
   config.axes[0].map.most_per_read = 1;
   SpindleInterface spindle(std::move(config));
   const auto started = spindle.start();
@@ -385,7 +343,7 @@ TEST(ModbusSpindleLine, IsOpenedAgainWithPausesThatDouble) {
   config.line.period = 1ms;
   config.line.first_pause = 40ms;
   config.boot_timeout = 60s;
-  config.axes = {{.slave = 1, .rpm_per_hz = 60, .maximum_hz = 0, .map = map()}};
+  config.axes = {{.slave = 1, .rpm_per_hz = 60, .maximum_hz = 0, .map = spindle_map()}};
   SpindleInterface spindle(std::move(config));
   const auto begun = Clock::now();
   // After the fourth request three pauses have passed.
@@ -407,7 +365,7 @@ TEST(ModbusSpindleStart, NamesTheSlaveThatDoesNotAnswer) {
   config.line.deadline = 20ms;
   config.line.period = 5ms;
   config.boot_timeout = 200ms;
-  config.axes = {{.slave = 9, .rpm_per_hz = 60, .maximum_hz = 0, .map = map()}};
+  config.axes = {{.slave = 9, .rpm_per_hz = 60, .maximum_hz = 0, .map = spindle_map()}};
   SpindleInterface spindle(std::move(config));
   const auto started = spindle.start();
   ASSERT_FALSE(started);
@@ -430,7 +388,7 @@ TEST(ModbusSpindleStart, SaysWhatTheSlaveDidInPlaceOfAnAnswer) {
     config.line.first_pause = 1ms;
     config.line.longest_pause = 5ms;
     config.boot_timeout = 100ms;
-    config.axes = {{.slave = 9, .rpm_per_hz = 60, .maximum_hz = 0, .map = map()}};
+    config.axes = {{.slave = 9, .rpm_per_hz = 60, .maximum_hz = 0, .map = spindle_map()}};
     SpindleInterface spindle(std::move(config));
     const auto started = spindle.start();
     ASSERT_FALSE(started);
@@ -438,83 +396,6 @@ TEST(ModbusSpindleStart, SaysWhatTheSlaveDidInPlaceOfAnAnswer) {
     EXPECT_THAT(started.error().message, HasSubstr(why));
   }
 }
-
-/// Two drives behind one port, of which one may be mute.
-class ModbusTwoSpindles : public testing::TestWithParam<std::tuple<Wire, int>> {
- protected:
-  ModbusTwoSpindles() : mute(std::get<int>(GetParam())), peer(std::get<Wire>(GetParam())) {
-    for (RegisterBank& bank : banks) bank.on_write = drive;
-    peer.respond([this](const Bytes& request) {
-      return request[0] == mute && silent ? Bytes() : banks[request[0] - 1U].answer(request);
-    });
-    SpindleLineConfig config;
-    config.line.endpoint = peer.endpoint();
-    config.line.deadline = 20ms;
-    config.line.period = 2ms;
-    config.stale = 2s;
-    config.boot_timeout = 60s;
-    for (const int slave : {1, 2}) config.axes.push_back({slave, 60, 0, map()});
-    spindle = std::make_unique<SpindleInterface>(std::move(config));
-  }
-  [[nodiscard]] std::size_t other() const noexcept { return mute == 1 ? 1 : 0; }
-  void run_until(const std::function<bool()>& reached) {
-    const auto give_up = Clock::now() + 60s;
-    do {
-      for (std::size_t i = 0; i < commands.size(); ++i) {
-        commands[i].controlword =
-            next_controlword(feedback[i].statusword, DriveWish::Operational, false, commands[i].controlword);
-        commands[i].mode = DriveMode::ProfileVelocity;
-        commands[i].target_velocity_rpm = 600;
-      }
-      ASSERT_TRUE(spindle->exchange(commands, feedback));
-      ASSERT_LT(Clock::now(), give_up);
-      std::this_thread::yield();
-    } while (!reached());
-  }
-
-  const int mute;
-  std::atomic<bool> silent{false};
-  std::array<RegisterBank, 2> banks;
-  ModbusPeer peer;
-  std::unique_ptr<SpindleInterface> spindle;
-  std::array<DriveCommand, 2> commands{};
-  std::array<DriveFeedback, 2> feedback{};
-};
-
-TEST_P(ModbusTwoSpindles, OneMuteLeavesTheOtherAtWork) {
-  ASSERT_TRUE(spindle->start());
-  silent = true;
-  run_until([this] { return !feedback[static_cast<std::size_t>(mute) - 1].online && feedback[other()].online; });
-}
-
-TEST_P(ModbusTwoSpindles, OneMuteLeavesTheOtherToBeStoppedWithTheAppliance) {
-  ASSERT_TRUE(spindle->start());
-  run_until([this] { return feedback[0].velocity_rpm == 600 && feedback[1].velocity_rpm == 600; });
-  silent = true;
-  spindle->stop();
-  EXPECT_EQ(banks[other()].get(kHolding, kCommand), kStop);
-}
-
-TEST_P(ModbusTwoSpindles, AreReportedEachByItself) {
-  ASSERT_TRUE(spindle->start());
-  silent = true;
-  run_until([this] { return !feedback[static_cast<std::size_t>(mute) - 1].online && feedback[other()].online; });
-  const LineReport line = spindle->line_report();
-  ASSERT_EQ(line.units.size(), 2U);
-  const UnitReport& away = line.units[static_cast<std::size_t>(mute) - 1];
-  const UnitReport& well = line.units[other()];
-  EXPECT_EQ(away.unit, mute);
-  EXPECT_EQ(away.state, "does not answer");
-  EXPECT_GT(away.traffic.timeouts, 0U);
-  ASSERT_TRUE(away.traffic.last_trouble);
-  EXPECT_THAT(away.traffic.last_trouble->message, HasSubstr("no whole answer"));
-  EXPECT_EQ(well.state, "answers");
-  EXPECT_GT(well.traffic.answers, 0U);
-  EXPECT_EQ(well.traffic.timeouts, 0U);
-}
-
-INSTANTIATE_TEST_SUITE_P(Wires, ModbusTwoSpindles,
-                         testing::Combine(testing::Values(Wire::Tcp, Wire::Rtu), testing::Values(1, 2)));
 
 }  // namespace
 }  // namespace rmac::fieldbus::modbus

@@ -12,13 +12,12 @@ from rmac.geometry.vectors import cross, dot, mixed, turned
 from rmac.moves.move import Move
 
 
-class Line(Move):
-    __slots__ = ("begin", "target")
-    method = "RMAC_CAM.MoveAlongLine"
+class FromTo(Move):
+    """From one pose to another."""
 
-    def __init__(self, start: Any, end: Any) -> None:
-        self.begin = start if type(start) is Pose else pose(start, "Line: start")
-        self.target = end if type(end) is Pose else pose(end, "Line: end")
+    __slots__ = ("begin", "target")
+    begin: Pose
+    target: Pose
 
     @property
     def start(self) -> Point:  # type: ignore[override]
@@ -27,6 +26,15 @@ class Line(Move):
     @property
     def end(self) -> Point:  # type: ignore[override]
         return self.target.p
+
+
+class Line(FromTo):
+    __slots__ = ()
+    method = "RMAC_CAM.MoveAlongLine"
+
+    def __init__(self, start: Any, end: Any) -> None:
+        self.begin = start if type(start) is Pose else pose(start, "Line: start")
+        self.target = end if type(end) is Pose else pose(end, "Line: end")
 
     def params(self, move_id: int) -> str:
         return f'{{"MoveID":{move_id},"StartPoint":{self.begin.text},"EndPoint":{self.target.text}}}'
@@ -39,11 +47,11 @@ class Line(Move):
         return Line(Pose(mixed(self.begin.p, self.target.p, t), turned(self.begin.axis, self.target.axis, t)), self.target)
 
 
-class Arc(Move):
+class Arc(FromTo):
     """About the axis `normal` through `center`, counter-clockwise as seen against it unless `clockwise`. `closed` makes a
     full turn and `turns` as many more. An end off the start's plane makes it a helix."""
 
-    __slots__ = ("begin", "target", "center", "normal", "clockwise", "closed", "turns")
+    __slots__ = ("center", "normal", "clockwise", "closed", "turns")
     method = "RMAC_CAM.MoveAlongArc"
 
     def __init__(
@@ -53,14 +61,6 @@ class Arc(Move):
         self.target = pose(end, "Arc: end")
         self.center = Pose(vector(center, "Arc: center"), normal)
         self.clockwise, self.closed, self.turns = bool(clockwise), bool(closed), int(turns)
-
-    @property
-    def start(self) -> Point:  # type: ignore[override]
-        return self.begin.p
-
-    @property
-    def end(self) -> Point:  # type: ignore[override]
-        return self.target.p
 
     def params(self, move_id: int) -> str:
         sense = -1 if self.clockwise else 1
@@ -94,24 +94,16 @@ class Arc(Move):
         return Arc(here, self.target, c, n, clockwise=self.clockwise, turns=int(left // (2 * math.pi)))
 
 
-class ArcThrough(Move):
+class ArcThrough(FromTo):
     """The circle through three places, from the first to the last."""
 
-    __slots__ = ("begin", "via", "target")
+    __slots__ = ("via",)
     method = "RMAC_CAM.MoveAlongArc3"
 
     def __init__(self, start: Any, via: Any, end: Any) -> None:
         self.begin = pose(start, "ArcThrough: start")
         self.via = vector(via, "ArcThrough: via")
         self.target = pose(end, "ArcThrough: end")
-
-    @property
-    def start(self) -> Point:  # type: ignore[override]
-        return self.begin.p
-
-    @property
-    def end(self) -> Point:  # type: ignore[override]
-        return self.target.p
 
     def params(self, move_id: int) -> str:
         return f'{{"MoveID":{move_id},"ViaPoint":{text(self.via)},"StartPoint":{self.begin.text},"EndPoint":{self.target.text}}}'

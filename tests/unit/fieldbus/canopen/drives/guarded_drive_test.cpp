@@ -2,27 +2,18 @@
 #include <gmock/gmock.h>
 
 #include "canopen/drives/drive_of_node.hpp"
-#include "unit/fieldbus/canopen/canopen_bench.hpp"
+#include "unit/fieldbus/canopen/drives/known_drive.hpp"
 
 namespace rmac::fieldbus::canopen {
 namespace {
 
-using test::CanopenBench;
+using test::description_of;
+using test::KnownDrive;
 using test::VirtualDrive;
 using testing::Contains;
 using testing::HasSubstr;
 
-DriveDescription description_of(const DriveManners& manners) {
-  return {.file = "maker-drive.json",
-          .name = "maker drive",
-          .tried = "never",
-          .vendor_id = 0x101,
-          .product_code = 0x201,
-          .manners = manners,
-          .refusal = {}};
-}
-
-class GuardedDrive : public CanopenBench {
+class GuardedDrive : public KnownDrive {
  protected:
   /// No 1016h and 1017h, but 100Ch and 100Dh.
   VirtualDrive& add_guarded() {
@@ -33,18 +24,12 @@ class GuardedDrive : public CanopenBench {
     drive.set_bytes({0x100D, 0}, {0});
     return drive;
   }
-  void make_known(const DriveManners& manners) {
-    auto config = read_canopen_config("can0", {{"node", {1}}}, {}, kPeriodS, {},
-                                      std::make_shared<DriveLibrary>(DriveLibrary{{description_of(manners)}, {}}));
-    ASSERT_TRUE(config.has_value()) << config.error().message;
-    make_from(*config);
-  }
 };
 
 // Red when a question is missed, is no remote frame, or comes at another pace than the node was told.
 TEST_F(GuardedDrive, IsAskedAtThePaceItWasTold) {
   VirtualDrive& drive = add_guarded();
-  make_known({.node_guarding = true});
+  make_known(DriveManners{.node_guarding = true}, {{"node", {1}}});
   start();
   EXPECT_THAT(master_->start_notes(), Contains("node 1 makes no heartbeat (1017h): it is guarded, by remote frames"));
   enable_all();
@@ -63,7 +48,7 @@ TEST_F(GuardedDrive, IsAskedAtThePaceItWasTold) {
 // Red when a node without heartbeats counts as there for ever.
 TEST_F(GuardedDrive, IsLostWhenItAnswersNoMoreAndComesBack) {
   VirtualDrive& drive = add_guarded();
-  make_known({.node_guarding = true});
+  make_known(DriveManners{.node_guarding = true}, {{"node", {1}}});
   start();
   enable_all();
   drive.sends_heartbeats = false;
@@ -79,7 +64,7 @@ TEST_F(GuardedDrive, IsLostWhenItAnswersNoMoreAndComesBack) {
 // Red when the toggle bit is not looked at.
 TEST_F(GuardedDrive, IsLostWhenItsAnswersAreCopies) {
   VirtualDrive& drive = add_guarded();
-  make_known({.node_guarding = true});
+  make_known(DriveManners{.node_guarding = true}, {{"node", {1}}});
   start();
   enable_all();
   drive.repeats_toggle = true;
@@ -90,7 +75,7 @@ TEST_F(GuardedDrive, IsLostWhenItsAnswersAreCopies) {
 // Red when the master goes and the drive does not know it.
 TEST_F(GuardedDrive, StopsByItselfWhenItsMasterIsGone) {
   VirtualDrive& drive = add_guarded();
-  make_known({.node_guarding = true});
+  make_known(DriveManners{.node_guarding = true}, {{"node", {1}}});
   start();
   enable_all();
   wire_.pass(std::chrono::milliseconds(45));
@@ -117,7 +102,7 @@ TEST_F(GuardedDrive, WithAnInvertedQuickStopBitIsEnabled) {
     master_.reset();
     wire_ = test::CanWire();
     wire_.add(1).quick_stop_mask = 1U << 5U;
-    make_known({.quick_stop_inverted = known});
+    make_known(DriveManners{.quick_stop_inverted = known}, {{"node", {1}}});
     start();
     cycles(20, DriveWish::Operational);
     EXPECT_EQ(drive_state(feedback_[0].statusword) == DriveState::OperationEnabled, known);
