@@ -201,6 +201,15 @@ class PythonStreamingTest(unittest.TestCase):
         with client.authority(), self.assertRaises(rmac.RmacError):
             left.wait()
 
+    def test_a_run_waits_for_a_machine_that_still_stops(self):
+        client = self.start()
+        for x in (40, 0, 40, 0, 40):
+            with client.authority():
+                parts = iter(client.run([rmac.MoveTo((0, 0, 0)), *rmac.polyline((far, 0, 0) for far in (0, 1, 40, 0))]))
+                self.assertEqual([next(parts).index, next(parts).index], [0, 1])
+            with client.authority():
+                client.run([rmac.MoveTo((x, 0, 0))]).wait()
+
     def test_a_connection_that_ends_before_a_run_begins_blocks_no_later_run(self):
         client = self.start()
         run = client.run([rmac.MoveTo((1, 0, 0))])

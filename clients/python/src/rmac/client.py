@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from rmac.address import Address, parse_address
 from rmac.authority import Authority, OperatorPlace
 from rmac.connection import Connection
-from rmac.errors import CannotConnect, RmacError
+from rmac.errors import CannotConnect, OtherRefusal, RmacError
 from rmac.events import Event, read_event
 from rmac.generated.blocking import Methods
 from rmac.heard import Heard, Recording
@@ -165,6 +165,14 @@ class Client(Methods):
         if self._fed is run:
             self._fed = None
 
+    def start_cycle(self) -> None:
+        """A machine that still stops, as after a run that was left, comes to rest first."""
+        try:
+            self.cam.CycleStart("AUTOMATIC")
+        except OtherRefusal:
+            self.at_rest()
+            self.cam.CycleStart("AUTOMATIC")  # refused for another reason, it is refused again
+
     def begin(self, stream: Stream, first_id: int | None) -> None:
         """Nothing of it was sent. What the machine did since the run was made is none of it."""
         state = self.state()
@@ -185,6 +193,10 @@ class Client(Methods):
                 raise
 
     def unhear(self, hearer: Hearer) -> None:
+        """Does nothing the second time: a run that was given up may be collected later, in the thread that reads, which must
+        wait for no answer."""
+        if not self._hearing.has(hearer):
+            return
         with self._subscribing:
             call = self._hearing.remove(hearer)
             if self.lost is None:

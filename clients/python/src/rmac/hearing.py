@@ -30,6 +30,9 @@ class Hearing:
         self._hearers += (hearer,)
         return self._subscription(hearer.topic)
 
+    def has(self, hearer: Hearer) -> bool:
+        return any(one is hearer for one in self._hearers)
+
     def forget(self, hearer: Hearer) -> None:
         self._hearers = tuple(one for one in self._hearers if one is not hearer)
 

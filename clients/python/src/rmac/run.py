@@ -96,10 +96,10 @@ class Run:
     def _feed(self) -> Generator[Part, None, None]:
         self._client.feeds(self)
         try:
+            if self._start:
+                self._client.start_cycle()
             self._client.begin(self._stream, self._first_id)
             self._client.hear(self._hearer)
-            if self._start:
-                self._client.cam.CycleStart("AUTOMATIC")
             while not self._stream.ended or self._stream.ledger.finished:
                 yield from self._step()
             if self._stream.failure is not None:

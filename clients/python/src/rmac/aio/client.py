@@ -13,7 +13,7 @@ from rmac.aio.authority import Authority, OperatorPlace
 from rmac.aio.connection import Connection
 from rmac.aio.heard import Heard, Recording
 from rmac.aio.run import Run
-from rmac.errors import CannotConnect, RmacError
+from rmac.errors import CannotConnect, OtherRefusal, RmacError
 from rmac.events import Event, read_event
 from rmac.generated.awaiting import Methods
 from rmac.hearing import Hearer, Hearing
@@ -165,6 +165,14 @@ class Client(Methods):
         if self._fed is run:
             self._fed = None
 
+    async def start_cycle(self) -> None:
+        """A machine that still stops, as after a run that was left, comes to rest first."""
+        try:
+            await self.cam.CycleStart("AUTOMATIC")
+        except OtherRefusal:
+            await self.at_rest()
+            await self.cam.CycleStart("AUTOMATIC")  # refused for another reason, it is refused again
+
     async def begin(self, stream: Stream, first_id: int | None) -> None:
         """Nothing of it was sent. What the machine did since the run was made is none of it."""
         state = await self.state()
@@ -185,6 +193,8 @@ class Client(Methods):
                 raise
 
     async def unhear(self, hearer: Hearer) -> None:
+        if not self._hearing.has(hearer):
+            return
         async with self._subscribing:
             call = self._hearing.remove(hearer)
             if self.lost is None:

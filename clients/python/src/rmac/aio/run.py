@@ -87,10 +87,10 @@ class Run:
     async def _feed(self) -> AsyncGenerator[Part, None]:
         self._client.feeds(self)
         try:
+            if self._start:
+                await self._client.start_cycle()
             await self._client.begin(self._stream, self._first_id)
             await self._client.hear(self._hearer)
-            if self._start:
-                await self._client.cam.CycleStart("AUTOMATIC")
             finished = self._stream.ledger.finished
             while not self._stream.ended or finished:
                 await self._step()
