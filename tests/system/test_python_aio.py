@@ -30,6 +30,13 @@ class PythonAioTest(unittest.IsolatedAsyncioTestCase):
         async with other.authority():
             self.assertIn("other", (await other.state())["authority"])
 
+    async def test_a_block_of_authority_within_another_one_is_part_of_it(self):
+        async with self.client.authority():
+            async with self.client.authority():
+                pass
+            self.assertNotEqual((await self.client.state())["authority"], "")
+        self.assertEqual((await self.client.state())["authority"], "")
+
     async def test_a_second_task_watches_and_stops_what_the_first_feeds(self):
         async with self.client.authority():
             await self.client.load("DMACXYZ")

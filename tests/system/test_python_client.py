@@ -1,5 +1,6 @@
 """The Python package `rmac` (clients/python) against the daemon: connecting, authority, machines, and that what is generated is current."""
 
+import math
 import pathlib
 import shutil
 import subprocess
@@ -72,6 +73,21 @@ class PythonClientTest(unittest.TestCase):
             self.assertTrue(second.cam.StopNow())
         with second.authority():
             self.assertIn("second", first.state()["authority"])
+
+    def test_a_block_of_authority_within_another_one_is_part_of_it(self):
+        client = self.client()
+        with client.authority():
+            with client.authority():
+                client.load("DMACXYZ", virtual=True)
+            self.assertNotEqual(client.state()["authority"], "")
+            client.device.Unload()
+        self.assertEqual(client.state()["authority"], "")
+
+    def test_a_rate_that_is_none_is_told(self):
+        client = self.client()
+        for rate_hz in (0, -1, math.nan, math.inf, "100"):
+            with self.assertRaisesRegex(rmac.InvalidValue, "rate_hz"):
+                client.record(rate_hz)
 
     def test_a_refusal_has_the_class_of_its_minor_code(self):
         client = self.client()

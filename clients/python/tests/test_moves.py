@@ -63,11 +63,15 @@ class MovesTest(unittest.TestCase):
 
     def test_what_is_no_place_is_refused_with_its_name(self):
         for wrong, told in (((0, math.nan, 0), "finite"), ((0, 0), "2 numbers"), ("abc", "numbers"), (None, "numbers"), ((0, 0, math.inf), "finite"),
-                            ((0, 0, 0, 0, 0, 2), "length 2"), (5, "numbers"), ([[0, 0, 0]], "numbers")):
+                            ((0, 0, 0, 0, 0, 2), "length 2"), (5, "numbers"), ([[0, 0, 0]], "numbers"),
+                            ("123", "numbers"), (("0", "0", "0"), "numbers"), ((1j, 0, 0), "numbers")):
             with self.subTest(wrong=wrong), self.assertRaisesRegex(InvalidValue, told):
                 Line((0, 0, 0), wrong)
         with self.assertRaisesRegex(InvalidValue, "Arc: center"):
             Arc((0, 0, 0), (1, 0, 0), (math.nan, 0, 0))
+        for turns in (0.5, -1, math.nan, "two"):
+            with self.assertRaisesRegex(InvalidValue, "Arc: turns"):
+                Arc((0, 0, 0), (0, 0, 0), (1, 0, 0), closed=True, turns=turns)
         with self.assertRaisesRegex(InvalidValue, "not both"):
             Pose((0, 0, 0), (0, 0, 1), q=(1, 0, 0, 0))
 
@@ -87,7 +91,13 @@ class MovesTest(unittest.TestCase):
             (lambda: NurbsCurve(2, [0, 0, 0, 1, 1, 1], [(0, 0, 0), (1, 0), (2, 0, 0)]), "as many coordinates"),
             (lambda: NurbsCurve(2, [0, 0, 0, 1, 1, 1], [(0, 0, 0), (math.nan, 0, 0), (2, 0, 0)]), "control point 1"),
             (lambda: NurbsCurve(26, [], points), "1 to 25"),
-            (lambda: NurbsCurve(2.5, [], points), "1 to 25"),
+            (lambda: NurbsCurve(2.5, [], points), "degree is 2.5: give a whole number"),
+            (lambda: NurbsCurve(math.inf, [], points), "degree is .*inf"),
+            (lambda: NurbsCurve(2, [0, 1], points, multiplicities=[2.5, 3]), "multiplicity is 2.5: give a whole number"),
+            (lambda: NurbsCurve(2, [0, 1], points, multiplicities=[3, 1e18]), "no degree takes more than 26"),
+            (lambda: NurbsCurve(2, [0, 1], 5), "control points are 5"),
+            (lambda: Nurbs("x"), "'x' is no curve"),
+            (lambda: rmac.JointNurbs([(0, 0)]), "is no curve"),
             (lambda: NurbsCurve(2, [1, 1, 1, 1, 1, 1], points), "no length"),
             (lambda: Nurbs(NurbsCurve(1, [0, 0, 1, 1], [(0, 0), (1, 1)])), "3 coordinates, and this curve has 2; give it a z"),
             (lambda: PoseNurbs(NurbsCurve(1, [0, 0, 1, 1], [(0, 0, 0), (1, 1, 1)])), "6 coordinates"),
@@ -194,6 +204,8 @@ class NurbsTest(unittest.TestCase):
         line = Line(numpy.zeros(3), numpy.array([1, 2, 3], dtype=numpy.int32))
         self.assertEqual(json.loads(line.params(1))["EndPoint"]["p"], [1, 2, 3])
         self.assertEqual(json.loads(MoveTo(numpy.float32([0.5, 0, 0])).params(1))["TargetFrame"]["p"], [0.5, 0, 0])
+        with self.assertRaisesRegex(InvalidValue, "numbers"):
+            MoveTo(numpy.array([1j, 0, 0]))
         self.assertEqual(len(list(rmac.polyline(numpy.arange(12.0).reshape(4, 3)))), 3)
         with self.assertRaisesRegex(InvalidValue, "finite"):
             list(rmac.polyline(numpy.full((2, 3), numpy.nan)))

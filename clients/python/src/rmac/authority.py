@@ -34,16 +34,19 @@ class Renewal:
 
 class Authority:
     """Taken at the beginning of the block and given back at its end, which stops a machine that still moves, and drops
-    what is queued: whoever leaves by an exception leaves a machine at rest."""
+    what is queued: whoever leaves by an exception leaves a machine at rest. A block within another one of the same client is
+    part of it: the outermost gives authority back."""
 
-    def __init__(self, call: BlockingCaller, over: Callable[[], None]) -> None:
+    def __init__(self, call: BlockingCaller, over: Callable[[], None], blocks: list[Authority]) -> None:
         self._call = call
         self._over = over
+        self._blocks = blocks  # of this client, which last
         self._renewal: Renewal | None = None
         self.dropped_moves = 0  # of whoever had it before
 
     def __enter__(self) -> Authority:
         given = self._call(calls.Lease.acquire())
+        self._blocks.append(self)
         self.dropped_moves = given["dropped_moves"]
         if given["timeout_s"] > 0:
             self._renewal = Renewal(lambda: self._call(calls.Lease.renew()), given["timeout_s"] / 3)
@@ -52,6 +55,9 @@ class Authority:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         if self._renewal is not None:
             self._renewal.end()
+        self._blocks.remove(self)
+        if self._blocks:
+            return
         try:
             _give_back(self._call, calls.Lease.release(), error)
         finally:

@@ -45,6 +45,7 @@ class Client(Methods):
         self._subscribing = threading.Lock()
         self._latest: Stream | None = None
         self._fed: Run | None = None
+        self._authorities: list[Authority] = []
         self._connection: Connection
         self.greeting: Greeting
         self._open()
@@ -87,7 +88,7 @@ class Client(Methods):
         return [self._connection.wait(reply, call.method, 0) for reply, call in replies]
 
     def authority(self) -> Authority:
-        return Authority(self.call, self._authority_over)
+        return Authority(self.call, self._authority_over, self._authorities)
 
     def operator(self) -> OperatorPlace:
         return OperatorPlace(self.call)

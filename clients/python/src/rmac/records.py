@@ -10,6 +10,7 @@ from typing import Any
 
 from rmac.errors import RmacError
 from rmac.generated import calls
+from rmac.geometry.numbers import positive
 from rmac.machines import Steps
 
 _SCALARS = ("t_s", "cycle", "move_id", "moving", "s_mm", "feed_mm_s", "feed_actual_mm_s")
@@ -45,7 +46,7 @@ class Samples:
     """Rows as they come."""
 
     def __init__(self, rate_hz: float, cycle_hz: float) -> None:
-        self._every = max(1, round(cycle_hz / rate_hz))  # cycles between two of them
+        self._every = max(1, round(cycle_hz / positive(rate_hz, "rate_hz")))  # cycles between two of them
         self._rows = array.array("d")
         self._widths: list[int] = []
         self._cycle = -1

@@ -17,14 +17,16 @@ from rmac.wire.call import Call
 class Authority:
     """As `rmac.authority.Authority`: its end stops a machine that still moves, and drops what is queued."""
 
-    def __init__(self, call: AwaitingCaller, over: Callable[[], Awaitable[None]]) -> None:
+    def __init__(self, call: AwaitingCaller, over: Callable[[], Awaitable[None]], blocks: list[Authority]) -> None:
         self._call = call
         self._over = over
+        self._blocks = blocks  # of this client, which last
         self._renewal: asyncio.Task[None] | None = None
         self.dropped_moves = 0  # of whoever had it before
 
     async def __aenter__(self) -> Authority:
         given = await self._call(calls.Lease.acquire())
+        self._blocks.append(self)
         self.dropped_moves = given["dropped_moves"]
         if given["timeout_s"] > 0:
             self._renewal = asyncio.ensure_future(self._renew(given["timeout_s"] / 3))
@@ -33,6 +35,9 @@ class Authority:
     async def __aexit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         if self._renewal is not None:
             self._renewal.cancel()
+        self._blocks.remove(self)
+        if self._blocks:
+            return
         try:
             await _give_back(self._call, calls.Lease.release(), error)
         finally:

@@ -43,6 +43,7 @@ class Client(Methods):
         self._subscribing = asyncio.Lock()
         self._latest: Stream | None = None
         self._fed: Run | None = None
+        self._authorities: list[Authority] = []
         self._connection: Connection
         self.greeting: Greeting
 
@@ -89,7 +90,7 @@ class Client(Methods):
         return answers
 
     def authority(self) -> Authority:
-        return Authority(self.call, self._authority_over)
+        return Authority(self.call, self._authority_over, self._authorities)
 
     def operator(self) -> OperatorPlace:
         return OperatorPlace(self.call)

@@ -7,7 +7,7 @@ from typing import Any
 
 from rmac.errors import InvalidValue
 from rmac.geometry import splines
-from rmac.geometry.numbers import finite, text, vector
+from rmac.geometry.numbers import finite, text, vector, whole
 
 _MOST_DEGREE = 25
 
@@ -20,7 +20,7 @@ class NurbsCurve:
 
     def __init__(self, degree: int, knots: Any, points: Any, weights: Any = None, *, multiplicities: Any = None, periodic: bool = False) -> None:
         self.degree = _degree(degree)
-        places = [finite(point, f"control point {number}") for number, point in enumerate(points)]
+        places = [finite(point, f"control point {number}") for number, point in enumerate(_listed(points))]
         if not places or any(len(place) != len(places[0]) for place in places):
             raise InvalidValue("control points must all have as many coordinates, and there must be some")
         weight = (1.0,) * len(places) if weights is None else vector(weights, "weights", len(places))
@@ -52,7 +52,8 @@ class NurbsCurve:
             raise InvalidValue(f"{type(spline).__name__} is no BSpline of scipy")
         if points and not hasattr(points[0], "__len__"):
             raise InvalidValue("this BSpline has one coordinate, a function rather than a curve: its coefficients need x, y and z")
-        return cls(int(degree), knots, points[: len(knots) - int(degree) - 1])
+        number = whole(degree, "degree", 1)
+        return cls(number, knots, points[: len(knots) - number - 1])
 
     @property
     def dimension(self) -> int:
@@ -98,21 +99,27 @@ class NurbsCurve:
         return f"NurbsCurve(degree {self.degree}, {len(self.points)} points of {self.dimension} coordinates)"
 
 
-def _degree(degree: Any) -> int:
+def _listed(points: Any) -> list[Any]:
     try:
-        whole = int(degree)
-    except (TypeError, ValueError):
-        raise InvalidValue(f"a degree is a whole number, not {degree!r}") from None
-    if whole != degree or not 1 <= whole <= _MOST_DEGREE:
+        return list(points)
+    except TypeError:
+        raise InvalidValue(f"control points are {points!r:.80}: give a list of them") from None
+
+
+def _degree(degree: Any) -> int:
+    number = whole(degree, "degree", 1)
+    if number > _MOST_DEGREE:
         raise InvalidValue(f"a degree is 1 to {_MOST_DEGREE}, not {degree!r}")
-    return whole
+    return number
 
 
 def _flat(knots: tuple[float, ...], multiplicities: Any) -> list[float]:
     if multiplicities is None:
         return list(knots)
-    counts = vector(multiplicities, "multiplicities", len(knots))
-    return list(itertools.chain.from_iterable([knot] * int(count) for knot, count in zip(knots, counts)))
+    counts = [whole(count, "a knot's multiplicity", 1) for count in vector(multiplicities, "multiplicities", len(knots))]
+    if max(counts, default=0) > _MOST_DEGREE + 1:
+        raise InvalidValue(f"a knot's multiplicity is {max(counts)}: no degree takes more than {_MOST_DEGREE + 1}")
+    return list(itertools.chain.from_iterable([knot] * count for knot, count in zip(knots, counts)))
 
 
 def _unrolled(degree: int, flat: list[float], multiplicities: Any, points: splines.Points) -> tuple[list[float], splines.Points]:

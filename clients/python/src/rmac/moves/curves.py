@@ -16,6 +16,7 @@ class Nurbs(Move):
     _coordinates = 3
 
     def __init__(self, curve: NurbsCurve) -> None:
+        _require_curve(curve)
         if curve.dimension != self._coordinates:
             hint = "; give it a z first" if curve.dimension == 2 else ""
             raise InvalidValue(f"{type(self).__name__} needs {self._coordinates} coordinates, and this curve has {curve.dimension}{hint}")
@@ -55,7 +56,13 @@ class JointNurbs(Move):
     method = "RMAC_CAM.MoveAlongNurbsND"
 
     def __init__(self, curve: NurbsCurve) -> None:
+        _require_curve(curve)
         self.curve = curve
 
     def params(self, move_id: int) -> str:
         return f'{{"MoveID":{move_id},"NurbsND":{{{self.curve.text()},"space":"joint"}}}}'
+
+
+def _require_curve(curve: object) -> None:
+    if not isinstance(curve, NurbsCurve):
+        raise InvalidValue(f"{curve!r:.80} is no curve: make a NurbsCurve of it first")

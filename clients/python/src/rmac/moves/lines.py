@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from rmac.geometry.numbers import text, vector
+from rmac.geometry.numbers import text, vector, whole
 from rmac.geometry.pose import Point, Pose, pose
 from rmac.geometry.vectors import cross, dot, mixed, turned
 from rmac.moves.move import Move
@@ -60,7 +60,7 @@ class Arc(FromTo):
         self.begin = pose(start, "Arc: start")
         self.target = pose(end, "Arc: end")
         self.center = Pose(vector(center, "Arc: center"), normal)
-        self.clockwise, self.closed, self.turns = bool(clockwise), bool(closed), int(turns)
+        self.clockwise, self.closed, self.turns = bool(clockwise), bool(closed), whole(turns, "Arc: turns")
 
     def params(self, move_id: int) -> str:
         sense = -1 if self.clockwise else 1
