@@ -131,23 +131,30 @@ Result<> Runner::submit(const Request& request) {
   if (auto settled = order_.waits_for_rest(request) ? settle() : Result<>(); !settled) return settled;
   if (auto measured = order_.waits_for_measurement() ? wait_for_moves() : Result<>(); !measured) return measured;
   if (auto started = order_.needs_cycle(request) ? start_cycle_of_moves() : Result<>(); !started) return started;
+  auto params = request.params();
+  const auto reach = OpenEnds::of(params);
   const auto room = [&] {
     const bool queue_has_room = !is_move || !order_.started() || queue_bound_ == 0 || moves_.size() < queue_bound_;
-    return unanswered_ < window_ && queue_has_room && !prompt_.parked();
+    return unanswered_ < window_ && queue_has_room && (!is_move || ends_.may_follow(reach)) && !prompt_.parked();
   };
   if (auto waited = wait(room); !waited) return waited;
-  send(request);
+  send(request, std::move(params), reach);
   return {};
 }
 
-void Runner::send(const Request& request) {
-  auto params = request.params();
+void Runner::send(const Request& request, nlohmann::json params, const OpenEnds::Reach& reach) {
   if (loads_mechanism(request) && options_.virtual_mode && params.is_object()) params["Virtual"] = true;
   ++unanswered_;
-  if (request.timing == Timing::Move) moves_.sent(request);
+  if (request.timing == Timing::Move) {
+    moves_.sent(request);
+    ends_.sent(reach);
+  } else if (request.timing == Timing::Settled) {
+    ends_.forget();
+  }
   order_.sent(request);
   connection_.send(request.method, params, [this, &request](const Connection::Answer& answer) {
     --unanswered_;
+    if (request.timing == Timing::Move) ends_.answered();
     if (answer) return;
     fail_with(fmt::format("{}:{}: {}: {}", program_.file, request.line, request.method, answer.error().message));
   });

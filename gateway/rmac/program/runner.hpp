@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gateway/rmac/program/joint_watch.hpp"
+#include "gateway/rmac/program/open_ends.hpp"
 #include "gateway/rmac/program/program.hpp"
 #include "gateway/rmac/program/prompt.hpp"
 #include "gateway/rmac/program/request_order.hpp"
@@ -54,7 +55,7 @@ class Runner {
   [[nodiscard]] Result<> load();
   [[nodiscard]] Result<> stream();
   [[nodiscard]] Result<> submit(const Request& request);
-  void send(const Request& request);
+  void send(const Request& request, nlohmann::json params, const OpenEnds::Reach& reach);
   [[nodiscard]] Result<> start_cycle_of_moves();
   [[nodiscard]] Result<> settle();
   /// Waits until all that was sent is answered and all moves are done.
@@ -77,6 +78,7 @@ class Runner {
   Progress progress_;
   RequestOrder order_;
   UnfinishedMoves moves_;
+  OpenEnds ends_;
   Prompt prompt_;
   JointWatch joints_;
 

@@ -82,6 +82,14 @@ TEST_F(RunnerTest, SendsNothingBehindARefusedMoveThatItWaitedFor) {
   EXPECT_EQ(count("RMAC_CAM.Home"), 0U);
 }
 
+TEST_F(RunnerTest, SendsNoMoveThatBeginsAnywhereBehindOneThatMayBeRefused) {
+  appliance_.refuses(kMove, -32004, "out of reach");
+  move(1);
+  move(2);
+  ASSERT_FALSE(run());
+  EXPECT_EQ(count(kMove), 1U);
+}
+
 TEST_F(RunnerTest, FailsByAFaultAsTheMachineTellsIt) {
   appliance_.handles(kMove, [&](const json&) {
     appliance_.push_event(Kind::Fault, {{"message", "joint 1 follows too late"}});
