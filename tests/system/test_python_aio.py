@@ -30,7 +30,7 @@ class PythonAioTest(unittest.IsolatedAsyncioTestCase):
         async with other.authority():
             self.assertIn("other", (await other.state())["authority"])
 
-    async def test_a_block_of_authority_within_another_one_is_part_of_it(self):
+    async def test_a_block_of_authority_within_another_one_leaves_it_authority(self):
         async with self.client.authority():
             async with self.client.authority():
                 pass

@@ -74,7 +74,7 @@ class PythonClientTest(unittest.TestCase):
         with second.authority():
             self.assertIn("second", first.state()["authority"])
 
-    def test_a_block_of_authority_within_another_one_is_part_of_it(self):
+    def test_a_block_of_authority_within_another_one_leaves_it_authority(self):
         client = self.client()
         with client.authority():
             with client.authority():

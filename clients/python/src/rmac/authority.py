@@ -34,8 +34,8 @@ class Renewal:
 
 class Authority:
     """Taken at the beginning of the block and given back at its end, which stops a machine that still moves, and drops
-    what is queued: whoever leaves by an exception leaves a machine at rest. A block within another one of the same client is
-    part of it: the outermost gives authority back."""
+    what is queued: whoever leaves by an exception leaves a machine at rest. A block within another one of the same client
+    stops the machine too, and leaves authority to the other."""
 
     def __init__(self, call: BlockingCaller, over: Callable[[], None], blocks: list[Authority]) -> None:
         self._call = call
@@ -55,11 +55,10 @@ class Authority:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         if self._renewal is not None:
             self._renewal.end()
-        self._blocks.remove(self)
-        if self._blocks:
-            return
+        if self in self._blocks:
+            self._blocks.remove(self)
         try:
-            _give_back(self._call, calls.Lease.release(), error)
+            _give_back(self._call, calls.RMAC_CAM.StopNow() if self._blocks else calls.Lease.release(), error)
         finally:
             self._over()
 
@@ -79,11 +78,11 @@ class OperatorPlace:
         _give_back(self._call, calls.Post.release(), error)
 
 
-def _give_back(call: BlockingCaller, release: Call[Any], error: BaseException | None) -> None:
+def _give_back(call: BlockingCaller, ending: Call[Any], error: BaseException | None) -> None:
     """The end of a connection, or a long silence, gave it back already, and an error of the block is not hidden behind
     another one."""
     try:
-        call(release)
+        call(ending)
     except (ConnectionLost, AuthorityRequired):
         pass
     except Refused:

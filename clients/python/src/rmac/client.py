@@ -215,6 +215,7 @@ class Client(Methods):
             connection.close()
             raise
         connection.on_end = self._hearing.lost
+        self._authorities.clear()  # the connection before had them
         self._connection = connection
 
     def _authority_over(self) -> None:

@@ -35,11 +35,10 @@ class Authority:
     async def __aexit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         if self._renewal is not None:
             self._renewal.cancel()
-        self._blocks.remove(self)
-        if self._blocks:
-            return
+        if self in self._blocks:
+            self._blocks.remove(self)
         try:
-            await _give_back(self._call, calls.Lease.release(), error)
+            await _give_back(self._call, calls.RMAC_CAM.StopNow() if self._blocks else calls.Lease.release(), error)
         finally:
             await self._over()
 
@@ -65,9 +64,9 @@ class OperatorPlace:
         await _give_back(self._call, calls.Post.release(), error)
 
 
-async def _give_back(call: AwaitingCaller, release: Call[Any], error: BaseException | None) -> None:
+async def _give_back(call: AwaitingCaller, ending: Call[Any], error: BaseException | None) -> None:
     try:
-        await call(release)
+        await call(ending)
     except (ConnectionLost, AuthorityRequired):
         pass
     except Refused:

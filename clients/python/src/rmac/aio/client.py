@@ -213,6 +213,7 @@ class Client(Methods):
             await connection.close()
             raise
         connection.on_end = self._hearing.lost
+        self._authorities.clear()  # the connection before had them
         self._connection = connection
 
     async def _authority_over(self) -> None:
