@@ -82,10 +82,7 @@ const Request* RequestLine::next() {
 }
 
 std::optional<Answer> RequestLine::refusal_of_next() const {
-  if (refuses_moves_ && requests_[next_].effect() == Effect::Queues) {
-    return refused(MinorCode::CommandQueueFull,
-                   "refused because a move sent before it found the queue full; send both again when there is room");
-  }
+  if (refuses_moves_ && requests_[next_].effect() == Effect::Queues) return refuses_moves_;
   if (answer_bytes_ > kMostAnswerBytes) {
     return refused(MinorCode::Other, "not carried out: the answers of this batch exceed 8 MiB; send smaller batches");
   }

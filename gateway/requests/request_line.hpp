@@ -44,9 +44,9 @@ class RequestLine {
   [[nodiscard]] std::optional<Answer> refusal_of_next() const;
   void answer_next(Answer answer);
 
-  /// A move before these found the queue full: taking a later one would leave a gap.
-  void refuse_moves() noexcept { refuses_moves_ = true; }
-  [[nodiscard]] bool refuses_moves() const noexcept { return refuses_moves_; }
+  /// A move before these was refused, and what they are to be told: taking a later one would leave a gap.
+  void refuse_moves(const Answer& refusal) { refuses_moves_ = refusal; }
+  [[nodiscard]] bool refuses_moves() const noexcept { return refuses_moves_.has_value(); }
 
   /// The line that answers it, where it wants an answer. Every request must have its own.
   [[nodiscard]] std::optional<std::string> response() const;
@@ -62,7 +62,7 @@ class RequestLine {
   Time received_;
   Stage stage_ = Stage::Here;
   bool batch_ = false;
-  bool refuses_moves_ = false;
+  std::optional<Answer> refuses_moves_;
   std::vector<Request> requests_;
   std::vector<std::optional<Answer>> answers_;
   std::size_t next_ = 0;

@@ -20,6 +20,17 @@ bool is_slow(const Request& request) {
   return request.method != nullptr && (request.method->slow || (request.large && request.queues_a_move()));
 }
 
+Answer behind_a_full_queue() {
+  return refused(MinorCode::CommandQueueFull,
+                 "refused because a move sent before it found the queue full; send both again when there is room");
+}
+
+Answer behind_a_refused_move(const RpcError& why) {
+  constexpr std::size_t kMostOfIt = 300;
+  return refused(MinorCode::Other, fmt::format("refused because a move sent before it was refused: {}",
+                                               std::string_view(why.message).substr(0, kMostOfIt)));
+}
+
 }  // namespace
 
 RequestQueue::RequestQueue(Requester& client, Dispatcher& dispatcher, MachineAside& aside,
@@ -133,11 +144,13 @@ std::optional<Answer> RequestQueue::refusal_of(const RequestLine& line, const Re
 
 bool RequestQueue::settle(RequestLine& line, Answer answer) {
   const Request& request = *line.next();
-  const bool full = !answer && answer.error().minor == MinorCode::CommandQueueFull && request.queues_a_move();
-  if (full && !line.refuses_moves()) {
-    if (must_wait(line)) return false;
-    dispatcher_.status().fail(MinorCode::CommandQueueFull, answer.error().message, dispatcher_.machine().sample().t_s);
-    for (const Line& waiting : lines_) waiting->refuse_moves();
+  if (!answer && request.queues_a_move() && !line.refuses_moves()) {
+    const RpcError& error = answer.error();
+    const bool full = error.minor == MinorCode::CommandQueueFull;
+    if (full && must_wait(line)) return false;
+    if (full) dispatcher_.status().fail(error.minor, error.message, dispatcher_.machine().sample().t_s);
+    const Answer refusal = full ? behind_a_full_queue() : behind_a_refused_move(error);
+    for (const Line& waiting : lines_) waiting->refuse_moves(refusal);
   }
   line.answer_next(std::move(answer));
   return true;

@@ -14,8 +14,8 @@
 namespace rmac::gateway {
 
 /// The requests of one client that wait for their answers. They are carried out in the order in which they came, except
-/// that stops overtake; a move that finds the machine's queue full waits for room, and those behind it with it. Gateway
-/// thread.
+/// that stops overtake; a move that finds the machine's queue full waits for room, and those behind it with it; a
+/// move that is refused has those behind it that have come already refused too. Gateway thread.
 class RequestQueue {
  public:
   enum class Progress {

@@ -90,7 +90,7 @@ TEST(RequestLine, ThatIsNoRequestHasOneErrorToGive) {
 TEST(RequestLine, RefusesMovesBehindOneThatWasRefusedAndNothingElse) {
   RequestLine line = read(std::string("[") + kMove + "," + request("2", "RMAC_CAM.Ok") + "]");
   EXPECT_FALSE(line.refusal_of_next());
-  line.refuse_moves();
+  line.refuse_moves(refused(MinorCode::CommandQueueFull, "full"));
   ASSERT_TRUE(line.refusal_of_next());
   EXPECT_EQ(line.refusal_of_next()->error().minor, MinorCode::CommandQueueFull);
   line.answer_next(*line.refusal_of_next());

@@ -146,6 +146,33 @@ TEST(RequestQueue, AMoveDoesNotWaitWhereNoRoomWillComeOrNobodyStaysOrTimeIsUp) {
   }
 }
 
+TEST(RequestQueue, AMoveBehindARefusedOneIsRefusedAndALaterOneIsNot) {
+  QueueBench bench;
+  EXPECT_CALL(bench.machine.cam_mock.queue_mock, add(_, _))
+      .WillOnce(Return(failure(MinorCode::TravelLimit, "too far")))
+      .WillOnce(Return(Expected<>{}));
+  bench.take_move(1);
+  bench.take(2, "RMAC_CAM.Ok");
+  bench.take_move(3);
+  EXPECT_EQ(bench.queue.carry_out(), Progress::Done);
+  EXPECT_EQ(bench.client.answers[0]["error"]["message"], "too far");
+  EXPECT_TRUE(bench.client.answers[1].contains("result"));
+  EXPECT_EQ(bench.client.answers[2]["error"]["message"], "refused because a move sent before it was refused: too far");
+  bench.take_move(4);
+  EXPECT_EQ(bench.queue.carry_out(), Progress::Done);
+  EXPECT_EQ(bench.client.answers[3]["result"], true);
+}
+
+TEST(RequestQueue, AMoveBehindOneThatIsNoneIsRefused) {
+  QueueBench bench;
+  EXPECT_CALL(bench.machine.cam_mock.queue_mock, add(_, _)).Times(0);
+  bench.take(1, "RMAC_CAM.MoveToPathTarget", R"({"MoveID":1,"TargetFrame":{"p":[0,0,"x"]}})");
+  bench.take_move(2);
+  EXPECT_EQ(bench.queue.carry_out(), Progress::Done);
+  EXPECT_TRUE(bench.client.answers[0].contains("error"));
+  EXPECT_TRUE(bench.client.answers[1].contains("error"));
+}
+
 TEST(RequestQueue, WaitsForASlowRequestAndHoldsItsClientMeanwhile) {
   QueueBench bench;
   bench.take(1, "DeviceDriverManager.SearchDatabaseRecordSet", R"(["SELECT 1"])");
