@@ -92,6 +92,8 @@ class MachinePort {
   [[nodiscard]] virtual const CycleTimes& cycle_times() const = 0;
   /// What the buses that run went through.
   [[nodiscard]] virtual fieldbus::FieldbusReport bus_reports() const = 0;
+  /// Which buses run, and what is wrong on them, as it was when the gateway looked last: costs no more than reading it.
+  [[nodiscard]] virtual const nlohmann::json& bus_summary() const = 0;
   [[nodiscard]] virtual CycleNow cycle_now() const = 0;
   /// What stopped the machine last, as long as it has not gone on since.
   [[nodiscard]] virtual const std::optional<Event>& last_stop() const = 0;

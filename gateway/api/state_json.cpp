@@ -55,6 +55,8 @@ const char* to_string(Event::Kind kind) noexcept {
       return "ToolChangeDropped";
     case Event::Kind::ProgramStopped:
       return "ProgramStopped";
+    case Event::Kind::Bus:
+      return "Bus";
   }
   return "unknown";
 }
@@ -123,6 +125,7 @@ nlohmann::json state_to_json(MachinePort& machine, int moves_left, const CycleSa
       status.major == 0
           ? nlohmann::json()
           : nlohmann::json{{"status_minor", status.minor}, {"t_s", status.t_s}, {"message", status.message}};
+  state["buses"] = machine.bus_summary();
   state["mechanism"] = mechanism == nullptr ? nlohmann::json() : nlohmann::json(mechanism->name);
   const std::size_t spindles =
       mechanism == nullptr ? 0 : std::min(mechanism->spindles.size(), sample.spindle_rpm.size());

@@ -69,6 +69,7 @@ class Machine final : public MachinePort {
   CycleSample sample() const override { return controller_.sample(); }
   const CycleTimes& cycle_times() const override { return controller_.cycle_times(); }
   fieldbus::FieldbusReport bus_reports() const override { return gateway::bus_reports(controller_); }
+  const nlohmann::json& bus_summary() const override { return gateway::bus_summary(controller_); }
   CycleNow cycle_now() const override { return controller_.cycle_now(); }
   const std::optional<Event>& last_stop() const override { return controller_.last_stop(); }
   Expected<std::string> record_flight() override { return controller_.record_flight(); }

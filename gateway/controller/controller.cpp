@@ -6,6 +6,8 @@
 #include <thread>
 
 #include "gateway/buses/built_in_interfaces.hpp"
+#include "gateway/buses/report/bus_report_json.hpp"
+#include "gateway/buses/report/bus_watch.hpp"
 #include "gateway/cycle/motion_supervisor.hpp"
 #include "gateway/events/announcer.hpp"
 #include "gateway/mechanism/assembler.hpp"
@@ -39,14 +41,15 @@ AssemblyOptions assembly_options(const ControllerOptions& options) {
           .max_cycles_lost = options.max_cycles_lost};
 }
 
-/// Tells the client's interfaces which mechanism is in force.
+/// Tells the client's interfaces, and who watches the buses, which mechanism is in force.
 class ClientInterfaces final : public MechanismUsers {
  public:
-  ClientInterfaces(ConfigDraft& draft, Cam& cam, MeasuringMachine& measuring)
-      : draft_(draft), cam_(cam), measuring_(measuring) {}
+  ClientInterfaces(ConfigDraft& draft, Cam& cam, MeasuringMachine& measuring, BusWatch& buses)
+      : draft_(draft), cam_(cam), measuring_(measuring), buses_(buses) {}
   void mechanism_changed(const sdk::DeviceObject* device, bool fresh) override {
     cam_.mechanism_changed(device, fresh);
     measuring_.mechanism_changed(device, fresh);
+    buses_.forget();
   }
   void draft_from(const sdk::DeviceObject* device) override { draft_.discard(device); }
   void keep_mounted() override { (void)cam_.tools().keep_mounted(); }
@@ -55,6 +58,7 @@ class ClientInterfaces final : public MechanismUsers {
   ConfigDraft& draft_;
   Cam& cam_;
   MeasuringMachine& measuring_;
+  BusWatch& buses_;
 };
 
 }  // namespace
@@ -66,6 +70,7 @@ struct Controller::Impl {
   [[nodiscard]] Expected<> apply(const sdk::DeviceObject& device, ConfigDraft::Extent extent);
   /// While the servo thread is waited for.
   void let_time_pass();
+  void look_at_buses();
   void add_to(Event& event);
   [[nodiscard]] ModuleLoader loader() const { return assembler.loader(source.folder); }
 
@@ -76,6 +81,7 @@ struct Controller::Impl {
   FlightReporter flights;
   Announcer announcer;
   BusRegistry registry;
+  BusWatch bus_watch;
   Assembler assembler;
   ConfigDraft draft;
   ToolRack rack;
@@ -93,7 +99,7 @@ Controller::Impl::Impl(ControllerOptions controller_options)
       link(std::make_unique<ServoLink>(FlightRecorder::history_cycles(options.flight_recorder, options.period_s))),
       supervisor({.queue_capacity = options.queue_capacity, .jog_while_waiting = options.jog_while_waiting}, *link),
       thread(thread_options(options), *link, supervisor),
-      flights(options.flight_recorder, options.period_s, link->history),
+      flights(options.flight_recorder, options.period_s, link->history, [this] { return to_json(registry.reports()); }),
       announcer(*link, [this](std::uint64_t generation) { return reconfiguration.of_generation(generation); }),
       assembler(assembly_options(options), options.module_folders, registry),
       draft({[this](const sdk::DeviceObject& device, ConfigDraft::Extent extent) { return apply(device, extent); },
@@ -102,7 +108,7 @@ Controller::Impl::Impl(ControllerOptions controller_options)
       rack(options.tools_folder),
       cam(supervisor, *link, rack, [this] { return reconfiguration.reset(); }),
       measuring(supervisor, *link, cam, options.stepped),
-      interfaces(draft, cam, measuring),
+      interfaces(draft, cam, measuring, bus_watch),
       reconfiguration(
           {*link, supervisor, assembler, registry, rack, interfaces}, [this] { let_time_pass(); }, options.stepped) {
   add_built_in_interfaces(registry, options.period_s, options.drives_folder);
@@ -130,6 +136,19 @@ void Controller::Impl::let_time_pass() {
     thread.step();
   } else {
     std::this_thread::sleep_for(kLookAgain);
+  }
+}
+
+void Controller::Impl::look_at_buses() {
+  const CycleSample now = link->history.latest();
+  if (!bus_watch.due(now.t_s)) return;
+  for (std::string& message : bus_watch.look(registry.reports(), now.t_s)) {
+    Event event;
+    event.kind = Event::Kind::Bus;
+    event.t_s = now.t_s;
+    event.cycle = now.cycle;
+    event.message = std::move(message);
+    announcer.tell(std::move(event));
   }
 }
 
@@ -251,6 +270,10 @@ fieldbus::FieldbusReport bus_reports(const Controller& controller) {
   return controller.impl_->registry.reports();
 }
 
+const nlohmann::json& bus_summary(const Controller& controller) {
+  return controller.impl_->bus_watch.summary();
+}
+
 CycleNow Controller::cycle_now() const {
   return impl_->supervisor.now();
 }
@@ -294,6 +317,7 @@ void Controller::dispatch() {
   if (!news) return;  // without the news of moves that were queued, samples would tell of others
   impl_->announcer.announce(std::move(*news));
   for (Event& event : impl_->flights.take_events()) impl_->announcer.tell(std::move(event));
+  impl_->look_at_buses();
   impl_->measuring.advance();
 }
 

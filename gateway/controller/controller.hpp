@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -146,11 +147,14 @@ class Controller {
 
  private:
   friend fieldbus::FieldbusReport bus_reports(const Controller& controller);
+  friend const nlohmann::json& bus_summary(const Controller& controller);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
 /// What a controller's buses that run went through.
 [[nodiscard]] fieldbus::FieldbusReport bus_reports(const Controller& controller);
+/// What the topic `state` tells of them, as of the latest look.
+[[nodiscard]] const nlohmann::json& bus_summary(const Controller& controller);
 
 }  // namespace rmac::gateway

@@ -15,8 +15,9 @@ namespace {
 constexpr const char* kExtension = ".flight";
 /// One answer holds at most so much of a record's text.
 constexpr std::size_t kPartBytes = 256U << 10U;
-/// A head is far shorter; a file that is none is not read to its end.
-constexpr std::size_t kLongestHead = 64U << 10U;
+/// A head is shorter, with all 127 nodes of two buses and all that is kept of each; a file that is none is not read to
+/// its end.
+constexpr std::size_t kLongestHead = 1U << 20U;
 /// Objects and arrays within each other that a head has room for; who writes out a list of more needs more stack.
 constexpr int kDeepestHead = 16;
 
@@ -69,15 +70,15 @@ std::vector<std::string> FlightFolder::names() const {
 
 nlohmann::json FlightFolder::list() const {
   nlohmann::json records = nlohmann::json::array();
+  std::string line(kLongestHead, '\0');
   for (const std::string& name : names()) {
     std::error_code problem;
     const auto bytes = std::filesystem::file_size(file_of(name), problem);
     std::ifstream file(file_of(name));
-    std::string line(std::min<std::uintmax_t>(kLongestHead, problem ? 0 : bytes), '\0');
-    file.read(line.data(), static_cast<std::streamsize>(line.size()));
-    line.resize(std::min(line.find('\n'), static_cast<std::size_t>(file.gcount())));
-    auto head = head_of(line);
+    file.getline(line.data(), static_cast<std::streamsize>(line.size()));
+    auto head = problem || file.fail() ? nlohmann::json() : head_of(line.data());
     if (head.is_null()) continue;
+    head.erase("buses");
     head["name"] = name;
     head["bytes"] = bytes;
     records.push_back(std::move(head));

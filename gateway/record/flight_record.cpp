@@ -127,6 +127,7 @@ nlohmann::json to_json(const FlightHead& head) {
           {"utc", head.utc},
           {"mechanism", head.mechanism},
           {"joints", std::move(joints)},
+          {"buses", head.buses},
           {"first_cycle", head.first_cycle},
           {"last_cycle", head.last_cycle}};
 }

@@ -33,6 +33,7 @@ struct FlightHead {
   std::string utc;  ///< the same by the calendar
   std::string mechanism;
   std::vector<Joint> joints;  ///< held ones last, as in the columns
+  nlohmann::json buses;       ///< what the buses had gone through by then, as `Bus.GetState` tells it; null: not known
   std::int64_t first_cycle = 0, last_cycle = 0;
 };
 
@@ -53,7 +54,8 @@ class FlightFolder {
                                             std::chrono::system_clock::time_point now);
   [[nodiscard]] std::filesystem::path file_of(const std::string& name) const;
 
-  /// Heads of all records, oldest first, each with `bytes`, the size of its text. What cannot be read is left out.
+  /// Heads of all records, oldest first, each with `bytes`, the size of its text, and without `buses`, which is long.
+  /// What cannot be read is left out.
   [[nodiscard]] nlohmann::json list() const;
 
   /// A part of a record's text, from a byte on: `text`, `next_offset` (null at the end) and `bytes`, the whole size.

@@ -6,7 +6,9 @@
 
 namespace rmac::gateway {
 
-FlightReporter::FlightReporter(const FlightRecorderOptions& options, double period_s, CycleHistory& history) {
+FlightReporter::FlightReporter(const FlightRecorderOptions& options, double period_s, CycleHistory& history,
+                               std::function<nlohmann::json()> buses_now)
+    : buses_now_(std::move(buses_now)) {
   if (options.wanted()) recorder_ = std::make_unique<FlightRecorder>(options, period_s, history);
 }
 
@@ -20,6 +22,7 @@ Expected<std::string> FlightReporter::record(FlightCause cause, const Event& eve
   head.message = event.message;
   head.cycle = event.cycle;
   head.t_s = event.t_s;
+  if (buses_now_) head.buses = buses_now_();
   head.mechanism = device->name;
   for (std::size_t j = 0; j < device->joint_count_with_held(); ++j) {
     const sdk::Joint& joint = joint_at(*device, j);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -13,7 +15,9 @@ namespace rmac::gateway {
 /// Has flight records made of what happens, and makes events of what became of them. Gateway thread.
 class FlightReporter {
  public:
-  FlightReporter(const FlightRecorderOptions& options, double period_s, CycleHistory& history);
+  /// `buses_now` tells what a record keeps of them (`FlightHead::buses`); none: nothing.
+  FlightReporter(const FlightRecorderOptions& options, double period_s, CycleHistory& history,
+                 std::function<nlohmann::json()> buses_now = nullptr);
 
   /// Has the cycles up to that of `event` written; the name of the record. `device`: the mechanism that they are of, or
   /// nullptr. Refused where no records are made.
@@ -26,6 +30,7 @@ class FlightReporter {
   [[nodiscard]] const FlightFolder* folder() const noexcept { return recorder_ ? &recorder_->folder() : nullptr; }
 
  private:
+  std::function<nlohmann::json()> buses_now_;
   std::unique_ptr<FlightRecorder> recorder_;  ///< none where none is wanted
 };
 

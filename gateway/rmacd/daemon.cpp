@@ -173,6 +173,7 @@ Expected<> Daemon::run(const Configuration& configuration) {
     if (event.kind == Event::Kind::Fault) spdlog::error("cycle {}: {}", event.cycle, event.message);
     if (event.kind == Event::Kind::FlightRecord) spdlog::info("{}", event.message);
     if (event.kind == Event::Kind::FlightRecordFailed) spdlog::error("{}", event.message);
+    if (event.kind == Event::Kind::Bus) spdlog::warn("{}", event.message);
     server_.on_event(event);
   });
   if (auto started = controller_.start(); !started) return started;

@@ -26,7 +26,8 @@ struct Event {
     ToolWanted,
     ToolChanged,
     ToolChangeDropped,
-    ProgramStopped
+    ProgramStopped,
+    Bus
   };
   Kind kind = Kind::Stopped;
   double t_s = 0;

@@ -2,6 +2,7 @@
 requests that no master would send."""
 
 import contextlib
+import json
 import os
 import pathlib
 import random
@@ -141,6 +142,30 @@ class WithTheAppliance(unittest.TestCase):
             machine.turn(600)
             served.tell("1 panel-stop", "slave 1: Toshiba VF-S11: stopped")
             self.assertIn("left Operation Enabled by itself", machine.wait_fault())
+
+
+class WhatTheBusWentThrough(unittest.TestCase):
+    def test_a_drive_that_goes_mute_is_told_and_the_record_of_the_fault_keeps_it(self):
+        with Virtual("1=delta-vfd-b") as served, Machine(served, "delta-vfd-b") as machine:
+            def told(part):
+                return machine.watcher.wait_note("events", lambda event: event["kind"] == "Bus" and part in event["message"])
+
+            def wait_bad(units):
+                machine.watcher.wait_note("state", lambda state: [bus["nodes_bad"] for bus in state["buses"]] == [units])
+
+            machine.turn(600)
+            wait_bad([])
+            served.tell("1 mute on", "slave 1: ok")
+            fault = machine.watcher.wait_note("events", lambda event: event["kind"] == "Fault")
+            machine.watcher.wait_note("events", lambda event: event["kind"] == "FlightRecord")
+            wait_bad([1])
+            head = json.loads(machine.operator.call("FlightRecorder.Read", Name=fault["record"])["text"].splitlines()[0])
+            unit = head["buses"]["lines"][0]["units"][0]
+            self.assertEqual(unit["unit"], 1)
+            self.assertGreater(unit["timeouts"], 0)
+            served.tell("1 mute off", "slave 1: ok")
+            told("unit 1: answers, after it does not answer")
+            wait_bad([])
 
 
 class TimeOut(unittest.TestCase):

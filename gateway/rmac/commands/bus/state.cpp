@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "gateway/rmac/commands/bus/registrations.hpp"
+#include "gateway/rmac/records/flight_records.hpp"
 #include "gateway/rmac/terminal/table.hpp"
 #include "rmac/fieldbus/eds/object_entry.hpp"
 
@@ -104,17 +106,30 @@ void show_line(const json& line) {
   }
 }
 
-Result<> show_state(Connection& appliance, bool as_json) {
-  return appliance.call("Bus.GetState").map([as_json](const json& answer) {
-    if (as_json) {
-      fmt::print("{}\n", answer.dump());
-      return;
-    }
-    if (answer.at("buses").empty() && answer.at("lines").empty())
-      fmt::print("no CANopen bus and no Modbus line runs\n");
-    for (const json& bus : answer.at("buses")) show_bus(bus);
-    for (const json& line : answer.at("lines")) show_line(line);
+void show(const json& report, bool as_json) {
+  if (as_json) {
+    fmt::print("{}\n", report.dump());
+    return;
+  }
+  if (report.at("buses").empty() && report.at("lines").empty()) fmt::print("no CANopen bus and no Modbus line runs\n");
+  for (const json& bus : report.at("buses")) show_bus(bus);
+  for (const json& line : report.at("lines")) show_line(line);
+}
+
+Result<> show_recorded(Connection& appliance, const std::string& record, bool as_json) {
+  return fetch_flight_record(appliance, record).and_then([&](const std::string& text) -> Result<> {
+    const json head = json::parse(text.substr(0, text.find('\n')), nullptr, false);
+    const auto buses = head.is_object() ? head.find("buses") : head.end();
+    if (buses == head.end() || !buses->is_object())
+      return fail(fmt::format("flight record {} tells nothing of buses; records of earlier versions do not", record));
+    show(*buses, as_json);
+    return {};
   });
+}
+
+Result<> show_state(Connection& appliance, const std::string& record, bool as_json) {
+  if (!record.empty()) return show_recorded(appliance, record, as_json);
+  return appliance.call("Bus.GetState").map([as_json](const json& answer) { show(answer, as_json); });
 }
 
 }  // namespace
@@ -122,7 +137,11 @@ Result<> show_state(Connection& appliance, bool as_json) {
 void add_bus_state(Command& bus) {
   Command state =
       bus.add("state", "what the CANopen buses and Modbus lines of the machine that is loaded went through");
-  state.does(with_appliance(show_state));
+  const auto record = std::make_shared<std::string>();
+  state.option("--record", record.get(),
+               "as they were when this flight record was made, instead of now (`rmac trace`)");
+  state.does(with_appliance(
+      [record](Connection& appliance, bool as_json) { return show_state(appliance, *record, as_json); }));
 }
 
 }  // namespace rmac::cli

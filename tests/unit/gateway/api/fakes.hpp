@@ -335,6 +335,7 @@ class FakeMachine : public MachinePort {
   const CycleTimes& cycle_times() const override { return times; }
   CycleNow cycle_now() const override { return cycle; }
   fieldbus::FieldbusReport bus_reports() const override { return buses; }
+  const nlohmann::json& bus_summary() const override { return bus_summary_told; }
   const std::optional<Event>& last_stop() const override { return stop; }
   Expected<std::string> record_flight() override { return std::string("20261121T000000.000Z-demand-1"); }
   const FlightFolder* flight_records() const override { return nullptr; }
@@ -352,6 +353,7 @@ class FakeMachine : public MachinePort {
   CycleSample now;
   CycleTimes times;
   fieldbus::FieldbusReport buses;
+  nlohmann::json bus_summary_told = nlohmann::json::array();
   CycleNow cycle;
   std::function<void()> during_search;
 };

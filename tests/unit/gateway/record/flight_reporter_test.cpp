@@ -87,6 +87,24 @@ TEST_F(FlightReporterTest, RecordsBothMotorsOfAGantryAndDescribesHeldJointsLast)
   EXPECT_EQ(head["joints"][1]["unit"], "deg");
 }
 
+TEST_F(FlightReporterTest, KeepsWhatTheBusesHadGoneThroughHoweverLongThatIs) {
+  run_cycles(20, 1);
+  // As of two full buses: far longer than any other head.
+  const nlohmann::json report{{"buses", nlohmann::json::array({std::string(600'000, 'x')})}, {"lines", {}}};
+  FlightReporter reporter({folder_.path() / "full", 0.01, 20}, kPeriod_s, history_, [&] { return report; });
+  Event event = fault();
+  reporter.annotate(event, &device_);
+  while (reporter.take_events().empty()) {
+  }
+  std::ifstream file(reporter.folder()->file_of(event.record));
+  std::string head;
+  std::getline(file, head);
+  EXPECT_EQ(nlohmann::json::parse(head)["buses"], report);
+  const auto listed = reporter.folder()->list();
+  ASSERT_EQ(listed.size(), 1U) << "a long head is one";
+  EXPECT_FALSE(listed[0].contains("buses")) << "a list of many of them would be";
+}
+
 TEST_F(FlightReporterTest, ARecordBeginsWhereTheNumberOfDrivesChanged) {
   run_cycles(5, 2);
   run_cycles(4, 3);

@@ -93,6 +93,24 @@ TEST_F(CommandBench, BusStateTellsEachUnitOfAModbusLine) {
   }
 }
 
+TEST_F(CommandBench, BusStateShowsWhatAFlightRecordKept) {
+  const json report = bus_with(json::array(), {{"state", "bus-off"}, {"transmit_errors", 256}, {"receive_errors", 0}});
+  const auto holds = [this](const json& head) {
+    appliance_.answers("FlightRecorder.Read", {{"text", head.dump() + "\nt_s,q1\n1,2\n"}, {"next_offset", nullptr}});
+  };
+  holds({{"name", "r-1"}, {"buses", report}});
+  const auto told = run({"bus", "state", "--record", "r-1"});
+  EXPECT_EQ(told.exit_code, 0) << told.err;
+  EXPECT_THAT(told.out, HasSubstr("controller bus-off, error counters 256 transmit, 0 receive"));
+  EXPECT_EQ(json::parse(run({"--json", "bus", "state", "--record", "r-1"}).out), report);
+  EXPECT_EQ(appliance_.params_of("FlightRecorder.Read").front().at("Name"), "r-1");
+  for (const json& older : {json{{"name", "r-1"}}, json{{"name", "r-1"}, {"buses", nullptr}}, json("no head")}) {
+    holds(older);
+    EXPECT_THAT(run({"bus", "state", "--record", "r-1"}).err,
+                HasSubstr("flight record r-1 tells nothing of buses; records of earlier versions do not"));
+  }
+}
+
 TEST_F(CommandBench, BusStateSaysThatNoBusRuns) {
   appliance_.answers("Bus.GetState", {{"buses", json::array()}, {"lines", json::array()}});
   EXPECT_EQ(run({"bus", "state"}).out, "no CANopen bus and no Modbus line runs\n");
