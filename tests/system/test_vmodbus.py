@@ -146,7 +146,7 @@ class WithTheAppliance(unittest.TestCase):
 
 class WhatTheBusWentThrough(unittest.TestCase):
     def test_a_drive_that_goes_mute_is_told_and_the_record_of_the_fault_keeps_it(self):
-        with Virtual("1=delta-vfd-b") as served, Machine(served, "delta-vfd-b") as machine:
+        with Virtual("1=delta-vfd-b") as served, Machine(served, "delta-vfd-b", stale_ms=2000, deadline_ms=1000) as machine:
             def told(part):
                 return machine.watcher.wait_note("events", lambda event: event["kind"] == "Bus" and part in event["message"])
 
