@@ -22,7 +22,7 @@ class BusWatchTest : public testing::Test {
     fieldbus::BusReport bus;
     bus.interface = "can0";
     bus.controller.state = Controller::ErrorActive;
-    for (const std::uint8_t node : {3, 4}) {
+    for (const auto node : {std::uint8_t{3}, std::uint8_t{4}}) {
       NodeReport& told = bus.nodes.emplace_back();
       told.node = node;
       told.state = "operational";
