@@ -3,7 +3,7 @@
 
   rooms    at most 25 source files a folder, and one CMake target
   arrows   a file includes only of its own room and of the rooms that its CMakeLists.txt names; no circle of folders
-  layers   motion knows nobody; fieldbus and drivers know motion (drivers the SDK too); nobody includes a program's folder
+  layers   motion knows nobody; fieldbus and drivers know motion (drivers the SDK too), clients nobody; nobody includes a program's folder
   classes  at most 30 methods and 20 fields, in headers and sources alike; defined in at most 3 sources
 
 --table prints the figures of docs/architecture.md instead.
@@ -16,9 +16,11 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MOST_FILES, MOST_METHODS, MOST_FIELDS, MOST_SOURCES = 25, 30, 20, 3
-AREAS = ("motion", "fieldbus", "drivers", "gateway")
+AREAS = ("motion", "fieldbus", "drivers", "gateway", "clients")
+# Where a folder is a room, and names in its CMakeLists.txt those that it includes.
+ROOMED = ("gateway", "clients")
 # Whose files may include whose, of what is no room of the gateway.
-LAYERS = {"motion": {"motion"}, "fieldbus": {"fieldbus", "motion"}, "drivers": {"drivers", "motion"}}
+LAYERS = {"motion": {"motion"}, "fieldbus": {"fieldbus", "motion"}, "drivers": {"drivers", "motion"}, "clients": {"clients"}}
 PUBLIC = {"rmac/motion/": "motion", "rmac/fieldbus/": "fieldbus", "rmac/sdk/": "drivers", "rmac/modules/": "drivers"}
 LIBRARY_OF = {"motion": "rmac_motion", "fieldbus": "rmac_fieldbus", "drivers": "rmac_sdk"}
 # What simulates the other side of a protocol shares no code with this side's.
@@ -120,9 +122,10 @@ def check_arrows(files, complaints):
             to = other.relative_to(ROOT).parts[0]
             if area in LAYERS and to not in LAYERS[area]:
                 complaints.append(f"{path.relative_to(ROOT)} includes {name}: {area} must not know {to}")
-            if area != "gateway":
                 continue
-            if to == "gateway":
+            if area not in ROOMED:
+                continue
+            if to == area:
                 other_room, other_text = target_text(other)
                 if other_room == room:
                     continue
@@ -130,7 +133,7 @@ def check_arrows(files, complaints):
                 if re.search(r"\badd_executable\(", other_text) and not re.search(r"\b(add_library|rmac_room)\(", other_text):
                     complaints.append(f"{path.relative_to(ROOT)} includes {name}, which belongs to a program")
             else:
-                wanted = {LIBRARY_OF[to], "rmac_driver_parts"}
+                wanted = {LIBRARY_OF.get(to, "(nothing of clients)"), "rmac_driver_parts"}
             if not any(re.search(rf"(?<![\w-]){re.escape(target)}(?![\w-])", text) for target in wanted) and not inherited(text, wanted):
                 complaints.append(f"{path.relative_to(ROOT)} includes {name}; {room.relative_to(ROOT)}/CMakeLists.txt names none of {', '.join(sorted(wanted))}")
 

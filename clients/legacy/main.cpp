@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clients/legacy/rs274/import.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace rmac;
+
+struct Words {
+  std::string file, output, dialect = "rs274", unit, approach;
+  std::vector<std::string> offsets;
+  rs274::Options options;
+};
+
+int fail(const std::string& message) {
+  fmt::print(stderr, "rmac-import: {}\n", message);
+  return 1;
+}
+
+std::optional<rs274::Point> read_point(const std::string& text) {
+  rs274::Point point{};
+  const char *at = text.data(), *const end = text.data() + text.size();
+  for (std::size_t axis = 0; axis < point.size(); ++axis) {
+    if (axis > 0 && (at == end || *at++ != ',')) return std::nullopt;
+    const auto read = std::from_chars(at, end, point.at(axis), std::chars_format::fixed);
+    if (read.ec != std::errc()) return std::nullopt;
+    at = read.ptr;
+  }
+  return at == end ? std::optional(point) : std::nullopt;
+}
+
+/// G54=X,Y,Z.
+bool read_offset(const std::string& text, rs274::Options& options) {
+  static constexpr std::array<std::string_view, 9> kNames{"G54", "G55",   "G56",   "G57",  "G58",
+                                                          "G59", "G59.1", "G59.2", "G59.3"};
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) return false;
+  const auto* name = std::find(kNames.begin(), kNames.end(), text.substr(0, equals));
+  const auto point = read_point(text.substr(equals + 1));
+  if (name == kNames.end() || !point) return false;
+  options.offsets.at(static_cast<std::size_t>(name - kNames.begin())) = {(*point)[0], (*point)[1], (*point)[2]};
+  return true;
+}
+
+/// What the command line parser leaves as text. What is wrong, or nothing.
+std::optional<std::string> finish(Words& words) {
+  if (!words.unit.empty()) words.options.unit_mm = words.unit == "inch" ? 25.4 : 1.0;
+  if (!words.approach.empty()) {
+    words.options.approach_mm = read_point(words.approach);
+    if (!words.options.approach_mm) return "--approach is three numbers in mm, as 0,0,50";
+  }
+  for (const auto& offset : words.offsets) {
+    if (!read_offset(offset, words.options))
+      return fmt::format("--offset {}: it is a work system and three numbers in mm, as G54=100,50,-20", offset);
+  }
+  if (words.output.empty())
+    words.output = words.file == "-" ? "-" : fs::path(words.file).replace_extension(".rmac").string();
+  if (words.output != "-" && words.output == words.file)
+    return "the output would replace its source; name another with -o";
+  return std::nullopt;
+}
+
+std::optional<std::string> read_file(const std::string& name) {
+  std::ifstream opened;
+  if (name != "-") {
+    std::error_code none;
+    if (fs::is_directory(name, none)) return std::nullopt;
+    opened.open(name, std::ios::binary);
+    if (!opened) return std::nullopt;
+  }
+  std::istream& input = name == "-" ? std::cin : opened;
+  std::string text{std::istreambuf_iterator<char>(input), {}};
+  return input.bad() ? std::nullopt : std::optional(std::move(text));
+}
+
+/// The output under another name until it is whole: nobody should run half a program.
+class Output {
+ public:
+  explicit Output(const std::string& name) : name_(name), partial_(name == "-" ? "" : name + ".part") {
+    file_ = partial_.empty() ? std::tmpfile() : std::fopen(partial_.c_str(), "wb");
+  }
+  ~Output() {
+    if (file_ != nullptr) std::fclose(file_);
+    std::error_code ignored;
+    if (!partial_.empty()) fs::remove(partial_, ignored);
+  }
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+
+  [[nodiscard]] bool open() const noexcept { return file_ != nullptr; }
+  void write(std::string_view text) noexcept {
+    good_ = good_ && std::fwrite(text.data(), 1, text.size(), file_) == text.size();
+  }
+  [[nodiscard]] bool finish() {
+    if (partial_.empty()) return copy_out();
+    const bool closed = std::fclose(file_) == 0;
+    file_ = nullptr;
+    std::error_code failed;
+    if (good_ && closed) fs::rename(partial_, name_, failed);
+    return good_ && closed && !failed;
+  }
+
+ private:
+  bool copy_out() {
+    std::rewind(file_);
+    std::vector<char> part(1U << 16U);
+    for (std::size_t got = 0; good_ && (got = std::fread(part.data(), 1, part.size(), file_)) > 0;) {
+      good_ = std::fwrite(part.data(), 1, got, stdout) == got;
+    }
+    return good_ && std::fflush(stdout) == 0;
+  }
+
+  std::string name_, partial_;
+  std::FILE* file_ = nullptr;
+  bool good_ = true;
+};
+
+int import_file(const Words& words) {
+  const auto text = read_file(words.file);
+  if (!text) return fail(words.file + ": cannot be read");
+  Output output(words.output);
+  if (!output.open()) return fail(words.output + ": cannot be written");
+  const auto summary =
+      rs274::import_program(*text, words.options, [&output](std::string_view part) { output.write(part); });
+  if (!summary) {
+    const auto& error = summary.error();
+    return fail(fmt::format("{}:{}:{}: {}", words.file == "-" ? "standard input" : words.file, error.line, error.column,
+                            error.message));
+  }
+  if (!output.finish()) return fail(words.output + ": cannot be written");
+  if (words.output != "-") fmt::print("{}: {} moves from {} lines\n", words.output, summary->moves, summary->lines);
+  return 0;
+}
+
+void declare(CLI::App& app, Words& words) {
+  app.add_option("FILE", words.file, "the program, - for standard input")->required();
+  app.add_option("-o,--output", words.output,
+                 "the .rmac file, - for standard output; FILE with the ending .rmac unless given");
+  app.add_option("--dialect", words.dialect, "which control's language it is")
+      ->check(CLI::IsMember({"rs274"}))
+      ->capture_default_str();
+  app.add_flag("--block-delete", words.options.block_delete, "leave out blocks that begin with /");
+  app.add_option("--unit", words.unit, "unit of a program without G20 and G21")->check(CLI::IsMember({"mm", "inch"}));
+  app.add_option("--tolerance", words.options.tolerance_mm, "path tolerance of G64 without P, mm");
+  app.add_option("--approach", words.approach,
+                 "X,Y,Z in mm: where the tool tip goes straight, at rapid, when the program begins, after a tool "
+                 "change and a change of unknown "
+                 "offsets, unless its next move is a G0 to X, Y and Z");
+  app.add_flag("--assume-g43", words.options.assume_g43, "the tool's length counts from M6 on, though no G43 says so");
+  app.add_option("--offset", words.offsets,
+                 "G54=X,Y,Z in mm: where a work system is in the machine; may be given for each");
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  CLI::App app{
+      "Makes a .rmac program of one in another control's language. What is not understood stops it, with line and "
+      "column."};
+  app.name("rmac import");
+  Words words;
+  declare(app, words);
+  try {
+    app.parse(count, arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  if (const auto wrong = finish(words)) {
+    static_cast<void>(fail(*wrong));
+    return 2;
+  }
+  return import_file(words);
+}

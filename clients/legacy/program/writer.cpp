@@ -1,0 +1,154 @@
+#include "clients/legacy/program/writer.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+namespace rmac::legacy {
+
+namespace {
+
+constexpr std::size_t kFlush_bytes = 1U << 20U;
+/// What is written of a length: nobody machines a tenth of a nanometre, and sums of decimals have their digits back.
+constexpr double kPerMm = 1e7;
+constexpr std::array<std::string_view, 3> kAxes{"[1,0,0]", "[0,1,0]", "[0,0,1]"};
+constexpr std::string_view kToolAxis = kAxes[2];
+
+double rounded(double value) {
+  return std::round(value * kPerMm) / kPerMm + 0.0;  // no minus zero
+}
+
+void write_point(std::string& text, const Point& point) {
+  fmt::format_to(std::back_inserter(text), "[{},{},{}]", rounded(point[0]), rounded(point[1]), rounded(point[2]));
+}
+
+void write_frame(std::string& text, std::string_view point, std::string_view axis) {
+  text.append(R"({"p":)").append(point).append(R"(,"axis":)").append(axis).append("}");
+}
+
+/// As JSON has it; what is no printable ASCII is left out.
+std::string quoted(std::string_view text) {
+  std::string result = "\"";
+  for (const char letter : text) {
+    if (letter == '"' || letter == '\\') result += '\\';
+    if (letter >= ' ' && letter < '\x7f') result += letter;
+  }
+  return result + '"';
+}
+
+}  // namespace
+
+void Writer::open(std::string_view method) {
+  fmt::format_to(std::back_inserter(out_), R"({{"jsonrpc":"2.0","id":{},"method":"RMAC_CAM.{}","params":{{)",
+                 ++requests_, method);
+}
+
+void Writer::open_move(std::string_view method) {
+  open(method);
+  fmt::format_to(std::back_inserter(out_), R"("MoveID":{},)", line_);
+}
+
+void Writer::close() {
+  out_.append("}}\n");
+  if (out_.size() >= kFlush_bytes) flush();
+}
+
+void Writer::flush() {
+  sink_(out_);
+  out_.clear();
+}
+
+void Writer::begin(const Point& start) {
+  here_.clear();
+  write_point(here_, start);
+}
+
+void Writer::rapid(const Point& end) {
+  begin(end);
+  open_move("MoveToPathTarget");
+  out_.append(R"("TargetFrame":)");
+  write_frame(out_, here_, kToolAxis);
+  close();
+  ++moves_;
+}
+
+void Writer::line(const Point& end) {
+  there_.clear();
+  write_point(there_, end);
+  if (there_ == here_) return;  // no way at all
+  open_move("MoveAlongLine");
+  out_.append(R"("StartPoint":)");
+  write_frame(out_, here_, kToolAxis);
+  out_.append(R"(,"EndPoint":)");
+  write_frame(out_, there_, kToolAxis);
+  close();
+  here_.swap(there_);
+  ++moves_;
+}
+
+void Writer::arc(const Arc& arc) {
+  there_.clear();
+  write_point(there_, arc.centre);
+  open_move("MoveAlongArc");
+  fmt::format_to(std::back_inserter(out_), R"("RotSign":{},"Closed":{},"CenterPoint":)", arc.counter_clockwise ? 1 : -1,
+                 arc.closed);
+  write_frame(out_, there_, kAxes.at(arc.normal));
+  there_.clear();
+  write_point(there_, arc.end);
+  out_.append(R"(,"StartPoint":)");
+  write_frame(out_, here_, kToolAxis);
+  out_.append(R"(,"EndPoint":)");
+  write_frame(out_, there_, kToolAxis);
+  if (arc.more_turns > 0) fmt::format_to(std::back_inserter(out_), R"(,"Turns":{})", arc.more_turns);
+  close();
+  here_.swap(there_);
+  ++moves_;
+}
+
+void Writer::feed(double mm_min) {
+  open("SetFeedrate");
+  fmt::format_to(std::back_inserter(out_), R"("Feedrate":{})", rounded(mm_min));
+  close();
+}
+
+void Writer::path_tolerance(double mm) {
+  open("SetPathTolerance");
+  fmt::format_to(std::back_inserter(out_), R"("Tolerance":{})", rounded(mm));
+  close();
+}
+
+void Writer::part_frame(const Point& origin) {
+  open("SetPartFrame");
+  out_.append(R"("PartFrame":{"p":)");
+  write_point(out_, origin);
+  out_.append(R"(,"q":[1,0,0,0]})");
+  close();
+}
+
+void Writer::dwell(double seconds) {
+  open_move("Dwell");
+  fmt::format_to(std::back_inserter(out_), R"("Time":{})", seconds);
+  close();
+}
+
+void Writer::stop(bool optional, std::string_view message) {
+  open_move("ProgramStop");
+  fmt::format_to(std::back_inserter(out_), R"("Optional":{})", optional);
+  if (!message.empty()) out_.append(R"(,"Message":)").append(quoted(message));
+  close();
+}
+
+void Writer::change_tool(int number) {
+  open("DoToolChange");
+  fmt::format_to(std::back_inserter(out_), R"("ToolNumber":{})", number);
+  close();
+}
+
+void Writer::in_turn(std::string_view calls) {
+  open_move("InTurn");
+  out_.append(R"("Calls":[)").append(calls).append("]");
+  close();
+}
+
+}  // namespace rmac::legacy

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace rmac::legacy {
+
+/// X, Y, Z in mm.
+using Point = std::array<double, 3>;
+
+struct Arc {
+  Point centre{}, end{};
+  std::size_t normal = 2;  ///< axis about which it turns
+  bool counter_clockwise = false, closed = false;
+  int more_turns = 0;
+};
+
+/// Writes the requests of a `.rmac` file. The MoveID of each is the line of the source that it comes from.
+class Writer {
+ public:
+  using Sink = std::function<void(std::string_view text)>;
+  explicit Writer(Sink sink) : sink_(std::move(sink)) {}
+
+  void at_line(std::size_t line) noexcept { line_ = line; }
+
+  /// Positioning, from rest to rest.
+  void rapid(const Point& end);
+  /// Lines and arcs begin where the move before them ended, or where begin() says.
+  void begin(const Point& start);
+  void line(const Point& end);
+  void arc(const Arc& arc);
+
+  void feed(double mm_min);
+  void path_tolerance(double mm);
+  void part_frame(const Point& origin);
+  void dwell(double seconds);
+  void stop(bool optional, std::string_view message);
+  void change_tool(int number);
+  /// Calls between moves, each as text of JSON.
+  void in_turn(std::string_view calls);
+  void flush();
+
+  [[nodiscard]] std::size_t requests() const noexcept { return requests_; }
+  [[nodiscard]] std::size_t moves() const noexcept { return moves_; }
+
+ private:
+  void open(std::string_view method);
+  void open_move(std::string_view method);
+  void close();
+
+  Sink sink_;
+  std::string out_, here_, there_;
+  std::size_t line_ = 0, requests_ = 0, moves_ = 0;
+};
+
+}  // namespace rmac::legacy

@@ -1,0 +1,99 @@
+#include "clients/legacy/rs274/drilling.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rmac::rs274 {
+
+namespace {
+
+constexpr int kDwelling = 820, kPecking = 830;
+/// How far above the depth that was reached a peck goes on from rapid to feed: LinuxCNC's 0.010 inch.
+constexpr double kBackOff_mm = 0.254;
+constexpr int kMostRepeats = 10'000;
+/// Of one hole: what asks for more is a slip of units.
+constexpr double kMostPecks = 10'000;
+
+int repeats_of(Block& block) {
+  const Word* word = block.find('L');
+  if (word == nullptr) return 1;
+  if (word->value != std::round(word->value) || word->value < 1 || word->value > kMostRepeats) {
+    refuse(word->place, fmt::format("L is how often the hole is repeated, 1 to {}", kMostRepeats));
+  }
+  return static_cast<int>(word->value);
+}
+
+}  // namespace
+
+double Drilling::sticky(Block& block, char letter, std::optional<double>& value, std::size_t place) {
+  if (const Word* word = block.find(letter)) value = letter == 'P' ? word->value : modes_.mm(*word);
+  if (!value) refuse(place, fmt::format("the first block of a canned cycle needs {}", letter));
+  return *value;
+}
+
+void Drilling::read(Block& block, int code, std::size_t place) {
+  static_cast<void>(sticky(block, 'R', retract_, place));
+  static_cast<void>(sticky(block, kAxisLetters.at(modes_.plane.normal), depth_, place));
+  if (code == kDwelling && sticky(block, 'P', dwell_s_, place) < 0) refuse(place, "a dwell of less than no time");
+  if (code == kPecking && !(sticky(block, 'Q', peck_, place) > 0))
+    refuse(place, "Q, the depth of a peck, is more than 0");
+}
+
+void Drilling::drill(Block& block, int code, bool anew, std::size_t place) {
+  const Plane& plane = modes_.plane;
+  if (block.once(530)) refuse(place, "G53 goes with G0 and G1 only");
+  Point at = mover_.start(place);
+  if (anew) {
+    retract_ = depth_ = dwell_s_ = peck_ = std::nullopt;
+    initial_ = at.at(plane.normal);
+  }
+  read(block, code, place);
+  const double retract = modes_.incremental ? initial_ + *retract_ : coordinates_.to_part(plane.normal, *retract_);
+  const double bottom = modes_.incremental ? retract + *depth_ : coordinates_.to_part(plane.normal, *depth_);
+  if (bottom > retract) refuse(place, "the hole's bottom is above R");
+  if (at.at(plane.normal) < retract) {
+    at.at(plane.normal) = retract;
+    mover_.rapid(at, place);
+  }
+  const double clear = modes_.retract_to_r ? retract : at.at(plane.normal);
+  const int repeats = repeats_of(block);
+  const Word* first = block.find(kAxisLetters.at(plane.first));
+  const Word* second = block.find(kAxisLetters.at(plane.second));
+  for (int repeat = 0; repeat < repeats; ++repeat) {
+    for (const auto& [axis, word] : {std::pair{plane.first, first}, std::pair{plane.second, second}}) {
+      if (word == nullptr) continue;
+      at.at(axis) = modes_.incremental ? at.at(axis) + modes_.mm(*word) : coordinates_.to_part(axis, modes_.mm(*word));
+    }
+    mover_.rapid(at, place);
+    Point above = at;
+    above.at(plane.normal) = retract;
+    mover_.rapid(above, place);
+    hole(above, bottom, clear, code, place);
+    at.at(plane.normal) = clear;
+  }
+}
+
+void Drilling::hole(const Point& above, double bottom, double clear, int code, std::size_t place) {
+  const std::size_t normal = modes_.plane.normal;
+  const auto at = [&](double level) {
+    Point point = above;
+    point.at(normal) = level;
+    return point;
+  };
+  const double retract = above.at(normal);
+  if (code == kPecking) {
+    if ((retract - bottom) / *peck_ > kMostPecks) refuse(place, "more than 10 000 pecks for one hole");
+    for (double depth = retract - *peck_; depth > bottom; depth -= *peck_) {
+      mover_.line(at(depth), place);
+      mover_.rapid(above, place);
+      mover_.rapid(at(std::min(depth + kBackOff_mm, retract)), place);
+    }
+  }
+  mover_.line(at(bottom), place);
+  if (code == kDwelling) writer_.dwell(*dwell_s_);
+  mover_.rapid(at(clear), place);
+}
+
+}  // namespace rmac::rs274

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "clients/legacy/rs274/mover.hpp"
+
+namespace rmac::rs274 {
+
+/// The canned cycles G81, G82 (with a dwell) and G83 (pecking), along the normal of the plane. What a block does not
+/// say stays as the block before it had it, as long as the cycle is the same.
+class Drilling {
+ public:
+  Drilling(const Modes& modes, Coordinates& coordinates, Mover& mover, Writer& writer)
+      : modes_(modes), coordinates_(coordinates), mover_(mover), writer_(writer) {}
+
+  /// `code`: tenfold. A cycle begins anew where another motion was before.
+  void drill(Block& block, int code, bool anew, std::size_t place);
+
+ private:
+  void read(Block& block, int code, std::size_t place);
+  [[nodiscard]] double sticky(Block& block, char letter, std::optional<double>& value, std::size_t place);
+  void hole(const Point& above, double bottom, double clear, int code, std::size_t place);
+
+  const Modes& modes_;
+  Coordinates& coordinates_;
+  Mover& mover_;
+  Writer& writer_;
+  std::optional<double> retract_, depth_, dwell_s_, peck_;  ///< R, and Z or its like, as programmed, in mm
+  double initial_ = 0;                                      ///< level at which the first of the holes began
+};
+
+}  // namespace rmac::rs274

@@ -1,0 +1,100 @@
+#include "clients/legacy/rs274/motions.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace rmac::rs274 {
+
+namespace {
+
+/// What the API takes of whole turns more, and the arc's own.
+constexpr int kMostTurns = 1001;
+
+int turns_of(const Word& word) {
+  const double nearest = std::round(word.value);
+  if (nearest != word.value || nearest < 1 || nearest > kMostTurns) {
+    refuse(word.place, fmt::format("P of an arc is its turns, 1 to {}", kMostTurns));
+  }
+  return static_cast<int>(nearest);
+}
+
+}  // namespace
+
+double Motions::machine_value(const Word& word, std::size_t axis) const {
+  if (modes_.incremental) refuse(word.place, "G53 under G91; write G90 before it");
+  const auto& offset = coordinates_.offset(coordinates_.active()).at(axis);
+  if (!offset) {
+    refuse(word.place,
+           "where the work system is in the machine is not known, so neither is this place; write it without G53, "
+           "set the system by G10 L2, or give --offset");
+  }
+  if (axis == 2) {
+    refuse(word.place,
+           "machine Z is that of the spindle without its tool, whose length is not known here; write Z without G53");
+  }
+  return modes_.mm(word) - *offset;
+}
+
+Point Motions::end_of(Block& block, std::size_t place) {
+  const bool in_machine = block.once(530);
+  const bool all = block.has('X') && block.has('Y') && block.has('Z');
+  Point end{};
+  if (!all || modes_.incremental) end = mover_.start(place);
+  for (std::size_t axis = 0; axis < end.size(); ++axis) {
+    const Word* word = block.find(kAxisLetters.at(axis));
+    if (word == nullptr) continue;
+    double& value = end.at(axis);
+    if (in_machine) {
+      value = machine_value(*word, axis);
+    } else {
+      value = modes_.incremental ? value + modes_.mm(*word) : coordinates_.to_part(axis, modes_.mm(*word));
+    }
+  }
+  return end;
+}
+
+void Motions::straight(Block& block, bool rapid, std::size_t place) {
+  const Point end = end_of(block, place);
+  if (rapid) return mover_.rapid(end, place);
+  mover_.line(end, place);
+}
+
+Point Motions::written_centre(Block& block, const Point& start, std::size_t place) const {
+  const Plane& plane = modes_.plane;
+  const char first = kCentreLetters.at(plane.first), second = kCentreLetters.at(plane.second);
+  if (!block.has(first) && !block.has(second)) {
+    refuse(place, fmt::format("an arc without centre and radius; write {} and {}, or R", first, second));
+  }
+  if (modes_.absolute_centres && !(block.has(first) && block.has(second))) {
+    refuse(place, fmt::format("under G90.1 an arc has both {} and {}", first, second));
+  }
+  Point centre = start;
+  for (const std::size_t axis : {plane.first, plane.second}) {
+    const Word* word = block.find(kCentreLetters.at(axis));
+    if (word == nullptr) continue;
+    centre.at(axis) =
+        modes_.absolute_centres ? coordinates_.to_part(axis, modes_.mm(*word)) : start.at(axis) + modes_.mm(*word);
+  }
+  return centre;
+}
+
+void Motions::arc(Block& block, bool counter_clockwise, std::size_t place) {
+  if (block.once(530)) refuse(place, "G53 goes with G0 and G1 only");
+  const Plane& plane = modes_.plane;
+  const Point start = mover_.start(place);
+  const Point end = end_of(block, place);
+  Arc arc{.end = end, .normal = plane.normal, .counter_clockwise = counter_clockwise};
+  if (const Word* radius = block.find('R')) {
+    if (block.has_any("IJK")) refuse(radius->place, "an arc has a radius or a centre, not both");
+    if (radius->value == 0) refuse(radius->place, "an arc of radius 0");
+    arc.centre = centre_by_radius(start, end, plane, counter_clockwise, modes_.mm(*radius), radius->place);
+  } else {
+    arc.centre = evened_centre(start, end, written_centre(block, start, place), plane, place);
+    arc.closed = closes(start, end, arc.centre, plane, counter_clockwise);
+  }
+  if (const Word* turns = block.find('P')) arc.more_turns = turns_of(*turns) - 1;
+  mover_.arc(arc, place);
+}
+
+}  // namespace rmac::rs274

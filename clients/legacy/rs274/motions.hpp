@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+
+#include "clients/legacy/rs274/mover.hpp"
+
+namespace rmac::rs274 {
+
+/// G0 to G3: where a block of them ends, and by which way.
+class Motions {
+ public:
+  Motions(const Modes& modes, Coordinates& coordinates, Mover& mover)
+      : modes_(modes), coordinates_(coordinates), mover_(mover) {}
+
+  /// G0 or G1. `place`: of what asks for it.
+  void straight(Block& block, bool rapid, std::size_t place);
+  void arc(Block& block, bool counter_clockwise, std::size_t place);
+
+ private:
+  [[nodiscard]] Point end_of(Block& block, std::size_t place);
+  [[nodiscard]] double machine_value(const Word& word, std::size_t axis) const;
+  [[nodiscard]] Point written_centre(Block& block, const Point& start, std::size_t place) const;
+
+  const Modes& modes_;
+  Coordinates& coordinates_;
+  Mover& mover_;
+};
+
+}  // namespace rmac::rs274

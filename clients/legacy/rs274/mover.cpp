@@ -1,0 +1,79 @@
+#include "clients/legacy/rs274/mover.hpp"
+
+#include <cmath>
+
+namespace rmac::rs274 {
+
+namespace {
+
+/// What the API takes (docs/api.md).
+constexpr double kFarthest_mm = 1e6, kLeastFeed_mm_min = 0.01, kMostFeed_mm_min = 1e6;
+
+}  // namespace
+
+void Mover::write_frame() {
+  const auto origin = coordinates_.part_origin();
+  if (!origin || origin == frame_) return;
+  writer_.part_frame(*origin);
+  frame_ = origin;
+}
+
+Point Mover::start(std::size_t place) {
+  if (!coordinates_.tip_is_known()) {
+    if (!options_.approach_mm) {
+      refuse(place,
+             "where the tool is before this move is not known; begin, and go on after a tool change or another work "
+             "system, "
+             "with a G0 to X, Y and Z, or give --approach X,Y,Z");
+    }
+    write_frame();
+    writer_.rapid(*options_.approach_mm);
+    coordinates_.move_to(*options_.approach_mm);
+  }
+  return coordinates_.known_tip();
+}
+
+void Mover::prepare(const Point& end, std::size_t place) {
+  for (const double value : end) {
+    if (!(std::abs(value) <= kFarthest_mm)) refuse(place, "a move beyond 1 000 000 mm");
+  }
+  if (modes_.length == ToolLength::Off && !options_.assume_g43 && coordinates_.tip()[2] != end[2]) {
+    refuse(place,
+           "Z of a tool whose length does not count (G49, or M6 without G43 behind it): the appliance's Z is always "
+           "the tip's; "
+           "write G43 before this move, or give --assume-g43");
+  }
+  write_frame();
+}
+
+void Mover::rapid(const Point& end, std::size_t place) {
+  prepare(end, place);
+  if (!coordinates_.tip_is_known() || coordinates_.known_tip() != end) writer_.rapid(end);
+  coordinates_.move_to(end);
+}
+
+void Mover::prepare_feed(const Point& end, std::size_t place) {
+  const Point from = start(place);
+  prepare(end, place);
+  if (modes_.feed_mm_min == 0) refuse(place, "no feed was set before this move; write F");
+  if (modes_.feed_mm_min < kLeastFeed_mm_min || modes_.feed_mm_min > kMostFeed_mm_min) {
+    refuse(place, "the feed is not within 0.01 and 1 000 000 mm/min");
+  }
+  if (feed_mm_min_ != modes_.feed_mm_min) writer_.feed(modes_.feed_mm_min);
+  feed_mm_min_ = modes_.feed_mm_min;
+  writer_.begin(from);
+}
+
+void Mover::line(const Point& end, std::size_t place) {
+  prepare_feed(end, place);
+  writer_.line(end);
+  coordinates_.move_to(end);
+}
+
+void Mover::arc(const Arc& arc, std::size_t place) {
+  prepare_feed(arc.end, place);
+  writer_.arc(arc);
+  coordinates_.move_to(arc.end);
+}
+
+}  // namespace rmac::rs274

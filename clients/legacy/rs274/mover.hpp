@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "clients/legacy/rs274/modes.hpp"
+
+namespace rmac::rs274 {
+
+/// Moves the tip, in coordinates of the part, and sees that all is written which a move of `.rmac` needs before it: its
+/// frame, its feed, and where it begins. Places are for refusals.
+class Mover {
+ public:
+  Mover(const Options& options, const Modes& modes, Coordinates& coordinates, Writer& writer)
+      : options_(options), modes_(modes), coordinates_(coordinates), writer_(writer) {}
+
+  void rapid(const Point& end, std::size_t place);
+  void line(const Point& end, std::size_t place);
+  void arc(const Arc& arc, std::size_t place);
+  /// Makes the tip's place known, by the approach where nothing else tells it.
+  [[nodiscard]] Point start(std::size_t place);
+
+ private:
+  void prepare(const Point& end, std::size_t place);
+  void prepare_feed(const Point& end, std::size_t place);
+  void write_frame();
+
+  const Options& options_;
+  const Modes& modes_;
+  Coordinates& coordinates_;
+  Writer& writer_;
+  std::optional<Point> frame_;  ///< that was written
+  double feed_mm_min_ = 0;      ///< likewise
+};
+
+}  // namespace rmac::rs274
