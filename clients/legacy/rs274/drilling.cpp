@@ -9,7 +9,7 @@ namespace rmac::rs274 {
 
 namespace {
 
-constexpr int kDwelling = 820, kPecking = 830;
+constexpr int kFirst = 810, kDwelling = 820, kPecking = 830, kLast = 830;
 /// How far above the depth that was reached a peck goes on from rapid to feed: LinuxCNC's 0.010 inch.
 constexpr double kBackOff_mm = 0.254;
 constexpr int kMostRepeats = 10'000;
@@ -41,14 +41,12 @@ void Drilling::read(Block& block, int code, std::size_t place) {
     refuse(place, "Q, the depth of a peck, is more than 0");
 }
 
-void Drilling::drill(Block& block, int code, bool anew, std::size_t place) {
+void Drilling::drill(Block& block, int code, int before, std::size_t place) {
   const Plane& plane = modes_.plane;
   if (block.once(530)) refuse(place, "G53 goes with G0 and G1 only");
   Point at = mover_.start(place);
-  if (anew) {
-    retract_ = depth_ = dwell_s_ = peck_ = std::nullopt;
-    initial_ = at.at(plane.normal);
-  }
+  if (before != code) retract_ = depth_ = dwell_s_ = peck_ = std::nullopt;
+  if (before < kFirst || before > kLast) initial_ = at.at(plane.normal);
   read(block, code, place);
   const double retract = modes_.incremental ? initial_ + *retract_ : coordinates_.to_part(plane.normal, *retract_);
   const double bottom = modes_.incremental ? retract + *depth_ : coordinates_.to_part(plane.normal, *depth_);
@@ -57,7 +55,7 @@ void Drilling::drill(Block& block, int code, bool anew, std::size_t place) {
     at.at(plane.normal) = retract;
     mover_.rapid(at, place);
   }
-  const double clear = modes_.retract_to_r ? retract : at.at(plane.normal);
+  const double clear = modes_.retract_to_r ? retract : std::max(initial_, retract);
   const int repeats = repeats_of(block);
   const Word* first = block.find(kAxisLetters.at(plane.first));
   const Word* second = block.find(kAxisLetters.at(plane.second));

@@ -15,8 +15,8 @@ class Drilling {
   Drilling(const Modes& modes, Coordinates& coordinates, Mover& mover, Writer& writer)
       : modes_(modes), coordinates_(coordinates), mover_(mover), writer_(writer) {}
 
-  /// `code`: tenfold. A cycle begins anew where another motion was before.
-  void drill(Block& block, int code, bool anew, std::size_t place);
+  /// `code` and that of the motion before: tenfold.
+  void drill(Block& block, int code, int before, std::size_t place);
 
  private:
   void read(Block& block, int code, std::size_t place);
@@ -28,7 +28,7 @@ class Drilling {
   Mover& mover_;
   Writer& writer_;
   std::optional<double> retract_, depth_, dwell_s_, peck_;  ///< R, and Z or its like, as programmed, in mm
-  double initial_ = 0;                                      ///< level at which the first of the holes began
+  double initial_ = 0;  ///< level at which the first of a row of cycles began: G98 goes back there
 };
 
 }  // namespace rmac::rs274

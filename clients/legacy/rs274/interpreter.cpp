@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "clients/legacy/rs274/offsets.hpp"
 
@@ -196,11 +197,10 @@ void Interpreter::move() {
 }
 
 void Interpreter::move_by(int code, std::size_t place) {
-  const bool anew = modes_.motion != code;
-  modes_.motion = code;
+  const int before = std::exchange(modes_.motion, code);
   if (code == 0 || code == 10) return motions_.straight(block_, code == 0, place);
   if (code == 20 || code == 30) return motions_.arc(block_, code == 30, place);
-  drilling_.drill(block_, code, anew, place);
+  drilling_.drill(block_, code, before, place);
 }
 
 bool Interpreter::stop() {
