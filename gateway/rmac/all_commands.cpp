@@ -39,6 +39,7 @@ std::span<const Registration> all_commands() {
                                    add_tune,
                                    add_measure_following,
                                    add_simulate,
+                                   add_import,
                                    add_verify,
                                    add_bus};
   return kAll;

@@ -88,6 +88,14 @@ void Command::may_have_command() {
   app_->require_subcommand(0, 1);
 }
 
+void Command::passes_on(std::vector<std::string>* words) {
+  app_->set_help_flag();
+  app_->fallthrough(false);
+  app_->allow_extras();
+  app_->prefix_command();
+  app_->parse_complete_callback([app = app_, words] { *words = app->remaining(); });
+}
+
 void Command::does(Action action) {
   // A command within this one is told first.
   app_->callback([chosen = chosen_, action = std::move(action)] {

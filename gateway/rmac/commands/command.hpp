@@ -66,6 +66,9 @@ class Command {
   void needs_command();
   void may_have_command();
 
+  /// Takes all words behind its name as they are, `--help` too: a program of its own reads them.
+  void passes_on(std::vector<std::string>* words);
+
   /// What it does. Where a command within it is parsed too, that one is done instead.
   void does(Action action);
 

@@ -1,0 +1,42 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gateway/rmac/commands/programs/registrations.hpp"
+
+namespace rmac::cli {
+namespace {
+
+/// Becomes the program that reads other controls' languages. It is no part of this one: what it is fed comes from
+/// strangers, and it needs nothing of the appliance.
+Result<> become(const char* program, const std::vector<std::string>& words) {
+  std::error_code unread;
+  const auto path = std::filesystem::read_symlink("/proc/self/exe", unread).parent_path() / program;
+  std::vector<std::string> all{path.string()};
+  all.insert(all.end(), words.begin(), words.end());
+  std::vector<char*> arguments;
+  for (std::string& word : all) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  execv(path.c_str(), arguments.data());
+  return fail(
+      fmt::format("{} cannot be started: {}; it is installed beside rmac", path.string(), std::strerror(errno)));
+}
+
+}  // namespace
+
+void add_import(Command& rmac) {
+  const auto words = std::make_shared<std::vector<std::string>>();
+  Command import =
+      rmac.add("import", "make a .rmac program of another control's (RS274/NGC); rmac import --help tells how");
+  import.passes_on(words.get());
+  import.does(without_appliance([words](bool) { return become("rmac-import", *words);
+}));
+}  // namespace rmac::cli
+
+}  // namespace rmac::cli
