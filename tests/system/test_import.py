@@ -1,0 +1,80 @@
+"""`rmac import`: a program of another control becomes one that `rmac simulate` plans, or none at all."""
+
+import json
+import math
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+from appliance import BUILD
+
+PART = """%
+(a plate: slot, arc, helix and holes)
+g21 g90 g17 g40 g80 g94
+G0 X0 Y0 Z10
+#1 = 12 #<depth> = -2
+M3 S800
+F1200 G1 Z#<depth>
+X#1
+G3 X[#1 + 8] Y8 I0 J8
+G2 X20 Y8 I-5 J0 Z[#<depth> - 1] P2
+G0 Z5
+G98 G83 X-10 Y-10 Z-4 R1 Q2
+G80
+G4 P0.5
+M5
+M30
+%
+"""
+
+
+class Import(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="rmac-test-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.source = self.folder / "part.ngc"
+
+    def rmac(self, *words):
+        return subprocess.run([BUILD / "bin" / "rmac", *words], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120,
+                              check=False)
+
+    def test_an_imported_program_is_simulated(self):
+        self.source.write_text(PART)
+        done = self.rmac("import", self.source)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        target = self.folder / "part.rmac"
+        self.assertIn(f"{target}: ", done.stdout)
+        done = self.rmac("simulate", target, "--machine", "BenchXYZ", "--json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        # 10 to the start, 12 down, 12, a quarter of radius 8, two full turns of radius 5 with 1 mm of rise, 8 up, then the hole:
+        # across to -10, -10 at 5, to R1, pecks to -1, -3 and -4, and back to 5.
+        helix = 2 * math.hypot(2 * math.pi * 5, 0.5)
+        hole = 4 + 2 + 2 + 1.746 + 2.254 + 4 + 3.746 + 1.254 + 9
+        expected = 10 + 12 + 12 + 4 * math.pi + helix + 8 + math.hypot(30, 18) + hole
+        self.assertAlmostEqual(json.loads(done.stdout)["length_mm"], expected, delta=0.01)
+
+    def test_options_and_help_are_the_program_s_own(self):
+        self.source.write_text("G0 X1\nM2\n")
+        done = self.rmac("import", "--unit", "mm", "--approach", "0,0,5", self.source, "-o", "-")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual([json.loads(line)["params"]["TargetFrame"]["p"] for line in done.stdout.splitlines()], [[0, 0, 5], [1, 0, 5]])
+        done = self.rmac("import", "--help")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("--approach", done.stdout)
+        self.assertEqual(self.rmac("import", self.source, "--dialect", "klingon").returncode, 2)
+
+    def test_what_is_refused_leaves_no_file_and_the_old_one(self):
+        target = self.folder / "part.rmac"
+        target.write_text("the old one\n")
+        self.source.write_text("G21 G0 X0 Y0 Z0\nG1 X1 F100\n  G41 X2\nM2\n")
+        done = self.rmac("import", self.source)
+        self.assertEqual(done.returncode, 1)
+        self.assertTrue(done.stderr.startswith(f"rmac-import: {self.source}:3:3: G41: "), done.stderr)
+        self.assertEqual(target.read_text(), "the old one\n")
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["part.ngc", "part.rmac"])
+
+
+if __name__ == "__main__":
+    unittest.main()
