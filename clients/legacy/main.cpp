@@ -1,15 +1,19 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
-#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "clients/legacy/rs274/import.hpp"
@@ -30,13 +34,16 @@ int fail(const std::string& message) {
   return 1;
 }
 
+/// As far as the API takes a coordinate; no NaN is within.
+constexpr double kFarthest_mm = 1e6;
+
 std::optional<rs274::Point> read_point(const std::string& text) {
   rs274::Point point{};
   const char *at = text.data(), *const end = text.data() + text.size();
   for (std::size_t axis = 0; axis < point.size(); ++axis) {
     if (axis > 0 && (at == end || *at++ != ',')) return std::nullopt;
     const auto read = std::from_chars(at, end, point.at(axis), std::chars_format::fixed);
-    if (read.ec != std::errc()) return std::nullopt;
+    if (read.ec != std::errc() || !(std::abs(point.at(axis)) <= kFarthest_mm)) return std::nullopt;
     at = read.ptr;
   }
   return at == end ? std::optional(point) : std::nullopt;

@@ -161,7 +161,7 @@ void Interpreter::set_control() {
   if (!tolerance)
     refuse(control->place,
            "G64 without P leaves open how far the path may be from what is programmed; write P, or give --tolerance");
-  if (*tolerance < 0 || *tolerance > kMostTolerance_mm) refuse(control->place, "a path tolerance is 0 to 100 mm");
+  if (!(*tolerance >= 0 && *tolerance <= kMostTolerance_mm)) refuse(control->place, "a path tolerance is 0 to 100 mm");
   writer_.path_tolerance(*tolerance);
 }
 

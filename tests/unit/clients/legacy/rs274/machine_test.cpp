@@ -106,7 +106,7 @@ TEST(Rs274Offset, IsWhereWhoImportsSaysIt) {
   options.offsets[0] = {10, 20, 30};
   options.offsets[1] = {15, 20, 30};
   EXPECT_THAT(ends_of("G53 G0 X0 Y0", options), ElementsAre(ElementsAre(-10, -20, 10)));
-  EXPECT_THAT(ends_of("G55 G0 Y0", options), ElementsAre(ElementsAre(-5, 0, 10)));  // the tool stayed where it was
+  EXPECT_THAT(ends_of("G55 G0 Y1", options), ElementsAre(ElementsAre(-5, 1, 10)));  // the tool stayed where it was
   EXPECT_THAT(ends_of("G10 L20 P1 X3\nG0 Y1", options), ElementsAre(ElementsAre(3, 1, 10)));
   EXPECT_THAT(refusal_of(program_of("G53 G0 Z0"), options), HasSubstr("without its tool"));
 }

@@ -45,7 +45,7 @@ TEST(Rs274Motion, GoesByIncrementsAndInches) {
 }
 
 TEST(Rs274Motion, IsRefusedWhereItsStartIsNotKnown) {
-  EXPECT_THAT(refusal_of("G21 G0 X1\nM2\n"), StartsWith("1:4: where the tool is before this move is not known"));
+  EXPECT_THAT(refusal_of("G21 G0 X1\nM2\n"), StartsWith("1:5: where the tool is before this move is not known"));
   EXPECT_THAT(refusal_of("G21 F9 G1 X1 Y1 Z1\nM2\n"), HasSubstr("not known"));
   const auto done = imported("G21 G0 X1\nM2\n", {.approach_mm = Point{0, 0, 50}});
   EXPECT_EQ(done.requests[0]["params"]["TargetFrame"]["p"], json({0, 0, 50}));
