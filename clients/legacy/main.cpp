@@ -64,6 +64,8 @@ bool read_offset(const std::string& text, rs274::Options& options) {
 
 /// What the command line parser leaves as text. What is wrong, or nothing.
 std::optional<std::string> finish(Words& words) {
+  if (!(words.options.rapid_mm_min >= 0.01 && words.options.rapid_mm_min <= 1e6))
+    return "--rapid is 0.01 to 1 000 000 mm/min";
   if (!words.unit.empty()) words.options.unit_mm = words.unit == "inch" ? 25.4 : 1.0;
   if (!words.approach.empty()) {
     words.options.approach_mm = read_point(words.approach);
@@ -161,6 +163,8 @@ void declare(CLI::App& app, Words& words) {
       ->capture_default_str();
   app.add_flag("--block-delete", words.options.block_delete, "leave out blocks that begin with /");
   app.add_option("--unit", words.unit, "unit of a program without G20 and G21")->check(CLI::IsMember({"mm", "inch"}));
+  app.add_option("--rapid", words.options.rapid_mm_min, "feed of G0, mm/min; at most the machine's MaxFeedrate")
+      ->capture_default_str();
   app.add_option("--tolerance", words.options.tolerance_mm, "path tolerance of G64 without P, mm");
   app.add_option("--approach", words.approach,
                  "X,Y,Z in mm: where the tool tip goes straight, at rapid, when the program begins, after a tool "

@@ -59,7 +59,8 @@ class Import(unittest.TestCase):
         self.source.write_text("G0 X1\nM2\n")
         done = self.rmac("import", "--unit", "mm", "--approach", "0,0,5", self.source, "-o", "-")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertEqual([json.loads(line)["params"]["TargetFrame"]["p"] for line in done.stdout.splitlines()], [[0, 0, 5], [1, 0, 5]])
+        self.assertEqual([json.loads(line)["params"]["TargetFrame"]["p"] for line in done.stdout.splitlines()[1:]],
+                         [[0, 0, 5], [1, 0, 5]])
         done = self.rmac("import", "--help")
         self.assertEqual(done.returncode, 0)
         self.assertIn("--approach", done.stdout)

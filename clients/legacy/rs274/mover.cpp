@@ -18,6 +18,18 @@ void Mover::write_frame() {
   frame_ = origin;
 }
 
+void Mover::write_feed(double mm_min, std::size_t place) {
+  if (!(mm_min >= kLeastFeed_mm_min && mm_min <= kMostFeed_mm_min))
+    refuse(place, "the feed is not within 0.01 and 1 000 000 mm/min");
+  if (feed_mm_min_ != mm_min) writer_.feed(mm_min);
+  feed_mm_min_ = mm_min;
+}
+
+void Mover::write_rapid(const Point& end, std::size_t place) {
+  write_feed(options_.rapid_mm_min, place);
+  writer_.rapid(end);
+}
+
 Point Mover::start(std::size_t place) {
   if (!coordinates_.tip_is_known()) {
     if (!options_.approach_mm) {
@@ -27,7 +39,7 @@ Point Mover::start(std::size_t place) {
              "with a G0 to X, Y and Z, or give --approach X,Y,Z");
     }
     write_frame();
-    writer_.rapid(*options_.approach_mm);
+    write_rapid(*options_.approach_mm, place);
     coordinates_.move_to(*options_.approach_mm);
   }
   return coordinates_.known_tip();
@@ -48,7 +60,7 @@ void Mover::prepare(const Point& end, std::size_t place) {
 
 void Mover::rapid(const Point& end, std::size_t place) {
   prepare(end, place);
-  if (!coordinates_.tip_is_known() || coordinates_.known_tip() != end) writer_.rapid(end);
+  if (!coordinates_.tip_is_known() || coordinates_.known_tip() != end) write_rapid(end, place);
   coordinates_.move_to(end);
 }
 
@@ -56,11 +68,7 @@ void Mover::prepare_feed(const Point& end, std::size_t place) {
   const Point from = start(place);
   prepare(end, place);
   if (modes_.feed_mm_min == 0) refuse(place, "no feed was set before this move; write F");
-  if (modes_.feed_mm_min < kLeastFeed_mm_min || modes_.feed_mm_min > kMostFeed_mm_min) {
-    refuse(place, "the feed is not within 0.01 and 1 000 000 mm/min");
-  }
-  if (feed_mm_min_ != modes_.feed_mm_min) writer_.feed(modes_.feed_mm_min);
-  feed_mm_min_ = modes_.feed_mm_min;
+  write_feed(modes_.feed_mm_min, place);
   writer_.begin(from);
 }
 

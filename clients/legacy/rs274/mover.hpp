@@ -23,6 +23,8 @@ class Mover {
  private:
   void prepare(const Point& end, std::size_t place);
   void prepare_feed(const Point& end, std::size_t place);
+  void write_feed(double mm_min, std::size_t place);
+  void write_rapid(const Point& end, std::size_t place);
   void write_frame();
 
   const Options& options_;

@@ -18,8 +18,8 @@ inline std::string program_of(std::string_view lines) {
 }
 
 struct Imported {
-  std::vector<nlohmann::json> requests;
-  std::vector<std::string> methods;  ///< without RMAC_CAM.
+  std::vector<nlohmann::json> requests;  ///< without the feed of rapids
+  std::vector<std::string> methods;      ///< without RMAC_CAM.
 };
 
 inline Imported imported(const std::string& program, const Options& options = {}) {
@@ -31,13 +31,17 @@ inline Imported imported(const std::string& program, const Options& options = {}
                   << program;
     return result;
   }
-  for (std::size_t at = 0; at < text.size();) {
+  std::size_t all = 0;
+  for (std::size_t at = 0; at < text.size(); ++all) {
     const std::size_t end = text.find('\n', at);
-    result.requests.push_back(nlohmann::json::parse(text.substr(at, end - at)));
-    result.methods.push_back(result.requests.back()["method"].get<std::string>().substr(9));
+    const auto request = nlohmann::json::parse(text.substr(at, end - at));
+    if (request["params"] != nlohmann::json({{"Feedrate", options.rapid_mm_min}})) {
+      result.requests.push_back(request);
+      result.methods.push_back(request["method"].get<std::string>().substr(9));
+    }
     at = end + 1;
   }
-  EXPECT_EQ(summary->requests, result.requests.size());
+  EXPECT_EQ(summary->requests, all);
   return result;
 }
 

@@ -32,6 +32,17 @@ TEST(Rs274Motion, RapidsArePositioningAndFeedsAreLines) {
   EXPECT_EQ(done.requests[2]["params"]["EndPoint"]["p"], json({5, 0, 10}));
 }
 
+TEST(Rs274Motion, HasTheFeedOfRapidsBeforeTheFirstOfThemAndItsOwnBehind) {
+  std::string text;
+  const auto summary = import_program(program_of("G1 X1\nX2\nG0 X3\nX4\nG1 X5"), {.rapid_mm_min = 2500},
+                                      [&text](std::string_view part) { text += part; });
+  ASSERT_TRUE(summary);
+  std::vector<int> feeds;
+  for (std::size_t at = 0; (at = text.find("\"Feedrate\":", at)) != std::string::npos; ++at)
+    feeds.push_back(std::stoi(text.substr(at + 11)));
+  EXPECT_THAT(feeds, ElementsAre(2500, 600, 2500, 600));
+}
+
 TEST(Rs274Motion, RemembersTheLineItComesFrom) {
   const auto done = imported(program_of("\n(nothing)\nG1 X5\nX6"));
   EXPECT_EQ(done.requests[0]["params"]["MoveID"], 2);
