@@ -34,6 +34,7 @@ class Installation(unittest.TestCase):
         self.one("usr/bin/rmac")
         self.one("usr/libexec/rmac/rmac-verify")
         self.one("usr/libexec/rmac/rmac-search")
+        self.one("usr/bin/rmac-import")
         self.one("usr/bin/rmac-vdrive")
         self.one("usr/bin/rmac-vmodbus")
         self.one("usr/share/rmac/rmac-vdrive.eds")

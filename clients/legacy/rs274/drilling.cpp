@@ -12,9 +12,10 @@ namespace {
 constexpr int kFirst = 810, kDwelling = 820, kPecking = 830, kLast = 830;
 /// How far above the depth that was reached a peck goes on from rapid to feed: LinuxCNC's 0.010 inch.
 constexpr double kBackOff_mm = 0.254;
+/// A last peck of less than this part of one is none.
+constexpr double kSameDepth = 1e-9;
+/// Of one block, pecks and repeats: what asks for more is a slip of units.
 constexpr int kMostRepeats = 10'000;
-/// Of one hole: what asks for more is a slip of units.
-constexpr double kMostPecks = 10'000;
 
 int repeats_of(Block& block) {
   const Word* word = block.find('L');
@@ -57,6 +58,9 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
   }
   const double clear = modes_.retract_to_r ? retract : std::max(initial_, retract);
   const int repeats = repeats_of(block);
+  if (code == kPecking && !((retract - bottom) / *peck_ * repeats <= kMostRepeats)) {
+    refuse(place, fmt::format("more than {} pecks in one block", kMostRepeats));
+  }
   const Word* first = block.find(kAxisLetters.at(plane.first));
   const Word* second = block.find(kAxisLetters.at(plane.second));
   for (int repeat = 0; repeat < repeats; ++repeat) {
@@ -73,6 +77,10 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
   }
 }
 
+int Drilling::pecks_to(double retract, double bottom) const {
+  return static_cast<int>(std::max(1.0, std::ceil((retract - bottom) / *peck_ - kSameDepth)));
+}
+
 void Drilling::hole(const Point& above, double bottom, double clear, int code, std::size_t place) {
   const std::size_t normal = modes_.plane.normal;
   const auto at = [&](double level) {
@@ -82,8 +90,10 @@ void Drilling::hole(const Point& above, double bottom, double clear, int code, s
   };
   const double retract = above.at(normal);
   if (code == kPecking) {
-    if ((retract - bottom) / *peck_ > kMostPecks) refuse(place, "more than 10 000 pecks for one hole");
-    for (double depth = retract - *peck_; depth > bottom; depth -= *peck_) {
+    // By number: a peck may be too small to change the depth that it is taken from.
+    const int pecks = pecks_to(retract, bottom);
+    for (int peck = 1; peck < pecks; ++peck) {
+      const double depth = retract - peck * *peck_;
       mover_.line(at(depth), place);
       mover_.rapid(above, place);
       mover_.rapid(at(std::min(depth + kBackOff_mm, retract)), place);

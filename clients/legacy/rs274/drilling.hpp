@@ -21,6 +21,7 @@ class Drilling {
  private:
   void read(Block& block, int code, std::size_t place);
   [[nodiscard]] double sticky(Block& block, char letter, std::optional<double>& value, std::size_t place);
+  [[nodiscard]] int pecks_to(double retract, double bottom) const;
   void hole(const Point& above, double bottom, double clear, int code, std::size_t place);
 
   const Modes& modes_;

@@ -145,6 +145,12 @@ TEST(Rs274Drilling, PecksAndDwells) {
   EXPECT_THAT(imported(program_of("G82 Z-3 R2 P0.5")).methods, testing::Contains("Dwell"));
 }
 
+/// A loop that took the peck off the depth went on for ever.
+TEST(Rs274Drilling, EndsThoughAPeckIsTooSmallToChangeItsDepth) {
+  const auto done = imported(program_of("G0 Z999999\nG99 G83 R999999 Z999998.9999999 Q.00000000005"));
+  EXPECT_EQ(done.requests.back()["params"]["TargetFrame"]["p"], json({0, 0, 999999}));
+}
+
 TEST(Rs274Drilling, RepeatsByIncrements) {
   EXPECT_THAT(ends_of("G91 G99 G81 X1 Z-3 R-8 L2"),
               ElementsAre(ElementsAre(1, 0, 10), ElementsAre(1, 0, 2), ElementsAre(1, 0, -1), ElementsAre(1, 0, 2),
