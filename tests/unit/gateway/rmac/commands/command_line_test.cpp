@@ -33,7 +33,7 @@ TEST_F(CommandLineTest, ListsItsCommandsInAnOrderThatAPersonLearns) {
   EXPECT_THAT(listed({}),
               ElementsAre("machines", "show", "load", "unload", "run", "status", "cycles", "events", "jog", "home",
                           "hold", "resume", "stop", "reset", "parked", "override", "tools", "confirm", "measure",
-                          "qualify", "trace", "tune", "measure-following", "simulate", "verify", "bus"));
+                          "qualify", "trace", "tune", "measure-following", "simulate", "import", "verify", "bus"));
   EXPECT_THAT(listed({"bus"}), ElementsAre("lss", "load", "scan", "sdo", "state", "store", "restore", "trace", "move"));
   EXPECT_THAT(listed({"bus", "lss"}), ElementsAre("scan", "assign", "bit-rate"));
   EXPECT_THAT(listed({"tools"}), ElementsAre("list", "set", "remove"));
