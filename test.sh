@@ -33,7 +33,7 @@ begin "packages"
 begin "layout: clang-format, rooms"
 python3 tests/layout/check.py
 python3 -m unittest discover -s tests/layout -q
-find motion fieldbus drivers gateway tests -name '*.[ch]pp' -print0 | xargs -0 clang-format --dry-run --Werror
+find motion fieldbus drivers gateway clients tests -name '*.[ch]pp' -print0 | xargs -0 clang-format --dry-run --Werror
 
 build() { # preset
   begin "$1: configure and build"
@@ -69,7 +69,7 @@ if [ -n "${lint:-}" ]; then
   # clang 14 stops at the one option of g++ that it does not know.
   mkdir -p build/lint
   sed 's/ -fno-gnu-unique//g' build/release/compile_commands.json > build/lint/compile_commands.json
-  find motion fieldbus drivers gateway -name '*.cpp' -print0 |
+  find motion fieldbus drivers gateway clients -name '*.cpp' -print0 |
     xargs -0 -n 4 -P "$(nproc)" clang-tidy -p build/lint --quiet --extra-arg=-Wno-unknown-warning-option 2>/dev/null
 fi
 if [ -n "${thread_sanitizer:-}" ]; then
