@@ -7,7 +7,7 @@ import subprocess
 import tempfile
 import unittest
 
-from appliance import BUILD
+from appliance import BUILD, Appliance
 
 PART = """%
 (a plate: slot, arc, helix and holes)
@@ -54,6 +54,15 @@ class Import(unittest.TestCase):
         hole = 4 + 2 + 2 + 1.746 + 2.254 + 4 + 3.746 + 1.254 + 9
         expected = 10 + 12 + 12 + 4 * math.pi + helix + 8 + math.hypot(30, 18) + hole
         self.assertAlmostEqual(json.loads(done.stdout)["length_mm"], expected, delta=0.01)
+
+    def test_an_imported_program_is_machined(self):
+        self.source.write_text(PART)
+        self.assertEqual(self.rmac("import", self.source).returncode, 0)
+        with Appliance() as appliance:
+            done = appliance.rmac("--json", "run", "--machine", "BenchXYZ", self.folder / "part.rmac")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            x, y, z = json.loads(appliance.rmac("--json", "status").stdout)["pose"][:3]
+        self.assertLess(math.dist((x, y, z), (-10, -10, 5)), 0.01)  # where the hole was left, as measured
 
     def test_options_and_help_are_the_program_s_own(self):
         self.source.write_text("G0 X1\nM2\n")
