@@ -49,7 +49,8 @@ class ClientInterfaces final : public MechanismUsers {
   void mechanism_changed(const sdk::DeviceObject* device, bool fresh) override {
     cam_.mechanism_changed(device, fresh);
     measuring_.mechanism_changed(device, fresh);
-    buses_.forget();
+    // Configured anew, and at a Reset, the same buses go on, and what they went through is still to be told.
+    if (fresh) buses_.forget();
   }
   void draft_from(const sdk::DeviceObject* device) override { draft_.discard(device); }
   void keep_mounted() override { (void)cam_.tools().keep_mounted(); }

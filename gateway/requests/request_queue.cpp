@@ -144,7 +144,9 @@ std::optional<Answer> RequestQueue::refusal_of(const RequestLine& line, const Re
 
 bool RequestQueue::settle(RequestLine& line, Answer answer) {
   const Request& request = *line.next();
-  if (!answer && request.queues_a_move() && !line.refuses_moves()) {
+  // What a stop overtook leaves no gap: what stands behind the stop begins anew.
+  const bool overtaken = stop_mark_.overtaker(request.effect(), line.next_position()) != nullptr;
+  if (!answer && request.queues_a_move() && !overtaken && !line.refuses_moves()) {
     const RpcError& error = answer.error();
     const bool full = error.minor == MinorCode::CommandQueueFull;
     if (full && must_wait(line)) return false;

@@ -19,6 +19,11 @@ const T* same_of(const std::vector<T>& list, const T& sought, Key key) {
   return found == list.end() ? nullptr : &*found;
 }
 
+/// By how much a counter went up; one that began anew by all that it has.
+std::uint64_t since(std::uint64_t before, std::uint64_t now) {
+  return now < before ? now : now - before;
+}
+
 class Comparison {
  public:
   void compare(const BusReport& before, const BusReport& now) {
@@ -49,9 +54,9 @@ class Comparison {
       tell(now.interface, "link", now.health.link_down ? "the interface is down" : "the interface is up again");
     const auto from = before.controller.state, to = now.controller.state;
     // Between two looks it may have gone there and come back; its error frames are counted.
-    const std::uint64_t passives = now.health.passives - before.health.passives;
-    const std::uint64_t bus_offs = now.health.bus_offs - before.health.bus_offs;
-    const std::uint64_t warnings = now.health.warnings - before.health.warnings;
+    const std::uint64_t passives = since(before.health.passives, now.health.passives);
+    const std::uint64_t bus_offs = since(before.health.bus_offs, now.health.bus_offs);
+    const std::uint64_t warnings = since(before.health.warnings, now.health.warnings);
     const std::uint64_t times = warnings + passives + bus_offs;
     if (from == to && times == 0) return;
     std::string message = fmt::format("controller {}", to_string(to));

@@ -163,6 +163,17 @@ TEST(RequestQueue, AMoveBehindARefusedOneIsRefusedAndALaterOneIsNot) {
   EXPECT_EQ(bench.client.answers[3]["result"], true);
 }
 
+TEST(RequestQueue, AMoveBehindAStopIsTakenWhateverTheStopOvertook) {
+  QueueBench bench;
+  EXPECT_CALL(bench.machine.cam_mock.queue_mock, add(_, _)).WillOnce(Return(Expected<>{}));
+  bench.take_move(1, 99);
+  bench.take_move(2, 101);
+  bench.queue.stopped(Effect::Stops, "RMAC_CAM.StopNow of panel", 100);
+  EXPECT_EQ(bench.queue.carry_out(), Progress::Done);
+  EXPECT_TRUE(bench.client.answers[0].contains("error"));
+  EXPECT_EQ(bench.client.answers[1]["result"], true);
+}
+
 TEST(RequestQueue, AMoveBehindOneThatIsNoneIsRefused) {
   QueueBench bench;
   EXPECT_CALL(bench.machine.cam_mock.queue_mock, add(_, _)).Times(0);

@@ -130,6 +130,13 @@ TEST_F(BusWatchTest, SumsUpWhatIsWrongNow) {
   EXPECT_EQ(watch_.summary()[0]["nodes_bad"], nlohmann::json::parse("[4]"));
 }
 
+TEST_F(BusWatchTest, CountersThatBeganAnewAreNoHugeNumbers) {
+  report_.can[0].health.passives = 7;
+  (void)look(0);
+  report_.can[0].health.passives = 1;
+  EXPECT_THAT(look(0.5), ElementsAre(HasSubstr("1 error-passive")));
+}
+
 /// Every EMCY is told or counted, and none of a node's is told within five seconds of the one before.
 TEST_F(BusWatchTest, KeepsTheRateAndLosesNoCount) {
   for (unsigned seed = 0; seed < 100; ++seed) {
