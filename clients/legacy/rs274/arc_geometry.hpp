@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "clients/legacy/program/writer.hpp"
 
@@ -19,14 +20,11 @@ struct Plane {
 [[nodiscard]] Point centre_by_radius(const Point& start, const Point& end, const Plane& plane, bool counter_clockwise,
                                      double radius, std::size_t place);
 
-/// Centre format: the centre that is as far from the start as from the end. Programs round, so what was written is off
-/// by a little; by more than rs274 allows it is refused.
-[[nodiscard]] Point evened_centre(const Point& start, const Point& end, const Point& centre, const Plane& plane,
-                                  std::size_t place);
-
-/// Whether the arc is a full turn, seen along the plane's normal: its end is its start, or lies so near behind it that
-/// the appliance could not tell.
-[[nodiscard]] bool closes(const Point& start, const Point& end, const Point& centre, const Plane& plane,
-                          bool counter_clockwise);
+/// Centre format: the arc that is written for one whose radii differ, because programs round; by more than rs274 allows
+/// it is refused. Its centre is moved to be evenly far from both ends where that keeps to the circle. Elsewhere the
+/// arc keeps its centre and ends on its own circle, and a line to the end that was programmed is to follow; none where
+/// the arc is so short that the line is all.
+[[nodiscard]] std::optional<Arc> arc_about(const Point& start, const Arc& written, const Plane& plane,
+                                           std::size_t place);
 
 }  // namespace rmac::rs274

@@ -85,16 +85,17 @@ void Motions::arc(Block& block, bool counter_clockwise, std::size_t place) {
   const Point start = mover_.start(place);
   const Point end = end_of(block, place);
   Arc arc{.end = end, .normal = plane.normal, .counter_clockwise = counter_clockwise};
+  if (const Word* turns = block.find('P')) arc.more_turns = turns_of(*turns) - 1;
   if (const Word* radius = block.find('R')) {
     if (block.has_any("IJK")) refuse(radius->place, "an arc has a radius or a centre, not both");
     if (radius->value == 0) refuse(radius->place, "an arc of radius 0");
     arc.centre = centre_by_radius(start, end, plane, counter_clockwise, modes_.mm(*radius), radius->place);
-  } else {
-    arc.centre = evened_centre(start, end, written_centre(block, start, place), plane, place);
-    arc.closed = closes(start, end, arc.centre, plane, counter_clockwise);
+    return mover_.arc(arc, place);
   }
-  if (const Word* turns = block.find('P')) arc.more_turns = turns_of(*turns) - 1;
-  mover_.arc(arc, place);
+  arc.centre = written_centre(block, start, place);
+  const auto kept = arc_about(start, arc, plane, place);
+  if (kept) mover_.arc(*kept, place);
+  if (!kept || kept->end != end) mover_.line(end, place);
 }
 
 }  // namespace rmac::rs274
