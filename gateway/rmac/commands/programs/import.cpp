@@ -36,8 +36,7 @@ void add_import(Command& rmac) {
   Command import =
       rmac.add("import", "make a .rmac program of another control's (RS274/NGC); rmac import --help tells how");
   import.passes_on(words.get());
-  import.does(without_appliance([words](bool) { return become("rmac-import", *words);
-}));
-}  // namespace rmac::cli
+  import.does(without_appliance([words](bool) { return become("rmac-import", *words); }));
+}
 
 }  // namespace rmac::cli
