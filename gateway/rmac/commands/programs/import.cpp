@@ -33,10 +33,10 @@ Result<> become(const char* program, const std::vector<std::string>& words) {
 
 void add_import(Command& rmac) {
   const auto words = std::make_shared<std::vector<std::string>>();
-  Command import =
+  Command importing =
       rmac.add("import", "make a .rmac program of another control's (RS274/NGC); rmac import --help tells how");
-  import.passes_on(words.get());
-  import.does(without_appliance([words](bool) { return become("rmac-import", *words); }));
+  importing.passes_on(words.get());
+  importing.does(without_appliance([words](bool) { return become("rmac-import", *words); }));
 }
 
 }  // namespace rmac::cli
