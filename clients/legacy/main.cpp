@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -77,7 +78,7 @@ std::optional<std::string> finish(Words& words) {
   }
   if (words.output.empty())
     words.output = words.file == "-" ? "-" : fs::path(words.file).replace_extension(".rmac").string();
-  if (words.output != "-" && words.output == words.file)
+  if (std::error_code none; words.output != "-" && words.file != "-" && fs::equivalent(words.output, words.file, none))
     return "the output would replace its source; name another with -o";
   return std::nullopt;
 }
@@ -98,8 +99,18 @@ std::optional<std::string> read_file(const std::string& name) {
 /// The output under another name until it is whole: nobody should run half a program.
 class Output {
  public:
-  explicit Output(const std::string& name) : name_(name), partial_(name == "-" ? "" : name + ".part") {
-    file_ = partial_.empty() ? std::tmpfile() : std::fopen(partial_.c_str(), "wb");
+  explicit Output(const std::string& name) : name_(name) {
+    if (name == "-") {
+      file_ = std::tmpfile();
+      return;
+    }
+    // What has such a name already is somebody's.
+    for (int number = 0; file_ == nullptr && number < kMostParts; ++number) {
+      partial_ = fmt::format("{}.{}.part", name, number);
+      file_ = std::fopen(partial_.c_str(), "wbx");
+      if (file_ == nullptr && errno != EEXIST) break;
+    }
+    if (file_ == nullptr) partial_.clear();
   }
   ~Output() {
     if (file_ != nullptr) std::fclose(file_);
@@ -123,6 +134,8 @@ class Output {
   }
 
  private:
+  static constexpr int kMostParts = 1000;
+
   bool copy_out() {
     std::rewind(file_);
     std::vector<char> part(1U << 16U);

@@ -85,6 +85,23 @@ class Import(unittest.TestCase):
         self.assertEqual(target.read_text(), "the old one\n")
         self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["part.ngc", "part.rmac"])
 
+    def test_no_file_but_the_output_is_written(self):
+        program = "G21 G0 X0 Y0 Z0\nM2\n"
+        self.source.write_text(program)
+        part = self.folder / "part.rmac.part"
+        part.write_text("the user's\n")
+        (self.folder / "part.rmac.0.part").write_text("the user's too\n")
+        (self.folder / "link.ngc").symlink_to(self.source)
+        for same in (self.source, f"{self.folder}/./part.ngc", self.folder / "link.ngc"):
+            done = self.rmac("import", self.source, "-o", same)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("would replace its source", done.stderr)
+        self.assertEqual(self.source.read_text(), program)
+        self.assertEqual(self.rmac("import", self.source).returncode, 0)
+        self.assertEqual(part.read_text(), "the user's\n")
+        self.assertEqual((self.folder / "part.rmac.0.part").read_text(), "the user's too\n")
+        self.assertEqual(len(list(self.folder.iterdir())), 5)
+
 
 if __name__ == "__main__":
     unittest.main()
