@@ -45,6 +45,7 @@ void Drilling::read(Block& block, int code, std::size_t place) {
 void Drilling::drill(Block& block, int code, int before, std::size_t place) {
   const Plane& plane = modes_.plane;
   if (block.once(530)) refuse(place, "G53 goes with G0 and G1 only");
+  if (!block.has_any("XYZ")) refuse(place, "a canned cycle needs X, Y or Z in its block");
   Point at = mover_.start(place);
   if (before != code) retract_ = depth_ = dwell_s_ = peck_ = std::nullopt;
   if (before < kFirst || before > kLast) initial_ = at.at(plane.normal);

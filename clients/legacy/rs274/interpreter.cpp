@@ -217,19 +217,15 @@ bool Interpreter::stop() {
   return true;
 }
 
-/// Of the numbers that LinuxCNC's manual gives to the control, those that a program's own words make known.
+/// Of the numbers that LinuxCNC's manual gives to the control, those that a program's own words make known. Those of
+/// G92 and the work systems (5211 to 5383) are not: the control keeps the former while G92.2 suspends them, and the
+/// latter in the unit of the machine, which no program says.
 std::optional<double> Interpreter::control_parameter(int number) const {
-  const auto in_unit = [this](const std::optional<double>& value) {
-    return value && modes_.unit_mm ? std::optional(*value / *modes_.unit_mm) : std::nullopt;
-  };
   if (number == 5220) return static_cast<double>(coordinates_.active() + 1);
   if (number == 5400) return switches_.tool();
-  if (number >= 5211 && number <= 5213) return in_unit(coordinates_.g92(static_cast<std::size_t>(number - 5211)));
-  if (number >= 5420 && number <= 5422)
-    return in_unit(coordinates_.program_tip(static_cast<std::size_t>(number - 5420)));
-  if (number < 5221 || number > 5383) return std::nullopt;
-  const auto system = static_cast<std::size_t>(number - 5221) / 20, axis = static_cast<std::size_t>(number - 5221) % 20;
-  return axis < 3 ? in_unit(coordinates_.offset(system).at(axis)) : std::nullopt;
+  if (number < 5420 || number > 5422 || !modes_.unit_mm) return std::nullopt;
+  const auto tip = coordinates_.program_tip(static_cast<std::size_t>(number - 5420));
+  return tip ? std::optional(*tip / *modes_.unit_mm) : std::nullopt;
 }
 
 }  // namespace rmac::rs274

@@ -21,6 +21,17 @@ TEST(Rs274Block, TakesCommentsBetweenItsWords) {
   EXPECT_THAT(refusal_of(program_of("G0 X(in the word)1")), StartsWith("3:5: a number expected"));
 }
 
+TEST(Rs274Block, HasACarriageReturnAtItsEndOnly) {
+  EXPECT_THAT(ends_of("G0 X1\r\nX2 (said)\r\nX3 ; said\r"),
+              ElementsAre(ElementsAre(1, 0, 10), ElementsAre(2, 0, 10), ElementsAre(3, 0, 10)));
+  EXPECT_THAT(refusal_of(program_of("G0 X1\rG0 X2")), StartsWith("3:6: a carriage return within a line"));
+  EXPECT_THAT(refusal_of(program_of("G0 X1 (a\rb)")), StartsWith("3:9: a carriage return within a line"));
+}
+
+TEST(Rs274Block, HasNoByteThatReadsLikeAComment) {
+  EXPECT_THAT(refusal_of(program_of("G0 X1\x01")), StartsWith("3:6: a control character"));
+}
+
 TEST(Rs274Block, IsLeftOutOnlyWhereItsSlashIsSwitched) {
   EXPECT_EQ(ends_of("/G0 X1").size(), 1U);
   EXPECT_EQ(ends_of("/G0 X1", {.block_delete = true}).size(), 0U);

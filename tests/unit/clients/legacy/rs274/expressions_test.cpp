@@ -70,6 +70,13 @@ TEST(Rs274Parameter, HasANumberOrANameOfAnyCase) {
 TEST(Rs274Parameter, IsRefusedWhereNothingSetIt) {
   EXPECT_THAT(refusal_of(program_of("G0 X#7")), StartsWith("3:5: #7 was not set before"));
   EXPECT_THAT(refusal_of(program_of("G0 X#<w>")), HasSubstr("#<W> was not set before"));
+  // In the unit of the machine, and kept while G92.2 suspends them.
+  for (const char* number : {"#5211", "#5213", "#5221", "#5383"}) {
+    EXPECT_THAT(
+        refusal_of(program_of(fmt::format("G10 L2 P1 X1 Y2 Z3\nG0 X0 Y0 Z9\nG92 X1 Y1 Z1\nG92.2\nG0 X{}", number))),
+        StartsWith("7:5: "))
+        << number;
+  }
   EXPECT_THAT(refusal_of(program_of("#5221=3")), HasSubstr("the control's own"));
   EXPECT_THAT(refusal_of(program_of("G0 X#5161")), HasSubstr("not known here"));
   EXPECT_THAT(refusal_of(program_of("G0 X#9999")), HasSubstr("there is no parameter"));

@@ -161,6 +161,7 @@ TEST(Rs274Drilling, IsRefusedWhereItLacksANumber) {
   EXPECT_THAT(refusal_of(program_of("G81 X1 Z-3")), HasSubstr("needs R"));
   EXPECT_THAT(refusal_of(program_of("G81 Z-3 R2\nG83 X1 Z-3 R2")),
               StartsWith("4:1: the first block of a canned cycle needs Q"));
+  EXPECT_THAT(refusal_of(program_of("G81 Z-3 R2\nG81 R1")), StartsWith("4:1: a canned cycle needs X, Y or Z"));
   EXPECT_THAT(refusal_of(program_of("G81 Z-3 R-4")), HasSubstr("above R"));
   EXPECT_THAT(refusal_of(program_of("G83 Z-3 R4 Q0")), HasSubstr("more than 0"));
   EXPECT_THAT(refusal_of(program_of("G83 Z-900 R4 Q.0001")), HasSubstr("pecks"));
