@@ -38,7 +38,7 @@ class Program:
         self.write("g21 g90 g17 g40 g80 g94 g54")
         self.write("F%d G0 X%g Y%g Z%g" % (self.random.randint(50, 3000), *START))
         for _ in range(self.random.randint(5, 40)):
-            self.random.choice([self.straight, self.straight, self.arc, self.arc, self.radius_arc, self.mode, self.unit_change, self.shift,
+            self.random.choice([self.straight, self.straight, self.arc, self.arc, self.rounded_arc, self.radius_arc, self.mode, self.unit_change, self.shift,
                                 self.switch, self.drill, self.parameters])()
         self.write(self.random.choice(["M2", "m30"]))
 
@@ -103,6 +103,31 @@ class Program:
             end[normal] += self.random.uniform(-5, 5)
         turns = " P%d" % self.random.randint(1, 4) if self.random.random() < 0.3 else ""
         self.write(self.random.choice(["G2 ", "G3 "]) + " ".join(self.end_words(end) + self.centre(centre)) + turns)
+        self.at = end
+
+    def rounded_arc(self):
+        """With the digits that programs have, mostly nearly closed or of a short chord."""
+        first, second, _ = PLANES[self.plane]
+        digits = 4 if self.unit == 25.4 else 3
+        step = self.unit * 10**-digits
+
+        def rounded(value):
+            return round(value / step) * step
+
+        radius, begin = 10**self.random.uniform(-0.3, 2.5), self.random.uniform(0, 2 * math.pi)
+        short = min(10**self.random.uniform(-1.2, 0) / radius, 1)
+        sweep = self.random.choice([short, 2 * math.pi - short, self.random.uniform(short, 2 * math.pi - short)])
+        code = self.random.choice(["G2 ", "G3 "])
+        start = [rounded(v) for v in self.at]
+        self.incremental, self.absolute_centres = False, False
+        self.write("G90 G91.1 G1 " + " ".join("XYZ"[a] + "%.*f" % (digits, start[a] / self.unit) for a in range(3)))
+        way = [rounded(-radius * math.cos(begin)), rounded(-radius * math.sin(begin))]
+        angle = begin + (sweep if code == "G3 " else -sweep)
+        end = list(start)
+        end[first] = rounded(start[first] + way[0] + radius * math.cos(angle))
+        end[second] = rounded(start[second] + way[1] + radius * math.sin(angle))
+        self.write(code + " ".join("%s%.*f" % (letter, digits, value / self.unit) for letter, value in (
+            ("XYZ"[first], end[first]), ("XYZ"[second], end[second]), ("IJK"[first], way[0]), ("IJK"[second], way[1]))))
         self.at = end
 
     def radius_arc(self):
@@ -244,17 +269,20 @@ def our_path(program, options, folder):
     done = subprocess.run([options.importer, program, "-o", out], capture_output=True, text=True, timeout=60, check=False)
     if done.returncode != 0:
         return None, done.stderr.strip()
-    steps, closed = [], None
+    steps, move = [], None
     for line in out.read_text().splitlines():
         request = json.loads(line)
         method, params = request["method"].split(".")[1], request.get("params", {})
         if method == "MoveToPathTarget":
             steps.append(("rapid", params["TargetFrame"]["p"]))
+        elif method == "MoveAlongLine" and steps and steps[-1][0] == "arc" and params["MoveID"] == move:
+            steps[-1] = (*steps[-1][:1], params["EndPoint"]["p"], *steps[-1][2:])  # from the arc's circle to the end that was written
         elif method == "MoveAlongLine":
             steps.append(("line", params["EndPoint"]["p"]))
         elif method == "MoveAlongArc":
             centre, normal = list(params["CenterPoint"]["p"]), params["CenterPoint"]["axis"].index(1)
             centre[normal] = None
+            move = params["MoveID"]
             steps.append(("arc", params["EndPoint"]["p"], centre, params["RotSign"] * (1 + params.get("Turns", 0))))
         elif method == "Dwell":
             steps.append(("dwell", params["Time"]))
@@ -300,6 +328,41 @@ def simplified(steps):
     return result
 
 
+def halfway(start, arc):
+    """The place in the middle of an arc, without its whole turns: a centre that is off along a short chord hardly moves it."""
+    _, end, centre, turns = arc[:4]
+    first, second = [a for a in range(3) if centre[a] is not None]
+    if centre[0] is not None and centre[2] is not None:
+        first, second = 2, 0
+    radius = math.hypot(start[first] - centre[first], start[second] - centre[second])
+    begin, last = (math.atan2(p[second] - centre[second], p[first] - centre[first]) for p in (start, end))
+    sweep = (last - begin if turns > 0 else begin - last) % (2 * math.pi)
+    if sweep * radius < TOLERANCE_MM or (2 * math.pi - sweep) * radius < TOLERANCE_MM:
+        return None  # a full turn or none: four decimals do not tell
+    angle = begin + math.copysign(sweep / 2, turns)
+    return [centre[first] + radius * math.cos(angle), centre[second] + radius * math.sin(angle)]
+
+
+def same_arc(at, a, b):
+    """What evening the centre moves is about as much as the radii differ."""
+    ends = (math.dist([p for p, c in zip(place, a[2]) if c is not None], [c for c in a[2] if c is not None]) for place in (at, a[1]))
+    off = abs(next(ends) - next(ends))
+    one, two = halfway(at, a), halfway(at, b)
+    near = one is None or two is None or math.dist(one, two) < 2 * off + 2 * TOLERANCE_MM
+    return near and same(a[1], b[1]) and a[3] == b[3] and same(a[4:], b[4:])
+
+
+def differs(theirs, ours):
+    """The number of the first step that differs."""
+    at = START
+    for i, (a, b) in enumerate(zip(theirs, ours)):
+        if not (same_arc(at, a, b) if a[0] == b[0] == "arc" else same(a, b)):
+            return i
+        if a[0] in ("rapid", "line", "arc"):
+            at = b[1]
+    return None
+
+
 def same(a, b):
     if isinstance(a, (list, tuple)):
         return len(a) == len(b) and all(same(x, y) for x, y in zip(a, b))
@@ -335,7 +398,7 @@ def main():
         theirs, ours = simplified(theirs), simplified(ours)
         compared += 1
         steps += len(ours)
-        wrong = next((i for i, (a, b) in enumerate(zip(theirs, ours)) if not same(a, b)), None)
+        wrong = differs(theirs, ours)
         if wrong is None and len(theirs) == len(ours):
             program.unlink()
             continue
