@@ -3,10 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -17,6 +15,8 @@
 #include <system_error>
 #include <vector>
 
+#include "clients/legacy/program/output_file.hpp"
+#include "clients/legacy/program/writer.hpp"
 #include "clients/legacy/rs274/import.hpp"
 
 namespace {
@@ -35,16 +35,13 @@ int fail(const std::string& message) {
   return 1;
 }
 
-/// As far as the API takes a coordinate; no NaN is within.
-constexpr double kFarthest_mm = 1e6;
-
 std::optional<rs274::Point> read_point(const std::string& text) {
   rs274::Point point{};
   const char *at = text.data(), *const end = text.data() + text.size();
   for (std::size_t axis = 0; axis < point.size(); ++axis) {
     if (axis > 0 && (at == end || *at++ != ',')) return std::nullopt;
     const auto read = std::from_chars(at, end, point.at(axis), std::chars_format::fixed);
-    if (read.ec != std::errc() || !(std::abs(point.at(axis)) <= kFarthest_mm)) return std::nullopt;
+    if (read.ec != std::errc() || !(std::abs(point.at(axis)) <= legacy::kFarthest_mm)) return std::nullopt;
     at = read.ptr;
   }
   return at == end ? std::optional(point) : std::nullopt;
@@ -65,8 +62,7 @@ bool read_offset(const std::string& text, rs274::Options& options) {
 
 /// What the command line parser leaves as text. What is wrong, or nothing.
 std::optional<std::string> finish(Words& words) {
-  if (!(words.options.rapid_mm_min >= 0.01 && words.options.rapid_mm_min <= 1e6))
-    return "--rapid is 0.01 to 1 000 000 mm/min";
+  if (!legacy::is_feed(words.options.rapid_mm_min)) return "--rapid is 0.01 to 1 000 000 mm/min";
   if (!words.unit.empty()) words.options.unit_mm = words.unit == "inch" ? 25.4 : 1.0;
   if (!words.approach.empty()) {
     words.options.approach_mm = read_point(words.approach);
@@ -96,64 +92,10 @@ std::optional<std::string> read_file(const std::string& name) {
   return input.bad() ? std::nullopt : std::optional(std::move(text));
 }
 
-/// The output under another name until it is whole: nobody should run half a program.
-class Output {
- public:
-  explicit Output(const std::string& name) : name_(name) {
-    if (name == "-") {
-      file_ = std::tmpfile();
-      return;
-    }
-    // What has such a name already is somebody's.
-    for (int number = 0; file_ == nullptr && number < kMostParts; ++number) {
-      partial_ = fmt::format("{}.{}.part", name, number);
-      file_ = std::fopen(partial_.c_str(), "wbx");
-      if (file_ == nullptr && errno != EEXIST) break;
-    }
-    if (file_ == nullptr) partial_.clear();
-  }
-  ~Output() {
-    if (file_ != nullptr) std::fclose(file_);
-    std::error_code ignored;
-    if (!partial_.empty()) fs::remove(partial_, ignored);
-  }
-  Output(const Output&) = delete;
-  Output& operator=(const Output&) = delete;
-
-  [[nodiscard]] bool open() const noexcept { return file_ != nullptr; }
-  void write(std::string_view text) noexcept {
-    good_ = good_ && std::fwrite(text.data(), 1, text.size(), file_) == text.size();
-  }
-  [[nodiscard]] bool finish() {
-    if (partial_.empty()) return copy_out();
-    const bool closed = std::fclose(file_) == 0;
-    file_ = nullptr;
-    std::error_code failed;
-    if (good_ && closed) fs::rename(partial_, name_, failed);
-    return good_ && closed && !failed;
-  }
-
- private:
-  static constexpr int kMostParts = 1000;
-
-  bool copy_out() {
-    std::rewind(file_);
-    std::vector<char> part(1U << 16U);
-    for (std::size_t got = 0; good_ && (got = std::fread(part.data(), 1, part.size(), file_)) > 0;) {
-      good_ = std::fwrite(part.data(), 1, got, stdout) == got;
-    }
-    return good_ && std::fflush(stdout) == 0;
-  }
-
-  std::string name_, partial_;
-  std::FILE* file_ = nullptr;
-  bool good_ = true;
-};
-
 int import_file(const Words& words) {
   const auto text = read_file(words.file);
   if (!text) return fail(words.file + ": cannot be read");
-  Output output(words.output);
+  legacy::OutputFile output(words.output);
   if (!output.open()) return fail(words.output + ": cannot be written");
   const auto summary =
       rs274::import_program(*text, words.options, [&output](std::string_view part) { output.write(part); });

@@ -8,6 +8,13 @@
 
 namespace rmac::legacy {
 
+/// As far as the API takes a coordinate (docs/api.md); no NaN is within.
+inline constexpr double kFarthest_mm = 1e6;
+/// Whether the API takes it as a feed, in mm/min.
+[[nodiscard]] constexpr bool is_feed(double mm_min) noexcept {
+  return mm_min >= 0.01 && mm_min <= 1e6;
+}
+
 /// X, Y, Z in mm.
 using Point = std::array<double, 3>;
 

@@ -4,13 +4,6 @@
 
 namespace rmac::rs274 {
 
-namespace {
-
-/// What the API takes (docs/api.md).
-constexpr double kFarthest_mm = 1e6, kLeastFeed_mm_min = 0.01, kMostFeed_mm_min = 1e6;
-
-}  // namespace
-
 void Mover::write_frame() {
   const auto origin = coordinates_.part_origin();
   if (!origin || origin == frame_) return;
@@ -19,8 +12,7 @@ void Mover::write_frame() {
 }
 
 void Mover::write_feed(double mm_min, std::size_t place) {
-  if (!(mm_min >= kLeastFeed_mm_min && mm_min <= kMostFeed_mm_min))
-    refuse(place, "the feed is not within 0.01 and 1 000 000 mm/min");
+  if (!legacy::is_feed(mm_min)) refuse(place, "the feed is not within 0.01 and 1 000 000 mm/min");
   if (feed_mm_min_ != mm_min) writer_.feed(mm_min);
   feed_mm_min_ = mm_min;
 }
@@ -47,7 +39,7 @@ Point Mover::start(std::size_t place) {
 
 void Mover::prepare(const Point& end, std::size_t place) {
   for (const double value : end) {
-    if (!(std::abs(value) <= kFarthest_mm)) refuse(place, "a move beyond 1 000 000 mm");
+    if (!(std::abs(value) <= legacy::kFarthest_mm)) refuse(place, "a move beyond 1 000 000 mm");
   }
   if (modes_.length == ToolLength::Off && !options_.assume_g43 && coordinates_.tip()[2] != end[2]) {
     refuse(place,
