@@ -92,7 +92,8 @@ Expected<SolidShape> read_shape(const Json& object, const std::string& pointer, 
     return wrong(pointer,
                  fmt::format(" has {} shapes; it must have one: Box, Cylinder, Cone, Sphere or Mesh", object.size()));
   }
-  const auto& [kind, shape] = *object.items().begin();
+  const std::string& kind = object.begin().key();
+  const Json& shape = object.begin().value();
   if (kind == "Box") return BoxShape{shape.at("Size").get<Vector>()};
   if (kind == "Sphere") return SphereShape{shape.at("Radius").get<double>()};
   if (kind == "Cylinder") {
