@@ -91,6 +91,7 @@ Expected<LinkChain> LinkChain::make(const Kinematics& kinematics, std::span<cons
   }
   std::vector<double> joints(names.size(), 0.0);
   const Eigen::Isometry3d home = interface_at(kinematics, joints);
+  made.interface_home_ = to_frame(home);
   for (std::size_t j = 0; j < names.size(); ++j) {
     const double amount = amount_asked(kinematics.joint_type(j));
     joints[j] = amount;
@@ -125,7 +126,7 @@ Expected<LinkChain> LinkChain::make(const Kinematics& kinematics, std::span<cons
     }
     if (!kinematics.has_pose(joints)) continue;
     made.displace(joints, frames);
-    const Frame product = compose(frames.back(), to_frame(home));
+    const Frame product = compose(frames.back(), made.interface_home_);
     const Eigen::Isometry3d module = interface_at(kinematics, joints);
     for (const Vector& offset : {Vector{0, 0, 0}, Vector{kFarAside_mm, 0, 0}, Vector{0, 0, kFarAside_mm}}) {
       const double apart = distance(apply_to_point(product, offset), to_vector(module * to_eigen(offset)));

@@ -28,6 +28,9 @@ class LinkChain {
   /// The joint between link k and link k + 1, as the module counts it.
   [[nodiscard]] std::size_t joint_behind(std::size_t link) const noexcept { return order_[link]; }
 
+  /// Where the tool interface stands while all joints stand at 0.
+  [[nodiscard]] const Frame& interface_home() const noexcept { return interface_home_; }
+
   /// How each link is moved from where it stands at 0, in the machine frame, which is the table's. `frames`:
   /// link_count().
   void displace(std::span<const double> joints, std::span<Frame> frames) const noexcept;
@@ -49,6 +52,7 @@ class LinkChain {
   };
   [[nodiscard]] static Frame moved_by(const Screw& screw, double amount) noexcept;
 
+  Frame interface_home_;
   std::vector<std::size_t> order_;  ///< joints from the table to the spindle
   std::vector<Screw> screws_;       ///< of each joint
   std::vector<Motion> motions_;

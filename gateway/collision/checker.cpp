@@ -1,0 +1,172 @@
+#include "gateway/collision/checker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rmac::gateway {
+namespace {
+
+using Kind = SceneBody::Kind;
+
+constexpr double kShare = 0.1;  ///< of the clearance: motion within which nothing is looked for
+
+}  // namespace
+
+CollisionChecker::CollisionChecker(LinkChain chain, std::vector<SceneBody> bodies, const Frame& part_frame,
+                                   double clearance_mm)
+    : chain_(std::move(chain)),
+      bodies_(std::move(bodies)),
+      without_tool_(bodies_.size()),
+      from_machine_(
+          Eigen::Isometry3d(Eigen::Translation3d(part_frame.p[0], part_frame.p[1], part_frame.p[2]) *
+                            Eigen::Quaterniond(part_frame.q[0], part_frame.q[1], part_frame.q[2], part_frame.q[3]))
+              .inverse()),
+      clearance_mm_(clearance_mm),
+      resolution_mm_(kShare * clearance_mm),
+      posture_(chain_),
+      between_(chain_) {
+  pair_up();
+}
+
+void CollisionChecker::set_tool(const Tool& tool) {
+  bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(without_tool_), bodies_.end());
+  for (SceneBody& body : tool_bodies(tool, chain_, clearance_mm_)) bodies_.push_back(std::move(body));
+  pair_up();
+}
+
+/// Neighbours on the chain slide or turn in each other; what stands on the table and what is in the spindle was put
+/// there, and is held against all that moves against it.
+bool CollisionChecker::may_not_meet(const SceneBody& first, const SceneBody& second) {
+  const std::size_t joints = std::max(first.link, second.link) - std::min(first.link, second.link);
+  return first.kind == Kind::Machine && second.kind == Kind::Machine ? joints > 1 : joints > 0;
+}
+
+void CollisionChecker::pair_up() {
+  pairs_.clear();
+  for (std::size_t a = 0; a < bodies_.size(); ++a) {
+    for (std::size_t b = a + 1; b < bodies_.size(); ++b) {
+      if (!may_not_meet(bodies_[a], bodies_[b])) continue;
+      const Kind on = bodies_[a].kind, by = bodies_[b].kind;
+      // Cutting touches the part: there only what is too deep counts.
+      if (on == Kind::Part ? by == Kind::Cutter : by == Kind::CutterCore) continue;
+      Pair pair{.first = a, .second = b};
+      pair.with_stock = on == Kind::Stock;
+      pair.cutter_in_stock = pair.with_stock && by == Kind::Cutter;
+      pairs_.push_back(pair);
+    }
+  }
+}
+
+void CollisionChecker::advance(double t_s, std::span<const double> joints, const MoveNow& move) {
+  const bool first = !begun_;
+  if (first) from_.assign(joints.begin(), joints.end()), way_ = at_ = from_, from_s_ = t_s;
+  begun_ = true;
+  bool moves = first;
+  for (std::size_t j = 0; j < from_.size(); ++j) {
+    way_[j] = joints[j] - from_[j];
+    moves = moves || way_[j] != 0;
+  }
+  const bool same_kind = move.cutting == move_.cutting;
+  move_ = move;
+  to_s_ = t_s;
+  std::vector<double>& length = at_;
+  posture_.set(from_);
+  for (Pair& pair : pairs_) {
+    // Once something was cut nobody knows here what is left of the stock on the way of the cutting part.
+    const bool counts = !pair.cutter_in_stock || !(move.cutting || stock_cut_);
+    if (!counts) {
+      pair.finding.reset();
+      pair.margin_mm = 0;
+      continue;
+    }
+    if (!moves && same_kind) continue;
+    for (std::size_t j = 0; j < way_.size(); ++j) length[j] = std::abs(way_[j]);
+    pair.margin_mm -= posture_.bound(bodies_[pair.first], bodies_[pair.second], length);
+    if (pair.margin_mm > 0) continue;
+    const Look from = look(pair, 0), to = look(pair, 1);
+    note(pair, from);
+    examine(pair, from, to);
+    pair.margin_mm = to.apart.least - clearance_mm_;
+    if (to.apart.most >= clearance_mm_) pair.finding.reset();
+  }
+  stock_cut_ = stock_cut_ || (move.cutting && moves);
+  from_.assign(joints.begin(), joints.end());
+  from_s_ = t_s;
+}
+
+CollisionChecker::Look CollisionChecker::look(const Pair& pair, double at) {
+  for (std::size_t j = 0; j < from_.size(); ++j) at_[j] = from_[j] + at * way_[j];
+  between_.set(at_);
+  ++distances_;
+  const SceneBody &a = bodies_[pair.first], &b = bodies_[pair.second];
+  return {at, distance(a.solid, between_.pose(a), b.solid, between_.pose(b), 2 * clearance_mm_)};
+}
+
+void CollisionChecker::examine(Pair& pair, const Look& from, const Look& to) {
+  for (std::size_t j = 0; j < from_.size(); ++j) at_[j] = from_[j] + from.at * way_[j];
+  between_.set(at_);
+  for (std::size_t j = 0; j < from_.size(); ++j) at_[j] = std::abs(way_[j]) * (to.at - from.at);
+  const double way = between_.bound(bodies_[pair.first], bodies_[pair.second], at_);
+  const bool meet = from.apart.most == 0 && to.apart.most == 0;
+  const double least = (from.apart.least + to.apart.least - way) / 2;
+  constexpr double kShortest = 1e-9;  // of the way: below it joints have no digits left
+  if (!meet && least < clearance_mm_ && way > resolution_mm_ && to.at - from.at > kShortest) {
+    const Look middle = look(pair, (from.at + to.at) / 2);
+    examine(pair, from, middle);
+    examine(pair, middle, to);
+    return;
+  }
+  note(pair, to);
+}
+
+void CollisionChecker::note(Pair& pair, const Look& look) {
+  const SceneBody &a = bodies_[pair.first], &b = bodies_[pair.second];
+  const double near = b.kind == Kind::CutterCore ? 0 : clearance_mm_;
+  if (look.apart.most > 0 && look.apart.most >= near) return;
+  const double t_s = from_s_ + look.at * (to_s_ - from_s_);
+  if (!pair.finding) {
+    // The pieces of a body are one to who reads of it.
+    const auto same = std::find_if(findings_.rbegin(), findings_.rend(), [&](const Finding& f) {
+      return f.first == a.name && f.second == b.name && (f.until_s >= from_s_ || f.move_id == move_.id);
+    });
+    if (same != findings_.rend())
+      pair.finding = findings_.size() - 1 - static_cast<std::size_t>(same - findings_.rbegin());
+  }
+  if (!pair.finding) {
+    if (findings_.size() == kMostFindings) {
+      ++left_off_;
+      return;
+    }
+    Finding found;
+    found.first = a.name, found.second = b.name;
+    found.line = move_.line, found.move_id = move_.id, found.t_s = t_s;
+    found.distance_mm = look.apart.most + 1;  // whatever comes is nearer
+    found.possible = pair.with_stock && stock_cut_;
+    pair.finding = findings_.size();
+    findings_.push_back(found);
+  }
+  Finding& finding = findings_[*pair.finding];
+  finding.until_s = std::max(finding.until_s, t_s);
+  const bool meets = look.apart.most == 0;
+  if ((meets && !finding.collision) || (!finding.collision && look.apart.most < finding.distance_mm)) {
+    finding.place = from_machine_ * Eigen::Vector3d((look.apart.on_first + look.apart.on_second) / 2);
+    finding.distance_mm = look.apart.most;
+    finding.t_s = t_s, finding.line = move_.line, finding.move_id = move_.id;
+  }
+  finding.collision = finding.collision || meets;
+  if (!meets) return;
+  collided_ = collided_ || !finding.possible;
+  for (std::size_t j = 0; j < from_.size(); ++j) at_[j] = from_[j] + look.at * way_[j];
+  between_.set(at_);
+  const double core = b.kind == Kind::CutterCore ? clearance_mm_ : 0;
+  finding.depth_mm =
+      std::max(finding.depth_mm, core + overlap_depth(a.solid, between_.pose(a), b.solid, between_.pose(b)));
+}
+
+std::vector<Finding> CollisionChecker::findings() const {
+  std::vector<Finding> sorted = findings_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Finding& a, const Finding& b) { return a.t_s < b.t_s; });
+  return sorted;
+}
+
+}  // namespace rmac::gateway
