@@ -70,6 +70,7 @@ bool CollisionWatch::may_cut(const Move& move) noexcept {
 
 void CollisionWatch::move_done() {
   if (!cutting_.empty()) cutting_.pop_front();
+  begun_ = true;
 }
 
 void CollisionWatch::take_tool(gateway::Controller& controller) {
@@ -94,6 +95,10 @@ void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway
   if (std::exchange(look_at_tool_, false)) take_tool(controller);
   if (sample.moving && !tool_fault_.empty()) not_checked_.insert(tool_fault_);
   const bool cutting = sample.moving && !cutting_.empty() && cutting_.front();
+  // A simulation begins with all joints at 0, where the machine need not stand: the way from there to the first
+  // position is nobody's.
+  if (!begun_ && !cutting) return;
+  begun_ = true;
   checker_->advance(sample.t_s, std::span(sample.position_set).first(sample.joint_count),
                     {.id = sample.move_id, .line = line, .cutting = cutting});
 }

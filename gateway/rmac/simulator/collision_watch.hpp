@@ -50,6 +50,7 @@ class CollisionWatch {
   std::set<std::string> not_checked_;
   std::string tool_fault_;  ///< what cannot be checked with the tool in the spindle
   bool look_at_tool_ = true;
+  bool begun_ = false;  ///< the first position is reached, or something cuts
 };
 
 /// `"collisions"` of --json: certain ones and possible ones, each with where and how deep; `near` gives near misses.
