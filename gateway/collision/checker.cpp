@@ -17,12 +17,9 @@ CollisionChecker::CollisionChecker(LinkChain chain, std::vector<SceneBody> bodie
     : chain_(std::move(chain)),
       bodies_(std::move(bodies)),
       without_tool_(bodies_.size()),
-      from_machine_(
-          Eigen::Isometry3d(Eigen::Translation3d(part_frame.p[0], part_frame.p[1], part_frame.p[2]) *
-                            Eigen::Quaterniond(part_frame.q[0], part_frame.q[1], part_frame.q[2], part_frame.q[3]))
-              .inverse()),
       clearance_mm_(clearance_mm),
       resolution_mm_(kShare * clearance_mm),
+      findings_(part_frame),
       posture_(chain_),
       between_(chain_) {
   pair_up();
@@ -75,7 +72,7 @@ void CollisionChecker::advance(double t_s, std::span<const double> joints, const
     // Once something was cut nobody knows here what is left of the stock on the way of the cutting part.
     const bool counts = !pair.cutter_in_stock || !(move.cutting || stock_cut_);
     if (!counts) {
-      pair.finding.reset();
+      pair.finding = nullptr;
       pair.margin_mm = 0;
       continue;
     }
@@ -87,7 +84,7 @@ void CollisionChecker::advance(double t_s, std::span<const double> joints, const
     note(pair, from);
     examine(pair, from, to);
     pair.margin_mm = to.apart.least - clearance_mm_;
-    if (to.apart.most >= clearance_mm_) pair.finding.reset();
+    if (to.apart.most >= clearance_mm_) pair.finding = nullptr;
   }
   stock_cut_ = stock_cut_ || (move.cutting && moves);
   from_.assign(joints.begin(), joints.end());
@@ -123,50 +120,19 @@ void CollisionChecker::note(Pair& pair, const Look& look) {
   const SceneBody &a = bodies_[pair.first], &b = bodies_[pair.second];
   const double near = b.kind == Kind::CutterCore ? 0 : clearance_mm_;
   if (look.apart.most > 0 && look.apart.most >= near) return;
-  const double t_s = from_s_ + look.at * (to_s_ - from_s_);
-  if (!pair.finding) {
-    // The pieces of a body are one to who reads of it.
-    const auto same = std::find_if(findings_.rbegin(), findings_.rend(), [&](const Finding& f) {
-      return f.first == a.name && f.second == b.name && (f.until_s >= from_s_ || f.move_id == move_.id);
-    });
-    if (same != findings_.rend())
-      pair.finding = findings_.size() - 1 - static_cast<std::size_t>(same - findings_.rbegin());
+  if (pair.finding == nullptr) {
+    pair.finding = findings_.of(a.name, b.name, from_s_, move_, pair.with_stock && stock_cut_);
+    if (pair.finding == nullptr) return;
   }
-  if (!pair.finding) {
-    if (findings_.size() == kMostFindings) {
-      ++left_off_;
-      return;
-    }
-    Finding found;
-    found.first = a.name, found.second = b.name;
-    found.line = move_.line, found.move_id = move_.id, found.t_s = t_s;
-    found.distance_mm = look.apart.most + 1;  // whatever comes is nearer
-    found.possible = pair.with_stock && stock_cut_;
-    pair.finding = findings_.size();
-    findings_.push_back(found);
+  double depth_mm = 0;
+  if (look.apart.most == 0) {
+    for (std::size_t j = 0; j < from_.size(); ++j) at_[j] = from_[j] + look.at * way_[j];
+    between_.set(at_);
+    // The core lies the clearance below the surface.
+    const double below = b.kind == Kind::CutterCore ? clearance_mm_ : 0;
+    depth_mm = below + overlap_depth(a.solid, between_.pose(a), b.solid, between_.pose(b));
   }
-  Finding& finding = findings_[*pair.finding];
-  finding.until_s = std::max(finding.until_s, t_s);
-  const bool meets = look.apart.most == 0;
-  if ((meets && !finding.collision) || (!finding.collision && look.apart.most < finding.distance_mm)) {
-    finding.place = from_machine_ * Eigen::Vector3d((look.apart.on_first + look.apart.on_second) / 2);
-    finding.distance_mm = look.apart.most;
-    finding.t_s = t_s, finding.line = move_.line, finding.move_id = move_.id;
-  }
-  finding.collision = finding.collision || meets;
-  if (!meets) return;
-  collided_ = collided_ || !finding.possible;
-  for (std::size_t j = 0; j < from_.size(); ++j) at_[j] = from_[j] + look.at * way_[j];
-  between_.set(at_);
-  const double core = b.kind == Kind::CutterCore ? clearance_mm_ : 0;
-  finding.depth_mm =
-      std::max(finding.depth_mm, core + overlap_depth(a.solid, between_.pose(a), b.solid, between_.pose(b)));
-}
-
-std::vector<Finding> CollisionChecker::findings() const {
-  std::vector<Finding> sorted = findings_;
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Finding& a, const Finding& b) { return a.t_s < b.t_s; });
-  return sorted;
+  findings_.see(*pair.finding, look.apart, depth_mm, from_s_ + look.at * (to_s_ - from_s_), move_);
 }
 
 }  // namespace rmac::gateway

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "gateway/collision/finding.hpp"
+#include "gateway/collision/finding_list.hpp"
 #include "gateway/collision/motion_bound.hpp"
 #include "gateway/collision/scene.hpp"
 
@@ -24,21 +23,16 @@ class CollisionChecker {
   void set_tool(const Tool& tool);
   void advance(double t_s, std::span<const double> joints, const MoveNow& move);
 
-  /// Of all that was so far, in the order in which it began. At most kMostFindings are kept.
-  [[nodiscard]] std::vector<Finding> findings() const;
-  /// A body met another, certainly.
-  [[nodiscard]] bool collided() const noexcept { return collided_; }
-  [[nodiscard]] std::size_t findings_left_off() const noexcept { return left_off_; }
+  /// Of all that was so far.
+  [[nodiscard]] const FindingList& findings() const noexcept { return findings_; }
   [[nodiscard]] std::size_t distances_computed() const noexcept { return distances_; }
-
-  static constexpr std::size_t kMostFindings = 1000;
 
  private:
   struct Pair {
     std::size_t first = 0, second = 0;  ///< bodies
     bool with_stock = false, cutter_in_stock = false;
-    double margin_mm = 0;                  ///< motion that cannot bring them nearer than the clearance
-    std::optional<std::size_t> finding{};  ///< that is not over
+    double margin_mm = 0;        ///< motion that cannot bring them nearer than the clearance
+    Finding* finding = nullptr;  ///< that is not over
   };
   struct Look {
     double at = 0;  ///< 0 to 1 of the way
@@ -54,18 +48,17 @@ class CollisionChecker {
   LinkChain chain_;
   std::vector<SceneBody> bodies_;
   std::size_t without_tool_;  ///< bodies that are not the tool's
-  Eigen::Isometry3d from_machine_;
   double clearance_mm_, resolution_mm_;
   std::vector<Pair> pairs_;
-  std::vector<Finding> findings_;
-  std::size_t left_off_ = 0, distances_ = 0;
+  FindingList findings_;
+  std::size_t distances_ = 0;
 
   // The step under way.
   Posture posture_, between_;
   std::vector<double> from_, way_, at_;
   double from_s_ = 0, to_s_ = 0;
   MoveNow move_;
-  bool begun_ = false, stock_cut_ = false, collided_ = false;
+  bool begun_ = false, stock_cut_ = false;
 };
 
 }  // namespace rmac::gateway

@@ -14,7 +14,7 @@ struct Finding {
   double t_s = 0, until_s = 0;
   Eigen::Vector3d place{0, 0, 0};  ///< in the part frame: where they first met, or were nearest
   double depth_mm = 0;             ///< of a collision, the deepest there was; 0: they never met
-  double distance_mm = 0;          ///< the least there was
+  double distance_mm = -1;         ///< the least there was; below 0: nobody looked yet
   bool collision = false;
   bool possible = false;  ///< with stock that something was cut from before, which may not be there any more
 };

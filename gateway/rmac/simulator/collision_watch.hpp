@@ -32,12 +32,9 @@ class CollisionWatch {
   }
   void cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller);
 
-  [[nodiscard]] std::vector<gateway::Finding> findings() const { return checker_->findings(); }
-  [[nodiscard]] std::size_t findings_left_off() const noexcept { return checker_->findings_left_off(); }
+  [[nodiscard]] const gateway::FindingList& findings() const noexcept { return checker_->findings(); }
   /// What was not checked, a sentence each; empty: all was.
   [[nodiscard]] const std::set<std::string>& not_checked() const noexcept { return not_checked_; }
-  /// A body met another, certainly.
-  [[nodiscard]] bool collided() const noexcept { return checker_->collided(); }
 
  private:
   explicit CollisionWatch(std::unique_ptr<gateway::CollisionChecker> checker) : checker_(std::move(checker)) {}

@@ -142,7 +142,7 @@ Result<> Simulator::run_until(const std::function<bool()>& reached) {
       }
     }
     const int line = moves_.line().value_or(line_);
-    ended_ = ends_at_first_ && watch_ != nullptr && watch_->collided();
+    ended_ = ends_at_first_ && watch_ != nullptr && watch_->findings().collided();
     if (ended_) return fail_at(line, "collision");
     if (!failure_.empty()) return fail_at(line, failure_);
     still_s = moving_ || dwells() ? 0 : still_s + simulation_.period_s();

@@ -18,7 +18,7 @@ struct Counts {
 
 Counts counts(const CollisionWatch& watch) {
   Counts found;
-  for (const gateway::Finding& f : watch.findings()) {
+  for (const gateway::Finding& f : watch.findings().sorted()) {
     ++(!f.collision ? found.near : f.possible ? found.possible : found.certain);
   }
   return found;
@@ -36,7 +36,7 @@ std::string summary(const CollisionWatch& watch) {
 
 void print_collisions(const CollisionWatch& watch) {
   std::vector<std::vector<std::string>> rows;
-  for (const gateway::Finding& f : watch.findings()) {
+  for (const gateway::Finding& f : watch.findings().sorted()) {
     rows.push_back({!f.collision ? "near miss"
                     : f.possible ? "possible"
                                  : "COLLISION",
@@ -48,20 +48,20 @@ void print_collisions(const CollisionWatch& watch) {
     fmt::print("{}\n",
                table({"what", "line", "move", "at s", "body", "body", "mm", "place in the part frame, mm"}, rows));
   }
-  if (watch.findings_left_off() > 0) fmt::print("… and more, which are not listed\n\n");
+  if (watch.findings().left_off() > 0) fmt::print("… and more, which are not listed\n\n");
   for (const std::string& what : watch.not_checked()) fmt::print("NOT CHECKED: {}\n\n", what);
 }
 
 void add_collisions(const CollisionWatch& watch, nlohmann::json& report) {
-  report["collisions"] = to_json(watch.findings(), false);
-  report["near_misses"] = to_json(watch.findings(), true);
+  report["collisions"] = to_json(watch.findings().sorted(), false);
+  report["near_misses"] = to_json(watch.findings().sorted(), true);
   report["collisions_not_checked"] = watch.not_checked();
-  report["findings_left_off"] = watch.findings_left_off() > 0;
+  report["findings_left_off"] = watch.findings().left_off() > 0;
 }
 
 Result<> verdict(const CollisionWatch& watch) {
   std::vector<std::string> clauses;
-  const auto found = watch.findings();
+  const auto found = watch.findings().sorted();
   const auto first = std::find_if(found.begin(), found.end(), [](const auto& f) { return f.collision && !f.possible; });
   if (first != found.end()) {
     clauses.push_back(fmt::format("{} collisions, the first in line {}: {} meets {}", counts(watch).certain,

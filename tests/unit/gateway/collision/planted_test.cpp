@@ -154,7 +154,7 @@ std::vector<Finding> found(const Scene& scene) {
     for (std::size_t j = 0; j < q.size(); ++j) q[j] += scene.way[j] * k / scene.steps;
     checker.advance(k * 0.001, q, {.id = k});
   }
-  return checker.findings();
+  return checker.findings().sorted();
 }
 
 TEST(PlantedCollisions, AreFoundWhereTheyAreDeeperThanTheClearanceAndNoneIsInvented) {
