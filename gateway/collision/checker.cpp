@@ -18,7 +18,6 @@ CollisionChecker::CollisionChecker(LinkChain chain, std::vector<SceneBody> bodie
       bodies_(std::move(bodies)),
       without_tool_(bodies_.size()),
       clearance_mm_(clearance_mm),
-      resolution_mm_(kShare * clearance_mm),
       findings_(part_frame),
       posture_(chain_),
       between_(chain_) {
@@ -49,6 +48,7 @@ void CollisionChecker::pair_up() {
       Pair pair{.first = a, .second = b};
       pair.with_stock = on == Kind::Stock;
       pair.cutter_in_stock = pair.with_stock && by == Kind::Cutter;
+      pair.near_mm = by == Kind::CutterCore ? 0 : clearance_mm_;
       pairs_.push_back(pair);
     }
   }
@@ -68,22 +68,30 @@ void CollisionChecker::advance(double t_s, std::span<const double> joints, const
   to_s_ = t_s;
   std::vector<double>& length = at_;
   posture_.set(from_);
+  radii_.resize(bodies_.size());
+  for (std::size_t i = 0; i < bodies_.size(); ++i) posture_.radii(bodies_[i], radii_[i]);
   for (Pair& pair : pairs_) {
     // Once something was cut nobody knows here what is left of the stock on the way of the cutting part.
     const bool counts = !pair.cutter_in_stock || !(move.cutting || stock_cut_);
     if (!counts) {
       pair.finding = nullptr;
       pair.margin_mm = 0;
+      pair.here.reset();
       continue;
     }
     if (!moves && same_kind) continue;
     for (std::size_t j = 0; j < way_.size(); ++j) length[j] = std::abs(way_[j]);
-    pair.margin_mm -= posture_.bound(bodies_[pair.first], bodies_[pair.second], length);
-    if (pair.margin_mm > 0) continue;
-    const Look from = look(pair, 0), to = look(pair, 1);
+    pair.margin_mm -=
+        posture_.bound(bodies_[pair.first], radii_[pair.first], bodies_[pair.second], radii_[pair.second], length);
+    if (pair.margin_mm > 0) {
+      pair.here.reset();
+      continue;
+    }
+    const Look from = pair.here ? Look{0, *pair.here} : look(pair, 0), to = look(pair, 1);
     note(pair, from);
     examine(pair, from, to);
-    pair.margin_mm = to.apart.least - clearance_mm_;
+    pair.margin_mm = to.apart.least - pair.near_mm;
+    pair.here = to.apart;
     if (to.apart.most >= clearance_mm_) pair.finding = nullptr;
   }
   stock_cut_ = stock_cut_ || (move.cutting && moves);
@@ -103,11 +111,14 @@ void CollisionChecker::examine(Pair& pair, const Look& from, const Look& to) {
   for (std::size_t j = 0; j < from_.size(); ++j) at_[j] = from_[j] + from.at * way_[j];
   between_.set(at_);
   for (std::size_t j = 0; j < from_.size(); ++j) at_[j] = std::abs(way_[j]) * (to.at - from.at);
-  const double way = between_.bound(bodies_[pair.first], bodies_[pair.second], at_);
+  Posture::Radii first, second;
+  between_.radii(bodies_[pair.first], first);
+  between_.radii(bodies_[pair.second], second);
+  const double way = between_.bound(bodies_[pair.first], first, bodies_[pair.second], second, at_);
   const bool meet = from.apart.most == 0 && to.apart.most == 0;
   const double least = (from.apart.least + to.apart.least - way) / 2;
   constexpr double kShortest = 1e-9;  // of the way: below it joints have no digits left
-  if (!meet && least < clearance_mm_ && way > resolution_mm_ && to.at - from.at > kShortest) {
+  if (!meet && least < pair.near_mm && way > kShare * clearance_mm_ && to.at - from.at > kShortest) {
     const Look middle = look(pair, (from.at + to.at) / 2);
     examine(pair, from, middle);
     examine(pair, middle, to);
@@ -118,8 +129,7 @@ void CollisionChecker::examine(Pair& pair, const Look& from, const Look& to) {
 
 void CollisionChecker::note(Pair& pair, const Look& look) {
   const SceneBody &a = bodies_[pair.first], &b = bodies_[pair.second];
-  const double near = b.kind == Kind::CutterCore ? 0 : clearance_mm_;
-  if (look.apart.most > 0 && look.apart.most >= near) return;
+  if (look.apart.most > 0 && look.apart.most >= pair.near_mm) return;
   if (pair.finding == nullptr) {
     pair.finding = findings_.of(a.name, b.name, from_s_, move_, pair.with_stock && stock_cut_);
     if (pair.finding == nullptr) return;

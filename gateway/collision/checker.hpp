@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,8 +32,10 @@ class CollisionChecker {
   struct Pair {
     std::size_t first = 0, second = 0;  ///< bodies
     bool with_stock = false, cutter_in_stock = false;
-    double margin_mm = 0;        ///< motion that cannot bring them nearer than the clearance
-    Finding* finding = nullptr;  ///< that is not over
+    double near_mm = 0;           ///< nearer than this is told
+    double margin_mm = 0;         ///< motion that cannot bring them nearer than that
+    std::optional<Apart> here{};  ///< as the last step ended, where it was looked at
+    Finding* finding = nullptr;   ///< that is not over
   };
   struct Look {
     double at = 0;  ///< 0 to 1 of the way
@@ -48,13 +51,14 @@ class CollisionChecker {
   LinkChain chain_;
   std::vector<SceneBody> bodies_;
   std::size_t without_tool_;  ///< bodies that are not the tool's
-  double clearance_mm_, resolution_mm_;
+  double clearance_mm_;
   std::vector<Pair> pairs_;
   FindingList findings_;
   std::size_t distances_ = 0;
 
   // The step under way.
   Posture posture_, between_;
+  std::vector<Posture::Radii> radii_;  ///< of each body
   std::vector<double> from_, way_, at_;
   double from_s_ = 0, to_s_ = 0;
   MoveNow move_;

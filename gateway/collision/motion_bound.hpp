@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <span>
 #include <vector>
 
 #include "gateway/bodies/link_chain.hpp"
 #include "gateway/collision/scene_body.hpp"
+#include "rmac/motion/machine_size.hpp"
 
 namespace rmac::gateway {
 
@@ -14,21 +16,29 @@ namespace rmac::gateway {
 /// from whichever of the two it is less (docs/derivations/motion-bound.md).
 class Posture {
  public:
-  explicit Posture(const LinkChain& chain) : chain_(&chain), frames_(chain.link_count()), links_(chain.link_count()) {}
+  explicit Posture(const LinkChain& chain)
+      : chain_(&chain), frames_(chain.link_count()), links_(chain.link_count()), axes_(chain.link_count() - 1) {}
 
   void set(std::span<const double> joints);
   [[nodiscard]] Eigen::Isometry3d pose(const SceneBody& body) const { return links_[body.link] * body.home; }
 
-  /// `way`: what each joint goes, all positive.
-  [[nodiscard]] double bound(const SceneBody& first, const SceneBody& second, std::span<const double> way) const;
+  /// How far from the axis of each joint a point of a body may be, by the link before the joint.
+  using Radii = std::array<double, kMaxJoints>;
+  void radii(const SceneBody& body, Radii& radii) const;
+
+  /// `way`: what each joint goes, all positive. Radii are those of the two bodies here.
+  [[nodiscard]] double bound(const SceneBody& first, const Radii& first_radii, const SceneBody& second,
+                             const Radii& second_radii, std::span<const double> way) const;
 
  private:
-  /// How far a point of a body may be from the axis of the joint behind a link.
-  [[nodiscard]] double radius(const SceneBody& body, std::size_t link) const;
+  struct Axis {
+    Eigen::Vector3d direction, point;
+  };
 
   const LinkChain* chain_;
   std::vector<Frame> frames_;
   std::vector<Eigen::Isometry3d> links_;
+  std::vector<Axis> axes_;  ///< of the joint behind each link, in the machine frame
 };
 
 }  // namespace rmac::gateway

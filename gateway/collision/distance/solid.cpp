@@ -1,7 +1,8 @@
 #include "gateway/collision/distance/solid.hpp"
 
 #include <algorithm>
-#include <queue>
+#include <array>
+#include <utility>
 
 namespace rmac::gateway {
 namespace {
@@ -12,11 +13,10 @@ using Box = TriangleTree::Box;
 
 constexpr double kPrecisely = 1e300;
 
-/// What a pair of nodes, or a node and a convex solid, is worth looking at.
+/// A pair of nodes, or of a node and a convex solid, and how far they are apart at least.
 struct Candidate {
   double least;
   std::uint32_t first, second;
-  bool operator<(const Candidate& other) const noexcept { return least > other.least; }  // the nearest goes first
 };
 
 double gap(const Box& a, const Box& b) {
@@ -42,6 +42,12 @@ Box turned(const Box& box, const Isometry3d& pose) {
   return {Vector3d(middle - half), Vector3d(middle + half)};
 }
 
+/// How far a convex solid reaches along a unit direction.
+double reach_of(const Convex& convex, const Isometry3d& pose, const Vector3d& direction) {
+  const Vector3d own = pose.linear().transpose() * direction;
+  return own.dot(convex.support(own)) + convex.rounded() + direction.dot(pose.translation());
+}
+
 /// One side of a pair as a tree of nodes; a convex solid is a single leaf.
 class Side {
  public:
@@ -55,6 +61,13 @@ class Side {
     return solid_.convex() != nullptr || solid_.tree().nodes()[node].count > 0;
   }
   [[nodiscard]] std::uint32_t child(std::uint32_t node) const { return solid_.tree().nodes()[node].first; }
+  /// How far a node, or the convex solid, reaches along a unit direction.
+  [[nodiscard]] double reach(std::uint32_t node, const Vector3d& direction) const {
+    if (const Convex* convex = solid_.convex()) return reach_of(*convex, pose_, direction);
+    const Vector3d own = pose_.linear().transpose() * direction;
+    const Box& box = solid_.tree().nodes()[node].box;
+    return own.dot(box.center()) + own.cwiseAbs().dot(box.sizes()) / 2 + direction.dot(pose_.translation());
+  }
   template <typename Do>
   void each(std::uint32_t node, Do look) const {
     if (const Convex* convex = solid_.convex()) return look(*convex);
@@ -68,28 +81,23 @@ class Side {
   Box convex_box_;
 };
 
-/// Looks at leaves, the nearest first, until `look` is content with what the others have at least.
-template <typename Look>
-void search(const Side& first, const Side& second, Look look) {
-  std::priority_queue<Candidate> open;
-  open.push({gap(first.box(0), second.box(0)), 0, 0});
-  while (!open.empty()) {
-    const Candidate at = open.top();
-    open.pop();
-    const bool first_leaf = first.leaf(at.first), second_leaf = second.leaf(at.second);
-    if (first_leaf && second_leaf) {
-      if (!look(at)) return;
-      continue;
-    }
-    const Box first_box = first.box(at.first), second_box = second.box(at.second);
-    const bool open_first =
-        second_leaf || (!first_leaf && first_box.diagonal().squaredNorm() > second_box.diagonal().squaredNorm());
-    for (std::uint32_t k = 0; k < 2; ++k) {
-      const std::uint32_t a = open_first ? first.child(at.first) + k : at.first;
-      const std::uint32_t b = open_first ? at.second : second.child(at.second) + k;
-      open.push({gap(open_first ? first.box(a) : first_box, open_first ? second_box : second.box(b)), a, b});
-    }
+/// Looks at pairs of leaves, of each two branches the nearer first. `skip` says of a pair that it is not worth it.
+template <typename Skip, typename Look>
+void search(const Side& first, const Side& second, const Candidate& at, const Skip& skip, const Look& look) {
+  if (skip(at)) return;
+  const bool first_leaf = first.leaf(at.first), second_leaf = second.leaf(at.second);
+  if (first_leaf && second_leaf) return look(at);
+  const Box first_box = first.box(at.first), second_box = second.box(at.second);
+  const bool open_first =
+      second_leaf || (!first_leaf && first_box.sizes().squaredNorm() > second_box.sizes().squaredNorm());
+  std::array<Candidate, 2> branches;
+  for (std::uint32_t k = 0; k < 2; ++k) {
+    const std::uint32_t a = open_first ? first.child(at.first) + k : at.first;
+    const std::uint32_t b = open_first ? at.second : second.child(at.second) + k;
+    branches[k] = {gap(open_first ? first.box(a) : first_box, open_first ? second_box : second.box(b)), a, b};
   }
+  if (branches[1].least < branches[0].least) std::swap(branches[0], branches[1]);
+  for (const Candidate& branch : branches) search(first, second, branch, skip, look);
 }
 
 /// Of which one is a mesh.
@@ -102,21 +110,31 @@ Apart surface_distance(const Solid& first, const Isometry3d& first_pose, const S
   const Side a(first, a_pose), b(second, b_pose);
   Apart best;
   best.least = best.most = 1e300;
-  search(a, b, [&](const Candidate& at) {
+  // From the first to the second, where they are nearest so far. What lies beyond a plane across it is not looked at.
+  Vector3d across = Vector3d::Zero();
+  const auto not_worth = [&](double least) {
     const double slack = std::max(0.0, best.most - precise_mm) / 2;
-    if (at.least >= best.most - slack) {
-      best.least = std::min(best.least, at.least);
-      return false;
-    }
+    if (best.most > 0 && least < best.most - slack) return false;
+    best.least = std::min(best.least, least);
+    return true;
+  };
+  const auto skip = [&](const Candidate& at) {
+    return not_worth(at.least) || not_worth(-a.reach(at.first, across) - b.reach(at.second, -across));
+  };
+  search(a, b, {gap(a.box(0), b.box(0)), 0, 0}, skip, [&](const Candidate& at) {
     a.each(at.first, [&](const Convex& one) {
+      const double one_reach = reach_of(one, a_pose, across);
       b.each(at.second, [&](const Convex& other) {
+        if (best.most == 0 || not_worth(-one_reach - reach_of(other, b_pose, -across))) return;
         const Apart apart = distance(one, a_pose, other, b_pose, best.most);
         const double least = std::min(best.least, apart.least);
-        if (apart.most < best.most) best = apart;
+        if (apart.most < best.most) {
+          best = apart;
+          if (best.most > 0) across = (best.on_second - best.on_first) / best.most;
+        }
         best.least = least;
       });
     });
-    return best.most > 0;
   });
   best.least = std::min(best.least, best.most);
   best.on_first = frame * best.on_first;
