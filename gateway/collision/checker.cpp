@@ -8,7 +8,8 @@ namespace {
 
 using Kind = SceneBody::Kind;
 
-constexpr double kShare = 0.1;  ///< of the clearance: motion within which nothing is looked for
+constexpr double kShare = 0.1;          ///< of the clearance: motion within which nothing is looked for
+constexpr double kShareOfDepth = 0.02;  ///< that it may be deeper than told
 
 }  // namespace
 
@@ -81,8 +82,10 @@ void CollisionChecker::advance(double t_s, std::span<const double> joints, const
     }
     if (!moves && same_kind) continue;
     for (std::size_t j = 0; j < way_.size(); ++j) length[j] = std::abs(way_[j]);
-    pair.margin_mm -=
+    const double moved =
         posture_.bound(bodies_[pair.first], radii_[pair.first], bodies_[pair.second], radii_[pair.second], length);
+    pair.margin_mm -= moved;
+    pair.unmeasured_mm += moved;
     if (pair.margin_mm > 0) {
       pair.here.reset();
       continue;
@@ -134,15 +137,18 @@ void CollisionChecker::note(Pair& pair, const Look& look) {
     pair.finding = findings_.of(a.name, b.name, from_s_, move_, pair.with_stock && stock_cut_);
     if (pair.finding == nullptr) return;
   }
-  double depth_mm = 0;
-  if (look.apart.most == 0) {
+  // Depth costs far more than to see that they meet: it is measured again when it may be another.
+  const bool meet = look.apart.most == 0;
+  if (meet && pair.unmeasured_mm > std::max(kShare * clearance_mm_, kShareOfDepth * pair.depth_mm)) {
     for (std::size_t j = 0; j < from_.size(); ++j) at_[j] = from_[j] + look.at * way_[j];
     between_.set(at_);
     // The core lies the clearance below the surface.
     const double below = b.kind == Kind::CutterCore ? clearance_mm_ : 0;
-    depth_mm = below + overlap_depth(a.solid, between_.pose(a), b.solid, between_.pose(b));
+    pair.depth_mm = below + overlap_depth(a.solid, between_.pose(a), b.solid, between_.pose(b));
+    pair.unmeasured_mm = 0;
   }
-  findings_.see(*pair.finding, look.apart, depth_mm, from_s_ + look.at * (to_s_ - from_s_), move_);
+  if (!meet) pair.unmeasured_mm = 1e300;
+  findings_.see(*pair.finding, look.apart, meet ? pair.depth_mm : 0, from_s_ + look.at * (to_s_ - from_s_), move_);
 }
 
 }  // namespace rmac::gateway

@@ -32,10 +32,12 @@ class CollisionChecker {
   struct Pair {
     std::size_t first = 0, second = 0;  ///< bodies
     bool with_stock = false, cutter_in_stock = false;
-    double near_mm = 0;           ///< nearer than this is told
-    double margin_mm = 0;         ///< motion that cannot bring them nearer than that
-    std::optional<Apart> here{};  ///< as the last step ended, where it was looked at
-    Finding* finding = nullptr;   ///< that is not over
+    double near_mm = 0;            ///< nearer than this is told
+    double margin_mm = 0;          ///< motion that cannot bring them nearer than that
+    double depth_mm = 0;           ///< as last measured, while they meet
+    double unmeasured_mm = 1e300;  ///< motion since then
+    std::optional<Apart> here{};   ///< as the last step ended, where it was looked at
+    Finding* finding = nullptr;    ///< that is not over
   };
   struct Look {
     double at = 0;  ///< 0 to 1 of the way
