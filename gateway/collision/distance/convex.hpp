@@ -31,7 +31,7 @@ class Convex {
               std::copysign(size_[2], direction[2])};
     }
     if (kind_ == Kind::Cone) {
-      const double across = std::hypot(direction[0], direction[1]);
+      const double across = std::sqrt(direction[0] * direction[0] + direction[1] * direction[1]);
       const bool top = direction[2] * 2 * size_[2] > (size_[0] - size_[1]) * across;
       const double radius = top ? size_[1] : size_[0];
       const double z = top ? size_[2] : -size_[2];

@@ -35,11 +35,12 @@ struct Pair {
 }  // namespace
 
 Apart distance(const Convex& first, const Isometry3d& first_pose, const Convex& second, const Isometry3d& second_pose,
-               double enough_mm) {
+               double enough_mm, const Vector3d& towards) {
   const Pair pair{first, second, first_pose.inverse() * second_pose};
   const double rounded = first.rounded() + second.rounded();
   Simplex simplex;
-  Vector3d nearest = first.middle() - pair.relative * second.middle();
+  Vector3d nearest = first_pose.linear().transpose() * -towards;
+  if (nearest.squaredNorm() == 0) nearest = first.middle() - pair.relative * second.middle();
   if (nearest.squaredNorm() == 0) nearest = Vector3d(1, 0, 0);
   double least = -1e300, most = 1e300;
   for (int step = 0; step < kMostSteps; ++step) {

@@ -61,12 +61,20 @@ class Side {
     return solid_.convex() != nullptr || solid_.tree().nodes()[node].count > 0;
   }
   [[nodiscard]] std::uint32_t child(std::uint32_t node) const { return solid_.tree().nodes()[node].first; }
-  /// How far a node, or the convex solid, reaches along a unit direction.
-  [[nodiscard]] double reach(std::uint32_t node, const Vector3d& direction) const {
-    if (const Convex* convex = solid_.convex()) return reach_of(*convex, pose_, direction);
-    const Vector3d own = pose_.linear().transpose() * direction;
+  /// The unit direction along which `reach` asks.
+  void aim(const Vector3d& direction) {
+    direction_ = direction;
+    own_ = pose_.linear().transpose() * direction;
+    own_size_ = own_.cwiseAbs() / 2;
+    moved_ = direction.dot(pose_.translation());
+    if (const Convex* convex = solid_.convex()) convex_reach_ = reach_of(*convex, pose_, direction);
+  }
+  [[nodiscard]] const Vector3d& direction() const noexcept { return direction_; }
+  /// How far a node, or the convex solid, reaches.
+  [[nodiscard]] double reach(std::uint32_t node) const {
+    if (solid_.convex() != nullptr) return convex_reach_;
     const Box& box = solid_.tree().nodes()[node].box;
-    return own.dot(box.center()) + own.cwiseAbs().dot(box.sizes()) / 2 + direction.dot(pose_.translation());
+    return own_.dot(box.center()) + own_size_.dot(box.sizes()) + moved_;
   }
   template <typename Do>
   void each(std::uint32_t node, Do look) const {
@@ -79,6 +87,8 @@ class Side {
   const Solid& solid_;
   const Isometry3d& pose_;
   Box convex_box_;
+  Vector3d direction_ = Vector3d::Zero(), own_ = Vector3d::Zero(), own_size_ = Vector3d::Zero();
+  double moved_ = 0, convex_reach_ = 0;
 };
 
 /// Looks at pairs of leaves, of each two branches the nearer first. `skip` says of a pair that it is not worth it.
@@ -107,11 +117,10 @@ Apart surface_distance(const Solid& first, const Isometry3d& first_pose, const S
   const bool swap = first.convex() != nullptr;
   const Isometry3d& frame = swap ? second_pose : first_pose;
   const Isometry3d a_pose = frame.inverse() * first_pose, b_pose = frame.inverse() * second_pose;
-  const Side a(first, a_pose), b(second, b_pose);
+  Side a(first, a_pose), b(second, b_pose);
   Apart best;
   best.least = best.most = 1e300;
-  // From the first to the second, where they are nearest so far. What lies beyond a plane across it is not looked at.
-  Vector3d across = Vector3d::Zero();
+  // Both aim at each other where they are nearest so far: what lies beyond a plane across that is not looked at.
   const auto not_worth = [&](double least) {
     const double slack = std::max(0.0, best.most - precise_mm) / 2;
     if (best.most > 0 && least < best.most - slack) return false;
@@ -119,18 +128,21 @@ Apart surface_distance(const Solid& first, const Isometry3d& first_pose, const S
     return true;
   };
   const auto skip = [&](const Candidate& at) {
-    return not_worth(at.least) || not_worth(-a.reach(at.first, across) - b.reach(at.second, -across));
+    return not_worth(at.least) || not_worth(-a.reach(at.first) - b.reach(at.second));
   };
   search(a, b, {gap(a.box(0), b.box(0)), 0, 0}, skip, [&](const Candidate& at) {
     a.each(at.first, [&](const Convex& one) {
-      const double one_reach = reach_of(one, a_pose, across);
+      const double one_reach = reach_of(one, a_pose, a.direction());
       b.each(at.second, [&](const Convex& other) {
-        if (best.most == 0 || not_worth(-one_reach - reach_of(other, b_pose, -across))) return;
-        const Apart apart = distance(one, a_pose, other, b_pose, best.most);
+        if (best.most == 0 || not_worth(-one_reach - reach_of(other, b_pose, b.direction()))) return;
+        const Apart apart = distance(one, a_pose, other, b_pose, best.most, a.direction());
         const double least = std::min(best.least, apart.least);
         if (apart.most < best.most) {
           best = apart;
-          if (best.most > 0) across = (best.on_second - best.on_first) / best.most;
+          if (best.most > 0) {
+            a.aim((best.on_second - best.on_first) / best.most);
+            b.aim((best.on_first - best.on_second) / best.most);
+          }
         }
         best.least = least;
       });
