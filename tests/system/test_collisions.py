@@ -159,6 +159,12 @@ class Collisions(unittest.TestCase):
         self.assertIn("tool 8 has no Shape", done.stderr)
         self.assertEqual(len(report["collisions_not_checked"]), 1)
 
+    def test_a_machine_that_the_program_loads_instead_is_not_passed_over(self):
+        report, done = self.report([to(0, 0, 100), request("Device.Load", Name="DMACXYZ"),
+                                    request("RMAC_CAM.MoveToJointTarget", MoveID=2, JointTargetFrame={"joints": [1, 1, 1]})])
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(report["collisions_not_checked"], ["moves of DMACXYZ: the set-up is for SuginoXYZAC"])
+
     def test_what_is_wrong_with_a_set_up_is_one_line(self):
         def changed(edit):
             setup = copy.deepcopy(SETUP)

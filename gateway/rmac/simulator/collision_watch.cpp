@@ -59,8 +59,9 @@ Result<std::unique_ptr<CollisionWatch>> CollisionWatch::open(const std::string& 
   if (!chain) return fail(fmt::format("{}: {}", device_json->string(), chain.error().message));
   auto bodies = gateway::scene_bodies(database->bodies, *setup);
   if (!bodies) return fail(fmt::format("{}: {}", setup_file.string(), bodies.error().message));
-  return std::unique_ptr<CollisionWatch>(new CollisionWatch(std::make_unique<gateway::CollisionChecker>(
-      std::move(*chain), std::move(*bodies), setup->part_frame, setup->clearance_mm)));
+  return std::unique_ptr<CollisionWatch>(new CollisionWatch(
+      setup->machine, std::make_unique<gateway::CollisionChecker>(std::move(*chain), std::move(*bodies),
+                                                                  setup->part_frame, setup->clearance_mm)));
 }
 
 bool CollisionWatch::may_cut(const Move& move) noexcept {
@@ -92,6 +93,13 @@ void CollisionWatch::take_tool(gateway::Controller& controller) {
 }
 
 void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller) {
+  const sdk::DeviceObject* const device = controller.mechanism();
+  if (device == nullptr || device->name != machine_) {
+    if (device != nullptr && sample.moving) {
+      not_checked_.insert(fmt::format("moves of {}: the set-up is for {}", device->name, machine_));
+    }
+    return;
+  }
   if (std::exchange(look_at_tool_, false)) take_tool(controller);
   if (sample.moving && !tool_fault_.empty()) not_checked_.insert(tool_fault_);
   const bool cutting = sample.moving && !cutting_.empty() && cutting_.front();

@@ -5,6 +5,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gateway/collision/checker.hpp"
@@ -37,11 +38,13 @@ class CollisionWatch {
   [[nodiscard]] const std::set<std::string>& not_checked() const noexcept { return not_checked_; }
 
  private:
-  explicit CollisionWatch(std::unique_ptr<gateway::CollisionChecker> checker) : checker_(std::move(checker)) {}
+  CollisionWatch(std::string machine, std::unique_ptr<gateway::CollisionChecker> checker)
+      : machine_(std::move(machine)), checker_(std::move(checker)) {}
   /// Positioning moves go through air; what is programmed as a path may cut.
   [[nodiscard]] static bool may_cut(const Move& move) noexcept;
   void take_tool(gateway::Controller& controller);
 
+  std::string machine_;  ///< for which the set-up is
   std::unique_ptr<gateway::CollisionChecker> checker_;
   std::deque<bool> cutting_;  ///< of the moves that are not done
   std::set<std::string> not_checked_;
