@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-benches=(motion cam servo bus machines api clients)
+benches=(motion cam servo bus machines api clients virtual)
 options=()
 wanted=()
 for word in "$@"; do

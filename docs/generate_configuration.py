@@ -116,5 +116,5 @@ def section(name, text=""):
 
 
 if __name__ == "__main__":
-    page = INTRODUCTION + section("rmacd") + section("device", MECHANISMS) + section("modbus-spindle") + section("modbus-io") + section("drive") + section("tools") + section("measuring-plan")
+    page = INTRODUCTION + section("rmacd") + section("device", MECHANISMS) + section("modbus-spindle") + section("modbus-io") + section("drive") + section("tools") + section("setup") + section("measuring-plan")
     (FOLDER / "configuration.md").write_text(page, encoding="utf-8")

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "gateway/bodies/body_json.hpp"
 #include "gateway/device_database/device_checks.hpp"
 #include "gateway/device_database/device_parts.hpp"
 #include "gateway/device_database/json_values.hpp"
@@ -133,7 +134,7 @@ Expected<DeviceDatabase> read_device_json(const std::filesystem::path& device_js
     static const JsonSchema kSchema(device_schema_text());
     const Expected<Json> document = read_json_document(device_json, kSchema);
     if (!document) return tl::make_unexpected(document.error());
-    DeviceDatabase database{.device = device_object(*document), .mechanism_id = {}};
+    DeviceDatabase database{.device = device_object(*document), .mechanism_id = {}, .bodies = {}};
     if (document->contains("MechanismID")) database.mechanism_id = (*document)["MechanismID"].get<std::int64_t>();
 
     std::string problem = missing_end(*document, database.device);
@@ -142,6 +143,13 @@ Expected<DeviceDatabase> read_device_json(const std::filesystem::path& device_js
     if (!problem.empty()) {
       return failure(MinorCode::InvalidParameterValue, fmt::format("{}: {}", device_json.string(), problem));
     }
+    std::vector<std::string> names;
+    for (const sdk::Joint& joint : database.device.joints) names.push_back(joint.limits.name);
+    auto bodies = read_machine_bodies(*document, names, device_json.parent_path());
+    if (!bodies) {
+      return failure(bodies.error().code, fmt::format("{}: {}", device_json.string(), bodies.error().message));
+    }
+    database.bodies = std::move(*bodies);
     return database;
   } catch (const std::exception& error) {
     return failure(MinorCode::Other, fmt::format("{}: {}", device_json.string(), error.what()));

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "gateway/bodies/body.hpp"
 #include "rmac/motion/error.hpp"
 #include "rmac/sdk/device_object.hpp"
 
@@ -13,6 +14,7 @@ namespace rmac::gateway {
 struct DeviceDatabase {
   sdk::DeviceObject device;
   std::optional<std::int64_t> mechanism_id;  ///< number in the device driver database, where the file claims one
+  MachineBodies bodies;                      ///< none where the file says nothing of its shape
 };
 
 /// Reads a mechanism's device database, `device.json` (Table 4-2), checks it against etc/device.schema.json and for

@@ -11,6 +11,7 @@ namespace rmac::gateway {
 [[nodiscard]] std::string_view modbus_io_schema_text();
 [[nodiscard]] std::string_view drive_schema_text();
 [[nodiscard]] std::string_view tools_schema_text();
+[[nodiscard]] std::string_view setup_schema_text();
 [[nodiscard]] std::string_view measuring_plan_schema_text();
 
 }  // namespace rmac::gateway

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "gateway/tools/tool_shape.hpp"
 #include "rmac/motion/error.hpp"
 #include "rmac/motion/machine_size.hpp"
 #include "rmac/motion/pose.hpp"
@@ -25,6 +26,7 @@ struct Tool {
   double max_rpm = 0;         ///< 0: the spindle's own bound alone
   double max_torque_nm = 0;   ///< that spindle 0 may measure with it; 0: not given
   bool needs_spindle = true;  ///< it cuts only while the spindle turns; a probe or a drag knife does not need that
+  std::optional<ToolShape> shape{};  ///< none: nothing is known of its collisions
 };
 
 /// The tip's pose on the tool interface: down the tool's own axis by its length.
@@ -48,7 +50,8 @@ class ToolPort {
   /// In the order of their numbers.
   [[nodiscard]] virtual Expected<std::vector<Tool>> tools() const = 0;
   [[nodiscard]] virtual ToolsNow tools_now() const = 0;
-  /// Adds a tool or replaces the one of its number; of the tool in the spindle at rest only, and in force at once.
+  /// Adds a tool or replaces the one of its number, whose shape it keeps unless it has its own; of the tool in the
+  /// spindle at rest only, and in force at once.
   virtual Expected<> set_tool(const Tool& tool) = 0;
   virtual Expected<> remove_tool(int number) = 0;
   /// Queues a change behind the moves that are queued; moves that follow are with the new tool. `kNoTool` takes the

@@ -66,6 +66,11 @@ Expected<Tool> read_tool(const Json& entry) {
     entry["Frame"]["p"].get_to(tool.frame.p);
     entry["Frame"]["q"].get_to(tool.frame.q);
   }
+  if (entry.contains("Shape")) {
+    auto shape = read_tool_shape(entry["Shape"], tool.length_mm);
+    if (!shape) return tl::unexpected(shape.error());
+    tool.shape = std::move(*shape);
+  }
   return check_frame(tool.frame, "Frame").map([&] {
     tool.frame = normalized(tool.frame);
     return tool;
@@ -73,14 +78,16 @@ Expected<Tool> read_tool(const Json& entry) {
 }
 
 Json to_json(const Tool& tool) {
-  return {{"ToolNumber", tool.number},
-          {"Name", tool.name},
-          {"Length", tool.length_mm},
-          {"Radius", tool.radius_mm},
-          {"Frame", {{"p", tool.frame.p}, {"q", tool.frame.q}}},
-          {"MaxRPM", tool.max_rpm},
-          {"MaxTorque", tool.max_torque_nm},
-          {"NeedsSpindle", tool.needs_spindle}};
+  Json entry{{"ToolNumber", tool.number},
+             {"Name", tool.name},
+             {"Length", tool.length_mm},
+             {"Radius", tool.radius_mm},
+             {"Frame", {{"p", tool.frame.p}, {"q", tool.frame.q}}},
+             {"MaxRPM", tool.max_rpm},
+             {"MaxTorque", tool.max_torque_nm},
+             {"NeedsSpindle", tool.needs_spindle}};
+  if (tool.shape) entry["Shape"] = to_json(*tool.shape);
+  return entry;
 }
 
 }  // namespace
@@ -197,7 +204,10 @@ Expected<> ToolRack::set(const Tool& tool) {
     return failure(MinorCode::InvalidParameterValue,
                    fmt::format("SetTool: the table holds {} tools, as many as it can; remove one first", kMostTools));
   }
-  next.tools[tool.number] = tool;
+  Tool& entry = next.tools[tool.number];
+  std::optional<ToolShape> shape = tool.shape ? tool.shape : std::move(entry.shape);
+  entry = tool;
+  entry.shape = std::move(shape);
   return keep(std::move(next), keeps_ != Keeps::Nothing);
 }
 

@@ -30,8 +30,9 @@ struct Wishes {
 Expected<verifier::Report> verify(const Wishes& wishes) {
   const fs::path file = fs::is_directory(wishes.device_json) ? fs::path(wishes.device_json) / "device.json"
                                                              : fs::path(wishes.device_json);
-  auto device = gateway::read_device_database(file);
-  if (!device) return tl::unexpected(device.error());
+  const auto database = gateway::read_device_json(file);
+  if (!database) return tl::unexpected(database.error());
+  const sdk::DeviceObject* const device = &database->device;
   if (auto sound = gateway::check_device(*device); !sound) return tl::unexpected(sound.error());
   std::vector<fs::path> folders{fs::absolute(file).parent_path()};
   folders.insert(folders.end(), wishes.module_folders.begin(), wishes.module_folders.end());
@@ -39,8 +40,9 @@ Expected<verifier::Report> verify(const Wishes& wishes) {
 
   verifier::Report report{
       device->name, fs::absolute(file).lexically_normal().string(), wishes.samples, wishes.seed, {}};
-  const verifier::Task task{*device, gateway::ModuleLoader(folders, gateway::ModuleLoader::Opens::Whichever),
-                            wishes.samples, wishes.seed};
+  const verifier::Task task{*device, database->bodies.chain,
+                            gateway::ModuleLoader(folders, gateway::ModuleLoader::Opens::Whichever), wishes.samples,
+                            wishes.seed};
   for (const verifier::Job& job : verifier::jobs_for(*device)) {
     // All modules together are run once each of them is fit for it.
     if (job.module.empty() && !report.passed()) continue;

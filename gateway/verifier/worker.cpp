@@ -7,6 +7,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "gateway/bodies/link_chain.hpp"
 #include "gateway/buses/built_in_interfaces.hpp"
 #include "gateway/buses/bus_registry.hpp"
 #include "gateway/mechanism/device_check.hpp"
@@ -166,6 +167,20 @@ bool take_conduct(const Watch& watch, ModuleReport& report, const Tell& tell) {
   return true;
 }
 
+/// That the links carry each other as device.json says.
+Checked check_links(const Kinematics& kinematics, const Task& task) {
+  std::vector<std::string> names;
+  std::vector<std::pair<double, double>> limits;
+  for (const sdk::Joint& joint : task.device.joints) {
+    names.push_back(joint.limits.name);
+    const JointRange range = range_of(joint.limits);
+    limits.emplace_back(range.min, range.max);
+  }
+  const auto chain = gateway::LinkChain::make(kinematics, task.chain, names, limits);
+  if (chain) return {};
+  return refused("links", chain.error());
+}
+
 void check_kinematics_module(const Task& task, Watch& watch, ModuleReport& report, const Tell& tell) {
   const sdk::DeviceObject& device = task.device;
   const auto check = [&](const std::shared_ptr<Kinematics>& kinematics) {
@@ -194,6 +209,8 @@ void check_kinematics_module(const Task& task, Watch& watch, ModuleReport& repor
                 report, tell) &&
            take(check_reach(watched, given), "what is beyond its reach is found out of reach, however little", report,
                 tell) &&
+           (task.chain.empty() ||
+            take(check_links(*kinematics, task), "links carry each other as Chain has it", report, tell)) &&
            take_stateless(calls_of(*kinematics, given), watch, report, tell) && take_conduct(watch, report, tell);
   };
   check_module<Kinematics>(task, device.kinematics, watch, report, tell, {}, check);

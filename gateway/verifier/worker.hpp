@@ -18,6 +18,7 @@ inline constexpr int kSamples = kSanitized ? 20'000 : 100'000;
 /// What to check a mechanism's modules with.
 struct Task {
   sdk::DeviceObject device;
+  std::vector<std::string> chain;  ///< in which order its links carry each other; empty: nobody says
   gateway::ModuleLoader loader;
   int samples = kSamples;
   std::uint64_t seed = 1;

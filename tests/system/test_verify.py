@@ -178,6 +178,17 @@ class Verify(unittest.TestCase):
         self.assertEqual(without.returncode, 0, "what nobody has measured is no reason to refuse a machine")
         self.assertIn("not checked stability: bus can1", " ".join(without.stdout.split()))
 
+    def test_links_that_do_not_carry_each_other_so_are_refused(self):
+        file = self.appliance.tree / "mill/5-axis/SuginoXYZAC/device.json"
+        device = json.loads(file.read_text())
+        self.assertEqual(device["Chain"][:2], ["C", "A"])
+        device["Chain"][:2] = ["A", "C"]
+        file.unlink()
+        file.write_text(json.dumps(device))
+        bad = self.verify(file)
+        self.assertEqual(bad.returncode, 1)
+        self.assertIn("/Chain is A C base X Y Z, and the kinematics module moves the tool otherwise", bad.stdout)
+
     def test_command_asks_the_appliance_for_a_name(self):
         done = self.appliance.rmac("verify", "DMACXY")
         self.assertEqual((done.returncode, done.stderr), (0, ""))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws what a machine reaches and how fast it is: show_machine.py DEVICE_TREE NAME PICTURE.
+"""Draws what a machine reaches, how fast it is and what it is made of: show_machine.py DEVICE_TREE NAME PICTURE.
 
 The values are those of the machine's device.json in the device tree. The picture's format follows from its name."""
 
@@ -14,16 +14,18 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
+from machine_bodies import draw_bodies
+
 SLIDE, TURN = "#2a6f97", "#c06030"
 LIMITS = (("MaxSpeed", ""), ("MaxAcceleration", "²"), ("MaxJerk", "³"))
 
 
 def find(tree, name):
-    """The machine's device.json: drivers/<type>/<configuration>/<Mechanism>."""
+    """The machine's device.json, and its folder: drivers/<type>/<configuration>/<Mechanism>."""
     for file in sorted(pathlib.Path(tree).glob("*/*/*/device.json")):
         device = json.loads(file.read_text())
         if device["MechanismName"] == name:
-            return device
+            return device, file.parent
     raise ValueError(f"{tree} holds no machine that is called {name}")
 
 
@@ -97,15 +99,18 @@ def draw_limits(figure, grid, joints):
                        loc="left")
 
 
-def draw(device, path):
+def draw(device, folder, path):
     turns = [joint for joint in device["Joints"] if joint["Type"] != "Linear"]
-    columns = 3 if turns else 2
+    bodies = bool(device.get("Geometry"))
+    columns = (3 if turns else 2) + bodies
     figure = plt.figure(figsize=(3.6 * columns, 4.0), layout="constrained")
-    grid = figure.add_gridspec(1, columns, width_ratios=[1.15] + [1] * (columns - 1))
+    grid = figure.add_gridspec(1, columns, width_ratios=[1.15] + [1] * (columns - 1 - bodies) + [1.3] * bodies)
     draw_reach(figure.add_subplot(grid[0], projection="3d"), device)
     if turns:
         draw_turns(figure.add_subplot(grid[1], projection="polar"), turns)
-    draw_limits(figure, grid[columns - 1], device["Joints"])
+    draw_limits(figure, grid[columns - 1 - bodies], device["Joints"])
+    if bodies:
+        draw_bodies(figure.add_subplot(grid[columns - 1], projection="3d"), device, folder)
     figure.suptitle(f"{device['MechanismName']}: {device['Description']}\n", fontsize=10)
     figure.savefig(path, dpi=90, bbox_inches="tight")
 
@@ -115,7 +120,7 @@ def main(words):
         print(__doc__, file=sys.stderr)
         return 2
     try:
-        draw(find(words[0], words[1]), words[2])
+        draw(*find(words[0], words[1]), words[2])
     except (OSError, ValueError) as error:
         print(error, file=sys.stderr)
         return 1

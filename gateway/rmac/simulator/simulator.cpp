@@ -40,19 +40,18 @@ Simulator::Simulator(gateway::Simulation& simulation, const Program& program, co
   if (controller.mechanism() != nullptr) account_.mechanism(*controller.mechanism());
   controller.on_sample([this](const gateway::CycleSample& sample) { take(sample); });
   controller.on_event([this](const gateway::Event& event) { take(event); });
-  controller.on_queued([this](const auto& move, auto segments) { account_.queued(move, segments); });
+  controller.on_queued([this](const auto& move, auto segments) {
+    account_.queued(move, segments);
+    if (watch_ != nullptr) watch_->queued(move);
+  });
 }
 
 Result<SimulationReport> Simulator::run() {
   if (record_) {
     if (auto opened = record_->open(); !opened) return tl::unexpected(opened.error());
   }
-  for (const Request& request : program_.requests) {
-    line_ = request.line;
-    if (auto done = submit(request); !done) return tl::unexpected(done.error());
-  }
-  if (auto ended = order_.check_end(!moves_.empty()); !ended) return tl::unexpected(ended.error());
-  if (auto settled = settle(); !settled) return tl::unexpected(settled.error());
+  // A run that ended at a collision has not failed: it tells what it set out to.
+  if (auto played = play(); !played && !ended_) return tl::unexpected(played.error());
   SimulationReport report;
   if (record_) {
     if (auto closed = record_->close(); !closed) return tl::unexpected(closed.error());
@@ -66,6 +65,15 @@ Result<SimulationReport> Simulator::run() {
   report.joints = account_.joints();
   report.limited_by = account_.shares();
   return report;
+}
+
+Result<> Simulator::play() {
+  for (const Request& request : program_.requests) {
+    line_ = request.line;
+    if (auto done = submit(request); !done) return done;
+  }
+  if (auto ended = order_.check_end(!moves_.empty()); !ended) return ended;
+  return settle();
 }
 
 Result<> Simulator::submit(const Request& request) {
@@ -134,6 +142,8 @@ Result<> Simulator::run_until(const std::function<bool()>& reached) {
       }
     }
     const int line = moves_.line().value_or(line_);
+    ended_ = ends_at_first_ && watch_ != nullptr && watch_->findings().collided();
+    if (ended_) return fail_at(line, "collision");
     if (!failure_.empty()) return fail_at(line, failure_);
     still_s = moving_ || dwells() ? 0 : still_s + simulation_.period_s();
     if (still_s > kStuckAfter_s) return fail_at(line, stuck());
@@ -164,6 +174,7 @@ std::string Simulator::stuck() {
 }
 
 Result<> Simulator::call(const std::string& method, nlohmann::json params) {
+  if (watch_ != nullptr) watch_->tool_may_have_changed_by(method);
   const gateway::Answer answer = simulation_.call(method, std::move(params));
   return answer ? Result<>() : fail_at(line_, fmt::format("{}: {}", method, answer.error().message));
 }
@@ -171,6 +182,7 @@ Result<> Simulator::call(const std::string& method, nlohmann::json params) {
 void Simulator::take(const gateway::CycleSample& sample) {
   moving_ = sample.moving;
   account_.cycle(sample, simulation_.controller().cycle_now().override_percent);
+  if (watch_ != nullptr) watch_->cycle(sample, moves_.line().value_or(line_), simulation_.controller());
   // As in a record of `rmac run`: every cycle from the first move on.
   if (!record_ || !(sample.moving || record_->rows() > 0)) return;
   if (auto added = record_->add(to_note(sample)); !added && failure_.empty()) failure_ = added.error().message;
@@ -184,11 +196,13 @@ void Simulator::take(const gateway::Event& event) {
     moves_.started(event.t_s);
   } else if (event.kind == Kind::MoveDone) {
     account_.move_done();
+    if (watch_ != nullptr) watch_->move_done();
     moves_.done(event.move_id, event.t_s);
   } else if (event.kind == Kind::ToolWanted) {
     tool_asked_for_ = true;
   } else if (event.kind == Kind::ToolChanged) {
     moves_.tool_changed();
+    if (watch_ != nullptr) watch_->tool_may_have_changed();
   } else if (event.kind == Kind::ProgramStopped && event.code == MinorCode::None) {
     stopped_ = true;
   } else if ((event.kind == Kind::Fault || event.code != MinorCode::None) && failure_.empty()) {

@@ -9,6 +9,7 @@
 #include "gateway/rmac/program/record.hpp"
 #include "gateway/rmac/program/request_order.hpp"
 #include "gateway/rmac/program/unfinished_moves.hpp"
+#include "gateway/rmac/simulator/collision_watch.hpp"
 #include "gateway/simulation/motion_account.hpp"
 #include "gateway/simulation/simulation.hpp"
 
@@ -32,10 +33,15 @@ class Simulator {
   /// `record_file`: of the setpoints; empty: none. The others outlive the simulator.
   Simulator(gateway::Simulation& simulation, const Program& program, const std::string& record_file);
 
+  /// Has every cycle watched for collisions, from before `run` on; the watch outlives the simulator. With `first` the
+  /// run ends at the first that is certain, and what it reports is of the way to there.
+  void watch_collisions(CollisionWatch& watch, bool first) noexcept { watch_ = &watch, ends_at_first_ = first; }
+
   /// Once. An error names the program's line.
   [[nodiscard]] Result<SimulationReport> run();
 
  private:
+  [[nodiscard]] Result<> play();
   [[nodiscard]] Result<> submit(const Request& request);
   [[nodiscard]] Result<> make_room(const Request& request);
   [[nodiscard]] Result<> start_cycle_of_moves();
@@ -59,6 +65,8 @@ class Simulator {
   UnfinishedMoves moves_;
   int line_ = 0;  ///< of the request under way
   std::string failure_;
+  CollisionWatch* watch_ = nullptr;
+  bool ends_at_first_ = false, ended_ = false;
   bool moving_ = false;
   bool tool_asked_for_ = false;
   bool stopped_ = false;  ///< at a stop of the program

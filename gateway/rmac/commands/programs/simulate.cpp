@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "gateway/configuration/configuration.hpp"
+#include "gateway/rmac/commands/programs/collision_report.hpp"
 #include "gateway/rmac/commands/programs/registrations.hpp"
 #include "gateway/rmac/simulator/simulator.hpp"
 #include "gateway/rmac/terminal/table.hpp"
@@ -22,6 +23,8 @@ struct Options {
   std::filesystem::path device_tree;  ///< empty: the installation's
   std::string record_file;            ///< empty: none
   std::filesystem::path tools;        ///< folder of tool tables; empty: no tools but the program's own
+  std::filesystem::path setup;        ///< what stands on the table; empty: collisions are not checked
+  bool first = false;                 ///< end at the first collision
   double period_s = 0.001;
 };
 
@@ -30,7 +33,8 @@ double cpu_time_s() {
   return std::chrono::duration<double>(gateway::cpu_time(CLOCK_PROCESS_CPUTIME_ID)).count();
 }
 
-void print_json(const SimulationReport& report, double took_s) {
+/// `watch`: null without a set-up.
+void print_json(const SimulationReport& report, const CollisionWatch* watch, double took_s) {
   nlohmann::json joints = nlohmann::json::array();
   for (const auto& joint : report.joints) {
     joints.push_back({{"name", joint.name},
@@ -44,6 +48,7 @@ void print_json(const SimulationReport& report, double took_s) {
                       {"tool_changes", report.tool_changes}, {"length_mm", report.length_mm},
                       {"joints", std::move(joints)},         {"limited_by_s", std::move(limited_by)},
                       {"collisions", "not checked"},         {"cpu_time_s", took_s}};
+  if (watch != nullptr) add_collisions(*watch, line);
   if (!report.record_files.empty()) {
     line["record_rows"] = report.record_rows;
     line["record_files"] = report.record_files;
@@ -51,7 +56,7 @@ void print_json(const SimulationReport& report, double took_s) {
   fmt::print("{}\n", line.dump());
 }
 
-void print_table(const SimulationReport& report, double took_s) {
+void print_table(const SimulationReport& report, const CollisionWatch* watch, double took_s) {
   std::vector<std::vector<std::string>> rows{
       {"moves", std::to_string(report.moves), ""},
       {"tool changes", std::to_string(report.tool_changes), report.tool_changes > 0 ? "in no time" : ""},
@@ -59,11 +64,12 @@ void print_table(const SimulationReport& report, double took_s) {
       {"cycle time", number(report.cycle_time_s), "s"},
       {"computed in", number(took_s),
        fmt::format("s of CPU time, {:.0f} times real time", report.cycle_time_s / took_s)},
-      {"collisions", "not checked", ""}};
+      {"collisions", watch == nullptr ? "not checked" : summary(*watch), watch == nullptr ? "name a --setup" : ""}};
   for (const auto& record : report.record_files) {
     rows.push_back({"record", record, fmt::format("{} rows in all", report.record_rows)});
   }
   fmt::print("{}\n", table({"", "", ""}, rows));
+  if (watch != nullptr) print_collisions(*watch);
   rows.clear();
   for (const auto& joint : report.joints) {
     rows.push_back({joint.name, number(joint.peak_velocity), number(joint.peak_acceleration), number(joint.peak_jerk)});
@@ -114,6 +120,10 @@ Result<> simulate_program(const Options& options, bool json) {
   if (options.machine.empty() && !program->loads_mechanism) {
     return fail(fmt::format("{}: the program loads no machine; name one with --machine", program->file));
   }
+  if (options.machine.empty() && !options.setup.empty())
+    return fail("--setup needs --machine: what stands on which table");
+  if (options.first && options.setup.empty())
+    return fail("--first needs --setup: without one collisions are not checked");
   spdlog::set_level(spdlog::level::off);  // what is wrong with other machines of the tree is not asked here
   const auto tree = options.device_tree.empty() ? gateway::default_folders().device_tree : options.device_tree;
   auto simulation = gateway::Simulation::open({.device_tree = tree,
@@ -122,19 +132,27 @@ Result<> simulate_program(const Options& options, bool json) {
                                                .period_s = options.period_s},
                                               options.machine);
   if (!simulation) return fail(simulation.error().message);
+  std::unique_ptr<CollisionWatch> collisions;
+  if (!options.setup.empty()) {
+    auto opened = CollisionWatch::open(options.machine, tree, options.setup);
+    if (!opened) return tl::unexpected(opened.error());
+    collisions = std::move(*opened);
+  }
   const StandstillWatch watch((*simulation)->controller());
-  const auto report = Simulator(**simulation, *program, options.record_file).run();
+  Simulator simulator(**simulation, *program, options.record_file);
+  if (collisions) simulator.watch_collisions(*collisions, options.first);
+  const auto report = simulator.run();
   if (!report) return tl::unexpected(report.error());
-  (json ? print_json : print_table)(*report, cpu_time_s() - began_s);
-  return {};
+  (json ? print_json : print_table)(*report, collisions.get(), cpu_time_s() - began_s);
+  return collisions ? verdict(*collisions) : Result<>();
 }
 
 }  // namespace
 
 void add_simulate(Command& rmac) {
   const auto options = std::make_shared<Options>();
-  Command simulate =
-      rmac.add("simulate", "only plan a program, faster than real time: cycle time, limits; needs no appliance");
+  Command simulate = rmac.add(
+      "simulate", "only plan a program, faster than real time: cycle time, limits, collisions; needs no appliance");
   simulate.option("FILE", &options->file, "the .rmac file, - for standard input").required();
   simulate.option("--machine", &options->machine,
                   "a machine's name, or the path of its device.json; needed unless the program loads one");
@@ -142,6 +160,8 @@ void add_simulate(Command& rmac) {
   simulate
       .option("--tools", &options->tools, "folder of tool tables (tools/ of an appliance's state folder); only read")
       .existing_folder();
+  simulate.option("--setup", &options->setup, "setup.json: what stands on the table; collisions are checked with it");
+  simulate.flag("--first", &options->first, "with --setup: end at the first collision");
   simulate.option("--device-tree", &options->device_tree,
                   "where machines are looked for; the installation's unless given");
   simulate.option("--period", &options->period_s, "cycle of the servo loop, s (period_s in rmacd.json)")

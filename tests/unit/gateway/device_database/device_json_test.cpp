@@ -65,7 +65,10 @@ TEST(DeviceJson, SaysAllThatTheFileSaid) {
   for (const auto& file : device_files()) {
     const json written = to_device_json(read(file));
     std::ifstream stream(file);
-    EXPECT_EQ(missing(json::parse(stream), written), "") << file;
+    json said = json::parse(stream);
+    // Bodies are no part of the device object.
+    for (const char* key : {"Chain", "Geometry"}) said.erase(key);
+    EXPECT_EQ(missing(said, written), "") << file;
   }
 }
 

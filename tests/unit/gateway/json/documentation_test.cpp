@@ -42,6 +42,7 @@ TEST(ConfigurationPage, SaysWhatTheSchemasSay) {
   collect(json::parse(modbus_spindle_schema_text()), words);
   collect(json::parse(modbus_io_schema_text()), words);
   collect(json::parse(tools_schema_text()), words);
+  collect(json::parse(setup_schema_text()), words);
   collect(json::parse(measuring_plan_schema_text()), words);
   ASSERT_GT(words.size(), 100U);
   for (const std::string& word : words) {
@@ -56,7 +57,15 @@ TEST(CompiledSchemas, AreTheFilesOfEtc) {
   EXPECT_EQ(modbus_spindle_schema_text(), text_of(RMAC_SOURCE_DIR "/etc/modbus-spindle.schema.json"));
   EXPECT_EQ(modbus_io_schema_text(), text_of(RMAC_SOURCE_DIR "/etc/modbus-io.schema.json"));
   EXPECT_EQ(tools_schema_text(), text_of(RMAC_SOURCE_DIR "/etc/tools.schema.json"));
+  EXPECT_EQ(setup_schema_text(), text_of(RMAC_SOURCE_DIR "/etc/setup.schema.json"));
   EXPECT_EQ(measuring_plan_schema_text(), text_of(RMAC_SOURCE_DIR "/etc/measuring-plan.schema.json"));
+}
+
+TEST(CompiledSchemas, MeanTheSameByAShape) {
+  const json device = json::parse(device_schema_text()), setup = json::parse(setup_schema_text());
+  for (const char* word : {"shape", "bodyPose", "size", "colour", "bodyName"}) {
+    EXPECT_EQ(device["definitions"][word], setup["definitions"][word]) << word;
+  }
 }
 
 }  // namespace

@@ -69,6 +69,22 @@ TEST_F(ToolRackTest, GivesBackEveryDigitOfWhatItWrote) {
   }
 }
 
+TEST_F(ToolRackTest, KeepsTheShapeOfAToolThatIsSetAnew) {
+  ToolTable table;
+  table.tools[7] = {.number = 7, .length_mm = 30};
+  table.tools[7].shape =
+      ToolShape{.dc = 6, .re = 3, .apmx = 8, .lcf = 10, .oal = 30, .zefp = 2, .shank = {}, .holder = {}};
+  ASSERT_TRUE(write_tool_table(file(), table));
+  ToolRack rack(folder_);
+  rack.adopt("Mill", *rack.read("Mill"), ToolRack::Keeps::Everything);
+  ASSERT_TRUE(rack.set({.number = 7, .length_mm = 29.5}));
+  const auto read = read_tool_table(file());
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_TRUE(read->tools.at(7).shape);
+  EXPECT_EQ(read->tools.at(7).shape->re, 3);
+  EXPECT_EQ(read->tools.at(7).length_mm, 29.5);
+}
+
 TEST_F(ToolRackTest, KeepsTheOldTableWhenAWriteWasCutShort) {
   ToolTable table;
   table.tools[3] = {.number = 3, .length_mm = 30};

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/bodies/body.hpp"
+#include "rmac/motion/error.hpp"
+
+namespace rmac::gateway {
+
+/// What is machined, and what holds it. Poses of bodies are in the part frame.
+struct Setup {
+  std::string machine;
+  Frame part_frame;  ///< in the machine frame
+  std::optional<Body> stock, part;
+  std::vector<Body> fixtures;
+  std::string material;
+  double clearance_mm = 1;  ///< nearer than this is told; deeper than this is surely found
+};
+
+/// Reads a `setup.json` and checks it against etc/setup.schema.json. Files of meshes lie beside it or below. An error
+/// begins with the file's name.
+[[nodiscard]] Expected<Setup> read_setup(const std::filesystem::path& file);
+
+}  // namespace rmac::gateway

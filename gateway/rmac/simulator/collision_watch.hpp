@@ -1,0 +1,59 @@
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gateway/collision/checker.hpp"
+#include "gateway/rmac/wire/failure.hpp"
+#include "gateway/simulation/simulation.hpp"
+#include "rmac/motion/move.hpp"
+
+namespace rmac::cli {
+
+/// Watches a simulated machine for collisions with itself and with a set-up.
+class CollisionWatch {
+ public:
+  /// `machine` as for `Simulation::open`. Refused, with one line, where not all of it can be checked.
+  [[nodiscard]] static Result<std::unique_ptr<CollisionWatch>> open(const std::string& machine,
+                                                                    const std::filesystem::path& device_tree,
+                                                                    const std::filesystem::path& setup);
+
+  /// A move has been added to those that are not done; the first of them is done.
+  void queued(const Move& move) { cutting_.push_back(may_cut(move)); }
+  void move_done();
+  /// The tool in the spindle, its number and what the table says of it, may be another.
+  void tool_may_have_changed() noexcept { look_at_tool_ = true; }
+  void tool_may_have_changed_by(const std::string& method) noexcept {
+    look_at_tool_ = look_at_tool_ || method.ends_with("Tool") || method.ends_with("ToolChange");
+  }
+  void cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller);
+
+  [[nodiscard]] const gateway::FindingList& findings() const noexcept { return checker_->findings(); }
+  /// What was not checked, a sentence each; empty: all was.
+  [[nodiscard]] const std::set<std::string>& not_checked() const noexcept { return not_checked_; }
+
+ private:
+  CollisionWatch(std::string machine, std::unique_ptr<gateway::CollisionChecker> checker)
+      : machine_(std::move(machine)), checker_(std::move(checker)) {}
+  /// Positioning moves go through air; what is programmed as a path may cut.
+  [[nodiscard]] static bool may_cut(const Move& move) noexcept;
+  void take_tool(gateway::Controller& controller);
+
+  std::string machine_;  ///< for which the set-up is
+  std::unique_ptr<gateway::CollisionChecker> checker_;
+  std::deque<bool> cutting_;  ///< of the moves that are not done
+  std::set<std::string> not_checked_;
+  std::string tool_fault_;  ///< what cannot be checked with the tool in the spindle
+  bool look_at_tool_ = true;
+  bool begun_ = false;  ///< the first position is reached, or something cuts
+};
+
+/// `"collisions"` of --json: certain ones and possible ones, each with where and how deep; `near` gives near misses.
+[[nodiscard]] nlohmann::json to_json(const std::vector<gateway::Finding>& findings, bool near);
+
+}  // namespace rmac::cli
