@@ -11,11 +11,17 @@ import PathScripts.PathHelix as PathHelix
 import PathScripts.PathProfile as PathProfile
 from path_job import hole_of, operation_of, plate_job, remove_operations, written
 
-from rmac_freecad.jobs import JobRefused, read_job  # it finds rmac
+from rmac_freecad import jobs  # it finds rmac
+from rmac_freecad.jobs import JobRefused
 
 import rmac  # isort: skip
 
 ABOVE = "G0 X0 Y0 Z5"
+RAPID_MM_MIN = 3000
+
+
+def read_job(job):
+    return jobs.read_job(job, rapid_mm_min=RAPID_MM_MIN)
 
 
 def methods(program):
@@ -36,6 +42,13 @@ class OperationsOfFreeCADTest(unittest.TestCase):
         self.assertGreater(codes.count("G2"), 0)
         self.assertEqual(set(feeds(program)), {3000.0, 600.0, 100.0})
         self.assertEqual(methods(program)[:2], ["DoToolChange", "InTurn"])
+
+    def test_rapids_of_the_tool_controller_hold_up_to_the_machine_s(self):
+        job = plate_job(self)
+        operation_of(job, PathProfile, "Profile")
+        job.SetupSheet.HorizRapid, job.SetupSheet.VertRapid = "90000 mm/min", "1200 mm/min"
+        job.Document.recompute()
+        self.assertEqual(set(feeds(read_job(job))), {3000.0, 1200.0, 600.0, 100.0})
 
     def test_moves_follow_each_other_and_end_where_the_path_does(self):
         job = plate_job(self)

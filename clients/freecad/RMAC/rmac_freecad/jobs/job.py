@@ -10,11 +10,11 @@ from rmac_freecad.jobs.tools import check_tools
 from rmac_freecad.program import Place, Program
 
 COOLANT_ON = {"Flood": "M8", "Mist": "M7"}
-RAPID_MM_MIN = 3000.0
 
 
-def read_job(job, *, rapid_mm_min=RAPID_MM_MIN):
-    """`rapid_mm_min` holds where a tool controller gives no rapid. Raises `JobRefused`."""
+def read_job(job, *, rapid_mm_min):
+    """`rapid_mm_min` is the fastest that the machine may go, `client.cam.GetMaxFeedrate()`; rapids of tool controllers
+    hold where they are slower. Raises `JobRefused`."""
     if len(job.Fixtures) > 1:
         raise JobRefused(f"{job.Label} has the fixtures {', '.join(job.Fixtures)}; the appliance has one part frame: make a job for each")
     operations = [operation for operation in job.Operations.Group if PathUtil.opProperty(operation, "Active") is not False]

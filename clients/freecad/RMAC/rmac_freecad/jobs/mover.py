@@ -13,7 +13,7 @@ SAME_PLACE_MM = 1e-6  # FreeCAD computes in double precision; what is closer is 
 class Mover:
     def __init__(self, program, rapid_mm_min):
         self._program = program
-        self._default_rapid = rapid_mm_min
+        self._fastest = rapid_mm_min
         self.rapids_mm_min = (rapid_mm_min, rapid_mm_min)  # sideways, along Z
         self._at = {}
         self._feed_in_force = None
@@ -23,7 +23,8 @@ class Mover:
         self._at = {}
 
     def set_rapids(self, horizontal, vertical):
-        self.rapids_mm_min = (horizontal or self._default_rapid, vertical or self._default_rapid)
+        """0 is as fast as the machine may go."""
+        self.rapids_mm_min = tuple(min(rapid or self._fastest, self._fastest) for rapid in (horizontal, vertical))
 
     def start(self, place):
         if len(self._at) < 3:

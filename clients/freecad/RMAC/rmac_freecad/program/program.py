@@ -2,7 +2,6 @@
 
 import json
 
-import rmac
 from rmac.moves import item
 
 
@@ -29,7 +28,3 @@ class Program:
             json.dumps({"jsonrpc": "2.0", "id": number, **move.request(number)}, separators=(",", ":")) + "\n"
             for number, move in enumerate(self.moves, 1)
         )
-
-    def explain(self, refused: rmac.MoveRefused):
-        """The appliance's refusal, with its place in the job."""
-        return f"{self.place_of(refused.index)}: {refused.refusal}"
