@@ -13,6 +13,7 @@ import PathScripts.PathProfile as PathProfile
 from appliance import BUILD, Appliance
 from path_job import operation_of, plate_job, written
 from rmac_freecad.jobs import read_job
+from rmac_freecad.machines import NoMachineFits, fitting
 from rmac_freecad.program import keep
 from rmac_freecad.running import CutEnded, cut
 from rmac_freecad.simulation import SimulationRefused, simulate
@@ -104,6 +105,30 @@ class MachiningTest(unittest.TestCase):
             list(cut(self.client, self.profile()))
         self.assertIn("3000 rpm is above", told.exception.why)
         self.assertEqual(told.exception.place.operation, self.job.Tools.Group[0].Label)
+
+    def test_a_lost_connection_is_told_at_its_place(self):
+        written(self.job, ["G0 X0 Y0 Z20", "G1 X40 F20", "M0", "G1 Y5"])  # which nobody resumes from M0
+        program = read_job(self.job, rapid_mm_min=self.client.cam.GetMaxFeedrate())
+        with self.assertRaises(CutEnded) as ended:
+            for place in cut(self.client, program):
+                if place.code == "G0":
+                    self.client._connection._socket.shutdown(2)
+        self.assertEqual(ended.exception.place.operation, "Custom")
+        self.assertIsInstance(ended.exception.__cause__, rmac.Interrupted)
+
+    def test_machines_that_reach_the_part_are_ranked_by_time(self):
+        operation_of(self.job, PathProfile, "Profile")
+        mills = self.client.machines("Type = 'Mill'")
+        fits = fitting(self.job, mills, self.client.cam.GetTools(), RMAC)
+        self.assertIn(MACHINE, [fit.machine for fit in fits])
+        times = [fit.found.cycle_time_s for fit in fits]
+        self.assertEqual(times, sorted(times))
+
+    def test_where_no_machine_reaches_the_part_each_one_s_reason_is_told(self):
+        written(self.job, AWAY)
+        with self.assertRaises(NoMachineFits) as none:
+            fitting(self.job, self.client.machines(f"Name = '{MACHINE}'"), self.client.cam.GetTools(), RMAC)
+        self.assertIn(f"{MACHINE}: Custom, command 3 (G1): ", str(none.exception))
 
     def test_a_second_station_is_told_who_holds_authority(self):
         with self.connect("other") as other, self.assertRaises(rmac.AuthorityHeld) as held, other.authority():
