@@ -46,8 +46,13 @@ def written(job, lines, label="Custom"):
     operation.Label = label
     operation.Gcode = list(lines)
     job.Document.recompute()
-    operation.Path = Path.Path([Path.Command(line) for line in lines])
+    set_path(operation, lines)
     return operation
+
+
+def set_path(operation, lines):
+    operation.Path = Path.Path([Path.Command(line) for line in lines])
+    operation.purgeTouched()
 
 
 def remove_operations(job):

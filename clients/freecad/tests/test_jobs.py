@@ -9,7 +9,9 @@ import FreeCAD
 import PathScripts.PathDrilling as PathDrilling
 import PathScripts.PathHelix as PathHelix
 import PathScripts.PathProfile as PathProfile
-from path_job import hole_of, operation_of, plate_job, remove_operations, written
+import PathScripts.PathToolBit as PathToolBit
+import PathScripts.PathToolController as PathToolController
+from path_job import hole_of, operation_of, plate_job, remove_operations, set_path, written
 
 from rmac_freecad import jobs  # it finds rmac
 from rmac_freecad.jobs import JobRefused
@@ -146,6 +148,7 @@ class WrittenPathsTest(unittest.TestCase):
         for mode, on in (("Flood", "TurnCoolantOn"), ("Mist", "Mist")):
             remove_operations(self.job)
             written(self.job, [ABOVE, "G1 Z1 F1"]).CoolantMode = mode
+            self.job.Operations.Group[0].purgeTouched()
             turns = [move.params(0) for move in read_job(self.job).moves if move.method == "RMAC_CAM.InTurn"]
             self.assertIn(on, turns[1])
             self.assertIn("TurnCoolantOff" if mode == "Flood" else '"On":false', turns[2])
@@ -155,6 +158,18 @@ class WrittenPathsTest(unittest.TestCase):
         self.assertEqual([move.end[2] for move in program.moves if isinstance(move, rmac.Line)], [0, -2, -3, -1])
         self.assertEqual(methods(program).count("Dwell"), 1)
         self.assertEqual([move.end for move in program.moves if move.end][-1], (2, 1, 2))
+
+    def test_broken_chips_stay_in_the_hole_and_pecks_leave_it(self):
+        for code, highest in (("G73", -2 + 0.254), ("G83", 2)):
+            remove_operations(self.job)
+            moves = self.program(ABOVE, "G99", f"{code} X1 Y1 Z-5 R2 Q2 F2").moves
+            lines = [index for index, move in enumerate(moves) if isinstance(move, rmac.Line)]
+            between = [move.end[2] for move in moves[lines[1] : lines[2]] if isinstance(move, rmac.MoveTo)]
+            self.assertAlmostEqual(max(between), highest)
+
+    def test_g98_at_the_end_of_a_row_of_holes_retracts_to_where_the_row_began(self):
+        program = self.program("G0 X0 Y0 Z20", "G99", "G81 X1 Y1 Z-1 R2 F2", "G98", "G81 X5 Y1 Z-1 R2 F2")
+        self.assertEqual([move.end for move in program.moves if move.end][-1], (5, 1, 20))
 
     def test_what_is_not_understood_is_refused_with_its_place(self):
         for why, line in (("G91", "G91"), ("G20", "G20"), ("A is not", "G1 X5 A20 F1"), ("G38.2", "G38.2 Z-5"), ("feed is 0", "G1 X5 F0"),
@@ -188,7 +203,17 @@ class JobsThatAreRefusedTest(unittest.TestCase):
         self.controller.SpindleSpeed = 0
         self.assert_refused("spindle speed 0")
         self.controller.SpindleDir = "None"
-        read_job(self.job)
+        self.job.Document.recompute()
+        set_path(self.operation, [ABOVE, "G1 Z1 F1"])
+        self.assertIn('"RPM":0', read_job(self.job).moves[1].params(0))
+
+    def test_an_operation_with_a_placement_of_its_own(self):
+        self.operation.Placement.Base = FreeCAD.Vector(1, 0, 0)
+        self.assert_refused("a placement of its own")
+
+    def test_a_path_that_is_older_than_its_operation_s_values(self):
+        self.controller.SpindleSpeed = 500
+        self.assert_refused("recompute the document")
 
     def test_no_operation(self):
         self.operation.Active = False
@@ -199,15 +224,22 @@ class JobsThatAreRefusedTest(unittest.TestCase):
         self.assert_refused("Empty has no path")
 
     def test_two_tools_with_one_number(self):
-        import PathScripts.PathToolBit as PathToolBit
-        import PathScripts.PathToolController as PathToolController
+        self.add_thin_tool(1, ABOVE, "G1 Z1 F1")
+        self.assert_refused("different tools with one number, 1")
+
+    def test_a_cut_behind_a_tool_change_before_its_place_is_known(self):
+        self.add_thin_tool(2, "G1 Z1 F1")
+        self.assert_refused("Second, command 1 (G1): nobody knows X, Y, Z")
+
+    def add_thin_tool(self, number, *lines):
         bit = PathToolBit.Factory.Create("Thin")
         bit.Diameter = "2 mm"
-        other = PathToolController.Create("TC: Thin", bit, 1)
-        other.SpindleSpeed = 1000
-        self.job.Proxy.addToolController(other)
-        written(self.job, [ABOVE, "G1 Z1 F1"], "Second").ToolController = other
-        self.assert_refused("different tools with one number, 1")
+        controller = PathToolController.Create("TC: Thin", bit, number)
+        controller.SpindleSpeed = 1000
+        self.job.Proxy.addToolController(controller)
+        written(self.job, lines, "Second").ToolController = controller
+        self.job.Document.recompute()
+        set_path(self.job.Operations.Group[-1], lines)
 
 
 if __name__ == "__main__":

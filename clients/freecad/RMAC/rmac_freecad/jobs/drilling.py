@@ -9,16 +9,16 @@ MOST_PECKS = 10_000
 SAME_DEPTH = 1e-9
 
 
-def drill(mover, code, words, feed, retract_to_r, place):
+def drill(mover, code, words, feed, initial, place):
+    """`initial` is the height above R that G98 retracts to; None where G99 holds."""
     for letter in {"G73": "ZRQ", "G81": "ZR", "G82": "ZRP", "G83": "ZRQ"}[code]:
         if letter not in words:
             raise JobRefused(f"a {code} needs {letter}", place)
     retract, bottom = words["R"], words["Z"]
     if bottom > retract:
         raise JobRefused("the hole's bottom (Z) is above the retract height (R)", place)
-    initial = mover.start(place)[2]
-    clear = retract if retract_to_r else max(initial, retract)
-    if initial < retract:
+    clear = retract if initial is None else max(initial, retract)
+    if mover.start(place)[2] < retract:
         mover.rapid({"Z": retract}, place)
     mover.rapid({axis: words[axis] for axis in "XY" if axis in words}, place)
     mover.rapid({"Z": retract}, place)

@@ -43,7 +43,9 @@ class _Steps:
         if not operation.Placement.isIdentity():
             raise JobRefused(f"{operation.Label} has a placement of its own, which its path does not show; reset it")
         controller = PathUtil.toolControllerForOp(operation)
-        if controller is not None and controller != self._controller:
+        if "Touched" in controller.State + operation.State:
+            raise JobRefused(f"{operation.Label} or its tool controller was changed since its path was computed; recompute the document")
+        if controller != self._controller:
             self._mover.set_rapids(controller.HorizRapid.Value * 60, controller.VertRapid.Value * 60)
             self._read(controller)
             if controller.SpindleDir == "None":

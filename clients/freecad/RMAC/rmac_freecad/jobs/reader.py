@@ -12,6 +12,7 @@ from rmac_freecad.jobs.refusal import JobRefused
 CYCLES = {"G73": "XYZRQF", "G81": "XYZRF", "G82": "XYZRPF", "G83": "XYZRQF"}
 WORDS = {"G0": "XYZF", "G1": "XYZF", "G2": "XYZIJKF", "G3": "XYZIJKF", "G4": "P", **CYCLES,
          "M3": "S", "M4": "S", "M6": "T", "G43": "H"}
+ENDS_CYCLES = ("G0", "G1", "G2", "G3", "G80", "M6")
 AS_IT_IS = ("G21", "G40", "G80", "G90", "G94")
 SPINDLES = {"M3": 1, "M4": -1}
 COOLANTS = ("M7", "M8", "M9")
@@ -23,6 +24,7 @@ class Reader:
         self._mover = mover
         self._plane = "G17"
         self._retract_to_r = False
+        self._initial_z = None  # before the first of a row of canned cycles: where G98 retracts to
         self._feed = None
         self._tool = None
         self._coolants = set()
@@ -38,6 +40,8 @@ class Reader:
                 raise JobRefused(f"{letter} is not understood here", place)
             if not math.isfinite(value):
                 raise JobRefused(f"{letter} is no number", place)
+        if code in ENDS_CYCLES:
+            self._initial_z = None
         if code == "G0":
             self.moved = True
             self._mover.rapid(words, place)
@@ -54,7 +58,9 @@ class Reader:
         elif code in CYCLES:
             if self._plane != "G17":
                 raise JobRefused(f"a canned cycle in {self._plane}", place)
-            drill(self._mover, code, words, feed, self._retract_to_r, place)
+            if self._initial_z is None:
+                self._initial_z = self._mover.start(place)[2]
+            drill(self._mover, code, words, feed, None if self._retract_to_r else self._initial_z, place)
         else:
             self._mover.arc(words, self._plane, code == "G2", feed, place)
 
