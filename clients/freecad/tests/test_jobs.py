@@ -223,6 +223,11 @@ class JobsThatAreRefusedTest(unittest.TestCase):
         written(self.job, ["(nothing)"], "Empty")
         self.assert_refused("Empty has no path")
 
+    def test_an_operation_of_freecad_s_that_found_nothing_to_cut(self):
+        operation = operation_of(self.job, PathProfile, "Profile")
+        set_path(operation, [ABOVE])
+        self.assert_refused("Profile has no path that cuts")
+
     def test_two_tools_with_one_number(self):
         self.add_thin_tool(1, ABOVE, "G1 Z1 F1")
         self.assert_refused("different tools with one number, 1")

@@ -54,10 +54,12 @@ class _Steps:
         coolant = COOLANT_ON.get(PathUtil.opProperty(operation, "CoolantMode"))
         if coolant:
             self._reader.switch(coolant, Place(operation.Label, 0, coolant), {})
-        self._reader.moved = False
+        self._reader.moved = self._reader.cut = False
         self._read(operation)
-        if not self._reader.moved:
-            raise JobRefused(f"{operation.Label} has no path; recompute it, repair it, or switch it off")
+        written_by_hand = hasattr(operation, "Gcode")
+        if not (self._reader.moved if written_by_hand else self._reader.cut):
+            # FreeCAD's operations that found nothing to cut leave a rapid at most, and are up to date.
+            raise JobRefused(f"{operation.Label} has no path that cuts; repair it, or switch it off")
         if coolant:
             self._reader.switch("M9", self._last, {})
 

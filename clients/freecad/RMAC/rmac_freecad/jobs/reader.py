@@ -28,7 +28,7 @@ class Reader:
         self._feed = None
         self._tool = None
         self._coolants = set()
-        self.moved = False
+        self.moved = self.cut = False
 
     def read(self, command, place):
         code = _plain(command.Name)
@@ -51,7 +51,7 @@ class Reader:
             raise JobRefused(f"{code} is not understood; take it out, or write it as G0 to G3", place)
 
     def _cut(self, code, words, place):
-        self.moved = True
+        self.moved = self.cut = True
         feed = self._feed_of(words, place)
         if code == "G1":
             self._mover.line(words, feed, place)
