@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# Installs what packages.txt lists and this Debian lacks. Asks no network when nothing is missing.
+# Installs what the lists of packages that are given (packages.txt unless any is) name and this Debian lacks. Asks no network when nothing is missing.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
+[ $# -gt 0 ] || set -- packages.txt
 missing=()
 while read -r package; do
   if [ "$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null || true)" != installed ]; then
     missing+=("$package")
   fi
-done < <(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' packages.txt)
+done < <(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$@")
 [ ${#missing[@]} -gt 0 ] || exit 0
 
 as_root=()

@@ -28,7 +28,7 @@ begin() {
 }
 
 begin "packages"
-./packages.sh
+./packages.sh packages.txt packages-cad.txt
 
 begin "layout: clang-format, rooms"
 python3 tests/layout/check.py

@@ -1,0 +1,5 @@
+"""Machines that could cut a job."""
+
+from rmac_freecad.machines.fitting import Fit, NoMachineFits, fitting
+
+__all__ = ["Fit", "NoMachineFits", "fitting"]

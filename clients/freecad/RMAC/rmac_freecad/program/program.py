@@ -1,0 +1,30 @@
+"""Moves in their order, each with its place in the job."""
+
+import json
+
+from rmac.moves import item
+
+
+class Program:
+    def __init__(self):
+        self.moves = []
+        self._places = []
+
+    def __len__(self):
+        return len(self.moves)
+
+    def append(self, given, place):
+        self.moves.append(item(given))
+        self._places.append(place)
+
+    def place_of(self, index):
+        """Of a part of a run (`part.index`) or a refused move (`MoveRefused.index`), from 0; a move's id in the text, and a
+        line of it, is one more."""
+        return self._places[index]
+
+    def text(self):
+        """As a `.rmac` program: one request a line."""
+        return "".join(
+            json.dumps({"jsonrpc": "2.0", "id": number, **move.request(number)}, separators=(",", ":")) + "\n"
+            for number, move in enumerate(self.moves, 1)
+        )

@@ -1,0 +1,26 @@
+"""Feeds a program to the machine; what it says comes with its place in the job."""
+
+import rmac
+
+
+class CutEnded(Exception):
+    """Before the program's end. `place` tells where in the job; the package's own exception is the cause, from which
+    `client.resume` goes on where the connection was lost."""
+
+    def __init__(self, why, place):
+        super().__init__(f"{place}: {why}" if place else why)
+        self.place = place
+        self.why = why
+
+
+def cut(client, program):
+    """Gives the place of each move once it is done. The caller holds authority; leaving its block stops the machine."""
+    done = 0
+    try:
+        for part in client.run(program.moves):
+            done = part.index + 1
+            yield program.place_of(part.index)
+    except rmac.MoveRefused as refused:
+        raise CutEnded(str(refused.refusal), program.place_of(refused.index)) from refused
+    except (rmac.MachineStopped, rmac.Interrupted) as ended:
+        raise CutEnded(str(ended), program.place_of(min(done, len(program) - 1))) from ended
