@@ -105,6 +105,14 @@ class NewFile {
   int descriptor_ = -1;
 };
 
+nlohmann::json to_json(const std::vector<Resonance>& resonances) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Resonance& one : resonances) {
+    list.push_back({{"frequency", one.frequency_hz}, {"damping", one.damping}, {"width", one.width}});
+  }
+  return list;
+}
+
 }  // namespace
 
 nlohmann::json to_json(const FlightHead& head) {
@@ -117,7 +125,9 @@ nlohmann::json to_json(const FlightHead& head) {
                       {"parameters", joint.parameters},
                       {"max_speed", joint.max_speed},
                       {"max_acceleration", joint.max_acceleration},
-                      {"max_effort", joint.max_effort}});
+                      {"max_effort", joint.max_effort},
+                      {"resonances", to_json(joint.resonances)},
+                      {"low_pass", joint.low_pass_hz}});
   }
   return {{"name", head.name},
           {"cause", head.cause == FlightCause::Fault ? "fault" : "demand"},

@@ -10,6 +10,7 @@
 
 #include "gateway/state/cycle_sample.hpp"
 #include "rmac/motion/error.hpp"
+#include "rmac/motion/joint_mechanics.hpp"
 
 namespace rmac::gateway {
 
@@ -24,6 +25,8 @@ struct FlightHead {
     std::vector<double> gains;
     std::map<std::string, std::vector<double>> parameters;  ///< those of the law, by name
     double max_speed = 0, max_acceleration = 0, max_effort = 0;
+    std::vector<Resonance> resonances;  ///< notches behind the law
+    double low_pass_hz = 0;             ///< behind the law; 0: none
   };
   std::string name;
   FlightCause cause = FlightCause::Demand;

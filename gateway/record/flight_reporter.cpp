@@ -28,7 +28,8 @@ Expected<std::string> FlightReporter::record(FlightCause cause, const Event& eve
     const sdk::Joint& joint = joint_at(*device, j);
     head.joints.push_back({joint.limits.name, joint.limits.type == JointType::Rotary ? "deg" : "mm",
                            sdk::servo_law_module(joint.servo_law.name), joint.gains, joint.servo_law.numbers,
-                           joint.limits.max_speed, joint.limits.max_acceleration, joint.max_effort});
+                           joint.limits.max_speed, joint.limits.max_acceleration, joint.max_effort,
+                           joint.mechanics.resonances, joint.mechanics.low_pass_hz});
   }
   return recorder_->request(std::move(head));
 }

@@ -1,19 +1,25 @@
 #!/usr/bin/python3
-"""Proposes gains for a joint: tune.py RECORD JOINT BEGIN BANDWIDTH MARGIN PICTURE.
+"""Proposes gains, and filters, for a joint.
 
-RECORD is a flight record of the joint's excitation, which begins after BEGIN (t_s), JOINT its number from 0, BANDWIDTH
-in Hz (0: nine tenths of what the delay lets it have), MARGIN in degrees. Draws Bode and step plots of the loop before
-and after into PICTURE, and prints what was found as JSON."""
+The record of its swings tells mass, friction, load and delay of a rigid joint; with one of swept sines, the joint's
+frequency response is measured, and gains and filters are for what was measured. Draws Bode and step plots of the loop
+before and after into a picture, and prints what was found as JSON."""
 
+import argparse
 import json
 import sys
 
 import matplotlib
 
 matplotlib.use("Agg")
+import frequency_response
+import loop_design as design
 import matplotlib.pyplot as plt
 import numpy as np
 import servo_model as model
+
+# Further off than this (rms of the logarithm of measured over model), the model is not the joint's.
+WORST_MISFIT = 0.4
 
 
 def feedback_gains(joint):
@@ -27,27 +33,57 @@ def feedback_gains(joint):
     return None
 
 
-def describe(plant, gains):
-    """Gains, and what the loop is with them."""
-    crossover, margin, peak = model.margins(plant, gains)
-    return {"gains": list(gains), "bandwidth_hz": crossover, "phase_margin_deg": margin, "sensitivity_peak": peak}
+def loop_in_force(joint):
+    """What closes around the joint, None where its law has no feedback."""
+    gains = feedback_gains(joint)
+    if gains is None:
+        return None
+    notches = [design.Notch(**notch) for notch in joint["resonances"]]
+    filtered = joint["parameters"].get("derivative_filter_s", [0])[0]
+    return design.Loop(gains, design.Filters(notches, joint["low_pass"]), filtered)
 
 
-def draw(head, joint, plant, loops, period, path):
-    """Open loop and step of each of `loops` (label, gains)."""
+def describe(loop, found):
+    """Gains and filters, and what the loop is with them."""
+    return {"gains": list(loop.gains), "filters": filters_of(loop), "stable": found.stable,
+            "bandwidth_hz": found.bandwidth_hz, "phase_margin_deg": found.phase_margin_deg,
+            "gain_margin_db": found.gain_margin_db if np.isfinite(found.gain_margin_db) else None,
+            "sensitivity_peak": found.sensitivity_peak if np.isfinite(found.sensitivity_peak) else None}
+
+
+def filters_of(loop):
+    """As device.json has them."""
+    return {"Resonances": [{"Frequency": notch.frequency, "Damping": notch.damping, "Width": notch.width}
+                           for notch in loop.filters.notches], "LowPass": loop.filters.low_pass}
+
+
+def draw(title, loops, joint, response, period, path):
+    """Open loop and step of each of `loops` (label, loop, margins), and beside them what was measured."""
     figure, (size, phase, step) = plt.subplots(3, 1, figsize=(9, 11), constrained_layout=True)
-    frequency = np.geomspace(1, 0.5 / period, 2000)
-    for label, gains in loops:
-        magnitude, angle = model.bode(plant, gains, frequency)
-        crossover, margin, _ = model.margins(plant, gains)
-        size.loglog(frequency, magnitude, label=f"{label}: {crossover:.1f} Hz")
-        phase.semilogx(frequency, angle, label=f"{label}: margin {margin:.0f}°")
-        time, position = model.step_response(plant, gains, period)
-        step.plot(1e3 * time, position, label=label)
+    frequency = np.unique(np.concatenate([design.grid(joint), np.geomspace(1, 0.499 / period, 1000)]))
+    for label, loop, found in loops:
+        values = design.open_loop(loop, joint, frequency)
+        angle = np.degrees(np.unwrap(np.angle(values)))
+        angle -= 360 * np.ceil(angle[0] / 360)
+        line, = size.loglog(frequency, np.abs(values),
+                            label=f"{label}: {found.bandwidth_hz:.1f} Hz" if found.stable else f"{label}: unstable")
+        phase.semilogx(frequency, angle, color=line.get_color(),
+                       label=f"{label}: margin {found.phase_margin_deg:.0f}°" if found.stable else label)
+        if response is not None:
+            law = design.law_response(loop, response.frequency, period)
+            law = law * loop.filters.response(response.frequency, period)
+            seen = law * response.value
+            near = np.interp(response.frequency, frequency, angle)
+            size.loglog(response.frequency, np.abs(seen), ".", markersize=3, color=line.get_color())
+            phase.semilogx(response.frequency, near + np.degrees(np.angle(seen / np.exp(1j * np.radians(near)))), ".",
+                           markersize=3, color=line.get_color())
+        if found.stable:
+            time, position = design.step_response(loop, joint)
+            step.plot(1e3 * time, position, label=label, color=line.get_color())
     size.axhline(1, color="grey", linewidth=0.8)
-    size.set_ylabel("open loop")
+    size.set_ylabel("open loop" + (" (points: measured)" if response is not None else ""))
     phase.axhline(-180, color="grey", linewidth=0.8)
-    phase.set_ylim(-400, 0)
+    phase.set_ylim(-720, 0)
     phase.set_ylabel("phase, degrees")
     phase.set_xlabel("Hz")
     step.axhline(1, color="grey", linewidth=0.8)
@@ -57,38 +93,79 @@ def draw(head, joint, plant, loops, period, path):
     for axes in (size, phase, step):
         axes.grid(alpha=0.3, which="both")
         axes.legend(fontsize=8)
-    figure.suptitle(f"{head['mechanism']}, joint {joint['name']}: mass {1e3 * plant.mass:.3g}e-3, friction "
-                    f"{plant.friction:.3g} + {plant.viscous:.3g} v, load {plant.load:.3g}, delay "
-                    f"{1e3 * plant.delay_s:.2f} ms", fontsize=9)
+    figure.suptitle(title, fontsize=9)
     figure.savefig(path, dpi=120)
+
+
+def read_words(words):
+    """The command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("record", help="flight record of the joint's swings")
+    parser.add_argument("joint", type=int, help="from 0")
+    parser.add_argument("begin", type=float, help="t_s after which the swings are")
+    parser.add_argument("--bandwidth", type=float, default=0, help="Hz; 0: the largest that keeps its margins")
+    parser.add_argument("--margin", type=float, required=True, help="degrees")
+    parser.add_argument("--picture", required=True)
+    parser.add_argument("--sweep", help="flight record of swept sines")
+    parser.add_argument("--sweep-begin", type=float, default=0, help="t_s after which they are")
+    parser.add_argument("--sweep-period", type=float, help="s")
+    parser.add_argument("--sweeps", type=int, help="of each steady stretch")
+    parser.add_argument("--from-hz", type=float)
+    parser.add_argument("--to-hz", type=float)
+    return parser.parse_args(words)
+
+
+def measured_joint(given, plant):
+    """Model and measured response; of a rigid joint, and None, where there was no sweep."""
+    head, columns = model.read_record(given.record, given.begin)
+    period = model.period_of(columns)
+    if given.sweep is None:
+        return frequency_response.Model(period, plant.mass, plant.delay_s), None
+    _, columns = model.read_record(given.sweep, given.sweep_begin)
+    response = frequency_response.measure(columns, given.joint + 1, given.sweep_period, given.sweeps,
+                                          (given.from_hz, given.to_hz))
+    joint = frequency_response.fit(response, period)
+    if joint.misfit > WORST_MISFIT:
+        raise frequency_response.Unmeasured(
+            f"what was measured is no mass with up to {frequency_response.MOST_MODES} resonances (off by "
+            f"{joint.misfit:.2f} in the logarithm, {WORST_MISFIT} at most); nothing is proposed")
+    return joint, response
 
 
 def main():
     """Exit code 1 with one line that says why, when the record or the wish does not do."""
-    if len(sys.argv) != 7:
-        print("usage: tune.py RECORD JOINT BEGIN BANDWIDTH MARGIN PICTURE", file=sys.stderr)
-        return 2
-    number, begin, bandwidth, margin = int(sys.argv[2]), float(sys.argv[3]), float(sys.argv[4]), float(sys.argv[5])
-    head, columns = model.read_record(sys.argv[1], begin)
-    joint = head["joints"][number]
-    column = number + 1
+    given = read_words(sys.argv[1:])
+    head, columns = model.read_record(given.record, given.begin)
+    joint = head["joints"][given.joint]
+    column = given.joint + 1
     try:
         plant = model.identify(columns["t_s"], columns[f"a{column}"], columns[f"effort{column}"])
-        if bandwidth == 0:
-            bandwidth = 0.9 * model.largest_bandwidth_hz(plant, margin)
-        gains = model.gains_for(plant, bandwidth, margin)
-    except (model.Unidentifiable, ValueError) as problem:
+        bent, response = measured_joint(given, plant)
+        proposed = design.design(bent, given.margin, given.bandwidth)
+    except (model.Unidentifiable, frequency_response.Unmeasured, design.Undesignable) as problem:
         print(problem, file=sys.stderr)
         return 1
-    before = feedback_gains(joint)
-    loops = ([("before", before)] if before else []) + [("proposed", gains)]
-    draw(head, joint, plant, loops, float(np.median(np.diff(columns["t_s"]))), sys.argv[6])
-    forward = [*gains, plant.viscous, plant.mass, plant.friction, plant.load]
+    before = loop_in_force(joint)
+    loops = [(label, loop, design.margins_of(loop, bent))
+             for label, loop in (("before", before), ("proposed", proposed)) if loop]
+    modes = ", ".join(f"{hz:.0f} Hz ({damping:.3f})" for hz, damping in bent.resonances())
+    draw(f"{head['mechanism']}, joint {joint['name']}: mass {1e3 * plant.mass:.3g}e-3, friction {plant.friction:.3g} + "
+         f"{plant.viscous:.3g} v, load {plant.load:.3g}, delay {1e3 * plant.delay_s:.2f} ms"
+         + (f", resonances {modes}" if modes else ""), loops, bent, response, bent.period, given.picture)
+    told = {label: describe(loop, found) for label, loop, found in loops}
+    forward = [*proposed.gains, plant.viscous, plant.mass, plant.friction, plant.load]
     print(json.dumps({
         "joint": joint["name"], "unit": joint["unit"], "law": joint["law"], "plant": model.as_json(plant),
-        "before": describe(plant, before) if before else None, "proposed": describe(plant, gains),
-        "pid_gains": list(gains), "feedforward_feedback_gains": forward, "lead_s": plant.delay_s,
-        "apply": {3: list(gains), 7: forward}.get(len(joint["gains"]))}))
+        "max_speed": joint["max_speed"], "max_effort": joint["max_effort"], "parameters": joint["parameters"],
+        "gains": joint["gains"], "period_s": bent.period,
+        "resonances": [{"frequency": hz, "damping": damping} for hz, damping in bent.resonances()],
+        "misfit": bent.misfit if response is not None else None,
+        "before": told.get("before"), "proposed": told["proposed"],
+        "elsewhere": describe(proposed, design.judge(proposed, bent)),
+        "filters_in_force": filters_of(before) if before else None,
+        "pid_gains": list(proposed.gains), "feedforward_feedback_gains": forward,
+        "lead_s": plant.delay_s + proposed.filters.delay_s(),
+        "apply": {3: list(proposed.gains), 7: forward}.get(len(joint["gains"]))}))
     return 0
 
 

@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
+#include <optional>
+#include <vector>
 
 #include "gateway/rmac/commands/commission/experiment.hpp"
 #include "gateway/rmac/commands/commission/registrations.hpp"
-#include "gateway/rmac/terminal/table.hpp"
+#include "gateway/rmac/commands/commission/tuning_motion.hpp"
+#include "gateway/rmac/commands/commission/tuning_text.hpp"
 #include "gateway/rmac/wire/requests.hpp"
-#include "gateway/rmac/wire/rest.hpp"
 #include "rmac/motion/pose.hpp"
 
 namespace rmac::cli {
@@ -18,73 +18,26 @@ using Json = nlohmann::json;
 
 /// What moves, and what is aimed at.
 struct Options {
-  int joint = 0;
-  double travel = 0;        ///< mm or deg from where the joint stands, signed; it comes back
-  double bandwidth_hz = 0;  ///< 0: nine tenths of what the delay lets it have
+  Stroke stroke;
+  double bandwidth_hz = 0;  ///< 0: the largest that keeps its margins
   double phase_margin_deg = 40;
-  std::string picture;  ///< empty: tune-JOINT.png here
+  std::optional<double> sweep_effort;  ///< N or N·m; a twentieth of `MaxEffort` unless given; 0: no sweep
+  std::string picture;                 ///< empty: tune-JOINT.png here
   bool apply = false;
 };
-
-/// There and back once, and at rest again.
-Result<> swing(Connection& connection, int joint, double way, const std::string& fault) {
-  for (const double distance : {way, -way}) {
-    if (auto begun = connection.command(kJogJoint, {{"JntNum", joint}, {"Distance", distance}}); !begun) return begun;
-    if (auto rest = wait_for_rest(connection, fault); !rest) return tl::unexpected(rest.error());
-  }
-  return {};
-}
-
-/// Swings at several speeds, the slow ones first: what the recorder may forget is what says least. The joint
-/// interpolation speed is put back.
-Result<> excite(Connection& connection, const Options& options, const std::string& fault) {
-  constexpr std::array<double, 4> kShares{0.1, 0.25, 0.5, 1.0};
-  const auto speed = connection.call("RMAC_CAM.GetJointInterpSpeed");
-  if (!speed) return tl::unexpected(speed.error());
-  const auto set_speed = [&](const Json& percent) {
-    return connection.command("RMAC_CAM.SetJointInterpSpeed", {{"newVal", percent}});
-  };
-  Result<> done;
-  for (const double share : kShares) {
-    // A slow move needs less way to be at its speed.
-    done = done.and_then([&] { return set_speed(100 * share); }).and_then([&] {
-      return swing(connection, options.joint, options.travel * std::sqrt(share), fault);
-    });
-  }
-  const auto restored = set_speed(*speed);
-  return done ? restored : done;
-}
-
-void print_tuning(const Json& found, const std::string& picture) {
-  const Json& plant = found["plant"];
-  const auto number = [&plant](const char* key) { return plant[key].get<double>(); };
-  const bool turns = found["unit"] == "deg";
-  const char* const effort = turns ? "N·m" : "N";
-  const char* const way = turns ? "deg" : "mm";
-  fmt::print(
-      "joint {}: mass {:.4g} {}·s²/{}, friction {:.3g} {} and {:.3g} {}·s/{}, load {:.3g} {}, delay {:.2f} ms; the "
-      "model explains {:.2f} % of the record\n",
-      found["joint"].get<std::string>(), number("mass"), effort, way, number("friction"), effort, number("viscous"),
-      effort, way, number("load"), effort, 1e3 * number("delay_s"), 100 * number("explained"));
-  std::vector<std::vector<std::string>> rows;
-  for (const char* key : {"before", "proposed"}) {
-    const Json& loop = found[key];
-    if (loop.is_null()) continue;
-    rows.push_back({key, list_text(loop["gains"]), fmt::format("{:.1f}", loop["bandwidth_hz"].get<double>()),
-                    fmt::format("{:.1f}", loop["phase_margin_deg"].get<double>()),
-                    fmt::format("{:.2f}", loop["sensitivity_peak"].get<double>())});
-  }
-  fmt::print("{}", table({"", "Kp, Ki, Kd", "bandwidth Hz", "phase margin deg", "sensitivity peak"}, rows));
-  fmt::print("for DMAC_FEEDFORWARDFEEDBACK_CONTROL: {} with lead_s {:.4f}\n{}\n",
-             list_text(found["feedforward_feedback_gains"]), found["lead_s"].get<double>(), picture);
-}
 
 Result<> apply_gains(Connection& connection, const Options& options, const Json& found) {
   if (found["apply"].is_null()) {
     return fail(fmt::format("nothing is changed: {} takes other gains than those that were found; choose a PID law",
                             found["law"].get<std::string>()));
   }
-  const Json params{{"JntNum", options.joint}, {"ServoControlGains", found["apply"]}};
+  if (found["proposed"]["filters"] != found["filters_in_force"]) {
+    return fail(fmt::format(
+        "nothing is changed: these gains hold with the filters above only. Write {} and \"Gains\": {} into the joint "
+        "in device.json, and load it",
+        filters_text(found["proposed"]["filters"]), found["apply"].dump()));
+  }
+  const Json params{{"JntNum", options.stroke.joint}, {"ServoControlGains", found["apply"]}};
   return connection.command("RMAC_Config.SetMechanismJointServoControlGains", params).and_then([&] {
     return connection.command("RMAC_Config.Apply");
   });
@@ -107,22 +60,67 @@ Result<StateNote> check_machine(Connection& connection, int joint) {
   return state;
 }
 
-Result<> tune(Connection& connection, const Options& options, bool json) {
+std::vector<std::string> program_words(const Options& options, const TemporaryFile& record, double begin_s,
+                                       const std::string& picture) {
+  return {record.path(),
+          std::to_string(options.stroke.joint),
+          fmt::format("{}", begin_s),
+          "--picture",
+          picture,
+          "--margin",
+          fmt::format("{}", options.phase_margin_deg),
+          "--bandwidth",
+          fmt::format("{}", options.bandwidth_hz)};
+}
+
+/// What the joint answers to swept sines, and what is proposed for it; `found` is what its swings have shown.
+Result<Json> measure_response(Connection& connection, const Options& options, const Json& found,
+                              std::vector<std::string> words, const std::string& fault) {
+  const auto begin = ask_state(connection);
+  if (!begin) return tl::unexpected(begin.error());
+  const Sweep sweep = sweep_for(options.stroke, found, options.sweep_effort);
   const TemporaryFile record;
-  const std::string picture = options.picture.empty() ? fmt::format("tune-{}.png", options.joint) : options.picture;
+  if (auto swept = sweep_strokes(connection, options.stroke, found, sweep, fault); !swept) {
+    return tl::unexpected(swept.error());
+  }
+  if (auto kept = keep_record(connection, record); !kept) return tl::unexpected(kept.error());
+  for (const std::string& word :
+       {std::string("--sweep"), record.path(), std::string("--sweep-begin"), fmt::format("{}", begin->t_s),
+        std::string("--sweep-period"), fmt::format("{}", sweep.period_s), std::string("--sweeps"),
+        std::to_string(sweep.sweeps), std::string("--from-hz"), fmt::format("{}", sweep.from_hz),
+        std::string("--to-hz"), fmt::format("{}", sweep.to_hz)}) {
+    words.push_back(word);
+  }
+  return plot_answer("tune.py", words);
+}
+
+/// Swings, and unless it is not wanted the joint's response.
+Result<Json> find_tuning(Connection& connection, const Options& options, double begin_s, const std::string& picture,
+                         const std::string& fault) {
+  if (auto moved = swing_at_speeds(connection, options.stroke, fault); !moved) return tl::unexpected(moved.error());
+  const TemporaryFile record;
+  if (auto kept = keep_record(connection, record); !kept) return tl::unexpected(kept.error());
+  const auto words = program_words(options, record, begin_s, picture);
+  if (options.sweep_effort == 0) return plot_answer("tune.py", words);
+  auto rigid = words;
+  rigid.back() = "0";  // the bandwidth that is wanted is for what will be measured
+  return plot_answer("tune.py", rigid).and_then([&](const Json& found) {
+    return measure_response(connection, options, found, words, fault);
+  });
+}
+
+Result<> tune(Connection& connection, const Options& options, bool json) {
+  const std::string picture =
+      options.picture.empty() ? fmt::format("tune-{}.png", options.stroke.joint) : options.picture;
   if (auto fine = check_picture(picture); !fine) return fine;  // before anything moves
-  if (options.travel == 0) {
+  if (options.stroke.travel == 0) {
     return fail(fmt::format("--travel {}: give the way that the joint may go, in mm or degrees, negative the other way",
-                            options.travel));
+                            options.stroke.travel));
   }
   return commission(connection, [&](const std::string& fault) -> Result<> {
-    const auto state = check_machine(connection, options.joint);
+    const auto state = check_machine(connection, options.stroke.joint);
     if (!state) return tl::unexpected(state.error());
-    if (auto moved = excite(connection, options, fault); !moved) return moved;
-    if (auto kept = keep_record(connection, record); !kept) return kept;
-    const auto found = plot_answer(
-        "tune.py", {record.path(), std::to_string(options.joint), fmt::format("{}", state->t_s),
-                    fmt::format("{}", options.bandwidth_hz), fmt::format("{}", options.phase_margin_deg), picture});
+    const auto found = find_tuning(connection, options, state->t_s, picture, fault);
     if (!found) return tl::unexpected(found.error());
     if (json) {
       fmt::print("{}\n", found->dump());
@@ -142,12 +140,19 @@ void add_tune(Command& rmac) {
   const auto options = std::make_shared<Options>();
   Command tuned = rmac.add(
       "tune",
-      "move a joint, find its mass, friction and delay, and propose gains; needs python3-scipy and -matplotlib");
-  tuned.option("JOINT", &options->joint, "counted from 0").required().within(0, static_cast<int>(kMaxJoints) - 1);
-  tuned.option("--travel", &options->travel, "mm or degrees that it may go from where it stands, signed").required();
-  tuned.option("--bandwidth", &options->bandwidth_hz, "Hz; nine tenths of what its delay allows unless given")
-      .positive();
+      "move a joint, find its mass, friction, delay and resonances, and propose gains and filters; needs python3-scipy "
+      "and -matplotlib");
+  tuned.option("JOINT", &options->stroke.joint, "counted from 0")
+      .required()
+      .within(0, static_cast<int>(kMaxJoints) - 1);
+  tuned.option("--travel", &options->stroke.travel, "mm or degrees that it may go from where it stands, signed")
+      .required();
+  tuned.option("--bandwidth", &options->bandwidth_hz, "Hz; the largest that keeps its margins unless given").positive();
   tuned.option("--phase-margin", &options->phase_margin_deg, "degrees").within(10.0, 70.0).shows_default();
+  tuned
+      .option("--sweep-effort", &options->sweep_effort,
+              "N or N·m of the sines that find resonances; a twentieth of MaxEffort unless given, 0 for none")
+      .within(0.0, 1e7);
   tuned.option("-o,--output", &options->picture, "the picture to draw; tune-JOINT.png here unless given");
   tuned.flag("--apply", &options->apply, "put the gains in force; without it nothing is changed");
   tuned.does(with_appliance([options](Connection& appliance, bool json) { return tune(appliance, *options, json); }));

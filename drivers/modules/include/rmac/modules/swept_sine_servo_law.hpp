@@ -1,0 +1,71 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "rmac/modules/pid_feedback.hpp"
+#include "rmac/modules/swept_sine.hpp"
+#include "rmac/motion/ports/servo_law.hpp"
+#include "rmac/sdk/module.hpp"
+
+namespace rmac::modules {
+
+/// The PID law with a swept sine on top of its effort, for measuring what a joint answers (`rmac tune`). Without
+/// `sweep_effort` it is the PID law. The sum stays within the effort limit.
+class SweptSineServoLaw final : public ServoLaw {
+ public:
+  SweptSineServoLaw(const ErrorSignal::Parameters& signal, const SweptSine::Parameters& sweep, double load) noexcept
+      : feedback_(signal), sweep_(sweep), load_(load) {}
+
+  [[nodiscard]] std::span<const GainInfo> gains() const noexcept override { return kGains; }
+
+  [[nodiscard]] bool set_gains(std::span<const double> values) noexcept override {
+    if (values.size() != kGains.size() || !PidFeedback::takes(values.first<3>())) return false;
+    feedback_.set_gains(values.first<3>());
+    return true;
+  }
+
+  void set_effort_limit(double effort) noexcept override { limit_ = std::abs(effort); }
+
+  [[nodiscard]] double resting_effort() const noexcept override { return load_; }
+
+  void engage(const ServoInput& input, double effort) noexcept override {
+    feedback_.engage(input, load_, std::clamp(effort, -limit_, limit_));
+  }
+
+  [[nodiscard]] double update(const ServoInput& input) noexcept override {
+    if (!is_finite(input)) return std::numeric_limits<double>::quiet_NaN();
+    return feedback_.update(input, load_ + sweep_.step(input), limit_);
+  }
+
+ private:
+  static constexpr std::array<GainInfo, 3> kGains{{{"Kp", "N/mm"}, {"Ki", "N/(mm·s)"}, {"Kd", "N·s/mm"}}};
+
+  PidFeedback feedback_;
+  SweptSine sweep_;
+  double load_;
+  double limit_ = 0;
+};
+
+/// Makes a `SweptSineServoLaw`; parameters of `PidServoLawFactory`, and `sweep_effort`, `sweep_from_hz`, `sweep_to_hz`,
+/// `sweep_full_hz`, `sweep_period_s` and `sweep_periods`.
+struct SweptSineServoLawFactory {
+  static ServoLaw* create(sdk::Parameters parameters, char* error, std::size_t error_size) noexcept {
+    if (!sdk::are_known_numbers(parameters,
+                                {"derivative_filter_s", "rest_band", "load", "sweep_effort", "sweep_from_hz",
+                                 "sweep_to_hz", "sweep_full_hz", "sweep_period_s", "sweep_periods"},
+                                error, error_size))
+      return nullptr;
+    ErrorSignal::Parameters signal;
+    SweptSine::Parameters sweep;
+    double load = 0;
+    if (!ErrorSignal::read(parameters, signal, error, error_size)) return nullptr;
+    if (!SweptSine::read(parameters, sweep, error, error_size)) return nullptr;
+    if (!sdk::read_number(parameters, kLoad, load, error, error_size)) return nullptr;
+    return new SweptSineServoLaw(signal, sweep, load);
+  }
+};
+
+}  // namespace rmac::modules

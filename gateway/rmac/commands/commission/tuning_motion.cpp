@@ -1,0 +1,112 @@
+#include "gateway/rmac/commands/commission/tuning_motion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "gateway/rmac/wire/requests.hpp"
+#include "gateway/rmac/wire/rest.hpp"
+
+namespace rmac::cli {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// There and back once, and at rest again.
+Result<> swing(Connection& connection, const Stroke& stroke, const std::string& fault) {
+  for (const double distance : {stroke.travel, -stroke.travel}) {
+    if (auto begun = connection.command(kJogJoint, {{"JntNum", stroke.joint}, {"Distance", distance}}); !begun)
+      return begun;
+    if (auto rest = wait_for_rest(connection, fault); !rest) return tl::unexpected(rest.error());
+  }
+  return {};
+}
+
+/// Does `work`, and puts the joint interpolation speed back to what it was.
+Result<> at_speeds(Connection& connection,
+                   const std::function<Result<>(const std::function<Result<>(double)>&)>& work) {
+  const auto speed = connection.call("RMAC_CAM.GetJointInterpSpeed");
+  if (!speed) return tl::unexpected(speed.error());
+  const auto set_percent = [&](const Json& percent) {
+    return connection.command("RMAC_CAM.SetJointInterpSpeed", {{"newVal", percent}});
+  };
+  const Result<> done = work([&](double percent) { return set_percent(percent); });
+  const auto restored = set_percent(*speed);
+  return done ? restored : done;
+}
+
+}  // namespace
+
+// The slow ones first: what the recorder may forget is what says least.
+Result<> swing_at_speeds(Connection& connection, const Stroke& stroke, const std::string& fault) {
+  constexpr std::array<double, 4> kShares{0.1, 0.25, 0.5, 1.0};
+  return at_speeds(connection, [&](const auto& set_percent) -> Result<> {
+    Result<> done;
+    for (const double share : kShares) {
+      // A slow move needs less way to be at its speed.
+      done = done.and_then([&] { return set_percent(100 * share); }).and_then([&] {
+        return swing(connection, {stroke.joint, stroke.travel * std::sqrt(share)}, fault);
+      });
+    }
+    return done;
+  });
+}
+
+// The joint, which goes to and fro with the sine, is to go on in the direction of its stroke: half of the stroke's
+// speed is what the sine may change.
+Sweep sweep_for(const Stroke& stroke, const Json& found, std::optional<double> effort) {
+  Sweep sweep;
+  sweep.effort = effort.value_or(0.05 * found["max_effort"].get<double>());
+  sweep.to_hz = 0.48 / found["period_s"].get<double>();
+  sweep.speed =
+      std::min(std::abs(stroke.travel) / (sweep.period_s * (sweep.sweeps + 0.5)), found["max_speed"].get<double>());
+  const double mass = found["plant"]["mass"].get<double>();
+  sweep.full_hz = std::clamp(sweep.effort / (std::numbers::pi * mass * sweep.speed), 0.0, 0.5 * sweep.to_hz);
+  return sweep;
+}
+
+namespace {
+
+Result<> put_law(Connection& connection, int joint, const std::string& law, const Json& parameters, const Json& gains) {
+  return connection
+      .command("RMAC_Config.SetMechanismJointServoControlLaw",
+               {{"JntNum", joint}, {"ControlLaw", law}, {"Parameters", parameters}})
+      .and_then([&] {
+        return connection.command("RMAC_Config.SetMechanismJointServoControlGains",
+                                  {{"JntNum", joint}, {"ServoControlGains", gains}});
+      })
+      .and_then([&] { return connection.command("RMAC_Config.Apply"); });
+}
+
+/// The law that sweeps, with the feedback of the law in force.
+Result<> put_sweeping_law(Connection& connection, int joint, const Json& found, const Sweep& sweep) {
+  Json parameters = {{"sweep_effort", sweep.effort},     {"sweep_from_hz", sweep.from_hz},
+                     {"sweep_to_hz", sweep.to_hz},       {"sweep_full_hz", sweep.full_hz},
+                     {"sweep_period_s", sweep.period_s}, {"sweep_periods", sweep.sweeps}};
+  for (const char* kept : {"derivative_filter_s", "rest_band"}) {
+    if (found["parameters"].contains(kept)) parameters[kept] = found["parameters"][kept];
+  }
+  return put_law(connection, joint, "SweptSineServoControlLaw", parameters, found["before"]["gains"]);
+}
+
+}  // namespace
+
+Result<> sweep_strokes(Connection& connection, const Stroke& stroke, const Json& found, const Sweep& sweep,
+                       const std::string& fault) {
+  const Result<> swept = put_sweeping_law(connection, stroke.joint, found, sweep).and_then([&] {
+    return at_speeds(connection, [&](const auto& set_percent) {
+      return set_percent(100 * sweep.speed / found["max_speed"].template get<double>()).and_then([&] {
+        return swing(connection, stroke, fault);
+      });
+    });
+  });
+  // A stop that is still under way refuses it; what stopped the machine is what is told.
+  if (!swept) static_cast<void>(wait_for_rest(connection, ""));
+  const Result<> put_back = put_law(connection, stroke.joint, found["law"], found["parameters"], found["gains"]);
+  return swept ? put_back : swept;
+}
+
+}  // namespace rmac::cli

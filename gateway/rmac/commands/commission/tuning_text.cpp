@@ -1,0 +1,65 @@
+#include "gateway/rmac/commands/commission/tuning_text.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "gateway/rmac/commands/commission/experiment.hpp"
+#include "gateway/rmac/terminal/table.hpp"
+
+namespace rmac::cli {
+
+namespace {
+
+using Json = nlohmann::json;
+
+void print_filters(const Json& filters) {
+  for (const Json& notch : filters["Resonances"]) {
+    fmt::print("  notch at {:.1f} Hz, damping {:.3g}, width {:.3g}\n", notch["Frequency"].get<double>(),
+               notch["Damping"].get<double>(), notch["Width"].get<double>());
+  }
+  if (filters["LowPass"] > 0) fmt::print("  low-pass at {:.1f} Hz\n", filters["LowPass"].get<double>());
+}
+
+}  // namespace
+
+void print_tuning(const Json& found, const std::string& picture) {
+  const Json& plant = found["plant"];
+  const auto number = [&plant](const char* key) { return plant[key].get<double>(); };
+  const bool turns = found["unit"] == "deg";
+  const char* const effort = turns ? "N·m" : "N";
+  const char* const way = turns ? "deg" : "mm";
+  fmt::print(
+      "joint {}: mass {:.4g} {}·s²/{}, friction {:.3g} {} and {:.3g} {}·s/{}, load {:.3g} {}, delay {:.2f} ms; the "
+      "model explains {:.2f} % of the record\n",
+      found["joint"].get<std::string>(), number("mass"), effort, way, number("friction"), effort, number("viscous"),
+      effort, way, number("load"), effort, 1e3 * number("delay_s"), 100 * number("explained"));
+  for (const Json& mode : found["resonances"]) {
+    fmt::print("resonance at {:.1f} Hz, damping {:.3f}\n", mode["frequency"].get<double>(),
+               mode["damping"].get<double>());
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const char* key : {"before", "proposed", "elsewhere"}) {
+    const Json& loop = found[key];
+    if (loop.is_null()) continue;
+    const auto figure = [&loop](const char* name, int digits) {
+      return loop["stable"] && !loop[name].is_null() ? fmt::format("{:.{}f}", loop[name].get<double>(), digits) : "-";
+    };
+    rows.push_back({key == std::string("elsewhere") ? "its worst" : key,
+                    loop["stable"] ? list_text(loop["gains"]) : list_text(loop["gains"]) + " unstable",
+                    figure("bandwidth_hz", 1), figure("phase_margin_deg", 1), figure("gain_margin_db", 1),
+                    figure("sensitivity_peak", 2)});
+  }
+  fmt::print("{}",
+             table({"", "Kp, Ki, Kd", "bandwidth Hz", "phase margin deg", "gain margin dB", "sensitivity peak"}, rows));
+  if (!found["resonances"].empty()) fmt::print("its worst: with the resonances up to 15 % elsewhere\n");
+  print_filters(found["proposed"]["filters"]);
+  fmt::print("for DMAC_FEEDFORWARDFEEDBACK_CONTROL: {} with lead_s {:.4f}\n{}\n",
+             list_text(found["feedforward_feedback_gains"]), found["lead_s"].get<double>(), picture);
+}
+
+std::string filters_text(const Json& filters) {
+  return fmt::format("\"Resonances\": {}, \"LowPass\": {}", filters["Resonances"].dump(), filters["LowPass"].dump());
+}
+
+}  // namespace rmac::cli

@@ -1,0 +1,94 @@
+"""What rmac tune's programs find of a joint that bends, and what they propose for it, held against the joint itself."""
+
+import os
+import pathlib
+import sys
+import unittest
+
+import numpy as np
+
+from bending_joint import PERIOD, BendingJoint, ClosedLoop, strokes, swept_sine
+
+sys.path.insert(0, str(pathlib.Path(os.environ["RMAC_SOURCE"], "gateway/rmac/plots")))
+import frequency_response  # noqa: E402
+import loop_design  # noqa: E402
+
+SWEEP = dict(from_hz=20, to_hz=480, period_s=0.5, sweeps=7)
+FIRST_SEED, SEEDS = int(os.environ.get("RMAC_SEED", "1")), int(os.environ.get("RMAC_SEEDS", "12"))
+
+
+def soft_gains(joint):
+    """Gains with which it holds, as somebody would find them who has only the joint."""
+    kg, softer = 1000 * joint.mass, 1.0
+    while True:
+        gains = (3.5 * kg * softer**2, 30 * kg * softer**3, 0.035 * kg * softer)
+        loop = ClosedLoop(joint, gains, {"Resonances": [], "LowPass": 0})
+        if loop.stable() and loop.stable(1.4) and loop.stable(0.7):
+            return gains
+        softer *= 0.7
+
+
+def measured(joint, effort_per_mass=1000.0):
+    """The response of `joint` under soft gains, as the record of its strokes shows it."""
+    setpoints = list(strokes(20, 5))
+    steady = [abs(speed) > 1e-6 and abs(change) * PERIOD <= 1e-3 * abs(speed) for _, speed, change in setpoints]
+    sine = swept_sine(effort_per_mass * joint.mass, full_hz=70, **SWEEP)
+    added = np.zeros(len(setpoints))
+    for begin in np.flatnonzero(np.diff([0, *steady]) == 1):
+        added[begin:begin + len(sine)] = sine
+    positions, efforts = joint.run([(where, speed) for where, speed, _ in setpoints],
+                                   soft_gains(joint), added)
+    wanted = np.array(setpoints)
+    columns = {"t_s": np.arange(len(wanted)) * PERIOD, "q1": wanted[:, 0], "qd1": wanted[:, 1], "qdd1": wanted[:, 2],
+               "a1": positions, "effort1": efforts}
+    return frequency_response.measure(columns, 1, SWEEP["period_s"], SWEEP["sweeps"], (20, 480))
+
+
+def filters_of(loop):
+    return {"Resonances": [{"Frequency": notch.frequency, "Damping": notch.damping, "Width": notch.width}
+                           for notch in loop.filters.notches], "LowPass": loop.filters.low_pass}
+
+
+def as_samples_show_it(frequency):
+    """Below half the sampling rate: what is beyond it folds back."""
+    return min(frequency, 1 / PERIOD - frequency)
+
+
+class JointsThatBend(unittest.TestCase):
+    def setUp(self):
+        self.joints = [(seed, BendingJoint.of(seed)) for seed in range(FIRST_SEED, FIRST_SEED + SEEDS)]
+
+    def test_resonances_are_found_where_they_are(self):
+        for seed, joint in self.joints:
+            with self.subTest(seed=seed, joint=joint):
+                found = frequency_response.fit(measured(joint), PERIOD)
+                wanted = as_samples_show_it(joint.resonance_hz)
+                if wanted > 470:
+                    continue
+                nearest = min(found.resonances(), key=lambda mode: abs(mode[0] - wanted))
+                self.assertAlmostEqual(nearest[0] / wanted, 1, delta=0.01)
+
+    def test_proposed_loops_keep_their_margins_on_the_joint_itself(self):
+        """6 dB and 30 degrees; and stable with 3 dB where its resonance is 15 % elsewhere."""
+        for seed, joint in self.joints:
+            with self.subTest(seed=seed, joint=joint):
+                loop = loop_design.design(frequency_response.fit(measured(joint), PERIOD), 40)
+                closed = ClosedLoop(joint, loop.gains, filters_of(loop))
+                for gain in (0.7, 1, 1.4, 2):
+                    self.assertTrue(closed.stable(gain), (gain, loop))
+                self.assertGreater(closed.phase_margin(), 30)
+                for factor in (0.85, 0.92, 1.08, 1.15):
+                    moved = ClosedLoop(joint.elsewhere(factor), loop.gains, filters_of(loop))
+                    self.assertTrue(moved.stable() and moved.stable(1.41), (factor, loop))
+
+    def test_a_rigid_joint_gets_no_notch(self):
+        for seed, joint in self.joints[:4]:
+            stiff = joint.elsewhere(5000 / joint.resonance_hz)
+            with self.subTest(seed=seed, joint=stiff):
+                found = frequency_response.fit(measured(stiff), PERIOD)
+                self.assertAlmostEqual(found.mass / stiff.mass, 1, delta=0.05)
+                self.assertEqual(loop_design.design(found, 40).filters.notches, [])
+
+
+if __name__ == "__main__":
+    unittest.main()
