@@ -13,7 +13,7 @@ sys.path.insert(0, str(pathlib.Path(os.environ["RMAC_SOURCE"], "gateway/rmac/plo
 import frequency_response  # noqa: E402
 import loop_design  # noqa: E402
 
-SWEEP = dict(from_hz=20, to_hz=480, period_s=0.5, sweeps=7)
+SWEEP = dict(from_hz=20, to_hz=495, period_s=0.5, sweeps=7)
 FIRST_SEED, SEEDS = int(os.environ.get("RMAC_SEED", "1")), int(os.environ.get("RMAC_SEEDS", "12"))
 
 
@@ -41,7 +41,7 @@ def measured(joint, effort_per_mass=1000.0):
     wanted = np.array(setpoints)
     columns = {"t_s": np.arange(len(wanted)) * PERIOD, "q1": wanted[:, 0], "qd1": wanted[:, 1], "qdd1": wanted[:, 2],
                "a1": positions, "effort1": efforts}
-    return frequency_response.measure(columns, 1, SWEEP["period_s"], SWEEP["sweeps"], (20, 480))
+    return frequency_response.measure(columns, 1, SWEEP["period_s"], SWEEP["sweeps"], (20, 495))
 
 
 def filters_of(loop):

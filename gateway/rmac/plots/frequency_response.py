@@ -51,9 +51,12 @@ class Mode:
     damping: float
     over: tuple = (0.0, 0.0, 0.0)
 
-    def shifted(self, factor):
-        """As on a machine whose resonance is elsewhere because it is stiffer: 1/factor² as compliant."""
-        moved = Mode(self.resonance * factor, self.damping)
+    def shifted(self, factor, folded):
+        """As on a machine whose resonance is elsewhere because it is stiffer: 1/factor² as compliant. `folded`: it is
+        the image of one beyond half the sampling rate, and goes the other way."""
+        angle = 2 * np.pi - factor * (2 * np.pi - self.resonance) if folded else factor * self.resonance
+        angle = abs((angle + np.pi) % (2 * np.pi) - np.pi)
+        moved = Mode(float(np.clip(angle, 0.05, 0.995 * np.pi)), self.damping)
         one = np.zeros(1)
         gain = self.poles(one).real[0] / moved.poles(one).real[0] / factor**2
         return Mode(moved.resonance, moved.damping, tuple(gain * share for share in self.over))
@@ -98,9 +101,9 @@ class Model:
         """Frequency (Hz) and damping of each mode."""
         return [(mode.resonance / (2 * np.pi * self.period), mode.damping) for mode in self.modes]
 
-    def shifted(self, factor):
-        """With all modes elsewhere by `factor`, as far as below the frequency that samples can show."""
-        modes = [mode.shifted(min(factor, 0.98 * np.pi / mode.resonance)) for mode in self.modes]
+    def shifted(self, factor, folded=False):
+        """With all modes elsewhere by `factor`."""
+        modes = [mode.shifted(factor, folded) for mode in self.modes]
         return Model(self.period, self.mass, self.delay_s, self.lag_s, modes)
 
 
@@ -212,7 +215,9 @@ class _Lines:
 
     def best_start(self, modes, with_mode):
         """Of a grid of delays, and of places of a further mode beside `modes`."""
-        places = self.angle[(self.angle > 1.3 * self.angle[0])][::3] if with_mode else [None]
+        places = [None]
+        if with_mode:
+            places = np.concatenate([self.angle[self.angle > 1.3 * self.angle[0]][::3], [0.97 * np.pi, 0.985 * np.pi]])
         starts = []
         for delay in np.arange(0.75, 5, 0.25):
             for place in places:
@@ -224,6 +229,6 @@ class _Lines:
         """The nearest best."""
         modes = (len(numbers) - 2) // 2
         low = [0.5, 0.0] + modes * [1.2 * self.angle[0], 0.001]
-        high = [10.0, 3.0] + modes * [self.angle[-1], MOST_DAMPING]
+        high = [10.0, 3.0] + modes * [0.995 * np.pi, MOST_DAMPING]
         start = np.clip(numbers, np.array(low) + 1e-6, np.array(high) - 1e-6)
         return least_squares(self.deviation, start, bounds=(low, high), x_scale="jac", max_nfev=100).x

@@ -12,10 +12,14 @@ import numpy as np
 LARGEST_LEAD = 75.0
 # Integral time in units of the inverse crossover frequency.
 INTEGRAL_RATIO = 4.0
-# By how much each resonance may be elsewhere than it was measured: other load, other place, other temperature.
-SHIFTS = (1.0, 0.85, 0.925, 1.075, 1.15)
+# By how much each resonance may be elsewhere than it was measured (other load, other place, other temperature), and
+# whether it is the image of one beyond half the sampling rate.
+ELSEWHERE = ((1.0, False), (0.85, False), (0.925, False), (1.075, False), (1.15, False), (0.85, True), (0.925, True),
+             (1.075, True), (1.15, True))
 # Least distance of the open loop from -1: the gain may then double (6 dB), and the phase fall behind by 30°.
 LEAST_DISTANCE = 0.53
+# Of the sampling rate, as device.json takes it.
+HIGHEST_NOTCH = 0.4
 # Of notches and low-passes that are tried.
 WIDTHS = (0.3, 0.5, 0.7, 1.0, 1.4)
 DEPTHS = (0.05, 0.2)
@@ -162,8 +166,8 @@ def margins_of(loop, model):
 def judge(loop, model):
     """The worst of `loop` on `model` and with its modes elsewhere."""
     worst = None
-    for shift in SHIFTS if model.modes else SHIFTS[:1]:
-        found = margins_of(loop, model.shifted(shift))
+    for shift, folded in ELSEWHERE if model.modes else ELSEWHERE[:1]:
+        found = margins_of(loop, model.shifted(shift, folded))
         if worst is None or found.sensitivity_peak > worst.sensitivity_peak or not found.stable:
             worst = found
         if not worst.stable:
@@ -191,7 +195,7 @@ def quickest(model, filters, margin_deg, most_hz):
 
 def candidates(model):
     """Filters that are worth a try, the fewest first."""
-    places = [round(frequency, 2) for frequency, _ in model.resonances()]
+    places = [round(frequency, 2) for frequency, _ in model.resonances() if frequency <= HIGHEST_NOTCH / model.period]
     for count in range(len(places) + 1):
         for notched in combinations(places, count):
             for width in WIDTHS if notched else (0,):

@@ -47,6 +47,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {1500, 100000, 11, 0.16, 0.035, 19, -118},
                 {300, 0, 40, 0.3, 0, 40, 0},
                 {kFiltered, kLeading, kSpread}},
+        LawCase{"modules", "SweptSineServoControlLaw", {1500, 100000, 11}, {300, 0, 40}, {kFiltered, kLoaded}},
         LawCase{"modules", "FuzzyServoControlLaw", {0.1, 15, 80, 100000}, {0.02, 100, 300, 0}, {kFiltered, kLoaded}}),
     [](const testing::TestParamInfo<LawCase>& law) { return std::string(law.param.module); });
 

@@ -60,7 +60,7 @@ Result<> swing_at_speeds(Connection& connection, const Stroke& stroke, const std
 Sweep sweep_for(const Stroke& stroke, const Json& found, std::optional<double> effort) {
   Sweep sweep;
   sweep.effort = effort.value_or(0.05 * found["max_effort"].get<double>());
-  sweep.to_hz = 0.48 / found["period_s"].get<double>();
+  sweep.to_hz = 0.495 / found["period_s"].get<double>();
   sweep.speed =
       std::min(std::abs(stroke.travel) / (sweep.period_s * (sweep.sweeps + 0.5)), found["max_speed"].get<double>());
   const double mass = found["plant"]["mass"].get<double>();

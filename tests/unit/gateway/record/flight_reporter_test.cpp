@@ -67,6 +67,8 @@ class FlightReporterTest : public testing::Test {
 };
 
 TEST_F(FlightReporterTest, RecordsBothMotorsOfAGantryAndDescribesHeldJointsLast) {
+  device_.joints[0].mechanics.resonances = {{274, 0.05, 0.7}};
+  device_.joints[0].mechanics.low_pass_hz = 180;
   run_cycles(20, 3);
   Event asked;
   asked.cycle = cycle_;
@@ -83,7 +85,11 @@ TEST_F(FlightReporterTest, RecordsBothMotorsOfAGantryAndDescribesHeldJointsLast)
   EXPECT_EQ(head["mechanism"], "Gantry");
   EXPECT_EQ(head["joints"][0]["name"], "X");
   EXPECT_EQ(head["joints"][0]["gains"], nlohmann::json::parse("[300,4]"));
+  EXPECT_EQ(head["joints"][0]["resonances"],
+            nlohmann::json::parse(R"([{"frequency": 274.0, "damping": 0.05, "width": 0.7}])"));
+  EXPECT_EQ(head["joints"][0]["low_pass"], 180);
   EXPECT_EQ(head["joints"][1]["name"], "C");
+  EXPECT_EQ(head["joints"][1]["resonances"], nlohmann::json::array());
   EXPECT_EQ(head["joints"][1]["unit"], "deg");
 }
 

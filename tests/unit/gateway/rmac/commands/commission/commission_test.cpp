@@ -57,6 +57,10 @@ TEST_F(TuneCommand, SwingsSlowlyFirstAndPutsTheSpeedBack) {
   EXPECT_EQ(appliance_.methods().back(), kReleaseAuthority);
 }
 
+TEST_F(TuneCommand, RefusesASweepThatIsNone) {
+  EXPECT_EQ(tune({"--travel", "8", "--sweep-effort", "-1"}).exit_code, 2);
+}
+
 TEST_F(TuneCommand, PutsTheSpeedBackAndSwingsNoMoreWhenAJogIsRefused) {
   appliance_.refuses("RMAC_CAM.JogJoint", -32004, "out of its travel");
   EXPECT_EQ(tune().err, "rmac: out of its travel\n");
