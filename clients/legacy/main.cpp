@@ -27,6 +27,7 @@ using namespace rmac;
 struct Words {
   std::string file, output, dialect = "rs274", unit, approach;
   std::vector<std::string> offsets;
+  bool ids_are_lines = false;
   rs274::Options options;
 };
 
@@ -63,6 +64,7 @@ bool read_offset(const std::string& text, rs274::Options& options) {
 /// What the command line parser leaves as text. What is wrong, or nothing.
 std::optional<std::string> finish(Words& words) {
   if (!legacy::is_feed(words.options.rapid_mm_min)) return "--rapid is 0.01 to 1 000 000 mm/min";
+  if (words.ids_are_lines) words.options.ids = legacy::Ids::Lines;
   if (!words.unit.empty()) words.options.unit_mm = words.unit == "inch" ? 25.4 : 1.0;
   if (!words.approach.empty()) {
     words.options.approach_mm = read_point(words.approach);
@@ -127,7 +129,9 @@ void declare(CLI::App& app, Words& words) {
                  "offsets, unless its next move is a G0 to X, Y and Z");
   app.add_flag("--assume-g43", words.options.assume_g43, "the tool's length counts from M6 on, though no G43 says so");
   app.add_option("--offset", words.offsets,
-                 "G54=X,Y,Z in mm: where a work system is in the machine; may be given for each");
+                 "G54=X,Y,Z in mm: where a work system is in the machine; may be given for each")
+      ->allow_extra_args(false);
+  app.add_flag("--ids-are-lines", words.ids_are_lines, "the id of each request is the line that it comes from");
 }
 
 }  // namespace

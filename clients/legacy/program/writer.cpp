@@ -40,8 +40,9 @@ std::string quoted(std::string_view text) {
 }  // namespace
 
 void Writer::open(std::string_view method) {
+  ++requests_;
   fmt::format_to(std::back_inserter(out_), R"({{"jsonrpc":"2.0","id":{},"method":"RMAC_CAM.{}","params":{{)",
-                 ++requests_, method);
+                 ids_ == Ids::Lines ? line_ : requests_, method);
 }
 
 void Writer::open_move(std::string_view method) {

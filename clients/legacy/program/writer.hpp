@@ -25,11 +25,14 @@ struct Arc {
   int more_turns = 0;
 };
 
+/// Ids of the requests: their numbers, or the lines of the source that they come from, for a reader who names those.
+enum class Ids { Numbers, Lines };
+
 /// Writes the requests of a `.rmac` file. The MoveID of each is the line of the source that it comes from.
 class Writer {
  public:
   using Sink = std::function<void(std::string_view text)>;
-  explicit Writer(Sink sink) : sink_(std::move(sink)) {}
+  explicit Writer(Sink sink, Ids ids = Ids::Numbers) : sink_(std::move(sink)), ids_(ids) {}
 
   void at_line(std::size_t line) noexcept { line_ = line; }
 
@@ -59,6 +62,7 @@ class Writer {
   void close();
 
   Sink sink_;
+  Ids ids_;
   std::string out_, here_, there_;
   std::size_t line_ = 0, requests_ = 0, moves_ = 0;
 };

@@ -20,7 +20,7 @@ std::string_view take_line(std::string_view& text) {
 class Import {
  public:
   Import(const Options& options, Writer::Sink sink)
-      : options_(options), writer_(std::move(sink)), interpreter_(options, writer_) {}
+      : options_(options), writer_(std::move(sink), options.ids), interpreter_(options, writer_) {}
 
   tl::expected<Summary, Error> run(std::string_view text) {
     try {

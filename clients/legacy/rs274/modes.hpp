@@ -18,6 +18,7 @@ struct Options {
   std::optional<double> unit_mm;       ///< of a program without G20 and G21
   std::optional<double> tolerance_mm;  ///< of G64 without P
   std::optional<Point> approach_mm;    ///< where the tip goes first, and after each tool change
+  legacy::Ids ids = legacy::Ids::Numbers;
   std::array<Known, Coordinates::kSystems> offsets{};  ///< where the work systems are in the machine
 };
 
