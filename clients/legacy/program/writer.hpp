@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace rmac::legacy {
 
@@ -25,6 +26,13 @@ struct Arc {
   int more_turns = 0;
 };
 
+/// A rational B-spline with even knots, from its first point to its last.
+struct Nurbs {
+  int degree = 3;
+  std::vector<Point> points;    ///< more than the degree
+  std::vector<double> weights;  ///< of each, or none
+};
+
 /// Ids of the requests: their numbers, or the lines of the source that they come from, for a reader who names those.
 enum class Ids { Numbers, Lines };
 
@@ -42,6 +50,7 @@ class Writer {
   void begin(const Point& start);
   void line(const Point& end);
   void arc(const Arc& arc);
+  void nurbs(const Nurbs& curve);
 
   void feed(double mm_min);
   void path_tolerance(double mm);
@@ -49,6 +58,8 @@ class Writer {
   void dwell(double seconds);
   void stop(bool optional, std::string_view message);
   void change_tool(int number);
+  void await_input(std::string_view name, bool on, double time_out_s);
+  void output(std::string_view name, bool on);
   /// Calls between moves, each as text of JSON.
   void in_turn(std::string_view calls);
   void flush();
