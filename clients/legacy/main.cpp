@@ -9,10 +9,12 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <tuple>
 #include <vector>
 
 #include "clients/legacy/program/output_file.hpp"
@@ -25,8 +27,9 @@ namespace fs = std::filesystem;
 using namespace rmac;
 
 struct Words {
-  std::string file, output, dialect = "rs274", unit, approach;
-  std::vector<std::string> offsets;
+  std::string file, output, dialect = "rs274", unit, approach, reference, second_reference;
+  std::vector<std::string> offsets, outputs, inputs;
+  bool ids_are_lines = false;
   rs274::Options options;
 };
 
@@ -60,13 +63,35 @@ bool read_offset(const std::string& text, rs274::Options& options) {
   return true;
 }
 
+/// 3=Clamp.
+bool read_name(const std::string& text, std::map<int, std::string>& names) {
+  const std::size_t equals = text.find('=');
+  int number = 0;
+  if (equals == std::string::npos || equals + 1 == text.size()) return false;
+  const auto read = std::from_chars(text.data(), text.data() + equals, number);
+  if (read.ec != std::errc() || read.ptr != text.data() + equals || number < 0) return false;
+  return names.emplace(number, text.substr(equals + 1)).second;
+}
+
 /// What the command line parser leaves as text. What is wrong, or nothing.
 std::optional<std::string> finish(Words& words) {
   if (!legacy::is_feed(words.options.rapid_mm_min)) return "--rapid is 0.01 to 1 000 000 mm/min";
+  if (words.ids_are_lines) words.options.ids = legacy::Ids::Lines;
   if (!words.unit.empty()) words.options.unit_mm = words.unit == "inch" ? 25.4 : 1.0;
-  if (!words.approach.empty()) {
-    words.options.approach_mm = read_point(words.approach);
-    if (!words.options.approach_mm) return "--approach is three numbers in mm, as 0,0,50";
+  const std::array places{
+      std::tuple{"approach", &words.approach, &words.options.approach_mm},
+      std::tuple{"reference-point", &words.reference, &words.options.reference_mm},
+      std::tuple{"second-reference-point", &words.second_reference, &words.options.second_reference_mm}};
+  for (const auto& [name, text, point] : places) {
+    if (text->empty()) continue;
+    *point = read_point(*text);
+    if (!*point) return fmt::format("--{} is three numbers in mm, as 0,0,50", name);
+  }
+  for (const auto& [name, texts, names] : {std::tuple{"output", &words.outputs, &words.options.outputs},
+                                           std::tuple{"input", &words.inputs, &words.options.inputs}}) {
+    for (const std::string& text : *texts) {
+      if (!read_name(text, *names)) return fmt::format("--{} {}: it is a number and a name, as 3=Clamp", name, text);
+    }
   }
   for (const auto& offset : words.offsets) {
     if (!read_offset(offset, words.options))
@@ -111,8 +136,7 @@ int import_file(const Words& words) {
 
 void declare(CLI::App& app, Words& words) {
   app.add_option("FILE", words.file, "the program, - for standard input")->required();
-  app.add_option("-o,--output", words.output,
-                 "the .rmac file, - for standard output; FILE with the ending .rmac unless given");
+  app.add_option("-o", words.output, "the .rmac file, - for standard output; FILE with the ending .rmac unless given");
   app.add_option("--dialect", words.dialect, "which control's language it is")
       ->check(CLI::IsMember({"rs274"}))
       ->capture_default_str();
@@ -127,7 +151,15 @@ void declare(CLI::App& app, Words& words) {
                  "offsets, unless its next move is a G0 to X, Y and Z");
   app.add_flag("--assume-g43", words.options.assume_g43, "the tool's length counts from M6 on, though no G43 says so");
   app.add_option("--offset", words.offsets,
-                 "G54=X,Y,Z in mm: where a work system is in the machine; may be given for each");
+                 "G54=X,Y,Z in mm: where a work system is in the machine; may be given for each")
+      ->allow_extra_args(false);
+  app.add_option("--reference-point", words.reference,
+                 "X,Y,Z in mm: where G28 takes the tool tip, in the coordinates of the part");
+  app.add_option("--second-reference-point", words.second_reference, "the same of G30");
+  app.add_option("--output", words.outputs, "3=NAME: the machine's output that M62 to M65 P3 switch")
+      ->allow_extra_args(false);
+  app.add_option("--input", words.inputs, "3=NAME: the machine's input that M66 P3 waits for")->allow_extra_args(false);
+  app.add_flag("--ids-are-lines", words.ids_are_lines, "the id of each request is the line that it comes from");
 }
 
 }  // namespace

@@ -183,8 +183,11 @@ class Program:
     def drill(self):
         first, second, normal = PLANES[self.plane]
         back = self.random.choice(["G98", "G99"])
-        code = self.random.choice(["G81", "G82", "G83"])
-        extra = {"G81": "", "G82": " P0.1", "G83": " Q" + "%.4f" % (self.random.uniform(1, 4) / self.unit)}[code]
+        code = self.random.choice(["G73", "G81", "G82", "G83", "G85", "G86", "G89"])
+        if code == "G86":
+            self.write("M3 S700")
+        peck = " Q%.4f" % (self.random.uniform(1, 4) / self.unit)
+        extra = {"G73": peck, "G82": " P0.1", "G83": peck, "G86": " P0.2", "G89": " P0.3"}.get(code, "")
         retract = self.random.uniform(0, 3) if not self.incremental else self.random.uniform(-3, 3)
         depth = retract - self.random.uniform(1, 9) if not self.incremental else -self.random.uniform(1, 9)
         axis = "XYZ"[normal]

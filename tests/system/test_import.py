@@ -1,4 +1,5 @@
-"""`rmac import`: a program of another control becomes one that `rmac simulate` plans, or none at all."""
+"""`rmac import`: a program of another control becomes one that `rmac simulate` plans, or none at all; `rmac run` and `rmac simulate` take
+it as it is."""
 
 import json
 import math
@@ -63,6 +64,45 @@ class Import(unittest.TestCase):
             self.assertEqual((done.returncode, done.stderr), (0, ""))
             x, y, z = json.loads(appliance.rmac("--json", "status").stdout)["pose"][:3]
         self.assertLess(math.dist((x, y, z), (-10, -10, 5)), 0.01)  # where the hole was left, as measured
+
+    def test_such_a_program_is_simulated_and_machined_as_it_is(self):
+        self.source.write_text(PART)
+        imported = self.folder / "part.rmac"
+        self.assertEqual(self.rmac("import", self.source).returncode, 0)
+        of_import = json.loads(self.rmac("simulate", imported, "--machine", "BenchXYZ", "--json").stdout)
+        imported.unlink()
+        done = self.rmac("simulate", self.source, "--machine", "BenchXYZ", "--json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        for what in ("length_mm", "moves", "cycle_time_s"):
+            self.assertEqual(json.loads(done.stdout)[what], of_import[what])
+        with Appliance() as appliance:
+            done = appliance.rmac("--json", "run", "--machine", "BenchXYZ", self.source)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertEqual(json.loads(done.stdout)["moves"], of_import["moves"])
+        self.assertEqual([p.name for p in self.folder.iterdir()], ["part.ngc"])
+
+    def test_what_is_wrong_is_told_by_the_source_s_line(self):
+        self.source.write_text("(far)\nG21 G90 G0 X0 Y0 Z0\n\nF600 G1 X5\nG1 X9000\nM2\n")
+        for words in (["simulate", self.source, "--machine", "BenchXYZ"], ["simulate", "--machine", "BenchXYZ", self.source, "--rapid", "900"]):
+            done = self.rmac(*words)
+            self.assertEqual(done.returncode, 1)
+            self.assertTrue(done.stderr.startswith(f"rmac: {self.source}:5: "), done.stderr)
+        self.source.write_text("G21\nG0 X0 Y0 Z0\n\nG1 X1 F900000\nM2\n")  # the feed is no move
+        done = self.rmac("simulate", self.source, "--machine", "BenchXYZ")
+        self.assertTrue(done.stderr.startswith(f"rmac: {self.source}:4: RMAC_CAM.SetFeedrate: "), done.stderr)
+        self.source.write_text("G21 G0 X0 Y0 Z0\n  G12 X2\nM2\n")
+        done = self.rmac("simulate", self.source, "--machine", "BenchXYZ")
+        self.assertEqual((done.returncode, done.stderr), (1, f"rmac: {self.source}:2:3: there is no G12\n"))
+
+    def test_the_language_is_told_by_the_ending_or_the_dialect(self):
+        for name, words, ending in (("P.NC", [], 0), ("p.tap", [], 0), ("p.gcode", [], 1), ("p.gcode", ["--dialect", "rs274"], 0),
+                                    ("p.rmac", ["--dialect", "rs274"], 0), ("p.rmac", ["--rapid", "100"], 1)):
+            file = self.folder / name
+            file.write_text("G0 X1 Y0 Z0\nG0 X2\nM2\n" if ending == 0 else "{}")
+            done = self.rmac("simulate", "--offset", "G54=0,0,0", file, "--machine", "BenchXYZ", "--unit", "mm", *words)
+            self.assertEqual(done.returncode, ending, (name, done.stderr))
+        self.assertIn("--dialect", done.stderr)
+        self.assertEqual(self.rmac("simulate", "-", "--dialect", "rs274", "--machine", "BenchXYZ").returncode, 1)
 
     def test_options_and_help_are_the_program_s_own(self):
         self.source.write_text("G0 X1\nM2\n")

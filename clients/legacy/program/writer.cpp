@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -40,8 +41,9 @@ std::string quoted(std::string_view text) {
 }  // namespace
 
 void Writer::open(std::string_view method) {
+  ++requests_;
   fmt::format_to(std::back_inserter(out_), R"({{"jsonrpc":"2.0","id":{},"method":"RMAC_CAM.{}","params":{{)",
-                 ++requests_, method);
+                 ids_ == Ids::Lines ? line_ : requests_, method);
 }
 
 void Writer::open_move(std::string_view method) {
@@ -106,6 +108,29 @@ void Writer::arc(const Arc& arc) {
   ++moves_;
 }
 
+void Writer::nurbs(const Nurbs& curve) {
+  open_move("MoveAlongNurbs");
+  fmt::format_to(std::back_inserter(out_), R"("Nurbs":{{"degree":{},"points":[)", curve.degree);
+  for (const Point& point : curve.points) {
+    write_point(out_, point);
+    out_ += ',';
+  }
+  out_.back() = ']';
+  const int points = static_cast<int>(curve.points.size()), inner = points - curve.degree;
+  out_.append(R"(,"knots":[)");
+  for (int knot = -curve.degree; knot <= points; ++knot) {
+    fmt::format_to(std::back_inserter(out_), "{},", std::clamp(knot, 0, inner));
+  }
+  out_.back() = ']';
+  if (!curve.weights.empty())
+    fmt::format_to(std::back_inserter(out_), R"(,"weights":[{}])", fmt::join(curve.weights, ","));
+  out_ += '}';
+  close();
+  here_.clear();
+  write_point(here_, curve.points.back());
+  ++moves_;
+}
+
 void Writer::feed(double mm_min) {
   open("SetFeedrate");
   fmt::format_to(std::back_inserter(out_), R"("Feedrate":{})", rounded(mm_min));
@@ -143,6 +168,16 @@ void Writer::change_tool(int number) {
   open("DoToolChange");
   fmt::format_to(std::back_inserter(out_), R"("ToolNumber":{})", number);
   close();
+}
+
+void Writer::await_input(std::string_view name, bool on, double time_out_s) {
+  open_move("AwaitInput");
+  fmt::format_to(std::back_inserter(out_), R"("Name":{},"On":{},"TimeOut":{})", quoted(name), on, time_out_s);
+  close();
+}
+
+void Writer::output(std::string_view name, bool on) {
+  in_turn(fmt::format(R"({{"method":"RMAC_CAM.SetOutput","params":{{"Name":{},"On":{}}}}})", quoted(name), on));
 }
 
 void Writer::in_turn(std::string_view calls) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace rmac::legacy {
 
@@ -25,11 +26,21 @@ struct Arc {
   int more_turns = 0;
 };
 
+/// A rational B-spline with even knots, from its first point to its last.
+struct Nurbs {
+  int degree = 3;
+  std::vector<Point> points;    ///< more than the degree
+  std::vector<double> weights;  ///< of each, or none
+};
+
+/// Ids of the requests: their numbers, or the lines of the source that they come from, for a reader who names those.
+enum class Ids { Numbers, Lines };
+
 /// Writes the requests of a `.rmac` file. The MoveID of each is the line of the source that it comes from.
 class Writer {
  public:
   using Sink = std::function<void(std::string_view text)>;
-  explicit Writer(Sink sink) : sink_(std::move(sink)) {}
+  explicit Writer(Sink sink, Ids ids = Ids::Numbers) : sink_(std::move(sink)), ids_(ids) {}
 
   void at_line(std::size_t line) noexcept { line_ = line; }
 
@@ -39,6 +50,7 @@ class Writer {
   void begin(const Point& start);
   void line(const Point& end);
   void arc(const Arc& arc);
+  void nurbs(const Nurbs& curve);
 
   void feed(double mm_min);
   void path_tolerance(double mm);
@@ -46,6 +58,8 @@ class Writer {
   void dwell(double seconds);
   void stop(bool optional, std::string_view message);
   void change_tool(int number);
+  void await_input(std::string_view name, bool on, double time_out_s);
+  void output(std::string_view name, bool on);
   /// Calls between moves, each as text of JSON.
   void in_turn(std::string_view calls);
   void flush();
@@ -59,6 +73,7 @@ class Writer {
   void close();
 
   Sink sink_;
+  Ids ids_;
   std::string out_, here_, there_;
   std::size_t line_ = 0, requests_ = 0, moves_ = 0;
 };

@@ -9,7 +9,19 @@ namespace rmac::rs274 {
 
 namespace {
 
-constexpr int kFirst = 810, kDwelling = 820, kPecking = 830, kLast = 830;
+constexpr int kChipBreaking = 730, kFirst = 810, kDwelling = 820, kPecking = 830, kReaming = 850, kStopping = 860,
+              kBoring = 890;
+
+bool is_cycle(int code) {
+  return code == kChipBreaking || (code >= kFirst && code <= kBoring);
+}
+bool pecks(int code) {
+  return code == kChipBreaking || code == kPecking;
+}
+bool dwells(int code) {
+  return code == kDwelling || code == kStopping || code == kBoring;
+}
+
 /// How far above the depth that was reached a peck goes on from rapid to feed: LinuxCNC's 0.010 inch.
 constexpr double kBackOff_mm = 0.254;
 /// A last peck of less than this part of one is none.
@@ -37,18 +49,20 @@ double Drilling::sticky(Block& block, char letter, std::optional<double>& value,
 void Drilling::read(Block& block, int code, std::size_t place) {
   static_cast<void>(sticky(block, 'R', retract_, place));
   static_cast<void>(sticky(block, kAxisLetters.at(modes_.plane.normal), depth_, place));
-  if (code == kDwelling && sticky(block, 'P', dwell_s_, place) < 0) refuse(place, "a dwell of less than no time");
-  if (code == kPecking && !(sticky(block, 'Q', peck_, place) > 0))
-    refuse(place, "Q, the depth of a peck, is more than 0");
+  if (dwells(code) && sticky(block, 'P', dwell_s_, place) < 0) refuse(place, "a dwell of less than no time");
+  if (pecks(code) && !(sticky(block, 'Q', peck_, place) > 0)) refuse(place, "Q, the depth of a peck, is more than 0");
 }
 
 void Drilling::drill(Block& block, int code, int before, std::size_t place) {
   const Plane& plane = modes_.plane;
   if (block.once(530)) refuse(place, "G53 goes with G0 and G1 only");
+  if (code == kStopping && !switches_.spindle_turns()) {
+    refuse(place, "G86 stops the spindle, which does not turn; write M3 or M4 and S before it");
+  }
   if (!block.has_any("XYZ")) refuse(place, "a canned cycle needs X, Y or Z in its block");
   Point at = mover_.start(place);
   if (before != code) retract_ = depth_ = dwell_s_ = peck_ = std::nullopt;
-  if (before < kFirst || before > kLast) initial_ = at.at(plane.normal);
+  if (!is_cycle(before)) initial_ = at.at(plane.normal);
   read(block, code, place);
   const double retract = modes_.incremental ? initial_ + *retract_ : coordinates_.to_part(plane.normal, *retract_);
   const double bottom = modes_.incremental ? retract + *depth_ : coordinates_.to_part(plane.normal, *depth_);
@@ -59,7 +73,7 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
   }
   const double clear = modes_.retract_to_r ? retract : std::max(initial_, retract);
   const int repeats = repeats_of(block);
-  if (code == kPecking && !((retract - bottom) / *peck_ * repeats <= kMostRepeats)) {
+  if (pecks(code) && !((retract - bottom) / *peck_ * repeats <= kMostRepeats)) {
     refuse(place, fmt::format("more than {} pecks in one block", kMostRepeats));
   }
   const Word* first = block.find(kAxisLetters.at(plane.first));
@@ -82,27 +96,36 @@ int Drilling::pecks_to(double retract, double bottom) const {
   return static_cast<int>(std::max(1.0, std::ceil((retract - bottom) / *peck_ - kSameDepth)));
 }
 
-void Drilling::hole(const Point& above, double bottom, double clear, int code, std::size_t place) {
+void Drilling::peck(const Point& above, double bottom, int code, std::size_t place) {
   const std::size_t normal = modes_.plane.normal;
+  const double retract = above.at(normal);
+  // By number: a peck may be too small to change the depth that it is taken from.
+  const int count = pecks_to(retract, bottom);
+  Point at = above;
+  for (int number = 1; number < count; ++number) {
+    const double depth = retract - number * *peck_;
+    at.at(normal) = depth;
+    mover_.line(at, place);
+    if (code == kPecking) mover_.rapid(above, place);
+    at.at(normal) = std::min(depth + kBackOff_mm, retract);
+    mover_.rapid(at, place);
+  }
+}
+
+void Drilling::hole(const Point& above, double bottom, double clear, int code, std::size_t place) {
   const auto at = [&](double level) {
     Point point = above;
-    point.at(normal) = level;
+    point.at(modes_.plane.normal) = level;
     return point;
   };
-  const double retract = above.at(normal);
-  if (code == kPecking) {
-    // By number: a peck may be too small to change the depth that it is taken from.
-    const int pecks = pecks_to(retract, bottom);
-    for (int peck = 1; peck < pecks; ++peck) {
-      const double depth = retract - peck * *peck_;
-      mover_.line(at(depth), place);
-      mover_.rapid(above, place);
-      mover_.rapid(at(std::min(depth + kBackOff_mm, retract)), place);
-    }
-  }
+  if (pecks(code)) peck(above, bottom, code, place);
   mover_.line(at(bottom), place);
-  if (code == kDwelling) writer_.dwell(*dwell_s_);
+  if (dwells(code)) writer_.dwell(*dwell_s_);
+  if (code == kReaming) mover_.line(above, place);
+  if (code == kBoring) mover_.line(at(clear), place);
+  if (code == kStopping) switches_.hold_spindle();
   mover_.rapid(at(clear), place);
+  if (code == kStopping) switches_.release_spindle();
 }
 
 }  // namespace rmac::rs274

@@ -20,7 +20,7 @@ std::string_view take_line(std::string_view& text) {
 class Import {
  public:
   Import(const Options& options, Writer::Sink sink)
-      : options_(options), writer_(std::move(sink)), interpreter_(options, writer_) {}
+      : options_(options), writer_(std::move(sink), options.ids), interpreter_(options, writer_) {}
 
   tl::expected<Summary, Error> run(std::string_view text) {
     try {
@@ -46,6 +46,7 @@ class Import {
     if (text.front() == '%') {
       if (text.size() > 1) refuse(1, "nothing stands behind %");
       if (begun_ && !marked_) refuse(0, "a % in a program that did not begin with one");
+      if (marked_) interpreter_.require_closed(0);
       ended_ = marked_;
       marked_ = true;
     } else if (!(text.front() == '/' && options_.block_delete)) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "clients/legacy/rs274/named_io.hpp"
 #include "clients/legacy/rs274/offsets.hpp"
 
 namespace rmac::rs274 {
@@ -46,9 +47,10 @@ Interpreter::Interpreter(const Options& options, Writer& writer)
     : options_(options),
       writer_(writer),
       mover_(options, modes_, coordinates_, writer),
-      motions_(modes_, coordinates_, mover_),
-      drilling_(modes_, coordinates_, mover_, writer),
-      switches_(writer) {
+      motions_(options, modes_, coordinates_, mover_),
+      splines_(motions_, modes_, mover_),
+      switches_(writer),
+      drilling_(modes_, coordinates_, mover_, switches_, writer) {
   modes_.unit_mm = options.unit_mm;
   for (std::size_t system = 0; system < Coordinates::kSystems; ++system)
     coordinates_.set_offset(system, options.offsets.at(system));
@@ -59,10 +61,16 @@ bool Interpreter::execute(const Line& line) {
   block_.read(line, parameters_);
   read_comments(line);
   if (block_.empty()) return true;
+  if (splines_.open()) {
+    splines_.go_on(block_);
+    block_.require_all_used();
+    return true;
+  }
   set_speeds();
   set_tool();
   switches_.switch_coolant(block_);
   switches_.write();
+  act_on_names(block_, options_, writer_);
   dwell();
   set_plane_and_units();
   set_length();
@@ -175,12 +183,13 @@ void Interpreter::act_once() {
   const auto& once = block_.g(GGroup::Once);
   if (!once) return;
   if (once->number == 100) set_system(block_, modes_, coordinates_, once->place);
+  if (once->number == 280 || once->number == 300) motions_.reference(block_, *once);
   if (once->number >= 920) shift_coordinates(block_, *once, modes_, coordinates_);
 }
 
 void Interpreter::move() {
   const auto& motion = block_.g(GGroup::Motion);
-  const bool axes_are_taken = block_.once(100) || block_.once(920);
+  const bool axes_are_taken = block_.once(100) || block_.once(920) || block_.once(280) || block_.once(300);
   if (motion) {
     const bool only_mode = (motion->number == 0 || motion->number == 10) && !block_.has_any("XYZ");
     if (motion->number == Modes::kNoMotion || only_mode) {
@@ -200,6 +209,7 @@ void Interpreter::move_by(int code, std::size_t place) {
   const int before = std::exchange(modes_.motion, code);
   if (code == 0 || code == 10) return motions_.straight(block_, code == 0, place);
   if (code == 20 || code == 30) return motions_.arc(block_, code == 30, place);
+  if (code >= 50 && code <= 53) return splines_.move(block_, code, before, place);
   drilling_.drill(block_, code, before, place);
 }
 

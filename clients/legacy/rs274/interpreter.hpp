@@ -5,6 +5,7 @@
 
 #include "clients/legacy/rs274/drilling.hpp"
 #include "clients/legacy/rs274/motions.hpp"
+#include "clients/legacy/rs274/splines.hpp"
 #include "clients/legacy/rs274/switches.hpp"
 
 namespace rmac::rs274 {
@@ -18,6 +19,8 @@ class Interpreter {
 
   /// Throws a Refusal. False where the program ends.
   [[nodiscard]] bool execute(const Line& line);
+  /// Refuses an end of the program within what has to be ended first.
+  void require_closed(std::size_t place) const { splines_.require_closed(place); }
 
  private:
   void read_comments(const Line& line);
@@ -42,8 +45,9 @@ class Interpreter {
   Coordinates coordinates_;
   Mover mover_;
   Motions motions_;
-  Drilling drilling_;
+  Splines splines_;
   Switches switches_;
+  Drilling drilling_;
   std::string message_, block_comment_;
 };
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
+#include <string>
 
 #include "clients/legacy/rs274/arc_geometry.hpp"
 #include "clients/legacy/rs274/blocks/block.hpp"
@@ -18,6 +20,9 @@ struct Options {
   std::optional<double> unit_mm;       ///< of a program without G20 and G21
   std::optional<double> tolerance_mm;  ///< of G64 without P
   std::optional<Point> approach_mm;    ///< where the tip goes first, and after each tool change
+  std::optional<Point> reference_mm, second_reference_mm;  ///< of G28 and G30, in the coordinates of the part
+  std::map<int, std::string> outputs, inputs;              ///< names of the machine's, by the numbers of M62 to M66
+  legacy::Ids ids = legacy::Ids::Numbers;
   std::array<Known, Coordinates::kSystems> offsets{};  ///< where the work systems are in the machine
 };
 

@@ -60,6 +60,24 @@ void Motions::straight(Block& block, bool rapid, std::size_t place) {
   mover_.line(end, place);
 }
 
+void Motions::reference(Block& block, const Code& code) {
+  const bool first = code.number == 280;
+  const auto& known = first ? options_.reference_mm : options_.second_reference_mm;
+  if (!known) {
+    refuse(code.place, fmt::format("where the machine keeps this point is not known here; give --{}reference-point "
+                                   "X,Y,Z, or write the way there as G0",
+                                   first ? "" : "second-"));
+  }
+  if (!block.has_any("XYZ")) return mover_.reference(*known, code.place);
+  const std::array<bool, 3> goes{block.has('X'), block.has('Y'), block.has('Z')};
+  mover_.rapid(end_of(block, code.place), code.place);
+  Point end = coordinates_.known_tip();
+  for (std::size_t axis = 0; axis < end.size(); ++axis) {
+    if (goes.at(axis)) end.at(axis) = known->at(axis);
+  }
+  mover_.reference(end, code.place);
+}
+
 Point Motions::written_centre(Block& block, const Point& start, std::size_t place) const {
   const Plane& plane = modes_.plane;
   const char first = kCentreLetters.at(plane.first), second = kCentreLetters.at(plane.second);

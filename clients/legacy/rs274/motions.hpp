@@ -6,21 +6,24 @@
 
 namespace rmac::rs274 {
 
-/// G0 to G3: where a block of them ends, and by which way.
+/// G0 to G3, G28 and G30: where a block of them ends, and by which way.
 class Motions {
  public:
-  Motions(const Modes& modes, Coordinates& coordinates, Mover& mover)
-      : modes_(modes), coordinates_(coordinates), mover_(mover) {}
+  Motions(const Options& options, const Modes& modes, Coordinates& coordinates, Mover& mover)
+      : options_(options), modes_(modes), coordinates_(coordinates), mover_(mover) {}
 
   /// G0 or G1. `place`: of what asks for it.
   void straight(Block& block, bool rapid, std::size_t place);
   void arc(Block& block, bool counter_clockwise, std::size_t place);
+  /// G28 and G30: by way of the place that the block names, if it names one, to the reference point.
+  void reference(Block& block, const Code& code);
+  [[nodiscard]] Point end_of(Block& block, std::size_t place);
 
  private:
-  [[nodiscard]] Point end_of(Block& block, std::size_t place);
   [[nodiscard]] double machine_value(const Word& word, std::size_t axis) const;
   [[nodiscard]] Point written_centre(Block& block, const Point& start, std::size_t place) const;
 
+  const Options& options_;
   const Modes& modes_;
   Coordinates& coordinates_;
   Mover& mover_;

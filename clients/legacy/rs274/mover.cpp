@@ -37,10 +37,14 @@ Point Mover::start(std::size_t place) {
   return coordinates_.known_tip();
 }
 
-void Mover::prepare(const Point& end, std::size_t place) {
-  for (const double value : end) {
+void Mover::require_reach(const Point& point, std::size_t place) {
+  for (const double value : point) {
     if (!(std::abs(value) <= legacy::kFarthest_mm)) refuse(place, "a move beyond 1 000 000 mm");
   }
+}
+
+void Mover::prepare(const Point& end, std::size_t place) {
+  require_reach(end, place);
   if (modes_.length == ToolLength::Off && !options_.assume_g43 && coordinates_.tip()[2] != end[2]) {
     refuse(place,
            "Z of a tool whose length does not count (G49, or M6 without G43 behind it): the appliance's Z is always "
@@ -52,6 +56,16 @@ void Mover::prepare(const Point& end, std::size_t place) {
 
 void Mover::rapid(const Point& end, std::size_t place) {
   prepare(end, place);
+  go(end, place);
+}
+
+void Mover::reference(const Point& end, std::size_t place) {
+  require_reach(end, place);
+  write_frame();
+  go(end, place);
+}
+
+void Mover::go(const Point& end, std::size_t place) {
   if (!coordinates_.tip_is_known() || coordinates_.known_tip() != end) write_rapid(end, place);
   coordinates_.move_to(end);
 }
@@ -74,6 +88,13 @@ void Mover::arc(const Arc& arc, std::size_t place) {
   prepare_feed(arc.end, place);
   writer_.arc(arc);
   coordinates_.move_to(arc.end);
+}
+
+void Mover::nurbs(const legacy::Nurbs& curve, std::size_t place) {
+  for (const Point& point : curve.points) require_reach(point, place);
+  prepare_feed(curve.points.back(), place);
+  writer_.nurbs(curve);
+  coordinates_.move_to(curve.points.back());
 }
 
 }  // namespace rmac::rs274

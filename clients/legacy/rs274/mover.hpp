@@ -17,10 +17,15 @@ class Mover {
   void rapid(const Point& end, std::size_t place);
   void line(const Point& end, std::size_t place);
   void arc(const Arc& arc, std::size_t place);
+  void nurbs(const legacy::Nurbs& curve, std::size_t place);
+  /// A rapid to where whoever imports the program says that the tip is, whether or not the tool's length counts.
+  void reference(const Point& end, std::size_t place);
   /// Makes the tip's place known, by the approach where nothing else tells it.
   [[nodiscard]] Point start(std::size_t place);
 
  private:
+  static void require_reach(const Point& point, std::size_t place);
+  void go(const Point& end, std::size_t place);
   void prepare(const Point& end, std::size_t place);
   void prepare_feed(const Point& end, std::size_t place);
   void write_feed(double mm_min, std::size_t place);

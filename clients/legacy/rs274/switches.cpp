@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace rmac::rs274 {
 
@@ -42,6 +43,16 @@ void Switches::change_tool(std::size_t place) {
 
 void Switches::turn_spindle(int code) {
   direction_ = code == 3 ? 1 : code == 4 ? -1 : 0;
+}
+
+void Switches::hold_spindle() {
+  held_ = std::exchange(direction_, 0);
+  write();
+}
+
+void Switches::release_spindle() {
+  direction_ = std::exchange(held_, 0);
+  write();
 }
 
 void Switches::switch_coolant(const Block& block) {

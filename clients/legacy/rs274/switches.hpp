@@ -18,6 +18,10 @@ class Switches {
   void change_tool(std::size_t place);
   /// M3, M4, M5.
   void turn_spindle(int code);
+  [[nodiscard]] bool spindle_turns() const noexcept { return direction_ != 0 && rpm_ != 0; }
+  /// Stops the spindle where a program does not say so, and lets it turn again.
+  void hold_spindle();
+  void release_spindle();
   /// M7, M8, M9 of one block.
   void switch_coolant(const Block& block);
   /// Writes what of them the block changed. Several calls are one request.
@@ -32,7 +36,7 @@ class Switches {
   Writer& writer_;
   std::optional<int> selected_, tool_;
   double rpm_ = 0, turning_rpm_ = 0;
-  int direction_ = 0;                                                       ///< 1: clockwise
+  int direction_ = 0, held_ = 0;                                            ///< 1: clockwise
   bool mist_ = false, flood_ = false, mist_on_ = false, flood_on_ = false;  ///< wanted, and written
 };
 

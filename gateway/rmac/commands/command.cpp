@@ -14,6 +14,11 @@ Option& Option::takes(int values) {
   return *this;
 }
 
+Option& Option::repeats() {
+  option_->allow_extra_args(false);
+  return *this;
+}
+
 Option& Option::shows_default() {
   option_->capture_default_str();
   return *this;

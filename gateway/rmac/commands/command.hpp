@@ -20,7 +20,7 @@ namespace rmac::cli {
 using Target =
     std::variant<int*, std::int64_t*, std::uint16_t*, std::uint32_t*, double*, std::string*, std::filesystem::path*,
                  std::optional<int>*, std::optional<double>*, std::optional<std::string>*, std::optional<bool>*,
-                 std::vector<double>*, std::vector<std::uint32_t>*>;
+                 std::vector<double>*, std::vector<std::uint32_t>*, std::vector<std::string>*>;
 
 /// One option of a command, or one of its words in order. A handle: the command line owns what it stands for.
 class Option {
@@ -30,6 +30,8 @@ class Option {
   Option& required();
   /// Takes just so many values.
   Option& takes(int values);
+  /// May be given often, with one value each time.
+  Option& repeats();
   /// The help shows what it is unless given.
   Option& shows_default();
   Option& reads_environment(const std::string& variable);

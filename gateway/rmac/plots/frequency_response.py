@@ -61,6 +61,10 @@ class Mode:
         gain = self.poles(one).real[0] / moved.poles(one).real[0] / factor**2
         return Mode(moved.resonance, moved.damping, tuple(gain * share for share in self.over))
 
+    def may_be_an_image(self):
+        """Of a resonance that still moves metal: at most 0.7 of the sampling rate."""
+        return self.resonance > 0.6 * np.pi
+
     def poles(self, angle):
         """1 over them, at `angle` rad a cycle."""
         z = np.exp(1j * angle)
@@ -103,7 +107,7 @@ class Model:
 
     def shifted(self, factor, folded=False):
         """With all modes elsewhere by `factor`."""
-        modes = [mode.shifted(factor, folded) for mode in self.modes]
+        modes = [mode.shifted(factor, folded and mode.may_be_an_image()) for mode in self.modes]
         return Model(self.period, self.mass, self.delay_s, self.lag_s, modes)
 
 

@@ -166,7 +166,10 @@ def margins_of(loop, model):
 def judge(loop, model):
     """The worst of `loop` on `model` and with its modes elsewhere."""
     worst = None
-    for shift, folded in ELSEWHERE if model.modes else ELSEWHERE[:1]:
+    places = ELSEWHERE if model.modes else ELSEWHERE[:1]
+    for shift, folded in places:
+        if folded and not any(mode.may_be_an_image() for mode in model.modes):
+            continue
         found = margins_of(loop, model.shifted(shift, folded))
         if worst is None or found.sensitivity_peak > worst.sensitivity_peak or not found.stable:
             worst = found

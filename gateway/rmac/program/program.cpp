@@ -6,6 +6,7 @@
 #include <array>
 #include <fstream>
 #include <iostream>
+#include <sstream>
 #include <string_view>
 
 #include "gateway/api/dispatch/dispatcher.hpp"
@@ -26,6 +27,9 @@ constexpr std::size_t kLongestLine = 8U << 20U;
 
 /// What tells a move's events from another's.
 constexpr std::string_view kMoveId = "MoveID";
+
+/// What tells a request's line: where it stands, or its id.
+enum class LinesBy { Place, Id };
 
 /// Place of the id among the parameters of a method that queues a move; none for a tool change, which has no id.
 std::optional<std::size_t> place_of_id(const std::string& method) {
@@ -68,6 +72,7 @@ Result<Request> read_request(std::string_view text, const std::string& place) {
     return fail(fmt::format("{}: the request has no \"method\": a program holds requests only", place));
   }
   Request request;
+  if (const auto id = json.find("id"); id != json.end() && id->is_number_integer()) request.line = id->get<int>();
   request.method = json["method"].get<std::string>();
   request.text = text;
   const auto params = json.value("params", nlohmann::json());
@@ -88,6 +93,36 @@ bool next_line(std::istream& input, std::string& line) {
   return !input.bad() && (input || !line.empty());
 }
 
+Result<Program> read_requests(std::istream& input, const std::string& name, LinesBy lines) {
+  Program program;
+  program.file = name;
+  std::string text;
+  for (int line = 1; next_line(input, text); ++line) {
+    if (text.size() > kLongestLine) {
+      return fail(fmt::format("{}:{}: more than {} bytes are no request", program.file, line, kLongestLine));
+    }
+    if (text.find_first_not_of(" \t\r") == std::string::npos) {
+      continue;
+    }
+    auto request = read_request(text, fmt::format("{}:{}", program.file, line));
+    if (!request) {
+      return tl::unexpected(request.error());
+    }
+    if (lines == LinesBy::Place) request->line = line;
+    program.moves += request->timing == Timing::Move && !request->tool_change ? 1U : 0U;
+    program.starts_cycle = program.starts_cycle || request->timing == Timing::Start;
+    program.loads_mechanism = program.loads_mechanism || loads_mechanism(*request);
+    program.requests.push_back(std::move(*request));
+  }
+  if (input.bad()) {
+    return fail(fmt::format("{}: cannot be read: {}", program.file, std::generic_category().message(errno)));
+  }
+  if (program.requests.empty()) {
+    return fail(fmt::format("{}: holds no request", program.file));
+  }
+  return program;
+}
+
 }  // namespace
 
 nlohmann::json Request::params() const {
@@ -106,34 +141,12 @@ Result<Program> read_program(const std::string& file) {
       return fail(fmt::format("{}: cannot be read: {}", file, std::generic_category().message(errno)));
     }
   }
-  std::istream& input = file == "-" ? std::cin : opened;
-  Program program;
-  program.file = file == "-" ? "standard input" : file;
-  std::string text;
-  for (int line = 1; next_line(input, text); ++line) {
-    if (text.size() > kLongestLine) {
-      return fail(fmt::format("{}:{}: more than {} bytes are no request", program.file, line, kLongestLine));
-    }
-    if (text.find_first_not_of(" \t\r") == std::string::npos) {
-      continue;
-    }
-    auto request = read_request(text, fmt::format("{}:{}", program.file, line));
-    if (!request) {
-      return tl::unexpected(request.error());
-    }
-    request->line = line;
-    program.moves += request->timing == Timing::Move && !request->tool_change ? 1U : 0U;
-    program.starts_cycle = program.starts_cycle || request->timing == Timing::Start;
-    program.loads_mechanism = program.loads_mechanism || loads_mechanism(*request);
-    program.requests.push_back(std::move(*request));
-  }
-  if (input.bad()) {
-    return fail(fmt::format("{}: cannot be read: {}", program.file, std::generic_category().message(errno)));
-  }
-  if (program.requests.empty()) {
-    return fail(fmt::format("{}: holds no request", program.file));
-  }
-  return program;
+  return read_requests(file == "-" ? std::cin : opened, file == "-" ? "standard input" : file, LinesBy::Place);
+}
+
+Result<Program> read_imported(std::string requests, const std::string& file) {
+  std::istringstream input(std::move(requests));
+  return read_requests(input, file, LinesBy::Id);
 }
 
 }  // namespace rmac::cli

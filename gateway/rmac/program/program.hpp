@@ -37,5 +37,7 @@ struct Program {
 
 /// Reads and checks the whole file before anything moves ("-" is standard input). An error names file and line.
 [[nodiscard]] Result<Program> read_program(const std::string& file);
+/// The same of what another control's program became. The id of each request is the line of `file` that it comes from.
+[[nodiscard]] Result<Program> read_imported(std::string requests, const std::string& file);
 
 }  // namespace rmac::cli

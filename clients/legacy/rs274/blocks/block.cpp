@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -28,7 +29,7 @@ std::optional<int> near_integer(double value, int most) {
 }
 
 bool is_axis_setter(const Block& block) {
-  return block.once(100) || block.once(920);
+  return block.once(100) || block.once(920) || block.once(280) || block.once(300);
 }
 
 }  // namespace
@@ -138,6 +139,13 @@ bool Block::has_any(std::string_view letters) const noexcept {
     if (has(letter)) return true;
   }
   return false;
+}
+
+bool Block::does_more_than_move() const noexcept {
+  for (std::size_t group = 0; group < g_.size(); ++group) {
+    if (g_.at(group) && static_cast<GGroup>(group) != GGroup::Motion) return true;
+  }
+  return std::ranges::any_of(m_, [](const auto& code) { return code.has_value(); });
 }
 
 const Word& Block::use(char letter) {

@@ -39,6 +39,9 @@ class Block {
   /// Whether the one code of group 0 is this one.
   [[nodiscard]] bool once(int tenfold) const { return g(GGroup::Once) && g(GGroup::Once)->number == tenfold; }
 
+  /// Whether it has a code beside one of motion.
+  [[nodiscard]] bool does_more_than_move() const noexcept;
+
   [[nodiscard]] bool has(char letter) const noexcept { return (words_ & bit(letter)) != 0; }
   [[nodiscard]] bool has_any(std::string_view letters) const noexcept;
   /// A word that the block has; whoever asks for it, uses it.

@@ -7,12 +7,12 @@ namespace rmac::rs274 {
 
 namespace {
 
-constexpr std::string_view kCycle = "of the canned cycles G81, G82 and G83 are taken; write it out as G0 and G1";
+constexpr std::string_view kCycle = "a cycle that needs the spindle's angle or a hand; write it out as G0 and G1";
 constexpr std::string_view kCompensation =
     "cutter radius compensation is not taken yet; have the CAM program give the path of the tool's centre";
 constexpr std::string_view kProbe = "probing belongs into a measuring plan (rmac measure)";
-constexpr std::string_view kSpline = "splines are not taken yet; have the CAM program give arcs and lines";
-constexpr std::string_view kHome = "where the machine keeps this point is not known here; write the way there as G0";
+constexpr std::string_view kHome =
+    "a program does not set the machine's points; give --reference-point when it is imported";
 constexpr std::string_view kLathe = "lathes are not taken yet";
 constexpr std::string_view kThread = "moves that follow the spindle's angle are not taken";
 constexpr std::string_view kPolar = "polar coordinates are not taken; write X and Y";
@@ -26,10 +26,10 @@ constexpr auto kG = std::to_array<GCode>({
     {20, GGroup::Motion, {}},
     {30, GGroup::Motion, {}},
     {40, GGroup::Once, {}},
-    {50, GGroup::Motion, kSpline},
-    {51, GGroup::Motion, kSpline},
-    {52, GGroup::Motion, kSpline},
-    {53, GGroup::Motion, kSpline},
+    {50, GGroup::Motion, {}},
+    {51, GGroup::Motion, {}},
+    {52, GGroup::Motion, {}},
+    {53, GGroup::Motion, {}},
     {70, GGroup::Once, kLathe},
     {80, GGroup::Once, kLathe},
     {100, GGroup::Once, {}},
@@ -43,9 +43,9 @@ constexpr auto kG = std::to_array<GCode>({
     {191, GGroup::Plane, kAxis},
     {200, GGroup::Units, {}},
     {210, GGroup::Units, {}},
-    {280, GGroup::Once, kHome},
+    {280, GGroup::Once, {}},
     {281, GGroup::Once, kHome},
-    {300, GGroup::Once, kHome},
+    {300, GGroup::Once, {}},
     {301, GGroup::Once, kHome},
     {330, GGroup::Motion, kThread},
     {331, GGroup::Motion, kThread},
@@ -75,19 +75,19 @@ constexpr auto kG = std::to_array<GCode>({
     {610, GGroup::Control, {}},
     {611, GGroup::Control, "an exact stop behind every block is not taken; G61 stops wherever the path is not smooth"},
     {640, GGroup::Control, {}},
-    {730, GGroup::Motion, kCycle},
-    {740, GGroup::Motion, kCycle},
+    {730, GGroup::Motion, {}},
+    {740, GGroup::Motion, kThread},
     {760, GGroup::Motion, kThread},
     {800, GGroup::Motion, {}},
     {810, GGroup::Motion, {}},
     {820, GGroup::Motion, {}},
     {830, GGroup::Motion, {}},
     {840, GGroup::Motion, kThread},
-    {850, GGroup::Motion, kCycle},
-    {860, GGroup::Motion, kCycle},
+    {850, GGroup::Motion, {}},
+    {860, GGroup::Motion, {}},
     {870, GGroup::Motion, kCycle},
     {880, GGroup::Motion, kCycle},
-    {890, GGroup::Motion, kCycle},
+    {890, GGroup::Motion, {}},
     {900, GGroup::Distance, {}},
     {901, GGroup::ArcDistance, {}},
     {910, GGroup::Distance, {}},
@@ -105,8 +105,7 @@ constexpr auto kG = std::to_array<GCode>({
     {990, GGroup::Return, {}},
 });
 
-constexpr std::string_view kOutput =
-    "outputs have names here, not numbers; switch it by a SetOutput of your own (docs/protocol.md)";
+constexpr std::string_view kOutput = "the appliance has no analogue outputs";
 constexpr std::string_view kOverrideOff = "overrides belong to the operator, and no program takes them away";
 constexpr std::string_view kState = "saving and restoring modes is not taken yet; write the modes out";
 
@@ -131,11 +130,11 @@ constexpr auto kM = std::to_array<MCode>({
     {53, MGroup::Override, kOverrideOff},
     {60, MGroup::Stop, {}},
     {61, MGroup::Tool, "which tool is in the spindle a person says with rmac confirm"},
-    {62, MGroup::Override, kOutput},
-    {63, MGroup::Override, kOutput},
-    {64, MGroup::Override, kOutput},
-    {65, MGroup::Override, kOutput},
-    {66, MGroup::Override, "inputs have names here, not numbers; wait by an AwaitInput of your own (docs/protocol.md)"},
+    {62, MGroup::Io, {}},
+    {63, MGroup::Io, {}},
+    {64, MGroup::Io, {}},
+    {65, MGroup::Io, {}},
+    {66, MGroup::Io, {}},
     {67, MGroup::Override, kOutput},
     {68, MGroup::Override, kOutput},
     {70, MGroup::Override, kState},

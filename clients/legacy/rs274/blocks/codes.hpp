@@ -24,8 +24,8 @@ enum class GGroup {
 };
 inline constexpr std::size_t kGGroups = 13;
 
-enum class MGroup { Stop, Tool, Spindle, Mist, Flood, CoolantOff, Override };
-inline constexpr std::size_t kMGroups = 7;
+enum class MGroup { Stop, Tool, Spindle, Mist, Flood, CoolantOff, Override, Io };
+inline constexpr std::size_t kMGroups = 8;
 
 /// A G code by its tenfold: 921 is G92.1.
 struct GCode {

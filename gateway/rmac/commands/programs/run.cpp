@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include "gateway/rmac/commands/programs/registrations.hpp"
+#include "gateway/rmac/commands/programs/source.hpp"
 #include "gateway/rmac/program/runner.hpp"
 #include "gateway/rmac/terminal/table.hpp"
 
@@ -10,7 +11,7 @@ namespace rmac::cli {
 namespace {
 
 struct Options {
-  std::string file;
+  Source source;
   RunOptions run;
 };
 
@@ -44,7 +45,7 @@ void print_table(const RunReport& report) {
 }
 
 Result<> run_program(Connection& connection, const Options& options, bool json) {
-  const auto program = read_program(options.file);
+  const auto program = read_source(options.source);
   if (!program) return tl::unexpected(program.error());
   RunOptions run = options.run;
   run.show_progress = !json && isatty(STDERR_FILENO) == 1;
@@ -62,7 +63,7 @@ void add_run(Command& rmac) {
   Command run = rmac.add("run",
                          "machine a program, one JSON-RPC request a line; at the terminal, h holds, 50% sets the feed "
                          "override; when held, Enter goes on, a distance in mm runs back, p parks it");
-  run.option("FILE", &options->file, "the .rmac file, - for standard input").required();
+  declare_source(run, options->source);
   run.flag("--virtual", &options->run.virtual_mode, "in virtual mode: drives stay untouched");
   run.option("--record", &options->run.record_file, "write every cycle's setpoints and measured joints to this CSV");
   run.option("--machine", &options->run.machine, "load this machine first");

@@ -8,6 +8,7 @@
 #include "gateway/configuration/configuration.hpp"
 #include "gateway/rmac/commands/programs/collision_report.hpp"
 #include "gateway/rmac/commands/programs/registrations.hpp"
+#include "gateway/rmac/commands/programs/source.hpp"
 #include "gateway/rmac/simulator/simulator.hpp"
 #include "gateway/rmac/terminal/table.hpp"
 #include "gateway/threads/cpu_progress.hpp"
@@ -18,7 +19,7 @@ namespace rmac::cli {
 namespace {
 
 struct Options {
-  std::string file;
+  Source source;
   std::string machine;                ///< a name in the device tree, or the path of a device.json; empty: the program's
   std::filesystem::path device_tree;  ///< empty: the installation's
   std::string record_file;            ///< empty: none
@@ -115,7 +116,7 @@ class StandstillWatch {
 
 Result<> simulate_program(const Options& options, bool json) {
   const double began_s = cpu_time_s();
-  const auto program = read_program(options.file);
+  const auto program = read_source(options.source);
   if (!program) return tl::unexpected(program.error());
   if (options.machine.empty() && !program->loads_mechanism) {
     return fail(fmt::format("{}: the program loads no machine; name one with --machine", program->file));
@@ -153,7 +154,7 @@ void add_simulate(Command& rmac) {
   const auto options = std::make_shared<Options>();
   Command simulate = rmac.add(
       "simulate", "only plan a program, faster than real time: cycle time, limits, collisions; needs no appliance");
-  simulate.option("FILE", &options->file, "the .rmac file, - for standard input").required();
+  declare_source(simulate, options->source);
   simulate.option("--machine", &options->machine,
                   "a machine's name, or the path of its device.json; needed unless the program loads one");
   simulate.option("--record", &options->record_file, "write every cycle's setpoints to this CSV");

@@ -43,6 +43,19 @@ TEST(Program, HoldsItsRequestsWithTheirLines) {
   EXPECT_TRUE(program->starts_cycle);
 }
 
+TEST(Program, OfAnotherControlIsToldByTheLinesOfItsSource) {
+  const auto program =
+      read_imported(R"({"id":7,"method":"RMAC_CAM.SetFeedrate","params":{"Feedrate":1}})"
+                    "\n" +
+                        std::string(R"({"id":7,"method":"RMAC_CAM.Dwell","params":{"MoveID":7,"Time":1}})"),
+                    "part.ngc");
+  ASSERT_TRUE(program) << program.error().message;
+  EXPECT_EQ(program->file, "part.ngc");
+  ASSERT_EQ(program->requests.size(), 2U);
+  EXPECT_EQ(program->requests[0].line, 7);
+  EXPECT_EQ(program->requests[1].line, 7);
+}
+
 TEST(Program, TakesTheIdOfAMoveByItsPlaceToo) {
   const auto program = read(R"({"method":"RMAC_CAM.MoveToXYZ","params":[8,1,2,3,10]})");
   ASSERT_TRUE(program) << program.error().message;

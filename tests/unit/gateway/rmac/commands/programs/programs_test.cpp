@@ -65,6 +65,15 @@ TEST_F(ProgramCommands, RunMovesNothingForAProgramThatCannotBeRead) {
   EXPECT_THAT(appliance_.methods(), testing::IsEmpty());
 }
 
+TEST_F(ProgramCommands, RunRefusesAFileWhoseLanguageNothingTells) {
+  const auto failed = run({"run", "part.gcode"});
+  EXPECT_EQ(failed.exit_code, 1);
+  EXPECT_THAT(failed.err, HasSubstr("part.gcode: its ending tells no language"));
+  EXPECT_THAT(failed.err, HasSubstr("--dialect"));
+  EXPECT_THAT(run({"run", file_, "--rapid", "900"}).err, HasSubstr("programs_test.rmac: is taken as .rmac"));
+  EXPECT_THAT(appliance_.methods(), testing::IsEmpty());
+}
+
 TEST_F(ProgramCommands, RunFailsByWhatTheMachineRefuses) {
   appliance_.refuses("RMAC_CAM.MoveToPathTarget", -32004, "out of reach");
   const auto failed = run({"run", file_});

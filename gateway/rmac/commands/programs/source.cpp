@@ -1,0 +1,118 @@
+#include "gateway/rmac/commands/programs/source.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "gateway/processes/child_process.hpp"
+
+namespace rmac::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The importer bounds what it writes, so this ends one that hangs.
+constexpr std::chrono::hours kPatience{1};
+
+struct Passed {
+  const char* name;
+  const char* meaning;
+};
+// Of a program of another control; `rmac import --help` says more.
+constexpr std::array<Passed, std::tuple_size_v<decltype(Source::values)>> kPassed{{
+    {"--unit", "mm or inch, of an imported program without G20 and G21"},
+    {"--rapid", "feed of an imported program's G0, mm/min"},
+    {"--tolerance", "path tolerance of an imported program's G64 without P, mm"},
+    {"--approach", "X,Y,Z in mm: where an imported program's tool tip goes first"},
+}};
+
+/// The language of a file by its ending; empty where it is `.rmac`, none where the ending tells nothing.
+std::optional<std::string> dialect_of(const std::string& file) {
+  std::string ending = fs::path(file).extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  if (file == "-" || ending.empty() || ending == ".rmac") return "";
+  static constexpr std::array<std::string_view, 3> kRs274{".ngc", ".nc", ".tap"};
+  if (std::ranges::find(kRs274, ending) != kRs274.end()) return "rs274";
+  return std::nullopt;
+}
+
+std::vector<std::string> importer_words(const Source& source, const std::string& dialect) {
+  std::vector<std::string> words{beside_rmac(kImporter), "--dialect", dialect, "--ids-are-lines", "-o", "-"};
+  for (std::size_t i = 0; i < kPassed.size(); ++i) {
+    if (!source.values.at(i).empty()) words.push_back(fmt::format("{}={}", kPassed.at(i).name, source.values.at(i)));
+  }
+  for (const auto& offset : source.offsets) words.push_back("--offset=" + offset);
+  if (source.assume_g43) words.emplace_back("--assume-g43");
+  if (source.block_delete) words.emplace_back("--block-delete");
+  words.emplace_back("--");
+  words.push_back(source.file);
+  return words;
+}
+
+/// As this program says what is wrong: one line, without the name of another one.
+Failure told_by_importer(std::string complaint) {
+  const std::string prefix = fmt::format("{}: ", kImporter);
+  if (complaint.starts_with(prefix)) complaint.erase(0, prefix.size());
+  while (complaint.ends_with('\n')) complaint.pop_back();
+  std::ranges::replace(complaint, '\n', ' ');
+  return {complaint.empty() ? fmt::format("{} ended without a word", kImporter) : complaint};
+}
+
+Result<Program> import(const Source& source, const std::string& dialect) {
+  if (source.file == "-") {
+    return fail(
+        fmt::format("standard input is taken as .rmac; write rmac import --dialect {} - -o - before it", dialect));
+  }
+  const std::atomic<bool> never = false;
+  auto outcome = gateway::run_child(importer_words(source, dialect), kPatience, never);
+  if (!outcome) return fail(outcome.error().message);
+  if (outcome->exit_code != 0) return tl::unexpected(told_by_importer(std::move(outcome->complaint)));
+  return read_imported(std::move(outcome->output), source.file);
+}
+
+}  // namespace
+
+std::string beside_rmac(const char* program) {
+  std::error_code unread;
+  return (fs::read_symlink("/proc/self/exe", unread).parent_path() / program).string();
+}
+
+void declare_source(Command& command, Source& source) {
+  command
+      .option("FILE", &source.file,
+              "the .rmac file, - for standard input; .ngc, .nc and .tap (RS274/NGC) are imported first")
+      .required();
+  command.option("--dialect", &source.dialect, "whose language FILE is in, whatever its ending: rs274");
+  for (std::size_t i = 0; i < kPassed.size(); ++i) {
+    command.option(kPassed.at(i).name, &source.values.at(i), kPassed.at(i).meaning);
+  }
+  command
+      .option("--offset", &source.offsets, "G54=X,Y,Z in mm: where an imported program's work system is in the machine")
+      .repeats();
+  command.flag("--assume-g43", &source.assume_g43, "an imported program's tool length counts from M6 on");
+  command.flag("--block-delete", &source.block_delete, "leave out an imported program's blocks that begin with /");
+}
+
+Result<Program> read_source(const Source& source) {
+  const auto dialect = source.dialect.empty() ? dialect_of(source.file) : std::optional(source.dialect);
+  if (!dialect) {
+    return fail(
+        fmt::format("{}: its ending tells no language; .rmac is ours, .ngc, .nc and .tap are RS274/NGC, and of "
+                    "another file --dialect says it",
+                    source.file));
+  }
+  if (!dialect->empty()) return import(source, *dialect);
+  const bool told = !source.offsets.empty() || source.assume_g43 || source.block_delete ||
+                    std::ranges::any_of(source.values, [](const std::string& value) { return !value.empty(); });
+  if (told)
+    return fail(fmt::format("{}: is taken as .rmac, and has no options of an import; name its --dialect", source.file));
+  return read_program(source.file);
+}
+
+}  // namespace rmac::cli
