@@ -148,7 +148,7 @@ void add_tune(Command& rmac) {
   tuned.option("--travel", &options->stroke.travel, "mm or degrees that it may go from where it stands, signed")
       .required();
   tuned.option("--bandwidth", &options->bandwidth_hz, "Hz; the largest that keeps its margins unless given").positive();
-  tuned.option("--phase-margin", &options->phase_margin_deg, "degrees").within(10.0, 70.0).shows_default();
+  tuned.option("--phase-margin", &options->phase_margin_deg, "degrees").within(32.0, 70.0).shows_default();
   tuned
       .option("--sweep-effort", &options->sweep_effort,
               "N or N·m of the sines that find resonances; a twentieth of MaxEffort unless given, 0 for none")

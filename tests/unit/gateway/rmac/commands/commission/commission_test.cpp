@@ -86,7 +86,7 @@ TEST_F(TuneCommand, AsksNothingOfTheMachineForWordsThatMakeNoSense) {
   EXPECT_THAT(run({"tune", "0", "--travel", "1", "-o", "x.bmp"}).err, HasSubstr("ends in .png"));
   EXPECT_EQ(tune({}).exit_code, 2);
   EXPECT_EQ(tune({"--travel", "1", "--bandwidth", "0"}).exit_code, 2);
-  EXPECT_EQ(tune({"--travel", "1", "--phase-margin", "9.9"}).exit_code, 2);
+  EXPECT_EQ(tune({"--travel", "1", "--phase-margin", "31.9"}).exit_code, 2);
   EXPECT_EQ(tune({"--travel", "1", "--phase-margin", "70.1"}).exit_code, 2);
   EXPECT_EQ(run({"tune", "32", "--travel", "1"}).exit_code, 2);
   EXPECT_THAT(appliance_.methods(), IsEmpty());
