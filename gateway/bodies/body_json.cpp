@@ -33,10 +33,10 @@ Expected<fs::path> mesh_file(const std::string& name, const std::string& pointer
   const fs::path relative(name);
   const bool climbs = std::any_of(relative.begin(), relative.end(), [](const fs::path& part) { return part == ".."; });
   std::error_code code;
-  const fs::path inside = fs::weakly_canonical(folder, code);
-  const fs::path file = code ? folder / relative : fs::weakly_canonical(folder / relative, code);
+  const fs::path inside = fs::weakly_canonical(folder.empty() ? "." : folder, code);
+  const fs::path file = code ? fs::path() : fs::weakly_canonical(inside / relative, code);
   const bool escapes = std::mismatch(inside.begin(), inside.end(), file.begin(), file.end()).first != inside.end();
-  if (relative.is_absolute() || climbs || (!code && escapes)) {
+  if (relative.is_absolute() || climbs || code || escapes) {
     return wrong(pointer,
                  fmt::format("/File is \"{}\"; allowed is a file in the folder {} or below it", name, folder.string()));
   }

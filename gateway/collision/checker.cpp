@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rmac::gateway {
 namespace {
@@ -10,6 +11,7 @@ using Kind = SceneBody::Kind;
 
 constexpr double kShare = 0.1;          ///< of the clearance: motion within which nothing is looked for
 constexpr double kShareOfDepth = 0.02;  ///< that it may be deeper than told
+constexpr double kNeverMeasured = 1e300;
 
 }  // namespace
 
@@ -47,7 +49,7 @@ void CollisionChecker::pair_up() {
       // Cutting touches the part: there only what is too deep counts.
       if (on == Kind::Part ? by == Kind::Cutter : by == Kind::CutterCore) continue;
       Pair pair{.first = a, .second = b};
-      pair.with_stock = on == Kind::Stock;
+      pair.with_stock = on == Kind::Stock || by == Kind::Stock;
       pair.cutter_in_stock = pair.with_stock && by == Kind::Cutter;
       pair.near_mm = by == Kind::CutterCore ? 0 : clearance_mm_;
       pairs_.push_back(pair);
@@ -97,9 +99,18 @@ void CollisionChecker::advance(double t_s, std::span<const double> joints, const
     pair.here = to.apart;
     if (to.apart.most >= clearance_mm_) pair.finding = nullptr;
   }
-  stock_cut_ = stock_cut_ || (move.cutting && moves);
+  if (move.cutting && moves && !std::exchange(stock_cut_, true)) forget_what_was_near_stock();
   from_.assign(joints.begin(), joints.end());
   from_s_ = t_s;
+}
+
+/// What is found from here on is another finding, as it may be that nothing is left there to meet.
+void CollisionChecker::forget_what_was_near_stock() {
+  for (Pair& pair : pairs_) {
+    if (!pair.with_stock) continue;
+    pair.finding = nullptr;
+    pair.unmeasured_mm = kNeverMeasured;
+  }
 }
 
 CollisionChecker::Look CollisionChecker::look(const Pair& pair, double at) {
@@ -133,21 +144,20 @@ void CollisionChecker::examine(Pair& pair, const Look& from, const Look& to) {
 void CollisionChecker::note(Pair& pair, const Look& look) {
   const SceneBody &a = bodies_[pair.first], &b = bodies_[pair.second];
   if (look.apart.most > 0 && look.apart.most >= pair.near_mm) return;
+  const bool meet = look.apart.most == 0;
   if (pair.finding == nullptr) {
-    pair.finding = findings_.of(a.name, b.name, from_s_, move_, pair.with_stock && stock_cut_);
+    pair.finding =
+        findings_.of(a.name, b.name, from_s_, move_, {.possible = pair.with_stock && stock_cut_, .meet = meet});
     if (pair.finding == nullptr) return;
   }
   // Depth costs far more than to see that they meet: it is measured again when it may be another.
-  const bool meet = look.apart.most == 0;
   if (meet && pair.unmeasured_mm > std::max(kShare * clearance_mm_, kShareOfDepth * pair.depth_mm)) {
     for (std::size_t j = 0; j < from_.size(); ++j) at_[j] = from_[j] + look.at * way_[j];
     between_.set(at_);
-    // The core lies the clearance below the surface.
-    const double below = b.kind == Kind::CutterCore ? clearance_mm_ : 0;
-    pair.depth_mm = below + overlap_depth(a.solid, between_.pose(a), b.solid, between_.pose(b));
+    pair.depth_mm = b.below_mm + overlap_depth(a.solid, between_.pose(a), b.solid, between_.pose(b));
     pair.unmeasured_mm = 0;
   }
-  if (!meet) pair.unmeasured_mm = 1e300;
+  if (!meet) pair.unmeasured_mm = kNeverMeasured;
   findings_.see(*pair.finding, look.apart, meet ? pair.depth_mm : 0, from_s_ + look.at * (to_s_ - from_s_), move_);
 }
 

@@ -46,6 +46,7 @@ class CollisionChecker {
 
   void pair_up();
   [[nodiscard]] static bool may_not_meet(const SceneBody& first, const SceneBody& second);
+  void forget_what_was_near_stock();
   [[nodiscard]] Look look(const Pair& pair, double at);
   void examine(Pair& pair, const Look& from, const Look& to);
   void note(Pair& pair, const Look& look);

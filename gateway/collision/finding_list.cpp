@@ -11,19 +11,21 @@ FindingList::FindingList(const Frame& part_frame) {
 }
 
 Finding* FindingList::of(const std::string& first, const std::string& second, double since_s, const MoveNow& move,
-                         bool possible) {
+                         const Meeting& meeting) {
   const auto same = std::find_if(findings_.rbegin(), findings_.rend(), [&](const Finding& f) {
-    return f.first == first && f.second == second && f.possible == possible &&
+    return f.first == first && f.second == second && f.possible == meeting.possible &&
            (f.until_s >= since_s || f.move_id == move.id);
   });
   if (same != findings_.rend()) return &*same;
-  if (findings_.size() == kMost) {
+  // What is only near leaves room for what meets.
+  if (findings_.size() >= (meeting.meet ? 2 * kMost : kMost)) {
     ++left_off_;
+    collided_ = collided_ || (meeting.meet && !meeting.possible);
     return nullptr;
   }
   findings_.push_back(Finding{});
   Finding& made = findings_.back();
-  made.first = first, made.second = second, made.possible = possible;
+  made.first = first, made.second = second, made.possible = meeting.possible;
   return &made;
 }
 

@@ -107,9 +107,12 @@ std::vector<SceneBody> tool_bodies(const Tool& tool, const LinkChain& chain, dou
   const std::string name = fmt::format("tool {}, ", tool.number), cutting = name + "cutting part";
   const double radius = shape.dc / 2;
   stack.add_cutter(Kind::Cutter, cutting, radius, std::min(shape.re, radius), 0, shape.lcf);
-  if (radius > clearance_mm && shape.lcf > clearance_mm) {
-    const double corner = std::clamp(shape.re - clearance_mm, 0.0, radius - clearance_mm);
-    stack.add_cutter(Kind::CutterCore, cutting, radius - clearance_mm, corner, clearance_mm, shape.lcf);
+  // Of a tool that is no thicker than the clearance half is left: the thinnest one must not pass through the part.
+  const double below = std::min({clearance_mm, radius / 2, shape.lcf / 2});
+  const double corner = std::clamp(shape.re - below, 0.0, radius - below);
+  stack.add_cutter(Kind::CutterCore, cutting, radius - below, corner, below, shape.lcf);
+  for (SceneBody& body : bodies) {
+    if (body.kind == Kind::CutterCore) body.below_mm = below;
   }
   stack.add(Kind::Shank, name + "shank", shape.shank, shape.lcf);
   stack.add(Kind::Holder, name + "holder", shape.holder, shape.holder_begins(tool.length_mm));

@@ -15,7 +15,7 @@ struct SceneBody {
     Stock,
     Part,
     Cutter,      ///< what of a tool may be in material while it cuts
-    CutterCore,  ///< the same, smaller by the clearance: where it is in the part, too much is cut
+    CutterCore,  ///< the same, smaller: where it is in the part, too much is cut
     Shank,
     Holder
   };
@@ -24,6 +24,7 @@ struct SceneBody {
   std::size_t link = 0;
   Solid solid;
   Eigen::Isometry3d home;  ///< in the machine frame, all joints at 0
+  double below_mm = 0;     ///< of a core: how far below the true surface it is
 };
 
 [[nodiscard]] inline bool on_tool(SceneBody::Kind kind) noexcept {

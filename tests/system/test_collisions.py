@@ -2,6 +2,7 @@
 
 import copy
 import json
+import os
 import pathlib
 import subprocess
 import tempfile
@@ -137,6 +138,70 @@ class Collisions(unittest.TestCase):
             self.assertEqual(bool(part), wrong, z)
             if wrong:
                 self.assertAlmostEqual(part[0]["depth_mm"], 0.8, delta=0.05)
+
+    def test_a_tool_thinner_than_the_clearance_cuts_into_no_part_unseen(self):
+        tools, setup = copy.deepcopy(TOOLS), copy.deepcopy(SETUP)
+        tools["Tools"][0]["Shape"].update(DC=1, RE=0)
+        tools["Tools"][0]["Radius"] = 0.5
+        setup["Clearance"] = 1
+        start, end = (0, 0, 30), (0, 0, 12)
+        report, done = self.report([to(*start), FEED, cut(start, end, 2)], tools=tools, setup=setup)
+        part = [f for f in report["collisions"] if f["bodies"] == ["part", "tool 7, cutting part"]]
+        self.assertEqual((len(part), done.returncode), (1, 1), report)
+        self.assertAlmostEqual(part[0]["depth_mm"], 8, delta=0.2)
+
+    def test_what_was_near_before_the_first_cut_is_not_certain_behind_it(self):
+        # The way in begins 0.3 mm beside the stock, whose side is at -40, with a tool 3 mm thick.
+        beside, inside = (-43.3, 0, 5), (-36, 0, 5)
+        report, done = self.report([to(-60, 0, 5), to(*beside, move_id=2), FEED, cut(beside, inside, 3),
+                                    cut(inside, (-30, 0, 5), 4)])
+        shank = [f for f in report["collisions"] if f["bodies"] == ["stock", "tool 7, shank"]]
+        self.assertTrue(shank, report)
+        self.assertTrue(all(not f["certain"] for f in shank if f["line"] > 4), shank)
+
+    def test_the_spindle_in_stock_that_was_cut_is_only_possible(self):
+        tools = copy.deepcopy(TOOLS)
+        tools["Tools"][0].update(Length=5, Shape={"DC": 6, "RE": 0, "LCF": 5, "OAL": 5})
+        deep = 12
+        program = [request("RMAC_CAM.MoveToJointTarget", MoveID=1, JointTargetFrame={"joints": [0, 0, TABLE + 5 + 60, 0, 0]}),
+                   FEED, cut((0, 0, 60), (0, 0, 30 - deep), 2)]
+        setup = {key: value for key, value in SETUP.items() if key not in ("Part", "Fixtures")}
+        report, done = self.report(program, tools=tools, setup=setup)
+        machine = [f for f in report["collisions"] if "stock" in f["bodies"]]
+        self.assertTrue(machine, report)
+        self.assertFalse(any(f["certain"] for f in machine), machine)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_near_misses_leave_room_for_what_meets(self):
+        program = [to(-60, -50, 60)]
+        for index in range(1005):
+            program += [to(0, 0, 30.3, move_id=2 + 2 * index), to(0, 0, 33, move_id=3 + 2 * index)]
+        program.append(to(0, 0, 12, move_id=5000))
+        report, done = self.report(program)
+        self.assertEqual(done.returncode, 1, report["collisions"])
+        self.assertIn(["stock", "tool 7, cutting part"], [f["bodies"] for f in report["collisions"]])
+
+    def test_a_mesh_opens_no_other_file(self):
+        outside = tempfile.TemporaryDirectory(prefix="rmac-test-")
+        self.addCleanup(outside.cleanup)
+        elsewhere = pathlib.Path(outside.name, "o.stl")
+        elsewhere.write_text("solid o\nendsolid o\n")
+        (self.folder / "part.stl").symlink_to(elsewhere)
+        setup = copy.deepcopy(SETUP)
+        setup["Part"] = {"Shape": {"Mesh": {"File": "part.stl", "Unit": "mm"}}}
+        self.refusal(setup)  # writes the files
+        bare = subprocess.run([BUILD / "bin" / "rmac", "simulate", "program.rmac", "--machine", "SuginoXYZAC", "--setup",
+                               "setup.json"], cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                              timeout=120, check=False)
+        self.assertEqual(bare.returncode, 1)
+        self.assertNotIn(outside.name, bare.stderr)
+        os.mkfifo(self.folder / "hangs.mtl")
+        (self.folder / "box.obj").write_text("mtllib hangs.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n"
+                                             "f 1 4 3\n")
+        setup["Part"] = {"Shape": {"Mesh": {"File": "box.obj", "Unit": "mm"}}}
+        del setup["Stock"]
+        report, done = self.report([to(0, 0, 100)], setup=setup)
+        self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_what_stands_on_a_table_that_tilts_meets_the_machine(self):
         setup = copy.deepcopy(SETUP)

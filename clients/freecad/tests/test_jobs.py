@@ -232,6 +232,18 @@ class JobsThatAreRefusedTest(unittest.TestCase):
         self.add_thin_tool(1, ABOVE, "G1 Z1 F1")
         self.assert_refused("different tools with one number, 1")
 
+    def test_two_tools_of_one_diameter_with_one_number(self):
+        self.add_thin_tool(1, ABOVE, "G1 Z1 F1")
+        second = self.job.Operations.Group[-1].ToolController.Tool
+        second.Diameter = self.job.Operations.Group[0].ToolController.Tool.Diameter
+        second.CuttingEdgeHeight = "3 mm"
+        self.job.Document.recompute()
+        self.assert_refused("different tools with one number, 1")
+
+    def test_a_cut_of_another_operation_without_its_own_feed(self):
+        self.add_thin_tool(2, ABOVE, "G1 Z1")
+        self.assert_refused("the feed is 0")
+
     def test_a_cut_behind_a_tool_change_before_its_place_is_known(self):
         self.add_thin_tool(2, "G1 Z1 F1")
         self.assert_refused("Second, command 1 (G1): nobody knows X, Y, Z")

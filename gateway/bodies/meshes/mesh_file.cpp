@@ -1,11 +1,14 @@
 #include "gateway/bodies/meshes/mesh_file.hpp"
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
@@ -50,6 +53,23 @@ bool append(const aiMesh& part, double unit_mm, TriangleMesh& mesh) {
   return true;
 }
 
+/// Opens one file alone: an .obj names others (materials), which may be anything on this computer.
+class OnlyThisFile final : public Assimp::IOSystem {
+ public:
+  explicit OnlyThisFile(std::string file) : file_(std::move(file)) {}
+
+  bool Exists(const char* file) const override { return file_ == file; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    return Exists(file) ? files_.Open(file, mode) : nullptr;
+  }
+  void Close(Assimp::IOStream* stream) override { files_.Close(stream); }
+
+ private:
+  std::string file_;
+  Assimp::DefaultIOSystem files_;
+};
+
 }  // namespace
 
 Expected<TriangleMesh> read_mesh_file(const MeshShape& shape) {
@@ -60,6 +80,7 @@ Expected<TriangleMesh> read_mesh_file(const MeshShape& shape) {
     return wrong(file, code ? "cannot be read: " + code.message() : "is larger than 512 MiB; export it coarser");
   }
   Assimp::Importer importer;
+  importer.SetIOHandler(new OnlyThisFile(file.string()));  // which it owns then
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
   if (scene == nullptr) return wrong(file, fmt::format("is no mesh: {}", importer.GetErrorString()));

@@ -30,6 +30,13 @@ constexpr std::array<Passed, std::tuple_size_v<decltype(Source::values)>> kPasse
     {"--rapid", "feed of an imported program's G0, mm/min"},
     {"--tolerance", "path tolerance of an imported program's G64 without P, mm"},
     {"--approach", "X,Y,Z in mm: where an imported program's tool tip goes first"},
+    {"--reference-point", "X,Y,Z in mm: where G28 of an imported program goes"},
+    {"--second-reference-point", "the same of G30"},
+}};
+constexpr std::array<Passed, std::tuple_size_v<decltype(Source::repeated)>> kRepeated{{
+    {"--offset", "G54=X,Y,Z in mm: where an imported program's work system is in the machine"},
+    {"--output", "3=NAME: the output that M62 to M65 P3 of an imported program switch"},
+    {"--input", "3=NAME: the input that M66 P3 of an imported program waits for"},
 }};
 
 /// The language of a file by its ending; empty where it is `.rmac`, none where the ending tells nothing.
@@ -47,7 +54,9 @@ std::vector<std::string> importer_words(const Source& source, const std::string&
   for (std::size_t i = 0; i < kPassed.size(); ++i) {
     if (!source.values.at(i).empty()) words.push_back(fmt::format("{}={}", kPassed.at(i).name, source.values.at(i)));
   }
-  for (const auto& offset : source.offsets) words.push_back("--offset=" + offset);
+  for (std::size_t i = 0; i < kRepeated.size(); ++i) {
+    for (const auto& value : source.repeated.at(i)) words.push_back(fmt::format("{}={}", kRepeated.at(i).name, value));
+  }
   if (source.assume_g43) words.emplace_back("--assume-g43");
   if (source.block_delete) words.emplace_back("--block-delete");
   words.emplace_back("--");
@@ -92,9 +101,9 @@ void declare_source(Command& command, Source& source) {
   for (std::size_t i = 0; i < kPassed.size(); ++i) {
     command.option(kPassed.at(i).name, &source.values.at(i), kPassed.at(i).meaning);
   }
-  command
-      .option("--offset", &source.offsets, "G54=X,Y,Z in mm: where an imported program's work system is in the machine")
-      .repeats();
+  for (std::size_t i = 0; i < kRepeated.size(); ++i) {
+    command.option(kRepeated.at(i).name, &source.repeated.at(i), kRepeated.at(i).meaning).repeats();
+  }
   command.flag("--assume-g43", &source.assume_g43, "an imported program's tool length counts from M6 on");
   command.flag("--block-delete", &source.block_delete, "leave out an imported program's blocks that begin with /");
 }
@@ -108,8 +117,9 @@ Result<Program> read_source(const Source& source) {
                     source.file));
   }
   if (!dialect->empty()) return import(source, *dialect);
-  const bool told = !source.offsets.empty() || source.assume_g43 || source.block_delete ||
-                    std::ranges::any_of(source.values, [](const std::string& value) { return !value.empty(); });
+  const auto given = [](const auto& value) { return !value.empty(); };
+  const bool told = source.assume_g43 || source.block_delete || std::ranges::any_of(source.values, given) ||
+                    std::ranges::any_of(source.repeated, given);
   if (told)
     return fail(fmt::format("{}: is taken as .rmac, and has no options of an import; name its --dialect", source.file));
   return read_program(source.file);

@@ -54,7 +54,7 @@ class _Steps:
         coolant = COOLANT_ON.get(PathUtil.opProperty(operation, "CoolantMode"))
         if coolant:
             self._reader.switch(coolant, Place(operation.Label, 0, coolant), {})
-        self._reader.moved = self._reader.cut = False
+        self._reader.begin_operation()
         self._read(operation)
         written_by_hand = hasattr(operation, "Gcode")
         if not (self._reader.moved if written_by_hand else self._reader.cut):

@@ -22,12 +22,16 @@ class Reader:
     def __init__(self, program, mover):
         self._program = program
         self._mover = mover
+        self._tool = None
+        self._coolants = set()
+        self.begin_operation()
+
+    def begin_operation(self):
+        """What an operation before this one left in force was its own: its feed may be another tool's."""
         self._plane = "G17"
         self._retract_to_r = False
         self._initial_z = None  # before the first of a row of canned cycles: where G98 retracts to
         self._feed = None
-        self._tool = None
-        self._coolants = set()
         self.moved = self.cut = False
 
     def read(self, command, place):

@@ -27,18 +27,21 @@ class Found:
     limited_by_s: dict  # by the limit that ruled
 
 
-def simulate(program, machine, tools, rmac="rmac"):
-    """`tools` is the tool table, as `client.cam.GetTools()` gives it of the appliance; `rmac` the command-line client."""
+def simulate(program, machine, tools, rmac="rmac", patience_s=600):
+    """Gives up after `patience_s`. `tools` is the tool table, as `client.cam.GetTools()` gives it of the appliance; `rmac` the command-line client."""
     executable = shutil.which(rmac)
     if executable is None:
         raise SimulationRefused(f"the program {rmac} is not there; it comes with the appliance's package, or give its path as rmac=")
     with tempfile.TemporaryDirectory(prefix="rmac-simulate-") as folder:
         table = {key: tools[key] for key in ("Mounted", "Tools")}
         (pathlib.Path(folder) / f"{machine}.json").write_text(json.dumps(table))
-        ended = subprocess.run(
-            [executable, "--json", "simulate", "--machine", machine, "--tools", folder, "-"],
-            input=program.text(), capture_output=True, text=True, check=False,
-        )  # fmt: skip
+        try:
+            ended = subprocess.run(
+                [executable, "--json", "simulate", "--machine", machine, "--tools", folder, "-"],
+                input=program.text(), capture_output=True, text=True, check=False, timeout=patience_s,
+            )  # fmt: skip
+        except subprocess.TimeoutExpired as late:
+            raise SimulationRefused(f"the simulation on {machine} took longer than {patience_s} s; simulate a part of the job, or wait longer (patience_s=)") from late
     if ended.returncode != 0:
         raise _refusal(ended.stderr.strip(), program)
     told = json.loads(ended.stdout)
