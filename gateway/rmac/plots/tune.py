@@ -27,10 +27,15 @@ def feedback_gains(joint):
     gains = joint["gains"]
     if len(gains) in (3, 7):
         return tuple(gains[:3])
-    if len(gains) == 4:  # fuzzy: what it is at its centre
+    if "Fuzzy" in joint["law"]:  # what it is at its centre
         error_range, rate_range, effort_range, ki = gains
         return 2 * effort_range / error_range, ki, 2 * effort_range / rate_range
     return None
+
+
+def load_known(joint):
+    """The load that the law in force counts on."""
+    return joint["gains"][6] if len(joint["gains"]) == 7 else joint["parameters"].get("load", [0])[0]
 
 
 def loop_in_force(joint):
@@ -157,7 +162,7 @@ def main():
     print(json.dumps({
         "joint": joint["name"], "unit": joint["unit"], "law": joint["law"], "plant": model.as_json(plant),
         "max_speed": joint["max_speed"], "max_effort": joint["max_effort"], "parameters": joint["parameters"],
-        "gains": joint["gains"], "period_s": bent.period,
+        "gains": joint["gains"], "load_known": load_known(joint), "period_s": bent.period,
         "resonances": [{"frequency": hz, "damping": damping} for hz, damping in bent.resonances()],
         "misfit": bent.misfit if response is not None else None,
         "before": told.get("before"), "proposed": told["proposed"],

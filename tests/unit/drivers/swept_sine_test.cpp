@@ -11,7 +11,7 @@ using namespace rmac;
 using modules::SweptSine;
 
 constexpr SweptSine::Parameters kSweep{
-    .effort = 40, .from_hz = 20, .to_hz = 450, .full_hz = 100, .period_s = 0.25, .periods = 3};
+    .effort = 40, .from_hz = 20, .to_hz = 450, .full_hz = 100, .period_s = 0.25, .periods = 3, .stretches = 4};
 constexpr ServoInput kSteady{.velocity_setpoint = 5};
 
 std::vector<double> efforts(SweptSine& sine, int cycles, const ServoInput& input) {
@@ -45,12 +45,25 @@ TEST(SweptSine, GrowsUpToItsFullFrequencyAndStaysWithinItsEffort) {
 
 TEST(SweptSine, IsThereAtASteadySpeedOnlyAndBeginsAnew) {
   SweptSine sine(kSweep);
-  const auto first = efforts(sine, 100, kSteady);
+  const auto first = efforts(sine, 750, kSteady);
   for (const ServoInput& other : {ServoInput{}, ServoInput{.velocity_setpoint = 5, .acceleration_setpoint = 20},
                                   ServoInput{.acceleration_setpoint = -20}}) {
     EXPECT_THAT(efforts(sine, 3, other), testing::Each(0.0));
-    EXPECT_EQ(efforts(sine, 100, kSteady), first);
+    EXPECT_EQ(efforts(sine, 750, kSteady), first);
   }
+}
+
+TEST(SweptSine, IsNoMoreAfterItsStretchesOrOneThatWasBrokenOff) {
+  SweptSine through(kSweep);
+  for (int stretch = 0; stretch < 4; ++stretch) {
+    EXPECT_NE(efforts(through, 750, kSteady)[100], 0);
+    EXPECT_EQ(through.step({}), 0);
+  }
+  EXPECT_THAT(efforts(through, 750, kSteady), testing::Each(0.0));
+  SweptSine broken_off(kSweep);
+  efforts(broken_off, 749, kSteady);
+  EXPECT_EQ(broken_off.step({}), 0);
+  EXPECT_THAT(efforts(broken_off, 750, kSteady), testing::Each(0.0));
 }
 
 TEST(SweptSineLaw, StaysWithinTheEffortLimit) {

@@ -76,6 +76,15 @@ std::vector<std::string> program_words(const Options& options, const TemporaryFi
 /// What the joint answers to swept sines, and what is proposed for it; `found` is what its swings have shown.
 Result<Json> measure_response(Connection& connection, const Options& options, const Json& found,
                               std::vector<std::string> words, const std::string& fault) {
+  if (found["before"].is_null()) {
+    return fail(fmt::format(
+        "{} has no feedback, which holds the joint while it is measured; put a PID law in force, or take the "
+        "joint for rigid with --sweep-effort 0",
+        found["law"].get<std::string>()));
+  }
+  if (!options.sweep_effort && found["max_effort"] == 0) {
+    return fail("the joint has no MaxEffort, of which the sweep would be a twentieth; give --sweep-effort");
+  }
   const auto begin = ask_state(connection);
   if (!begin) return tl::unexpected(begin.error());
   const Sweep sweep = sweep_for(options.stroke, found, options.sweep_effort);

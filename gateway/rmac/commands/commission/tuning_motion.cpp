@@ -83,9 +83,10 @@ Result<> put_law(Connection& connection, int joint, const std::string& law, cons
 
 /// The law that sweeps, with the feedback of the law in force.
 Result<> put_sweeping_law(Connection& connection, int joint, const Json& found, const Sweep& sweep) {
-  Json parameters = {{"sweep_effort", sweep.effort},     {"sweep_from_hz", sweep.from_hz},
-                     {"sweep_to_hz", sweep.to_hz},       {"sweep_full_hz", sweep.full_hz},
-                     {"sweep_period_s", sweep.period_s}, {"sweep_periods", sweep.sweeps}};
+  Json parameters = {
+      {"sweep_effort", sweep.effort},   {"sweep_from_hz", sweep.from_hz},   {"sweep_to_hz", sweep.to_hz},
+      {"sweep_full_hz", sweep.full_hz}, {"sweep_period_s", sweep.period_s}, {"sweep_periods", sweep.sweeps},
+      {"sweep_stretches", 2},           {"load", found["load_known"]}};
   for (const char* kept : {"derivative_filter_s", "rest_band"}) {
     if (found["parameters"].contains(kept)) parameters[kept] = found["parameters"][kept];
   }

@@ -10,7 +10,8 @@ namespace rmac::modules {
 
 /// A sine whose frequency goes from one end of a band to the other at a steady rate, and again with the other sign,
 /// while a joint goes at a steady speed: there its friction slides one way, and what is left between effort and motion
-/// is linear. Each steady stretch begins anew. What is the same in two periods (cogging at that speed, drift, answers
+/// is linear. Each steady stretch begins anew, so many times and no more; one that ends before its periods are through
+/// is the last: whoever wanted it may be gone. What is the same in two periods (cogging at that speed, drift, answers
 /// that are even in the effort) falls out of their difference, and the mean of many shows what answers the sine apart
 /// from noise (Pintelon and Schoukens, System Identification, 2nd ed., section 5.2).
 class SweptSine {
@@ -21,9 +22,11 @@ class SweptSine {
     double to_hz = 0;
     double full_hz = 0;  ///< below it the amplitude is less in proportion, so that the joint does not turn round
     double period_s = 0;
-    double periods = 0;  ///< of each steady stretch, whole ones
+    double periods = 0;    ///< of each steady stretch, whole ones
+    double stretches = 0;  ///< after which there is none any more
   };
-  explicit SweptSine(const Parameters& parameters) noexcept : parameters_(parameters) {}
+  explicit SweptSine(const Parameters& parameters) noexcept
+      : parameters_(parameters), stretches_left_(static_cast<long>(parameters.stretches)) {}
 
   [[nodiscard]] static bool read(sdk::Parameters given, Parameters& parameters, char* error,
                                  std::size_t error_size) noexcept {
@@ -35,17 +38,25 @@ class SweptSine {
            number({"sweep_to_hz", 450, 0.1, 10000, "Hz"}, parameters.to_hz) &&
            number({"sweep_full_hz", 0, 0, 10000, "Hz"}, parameters.full_hz) &&
            number({"sweep_period_s", 0.5, 0.01, 100, "s"}, parameters.period_s) &&
-           number({"sweep_periods", 5, 1, 1000, ""}, parameters.periods);
+           number({"sweep_periods", 5, 1, 1000, ""}, parameters.periods) &&
+           number({"sweep_stretches", 2, 1, 1000, ""}, parameters.stretches);
   }
 
   /// Effort of this cycle. Real-time safe.
   [[nodiscard]] double step(const ServoInput& input) noexcept {
+    constexpr long kFlicker = 10;  // cycles: where a ramp ends, its rounding may look steady
+    const bool through = done_ >= static_cast<long>(parameters_.periods);
     if (!is_steady(input)) {
+      if (through) {
+        --stretches_left_;
+      } else if (cycle_ > kFlicker || done_ > 0) {
+        stretches_left_ = 0;
+      }
       cycle_ = 0;
       done_ = 0;
       return 0;
     }
-    if (done_ >= static_cast<long>(parameters_.periods)) return 0;
+    if (through || stretches_left_ <= 0) return 0;
     const double t = static_cast<double>(cycle_) * input.period_s;
     const double rate = (parameters_.to_hz - parameters_.from_hz) / parameters_.period_s;
     const double hz = parameters_.from_hz + rate * t;
@@ -69,6 +80,7 @@ class SweptSine {
   Parameters parameters_;
   long cycle_ = 0;  ///< of this period
   long done_ = 0;   ///< periods of this stretch
+  long stretches_left_;
 };
 
 }  // namespace rmac::modules

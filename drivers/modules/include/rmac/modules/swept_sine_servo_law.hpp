@@ -50,12 +50,12 @@ class SweptSineServoLaw final : public ServoLaw {
 };
 
 /// Makes a `SweptSineServoLaw`; parameters of `PidServoLawFactory`, and `sweep_effort`, `sweep_from_hz`, `sweep_to_hz`,
-/// `sweep_full_hz`, `sweep_period_s` and `sweep_periods`.
+/// `sweep_full_hz`, `sweep_period_s`, `sweep_periods` and `sweep_stretches`.
 struct SweptSineServoLawFactory {
   static ServoLaw* create(sdk::Parameters parameters, char* error, std::size_t error_size) noexcept {
     if (!sdk::are_known_numbers(parameters,
                                 {"derivative_filter_s", "rest_band", "load", "sweep_effort", "sweep_from_hz",
-                                 "sweep_to_hz", "sweep_full_hz", "sweep_period_s", "sweep_periods"},
+                                 "sweep_to_hz", "sweep_full_hz", "sweep_period_s", "sweep_periods", "sweep_stretches"},
                                 error, error_size))
       return nullptr;
     ErrorSignal::Parameters signal;
