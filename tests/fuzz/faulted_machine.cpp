@@ -42,7 +42,9 @@ class Mill {
   void call(const std::string& method, const nlohmann::json& params = nullptr) {
     nlohmann::json message{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}};
     if (!params.is_null()) message["params"] = params;
-    static_cast<void>(dispatcher_.execute(read_request(std::move(message)), client_));
+    if (auto answer = dispatcher_.execute(read_request(std::move(message)), client_); !answer) {
+      refused_ = method + ": " + answer.error().message;
+    }
   }
   /// Machine time goes on by itself; this is over once so many cycles passed.
   void pass(int cycles) {
@@ -59,6 +61,14 @@ class Mill {
     call("Device.Unload");
     call("Device.Load", {{"Name", "DMACXYZ"}});
     return moves();
+  }
+  /// As `begin`, of one that was just made: it moves, however busy the computer is, or something is wrong.
+  void begin_surely() {
+    if (begin()) return;
+    for (int i = 0; i < kLongestStop && !now_.moving; i += kMostCycles) pass(kMostCycles);
+    if (bus_ != nullptr && now_.moving) return;
+    std::cerr << "a machine that was just made does not move; refused last: " << refused_ << '\n';
+    std::abort();
   }
   void break_drive(unsigned choice) {
     constexpr unsigned kWays = 6;
@@ -119,6 +129,7 @@ class Mill {
   }
 
   TemporaryFolder folder_{"fuzz"};
+  std::string refused_;                                ///< the last request that was, and why
   CycleSample now_{};                                  ///< the last cycle that was told of
   std::shared_ptr<fieldbus::SimulatedInterface> bus_;  ///< the one that was made last
   std::unique_ptr<DeviceDriverManager> manager_;
@@ -140,7 +151,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!mill->begin()) {
     // What came before may have left it where this move does not go: another machine has to move.
     mill = std::make_unique<Mill>();
-    if (!mill->begin()) std::abort();
+    mill->begin_surely();
   }
   mill->break_drive(data[0] / 2U);
   const std::size_t half = data[0] % 2 == 0 ? size : 1 + (size - 1) / 2;
