@@ -132,7 +132,7 @@ Apart surface_distance(const Solid& first, const Isometry3d& first_pose, const S
   };
   search(a, b, {gap(a.box(0), b.box(0)), 0, 0}, skip, [&](const Candidate& at) {
     a.each(at.first, [&](const Convex& one) {
-      const double one_reach = reach_of(one, a_pose, a.direction());
+      double one_reach = reach_of(one, a_pose, a.direction());
       b.each(at.second, [&](const Convex& other) {
         if (best.most == 0 || not_worth(-one_reach - reach_of(other, b_pose, b.direction()))) return;
         const Apart apart = distance(one, a_pose, other, b_pose, best.most, a.direction());
@@ -142,6 +142,7 @@ Apart surface_distance(const Solid& first, const Isometry3d& first_pose, const S
           if (best.most > 0) {
             a.aim((best.on_second - best.on_first) / best.most);
             b.aim((best.on_first - best.on_second) / best.most);
+            one_reach = reach_of(one, a_pose, a.direction());  // along the same line as the others' from here on
           }
         }
         best.least = least;

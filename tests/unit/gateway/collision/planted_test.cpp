@@ -7,6 +7,7 @@
 #include <random>
 
 #include "gateway/collision/checker.hpp"
+#include "gateway/threads/sanitized.hpp"
 #include "rmac/modules/chain_kinematics.hpp"
 #include "unit/gateway/collision/shapes.hpp"
 
@@ -159,7 +160,8 @@ std::vector<Finding> found(const Scene& scene) {
 
 TEST(PlantedCollisions, AreFoundWhereTheyAreDeeperThanTheClearanceAndNoneIsInvented) {
   int deep = 0, apart = 0;
-  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+  const std::uint64_t scenes = kSanitized ? 200 : 1000;  // a sanitizer makes minutes of each second
+  for (std::uint64_t seed = 1; seed <= scenes; ++seed) {
     const Scene scene = planted(seed);
     const double gap = scene.least_gap();
     const auto findings = found(scene);
@@ -176,18 +178,24 @@ TEST(PlantedCollisions, AreFoundWhereTheyAreDeeperThanTheClearanceAndNoneIsInven
       }
     }
     EXPECT_TRUE(gap <= scene.clearance + kRounding_mm || findings.empty()) << "seed " << seed << ": " << gap;
+    // It may come near twice: the nearest is told, or that they met.
+    double nearest = 1e300;
     for (const Finding& f : findings) {
+      nearest = std::min(nearest, f.collision ? 0.0 : f.distance_mm);
       if (f.collision) continue;
       EXPECT_GE(f.distance_mm, gap - kRounding_mm) << "seed " << seed;
-      EXPECT_LE(f.distance_mm, std::max(gap, 0.0) + 0.2 * scene.clearance + kRounding_mm) << "seed " << seed;
+    }
+    if (!findings.empty()) {
+      EXPECT_LE(nearest, std::max(gap, 0.0) + 0.2 * scene.clearance + kRounding_mm)
+          << "seed " << seed << ", " << findings.size() << " findings";
     }
   }
-  EXPECT_GT(deep, 200);
-  EXPECT_GT(apart, 100);
+  EXPECT_GT(deep, 0.2 * scenes);
+  EXPECT_GT(apart, 0.1 * scenes);
 }
 
 TEST(PlantedCollisions, TellWhenTheyBeganAndHowDeepTheyAreAtTheLooks) {
-  for (std::uint64_t seed = 2001; seed <= 2200; ++seed) {
+  for (std::uint64_t seed = 2001; seed <= (kSanitized ? 2050 : 2200); ++seed) {
     Scene scene = planted(seed);
     scene.obstacle.kind = Obstacle::Kind::Ball;
     scene.steps = 200;
