@@ -54,10 +54,10 @@ class DevicePort {
   /// What takes long before `load`, before a draft is applied and before what is wanted is configured, and touches
   /// nothing that moves; none where nothing is to be done.
   using Job = std::function<Expected<>()>;
-  [[nodiscard]] virtual Job loading(const std::string& name) = 0;
+  [[nodiscard]] virtual Job loading(const std::string& name, double soften) = 0;
   [[nodiscard]] virtual Job applying() = 0;
   [[nodiscard]] virtual Job configuring() = 0;
-  virtual Expected<> load(const std::string& name, bool virtual_mode) = 0;
+  virtual Expected<> load(const std::string& name, bool virtual_mode, double soften) = 0;
   virtual Expected<> unload() = 0;
   /// The modules of what is loaded.
   [[nodiscard]] virtual Expected<std::vector<ModuleInUse>> modules() const = 0;

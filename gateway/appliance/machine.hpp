@@ -35,12 +35,14 @@ class HostedDevice final : public DevicePort {
   Expected<nlohmann::json> verify(const std::string& name) override {
     return host_.verify(name).map([](const verifier::Report& report) { return verifier::to_json(report); });
   }
-  Job loading(const std::string& name) override {
-    return [this, name] { return host_.ready_to_load(name); };
+  Job loading(const std::string& name, double soften) override {
+    return [this, name, soften] { return host_.ready_to_load(name, soften); };
   }
   Job applying() override { return host_.verification_of_draft(); }
   Job configuring() override { return host_.verification_of_wanted(); }
-  Expected<> load(const std::string& name, bool virtual_mode) override { return host_.load(name, virtual_mode); }
+  Expected<> load(const std::string& name, bool virtual_mode, double soften) override {
+    return host_.load(name, virtual_mode, soften);
+  }
   Expected<> unload() override { return host_.unload(); }
   Expected<std::vector<ModuleInUse>> modules() const override { return host_.modules(); }
   bool virtual_mode() const override { return host_.virtual_mode(); }

@@ -46,19 +46,25 @@ JointLimits limits(const Json& joint) {
   return limits;
 }
 
+std::vector<Resonance> resonances(const Json& list) {
+  std::vector<Resonance> result;
+  for (const Json& entry : list) {
+    Resonance resonance;
+    resonance.frequency_hz = number(entry, "Frequency");
+    resonance.damping = number(entry, "Damping");
+    resonance.width = entry.value("Width", resonance.width);
+    result.push_back(resonance);
+  }
+  return result;
+}
+
 JointMechanics mechanics(const Json& joint) {
   JointMechanics result;
   if (const auto table = joint.find("PitchErrors"); table != joint.end()) {
     result.pitch = {number(*table, "First"), number(*table, "Step"), (*table)["Errors"].get<std::vector<double>>()};
   }
   result.backlash = joint.value("Backlash", 0.0);
-  for (const Json& entry : joint.value("Resonances", Json::array())) {
-    Resonance resonance;
-    resonance.frequency_hz = number(entry, "Frequency");
-    resonance.damping = number(entry, "Damping");
-    resonance.width = entry.value("Width", resonance.width);
-    result.resonances.push_back(resonance);
-  }
+  result.resonances = resonances(joint.value("Resonances", Json::array()));
   result.low_pass_hz = joint.value("LowPass", 0.0);
   return result;
 }
@@ -204,6 +210,11 @@ Expected<std::vector<sdk::Spindle>> read_spindles(const Json& list, const std::v
   static const JsonSchema kSchema(schema_of("spindle", true));
   const Json whole = completed(list, to_json(present));
   return check(whole, kSchema).map([&] { return spindles(whole); });
+}
+
+Expected<std::vector<Resonance>> read_resonances(const Json& list) {
+  static const JsonSchema kSchema(schema_of("resonances", false));
+  return check(list, kSchema).map([&] { return resonances(list); });
 }
 
 }  // namespace rmac::gateway

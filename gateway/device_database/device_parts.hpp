@@ -26,5 +26,7 @@ namespace rmac::gateway {
                                                                   const std::vector<sdk::Actuator>& present);
 [[nodiscard]] Expected<std::vector<sdk::Spindle>> read_spindles(const nlohmann::json& list,
                                                                 const std::vector<sdk::Spindle>& present);
+/// What stands under `Resonances` of a joint.
+[[nodiscard]] Expected<std::vector<Resonance>> read_resonances(const nlohmann::json& list);
 
 }  // namespace rmac::gateway

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "gateway/device_database/device_database.hpp"
+#include "gateway/device_driver/soft_loops.hpp"
 #include "gateway/rmac_config/verified_devices.hpp"
 
 namespace rmac::gateway {
@@ -20,6 +21,13 @@ struct Base {
   sdk::DeviceObject device;
   std::string folder;  ///< of its modules
 };
+
+/// What a file says of a mechanism, with softer loops where that is wanted.
+Expected<sdk::DeviceObject> read_softened(const std::filesystem::path& device_json, double soften) {
+  return read_device_database(device_json).map([&](const sdk::DeviceObject& device) {
+    return soften > 1 ? softened(device, soften) : device;
+  });
+}
 
 /// `role` on the joints, drives and interfaces of `base`.
 Expected<sdk::DeviceObject> overlaid(const sdk::DeviceObject& base, const sdk::DeviceObject& role) {
@@ -67,8 +75,8 @@ struct DeviceHost::Impl {
   template <typename Configure>
   Expected<> configure(Configure&& configure_part);
   Expected<Loaded*> require_loaded();
-  Expected<> load(const std::string& what, const std::filesystem::path& device_json, bool virtual_mode);
-  Expected<Loaded> configure_anew(const std::filesystem::path& device_json, const std::optional<Base>& base_before);
+  Expected<> load(const std::string& what, const std::filesystem::path& device_json, bool virtual_mode, double soften);
+  Expected<Loaded> configure_anew(Expected<sdk::DeviceObject> device, const std::optional<Base>& base_before);
   /// Modules are looked for in `folder`, and nothing beyond what was verified is put in force, where there is a
   /// verifier.
   void begin_in(std::string folder, bool virtual_mode) {
@@ -78,7 +86,7 @@ struct DeviceHost::Impl {
   }
   /// The verification of what goes beyond what was verified; none where nothing does.
   [[nodiscard]] std::function<Expected<>()> verification_of(const sdk::DeviceObject& device);
-  Expected<> require_verified(const std::filesystem::path& device_json) const;
+  Expected<> require_verified(const std::filesystem::path& device_json, double soften) const;
   /// Why `what` is not loaded, and what is instead.
   tl::unexpected<Error> not_loaded(const std::string& what, const Error& why) const;
   /// What an overlay that is loaded now would lie over.
@@ -100,9 +108,8 @@ DeviceHost::DeviceHost(DeviceDriverManager& manager, Controller& controller, con
     : impl_(new Impl{manager, controller, verification}) {}
 DeviceHost::~DeviceHost() = default;
 
-Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(const std::filesystem::path& device_json,
+Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(Expected<sdk::DeviceObject> device,
                                                                     const std::optional<Base>& base_before) {
-  auto device = read_device_database(device_json);
   if (!device) return tl::unexpected(device.error());
   auto driver = load_driver(device->device_driver);
   if (!driver) return tl::unexpected(driver.error());
@@ -127,8 +134,12 @@ Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(const std::f
   return Loaded{std::move(*driver), std::move(high_level), *device, *device, std::move(under)};
 }
 
-Expected<> DeviceHost::Impl::require_verified(const std::filesystem::path& device_json) const {
-  return verification != nullptr ? verification->require(device_json) : Expected<>();
+Expected<> DeviceHost::Impl::require_verified(const std::filesystem::path& device_json, double soften) const {
+  if (verification == nullptr) return {};
+  if (soften == 1) return verification->require(device_json);
+  return read_softened(device_json, soften).and_then([&](const sdk::DeviceObject& device) {
+    return verification->require(device, device_json.parent_path());
+  });
 }
 
 tl::unexpected<Error> DeviceHost::Impl::not_loaded(const std::string& what, const Error& why) const {
@@ -147,10 +158,10 @@ Expected<verifier::Report> DeviceHost::verify(const std::string& name) const {
   return impl_->verification->verify(*folder / "device.json");
 }
 
-Expected<> DeviceHost::ready_to_load(const std::string& name) const {
+Expected<> DeviceHost::ready_to_load(const std::string& name, double soften) const {
   const auto folder = impl_->manager.folder_of(name);
   if (!folder) return tl::unexpected(folder.error());
-  auto verified = impl_->require_verified(*folder / "device.json");
+  auto verified = impl_->require_verified(*folder / "device.json", soften);
   if (verified) return {};
   return failure(verified.error().code,
                  fmt::format("{} is not loaded: {} (what is loaded stays loaded)", name, verified.error().message));
@@ -171,24 +182,24 @@ std::function<Expected<>()> DeviceHost::verification_of_wanted() const {
   return impl_->loaded ? impl_->verification_of(impl_->loaded->wanted) : nullptr;
 }
 
-Expected<> DeviceHost::load(const std::string& name, bool virtual_mode) {
+Expected<> DeviceHost::load(const std::string& name, bool virtual_mode, double soften) {
   const auto folder = impl_->manager.folder_of(name);
   if (!folder) return tl::unexpected(folder.error());
-  return impl_->load(name, *folder / "device.json", virtual_mode);
+  return impl_->load(name, *folder / "device.json", virtual_mode, soften);
 }
 
 Expected<> DeviceHost::load_file(const std::filesystem::path& device_json, bool virtual_mode) {
-  return impl_->load(device_json.string(), device_json, virtual_mode);
+  return impl_->load(device_json.string(), device_json, virtual_mode, 1);
 }
 
-Expected<> DeviceHost::Impl::load(const std::string& what, const std::filesystem::path& device_json,
-                                  bool virtual_mode) {
-  if (auto passed = require_verified(device_json); !passed) return not_loaded(what, passed.error());
+Expected<> DeviceHost::Impl::load(const std::string& what, const std::filesystem::path& device_json, bool virtual_mode,
+                                  double soften) {
+  if (auto passed = require_verified(device_json, soften); !passed) return not_loaded(what, passed.error());
   const std::string folder_before = controller.mechanism_folder();
   const bool virtual_before = controller.virtual_mode();
   const std::optional<Base> base_before = base();
   begin_in(device_json.parent_path().string(), virtual_mode);
-  auto made = configure_anew(device_json, base_before);
+  auto made = configure_anew(read_softened(device_json, soften), base_before);
   if (!made) {
     begin_in(folder_before, virtual_before);
     controller.discard_draft();

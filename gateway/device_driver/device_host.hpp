@@ -23,14 +23,15 @@ class DeviceHost {
   [[nodiscard]] Expected<verifier::Report> verify(const std::string& name) const;
   /// Whether mechanism `name` passed its verification, or passes it now: the long half of `load`, which does not touch
   /// the controller. `load` asks again. Any thread.
-  [[nodiscard]] Expected<> ready_to_load(const std::string& name) const;
+  [[nodiscard]] Expected<> ready_to_load(const std::string& name, double soften = 1) const;
   /// The verification of what is drafted, or wanted, where that goes beyond what was verified; none where it does not.
   /// It does not touch the controller. What passes may be put in force.
   [[nodiscard]] std::function<Expected<>()> verification_of_draft() const;
   [[nodiscard]] std::function<Expected<>()> verification_of_wanted() const;
   /// Loads mechanism `name`: the driver configures planner, servo controller and interfaces into a draft, which is
   /// applied at standstill. On any failure the mechanism that was loaded stays loaded, and the error says what failed.
-  [[nodiscard]] Expected<> load(const std::string& name, bool virtual_mode);
+  /// `soften`: its servo loops are softer so many times (`softened`), and are verified so; an overlay has none.
+  [[nodiscard]] Expected<> load(const std::string& name, bool virtual_mode, double soften = 1);
   /// The same with the device database in a file of any name; modules are looked for beside it first.
   [[nodiscard]] Expected<> load_file(const std::filesystem::path& device_json, bool virtual_mode);
   [[nodiscard]] Expected<> unload();
@@ -39,7 +40,7 @@ class DeviceHost {
 
   /// The modules of the loaded mechanism, its device driver first.
   [[nodiscard]] Expected<std::vector<ModuleInUse>> modules() const;
-  /// The device object of the loaded mechanism as its database gives it.
+  /// The device object of the loaded mechanism as its database gives it, its loops as they were loaded.
   [[nodiscard]] Expected<const sdk::DeviceObject*> database() const;
   /// The same with what `Machine_Set…` changed since; the three functions below hand it to the driver, and apply.
   [[nodiscard]] Expected<sdk::DeviceObject*> wanted();

@@ -176,8 +176,8 @@ std::string joint_cause(const ServoFault& fault, const std::string& at) {
           at, fault.value, fault.bound);
     case ServoFault::Kind::Oscillation:
       return fmt::format(
-          "{}: its servo loop swings at about {:.3g} Hz, its effort by {:.3g} either way; lower its gains, or declare "
-          "the resonance (Resonances, LowPass), look for loose mechanics, then reset",
+          "{}: its servo loop swings at about {:.3g} Hz, its effort by {:.3g} either way; look for loose mechanics, "
+          "load it with softer loops (`rmac load --soften 8`), and have `rmac tune` find gains and filters for it",
           at, fault.value, fault.bound);
     case ServoFault::Kind::WrongDirection:
       return fmt::format(

@@ -84,6 +84,59 @@ def check_trace(device):
     assert again == heard, "what is recorded is told alike"
 
 
+def node_now(number):
+    """What `rmac bus state` tells of a node of vcan0."""
+    report = json.loads(rmac("--json", "bus", "state"))
+    (bus,) = [bus for bus in report["buses"] if bus["interface"] == "vcan0"]
+    assert bus["cycles"] > 0 and bus["sent"] > bus["cycles"] and bus["unsent"] == bus["overflowed"] == 0, bus
+    (node,) = [node for node in bus["nodes"] if node["node"] == number]
+    return node
+
+
+def bad_nodes():
+    return {bus["name"]: bus["nodes_bad"] for bus in status()["buses"]}
+
+
+def reset(person):
+    person.call("RMAC_CAM.Reset")
+    wait_for("the machine holds again", lambda: status()["state"] == "Idle")
+
+
+def check_state(table):
+    """A drive that trips and one that goes mute, seen while the machine is loaded: in `rmac bus state`, in the topic `state`, as events, and in the
+    flight record of the fault."""
+    fine = node_now(2)
+    assert (fine["state"], fine["lost"], fine["emergency_count"]) == ("operational", 0, 0), fine
+    assert fine["answers"] > 100 and 0 < fine["jitter_mean_s"] <= fine["jitter_most_s"], fine
+    assert bad_nodes() == {"vcan0": [], "vcan1": []}, bad_nodes()
+    watcher = operator()
+    watcher.call("subscribe", topics=["events"])
+
+    table.tell("2 trip 0x7305")
+    fault = watcher.wait_note("events", lambda event: event["kind"] == "Fault")
+    told = watcher.wait_note("events", lambda event: event["kind"] == "Bus" and "7305h" in event["message"])
+    print("event:", told["message"])
+    (emergency,) = [each for each in node_now(2)["emergencies"] if each["code"] == 0x7305]
+    shown = rmac("bus", "state")
+    print(shown)
+    assert "node 2: EMCY 7305h (" + emergency["text"] in shown, shown
+    assert "EMCY 7305h" in rmac("bus", "state", "--record", fault["record"]), "as it was when the machine stopped"
+    reset(watcher)
+
+    table.tell("3 mute on")
+    watcher.wait_note("events", lambda event: event["kind"] == "Fault")
+    lost = watcher.wait_note("events", lambda event: event["kind"] == "Bus" and "node 3" in event["message"])
+    print("event:", lost["message"])
+    wait_for("the topic tells of node 3", lambda: bad_nodes()["vcan0"] == [3])
+    away = node_now(3)
+    assert away["state"] != "operational" and away["lost"] == 1 and away["missed_answers"] > 0, away
+    table.tell("3 mute off")
+    wait_for("node 3 is back", lambda: bad_nodes()["vcan0"] == [])
+    assert (node_now(3)["state"], node_now(3)["recovered"]) == ("operational", 1), node_now(3)
+    reset(watcher)
+    watcher.close()
+
+
 def main():
     device = prepare()
     print(call("rmac", "bus", "load", device))
@@ -107,6 +160,7 @@ def main():
     assert set(table.states().values()) == {"operation-enabled"}, table.states()
 
     check_trace(device)
+    check_state(table)
     scan = subprocess.run(["rmac", "bus", "scan", "vcan0"], capture_output=True, text=True)
     assert scan.returncode == 1 and "a machine runs on this bus" in scan.stderr, scan
     table.ask("1 status", "^node 1 operational operation-enabled")

@@ -46,6 +46,12 @@ ModuleChoice law_of(const sdk::DeviceObject& draft, std::int64_t joint) {
   return number < draft.joint_count_with_held() ? sdk::joint_at(draft, number).servo_law : ModuleChoice{};
 }
 
+/// The mechanics that a joint has in the draft; none where there is no such joint, which the setter says.
+JointMechanics mechanics_of(const sdk::DeviceObject& draft, std::int64_t joint) {
+  const auto number = static_cast<std::size_t>(joint);
+  return number < draft.joint_count_with_held() ? sdk::joint_at(draft, number).mechanics : JointMechanics{};
+}
+
 template <typename Function>
 Method joint_number_setter(const char* name, const char* meaning, Parameter<double> value, Function function) {
   return method(name, meaning)
@@ -184,6 +190,26 @@ void add_servo_setters(const auto& add) {
             ModuleChoice law = law_of(config.draft(), joint);
             law.numbers[name] = {value};
             return config.loops().set_servo_law(static_cast<int>(joint), law);
+          }));
+  add(method("RMAC_Config.SetMechanismJointFilters",
+             "Filters of a joint's effort: a notch for each resonance, and a low-pass. They take the place of those "
+             "that it has.")
+          .takes(joint_number(), objects("Resonances").noted("as in device.json; [] for none"),
+                 number("LowPass", "Hz").within(device_range("joint/LowPass")).noted("0 for none"))
+          .needs(Permission::Authority)
+          .extension()
+          .does([](Call& call, std::int64_t joint, const JsonValue& list, double low_pass_hz) {
+            RmacConfig& config = call.machine.config();
+            return read_resonances(list.json)
+                .map_error([](const Error& error) {
+                  return Error{error.code, "Resonances: " + error.message};
+                })
+                .and_then([&](std::vector<Resonance> resonances) {
+                  JointMechanics mechanics = mechanics_of(config.draft(), joint);
+                  mechanics.resonances = std::move(resonances);
+                  mechanics.low_pass_hz = low_pass_hz;
+                  return config.loops().set_mechanics(static_cast<int>(joint), mechanics);
+                });
           }));
 }
 

@@ -49,18 +49,27 @@ void add_life_cycle(const auto& add) {
   add(method("Device.Load",
              "Loads a mechanism's device driver and configures the controller by it, at standstill; on any failure the "
              "mechanism that was loaded stays. Modules that did not pass their verification before are verified first.")
-          .takes(text("Name"), boolean("Virtual").optional().noted("true: setpoints come back as joint values and "
-                                                                   "no bus is touched; false when left out"))
+          .takes(text("Name"),
+                 boolean("Virtual").optional().noted("true: setpoints come back as joint values and "
+                                                     "no bus is touched; false when left out"),
+                 number("Soften", "")
+                     .optional()
+                     .within(1, 100)
+                     .noted("for commissioning: Kp and Kd of its PIDs divided by this, Ki by its square, and a quarter "
+                            "of their "
+                            "accelerations; 1 when left out"))
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
           .may_be_slow()
           .extension()
-          .prepared_by([](Call& call, const std::string& name, const std::optional<bool>& /*virtual_mode*/) {
-            return call.machine.device().loading(name);
+          .prepared_by([](Call& call, const std::string& name, const std::optional<bool>& /*virtual_mode*/,
+                          const std::optional<double>& soften) {
+            return call.machine.device().loading(name, soften.value_or(1));
           })
-          .does([](Call& call, const std::string& name, std::optional<bool> virtual_mode) {
-            return call.machine.device().load(name, virtual_mode.value_or(false));
-          }));
+          .does(
+              [](Call& call, const std::string& name, std::optional<bool> virtual_mode, std::optional<double> soften) {
+                return call.machine.device().load(name, virtual_mode.value_or(false), soften.value_or(1));
+              }));
   add(method("Device.Unload", "Takes the mechanism out at standstill: drives off, no motion until another is loaded.")
           .gives(WireType::Boolean)
           .needs(Permission::Authority)

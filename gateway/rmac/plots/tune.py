@@ -133,7 +133,8 @@ def measured_joint(given, plant):
     if joint.misfit > WORST_MISFIT:
         raise frequency_response.Unmeasured(
             f"what was measured is no mass with up to {frequency_response.MOST_MODES} resonances (off by "
-            f"{joint.misfit:.2f} in the logarithm, {WORST_MISFIT} at most); nothing is proposed")
+            f"{joint.misfit:.2f} in the logarithm, {WORST_MISFIT} at most); nothing is proposed. Sines of more effort are heard "
+            "better: --sweep-effort")
     return joint, response
 
 

@@ -26,8 +26,8 @@ Result<> stop_now(Connection& connection) {
   return connection.command("RMAC_CAM.StopNow");
 }
 
-Result<> load_machine(Connection& connection, const std::string& name, bool virtual_mode) {
-  return connection.command(kLoadMachine, {{"Name", name}, {"Virtual", virtual_mode}});
+Result<> load_machine(Connection& connection, const std::string& name, bool virtual_mode, double soften) {
+  return connection.command(kLoadMachine, {{"Name", name}, {"Virtual", virtual_mode}, {"Soften", soften}});
 }
 
 Result<std::string> loaded_machine(Connection& connection) {

@@ -34,7 +34,8 @@ inline constexpr const char* kGetParkedProgram = "RMAC_CAM.GetParkedProgram";
 /// Stops as fast as the limits allow, and empties the queue.
 [[nodiscard]] Result<> stop_now(Connection& connection);
 /// Loads a machine. Needs motion authority.
-[[nodiscard]] Result<> load_machine(Connection& connection, const std::string& name, bool virtual_mode);
+[[nodiscard]] Result<> load_machine(Connection& connection, const std::string& name, bool virtual_mode,
+                                    double soften = 1);
 /// Name of the machine that is loaded; an error where none is.
 [[nodiscard]] Result<std::string> loaded_machine(Connection& connection);
 

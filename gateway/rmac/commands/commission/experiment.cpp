@@ -14,8 +14,12 @@ Result<> commission(Connection& connection, const std::function<Result<>(const s
   return with_authority(connection, [&]() -> Result<> {
     if (auto heard = faults.begin(); !heard) return heard;
     auto worked = work(faults.failure());
-    if (!worked) static_cast<void>(stop_now(connection));
-    return worked;
+    if (worked) return worked;
+    static_cast<void>(stop_now(connection));
+    // What stopped the machine says more than what it then refused.
+    const auto state = ask_state(connection);
+    const bool stopped = state && state->faulted() && !state->last_stop.message.empty();
+    return stopped ? fail(state->last_stop.message) : worked;
   });
 }
 

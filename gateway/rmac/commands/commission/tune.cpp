@@ -31,16 +31,20 @@ Result<> apply_gains(Connection& connection, const Options& options, const Json&
     return fail(fmt::format("nothing is changed: {} takes other gains than those that were found; choose a PID law",
                             found["law"].get<std::string>()));
   }
-  if (found["proposed"]["filters"] != found["filters_in_force"]) {
-    return fail(fmt::format(
-        "nothing is changed: these gains hold with the filters above only. Write {} and \"Gains\": {} into the joint "
-        "in device.json, and load it",
-        filters_text(found["proposed"]["filters"]), found["apply"].dump()));
+  const int joint = options.stroke.joint;
+  const Json& filters = found["proposed"]["filters"];
+  Result<> set;
+  if (filters != found["filters_in_force"]) {
+    set =
+        connection.command("RMAC_Config.SetMechanismJointFilters",
+                           {{"JntNum", joint}, {"Resonances", filters["Resonances"]}, {"LowPass", filters["LowPass"]}});
   }
-  const Json params{{"JntNum", options.stroke.joint}, {"ServoControlGains", found["apply"]}};
-  return connection.command("RMAC_Config.SetMechanismJointServoControlGains", params).and_then([&] {
-    return connection.command("RMAC_Config.Apply");
-  });
+  return set
+      .and_then([&] {
+        return connection.command("RMAC_Config.SetMechanismJointServoControlGains",
+                                  {{"JntNum", joint}, {"ServoControlGains", found["apply"]}});
+      })
+      .and_then([&] { return connection.command("RMAC_Config.Apply"); });
 }
 
 /// Refuses a machine of which nothing would be found.
@@ -84,6 +88,15 @@ Result<Json> measure_response(Connection& connection, const Options& options, co
   }
   if (!options.sweep_effort && found["max_effort"] == 0) {
     return fail("the joint has no MaxEffort, of which the sweep would be a twentieth; give --sweep-effort");
+  }
+  // With what the loop answers to it, more is a loop that swings (docs/servo.md).
+  constexpr double kMostShare = 0.095;
+  const double most = kMostShare * found["max_effort"].get<double>();
+  if (most > 0 && options.sweep_effort.value_or(0) > most) {
+    return fail(
+        fmt::format("--sweep-effort {:g}: from a tenth of the joint's MaxEffort on the watch takes the sines for a "
+                    "loop that swings; give at most {:g}",
+                    *options.sweep_effort, most));
   }
   const auto begin = ask_state(connection);
   if (!begin) return tl::unexpected(begin.error());
@@ -137,8 +150,7 @@ Result<> tune(Connection& connection, const Options& options, bool json) {
       print_tuning(*found, picture);
     }
     if (options.apply) return apply_gains(connection, options, *found);
-    if (!json)
-      fmt::print("nothing was changed; --apply puts these gains in force; to keep them, write them into device.json\n");
+    if (!json) fmt::print("nothing was changed; --apply puts this in force until the machine is loaded again\n");
     return {};
   });
 }
@@ -163,7 +175,7 @@ void add_tune(Command& rmac) {
               "N or N·m of the sines that find resonances; a twentieth of MaxEffort unless given, 0 for none")
       .within(0.0, 1e7);
   tuned.option("-o,--output", &options->picture, "the picture to draw; tune-JOINT.png here unless given");
-  tuned.flag("--apply", &options->apply, "put the gains in force; without it nothing is changed");
+  tuned.flag("--apply", &options->apply, "put gains and filters in force; without it nothing is changed");
   tuned.does(with_appliance([options](Connection& appliance, bool json) { return tune(appliance, *options, json); }));
 }
 

@@ -53,13 +53,13 @@ void print_tuning(const Json& found, const std::string& picture) {
   fmt::print("{}",
              table({"", "Kp, Ki, Kd", "bandwidth Hz", "phase margin deg", "gain margin dB", "sensitivity peak"}, rows));
   if (!found["resonances"].empty()) fmt::print("its worst: with the resonances up to 15 % elsewhere\n");
-  print_filters(found["proposed"]["filters"]);
+  const Json& filters = found["proposed"]["filters"];
+  print_filters(filters);
   fmt::print("for DMAC_FEEDFORWARDFEEDBACK_CONTROL: {} with lead_s {:.4f}\n{}\n",
              list_text(found["feedforward_feedback_gains"]), found["lead_s"].get<double>(), picture);
-}
-
-std::string filters_text(const Json& filters) {
-  return fmt::format("\"Resonances\": {}, \"LowPass\": {}", filters["Resonances"].dump(), filters["LowPass"].dump());
+  if (found["apply"].is_null()) return;  // a law of other gains
+  fmt::print("to keep it, write into the joint in device.json: \"Gains\": {}, \"Resonances\": {}, \"LowPass\": {}\n",
+             list_text(found["apply"]), filters["Resonances"].dump(), filters["LowPass"].dump());
 }
 
 }  // namespace rmac::cli

@@ -7,10 +7,7 @@
 
 namespace rmac::cli {
 
-/// The joint, its loop before and after, and the filters that belong to it.
+/// The joint, its loop before and after, the filters that belong to it, and what device.json is to say to keep it.
 void print_tuning(const nlohmann::json& found, const std::string& picture);
-
-/// Filters as `device.json` has them.
-[[nodiscard]] std::string filters_text(const nlohmann::json& filters);
 
 }  // namespace rmac::cli

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "gateway/rmac/commands/machines/registrations.hpp"
 #include "gateway/rmac/wire/authority.hpp"
 #include "gateway/rmac/wire/requests.hpp"
@@ -9,7 +11,15 @@ namespace {
 struct Options {
   std::string name;
   bool virtual_mode = false;
+  double soften = 1;
 };
+
+Result<> load_softly(Connection& appliance, const Options& options) {
+  return load_machine(appliance, options.name, options.virtual_mode, options.soften).map([&] {
+    if (options.soften == 1) return;
+    fmt::print("its loops are softer by {:g}, and speed up at a quarter, until it is loaded again\n", options.soften);
+  });
+}
 
 }  // namespace
 
@@ -18,8 +28,12 @@ void add_load(Command& rmac) {
   Command load = rmac.add("load", "make a machine's driver configure the controller");
   load.option("NAME", &options->name, "as `rmac machines` lists it").required();
   load.flag("--virtual", &options->virtual_mode, "setpoints come back as joint values, drives stay untouched");
+  load.option("--soften", &options->soften,
+              "for commissioning, where its gains swing or were made for another mass: divide Kp and Kd of its PIDs by "
+              "this, and Ki by its square; 8 does for most")
+      .within(1.0, 100.0);
   load.does(with_appliance([options](Connection& appliance, bool) {
-    return with_authority(appliance, [&] { return load_machine(appliance, options->name, options->virtual_mode); });
+    return with_authority(appliance, [&] { return load_softly(appliance, *options); });
   }));
 }
 

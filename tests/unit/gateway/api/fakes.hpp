@@ -261,7 +261,7 @@ class FakeDevice : public DevicePort {
     if (during_verification) during_verification();
     return nlohmann::json{{"mechanism", name}, {"ok", true}};
   }
-  Job loading(const std::string& /*name*/) override {
+  Job loading(const std::string& /*name*/, double /*soften*/) override {
     return [this]() -> Expected<> {
       if (during_preparation) during_preparation();
       if (!verification_refusal.empty()) return failure(MinorCode::InvalidParameterValue, verification_refusal);
@@ -270,7 +270,7 @@ class FakeDevice : public DevicePort {
   }
   Job applying() override { return {}; }
   Job configuring() override { return {}; }
-  Expected<> load(const std::string& name, bool virtual_mode) override {
+  Expected<> load(const std::string& name, bool virtual_mode, double /*soften*/) override {
     if (during_load) during_load();
     if (name != "Fake") return failure(MinorCode::InvalidParameterValue, "no mechanism " + name + "; there is Fake");
     device = two_joint_device();

@@ -55,9 +55,9 @@ TEST_F(FaultText, SaysOfALoopWhatIsWrongWithIt) {
   const auto of_joint = [](ServoFault::Kind kind, double value, double bound) {
     return ServoFault{kind, ServoFault::Part::Joint, 1, value, bound};
   };
-  EXPECT_THAT(
-      text(of_joint(ServoFault::Kind::Oscillation, 274, 300)),
-      HasSubstr("joint 1 (Y): its servo loop swings at about 274 Hz, its effort by 300 either way; lower its gains"));
+  EXPECT_THAT(text(of_joint(ServoFault::Kind::Oscillation, 274, 300)),
+              HasSubstr("joint 1 (Y): its servo loop swings at about 274 Hz, its effort by 300 either way; look for "
+                        "loose mechanics"));
   EXPECT_THAT(text(of_joint(ServoFault::Kind::WrongDirection, -0.1, 250)),
               HasSubstr("joint 1 (Y): it went -0.1 faster and faster against an effort of 250; look for a motor"));
   EXPECT_THAT(text(of_joint(ServoFault::Kind::StandsStill, 1, 0.02)),

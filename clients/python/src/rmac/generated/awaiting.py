@@ -118,9 +118,9 @@ class Device:
     def __init__(self, call: AwaitingCaller) -> None:
         self._call = call
 
-    async def Load(self, Name: str, Virtual: bool | None = None) -> bool:
-        """Loads a mechanism's device driver and configures the controller by it, at standstill; on any failure the mechanism that was loaded stays. Modules that did not pass their verification before are verified first. Virtual: true: setpoints come back as joint values and no bus is touched; false when left out."""
-        return await self._call(calls.Device.Load(Name, Virtual))
+    async def Load(self, Name: str, Virtual: bool | None = None, Soften: float | None = None) -> bool:
+        """Loads a mechanism's device driver and configures the controller by it, at standstill; on any failure the mechanism that was loaded stays. Modules that did not pass their verification before are verified first. Virtual: true: setpoints come back as joint values and no bus is touched; false when left out. Soften: for commissioning: Kp and Kd of its PIDs divided by this, Ki by its square, and a quarter of their accelerations; 1 when left out."""
+        return await self._call(calls.Device.Load(Name, Virtual, Soften))
 
     async def Unload(self) -> bool:
         """Takes the mechanism out at standstill: drives off, no motion until another is loaded."""
@@ -390,6 +390,10 @@ class RMAC_Config:
     async def SetMechanismJointServoControlParameter(self, JntNum: int, Name: str, Value: float) -> None:
         """A parameter of a joint's servo law beside its gains: lead_s, rest_band, … Another law forgets it. Name: as docs/servo.md has it. Value: as the law declares."""
         return await self._call(calls.RMAC_Config.SetMechanismJointServoControlParameter(JntNum, Name, Value))
+
+    async def SetMechanismJointFilters(self, JntNum: int, Resonances: Sequence[Mapping[str, Any]], LowPass: float) -> None:
+        """Filters of a joint's effort: a notch for each resonance, and a low-pass. They take the place of those that it has. Resonances: as in device.json; [] for none. LowPass: Hz; 0 for none."""
+        return await self._call(calls.RMAC_Config.SetMechanismJointFilters(JntNum, Resonances, LowPass))
 
     async def SetMechanismSpindleMaxRPM(self, MaxSpindleRPM: float) -> None:
         """Largest speed of every spindle. MaxSpindleRPM: rpm."""

@@ -138,9 +138,9 @@ class DeviceDriverManager:
 
 class Device:
     @staticmethod
-    def Load(Name: str, Virtual: bool | None = None) -> Call[bool]:
-        """Loads a mechanism's device driver and configures the controller by it, at standstill; on any failure the mechanism that was loaded stays. Modules that did not pass their verification before are verified first. Virtual: true: setpoints come back as joint values and no bus is touched; false when left out."""
-        return Call("Device.Load", {"Name": Name, "Virtual": Virtual})
+    def Load(Name: str, Virtual: bool | None = None, Soften: float | None = None) -> Call[bool]:
+        """Loads a mechanism's device driver and configures the controller by it, at standstill; on any failure the mechanism that was loaded stays. Modules that did not pass their verification before are verified first. Virtual: true: setpoints come back as joint values and no bus is touched; false when left out. Soften: for commissioning: Kp and Kd of its PIDs divided by this, Ki by its square, and a quarter of their accelerations; 1 when left out."""
+        return Call("Device.Load", {"Name": Name, "Virtual": Virtual, "Soften": Soften})
 
     @staticmethod
     def Unload() -> Call[bool]:
@@ -473,6 +473,11 @@ class RMAC_Config:
     def SetMechanismJointServoControlParameter(JntNum: int, Name: str, Value: float) -> Call[None]:
         """A parameter of a joint's servo law beside its gains: lead_s, rest_band, … Another law forgets it. Name: as docs/servo.md has it. Value: as the law declares."""
         return Call("RMAC_Config.SetMechanismJointServoControlParameter", {"JntNum": JntNum, "Name": Name, "Value": Value})
+
+    @staticmethod
+    def SetMechanismJointFilters(JntNum: int, Resonances: Sequence[Mapping[str, Any]], LowPass: float) -> Call[None]:
+        """Filters of a joint's effort: a notch for each resonance, and a low-pass. They take the place of those that it has. Resonances: as in device.json; [] for none. LowPass: Hz; 0 for none."""
+        return Call("RMAC_Config.SetMechanismJointFilters", {"JntNum": JntNum, "Resonances": Resonances, "LowPass": LowPass})
 
     @staticmethod
     def SetMechanismSpindleMaxRPM(MaxSpindleRPM: float) -> Call[None]:

@@ -229,6 +229,24 @@ const std::vector<SetterEffect>& config_setter_effects() {
          bench.run_until([&] { return bench.now().fault.kind == ServoFault::Kind::StandsStill; });
          EXPECT_NEAR(bench.now().fault.value, -0.2, 0.02) << "5 N do not even overcome friction";
        }},
+      {"RMAC_Config.SetMechanismJointFilters",
+       [](SetterBench& bench) {
+         EXPECT_NEAR(bench.joints_to({30, 0, 0}).back().position[0], 30, 0.05);
+         const auto refusal = [&](const char* filters) {
+           return bench.refusal("RMAC_Config.SetMechanismJointFilters", fmt::format(R"({{"JntNum": 0, {}}})", filters));
+         };
+         EXPECT_THAT(refusal(R"("Resonances": [{"Frequency": 80}], "LowPass": 0)"),
+                     AllOf(HasSubstr("Resonances"), HasSubstr("Damping")));
+         EXPECT_THAT(refusal(R"("Resonances": [], "LowPass": -1)"), HasSubstr("LowPass"));
+         bench.call("RMAC_Config.SetMechanismJointFilters",
+                    R"({"JntNum": 0, "Resonances": [{"Frequency": 80, "Damping": 0.9, "Width": 0.5}], "LowPass": 0})");
+         EXPECT_THAT(bench.refusal("RMAC_Config.Apply"), HasSubstr("a width above the damping"));
+         EXPECT_NEAR(bench.joints_to({0, 0, 0}).back().position[0], 0, 0.05) << "nothing was changed";
+         bench.call("RMAC_Config.SetMechanismJointFilters", R"({"JntNum": 0, "Resonances": [], "LowPass": 20})");
+         bench.apply();
+         bench.call("RMAC_CAM.MoveToJointTarget", R"({"MoveID": 2, "JointTargetFrame": {"joints": [30, 0, 0]}})");
+         bench.run_until([&] { return bench.now().fault.kind == ServoFault::Kind::Oscillation; });
+       }},
       {"RMAC_Config.SetMechanismJointLimitType",
        [](SetterBench& bench) {
          EXPECT_THAT(bench.tip_refusal(60, 0, 0), HasSubstr("beyond its limit of 50"));
