@@ -159,6 +159,10 @@ void declare(CLI::App& app, Words& words) {
   app.add_option("--output", words.outputs, "3=NAME: the machine's output that M62 to M65 P3 switch")
       ->allow_extra_args(false);
   app.add_option("--input", words.inputs, "3=NAME: the machine's input that M66 P3 waits for")->allow_extra_args(false);
+  app.add_option("--output-limit", words.options.bounds.output_mb,
+                 "MB: a program with loops or subprograms that becomes more is one that does not end")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
   app.add_flag("--ids-are-lines", words.ids_are_lines, "the id of each request is the line that it comes from");
 }
 

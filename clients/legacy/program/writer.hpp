@@ -66,6 +66,7 @@ class Writer {
 
   [[nodiscard]] std::size_t requests() const noexcept { return requests_; }
   [[nodiscard]] std::size_t moves() const noexcept { return moves_; }
+  [[nodiscard]] std::size_t bytes() const noexcept { return flushed_ + out_.size(); }
 
  private:
   void open(std::string_view method);
@@ -75,7 +76,7 @@ class Writer {
   Sink sink_;
   Ids ids_;
   std::string out_, here_, there_;
-  std::size_t line_ = 0, requests_ = 0, moves_ = 0;
+  std::size_t line_ = 0, requests_ = 0, moves_ = 0, flushed_ = 0;
 };
 
 }  // namespace rmac::legacy

@@ -14,6 +14,8 @@ namespace rmac::rs274 {
 namespace {
 
 constexpr double kInch_mm = 25.4, kMostTolerance_mm = 100, kMostDwell_s = 3600;
+/// How often M98 calls.
+constexpr double kMostTimes = 1e9;
 /// What a stop's message may have.
 constexpr std::size_t kMostMessage_bytes = 200;
 
@@ -43,9 +45,10 @@ std::string_view active_word(std::string_view comment) {
 
 }  // namespace
 
-Interpreter::Interpreter(const Options& options, Writer& writer)
+Interpreter::Interpreter(const Options& options, Writer& writer, Parameters& parameters)
     : options_(options),
       writer_(writer),
+      parameters_(parameters),
       mover_(options, modes_, coordinates_, writer),
       motions_(options, modes_, coordinates_, mover_),
       splines_(motions_, modes_, mover_),
@@ -57,15 +60,16 @@ Interpreter::Interpreter(const Options& options, Writer& writer)
   parameters_.ask_control([this](int number) { return control_parameter(number); });
 }
 
-bool Interpreter::execute(const Line& line) {
+After Interpreter::execute(const Line& line) {
   block_.read(line, parameters_);
   read_comments(line);
-  if (block_.empty()) return true;
+  if (block_.empty()) return {};
   if (splines_.open()) {
     splines_.go_on(block_);
     block_.require_all_used();
-    return true;
+    return {};
   }
+  if (const auto& code = block_.m(MGroup::Stop); code && code->number >= 98) return numbered_program(*code);
   set_speeds();
   set_tool();
   switches_.switch_coolant(block_);
@@ -81,7 +85,7 @@ bool Interpreter::execute(const Line& line) {
   move();
   const bool goes_on = stop();
   block_.require_all_used();
-  return goes_on;
+  return {goes_on ? After::What::Next : After::What::End};
 }
 
 void Interpreter::read_comments(const Line& line) {
@@ -225,6 +229,26 @@ bool Interpreter::stop() {
   writer_.stop(stop->number == 1, message);
   message_.clear();
   return true;
+}
+
+/// M98 and M99. What stands beside them LinuxCNC passes over, and other controls carry out first.
+After Interpreter::numbered_program(const Code& code) {
+  if (block_.codes() > 1) refuse(code.place, fmt::format("M{} has a block of its own; write two", code.number));
+  if (code.number == 99) {
+    block_.require_all_used();
+    return {After::What::EndOfNumbered, 0, 1, code.place};
+  }
+  if (!block_.has('P')) refuse(code.place, "M98 needs P, the number of the program that it calls");
+  const Word& label = block_.use('P');
+  if (!(label.value >= 0 && label.value <= kMostTimes && label.value == std::floor(label.value)))
+    refuse(label.place, "P of M98 is the number behind the O of a program");
+  const Word* times = block_.find('L');
+  if (times != nullptr &&
+      !(times->value >= 0 && times->value <= kMostTimes && times->value == std::floor(times->value)))
+    refuse(times->place, "L of M98 says how often: 0 or a greater integer");
+  block_.require_all_used();
+  return {After::What::Call, static_cast<int>(label.value), times != nullptr ? static_cast<int>(times->value) : 1,
+          code.place};
 }
 
 /// Of the numbers that LinuxCNC's manual gives to the control, those that a program's own words make known. Those of

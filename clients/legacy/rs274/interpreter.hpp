@@ -10,15 +10,23 @@
 
 namespace rmac::rs274 {
 
+/// What comes behind a block: the next one, the end of the program, or a numbered program that M98 calls or M99 ends.
+struct After {
+  enum class What { Next, End, Call, EndOfNumbered };
+  What what = What::Next;
+  int label = 0, times = 1;  ///< of a call
+  std::size_t place = 0;     ///< of what asks for it
+};
+
 /// Carries out blocks, each in the order that the report's table gives to what stands in it.
 class Interpreter {
  public:
-  Interpreter(const Options& options, Writer& writer);
+  Interpreter(const Options& options, Writer& writer, Parameters& parameters);
   Interpreter(const Interpreter&) = delete;
   Interpreter& operator=(const Interpreter&) = delete;
 
-  /// Throws a Refusal. False where the program ends.
-  [[nodiscard]] bool execute(const Line& line);
+  /// Throws a Refusal.
+  [[nodiscard]] After execute(const Line& line);
   /// Refuses an end of the program within what has to be ended first.
   void require_closed(std::size_t place) const { splines_.require_closed(place); }
 
@@ -35,11 +43,12 @@ class Interpreter {
   void move();
   void move_by(int code, std::size_t place);
   [[nodiscard]] bool stop();
+  [[nodiscard]] After numbered_program(const Code& code);
   [[nodiscard]] std::optional<double> control_parameter(int number) const;
 
   const Options& options_;
   Writer& writer_;
-  Parameters parameters_;
+  Parameters& parameters_;
   Block block_;
   Modes modes_;
   Coordinates coordinates_;

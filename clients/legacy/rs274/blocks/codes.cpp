@@ -141,6 +141,8 @@ constexpr auto kM = std::to_array<MCode>({
     {71, MGroup::Override, kState},
     {72, MGroup::Override, kState},
     {73, MGroup::Override, kState},
+    {98, MGroup::Stop, {}},
+    {99, MGroup::Stop, {}},
 });
 
 }  // namespace
