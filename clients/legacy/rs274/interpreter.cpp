@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "clients/legacy/rs274/blocks/comments.hpp"
 #include "clients/legacy/rs274/named_io.hpp"
 #include "clients/legacy/rs274/offsets.hpp"
 
@@ -19,28 +20,10 @@ constexpr double kMostTimes = 1e9;
 /// What a stop's message may have.
 constexpr std::size_t kMostMessage_bytes = 200;
 
-std::string capitals(std::string_view text) {
-  std::string result;
-  for (const char letter : text) {
-    if (letter != ' ' && letter != '\t')
-      result += letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 'a' + 'A') : letter;
-  }
-  return result;
-}
-
 std::string trimmed(std::string_view text) {
   const auto begin = text.find_first_not_of(" \t\r");
   if (begin == std::string_view::npos) return {};
   return std::string(text.substr(begin, std::min(text.find_last_not_of(" \t\r") - begin + 1, kMostMessage_bytes)));
-}
-
-/// What a comment begins with that has a control do something.
-std::string_view active_word(std::string_view comment) {
-  static constexpr std::array<std::string_view, 8> kWords{"DEBUG",     "PRINT",    "LOG",       "LOGOPEN",
-                                                          "LOGAPPEND", "LOGCLOSE", "PROBEOPEN", "PROBECLOSE"};
-  const std::string word = capitals(comment.substr(0, comment.find(',')));
-  const auto* found = std::ranges::find(kWords, word);
-  return found == kWords.end() ? std::string_view() : *found;
 }
 
 }  // namespace
@@ -90,16 +73,11 @@ After Interpreter::execute(const Line& line) {
 
 void Interpreter::read_comments(const Line& line) {
   block_comment_.clear();
+  if (line.comments().empty()) return;
+  refuse_active_comments(line);
   for (const std::string_view comment : line.comments()) {
-    const std::size_t comma = comment.find(',');
-    if (comma != std::string_view::npos && capitals(comment.substr(0, comma)) == "MSG") {
-      message_ = trimmed(comment.substr(comma + 1));
-    } else if (const auto word = active_word(comment); comma != std::string_view::npos && !word.empty()) {
-      refuse(line.text().find(Line::kComment),
-             fmt::format("({}, … has a control do something that no .rmac can; take it out", word));
-    } else {
-      block_comment_ = trimmed(comment);
-    }
+    const auto message = message_of(comment);
+    (message ? message_ : block_comment_) = trimmed(message.value_or(comment));
   }
 }
 

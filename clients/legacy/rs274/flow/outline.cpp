@@ -70,6 +70,7 @@ void Outline::read(std::string_view program, bool block_delete) {
       statement.end = end;
       add(std::move(statement));
     } catch (const Refusal& refusal) {
+      if (!statements_.empty() && statements_.back().line == number) statements_.pop_back();
       trouble_ = Trouble{number, here, refusal.place, refusal.message};
       Statement statement;
       statement.keyword = Keyword::Trouble;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "clients/legacy/rs274/blocks/expression.hpp"
+#include "clients/legacy/rs274/blocks/comments.hpp"
 #include "clients/legacy/rs274/blocks/refusal.hpp"
 #include "clients/legacy/rs274/flow/label.hpp"
 
@@ -76,6 +76,7 @@ void require_end(std::string_view text, std::size_t at) {
 
 Statement read_statement(const Line& line, std::size_t place) {
   const std::string_view text = line.text();
+  refuse_active_comments(line);
   Statement statement;
   statement.place = place;
   std::size_t at = place + 1;
