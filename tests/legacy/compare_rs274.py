@@ -18,6 +18,8 @@ import subprocess
 import sys
 import tempfile
 
+from o_word_programs import OWordProgram
+
 START = (1.0, 2.0, 30.0)
 TOLERANCE_MM = 3e-3  # of the four decimals, which are of an inch in many blocks: 25.4 times 0.00005, of a place and of an offset
 PLANES = {"17": (0, 1, 2), "18": (2, 0, 1), "19": (1, 2, 0)}
@@ -380,6 +382,7 @@ def main():
     parser.add_argument("--import", dest="importer", required=True, help="the program rmac-import")
     parser.add_argument("--programs", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--kind", choices=["moves", "o-words"], default="moves", help="what the programs are made of (default: moves)")
     options = parser.parse_args()
     options.oracle = pathlib.Path(options.oracle).resolve()
     folder = pathlib.Path(tempfile.mkdtemp(prefix="rmac-rs274-"))
@@ -387,7 +390,7 @@ def main():
     differ = compared = steps = both_refuse = 0
     for seed in range(options.seed, options.seed + options.programs):
         program = folder / f"{seed}.ngc"
-        program.write_text("\n".join(Program(seed).lines) + "\n")
+        program.write_text("\n".join((Program if options.kind == "moves" else OWordProgram)(seed).lines) + "\n")
         theirs, their_words = oracle_path(program, options, folder)
         ours, our_words = our_path(program, options, folder)
         if theirs is None and ours is None:

@@ -147,7 +147,6 @@ void Flow::call_sub(const Statement& statement) {
   require_whole(at(*sub));
   const Parameters::Arguments given = arguments(statement);
   enter(*sub, 0, statement.place);
-  parameters_.returned(std::nullopt);
   parameters_.enter(given);
 }
 

@@ -54,8 +54,8 @@ TEST(Rs274Return, LeavesTheSubWithAValue) {
       ElementsAre("X0 Y0", "X1", "X8 Y1"));
   EXPECT_THAT(carried_out("o1 sub\no1 endsub [5]\no2 sub\nX#<_value>\no2 endsub\no1 call\nX#<_value>\no2 "
                           "call\nX#<_value> Y#<_value_returned>"),
-              ElementsAre("X5", "X0", "X0 Y0"))
-      << "the next call clears it";
+              ElementsAre("X5", "X5", "X0 Y0"))
+      << "it stays until the next return, in subs that are called too";
   EXPECT_THAT(carried_out("o1 sub\no1 endsub [5]\no2 sub\no1 call\no2 endsub\no2 call\nX#<_value> Y#<_value_returned>"),
               ElementsAre("X0 Y0"))
       << "so does a return without one";
