@@ -193,7 +193,7 @@ class OWordProgram:
 
     def fault(self, subs: list[str]) -> None:
         faults = ["o9999 call", "o9999 endif", "o9999 break", "o9999 endwhile", "o9999 if 1", "M98", "M98 P9999", "o9999 what", "M98 P1 L-1",
-                  "o9998 repeat [2]\no9998 break\no9998 endrepeat", "o9998 if [1] x1", "o9999 return", "o9999 call [1] 2",
-                  "o9999 if [1/0]\no9999 endif", "o9999 repeat [2]\no9999 endwhile", "M99 x1"]
+                  "o9998 repeat [2]\no9998 break\no9998 endrepeat", "o9998 if [1] x1", "o9999 call [1] 2",
+                  "o9999 if [1/0]\no9999 endif", "o9999 repeat [2]\no9999 endwhile"]
         faults += [f"o{sub} sub\no{sub} endsub" for sub in subs] + [f"M98 P{sub}" for sub in subs if sub.isdigit()]
         self.lines += self.random.choice(faults).split("\n")

@@ -30,6 +30,29 @@ M30
 """
 
 
+# The same slot thrice, by a sub, a loop and a numbered program.
+LOOPS = """%
+O1
+g21 g90 g17 G0 X0 Y0 Z10
+F1200
+o<slot> sub (x, length)
+  G0 X#1 Y0
+  G1 Z-1
+  Y#2
+  G0 Z10
+o<slot> endsub [#1 + 5]
+o10 repeat [2]
+  o<slot> call [#<_value>] [12]
+o10 endrepeat
+M98 P7
+M30
+O7
+o<slot> call [#<_value>] [12]
+M99
+%
+"""
+
+
 class Import(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="rmac-test-")
@@ -55,6 +78,19 @@ class Import(unittest.TestCase):
         hole = 4 + 2 + 2 + 1.746 + 2.254 + 4 + 3.746 + 1.254 + 9
         expected = 10 + 12 + 12 + 4 * math.pi + helix + 8 + math.hypot(30, 18) + hole
         self.assertAlmostEqual(json.loads(done.stdout)["length_mm"], expected, delta=0.01)
+
+    def test_a_program_of_subs_and_loops_is_simulated(self):
+        self.source.write_text(LOOPS)
+        done = self.rmac("simulate", self.source, "--machine", "BenchXYZ", "--json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        # To the start, 10 from where the machine stands; then three slots of 11 down, 12 along, 11 up, and the ways between them.
+        self.assertAlmostEqual(json.loads(done.stdout)["length_mm"], 10 + 3 * (11 + 12 + 11) + 2 * math.hypot(5, 12), delta=0.01)
+
+    def test_a_fault_in_a_sub_is_told_at_its_line(self):
+        self.source.write_text(LOOPS.replace("Y#2", "Y#2 G41"))
+        done = self.rmac("simulate", self.source, "--machine", "BenchXYZ")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn(f"{self.source}:8:7: G41: ", done.stderr)
 
     def test_an_imported_program_is_machined(self):
         self.source.write_text(PART)
