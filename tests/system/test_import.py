@@ -86,6 +86,20 @@ class Import(unittest.TestCase):
         # To the start, 10 from where the machine stands; then three slots of 11 down, 12 along, 11 up, and the ways between them.
         self.assertAlmostEqual(json.loads(done.stdout)["length_mm"], 10 + 3 * (11 + 12 + 11) + 2 * math.hypot(5, 12), delta=0.01)
 
+    def test_a_program_of_subs_and_loops_is_machined(self):
+        self.source.write_text(LOOPS)
+        with Appliance() as appliance:
+            done = appliance.rmac("--json", "run", "--machine", "BenchXYZ", self.source)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            x, y, z = json.loads(appliance.rmac("--json", "status").stdout)["pose"][:3]
+        self.assertLess(math.dist((x, y, z), (10, 12, 10)), 0.01)  # where the third slot was left, as measured
+
+    def test_a_program_that_does_not_end_is_refused(self):
+        self.source.write_text("g21 f600\nG0 X0 Y0 Z10\no1 while [1]\nG1 X1\nX0\no1 endwhile\nM2\n")
+        done = self.rmac("simulate", self.source, "--machine", "BenchXYZ", "--output-limit", "1")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn(f"{self.source}:6:1: the program became more than 1 MB", done.stderr)
+
     def test_a_fault_in_a_sub_is_told_at_its_line(self):
         self.source.write_text(LOOPS.replace("Y#2", "Y#2 G41"))
         done = self.rmac("simulate", self.source, "--machine", "BenchXYZ")

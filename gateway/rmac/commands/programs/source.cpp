@@ -32,6 +32,7 @@ constexpr std::array<Passed, std::tuple_size_v<decltype(Source::values)>> kPasse
     {"--approach", "X,Y,Z in mm: where an imported program's tool tip goes first"},
     {"--reference-point", "X,Y,Z in mm: where G28 of an imported program goes"},
     {"--second-reference-point", "the same of G30"},
+    {"--output-limit", "MB of .rmac: an imported program with loops that becomes more does not end"},
 }};
 constexpr std::array<Passed, std::tuple_size_v<decltype(Source::repeated)>> kRepeated{{
     {"--offset", "G54=X,Y,Z in mm: where an imported program's work system is in the machine"},
