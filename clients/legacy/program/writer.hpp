@@ -43,6 +43,7 @@ class Writer {
   explicit Writer(Sink sink, Ids ids = Ids::Numbers) : sink_(std::move(sink)), ids_(ids) {}
 
   void at_line(std::size_t line) noexcept { line_ = line; }
+  [[nodiscard]] std::size_t line() const noexcept { return line_; }
 
   /// Positioning, from rest to rest.
   void rapid(const Point& end);

@@ -43,8 +43,8 @@ class Import {
     if (text.front() == '%') {
       if (text.size() > 1) refuse(1, "nothing stands behind %");
       if (begun_ && !marked_) refuse(0, "a % in a program that did not begin with one");
-      if (marked_) interpreter_.require_closed(0);
       if (marked_) require_main(0);
+      if (marked_) interpreter_.end(0);
       ended_ = marked_;
       marked_ = true;
     } else if (!(text.front() == '/' && options_.block_delete)) {

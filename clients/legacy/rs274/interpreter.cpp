@@ -33,7 +33,8 @@ Interpreter::Interpreter(const Options& options, Writer& writer, Parameters& par
       writer_(writer),
       parameters_(parameters),
       mover_(options, modes_, coordinates_, writer),
-      motions_(options, modes_, coordinates_, mover_),
+      compensation_([this](const ContourMove& move, std::size_t place) { mover_.held(move, place); }),
+      motions_(options, modes_, coordinates_, mover_, compensation_),
       splines_(motions_, modes_, mover_),
       switches_(writer),
       drilling_(modes_, coordinates_, mover_, switches_, writer) {
@@ -53,6 +54,7 @@ After Interpreter::execute(const Line& line) {
     return {};
   }
   if (const auto& code = block_.m(MGroup::Stop); code && code->number >= 98) return numbered_program(*code);
+  require_only_moves(block_, modes_, compensation_);
   set_speeds();
   set_tool();
   switches_.switch_coolant(block_);
@@ -60,6 +62,7 @@ After Interpreter::execute(const Line& line) {
   act_on_names(block_, options_, writer_);
   dwell();
   set_plane_and_units();
+  switch_compensation(block_, options_, modes_, switches_, mover_, compensation_);
   set_length();
   if (const auto& system = block_.g(GGroup::System)) select_system(*system, coordinates_);
   set_control();
@@ -192,6 +195,9 @@ void Interpreter::move_by(int code, std::size_t place) {
   if (code == 0 || code == 10) return motions_.straight(block_, code == 0, place);
   if (code == 20 || code == 30) return motions_.arc(block_, code == 30, place);
   if (code >= 50 && code <= 53) return splines_.move(block_, code, before, place);
+  if (compensation_.on() || compensation_.leaving())
+    refuse(place,
+           "a cycle goes by where the tool is; end cutter radius compensation by G40 and a straight move before it");
   drilling_.drill(block_, code, before, place);
 }
 
@@ -199,6 +205,7 @@ bool Interpreter::stop() {
   const auto& stop = block_.m(MGroup::Stop);
   if (!stop) return true;
   if (stop->number == 2 || stop->number == 30) {
+    compensation_.end(stop->place);
     switches_.off();
     return false;
   }
@@ -236,6 +243,7 @@ std::optional<double> Interpreter::control_parameter(int number) const {
   if (number == 5220) return static_cast<double>(coordinates_.active() + 1);
   if (number == 5400) return switches_.tool();
   if (number < 5420 || number > 5422 || !modes_.unit_mm) return std::nullopt;
+  if (compensation_.on() || compensation_.leaving()) return std::nullopt;  // beside where the program believes it to be
   const auto tip = coordinates_.program_tip(static_cast<std::size_t>(number - 5420));
   return tip ? std::optional(*tip / *modes_.unit_mm) : std::nullopt;
 }

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "clients/legacy/rs274/compensation_words.hpp"
 #include "clients/legacy/rs274/drilling.hpp"
 #include "clients/legacy/rs274/motions.hpp"
 #include "clients/legacy/rs274/splines.hpp"
@@ -27,8 +28,11 @@ class Interpreter {
 
   /// Throws a Refusal.
   [[nodiscard]] After execute(const Line& line);
-  /// Refuses an end of the program within what has to be ended first.
-  void require_closed(std::size_t place) const { splines_.require_closed(place); }
+  /// The program ends here. Refused within what has to be ended first.
+  void end(std::size_t place) {
+    splines_.require_closed(place);
+    compensation_.end(place);
+  }
 
  private:
   void read_comments(const Line& line);
@@ -53,6 +57,7 @@ class Interpreter {
   Modes modes_;
   Coordinates coordinates_;
   Mover mover_;
+  Compensation compensation_;
   Motions motions_;
   Splines splines_;
   Switches switches_;

@@ -46,6 +46,8 @@ class Block {
 
   [[nodiscard]] bool has(char letter) const noexcept { return (words_ & bit(letter)) != 0; }
   [[nodiscard]] bool has_any(std::string_view letters) const noexcept;
+  /// Where a word stands that the block has.
+  [[nodiscard]] std::size_t place(char letter) const { return word_.at(static_cast<std::size_t>(letter - 'A')).place; }
   /// A word that the block has; whoever asks for it, uses it.
   [[nodiscard]] const Word& use(char letter);
   /// The same, where the block has it.
