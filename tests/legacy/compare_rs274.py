@@ -282,7 +282,7 @@ def our_path(program, options, folder):
         method, params = request["method"].split(".")[1], request.get("params", {})
         if method == "MoveToPathTarget":
             steps.append(("rapid", params["TargetFrame"]["p"]))
-        elif method == "MoveAlongLine" and steps and steps[-1][0] == "arc" and params["MoveID"] == move:
+        elif method == "MoveAlongLine" and options.kind == "moves" and steps and steps[-1][0] == "arc" and params["MoveID"] == move:
             steps[-1] = (*steps[-1][:1], params["EndPoint"]["p"], *steps[-1][2:])  # from the arc's circle to the end that was written
         elif method == "MoveAlongLine":
             steps.append(("line", params["EndPoint"]["p"]))

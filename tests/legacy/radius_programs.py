@@ -20,7 +20,7 @@ class RadiusProgram:
         self.lines.append("F600 G0 X1 Y2 Z30")
         if self.random.random() < 0.2:
             self.unit = 25.4
-            self.lines.append("G20 F20")
+            self.lines += ["G20", "F20"]
         for _ in range(self.random.randint(1, 3)):
             self.contour()
         self.lines.append("M2")
