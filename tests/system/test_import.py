@@ -101,10 +101,10 @@ class Import(unittest.TestCase):
         self.assertIn(f"{self.source}:6:1: the program became more than 1 MB", done.stderr)
 
     def test_a_fault_in_a_sub_is_told_at_its_line(self):
-        self.source.write_text(LOOPS.replace("Y#2", "Y#2 G41"))
+        self.source.write_text(LOOPS.replace("Y#2", "Y#2 M19"))
         done = self.rmac("simulate", self.source, "--machine", "BenchXYZ")
         self.assertNotEqual(done.returncode, 0)
-        self.assertIn(f"{self.source}:8:7: G41: ", done.stderr)
+        self.assertIn(f"{self.source}:8:7: M19: ", done.stderr)
 
     def test_an_imported_program_is_machined(self):
         self.source.write_text(PART)
@@ -168,10 +168,10 @@ class Import(unittest.TestCase):
     def test_what_is_refused_leaves_no_file_and_the_old_one(self):
         target = self.folder / "part.rmac"
         target.write_text("the old one\n")
-        self.source.write_text("G21 G0 X0 Y0 Z0\nG1 X1 F100\n  G41 X2\nM2\n")
+        self.source.write_text("G21 G0 X0 Y0 Z0\nG1 X1 F100\n  G76 X2\nM2\n")
         done = self.rmac("import", self.source)
         self.assertEqual(done.returncode, 1)
-        self.assertTrue(done.stderr.startswith(f"rmac-import: {self.source}:3:3: G41: "), done.stderr)
+        self.assertTrue(done.stderr.startswith(f"rmac-import: {self.source}:3:3: G76: "), done.stderr)
         self.assertEqual(target.read_text(), "the old one\n")
         self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["part.ngc", "part.rmac"])
 

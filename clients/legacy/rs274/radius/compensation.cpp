@@ -72,7 +72,7 @@ void Compensation::enter(const ContourMove& move, std::size_t place) {
     refuse(place,
            fmt::format("the first move of G41 and G42 has to be longer in X and Y than the tool's radius, {:.6g} mm",
                        std::abs(left_mm_)));
-  held_ = Held{move, offset_of(move, place)};
+  held_ = Held{move, offset_of(move, place), 0, true};
 }
 
 Offset Compensation::offset_of(const ContourMove& move, std::size_t place) const {
@@ -95,6 +95,9 @@ void Compensation::turn_corner(const Offset& behind, const ContourMove& move, st
     go_around(behind, move, std::abs(away), place);
     held_ = Held{move, behind};
   } else {
+    // The first move may end where the next one begins to be cut, even behind its own begin, if the tool is clear
+    // there.
+    if (held_->is_first && behind.has_beside(flat(tool_), left_mm_)) held_->from = -legacy::kFarthest_mm;
     const auto corner = Offset::meet(held_->offset, held_->from, behind);
     if (!corner)
       refuse(place, fmt::format("the tool, of radius {:.6g} mm, does not get into the corner between line {} and this; "

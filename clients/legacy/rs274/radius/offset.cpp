@@ -87,6 +87,11 @@ double Offset::measure(const Flat& place, bool last) const {
   return result;
 }
 
+bool Offset::has_beside(const Flat& place, double left_mm) const {
+  const double left = cross(along_, between(begin_, place));
+  return !is_arc_ && (left_mm > 0 ? left : -left) >= -kSame_mm;
+}
+
 std::optional<Offset::Meeting> Offset::meet(const Offset& first, double from, const Offset& second) {
   std::optional<Meeting> result;
   for (const Flat& place : crossings(first, second)) {

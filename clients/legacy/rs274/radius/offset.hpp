@@ -28,6 +28,9 @@ class Offset {
   /// Of one place, about a micrometre: what rounding takes for none.
   [[nodiscard]] double tolerance() const noexcept { return is_arc_ ? kSame_mm / radius_ : kSame_mm; }
 
+  /// Whether a place is on a line's left, or on it (`left_mm` positive), or so on its right. Never beside an arc.
+  [[nodiscard]] bool has_beside(const Flat& place, double left_mm) const;
+
   struct Meeting {
     double on_first = 0, on_second = 0;
   };

@@ -38,6 +38,7 @@ constexpr std::array<Passed, std::tuple_size_v<decltype(Source::repeated)>> kRep
     {"--offset", "G54=X,Y,Z in mm: where an imported program's work system is in the machine"},
     {"--output", "3=NAME: the output that M62 to M65 P3 of an imported program switch"},
     {"--input", "3=NAME: the input that M66 P3 of an imported program waits for"},
+    {"--tool-diameter", "3=10: the diameter of tool 3 in mm, for G41 and G42 of an imported program"},
 }};
 
 /// The language of a file by its ending; empty where it is `.rmac`, none where the ending tells nothing.

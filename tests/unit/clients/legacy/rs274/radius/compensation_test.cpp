@@ -96,6 +96,14 @@ TEST(Compensation, EndsInsideCornersWhereBothWaysCross) {
   expect_at(done.moves[2], 0, 8);
 }
 
+TEST(Compensation, EndsItsFirstMoveBehindItsBeginWhereTheToolIsClearThere) {
+  const auto done = compensated(2, {line_to(4, 0), line_to(-16, 15)});
+  ASSERT_THAT(done.moves, SizeIs(2));
+  expect_at(done.moves[0], -2, 2);  // a retreat of 6 from (4, 2), behind the begin at 0
+  EXPECT_THAT(compensated(2, {line_to(4, 0), line_to(-36, 12)}).refusal, HasSubstr("corner between line 1 and this"))
+      << "there the tool would begin within the next move";
+}
+
 TEST(Compensation, TakesDepthsInTheCorner) {
   const auto done = compensated(2, {line_to(10, 0), line_to(10, 0, -3), line_to(10, 0, -4), line_to(10, 10, -4)});
   ASSERT_THAT(done.moves, SizeIs(4));
