@@ -130,7 +130,9 @@ void Motions::arc(Block& block, bool counter_clockwise, std::size_t place) {
   arc.centre = written_centre(block, start, place);
   const auto kept = arc_about(start, arc, plane, place);
   if (kept) go_along(*kept, place);
-  if (!kept || kept->end != end) go_straight(end, false, place);
+  if (kept && kept->end == end) return;
+  if (compensation_.on()) return compensation_.go_on_from(end);
+  go_straight(end, false, place);
 }
 
 }  // namespace rmac::rs274

@@ -14,8 +14,11 @@ using legacy::Arc, legacy::Point;
 namespace {
 
 constexpr double kTurn_rad = 2 * std::numbers::pi;
-/// Moves that turn by less go on straight; a reversal may be off by as much.
-constexpr double kStraight_rad = 1e-6;
+/// Moves that turn by less are tangent but for rounding, as in LinuxCNC: of the radius the tool comes 0.00005 too near
+/// at most. A reversal may be off by as much.
+constexpr double kStraight_rad = 0.01;
+/// Ways that rounding left between two moves are gone where they are longer: arcs are to begin on their circles.
+constexpr double kGap_mm = 1e-5;
 /// An arc around a corner that is shorter is a line.
 constexpr double kShort_mm = 1e-3;
 
@@ -90,7 +93,9 @@ void Compensation::turn_corner(const Offset& behind, const ContourMove& move, st
   const double away = left_mm_ > 0 ? -left_turn : left_turn;  // from the tool's side
   if (std::abs(away) <= kStraight_rad || left_mm_ == 0) {
     give_out(held_->offset.length(), place);
-    held_ = Held{move, behind};
+    const double from = behind.near_begin(flat(tool_));
+    if (move.arc) step_to(behind.at(from), move, place);
+    held_ = Held{move, behind, from};
   } else if (away > 0 || away < -std::numbers::pi + kStraight_rad) {
     go_around(behind, move, std::abs(away), place);
     held_ = Held{move, behind};
@@ -110,7 +115,9 @@ void Compensation::turn_corner(const Offset& behind, const ContourMove& move, st
 
 /// An outside corner: about it, at the depth and the feed of the move behind it.
 void Compensation::go_around(const Offset& behind, const ContourMove& move, double turn_rad, std::size_t place) {
+  const Flat direction = held_->offset.last_direction();
   give_out(held_->offset.length(), place);
+  step_to({programmed_[0] - direction.y * left_mm_, programmed_[1] + direction.x * left_mm_}, move, place);
   const Flat to = behind.at(0);
   ContourMove around = move;
   around.arc.reset();
@@ -121,6 +128,15 @@ void Compensation::go_around(const Offset& behind, const ContourMove& move, doub
   }
   sink_(around, place);
   tool_ = around.end;
+}
+
+void Compensation::step_to(const Flat& to, const ContourMove& move, std::size_t place) {
+  if (std::hypot(to.x - tool_[0], to.y - tool_[1]) <= kGap_mm) return;
+  ContourMove step = move;
+  step.arc.reset();
+  step.end = {to.x, to.y, tool_[2]};
+  sink_(step, place);
+  tool_ = step.end;
 }
 
 /// The move that is held, to this place of it, and the depths behind it.

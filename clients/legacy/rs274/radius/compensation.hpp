@@ -33,6 +33,9 @@ class Compensation {
   void end(std::size_t place);
   void move(const ContourMove& move, std::size_t place);
 
+  /// The contour goes on from here: what rounding left between the end of an arc's circle and the end that is written.
+  void go_on_from(const legacy::Point& place) noexcept { programmed_ = place; }
+
   [[nodiscard]] bool on() const noexcept { return state_ == State::On; }
   /// Behind end(), until left(): the tool is beside the contour, and the program goes on from the contour itself.
   [[nodiscard]] bool leaving() const noexcept { return state_ == State::Leaving; }
@@ -54,6 +57,7 @@ class Compensation {
   void turn_corner(const Offset& behind, const ContourMove& move, std::size_t place);
   void go_around(const Offset& behind, const ContourMove& move, double turn_rad, std::size_t place);
   void give_out(double to, std::size_t place);
+  void step_to(const Flat& to, const ContourMove& move, std::size_t place);
 
   Sink sink_;
   State state_ = State::Off;

@@ -87,6 +87,11 @@ double Offset::measure(const Flat& place, bool last) const {
   return result;
 }
 
+double Offset::near_begin(const Flat& place) const {
+  const double result = measure(place, false);
+  return is_arc_ && result > std::numbers::pi ? result - kTurn_rad : result;
+}
+
 bool Offset::has_beside(const Flat& place, double left_mm) const {
   const double left = cross(along_, between(begin_, place));
   return !is_arc_ && (left_mm > 0 ? left : -left) >= -kSame_mm;

@@ -25,6 +25,8 @@ class Offset {
   /// In which direction it begins and ends, of length 1.
   [[nodiscard]] Flat first_direction() const { return direction(0); }
   [[nodiscard]] Flat last_direction() const { return direction(length_); }
+  /// Where a place that is about at its begin stands along it, which may be before that.
+  [[nodiscard]] double near_begin(const Flat& place) const;
   /// Of one place, about a micrometre: what rounding takes for none.
   [[nodiscard]] double tolerance() const noexcept { return is_arc_ ? kSame_mm / radius_ : kSame_mm; }
 

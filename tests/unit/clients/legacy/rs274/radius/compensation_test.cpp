@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -203,6 +204,51 @@ TEST(Compensation, KeepsItsDistanceFromBothMovesOfACorner) {
     }
   }
   EXPECT_GT(corners, 500);
+}
+
+/// How far the radii of an arc at its begin and end are apart.
+double gap(const Point& from, const Arc& arc) {
+  return std::hypot(from[0] - arc.centre[0], from[1] - arc.centre[1]) -
+         std::hypot(arc.end[0] - arc.centre[0], arc.end[1] - arc.centre[1]);
+}
+
+/// A rectangle with rounded corners, anywhere, written to a micrometre, as CAM programs do: neighbours are tangent but
+/// for rounding, and turn a little to either side.
+TEST(Compensation, TakesTangentContoursThatAreRounded) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> number(0, 1);
+  const auto rounded = [](double value) { return std::round(value * 1000) / 1000; };
+  for (int contour = 0; contour < 300; ++contour) {
+    const double turn = number(random) * 6, left = number(random) < 0.5 ? 2 : -2;
+    const auto place = [&](double x, double y) {
+      return Point{rounded(x * std::cos(turn) - y * std::sin(turn)), rounded(x * std::sin(turn) + y * std::cos(turn)),
+                   0};
+    };
+    std::vector<ContourMove> moves{line_to(place(10, 0)[0], place(10, 0)[1])};
+    const std::array<std::array<Point, 3>, 4> corners{{{place(20, 0), place(20, 3), place(23, 3)},
+                                                       {place(23, 20), place(20, 20), place(20, 23)},
+                                                       {place(5, 23), place(5, 20), place(2, 20)},
+                                                       {place(2, 3), place(5, 3), place(5, 0)}}};
+    for (const auto& [begin, centre, end] : corners) {
+      moves.push_back(line_to(begin[0], begin[1]));
+      auto arc = arc_to(end[0], end[1], centre[0], centre[1], true);
+      moves.push_back(arc);
+    }
+    moves.push_back(line_to(place(12, 0)[0], place(12, 0)[1]));
+    const auto done = compensated(left, moves);
+    ASSERT_EQ(done.refusal, "") << contour;
+    Point at{};
+    for (const ContourMove& move : done.moves) {
+      // An arc begins and ends on its circle.
+      if (move.arc) {
+        EXPECT_NEAR(gap(at, *move.arc), 0, 1e-4) << contour << ", line " << move.line;
+      }
+      at = move.end;
+      const std::size_t of = move.line - 1;
+      const Point from = of == 0 ? Point{} : moves[of - 1].end;
+      EXPECT_NEAR(distance_to(from, moves[of], move.end), std::abs(left), 0.01) << contour << ", line " << move.line;
+    }
+  }
 }
 
 }  // namespace
