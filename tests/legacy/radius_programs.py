@@ -1,7 +1,7 @@
 """Programs with cutter radius compensation, made at random from a seed, for compare_rs274.py: contours of lines and arcs, tangent or
 with corners, on both sides, with depths and rapids between, some of which the tool does not get into.
 
-Corners of less than 0.02 rad are not made: LinuxCNC takes them for straight, and here the way is exact.
+Moves are tangent but for rounding, or have corners of at least 0.05 rad: from 0.01 rad on a corner is none.
 """
 import math
 import random
@@ -15,11 +15,11 @@ class RadiusProgram:
         self.unit = 1.0
         self.incremental = False
         self.direction = 0.0
-        self.rapid = False
+        self.digits = self.random.choice([4, 8])
         self.lines.append("g21 g90 g17 g40 g80 g94 g54")
         self.lines.append("F600 G0 X1 Y2 Z30")
         if self.random.random() < 0.2:
-            self.unit = 25.4
+            self.unit, self.digits = 25.4, 8
             self.lines += ["G20", "F20"]
         for _ in range(self.random.randint(1, 3)):
             self.contour()
@@ -64,7 +64,7 @@ class RadiusProgram:
         self.direction += self.random.choice([1, -1]) * angle
 
     def end_words(self, end: tuple[float, float]) -> str:
-        words = "".join(" %s%.8f" % (axis, (e - (a if self.incremental else 0)) / self.unit) for axis, e, a in zip("XY", end, self.at))
+        words = "".join(" %s%.*f" % (axis, self.digits, (e - (a if self.incremental else 0)) / self.unit) for axis, e, a in zip("XY", end, self.at))
         if self.random.random() < 0.2:
             words += " Z%.4f" % ((0.3 if self.incremental else self.random.uniform(-3, 3)) / self.unit)
         return words
@@ -72,7 +72,16 @@ class RadiusProgram:
     def line(self, length: float) -> None:
         end = (self.at[0] + length * math.cos(self.direction), self.at[1] + length * math.sin(self.direction))
         self.lines.append(self.random.choice(["G1", "G1", "G1", "G1", "G0"]) + self.end_words(end))
-        self.at = end
+        self.at = self.written(end)
+
+    def written(self, end: tuple[float, float]) -> tuple[float, float]:
+        """Where the rounded words lead."""
+        if not self.incremental:
+            return (self.rounded(end[0]), self.rounded(end[1]))
+        return (self.at[0] + self.rounded(end[0] - self.at[0]), self.at[1] + self.rounded(end[1] - self.at[1]))
+
+    def rounded(self, value: float) -> float:
+        return round(value / self.unit, self.digits) * self.unit
 
     def arc(self, radius: float) -> None:
         """Its begin goes on in the direction in which the contour went."""
@@ -84,6 +93,6 @@ class RadiusProgram:
         if sweep > 6:
             end = self.at
         words = self.end_words(end)
-        self.lines.append(("G3" if left > 0 else "G2") + words + " I%.8f J%.8f" % ((centre[0] - self.at[0]) / self.unit, (centre[1] - self.at[1]) / self.unit))
-        self.at = end
+        self.lines.append(("G3" if left > 0 else "G2") + words + " I%.*f J%.*f" % (self.digits, (centre[0] - self.at[0]) / self.unit, self.digits, (centre[1] - self.at[1]) / self.unit))
+        self.at = self.written(end)
         self.direction += left * sweep

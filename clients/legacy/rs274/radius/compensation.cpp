@@ -51,7 +51,7 @@ void Compensation::begin(double left_mm, const Point& at) {
 
 void Compensation::end(std::size_t place) {
   if (!on()) return;
-  if (held_) give_out(held_->offset.length(), place);
+  if (held_) give_out(held_->to, place);
   state_ = held_ ? State::Leaving : State::Off;
 }
 
@@ -75,7 +75,8 @@ void Compensation::enter(const ContourMove& move, std::size_t place) {
     refuse(place,
            fmt::format("the first move of G41 and G42 has to be longer in X and Y than the tool's radius, {:.6g} mm",
                        std::abs(left_mm_)));
-  held_ = Held{move, offset_of(move, place), 0, true};
+  const Offset offset = offset_of(move, place);
+  held_ = Held{move, offset, 0, offset.length(), true};
 }
 
 Offset Compensation::offset_of(const ContourMove& move, std::size_t place) const {
@@ -92,13 +93,14 @@ void Compensation::turn_corner(const Offset& behind, const ContourMove& move, st
   const double left_turn = turn_of(held_->offset.last_direction(), behind.first_direction());
   const double away = left_mm_ > 0 ? -left_turn : left_turn;  // from the tool's side
   if (std::abs(away) <= kStraight_rad || left_mm_ == 0) {
-    give_out(held_->offset.length(), place);
+    give_out(held_->to, place);
     const double from = behind.near_begin(flat(tool_));
     if (move.arc) step_to(behind.at(from), move, place);
-    held_ = Held{move, behind, from};
+    const bool is_whole = move.arc && move.arc->closed;  // it ends where it begins
+    held_ = Held{move, behind, from, behind.length() + (is_whole ? from : 0)};
   } else if (away > 0 || away < -std::numbers::pi + kStraight_rad) {
     go_around(behind, move, std::abs(away), place);
-    held_ = Held{move, behind};
+    held_ = Held{move, behind, 0, behind.length()};
   } else {
     // The first move may end where the next one begins to be cut, even behind its own begin, if the tool is clear
     // there.
@@ -109,14 +111,14 @@ void Compensation::turn_corner(const Offset& behind, const ContourMove& move, st
                                 "take a smaller one",
                                 std::abs(left_mm_), held_->move.line));
     give_out(corner->on_first, place);
-    held_ = Held{move, behind, corner->on_second};
+    held_ = Held{move, behind, corner->on_second, behind.length()};
   }
 }
 
 /// An outside corner: about it, at the depth and the feed of the move behind it.
 void Compensation::go_around(const Offset& behind, const ContourMove& move, double turn_rad, std::size_t place) {
   const Flat direction = held_->offset.last_direction();
-  give_out(held_->offset.length(), place);
+  give_out(held_->to, place);
   step_to({programmed_[0] - direction.y * left_mm_, programmed_[1] + direction.x * left_mm_}, move, place);
   const Flat to = behind.at(0);
   ContourMove around = move;

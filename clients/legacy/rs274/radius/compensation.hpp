@@ -48,8 +48,8 @@ class Compensation {
   struct Held {
     ContourMove move;
     Offset offset;
-    double from = 0;        ///< where it begins, beside an inside corner
-    bool is_first = false;  ///< it does not go along its offset, but to it
+    double from = 0, to = 0;  ///< what of it is left beside its corners
+    bool is_first = false;    ///< it does not go along its offset, but to it
   };
 
   void enter(const ContourMove& move, std::size_t place);
