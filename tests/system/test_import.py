@@ -94,6 +94,15 @@ class Import(unittest.TestCase):
             x, y, z = json.loads(appliance.rmac("--json", "status").stdout)["pose"][:3]
         self.assertLess(math.dist((x, y, z), (10, 12, 10)), 0.01)  # where the third slot was left, as measured
 
+    def test_the_tool_s_centre_is_simulated_beside_the_contour(self):
+        self.source.write_text("g21 f600\nG0 X0 Y0 Z10\nG42 D3\nG1 X10\nY10\nG40\nG0 X20\nM2\n")
+        done = self.rmac("simulate", self.source, "--machine", "BenchXYZ", "--tool-diameter", "3=4", "--json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        # To (10, -2), a quarter of radius 2 around the corner, 10 up at X 12, and to (20, 10).
+        self.assertAlmostEqual(json.loads(done.stdout)["length_mm"], 10 + math.hypot(10, 2) + math.pi + 10 + 8, delta=0.01)
+        done = self.rmac("simulate", self.source, "--machine", "BenchXYZ")
+        self.assertIn(f"{self.source}:3:5: the diameter of tool 3 is not known here; give --tool-diameter 3=MM", done.stderr)
+
     def test_a_program_that_does_not_end_is_refused(self):
         self.source.write_text("g21 f600\nG0 X0 Y0 Z10\no1 while [1]\nG1 X1\nX0\no1 endwhile\nM2\n")
         done = self.rmac("simulate", self.source, "--machine", "BenchXYZ", "--output-limit", "1")
