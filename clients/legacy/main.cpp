@@ -28,7 +28,7 @@ using namespace rmac;
 
 struct Words {
   std::string file, output, dialect = "rs274", unit, approach, reference, second_reference;
-  std::vector<std::string> offsets, outputs, inputs;
+  std::vector<std::string> offsets, outputs, inputs, diameters;
   bool ids_are_lines = false;
   rs274::Options options;
 };
@@ -73,6 +73,20 @@ bool read_name(const std::string& text, std::map<int, std::string>& names) {
   return names.emplace(number, text.substr(equals + 1)).second;
 }
 
+/// 3=10.
+bool read_diameter(const std::string& text, std::map<int, double>& diameters) {
+  const std::size_t equals = text.find('=');
+  int tool = 0;
+  double diameter = 0;
+  if (equals == std::string::npos) return false;
+  const char *const middle = text.data() + equals, *const end = text.data() + text.size();
+  const auto read_tool = std::from_chars(text.data(), middle, tool);
+  const auto read = std::from_chars(middle + 1, end, diameter, std::chars_format::fixed);
+  const bool whole =
+      read_tool.ec == std::errc() && read_tool.ptr == middle && read.ec == std::errc() && read.ptr == end;
+  return whole && tool >= 0 && diameter >= 0 && diameter <= 1000 && diameters.emplace(tool, diameter).second;
+}
+
 /// What the command line parser leaves as text. What is wrong, or nothing.
 std::optional<std::string> finish(Words& words) {
   if (!legacy::is_feed(words.options.rapid_mm_min)) return "--rapid is 0.01 to 1 000 000 mm/min";
@@ -92,6 +106,10 @@ std::optional<std::string> finish(Words& words) {
     for (const std::string& text : *texts) {
       if (!read_name(text, *names)) return fmt::format("--{} {}: it is a number and a name, as 3=Clamp", name, text);
     }
+  }
+  for (const auto& text : words.diameters) {
+    if (!read_diameter(text, words.options.tool_diameters_mm))
+      return fmt::format("--tool-diameter {}: it is the number of a tool and 0 to 1000 mm, as 3=10", text);
   }
   for (const auto& offset : words.offsets) {
     if (!read_offset(offset, words.options))
@@ -159,6 +177,12 @@ void declare(CLI::App& app, Words& words) {
   app.add_option("--output", words.outputs, "3=NAME: the machine's output that M62 to M65 P3 switch")
       ->allow_extra_args(false);
   app.add_option("--input", words.inputs, "3=NAME: the machine's input that M66 P3 waits for")->allow_extra_args(false);
+  app.add_option("--output-limit", words.options.bounds.output_mb,
+                 "MB: a program with loops or subprograms that becomes more is one that does not end")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app.add_option("--tool-diameter", words.diameters, "3=10: the diameter of tool 3 in mm, for G41 and G42")
+      ->allow_extra_args(false);
   app.add_flag("--ids-are-lines", words.ids_are_lines, "the id of each request is the line that it comes from");
 }
 

@@ -18,6 +18,9 @@ import subprocess
 import sys
 import tempfile
 
+from o_word_programs import OWordProgram
+from radius_programs import RadiusProgram
+
 START = (1.0, 2.0, 30.0)
 TOLERANCE_MM = 3e-3  # of the four decimals, which are of an inch in many blocks: 25.4 times 0.00005, of a place and of an offset
 PLANES = {"17": (0, 1, 2), "18": (2, 0, 1), "19": (1, 2, 0)}
@@ -218,6 +221,7 @@ class Program:
         self.write("G0 X%.4f Y%.4f Z%.4f" % tuple(v / self.unit for v in self.at))
 
 
+KINDS = {"moves": Program, "o-words": OWordProgram, "radius": RadiusProgram}
 NUMBER = r"(-?[\d.]+)"
 
 
@@ -278,7 +282,7 @@ def our_path(program, options, folder):
         method, params = request["method"].split(".")[1], request.get("params", {})
         if method == "MoveToPathTarget":
             steps.append(("rapid", params["TargetFrame"]["p"]))
-        elif method == "MoveAlongLine" and steps and steps[-1][0] == "arc" and params["MoveID"] == move:
+        elif method == "MoveAlongLine" and options.kind == "moves" and steps and steps[-1][0] == "arc" and params["MoveID"] == move:
             steps[-1] = (*steps[-1][:1], params["EndPoint"]["p"], *steps[-1][2:])  # from the arc's circle to the end that was written
         elif method == "MoveAlongLine":
             steps.append(("line", params["EndPoint"]["p"]))
@@ -380,6 +384,7 @@ def main():
     parser.add_argument("--import", dest="importer", required=True, help="the program rmac-import")
     parser.add_argument("--programs", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--kind", choices=list(KINDS), default="moves", help="what the programs are made of (default: moves)")
     options = parser.parse_args()
     options.oracle = pathlib.Path(options.oracle).resolve()
     folder = pathlib.Path(tempfile.mkdtemp(prefix="rmac-rs274-"))
@@ -387,7 +392,7 @@ def main():
     differ = compared = steps = both_refuse = 0
     for seed in range(options.seed, options.seed + options.programs):
         program = folder / f"{seed}.ngc"
-        program.write_text("\n".join(Program(seed).lines) + "\n")
+        program.write_text("\n".join(KINDS[options.kind](seed).lines) + "\n")
         theirs, their_words = oracle_path(program, options, folder)
         ours, our_words = our_path(program, options, folder)
         if theirs is None and ours is None:

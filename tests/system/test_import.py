@@ -30,6 +30,29 @@ M30
 """
 
 
+# The same slot thrice, by a sub, a loop and a numbered program.
+LOOPS = """%
+O1
+g21 g90 g17 G0 X0 Y0 Z10
+F1200
+o<slot> sub (x, length)
+  G0 X#1 Y0
+  G1 Z-1
+  Y#2
+  G0 Z10
+o<slot> endsub [#1 + 5]
+o10 repeat [2]
+  o<slot> call [#<_value>] [12]
+o10 endrepeat
+M98 P7
+M30
+O7
+o<slot> call [#<_value>] [12]
+M99
+%
+"""
+
+
 class Import(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="rmac-test-")
@@ -55,6 +78,42 @@ class Import(unittest.TestCase):
         hole = 4 + 2 + 2 + 1.746 + 2.254 + 4 + 3.746 + 1.254 + 9
         expected = 10 + 12 + 12 + 4 * math.pi + helix + 8 + math.hypot(30, 18) + hole
         self.assertAlmostEqual(json.loads(done.stdout)["length_mm"], expected, delta=0.01)
+
+    def test_a_program_of_subs_and_loops_is_simulated(self):
+        self.source.write_text(LOOPS)
+        done = self.rmac("simulate", self.source, "--machine", "BenchXYZ", "--json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        # To the start, 10 from where the machine stands; then three slots of 11 down, 12 along, 11 up, and the ways between them.
+        self.assertAlmostEqual(json.loads(done.stdout)["length_mm"], 10 + 3 * (11 + 12 + 11) + 2 * math.hypot(5, 12), delta=0.01)
+
+    def test_a_program_of_subs_and_loops_is_machined(self):
+        self.source.write_text(LOOPS)
+        with Appliance() as appliance:
+            done = appliance.rmac("--json", "run", "--machine", "BenchXYZ", self.source)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            x, y, z = json.loads(appliance.rmac("--json", "status").stdout)["pose"][:3]
+        self.assertLess(math.dist((x, y, z), (10, 12, 10)), 0.01)  # where the third slot was left, as measured
+
+    def test_the_tool_s_centre_is_simulated_beside_the_contour(self):
+        self.source.write_text("g21 f600\nG0 X0 Y0 Z10\nG42 D3\nG1 X10\nY10\nG40\nG0 X20\nM2\n")
+        done = self.rmac("simulate", self.source, "--machine", "BenchXYZ", "--tool-diameter", "3=4", "--json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        # To (10, -2), a quarter of radius 2 around the corner, 10 up at X 12, and to (20, 10).
+        self.assertAlmostEqual(json.loads(done.stdout)["length_mm"], 10 + math.hypot(10, 2) + math.pi + 10 + 8, delta=0.01)
+        done = self.rmac("simulate", self.source, "--machine", "BenchXYZ")
+        self.assertIn(f"{self.source}:3:5: the diameter of tool 3 is not known here; give --tool-diameter 3=MM", done.stderr)
+
+    def test_a_program_that_does_not_end_is_refused(self):
+        self.source.write_text("g21 f600\nG0 X0 Y0 Z10\no1 while [1]\nG1 X1\nX0\no1 endwhile\nM2\n")
+        done = self.rmac("simulate", self.source, "--machine", "BenchXYZ", "--output-limit", "1")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn(f"{self.source}:6:1: the program became more than 1 MB", done.stderr)
+
+    def test_a_fault_in_a_sub_is_told_at_its_line(self):
+        self.source.write_text(LOOPS.replace("Y#2", "Y#2 M19"))
+        done = self.rmac("simulate", self.source, "--machine", "BenchXYZ")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn(f"{self.source}:8:7: M19: ", done.stderr)
 
     def test_an_imported_program_is_machined(self):
         self.source.write_text(PART)
@@ -118,10 +177,10 @@ class Import(unittest.TestCase):
     def test_what_is_refused_leaves_no_file_and_the_old_one(self):
         target = self.folder / "part.rmac"
         target.write_text("the old one\n")
-        self.source.write_text("G21 G0 X0 Y0 Z0\nG1 X1 F100\n  G41 X2\nM2\n")
+        self.source.write_text("G21 G0 X0 Y0 Z0\nG1 X1 F100\n  G76 X2\nM2\n")
         done = self.rmac("import", self.source)
         self.assertEqual(done.returncode, 1)
-        self.assertTrue(done.stderr.startswith(f"rmac-import: {self.source}:3:3: G41: "), done.stderr)
+        self.assertTrue(done.stderr.startswith(f"rmac-import: {self.source}:3:3: G76: "), done.stderr)
         self.assertEqual(target.read_text(), "the old one\n")
         self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["part.ngc", "part.rmac"])
 

@@ -58,6 +58,7 @@ void Writer::close() {
 
 void Writer::flush() {
   sink_(out_);
+  flushed_ += out_.size();
   out_.clear();
 }
 

@@ -43,6 +43,7 @@ class Writer {
   explicit Writer(Sink sink, Ids ids = Ids::Numbers) : sink_(std::move(sink)), ids_(ids) {}
 
   void at_line(std::size_t line) noexcept { line_ = line; }
+  [[nodiscard]] std::size_t line() const noexcept { return line_; }
 
   /// Positioning, from rest to rest.
   void rapid(const Point& end);
@@ -66,6 +67,7 @@ class Writer {
 
   [[nodiscard]] std::size_t requests() const noexcept { return requests_; }
   [[nodiscard]] std::size_t moves() const noexcept { return moves_; }
+  [[nodiscard]] std::size_t bytes() const noexcept { return flushed_ + out_.size(); }
 
  private:
   void open(std::string_view method);
@@ -75,7 +77,7 @@ class Writer {
   Sink sink_;
   Ids ids_;
   std::string out_, here_, there_;
-  std::size_t line_ = 0, requests_ = 0, moves_ = 0;
+  std::size_t line_ = 0, requests_ = 0, moves_ = 0, flushed_ = 0;
 };
 
 }  // namespace rmac::legacy

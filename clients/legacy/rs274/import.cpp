@@ -1,43 +1,40 @@
 #include "clients/legacy/rs274/import.hpp"
 
+#include <fmt/format.h>
+
+#include <string>
 #include <utility>
 
+#include "clients/legacy/rs274/flow/flow.hpp"
 #include "clients/legacy/rs274/interpreter.hpp"
 
 namespace rmac::rs274 {
 
 namespace {
 
-/// Takes the first line off the text.
-std::string_view take_line(std::string_view& text) {
-  const std::size_t end = text.find('\n');
-  const std::string_view line = text.substr(0, end);
-  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-  return line;
-}
-
-/// One import: line by line, to the program's end.
+/// One import: line by line, in the order in which they are carried out, to the program's end.
 class Import {
  public:
-  Import(const Options& options, Writer::Sink sink)
-      : options_(options), writer_(std::move(sink), options.ids), interpreter_(options, writer_) {}
+  Import(std::string_view program, const Options& options, Writer::Sink sink)
+      : options_(options),
+        writer_(std::move(sink), options.ids),
+        interpreter_(options, writer_, parameters_),
+        flow_(program, options.block_delete, options.bounds, parameters_, [this] {
+          return Made{writer_.moves(), writer_.bytes()};
+        }) {}
 
-  tl::expected<Summary, Error> run(std::string_view text) {
+  tl::expected<Summary, Error> run() {
     try {
-      while (!text.empty() && !ended_) {
-        writer_.at_line(++number_);
-        line_.read(take_line(text));
-        take(line_.text());
+      while (!ended_ && flow_.next()) {
+        writer_.at_line(flow_.number());
+        take(flow_.line().text());
       }
-      if (!ended_) {
-        refuse(line_.text().size(), marked_ ? "the program ends without its second %; it may be cut off"
-                                            : "the program ends without M2 or M30; it may be cut off");
-      }
+      if (!ended_) refuse_end();
     } catch (const Refusal& refusal) {
-      return tl::unexpected(Error{number_, line_.column(refusal.place), refusal.message});
+      return tl::unexpected(Error{flow_.number(), flow_.line().column(refusal.place), refusal.message});
     }
     writer_.flush();
-    return Summary{number_, writer_.moves(), writer_.requests()};
+    return Summary{flow_.furthest(), writer_.moves(), writer_.requests()};
   }
 
  private:
@@ -46,27 +43,46 @@ class Import {
     if (text.front() == '%') {
       if (text.size() > 1) refuse(1, "nothing stands behind %");
       if (begun_ && !marked_) refuse(0, "a % in a program that did not begin with one");
-      if (marked_) interpreter_.require_closed(0);
+      if (marked_) require_main(0);
+      if (marked_) interpreter_.end(0);
       ended_ = marked_;
       marked_ = true;
     } else if (!(text.front() == '/' && options_.block_delete)) {
-      ended_ = !interpreter_.execute(line_);
+      go_on(interpreter_.execute(flow_.line()));
     }
     begun_ = true;
   }
 
+  void go_on(const After& after) {
+    if (after.what == After::What::Call) flow_.call(after.label, after.times, after.place);
+    if (after.what == After::What::EndOfNumbered) flow_.end_of_numbered(after.place);
+    ended_ = after.what == After::What::End;
+  }
+
+  void require_main(std::size_t place) const {
+    if (const std::string running = flow_.running(); !running.empty())
+      refuse(place, fmt::format("the file ends within {}, which M99 is to end; it may be cut off", running));
+  }
+
+  [[noreturn]] void refuse_end() const {
+    const std::size_t end = flow_.line().text().size();
+    require_main(end);
+    refuse(end, marked_ ? "the program ends without its second %; it may be cut off"
+                        : "the program ends without M2 or M30; it may be cut off");
+  }
+
   const Options& options_;
+  Parameters parameters_;
   Writer writer_;
   Interpreter interpreter_;
-  Line line_;
-  std::size_t number_ = 0;
+  Flow flow_;
   bool begun_ = false, marked_ = false, ended_ = false;
 };
 
 }  // namespace
 
 tl::expected<Summary, Error> import_program(std::string_view program, const Options& options, Writer::Sink sink) {
-  return Import(options, std::move(sink)).run(program);
+  return Import(program, options, std::move(sink)).run();
 }
 
 }  // namespace rmac::rs274

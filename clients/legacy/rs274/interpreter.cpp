@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "clients/legacy/rs274/blocks/comments.hpp"
 #include "clients/legacy/rs274/named_io.hpp"
 #include "clients/legacy/rs274/offsets.hpp"
 
@@ -14,17 +15,10 @@ namespace rmac::rs274 {
 namespace {
 
 constexpr double kInch_mm = 25.4, kMostTolerance_mm = 100, kMostDwell_s = 3600;
+/// How often M98 calls.
+constexpr double kMostTimes = 1e9;
 /// What a stop's message may have.
 constexpr std::size_t kMostMessage_bytes = 200;
-
-std::string capitals(std::string_view text) {
-  std::string result;
-  for (const char letter : text) {
-    if (letter != ' ' && letter != '\t')
-      result += letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 'a' + 'A') : letter;
-  }
-  return result;
-}
 
 std::string trimmed(std::string_view text) {
   const auto begin = text.find_first_not_of(" \t\r");
@@ -32,22 +26,15 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(begin, std::min(text.find_last_not_of(" \t\r") - begin + 1, kMostMessage_bytes)));
 }
 
-/// What a comment begins with that has a control do something.
-std::string_view active_word(std::string_view comment) {
-  static constexpr std::array<std::string_view, 8> kWords{"DEBUG",     "PRINT",    "LOG",       "LOGOPEN",
-                                                          "LOGAPPEND", "LOGCLOSE", "PROBEOPEN", "PROBECLOSE"};
-  const std::string word = capitals(comment.substr(0, comment.find(',')));
-  const auto* found = std::ranges::find(kWords, word);
-  return found == kWords.end() ? std::string_view() : *found;
-}
-
 }  // namespace
 
-Interpreter::Interpreter(const Options& options, Writer& writer)
+Interpreter::Interpreter(const Options& options, Writer& writer, Parameters& parameters)
     : options_(options),
       writer_(writer),
+      parameters_(parameters),
       mover_(options, modes_, coordinates_, writer),
-      motions_(options, modes_, coordinates_, mover_),
+      compensation_([this](const ContourMove& move, std::size_t place) { mover_.held(move, place); }),
+      motions_(options, modes_, coordinates_, mover_, compensation_),
       splines_(motions_, modes_, mover_),
       switches_(writer),
       drilling_(modes_, coordinates_, mover_, switches_, writer) {
@@ -57,15 +44,17 @@ Interpreter::Interpreter(const Options& options, Writer& writer)
   parameters_.ask_control([this](int number) { return control_parameter(number); });
 }
 
-bool Interpreter::execute(const Line& line) {
+After Interpreter::execute(const Line& line) {
   block_.read(line, parameters_);
   read_comments(line);
-  if (block_.empty()) return true;
+  if (block_.empty()) return {};
   if (splines_.open()) {
     splines_.go_on(block_);
     block_.require_all_used();
-    return true;
+    return {};
   }
+  if (const auto& code = block_.m(MGroup::Stop); code && code->number >= 98) return numbered_program(*code);
+  require_only_moves(block_, modes_, compensation_);
   set_speeds();
   set_tool();
   switches_.switch_coolant(block_);
@@ -73,6 +62,7 @@ bool Interpreter::execute(const Line& line) {
   act_on_names(block_, options_, writer_);
   dwell();
   set_plane_and_units();
+  switch_compensation(block_, options_, modes_, switches_, mover_, compensation_);
   set_length();
   if (const auto& system = block_.g(GGroup::System)) select_system(*system, coordinates_);
   set_control();
@@ -81,21 +71,16 @@ bool Interpreter::execute(const Line& line) {
   move();
   const bool goes_on = stop();
   block_.require_all_used();
-  return goes_on;
+  return {goes_on ? After::What::Next : After::What::End};
 }
 
 void Interpreter::read_comments(const Line& line) {
   block_comment_.clear();
+  if (line.comments().empty()) return;
+  refuse_active_comments(line);
   for (const std::string_view comment : line.comments()) {
-    const std::size_t comma = comment.find(',');
-    if (comma != std::string_view::npos && capitals(comment.substr(0, comma)) == "MSG") {
-      message_ = trimmed(comment.substr(comma + 1));
-    } else if (const auto word = active_word(comment); comma != std::string_view::npos && !word.empty()) {
-      refuse(line.text().find(Line::kComment),
-             fmt::format("({}, … has a control do something that no .rmac can; take it out", word));
-    } else {
-      block_comment_ = trimmed(comment);
-    }
+    const auto message = message_of(comment);
+    (message ? message_ : block_comment_) = trimmed(message.value_or(comment));
   }
 }
 
@@ -210,6 +195,9 @@ void Interpreter::move_by(int code, std::size_t place) {
   if (code == 0 || code == 10) return motions_.straight(block_, code == 0, place);
   if (code == 20 || code == 30) return motions_.arc(block_, code == 30, place);
   if (code >= 50 && code <= 53) return splines_.move(block_, code, before, place);
+  if (compensation_.on() || compensation_.leaving())
+    refuse(place,
+           "a cycle goes by where the tool is; end cutter radius compensation by G40 and a straight move before it");
   drilling_.drill(block_, code, before, place);
 }
 
@@ -217,6 +205,7 @@ bool Interpreter::stop() {
   const auto& stop = block_.m(MGroup::Stop);
   if (!stop) return true;
   if (stop->number == 2 || stop->number == 30) {
+    compensation_.end(stop->place);
     switches_.off();
     return false;
   }
@@ -227,6 +216,26 @@ bool Interpreter::stop() {
   return true;
 }
 
+/// M98 and M99. What stands beside them LinuxCNC passes over, and other controls carry out first.
+After Interpreter::numbered_program(const Code& code) {
+  if (block_.codes() > 1) refuse(code.place, fmt::format("M{} has a block of its own; write two", code.number));
+  if (code.number == 99) {
+    block_.require_all_used();
+    return {After::What::EndOfNumbered, 0, 1, code.place};
+  }
+  if (!block_.has('P')) refuse(code.place, "M98 needs P, the number of the program that it calls");
+  const Word& label = block_.use('P');
+  if (!(label.value >= 0 && label.value <= kMostTimes && label.value == std::floor(label.value)))
+    refuse(label.place, "P of M98 is the number behind the O of a program");
+  const Word* times = block_.find('L');
+  if (times != nullptr &&
+      !(times->value >= 0 && times->value <= kMostTimes && times->value == std::floor(times->value)))
+    refuse(times->place, "L of M98 says how often: 0 or a greater integer");
+  block_.require_all_used();
+  return {After::What::Call, static_cast<int>(label.value), times != nullptr ? static_cast<int>(times->value) : 1,
+          code.place};
+}
+
 /// Of the numbers that LinuxCNC's manual gives to the control, those that a program's own words make known. Those of
 /// G92 and the work systems (5211 to 5383) are not: the control keeps the former while G92.2 suspends them, and the
 /// latter in the unit of the machine, which no program says.
@@ -234,6 +243,7 @@ std::optional<double> Interpreter::control_parameter(int number) const {
   if (number == 5220) return static_cast<double>(coordinates_.active() + 1);
   if (number == 5400) return switches_.tool();
   if (number < 5420 || number > 5422 || !modes_.unit_mm) return std::nullopt;
+  if (compensation_.on() || compensation_.leaving()) return std::nullopt;  // beside where the program believes it to be
   const auto tip = coordinates_.program_tip(static_cast<std::size_t>(number - 5420));
   return tip ? std::optional(*tip / *modes_.unit_mm) : std::nullopt;
 }

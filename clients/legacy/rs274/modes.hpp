@@ -9,6 +9,7 @@
 #include "clients/legacy/rs274/blocks/block.hpp"
 #include "clients/legacy/rs274/blocks/refusal.hpp"
 #include "clients/legacy/rs274/coordinates.hpp"
+#include "clients/legacy/rs274/flow/endless.hpp"
 
 namespace rmac::rs274 {
 
@@ -22,7 +23,9 @@ struct Options {
   std::optional<Point> approach_mm;    ///< where the tip goes first, and after each tool change
   std::optional<Point> reference_mm, second_reference_mm;  ///< of G28 and G30, in the coordinates of the part
   std::map<int, std::string> outputs, inputs;              ///< names of the machine's, by the numbers of M62 to M66
+  std::map<int, double> tool_diameters_mm;                 ///< of G41 and G42, by the numbers of the tools
   legacy::Ids ids = legacy::Ids::Numbers;
+  Bounds bounds;                                       ///< of loops and subprograms
   std::array<Known, Coordinates::kSystems> offsets{};  ///< where the work systems are in the machine
 };
 

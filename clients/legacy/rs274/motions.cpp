@@ -40,7 +40,7 @@ Point Motions::end_of(Block& block, std::size_t place) {
   const bool in_machine = block.once(530);
   const bool all = block.has('X') && block.has('Y') && block.has('Z');
   Point end{};
-  if (!all || modes_.incremental) end = mover_.start(place);
+  if (!all || modes_.incremental) end = start(place);
   for (std::size_t axis = 0; axis < end.size(); ++axis) {
     const Word* word = block.find(kAxisLetters.at(axis));
     if (word == nullptr) continue;
@@ -55,9 +55,26 @@ Point Motions::end_of(Block& block, std::size_t place) {
 }
 
 void Motions::straight(Block& block, bool rapid, std::size_t place) {
-  const Point end = end_of(block, place);
+  go_straight(end_of(block, place), rapid, place);
+}
+
+Point Motions::start(std::size_t place) {
+  return compensation_.on() || compensation_.leaving() ? compensation_.programmed() : mover_.start(place);
+}
+
+void Motions::go_straight(const Point& end, bool rapid, std::size_t place) {
+  if (compensation_.on())
+    return compensation_.move({rapid, std::nullopt, end, modes_.feed_mm_min, mover_.line()}, place);
+  compensation_.left();
   if (rapid) return mover_.rapid(end, place);
   mover_.line(end, place);
+}
+
+void Motions::go_along(const Arc& arc, std::size_t place) {
+  if (compensation_.leaving())
+    refuse(place, "the first move behind G40 is a straight one, from beside the contour; write a line before this arc");
+  if (compensation_.on()) return compensation_.move({false, arc, arc.end, modes_.feed_mm_min, mover_.line()}, place);
+  mover_.arc(arc, place);
 }
 
 void Motions::reference(Block& block, const Code& code) {
@@ -100,7 +117,7 @@ Point Motions::written_centre(Block& block, const Point& start, std::size_t plac
 void Motions::arc(Block& block, bool counter_clockwise, std::size_t place) {
   if (block.once(530)) refuse(place, "G53 goes with G0 and G1 only");
   const Plane& plane = modes_.plane;
-  const Point start = mover_.start(place);
+  const Point start = this->start(place);
   const Point end = end_of(block, place);
   Arc arc{.end = end, .normal = plane.normal, .counter_clockwise = counter_clockwise};
   if (const Word* turns = block.find('P')) arc.more_turns = turns_of(*turns) - 1;
@@ -108,12 +125,14 @@ void Motions::arc(Block& block, bool counter_clockwise, std::size_t place) {
     if (block.has_any("IJK")) refuse(radius->place, "an arc has a radius or a centre, not both");
     if (radius->value == 0) refuse(radius->place, "an arc of radius 0");
     arc.centre = centre_by_radius(start, end, plane, counter_clockwise, modes_.mm(*radius), radius->place);
-    return mover_.arc(arc, place);
+    return go_along(arc, place);
   }
   arc.centre = written_centre(block, start, place);
   const auto kept = arc_about(start, arc, plane, place);
-  if (kept) mover_.arc(*kept, place);
-  if (!kept || kept->end != end) mover_.line(end, place);
+  if (kept) go_along(*kept, place);
+  if (kept && kept->end == end) return;
+  if (compensation_.on()) return compensation_.go_on_from(end);
+  go_straight(end, false, place);
 }
 
 }  // namespace rmac::rs274

@@ -70,29 +70,42 @@ void Mover::go(const Point& end, std::size_t place) {
   coordinates_.move_to(end);
 }
 
-void Mover::prepare_feed(const Point& end, std::size_t place) {
+void Mover::prepare_feed(const Point& end, double feed_mm_min, std::size_t place) {
   const Point from = start(place);
   prepare(end, place);
-  if (modes_.feed_mm_min == 0) refuse(place, "no feed was set before this move; write F");
-  write_feed(modes_.feed_mm_min, place);
+  if (feed_mm_min == 0) refuse(place, "no feed was set before this move; write F");
+  write_feed(feed_mm_min, place);
   writer_.begin(from);
 }
 
-void Mover::line(const Point& end, std::size_t place) {
-  prepare_feed(end, place);
+void Mover::line(const Point& end, double feed_mm_min, std::size_t place) {
+  prepare_feed(end, feed_mm_min, place);
   writer_.line(end);
   coordinates_.move_to(end);
 }
 
-void Mover::arc(const Arc& arc, std::size_t place) {
-  prepare_feed(arc.end, place);
+void Mover::arc(const Arc& arc, double feed_mm_min, std::size_t place) {
+  prepare_feed(arc.end, feed_mm_min, place);
   writer_.arc(arc);
   coordinates_.move_to(arc.end);
 }
 
+void Mover::held(const ContourMove& move, std::size_t place) {
+  const std::size_t line_now = writer_.line();
+  writer_.at_line(move.line);
+  if (move.rapid) {
+    rapid(move.end, place);
+  } else if (move.arc) {
+    arc(*move.arc, move.feed_mm_min, place);
+  } else {
+    line(move.end, move.feed_mm_min, place);
+  }
+  writer_.at_line(line_now);
+}
+
 void Mover::nurbs(const legacy::Nurbs& curve, std::size_t place) {
   for (const Point& point : curve.points) require_reach(point, place);
-  prepare_feed(curve.points.back(), place);
+  prepare_feed(curve.points.back(), modes_.feed_mm_min, place);
   writer_.nurbs(curve);
   coordinates_.move_to(curve.points.back());
 }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "clients/legacy/rs274/modes.hpp"
+#include "clients/legacy/rs274/radius/compensation.hpp"
 
 namespace rmac::rs274 {
 
@@ -15,11 +16,17 @@ class Mover {
       : options_(options), modes_(modes), coordinates_(coordinates), writer_(writer) {}
 
   void rapid(const Point& end, std::size_t place);
-  void line(const Point& end, std::size_t place);
-  void arc(const Arc& arc, std::size_t place);
+  void line(const Point& end, std::size_t place) { line(end, modes_.feed_mm_min, place); }
+  void line(const Point& end, double feed_mm_min, std::size_t place);
+  void arc(const Arc& arc, std::size_t place) { this->arc(arc, modes_.feed_mm_min, place); }
+  void arc(const Arc& arc, double feed_mm_min, std::size_t place);
+  /// One that was held back until the move behind it was known.
+  void held(const ContourMove& move, std::size_t place);
   void nurbs(const legacy::Nurbs& curve, std::size_t place);
   /// A rapid to where whoever imports the program says that the tip is, whether or not the tool's length counts.
   void reference(const Point& end, std::size_t place);
+  /// Of the source, that is carried out.
+  [[nodiscard]] std::size_t line() const noexcept { return writer_.line(); }
   /// Makes the tip's place known, by the approach where nothing else tells it.
   [[nodiscard]] Point start(std::size_t place);
 
@@ -27,7 +34,7 @@ class Mover {
   static void require_reach(const Point& point, std::size_t place);
   void go(const Point& end, std::size_t place);
   void prepare(const Point& end, std::size_t place);
-  void prepare_feed(const Point& end, std::size_t place);
+  void prepare_feed(const Point& end, double feed_mm_min, std::size_t place);
   void write_feed(double mm_min, std::size_t place);
   void write_rapid(const Point& end, std::size_t place);
   void write_frame();

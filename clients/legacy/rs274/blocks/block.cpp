@@ -38,7 +38,7 @@ void Block::read(const Line& line, Parameters& parameters) {
   g_.fill(std::nullopt);
   m_.fill(std::nullopt);
   words_ = used_ = 0;
-  any_code_ = false;
+  codes_ = 0;
   assignments_.clear();
   const std::string_view text = line.text();
   std::size_t at = 0;
@@ -69,8 +69,7 @@ void Block::read_word(std::string_view text, std::size_t& at, Parameters& parame
            shows ? fmt::format("a word begins with a letter, not with {}", letter) : "a character that no program has");
   }
   ++at;
-  if (letter == 'O')
-    refuse(place, "O words (subprograms and loops) are not taken yet; have the CAM program write the moves out");
+  if (letter == 'O') refuse(place, "an O word begins its line; nothing but N and / may stand before it");
   if (letter == 'N') refuse(place, "a line's number stands at its begin");
   const double value = Expression(text, parameters).value(at);
   if (letter == 'G') return add_g(value, place);
@@ -94,6 +93,9 @@ void Block::read_assignment(std::string_view text, std::size_t& at, Parameters& 
   if (number != nullptr && *number >= Parameters::kFirstOfControl) {
     refuse(place, fmt::format("#{} is the control's own; set offsets by G10 and G92", *number));
   }
+  const auto* name = std::get_if<std::string_view>(&assignment.name);
+  if (name != nullptr && Parameters::is_of_control(*name))
+    refuse(place, "this is what the last sub gave back; return [a value] sets it");
   assignments_.push_back(assignment);
 }
 
@@ -108,7 +110,7 @@ void Block::add_g(double value, std::size_t place) {
            fmt::format("{} and {} are of one modal group; write two blocks", g_name(there->number), g_name(*tenfold)));
   }
   there = Code{*tenfold, place};
-  any_code_ = true;
+  ++codes_;
 }
 
 void Block::add_m(double value, std::size_t place) {
@@ -120,7 +122,7 @@ void Block::add_m(double value, std::size_t place) {
   auto& there = m_.at(static_cast<std::size_t>(known->group));
   if (there) refuse(place, fmt::format("M{} and M{} are of one modal group; write two blocks", there->number, *number));
   there = Code{*number, place};
-  any_code_ = true;
+  ++codes_;
 }
 
 void Block::check_together() const {

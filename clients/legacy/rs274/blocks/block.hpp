@@ -33,17 +33,21 @@ class Block {
   void read(const Line& line, Parameters& parameters);
 
   /// Nothing but comments, numbers of lines and parameters.
-  [[nodiscard]] bool empty() const noexcept { return words_ == 0 && !any_code_; }
+  [[nodiscard]] bool empty() const noexcept { return words_ == 0 && codes_ == 0; }
   [[nodiscard]] const std::optional<Code>& g(GGroup group) const { return g_.at(static_cast<std::size_t>(group)); }
   [[nodiscard]] const std::optional<Code>& m(MGroup group) const { return m_.at(static_cast<std::size_t>(group)); }
   /// Whether the one code of group 0 is this one.
   [[nodiscard]] bool once(int tenfold) const { return g(GGroup::Once) && g(GGroup::Once)->number == tenfold; }
 
+  /// How many codes it has.
+  [[nodiscard]] std::size_t codes() const noexcept { return codes_; }
   /// Whether it has a code beside one of motion.
   [[nodiscard]] bool does_more_than_move() const noexcept;
 
   [[nodiscard]] bool has(char letter) const noexcept { return (words_ & bit(letter)) != 0; }
   [[nodiscard]] bool has_any(std::string_view letters) const noexcept;
+  /// Where a word stands that the block has.
+  [[nodiscard]] std::size_t place(char letter) const { return word_.at(static_cast<std::size_t>(letter - 'A')).place; }
   /// A word that the block has; whoever asks for it, uses it.
   [[nodiscard]] const Word& use(char letter);
   /// The same, where the block has it.
@@ -69,7 +73,7 @@ class Block {
   std::array<std::optional<Code>, kMGroups> m_{};
   std::array<Word, 26> word_{};
   std::uint32_t words_ = 0, used_ = 0;
-  bool any_code_ = false;
+  std::size_t codes_ = 0;
   std::vector<Assignment> assignments_;
 };
 

@@ -54,10 +54,10 @@ constexpr auto kG = std::to_array<GCode>({
     {384, GGroup::Motion, kProbe},
     {385, GGroup::Motion, kProbe},
     {400, GGroup::Radius, {}},
-    {410, GGroup::Radius, kCompensation},
-    {411, GGroup::Radius, kCompensation},
-    {420, GGroup::Radius, kCompensation},
-    {421, GGroup::Radius, kCompensation},
+    {410, GGroup::Radius, {}},
+    {411, GGroup::Radius, {}},
+    {420, GGroup::Radius, {}},
+    {421, GGroup::Radius, {}},
     {430, GGroup::Length, {}},
     {431, GGroup::Length, "tool lengths are those of the appliance's tool table (rmac tools); write G43 H"},
     {432, GGroup::Length, "a second tool length is not taken; put it into the appliance's tool table (rmac tools)"},
@@ -141,6 +141,8 @@ constexpr auto kM = std::to_array<MCode>({
     {71, MGroup::Override, kState},
     {72, MGroup::Override, kState},
     {73, MGroup::Override, kState},
+    {98, MGroup::Stop, {}},
+    {99, MGroup::Stop, {}},
 });
 
 }  // namespace

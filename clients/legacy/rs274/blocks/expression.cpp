@@ -141,15 +141,15 @@ double Expression::bracketed(std::size_t& at) {
   return result;
 }
 
+/// What binds no less than `level`.
 double Expression::terms(int level, std::size_t& at) {
-  if (level > kMostLevel) return value(at);
-  double result = terms(level + 1, at);
+  double result = value(at);
   while (true) {
     const Operator* found = operator_at(text_, at);
-    if (found == nullptr || found->level != level) return result;
+    if (found == nullptr || found->level < level) return result;
     const std::size_t place = at;
     at += found->word.size();
-    result = finite(found->apply(result, terms(level + 1, at), place), place);
+    result = finite(found->apply(result, terms(found->level + 1, at), place), place);
   }
 }
 

@@ -8,7 +8,7 @@
 namespace rmac::rs274 {
 
 /// A line of a program as the report reads it: without spaces, which may stand anywhere, in capitals, each comment a
-/// kComment. One object reads many lines, so that none allocates.
+/// kComment. One object reads many lines, so that none allocates; the source of the last is to be there still.
 class Line {
  public:
   static constexpr char kComment = '\x01';
@@ -23,12 +23,12 @@ class Line {
   [[nodiscard]] std::size_t column(std::size_t place) const noexcept;
 
  private:
-  void keep(char letter, std::size_t column);
+  void read_comment(std::size_t& at, std::size_t end);
 
   std::string text_;
-  std::vector<std::size_t> columns_;
+  std::string_view source_;
   std::vector<std::string_view> comments_;
-  std::size_t end_ = 1;
+  std::size_t unreadable_ = std::string_view::npos;  ///< a byte of the source that stands in no line
 };
 
 }  // namespace rmac::rs274

@@ -13,7 +13,7 @@ struct Operator {
   double (*apply)(double left, double right, std::size_t place) = nullptr;
 };
 
-inline constexpr int kLeastLevel = 1, kMostLevel = 5;
+inline constexpr int kLeastLevel = 1;
 
 /// The operator that stands there; null where none does.
 [[nodiscard]] const Operator* operator_at(std::string_view text, std::size_t at) noexcept;

@@ -1,5 +1,7 @@
 #include "clients/legacy/rs274/blocks/parameters.hpp"
 
+#include <algorithm>
+
 namespace rmac::rs274 {
 
 std::optional<double> Parameters::read(int number) const {
@@ -8,8 +10,9 @@ std::optional<double> Parameters::read(int number) const {
 }
 
 std::optional<double> Parameters::read(std::string_view name) const {
-  const auto found = named_.find(name);
-  return found == named_.end() ? std::nullopt : std::optional(found->second);
+  const Names& all = is_global(name) ? global_ : names();
+  const auto found = all.find(name);
+  return found == all.end() ? std::nullopt : std::optional(found->second);
 }
 
 void Parameters::set(int number, double value) {
@@ -17,7 +20,27 @@ void Parameters::set(int number, double value) {
 }
 
 void Parameters::set(std::string_view name, double value) {
-  named_.insert_or_assign(std::string(name), value);
+  Names& all = is_global(name) ? global_ : within_.empty() ? program_ : within_.back().names;
+  all.insert_or_assign(std::string(name), value);
+}
+
+void Parameters::enter(const std::optional<Arguments>& arguments) {
+  Subprogram& entered = within_.emplace_back();
+  if (!arguments) return;
+  auto* const first = values_.begin() + 1;
+  entered.of_caller.emplace();
+  std::copy_n(first, kArguments, entered.of_caller->begin());
+  std::ranges::copy(*arguments, first);
+}
+
+void Parameters::leave() {
+  if (const auto& kept = within_.back().of_caller) std::ranges::copy(*kept, values_.begin() + 1);
+  within_.pop_back();
+}
+
+void Parameters::returned(std::optional<double> value) {
+  global_.insert_or_assign(std::string(kValue), value.value_or(0));
+  global_.insert_or_assign(std::string(kReturned), value ? 1 : 0);
 }
 
 }  // namespace rmac::rs274

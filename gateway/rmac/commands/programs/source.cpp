@@ -32,11 +32,13 @@ constexpr std::array<Passed, std::tuple_size_v<decltype(Source::values)>> kPasse
     {"--approach", "X,Y,Z in mm: where an imported program's tool tip goes first"},
     {"--reference-point", "X,Y,Z in mm: where G28 of an imported program goes"},
     {"--second-reference-point", "the same of G30"},
+    {"--output-limit", "MB of .rmac: an imported program with loops that becomes more does not end"},
 }};
 constexpr std::array<Passed, std::tuple_size_v<decltype(Source::repeated)>> kRepeated{{
     {"--offset", "G54=X,Y,Z in mm: where an imported program's work system is in the machine"},
     {"--output", "3=NAME: the output that M62 to M65 P3 of an imported program switch"},
     {"--input", "3=NAME: the input that M66 P3 of an imported program waits for"},
+    {"--tool-diameter", "3=10: the diameter of tool 3 in mm, for G41 and G42 of an imported program"},
 }};
 
 /// The language of a file by its ending; empty where it is `.rmac`, none where the ending tells nothing.

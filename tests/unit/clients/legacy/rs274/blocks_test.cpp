@@ -51,9 +51,8 @@ TEST(Rs274Block, IsRefusedForAWordThatNothingUses) {
 }
 
 TEST(Rs274Block, IsRefusedForWhatIsNotTaken) {
-  for (const char* code :
-       {"G33",   "G28", "G41",  "G76", "G73", "G38.2", "G93", "G95",  "G96",    "G87",  "G43.1",     "G61.1",
-        "G18.1", "G9",  "G200", "M19", "M49", "M62",   "M98", "M100", "O1 sub", "G1.5", "(PRINT, x)"}) {
+  for (const char* code : {"G33",   "G28",   "G41", "G76",  "G73", "G38.2", "G93", "G95",  "G96",  "G87",       "G43.1",
+                           "G61.1", "G18.1", "G9",  "G200", "M19", "M49",   "M62", "M100", "G1.5", "(PRINT, x)"}) {
     EXPECT_THAT(refusal_of(program_of(code)), StartsWith("3:1: ")) << code;
   }
   EXPECT_THAT(refusal_of(program_of("G0 A90")), HasSubstr("axis A is not taken yet"));
@@ -76,14 +75,39 @@ TEST(Rs274Program, IsRefusedWithoutItsUnit) {
 TEST(Rs274Program, NeverCrashesWhateverItIs) {
   std::mt19937 random(20261124);
   const std::string letters = "GGGMXYZIJKRPQFSTNO#<>[]()%;/=+-*.0123456789 \n\n\tABCDEHLUVWsincosatanmodeq\x01\x80\xff";
-  const std::vector<std::string> pieces{"G1",      "G2", "G83", "X[",  "]",         "#1=",   "#<a>=",   "ATAN[1]/[2]",
-                                        "R2 Z-3 ", "\n", "G91", "G20", "G10 L2 P1", "M6 T1", "EXISTS[#"};
+  const std::vector<std::string> pieces{"G1",
+                                        "G2",
+                                        "G83",
+                                        "X[",
+                                        "]",
+                                        "#1=",
+                                        "#<a>=",
+                                        "ATAN[1]/[2]",
+                                        "R2 Z-3 ",
+                                        "\n",
+                                        "G91",
+                                        "G20",
+                                        "G10 L2 P1",
+                                        "M6 T1",
+                                        "EXISTS[#",
+                                        "\no1 while[1]",
+                                        "\no1 endwhile\n",
+                                        "\no2 sub\n",
+                                        "\no2 endsub[1]\n",
+                                        "\no2 call[",
+                                        "\nM98 P3\n",
+                                        "\nO3\n",
+                                        "\nM99\n",
+                                        "\no4 repeat[3]\n",
+                                        "\no4 endrepeat\n",
+                                        "\no1 break\n"};
   for (int program = 0; program < 3000; ++program) {
     std::string text = "G21 F9 G0 X0 Y0 Z0\n";
     for (int piece = 0; piece < 60; ++piece) {
       text += random() % 3 == 0 ? pieces[random() % pieces.size()] : std::string(1, letters[random() % letters.size()]);
     }
-    const auto summary = import_program(text, {}, [](std::string_view) {});
+    const auto summary =
+        import_program(text, {.bounds = {.idle_lines = 1000, .output_mb = 1}}, [](std::string_view) {});
     if (summary) continue;
     EXPECT_GE(summary.error().line, 1U) << text;
     EXPECT_GE(summary.error().column, 1U) << text;

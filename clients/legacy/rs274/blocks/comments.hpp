@@ -1,0 +1,16 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "clients/legacy/rs274/blocks/line.hpp"
+
+namespace rmac::rs274 {
+
+/// Throws a Refusal where a comment of the line has a control do something: (PRINT, …), (LOG, …) and their kind.
+void refuse_active_comments(const Line& line);
+
+/// The text of a comment (MSG, text); none where a comment is none of these.
+[[nodiscard]] std::optional<std::string_view> message_of(std::string_view comment);
+
+}  // namespace rmac::rs274
