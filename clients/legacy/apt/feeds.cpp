@@ -1,0 +1,33 @@
+#include "clients/legacy/apt/feeds.hpp"
+
+#include <array>
+#include <string_view>
+
+namespace rmac::apt {
+
+std::optional<double> take_feed_unit(Arguments& arguments, const Coordinates& coordinates) {
+  static constexpr std::array<std::string_view, 6> kRefused{"MMPR", "IPR", "PERREV", "FPR", "INVERS", "FRN"};
+  for (const std::string_view word : kRefused) {
+    if (arguments.take(word)) {
+      refuse(arguments.last_place(),
+             "feed is in mm or inch a minute here, not by the turn of the spindle or the share of the way");
+    }
+  }
+  if (arguments.take("MMPM")) return 1;
+  if (arguments.take("IPM")) return 25.4;
+  if (arguments.take("PERMIN")) return coordinates.unit_mm(arguments.last_place());
+  return std::nullopt;
+}
+
+double feed_of(Arguments& arguments, const Coordinates& coordinates) {
+  auto unit = take_feed_unit(arguments, coordinates);
+  const double value = arguments.number("a feed");
+  const std::size_t place = arguments.last_place();
+  if (!unit) unit = take_feed_unit(arguments, coordinates);
+  if (!unit) unit = coordinates.unit_mm(place);
+  arguments.end();
+  if (!legacy::is_feed(value * *unit)) refuse(place, "the feed is not within 0.01 and 1 000 000 mm/min");
+  return value * *unit;
+}
+
+}  // namespace rmac::apt

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <optional>
+
+#include "clients/legacy/apt/coordinates.hpp"
+
+namespace rmac::apt {
+
+/// Takes the unit of a feed where it is the next word: MMPM, IPM, or PERMIN of the program's unit; in mm/min. Feeds a
+/// turn of the spindle, and a share of the way, are refused.
+[[nodiscard]] std::optional<double> take_feed_unit(Arguments& arguments, const Coordinates& coordinates);
+
+/// FEDRAT/f, with the unit before or behind it, or that of the program; in mm/min.
+[[nodiscard]] double feed_of(Arguments& arguments, const Coordinates& coordinates);
+
+}  // namespace rmac::apt
