@@ -3,7 +3,7 @@
 #include <string_view>
 #include <tl/expected.hpp>
 
-#include "clients/legacy/apt/options.hpp"
+#include "clients/legacy/apt/moves/options.hpp"
 #include "clients/legacy/program/outcome.hpp"
 
 namespace rmac::apt {

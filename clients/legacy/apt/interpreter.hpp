@@ -5,7 +5,7 @@
 #include <string>
 
 #include "clients/legacy/apt/axis_systems.hpp"
-#include "clients/legacy/apt/motions.hpp"
+#include "clients/legacy/apt/moves/motions.hpp"
 #include "clients/legacy/apt/switches.hpp"
 #include "clients/legacy/apt/tools.hpp"
 

@@ -1,4 +1,4 @@
-#include "clients/legacy/apt/coordinates.hpp"
+#include "clients/legacy/apt/moves/coordinates.hpp"
 
 #include <fmt/format.h>
 

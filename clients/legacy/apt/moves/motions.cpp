@@ -1,8 +1,8 @@
-#include "clients/legacy/apt/motions.hpp"
+#include "clients/legacy/apt/moves/motions.hpp"
 
 #include <utility>
 
-#include "clients/legacy/apt/feeds.hpp"
+#include "clients/legacy/apt/moves/feeds.hpp"
 
 namespace rmac::apt {
 

@@ -1,4 +1,4 @@
-#include "clients/legacy/apt/drilling.hpp"
+#include "clients/legacy/apt/moves/drilling.hpp"
 
 #include <fmt/format.h>
 

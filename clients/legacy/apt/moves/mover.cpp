@@ -1,4 +1,4 @@
-#include "clients/legacy/apt/mover.hpp"
+#include "clients/legacy/apt/moves/mover.hpp"
 
 #include <cmath>
 

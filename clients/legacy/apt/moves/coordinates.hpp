@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "clients/legacy/apt/options.hpp"
+#include "clients/legacy/apt/moves/options.hpp"
+#include "clients/legacy/apt/moves/vectors.hpp"
 #include "clients/legacy/apt/statements/arguments.hpp"
-#include "clients/legacy/apt/vectors.hpp"
 
 namespace rmac::apt {
 

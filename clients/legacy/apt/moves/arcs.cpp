@@ -1,4 +1,4 @@
-#include "clients/legacy/apt/arcs.hpp"
+#include "clients/legacy/apt/moves/arcs.hpp"
 
 #include <fmt/format.h>
 

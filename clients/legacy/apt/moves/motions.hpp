@@ -1,7 +1,7 @@
 #pragma once
 
-#include "clients/legacy/apt/arcs.hpp"
-#include "clients/legacy/apt/drilling.hpp"
+#include "clients/legacy/apt/moves/arcs.hpp"
+#include "clients/legacy/apt/moves/drilling.hpp"
 
 namespace rmac::apt {
 

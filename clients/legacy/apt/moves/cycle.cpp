@@ -1,4 +1,4 @@
-#include "clients/legacy/apt/cycle.hpp"
+#include "clients/legacy/apt/moves/cycle.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-#include "clients/legacy/apt/feeds.hpp"
+#include "clients/legacy/apt/moves/feeds.hpp"
 
 namespace rmac::apt {
 

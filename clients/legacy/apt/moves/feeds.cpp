@@ -1,4 +1,4 @@
-#include "clients/legacy/apt/feeds.hpp"
+#include "clients/legacy/apt/moves/feeds.hpp"
 
 #include <array>
 #include <string_view>

@@ -1,4 +1,4 @@
-#include "clients/legacy/apt/circle.hpp"
+#include "clients/legacy/apt/moves/circle.hpp"
 
 #include <fmt/format.h>
 

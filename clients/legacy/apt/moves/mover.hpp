@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <optional>
 
-#include "clients/legacy/apt/options.hpp"
-#include "clients/legacy/apt/vectors.hpp"
+#include "clients/legacy/apt/moves/options.hpp"
+#include "clients/legacy/apt/moves/vectors.hpp"
 
 namespace rmac::apt {
 

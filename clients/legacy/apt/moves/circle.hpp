@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "clients/legacy/apt/mover.hpp"
+#include "clients/legacy/apt/moves/mover.hpp"
 
 namespace rmac::apt {
 

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <optional>
 
-#include "clients/legacy/apt/cycle.hpp"
-#include "clients/legacy/apt/mover.hpp"
+#include "clients/legacy/apt/moves/cycle.hpp"
+#include "clients/legacy/apt/moves/mover.hpp"
 
 namespace rmac::apt {
 

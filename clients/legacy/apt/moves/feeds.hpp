@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "clients/legacy/apt/coordinates.hpp"
+#include "clients/legacy/apt/moves/coordinates.hpp"
 
 namespace rmac::apt {
 

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <optional>
 
-#include "clients/legacy/apt/circle.hpp"
-#include "clients/legacy/apt/coordinates.hpp"
+#include "clients/legacy/apt/moves/circle.hpp"
+#include "clients/legacy/apt/moves/coordinates.hpp"
 
 namespace rmac::apt {
 
