@@ -107,7 +107,10 @@ bool Interpreter::take_text(const Statement& statement) {
   }
   systems_.end_comments();
   if (statement.major == "PPRINT") message_ = statement.text.substr(0, kMostMessage_bytes);
-  if (statement.major == "TOOLPATH") tools_.begin_path(statement);
+  if (statement.major == "TOOLPATH") {
+    tools_.begin_path(statement);
+    path_ended_ = false;
+  }
   return true;
 }
 
