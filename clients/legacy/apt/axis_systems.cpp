@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 #include <string>
+#include <utility>
 
 namespace rmac::apt {
 
@@ -13,8 +14,9 @@ constexpr std::size_t kRow = 4, kMatrix = 12;
 /// Numbers that differ by less than rounding are the same.
 constexpr double kSame = 1e-4;
 
-std::vector<double> numbers_in(const std::string& text) {
-  std::istringstream words(text);
+std::vector<double> numbers_in(std::string text) {
+  std::ranges::replace(text, ',', ' ');
+  std::istringstream words(std::move(text));
   std::vector<double> values;
   for (double value = 0; words >> value;) values.push_back(value);
   return words.eof() ? values : std::vector<double>{};
@@ -39,6 +41,11 @@ void AxisSystems::set(Arguments& arguments) {
 }
 
 void AxisSystems::read_comment(const Statement& comment) {
+  if (comment.text.starts_with("-> CSYS")) {
+    const auto values = numbers_in(comment.text.substr(std::min(comment.text.find('/'), comment.text.size() - 1) + 1));
+    if (values.size() == kMatrix) require_first(values, comment.place);
+    return;
+  }
   if (comment.text.starts_with("*CATIA0")) {
     rows_.emplace();
     return;

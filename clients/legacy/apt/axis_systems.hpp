@@ -10,8 +10,8 @@
 namespace rmac::apt {
 
 /// The axis system that coordinates are in. CAM systems write where it lies in theirs: NX in MSYS, CATIA in comments
-/// behind `$$*CATIA0`. The first is the frame of the part; where another one would be, only the CAM system's user
-/// knows.
+/// behind `$$*CATIA0`, Creo behind `$$-> CSYS`. The first is the frame of the part; where another one would be, only
+/// the CAM system's user knows.
 class AxisSystems {
  public:
   /// MSYS/ nine numbers.

@@ -111,14 +111,16 @@ class CycleWords {
       refuse(arguments_.last_place(), "RETURN,0 means a plane that no CL file tells; write how far above the hole");
   }
 
-  /// A feed, where its unit stands behind it; else how far above the hole rapid ends.
+  /// A feed, where its unit stands behind it; behind the feed, how far above the hole rapid ends.
   void read_bare_number() {
     const double value = arguments_.number("a number");
     const std::size_t place = arguments_.last_place();
     if (!cycle_.feed_mm_min) {
       if (const auto unit = take_feed_unit(arguments_, coordinates_)) return set_feed(value * *unit, place);
     }
-    if (clear_) refuse(place, "which of the cycle's numbers this is, no word before it tells");
+    if (!cycle_.feed_mm_min || clear_)
+      refuse(place,
+             "which of the cycle's numbers this is, no word before it tells; write DEPTH, FEED, CLEAR and so on");
     clear_ = coordinates_.mm(value, place);
   }
 

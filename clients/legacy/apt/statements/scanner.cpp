@@ -99,6 +99,8 @@ bool Scanner::take_text(Statement& statement) {
   if (line.starts_with("$$")) {
     statement.major = "$$";
     statement.text = trimmed(line.substr(2));
+    // Creo tells things in comments of this form, which go on as statements do.
+    if (statement.text.starts_with("->")) go_on(statement);
     return true;
   }
   for (const auto& [word, has_slash] : kTextWords) {
@@ -109,14 +111,18 @@ bool Scanner::take_text(Statement& statement) {
     if (text.starts_with('/')) text = trimmed(text.substr(1));
     statement.major = word;
     statement.text = text;
-    while (has_slash && statement.text.ends_with('$')) {
-      statement.text.pop_back();
-      if (!take_line()) refuse(statement.place, "the statement goes on ($), but the program ends");
-      statement.text += trimmed(source_);
-    }
+    if (has_slash) go_on(statement);
     return true;
   }
   return false;
+}
+
+void Scanner::go_on(Statement& statement) {
+  while (statement.text.ends_with('$')) {
+    statement.text.pop_back();
+    if (!take_line()) refuse(statement.place, "the statement goes on ($), but the program ends");
+    statement.text += trimmed(source_);
+  }
 }
 
 /// All of a statement, over its lines.

@@ -28,6 +28,7 @@ class Scanner {
   };
 
   bool take_line();
+  void go_on(Statement& statement);
   void take_letters();
   [[nodiscard]] bool take_text(Statement& statement);
   void read_head(Statement& statement);

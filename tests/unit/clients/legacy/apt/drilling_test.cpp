@@ -87,6 +87,7 @@ TEST(AptCycle, ThatLeavesSomethingOpenIsRefused) {
   EXPECT_THAT(refusal("DRILL,DEPTH,5,CLEAR,1,STEP,1"), HasSubstr("does not peck"));
   EXPECT_THAT(refusal("DRILL,DEPTH,5,DEPTH,6,CLEAR,1"), HasSubstr("the depth is said twice"));
   EXPECT_THAT(refusal("DRILL,5,100,MMPM,2,3"), HasSubstr("no word before it tells"));
+  EXPECT_THAT(refusal("DRILL,5,2,100,MMPM"), StartsWith("5:15: which of the cycle's numbers"));
   EXPECT_THAT(refusal("DRILL,DEPTH,5,MMPR,.1,CLEAR,1"), HasSubstr("not by the turn of the spindle"));
   EXPECT_THAT(refusal("DRILL,DEPTH,5,CLEAR,1,ORIENT,90"), HasSubstr("ORIENT is not understood here"));
   EXPECT_THAT(refusal("DRILL,DEPTH,5,CLEAR,1,RETURN,0"), HasSubstr("RETURN,0 means a plane"));

@@ -120,6 +120,9 @@ TEST(AptMotion, InAnotherAxisSystemIsRefused) {
   EXPECT_THAT(refusal_of(program_of(head + "$$ 0 0 1 0\n" + head + "$$ 0 0 1 20\n")),
               StartsWith("14:1: another axis system"));
   EXPECT_EQ(refusal_of(program_of(head + "RAPID\n$$ 0 0 1 20\nGOTO/1,1,1")), "taken");  // no matrix: comments
+  const std::string creo = "$$-> CSYS / 1., 0., 0., 0., $\n 0., 1., 0., 0., $\n 0., 0., 1., ";
+  EXPECT_EQ(refusal_of(program_of(creo + "0.\n" + creo + "0.")), "taken");
+  EXPECT_THAT(refusal_of(program_of(creo + "0.\n" + creo + "7.")), StartsWith("8:1: another axis system"));
   EXPECT_THAT(refusal_of(program_of("ORIGIN/10,0,0")), HasSubstr("ORIGIN that is not 0,0,0"));
 }
 

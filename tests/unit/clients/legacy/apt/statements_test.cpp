@@ -57,6 +57,8 @@ TEST(AptStatement, OfTextIsItsLineWhateverItHolds) {
             "1:PARTNO'a plate, 5$';2:PPRINT'it costs $$ 5 / piece';3:REMARK'';");
   EXPECT_EQ(read("TPRINT/T1 End Mill,,$\n D 10\nTOOL PATH/A-1.b,TOOL,M_10"),
             "1:TPRINT'T1 End Mill,,D 10';3:TOOLPATH'A-1.b,TOOL,M_10';");
+  EXPECT_EQ(read("$$-> CSYS / 1., 0., $\n 2., 3.\nRAPID"), "1:$$'-> CSYS / 1., 0., 2., 3.';3:RAPID;");
+  EXPECT_EQ(read("$$ it costs 5 $\nRAPID"), "1:$$'it costs 5 $';2:RAPID;");
   EXPECT_EQ(read("END-OF-PATH"), "1:END-OF-PATH;");
 }
 
