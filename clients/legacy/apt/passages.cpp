@@ -70,7 +70,12 @@ void fill_in(Element& element, const std::map<std::string, Element>& values) {
 
 }  // namespace
 
-bool Passages::take(const Statement& statement) {
+bool Passages::take(Statement& statement) {
+  synonyms_.replace_in(statement);
+  return take_meant(statement);
+}
+
+bool Passages::take_meant(const Statement& statement) {
   if (!defining_.empty()) {
     define(statement);
     return true;
@@ -87,7 +92,9 @@ bool Passages::take_verb(const Statement& statement) {
   if (!statement.name.empty() && major != "MACRO")
     refuse(statement.place,
            fmt::format("{}: names of geometry are of an APT part program; import its CL file", statement.name));
-  if (major == "INDEX") {
+  if (major == "SYN") {
+    synonyms_.add(arguments);
+  } else if (major == "INDEX") {
     index(arguments);
   } else if (major == "COPY") {
     copy(arguments);
@@ -209,7 +216,7 @@ void Passages::run(const std::vector<Statement>& statements, std::size_t place) 
     if (++repeated_ > kMostRepeated || writer_.moves() > kMostMoves)
       refuse(place, "this repeats more than half a million statements, or makes more than two million moves");
     writer_.at_line(statement.line);
-    if (!take(statement)) refuse(statement.place, "FINI within what is repeated");
+    if (!take_meant(statement)) refuse(statement.place, "FINI within what is repeated");
   }
   --depth_;
 }

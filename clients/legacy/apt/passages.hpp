@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "clients/legacy/apt/interpreter.hpp"
+#include "clients/legacy/apt/statements/synonyms.hpp"
 
 namespace rmac::apt {
 
@@ -15,8 +16,9 @@ class Passages {
  public:
   Passages(Interpreter& interpreter, Writer& writer) : interpreter_(interpreter), writer_(writer) {}
 
-  /// Throws a Refusal. False where the program ends.
-  [[nodiscard]] bool take(const Statement& statement);
+  /// Of the program, in the words of the language or their synonyms (SYN). Throws a Refusal. False where the program
+  /// ends.
+  [[nodiscard]] bool take(Statement& statement);
   /// The text ends.
   void end(std::size_t place);
 
@@ -29,6 +31,7 @@ class Passages {
     int depth = 0;  ///< of calls and copies in which it began
   };
 
+  [[nodiscard]] bool take_meant(const Statement& statement);
   void begin(const std::string& name, Arguments& arguments, const Statement& statement);
   void define(const Statement& statement);
   void index(Arguments& arguments);
@@ -40,6 +43,7 @@ class Passages {
 
   Interpreter& interpreter_;
   Writer& writer_;
+  Synonyms synonyms_;
   std::map<std::string, Passage> named_;  ///< macros by their names, subprograms as #n
   std::map<int, Passage> indexed_;        ///< whose COPY has not come
   std::string defining_;                  ///< the one that is being read; empty without

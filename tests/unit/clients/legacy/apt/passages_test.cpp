@@ -86,5 +86,11 @@ TEST(AptSubprogram, IsCalledByItsNumber) {
   EXPECT_THAT(refusal_of(program_of("CALSUB/7")), StartsWith("5:1: there is no DEFSUB/7 before this"));
 }
 
+TEST(AptSynonym, StandsForAWordOfTheLanguage) {
+  EXPECT_EQ(ends_of("SYN/GT,GOTO,SP,SPINDL,RIGHT,CLW\nGT/1,2,3\nSP/100,RIGHT\ngt/4,5,6"), (Ends{{1, 2, 3}, {4, 5, 6}}));
+  EXPECT_THAT(refusal_of(program_of("SYN/GT")), StartsWith("5:1: SYN lacks the word that it stands for"));
+  EXPECT_THAT(refusal_of(program_of("SYN/GT,GOTO,GT,FROM")), StartsWith("5:13: SYN: GT stands for something already"));
+}
+
 }  // namespace
 }  // namespace rmac::apt
