@@ -29,11 +29,12 @@ namespace fs = std::filesystem;
 using namespace rmac;
 
 struct Words {
-  std::string file, output, dialect, unit, approach, reference, second_reference, circle_axis;
+  std::string file, output, dialect = "rs274", unit, approach, reference, second_reference;
   std::vector<std::string> offsets, outputs, inputs;
   bool ids_are_lines = false;
-  bool multax = false;
   rs274::Options options;
+  std::string circle_axis;
+  bool multax = false;
 
   [[nodiscard]] bool is_apt() const { return dialect == "apt"; }
 };
@@ -78,14 +79,6 @@ bool read_name(const std::string& text, std::map<int, std::string>& names) {
   return names.emplace(number, text.substr(equals + 1)).second;
 }
 
-/// The language, where it is not said: by the file's ending.
-std::string dialect_of(const std::string& file) {
-  static constexpr std::array<std::string_view, 3> kApt{".apt", ".cls", ".aptsource"};
-  std::string ending = fs::path(file).extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char letter) { return std::tolower(letter); });
-  return std::ranges::find(kApt, ending) != kApt.end() ? "apt" : "rs274";
-}
-
 /// What the command line parser leaves as text. What is wrong, or nothing.
 std::optional<std::string> finish(Words& words) {
   if (!legacy::is_feed(words.options.rapid_mm_min)) return "--rapid is 0.01 to 1 000 000 mm/min";
@@ -115,6 +108,14 @@ std::optional<std::string> finish(Words& words) {
   if (std::error_code none; words.output != "-" && words.file != "-" && fs::equivalent(words.output, words.file, none))
     return "the output would replace its source; name another with -o";
   return std::nullopt;
+}
+
+/// The language, where it is not said: by the file's ending.
+std::string dialect_of(const std::string& file) {
+  static constexpr std::array<std::string_view, 3> kApt{".apt", ".cls", ".aptsource"};
+  std::string ending = fs::path(file).extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  return std::ranges::find(kApt, ending) != kApt.end() ? "apt" : "rs274";
 }
 
 apt::Options apt_options(const Words& words) {
@@ -190,13 +191,16 @@ void declare(CLI::App& app, Words& words) {
   app.add_option("--output", words.outputs, "3=NAME: the machine's output that M62 to M65 P3 switch")
       ->allow_extra_args(false);
   app.add_option("--input", words.inputs, "3=NAME: the machine's input that M66 P3 waits for")->allow_extra_args(false);
+  app.add_flag("--ids-are-lines", words.ids_are_lines, "the id of each request is the line that it comes from");
+}
+
+void declare_apt(CLI::App& app, Words& words) {
   app.add_flag("--multax", words.multax, "tool axes of an apt program count though no MULTAX/ON says so");
   app.add_option(
          "--circle-axis", words.circle_axis,
          "which way arcs go about the axis of an apt program's CIRCLE, seen against it; unless given, clockwise "
          "of records of NX (eleven numbers), and refused of others without INDIRV")
       ->check(CLI::IsMember({"clockwise", "counter-clockwise"}));
-  app.add_flag("--ids-are-lines", words.ids_are_lines, "the id of each request is the line that it comes from");
 }
 
 /// The option that was given and is of another language than the file's, or nothing.
@@ -224,12 +228,13 @@ int main(int count, char** arguments) {
   app.name("rmac import");
   Words words;
   declare(app, words);
+  declare_apt(app, words);
   try {
     app.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  if (words.dialect.empty()) words.dialect = dialect_of(words.file);
+  if (app.count("--dialect") == 0) words.dialect = dialect_of(words.file);
   auto wrong = foreign_option(app, words);
   if (!wrong) wrong = finish(words);
   if (wrong) {

@@ -82,8 +82,9 @@ class Writer {
   void write_ends();
 
   Sink sink_;
+  std::string axis_here_ = "[0,0,1]", axis_there_ = "[0,0,1]";
   Ids ids_;
-  std::string out_, here_, there_, axis_here_ = "[0,0,1]", axis_there_ = "[0,0,1]";
+  std::string out_, here_, there_;
   std::size_t line_ = 0, requests_ = 0, moves_ = 0;
 };
 

@@ -26,13 +26,13 @@ struct Passed {
 };
 // Of a program of another control; `rmac import --help` says more.
 constexpr std::array<Passed, std::tuple_size_v<decltype(Source::values)>> kPassed{{
+    {"--circle-axis", "clockwise or counter-clockwise: which way arcs go about the axis of an APT program's CIRCLE"},
     {"--unit", "mm or inch, of an imported program without G20 and G21, or UNITS"},
     {"--rapid", "feed of an imported program's G0, or RAPID, mm/min"},
     {"--tolerance", "path tolerance of an imported program's G64 without P, mm"},
     {"--approach", "X,Y,Z in mm: where an imported program's tool tip goes first"},
     {"--reference-point", "X,Y,Z in mm: where G28, or GOHOME, of an imported program goes"},
     {"--second-reference-point", "the same of G30"},
-    {"--circle-axis", "clockwise or counter-clockwise: which way arcs go about the axis of an APT program's CIRCLE"},
 }};
 constexpr std::array<Passed, std::tuple_size_v<decltype(Source::repeated)>> kRepeated{{
     {"--offset", "G54=X,Y,Z in mm: where an imported program's work system is in the machine"},
