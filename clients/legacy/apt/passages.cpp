@@ -146,6 +146,7 @@ void Passages::index(Arguments& arguments) {
   const int number = arguments.integer("the number of a passage", kMostNumber);
   arguments.end();
   const Passage passage{.statements = {}, .parameters = {}, .place = arguments.place(), .depth = depth_};
+  if (indexed_.size() == kDeepest) refuse(arguments.place(), "too many INDEX whose COPY has not come");
   if (!indexed_.emplace(number, passage).second)
     refuse(arguments.place(), fmt::format("INDEX/{} has no COPY yet", number));
 }
@@ -209,12 +210,17 @@ void Passages::call_subprogram(Arguments& arguments) {
   run(found->second.statements, arguments.place());
 }
 
+void Passages::count_repeated(std::size_t place) {
+  if (++repeated_ > kMostRepeated || writer_.moves() > kMostMoves)
+    refuse(place, "this repeats more than half a million statements, or makes more than two million moves");
+}
+
 void Passages::run(const std::vector<Statement>& statements, std::size_t place) {
   if (depth_ == kDeepest) refuse(place, "calls and copies within each other are too many; a macro may call itself");
   ++depth_;
+  count_repeated(place);
   for (const Statement& statement : statements) {
-    if (++repeated_ > kMostRepeated || writer_.moves() > kMostMoves)
-      refuse(place, "this repeats more than half a million statements, or makes more than two million moves");
+    count_repeated(place);
     writer_.at_line(statement.line);
     if (!take_meant(statement)) refuse(statement.place, "FINI within what is repeated");
   }

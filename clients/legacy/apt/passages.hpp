@@ -38,6 +38,7 @@ class Passages {
   void copy(Arguments& arguments);
   void call(const Statement& statement);
   void call_subprogram(Arguments& arguments);
+  void count_repeated(std::size_t place);
   void run(const std::vector<Statement>& statements, std::size_t place);
   [[nodiscard]] bool take_verb(const Statement& statement);
 

@@ -13,9 +13,9 @@ constexpr int kMostTool = 9999;
 
 /// What may stand behind the tool's number, and means nothing to a machine that knows its tools.
 void pass_offsets(Arguments& arguments) {
-  static constexpr std::array<std::string_view, 13> kWords{"ADJUST", "OSETNO", "OFFSET", "LENGTH", "IN",
-                                                           "MILL",   "DRILL",  "NOTE",   "AUTO",   "HOLDER",
-                                                           "HEAD",   "PLUS",   "SETOOL"};
+  static constexpr std::array<std::string_view, 14> kWords{"ADJUST", "ZOFF", "OSETNO", "OFFSET", "LENGTH",
+                                                           "IN",     "MILL", "DRILL",  "NOTE",   "AUTO",
+                                                           "HOLDER", "HEAD", "PLUS",   "SETOOL"};
   while (!arguments.done()) {
     if (arguments.has_number()) {
       static_cast<void>(arguments.number("a number"));

@@ -19,15 +19,16 @@ std::optional<double> take_feed_unit(Arguments& arguments, const Coordinates& co
   return std::nullopt;
 }
 
-double feed_of(Arguments& arguments, const Coordinates& coordinates) {
-  auto unit = take_feed_unit(arguments, coordinates);
+double feed_of(Arguments& arguments, const Coordinates& coordinates, std::optional<double>& unit) {
+  auto said = take_feed_unit(arguments, coordinates);
   const double value = arguments.number("a feed");
   const std::size_t place = arguments.last_place();
-  if (!unit) unit = take_feed_unit(arguments, coordinates);
-  if (!unit) unit = coordinates.unit_mm(place);
+  if (!said) said = take_feed_unit(arguments, coordinates);
   arguments.end();
-  if (!legacy::is_feed(value * *unit)) refuse(place, "the feed is not within 0.01 and 1 000 000 mm/min");
-  return value * *unit;
+  if (said) unit = said;
+  const double mm_min = value * (unit ? *unit : coordinates.unit_mm(place));
+  if (!legacy::is_feed(mm_min)) refuse(place, "the feed is not within 0.01 and 1 000 000 mm/min");
+  return mm_min;
 }
 
 }  // namespace rmac::apt

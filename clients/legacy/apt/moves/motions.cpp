@@ -72,7 +72,7 @@ void Motions::set_rapid(Arguments& arguments) {
 }
 
 void Motions::set_feed(Arguments& arguments) {
-  const double feed_mm_min = feed_of(arguments, coordinates_);
+  const double feed_mm_min = feed_of(arguments, coordinates_, feed_unit_);
   if (rapid_) refuse(arguments.place(), "FEDRAT between RAPID and the motion that is to be rapid: which one holds?");
   mover_.set_feed(feed_mm_min);
 }

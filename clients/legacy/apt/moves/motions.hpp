@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "clients/legacy/apt/moves/arcs.hpp"
 #include "clients/legacy/apt/moves/drilling.hpp"
 
@@ -42,6 +44,7 @@ class Motions {
   Mover& mover_;
   Arcs arcs_;
   Drilling drilling_;
+  std::optional<double> feed_unit_;  ///< of FEDRAT, in mm/min, where one was said
   bool rapid_ = false;
 };
 

@@ -184,6 +184,9 @@ void Scanner::read_head(Statement& statement) {
   if (here() == '/') {
     ++at_;
     read_elements(statement.elements, 0);
+    // `RAPID/` is RAPID.
+    if (statement.elements.size() == 1 && statement.elements.front().kind == Element::Kind::Empty)
+      statement.elements.clear();
   }
   if (at_ < letters_.size()) {
     refuse(place(), fmt::format("{} is not understood here; elements of a statement have commas between them, and a "

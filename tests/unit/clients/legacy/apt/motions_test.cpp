@@ -42,6 +42,9 @@ TEST(AptMotion, HasItsFeedInEveryFormThatCamSystemsWrite) {
   EXPECT_EQ(feed_of_line("FEDRAT/250.,MMPM"), 250);
   EXPECT_EQ(feed_of_line("FEDRAT/10,IPM"), 254);
   EXPECT_EQ(feed_of_line("FEDRAT/10,PERMIN"), 10);
+  EXPECT_EQ(feed_of_line("FEDRAT/IPM,1\nFEDRAT/10"), 254);
+  EXPECT_EQ(imported("UNITS/INCH\nRAPID\nGOTO/0,0,0\nFEDRAT/10\nGOTO/1,0,0\nFINI").requests.at(1)["params"]["Feedrate"],
+            254);
   EXPECT_EQ(feed_of_line("UNITS/INCHES\nFEDRAT/10,PERMIN\nUNITS/MM"), 254);
   EXPECT_EQ(feed_of_line("UNITS/INCHES\nFEDRAT/100,MMPM\nUNITS/MM"), 100);
   for (const auto* line : {"FEDRAT/.1,MMPR", "FEDRAT/IPR,.01", "FEDRAT/PERREV,.1"})

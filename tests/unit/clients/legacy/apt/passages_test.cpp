@@ -57,6 +57,11 @@ TEST(AptCopy, ThatIsNotWholeIsRefused) {
   EXPECT_THAT(refusal_of(program_of("INDEX/1\nINDEX/1")), HasSubstr("has no COPY yet"));
   EXPECT_THAT(refusal_of(program_of("INDEX/1\nCOPY/1,MODIFY,2")), HasSubstr("taken with SAME, TRANSL"));
   EXPECT_THAT(refusal_of(program_of("INDEX/1\nCOPY/1,SAME,1.5")), HasSubstr("whole number"));
+  std::string open, empty;
+  for (int i = 1; i < 10; ++i) open += fmt::format("INDEX/{}\n", i);
+  EXPECT_THAT(refusal_of(program_of(open)), StartsWith("13:1: too many INDEX"));
+  for (int i = 1; i < 8; ++i) empty = fmt::format("INDEX/{0}\n{1}COPY/{0},SAME,9999\n", i, empty);
+  EXPECT_THAT(refusal_of(program_of(empty)), HasSubstr("repeats more than half a million statements"));
   std::string nested = "GOTO/1,0,0\nGOTO/0,0,0\n";
   for (int i = 1; i < 5; ++i) nested = fmt::format("INDEX/{0}\n{1}COPY/{0},SAME,9999\n", i, nested);
   EXPECT_THAT(refusal_of(program_of(nested)), HasSubstr("repeats more than half a million statements"));

@@ -28,6 +28,7 @@ std::string read(const std::string& text) {
 
 TEST(AptStatement, HasItsMajorWordItsWordsAndNumbers) {
   EXPECT_EQ(read("GOTO/1,2,-3"), "1:GOTO 1 2 -3;");
+  EXPECT_EQ(read("RAPID/\nGOTO/1,,2"), "1:RAPID;2:GOTO 1  2;");
   EXPECT_EQ(read("RAPID\nSPINDL/RPM,2000,CLW\n"), "1:RAPID;2:SPINDL RPM 2000 CLW;");
   EXPECT_EQ(read("TLON,GOFWD/(CIRCLE/0,0,0,5),ON"), "1:TLON,GOFWD CIRCLE ON;");
   EXPECT_EQ(read("TOOLNO/1,,,2"), "1:TOOLNO 1   2;");
