@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -17,6 +18,7 @@
 #include <tuple>
 #include <vector>
 
+#include "clients/legacy/apt/import.hpp"
 #include "clients/legacy/program/output_file.hpp"
 #include "clients/legacy/program/writer.hpp"
 #include "clients/legacy/rs274/import.hpp"
@@ -31,6 +33,10 @@ struct Words {
   std::vector<std::string> offsets, outputs, inputs, diameters;
   bool ids_are_lines = false;
   rs274::Options options;
+  std::string circle_axis;
+  bool multax = false;
+
+  [[nodiscard]] bool is_apt() const { return dialect == "apt"; }
 };
 
 int fail(const std::string& message) {
@@ -122,6 +128,29 @@ std::optional<std::string> finish(Words& words) {
   return std::nullopt;
 }
 
+/// The language, where it is not said: by the file's ending.
+std::string dialect_of(const std::string& file) {
+  static constexpr std::array<std::string_view, 3> kApt{".apt", ".cls", ".aptsource"};
+  std::string ending = fs::path(file).extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  return std::ranges::find(kApt, ending) != kApt.end() ? "apt" : "rs274";
+}
+
+apt::Options apt_options(const Words& words) {
+  apt::Options options;
+  options.rapid_mm_min = words.options.rapid_mm_min;
+  options.unit_mm = words.options.unit_mm;
+  options.approach_mm = words.options.approach_mm;
+  options.reference_mm = words.options.reference_mm;
+  options.multax = words.multax;
+  if (!words.circle_axis.empty()) {
+    options.circle_axis =
+        words.circle_axis == "clockwise" ? apt::CircleAxis::Clockwise : apt::CircleAxis::CounterClockwise;
+  }
+  options.ids = words.options.ids;
+  return options;
+}
+
 std::optional<std::string> read_file(const std::string& name) {
   std::ifstream opened;
   if (name != "-") {
@@ -140,8 +169,9 @@ int import_file(const Words& words) {
   if (!text) return fail(words.file + ": cannot be read");
   legacy::OutputFile output(words.output);
   if (!output.open()) return fail(words.output + ": cannot be written");
-  const auto summary =
-      rs274::import_program(*text, words.options, [&output](std::string_view part) { output.write(part); });
+  const auto sink = [&output](std::string_view part) { output.write(part); };
+  const auto summary = words.is_apt() ? apt::import_program(*text, apt_options(words), sink)
+                                      : rs274::import_program(*text, words.options, sink);
   if (!summary) {
     const auto& error = summary.error();
     return fail(fmt::format("{}:{}:{}: {}", words.file == "-" ? "standard input" : words.file, error.line, error.column,
@@ -155,24 +185,26 @@ int import_file(const Words& words) {
 void declare(CLI::App& app, Words& words) {
   app.add_option("FILE", words.file, "the program, - for standard input")->required();
   app.add_option("-o", words.output, "the .rmac file, - for standard output; FILE with the ending .rmac unless given");
-  app.add_option("--dialect", words.dialect, "which control's language it is")
-      ->check(CLI::IsMember({"rs274"}))
-      ->capture_default_str();
+  app.add_option("--dialect", words.dialect,
+                 "which language it is; unless given, apt of .apt, .cls and .aptsource, and rs274 of the others")
+      ->check(CLI::IsMember({"rs274", "apt"}));
   app.add_flag("--block-delete", words.options.block_delete, "leave out blocks that begin with /");
-  app.add_option("--unit", words.unit, "unit of a program without G20 and G21")->check(CLI::IsMember({"mm", "inch"}));
-  app.add_option("--rapid", words.options.rapid_mm_min, "feed of G0, mm/min; at most the machine's MaxFeedrate")
+  app.add_option("--unit", words.unit, "unit of a program without G20 and G21, or UNITS")
+      ->check(CLI::IsMember({"mm", "inch"}));
+  app.add_option("--rapid", words.options.rapid_mm_min,
+                 "feed of G0 and RAPID, mm/min; at most the machine's MaxFeedrate")
       ->capture_default_str();
   app.add_option("--tolerance", words.options.tolerance_mm, "path tolerance of G64 without P, mm");
   app.add_option("--approach", words.approach,
                  "X,Y,Z in mm: where the tool tip goes straight, at rapid, when the program begins, after a tool "
                  "change and a change of unknown "
-                 "offsets, unless its next move is a G0 to X, Y and Z");
+                 "offsets, unless its next move is a G0 to X, Y and Z, or RAPID and a GOTO");
   app.add_flag("--assume-g43", words.options.assume_g43, "the tool's length counts from M6 on, though no G43 says so");
   app.add_option("--offset", words.offsets,
                  "G54=X,Y,Z in mm: where a work system is in the machine; may be given for each")
       ->allow_extra_args(false);
   app.add_option("--reference-point", words.reference,
-                 "X,Y,Z in mm: where G28 takes the tool tip, in the coordinates of the part");
+                 "X,Y,Z in mm: where G28, or GOHOME, takes the tool tip, in the coordinates of the part");
   app.add_option("--second-reference-point", words.second_reference, "the same of G30");
   app.add_option("--output", words.outputs, "3=NAME: the machine's output that M62 to M65 P3 switch")
       ->allow_extra_args(false);
@@ -186,6 +218,32 @@ void declare(CLI::App& app, Words& words) {
   app.add_flag("--ids-are-lines", words.ids_are_lines, "the id of each request is the line that it comes from");
 }
 
+void declare_apt(CLI::App& app, Words& words) {
+  app.add_flag("--multax", words.multax, "tool axes of an apt program count though no MULTAX/ON says so");
+  app.add_option(
+         "--circle-axis", words.circle_axis,
+         "which way arcs go about the axis of an apt program's CIRCLE, seen against it; unless given, clockwise "
+         "of records of NX (eleven numbers), and refused of others without INDIRV")
+      ->check(CLI::IsMember({"clockwise", "counter-clockwise"}));
+}
+
+/// The option that was given and is of another language than the file's, or nothing.
+std::optional<std::string> foreign_option(const CLI::App& app, const Words& words) {
+  static constexpr std::array<const char*, 9> kRs274{
+      "--block-delete",           "--tolerance",    "--assume-g43",   "--offset", "--output", "--input",
+      "--second-reference-point", "--output-limit", "--tool-diameter"};
+  static constexpr std::array<const char*, 2> kApt{"--multax", "--circle-axis"};
+  const auto given = [&app](const char* name) { return app.count(name) > 0; };
+  const auto find = [&given](const auto& names) -> std::optional<std::string> {
+    const auto* found = std::ranges::find_if(names, given);
+    return found == names.end() ? std::nullopt : std::optional<std::string>(*found);
+  };
+  const auto found = words.is_apt() ? find(kRs274) : find(kApt);
+  if (!found) return std::nullopt;
+  return fmt::format("{} is not of {}, which {} is taken as; --dialect says otherwise", *found, words.dialect,
+                     words.file);
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -195,12 +253,16 @@ int main(int count, char** arguments) {
   app.name("rmac import");
   Words words;
   declare(app, words);
+  declare_apt(app, words);
   try {
     app.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  if (const auto wrong = finish(words)) {
+  if (app.count("--dialect") == 0) words.dialect = dialect_of(words.file);
+  auto wrong = foreign_option(app, words);
+  if (!wrong) wrong = finish(words);
+  if (wrong) {
     static_cast<void>(fail(*wrong));
     return 2;
   }

@@ -13,15 +13,19 @@ namespace {
 constexpr std::size_t kFlush_bytes = 1U << 20U;
 /// What is written of a length: nobody machines a tenth of a nanometre, and sums of decimals have their digits back.
 constexpr double kPerMm = 1e7;
-constexpr std::array<std::string_view, 3> kAxes{"[1,0,0]", "[0,1,0]", "[0,0,1]"};
-constexpr std::string_view kToolAxis = kAxes[2];
+/// Of a component of a direction: a thousandth of that a metre away.
+constexpr double kPerUnit = 1e10;
 
-double rounded(double value) {
-  return std::round(value * kPerMm) / kPerMm + 0.0;  // no minus zero
+double rounded(double value, double per_unit = kPerMm) {
+  return std::round(value * per_unit) / per_unit + 0.0;  // no minus zero
 }
 
 void write_point(std::string& text, const Point& point) {
   fmt::format_to(std::back_inserter(text), "[{},{},{}]", rounded(point[0]), rounded(point[1]), rounded(point[2]));
+}
+
+std::string direction(const Point& axis) {
+  return fmt::format("[{},{},{}]", rounded(axis[0], kPerUnit), rounded(axis[1], kPerUnit), rounded(axis[2], kPerUnit));
 }
 
 void write_frame(std::string& text, std::string_view point, std::string_view axis) {
@@ -62,6 +66,20 @@ void Writer::flush() {
   out_.clear();
 }
 
+void Writer::tool_axis(const Point& axis) {
+  axis_there_ = direction(axis);
+}
+
+/// From where the move before ended to `there_`.
+void Writer::write_ends() {
+  out_.append(R"("StartPoint":)");
+  write_frame(out_, here_, axis_here_);
+  out_.append(R"(,"EndPoint":)");
+  write_frame(out_, there_, axis_there_);
+  here_.swap(there_);
+  axis_here_ = axis_there_;
+}
+
 void Writer::begin(const Point& start) {
   here_.clear();
   write_point(here_, start);
@@ -71,7 +89,8 @@ void Writer::rapid(const Point& end) {
   begin(end);
   open_move("MoveToPathTarget");
   out_.append(R"("TargetFrame":)");
-  write_frame(out_, here_, kToolAxis);
+  write_frame(out_, here_, axis_there_);
+  axis_here_ = axis_there_;
   close();
   ++moves_;
 }
@@ -79,14 +98,10 @@ void Writer::rapid(const Point& end) {
 void Writer::line(const Point& end) {
   there_.clear();
   write_point(there_, end);
-  if (there_ == here_) return;  // no way at all
+  if (there_ == here_ && axis_there_ == axis_here_) return;  // no way at all
   open_move("MoveAlongLine");
-  out_.append(R"("StartPoint":)");
-  write_frame(out_, here_, kToolAxis);
-  out_.append(R"(,"EndPoint":)");
-  write_frame(out_, there_, kToolAxis);
+  write_ends();
   close();
-  here_.swap(there_);
   ++moves_;
 }
 
@@ -96,16 +111,13 @@ void Writer::arc(const Arc& arc) {
   open_move("MoveAlongArc");
   fmt::format_to(std::back_inserter(out_), R"("RotSign":{},"Closed":{},"CenterPoint":)", arc.counter_clockwise ? 1 : -1,
                  arc.closed);
-  write_frame(out_, there_, kAxes.at(arc.normal));
+  write_frame(out_, there_, direction(arc.axis));
   there_.clear();
   write_point(there_, arc.end);
-  out_.append(R"(,"StartPoint":)");
-  write_frame(out_, here_, kToolAxis);
-  out_.append(R"(,"EndPoint":)");
-  write_frame(out_, there_, kToolAxis);
+  out_ += ',';
+  write_ends();
   if (arc.more_turns > 0) fmt::format_to(std::back_inserter(out_), R"(,"Turns":{})", arc.more_turns);
   close();
-  here_.swap(there_);
   ++moves_;
 }
 

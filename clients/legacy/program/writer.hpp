@@ -19,9 +19,14 @@ inline constexpr double kFarthest_mm = 1e6;
 /// X, Y, Z in mm.
 using Point = std::array<double, 3>;
 
+/// The unit vector along X, Y or Z.
+[[nodiscard]] constexpr Point unit_axis(std::size_t axis) noexcept {
+  return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
+}
+
 struct Arc {
   Point centre{}, end{};
-  std::size_t normal = 2;  ///< axis about which it turns
+  Point axis = unit_axis(2);  ///< about which it turns, of unit length
   bool counter_clockwise = false, closed = false;
   int more_turns = 0;
 };
@@ -47,6 +52,9 @@ class Writer {
 
   /// Positioning, from rest to rest.
   void rapid(const Point& end);
+  /// Of the end of the moves that follow: from the part towards the spindle, of unit length. Z unless it is said; along
+  /// a line and an arc it turns from that of the move before.
+  void tool_axis(const Point& axis);
   /// Lines and arcs begin where the move before them ended, or where begin() says.
   void begin(const Point& start);
   void line(const Point& end);
@@ -73,8 +81,10 @@ class Writer {
   void open(std::string_view method);
   void open_move(std::string_view method);
   void close();
+  void write_ends();
 
   Sink sink_;
+  std::string axis_here_ = "[0,0,1]", axis_there_ = "[0,0,1]";
   Ids ids_;
   std::string out_, here_, there_;
   std::size_t line_ = 0, requests_ = 0, moves_ = 0, flushed_ = 0;

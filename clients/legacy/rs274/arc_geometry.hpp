@@ -1,30 +1,9 @@
 #pragma once
 
-#include <cstddef>
-#include <optional>
-
-#include "clients/legacy/program/writer.hpp"
+#include "clients/legacy/program/arc_geometry.hpp"
 
 namespace rmac::rs274 {
 
-using legacy::Arc, legacy::Point, legacy::Writer;
-
-/// The plane of arcs and the axis along which holes are drilled: G17 is {0, 1, 2}, G18 {2, 0, 1}, G19 {1, 2, 0}, so
-/// that counter-clockwise turns the first axis towards the second.
-struct Plane {
-  std::size_t first = 0, second = 1, normal = 2;
-};
-
-/// Radius format: the centre of an arc of this radius (negative: the longer way). Throws a Refusal at `place` where
-/// there is none. The normal coordinate is the start's.
-[[nodiscard]] Point centre_by_radius(const Point& start, const Point& end, const Plane& plane, bool counter_clockwise,
-                                     double radius, std::size_t place);
-
-/// Centre format: the arc that is written for one whose radii differ, because programs round; by more than rs274 allows
-/// it is refused. Its centre is moved to be evenly far from both ends where that keeps to the circle. Elsewhere the
-/// arc keeps its centre and ends on its own circle, and a line to the end that was programmed is to follow; none where
-/// the arc is so short that the line is all.
-[[nodiscard]] std::optional<Arc> arc_about(const Point& start, const Arc& written, const Plane& plane,
-                                           std::size_t place);
+using legacy::Arc, legacy::Plane, legacy::Point, legacy::Writer;
 
 }  // namespace rmac::rs274

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clients/legacy/program/pecking.hpp"
+
 namespace rmac::rs274 {
 
 namespace {
@@ -22,12 +24,8 @@ bool dwells(int code) {
   return code == kDwelling || code == kStopping || code == kBoring;
 }
 
-/// How far above the depth that was reached a peck goes on from rapid to feed: LinuxCNC's 0.010 inch.
-constexpr double kBackOff_mm = 0.254;
-/// A last peck of less than this part of one is none.
-constexpr double kSameDepth = 1e-9;
-/// Of one block, pecks and repeats: what asks for more is a slip of units.
-constexpr int kMostRepeats = 10'000;
+/// Of one block.
+constexpr int kMostRepeats = legacy::kMostPecks;
 
 int repeats_of(Block& block) {
   const Word* word = block.find('L');
@@ -92,22 +90,18 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
   }
 }
 
-int Drilling::pecks_to(double retract, double bottom) const {
-  return static_cast<int>(std::max(1.0, std::ceil((retract - bottom) / *peck_ - kSameDepth)));
-}
-
 void Drilling::peck(const Point& above, double bottom, int code, std::size_t place) {
   const std::size_t normal = modes_.plane.normal;
   const double retract = above.at(normal);
   // By number: a peck may be too small to change the depth that it is taken from.
-  const int count = pecks_to(retract, bottom);
+  const int count = legacy::pecks_to(retract - bottom, *peck_);
   Point at = above;
   for (int number = 1; number < count; ++number) {
     const double depth = retract - number * *peck_;
     at.at(normal) = depth;
     mover_.line(at, place);
     if (code == kPecking) mover_.rapid(above, place);
-    at.at(normal) = std::min(depth + kBackOff_mm, retract);
+    at.at(normal) = std::min(depth + legacy::kPeckBackOff_mm, retract);
     mover_.rapid(at, place);
   }
 }

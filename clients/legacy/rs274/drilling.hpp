@@ -23,7 +23,6 @@ class Drilling {
  private:
   void read(Block& block, int code, std::size_t place);
   [[nodiscard]] double sticky(Block& block, char letter, std::optional<double>& value, std::size_t place);
-  [[nodiscard]] int pecks_to(double retract, double bottom) const;
   void peck(const Point& above, double bottom, int code, std::size_t place);
   void hole(const Point& above, double bottom, double clear, int code, std::size_t place);
 

@@ -119,7 +119,7 @@ void Motions::arc(Block& block, bool counter_clockwise, std::size_t place) {
   const Plane& plane = modes_.plane;
   const Point start = this->start(place);
   const Point end = end_of(block, place);
-  Arc arc{.end = end, .normal = plane.normal, .counter_clockwise = counter_clockwise};
+  Arc arc{.end = end, .axis = legacy::unit_axis(plane.normal), .counter_clockwise = counter_clockwise};
   if (const Word* turns = block.find('P')) arc.more_turns = turns_of(*turns) - 1;
   if (const Word* radius = block.find('R')) {
     if (block.has_any("IJK")) refuse(radius->place, "an arc has a radius or a centre, not both");

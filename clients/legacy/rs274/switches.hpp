@@ -1,8 +1,8 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
+#include "clients/legacy/program/machine_switches.hpp"
 #include "clients/legacy/rs274/modes.hpp"
 
 namespace rmac::rs274 {
@@ -10,7 +10,7 @@ namespace rmac::rs274 {
 /// Spindle, coolant and tool: what a program switches between its moves.
 class Switches {
  public:
-  explicit Switches(Writer& writer) : writer_(writer) {}
+  explicit Switches(Writer& writer) : writer_(writer), machine_(writer) {}
 
   void set_speed(const Word& word);
   void select_tool(const Word& word);
@@ -18,26 +18,24 @@ class Switches {
   void change_tool(std::size_t place);
   /// M3, M4, M5.
   void turn_spindle(int code);
-  [[nodiscard]] bool spindle_turns() const noexcept { return direction_ != 0 && rpm_ != 0; }
+  [[nodiscard]] bool spindle_turns() const noexcept { return machine_.spindle_turns(); }
   /// Stops the spindle where a program does not say so, and lets it turn again.
-  void hold_spindle();
-  void release_spindle();
+  void hold_spindle() { machine_.hold_spindle(); }
+  void release_spindle() { machine_.release_spindle(); }
   /// M7, M8, M9 of one block.
   void switch_coolant(const Block& block);
   /// Writes what of them the block changed. Several calls are one request.
-  void write();
+  void write() { machine_.write(); }
   /// The end of the program: all off.
-  void off();
+  void off() { machine_.off(); }
 
   [[nodiscard]] std::optional<int> tool() const noexcept { return tool_; }
-  [[nodiscard]] double rpm() const noexcept { return rpm_; }
+  [[nodiscard]] double rpm() const noexcept { return machine_.rpm(); }
 
  private:
   Writer& writer_;
+  legacy::MachineSwitches machine_;
   std::optional<int> selected_, tool_;
-  double rpm_ = 0, turning_rpm_ = 0;
-  int direction_ = 0, held_ = 0;                                            ///< 1: clockwise
-  bool mist_ = false, flood_ = false, mist_on_ = false, flood_on_ = false;  ///< wanted, and written
 };
 
 }  // namespace rmac::rs274

@@ -26,11 +26,12 @@ struct Passed {
 };
 // Of a program of another control; `rmac import --help` says more.
 constexpr std::array<Passed, std::tuple_size_v<decltype(Source::values)>> kPassed{{
-    {"--unit", "mm or inch, of an imported program without G20 and G21"},
-    {"--rapid", "feed of an imported program's G0, mm/min"},
+    {"--circle-axis", "clockwise or counter-clockwise: which way arcs go about the axis of an APT program's CIRCLE"},
+    {"--unit", "mm or inch, of an imported program without G20 and G21, or UNITS"},
+    {"--rapid", "feed of an imported program's G0, or RAPID, mm/min"},
     {"--tolerance", "path tolerance of an imported program's G64 without P, mm"},
     {"--approach", "X,Y,Z in mm: where an imported program's tool tip goes first"},
-    {"--reference-point", "X,Y,Z in mm: where G28 of an imported program goes"},
+    {"--reference-point", "X,Y,Z in mm: where G28, or GOHOME, of an imported program goes"},
     {"--second-reference-point", "the same of G30"},
     {"--output-limit", "MB of .rmac: an imported program with loops that becomes more does not end"},
 }};
@@ -41,14 +42,20 @@ constexpr std::array<Passed, std::tuple_size_v<decltype(Source::repeated)>> kRep
     {"--tool-diameter", "3=10: the diameter of tool 3 in mm, for G41 and G42 of an imported program"},
 }};
 
+struct Ending {
+  std::string_view ending;
+  const char* dialect;
+};
+constexpr std::array<Ending, 6> kEndings{
+    {{".ngc", "rs274"}, {".nc", "rs274"}, {".tap", "rs274"}, {".apt", "apt"}, {".cls", "apt"}, {".aptsource", "apt"}}};
+
 /// The language of a file by its ending; empty where it is `.rmac`, none where the ending tells nothing.
 std::optional<std::string> dialect_of(const std::string& file) {
   std::string ending = fs::path(file).extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char letter) { return std::tolower(letter); });
   if (file == "-" || ending.empty() || ending == ".rmac") return "";
-  static constexpr std::array<std::string_view, 3> kRs274{".ngc", ".nc", ".tap"};
-  if (std::ranges::find(kRs274, ending) != kRs274.end()) return "rs274";
-  return std::nullopt;
+  const auto* found = std::ranges::find(kEndings, ending, &Ending::ending);
+  return found == kEndings.end() ? std::nullopt : std::optional<std::string>(found->dialect);
 }
 
 std::vector<std::string> importer_words(const Source& source, const std::string& dialect) {
@@ -61,6 +68,7 @@ std::vector<std::string> importer_words(const Source& source, const std::string&
   }
   if (source.assume_g43) words.emplace_back("--assume-g43");
   if (source.block_delete) words.emplace_back("--block-delete");
+  if (source.multax) words.emplace_back("--multax");
   words.emplace_back("--");
   words.push_back(source.file);
   return words;
@@ -96,10 +104,12 @@ std::string beside_rmac(const char* program) {
 
 void declare_source(Command& command, Source& source) {
   command
-      .option("FILE", &source.file,
-              "the .rmac file, - for standard input; .ngc, .nc and .tap (RS274/NGC) are imported first")
+      .option(
+          "FILE", &source.file,
+          "the .rmac file, - for standard input; .ngc, .nc and .tap (RS274/NGC), .apt, .cls and .aptsource (APT) are "
+          "imported first")
       .required();
-  command.option("--dialect", &source.dialect, "whose language FILE is in, whatever its ending: rs274");
+  command.option("--dialect", &source.dialect, "whose language FILE is in, whatever its ending: rs274 or apt");
   for (std::size_t i = 0; i < kPassed.size(); ++i) {
     command.option(kPassed.at(i).name, &source.values.at(i), kPassed.at(i).meaning);
   }
@@ -108,20 +118,21 @@ void declare_source(Command& command, Source& source) {
   }
   command.flag("--assume-g43", &source.assume_g43, "an imported program's tool length counts from M6 on");
   command.flag("--block-delete", &source.block_delete, "leave out an imported program's blocks that begin with /");
+  command.flag("--multax", &source.multax, "an APT program's tool axes count though no MULTAX/ON says so");
 }
 
 Result<Program> read_source(const Source& source) {
   const auto dialect = source.dialect.empty() ? dialect_of(source.file) : std::optional(source.dialect);
   if (!dialect) {
     return fail(
-        fmt::format("{}: its ending tells no language; .rmac is ours, .ngc, .nc and .tap are RS274/NGC, and of "
-                    "another file --dialect says it",
+        fmt::format("{}: its ending tells no language; .rmac is ours, .ngc, .nc and .tap are RS274/NGC, .apt, "
+                    ".cls and .aptsource are APT, and of another file --dialect says it",
                     source.file));
   }
   if (!dialect->empty()) return import(source, *dialect);
   const auto given = [](const auto& value) { return !value.empty(); };
-  const bool told = source.assume_g43 || source.block_delete || std::ranges::any_of(source.values, given) ||
-                    std::ranges::any_of(source.repeated, given);
+  const bool told = source.assume_g43 || source.block_delete || source.multax ||
+                    std::ranges::any_of(source.values, given) || std::ranges::any_of(source.repeated, given);
   if (told)
     return fail(fmt::format("{}: is taken as .rmac, and has no options of an import; name its --dialect", source.file));
   return read_program(source.file);

@@ -1,13 +1,13 @@
-#include "clients/legacy/rs274/arc_geometry.hpp"
+#include "clients/legacy/program/arc_geometry.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "clients/legacy/rs274/blocks/refusal.hpp"
+#include "clients/legacy/program/refusal.hpp"
 
-namespace rmac::rs274 {
+namespace rmac::legacy {
 
 namespace {
 
@@ -41,10 +41,10 @@ void require_radii(double to_start, double to_end, std::size_t place) {
   if (to_start <= kClosed_mm) refuse(place, "the arc's centre is where it begins");
   const double off = std::abs(to_start - to_end);
   if (off <= kMostOff_mm && (off <= kOff_mm || off <= kRelative * to_start)) return;
-  refuse(
-      place,
-      fmt::format("the arc's centre is {:.6g} mm from its start and {:.6g} mm from its end; correct I, J, K or the end",
-                  to_start, to_end));
+  refuse(place,
+         fmt::format(
+             "the arc's centre is {:.6g} mm from its start and {:.6g} mm from its end; correct the centre or the end",
+             to_start, to_end));
 }
 
 /// As rs274 has it, by the angles about the written centre alone: more than none, at most a little more than a turn.
@@ -123,4 +123,4 @@ std::optional<Arc> arc_about(const Point& start, const Arc& written, const Plane
   return on_circle(start, written, plane, sweep);
 }
 
-}  // namespace rmac::rs274
+}  // namespace rmac::legacy
