@@ -50,7 +50,10 @@ Checked MachineRig::cycle() {
   mechanism_->loop->cycle(command, report_);
   ++cycles_;
   if (report_.fault.kind == ServoFault::Kind::None) return {};
-  return fault("stability", gateway::describe(report_.fault, mechanism_.get()));
+  return fault("stability",
+               "on the model of its axes, where encoders are sound and nothing is in the way, which leaves "
+               "the gains (docs/servo.md, Tuning an axis): " +
+                   gateway::describe(report_.fault, mechanism_.get()));
 }
 
 tl::unexpected<CounterExample> MachineRig::fault(const char* check, std::string what) const {

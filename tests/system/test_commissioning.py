@@ -184,7 +184,7 @@ class Commands(unittest.TestCase):
                 appliance = self.bending(hz, {}, heavier, load=False)
                 refused = appliance.rmac("load", "DMACXYZ")
                 self.assertEqual(refused.returncode, 1)
-                self.assertIn("stability", refused.stderr)
+                self.assertIn("stability: on the model of its axes, where encoders are sound", refused.stderr)
                 self.assertIn("8, and speed up at a quarter", self.rmac(appliance, "load", "DMACXYZ", "--soften", "8"))
                 client = appliance.client()
                 for joint in joints:

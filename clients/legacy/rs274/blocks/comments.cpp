@@ -12,12 +12,9 @@ namespace rmac::rs274 {
 
 namespace {
 
-/// What stands before the comma of a comment, without spaces and in capitals; nothing where it has no comma.
-std::string word_before_comma(std::string_view comment) {
-  const std::size_t comma = comment.find(',');
+std::string capitals(std::string_view text) {
   std::string result;
-  if (comma == std::string_view::npos) return result;
-  for (const char letter : comment.substr(0, comma)) {
+  for (const char letter : text) {
     if (letter != ' ' && letter != '\t')
       result += letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 'a' + 'A') : letter;
   }
@@ -27,19 +24,20 @@ std::string word_before_comma(std::string_view comment) {
 }  // namespace
 
 void refuse_active_comments(const Line& line) {
-  static constexpr std::array<std::string_view, 8> kWords{"DEBUG",     "PRINT",    "LOG",       "LOGOPEN",
-                                                          "LOGAPPEND", "LOGCLOSE", "PROBEOPEN", "PROBECLOSE"};
+  static constexpr std::array<std::string_view, 2> kWords{"PROBEOPEN", "PROBECLOSE"};
   for (const std::string_view comment : line.comments()) {
-    const std::string word = word_before_comma(comment);
-    if (std::ranges::find(kWords, word) != kWords.end())
+    const std::string text = capitals(comment);
+    const auto begins = [&text](std::string_view word) { return text.starts_with(word); };
+    if (const auto* const word = std::ranges::find_if(kWords, begins); word != kWords.end())
       refuse(line.text().find(Line::kComment),
-             fmt::format("({}, … has a control do something that no .rmac can; take it out", word));
+             fmt::format("({} has a control record what it probes; take it out", *word));
   }
 }
 
 std::optional<std::string_view> message_of(std::string_view comment) {
-  if (word_before_comma(comment) != "MSG") return std::nullopt;
-  return comment.substr(comment.find(',') + 1);
+  const std::size_t comma = comment.find(',');
+  if (comma == std::string_view::npos || capitals(comment.substr(0, comma)) != "MSG") return std::nullopt;
+  return comment.substr(comma + 1);
 }
 
 }  // namespace rmac::rs274

@@ -7,7 +7,8 @@
 
 namespace rmac::rs274 {
 
-/// Throws a Refusal where a comment of the line has a control do something: (PRINT, …), (LOG, …) and their kind.
+/// Throws a Refusal where a comment of the line has a control record what it probes: (PROBEOPEN …) and (PROBECLOSE).
+/// (DEBUG, …), (PRINT, …) and (LOG…) write for a person, and change nothing.
 void refuse_active_comments(const Line& line);
 
 /// The text of a comment (MSG, text); none where a comment is none of these.

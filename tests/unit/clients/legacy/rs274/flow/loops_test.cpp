@@ -111,7 +111,7 @@ TEST(Rs274Block, IsRefusedWhereItIsNotClosedOrDoesNotMatch) {
       {"o1 break", "1:1: o1 break stands in no while or do"},
       {"o1 if 1\no1 endif", "1:7: if is followed by a value in brackets"},
       {"o1 while [1] X2\no1 endwhile", "1:14: nothing but a comment"},
-      {"o1 if [1] (print, x)\no1 endif", "1:11: (PRINT, "},
+      {"o1 if [1] (probeopen x.txt)\no1 endif", "1:11: (PROBEOPEN"},
       {"o1 else X2", "1:9: nothing but a comment"},
       {"o1 until [1]", "1:4: o1 is followed by sub, call"},
       {"o X1", "1:3: O is followed by a number"},
