@@ -42,7 +42,8 @@ def cut(start, end, move_id):
 
 
 def tip(point):
-    return pose(point[0], point[1], point[2] + TABLE)
+    """In the set-up's part frame, which is in force."""
+    return pose(*point)
 
 
 FEED = request("RMAC_CAM.SetFeedrate", Feedrate=3000)

@@ -59,9 +59,10 @@ Result<std::unique_ptr<CollisionWatch>> CollisionWatch::open(const std::string& 
   if (!chain) return fail(fmt::format("{}: {}", device_json->string(), chain.error().message));
   auto bodies = gateway::scene_bodies(database->bodies, *setup);
   if (!bodies) return fail(fmt::format("{}: {}", setup_file.string(), bodies.error().message));
-  return std::unique_ptr<CollisionWatch>(new CollisionWatch(
-      setup->machine, std::make_unique<gateway::CollisionChecker>(std::move(*chain), std::move(*bodies),
-                                                                  setup->part_frame, setup->clearance_mm)));
+  return std::unique_ptr<CollisionWatch>(
+      new CollisionWatch(setup->machine, setup->part_frame,
+                         std::make_unique<gateway::CollisionChecker>(std::move(*chain), std::move(*bodies),
+                                                                     setup->part_frame, setup->clearance_mm)));
 }
 
 bool CollisionWatch::may_cut(const Move& move) noexcept {

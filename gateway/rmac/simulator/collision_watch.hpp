@@ -33,18 +33,21 @@ class CollisionWatch {
   }
   void cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller);
 
+  /// Where the set-up has the part, in the machine frame.
+  [[nodiscard]] const Frame& part_frame() const noexcept { return part_frame_; }
   [[nodiscard]] const gateway::FindingList& findings() const noexcept { return checker_->findings(); }
   /// What was not checked, a sentence each; empty: all was.
   [[nodiscard]] const std::set<std::string>& not_checked() const noexcept { return not_checked_; }
 
  private:
-  CollisionWatch(std::string machine, std::unique_ptr<gateway::CollisionChecker> checker)
-      : machine_(std::move(machine)), checker_(std::move(checker)) {}
+  CollisionWatch(std::string machine, const Frame& part_frame, std::unique_ptr<gateway::CollisionChecker> checker)
+      : machine_(std::move(machine)), part_frame_(part_frame), checker_(std::move(checker)) {}
   /// Positioning moves go through air; what is programmed as a path may cut.
   [[nodiscard]] static bool may_cut(const Move& move) noexcept;
   void take_tool(gateway::Controller& controller);
 
   std::string machine_;  ///< for which the set-up is
+  Frame part_frame_;
   std::unique_ptr<gateway::CollisionChecker> checker_;
   std::deque<bool> cutting_;  ///< of the moves that are not done
   std::set<std::string> not_checked_;

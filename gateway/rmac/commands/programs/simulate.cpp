@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "gateway/api/decode.hpp"
 #include "gateway/configuration/configuration.hpp"
 #include "gateway/rmac/commands/programs/collision_report.hpp"
 #include "gateway/rmac/commands/programs/registrations.hpp"
@@ -138,6 +139,10 @@ Result<> simulate_program(const Options& options, bool json) {
     auto opened = CollisionWatch::open(options.machine, tree, options.setup);
     if (!opened) return tl::unexpected(opened.error());
     collisions = std::move(*opened);
+    // As somebody would who clamped the part there; a program may set another one.
+    const auto stands =
+        (*simulation)->call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json(collisions->part_frame())}});
+    if (!stands) return fail(fmt::format("{}: /PartFrame: {}", options.setup.string(), stands.error().message));
   }
   const StandstillWatch watch((*simulation)->controller());
   Simulator simulator(**simulation, *program, options.record_file);
