@@ -12,12 +12,18 @@ class CutEnded(Exception):
         self.place = place
         self.why = why
 
+    @property
+    def lost(self):
+        """What `cut` goes on from where the connection was lost in mid-cut; else None."""
+        return self.__cause__ if isinstance(self.__cause__, rmac.Interrupted) else None
 
-def cut(client, program):
-    """Gives the place of each move once it is done. The caller holds authority; leaving its block stops the machine."""
-    done = 0
+
+def cut(client, program, lost=None):
+    """Gives the place of each move once it is done. The caller holds authority; leaving its block stops the machine. With `lost`, of
+    a `CutEnded` of this program, it goes on from where the machine stands, over a connection that is there again."""
+    done = 0 if lost is None else lost.done
     try:
-        for part in client.run(program.moves):
+        for part in client.run(program.moves) if lost is None else client.resume(lost):
             done = part.index + 1
             yield program.place_of(part.index)
     except rmac.MoveRefused as refused:
