@@ -61,6 +61,13 @@ class WindowTest(unittest.TestCase):
         job.Document.recompute()
         return job
 
+    def free(self, client):
+        """Until nobody has authority and nothing moves: what the test before left is over."""
+        with client.states() as states:
+            while next(states)["authority"]:
+                pass
+        client.at_rest()
+
     def opened(self, dialog):
         self.dialogs.append(dialog)
         dialog.show()

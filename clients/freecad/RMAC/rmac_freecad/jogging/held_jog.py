@@ -20,6 +20,7 @@ class HeldJog:
         self._make = None  # how this hold's calls are made
         self._number = 0  # of this hold
         self._over = True  # refused, or its connection lost: nothing more of this hold is sent
+        self._barred = False  # it was stopped, and the button is still down
         self._thread = threading.Thread(target=self._run, name="rmac jog", daemon=True)
         self._thread.start()
 
@@ -32,7 +33,7 @@ class HeldJog:
         only when it rests."""
         with self._changed:
             if self._axis is None:
-                if moving:
+                if moving or self._barred:
                     return
                 self._axis, self._over, self._make = axis, False, None
                 self._number += 1
@@ -41,19 +42,27 @@ class HeldJog:
                 self._changed.notify()
 
     def release(self):
-        """Does nothing where nothing is held. A renewal that was not sent yet is not sent any more."""
+        """The button is up. A renewal that was not sent yet is not sent any more."""
         with self._changed:
-            if self._axis is None:
-                return
+            self._barred = False
+            self._let_go()
+
+    def stop(self):
+        """For another reason than that, and the button may be down: it has to come up before it moves anything again."""
+        with self._changed:
+            self._barred = True
+            self._let_go()
+
+    def _let_go(self):
+        if self._axis is not None:
             self._next = None if self._make is None else self._axis.at(0)
             self._axis = None
             self._changed.notify()
 
     def end(self):
         """Nothing more is sent. Waits for the call that is under way."""
-        self.release()
         with self._changed:
-            self._next = _END
+            self._axis, self._next = None, _END
             self._changed.notify()
         self._thread.join()
 

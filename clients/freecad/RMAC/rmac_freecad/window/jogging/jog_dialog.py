@@ -64,7 +64,7 @@ class JogDialog(Dialog):
         self._move(calls.Reset())
 
     def stop(self):
-        self._held.release()
+        self._held.stop()
         self.station.stop(self.session.settings.address, failed=self.failed)
 
     def step(self, axis, sign):
@@ -87,20 +87,22 @@ class JogDialog(Dialog):
     def changeEvent(self, event):
         super().changeEvent(event)
         if event.type() == QtCore.QEvent.ActivationChange and not self.isActiveWindow():
-            self._held.release()
+            self._held.stop()
 
     def hideEvent(self, event):
-        self._held.release()
+        self._held.stop()
         self.station.ask(self._hand.leave, failed=self.failed)
         super().hideEvent(event)
 
     def _renew(self, state):
         """The buttons themselves are looked at, so that no lost event leaves a jog going."""
-        holding = self.steps.while_held.isChecked() and self.isActiveWindow() and state is not None
-        row_held = next((one for one in self.rows if one.held()), None) if holding else None
+        row_held = next((one for one in self.rows if one.held()), None) if self.steps.while_held.isChecked() else None
         if row_held is None:
-            return self._held.release()
-        self._held.hold(row_held.axis, row_held.held() * self.steps.speed_mm_s, state["moving"])
+            self._held.release()
+        elif not self.isActiveWindow() or state is None:
+            self._held.stop()
+        else:
+            self._held.hold(row_held.axis, row_held.held() * self.steps.speed_mm_s, state["moving"])
 
     def _feed(self):
         fastest = self.session.machine.max_feed_mm_min if self.session.machine else float("inf")
@@ -129,7 +131,7 @@ class JogDialog(Dialog):
         self.part_zero.setText("The part's zero is the machine's own: it was not set." if is_machine_frame(frame) else f"The part's zero stands at {where} of the machine.")
 
     def _lost(self, error):
-        self._held.release()
+        self._held.stop()
         if self.isVisible():
             self.failed(error)
 
