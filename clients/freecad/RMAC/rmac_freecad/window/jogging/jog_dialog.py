@@ -1,6 +1,8 @@
 """Moves the machine by hand. What moves while a button is held stops when it is let go, when the dialog is no longer the one in
 front, is closed or hangs, and when the connection is lost."""
 
+import time
+
 from PySide import QtCore, QtGui
 
 import rmac
@@ -11,6 +13,7 @@ from rmac_freecad.window.jogging.step_fields import StepFields
 from rmac_freecad.window.quantity import length_text
 
 calls = rmac.calls.RMAC_CAM
+LATE_S = 5  # nobody expects a motion any more that a button asked for so long ago
 
 
 class JogDialog(Dialog):
@@ -19,6 +22,7 @@ class JogDialog(Dialog):
         self._hand = Hand(session.client)
         self._held = HeldJog(lambda: self._hand.client().call, lambda error: self.station.tell(self.failed, error))
         self.rows = []
+        self._learning = False
         self.machine = QtGui.QLabel()
         self.part_zero = QtGui.QLabel()
         self.steps = StepFields()
@@ -27,18 +31,20 @@ class JogDialog(Dialog):
         self.reference_button = button("To reference point", self.to_reference_point, "Straight to the part's zero: look at the way first")
         self.zero_button = button("Part zero here", self.zero_here, "Puts the part's zero where the tool tip stands")
         self.reset_button = button("Reset", self.reset, "Leaves a fault whose cause is gone; nothing moves by it")
+        self.take_button = button("Take the machine", self.begin, "Takes authority, after another station had it or the connection was lost")
         self.stop_button = button("Stop", self.stop)
         box = QtGui.QVBoxLayout(self)
         box.addWidget(self.machine)
         box.addLayout(self._grid)
         box.addWidget(self.part_zero)
         box.addWidget(self.steps)
-        box.addLayout(row(self.home_button, self.reference_button, self.zero_button, self.reset_button, None, self.stop_button))
+        box.addLayout(row(self.home_button, self.reference_button, self.zero_button, self.reset_button, self.take_button, None, self.stop_button))
         box.addWidget(self.message)
         session.station.on_loss(self._lost)
 
     def begin(self):
         """Takes authority, and learns what can be jogged."""
+        self._learning = True
 
         def learn(client):
             client = self._hand.client()
@@ -50,8 +56,11 @@ class JogDialog(Dialog):
         state = self.station.state
         for one in self.rows:
             one.show(state)
-        if self.session.machine is not None:
-            self.machine.setText(f"{self.session.machine.name}: {state['state'] if state else 'no connection'}")
+        known = self.session.machine
+        if known is not None:
+            self.machine.setText(f"{known.name}: {state['state'] if state else 'no connection'}")
+            if state and state["mechanism"] not in (known.name, None) and not self._learning:
+                self.begin()  # somebody loaded another one
         self._renew(state)
 
     def home(self):
@@ -109,9 +118,19 @@ class JogDialog(Dialog):
         return min(self.steps.speed_mm_s * 60, fastest)
 
     def _move(self, *asked):
-        self.ask(lambda client: [self._hand.client().call(call) for call in asked], lambda answers: None)
+        clicked = time.monotonic()
+
+        def move(client):
+            client = self._hand.client()
+            if time.monotonic() - clicked > LATE_S:
+                raise rmac.RmacError("The appliance was reached too late: nothing was moved. Press the button again.")
+            for call in asked:
+                client.call(call)
+
+        self.ask(move, lambda answer: None)
 
     def _learnt(self, came):
+        self._learning = False
         machine, frame = came
         if self.session.machine != machine or not self.rows:
             self.session.machine = machine

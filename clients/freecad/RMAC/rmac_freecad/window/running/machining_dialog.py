@@ -1,5 +1,6 @@
 """A job simulated and cut. Nothing moves before Cut is pressed; closing waits until nothing does."""
 
+import FreeCAD
 import FreeCADGui
 from PySide import QtGui
 
@@ -23,7 +24,9 @@ class MachiningDialog(Dialog):
         super().__init__(session, "Machine a job")
         self.machining = Machining(session.station, session.client)
         self.job = None
+        self.job_tools = []
         self.view = None
+        self._cuts = None  # names of the document and the job
         self.headline = QtGui.QLabel()
         self.part_zero = QtGui.QLabel()
         self.at_machine_zero = QtGui.QCheckBox("The part stands at the machine's own zero")
@@ -43,12 +46,7 @@ class MachiningDialog(Dialog):
         self.resize(560, 480)
 
     def begin(self):
-        """For the job that is selected now."""
-        try:
-            self.job = job_in_question()
-        except Exception as error:
-            return self.failed(error)
-        self.ask(look, self._looked, "the machine is looked at…")
+        self._look(self._looked)
 
     def simulate(self):
         self._with_program(self._simulate, lambda now: None)
@@ -83,14 +81,6 @@ class MachiningDialog(Dialog):
         if running:
             self._show_progress()
 
-    @property
-    def job_tools(self):
-        """Of a job that may have been deleted meanwhile."""
-        try:
-            return tools_of(self.job) if self.job is not None else []
-        except ReferenceError:
-            return []
-
     def closeEvent(self, event):
         if self.machining.running:
             event.ignore()
@@ -105,8 +95,17 @@ class MachiningDialog(Dialog):
         self._show_in_view(None)
         super().hideEvent(event)
 
+    def _look(self, looked):
+        """At the job that is selected now, and at the machine."""
+        try:
+            self.job = job_in_question()
+            self.job_tools = tools_of(self.job)
+        except Exception as error:
+            return self.failed(error)
+        self.ask(look, looked, "the machine is looked at…")
+
     def _with_program(self, does, check):
-        """`does(program, now)`, once the machine was looked at and nothing speaks against it."""
+        """`does(program, now)`, once nothing speaks against it."""
 
         def looked(now):
             self._looked(now)
@@ -118,9 +117,7 @@ class MachiningDialog(Dialog):
                 return self.failed(error)
             does(program, now)
 
-        if self.job is None:
-            return self.begin()
-        self.ask(look, looked, "the machine is looked at…")
+        self._look(looked)
 
     def _simulate(self, program, now):
         self._show_in_view(program)
@@ -141,14 +138,19 @@ class MachiningDialog(Dialog):
     def _cut(self, program, now):
         self._show_in_view(program)
         self.progress.setRange(0, len(program))
+        self._cuts = self.job.Document.Name, self.job.Label
         self.message.tell(f"{now.machine.name} cuts {self.job.Label}…")
         self.machining.start(program, self._cut_to_its_end, self.failed)
         self.tick()
 
     def _cut_to_its_end(self):
         self._show_progress()
-        kept = keep(self.job.Document, self.machining.program, self.job.Label)
-        self.message.tell(f"{self.job.Label} is cut. What was cut is kept in the document as {kept.Label}.")
+        document, label = self._cuts
+        try:
+            kept = keep(FreeCAD.getDocument(document), self.machining.program, label)
+        except NameError:  # so FreeCAD says that there is none of that name
+            return self.message.tell(f"{label} is cut. Its document was closed meanwhile, so what was cut is not kept.")
+        self.message.tell(f"{label} is cut. What was cut is kept in the document as {kept.Label}.")
 
     def _show_progress(self):
         self.progress.setValue(self.machining.done)

@@ -1,0 +1,93 @@
+"""What stands on the pictures: the ten minutes of docs/freecad.md."""
+
+import FreeCADGui
+import PathScripts.PathProfile as PathProfile
+from path_job import operation_of
+from PySide import QtCore
+from rmac_freecad.window.jogging.jog_dialog import JogDialog
+from rmac_freecad.window.machines.search_dialog import SearchDialog
+from rmac_freecad.window.quantity import set_value
+from rmac_freecad.window.running.machining_dialog import MachiningDialog
+from screenshots import shoot
+from windowed import WindowTest, process_until
+
+import rmac
+
+
+class Screens(WindowTest):
+    def test_pictures(self):
+        self.show_job()
+        self.search()
+        self.jog()
+        self.machine()
+
+    def placed(self, dialog, x, y):
+        dialog.move(x, y)
+        return self.opened(dialog)
+
+    def settle(self):
+        """What is drawn by timers is drawn."""
+        until = QtCore.QElapsedTimer()
+        until.start()
+        process_until(lambda: until.elapsed() > 1000, "a second")
+
+    def show_job(self):
+        window = FreeCADGui.getMainWindow()
+        window.setGeometry(0, 0, 1280, 1000)
+        FreeCADGui.activateWorkbench("RmacWorkbench")
+        self.part_job = self.job()
+        operation_of(self.part_job, PathProfile, "Profile", StepDown="2 mm")
+        view = FreeCADGui.ActiveDocument.ActiveView
+        view.viewIsometric()
+        FreeCADGui.SendMsgToActiveView("ViewFit")
+
+    def search(self):
+        dialog = self.placed(SearchDialog(self.session), 150, 150)
+        dialog.connect_and_list()
+        process_until(lambda: dialog.list.machines, "machines are listed")
+        dialog.fits_button.click()
+        self.told(dialog, "can cut it")
+        self.settle()
+        shoot("search", dialog)
+        dialog.close()
+
+    def jog(self):
+        with rmac.connect(self.address, "set-up") as client, client.authority():
+            client.cam.SetTool(1, 0.0, 2.5)
+            client.cam.Home()
+            client.until_done()
+        dialog = self.placed(JogDialog(self.session), 150, 150)
+        dialog.begin()
+        process_until(lambda: dialog.rows and self.session.station.state, "the machine is known")
+        set_value(dialog.steps.step, 20)
+        for row, axis in ((0, 0), (1, 1)):
+            dialog.rows[row].minus.click()
+            process_until(lambda: abs(self.session.station.state["pose"][axis] + 20) < 0.01, "it is there")
+        process_until(lambda: not self.session.station.state["moving"], "it rests")
+        dialog.zero_button.click()
+        process_until(lambda: "stands at" in dialog.part_zero.text(), "the part's zero is set")
+        self.settle()
+        shoot("jog", dialog)
+        dialog.close()
+        process_until(lambda: not self.session.station.state["authority"], "authority is given back")
+
+    def machine(self):
+        dialog = self.placed(MachiningDialog(self.session), 700, 420)
+        dialog.begin()
+        process_until(lambda: dialog.headline.text(), "the machine was looked at")
+        dialog.simulate_button.click()
+        self.told(dialog, "It takes")
+        FreeCADGui.Selection.clearSelection()
+        self.settle()
+        shoot("simulated")
+        with rmac.connect(self.address, "set-up") as client:
+            mounted = client.cam.GetTools()["Mounted"]
+        dialog.cut_button.click()
+        if mounted != 1:
+            process_until(lambda: dialog.prompts.isVisible(), "the tool is asked for")
+            self.settle()
+            shoot("tool", dialog)
+            dialog.prompts.confirm.click()
+        self.told(dialog, "is cut")
+        self.settle()
+        shoot("cut", dialog)
