@@ -64,8 +64,14 @@ class SearchDialogTest(WindowTest):
         self.dialog.fields.joints.setValue(3)
         self.search()
         self.dialog.fits_button.click()
-        self.refused(self.dialog, "no machine can cut this job", f"{MACHINE}: Custom, command 3 (G1): ", "beyond its limit")
+        self.refused(self.dialog, "None of these machines", f"{MACHINE}: Custom, command 3 (G1): ", "beyond its limit")
         self.assertIn("no: Custom, command 3", self.dialog.list.topLevelItem(0).text(6))
+
+    def test_without_the_program_that_simulates_it_says_where_to_give_its_path(self):
+        operation_of(self.job(), PathProfile, "Profile")
+        self.settings.rmac = "/nowhere/rmac"
+        self.dialog.fits_button.click()
+        self.refused(self.dialog, "program rmac", "Preferences")
 
     def test_without_a_job_it_says_so(self):
         self.dialog.fits_button.click()
@@ -82,7 +88,7 @@ class SearchDialogTest(WindowTest):
     def test_the_selected_machine_is_loaded(self):
         self.dialog.list.choose("SuginoXYZ")
         self.dialog.load_button.click()
-        self.told(self.dialog, "SuginoXYZ is loaded")
+        self.told(self.dialog, "SuginoXYZ is loaded.")
         self.assertEqual(self.session.machine.name, "SuginoXYZ")
         self.assertEqual(self.connect().machine().name, "SuginoXYZ")
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from rmac_freecad.jobs import read_job
-from rmac_freecad.simulation import Found, SimulationRefused, simulate
+from rmac_freecad.simulation import Found, NoProgram, SimulationRefused, simulate
 
 
 @dataclass(frozen=True)
@@ -39,11 +39,14 @@ def programs_for(job, machines):
 
 
 def compare(programs, tools, rmac="rmac"):
-    """Those that can, the quickest first, and why the others cannot. Takes its time; touches no document."""
+    """Those that can, the quickest first, and why the others cannot. Takes its time; touches no document. `NoProgram` where nothing
+    can be simulated here."""
     fits, why = [], {}
     for machine, program in programs.items():
         try:
             fits.append(Fit(machine, simulate(program, machine, tools, rmac)))
+        except NoProgram:
+            raise
         except SimulationRefused as refused:
             why[machine] = refused
     return sorted(fits, key=lambda fit: fit.found.cycle_time_s), why

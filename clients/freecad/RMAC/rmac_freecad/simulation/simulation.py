@@ -22,6 +22,10 @@ class SimulationRefused(Exception):
         self.why = why
 
 
+class NoProgram(SimulationRefused):
+    """The command-line client, which simulates, is not there."""
+
+
 @dataclass(frozen=True)
 class Found:
     cycle_time_s: float
@@ -35,7 +39,7 @@ def simulate(program, machine, tools, rmac="rmac", patience_s=600, part_frame=No
     command-line client. `part_frame` as `client.cam.GetPartFrame()` gives it; the machine's own unless given."""
     executable = shutil.which(rmac)
     if executable is None:
-        raise SimulationRefused(f"the program {rmac} is not there; it comes with the appliance's package, or give its path as rmac=")
+        raise NoProgram(f"the program {rmac} is not there; it comes with the appliance's package, or give its path as rmac=")
     with tempfile.TemporaryDirectory(prefix="rmac-simulate-") as folder:
         table = {key: tools[key] for key in ("Mounted", "Tools")}
         (pathlib.Path(folder) / f"{machine}.json").write_text(json.dumps(table))

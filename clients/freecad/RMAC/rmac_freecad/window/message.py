@@ -3,6 +3,7 @@
 from PySide import QtCore, QtGui
 
 import rmac
+from rmac_freecad.simulation import NoProgram
 
 
 def words_of(error):
@@ -11,6 +12,8 @@ def words_of(error):
         return f"Another station has authority over the machine: {error.message}. Finish there first; Stop acts from here, too."
     if isinstance(error, rmac.CannotConnect):
         return f"{error} The address stands in Edit > Preferences > RMAC."
+    if isinstance(error, NoProgram):
+        return "The program rmac, which simulates, was not found; give its path in Edit > Preferences > RMAC."
     return error.message if isinstance(error, rmac.Refused) else str(error)
 
 

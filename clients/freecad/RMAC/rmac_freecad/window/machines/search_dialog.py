@@ -3,12 +3,16 @@
 from PySide import QtGui
 
 from rmac_freecad.jobs import EMPTY, completed, tools_of
-from rmac_freecad.machines import NoMachineFits, compare, programs_for
+from rmac_freecad.machines import compare, programs_for
 from rmac_freecad.window.dialog import Dialog, button, row
 from rmac_freecad.window.jobs import job_in_question
 from rmac_freecad.window.machines.characteristics_dialog import CharacteristicsDialog
 from rmac_freecad.window.machines.machine_list import MachineList
 from rmac_freecad.window.machines.wanted_fields import WantedFields
+
+
+class NoneFits(Exception):
+    """Its text is for the dialog, whose list tells the rest."""
 
 
 class SearchDialog(Dialog):
@@ -70,7 +74,7 @@ class SearchDialog(Dialog):
                 return client.load(name, virtual)
 
         self.load_button.setEnabled(False)
-        self.ask(loaded, self._loaded, f"{name} is loaded; modules that are new are verified first, which takes its time…")
+        self.ask(loaded, self._loaded, f"{name} is being loaded; modules that are new are verified first, which takes its time…")
 
     def failed(self, error):
         super().failed(error)
@@ -89,7 +93,8 @@ class SearchDialog(Dialog):
         fits, why = came
         self.list.show_fits(fits, why)
         if not fits:
-            return self.failed(NoMachineFits(why))
+            first, reason = next(iter(why.items()))
+            return self.failed(NoneFits(f"None of these machines can cut the job; why not stands beside each. {first}: {reason}"))
         self.message.tell(f"{len(fits)} of {len(self.list.machines)} machines can cut it; {fits[0].machine} is the quickest. A machine is taken to stand at its zero, and the part's zero at the machine's.")
 
     def _loaded(self, machine):
