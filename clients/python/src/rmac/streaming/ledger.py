@@ -62,8 +62,12 @@ class Ledger:
         self._queued += part.move.queues
         self.rests = False
 
-    def heard(self, state: dict[str, Any]) -> None:
+    def heard(self, state: dict[str, Any], stopped: bool) -> None:
+        """`stopped`: of a machine that was stopped, or stops. A stop may have emptied its queue, which tells nothing of what was done."""
         self.cycle, self.machine_id = state["cycle"], state["move_id"]
+        if stopped:
+            self.rests = False
+            return self._forget(0, self._before_machine_id())
         self._in_queue = state["moves_in_buffer"]
         self._counted, self._queued_before = self._queued_before, self._queued
         self.rests = self._in_queue == 0 and not state["moving"] and state["waits_for"] in ("", "moves")
