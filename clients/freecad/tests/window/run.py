@@ -15,7 +15,7 @@ def run():
     code = 1
     try:
         sys.path[:0] = [str(HERE), str(HERE.parent)]
-        result = unittest.main(os.environ["RMAC_TEST"], argv=["freecad"], exit=False, verbosity=2).result
+        result = unittest.main(os.environ["RMAC_TEST"], argv=["freecad", *os.environ.get("RMAC_TESTS", "").split()], exit=False, verbosity=2).result
         code = 0 if result.testsRun > 0 and result.wasSuccessful() else 1
     except BaseException:
         traceback.print_exc()

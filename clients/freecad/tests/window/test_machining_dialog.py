@@ -8,7 +8,9 @@ from path_job import operation_of, written
 from rmac_freecad.path import DONE, LIMITS
 from rmac_freecad.window.quantity import set_value
 from rmac_freecad.window.running.machining_dialog import MachiningDialog
-from windowed import MACHINE, WindowTest, process_until
+from windowed import WindowTest, process_until
+
+import rmac
 
 
 class MachiningDialogTest(WindowTest):
@@ -45,6 +47,16 @@ class MachiningDialogTest(WindowTest):
 
     def written(self, *lines):
         written(self.part_job, ("G0 X0 Y0 Z20", *lines))
+
+    def in_mid_line(self):
+        """The second command is being cut, a line that takes long even in virtual time."""
+        self.written("G1 X40 F0.2", "G1 Y5 F20")
+        dialog = self.dialog()
+        dialog.cut_button.click()
+        process_until(lambda: dialog.machining.program, "the job is read")
+        line = next(number for number, move in enumerate(dialog.machining.program.moves) if isinstance(move, rmac.Line))
+        process_until(lambda: dialog.machining.done == line and self.state()["pose"][0] > 2 and self.state()["moving"], "the line is being cut")
+        return dialog
 
     def state(self):
         return self.session.station.state
@@ -144,21 +156,14 @@ class MachiningDialogTest(WindowTest):
         self.assertEqual(self.state()["override_percent"], 50)
 
     def test_a_stop_in_mid_cut_is_told_at_its_place_and_nothing_goes_on(self):
-        self.written("G1 X1 F20", "M0", "G1 X40 F20")
-        dialog = self.dialog()
-        dialog.cut_button.click()
-        process_until(lambda: self.state() and self.state()["state"] == "Holding", "it holds in its midst")
+        dialog = self.in_mid_line()
         dialog.run.stop.click()
-        self.refused(dialog, "Custom, command 3 (M0)")
+        self.refused(dialog, "Custom, command 2 (G1)", "StopNow")
         self.assertFalse(dialog.machining.can_go_on)
         process_until(lambda: self.state()["authority"] == "" and not self.state()["moves_in_buffer"], "nothing is left")
 
     def test_a_lost_connection_in_mid_cut_is_told_and_gone_on_from(self):
-        """Its sixth of a millimetre a second takes the machine, in virtual time, some thousand cycles."""
-        self.written("G1 X40 F0.05", "G1 Y5 F20")
-        dialog = self.dialog()
-        dialog.cut_button.click()
-        process_until(lambda: self.state() and self.state()["pose"][0] > 2 and self.state()["moving"], "the long line is being cut")
+        dialog = self.in_mid_line()
         self.session.station.client._connection._socket.shutdown(2)
         self.refused(dialog, "Custom, command 2 (G1)", "connection")
         process_until(lambda: dialog.go_on_button.isVisible(), "it may go on")

@@ -1,7 +1,7 @@
 """A program under way on the machine, fed by a thread of its own; whoever watches it asks how far it is."""
 
 import rmac
-from rmac_freecad.running.cutting import CutEnded, cut
+from rmac_freecad.running.cutting import CutEnded, cut_moves
 
 
 class Machining:
@@ -52,9 +52,9 @@ class Machining:
         try:
             client = self._connect()
             with client.authority():
-                for place in cut(client, self.program, lost):
-                    self.done += 1
-                    self.place = place
+                for index in cut_moves(client, self.program, lost):
+                    self.done = index + 1
+                    self.place = self.program.place_of(index)
         except CutEnded as ended:
             self._lost = ended.lost
             raise

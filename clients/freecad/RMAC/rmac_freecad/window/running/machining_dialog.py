@@ -55,7 +55,7 @@ class MachiningDialog(Dialog):
         self._with_program(self._cut, lambda now: check_part_zero(now, self.at_machine_zero.isChecked()))
 
     def go_on(self):
-        self.message.tell("the rest is cut…")
+        self.message.tell("the rest is being cut…")
         self.machining.go_on(self._cut_to_its_end, self.failed)
 
     def hold(self):
@@ -81,15 +81,11 @@ class MachiningDialog(Dialog):
         if running:
             self._show_progress()
 
-    def closeEvent(self, event):
-        if self.machining.running:
-            event.ignore()
-            return self.message.tell("The machine cuts. Stop it first, or leave this open.")
-        super().closeEvent(event)
-
     def reject(self):
-        """Escape."""
-        self.close()
+        """Escape, and whatever else would close it."""
+        if self.machining.running:
+            return self.message.tell("The machine cuts. Stop it first, or leave this open.")
+        super().reject()
 
     def hideEvent(self, event):
         self._show_in_view(None)
