@@ -62,13 +62,16 @@ class MachineModel:
             self.move_id = self.queue[0]
 
     def stop(self):
-        """Drops the queue; the move that is under way is not done, and nothing is begun any more."""
+        """Drops the queue; the move that is under way is not done, and nothing is begun any more. It tells so some cycles later."""
         self.queue.clear()
         self.capacity = 0
-        self.stopping = self.draw.randint(1, 3)
+        self.stopping = self.draw.randint(1, 6)
+        self.tells_at = self.cycle + self.draw.randint(0, 3)
 
     def state(self):
         if self.stopping or self.stopped:
+            if self.cycle < self.tells_at:
+                return self._state("Running", self.draw.choice(("", "moves", "dwell")), None, self.draw.random() < 0.5)
             stands = not self.stopping
             return self._state("Idle" if stands else "Stopping", "", self.stopped if stands else None, not stands and self.draw.random() < 0.5)
         return self._state("Running", "" if self.queue else "moves", None, bool(self.queue))

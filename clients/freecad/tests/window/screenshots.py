@@ -1,45 +1,106 @@
-"""Draws the pictures of docs/freecad.md: RMAC_BUILD=… RMAC_SOURCE=… PYTHONPATH=clients/freecad/RMAC start.py screenshots.py"""
+"""Draws the pictures of docs/freecad.md: its ten minutes. Run as the tests of the window are, with RMAC_TEST=screenshots."""
 
 import os
 import pathlib
-import sys
-import traceback
-import unittest
 
+import FreeCADGui
+import PathScripts.PathProfile as PathProfile
+from path_job import operation_of
 from PySide import QtCore, QtGui
+from rmac_freecad.window.jogging.jog_dialog import JogDialog
+from rmac_freecad.window.machines.search_dialog import SearchDialog
+from rmac_freecad.window.running.machining_dialog import MachiningDialog
+from windowed import WindowTest, process_until
 
-HERE = pathlib.Path(__file__).parent
-sys.path[:0] = [str(HERE), str(HERE.parent)]
+import rmac
+
 IMAGES = pathlib.Path(os.environ["RMAC_SOURCE"]) / "docs/images/freecad"
 
 
-def shoot(name, *widgets):
-    """The whole screen, or what the widgets cover of it."""
+def shoot(name, dialog=None):
+    """A dialog, or all of the screen."""
     QtGui.QApplication.processEvents()
-    picture = QtGui.QGuiApplication.primaryScreen().grabWindow(0)
-    if widgets:
-        area = QtCore.QRect()
-        for widget in widgets:
-            area = area.united(widget.frameGeometry())
-        picture = picture.copy(area)
+    picture = QtGui.QGuiApplication.primaryScreen().grabWindow(0) if dialog is None else dialog.grab()
     IMAGES.mkdir(exist_ok=True)
-    if not picture.toImage().convertToFormat(QtGui.QImage.Format_Indexed8).save(str(IMAGES / f"{name}.png")):
+    if not picture.save(str(IMAGES / f"{name}.png")):
         raise AssertionError(f"{name}.png was not written")
 
 
-def run():
-    code = 1
-    try:
-        import screens
+class Screens(WindowTest):
+    def test_pictures(self):
+        self.show_job()
+        self.search()
+        self.jog()
+        self.machine()
 
-        result = unittest.main(screens, argv=["freecad"], exit=False, verbosity=2).result
-        code = 0 if result.testsRun > 0 and result.wasSuccessful() else 1
-    except BaseException:
-        traceback.print_exc()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(code)
+    def placed(self, dialog, x, y):
+        dialog.move(x, y)
+        return self.opened(dialog)
 
+    def settle(self):
+        """What is drawn by timers is drawn."""
+        until = QtCore.QElapsedTimer()
+        until.start()
+        process_until(lambda: until.elapsed() > 1000, "a second")
 
-if __name__ != "screenshots":  # FreeCAD runs it; `screens` imports it
-    QtCore.QTimer.singleShot(0, run)
+    def show_job(self):
+        window = FreeCADGui.getMainWindow()
+        window.setGeometry(0, 0, 1280, 1024)
+        FreeCADGui.activateWorkbench("RmacWorkbench")
+        self.part_job = self.job()
+        operation_of(self.part_job, PathProfile, "Profile", StepDown="2 mm")
+        for dock in window.findChildren(QtGui.QDockWidget):
+            dock.setVisible(dock.objectName() == "Combo View")
+        view = FreeCADGui.ActiveDocument.ActiveView
+        view.viewIsometric()
+        FreeCADGui.SendMsgToActiveView("ViewFit")
+
+    def search(self):
+        dialog = self.placed(SearchDialog(self.session), 150, 150)
+        dialog.connect_and_list()
+        process_until(lambda: dialog.list.machines, "machines are listed")
+        dialog.fits_button.click()
+        self.told(dialog, "can cut it")
+        self.settle()
+        shoot("search", dialog)
+        dialog.close()
+
+    def jog(self):
+        with rmac.connect(self.address, "set-up") as client, client.authority():
+            client.cam.SetTool(1, 0.0, 2.5)
+            client.cam.Home()
+            client.until_done()
+        dialog = self.placed(JogDialog(self.session), 150, 150)
+        dialog.begin()
+        process_until(lambda: dialog.rows and self.session.station.state, "the machine is known")
+        dialog.steps.step.set_quantity(20)
+        for row, axis in ((0, 0), (1, 1)):
+            dialog.rows[row].minus.click()
+            process_until(lambda: abs(self.session.station.state["pose"][axis] + 20) < 0.01, "it is there")
+        process_until(lambda: not self.session.station.state["moving"], "it rests")
+        dialog.zero_button.click()
+        process_until(lambda: "stands at" in dialog.part_zero.text(), "the part's zero is set")
+        self.settle()
+        shoot("jog", dialog)
+        dialog.close()
+        process_until(lambda: not self.session.station.state["authority"], "authority is given back")
+
+    def machine(self):
+        dialog = self.placed(MachiningDialog(self.session), 600, 560)
+        dialog.begin()
+        process_until(lambda: dialog.headline.text(), "the machine was looked at")
+        dialog.simulate_button.click()
+        self.told(dialog, "It takes")
+        FreeCADGui.Selection.clearSelection()
+        self.settle()
+        shoot("simulated")
+        with rmac.connect(self.address, "set-up") as client:
+            mounted = client.cam.GetTools()["Mounted"]
+        dialog.cut_button.click()
+        if mounted != 1:
+            process_until(lambda: dialog.prompts.isVisible(), "the tool is asked for")
+            self.settle()
+            dialog.prompts.confirm.click()
+        self.told(dialog, "is cut")
+        self.settle()
+        shoot("cut")

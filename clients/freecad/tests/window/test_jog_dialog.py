@@ -5,7 +5,6 @@ import unittest
 import FreeCAD
 from PySide import QtCore, QtGui
 from rmac_freecad.window.jogging.jog_dialog import JogDialog
-from rmac_freecad.window.quantity import set_value
 from windowed import WindowTest, process_until
 
 
@@ -52,7 +51,7 @@ class JogDialogTest(WindowTest):
     def hold(self):
         """X+ is held, and moves."""
         self.dialog.steps.while_held.setChecked(True)
-        set_value(self.dialog.steps.speed, 5)
+        self.dialog.steps.speed.set_quantity(5)
         button = self.dialog.rows[0].plus
         press(button)
         begun = self.x()
@@ -67,12 +66,12 @@ class JogDialogTest(WindowTest):
         self.assertAlmostEqual(self.x(), x, 2)
 
     def test_a_tap_goes_by_a_step_and_the_display_follows(self):
-        set_value(self.dialog.steps.step, 2.5)
+        self.dialog.steps.step.set_quantity(2.5)
         row = self.dialog.rows[1]
         row.plus.click()
         process_until(lambda: abs(self.state()["pose"][1] - 2.5) < 0.01, f"Y is at 2.5; {self.dialog.message.text()}")
         self.at_rest()
-        process_until(lambda: row.place.text() == "2.50 mm", "the display says so")
+        process_until(lambda: row.place.text() == "2.500 mm", "the display says so")
         row.minus.click()
         process_until(lambda: abs(self.state()["pose"][1]) < 0.01, "and back")
 
@@ -148,14 +147,14 @@ class JogDialogTest(WindowTest):
                 self.stays()
 
     def test_the_part_zero_is_set_where_the_tool_stands(self):
-        set_value(self.dialog.steps.step, 10)
+        self.dialog.steps.step.set_quantity(10)
         self.dialog.rows[0].plus.click()
         process_until(lambda: abs(self.x() - 10) < 0.01, "X is at 10")
         self.at_rest()
         self.dialog.zero_button.click()
         process_until(lambda: abs(self.x()) < 0.001, "the tool reads zero")
-        self.assertIn("10.00 mm", self.dialog.part_zero.text())
-        set_value(self.dialog.rows[2].reads, 1)
+        self.assertIn("X 10 mm", self.dialog.part_zero.text())
+        self.dialog.rows[2].reads.set_quantity(1)
         self.dialog.rows[2].set_button.click()
         process_until(lambda: abs(self.state()["pose"][2] - 1) < 0.001, "Z reads a gauge's height")
         self.assertAlmostEqual(self.x(), 0, 2)
@@ -166,8 +165,8 @@ class JogDialogTest(WindowTest):
         process_until(lambda: abs(self.x()) < 0.01, "the reference point is the part's zero")
 
     def test_stop_ends_a_step_on_its_way(self):
-        set_value(self.dialog.steps.step, 40)
-        set_value(self.dialog.steps.speed, 2)
+        self.dialog.steps.step.set_quantity(40)
+        self.dialog.steps.speed.set_quantity(2)
         self.dialog.rows[0].plus.click()
         process_until(lambda: self.x() > 0.5, "it is on its way")
         self.dialog.stop_button.click()
@@ -184,11 +183,11 @@ class JogDialogTest(WindowTest):
         process_until(lambda: dialog.rows and self.state(), "the dialog knows the machine")
         dialog.steps.slider.setValue(5)
         self.assertAlmostEqual(dialog.steps.step_mm, 12.7)
-        self.assertIn("in", dialog.steps.step.property("text"))
+        self.assertIn("in", dialog.steps.step.text())
         dialog.rows[0].plus.click()
         process_until(lambda: abs(self.x() - 12.7) < 0.01, "half an inch further")
         self.at_rest()
-        process_until(lambda: dialog.rows[0].place.text().startswith("0.50"), "and shown so")
+        process_until(lambda: dialog.rows[0].place.text() == "0.5000 in", "and shown so")
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ import FreeCADGui
 import PathScripts.PathProfile as PathProfile
 from path_job import operation_of, written
 from rmac_freecad.path import DONE, LIMITS
-from rmac_freecad.window.quantity import set_value
 from rmac_freecad.window.running.machining_dialog import MachiningDialog
 from windowed import WindowTest, process_until
 
@@ -107,7 +106,7 @@ class MachiningDialogTest(WindowTest):
         dialog.cut_button.click()
         self.refused(dialog, "lacks tool 7", self.part_job.Tools.Group[0].Label)
         row = dialog.tools.rows[0]
-        set_value(row.length, 12.5)
+        row.length.set_quantity(12.5)
         row.add.click()
         process_until(lambda: not dialog.tools.rows, "the tool is in the table")
         table = self.connect().cam.GetTools()["Tools"]

@@ -6,7 +6,6 @@ import FreeCAD
 import PathScripts.PathProfile as PathProfile
 from path_job import operation_of, written
 from rmac_freecad.window.machines.search_dialog import SearchDialog
-from rmac_freecad.window.quantity import set_value
 from windowed import MACHINE, WindowTest, process_until
 
 
@@ -36,16 +35,16 @@ class SearchDialogTest(WindowTest):
         fields.type.setCurrentText("Mill")
         fields.joints.setValue(5)
         for length in (fields.length_mm, fields.width_mm, fields.depth_mm):
-            set_value(length, 150)
+            length.set_quantity(150)
         fields.spindle_hp.setValue(5)
         self.search()
         self.assertEqual(self.names(), ["TarusXYZCA"])
 
     def test_a_feed_is_wanted_in_the_unit_that_freecad_shows(self):
-        set_value(self.dialog.fields.feed_mm_min, 2001 / 60)
+        self.dialog.fields.feed_mm_min.set_quantity(2001 / 60)
         self.search()
         self.assertNotIn(MACHINE, self.names())
-        set_value(self.dialog.fields.feed_mm_min, 2000 / 60 - 1e-6)
+        self.dialog.fields.feed_mm_min.set_quantity(2000 / 60 - 1e-6)
         self.search()
         self.assertIn(MACHINE, self.names())
 

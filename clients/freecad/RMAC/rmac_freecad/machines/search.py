@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, fields
 
-TYPES = ("Mill", "CMM")
+TYPES = ("Mill", "CMM", "Bench")
 # Column of the database, and whether a machine must have at least as much, or at most.
 COLUMNS = {
     "joints": ("NumberOfJoints", "="), "length_mm": ("Length", ">="), "width_mm": ("Width", ">="), "depth_mm": ("Depth", ">="),

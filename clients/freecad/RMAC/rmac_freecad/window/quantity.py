@@ -1,37 +1,64 @@
-"""Fields for lengths and feeds, in the unit that FreeCAD shows; their values are mm and mm/min, whatever that is."""
+"""Lengths and feeds in the unit that FreeCAD shows; values are mm and mm/s, or mm/min where that is said, whatever the unit is."""
 
 import FreeCAD
-import FreeCADGui
+from PySide import QtGui
+
+HIGHEST = 1e6
+LENGTH = FreeCAD.Units.Length
+SPEED = FreeCAD.Units.Velocity
 
 
-def quantity_field(unit, value=0.0, lowest=None, highest=None):
-    """`unit`: FreeCAD's own for the quantity, mm or mm/s."""
-    field = FreeCADGui.UiLoader().createWidget("Gui::QuantitySpinBox")
-    field.setProperty("unit", unit)
-    if lowest is not None:
-        field.setProperty("minimum", lowest)
-    if highest is not None:
-        field.setProperty("maximum", highest)
-    set_value(field, value)
-    return field
+class QuantityField(QtGui.QDoubleSpinBox):
+    """FreeCAD's own field keeps no more of a value than it shows: a thousandth of an inch is 0 there."""
 
+    def __init__(self, kind, value=0.0, lowest=-HIGHEST):
+        super().__init__()
+        self._per_unit, unit = _shown(FreeCAD.Units.Quantity(10, kind))
+        self.setDecimals(3 if self._per_unit < 10 else 4)
+        self.setSuffix(f" {unit}")
+        self.setRange(lowest / self._per_unit, HIGHEST / self._per_unit)
+        self.set_quantity(value)
 
-def value_of(field):
-    return float(field.property("rawValue"))
+    @property
+    def quantity(self):
+        """mm, or mm/s."""
+        return self.value() * self._per_unit
 
-
-def set_value(field, value):
-    field.setProperty("rawValue", float(value))
+    def set_quantity(self, value):
+        self.setValue(value / self._per_unit)
 
 
 def length_text(mm):
-    return FreeCAD.Units.Quantity(mm, FreeCAD.Units.Length).UserString
+    """In the unit that FreeCAD shows for what a machine is as large as: a thousandth of a millimetre is not suddenly one of µm."""
+    return _text(mm, FreeCAD.Units.Quantity(10, LENGTH))
+
+
+def position_text(mm):
+    """The same, with as many places always, so that digits stay where they are."""
+    per_unit, unit = _shown(FreeCAD.Units.Quantity(10, LENGTH))
+    return f"{_not_minus_zero(mm / per_unit, 3 if per_unit < 10 else 4):.{3 if per_unit < 10 else 4}f} {unit}"
 
 
 def feed_text(mm_min):
-    return FreeCAD.Units.Quantity(mm_min / 60, FreeCAD.Units.Velocity).UserString
+    return _text(mm_min / 60, FreeCAD.Units.Quantity(10, SPEED))
+
+
+def _text(value, like):
+    per_unit, unit = _shown(like)
+    return f"{_not_minus_zero(value / per_unit, 4):.4f}".rstrip("0").rstrip(".") + f" {unit}"
+
+
+def _shown(like):
+    """How much of FreeCAD's own unit one is of what is shown for a quantity, and what that is called."""
+    return like.getUserPreferred()[1:]
+
+
+def _not_minus_zero(value, places):
+    return round(value, places) + 0.0
 
 
 def time_text(seconds):
-    minutes, rest = divmod(seconds, 60)
-    return f"{minutes:.0f} min {rest:02.0f} s" if minutes else f"{seconds:.1f} s"
+    if round(seconds, 1) < 60:
+        return f"{seconds:.1f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest:02} s"

@@ -13,6 +13,8 @@ from rmac.moves.between import Request
 from rmac.moves.move import Move
 from rmac.streaming.part import Part
 
+_STOPS_WITHIN_CYCLES = 10
+
 
 class Ledger:
     def __init__(self, state: dict[str, Any], first_id: int, first_index: int) -> None:
@@ -32,6 +34,7 @@ class Ledger:
         self._in_queue: int = state["moves_in_buffer"]
         self._queued = self._queued_done = 0
         self._queued_before = self._counted = 0
+        self._empty_since: int | None = None  # cycle from which on nothing was queued and nothing moved
 
     @property
     def complete(self) -> bool:
@@ -63,15 +66,22 @@ class Ledger:
         self.rests = False
 
     def heard(self, state: dict[str, Any], stopped: bool) -> None:
-        """`stopped`: of a machine that was stopped, or stops. A stop may have emptied its queue, which tells nothing of what was done."""
+        """`stopped`: of a machine that was stopped, or stops, which may have emptied its queue."""
         self.cycle, self.machine_id = state["cycle"], state["move_id"]
-        if stopped:
-            self.rests = False
-            return self._forget(0, self._before_machine_id())
         self._in_queue = state["moves_in_buffer"]
         self._counted, self._queued_before = self._queued_before, self._queued
-        self.rests = self._in_queue == 0 and not state["moving"] and state["waits_for"] in ("", "moves")
-        self._forget(self._counted - self._in_queue, self._before_machine_id())
+        believed = not stopped and self._believes(state)
+        self.rests = believed and self._in_queue == 0 and not state["moving"] and state["waits_for"] in ("", "moves")
+        self._forget(self._counted - self._in_queue if believed else 0, self._before_machine_id())
+
+    def _believes(self, state: dict[str, Any]) -> bool:
+        """Whether the queue tells what was done. A stop empties it some cycles before the state says that it stops, so an empty one
+        does only when the machine has rested for a while."""
+        if self._in_queue > 0 or state["moving"]:
+            self._empty_since = None
+        elif self._empty_since is None:
+            self._empty_since = self.cycle
+        return self._in_queue > 0 or (self._empty_since is not None and self.cycle >= self._empty_since + _STOPS_WITHIN_CYCLES)
 
     def is_behind(self, move_id: int) -> bool:
         """Whether a machine that is at this move has nothing begun of what is kept: it is the one that it was known to be at,

@@ -4,7 +4,7 @@ import FreeCAD
 from PySide import QtCore, QtGui
 
 from rmac_freecad.window.dialog import button
-from rmac_freecad.window.quantity import length_text, quantity_field, value_of
+from rmac_freecad.window.quantity import LENGTH, QuantityField, position_text
 
 
 class AxisRow:
@@ -17,9 +17,9 @@ class AxisRow:
         self.place.setMinimumWidth(170)
         self.minus = button(f"{axis.name} −", lambda: step(axis, -1))
         self.plus = button(f"{axis.name} +", lambda: step(axis, 1))
-        self.reads = None if axis.turns else quantity_field("mm", 0.0)
+        self.reads = None if axis.turns else QuantityField(LENGTH)
         self.set_button = None if axis.turns else button(
-            f"Set {axis.name}", lambda: place(axis, value_of(self.reads)), "Moves the part's zero so that the tool reads this where it stands")  # fmt: skip
+            f"Set {axis.name}", lambda: place(axis, self.reads.quantity), "Moves the part's zero so that the tool reads this where it stands")  # fmt: skip
 
     def add_to(self, grid, number):
         widgets = (QtGui.QLabel(self.axis.name), self.place, self.minus, self.plus, self.reads, self.set_button)
@@ -31,7 +31,7 @@ class AxisRow:
         if state is None or not state["mechanism"]:
             return self.place.setText("—")
         value = self.axis.place(state)
-        self.place.setText(FreeCAD.Units.Quantity(value, FreeCAD.Units.Angle).UserString if self.axis.turns else length_text(value))
+        self.place.setText(FreeCAD.Units.Quantity(value, FreeCAD.Units.Angle).UserString if self.axis.turns else position_text(value))
 
     def held(self):
         """1 or -1 while a button is down, else 0."""

@@ -4,7 +4,7 @@ from PySide import QtCore, QtGui
 
 from rmac_freecad.jogging import steps
 from rmac_freecad.window.dialog import row
-from rmac_freecad.window.quantity import quantity_field, set_value, value_of
+from rmac_freecad.window.quantity import LENGTH, SPEED, QuantityField
 
 SPEED_MM_S = 10.0
 
@@ -16,12 +16,12 @@ class StepFields(QtGui.QGroupBox):
         self.by_steps = QtGui.QRadioButton("by a step")
         self.while_held = QtGui.QRadioButton("while the button is held")
         self.by_steps.setChecked(True)
-        self.step = quantity_field("mm", 0.0, 0.0)
+        self.step = QuantityField(LENGTH, lowest=0)
         self.slider = QtGui.QSlider(QtCore.Qt.Horizontal)
         self.slider.setRange(0, len(self._steps) - 1)
-        self.slider.valueChanged.connect(lambda number: set_value(self.step, self._steps[number]))
+        self.slider.valueChanged.connect(lambda number: self.step.set_quantity(self._steps[number]))
         self.slider.setValue(3)
-        self.speed = quantity_field("mm/s", SPEED_MM_S, 0.0)
+        self.speed = QuantityField(SPEED, SPEED_MM_S, lowest=0)
         self.speed.setToolTip("Of axes that turn: as many degrees a second as this is mm")
         box = QtGui.QVBoxLayout(self)
         box.addLayout(row(self.by_steps, self.slider, self.step))
@@ -29,8 +29,8 @@ class StepFields(QtGui.QGroupBox):
 
     @property
     def step_mm(self):
-        return value_of(self.step)
+        return self.step.quantity
 
     @property
     def speed_mm_s(self):
-        return value_of(self.speed)
+        return self.speed.quantity

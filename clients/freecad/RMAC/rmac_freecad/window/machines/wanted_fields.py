@@ -3,7 +3,7 @@
 from PySide import QtGui
 
 from rmac_freecad.machines import TYPES, Wanted
-from rmac_freecad.window.quantity import quantity_field, value_of
+from rmac_freecad.window.quantity import LENGTH, SPEED, QuantityField
 
 ANY = "any"
 LENGTHS = (("length_mm", "Length at least"), ("width_mm", "Width at least"), ("depth_mm", "Depth at least"),
@@ -28,8 +28,8 @@ class WantedFields(QtGui.QGroupBox):
         left.addRow("Joints", self.joints)
         for key, label in LENGTHS:
             form = left if key in ("length_mm", "width_mm", "depth_mm") else right
-            form.addRow(label, self._field(key, quantity_field("mm", 0, 0)))
-        right.insertRow(0, "Feed at least", self._field("feed_mm_min", quantity_field("mm/s", 0, 0)))
+            form.addRow(label, self._field(key, QuantityField(LENGTH, lowest=0)))
+        right.insertRow(0, "Feed at least", self._field("feed_mm_min", QuantityField(SPEED, lowest=0)))
         for key, label, unit in NUMBERS:
             right.insertRow(0, label, self._field(key, _number(unit)))
         box = QtGui.QHBoxLayout(self)
@@ -44,8 +44,8 @@ class WantedFields(QtGui.QGroupBox):
 
     def _field(self, key, field):
         setattr(self, key, field)
-        is_number = isinstance(field, QtGui.QDoubleSpinBox)
-        self._numbers[key] = field.value if is_number else lambda: value_of(field)
+        field.setSpecialValueText(ANY)
+        self._numbers[key] = (lambda: field.quantity) if isinstance(field, QuantityField) else field.value
         return field
 
 

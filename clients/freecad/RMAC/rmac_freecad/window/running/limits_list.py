@@ -11,7 +11,7 @@ class LimitsList(QtGui.QTreeWidget):
         super().__init__()
         self.setHeaderLabels(("Limited by", "for"))
         self.setRootIsDecorated(False)
-        self.setMaximumHeight(130)
+        self.setMinimumHeight(110)
 
     def show_found(self, found):
         self.clear()

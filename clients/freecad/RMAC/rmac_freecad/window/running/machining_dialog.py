@@ -43,7 +43,8 @@ class MachiningDialog(Dialog):
         for part in (self.headline, self.part_zero, self.at_machine_zero, self.tools, row(self.simulate_button, self.cut_button, self.go_on_button, None),
                      self.run, self.prompts, self.progress, self.place, self.limits, self.message):  # fmt: skip
             box.addLayout(part) if isinstance(part, QtGui.QLayout) else box.addWidget(part)
-        self.resize(560, 480)
+        box.setStretchFactor(self.limits, 1)
+        self.resize(560, 460)
 
     def begin(self):
         self._look(self._looked)
@@ -128,7 +129,7 @@ class MachiningDialog(Dialog):
         if self.view is not None:
             self.view.show_limits(found.move_limits)
         self.message.tell(
-            f"It takes {time_text(found.cycle_time_s)} for {length_text(found.length_mm)} of path. The machine was taken to stand at its zero; collisions were not checked."
+            f"It takes {time_text(found.cycle_time_s)} for {length_text(round(found.length_mm, 1))} of path. The machine was taken to stand at its zero; collisions were not checked."
         )
 
     def _cut(self, program, now):

@@ -4,7 +4,7 @@ from PySide import QtGui
 
 from rmac_freecad.jobs import lacking
 from rmac_freecad.window.dialog import button, row
-from rmac_freecad.window.quantity import length_text, quantity_field, value_of
+from rmac_freecad.window.quantity import LENGTH, QuantityField, length_text
 
 
 class ToolsBox(QtGui.QGroupBox):
@@ -29,9 +29,9 @@ class ToolsBox(QtGui.QGroupBox):
 
     def _row(self, tool):
         widget = QtGui.QWidget()
-        widget.length = quantity_field("mm", 0.0, 0.0)
+        widget.length = QuantityField(LENGTH, lowest=0)
         widget.length.setToolTip("From the spindle to the tip. With one tool whose tip sets the part's zero it may stay 0")
-        widget.add = button("Add", lambda: self._add(tool, value_of(widget.length)))
+        widget.add = button("Add", lambda: self._add(tool, widget.length.quantity))
         label = QtGui.QLabel(f"{tool.number}: {tool.label}, diameter {length_text(2 * tool.radius_mm)}")
         widget.setLayout(row(label, None, QtGui.QLabel("Length"), widget.length, widget.add))
         return widget
