@@ -50,7 +50,7 @@ class MachineModel:
 
     def work(self):
         """Does some of what is queued."""
-        self.cycle += 1
+        self.cycle += self.draw.randint(1, 20)
         if self.stopping:
             self.stopping -= 1
             self.stopped = {"cycle": self.cycle, "message": "after a StopNow"}
@@ -66,7 +66,7 @@ class MachineModel:
         self.queue.clear()
         self.capacity = 0
         self.stopping = self.draw.randint(1, 6)
-        self.tells_at = self.cycle + self.draw.randint(0, 3)
+        self.tells_at = self.cycle + self.draw.randint(0, 9)
 
     def state(self):
         if self.stopping or self.stopped:

@@ -69,7 +69,7 @@ class JogDialogTest(WindowTest):
         self.dialog.steps.step.set_quantity(2.5)
         row = self.dialog.rows[1]
         row.plus.click()
-        process_until(lambda: abs(self.state()["pose"][1] - 2.5) < 0.01, f"Y is at 2.5; {self.dialog.message.text()}")
+        process_until(lambda: abs(self.state()["pose"][1] - 2.5) < 0.01, lambda: f"Y is at 2.5; {self.dialog.message.text()!r}, {self.state()}")
         self.at_rest()
         process_until(lambda: row.place.text() == "2.500 mm", "the display says so")
         row.minus.click()

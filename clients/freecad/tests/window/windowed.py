@@ -17,15 +17,15 @@ from rmac_freecad.window.session import Session
 import rmac  # isort: skip
 
 MACHINE = "DMACXYZ"
-BOUND_S = 120  # for a computer that is busy; what is waited for takes a second or two
+BOUND_S = int(os.environ.get("RMAC_WAIT_S", "120"))  # for a computer that is busy; what is waited for takes a second or two
 
 
 def process_until(condition, what):
-    """Lets the window work until then. The session's timer wakes it up."""
+    """Lets the window work until then. The session's timer wakes it up. `what` may be made when it is told."""
     until = time.monotonic() + BOUND_S
     while not condition():
         if time.monotonic() > until:
-            raise AssertionError(f"within {BOUND_S} s it did not come to this: {what}")
+            raise AssertionError(f"within {BOUND_S} s it did not come to this: {what() if callable(what) else what}")
         QtGui.QApplication.processEvents(QtCore.QEventLoop.WaitForMoreEvents)
 
 
@@ -76,10 +76,10 @@ class WindowTest(unittest.TestCase):
 
     def refused(self, dialog, *words):
         """Waits for a message of something refused, and holds it against words that must stand in it."""
-        process_until(lambda: dialog.message.refused is not None, f"a refusal with {words}; the dialog says {dialog.message.text()!r}")
+        process_until(lambda: dialog.message.refused is not None, lambda: f"a refusal with {words}; the dialog says {dialog.message.text()!r}")
         for word in words:
             self.assertIn(word, dialog.message.text())
 
     def told(self, dialog, word):
-        process_until(lambda: word in dialog.message.text() or dialog.message.refused is not None, f"the dialog says {word!r}, not {dialog.message.text()!r}")
+        process_until(lambda: word in dialog.message.text() or dialog.message.refused is not None, lambda: f"the dialog says {word!r}, not {dialog.message.text()!r}")
         self.assertIn(word, dialog.message.text())

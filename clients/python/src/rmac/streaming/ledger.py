@@ -34,7 +34,8 @@ class Ledger:
         self._in_queue: int = state["moves_in_buffer"]
         self._queued = self._queued_done = 0
         self._queued_before = self._counted = 0
-        self._empty_since: int | None = None  # cycle from which on nothing was queued and nothing moved
+        self._told: tuple[int, int] | None = None  # in which cycle, and how many of those in the queue seemed to be done
+        self._rested_since: int | None = None  # cycle
 
     @property
     def complete(self) -> bool:
@@ -66,22 +67,32 @@ class Ledger:
         self.rests = False
 
     def heard(self, state: dict[str, Any], stopped: bool) -> None:
-        """`stopped`: of a machine that was stopped, or stops, which may have emptied its queue."""
+        """`stopped`: of a machine that was stopped, or stops. A stop empties the queue some cycles before the state says that it stops:
+        what a queue tells of moves that are done is believed when a later state knows of no stop."""
         self.cycle, self.machine_id = state["cycle"], state["move_id"]
         self._in_queue = state["moves_in_buffer"]
         self._counted, self._queued_before = self._queued_before, self._queued
-        believed = not stopped and self._believes(state)
-        self.rests = believed and self._in_queue == 0 and not state["moving"] and state["waits_for"] in ("", "moves")
-        self._forget(self._counted - self._in_queue if believed else 0, self._before_machine_id())
+        if stopped:
+            self._told = self._rested_since = None
+        self._forget(self._believed(), self._before_machine_id())
+        if self._told is None and not stopped:
+            self._told = self.cycle, self._counted - self._in_queue
+        self.rests = self._has_rested(not stopped and not state["moving"] and state["waits_for"] in ("", "moves"))
 
-    def _believes(self, state: dict[str, Any]) -> bool:
-        """Whether the queue tells what was done. A stop empties it some cycles before the state says that it stops, so an empty one
-        does only when the machine has rested for a while."""
-        if self._in_queue > 0 or state["moving"]:
-            self._empty_since = None
-        elif self._empty_since is None:
-            self._empty_since = self.cycle
-        return self._in_queue > 0 or (self._empty_since is not None and self.cycle >= self._empty_since + _STOPS_WITHIN_CYCLES)
+    def _believed(self) -> int:
+        """Of those in the queue, how many are done for sure."""
+        if self._told is None or self.cycle < self._told[0] + _STOPS_WITHIN_CYCLES:
+            return 0
+        (_, done), self._told = self._told, None
+        return done
+
+    def _has_rested(self, rests: bool) -> bool:
+        """For long enough that no stop can be the reason."""
+        if not rests or self._in_queue > 0:
+            self._rested_since = None
+        elif self._rested_since is None:
+            self._rested_since = self.cycle
+        return self._rested_since is not None and self.cycle >= self._rested_since + _STOPS_WITHIN_CYCLES
 
     def is_behind(self, move_id: int) -> bool:
         """Whether a machine that is at this move has nothing begun of what is kept: it is the one that it was known to be at,

@@ -70,7 +70,8 @@ class Stream:
         if self._full or self.failure is not None or self._refusal is not None:
             return None
         batch: list[tuple[str, str]] = []
-        room = min(_BATCH, _WINDOW - len(self._under_way), self._capacity - self.ledger.most_in_queue - len(self._under_way))
+        in_queue = max(self.ledger.most_in_queue, len(self.ledger.kept))  # no more is kept than the queue has room for
+        room = min(_BATCH, _WINDOW - len(self._under_way), self._capacity - in_queue - len(self._under_way))
         size = 0
         while len(batch) < room:
             part = self._peek()
