@@ -9,7 +9,7 @@ import unittest
 sys.path.append(os.path.join(os.environ["RMAC_SOURCE"], "tests/system"))
 
 from appliance import Appliance
-from rmac_freecad.jogging import Hand
+from rmac_freecad.jogging import Hand, axes_of
 from rmac_freecad.machines import Wanted
 from rmac_freecad.station import NotConnected, Settings, Station
 
@@ -98,6 +98,18 @@ class StationTest(unittest.TestCase):
         self.assertIn("tests", second.state()["authority"])
         hand.leave()
         self.assertEqual(second.state()["authority"], "")
+
+    def test_what_can_be_jogged_is_the_tip_and_each_joint_that_turns(self):
+        client = self.client()
+        with client.authority():
+            machine = client.load("TarusXYZCATwin")
+        axes = axes_of(machine)
+        self.assertEqual([(axis.name, axis.turns, axis.joint) for axis in axes],
+                         [("X", False, None), ("Y", False, None), ("Z", False, None), ("joint 4", True, 3), ("joint 5", True, 4)])  # fmt: skip
+        with client.authority():
+            client.call(axes[3].by(30))
+            client.until_done()
+        self.assertAlmostEqual(axes[3].place(client.state()), 30, 1)
 
     def test_a_search_by_a_name_with_a_quote_finds_nothing_and_breaks_nothing(self):
         machines = self.client().machines(Wanted(name="it's", joints=5).condition())

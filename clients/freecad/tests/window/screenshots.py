@@ -18,7 +18,9 @@ IMAGES = pathlib.Path(os.environ["RMAC_SOURCE"]) / "docs/images/freecad"
 
 
 def shoot(name, dialog=None):
-    """A dialog, or all of the screen."""
+    """A dialog, or all of the screen but for what FreeCAD reports."""
+    for dock in FreeCADGui.getMainWindow().findChildren(QtGui.QDockWidget):
+        dock.setVisible(dock.objectName() == "Combo View")
     QtGui.QApplication.processEvents()
     picture = QtGui.QGuiApplication.primaryScreen().grabWindow(0) if dialog is None else dialog.grab()
     IMAGES.mkdir(exist_ok=True)
@@ -49,8 +51,6 @@ class Screens(WindowTest):
         FreeCADGui.activateWorkbench("RmacWorkbench")
         self.part_job = self.job()
         operation_of(self.part_job, PathProfile, "Profile", StepDown="2 mm")
-        for dock in window.findChildren(QtGui.QDockWidget):
-            dock.setVisible(dock.objectName() == "Combo View")
         view = FreeCADGui.ActiveDocument.ActiveView
         view.viewIsometric()
         FreeCADGui.SendMsgToActiveView("ViewFit")
@@ -86,12 +86,11 @@ class Screens(WindowTest):
         process_until(lambda: not self.session.station.state["authority"], "authority is given back")
 
     def machine(self):
-        dialog = self.placed(MachiningDialog(self.session), 600, 560)
+        dialog = self.placed(MachiningDialog(self.session), 660, 540)
         dialog.begin()
         process_until(lambda: dialog.headline.text(), "the machine was looked at")
         dialog.simulate_button.click()
         self.told(dialog, "It takes")
-        FreeCADGui.Selection.clearSelection()
         self.settle()
         shoot("simulated")
         with rmac.connect(self.address, "set-up") as client:
