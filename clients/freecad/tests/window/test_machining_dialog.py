@@ -6,6 +6,8 @@ import FreeCADGui
 import PathScripts.PathProfile as PathProfile
 from path_job import operation_of, written
 from rmac_freecad.path import DONE, LIMITS
+from rmac_freecad.window.jogging.jog_dialog import JogDialog
+from rmac_freecad.window.machines.search_dialog import SearchDialog
 from rmac_freecad.window.running.machining_dialog import MachiningDialog
 from windowed import WindowTest, process_until
 
@@ -178,6 +180,25 @@ class MachiningDialogTest(WindowTest):
             dialog.cut_button.click()
             self.refused(dialog, "Another station has authority", "the other CAM")
         self.assertFalse(dialog.machining.running)
+
+    def test_jogging_and_loading_beside_a_cut_are_refused_and_end_it_not(self):
+        jog, search = self.opened(JogDialog(self.session)), self.opened(SearchDialog(self.session))
+        jog.begin()
+        process_until(lambda: jog.rows, "it was jogged before")
+        search.connect_and_list()
+        process_until(lambda: search.list.machines, "machines are listed")
+        self.written("G1 X1 F20", "M0", "G1 X2 F20")
+        dialog = self.dialog()
+        dialog.cut_button.click()
+        process_until(lambda: self.state() and self.state()["state"] == "Holding", "it holds in its midst")
+        jog.rows[0].plus.click()
+        self.refused(jog, "A job is being cut")
+        search.list.choose("SuginoXYZ")
+        search.load_button.click()
+        self.refused(search, "A job is being cut")
+        jog.close()
+        dialog.run.resume.click()
+        self.told(dialog, "is cut")
 
     def test_a_dialog_stays_while_the_machine_cuts(self):
         self.written("G1 X1 F20", "M0")

@@ -32,6 +32,17 @@ class Dialog(QtGui.QDialog):
         self.message.tell(working)
         self.station.ask(lambda: what(self.session.client()), done, self.failed)
 
+    def change(self, what, done, working=""):
+        """As `ask`, of what changes the machine: with authority, and refused while a job is being cut."""
+
+        def with_authority():
+            client = self.session.client_unless_it_cuts()
+            with client.authority():
+                return what(client)
+
+        self.message.tell(working)
+        self.station.ask(with_authority, done, self.failed)
+
     def failed(self, error):
         self.message.refuse(error)
 

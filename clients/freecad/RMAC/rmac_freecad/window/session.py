@@ -2,6 +2,9 @@
 
 from PySide import QtCore
 
+import rmac
+from rmac_freecad.jogging import Hand
+from rmac_freecad.running import Machining
 from rmac_freecad.station import Settings, Station
 
 TICK_MS = 50
@@ -11,6 +14,8 @@ class Session:
     def __init__(self, settings=None):
         self.settings = settings or Settings()
         self.station = Station()
+        self.hand = Hand(self.client_unless_it_cuts)
+        self.machining = Machining(self.station, self._client_for_a_cut)
         self.machine = None  # the one that is loaded, a rmac.LoadedMachine, as far as is known here
         self._listeners = []
         self._timer = QtCore.QTimer()
@@ -28,6 +33,17 @@ class Session:
     def client(self):
         """Connected, to the address of the preferences. Waits: for threads of the station."""
         return self.station.connect(self.settings.address)
+
+    def client_unless_it_cuts(self):
+        """For what needs authority beside a job: it would end the cut when it gives it back."""
+        if self.machining.running:
+            raise rmac.RmacError("A job is being cut. Wait for its end, or stop it.")
+        return self.client()
+
+    def _client_for_a_cut(self):
+        """Whoever jogged gives the machine back first; giving it back in mid-cut would stop it."""
+        self.hand.leave()
+        return self.client()
 
     def _tick(self):
         self.station.deliver()

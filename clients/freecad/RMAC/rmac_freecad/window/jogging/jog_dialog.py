@@ -6,7 +6,7 @@ import time
 from PySide import QtCore, QtGui
 
 import rmac
-from rmac_freecad.jogging import Hand, HeldJog, axes_of, is_machine_frame, place_part
+from rmac_freecad.jogging import HeldJog, axes_of, is_machine_frame, place_part
 from rmac_freecad.window.dialog import Dialog, button, row
 from rmac_freecad.window.jogging.axis_row import AxisRow
 from rmac_freecad.window.jogging.step_fields import StepFields
@@ -19,7 +19,7 @@ LATE_S = 5  # nobody expects a motion any more that a button asked for so long a
 class JogDialog(Dialog):
     def __init__(self, session):
         super().__init__(session, "Jog")
-        self._hand = Hand(session.client)
+        self._hand = session.hand
         self._held = HeldJog(lambda: self._hand.client().call, lambda error: self.station.tell(self.failed, error))
         self.rows = []
         self._learning = False

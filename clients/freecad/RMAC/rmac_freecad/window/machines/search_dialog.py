@@ -68,13 +68,8 @@ class SearchDialog(Dialog):
 
     def load(self):
         name, virtual = self.list.chosen.name, self.virtual.isChecked()
-
-        def loaded(client):
-            with client.authority():
-                return client.load(name, virtual)
-
         self.load_button.setEnabled(False)
-        self.ask(loaded, self._loaded, f"{name} is being loaded; modules that are new are verified first, which takes its time…")
+        self.change(lambda client: client.load(name, virtual), self._loaded, f"{name} is being loaded; modules that are new are verified first, which takes its time…")
 
     def failed(self, error):
         super().failed(error)

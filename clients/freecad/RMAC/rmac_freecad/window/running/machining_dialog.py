@@ -7,7 +7,7 @@ from PySide import QtGui
 from rmac_freecad.jobs import read_job, tools_of
 from rmac_freecad.jogging import is_machine_frame
 from rmac_freecad.program import keep
-from rmac_freecad.running import Machining, check_part_zero, check_tools, look
+from rmac_freecad.running import check_part_zero, check_tools, look
 from rmac_freecad.simulation import simulate_telling_lengths
 from rmac_freecad.window.dialog import Dialog, button, row
 from rmac_freecad.window.jobs import job_in_question
@@ -22,7 +22,7 @@ from rmac_freecad.window.running.tools_box import ToolsBox
 class MachiningDialog(Dialog):
     def __init__(self, session):
         super().__init__(session, "Machine a job")
-        self.machining = Machining(session.station, session.client)
+        self.machining = session.machining
         self.job = None
         self.job_tools = []
         self.view = None
@@ -176,11 +176,10 @@ class MachiningDialog(Dialog):
 
     def _add_tool(self, tool, length_mm):
         def add(client):
-            with client.authority():
-                client.cam.SetTool(tool.number, length_mm, tool.radius_mm, tool.label)
+            client.cam.SetTool(tool.number, length_mm, tool.radius_mm, tool.label)
             return look(client)
 
-        self.ask(add, self._looked)
+        self.change(add, self._looked)
 
     def _confirm_tool(self, number):
         self.ask(lambda client: client.cam.ConfirmToolChange(number), lambda answer: self.message.tell(""))
