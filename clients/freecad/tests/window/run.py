@@ -18,6 +18,7 @@ def run():
     """Nobody closes a window that hangs: it says where, and ends."""
     code = 1
     try:
+        faulthandler.enable(file=STDERR)
         faulthandler.dump_traceback_later(BOUND_S, exit=True, file=STDERR)
         sys.path[:0] = [str(HERE), str(HERE.parent)]
         words = ["freecad", *os.environ.get("RMAC_TESTS", "").split()]

@@ -86,7 +86,7 @@ class Screens(WindowTest):
         process_until(lambda: not self.session.station.state["authority"], "authority is given back")
 
     def machine(self):
-        dialog = self.placed(MachiningDialog(self.session), 660, 540)
+        dialog = self.placed(MachiningDialog(self.session), 660, 420)
         dialog.begin()
         process_until(lambda: dialog.headline.text(), "the machine was looked at")
         dialog.simulate_button.click()

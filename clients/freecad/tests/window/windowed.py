@@ -8,8 +8,9 @@ import unittest
 sys.path.append(os.path.join(os.environ["RMAC_SOURCE"], "tests/system"))
 
 import FreeCAD
+import PathScripts.PathProfile as PathProfile
 from appliance import BUILD, Appliance
-from path_job import plate_job
+from path_job import operation_of, plate_job
 from PySide import QtCore, QtGui
 from rmac_freecad.station import Settings
 from rmac_freecad.window.session import Session
@@ -44,7 +45,7 @@ class WindowTest(unittest.TestCase):
         self.settings.address = self.address
         self.settings.rmac = str(BUILD / "bin/rmac")
         self.session = Session(self.settings)
-        self.addCleanup(self.session.station.disconnect)
+        self.addCleanup(self.session.close)
         self.dialogs = []
         self.addCleanup(self.close_dialogs)
 
@@ -59,6 +60,12 @@ class WindowTest(unittest.TestCase):
         job = plate_job(self)
         job.Tools.Group[0].SpindleSpeed = 800  # the machine's spindle has 1000
         job.Document.recompute()
+        return job
+
+    def profile(self):
+        """A job that cuts around the plate."""
+        job = self.job()
+        operation_of(job, PathProfile, "Profile")
         return job
 
     def free(self, client):

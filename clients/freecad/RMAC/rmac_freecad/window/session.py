@@ -1,5 +1,6 @@
 """What the commands and dialogs of one FreeCAD share: the station, its settings, and the timer that brings the answers."""
 
+import FreeCADGui
 from PySide import QtCore
 
 import rmac
@@ -18,7 +19,8 @@ class Session:
         self.machining = Machining(self.station, self._client_for_a_cut)
         self.machine = None  # the one that is loaded, a rmac.LoadedMachine, as far as is known here
         self._listeners = []
-        self._timer = QtCore.QTimer()
+        # The window's own: Python may collect what it owns in any thread, and a timer must end in its own.
+        self._timer = QtCore.QTimer(FreeCADGui.getMainWindow())
         self._timer.timeout.connect(self._tick)
         self._timer.start(TICK_MS)
 
@@ -29,6 +31,11 @@ class Session:
     def off_tick(self, listener):
         if listener in self._listeners:
             self._listeners.remove(listener)
+
+    def close(self):
+        """Nothing comes any more, and what this station moves stops."""
+        self._timer.stop()
+        self.station.disconnect()
 
     def client(self):
         """Connected, to the address of the preferences. Waits: for threads of the station."""

@@ -15,11 +15,15 @@ class RmacWorkbench(FreeCADGui.Workbench):
     def Initialize(self):
         from rmac_freecad.window.commands import register
 
-        FreeCADGui.addIconPath(str(ICONS))
-        FreeCADGui.addPreferencePage(str(ICONS.parent / "preferences.ui"), "RMAC")
         names = register()
         self.appendToolbar(TOOLBAR, names)
         self.appendMenu("&RMAC", names)
 
     def GetClassName(self):
         return "Gui::PythonWorkbench"
+
+
+def add_preferences():
+    """At FreeCAD's start: the page is there before anybody opens the workbench."""
+    FreeCADGui.addIconPath(str(ICONS))
+    FreeCADGui.addPreferencePage(str(ICONS.parent / "preferences.ui"), "RMAC")
