@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Runs a Python file in FreeCAD's window, on a screen of its own that nobody sees: start.py FILE. Ends with its exit code."""
 
 import os
