@@ -17,10 +17,15 @@ import rmac
 IMAGES = pathlib.Path(os.environ["RMAC_SOURCE"]) / "docs/images/freecad"
 
 
-def shoot(name, dialog=None):
-    """A dialog, or all of the screen but for what FreeCAD reports."""
+def hide_docks():
+    """But for the tree."""
     for dock in FreeCADGui.getMainWindow().findChildren(QtGui.QDockWidget):
         dock.setVisible(dock.objectName() == "Combo View")
+
+
+def shoot(name, dialog=None):
+    """A dialog, or all of the screen but for what FreeCAD reports."""
+    hide_docks()
     QtGui.QApplication.processEvents()
     picture = QtGui.QGuiApplication.primaryScreen().grabWindow(0) if dialog is None else dialog.grab()
     IMAGES.mkdir(exist_ok=True)
@@ -47,13 +52,17 @@ class Screens(WindowTest):
 
     def show_job(self):
         window = FreeCADGui.getMainWindow()
-        window.setGeometry(0, 0, 1280, 1024)
+        window.setGeometry(0, 0, 1600, 1000)
         FreeCADGui.activateWorkbench("RmacWorkbench")
         self.part_job = self.job()
         operation_of(self.part_job, PathProfile, "Profile", StepDown="2 mm")
         view = FreeCADGui.ActiveDocument.ActiveView
         view.viewIsometric()
+        hide_docks()
+        self.settle()
         FreeCADGui.SendMsgToActiveView("ViewFit")
+        for _ in range(4):  # the dialog stands beside it
+            FreeCADGui.runCommand("Std_ViewZoomOut")
 
     def search(self):
         dialog = self.placed(SearchDialog(self.session), 150, 150)
@@ -86,7 +95,8 @@ class Screens(WindowTest):
         process_until(lambda: not self.session.station.state["authority"], "authority is given back")
 
     def machine(self):
-        dialog = self.placed(MachiningDialog(self.session), 660, 420)
+        dialog = self.placed(MachiningDialog(self.session), 1000, 590)
+        dialog.resize(540, 350)
         dialog.begin()
         process_until(lambda: dialog.headline.text(), "the machine was looked at")
         dialog.simulate_button.click()

@@ -9,7 +9,7 @@ import sys
 import tempfile
 
 ADD_ON = pathlib.Path(__file__).resolve().parents[2] / "RMAC"
-SCREEN = "1280x1024x24"
+SCREEN = "1600x1000x24"
 # Begins in a workbench that shows no web page, and asks nothing.
 PREFERENCES = """<?xml version="1.0" encoding="UTF-8" standalone="no" ?>
 <FCParameters><FCParamGroup Name="Root"><FCParamGroup Name="BaseApp"><FCParamGroup Name="Preferences">
