@@ -95,7 +95,7 @@ class Screens(WindowTest):
         process_until(lambda: not self.session.station.state["authority"], "authority is given back")
 
     def machine(self):
-        dialog = self.placed(MachiningDialog(self.session), 1000, 590)
+        dialog = self.placed(MachiningDialog(self.session), 1000, 545)
         dialog.resize(540, 350)
         dialog.begin()
         process_until(lambda: dialog.headline.text(), "the machine was looked at")
