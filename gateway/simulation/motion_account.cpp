@@ -35,7 +35,8 @@ double part(double value, double bound) {
 
 }  // namespace
 
-MotionAccount::MotionAccount(double period_s) : period_s_(period_s), time_s_(kJointLimits) {}
+MotionAccount::MotionAccount(double period_s)
+    : period_s_(period_s), time_s_(kJointLimits), time_in_move_s_(kJointLimits) {}
 
 void MotionAccount::mechanism(const sdk::DeviceObject& device) {
   max_feed_mm_s_ = device.max_feedrate_mm_min / 60;
@@ -48,6 +49,7 @@ void MotionAccount::mechanism(const sdk::DeviceObject& device) {
     if (known == joints_.end()) joints_.push_back({limits.name});
   }
   time_s_.resize(kJointLimits + kQuantities.size() * joints_.size());
+  time_in_move_s_.assign(time_s_.size(), 0);
   acceleration_.assign(bounds_.size(), 0);
   jerk_.assign(bounds_.size(), 0);
   path_.clear();
@@ -70,8 +72,12 @@ void MotionAccount::queued(const Move& move, std::span<const std::shared_ptr<con
   path_.push_back(bounds);
 }
 
-void MotionAccount::move_done() {
+std::string MotionAccount::move_done() {
   if (!path_.empty()) path_.pop_front();
+  const auto longest = std::ranges::max_element(time_in_move_s_);
+  std::string ruled = *longest > 0 ? limit_name(static_cast<std::size_t>(longest - time_in_move_s_.begin())) : "";
+  std::ranges::fill(time_in_move_s_, 0);
+  return ruled;
 }
 
 void MotionAccount::cycle(const CycleSample& sample, double override_percent) {
@@ -120,18 +126,24 @@ void MotionAccount::count(const CycleSample& sample, double override_percent) {
     consider(first + 1, part(sample.acceleration_set[i], bounds.acceleration));
     consider(first + 2, part(jerk_[i], bounds.jerk));
   }
-  (largest >= kRules ? time_s_[nearest] : none_s_) += period_s_;
+  const std::size_t rules = largest >= kRules ? nearest : kNone;
+  time_s_[rules] += period_s_;
+  time_in_move_s_[rules] += period_s_;
+}
+
+std::string MotionAccount::limit_name(std::size_t limit) const {
+  constexpr std::array kOfPath{"none", "feed", "path acceleration"};
+  if (limit < kOfPath.size()) return kOfPath[limit];
+  const std::size_t of_joints = limit - kJointLimits;
+  return fmt::format("{} {}", joints_[of_joints / kQuantities.size()].name,
+                     kQuantities[of_joints % kQuantities.size()]);
 }
 
 std::vector<MotionAccount::Share> MotionAccount::shares() const {
-  std::vector<Share> shares{{"feed", time_s_[kFeed]}, {"path acceleration", time_s_[kPathAcceleration]}};
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    for (std::size_t q = 0; q < kQuantities.size(); ++q) {
-      shares.push_back(
-          {fmt::format("{} {}", joints_[i].name, kQuantities[q]), time_s_[kJointLimits + kQuantities.size() * i + q]});
-    }
-  }
-  shares.push_back({"none", none_s_});
+  std::vector<Share> shares;
+  for (std::size_t limit = kFeed; limit < time_s_.size(); ++limit)
+    shares.push_back({limit_name(limit), time_s_[limit]});
+  shares.push_back({limit_name(kNone), time_s_[kNone]});
   std::erase_if(shares, [](const Share& share) { return share.time_s == 0; });
   std::ranges::stable_sort(shares, std::ranges::greater{}, &Share::time_s);
   return shares;

@@ -35,8 +35,9 @@ class MotionAccount {
   void mechanism(const sdk::DeviceObject& device);
   /// A move has been added to those that are not done.
   void queued(const Move& move, std::span<const std::shared_ptr<const PathSegment>> segments);
-  /// The first of the moves that are not done is done.
-  void move_done();
+  /// The first of the moves that are not done is done. Gives the limit that ruled it for the longest time, as in
+  /// `Share`; empty where it did not move.
+  [[nodiscard]] std::string move_done();
   void cycle(const CycleSample& sample, double override_percent);
 
   [[nodiscard]] const std::vector<Joint>& joints() const noexcept { return joints_; }
@@ -55,20 +56,22 @@ class MotionAccount {
     double feed_mm_s = 0, rise_mm_s2 = 0, fall_mm_s2 = 0;
     double joint_fraction = 0;  ///< in joint space: the share of the joints' speed limits
   };
-  static constexpr std::size_t kFeed = 0, kPathAcceleration = 1, kJointLimits = 2;
+  static constexpr std::size_t kNone = 0, kFeed = 1, kPathAcceleration = 2, kJointLimits = 3;
 
   void count(const CycleSample& sample, double override_percent);
+  [[nodiscard]] std::string limit_name(std::size_t limit) const;
   [[nodiscard]] double part_of_feed(const CycleSample& sample, const PathBounds& path, double override_factor) const;
 
   double period_s_;
   double max_feed_mm_s_ = 0;
   std::vector<Joint> joints_;
-  std::vector<Bounds> bounds_;        ///< those of the mechanism in force, joint by joint
-  std::vector<double> time_s_;        ///< feed, path acceleration, then velocity, acceleration and jerk of each joint
-  std::deque<PathBounds> path_;       ///< those of the moves that are not done
-  std::vector<double> jerk_;          ///< in the cycle
-  std::vector<double> acceleration_;  ///< in the cycle before
-  double none_s_ = 0, length_mm_ = 0, feed_before_mm_s_ = 0;
+  std::vector<Bounds> bounds_;  ///< those of the mechanism in force, joint by joint
+  std::vector<double> time_s_;  ///< none, feed, path acceleration, then velocity, acceleration and jerk of each joint
+  std::vector<double> time_in_move_s_;  ///< the same, in the move that is under way
+  std::deque<PathBounds> path_;         ///< those of the moves that are not done
+  std::vector<double> jerk_;            ///< in the cycle
+  std::vector<double> acceleration_;    ///< in the cycle before
+  double length_mm_ = 0, feed_before_mm_s_ = 0;
 };
 
 }  // namespace rmac::gateway

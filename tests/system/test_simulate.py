@@ -138,6 +138,14 @@ class Simulate(unittest.TestCase):
         softly = self.simulate([request("RMAC_CAM.SetPathAccelRise", newVal=50), feed(12000), to(40, 0, 0)])
         self.assertGreater(softly["limited_by_s"]["path acceleration"], 0.5 * softly["cycle_time_s"])
 
+    def test_each_move_tells_the_limit_that_ruled_it(self):
+        program = [feed(300), to(5, 0, 0, 1), along((5, 0, 0), (20, 0, 0), 2), request("RMAC_CAM.Dwell", MoveID=3, Time=0.1),
+                   feed(12000), to(25, 0, 0, 4)]
+        told = self.simulate(program, "--by-move")
+        limits = {move["move_id"]: move["limit"] for move in told["move_limits"]}
+        self.assertEqual(limits, {1: "feed", 2: "feed", 3: "", 4: "X jerk"})
+        self.assertNotIn("move_limits", self.simulate(program))
+
     def test_a_machine_by_the_path_of_its_device_json(self):
         device = json.loads(BENCH.read_text())
         device["MechanismName"] = "WhatIf"

@@ -16,6 +16,7 @@ class MachineModel:
         self.queue, self.done, self.taken, self.most = [], [], [], 0
         self.cycle, self.move_id = 10, 0
         self.waiting = []  # batches that were sent and not carried out
+        self.stopping, self.stopped = 0, None  # so many cycles yet; the event, at rest
         self.refusing = 0  # so many batches that had been read when the queue was full
 
     def send(self, batch):
@@ -49,15 +50,34 @@ class MachineModel:
 
     def work(self):
         """Does some of what is queued."""
-        self.cycle += 1
+        self.cycle += self.draw.randint(1, 20)
+        if self.stopping:
+            self.stopping -= 1
+            self.stopped = {"cycle": self.cycle, "message": "after a StopNow"}
+            return
         for _ in range(self.draw.randint(0, len(self.queue))):
             self.move_id = self.queue.pop(0)
             self.done.append(self.move_id)
         if self.queue:
             self.move_id = self.queue[0]
 
+    def stop(self):
+        """Drops the queue; the move that is under way is not done, and nothing is begun any more. It tells so some cycles later."""
+        self.queue.clear()
+        self.capacity = 0
+        self.stopping = self.draw.randint(1, 6)
+        self.tells_at = self.cycle + self.draw.randint(0, 9)
+
     def state(self):
+        if self.stopping or self.stopped:
+            if self.cycle < self.tells_at:
+                return self._state("Running", self.draw.choice(("", "moves", "dwell")), None, self.draw.random() < 0.5)
+            stands = not self.stopping
+            return self._state("Idle" if stands else "Stopping", "", self.stopped if stands else None, not stands and self.draw.random() < 0.5)
+        return self._state("Running", "" if self.queue else "moves", None, bool(self.queue))
+
+    def _state(self, state, waits_for, last_stop, moving):
         return {
-            "cycle": self.cycle, "move_id": self.move_id, "moves_in_buffer": len(self.queue), "moving": bool(self.queue),
-            "waits_for": "" if self.queue else "moves", "state": "Running", "last_stop": None, "last_error": None, "mechanism": "M",
+            "cycle": self.cycle, "move_id": self.move_id, "moves_in_buffer": len(self.queue), "moving": moving,
+            "waits_for": waits_for, "state": state, "last_stop": last_stop, "last_error": None, "mechanism": "M",
         }

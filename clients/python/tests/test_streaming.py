@@ -9,7 +9,7 @@ from rmac.geometry.nurbs import NurbsCurve
 from rmac.moves import Line, MoveTo, Nurbs
 from rmac.streaming.gaps import OpenEnds
 from rmac.streaming.part import Part
-from rmac.streaming.progress import Interrupted, MoveRefused
+from rmac.streaming.progress import Interrupted, MachineStopped, MoveRefused
 from rmac.streaming.stream import Stream
 
 
@@ -25,12 +25,15 @@ def walk(draw, count, reach=3):
         here = there
 
 
-def drive(stream, machine, draw):
-    """Until the stream ends: everything happens by chance, and states may be older than the answers around them."""
+def drive(stream, machine, draw, stop_after=None):
+    """Until the stream ends: everything happens by chance, and states may be older than the answers around them. The machine is
+    stopped once `stop_after` moves are done."""
     finished = []
     for _ in range(200000):
         if stream.ended:
             return finished
+        if stop_after is not None and len(machine.done) >= stop_after and not machine.stopping and machine.stopped is None:
+            machine.stop()
         event = draw.choice(("send", "carry", "work", "state", "late", "confirm"))
         if event == "send" and (batch := stream.next_batch()):
             machine.send(batch)
@@ -54,6 +57,19 @@ def drive(stream, machine, draw):
 
 
 class StreamTest(unittest.TestCase):
+    def test_what_a_stop_drops_is_not_told_as_done_and_no_program_ends_by_it(self):
+        stopped_in_mid_program = 0
+        for seed in range(60):
+            draw = random.Random(seed)
+            machine = MachineModel(draw, capacity=draw.randint(2, 200))
+            stream = Stream(list(walk(draw, 100)), machine.state(), machine.capacity)
+            finished = drive(stream, machine, draw, stop_after=draw.randint(0, 60))
+            if len(machine.done) < 100:
+                stopped_in_mid_program += 1
+                self.assertIsInstance(stream.failure, MachineStopped, f"seed {seed}")
+                self.assertLessEqual(len(finished), len(machine.done), f"seed {seed}")
+        self.assertGreater(stopped_in_mid_program, 40)
+
     def test_a_program_is_taken_once_and_in_order_whatever_comes_when(self):
         for seed in range(60):
             draw = random.Random(seed)

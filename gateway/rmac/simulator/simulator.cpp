@@ -64,6 +64,7 @@ Result<SimulationReport> Simulator::run() {
   report.length_mm = account_.length_mm();
   report.joints = account_.joints();
   report.limited_by = account_.shares();
+  report.move_limits = std::move(move_limits_);
   return report;
 }
 
@@ -195,7 +196,7 @@ void Simulator::take(const gateway::Event& event) {
   } else if (event.kind == Kind::MoveStarted) {
     moves_.started(event.t_s);
   } else if (event.kind == Kind::MoveDone) {
-    account_.move_done();
+    move_limits_.push_back({event.move_id, account_.move_done()});
     if (watch_ != nullptr) watch_->move_done();
     moves_.done(event.move_id, event.t_s);
   } else if (event.kind == Kind::ToolWanted) {

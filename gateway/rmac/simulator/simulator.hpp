@@ -15,6 +15,12 @@
 
 namespace rmac::cli {
 
+/// The limit that ruled a move for the longest time, as MotionAccount names it; empty where it did not move.
+struct MoveLimit {
+  std::int64_t move_id = 0;
+  std::string limit;
+};
+
 struct SimulationReport {
   std::size_t moves = 0;
   std::size_t tool_changes = 0;  ///< a person takes no time here, nor at a stop
@@ -22,6 +28,7 @@ struct SimulationReport {
   double length_mm = 0;
   std::vector<gateway::MotionAccount::Joint> joints;
   std::vector<gateway::MotionAccount::Share> limited_by;
+  std::vector<MoveLimit> move_limits;  ///< in the order in which moves were done
   std::size_t record_rows = 0;
   std::vector<std::string> record_files;
 };
@@ -60,6 +67,7 @@ class Simulator {
   gateway::Simulation& simulation_;
   const Program& program_;
   gateway::MotionAccount account_;
+  std::vector<MoveLimit> move_limits_;
   std::optional<Record> record_;
   RequestOrder order_;
   UnfinishedMoves moves_;

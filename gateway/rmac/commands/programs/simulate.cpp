@@ -27,6 +27,7 @@ struct Options {
   std::filesystem::path tools;        ///< folder of tool tables; empty: no tools but the program's own
   std::filesystem::path setup;        ///< what stands on the table; empty: collisions are not checked
   bool first = false;                 ///< end at the first collision
+  bool by_move = false;               ///< tell each move's limit too
   double period_s = 0.001;
 };
 
@@ -35,8 +36,14 @@ double cpu_time_s() {
   return std::chrono::duration<double>(gateway::cpu_time(CLOCK_PROCESS_CPUTIME_ID)).count();
 }
 
+nlohmann::json to_json(const std::vector<MoveLimit>& limits) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& [move_id, limit] : limits) list.push_back({{"move_id", move_id}, {"limit", limit}});
+  return list;
+}
+
 /// `watch`: null without a set-up.
-void print_json(const SimulationReport& report, const CollisionWatch* watch, double took_s) {
+void print_json(const SimulationReport& report, const CollisionWatch* watch, bool by_move, double took_s) {
   nlohmann::json joints = nlohmann::json::array();
   for (const auto& joint : report.joints) {
     joints.push_back({{"name", joint.name},
@@ -50,6 +57,7 @@ void print_json(const SimulationReport& report, const CollisionWatch* watch, dou
                       {"tool_changes", report.tool_changes}, {"length_mm", report.length_mm},
                       {"joints", std::move(joints)},         {"limited_by_s", std::move(limited_by)},
                       {"collisions", "not checked"},         {"cpu_time_s", took_s}};
+  if (by_move) line["move_limits"] = to_json(report.move_limits);
   if (watch != nullptr) add_collisions(*watch, line);
   if (!report.record_files.empty()) {
     line["record_rows"] = report.record_rows;
@@ -124,6 +132,7 @@ Result<> simulate_program(const Options& options, bool json) {
   }
   if (options.machine.empty() && !options.setup.empty())
     return fail("--setup needs --machine: what stands on which table");
+  if (options.by_move && !json) return fail("--by-move needs --json: it tells something of every move");
   if (options.first && options.setup.empty())
     return fail("--first needs --setup: without one collisions are not checked");
   spdlog::set_level(spdlog::level::off);  // what is wrong with other machines of the tree is not asked here
@@ -149,7 +158,12 @@ Result<> simulate_program(const Options& options, bool json) {
   if (collisions) simulator.watch_collisions(*collisions, options.first);
   const auto report = simulator.run();
   if (!report) return tl::unexpected(report.error());
-  (json ? print_json : print_table)(*report, collisions.get(), cpu_time_s() - began_s);
+  const double took_s = cpu_time_s() - began_s;
+  if (json) {
+    print_json(*report, collisions.get(), options.by_move, took_s);
+  } else {
+    print_table(*report, collisions.get(), took_s);
+  }
   return collisions ? verdict(*collisions) : Result<>();
 }
 
@@ -168,6 +182,7 @@ void add_simulate(Command& rmac) {
       .existing_folder();
   simulate.option("--setup", &options->setup, "setup.json: what stands on the table; collisions are checked with it");
   simulate.flag("--first", &options->first, "with --setup: end at the first collision");
+  simulate.flag("--by-move", &options->by_move, "with --json: the limit that ruled each move for the longest time");
   simulate.option("--device-tree", &options->device_tree,
                   "where machines are looked for; the installation's unless given");
   simulate.option("--period", &options->period_s, "cycle of the servo loop, s (period_s in rmacd.json)")

@@ -97,7 +97,7 @@ TEST_F(Account, TakesTheProgrammedPathsBoundsOfTheMoveUnderWay) {
   EXPECT_NEAR(time_of("feed"), kPeriod_s, 1e-12);
   account_.cycle(moving({0, 0}, {0, 0}, 5), 50);
   EXPECT_NEAR(time_of("feed"), 2 * kPeriod_s, 1e-12) << "half the feed by the override";
-  account_.move_done();
+  EXPECT_EQ(account_.move_done(), "feed");
   account_.cycle(moving({0, 0}, {0, 0}, 10), 100);
   EXPECT_NEAR(time_of("feed"), 2 * kPeriod_s, 1e-12) << "the next move is allowed more";
   account_.cycle(moving({0, 0}, {0, 0}, 10 - 50 * kPeriod_s), 100);
@@ -112,6 +112,17 @@ TEST_F(Account, AJointMovesFeedIsTheSpeedItWasLeft) {
   EXPECT_NEAR(account_.length_mm(), 50, 1e-9);
   account_.cycle(moving({12, 19}, {0, 0}, 22), 100);
   EXPECT_NEAR(time_of("feed"), kPeriod_s, 1e-12) << "19 of a tenth of 200 mm/s";
+}
+
+TEST_F(Account, AMoveIsRuledByTheLimitThatRuledLongestWithinIt) {
+  for (int i = 0; i < 3; ++i) account_.cycle(moving({195, 0}, {0, 0}, 0), 100);
+  account_.cycle(moving({0, 199}, {0, 0}, 0), 100);
+  EXPECT_EQ(account_.move_done(), "X velocity");
+  EXPECT_EQ(account_.move_done(), "") << "it did not move";
+  account_.cycle(moving({0, 199}, {0, 0}, 0), 100);
+  EXPECT_EQ(account_.move_done(), "Y velocity") << "whatever ruled the moves before";
+  account_.cycle(moving({1, 0}, {0, 0}, 0), 100);
+  EXPECT_EQ(account_.move_done(), "none");
 }
 
 TEST_F(Account, AJogIsNoPartOfTheWay) {

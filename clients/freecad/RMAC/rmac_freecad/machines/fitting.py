@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from rmac_freecad.jobs import read_job
-from rmac_freecad.simulation import Found, SimulationRefused, simulate
+from rmac_freecad.simulation import Found, NoProgram, SimulationRefused, simulate
 
 
 @dataclass(frozen=True)
@@ -24,13 +24,29 @@ class NoMachineFits(Exception):
 def fitting(job, machines, tools, rmac="rmac"):
     """`machines` as `client.machines(where)` finds them; `tools` is the table that each of them is taken to have. The
     quickest first."""
-    fits, why = [], {}
-    for machine in machines:
-        program = read_job(job, rapid_mm_min=machine.max_feed_mm_min)
-        try:
-            fits.append(Fit(machine.name, simulate(program, machine.name, tools, rmac)))
-        except SimulationRefused as refused:
-            why[machine.name] = refused
+    fits, why = compare(programs_for(job, machines), tools, rmac)
     if not fits:
         raise NoMachineFits(why)
-    return sorted(fits, key=lambda fit: fit.found.cycle_time_s)
+    return fits
+
+
+def programs_for(job, machines):
+    """By the machines' names: rapids are as fast as each may go. Reads the document, so by FreeCAD's own thread."""
+    by_feed = {}
+    for feed in {machine.max_feed_mm_min for machine in machines}:
+        by_feed[feed] = read_job(job, rapid_mm_min=feed)
+    return {machine.name: by_feed[machine.max_feed_mm_min] for machine in machines}
+
+
+def compare(programs, tools, rmac="rmac"):
+    """Those that can, the quickest first, and why the others cannot. Takes its time; touches no document. `NoProgram` where nothing
+    can be simulated here."""
+    fits, why = [], {}
+    for machine, program in programs.items():
+        try:
+            fits.append(Fit(machine, simulate(program, machine, tools, rmac)))
+        except NoProgram:
+            raise
+        except SimulationRefused as refused:
+            why[machine] = refused
+    return sorted(fits, key=lambda fit: fit.found.cycle_time_s), why

@@ -9,18 +9,25 @@ class Program:
     def __init__(self):
         self.moves = []
         self._places = []
+        self._numbers = {}  # of moves, by their identity
 
     def __len__(self):
         return len(self.moves)
 
     def append(self, given, place):
-        self.moves.append(item(given))
+        move = item(given)
+        self._numbers[id(move)] = len(self.moves)
+        self.moves.append(move)
         self._places.append(place)
 
     def place_of(self, index):
         """Of a part of a run (`part.index`) or a refused move (`MoveRefused.index`), from 0; a move's id in the text, and a
         line of it, is one more."""
         return self._places[index]
+
+    def index_of(self, move):
+        """None of a move that is none of this program's, as the way back onto its path."""
+        return self._numbers.get(id(move))
 
     def text(self):
         """As a `.rmac` program: one request a line."""

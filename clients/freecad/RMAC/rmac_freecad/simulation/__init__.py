@@ -1,5 +1,6 @@
-"""Programs planned faster than real time; nothing moves."""
+"""What a machine will make of a program, without moving one."""
 
-from rmac_freecad.simulation.simulation import Found, SimulationRefused, simulate
+from rmac_freecad.simulation.simulation import Found, NoProgram, SimulationRefused, simulate
+from rmac_freecad.simulation.tool_length import simulate_telling_lengths
 
-__all__ = ["Found", "SimulationRefused", "simulate"]
+__all__ = ["Found", "NoProgram", "SimulationRefused", "simulate", "simulate_telling_lengths"]

@@ -6,18 +6,24 @@ import re
 import shutil
 import subprocess
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 REFUSED_LINE = re.compile(r"^rmac: standard input:(\d+): (.*)", re.S)
 
 
 class SimulationRefused(Exception):
-    """`place` tells where in the job, or is None where that is the program as a whole; `why` is the appliance's message."""
+    """`place` tells where in the job, and `index` which move it is; None where that is the program as a whole. `why` is the
+    appliance's message."""
 
-    def __init__(self, why, place=None):
+    def __init__(self, why, place=None, index=None):
         super().__init__(f"{place}: {why}" if place else why)
         self.place = place
+        self.index = index
         self.why = why
+
+
+class NoProgram(SimulationRefused):
+    """The command-line client, which simulates, is not there."""
 
 
 @dataclass(frozen=True)
@@ -25,29 +31,40 @@ class Found:
     cycle_time_s: float
     length_mm: float
     limited_by_s: dict  # by the limit that ruled
+    move_limits: dict = field(default_factory=dict)  # by index of the move; those that did not move have none
 
 
-def simulate(program, machine, tools, rmac="rmac", patience_s=600):
-    """Gives up after `patience_s`. `tools` is the tool table, as `client.cam.GetTools()` gives it of the appliance; `rmac` the command-line client."""
+def simulate(program, machine, tools, rmac="rmac", patience_s=600, part_frame=None):
+    """Gives up after `patience_s`. `tools` is the tool table, as `client.cam.GetTools()` gives it of the appliance; `rmac` the
+    command-line client. `part_frame` as `client.cam.GetPartFrame()` gives it; the machine's own unless given."""
     executable = shutil.which(rmac)
     if executable is None:
-        raise SimulationRefused(f"the program {rmac} is not there; it comes with the appliance's package, or give its path as rmac=")
+        raise NoProgram(f"the program {rmac} is not there; it comes with the appliance's package, or give its path as rmac=")
     with tempfile.TemporaryDirectory(prefix="rmac-simulate-") as folder:
         table = {key: tools[key] for key in ("Mounted", "Tools")}
         (pathlib.Path(folder) / f"{machine}.json").write_text(json.dumps(table))
         try:
             ended = subprocess.run(
-                [executable, "--json", "simulate", "--machine", machine, "--tools", folder, "-"],
-                input=program.text(), capture_output=True, text=True, check=False, timeout=patience_s,
+                [executable, "--json", "simulate", "--by-move", "--machine", machine, "--tools", folder, "-"],
+                input=_head(part_frame) + program.text(), capture_output=True, text=True, check=False, timeout=patience_s,
             )  # fmt: skip
         except subprocess.TimeoutExpired as late:
             raise SimulationRefused(f"the simulation on {machine} took longer than {patience_s} s; simulate a part of the job, or wait longer (patience_s=)") from late
     if ended.returncode != 0:
-        raise _refusal(ended.stderr.strip(), program)
+        raise _refusal(ended.stderr.strip(), program, 0 if part_frame is None else 1)
     told = json.loads(ended.stdout)
-    return Found(told["cycle_time_s"], told["length_mm"], told["limited_by_s"])
+    limits = {one["move_id"] - 1: one["limit"] for one in told["move_limits"] if one["limit"]}
+    return Found(told["cycle_time_s"], told["length_mm"], told["limited_by_s"], limits)
 
 
-def _refusal(said, program):
+def _head(part_frame):
+    """What comes before the program: a line, or none."""
+    if part_frame is None:
+        return ""
+    return json.dumps({"jsonrpc": "2.0", "id": 0, "method": "RMAC_CAM.SetPartFrame", "params": {"PartFrame": part_frame}}) + "\n"
+
+
+def _refusal(said, program, lines_before):
     line = REFUSED_LINE.match(said)
-    return SimulationRefused(line[2], program.place_of(int(line[1]) - 1)) if line else SimulationRefused(said)
+    index = int(line[1]) - 1 - lines_before if line else -1
+    return SimulationRefused(line[2], program.place_of(index), index) if index >= 0 else SimulationRefused(said)

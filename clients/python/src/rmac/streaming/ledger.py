@@ -13,6 +13,8 @@ from rmac.moves.between import Request
 from rmac.moves.move import Move
 from rmac.streaming.part import Part
 
+_STOPS_WITHIN_CYCLES = 10
+
 
 class Ledger:
     def __init__(self, state: dict[str, Any], first_id: int, first_index: int) -> None:
@@ -32,6 +34,8 @@ class Ledger:
         self._in_queue: int = state["moves_in_buffer"]
         self._queued = self._queued_done = 0
         self._queued_before = self._counted = 0
+        self._told: tuple[int, int] | None = None  # in which cycle, and how many of those in the queue seemed to be done
+        self._rested_since: int | None = None  # cycle
 
     @property
     def complete(self) -> bool:
@@ -62,12 +66,33 @@ class Ledger:
         self._queued += part.move.queues
         self.rests = False
 
-    def heard(self, state: dict[str, Any]) -> None:
+    def heard(self, state: dict[str, Any], stopped: bool) -> None:
+        """`stopped`: of a machine that was stopped, or stops. A stop empties the queue some cycles before the state says that it stops:
+        what a queue tells of moves that are done is believed when a later state knows of no stop."""
         self.cycle, self.machine_id = state["cycle"], state["move_id"]
         self._in_queue = state["moves_in_buffer"]
         self._counted, self._queued_before = self._queued_before, self._queued
-        self.rests = self._in_queue == 0 and not state["moving"] and state["waits_for"] in ("", "moves")
-        self._forget(self._counted - self._in_queue, self._before_machine_id())
+        if stopped:
+            self._told = self._rested_since = None
+        self._forget(self._believed(), self._before_machine_id())
+        if self._told is None and not stopped:
+            self._told = self.cycle, self._counted - self._in_queue
+        self.rests = self._has_rested(not stopped and not state["moving"] and state["waits_for"] in ("", "moves"))
+
+    def _believed(self) -> int:
+        """Of those in the queue, how many are done for sure."""
+        if self._told is None or self.cycle < self._told[0] + _STOPS_WITHIN_CYCLES:
+            return 0
+        (_, done), self._told = self._told, None
+        return done
+
+    def _has_rested(self, rests: bool) -> bool:
+        """For long enough that no stop can be the reason."""
+        if not rests or self._in_queue > 0:
+            self._rested_since = None
+        elif self._rested_since is None:
+            self._rested_since = self.cycle
+        return self._rested_since is not None and self.cycle >= self._rested_since + _STOPS_WITHIN_CYCLES
 
     def is_behind(self, move_id: int) -> bool:
         """Whether a machine that is at this move has nothing begun of what is kept: it is the one that it was known to be at,

@@ -70,7 +70,8 @@ class Stream:
         if self._full or self.failure is not None or self._refusal is not None:
             return None
         batch: list[tuple[str, str]] = []
-        room = min(_BATCH, _WINDOW - len(self._under_way), self._capacity - self.ledger.most_in_queue - len(self._under_way))
+        in_queue = max(self.ledger.most_in_queue, len(self.ledger.kept))  # no more is kept than the queue has room for
+        room = min(_BATCH, _WINDOW - len(self._under_way), self._capacity - in_queue - len(self._under_way))
         size = 0
         while len(batch) < room:
             part = self._peek()
@@ -103,7 +104,7 @@ class Stream:
 
     def heard(self, state: dict[str, Any]) -> None:
         """A state of the machine, as pushed: it may be older than what was answered lately."""
-        self.ledger.heard(state)
+        self.ledger.heard(state, state["state"] == "Stopping" or self._stopped(state))
         if self.ledger.most_in_queue < self._capacity:
             self._full = False
         self._watch(state)
@@ -160,11 +161,15 @@ class Stream:
         self.ledger.take(part)
 
     def _watch(self, state: dict[str, Any]) -> None:
+        if self.failure is None and self._stopped(state):
+            told = state["last_stop"] or state["last_error"] or {}
+            self.failure = MachineStopped(state, self.ledger.done, told.get("message", "it does not tell why"))
+
+    def _stopped(self, state: dict[str, Any]) -> bool:
         """A cycle that waits for moves runs: one that rests otherwise was stopped."""
         stop = state["last_stop"]
-        stopped = state["state"] == "Idle" and stop is not None and stop["cycle"] > self._first_cycle
-        if self.failure is None and (stopped or state["state"] in ("Faulted", "EmergencyStop")):
-            self.failure = MachineStopped(state, self.ledger.done, (stop or state["last_error"] or {}).get("message", "it does not tell why"))
+        at_rest = state["state"] == "Idle" and stop is not None and stop["cycle"] > self._first_cycle
+        return at_rest or state["state"] in ("Faulted", "EmergencyStop")
 
 
 def free_id(state: dict[str, Any], before: Stream | None) -> int:

@@ -1,0 +1,72 @@
+"""The buttons of the toolbar."""
+
+import FreeCAD
+import FreeCADGui
+
+from rmac_freecad.window.icons import icon
+from rmac_freecad.window.session import session
+
+
+class Command:
+    def __init__(self, name, text, tip, does, needs_document=False):
+        self.name = f"RMAC_{name}"
+        self._resources = {"Pixmap": icon(name.lower()), "MenuText": text, "ToolTip": tip}
+        self._does = does
+        self._needs_document = needs_document
+
+    def GetResources(self):
+        return self._resources
+
+    def IsActive(self):
+        return not self._needs_document or FreeCAD.ActiveDocument is not None
+
+    def Activated(self, index=0):
+        self._does()
+
+
+def select_machine():
+    from rmac_freecad.window.machines.search_dialog import show
+
+    show(session())
+
+
+def jog():
+    from rmac_freecad.window.jogging.jog_dialog import show
+
+    show(session())
+
+
+def machine_job():
+    from rmac_freecad.window.running.machining_dialog import show
+
+    show(session())
+
+
+def simulate():
+    from rmac_freecad.window.running.machining_dialog import show
+
+    show(session()).simulate()
+
+
+def stop():
+    here = session()
+    here.station.stop(
+        here.settings.address,
+        failed=lambda error: FreeCAD.Console.PrintError(f"RMAC: the machine could not be told to stop: {error}\n"),
+    )
+
+
+COMMANDS = (
+    Command("Select", "Select machine…", "Search machines, compare them, see which can cut the job, and load one", select_machine),
+    Command("Jog", "Jog…", "Move the machine by hand, and set the part's zero where the tool stands", jog),
+    Command("Machine", "Machine a job…", "Send a Path job to the machine as it is", machine_job, needs_document=True),
+    Command("Simulate", "Simulate a job…", "How long a job takes, whether the machine can do it, and what limits it; moves nothing", simulate, needs_document=True),
+    Command("Stop", "Stop the machine", "Stop at once, whoever moves it, and drop what is queued. This is no emergency stop", stop),
+)
+
+
+def register():
+    """Gives the commands' names, in the toolbar's order."""
+    for command in COMMANDS:
+        FreeCADGui.addCommand(command.name, command)
+    return [command.name for command in COMMANDS]

@@ -1,0 +1,131 @@
+"""Search and selection of a machine, figures 6.3 to 6.5. As there, the fields wait for Edit, so that nobody changes a search by mistake."""
+
+from PySide import QtGui
+
+from rmac_freecad.jobs import EMPTY, completed, tools_of
+from rmac_freecad.machines import compare, programs_for
+from rmac_freecad.window.dialog import Dialog, button, row
+from rmac_freecad.window.jobs import job_in_question
+from rmac_freecad.window.machines.characteristics_dialog import CharacteristicsDialog
+from rmac_freecad.window.machines.machine_list import MachineList
+from rmac_freecad.window.machines.wanted_fields import WantedFields
+
+
+class NoneFits(Exception):
+    """Its text is for the dialog, whose list tells the rest."""
+
+
+class SearchDialog(Dialog):
+    def __init__(self, session):
+        super().__init__(session, "Machine search and selection")
+        self.address = QtGui.QLineEdit(session.settings.address)
+        self.address.setToolTip("host:port, or unix: and the path of the appliance's socket")
+        self.fields = WantedFields()
+        self.list = MachineList()
+        self.list.itemSelectionChanged.connect(self._enable)
+        self.edit_button = button("Edit", self._edit, "Lets the search be changed")
+        self.search_button = button("Search machines", self.search)
+        self.fits_button = button("Fits this part", self.fits, "Simulates the document's job on each machine, and puts the quickest first")
+        self.characteristics_button = button("Machine characteristics…", self.characteristics)
+        self.virtual = QtGui.QCheckBox("Virtual mode")
+        self.virtual.setToolTip("The machine is driven as a model, and no drive is touched")
+        self.load_button = button("Select", self.load, "Loads the machine's device driver into the controller, at standstill")
+        self.characteristics_dialog = None
+        box = QtGui.QVBoxLayout(self)
+        box.addLayout(row(QtGui.QLabel("Appliance"), self.address, button("Connect", self.connect_and_list)))
+        box.addWidget(self.fields)
+        box.addLayout(row(self.edit_button, self.search_button, None))
+        box.addWidget(self.list)
+        box.addLayout(row(self.fits_button, self.characteristics_button, None, self.virtual, self.load_button))
+        box.addWidget(self.message)
+        self.resize(900, 620)
+        self._searching(False)
+        self._enable()
+
+    def connect_and_list(self):
+        self.session.settings.address = self.address.text()
+        self._find("", "connecting…")
+
+    def search(self):
+        self._find(self.fields.wanted().condition(), "searching…")
+
+    def fits(self):
+        """The job is read here, by FreeCAD's own thread; it is simulated by another one."""
+        machines, program = self.list.machines, self.session.settings.rmac
+        try:
+            job = job_in_question()
+            tools, programs = tools_of(job), programs_for(job, machines)
+        except Exception as error:
+            return self.failed(error)
+        self.ask(
+            lambda client: compare(programs, completed(_table(client), tools), program),
+            self._show_fits, f"{job.Label} is simulated on {len(machines)} machines…",
+        )  # fmt: skip
+
+    def characteristics(self):
+        self.characteristics_dialog = CharacteristicsDialog(self.session, self.list.chosen)
+        self.characteristics_dialog.show()
+
+    def load(self):
+        name, virtual = self.list.chosen.name, self.virtual.isChecked()
+        self.load_button.setEnabled(False)
+        self.change(lambda client: client.load(name, virtual), self._loaded, f"{name} is being loaded; modules that are new are verified first, which takes its time…")
+
+    def failed(self, error):
+        super().failed(error)
+        self._enable()
+
+    def _find(self, condition, working):
+        self.ask(lambda client: client.machines(condition), self._found, working)
+
+    def _found(self, machines):
+        self.list.show_machines(machines)
+        self._searching(False)
+        self._enable()
+        self.message.tell(f"{len(machines)} machines" if machines else "No machine is like that; ask for less.")
+
+    def _show_fits(self, came):
+        fits, why = came
+        self.list.show_fits(fits, why)
+        if not fits:
+            first, reason = next(iter(why.items()))
+            return self.failed(NoneFits(f"None of these machines can cut the job; why not stands beside each. {first}: {reason}"))
+        self.message.tell(f"{len(fits)} of {len(self.list.machines)} machines can cut it; {fits[0].machine} is the quickest. A machine is taken to stand at its zero, and the part's zero at the machine's.")
+
+    def _loaded(self, machine):
+        self.session.machine = machine
+        self._enable()
+        self.message.tell(f"{machine.name} is loaded{' in virtual mode' if self.virtual.isChecked() else ''}. Jog sets the part's zero; Machine a job cuts.")
+
+    def _edit(self):
+        self._searching(True)
+
+    def _searching(self, on):
+        self.fields.setEnabled(on)
+        self.search_button.setEnabled(on)
+        self.edit_button.setEnabled(not on)
+
+    def _enable(self):
+        chosen = self.list.chosen is not None
+        self.characteristics_button.setEnabled(chosen)
+        self.load_button.setEnabled(chosen)
+        self.fits_button.setEnabled(bool(self.list.machines))
+
+
+def _table(client):
+    """The loaded machine's tools; none where no machine is loaded."""
+    return client.cam.GetTools() if client.state()["mechanism"] else EMPTY
+
+
+_dialog = None
+
+
+def show(session):
+    global _dialog
+    if _dialog is None or _dialog.session is not session:
+        _dialog = SearchDialog(session)
+    if not _dialog.isVisible():
+        _dialog.show()
+        _dialog.connect_and_list()
+    _dialog.raise_()
+    return _dialog

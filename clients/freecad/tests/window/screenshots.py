@@ -1,0 +1,115 @@
+"""Draws the pictures of docs/freecad.md: its ten minutes. Run as the tests of the window are, with RMAC_TEST=screenshots."""
+
+import os
+import pathlib
+
+import FreeCADGui
+import PathScripts.PathProfile as PathProfile
+from path_job import operation_of
+from PySide import QtCore, QtGui
+from rmac_freecad.window.jogging.jog_dialog import JogDialog
+from rmac_freecad.window.machines.search_dialog import SearchDialog
+from rmac_freecad.window.running.machining_dialog import MachiningDialog
+from windowed import WindowTest, process_until
+
+import rmac
+
+IMAGES = pathlib.Path(os.environ["RMAC_SOURCE"]) / "docs/images/freecad"
+
+
+def hide_docks():
+    """But for the tree."""
+    for dock in FreeCADGui.getMainWindow().findChildren(QtGui.QDockWidget):
+        dock.setVisible(dock.objectName() == "Combo View")
+
+
+def shoot(name, dialog=None):
+    """A dialog, or all of the screen but for what FreeCAD reports."""
+    hide_docks()
+    QtGui.QApplication.processEvents()
+    picture = QtGui.QGuiApplication.primaryScreen().grabWindow(0) if dialog is None else dialog.grab()
+    IMAGES.mkdir(exist_ok=True)
+    if not picture.save(str(IMAGES / f"{name}.png")):
+        raise AssertionError(f"{name}.png was not written")
+
+
+class Screens(WindowTest):
+    def test_pictures(self):
+        self.show_job()
+        self.search()
+        self.jog()
+        self.machine()
+
+    def placed(self, dialog, x, y):
+        dialog.move(x, y)
+        return self.opened(dialog)
+
+    def settle(self):
+        """What is drawn by timers is drawn."""
+        until = QtCore.QElapsedTimer()
+        until.start()
+        process_until(lambda: until.elapsed() > 1000, "a second")
+
+    def show_job(self):
+        window = FreeCADGui.getMainWindow()
+        window.setGeometry(0, 0, 1600, 1000)
+        FreeCADGui.activateWorkbench("RmacWorkbench")
+        self.part_job = self.job()
+        operation_of(self.part_job, PathProfile, "Profile", StepDown="2 mm")
+        view = FreeCADGui.ActiveDocument.ActiveView
+        view.viewIsometric()
+        hide_docks()
+        self.settle()
+        FreeCADGui.SendMsgToActiveView("ViewFit")
+        for _ in range(4):  # the dialog stands beside it
+            FreeCADGui.runCommand("Std_ViewZoomOut")
+
+    def search(self):
+        dialog = self.placed(SearchDialog(self.session), 150, 150)
+        dialog.connect_and_list()
+        process_until(lambda: dialog.list.machines, "machines are listed")
+        dialog.fits_button.click()
+        self.told(dialog, "can cut it")
+        self.settle()
+        shoot("search", dialog)
+        dialog.close()
+
+    def jog(self):
+        with rmac.connect(self.address, "set-up") as client, client.authority():
+            client.cam.SetTool(1, 0.0, 2.5)
+            client.cam.Home()
+            client.until_done()
+        dialog = self.placed(JogDialog(self.session), 150, 150)
+        dialog.begin()
+        process_until(lambda: dialog.rows and self.session.station.state, "the machine is known")
+        dialog.steps.step.set_quantity(20)
+        for row, axis in ((0, 0), (1, 1)):
+            dialog.rows[row].minus.click()
+            process_until(lambda: abs(self.session.station.state["pose"][axis] + 20) < 0.01, "it is there")
+        process_until(lambda: not self.session.station.state["moving"], "it rests")
+        dialog.zero_button.click()
+        process_until(lambda: "stands at" in dialog.part_zero.text(), "the part's zero is set")
+        self.settle()
+        shoot("jog", dialog)
+        dialog.close()
+        process_until(lambda: not self.session.station.state["authority"], "authority is given back")
+
+    def machine(self):
+        dialog = self.placed(MachiningDialog(self.session), 1000, 545)
+        dialog.resize(540, 350)
+        dialog.begin()
+        process_until(lambda: dialog.headline.text(), "the machine was looked at")
+        dialog.simulate_button.click()
+        self.told(dialog, "It takes")
+        self.settle()
+        shoot("simulated")
+        with rmac.connect(self.address, "set-up") as client:
+            mounted = client.cam.GetTools()["Mounted"]
+        dialog.cut_button.click()
+        if mounted != 1:
+            process_until(lambda: dialog.prompts.isVisible(), "the tool is asked for")
+            self.settle()
+            dialog.prompts.confirm.click()
+        self.told(dialog, "is cut")
+        self.settle()
+        shoot("cut")
