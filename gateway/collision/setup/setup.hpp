@@ -17,6 +17,8 @@ struct Setup {
   std::optional<Body> stock, part;
   std::vector<Body> fixtures;
   std::string material;
+  std::optional<double> resolution_mm;  ///< of what is left of the stock
+  double tolerance_mm = 0.05;           ///< of what is made, on either side
   double clearance_mm = 1;  ///< nearer than this is told; deeper than this is surely found
 };
 

@@ -7,6 +7,7 @@
 
 #include "gateway/configuration/configuration.hpp"
 #include "gateway/rmac/commands/programs/collision_report.hpp"
+#include "gateway/rmac/commands/programs/material_report.hpp"
 #include "gateway/rmac/commands/programs/registrations.hpp"
 #include "gateway/rmac/commands/programs/source.hpp"
 #include "gateway/rmac/simulator/simulator.hpp"
@@ -25,6 +26,8 @@ struct Options {
   std::string record_file;            ///< empty: none
   std::filesystem::path tools;        ///< folder of tool tables; empty: no tools but the program's own
   std::filesystem::path setup;        ///< what stands on the table; empty: collisions are not checked
+  std::optional<double> resolution;   ///< of the material, mm; none: the set-up's
+  std::string stock_out;              ///< STL file of what is left of the stock; empty: none
   bool first = false;                 ///< end at the first collision
   double period_s = 0.001;
 };
@@ -34,8 +37,9 @@ double cpu_time_s() {
   return std::chrono::duration<double>(gateway::cpu_time(CLOCK_PROCESS_CPUTIME_ID)).count();
 }
 
-/// `watch`: null without a set-up.
-void print_json(const SimulationReport& report, const CollisionWatch* watch, double took_s) {
+/// `watch` and `material`: null without a set-up, and where it has no stock.
+void print_json(const SimulationReport& report, const CollisionWatch* watch, const MaterialReport* material,
+                double took_s) {
   nlohmann::json joints = nlohmann::json::array();
   for (const auto& joint : report.joints) {
     joints.push_back({{"name", joint.name},
@@ -50,6 +54,7 @@ void print_json(const SimulationReport& report, const CollisionWatch* watch, dou
                       {"joints", std::move(joints)},         {"limited_by_s", std::move(limited_by)},
                       {"collisions", "not checked"},         {"cpu_time_s", took_s}};
   if (watch != nullptr) add_collisions(*watch, line);
+  if (material != nullptr) line["material"] = to_json(*material);
   if (!report.record_files.empty()) {
     line["record_rows"] = report.record_rows;
     line["record_files"] = report.record_files;
@@ -57,7 +62,8 @@ void print_json(const SimulationReport& report, const CollisionWatch* watch, dou
   fmt::print("{}\n", line.dump());
 }
 
-void print_table(const SimulationReport& report, const CollisionWatch* watch, double took_s) {
+void print_table(const SimulationReport& report, const CollisionWatch* watch, const MaterialReport* material,
+                 double took_s) {
   std::vector<std::vector<std::string>> rows{
       {"moves", std::to_string(report.moves), ""},
       {"tool changes", std::to_string(report.tool_changes), report.tool_changes > 0 ? "in no time" : ""},
@@ -69,6 +75,7 @@ void print_table(const SimulationReport& report, const CollisionWatch* watch, do
   for (const auto& record : report.record_files) {
     rows.push_back({"record", record, fmt::format("{} rows in all", report.record_rows)});
   }
+  if (material != nullptr) add_rows(*material, rows);
   fmt::print("{}\n", table({"", "", ""}, rows));
   if (watch != nullptr) print_collisions(*watch);
   rows.clear();
@@ -125,6 +132,12 @@ Result<> simulate_program(const Options& options, bool json) {
     return fail("--setup needs --machine: what stands on which table");
   if (options.first && options.setup.empty())
     return fail("--first needs --setup: without one collisions are not checked");
+  if (options.resolution && options.setup.empty())
+    return fail("--resolution needs --setup: without one there is no stock");
+  if (!options.stock_out.empty()) {
+    if (options.setup.empty()) return fail("--stock-out needs --setup: without one there is no stock");
+    if (auto possible = check_stock_out(options.stock_out); !possible) return possible;
+  }
   spdlog::set_level(spdlog::level::off);  // what is wrong with other machines of the tree is not asked here
   const auto tree = options.device_tree.empty() ? gateway::default_folders().device_tree : options.device_tree;
   auto simulation = gateway::Simulation::open({.device_tree = tree,
@@ -135,16 +148,26 @@ Result<> simulate_program(const Options& options, bool json) {
   if (!simulation) return fail(simulation.error().message);
   std::unique_ptr<CollisionWatch> collisions;
   if (!options.setup.empty()) {
-    auto opened = CollisionWatch::open(options.machine, tree, options.setup);
+    auto opened = CollisionWatch::open(options.machine, tree, options.setup, options.resolution);
     if (!opened) return tl::unexpected(opened.error());
     collisions = std::move(*opened);
+    if (!options.stock_out.empty() && collisions->material() == nullptr) {
+      return fail(
+          fmt::format("{}: has no Stock, so that nothing can be left of it for --stock-out", options.setup.string()));
+    }
   }
   const StandstillWatch watch((*simulation)->controller());
   Simulator simulator(**simulation, *program, options.record_file);
   if (collisions) simulator.watch_collisions(*collisions, options.first);
   const auto report = simulator.run();
   if (!report) return tl::unexpected(report.error());
-  (json ? print_json : print_table)(*report, collisions.get(), cpu_time_s() - began_s);
+  std::optional<MaterialReport> material;
+  if (collisions && collisions->material() != nullptr) {
+    auto found = report_material(*collisions, options.stock_out);
+    if (!found) return tl::unexpected(found.error());
+    material = std::move(*found);
+  }
+  (json ? print_json : print_table)(*report, collisions.get(), material ? &*material : nullptr, cpu_time_s() - began_s);
   return collisions ? verdict(*collisions) : Result<>();
 }
 
@@ -162,6 +185,9 @@ void add_simulate(Command& rmac) {
       .option("--tools", &options->tools, "folder of tool tables (tools/ of an appliance's state folder); only read")
       .existing_folder();
   simulate.option("--setup", &options->setup, "setup.json: what stands on the table; collisions are checked with it");
+  simulate.option("--resolution", &options->resolution,
+                  "with --setup: how far the rays are apart by which the stock is known, mm; instead of the set-up's");
+  simulate.option("--stock-out", &options->stock_out, "with --setup: write what is left of the stock to this STL file");
   simulate.flag("--first", &options->first, "with --setup: end at the first collision");
   simulate.option("--device-tree", &options->device_tree,
                   "where machines are looked for; the installation's unless given");
