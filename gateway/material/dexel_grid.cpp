@@ -7,7 +7,7 @@ namespace rmac::gateway {
 DexelGrid::DexelGrid(const DexelLayout& layout) : layout_(layout) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     families_[axis].rays.resize(layout_.rays(axis));
-    families_[axis].tiles.resize(std::size_t{tiles_along(axis, 0)} * tiles_along(axis, 1), kNothing);
+    families_[axis].tiles.resize(std::size_t{tiles_along(axis, 0)} * tiles_along(axis, 1));
   }
 }
 
@@ -35,25 +35,32 @@ void DexelGrid::put(std::size_t axis, std::size_t ray, std::span<const Piece> pi
 void DexelGrid::tighten() {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::uint32_t j = 0; j < tiles_along(axis, 1); ++j) {
-      for (std::uint32_t i = 0; i < tiles_along(axis, 0); ++i) tighten(axis, i, j);
+      for (std::uint32_t i = 0; i < tiles_along(axis, 0); ++i) tighten(axis, i, j, 0);
     }
   }
 }
 
-void DexelGrid::tighten(std::size_t axis, std::uint32_t first, std::uint32_t second) {
+void DexelGrid::tighten(std::size_t axis, std::uint32_t first, std::uint32_t second, float gap_at) {
   constexpr float kFar = std::numeric_limits<float>::max();
-  Piece bounds{kFar, -kFar};
+  Tile tile{{kFar, -kFar}, {-kFar, kFar}};
   const std::uint32_t columns = layout_.count[DexelLayout::across(axis, 0)];
   const std::uint32_t rows = layout_.count[DexelLayout::across(axis, 1)];
   for (std::uint32_t j = second * kTile; j < std::min(rows, (second + 1) * kTile); ++j) {
     for (std::uint32_t i = first * kTile; i < std::min(columns, (first + 1) * kTile); ++i) {
       pieces(axis, ray(axis, i, j), [&](const Piece& piece) {
-        bounds.from = std::min(bounds.from, piece.from);
-        bounds.to = std::max(bounds.to, piece.to);
+        tile.material.from = std::min(tile.material.from, piece.from);
+        tile.material.to = std::max(tile.material.to, piece.to);
+        if (piece.to <= gap_at) {
+          tile.gap.from = std::max(tile.gap.from, piece.to);
+        } else if (piece.from >= gap_at) {
+          tile.gap.to = std::min(tile.gap.to, piece.from);
+        } else {
+          tile.gap = {kFar, -kFar};
+        }
       });
     }
   }
-  families_[axis].tiles[second * tiles_along(axis, 0) + first] = bounds;
+  families_[axis].tiles[second * tiles_along(axis, 0) + first] = tile;
 }
 
 bool DexelGrid::holds(std::size_t axis, std::size_t ray, float at) const noexcept {
@@ -123,7 +130,7 @@ double DexelGrid::volume_mm3(std::size_t axis) const {
 std::uint64_t DexelGrid::bytes() const noexcept {
   std::uint64_t bytes = more_.capacity() * sizeof(Ray);
   for (const Family& family : families_) {
-    bytes += family.rays.capacity() * sizeof(Ray) + family.tiles.capacity() * sizeof(Piece);
+    bytes += family.rays.capacity() * sizeof(Ray) + family.tiles.capacity() * sizeof(Tile);
   }
   return bytes;
 }

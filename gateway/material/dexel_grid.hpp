@@ -19,8 +19,17 @@ class DexelGrid {
     float from = 0, to = 0;  ///< mm from the lattice's corner
     [[nodiscard]] bool operator==(const Piece&) const = default;
   };
-  /// Rays lie in square tiles; of each is known between where and where there is material.
+  /// Rays lie in square tiles. Of each is known between where and where there may be material, and a gap in between
+  /// where no ray of it has any: so much need not be looked at ray by ray.
   static constexpr std::uint32_t kTile = 8;
+  struct Tile {
+    Piece material{1, 0};  ///< `from` > `to`: there is none
+    Piece gap{0, 0};
+    [[nodiscard]] bool may_have(double from, double to) const noexcept {
+      return material.from <= material.to && to > double{material.from} && from < double{material.to} &&
+             !(from >= double{gap.from} && to <= double{gap.to});
+    }
+  };
 
   explicit DexelGrid(const DexelLayout& layout);
 
@@ -48,12 +57,18 @@ class DexelGrid {
   [[nodiscard]] const Piece& first(std::size_t axis, std::size_t ray) const noexcept {
     return families_[axis].rays[ray].piece;
   }
-  /// Whether a ray has anything that may lie between two places; rays of several pieces always may.
+  /// Whether a ray has anything between two places.
   [[nodiscard]] bool reaches(std::size_t axis, std::size_t ray, double from, double to) const noexcept {
     const Ray& r = families_[axis].rays[ray];
-    return r.piece.from < r.piece.to && double{r.piece.from} < to && (double{r.piece.to} > from || r.next != kNone);
+    if (r.piece.from >= r.piece.to) return false;
+    if (double{r.piece.to} > from) return double{r.piece.from} < to;
+    for (std::uint32_t next = r.next; next != kNone; next = more_[next].next) {
+      const Piece& piece = more_[next].piece;
+      if (double{piece.to} > from) return double{piece.from} < to;
+    }
+    return false;
   }
-  /// Takes away what lies between `from` and `to`: how much that was, mm. `tighten(axis, tile)` is the caller's.
+  /// Takes away what lies between `from` and `to`: how much that was, mm. `tighten` of its tile is the caller's.
   float remove(std::size_t axis, std::size_t ray, float from, float to);
   /// How much there is between `from` and `to`, mm.
   [[nodiscard]] float between(std::size_t axis, std::size_t ray, float from, float to) const noexcept;
@@ -62,11 +77,11 @@ class DexelGrid {
   [[nodiscard]] std::uint32_t tiles_along(std::size_t axis, std::size_t which) const noexcept {
     return (layout_.count[DexelLayout::across(axis, which)] + kTile - 1) / kTile;
   }
-  /// Between where and where there may be material; `from` > `to`: there is none.
-  [[nodiscard]] const Piece& tile(std::size_t axis, std::uint32_t first, std::uint32_t second) const noexcept {
+  [[nodiscard]] const Tile& tile(std::size_t axis, std::uint32_t first, std::uint32_t second) const noexcept {
     return families_[axis].tiles[second * tiles_along(axis, 0) + first];
   }
-  void tighten(std::size_t axis, std::uint32_t first, std::uint32_t second);
+  /// What is known of a tile, anew; the gap is looked for around a place.
+  void tighten(std::size_t axis, std::uint32_t first, std::uint32_t second, float gap_at);
 
   /// By the rays of one family.
   [[nodiscard]] double volume_mm3(std::size_t axis) const;
@@ -88,7 +103,7 @@ class DexelGrid {
   };
   struct Family {
     std::vector<Ray> rays;
-    std::vector<Piece> tiles;
+    std::vector<Tile> tiles;
   };
   [[nodiscard]] std::uint32_t keep(const Piece& piece, std::uint32_t next);
   float remove_of_several(std::size_t axis, std::size_t ray, float from, float to);

@@ -16,6 +16,7 @@ constexpr double kMostTolerance_mm = 0.005, kShareOfResolution = 0.05;
 /// Of the tolerance, for what lies between two positions that were looked at; the rest is for these themselves.
 constexpr double kShareBetween = 0.25;
 constexpr int kMostHalvings = 20;
+constexpr std::size_t kTogether = 16;  ///< strokes
 
 double resolution_of(const DexelLayout& layout) {
   return *std::ranges::max_element(layout.pitch);
@@ -118,13 +119,7 @@ void Material::go_between(std::span<const double> from, const ToolAt& begin, std
 
 void Material::go_to(const ToolAt& there) {
   for (Part& part : parts_) {
-    const auto stroke = part.strokes.go_to(there);
-    if (!stroke) continue;
-    if (part.cuts) {
-      cut_with(part, *stroke);
-    } else {
-      look_at(part, *stroke);
-    }
+    if (const auto stroke = part.strokes.go_to(there)) take(part, *stroke);
   }
 }
 
@@ -137,19 +132,25 @@ void Material::finish() {
 void Material::end_strokes(bool cutting) {
   for (Part& part : parts_) {
     if (part.cuts != cutting) continue;
-    const auto stroke = part.strokes.end();
-    if (!stroke) continue;
-    if (cutting) {
-      cut_with(part, *stroke);
-    } else {
-      look_at(part, *stroke);
-    }
+    if (const auto stroke = part.strokes.end()) take(part, *stroke);
+    cut_with(part);
   }
 }
 
-void Material::cut_with(const Part& part, const Stroke& stroke) {
+void Material::take(Part& part, const Stroke& stroke) {
+  const Sweep sweep = sweep_of(part.strokes.piece(), stroke);
+  if (!part.cuts) {
+    look_at(part, sweep);
+    return;
+  }
   ++strokes_;
-  const Removal met = cut(grid_, sweep_of(part.strokes.piece(), stroke), turns_ ? Cut::Remove : Cut::Look);
+  part.waiting.push_back(sweep);
+  if (part.waiting.size() >= kTogether) cut_with(part);
+}
+
+void Material::cut_with(Part& part) {
+  const Removal met = cut(grid_, part.waiting, turns_ ? Cut::Remove : Cut::Look);
+  part.waiting.clear();
   if (turns_) removed_mm3_ += met.volume_mm3;
   if (!turns_) {
     tell(part, met, "the spindle stands");
@@ -158,8 +159,7 @@ void Material::cut_with(const Part& part, const Stroke& stroke) {
   }
 }
 
-void Material::look_at(const Part& part, const Stroke& stroke) {
-  const Sweep sweep = sweep_of(part.strokes.piece(), stroke);
+void Material::look_at(const Part& part, const Sweep& sweep) {
   if (cut(grid_, sweep, Cut::Look).depth_mm <= told_from_mm_) return;
   // What the cutting part passed until now is gone, though its stroke is not over.
   end_strokes(true);

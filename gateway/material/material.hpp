@@ -39,6 +39,7 @@ class Material {
     std::string name;
     StrokeMaker strokes;
     bool cuts = false;
+    std::vector<Sweep> waiting{};  ///< until there are enough of them
   };
   [[nodiscard]] ToolAt tool_at(std::span<const double> joints);
   [[nodiscard]] bool turns_between(std::span<const double> from, std::span<const double> to) const;
@@ -46,8 +47,9 @@ class Material {
                   int halvings);
   void go_to(const ToolAt& there);
   void end_strokes(bool cutting);
-  void cut_with(const Part& part, const Stroke& stroke);
-  void look_at(const Part& part, const Stroke& stroke);
+  void take(Part& part, const Stroke& stroke);
+  void cut_with(Part& part);
+  void look_at(const Part& part, const Sweep& sweep);
   void tell(const Part& part, const Removal& met, const char* why);
 
   LinkChain chain_;

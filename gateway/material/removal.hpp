@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <span>
 
 #include "gateway/material/dexel_grid.hpp"
 #include "gateway/material/sweep.hpp"
@@ -19,7 +20,12 @@ struct Removal {
 /// Whether material is taken away, or only looked at.
 enum class Cut { Remove, Look };
 
-/// Touches no ray but those in the box around the sweep, and of these no tile whose material the sweep passes by.
-Removal cut(DexelGrid& grid, const Sweep& sweep, Cut what);
+/// Touches no ray but those in the boxes around the sweeps of one piece, and of these no tile whose material they pass
+/// by. Sweeps that follow each other cost least together: on each tile the one goes first that takes the most, and what
+/// the others would have taken is gone.
+Removal cut(DexelGrid& grid, std::span<const Sweep> sweeps, Cut what);
+inline Removal cut(DexelGrid& grid, const Sweep& sweep, Cut what) {
+  return cut(grid, std::span(&sweep, 1), what);
+}
 
 }  // namespace rmac::gateway

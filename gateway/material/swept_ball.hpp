@@ -26,7 +26,12 @@ class SweptBall {
     Lines(const SweptBall& ball, std::size_t axis);
     /// The line through first and second coordinate across the axis: whether it meets the capsule, and between where
     /// and where along the axis.
-    [[nodiscard]] bool operator()(double first, double second, double& from, double& to) const noexcept;
+    [[nodiscard]] bool operator()(double first, double second, double& from, double& to) const noexcept {
+      return on_part(first, second, 0, 1, from, to);
+    }
+    /// The same of what the ball passes between two parts of its way.
+    [[nodiscard]] bool on_part(double first, double second, double begin, double end, double& from,
+                               double& to) const noexcept;
 
    private:
     double first_, second_, along_;              ///< where the ball begins
@@ -54,14 +59,18 @@ inline SweptBall::Lines::Lines(const SweptBall& ball, std::size_t axis) {
   if (across2_ > kNoWay2 + 1e-14 * length2_) per_across2_ = 1 / across2_;
 }
 
-inline bool SweptBall::Lines::operator()(double first, double second, double& from, double& to) const noexcept {
+inline bool SweptBall::Lines::on_part(double first, double second, double begin, double end, double& from,
+                                      double& to) const noexcept {
   const double u = first - first_, v = second - second_;
-  const double begin2 = u * u + v * v;
+  const auto half_at = [&](double part) {
+    const double at_u = u - part * way_first_, at_v = v - part * way_second_;
+    return radius2_ - at_u * at_u - at_v * at_v;
+  };
   if (per_across2_ == 0) {
-    const double half2 = radius2_ - begin2;
+    const double half2 = half_at(begin);
     if (half2 <= 0) return false;
-    const double half = std::sqrt(half2);
-    from = along_ + std::min(0.0, way_along_) - half, to = along_ + std::max(0.0, way_along_) + half;
+    const double half = std::sqrt(half2), one = begin * way_along_, other = end * way_along_;
+    from = along_ + std::min(one, other) - half, to = along_ + std::max(one, other) + half;
     return true;
   }
   // Where the line enters and leaves the cylinder about the whole line of the way.
@@ -73,21 +82,18 @@ inline bool SweptBall::Lines::operator()(double first, double second, double& fr
   // There, the part of the way that the ball has done; beyond its ends the ball at that end is what the line meets.
   const double part_low = (dot + (middle - half) * way_along_) * per_length2_;
   const double part_high = (dot + (middle + half) * way_along_) * per_length2_;
-  if ((part_low < 0 && part_high < 0) || (part_low > 1 && part_high > 1)) {
+  if ((part_low < begin && part_high < begin) || (part_low > end && part_high > end)) {
     // Only one end can be met.
-    const double part = part_low < 0 ? 0 : 1;
-    const double at_u = u - part * way_first_, at_v = v - part * way_second_;
-    const double end2 = radius2_ - at_u * at_u - at_v * at_v;
-    if (end2 <= 0) return false;
-    const double end = std::sqrt(end2);
-    from = along_ + part * way_along_ - end, to = along_ + part * way_along_ + end;
+    const double part = part_low < begin ? begin : end, half2 = half_at(part);
+    if (half2 <= 0) return false;
+    const double reach = std::sqrt(half2);
+    from = along_ + part * way_along_ - reach, to = along_ + part * way_along_ + reach;
     return true;
   }
   const auto at = [&](double part, double root, double sign) {
-    if (part >= 0 && part <= 1) return root;
-    const double end = part < 0 ? 0 : 1;
-    const double at_u = u - end * way_first_, at_v = v - end * way_second_;
-    return end * way_along_ + sign * std::sqrt(std::max(0.0, radius2_ - at_u * at_u - at_v * at_v));
+    if (part >= begin && part <= end) return root;
+    const double there = part < begin ? begin : end;
+    return there * way_along_ + sign * std::sqrt(std::max(0.0, half_at(there)));
   };
   from = along_ + at(part_low, middle - half, -1);
   to = along_ + at(part_high, middle + half, 1);

@@ -53,6 +53,11 @@ SweptCone::Lines::Lines(const SweptCone& cone, std::size_t axis) {
   low_ = box.min()[a] - 1, high_ = box.max()[a] + 1;
   height_ = cone.size_.height, radius_ = cone.size_.bottom_radius, top_radius_ = cone.size_.top_radius;
   slope_ = (top_radius_ - radius_) / height_;
+  Eigen::Index upright = 0;
+  constexpr double kUpright = 1 - 1e-15;
+  if (slope_ == 0 && cone.axis_.cwiseAbs().maxCoeff(&upright) >= kUpright) {
+    upright_.emplace(cone.middle_, cone.way_, radius_, height_, static_cast<std::size_t>(upright), axis);
+  }
   const auto form = [this](const Vector3d& p, const Vector3d& q) {
     return p[0] * q[0] + p[1] * q[1] - slope_ * slope_ * p[2] * q[2];
   };
@@ -127,7 +132,7 @@ void SweptCone::Lines::on_plane(const Here& here, double height, double radius, 
   if (in <= 1 && out >= 1) span.add(s0 + s1);
 }
 
-bool SweptCone::Lines::operator()(double first, double second, double& from, double& to) const noexcept {
+bool SweptCone::Lines::leaning(double first, double second, double& from, double& to) const noexcept {
   Here here;
   here.point = begin_ + first * per_first_ + second * per_second_;
   const Eigen::Vector3d& p = here.point;

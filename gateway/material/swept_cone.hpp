@@ -1,6 +1,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
+
+#include "gateway/material/upright_cylinder.hpp"
 
 namespace rmac::gateway {
 
@@ -29,15 +32,19 @@ class SweptCone {
     Lines(const SweptCone& cone, std::size_t axis);
     /// The line through first and second coordinate across the axis: whether it meets the solid, and between where and
     /// where along the axis.
-    [[nodiscard]] bool operator()(double first, double second, double& from, double& to) const noexcept;
+    [[nodiscard]] bool operator()(double first, double second, double& from, double& to) const noexcept {
+      return upright_ ? (*upright_)(first, second, from, to) : leaning(first, second, from, to);
+    }
 
    private:
+    [[nodiscard]] bool leaning(double first, double second, double& from, double& to) const noexcept;
     struct Span;
     struct Here;
     void at_end(const Here& here, double part, Span& span) const noexcept;
     void at_envelope(const Here& here, Span& span) const noexcept;
     void on_plane(const Here& here, double height, double radius, Span& span) const noexcept;
 
+    std::optional<UprightCylinder> upright_;
     Eigen::Vector3d begin_, per_first_, per_second_;  ///< of the line's point, in the cone's frame
     Eigen::Vector3d line_, way_;                      ///< directions in the cone's frame
     double low_, high_;                               ///< between where and where it can be along the axis
