@@ -64,7 +64,7 @@ class Pass {
     const Eigen::AlignedBox3d box = swept.bounds();
     const auto index = [](std::size_t a) { return static_cast<Eigen::Index>(a); };
     const double aside = std::hypot(layout_.pitch[u_], layout_.pitch[v_]) * (DexelGrid::kTile - 1) / 2;
-    One one{swept.along(axis_), swept.wider(aside).along(axis_)};
+    One one{.lines = swept.along(axis_), .wide = swept.wider(aside).along(axis_), .columns = {}, .rows = {}};
     one.columns = lines_between(layout_, u_, box.min()[index(u_)], box.max()[index(u_)]);
     one.rows = lines_between(layout_, v_, box.min()[index(v_)], box.max()[index(v_)]);
     one.low = box.min()[index(axis_)] - layout_.low[axis_], one.high = box.max()[index(axis_)] - layout_.low[axis_];

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "gateway/material/deviation.hpp"
 #include "gateway/rmac/simulator/collision_watch.hpp"
 #include "gateway/rmac/wire/failure.hpp"
 
@@ -16,8 +17,11 @@ struct MaterialReport {
   double removed_mm3 = 0, left_mm3 = 0;
   double memory_mb = 0;
   std::size_t strokes = 0;
+  std::optional<gateway::Deviation> deviation;  ///< from the part; none: the set-up has no mesh of it
+  double part_tolerance = 0;
   std::string stock_file;  ///< empty: none was asked for
   std::size_t stock_triangles = 0;
+  double stock_apart = 0;  ///< the points of its surface, at most
 };
 
 /// Refuses a file that could not be written, before anything is done for it.
