@@ -15,6 +15,8 @@ using Eigen::Vector3d;
 constexpr double kMostTolerance_mm = 0.005, kShareOfResolution = 0.05;
 /// Of the tolerance, for what lies between two positions that were looked at; the rest is for these themselves.
 constexpr double kShareBetween = 0.25;
+/// Of the tolerance: walls that the cutting part left may be off by it, on either side.
+constexpr double kToldFrom = 4;
 constexpr int kMostHalvings = 20;
 constexpr std::size_t kTogether = 16;  ///< strokes
 
@@ -35,8 +37,6 @@ Material::Material(LinkChain chain, DexelGrid grid, const Frame& part_frame, Fin
       to_part_(inverse(part_frame)),
       part_frame_(part_frame),
       tolerance_mm_(tolerance_of(grid_.layout())),
-      // Walls that the cutting part left may be off by the tolerance, on either side.
-      told_from_mm_(4 * tolerance_mm_),
       within_mm_(resolution_of(grid_.layout())),
       links_(chain_.link_count()) {}
 
@@ -160,14 +160,14 @@ void Material::cut_with(Part& part) {
 }
 
 void Material::look_at(const Part& part, const Sweep& sweep) {
-  if (cut(grid_, sweep, Cut::Look).depth_mm <= told_from_mm_) return;
+  if (cut(grid_, sweep, Cut::Look).depth_mm <= kToldFrom * tolerance_mm_) return;
   // What the cutting part passed until now is gone, though its stroke is not over.
   end_strokes(true);
   tell(part, cut(grid_, sweep, Cut::Look), "it does not cut");
 }
 
 void Material::tell(const Part& part, const Removal& met, const char* why) {
-  if (met.depth_mm <= told_from_mm_) return;
+  if (met.depth_mm <= kToldFrom * tolerance_mm_) return;
   Finding* const finding = findings_.of("stock", part.name, since_s_, move_, {.possible = false, .meet = true});
   if (finding == nullptr) return;
   if (finding->why.empty()) finding->why = why;

@@ -8,7 +8,7 @@
 #include "gateway/collision/finding_list.hpp"
 #include "gateway/material/dexel_grid.hpp"
 #include "gateway/material/removal.hpp"
-#include "gateway/material/stroke_maker.hpp"
+#include "gateway/material/sweep/stroke_maker.hpp"
 #include "gateway/tools/tool.hpp"
 
 namespace rmac::gateway {
@@ -56,7 +56,8 @@ class Material {
   DexelGrid grid_;
   FindingList& findings_;
   Frame to_part_, part_frame_;  ///< machine to part, and back
-  double tolerance_mm_, told_from_mm_, within_mm_;
+  double tolerance_mm_;
+  double within_mm_;  ///< that parts which do not cut are taken smaller by
   std::vector<Part> parts_;
   Frame tip_home_;  ///< of the tool's tip, all joints at 0, machine frame
   bool spindle_needed_ = true;

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "gateway/material/dexel_grid.hpp"
-#include "gateway/material/sweep.hpp"
+#include "gateway/material/sweep/sweep.hpp"
 
 namespace rmac::gateway {
 

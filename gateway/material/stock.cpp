@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "gateway/bodies/meshes/mesh_file.hpp"
-#include "gateway/material/axis_frame.hpp"
 #include "gateway/material/mesh_rays.hpp"
-#include "gateway/material/swept_ball.hpp"
-#include "gateway/material/swept_cone.hpp"
+#include "gateway/material/sweep/axis_frame.hpp"
+#include "gateway/material/sweep/swept_ball.hpp"
+#include "gateway/material/sweep/swept_cone.hpp"
 
 namespace rmac::gateway {
 namespace {

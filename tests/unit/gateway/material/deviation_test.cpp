@@ -21,7 +21,8 @@ TEST(Deviation, OfABlockThatNobodyCutIsWhatItIsLargerThanThePart) {
   EXPECT_NEAR(std::abs(found.rest_at[0]), 4, 1e-5);
   EXPECT_EQ(found.gouge_mm, 0);
   EXPECT_NEAR(found.surface_mm2, 8 * (4 * 4.5 + 4.5 * 4.8 + 4.8 * 4), 6);
-  EXPECT_NEAR(found.within_share, (4 * 4.8 + 4 * 4.5) / (4 * 4.5 + 4.5 * 4.8 + 4.8 * 4), 0.01);
+  // All but what of the sides at 4 is farther than 0.6 from the block's other sides, too.
+  EXPECT_NEAR(found.within_share, 1 - 4.4 * 4.4 / (4 * 4.5 + 4.5 * 4.8 + 4.8 * 4), 0.01);
 }
 
 TEST(Deviation, OfASlotThatIsTooDeepIsAGouge) {

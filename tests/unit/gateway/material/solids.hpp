@@ -7,7 +7,7 @@
 
 #include "gateway/material/removal.hpp"
 #include "gateway/material/stock.hpp"
-#include "gateway/material/stroke_maker.hpp"
+#include "gateway/material/sweep/stroke_maker.hpp"
 
 namespace rmac::gateway::test {
 

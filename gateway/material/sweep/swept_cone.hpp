@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <optional>
 
-#include "gateway/material/upright_cylinder.hpp"
+#include "gateway/material/sweep/upright_cylinder.hpp"
 
 namespace rmac::gateway {
 

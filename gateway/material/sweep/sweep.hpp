@@ -3,10 +3,10 @@
 #include <Eigen/Geometry>
 #include <variant>
 
-#include "gateway/material/cutter_profile.hpp"
-#include "gateway/material/swept_ball.hpp"
-#include "gateway/material/swept_cone.hpp"
-#include "gateway/material/swept_disc.hpp"
+#include "gateway/material/sweep/cutter_profile.hpp"
+#include "gateway/material/sweep/swept_ball.hpp"
+#include "gateway/material/sweep/swept_cone.hpp"
+#include "gateway/material/sweep/swept_disc.hpp"
 
 namespace rmac::gateway {
 

@@ -1,4 +1,4 @@
-#include "gateway/material/sweep.hpp"
+#include "gateway/material/sweep/sweep.hpp"
 
 #include <gtest/gtest.h>
 

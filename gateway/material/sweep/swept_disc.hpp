@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "gateway/material/swept_ball.hpp"
+#include "gateway/material/sweep/swept_ball.hpp"
 
 namespace rmac::gateway {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "gateway/material/cutter_profile.hpp"
-#include "gateway/material/sweep.hpp"
+#include "gateway/material/sweep/cutter_profile.hpp"
+#include "gateway/material/sweep/sweep.hpp"
 
 namespace rmac::gateway {
 

@@ -1,10 +1,10 @@
-#include "gateway/material/swept_cone.hpp"
+#include "gateway/material/sweep/swept_cone.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "gateway/material/axis_frame.hpp"
+#include "gateway/material/sweep/axis_frame.hpp"
 
 namespace rmac::gateway {
 namespace {

@@ -1,4 +1,4 @@
-#include "gateway/material/cutter_profile.hpp"
+#include "gateway/material/sweep/cutter_profile.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "gateway/material/swept_disc.hpp"
+#include "gateway/material/sweep/swept_disc.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "gateway/material/axis_frame.hpp"
+#include "gateway/material/sweep/axis_frame.hpp"
 
 namespace rmac::gateway {
 namespace {

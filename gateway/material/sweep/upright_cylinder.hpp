@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gateway/material/swept_ball.hpp"
+#include "gateway/material/sweep/swept_ball.hpp"
 
 namespace rmac::gateway {
 

@@ -1,4 +1,4 @@
-#include "gateway/material/stroke_maker.hpp"
+#include "gateway/material/sweep/stroke_maker.hpp"
 
 #include <algorithm>
 #include <cmath>
