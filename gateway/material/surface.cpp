@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <system_error>
@@ -111,11 +112,13 @@ void surface(const DexelGrid& grid, std::uint32_t each_nth, const std::function<
 Expected<SurfaceFile> write_stl(const DexelGrid& grid, const std::filesystem::path& file, std::size_t most_triangles) {
   SurfaceFile written;
   std::uint32_t nth = 1;
-  // The coarsest that has too many tells how much coarser it is to be.
-  for (;; ++nth) {
+  for (;;) {
     written.triangles = 0;
     surface(grid, nth, [&](const SurfaceTriangle&) { ++written.triangles; });
     if (written.triangles <= most_triangles) break;
+    // There are as many fewer as the square of how much coarser it is.
+    const double too_many = static_cast<double>(written.triangles) / static_cast<double>(most_triangles);
+    nth = std::max(nth + 1, static_cast<std::uint32_t>(nth * std::sqrt(too_many)));
   }
   written.apart_mm = *std::ranges::max_element(grid.layout().pitch) * nth;
   std::ofstream out(file, std::ios::binary | std::ios::trunc);

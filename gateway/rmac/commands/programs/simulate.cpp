@@ -156,10 +156,11 @@ Result<> simulate_program(const Options& options, bool json) {
           fmt::format("{}: has no Stock, so that nothing can be left of it for --stock-out", options.setup.string()));
     }
   }
-  const StandstillWatch watch((*simulation)->controller());
+  std::optional<StandstillWatch> watch(std::in_place, (*simulation)->controller());
   Simulator simulator(**simulation, *program, options.record_file);
   if (collisions) simulator.watch_collisions(*collisions, options.first);
   const auto report = simulator.run();
+  watch.reset();  // machine time is over: what is told of the material may take long
   if (!report) return tl::unexpected(report.error());
   std::optional<MaterialReport> material;
   if (collisions && collisions->material() != nullptr) {
