@@ -51,6 +51,7 @@ void CollisionChecker::pair_up() {
       Pair pair{.first = a, .second = b};
       pair.with_stock = on == Kind::Stock || by == Kind::Stock;
       pair.cutter_in_stock = pair.with_stock && by == Kind::Cutter;
+      pair.tool_in_stock = pair.with_stock && on_tool(by);
       pair.near_mm = by == Kind::CutterCore ? 0 : clearance_mm_;
       pairs_.push_back(pair);
     }
@@ -75,7 +76,8 @@ void CollisionChecker::advance(double t_s, std::span<const double> joints, const
   for (std::size_t i = 0; i < bodies_.size(); ++i) posture_.radii(bodies_[i], radii_[i]);
   for (Pair& pair : pairs_) {
     // Once something was cut nobody knows here what is left of the stock on the way of the cutting part.
-    const bool counts = !pair.cutter_in_stock || !(move.cutting || stock_cut_);
+    const bool counts = !(pair.cutter_in_stock && (move.cutting || stock_cut_)) &&
+                        !(pair.tool_in_stock && stock_followed_ && stock_cut_);
     if (!counts) {
       pair.finding = nullptr;
       pair.margin_mm = 0;

@@ -24,14 +24,18 @@ class CollisionChecker {
   void set_tool(const Tool& tool);
   void advance(double t_s, std::span<const double> joints, const MoveNow& move);
 
+  /// Somebody else follows what is left of the stock, and adds to the findings what tools meet of it once it was cut.
+  void stock_is_followed() noexcept { stock_followed_ = true; }
+
   /// Of all that was so far.
   [[nodiscard]] const FindingList& findings() const noexcept { return findings_; }
+  [[nodiscard]] FindingList& findings() noexcept { return findings_; }
   [[nodiscard]] std::size_t distances_computed() const noexcept { return distances_; }
 
  private:
   struct Pair {
     std::size_t first = 0, second = 0;  ///< bodies
-    bool with_stock = false, cutter_in_stock = false;
+    bool with_stock = false, cutter_in_stock = false, tool_in_stock = false;
     double near_mm = 0;            ///< nearer than this is told
     double margin_mm = 0;          ///< motion that cannot bring them nearer than that
     double depth_mm = 0;           ///< as last measured, while they meet
@@ -65,7 +69,7 @@ class CollisionChecker {
   std::vector<double> from_, way_, at_;
   double from_s_ = 0, to_s_ = 0;
   MoveNow move_;
-  bool begun_ = false, stock_cut_ = false;
+  bool begun_ = false, stock_cut_ = false, stock_followed_ = false;
 };
 
 }  // namespace rmac::gateway

@@ -16,6 +16,7 @@ struct Finding {
   double depth_mm = 0;             ///< of a collision, the deepest there was; 0: they never met
   double distance_mm = -1;         ///< the least there was; below 0: nobody looked yet
   bool collision = false;
+  std::string why{};      ///< of stock that a tool meets, as it is at that moment: what it may not do there
   bool possible = false;  ///< with stock that something was cut from before, which may not be there any more
 };
 

@@ -123,12 +123,35 @@ class Collisions(unittest.TestCase):
         self.assertEqual([f["bodies"] for f in report["collisions"]], [["stock", "tool 7, cutting part"]])
         self.assertEqual(done.returncode, 1)
 
-    def test_a_shank_in_stock_is_found_and_only_possible_once_something_was_cut(self):
+    def test_a_shank_in_stock_that_is_still_there_is_certain(self):
         beside, inside = (-60, 0, 5), (-36, 0, 5)
         report, done = self.report([to(*beside), FEED, cut(beside, inside, 2)])
         shank = [f for f in report["collisions"] if f["bodies"] == ["stock", "tool 7, shank"]]
         self.assertEqual(len(shank), 1, report["collisions"])
-        self.assertFalse(shank[0]["certain"], "the same move cuts")
+        self.assertTrue(shank[0]["certain"], "the cutting part ends below it")
+        self.assertEqual((shank[0]["why"], done.returncode), ("it does not cut", 1))
+        self.assertGreater(report["material"]["removed_mm3"], 0)
+
+    def test_what_is_left_of_the_stock_is_told_and_written(self):
+        tools, setup = copy.deepcopy(TOOLS), copy.deepcopy(SETUP)
+        tools["Tools"][0]["Shape"].update(RE=0)
+        del setup["Part"], setup["Fixtures"]
+        setup["Resolution"] = 0.5
+        start, end, file = (-60, 0, 25), (60, 0, 25), self.folder / "left.stl"
+        report, done = self.report([to(*start), FEED, cut(start, end, 2)], "--stock-out", file, tools=tools, setup=setup)
+        self.assertEqual((report["collisions"], done.returncode), ([], 0), done.stderr)
+        self.assertAlmostEqual(report["material"]["removed_mm3"], 80 * 6 * 5, delta=10)
+        self.assertEqual(file.stat().st_size, 84 + 50 * report["material"]["stock_triangles"])
+        # What is left is a stock in its turn: a thinner tool goes through the slot, meets nothing, and cuts nothing.
+        tools["Tools"][0]["Shape"].update(DC=4)
+        setup["Stock"] = {"Shape": {"Mesh": {"File": "left.stl"}}}
+        again, done = self.report([to(-60, 0, 26), to(60, 0, 26, move_id=2)], tools=tools, setup=setup)
+        self.assertEqual((again["collisions"], again["material"]["removed_mm3"]), ([], 0), done.stderr)
+        for words, what in ((("--resolution", "0"), "give one above 0"), (("--resolution", "-1"), "give one above 0"),
+                            (("--resolution", "0.0001"), "takes less than 2 GB"), (("--stock-out", "a.obj"), "ends in .stl")):
+            done = self.run_rmac([to(0, 0, 100)], *words, setup=setup)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1), done.stderr)
+            self.assertIn(what, done.stderr)
 
     def test_a_cut_deeper_into_the_part_than_the_clearance_is_found(self):
         # The part ends at 20.

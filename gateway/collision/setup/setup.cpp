@@ -49,6 +49,8 @@ Expected<Setup> read_setup(const std::filesystem::path& file) {
   setup.machine = (*document)["Machine"];
   setup.material = document->value("Material", "");
   setup.clearance_mm = document->value("Clearance", setup.clearance_mm);
+  setup.tolerance_mm = document->value("Tolerance", setup.tolerance_mm);
+  if (document->contains("Resolution")) setup.resolution_mm = (*document)["Resolution"].get<double>();
   const auto fill = [&]() -> Expected<> {
     if (document->contains("PartFrame")) {
       auto frame = read_frame((*document)["PartFrame"], "/PartFrame");

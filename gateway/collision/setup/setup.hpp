@@ -17,7 +17,9 @@ struct Setup {
   std::optional<Body> stock, part;
   std::vector<Body> fixtures;
   std::string material;
-  double clearance_mm = 1;  ///< nearer than this is told; deeper than this is surely found
+  std::optional<double> resolution_mm;  ///< of what is left of the stock
+  double tolerance_mm = 0.05;           ///< of what is made, on either side
+  double clearance_mm = 1;              ///< nearer than this is told; deeper than this is surely found
 };
 
 /// Reads a `setup.json` and checks it against etc/setup.schema.json. Files of meshes lie beside it or below. An error

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "gateway/bodies/link_chain.hpp"
 #include "gateway/device_database/device_database.hpp"
 #include "gateway/device_driver_manager/device_tree.hpp"
+#include "gateway/material/stock_model.hpp"
 #include "gateway/modules/module_loader.hpp"
 #include "rmac/motion/ports/kinematics.hpp"
 
@@ -41,7 +43,8 @@ Expected<gateway::LinkChain> chain_of(const gateway::DeviceDatabase& database, c
 }  // namespace
 
 Result<std::unique_ptr<CollisionWatch>> CollisionWatch::open(const std::string& machine, const fs::path& device_tree,
-                                                             const fs::path& setup_file) {
+                                                             const fs::path& setup_file,
+                                                             std::optional<double> resolution_mm) {
   const auto setup = gateway::read_setup(setup_file);
   if (!setup) return fail(setup.error().message);
   const auto device_json = gateway::find_device_json(machine, device_tree);
@@ -59,10 +62,20 @@ Result<std::unique_ptr<CollisionWatch>> CollisionWatch::open(const std::string& 
   if (!chain) return fail(fmt::format("{}: {}", device_json->string(), chain.error().message));
   auto bodies = gateway::scene_bodies(database->bodies, *setup);
   if (!bodies) return fail(fmt::format("{}: {}", setup_file.string(), bodies.error().message));
-  return std::unique_ptr<CollisionWatch>(
-      new CollisionWatch(setup->machine, setup->part_frame,
-                         std::make_unique<gateway::CollisionChecker>(std::move(*chain), std::move(*bodies),
-                                                                     setup->part_frame, setup->clearance_mm)));
+  std::unique_ptr<CollisionWatch> watch(new CollisionWatch(
+      *setup,
+      std::make_unique<gateway::CollisionChecker>(*chain, std::move(*bodies), setup->part_frame, setup->clearance_mm)));
+  if (setup->stock) {
+    auto grid = gateway::Stock::read(*setup->stock).and_then([&](const gateway::Stock& stock) {
+      return gateway::model_of(stock, resolution_mm ? resolution_mm : setup->resolution_mm);
+    });
+    if (!grid) return fail(fmt::format("{}: {}", setup_file.string(), grid.error().message));
+    gateway::CollisionChecker& checker = *watch->checker_;
+    watch->material_ =
+        std::make_unique<gateway::Material>(std::move(*chain), std::move(*grid), setup->part_frame, checker.findings());
+    checker.stock_is_followed();
+  }
+  return watch;
 }
 
 bool CollisionWatch::may_cut(const Move& move) noexcept {
@@ -88,16 +101,18 @@ void CollisionWatch::take_tool(gateway::Controller& controller) {
     tool_fault_ = "no tool is in the spindle by the tool table: moves without one were checked with the spindle alone";
   } else if (!tool.shape) {
     tool_fault_ = fmt::format(
-        "tool {} has no Shape in the tool table: moves with it were checked with the spindle alone", number);
+        "tool {} has no Shape in the tool table: moves with it were checked with the spindle alone, and cut nothing",
+        number);
   }
   checker_->set_tool(tool);
+  if (material_) material_->set_tool(tool);
 }
 
 void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller) {
   const sdk::DeviceObject* const device = controller.mechanism();
-  if (device == nullptr || device->name != machine_) {
+  if (device == nullptr || device->name != setup_.machine) {
     if (device != nullptr && sample.moving) {
-      not_checked_.insert(fmt::format("moves of {}: the set-up is for {}", device->name, machine_));
+      not_checked_.insert(fmt::format("moves of {}: the set-up is for {}", device->name, setup_.machine));
     }
     return;
   }
@@ -108,8 +123,24 @@ void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway
   // position is nobody's.
   if (!begun_ && !cutting) return;
   begun_ = true;
-  checker_->advance(sample.t_s, std::span(sample.position_set).first(sample.joint_count),
-                    {.id = sample.move_id, .line = line, .cutting = cutting});
+  const std::span joints = std::span(sample.position_set).first(sample.joint_count);
+  const gateway::MoveNow move{.id = sample.move_id, .line = line, .cutting = cutting};
+  checker_->advance(sample.t_s, joints, move);
+  if (!material_) return;
+  // A machine that has no spindle for the controller turns its tool some other way.
+  const bool turns =
+      device->spindles.empty() || std::ranges::any_of(sample.spindle_rpm, [](double rpm) { return rpm != 0; });
+  material_->advance(sample.t_s, joints, move, turns);
+}
+
+void CollisionWatch::finish() {
+  if (!material_) return;
+  material_->finish();
+  if (material_->grid().overflowed()) {
+    not_checked_.insert(
+        "the material fell into too many pieces, and not all that was cut is gone; choose a coarser "
+        "--resolution");
+  }
 }
 
 nlohmann::json to_json(const std::vector<gateway::Finding>& findings, bool near) {
@@ -124,6 +155,7 @@ nlohmann::json to_json(const std::vector<gateway::Finding>& findings, bool near)
     } else {
       entry["depth_mm"] = f.depth_mm;
       entry["certain"] = !f.possible;
+      if (!f.why.empty()) entry["why"] = f.why;
     }
     list.push_back(std::move(entry));
   }

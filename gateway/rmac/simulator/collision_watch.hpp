@@ -3,12 +3,15 @@
 #include <deque>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "gateway/collision/checker.hpp"
+#include "gateway/material/material.hpp"
+#include "gateway/material/stock.hpp"
 #include "gateway/rmac/wire/failure.hpp"
 #include "gateway/simulation/simulation.hpp"
 #include "rmac/motion/move.hpp"
@@ -18,10 +21,12 @@ namespace rmac::cli {
 /// Watches a simulated machine for collisions with itself and with a set-up.
 class CollisionWatch {
  public:
-  /// `machine` as for `Simulation::open`. Refused, with one line, where not all of it can be checked.
+  /// `machine` as for `Simulation::open`; `resolution_mm` of the material instead of the set-up's. Refused, with one
+  /// line, where not all of it can be checked.
   [[nodiscard]] static Result<std::unique_ptr<CollisionWatch>> open(const std::string& machine,
                                                                     const std::filesystem::path& device_tree,
-                                                                    const std::filesystem::path& setup);
+                                                                    const std::filesystem::path& setup,
+                                                                    std::optional<double> resolution_mm);
 
   /// A move has been added to those that are not done; the first of them is done.
   void queued(const Move& move) { cutting_.push_back(may_cut(move)); }
@@ -32,24 +37,27 @@ class CollisionWatch {
     look_at_tool_ = look_at_tool_ || method.ends_with("Tool") || method.ends_with("ToolChange");
   }
   void cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller);
+  /// The run is over.
+  void finish();
 
-  /// Where the set-up has the part, in the machine frame.
-  [[nodiscard]] const Frame& part_frame() const noexcept { return part_frame_; }
   [[nodiscard]] const gateway::FindingList& findings() const noexcept { return checker_->findings(); }
+  /// What is left of the stock; null where the set-up has none.
+  [[nodiscard]] const gateway::Material* material() const noexcept { return material_.get(); }
+  [[nodiscard]] const gateway::Setup& setup() const noexcept { return setup_; }
   /// What was not checked, a sentence each; empty: all was.
   [[nodiscard]] const std::set<std::string>& not_checked() const noexcept { return not_checked_; }
 
  private:
-  CollisionWatch(std::string machine, const Frame& part_frame, std::unique_ptr<gateway::CollisionChecker> checker)
-      : machine_(std::move(machine)), part_frame_(part_frame), checker_(std::move(checker)) {}
+  CollisionWatch(gateway::Setup setup, std::unique_ptr<gateway::CollisionChecker> checker)
+      : setup_(std::move(setup)), checker_(std::move(checker)) {}
   /// Positioning moves go through air; what is programmed as a path may cut.
   [[nodiscard]] static bool may_cut(const Move& move) noexcept;
   void take_tool(gateway::Controller& controller);
 
-  std::string machine_;  ///< for which the set-up is
-  Frame part_frame_;
+  gateway::Setup setup_;
   std::unique_ptr<gateway::CollisionChecker> checker_;
-  std::deque<bool> cutting_;  ///< of the moves that are not done
+  std::unique_ptr<gateway::Material> material_;  ///< its findings go to the checker's
+  std::deque<bool> cutting_;                     ///< of the moves that are not done
   std::set<std::string> not_checked_;
   std::string tool_fault_;  ///< what cannot be checked with the tool in the spindle
   bool look_at_tool_ = true;

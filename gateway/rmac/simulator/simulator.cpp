@@ -52,6 +52,7 @@ Result<SimulationReport> Simulator::run() {
   }
   // A run that ended at a collision has not failed: it tells what it set out to.
   if (auto played = play(); !played && !ended_) return tl::unexpected(played.error());
+  if (watch_ != nullptr) watch_->finish();
   SimulationReport report;
   if (record_) {
     if (auto closed = record_->close(); !closed) return tl::unexpected(closed.error());

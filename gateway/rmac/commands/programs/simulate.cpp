@@ -8,6 +8,7 @@
 #include "gateway/api/decode.hpp"
 #include "gateway/configuration/configuration.hpp"
 #include "gateway/rmac/commands/programs/collision_report.hpp"
+#include "gateway/rmac/commands/programs/material_report.hpp"
 #include "gateway/rmac/commands/programs/registrations.hpp"
 #include "gateway/rmac/commands/programs/source.hpp"
 #include "gateway/rmac/simulator/simulator.hpp"
@@ -26,6 +27,8 @@ struct Options {
   std::string record_file;            ///< empty: none
   std::filesystem::path tools;        ///< folder of tool tables; empty: no tools but the program's own
   std::filesystem::path setup;        ///< what stands on the table; empty: collisions are not checked
+  std::optional<double> resolution;   ///< of the material, mm; none: the set-up's
+  std::string stock_out;              ///< STL file of what is left of the stock; empty: none
   bool first = false;                 ///< end at the first collision
   bool by_move = false;               ///< tell each move's limit too
   double period_s = 0.001;
@@ -42,8 +45,9 @@ nlohmann::json to_json(const std::vector<MoveLimit>& limits) {
   return list;
 }
 
-/// `watch`: null without a set-up.
-void print_json(const SimulationReport& report, const CollisionWatch* watch, bool by_move, double took_s) {
+/// `watch` and `material`: null without a set-up, and where it has no stock.
+void print_json(const SimulationReport& report, const CollisionWatch* watch, const MaterialReport* material,
+                bool by_move, double took_s) {
   nlohmann::json joints = nlohmann::json::array();
   for (const auto& joint : report.joints) {
     joints.push_back({{"name", joint.name},
@@ -59,6 +63,7 @@ void print_json(const SimulationReport& report, const CollisionWatch* watch, boo
                       {"collisions", "not checked"},         {"cpu_time_s", took_s}};
   if (by_move) line["move_limits"] = to_json(report.move_limits);
   if (watch != nullptr) add_collisions(*watch, line);
+  if (material != nullptr) line["material"] = to_json(*material);
   if (!report.record_files.empty()) {
     line["record_rows"] = report.record_rows;
     line["record_files"] = report.record_files;
@@ -66,7 +71,8 @@ void print_json(const SimulationReport& report, const CollisionWatch* watch, boo
   fmt::print("{}\n", line.dump());
 }
 
-void print_table(const SimulationReport& report, const CollisionWatch* watch, double took_s) {
+void print_table(const SimulationReport& report, const CollisionWatch* watch, const MaterialReport* material,
+                 double took_s) {
   std::vector<std::vector<std::string>> rows{
       {"moves", std::to_string(report.moves), ""},
       {"tool changes", std::to_string(report.tool_changes), report.tool_changes > 0 ? "in no time" : ""},
@@ -78,6 +84,7 @@ void print_table(const SimulationReport& report, const CollisionWatch* watch, do
   for (const auto& record : report.record_files) {
     rows.push_back({"record", record, fmt::format("{} rows in all", report.record_rows)});
   }
+  if (material != nullptr) add_rows(*material, rows);
   fmt::print("{}\n", table({"", "", ""}, rows));
   if (watch != nullptr) print_collisions(*watch);
   rows.clear();
@@ -123,18 +130,30 @@ class StandstillWatch {
   gateway::HangWatch watch_;  // last: it looks at the others
 };
 
-Result<> simulate_program(const Options& options, bool json) {
-  const double began_s = cpu_time_s();
-  const auto program = read_source(options.source);
-  if (!program) return tl::unexpected(program.error());
-  if (options.machine.empty() && !program->loads_mechanism) {
-    return fail(fmt::format("{}: the program loads no machine; name one with --machine", program->file));
+/// Refuses what cannot be told of this program, before anything is planned.
+Result<> check_options(const Options& options, const Program& program, bool json) {
+  if (options.machine.empty() && !program.loads_mechanism) {
+    return fail(fmt::format("{}: the program loads no machine; name one with --machine", program.file));
   }
   if (options.machine.empty() && !options.setup.empty())
     return fail("--setup needs --machine: what stands on which table");
   if (options.by_move && !json) return fail("--by-move needs --json: it tells something of every move");
   if (options.first && options.setup.empty())
     return fail("--first needs --setup: without one collisions are not checked");
+  if (options.resolution && options.setup.empty())
+    return fail("--resolution needs --setup: without one there is no stock");
+  if (!options.stock_out.empty()) {
+    if (options.setup.empty()) return fail("--stock-out needs --setup: without one there is no stock");
+    if (auto possible = check_stock_out(options.stock_out); !possible) return possible;
+  }
+  return {};
+}
+
+Result<> simulate_program(const Options& options, bool json) {
+  const double began_s = cpu_time_s();
+  const auto program = read_source(options.source);
+  if (!program) return tl::unexpected(program.error());
+  if (auto fine = check_options(options, *program, json); !fine) return fine;
   spdlog::set_level(spdlog::level::off);  // what is wrong with other machines of the tree is not asked here
   const auto tree = options.device_tree.empty() ? gateway::default_folders().device_tree : options.device_tree;
   auto simulation = gateway::Simulation::open({.device_tree = tree,
@@ -145,24 +164,37 @@ Result<> simulate_program(const Options& options, bool json) {
   if (!simulation) return fail(simulation.error().message);
   std::unique_ptr<CollisionWatch> collisions;
   if (!options.setup.empty()) {
-    auto opened = CollisionWatch::open(options.machine, tree, options.setup);
+    auto opened = CollisionWatch::open(options.machine, tree, options.setup, options.resolution);
     if (!opened) return tl::unexpected(opened.error());
     collisions = std::move(*opened);
+    if (!options.stock_out.empty() && collisions->material() == nullptr) {
+      return fail(
+          fmt::format("{}: has no Stock, so that nothing can be left of it for --stock-out", options.setup.string()));
+    }
     // As somebody would who clamped the part there; a program may set another one.
     const auto stands =
-        (*simulation)->call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json(collisions->part_frame())}});
+        (*simulation)
+            ->call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json(collisions->setup().part_frame)}});
     if (!stands) return fail(fmt::format("{}: /PartFrame: {}", options.setup.string(), stands.error().message));
   }
-  const StandstillWatch watch((*simulation)->controller());
+  std::optional<StandstillWatch> watch(std::in_place, (*simulation)->controller());
   Simulator simulator(**simulation, *program, options.record_file);
   if (collisions) simulator.watch_collisions(*collisions, options.first);
   const auto report = simulator.run();
+  watch.reset();  // machine time is over: what is told of the material may take long
   if (!report) return tl::unexpected(report.error());
+  std::optional<MaterialReport> material;
+  if (collisions && collisions->material() != nullptr) {
+    auto found = report_material(*collisions, options.stock_out);
+    if (!found) return tl::unexpected(found.error());
+    material = std::move(*found);
+  }
+  const MaterialReport* const left = material ? &*material : nullptr;
   const double took_s = cpu_time_s() - began_s;
   if (json) {
-    print_json(*report, collisions.get(), options.by_move, took_s);
+    print_json(*report, collisions.get(), left, options.by_move, took_s);
   } else {
-    print_table(*report, collisions.get(), took_s);
+    print_table(*report, collisions.get(), left, took_s);
   }
   return collisions ? verdict(*collisions) : Result<>();
 }
@@ -181,6 +213,9 @@ void add_simulate(Command& rmac) {
       .option("--tools", &options->tools, "folder of tool tables (tools/ of an appliance's state folder); only read")
       .existing_folder();
   simulate.option("--setup", &options->setup, "setup.json: what stands on the table; collisions are checked with it");
+  simulate.option("--resolution", &options->resolution,
+                  "with --setup: how far the rays are apart by which the stock is known, mm; instead of the set-up's");
+  simulate.option("--stock-out", &options->stock_out, "with --setup: write what is left of the stock to this STL file");
   simulate.flag("--first", &options->first, "with --setup: end at the first collision");
   simulate.flag("--by-move", &options->by_move, "with --json: the limit that ruled each move for the longest time");
   simulate.option("--device-tree", &options->device_tree,

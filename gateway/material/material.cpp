@@ -1,0 +1,179 @@
+#include "gateway/material/material.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rmac/motion/frame.hpp"
+
+namespace rmac::gateway {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kMostTolerance_mm = 0.005, kShareOfResolution = 0.05;
+/// Of the tolerance, for what lies between two positions that were looked at; the rest is for these themselves.
+constexpr double kShareBetween = 0.25;
+/// Of the tolerance: walls that the cutting part left may be off by it, on either side.
+constexpr double kToldFrom = 4;
+constexpr int kMostHalvings = 20;
+constexpr std::size_t kTogether = 16;  ///< strokes
+
+double resolution_of(const DexelLayout& layout) {
+  return *std::ranges::max_element(layout.pitch);
+}
+
+double tolerance_of(const DexelLayout& layout) {
+  return std::min(kMostTolerance_mm, kShareOfResolution * resolution_of(layout));
+}
+
+}  // namespace
+
+Material::Material(LinkChain chain, DexelGrid grid, const Frame& part_frame, FindingList& findings)
+    : chain_(std::move(chain)),
+      grid_(std::move(grid)),
+      findings_(findings),
+      to_part_(inverse(part_frame)),
+      part_frame_(part_frame),
+      tolerance_mm_(tolerance_of(grid_.layout())),
+      within_mm_(resolution_of(grid_.layout())),
+      links_(chain_.link_count()) {}
+
+void Material::set_tool(const Tool& tool) {
+  finish();
+  parts_.clear();
+  begun_ = false;
+  spindle_needed_ = tool.needs_spindle;
+  tip_home_ = compose(chain_.interface_home(), tip_on_interface(tool));
+  if (!tool.shape) return;
+  const ToolShape& shape = *tool.shape;
+  const auto add = [&](const char* what, const std::vector<ProfilePiece>& pieces, bool cuts) {
+    const double tolerance = (1 - kShareBetween) * (cuts ? tolerance_mm_ : within_mm_ / 2);
+    for (const ProfilePiece& piece : pieces) {
+      parts_.push_back({fmt::format("tool {}, {}", tool.number, what), StrokeMaker(piece, tolerance), cuts});
+    }
+  };
+  add("cutting part", cutting_profile(shape), true);
+  add("shank", profile_of(shape.shank, shape.lcf, within_mm_), false);
+  add("holder", profile_of(shape.holder, shape.holder_begins(tool.length_mm), within_mm_), false);
+}
+
+ToolAt Material::tool_at(std::span<const double> joints) {
+  chain_.displace(joints, links_);
+  const Frame at = compose(to_part_, compose(links_.back(), tip_home_));
+  const Vector axis = z_axis(at);
+  return {Vector3d(at.p[0], at.p[1], at.p[2]), Vector3d(axis[0], axis[1], axis[2]).normalized()};
+}
+
+void Material::advance(double t_s, std::span<const double> joints, const MoveNow& move, bool spindle_turns) {
+  const bool turns = spindle_turns || !spindle_needed_;
+  // A stroke is of one move, and cuts as a whole or not at all.
+  if (move.id != move_.id || move.line != move_.line || move.cutting != move_.cutting || turns != turns_) finish();
+  move_ = move, turns_ = turns;
+  const ToolAt there = tool_at(joints);
+  if (!begun_) {
+    for (Part& part : parts_) part.strokes.forget();
+    go_to(there);
+    since_s_ = t_s;
+  } else if (!std::ranges::equal(joints, joints_)) {
+    if (turns_between(joints_, joints)) {
+      go_between(joints_, at_, joints, there, kMostHalvings);
+    } else {
+      go_to(there);
+    }
+  }
+  begun_ = true;
+  t_s_ = t_s;
+  at_ = there;
+  joints_.assign(joints.begin(), joints.end());
+}
+
+/// Slides alone leave the way straight.
+bool Material::turns_between(std::span<const double> from, std::span<const double> to) const {
+  for (std::size_t j = 0; j < from.size(); ++j) {
+    if (from[j] != to[j] && chain_.motion(j).turns != 0) return true;
+  }
+  return false;
+}
+
+/// Halves the way of the joints until the tool goes straight on it as far as the tolerance can tell.
+void Material::go_between(std::span<const double> from, const ToolAt& begin, std::span<const double> to,
+                          const ToolAt& end, int halvings) {
+  std::vector<double> middle(from.size());
+  for (std::size_t j = 0; j < middle.size(); ++j) middle[j] = (from[j] + to[j]) / 2;
+  const ToolAt between = tool_at(middle);
+  const Vector3d bend = between.tip - (begin.tip + end.tip) / 2, turn = between.axis - (begin.axis + end.axis) / 2;
+  const bool straight = std::ranges::all_of(parts_, [&](const Part& part) {
+    const double tolerance = part.cuts ? tolerance_mm_ : within_mm_ / 2;
+    return (bend + part.strokes.piece().middle * turn).norm() <= kShareBetween * tolerance &&
+           part.strokes.turned_mm(begin, end) <= (1 - kShareBetween) * tolerance / 2;
+  });
+  if (straight || halvings == 0) {
+    go_to(end);
+    return;
+  }
+  go_between(from, begin, middle, between, halvings - 1);
+  go_between(middle, between, to, end, halvings - 1);
+}
+
+void Material::go_to(const ToolAt& there) {
+  for (Part& part : parts_) {
+    if (const auto stroke = part.strokes.go_to(there)) take(part, *stroke);
+  }
+}
+
+void Material::finish() {
+  end_strokes(true);
+  end_strokes(false);
+  since_s_ = t_s_;
+}
+
+void Material::end_strokes(bool cutting) {
+  for (Part& part : parts_) {
+    if (part.cuts != cutting) continue;
+    if (const auto stroke = part.strokes.end()) take(part, *stroke);
+    cut_with(part);
+  }
+}
+
+void Material::take(Part& part, const Stroke& stroke) {
+  const Sweep sweep = sweep_of(part.strokes.piece(), stroke);
+  if (!part.cuts) {
+    look_at(part, sweep);
+    return;
+  }
+  ++strokes_;
+  part.waiting.push_back(sweep);
+  if (part.waiting.size() >= kTogether) cut_with(part);
+}
+
+void Material::cut_with(Part& part) {
+  const Removal met = cut(grid_, part.waiting, turns_ ? Cut::Remove : Cut::Look);
+  part.waiting.clear();
+  if (turns_) removed_mm3_ += met.volume_mm3;
+  if (!turns_) {
+    tell(part, met, "the spindle stands");
+  } else if (!move_.cutting) {
+    tell(part, met, "positioning move");
+  }
+}
+
+void Material::look_at(const Part& part, const Sweep& sweep) {
+  if (cut(grid_, sweep, Cut::Look).depth_mm <= kToldFrom * tolerance_mm_) return;
+  // What the cutting part passed until now is gone, though its stroke is not over.
+  end_strokes(true);
+  tell(part, cut(grid_, sweep, Cut::Look), "it does not cut");
+}
+
+void Material::tell(const Part& part, const Removal& met, const char* why) {
+  if (met.depth_mm <= kToldFrom * tolerance_mm_) return;
+  Finding* const finding = findings_.of("stock", part.name, since_s_, move_, {.possible = false, .meet = true});
+  if (finding == nullptr) return;
+  if (finding->why.empty()) finding->why = why;
+  const Vector at = apply_to_point(part_frame_, {met.place[0], met.place[1], met.place[2]});
+  const Vector3d place(at[0], at[1], at[2]);
+  findings_.see(*finding, {.least = 0, .most = 0, .on_first = place, .on_second = place}, met.depth_mm, t_s_, move_);
+}
+
+}  // namespace rmac::gateway

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gateway/bodies/link_chain.hpp"
+#include "gateway/collision/finding_list.hpp"
+#include "gateway/material/dexel_grid.hpp"
+#include "gateway/material/removal.hpp"
+#include "gateway/material/sweep/stroke_maker.hpp"
+#include "gateway/tools/tool.hpp"
+
+namespace rmac::gateway {
+
+/// What is left of the stock while the machine moves: the cutting part of the tool takes away what it passes while the
+/// spindle turns, and what any other part of the tool meets, or the cutting part in a positioning move or with a
+/// spindle that stands, is a finding.
+class Material {
+ public:
+  /// `grid` holds the stock, in the part frame; findings go to the list, which outlives this.
+  Material(LinkChain chain, DexelGrid grid, const Frame& part_frame, FindingList& findings);
+
+  /// What is in the spindle from now on. One without a shape takes nothing away.
+  void set_tool(const Tool& tool);
+  /// The joints have gone straight to there since they were told last.
+  void advance(double t_s, std::span<const double> joints, const MoveNow& move, bool spindle_turns);
+  /// What is under way counts as far as it came. To be called before anything is read.
+  void finish();
+
+  [[nodiscard]] const DexelGrid& grid() const noexcept { return grid_; }
+  [[nodiscard]] double removed_mm3() const noexcept { return removed_mm3_; }
+  /// How far the surface of what is left may be from the true one, for the motion of the tool that is taken straight.
+  [[nodiscard]] double tolerance_mm() const noexcept { return tolerance_mm_; }
+  [[nodiscard]] std::size_t strokes() const noexcept { return strokes_; }
+
+ private:
+  struct Part {
+    std::string name;
+    StrokeMaker strokes;
+    bool cuts = false;
+    std::vector<Sweep> waiting{};  ///< until there are enough of them
+  };
+  [[nodiscard]] ToolAt tool_at(std::span<const double> joints);
+  [[nodiscard]] bool turns_between(std::span<const double> from, std::span<const double> to) const;
+  void go_between(std::span<const double> from, const ToolAt& begin, std::span<const double> to, const ToolAt& end,
+                  int halvings);
+  void go_to(const ToolAt& there);
+  void end_strokes(bool cutting);
+  void take(Part& part, const Stroke& stroke);
+  void cut_with(Part& part);
+  void look_at(const Part& part, const Sweep& sweep);
+  void tell(const Part& part, const Removal& met, const char* why);
+
+  LinkChain chain_;
+  DexelGrid grid_;
+  FindingList& findings_;
+  Frame to_part_, part_frame_;  ///< machine to part, and back
+  double tolerance_mm_;
+  double within_mm_;  ///< that parts which do not cut are taken smaller by
+  std::vector<Part> parts_;
+  Frame tip_home_;  ///< of the tool's tip, all joints at 0, machine frame
+  bool spindle_needed_ = true;
+  double removed_mm3_ = 0;
+  std::size_t strokes_ = 0;
+
+  // The step under way.
+  std::vector<Frame> links_;
+  std::vector<double> joints_;
+  ToolAt at_{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};  ///< with these joints
+  MoveNow move_;
+  bool begun_ = false, turns_ = false;
+  double since_s_ = 0, t_s_ = 0;  ///< of the strokes under way
+};
+
+}  // namespace rmac::gateway

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <span>
+
+#include "gateway/material/dexel_grid.hpp"
+#include "gateway/material/sweep/sweep.hpp"
+
+namespace rmac::gateway {
+
+/// What a piece of a tool met on its way.
+struct Removal {
+  double volume_mm3 = 0;  ///< the mean of the three families
+  /// The longest piece of material that a ray had within it, the least of the three families; 0: not every family met
+  /// any, so that it is thinner than the rays are apart.
+  double depth_mm = 0;
+  Eigen::Vector3d place{0, 0, 0};  ///< the middle of that piece, part frame
+};
+
+/// Whether material is taken away, or only looked at.
+enum class Cut { Remove, Look };
+
+/// Touches no ray but those in the boxes around the sweeps of one piece, and of these no tile whose material they pass
+/// by. Sweeps that follow each other cost least together: on each tile the one goes first that takes the most, and what
+/// the others would have taken is gone.
+Removal cut(DexelGrid& grid, std::span<const Sweep> sweeps, Cut what);
+inline Removal cut(DexelGrid& grid, const Sweep& sweep, Cut what) {
+  return cut(grid, std::span(&sweep, 1), what);
+}
+
+}  // namespace rmac::gateway
