@@ -161,6 +161,8 @@ std::optional<std::string> read_file(const std::string& name) {
   }
   std::istream& input = name == "-" ? std::cin : opened;
   std::string text{std::istreambuf_iterator<char>(input), {}};
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
   return input.bad() ? std::nullopt : std::optional(std::move(text));
 }
 
@@ -194,7 +196,8 @@ void declare(CLI::App& app, Words& words) {
   app.add_option("--rapid", words.options.rapid_mm_min,
                  "feed of G0 and RAPID, mm/min; at most the machine's MaxFeedrate")
       ->capture_default_str();
-  app.add_option("--tolerance", words.options.tolerance_mm, "path tolerance of G64 without P, mm");
+  app.add_option("--tolerance", words.options.tolerance_mm, "path tolerance of G64 without P, mm")
+      ->check(CLI::Range(0.0, 1000.0));
   app.add_option("--approach", words.approach,
                  "X,Y,Z in mm: where the tool tip goes straight, at rapid, when the program begins, after a tool "
                  "change and a change of unknown "

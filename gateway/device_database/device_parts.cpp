@@ -94,13 +94,11 @@ std::optional<ForceControl> force_control(const Json& joint) {
 
 /// device.json's schema of one of its definitions, or of a list of them.
 std::string schema_of(const char* definition, bool list) {
-  Json schema{{"definitions", Json::parse(device_schema_text()).at("definitions")}};
-  const Json one{{"$ref", fmt::format("#/definitions/{}", definition)}};
-  if (list) {
-    schema.update({{"type", "array"}, {"items", one}});
-  } else {
-    schema["allOf"] = Json::array({one});
-  }
+  const Json definitions = Json::parse(device_schema_text()).at("definitions");
+  // Itself, and no reference to it: what is wrong is told by what stands here.
+  Json schema = definitions.at(definition);
+  if (list) schema = {{"type", "array"}, {"items", {{"$ref", fmt::format("#/definitions/{}", definition)}}}};
+  schema["definitions"] = definitions;
   return schema.dump();
 }
 

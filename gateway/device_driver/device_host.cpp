@@ -24,8 +24,8 @@ struct Base {
 
 /// What a file says of a mechanism, with softer loops where that is wanted.
 Expected<sdk::DeviceObject> read_softened(const std::filesystem::path& device_json, double soften) {
-  return read_device_database(device_json).map([&](const sdk::DeviceObject& device) {
-    return soften > 1 ? softened(device, soften) : device;
+  return read_device_database(device_json).and_then([&](const sdk::DeviceObject& device) {
+    return soften == 1 ? Expected<sdk::DeviceObject>(device) : softened(device, soften);
   });
 }
 

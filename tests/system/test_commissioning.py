@@ -185,7 +185,7 @@ class Commands(unittest.TestCase):
                 refused = appliance.rmac("load", "DMACXYZ")
                 self.assertEqual(refused.returncode, 1)
                 self.assertIn("stability: on the model of its axes, where encoders are sound", refused.stderr)
-                self.assertIn("8, and speed up at a quarter", self.rmac(appliance, "load", "DMACXYZ", "--soften", "8"))
+                self.assertIn("softer by 8, and their joints", self.rmac(appliance, "load", "DMACXYZ", "--soften", "8"))
                 client = appliance.client()
                 for joint in joints:
                     words = ("tune", str(joint), "--travel", "20", "-o", str(pathlib.Path(folder, "tune.png")))

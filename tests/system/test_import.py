@@ -3,6 +3,7 @@ it as it is."""
 
 import json
 import math
+import os
 import pathlib
 import subprocess
 import tempfile
@@ -183,6 +184,28 @@ class Import(unittest.TestCase):
         self.assertTrue(done.stderr.startswith(f"rmac-import: {self.source}:3:3: G76: "), done.stderr)
         self.assertEqual(target.read_text(), "the old one\n")
         self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["part.ngc", "part.rmac"])
+
+    def test_what_is_no_file_stays_what_it_is(self):
+        """A link leads to its file; a pipe and a device get the program. A mark of byte order is none of it."""
+        self.source.write_bytes(b"\xef\xbb\xbfG21 G0 X0 Y0 Z0\nM2\n")
+        target, link, pipe = (self.folder / name for name in ("elsewhere.rmac", "link.rmac", "pipe"))
+        target.write_text("the old one\n")
+        link.symlink_to(target)
+        done = self.rmac("import", self.source, "-o", link)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertTrue(link.is_symlink())
+        whole = target.read_text()
+        self.assertIn("MoveToPathTarget", whole)
+        os.mkfifo(pipe)
+        with subprocess.Popen([BUILD / "bin" / "rmac", "import", self.source, "-o", pipe], stdout=subprocess.DEVNULL) as importer:
+            self.assertEqual(pipe.read_text(), whole)
+        self.assertEqual(importer.returncode, 0)
+        self.assertTrue(pipe.is_fifo())
+        full = self.folder / "full"
+        full.symlink_to("/dev/full")
+        done = self.rmac("import", self.source, "-o", full)
+        self.assertEqual((done.returncode, done.stderr), (1, f"rmac-import: {full}: cannot be written\n"))
+        self.assertTrue(pathlib.Path("/dev/full").is_char_device())
 
     def test_no_file_but_the_output_is_written(self):
         program = "G21 G0 X0 Y0 Z0\nM2\n"

@@ -81,7 +81,13 @@ bool Passages::take_meant(const Statement& statement) {
     return true;
   }
   for (auto& [number, passage] : indexed_) {
-    if (passage.depth == depth_ && statement.major != "$$") passage.statements.push_back(statement);
+    if (passage.depth != depth_ || statement.major == "$$") continue;
+    if (passage.statements.size() == kMostRepeated) {
+      refuse(statement.place, fmt::format("more than half a million statements stand behind INDEX/{}, for a COPY that "
+                                          "did not come yet; have the CAM system write them out",
+                                          number));
+    }
+    passage.statements.push_back(statement);
   }
   return take_verb(statement);
 }
@@ -212,7 +218,9 @@ void Passages::call_subprogram(Arguments& arguments) {
 
 void Passages::count_repeated(std::size_t place) {
   if (++repeated_ > kMostRepeated || writer_.moves() > kMostMoves)
-    refuse(place, "this repeats more than half a million statements, or makes more than two million moves");
+    refuse(place,
+           "this repeats more than half a million statements, or makes more than two million moves; have the CAM "
+           "system write it out, or cut it into several files");
 }
 
 void Passages::run(const std::vector<Statement>& statements, std::size_t place) {

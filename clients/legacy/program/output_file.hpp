@@ -7,7 +7,7 @@
 namespace rmac::legacy {
 
 /// A program's file, under another name until it is whole: nobody should run half a program. "-" is standard output,
-/// which gets nothing before the end either.
+/// which gets nothing before the end either, and so are devices and pipes. Of a link it is the file that it leads to.
 class OutputFile {
  public:
   explicit OutputFile(const std::string& name);
@@ -26,6 +26,7 @@ class OutputFile {
 
   std::string name_, partial_;
   std::FILE* file_ = nullptr;
+  std::FILE* out_ = nullptr;  ///< where all of it goes in the end, if that is no file
   bool good_ = true;
 };
 

@@ -27,7 +27,9 @@ Result<> stop_now(Connection& connection) {
 }
 
 Result<> load_machine(Connection& connection, const std::string& name, bool virtual_mode, double soften) {
-  return connection.command(kLoadMachine, {{"Name", name}, {"Virtual", virtual_mode}, {"Soften", soften}});
+  nlohmann::json params{{"Name", name}, {"Virtual", virtual_mode}};
+  if (soften != 1) params["Soften"] = soften;  // an appliance of an earlier version does not know it
+  return connection.command(kLoadMachine, params);
 }
 
 Result<std::string> loaded_machine(Connection& connection) {

@@ -100,11 +100,16 @@ void Block::read_assignment(std::string_view text, std::size_t& at, Parameters& 
 }
 
 void Block::add_g(double value, std::size_t place) {
+  constexpr int kEndOfCycle = 800;  // G80
   const auto tenfold = near_integer(value * 10, 999);
   const GCode* known = tenfold ? find_g(*tenfold) : nullptr;
   if (known == nullptr) refuse(place, fmt::format("there is no G{:g}", value));
   if (!known->refusal.empty()) refuse(place, fmt::format("{}: {}", g_name(*tenfold), known->refusal));
   auto& there = g_.at(static_cast<std::size_t>(known->group));
+  // Headers of posts put G80 beside a motion, which ends a cycle too; LinuxCNC takes it.
+  const auto is_move = [](int number) { return number >= 0 && number <= 30; };
+  if (there && *tenfold == kEndOfCycle && is_move(there->number)) return;
+  if (there && there->number == kEndOfCycle && is_move(*tenfold)) there.reset();
   if (there) {
     refuse(place,
            fmt::format("{} and {} are of one modal group; write two blocks", g_name(there->number), g_name(*tenfold)));

@@ -12,6 +12,10 @@ namespace rmac::cli {
 Result<> commission(Connection& connection, const std::function<Result<>(const std::string& fault)>& work) {
   FaultWatch faults(connection, FaultWatch::HearsOf::Faults);
   return with_authority(connection, [&]() -> Result<> {
+    const auto begin = ask_state(connection);
+    if (!begin) return tl::unexpected(begin.error());
+    if (begin->faulted())
+      return fail("the machine is faulted; remove the cause, then reset: " + begin->last_stop.message);
     if (auto heard = faults.begin(); !heard) return heard;
     auto worked = work(faults.failure());
     if (worked) return worked;

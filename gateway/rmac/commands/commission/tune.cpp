@@ -31,20 +31,24 @@ Result<> apply_gains(Connection& connection, const Options& options, const Json&
     return fail(fmt::format("nothing is changed: {} takes other gains than those that were found; choose a PID law",
                             found["law"].get<std::string>()));
   }
-  const int joint = options.stroke.joint;
-  const Json& filters = found["proposed"]["filters"];
-  Result<> set;
-  if (filters != found["filters_in_force"]) {
-    set =
-        connection.command("RMAC_Config.SetMechanismJointFilters",
-                           {{"JntNum", joint}, {"Resonances", filters["Resonances"]}, {"LowPass", filters["LowPass"]}});
+  if (loses_filters(found)) {
+    return fail("nothing is changed: the joint has filters, and without a sweep nobody knows what they are for");
   }
-  return set
-      .and_then([&] {
-        return connection.command("RMAC_Config.SetMechanismJointServoControlGains",
-                                  {{"JntNum", joint}, {"ServoControlGains", found["apply"]}});
-      })
-      .and_then([&] { return connection.command("RMAC_Config.Apply"); });
+  const int joint = options.stroke.joint;
+  const Json &filters = found["proposed"]["filters"], &before = found["filters_in_force"];
+  const auto set_filters = [&](const Json& wanted) {
+    return connection.command(
+        "RMAC_Config.SetMechanismJointFilters",
+        {{"JntNum", joint}, {"Resonances", wanted["Resonances"]}, {"LowPass", wanted["LowPass"]}});
+  };
+  const Result<> set = filters == before ? Result<>() : set_filters(filters);
+  const Json gains{{"JntNum", joint}, {"ServoControlGains", found["apply"]}};
+  const Result<> applied =
+      set.and_then([&] { return connection.command("RMAC_Config.SetMechanismJointServoControlGains", gains); })
+          .and_then([&] { return connection.command("RMAC_Config.Apply"); });
+  // Half of it would come in force with whatever is applied next.
+  if (!applied && filters != before && before.is_object()) static_cast<void>(set_filters(before));
+  return applied;
 }
 
 /// Refuses a machine of which nothing would be found.

@@ -1,5 +1,7 @@
 #include "gateway/rmac/commands/commission/tuning_motion.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,14 +17,29 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr double kLeastMiss = 0.2;  ///< mm or deg
+
+/// Jogs by `distance` and waits for rest; fails where the joint then is not at `target`, because somebody stopped it.
+Result<> go(Connection& connection, const Stroke& stroke, double distance, double target, const std::string& fault) {
+  constexpr double kShareOfStroke = 0.05;  // more than a soft loop rests beside its setpoint
+  if (auto begun = connection.command(kJogJoint, {{"JntNum", stroke.joint}, {"Distance", distance}}); !begun)
+    return begun;
+  const auto rest = wait_for_rest(connection, fault);
+  if (!rest) return tl::unexpected(rest.error());
+  const double stands = rest->joints.at(static_cast<std::size_t>(stroke.joint));
+  if (std::abs(stands - target) <= std::max(kShareOfStroke * std::abs(stroke.travel), kLeastMiss)) return {};
+  return fail(fmt::format("joint {} stands at {:.3f} instead of {:.3f}: somebody stopped it. Nothing is measured",
+                          stroke.joint, stands, target));
+}
+
 /// There and back once, and at rest again.
 Result<> swing(Connection& connection, const Stroke& stroke, const std::string& fault) {
-  for (const double distance : {stroke.travel, -stroke.travel}) {
-    if (auto begun = connection.command(kJogJoint, {{"JntNum", stroke.joint}, {"Distance", distance}}); !begun)
-      return begun;
-    if (auto rest = wait_for_rest(connection, fault); !rest) return tl::unexpected(rest.error());
-  }
-  return {};
+  const auto begin = ask_state(connection);
+  if (!begin) return tl::unexpected(begin.error());
+  const double from = begin->joints.at(static_cast<std::size_t>(stroke.joint));
+  return go(connection, stroke, stroke.travel, from + stroke.travel, fault).and_then([&] {
+    return go(connection, stroke, -stroke.travel, from, fault);
+  });
 }
 
 /// Does `work`, and puts the joint interpolation speed back to what it was.
@@ -104,8 +121,10 @@ Result<> sweep_strokes(Connection& connection, const Stroke& stroke, const Json&
       });
     });
   });
-  // A stop that is still under way refuses it; what stopped the machine is what is told.
-  if (!swept) static_cast<void>(wait_for_rest(connection, ""));
+  // No law is put in force before the machine rests; what stopped it is what is told.
+  if (!swept)
+    static_cast<void>(
+        stop_now(connection).and_then([&] { return wait_for_rest(connection, "").map([](const StateNote&) {}); }));
   const Result<> put_back = put_law(connection, stroke.joint, found["law"], found["parameters"], found["gains"]);
   return swept ? put_back : swept;
 }

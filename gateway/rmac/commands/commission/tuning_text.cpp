@@ -57,9 +57,15 @@ void print_tuning(const Json& found, const std::string& picture) {
   print_filters(filters);
   fmt::print("for DMAC_FEEDFORWARDFEEDBACK_CONTROL: {} with lead_s {:.4f}\n{}\n",
              list_text(found["feedforward_feedback_gains"]), found["lead_s"].get<double>(), picture);
-  if (found["apply"].is_null()) return;  // a law of other gains
+  if (found["apply"].is_null() || loses_filters(found)) return;
   fmt::print("to keep it, write into the joint in device.json: \"Gains\": {}, \"Resonances\": {}, \"LowPass\": {}\n",
              list_text(found["apply"]), filters["Resonances"].dump(), filters["LowPass"].dump());
+}
+
+bool loses_filters(const Json& found) {
+  const Json& now = found["filters_in_force"];
+  const bool filtered = now.is_object() && (!now["Resonances"].empty() || now["LowPass"] > 0);
+  return found["misfit"].is_null() && filtered;
 }
 
 }  // namespace rmac::cli

@@ -14,10 +14,11 @@ struct Options {
   double soften = 1;
 };
 
-Result<> load_softly(Connection& appliance, const Options& options) {
+Result<> load_softly(Connection& appliance, const Options& options, bool json) {
   return load_machine(appliance, options.name, options.virtual_mode, options.soften).map([&] {
-    if (options.soften == 1) return;
-    fmt::print("its loops are softer by {:g}, and speed up at a quarter, until it is loaded again\n", options.soften);
+    if (json || options.soften == 1) return;
+    fmt::print("its PIDs are softer by {:g}, and their joints speed up at a quarter, until it is loaded again\n",
+               options.soften);
   });
 }
 
@@ -32,8 +33,8 @@ void add_load(Command& rmac) {
               "for commissioning, where its gains swing or were made for another mass: divide Kp and Kd of its PIDs by "
               "this, and Ki by its square; 8 does for most")
       .within(1.0, 100.0);
-  load.does(with_appliance([options](Connection& appliance, bool) {
-    return with_authority(appliance, [&] { return load_softly(appliance, *options); });
+  load.does(with_appliance([options](Connection& appliance, bool json) {
+    return with_authority(appliance, [&] { return load_softly(appliance, *options, json); });
   }));
 }
 

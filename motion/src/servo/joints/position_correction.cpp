@@ -11,6 +11,7 @@ namespace {
 constexpr double kSteepest = 0.1;
 // Above this share of the sampling frequency a filter is no longer what its name says.
 constexpr double kHighestShare = 0.4;
+constexpr double kLowestFilter_hz = 1;  ///< below it a filter holds back what holds the joint
 }  // namespace
 
 PositionCorrection::PositionCorrection(const JointMechanics& mechanics)
@@ -85,14 +86,15 @@ Expected<> check_mechanics(const JointMechanics& mechanics, double period_s, con
   }
   const double highest = kHighestShare / period_s;
   for (const Resonance& resonance : mechanics.resonances) {
-    if (!(resonance.frequency_hz > 0 && resonance.frequency_hz <= highest) || !(resonance.damping > 0) ||
-        !(resonance.damping < resonance.width) || !(resonance.width <= 2)) {
-      return refuse("a resonance needs a frequency above 0 and at most " + std::to_string(highest) +
+    if (!(resonance.frequency_hz >= kLowestFilter_hz && resonance.frequency_hz <= highest) ||
+        !(resonance.damping > 0) || !(resonance.damping < resonance.width) || !(resonance.width <= 2)) {
+      return refuse("a resonance needs a frequency of 1 to " + std::to_string(highest) +
                     " Hz, a damping above 0, and a width above the damping, at most 2");
     }
   }
-  if (!(mechanics.low_pass_hz >= 0 && mechanics.low_pass_hz <= highest)) {
-    return refuse("the low-pass must be 0 (none) to " + std::to_string(highest) + " Hz");
+  const double corner = mechanics.low_pass_hz;
+  if (corner != 0 && !(corner >= kLowestFilter_hz && corner <= highest)) {
+    return refuse("the low-pass must be 0 (none), or 1 to " + std::to_string(highest) + " Hz");
   }
   return {};
 }

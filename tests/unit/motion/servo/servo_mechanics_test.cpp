@@ -168,9 +168,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Wrong{"TableWithoutStep", pitch({0, 0, {1, 1}}), "a step above 0"},
                     Wrong{"TableTooSteep", pitch({0, 1, {0, 0.2}}), "more than a tenth of its step at point 1"},
                     Wrong{"Backlash", backlash(-1), "a backlash must be 0 to 10"},
-                    Wrong{"ResonanceTooHigh", filters({{450, 0.02, 0.4}}, 0), "at most 400"},
+                    Wrong{"ResonanceTooHigh", filters({{450, 0.02, 0.4}}, 0), "a frequency of 1 to 400"},
                     Wrong{"ResonanceTooBroad", filters({{100, 0.5, 0.4}}, 0), "a width above the damping"},
-                    Wrong{"LowPass", filters({}, 450), "low-pass must be 0 (none) to 400"}),
+                    Wrong{"LowPass", filters({}, 450), "low-pass must be 0 (none), or 1 to 400"}),
     [](const testing::TestParamInfo<Wrong>& wrong) { return std::string(wrong.param.name); });
 
 TEST_P(WrongMechanics, AreRefusedWithTheReason) {

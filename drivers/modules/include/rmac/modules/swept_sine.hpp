@@ -11,9 +11,10 @@ namespace rmac::modules {
 /// A sine whose frequency goes from one end of a band to the other at a steady rate, and again with the other sign,
 /// while a joint goes at a steady speed: there its friction slides one way, and what is left between effort and motion
 /// is linear. Each steady stretch begins anew, so many times and no more; one that ends before its periods are through
-/// is the last: whoever wanted it may be gone. What is the same in two periods (cogging at that speed, drift, answers
-/// that are even in the effort) falls out of their difference, and the mean of many shows what answers the sine apart
-/// from noise (Pintelon and Schoukens, System Identification, 2nd ed., section 5.2).
+/// is the last, and so is it when none begins within a minute: whoever wanted it may be gone. What is the same in two
+/// periods (cogging at that speed, drift, answers that are even in the effort) falls out of their difference, and the
+/// mean of many shows what answers the sine apart from noise (Pintelon and Schoukens, System Identification, 2nd ed.,
+/// section 5.2).
 class SweptSine {
  public:
   struct Parameters {
@@ -45,6 +46,7 @@ class SweptSine {
   /// Effort of this cycle. Real-time safe.
   [[nodiscard]] double step(const ServoInput& input) noexcept {
     constexpr long kFlicker = 10;  // cycles: where a ramp ends, its rounding may look steady
+    constexpr double kPatience_s = 60;
     const bool through = done_ >= static_cast<long>(parameters_.periods);
     if (!is_steady(input)) {
       if (through) {
@@ -54,9 +56,12 @@ class SweptSine {
       }
       cycle_ = 0;
       done_ = 0;
+      waited_s_ += input.period_s;
+      if (waited_s_ > kPatience_s) stretches_left_ = 0;
       return 0;
     }
     if (through || stretches_left_ <= 0) return 0;
+    waited_s_ = 0;
     const double t = static_cast<double>(cycle_) * input.period_s;
     const double rate = (parameters_.to_hz - parameters_.from_hz) / parameters_.period_s;
     const double hz = parameters_.from_hz + rate * t;
@@ -81,6 +86,7 @@ class SweptSine {
   long cycle_ = 0;  ///< of this period
   long done_ = 0;   ///< periods of this stretch
   long stretches_left_;
+  double waited_s_ = 0;  ///< for a stretch to begin
 };
 
 }  // namespace rmac::modules

@@ -63,6 +63,12 @@ TEST(Rs274Motion, IsRefusedWhereItsStartIsNotKnown) {
   EXPECT_EQ(done.requests[1]["params"]["TargetFrame"]["p"], json({1, 0, 50}));
 }
 
+TEST(Rs274Motion, TakesTheEndOfACycleBesideAMove) {
+  EXPECT_THAT(ends_of("G1 X1\nG0 G80 X2\nX3\nG80 G1 X4\nG17 G40 G80\nG1 X6"),
+              ElementsAre(ElementsAre(1, 0, 10), ElementsAre(2, 0, 10), ElementsAre(3, 0, 10), ElementsAre(4, 0, 10),
+                          ElementsAre(6, 0, 10)));
+}
+
 TEST(Rs274Motion, NeedsAModeAndAFeed) {
   EXPECT_THAT(refusal_of("G21 G0 X0 Y0 Z0\nG80\nX1\nM2\n"), StartsWith("3:1: no G0, G1 or other motion"));
   EXPECT_THAT(refusal_of("G21 G0 X0 Y0 Z0\nG1 X1\nM2\n"), StartsWith("2:1: no feed"));
