@@ -5,13 +5,14 @@ import json
 import os
 import pathlib
 import random
+import subprocess
 import sys
 import tempfile
 import unittest
 
 import numpy as np
 
-from appliance import Appliance, line, wait_for_rest
+from appliance import BUILD, Appliance, line, wait_for_rest
 from simulated_joint import PERIOD, Joint, excitation
 
 sys.path.insert(0, str(pathlib.Path(os.environ["RMAC_SOURCE"], "gateway/rmac/plots")))
@@ -176,6 +177,22 @@ class Commands(unittest.TestCase):
                 while client.state()["state"] == "Running":  # It follows the last motion by a cycle or two.
                     pass
                 self.assertEqual(client.state()["state"], "Idle")
+
+    def test_tune_goes_no_further_where_somebody_stops_the_joint(self):
+        appliance = self.enterContext(Appliance(pace="real-time"))
+        self.rmac(appliance, "load", "DMACXYZ")
+        watcher = appliance.client()
+        watcher.call("subscribe", topics=["state"], rate_hz=100)
+        with tempfile.TemporaryDirectory() as folder, subprocess.Popen(
+                [BUILD / "bin/rmac", "--port", str(appliance.port), "tune", "0", "--travel", "30", "-o",
+                 pathlib.Path(folder, "tune.png")], stderr=subprocess.PIPE, text=True) as tune:
+            watcher.wait_note("state", lambda state: state["joints"][0] > 2)
+            watcher.call("RMAC_CAM.StopNow")
+            _, said = tune.communicate(timeout=60)
+        self.assertEqual((tune.returncode, said.count("\n")), (1, 1), said)
+        self.assertIn("somebody stopped it", said)
+        stands = watcher.state()["joints"][0]
+        self.assertTrue(2 < stands < 30, stands)
 
     def test_tune_begins_softly_where_the_gains_do_not_fit(self):
         """With the gains of the tree, which were made for axes that are rigid, and of another mass."""
