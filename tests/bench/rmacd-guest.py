@@ -8,7 +8,7 @@ import sys
 import time
 
 from guest import (COUNTS_PER_REVOLUTION, HAS_GPIO, HEARTBEAT_MS, PITCH_MM, RUN, Drives, answers, call, check_emergency_stop,
-                   emergency_stop_on_gpio, install, make_can, make_gpio, milliseconds, on_buses, rmac, status, wait_for)
+                   emergency_stop_on_gpio, install, make_can, make_gpio, milliseconds, on_buses, operator, rmac, status, wait_for)
 
 
 def change(device):

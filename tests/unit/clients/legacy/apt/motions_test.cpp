@@ -100,6 +100,9 @@ TEST(AptMotion, WithATiltedToolIsRefusedWithoutMultax) {
               StartsWith("8:1: the tool"));
   EXPECT_EQ(refusal_of(program_of("GOTO/0,0,5,0,0,1.0000001")), "taken");
   EXPECT_EQ(refusal_of(program_of("GOTO/0,0,5,.6,0,.8"), {.multax = true}), "taken");
+  EXPECT_EQ(refusal_of(program_of("GOTO/0,0,5,0.000001,-0.0000010,1.0")), "taken")
+      << "digits that a CAM system rounded";
+  EXPECT_NE(refusal_of(program_of("GOTO/0,0,5,0.00001,0,1.0")), "taken");
   EXPECT_THAT(refusal_of(program_of("MULTAX/ON\nGOTO/0,0,5,.6,0,.7")), HasSubstr("has the length 1"));
 }
 
