@@ -9,10 +9,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <ctime>
+#include <fstream>
 #include <memory>
 #include <new>
 
@@ -91,6 +93,15 @@ double cpu_time_s(pid_t process) {
   return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
 }
 
+/// Whether it computes, or would if a processor were free.
+bool wants_processor(pid_t process) {
+  std::ifstream file(fmt::format("/proc/{}/stat", process));
+  std::string stat;
+  std::getline(file, stat);
+  const std::size_t name_end = stat.rfind(')');  // behind it, a blank, and the state
+  return name_end != std::string::npos && stat.compare(name_end, 3, ") R") == 0;
+}
+
 /// Watches one process from its start to its end.
 class Watcher {
  public:
@@ -136,18 +147,23 @@ class Watcher {
   }
 
   std::string hangs() {
-    constexpr double kIdle_s =
-        0.1;  // of CPU time: what waits uses none, and what computes may get little on a busy computer
+    // What waits uses no CPU time, and what would compute may get little of it on a busy computer; on one that stands
+    // still for seconds nobody gets any, and a look that comes so late says nothing of them.
+    constexpr double kIdle_s = 0.1, kLongestLook_s = 0.1;
     const std::uint64_t steps = place_.steps.load(std::memory_order_acquire);
     const double cpu_s = cpu_time_s(worker_);
     const auto now = Clock::now();
+    const double since_look_s = std::chrono::duration<double>(now - looked_).count();
+    looked_ = now;
     if (steps != steps_) {
       steps_ = steps;
       cpu_since_s_ = cpu_s;
-      since_ = now;
+      waited_s_ = 0;
     } else if (cpu_s - cpu_since_s_ > bounds_.call_cpu_s) {
       return fmt::format("it computes for more than {} s", bounds_.call_cpu_s);
-    } else if (cpu_s - cpu_since_s_ < kIdle_s && now - since_ > std::chrono::duration<double>(bounds_.silence_s)) {
+    } else if (cpu_s - cpu_since_s_ < kIdle_s && !wants_processor(worker_)) {
+      waited_s_ += std::min(since_look_s, kLongestLook_s);
+      if (waited_s_ <= bounds_.silence_s) return "";
       return fmt::format("it does not come back within {} s", bounds_.silence_s);
     }
     return "";
@@ -160,7 +176,8 @@ class Watcher {
   std::string unread_, line_;
   std::uint64_t steps_ = 0;
   double cpu_since_s_ = 0;
-  Clock::time_point since_ = Clock::now();
+  double waited_s_ = 0;  ///< since the last step
+  Clock::time_point looked_ = Clock::now();
 };
 
 std::string ending(int status, double cpu_s, const Bounds& bounds) {

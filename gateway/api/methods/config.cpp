@@ -194,11 +194,11 @@ void add_servo_setters(const auto& add) {
   add(method("RMAC_Config.SetMechanismJointFilters",
              "Filters of a joint's effort: a notch for each resonance, and a low-pass. They take the place of those "
              "that it has.")
-          .takes(joint_number(), objects("Resonances").noted("as in device.json; [] for none"),
-                 number("LowPass", "Hz").within(device_range("joint/LowPass")).noted("0 for none"))
+          .takes(joint_number(), number("LowPass", "Hz").within(device_range("joint/LowPass")).noted("0 for none"),
+                 objects("Resonances").noted("as in device.json; [] for none"))
           .needs(Permission::Authority)
           .extension()
-          .does([](Call& call, std::int64_t joint, const JsonValue& list, double low_pass_hz) {
+          .does([](Call& call, std::int64_t joint, double low_pass_hz, const JsonValue& list) {
             RmacConfig& config = call.machine.config();
             return read_resonances(list.json)
                 .map_error([](const Error& error) {

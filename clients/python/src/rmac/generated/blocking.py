@@ -391,9 +391,9 @@ class RMAC_Config:
         """A parameter of a joint's servo law beside its gains: lead_s, rest_band, … Another law forgets it. Name: as docs/servo.md has it. Value: as the law declares."""
         return self._call(calls.RMAC_Config.SetMechanismJointServoControlParameter(JntNum, Name, Value))
 
-    def SetMechanismJointFilters(self, JntNum: int, Resonances: Sequence[Mapping[str, Any]], LowPass: float) -> None:
-        """Filters of a joint's effort: a notch for each resonance, and a low-pass. They take the place of those that it has. Resonances: as in device.json; [] for none. LowPass: Hz; 0 for none."""
-        return self._call(calls.RMAC_Config.SetMechanismJointFilters(JntNum, Resonances, LowPass))
+    def SetMechanismJointFilters(self, JntNum: int, LowPass: float, Resonances: Sequence[Mapping[str, Any]]) -> None:
+        """Filters of a joint's effort: a notch for each resonance, and a low-pass. They take the place of those that it has. LowPass: Hz; 0 for none. Resonances: as in device.json; [] for none."""
+        return self._call(calls.RMAC_Config.SetMechanismJointFilters(JntNum, LowPass, Resonances))
 
     def SetMechanismSpindleMaxRPM(self, MaxSpindleRPM: float) -> None:
         """Largest speed of every spindle. MaxSpindleRPM: rpm."""

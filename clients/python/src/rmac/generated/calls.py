@@ -475,9 +475,9 @@ class RMAC_Config:
         return Call("RMAC_Config.SetMechanismJointServoControlParameter", {"JntNum": JntNum, "Name": Name, "Value": Value})
 
     @staticmethod
-    def SetMechanismJointFilters(JntNum: int, Resonances: Sequence[Mapping[str, Any]], LowPass: float) -> Call[None]:
-        """Filters of a joint's effort: a notch for each resonance, and a low-pass. They take the place of those that it has. Resonances: as in device.json; [] for none. LowPass: Hz; 0 for none."""
-        return Call("RMAC_Config.SetMechanismJointFilters", {"JntNum": JntNum, "Resonances": Resonances, "LowPass": LowPass})
+    def SetMechanismJointFilters(JntNum: int, LowPass: float, Resonances: Sequence[Mapping[str, Any]]) -> Call[None]:
+        """Filters of a joint's effort: a notch for each resonance, and a low-pass. They take the place of those that it has. LowPass: Hz; 0 for none. Resonances: as in device.json; [] for none."""
+        return Call("RMAC_Config.SetMechanismJointFilters", {"JntNum": JntNum, "LowPass": LowPass, "Resonances": Resonances})
 
     @staticmethod
     def SetMechanismSpindleMaxRPM(MaxSpindleRPM: float) -> Call[None]:

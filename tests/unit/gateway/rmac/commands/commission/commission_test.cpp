@@ -20,7 +20,13 @@ class TuneCommand : public CommandBench {
     appliance_.answers("Device.Machine_GetMechanismJntServoControlLaw", "DMAC_PID_CONTROL");
     // Whatever moved, nothing is recorded: the command ends there.
     appliance_.refuses("FlightRecorder.Record", -32001, "the recorder is off");
+    appliance_.handles("RMAC_CAM.JogJoint", [this](const json& params) {
+      place_ += params.at("Distance").get<double>();
+      appliance_.answers("RMAC_CAM.GetState", state({{"joints", {0.0, place_}}}));
+      return gateway::Answer(true);
+    });
   }
+  double place_ = 0;  ///< of joint 1
   Outcome tune(std::vector<std::string> words = {"--travel", "8"}) {
     words.insert(words.begin(), {"tune", "1", "-o", testing::TempDir() + "tune_test.png"});
     return run(words);
