@@ -120,6 +120,8 @@ def check_state(table):
     shown = rmac("bus", "state")
     print(shown)
     assert "node 2: EMCY 7305h (" + emergency["text"] in shown, shown
+    wait_for("the flight record is written",
+             lambda: fault["record"] in [record["name"] for record in watcher.call("FlightRecorder.List")["records"]])
     assert "EMCY 7305h" in rmac("bus", "state", "--record", fault["record"]), "as it was when the machine stopped"
     reset(watcher)
 
