@@ -7,6 +7,7 @@ namespace rmac::gateway {
 DexelGrid::DexelGrid(const DexelLayout& layout) : layout_(layout) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     families_[axis].rays.resize(layout_.rays(axis));
+    families_[axis].touched.resize(layout_.rays(axis));
     families_[axis].tiles.resize(std::size_t{tiles_along(axis, 0)} * tiles_along(axis, 1));
   }
 }
@@ -119,6 +120,10 @@ float DexelGrid::remove_of_several(std::size_t axis, std::size_t ray, float from
   return removed;
 }
 
+double DexelGrid::touched_area_mm2(std::size_t axis) const {
+  return static_cast<double>(std::ranges::count(families_[axis].touched, 1)) * layout_.cell_area(axis);
+}
+
 double DexelGrid::volume_mm3(std::size_t axis) const {
   double length = 0;
   for (std::size_t i = 0; i < families_[axis].rays.size(); ++i) {
@@ -130,7 +135,7 @@ double DexelGrid::volume_mm3(std::size_t axis) const {
 std::uint64_t DexelGrid::bytes() const noexcept {
   std::uint64_t bytes = more_.capacity() * sizeof(Ray);
   for (const Family& family : families_) {
-    bytes += family.rays.capacity() * sizeof(Ray) + family.tiles.capacity() * sizeof(Tile);
+    bytes += family.rays.capacity() * sizeof(Ray) + family.tiles.capacity() * sizeof(Tile) + family.touched.capacity();
   }
   return bytes;
 }

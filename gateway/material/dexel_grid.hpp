@@ -70,6 +70,10 @@ class DexelGrid {
   }
   /// Takes away what lies between `from` and `to`: how much that was, mm. `tighten` of its tile is the caller's.
   float remove(std::size_t axis, std::size_t ray, float from, float to);
+  /// Notes that something of a ray was taken away.
+  void touch(std::size_t axis, std::size_t ray) noexcept { families_[axis].touched[ray] = 1; }
+  /// How large that, of all rays of a family, looks along them.
+  [[nodiscard]] double touched_area_mm2(std::size_t axis) const;
   /// How much there is between `from` and `to`, mm.
   [[nodiscard]] float between(std::size_t axis, std::size_t ray, float from, float to) const noexcept;
 
@@ -104,6 +108,7 @@ class DexelGrid {
   struct Family {
     std::vector<Ray> rays;
     std::vector<Tile> tiles;
+    std::vector<std::uint8_t> touched;  ///< of each ray
   };
   [[nodiscard]] std::uint32_t keep(const Piece& piece, std::uint32_t next);
   float remove_of_several(std::size_t axis, std::size_t ray, float from, float to);

@@ -15,7 +15,7 @@ struct DexelLayout {
   std::array<std::uint32_t, 3> count{};  ///< cells along each axis
 
   /// Bytes of a ray, with room for one more piece of material on every second ray.
-  static constexpr std::uint64_t kBytesOfRay = 18;
+  static constexpr std::uint64_t kBytesOfRay = 19;
 
   /// The axes across a family's rays, in the order in which the rays are counted.
   [[nodiscard]] static constexpr std::size_t across(std::size_t axis, std::size_t which) {

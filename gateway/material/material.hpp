@@ -29,7 +29,15 @@ class Material {
   void finish();
 
   [[nodiscard]] const DexelGrid& grid() const noexcept { return grid_; }
-  [[nodiscard]] double removed_mm3() const noexcept { return removed_mm3_; }
+  /// How much was removed, and how far the families of rays differ in it. A family sees a thin layer that lies along it
+  /// in whole cells or not at all; it counts by the square of how large what was removed looks along it.
+  struct Volume {
+    double mm3 = 0, spread_mm3 = 0;
+  };
+  [[nodiscard]] Volume removed() const;
+  [[nodiscard]] double left_mm3() const { return stock_mm3_ - removed().mm3; }
+  /// What of the tool is too thin to be found in material: it is taken smaller by the resolution. Empty: nothing.
+  [[nodiscard]] const std::string& too_thin() const noexcept { return too_thin_; }
   /// How far the surface of what is left may be from the true one, for the motion of the tool that is taken straight.
   [[nodiscard]] double tolerance_mm() const noexcept { return tolerance_mm_; }
   [[nodiscard]] std::size_t strokes() const noexcept { return strokes_; }
@@ -56,12 +64,14 @@ class Material {
   DexelGrid grid_;
   FindingList& findings_;
   Frame to_part_, part_frame_;  ///< machine to part, and back
+  double stock_mm3_;            ///< at first
   double tolerance_mm_;
   double within_mm_;  ///< that parts which do not cut are taken smaller by
   std::vector<Part> parts_;
   Frame tip_home_;  ///< of the tool's tip, all joints at 0, machine frame
   bool spindle_needed_ = true;
-  double removed_mm3_ = 0;
+  std::array<double, 3> removed_mm3_{};  ///< by each family
+  std::string too_thin_;
   std::size_t strokes_ = 0;
 
   // The step under way.

@@ -124,6 +124,7 @@ class Pass {
     const auto a = static_cast<float>(from - layout_.low[axis_]), b = static_cast<float>(to - layout_.low[axis_]);
     const DexelGrid::Piece first = grid_.first(axis_, ray);
     const float met = what_ == Cut::Remove ? grid_.remove(axis_, ray, a, b) : grid_.between(axis_, ray, a, b);
+    if (what_ == Cut::Remove && met > 0) grid_.touch(axis_, ray);
     if (double{met} > longest_mm) {
       longest_mm = double{met};
       const bool there = first.from < b && first.to > a;
@@ -151,7 +152,7 @@ Removal cut_with(DexelGrid& grid, std::span<const Sweep> sweeps, Cut what) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Pass<Swept> pass(grid, sweeps, axis, what);
     pass.run();
-    total.volume_mm3 += pass.removed_mm * grid.layout().cell_area(axis) / 3;
+    total.volumes_mm3[axis] = pass.removed_mm * grid.layout().cell_area(axis);
     if (pass.longest_mm < total.depth_mm) total.depth_mm = pass.longest_mm, total.place = pass.place;
   }
   return total;

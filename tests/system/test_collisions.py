@@ -142,6 +142,17 @@ class Collisions(unittest.TestCase):
         self.assertEqual((report["collisions"], done.returncode), ([], 0), done.stderr)
         self.assertAlmostEqual(report["material"]["removed_mm3"], 80 * 6 * 5, delta=10)
         self.assertEqual(file.stat().st_size, 84 + 50 * report["material"]["stock_triangles"])
+        # What the set-up reads is not written over, and what is no file is none to write to.
+        mesh = copy.deepcopy(setup) | {"Stock": {"Shape": {"Mesh": {"File": "left.stl"}}}}
+        whole = file.read_bytes()
+        (self.folder / "link.stl").symlink_to(file)
+        for name in ("left.stl", "link.stl"):
+            done = self.run_rmac([to(*start)], "--stock-out", self.folder / name, tools=tools, setup=mesh)
+            self.assertEqual((done.returncode, file.read_bytes() == whole), (1, True))
+            self.assertIn("the set-up reads this file", done.stderr)
+        os.mkfifo(self.folder / "pipe.stl")
+        done = self.run_rmac([to(*start)], "--stock-out", self.folder / "pipe.stl", tools=tools, setup=mesh)
+        self.assertIn("cannot be written", done.stderr)
         # What is left is a stock in its turn: a thinner tool goes through the slot, meets nothing, and cuts nothing.
         tools["Tools"][0]["Shape"].update(DC=4)
         setup["Stock"] = {"Shape": {"Mesh": {"File": "left.stl"}}}

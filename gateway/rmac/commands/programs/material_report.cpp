@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <variant>
 
@@ -18,14 +19,39 @@ namespace {
 /// 100 MB: as many as a mesh of a set-up may have is four million.
 constexpr std::size_t kMostTriangles = 2'000'000;
 
+/// The values of all members `File` of a document, as paths in `folder`.
+void add_files(const nlohmann::json& document, const std::filesystem::path& folder,
+               std::vector<std::filesystem::path>& files) {
+  if (!document.is_structured()) return;
+  for (const auto& [key, value] : document.items()) {
+    if (key == "File" && value.is_string()) files.push_back(folder / value.get<std::string>());
+    add_files(value, folder, files);
+  }
+}
+
+/// A set-up's own file, and those that it names; one that is unsound is refused where it is read.
+std::vector<std::filesystem::path> read_by(const std::filesystem::path& setup) {
+  std::vector<std::filesystem::path> files{setup};
+  std::ifstream file(setup);
+  add_files(nlohmann::json::parse(file, nullptr, false), setup.parent_path(), files);
+  return files;
+}
+
 }  // namespace
 
-Result<> check_stock_out(const std::string& file) {
-  const std::filesystem::path path(file);
+Result<> check_stock_out(const std::string& file, const std::filesystem::path& setup) {
+  namespace fs = std::filesystem;
+  const fs::path path(file);
   if (path.extension() != ".stl") return fail(fmt::format("{}: the name of --stock-out ends in .stl", file));
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (std::filesystem::is_directory(path) || ::access(folder.c_str(), W_OK) != 0) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if ((fs::exists(path) && !fs::is_regular_file(path)) || ::access(folder.c_str(), W_OK) != 0) {
     return fail(fmt::format("{}: cannot be written; choose another place with --stock-out", file));
+  }
+  for (const fs::path& read : read_by(setup)) {
+    std::error_code none;
+    if (fs::equivalent(path, read, none)) {
+      return fail(fmt::format("{}: the set-up reads this file; choose another name with --stock-out", file));
+    }
   }
   return {};
 }
@@ -36,8 +62,8 @@ Result<MaterialReport> report_material(const CollisionWatch& watch, const std::s
   MaterialReport report;
   report.resolution = *std::ranges::max_element(material.grid().layout().pitch);
   report.tolerance = material.tolerance_mm();
-  report.removed_mm3 = material.removed_mm3();
-  report.left_mm3 = material.grid().volume_mm3();
+  report.removed = material.removed();
+  report.left_mm3 = material.left_mm3();
   report.memory_mb = static_cast<double>(material.grid().bytes()) / kMegabyte;
   report.strokes = material.strokes();
   const gateway::Setup& setup = watch.setup();
@@ -59,8 +85,9 @@ Result<MaterialReport> report_material(const CollisionWatch& watch, const std::s
 
 nlohmann::json to_json(const MaterialReport& report) {
   nlohmann::json object{{"resolution_mm", report.resolution}, {"tolerance_mm", report.tolerance},
-                        {"removed_mm3", report.removed_mm3},  {"left_mm3", report.left_mm3},
-                        {"memory_mb", report.memory_mb},      {"strokes", report.strokes}};
+                        {"removed_mm3", report.removed.mm3},  {"removed_spread_mm3", report.removed.spread_mm3},
+                        {"left_mm3", report.left_mm3},        {"memory_mb", report.memory_mb},
+                        {"strokes", report.strokes}};
   if (report.deviation) {
     const gateway::Deviation& d = *report.deviation;
     const auto place = [](const Eigen::Vector3d& p) { return nlohmann::json{p[0], p[1], p[2]}; };
@@ -80,8 +107,9 @@ nlohmann::json to_json(const MaterialReport& report) {
 }
 
 void add_rows(const MaterialReport& report, std::vector<std::vector<std::string>>& rows) {
-  rows.push_back({"removed", number(report.removed_mm3),
-                  report.removed_mm3 > 0 ? fmt::format("mm³; {:.1f} mm³ are left", report.left_mm3)
+  rows.push_back({"removed", number(report.removed.mm3),
+                  report.removed.mm3 > 0 ? fmt::format("mm³, ± {:.1f} by which way one looks; {:.1f} mm³ are left",
+                                                       report.removed.spread_mm3, report.left_mm3)
                                          : "mm³: THE TOOL NEVER CUT THE STOCK"});
   rows.push_back({"material", number(report.resolution),
                   fmt::format("mm from ray to ray, {:.0f} MB; its surface is right to {:.4f} mm", report.memory_mb,

@@ -14,7 +14,8 @@ namespace rmac::cli {
 /// What `rmac simulate` says of the material when the run is over. mm.
 struct MaterialReport {
   double resolution = 0, tolerance = 0;  ///< rays apart; what the surface may be off by the tool's motion
-  double removed_mm3 = 0, left_mm3 = 0;
+  gateway::Material::Volume removed;
+  double left_mm3 = 0;
   double memory_mb = 0;
   std::size_t strokes = 0;
   std::optional<gateway::Deviation> deviation;  ///< from the part; none: the set-up has no mesh of it
@@ -25,7 +26,8 @@ struct MaterialReport {
 };
 
 /// Refuses a file that could not be written, before anything is done for it.
-[[nodiscard]] Result<> check_stock_out(const std::string& file);
+/// One that the set-up reads, and what is no regular file, are refused too.
+[[nodiscard]] Result<> check_stock_out(const std::string& file, const std::filesystem::path& setup);
 /// Of a run that is over, with a set-up that has a stock; writes the file, if any.
 [[nodiscard]] Result<MaterialReport> report_material(const CollisionWatch& watch, const std::string& stock_out);
 

@@ -144,7 +144,7 @@ Result<> check_options(const Options& options, const Program& program, bool json
     return fail("--resolution needs --setup: without one there is no stock");
   if (!options.stock_out.empty()) {
     if (options.setup.empty()) return fail("--stock-out needs --setup: without one there is no stock");
-    if (auto possible = check_stock_out(options.stock_out); !possible) return possible;
+    if (auto possible = check_stock_out(options.stock_out, options.setup); !possible) return possible;
   }
   return {};
 }

@@ -61,8 +61,9 @@ class MaterialOnFiveAxes : public testing::Test {
   }
   [[nodiscard]] double removed() {
     material_->finish();
-    EXPECT_NEAR(material_->removed_mm3(), before_ - material_->grid().volume_mm3(), 1e-4 * before_);
-    return material_->removed_mm3();
+    const Material::Volume removed = material_->removed();
+    EXPECT_NEAR(material_->left_mm3(), before_ - removed.mm3, 1e-9 * before_);
+    return removed.mm3;
   }
   [[nodiscard]] std::vector<Finding> met() {
     material_->finish();
@@ -75,6 +76,25 @@ class MaterialOnFiveAxes : public testing::Test {
   int move_ = 0;
   double t_s_ = 0, before_ = 0;
 };
+
+TEST_F(MaterialOnFiveAxes, LosesALayerThinnerThanTheRaysAreApart) {
+  Tool face{.number = 8, .length_mm = kLength};
+  face.shape = ToolShape{.dc = 60, .re = 0, .apmx = 10, .lcf = 10, .oal = 20, .shank = {{10, 10, 10}}, .holder = {}};
+  for (const double layer : {0.02, 0.4, 0.6, 0.97}) {
+    set_up(face, 1);
+    at_ = {-60, 0, 40, 0, 0};
+    go({-60, 0, 10 - layer, 0, 0}, 10);
+    go({60, 0, 10 - layer, 0, 0}, 100);
+    EXPECT_NEAR(removed() / (20 * 20 * layer), 1, 0.02) << layer << " mm off the top";
+  }
+}
+
+TEST_F(MaterialOnFiveAxes, TellsAShankThatItWouldNotFind) {
+  set_up(ball(), 0.5);
+  EXPECT_EQ(material_->too_thin(), "");
+  set_up(ball(), 2);
+  EXPECT_THAT(material_->too_thin(), testing::HasSubstr("tool 7: its shank or holder is no thicker than the rays"));
+}
 
 TEST_F(MaterialOnFiveAxes, LosesASlotToATipThatGoesAcross) {
   set_up(ball());
@@ -153,7 +173,7 @@ TEST(StockModel, RefusesWhatDoesNotFitBeforeItIsTakenAndSaysWhatWould) {
   ASSERT_FALSE(fine);
   EXPECT_EQ(
       fine.error().message,
-      "a resolution of 0.001 mm takes 1.98e+03 GB of memory for a stock of 300 x 200 x 100 mm; 0.05 mm takes less "
+      "a resolution of 0.001 mm takes 2.09e+03 GB of memory for a stock of 300 x 200 x 100 mm; 0.05 mm takes less "
       "than 2 GB");
   for (const double wrong : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     const auto none = model_of(stock, wrong);

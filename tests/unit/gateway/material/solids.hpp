@@ -37,7 +37,7 @@ inline double remove_along(DexelGrid& grid, const ProfilePiece& piece, double to
   StrokeMaker strokes(piece, tolerance_mm);
   double removed = 0;
   const auto take = [&](const std::optional<Stroke>& stroke) {
-    if (stroke) removed += cut(grid, sweep_of(piece, *stroke), Cut::Remove).volume_mm3;
+    if (stroke) removed += cut(grid, sweep_of(piece, *stroke), Cut::Remove).volume_mm3();
   };
   for (int i = 0; i <= steps; ++i) take(strokes.go_to(at(static_cast<double>(i) / steps)));
   take(strokes.end());
