@@ -36,19 +36,18 @@ Material::Material(LinkChain chain, DexelGrid grid, const Frame& part_frame, Fin
       findings_(findings),
       to_part_(inverse(part_frame)),
       part_frame_(part_frame),
-      stock_mm3_(grid_.volume_mm3()),
       tolerance_mm_(tolerance_of(grid_.layout())),
       within_mm_(resolution_of(grid_.layout())),
+      removed_(grid_.volume_mm3()),
       links_(chain_.link_count()) {}
 
-void Material::set_tool(const Tool& tool) {
+std::string Material::set_tool(const Tool& tool) {
   finish();
   parts_.clear();
-  too_thin_.clear();
   begun_ = false;
   spindle_needed_ = tool.needs_spindle;
   tip_home_ = compose(chain_.interface_home(), tip_on_interface(tool));
-  if (!tool.shape) return;
+  if (!tool.shape) return "";
   const ToolShape& shape = *tool.shape;
   const auto add = [&](const char* what, const std::vector<ProfilePiece>& pieces, bool cuts) {
     const double tolerance = (1 - kShareBetween) * (cuts ? tolerance_mm_ : within_mm_ / 2);
@@ -62,30 +61,11 @@ void Material::set_tool(const Tool& tool) {
   const auto thin = [this](const ConeShape& section) {
     return std::max(section.bottom_radius, section.top_radius) <= within_mm_;
   };
-  if (std::ranges::any_of(shape.shank, thin) || std::ranges::any_of(shape.holder, thin)) {
-    too_thin_ = fmt::format(
-        "tool {}: its shank or holder is no thicker than the rays are apart ({:g} mm), so that it is not found in "
-        "material; give a finer --resolution",
-        tool.number, within_mm_);
-  }
-}
-
-Material::Volume Material::removed() const {
-  std::array<double, 3> weights{};
-  double sum = 0;
-  Volume volume;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    weights[axis] = std::pow(grid_.touched_area_mm2(axis), 2);
-    sum += weights[axis];
-    volume.mm3 += weights[axis] * removed_mm3_[axis];
-  }
-  if (sum == 0) return {};
-  volume.mm3 /= sum;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    volume.spread_mm3 += weights[axis] / sum * std::pow(removed_mm3_[axis] - volume.mm3, 2);
-  }
-  volume.spread_mm3 = std::sqrt(volume.spread_mm3);
-  return volume;
+  if (std::ranges::none_of(shape.shank, thin) && std::ranges::none_of(shape.holder, thin)) return "";
+  return fmt::format(
+      "tool {}: its shank or holder is no thicker than the rays are apart ({:g} mm), so that it is not found in "
+      "material; give a finer --resolution",
+      tool.number, within_mm_);
 }
 
 ToolAt Material::tool_at(std::span<const double> joints) {
@@ -180,7 +160,7 @@ void Material::take(Part& part, const Stroke& stroke) {
 void Material::cut_with(Part& part) {
   const Removal met = cut(grid_, part.waiting, turns_ ? Cut::Remove : Cut::Look);
   part.waiting.clear();
-  for (std::size_t axis = 0; turns_ && axis < 3; ++axis) removed_mm3_[axis] += met.volumes_mm3[axis];
+  if (turns_) removed_.add(met);
   if (!turns_) {
     tell(part, met, "the spindle stands");
   } else if (!move_.cutting) {

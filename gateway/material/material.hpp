@@ -8,6 +8,7 @@
 #include "gateway/collision/finding_list.hpp"
 #include "gateway/material/dexel_grid.hpp"
 #include "gateway/material/removal.hpp"
+#include "gateway/material/removed_volume.hpp"
 #include "gateway/material/sweep/stroke_maker.hpp"
 #include "gateway/tools/tool.hpp"
 
@@ -21,23 +22,17 @@ class Material {
   /// `grid` holds the stock, in the part frame; findings go to the list, which outlives this.
   Material(LinkChain chain, DexelGrid grid, const Frame& part_frame, FindingList& findings);
 
-  /// What is in the spindle from now on. One without a shape takes nothing away.
-  void set_tool(const Tool& tool);
+  /// What is in the spindle from now on. One without a shape takes nothing away. Told is what of it is too thin to be
+  /// found in material, as it is taken smaller by the resolution; empty: nothing.
+  std::string set_tool(const Tool& tool);
   /// The joints have gone straight to there since they were told last.
   void advance(double t_s, std::span<const double> joints, const MoveNow& move, bool spindle_turns);
   /// What is under way counts as far as it came. To be called before anything is read.
   void finish();
 
   [[nodiscard]] const DexelGrid& grid() const noexcept { return grid_; }
-  /// How much was removed, and how far the families of rays differ in it. A family sees a thin layer that lies along it
-  /// in whole cells or not at all; it counts by the square of how large what was removed looks along it.
-  struct Volume {
-    double mm3 = 0, spread_mm3 = 0;
-  };
-  [[nodiscard]] Volume removed() const;
-  [[nodiscard]] double left_mm3() const { return stock_mm3_ - removed().mm3; }
-  /// What of the tool is too thin to be found in material: it is taken smaller by the resolution. Empty: nothing.
-  [[nodiscard]] const std::string& too_thin() const noexcept { return too_thin_; }
+  [[nodiscard]] RemovedVolume removed() const { return removed_.estimate(grid_); }
+  [[nodiscard]] double left_mm3() const { return removed_.left_mm3(grid_); }
   /// How far the surface of what is left may be from the true one, for the motion of the tool that is taken straight.
   [[nodiscard]] double tolerance_mm() const noexcept { return tolerance_mm_; }
   [[nodiscard]] std::size_t strokes() const noexcept { return strokes_; }
@@ -64,14 +59,12 @@ class Material {
   DexelGrid grid_;
   FindingList& findings_;
   Frame to_part_, part_frame_;  ///< machine to part, and back
-  double stock_mm3_;            ///< at first
   double tolerance_mm_;
   double within_mm_;  ///< that parts which do not cut are taken smaller by
   std::vector<Part> parts_;
   Frame tip_home_;  ///< of the tool's tip, all joints at 0, machine frame
   bool spindle_needed_ = true;
-  std::array<double, 3> removed_mm3_{};  ///< by each family
-  std::string too_thin_;
+  RemovedSum removed_;
   std::size_t strokes_ = 0;
 
   // The step under way.

@@ -105,7 +105,7 @@ void CollisionWatch::take_tool(gateway::Controller& controller) {
         number);
   }
   checker_->set_tool(tool);
-  if (material_) material_->set_tool(tool);
+  too_thin_ = material_ ? material_->set_tool(tool) : "";
 }
 
 void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller) {
@@ -118,7 +118,7 @@ void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway
   }
   if (std::exchange(look_at_tool_, false)) take_tool(controller);
   if (sample.moving && !tool_fault_.empty()) not_checked_.insert(tool_fault_);
-  if (sample.moving && material_ && !material_->too_thin().empty()) not_checked_.insert(material_->too_thin());
+  if (sample.moving && !too_thin_.empty()) not_checked_.insert(too_thin_);
   const bool cutting = sample.moving && !cutting_.empty() && cutting_.front();
   // A simulation begins with all joints at 0, where the machine need not stand: the way from there to the first
   // position is nobody's.

@@ -60,6 +60,7 @@ class CollisionWatch {
   std::deque<bool> cutting_;                     ///< of the moves that are not done
   std::set<std::string> not_checked_;
   std::string tool_fault_;  ///< what cannot be checked with the tool in the spindle
+  std::string too_thin_;    ///< what of it is not found in material
   bool look_at_tool_ = true;
   bool begun_ = false;  ///< the first position is reached, or something cuts
 };

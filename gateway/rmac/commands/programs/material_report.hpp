@@ -14,7 +14,7 @@ namespace rmac::cli {
 /// What `rmac simulate` says of the material when the run is over. mm.
 struct MaterialReport {
   double resolution = 0, tolerance = 0;  ///< rays apart; what the surface may be off by the tool's motion
-  gateway::Material::Volume removed;
+  gateway::RemovedVolume removed;
   double left_mm3 = 0;
   double memory_mb = 0;
   std::size_t strokes = 0;

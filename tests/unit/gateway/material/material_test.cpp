@@ -61,7 +61,7 @@ class MaterialOnFiveAxes : public testing::Test {
   }
   [[nodiscard]] double removed() {
     material_->finish();
-    const Material::Volume removed = material_->removed();
+    const RemovedVolume removed = material_->removed();
     EXPECT_NEAR(material_->left_mm3(), before_ - removed.mm3, 1e-9 * before_);
     return removed.mm3;
   }
@@ -91,9 +91,10 @@ TEST_F(MaterialOnFiveAxes, LosesALayerThinnerThanTheRaysAreApart) {
 
 TEST_F(MaterialOnFiveAxes, TellsAShankThatItWouldNotFind) {
   set_up(ball(), 0.5);
-  EXPECT_EQ(material_->too_thin(), "");
+  EXPECT_EQ(material_->set_tool(ball()), "");
   set_up(ball(), 2);
-  EXPECT_THAT(material_->too_thin(), testing::HasSubstr("tool 7: its shank or holder is no thicker than the rays"));
+  EXPECT_THAT(material_->set_tool(ball()),
+              testing::HasSubstr("tool 7: its shank or holder is no thicker than the rays"));
 }
 
 TEST_F(MaterialOnFiveAxes, LosesASlotToATipThatGoesAcross) {
