@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kLongestStatement = 4000;
 /// On the clock, for a program that waits instead of computing, or hardly gets a processor.
-constexpr std::chrono::seconds kPatience{2};
+constexpr std::chrono::seconds kPatience{10};
 
 tl::unexpected<Error> refused(const std::string& reason) {
   return failure(MinorCode::InvalidParameterValue, fmt::format("the SQL statement was refused: {}", reason));

@@ -38,7 +38,7 @@ class Searches(unittest.TestCase):
             with self.subTest(sql=sql[:60]), self.assertRaises(Refused) as refused:
                 client.call("DeviceDriverManager.SearchDatabaseRecordSet", MachineSQLStatement=sql)
             # By what it does, or, where a busy computer gives it no turn, by the time that is over.
-            self.assertRegex(refused.exception.message, "the SQL statement was refused|did not end within 2000 ms")
+            self.assertRegex(refused.exception.message, "the SQL statement was refused|did not end within")
         self.assertGreater(client.call("DeviceDriverManager.SearchDatabaseRecordSet", MachineSQLStatement=SOUND), 0)
 
     def test_many_of_them_hold_up_neither_other_clients_nor_the_end(self):
