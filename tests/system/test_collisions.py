@@ -19,7 +19,7 @@ SETUP = {
     "Stock": {"Shape": {"Box": {"Size": [80, 60, 30]}}, "Pose": {"p": [0, 0, 15], "axis": [0, 0, 1]}},
     "Part": {"Shape": {"Box": {"Size": [78, 58, 20]}}, "Pose": {"p": [0, 0, 10], "axis": [0, 0, 1]}},
     "Fixtures": [{"Name": "clamp", "Shape": {"Box": {"Size": [20, 20, 70]}}, "Pose": {"p": [60, 0, 35], "axis": [0, 0, 1]}}],
-    "Clearance": 0.5,
+    "Clearance": 0.5, "Resolution": 0.5,
 }
 TOOLS = {"Mounted": 7, "Tools": [
     {"ToolNumber": 7, "Length": LENGTH, "Radius": 3, "NeedsSpindle": False, "Shape": {
@@ -63,7 +63,7 @@ class Collisions(unittest.TestCase):
         file.write_text("".join(json.dumps(r) + "\n" for r in requests))
         return subprocess.run([BUILD / "bin" / "rmac", "simulate", file, "--machine", machine, "--setup",
                                self.folder / "setup.json", "--tools", self.folder / "tools", *words],
-                              stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, check=False)
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=300, check=False)
 
     def report(self, requests, *words, **options):
         done = self.run_rmac(requests, "--json", *words, **options)
