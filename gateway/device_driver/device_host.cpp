@@ -76,7 +76,7 @@ struct DeviceHost::Impl {
   Expected<> configure(Configure&& configure_part);
   Expected<Loaded*> require_loaded();
   Expected<> load(const std::string& what, const std::filesystem::path& device_json, bool virtual_mode, double soften);
-  Expected<Loaded> configure_anew(Expected<sdk::DeviceObject> device, const std::optional<Base>& base_before);
+  Expected<Loaded> configure_anew(sdk::DeviceObject device, const std::optional<Base>& base_before);
   /// Modules are looked for in `folder`, and nothing beyond what was verified is put in force, where there is a
   /// verifier.
   void begin_in(std::string folder, bool virtual_mode) {
@@ -108,30 +108,30 @@ DeviceHost::DeviceHost(DeviceDriverManager& manager, Controller& controller, con
     : impl_(new Impl{manager, controller, verification}) {}
 DeviceHost::~DeviceHost() = default;
 
-Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(Expected<sdk::DeviceObject> device,
+Expected<DeviceHost::Impl::Loaded> DeviceHost::Impl::configure_anew(sdk::DeviceObject device,
                                                                     const std::optional<Base>& base_before) {
-  if (!device) return tl::unexpected(device.error());
-  auto driver = load_driver(device->device_driver);
+  auto driver = load_driver(device.device_driver);
   if (!driver) return tl::unexpected(driver.error());
   std::optional<Driver> high_level;
-  std::optional<Base> under = device->overlay ? base_before : std::nullopt;
+  std::optional<Base> under = device.overlay ? base_before : std::nullopt;
   if (under) {
-    device = overlaid(under->device, *device);
-    if (!device) return tl::unexpected(device.error());
+    auto laid = overlaid(under->device, device);
+    if (!laid) return tl::unexpected(laid.error());
+    device = std::move(*laid);
     begin_in(under->folder, controller.virtual_mode());
     high_level = std::move(*driver);
     driver = load_driver(under->device.device_driver);
     if (!driver) return tl::unexpected(driver.error());
   }
-  verified.begin(*device);
+  verified.begin(device);
   sdk::RmacConfig& config = controller.config();
-  auto done = config.begin(*device)
-                  .and_then([&] { return driver->object->configure_motion_planner(*device, config); })
-                  .and_then([&] { return driver->object->configure_servo_controller(*device, config); })
-                  .and_then([&] { return driver->object->configure_digital_control_interface(*device, config); })
+  auto done = config.begin(device)
+                  .and_then([&] { return driver->object->configure_motion_planner(device, config); })
+                  .and_then([&] { return driver->object->configure_servo_controller(device, config); })
+                  .and_then([&] { return driver->object->configure_digital_control_interface(device, config); })
                   .and_then([&] { return config.apply(); });
   if (!done) return tl::unexpected(done.error());
-  return Loaded{std::move(*driver), std::move(high_level), *device, *device, std::move(under)};
+  return Loaded{std::move(*driver), std::move(high_level), device, device, std::move(under)};
 }
 
 Expected<> DeviceHost::Impl::require_verified(const std::filesystem::path& device_json, double soften) const {
@@ -199,7 +199,9 @@ Expected<> DeviceHost::Impl::load(const std::string& what, const std::filesystem
   const bool virtual_before = controller.virtual_mode();
   const std::optional<Base> base_before = base();
   begin_in(device_json.parent_path().string(), virtual_mode);
-  auto made = configure_anew(read_softened(device_json, soften), base_before);
+  auto made = read_softened(device_json, soften).and_then([&](const sdk::DeviceObject& device) {
+    return configure_anew(device, base_before);
+  });
   if (!made) {
     begin_in(folder_before, virtual_before);
     controller.discard_draft();

@@ -12,7 +12,6 @@ namespace rmac::gateway {
 /// What a piece of a tool met on its way.
 struct Removal {
   std::array<double, 3> volumes_mm3{};  ///< as each family of rays sees it
-  [[nodiscard]] double volume_mm3() const noexcept { return (volumes_mm3[0] + volumes_mm3[1] + volumes_mm3[2]) / 3; }
   /// The longest piece of material that a ray had within it, the least of the three families; 0: not every family met
   /// any, so that it is thinner than the rays are apart.
   double depth_mm = 0;

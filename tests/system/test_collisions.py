@@ -151,7 +151,11 @@ class Collisions(unittest.TestCase):
         for name in ("left.stl", "link.stl"):
             done = self.run_rmac([to(*start)], "--stock-out", self.folder / name, tools=tools, setup=mesh)
             self.assertEqual((done.returncode, file.read_bytes() == whole), (1, True))
-            self.assertIn("the set-up reads this file", done.stderr)
+            self.assertIn("this run uses this file", done.stderr)
+        record = self.folder / "record.stl"
+        done = self.run_rmac([to(*start)], "--stock-out", record, "--record", record, tools=tools, setup=setup)
+        self.assertEqual((done.returncode, record.exists()), (1, False))
+        self.assertIn("this run uses this file", done.stderr)
         os.mkfifo(self.folder / "pipe.stl")
         done = self.run_rmac([to(*start)], "--stock-out", self.folder / "pipe.stl", tools=tools, setup=mesh)
         self.assertIn("cannot be written", done.stderr)
@@ -160,6 +164,7 @@ class Collisions(unittest.TestCase):
         setup["Stock"] = {"Shape": {"Mesh": {"File": "left.stl"}}}
         again, done = self.report([to(-60, 0, 26), to(60, 0, 26, move_id=2)], tools=tools, setup=setup)
         self.assertEqual((again["collisions"], again["material"]["removed_mm3"]), ([], 0), done.stderr)
+        self.assertTrue(again["material"]["never_cut"] and "never_cut" not in report["material"])
         for words, what in ((("--resolution", "0"), "give one above 0"), (("--resolution", "-1"), "give one above 0"),
                             (("--resolution", "0.0001"), "takes less than 2 GB"), (("--stock-out", "a.obj"), "ends in .stl")):
             done = self.run_rmac([to(0, 0, 100)], *words, setup=setup)

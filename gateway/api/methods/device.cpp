@@ -56,8 +56,7 @@ void add_life_cycle(const auto& add) {
                      .optional()
                      .within(1, 100)
                      .noted("for commissioning: Kp and Kd of its PIDs divided by this, Ki by its square, and a quarter "
-                            "of their "
-                            "accelerations; 1 when left out"))
+                            "of their accelerations; 1 when left out"))
           .gives(WireType::Boolean)
           .causes(Effect::Starts)
           .may_be_slow()

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <variant>
 
@@ -19,39 +18,37 @@ namespace {
 /// 100 MB: as many as a mesh of a set-up may have is four million.
 constexpr std::size_t kMostTriangles = 2'000'000;
 
-/// The values of all members `File` of a document, as paths in `folder`.
-void add_files(const nlohmann::json& document, const std::filesystem::path& folder,
-               std::vector<std::filesystem::path>& files) {
-  if (!document.is_structured()) return;
-  for (const auto& [key, value] : document.items()) {
-    if (key == "File" && value.is_string()) files.push_back(folder / value.get<std::string>());
-    add_files(value, folder, files);
-  }
-}
-
-/// A set-up's own file, and those that it names; one that is unsound is refused where it is read.
-std::vector<std::filesystem::path> read_by(const std::filesystem::path& setup) {
-  std::vector<std::filesystem::path> files{setup};
-  std::ifstream file(setup);
-  add_files(nlohmann::json::parse(file, nullptr, false), setup.parent_path(), files);
+/// The meshes that a set-up was made of.
+std::vector<std::filesystem::path> files_of(const gateway::Setup& setup) {
+  std::vector<std::filesystem::path> files;
+  const auto add = [&files](const gateway::Body& body) {
+    if (const auto* const mesh = std::get_if<gateway::MeshShape>(&body.shape)) files.push_back(mesh->file);
+  };
+  if (setup.stock) add(*setup.stock);
+  if (setup.part) add(*setup.part);
+  std::ranges::for_each(setup.fixtures, add);
   return files;
 }
 
 }  // namespace
 
-Result<> check_stock_out(const std::string& file, const std::filesystem::path& setup) {
+Result<> check_stock_out(const std::string& file, const gateway::Setup& setup,
+                         const std::vector<std::filesystem::path>& taken) {
   namespace fs = std::filesystem;
   const fs::path path(file);
   if (path.extension() != ".stl") return fail(fmt::format("{}: the name of --stock-out ends in .stl", file));
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if ((fs::exists(path) && !fs::is_regular_file(path)) || ::access(folder.c_str(), W_OK) != 0) {
+  std::error_code none;
+  if ((fs::exists(path, none) && !fs::is_regular_file(path, none)) || ::access(folder.c_str(), W_OK) != 0) {
     return fail(fmt::format("{}: cannot be written; choose another place with --stock-out", file));
   }
-  for (const fs::path& read : read_by(setup)) {
-    std::error_code none;
-    if (fs::equivalent(path, read, none)) {
-      return fail(fmt::format("{}: the set-up reads this file; choose another name with --stock-out", file));
-    }
+  std::vector<fs::path> others = files_of(setup);
+  others.insert(others.end(), taken.begin(), taken.end());
+  for (const fs::path& other : others) {
+    // Two names of one file, or one name of a file that is not there yet.
+    const bool same = fs::equivalent(path, other, none) ||
+                      (!other.empty() && fs::weakly_canonical(path, none) == fs::weakly_canonical(other, none));
+    if (same) return fail(fmt::format("{}: this run uses this file; choose another name with --stock-out", file));
   }
   return {};
 }
@@ -88,6 +85,7 @@ nlohmann::json to_json(const MaterialReport& report) {
                         {"removed_mm3", report.removed.mm3},  {"removed_spread_mm3", report.removed.spread_mm3},
                         {"left_mm3", report.left_mm3},        {"memory_mb", report.memory_mb},
                         {"strokes", report.strokes}};
+  if (report.removed.mm3 == 0) object["never_cut"] = true;
   if (report.deviation) {
     const gateway::Deviation& d = *report.deviation;
     const auto place = [](const Eigen::Vector3d& p) { return nlohmann::json{p[0], p[1], p[2]}; };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -25,9 +26,10 @@ struct MaterialReport {
   double stock_apart = 0;  ///< the points of its surface, at most
 };
 
-/// Refuses a file that could not be written, before anything is done for it.
-/// One that the set-up reads, and what is no regular file, are refused too.
-[[nodiscard]] Result<> check_stock_out(const std::string& file, const std::filesystem::path& setup);
+/// Refuses a file that could not be written, before anything is done for it, what is no regular file, the meshes of the
+/// set-up, and files that are `taken` otherwise.
+[[nodiscard]] Result<> check_stock_out(const std::string& file, const gateway::Setup& setup,
+                                       const std::vector<std::filesystem::path>& taken);
 /// Of a run that is over, with a set-up that has a stock; writes the file, if any.
 [[nodiscard]] Result<MaterialReport> report_material(const CollisionWatch& watch, const std::string& stock_out);
 

@@ -142,11 +142,19 @@ Result<> check_options(const Options& options, const Program& program, bool json
     return fail("--first needs --setup: without one collisions are not checked");
   if (options.resolution && options.setup.empty())
     return fail("--resolution needs --setup: without one there is no stock");
-  if (!options.stock_out.empty()) {
-    if (options.setup.empty()) return fail("--stock-out needs --setup: without one there is no stock");
-    if (auto possible = check_stock_out(options.stock_out, options.setup); !possible) return possible;
-  }
+  if (!options.stock_out.empty() && options.setup.empty())
+    return fail("--stock-out needs --setup: without one there is no stock");
   return {};
+}
+
+Result<> check_stock_file(const Options& options, const CollisionWatch& collisions) {
+  if (options.stock_out.empty()) return {};
+  if (collisions.material() == nullptr) {
+    return fail(
+        fmt::format("{}: has no Stock, so that nothing can be left of it for --stock-out", options.setup.string()));
+  }
+  return check_stock_out(options.stock_out, collisions.setup(),
+                         {options.setup, options.source.file, options.record_file});
 }
 
 Result<> simulate_program(const Options& options, bool json) {
@@ -167,10 +175,7 @@ Result<> simulate_program(const Options& options, bool json) {
     auto opened = CollisionWatch::open(options.machine, tree, options.setup, options.resolution);
     if (!opened) return tl::unexpected(opened.error());
     collisions = std::move(*opened);
-    if (!options.stock_out.empty() && collisions->material() == nullptr) {
-      return fail(
-          fmt::format("{}: has no Stock, so that nothing can be left of it for --stock-out", options.setup.string()));
-    }
+    if (auto fine = check_stock_file(options, *collisions); !fine) return fine;
     // As somebody would who clamped the part there; a program may set another one.
     const auto stands =
         (*simulation)

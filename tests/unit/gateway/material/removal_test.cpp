@@ -14,7 +14,7 @@ namespace rmac::gateway {
 namespace {
 
 using Eigen::Vector3d;
-using test::block, test::direction, test::remove_along;
+using test::block, test::direction, test::remove_along, test::volume_of;
 constexpr double kPi = std::numbers::pi;
 
 /// Every ray's material begins and ends on the block's side or on the surface of what was taken away, and the middle of
@@ -73,13 +73,13 @@ TEST(Removal, OfABallAlongALineLeavesItsCapsule) {
       DexelGrid grid = block(20, resolution);
       const Vector3d a = 3 * direction(random), b = a + 3.5 * direction(random);
       const double before = grid.volume_mm3();
-      const double removed = cut(grid, sweep_of(kBall, {a, b, Vector3d::UnitZ()}), Cut::Remove).volume_mm3();
+      const double removed = volume_of(cut(grid, sweep_of(kBall, {a, b, Vector3d::UnitZ()}), Cut::Remove));
       const double true_volume = kPi * 9 * (b - a).norm() + 4.0 / 3 * kPi * 27;
       EXPECT_NEAR(removed / true_volume, 1, 0.002 * resolution / 0.15);
       EXPECT_NEAR(before - grid.volume_mm3(), removed, 1e-6 * before);
       expect_left(grid, 10, 0, [&](const Vector3d& p) { return from_segment(p, a, b) - 3; });
       // What is gone is not met again.
-      EXPECT_LT(cut(grid, sweep_of(kBall, {a, b, Vector3d::UnitZ()}), Cut::Look).volume_mm3(), 1e-4);
+      EXPECT_LT(volume_of(cut(grid, sweep_of(kBall, {a, b, Vector3d::UnitZ()}), Cut::Look)), 1e-4);
     }
   }
 }
@@ -115,7 +115,7 @@ TEST(Removal, OfAFlatEndAcrossItsAxisIsASlot) {
     DexelGrid grid = block(16, 0.2);
     const Vector3d axis = n == 0 ? Vector3d(Vector3d::UnitZ()) : direction(random), way = 4 * axis.unitOrthogonal();
     const Vector3d a = -way / 2 + direction(random), b = a + way;
-    const double removed = cut(grid, sweep_of(kFlat, {a, b, axis}), Cut::Remove).volume_mm3();
+    const double removed = volume_of(cut(grid, sweep_of(kFlat, {a, b, axis}), Cut::Remove));
     EXPECT_NEAR(removed / ((kPi * 4 + 4 * 4) * 4), 1, 0.005);
     expect_left(grid, 8, 0, [&](const Vector3d& p) {
       const double up = std::abs((p - a).dot(axis)) - 2;
@@ -131,7 +131,7 @@ TEST(Removal, OfAFlatEndThatDrillsIsACylinderWhereverItLeans) {
   for (int n = 0; n < 4; ++n) {
     DexelGrid grid = block(16, 0.2);
     const Vector3d axis = direction(random), a = direction(random);
-    const double removed = cut(grid, sweep_of(kFlat, {a, a - 3 * axis, axis}), Cut::Remove).volume_mm3();
+    const double removed = volume_of(cut(grid, sweep_of(kFlat, {a, a - 3 * axis, axis}), Cut::Remove));
     EXPECT_NEAR(removed / (kPi * 4 * 7), 1, 0.005) << n;
   }
 }
@@ -143,10 +143,10 @@ TEST(Removal, OfAConeIsAThirdOfItsCylinder) {
   for (int n = 0; n < 4; ++n) {
     DexelGrid grid = block(20, 0.2);
     const Vector3d axis = direction(random), a = direction(random);
-    const double removed = cut(grid, sweep_of(cone, {a, a, axis}), Cut::Remove).volume_mm3();
+    const double removed = volume_of(cut(grid, sweep_of(cone, {a, a, axis}), Cut::Remove));
     EXPECT_NEAR(removed / (kPi * 16 * 6 / 3), 1, 0.005) << n;
     // On its way along its axis it widens by what it is wide.
-    const double more = cut(grid, sweep_of(cone, {a, a + 2 * axis, axis}), Cut::Remove).volume_mm3();
+    const double more = volume_of(cut(grid, sweep_of(cone, {a, a + 2 * axis, axis}), Cut::Remove));
     EXPECT_NEAR(more / (kPi * 16 * 2), 1, 0.01) << n;
   }
 }

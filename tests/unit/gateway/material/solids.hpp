@@ -31,13 +31,18 @@ inline DexelGrid block(double size_mm, double resolution_mm) {
   return filled(Stock::read(body_of(BoxShape{{size_mm, size_mm, size_mm}})).value(), resolution_mm);
 }
 
+/// The mean of what the families of rays see.
+inline double volume_of(const Removal& removal) {
+  return (removal.volumes_mm3[0] + removal.volumes_mm3[1] + removal.volumes_mm3[2]) / 3;
+}
+
 /// Takes away what a piece passes on a curve of tool positions, t from 0 to 1, in so many steps; what went, mm³.
 inline double remove_along(DexelGrid& grid, const ProfilePiece& piece, double tolerance_mm, int steps,
                            const std::function<ToolAt(double)>& at) {
   StrokeMaker strokes(piece, tolerance_mm);
   double removed = 0;
   const auto take = [&](const std::optional<Stroke>& stroke) {
-    if (stroke) removed += cut(grid, sweep_of(piece, *stroke), Cut::Remove).volume_mm3();
+    if (stroke) removed += volume_of(cut(grid, sweep_of(piece, *stroke), Cut::Remove));
   };
   for (int i = 0; i <= steps; ++i) take(strokes.go_to(at(static_cast<double>(i) / steps)));
   take(strokes.end());
