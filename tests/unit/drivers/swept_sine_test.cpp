@@ -66,6 +66,17 @@ TEST(SweptSine, IsNoMoreAfterItsStretchesOrOneThatWasBrokenOff) {
   EXPECT_THAT(efforts(broken_off, 750, kSteady), testing::Each(0.0));
 }
 
+TEST(SweptSine, IsNoMoreWhereNoneBeganWithinAMinute) {
+  const ServoInput rest{.period_s = 0.001};
+  SweptSine waits(kSweep);
+  efforts(waits, 59'900, rest);
+  EXPECT_NE(efforts(waits, 750, kSteady)[100], 0);
+  efforts(waits, 59'900, rest);
+  EXPECT_NE(efforts(waits, 750, kSteady)[100], 0) << "the minute begins anew behind each stretch";
+  efforts(waits, 60'100, rest);
+  EXPECT_THAT(efforts(waits, 750, kSteady), testing::Each(0.0)) << "whoever wanted it is gone";
+}
+
 TEST(SweptSineLaw, StaysWithinTheEffortLimit) {
   modules::SweptSineServoLaw law({}, kSweep, 0);
   const std::array<double, 3> gains{10, 0, 0};

@@ -24,6 +24,20 @@ class Dialog(QtGui.QDialog):
         self.session.off_tick(self.tick)
         super().hideEvent(event)
 
+    def appear(self):
+        goes_on = self.goes_on()
+        self.show()
+        if not goes_on:
+            self.begin()
+        self.raise_()
+
+    def goes_on(self):
+        """Whether it is at something already, and only comes to the front."""
+        return self.isVisible()
+
+    def begin(self):
+        """What it does first when it appears."""
+
     def tick(self):
         """By the session's timer while the dialog is there."""
 
@@ -45,6 +59,20 @@ class Dialog(QtGui.QDialog):
 
     def failed(self, error):
         self.message.refuse(error)
+
+
+class OnlyOne:
+    """Brings up the one dialog of a kind that a session has."""
+
+    def __init__(self, kind):
+        self._kind = kind
+        self._dialog = None
+
+    def __call__(self, session):
+        if self._dialog is None or self._dialog.session is not session:
+            self._dialog = self._kind(session)
+        self._dialog.appear()
+        return self._dialog
 
 
 def button(text, does, tip=""):

@@ -7,7 +7,7 @@ from PySide import QtCore, QtGui
 
 import rmac
 from rmac_freecad.jogging import HeldJog, axes_of, is_machine_frame, place_part
-from rmac_freecad.window.dialog import Dialog, button, row
+from rmac_freecad.window.dialog import Dialog, OnlyOne, button, row
 from rmac_freecad.window.jogging.axis_row import AxisRow
 from rmac_freecad.window.jogging.step_fields import StepFields
 from rmac_freecad.window.quantity import length_text
@@ -41,6 +41,10 @@ class JogDialog(Dialog):
         box.addLayout(row(self.home_button, self.reference_button, self.zero_button, self.reset_button, self.take_button, None, self.stop_button))
         box.addWidget(self.message)
         session.station.on_loss(self._lost)
+
+    def appear(self):
+        super().appear()
+        self.activateWindow()  # a held button ends when another window comes to the front
 
     def begin(self):
         """Takes authority, and learns what can be jogged."""
@@ -155,16 +159,4 @@ class JogDialog(Dialog):
             self.failed(error)
 
 
-_dialog = None
-
-
-def show(session):
-    global _dialog
-    if _dialog is None or _dialog.session is not session:
-        _dialog = JogDialog(session)
-    if not _dialog.isVisible():
-        _dialog.show()
-        _dialog.begin()
-    _dialog.raise_()
-    _dialog.activateWindow()
-    return _dialog
+show = OnlyOne(JogDialog)

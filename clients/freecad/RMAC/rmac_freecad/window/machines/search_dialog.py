@@ -4,7 +4,7 @@ from PySide import QtGui
 
 from rmac_freecad.jobs import EMPTY, completed, tools_of
 from rmac_freecad.machines import compare, programs_for
-from rmac_freecad.window.dialog import Dialog, button, row
+from rmac_freecad.window.dialog import Dialog, OnlyOne, button, row
 from rmac_freecad.window.jobs import job_in_question
 from rmac_freecad.window.machines.characteristics_dialog import CharacteristicsDialog
 from rmac_freecad.window.machines.machine_list import MachineList
@@ -41,6 +41,9 @@ class SearchDialog(Dialog):
         self.resize(900, 620)
         self._searching(False)
         self._enable()
+
+    def begin(self):
+        self.connect_and_list()
 
     def connect_and_list(self):
         self.session.settings.address = self.address.text()
@@ -117,15 +120,4 @@ def _table(client):
     return client.cam.GetTools() if client.state()["mechanism"] else EMPTY
 
 
-_dialog = None
-
-
-def show(session):
-    global _dialog
-    if _dialog is None or _dialog.session is not session:
-        _dialog = SearchDialog(session)
-    if not _dialog.isVisible():
-        _dialog.show()
-        _dialog.connect_and_list()
-    _dialog.raise_()
-    return _dialog
+show = OnlyOne(SearchDialog)

@@ -9,7 +9,7 @@ from rmac_freecad.jogging import is_machine_frame
 from rmac_freecad.program import keep
 from rmac_freecad.running import check_part_zero, check_tools, look
 from rmac_freecad.simulation import simulate_telling_lengths
-from rmac_freecad.window.dialog import Dialog, button, row
+from rmac_freecad.window.dialog import Dialog, OnlyOne, button, row
 from rmac_freecad.window.jobs import job_in_question
 from rmac_freecad.window.quantity import length_text, time_text
 from rmac_freecad.window.running.limits_list import LimitsList
@@ -45,6 +45,9 @@ class MachiningDialog(Dialog):
             box.addLayout(part) if isinstance(part, QtGui.QLayout) else box.addWidget(part)
         box.setStretchFactor(self.limits, 1)
         self.resize(560, 460)
+
+    def goes_on(self):
+        return self.machining.running
 
     def begin(self):
         self._look(self._looked)
@@ -185,15 +188,4 @@ class MachiningDialog(Dialog):
         self.ask(lambda client: client.cam.ConfirmToolChange(number), lambda answer: self.message.tell(""))
 
 
-_dialog = None
-
-
-def show(session):
-    global _dialog
-    if _dialog is None or _dialog.session is not session:
-        _dialog = MachiningDialog(session)
-    if not _dialog.machining.running:
-        _dialog.show()
-        _dialog.begin()
-    _dialog.raise_()
-    return _dialog
+show = OnlyOne(MachiningDialog)

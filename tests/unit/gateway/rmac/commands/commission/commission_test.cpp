@@ -63,6 +63,22 @@ TEST_F(TuneCommand, SwingsSlowlyFirstAndPutsTheSpeedBack) {
   EXPECT_EQ(appliance_.methods().back(), kReleaseAuthority);
 }
 
+TEST_F(TuneCommand, MovesNothingOfAFaultedMachineAndTellsWhatStoppedIt) {
+  appliance_.answers("RMAC_CAM.GetState",
+                     state({{"state", "Faulted"}, {"last_stop", {{"kind", "Fault"}, {"message", "the bus is gone"}}}}));
+  EXPECT_THAT(tune().err, testing::AllOf(HasSubstr("is faulted"), HasSubstr("the bus is gone")));
+  EXPECT_THAT(appliance_.params_of("RMAC_CAM.JogJoint"), IsEmpty());
+}
+
+TEST_F(TuneCommand, GoesNoFurtherFromWhereSomebodyStoppedTheJoint) {
+  appliance_.handles("RMAC_CAM.JogJoint", [this](const json&) {
+    appliance_.answers("RMAC_CAM.GetState", state({{"joints", {0.0, 1.3}}}));
+    return gateway::Answer(true);
+  });
+  EXPECT_THAT(tune().err, HasSubstr("joint 1 stands at 1.300 instead of 2.530: somebody stopped it"));
+  EXPECT_EQ(appliance_.params_of("RMAC_CAM.JogJoint").size(), 1U);
+}
+
 TEST_F(TuneCommand, RefusesASweepThatIsNone) {
   EXPECT_EQ(tune({"--travel", "8", "--sweep-effort", "-1"}).exit_code, 2);
 }
