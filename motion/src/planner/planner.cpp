@@ -324,13 +324,21 @@ struct Planner::Impl {
     return Task::None;
   }
 
-  bool step(const ServoProgress& progress) {
+  /// Takes note of where the machine is. False while that is not known: a refused plan is still to come back through
+  /// `retired`.
+  bool follow(const ServoProgress& progress) {
     take_note_of(progress);
     if (plans.refused(progress)) stop_came_late = base()->purpose.stops;
     plans.collect();
-    planning_time.learn(progress);
-    if (plans.refused(progress)) return false;  // it is still to come back through `retired`
+    if (plans.refused(progress)) return false;
     if (on_path() && plans.acknowledged(progress)) travelled(base()->state_at(now_s(*base(), progress.cycle)).s);
+    return true;
+  }
+
+  bool step(const ServoProgress& progress) {
+    const bool known = follow(progress);
+    planning_time.learn(progress);
+    if (!known) return false;
     // A plan that may still be refused has said of itself what there is to say.
     if (plans.acknowledged(progress)) {
       const PublishedPlan* const under_way = plans.ended(progress) ? nullptr : base();
@@ -439,6 +447,9 @@ void Planner::set_override(double percent) noexcept {
 }
 void Planner::rest_follows(bool follows) noexcept {
   impl_->rest_follows = follows;
+}
+void Planner::follow(const ServoProgress& progress) {
+  (void)impl_->follow(progress);
 }
 bool Planner::step(const ServoProgress& progress) {
   const GivesWay now(impl_->interruption);
