@@ -253,17 +253,6 @@ struct Planner::Impl {
     return no_plan(progress);
   }
 
-  /// The machine has come to path length s.
-  void travelled(double s) {
-    path().travelled(s, base()->law.front().start.s);
-    if (route.on_detour() || s < kFarthest_mm) return;
-    const double by = std::floor(s);
-    route.forward.move_origin(by);
-    plans.move_origin(by);
-    limit_s -= by;
-    origin_mm += by;
-  }
-
   /// The law that was to begin a window was not found; there may be others to be tried, one a step.
   bool next_attempt(const ServoProgress& progress, std::size_t attempts) {
     if (gives_way()) return false;
@@ -331,7 +320,15 @@ struct Planner::Impl {
     if (plans.refused(progress)) stop_came_late = base()->purpose.stops;
     plans.collect();
     if (plans.refused(progress)) return false;
-    if (on_path() && plans.acknowledged(progress)) travelled(base()->state_at(now_s(*base(), progress.cycle)).s);
+    if (!on_path() || !plans.acknowledged(progress)) return true;
+    const double s = base()->state_at(now_s(*base(), progress.cycle)).s;
+    path().travelled(s, base()->law.front().start.s);
+    if (route.on_detour() || s < kFarthest_mm) return true;
+    const double by = std::floor(s);
+    route.forward.move_origin(by);
+    plans.move_origin(by);
+    limit_s -= by;
+    origin_mm += by;
     return true;
   }
 

@@ -47,6 +47,7 @@ struct DriveManners {
   bool node_guarding = false;        ///< it makes no heartbeat, and is asked for its state (100Ch, 100Dh)
   bool quick_stop_inverted = false;  ///< bit 5 of its statusword is 0 where the standard has 1
   bool homing_without_target_reached = false;  ///< bit 10 of its statusword does not tell that it is at rest at home
+  int answer_delay = 1;  ///< it was where its answers say so many cycles before they are read; 1: it measures at SYNC
   std::optional<InterpolationTimes> interpolation{};  ///< none: whatever the standard allows
 };
 

@@ -84,6 +84,20 @@ TEST_F(GuardedDrive, StopsByItselfWhenItsMasterIsGone) {
   EXPECT_EQ(drive.state(), test::PowerStates::State::QuickStop);
 }
 
+// Red when a drive whose life guarding begins as it is told sees its master dead while it is set up.
+TEST_F(GuardedDrive, IsGuardedWhileItIsSetUp) {
+  VirtualDrive& drive = add_guarded();
+  drive.lives_from_writing = true;
+  drive.sdo_time = std::chrono::milliseconds(30);
+  int told = 0;
+  wire_.listen = [&](const CanFrame& frame) { told += frame.id == 0x81 ? 1 : 0; };
+  make_known(DriveManners{.node_guarding = true}, {{"node", {1}}});
+  start();
+  enable_all();
+  EXPECT_EQ(told, 0) << "EMCY: life guard error";
+  EXPECT_EQ(drive.state(), test::PowerStates::State::OperationEnabled);
+}
+
 TEST_F(GuardedDrive, IsRefusedWhereNobodySaysSo) {
   add_guarded();
   make({{"node", {1}}});
