@@ -21,7 +21,7 @@ struct BusNode {
         positions(first.node),
         record(config.period),
         measured(answer_id(first)) {}
-  /// It makes no heartbeat, and is asked how it is: while it is set up too, as some reckon their master's life from
+  /// It knows no heartbeat, and is asked how it is instead: while it is set up too, as some reckon their master's life from
   /// when they are told 100Ch and 100Dh on, and not from the first question.
   [[nodiscard]] bool guarded() const noexcept {
     const NodeBoot::State state = boot.state();

@@ -53,6 +53,7 @@ def dictionary():
     yield Scenario("another scale", "--value 608F:01=0x2710 6092:01=0x2710", REFUSED, r"axis 0\b.*10000.*131072")
     yield Scenario("6060h is fixed, as wanted", "--refuse-write 6060=06010002 --value 6060:00=8", REFUSED, named("6060"))
     yield Scenario("answers by events alone", "--refuse-write 1800:02=06090030", REFUSED, named("1800"))
+    yield Scenario("acts on setpoints as they come", "--refuse-write 1400:02=06010002 --value 1400:02=0xFF", text=r"node 1\b.*keeps 1400h")
     yield Scenario("identifiers are fixed, as wanted", "--refuse-write 1400:01=06010002", text=r"node 1\b.*keeps 1400h")
     yield Scenario("identifiers are fixed, others", "--refuse-write 1400:01=06010002 --value 1400:01=0x205", REFUSED, named(1400, 1))
     yield Scenario("mapping is fixed, as wanted", "--fixed-mapping", text=r"node 1\b.*keeps 1600h")
@@ -104,7 +105,7 @@ def heartbeat():
     yield Scenario("heartbeat with a toggle bit", "--heartbeat-toggles")
     yield Scenario("guarding, no 1016h and 1017h", "--guarding-only", REFUSED, named("1016"))
     guarded = {"NodeGuarding": True}
-    yield Scenario("guarding, described", "--guarding-only", text="node 1 makes no heartbeat", described=guarded)
+    yield Scenario("guarding, described", "--guarding-only", text="node 1 knows no heartbeat", described=guarded)
     # Its master's death, at the end, is one; its life time is a tenth of its set-up.
     yield Scenario("guarding, described, slow, lives from when it is told", "--guarding-only --life-from-writing --sdo-delay-ms 30",
                    described=guarded, at_most={"masters_lost": 1})

@@ -31,7 +31,7 @@ TEST_F(GuardedDrive, IsAskedAtThePaceItWasTold) {
   VirtualDrive& drive = add_guarded();
   make_known(DriveManners{.node_guarding = true}, {{"node", {1}}});
   start();
-  EXPECT_THAT(master_->start_notes(), Contains("node 1 makes no heartbeat (1017h): it is guarded, by remote frames"));
+  EXPECT_THAT(master_->start_notes(), Contains("node 1 knows no heartbeat of its master (1016h): it is guarded, by remote frames"));
   enable_all();
   EXPECT_EQ(drive.value(0x100C, 0), 50U);
   EXPECT_EQ(drive.value(0x100D, 0), 2U);
@@ -43,6 +43,18 @@ TEST_F(GuardedDrive, IsAskedAtThePaceItWasTold) {
   }
   EXPECT_EQ(asked, 20);
   EXPECT_EQ(drive.state(), test::PowerStates::State::OperationEnabled);
+}
+
+// Red when heartbeats that it makes, too, are taken for copies of its answers.
+TEST_F(GuardedDrive, IsTaughtToMakeNoHeartbeatWhereItCould) {
+  VirtualDrive& drive = add_guarded();
+  drive.set_bytes({0x1017, 0}, {20, 0});
+  make_known(DriveManners{.node_guarding = true}, {{"node", {1}}});
+  start();
+  enable_all();
+  EXPECT_EQ(drive.value(0x1017, 0), 0U);
+  cycles(500, DriveWish::Operational);
+  EXPECT_EQ(master_->counters().nodes_lost, 0U);
 }
 
 // Red when a node without heartbeats counts as there for ever.
