@@ -163,12 +163,13 @@ TEST_F(HomingByDrives, IsEndedByTheWishOnceTheDrivesStandThoughTheyDoNotTell) {
     counts += i % 20 == 0 ? 1 : 0;  // 50 counts a second
     ASSERT_EQ(step(false), Progress::UnderWay) << i;
   }
+  counts += 10;
   for (int i = 0; i < 99; ++i) {
     counts += i % 2 == 0 ? 1 : -1;
     ASSERT_EQ(step(false), Progress::UnderWay) << i;
   }
   Progress last = Progress::UnderWay;
-  for (int i = 0; i < 60 && last == Progress::UnderWay; ++i) last = step(false);
+  for (int i = 0; i < 3 && last == Progress::UnderWay; ++i) last = step(false);
   EXPECT_EQ(last, Progress::Over);
   EXPECT_TRUE(faults_.raised.empty());
   EXPECT_EQ(homing_->completed(), 0U);
