@@ -244,7 +244,8 @@ class Plan {
     }
     if (manners_.store_after_mapping) compare_contents(Kind::Compare, contents, entries);
     write_pdo({communication, 1}, 4, kInvalidPdo | cob_id, cob_id, ~kNoRemoteRequest);
-    // Setpoints count whether a drive acts on them at the next SYNC, at any, or as they come (0 to FFh); answers do not.
+    // Setpoints count whether a drive acts on them at the next SYNC, at any, or as they come (0 to FFh); answers do
+    // not.
     const bool setpoints = communication < 0x1600;
     write_pdo({communication, 2}, 1, kEverySync, kEverySync, setpoints ? kWhatever : kByte);
     if (manners_.fixed_mapping) {

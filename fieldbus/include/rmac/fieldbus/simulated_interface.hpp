@@ -71,8 +71,8 @@ class SimulatedInterface : public DigitalControlInterface {
   void set_sensor_lost(bool lost) noexcept { sensor_lost_ = lost; }
   /// Puts a part under the tool. Before the first exchange.
   void set_contact(const SimulatedContact& contact) noexcept { contact_ = contact; }
-  /// Answers are those of so many exchanges before: one as on a bus whose drives answer a SYNC while nobody reads on, more
-  /// where drives take their time. Before a servo loop is made with it.
+  /// Answers are those of so many exchanges before: one as on a bus whose drives answer a SYNC while nobody reads on,
+  /// more where drives take their time. Before a servo loop is made with it.
   void set_answer_delay(int cycles) {
     before_.assign(static_cast<std::size_t>(cycles), std::vector<DriveFeedback>(drives_.size()));
   }

@@ -32,7 +32,7 @@ class ShaftAims {
   double period_s_;
   std::array<double, kMaxJoints> aim_{}, aim_before_{};
   std::array<RecentWay, kMaxJoints> ways_;  ///< of the aims, as long ago as the answers are
-  IndexSet aimed_ = 0;  ///< sent there in the last cycle
+  IndexSet aimed_ = 0;                      ///< sent there in the last cycle
 };
 
 }  // namespace rmac

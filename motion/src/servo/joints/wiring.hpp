@@ -41,8 +41,8 @@ class Wiring {
   }
   /// Actuators that move no joint outside of `joints`.
   [[nodiscard]] IndexSet actuators_within(IndexSet joints) const noexcept;
-  /// So many cycles before this one were they where they tell in it: each actuator; and each joint, by the slowest of its
-  /// actuators.
+  /// So many cycles before this one were they where they tell in it: each actuator; and each joint, by the slowest of
+  /// its actuators.
   using Delays = std::array<std::uint8_t, kMaxJoints>;
   [[nodiscard]] const Delays& actuator_delays() const noexcept { return actuator_delays_; }
   [[nodiscard]] const Delays& joint_delays() const noexcept { return joint_delays_; }

@@ -8,8 +8,8 @@
 
 namespace rmac {
 
-/// How far something went within its last cycles, so that what is told of it late can be held against where it was then.
-/// Real-time safe.
+/// How far something went within its last cycles, so that what is told of it late can be held against where it was
+/// then. Real-time safe.
 class RecentWay {
  public:
   explicit RecentWay(int cycles = 0) noexcept : cycles_(cycles) {}

@@ -1,4 +1,5 @@
-// Drives that tell where they were a cycle before, as those on CAN do, or several: what a law and the watches make of it.
+// Drives that tell where they were a cycle before, as those on CAN do, or several: what a law and the watches make of
+// it.
 #include <deque>
 #include <random>
 

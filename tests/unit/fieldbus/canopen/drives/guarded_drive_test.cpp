@@ -31,7 +31,8 @@ TEST_F(GuardedDrive, IsAskedAtThePaceItWasTold) {
   VirtualDrive& drive = add_guarded();
   make_known(DriveManners{.node_guarding = true}, {{"node", {1}}});
   start();
-  EXPECT_THAT(master_->start_notes(), Contains("node 1 knows no heartbeat of its master (1016h): it is guarded, by remote frames"));
+  EXPECT_THAT(master_->start_notes(),
+              Contains("node 1 knows no heartbeat of its master (1016h): it is guarded, by remote frames"));
   enable_all();
   EXPECT_EQ(drive.value(0x100C, 0), 50U);
   EXPECT_EQ(drive.value(0x100D, 0), 2U);

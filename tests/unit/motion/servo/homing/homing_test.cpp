@@ -150,8 +150,8 @@ TEST_F(HomingByDrives, IsEndedByTheWishOnceTheDrivesRest) {
   EXPECT_EQ(homing_->drives(), 0b0010U);
 }
 
-// Red when a drive that tells no rest in homing mode (HomingWithoutTargetReached) ends a stopped homing as one that found
-// no home.
+// Red when a drive that tells no rest in homing mode (HomingWithoutTargetReached) ends a stopped homing as one that
+// found no home.
 TEST_F(HomingByDrives, IsEndedByTheWishOnceTheDrivesStandThoughTheyDoNotTell) {
   homing_.emplace(actuators_, 10, 0.001);
   shafts_.emplace(actuators_, 0.001);
