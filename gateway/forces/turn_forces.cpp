@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-constexpr int kLeastPositions = 720;  ///< over a turn, of the tool
+constexpr int kLeastPositions = 360;  ///< over a turn, of the tool
 constexpr double kMostTurned = 0.3;   ///< rad, in φ or κ, of a piece of edge that is integrated at once
 /// Where the arc on which there is a chip changes along the edge, because the tool goes along its axis too.
 constexpr double kMostTurnedObliquely = 0.05;

@@ -46,7 +46,7 @@ struct TurnForces {
 /// K_c·h·db + K_e·dS in each of three directions, where the chip is h = across·sin(φ)·sin(κ) - along·cos(κ) thick
 /// (S. Engin, Y. Altintas, Mechanics and dynamics of general milling cutters, part I, Int. J. Mach. Tools Manuf. 41,
 /// 2001; Y. Altintas, Manufacturing Automation, 2nd ed., ch. 2; docs/forces.md). An edge cuts where it is in an arc and
-/// h is not negative; without feed it rubs. Means are exact in the angle; peaks are those of at least 720 positions of
+/// h is not negative; without feed it rubs. Means are exact in the angle; peaks are those of at least 360 positions of
 /// the tool over a turn, and of those at which an edge enters or leaves at the end of a slice.
 ///
 /// Refused: slices above the flutes, a spindle that stands, a feed per tooth beyond the tool's radius.
