@@ -65,6 +65,7 @@ def code_of(document, source, options, program):
         feature.Label = source.name
     _fill(feature, source, options)
     feature.Proxy.last = _key(source, options), program
+    feature.purgeTouched()
     document.commitTransaction()
     return feature
 

@@ -102,7 +102,6 @@ class OpenDialog(Dialog):
         code = code_of(document, source, options, program)
         if not isinstance(code.ViewObject.Proxy, CodeView):
             CodeView(code.ViewObject)
-        code.purgeTouched()
         FreeCADGui.Selection.clearSelection()
         FreeCADGui.Selection.addSelection(code)
         self.message.tell(f"{source.name} is in the document: {len(program)} steps. Machine a job simulates and cuts it while it is selected.")
