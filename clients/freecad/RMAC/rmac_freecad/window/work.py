@@ -1,4 +1,4 @@
-"""What is machined: a Path job, or a file of another control."""
+"""What is machined: a Path job, a profile of edges, or a file of another control."""
 
 import FreeCAD
 import FreeCADGui
@@ -6,6 +6,7 @@ import FreeCADGui
 from rmac_freecad.jobs import JobRefused, read_job, tools_of
 from rmac_freecad.legacy import codes, reading, tools_in
 from rmac_freecad.path import strokes_of
+from rmac_freecad.profiles import profiles, program_of, tool_of
 from rmac_freecad.program import keep
 from rmac_freecad.window.jobs import jobs
 
@@ -40,6 +41,20 @@ class JobWork:
         """FreeCAD's own stays: it has other lines, rapids among them."""
 
 
+class ProfileWork(JobWork):
+    def __init__(self, feature):
+        self._tools = [tool_of(feature)]
+        self._feature, self._document = feature, feature.Document.Name
+        self.label = feature.Label
+
+    def reading(self, fastest_mm_min, rmac):
+        program = program_of(self._feature, fastest_mm_min)
+        return lambda: program
+
+    def show_own_path(self, on):
+        _show_own_path(self._feature, on)
+
+
 class CodeWork:
     def __init__(self, code):
         self._code = code
@@ -59,16 +74,20 @@ class CodeWork:
         return "The document keeps the file that it was made of."
 
     def show_own_path(self, on):
-        """The one that has colours lies upon it."""
-        try:
-            self._code.ViewObject.Proxy.show_path(on)
-        except ReferenceError:
-            pass  # it was deleted meanwhile
+        _show_own_path(self._code, on)
+
+
+def _show_own_path(feature, on):
+    """The one that has colours lies upon it."""
+    try:
+        feature.ViewObject.Proxy.show_path(on)
+    except ReferenceError:
+        pass  # it was deleted meanwhile
 
 
 def works(document):
     """Each object of it that can be machined, with what makes work of it."""
-    return [*((job, JobWork) for job in jobs()), *((code, CodeWork) for code in codes(document))]
+    return [*((job, JobWork) for job in jobs()), *((one, ProfileWork) for one in profiles(document)), *((code, CodeWork) for code in codes(document))]
 
 
 def work_in_question():
@@ -77,12 +96,12 @@ def work_in_question():
     for chosen in FreeCADGui.Selection.getSelection():
         for one in (chosen, *chosen.InListRecursive):
             for found, work in there:
-                if one is found or one == found:
+                if one == found:
                     return work(found)
     if len(there) == 1:
         return there[0][1](there[0][0])
     raise JobRefused(
-        "the document has several jobs and files to machine; select one in the tree"
+        "the document has several jobs, profiles and files to machine; select one in the tree"
         if there
-        else "the document has no Path job; make one with the Path workbench, or open a file of another control by Open legacy code"
+        else "the document has no Path job; make one with the Path workbench, cut along edges, or open a file of another control by Open legacy code"
     )
