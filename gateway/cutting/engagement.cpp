@@ -102,7 +102,8 @@ class Finder {
   /// Above it nothing is in material, to a layer or two.
   [[nodiscard]] double engaged_top(double top, double pitch) const {
     constexpr int kLook = 48;
-    for (double z = top - pitch / 2; z > 0; z -= pitch) {
+    for (int layer = static_cast<int>(top / pitch - 0.5); layer >= 0; --layer) {
+      const double z = (layer + 0.5) * pitch;
       for (int i = 0; i < kLook; ++i) {
         if (meets(2 * pi * (i + 0.5) / kLook, z)) return std::min(top, z + 2 * pitch);
       }

@@ -83,6 +83,7 @@ class Model {
     const double pitch = 2 * pi / mill_.teeth();
     const int count = (kLeastPositions + mill_.teeth() - 1) / mill_.teeth();
     std::vector<double> angles;
+    angles.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) angles.push_back(pitch * (i + 0.5) / count);
     for (const EngagedSlice& slice : slices_) {
       for (const Arc& arc : slice.arcs) {
@@ -95,7 +96,7 @@ class Model {
       }
     }
     std::ranges::sort(angles);
-    angles.erase(std::ranges::unique(angles).begin(), angles.end());
+    angles.erase(std::unique(angles.begin(), angles.end()), angles.end());
     return angles;
   }
 

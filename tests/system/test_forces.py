@@ -63,6 +63,22 @@ class Forces(unittest.TestCase):
         self.assertIn("table 5", forces["source"])
         self.assertIn("N·m at most", self.run_rmac(slot(depth, feed, rpm)).stdout)
 
+    def test_a_ball_that_leans_takes_what_its_chips_take(self):
+        chips = self.folder / "chips.json"
+        chips.write_text(json.dumps({"Materials": [MATERIAL | {"Kte": 0, "Kre": 0, "Kae": 0}]}))
+        ball = TOOL | {"Shape": TOOL["Shape"] | {"RE": RADIUS}}
+        lean = math.radians(25)
+        for start, end in (((-10, -BEYOND, TOP - 3), (15, BEYOND, TOP - 3)), ((-BEYOND, 3, TOP + 2), (BEYOND, -4, TOP - 6))):
+            line = [{"p": list(p), "axis": [0, math.sin(lean), math.cos(lean)]} for p in (start, end)]
+            program = [request("RMAC_CAM.SetFeedrate", Feedrate=600), request("RMAC_CAM.SetSpindleRPM", SpindleNumber=0, RPM=3000),
+                       request("RMAC_CAM.MoveToPathTarget", MoveID=1, TargetFrame=line[0]),
+                       request("RMAC_CAM.MoveAlongLine", MoveID=2, StartPoint=line[0], EndPoint=line[1])]
+            forces, material = (self.report(program, "--materials", chips, tool=ball)[0][key] for key in ("forces", "material"))
+            joule = MATERIAL["Ktc"] * material["removed_mm3"] / 1000
+            self.assertEqual(forces["not_told"], [])
+            self.assertGreater(material["removed_mm3"], 500)
+            self.assertAlmostEqual(forces["mean_power_w"] * forces["cutting_s"] / joule, 1, delta=0.05, msg=f"{start} to {end}")
+
     def test_more_than_the_spindle_has_is_told_with_line_time_and_place(self):
         report, done = self.report(slot(10, 3000, 1500))
         self.assertEqual(done.returncode, 1)

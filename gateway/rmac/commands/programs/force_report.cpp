@@ -86,9 +86,11 @@ void add_force_rows(const CollisionWatch* watch, std::vector<std::vector<std::st
     rows.push_back({"torque", number(all.peak_nm), fmt::format("N·m at most, {:.3g} in the mean", all.mean_nm)});
     rows.push_back({"power", number(all.peak_w), fmt::format("W at most, {:.3g} in the mean", all.mean_w)});
   }
-  const char* const which = watch->forces_not_told().empty() ? "" : "NOT ALL TOLD";
-  if (all.time_s == 0) rows.push_back({"cutting forces", *which != 0 ? which : "none", "nothing was cut"});
-  if (all.time_s > 0 && *which != 0) rows.push_back({"cutting forces", which, ""});
+  if (!watch->forces_not_told().empty()) {
+    rows.push_back({"cutting forces", "NOT ALL TOLD", ""});
+  } else if (all.time_s == 0) {
+    rows.push_back({"cutting forces", "none", "nothing was cut"});
+  }
 }
 
 void print_forces(const CollisionWatch& watch) {
