@@ -149,7 +149,6 @@ class Finder {
     if (!there) return false;
     const auto axis = static_cast<std::size_t>(along);
     const double facing = there->normal.dot(way_);
-    if (facing <= 0) return false;
     // Nearer where the surface goes along a wall, which is not before it.
     const double before = std::min(kBefore_mm, kShareOfWall * mill_.radius_mm() * facing * facing);
     const double place_on_ray = there->at[along] + std::copysign(before, normal[along]) - layout_.low[axis];

@@ -33,14 +33,22 @@ WorkMaterial aluminium() {
           .source = ""};
 }
 
+/// What the model says of the slot.
+TurnForces slot() {
+  const std::vector<EngagedSlice> slices{{.from_mm = 0, .to_mm = kDepth, .arcs = {{0, pi}}}};
+  const ToothFeed feed{.across_mm = kFeed_mm_s / (3 * kRpm / 60), .along_mm = 0};
+  return forces_over_turn(EndMill::of(*mill().shape).value(), aluminium().coefficients, slices, feed, kRpm).value();
+}
+
 /// A tool that goes through a block, 4 mm deep.
 class CuttingLoads : public testing::Test {
  protected:
-  void go(const Tool& tool, double rpm = kRpm, SpindlePower power = {}) {
+  void go(const Tool& tool, double rpm = kRpm, SpindlePower power = {}, double until = 0) {
     load_.set_tool(tool);
     load_.set_spindle(rpm, power);
     const double every = load_.every_mm();
-    for (double x = -30; x < 0; x += every) step(x, x + every);
+    const int steps = static_cast<int>((until + 30) / every);
+    for (int i = 0; i < steps; ++i) step(-30 + i * every, -30 + (i + 1) * every);
   }
   void step(double from, double to) {
     t_s_ += (to - from) / kFeed_mm_s;
@@ -59,10 +67,7 @@ class CuttingLoads : public testing::Test {
 
 TEST_F(CuttingLoads, OfASlotAreThoseOfTheModel) {
   go(mill());
-  const std::vector<EngagedSlice> slot{{.from_mm = 0, .to_mm = kDepth, .arcs = {{0, pi}}}};
-  const ToothFeed feed{.across_mm = kFeed_mm_s / 300, .along_mm = 0};
-  const TurnForces wanted =
-      forces_over_turn(EndMill::of(*mill().shape).value(), aluminium().coefficients, slot, feed, kRpm).value();
+  const TurnForces wanted = slot();
   EXPECT_NEAR(load_.all().peak_n, wanted.total_n.peak, 0.03 * wanted.total_n.peak);
   EXPECT_NEAR(load_.all().peak_nm, wanted.torque_nm.peak, 0.03 * wanted.torque_nm.peak);
   EXPECT_NEAR(load_.all().peak_w, wanted.power_w.peak, 0.03 * wanted.power_w.peak);
@@ -76,24 +81,31 @@ TEST_F(CuttingLoads, OfASlotAreThoseOfTheModel) {
 }
 
 TEST_F(CuttingLoads, BeyondWhatTheSpindleHasAreToldWithLineTimeAndPlace) {
-  go(mill());
-  const CuttingShare free = load_.all();
-  EXPECT_TRUE(load_.overloads().empty());
-  grid_ = test::block(2 * kTop, kRays);
-  load_ = CuttingLoad(aluminium(), kRays);
-  t_s_ = 1;
-  go(mill(), kRpm, {.torque_nm = 0.9 * free.mean_nm, .power_w = 1e6});
+  const double steady = slot().torque_nm.mean, has = 0.5 * steady;
+  go(mill(), kRpm, {.torque_nm = has, .power_w = 1e6}, 30);
   ASSERT_EQ(load_.overloads().size(), 1u);
   const Overload& found = load_.overloads().front();
   EXPECT_EQ(found.of, Overload::Of::Torque);
   EXPECT_EQ(found.line, 12);
   EXPECT_EQ(found.move_id, 5);
-  EXPECT_GT(found.t_s, 1 + 5 / kFeed_mm_s);   // the tip meets the block
-  EXPECT_LT(found.t_s, 1 + 11 / kFeed_mm_s);  // it is in it whole
-  EXPECT_NEAR(found.until_s, t_s_, 1e-9);
+  EXPECT_EQ(found.allowed, has);
+  // Not what it takes as it leaves the block.
+  EXPECT_NEAR(found.most, steady, 0.03 * steady);
+  EXPECT_NEAR(found.place[0], -kTop, 1);  // where its front half is in it for the first time
   EXPECT_NEAR(found.place[2], kTop - kDepth, 1e-9);
-  EXPECT_DOUBLE_EQ(found.allowed, 0.9 * free.mean_nm);
-  EXPECT_GT(found.most, free.mean_nm);
+  // The cutter meets the block when its middle is 5 mm before it, and leaves it with its front first.
+  EXPECT_GT(found.t_s, 1 + 5 / kFeed_mm_s);
+  EXPECT_LT(found.t_s, 1 + 11 / kFeed_mm_s);
+  EXPECT_GT(found.until_s, 1 + 40 / kFeed_mm_s);
+  EXPECT_LT(found.until_s, 1 + 51 / kFeed_mm_s);
+}
+
+TEST_F(CuttingLoads, WithinWhatTheSpindleHasAreNoOverload) {
+  go(mill(), kRpm, {.torque_nm = 1.05 * slot().torque_nm.mean, .power_w = 1.05 * slot().power_w.mean});
+  EXPECT_GT(load_.all().peak_nm, 0);
+  EXPECT_TRUE(load_.overloads().empty());
+  go(mill(), kRpm, {.torque_nm = 0, .power_w = 0});  // it does not say
+  EXPECT_TRUE(load_.overloads().empty());
 }
 
 TEST_F(CuttingLoads, OfAToolWithoutTeethAreNotTold) {
