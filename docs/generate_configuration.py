@@ -29,6 +29,7 @@ names file, key (as a JSON pointer), value and what is allowed; a syntax error i
 | --- | --- | --- |
 | device tree | `lib/<architecture>/rmac/drivers` of the installation | `drivers` of the build tree |
 | drives folder | `etc/rmac/drives` of the installation; `/etc/rmac/drives` where the prefix is `/usr` | `etc/drives` of the source |
+| work materials | `materials.json` beside the drives folder | `etc/materials.json` of the source |
 | state folder | what systemd gives (`$STATE_DIRECTORY`), else `/var/lib/rmac` | `state` of the build tree |
 | runtime folder | what systemd gives (`$RUNTIME_DIRECTORY`), else `/run/rmac` | the state folder |
 
@@ -116,5 +117,5 @@ def section(name, text=""):
 
 
 if __name__ == "__main__":
-    page = INTRODUCTION + section("rmacd") + section("device", MECHANISMS) + section("modbus-spindle") + section("modbus-io") + section("drive") + section("tools") + section("setup") + section("measuring-plan")
+    page = INTRODUCTION + section("rmacd") + section("device", MECHANISMS) + section("modbus-spindle") + section("modbus-io") + section("drive") + section("tools") + section("setup") + section("materials") + section("measuring-plan")
     (FOLDER / "configuration.md").write_text(page, encoding="utf-8")

@@ -70,7 +70,8 @@ struct ConfigurationOverrides {
 /// Where things are when neither file nor command line says so.
 struct DefaultFolders {
   std::filesystem::path device_tree;
-  std::filesystem::path drives;  ///< the library of CANopen drives
+  std::filesystem::path drives;     ///< the library of CANopen drives
+  std::filesystem::path materials;  ///< the work materials that are known, a file
   std::filesystem::path state_folder;
   std::filesystem::path runtime_folder;  ///< holds the UNIX socket
   std::filesystem::path helpers;         ///< programs that ours start

@@ -32,6 +32,7 @@ DefaultFolders default_folders() {
   if (std::filesystem::exists(build_folder / "CMakeCache.txt", code)) {
     folders.device_tree = build_folder / "drivers";
     folders.drives = build_folder / "etc" / "drives";
+    folders.materials = build_folder / "etc" / "materials.json";
     folders.state_folder = build_folder / "state";
     folders.runtime_folder = folders.state_folder;
     folders.helpers = build_folder / "helpers";
@@ -40,6 +41,7 @@ DefaultFolders default_folders() {
   } else {
     folders.device_tree = (program_folder / RMAC_DRIVERS_FROM_SBIN).lexically_normal();
     folders.drives = etc_folder(program_folder.parent_path()) / "drives";
+    folders.materials = folders.drives.parent_path() / "materials.json";
     folders.state_folder = RMAC_STATE_FOLDER;
     folders.runtime_folder = "/run/rmac";
     folders.helpers = (program_folder / RMAC_HELPERS_FROM_SBIN).lexically_normal();

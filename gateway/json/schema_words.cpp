@@ -56,6 +56,14 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::optional<std::size_t> likely_meant(std::span<const std::string> known, std::string_view mistyped) {
+  const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
+    return edit_distance(a, mistyped) < edit_distance(b, mistyped);
+  });
+  if (nearest == known.end() || edit_distance(*nearest, mistyped) > 1 + mistyped.size() / 4) return std::nullopt;
+  return static_cast<std::size_t>(nearest - known.begin());
+}
+
 const Json& SchemaWords::resolved(const Json& schema) const {
   const Json* current = &schema;
   while (current->contains("$ref")) {
@@ -116,11 +124,8 @@ std::string SchemaWords::known_keys(const Json& object_schema, std::string_view 
   std::vector<std::string> keys;
   const Json properties = schema.value("properties", Json::object());
   for (const auto& [name, unused] : properties.items()) keys.push_back(name);
-  const auto nearest = std::min_element(keys.begin(), keys.end(), [&](const auto& a, const auto& b) {
-    return edit_distance(a, key) < edit_distance(b, key);
-  });
-  const bool likely = nearest != keys.end() && edit_distance(*nearest, key) <= 1 + key.size() / 4;
-  return fmt::format("{}allowed are {}", likely ? fmt::format("did you mean \"{}\"? ", *nearest) : "",
+  const auto meant = likely_meant(keys, key);
+  return fmt::format("{}allowed are {}", meant ? fmt::format("did you mean \"{}\"? ", keys[*meant]) : "",
                      fmt::join(keys, ", "));
 }
 

@@ -1,11 +1,16 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace rmac::gateway {
+
+/// Which of the words that there are was likely meant by a mistyped one; none: it is like none of them.
+[[nodiscard]] std::optional<std::size_t> likely_meant(std::span<const std::string> known, std::string_view mistyped);
 
 /// Says in words what a JSON schema allows. Knows the part of draft 7 that the schemas of etc/ use: objects, arrays,
 /// and references to `definitions`.

@@ -12,6 +12,7 @@ namespace rmac::gateway {
 [[nodiscard]] std::string_view drive_schema_text();
 [[nodiscard]] std::string_view tools_schema_text();
 [[nodiscard]] std::string_view setup_schema_text();
+[[nodiscard]] std::string_view materials_schema_text();
 [[nodiscard]] std::string_view measuring_plan_schema_text();
 
 }  // namespace rmac::gateway

@@ -84,8 +84,10 @@ void Material::advance(double t_s, std::span<const double> joints, const MoveNow
   if (!begun_) {
     for (Part& part : parts_) part.strokes.forget();
     go_to(there);
-    since_s_ = t_s;
+    s_.since = t_s;
+    listening_.told = there;
   } else if (!std::ranges::equal(joints, joints_)) {
+    tell_listener(t_s, there);
     if (turns_between(joints_, joints)) {
       go_between(joints_, at_, joints, there, kMostHalvings);
     } else {
@@ -93,7 +95,7 @@ void Material::advance(double t_s, std::span<const double> joints, const MoveNow
     }
   }
   begun_ = true;
-  t_s_ = t_s;
+  s_.now = t_s;
   at_ = there;
   joints_.assign(joints.begin(), joints.end());
 }
@@ -132,10 +134,20 @@ void Material::go_to(const ToolAt& there) {
   }
 }
 
+void Material::tell_listener(double t_s, const ToolAt& there) {
+  if (listening_.listener == nullptr || !turns_ || t_s <= s_.now) return;
+  if (std::ranges::none_of(parts_, &Part::cuts)) return;
+  const Vector3d velocity = (there.tip - at_.tip) / (t_s - s_.now);
+  if ((there.tip - listening_.told.tip).norm() < listening_.listener->every_mm() || velocity.norm() == 0) return;
+  listening_.told = there;
+  end_strokes(true);
+  listening_.listener->cuts(grid_, there, velocity, t_s, move_);
+}
+
 void Material::finish() {
   end_strokes(true);
   end_strokes(false);
-  since_s_ = t_s_;
+  s_.since = s_.now;
 }
 
 void Material::end_strokes(bool cutting) {
@@ -177,12 +189,12 @@ void Material::look_at(const Part& part, const Sweep& sweep) {
 
 void Material::tell(const Part& part, const Removal& met, const char* why) {
   if (met.depth_mm <= kToldFrom * tolerance_mm_) return;
-  Finding* const finding = findings_.of("stock", part.name, since_s_, move_, {.possible = false, .meet = true});
+  Finding* const finding = findings_.of("stock", part.name, s_.since, move_, {.possible = false, .meet = true});
   if (finding == nullptr) return;
   if (finding->why.empty()) finding->why = why;
   const Vector at = apply_to_point(part_frame_, {met.place[0], met.place[1], met.place[2]});
   const Vector3d place(at[0], at[1], at[2]);
-  findings_.see(*finding, {.least = 0, .most = 0, .on_first = place, .on_second = place}, met.depth_mm, t_s_, move_);
+  findings_.see(*finding, {.least = 0, .most = 0, .on_first = place, .on_second = place}, met.depth_mm, s_.now, move_);
 }
 
 }  // namespace rmac::gateway

@@ -6,6 +6,7 @@
 
 #include "gateway/bodies/link_chain.hpp"
 #include "gateway/collision/finding_list.hpp"
+#include "gateway/material/cut_listener.hpp"
 #include "gateway/material/dexel_grid.hpp"
 #include "gateway/material/removal.hpp"
 #include "gateway/material/removed_volume.hpp"
@@ -25,6 +26,8 @@ class Material {
   /// What is in the spindle from now on. One without a shape takes nothing away. Told is what of it is too thin to be
   /// found in material, as it is taken smaller by the resolution; empty: nothing.
   std::string set_tool(const Tool& tool);
+  /// Tells of every cut from now on; the listener outlives this.
+  void listen(CutListener& listener) noexcept { listening_.listener = &listener; }
   /// The joints have gone straight to there since they were told last.
   void advance(double t_s, std::span<const double> joints, const MoveNow& move, bool spindle_turns);
   /// What is under way counts as far as it came. To be called before anything is read.
@@ -44,11 +47,20 @@ class Material {
     bool cuts = false;
     std::vector<Sweep> waiting{};  ///< until there are enough of them
   };
+  struct Listening {
+    CutListener* listener = nullptr;
+    ToolAt told{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};  ///< where it last heard of the tool
+  };
+  struct Times {
+    double since = 0;  ///< of the strokes under way
+    double now = 0;
+  };
   [[nodiscard]] ToolAt tool_at(std::span<const double> joints);
   [[nodiscard]] bool turns_between(std::span<const double> from, std::span<const double> to) const;
   void go_between(std::span<const double> from, const ToolAt& begin, std::span<const double> to, const ToolAt& end,
                   int halvings);
   void go_to(const ToolAt& there);
+  void tell_listener(double t_s, const ToolAt& there);
   void end_strokes(bool cutting);
   void take(Part& part, const Stroke& stroke);
   void cut_with(Part& part);
@@ -66,6 +78,7 @@ class Material {
   bool spindle_needed_ = true;
   RemovedSum removed_;
   std::size_t strokes_ = 0;
+  Listening listening_;
 
   // The step under way.
   std::vector<Frame> links_;
@@ -73,7 +86,7 @@ class Material {
   ToolAt at_{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};  ///< with these joints
   MoveNow move_;
   bool begun_ = false, turns_ = false;
-  double since_s_ = 0, t_s_ = 0;  ///< of the strokes under way
+  Times s_;
 };
 
 }  // namespace rmac::gateway

@@ -81,6 +81,7 @@ Expected<ToolShape> read_tool_shape(const Json& object, double tool_length_mm) {
   shape.apmx = object.value("APMX", shape.lcf);
   shape.oal = object.at("OAL");
   shape.zefp = object.value("ZEFP", 0);
+  shape.fha = object.value("FHA", 0.0);
   shape.shank = sections(object.value("Shank", Json::array()));
   shape.holder = sections(object.value("Holder", Json::array()));
   // A tool of which nothing else is said goes on as thick as it cuts.
@@ -101,6 +102,7 @@ Json to_json(const ToolShape& shape) {
               {"Shank", to_json(shape.shank)},
               {"Holder", to_json(shape.holder)}};
   if (shape.zefp > 0) object["ZEFP"] = shape.zefp;
+  if (shape.fha > 0) object["FHA"] = shape.fha;
   return object;
 }
 

@@ -17,6 +17,7 @@ struct ToolShape {
   double lcf = 0;                 ///< length of the chip flutes; the part of the tool that may cut ends here
   double oal = 0;                 ///< overall length, with what sits in the holder
   int zefp = 0;                   ///< teeth; 0: not given
+  double fha = 0;                 ///< helix angle of the flutes, degrees
   std::vector<ConeShape> shank;   ///< from the flutes up
   std::vector<ConeShape> holder;  ///< its last one ends at the tool interface, `Length` above the tip
 

@@ -48,6 +48,7 @@ class Installation(unittest.TestCase):
         self.one("etc/rmac/rmacd.json")
         self.assertEqual(sorted(path.name for path in self.one("etc/rmac/drives").iterdir()),
                          sorted(path.name for path in (SOURCE / "etc/drives").iterdir()))
+        self.one("etc/rmac/materials.json")
         self.one("usr/share/rmac/drive.schema.json")
         self.one("etc/rmac/can-can0.conf.example")
 

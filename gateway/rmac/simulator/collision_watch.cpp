@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "gateway/bodies/link_chain.hpp"
@@ -19,6 +20,7 @@ namespace fs = std::filesystem;
 
 /// Where joints without ends are compared with the module.
 constexpr double kEndless = 400;
+constexpr double kWattsPerHorsePower = 745.69987;
 
 Expected<gateway::LinkChain> chain_of(const gateway::DeviceDatabase& database, const fs::path& device_json,
                                       const fs::path& device_tree) {
@@ -44,7 +46,8 @@ Expected<gateway::LinkChain> chain_of(const gateway::DeviceDatabase& database, c
 
 Result<std::unique_ptr<CollisionWatch>> CollisionWatch::open(const std::string& machine, const fs::path& device_tree,
                                                              const fs::path& setup_file,
-                                                             std::optional<double> resolution_mm) {
+                                                             std::optional<double> resolution_mm,
+                                                             const fs::path& materials) {
   const auto setup = gateway::read_setup(setup_file);
   if (!setup) return fail(setup.error().message);
   const auto device_json = gateway::find_device_json(machine, device_tree);
@@ -74,8 +77,30 @@ Result<std::unique_ptr<CollisionWatch>> CollisionWatch::open(const std::string& 
     watch->material_ =
         std::make_unique<gateway::Material>(std::move(*chain), std::move(*grid), setup->part_frame, checker.findings());
     checker.stock_is_followed();
+    if (auto fine = watch->watch_load(materials); !fine) return tl::unexpected(fine.error());
   }
   return watch;
+}
+
+Result<> CollisionWatch::watch_load(const fs::path& materials) {
+  if (setup_.material.empty()) return {};
+  const auto known = gateway::WorkMaterials::read(materials);
+  if (!known) return fail(known.error().message);
+  const auto material = known->find(setup_.material);
+  if (!material) {
+    unknown_material_ = "no forces are told: " + material.error().message;
+    return {};
+  }
+  load_ =
+      std::make_unique<gateway::CuttingLoad>(**material, *std::ranges::max_element(material_->grid().layout().pitch));
+  material_->listen(*load_);
+  return {};
+}
+
+std::vector<std::string> CollisionWatch::forces_not_told() const {
+  if (load_) return {load_->not_told().begin(), load_->not_told().end()};
+  if (!unknown_material_.empty()) return {unknown_material_};
+  return {};
 }
 
 bool CollisionWatch::may_cut(const Move& move) noexcept {
@@ -106,6 +131,7 @@ void CollisionWatch::take_tool(gateway::Controller& controller) {
   }
   checker_->set_tool(tool);
   too_thin_ = material_ ? material_->set_tool(tool) : "";
+  if (load_) load_->set_tool(tool);
 }
 
 void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller) {
@@ -131,6 +157,11 @@ void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway
   // A machine that has no spindle for the controller turns its tool some other way.
   const bool turns =
       device->spindles.empty() || std::ranges::any_of(sample.spindle_rpm, [](double rpm) { return rpm != 0; });
+  if (load_ && !device->spindles.empty()) {
+    const sdk::Spindle& spindle = device->spindles.front();
+    load_->set_spindle(std::abs(sample.spindle_rpm.front()),
+                       {.torque_nm = spindle.max_torque_nm, .power_w = spindle.horse_power * kWattsPerHorsePower});
+  }
   material_->advance(sample.t_s, joints, move, turns);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gateway/collision/checker.hpp"
+#include "gateway/cutting/cutting_load.hpp"
 #include "gateway/material/material.hpp"
 #include "gateway/material/stock.hpp"
 #include "gateway/rmac/wire/failure.hpp"
@@ -21,12 +22,13 @@ namespace rmac::cli {
 /// Watches a simulated machine for collisions with itself and with a set-up.
 class CollisionWatch {
  public:
-  /// `machine` as for `Simulation::open`; `resolution_mm` of the material instead of the set-up's. Refused, with one
-  /// line, where not all of it can be checked.
+  /// `machine` as for `Simulation::open`; `resolution_mm` of the material instead of the set-up's; `materials`: the
+  /// file of the work materials that are known. Refused, with one line, where not all of it can be checked.
   [[nodiscard]] static Result<std::unique_ptr<CollisionWatch>> open(const std::string& machine,
                                                                     const std::filesystem::path& device_tree,
                                                                     const std::filesystem::path& setup,
-                                                                    std::optional<double> resolution_mm);
+                                                                    std::optional<double> resolution_mm,
+                                                                    const std::filesystem::path& materials);
 
   /// A move has been added to those that are not done; the first of them is done.
   void queued(const Move& move) { cutting_.push_back(may_cut(move)); }
@@ -43,6 +45,10 @@ class CollisionWatch {
   [[nodiscard]] const gateway::FindingList& findings() const noexcept { return checker_->findings(); }
   /// What is left of the stock; null where the set-up has none.
   [[nodiscard]] const gateway::Material* material() const noexcept { return material_.get(); }
+  /// What cutting takes; null where the set-up has no stock or does not say of which material, or that is not known.
+  [[nodiscard]] const gateway::CuttingLoad* load() const noexcept { return load_.get(); }
+  /// What of it cannot be told, a sentence each; empty: all is, or nobody asked.
+  [[nodiscard]] std::vector<std::string> forces_not_told() const;
   [[nodiscard]] const gateway::Setup& setup() const noexcept { return setup_; }
   /// What was not checked, a sentence each; empty: all was.
   [[nodiscard]] const std::set<std::string>& not_checked() const noexcept { return not_checked_; }
@@ -52,11 +58,14 @@ class CollisionWatch {
       : setup_(std::move(setup)), checker_(std::move(checker)) {}
   /// Positioning moves go through air; what is programmed as a path may cut.
   [[nodiscard]] static bool may_cut(const Move& move) noexcept;
+  [[nodiscard]] Result<> watch_load(const std::filesystem::path& materials);
   void take_tool(gateway::Controller& controller);
 
   gateway::Setup setup_;
   std::unique_ptr<gateway::CollisionChecker> checker_;
   std::unique_ptr<gateway::Material> material_;  ///< its findings go to the checker's
+  std::unique_ptr<gateway::CuttingLoad> load_;   ///< listens to the material
+  std::string unknown_material_;                 ///< why there is no load
   std::deque<bool> cutting_;                     ///< of the moves that are not done
   std::set<std::string> not_checked_;
   std::string tool_fault_;  ///< what cannot be checked with the tool in the spindle

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "benchmark/motion/figures.hpp"
+#include "benchmark/virtual/forces.hpp"
 #include "gateway/collision/checker.hpp"
 #include "rmac/modules/chain_kinematics.hpp"
 
@@ -146,6 +147,7 @@ int main(int count, char** words) {
   bench::Figures figures;
   measure("collisions: tool on the surface", cycles, 0, part, figures);
   measure("collisions: positioning, 30 mm off", cycles, 30, part, figures);
+  bench::measure_forces(figures);
   figures.print_table();
   return figures.all_ok() ? 0 : 1;
 }

@@ -8,6 +8,7 @@
 #include "gateway/api/decode.hpp"
 #include "gateway/configuration/configuration.hpp"
 #include "gateway/rmac/commands/programs/collision_report.hpp"
+#include "gateway/rmac/commands/programs/force_report.hpp"
 #include "gateway/rmac/commands/programs/material_report.hpp"
 #include "gateway/rmac/commands/programs/registrations.hpp"
 #include "gateway/rmac/commands/programs/source.hpp"
@@ -28,6 +29,7 @@ struct Options {
   std::filesystem::path tools;        ///< folder of tool tables; empty: no tools but the program's own
   std::filesystem::path setup;        ///< what stands on the table; empty: collisions are not checked
   std::optional<double> resolution;   ///< of the material, mm; none: the set-up's
+  std::filesystem::path materials;    ///< work materials that are known; empty: the installation's
   std::string stock_out;              ///< STL file of what is left of the stock; empty: none
   bool first = false;                 ///< end at the first collision
   bool by_move = false;               ///< tell each move's limit too
@@ -64,6 +66,7 @@ void print_json(const SimulationReport& report, const CollisionWatch* watch, con
   if (by_move) line["move_limits"] = to_json(report.move_limits);
   if (watch != nullptr) add_collisions(*watch, line);
   if (material != nullptr) line["material"] = to_json(*material);
+  line["forces"] = forces_json(watch, by_move);
   if (!report.record_files.empty()) {
     line["record_rows"] = report.record_rows;
     line["record_files"] = report.record_files;
@@ -85,8 +88,10 @@ void print_table(const SimulationReport& report, const CollisionWatch* watch, co
     rows.push_back({"record", record, fmt::format("{} rows in all", report.record_rows)});
   }
   if (material != nullptr) add_rows(*material, rows);
+  add_force_rows(watch, rows);
   fmt::print("{}\n", table({"", "", ""}, rows));
   if (watch != nullptr) print_collisions(*watch);
+  if (watch != nullptr) print_forces(*watch);
   rows.clear();
   for (const auto& joint : report.joints) {
     rows.push_back({joint.name, number(joint.peak_velocity), number(joint.peak_acceleration), number(joint.peak_jerk)});
@@ -142,6 +147,8 @@ Result<> check_options(const Options& options, const Program& program, bool json
     return fail("--first needs --setup: without one collisions are not checked");
   if (options.resolution && options.setup.empty())
     return fail("--resolution needs --setup: without one there is no stock");
+  if (!options.materials.empty() && options.setup.empty())
+    return fail("--materials needs --setup: without one nothing is cut");
   if (!options.stock_out.empty() && options.setup.empty())
     return fail("--stock-out needs --setup: without one there is no stock");
   return {};
@@ -172,7 +179,9 @@ Result<> simulate_program(const Options& options, bool json) {
   if (!simulation) return fail(simulation.error().message);
   std::unique_ptr<CollisionWatch> collisions;
   if (!options.setup.empty()) {
-    auto opened = CollisionWatch::open(options.machine, tree, options.setup, options.resolution);
+    auto opened =
+        CollisionWatch::open(options.machine, tree, options.setup, options.resolution,
+                             options.materials.empty() ? gateway::default_folders().materials : options.materials);
     if (!opened) return tl::unexpected(opened.error());
     collisions = std::move(*opened);
     if (auto fine = check_stock_file(options, *collisions); !fine) return fine;
@@ -201,7 +210,10 @@ Result<> simulate_program(const Options& options, bool json) {
   } else {
     print_table(*report, collisions.get(), left, took_s);
   }
-  return collisions ? verdict(*collisions) : Result<>();
+  if (!collisions) return {};
+  const auto met = verdict(*collisions), takes = force_verdict(*collisions);
+  if (!met && !takes) return fail(met.error().message + "; " + takes.error().message);
+  return met ? takes : met;
 }
 
 }  // namespace
@@ -220,9 +232,12 @@ void add_simulate(Command& rmac) {
   simulate.option("--setup", &options->setup, "setup.json: what stands on the table; collisions are checked with it");
   simulate.option("--resolution", &options->resolution,
                   "with --setup: how far the rays are apart by which the stock is known, mm; instead of the set-up's");
+  simulate.option("--materials", &options->materials,
+                  "with --setup: file of the work materials that are known; the installation's unless given");
   simulate.option("--stock-out", &options->stock_out, "with --setup: write what is left of the stock to this STL file");
   simulate.flag("--first", &options->first, "with --setup: end at the first collision");
-  simulate.flag("--by-move", &options->by_move, "with --json: the limit that ruled each move for the longest time");
+  simulate.flag("--by-move", &options->by_move,
+                "with --json: the limit that ruled each move for the longest time, and what cutting it took");
   simulate.option("--device-tree", &options->device_tree,
                   "where machines are looked for; the installation's unless given");
   simulate.option("--period", &options->period_s, "cycle of the servo loop, s (period_s in rmacd.json)")

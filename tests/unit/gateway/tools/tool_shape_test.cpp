@@ -20,6 +20,7 @@ json ball_mill() {
           {"LCF", 12},
           {"OAL", 57},
           {"ZEFP", 2},
+          {"FHA", 30},
           {"Shank",
            {{{"Cone", {{"Radius", 2.9}, {"TopRadius", 3}, {"Height", 5}}}},
             {{"Cylinder", {{"Radius", 3}, {"Height", 40}}}}}},
