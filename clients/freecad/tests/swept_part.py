@@ -66,6 +66,13 @@ def face_points(face, count, seed, steepest_deg=80.0):
     return found[:, :3], found[:, 3:]
 
 
+def reachable(shape, points, normals, radius):
+    """Where a ball that touches the point is nowhere in the part."""
+    centres = [FreeCAD.Vector(*centre) for centre in points + radius * normals]
+    away = np.array([shape.distToShape(Part.Vertex(centre))[0] for centre in centres]) > radius - 1e-6
+    return away & np.array([not shape.isInside(centre, 1e-7, False) for centre in centres])
+
+
 def left_over(points, normals, places, radius):
     """Above each point along its normal, up to where a ball that was somewhere first took it away."""
     up = np.full(len(points), np.inf)

@@ -9,7 +9,7 @@ import unittest
 import FreeCAD
 import numpy as np
 import Part
-from swept_part import ball_gouge, face_points, left_over, mill_gouge, tips
+from swept_part import ball_gouge, face_points, left_over, mill_gouge, reachable, tips
 
 from rmac_freecad.jobs import JobRefused
 from rmac_freecad.simulation import simulate
@@ -19,10 +19,10 @@ import rmac  # isort: skip
 
 Vector = FreeCAD.Vector
 GOUGE_MM = 0.001
-FEEDS = {"feed_mm_min": 600, "rapid_mm_min": 3000}
+FEEDS = {"feed_mm_min": 600, "rapid_mm_min": 2000}
 
 
-def wavy(seed, length=12.0, width=9.0, height=0.5):
+def wavy(seed, length=8.0, width=6.0, height=0.08):
     """A solid with a random bicubic face on top."""
     chance = np.random.default_rng(seed)
     surface = Part.BSplineSurface()
@@ -48,10 +48,14 @@ class SweptTest(unittest.TestCase):
     def swept(self, shape, faces, mill, scallop_mm=0.05, **more):
         return read_faces(self.feature(shape), [f"Face{face + 1}" for face in faces], mill, scallop_mm=scallop_mm, **{**FEEDS, **more})
 
-    def check_ball(self, shape, faces, radius, scallop_mm, program, steepest_deg=80.0, every=5):
+    def check_ball(self, shape, faces, radius, scallop_mm, program, steepest_deg=80.0, every=8):
         places = tips(program)
         self.assertLess(ball_gouge(shape, radius, places[::every]), GOUGE_MM)
-        worst = max(left_over(*face_points(shape.Faces[face], 500, 1, steepest_deg), places, radius).max() for face in faces)
+        worst = 0
+        for face in faces:
+            points, normals = face_points(shape.Faces[face], 400, 1, steepest_deg)
+            free = reachable(shape, points, normals, radius)
+            worst = max(worst, left_over(points[free], normals[free], places, radius).max())
         self.assertLess(worst, 1.05 * scallop_mm)
         return worst
 
@@ -74,14 +78,14 @@ class HeightsTest(SweptTest):
         self.assertGreater(self.check_ball(shape, [face], 2, 0.05, program), 0.95 * 0.05 * 0.97)
 
     def test_a_bull_nose_gouges_nothing(self):
-        shape = wavy(4, height=0.3)
+        shape = wavy(4, )
         face = facing_up(shape)
         program, _ = self.swept(shape, [face], bull_nose(2, 0.5))
-        points = np.concatenate([face_points(shape.Faces[face], 20_000, 1)[0]])
+        points = face_points(shape.Faces[face], 10_000, 1)[0]
         self.assertLess(mill_gouge(2, 0.5, tips(program)[::4], points), GOUGE_MM)
 
     def test_a_flat_end_cuts_a_plane_with_steps_below_its_diameter(self):
-        shape = Part.makeBox(20, 15, 5)
+        shape = Part.makeBox(12, 15, 5)
         program, left = self.swept(shape, [facing_up(shape)], flat_end(3), scallop_mm=0.01)
         curves = [move.curve for move in program.moves if hasattr(move, "curve")]
         across = sorted({round(curve.points[0][1], 3) for curve in curves})
@@ -100,7 +104,7 @@ class HeightsTest(SweptTest):
         for curve in curves:
             inner = curve.knots[6:-6]
             self.assertEqual(len(set(inner)), len(inner))  # quintic with single knots: four derivatives are continuous
-        long = [curve for curve in curves if math.dist(curve.points[0], curve.points[-1]) > 8]
+        long = [curve for curve in curves if math.dist(curve.points[0], curve.points[-1]) > 5]
         self.assertLessEqual(len(long), sum(math.dist(c.points[0], c.points[-1]) > 1 for c in curves))
         at = None
         for move in program.moves:  # and moves follow each other
@@ -114,7 +118,7 @@ class PartsTest(SweptTest):
         shape = Part.makeBox(12, 10, 6).cut(Part.makeSphere(1.5, Vector(6, 5, 6.3)))
         program, left = self.swept(shape, [i for i, f in enumerate(shape.Faces) if isinstance(f.Surface, Part.Sphere)] + [facing_up(shape)], ball_end(2))
         self.assertIn("too narrow", " ".join(left))
-        self.assertLess(ball_gouge(shape, 2, tips(program)[::5]), GOUGE_MM)
+        self.assertLess(ball_gouge(shape, 2, tips(program)[::8]), GOUGE_MM)
 
     def test_a_neighbour_at_a_sharp_concave_edge_is_not_gouged(self):
         groove = Part.Face(Part.makePolygon([Vector(*p) for p in ((0, 0, 0), (0, 0, 4), (5, 0, 2), (10, 0, 6), (10, 0, 0), (0, 0, 0))]))
@@ -124,13 +128,13 @@ class PartsTest(SweptTest):
         for chosen, along in ((faces, 0), (faces[:1], 0), (faces[:1], 90)):
             with self.subTest(faces=chosen, along=along):
                 program, _ = self.swept(shape, chosen, ball_end(1), along=along)
-                self.assertLess(ball_gouge(shape, 1, tips(program)[::5]), GOUGE_MM)
+                self.assertLess(ball_gouge(shape, 1, tips(program)[::8]), GOUGE_MM)
 
     def test_a_face_with_a_hole_and_a_boss_is_swept_round_them(self):
         shape = Part.makeBox(14, 10, 4).cut(Part.makeCylinder(2, 10, Vector(4, 5, -1))).fuse(Part.makeCylinder(1.5, 7, Vector(10, 5, 0)))
         face = next(i for i, f in enumerate(shape.Faces) if isinstance(f.Surface, Part.Plane) and abs(f.CenterOfMass.z - 4) < 1e-6)
         program, _ = self.swept(shape, [face], ball_end(1.5))
-        self.assertLess(ball_gouge(shape, 1.5, tips(program)[::5]), GOUGE_MM)
+        self.assertLess(ball_gouge(shape, 1.5, tips(program)[::8]), GOUGE_MM)
 
     def test_spheres_and_cylinders_are_cut_where_they_look_up(self):
         ball = Part.makeSphere(5)
@@ -206,7 +210,7 @@ class ProgramTest(SweptTest):
         found = simulate(program, "DMACXYZ", tools, rmac=str(pathlib.Path(os.environ["RMAC_BUILD"]) / "bin/rmac"))
         self.assertGreater(found.length_mm, 8 * 5)
         feeds = [json.loads(move.params(0))["Feedrate"] for move in program.moves if move.method == "RMAC_CAM.SetFeedrate"]
-        self.assertEqual(set(feeds), {600, 3000})
+        self.assertEqual(set(feeds), {600, 2000})
         self.assertEqual(str(program.place_of(len(program) - 1)), "Cut, command 1 (end)")
         self.assertTrue(any(isinstance(move, rmac.Nurbs) for move in program.moves))
 

@@ -10,12 +10,15 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 AT_ONCE = 32
-CANDIDATES = 2  # places of one face or edge that may be touched
+CANDIDATES = 4  # places of one face or edge that may be touched; several also where it is bent nearly as the mill is
+APART = 1.5  # steps of the cloud
 CLOSED_MM = 1e-8
 UPRIGHT = 1e-3  # the normal's z below which a face is a wall, touched along its upper edge alone
 NEWTON = 10
 HOPEFUL = 4  # steps, after which one that is still far off finds nothing
 LEVELS = 13
+CLIMBS = 14
+GRID = np.stack(np.meshgrid([-1, -0.5, 0, 0.5, 1], [-1, -0.5, 0, 0.5, 1]), 2).reshape(1, 25, 2)
 
 
 @dataclass
@@ -37,8 +40,9 @@ class Drop:
         self._part, self._mill = part, mill
 
     def __call__(self, xy):
-        xy = np.asarray(xy, float)
-        found = [self._candidates(xy[i : i + AT_ONCE], i) for i in range(0, len(xy), AT_ONCE)]
+        xy = np.asarray(xy, float).reshape(-1, 2)
+        found = [(np.zeros(0, int), np.zeros(0, int), np.zeros(0))]
+        found += [self._candidates(xy[i : i + AT_ONCE], i) for i in range(0, len(xy), AT_ONCE)]
         tips, chosen, z = (np.concatenate(column) for column in zip(*found))
         part = self._part
         labels, uv = part.labels[chosen], part.parameters[chosen]
@@ -57,7 +61,7 @@ class Drop:
         starts = np.flatnonzero(np.diff(part.labels[near], prepend=-1))
         found = [(np.zeros(0, int), np.zeros(0, int), np.zeros(0))]
         for of in np.split(near, starts[1:]) if len(near) else ():
-            points, apart = part.points[of], (4 * part.step_of[part.labels[of[0]]]) ** 2
+            points, apart = part.points[of], (APART * part.step_of[part.labels[of[0]]]) ** 2
             off = np.sqrt((xy[:, :1] - points[:, 0]) ** 2 + (xy[:, 1:] - points[:, 1]) ** 2)
             tip = points[:, 2] - mill.height(off)
             rows = np.arange(len(xy))
@@ -94,8 +98,29 @@ class Drop:
         at, tip, off, point, normal = contact(face, self._mill, uv[of], xy)
         good = (off < CLOSED_MM) & face.trim.inside(at)
         points[of[good]], normals[of[good]], z[of[good]] = point[good], normal[good], tip[good]
+        within = (at > face.trim.low).all(1) & (at < face.trim.high).all(1)
+        stuck = of[~good & within]
+        if len(stuck):
+            self._climb(face, stuck, xy[~good & within], uv[stuck], points, normals, z)
         if self._mill.flat_mm:
             self._on_top(face, of, xy, uv, points, normals, z)
+
+    def _climb(self, face, of, xy, at, points, normals, z):
+        """Where Newton's method finds nothing within a face, bent there as the mill is: the highest tip on ever finer grids."""
+        width = np.tile(face.interval, (len(of), 1))
+        for _ in range(CLIMBS):
+            tried = at[:, None] + width[:, None] * GRID
+            tried = np.minimum(np.maximum(tried, face.trim.low), face.trim.high)
+            flat = tried.reshape(-1, 2)
+            point = face.evaluate(flat).reshape(*tried.shape[:2], 3)
+            tip = point[:, :, 2] - self._mill.height(np.linalg.norm(point[:, :, :2] - xy[:, None], axis=2))
+            tip = np.where(face.trim.inside(flat).reshape(tip.shape), tip, -np.inf)
+            best = tip.argmax(1)
+            rows = np.arange(len(of))
+            at, width = tried[rows, best], width / 2
+            better = tip[rows, best] > z[of]
+            z[of[better]], points[of[better]] = tip[rows, best][better], point[rows, best][better]
+        normals[of] = upward(face, at)[1]
 
     def _on_top(self, face, of, xy, uv, points, normals, z):
         """The flat of the mill stands on the highest point round its axis."""

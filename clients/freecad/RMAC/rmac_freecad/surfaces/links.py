@@ -3,7 +3,7 @@
 import numpy as np
 
 LIFTS = (0.05, 0.1, 0.2, 0.4, 0.8)  # of the mill's radius
-BETWEEN = 60  # samples a radius of the mill
+BETWEEN = 200  # samples a radius of the mill
 
 
 class Links:

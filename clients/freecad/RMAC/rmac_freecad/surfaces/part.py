@@ -54,6 +54,7 @@ class Face:
         counts = [int(max(length / spacing, 4 * (more + 1), 6)) + 1 for length, more in zip(lengths, inside)]
         u, v = np.meshgrid(*(np.linspace(a, b, n) for a, b, n in zip(low, high, counts)), indexing="ij")
         uv = np.column_stack([u.ravel(), v.ravel()])
+        self.interval = (high - low) / (np.array(counts) - 1)
         bends = [np.linalg.norm(np.diff(points, 2, axis=k), axis=2).max() / 8 * (24 / (count - 1)) ** 2 for k, count in enumerate(counts)]
         return uv[self.trim.inside(uv)], max(length / (count - 1) for length, count in zip(lengths, counts)), sum(bends)
 

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-STEEPEST_CLIMB = 6.0  # a tip that rises faster than so much a millimetre has come to a wall
+STEEPEST_CLIMB = 12.0  # a tip that rises faster than so much a millimetre has come to a wall
+STEEPEST_OVER = 2.5  # and beyond the end of what is cut: there the mill may touch with its side, where heights hang on nothing
 MOST_SAMPLES = 4000
 
 
@@ -48,9 +49,9 @@ class Rows:
             found.append(Row(w, t, np.column_stack([xy, heights.z]), heights.point, heights.normal, core, core.copy()))
         return found
 
-    def goes(self, a, b):
+    def goes(self, a, b, steepest=STEEPEST_CLIMB):
         """Whether the tip may go from there to there along the part: no wall, no drop from it."""
-        climb = np.abs(b[..., 2] - a[..., 2]) <= STEEPEST_CLIMB * np.linalg.norm(b[..., :2] - a[..., :2], axis=-1)
+        climb = np.abs(b[..., 2] - a[..., 2]) <= steepest * np.linalg.norm(b[..., :2] - a[..., :2], axis=-1)
         return climb & np.isfinite(b[..., 2]) & (b[..., 2] > self._floor)
 
     def reach(self, row, other, over_mm):
@@ -64,8 +65,17 @@ class Rows:
         away = np.minimum(np.abs(row.t - cut[after]), np.abs(row.t - cut[np.maximum(after - 1, 0)]))
         near = away * self.family.t_mm <= max(over_mm, (row.t[1] - row.t[0]) * self.family.t_mm * 1.01)
         with np.errstate(invalid="ignore"):
-            forth, back = self.goes(row.tips[:-1], row.tips[1:]), self.goes(row.tips[1:], row.tips[:-1])
+            forth, back = (self.goes(a, b, STEEPEST_OVER) for a, b in ((row.tips[:-1], row.tips[1:]), (row.tips[1:], row.tips[:-1])))
+            ahead = _goes_ahead(row.tips)
         for i in range(1, len(near)):
-            row.used[i] |= row.used[i - 1] and near[i] and forth[i - 1]
+            row.used[i] |= row.used[i - 1] and near[i] and forth[i - 1] and ahead[i - 1]
         for i in range(len(near) - 2, -1, -1):
-            row.used[i] |= row.used[i + 1] and near[i] and back[i]
+            row.used[i] |= row.used[i + 1] and near[i] and back[i] and ahead[i + 1]
+
+
+def _goes_ahead(tips):
+    """Where the line of the pass does not turn back, as that of a face bent more than the mill does."""
+    steps = np.diff(tips[:, :2], axis=0)
+    ahead = np.ones(len(tips), bool)
+    ahead[1:-1] = (steps[1:] * steps[:-1]).sum(1) > 0.7 * np.linalg.norm(steps[1:], axis=1) * np.linalg.norm(steps[:-1], axis=1)
+    return ahead

@@ -21,7 +21,7 @@ MOST_TRIES = 14
 MOST_PASSES = 5000
 WIDEST = 1.6  # radii from pass to pass
 SAMPLES = 6  # a radius
-EVERY = 2  # of them is looked at for its ridge
+EVERY = 1  # of them is looked at for its ridge
 
 
 @dataclass
@@ -133,6 +133,8 @@ class _Sweep:
                 good, w = row, row.w
             else:
                 off = row.w
+        if good is not None:
+            self._rows.reach(good, cuts, self._step)
         return good
 
 
