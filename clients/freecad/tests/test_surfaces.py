@@ -53,9 +53,11 @@ class SweptTest(unittest.TestCase):
         self.assertLess(ball_gouge(shape, radius, places[::every]), GOUGE_MM)
         worst = 0
         for face in faces:
-            points, normals = face_points(shape.Faces[face], 400, 1, steepest_deg)
-            free = reachable(shape, points, normals, radius)
-            worst = max(worst, left_over(points[free], normals[free], places, radius).max())
+            points, normals = face_points(shape.Faces[face], 2500, 1, steepest_deg)
+            above = left_over(points, normals, places, radius)
+            high = above > 0.9 * scallop_mm
+            free = reachable(shape, points[high], normals[high], radius)
+            worst = max(worst, above[high][free].max(initial=0))
         self.assertLess(worst, 1.05 * scallop_mm)
         return worst
 
@@ -69,13 +71,13 @@ class HeightsTest(SweptTest):
                 program, left = self.swept(shape, [face], ball_end(2), along=along)
                 self.assertEqual(left, [])
                 worst = self.check_ball(shape, [face], 2, 0.05, program)
-                self.assertGreater(worst, 0.95 * 0.05 * 0.97)  # points at random miss the very top of a ridge by up to 3 %
+                self.assertGreater(worst, 0.95 * 0.05)
 
     def test_isolines_do_as_planes_do(self):
         shape = wavy(3)
         face = facing_up(shape)
         program, _ = self.swept(shape, [face], ball_end(2), along="v")
-        self.assertGreater(self.check_ball(shape, [face], 2, 0.05, program), 0.95 * 0.05 * 0.97)
+        self.assertGreater(self.check_ball(shape, [face], 2, 0.05, program), 0.95 * 0.05)
 
     def test_a_bull_nose_gouges_nothing(self):
         shape = wavy(4, )

@@ -14,6 +14,8 @@ def left_standing(mill, row, at, points, normals):
     tips = row.tips[index]
     inside &= row.used[index] & np.isfinite(tips[:, :, 2])
     way = points[:, None] - np.where(np.isfinite(tips), tips, 0)
+    if not mill.flat_mm:
+        return _least(np.where(inside, _below_ball(mill.radius_mm, way, normals), np.inf))
     up = np.zeros(way.shape[:2])
     for _ in range(NEWTON):
         place = way + up[:, :, None] * normals[:, None]
@@ -27,6 +29,14 @@ def left_standing(mill, row, at, points, normals):
         up = up + (height - place[:, :, 2]) / np.maximum(slope, 1e-3)
     up = np.where(inside, np.maximum(up, 0), np.inf)
     return _least(up)
+
+
+def _below_ball(radius, way, normals):
+    """Where the normal's line enters a ball, `way` leading from its lowest place."""
+    centre = np.array([0, 0, radius]) - way
+    along = (centre * normals[:, None]).sum(2)
+    beside = radius**2 - (centre**2).sum(2) + along**2
+    return np.where(beside > 0, np.maximum(along - np.sqrt(np.maximum(beside, 0)), 0), np.inf)
 
 
 def _least(up):

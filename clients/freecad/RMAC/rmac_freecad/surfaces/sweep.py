@@ -69,18 +69,24 @@ class _Sweep:
         low, high = self._family.w_range
         if high < low:
             low = high = (low + high) / 2
-        found = []
-        row = self._rows.at(low)
-        while True:
-            found.append(row)
-            if row.w >= high:
-                break
+        found = [self._rows.at(low)]
+        while found[-1].w < high:
             if len(found) > MOST_PASSES:
                 raise JobRefused(f"more than {MOST_PASSES} passes would be needed; give a larger scallop or mill, or a smaller steepest_deg")
-            row = self._next(row, high)
-        # Where passes begin or end to find something to cut, one more is laid at that border.
-        borders = [self._border(a, b) for a, b in zip(found, found[1:]) if a.core.any() != b.core.any()]
-        rows = sorted([row for row in found + borders if row is not None and row.core.any()], key=lambda row: row.w)
+            row = found[-1]
+            after = self._next(row, high)
+            if row.core.any() == after.core.any():
+                found.append(after)
+                continue
+            # Where passes begin or end to find something to cut, one is laid at that border, and steps are taken from it or up to it.
+            border = self._border(row, after)
+            if not row.core.any():
+                found.append(border or after)
+                continue
+            while border is not None and found[-1].w < border.w:
+                found.append(self._next(found[-1], border.w))
+            found.append(after)
+        rows = [row for row in found if row.core.any()]
         return [Pass(row.w * self._family.w_mm, self._stretches.of(row)) for row in rows]
 
     def _next(self, row, high):
