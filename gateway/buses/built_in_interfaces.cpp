@@ -24,10 +24,10 @@ Expected<std::shared_ptr<DigitalControlInterface>> make_simulated(const sdk::Mod
   if (!axes) return tl::unexpected(axes.error());
   const auto contact = simulated_contact(choice);
   if (!contact) return tl::unexpected(contact.error());
-  const auto late = simulated_answers_late(choice);
+  const auto late = simulated_answer_delay(choice);
   if (!late) return tl::unexpected(late.error());
   auto made = std::make_shared<fieldbus::SimulatedInterface>(*axes, period_s);
-  made->set_answers_late(*late);
+  made->set_answer_delay(*late);
   if (*contact) made->set_contact(**contact);
   return made;
 }

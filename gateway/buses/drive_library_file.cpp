@@ -55,6 +55,7 @@ DriveManners manners(const Json& document) {
   read.node_guarding = document.value("NodeGuarding", false);
   read.quick_stop_inverted = document.value("QuickStopInverted", false);
   read.homing_without_target_reached = document.value("HomingWithoutTargetReached", false);
+  read.answer_delay = document.value("AnswerDelay", 1);
   read.no_heartbeat_consumer = document.value("NoHeartbeatConsumer", std::string());
   if (document.contains("InterpolationTimePeriod")) {
     const Json& times = document["InterpolationTimePeriod"];

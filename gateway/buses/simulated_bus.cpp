@@ -22,7 +22,7 @@ struct Bounds {
   double max;
 };
 
-constexpr Bounds kAxes{1, 64}, kSpindle{-1, 63}, kLateAnswers{0, 1};
+constexpr Bounds kAxes{1, 64}, kSpindle{-1, 63}, kLateAnswers{0, kMostAnswerDelay};
 constexpr Bounds kSeed{0, 2147483647};
 constexpr const char* kLateAnswersName = "late_answers";
 constexpr const char* kSeedName = "seed";
@@ -240,8 +240,8 @@ Expected<std::vector<SimulatedAxis>> simulated_axes(const sdk::ModuleChoice& cho
   return axes;
 }
 
-Expected<bool> simulated_answers_late(const sdk::ModuleChoice& choice) {
-  return whole(choice, kLateAnswersName, kLateAnswers, 0).map([](int cycles) { return cycles == 1; });
+Expected<int> simulated_answer_delay(const sdk::ModuleChoice& choice) {
+  return whole(choice, kLateAnswersName, kLateAnswers, 0);
 }
 
 Expected<std::optional<SimulatedContact>> simulated_contact(const sdk::ModuleChoice& choice) {

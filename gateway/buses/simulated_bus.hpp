@@ -13,8 +13,8 @@ namespace rmac::gateway {
 /// of them (docs/simulated-bus.md). An error names the parameter and what it takes.
 [[nodiscard]] Expected<std::vector<fieldbus::SimulatedAxis>> simulated_axes(const sdk::ModuleChoice& choice);
 
-/// Whether its answers are those of the cycle before, as on CAN.
-[[nodiscard]] Expected<bool> simulated_answers_late(const sdk::ModuleChoice& choice);
+/// How many cycles old its answers are: one as on CAN.
+[[nodiscard]] Expected<int> simulated_answer_delay(const sdk::ModuleChoice& choice);
 
 /// The part under the tool that the parameters describe, if any.
 [[nodiscard]] Expected<std::optional<fieldbus::SimulatedContact>> simulated_contact(const sdk::ModuleChoice& choice);

@@ -332,6 +332,11 @@ Expected<> MachineCycle::require_rest(const char* what) {
 }
 
 std::size_t MachineCycle::moves_left() {
+  // Samples tell of a move that is done before the planning thread comes to count it.
+  const ServoStatus now = status();
+  if (mechanism_ && now.generation == generation_ && !is_faulted(sequencer.state())) {
+    mechanism_->planner.follow(now.progress);
+  }
   const std::size_t left = queue.left();
   const Measurement& measurement = probe.measurement();
   if (!measurement.pending()) return left;

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import time
 
-from guest import BENCH, COUNTS_PER_REVOLUTION, PITCH_MM, RUN, Drives, call, client, install, make_can, on_buses, operator, wait_for
+from guest import BENCH, CONFIGURATION, COUNTS_PER_REVOLUTION, PITCH_MM, RUN, Drives, call, client, install, make_can, on_buses, operator, wait_for
 
 sys.path.insert(0, str(BENCH / "strangers"))
 import lss_scenarios  # noqa: E402
@@ -38,6 +38,15 @@ def machine(scenario):
         device["DigitalControlInterface"] = {"Module": "CANopenInterface", "Parameters": {
             "node": [1, 2, 3], "mode": modes, "tpdo": "6041:00/16 6064:00/32", "heartbeat_ms": HEARTBEAT_MS} | scenario.parameters}
     return change
+
+
+def describe(says):
+    """Has the library of drives know the stranger by its 1018h; or not, where it says nothing."""
+    file = CONFIGURATION.parent / "drives/stranger.json"
+    file.unlink(missing_ok=True)
+    if says:
+        identity = {"VendorId": "2A5h", "ProductCode": "402h"}
+        file.write_text(json.dumps({"Name": "stranger", "Manual": "tests/bench/strangers", "Tried": "never"} | identity | says))
 
 
 class Stranger:
@@ -125,6 +134,7 @@ def try_out(person, scenario):
 def run(scenario):
     print(f"--- {scenario.name}: {scenario.options}", flush=True)
     on_buses("DMACXYZ", machine(scenario))
+    describe(scenario.described)
     call("ip", "link", "set", "vcan0", "up")
     others = Drives("vcan0", 2, 3, name="others")
     stranger = Stranger(scenario.options)
@@ -139,6 +149,9 @@ def run(scenario):
     others.commands.unlink()
     if verdict == MOVES and abs(told["position"] / COUNTS_PER_REVOLUTION * PITCH_MM - JOG_MM) > AT_REST_MM:
         verdict, text = "fails", f"the drive itself stands at {told['position']} counts"
+    too_often = {count: told[count] for count, most in scenario.at_most.items() if told.get(count, 0) > most}
+    if too_often:
+        verdict, text = "fails", f"the drive itself counts {too_often}"
     ok = verdict == scenario.verdict and (re.search(scenario.text, text if verdict == REFUSED else log, re.DOTALL) is not None)
     return {"manner": scenario.name, "ok": ok, "verdict": verdict, "wanted": scenario.verdict, "load_s": round(took, 1), "text": text,
             "notes": notes[:4], "known": scenario.known}

@@ -43,7 +43,7 @@ class Mill {
     nlohmann::json message{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}};
     if (!params.is_null()) message["params"] = params;
     if (auto answer = dispatcher_.execute(read_request(std::move(message)), client_); !answer) {
-      refused_ = method + ": " + answer.error().message;
+      refused_ += "\n  " + method + ": " + answer.error().message;
     }
   }
   /// Machine time goes on by itself; this is over once so many cycles passed.
@@ -53,6 +53,7 @@ class Mill {
   }
   /// In a move, wherever the input before left it; false where it does not come to that.
   [[nodiscard]] bool begin() {
+    refused_.clear();
     call("RMAC_CAM.StopNow");
     for (int i = 0; i < kLongestStop && now_.moving; i += kMostCycles) pass(kMostCycles);
     call("RMAC_CAM.Reset");
@@ -67,7 +68,7 @@ class Mill {
     if (begin()) return;
     for (int i = 0; i < kLongestStop && !now_.moving; i += kMostCycles) pass(kMostCycles);
     if (bus_ != nullptr && now_.moving) return;
-    std::cerr << "a machine that was just made does not move; refused last: " << refused_ << '\n';
+    std::cerr << "a machine that was just made does not move; refused were:" << refused_ << '\n';
     std::abort();
   }
   void break_drive(unsigned choice) {
@@ -129,7 +130,7 @@ class Mill {
   }
 
   TemporaryFolder folder_{"fuzz"};
-  std::string refused_;                                ///< the last request that was, and why
+  std::string refused_;                                ///< requests since it was to begin, a line each
   CycleSample now_{};                                  ///< the last cycle that was told of
   std::shared_ptr<fieldbus::SimulatedInterface> bus_;  ///< the one that was made last
   std::unique_ptr<DeviceDriverManager> manager_;

@@ -8,7 +8,7 @@ import subprocess
 import tempfile
 import unittest
 
-from appliance import BUILD
+from appliance import BUILD, SOURCE
 
 # Highest exposure, tenths, that `systemd-analyze security` may give. The daemon's was 20 without the namespaces and mounts
 # in which it confines modules that are being verified.
@@ -46,7 +46,8 @@ class Installation(unittest.TestCase):
         self.one("usr/lib/sysusers.d/rmac.conf")
         self.one("usr/include/rmac/sdk/module.hpp")
         self.one("etc/rmac/rmacd.json")
-        self.one("etc/rmac/drives/rmac-vdrive.json")
+        self.assertEqual(sorted(path.name for path in self.one("etc/rmac/drives").iterdir()),
+                         sorted(path.name for path in (SOURCE / "etc/drives").iterdir()))
         self.one("usr/share/rmac/drive.schema.json")
         self.one("etc/rmac/can-can0.conf.example")
 

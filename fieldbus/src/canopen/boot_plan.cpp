@@ -14,6 +14,7 @@ using Kind = BootStep::Kind;
 
 constexpr std::uint32_t kInvalidPdo = 0x80000000;
 constexpr std::uint32_t kNoRemoteRequest = 0x40000000;
+constexpr std::uint32_t kWhatever = 0, kByte = 0xFF, kAll = 0xFFFFFFFF;  ///< what of a value is compared
 
 struct InterpolationTime {
   std::int64_t value;
@@ -82,6 +83,7 @@ class Plan {
   void watch_master() {
     if (manners_.node_guarding) {
       constexpr std::uint32_t kLifeTimeFactor = 2;
+      like_to().write({0x1017, 0}, 2, 0);  // whoever makes heartbeats is not guarded (CiA 301, 7.2.8.3.2)
       need("for it to stop when the master dies (NodeGuarding)");
       write({0x100C, 0}, 2, static_cast<std::uint32_t>(config_.heartbeat.count()));
       write({0x100D, 0}, 1, kLifeTimeFactor);
@@ -183,12 +185,11 @@ class Plan {
     write(object, std::move(bytes));
   }
   /// A parameter of a PDO on its way to `last`, which a drive may have as a constant (CiA 301, 7.5.2.35 to 7.5.2.38).
-  void write_pdo(ObjectAddress object, std::size_t size, std::uint32_t value, std::uint32_t last,
-                 std::uint32_t mask = 0xFFFFFFFF) {
+  void write_pdo(ObjectAddress object, std::size_t size, std::uint32_t value, std::uint32_t last, std::uint32_t mask) {
     write(object, size, value);
     BootStep& step = steps_.back();
     step.may_be_constant = true;
-    step.mask = size == 1 ? 0xFFU : mask;
+    step.mask = mask;
     step.value = last & step.mask;
   }
 
@@ -243,7 +244,10 @@ class Plan {
     }
     if (manners_.store_after_mapping) compare_contents(Kind::Compare, contents, entries);
     write_pdo({communication, 1}, 4, kInvalidPdo | cob_id, cob_id, ~kNoRemoteRequest);
-    write_pdo({communication, 2}, 1, kEverySync, kEverySync);
+    // Setpoints count whether a drive acts on them at the next SYNC, at any, or as they come (0 to FFh); answers do
+    // not.
+    const bool setpoints = communication < 0x1600;
+    write_pdo({communication, 2}, 1, kEverySync, kEverySync, setpoints ? kWhatever : kByte);
     if (manners_.fixed_mapping) {
       const char* const what_for = needed_;
       need("because its mapping is fixed (FixedMapping): rpdo and tpdo must say what it has");
@@ -266,15 +270,14 @@ class Plan {
   void write_contents(std::uint16_t contents, const std::vector<std::uint32_t>& entries) {
     const std::size_t first = steps_.size();
     const auto count = static_cast<std::uint32_t>(entries.size());
-    write_pdo({contents, 0}, 1, 0, count);
+    write_pdo({contents, 0}, 1, 0, count, kByte);
     std::uint8_t sub = 0;
-    for (const std::uint32_t entry : entries) write_pdo({contents, ++sub}, 4, entry, entry);
-    write_pdo({contents, 0}, 1, count, count);
+    for (const std::uint32_t entry : entries) write_pdo({contents, ++sub}, 4, entry, entry, kAll);
+    write_pdo({contents, 0}, 1, count, count, kByte);
     for (std::size_t i = first; i < steps_.size(); ++i) steps_[i].after_change = manners_.store_after_mapping;
   }
 
   void compare_contents(Kind kind, std::uint16_t contents, const std::vector<std::uint32_t>& entries) {
-    constexpr std::uint32_t kByte = 0xFF, kAll = 0xFFFFFFFF;
     const auto compare = [&](std::uint8_t sub, std::uint32_t value, std::uint32_t mask) {
       BootStep& step = add(kind, {contents, sub});
       step.value = value;
@@ -296,7 +299,6 @@ class Plan {
       refuse("the cycle (period_s) is none of the times that it takes in 60C2h (InterpolationTimePeriod)");
     }
     if (!time) return;
-    constexpr std::uint32_t kByte = 0xFF;
     const std::array numbers{static_cast<std::uint32_t>(time->value), static_cast<std::uint32_t>(time->exponent)};
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       const ObjectAddress object = of_axis({0x60C2, static_cast<std::uint8_t>(i + 1)}, offset);

@@ -21,9 +21,11 @@ struct BusNode {
         positions(first.node),
         record(config.period),
         measured(answer_id(first)) {}
-  /// It makes no heartbeat, and is asked how it is, from its start on.
+  /// It knows no heartbeat, and is asked how it is instead: while it is set up too, as some reckon their master's life
+  /// from when they are told 100Ch and 100Dh on, and not from the first question.
   [[nodiscard]] bool guarded() const noexcept {
-    const bool asked = boot.watched() || boot.state() == NodeBoot::State::Starting;
+    const NodeBoot::State state = boot.state();
+    const bool asked = boot.watched() || state == NodeBoot::State::Configuring || state == NodeBoot::State::Starting;
     return asked && boot.plan().drive != nullptr && boot.plan().drive->manners.node_guarding;
   }
   /// Its question, when one is due. Real-time safe.

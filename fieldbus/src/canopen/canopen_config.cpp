@@ -191,6 +191,8 @@ Expected<AxisConfig> read_axis(Parameters& parameters, std::size_t axis, const F
   constexpr double kNotGiven = -1;
   const double sdo_timeout = parameters.number_of_axis("sdo_timeout_ms", axis, kNotGiven, 10, 60000);
   if (sdo_timeout != kNotGiven) config.sdo_timeout = std::chrono::milliseconds(static_cast<int>(sdo_timeout));
+  const double delay = parameters.number_of_axis("answer_delay", axis, kNotGiven, 1, kMostAnswerDelay);
+  if (delay != kNotGiven) config.answer_delay = static_cast<int>(delay);
   config.drive = parameters.text_of_axis("drive", axis, "");
   read_homing(parameters, axis, config);
   read_units(parameters, axis, config);

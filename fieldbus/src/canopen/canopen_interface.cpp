@@ -110,6 +110,13 @@ DriveMode CanopenInterface::mode(std::size_t axis) const noexcept {
   return impl_->axes[axis].config.mode;
 }
 
+int CanopenInterface::answer_delay(std::size_t axis) const noexcept {
+  const BusAxis& of = impl_->axes[axis];
+  if (of.config.answer_delay) return *of.config.answer_delay;
+  const DriveDescription* drive = impl_->nodes[of.node].boot.plan().drive;
+  return drive == nullptr ? 1 : drive->manners.answer_delay;
+}
+
 bool CanopenInterface::tells_torque(std::size_t axis) const noexcept {
   return impl_->axes[axis].tells(0x6077);
 }

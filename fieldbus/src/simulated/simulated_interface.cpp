@@ -36,7 +36,7 @@ Expected<> SimulatedInterface::start() {
     return failure(MinorCode::InvalidParameterValue, "simulated bus: the period must be above 0 s");
   }
   // Answers that were on their way when it stopped are no answers to what is sent from now on.
-  std::fill(before_.begin(), before_.end(), DriveFeedback{});
+  for (std::vector<DriveFeedback>& answers : before_) std::fill(answers.begin(), answers.end(), DriveFeedback{});
   return {};
 }
 
@@ -104,7 +104,10 @@ bool SimulatedInterface::exchange(std::span<const DriveCommand> commands, std::s
         },
         drives_[i]);
   }
-  if (!before_.empty()) std::swap_ranges(before_.begin(), before_.end(), feedback.begin());
+  if (!before_.empty()) {
+    std::swap_ranges(before_.front().begin(), before_.front().end(), feedback.begin());
+    std::rotate(before_.begin(), before_.begin() + 1, before_.end());
+  }
   return !bus_failed;
 }
 

@@ -253,17 +253,6 @@ struct Planner::Impl {
     return no_plan(progress);
   }
 
-  /// The machine has come to path length s.
-  void travelled(double s) {
-    path().travelled(s, base()->law.front().start.s);
-    if (route.on_detour() || s < kFarthest_mm) return;
-    const double by = std::floor(s);
-    route.forward.move_origin(by);
-    plans.move_origin(by);
-    limit_s -= by;
-    origin_mm += by;
-  }
-
   /// The law that was to begin a window was not found; there may be others to be tried, one a step.
   bool next_attempt(const ServoProgress& progress, std::size_t attempts) {
     if (gives_way()) return false;
@@ -324,13 +313,29 @@ struct Planner::Impl {
     return Task::None;
   }
 
-  bool step(const ServoProgress& progress) {
+  /// Takes note of where the machine is. False while that is not known: a refused plan is still to come back through
+  /// `retired`.
+  bool follow(const ServoProgress& progress) {
     take_note_of(progress);
     if (plans.refused(progress)) stop_came_late = base()->purpose.stops;
     plans.collect();
+    if (plans.refused(progress)) return false;
+    if (!on_path() || !plans.acknowledged(progress)) return true;
+    const double s = base()->state_at(now_s(*base(), progress.cycle)).s;
+    path().travelled(s, base()->law.front().start.s);
+    if (route.on_detour() || s < kFarthest_mm) return true;
+    const double by = std::floor(s);
+    route.forward.move_origin(by);
+    plans.move_origin(by);
+    limit_s -= by;
+    origin_mm += by;
+    return true;
+  }
+
+  bool step(const ServoProgress& progress) {
+    const bool known = follow(progress);
     planning_time.learn(progress);
-    if (plans.refused(progress)) return false;  // it is still to come back through `retired`
-    if (on_path() && plans.acknowledged(progress)) travelled(base()->state_at(now_s(*base(), progress.cycle)).s);
+    if (!known) return false;
     // A plan that may still be refused has said of itself what there is to say.
     if (plans.acknowledged(progress)) {
       const PublishedPlan* const under_way = plans.ended(progress) ? nullptr : base();
@@ -439,6 +444,9 @@ void Planner::set_override(double percent) noexcept {
 }
 void Planner::rest_follows(bool follows) noexcept {
   impl_->rest_follows = follows;
+}
+void Planner::follow(const ServoProgress& progress) {
+  (void)impl_->follow(progress);
 }
 bool Planner::step(const ServoProgress& progress) {
   const GivesWay now(impl_->interruption);

@@ -17,19 +17,20 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
       transmission(*parts.actuator_map, parts.joints),
       joints(parts, wiring, transmission),
       homing(parts.actuators, parts.homing_timeout_s, parts.period_s),
-      setpoints(parts, wiring.late_joints()),
+      setpoints(parts, wiring.joint_delays()),
       motion_watch(parts),
       deadlines(parts.max_cycles_lost, parts.period_s),
       laws(parts.joints, parts.period_s),
       spindles(parts.spindles, parts.period_s, state),
       rest(parts.actuators.size() + parts.spindles.size(), parts.period_s),
       torques(*parts.actuator_map, parts.actuators.size()),
-      aims(parts.actuators, wiring.late_actuators(), parts.period_s) {
+      aims(parts.actuators, wiring.actuator_delays(), parts.period_s) {
   if (parts.virtual_mode) joints.reflect(setpoints.position(), setpoints.velocity());
 }
 
 void ServoLoop::Impl::cycle(const ServoCommand& command, ServoReport& report) noexcept {
   state.begin_cycle();
+  setpoints.begin_cycle();
   if (parts.virtual_mode) {
     move_without_drives(command);
   } else {
@@ -177,7 +178,6 @@ void ServoLoop::Impl::engage_law(std::size_t joint, double from_effort) noexcept
 
 void ServoLoop::Impl::go_live() noexcept {
   if (!state.driving() || state.state() == ServoState::Homing) return;
-  setpoints.begin_cycle();
   IndexSet engaged = 0;
   for (std::size_t j = 0; j < wiring.joints(); ++j) {
     if (!live[j] && operable(j)) {
@@ -230,7 +230,7 @@ JointSeen ServoLoop::Impl::seen(std::size_t joint) const noexcept {
           .searched = force_loop.searched(),
           .loop = {.effort = measured.value_or(laws.effort()[joint]),
                    .effort_measured = measured.has_value(),
-                   .answers_late = has(wiring.late_joints(), joint),
+                   .answer_delay = wiring.joint_delays()[joint],
                    .position = joints.position()[joint],
                    .acceleration_set = setpoints.acceleration()[joint]}};
 }

@@ -21,6 +21,7 @@ class Axis:
         """`application`: the power states begin anew, too. The motor stands where it stands."""
         self._commanded = False
         self._statuses = collections.deque(maxlen=self._manners.status_delay + 1)
+        self._positions = collections.deque(maxlen=self._manners.position_delay + 1)
         if application:
             self.power = Automaton(self._manners.enable_s, self._manners.fault_reset_s)
 
@@ -76,6 +77,7 @@ class Axis:
         d.set(0x6041, self._statuses[0])
         d.set(0x603F, self.power.error)
         d.set(0x6061, mode)
-        d.set(0x6064, round(self.motor.position))
+        self._positions.append(round(self.motor.position))
+        d.set(0x6064, self._positions[0])
         d.set(0x606C, round(self.motor.velocity))
         d.set(0x6077, torque)

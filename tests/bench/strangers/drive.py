@@ -31,7 +31,7 @@ class Drive:
     def __init__(self, send, node, manners, now, tell=lambda text: None):
         self.send, self.node, self.manners, self._tell = send, node, manners, tell
         self.d, self.rpdos, self.tpdos = objects.make(node, manners, {
-            "heartbeat": self._heartbeat_written, "watch": self._watch_written, "controlword": lambda _: self.axis.controlword_written(self._now)})
+            "heartbeat": self._heartbeat_written, "watch": self._watch_written, "life": self._life_written, "controlword": lambda _: self.axis.controlword_written(self._now)})
         self.axis = Axis(self.d, manners)
         self.nmt = Nmt(self, manners)
         self.events, self._order = [], itertools.count()
@@ -62,7 +62,8 @@ class Drive:
     def handle(self, identifier, data, now, remote=False):
         self._now = now
         if remote:
-            self.nmt.guarded(identifier)
+            if self.nmt.guarded(identifier):
+                self._keep_alive(now)
         elif identifier == 0:
             self.nmt.command(data, now)
         elif identifier == SYNC:
@@ -141,6 +142,19 @@ class Drive:
         self.emergency(GUARD_LOST)
         if self.nmt.state == State.OPERATIONAL and self.d.get(0x1029, 1) == 0:
             self.nmt.change(State.PRE_OPERATIONAL)
+
+    # The same by guarding (100Ch times 100Dh): from the first question on, or from when it is told.
+    def _life_written(self, _):
+        self._watched_until = None
+        if self.manners.life_from_writing:
+            self._keep_alive(self._now)
+
+    def _keep_alive(self, now):
+        period = self.d.get(0x100C) * self.d.get(0x100D) / 1000
+        if period:
+            if self._watched_until is None:
+                self.at(now + period, self._look_at_watch)
+            self._watched_until = now + period
 
     # PDOs and the cycle.
     def _take_pdo(self, identifier, data, now):

@@ -69,7 +69,8 @@ class Manners:
     resets_each_s: float = one(float, 1.0)
     heartbeat_toggles: bool = yes()
     heartbeat_step_ms: int = one(int, 1)  # periods are rounded up to whole ones
-    guarding_only: bool = yes()  # 100Ch and 100Dh, no 1017h
+    guarding_only: bool = yes()  # 100Ch and 100Dh, no 1016h and 1017h
+    life_from_writing: bool = yes()  # its life time runs from when 100Ch and 100Dh are written, not from the first question
     # EMCY.
     emcy_at_boot: int = one(int, 0)
     emcy_code: str = one(str, "FF01")
@@ -85,6 +86,7 @@ class Manners:
     status_clear: str = one(str, "0000")
     # PDO.
     tpdo_delay_ms: float = one(float, 0.0)
+    position_delay: int = one(int, 0)  # SYNCs: 6064h tells where it was so many before
     skips_first_sync: int = one(int, 0)  # after the start, SYNCs without an answer
     chatters: bool = yes()  # a third TPDO, each 5 ms, whatever 1802h says
 

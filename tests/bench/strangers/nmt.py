@@ -45,10 +45,12 @@ class Nmt:
             self._drive.axis.drop()
 
     def guarded(self, identifier):
-        """A remote request for the state (7.2.8.3.2.1): bit 7 toggles from answer to answer."""
-        if self._manners.guarding_only and identifier == 0x700 + self._drive.node and self.state != State.INITIALISING:
+        """A remote request for the state (7.2.8.3.2.1): bit 7 toggles from answer to answer. Whether it is answered."""
+        mine = self._manners.guarding_only and identifier == 0x700 + self._drive.node and self.state != State.INITIALISING
+        if mine:
             self._drive.send(identifier, bytes([self.state.value | self._toggle]))
             self._toggle ^= 0x80
+        return mine
 
     def heartbeat_changed(self):
         self._round += 1

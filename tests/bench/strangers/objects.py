@@ -40,13 +40,13 @@ def communication(d, node, manners, written):
     d.add(0x1005, 0, 0x80, 4, check=only(0x80))
     d.add(0x1008, 0, NAME, len(NAME), "const")
     if manners.guarding_only:
-        d.add(0x100C, 0, 0, 2)
-        d.add(0x100D, 0, 0, 1)
+        d.add(0x100C, 0, 0, 2, written=written["life"])
+        d.add(0x100D, 0, 0, 1, written=written["life"])
     else:
         d.add(0x1017, 0, 0, 2, written=written["heartbeat"])
+        d.add(0x1016, 0, 1, 1, "const")
+        d.add(0x1016, 1, 0, 4, written=written["watch"])
     d.add(0x1014, 0, 0x80 + node, 4)
-    d.add(0x1016, 0, 1, 1, "const")
-    d.add(0x1016, 1, 0, 4, written=written["watch"])
     d.add(0x1018, 0, 4, 1, "const")
     for sub, value in enumerate((0x2A5, 0x402, 0x10001, 0x5000 + node), 1):
         d.add(0x1018, sub, value, 4, "const")

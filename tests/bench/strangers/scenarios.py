@@ -10,7 +10,7 @@ HEARTBEAT_MS = 50
 @dataclasses.dataclass
 class Scenario:
     """`text` is a regular expression: of the refusal, or of the daemon's log where it moves. `parameters` are added to those of device.json's
-    CANopenInterface. `known` says why the appliance is known to miss it."""
+    CANopenInterface, `described` is what the library of drives says of it. `known` says why the appliance is known to miss it."""
     name: str
     options: str
     verdict: str = MOVES
@@ -19,6 +19,8 @@ class Scenario:
     mode: int = 8
     reset: bool = False  # the person does, where the refusal says so, and loads it again
     meanwhile: str = ""  # a frame that somebody else sends each tenth of a second while the machine is loaded, as cansend takes it
+    described: dict = dataclasses.field(default_factory=dict)
+    at_most: dict = dataclasses.field(default_factory=dict)  # of what the drive itself counts
     known: str = ""
 
 
@@ -51,6 +53,7 @@ def dictionary():
     yield Scenario("another scale", "--value 608F:01=0x2710 6092:01=0x2710", REFUSED, r"axis 0\b.*10000.*131072")
     yield Scenario("6060h is fixed, as wanted", "--refuse-write 6060=06010002 --value 6060:00=8", REFUSED, named("6060"))
     yield Scenario("answers by events alone", "--refuse-write 1800:02=06090030", REFUSED, named("1800"))
+    yield Scenario("acts on setpoints as they come", "--refuse-write 1400:02=06010002 --value 1400:02=0xFF", text=r"node 1\b.*keeps 1400h")
     yield Scenario("identifiers are fixed, as wanted", "--refuse-write 1400:01=06010002", text=r"node 1\b.*keeps 1400h")
     yield Scenario("identifiers are fixed, others", "--refuse-write 1400:01=06010002 --value 1400:01=0x205", REFUSED, named(1400, 1))
     yield Scenario("mapping is fixed, as wanted", "--fixed-mapping", text=r"node 1\b.*keeps 1600h")
@@ -100,7 +103,12 @@ def boot():
 
 def heartbeat():
     yield Scenario("heartbeat with a toggle bit", "--heartbeat-toggles")
-    yield Scenario("guarding, no 1017h", "--guarding-only", REFUSED, named("1017"))
+    yield Scenario("guarding, no 1016h and 1017h", "--guarding-only", REFUSED, named("1016"))
+    guarded = {"NodeGuarding": True}
+    yield Scenario("guarding, described", "--guarding-only", text="node 1 knows no heartbeat", described=guarded)
+    # Its master's death, at the end, is one; its life time is a tenth of its set-up.
+    yield Scenario("guarding, described, slow, lives from when it is told", "--guarding-only --life-from-writing --sdo-delay-ms 30",
+                   described=guarded, at_most={"masters_lost": 1})
     yield Scenario("heartbeat in steps of 20 ms", "--heartbeat-step-ms 20")
     yield Scenario("heartbeat from power-on", "--value 1017:00=0x64")
 
@@ -125,6 +133,8 @@ def power():
 def pdo():
     yield Scenario("answers 0.5 ms after SYNC", "--tpdo-delay-ms 0.5")
     yield Scenario("first 3 SYNCs unanswered", "--skips-first-sync 3")
+    yield Scenario("positions 3 cycles old", "--position-delay 3")
+    yield Scenario("positions 3 cycles old, described", "--position-delay 3", described={"AnswerDelay": 3})
     yield Scenario("none", "")
     yield Scenario("none, torque mode", "", mode=10)
 

@@ -305,6 +305,30 @@ class Manners(unittest.TestCase):
             bench.put(0x700 + NODE, remote=True)
         self.assertEqual(bench.take(0x700 + NODE), [b"\x7F", b"\xFF", b"\x7F"])
 
+    def test_guarding_watches_the_master(self):
+        for words, asks, lost in ((["--guarding-only"], False, 0), (["--guarding-only"], True, 1), (["--guarding-only", "--life-from-writing"], False, 1)):
+            bench = Bench(*words)
+            self.assertEqual(bench.abort(0x1016), 0x06020000)
+            bench.write(0x100C, 0, 50, 2)
+            bench.write(0x100D, 0, 2, 1)
+            if asks:
+                for _ in range(5):
+                    bench.put(0x700 + NODE, remote=True)
+                    bench.run(0.09)
+                self.assertEqual(bench.drive.counts["masters_lost"], 0)
+            bench.run(0.2)
+            self.assertEqual(bench.drive.counts["masters_lost"], lost)
+
+    def test_positions_are_late(self):
+        prompt, late = Bench(), Bench("--position-delay", "3")
+        told = []
+        for bench in (prompt, late):
+            bench.configure()
+            bench.enable()
+            told.append([bench.cycle(0x0F, 100 * n)[1] for n in range(1, 20)])
+        self.assertEqual(told[0][3:-3], told[1][6:])
+        self.assertNotEqual(told[0][-1], told[1][-1])
+
     def test_storms_and_remembers(self):
         bench = Bench("--emcy-at-boot", "40", "--history", "1000", "8130")
         self.assertEqual(len(bench.take(0x80 + NODE)), 40)

@@ -9,7 +9,7 @@ namespace {
 
 class LateMillRun : public MillRun {
  public:
-  LateMillRun() { simulated_->set_answers_late(true); }
+  LateMillRun() { simulated_->set_answer_delay(1); }
 };
 
 }  // namespace

@@ -20,7 +20,7 @@ TEST_F(LawsOnMill, FeedforwardHoldsACircleWithinFiveMicrometresAtSixMetresAMinut
 
 // As on CAN: a drive's answer is one cycle old when it is read.
 TEST_F(LawsOnMill, FeedforwardHoldsItWithDrivesThatAnswerACycleLate) {
-  simulated_->set_answers_late(true);
+  simulated_->set_answer_delay(1);
   const Ballbar ballbar = measure_circle([](nlohmann::json& device) { choose_feedforward(device); });
   EXPECT_LT(ballbar.contour_error(), 0.005);
   EXPECT_LT(ballbar.reversal_spike(), 0.003);

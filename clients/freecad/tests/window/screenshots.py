@@ -3,11 +3,15 @@
 import os
 import pathlib
 
+import FreeCAD
 import FreeCADGui
+from legacy_file import file_of
 import PathScripts.PathProfile as PathProfile
 from path_job import operation_of
 from PySide import QtCore, QtGui
+from rmac_freecad.legacy import codes
 from rmac_freecad.window.jogging.jog_dialog import JogDialog
+from rmac_freecad.window.legacy.open_dialog import OpenDialog
 from rmac_freecad.window.machines.search_dialog import SearchDialog
 from rmac_freecad.window.running.machining_dialog import MachiningDialog
 from windowed import WindowTest, process_until
@@ -15,6 +19,34 @@ from windowed import WindowTest, process_until
 import rmac
 
 IMAGES = pathlib.Path(os.environ["RMAC_SOURCE"]) / "docs/images/freecad"
+
+
+# A wheel: its rim and four spokes, with a spline around the hub.
+WHEEL = """%
+#1 = 0
+G21 G17 G90
+G0 X30 Y0 Z5
+M3 S800
+G1 Z-1 F100
+G3 I-30 J0 F600
+G0 Z5
+G0 X10 Y0
+G1 Z-1 F100
+G5 X0 Y10 I0 J8 P8 Q0 F600
+G5 X-10 Y0 I-8 J0 P0 Q8
+G5 X0 Y-10 I0 J-8 P-8 Q0
+G5 X10 Y0 I8 J0 P0 Q-8
+G0 Z5
+o1 repeat [4]
+  G0 X[12 * COS[#1]] Y[12 * SIN[#1]]
+  G1 Z-1 F100
+  G1 X[28 * COS[#1]] Y[28 * SIN[#1]] F600
+  G0 Z5
+  #1 = [#1 + 90]
+o1 endrepeat
+M2
+%
+"""
 
 
 def hide_docks():
@@ -39,6 +71,7 @@ class Screens(WindowTest):
         self.search()
         self.jog()
         self.machine()
+        self.legacy()
 
     def placed(self, dialog, x, y):
         dialog.move(x, y)
@@ -113,3 +146,31 @@ class Screens(WindowTest):
         self.told(dialog, "is cut")
         self.settle()
         shoot("cut")
+
+    def legacy(self):
+        for one in self.dialogs:
+            one.close()
+        with rmac.connect(self.address, "set-up") as client, client.authority():
+            client.cam.SetPartFrame({"p": [0, 0, 0], "q": [1, 0, 0, 0]})
+        FreeCAD.newDocument("wheel")
+        dialog = self.placed(OpenDialog(self.session), 960, 130)
+        dialog.file.setText(str(file_of(self, WHEEL, "wheel.ngc")))
+        dialog.open_button.click()
+        self.told(dialog, "is in the document")
+        codes(FreeCAD.ActiveDocument)[0].File = "/home/me/parts/wheel.ngc"
+        codes(FreeCAD.ActiveDocument)[0].purgeTouched()
+        dialog.file.setText("/home/me/parts/wheel.ngc")
+        machining = self.placed(MachiningDialog(self.session), 960, 545)
+        machining.resize(540, 350)
+        machining.begin()
+        process_until(lambda: machining.headline.text(), "the machine was looked at")
+        machining.simulate_button.click()
+        self.told(machining, "It takes")
+        view = FreeCADGui.ActiveDocument.ActiveView
+        view.viewIsometric()
+        hide_docks()
+        self.settle()
+        FreeCADGui.SendMsgToActiveView("ViewFit")
+        FreeCADGui.runCommand("Std_ViewZoomOut")
+        self.settle()
+        shoot("legacy")

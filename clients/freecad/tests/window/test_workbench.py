@@ -21,7 +21,7 @@ class ToolbarTest(unittest.TestCase):
         window = FreeCADGui.getMainWindow()
         bar = window.findChild(QtGui.QToolBar, "Direct machining")
         self.assertIsNotNone(bar)
-        self.assertEqual([action.text() for action in bar.actions()], ["Select machine…", "Jog…", "Machine a job…", "Simulate a job…", "Stop the machine"])
+        self.assertEqual([action.text() for action in bar.actions()], ["Select machine…", "Jog…", "Open legacy code…", "Cut along edges", "Machine a job…", "Simulate a job…", "Stop the machine"])
         for action in bar.actions():
             self.assertFalse(action.icon().pixmap(24, 24).isNull(), action.text())
 
@@ -76,6 +76,12 @@ class CommandsTest(WindowTest):
         with self.connect("set-up") as client, client.authority():
             client.cam.SetTool(1, 0.0, 2.5)
         self.told(self.run_command("RMAC_Simulate", "Machine a job"), "It takes")
+
+    def test_open_legacy_code_needs_no_document(self):
+        dialog = self.run_command("RMAC_Legacy", "Open legacy code")
+        self.assertTrue(dialog.open_button.isEnabled())
+        dialog.open_button.click()
+        self.refused(dialog, "Choose a file")
 
     def test_machine_waits_for_cut(self):
         self.profile()

@@ -48,7 +48,9 @@ class SimulatedInterface : public DigitalControlInterface {
   [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override { return modes_[axis]; }
   [[nodiscard]] bool tells_torque(std::size_t /*axis*/) const noexcept override { return true; }
   [[nodiscard]] bool takes_torque_offset(std::size_t axis) const noexcept override { return !is_spindle(axis); }
-  [[nodiscard]] bool answers_late(std::size_t /*axis*/) const noexcept override { return !before_.empty(); }
+  [[nodiscard]] int answer_delay(std::size_t /*axis*/) const noexcept override {
+    return static_cast<int>(before_.size());
+  }
   [[nodiscard]] bool latches(std::size_t axis, TouchProbeEdge /*edge*/) const noexcept override {
     return !is_spindle(axis);
   }
@@ -69,9 +71,11 @@ class SimulatedInterface : public DigitalControlInterface {
   void set_sensor_lost(bool lost) noexcept { sensor_lost_ = lost; }
   /// Puts a part under the tool. Before the first exchange.
   void set_contact(const SimulatedContact& contact) noexcept { contact_ = contact; }
-  /// Answers are those of the exchange before, as on a bus whose drives answer a SYNC while nobody reads on. Before a
-  /// servo loop is made with it.
-  void set_answers_late(bool late) { before_.resize(late ? drives_.size() : 0); }
+  /// Answers are those of so many exchanges before: one as on a bus whose drives answer a SYNC while nobody reads on,
+  /// more where drives take their time. Before a servo loop is made with it.
+  void set_answer_delay(int cycles) {
+    before_.assign(static_cast<std::size_t>(cycles), std::vector<DriveFeedback>(drives_.size()));
+  }
   /// The bus itself fails, as on bus-off; and works again.
   void set_bus_failed(bool failed) noexcept { bus_failed_ = failed; }
 
@@ -106,7 +110,7 @@ class SimulatedInterface : public DigitalControlInterface {
   std::atomic<bool> bus_failed_{false};
   std::atomic<bool> sensor_lost_{false};
   std::optional<SimulatedContact> contact_;
-  std::vector<DriveFeedback> before_;  ///< what late answers will tell; empty where they are not late
+  std::vector<std::vector<DriveFeedback>> before_;  ///< what late answers will tell, the next ones first
   double period_s_;
 };
 

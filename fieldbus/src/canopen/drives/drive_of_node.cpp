@@ -90,7 +90,8 @@ std::vector<std::string> remarks(const DriveDescription& drive, std::uint8_t nod
                               drive.manners.no_heartbeat_consumer));
   }
   if (drive.manners.node_guarding) {
-    all.push_back(fmt::format("node {} makes no heartbeat (1017h): it is guarded, by remote frames", node));
+    all.push_back(
+        fmt::format("node {} knows no heartbeat of its master (1016h): it is guarded, by remote frames", node));
   }
   if (drive.manners.no_abort_connection) {
     all.push_back(fmt::format(

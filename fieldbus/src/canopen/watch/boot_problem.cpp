@@ -91,7 +91,7 @@ std::string describe_alone(const BootProblem& problem, std::uint8_t node, const 
       return fmt::format("{} does not support what is asked of it: {} is {:X}h, and {:X}h is needed in it{}", who,
                          object, problem.found, problem.expected, need(problem));
     case BootProblem::Kind::Constant:
-      return fmt::format("{} keeps {:04X}h as it is, which is what is wanted: {} ({:08X}h)", who, problem.object.index,
+      return fmt::format("{} keeps {:04X}h as it is, which will do: {} ({:08X}h)", who, problem.object.index,
                          sdo_abort_text(problem.found), problem.found);
     case BootProblem::Kind::Unfit:
       return fmt::format("{} cannot be taken: {}", who, problem.needed);

@@ -76,8 +76,10 @@ class Planner {
   /// Behind what was added comes something that needs the machine at rest: `Horizon` tells of it.
   void rest_follows(bool follows) noexcept;
 
-  /// Does one bounded piece of work if there is any: plans a window, or the way to a stop. True when it published
-  /// something.
+  /// Takes note of where the machine is, so that `moves_left` and `farthest_place` tell of then; plans nothing.
+  void follow(const ServoProgress& progress);
+  /// As `follow`; and does one bounded piece of work if there is any: plans a window, or the way to a stop. True when
+  /// it published something.
   bool step(const ServoProgress& progress);
   /// Nothing to do until something is added, commanded, or the servo loop goes on.
   [[nodiscard]] bool idle(const ServoProgress& progress) const noexcept;

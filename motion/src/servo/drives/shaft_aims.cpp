@@ -7,6 +7,11 @@
 
 namespace rmac {
 
+ShaftAims::ShaftAims(std::span<const ServoActuator> actuators, const Wiring::Delays& delays, double period_s) noexcept
+    : actuators_(actuators), period_s_(period_s) {
+  for (std::size_t i = 0; i < actuators_.size(); ++i) ways_[i] = RecentWay(delays[i]);
+}
+
 void ShaftAims::step(std::span<const double> wanted, IndexSet followed, FaultSink& faults) noexcept {
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     if (has(followed, i) && !std::isfinite(wanted[i])) {
@@ -17,6 +22,9 @@ void ShaftAims::step(std::span<const double> wanted, IndexSet followed, FaultSin
     }
     aim_before_[i] = has(aimed_, i) ? aim_[i] : wanted[i];
     aim_[i] = wanted[i];
+    if (!has(aimed_, i)) ways_[i].forget();
+    ways_[i].begin_cycle();
+    ways_[i].went(aim_[i] - aim_before_[i]);
   }
   aimed_ = followed;
 }
@@ -31,7 +39,7 @@ void ShaftAims::command(std::size_t actuator, double measured_rad, DriveCommand&
     words.velocity_offset_rpm = to_rpm * aim_rad_s;
     return;
   }
-  const double when_it_told = has(late_, actuator) ? before : aim;
+  const double when_it_told = aim - ways_[actuator].length();
   words.target_velocity_rpm = to_rpm * (aim_rad_s + part.position_gain * (when_it_told - measured_rad));
 }
 

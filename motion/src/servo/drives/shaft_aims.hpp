@@ -7,15 +7,16 @@
 #include "rmac/motion/servo/servo_loop_parts.hpp"
 #include "servo/faults/fault_sink.hpp"
 #include "servo/joints/index_set.hpp"
+#include "servo/joints/wiring.hpp"
+#include "servo/setpoint/recent_way.hpp"
 
 namespace rmac {
 
 /// Where the drives are sent that follow a position or a velocity themselves: shaft angles, in rad. Real-time safe.
 class ShaftAims {
  public:
-  /// `actuators` must outlive it. `late`: those that tell in a cycle where they were one cycle before.
-  ShaftAims(std::span<const ServoActuator> actuators, IndexSet late, double period_s) noexcept
-      : actuators_(actuators), late_(late), period_s_(period_s) {}
+  /// `actuators` must outlive it. `delays`: so many cycles before this one was each where it tells in it.
+  ShaftAims(std::span<const ServoActuator> actuators, const Wiring::Delays& delays, double period_s) noexcept;
 
   /// One cycle: `wanted` shaft angles of all actuators; those in `followed` are under control and go there. Where there
   /// is no number for one of these, that is a fault, and none is sent anywhere.
@@ -28,10 +29,10 @@ class ShaftAims {
 
  private:
   std::span<const ServoActuator> actuators_;
-  IndexSet late_;
   double period_s_;
   std::array<double, kMaxJoints> aim_{}, aim_before_{};
-  IndexSet aimed_ = 0;  ///< sent there in the last cycle
+  std::array<RecentWay, kMaxJoints> ways_;  ///< of the aims, as long ago as the answers are
+  IndexSet aimed_ = 0;                      ///< sent there in the last cycle
 };
 
 }  // namespace rmac

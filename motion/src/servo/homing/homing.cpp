@@ -1,5 +1,7 @@
 #include "servo/homing/homing.hpp"
 
+#include <cstdlib>
+
 #include "rmac/motion/drive_power.hpp"
 
 namespace rmac {
@@ -8,6 +10,9 @@ namespace {
 
 /// A statusword that belongs to the start of homing is in by then; before, it may still tell of the last one.
 constexpr int kSettleCycles = 10;
+/// A drive stands when its count has stayed the same for so long, but for the noise of its encoder.
+constexpr double kStandsFor_s = 0.1;
+constexpr std::int64_t kNoise_counts = 2;
 
 }  // namespace
 
@@ -44,7 +49,7 @@ Homing::Progress Homing::look(std::size_t actuator, Shafts& shafts, FaultSink& f
   if (told.mode != DriveMode::Homing) return Progress::UnderWay;
   if (++cycles_[actuator] <= kSettleCycles) return Progress::UnderWay;
   const bool rests = (told.statusword & statusword::kTargetReached) != 0;
-  if (ends_) return rests ? Progress::Over : Progress::UnderWay;
+  if (ends_) return rests || stands(actuator) ? Progress::Over : Progress::UnderWay;
   if ((told.statusword & statusword::kHomingError) != 0) {
     raise(actuator, 0, faults);
     return Progress::Failed;
@@ -53,10 +58,19 @@ Homing::Progress Homing::look(std::size_t actuator, Shafts& shafts, FaultSink& f
   return rests && attained ? Progress::Over : Progress::UnderWay;
 }
 
+bool Homing::stands(std::size_t actuator) noexcept {
+  const DriveFeedback& told = words(actuator);
+  if (!told.online || told.missed) return false;
+  Standing& seen = standing_[actuator];
+  if (std::abs(std::int64_t{told.position_counts} - seen.counts) > kNoise_counts) seen = {told.position_counts, 0};
+  return static_cast<double>(++seen.cycles) * period_s_ > kStandsFor_s;
+}
+
 Homing::Progress Homing::step(bool wanted, Shafts& shafts, FaultSink& faults) noexcept {
   if (!wanted && !ends_) {
     ends_ = true;
     cycles_.fill(0);
+    standing_.fill({});
     waited_cycles_ = 0;
   }
   IndexSet under_way = 0;

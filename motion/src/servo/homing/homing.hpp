@@ -37,6 +37,8 @@ class Homing {
  private:
   [[nodiscard]] Progress begin_turn() noexcept;
   [[nodiscard]] Progress look(std::size_t actuator, Shafts& shafts, FaultSink& faults) noexcept;
+  /// Its count has not changed for a while: some drives whose homing was ended do not tell that they rest.
+  [[nodiscard]] bool stands(std::size_t actuator) noexcept;
   void raise(std::size_t actuator, double bound, FaultSink& faults) const noexcept;
   [[nodiscard]] const DriveFeedback& words(std::size_t actuator) const noexcept {
     return actuators_[actuator].bus->feedback[actuators_[actuator].axis];
@@ -50,6 +52,12 @@ class Homing {
   bool ends_ = false;      ///< before it is through
   std::uint32_t completed_ = 0;
   std::array<int, kMaxJoints> cycles_{};  ///< that a drive has been in homing mode
+  /// Where a drive was seen to stand, and for how many cycles.
+  struct Standing {
+    std::int32_t counts = 0;
+    int cycles = 0;
+  };
+  std::array<Standing, kMaxJoints> standing_{};
   std::int64_t waited_cycles_ = 0;
 };
 

@@ -1,12 +1,15 @@
 #include "servo/joints/wiring.hpp"
 
+#include <algorithm>
+
 namespace rmac {
 
 Wiring::Wiring(const ActuatorMap& map, std::size_t joints, std::span<const ServoActuator> actuators)
     : joints_(joints), actuators_(actuators.size()) {
   for (std::size_t i = 0; i < actuators_; ++i) {
     if (actuators[i].mode == DriveMode::CyclicSyncTorque) torque_drives_ |= only(i);
-    if (actuators[i].bus->interface->answers_late(actuators[i].axis)) late_actuators_ |= only(i);
+    const int delay = actuators[i].bus->interface->answer_delay(actuators[i].axis);
+    actuator_delays_[i] = static_cast<std::uint8_t>(std::clamp(delay, 0, kMostAnswerDelay));
   }
   const std::array<double, kMaxJoints> home{};
   IndexSet reached = 0;
@@ -19,6 +22,7 @@ Wiring::Wiring(const ActuatorMap& map, std::size_t joints, std::span<const Servo
       actuators_of_[j] |= only(i);
       joint_of_[i] = static_cast<std::uint8_t>(j);
       sense_[i] = static_cast<std::int8_t>(has(reached, i) ? 0 : torques[i] > 0 ? 1 : -1);
+      joint_delays_[j] = std::max(joint_delays_[j], actuator_delays_[i]);
       reached |= only(i);
     }
   }

@@ -41,9 +41,11 @@ class Wiring {
   }
   /// Actuators that move no joint outside of `joints`.
   [[nodiscard]] IndexSet actuators_within(IndexSet joints) const noexcept;
-  /// Actuators, and joints, that tell in a cycle where they were one cycle before.
-  [[nodiscard]] IndexSet late_actuators() const noexcept { return late_actuators_; }
-  [[nodiscard]] IndexSet late_joints() const noexcept { return joints_of(late_actuators_); }
+  /// So many cycles before this one were they where they tell in it: each actuator; and each joint, by the slowest of
+  /// its actuators.
+  using Delays = std::array<std::uint8_t, kMaxJoints>;
+  [[nodiscard]] const Delays& actuator_delays() const noexcept { return actuator_delays_; }
+  [[nodiscard]] const Delays& joint_delays() const noexcept { return joint_delays_; }
 
  private:
   std::size_t joints_;
@@ -52,7 +54,8 @@ class Wiring {
   std::array<std::int8_t, kMaxJoints> sense_{};
   std::array<std::uint8_t, kMaxJoints> joint_of_{};
   IndexSet torque_drives_ = 0;
-  IndexSet late_actuators_ = 0;
+  Delays actuator_delays_{};
+  Delays joint_delays_{};
 };
 
 }  // namespace rmac

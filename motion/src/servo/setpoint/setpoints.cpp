@@ -19,35 +19,33 @@ std::vector<MotionBounds> stop_bounds(std::span<const ServoJoint> joints) {
 
 }  // namespace
 
-Setpoints::Setpoints(const ServoLoopParts& parts, IndexSet late)
+Setpoints::Setpoints(const ServoLoopParts& parts, const Wiring::Delays& delays)
     : joints_(parts.joints),
       kinematic_joints_(parts.kinematics->joint_count()),
       period_s_(parts.period_s),
       virtual_mode_(parts.virtual_mode),
-      late_(late),
       brake_(stop_bounds(parts.joints)) {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     followers_.emplace_back(joints_[j], period_s_);
     force_loops_.emplace_back(joints_[j].force, period_s_);
+    ways_.push_back({RecentWay(delays[j]), RecentWay(delays[j])});
   }
   if (virtual_mode_) hold_at(parts.virtual_start);
 }
 
 void Setpoints::step(const Seen& seen, FaultSink& faults) noexcept {
-  if (late_ == 0) {
-    choose(seen, faults);
-    return;
-  }
   const auto before = position_;
   const auto velocity_before = velocity_;
   choose(seen, faults);
-  for (std::size_t j = 0; j < joints_.size(); ++j) note_way(j, before[j], velocity_before[j]);
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    ways_[j].position.went(position_[j] - before[j]);
+    ways_[j].velocity.went(velocity_[j] - velocity_before[j]);
+  }
 }
 
-void Setpoints::note_way(std::size_t joint, double position_before, double velocity_before) noexcept {
-  if (!has(late_, joint)) return;
-  gone_on_[joint] = position_[joint] - position_before;
-  velocity_gone_on_[joint] = velocity_[joint] - velocity_before;
+void Setpoints::forget_way(std::size_t joint) noexcept {
+  ways_[joint].position.forget();
+  ways_[joint].velocity.forget();
 }
 
 void Setpoints::choose(const Seen& seen, FaultSink& faults) noexcept {
@@ -96,7 +94,8 @@ void Setpoints::brake() noexcept {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const double before = position_[j], velocity_before = velocity_[j];
     set(j, {braking_.position[j], braking_.velocity[j], braking_.acceleration[j]});
-    note_way(j, before, velocity_before);
+    ways_[j].position.went(position_[j] - before);
+    ways_[j].velocity.went(velocity_[j] - velocity_before);
   }
 }
 
@@ -107,16 +106,20 @@ void Setpoints::set(std::size_t joint, const JointSetpoint& wanted) noexcept {
 }
 
 void Setpoints::begin_cycle() noexcept {
-  gone_on_.fill(0);
-  velocity_gone_on_.fill(0);
+  for (Way& way : ways_) {
+    way.position.begin_cycle();
+    way.velocity.begin_cycle();
+  }
 }
 
 void Setpoints::hold_at(std::size_t joint, double position) noexcept {
   set(joint, {position, 0, 0});
+  forget_way(joint);
 }
 
 void Setpoints::hold_at(std::span<const double> positions) noexcept {
   std::copy(positions.begin(), positions.end(), position_.begin());
+  for (std::size_t j = 0; j < joints_.size(); ++j) forget_way(j);
 }
 
 void Setpoints::give_up(std::size_t joint) noexcept {

@@ -10,7 +10,9 @@
 #include "rmac/motion/servo/setpoint.hpp"
 #include "servo/faults/fault_sink.hpp"
 #include "servo/joints/index_set.hpp"
+#include "servo/joints/wiring.hpp"
 #include "servo/setpoint/force_loop.hpp"
+#include "servo/setpoint/recent_way.hpp"
 #include "servo/setpoint/velocity_follower.hpp"
 
 namespace rmac {
@@ -29,8 +31,8 @@ class Setpoints {
     bool follows = false;              ///< the plan, and the wanted forces, count
   };
 
-  /// `parts` must outlive it. `late`: joints that tell in a cycle where they were one cycle before.
-  Setpoints(const ServoLoopParts& parts, IndexSet late);
+  /// `parts` must outlive it. `delays`: so many cycles before this one was a joint where it tells in it.
+  Setpoints(const ServoLoopParts& parts, const Wiring::Delays& delays);
 
   /// One cycle. Where the plan has no number for a joint, that is a fault, and this joint and those after it are wanted
   /// where they were.
@@ -38,7 +40,7 @@ class Setpoints {
   /// One cycle of a stop that keeps power: each joint by itself, within its limits.
   void brake() noexcept;
 
-  /// Before joints go under control in a cycle: so far none of their setpoints has gone anywhere in it.
+  /// Before all else of a cycle: so far no setpoint has gone anywhere in it.
   void begin_cycle() noexcept;
   /// The joint is wanted at rest there.
   void hold_at(std::size_t joint, double position) noexcept;
@@ -55,16 +57,16 @@ class Setpoints {
   [[nodiscard]] const std::array<double, kMaxJoints>& position() const noexcept { return position_; }
   [[nodiscard]] const std::array<double, kMaxJoints>& velocity() const noexcept { return velocity_; }
   [[nodiscard]] const std::array<double, kMaxJoints>& acceleration() const noexcept { return acceleration_; }
-  /// How far the setpoint of a joint that answers late went in this cycle; 0 of others.
-  [[nodiscard]] double gone_on(std::size_t joint) const noexcept { return gone_on_[joint]; }
-  [[nodiscard]] double velocity_gone_on(std::size_t joint) const noexcept { return velocity_gone_on_[joint]; }
+  /// How far the setpoint of a joint has gone on since the joint was where it tells in this cycle.
+  [[nodiscard]] double gone_on(std::size_t joint) const noexcept { return ways_[joint].position.length(); }
+  [[nodiscard]] double velocity_gone_on(std::size_t joint) const noexcept { return ways_[joint].velocity.length(); }
   [[nodiscard]] double slip(std::size_t joint) const noexcept { return followers_[joint].slip(); }
   [[nodiscard]] const ForceLoop& force_loop(std::size_t joint) const noexcept { return force_loops_[joint]; }
 
  private:
   void choose(const Seen& seen, FaultSink& faults) noexcept;
   [[nodiscard]] bool follow(std::size_t joint, const Seen& seen, bool followed_before, FaultSink& faults) noexcept;
-  void note_way(std::size_t joint, double position_before, double velocity_before) noexcept;
+  void forget_way(std::size_t joint) noexcept;
   void follow_force(std::size_t joint, double wanted, double measured) noexcept;
   void set(std::size_t joint, const JointSetpoint& wanted) noexcept;
 
@@ -72,9 +74,12 @@ class Setpoints {
   std::size_t kinematic_joints_;
   double period_s_;
   bool virtual_mode_;
-  IndexSet late_;
   std::array<double, kMaxJoints> position_{}, velocity_{}, acceleration_{};
-  std::array<double, kMaxJoints> gone_on_{}, velocity_gone_on_{};
+  /// Of a joint's setpoint, as long ago as the joint's answers are.
+  struct Way {
+    RecentWay position, velocity;
+  };
+  std::vector<Way> ways_;
   IndexSet on_the_way_ = 0;  ///< joints that followed the plan in the cycle before
   std::vector<VelocityFollower> followers_;
   std::vector<ForceLoop> force_loops_;

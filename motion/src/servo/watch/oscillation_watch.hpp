@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "rmac/motion/ports/digital_control_interface.hpp"
 #include "rmac/motion/servo/servo_loop_parts.hpp"
 #include "servo/faults/fault_sink.hpp"
 #include "servo/watch/turn_counter.hpp"
@@ -13,7 +14,7 @@ namespace rmac {
 struct OscillationSeen {
   double effort = 0;             ///< measured in this cycle, or commanded in the one before
   bool effort_measured = false;  ///< by drives, with the position
-  bool answers_late = false;     ///< the position is that of the cycle before
+  int answer_delay = 0;          ///< the position is that of so many cycles before
   double position = 0;           ///< measured
   double acceleration_set = 0;
 };
@@ -50,8 +51,8 @@ class OscillationWatch {
   double period_s_;
 
   TurnCounter turns_;
-  TurnCounter path_turns_;             ///< of the wanted acceleration
-  std::array<double, 3> commanded_{};  ///< efforts of the last cycles, the latest first
+  TurnCounter path_turns_;                                ///< of the wanted acceleration
+  std::array<double, kMostAnswerDelay + 2> commanded_{};  ///< efforts of the last cycles, the latest first
   double last_effort_ = 0, last_way_ = 0, last_position_ = 0;
   bool begun_ = false;  ///< there was a cycle before
 

@@ -96,6 +96,10 @@ std::uint32_t VirtualDrive::check_write(Object object, const Bytes& bytes) {
     return 0;
   }
   if (bytes.size() != dictionary_.at(object).size()) return 0x06070010;
+  if (lives_from_writing && object == Object{0x100D, 0} && bytes[0] != 0) {
+    watches_ = true;
+    master_heard_ = moved_;
+  }
   const bool communication = (index & 0xFE00) == 0x1400 || (index & 0xFE00) == 0x1800;
   const bool contents = (index & 0xFE00) == 0x1600 || (index & 0xFE00) == 0x1A00;
   if (communication && sub == 1) {

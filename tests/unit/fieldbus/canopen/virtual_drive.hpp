@@ -65,6 +65,7 @@ class VirtualDrive {
   bool answers_sync = true;
   bool sends_heartbeats = true;
   bool repeats_toggle = false;          ///< of its answers to guarding
+  bool lives_from_writing = false;      ///< its life guarding begins when 100Dh is written, not with the first question
   unsigned quick_stop_mask = 0;         ///< bits of its statusword that are the other way round
   bool stores = false;                  ///< 1010h: what it is told stays beyond a reset
   bool maps_by_memory = false;          ///< its PDOs have the contents that it stored, whatever it is told

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <deque>
 
 #include "conformance/control_interface_conformance.hpp"
 #include "rmac/fieldbus/simulated_io_interface.hpp"
@@ -56,24 +57,31 @@ TEST_F(SimulatedBus, ActsOnACommandOnlyAfterItsFeedbackWasTaken) {
   EXPECT_GT(feedback_[kX].position_counts, start);
 }
 
-TEST_F(SimulatedBus, TellsOfTheCycleBeforeWhereItsAnswersAreLate) {
+/// The parameter: cycles.
+class SimulatedBusAnswersLate : public SimulatedBus, public testing::WithParamInterface<int> {};
+INSTANTIATE_TEST_SUITE_P(Cycles, SimulatedBusAnswersLate, testing::Values(1, 3, kMostAnswerDelay));
+
+TEST_P(SimulatedBusAnswersLate, AndTellsOfCyclesBefore) {
   SimulatedInterface late{default_simulated_axes(), 0.001};
-  late.set_answers_late(true);
-  std::vector<DriveFeedback> before(bus_.axis_count()), now = before;
+  late.set_answer_delay(GetParam());
+  EXPECT_EQ(late.answer_delay(kX), GetParam());
+  std::vector<DriveFeedback> now(bus_.axis_count());
+  std::deque<DriveFeedback> before(static_cast<std::size_t>(GetParam()));
   for (int i = 0; i < 50; ++i) {
     cycle(kX, DriveWish::Operational, i < 20 ? 1000 : -500);
     // The same commands, whatever is told of them.
     ASSERT_TRUE(late.exchange(commands_, now));
-    EXPECT_EQ(now[kX].statusword, before[kX].statusword) << i;
-    EXPECT_EQ(now[kX].position_counts, before[kX].position_counts) << i;
-    EXPECT_EQ(now[kX].online, i > 0) << i;
-    before = feedback_;
+    EXPECT_EQ(now[kX].statusword, before.front().statusword) << i;
+    EXPECT_EQ(now[kX].position_counts, before.front().position_counts) << i;
+    EXPECT_EQ(now[kX].online, i >= GetParam()) << i;
+    before.pop_front();
+    before.push_back(feedback_[kX]);
   }
   EXPECT_NE(feedback_[kX].position_counts, 0) << "it moved";
 }
 
 TEST_F(SimulatedBus, TellsNothingOfBeforeItWasStartedAgain) {
-  bus_.set_answers_late(true);
+  bus_.set_answer_delay(1);
   ASSERT_TRUE(bus_.start());
   for (int i = 0; i < 20; ++i) cycle(kX, DriveWish::Operational);
   ASSERT_EQ(drive_state(feedback_[kX].statusword), DriveState::OperationEnabled);

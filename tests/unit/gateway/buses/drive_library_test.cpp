@@ -92,6 +92,7 @@ TEST(DriveLibraries, AreReadAsTheyAreWritten) {
                    {"NoAbortConnection", true},
                    {"QuickStopInverted", true},
                    {"HomingWithoutTargetReached", true},
+                   {"AnswerDelay", 3},
                    {"InterpolationTimePeriod", {{"Index", -4}, {"Values", {5, 10}}}},
                    {"Pages", {{"Skip", "page 12"}}}});
   Library library;
@@ -118,6 +119,7 @@ TEST(DriveLibraries, AreReadAsTheyAreWritten) {
   EXPECT_EQ(manners.no_heartbeat_consumer, "it goes on");
   EXPECT_TRUE(manners.quick_stop_inverted);
   EXPECT_TRUE(manners.homing_without_target_reached);
+  EXPECT_EQ(manners.answer_delay, 3);
   EXPECT_FALSE(manners.node_guarding);
   EXPECT_EQ(manners.interpolation->index, -4);
   EXPECT_EQ(manners.interpolation->values, (std::vector<std::uint8_t>{5, 10}));

@@ -94,11 +94,11 @@ TEST(SimulatedBus, TakesHowAnAxisGivesWaySticksAndCogs) {
 }
 
 TEST(SimulatedBus, AnswersLateWhereItIsSaid) {
-  EXPECT_EQ(simulated_answers_late(bus({})), false);
-  EXPECT_EQ(simulated_answers_late(bus({{"late_answers", {1}}})), true);
-  const auto two = simulated_answers_late(bus({{"late_answers", {2}}}));
-  ASSERT_FALSE(two);
-  EXPECT_THAT(two.error().message, HasSubstr("\"late_answers\" must be one whole number from 0 to 1"));
+  EXPECT_EQ(simulated_answer_delay(bus({})), 0);
+  EXPECT_EQ(simulated_answer_delay(bus({{"late_answers", {8}}})), 8);
+  const auto nine = simulated_answer_delay(bus({{"late_answers", {9}}}));
+  ASSERT_FALSE(nine);
+  EXPECT_THAT(nine.error().message, HasSubstr("\"late_answers\" must be one whole number from 0 to 8"));
 }
 
 TEST(SimulatedBus, CanDoWithoutASpindle) {

@@ -114,6 +114,21 @@ TEST_P(PlannerProperty, KeepsEveryLimitAndFinishesEveryMove) {
   for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(bench.record.back().position[j], end[j], 1e-9);
 }
 
+// Red when moves are counted as left which samples already told to be done.
+TEST_P(PlannerProperty, CountsWhatIsDoneWithoutPlanning) {
+  PlannerBench bench(mill());
+  RandomProgram program(GetParam() + 9000);
+  queue_program(bench, program, 8);
+  const std::size_t moves = bench.planner.moves_left();
+  bench.planner.command(PathCommand::Run);
+  while (bench.planner.moves_left() > 0) {
+    bench.cycle();
+    bench.cycles_without_planner(3);
+    bench.planner.follow(bench.progress());
+    ASSERT_EQ(bench.planner.moves_left(), moves - bench.moves_done()) << "seed " << GetParam();
+  }
+}
+
 TEST_P(PlannerProperty, TellsThatAMoveIsDoneWhenTheMachineRestsAtItsEnd) {
   PlannerBench bench(mill());
   RandomProgram program(GetParam() + 7000);

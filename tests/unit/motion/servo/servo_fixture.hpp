@@ -156,7 +156,7 @@ class FakeBus : public DigitalControlInterface {
     }
     return works;
   }
-  [[nodiscard]] bool answers_late(std::size_t /*axis*/) const noexcept override { return late; }
+  [[nodiscard]] int answer_delay(std::size_t axis) const noexcept override { return delays.at(axis); }
   [[nodiscard]] bool tells_torque(std::size_t axis) const noexcept override { return (torque_told >> axis & 1U) != 0; }
   [[nodiscard]] bool takes_torque_offset(std::size_t /*axis*/) const noexcept override { return torque_offset; }
 
@@ -168,7 +168,7 @@ class FakeBus : public DigitalControlInterface {
   std::vector<Drive> drives;
   bool works = true;
   bool torque_offset = false;  ///< they take one beside what they follow
-  bool late = false;
+  std::array<int, kMaxJoints> delays{};
   std::uint32_t torque_told = 0;  ///< bit i: the answers of axis i hold its torque
   int exchanges = 0;
 

@@ -1,4 +1,6 @@
-// Drives that tell where they were a cycle before, as those on CAN do: what a law and the watches make of it.
+// Drives that tell where they were a cycle before, as those on CAN do, or several: what a law and the watches make of
+// it.
+#include <deque>
 #include <random>
 
 #include "unit/motion/servo/servo_fixture.hpp"
@@ -8,21 +10,26 @@ namespace {
 
 constexpr double kCount = 1 / kCountsPerMm;
 
-class ServoLateAnswers : public ServoLoopTest {
+/// The parameter: so many cycles before.
+class ServoLateAnswers : public ServoLoopTest, public testing::WithParamInterface<int> {
  protected:
-  ServoLateAnswers() { fake->late = true; }
+  ServoLateAnswers() { fake->delays.fill(GetParam()); }
 
   /// Joint 0 goes `step` further; its drive was `behind` in the cycle that it tells of.
   void go_on(double step, double behind = 0) {
-    put_at(0, command.setpoint.position[0] - behind);
+    was_.push_back(command.setpoint.position[0]);
+    if (was_.size() > static_cast<std::size_t>(GetParam())) was_.pop_front();
+    put_at(0, was_.front() - behind);
     command.setpoint.position[0] += step;
     command.setpoint.velocity[0] = step / kPeriod;
     cycle();
   }
   [[nodiscard]] double seen_error() const { return laws[0]->last.position_setpoint - laws[0]->last.position; }
+
+  std::deque<double> was_;  ///< setpoints of the last cycles
 };
 
-TEST_F(ServoLateAnswers, ADriveThatFollowsExactlyHasNoErrorAtAnySpeed) {
+TEST_P(ServoLateAnswers, ADriveThatFollowsExactlyHasNoErrorAtAnySpeed) {
   ServoLoopParts made = parts();
   made.joints[0].max_following_error = 0.01;
   build(std::move(made));
@@ -37,20 +44,20 @@ TEST_F(ServoLateAnswers, ADriveThatFollowsExactlyHasNoErrorAtAnySpeed) {
     ASSERT_NEAR(seen_error(), 0, kCount) << "cycle " << i;
   }
   EXPECT_EQ(report.position_set[0], command.setpoint.position[0]) << "what is told is what is";
-  EXPECT_NEAR(report.position[0], command.setpoint.position[0] - step, kCount) << "and what was measured";
+  EXPECT_NEAR(report.position[0], was_.front(), kCount) << "and what was measured";
 }
 
-TEST_F(ServoLateAnswers, TheSameWordsOfDrivesThatTellWhatIsAreAnError) {
-  fake->late = false;
+TEST_P(ServoLateAnswers, TheSameWordsOfDrivesThatAnswerACycleSoonerAreAnError) {
+  fake->delays.fill(GetParam() - 1);
   ServoLoopParts made = parts();
   made.joints[0].max_following_error = 0.01;
   build(std::move(made));
   engage();
-  go_on(0.05);
+  for (int i = 0; i < GetParam(); ++i) go_on(0.05);
   EXPECT_EQ(report.fault.kind, ServoFault::Kind::FollowingError);
 }
 
-TEST_F(ServoLateAnswers, ADriveThatIsBehindIsSeenToBeAsFarBehindAsItIs) {
+TEST_P(ServoLateAnswers, ADriveThatIsBehindIsSeenToBeAsFarBehindAsItIs) {
   build();
   engage();
   for (int i = 0; i < 20; ++i) go_on(0.2, 0.3);
@@ -61,7 +68,7 @@ TEST_F(ServoLateAnswers, ADriveThatIsBehindIsSeenToBeAsFarBehindAsItIs) {
   EXPECT_NEAR(report.fault.value, 1.1, kCount);
 }
 
-TEST_F(ServoLateAnswers, AVelocityDriveThatFollowsIsSentTheSetpointsVelocityAlone) {
+TEST_P(ServoLateAnswers, AVelocityDriveThatFollowsIsSentTheSetpointsVelocityAlone) {
   ServoLoopParts made = parts();
   made.joints[0].law = nullptr;
   made.actuators[0].mode = DriveMode::CyclicSyncVelocity;
@@ -73,15 +80,33 @@ TEST_F(ServoLateAnswers, AVelocityDriveThatFollowsIsSentTheSetpointsVelocityAlon
   EXPECT_NEAR(bus->commands[0].target_velocity_rpm * 2 * std::numbers::pi / 60, 100, 20 * kCount);
 }
 
-TEST_F(ServoLateAnswers, TheLawIsEngagedWithoutAnErrorAndAStopEndsOnTheSetpoint) {
+TEST_P(ServoLateAnswers, TheLawIsEngagedWithoutAnErrorAndAStopEndsOnTheSetpoint) {
   build();
   engage();
   EXPECT_NEAR(seen_error(), 0, kCount);
   for (int i = 0; i < 100; ++i) go_on(0.1);
+  EXPECT_NEAR(seen_error(), 0, kCount);
   for (int i = 0; i < 10; ++i) go_on(0);
   EXPECT_NEAR(seen_error(), 0, kCount);
   EXPECT_EQ(report.position_set[0], command.setpoint.position[0]);
 }
+
+// Red when the way that was gone before a joint went under control counts.
+TEST_P(ServoLateAnswers, AJointThatIsEngagedAnewHasNoErrorWhereverItWasPut) {
+  build();
+  engage();
+  for (int i = 0; i < 20; ++i) go_on(0.1);
+  command.power = false;
+  cycle(20);
+  ASSERT_EQ(report.state, ServoState::Off);
+  put_at(0, -30);
+  cycle(5);
+  was_.clear();
+  engage();
+  EXPECT_NEAR(seen_error(), 0, kCount);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cycles, ServoLateAnswers, testing::Values(1, 2, 3, 5, kMostAnswerDelay));
 
 }  // namespace
 }  // namespace rmac::servo_test

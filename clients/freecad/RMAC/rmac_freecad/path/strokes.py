@@ -4,11 +4,13 @@ import math
 from dataclasses import dataclass
 
 import rmac
+from rmac.geometry import splines
 
 CHORD_DEG = 5
+CHORDS_PER_SPAN = 16  # of a spline, between two of its knots
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)  # there may be a million of them
 class Stroke:
     index: int  # of the move in the program
     points: tuple
@@ -17,13 +19,26 @@ class Stroke:
 def strokes_of(program):
     """Of moves whose begin is known: the first one comes from wherever the tool is."""
     strokes, at = [], None
-    for index, move in enumerate(program.moves):
-        if isinstance(move, rmac.Arc):
-            strokes.append(Stroke(index, _arc_points(move)))
-        elif move.end is not None and at is not None:
-            strokes.append(Stroke(index, (at, tuple(move.end))))
-        at = tuple(move.end) if move.end is not None else at
+    for index, way in enumerate(program.ways()):
+        if isinstance(way, rmac.Move):
+            points = _arc_points(way) if isinstance(way, rmac.Arc) else _spline_points(way.curve)
+            strokes.append(Stroke(index, points))
+            at = tuple(way.end)
+        elif way is not None:
+            if at is not None:
+                strokes.append(Stroke(index, (at, way)))
+            at = way
     return strokes
+
+
+def _spline_points(curve):
+    weights = curve.weights or (1.0,) * len(curve.points)
+    homogeneous = [(*(w * x for x in point), w) for point, w in zip(curve.points, weights)]
+    breaks = sorted(set(curve.knots))
+    count = CHORDS_PER_SPAN if curve.degree > 1 else 1
+    places = [a + (b - a) * number / count for a, b in zip(breaks, breaks[1:]) for number in range(count)]
+    values = (splines.value(curve.degree, curve.knots, homogeneous, u) for u in (*places, breaks[-1]))
+    return tuple((x / w, y / w, z / w) for x, y, z, *_, w in values)
 
 
 def _arc_points(arc):

@@ -2,7 +2,9 @@
 
 import json
 
-from rmac.moves import item
+from rmac.moves import Arc, Nurbs, item
+
+CURVED = (Arc, Nurbs)
 
 
 class Program:
@@ -19,6 +21,10 @@ class Program:
         self._numbers[id(move)] = len(self.moves)
         self.moves.append(move)
         self._places.append(place)
+
+    def ways(self):
+        """Of each move: itself where it is curved, else where it ends; None of what does not move."""
+        return (move if isinstance(move, CURVED) else None if move.end is None else tuple(move.end) for move in self.moves)
 
     def place_of(self, index):
         """Of a part of a run (`part.index`) or a refused move (`MoveRefused.index`), from 0; a move's id in the text, and a

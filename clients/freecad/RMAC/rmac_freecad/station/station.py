@@ -24,6 +24,7 @@ class Station:
         self._come = queue.SimpleQueue()
         self._listeners = []
         self.state = None
+        self.stops = 0  # so often it was asked to stop: what was to begin then does not
 
     @property
     def connected(self):
@@ -75,6 +76,7 @@ class Station:
 
     def stop(self, address, done=None, failed=None):
         """Whoever moves the machine: anybody who is connected may stop it."""
+        self.stops += 1
         self.ask(lambda: self.connect(address).cam.StopNow(), done, failed)
 
     def _hear(self, state):

@@ -36,6 +36,18 @@ def jog():
     show(session())
 
 
+def open_legacy():
+    from rmac_freecad.window.legacy.open_dialog import show
+
+    show(session())
+
+
+def cut_along():
+    from rmac_freecad.window.profiles.command import cut_along_selection
+
+    cut_along_selection()
+
+
 def machine_job():
     from rmac_freecad.window.running.machining_dialog import show
 
@@ -59,7 +71,9 @@ def stop():
 COMMANDS = (
     Command("Select", "Select machine…", "Search machines, compare them, see which can cut the job, and load one", select_machine),
     Command("Jog", "Jog…", "Move the machine by hand, and set the part's zero where the tool stands", jog),
-    Command("Machine", "Machine a job…", "Send a Path job to the machine as it is", machine_job, needs_document=True),
+    Command("Legacy", "Open legacy code…", "A file of another control, RS274/NGC or APT, into the document, to be simulated and cut", open_legacy),
+    Command("Profile", "Cut along edges", "Selected edges, or a sketch, as a profile without a Path job", cut_along, needs_document=True),
+    Command("Machine", "Machine a job…", "Send a Path job, a profile of edges, or a file of another control, to the machine as it is", machine_job, needs_document=True),
     Command("Simulate", "Simulate a job…", "How long a job takes, whether the machine can do it, and what limits it; moves nothing", simulate, needs_document=True),
     Command("Stop", "Stop the machine", "Stop at once, whoever moves it, and drop what is queued. This is no emergency stop", stop),
 )

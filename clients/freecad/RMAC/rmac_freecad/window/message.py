@@ -13,7 +13,7 @@ def words_of(error):
     if isinstance(error, rmac.CannotConnect):
         return f"{error} The address stands in Edit > Preferences > RMAC."
     if isinstance(error, NoProgram):
-        return "The program rmac, which simulates, was not found; give its path in Edit > Preferences > RMAC."
+        return "The program rmac, which simulates and imports, was not found; give its path in Edit > Preferences > RMAC."
     return error.message if isinstance(error, rmac.Refused) else str(error)
 
 

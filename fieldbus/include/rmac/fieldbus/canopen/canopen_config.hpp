@@ -48,6 +48,7 @@ struct AxisConfig {
   Identity identity;
   std::string drive;                                     ///< its description's name, "none"; empty: by its identity
   std::optional<std::chrono::milliseconds> sdo_timeout;  ///< for each of its SDO answers, where it is given
+  std::optional<int> answer_delay;                       ///< cycles, where it is given: `DriveManners::answer_delay`
   std::vector<SdoWrite> setup;
   bool sets_polarity = false;                                 ///< 607Eh is among `setup`
   bool check_scale = true;                                    ///< its factors are asked of it at boot

@@ -53,7 +53,7 @@ class CanopenInterface final : public DigitalControlInterface,
   [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override;
   [[nodiscard]] bool tells_torque(std::size_t axis) const noexcept override;
   [[nodiscard]] bool takes_torque_offset(std::size_t axis) const noexcept override;
-  [[nodiscard]] bool answers_late(std::size_t /*axis*/) const noexcept override { return true; }
+  [[nodiscard]] int answer_delay(std::size_t axis) const noexcept override;
   /// By SDO, a frame a cycle.
   [[nodiscard]] bool reads_positions(std::size_t axis) const noexcept override;
   [[nodiscard]] std::uint32_t input_bits(std::size_t axis) const noexcept override;

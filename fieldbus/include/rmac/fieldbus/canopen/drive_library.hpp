@@ -44,9 +44,10 @@ struct DriveManners {
   bool no_abort_connection = false;  ///< it has no 6007h
   std::string
       no_heartbeat_consumer{};       ///< it has no 1016h, and this is what it does when the master dies; empty: it has
-  bool node_guarding = false;        ///< it makes no heartbeat, and is asked for its state (100Ch, 100Dh)
+  bool node_guarding = false;        ///< it knows no heartbeat, and is asked for its state instead (100Ch, 100Dh)
   bool quick_stop_inverted = false;  ///< bit 5 of its statusword is 0 where the standard has 1
   bool homing_without_target_reached = false;  ///< bit 10 of its statusword does not tell that it is at rest at home
+  int answer_delay = 1;  ///< it was where its answers say so many cycles before they are read; 1: it measures at SYNC
   std::optional<InterpolationTimes> interpolation{};  ///< none: whatever the standard allows
 };
 

@@ -56,6 +56,8 @@ struct DriveFeedback {
   std::array<std::int32_t, 4> latched_counts{};
 };
 
+inline constexpr int kMostAnswerDelay = 8;  ///< cycles
+
 /// An edge of a drive's touch probe input that latches its position.
 enum class TouchProbeEdge : std::uint8_t { FirstRising, FirstFalling, SecondRising, SecondFalling };
 
@@ -100,9 +102,10 @@ class DigitalControlInterface {
   [[nodiscard]] virtual double counts_per_revolution(std::size_t /*axis*/) const noexcept { return 0; }
   /// Whether the answers of this axis hold its torque (6077h).
   [[nodiscard]] virtual bool tells_torque(std::size_t /*axis*/) const noexcept { return false; }
-  /// Whether this axis tells in an exchange where it was one cycle before: where the SYNC of an exchange has the drives
-  /// measure, and the next exchange reads what they answered.
-  [[nodiscard]] virtual bool answers_late(std::size_t /*axis*/) const noexcept { return false; }
+  /// How many cycles before an exchange this axis was where it tells in it, at most `kMostAnswerDelay`: 1 where the
+  /// SYNC of an exchange has the drives measure, and the next exchange reads what they answered; more where a drive
+  /// itself takes its time. Once started.
+  [[nodiscard]] virtual int answer_delay(std::size_t /*axis*/) const noexcept { return 0; }
   /// Whether `DriveCommand::torque_offset_permille` reaches this axis, in a mode that has it.
   [[nodiscard]] virtual bool takes_torque_offset(std::size_t /*axis*/) const noexcept { return false; }
   /// Whether this axis does `DriveCommand::read_position`.

@@ -100,6 +100,27 @@ TEST_F(KnownDrive, DoesNotCareForFilesOfOthersThatAreWrong) {
 }
 
 // Red when an object that is left alone is read or written: a drive that hangs itself up on it would not come up.
+// Red when a drive whose answers are old is taken for one that measures at SYNC, or device.json does not go before.
+TEST_F(KnownDrive, SaysHowOldItsAnswersAre) {
+  fresh_drive();
+  make({{"node", {1}}});
+  start();
+  EXPECT_EQ(master_->answer_delay(0), 1);
+  fresh_drive();
+  make_known(DriveManners{.answer_delay = 3}, {{"node", {1}}});
+  start();
+  EXPECT_EQ(master_->answer_delay(0), 3);
+  fresh_drive();
+  make_known(DriveManners{.answer_delay = 3}, {{"node", {1}}, {"answer_delay", {2}}});
+  start();
+  EXPECT_EQ(master_->answer_delay(0), 2);
+  for (const double wrong : {0.0, 9.0, 1.5}) {
+    const auto config = canopen::read_canopen_config("can0", {{"node", {1}}, {"answer_delay", {wrong}}}, {}, kPeriodS);
+    ASSERT_FALSE(config) << wrong;
+    EXPECT_THAT(config.error().message, HasSubstr("answer_delay"));
+  }
+}
+
 TEST_F(KnownDrive, IsNotAskedForWhatItDoesNotStand) {
   const std::vector<SkippedObject> skipped{{0x6502, {}}, {0x60C2, {}}, {0x1402, 1}, {0x1803, {}},
                                            {0x608F, 1},  {0x6091, {}}, {0x603F, {}}};

@@ -65,12 +65,11 @@ TEST_F(FixedMapping, OfADriveThatIsNotKnownIsReadBack) {
   fixed_drive();
   make({{"node", {1}}, {"mode", {8}}}, {{"tpdo", "6041:00/16 6064:00/32"}});
   ASSERT_EQ(start_error(), "it started");
-  EXPECT_THAT(
-      master_->start_notes(),
-      ElementsAre("node 1 (axis 0) keeps 1600h as it is, which is what is wanted: attempt to write a read-only object "
-                  "(06010002h)",
-                  "node 1 (axis 0) keeps 1A00h as it is, which is what is wanted: attempt to write a read-only object "
-                  "(06010002h)"));
+  EXPECT_THAT(master_->start_notes(),
+              ElementsAre("node 1 (axis 0) keeps 1600h as it is, which will do: attempt to write a read-only object "
+                          "(06010002h)",
+                          "node 1 (axis 0) keeps 1A00h as it is, which will do: attempt to write a read-only object "
+                          "(06010002h)"));
   cycle();
   enable_all();
   commands_[0].target_position_counts = 4711;
@@ -135,6 +134,25 @@ TEST_F(FixedIdentifiers, AreRefusedWhereTheyAreNotWhatIsWanted) {
     ASSERT_THAT(start_with_it(), HasSubstr("refused 80000201h for 1400h:01: attempt to write a read-only object "
                                            "(06010002h), and has"))
         << cob_id;
+  }
+}
+
+// Red when a drive is refused that acts on its setpoints at any SYNC or as they come, and can be told nothing else; or
+// one is taken that answers otherwise than at each SYNC.
+TEST_F(FixedIdentifiers, NorNeedTheTransmissionTypeOfSetpointsBeOurs) {
+  for (const int type : {0x00, 0x01, 0xF0, 0xFE, 0xFF}) {
+    for (const std::uint16_t communication : {std::uint16_t{0x1400}, std::uint16_t{0x1800}}) {
+      VirtualDrive& drive = fresh_drive();
+      drive.set_bytes({communication, 2}, {static_cast<std::uint8_t>(type)});
+      drive.refuse_writing({communication, 2}, 0x06010002);
+      const std::string started = start_with_it();
+      if (communication == 0x1400 || type == 1) {
+        ASSERT_EQ(started, "it started") << type;
+        enable_all();
+      } else {
+        ASSERT_THAT(started, HasSubstr("refused 1h for 1800h:02")) << type;
+      }
+    }
   }
 }
 

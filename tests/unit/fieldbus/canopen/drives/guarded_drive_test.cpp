@@ -31,7 +31,8 @@ TEST_F(GuardedDrive, IsAskedAtThePaceItWasTold) {
   VirtualDrive& drive = add_guarded();
   make_known(DriveManners{.node_guarding = true}, {{"node", {1}}});
   start();
-  EXPECT_THAT(master_->start_notes(), Contains("node 1 makes no heartbeat (1017h): it is guarded, by remote frames"));
+  EXPECT_THAT(master_->start_notes(),
+              Contains("node 1 knows no heartbeat of its master (1016h): it is guarded, by remote frames"));
   enable_all();
   EXPECT_EQ(drive.value(0x100C, 0), 50U);
   EXPECT_EQ(drive.value(0x100D, 0), 2U);
@@ -43,6 +44,18 @@ TEST_F(GuardedDrive, IsAskedAtThePaceItWasTold) {
   }
   EXPECT_EQ(asked, 20);
   EXPECT_EQ(drive.state(), test::PowerStates::State::OperationEnabled);
+}
+
+// Red when heartbeats that it makes, too, are taken for copies of its answers.
+TEST_F(GuardedDrive, IsTaughtToMakeNoHeartbeatWhereItCould) {
+  VirtualDrive& drive = add_guarded();
+  drive.set_bytes({0x1017, 0}, {20, 0});
+  make_known(DriveManners{.node_guarding = true}, {{"node", {1}}});
+  start();
+  enable_all();
+  EXPECT_EQ(drive.value(0x1017, 0), 0U);
+  cycles(500, DriveWish::Operational);
+  EXPECT_EQ(master_->counters().nodes_lost, 0U);
 }
 
 // Red when a node without heartbeats counts as there for ever.
@@ -82,6 +95,20 @@ TEST_F(GuardedDrive, StopsByItselfWhenItsMasterIsGone) {
   EXPECT_EQ(drive.state(), test::PowerStates::State::OperationEnabled) << "its life time is 100 ms";
   wire_.pass(std::chrono::milliseconds(110));
   EXPECT_EQ(drive.state(), test::PowerStates::State::QuickStop);
+}
+
+// Red when a drive whose life guarding begins as it is told sees its master dead while it is set up.
+TEST_F(GuardedDrive, IsGuardedWhileItIsSetUp) {
+  VirtualDrive& drive = add_guarded();
+  drive.lives_from_writing = true;
+  drive.sdo_time = std::chrono::milliseconds(30);
+  int told = 0;
+  wire_.listen = [&](const CanFrame& frame) { told += frame.id == 0x81 ? 1 : 0; };
+  make_known(DriveManners{.node_guarding = true}, {{"node", {1}}});
+  start();
+  enable_all();
+  EXPECT_EQ(told, 0) << "EMCY: life guard error";
+  EXPECT_EQ(drive.state(), test::PowerStates::State::OperationEnabled);
 }
 
 TEST_F(GuardedDrive, IsRefusedWhereNobodySaysSo) {

@@ -89,7 +89,7 @@ TEST_F(MasterOverVirtualDrives, TellsInACycleWhereADriveWasAtTheSyncOfTheOneBefo
   EXPECT_NEAR(feedback_[0].position_counts, before, kStands);
   cycles(1, DriveWish::Off);
   EXPECT_NEAR(feedback_[0].position_counts, before + kShift, kStands);
-  EXPECT_TRUE(master_->answers_late(0));
+  EXPECT_EQ(master_->answer_delay(0), 1);
   stop();
 }
 

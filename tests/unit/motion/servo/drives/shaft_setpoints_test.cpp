@@ -58,7 +58,7 @@ class ShaftAiming : public testing::Test {
     made[2].scale.direction = -1;
     return made;
   }();
-  ShaftAims aims_{actuators_, 0b100, kPeriod};
+  ShaftAims aims_{actuators_, {0, 0, 2}, kPeriod};
   RecordedFaults faults_;
 };
 
@@ -77,8 +77,12 @@ TEST_F(ShaftAiming, DriveInVelocityModeIsSentTheWayOfTheCycleAndAShareOfItsError
 
 TEST_F(ShaftAiming, DriveThatAnswersLateIsHeldToTheAimOfItsAnswer) {
   step(0, 0, 1);
-  step(0, 0, 1.002);
+  step(0, 0, 1.001);
+  step(0, 0, 1.003);
   EXPECT_NEAR(command(2, 1).target_velocity_rpm, -2 * 60 / kTurn, 1e-9) << "in the drive's sense, without error";
+  step(0, 0, 1.006);
+  EXPECT_NEAR(command(2, 1.001).target_velocity_rpm, -3 * 60 / kTurn, 1e-9);
+  EXPECT_NEAR(command(2, 1).target_velocity_rpm, -(3 + 20 * 0.001) * 60 / kTurn, 1e-9);
 }
 
 TEST_F(ShaftAiming, WayOfADriveThatWasLetGoIsNotMadeUp) {

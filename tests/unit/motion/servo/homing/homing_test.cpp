@@ -150,5 +150,30 @@ TEST_F(HomingByDrives, IsEndedByTheWishOnceTheDrivesRest) {
   EXPECT_EQ(homing_->drives(), 0b0010U);
 }
 
+// Red when a drive that tells no rest in homing mode (HomingWithoutTargetReached) ends a stopped homing as one that
+// found no home.
+TEST_F(HomingByDrives, IsEndedByTheWishOnceTheDrivesStandThoughTheyDoNotTell) {
+  homing_.emplace(actuators_, 10, 0.001);
+  shafts_.emplace(actuators_, 0.001);
+  (void)homing_->begin();
+  tell(1, 0);
+  (void)steps(20);
+  std::int32_t& counts = bus_->feedback[1].position_counts;
+  for (int i = 0; i < 300; ++i) {
+    counts += i % 20 == 0 ? 1 : 0;  // 50 counts a second
+    ASSERT_EQ(step(false), Progress::UnderWay) << i;
+  }
+  counts += 10;
+  for (int i = 0; i < 99; ++i) {
+    counts += i % 2 == 0 ? 1 : -1;
+    ASSERT_EQ(step(false), Progress::UnderWay) << i;
+  }
+  Progress last = Progress::UnderWay;
+  for (int i = 0; i < 3 && last == Progress::UnderWay; ++i) last = step(false);
+  EXPECT_EQ(last, Progress::Over);
+  EXPECT_TRUE(faults_.raised.empty());
+  EXPECT_EQ(homing_->completed(), 0U);
+}
+
 }  // namespace
 }  // namespace rmac::servo_test

@@ -6,9 +6,9 @@
 namespace rmac::servo_test {
 namespace {
 
-std::vector<ServoActuator> actuators(std::size_t count, bool late = false) {
+std::vector<ServoActuator> actuators(std::size_t count, const std::array<int, kMaxJoints>& delays = {}) {
   const auto fake = std::make_shared<FakeBus>(count);
-  fake->late = late;
+  fake->delays = delays;
   const auto bus = std::make_shared<ServoBus>(fake);
   std::vector<ServoActuator> made;
   for (std::uint32_t i = 0; i < count; ++i) made.push_back({bus, i, {1000, 1, 1, 0}});
@@ -56,17 +56,20 @@ TEST(Wiring, JointsOfMotorsAndMotorsWithinJoints) {
 }
 
 TEST(Wiring, KnowsWhatDrivesTakeAndWhenTheyTell) {
-  auto mixed = actuators(3, true);
+  auto mixed = actuators(3, {1, 4, 9});
   mixed[1].mode = DriveMode::CyclicSyncVelocity;
   const Wiring wiring(DirectMap(), 3, mixed);
   EXPECT_EQ(wiring.torque_drives(), 0b101U);
   EXPECT_FALSE(wiring.all_take_torque());
-  EXPECT_EQ(wiring.late_actuators(), 0b111U);
-  EXPECT_EQ(wiring.late_joints(), 0b111U);
+  EXPECT_THAT(std::span(wiring.actuator_delays()).first(3), testing::ElementsAre(1, 4, kMostAnswerDelay));
+  EXPECT_EQ(wiring.joint_delays(), wiring.actuator_delays());
+  const Wiring shared(DifferentialMap(), 3, mixed);
+  EXPECT_THAT(std::span(shared.joint_delays()).first(3), testing::ElementsAre(4, 4, kMostAnswerDelay))
+      << "by the slowest of its actuators";
 
   const Wiring prompt(DirectMap(), 3, actuators(3));
   EXPECT_TRUE(prompt.all_take_torque());
-  EXPECT_EQ(prompt.late_joints(), 0U);
+  EXPECT_EQ(prompt.joint_delays(), Wiring::Delays{});
 }
 
 TEST(LiveJoints, AreTakenOneByOneAndLetGo) {

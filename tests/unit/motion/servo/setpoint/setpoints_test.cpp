@@ -35,7 +35,7 @@ class ChosenSetpoints : public testing::Test {
       plan_.acceleration[j] = 100 + static_cast<double>(j);
     }
   }
-  void make(IndexSet late = 0) { setpoints_.emplace(parts_, late); }
+  void make(const Wiring::Delays& delays = {}) { setpoints_.emplace(parts_, delays); }
   void step(bool follows, IndexSet live = 0b111) {
     setpoints_->step({.plan = plan_,
                       .wanted_force = wanted_force_,
@@ -149,7 +149,7 @@ TEST_F(ChosenSetpoints, SlipIsTakenAnewWhenThePlanIsFollowedAgain) {
 }
 
 TEST_F(ChosenSetpoints, TellHowFarJointsThatAnswerLateWentInTheCycle) {
-  make(0b001);
+  make({1});
   setpoints_->hold_at(0, 0.9);
   step(true);
   EXPECT_NEAR(setpoints_->gone_on(0), 0.1, 1e-12);
@@ -158,6 +158,29 @@ TEST_F(ChosenSetpoints, TellHowFarJointsThatAnswerLateWentInTheCycle) {
   setpoints_->begin_cycle();
   EXPECT_EQ(setpoints_->gone_on(0), 0);
   EXPECT_EQ(setpoints_->velocity_gone_on(0), 0);
+}
+
+// Red when the way of a joint whose answers are older is that of one cycle, or of one cycle more or less.
+TEST_F(ChosenSetpoints, TellHowFarTheyWentSinceAnswersThatAreOlder) {
+  std::mt19937_64 random(5);
+  for (const std::uint8_t delay : {std::uint8_t{2}, std::uint8_t{5}, std::uint8_t{kMostAnswerDelay}}) {
+    make({delay});
+    std::vector<double> positions(delay, plan_.position[0]), velocities(delay, plan_.velocity[0]);
+    setpoints_->hold_at(0, plan_.position[0]);
+    step(true);
+    setpoints_->hold_at(0, plan_.position[0]);  // it begins anew
+    velocities.assign(delay, 0);
+    for (int cycle = 0; cycle < 100; ++cycle) {
+      plan_.position[0] += std::uniform_real_distribution<>(-1, 1)(random);
+      plan_.velocity[0] = std::uniform_real_distribution<>(-100, 100)(random);
+      setpoints_->begin_cycle();
+      step(true);
+      positions.push_back(plan_.position[0]);
+      velocities.push_back(plan_.velocity[0]);
+      ASSERT_NEAR(setpoints_->gone_on(0), positions.back() - positions[positions.size() - 1 - delay], 1e-9) << cycle;
+      ASSERT_NEAR(setpoints_->velocity_gone_on(0), velocities.back() - velocities[velocities.size() - 1 - delay], 1e-9);
+    }
+  }
 }
 
 TEST_F(ChosenSetpoints, BrakeFromThePlansStatesEachJointWithinItsLimits) {
@@ -172,7 +195,7 @@ TEST_F(ChosenSetpoints, BrakeFromThePlansStatesEachJointWithinItsLimits) {
       plan_.velocity[j] = any(200);
       plan_.acceleration[j] = any(parts_.joints[j].bounds.stop_deceleration);
     }
-    make(0b001);
+    make({1});
     step(true);
     setpoints_->begin_braking();
     int cycles = 0;
@@ -180,6 +203,7 @@ TEST_F(ChosenSetpoints, BrakeFromThePlansStatesEachJointWithinItsLimits) {
       ASSERT_LT(cycles, 2000);
       const auto position = setpoints_->position();
       const auto velocity = setpoints_->velocity(), acceleration = setpoints_->acceleration();
+      setpoints_->begin_cycle();
       setpoints_->brake();
       for (std::size_t j = 0; j < 2; ++j) {
         const auto& bounds = parts_.joints[j].bounds;

@@ -36,7 +36,7 @@ class SwingingJoint : public testing::Test {
       velocity_ += acceleration * kCycle;
       watch_.step({.effort = acted,
                    .effort_measured = true,
-                   .answers_late = false,
+                   .answer_delay = 0,
                    .position = position_,
                    .acceleration_set = wanted_acceleration(t_)},
                   faults_);

@@ -2,13 +2,13 @@
 
 from PySide import QtGui
 
-from rmac_freecad.jobs import EMPTY, completed, tools_of
-from rmac_freecad.machines import compare, programs_for
+from rmac_freecad.jobs import EMPTY, completed
+from rmac_freecad.machines import compare
 from rmac_freecad.window.dialog import Dialog, OnlyOne, button, row
-from rmac_freecad.window.jobs import job_in_question
 from rmac_freecad.window.machines.characteristics_dialog import CharacteristicsDialog
 from rmac_freecad.window.machines.machine_list import MachineList
 from rmac_freecad.window.machines.wanted_fields import WantedFields
+from rmac_freecad.window.work import work_in_question
 
 
 class NoneFits(Exception):
@@ -25,7 +25,7 @@ class SearchDialog(Dialog):
         self.list.itemSelectionChanged.connect(self._enable)
         self.edit_button = button("Edit", self._edit, "Lets the search be changed")
         self.search_button = button("Search machines", self.search)
-        self.fits_button = button("Fits this part", self.fits, "Simulates the document's job on each machine, and puts the quickest first")
+        self.fits_button = button("Fits this part", self.fits, "Simulates the document's job, or its file of another control, on each machine, and puts the quickest first")
         self.characteristics_button = button("Machine characteristics…", self.characteristics)
         self.virtual = QtGui.QCheckBox("Virtual mode")
         self.virtual.setToolTip("The machine is driven as a model, and no drive is touched")
@@ -53,17 +53,21 @@ class SearchDialog(Dialog):
         self._find(self.fields.wanted().condition(), "searching…")
 
     def fits(self):
-        """The job is read here, by FreeCAD's own thread; it is simulated by another one."""
-        machines, program = self.list.machines, self.session.settings.rmac
+        """A job is read here, by FreeCAD's own thread; it is simulated by another one. Rapids are as fast as each machine may go."""
+        machines, rmac = self.list.machines, self.session.settings.rmac
         try:
-            job = job_in_question()
-            tools, programs = tools_of(job), programs_for(job, machines)
+            work = work_in_question()
+            readings = {feed: work.reading(feed, rmac) for feed in {machine.max_feed_mm_min for machine in machines}}
         except Exception as error:
             return self.failed(error)
-        self.ask(
-            lambda client: compare(programs, completed(_table(client), tools), program),
-            self._show_fits, f"{job.Label} is simulated on {len(machines)} machines…",
-        )  # fmt: skip
+
+        def compared(client):
+            by_feed = {feed: read() for feed, read in readings.items()}
+            programs = {machine.name: by_feed[machine.max_feed_mm_min] for machine in machines}
+            tools = work.tools(next(iter(by_feed.values())))
+            return compare(programs, completed(_table(client), tools), rmac)
+
+        self.ask(compared, self._show_fits, f"{work.label} is simulated on {len(machines)} machines…")
 
     def characteristics(self):
         self.characteristics_dialog = CharacteristicsDialog(self.session, self.list.chosen)

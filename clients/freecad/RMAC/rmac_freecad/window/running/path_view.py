@@ -1,17 +1,17 @@
-"""The program in the 3D view, beside FreeCAD's own: coloured by what was cut, or by what limited it. No part of the document."""
+"""A program in the 3D view: coloured by what was cut, or by what limited it."""
 
 from pivy import coin
 
-from rmac_freecad.path import DONE, LATER, colour_of_limit, strokes_of
+from rmac_freecad.path import DONE, LATER, colour_of_limit
 
 WIDTH_PIXELS = 3
 
 
 class PathView:
-    def __init__(self, program, scene):
-        """`scene`: the view's root, `view.getSceneGraph()`."""
+    def __init__(self, strokes, scene):
+        """`strokes` as `strokes_of` gives them; `scene`: a group, as the view's root, `view.getSceneGraph()`."""
         self._scene = scene
-        self._strokes = strokes_of(program)
+        self._strokes = strokes
         self._coloured = 0  # strokes that show as done
         self._material = coin.SoMaterial()
         self._root = coin.SoSeparator()
@@ -33,9 +33,11 @@ class PathView:
         """So many moves of the program are done. The first call for a run takes other colours off."""
         if self._coloured == 0:
             self._paint([LATER] * len(self._strokes))
+        first = self._coloured
         while self._coloured < len(self._strokes) and self._strokes[self._coloured].index < moves:
-            self._material.diffuseColor.set1Value(self._coloured, *DONE)
             self._coloured += 1
+        if self._coloured > first:
+            self._material.diffuseColor.setValues(first, self._coloured - first, [DONE] * (self._coloured - first))
 
     def remove(self):
         self._scene.removeChild(self._root)

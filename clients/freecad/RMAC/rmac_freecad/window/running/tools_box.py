@@ -1,10 +1,12 @@
-"""The tools of the job that the machine's table lacks, and how long each is."""
+"""The tools of the program that the machine's table lacks, and how long each is."""
+
+from dataclasses import replace
 
 from PySide import QtGui
 
 from rmac_freecad.jobs import lacking
 from rmac_freecad.window.dialog import button, row
-from rmac_freecad.window.quantity import LENGTH, QuantityField, length_text
+from rmac_freecad.window.quantity import LENGTH, QuantityField
 
 
 class ToolsBox(QtGui.QGroupBox):
@@ -31,7 +33,9 @@ class ToolsBox(QtGui.QGroupBox):
         widget = QtGui.QWidget()
         widget.length = QuantityField(LENGTH, lowest=0)
         widget.length.setToolTip("From the spindle to the tip. With one tool whose tip sets the part's zero it may stay 0")
-        widget.add = button("Add", lambda: self._add(tool, widget.length.quantity))
-        label = QtGui.QLabel(f"{tool.number}: {tool.label}, diameter {length_text(2 * tool.radius_mm)}")
-        widget.setLayout(row(label, None, QtGui.QLabel("Length"), widget.length, widget.add))
+        widget.add = button("Add", lambda: self._add(replace(tool, radius_mm=tool.radius_mm or widget.diameter.quantity / 2), widget.length.quantity))
+        widget.diameter = QuantityField(LENGTH, 2 * tool.radius_mm, lowest=0)
+        widget.diameter.setEnabled(tool.radius_mm == 0)  # a file of another control does not tell it
+        label = QtGui.QLabel(f"{tool.number}: {tool.label}")
+        widget.setLayout(row(label, None, QtGui.QLabel("Diameter"), widget.diameter, QtGui.QLabel("Length"), widget.length, widget.add))
         return widget
