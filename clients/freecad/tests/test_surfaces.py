@@ -50,7 +50,8 @@ class SweptTest(unittest.TestCase):
 
     def check_ball(self, shape, faces, radius, scallop_mm, program, steepest_deg=80.0, every=8):
         places = tips(program)
-        self.assertLess(ball_gouge(shape, radius, places[::every]), GOUGE_MM)
+        deepest = ball_gouge(shape, radius, places[::every])
+        self.assertLess(deepest, GOUGE_MM)
         worst = 0
         for face in faces:
             points, normals = face_points(shape.Faces[face], 2500, 1, steepest_deg)
@@ -58,6 +59,7 @@ class SweptTest(unittest.TestCase):
             high = above > 0.9 * scallop_mm
             free = reachable(shape, points[high], normals[high], radius)
             worst = max(worst, above[high][free].max(initial=0))
+        print(f"cut into by {1e3 * max(deepest, 0):.2f} um, left {1e3 * worst:.1f} um of {1e3 * scallop_mm:g}")
         self.assertLess(worst, 1.05 * scallop_mm)
         return worst
 

@@ -98,12 +98,12 @@ class Drop:
         at, tip, off, point, normal = contact(face, self._mill, uv[of], xy)
         good = (off < CLOSED_MM) & face.trim.inside(at)
         points[of[good]], normals[of[good]], z[of[good]] = point[good], normal[good], tip[good]
-        within = (at > face.trim.low).all(1) & (at < face.trim.high).all(1)
-        stuck = of[~good & within]
-        if len(stuck):
-            self._climb(face, stuck, xy[~good & within], uv[stuck], points, normals, z)
         if self._mill.flat_mm:
             self._on_top(face, of, xy, uv, points, normals, z)
+        within = (at > face.trim.low).all(1) & (at < face.trim.high).all(1) & np.isnan(normals[of, 2])
+        stuck = of[within]
+        if len(stuck):
+            self._climb(face, stuck, xy[within], uv[stuck], points, normals, z)
 
     def _climb(self, face, of, xy, at, points, normals, z):
         """Where Newton's method finds nothing within a face, bent there as the mill is: the highest tip on ever finer grids."""
