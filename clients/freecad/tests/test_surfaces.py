@@ -148,7 +148,7 @@ class PartsTest(SweptTest):
         lying = Part.makeCylinder(4, 6, Vector(0, 0, 0), Vector(1, 0, 0))
         face = next(i for i, f in enumerate(lying.Faces) if isinstance(f.Surface, Part.Cylinder))
         program, left = self.swept(lying, [face], ball_end(2), steepest_deg=60)
-        self.check_ball(lying, [face], 2, 0.05, program, 0)
+        self.check_ball(lying, [face], 2, 0.05, program, 60)
 
     def test_placed_reversed_and_compounded_faces_are_cut_where_they_stand(self):
         plain = Part.makeBox(8, 6, 3)
