@@ -17,6 +17,7 @@ class Planes:
     straight = True
 
     def __init__(self, part, mill, steepest, angle):
+        self.targets = part.targets
         self._d, self._e = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
         places = np.concatenate([_tips_of(part, mill, steepest, label) for label in part.targets])
         if not len(places):
@@ -26,6 +27,10 @@ class Planes:
         self.w_range = across.min() + INSET_MM, across.max() - INSET_MM
         self.t_mm = self.w_mm = 1.0
         self._least = math.cos(steepest)
+
+    def places(self, uv, tip):
+        """w and t of the pass that touches the face there."""
+        return tip[:, :2] @ self._e, tip[:, :2] @ self._d
 
     def plan(self, w, t):
         return np.multiply.outer(t, self._d) + w * self._e
@@ -40,6 +45,7 @@ class Isolines:
     straight = False
 
     def __init__(self, part, mill, steepest, label, axis):
+        self.targets = [label]
         self._face, self._mill, self._axis = part.faces[label], mill, axis
         self._least = math.cos(steepest)
         trim = self._face.trim
@@ -56,6 +62,9 @@ class Isolines:
         step = (trim.high - trim.low)[1 - axis] / 200  # as far as the cloud may have missed the slope that is cut
         inset = INSET_MM / self.w_mm
         self.w_range = max(w.min() - step, trim.low[1 - axis]) + inset, min(w.max() + step, trim.high[1 - axis]) - inset
+
+    def places(self, uv, tip):
+        return uv[:, 1 - self._axis], uv[:, self._axis]
 
     def plan(self, w, t):
         return self._tips(w, t)[0][:, :2]

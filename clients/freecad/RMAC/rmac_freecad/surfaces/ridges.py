@@ -2,13 +2,13 @@
 
 import numpy as np
 
-WINDOW = 12  # samples of a pass to each side
+WINDOW = 12  # samples of a pass to each side, where nothing else is said
 NEWTON = 8
 
 
-def left_standing(mill, row, at, points, normals):
+def left_standing(mill, row, at, points, normals, window=WINDOW):
     """Above each point along its normal, by the pass `row`; `at` are the samples of it that are nearest."""
-    index = at[:, None] + np.arange(-WINDOW, WINDOW + 1)
+    index = at[:, None] + np.arange(-window, window + 1)
     inside = (index >= 0) & (index < len(row.t))
     index = np.clip(index, 0, len(row.t) - 1)
     tips = row.tips[index]

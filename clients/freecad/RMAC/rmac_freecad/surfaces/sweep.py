@@ -12,8 +12,9 @@ from rmac_freecad.surfaces.families import Isolines, Planes
 from rmac_freecad.surfaces.part import Part
 from rmac_freecad.surfaces.reach import left_out
 from rmac_freecad.surfaces.ridges import ridge
-from rmac_freecad.surfaces.rows import Rows
+from rmac_freecad.surfaces.rows import Row, Rows
 from rmac_freecad.surfaces.stretches import Stretches
+from rmac_freecad.surfaces.witnesses import Witnesses
 
 BAND_SHARE = 0.025  # of the scallop, which the curves may be above the part
 STEADY = 0.98  # a step is taken when its ridge is so near to what is wanted
@@ -21,6 +22,8 @@ MOST_TRIES = 14
 MOST_PASSES = 5000
 WIDEST = 1.6  # radii from pass to pass
 SAMPLES = 6  # a radius
+ABOVE = 1.01  # times the scallop: where two passes really left more, one is laid between them
+CLOSEST = 1 / 64  # of a step on a plane: there it is told instead
 EVERY = 1  # of them is looked at for its ridge
 
 
@@ -51,10 +54,20 @@ def sweep(shape, targets, mill, *, scallop_mm, tolerance_mm=0.005, along=0.0, st
         families = [Planes(part, mill, steepest, _angle(along))]
     band = min(tolerance_mm, BAND_SHARE * scallop_mm)
     for family in families:
-        swept.passes += _Sweep(part, drop, mill, family, scallop_mm - band, band).passes()
+        witnesses = Witnesses(part, drop, mill, family, steepest, math.sqrt(8 * mill.radius_mm * scallop_mm))
+        one = _Sweep(part, drop, mill, family, scallop_mm - band, band)
+        swept.passes += one.passes(witnesses, ABOVE * scallop_mm)
+        swept.left_out += one.high
     if not any(one.stretches for one in swept.passes):
         raise JobRefused("nothing of the faces can be cut: " + "; ".join(swept.left_out or ["the mill does not get there"]))
     return part, drop, swept
+
+
+@dataclass
+class _Laid:
+    row: Row
+    stretches: list
+    trace: Row
 
 
 class _Sweep:
@@ -63,9 +76,44 @@ class _Sweep:
         self._rows = Rows(family, drop, part, mill.radius_mm / SAMPLES)
         self._stretches = Stretches(self._rows, mill, band_mm)
         self._widest = WIDEST * mill.radius_mm
-        self._step = min(math.sqrt(8 * mill.radius_mm * ridge_mm), self._widest)
+        self._plain = self._step = min(math.sqrt(8 * mill.radius_mm * ridge_mm), self._widest)
+        self.high = []
 
-    def passes(self):
+    def passes(self, witnesses, limit_mm):
+        """Held against the witnesses; `high` tells where they find more than the limit nevertheless."""
+        rows = [row for row in self._steps() if row.core.any()]
+        ahead = [self._laid(row, witnesses) for row in reversed(rows)]
+        found = []
+        while ahead:
+            one = ahead.pop()
+            while ahead:
+                up, place = witnesses.highest(one.trace, ahead[-1].trace, limit_mm)
+                between = self._between(one.row, ahead[-1].row) if place is not None else None
+                if between is None:
+                    break
+                ahead.append(self._laid(between, witnesses))
+            if ahead and place is not None:
+                self.high.append(f"at {', '.join(f'{x:.3f}' for x in place)} up to {up:.3g} mm are left between passes")
+            found.append(Pass(one.row.w * self._family.w_mm, one.stretches))
+        return found
+
+    def _laid(self, row, witnesses):
+        stretches = self._stretches.of(row)
+        return _Laid(row, stretches, witnesses.trace(row, stretches))
+
+    def _between(self, before, after):
+        """The pass in the middle; None where it cuts nothing, or both are closer together than makes sense."""
+        gap = (after.w - before.w) * self._family.w_mm
+        if gap < CLOSEST * self._plain:
+            return None
+        row = self._rows.at((before.w + after.w) / 2)
+        if not row.core.any():
+            return None
+        self._rows.reach(row, before, gap)
+        self._rows.reach(row, after, gap)
+        return row
+
+    def _steps(self):
         low, high = self._family.w_range
         if high < low:
             low = high = (low + high) / 2
@@ -86,8 +134,7 @@ class _Sweep:
             while border is not None and found[-1].w < border.w:
                 found.append(self._next(found[-1], border.w))
             found.append(after)
-        rows = [row for row in found if row.core.any()]
-        return [Pass(row.w * self._family.w_mm, self._stretches.of(row)) for row in rows]
+        return found
 
     def _next(self, row, high):
         """The farthest next pass that leaves no higher ridge than is wanted."""
