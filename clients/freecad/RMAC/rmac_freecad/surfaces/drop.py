@@ -15,6 +15,7 @@ APART = 1.5  # steps of the cloud
 CLOSED_MM = 1e-8
 UPRIGHT = 1e-3  # the normal's z below which a face is a wall, touched along its upper edge alone
 NEWTON = 10
+STILL = 1e-9  # of a face, where a step changes nothing any more
 HOPEFUL = 4  # steps, after which one that is still far off finds nothing
 LEVELS = 13
 CLIMBS = 14
@@ -53,6 +54,15 @@ class Drop:
             refine(label, of, xy[tips[of]], uv, points, normals, z)
         return self._best(len(xy), tips, z, labels, points, normals)
 
+    def surely_blocked(self, tips, by_mm):
+        """Where a point of the cloud is farther than that inside the mill; quick, and of the others nothing is known."""
+        found = [np.zeros(0, bool)]
+        for some in np.array_split(tips, len(tips) // AT_ONCE + 1):
+            near = self._part.points[self._part.near(some[:, :2].min(0) - self._mill.radius_mm, some[:, :2].max(0) + self._mill.radius_mm)]
+            off = np.hypot(some[:, :1] - near[:, 0], some[:, 1:2] - near[:, 1])
+            found.append((near[:, 2] - self._mill.height(off) > some[:, 2:] + by_mm).any(1))
+        return np.concatenate(found)
+
     def _candidates(self, xy, first):
         """Of each face and edge the highest points of the cloud that are apart from each other; numbers of tips, of points, heights."""
         part, mill = self._part, self._mill
@@ -74,7 +84,8 @@ class Drop:
                     break
                 found.append((rows + first, of[best], highest[good]))
                 if again + 1 < CANDIDATES:
-                    close = ((points - points[best][:, None]) ** 2).sum(2) < apart
+                    away = points[best]
+                    close = sum((points[:, k] - away[:, k : k + 1]) ** 2 for k in range(3)) < apart
                     tip[rows] = np.where(close, -np.inf, tip[rows])
         tips, chosen, z = (np.concatenate(column) for column in zip(*found))
         if not len(tips):
@@ -124,15 +135,20 @@ class Drop:
 
     def _on_top(self, face, of, xy, uv, points, normals, z):
         """The flat of the mill stands on the highest point round its axis."""
-        at, point = uv[of].copy(), None
+        at, left = uv[of].copy(), np.arange(len(of))
         for _ in range(NEWTON):
-            point, u, v, uu, uv_, vv = face.evaluate(at, 2)
+            _, u, v, uu, uv_, vv = face.evaluate(at[left], 2)
             hessian = np.stack([uu[:, 2], uv_[:, 2], uv_[:, 2], vv[:, 2]], 1).reshape(-1, 2, 2)
             values, vectors = np.linalg.eigh(hessian)
             slope = np.einsum("nji,nj->ni", vectors, np.stack([u[:, 2], v[:, 2]], 1))
             least = 1e-9 * np.abs(values).max(1, initial=1e-30)[:, None]
             step = np.where(np.abs(values) > least, slope / np.maximum(np.abs(values), least), 0)
-            at = np.clip(at + np.einsum("nij,nj->ni", vectors, step), face.trim.low, face.trim.high)
+            new = np.clip(at[left] + np.einsum("nij,nj->ni", vectors, step), face.trim.low, face.trim.high)
+            goes_on = (np.abs(new - at[left]) > STILL * (face.trim.high - face.trim.low)).any(1)
+            at[left] = new
+            left = left[goes_on]
+            if not len(left):
+                break
         point = face.evaluate(at)
         inside = (np.linalg.norm(point[:, :2] - xy, axis=1) <= self._mill.flat_mm) & face.trim.inside(at) & (point[:, 2] >= z[of])
         points[of[inside]], z[of[inside]] = point[inside], point[inside, 2]

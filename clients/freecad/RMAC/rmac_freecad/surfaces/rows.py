@@ -51,7 +51,8 @@ class Rows:
 
     def goes(self, a, b, steepest=STEEPEST_CLIMB):
         """Whether the tip may go from there to there along the part: no wall, no drop from it."""
-        climb = np.abs(b[..., 2] - a[..., 2]) <= steepest * np.linalg.norm(b[..., :2] - a[..., :2], axis=-1)
+        with np.errstate(invalid="ignore"):  # where nothing is
+            climb = np.abs(b[..., 2] - a[..., 2]) <= steepest * np.linalg.norm(b[..., :2] - a[..., :2], axis=-1)
         return climb & np.isfinite(b[..., 2]) & (b[..., 2] > self._floor)
 
     def reach(self, row, other, over_mm):
@@ -64,8 +65,8 @@ class Rows:
         after = np.clip(np.searchsorted(cut, row.t), 1, len(cut) - 1) if len(cut) > 1 else np.zeros(len(row.t), int)
         away = np.minimum(np.abs(row.t - cut[after]), np.abs(row.t - cut[np.maximum(after - 1, 0)]))
         near = away * self.family.t_mm <= max(over_mm, (row.t[1] - row.t[0]) * self.family.t_mm * 1.01)
+        forth, back = (self.goes(a, b, STEEPEST_OVER) for a, b in ((row.tips[:-1], row.tips[1:]), (row.tips[1:], row.tips[:-1])))
         with np.errstate(invalid="ignore"):
-            forth, back = (self.goes(a, b, STEEPEST_OVER) for a, b in ((row.tips[:-1], row.tips[1:]), (row.tips[1:], row.tips[:-1])))
             ahead = _goes_ahead(row.tips)
         for i in range(1, len(near)):
             row.used[i] |= row.used[i - 1] and near[i] and forth[i - 1] and ahead[i - 1]

@@ -4,7 +4,8 @@ import numpy as np
 
 from rmac_freecad.surfaces import fit
 
-HALVINGS = 22
+PARTS = 16  # that an interval is cut into, all looked at together
+NARROWINGS = 6
 JUMP = 4.0  # a contact that moves so many times as far as the tip may have gone from one place of the part to another
 LEAST_MM = 0.01
 
@@ -47,15 +48,15 @@ class Stretches:
             return None
         good, bad = row.t[index], row.t[beyond]
         tip, found = row.tips[index], None
-        for _ in range(HALVINGS):
-            middle = (good + bad) / 2
-            tried, heights = self._tips(row.w, np.array([middle]))
-            goes = self._rows.goes(tip, tried[0]) and self._rows.family.cuts(row.w, np.array([middle]), heights)[0]
-            if goes:
-                good, tip = middle, tried[0]
-                found = good, tip, heights.point[0]
-            else:
-                bad = middle
+        for _ in range(NARROWINGS):
+            t = np.linspace(good, bad, PARTS + 1)[1:-1]
+            tried, heights = self._tips(row.w, t)
+            goes = self._rows.goes(np.concatenate([[tip], tried[:-1]]), tried) & self._rows.family.cuts(row.w, t, heights)
+            count = len(t) if goes.all() else int(goes.argmin())
+            bad = bad if count == len(t) else t[count]
+            if count:
+                good, tip = t[count - 1], tried[count - 1]
+                found = good, tip, heights.point[count - 1]
         return found
 
     def _kinks(self, row, t, tips, points):
@@ -66,12 +67,15 @@ class Stretches:
             return np.zeros((0, 2))
         low, high = t[leaps], t[leaps + 1]
         from_, to = points[leaps], points[leaps + 1]
-        for _ in range(HALVINGS):
-            middle = (low + high) / 2
-            point = self._tips(row.w, middle)[1].point
-            left = (np.linalg.norm(point - from_, axis=1) < np.linalg.norm(point - to, axis=1))[:, None]
-            low, high = np.where(left[:, 0], middle, low), np.where(left[:, 0], high, middle)
-            from_, to = np.where(left, point, from_), np.where(left, to, point)
+        each = np.arange(len(leaps))
+        for _ in range(NARROWINGS):
+            tried = np.linspace(low, high, PARTS + 1, axis=1)
+            point = self._tips(row.w, tried[:, 1:-1].ravel())[1].point.reshape(len(leaps), PARTS - 1, 3)
+            point = np.concatenate([from_[:, None], point, to[:, None]], 1)
+            near = np.linalg.norm(point - from_[:, None], axis=2) < np.linalg.norm(point - to[:, None], axis=2)
+            near[:, -1] = False
+            last = near.argmin(1) - 1
+            low, high, from_, to = tried[each, last], tried[each, last + 1], point[each, last], point[each, last + 1]
         step = 1e-3 / self._rows.family.t_mm
         around = np.concatenate([low - 2 * step, low - step, low, high, high + step, high + 2 * step])
         z = self._tips(row.w, around)[0][:, 2].reshape(6, -1)

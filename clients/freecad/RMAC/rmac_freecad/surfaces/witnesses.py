@@ -56,9 +56,13 @@ class Witnesses:
         if not len(chosen):
             return 0.0, None
         up = np.concatenate([self._left(before, after, some) for some in _shares(chosen)])
-        order = np.argsort(-up)
-        order = order[up[order] > limit_mm]
-        for some in np.array_split(order, math.ceil(len(order) / AT_ONCE)) if len(order) else ():
+        high = np.flatnonzero(up > limit_mm)
+        if not len(high):
+            return 0.0, None
+        high = high[np.argsort(self._t[chosen[high]])]  # neighbours together: quicker
+        high = high[~self._drop.surely_blocked(self._tip[chosen[high]], FREE_MM)]
+        high = high[np.argsort(-up[high])]
+        for some in np.array_split(high, math.ceil(len(high) / AT_ONCE)) if len(high) else ():
             tip = self._tip[chosen[some]]
             free = some[self._drop(tip[:, :2]).z <= tip[:, 2] + FREE_MM]
             if len(free):
