@@ -38,16 +38,32 @@ def ball_gouge(shape, radius, places):
     return deepest
 
 
+def profile(radius, corner, off):
+    """Height of a mill's surface above its tip, so far from its axis; beside it there is nothing of it."""
+    beyond = np.maximum(off - (radius - corner), 0)
+    return np.where(off < radius, corner - np.sqrt(np.maximum(corner**2 - beyond**2, 0)), np.inf)
+
+
 def mill_gouge(radius, corner, places, points):
     """As `ball_gouge`, of any mill, by points of the part, along Z."""
     deepest = -math.inf
     for place in places:
-        off = np.hypot(*(points[:, :2] - place[:2]).T)
-        under = points[off < radius]
-        beyond = np.maximum(off[off < radius] - (radius - corner), 0)
-        depth = under[:, 2] - place[2] - (corner - np.sqrt(np.maximum(corner**2 - beyond**2, 0)))
+        depth = points[:, 2] - place[2] - profile(radius, corner, np.hypot(*(points[:, :2] - place[:2]).T))
         deepest = max(deepest, depth.max(initial=-math.inf))
     return deepest
+
+
+def mill_left_over(radius, corner, points, normals, places, ladder):
+    """The least of these heights above each point, along its normal, that a mill took away somewhere; infinite where none."""
+    up = np.full(len(points), np.inf)
+    for number, (point, normal) in enumerate(zip(points, normals)):
+        near = places[(np.abs(places[:, :2] - point[:2]) < radius + ladder[-1]).all(1)]
+        above = point + np.multiply.outer(ladder, normal)
+        off = np.hypot(above[:, :1] - near[:, 0], above[:, 1:2] - near[:, 1])
+        taken = (above[:, 2:] - near[:, 2] >= profile(radius, corner, off)).any(1)
+        if taken.any():
+            up[number] = ladder[taken.argmax()]
+    return up
 
 
 def face_points(face, count, seed, steepest_deg=80.0):

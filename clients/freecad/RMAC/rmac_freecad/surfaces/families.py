@@ -24,7 +24,8 @@ class Planes:
             raise JobRefused("the faces have no place that is less steep than what is to be cut")
         along, across = places @ self._d, places @ self._e
         self.t_range = along.min() - mill.radius_mm, along.max() + mill.radius_mm
-        self.w_range = across.min() + INSET_MM, across.max() - INSET_MM
+        missed = max(_missed_mm(part, mill, steepest, label) for label in part.targets)
+        self.w_range = across.min() + INSET_MM - missed, across.max() - INSET_MM + missed
         self.t_mm = self.w_mm = 1.0
         self._least = math.cos(steepest)
 
@@ -89,6 +90,12 @@ def _tips_of(part, mill, steepest, label):
         tip = np.where(np.isfinite(tip), tip, point)
         found.append(tip[normal[:, 2] >= math.cos(steepest), :2])
     return np.concatenate(found)
+
+
+def _missed_mm(part, mill, steepest, label):
+    """How far beyond the cloud's places the slope may be that is still cut; the pass at that border is sought."""
+    normal = tips(part.faces[label], mill, part.of_target(label)[1])[2]
+    return 0.0 if (normal[:, 2] >= math.cos(steepest)).all() else 2 * part.step_of[label]
 
 
 def _mm_of(face, axis, uv):

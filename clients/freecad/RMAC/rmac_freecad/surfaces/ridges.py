@@ -16,16 +16,18 @@ def left_standing(mill, row, at, points, normals, window=WINDOW):
     way = points[:, None] - np.where(np.isfinite(tips), tips, 0)
     if not mill.flat_mm:
         return _least(np.where(inside, _below_ball(mill.radius_mm, way, normals), np.inf))
+    if not mill.corner_mm:
+        return _least(np.where(inside, _below_cylinder(mill.radius_mm, way, normals), np.inf))
     up = np.zeros(way.shape[:2])
     for _ in range(NEWTON):
         place = way + up[:, :, None] * normals[:, None]
         off = np.linalg.norm(place[:, :, :2], axis=2)
         beyond = np.maximum(off - mill.flat_mm, 0)
-        inside &= beyond < mill.corner_mm * 0.999 if mill.corner_mm else off < mill.radius_mm
+        inside &= beyond < mill.corner_mm * 0.999
         depth = np.sqrt(np.maximum(mill.corner_mm**2 - beyond**2, 1e-12))
         height = mill.corner_mm - np.where(inside, depth, 0)
         outward = (place[:, :, :2] * normals[:, None, :2]).sum(2) / np.maximum(off, 1e-12)
-        slope = normals[:, None, 2] - np.where(mill.corner_mm > 0, beyond / depth, 0) * outward
+        slope = normals[:, None, 2] - beyond / depth * outward
         up = up + (height - place[:, :, 2]) / np.maximum(slope, 1e-3)
     up = np.where(inside, np.maximum(up, 0), np.inf)
     return _least(up)
@@ -37,6 +39,18 @@ def _below_ball(radius, way, normals):
     along = (centre * normals[:, None]).sum(2)
     beside = radius**2 - (centre**2).sum(2) + along**2
     return np.where(beside > 0, np.maximum(along - np.sqrt(np.maximum(beside, 0)), 0), np.inf)
+
+
+def _below_cylinder(radius, way, normals):
+    """Where the normal's line enters a flat end: above its disc, and within its side."""
+    across = normals[:, None, :2]
+    a, b, c = (across**2).sum(2), (way[:, :, :2] * across).sum(2), (way[:, :, :2] ** 2).sum(2) - radius**2
+    root = np.sqrt(np.maximum(b**2 - a * c, 0))
+    upright = a < 1e-12
+    a = np.where(upright, 1, a)
+    enters, leaves = np.where(upright, 0, (-b - root) / a), np.where(upright, np.inf, (-b + root) / a)
+    up = np.maximum(np.maximum(enters, -way[:, :, 2] / normals[:, None, 2]), 0)
+    return np.where((b**2 >= a * c) & ~(upright & (c > 0)) & (up <= leaves), up, np.inf)
 
 
 def _least(up):
