@@ -68,12 +68,19 @@ class HeightsTest(SweptTest):
     def test_random_faces_keep_the_scallop_and_are_not_gouged(self):
         for seed, along in ((1, 0), (2, 35)):
             with self.subTest(seed=seed, along=along):
-                shape = wavy(seed)
+                shape = wavy(seed, 5, 4, 0.03)
                 face = facing_up(shape)
                 program, left = self.swept(shape, [face], ball_end(2), along=along)
                 self.assertEqual(left, [])
                 worst = self.check_ball(shape, [face], 2, 0.05, program)
                 self.assertGreater(worst, 0.95 * 0.05)
+
+    def test_faces_bent_as_much_as_the_mill_keep_the_scallop(self):
+        shape = wavy(5, 3, 2, 0.06)
+        face = facing_up(shape)
+        program, left = self.swept(shape, [face], ball_end(1))
+        self.assertRegex(" ".join(left), "^Face5: .* too narrow for the mill$")  # and no place that is left too high
+        self.check_ball(shape, [face], 1, 0.05, program)
 
     def test_isolines_do_as_planes_do(self):
         shape = wavy(3)
@@ -84,22 +91,22 @@ class HeightsTest(SweptTest):
     def test_a_bull_nose_does_not_gouge_where_it_bridges(self):
         shape = wavy(4, 3, 2, 0.04)
         face = facing_up(shape)
-        program, left = self.swept(shape, [face], bull_nose(1, 0.3))
+        program, left = self.swept(shape, [face], bull_nose(1, 0.3), scallop_mm=0.15)
         self.assertIn("too narrow", " ".join(left))
         self.assertLess(mill_gouge(1, 0.3, tips(program)[::4], face_points(shape.Faces[face], 5000, 1)[0]), GOUGE_MM)
 
     def test_bull_noses_and_flat_ends_keep_the_scallop_on_slopes(self):
-        shape = Part.makeCylinder(4, 3, Vector(0, 0, 0), Vector(1, 0, 0)).common(Part.makeBox(9, 4, 9, Vector(-1, 0.5, 0)))
+        shape = Part.makeCylinder(4, 2, Vector(0, 0, 0), Vector(1, 0, 0)).common(Part.makeBox(9, 4, 9, Vector(-1, 0.5, 0)))
         face = next(i for i, f in enumerate(shape.Faces) if isinstance(f.Surface, Part.Cylinder))
         points, normals = face_points(shape.Faces[face], 600, 1, 50)
         cloud = face_points(shape.Faces[face], 5000, 2)[0]
         for mill, along in ((bull_nose(1.5, 0.5), 90), (flat_end(1.5), 0)):
             with self.subTest(mill=mill):
-                program, _ = self.swept(shape, [face], mill, along=along, steepest_deg=50)
+                program, _ = self.swept(shape, [face], mill, scallop_mm=0.1, along=along, steepest_deg=50)
                 places = tips(program)
-                up = mill_left_over(mill.radius_mm, mill.corner_mm, points, normals, places, 0.05 * np.arange(0, 1.5, 0.025))
-                self.assertLess(up.max(), 1.05 * 0.05)
-                self.assertGreater(up.max(), 0.7 * 0.05)
+                up = mill_left_over(mill.radius_mm, mill.corner_mm, points, normals, places, 0.1 * np.arange(0, 1.5, 0.025))
+                self.assertLess(up.max(), 1.05 * 0.1)
+                self.assertGreater(up.max(), 0.7 * 0.1)
                 self.assertLess(mill_gouge(mill.radius_mm, mill.corner_mm, places[::4], cloud), GOUGE_MM)
 
     def test_a_flat_end_cuts_a_plane_with_steps_below_its_diameter(self):
@@ -135,25 +142,25 @@ class HeightsTest(SweptTest):
 
 class PartsTest(SweptTest):
     def test_a_pit_narrower_than_the_mill_is_bridged_and_told(self):
-        shape = Part.makeBox(12, 10, 6).cut(Part.makeSphere(1.5, Vector(6, 5, 6.3)))
+        shape = Part.makeBox(8, 6, 6).cut(Part.makeSphere(1.5, Vector(4, 3, 6.3)))
         program, left = self.swept(shape, [i for i, f in enumerate(shape.Faces) if isinstance(f.Surface, Part.Sphere)] + [facing_up(shape)], ball_end(2))
         self.assertIn("too narrow", " ".join(left))
         self.assertLess(ball_gouge(shape, 2, tips(program)[::8]), GOUGE_MM)
 
     def test_a_neighbour_at_a_sharp_concave_edge_is_not_gouged(self):
         groove = Part.Face(Part.makePolygon([Vector(*p) for p in ((0, 0, 0), (0, 0, 4), (5, 0, 2), (10, 0, 6), (10, 0, 0), (0, 0, 0))]))
-        shape = groove.extrude(Vector(0, 8, 0))
+        shape = groove.extrude(Vector(0, 3, 0))
         faces = [i for i, f in enumerate(shape.Faces) if f.normalAt(0, 0).z > 0.5]
         self.assertEqual(len(faces), 2)
         for chosen, along in ((faces, 0), (faces[:1], 0), (faces[:1], 90)):
             with self.subTest(faces=chosen, along=along):
-                program, _ = self.swept(shape, chosen, ball_end(1), along=along)
+                program, _ = self.swept(shape, chosen, ball_end(1), scallop_mm=0.1, along=along)
                 self.assertLess(ball_gouge(shape, 1, tips(program)[::8]), GOUGE_MM)
 
     def test_a_face_with_a_hole_and_a_boss_is_swept_round_them(self):
-        shape = Part.makeBox(14, 10, 4).cut(Part.makeCylinder(2, 10, Vector(4, 5, -1))).fuse(Part.makeCylinder(1.5, 7, Vector(10, 5, 0)))
+        shape = Part.makeBox(10, 6, 4).cut(Part.makeCylinder(1.5, 10, Vector(3, 3, -1))).fuse(Part.makeCylinder(1, 7, Vector(7, 3, 0)))
         face = next(i for i, f in enumerate(shape.Faces) if isinstance(f.Surface, Part.Plane) and abs(f.CenterOfMass.z - 4) < 1e-6)
-        program, _ = self.swept(shape, [face], ball_end(1.5))
+        program, _ = self.swept(shape, [face], ball_end(1.5), scallop_mm=0.1)
         self.assertLess(ball_gouge(shape, 1.5, tips(program)[::8]), GOUGE_MM)
 
     def test_spheres_and_cylinders_are_cut_where_they_look_up(self):
@@ -161,7 +168,7 @@ class PartsTest(SweptTest):
         program, left = self.swept(ball, [0], ball_end(2), along="u", steepest_deg=70)
         self.assertRegex(left[0], "steeper")
         self.check_ball(ball, [0], 2, 0.05, program, 70)
-        lying = Part.makeCylinder(4, 6, Vector(0, 0, 0), Vector(1, 0, 0))
+        lying = Part.makeCylinder(4, 3, Vector(0, 0, 0), Vector(1, 0, 0))
         face = next(i for i, f in enumerate(lying.Faces) if isinstance(f.Surface, Part.Cylinder))
         program, left = self.swept(lying, [face], ball_end(2), steepest_deg=60)
         self.check_ball(lying, [face], 2, 0.05, program, 60)

@@ -86,6 +86,8 @@ class Drop:
                 if again + 1 < CANDIDATES:
                     away = points[best]
                     close = sum((points[:, k] - away[:, k : k + 1]) ** 2 for k in range(3)) < apart
+                    if part.labels[of[0]] < len(part.faces) and part.faces[part.labels[of[0]]].closed:
+                        close &= self._same_side(of, best)
                     tip[rows] = np.where(close, -np.inf, tip[rows])
         tips, chosen, z = (np.concatenate(column) for column in zip(*found))
         if not len(tips):
@@ -94,6 +96,11 @@ class Drop:
         np.maximum.at(top, tips - first, z)
         hopeful = z + self._gain(part.labels[chosen], np.linalg.norm(part.points[chosen, :2] - xy[tips - first], axis=1)) >= top[tips - first]
         return tips[hopeful], chosen[hopeful], z[hopeful]
+
+    def _same_side(self, of, best):
+        """Not beyond the seam: a place there is found from its own side alone."""
+        parameters, trim = self._part.parameters[of], self._part.faces[self._part.labels[of[0]]].trim
+        return sum(np.abs(parameters[:, k] - parameters[best, k : k + 1]) > (trim.high - trim.low)[k] / 2 for k in (0, 1)) == 0
 
     def _gain(self, labels, off):
         """How much higher the contact may be than the nearest point of the cloud: by the bend of the mill and that of the part. The

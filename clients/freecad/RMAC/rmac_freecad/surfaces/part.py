@@ -18,6 +18,7 @@ class Face:
         for periodic, end in ((spline.isUPeriodic(), spline.setUNotPeriodic), (spline.isVPeriodic(), spline.setVNotPeriodic)):
             if periodic:
                 end()
+        self.closed = spline.isUClosed() or spline.isVClosed()
         self.surface = Surface(spline)
         self.trim = Trim(face)
         self.turn = self._turn(face)
