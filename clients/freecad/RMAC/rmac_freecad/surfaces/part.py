@@ -9,6 +9,7 @@ from rmac_freecad.surfaces.trim import Trim
 
 SPACING = 10  # points a radius of the mill
 MOST_POINTS = 200_000  # of the cloud of a face
+SAG_MM = 2e-4  # of an edge between points
 CELLS = 4  # of the cloud's grid, a radius of the mill
 
 
@@ -152,7 +153,9 @@ def _edges(exact):
 def _along(curve, spacing):
     t = np.linspace(curve.first, curve.last, 60)
     length = np.linalg.norm(np.diff(curve(t), axis=0), axis=1).sum()
-    count = int(min(max(length / spacing, 8 * len(np.unique(curve.knots)), 16), 20_000)) + 1
-    t = np.linspace(curve.first, curve.last, count)
-    sag = np.linalg.norm(np.diff(curve(t), 2, axis=0), axis=1).max() / 8
-    return t, length / (count - 1), sag
+    count = max(length / spacing, 8 * len(np.unique(curve.knots)), 16)
+    for _ in range(2):  # a wall nearer than that to the mill's side would be between two points
+        t = np.linspace(curve.first, curve.last, int(min(count, 20_000)) + 1)
+        sag = np.linalg.norm(np.diff(curve(t), 2, axis=0), axis=1).max() / 8
+        count *= max(math.sqrt(sag / SAG_MM), 1)
+    return t, length / (len(t) - 1), sag
