@@ -13,7 +13,7 @@ void Announcer::announce(const CycleNews::Taken& news) {
   using Kind = QueueChange::Kind;
   for (const QueueChange& change : news.queue) {
     if (change.kind == Kind::Added || change.kind == Kind::Still) {
-      ledger_.add(change.move_id, change.kind == Kind::Still, change.part, change.name, change.cycle);
+      ledger_.add(change.move_id, change.kind == Kind::Still, change.part, change.name, change.cycle, change.order);
       continue;
     }
     tell_samples_until(change.cycle);
@@ -44,7 +44,10 @@ void Announcer::tell_samples_until(std::int64_t cycle) {
 }
 
 void Announcer::tell_events_before(std::int64_t cycle) {
-  while (auto event = events_.next_before(cycle)) tell(std::move(*event));
+  while (auto event = events_.next_before(cycle)) {
+    ledger_.tell_before(*event, [this](const Event& earlier) { tell(earlier); });
+    tell(std::move(*event));
+  }
 }
 
 void Announcer::tell(Event event) {

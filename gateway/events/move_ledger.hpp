@@ -19,9 +19,10 @@ class MoveLedger {
   /// `still`: the move has no motion, so no sample counts it; it is done in its turn. The first part of a move tells
   /// that it began, the last one that it is done.
   /// `name`: as it is told; empty: "move 7". `since`: the cycle in which it was queued; a move without motion is told
-  /// by a later sample, behind what ended in that cycle.
-  void add(std::int64_t move_id, bool still, MovePart part = {}, std::string name = {}, std::int64_t since = -1) {
-    moves_.push_back({move_id, !part.first, still, part.last, std::move(name), since});
+  /// by a later sample, behind what ended in that cycle, or before the first event of a later `order`.
+  void add(std::int64_t move_id, bool still, MovePart part = {}, std::string name = {}, std::int64_t since = -1,
+           std::uint64_t order = 0) {
+    moves_.push_back({move_id, !part.first, still, part.last, std::move(name), since, order});
   }
   /// What is not done will not be done.
   void clear() { moves_.clear(); }
@@ -30,7 +31,10 @@ class MoveLedger {
     moves_.clear();
     done_ = 0;
   }
-  void read(const CycleSample& sample, const std::function<void(const Event&)>& tell);
+  using Tell = std::function<void(const Event&)>;
+  void read(const CycleSample& sample, const Tell& tell);
+  /// Tells of moves without motion whose turn had come before an event that is to be told now.
+  void tell_before(const Event& event, const Tell& tell);
 
  private:
   struct Entry {
@@ -40,7 +44,14 @@ class MoveLedger {
     bool tells_done;
     std::string name;
     std::int64_t since;
+    std::uint64_t order;
   };
+  struct Moment {
+    double t_s;
+    std::int64_t cycle;
+  };
+  static void start(Entry& entry, const Moment& at, const Tell& tell);
+  void end_front(const Moment& at, const Tell& tell);
   [[nodiscard]] bool front_is_done(const CycleSample& sample) const noexcept {
     const Entry& front = moves_.front();
     return front.still ? sample.cycle > front.since : done_ < sample.moves_done;

@@ -18,10 +18,12 @@ struct QueueChange {
   std::int64_t move_id = 0;
   std::int64_t cycle = 0;
   MovePart part{};
-  std::string name{};  ///< as events name it; empty: "move 7"
+  std::string name{};       ///< as events name it; empty: "move 7"
+  std::uint64_t order = 0;  ///< among events and changes
 };
 
-/// What the gateway has not been told yet: events, and changes of the queue, each in their order.
+/// What the gateway has not been told yet: events, and changes of the queue, each in their order, and numbered
+/// together.
 class CycleNews {
  public:
   struct Taken {
@@ -35,7 +37,7 @@ class CycleNews {
     cycle_ = cycle;
   }
   void tell(Event::Kind kind, std::string message, MinorCode code = MinorCode::None, bool goes_on = false) {
-    news_.events.push_back({kind, t_s_, 0, std::move(message), cycle_, {}, code, {}, goes_on});
+    tell({kind, t_s_, 0, std::move(message), cycle_, {}, code, {}, goes_on});
   }
   /// At the time that was set.
   void tell_now(Event event) {
@@ -43,10 +45,14 @@ class CycleNews {
     event.cycle = cycle_;
     tell(std::move(event));
   }
-  void tell(Event event) { news_.events.push_back(std::move(event)); }
+  void tell(Event event) {
+    event.order = ++told_;
+    news_.events.push_back(std::move(event));
+  }
   /// What is added to the queue is so in the cycle that was set.
   void tell(QueueChange change) {
     if (change.kind == QueueChange::Kind::Added || change.kind == QueueChange::Kind::Still) change.cycle = cycle_;
+    change.order = ++told_;
     news_.queue.push_back(std::move(change));
   }
   [[nodiscard]] Taken take() { return std::exchange(news_, {}); }
@@ -55,6 +61,7 @@ class CycleNews {
   Taken news_;
   double t_s_ = 0;
   std::int64_t cycle_ = 0;
+  std::uint64_t told_ = 0;  ///< events and changes
 };
 
 }  // namespace rmac::gateway

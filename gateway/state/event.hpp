@@ -38,6 +38,7 @@ struct Event {
   MinorCode code = MinorCode::None;  ///< the status that it leaves
   std::optional<sdk::Hit> hit{};     ///< what a `Kind::Hit` found
   bool goes_on = false;              ///< the cycle runs from now on: what stopped it before is over
+  std::uint64_t order = 0;           ///< among what was told and queued off the servo thread; 0: it is not of that
 };
 
 }  // namespace rmac::gateway

@@ -145,7 +145,9 @@ TEST(DriveLibraries, RefuseWhatIsWrongByFileKeyAndReason) {
   EXPECT_EQ(refusal(sound()), "no error");
   EXPECT_THAT(with("SkipX", {"6502h"}),
               AllOf(HasSubstr("maker-drive.json: "), HasSubstr("unknown key \"SkipX\"; did you mean \"Skip\"")));
-  EXPECT_THAT(with("AnswerDelay", true), HasSubstr("unknown key \"AnswerDelay\""));
+  EXPECT_THAT(with("Answer", true), HasSubstr("unknown key \"Answer\""));
+  for (const int delay : {0, 9})
+    EXPECT_THAT(with("AnswerDelay", delay), HasSubstr("allowed is an integer from 1 to 8"));
   EXPECT_EQ(with("SdoTimeout", 0), "maker-drive.json: /SdoTimeout is 0; allowed is a number from 0.01 to 60 (s)");
   EXPECT_THAT(with("SdoRetries", 2.5), HasSubstr("/SdoRetries is 2.5"));
   EXPECT_THAT(with("Skip", {"0x6502"}), HasSubstr("as in 60C2h or 60C2h:02"));

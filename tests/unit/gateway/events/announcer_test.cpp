@@ -71,6 +71,28 @@ TEST_F(AnnouncerTest, TellsOfMovesFromSamples) {
   EXPECT_THAT(told_, ElementsAre("sample 1", "move 8 started", "sample 2", "sample 3", "move 8 done"));
 }
 
+// Red when calls that are done in the cycle in which a move without motion before them was, are told before it: a
+// client that waits for its moves in order then waits for ever. So did `rmac simulate`.
+TEST_F(AnnouncerTest, WhatWasDoneFirstIsToldFirstThoughItWasInOneCycle) {
+  run_cycle();
+  CycleNews news;
+  news.set_time(0.001, 1);
+  news.tell(Event::Kind::ToolChanged, "the tool is in");
+  news.tell(QueueChange{QueueChange::Kind::Still, 4, 0, {}, {}});
+  news.tell(QueueChange{QueueChange::Kind::Still, 5, 0, {}, {}});
+  news.tell(Event::Kind::MoveDone, "calls in turn 6 done");
+  news.tell(QueueChange{QueueChange::Kind::Added, 7, 0, {}, {}});
+  news.tell(QueueChange{QueueChange::Kind::Still, 8, 0, {}, {}});
+  news.tell(Event::Kind::CycleStateChanged, "Running to Holding");
+  announcer_.announce(news.take());
+  EXPECT_THAT(told_, ElementsAre("sample 1", "the tool is in", "move 4 started", "move 4 done", "move 5 started",
+                                 "move 5 done", "calls in turn 6 done", "Running to Holding"));
+  told_.clear();
+  run_cycle(0, 1);
+  announcer_.announce({});
+  EXPECT_THAT(told_, ElementsAre("sample 2", "move 7 started", "move 7 done", "move 8 started", "move 8 done"));
+}
+
 TEST_F(AnnouncerTest, MovesThatWereDroppedAreNotDoneInTheCyclesAfterThat) {
   run_cycle(8);
   run_cycle(8);

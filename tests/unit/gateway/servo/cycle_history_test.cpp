@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <mutex>
 #include <thread>
 
 #include "gateway/record/flight_recorder.hpp"
@@ -51,6 +52,7 @@ TEST(FlightRecorder, MissesNoCycleOfAServoThreadThatWaitsForIt) {
   const FlightRecorderOptions options{folder.path(), kShown * kPeriod_s, 1000};
   CycleHistory history(FlightRecorder::history_cycles(options, kPeriod_s));
   std::atomic<bool> ends{false};
+  std::mutex cycles;  // a cycle that is asked for is still there
   std::vector<std::string> asked;
   {
     FlightRecorder recorder(options, kPeriod_s, history);
@@ -62,12 +64,14 @@ TEST(FlightRecorder, MissesNoCycleOfAServoThreadThatWaitsForIt) {
           std::this_thread::yield();
           continue;
         }
+        const std::scoped_lock cycle(cycles);
         ++sample.cycle;
         sample.position.fill(static_cast<double>(sample.cycle));
         history.add(sample);
       }
     });
     while (asked.size() < 30) {
+      const std::scoped_lock cycle(cycles);
       FlightHead head;
       head.cause = asked.size() % 2 == 0 ? FlightCause::Fault : FlightCause::Demand;
       head.cycle = history.newest();

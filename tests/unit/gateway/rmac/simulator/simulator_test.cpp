@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <random>
+
 #include "places.hpp"
 
 namespace rmac::cli {
@@ -71,6 +73,44 @@ TEST(Simulator, PassesAMoveToWhereTheToolStandsBehindADwell) {
   const auto report = simulate(program, 100);
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->moves, 3U);
+}
+
+// Red when one of two steps that are done in the same cycle is told before the one in front of it, whatever they are.
+TEST(Simulator, GetsThroughWhateverStandsBetweenMoves) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937 random(seed);
+    Program program;
+    program.file = "steps.rmac";
+    program.requests.push_back(request(1, "RMAC_CAM.SetFeedrate", {{"Feedrate", 6000}}));
+    int place = 0;
+    for (int i = 1; i <= 40; ++i) {
+      const auto add = [&](const std::string& method, nlohmann::json params) {
+        params["MoveID"] = i;
+        program.requests.push_back(request(i + 1, method, params));
+      };
+      switch (random() % 5) {
+        case 0:
+          place = 1 - place;
+          [[fallthrough]];
+        case 1:
+          add("RMAC_CAM.MoveToPathTarget", {{"TargetFrame", {{"p", {place, 0, 0}}, {"axis", {0, 0, 1}}}}});
+          break;
+        case 2:
+          add("RMAC_CAM.Dwell", {{"Time", random() % 2 == 0 ? 0 : 0.004}});
+          break;
+        case 3:
+          add("RMAC_CAM.ProgramStop", {{"Optional", random() % 2 == 0}});
+          break;
+        default:
+          add("RMAC_CAM.InTurn", {{"Calls",
+                                   {{{"method", "RMAC_CAM.SetSpindleRPM"},
+                                     {"params", {{"SpindleNumber", 0}, {"RPM", 100 * (random() % 3)}}}}}}});
+      }
+    }
+    const auto report = simulate(program, 100);
+    ASSERT_TRUE(report) << "seed " << seed << ": " << report.error().message;
+    EXPECT_EQ(report->moves, 40U) << "seed " << seed;
+  }
 }
 
 TEST(Simulator, NamesTheLineOfAnInputThatIsNot) {
