@@ -66,6 +66,12 @@ class Mover:
         self._program.append(made, place)
         self._go_on(end)
 
+    def follow(self, curve, feed, place):
+        """A NURBS that begins where the tool is."""
+        self._set_feed(feed, place)
+        self._program.append(rmac.Nurbs(curve), place)
+        self._go_on(curve.points[-1])
+
     def dwell(self, seconds, place):
         if not seconds >= 0:
             raise JobRefused("a dwell of less than no time", place)

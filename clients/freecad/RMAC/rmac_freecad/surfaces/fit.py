@@ -1,0 +1,100 @@
+"""One quintic B-spline a stretch: exact in plan, and never below the heights that the part allows."""
+
+import numpy as np
+
+from rmac_freecad.jobs.refusal import JobRefused
+from rmac_freecad.surfaces import bspline
+
+DEGREE = 5
+IN_A_SPAN = 6
+SHORTEST_MM = 2e-4
+KINK_SLOPE = 2e-3
+
+
+class Plan:
+    """A stretch of a pass as seen from above. `at` gives its places; a straight one is exact with any knots."""
+
+    def __init__(self, at, first, last, breaks, band_mm):
+        self.at = at
+        self.breaks = np.linspace(first, last, breaks + 1)
+        self._poles = None
+        while not self._fits(band_mm):
+            pass
+
+    def _fits(self, band_mm):
+        t = _filled(self.breaks, IN_A_SPAN)
+        places = self.at(t)
+        knots = bspline.clamped(self.breaks, DEGREE)
+        self._poles = bspline.fitted(knots, DEGREE, t, places)
+        off = np.linalg.norm(bspline.value(knots, DEGREE, self._poles, t) - places, axis=1)
+        bad = _spans_of(self.breaks, t[off > band_mm / 2])
+        if len(self.breaks) > 4000:
+            raise JobRefused("the line of the pass is not smooth; take planes (along=0)")
+        self._knots = knots
+        if len(bad):
+            self.breaks = _halved(self.breaks, bad)
+        return not len(bad)
+
+    def __call__(self, t):
+        return bspline.value(self._knots, DEGREE, self._poles, t)
+
+    def poles(self, knots):
+        """The same curve with more knots."""
+        t = _filled(np.unique(knots), IN_A_SPAN)
+        return bspline.fitted(knots, DEGREE, t, self(t))
+
+
+def fit(plan, height_at, t, z, band_mm, mm_a_unit):
+    """Knots and poles of the tip's curve: at most `band_mm` above the heights and never below. `t`, `z` are what is known of them,
+    both ends among them; `height_at(t)` tells more."""
+    breaks = plan.breaks
+    while True:
+        t, z = _completed(breaks, t, z, height_at)
+        knots = bspline.clamped(breaks, DEGREE)
+        poles = bspline.fitted(knots, DEGREE, t, z + band_mm / 2)
+        bad = _off(knots, poles, t, z, band_mm, 0.42)
+        if not len(bad):
+            between = (t[1:] + t[:-1]) / 2
+            more = height_at(between)
+            bad = _off(knots, poles, between, more, band_mm, 0.48)
+            t, z = np.concatenate([t, between]), np.concatenate([z, more])
+            order = np.argsort(t)
+            t, z = t[order], z[order]
+            if not len(bad):
+                return knots, np.column_stack([plan.poles(knots), poles])
+        bad = _spans_of(breaks, bad)
+        if (np.diff(breaks)[bad] * mm_a_unit).min() < SHORTEST_MM:
+            raise JobRefused(f"no smooth curve stays within {band_mm:g} mm of the part; give a larger tolerance or scallop")
+        breaks = _halved(breaks, bad)
+
+
+def _off(knots, poles, t, z, band_mm, share):
+    above = bspline.value(knots, DEGREE, poles, t) - z
+    return t[np.abs(above - band_mm / 2) > share * band_mm]
+
+
+def _completed(breaks, t, z, height_at):
+    """With enough samples in each span."""
+    counts = np.histogram(t, breaks)[0]
+    poor = np.flatnonzero(counts < IN_A_SPAN)
+    if not len(poor):
+        return t, z
+    share = (np.arange(IN_A_SPAN) + 0.5) / IN_A_SPAN
+    new = (breaks[poor][:, None] + np.diff(breaks)[poor][:, None] * share).ravel()
+    new = np.setdiff1d(new, t)
+    t, z = np.concatenate([t, new]), np.concatenate([z, height_at(new)])
+    order = np.argsort(t)
+    return t[order], z[order]
+
+
+def _filled(breaks, count):
+    inner = breaks[:-1, None] + np.diff(breaks)[:, None] * np.arange(count) / count
+    return np.append(inner.ravel(), breaks[-1])
+
+
+def _spans_of(breaks, t):
+    return np.unique(np.clip(np.searchsorted(breaks, t, side="right") - 1, 0, len(breaks) - 2))
+
+
+def _halved(breaks, spans):
+    return np.sort(np.concatenate([breaks, (breaks[spans] + breaks[spans + 1]) / 2]))

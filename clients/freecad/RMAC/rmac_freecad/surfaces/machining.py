@@ -1,0 +1,117 @@
+"""Faces of an object in the document become a program."""
+
+import math
+
+import Part as FreeCADPart
+
+import rmac
+from rmac_freecad.jobs.mover import Mover
+from rmac_freecad.jobs.refusal import JobRefused
+from rmac_freecad.program import Place, Program
+from rmac_freecad.surfaces import fit
+from rmac_freecad.surfaces.links import Links
+from rmac_freecad.surfaces.sweep import sweep
+
+ABOVE_MM = 5.0  # of the part, where nothing else is said
+OVER_MM = 0.5  # of the place where it plunges: from there on at its own feed
+
+
+def read_faces(
+    feature, names, mill, *, scallop_mm, feed_mm_min, rapid_mm_min, plunge_mm_min=None, tolerance_mm=0.005, along=0.0, steepest_deg=80.0,
+    clearance_mm=None, tool=None, rpm=None,
+):  # fmt: skip
+    """A program that sweeps faces of an object, "Face3", with the axis along Z, in the document's own coordinates; and texts of what it
+    leaves out. `along` is the direction of the passes in degrees from X, or "u" or "v" of each face. With `tool`, a number, and
+    `rpm` it begins with them. Raises `JobRefused`."""
+    feeds = {"feed_mm_min": feed_mm_min, "rapid_mm_min": rapid_mm_min, "plunge_mm_min": feed_mm_min if plunge_mm_min is None else plunge_mm_min}
+    for name, value in {**feeds, **({} if rpm is None else {"rpm": rpm})}.items():
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or value <= 0:
+            raise JobRefused(f"{name} is {value!r}: give a number that is more than 0")
+    shape = placed_shape(feature)
+    targets = [_index(feature, shape, name) for name in dict.fromkeys(names)]
+    if not targets:
+        raise JobRefused(f"no face of {feature.Label} was named; give names such as Face1")
+    top = shape.BoundBox.ZMax
+    clear = top + ABOVE_MM if clearance_mm is None else clearance_mm
+    if not math.isfinite(clear) or clear < top + 2 * OVER_MM:
+        raise JobRefused(f"clearance_mm is {clear!r}: the part is as high as {top:g} mm, and the mill is to pass {2 * OVER_MM:g} mm above it")
+    _, drop, swept = sweep(shape, targets, mill, scallop_mm=scallop_mm, tolerance_mm=tolerance_mm, along=along, steepest_deg=steepest_deg)
+    writer = _Writer(feature.Label, drop, mill, clear, feeds)
+    writer.begin(tool, rpm)
+    for number, one in enumerate(swept.passes, 1):
+        writer.cut(number, one.stretches if number % 2 else _reversed(one.stretches))
+    writer.end(rpm)
+    return writer.program, swept.left_out
+
+
+def placed_shape(feature):
+    """As it stands in the document, whatever parts and bodies it is in."""
+    shape = FreeCADPart.getShape(feature).copy()
+    if shape.isNull() or not shape.Faces:
+        raise JobRefused(f"{feature.Label} has no faces")
+    shape.Placement = feature.getGlobalPlacement() * feature.Placement.inverse() * shape.Placement
+    return shape
+
+
+def _index(feature, shape, name):
+    number = name[4:] if isinstance(name, str) and name.startswith("Face") else ""
+    if not number.isdigit() or not 1 <= int(number) <= len(shape.Faces):
+        raise JobRefused(f"{feature.Label} has no face {name!r}; it has Face1 to Face{len(shape.Faces)}")
+    return int(number) - 1
+
+
+def _reversed(stretches):
+    return [[(knots[0] + knots[-1] - knots[::-1], poles[::-1]) for knots, poles in curves[::-1]] for curves in stretches[::-1]]
+
+
+class _Writer:
+    def __init__(self, label, drop, mill, clear, feeds):
+        self.program = Program()
+        self._label, self._clear = label, clear
+        self._feed, self._plunge = feeds["feed_mm_min"], feeds["plunge_mm_min"]
+        self._mover = Mover(self.program, feeds["rapid_mm_min"])
+        self._links = Links(drop, mill)
+        self._at = None
+
+    def begin(self, tool, rpm):
+        place = Place(self._label, 1, "begin")
+        if tool is not None:
+            if isinstance(tool, bool) or tool != int(tool) or tool < 1:
+                raise JobRefused(f"a tool's number is 1 or more, and whole; this is {tool!r}")
+            self.program.append(rmac.tool_change(int(tool)), place)
+        if rpm is not None:
+            self.program.append(rmac.spindle(rpm), place)
+
+    def cut(self, number, stretches):
+        for curves in stretches:
+            self._go_to(curves[0][1][0], number)
+            for knots, poles in curves:
+                self._along(knots, poles, fit.DEGREE, Place(self._label, number, "pass"))
+
+    def end(self, rpm):
+        place = Place(self._label, 1, "end")
+        self._mover.rapid({"Z": self._clear}, place)
+        if rpm is not None:
+            self.program.append(rmac.spindle(0), place)
+
+    def _go_to(self, begin, number):
+        place = Place(self._label, number, "link")
+        poles = None if self._at is None else self._links.between(self._at, begin)
+        if poles is None:
+            self._over(begin, Place(self._label, number, "retract"))
+        elif len(poles) == 2:
+            self._mover.line(dict(zip("XYZ", begin.tolist())), self._feed, place)
+        else:
+            self._along([0, 0, 0, 0, 1, 1, 1, 1], poles, 3, place)
+
+    def _over(self, begin, place):
+        x, y, z = begin.tolist()
+        if self._at is not None:
+            self._mover.rapid({"Z": self._clear}, place)
+        self._mover.rapid({"X": x, "Y": y, "Z": self._clear}, place)
+        self._mover.rapid({"Z": min(z + OVER_MM, self._clear)}, place)
+        self._mover.line({"Z": z}, self._plunge, place)
+
+    def _along(self, knots, poles, degree, place):
+        self._mover.follow(rmac.NurbsCurve(degree, knots, poles), self._feed, place)
+        self._at = poles[-1]
