@@ -11,6 +11,9 @@ namespace {
 /// Of the tool's diameter: how far it goes until its engagement is looked at again, unless rays are farther apart.
 constexpr double kShareOfDiameter = 0.05;
 constexpr double kUnknownTool_mm = 1;
+/// So often on end is material to go, and so much, unseen, before it is told.
+constexpr int kBlindLooks = 3;
+constexpr double kLeastTaken_mm3 = 1e-3;
 /// Feeds that differ by less need no new forces.
 constexpr double kSameFeed = 0.002;
 
@@ -71,7 +74,13 @@ void CuttingLoad::cuts(const DexelGrid& grid, const ToolAt& tool, const Eigen::V
                              "takes is not in them",
                              move.line));
   }
-  if (met.slices.empty()) return;
+  if (!engaged(met, move)) return;
+  if (rpm_ < 0) {
+    miss("turns", fmt::format("it turns to the left, and its teeth are taken for those of a right-hand cutter, first "
+                              "in line {}",
+                              move.line));
+    return;
+  }
   if (!(rpm_ > 0)) {
     miss("speed", fmt::format("how fast it turns is not known, first in line {}", move.line));
     return;
@@ -92,6 +101,21 @@ void CuttingLoad::cuts(const DexelGrid& grid, const ToolAt& tool, const Eigen::V
   add(moves_[move.id], last_->forces, time_s);
   judge(Overload::Of::Torque, last_->forces.torque_nm.mean, spindle_.torque_nm, {before_s, t_s}, tool, move);
   judge(Overload::Of::Power, last_->forces.power_w.mean, spindle_.power_w, {before_s, t_s}, tool, move);
+}
+
+bool CuttingLoad::engaged(const Engagement& met, const MoveNow& move) {
+  const double taken = std::exchange(taken_mm3_, 0);
+  if (!met.slices.empty() || met.face || taken < kLeastTaken_mm3) {
+    blind_ = 0;
+    return !met.slices.empty();
+  }
+  // A look or two may fall beside the last of a cut.
+  if (++blind_ == kBlindLooks) {
+    miss("rays", fmt::format("it takes off less than rays {:g} mm apart show, first in line {}; give a finer "
+                             "--resolution",
+                             rays_mm_, move.line));
+  }
+  return false;
 }
 
 void CuttingLoad::judge(Overload::Of of, double mean, double allowed, const Span& span, const ToolAt& tool,

@@ -48,11 +48,12 @@ class CuttingLoad : public CutListener {
 
   /// What is in the spindle from now on.
   void set_tool(const Tool& tool);
-  /// What turns it from now on: 0 rpm where nobody knows.
+  /// What turns it from now on, to the right where rpm > 0; 0 rpm where nobody knows.
   void set_spindle(double rpm, const SpindlePower& power) noexcept { rpm_ = rpm, spindle_ = power; }
 
   void cuts(const DexelGrid& grid, const ToolAt& tool, const Eigen::Vector3d& velocity, double t_s,
             const MoveNow& move) override;
+  void takes(double mm3) noexcept override { taken_mm3_ += mm3; }
   [[nodiscard]] double every_mm() const override;
 
   [[nodiscard]] const WorkMaterial& material() const noexcept { return material_; }
@@ -76,6 +77,8 @@ class CuttingLoad : public CutListener {
     TurnForces forces;
   };
   void judge(Overload::Of of, double mean, double allowed, const Span& span, const ToolAt& tool, const MoveNow& move);
+  /// Whether teeth are in material now; tells of material that goes though none is seen to be.
+  [[nodiscard]] bool engaged(const Engagement& met, const MoveNow& move);
   /// Once for each tool.
   void miss(const char* kind, const std::string& sentence);
 
@@ -92,7 +95,9 @@ class CuttingLoad : public CutListener {
   std::vector<Overload> overloads_;
   std::set<std::string> not_told_, missed_;
   std::optional<Last> last_;
-  double told_s_ = 0;  ///< when it last heard of the tool
+  double told_s_ = 0;     ///< when it last heard of the tool
+  double taken_mm3_ = 0;  ///< since then
+  int blind_ = 0;         ///< so often on end material went and no tooth was seen in any
 };
 
 }  // namespace rmac::gateway

@@ -173,6 +173,7 @@ void Material::cut_with(Part& part) {
   const Removal met = cut(grid_, part.waiting, turns_ ? Cut::Remove : Cut::Look);
   part.waiting.clear();
   if (turns_) removed_.add(met);
+  if (turns_ && listening_.listener != nullptr) listening_.listener->takes(*std::ranges::max_element(met.volumes_mm3));
   if (!turns_) {
     tell(part, met, "the spindle stands");
   } else if (!move_.cutting) {

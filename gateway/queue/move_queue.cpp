@@ -22,6 +22,7 @@ void tell_of(const QueueStep& step, const QueueListener& listener) {
     listener(move, path->segments);
   } else if (const auto* turn = std::get_if<InTurn>(&step)) {
     move.id = turn->move_id;
+    move.geometry = JointTargetGeometry{};
     listener(move, {});
   }
 }

@@ -103,6 +103,47 @@ class Forces(unittest.TestCase):
         self.assertIn("did you mean \"Al7075-T6\"?", report["forces"]["not_told"][0])
         self.assertIn("did you mean \"Al7075-T6\"?", done.stderr)
 
+    def test_what_rays_cannot_show_is_told_as_loudly(self):
+        """Red when a cut thinner than half of the rays' distance takes material and no force, and nothing is said."""
+        report, done = self.report(slot(0.05, 600, 3000))
+        self.assertGreater(report["material"]["removed_mm3"], 10)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("takes off less than rays 0.2 mm apart show, first in line 4", " ".join(report["forces"]["not_told"]))
+        report, done = self.report(slot(0.05, 600, 3000), "--resolution", "0.05")
+        self.assertEqual((done.returncode, report["forces"]["not_told"]), (0, []), done.stderr)
+        self.assertGreater(report["forces"]["cutting_s"], 6)
+
+    def test_a_spindle_that_turns_to_the_left_is_told(self):
+        report, done = self.report(slot(4, 600, -3000))
+        self.assertEqual((done.returncode, report["forces"]["cutting_s"]), (1, 0))
+        self.assertIn("turns to the left", " ".join(report["forces"]["not_told"]))
+
+    def test_the_way_to_the_first_position_is_nobodys_whatever_is_done_before(self):
+        """Red when a spindle's speed, calls in turn or a dwell before the first move have the way from the joints' zero judged."""
+        plain = self.report(slot(4, 600, 3000))[0]
+        calls = [{"method": "RMAC_CAM.SetSpindleRPM", "params": {"SpindleNumber": 0, "RPM": 3000}}]
+        for before in ([request("RMAC_CAM.InTurn", MoveID=8, Calls=calls)], [request("RMAC_CAM.Dwell", MoveID=9, Time=0.5)]):
+            report, done = self.report([*slot(4, 600, 3000)[:2], *before, *slot(4, 600, 3000)[2:]])
+            self.assertEqual(done.returncode, 0, done.stderr)
+            for key in ("removed_mm3", "left_mm3"):
+                self.assertEqual(report["material"][key], plain["material"][key])
+            self.assertEqual(report["collisions"], [])
+
+    def test_nothing_that_is_read_is_written(self):
+        materials = self.folder / "chips.stl"
+        text = json.dumps({"Materials": [MATERIAL]})
+        materials.write_text(text)
+        for name in ("program.rmac", "setup.json", "tools/SuginoXYZAC.json"):
+            done = self.run_rmac(slot(4, 600, 3000), "--record", self.folder / name)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("this run uses this file; choose another name with --record", done.stderr)
+        for option in ("--record", "--stock-out"):
+            done = self.run_rmac(slot(4, 600, 3000), "--materials", materials, option, materials)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(f"this run uses this file; choose another name with {option}", done.stderr)
+        self.assertEqual(materials.read_text(), text)
+        self.assertTrue((self.folder / "program.rmac").read_text().startswith("{"))
+
     def test_who_names_no_material_is_told_how(self):
         nameless = {key: value for key, value in STOCK.items() if key != "Material"}
         report, done = self.report(slot(4, 600, 3000), setup=nameless)

@@ -108,9 +108,15 @@ bool CollisionWatch::may_cut(const Move& move) noexcept {
          !std::holds_alternative<JointTargetGeometry>(move.geometry);
 }
 
+bool CollisionWatch::leads_somewhere(const Move& move) noexcept {
+  const auto* const joints = std::get_if<JointTargetGeometry>(&move.geometry);
+  return joints == nullptr || !joints->joints.empty();
+}
+
 void CollisionWatch::move_done() {
-  if (!cutting_.empty()) cutting_.pop_front();
-  begun_ = true;
+  if (queue_.empty()) return;
+  begun_ = begun_ || queue_.front().leads;
+  queue_.pop_front();
 }
 
 void CollisionWatch::take_tool(gateway::Controller& controller) {
@@ -145,7 +151,7 @@ void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway
   if (std::exchange(look_at_tool_, false)) take_tool(controller);
   if (sample.moving && !tool_fault_.empty()) not_checked_.insert(tool_fault_);
   if (sample.moving && !too_thin_.empty()) not_checked_.insert(too_thin_);
-  const bool cutting = sample.moving && !cutting_.empty() && cutting_.front();
+  const bool cutting = sample.moving && !queue_.empty() && queue_.front().cuts;
   // A simulation begins with all joints at 0, where the machine need not stand: the way from there to the first
   // position is nobody's.
   if (!begun_ && !cutting) return;
@@ -159,7 +165,7 @@ void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway
       device->spindles.empty() || std::ranges::any_of(sample.spindle_rpm, [](double rpm) { return rpm != 0; });
   if (load_ && !device->spindles.empty()) {
     const sdk::Spindle& spindle = device->spindles.front();
-    load_->set_spindle(std::abs(sample.spindle_rpm.front()),
+    load_->set_spindle(sample.spindle_rpm.front(),
                        {.torque_nm = spindle.max_torque_nm, .power_w = spindle.horse_power * kWattsPerHorsePower});
   }
   material_->advance(sample.t_s, joints, move, turns);

@@ -31,7 +31,7 @@ class CollisionWatch {
                                                                     const std::filesystem::path& materials);
 
   /// A move has been added to those that are not done; the first of them is done.
-  void queued(const Move& move) { cutting_.push_back(may_cut(move)); }
+  void queued(const Move& move) { queue_.push_back({may_cut(move), leads_somewhere(move)}); }
   void move_done();
   /// The tool in the spindle, its number and what the table says of it, may be another.
   void tool_may_have_changed() noexcept { look_at_tool_ = true; }
@@ -58,6 +58,8 @@ class CollisionWatch {
       : setup_(std::move(setup)), checker_(std::move(checker)) {}
   /// Positioning moves go through air; what is programmed as a path may cut.
   [[nodiscard]] static bool may_cut(const Move& move) noexcept;
+  /// It is a move, and no calls in turn or a dwell.
+  [[nodiscard]] static bool leads_somewhere(const Move& move) noexcept;
   [[nodiscard]] Result<> watch_load(const std::filesystem::path& materials);
   void take_tool(gateway::Controller& controller);
 
@@ -66,7 +68,10 @@ class CollisionWatch {
   std::unique_ptr<gateway::Material> material_;  ///< its findings go to the checker's
   std::unique_ptr<gateway::CuttingLoad> load_;   ///< listens to the material
   std::string unknown_material_;                 ///< why there is no load
-  std::deque<bool> cutting_;                     ///< of the moves that are not done
+  struct Queued {
+    bool cuts, leads;
+  };
+  std::deque<Queued> queue_;  ///< what is not done
   std::set<std::string> not_checked_;
   std::string tool_fault_;  ///< what cannot be checked with the tool in the spindle
   std::string too_thin_;    ///< what of it is not found in material

@@ -10,6 +10,7 @@
 
 #include "gateway/material/stock.hpp"
 #include "gateway/material/surface.hpp"
+#include "gateway/rmac/commands/programs/run_files.hpp"
 #include "gateway/rmac/terminal/table.hpp"
 
 namespace rmac::cli {
@@ -18,22 +19,9 @@ namespace {
 /// 100 MB: as many as a mesh of a set-up may have is four million.
 constexpr std::size_t kMostTriangles = 2'000'000;
 
-/// The meshes that a set-up was made of.
-std::vector<std::filesystem::path> files_of(const gateway::Setup& setup) {
-  std::vector<std::filesystem::path> files;
-  const auto add = [&files](const gateway::Body& body) {
-    if (const auto* const mesh = std::get_if<gateway::MeshShape>(&body.shape)) files.push_back(mesh->file);
-  };
-  if (setup.stock) add(*setup.stock);
-  if (setup.part) add(*setup.part);
-  std::ranges::for_each(setup.fixtures, add);
-  return files;
-}
-
 }  // namespace
 
-Result<> check_stock_out(const std::string& file, const gateway::Setup& setup,
-                         const std::vector<std::filesystem::path>& taken) {
+Result<> check_stock_out(const std::string& file, const std::vector<std::filesystem::path>& taken) {
   namespace fs = std::filesystem;
   const fs::path path(file);
   if (path.extension() != ".stl") return fail(fmt::format("{}: the name of --stock-out ends in .stl", file));
@@ -42,15 +30,7 @@ Result<> check_stock_out(const std::string& file, const gateway::Setup& setup,
   if ((fs::exists(path, none) && !fs::is_regular_file(path, none)) || ::access(folder.c_str(), W_OK) != 0) {
     return fail(fmt::format("{}: cannot be written; choose another place with --stock-out", file));
   }
-  std::vector<fs::path> others = files_of(setup);
-  others.insert(others.end(), taken.begin(), taken.end());
-  for (const fs::path& other : others) {
-    // Two names of one file, or one name of a file that is not there yet.
-    const bool same = fs::equivalent(path, other, none) ||
-                      (!other.empty() && fs::weakly_canonical(path, none) == fs::weakly_canonical(other, none));
-    if (same) return fail(fmt::format("{}: this run uses this file; choose another name with --stock-out", file));
-  }
-  return {};
+  return refuse_used(file, "--stock-out", taken);
 }
 
 Result<MaterialReport> report_material(const CollisionWatch& watch, const std::string& stock_out) {

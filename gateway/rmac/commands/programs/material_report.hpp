@@ -26,10 +26,9 @@ struct MaterialReport {
   double stock_apart = 0;  ///< the points of its surface, at most
 };
 
-/// Refuses a file that could not be written, before anything is done for it, what is no regular file, the meshes of the
-/// set-up, and files that are `taken` otherwise.
-[[nodiscard]] Result<> check_stock_out(const std::string& file, const gateway::Setup& setup,
-                                       const std::vector<std::filesystem::path>& taken);
+/// Refuses a file that could not be written, before anything is done for it, what is no regular file, and files that
+/// are `taken` otherwise.
+[[nodiscard]] Result<> check_stock_out(const std::string& file, const std::vector<std::filesystem::path>& taken);
 /// Of a run that is over, with a set-up that has a stock; writes the file, if any.
 [[nodiscard]] Result<MaterialReport> report_material(const CollisionWatch& watch, const std::string& stock_out);
 

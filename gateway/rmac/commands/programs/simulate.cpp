@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -11,6 +13,7 @@
 #include "gateway/rmac/commands/programs/force_report.hpp"
 #include "gateway/rmac/commands/programs/material_report.hpp"
 #include "gateway/rmac/commands/programs/registrations.hpp"
+#include "gateway/rmac/commands/programs/run_files.hpp"
 #include "gateway/rmac/commands/programs/source.hpp"
 #include "gateway/rmac/simulator/simulator.hpp"
 #include "gateway/rmac/terminal/table.hpp"
@@ -154,14 +157,28 @@ Result<> check_options(const Options& options, const Program& program, bool json
   return {};
 }
 
-Result<> check_stock_file(const Options& options, const CollisionWatch& collisions) {
+std::filesystem::path materials_of(const Options& options) {
+  return options.materials.empty() ? gateway::default_folders().materials : options.materials;
+}
+
+/// Nothing that is written takes the place of what is read, or written otherwise. `collisions` may be null.
+Result<> check_written(const Options& options, const CollisionWatch* collisions) {
+  std::vector<std::filesystem::path> used = files_in(options.tools);
+  used.insert(used.end(), {options.source.file, options.machine});
+  if (collisions != nullptr) {
+    used.insert(used.end(), {options.setup, materials_of(options)});
+    std::ranges::copy(files_of(collisions->setup()), std::back_inserter(used));
+  }
+  if (!options.record_file.empty()) {
+    if (auto fine = refuse_used(options.record_file, "--record", used); !fine) return fine;
+  }
   if (options.stock_out.empty()) return {};
-  if (collisions.material() == nullptr) {
+  if (collisions == nullptr || collisions->material() == nullptr) {
     return fail(
         fmt::format("{}: has no Stock, so that nothing can be left of it for --stock-out", options.setup.string()));
   }
-  return check_stock_out(options.stock_out, collisions.setup(),
-                         {options.setup, options.source.file, options.record_file});
+  used.emplace_back(options.record_file);
+  return check_stock_out(options.stock_out, used);
 }
 
 Result<> simulate_program(const Options& options, bool json) {
@@ -179,18 +196,16 @@ Result<> simulate_program(const Options& options, bool json) {
   if (!simulation) return fail(simulation.error().message);
   std::unique_ptr<CollisionWatch> collisions;
   if (!options.setup.empty()) {
-    auto opened =
-        CollisionWatch::open(options.machine, tree, options.setup, options.resolution,
-                             options.materials.empty() ? gateway::default_folders().materials : options.materials);
+    auto opened = CollisionWatch::open(options.machine, tree, options.setup, options.resolution, materials_of(options));
     if (!opened) return tl::unexpected(opened.error());
     collisions = std::move(*opened);
-    if (auto fine = check_stock_file(options, *collisions); !fine) return fine;
     // As somebody would who clamped the part there; a program may set another one.
     const auto stands =
         (*simulation)
             ->call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json(collisions->setup().part_frame)}});
     if (!stands) return fail(fmt::format("{}: /PartFrame: {}", options.setup.string(), stands.error().message));
   }
+  if (auto fine = check_written(options, collisions.get()); !fine) return fine;
   std::optional<StandstillWatch> watch(std::in_place, (*simulation)->controller());
   Simulator simulator(**simulation, *program, options.record_file);
   if (collisions) simulator.watch_collisions(*collisions, options.first);
