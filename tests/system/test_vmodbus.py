@@ -118,6 +118,13 @@ def ask(connection, request, slave=1, number=7):
 
 
 class WithTheAppliance(unittest.TestCase):
+    def reset(self, operator):
+        """As a person does it, again where the drive has not taken it yet: a serial line on a busy computer is slow."""
+        until = time.monotonic() + BOUND_S
+        while "error" in (answer := operator.ask("RMAC_CAM.Reset")):
+            self.assertIn("the fault is still there", answer["error"]["message"])
+            self.assertLess(time.monotonic(), until)
+
     def check(self, register_map, serial):
         parameters = {"maximum_hz": 400} if register_map == "powtran-pi500" else {}
         with Virtual(f"1={register_map}", serial=serial) as served, Machine(served, register_map, **parameters) as machine:
@@ -125,7 +132,7 @@ class WithTheAppliance(unittest.TestCase):
                 machine.turn(rpm)
             served.tell("1 trip 9", "tripped with 9")
             self.assertIn("the drive reports error 0009h", machine.wait_fault())
-            machine.operator.call("RMAC_CAM.Reset")
+            self.reset(machine.operator)
             served.wait_for(lambda drive: drive.turning_hz == 0)
             machine.turn(600)
 
