@@ -19,12 +19,14 @@ def make(node, manners, written):
     device(d, written)
     for index in manners.absent:
         d.remove(*(index if isinstance(index, tuple) else (index,)))
-    for key, value in manners.value:
-        d.set_default(key[0], value, key[1])
     words = lambda text: [int(word, 16) for word in text.split()]  # noqa: E731
     first = lambda number, contents: words(contents) if number == 0 else []  # noqa: E731
-    rpdos = [Pdo(d, 0x1400 + n, base + node, first(n, manners.rpdo), RPDO_OBJECTS | DUMMIES) for n, base in enumerate((0x200, 0x300, 0x400, 0x500))]
-    tpdos = [Pdo(d, 0x1800 + n, base + node, first(n, manners.tpdo), TPDO_OBJECTS) for n, base in enumerate((0x180, 0x280, 0x380, 0x480))]
+    rpdos = [Pdo(d, 0x1400 + n, base + node, first(n, manners.rpdo), RPDO_OBJECTS | DUMMIES)
+             for n, base in enumerate((0x200, 0x300, 0x400, 0x500)) if 0x1400 + n not in manners.absent]
+    tpdos = [Pdo(d, 0x1800 + n, base + node, first(n, manners.tpdo), TPDO_OBJECTS)
+             for n, base in enumerate((0x180, 0x280, 0x380, 0x480)) if 0x1800 + n not in manners.absent]
+    for key, value in manners.value:
+        d.set_default(key[0], value, key[1])
     d.refuses, d.refuses_write = dict(manners.refuse), dict(manners.refuse_write)
     if manners.fixed_mapping:
         d.refuses_write |= {base + n: 0x06010002 for base in (0x1600, 0x1A00) for n in range(4)}
