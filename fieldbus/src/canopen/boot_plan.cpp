@@ -14,7 +14,7 @@ using Kind = BootStep::Kind;
 
 constexpr std::uint32_t kInvalidPdo = 0x80000000;
 constexpr std::uint32_t kNoRemoteRequest = 0x40000000;
-constexpr std::uint32_t kWhatever = 0, kByte = 0xFF, kAll = 0xFFFFFFFF;  ///< what of a value is compared
+constexpr std::uint32_t kByte = 0xFF, kAll = 0xFFFFFFFF;  ///< what of a value is compared
 
 struct InterpolationTime {
   std::int64_t value;
@@ -244,10 +244,7 @@ class Plan {
     }
     if (manners_.store_after_mapping) compare_contents(Kind::Compare, contents, entries);
     write_pdo({communication, 1}, 4, kInvalidPdo | cob_id, cob_id, ~kNoRemoteRequest);
-    // Setpoints count whether a drive acts on them at the next SYNC, at any, or as they come (0 to FFh); answers do
-    // not.
-    const bool setpoints = communication < 0x1600;
-    write_pdo({communication, 2}, 1, kEverySync, kEverySync, setpoints ? kWhatever : kByte);
+    write_pdo({communication, 2}, 1, kEverySync, kEverySync, kByte);
     if (manners_.fixed_mapping) {
       const char* const what_for = needed_;
       need("because its mapping is fixed (FixedMapping): rpdo and tpdo must say what it has");

@@ -182,7 +182,7 @@ TEST_F(PatientBoot, WaitsForADriveWhoseStateForbidsToWriteAtFirst) {
   EXPECT_EQ(drive.value(0x1801, 1) >> 31, 1U) << "a PDO that nobody counted stays valid";
   master_->stop();
   drive.writable_after = std::chrono::hours(1);
-  EXPECT_THAT(start_error(), HasSubstr("(08000022h), and has 0h there; it is needed "));
+  EXPECT_THAT(start_error(), HasSubstr("(08000022h), and has FFh there; it is needed "));
 }
 
 // Red when the time of an answer is the same for all drives.
