@@ -41,6 +41,7 @@ void CuttingLoad::set_tool(const Tool& tool) {
   tool_ = tool.number;
   mill_.reset();
   last_.reset();
+  taken_mm3_ = 0, blind_ = 0;
   no_mill_.clear();
   if (!tool.shape) return;  // it takes nothing away
   auto mill = EndMill::of(*tool.shape);

@@ -162,13 +162,11 @@ class Finder {
   /// Where the ray next to a place of the surface leaves the tool; none where the lattice has no such ray.
   [[nodiscard]] std::optional<OnRay> on_ray(Vector3d at, const Vector3d& normal, Eigen::Index along) const {
     const auto axis = static_cast<std::size_t>(along);
-    std::array<std::size_t, 2> line{};
+    const auto line = line_at(at, axis);
+    if (!line) return std::nullopt;
     for (std::size_t which = 0; which < 2; ++which) {
       const std::size_t a = DexelLayout::across(axis, which);
-      const double cell = std::floor((at[index(a)] - layout_.low[a]) / layout_.pitch[a]);
-      if (cell < 0 || cell >= layout_.count[a]) return std::nullopt;
-      line[which] = static_cast<std::size_t>(cell);
-      const double there = layout_.line(a, line[which]);
+      const double there = layout_.line(a, (*line)[which]);
       at[along] -= normal[index(a)] / normal[along] * (there - at[index(a)]);
       at[index(a)] = there;
     }
@@ -178,7 +176,19 @@ class Finder {
       if (std::abs(steepest[along]) < kSteep) break;  // it left the surface: a corner
       at[along] -= beyond / steepest[along];
     }
-    return OnRay{grid_.ray(axis, line[0], line[1]), at, steepest};
+    return OnRay{grid_.ray(axis, (*line)[0], (*line)[1]), at, steepest};
+  }
+
+  /// The lines across `axis` that are nearest to a place; none where the lattice has none there.
+  [[nodiscard]] std::optional<std::array<std::size_t, 2>> line_at(const Vector3d& at, std::size_t axis) const {
+    std::array<std::size_t, 2> line{};
+    for (std::size_t which = 0; which < 2; ++which) {
+      const std::size_t a = DexelLayout::across(axis, which);
+      const double cell = std::floor((at[index(a)] - layout_.low[a]) / layout_.pitch[a]);
+      if (cell < 0 || cell >= layout_.count[a]) return std::nullopt;
+      line[which] = static_cast<std::size_t>(cell);
+    }
+    return line;
   }
 
   /// How far a point is outside of the tool, and in which direction that grows.
@@ -213,14 +223,9 @@ class Finder {
     Eigen::Index along = 0;
     axis_.cwiseAbs().maxCoeff(&along);
     const auto axis = static_cast<std::size_t>(along);
-    std::array<std::size_t, 2> line{};
-    for (std::size_t which = 0; which < 2; ++which) {
-      const std::size_t a = DexelLayout::across(axis, which);
-      const double cell = std::floor((at[index(a)] - layout_.low[a]) / layout_.pitch[a]);
-      if (cell < 0 || cell >= layout_.count[a]) return false;
-      line[which] = static_cast<std::size_t>(cell);
-    }
-    return grid_.holds(axis, grid_.ray(axis, line[0], line[1]), static_cast<float>(at[along] - layout_.low[axis]));
+    const auto line = line_at(at, axis);
+    return line && grid_.holds(axis, grid_.ray(axis, (*line)[0], (*line)[1]),
+                               static_cast<float>(at[along] - layout_.low[axis]));
   }
 
   const EndMill& mill_;

@@ -113,6 +113,13 @@ class Forces(unittest.TestCase):
         self.assertEqual((done.returncode, report["forces"]["not_told"]), (0, []), done.stderr)
         self.assertGreater(report["forces"]["cutting_s"], 6)
 
+    def test_whatever_bytes_a_material_is_misspelt_with_are_told_as_one_line(self):
+        done = self.run_rmac(slot(4, 600, 3000), setup=STOCK | {"Material": "Al\n\x1b[31mX"})
+        self.assertEqual(done.returncode, 1)
+        (line,) = (line for line in done.stdout.split("\n") if line.startswith("NOT TOLD: "))
+        self.assertIn("X", line)
+        self.assertNotIn("\x1b", done.stdout + done.stderr)
+
     def test_a_spindle_that_turns_to_the_left_is_told(self):
         report, done = self.report(slot(4, 600, -3000))
         self.assertEqual((done.returncode, report["forces"]["cutting_s"]), (1, 0))

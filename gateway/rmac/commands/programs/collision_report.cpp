@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "gateway/json/printable.hpp"
 #include "gateway/rmac/terminal/table.hpp"
 
 namespace rmac::cli {
@@ -49,7 +50,7 @@ void print_collisions(const CollisionWatch& watch) {
                table({"what", "line", "move", "at s", "body", "body", "mm", "place in the part frame, mm"}, rows));
   }
   if (watch.findings().left_off() > 0) fmt::print("… and more, which are not listed\n\n");
-  for (const std::string& what : watch.not_checked()) fmt::print("NOT CHECKED: {}\n\n", what);
+  for (const std::string& what : watch.not_checked()) fmt::print("NOT CHECKED: {}\n\n", gateway::printable(what));
 }
 
 void add_collisions(const CollisionWatch& watch, nlohmann::json& report) {

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "gateway/json/printable.hpp"
 #include "gateway/rmac/terminal/table.hpp"
 
 namespace rmac::cli {
@@ -105,7 +106,7 @@ void print_forces(const CollisionWatch& watch) {
     }
     fmt::print("{}\n", table({"what", "line", "move", "from s", "to s", "takes", "spindle has", "", "at, mm"}, rows));
   }
-  for (const std::string& what : watch.forces_not_told()) fmt::print("NOT TOLD: {}\n\n", what);
+  for (const std::string& what : watch.forces_not_told()) fmt::print("NOT TOLD: {}\n\n", gateway::printable(what));
 }
 
 Result<> force_verdict(const CollisionWatch& watch) {

@@ -37,15 +37,12 @@ void Setpoints::step(const Seen& seen, FaultSink& faults) noexcept {
   const auto before = position_;
   const auto velocity_before = velocity_;
   choose(seen, faults);
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    ways_[j].position.went(position_[j] - before[j]);
-    ways_[j].velocity.went(velocity_[j] - velocity_before[j]);
-  }
+  for (std::size_t j = 0; j < joints_.size(); ++j) note_way(j, before[j], velocity_before[j]);
 }
 
-void Setpoints::forget_way(std::size_t joint) noexcept {
-  ways_[joint].position.forget();
-  ways_[joint].velocity.forget();
+void Setpoints::note_way(std::size_t joint, double position_before, double velocity_before) noexcept {
+  ways_[joint].position.went(position_[joint] - position_before);
+  ways_[joint].velocity.went(velocity_[joint] - velocity_before);
 }
 
 void Setpoints::choose(const Seen& seen, FaultSink& faults) noexcept {
@@ -94,8 +91,7 @@ void Setpoints::brake() noexcept {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const double before = position_[j], velocity_before = velocity_[j];
     set(j, {braking_.position[j], braking_.velocity[j], braking_.acceleration[j]});
-    ways_[j].position.went(position_[j] - before);
-    ways_[j].velocity.went(velocity_[j] - velocity_before);
+    note_way(j, before, velocity_before);
   }
 }
 
@@ -106,20 +102,17 @@ void Setpoints::set(std::size_t joint, const JointSetpoint& wanted) noexcept {
 }
 
 void Setpoints::begin_cycle() noexcept {
-  for (Way& way : ways_) {
-    way.position.begin_cycle();
-    way.velocity.begin_cycle();
-  }
+  for (Way& way : ways_) way.begin_cycle();
 }
 
 void Setpoints::hold_at(std::size_t joint, double position) noexcept {
   set(joint, {position, 0, 0});
-  forget_way(joint);
+  ways_[joint].forget();
 }
 
 void Setpoints::hold_at(std::span<const double> positions) noexcept {
   std::copy(positions.begin(), positions.end(), position_.begin());
-  for (std::size_t j = 0; j < joints_.size(); ++j) forget_way(j);
+  for (Way& way : ways_) way.forget();
 }
 
 void Setpoints::give_up(std::size_t joint) noexcept {

@@ -66,7 +66,6 @@ class Setpoints {
  private:
   void choose(const Seen& seen, FaultSink& faults) noexcept;
   [[nodiscard]] bool follow(std::size_t joint, const Seen& seen, bool followed_before, FaultSink& faults) noexcept;
-  void forget_way(std::size_t joint) noexcept;
   void follow_force(std::size_t joint, double wanted, double measured) noexcept;
   void set(std::size_t joint, const JointSetpoint& wanted) noexcept;
 
@@ -78,7 +77,12 @@ class Setpoints {
   /// Of a joint's setpoint, as long ago as the joint's answers are.
   struct Way {
     RecentWay position, velocity;
+
+    void begin_cycle() noexcept { position.begin_cycle(), velocity.begin_cycle(); }
+    void forget() noexcept { position.forget(), velocity.forget(); }
   };
+  /// It was there before this cycle.
+  void note_way(std::size_t joint, double position_before, double velocity_before) noexcept;
   std::vector<Way> ways_;
   IndexSet on_the_way_ = 0;  ///< joints that followed the plan in the cycle before
   std::vector<VelocityFollower> followers_;
