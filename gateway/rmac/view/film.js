@@ -45,6 +45,11 @@ function valueAt(plot, t) {
   return plot.is[i] + share * (plot.is[j] - plot.is[i]);
 }
 
+/// With about three digits.
+function figure(value) {
+  return Math.abs(value) >= 1000 ? value.toFixed(0) : String(Number(value.toPrecision(3)));
+}
+
 function toolAt(t) {
   return film.tools[stepAt(film.tool_at, t)];
 }
@@ -57,7 +62,7 @@ const findings = [
     const tool = toolAt(f.t_s), body = tool && tool.bodies.find(b => b.kind === "cutting part");
     const unit = f.what === "torque" ? " N·m" : " W";
     return {...f, kind: "overload", bodies: body ? [body.name] : [],
-      text: f.what + " " + f.most.toPrecision(3) + " of " + f.allowed.toPrecision(3) + unit};
+      text: f.what + " " + figure(f.most) + " of " + figure(f.allowed) + unit};
   }),
 ].sort((a, b) => a.t_s - b.t_s);
 const KIND_COLOURS = {collision: "#d0302a", possible: "#e07b2a", "near miss": "#d9b020", overload: "#8a4fbf"};

@@ -23,11 +23,11 @@ function geometryOf(body) {
 
 class MachineView {
   constructor(canvas) {
-    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
+    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, logarithmicDepthBuffer: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(window.devicePixelRatio || 1);
     this.renderer.setClearColor("#e9edf0");
     this.scene = new THREE.Scene();
-    this.camera = new THREE.PerspectiveCamera(35, 1, 1, 100000);
+    this.camera = new THREE.PerspectiveCamera(35, 1, 0.1, 1e6);
     this.camera.up.set(0, 0, 1);
     this.controls = new THREE.OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.render());
@@ -171,9 +171,6 @@ class MachineView {
     from.setLength(1.05 * ball.radius / Math.sin(half));
     this.controls.target.copy(ball.center);
     this.camera.position.copy(ball.center).add(from);
-    this.camera.near = ball.radius / 100;
-    this.camera.far = 200 * ball.radius;
-    this.camera.updateProjectionMatrix();
     this.controls.update();
     this.render();
   }

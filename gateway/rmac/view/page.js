@@ -28,7 +28,7 @@ const page = {
     $("now").textContent = [`line ${stepAt(film.lines, this.time)}`,
       tool ? (tool.number ? `tool ${tool.number} ${tool.name}`.trim() : "no tool") : "",
       limit ? (limit === "none" ? "ruled by none" : `ruled by ${limit}`) : "at rest",
-      ...film.plots.map(plot => `${plot.name} ${valueAt(plot, this.time).toPrecision(3)} ${plot.unit}`)]
+      ...film.plots.map(plot => `${plot.name} ${figure(valueAt(plot, this.time))} ${plot.unit}`)]
       .filter(Boolean).join(" · ");
   },
 
@@ -69,13 +69,25 @@ const page = {
     if (findings.length > MOST_LISTED) $("findings").append(element("li", `${findings.length - MOST_LISTED} more stand on the line of findings alone`));
   },
 
+  /// The limits that rule, those for the longest time first.
+  listLimits() {
+    const {t, is, names} = film.limits, time = names.map(() => 0);
+    t.forEach((from, i) => { time[is[i]] += (i + 1 < t.length ? t[i + 1] : film.to_s) - from; });
+    const order = names.map((_, n) => n).filter(n => names[n] !== "").sort((a, b) => time[b] - time[a]);
+    $("limits").append(...order.map(n => {
+      const item = element("li", `${names[n]} ${figure(time[n])} s`);
+      item.style.setProperty("--mark", this.plots.colours[n]);
+      return item;
+    }));
+  },
+
   listNotes() {
     const notes = [...(film.not_checked || []).map(text => "NOT CHECKED: " + text),
       ...(film.forces_not_told || []).map(text => "NOT TOLD: " + text),
       ...film.not_shown.map(text => "NOT SHOWN: " + text)];
     if (film.findings_left_off > 0) notes.push(`${film.findings_left_off} findings were too many to keep`);
-    if (film.meshes_coarser_mm > 0) notes.push(`Meshes are drawn coarser than they are: points nearer than ${film.meshes_coarser_mm.toPrecision(2)} mm are one.`);
-    if (film.within_mm > 0.05) notes.push(`So long a program is shown to ${film.within_mm.toPrecision(2)} mm.`);
+    if (film.meshes_coarser_mm > 0) notes.push(`Meshes are drawn coarser than they are: points nearer than ${figure(film.meshes_coarser_mm)} mm are one.`);
+    if (film.within_mm > 0.05) notes.push(`So long a program is shown to ${figure(film.within_mm)} mm.`);
     if (film.stock_after && film.stock_after.triangles.length === 0) notes.push("Nothing is left of the stock that its rays show.");
     $("notes").append(...notes.map(text => element("li", text)));
   },
@@ -123,6 +135,7 @@ const page = {
     this.listNotes();
     this.listFindings();
     this.plots = new Plots($("plots"), t => this.goTo(t));
+    this.listLimits();
     for (const speed of SPEEDS) $("speed").append(new Option(`${speed} ×`, speed, false, speed === START_SPEED));
     Object.assign($("time"), {min: film.from_s, max: film.to_s});
     $("time").addEventListener("input", event => this.goTo(Number(event.target.value)));

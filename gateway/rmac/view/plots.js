@@ -23,8 +23,8 @@ class Plots {
     this.to = Math.max(film.to_s, film.from_s + 1e-3);
     this.colours = limitColours(film.limits.names);
     this.rows = [
-      {height: 12, name: "findings", draw: (pen, w, h) => this.drawFindings(pen, w, h)},
-      {height: 12, name: "ruled by", draw: (pen, w, h) => this.drawLimits(pen, w, h)},
+      {height: 15, name: "findings", draw: (pen, w, h) => this.drawFindings(pen, w, h)},
+      {height: 15, name: "ruled by", draw: (pen, w, h) => this.drawLimits(pen, w, h)},
       ...film.plots.map(plot => ({height: 44, name: plot.name, unit: plot.unit, draw: (pen, w, h) => this.drawPlot(pen, w, h, plot)})),
     ];
     for (const row of this.rows) {
@@ -77,8 +77,8 @@ class Plots {
       row.draw(pen, this.width, row.height);
       pen.clearRect(0, 0, LEFT, row.height);
       pen.fillStyle = "#50585f";
-      pen.fillText(row.name + (row.unit ? ", " + row.unit : ""), 2, Math.min(row.height, 22) - 2);
-      if (row.most !== undefined) pen.fillText(row.most.toPrecision(3), 2, 36);
+      pen.fillText(row.name + (row.unit ? ", " + row.unit : ""), 2, row.height < 22 ? 12 : 16);
+      if (row.most !== undefined) pen.fillText(figure(row.most), 2, 36);
     }
     this.show(this.time || this.from);
   }

@@ -14,7 +14,7 @@ namespace rmac::cli {
 
 inline constexpr int kPlaceDigits = 3;  ///< µm
 inline constexpr int kTurnDigits = 6;   ///< of a quaternion: 1 µm at 0.5 m
-inline constexpr int kTimeDigits = 4;
+inline constexpr int kTimeDigits = 6;
 
 [[nodiscard]] inline nlohmann::json rounded(std::span<const double> values, int digits) {
   nlohmann::json list = nlohmann::json::array();

@@ -36,7 +36,7 @@ struct Options {
   std::optional<double> resolution;   ///< of the material, mm; none: the set-up's
   std::filesystem::path materials;    ///< work materials that are known; empty: the installation's
   std::string stock_out;              ///< STL file of what is left of the stock; empty: none
-  std::string view;                   ///< page that shows it; empty: none
+  std::string view;                   ///< page that shows the machine moving; empty: none
   bool first = false;                 ///< end at the first collision
   bool by_move = false;               ///< tell each move's limit too
   double period_s = 0.001;
@@ -173,12 +173,6 @@ std::filesystem::path materials_of(const Options& options) {
   return options.materials.empty() ? gateway::default_folders().materials : options.materials;
 }
 
-/// What a page is made of, while the program runs. The film looks at the machine.
-struct Filming {
-  ShapedMachine machine;
-  std::optional<Film> film{};
-};
-
 /// Nothing that is written takes the place of what is read, or written otherwise. `collisions` and `shown` may be null.
 Result<> check_written(const Options& options, const CollisionWatch* collisions, const ShapedMachine* shown) {
   std::vector<std::filesystem::path> used = files_in(options.tools);
@@ -204,6 +198,27 @@ Result<> check_written(const Options& options, const CollisionWatch* collisions,
   return check_stock_out(options.stock_out, used);
 }
 
+/// Null without a set-up.
+Result<std::unique_ptr<CollisionWatch>> open_watch(const Options& options, const std::filesystem::path& tree,
+                                                   gateway::Simulation& simulation) {
+  if (options.setup.empty()) return nullptr;
+  auto watch = CollisionWatch::open(options.machine, tree, options.setup, options.resolution, materials_of(options));
+  if (!watch) return watch;
+  // As somebody would who clamped the part there; a program may set another one.
+  const auto stands =
+      simulation.call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json((*watch)->setup().part_frame)}});
+  if (!stands) return fail(fmt::format("{}: /PartFrame: {}", options.setup.string(), stands.error().message));
+  return watch;
+}
+
+/// None where no page is asked for.
+Result<std::optional<ShapedMachine>> shown_machine(const Options& options, const std::filesystem::path& tree) {
+  if (options.view.empty()) return std::nullopt;
+  auto machine = read_shaped_machine(options.machine, tree, "there is nothing to show with --view");
+  if (!machine) return tl::unexpected(machine.error());
+  return std::move(*machine);
+}
+
 Result<> simulate_program(const Options& options, bool json) {
   const double began_s = cpu_time_s();
   const auto program = read_source(options.source);
@@ -217,58 +232,47 @@ Result<> simulate_program(const Options& options, bool json) {
                                                .period_s = options.period_s},
                                               options.machine);
   if (!simulation) return fail(simulation.error().message);
-  std::unique_ptr<CollisionWatch> collisions;
-  if (!options.setup.empty()) {
-    auto opened = CollisionWatch::open(options.machine, tree, options.setup, options.resolution, materials_of(options));
-    if (!opened) return tl::unexpected(opened.error());
-    collisions = std::move(*opened);
-    // As somebody would who clamped the part there; a program may set another one.
-    const auto stands =
-        (*simulation)
-            ->call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json(collisions->setup().part_frame)}});
-    if (!stands) return fail(fmt::format("{}: /PartFrame: {}", options.setup.string(), stands.error().message));
-  }
-  std::unique_ptr<Filming> filming;
-  if (!options.view.empty()) {
-    auto shown = read_shaped_machine(options.machine, tree, "there is nothing to show with --view");
-    if (!shown) return tl::unexpected(shown.error());
-    filming = std::make_unique<Filming>(Filming{.machine = std::move(*shown)});
-  }
-  if (auto fine = check_written(options, collisions.get(), filming ? &filming->machine : nullptr); !fine) return fine;
-  if (filming) {
-    auto drawn = drawn_bodies(filming->machine.bodies, collisions ? &collisions->setup() : nullptr);
+  const auto collisions = open_watch(options, tree, **simulation);
+  if (!collisions) return tl::unexpected(collisions.error());
+  CollisionWatch* const watched = collisions->get();
+  const auto shown = shown_machine(options, tree);
+  if (!shown) return tl::unexpected(shown.error());
+  if (auto fine = check_written(options, watched, *shown ? &**shown : nullptr); !fine) return fine;
+  std::optional<Film> film;
+  if (*shown) {
+    auto drawn = drawn_bodies((*shown)->bodies, watched != nullptr ? &watched->setup() : nullptr);
     if (!drawn) return tl::unexpected(drawn.error());
-    filming->film.emplace(filming->machine, collisions.get(), std::move(*drawn));
+    film.emplace(**shown, watched, std::move(*drawn));
   }
   std::optional<StandstillWatch> watch(std::in_place, (*simulation)->controller());
   Simulator simulator(**simulation, *program, options.record_file);
-  if (collisions) simulator.watch_collisions(*collisions, options.first);
-  if (filming) simulator.listen(*filming->film);
+  if (watched != nullptr) simulator.watch_collisions(*watched, options.first);
+  if (film) simulator.listen(*film);
   const auto report = simulator.run();
   watch.reset();  // machine time is over: what is told of the material may take long
   if (!report) return tl::unexpected(report.error());
   std::optional<MaterialReport> material;
-  if (collisions && collisions->material() != nullptr) {
-    auto found = report_material(*collisions, options.stock_out);
+  if (watched != nullptr && watched->material() != nullptr) {
+    auto found = report_material(*watched, options.stock_out);
     if (!found) return tl::unexpected(found.error());
     material = std::move(*found);
   }
   std::optional<ViewReport> view;
-  if (filming) {
-    filming->film->end();
-    auto written = report_view(*filming->film, collisions.get(), options.source.file, options.view);
+  if (film) {
+    film->end();
+    auto written = report_view(*film, watched, options.source.file, options.view);
     if (!written) return tl::unexpected(written.error());
     view = std::move(*written);
   }
-  const Beside beside{collisions.get(), material ? &*material : nullptr, view ? &*view : nullptr};
+  const Beside beside{watched, material ? &*material : nullptr, view ? &*view : nullptr};
   const double took_s = cpu_time_s() - began_s;
   if (json) {
     print_json(*report, beside, options.by_move, took_s);
   } else {
     print_table(*report, beside, took_s);
   }
-  if (!collisions) return {};
-  const auto met = verdict(*collisions), takes = force_verdict(*collisions);
+  if (watched == nullptr) return {};
+  const auto met = verdict(*watched), takes = force_verdict(*watched);
   if (!met && !takes) return fail(met.error().message + "; " + takes.error().message);
   return met ? takes : met;
 }
