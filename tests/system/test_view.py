@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib import image
 
 from appliance import BUILD
-from test_collisions import FEED, MACHINE, SETUP, TOOLS, cut, request, to
+from test_collisions import FEED, LENGTH, MACHINE, SETUP, TOOLS, cut, request, to
 
 CHROMIUM = pathlib.Path("/usr/bin/chromium")
 CRADLE = -60  # height of the line about which A turns
@@ -28,7 +28,8 @@ def program():
     """Over the stock with cuts, the table tilted and turned, then with the holder into the clamp."""
     lines = [to(0, 40, 100), FEED]
     for number, y in enumerate(range(-20, 21, 10)):
-        lines += [to(-50, y, 27, move_id=10 + 2 * number), cut((-50, y, 27), (20, y, 27), 11 + 2 * number)]
+        lines += [to(-50, y, 60, move_id=10 + 4 * number), to(-50, y, 27, move_id=11 + 4 * number),
+                  cut((-50, y, 27), (20, y, 27), 12 + 4 * number), to(20, y, 60, move_id=13 + 4 * number)]
     return lines + [to(0, 0, 150, move_id=30), to(10, -20, 130, a=-40, c=130, move_id=31), to(0, 0, 150, move_id=32),
                     to(34, 0, 100, move_id=33), to(34, 0, 31, move_id=34), to(42, 0, 31, move_id=35), to(42, 0, 100, move_id=36)]
 
@@ -222,7 +223,7 @@ class View(unittest.TestCase):
         self.assertEqual(data["overloads"], report["forces"]["overloads"])
 
     def test_without_a_set_up_the_machine_alone_is_shown(self):
-        self.write(program())
+        self.write([to(0, 40, 100), to(0, -40, 100, a=-20, move_id=2)])
         report, data = self.view(with_setup=False)
         self.assertEqual((report["collisions"], data["checked"]), ("not checked", False))
         self.assertEqual({body["kind"] for body in data["bodies"]}, {"machine"})
@@ -231,8 +232,8 @@ class View(unittest.TestCase):
 
     def test_a_tool_is_shown_from_its_change_on(self):
         tools = copy.deepcopy(TOOLS)
-        tools["Tools"][1]["Shape"] = {"DC": 10, "RE": 0, "LCF": 20, "OAL": 70}
-        change = request("RMAC_CAM.DoToolChange", MoveID=2, ToolNumber=8)
+        tools["Tools"][1]["Shape"] = {"DC": 10, "RE": 0, "LCF": 20, "OAL": LENGTH}
+        change = request("RMAC_CAM.DoToolChange", ToolNumber=8)
         self.write([to(0, 40, 100), change, to(0, -40, 100, move_id=3)], tools=tools)
         report, data = self.view()
         self.assertEqual([tool["number"] for tool in data["tools"]], [7, 8])
@@ -263,6 +264,10 @@ class View(unittest.TestCase):
             done = self.run_rmac(*words, **options)
             self.assertEqual((done.returncode, done.stdout, len(done.stderr.splitlines())), (1, "", 1), done.stderr)
             self.assertIn(what, done.stderr)
+        self.write([FEED])
+        done = self.run_rmac("--view", "a.html")
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1), done.stderr)
+        self.assertIn("program.rmac: it moves nothing, so that there is nothing to show with --view", done.stderr)
         self.assertEqual((self.folder / "setup.json").read_bytes(), setup)
         self.assertFalse((self.folder / "a.html").exists())
 

@@ -95,6 +95,7 @@ void Film::look(double t_s, const gateway::CycleSample& sample, const Now& now) 
   to_s_ = t_s;
   links_.add(t_s, joints_);
   constexpr double kSecondsPerMinute = 60;
+  if (watch_ != nullptr && watch_->material() != nullptr) stocks_.look(t_s, *watch_->material());
   plot(Feed, t_s, sample.moving ? sample.feed_set_mm_s * kSecondsPerMinute : 0);
   plot(Spindle, t_s, sample.spindle_rpm.front());
   if (watch_ != nullptr && watch_->load() != nullptr) {
@@ -114,8 +115,7 @@ void Film::plot(Plot which, double t_s, double value) {
   Plotted& plotted = plots_[which];
   plotted.any = plotted.any || value != 0;
   plotted.track.add(t_s, value);
-  if (plotted.track.keys().size() <= kMostOfPlot) return;
-  while (plotted.track.keys().size() > kMostOfPlot / 2) plotted.track.coarsen();
+  while (plotted.track.keys().size() > kMostOfPlot) plotted.track.coarsen();
 }
 
 void Film::take_tool(double t_s, gateway::Controller& controller) {
@@ -166,6 +166,7 @@ Json Film::to_json() const {
           {"meshes_coarser_mm", drawn_.coarser_mm},
           {"links", std::move(links)},
           {"bodies", std::move(bodies)},
+          {"stocks", stocks_.to_json()},
           {"tools", tools_},
           {"tool_at", steps_json(tool_at_)},
           {"lines", steps_json(lines_)},

@@ -13,6 +13,7 @@
 #include "gateway/rmac/view/drawn_bodies.hpp"
 #include "gateway/rmac/view/link_tracks.hpp"
 #include "gateway/rmac/view/step_track.hpp"
+#include "gateway/rmac/view/stock_frames.hpp"
 #include "gateway/rmac/view/thinned_track.hpp"
 
 namespace rmac::cli {
@@ -31,6 +32,8 @@ class Film : public CycleListener {
   /// The run is over.
   void end();
 
+  /// The program moved nothing of the machine.
+  [[nodiscard]] bool empty() const noexcept { return !begun_; }
   [[nodiscard]] double within_mm() const noexcept { return links_.within_mm(); }
   /// Of a run that is over: all that was kept, with the bodies that it moves.
   [[nodiscard]] nlohmann::json to_json() const;
@@ -51,6 +54,7 @@ class Film : public CycleListener {
   const CollisionWatch* watch_;
   DrawnBodies drawn_;
   LinkTracks links_;
+  StockFrames stocks_;
   std::vector<Plotted> plots_;
   StepTrack lines_{kMostSteps}, limits_{kMostSteps}, tool_at_{kMostSteps};
   std::vector<std::string> limit_names_;

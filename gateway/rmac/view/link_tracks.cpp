@@ -37,9 +37,7 @@ void LinkTracks::add(double t_s, std::span<const double> joints) {
     const Quaterniond turn = Quaterniond(at.q[0], at.q[1], at.q[2], at.q[3]).normalized();
     tracks_[k].add(t_s, {Vector3d(middle[0], middle[1], middle[2]), turn});
   }
-  // To well below, so that it is not done again at once.
-  if (keys() <= most_keys_) return;
-  while (keys() > most_keys_ / 2) {
+  while (keys() > most_keys_) {
     for (auto& track : tracks_) track.coarsen();
   }
 }

@@ -25,7 +25,7 @@ struct Reach {
 class LinkTracks {
  public:
   static constexpr double kTolerance_mm = 0.01;
-  static constexpr std::size_t kMostKeys = 250'000;  ///< of all links: 20 MB of the page
+  static constexpr std::size_t kMostKeys = 400'000;  ///< of all links: 22 MB of the page
 
   /// `reaches`: of each link.
   LinkTracks(const gateway::LinkChain& chain, std::size_t base, std::span<const Reach> reaches,

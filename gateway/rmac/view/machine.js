@@ -75,11 +75,17 @@ class MachineView {
     const frame = film.part_frame || {p: [0, 0, 0], q: [1, 0, 0, 0]};
     this.after = null;
     if (film.stock_after && film.stock_after.triangles.length > 0) {
-      this.after = this.addBody({name: "stock, after", kind: "stock", link: 0, p: frame.p, q: frame.q,
+      this.after = this.addBody({name: "stock", kind: "stock", link: 0, p: frame.p, q: frame.q,
         mesh: film.stock_after}, this.links[0]);
       Object.assign(this.after.material, {transparent: false, opacity: 1, depthWrite: true});
       this.after.visible = false;
     }
+    this.cut = film.stocks.map(stock => {
+      const mesh = this.addBody({name: "stock", kind: "stock", link: 0, p: frame.p, q: frame.q, mesh: stock}, this.links[0]);
+      Object.assign(mesh.material, {transparent: false, opacity: 1, depthWrite: true});
+      return mesh;
+    });
+    this.stock = "before";
     const way = new THREE.BufferGeometry();
     way.setAttribute("position", new THREE.BufferAttribute(this.pathOfTip(), 3));
     this.path = this.added(table, new THREE.Line(way, new THREE.LineBasicMaterial({color: "#1f6f8b"})));
@@ -123,6 +129,7 @@ class MachineView {
       this.links[k].quaternion.copy(quaternion(q));
     });
     const mounted = stepAt(film.tool_at, this.time);
+    this.placeStock();
     this.tools.forEach((group, n) => { group.visible = n === mounted; });
     const table = this.displacement(0, this.time);
     this.root.matrixAutoUpdate = false;
@@ -136,19 +143,28 @@ class MachineView {
     this.render();
   }
 
-  /// `which`: before, after or none.
+  /// `which`: before, cut (as far as it is at the time), after or none.
   showStock(which) {
-    for (const mesh of this.meshes) {
-      if (mesh.userData.body.kind === "stock") mesh.visible = which === "before";
-    }
-    if (this.after) this.after.visible = which === "after";
+    this.stock = which;
+    this.placeStock();
     this.render();
+  }
+
+  placeStock() {
+    const times = film.stocks.map(stock => stock.t);
+    const now = this.stock === "cut" && times.length > 0 && times[0] <= this.time ? keyBefore(times, this.time) : -1;
+    this.cut.forEach((mesh, n) => { mesh.visible = n === now; });
+    const whole = this.stock === "before" || (this.stock === "cut" && now < 0);
+    for (const mesh of this.meshes) {
+      if (mesh.userData.body.kind === "stock") mesh.visible = whole;
+    }
+    if (this.after) this.after.visible = this.stock === "after";
   }
 
   /// Colours the bodies of these names, each its own way, and marks the place; nothing: as they are.
   colour(names, place) {
-    for (const mesh of [...this.meshes, ...(this.after ? [this.after] : [])]) {
-      const name = mesh === this.after ? "stock" : mesh.userData.body.name, n = names.indexOf(name);
+    for (const mesh of [...this.meshes, ...this.cut, ...(this.after ? [this.after] : [])]) {
+      const n = names.indexOf(mesh.userData.body.name);
       mesh.material.color.copy(n < 0 ? mesh.userData.colour : new THREE.Color(MET_COLOURS[n % 2]));
       mesh.userData.met = n >= 0;
     }

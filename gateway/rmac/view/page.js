@@ -120,6 +120,7 @@ const page = {
     $("path").addEventListener("change", event => { view.path.visible = event.target.checked; view.render(); });
     for (const radio of document.getElementsByName("stock")) radio.addEventListener("change", () => view.showStock(radio.value));
     if (!film.bodies.some(body => body.kind === "stock")) $("stock").hidden = true;
+    if (film.stocks.length > 0) document.querySelector("#stock [value=cut]").click();
     this.listBodies();
     view.lookAt(() => true);
   },

@@ -2,37 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "gateway/api/decode.hpp"
-#include "gateway/bodies/triangle_mesh.hpp"
-#include "gateway/material/surface.hpp"
 #include "gateway/rmac/commands/programs/force_report.hpp"
 #include "gateway/rmac/commands/programs/run_files.hpp"
-#include "gateway/rmac/view/drawn_bodies.hpp"
 #include "gateway/rmac/view/page.hpp"
+#include "gateway/rmac/view/stock_frames.hpp"
 
 namespace rmac::cli {
 namespace {
 
 constexpr std::size_t kMostOfStock = 150'000;  ///< triangles: 6 MB of the page
-
-/// What is left of the stock, part frame.
-nlohmann::json drawn_stock(const gateway::DexelGrid& grid) {
-  const std::uint32_t nth = gateway::finest(grid, kMostOfStock);
-  gateway::TriangleMesh mesh;
-  gateway::surface(grid, nth, [&mesh](const gateway::SurfaceTriangle& triangle) {
-    const auto first = static_cast<std::uint32_t>(mesh.points.size());
-    for (const auto& p : triangle) mesh.points.push_back({double{p[0]}, double{p[1]}, double{p[2]}});
-    mesh.triangles.push_back({first, first + 1, first + 2});
-  });
-  constexpr double kOnePoint_mm = 1e-4;
-  nlohmann::json drawn = drawn_mesh(gateway::welded(mesh, kOnePoint_mm));
-  drawn["apart_mm"] = *std::ranges::max_element(grid.layout().pitch) * nth;
-  return drawn;
-}
 
 void add_watched(const CollisionWatch& watch, nlohmann::json& data) {
   const auto findings = watch.findings().sorted();
@@ -43,7 +25,7 @@ void add_watched(const CollisionWatch& watch, nlohmann::json& data) {
   data["not_checked"] = watch.not_checked();
   data["forces_not_told"] = watch.forces_not_told();
   if (watch.load() != nullptr) data["overloads"] = to_json(watch.load()->overloads());
-  if (watch.material() != nullptr) data["stock_after"] = drawn_stock(watch.material()->grid());
+  if (watch.material() != nullptr) data["stock_after"] = drawn_stock(watch.material()->grid(), kMostOfStock);
 }
 
 }  // namespace
@@ -60,6 +42,8 @@ Result<> check_view(const std::string& file, const ShapedMachine& machine, std::
 
 Result<ViewReport> report_view(const Film& film, const CollisionWatch* watch, const std::string& program,
                                const std::string& file) {
+  if (film.empty())
+    return fail(fmt::format("{}: it moves nothing, so that there is nothing to show with --view", program));
   nlohmann::json data = film.to_json();
   data["program"] = program;
   data["checked"] = watch != nullptr;
