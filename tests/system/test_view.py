@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib import image
 
 from appliance import BUILD
-from test_collisions import FEED, LENGTH, MACHINE, SETUP, TOOLS, cut, request, to
+from test_collisions import FEED, LENGTH, MACHINE, SANITIZED, SETUP, TOOLS, cut, request, to
 
 CHROMIUM = pathlib.Path("/usr/bin/chromium")
 CRADLE = -60  # height of the line about which A turns
@@ -89,6 +89,13 @@ def shown(link, t):
 
 def at(matrix, point):
     return (matrix @ np.append(point, 1))[:3]
+
+
+def volume(mesh):
+    """What a closed surface holds."""
+    points, triangles = np.array(mesh["points"]).reshape(-1, 3), np.array(mesh["triangles"]).reshape(-1, 3)
+    a, b, c = (points[triangles[:, n]] for n in range(3))
+    return np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
 
 
 class View(unittest.TestCase):
@@ -201,11 +208,30 @@ class View(unittest.TestCase):
         self.assertGreater(report["view_bytes"], 500_000)
         self.assertEqual(self.page.stat().st_size, report["view_bytes"])
         removed = report["material"]["removed_mm3"]
-        after = data["stock_after"]
-        points, triangles = np.array(after["points"]).reshape(-1, 3), np.array(after["triangles"]).reshape(-1, 3)
-        a, b, c = (points[triangles[:, n]] for n in range(3))
-        volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
-        self.assertAlmostEqual(volume, 80 * 60 * 30 - removed, delta=0.01 * 80 * 60 * 30)
+        left = 80 * 60 * 30 - removed
+        self.assertAlmostEqual(volume(data["stock_after"]), left, delta=0.01 * 80 * 60 * 30)
+        # As it is cut it becomes less and less, from almost the whole to almost what is left.
+        volumes = [volume(stock) for stock in data["stocks"]]
+        self.assertTrue(3 <= len(volumes) <= 16)
+        self.assertEqual([stock["t"] for stock in data["stocks"]], sorted({stock["t"] for stock in data["stocks"]}))
+        for before, after in zip(volumes, volumes[1:]):
+            self.assertLess(after, before)
+        self.assertGreater(volumes[0] - volumes[-1], 0.5 * removed)
+
+    @unittest.skipIf(SANITIZED, "an hour of machine time")
+    def test_an_hour_of_five_axes_fits_into_a_page(self):
+        random = np.random.default_rng(3)
+        low, high = (-200, -200, 150, -30, -180), (200, 200, 230, 30, 180)
+        self.write([to(*random.uniform(low, high), move_id=number) for number in range(1, 2601)])
+        plain = json.loads(self.run_rmac("--json", with_setup=False).stdout)
+        report, data = self.view(with_setup=False)
+        print(f"\n{report['cycle_time_s']:.0f} s of machine time: {report['view_bytes'] / 1e6:.1f} MB, within "
+              f"{report['view_within_mm']:.2g} mm, {report['cpu_time_s']:.1f} s of CPU time instead of {plain['cpu_time_s']:.1f} s")
+        self.assertGreater(report["cycle_time_s"], 3000)
+        self.assertLess(report["view_bytes"], 50e6)
+        self.assertLess(report["view_within_mm"], 0.5)
+        self.assertEqual(data["within_mm"], report["view_within_mm"])
+        self.assertLessEqual(sum(len(link["t"]) for link in data["links"]), 400_000)
 
     def test_forces_are_those_of_the_report(self):
         tools, setup = copy.deepcopy(TOOLS), copy.deepcopy(SETUP)

@@ -38,8 +38,8 @@ std::uint32_t first_guess(const gateway::DexelGrid& grid) {
 }  // namespace
 
 void StockFrames::look(double t_s, const gateway::Material& material) {
-  if (material.strokes() == strokes_ || (!frames_.empty() && t_s < frames_.back().t_s + every_s_)) return;
-  strokes_ = material.strokes();
+  if (!frames_.empty() && t_s < frames_.back().t_s + every_s_) return;
+  if (const double removed = material.removed().mm3; std::exchange(removed_mm3_, removed) == removed) return;
   const gateway::DexelGrid& grid = material.grid();
   if (nth_ == 0) nth_ = first_guess(grid);
   constexpr double kCoarser = 1.3;

@@ -31,8 +31,8 @@ class StockFrames {
 
   std::vector<Frame> frames_;
   double every_s_ = kFirstEvery_s;
-  std::size_t strokes_ = 0;  ///< at the last look
-  std::uint32_t nth_ = 0;    ///< of the rays; 0: not known yet
+  double removed_mm3_ = 0;  ///< at the last look
+  std::uint32_t nth_ = 0;   ///< of the rays; 0: not known yet
 };
 
 /// The surface of a stock, part frame, with no more triangles than these.
