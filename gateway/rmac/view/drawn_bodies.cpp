@@ -122,12 +122,14 @@ class Drawing {
         std::max(static_cast<std::size_t>(part * static_cast<double>(most_triangles_)), kFewestTriangles);
     constexpr double kFirstPart = 1e-3, kCoarser = 1.5;
     constexpr std::size_t kFewestOfSolid = 4;
+    double moved = 0;
     for (double apart = kFirstPart * reach_of(mesh).radius; mesh.triangles.size() > share; apart *= kCoarser) {
       TriangleMesh fewer = gateway::welded(mesh, apart);
       if (fewer.triangles.size() < kFewestOfSolid) break;
       mesh = std::move(fewer);
-      drawn_.coarser_mm = std::max(drawn_.coarser_mm, apart);
+      moved += apart;
     }
+    drawn_.coarser_mm = std::max(drawn_.coarser_mm, moved);
     return mesh;
   }
 

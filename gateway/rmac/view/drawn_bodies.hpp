@@ -30,7 +30,7 @@ struct DrawnBody {
 /// these, unless they are many and small; where they would have more they are made coarser.
 struct DrawnBodies {
   std::vector<DrawnBody> bodies;
-  double coarser_mm = 0;  ///< points nearer to each other than this were made one, in some mesh; 0: in none
+  double coarser_mm = 0;  ///< by how much points of some mesh were moved at most; 0: none was
 };
 [[nodiscard]] Result<DrawnBodies> drawn_bodies(const gateway::MachineBodies& machine, const gateway::Setup* setup,
                                                std::size_t most_triangles = kMostTriangles);

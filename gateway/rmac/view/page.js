@@ -86,7 +86,7 @@ const page = {
       ...(film.forces_not_told || []).map(text => "NOT TOLD: " + text),
       ...film.not_shown.map(text => "NOT SHOWN: " + text)];
     if (film.findings_left_off > 0) notes.push(`${film.findings_left_off} findings were too many to keep`);
-    if (film.meshes_coarser_mm > 0) notes.push(`Meshes are drawn coarser than they are: points nearer than ${figure(film.meshes_coarser_mm)} mm are one.`);
+    if (film.meshes_coarser_mm > 0) notes.push(`Meshes are drawn coarser than they are, by up to ${figure(film.meshes_coarser_mm)} mm.`);
     if (film.within_mm > 0.05) notes.push(`So long a program is shown to ${figure(film.within_mm)} mm.`);
     if (film.stock_after && film.stock_after.triangles.length === 0) notes.push("Nothing is left of the stock that its rays show.");
     $("notes").append(...notes.map(text => element("li", text)));

@@ -80,7 +80,9 @@ TEST(StepTrack, KeepsEachChangeUntilThereAreTooMany) {
   ASSERT_GE(many.t_s().size(), 4U);
   for (std::size_t i = 0; i < many.t_s().size(); ++i) {
     EXPECT_NEAR(many.values()[i], many.t_s()[i] * 60, 1e-6) << "a value has its own time";
-    if (i > 0) EXPECT_GE(many.t_s()[i] - many.t_s()[i - 1], many.apart_s() - 1e-9);
+    if (i > 0) {
+      EXPECT_GE(many.t_s()[i] - many.t_s()[i - 1], many.apart_s() - 1e-9);
+    }
   }
 }
 
