@@ -105,7 +105,7 @@ class MachineView {
       .multiply(new THREE.Matrix4().makeTranslation(back.x, back.y, back.z));
   }
 
-  /// The tip as the table sees it; the axis of the tool with `above` mm instead of 0.
+  /// The tip as the table sees it.
   tipOnTable(t) {
     const tool = toolAt(t);
     const tip = vector(tool ? tool.tip : film.links[film.links.length - 1].middle);
