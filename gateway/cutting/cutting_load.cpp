@@ -41,6 +41,7 @@ void CuttingLoad::set_tool(const Tool& tool) {
   tool_ = tool.number;
   mill_.reset();
   last_.reset();
+  now_until_s_ = -1;
   taken_mm3_ = 0, blind_ = 0;
   no_mill_.clear();
   if (!tool.shape) return;  // it takes nothing away
@@ -65,6 +66,7 @@ void CuttingLoad::cuts(const DexelGrid& grid, const ToolAt& tool, const Eigen::V
                        const MoveNow& move) {
   const double speed = velocity.norm(), every_s = every_mm() / speed;
   const double time_s = std::min(t_s - told_s_, 2 * every_s), before_s = std::exchange(told_s_, t_s);
+  now_until_s_ = -1;
   if (!mill_) {
     if (!no_mill_.empty()) miss("teeth", no_mill_);
     return;
@@ -98,6 +100,8 @@ void CuttingLoad::cuts(const DexelGrid& grid, const ToolAt& tool, const Eigen::V
     }
     last_ = Last{.slices = std::move(met.slices), .feed = feed, .rpm = rpm_, .forces = *forces};
   }
+  now_ = {last_->forces.total_n.mean, last_->forces.torque_nm.mean, last_->forces.power_w.mean};
+  now_until_s_ = t_s + 2 * every_s;
   add(all_, last_->forces, time_s);
   add(moves_[move.id], last_->forces, time_s);
   judge(Overload::Of::Torque, last_->forces.torque_nm.mean, spindle_.torque_nm, {before_s, t_s}, tool, move);

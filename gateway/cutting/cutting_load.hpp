@@ -33,6 +33,11 @@ struct Overload {
   double allowed = 0;
 };
 
+/// Means over a turn, at one place of the way.
+struct CuttingNow {
+  double n = 0, nm = 0, w = 0;
+};
+
 /// What a spindle can give; 0: not known.
 struct SpindlePower {
   double torque_nm = 0, power_w = 0;
@@ -57,6 +62,8 @@ class CuttingLoad : public CutListener {
   [[nodiscard]] double every_mm() const override;
 
   [[nodiscard]] const WorkMaterial& material() const noexcept { return material_; }
+  /// What it takes as far as it was told by then; nothing in the air, and where it cannot be told.
+  [[nodiscard]] CuttingNow now(double t_s) const noexcept { return t_s <= now_until_s_ ? now_ : CuttingNow{}; }
   [[nodiscard]] const CuttingShare& all() const noexcept { return all_; }
   /// Of each move that cut, by its number.
   [[nodiscard]] const std::map<std::int64_t, CuttingShare>& moves() const noexcept { return moves_; }
@@ -95,9 +102,11 @@ class CuttingLoad : public CutListener {
   std::vector<Overload> overloads_;
   std::set<std::string> not_told_, missed_;
   std::optional<Last> last_;
-  double told_s_ = 0;     ///< when it last heard of the tool
-  double taken_mm3_ = 0;  ///< since then
-  int blind_ = 0;         ///< so often on end material went and no tooth was seen in any
+  CuttingNow now_;
+  double now_until_s_ = -1;  ///< from then on nobody knows it to cut
+  double told_s_ = 0;        ///< when it last heard of the tool
+  double taken_mm3_ = 0;     ///< since then
+  int blind_ = 0;            ///< so often on end material went and no tooth was seen in any
 };
 
 }  // namespace rmac::gateway

@@ -109,17 +109,21 @@ void surface(const DexelGrid& grid, std::uint32_t each_nth, const std::function<
   }
 }
 
-Expected<SurfaceFile> write_stl(const DexelGrid& grid, const std::filesystem::path& file, std::size_t most_triangles) {
-  SurfaceFile written;
-  std::uint32_t nth = 1;
-  for (;;) {
-    written.triangles = 0;
-    surface(grid, nth, [&](const SurfaceTriangle&) { ++written.triangles; });
-    if (written.triangles <= most_triangles) break;
+std::uint32_t finest(const DexelGrid& grid, std::size_t most_triangles) {
+  for (std::uint32_t nth = 1;;) {
+    std::size_t triangles = 0;
+    surface(grid, nth, [&](const SurfaceTriangle&) { ++triangles; });
+    if (triangles <= most_triangles) return nth;
     // There are as many fewer as the square of how much coarser it is.
-    const double too_many = static_cast<double>(written.triangles) / static_cast<double>(most_triangles);
+    const double too_many = static_cast<double>(triangles) / static_cast<double>(most_triangles);
     nth = std::max(nth + 1, static_cast<std::uint32_t>(nth * std::sqrt(too_many)));
   }
+}
+
+Expected<SurfaceFile> write_stl(const DexelGrid& grid, const std::filesystem::path& file, std::size_t most_triangles) {
+  SurfaceFile written;
+  const std::uint32_t nth = finest(grid, most_triangles);
+  surface(grid, nth, [&](const SurfaceTriangle&) { ++written.triangles; });
   written.apart_mm = *std::ranges::max_element(grid.layout().pitch) * nth;
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   std::array<char, kHead> head{};

@@ -90,6 +90,7 @@ void MotionAccount::cycle(const CycleSample& sample, double override_percent) {
     joint.peak_acceleration = std::max(joint.peak_acceleration, std::abs(sample.acceleration_set[i]));
     joint.peak_jerk = std::max(joint.peak_jerk, std::abs(jerk_[i]));
   }
+  rules_.reset();
   if (sample.moving) count(sample, override_percent);
   feed_before_mm_s_ = sample.feed_set_mm_s;
 }
@@ -129,6 +130,7 @@ void MotionAccount::count(const CycleSample& sample, double override_percent) {
   const std::size_t rules = largest >= kRules ? nearest : kNone;
   time_s_[rules] += period_s_;
   time_in_move_s_[rules] += period_s_;
+  rules_ = rules;
 }
 
 std::string MotionAccount::limit_name(std::size_t limit) const {

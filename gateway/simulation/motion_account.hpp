@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,8 @@ class MotionAccount {
   /// `Share`; empty where it did not move.
   [[nodiscard]] std::string move_done();
   void cycle(const CycleSample& sample, double override_percent);
+  /// The limit that rules the last cycle, as in `Share`; empty where nothing moves.
+  [[nodiscard]] std::string rules_now() const { return rules_ ? limit_name(*rules_) : std::string(); }
 
   [[nodiscard]] const std::vector<Joint>& joints() const noexcept { return joints_; }
   /// Limits that ruled for any time, the longest first; together the time in motion.
@@ -71,6 +74,7 @@ class MotionAccount {
   std::deque<PathBounds> path_;         ///< those of the moves that are not done
   std::vector<double> jerk_;            ///< in the cycle
   std::vector<double> acceleration_;    ///< in the cycle before
+  std::optional<std::size_t> rules_;    ///< the last cycle
   double length_mm_ = 0, feed_before_mm_s_ = 0;
 };
 

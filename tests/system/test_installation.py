@@ -49,6 +49,8 @@ class Installation(unittest.TestCase):
         self.assertEqual(sorted(path.name for path in self.one("etc/rmac/drives").iterdir()),
                          sorted(path.name for path in (SOURCE / "etc/drives").iterdir()))
         self.one("etc/rmac/materials.json")
+        for part in ("page.html", "page.css", "page.js", "three.min.js", "OrbitControls.js", "three-licence.txt"):
+            self.one(f"usr/libexec/rmac/view/{part}")
         self.one("usr/share/rmac/drive.schema.json")
         self.one("etc/rmac/can-can0.conf.example")
 

@@ -6,41 +6,16 @@
 #include <cmath>
 #include <utility>
 
-#include "gateway/bodies/link_chain.hpp"
-#include "gateway/device_database/device_database.hpp"
-#include "gateway/device_driver_manager/device_tree.hpp"
 #include "gateway/material/stock_model.hpp"
-#include "gateway/modules/module_loader.hpp"
-#include "rmac/motion/ports/kinematics.hpp"
+#include "gateway/rmac/simulator/mounted_tool.hpp"
+#include "gateway/rmac/simulator/shaped_machine.hpp"
 
 namespace rmac::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Where joints without ends are compared with the module.
-constexpr double kEndless = 400;
 constexpr double kWattsPerHorsePower = 745.69987;
-
-Expected<gateway::LinkChain> chain_of(const gateway::DeviceDatabase& database, const fs::path& device_json,
-                                      const fs::path& device_tree) {
-  const sdk::DeviceObject& device = database.device;
-  std::vector<fs::path> folders{device_json.parent_path()};
-  for (const std::string& name : {device.name, device.device_driver}) {
-    if (const auto file = gateway::find_device_json(name, device_tree); file) folders.push_back(file->parent_path());
-  }
-  folders.push_back(device_tree / "modules");
-  const auto kinematics = gateway::ModuleLoader(folders).load<Kinematics>(device.kinematics);
-  if (!kinematics) return tl::unexpected(kinematics.error());
-  std::vector<std::string> names;
-  std::vector<std::pair<double, double>> limits;
-  for (const sdk::Joint& joint : device.joints) {
-    names.push_back(joint.limits.name);
-    limits.emplace_back(ends_below(joint.limits) ? joint.limits.min : -kEndless,
-                        ends_above(joint.limits) ? joint.limits.max : kEndless);
-  }
-  return gateway::LinkChain::make(*kinematics->object, database.bodies.chain, names, limits);
-}
 
 }  // namespace
 
@@ -50,32 +25,25 @@ Result<std::unique_ptr<CollisionWatch>> CollisionWatch::open(const std::string& 
                                                              const fs::path& materials) {
   const auto setup = gateway::read_setup(setup_file);
   if (!setup) return fail(setup.error().message);
-  const auto device_json = gateway::find_device_json(machine, device_tree);
-  if (!device_json) return fail(device_json.error().message);
-  const auto database = gateway::read_device_json(*device_json);
-  if (!database) return fail(database.error().message);
-  if (database->device.name != setup->machine) {
+  auto shaped = read_shaped_machine(machine, device_tree, "collisions cannot be checked");
+  if (!shaped) return tl::unexpected(shaped.error());
+  if (shaped->name != setup->machine) {
     return fail(fmt::format("{}: /Machine is \"{}\", and the program is simulated on {}", setup_file.string(),
-                            setup->machine, database->device.name));
+                            setup->machine, shaped->name));
   }
-  if (database->bodies.bodies.empty()) {
-    return fail(fmt::format("{}: has no Geometry, so that collisions cannot be checked", device_json->string()));
-  }
-  auto chain = chain_of(*database, *device_json, device_tree);
-  if (!chain) return fail(fmt::format("{}: {}", device_json->string(), chain.error().message));
-  auto bodies = gateway::scene_bodies(database->bodies, *setup);
+  auto bodies = gateway::scene_bodies(shaped->bodies, *setup);
   if (!bodies) return fail(fmt::format("{}: {}", setup_file.string(), bodies.error().message));
-  std::unique_ptr<CollisionWatch> watch(new CollisionWatch(
-      *setup,
-      std::make_unique<gateway::CollisionChecker>(*chain, std::move(*bodies), setup->part_frame, setup->clearance_mm)));
+  std::unique_ptr<CollisionWatch> watch(
+      new CollisionWatch(*setup, std::make_unique<gateway::CollisionChecker>(shaped->chain, std::move(*bodies),
+                                                                             setup->part_frame, setup->clearance_mm)));
   if (setup->stock) {
     auto grid = gateway::Stock::read(*setup->stock).and_then([&](const gateway::Stock& stock) {
       return gateway::model_of(stock, resolution_mm ? resolution_mm : setup->resolution_mm);
     });
     if (!grid) return fail(fmt::format("{}: {}", setup_file.string(), grid.error().message));
     gateway::CollisionChecker& checker = *watch->checker_;
-    watch->material_ =
-        std::make_unique<gateway::Material>(std::move(*chain), std::move(*grid), setup->part_frame, checker.findings());
+    watch->material_ = std::make_unique<gateway::Material>(std::move(shaped->chain), std::move(*grid),
+                                                           setup->part_frame, checker.findings());
     checker.stock_is_followed();
     if (auto fine = watch->watch_load(materials); !fine) return tl::unexpected(fine.error());
   }
@@ -120,20 +88,14 @@ void CollisionWatch::move_done() {
 }
 
 void CollisionWatch::take_tool(gateway::Controller& controller) {
-  const int number = controller.tools().tools_now().mounted.value_or(gateway::kNoTool);
-  gateway::Tool tool{.number = gateway::kNoTool};
-  if (const auto tools = controller.tools().tools(); tools) {
-    for (const gateway::Tool& each : *tools) {
-      if (each.number == number) tool = each;
-    }
-  }
+  const gateway::Tool tool = mounted_tool(controller);
   tool_fault_.clear();
-  if (number == gateway::kNoTool) {
+  if (tool.number == gateway::kNoTool) {
     tool_fault_ = "no tool is in the spindle by the tool table: moves without one were checked with the spindle alone";
   } else if (!tool.shape) {
     tool_fault_ = fmt::format(
         "tool {} has no Shape in the tool table: moves with it were checked with the spindle alone, and cut nothing",
-        number);
+        tool.number);
   }
   checker_->set_tool(tool);
   too_thin_ = material_ ? material_->set_tool(tool) : "";

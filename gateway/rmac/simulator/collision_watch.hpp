@@ -35,9 +35,6 @@ class CollisionWatch {
   void move_done();
   /// The tool in the spindle, its number and what the table says of it, may be another.
   void tool_may_have_changed() noexcept { look_at_tool_ = true; }
-  void tool_may_have_changed_by(const std::string& method) noexcept {
-    look_at_tool_ = look_at_tool_ || method.ends_with("Tool") || method.ends_with("ToolChange");
-  }
   void cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller);
   /// The run is over.
   void finish();

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "gateway/rmac/simulator/mounted_tool.hpp"
 #include "gateway/rmac/wire/requests.hpp"
 
 namespace rmac::cli {
@@ -176,15 +177,22 @@ std::string Simulator::stuck() {
 }
 
 Result<> Simulator::call(const std::string& method, nlohmann::json params) {
-  if (watch_ != nullptr) watch_->tool_may_have_changed_by(method);
+  if (may_change_tool(method)) tool_may_have_changed();
   const gateway::Answer answer = simulation_.call(method, std::move(params));
   return answer ? Result<>() : fail_at(line_, fmt::format("{}: {}", method, answer.error().message));
+}
+
+void Simulator::tool_may_have_changed() {
+  if (watch_ != nullptr) watch_->tool_may_have_changed();
+  if (listener_ != nullptr) listener_->tool_may_have_changed();
 }
 
 void Simulator::take(const gateway::CycleSample& sample) {
   moving_ = sample.moving;
   account_.cycle(sample, simulation_.controller().cycle_now().override_percent);
-  if (watch_ != nullptr) watch_->cycle(sample, moves_.line().value_or(line_), simulation_.controller());
+  const int line = moves_.line().value_or(line_);
+  if (watch_ != nullptr) watch_->cycle(sample, line, simulation_.controller());
+  if (listener_ != nullptr) listener_->cycle(sample, {line, account_, simulation_.controller()});
   // As in a record of `rmac run`: every cycle from the first move on.
   if (!record_ || !(sample.moving || record_->rows() > 0)) return;
   if (auto added = record_->add(to_note(sample)); !added && failure_.empty()) failure_ = added.error().message;
@@ -204,7 +212,7 @@ void Simulator::take(const gateway::Event& event) {
     tool_asked_for_ = true;
   } else if (event.kind == Kind::ToolChanged) {
     moves_.tool_changed();
-    if (watch_ != nullptr) watch_->tool_may_have_changed();
+    tool_may_have_changed();
   } else if (event.kind == Kind::ProgramStopped && event.code == MinorCode::None) {
     stopped_ = true;
   } else if ((event.kind == Kind::Fault || event.code != MinorCode::None) && failure_.empty()) {

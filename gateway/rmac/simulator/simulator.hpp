@@ -10,6 +10,7 @@
 #include "gateway/rmac/program/request_order.hpp"
 #include "gateway/rmac/program/unfinished_moves.hpp"
 #include "gateway/rmac/simulator/collision_watch.hpp"
+#include "gateway/rmac/simulator/cycle_listener.hpp"
 #include "gateway/simulation/motion_account.hpp"
 #include "gateway/simulation/simulation.hpp"
 
@@ -44,6 +45,9 @@ class Simulator {
   /// run ends at the first that is certain, and what it reports is of the way to there.
   void watch_collisions(CollisionWatch& watch, bool first) noexcept { watch_ = &watch, ends_at_first_ = first; }
 
+  /// Tells of every cycle, from before `run` on; the listener outlives the simulator.
+  void listen(CycleListener& listener) noexcept { listener_ = &listener; }
+
   /// Once. An error names the program's line.
   [[nodiscard]] Result<SimulationReport> run();
 
@@ -63,6 +67,7 @@ class Simulator {
 
   void take(const gateway::CycleSample& sample);
   void take(const gateway::Event& event);
+  void tool_may_have_changed();
 
   gateway::Simulation& simulation_;
   const Program& program_;
@@ -74,6 +79,7 @@ class Simulator {
   int line_ = 0;  ///< of the request under way
   std::string failure_;
   CollisionWatch* watch_ = nullptr;
+  CycleListener* listener_ = nullptr;
   bool ends_at_first_ = false, ended_ = false;
   bool moving_ = false;
   bool tool_asked_for_ = false;

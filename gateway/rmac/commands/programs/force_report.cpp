@@ -28,6 +28,12 @@ Json to_json(const gateway::CuttingShare& share) {
           {"peak_power_w", share.peak_w}};
 }
 
+bool asked_for(const CollisionWatch* watch) {
+  return watch != nullptr && (watch->load() != nullptr || !watch->forces_not_told().empty());
+}
+
+}  // namespace
+
 Json to_json(const std::vector<gateway::Overload>& overloads) {
   Json list = Json::array();
   for (const gateway::Overload& each : overloads) {
@@ -42,12 +48,6 @@ Json to_json(const std::vector<gateway::Overload>& overloads) {
   }
   return list;
 }
-
-bool asked_for(const CollisionWatch* watch) {
-  return watch != nullptr && (watch->load() != nullptr || !watch->forces_not_told().empty());
-}
-
-}  // namespace
 
 Json forces_json(const CollisionWatch* watch, bool by_move) {
   if (!asked_for(watch)) return "not told";

@@ -1,7 +1,6 @@
 #include "gateway/rmac/commands/programs/material_report.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -22,14 +21,10 @@ constexpr std::size_t kMostTriangles = 2'000'000;
 }  // namespace
 
 Result<> check_stock_out(const std::string& file, const std::vector<std::filesystem::path>& taken) {
-  namespace fs = std::filesystem;
-  const fs::path path(file);
-  if (path.extension() != ".stl") return fail(fmt::format("{}: the name of --stock-out ends in .stl", file));
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  std::error_code none;
-  if ((fs::exists(path, none) && !fs::is_regular_file(path, none)) || ::access(folder.c_str(), W_OK) != 0) {
-    return fail(fmt::format("{}: cannot be written; choose another place with --stock-out", file));
+  if (std::filesystem::path(file).extension() != ".stl") {
+    return fail(fmt::format("{}: the name of --stock-out ends in .stl", file));
   }
+  if (auto fine = refuse_unwritable(file, "--stock-out"); !fine) return fine;
   return refuse_used(file, "--stock-out", taken);
 }
 

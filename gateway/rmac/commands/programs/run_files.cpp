@@ -1,6 +1,7 @@
 #include "gateway/rmac/commands/programs/run_files.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <variant>
@@ -9,15 +10,38 @@ namespace rmac::cli {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+void add_mesh(const gateway::Body& body, std::vector<fs::path>& files) {
+  if (const auto* const mesh = std::get_if<gateway::MeshShape>(&body.shape)) files.push_back(mesh->file);
+}
+
+}  // namespace
+
 std::vector<fs::path> files_of(const gateway::Setup& setup) {
   std::vector<fs::path> files;
-  const auto add = [&files](const gateway::Body& body) {
-    if (const auto* const mesh = std::get_if<gateway::MeshShape>(&body.shape)) files.push_back(mesh->file);
-  };
-  if (setup.stock) add(*setup.stock);
-  if (setup.part) add(*setup.part);
-  std::ranges::for_each(setup.fixtures, add);
+  if (setup.stock) add_mesh(*setup.stock, files);
+  if (setup.part) add_mesh(*setup.part, files);
+  for (const gateway::Body& fixture : setup.fixtures) add_mesh(fixture, files);
   return files;
+}
+
+std::vector<fs::path> files_of(const gateway::MachineBodies& machine) {
+  std::vector<fs::path> files;
+  for (const gateway::Body& body : machine.bodies) add_mesh(body, files);
+  return files;
+}
+
+Result<> refuse_unwritable(const std::string& file, const char* option) {
+  const fs::path path(file);
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code none;
+  const bool there = fs::exists(path, none);
+  if ((there && (!fs::is_regular_file(path, none) || ::access(file.c_str(), W_OK) != 0)) ||
+      ::access(folder.c_str(), W_OK) != 0 || !fs::is_directory(folder, none)) {
+    return fail(fmt::format("{}: cannot be written; choose another place with {}", file, option));
+  }
+  return {};
 }
 
 std::vector<fs::path> files_in(const fs::path& folder) {

@@ -15,6 +15,8 @@
 #include "gateway/rmac/commands/programs/registrations.hpp"
 #include "gateway/rmac/commands/programs/run_files.hpp"
 #include "gateway/rmac/commands/programs/source.hpp"
+#include "gateway/rmac/commands/programs/view_report.hpp"
+#include "gateway/rmac/simulator/shaped_machine.hpp"
 #include "gateway/rmac/simulator/simulator.hpp"
 #include "gateway/rmac/terminal/table.hpp"
 #include "gateway/threads/cpu_progress.hpp"
@@ -34,6 +36,7 @@ struct Options {
   std::optional<double> resolution;   ///< of the material, mm; none: the set-up's
   std::filesystem::path materials;    ///< work materials that are known; empty: the installation's
   std::string stock_out;              ///< STL file of what is left of the stock; empty: none
+  std::string view;                   ///< page that shows the machine moving; empty: none
   bool first = false;                 ///< end at the first collision
   bool by_move = false;               ///< tell each move's limit too
   double period_s = 0.001;
@@ -50,9 +53,15 @@ nlohmann::json to_json(const std::vector<MoveLimit>& limits) {
   return list;
 }
 
-/// `watch` and `material`: null without a set-up, and where it has no stock.
-void print_json(const SimulationReport& report, const CollisionWatch* watch, const MaterialReport* material,
-                bool by_move, double took_s) {
+/// What there is to tell of beside the motion.
+struct Beside {
+  const CollisionWatch* watch = nullptr;     ///< null without a set-up
+  const MaterialReport* material = nullptr;  ///< null without a stock
+  const ViewReport* view = nullptr;          ///< null where no page was asked for
+};
+
+void print_json(const SimulationReport& report, const Beside& beside, bool by_move, double took_s) {
+  const auto& [watch, material, view] = beside;
   nlohmann::json joints = nlohmann::json::array();
   for (const auto& joint : report.joints) {
     joints.push_back({{"name", joint.name},
@@ -74,11 +83,12 @@ void print_json(const SimulationReport& report, const CollisionWatch* watch, con
     line["record_rows"] = report.record_rows;
     line["record_files"] = report.record_files;
   }
+  if (view != nullptr) add_to_json(*view, line);
   fmt::print("{}\n", line.dump());
 }
 
-void print_table(const SimulationReport& report, const CollisionWatch* watch, const MaterialReport* material,
-                 double took_s) {
+void print_table(const SimulationReport& report, const Beside& beside, double took_s) {
+  const auto& [watch, material, view] = beside;
   std::vector<std::vector<std::string>> rows{
       {"moves", std::to_string(report.moves), ""},
       {"tool changes", std::to_string(report.tool_changes), report.tool_changes > 0 ? "in no time" : ""},
@@ -90,6 +100,7 @@ void print_table(const SimulationReport& report, const CollisionWatch* watch, co
   for (const auto& record : report.record_files) {
     rows.push_back({"record", record, fmt::format("{} rows in all", report.record_rows)});
   }
+  if (view != nullptr) rows.push_back(row_of(*view));
   if (material != nullptr) add_rows(*material, rows);
   add_force_rows(watch, rows);
   fmt::print("{}\n", table({"", "", ""}, rows));
@@ -145,6 +156,7 @@ Result<> check_options(const Options& options, const Program& program, bool json
   }
   if (options.machine.empty() && !options.setup.empty())
     return fail("--setup needs --machine: what stands on which table");
+  if (options.machine.empty() && !options.view.empty()) return fail("--view needs --machine: which one is shown");
   if (options.by_move && !json) return fail("--by-move needs --json: it tells something of every move");
   if (options.first && options.setup.empty())
     return fail("--first needs --setup: without one collisions are not checked");
@@ -161,8 +173,8 @@ std::filesystem::path materials_of(const Options& options) {
   return options.materials.empty() ? gateway::default_folders().materials : options.materials;
 }
 
-/// Nothing that is written takes the place of what is read, or written otherwise. `collisions` may be null.
-Result<> check_written(const Options& options, const CollisionWatch* collisions) {
+/// Nothing that is written takes the place of what is read, or written otherwise. `collisions` and `shown` may be null.
+Result<> check_written(const Options& options, const CollisionWatch* collisions, const ShapedMachine* shown) {
   std::vector<std::filesystem::path> used = files_in(options.tools);
   used.insert(used.end(), {options.source.file, options.machine});
   if (collisions != nullptr) {
@@ -172,6 +184,11 @@ Result<> check_written(const Options& options, const CollisionWatch* collisions)
   if (!options.record_file.empty()) {
     if (auto fine = refuse_used(options.record_file, "--record", used); !fine) return fine;
   }
+  if (shown != nullptr) {
+    used.insert(used.end(), {options.record_file, options.stock_out});
+    if (auto fine = check_view(options.view, *shown, used); !fine) return fine;
+    used.resize(used.size() - 2);
+  }
   if (options.stock_out.empty()) return {};
   if (collisions == nullptr || collisions->material() == nullptr) {
     return fail(
@@ -179,6 +196,27 @@ Result<> check_written(const Options& options, const CollisionWatch* collisions)
   }
   used.emplace_back(options.record_file);
   return check_stock_out(options.stock_out, used);
+}
+
+/// Null without a set-up.
+Result<std::unique_ptr<CollisionWatch>> open_watch(const Options& options, const std::filesystem::path& tree,
+                                                   gateway::Simulation& simulation) {
+  if (options.setup.empty()) return nullptr;
+  auto watch = CollisionWatch::open(options.machine, tree, options.setup, options.resolution, materials_of(options));
+  if (!watch) return watch;
+  // As somebody would who clamped the part there; a program may set another one.
+  const auto stands =
+      simulation.call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json((*watch)->setup().part_frame)}});
+  if (!stands) return fail(fmt::format("{}: /PartFrame: {}", options.setup.string(), stands.error().message));
+  return watch;
+}
+
+/// None where no page is asked for.
+Result<std::optional<ShapedMachine>> shown_machine(const Options& options, const std::filesystem::path& tree) {
+  if (options.view.empty()) return std::nullopt;
+  auto machine = read_shaped_machine(options.machine, tree, "there is nothing to show with --view");
+  if (!machine) return tl::unexpected(machine.error());
+  return std::move(*machine);
 }
 
 Result<> simulate_program(const Options& options, bool json) {
@@ -194,39 +232,47 @@ Result<> simulate_program(const Options& options, bool json) {
                                                .period_s = options.period_s},
                                               options.machine);
   if (!simulation) return fail(simulation.error().message);
-  std::unique_ptr<CollisionWatch> collisions;
-  if (!options.setup.empty()) {
-    auto opened = CollisionWatch::open(options.machine, tree, options.setup, options.resolution, materials_of(options));
-    if (!opened) return tl::unexpected(opened.error());
-    collisions = std::move(*opened);
-    // As somebody would who clamped the part there; a program may set another one.
-    const auto stands =
-        (*simulation)
-            ->call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json(collisions->setup().part_frame)}});
-    if (!stands) return fail(fmt::format("{}: /PartFrame: {}", options.setup.string(), stands.error().message));
+  const auto collisions = open_watch(options, tree, **simulation);
+  if (!collisions) return tl::unexpected(collisions.error());
+  CollisionWatch* const watched = collisions->get();
+  const auto shown = shown_machine(options, tree);
+  if (!shown) return tl::unexpected(shown.error());
+  if (auto fine = check_written(options, watched, *shown ? &**shown : nullptr); !fine) return fine;
+  std::optional<Film> film;
+  if (*shown) {
+    auto drawn = drawn_bodies((*shown)->bodies, watched != nullptr ? &watched->setup() : nullptr);
+    if (!drawn) return tl::unexpected(drawn.error());
+    film.emplace(**shown, watched, std::move(*drawn));
   }
-  if (auto fine = check_written(options, collisions.get()); !fine) return fine;
   std::optional<StandstillWatch> watch(std::in_place, (*simulation)->controller());
   Simulator simulator(**simulation, *program, options.record_file);
-  if (collisions) simulator.watch_collisions(*collisions, options.first);
+  if (watched != nullptr) simulator.watch_collisions(*watched, options.first);
+  if (film) simulator.listen(*film);
   const auto report = simulator.run();
   watch.reset();  // machine time is over: what is told of the material may take long
   if (!report) return tl::unexpected(report.error());
   std::optional<MaterialReport> material;
-  if (collisions && collisions->material() != nullptr) {
-    auto found = report_material(*collisions, options.stock_out);
+  if (watched != nullptr && watched->material() != nullptr) {
+    auto found = report_material(*watched, options.stock_out);
     if (!found) return tl::unexpected(found.error());
     material = std::move(*found);
   }
-  const MaterialReport* const left = material ? &*material : nullptr;
+  std::optional<ViewReport> view;
+  if (film) {
+    film->end();
+    auto written = report_view(*film, watched, options.source.file, options.view);
+    if (!written) return tl::unexpected(written.error());
+    view = std::move(*written);
+  }
+  const Beside beside{watched, material ? &*material : nullptr, view ? &*view : nullptr};
   const double took_s = cpu_time_s() - began_s;
   if (json) {
-    print_json(*report, collisions.get(), left, options.by_move, took_s);
+    print_json(*report, beside, options.by_move, took_s);
   } else {
-    print_table(*report, collisions.get(), left, took_s);
+    print_table(*report, beside, took_s);
   }
-  if (!collisions) return {};
-  const auto met = verdict(*collisions), takes = force_verdict(*collisions);
+  if (watched == nullptr) return {};
+  const auto met = verdict(*watched), takes = force_verdict(*watched);
   if (!met && !takes) return fail(met.error().message + "; " + takes.error().message);
   return met ? takes : met;
 }
@@ -250,6 +296,8 @@ void add_simulate(Command& rmac) {
   simulate.option("--materials", &options->materials,
                   "with --setup: file of the work materials that are known; the installation's unless given");
   simulate.option("--stock-out", &options->stock_out, "with --setup: write what is left of the stock to this STL file");
+  simulate.option("--view", &options->view,
+                  "write a page (.html) that shows the machine moving, its limits and what --setup found");
   simulate.flag("--first", &options->first, "with --setup: end at the first collision");
   simulate.flag("--by-move", &options->by_move,
                 "with --json: the limit that ruled each move for the longest time, and what cutting it took");

@@ -1,0 +1,57 @@
+#include "gateway/rmac/simulator/shaped_machine.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+#include <vector>
+
+#include "gateway/device_database/device_database.hpp"
+#include "gateway/device_driver_manager/device_tree.hpp"
+#include "gateway/modules/module_loader.hpp"
+#include "rmac/motion/ports/kinematics.hpp"
+
+namespace rmac::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where joints without ends are compared with the module.
+constexpr double kEndless = 400;
+
+Expected<gateway::LinkChain> chain_of(const gateway::DeviceDatabase& database, const fs::path& device_json,
+                                      const fs::path& device_tree) {
+  const sdk::DeviceObject& device = database.device;
+  std::vector<fs::path> folders{device_json.parent_path()};
+  for (const std::string& name : {device.name, device.device_driver}) {
+    if (const auto file = gateway::find_device_json(name, device_tree); file) folders.push_back(file->parent_path());
+  }
+  folders.push_back(device_tree / "modules");
+  const auto kinematics = gateway::ModuleLoader(folders).load<Kinematics>(device.kinematics);
+  if (!kinematics) return tl::unexpected(kinematics.error());
+  std::vector<std::string> names;
+  std::vector<std::pair<double, double>> limits;
+  for (const sdk::Joint& joint : device.joints) {
+    names.push_back(joint.limits.name);
+    limits.emplace_back(ends_below(joint.limits) ? joint.limits.min : -kEndless,
+                        ends_above(joint.limits) ? joint.limits.max : kEndless);
+  }
+  return gateway::LinkChain::make(*kinematics->object, database.bodies.chain, names, limits);
+}
+
+}  // namespace
+
+Result<ShapedMachine> read_shaped_machine(const std::string& machine, const fs::path& device_tree,
+                                          const char* without) {
+  const auto device_json = gateway::find_device_json(machine, device_tree);
+  if (!device_json) return fail(device_json.error().message);
+  auto database = gateway::read_device_json(*device_json);
+  if (!database) return fail(database.error().message);
+  if (database->bodies.bodies.empty()) {
+    return fail(fmt::format("{}: has no Geometry, so that {}", device_json->string(), without));
+  }
+  auto chain = chain_of(*database, *device_json, device_tree);
+  if (!chain) return fail(fmt::format("{}: {}", device_json->string(), chain.error().message));
+  return ShapedMachine{database->device.name, std::move(database->bodies), std::move(*chain)};
+}
+
+}  // namespace rmac::cli

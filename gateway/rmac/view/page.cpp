@@ -1,0 +1,76 @@
+#include "gateway/rmac/view/page.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <system_error>
+
+#include "gateway/configuration/configuration.hpp"
+
+namespace rmac::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Lines of page.html that begin with it give way to a file, or to the data.
+constexpr std::string_view kInclude = "@include ", kData = "@data";
+
+Result<std::string> text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!file)
+    return fail(fmt::format("{}: is missing; it comes with rmac, which is to be installed again", path.string()));
+  return text;
+}
+
+/// Nothing in it ends the script that holds it, whatever bodies are called.
+std::string text_of(const nlohmann::json& data) {
+  const std::string plain = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string text;
+  text.reserve(plain.size());
+  for (const char c : plain) {
+    if (c == '<') {
+      text += "\\u003c";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+Result<std::size_t> write_page(const nlohmann::json& data, const std::string& file) {
+  const fs::path folder = gateway::default_folders().helpers / "view";
+  const auto page = text_of(folder / "page.html");
+  if (!page) return tl::unexpected(page.error());
+  std::string text;
+  for (std::size_t from = 0; from < page->size();) {
+    const std::size_t end = std::min(page->find('\n', from), page->size());
+    const std::string_view line = std::string_view(*page).substr(from, end - from);
+    from = end + 1;
+    if (line.starts_with(kInclude)) {
+      const auto part = text_of(folder / line.substr(kInclude.size()));
+      if (!part) return tl::unexpected(part.error());
+      text += *part;
+    } else {
+      text += line == kData ? text_of(data) : std::string(line);
+    }
+    text += '\n';
+  }
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << text;
+  out.close();
+  if (out) return text.size();
+  const int code = errno;
+  std::error_code ignored;
+  fs::remove(file, ignored);
+  return fail(fmt::format("{}: cannot be written: {}", file, std::generic_category().message(code)));
+}
+
+}  // namespace rmac::cli

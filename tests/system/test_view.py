@@ -1,0 +1,349 @@
+"""`rmac simulate --view`: the page that shows a machine moving, its data and what a browser makes of it."""
+
+import copy
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+from matplotlib import image
+
+from appliance import BUILD
+from test_collisions import FEED, LENGTH, MACHINE, SANITIZED, SETUP, TOOLS, cut, request, to
+
+CHROMIUM = pathlib.Path("/usr/bin/chromium")
+CRADLE = -60  # height of the line about which A turns
+TABLE_LINK, BASE_LINK = 0, 2
+# Between two of the 60 looks a second joints gain speed: 2 m/s² or 600 °/s² half a metre away, over a sixtieth.
+BETWEEN_LOOKS_MM = 3 * 0.5 * 10.5 * 1000 / 60**2 / 8
+EVIL = "</script><script>errors.push('a name ran')</script>"
+
+
+def program():
+    """Over the stock with cuts, the table tilted and turned, then with the holder into the clamp."""
+    lines = [to(0, 40, 100), FEED]
+    for number, y in enumerate(range(-20, 21, 10)):
+        lines += [to(-50, y, 60, move_id=10 + 4 * number), to(-50, y, 27, move_id=11 + 4 * number),
+                  cut((-50, y, 27), (20, y, 27), 12 + 4 * number), to(20, y, 60, move_id=13 + 4 * number)]
+    return lines + [to(0, 0, 150, move_id=30), to(10, -20, 130, a=-40, c=130, move_id=31), to(0, 0, 150, move_id=32),
+                    to(34, 0, 100, move_id=33), to(34, 0, 31, move_id=34), to(42, 0, 31, move_id=35), to(42, 0, 100, move_id=36)]
+
+
+def about(axis, degrees):
+    """A turn about x or z of the machine."""
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    matrix = np.eye(4)
+    a, b = {"x": (1, 2), "z": (0, 1)}[axis]
+    matrix[a, a], matrix[a, b], matrix[b, a], matrix[b, b] = c, -s, s, c
+    return matrix
+
+
+def moved(x=0.0, y=0.0, z=0.0):
+    matrix = np.eye(4)
+    matrix[:3, 3] = x, y, z
+    return matrix
+
+
+def chain(joints):
+    """How the links of SuginoXYZAC are moved against the ground, by its description: seen from the table, a positive C
+    turns the tool by C, so that the table turns by -C; A likewise, about a line 60 mm below."""
+    x, y, z, a, c = joints
+    cradle = moved(z=CRADLE) @ about("x", -a) @ moved(z=-CRADLE)
+    return [cradle @ about("z", -c), cradle, np.eye(4), moved(x), moved(x, y), moved(x, y, z)]
+
+
+def turned(q):
+    """The matrix of a quaternion w x y z."""
+    w, x, y, z = q
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+
+
+def frame(p, q):
+    matrix = moved(*p)
+    matrix[:3, :3] = turned(q)
+    return matrix
+
+
+def shown(link, t):
+    """How the page's data has a link moved at a time: a straight way and a turn at an even rate between two keys."""
+    times, p, q = np.array(link["t"]), np.array(link["p"]).reshape(-1, 3), np.array(link["q"]).reshape(-1, 4)
+    j = min(int(np.searchsorted(times, t, "right")), len(times) - 1)
+    i = max(j - 1, 0)
+    share = float(np.clip((t - times[i]) / (times[j] - times[i]), 0, 1)) if j > i else 0.0
+    ends = q[i] / np.linalg.norm(q[i]), q[j] / np.linalg.norm(q[j])
+    cosine = ends[0] @ ends[1]
+    angle = np.arccos(min(abs(cosine), 1))
+    if angle < 1e-9:
+        turn = ends[0]
+    else:
+        turn = (np.sin((1 - share) * angle) * ends[0] + np.sign(cosine) * np.sin(share * angle) * ends[1]) / np.sin(angle)
+    return frame(p[i] + share * (p[j] - p[i]), turn) @ moved(*(-np.array(link["middle"])))
+
+
+def at(matrix, point):
+    return (matrix @ np.append(point, 1))[:3]
+
+
+def volume(mesh):
+    """What a closed surface holds."""
+    points, triangles = np.array(mesh["points"]).reshape(-1, 3), np.array(mesh["triangles"]).reshape(-1, 3)
+    a, b, c = (points[triangles[:, n]] for n in range(3))
+    return np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
+
+
+class View(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="rmac-test-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.page = self.folder / "view.html"
+
+    def write(self, requests, setup=None, tools=None):
+        (self.folder / "tools").mkdir(exist_ok=True)
+        (self.folder / "tools/SuginoXYZAC.json").write_text(json.dumps(tools or TOOLS))
+        (self.folder / "setup.json").write_text(json.dumps(setup or SETUP))
+        (self.folder / "program.rmac").write_text("".join(json.dumps(r) + "\n" for r in requests))
+
+    def run_rmac(self, *words, machine="SuginoXYZAC", with_setup=True):
+        on = ["--machine", machine] if machine else []
+        on += ["--setup", self.folder / "setup.json"] if with_setup else []
+        return subprocess.run([BUILD / "bin/rmac", "simulate", self.folder / "program.rmac", "--tools", self.folder / "tools",
+                               *on, *words], cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                              timeout=300, check=False)
+
+    def view(self, *words, **options):
+        done = self.run_rmac("--json", "--view", self.page, *words, **options)
+        self.assertEqual(len(done.stdout.splitlines()), 1, done.stderr)
+        return json.loads(done.stdout), self.data()
+
+    def data(self):
+        found = re.search(r'<script type="application/json" id="film">\n(.*?)\n</script>', self.page.read_text(), re.S)
+        self.assertIsNotNone(found)
+        return json.loads(found.group(1))
+
+    def browse(self, hash_part, *words):
+        """What Chromium prints that opens the page; without a network, a sound or a screen."""
+        if not CHROMIUM.exists():
+            print(f"\nNOT TESTED IN A BROWSER: {CHROMIUM} is missing; ./packages.sh packages-cad.txt", file=sys.stderr)
+            self.skipTest(f"{CHROMIUM} is missing")
+        environment = os.environ | {"HOME": str(self.folder), "XDG_RUNTIME_DIR": str(self.folder)}
+        done = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+                               f"--user-data-dir={self.folder}/browser", "--window-size=1300,850",
+                               "--host-resolver-rules=MAP * ~NOTFOUND", "--virtual-time-budget=4000", *words,
+                               f"file://{self.page}#{hash_part}"], env=environment, stdin=subprocess.DEVNULL,
+                              capture_output=True, text=True, timeout=300, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr[-2000:])
+        return done.stdout
+
+    def self_check(self):
+        text = self.browse("self-check", "--dump-dom")
+        found = re.search(r'<pre id="self-check" hidden="">(.*?)</pre>', text, re.S)
+        self.assertIsNotNone(found, "the page did not come to its end: " + text[-500:])
+        return json.loads(found.group(1).replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&"))
+
+    def picture(self, hash_part):
+        file = self.folder / "picture.png"
+        self.browse(hash_part, f"--screenshot={file}")
+        return image.imread(file)[..., :3]
+
+    def test_links_stand_where_the_machine_has_them(self):
+        self.write(program())
+        record = self.folder / "record.csv"
+        report, data = self.view("--record", record)
+        rows = np.genfromtxt(record, delimiter=",", names=True)
+        joints = np.column_stack([rows[f"q{n}"] for n in range(1, 6)])
+        self.assertGreater(np.ptp(joints[:, 3]), 39)
+        self.assertEqual([link["names"] for link in data["links"]], [["C"], ["A"], ["base"], ["X"], ["Y"], ["Z"]])
+        bound = report["view_within_mm"] + BETWEEN_LOOKS_MM
+        self.assertLess(report["view_within_mm"], 0.011)
+        tool = data["tools"][0]
+        part = frame(data["part_frame"]["p"], data["part_frame"]["q"])
+        for index in range(0, len(rows), 37):
+            t = rows["t_s"][index]
+            expected, found = chain(joints[index]), [shown(link, t) for link in data["links"]]
+            for body in data["bodies"]:
+                corner = np.array(body["p"]) + (20, 30, 10)
+                apart = np.linalg.norm(at(expected[body["link"]], corner) - at(found[body["link"]], corner))
+                self.assertLess(apart, bound, f"{body['name']} at {t} s, joints {joints[index]}")
+            # The planner's own tip, as the program has it: in the part's frame.
+            tip = np.linalg.inv(found[TABLE_LINK] @ part) @ found[-1] @ np.append(tool["tip"], 1)
+            programmed = [rows[axis][index] for axis in "xyz"]
+            self.assertLess(np.linalg.norm(tip[:3] - programmed), 2 * bound, f"tip at {t} s")
+        # With looks a sixtieth apart, where keys are needed, and few where none are.
+        times = data["links"][TABLE_LINK]["t"]
+        self.assertLess(len(times), len(rows) / 20)
+        self.assertAlmostEqual(data["to_s"], rows["t_s"][-1], delta=0.1)
+        self.assertEqual(len(data["links"][BASE_LINK]["t"]), len(set(data["links"][BASE_LINK]["t"])))
+
+    def test_findings_limits_and_bodies_are_those_of_the_report(self):
+        self.write(program())
+        report, data = self.view()
+        self.assertTrue(report["collisions"])
+        self.assertEqual(data["collisions"], report["collisions"])
+        self.assertEqual(data["near_misses"], report["near_misses"])
+        self.assertEqual(data["not_checked"], report["collisions_not_checked"])
+        device = json.loads(MACHINE.read_text())
+        names = [body["Name"] for body in device["Geometry"]]
+        self.assertEqual([b["name"] for b in data["bodies"]], names + ["clamp", "stock", "part"])
+        self.assertEqual({b["name"] for b in data["tools"][0]["bodies"]},
+                         {"tool 7, cutting part", "tool 7, shank", "tool 7, holder"})
+        for finding in report["collisions"]:
+            for name in finding["bodies"]:
+                self.assertIn(name, [b["name"] for b in data["bodies"] + data["tools"][0]["bodies"]])
+            line = data["lines"]["is"][np.searchsorted(data["lines"]["t"], finding["t_s"], "right") - 1]
+            self.assertLessEqual(abs(line - finding["line"]), 1, "as near as a look tells")
+        # What limited for how long, to a look or two at each change.
+        limits = data["limits"]
+        ends = np.append(limits["t"][1:], data["to_s"])
+        for name, time in report["limited_by_s"].items():
+            ruled = sum(end - t for t, end, n in zip(limits["t"], ends, limits["is"]) if limits["names"][n] == name)
+            self.assertAlmostEqual(ruled, time, delta=0.1 + 0.2 * time, msg=name)
+        self.assertGreater(report["view_bytes"], 500_000)
+        self.assertEqual(self.page.stat().st_size, report["view_bytes"])
+        removed = report["material"]["removed_mm3"]
+        left = 80 * 60 * 30 - removed
+        self.assertAlmostEqual(volume(data["stock_after"]), left, delta=0.01 * 80 * 60 * 30)
+        # As it is cut it becomes less and less, from almost the whole to almost what is left.
+        volumes = [volume(stock) for stock in data["stocks"]]
+        self.assertTrue(3 <= len(volumes) <= 16)
+        self.assertEqual([stock["t"] for stock in data["stocks"]], sorted({stock["t"] for stock in data["stocks"]}))
+        for before, after in zip(volumes, volumes[1:]):
+            self.assertLess(after, before)
+        self.assertGreater(volumes[0] - volumes[-1], 0.5 * removed)
+
+    @unittest.skipIf(SANITIZED, "an hour of machine time")
+    def test_an_hour_of_five_axes_fits_into_a_page(self):
+        random = np.random.default_rng(3)
+        low, high = (-200, -200, 150, -30, -180), (200, 200, 230, 30, 180)
+        self.write([to(*random.uniform(low, high), move_id=number) for number in range(1, 2601)])
+        plain = json.loads(self.run_rmac("--json", with_setup=False).stdout)
+        report, data = self.view(with_setup=False)
+        print(f"\n{report['cycle_time_s']:.0f} s of machine time: {report['view_bytes'] / 1e6:.1f} MB, within "
+              f"{report['view_within_mm']:.2g} mm, {report['cpu_time_s']:.1f} s of CPU time instead of {plain['cpu_time_s']:.1f} s")
+        self.assertGreater(report["cycle_time_s"], 3000)
+        self.assertLess(report["view_bytes"], 50e6)
+        self.assertLess(report["view_within_mm"], 0.5)
+        self.assertEqual(data["within_mm"], report["view_within_mm"])
+        self.assertLessEqual(sum(len(link["t"]) for link in data["links"]), 400_000)
+
+    def test_forces_are_those_of_the_report(self):
+        tools, setup = copy.deepcopy(TOOLS), copy.deepcopy(SETUP)
+        setup["Material"] = "Al6082-T6"
+        tools["Tools"][0]["NeedsSpindle"] = True
+        spindle = request("RMAC_CAM.SetSpindleRPM", SpindleNumber=0, RPM=4000)
+        self.write(program()[:1] + [spindle] + program()[1:], setup, tools)
+        report, data = self.view()
+        plots = {plot["name"]: plot for plot in data["plots"]}
+        self.assertEqual(max(plots["spindle"]["is"]), 4000)
+        for name, key in (("force", "mean_force_n"), ("torque", "mean_torque_nm"), ("power", "mean_power_w")):
+            t, value = np.array(plots[name]["t"]), np.array(plots[name]["is"])
+            work = ((value[1:] + value[:-1]) / 2 * np.diff(t)).sum()
+            self.assertAlmostEqual(work / (report["forces"][key] * report["forces"]["cutting_s"]), 1, delta=0.05, msg=name)
+        self.assertEqual(data["overloads"], report["forces"]["overloads"])
+
+    def test_without_a_set_up_the_machine_alone_is_shown(self):
+        self.write([to(0, 40, 100), to(0, -40, 100, a=-20, move_id=2)])
+        report, data = self.view(with_setup=False)
+        self.assertEqual((report["collisions"], data["checked"]), ("not checked", False))
+        self.assertEqual({body["kind"] for body in data["bodies"]}, {"machine"})
+        self.assertNotIn("stock_after", data)
+        self.assertEqual(len(data["tools"]), 1)
+
+    def test_a_tool_is_shown_from_its_change_on(self):
+        tools = copy.deepcopy(TOOLS)
+        tools["Tools"][1]["Shape"] = {"DC": 10, "RE": 0, "LCF": 20, "OAL": LENGTH}
+        change = request("RMAC_CAM.DoToolChange", ToolNumber=8)
+        self.write([to(0, 40, 100), change, to(0, -40, 100, move_id=3)], tools=tools)
+        report, data = self.view()
+        self.assertEqual([tool["number"] for tool in data["tools"]], [7, 8])
+        self.assertEqual(data["tool_at"]["is"], [0, 1])
+        changed = data["tool_at"]["t"][1]
+        y = data["links"][-1]
+        before = max(t for t, p in zip(y["t"], np.array(y["p"]).reshape(-1, 3)) if abs(p[1] - max(y["p"][1::3])) < 0.02)
+        self.assertAlmostEqual(changed, before, delta=0.2)
+        self.assertEqual(report["tool_changes"], 1)
+
+    def test_what_cannot_be_written_or_shown_is_refused_before_anything_runs(self):
+        self.write([to(0, 0, 100)])
+        (self.folder / "taken.html").symlink_to(self.folder / "setup.json")
+        (self.folder / "folder.html").mkdir()
+        setup = (self.folder / "setup.json").read_bytes()
+        bare = json.loads(MACHINE.read_text())
+        del bare["Geometry"], bare["Chain"]
+        (self.folder / "device.json").write_text(json.dumps(bare))
+        for words, options, what in (
+                (("--view", "page.htm"), {}, "page.htm: the name of --view ends in .html"),
+                (("--view", "none/page.html"), {}, "none/page.html: cannot be written; choose another place with --view"),
+                (("--view", "folder.html"), {}, "folder.html: cannot be written; choose another place with --view"),
+                (("--view", "taken.html"), {}, "taken.html: this run uses this file; choose another name with --view"),
+                (("--view", "a.html", "--record", "a.html"), {}, "a.html: this run uses this file"),
+                (("--view", "a.html"), {"machine": None, "with_setup": False}, "name one with --machine"),
+                (("--view", "a.html"), {"machine": self.folder / "device.json", "with_setup": False},
+                 "device.json: has no Geometry, so that there is nothing to show with --view")):
+            done = self.run_rmac(*words, **options)
+            self.assertEqual((done.returncode, done.stdout, len(done.stderr.splitlines())), (1, "", 1), done.stderr)
+            self.assertIn(what, done.stderr)
+        self.write([FEED])
+        done = self.run_rmac("--view", "a.html")
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1), done.stderr)
+        self.assertIn("program.rmac: it moves nothing, so that there is nothing to show with --view", done.stderr)
+        self.assertEqual((self.folder / "setup.json").read_bytes(), setup)
+        self.assertFalse((self.folder / "a.html").exists())
+
+    def test_a_browser_draws_all_bodies_and_goes_to_what_is_clicked(self):
+        setup = copy.deepcopy(SETUP)
+        setup["Fixtures"][0]["Name"] = EVIL
+        self.write(program(), setup)
+        report, data = self.view()
+        check = self.self_check()
+        self.assertEqual(check["errors"], [])
+        bodies = data["bodies"] + data["tools"][0]["bodies"]
+        self.assertEqual(check["meshes"], len(bodies))
+        self.assertGreaterEqual(check["drawn"], len(bodies), "and the way of the tip")
+        self.assertEqual(len(check["findings"]), len(report["collisions"]) + len(report["near_misses"]))
+        told = sorted(report["collisions"] + report["near_misses"], key=lambda f: f["t_s"])
+        for seen, finding in zip(check["findings"], told):
+            self.assertAlmostEqual(seen["time"], finding["t_s"], places=6)
+            self.assertEqual(sorted(seen["coloured"]), sorted(finding["bodies"]))
+            self.assertIn(f"line {finding['line']}", seen["text"])
+            table = shown(data["links"][TABLE_LINK], finding["t_s"])
+            mark = at(table @ frame(data["part_frame"]["p"], data["part_frame"]["q"]), finding["place_mm"])
+            np.testing.assert_allclose(seen["mark"], mark, atol=1e-3)
+        # As it is drawn, each body stands where the data has it.
+        for place in check["places"]:
+            found = [shown(link, place["t"]) for link in data["links"]]
+            self.assertEqual([b["name"] for b in place["bodies"]], [b["name"] for b in bodies])
+            for drawn, body in zip(place["bodies"], bodies):
+                corner = at(found[body["link"]] @ frame(body["p"], body["q"]), (10, 20, 30))
+                np.testing.assert_allclose(drawn["corner"], corner, atol=1e-3, err_msg=f"{body['name']} at {place['t']} s")
+            tip = np.linalg.inv(found[TABLE_LINK]) @ found[-1] @ np.append(data["tools"][0]["tip"], 1)
+            np.testing.assert_allclose(place["tip"], tip[:3], atol=1e-3)
+
+    def test_a_browser_shows_a_picture(self):
+        self.write(program())
+        report, _ = self.view()
+        self.assertTrue(report["collisions"])
+        scene = np.s_[40:400, 20:900]
+        plain, found = (self.picture(part)[scene] for part in ("look=table", "finding=0&look=table"))
+        background = np.array([0xE9, 0xED, 0xF0]) / 255
+        drawn = np.abs(plain - background).max(axis=2) > 0.03
+        self.assertGreater(drawn.mean(), 0.2)
+        self.assertLess(drawn.mean(), 1.0)
+        self.assertGreater(len(np.unique((plain * 255).astype(int).reshape(-1, 3), axis=0)), 50, "faces are shaded")
+
+        def red(pixels):
+            return ((pixels[..., 0] > 0.5) & (pixels[..., 1] < 0.2) & (pixels[..., 2] < 0.2)).sum()
+
+        self.assertEqual(red(plain), 0)
+        self.assertGreater(red(found), 200, "the clamp that the holder met")
+
+
+if __name__ == "__main__":
+    unittest.main()
