@@ -1,0 +1,141 @@
+"""The places that are so far from the walls of a pocket: closed loops of lines, arcs and parallels of splines, each exactly there."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rmac_freecad.pockets.crossings import crossings
+from rmac_freecad.pockets.refusal import PocketRefused
+from rmac_freecad.pockets.spline import ranges
+from rmac_freecad.pockets.tracks import ArcTrack, LineTrack, SideTrack
+from rmac_freecad.profiles.pieces import Bow, Spline, Straight, cross, dot, left_of, plus
+
+TANGENT_RAD = 1e-7
+NEARER_MM = 1e-6  # to a wall than wanted is rounding
+JOINED_MM = 2e-6
+SHORTEST_MM = 1e-7
+LOOKED_AT = (0.5, 0.03, 0.97)
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """The pocket's middle is to its left. `distance` from the walls, mm."""
+
+    tracks: tuple
+    distance: float
+
+    @property
+    def length(self):
+        return sum(track.length for track in self.tracks)
+
+    def chords(self):
+        return np.concatenate([track.chords() for track in self.tracks])
+
+
+def loops_at(contours, wall, distance):
+    """`contours`: closed ones with the pocket to their left, of `wall`. None where nothing of it is so far away."""
+    tracks = [track for contour in contours for track in _raw(contour, wall, distance)]
+    kept = [part for track in _parts(tracks) for part in [track] if _is_clear(part, wall, distance)]
+    return [Loop(tuple(chain), distance) for chain in _chains(kept)]
+
+
+def _raw(contour, wall, distance):
+    """Beside each piece, and around corners that stand out into the pocket."""
+    tracks, pieces = [], contour.pieces
+    for number, piece in enumerate(pieces):
+        tracks += _beside(piece, wall, distance)
+        after = pieces[(number + 1) % len(pieces)]
+        into, out = piece.tangents[1], after.tangents[0]
+        turn = math.atan2(cross(into, out), dot(into, out))
+        if turn < -TANGENT_RAD:
+            across = left_of(into)
+            tracks.append(ArcTrack(Bow(piece.name, piece.end, distance, math.atan2(across[1], across[0]), turn)))
+    return tracks
+
+
+def _beside(piece, wall, distance):
+    if isinstance(piece, Straight):
+        across = left_of(piece.tangents[0])
+        return [LineTrack(Straight(piece.name, plus(piece.start, across, distance), plus(piece.end, across, distance)))]
+    if isinstance(piece, Bow):
+        radius = piece.radius - math.copysign(distance, piece.sweep)
+        return [ArcTrack(Bow(piece.name, piece.centre, radius, piece.angle, piece.sweep))] if radius > SHORTEST_MM else []
+    assert isinstance(piece, Spline)
+    spline = wall.splines[id(piece)]
+    return [SideTrack(piece.name, spline, first, last, distance) for first, last in ranges(spline, distance)]
+
+
+def _parts(tracks):
+    """Cut wherever two of them cross."""
+    boxes = np.array([(*track.chords().min(0), *track.chords().max(0)) for track in tracks]).reshape(-1, 4)
+    margin = np.array([track.length * 0.02 if not track.straight else 0 for track in tracks]) + 2 * SHORTEST_MM
+    low, high = boxes[:, :2] - margin[:, None], boxes[:, 2:] + margin[:, None]
+    cuts = [[0.0, 1.0] for _ in tracks]
+    for i in range(len(tracks)):
+        meets = ((low[i] <= high[i + 1 :]) & (low[i + 1 :] <= high[i])).all(1)
+        for j in np.flatnonzero(meets) + i + 1:
+            for s, t in crossings(tracks[i], tracks[j]):
+                cuts[i].append(s)
+                cuts[j].append(t)
+    for track, shares in zip(tracks, cuts):
+        shares.sort()
+        for first, last in zip(shares, shares[1:]):
+            if (last - first) * track.length > SHORTEST_MM:
+                yield track.between(first, last)
+
+
+def _is_clear(part, wall, distance):
+    """Between two crossings it is nearer to a wall everywhere, or nowhere."""
+    _, away = wall.nearest(part.at(np.array(LOOKED_AT)))
+    clear = away >= distance - NEARER_MM
+    if clear.all():
+        return True
+    if clear.any() and part.length > 100 * JOINED_MM and (distance - away).max() > 10 * NEARER_MM:
+        place = part.at(0.5)
+        raise PocketRefused(f"the way {distance:.4g} mm beside the walls cannot be told apart there; move that wall a little, or take another tool", place, part.name)
+    return bool(clear[0])
+
+
+def _chains(tracks):
+    """Joined end to begin. Each place has as many ends as begins, else something was missed: refused rather than guessed."""
+    nodes, begins, ends = _nodes(tracks)
+    kept = [i for i in range(len(tracks)) if begins[i] != ends[i] or tracks[i].length > 10 * JOINED_MM]
+    outs = {}
+    for i in kept:
+        outs.setdefault(begins[i], []).append(i)
+    for node in {*outs, *(ends[i] for i in kept)}:
+        if len(outs.get(node, [])) != sum(ends[i] == node for i in kept):
+            at = next(i for i in kept if node in (begins[i], ends[i]))
+            raise PocketRefused("the way beside the walls does not close there; move that wall a little, or take another tool or step-over", nodes[node], tracks[at].name)
+    chains = []
+    while any(outs.values()):
+        first = next(group for group in outs.values() if group)[0]
+        chain = [first]
+        outs[begins[first]].remove(first)
+        while ends[chain[-1]] != begins[first]:
+            chosen = min(outs[ends[chain[-1]]], key=lambda i: _turn(tracks[chain[-1]], tracks[i]))
+            outs[ends[chain[-1]]].remove(chosen)
+            chain.append(chosen)
+        chains.append([tracks[i] for i in chain])
+    return chains
+
+
+def _turn(before, after):
+    """Straight on first, and rather to the left."""
+    into, out = before.tangent(1.0), after.tangent(0.0)
+    turn = math.atan2(cross(into, out), dot(into, out))
+    return round(abs(turn), 6), -turn
+
+
+def _nodes(tracks):
+    """Places of ends and begins; the number of that of each track's begin and end."""
+    places = np.array([place for track in tracks for place in (track.at(0.0), track.at(1.0))]).reshape(-1, 2)
+    number = np.full(len(places), -1)
+    nodes = []
+    for i, place in enumerate(places):
+        if number[i] < 0:
+            same = (np.abs(places - place) < JOINED_MM).all(1) & (number < 0)
+            number[same] = len(nodes)
+            nodes.append(tuple(place))
+    return nodes, number[0::2].tolist(), number[1::2].tolist()
