@@ -9,7 +9,7 @@ from rmac_freecad.pockets.tracks import SideTrack
 from rmac_freecad.pockets.wall import Wall
 from rmac_freecad.profiles.pieces import Straight
 
-HALVINGS = 8  # of squares as large as the tool's radius
+HALVINGS = 7  # of squares as large as the tool's radius
 AT_ONCE = 20_000
 CHORD_MM = 1e-3  # that chords of parallels may be off, and more
 
@@ -22,15 +22,16 @@ class Spot:
 
 
 def area_where(depth, low, high, size, halvings=HALVINGS):
-    """Spots where `depth(places)` is above 0; it changes by no more than 1 a mm. The last squares count by their middles."""
+    """Spots where `depth(places, half)` is above 0; it changes by no more than 1 a mm, and below -half nobody asks how much. The last
+    squares count by their middles."""
     xs, ys = (np.arange(a, b + size, size) + size / 2 for a, b in zip(low, high))
     middles = np.array(list(itertools.product(xs, ys)))
     sure_places, sure_areas = [], []
     for halving in range(halvings + 1):
         if not len(middles):
             break
-        found = np.concatenate([depth(middles[i : i + AT_ONCE]) for i in range(0, len(middles), AT_ONCE)])
         half = size * np.sqrt(0.5)
+        found = np.concatenate([depth(middles[i : i + AT_ONCE], half) for i in range(0, len(middles), AT_ONCE)])
         sure = found > (half if halving < halvings else 1e-9)
         sure_places.append(middles[sure])
         sure_areas.append(np.full(sure.sum(), size**2))
@@ -76,10 +77,9 @@ def unreached(outline, loops, radius):
     """Spots that the tool cannot get to: beside all discs of its radius that are in the pocket. `loops` are those along the walls."""
     along = swath(loops)
 
-    def depth(places):
+    def depth(places, half):
         away = outline.wall.nearest(places)[1]
-        inside = outline.wall.inside(places)
-        return np.where(inside, np.minimum(np.minimum(away, radius - away), along.nearest(places)[1] - radius - CHORD_MM), -away)
+        return _lower(np.where(outline.wall.inside(places), np.minimum(away, radius - away), -away), places, half, along, radius)
 
     return area_where(depth, *outline.wall.box, radius)
 
@@ -88,8 +88,15 @@ def missed(outline, levels, radius):
     """Spots that the tool's centre may be at, and that no loop clears."""
     along = swath([loop for level in levels for loop in level])
 
-    def depth(places):
+    def depth(places, half):
         away = outline.wall.nearest(places)[1]
-        return np.where(outline.wall.inside(places), np.minimum(away - radius, along.nearest(places)[1] - radius - CHORD_MM), -away)
+        return _lower(np.where(outline.wall.inside(places), away - radius, -away), places, half, along, radius)
 
     return area_where(depth, *outline.wall.box, radius)
+
+
+def _lower(depth, places, half, along, radius):
+    """By what the tool clears along there, where it is not certain without."""
+    open_ones = depth > -half
+    depth[open_ones] = np.minimum(depth[open_ones], along.nearest(places[open_ones])[1] - radius - CHORD_MM)
+    return depth

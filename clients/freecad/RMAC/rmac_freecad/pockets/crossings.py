@@ -88,10 +88,15 @@ def _sought(a, b):
     near = (s > -0.1) & (s < 1.1) & (t > -0.1) & (t < 1.1) & (turn != 0)
     found = []
     for i, j in np.argwhere(near):
-        pair = _refined(a, b, (i + s[i, j]) / len(u), (j + t[i, j]) / len(v))
+        pair = _refined(a, b, _share_of(a, (i + s[i, j]) / len(u)), _share_of(b, (j + t[i, j]) / len(v)))
         if pair is not None and not any(abs(pair[0] - x) * a.length < SLACK_MM for x, _ in found):
             found.append(pair)
     return found
+
+
+def _share_of(track, chord):
+    """From how far along its chords."""
+    return (1 - math.cos(math.pi * min(max(chord, 0), 1))) / 2 if isinstance(track, SideTrack) else chord
 
 
 def _refined(a, b, s, t):

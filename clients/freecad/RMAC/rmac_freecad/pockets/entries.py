@@ -14,7 +14,7 @@ WIDEST, NARROWEST = 0.9, 0.3  # radii of the tool: wider ones leave a core, narr
 TRIED = 13
 MOST_TURNS = 40
 NEARER_MM = 1e-6
-GENTLER = 1 - 1e-4  # what a slope is planned as: fits of splines are not even to the last digit
+GENTLER = 1 - 1e-3  # what a slope is planned as: fits of splines are not even to the last digit
 
 
 @dataclass(frozen=True)

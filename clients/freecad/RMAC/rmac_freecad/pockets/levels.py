@@ -13,6 +13,7 @@ from rmac_freecad.profiles.pieces import Bow, Spline, Straight, cross, dot, left
 
 TANGENT_RAD = 1e-7
 NEARER_MM = 1e-6  # to a wall than wanted is rounding
+HARMLESS_MM = 2e-4  # where splines bend as much as that, their cusps are hardly apart from what crosses them
 JOINED_MM = 2e-6
 SHORTEST_MM = 1e-7
 LOOKED_AT = (0.5, 0.03, 0.97)
@@ -91,7 +92,7 @@ def _is_clear(part, wall, distance):
     clear = away >= distance - NEARER_MM
     if clear.all():
         return True
-    if clear.any() and part.length > 100 * JOINED_MM and (distance - away).max() > 10 * NEARER_MM:
+    if clear.any() and (distance - away).max() > HARMLESS_MM:
         place = part.at(0.5)
         raise PocketRefused(f"the way {distance:.4g} mm beside the walls cannot be told apart there; move that wall a little, or take another tool", place, part.name)
     return bool(clear[0])

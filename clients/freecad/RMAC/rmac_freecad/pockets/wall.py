@@ -8,13 +8,14 @@ from rmac_freecad.pockets.spline import SmoothSpline
 from rmac_freecad.profiles.pieces import Bow, Spline, Straight
 
 AT_ONCE = 4000  # places
-SAG_MM = 1e-4
+SAG_MM = 1e-3  # of chords that tell on which side one is
 
 
 class Wall:
     """Of the pieces of closed contours that have the pocket to their left."""
 
     def __init__(self, pieces):
+        self._pieces = tuple(pieces)
         lines = [piece for piece in pieces if isinstance(piece, Straight)]
         self._a = np.array([line.start for line in lines]).reshape(-1, 2)
         self._b = np.array([line.end for line in lines]).reshape(-1, 2)
@@ -46,8 +47,17 @@ class Wall:
         return odd
 
     def area(self):
-        total = sum(0.5 * (a[0] * b[1] - a[1] * b[0]) for chord in self._chords for a, b in zip(chord, chord[1:]))
-        return float(total)
+        return sum(self._under(piece) for piece in self._pieces)
+
+    def _under(self, piece):
+        """Its share of the area, by Green's theorem."""
+        (ax, ay), (bx, by) = piece.start, piece.end
+        if isinstance(piece, Straight):
+            return (ax * by - ay * bx) / 2
+        if isinstance(piece, Bow):
+            x, y = piece.centre
+            return (x * (by - ay) - y * (bx - ax) + piece.radius**2 * piece.sweep) / 2
+        return self.splines[id(piece)].area()
 
     @property
     def box(self):
