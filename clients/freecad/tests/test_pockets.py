@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import random
 import sys
 import unittest
 
@@ -116,6 +117,151 @@ class SeededTest(PocketTest):
                 worst = max(worst, gouge)
                 kinds.add(kind)
         print(f"{len(SEEDS)} pockets of {len(kinds)} kinds: cut into by {1e3 * worst:.3f} um at most")
+
+
+class WaysTest(PocketTest):
+    def kinds(self, program):
+        return {type(move) for move in program.moves if isinstance(move, (rmac.Line, rmac.Arc, rmac.Nurbs))}
+
+    def test_lines_stay_lines_arcs_arcs_and_beside_splines_there_are_nurbs(self):
+        self.assertEqual(self.kinds(self.cleared(rounded(30, 20, 5)).program), {rmac.Line, rmac.Arc})
+        made, gouge = self.check(blob(random.Random(1), 14), entry="ramp", ramp_deg=5.0)
+        self.assertEqual(self.kinds(made.program), {rmac.Line, rmac.Nurbs})  # lines from loop to loop
+        ellipse = Part.Face(Part.Wire(Part.Ellipse(at(0, 0), 20, 10).toShape()))
+        self.check(ellipse)
+
+    def test_a_slot_as_wide_as_the_tool_is_cut_along_its_middle(self):
+        for face, angle in ((Part.makePlane(30, 4), 0), (rounded(30, 4, 1.9), 0), (Part.makePlane(30, 4), 33)):
+            face.rotate(at(0, 0), at(0, 0, 1), angle)
+            made = self.cleared(face)
+            cut, flat = Cut(made.program, 0.0), Flat(face)
+            self.assertLess(cut.gouge(flat, 2.0), GOUGE_MM)
+            ends = [np.array((x, 2.0)) for x in (2.0, 28.0)]
+            turn = np.array([[math.cos(math.radians(angle)), math.sin(math.radians(angle))], [-math.sin(math.radians(angle)), math.cos(math.radians(angle))]])
+            self.assertLess(cut.uncut(np.array([end @ turn for end in ends]), 0.0, -2.5), 1e-6)
+
+    def test_a_pocket_with_a_slot_as_wide_as_the_tool_is_cleared_to_the_slot_s_end(self):
+        face = Part.makePlane(30, 20).fuse(Part.makePlane(20, 4, at(30, 7))).removeSplitter().Faces[0]
+        made, _ = self.check(face)
+        self.assertLess(Cut(made.program, 0.0).uncut(np.array([[48.0, 9.0]]), 0.0, -2.5), 1e-6)
+
+    def test_the_corners_of_a_rectangle_are_told_as_area(self):
+        made = self.cleared(Part.makePlane(30, 20))
+        self.assertEqual(len(made.unreached), 4)
+        for spot in made.unreached:
+            self.assertAlmostEqual(spot.area_mm2, (1 - math.pi / 4) * 2**2, delta=0.03)
+        self.assertAlmostEqual(min(math.dist(spot.place, (0, 0)) for spot in made.unreached), 0.447 * math.sqrt(2), delta=0.02)
+
+    def test_wide_steps_get_loops_between_where_they_would_leave_something(self):
+        """Of a square of 13.6 mm two loops with 3.8 mm between them leave its middle."""
+        square = Part.makePlane(13.6, 13.6)
+        loops = {place.what for place in self.places(self.cleared(square, step_over_mm=3.8).program)}
+        self.assertTrue(any("3.9 mm from the walls" in what for what in loops), loops)
+        self.check(square, step_over_mm=3.8)
+
+    def places(self, program):
+        return [program.place_of(index) for index in range(len(program))]
+
+    def test_inside_out_ends_at_the_walls_and_outside_in_begins_there(self):
+        for order, number in (("inside out", -1), ("outside in", 0)):
+            places = [place for place in self.places(self.cleared(Part.makePlane(30, 20), order=order).program) if "loop" in place.what]
+            self.assertIn("loop 2 mm from the walls", places[number].what)
+
+    def test_climbing_has_walls_to_the_right_and_islands_too(self):
+        face = Part.makePlane(30, 20).cut(rounded(6, 6, 1, 12, 7))
+        for climb in (True, False):
+            for move in Cut(self.cleared(face, climb=climb).program, 0.0).level(-2.5):
+                begin, end = np.array(move.start[:2]), np.array(move.end[:2])
+                if isinstance(move, rmac.Line) and math.dist(begin, end) > 2:
+                    across = np.array([end[1] - begin[1], begin[0] - end[0]]) / math.dist(begin, end)
+                    away = Flat(face).away(np.array([(begin + end) / 2 + 0.1 * across, (begin + end) / 2 - 0.1 * across]))
+                    self.assertEqual(away[0] < away[1], climb, (begin, end))
+
+    def test_a_sketch_with_an_island_is_cleared_where_it_stands(self):
+        sketch = self.document.addObject("Sketcher::SketchObject", "Sketch")
+        corners = [at(0, 0), at(30, 0), at(30, 20), at(0, 20)]
+        sketch.addGeometry([Part.LineSegment(a, b) for a, b in zip(corners, [*corners[1:], corners[0]])], False)
+        sketch.addGeometry(Part.Circle(at(15, 10), at(0, 0, 1), 3), False)
+        sketch.addGeometry(Part.LineSegment(at(0, 5), at(10, 5)), True)  # for construction
+        sketch.Placement.Base = at(3, 4, 2)
+        self.document.recompute()
+        outline = outline_of(sketch)
+        made = read_pocket("Pocket", outline, Pocket(**{**GIVEN, "top_mm": 2.0}), rapid_mm_min=2000)
+        face = Part.makePlane(30, 20, at(3, 4)).cut(Part.Face(Part.Wire(Part.Circle(at(18, 14), at(0, 0, 1), 3).toShape()))).Faces[0]
+        self.assertEqual(outline.z, 2)
+        self.assertAlmostEqual(made.area_mm2, face.Area, 6)
+        self.assertLess(Cut(made.program, 2.0).gouge(Flat(face), 2.0), GOUGE_MM)
+
+    def test_a_machine_takes_it(self):
+        tools = {"Mounted": 1, "Tools": [{"ToolNumber": 1, "Length": 0, "Radius": 2}]}
+        for seed in (1, 2, 4):
+            program = self.cleared(seeded_face(seed)[1], entry="ramp" if seed == 4 else "helix").program
+            self.assertGreater(simulate(program, "DMACXYZ", tools, rmac=str(BUILD / "bin/rmac")).cycle_time_s, 0)
+
+    def test_the_feed_down_is_that_of_slopes(self):
+        feed, feeds = None, {}
+        for move in self.cleared(Part.makePlane(30, 20)).program.moves:
+            if move.method == "RMAC_CAM.SetFeedrate":
+                feed = json.loads(move.params(0))["Feedrate"]
+            elif move.end is not None:
+                feeds.setdefault("rapid" if isinstance(move, rmac.MoveTo) else "down" if move.end[2] < move.start[2] else "level", set()).add(feed)
+        self.assertEqual(feeds, {"rapid": {2000}, "down": {200}, "level": {600}})
+
+
+class RefusedTest(PocketTest):
+    def test_a_pocket_that_is_narrower_than_the_tool_is_refused(self):
+        self.refused(Part.makePlane(30, 3.99), "radius of 2 mm", "does not get into it anywhere", "smaller")
+        self.refused(Part.Face(Part.Wire(Part.Circle(at(0, 0), at(0, 0, 1), 2).toShape())), "smaller")
+
+    def test_a_place_where_nothing_can_go_down_is_told(self):
+        self.refused(Part.makePlane(4.01, 4.01), "no room to go down", "at X 2.005 Y 2:")
+
+    def test_faces_that_are_not_flat_or_not_level_are_told(self):
+        ball = Part.makeSphere(5)
+        self.refused(ball, "Face1", "not planar")
+        slope = Part.makePlane(30, 20)
+        slope.rotate(at(0, 0), at(1, 0, 0), 1)
+        self.refused(slope, "Face1", "not level")
+        with self.assertRaisesRegex(PocketRefused, "has no Face7; select a face, or a sketch"):
+            self.outline(Part.makeBox(9, 9, 9), "Face7")
+
+    def wires(self, *edges):
+        with self.assertRaises(ProfileRefused) as refused:
+            self.outline(Part.Compound(list(edges)), "")
+        return str(refused.exception)
+
+    def test_an_open_outline_is_told_with_its_place(self):
+        corners = [at(0, 0), at(10, 0), at(10, 10), at(0, 10)]
+        text = self.wires(*(Part.makeLine(a, b) for a, b in zip(corners, corners[1:])))
+        self.assertIn("Edge3 at X 0 Y 10: the outline is open there", text)
+
+    def test_outlines_that_cross_touch_or_lie_apart_are_told(self):
+        square = Part.makePlane(10, 10).Edges
+        self.assertIn("do not cross or touch", self.wires(*square, *Part.makePlane(10, 10, at(5, 5)).Edges))
+        self.assertIn("do not cross or touch", self.wires(*square, *Part.makePlane(3, 3, at(7, 2)).Edges))
+        self.assertIn("a pocket of each", self.wires(*square, *Part.makePlane(9, 9, at(20, 0)).Edges))
+        island = Part.makePlane(6, 6, at(2, 2)).Edges
+        self.assertIn("within an island", self.wires(*square, *island, *Part.makePlane(2, 2, at(4, 4)).Edges))
+        self.assertIn("begin in one plane", self.wires(*square, *Part.makePlane(2, 2, at(4, 4, 1)).Edges))
+        self.assertIn("no edge", self.wires())
+
+    def test_what_is_no_number_is_refused_by_its_name(self):
+        face = Part.makePlane(30, 20)
+        for name in ("radius_mm", "depth_mm", "step_down_mm", "step_over_mm", "feed_mm_min", "plunge_mm_min", "spindle_rpm", "ramp_deg"):
+            for value in (None, 0, -1, math.nan, math.inf, True, "3 mm"):
+                with self.subTest(name=name, value=value):
+                    self.refused(face, f"({name})", "not given" if value is None else "more than 0", **{name: value})
+        for name in ("top_mm", "safe_mm"):
+            self.refused(face, f"({name})", **{name: None})
+
+    def test_other_values_that_make_no_sense_are_refused(self):
+        face = Part.makePlane(30, 20)
+        self.refused(face, "tool's number", tool=0)
+        self.refused(face, "helix, ramp", entry="drill")
+        self.refused(face, "inside out, outside in", order="anyhow")
+        self.refused(face, "at most 3.8 mm", step_over_mm=3.9)
+        self.refused(face, "height to cross at", safe_mm=0.0)
+        self.refused(face, "at most 45", ramp_deg=60)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,9 @@ from rmac_freecad.profiles.pieces import Bow, Spline, Straight, cross, dot, left
 TANGENT_RAD = 1e-7
 NEARER_MM = 1e-6  # to a wall than wanted is rounding
 HARMLESS_MM = 2e-4  # where splines bend as much as that, their cusps are hardly apart from what crosses them
+NUDGES_MM = (0.0, 1e-4, 2.7e-4, 6e-4)
 JOINED_MM = 2e-6
+TAIL_MM = 0.01
 SHORTEST_MM = 1e-7
 LOOKED_AT = (0.5, 0.03, 0.97)
 
@@ -35,9 +37,20 @@ class Loop:
 
 
 def loops_at(contours, wall, distance):
-    """`contours`: closed ones with the pocket to their left, of `wall`. None where nothing of it is so far away."""
+    """`contours`: closed ones with the pocket to their left, of `wall`. None where nothing of it is so far away. Where walls bend just as
+    much as that, it is tried again a little further away, less than a micrometre."""
+    for further in NUDGES_MM:
+        try:
+            return _loops_at(contours, wall, distance + further)
+        except PocketRefused:
+            if further == NUDGES_MM[-1]:
+                raise
+    return []
+
+
+def _loops_at(contours, wall, distance):
     tracks = [track for contour in contours for track in _raw(contour, wall, distance)]
-    kept = [part for track in _parts(tracks) for part in [track] if _is_clear(part, wall, distance)]
+    kept = [part for part in _parts(tracks) if _is_clear(part, wall, distance)]
     return [Loop(tuple(chain), distance) for chain in _chains(kept)]
 
 
@@ -89,19 +102,19 @@ def _parts(tracks):
 def _is_clear(part, wall, distance):
     """Between two crossings it is nearer to a wall everywhere, or nowhere."""
     _, away = wall.nearest(part.at(np.array(LOOKED_AT)))
-    clear = away >= distance - NEARER_MM
-    if clear.all():
-        return True
-    if clear.any() and (distance - away).max() > HARMLESS_MM:
-        place = part.at(0.5)
+    if away[0] < distance - NEARER_MM:
+        return False
+    if (distance - away).max() > HARMLESS_MM:
+        place = tuple(map(float, part.at(0.5)))
         raise PocketRefused(f"the way {distance:.4g} mm beside the walls cannot be told apart there; move that wall a little, or take another tool", place, part.name)
-    return bool(clear[0])
+    return True
 
 
 def _chains(tracks):
     """Joined end to begin. Each place has as many ends as begins, else something was missed: refused rather than guessed."""
     nodes, begins, ends = _nodes(tracks)
     kept = [i for i in range(len(tracks)) if begins[i] != ends[i] or tracks[i].length > 10 * JOINED_MM]
+    kept = _without_tails(kept, tracks, begins, ends)
     outs = {}
     for i in kept:
         outs.setdefault(begins[i], []).append(i)
@@ -120,6 +133,16 @@ def _chains(tracks):
             chain.append(chosen)
         chains.append([tracks[i] for i in chain])
     return chains
+
+
+def _without_tails(kept, tracks, begins, ends):
+    """What is left of a cusp behind the place where it crosses itself ends nowhere, and is as near to the wall as rounding."""
+    while True:
+        starts, stops = {begins[i] for i in kept}, {ends[i] for i in kept}
+        tails = {i for i in kept if tracks[i].length < TAIL_MM and (begins[i] not in stops or ends[i] not in starts)}
+        if not tails:
+            return kept
+        kept = [i for i in kept if i not in tails]
 
 
 def _turn(before, after):

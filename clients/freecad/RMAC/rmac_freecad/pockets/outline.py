@@ -47,7 +47,7 @@ def _wires_of_face(feature, name):
     if not number.isdigit() or not 1 <= int(number) <= len(shape.Faces):
         raise PocketRefused(f"{feature.Label} has no {name}; select a face, or a sketch")
     face = shape.Faces[int(number) - 1]
-    plane = face.Surface if isinstance(face.Surface, Part.Plane) else face.findPlane()
+    plane = face.Surface if isinstance(face.Surface, Part.Plane) else face.findPlane() if face.Surface.isPlanar(1e-7) else None
     if plane is None:
         raise PocketRefused("it is not planar; a pocket is cleared on a flat, level face", edge=name)
     if abs(abs(plane.Axis.z) - 1) > LEVEL:

@@ -7,6 +7,7 @@ import rmac
 from rmac_freecad.pockets.area import unreached
 from rmac_freecad.pockets.chains import chains_of, cleared, middles
 from rmac_freecad.pockets.entries import circle_at, entry_of
+from rmac_freecad.pockets.outline import Outline
 from rmac_freecad.pockets.refusal import PocketRefused
 from rmac_freecad.program import Program
 
@@ -45,6 +46,21 @@ class Cleared:
 
 
 @dataclass(frozen=True)
+class Plan:
+    """The way, before anybody knows the machine and its rapids."""
+
+    outline: Outline
+    pocket: Pocket
+    chains: list
+    entries: list
+    unreached: tuple
+    missed: tuple
+
+    def program(self, label, rapid_mm_min):
+        return _Clearing(label, self, rapid_mm_min).program
+
+
+@dataclass(frozen=True)
 class PocketPlace:
     label: str
     what: str
@@ -56,17 +72,21 @@ class PocketPlace:
 
 def read_pocket(label, outline, pocket, *, rapid_mm_min):
     """`outline` as of `outline_of`. Raises `PocketRefused`."""
+    plan = plan_pocket(outline, pocket)
+    return Cleared(plan.program(label, rapid_mm_min), outline.wall.area(), plan.unreached, plan.missed)
+
+
+def plan_pocket(outline, pocket):
+    """Takes its time; touches no document."""
     check(pocket)
-    radius = pocket.radius_mm
-    levels, missed = cleared(outline, radius, pocket.step_over_mm)
-    along_walls = levels[0]
+    levels, missed = cleared(outline, pocket.radius_mm, pocket.step_over_mm)
     chains = chains_of(outline, levels, lambda loop: _seam(outline, loop, pocket))
     if pocket.order == "outside in":
         chains = [chain[::-1] for chain in chains[::-1]]
     if not pocket.climb:
         chains = [[loop.turned() for loop in chain] for chain in chains]
-    program = _Clearing(label, outline, chains, pocket, rapid_mm_min).program
-    return Cleared(program, outline.wall.area(), tuple(unreached(outline, along_walls, radius)), tuple(missed))
+    entries = [entry_of(outline, chain[0], pocket) for chain in chains]
+    return Plan(outline, pocket, chains, entries, tuple(unreached(outline, levels[0], pocket.radius_mm)), tuple(missed))
 
 
 def _seam(outline, loop, pocket):
@@ -103,20 +123,19 @@ def check(pocket):
 
 
 class _Clearing:
-    def __init__(self, label, outline, chains, pocket, rapid_mm_min):
+    def __init__(self, label, plan, rapid_mm_min):
         self.program = Program()
-        self._label, self._outline, self._pocket, self._rapid = label, outline, pocket, rapid_mm_min
+        self._label, self._pocket, self._rapid = label, plan.pocket, rapid_mm_min
         self._at = self._feed = None
-        begin = PocketPlace(label, "begin", pocket.safe_mm)
-        self.program.append(rmac.tool_change(pocket.tool), begin)
-        self.program.append(rmac.spindle(pocket.spindle_rpm), begin)
-        entries = [entry_of(outline, chain[0], pocket) for chain in chains]
-        above = pocket.top_mm
+        begin = PocketPlace(label, "begin", plan.pocket.safe_mm)
+        self.program.append(rmac.tool_change(plan.pocket.tool), begin)
+        self.program.append(rmac.spindle(plan.pocket.spindle_rpm), begin)
+        above = plan.pocket.top_mm
         for z in self._levels():
-            for chain, entry in zip(chains, entries):
+            for chain, entry in zip(plan.chains, plan.entries):
                 self._chain(chain, entry, above, z)
             above = z
-        self.program.append(rmac.spindle(0), PocketPlace(label, "end", pocket.safe_mm))
+        self.program.append(rmac.spindle(0), PocketPlace(label, "end", plan.pocket.safe_mm))
 
     def _levels(self):
         top, depth = self._pocket.top_mm, self._pocket.depth_mm
