@@ -98,7 +98,7 @@ class OperationDialog(Dialog):
         """What was deleted lives on where that can be undone."""
         try:
             return self.feature.Document.getObject(self.feature.Name) is not None
-        except (ReferenceError, AttributeError):
+        except (ReferenceError, RuntimeError, AttributeError):
             return False
 
     def _gone(self):
