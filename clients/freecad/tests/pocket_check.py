@@ -53,7 +53,7 @@ class Flat:
         return away_from(self._a, self._b, places)
 
     def inside(self, places):
-        x, y = places.T
+        x, y = places.T + 1.1e-7  # no place is as high as a corner
         odd = np.zeros(len(x), bool)
         for (ax, ay), (bx, by) in zip(self._a, self._b):
             if ay != by:
@@ -164,6 +164,24 @@ def seeded_face(seed):
     face = face.Faces[0]
     face.rotate(at(0, 0), at(0, 0, 1), chance.uniform(0, 360))
     return kind, face
+
+
+def whole_face(seed):
+    """Rectangles and circles of whole millimetres, joined and cut out; with a tool's radius, and values that divide them."""
+    chance, faces = random.Random(seed), []
+    while len(faces) != 1:
+        face = Part.makePlane(chance.randint(16, 34), chance.randint(10, 26))
+        for _ in range(chance.randint(0, 2)):
+            face = face.fuse(Part.makePlane(chance.randint(4, 14), chance.randint(4, 30), at(chance.randint(0, 28), chance.randint(0, 12)))).removeSplitter()
+        for _ in range(chance.randint(0, 3)):
+            place = at(chance.randint(3, 26), chance.randint(3, 18))
+            square = Part.makePlane(chance.randint(2, 6), chance.randint(2, 6), place)
+            face = face.cut(square if chance.random() < 0.6 else Part.Face(Part.Wire(Part.Circle(place, at(0, 0, 1), chance.randint(1, 4)).toShape())))
+        faces = face.Faces
+    radius = chance.choice((1.0, 1.5, 2.0))
+    given = {"radius_mm": radius, "step_over_mm": chance.choice((0.5, 0.75, 1.0, 1.5, 1.9)) * radius, "depth_mm": 1.0, "ramp_deg": 10.0,
+             "order": chance.choice(("inside out", "outside in")), "entry": chance.choice(("helix", "ramp"))}  # fmt: skip
+    return faces[0], radius, given
 
 
 def at(x, y, z=0.0):

@@ -14,7 +14,7 @@ import numpy as np
 import Part
 import Sketcher  # noqa: F401  its type of objects
 from appliance import BUILD
-from pocket_check import Cut, Flat, at, blob, nearest_of, rounded, seeded_face
+from pocket_check import Cut, Flat, at, blob, nearest_of, rounded, seeded_face, whole_face
 from rmac_freecad.pockets import Pocket, PocketRefused, outline_of, read_pocket
 from rmac_freecad.profiles import ProfileRefused
 from rmac_freecad.simulation import simulate
@@ -117,6 +117,33 @@ class SeededTest(PocketTest):
                 worst = max(worst, gouge)
                 kinds.add(kind)
         print(f"{len(SEEDS)} pockets of {len(kinds)} kinds: cut into by {1e3 * worst:.3f} um at most")
+
+
+class CoincidencesTest(PocketTest):
+    def test_corners_and_necks_that_fall_together_are_cleared_like_others(self):
+        """Whole millimetres: loops that shrink to lines, crossings in one place, cusps where a circle touches a wall."""
+        refused = 0
+        for seed in range(40):
+            face, radius, given = whole_face(seed)
+            with self.subTest(seed=seed, given=given):
+                try:
+                    made = self.cleared(face, **given)
+                except PocketRefused as error:
+                    self.assertRegex(str(error), "do not cross or touch|no room to go down|does not get into it anywhere")
+                    refused += 1
+                    continue
+                cut, flat = Cut(made.program, 0.0), Flat(face)
+                self.assertLess(cut.gouge(flat, radius), GOUGE_MM)
+                places = flat.places(300, seed)
+                off = nearest_of(flat.centres(radius, 0.25), places) - radius
+                self.assertLess(cut.uncut(places[off <= 0], radius, -1.0), LEFT_MM)
+        self.assertLess(refused, 6)
+
+    def test_a_circle_that_touches_a_wall_leaves_a_cusp(self):
+        face = Part.makePlane(30, 20).cut(Part.Face(Part.Wire(Part.Circle(at(30, 10), at(0, 0, 1), 4).toShape()))).Faces[0]
+        self.check(face)
+        lens = Part.makePlane(30, 20).cut(Part.makePlane(8, 8, at(22, 0))).fuse(Part.Face(Part.Wire(Part.Circle(at(26, 4), at(0, 0, 1), 4).toShape())))
+        self.check(lens.removeSplitter().Faces[0])
 
 
 class WaysTest(PocketTest):
@@ -240,6 +267,7 @@ class RefusedTest(PocketTest):
         self.assertIn("do not cross or touch", self.wires(*square, *Part.makePlane(10, 10, at(5, 5)).Edges))
         self.assertIn("do not cross or touch", self.wires(*square, *Part.makePlane(3, 3, at(7, 2)).Edges))
         self.assertIn("a pocket of each", self.wires(*square, *Part.makePlane(9, 9, at(20, 0)).Edges))
+        self.assertIn("at X 10 Y 10", self.wires(*square, *Part.makePlane(3, 3, at(10, 10)).Edges))
         island = Part.makePlane(6, 6, at(2, 2)).Edges
         self.assertIn("within an island", self.wires(*square, *island, *Part.makePlane(2, 2, at(4, 4)).Edges))
         self.assertIn("begin in one plane", self.wires(*square, *Part.makePlane(2, 2, at(4, 4, 1)).Edges))

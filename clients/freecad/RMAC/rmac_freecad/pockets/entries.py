@@ -12,6 +12,7 @@ from rmac_freecad.profiles.pieces import FULL, Bow
 
 WIDEST, NARROWEST = 0.9, 0.3  # radii of the tool: wider ones leave a core, narrower ones are hardly more than a plunge
 TRIED = 13
+SHORT = 2  # radii of the tool: along a loop that is shorter it would go round and round
 MOST_TURNS = 40
 NEARER_MM = 1e-6
 GENTLER = 1 - 1e-3  # what a slope is planned as: fits of splines are not even to the last digit
@@ -45,7 +46,7 @@ class Ramp:
 def entry_of(outline, first, pocket):
     """For the loop that is cut first; it ends where that begins."""
     angle = pocket.ramp_deg * GENTLER
-    if pocket.entry == "helix":
+    if pocket.entry == "helix" or first.loop.length < SHORT * pocket.radius_mm:
         circle = circle_at(outline, first.loop.tracks[0], 0.0, pocket)
         if circle is not None:
             return Helix(circle, angle)

@@ -12,6 +12,7 @@ from rmac_freecad.pockets.tracks import ArcTrack, LineTrack, SideTrack
 from rmac_freecad.profiles.pieces import Bow, Spline, Straight, cross, dot, left_of, plus
 
 TANGENT_RAD = 1e-7
+CUSP_RAD = 1e-6
 NEARER_MM = 1e-6  # to a wall than wanted is rounding
 HARMLESS_MM = 2e-4  # where splines bend as much as that, their cusps are hardly apart from what crosses them
 NUDGES_MM = (0.0, 1e-4, 2.7e-4, 6e-4)
@@ -62,10 +63,30 @@ def _raw(contour, wall, distance):
         after = pieces[(number + 1) % len(pieces)]
         into, out = piece.tangents[1], after.tangents[0]
         turn = math.atan2(cross(into, out), dot(into, out))
+        if math.pi - abs(turn) < CUSP_RAD:
+            turn = _turn_of_cusp(piece, after, wall)
         if turn < -TANGENT_RAD:
             across = left_of(into)
             tracks.append(ArcTrack(Bow(piece.name, piece.end, distance, math.atan2(across[1], across[0]), turn)))
     return tracks
+
+
+def _turn_of_cusp(piece, after, wall):
+    """Whether the pocket, or what stands in it, ends in a point there: by how both sides bend."""
+    bend = _bend(piece, wall, -1) + _bend(after, wall, 0)
+    if bend == 0:
+        raise PocketRefused("the wall turns back on itself there", piece.end, piece.name)
+    return math.pi if bend < 0 else -math.pi
+
+
+def _bend(piece, wall, end):
+    """More than 0 where it turns left."""
+    if isinstance(piece, Straight):
+        return 0.0
+    if isinstance(piece, Bow):
+        return math.copysign(1 / piece.radius, piece.sweep)
+    spline = wall.splines[id(piece)]
+    return float(spline.bend(spline.t[[end]])[3][0])
 
 
 def _beside(piece, wall, distance):

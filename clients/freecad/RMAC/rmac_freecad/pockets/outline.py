@@ -34,7 +34,7 @@ def outline_of(feature, face=""):
         if abs(contour.z - z) > 1e-6:
             raise PocketRefused(f"it lies at Z {contour.z:.4g}, and others at Z {z:.4g}; a pocket's walls begin in one plane", edge=contour.pieces[0].name)
     contours = [replace(contour, pieces=tuple(part for piece in contour.pieces for part in _smooth(piece))) for contour in contours]
-    _check_apart([piece for contour in contours for piece in contour.pieces])
+    _check_apart(contours)
     outer, islands = _nested(contours)
     contours = (outer, *(island.turned() for island in islands))
     return Outline(contours, z, Wall([piece for contour in contours for piece in contour.pieces]))
@@ -88,17 +88,19 @@ def _smooth(piece):
     return [Spline(piece.name, part, 0.0) for part in smooth_parts(piece.curve)]
 
 
-def _check_apart(pieces):
-    """Walls meet at their ends, and nowhere else."""
-    wall = Wall(pieces)
-    tracks = [_on(piece, wall) for piece in pieces]
-    for i, a in enumerate(tracks):
-        for j in range(i + 1, len(tracks)):
-            for s, t in crossings(a, tracks[j]):
+def _check_apart(contours):
+    """Walls meet the next one of their contour at their ends, and nothing else anywhere."""
+    pieces = [(piece, contour, number) for contour in contours for number, piece in enumerate(contour.pieces)]
+    wall = Wall([piece for piece, _, _ in pieces])
+    tracks = [_on(piece, wall) for piece, _, _ in pieces]
+    for i, (a, (_, contour, number)) in enumerate(zip(tracks, pieces)):
+        for b, (_, other, after) in list(zip(tracks, pieces))[i + 1 :]:
+            follow = contour is other and (after - number) % len(contour.pieces) in (1, len(contour.pieces) - 1)
+            for s, _ in crossings(a, b):
                 place = a.at(s)
-                ends = [min(np.hypot(*(place - one.at(end))) for end in (0.0, 1.0)) < SAME_PLACE_MM for one in (a, tracks[j])]
-                if not all(ends):
-                    raise PocketRefused(f"it meets {tracks[j].name} there; walls of a pocket do not cross or touch", tuple(place), a.name)
+                ends = [min(np.hypot(*(place - one.at(end))) for end in (0.0, 1.0)) < SAME_PLACE_MM for one in (a, b)]
+                if not (follow and all(ends)):
+                    raise PocketRefused(f"it meets {b.name} there; walls of a pocket do not cross or touch", tuple(map(float, place)), a.name)
 
 
 def _on(piece, wall):

@@ -9,6 +9,7 @@ from rmac_freecad.profiles.pieces import Bow, Spline, Straight
 
 AT_ONCE = 4000  # places
 SAG_MM = 1e-3  # of chords that tell on which side one is
+ASIDE_MM = 1.37e-7  # so that no place is as high as an end of a wall, where two ends that are the same differ by rounding
 
 
 class Wall:
@@ -37,7 +38,7 @@ class Wall:
 
     def inside(self, places):
         """Whether they are in the pocket; by chords, next to the wall not exactly."""
-        x, y = np.asarray(places).T
+        x, y = np.asarray(places).T + ASIDE_MM
         odd = np.zeros(len(x), bool)
         for chord in self._chords:
             for (ax, ay), (bx, by) in zip(chord, chord[1:]):
