@@ -13,10 +13,6 @@ using nlohmann::json;
 
 constexpr double kLargestInteger = 9007199254740991.0;  // 2^53 - 1: what every JSON reader holds exactly
 
-tl::unexpected<Mismatch> mismatch(const json& value, std::string expected, std::string where = {}) {
-  return tl::unexpected<Mismatch>(Mismatch{std::move(where), shortened(value), std::move(expected)});
-}
-
 std::string with_range(const char* what, const ParameterSpec& spec) {
   const std::string range = spec.range.text();
   std::string text = what;

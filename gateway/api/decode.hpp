@@ -42,6 +42,11 @@ struct JsonValue {
 
 /// The value as it may stand in a message: at most some eighty characters.
 [[nodiscard]] std::string shortened(const nlohmann::json& value);
+/// What was found in the place of what was expected.
+[[nodiscard]] inline tl::unexpected<Mismatch> mismatch(const nlohmann::json& value, std::string expected,
+                                                       std::string where = {}) {
+  return tl::unexpected<Mismatch>(Mismatch{std::move(where), shortened(value), std::move(expected)});
+}
 
 /// One overload a C++ type of a parameter: JSON to a value, checked against `spec` (range, enumeration).
 void decode_into(const nlohmann::json& value, const ParameterSpec& spec, Decoded<bool>& out);

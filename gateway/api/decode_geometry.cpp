@@ -14,10 +14,6 @@ using nlohmann::json;
 
 constexpr std::size_t kLargestDegree = 25;  // what CAD kernels write (OpenCASCADE's limit)
 
-tl::unexpected<Mismatch> mismatch(const json& value, std::string expected, std::string where = {}) {
-  return tl::unexpected<Mismatch>(Mismatch{std::move(where), shortened(value), std::move(expected)});
-}
-
 template <std::size_t kSize>
 Decoded<std::array<double, kSize>> numbers_at(const json& object, const char* key, const char* expected) {
   const json& value = object[key];

@@ -21,7 +21,6 @@ constexpr double kStray_mm = 5e-4;
 constexpr double kClosed_mm = 1.001e-3;
 /// A turn so short is a full one, as in rs274.
 constexpr double kFullCircle_rad = 1e-6;
-constexpr double kTurn_rad = 2 * std::numbers::pi;
 
 struct Chord {
   double first, second, length;

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <numbers>
 #include <optional>
 
 #include "clients/legacy/program/writer.hpp"
 
 namespace rmac::legacy {
+
+inline constexpr double kTurn_rad = 2 * std::numbers::pi;
 
 /// The plane of arcs and the axis along which holes are drilled: G17 is {0, 1, 2}, G18 {2, 0, 1}, G19 {1, 2, 0}, so
 /// that counter-clockwise turns the first axis towards the second.

@@ -10,10 +10,12 @@
 #include "canopen/watch/node_record.hpp"
 #include "canopen/watch/node_trouble.hpp"
 #include "canopen/watch/position_reader.hpp"
+#include "rmac/fieldbus/canopen/canopen_interface.hpp"
 
 namespace rmac::fieldbus::canopen {
 
-/// A node as its bus has it: on its way up, or in operation.
+/// A node as its bus has it: on its way up, or in operation; and whether it is lost, by what it says and by its
+/// silence.
 struct BusNode {
   BusNode(const CanopenConfig& config, const AxisConfig& first)
       : boot(config, first.node),
@@ -21,6 +23,15 @@ struct BusNode {
         positions(first.node),
         record(config.period),
         measured(answer_id(first)) {}
+  /// Anew, whatever is known of it. Off the cycle.
+  void start(std::chrono::nanoseconds now) noexcept;
+  /// A frame under one of its own ids: emergency, SDO answer or heartbeat. True when the node is lost by it: it is
+  /// being brought up again. Real-time safe, as all below.
+  [[nodiscard]] bool take(const CanFrame& frame, std::chrono::nanoseconds now, std::chrono::nanoseconds since_start,
+                          CanopenCounters& counters) noexcept;
+  /// Time passes: true when it is lost by its silence, which may last as long as `patience`.
+  [[nodiscard]] bool watch(std::chrono::nanoseconds now, std::chrono::nanoseconds patience,
+                           CanopenCounters& counters) noexcept;
   /// It knows no heartbeat, and is asked how it is instead: while it is set up too, as some reckon their master's life
   /// from when they are told 100Ch and 100Dh on, and not from the first question.
   [[nodiscard]] bool guarded() const noexcept {
@@ -62,6 +73,9 @@ struct BusNode {
   std::uint16_t error_code = 0;
   bool up = false;
   bool told_position = false;  ///< in this cycle: whoever asked does not know yet
+
+ private:
+  void lose(std::chrono::nanoseconds now, CanopenCounters& counters) noexcept;
 };
 
 }  // namespace rmac::fieldbus::canopen

@@ -62,12 +62,12 @@ struct CanopenInterface::Impl {
   void count_sync() noexcept {
     for (BusAxis& axis : axes) axis.sync();
   }
-  void take_from_node(BusNode& node, const CanFrame& frame, std::chrono::nanoseconds now) noexcept;
   void watch(std::chrono::nanoseconds now) noexcept;
   void ask_positions(std::span<const DriveCommand> commands, std::chrono::nanoseconds now) noexcept;
   void take_positions() noexcept;
   void send_asides(std::chrono::nanoseconds now) noexcept;
-  void lose(BusNode& node, std::chrono::nanoseconds now) noexcept;
+  /// Of a node that was lost.
+  void forget_answers(const BusNode& node) noexcept;
   void fill(std::span<DriveFeedback> feedback) noexcept;
   [[nodiscard]] bool send(const CanFrame& frame) noexcept;
   [[nodiscard]] bool send_setpoints(std::size_t first, std::span<const DriveCommand> commands) noexcept;
@@ -165,11 +165,7 @@ Expected<> CanopenInterface::start() {
 Expected<> CanopenInterface::Impl::boot_all() {
   notes = config.drives ? config.drives->unreadable : std::vector<std::string>();
   for (BusNode& node : nodes) {
-    node.up = false;
-    node.trouble.forget();
-    node.record.forget();
-    node.boot.forget_identity();
-    node.boot.begin(port->now());
+    node.start(port->now());
   }
   const auto settled = [](const BusNode& node) {
     return node.boot.state() == NodeBoot::State::Operational || node.boot.state() == NodeBoot::State::Failed;
@@ -323,7 +319,7 @@ void CanopenInterface::Impl::take(const CanFrame& frame, std::chrono::nanosecond
   for (BusNode& node : nodes) {
     const std::uint8_t id = node.boot.node();
     if (frame.id == kEmergencyId + id || frame.id == kSdoAnswerId + id || frame.id == kHeartbeatId + id) {
-      take_from_node(node, frame, now);
+      if (node.take(frame, now, record.since_start(now), counters)) forget_answers(node);
       return;
     }
   }
@@ -345,61 +341,15 @@ void CanopenInterface::Impl::take_answer(BusAxis& axis, BusAxis::Answer& answer,
   answer.answered = true;
 }
 
-void CanopenInterface::Impl::take_from_node(BusNode& node, const CanFrame& frame,
-                                            std::chrono::nanoseconds now) noexcept {
-  const std::uint8_t id = node.boot.node();
-  if (frame.id == kEmergencyId + id) {
-    if (frame.size < 2) return;
-    node.record.emergency(frame, record.since_start(now));
-    node.error_code = word_at(frame.data.data());
-    if (node.error_code != 0) ++counters.emergencies;
-    return;
-  }
-  if (frame.id == kHeartbeatId + id && frame.size == 1) {
-    if (node.guarded() && heartbeat_state(frame) != NmtState::BootUp && !node.guard.take(frame)) return;
-    node.heard = now;
-    const NmtState said = heartbeat_state(frame);
-    if (node.up && said != NmtState::Operational && said != NmtState::BootUp) lose(node, now);
-  }
-  if (frame.id == kSdoAnswerId + id) node.record.sdo_answer(frame);
-  node.boot.receive(frame, now);
-  if (node.up && frame.id == kSdoAnswerId + id) node.positions.receive(frame, now);
-  if (!node.up || node.boot.state() == NodeBoot::State::Operational) return;
-  lose(node, now);
-  // A boot-up message: it has started anew by itself, and waits for what it is to be told.
-  if (node.trouble.problem().kind == BootProblem::Kind::Restarted) node.boot.receive(frame, now);
-}
-
-void CanopenInterface::Impl::lose(BusNode& node, std::chrono::nanoseconds now) noexcept {
-  ++counters.nodes_lost;
-  node.record.lost();
-  if (shows_two(node.boot.problem().kind)) ++counters.duplicates;
-  node.trouble.note(node.boot.problem());
-  node.up = false;
-  for (BusAxis& axis : axes) {
-    if (&nodes[axis.node] == &node) axis.forget();
-  }
-  node.positions.abandon();
-  node.boot.begin(now);
-}
-
 void CanopenInterface::Impl::watch(std::chrono::nanoseconds now) noexcept {
   for (BusNode& node : nodes) {
-    if (node.up && now - node.heard > config.heartbeat_deadline()) lose(node, now);
-    if (node.up && node.boot.state() == NodeBoot::State::Failed) lose(node, now);
-    if (!node.up && node.boot.state() == NodeBoot::State::Operational) {
-      node.up = true;
-      node.trouble.forget();
-      node.heard = now;
-      node.error_code = node.boot.error_code();
-      ++counters.nodes_recovered;
-      node.record.recovered();
-    }
-    if (node.boot.state() == NodeBoot::State::Failed) {
-      node.trouble.note(node.boot.problem());
-      node.boot.begin(now);
-    }
-    node.record.state(node.state());
+    if (node.watch(now, config.heartbeat_deadline(), counters)) forget_answers(node);
+  }
+}
+
+void CanopenInterface::Impl::forget_answers(const BusNode& node) noexcept {
+  for (BusAxis& axis : axes) {
+    if (&nodes[axis.node] == &node) axis.forget();
   }
 }
 

@@ -11,7 +11,6 @@ constexpr std::uint16_t kHeartbeatError = 0x8130;
 constexpr std::uint16_t kPdoTooShort = 0x8210;
 constexpr std::uint16_t kPdoTooLong = 0x8220;
 
-constexpr std::uint32_t kBadValue = 0x06090030;
 constexpr std::uint32_t kIncompatible = 0x06040043;
 constexpr std::uint32_t kCannotStore = 0x08000020;
 constexpr std::int64_t kSave = 0x65766173;  // "save"

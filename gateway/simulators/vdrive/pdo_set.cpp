@@ -8,7 +8,6 @@ namespace {
 constexpr std::uint32_t kInvalid = 0x80000000;
 constexpr std::uint32_t kExtended = 0x20000000;
 constexpr std::uint32_t kIdMask = 0x7FF;
-constexpr std::uint32_t kBadValue = 0x06090030;
 constexpr std::uint32_t kTooLongForPdo = 0x06040042;
 constexpr std::uint32_t kStateForbids = 0x08000022;
 constexpr std::uint8_t kLastSyncType = 240;

@@ -19,7 +19,6 @@ constexpr double kTipBound_mm = kExact.tip_mm, kAxisBound_rad = kExact.axis_rad;
 /// How much the pose must change, mm and rad alike, a mm or degree of a joint in the worst direction, for the inverse
 /// to be held to giving the joints back: to what the bounds above leave open.
 constexpr double kDetermined = 1e-4;
-constexpr std::size_t kMostSolutions = 16;
 
 using Joints = std::vector<double>;
 

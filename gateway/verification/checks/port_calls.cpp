@@ -9,7 +9,6 @@ namespace rmac::verifier {
 namespace {
 
 constexpr std::size_t kCalls = 500;  ///< of each function
-constexpr std::size_t kMostSolutions = 16;
 
 using Joints = std::vector<double>;
 

@@ -19,6 +19,9 @@ inline constexpr PoseBounds kExact{1e-9, 1e-9};
 /// may take them for those that it reaches.
 inline constexpr PoseBounds kAsWritten{1e-5, 1e-5};
 
+/// More solutions of a pose than this are not looked at.
+inline constexpr std::size_t kMostSolutions = 16;
+
 /// By how much the forward of `joints` misses the pose, in words; nothing where it does not.
 [[nodiscard]] std::optional<std::string> miss(const Kinematics& kinematics, std::span<const double> joints,
                                               const Frame& tool, const ToolPose& pose,

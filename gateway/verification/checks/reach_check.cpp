@@ -13,7 +13,6 @@
 namespace rmac::verifier {
 namespace {
 
-constexpr std::size_t kMostSolutions = 16;
 constexpr int kSamplesPerWay = 50;
 
 /// Leads the tool away from a pose that it can have: straight on, tilting, or both.

@@ -64,12 +64,12 @@ bool may_meet(const PathSegment& before, const PathSegment& after) {
 }
 
 /// What the joints allow along both lines.
-struct LineLimits {
+struct CornerLimits {
   double acceleration = 1e30, jerk = 1e30;
 };
 
-LineLimits line_limits(const Corner& corner) {
-  LineLimits limits;
+CornerLimits corner_limits(const Corner& corner) {
+  CornerLimits limits;
   for (std::size_t j = 0; j < corner.joints.size(); ++j) {
     const double along = std::max({std::abs(corner.before.d[1][j]), std::abs(corner.after.d[1][j]), 1e-12});
     limits.acceleration = std::min(limits.acceleration, corner.joints[j].max_acceleration / along);
@@ -79,7 +79,7 @@ LineLimits line_limits(const Corner& corner) {
 }
 
 /// Time lost on the way from a state to the feed, against having the feed from the beginning (eq. 8).
-double ramp_loss(double v, double a, double feed, const LineLimits& limits) {
+double ramp_loss(double v, double a, double feed, const CornerLimits& limits) {
   const double j = limits.jerk;
   if (!(v < feed)) return v < feed * (1 + 1e-9) ? 0 : 1e30;
   const double most = std::min(std::sqrt(j * (feed - v) + a * a / 2), limits.acceleration);
@@ -93,7 +93,7 @@ double ramp_loss(double v, double a, double feed, const LineLimits& limits) {
 }
 
 /// Time lost at a corner that is passed by a shape, against passing it at the feed (eq. 7 and 8).
-double loss(const Corner& corner, const LineLimits& limits, const CornerShape& shape, double reach) {
+double loss(const Corner& corner, const CornerLimits& limits, const CornerShape& shape, double reach) {
   double cube = 0, square = 0;
   for (std::size_t j = 0; j < corner.joints.size(); ++j) {
     const double t0 = corner.before.d[1][j], t1 = corner.after.d[1][j];
@@ -118,7 +118,7 @@ struct Choice {
 
 /// The shape and reach that lose least; among those that lose the same, the shortest.
 Choice least_loss(const Corner& corner, double tolerance, double room) {
-  const LineLimits limits = line_limits(corner);
+  const CornerLimits limits = corner_limits(corner);
   Choice best;
   double least = 2 * ramp_loss(0, 0, corner.feed_mm_s, limits);
   for (const CornerShape& shape : corner_shapes()) {
@@ -276,7 +276,7 @@ Choice first_choice(const Corner& corner, double jump, double gap, double tolera
   // What turns by so little that neither tolerance nor time notices on that length is no corner.
   const CornerShape& plain = corner_shapes().front();
   if (smooth > 0 && corner.turn * smooth * plain.deviation <= kTurnUnnoticed * tolerance &&
-      loss(corner, line_limits(corner), plain, smooth) < kLossUnnoticed_s)
+      loss(corner, corner_limits(corner), plain, smooth) < kLossUnnoticed_s)
     return {plain, smooth};
   if (corner.turn <= kNoTurn) return {plain, room};
   Choice choice = least_loss(corner, tolerance - gap / 2, room);

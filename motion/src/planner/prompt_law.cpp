@@ -1,17 +1,16 @@
 #include "planner/prompt_law.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "planner/laid_path.hpp"
 #include "time_law/braking_law.hpp"
 #include "time_law/law_check.hpp"
+#include "time_law/law_problem.hpp"
 
 namespace rmac {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Steps of all laws that are tried for one answer, those of a check among them.
 constexpr int kMostSteps = 1800;
 /// A piece is checked at five places or more, a step looks at one.

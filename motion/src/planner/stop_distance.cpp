@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "time_law/law_problem.hpp"
 #include "time_law/window.hpp"
 
 namespace rmac {
@@ -58,7 +59,6 @@ double brake(const PathView& path, const std::vector<JointLimits>& joints, const
 
 /// As if the path went straight on.
 double on_a_line(const PathView& path, const std::vector<JointLimits>& joints, const PathState& from) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   JointPoint point;
   if (path.evaluate(from.s, 1, 1, point) != KinematicsStatus::Ok) return kInfinity;
   double acceleration = kInfinity, jerk = kInfinity;

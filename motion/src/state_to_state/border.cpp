@@ -6,10 +6,6 @@
 namespace rmac {
 namespace {
 
-double root(double square) noexcept {
-  return std::sqrt(std::max(square, 0.0));
-}
-
 /// The place between `low` and `high`, where f changes from below zero to above it, by Newton's method kept inside of
 /// a shrinking bracket. f gives its value and slope.
 template <typename Function>

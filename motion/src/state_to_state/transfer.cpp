@@ -6,10 +6,6 @@
 namespace rmac {
 namespace {
 
-double root(double square) noexcept {
-  return std::sqrt(std::max(square, 0.0));
-}
-
 /// Whether the velocity gained by going straight from a0 to a1 is too small (eq. 4).
 bool rises_first(const Transfer& x) noexcept {
   return x.v1 - x.v0 >= 0.5 * (x.a0 + x.a1) * std::abs(x.a1 - x.a0);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace rmac {
@@ -32,6 +34,11 @@ struct Phases {
   void mirror() noexcept;
   void reverse() noexcept;
 };
+
+/// Of what rounding may leave below zero.
+[[nodiscard]] inline double root(double square) noexcept {
+  return std::sqrt(std::max(square, 0.0));
+}
 
 /// Velocity that the acceleration's fall to zero leads to (eq. 2).
 [[nodiscard]] inline double settled_velocity(double v, double a) noexcept {

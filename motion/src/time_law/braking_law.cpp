@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "time_law/law_problem.hpp"
 #include "time_law/window.hpp"
 
 namespace rmac {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A step takes this part of the time that coming to rest takes about; and no less than that, at full speed.
 constexpr double kStepsToRest = 100;
 constexpr double kShortestStep_s = 1e-4;

@@ -1,6 +1,6 @@
 #include <cmath>
-#include <limits>
 
+#include "time_law/law_problem.hpp"
 #include "time_law/window.hpp"
 
 namespace rmac {
@@ -14,7 +14,6 @@ struct Bounds {
 /// two terms of its acceleration a half (docs/derivations/time-law.md, eq. 14).
 Bounds constant_bounds(const PathView& path, const std::vector<JointLimits>& joints, double s_begin, double s_end,
                        const FeedRule& feed) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Bounds bounds{kInfinity, kInfinity, kInfinity};
   std::vector<double> d1(joints.size()), d2(joints.size()), d3(joints.size());
   JointPoint point;

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+
+#include "time_law/law_problem.hpp"
 
 namespace rmac {
 namespace {
@@ -11,7 +12,6 @@ namespace {
 constexpr std::size_t kSamples = 17;
 /// As a part of a piece: no derivative differs between places that are nearer.
 constexpr double kSamePlace = 1e-7;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What a joint asks of one of its limits at equidistant instants of a piece, as parts of the limit.
 using Demand = std::array<double, kSamples>;

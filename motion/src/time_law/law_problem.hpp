@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "rmac/motion/time_law.hpp"
 
 namespace rmac {
+
+/// Where nothing bounds.
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Joints' first three derivatives by path length at one end of a grid interval; spans of joint_count values in
 /// `LawProblem::derivatives`.

@@ -32,14 +32,14 @@ class RowCollector {
   std::size_t lane_ = kLanes - 1;
 };
 
-void path_acceleration_row(const Basis& b, double rise, double fall, RowCollector& rows) {
+void path_acceleration_row(const LawBasis& b, double rise, double fall, RowCollector& rows) {
   const double most = std::isfinite(rise) ? rise : fall;
   if (!std::isfinite(most)) return;
   constexpr double kFarAway = 1e3;
   rows.add({b.dq[0] / 2, b.dq[1] / 2, b.dq[2] / 2}, -std::min(fall, kFarAway * most), std::min(rise, kFarAway * most));
 }
 
-void joint_acceleration_rows(const LawProblem& p, const Basis& b, const JointDerivatives& d, double tightening,
+void joint_acceleration_rows(const LawProblem& p, const LawBasis& b, const JointDerivatives& d, double tightening,
                              RowCollector& rows) {
   for (std::size_t j = 0; j < p.joint_count; ++j) {
     if (std::abs(d.d1[j]) < 1e-12 && std::abs(d.d2[j]) < 1e-12) continue;
@@ -50,13 +50,14 @@ void joint_acceleration_rows(const LawProblem& p, const Basis& b, const JointDer
   }
 }
 
-void jerk_rows(const LawProblem& p, std::size_t k, const Basis& left, const Basis& right, std::vector<Rows>& all) {
+void jerk_rows(const LawProblem& p, std::size_t k, const LawBasis& left, const LawBasis& right,
+               std::vector<Rows>& all) {
   static_assert(kLanes == 2, "a lane for each end of the interval");
   const JointDerivatives at_left = p.at(k, false), at_right = p.at(k, true);
   for (std::size_t j = 0; j < p.joint_count; ++j) {
     if (!moves_on(p, k, j)) continue;
     const double scale = 1 / (p.max_jerk[j] * p.tightening[k]);
-    const auto weight = [&](const Basis& b, const JointDerivatives& d, std::size_t i) {
+    const auto weight = [&](const LawBasis& b, const JointDerivatives& d, std::size_t i) {
       return (d.d3[j] * b.q[i] + 1.5 * d.d2[j] * b.dq[i] + 0.5 * d.d1[j] * b.ddq[i]) * scale;
     };
     Rows& rows = all.emplace_back();
@@ -83,7 +84,7 @@ LawRows::LawRows(const LawProblem& p) {
     RowCollector rows(all);
     // Nothing bounds the coefficients from below: the travel time does, which goes to infinity there.
     if (p.draft || (k > 0 && k + 1 < n)) rows.add({0, 1, 0}, -p.speed_cap[k], p.speed_cap[k]);
-    const Basis left = basis(p, k, false), right = basis(p, k, true);
+    const LawBasis left = basis(p, k, false), right = basis(p, k, true);
     if (k > 0) {
       const double cap = std::min(p.speed_cap[k], p.speed_cap[k - 1]);
       if (p.speed_cap[k] != p.speed_cap[k - 1]) rows.add(left.q, -cap, cap);

@@ -6,7 +6,7 @@
 
 namespace rmac {
 
-Basis basis(const LawProblem& p, std::size_t k, bool right) noexcept {
+LawBasis basis(const LawProblem& p, std::size_t k, bool right) noexcept {
   const std::size_t n = p.intervals();
   const double h = p.step(k);
   const double before = k > 0 ? p.step(k - 1) : 0;
@@ -14,7 +14,7 @@ Basis basis(const LawProblem& p, std::size_t k, bool right) noexcept {
   const double per_left = 1 / (before + h), per_right = 1 / (h + after);
   const double a = h * per_left, b = before * per_left;   // q at the left node
   const double c = after * per_right, d = h * per_right;  // q at the right node
-  Basis result{};
+  LawBasis result{};
   if (right) {
     result.q = {0, c, d};
     result.dq = {0, -2 * per_right, 2 * per_right};
@@ -70,7 +70,7 @@ void guess_coefficients(const LawProblem& p, std::vector<double>& c) {
 }
 
 SplineStart spline_start(const LawProblem& p, const std::vector<double>& c, std::size_t k) noexcept {
-  const Basis b = basis(p, k, false);
+  const LawBasis b = basis(p, k, false);
   return {dot(b.q, c.data() + k), dot(b.dq, c.data() + k), dot(b.ddq, c.data() + k)};
 }
 

@@ -13,10 +13,10 @@ using Weights = std::array<double, 3>;
 }
 
 /// Value, slope and curvature of q at one end of interval k as weights of c[k], c[k+1], c[k+2] (eq. 7).
-struct Basis {
+struct LawBasis {
   Weights q, dq, ddq;
 };
-[[nodiscard]] Basis basis(const LawProblem& problem, std::size_t k, bool right) noexcept;
+[[nodiscard]] LawBasis basis(const LawProblem& problem, std::size_t k, bool right) noexcept;
 
 /// A first guess of the coefficients between the ends: a profile not far from what the bounds allow.
 void guess_coefficients(const LawProblem& problem, std::vector<double>& coefficients);

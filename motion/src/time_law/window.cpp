@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "gives_way.hpp"
 #include "time_law/law_check.hpp"
@@ -19,7 +18,6 @@ constexpr int kTightenings = 6, kPatientTightenings = 12;
 /// A stretch at constant jerk next to rest is at most this part of its segment: what it has used up of the limits, a
 /// sharp blend behind a short line needs.
 constexpr double kRestOfSegment = 0.01;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A place of rest that misses the border of two segments by rounding is meant to be that. Beside it, what is left of a
 /// segment would be shorter than any step that changes s.

@@ -122,7 +122,7 @@ std::vector<SplineDemand> DraftLaw::demands(const std::vector<Vector>& points) {
     const double stay = kStay * mean * problem_.step(k) / 2;
     for (const bool right : {false, true}) {
       const Node& node = nodes_[right ? k + 1 : k];
-      const Basis law = basis(problem_, k, right);
+      const LawBasis law = basis(problem_, k, right);
       const double* const q_spline = law_.coefficients.data() + k;
       const double q = dot(law.q, q_spline), v = std::sqrt(std::max(q, 0.0));
       const Vector share{0.5 * dot(law.ddq, q_spline) * v, 1.5 * dot(law.dq, q_spline) * v, q * v};

@@ -6,12 +6,13 @@
 #include <numbers>
 #include <utility>
 
+#include "clients/legacy/program/arc_geometry.hpp"
+
 namespace rmac::apt {
 
 namespace {
 
 constexpr int kMostTurns = 1001;
-constexpr double kTurn_rad = 2 * std::numbers::pi;
 /// How far points that are to be one may be apart where programs round.
 constexpr double kSamePoint_mm = 0.01;
 /// A direction along an arc is less than a third of a right angle off it.
@@ -129,7 +130,7 @@ void Arcs::require_meeting(int meeting, double sweep_rad, bool whole, const Circ
   refuse(place,
          fmt::format("the arc to the end of this line turns {:.6g} degrees, but does not end at its meeting number "
                      "{} with the line through the centre; correct the end, INDIRV, or the number before INTOF",
-                     whole ? 360 : sweep_rad / kTurn_rad * 360, meeting));
+                     whole ? 360 : sweep_rad / legacy::kTurn_rad * 360, meeting));
 }
 
 void Arcs::follow(Arguments& arguments, double feed_mm_min) {
@@ -188,18 +189,18 @@ void Arcs::set_arc(Arguments& arguments) {
                    .place = arguments.place(),
                    .counter_clockwise = angle > 0,
                    .turns = {},
-                   .angle_rad = std::abs(angle) / 360 * kTurn_rad};
+                   .angle_rad = std::abs(angle) / 360 * legacy::kTurn_rad};
 }
 
 /// Whole turns more than the sweep to the arc's end.
 int Arcs::turns_of(const Record& record, double sweep_rad, bool whole) {
   if (record.angle_rad) {
     constexpr double kBlur_rad = 0.01, kBlur_mm = 0.5;
-    const double more = std::round((*record.angle_rad - sweep_rad) / kTurn_rad);
-    const double off_rad = std::abs(*record.angle_rad - sweep_rad - more * kTurn_rad);
+    const double more = std::round((*record.angle_rad - sweep_rad) / legacy::kTurn_rad);
+    const double off_rad = std::abs(*record.angle_rad - sweep_rad - more * legacy::kTurn_rad);
     if (more < 0 || (off_rad > kBlur_rad && off_rad * record.circle.radius_mm > kBlur_mm)) {
-      refuse(record.place,
-             fmt::format("the arc to the GOTO behind it turns {:.6g} degrees, not ANGLE", sweep_rad / kTurn_rad * 360));
+      refuse(record.place, fmt::format("the arc to the GOTO behind it turns {:.6g} degrees, not ANGLE",
+                                       sweep_rad / legacy::kTurn_rad * 360));
     }
     return static_cast<int>(more);
   }
@@ -230,7 +231,7 @@ void Arcs::end_at(const Pose& end, double feed_mm_min, std::size_t place) {
   const bool whole = is_same_place(circle, start, end.tip);
   Pose pose = end;
   if (whole) pose.tip = along(start, dot(difference(end.tip, start), circle.axis), circle.axis);
-  const double sweep = whole ? kTurn_rad : sweep_rad(circle, start, end.tip, counter_clockwise);
+  const double sweep = whole ? legacy::kTurn_rad : sweep_rad(circle, start, end.tip, counter_clockwise);
   move_along(circle, {pose, counter_clockwise, turns_of(record, sweep, whole), feed_mm_min}, mover_, place);
 }
 

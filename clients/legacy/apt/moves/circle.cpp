@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "clients/legacy/apt/statements/refusal.hpp"
@@ -13,7 +12,6 @@ namespace rmac::apt {
 
 namespace {
 
-constexpr double kTurn_rad = 2 * std::numbers::pi;
 constexpr double kSamePlace_mm = 1.001e-3, kSameAngle_rad = 1e-6;
 /// As of an arc's two radii.
 constexpr double kMostOff_mm = 0.5, kOff_mm = 0.005, kRelative = 1e-3;
@@ -70,7 +68,7 @@ double sweep_rad(const Circle& circle, const Point& start, const Point& end, boo
   const Point from = spoke(circle, start), to = spoke(circle, end);
   const double ahead = std::atan2(dot(cross(from, to), circle.axis), dot(from, to));
   const double turn = counter_clockwise ? ahead : -ahead;
-  return turn > kSameAngle_rad ? turn : turn + kTurn_rad;
+  return turn > kSameAngle_rad ? turn : turn + legacy::kTurn_rad;
 }
 
 bool is_same_place(const Circle& circle, const Point& a, const Point& b) {

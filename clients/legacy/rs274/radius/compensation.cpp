@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "clients/legacy/program/arc_geometry.hpp"
 #include "clients/legacy/rs274/blocks/refusal.hpp"
 
 namespace rmac::rs274 {
@@ -13,7 +14,6 @@ using legacy::Arc, legacy::Point;
 
 namespace {
 
-constexpr double kTurn_rad = 2 * std::numbers::pi;
 /// Moves that turn by less are tangent but for rounding, as in LinuxCNC: of the radius the tool comes 0.00005 too near
 /// at most. A reversal may be off by as much.
 constexpr double kStraight_rad = 0.01;
@@ -29,9 +29,9 @@ Flat flat(const Point& point) {
 double sweep_of(const Point& start, const Arc& arc) {
   const double from = std::atan2(start[1] - arc.centre[1], start[0] - arc.centre[0]);
   const double to = std::atan2(arc.end[1] - arc.centre[1], arc.end[0] - arc.centre[0]);
-  double sweep = std::fmod(arc.counter_clockwise ? to - from : from - to, kTurn_rad);
-  if (sweep < 0) sweep += kTurn_rad;
-  return (arc.closed ? kTurn_rad : sweep) + kTurn_rad * arc.more_turns;
+  double sweep = std::fmod(arc.counter_clockwise ? to - from : from - to, legacy::kTurn_rad);
+  if (sweep < 0) sweep += legacy::kTurn_rad;
+  return (arc.closed ? legacy::kTurn_rad : sweep) + legacy::kTurn_rad * arc.more_turns;
 }
 
 /// How far left the second direction turns from the first: from -pi to pi.
@@ -153,8 +153,8 @@ void Compensation::give_out(double to, std::size_t place) {
   given.end = {end.x, end.y, held.move.end[2]};
   if (given.arc) {
     const double sweep = std::max(to - held.from, 0.0);
-    const double turns = std::floor((sweep + held.offset.tolerance()) / kTurn_rad);
-    given.arc->closed = turns > 0 && sweep - turns * kTurn_rad < held.offset.tolerance();
+    const double turns = std::floor((sweep + held.offset.tolerance()) / legacy::kTurn_rad);
+    given.arc->closed = turns > 0 && sweep - turns * legacy::kTurn_rad < held.offset.tolerance();
     given.arc->more_turns = static_cast<int>(turns) - (given.arc->closed ? 1 : 0);
     given.arc->centre[2] = tool_[2];
     if (given.arc->closed) given.end = {tool_[0], tool_[1], held.move.end[2]};

@@ -4,11 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "clients/legacy/program/arc_geometry.hpp"
 namespace rmac::rs274 {
 
 namespace {
-
-constexpr double kTurn_rad = 2 * std::numbers::pi;
 
 Flat between(const Flat& from, const Flat& to) {
   return {to.x - from.x, to.y - from.y};
@@ -80,16 +79,17 @@ double Offset::measure(const Flat& place, bool last) const {
   if (!is_arc_) return dot(between(begin_, place), along_);
   const Flat spoke = between(centre_, place);
   const double turned = std::atan2(spoke.y, spoke.x) - angle_;
-  double result = std::fmod(left_turn_ ? turned : -turned, kTurn_rad);
-  if (result < -tolerance()) result += kTurn_rad;
-  if (result > kTurn_rad - tolerance()) result -= kTurn_rad;
-  if (last) result += kTurn_rad * std::max(std::floor((length_ + tolerance() - result) / kTurn_rad), 0.0);
+  double result = std::fmod(left_turn_ ? turned : -turned, legacy::kTurn_rad);
+  if (result < -tolerance()) result += legacy::kTurn_rad;
+  if (result > legacy::kTurn_rad - tolerance()) result -= legacy::kTurn_rad;
+  if (last)
+    result += legacy::kTurn_rad * std::max(std::floor((length_ + tolerance() - result) / legacy::kTurn_rad), 0.0);
   return result;
 }
 
 double Offset::near_begin(const Flat& place) const {
   const double result = measure(place, false);
-  return is_arc_ && result > std::numbers::pi ? result - kTurn_rad : result;
+  return is_arc_ && result > std::numbers::pi ? result - legacy::kTurn_rad : result;
 }
 
 bool Offset::has_beside(const Flat& place, double left_mm) const {

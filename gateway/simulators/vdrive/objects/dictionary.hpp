@@ -9,6 +9,9 @@
 
 namespace rmac::vdrive {
 
+/// Abort code: a value that the object does not take (CiA 301, 7.2.4.3.17, table 22).
+inline constexpr std::uint32_t kBadValue = 0x06090030;
+
 /// The object dictionary of a node, made from its data sheet: types, access, limits and initial values are the file's,
 /// so that the file cannot say another thing than the device does.
 class Dictionary final : public SdoObjects {

@@ -1,17 +1,13 @@
 #include "servo/joints/measured_efforts.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <bit>
+
+#include "servo/joints/effort_matrix.hpp"
 
 namespace rmac {
 
 namespace {
-
-// Sizes are bounded at compile time, so Eigen keeps these on the stack.
-constexpr int kMax = static_cast<int>(kMaxJoints);
-using EffortMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMax, kMax>;
-using EffortVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMax, 1>;
 
 IndexSet silent_actuators(std::span<const ServoActuator> actuators) {
   IndexSet silent = 0;

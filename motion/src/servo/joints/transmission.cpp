@@ -1,19 +1,11 @@
 #include "servo/joints/transmission.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 
+#include "servo/joints/effort_matrix.hpp"
+
 namespace rmac {
-
-namespace {
-
-// Sizes are bounded at compile time, so Eigen keeps these on the stack.
-constexpr int kMax = static_cast<int>(kMaxJoints);
-using EffortMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMax, kMax>;
-using EffortVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMax, 1>;
-
-}  // namespace
 
 Transmission::Transmission(const ActuatorMap& map, std::span<const ServoJoint> joints) : map_(map) {
   for (const ServoJoint& joint : joints) corrections_.emplace_back(joint.mechanics);
