@@ -23,7 +23,7 @@ POCKET = (*TOOL, ("Top", "Top"), ("Depth", "Depth"), ("StepDown", "Step-down"), 
 SWEEP = (*TOOL, ("Mill", "Mill"), ("Corner", "Corner"), ("Scallop", "Scallop"), ("Tolerance", "Tolerance"), ("Safe", "Cross at"), *SPEEDS,
          ("Along", "Passes along"), ("Direction", "Direction"), ("Steepest", "Steepest"))  # fmt: skip
 PROFILE = (*TOOL, ("Side", "Side"), ("Turned", "Turned"), ("Top", "Top"), ("Bottom", "Bottom"), ("Step", "Step-down"), ("Safe", "Cross at"), *SPEEDS,
-           ("Ramp", "Ramp"))  # fmt: skip
+           ("Ramp", "Ramp"), ("Lead", "Lead"))  # fmt: skip
 
 
 class PocketDialog(OperationDialog):
