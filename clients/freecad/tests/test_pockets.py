@@ -249,6 +249,10 @@ class RefusedTest(PocketTest):
         slope = Part.makePlane(30, 20)
         slope.rotate(at(0, 0), at(1, 0, 0), 1)
         self.refused(slope, "Face1", "not level")
+        box = Part.makeBox(9, 9, 9)
+        below = next(f"Face{number}" for number, face in enumerate(box.Faces, 1) if face.BoundBox.ZMax < 1e-6)
+        with self.assertRaisesRegex(PocketRefused, "looks down"):
+            self.outline(box, below)
         with self.assertRaisesRegex(PocketRefused, "has no Face7; select a face, or a sketch"):
             self.outline(Part.makeBox(9, 9, 9), "Face7")
 

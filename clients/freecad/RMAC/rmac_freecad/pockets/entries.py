@@ -46,11 +46,15 @@ class Ramp:
 def entry_of(outline, first, pocket):
     """For the loop that is cut first; it ends where that begins."""
     angle = pocket.ramp_deg * GENTLER
-    if pocket.entry == "helix" or first.loop.length < SHORT * pocket.radius_mm:
+    if pocket.entry == "helix" or is_short(first.loop, pocket):
         circle = circle_at(outline, first.loop.tracks[0], 0.0, pocket)
         if circle is not None:
             return Helix(circle, angle)
     return Ramp(first.loop.tracks, angle)
+
+
+def is_short(loop, pocket):
+    return loop.length < SHORT * pocket.radius_mm
 
 
 def circle_at(outline, track, share, pocket):

@@ -61,19 +61,23 @@ class PocketFeature:
 
     def told(self, plan):
         """For people: what is left."""
-        left = sum(spot.area_mm2 for spot in plan.unreached)
         text = f"The pocket has {plan.outline.wall.area():.4g} mm²"
-        if left < 5e-4:
+        if not plan.unreached and not plan.missed:
             return f"{text}, and the tool gets everywhere."
-        spots = ", ".join(f"{spot.area_mm2:.2g} mm² at X {spot.place[0]:.4g} Y {spot.place[1]:.4g}" for spot in plan.unreached[:4])
-        more = f", and {len(plan.unreached) - 4} more" if len(plan.unreached) > 4 else ""
-        return f"{text}; the tool does not get into {left:.3g} mm² of it: {spots}{more}."
+        left = [f"the tool does not get into {_spots(plan.unreached)}"] if plan.unreached else []
+        return f"{text}; {'; '.join([*left, *([f'loops leave {_spots(plan.missed)}'] if plan.missed else [])])}."
 
     def __getstate__(self):
         return None
 
     def __setstate__(self, state):
         self.last = None
+
+
+def _spots(spots):
+    """The largest ones with their places."""
+    told = ", ".join(f"{spot.area_mm2:.2g} mm² at X {spot.place[0]:.4g} Y {spot.place[1]:.4g}" for spot in spots[:4])
+    return f"{sum(spot.area_mm2 for spot in spots):.3g} mm² of it: {told}{f', and {len(spots) - 4} more' if len(spots) > 4 else ''}"
 
 
 def is_pocket(feature):

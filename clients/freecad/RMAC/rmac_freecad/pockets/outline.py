@@ -52,6 +52,8 @@ def _wires_of_face(feature, name):
         raise PocketRefused("it is not planar; a pocket is cleared on a flat, level face", edge=name)
     if abs(abs(plane.Axis.z) - 1) > LEVEL:
         raise PocketRefused("it is not level; a pocket is cleared on a face that lies across Z", edge=name)
+    if shape.Solids and face.normalAt(*(sum(face.ParameterRange[i : i + 2]) / 2 for i in (0, 2))).z < 0:
+        raise PocketRefused("it looks down; a pocket is cleared from above", edge=name)
     return [[(_name(shape, edge), edge) for edge in wire.Edges] for wire in face.Wires]
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import rmac
 from rmac_freecad.pockets.area import unreached
 from rmac_freecad.pockets.chains import chains_of, cleared, middles
-from rmac_freecad.pockets.entries import circle_at, entry_of
+from rmac_freecad.pockets.entries import circle_at, entry_of, is_short
 from rmac_freecad.pockets.outline import Outline
 from rmac_freecad.pockets.refusal import PocketRefused
 from rmac_freecad.program import Program
@@ -92,7 +92,7 @@ def plan_pocket(outline, pocket):
 def _seam(outline, loop, pocket):
     """Where a loop that nothing leads to begins: where a helix has room, in the middle of what is long."""
     there = middles(loop)
-    if pocket.entry == "helix" and pocket.order == "inside out":
+    if (pocket.entry == "helix" or is_short(loop, pocket)) and pocket.order == "inside out":
         found = (one for one in there if circle_at(outline, loop.tracks[one[0]], one[1], replace(pocket, climb=True)) is not None)
         return next(found, there[0])
     return there[0]

@@ -24,6 +24,7 @@ def read_faces(
     """A program that sweeps faces of an object, "Face3", with the axis along Z, in the document's own coordinates; and texts of what it
     leaves out. `along` is the direction of the passes in degrees from X, or "u" or "v" of each face. With `tool`, a number, and
     `rpm` it begins with them. Raises `JobRefused`."""
+    _check_speeds({"rapid_mm_min": rapid_mm_min})
     swept = plan_faces(
         feature.Label, placed_shape(feature), names, mill, scallop_mm=scallop_mm, feed_mm_min=feed_mm_min, plunge_mm_min=plunge_mm_min,
         tolerance_mm=tolerance_mm, along=along, steepest_deg=steepest_deg, clearance_mm=clearance_mm, tool=tool, rpm=rpm,
