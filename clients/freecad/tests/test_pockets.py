@@ -139,11 +139,19 @@ class CoincidencesTest(PocketTest):
                 self.assertLess(cut.uncut(places[off <= 0], radius, -1.0), LEFT_MM)
         self.assertLess(refused, 6)
 
-    def test_a_circle_that_touches_a_wall_leaves_a_cusp(self):
-        face = Part.makePlane(30, 20).cut(Part.Face(Part.Wire(Part.Circle(at(30, 10), at(0, 0, 1), 4).toShape()))).Faces[0]
-        self.check(face)
-        lens = Part.makePlane(30, 20).cut(Part.makePlane(8, 8, at(22, 0))).fuse(Part.Face(Part.Wire(Part.Circle(at(26, 4), at(0, 0, 1), 4).toShape())))
-        self.check(lens.removeSplitter().Faces[0])
+    def test_a_circle_that_touches_a_wall_leaves_a_cusp_of_the_pocket_or_of_what_stands_in_it(self):
+        circle = Part.Face(Part.Wire(Part.Circle(at(30, 4), at(0, 0, 1), 4).toShape()))
+        pocket = Part.makePlane(30, 20).cut(circle).Faces[0]
+        stands = Part.makePlane(30, 10, at(0, -10)).fuse(circle).fuse(Part.makePlane(10, 18, at(30, -10))).removeSplitter().Faces[0]
+        for face in (pocket, stands):
+            for angle in (0, 31):
+                face.rotate(at(0, 0), at(0, 0, 1), angle)
+                tip = face.Vertexes[min(range(len(face.Vertexes)), key=lambda i: face.Vertexes[i].Point.distanceToPoint(self.turned(30, angle)))]
+                self.assertLess(tip.Point.distanceToPoint(self.turned(30, angle)), 1e-6)
+                self.check(face)
+
+    def turned(self, x, angle):
+        return at(x * math.cos(math.radians(angle)), x * math.sin(math.radians(angle)))
 
 
 class WaysTest(PocketTest):
@@ -166,6 +174,13 @@ class WaysTest(PocketTest):
             ends = [np.array((x, 2.0)) for x in (2.0, 28.0)]
             turn = np.array([[math.cos(math.radians(angle)), math.sin(math.radians(angle))], [-math.sin(math.radians(angle)), math.cos(math.radians(angle))]])
             self.assertLess(cut.uncut(np.array([end @ turn for end in ends]), 0.0, -2.5), 1e-6)
+
+    def test_a_helix_is_as_wide_as_there_is_room(self):
+        for order in ("inside out", "outside in"):
+            made, _ = self.check(Part.makePlane(30, 6), order=order)
+            circles = {round(math.dist(move.start[:2], move.center.p[:2]), 3) for move in made.program.moves if isinstance(move, rmac.Arc)}
+            self.assertEqual(len(circles), 1)
+            self.assertTrue(0.9 < circles.pop() <= 1.0)  # between walls 6 mm apart, with a tool of 4 mm
 
     def test_a_pocket_with_a_slot_as_wide_as_the_tool_is_cleared_to_the_slot_s_end(self):
         face = Part.makePlane(30, 20).fuse(Part.makePlane(20, 4, at(30, 7))).removeSplitter().Faces[0]
