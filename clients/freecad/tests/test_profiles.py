@@ -143,6 +143,56 @@ class BesideTest(ProfileTest):
             self.assertAlmostEqual(math.dist(arcs[0].start, arcs[0].center.p), radius, 9)
 
 
+class LeadTest(ProfileTest):
+    def cut_level(self, program):
+        return [move for move in self.cutting(program) if abs(move.start[2] - move.end[2]) < 1e-9]
+
+    def directions(self, stroke):
+        points = stroke.points
+        return [math.atan2(b[1] - a[1], b[0] - a[0]) for a, b in (points[:2], points[-2:])]
+
+    def test_both_leads_are_quarter_circles_tangent_to_the_way_and_off_the_wall(self):
+        for seed in SEEDS:
+            edges = outline(seed)
+            wall = Part.Compound(edges)
+            for side in ("outside", "inside"):
+                for turned in (False, True):
+                    with self.subTest(seed=seed, side=side, turned=turned):
+                        plain = self.program(edges, side=side, turned=turned, step_mm=3.0)
+                        program = self.program(edges, side=side, turned=turned, step_mm=3.0, lead_mm=1.5)
+                        self.joined(program)
+                        into, *way, out = self.cut_level(program)
+                        for lead, end, after in ((into, into.start, way[0]), (out, out.end, way[-1])):
+                            self.assertEqual(type(lead).__mro__[0], rmac.Arc)
+                            self.assertAlmostEqual(math.dist(lead.start, lead.center.p), 1.5, 6)
+                            self.assertAlmostEqual(math.dist(lead.start, lead.end), 1.5 * math.sqrt(2), 6)
+                            self.assertGreater(Part.Vertex(*end[:2], 0).distToShape(wall)[0], 2.5)  # the tool is off the wall
+                        by_move = {stroke.index: stroke for stroke in strokes_of(program)}
+                        order = [by_move[program.index_of(move)] for move in (into, way[0], way[-1], out)]
+                        for one, other in (order[:2], order[2:]):
+                            turn = self.directions(one)[1] - self.directions(other)[0]
+                            self.assertLess(abs(math.remainder(turn, 2 * math.pi)), math.radians(6))  # chords of 5 degrees
+                        for stroke in order:
+                            for x, y, _ in stroke.points:
+                                self.assertGreater(Part.Vertex(x, y, 0).distToShape(wall)[0], 2 - 1e-6)
+                        lengths = [sum(math.dist(*pair) for s in strokes_of(p) if s.points[0][2] == s.points[-1][2] == -3 for pair in zip(s.points, s.points[1:]))
+                                   for p in (plain, program)]  # fmt: skip
+                        self.assertAlmostEqual(lengths[1] - lengths[0], 2 * 1.5 * math.pi / 2, delta=0.02)
+
+    def test_each_pass_is_led_in_and_out(self):
+        program = self.program(polygon((0, 0), (20, 0), (20, 20), (0, 20)), side="inside", lead_mm=3.0)
+        arcs = [move for move in self.cutting(program) if isinstance(move, rmac.Arc)]
+        self.assertEqual([round(move.end[2], 9) for move in arcs], [-1.5, -1.5, -3, -3])
+
+    def test_a_lead_that_has_no_room_or_no_sense_is_refused(self):
+        slot = polygon((0, 0), (40, 0), (40, 6), (0, 6))
+        self.refused(slot, "a lead of 3 mm has no room", "smaller lead", side="inside", lead_mm=3.0)
+        self.program(slot, side="inside", lead_mm=1.0)
+        self.refused(slot, "a lead is for ways beside", side="on", lead_mm=1.0)
+        self.refused(slot, "a lead is for ways beside", side="outside", lead_mm=1.0, ramp_deg=3.0)
+        self.refused(slot, "the lead is", side="outside", lead_mm=-1.0)
+
+
 class OnTest(ProfileTest):
     def test_a_spline_is_cut_as_it_is(self):
         spline = Part.BSplineCurve()

@@ -5,6 +5,7 @@ import pathlib
 
 import FreeCAD
 import FreeCADGui
+import Part
 from legacy_file import file_of
 import PathScripts.PathProfile as PathProfile
 from path_job import operation_of
@@ -13,6 +14,7 @@ from rmac_freecad.legacy import codes
 from rmac_freecad.window.jogging.jog_dialog import JogDialog
 from rmac_freecad.window.legacy.open_dialog import OpenDialog
 from rmac_freecad.window.machines.search_dialog import SearchDialog
+from rmac_freecad.window.operations.operations import PocketDialog, SweepDialog
 from rmac_freecad.window.running.machining_dialog import MachiningDialog
 from windowed import WindowTest, process_until
 
@@ -49,6 +51,22 @@ M2
 """
 
 
+def tray():
+    """A pocket with corners that are too narrow, and an island, 5 mm deep."""
+    at = FreeCAD.Vector
+    box = Part.makeBox(54, 34, 5, at(3, 3, 7))
+    hollow = box.makeFillet(2, [edge for edge in box.Edges if abs(edge.tangentAt(edge.FirstParameter).z) > 0.5])
+    return Part.makeBox(60, 40, 12).cut(hollow.cut(Part.makeCylinder(5, 9, at(22, 18, 5))))
+
+
+def wave():
+    """A block with a bent top."""
+    surface = Part.BSplineSurface()
+    heights = ((8, 9, 8, 10), (10, 7, 9, 8), (8, 10, 7, 9), (9, 8, 10, 8))
+    surface.interpolate([[FreeCAD.Vector(12 * i, 9 * j, z) for j, z in enumerate(row)] for i, row in enumerate(heights)])
+    return surface.toShape().extrude(FreeCAD.Vector(0, 0, -12)).common(Part.makeBox(36, 27, 20))
+
+
 def hide_docks():
     """But for the tree."""
     for dock in FreeCADGui.getMainWindow().findChildren(QtGui.QDockWidget):
@@ -72,6 +90,43 @@ class Screens(WindowTest):
         self.jog()
         self.machine()
         self.legacy()
+
+    def test_pictures_of_operations(self):
+        window = FreeCADGui.getMainWindow()
+        window.setGeometry(0, 0, 1600, 1000)
+        FreeCADGui.activateWorkbench("RmacWorkbench")
+        self.operation("pocket", PocketDialog, tray, 7, Diameter=6, StepDown=1.5, StepOver=3.5)
+        self.operation("sweep", SweepDialog, wave, None, Diameter=4, Scallop=0.2)
+
+    def operation(self, name, kind, shape, z, **values):
+        for one in self.dialogs:
+            one.close()
+        document = FreeCAD.newDocument(f"{name}_example")
+        self.addCleanup(FreeCAD.closeDocument, document.Name)
+        part = document.addObject("Part::Feature", "Part")
+        part.Shape = shape()
+        part.ViewObject.Transparency = 40
+        faces = list(enumerate(part.Shape.Faces, 1))
+        number = next(i for i, face in faces if abs(face.CenterOfMass.z - z) < 1e-6) if z is not None else max(faces, key=lambda one: one[1].CenterOfMass.z)[0]
+        FreeCADGui.Selection.clearSelection()
+        FreeCADGui.Selection.addSelection(document.Name, "Part", f"Face{number}")
+        dialog = self.placed(kind(self.session), 1030, 585)
+        dialog.begin()
+        process_until(dialog.preview_button.isEnabled, "the path is there")
+        for field, value in values.items():
+            dialog.fields[field].widget.set_quantity(value)
+        dialog.preview_button.click()
+        process_until(dialog.preview_button.isEnabled, "the path is there")
+        FreeCADGui.Selection.clearSelection()
+        view = FreeCADGui.ActiveDocument.ActiveView
+        view.viewIsometric()
+        hide_docks()
+        self.settle()
+        FreeCADGui.SendMsgToActiveView("ViewFit")
+        for _ in range(3):
+            FreeCADGui.runCommand("Std_ViewZoomOut")
+        self.settle()
+        shoot(name)
 
     def placed(self, dialog, x, y):
         dialog.move(x, y)

@@ -21,6 +21,7 @@ PROPERTIES = (
     ("FeedDown", "App::PropertySpeed", 100 / 60, "Straight down, and along ramps"),
     ("SpindleSpeed", "App::PropertyFloat", 800.0, "Turns a minute"),
     ("Ramp", "App::PropertyAngle", 0.0, "At most so steep down along the contour; 0 is straight down"),
+    ("Lead", "App::PropertyLength", 0.0, "Radius of quarter circles in and out, beside a contour; 0 is none"),
 )
 
 
@@ -72,7 +73,8 @@ def profile_of(document, chosen):
 
 def settings_of(feature):
     return Profile(feature.Tool, feature.Diameter.Value, feature.Side, feature.Top.Value, feature.Bottom.Value, feature.Step.Value, feature.Safe.Value,
-                   round(feature.Feed.Value * 60, 9), round(feature.FeedDown.Value * 60, 9), feature.SpindleSpeed, feature.Ramp.Value, feature.Turned)  # fmt: skip
+                   round(feature.Feed.Value * 60, 9), round(feature.FeedDown.Value * 60, 9), feature.SpindleSpeed, feature.Ramp.Value, feature.Turned,
+                   feature.Lead.Value)  # fmt: skip
 
 
 def program_of(feature, rapid_mm_min):

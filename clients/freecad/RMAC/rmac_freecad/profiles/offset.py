@@ -28,7 +28,7 @@ def beside(contour, distance):
         made.append(_between(piece, begin, end))
         if isinstance(after, Bow):
             made.append(after)
-    _check_clear(contour, made, abs(distance))
+    check_clear(contour, made, abs(distance))
     return Contour(tuple(made), contour.z, contour.closed)
 
 
@@ -123,7 +123,7 @@ def _both_sides(foot, along, square):
     return [plus(foot, along, half), plus(foot, along, -half)]
 
 
-def _check_clear(contour, made, radius):
+def check_clear(contour, made, radius):
     """No part of the way comes nearer to the contour than the tool's radius, by FreeCAD's own distances."""
     wall = [(piece.name, _edge(piece)) for piece in contour.pieces]
     for piece in made:

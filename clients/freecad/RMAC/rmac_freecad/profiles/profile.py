@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import rmac
 from rmac_freecad.profiles.contour import contour_of
+from rmac_freecad.profiles.leads import with_leads
 from rmac_freecad.profiles.offset import beside
 from rmac_freecad.profiles.refusal import ProfileRefused
 from rmac_freecad.program import Program
@@ -28,6 +29,7 @@ class Profile:
     spindle_rpm: float
     ramp_deg: float = 0.0  # at most so steep along the contour; 0: straight down
     turned: bool = False  # the other way round
+    lead_mm: float = 0.0  # radius of quarter circles in and out beside a contour; 0: none
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,8 @@ def read_profile(label, edges, profile, *, rapid_mm_min):
         contour = contour.turned()
     distance = _distance(profile, contour)
     way = beside(contour, distance) if distance else contour
+    if profile.lead_mm:
+        way = with_leads(contour, way, distance, profile.lead_mm)
     return _Passes(label, way, profile, rapid_mm_min).program
 
 
@@ -65,6 +69,10 @@ def _check(profile):
         raise ProfileRefused(f"the bottom, Z {profile.bottom_mm:g}, is below the top, Z {profile.top_mm:g}, and that below the height to cross at, Z {profile.safe_mm:g}")
     if not 0 <= profile.ramp_deg < 90:
         raise ProfileRefused(f"the ramp is {profile.ramp_deg:g}° steep; it is 0 to 90°, and 0 is straight down")
+    if not 0 <= profile.lead_mm < math.inf:
+        raise ProfileRefused(f"the lead is {profile.lead_mm:g} mm; it is the radius of a quarter circle, or 0 for none")
+    if profile.lead_mm and (profile.side == "on" or profile.ramp_deg):
+        raise ProfileRefused("a lead is for ways beside a contour that go straight down; have no ramp, and another side than on, or no lead")
 
 
 def _distance(profile, contour):

@@ -1,6 +1,7 @@
 """Faces of an object in the document become a program."""
 
 import math
+from dataclasses import dataclass
 
 import Part as FreeCADPart
 
@@ -10,7 +11,7 @@ from rmac_freecad.jobs.refusal import JobRefused
 from rmac_freecad.program import Place, Program
 from rmac_freecad.surfaces import fit
 from rmac_freecad.surfaces.links import Links
-from rmac_freecad.surfaces.sweep import sweep
+from rmac_freecad.surfaces.sweep import Swept, sweep
 
 ABOVE_MM = 5.0  # of the part, where nothing else is said
 OVER_MM = 0.5  # of the place where it plunges: from there on at its own feed
@@ -23,25 +24,59 @@ def read_faces(
     """A program that sweeps faces of an object, "Face3", with the axis along Z, in the document's own coordinates; and texts of what it
     leaves out. `along` is the direction of the passes in degrees from X, or "u" or "v" of each face. With `tool`, a number, and
     `rpm` it begins with them. Raises `JobRefused`."""
-    feeds = {"feed_mm_min": feed_mm_min, "rapid_mm_min": rapid_mm_min, "plunge_mm_min": feed_mm_min if plunge_mm_min is None else plunge_mm_min}
-    for name, value in {**feeds, **({} if rpm is None else {"rpm": rpm})}.items():
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or value <= 0:
-            raise JobRefused(f"{name} is {value!r}: give a number that is more than 0")
-    shape = placed_shape(feature)
-    targets = [_index(feature, shape, name) for name in dict.fromkeys(names)]
+    _check_speeds({"rapid_mm_min": rapid_mm_min})
+    swept = plan_faces(
+        feature.Label, placed_shape(feature), names, mill, scallop_mm=scallop_mm, feed_mm_min=feed_mm_min, plunge_mm_min=plunge_mm_min,
+        tolerance_mm=tolerance_mm, along=along, steepest_deg=steepest_deg, clearance_mm=clearance_mm, tool=tool, rpm=rpm,
+    )  # fmt: skip
+    return swept.program(feature.Label, rapid_mm_min), swept.left_out
+
+
+def plan_faces(
+    label, shape, names, mill, *, scallop_mm, feed_mm_min, plunge_mm_min=None, tolerance_mm=0.005, along=0.0, steepest_deg=80.0, clearance_mm=None,
+    tool=None, rpm=None,
+):  # fmt: skip
+    """As `read_faces`, of a shape that nobody changes, before anybody knows the machine's rapids. Takes its time; touches no document."""
+    feeds = {"feed_mm_min": feed_mm_min, "plunge_mm_min": feed_mm_min if plunge_mm_min is None else plunge_mm_min}
+    _check_speeds({**feeds, **({} if rpm is None else {"rpm": rpm})})
+    targets = [_index(label, shape, name) for name in dict.fromkeys(names)]
     if not targets:
-        raise JobRefused(f"no face of {feature.Label} was named; give names such as Face1")
+        raise JobRefused(f"no face of {label} was named; give names such as Face1")
     top = shape.BoundBox.ZMax
     clear = top + ABOVE_MM if clearance_mm is None else clearance_mm
     if not math.isfinite(clear) or clear < top + 2 * OVER_MM:
         raise JobRefused(f"clearance_mm is {clear!r}: the part is as high as {top:g} mm, and the mill is to pass {2 * OVER_MM:g} mm above it")
     _, drop, swept = sweep(shape, targets, mill, scallop_mm=scallop_mm, tolerance_mm=tolerance_mm, along=along, steepest_deg=steepest_deg)
-    writer = _Writer(feature.Label, drop, mill, clear, feeds)
-    writer.begin(tool, rpm)
-    for number, one in enumerate(swept.passes, 1):
-        writer.cut(number, one.stretches if number % 2 else _reversed(one.stretches))
-    writer.end(rpm)
-    return writer.program, swept.left_out
+    return Sweeping(swept, Links(drop, mill), clear, feeds, tool, rpm)
+
+
+@dataclass(frozen=True)
+class Sweeping:
+    swept: Swept
+    links: Links
+    clear: float
+    feeds: dict
+    tool: int | None
+    rpm: float | None
+
+    @property
+    def left_out(self):
+        return self.swept.left_out
+
+    def program(self, label, rapid_mm_min):
+        _check_speeds({"rapid_mm_min": rapid_mm_min})
+        writer = _Writer(label, self.links, self.clear, {**self.feeds, "rapid_mm_min": rapid_mm_min})
+        writer.begin(self.tool, self.rpm)
+        for number, one in enumerate(self.swept.passes, 1):
+            writer.cut(number, one.stretches if number % 2 else _reversed(one.stretches))
+        writer.end(self.rpm)
+        return writer.program
+
+
+def _check_speeds(speeds):
+    for name, value in speeds.items():
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or value <= 0:
+            raise JobRefused(f"{name} is {value!r}: give a number that is more than 0")
 
 
 def placed_shape(feature):
@@ -53,10 +88,10 @@ def placed_shape(feature):
     return shape
 
 
-def _index(feature, shape, name):
+def _index(label, shape, name):
     number = name[4:] if isinstance(name, str) and name.startswith("Face") else ""
     if not number.isdigit() or not 1 <= int(number) <= len(shape.Faces):
-        raise JobRefused(f"{feature.Label} has no face {name!r}; it has Face1 to Face{len(shape.Faces)}")
+        raise JobRefused(f"{label} has no face {name!r}; it has Face1 to Face{len(shape.Faces)}")
     return int(number) - 1
 
 
@@ -65,12 +100,12 @@ def _reversed(stretches):
 
 
 class _Writer:
-    def __init__(self, label, drop, mill, clear, feeds):
+    def __init__(self, label, links, clear, feeds):
         self.program = Program()
         self._label, self._clear = label, clear
         self._feed, self._plunge = feeds["feed_mm_min"], feeds["plunge_mm_min"]
         self._mover = Mover(self.program, feeds["rapid_mm_min"])
-        self._links = Links(drop, mill)
+        self._links = links
         self._at = None
 
     def begin(self, tool, rpm):

@@ -48,6 +48,18 @@ def cut_along():
     cut_along_selection()
 
 
+def clear_pocket():
+    from rmac_freecad.window.operations.operations import show_pocket
+
+    show_pocket(session())
+
+
+def sweep_faces():
+    from rmac_freecad.window.operations.operations import show_sweep
+
+    show_sweep(session())
+
+
 def machine_job():
     from rmac_freecad.window.running.machining_dialog import show
 
@@ -72,8 +84,10 @@ COMMANDS = (
     Command("Select", "Select machine…", "Search machines, compare them, see which can cut the job, and load one", select_machine),
     Command("Jog", "Jog…", "Move the machine by hand, and set the part's zero where the tool stands", jog),
     Command("Legacy", "Open legacy code…", "A file of another control, RS274/NGC or APT, into the document, to be simulated and cut", open_legacy),
-    Command("Profile", "Cut along edges", "Selected edges, or a sketch, as a profile without a Path job", cut_along, needs_document=True),
-    Command("Machine", "Machine a job…", "Send a Path job, a profile of edges, or a file of another control, to the machine as it is", machine_job, needs_document=True),
+    Command("Profile", "Cut along edges…", "Selected edges, or a sketch, as a profile without a Path job", cut_along, needs_document=True),
+    Command("Pocket", "Clear a pocket…", "A level face with its islands, or a closed sketch, cleared without a Path job", clear_pocket, needs_document=True),
+    Command("Sweep", "Sweep faces…", "Selected faces of a part, with a ball, bull-nose or flat end, without a Path job", sweep_faces, needs_document=True),
+    Command("Machine", "Machine a job…", "Send a Path job, a profile, pocket or sweep, or a file of another control, to the machine as it is", machine_job, needs_document=True),
     Command("Simulate", "Simulate a job…", "How long a job takes, whether the machine can do it, and what limits it; moves nothing", simulate, needs_document=True),
     Command("Stop", "Stop the machine", "Stop at once, whoever moves it, and drop what is queued. This is no emergency stop", stop),
 )

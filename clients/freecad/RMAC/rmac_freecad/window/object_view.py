@@ -30,8 +30,13 @@ class ObjectView:
     def _begin(self):
         self._feature = None
         self._asked = False
+        self.reads = 0  # those that have not come to their end
         self.path = None
         self.error = None
+
+    @property
+    def busy(self):
+        return self._asked or self.reads > 0
 
     def attach(self, view):
         self._feature = view.Object
@@ -86,7 +91,16 @@ class ObjectView:
             return  # it was deleted meanwhile
         except Exception as error:
             return self._failed(error)
-        here.station.ask(read, self._show, self._failed)
+        self.reads += 1
+        here.station.ask(read, self._read_well, self._read_badly)
+
+    def _read_well(self, strokes):
+        self.reads -= 1
+        self._show(strokes)
+
+    def _read_badly(self, error):
+        self.reads -= 1
+        self._failed(error)
 
     def _show(self, strokes):
         self.error = None

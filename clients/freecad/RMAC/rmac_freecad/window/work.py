@@ -1,4 +1,4 @@
-"""What is machined: a Path job, a profile of edges, or a file of another control."""
+"""What is machined: a Path job, a profile of edges, a pocket, swept faces, or a file of another control."""
 
 import FreeCAD
 import FreeCADGui
@@ -6,8 +6,10 @@ import FreeCADGui
 from rmac_freecad.jobs import JobRefused, read_job, tools_of
 from rmac_freecad.legacy import codes, reading, tools_in
 from rmac_freecad.path import strokes_of
+from rmac_freecad.pockets import pockets
 from rmac_freecad.profiles import profiles, program_of, tool_of
 from rmac_freecad.program import keep
+from rmac_freecad.surfaces import sweeps
 from rmac_freecad.window.jobs import jobs
 
 
@@ -55,6 +57,19 @@ class ProfileWork(JobWork):
         _show_own_path(self._feature, on)
 
 
+class PlannedWork(ProfileWork):
+    """A pocket, or faces that are swept: planned by a thread, where that was not done already."""
+
+    def __init__(self, feature):
+        self._tools = [feature.Proxy.tool(feature)]
+        self._feature, self._document = feature, feature.Document.Name
+        self.label = feature.Label
+
+    def reading(self, fastest_mm_min, rmac):
+        plan, label = self._feature.Proxy.planning(self._feature), self.label
+        return lambda: plan().program(label, fastest_mm_min)
+
+
 class CodeWork:
     def __init__(self, code):
         self._code = code
@@ -87,7 +102,8 @@ def _show_own_path(feature, on):
 
 def works(document):
     """Each object of it that can be machined, with what makes work of it."""
-    return [*((job, JobWork) for job in jobs()), *((one, ProfileWork) for one in profiles(document)), *((code, CodeWork) for code in codes(document))]
+    return [*((job, JobWork) for job in jobs()), *((one, ProfileWork) for one in profiles(document)), *((code, CodeWork) for code in codes(document)),
+            *((one, PlannedWork) for one in (*pockets(document), *sweeps(document)))]  # fmt: skip
 
 
 def work_in_question():
@@ -101,7 +117,7 @@ def work_in_question():
     if len(there) == 1:
         return there[0][1](there[0][0])
     raise JobRefused(
-        "the document has several jobs, profiles and files to machine; select one in the tree"
+        "the document has several jobs, profiles, pockets and files to machine; select one in the tree"
         if there
-        else "the document has no Path job; make one with the Path workbench, cut along edges, or open a file of another control by Open legacy code"
+        else "the document has no Path job; make one with the Path workbench, cut along edges, clear a pocket, sweep faces, or open a file of another control by Open legacy code"
     )

@@ -1,25 +1,29 @@
-"""What is selected becomes a profile; its properties are changed in FreeCAD's own editor."""
+"""What is selected becomes a profile; its values are changed in its dialog, or in FreeCAD's own editor."""
 
 import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from rmac_freecad.profiles import ProfileRefused, profile_of
+from rmac_freecad.profiles import ProfileRefused, is_profile, profile_of
 from rmac_freecad.window.profiles.profile_view import ProfileView
 
 
 def cut_along_selection():
-    try:
-        feature = profile_of(FreeCAD.ActiveDocument, _chosen())
-    except Exception as error:
-        return _tell(str(error))
-    ProfileView(feature.ViewObject)
-    feature.Document.recompute()
-    FreeCADGui.Selection.clearSelection()
-    FreeCADGui.Selection.addSelection(feature)
+    """A profile that is selected already is shown again."""
+    from rmac_freecad.window.operations.operations import show_for
+
+    feature = next((one for one in FreeCADGui.Selection.getSelection() if is_profile(one)), None)
+    if feature is None:
+        try:
+            feature = profile_of(FreeCAD.ActiveDocument, chosen_edges())
+        except Exception as error:
+            return _tell(str(error))
+        ProfileView(feature.ViewObject)
+        feature.Document.recompute()
+    show_for(feature)
 
 
-def _chosen():
+def chosen_edges():
     chosen = []
     for one in FreeCADGui.Selection.getSelectionEx():
         names = [name for name in one.SubElementNames if name]

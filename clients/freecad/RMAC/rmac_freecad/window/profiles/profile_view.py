@@ -12,3 +12,9 @@ class ProfileView(ObjectView):
         """The document is looked at now. It is executed whenever something changes, and asks for this itself."""
         program = program_of(feature, 1.0)
         return lambda: strokes_of(program)
+
+    def doubleClicked(self, view):
+        from rmac_freecad.window.operations.operations import show_for
+
+        show_for(view.Object)
+        return True

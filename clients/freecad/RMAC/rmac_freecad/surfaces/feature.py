@@ -1,0 +1,111 @@
+"""The object of a document that sweeps faces: it follows them when they change."""
+
+from rmac_freecad.jobs import JobTool
+from rmac_freecad.jobs.refusal import JobRefused
+from rmac_freecad.surfaces.machining import ABOVE_MM, placed_shape, plan_faces
+from rmac_freecad.surfaces.mill import Mill
+
+GROUP = "Sweep"
+MILLS = ("ball end", "bull nose", "flat end")
+ALONG = ("direction", "u of each face", "v of each face")
+# Name, type, value before anybody gives one, and what it is. Lengths are mm, speeds mm/s whatever unit FreeCAD shows.
+PROPERTIES = (
+    ("Faces", "App::PropertyLinkSub", None, "Of one object"),
+    ("Tool", "App::PropertyInteger", 1, "Its number in the machine's table"),
+    ("Mill", "App::PropertyEnumeration", list(MILLS), "Its end"),
+    ("Diameter", "App::PropertyLength", 5.0, "Of the mill"),
+    ("Corner", "App::PropertyLength", 0.5, "Radius of a bull nose's corner"),
+    ("Scallop", "App::PropertyDistance", 0.05, "At most so much stands between passes"),
+    ("Tolerance", "App::PropertyDistance", 0.005, "At most so far above the lowest place of the mill"),
+    ("Along", "App::PropertyEnumeration", list(ALONG), "Where passes go"),
+    ("Direction", "App::PropertyAngle", 0.0, "Of the passes, from X"),
+    ("Steepest", "App::PropertyAngle", 80.0, "Faces are cut where they are no steeper"),
+    ("Safe", "App::PropertyDistance", ABOVE_MM, "Z where the tool crosses"),
+    ("Feed", "App::PropertySpeed", 10.0, "Along passes"),
+    ("FeedDown", "App::PropertySpeed", 100 / 60, "Straight down"),
+    ("SpindleSpeed", "App::PropertyFloat", 800.0, "Turns a minute"),
+)
+
+
+class SweepFeature:
+    """Of FreeCAD's objects. `last` is what was planned last, with what it was planned from; it is saved with no document."""
+
+    def __init__(self, feature):
+        self.last = None
+        feature.Proxy = self
+
+    def execute(self, feature):
+        """Its path takes longer: the view has it made by a thread."""
+        self.last = None
+        view = getattr(feature, "ViewObject", None)
+        if view is not None and view.Proxy is not None:
+            view.Proxy.read_soon()
+        _mill_of(feature)
+
+    def tool(self, feature):
+        return JobTool(feature.Tool, feature.Label, feature.Diameter.Value / 2)
+
+    def planning(self, feature):
+        """What a thread may call, for the plan. The object is looked at now."""
+        base, names = feature.Faces if feature.Faces else (None, ())
+        if base is None:
+            raise JobRefused("its faces are gone; make it anew")
+        mill, settings, last = _mill_of(feature), _settings_of(feature), self.last
+        given = tuple(names), mill, settings
+        if last is not None and last[0] == given:
+            return lambda: last[1]
+        label, shape = base.Label, placed_shape(base)
+
+        def plan():
+            self.last = given, plan_faces(label, shape, names, mill, **settings)
+            return self.last[1]
+
+        return plan
+
+    def told(self, plan):
+        """For people: what is left."""
+        passes = f"{len(plan.swept.passes)} passes"
+        return f"{passes}; left out: {'; '.join(plan.left_out)}." if plan.left_out else f"{passes}, and nothing is left out."
+
+    def __getstate__(self):
+        return None
+
+    def __setstate__(self, state):
+        self.last = None
+
+
+def is_sweep(feature):
+    return isinstance(getattr(feature, "Proxy", None), SweepFeature)
+
+
+def sweeps(document):
+    return [] if document is None else [one for one in document.Objects if is_sweep(one)]
+
+
+def sweep_of(document, base, names):
+    """Refused, the document stays as it is. In one step that can be undone."""
+    top = placed_shape(base).BoundBox.ZMax
+    document.openTransaction("Sweep faces")
+    feature = document.addObject("App::FeaturePython", "FaceSweep")
+    SweepFeature(feature)
+    for name, kind, value, what in PROPERTIES:
+        feature.addProperty(kind, name, GROUP, what)
+        if value is not None:
+            setattr(feature, name, value)
+    feature.Label = f"Faces of {base.Label}"
+    feature.Faces = (base, list(names))
+    feature.Safe = top + ABOVE_MM
+    document.commitTransaction()
+    return feature
+
+
+def _mill_of(feature):
+    radius = feature.Diameter.Value / 2
+    return Mill(radius, {"ball end": radius, "bull nose": feature.Corner.Value, "flat end": 0.0}[feature.Mill])
+
+
+def _settings_of(feature):
+    along = {"direction": feature.Direction.Value, "u of each face": "u", "v of each face": "v"}[feature.Along]
+    return {"scallop_mm": feature.Scallop.Value, "tolerance_mm": feature.Tolerance.Value, "along": along, "steepest_deg": feature.Steepest.Value,
+            "clearance_mm": feature.Safe.Value, "feed_mm_min": round(feature.Feed.Value * 60, 9), "plunge_mm_min": round(feature.FeedDown.Value * 60, 9),
+            "tool": feature.Tool, "rpm": feature.SpindleSpeed}  # fmt: skip
