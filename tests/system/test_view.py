@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -274,6 +275,11 @@ class View(unittest.TestCase):
         self.write([to(0, 0, 100)])
         (self.folder / "taken.html").symlink_to(self.folder / "setup.json")
         (self.folder / "folder.html").mkdir()
+        (self.folder / "to_come.html").symlink_to("a.csv")
+        (of_machine,) = (BUILD / "drivers").glob("**/SuginoXYZAC/device.json")
+        (self.folder / "named.html").symlink_to(of_machine)
+        (self.folder / "module.html").symlink_to(sorted(of_machine.parent.glob("*.so"))[0])
+        (self.folder / "template.html").symlink_to(BUILD / "helpers/view/page.html")
         setup = (self.folder / "setup.json").read_bytes()
         bare = json.loads(MACHINE.read_text())
         del bare["Geometry"], bare["Chain"]
@@ -284,6 +290,11 @@ class View(unittest.TestCase):
                 (("--view", "folder.html"), {}, "folder.html: cannot be written; choose another place with --view"),
                 (("--view", "taken.html"), {}, "taken.html: this run uses this file; choose another name with --view"),
                 (("--view", "a.html", "--record", "a.html"), {}, "a.html: this run uses this file"),
+                (("--view", "./a.html", "--record", "a.html"), {}, "a.html: this run uses this file"),
+                (("--view", "to_come.html", "--record", "a.csv"), {}, "to_come.html: this run uses this file"),
+                (("--view", "named.html"), {}, "named.html: this run uses this file"),
+                (("--view", "module.html"), {}, "module.html: this run uses this file"),
+                (("--view", "template.html"), {}, "template.html: this run uses this file"),
                 (("--view", "a.html"), {"machine": None, "with_setup": False}, "name one with --machine"),
                 (("--view", "a.html"), {"machine": self.folder / "device.json", "with_setup": False},
                  "device.json: has no Geometry, so that there is nothing to show with --view")):
@@ -296,6 +307,30 @@ class View(unittest.TestCase):
         self.assertIn("program.rmac: it moves nothing, so that there is nothing to show with --view", done.stderr)
         self.assertEqual((self.folder / "setup.json").read_bytes(), setup)
         self.assertFalse((self.folder / "a.html").exists())
+
+    def test_a_page_is_whole_or_the_old_one_stays(self):
+        self.write([to(0, 0, 100)])
+        self.page.write_text("old")
+        link = self.folder / "link.html"
+        link.symlink_to(self.page)
+        in_the_way = self.page.with_name(self.page.name + ".part") / "of somebody else"
+        in_the_way.mkdir(parents=True)
+        done = self.run_rmac("--view", link)
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1), done.stderr)
+        self.assertIn("link.html: cannot be written: Is a directory", done.stderr)
+        self.assertEqual(self.page.read_text(), "old")
+        shutil.rmtree(in_the_way.parent)
+        done = self.run_rmac("--view", link)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(link.is_symlink())
+        self.assertEqual(list(self.folder.glob("*.part")), [])
+        self.data()
+
+    def test_a_name_may_hold_any_bytes(self):
+        self.write([to(0, 0, 100)])
+        done = self.run_rmac("--json", "--view", os.fsdecode(b"x\xff\x01y.html"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout)["view_file"], "x\ufffd\x01y.html")
 
     def test_a_browser_draws_all_bodies_and_goes_to_what_is_clicked(self):
         setup = copy.deepcopy(SETUP)

@@ -45,8 +45,12 @@ std::string text_of(const nlohmann::json& data) {
 
 }  // namespace
 
+fs::path page_folder() {
+  return gateway::default_folders().helpers / "view";
+}
+
 Result<std::size_t> write_page(const nlohmann::json& data, const std::string& file) {
-  const fs::path folder = gateway::default_folders().helpers / "view";
+  const fs::path folder = page_folder();
   const auto page = text_of(folder / "page.html");
   if (!page) return tl::unexpected(page.error());
   std::string text;
@@ -63,14 +67,21 @@ Result<std::size_t> write_page(const nlohmann::json& data, const std::string& fi
     }
     text += '\n';
   }
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  // What is there stays until the page is whole; a link goes on leading to it.
+  std::error_code trouble;
+  const fs::path place = fs::weakly_canonical(fs::absolute(file), trouble), part = place.string() + ".part";
+  std::ofstream out(part, std::ios::binary | std::ios::trunc);
   out << text;
   out.close();
-  if (out) return text.size();
-  const int code = errno;
+  if (out) {
+    fs::rename(part, place, trouble);
+    if (!trouble) return text.size();
+  } else {
+    trouble = {errno, std::generic_category()};
+  }
   std::error_code ignored;
-  fs::remove(file, ignored);
-  return fail(fmt::format("{}: cannot be written: {}", file, std::generic_category().message(code)));
+  fs::remove(part, ignored);
+  return fail(fmt::format("{}: cannot be written: {}", file, trouble.message()));
 }
 
 }  // namespace rmac::cli

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -8,7 +9,10 @@
 
 namespace rmac::cli {
 
-/// Writes one page that shows `data` and needs no other file. Gives its size. Nothing of it stays where it cannot be
+/// Where the files lie that a page is made of.
+[[nodiscard]] std::filesystem::path page_folder();
+
+/// Writes one page that shows `data` and needs no other file. Gives its size. What was there stays where it cannot be
 /// written.
 [[nodiscard]] Result<std::size_t> write_page(const nlohmann::json& data, const std::string& file);
 

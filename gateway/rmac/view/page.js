@@ -163,8 +163,10 @@ const page = {
       const radio = [...document.getElementsByName("stock")].find(each => each.value === asked.get("stock"));
       if (radio) radio.click();
     }
-    if (asked.has("t")) this.goTo(Number(asked.get("t")));
-    if (findings[asked.get("finding")]) this.choose(Number(asked.get("finding")));
+    const t = parseFloat(asked.get("t"));
+    if (!Number.isNaN(t)) this.goTo(t);
+    const finding = Number(asked.get("finding") ?? NaN);
+    if (Number.isInteger(finding) && findings[finding]) this.choose(finding);
     if (asked.has("look") && this.view) $("look-" + asked.get("look"))?.click();
   },
 };

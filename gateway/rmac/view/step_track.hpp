@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -20,7 +21,8 @@ class StepTrack {
 
   [[nodiscard]] const std::vector<double>& t_s() const noexcept { return t_s_; }
   [[nodiscard]] const std::vector<int>& values() const noexcept { return values_; }
-  /// Two changes are no nearer to each other; 0: every one is there that was looked at.
+  /// Two changes are no nearer to each other, and each is told by less than twice as much later, if it holds for that
+  /// long; 0: every one is there that was looked at.
   [[nodiscard]] double apart_s() const noexcept { return apart_s_; }
 
  private:
@@ -30,8 +32,10 @@ class StepTrack {
     apart_s_ = apart_s_ == 0 ? kFirstApart_s : 2 * apart_s_;
     std::size_t kept = 1;
     for (std::size_t i = 1; i < t_s_.size(); ++i) {
-      if (t_s_[i] < t_s_[kept - 1] + apart_s_) continue;
-      t_s_[kept] = t_s_[i];
+      // Later where it holds for longer: what lasts is never left out.
+      const double at_s = std::max(t_s_[i], t_s_[kept - 1] + apart_s_);
+      if (i + 1 < t_s_.size() && t_s_[i + 1] <= at_s) continue;
+      t_s_[kept] = at_s;
       values_[kept] = values_[i];
       ++kept;
     }

@@ -12,6 +12,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Where a file is, or will be, whatever its name; links that lead to nothing yet are followed.
+fs::path place_of(const fs::path& file) {
+  constexpr int kMostLinks = 40;  // as the kernel follows
+  std::error_code none;
+  fs::path place = fs::absolute(file, none);
+  for (int i = 0; i < kMostLinks && fs::is_symlink(place, none); ++i) {
+    place = place.parent_path() / fs::read_symlink(place, none);
+  }
+  return fs::weakly_canonical(place, none);
+}
+
 void add_mesh(const gateway::Body& body, std::vector<fs::path>& files) {
   if (const auto* const mesh = std::get_if<gateway::MeshShape>(&body.shape)) files.push_back(mesh->file);
 }
@@ -55,8 +66,7 @@ Result<> refuse_used(const std::string& file, const char* option, const std::vec
   std::error_code none;
   for (const fs::path& other : used) {
     // Two names of one file, or one name of a file that is not there yet.
-    const bool same = fs::equivalent(file, other, none) ||
-                      (!other.empty() && fs::weakly_canonical(file, none) == fs::weakly_canonical(other, none));
+    const bool same = !other.empty() && (fs::equivalent(file, other, none) || place_of(file) == place_of(other));
     if (same) return fail(fmt::format("{}: this run uses this file; choose another name with {}", file, option));
   }
   return {};

@@ -9,6 +9,7 @@
 
 #include "gateway/api/decode.hpp"
 #include "gateway/configuration/configuration.hpp"
+#include "gateway/device_driver_manager/device_tree.hpp"
 #include "gateway/rmac/commands/programs/collision_report.hpp"
 #include "gateway/rmac/commands/programs/force_report.hpp"
 #include "gateway/rmac/commands/programs/material_report.hpp"
@@ -84,7 +85,8 @@ void print_json(const SimulationReport& report, const Beside& beside, bool by_mo
     line["record_files"] = report.record_files;
   }
   if (view != nullptr) add_to_json(*view, line);
-  fmt::print("{}\n", line.dump());
+  // A file's name may hold any bytes.
+  fmt::print("{}\n", line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 void print_table(const SimulationReport& report, const Beside& beside, double took_s) {
@@ -174,9 +176,14 @@ std::filesystem::path materials_of(const Options& options) {
 }
 
 /// Nothing that is written takes the place of what is read, or written otherwise. `collisions` and `shown` may be null.
-Result<> check_written(const Options& options, const CollisionWatch* collisions, const ShapedMachine* shown) {
+Result<> check_written(const Options& options, const std::filesystem::path& tree, const CollisionWatch* collisions,
+                       const ShapedMachine* shown) {
   std::vector<std::filesystem::path> used = files_in(options.tools);
-  used.insert(used.end(), {options.source.file, options.machine});
+  used.emplace_back(options.source.file);
+  // A machine that the program loads is known when it does.
+  if (const auto device_json = gateway::find_device_json(options.machine, tree); device_json) {
+    std::ranges::copy(files_in(device_json->parent_path()), std::back_inserter(used));
+  }
   if (collisions != nullptr) {
     used.insert(used.end(), {options.setup, materials_of(options)});
     std::ranges::copy(files_of(collisions->setup()), std::back_inserter(used));
@@ -237,7 +244,7 @@ Result<> simulate_program(const Options& options, bool json) {
   CollisionWatch* const watched = collisions->get();
   const auto shown = shown_machine(options, tree);
   if (!shown) return tl::unexpected(shown.error());
-  if (auto fine = check_written(options, watched, *shown ? &**shown : nullptr); !fine) return fine;
+  if (auto fine = check_written(options, tree, watched, *shown ? &**shown : nullptr); !fine) return fine;
   std::optional<Film> film;
   if (*shown) {
     auto drawn = drawn_bodies((*shown)->bodies, watched != nullptr ? &watched->setup() : nullptr);

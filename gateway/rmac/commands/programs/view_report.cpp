@@ -37,6 +37,8 @@ Result<> check_view(const std::string& file, const ShapedMachine& machine, std::
   if (auto fine = refuse_unwritable(file, "--view"); !fine) return fine;
   const auto meshes = files_of(machine.bodies);
   taken.insert(taken.end(), meshes.begin(), meshes.end());
+  const auto of_page = files_in(page_folder());
+  taken.insert(taken.end(), of_page.begin(), of_page.end());
   return refuse_used(file, "--view", taken);
 }
 

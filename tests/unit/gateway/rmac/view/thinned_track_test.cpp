@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "gateway/rmac/view/step_track.hpp"
 
@@ -79,9 +81,33 @@ TEST(StepTrack, KeepsEachChangeUntilThereAreTooMany) {
   ASSERT_LE(many.t_s().size(), 10U);
   ASSERT_GE(many.t_s().size(), 4U);
   for (std::size_t i = 0; i < many.t_s().size(); ++i) {
-    EXPECT_NEAR(many.values()[i], many.t_s()[i] * 60, 1e-6) << "a value has its own time";
+    EXPECT_LE(many.values()[i], many.t_s()[i] * 60 + 1e-6) << "none is told before its time";
+    EXPECT_GT(many.values()[i] + 1, (many.t_s()[i] - many.apart_s()) * 60) << "nor long behind it";
     if (i > 0) {
       EXPECT_GE(many.t_s()[i] - many.t_s()[i - 1], many.apart_s() - 1e-9);
+    }
+  }
+}
+
+TEST(StepTrack, NeverLeavesOutWhatHoldsForTwiceAsLongAsItIsCoarse) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_int_distribution<int> looks(1, 3);
+    StepTrack track(20);
+    std::vector<std::pair<double, int>> held;  // since when, what
+    int look = 0;
+    for (int value = 0; value < 200; ++value) {
+      held.emplace_back(look / 60.0, value);
+      const int until = look + (random() % 10 == 0 ? 600 : looks(random));
+      for (; look < until; ++look) track.add(look / 60.0, value);
+    }
+    ASSERT_GT(track.apart_s(), 0);
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      const double until_s = i + 1 < held.size() ? held[i + 1].first : look / 60.0;
+      const double at_s = held[i].first + 2 * track.apart_s();
+      if (at_s >= until_s) continue;
+      const auto next = std::ranges::upper_bound(track.t_s(), at_s + 1e-9);
+      EXPECT_EQ(track.values()[static_cast<std::size_t>(next - track.t_s().begin()) - 1], held[i].second) << seed;
     }
   }
 }
