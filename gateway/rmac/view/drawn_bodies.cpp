@@ -32,7 +32,7 @@ Json point(double radius, double height) {
 }
 
 Json outline(const ConeShape& cone, double from) {
-  Json list{point(0, from), point(cone.bottom_radius, from)};
+  Json list = Json::array({point(0, from), point(cone.bottom_radius, from)});
   list.push_back(point(cone.top_radius, from + cone.height));
   list.push_back(point(0, from + cone.height));
   return list;
@@ -55,7 +55,7 @@ Json outline(const SphereShape& sphere) {
 /// An end mill from its tip to the end of its flutes.
 Json outline_of_cutter(const gateway::ToolShape& shape) {
   const double radius = shape.dc / 2, corner = std::min(shape.re, radius);
-  Json list{point(0, 0)};
+  Json list = Json::array({point(0, 0)});  // braces alone are a copy to clang++, an array to g++
   add_arc(list, radius - corner, corner, corner, 1);
   list.push_back(point(radius, std::max(shape.lcf, corner)));
   list.push_back(point(0, std::max(shape.lcf, corner)));
