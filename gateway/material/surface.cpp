@@ -109,11 +109,11 @@ void surface(const DexelGrid& grid, std::uint32_t each_nth, const std::function<
   }
 }
 
-std::uint32_t finest(const DexelGrid& grid, std::size_t most_triangles) {
+Fineness finest(const DexelGrid& grid, std::size_t most_triangles) {
   for (std::uint32_t nth = 1;;) {
     std::size_t triangles = 0;
     surface(grid, nth, [&](const SurfaceTriangle&) { ++triangles; });
-    if (triangles <= most_triangles) return nth;
+    if (triangles <= most_triangles) return {nth, triangles};
     // There are as many fewer as the square of how much coarser it is.
     const double too_many = static_cast<double>(triangles) / static_cast<double>(most_triangles);
     nth = std::max(nth + 1, static_cast<std::uint32_t>(nth * std::sqrt(too_many)));
@@ -122,8 +122,8 @@ std::uint32_t finest(const DexelGrid& grid, std::size_t most_triangles) {
 
 Expected<SurfaceFile> write_stl(const DexelGrid& grid, const std::filesystem::path& file, std::size_t most_triangles) {
   SurfaceFile written;
-  const std::uint32_t nth = finest(grid, most_triangles);
-  surface(grid, nth, [&](const SurfaceTriangle&) { ++written.triangles; });
+  const auto [nth, triangles] = finest(grid, most_triangles);
+  written.triangles = triangles;
   written.apart_mm = *std::ranges::max_element(grid.layout().pitch) * nth;
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   std::array<char, kHead> head{};

@@ -19,8 +19,12 @@ using SurfaceTriangle = std::array<Eigen::Vector3f, 3>;
 /// are cut off by up to that.
 void surface(const DexelGrid& grid, std::uint32_t each_nth, const std::function<void(const SurfaceTriangle&)>& visit);
 
-/// The finest `each_nth` that makes no more triangles than these.
-[[nodiscard]] std::uint32_t finest(const DexelGrid& grid, std::size_t most_triangles);
+/// The finest `each_nth` that makes no more triangles than are wanted, and how many it makes.
+struct Fineness {
+  std::uint32_t each_nth = 1;
+  std::size_t triangles = 0;
+};
+[[nodiscard]] Fineness finest(const DexelGrid& grid, std::size_t most_triangles);
 
 /// What was written.
 struct SurfaceFile {

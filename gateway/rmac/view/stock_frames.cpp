@@ -67,7 +67,7 @@ nlohmann::json StockFrames::to_json() const {
 }
 
 nlohmann::json drawn_stock(const gateway::DexelGrid& grid, std::size_t most_triangles) {
-  const std::uint32_t nth = gateway::finest(grid, most_triangles);
+  const std::uint32_t nth = gateway::finest(grid, most_triangles).each_nth;
   nlohmann::json drawn = drawn_mesh(mesh_of(grid, nth));
   drawn["apart_mm"] = apart_mm(grid, nth);
   return drawn;

@@ -19,18 +19,7 @@ from windowed import WindowTest, process_until
 class OperationTest(WindowTest):
     def setUp(self):
         super().setUp()
-        FreeCADGui.activateWorkbench("RmacWorkbench")
-        with self.connect("set-up") as client:
-            self.free(client)
-            with client.authority():
-                client.cam.SetPartFrame({"p": [0, 0, 0], "q": [1, 0, 0, 0]})
-                client.cam.SetTool(1, 0.0, 2.5)
-        self.document = FreeCAD.newDocument("operations")
-        self.addCleanup(lambda: self.document and FreeCAD.closeDocument(self.document.Name))
-        self.box = self.document.addObject("Part::Box", "Box")
-        self.box.Length, self.box.Width, self.box.Height = 30, 20, 4
-        self.document.recompute()
-        FreeCADGui.Selection.clearSelection()
+        self.stand_before_a_box("operations", 4)
 
     def face(self, z):
         return next(f"Face{number}" for number, face in enumerate(self.box.Shape.Faces, 1) if face.BoundBox.ZMin == face.BoundBox.ZMax == z)

@@ -15,18 +15,7 @@ from windowed import WindowTest, process_until
 class ProfileCommandTest(WindowTest):
     def setUp(self):
         super().setUp()
-        FreeCADGui.activateWorkbench("RmacWorkbench")
-        with self.connect("set-up") as client:
-            self.free(client)
-            with client.authority():
-                client.cam.SetPartFrame({"p": [0, 0, 0], "q": [1, 0, 0, 0]})
-                client.cam.SetTool(1, 0.0, 2.5)
-        self.document = FreeCAD.newDocument("profiles")
-        self.addCleanup(FreeCAD.closeDocument, self.document.Name)
-        self.box = self.document.addObject("Part::Box", "Box")
-        self.box.Length, self.box.Width, self.box.Height = 30, 20, 10
-        self.document.recompute()
-        FreeCADGui.Selection.clearSelection()
+        self.stand_before_a_box("profiles", 10)
 
     def top_edges(self):
         return [f"Edge{number}" for number, edge in enumerate(self.box.Shape.Edges, 1) if edge.BoundBox.ZMin == edge.BoundBox.ZMax == 10]

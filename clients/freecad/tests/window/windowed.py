@@ -8,6 +8,7 @@ import unittest
 sys.path.append(os.path.join(os.environ["RMAC_SOURCE"], "tests/system"))
 
 import FreeCAD
+import FreeCADGui
 import PathScripts.PathProfile as PathProfile
 from appliance import BUILD, Appliance
 from path_job import operation_of, plate_job
@@ -67,6 +68,21 @@ class WindowTest(unittest.TestCase):
         job = self.job()
         operation_of(job, PathProfile, "Profile")
         return job
+
+    def stand_before_a_box(self, name, height):
+        """The workbench, a part frame, a tool, and a document with a box; nothing is selected."""
+        FreeCADGui.activateWorkbench("RmacWorkbench")
+        with self.connect("set-up") as client:
+            self.free(client)
+            with client.authority():
+                client.cam.SetPartFrame({"p": [0, 0, 0], "q": [1, 0, 0, 0]})
+                client.cam.SetTool(1, 0.0, 2.5)
+        self.document = FreeCAD.newDocument(name)
+        self.addCleanup(lambda: self.document and FreeCAD.closeDocument(self.document.Name))
+        self.box = self.document.addObject("Part::Box", "Box")
+        self.box.Length, self.box.Width, self.box.Height = 30, 20, height
+        self.document.recompute()
+        FreeCADGui.Selection.clearSelection()
 
     def free(self, client):
         """Until nobody has authority and nothing moves: what the test before left is over."""

@@ -64,9 +64,10 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 
 Result<> refuse_used(const std::string& file, const char* option, const std::vector<fs::path>& used) {
   std::error_code none;
+  const fs::path place = place_of(file);
   for (const fs::path& other : used) {
     // Two names of one file, or one name of a file that is not there yet.
-    const bool same = !other.empty() && (fs::equivalent(file, other, none) || place_of(file) == place_of(other));
+    const bool same = !other.empty() && (fs::equivalent(file, other, none) || place == place_of(other));
     if (same) return fail(fmt::format("{}: this run uses this file; choose another name with {}", file, option));
   }
   return {};

@@ -190,18 +190,17 @@ Result<> check_written(const Options& options, const std::filesystem::path& tree
   }
   if (!options.record_file.empty()) {
     if (auto fine = refuse_used(options.record_file, "--record", used); !fine) return fine;
+    used.emplace_back(options.record_file);
   }
   if (shown != nullptr) {
-    used.insert(used.end(), {options.record_file, options.stock_out});
     if (auto fine = check_view(options.view, *shown, used); !fine) return fine;
-    used.resize(used.size() - 2);
+    used.emplace_back(options.view);
   }
   if (options.stock_out.empty()) return {};
   if (collisions == nullptr || collisions->material() == nullptr) {
     return fail(
         fmt::format("{}: has no Stock, so that nothing can be left of it for --stock-out", options.setup.string()));
   }
-  used.emplace_back(options.record_file);
   return check_stock_out(options.stock_out, used);
 }
 

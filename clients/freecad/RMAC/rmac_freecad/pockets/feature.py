@@ -1,6 +1,6 @@
 """The object of a document that clears a pocket: it follows its face or sketch when that changes."""
 
-from rmac_freecad.jobs import JobTool
+from rmac_freecad.jobs.cut_object import CutObject, add_cut_object
 from rmac_freecad.pockets.outline import outline_of
 from rmac_freecad.pockets.pocket import ENTRIES, ORDERS, Pocket, check, plan_pocket
 from rmac_freecad.pockets.refusal import PocketRefused
@@ -27,24 +27,10 @@ PROPERTIES = (
 )
 
 
-class PocketFeature:
-    """Of FreeCAD's objects. `last` is what was planned last, with what it was planned from; it is saved with no document."""
-
-    def __init__(self, feature):
-        self.last = None
-        feature.Proxy = self
-
-    def execute(self, feature):
-        """Its path takes longer: the view has it made by a thread. An error is shown at the object."""
-        self.last = None
-        view = getattr(feature, "ViewObject", None)
-        if view is not None and view.Proxy is not None:
-            view.Proxy.read_soon()
+class PocketFeature(CutObject):
+    def check(self, feature):
         outline_in(feature)
         check(settings_of(feature))
-
-    def tool(self, feature):
-        return JobTool(feature.Tool, feature.Label, feature.Diameter.Value / 2)
 
     def planning(self, feature):
         """What a thread may call, for the plan. The object is looked at now."""
@@ -67,12 +53,6 @@ class PocketFeature:
         left = [f"the tool does not get into {_spots(plan.unreached)}"] if plan.unreached else []
         return f"{text}; {'; '.join([*left, *([f'loops leave {_spots(plan.missed)}'] if plan.missed else [])])}."
 
-    def __getstate__(self):
-        return None
-
-    def __setstate__(self, state):
-        self.last = None
-
 
 def _spots(spots):
     """The largest ones with their places."""
@@ -93,12 +73,7 @@ def pocket_of(document, base, face=""):
     undone."""
     outline = outline_of(base, face)
     document.openTransaction("Clear a pocket")
-    feature = document.addObject("App::FeaturePython", "FacePocket")
-    PocketFeature(feature)
-    for name, kind, value, what in PROPERTIES:
-        feature.addProperty(kind, name, GROUP, what)
-        if value is not None:
-            setattr(feature, name, value)
+    feature = add_cut_object(document, "FacePocket", PocketFeature, GROUP, PROPERTIES)
     feature.Label = f"Pocket of {base.Label}"
     feature.Base = (base, [face] if face else [""])
     top = top_above(base, outline.z) if face else outline.z

@@ -17,9 +17,10 @@ CHORD_RAD = math.radians(3)
 
 
 @dataclass(frozen=True)
-class LineTrack:
-    piece: Straight
-    straight = True
+class PieceTrack:
+    """Along a piece of a contour, evenly."""
+
+    piece: object
 
     @property
     def name(self):
@@ -28,6 +29,22 @@ class LineTrack:
     @property
     def length(self):
         return self.piece.length
+
+    def share_behind(self, length):
+        """So far from its start."""
+        return length / self.length
+
+    def turned(self):
+        return type(self)(self.piece.turned())
+
+    def move(self, begin, end):
+        return self.piece.move(begin, end)
+
+
+@dataclass(frozen=True)
+class LineTrack(PieceTrack):
+    piece: Straight
+    straight = True
 
     def at(self, part):
         a, b = np.array(self.piece.start), np.array(self.piece.end)
@@ -43,35 +60,17 @@ class LineTrack:
         a, along = np.array(self.piece.start), np.array(self.piece.end) - np.array(self.piece.start)
         return float(np.clip((np.asarray(place) - a) @ along / (along @ along), 0, 1))
 
-    def share_behind(self, length):
-        """So far from its start."""
-        return length / self.length
-
     def between(self, first, last):
         return LineTrack(replace(self.piece, start=tuple(self.at(first)), end=tuple(self.at(last))))
-
-    def turned(self):
-        return LineTrack(self.piece.turned())
 
     def chords(self):
         return np.array([self.piece.start, self.piece.end])
 
-    def move(self, begin, end):
-        return self.piece.move(begin, end)
-
 
 @dataclass(frozen=True)
-class ArcTrack:
+class ArcTrack(PieceTrack):
     piece: Bow
     straight = False
-
-    @property
-    def name(self):
-        return self.piece.name
-
-    @property
-    def length(self):
-        return self.piece.length
 
     def at(self, part):
         way = self.piece.angle + np.asarray(part, float) * self.piece.sweep
@@ -91,20 +90,11 @@ class ArcTrack:
         over = FULL / abs(self.piece.sweep)
         return 1.0 if 1 < part <= (1 + over) / 2 else 0.0 if part > 1 else part
 
-    def share_behind(self, length):
-        return length / self.length
-
     def between(self, first, last):
         return ArcTrack(replace(self.piece, angle=self.piece.angle + first * self.piece.sweep, sweep=(last - first) * self.piece.sweep))
 
-    def turned(self):
-        return ArcTrack(self.piece.turned())
-
     def chords(self):
         return self.at(np.linspace(0, 1, max(int(abs(self.piece.sweep) / CHORD_RAD), 2) + 1))
-
-    def move(self, begin, end):
-        return self.piece.move(begin, end)
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """The object of a document that cuts along edges or a sketch: it follows them when they change."""
 
-from rmac_freecad.jobs import JobTool
+from rmac_freecad.jobs.cut_object import CutObject, add_cut_object
 from rmac_freecad.profiles.contour import contour_of, edges_of
 from rmac_freecad.profiles.profile import SIDES, Profile, read_profile
 
@@ -25,24 +25,9 @@ PROPERTIES = (
 )
 
 
-class EdgeProfile:
-    """Of FreeCAD's objects."""
-
-    def __init__(self, feature):
-        feature.Proxy = self
-
-    def execute(self, feature):
-        """An error of it is shown at the object."""
-        view = getattr(feature, "ViewObject", None)
-        if view is not None and view.Proxy is not None:
-            view.Proxy.read_soon()
+class EdgeProfile(CutObject):
+    def check(self, feature):
         program_of(feature, 1.0)
-
-    def __getstate__(self):
-        return None
-
-    def __setstate__(self, state):
-        pass
 
 
 def is_profile(feature):
@@ -58,12 +43,7 @@ def profile_of(document, chosen):
     can be undone."""
     contour = contour_of(_edges(chosen))
     document.openTransaction("Cut along edges")
-    feature = document.addObject("App::FeaturePython", "EdgeProfile")
-    EdgeProfile(feature)
-    for name, kind, value, what in PROPERTIES:
-        feature.addProperty(kind, name, GROUP, what)
-        if value is not None:
-            setattr(feature, name, value)
+    feature = add_cut_object(document, "EdgeProfile", EdgeProfile, GROUP, PROPERTIES)
     feature.Label = f"Along {chosen[0][0].Label}"
     feature.Edges = [(one, tuple(names) or ("",)) for one, names in chosen]
     feature.Top, feature.Bottom, feature.Safe = contour.z, contour.z - 1, contour.z + ABOVE_MM
@@ -80,10 +60,6 @@ def settings_of(feature):
 def program_of(feature, rapid_mm_min):
     """As `jobs.read_job` does of a job."""
     return read_profile(feature.Label, _edges(feature.Edges), settings_of(feature), rapid_mm_min=rapid_mm_min)
-
-
-def tool_of(feature):
-    return JobTool(feature.Tool, feature.Label, feature.Diameter.Value / 2)
 
 
 def _edges(chosen):

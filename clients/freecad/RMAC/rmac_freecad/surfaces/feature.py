@@ -1,6 +1,6 @@
 """The object of a document that sweeps faces: it follows them when they change."""
 
-from rmac_freecad.jobs import JobTool
+from rmac_freecad.jobs.cut_object import CutObject, add_cut_object
 from rmac_freecad.jobs.refusal import JobRefused
 from rmac_freecad.surfaces.machining import ABOVE_MM, placed_shape, plan_faces
 from rmac_freecad.surfaces.mill import Mill
@@ -27,23 +27,9 @@ PROPERTIES = (
 )
 
 
-class SweepFeature:
-    """Of FreeCAD's objects. `last` is what was planned last, with what it was planned from; it is saved with no document."""
-
-    def __init__(self, feature):
-        self.last = None
-        feature.Proxy = self
-
-    def execute(self, feature):
-        """Its path takes longer: the view has it made by a thread."""
-        self.last = None
-        view = getattr(feature, "ViewObject", None)
-        if view is not None and view.Proxy is not None:
-            view.Proxy.read_soon()
+class SweepFeature(CutObject):
+    def check(self, feature):
         _mill_of(feature)
-
-    def tool(self, feature):
-        return JobTool(feature.Tool, feature.Label, feature.Diameter.Value / 2)
 
     def planning(self, feature):
         """What a thread may call, for the plan. The object is looked at now."""
@@ -67,12 +53,6 @@ class SweepFeature:
         passes = f"{len(plan.swept.passes)} passes"
         return f"{passes}; left out: {'; '.join(plan.left_out)}." if plan.left_out else f"{passes}, and nothing is left out."
 
-    def __getstate__(self):
-        return None
-
-    def __setstate__(self, state):
-        self.last = None
-
 
 def is_sweep(feature):
     return isinstance(getattr(feature, "Proxy", None), SweepFeature)
@@ -86,12 +66,7 @@ def sweep_of(document, base, names):
     """Refused, the document stays as it is. In one step that can be undone."""
     top = placed_shape(base).BoundBox.ZMax
     document.openTransaction("Sweep faces")
-    feature = document.addObject("App::FeaturePython", "FaceSweep")
-    SweepFeature(feature)
-    for name, kind, value, what in PROPERTIES:
-        feature.addProperty(kind, name, GROUP, what)
-        if value is not None:
-            setattr(feature, name, value)
+    feature = add_cut_object(document, "FaceSweep", SweepFeature, GROUP, PROPERTIES)
     feature.Label = f"Faces of {base.Label}"
     feature.Faces = (base, list(names))
     feature.Safe = top + ABOVE_MM

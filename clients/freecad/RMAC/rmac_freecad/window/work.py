@@ -7,7 +7,7 @@ from rmac_freecad.jobs import JobRefused, read_job, tools_of
 from rmac_freecad.legacy import codes, reading, tools_in
 from rmac_freecad.path import strokes_of
 from rmac_freecad.pockets import pockets
-from rmac_freecad.profiles import profiles, program_of, tool_of
+from rmac_freecad.profiles import profiles, program_of
 from rmac_freecad.program import keep
 from rmac_freecad.surfaces import sweeps
 from rmac_freecad.window.jobs import jobs
@@ -45,7 +45,7 @@ class JobWork:
 
 class ProfileWork(JobWork):
     def __init__(self, feature):
-        self._tools = [tool_of(feature)]
+        self._tools = [feature.Proxy.tool(feature)]
         self._feature, self._document = feature, feature.Document.Name
         self.label = feature.Label
 
@@ -59,11 +59,6 @@ class ProfileWork(JobWork):
 
 class PlannedWork(ProfileWork):
     """A pocket, or faces that are swept: planned by a thread, where that was not done already."""
-
-    def __init__(self, feature):
-        self._tools = [feature.Proxy.tool(feature)]
-        self._feature, self._document = feature, feature.Document.Name
-        self.label = feature.Label
 
     def reading(self, fastest_mm_min, rmac):
         plan, label = self._feature.Proxy.planning(self._feature), self.label
