@@ -125,7 +125,9 @@ bool CuttingLoad::engaged(const Engagement& met, const MoveNow& move) {
 
 void CuttingLoad::judge(Overload::Of of, double mean, double allowed, const Span& span, const ToolAt& tool,
                         const MoveNow& move) {
-  if (allowed <= 0 || mean <= allowed) return;
+  if (allowed <= 0) return;
+  most_used_ = std::max(most_used_, mean / allowed);
+  if (mean <= allowed) return;
   const auto under_way = std::ranges::find_if(overloads_.rbegin(), overloads_.rend(), [&](const Overload& each) {
     return each.of == of && (each.until_s >= span.from_s || each.move_id == move.id);
   });

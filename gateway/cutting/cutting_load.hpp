@@ -69,6 +69,9 @@ class CuttingLoad : public CutListener {
   [[nodiscard]] const std::map<std::int64_t, CuttingShare>& moves() const noexcept { return moves_; }
   /// In the order in which they began; at most `kMostOverloads`.
   [[nodiscard]] const std::vector<Overload>& overloads() const noexcept { return overloads_; }
+  /// The most that cutting took of what the spindle has, of torque or power, as a mean over a turn: above 1 it had not
+  /// enough. 0 where nothing was cut, or nobody knows what it has.
+  [[nodiscard]] double most_used() const noexcept { return most_used_; }
   /// What is missing to tell it, a sentence each; empty: nothing.
   [[nodiscard]] const std::set<std::string>& not_told() const noexcept { return not_told_; }
 
@@ -100,6 +103,7 @@ class CuttingLoad : public CutListener {
   CuttingShare all_;
   std::map<std::int64_t, CuttingShare> moves_;
   std::vector<Overload> overloads_;
+  double most_used_ = 0;
   std::set<std::string> not_told_, missed_;
   std::optional<Last> last_;
   CuttingNow now_;

@@ -66,6 +66,58 @@ class Machines(unittest.TestCase):
         self.assertIn("50.0000 mm beyond", machines["SuginoXYZAC"]["WhyNot"])
         self.assertIn("joint X", machines["CMM"]["WhyNot"])
 
+    def slot(self, to_x, depth, rpm=3000):
+        """A slot of so much depth, 30 mm above the table, from x -50 on; the clamp of the set-up begins at x 50."""
+        z = 30 - depth
+        place = {"a": [-50, 0, 60], "b": [-50, 0, z], "c": [to_x, 0, z], "d": [to_x, 0, 60]}
+        at = {name: {"p": p, "axis": [0, 0, 1]} for name, p in place.items()}
+        return [{"method": "RMAC_CAM.SetFeedrate", "params": {"Feedrate": 600}},
+                {"method": "RMAC_CAM.SetSpindleRPM", "params": {"SpindleNumber": 0, "RPM": rpm}},
+                *({"method": "RMAC_CAM.MoveToJointTarget", "params": {"MoveID": i, "JointTargetFrame": at[name]}} for i, name in enumerate("ab", 1)),
+                {"method": "RMAC_CAM.MoveAlongLine", "params": {"MoveID": 3, "StartPoint": at["b"], "EndPoint": at["c"]}},
+                {"method": "RMAC_CAM.MoveToJointTarget", "params": {"MoveID": 4, "JointTargetFrame": at["d"]}}]
+
+    def test_fits_holds_each_machine_against_a_set_up(self):
+        folder = self.appliance.folder / "clamped"
+        folder.mkdir(exist_ok=True)
+        tool = {"ToolNumber": 7, "Length": 80, "Radius": 3, "Shape": {
+            "DC": 6, "RE": 3, "LCF": 12, "OAL": 57, "ZEFP": 2,
+            "Holder": [{"Cone": {"Radius": 10, "TopRadius": 14, "Height": 30}}, {"Cylinder": {"Radius": 25, "Height": 15}}]}}
+        for name in ALL:
+            (folder / f"{name}.json").write_text(json.dumps({"Mounted": 7, "Tools": [tool]}))
+        setup = folder / "setup.json"
+        setup.write_text(json.dumps({
+            "Machine": "SuginoXYZAC", "PartFrame": {"p": [0, 0, -100], "q": [1, 0, 0, 0]}, "Material": "Al7075-T6", "Resolution": 0.5,
+            "Stock": {"Shape": {"Box": {"Size": [80, 60, 30]}}, "Pose": {"p": [0, 0, 15], "axis": [0, 0, 1]}},
+            "Fixtures": [{"Name": "clamp", "Shape": {"Box": {"Size": [20, 20, 70]}}, "Pose": {"p": [60, 0, 35], "axis": [0, 0, 1]}}]}))
+
+        def fits(program, *words):
+            return self.fits(program, "--tools", str(folder), "--setup", str(setup), *words)
+
+        machines = fits(self.slot(20, 2))
+        fitting = {name for name, machine in machines.items() if machine["Fits"]}
+        self.assertLessEqual({"SuginoXYZAC", "TarusXYZCA"}, fitting, machines)
+        ranked = list(machines)[:len(fitting)]
+        self.assertEqual(set(ranked), fitting)
+        times = [machines[name]["CycleTime_s"] for name in ranked]
+        self.assertEqual(times, sorted(times))
+        for name in fitting:
+            self.assertTrue(0 < machines[name]["SpindleUsed"] < 1, machines[name])
+        self.assertIn("above spindle 0's maximum of 1000 rpm", machines["DMACXYZ"]["WhyNot"])
+        # On the other table too the holder meets the clamp, and at 100 rpm a tooth would take 3 mm at a time.
+        for program, why in ((self.slot(45, 2), "holder meets clamp"), (self.slot(20, 11, 100), "cutting takes more than the spindle has")):
+            machines = fits(program)
+            self.assertIn(why, machines["SuginoXYZAC"]["WhyNot"])
+            if "clamp" in why:
+                self.assertIn(why, machines["TarusXYZCA"]["WhyNot"])
+        for words, why in ((["--setup", str(setup)], "--setup needs --fits"),
+                           (["--fits", "x.rmac", "--materials", str(setup)], "--materials needs --setup")):
+            self.assertIn(why, self.appliance.rmac("machines", *words).stderr)
+        setup.write_text("{}")
+        done = self.appliance.rmac("machines", "--fits", str(self.appliance.folder / "program.rmac"), "--setup", str(setup))
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn("setup.json", done.stderr)
+
     def test_fits_takes_tools_from_tables(self):
         change = {"method": "RMAC_CAM.DoToolChange", "params": {"ToolNumber": 7}}
         move = {"method": "RMAC_CAM.MoveToJointTarget",

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "gateway/api/decode.hpp"
 #include "gateway/material/stock_model.hpp"
 #include "gateway/rmac/simulator/mounted_tool.hpp"
 #include "gateway/rmac/simulator/shaped_machine.hpp"
@@ -20,34 +21,38 @@ constexpr double kWattsPerHorsePower = 745.69987;
 }  // namespace
 
 Result<std::unique_ptr<CollisionWatch>> CollisionWatch::open(const std::string& machine, const fs::path& device_tree,
-                                                             const fs::path& setup_file,
-                                                             std::optional<double> resolution_mm,
-                                                             const fs::path& materials) {
-  const auto setup = gateway::read_setup(setup_file);
-  if (!setup) return fail(setup.error().message);
+                                                             gateway::Setup setup, const Options& options) {
   auto shaped = read_shaped_machine(machine, device_tree, "collisions cannot be checked");
   if (!shaped) return tl::unexpected(shaped.error());
-  if (shaped->name != setup->machine) {
-    return fail(fmt::format("{}: /Machine is \"{}\", and the program is simulated on {}", setup_file.string(),
-                            setup->machine, shaped->name));
+  if (shaped->name != setup.machine) {
+    return fail(fmt::format("{}: /Machine is \"{}\", and the program is simulated on {}", options.setup_file.string(),
+                            setup.machine, shaped->name));
   }
-  auto bodies = gateway::scene_bodies(shaped->bodies, *setup);
-  if (!bodies) return fail(fmt::format("{}: {}", setup_file.string(), bodies.error().message));
+  auto bodies = gateway::scene_bodies(shaped->bodies, setup);
+  if (!bodies) return fail(fmt::format("{}: {}", options.setup_file.string(), bodies.error().message));
   std::unique_ptr<CollisionWatch> watch(
-      new CollisionWatch(*setup, std::make_unique<gateway::CollisionChecker>(shaped->chain, std::move(*bodies),
-                                                                             setup->part_frame, setup->clearance_mm)));
-  if (setup->stock) {
-    auto grid = gateway::Stock::read(*setup->stock).and_then([&](const gateway::Stock& stock) {
-      return gateway::model_of(stock, resolution_mm ? resolution_mm : setup->resolution_mm);
+      new CollisionWatch(options.setup_file, setup,
+                         std::make_unique<gateway::CollisionChecker>(shaped->chain, std::move(*bodies),
+                                                                     setup.part_frame, setup.clearance_mm)));
+  if (setup.stock) {
+    auto grid = gateway::Stock::read(*setup.stock).and_then([&](const gateway::Stock& stock) {
+      return gateway::model_of(stock, options.resolution_mm ? options.resolution_mm : setup.resolution_mm);
     });
-    if (!grid) return fail(fmt::format("{}: {}", setup_file.string(), grid.error().message));
+    if (!grid) return fail(fmt::format("{}: {}", options.setup_file.string(), grid.error().message));
     gateway::CollisionChecker& checker = *watch->checker_;
-    watch->material_ = std::make_unique<gateway::Material>(std::move(shaped->chain), std::move(*grid),
-                                                           setup->part_frame, checker.findings());
+    watch->material_ = std::make_unique<gateway::Material>(std::move(shaped->chain), std::move(*grid), setup.part_frame,
+                                                           checker.findings());
     checker.stock_is_followed();
-    if (auto fine = watch->watch_load(materials); !fine) return tl::unexpected(fine.error());
+    if (auto fine = watch->watch_load(options.materials); !fine) return tl::unexpected(fine.error());
   }
   return watch;
+}
+
+Result<> CollisionWatch::place_part(gateway::Simulation& simulation) const {
+  const auto stands =
+      simulation.call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json(setup_.part_frame)}});
+  if (!stands) return fail(fmt::format("{}: /PartFrame: {}", file_.string(), stands.error().message));
+  return {};
 }
 
 Result<> CollisionWatch::watch_load(const fs::path& materials) {

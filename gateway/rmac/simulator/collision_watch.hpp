@@ -22,14 +22,19 @@ namespace rmac::cli {
 /// Watches a simulated machine for collisions with itself and with a set-up.
 class CollisionWatch {
  public:
-  /// `machine` as for `Simulation::open`; `resolution_mm` of the material instead of the set-up's; `materials`: the
-  /// file of the work materials that are known. Refused, with one line, where not all of it can be checked.
+  struct Options {
+    std::filesystem::path setup_file;       ///< which errors name
+    std::optional<double> resolution_mm{};  ///< of the material, instead of the set-up's
+    std::filesystem::path materials;        ///< the file of the work materials that are known
+  };
+
+  /// `machine` as for `Simulation::open`. Refused, with one line, where not all of it can be checked.
   [[nodiscard]] static Result<std::unique_ptr<CollisionWatch>> open(const std::string& machine,
                                                                     const std::filesystem::path& device_tree,
-                                                                    const std::filesystem::path& setup,
-                                                                    std::optional<double> resolution_mm,
-                                                                    const std::filesystem::path& materials);
+                                                                    gateway::Setup setup, const Options& options);
 
+  /// Sets the part frame as somebody would who clamped the part there; a program may set another one.
+  [[nodiscard]] Result<> place_part(gateway::Simulation& simulation) const;
   /// A move has been added to those that are not done; the first of them is done.
   void queued(const Move& move) { queue_.push_back({may_cut(move), leads_somewhere(move)}); }
   void move_done();
@@ -51,8 +56,8 @@ class CollisionWatch {
   [[nodiscard]] const std::set<std::string>& not_checked() const noexcept { return not_checked_; }
 
  private:
-  CollisionWatch(gateway::Setup setup, std::unique_ptr<gateway::CollisionChecker> checker)
-      : setup_(std::move(setup)), checker_(std::move(checker)) {}
+  CollisionWatch(std::filesystem::path file, gateway::Setup setup, std::unique_ptr<gateway::CollisionChecker> checker)
+      : file_(std::move(file)), setup_(std::move(setup)), checker_(std::move(checker)) {}
   /// Positioning moves go through air; what is programmed as a path may cut.
   [[nodiscard]] static bool may_cut(const Move& move) noexcept;
   /// It is a move, and no calls in turn or a dwell.
@@ -60,6 +65,7 @@ class CollisionWatch {
   [[nodiscard]] Result<> watch_load(const std::filesystem::path& materials);
   void take_tool(gateway::Controller& controller);
 
+  std::filesystem::path file_;  ///< of the set-up
   gateway::Setup setup_;
   std::unique_ptr<gateway::CollisionChecker> checker_;
   std::unique_ptr<gateway::Material> material_;  ///< its findings go to the checker's

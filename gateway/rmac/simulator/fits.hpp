@@ -1,10 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
+#include "gateway/bodies/body.hpp"
 #include "gateway/rmac/program/program.hpp"
-#include "gateway/rmac/wire/failure.hpp"
 
 namespace rmac::cli {
 
@@ -12,12 +13,27 @@ namespace rmac::cli {
 struct Fit {
   bool fits = false;
   double cycle_time_s = 0;  ///< where it fits
-  std::string why_not;      ///< where it does not: what was refused, in which line, and what to do
+  std::optional<double>
+      spindle_used{};     ///< there: the most that cutting took of what the spindle has; where it is known
+  std::string why_not{};  ///< where it does not: what was refused, in which line, and what to do
 };
 
-/// Plans the program on a machine of the device tree as `rmac simulate` does. Machines that the program itself would
-/// load are passed over: which one it runs on is the question. `tools`: folder of tool tables, or empty.
-[[nodiscard]] Fit fit_of(const Program& program, const std::string& machine, const std::filesystem::path& device_tree,
-                         const std::filesystem::path& tools);
+/// What is asked of each machine.
+struct FitQuestion {
+  Program program;  ///< machines that it would load are passed over: which one it runs on is the question
+  std::filesystem::path device_tree;  ///< empty: the installation's
+  std::filesystem::path tools;        ///< folder of tool tables, or empty
+  std::filesystem::path setup_file;   ///< what is clamped; empty: nothing
+  std::filesystem::path materials;    ///< the work materials that are known; empty: the installation's
+};
+
+/// Where a set-up for one machine puts its part on another: as far from the middle of the table's top. Its part frame
+/// stays as it is where one of the tables is not known.
+[[nodiscard]] Frame part_frame_on(const gateway::MachineBodies& own, const gateway::MachineBodies& other,
+                                  const Frame& part_frame);
+
+/// Plans the program on a machine of the device tree as `rmac simulate` does. With a set-up, which stands on each table
+/// as on its own, what meets, what cannot be checked, and what the spindle has not enough for, do not fit.
+[[nodiscard]] Fit fit_of(const FitQuestion& question, const std::string& machine);
 
 }  // namespace rmac::cli

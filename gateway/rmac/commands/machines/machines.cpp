@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <string_view>
+#include <tuple>
 
+#include "gateway/collision/setup/setup.hpp"
 #include "gateway/rmac/commands/machines/driver_records.hpp"
 #include "gateway/rmac/commands/machines/registrations.hpp"
 #include "gateway/rmac/simulator/fits.hpp"
@@ -23,6 +26,8 @@ struct Search {
   std::string program;                ///< what they shall machine, a .rmac file; empty: nothing
   std::filesystem::path device_tree;  ///< in which they are simulated; empty: the installation's
   std::filesystem::path tools;        ///< folder of their tool tables then; empty: no tools but the program's own
+  std::filesystem::path setup;        ///< what is clamped on each then; empty: nothing
+  std::filesystem::path materials;    ///< the work materials that are known; empty: the installation's
 };
 
 Result<std::array<double, 3>> read_volume(const std::string& text) {
@@ -70,21 +75,45 @@ Result<std::string> sql_of(const Search& search) {
   return "SELECT * FROM DeviceDrivers" + conditions + " ORDER BY MechanismID";
 }
 
-/// Puts under each machine what it makes of the program.
+Result<> check_fits(const Search& search) {
+  if (search.program.empty() && !search.setup.empty())
+    return fail("--setup needs --fits: a program that is simulated in it");
+  if (search.setup.empty() && !search.materials.empty()) {
+    return fail("--materials needs --setup: without one nothing is cut");
+  }
+  return {};
+}
+
+/// Puts under each machine what it makes of the program, and those first that fit: the fastest, of these the most
+/// accurate, of these the one whose spindle has most left.
 Result<> add_fits(const Search& search, nlohmann::json& machines) {
-  const auto program = read_program(search.program);
+  auto program = read_program(search.program);
   if (!program) {
     return tl::unexpected(program.error());
   }
+  if (!search.setup.empty()) {
+    if (const auto setup = gateway::read_setup(search.setup); !setup) return fail(setup.error().message);
+  }
+  const FitQuestion question{.program = std::move(*program),
+                             .device_tree = search.device_tree,
+                             .tools = search.tools,
+                             .setup_file = search.setup,
+                             .materials = search.materials};
   for (auto& machine : machines) {
-    const Fit fit = fit_of(*program, machine.at("Name").get<std::string>(), search.device_tree, search.tools);
+    const Fit fit = fit_of(question, machine.at("Name").get<std::string>());
     machine["Fits"] = fit.fits;
     if (fit.fits) {
       machine["CycleTime_s"] = fit.cycle_time_s;
     } else {
       machine["WhyNot"] = fit.why_not;
     }
+    if (fit.spindle_used) machine["SpindleUsed"] = *fit.spindle_used;
   }
+  const auto rank = [](const nlohmann::json& machine) {
+    return std::tuple(!machine.at("Fits").get<bool>(), machine.value("CycleTime_s", 0.0),
+                      machine.value("PositioningTolerance", 0.0), machine.value("SpindleUsed", 0.0));
+  };
+  std::stable_sort(machines.begin(), machines.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
   return {};
 }
 
@@ -92,14 +121,18 @@ void print_fits(const nlohmann::json& machines) {
   std::vector<std::vector<std::string>> cells;
   for (const auto& machine : machines) {
     const bool fits = machine.at("Fits").get<bool>();
-    cells.push_back({machine.at("Name").get<std::string>(), text_of(machine.at("NumberOfJoints")),
-                     fits ? number(machine.at("CycleTime_s").get<double>()) : "",
-                     fits ? "" : machine.at("WhyNot").get<std::string>()});
+    cells.push_back(
+        {machine.at("Name").get<std::string>(), text_of(machine.at("NumberOfJoints")),
+         fits ? number(machine.at("CycleTime_s").get<double>()) : "",
+         fits ? text_of(machine.at("PositioningTolerance")) : "",
+         machine.contains("SpindleUsed") ? fmt::format("{:.0f}", 100 * machine["SpindleUsed"].get<double>()) : "",
+         fits ? "" : machine.at("WhyNot").get<std::string>()});
   }
-  fmt::print("{}", table({"name", "joints", "cycle time s", "why not"}, cells));
+  fmt::print("{}", table({"name", "joints", "cycle time s", "accuracy mm", "of the spindle %", "why not"}, cells));
 }
 
 Result<> list_machines(Connection& connection, const Search& search, bool json) {
+  if (auto fine = check_fits(search); !fine) return fine;
   const auto sql = sql_of(search);
   if (!sql) {
     return tl::unexpected(sql.error());
@@ -148,6 +181,11 @@ void add_machines(Command& rmac) {
       .excludes({"--type", "--configuration", "--joints", "--volume", "--spindle-hp"});
   machines.option("--fits", &search->program,
                   "simulate this .rmac file on each that is found: how long it takes, or why it cannot");
+  machines.option("--setup", &search->setup,
+                  "what is clamped, a setup.json; it stands on each table as on its own machine's: those that would "
+                  "collide, or whose spindle has not enough, do not fit");
+  machines.option("--materials", &search->materials,
+                  "the work materials that are known, instead of etc/materials.json");
   machines.option("--device-tree", &search->device_tree,
                   "where they are looked for to be simulated; the installation's unless given");
   machines.option("--tools", &search->tools, "folder of tool tables (tools/ of an appliance's state folder); only read")

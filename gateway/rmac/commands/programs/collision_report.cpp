@@ -60,16 +60,4 @@ void add_collisions(const CollisionWatch& watch, nlohmann::json& report) {
   report["findings_left_off"] = watch.findings().left_off() > 0;
 }
 
-Result<> verdict(const CollisionWatch& watch) {
-  std::vector<std::string> clauses;
-  const auto found = watch.findings().sorted();
-  const auto first = std::find_if(found.begin(), found.end(), [](const auto& f) { return f.collision && !f.possible; });
-  if (first != found.end()) {
-    clauses.push_back(fmt::format("{} collisions, the first in line {}: {} meets {}", counts(watch).certain,
-                                  first->line, first->second, first->first));
-  }
-  clauses.insert(clauses.end(), watch.not_checked().begin(), watch.not_checked().end());
-  return clauses.empty() ? Result<>() : fail(fmt::format("{}", fmt::join(clauses, "; ")));
-}
-
 }  // namespace rmac::cli

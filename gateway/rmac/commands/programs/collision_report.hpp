@@ -15,7 +15,5 @@ namespace rmac::cli {
 void print_collisions(const CollisionWatch& watch);
 /// `collisions`, `near_misses` and `collisions_not_checked`.
 void add_collisions(const CollisionWatch& watch, nlohmann::json& report);
-/// A failure where something met, or was not checked.
-[[nodiscard]] Result<> verdict(const CollisionWatch& watch);
 
 }  // namespace rmac::cli

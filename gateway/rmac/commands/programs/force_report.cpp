@@ -6,21 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "gateway/json/printable.hpp"
+#include "gateway/rmac/simulator/watch_verdict.hpp"
 #include "gateway/rmac/terminal/table.hpp"
 
 namespace rmac::cli {
 namespace {
 
 using Json = nlohmann::json;
-
-struct Quantity {
-  const char* name;
-  const char* unit;
-};
-
-Quantity quantity(gateway::Overload::Of of) {
-  return of == gateway::Overload::Of::Torque ? Quantity{"torque", "N·m"} : Quantity{"power", "W"};
-}
 
 Json share_json(const gateway::CuttingShare& share) {
   return {{"cutting_s", share.time_s},       {"mean_force_n", share.mean_n},    {"peak_force_n", share.peak_n},
@@ -37,7 +29,7 @@ bool asked_for(const CollisionWatch* watch) {
 Json to_json(const std::vector<gateway::Overload>& overloads) {
   Json list = Json::array();
   for (const gateway::Overload& each : overloads) {
-    list.push_back({{"what", quantity(each.of).name},
+    list.push_back({{"what", name_of(each.of)},
                     {"line", each.line},
                     {"move_id", each.move_id},
                     {"t_s", each.t_s},
@@ -99,27 +91,14 @@ void print_forces(const CollisionWatch& watch) {
   if (load != nullptr && !load->overloads().empty()) {
     std::vector<std::vector<std::string>> rows;
     for (const gateway::Overload& each : load->overloads()) {
-      rows.push_back({fmt::format("OVERLOAD: {}", quantity(each.of).name), std::to_string(each.line),
+      rows.push_back({fmt::format("OVERLOAD: {}", name_of(each.of)), std::to_string(each.line),
                       std::to_string(each.move_id), number(each.t_s), number(each.until_s), number(each.most),
-                      number(each.allowed), quantity(each.of).unit,
+                      number(each.allowed), unit_of(each.of),
                       fmt::format("{:.2f} {:.2f} {:.2f}", each.place[0], each.place[1], each.place[2])});
     }
     fmt::print("{}\n", table({"what", "line", "move", "from s", "to s", "takes", "spindle has", "", "at, mm"}, rows));
   }
   for (const std::string& what : watch.forces_not_told()) fmt::print("NOT TOLD: {}\n\n", gateway::printable(what));
-}
-
-Result<> force_verdict(const CollisionWatch& watch) {
-  std::vector<std::string> clauses;
-  if (const gateway::CuttingLoad* const load = watch.load(); load != nullptr && !load->overloads().empty()) {
-    const gateway::Overload& first = load->overloads().front();
-    clauses.push_back(
-        fmt::format("{} times cutting takes more than the spindle has, first in line {}: {:.3g} of {:.3g} {}",
-                    load->overloads().size(), first.line, first.most, first.allowed, quantity(first.of).unit));
-  }
-  const auto not_told = watch.forces_not_told();
-  clauses.insert(clauses.end(), not_told.begin(), not_told.end());
-  return clauses.empty() ? Result<>() : fail(fmt::format("{}", fmt::join(clauses, "; ")));
 }
 
 }  // namespace rmac::cli

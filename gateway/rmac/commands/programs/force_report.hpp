@@ -17,7 +17,5 @@ namespace rmac::cli {
 void add_force_rows(const CollisionWatch* watch, std::vector<std::vector<std::string>>& rows);
 /// Where the spindle has not what cutting takes, and what is not told.
 void print_forces(const CollisionWatch& watch);
-/// A failure where cutting takes more than the spindle has, or something that was asked for is not told.
-[[nodiscard]] Result<> force_verdict(const CollisionWatch& watch);
 
 }  // namespace rmac::cli

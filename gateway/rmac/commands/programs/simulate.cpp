@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "gateway/api/decode.hpp"
 #include "gateway/configuration/configuration.hpp"
 #include "gateway/device_driver_manager/device_tree.hpp"
 #include "gateway/rmac/commands/programs/collision_report.hpp"
@@ -19,6 +18,7 @@
 #include "gateway/rmac/commands/programs/view_report.hpp"
 #include "gateway/rmac/simulator/shaped_machine.hpp"
 #include "gateway/rmac/simulator/simulator.hpp"
+#include "gateway/rmac/simulator/watch_verdict.hpp"
 #include "gateway/rmac/terminal/table.hpp"
 #include "gateway/threads/cpu_progress.hpp"
 #include "gateway/threads/cpu_time.hpp"
@@ -208,16 +208,17 @@ Result<> check_written(const SimulateOptions& options, const std::filesystem::pa
 Result<std::unique_ptr<CollisionWatch>> open_watch(const SimulateOptions& options, const std::filesystem::path& tree,
                                                    gateway::Simulation& simulation) {
   if (options.setup.empty()) return nullptr;
-  auto watch = CollisionWatch::open(options.machine, tree, options.setup, options.resolution, materials_of(options));
+  auto setup = gateway::read_setup(options.setup);
+  if (!setup) return fail(setup.error().message);
+  auto watch = CollisionWatch::open(
+      options.machine, tree, std::move(*setup),
+      {.setup_file = options.setup, .resolution_mm = options.resolution, .materials = materials_of(options)});
   if (!watch) return watch;
   if (!options.materials.empty() && (*watch)->setup().material.empty()) {
     return fail(
         fmt::format("{}: names no Material, so that nothing is looked up in --materials", options.setup.string()));
   }
-  // As somebody would who clamped the part there; a program may set another one.
-  const auto stands =
-      simulation.call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json((*watch)->setup().part_frame)}});
-  if (!stands) return fail(fmt::format("{}: /PartFrame: {}", options.setup.string(), stands.error().message));
+  if (auto placed = (*watch)->place_part(simulation); !placed) return tl::unexpected(placed.error());
   return watch;
 }
 
@@ -282,9 +283,7 @@ Result<> simulate_program(const SimulateOptions& options, bool json) {
     print_simulation_table(*report, beside, took_s);
   }
   if (watched == nullptr) return {};
-  const auto met = verdict(*watched), takes = force_verdict(*watched);
-  if (!met && !takes) return fail(met.error().message + "; " + takes.error().message);
-  return met ? takes : met;
+  return verdict(*watched);
 }
 
 }  // namespace
