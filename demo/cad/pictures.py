@@ -1,0 +1,108 @@
+"""Pictures of the measured part, and the report that holds them, the figures and the steps."""
+
+import html
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+from matplotlib.colors import TwoSlopeNorm  # noqa: E402
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # noqa: E402
+
+import report  # noqa: E402
+import verdict  # noqa: E402
+
+FACETS_MM = 0.1  # how far a triangle may be off the part
+PART, BLUE_RED = "#cfd3d8", "RdBu_r"
+
+
+def draw(user, out):
+    """deviations.png and paths.png."""
+    embed = []
+    for figure, text, name in ((measured_figure(user), "Deviations where the part was measured, in colours on the part", "deviations.png"),
+                               (paths_figure(user), "Tool paths, as they were machined", "paths.png")):  # fmt: skip
+        embed.append(report.embedded(figure, text, out, name))
+    return embed
+
+
+def measured_figure(user):
+    figure = plt.figure(figsize=(12.5, 7.6))
+    grid = figure.add_gridspec(2, 2, height_ratios=[1.6, 1], width_ratios=[1, 1])
+    for column, (found, title) in enumerate(((user.before, "As the part was taken to lie"), (user.after, "Where it was found to lie"))):
+        axis = figure.add_subplot(grid[0, column], projection="3d")
+        _part(axis, user.nominal)
+        full = max(1000 * abs(found.worst), 1)
+        points = np.array([one.place.point for one in found.touched])
+        shown = axis.scatter(*points.T, c=1000 * found.off, cmap=BLUE_RED, norm=TwoSlopeNorm(0, -full, full), s=34, depthshade=False, edgecolors="#333333", linewidths=0.4)
+        axis.set_title(f"{title}: rms {1000 * found.rms:.1f} µm, worst {1000 * found.worst:+.1f} µm", fontsize=10)
+        figure.colorbar(shown, ax=axis, shrink=0.7, label="off the model, µm (red: material left)")
+    axis = figure.add_subplot(grid[1, :])
+    names = list(dict.fromkeys(one.place.face for one in user.touched))
+    for found, colour, label, shift in ((user.before, "#c03028", "as taken to lie", -0.24), (user.after, "#2a6f97", "where it lies", 0.0), (user.corrected, "#3a9050", "and the model corrected", 0.24)):
+        places = [names.index(one.place.face) + shift for one in found.touched]
+        axis.plot(places, 1000 * found.off, "o", color=colour, markersize=4, label=label)
+    axis.set_xticks(range(len(names)), [_told(user, name) for name in names], rotation=40, ha="right", fontsize=8)
+    axis.set(ylabel="off the model, µm")
+    axis.axhline(0, color="#666666", linewidth=0.8)
+    axis.legend(frameon=False, ncols=3)
+    return figure
+
+
+def paths_figure(user):
+    figure, axes = plt.subplots(1, 2, figsize=(12.5, 4.4), width_ratios=[1.3, 1])
+    for (name, record), colour in zip(user.records.items(), ("#2a6f97", "#c07020", "#777777", "#3a9050")):
+        tips = record.a[:, :3] - verdict.frame_and_length()
+        near = tips[:, 2] < 0.5
+        axes[0].plot(*np.where(near[:, None], tips, np.nan)[::5, :2].T, color=colour, linewidth=0.7, label=name)
+        axes[1].plot(record.t - record.t[0], record.feed * 60, color=colour, linewidth=0.5)
+    axes[0].set(aspect="equal", xlabel="x in the part, mm", ylabel="y in the part, mm", title="Tips below Z 0.5, measured")
+    axes[0].legend(frameon=False, ncols=4, loc="upper center", bbox_to_anchor=(0.5, -0.14))
+    axes[1].set(xlabel="machine time of each program, s", ylabel="feed, mm/min")
+    return figure
+
+
+def _part(axis, shape):
+    vertices, facets = shape.tessellate(FACETS_MM)
+    points = np.array([tuple(vertex) for vertex in vertices])
+    triangles = points[np.array(facets)]
+    normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    shade = 0.55 + 0.45 * np.clip(normal @ (-0.35, -0.45, 0.82) / np.maximum(np.linalg.norm(normal, axis=1), 1e-12), 0, 1)
+    base = np.array(matplotlib.colors.to_rgb(PART))
+    axis.add_collection3d(Poly3DCollection(triangles, facecolors=np.clip(shade[:, None] * base, 0, 1), linewidths=0, alpha=0.55))
+    low, high = points.min(0), points.max(0)
+    axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+    axis.set_box_aspect(high - low, zoom=1.35)
+    axis.view_init(48, -60)
+    axis.set_axis_off()
+
+
+def _told(user, name):
+    found = user.found
+    kinds = ((found.free_form, "free-form"), (found.tops, "top"), (found.sides, "side"), ([one.floor for one in found.recesses], "floor"),
+             ([wall for one in found.recesses for wall in one.walls], "wall"), ([wall for hole in found.holes for wall in hole.faces], "hole"))  # fmt: skip
+    return f"{next((kind for names, kind in kinds if name in names), '')} {name}"
+
+
+def report_html(user, rows, pictures, ok):
+    cells = "".join(f'<tr><td>{html.escape(what)}</td><td class="{"" if fine else "bad"}">{html.escape(value)}</td><td>{html.escape(bound)}</td></tr>' for what, value, bound, fine in rows)
+    direct = dict(zip(verdict.DIRECT, [user.steps.seconds(name) for name in verdict.DIRECT]))
+    runs = user.first_motion - user.began - sum(direct.values())
+    ours = [("creates part (its STEP file is opened)", direct["open the STEP file"]), ("searches and selects a machine", direct["search and select a machine"] + direct[verdict.DIRECT[3]]),
+            ("generates tool paths", direct["make the tool paths"]), ("runs program (dry run, and tools by hand, to the first motion)", runs)]  # fmt: skip
+    rows_of_steps = "".join(f"<tr><td>{html.escape(name)}</td><td>{seconds:.1f} s</td></tr>" for name, seconds in ours)
+    theirs = "".join(f"<tr><td>{html.escape(name)}</td><td>{f'{minutes} min' if minutes else 'as long as the direct way'}</td><td>{html.escape(file)}</td></tr>" for name, minutes, file in verdict.CONVENTIONAL)
+    every = "".join(f"<tr><td>{html.escape(name)}</td><td>{seconds:.1f} s</td></tr>" for name, seconds in user.steps.done)
+    verdict_text = "every figure within its bound" if ok else "NOT within its bounds"
+    files = sum(bool(file) for _, _, file in verdict.CONVENTIONAL)
+    return (
+        f'<!doctype html><html lang="en"><meta charset="utf-8"><title>From the model to the measured part</title><style>{report.STYLE}</style>'
+        f"<h1>From the model to the measured part: {verdict_text}</h1>" + "".join(pictures) +
+        f"<table><tr><th>figure</th><th>value</th><th>bound</th></tr>{cells}</table>"
+        f"<h2>Steps from the model to the first motion</h2><p>The direct way has {len(ours)} steps and no file between. Seconds were measured while this report was made, and are the computer's: nobody's thinking is in them.</p>"
+        f"<table><tr><th>direct</th><th>measured</th></tr>{rows_of_steps}</table>"
+        f"<p>The conventional way, as Table 6-1 of the dissertation has it: {len(verdict.CONVENTIONAL)} steps, {sum(minutes for _, minutes, _ in verdict.CONVENTIONAL)} minutes more; {files} times something is handed on. "
+        f"Its minutes are the dissertation's and were not measured here.</p><table><tr><th>conventional</th><th>longer by</th><th>handed on</th></tr>{theirs}</table>"
+        f"<h2>What the session did</h2><table>{every}</table>"
+        "<h2>Left out by the sweep</h2><ul>" + "".join(f"<li>{html.escape(text)}</li>" for text in user.left_out) + "</ul></html>\n"
+    )
