@@ -13,8 +13,9 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # noqa: E402
 import report  # noqa: E402
 import verdict  # noqa: E402
 
-FACETS_MM = 0.1  # how far a triangle may be off the part
+FACETS_MM = 0.01  # how far a triangle may be off the part
 PART, BLUE_RED = "#cfd3d8", "RdBu_r"
+COLOURS = "#2a6f97", "#c07020", "#777777", "#3a9050"  # of programs
 
 
 def draw(user, out):
@@ -30,11 +31,11 @@ def measured_figure(user):
     figure = plt.figure(figsize=(12.5, 7.6))
     grid = figure.add_gridspec(2, 2, height_ratios=[1.6, 1], width_ratios=[1, 1])
     for column, (found, title) in enumerate(((user.before, "As the part was taken to lie"), (user.after, "Where it was found to lie"))):
-        axis = figure.add_subplot(grid[0, column], projection="3d")
+        axis = figure.add_subplot(grid[0, column], projection="3d", computed_zorder=False)
         _part(axis, user.nominal)
         full = max(1000 * abs(found.worst), 1)
         points = np.array([one.place.point for one in found.touched])
-        shown = axis.scatter(*points.T, c=1000 * found.off, cmap=BLUE_RED, norm=TwoSlopeNorm(0, -full, full), s=34, depthshade=False, edgecolors="#333333", linewidths=0.4)
+        shown = axis.scatter(*points.T, c=1000 * found.off, cmap=BLUE_RED, norm=TwoSlopeNorm(0, -full, full), s=36, depthshade=False, edgecolors="#333333", linewidths=0.5, zorder=5)
         axis.set_title(f"{title}: rms {1000 * found.rms:.1f} µm, worst {1000 * found.worst:+.1f} µm", fontsize=10)
         figure.colorbar(shown, ax=axis, shrink=0.7, label="off the model, µm (red: material left)")
     axis = figure.add_subplot(grid[1, :])
@@ -50,15 +51,22 @@ def measured_figure(user):
 
 
 def paths_figure(user):
-    figure, axes = plt.subplots(1, 2, figsize=(12.5, 4.4), width_ratios=[1.3, 1])
-    for (name, record), colour in zip(user.records.items(), ("#2a6f97", "#c07020", "#777777", "#3a9050")):
+    figure = plt.figure(figsize=(12.5, 4.8))
+    grid = figure.add_gridspec(len(user.records), 2, width_ratios=[1.2, 1])
+    plan = figure.add_subplot(grid[:, 0])
+    for number, ((name, record), colour) in enumerate(zip(user.records.items(), COLOURS)):
         tips = record.a[:, :3] - verdict.frame_and_length()
-        near = tips[:, 2] < 0.5
-        axes[0].plot(*np.where(near[:, None], tips, np.nan)[::5, :2].T, color=colour, linewidth=0.7, label=name)
-        axes[1].plot(record.t - record.t[0], record.feed * 60, color=colour, linewidth=0.5)
-    axes[0].set(aspect="equal", xlabel="x in the part, mm", ylabel="y in the part, mm", title="Tips below Z 0.5, measured")
-    axes[0].legend(frameon=False, ncols=4, loc="upper center", bbox_to_anchor=(0.5, -0.14))
-    axes[1].set(xlabel="machine time of each program, s", ylabel="feed, mm/min")
+        plan.plot(*np.where((tips[:, 2] < 0.5)[:, None], tips, np.nan)[::5, :2].T, color=colour, linewidth=0.8, label=name)
+        if name == "holes":
+            down = tips[tips[:, 2] < 0, :2]
+            plan.plot(*down[::50].T, "o", color=colour, markersize=5)
+        axis = figure.add_subplot(grid[number, 1])
+        report.fill(axis, record.t - record.t[0], record.feed * 60, colour)
+        axis.set(ylabel=f"{name}\nmm/min")
+        if not number:
+            axis.set_title("Feed of the setpoint over the machine time of each program, s", fontsize=9)
+    plan.set(aspect="equal", xlabel="x in the part, mm", ylabel="y in the part, mm", title="Tips below Z 0.5, as measured by the drives")
+    plan.legend(frameon=False, ncols=4, loc="upper center", bbox_to_anchor=(0.5, -0.14))
     return figure
 
 
@@ -69,10 +77,10 @@ def _part(axis, shape):
     normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     shade = 0.55 + 0.45 * np.clip(normal @ (-0.35, -0.45, 0.82) / np.maximum(np.linalg.norm(normal, axis=1), 1e-12), 0, 1)
     base = np.array(matplotlib.colors.to_rgb(PART))
-    axis.add_collection3d(Poly3DCollection(triangles, facecolors=np.clip(shade[:, None] * base, 0, 1), linewidths=0, alpha=0.55))
+    axis.add_collection3d(Poly3DCollection(triangles, facecolors=np.clip(shade[:, None] * base, 0, 1), linewidths=0, zorder=1))
     low, high = points.min(0), points.max(0)
     axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axis.set_box_aspect(high - low, zoom=1.35)
+    axis.set_box_aspect(high - low, zoom=1.12)
     axis.view_init(48, -60)
     axis.set_axis_off()
 

@@ -30,6 +30,7 @@ BALL, FLAT, DRILL = 1, 2, 3  # tool numbers
 LENGTH_MM = 30.0  # of all tools, from the spindle to the tip, as the tool table has it
 BALL_RADIUS, FLAT_RADIUS = 4.0, 2.0
 SAFE_MM = 6.0  # above the part's top, which is Z 0
+RISE_MM = 15.0
 RPM = 900
 FEED, PLUNGE = 1200.0, 200.0  # mm/min
 TIP_RADIUS, CLEARANCE = 1.0, 1.5
@@ -172,6 +173,8 @@ class Session:
                 for tool in self._tools():
                     self.client.cam.SetTool(**tool)
                 self.client.cam.SetPartFrame({"p": list(MILL_ZERO), "q": [1, 0, 0, 0]})
+                self.client.cam.JogJoint(2, Distance=RISE_MM)  # a program goes straight to where it begins, so the tool stands above the part
+                self.client.until_done()
             self.now = look(self.client)
             check_part_zero(self.now, False)
         self.say("  fits, quickest first: " + ", ".join(f"{name} {seconds:.0f} s" for name, seconds in self.fits))

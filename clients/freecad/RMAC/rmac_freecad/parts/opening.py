@@ -55,11 +55,11 @@ def _only(document, path, name):
 
 
 def _solids(document):
-    """Label, object and shape of each. Parts that hold others are not looked at, what they hold is, where it stands."""
+    """Label, object and shape of each, where it stands."""
     found = []
     for feature in document.Objects:
-        if not feature.isDerivedFrom("Part::Feature"):
-            continue
+        if not feature.isDerivedFrom("Part::Feature") or any(one.isDerivedFrom("Part::Feature") for one in feature.OutList):
+            continue  # a compound of others, which are looked at themselves
         solids = feature.Shape.Solids
         placed = feature.getGlobalPlacement() * feature.Placement.inverse()
         for number, solid in enumerate(solids, 1):

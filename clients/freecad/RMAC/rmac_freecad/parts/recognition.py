@@ -25,7 +25,7 @@ class Hole:
 
 @dataclass(frozen=True)
 class Recess:
-    """A level floor with walls all around."""
+    """A level floor with walls all around. That of a round hole is none: it is drilled with its hole."""
 
     floor: str
     z: float
@@ -66,10 +66,13 @@ class _Looking:
     def found(self):
         box = self._shape.BoundBox
         outline, sides = self._outline(box.ZMin)
+        holes = self._holes()
+        round_ones = [set(hole.faces) for hole in holes]
+        recesses = [recess for name in self._faces if (recess := self._recess(name)) is not None]
         return Found(
             tuple(name for name, face in self._faces.items() if _is_free_form(face)),
-            tuple(recess for name in self._faces if (recess := self._recess(name)) is not None),
-            self._holes(),
+            tuple(recess for recess in recesses if set(recess.walls) not in round_ones),
+            holes,
             tuple(name for name, face in self._faces.items() if _level(face) == 1 and abs(face.CenterOfMass.z - box.ZMax) < SAME_MM),
             outline, sides,
         )  # fmt: skip
