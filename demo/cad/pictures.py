@@ -8,13 +8,14 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.colors import TwoSlopeNorm  # noqa: E402
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # noqa: E402
 
 import report  # noqa: E402
 import verdict  # noqa: E402
 
 FACETS_MM = 0.01  # how far a triangle may be off the part
-PART, BLUE_RED = "#cfd3d8", "RdBu_r"
+CELL_MM = 0.1
+LIGHT = np.array([-0.55, -0.35, 0.76])
+BLUE_RED = "RdBu_r"
 COLOURS = "#2a6f97", "#c07020", "#777777", "#3a9050"  # of programs
 
 
@@ -28,16 +29,20 @@ def draw(user, out):
 
 
 def measured_figure(user):
-    figure = plt.figure(figsize=(12.5, 7.6))
-    grid = figure.add_gridspec(2, 2, height_ratios=[1.6, 1], width_ratios=[1, 1])
+    figure = plt.figure(figsize=(12.5, 8))
+    grid = figure.add_gridspec(2, 2, height_ratios=[1.5, 1])
+    seen = shaded(user.nominal)
     for column, (found, title) in enumerate(((user.before, "As the part was taken to lie"), (user.after, "Where it was found to lie"))):
-        axis = figure.add_subplot(grid[0, column], projection="3d", computed_zorder=False)
-        _part(axis, user.nominal)
+        axis = figure.add_subplot(grid[0, column])
+        axis.imshow(seen[0], extent=seen[1], origin="lower", cmap="gray", vmin=0, vmax=1.1)
         full = max(1000 * abs(found.worst), 1)
         points = np.array([one.place.point for one in found.touched])
-        shown = axis.scatter(*points.T, c=1000 * found.off, cmap=BLUE_RED, norm=TwoSlopeNorm(0, -full, full), s=36, depthshade=False, edgecolors="#333333", linewidths=0.5, zorder=5)
+        shown = axis.scatter(*points[:, :2].T, c=1000 * found.off, cmap=BLUE_RED, norm=TwoSlopeNorm(0, -full, full), s=42, edgecolors="#222222", linewidths=0.6, zorder=3)
+        axis.set(xlabel="x, mm", ylabel="y, mm")
+        axis.margins(0.05)
+        axis.grid(False)
         axis.set_title(f"{title}: rms {1000 * found.rms:.1f} µm, worst {1000 * found.worst:+.1f} µm", fontsize=10)
-        figure.colorbar(shown, ax=axis, shrink=0.7, label="off the model, µm (red: material left)")
+        figure.colorbar(shown, ax=axis, shrink=0.75, label="off the model, µm (red: material left)")
     axis = figure.add_subplot(grid[1, :])
     names = list(dict.fromkeys(one.place.face for one in user.touched))
     for found, colour, label, shift in ((user.before, "#c03028", "as taken to lie", -0.24), (user.after, "#2a6f97", "where it lies", 0.0), (user.corrected, "#3a9050", "and the model corrected", 0.24)):
@@ -70,19 +75,28 @@ def paths_figure(user):
     return figure
 
 
-def _part(axis, shape):
+def shaded(shape):
+    """The part from above, as brightness, and its extent: of each triangle that looks up, where it is the highest."""
     vertices, facets = shape.tessellate(FACETS_MM)
-    points = np.array([tuple(vertex) for vertex in vertices])
-    triangles = points[np.array(facets)]
-    normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    shade = 0.55 + 0.45 * np.clip(normal @ (-0.35, -0.45, 0.82) / np.maximum(np.linalg.norm(normal, axis=1), 1e-12), 0, 1)
-    base = np.array(matplotlib.colors.to_rgb(PART))
-    axis.add_collection3d(Poly3DCollection(triangles, facecolors=np.clip(shade[:, None] * base, 0, 1), linewidths=0, zorder=1))
-    low, high = points.min(0), points.max(0)
-    axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axis.set_box_aspect(high - low, zoom=1.12)
-    axis.view_init(48, -60)
-    axis.set_axis_off()
+    triangles = np.array([tuple(vertex) for vertex in vertices])[np.array(facets)]
+    low, high = triangles.min((0, 1)), triangles.max((0, 1))
+    x, y = (np.arange(a + CELL_MM / 2, b, CELL_MM) for a, b in zip(low[:2], high[:2]))
+    heights, bright = np.full((len(y), len(x)), -np.inf), np.ones((len(y), len(x)))
+    for corners in triangles:
+        a, b, c = corners
+        normal = np.cross(b - a, c - a)
+        if normal[2] <= 1e-9:
+            continue
+        columns, rows = (slice(*np.searchsorted(line, [corners[:, k].min(), corners[:, k].max() + 1e-9])) for k, line in enumerate((x, y)))
+        across, up = np.meshgrid(x[columns], y[rows])
+        inside = np.ones(across.shape, bool)
+        for p, q in ((a, b), (b, c), (c, a)):
+            inside &= (q[0] - p[0]) * (up - p[1]) - (q[1] - p[1]) * (across - p[0]) >= -1e-9
+        z = a[2] - (normal[0] * (across - a[0]) + normal[1] * (up - a[1])) / normal[2]
+        inside &= z > heights[rows, columns]
+        heights[rows, columns][inside] = z[inside]
+        bright[rows, columns][inside] = 0.35 + 0.6 * max(float(normal @ LIGHT) / float(np.linalg.norm(normal)), 0) + 0.04 * z[inside]
+    return np.where(np.isfinite(heights), bright, 1.1), (low[0], high[0], low[1], high[1])
 
 
 def _told(user, name):
