@@ -19,20 +19,20 @@ BLUE_RED = "RdBu_r"
 COLOURS = "#2a6f97", "#c07020", "#777777", "#3a9050"  # of programs
 
 
-def draw(user, out):
+def draw(user, inspected, out):
     """deviations.png and paths.png."""
     embed = []
-    for figure, text, name in ((measured_figure(user), "Deviations where the part was measured, in colours on the part", "deviations.png"),
+    for figure, text, name in ((measured_figure(inspected), "Deviations where the part was measured, in colours on the part", "deviations.png"),
                                (paths_figure(user), "Tool paths, as they were machined", "paths.png")):  # fmt: skip
         embed.append(report.embedded(figure, text, out, name))
     return embed
 
 
-def measured_figure(user):
+def measured_figure(inspected):
     figure = plt.figure(figsize=(12.5, 8))
     grid = figure.add_gridspec(2, 2, height_ratios=[1.5, 1])
-    seen = shaded(user.nominal)
-    for column, (found, title) in enumerate(((user.before, "As the part was taken to lie"), (user.after, "Where it was found to lie"))):
+    seen = shaded(inspected.nominal)
+    for column, (found, title) in enumerate(((inspected.before, "As the part was taken to lie"), (inspected.after, "Where it was found to lie"))):
         axis = figure.add_subplot(grid[0, column])
         axis.imshow(seen[0], extent=seen[1], origin="lower", cmap="gray", vmin=0, vmax=1.1)
         full = max(1000 * abs(found.worst), 1)
@@ -44,11 +44,11 @@ def measured_figure(user):
         axis.set_title(f"{title}: rms {1000 * found.rms:.1f} µm, worst {1000 * found.worst:+.1f} µm", fontsize=10)
         figure.colorbar(shown, ax=axis, shrink=0.75, label="off the model, µm (red: material left)")
     axis = figure.add_subplot(grid[1, :])
-    names = list(dict.fromkeys(one.place.face for one in user.touched))
-    for found, colour, label, shift in ((user.before, "#c03028", "as taken to lie", -0.24), (user.after, "#2a6f97", "where it lies", 0.0), (user.corrected, "#3a9050", "and the model corrected", 0.24)):
+    names = list(dict.fromkeys(one.place.face for one in inspected.touched))
+    for found, colour, label, shift in ((inspected.before, "#c03028", "as taken to lie", -0.24), (inspected.after, "#2a6f97", "where it lies", 0.0), (inspected.corrected, "#3a9050", "and the model corrected", 0.24)):
         places = [names.index(one.place.face) + shift for one in found.touched]
         axis.plot(places, 1000 * found.off, "o", color=colour, markersize=4, label=label)
-    axis.set_xticks(range(len(names)), [_told(user, name) for name in names], rotation=40, ha="right", fontsize=8)
+    axis.set_xticks(range(len(names)), [_told(inspected.found, name) for name in names], rotation=40, ha="right", fontsize=8)
     axis.set(ylabel="off the model, µm")
     axis.axhline(0, color="#666666", linewidth=0.8)
     axis.legend(frameon=False, ncols=3)
@@ -99,8 +99,7 @@ def shaded(shape):
     return np.where(np.isfinite(heights), bright, 1.1), (low[0], high[0], low[1], high[1])
 
 
-def _told(user, name):
-    found = user.found
+def _told(found, name):
     kinds = ((found.free_form, "free-form"), (found.tops, "top"), (found.sides, "side"), ([one.floor for one in found.recesses], "floor"),
              ([wall for one in found.recesses for wall in one.walls], "wall"), ([wall for hole in found.holes for wall in hole.faces], "hole"))  # fmt: skip
     return f"{next((kind for names, kind in kinds if name in names), '')} {name}"

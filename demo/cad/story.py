@@ -5,7 +5,8 @@ import json
 
 import numpy as np
 
-import part
+import designer
+import inspection
 import pictures
 import session as sessions
 import verdict
@@ -36,8 +37,8 @@ class Truth:
 
 def tell(address, rmac_program, tree, out, scallop_mm, say):
     step_file = out / "part.step"
-    designed = part.draw()
-    part.write_step(designed, step_file)
+    designed = designer.draw()
+    designer.write_step(designed, step_file)
     user = sessions.Session(address, rmac_program, say, scallop_mm)
     user.open(step_file)
     user.select()
@@ -46,18 +47,19 @@ def tell(address, rmac_program, tree, out, scallop_mm, say):
     user.dry_run()
     user.machine_part()
     say("The simulated world takes the part to the measuring machine")
-    places = user.places()
+    inspected = inspection.Inspection(user)
+    places = inspected.places()
     truth = carry(user, tree, places)
-    user.measure_part(places)
-    user.correct()
-    user.measure_again(places)
-    user.correct_parameters(designed, PARAMETERS)
+    inspected.measure_part(places)
+    inspected.correct()
+    inspected.measure_again(places)
+    inspected.correct_parameters(designed, PARAMETERS)
     user.close()
     sessions.save(user.part.Document, out / "part.FCStd")
-    rows, line = verdict.judge(user, truth, json.loads((verdict.HERE / "bounds.json").read_text()))
+    rows, line = verdict.judge(user, inspected, truth, json.loads((verdict.HERE / "bounds.json").read_text()))
     (out / "figures.json").write_text(json.dumps({"line": line, "rows": [list(row) for row in rows]}, indent=1) + "\n")
     verdict.print_table(rows, say)
-    (out / "report.html").write_text(pictures.report_html(user, rows, pictures.draw(user, out), line["ok"]), encoding="utf-8")
+    (out / "report.html").write_text(pictures.report_html(user, rows, pictures.draw(user, inspected, out), line["ok"]), encoding="utf-8")
     return line
 
 
@@ -81,8 +83,8 @@ def carry(user, tree, places):
     bores = as_drilled(user.found.holes, cuts["holes"])
     for number in np.flatnonzero(~others):
         off[number] = off_bore(points[number], normals[number], min(bores, key=lambda bore: np.hypot(bore[0] - points[number][0], bore[1] - points[number][1])))
-    at = [sum(pair) for pair in zip(sessions.CMM_ZERO, PLACE_OFF)]
-    world.clamp(tree, (*at, PLACE_OFF[3]), points[others], normals[others], off[others], bores, BODY, sessions.TIP_RADIUS)
+    at = [sum(pair) for pair in zip(inspection.ZERO, PLACE_OFF)]
+    world.clamp(tree, (*at, PLACE_OFF[3]), points[others], normals[others], off[others], bores, BODY, inspection.TIP_RADIUS)
     floor = np.array([place.face == user.found.recesses[0].floor for place in places])
     return Truth(places, off, on_face(user), user.found.recesses[0].top - user.found.recesses[0].z - float(off[floor].mean()), 2 * cuts["holes"].radius_mm)
 
@@ -117,7 +119,7 @@ def on_face(user, count=1500, seed=5):
     while len(points) < count:
         u, v = chance.uniform(a, b), chance.uniform(c, d)
         place = face.valueAt(u, v)
-        if face.isPartOfDomain(u, v) and place.x < part.STEP_X - sessions.BALL_RADIUS - 0.5:
+        if face.isPartOfDomain(u, v) and place.x < designer.STEP_X - sessions.BALL_RADIUS - 0.5:
             points.append(tuple(place))
             normals.append(tuple(face.normalAt(u, v)))
     return world.as_cut(np.array(points), np.array(normals), [cuts_of(user, "q")["sweep"]])

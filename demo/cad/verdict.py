@@ -38,7 +38,7 @@ def measuring_errors(off, truth_off):
     return np.asarray(off) - np.asarray(truth_off)
 
 
-def judge(user, truth, bounds):
+def judge(user, inspected, truth, bounds):
     """Rows (what, value, bound, fine), and the figures with whether all are fine."""
     rows, line = [], {}
 
@@ -55,27 +55,27 @@ def judge(user, truth, bounds):
     row("cycle_time_s", "Cycle time, by the dry run", sum(one.cycle_time_s for one in user.dry.values()), "s")
     row("gouge_um", "Free-form face, paths: cut into by", 1000 * max(0.0, -float(truth.on_face.min())), "µm", form=".3f")
     row("scallop_share", "Free-form face, paths: highest scallop of what was asked", float(truth.on_face.max()) / user.scallop_mm, form=".3f")
-    free, datums = (truth.off[_chosen(truth, names)] for names in (found.free_form, {one.place.face for one in user.datums}))
+    free, datums = (truth.off[_chosen(truth, names)] for names in (found.free_form, {one.place.face for one in inspected.datums}))
     row("datums_off_um", "Part as cut off the model: flat datums, worst", 1000 * float(np.abs(datums).max()), "µm")
     row("face_deep_um", "  free-form face, deepest place that was measured", 1000 * max(0.0, -float(free.min())), "µm")
     row("face_high_um", "  free-form face, highest place, above the scallop asked", 1000 * max(0.0, float(free.max()) - user.scallop_mm), "µm")
-    row("places", "Places measured", len(user.touched))
-    row("before_rms_um", "Off the model as the part was taken to lie, rms", 1000 * user.before.rms, "µm")
-    row("before_worst_um", "  worst", 1000 * abs(user.before.worst), "µm")
-    row("after_rms_um", "Off the model where it was found to lie, rms", 1000 * user.after.rms, "µm")
-    row("after_worst_um", "  worst (scallops, and the pocket is deeper)", 1000 * abs(user.after.worst), "µm")
-    corners = corner_error(user.fit, truth.place_off)
+    row("places", "Places measured", len(inspected.touched))
+    row("before_rms_um", "Off the model as the part was taken to lie, rms", 1000 * inspected.before.rms, "µm")
+    row("before_worst_um", "  worst", 1000 * abs(inspected.before.worst), "µm")
+    row("after_rms_um", "Off the model where it was found to lie, rms", 1000 * inspected.after.rms, "µm")
+    row("after_worst_um", "  worst (scallops, and the pocket is deeper)", 1000 * abs(inspected.after.worst), "µm")
+    corners = corner_error(inspected.fit, truth.place_off)
     row("placement_error_um", "Corners of the part off where the fit lays them, worst", 1000 * float(corners.max()), "µm")
-    stated = 2 * max(user.fit.uncertainty_at(corner) for corner in CORNERS)
+    stated = 2 * max(inspected.fit.uncertainty_at(corner) for corner in CORNERS)
     row("placement_stated_um", "  stated uncertainty there, two standard deviations", 1000 * stated, "µm", fine=float(corners.max()) <= stated)
-    turn = abs(np.degrees(user.fit.turn[2]) - truth.place_off[3])
+    turn = abs(np.degrees(inspected.fit.turn[2]) - truth.place_off[3])
     row("turn_error_deg", "Turn about Z off", float(turn), "°", form=".4f")
-    row("undo", "Model's placement corrected, undone in one step, and redone", "yes" if user.moved and user.undone else "no", fine=user.moved and user.undone)
-    errors = 1000 * measuring_errors(user.again.off, truth.off)
+    row("undo", "Model's placement corrected, undone in one step, and redone", "yes" if inspected.moved and inspected.undone else "no", fine=inspected.moved and inspected.undone)
+    errors = 1000 * measuring_errors(inspected.again.off, truth.off)
     row("measuring_error_um", "Measured again in the corrected frame: off what was cut, worst place", float(np.abs(errors).max()), "µm")
-    for name, old, new, sure, true in zip(user.parameters.names, user.parameters.nominal, user.parameters.values, user.parameters.uncertainty, (truth.pocket_depth, truth.hole_diameter)):
+    for name, old, new, sure, true in zip(inspected.parameters.names, inspected.parameters.nominal, inspected.parameters.values, inspected.parameters.uncertainty, (truth.pocket_depth, truth.hole_diameter)):
         row(f"{name}_error_um", f"{name}: {old:g} mm corrected to {new:.4f} ± {2 * sure:.4f} mm, off what was cut", 1000 * abs(new - true), "µm", bounds["parameter_error_um"])
-    row("corrected_rms_um", "Off the corrected master model, rms; but for the free-form face", 1000 * user.corrected.of([*user.sized(), *(one.place.face for one in user.datums)]).rms, "µm")
+    row("corrected_rms_um", "Off the corrected master model, rms; but for the free-form face", 1000 * inspected.corrected.of([*inspected.sized(), *(one.place.face for one in inspected.datums)]).rms, "µm")
     planning, rest = user.steps.seconds("make the tool paths"), sum(user.steps.seconds(name) for name in DIRECT if name != "make the tool paths")
     row("planning_s", "Direct way: paths planned in", planning, "s")
     row("rest_s", "  file, search, comparing, loading, set-up, in", rest, "s")

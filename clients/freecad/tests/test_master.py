@@ -204,6 +204,18 @@ class DocumentTest(unittest.TestCase):
         self.assertEqual(sheet.Depth.Value, 5)
         self.assertAlmostEqual(part.Shape.Volume, volume, 6)
 
+    def test_a_length_in_inches_is_corrected_as_any_other(self):
+        sheet, part = self.plate()
+        sheet.set("A1", "0.2 in")
+        self.document.recompute()
+        chance = np.random.default_rng(2)
+        places = scattered(part.Shape, 5, chance)
+        off = [-0.06 if abs(place.point[2] - (12 - 5.08)) < 1e-6 and place.normal[2] > 0.9 else 0.0 for place in places]
+        fit = fit_parameters(part, sheet, ["Depth"], lain(places, Placement(), off))
+        np.testing.assert_allclose((fit.nominal[0], fit.values[0]), (5.08, 5.14), atol=2e-5)
+        correct_parameters(part, fit)
+        self.assertAlmostEqual(sheet.Depth.Value, 5.14, 4)
+
     def test_cells_that_are_no_free_length_are_refused(self):
         sheet, part = self.plate()
         touched, _ = self.measured(part, 0, 0, 1)

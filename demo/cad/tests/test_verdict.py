@@ -36,7 +36,7 @@ class Deviations(SimpleNamespace):
 
 
 def good():
-    """A session and its truth, with nothing wrong."""
+    """A session, which is its own inspection, and its truth: with nothing wrong."""
     place = lambda face: SimpleNamespace(face=face)  # noqa: E731
     hole = SimpleNamespace(faces=("Face4",))
     found = SimpleNamespace(free_form=("Face1",), recesses=(SimpleNamespace(floor="Face3", islands=1),), holes=(hole,) * 4)
@@ -60,7 +60,7 @@ class Verdict(unittest.TestCase):
         if breaks is not None:
             breaks(user, truth)
         with mock.patch.object(verdict, "_moved", moved):
-            return verdict.judge(user, truth, BOUNDS)
+            return verdict.judge(user, user, truth, BOUNDS)
 
     def broken(self, breaks, *told):
         rows, line = self.judged(breaks)

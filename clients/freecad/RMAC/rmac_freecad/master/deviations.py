@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+import FreeCAD
 import numpy as np
 
 from rmac_freecad.master.model import Model
@@ -34,12 +35,6 @@ def deviations(shape, touched, placement=None):
     points = np.array([one.measured for one in touched], float)
     if placement is not None:
         back = placement.inverse()
-        points = np.array([tuple(back.multVec(_vector(point))) for point in points])
+        points = np.array([tuple(back.multVec(FreeCAD.Vector(*map(float, point)))) for point in points])
     off, _, _ = Model(shape, touched).held_against(points)
     return Deviations(tuple(touched), off)
-
-
-def _vector(point):
-    import FreeCAD
-
-    return FreeCAD.Vector(*map(float, point))
