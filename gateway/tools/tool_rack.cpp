@@ -77,7 +77,7 @@ Expected<Tool> read_tool(const Json& entry) {
   });
 }
 
-Json to_json(const Tool& tool) {
+Json tool_json(const Tool& tool) {
   Json entry{{"ToolNumber", tool.number},
              {"Name", tool.name},
              {"Length", tool.length_mm},
@@ -127,7 +127,7 @@ Expected<ToolTable> read_tool_table(const fs::path& file) {
 
 Expected<> write_tool_table(const fs::path& file, const ToolTable& table) {
   Json tools = Json::array();
-  for (const auto& [number, tool] : table.tools) tools.push_back(to_json(tool));
+  for (const auto& [number, tool] : table.tools) tools.push_back(tool_json(tool));
   const Json document{{"Mounted", table.mounted ? Json(*table.mounted) : Json()}, {"Tools", std::move(tools)}};
   std::error_code code;
   fs::create_directories(file.parent_path(), code);
