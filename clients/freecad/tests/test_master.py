@@ -1,5 +1,6 @@
 """The master model against points whose truth is known: parts that were moved, turned, and made too deep, by seeds."""
 
+import dataclasses
 import math
 import unittest
 
@@ -204,6 +205,18 @@ class DocumentTest(unittest.TestCase):
         self.assertEqual(sheet.Depth.Value, 5)
         self.assertAlmostEqual(part.Shape.Volume, volume, 6)
 
+    def test_a_model_that_breaks_with_what_was_measured_stays_as_it_was(self):
+        sheet, part = self.plate()
+        touched, _ = self.measured(part, 0, 0, 1)
+        fit = dataclasses.replace(fit_parameters(part, sheet, ["Width"], touched), values=(-1.0,))
+        written, volume = sheet.getContents("A2"), part.Shape.Volume
+        for mode in (0, 1):
+            self.document.UndoMode = mode
+            with self.assertRaisesRegex(MasterRefused, "Width -1.0000 mm the model cannot be computed: Hole"):
+                correct_parameters(part, fit)
+            self.assertEqual(sheet.getContents("A2"), written)
+            self.assertAlmostEqual(part.Shape.Volume, volume, 6)
+
     def test_a_length_in_inches_is_corrected_as_any_other(self):
         sheet, part = self.plate()
         sheet.set("A1", "0.2 in")
@@ -211,7 +224,12 @@ class DocumentTest(unittest.TestCase):
         chance = np.random.default_rng(2)
         places = scattered(part.Shape, 5, chance)
         off = [-0.06 if abs(place.point[2] - (12 - 5.08)) < 1e-6 and place.normal[2] > 0.9 else 0.0 for place in places]
-        fit = fit_parameters(part, sheet, ["Depth"], lain(places, Placement(), off))
+        for mode in (0, 1):
+            self.document.UndoMode = mode
+            written, volume = sheet.getContents("A1"), part.Shape.Volume
+            fit = fit_parameters(part, sheet, ["Depth"], lain(places, Placement(), off))
+            self.assertEqual(sheet.getContents("A1"), written, "the fit leaves the cell as it was written")
+            self.assertAlmostEqual(part.Shape.Volume, volume, 6)
         np.testing.assert_allclose((fit.nominal[0], fit.values[0]), (5.08, 5.14), atol=2e-5)
         correct_parameters(part, fit)
         self.assertAlmostEqual(sheet.Depth.Value, 5.14, 4)

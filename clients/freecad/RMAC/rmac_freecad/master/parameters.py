@@ -63,9 +63,8 @@ def fit_parameters(feature, sheet, names, touched, instrument_mm=INSTRUMENT_MM):
             raise MasterRefused("the fit does not come to rest; is this the part that was measured?")
         sure = np.sqrt(np.diag(covariance(jacobian, off, instrument_mm)))[6:]
     finally:
-        shapes.at(nominal)
         document.abortTransaction()
-        document.recompute()
+        shapes.restore()  # a document that keeps no undo steps has nothing to go back to
     placement = placement_of(rotation, centre + shift - rotation @ centre)
     return ParametersFit(sheet, tuple(names), tuple(nominal), tuple(map(float, values)), tuple(map(float, sure)), before, off, placement)
 
@@ -74,12 +73,13 @@ def correct_parameters(feature, fit):
     """Writes the values into their cells and computes the model anew, in one step that can be undone. A model that cannot be computed
     with them is refused, and stays as it was."""
     document = feature.Document
+    shapes = _Shapes(document, feature, fit.sheet, fit.names)
     document.openTransaction(f"Correct {', '.join(fit.names)}")
     try:
-        _Shapes(document, feature, fit.sheet, fit.names).at(fit.values)
+        shapes.at(fit.values)
     except MasterRefused:
         document.abortTransaction()
-        _Shapes(document, feature, fit.sheet, fit.names).at(fit.nominal)
+        shapes.restore()
         raise
     document.commitTransaction()
 
@@ -89,10 +89,18 @@ class _Shapes:
 
     def __init__(self, document, feature, sheet, names):
         self._document, self._feature, self._sheet, self._names = document, feature, sheet, names
+        self._cells = [sheet.getCellFromAlias(name) for name in names]
+        self._texts = [sheet.getContents(cell) for cell in self._cells]
+
+    def restore(self):
+        for cell, text in zip(self._cells, self._texts):
+            if self._sheet.getContents(cell) != text:
+                self._sheet.set(cell, text)
+        self._document.recompute()
 
     def at(self, values):
-        for name, value in zip(self._names, values):
-            self._sheet.set(self._sheet.getCellFromAlias(name), f"{float(value):.9f} mm")
+        for cell, value in zip(self._cells, values):
+            self._sheet.set(cell, f"={float(value):.9f} mm")
         self._document.recompute()
         broken = [one.Label for one in self._document.Objects if "Invalid" in one.State]
         if broken or self._feature.Shape.isNull():
