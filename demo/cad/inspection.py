@@ -26,7 +26,7 @@ class Inspection:
         under, top = shape.BoundBox.ZMin, shape.BoundBox.ZMax
         return [
             *places_on(shape, found.free_form, count=16, edge_mm=FREE_EDGE, **common),
-            *places_on(shape, found.tops[:1], count=4, edge_mm=2.0, **common),
+            *places_on(shape, found.tops[:1], count=9, edge_mm=1.5, **common),
             *places_on(shape, found.sides, count=3, edge_mm=1.5, between_mm=(under + 1.0, under + 5.5), **common),
             *places_on(shape, [recess.floor], count=6, edge_mm=1.6, **common),
             *places_on(shape, flat, count=2, edge_mm=1.0, between_mm=(recess.z + 0.5, top), **common),

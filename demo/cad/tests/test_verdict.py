@@ -98,7 +98,7 @@ class Verdict(unittest.TestCase):
 
     def test_a_part_that_was_found_where_it_is_not(self):
         self.broken(lambda user, truth: setattr(user.fit, "placement", Placement(OFF[0] + 0.006, *OFF[1:])), "Corners of the part off", "stated uncertainty")
-        self.broken(lambda user, truth: setattr(user.fit, "placement", Placement(OFF[0] + 0.003, *OFF[1:])), "stated uncertainty")
+        self.broken(lambda user, truth: setattr(user.fit, "placement", Placement(OFF[0] + 0.0035, *OFF[1:])), "stated uncertainty")
         self.broken(lambda user, truth: setattr(user.fit, "turn", np.radians([0, 0, -OFF[3]])), "Turn about Z")
 
     def test_a_probe_that_tells_something_else_than_was_cut(self):
