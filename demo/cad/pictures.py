@@ -14,6 +14,7 @@ import verdict  # noqa: E402
 
 FACETS_MM = 0.01  # how far a triangle may be off the part
 CELL_MM = 0.1
+ROOM_MM = 1.5  # around the part
 LIGHT = np.array([-0.55, -0.35, 0.76])
 BLUE_RED = "RdBu_r"
 COLOURS = "#2a6f97", "#c07020", "#777777", "#3a9050"  # of programs
@@ -38,8 +39,8 @@ def measured_figure(inspected):
         full = max(1000 * abs(found.worst), 1)
         points = np.array([one.place.point for one in found.touched])
         shown = axis.scatter(*points[:, :2].T, c=1000 * found.off, cmap=BLUE_RED, norm=TwoSlopeNorm(0, -full, full), s=42, edgecolors="#222222", linewidths=0.6, zorder=3)
-        axis.set(xlabel="x, mm", ylabel="y, mm")
-        axis.margins(0.05)
+        low_x, high_x, low_y, high_y = seen[1]
+        axis.set(xlabel="x, mm", ylabel="y, mm", xlim=(low_x - ROOM_MM, high_x + ROOM_MM), ylim=(low_y - ROOM_MM, high_y + ROOM_MM))
         axis.grid(False)
         axis.set_title(f"{title}: rms {1000 * found.rms:.1f} µm, worst {1000 * found.worst:+.1f} µm", fontsize=10)
         figure.colorbar(shown, ax=axis, shrink=0.75, label="off the model, µm (red: material left)")
