@@ -210,6 +210,10 @@ Result<std::unique_ptr<CollisionWatch>> open_watch(const SimulateOptions& option
   if (options.setup.empty()) return nullptr;
   auto watch = CollisionWatch::open(options.machine, tree, options.setup, options.resolution, materials_of(options));
   if (!watch) return watch;
+  if (!options.materials.empty() && (*watch)->setup().material.empty()) {
+    return fail(
+        fmt::format("{}: names no Material, so that nothing is looked up in --materials", options.setup.string()));
+  }
   // As somebody would who clamped the part there; a program may set another one.
   const auto stands =
       simulation.call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json((*watch)->setup().part_frame)}});
