@@ -2,26 +2,32 @@
 # Installs the packages, builds, starts the appliance on its simulated bus, machines a headlight through its socket and leaves
 # record, pictures and report in out/. The last line of the output is the figures as JSON.
 #   measure       instead: cuts a part that is clamped wrong, measures it in the midst of the cut, corrects, and goes on
+#   cad           instead: from a STEP file in FreeCAD to the part that is machined, measured, and its model corrected; installs FreeCAD
 #   --real-time   at the machine's own pace, instead of as fast as cycles can be computed
 #   --out FOLDER  instead of out
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-usage() { echo "usage: ./demo.sh [measure] [--real-time] [--out FOLDER]" >&2; exit 2; }
+usage() { echo "usage: ./demo.sh [measure|cad] [--real-time] [--out FOLDER]" >&2; exit 2; }
 pace=as-fast-as-computed
 out=out
 measure=
+cad=
 while [ $# -gt 0 ]; do
   case "$1" in
     measure) measure=yes ;;
+    cad) cad=yes ;;
     --real-time) pace=real-time ;;
     --out) [ $# -gt 1 ] || usage; shift; out=$1 ;;
     *) usage ;;
   esac
   shift
 done
+[ -z "$measure" ] || [ -z "$cad" ] || usage
 
-./packages.sh
+lists=(packages.txt)
+[ -z "$cad" ] || lists+=(packages-cad.txt)
+./packages.sh "${lists[@]}"
 
 echo "== build"
 cmake --preset release --log-level=WARNING >/dev/null
@@ -45,6 +51,10 @@ if [ -n "$measure" ]; then
   /usr/bin/python3 -B demo/run_measure.py --clamp build/release/drivers "$state/drivers"
   tree=(--device-tree "$state/drivers")
 fi
+if [ -n "$cad" ]; then
+  cp -r build/release/drivers "$state/drivers" # the simulated part is clamped there
+  tree=(--device-tree "$state/drivers")
+fi
 
 : >"$log" # the loop below may look before the daemon has opened it
 build/release/bin/rmacd --config etc/rmacd.json --port 0 --pace "$pace" --state-dir "$state" "${tree[@]}" 2>"$log" &
@@ -59,6 +69,15 @@ until [ -n "$port" ]; do
   port=$(sed -n 's/.*listens on 127\.0\.0\.1:\([0-9]*\).*/\1/p' "$log" | head -n 1)
   [ -n "$port" ] || sleep 0.05
 done
+
+if [ -n "$cad" ]; then
+  echo "== from the model to the measured part, in FreeCAD, through 127.0.0.1:$port"
+  if ! /usr/bin/python3 -B demo/cad/start.py --address "127.0.0.1:$port" --tree "$state/drivers" --out "$out"; then
+    grep -iE 'warn|err|crit' "$log" >&2 || true
+    exit 1
+  fi
+  exit
+fi
 
 if [ -n "$measure" ]; then
   echo "== measure a part where it is cut, through 127.0.0.1:$port"

@@ -1,0 +1,131 @@
+"""Places on a part, and a real daemon that touches them on its simulated measuring machine (drivers/cmm/3-axis/CMM)."""
+
+import json
+import os
+import sys
+import unittest
+
+sys.path.append(os.path.join(os.environ["RMAC_SOURCE"], "tests/system"))
+
+import numpy as np
+import Part
+from appliance import BUILD, Appliance
+from FreeCAD import Vector
+from rmac_freecad.master import deviations, fit_placement
+from rmac_freecad.measuring import MeasuringRefused, Place, measure, places_on
+
+import rmac  # isort: skip
+
+RMAC = str(BUILD / "bin/rmac")
+TURN_DEG = 0.2  # of the part in that machine's description, about Z
+TIP = {"tip_radius_mm": 1.0, "clearance_mm": 2.0, "safe_mm": -5.0}
+
+
+def block():
+    """What lies on the simulated machine, as its description has it."""
+    return Part.makeBox(40, 30, 20, Vector(-20, -15, -40)).cut(Part.makeCylinder(8, 30, Vector(0, 0, -35)))
+
+
+def face_of(shape, normal, kind="Part::GeomPlane"):
+    return next(f"Face{number}" for number, face in enumerate(shape.Faces, 1) if face.Surface.TypeId == kind and (normal is None or face.normalAt(0, 0).dot(Vector(*normal)) > 0.99))
+
+
+class PlacesTest(unittest.TestCase):
+    def setUp(self):
+        self.shape = block()
+        self.top, self.bore = face_of(self.shape, (0, 0, 1)), face_of(self.shape, None, "Part::GeomCylinder")
+
+    def places(self, names, **changes):
+        return places_on(self.shape, names, **{"count": 5, "edge_mm": 2.0, **TIP, **changes})
+
+    def test_places_are_on_their_face_off_its_edges_and_apart(self):
+        places = self.places([self.top])
+        self.assertEqual(len(places), 5)
+        for place in places:
+            self.assertAlmostEqual(place.point[2], -20, 9)
+            np.testing.assert_allclose(place.normal, (0, 0, 1), atol=1e-12)
+            self.assertLessEqual(max(abs(place.point[0]) - 18, abs(place.point[1]) - 13, 10 - np.hypot(*place.point[:2])), 1e-9)
+        points = np.array([place.point for place in places])
+        self.assertGreater(min(np.linalg.norm(a - b) for i, a in enumerate(points) for b in points[:i]), 8)
+
+    def test_a_probe_that_comes_from_above_touches_nothing_but_its_place(self):
+        narrow = Part.makeBox(30, 30, 20, Vector(0, 0, -40)).cut(Part.makeBox(10, 4.5, 10, Vector(10, 10, -30)))
+        wall = face_of(narrow, (0, 1, 0))
+        inner = next(f"Face{number}" for number, face in enumerate(narrow.Faces, 1) if face.Surface.TypeId == "Part::GeomPlane" and abs(face.CenterOfMass.y - 10) < 1e-6)
+        for name in (wall, inner):
+            self.assertTrue(name)
+        self.assertTrue(places_on(narrow, [inner], count=2, edge_mm=1, **TIP))
+        with self.assertRaisesRegex(MeasuringRefused, f"{inner} has no place 1 mm from its edges"):
+            places_on(narrow, [inner], count=2, edge_mm=1, **{**TIP, "clearance_mm": 3.0})
+
+    def test_heights_between_which_the_tip_stays_are_kept(self):
+        for place in self.places([self.bore], between_mm=(-32.0, -26.0)):
+            self.assertTrue(-31 <= place.point[2] <= -27, place)
+            self.assertAlmostEqual(np.hypot(*place.point[:2]), 8, 9)
+
+    def test_what_makes_no_sense_is_refused(self):
+        for told, names, changes in (("there is no Face99", ["Face99"], {}), ("no face was named", [], {}), ("has no place", [face_of(self.shape, (0, 0, -1))], {}),
+                                     ("height to cross", [self.top], {"safe_mm": -19.5}), ("more than 0", [self.top], {"tip_radius_mm": 0})):  # fmt: skip
+            with self.assertRaisesRegex(MeasuringRefused, told):
+                self.places(names, **changes)
+
+
+class MeasureTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        appliance = Appliance(own_tree=True)
+        file = appliance.tree / "cmm/3-axis/CMM/device.json"
+        device = json.loads(file.read_text())
+        device["DigitalIOInterface"]["Parameters"]["part_bore_mm"][4] = 0  # open above, so that a tip over the bore touches nothing
+        file.write_text(json.dumps(device))
+        cls.appliance = cls.enterClassContext(appliance)
+
+    def setUp(self):
+        self.client = self.enterContext(rmac.connect(f"127.0.0.1:{self.appliance.port}", "FreeCAD"))
+        with self.client.authority():
+            self.client.load("CMM")
+        self.shape = block()
+        self.sides = [face_of(self.shape, normal) for normal in ((0, 0, 1), (-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0))]
+
+    def places(self, names, count=3):
+        return places_on(self.shape, names, count=count, edge_mm=2.0, between_mm=(-36.0, -5.0), **TIP)
+
+    def measured(self, places, **changes):
+        return measure(self.client, places, **{**TIP, "rmac": RMAC, **changes})
+
+    def test_a_part_that_lies_turned_is_found_and_fits_its_model_there(self):
+        touched = self.measured(self.places([*self.sides, face_of(self.shape, None, "Part::GeomCylinder")]))
+        fit = fit_placement(self.shape, touched)
+        np.testing.assert_allclose(np.degrees(fit.turn), (0, 0, TURN_DEG), atol=2e-4)
+        np.testing.assert_allclose(tuple(fit.placement.Base), (0, 0, 0), atol=1e-3)
+        self.assertGreater(abs(deviations(self.shape, touched).worst), 0.02)
+        self.assertLess(abs(deviations(self.shape, touched, fit.placement).worst), 1e-3)
+
+    def test_what_the_machine_refuses_is_told_with_the_place(self):
+        gone = Place("Face9", (0.0, 0.0, -20.0), (0.0, 0.0, 1.0))  # there is the bore
+        with self.assertRaisesRegex(MeasuringRefused, "place 3 of 3, on Face9 at X 0, Y 0, Z -20: .*the part is not where it was looked for"):
+            self.measured([*self.places(self.sides[:1], 2), gone])
+        with self.client.authority():
+            self.client.cam.StopNow()
+            self.client.load("CMM")
+
+    def test_another_station_that_has_authority_is_told(self):
+        with rmac.connect(f"127.0.0.1:{self.appliance.port}", "lathe hand") as other, other.authority(), self.assertRaisesRegex(MeasuringRefused, "lathe hand"):
+            self.measured(self.places(self.sides[:1], 1))
+
+    def test_without_machine_program_or_places_it_says_what_to_do(self):
+        places = self.places(self.sides[:1], 2)
+        with self.assertRaisesRegex(MeasuringRefused, "give its path"):
+            self.measured(places, rmac="/nowhere/rmac")
+        with self.assertRaisesRegex(MeasuringRefused, "no place"):
+            self.measured([])
+        with self.assertRaisesRegex(MeasuringRefused, "sort them by face"):
+            self.measured([places[0], Place("Face99", places[0].point, places[0].normal), places[1]])
+        with self.client.authority():
+            self.client.device.Unload()
+        with self.assertRaisesRegex(MeasuringRefused, "no machine is loaded"):
+            self.measured(places)
+
+
+if __name__ == "__main__":
+    unittest.main()
