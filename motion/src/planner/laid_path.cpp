@@ -29,6 +29,7 @@ void LaidPath::clear(double s) {
   starts_.clear();
   rest_after_.clear();
   joiner_.clear();
+  gate_.clear();
   moves_left_ = 0;
   origin_ = s;
   counted_s_ = s;
@@ -49,14 +50,31 @@ void LaidPath::lay(const PathSegments& fresh) {
 bool LaidPath::supply() {
   PathSegments fresh;
   const std::uint64_t work = joiner_.work();
+  if (gate_.closed()) {
+    while (gate_.wants_more() && joiner_.ready() && joiner_.work() == work) hand_over();
+    gate_.take(fresh);
+    lay(fresh);
+    return !fresh.empty();
+  }
   while (fresh.empty() && joiner_.ready() && joiner_.work() == work) joiner_.advance(fresh);
   lay(fresh);
   return !fresh.empty();
 }
 
+void LaidPath::hand_over() {
+  PathSegments fresh;
+  joiner_.advance(fresh);
+  gate_.hand_over(std::move(fresh));
+}
+
 void LaidPath::release() {
+  if (gate_.blocked()) return;
   PathSegments fresh;
   joiner_.release(fresh);
+  if (gate_.closed()) {
+    gate_.hand_over(std::exchange(fresh, {}));
+    gate_.take(fresh);
+  }
   lay(fresh);
 }
 
@@ -69,13 +87,22 @@ double LaidPath::next_rest(double s, double otherwise) const noexcept {
 
 double LaidPath::next_move_end(double s) {
   for (std::size_t i = view().find(s + kSamePlace, 1);; ++i) {
-    while (i >= size() && has_more()) {
-      if (!supply() && !can_supply()) release();
+    while (i >= size() + gate_.size() && !joiner_.empty() && !gate_.blocked()) {
+      // How far a move goes is known before the gate says whether it may.
+      if (!joiner_.ready()) {
+        release();
+      } else if (gate_.closed()) {
+        hand_over();
+      } else {
+        supply();
+      }
     }
-    if (i >= size()) return end();
-    const auto stretches = segments_[i]->stretches();
+    if (i >= size() + gate_.size()) return gate_.end(end());
+    double start = i < size() ? starts_[i] : 0;
+    const PathSegment& segment = i < size() ? *segments_[i] : gate_.segment(i - size(), end(), start);
+    const auto stretches = segment.stretches();
     for (std::size_t k = 0; k < stretches.size(); ++k) {
-      const double stretch_end = k + 1 < stretches.size() ? starts_[i] + stretches[k + 1].begin : end(i);
+      const double stretch_end = start + (k + 1 < stretches.size() ? stretches[k + 1].begin : segment.length());
       if (stretches[k].last_of_move && stretch_end > s + kSamePlace) return stretch_end;
     }
   }
