@@ -4,7 +4,7 @@
 #include <deque>
 #include <memory>
 
-#include "rmac/motion/path_gate.hpp"
+#include "rmac/motion/ports/path_gate.hpp"
 
 namespace rmac {
 

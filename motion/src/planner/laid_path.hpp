@@ -24,9 +24,8 @@ class LaidPath {
  public:
   LaidPath(std::vector<JointLimits> joints, double period_s);
 
-  /// The path grows by what has passed this gate, from now on; where none is set, by what is certain.
-  [[nodiscard]] BeforeGate& gate() noexcept { return gate_; }
-  [[nodiscard]] const BeforeGate& gate() const noexcept { return gate_; }
+  /// Where a gate is set, the path grows by what has passed it; else by what is certain.
+  BeforeGate gate;
 
   void add(PathSegments moves);
   /// Drops everything; the path goes on from path length `s`.
@@ -40,9 +39,9 @@ class LaidPath {
   /// Makes the path longer by what was held back for a join, where nothing can be supplied.
   void release();
   /// There is more for certain, or in work.
-  [[nodiscard]] bool can_supply() const noexcept { return !gate_.blocked() && (!gate_.empty() || joiner_.ready()); }
+  [[nodiscard]] bool can_supply() const noexcept { return !gate.blocked() && (!gate.empty() || joiner_.ready()); }
   /// Something is queued that is not laid yet.
-  [[nodiscard]] bool has_more() const noexcept { return !gate_.empty() || !joiner_.empty(); }
+  [[nodiscard]] bool has_more() const noexcept { return !gate.empty() || !joiner_.empty(); }
 
   [[nodiscard]] PathView view() const noexcept { return {segments_, starts_}; }
   [[nodiscard]] std::size_t size() const noexcept { return segments_.size(); }
@@ -85,13 +84,10 @@ class LaidPath {
  private:
   void lay(const PathSegments& fresh);
   void append(std::shared_ptr<const PathSegment> segment);
-  /// Brings more before the gate.
-  void hand_over();
 
   std::vector<JointLimits> joints_;
   double period_s_;
   PathJoiner joiner_;
-  BeforeGate gate_;
   PathSegments segments_;
   std::vector<double> starts_;
   std::vector<char> rest_after_;

@@ -9,10 +9,10 @@
 #include "rmac/motion/error.hpp"
 #include "rmac/motion/follower/path_departure.hpp"
 #include "rmac/motion/interruption.hpp"
-#include "rmac/motion/path_gate.hpp"
 #include "rmac/motion/path_segment.hpp"
 #include "rmac/motion/plan_channel.hpp"
 #include "rmac/motion/planner_model.hpp"
+#include "rmac/motion/ports/path_gate.hpp"
 #include "rmac/motion/pose.hpp"
 
 namespace rmac {
