@@ -21,7 +21,6 @@ using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr double kInch_mm = 25.4;
-constexpr std::size_t kMostTriangles = 4'000'000;
 constexpr double kFarthest_mm = 1e5;
 
 tl::unexpected<Error> wrong(const std::string& pointer, const std::string& what) {
@@ -113,10 +112,6 @@ Expected<SolidShape> read_surface(const Json& shape, const std::string& pointer,
     return wrong(pointer, " needs \"File\", or both \"Points\" and \"Triangles\"");
   }
   const Json &points = shape["Points"], &triangles = shape["Triangles"];
-  if (triangles.size() > kMostTriangles) {
-    return wrong(pointer, fmt::format("/Triangles has {}; at most {} are taken: send it coarser", triangles.size(),
-                                      kMostTriangles));
-  }
   TriangleMesh mesh;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto point = three<double>(points[i], -kFarthest_mm, kFarthest_mm);

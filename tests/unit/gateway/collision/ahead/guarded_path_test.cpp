@@ -53,15 +53,16 @@ std::vector<Move> program(std::uint64_t seed) {
     const double way = random() % 3 == 0 ? 2 : 40;
     Vector to = at;
     for (double& c : to) c = std::clamp(c + uniform(random, -way, way), -45.0, 45.0);
-    Move move{
-        .id = id, .geometry = LineGeometry{{at, test::kUp}, {to, test::kUp}}, .feed_mm_s = uniform(random, 5, 120)};
+    Move move{.id = id,
+              .geometry = LineGeometry{{at, rmac::test::kUp}, {to, rmac::test::kUp}},
+              .feed_mm_s = uniform(random, 5, 120)};
     move.tolerance_mm = tolerance;
     const auto kind = random() % 6;
-    if (kind == 0) move.geometry = PathTargetGeometry{{to, test::kUp}};
+    if (kind == 0) move.geometry = PathTargetGeometry{{to, rmac::test::kUp}};
     if (kind == 1) move.geometry = JointTargetGeometry{{to[0], to[1], to[2]}};
     if (kind == 2) {
       const Vector via{(at[0] + to[0]) / 2 + 1, (at[1] + to[1]) / 2 - 1, (at[2] + to[2]) / 2 + 0.5};
-      move.geometry = Arc3Geometry{via, {at, test::kUp}, {to, test::kUp}};
+      move.geometry = Arc3Geometry{via, {at, rmac::test::kUp}, {to, rmac::test::kUp}};
     }
     moves.push_back(move);
     at = to;
@@ -72,7 +73,7 @@ std::vector<Move> program(std::uint64_t seed) {
 LinkChain slides() {
   const std::vector<std::string> chain{"base", "X", "Y", "Z"}, names{"X", "Y", "Z"};
   const std::vector<std::pair<double, double>> limits(3, {-50, 50});
-  return LinkChain::make(*test::mill().kinematics, chain, names, limits).value();
+  return LinkChain::make(*rmac::test::mill().kinematics, chain, names, limits).value();
 }
 
 std::shared_ptr<ClearWay> way_past(const Block& block, double clearance,
@@ -86,7 +87,7 @@ std::shared_ptr<ClearWay> way_past(const Block& block, double clearance,
 
 class GuardedBench {
  public:
-  explicit GuardedBench(bool in_thread = false) : guard(in_thread), bench(test::mill()) {}
+  explicit GuardedBench(bool in_thread = false) : guard(in_thread), bench(rmac::test::mill()) {}
   ~GuardedBench() { bench.planner.set_gate(nullptr); }
 
   void check(const Block& block, double clearance, SceneBody::Kind kind = SceneBody::Kind::Fixture) {
@@ -114,7 +115,7 @@ class GuardedBench {
   }
 
   CollisionGuard guard;
-  test::PlannerBench bench;
+  rmac::test::PlannerBench bench;
 };
 
 /// Near the path, in the way of it or not, and not where the machine stands at first.
@@ -190,8 +191,8 @@ TEST(GuardedPath, IsTheSameWithAThreadBeside) {
 }
 
 std::vector<Move> straight(double x, bool positioning = true) {
-  Move move{.id = 7, .geometry = PathTargetGeometry{{{x, 0, 0}, test::kUp}}, .feed_mm_s = 50};
-  if (!positioning) move.geometry = LineGeometry{{{0, 0, 0}, test::kUp}, {{x, 0, 0}, test::kUp}};
+  Move move{.id = 7, .geometry = PathTargetGeometry{{{x, 0, 0}, rmac::test::kUp}}, .feed_mm_s = 50};
+  if (!positioning) move.geometry = LineGeometry{{{0, 0, 0}, rmac::test::kUp}, {{x, 0, 0}, rmac::test::kUp}};
   return {move};
 }
 
