@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <deque>
 #include <random>
 
 #include "gateway/collision/ahead/clear_way.hpp"
@@ -290,6 +290,61 @@ TEST(GuardedPath, RunsOneMoveAtATime) {
   bench.bench.planner.command(PathCommand::RunOne);
   ASSERT_TRUE(bench.bench.run());
   EXPECT_NEAR(bench.rests_at()[0], 10, 1e-9);
+}
+
+/// Lets each segment through so many cycles after it was asked for.
+class SlowGate final : public PathGate {
+ public:
+  explicit SlowGate(int takes) : takes_(takes) {}
+  void ask(std::shared_ptr<const PathSegment> segment) override { asked_.push_back({std::move(segment), now}); }
+  Answer answer() override {
+    if (asked_.empty() || now < asked_.front().since + takes_) return {};
+    passed_x = asked_.front().segment->pose(asked_.front().segment->length()).tip[0];
+    asked_.pop_front();
+    return {Answer::Kind::Passes, 0};
+  }
+  void forget() override { asked_.clear(); }
+  [[nodiscard]] std::size_t ahead() const noexcept override { return 2; }
+
+  int now = 0;
+  double passed_x = 0;
+
+ private:
+  struct Asked {
+    std::shared_ptr<const PathSegment> segment;
+    int since = 0;
+  };
+  int takes_;
+  std::deque<Asked> asked_;
+};
+
+// Red when the planner runs on what has not passed, or does not go on once it has.
+TEST(GuardedPath, WaitsForACheckThatIsSlow) {
+  constexpr int kMoves = 20;
+  for (const int takes : {1, 40, 700}) {
+    rmac::test::PlannerBench bench(rmac::test::mill());
+    SlowGate gate(takes);
+    bench.planner.set_gate(&gate);
+    for (int i = 0; i < kMoves; ++i) {
+      const ToolPose from{{2.0 * i, 0, 0}, rmac::test::kUp}, to{{2.0 * (i + 1), 0, 0}, rmac::test::kUp};
+      ASSERT_TRUE(bench.queue({.id = i, .geometry = LineGeometry{from, to}, .feed_mm_s = 50}));
+    }
+    bench.planner.command(PathCommand::Run);
+    int rests = 0;
+    while (bench.moves_done() < kMoves && gate.now < 100'000) {
+      ++gate.now;
+      bench.cycles_with_late_planner(1);
+      ASSERT_LE(bench.record.back().position[0], gate.passed_x + 1e-9) << "cycle " << gate.now << ", takes " << takes;
+      rests += bench.record.size() > 1 && !bench.record.back().moving && bench.record.end()[-2].moving ? 1 : 0;
+    }
+    EXPECT_EQ(bench.moves_done(), std::size_t{kMoves}) << "takes " << takes;
+    EXPECT_EQ(rests > 1, takes == 700) << rests << " rests on the way, takes " << takes;
+    const auto peaks = bench.peaks();
+    EXPECT_LE(peaks.velocity, 1.0001);
+    EXPECT_LE(peaks.acceleration, 1.001);
+    EXPECT_LE(peaks.jerk, 1.01) << "cycle " << peaks.jerk_cycle << ", takes " << takes;
+    bench.planner.set_gate(nullptr);
+  }
 }
 
 }  // namespace
