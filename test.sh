@@ -66,9 +66,9 @@ if [ -n "${lint:-}" ]; then
     echo "lint: a field that is touched without its lock passed; see ExtraArgs of .clang-tidy" >&2
     exit 1
   fi
-  # clang 14 stops at the one option of g++ that it does not know.
-  mkdir -p build/lint
-  sed 's/ -fno-gnu-unique//g' build/release/compile_commands.json > build/lint/compile_commands.json
+  # Each source by itself. clang 14 stops at the one option of g++ that it does not know.
+  cmake --preset release -B build/lint -D RMAC_SOURCES_AT_A_TIME=1 --log-level=WARNING
+  sed -i 's/ -fno-gnu-unique//g' build/lint/compile_commands.json
   find motion fieldbus drivers gateway clients -name '*.cpp' -print0 |
     xargs -0 -n 4 -P "$(nproc)" clang-tidy -p build/lint --quiet --extra-arg=-Wno-unknown-warning-option 2>/dev/null
 fi

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <tl/expected.hpp>
 #include <tuple>
 #include <vector>
 
@@ -151,24 +153,40 @@ apt::Options apt_options(const Words& words) {
   return options;
 }
 
-std::optional<std::string> read_file(const std::string& name) {
+/// What it is instead of a program's text, or nothing.
+std::optional<std::string> is_no_program(const std::string& text) {
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) return "is empty";
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    return "is text in UTF-16; save it as plain text, which is ASCII or UTF-8";
+  }
+  if (text.find('\0') != std::string::npos) return "is no text";
+  return std::nullopt;
+}
+
+/// The text of a program, or why there is none.
+tl::expected<std::string, std::string> read_file(const std::string& name) {
   std::ifstream opened;
   if (name != "-") {
     std::error_code none;
-    if (fs::is_directory(name, none)) return std::nullopt;
+    if (fs::is_directory(name, none)) return tl::unexpected<std::string>("is a folder");
     opened.open(name, std::ios::binary);
-    if (!opened) return std::nullopt;
+    if (!opened) {
+      return tl::unexpected(fmt::format("cannot be read: {}", std::generic_category().message(errno)));
+    }
   }
   std::istream& input = name == "-" ? std::cin : opened;
   std::string text{std::istreambuf_iterator<char>(input), {}};
+  if (input.bad()) return tl::unexpected<std::string>("cannot be read");
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
-  return input.bad() ? std::nullopt : std::optional(std::move(text));
+  if (auto other = is_no_program(text)) return tl::unexpected(std::move(*other));
+  return text;
 }
 
 int import_file(const Words& words) {
   const auto text = read_file(words.file);
-  if (!text) return fail(words.file + ": cannot be read");
+  const std::string file = words.file == "-" ? "standard input" : words.file;
+  if (!text) return fail(fmt::format("{}: {}", file, text.error()));
   legacy::OutputFile output(words.output);
   if (!output.open()) return fail(words.output + ": cannot be written");
   const auto sink = [&output](std::string_view part) { output.write(part); };
@@ -176,8 +194,7 @@ int import_file(const Words& words) {
                                       : rs274::import_program(*text, words.options, sink);
   if (!summary) {
     const auto& error = summary.error();
-    return fail(fmt::format("{}:{}:{}: {}", words.file == "-" ? "standard input" : words.file, error.line, error.column,
-                            error.message));
+    return fail(fmt::format("{}:{}:{}: {}", file, error.line, error.column, error.message));
   }
   if (!output.finish()) return fail(words.output + ": cannot be written");
   if (words.output != "-") fmt::print("{}: {} moves from {} lines\n", words.output, summary->moves, summary->lines);

@@ -66,19 +66,19 @@ const char* to_string(Event::Kind kind) noexcept {
 }
 
 nlohmann::json event_to_json(const Event& event) {
-  nlohmann::json json{{"kind", to_string(event.kind)},
+  nlohmann::json told{{"kind", to_string(event.kind)},
                       {"t_s", event.t_s},
                       {"cycle", event.cycle},
                       {"move_id", event.move_id},
                       {"message", event.message}};
-  if (!event.record.empty()) json["record"] = event.record;
-  if (event.code != MinorCode::None) json["status_minor"] = static_cast<int>(event.code);
+  if (!event.record.empty()) told["record"] = event.record;
+  if (event.code != MinorCode::None) told["status_minor"] = static_cast<int>(event.code);
   if (event.hit) {
     const ToolPose& pose = event.hit->pose;
-    json["joints"] = event.hit->joints;
-    json["pose"] = {pose.tip[0], pose.tip[1], pose.tip[2], pose.axis[0], pose.axis[1], pose.axis[2]};
+    told["joints"] = event.hit->joints;
+    told["pose"] = {pose.tip[0], pose.tip[1], pose.tip[2], pose.axis[0], pose.axis[1], pose.axis[2]};
   }
-  return json;
+  return told;
 }
 
 nlohmann::json state_to_json(MachinePort& machine, int moves_left, const CycleSample& sample,
@@ -139,14 +139,14 @@ nlohmann::json state_to_json(MachinePort& machine, int moves_left, const CycleSa
 }
 
 nlohmann::json times_to_json(const TimeCounts& counts) {
-  nlohmann::json json = brief(counts);
-  json["count"] = counts.count;
-  json["p99_us"] = in_us(counts.quantile_ns(0.99));
-  json["bins"] = nlohmann::json::array();
+  nlohmann::json told = brief(counts);
+  told["count"] = counts.count;
+  told["p99_us"] = in_us(counts.quantile_ns(0.99));
+  told["bins"] = nlohmann::json::array();
   for (std::size_t bin = 0; bin < TimeCounts::kBins; ++bin) {
-    if (counts.bins[bin] > 0) json["bins"].push_back({in_us(TimeCounts::end_of(bin)), counts.bins[bin]});
+    if (counts.bins[bin] > 0) told["bins"].push_back({in_us(TimeCounts::end_of(bin)), counts.bins[bin]});
   }
-  return json;
+  return told;
 }
 
 }  // namespace rmac::gateway

@@ -12,11 +12,15 @@
 namespace rmac::gateway {
 namespace {
 
-using namespace fieldbus::canopen;
+using fieldbus::canopen::DriveDescription;
+using fieldbus::canopen::DriveLibrary;
+using fieldbus::canopen::DriveManners;
+using fieldbus::canopen::InterpolationTimes;
+using fieldbus::canopen::SkippedObject;
 using Json = nlohmann::json;
 
 /// What the schema lets pass as a number; nothing of anything else.
-std::optional<std::uint32_t> number(const Json& document, const char* key) {
+std::optional<std::uint32_t> number_at(const Json& document, const char* key) {
   constexpr std::uint64_t kMost = 0xFFFFFFFF;
   constexpr std::size_t kMostDigits = 9;
   if (!document.is_object() || !document.contains(key)) return {};
@@ -97,12 +101,12 @@ void read_file(const std::filesystem::path& file, DriveLibrary& library) {
   }
   DriveDescription drive;
   drive.file = file.string();
-  const auto vendor = number(*document, "VendorId"), product = number(*document, "ProductCode");
+  const auto vendor = number_at(*document, "VendorId"), product = number_at(*document, "ProductCode");
   drive.vendor_id = vendor.value_or(0);
   drive.product_code = product.value_or(0);
   if (document->is_object() && document->contains("RevisionNumber")) {
-    drive.first_revision = number((*document)["RevisionNumber"], "Min").value_or(drive.first_revision);
-    drive.last_revision = number((*document)["RevisionNumber"], "Max").value_or(drive.last_revision);
+    drive.first_revision = number_at((*document)["RevisionNumber"], "Min").value_or(drive.first_revision);
+    drive.last_revision = number_at((*document)["RevisionNumber"], "Max").value_or(drive.last_revision);
   }
   if (auto sound = read_rest(*document, drive); !sound) {
     drive.refusal = fmt::format("{}: {}", drive.file, sound.error().message);

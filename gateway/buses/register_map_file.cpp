@@ -8,19 +8,27 @@
 namespace rmac::gateway {
 namespace {
 
-using namespace fieldbus::modbus;
+using fieldbus::modbus::BitRange;
+using fieldbus::modbus::Condition;
+using fieldbus::modbus::IoMap;
+using fieldbus::modbus::of_bits;
+using fieldbus::modbus::Place;
+using fieldbus::modbus::Quantity;
+using fieldbus::modbus::RegisterWrite;
+using fieldbus::modbus::SpindleMap;
+using fieldbus::modbus::Table;
 using Json = nlohmann::json;
 
 // What the schemas let pass: the readers below rely on it.
 
 /// A number, or hexadecimal digits with an h behind them.
-std::uint32_t number(const Json& value) {
+std::uint32_t number_of(const Json& value) {
   if (value.is_number()) return value.get<std::uint32_t>();
   return static_cast<std::uint32_t>(std::stoul(value.get<std::string>(), nullptr, 16));
 }
 
 std::uint16_t address(const Json& value) {
-  return static_cast<std::uint16_t>(number(value));
+  return static_cast<std::uint16_t>(number_of(value));
 }
 
 Table table(const Json& entry) {
@@ -37,7 +45,7 @@ Place place(const Json& entry) {
   read.bits = of_bits(read.table) && !entry.contains("Bits") ? std::uint8_t{1} : entry.value("Bits", std::uint8_t{16});
   read.is_signed = entry.value("Signed", false);
   read.low_word_first = entry.value("WordOrder", "HighFirst") == "LowFirst";
-  if (entry.contains("Mask")) read.mask = number(entry["Mask"]);
+  if (entry.contains("Mask")) read.mask = number_of(entry["Mask"]);
   return read;
 }
 
@@ -47,7 +55,7 @@ Quantity quantity(const Json& entry) {
 
 Condition condition(const Json& entry) {
   Condition read{place(entry), {}};
-  for (const Json& value : entry["Is"]) read.is.push_back(number(value));
+  for (const Json& value : entry["Is"]) read.is.push_back(number_of(value));
   return read;
 }
 

@@ -22,7 +22,7 @@ struct Bounds {
   double max;
 };
 
-constexpr Bounds kAxes{1, 64}, kSpindle{-1, 63}, kLateAnswers{0, kMostAnswerDelay};
+constexpr Bounds kAxisCount{1, 64}, kSpindle{-1, 63}, kLateAnswers{0, kMostAnswerDelay};
 constexpr Bounds kSeed{0, 2147483647};
 constexpr const char* kLateAnswersName = "late_answers";
 constexpr const char* kSeedName = "seed";
@@ -111,7 +111,7 @@ const std::map<std::string, OfContact> kOfContact{
     {"contact_pitch_mm", {{0.1, 1000}, &SimulatedContact::pitch_mm}},
 };
 
-tl::unexpected<Error> refuse(std::string message) {
+tl::unexpected<Error> refuse_bus(std::string message) {
   return failure(MinorCode::InvalidParameterValue, "SimulatedInterface: " + std::move(message));
 }
 
@@ -120,12 +120,13 @@ bool inside(double value, Bounds bounds) {
 }
 
 /// A whole number among the parameters, or `otherwise`.
-Expected<int> whole(const sdk::ModuleChoice& choice, const char* name, Bounds bounds, int otherwise) {
+Expected<int> whole_number(const sdk::ModuleChoice& choice, const char* name, Bounds bounds, int otherwise) {
   const auto given = choice.numbers.find(name);
   if (given == choice.numbers.end()) return otherwise;
   const std::vector<double>& numbers = given->second;
   if (numbers.size() != 1 || numbers[0] != std::floor(numbers[0]) || !inside(numbers[0], bounds)) {
-    return refuse(fmt::format("parameter \"{}\" must be one whole number from {} to {}", name, bounds.min, bounds.max));
+    return refuse_bus(
+        fmt::format("parameter \"{}\" must be one whole number from {} to {}", name, bounds.min, bounds.max));
   }
   return static_cast<int>(numbers[0]);
 }
@@ -133,15 +134,16 @@ Expected<int> whole(const sdk::ModuleChoice& choice, const char* name, Bounds bo
 Expected<> set_axes(const std::string& name, const std::vector<double>& numbers, const OfAxis& of,
                     std::vector<SimulatedAxis>& axes) {
   if (numbers.size() != axes.size()) {
-    return refuse(fmt::format("parameter \"{}\" has {} numbers; give one for each of the {} axes, 0 for the spindle",
-                              name, numbers.size(), axes.size()));
+    return refuse_bus(
+        fmt::format("parameter \"{}\" has {} numbers; give one for each of the {} axes, 0 for the spindle", name,
+                    numbers.size(), axes.size()));
   }
   for (std::size_t i = 0; i < axes.size(); ++i) {
     auto* axis = std::get_if<AxisPlantParameters>(&axes[i]);
     if (axis == nullptr) continue;
     if (!inside(numbers[i], of.bounds)) {
-      return refuse(fmt::format("parameter \"{}\": {} of axis {} must be {} to {}", name, numbers[i], i, of.bounds.min,
-                                of.bounds.max));
+      return refuse_bus(fmt::format("parameter \"{}\": {} of axis {} must be {} to {}", name, numbers[i], i,
+                                    of.bounds.min, of.bounds.max));
     }
     of.set(*axis, numbers[i]);
   }
@@ -151,7 +153,8 @@ Expected<> set_axes(const std::string& name, const std::vector<double>& numbers,
 Expected<> set_spindle(const std::string& name, const std::vector<double>& numbers, const OfSpindle& of,
                        std::vector<SimulatedAxis>& axes) {
   if (numbers.size() != 1 || !inside(numbers[0], of.bounds)) {
-    return refuse(fmt::format("parameter \"{}\" must be one number from {} to {}", name, of.bounds.min, of.bounds.max));
+    return refuse_bus(
+        fmt::format("parameter \"{}\" must be one number from {} to {}", name, of.bounds.min, of.bounds.max));
   }
   for (SimulatedAxis& axis : axes) {
     if (auto* spindle = std::get_if<SpindlePlantParameters>(&axis)) spindle->*of.member = numbers[0];
@@ -164,7 +167,7 @@ tl::unexpected<Error> not_understood(const std::string& name) {
   for (const auto& [key, ignored] : kOfSpindle) known += ", " + key;
   for (const auto& [key, ignored] : kOfContact) known += ", " + key;
   for (const auto& [key, ignored] : kOfAxis) known += ", " + key;
-  return refuse(fmt::format("parameter \"{}\" is not understood; there are {}", name, known));
+  return refuse_bus(fmt::format("parameter \"{}\" is not understood; there are {}", name, known));
 }
 
 /// What gives way has two masses that a step can follow, and what has none is not told of what lies between them.
@@ -173,26 +176,26 @@ Expected<> check_compliance(const sdk::ModuleChoice& choice, std::size_t axis, c
     for (const char* name : {"load_inertia_kg_m2", "play_turns", "encoder_at_load"}) {
       const auto given = choice.numbers.find(name);
       if (given != choice.numbers.end() && given->second[axis] != 0)
-        return refuse(fmt::format("parameter \"{}\" of axis {} needs a \"stiffness_nm_rad\" above 0", name, axis));
+        return refuse_bus(fmt::format("parameter \"{}\" of axis {} needs a \"stiffness_nm_rad\" above 0", name, axis));
     }
     return {};
   }
   const double whole = plant.inertia_kg_m2();
   if (!(plant.load_inertia_kg_m2 > 0 && plant.load_inertia_kg_m2 < whole)) {
-    return refuse(fmt::format("\"load_inertia_kg_m2\": {} of axis {} must be above 0 and below the axis's {}",
-                              plant.load_inertia_kg_m2, axis, whole));
+    return refuse_bus(fmt::format("\"load_inertia_kg_m2\": {} of axis {} must be above 0 and below the axis's {}",
+                                  plant.load_inertia_kg_m2, axis, whole));
   }
   constexpr double kMostHz = 3000;
   const double hz = plant.two_masses().resonance_rad_s() / kTurn;
   if (hz <= kMostHz) return {};
-  return refuse(
+  return refuse_bus(
       fmt::format("axis {} would swing at {:.0f} Hz, and at most {} can be simulated; lower "
                   "\"stiffness_nm_rad\", or give 0 for a rigid axis",
                   axis, hz, kMostHz));
 }
 
 Expected<> finish_axes(const sdk::ModuleChoice& choice, std::vector<SimulatedAxis>& axes) {
-  const auto seed = whole(choice, kSeedName, kSeed, 1);
+  const auto seed = whole_number(choice, kSeedName, kSeed, 1);
   if (!seed) return tl::unexpected(seed.error());
   for (std::size_t i = 0; i < axes.size(); ++i) {
     auto* axis = std::get_if<AxisPlantParameters>(&axes[i]);
@@ -208,13 +211,14 @@ Expected<> finish_axes(const sdk::ModuleChoice& choice, std::vector<SimulatedAxi
 Expected<std::vector<SimulatedAxis>> simulated_axes(const sdk::ModuleChoice& choice) {
   if (!choice.texts.empty()) return not_understood(choice.texts.begin()->first);
   std::vector<SimulatedAxis> axes = fieldbus::default_simulated_axes();
-  const auto count = whole(choice, "axes", kAxes, static_cast<int>(axes.size()));
+  const auto count = whole_number(choice, "axes", kAxisCount, static_cast<int>(axes.size()));
   if (!count) return tl::unexpected(count.error());
   axes.resize(static_cast<std::size_t>(*count), AxisPlantParameters{});
   if (choice.numbers.contains("spindle")) {
-    const auto spindle = whole(choice, "spindle", kSpindle, -1);
+    const auto spindle = whole_number(choice, "spindle", kSpindle, -1);
     if (!spindle) return tl::unexpected(spindle.error());
-    if (*spindle >= *count) return refuse(fmt::format("the spindle is axis {}, and there are {}", *spindle, *count));
+    if (*spindle >= *count)
+      return refuse_bus(fmt::format("the spindle is axis {}, and there are {}", *spindle, *count));
     for (SimulatedAxis& axis : axes) {
       if (std::holds_alternative<SpindlePlantParameters>(axis)) axis = AxisPlantParameters{};
     }
@@ -241,7 +245,7 @@ Expected<std::vector<SimulatedAxis>> simulated_axes(const sdk::ModuleChoice& cho
 }
 
 Expected<int> simulated_answer_delay(const sdk::ModuleChoice& choice) {
-  return whole(choice, kLateAnswersName, kLateAnswers, 0);
+  return whole_number(choice, kLateAnswersName, kLateAnswers, 0);
 }
 
 Expected<std::optional<SimulatedContact>> simulated_contact(const sdk::ModuleChoice& choice) {
@@ -252,7 +256,7 @@ Expected<std::optional<SimulatedContact>> simulated_contact(const sdk::ModuleCho
     if (!name.starts_with("contact_")) continue;
     if (!contact) contact.emplace();
     if (name == "contact_axis" || name == "contact_along") {
-      const auto axis = whole(choice, name.c_str(), {0, static_cast<double>(axes->size() - 1)}, 0);
+      const auto axis = whole_number(choice, name.c_str(), {0, static_cast<double>(axes->size() - 1)}, 0);
       if (!axis) return tl::unexpected(axis.error());
       (name == "contact_axis" ? contact->axis : contact->along) = static_cast<std::size_t>(*axis);
       continue;
@@ -260,18 +264,18 @@ Expected<std::optional<SimulatedContact>> simulated_contact(const sdk::ModuleCho
     const auto known = kOfContact.find(name);
     if (known == kOfContact.end()) return not_understood(name);
     if (numbers.size() != 1 || !inside(numbers[0], known->second.bounds)) {
-      return refuse(fmt::format("parameter \"{}\" must be one number from {} to {}", name, known->second.bounds.min,
-                                known->second.bounds.max));
+      return refuse_bus(fmt::format("parameter \"{}\" must be one number from {} to {}", name, known->second.bounds.min,
+                                    known->second.bounds.max));
     }
     (*contact).*known->second.member = numbers[0];
   }
   if (!contact) return contact;
   for (const std::size_t axis : {contact->axis, contact->along}) {
     if (axis >= axes->size() || !std::holds_alternative<AxisPlantParameters>((*axes)[axis])) {
-      return refuse(fmt::format("contact: axis {} is no servo axis of this bus", axis));
+      return refuse_bus(fmt::format("contact: axis {} is no servo axis of this bus", axis));
     }
   }
-  if (contact->axis == contact->along) return refuse("contact: contact_axis and contact_along must be two axes");
+  if (contact->axis == contact->along) return refuse_bus("contact: contact_axis and contact_along must be two axes");
   return contact;
 }
 

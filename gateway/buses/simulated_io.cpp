@@ -87,16 +87,16 @@ const std::map<std::string, Takes> kParameters{
       }}},
 };
 
-tl::unexpected<Error> refuse(std::string message) {
+tl::unexpected<Error> refuse_io(std::string message) {
   return failure(MinorCode::InvalidParameterValue, "SimulatedIOInterface: " + std::move(message));
 }
 
-Expected<> take(const std::string& name, const std::vector<double>& numbers, Wiring& wiring) {
+Expected<> take_wiring(const std::string& name, const std::vector<double>& numbers, Wiring& wiring) {
   const auto known = kParameters.find(name);
   if (known == kParameters.end()) {
     std::string names;
     for (const auto& [key, takes] : kParameters) names += (names.empty() ? "" : ", ") + key;
-    return refuse(fmt::format("parameter \"{}\" is not understood; there are {}", name, names));
+    return refuse_io(fmt::format("parameter \"{}\" is not understood; there are {}", name, names));
   }
   const Takes& takes = known->second;
   const bool fits =
@@ -105,9 +105,9 @@ Expected<> take(const std::string& name, const std::vector<double>& numbers, Wir
   for (const double number : numbers) inside = inside && number >= takes.min && number <= takes.max;
   const bool whole = takes.max != 63 || (fits && numbers[0] == std::floor(numbers[0]));
   if (!fits || !inside || !whole) {
-    return refuse(fmt::format("parameter \"{}\" takes {} number{}{} from {} to {}: {}", name, takes.count,
-                              takes.count == 1 ? "" : "s", takes.repeats ? ", or a multiple," : "", takes.min,
-                              takes.max, takes.what));
+    return refuse_io(fmt::format("parameter \"{}\" takes {} number{}{} from {} to {}: {}", name, takes.count,
+                                 takes.count == 1 ? "" : "s", takes.repeats ? ", or a multiple," : "", takes.min,
+                                 takes.max, takes.what));
   }
   takes.set(wiring, numbers);
   return {};
@@ -117,16 +117,16 @@ Expected<> take(const std::string& name, const std::vector<double>& numbers, Wir
 
 Expected<std::shared_ptr<fieldbus::SimulatedIoInterface>> make_simulated_io(const sdk::ModuleChoice& choice) {
   if (!choice.texts.empty()) {
-    return refuse(fmt::format("parameter \"{}\" takes numbers", choice.texts.begin()->first));
+    return refuse_io(fmt::format("parameter \"{}\" takes numbers", choice.texts.begin()->first));
   }
   Wiring wiring;
   for (const auto& [name, numbers] : choice.numbers) {
-    if (auto taken = take(name, numbers, wiring); !taken) return tl::unexpected(taken.error());
+    if (auto taken = take_wiring(name, numbers, wiring); !taken) return tl::unexpected(taken.error());
   }
   for (const SimulatedPart::Block& block : wiring.part.blocks) {
     for (std::size_t i = 0; i < 3; ++i) {
       if (!(block.low[i] < block.high[i])) {
-        return refuse(
+        return refuse_io(
             "parameter \"part_block_mm\": the first corner of a block must be below the second in x, y and z");
       }
     }
@@ -134,7 +134,7 @@ Expected<std::shared_ptr<fieldbus::SimulatedIoInterface>> make_simulated_io(cons
   if (wiring.probe.touch_input >= 0) {
     return std::make_shared<fieldbus::SimulatedIoInterface>(wiring.probe, std::move(wiring.part));
   }
-  if (!choice.numbers.empty()) return refuse("a part or a probe is described, and \"probe_input\" is missing");
+  if (!choice.numbers.empty()) return refuse_io("a part or a probe is described, and \"probe_input\" is missing");
   return std::make_shared<fieldbus::SimulatedIoInterface>();
 }
 
@@ -142,20 +142,20 @@ Expected<std::shared_ptr<DigitalIoInterface>> with_touch_probe(std::shared_ptr<D
                                                                const ServoLoopParts& parts) {
   auto simulated = std::dynamic_pointer_cast<fieldbus::SimulatedIoInterface>(io);
   if (!simulated || !simulated->probe()) return io;
-  const auto bus_of = [](const ServoBus& bus) {
+  const auto simulated_bus_of = [](const ServoBus& bus) {
     return std::dynamic_pointer_cast<fieldbus::SimulatedInterface>(bus.interface);
   };
   std::vector<TouchProbeModel::Shaft> shafts;
   for (const ServoActuator& actuator : parts.actuators) {
-    auto bus = bus_of(*actuator.bus);
+    auto bus = simulated_bus_of(*actuator.bus);
     if (!bus || bus->is_spindle(actuator.axis)) {
-      return refuse("its probe can touch only where all drives are simulated; leave \"probe_input\" out");
+      return refuse_io("its probe can touch only where all drives are simulated; leave \"probe_input\" out");
     }
     shafts.push_back({std::move(bus), actuator.axis, actuator.scale});
   }
   std::optional<TouchProbeModel::Spindle> spindle;
   if (!parts.spindles.empty()) {
-    auto bus = bus_of(*parts.spindles[0].bus);
+    auto bus = simulated_bus_of(*parts.spindles[0].bus);
     if (bus && bus->is_spindle(parts.spindles[0].axis)) spindle = {std::move(bus), parts.spindles[0].axis};
   }
   return std::make_shared<TouchProbeModel>(std::move(simulated), parts, std::move(shafts), std::move(spindle));

@@ -19,7 +19,7 @@ namespace {
 // The functions below read a document that the schema has passed: what it requires is there and has its type.
 using Json = nlohmann::json;
 
-std::vector<sdk::ToolChangeStep> tool_change(const Json& list) {
+std::vector<sdk::ToolChangeStep> tool_change_steps(const Json& list) {
   using Step = sdk::ToolChangeStep;
   constexpr double kTimeOutS = 10;
   std::vector<Step> result;
@@ -80,7 +80,7 @@ sdk::DeviceObject device_object(const Json& file) {
   device.configuration_type = text(file, "ConfigurationType");
   device.speed_capability = text(file, "SpeedCapability");
   device.tool_changer = file.value("ToolChanger", false);
-  device.tool_change = tool_change(file.value("ToolChange", Json::array()));
+  device.tool_change = tool_change_steps(file.value("ToolChange", Json::array()));
   device.number_of_tools = file.value("NumberOfTools", 1);
   device.length_mm = number(file["WorkingVolume"], "Length");
   device.width_mm = number(file["WorkingVolume"], "Width");

@@ -17,7 +17,7 @@ void add_if(Json& object, const char* key, const std::vector<List>& list) {
   if (!list.empty()) object[key] = list;
 }
 
-Json to_json(const sdk::ModuleChoice& choice) {
+Json choice_json(const sdk::ModuleChoice& choice) {
   Json parameters = Json::object();
   for (const auto& [key, values] : choice.numbers) {
     parameters[key] = values.size() == 1 ? Json(values.front()) : Json(values);
@@ -59,7 +59,7 @@ void add_force(Json& object, const sdk::Joint& joint) {
   }
 }
 
-Json to_json(const std::vector<sdk::Joint>& joints) {
+Json joints_json(const std::vector<sdk::Joint>& joints) {
   Json list = Json::array();
   for (const sdk::Joint& joint : joints) {
     const JointLimits& limits = joint.limits;
@@ -74,7 +74,7 @@ Json to_json(const std::vector<sdk::Joint>& joints) {
                {"MaxEffort", joint.max_effort}};
     if (ends_below(limits)) entry["Min"] = limits.min;
     if (ends_above(limits)) entry["Max"] = limits.max;
-    if (!joint.servo_law.name.empty()) entry["ServoControlLaw"] = to_json(joint.servo_law);
+    if (!joint.servo_law.name.empty()) entry["ServoControlLaw"] = choice_json(joint.servo_law);
     add_if(entry, "Gains", joint.gains);
     add_if(entry, "MaxMeasuredSpeed", joint.max_measured_speed);
     add_if(entry, "MaxJump", joint.max_jump);
@@ -85,7 +85,7 @@ Json to_json(const std::vector<sdk::Joint>& joints) {
   return list;
 }
 
-Json tool_change(const std::vector<sdk::ToolChangeStep>& steps) {
+Json tool_change_json(const std::vector<sdk::ToolChangeStep>& steps) {
   using Step = sdk::ToolChangeStep;
   Json list = Json::array();
   for (const Step& step : steps) {
@@ -146,7 +146,7 @@ Json to_json(const std::vector<sdk::Spindle>& spindles) {
                {"ControlMethod", name_of(spindle.method, kControlMethodNames)},
                {"Direction", static_cast<int>(spindle.scale.direction)},
                {"MaxFollowingError", spindle.max_following_error_deg}};
-    if (!spindle.servo_law.name.empty()) entry["ServoControlLaw"] = to_json(spindle.servo_law);
+    if (!spindle.servo_law.name.empty()) entry["ServoControlLaw"] = choice_json(spindle.servo_law);
     add_if(entry, "Gains", spindle.gains);
     add_if(entry, "CountsPerRevolution", spindle.scale.counts_per_revolution);
     add_if(entry, "RatedTorque", spindle.scale.rated_torque_nm);
@@ -166,14 +166,14 @@ Json to_device_json(const sdk::DeviceObject& device) {
       {"SpeedCapability", device.speed_capability},
       {"WorkingVolume", {{"Length", device.length_mm}, {"Width", device.width_mm}, {"Depth", device.depth_mm}}},
       {"ToolChanger", device.tool_changer},
-      {"ToolChange", tool_change(device.tool_change)},
+      {"ToolChange", tool_change_json(device.tool_change)},
       {"NumberOfTools", device.number_of_tools},
       {"MaxFeedrate", device.max_feedrate_mm_min},
       {"MaxPalletLoad", device.max_pallet_load_kg},
       {"PositioningTolerance", device.positioning_tolerance_mm},
       {"RepeatabilityTolerance", device.repeatability_tolerance_mm},
-      {"Joints", to_json(device.joints)},
-      {"HeldJoints", to_json(device.held_joints)},
+      {"Joints", joints_json(device.joints)},
+      {"HeldJoints", joints_json(device.held_joints)},
       {"Actuators", to_json(device.actuators)},
       {"Spindles", to_json(device.spindles)},
       {"Overlay", device.overlay},
@@ -183,10 +183,10 @@ Json to_device_json(const sdk::DeviceObject& device) {
         {"RetractDistance", device.probing.retract_distance_mm},
         {"ScanSpeed", device.probing.scan_speed_mm_s},
         {"SettleTime", device.probing.settle_time_s}}},
-      {"Kinematics", to_json(device.kinematics)},
-      {"ActuatorMap", to_json(device.actuator_map)},
-      {"DigitalControlInterface", to_json(device.digital_control_interface)},
-      {"DigitalIOInterface", to_json(device.digital_io_interface)},
+      {"Kinematics", choice_json(device.kinematics)},
+      {"ActuatorMap", choice_json(device.actuator_map)},
+      {"DigitalControlInterface", choice_json(device.digital_control_interface)},
+      {"DigitalIOInterface", choice_json(device.digital_io_interface)},
   };
   add_if(file, "PathAccelRise", device.path_accel_rise_mm_s2);
   add_if(file, "PathAccelFall", device.path_accel_fall_mm_s2);

@@ -102,7 +102,7 @@ std::string schema_of(const char* definition, bool list) {
   return schema.dump();
 }
 
-Expected<> check(const Json& document, const JsonSchema& schema) {
+Expected<> check_against(const Json& document, const JsonSchema& schema) {
   const std::string wrong = schema.check(document);
   return wrong.empty() ? Expected<>() : failure(MinorCode::InvalidParameterValue, wrong);
 }
@@ -195,24 +195,24 @@ std::vector<sdk::Spindle> spindles(const Json& list) {
 
 Expected<> read_parameters(const Json& parameters, sdk::ModuleChoice& choice) {
   static const JsonSchema kSchema(schema_of("parameters", false));
-  return check(parameters, kSchema).map([&] { take_parameters(parameters, choice); });
+  return check_against(parameters, kSchema).map([&] { take_parameters(parameters, choice); });
 }
 
 Expected<std::vector<sdk::Actuator>> read_actuators(const Json& list, const std::vector<sdk::Actuator>& present) {
   static const JsonSchema kSchema(schema_of("actuator", true));
   const Json whole = completed(list, to_json(present));
-  return check(whole, kSchema).map([&] { return actuators(whole); });
+  return check_against(whole, kSchema).map([&] { return actuators(whole); });
 }
 
 Expected<std::vector<sdk::Spindle>> read_spindles(const Json& list, const std::vector<sdk::Spindle>& present) {
   static const JsonSchema kSchema(schema_of("spindle", true));
   const Json whole = completed(list, to_json(present));
-  return check(whole, kSchema).map([&] { return spindles(whole); });
+  return check_against(whole, kSchema).map([&] { return spindles(whole); });
 }
 
 Expected<std::vector<Resonance>> read_resonances(const Json& list) {
   static const JsonSchema kSchema(schema_of("resonances", false));
-  return check(list, kSchema).map([&] { return resonances(list); });
+  return check_against(list, kSchema).map([&] { return resonances(list); });
 }
 
 }  // namespace rmac::gateway

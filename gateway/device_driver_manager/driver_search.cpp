@@ -19,7 +19,7 @@ tl::unexpected<Error> refused(const std::string& reason) {
 }
 
 /// Why the program gave no rows.
-tl::unexpected<Error> failed(const DeviceDriverManager::Options& options, const ChildOutcome& outcome) {
+tl::unexpected<Error> search_failed(const DeviceDriverManager::Options& options, const ChildOutcome& outcome) {
   constexpr int kRefused = 1;
   if (outcome.exit_code == kRefused) return refused(outcome.complaint);
   if (outcome.exit_code == -SIGPROF || outcome.exit_code == -SIGXCPU) {
@@ -51,7 +51,7 @@ Expected<std::vector<std::int64_t>> search_mechanisms(const DeviceDriverManager:
       run_child({options.searcher.string(), std::to_string(options.search_limit.count()), options.database, sql},
                 kPatience, never);
   if (!outcome) return tl::make_unexpected(outcome.error());
-  if (outcome->exit_code != 0) return failed(options, *outcome);
+  if (outcome->exit_code != 0) return search_failed(options, *outcome);
   std::vector<std::int64_t> numbers;
   std::istringstream rows(outcome->output);
   for (std::int64_t number = 0; rows >> number;) numbers.push_back(number);

@@ -7,6 +7,9 @@
 
 namespace rmac::gateway {
 
+/// Of a name that a client gives, where it is told.
+inline constexpr std::size_t kLongestName = 64;
+
 /// A text that somebody else wrote, for a log, a terminal, or a JSON text: one line of valid UTF-8, of at most
 /// `longest` bytes. Control characters and bytes that are no UTF-8 become '?'; a character that would be cut in its
 /// midst is left out.

@@ -24,9 +24,9 @@ bool left_of(const Spot& from, const Spot& to, const Spot& ray) {
 }
 
 /// One family's view of a mesh.
-class Family {
+class MeshFamily {
  public:
-  Family(const TriangleMesh& mesh, const DexelLayout& layout, std::size_t axis)
+  MeshFamily(const TriangleMesh& mesh, const DexelLayout& layout, std::size_t axis)
       : mesh_(mesh), layout_(layout), axis_(axis), u_(DexelLayout::across(axis, 0)), v_(DexelLayout::across(axis, 1)) {
     double farthest = 0;
     for (const Vector& point : mesh.points) {
@@ -94,7 +94,7 @@ class Family {
 std::vector<Crossing> crossings(const TriangleMesh& mesh, const DexelLayout& layout, std::size_t axis,
                                 const Rows& rows) {
   std::vector<Crossing> found;
-  const Family family(mesh, layout, axis);
+  const MeshFamily family(mesh, layout, axis);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) family.cross(t, rows, found);
   // Where two are at one place the ray leaves before it enters: what touches is two pieces or one, and never less.
   std::ranges::sort(found, [](const Crossing& a, const Crossing& b) {

@@ -146,7 +146,7 @@ class Pass {
 };
 
 template <class Swept>
-Removal cut_with(DexelGrid& grid, std::span<const Sweep> sweeps, Cut what) {
+Removal cut_sweeps(DexelGrid& grid, std::span<const Sweep> sweeps, Cut what) {
   Removal total;
   total.depth_mm = std::numeric_limits<double>::infinity();
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -163,7 +163,7 @@ Removal cut_with(DexelGrid& grid, std::span<const Sweep> sweeps, Cut what) {
 Removal cut(DexelGrid& grid, std::span<const Sweep> sweeps, Cut what) {
   if (sweeps.empty()) return {};
   return std::visit(
-      [&](const auto& swept) { return cut_with<std::remove_cvref_t<decltype(swept)>>(grid, sweeps, what); },
+      [&](const auto& swept) { return cut_sweeps<std::remove_cvref_t<decltype(swept)>>(grid, sweeps, what); },
       sweeps.front());
 }
 

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <system_error>
 #include <vector>
 
+#include "gateway/files/whole_file.hpp"
 #include "gateway/material/marching_cubes.hpp"
 
 namespace rmac::gateway {
@@ -125,14 +123,14 @@ Expected<SurfaceFile> write_stl(const DexelGrid& grid, const std::filesystem::pa
   const auto [nth, triangles] = finest(grid, most_triangles);
   written.triangles = triangles;
   written.apart_mm = *std::ranges::max_element(grid.layout().pitch) * nth;
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  WholeFile out(file);
   std::array<char, kHead> head{};
   std::strncpy(head.data(), "what is left of the stock, mm", head.size() - 1);
-  out.write(head.data(), head.size());
+  out.write({head.data(), head.size()});
   const auto count = static_cast<std::uint32_t>(written.triangles);
   std::array<char, kTriangle> record{};
   std::memcpy(record.data(), &count, sizeof count);
-  out.write(record.data(), sizeof count);
+  out.write({record.data(), sizeof count});
   surface(grid, nth, [&](const SurfaceTriangle& triangle) {
     const Vector3f normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalized();
     std::array<float, 12> numbers{};
@@ -142,15 +140,9 @@ Expected<SurfaceFile> write_stl(const DexelGrid& grid, const std::filesystem::pa
     }
     std::memcpy(record.data(), numbers.data(), sizeof numbers);
     record[kTriangle - 2] = record[kTriangle - 1] = 0;
-    out.write(record.data(), record.size());
+    out.write({record.data(), record.size()});
   });
-  out.close();
-  if (out) return written;
-  const int code = errno;
-  std::error_code ignored;
-  std::filesystem::remove(file, ignored);
-  return failure(MinorCode::Other,
-                 fmt::format("{}: cannot be written: {}", file.string(), std::generic_category().message(code)));
+  return out.finish().map([&] { return written; });
 }
 
 }  // namespace rmac::gateway

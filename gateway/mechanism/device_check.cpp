@@ -56,7 +56,7 @@ Expected<> check_joint(const sdk::Joint& joint, const std::string& who) {
   return {};
 }
 
-Expected<> check_joints(const sdk::DeviceObject& device) {
+Expected<> check_joint_data(const sdk::DeviceObject& device) {
   const std::size_t count = device.joint_count_with_held();
   if (device.joints.empty() || count > kMaxJoints) {
     return refuse(fmt::format("{}: {} joints and {} held ones; there must be 1 joint at least, and {} at most together",
@@ -154,7 +154,7 @@ Expected<> check_device(const sdk::DeviceObject& device) {
   if (device.kinematics.name.empty()) return refuse("no kinematics is chosen; use SetMechanismKinematics");
   if (device.actuator_map.name.empty()) return refuse("no actuator map is chosen");
   if (device.digital_control_interface.name.empty()) return refuse("no digital control interface is chosen");
-  return check_joints(device).and_then([&] { return check_actuators(device); }).and_then([&] {
+  return check_joint_data(device).and_then([&] { return check_actuators(device); }).and_then([&] {
     return check_io(device);
   });
 }

@@ -15,7 +15,7 @@ bool fits(JointType configured, JointType built) {
   return configured == built || (configured == JointType::Screw && built == JointType::Linear);
 }
 
-Expected<> check_joints(const Kinematics& kinematics, const sdk::DeviceObject& device) {
+Expected<> check_joint_links(const Kinematics& kinematics, const sdk::DeviceObject& device) {
   if (kinematics.joint_count() != device.joints.size()) {
     return failure(MinorCode::InvalidParameterValue,
                    fmt::format("{} has {} joints, but {} are configured", device.kinematics.name,
@@ -48,7 +48,7 @@ Expected<> add_geometry(LoopDraft& draft) {
   const sdk::DeviceObject& device = draft.device;
   auto kinematics = draft.loader.load<Kinematics>(device.kinematics);
   if (!kinematics) return tl::unexpected(kinematics.error());
-  if (auto fine = check_joints(*kinematics->object, device); !fine) return fine;
+  if (auto fine = check_joint_links(*kinematics->object, device); !fine) return fine;
   auto map = draft.loader.load<ActuatorMap>(device.actuator_map);
   if (!map) return tl::unexpected(map.error());
   if (auto fine = check_sizes(*map->object, device); !fine) return fine;

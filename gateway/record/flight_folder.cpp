@@ -125,8 +125,10 @@ void FlightFolder::remove_unfinished() const noexcept {
     std::vector<std::filesystem::path> unfinished;
     for (std::filesystem::directory_iterator entry(folder_, problem), end; !problem && entry != end;
          entry.increment(problem)) {
+      // As WholeFile names them where it must: the record's name, perhaps the process's number, ".part".
       const auto& path = entry->path();
-      if (path.extension() == ".part" && path.stem().extension() == kExtension && is_name(path.stem().stem().string()))
+      const auto record = path.stem().extension() == kExtension ? path.stem() : path.stem().stem();
+      if (path.extension() == ".part" && record.extension() == kExtension && is_name(record.stem().string()))
         unfinished.push_back(path);
     }
     for (const auto& path : unfinished) std::filesystem::remove(path, problem);

@@ -1,13 +1,11 @@
 #include "gateway/record/flight_record.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <iterator>
 #include <system_error>
 
+#include "gateway/files/whole_file.hpp"
 #include "gateway/record/setpoint_record.hpp"
 
 namespace rmac::gateway {
@@ -15,7 +13,7 @@ namespace {
 
 /// Rows are handed to the system in pieces of about so much.
 constexpr std::size_t kPiece = 1U << 20U;
-constexpr mode_t kMode = 0640;
+constexpr mode_t kRights = 0640;
 
 template <typename T>
 void append_words(const std::array<T, kMaxJoints>& words, std::size_t count, std::string& out) {
@@ -62,49 +60,6 @@ void append_row(const CycleSample& sample, std::string& out) {
                  to_string(sample.horizon.limit));
 }
 
-tl::unexpected<Error> cannot(const char* what, const std::filesystem::path& path) {
-  return failure(MinorCode::Other,
-                 fmt::format("{}: {}: {}", path.string(), what, std::generic_category().message(errno)));
-}
-
-/// A file that is removed unless it was completed.
-class NewFile {
- public:
-  explicit NewFile(std::filesystem::path final_name) : final_(std::move(final_name)), path_(final_.string() + ".part") {
-    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
-  }
-  NewFile(const NewFile&) = delete;
-  NewFile& operator=(const NewFile&) = delete;
-  ~NewFile() {
-    if (descriptor_ < 0) return;
-    ::close(descriptor_);
-    ::unlink(path_.c_str());
-  }
-
-  [[nodiscard]] Expected<> write(std::string_view text) {
-    if (descriptor_ < 0) return cannot("cannot be opened", path_);
-    while (!text.empty()) {
-      const ssize_t written = ::write(descriptor_, text.data(), text.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) return cannot("cannot be written", path_);
-      text.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return {};
-  }
-  [[nodiscard]] Expected<> complete() {
-    // Power may go next, as after a fault it often does.
-    if (::fsync(descriptor_) != 0) return cannot("cannot be written", path_);
-    if (::rename(path_.c_str(), final_.c_str()) != 0) return cannot("cannot be renamed", path_);
-    ::close(descriptor_);
-    descriptor_ = -1;
-    return {};
-  }
-
- private:
-  std::filesystem::path final_, path_;
-  int descriptor_ = -1;
-};
-
 nlohmann::json to_json(const std::vector<Resonance>& resonances) {
   nlohmann::json list = nlohmann::json::array();
   for (const Resonance& one : resonances) {
@@ -146,16 +101,18 @@ Expected<> write_flight_record(const std::filesystem::path& file, const FlightHe
                                std::span<const CycleSample> samples) {
   std::error_code problem;
   std::filesystem::create_directories(file.parent_path(), problem);
-  NewFile output(file);
+  WholeFile output(file, kRights);
   std::string text = to_json(head).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) + "\n";
   if (!samples.empty()) append_header(samples.front(), text);
   for (const CycleSample& sample : samples) {
     append_row(sample, text);
     if (text.size() < kPiece) continue;
-    if (auto written = output.write(text); !written) return written;
+    output.write(text);
+    if (!output.good()) break;
     text.clear();
   }
-  return output.write(text).and_then([&] { return output.complete(); });
+  output.write(text);
+  return output.finish();
 }
 
 }  // namespace rmac::gateway

@@ -6,12 +6,6 @@
 
 namespace rmac::gateway {
 
-namespace {
-
-constexpr std::size_t kLongestName = 64;
-
-}  // namespace
-
 Session::Session(const ConnectionContext& context, std::uint64_t id, std::string where, Subscriptions& subscriptions)
     : context_(context),
       id_(id),

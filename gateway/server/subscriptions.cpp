@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kAnimationRateHz = 50;
 constexpr std::size_t kBatchBytes = 256 * 1024;
-constexpr std::size_t kLongestName = 64;
 
 bool names(const std::vector<std::string>& topics, const char* topic) {
   return std::ranges::count(topics, topic) > 0;

@@ -1,12 +1,10 @@
 #include "gateway/tools/tool_rack.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <system_error>
 
+#include "gateway/files/whole_file.hpp"
 #include "gateway/json/json_document.hpp"
 #include "gateway/json/schemas.hpp"
 #include "rmac/motion/frame.hpp"
@@ -17,40 +15,8 @@ namespace {
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
-tl::unexpected<Error> cannot(const fs::path& path, const char* what) {
-  return failure(MinorCode::Other,
-                 fmt::format("{}: {}: {}", path.string(), what, std::generic_category().message(errno)));
-}
-
 /// As the schema has it.
 constexpr std::size_t kMostTools = 2000;
-
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  [[nodiscard]] int get() const noexcept { return number_; }
-
- private:
-  int number_;
-};
-
-Expected<> write_durably(const fs::path& path, std::string_view text) {
-  constexpr mode_t kMode = 0644;
-  const Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode));
-  if (file.get() < 0) return cannot(path, "cannot be opened");
-  while (!text.empty()) {
-    const ssize_t written = ::write(file.get(), text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return cannot(path, "cannot be written");
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return ::fsync(file.get()) == 0 ? Expected<>() : cannot(path, "cannot be written");
-}
 
 // The schema has checked types, ranges and which keys there are.
 Expected<Tool> read_tool(const Json& entry) {
@@ -77,7 +43,7 @@ Expected<Tool> read_tool(const Json& entry) {
   });
 }
 
-Json to_json(const Tool& tool) {
+Json tool_json(const Tool& tool) {
   Json entry{{"ToolNumber", tool.number},
              {"Name", tool.name},
              {"Length", tool.length_mm},
@@ -127,7 +93,7 @@ Expected<ToolTable> read_tool_table(const fs::path& file) {
 
 Expected<> write_tool_table(const fs::path& file, const ToolTable& table) {
   Json tools = Json::array();
-  for (const auto& [number, tool] : table.tools) tools.push_back(to_json(tool));
+  for (const auto& [number, tool] : table.tools) tools.push_back(tool_json(tool));
   const Json document{{"Mounted", table.mounted ? Json(*table.mounted) : Json()}, {"Tools", std::move(tools)}};
   std::error_code code;
   fs::create_directories(file.parent_path(), code);
@@ -135,16 +101,7 @@ Expected<> write_tool_table(const fs::path& file, const ToolTable& table) {
     return failure(MinorCode::Other,
                    fmt::format("{}: cannot be made: {}", file.parent_path().string(), code.message()));
   }
-  const fs::path part = file.string() + ".part";
-  auto written = write_durably(part, document.dump(2) + "\n");
-  if (written && ::rename(part.c_str(), file.c_str()) != 0) written = cannot(part, "cannot be renamed");
-  if (!written) {
-    ::unlink(part.c_str());  // on a full disk it would keep what little there is
-    return written;
-  }
-  // The new name is on the disk only when its folder is.
-  const Descriptor folder(::open(file.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  return folder.get() >= 0 && ::fsync(folder.get()) == 0 ? Expected<>() : cannot(file, "cannot be made durable");
+  return write_whole(file, document.dump(2) + "\n");
 }
 
 Expected<ToolTable> ToolRack::read(const std::string& mechanism) const {

@@ -28,7 +28,7 @@ std::vector<ConeShape> sections(const Json& list) {
   return result;
 }
 
-Json to_json(const std::vector<ConeShape>& sections) {
+Json sections_json(const std::vector<ConeShape>& sections) {
   Json list = Json::array();
   for (const ConeShape& s : sections) {
     if (s.bottom_radius == s.top_radius) {
@@ -99,8 +99,8 @@ Json to_json(const ToolShape& shape) {
               {"APMX", shape.apmx},
               {"LCF", shape.lcf},
               {"OAL", shape.oal},
-              {"Shank", to_json(shape.shank)},
-              {"Holder", to_json(shape.holder)}};
+              {"Shank", sections_json(shape.shank)},
+              {"Holder", sections_json(shape.holder)}};
   if (shape.zefp > 0) object["ZEFP"] = shape.zefp;
   if (shape.fha > 0) object["FHA"] = shape.fha;
   return object;

@@ -1,7 +1,6 @@
 #include "gateway/verification/verification.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +10,7 @@
 
 #include "gateway/device_database/device_database.hpp"
 #include "gateway/device_database/device_json.hpp"
+#include "gateway/files/whole_file.hpp"
 #include "gateway/modules/module_loader.hpp"
 #include "gateway/processes/child_process.hpp"
 #include "gateway/processes/temporary_folder.hpp"
@@ -75,9 +75,7 @@ void keep(const fs::path& folder, const verifier::Report& report, const std::str
   std::error_code ignored;
   fs::create_directories(folder, ignored);
   const fs::path file = verdict_file(folder, report.mechanism, fingerprint);
-  const fs::path unfinished = folder / fmt::format(".{}-{}", report.mechanism, ::gettid());
-  std::ofstream(unfinished) << verifier::to_json(report).dump(2) << '\n';
-  fs::rename(unfinished, file, ignored);
+  (void)write_whole(file, verifier::to_json(report).dump(2) + "\n");
   forget_old(folder, report.mechanism);
 }
 

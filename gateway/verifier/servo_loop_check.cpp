@@ -13,7 +13,7 @@
 namespace rmac::verifier {
 namespace {
 
-constexpr double kPeriod_s = MachineRig::kPeriod_s;
+constexpr double kCycle_s = MachineRig::kPeriod_s;
 /// The part of a joint's following-error bound that may be left half a second after a move.
 constexpr double kRestShare = 0.2;
 
@@ -123,9 +123,9 @@ class ServoLoopCheck {
   }
 
   Checked go(std::size_t j, const Way& way, bool back) {
-    const auto cycles = static_cast<int>(std::ceil(way.time_s / kPeriod_s));
+    const auto cycles = static_cast<int>(std::ceil(way.time_s / kCycle_s));
     for (int i = 1; i <= cycles; ++i) {
-      if (auto fine = follow(j, way.at(i * kPeriod_s, back)); !fine) return fine;
+      if (auto fine = follow(j, way.at(i * kCycle_s, back)); !fine) return fine;
     }
     return {};
   }
@@ -138,11 +138,11 @@ class ServoLoopCheck {
 
   /// At a steady speed the effort hardly changes.
   Checked go_steadily(std::size_t j, const SteadyWay& way) {
-    const auto cycles = static_cast<int>(std::ceil(way.time_s() / kPeriod_s));
+    const auto cycles = static_cast<int>(std::ceil(way.time_s() / kCycle_s));
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (int i = 1; i <= cycles; ++i) {
-      if (auto fine = follow(j, way.at(i * kPeriod_s)); !fine) return fine;
-      if (!way.is_settled(i * kPeriod_s)) continue;
+      if (auto fine = follow(j, way.at(i * kCycle_s)); !fine) return fine;
+      if (!way.is_settled(i * kCycle_s)) continue;
       least = std::min(least, rig_.report().effort[j]);
       most = std::max(most, rig_.report().effort[j]);
     }
@@ -159,7 +159,7 @@ class ServoLoopCheck {
     const sdk::Spindle& spindle = device_.spindles[i];
     const auto reached = [&] { return std::abs(rig_.report().spindle_rpm[i] - rpm) <= spindle.speed_tolerance_rpm; };
     command_.spindle_rpm[i] = rpm;
-    const auto cycles = static_cast<int>(std::ceil(spindle.speed_timeout_s / kPeriod_s));
+    const auto cycles = static_cast<int>(std::ceil(spindle.speed_timeout_s / kCycle_s));
     for (int k = 0; k < cycles && (k == 0 || !reached()); ++k) {
       if (auto fine = rig_.cycle(); !fine) return fine;
     }

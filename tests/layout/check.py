@@ -4,6 +4,7 @@
   rooms    at most 25 source files a folder, and one CMake target
   arrows   a file includes only of its own room and of the rooms that its CMakeLists.txt names; no circle of folders
   layers   motion knows nobody; fieldbus and drivers know motion (drivers the SDK too), clients nobody; nobody includes a program's folder
+  names    a source's own are said by no other source of its folder (file_names.py)
   classes  at most 30 methods and 20 fields, in headers and sources alike; defined in at most 3 sources
 
 --table prints the figures of docs/architecture.md instead.
@@ -13,6 +14,8 @@ import collections
 import pathlib
 import re
 import sys
+
+import file_names
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MOST_FILES, MOST_METHODS, MOST_FIELDS, MOST_SOURCES = 25, 30, 20, 3
@@ -251,6 +254,7 @@ def main():
     check_circles(arrows(files), complaints)
     check_arrows(files, complaints)
     check_classes(files, complaints)
+    complaints += file_names.shared_names(files, ROOT)
     for complaint in complaints:
         print(complaint)
     return 1 if complaints else 0

@@ -5,6 +5,7 @@ import tempfile
 import unittest
 
 import check
+import file_names
 
 
 def tree(folder, files):
@@ -25,7 +26,7 @@ class Layout(unittest.TestCase):
                 check.check_circles(check.arrows(sources), found)
                 check.check_arrows(sources, found)
                 check.check_classes(sources, found)
-                return found
+                return found + list(file_names.shared_names(sources, check.ROOT))
             finally:
                 check.ROOT = before
 
@@ -80,6 +81,25 @@ class Layout(unittest.TestCase):
             source = f"class X {{\n  T a = {text};\n  int b = 0;\n}};\nclass Y {{\n  int c = 0;\n}};\n"
             found = [(name, check.members(body)[0]) for name, body in check.bodies(source)]
             self.assertEqual(found, [("X", 0), ("Y", 0)], text)
+
+    def test_refuses_a_name_of_one_source_that_another_says(self):
+        for own, kind in {"namespace {\nint check(int a) { return a; }\n}": "check(2)", "static int check(int);": "check<int>(2)",
+                          "namespace {\nconstexpr int kMost{2};\n}": "kMost + 1", "namespace {\nstruct Options {\n  int a;\n};\n}": "Options()",
+                          "namespace a {\nnamespace {\nenum class Way { A };\n}\n}": "Way::A", "using Json = int;": "Json()"}.items():
+            found = self.complaints({"gateway/a/x.cpp": own + "\n", "gateway/a/y.cpp": f"int other() {{ return {kind}; }}\n"})
+            self.assertEqual(len(found), 1, own)
+            self.assertIn("is this file's own, and y.cpp says it too", found[0])
+
+    def test_refuses_all_names_of_a_namespace_but_literals(self):
+        self.assertIn("name those that it uses", self.complaints({"gateway/a/x.cpp": "using namespace b;\n"})[0])
+        self.assertEqual(self.complaints({"gateway/a/x.cpp": "using namespace std::string_view_literals;\n"}), [])
+
+    def test_passes_what_means_the_same_beside_any_source(self):
+        own = "namespace {\nint check(int a) { return a; }\nconstexpr int kMost = 2;\n}\nusing std::vector;\nint shared() { return 1; }\n"
+        for said in ("int a() { return x.check(2) + p->check(2) + n::check(2); }", "int a(int check) { return check; }", '// kMost\nauto a = "kMost";',
+                     "using std::vector;\nvector<int> a;", "int a() { return shared(); }", "#define A kMost", "int check_all(int);"):
+            self.assertEqual(self.complaints({"gateway/a/x.cpp": own, "gateway/a/y.cpp": said + "\n"}), [], said)
+        self.assertEqual(self.complaints({"gateway/a/x.cpp": own, "gateway/a/main.cpp": "int main() { return check(2); }\n"}), [])
 
     def test_refuses_a_class_that_is_cut_into_many_sources(self):
         found = self.complaints({f"gateway/a/x{i}.cpp": f"void Slice::part{i}() {{\n}}\n" for i in range(4)})

@@ -104,6 +104,17 @@ class Import(unittest.TestCase):
         done = self.rmac("simulate", self.source, "--machine", "BenchXYZ")
         self.assertIn(f"{self.source}:3:5: the diameter of tool 3 is not known here; give --tool-diameter 3=MM", done.stderr)
 
+    def test_a_file_that_is_no_program_is_told_as_what_it_is(self):
+        for content, what in ((b"", "is empty"), (b"\r\n \n", "is empty"), ("G21\n".encode("utf-16"), "is text in UTF-16; save it as plain text"),
+                              (b"PK\x03\x04\0\0", "is no text")):
+            self.source.write_bytes(content)
+            done = self.rmac("import", self.source)
+            self.assertEqual((done.returncode, done.stdout, len(done.stderr.splitlines())), (1, "", 1))
+            self.assertIn(f"{self.source}: {what}", done.stderr)
+        for file, what in ((self.folder, "is a folder"), (self.folder / "none.ngc", "cannot be read: No such file or directory")):
+            self.assertIn(f"{file}: {what}", self.rmac("import", file).stderr)
+        self.assertEqual(list(self.folder.glob("*.rmac")), [])
+
     def test_a_program_that_does_not_end_is_refused(self):
         self.source.write_text("g21 f600\nG0 X0 Y0 Z10\no1 while [1]\nG1 X1\nX0\no1 endwhile\nM2\n")
         done = self.rmac("simulate", self.source, "--machine", "BenchXYZ", "--output-limit", "1")

@@ -11,7 +11,7 @@ namespace {
 constexpr double kLongest_s = 3600;
 constexpr int kOn = 3, kOff = 4;
 
-const std::string& name_of(const Word& word, const std::map<int, std::string>& names, std::string_view kind) {
+const std::string& name_by_number(const Word& word, const std::map<int, std::string>& names, std::string_view kind) {
   const bool integer = word.value == std::round(word.value) && std::abs(word.value) < 1e6;
   const auto found = integer ? names.find(static_cast<int>(word.value)) : names.end();
   if (found != names.end()) return found->second;
@@ -31,7 +31,7 @@ void await(Block& block, std::size_t place, const Options& options, Writer& writ
   if (time_out == nullptr || !(time_out->value > 0 && time_out->value <= kLongest_s)) {
     refuse(time_out == nullptr ? place : time_out->place, "M66 needs Q, how long it waits at most: to 3600 seconds");
   }
-  writer.await_input(name_of(*input, options.inputs, "input"), mode->value == kOn, time_out->value);
+  writer.await_input(name_by_number(*input, options.inputs, "input"), mode->value == kOn, time_out->value);
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ void act_on_names(Block& block, const Options& options, Writer& writer) {
   if (code->number == 66) return await(block, code->place, options, writer);
   const Word* output = block.find('P');
   if (output == nullptr) refuse(code->place, fmt::format("M{} needs P, the number of an output", code->number));
-  writer.output(name_of(*output, options.outputs, "output"), code->number == 62 || code->number == 64);
+  writer.output(name_by_number(*output, options.outputs, "output"), code->number == 62 || code->number == 64);
 }
 
 }  // namespace rmac::rs274

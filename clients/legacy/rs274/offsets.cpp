@@ -8,7 +8,7 @@ namespace rmac::rs274 {
 
 namespace {
 
-std::string name_of(std::size_t system) {
+std::string system_name(std::size_t system) {
   return system < 6 ? fmt::format("G{}", 54 + system) : fmt::format("G59.{}", system - 5);
 }
 
@@ -36,7 +36,7 @@ void select_system(const Code& code, Coordinates& coordinates) {
     if (offset[0] && offset[1] && offset[2]) continue;
     refuse(code.place, fmt::format("where {} is in the machine is not known here; set it by G10 L2 P{} X Y Z before, "
                                    "or give --offset {}=X,Y,Z",
-                                   name_of(needed), needed + 1, name_of(needed)));
+                                   system_name(needed), needed + 1, system_name(needed)));
   }
   coordinates.activate(system);
 }
@@ -63,7 +63,7 @@ void set_system(Block& block, const Modes& modes, Coordinates& coordinates, std:
   if (system == coordinates.active() && !(offset[0] && offset[1] && offset[2])) {
     refuse(place, fmt::format("of {}, which is in force, only a part is set and the rest is not known; write X, Y and "
                               "Z, or give --offset {}=X,Y,Z",
-                              name_of(system), name_of(system)));
+                              system_name(system), system_name(system)));
   }
   coordinates.set_offset(system, offset);
 }

@@ -6,11 +6,10 @@
 
 #include "canopen/description_check.hpp"
 #include "canopen/drives/drive_of_node.hpp"
+#include "rmac/fieldbus/canopen/stored_parameters.hpp"
 
 namespace rmac::fieldbus::canopen {
 namespace {
-
-using Kind = BootStep::Kind;
 
 constexpr std::uint32_t kInvalidPdo = 0x80000000;
 constexpr std::uint32_t kNoRemoteRequest = 0x40000000;
@@ -39,10 +38,10 @@ std::optional<InterpolationTime> interpolation_time(std::chrono::nanoseconds per
   return std::nullopt;
 }
 
-constexpr std::array<std::uint8_t, 4> kSave{'s', 'a', 'v', 'e'};  // without which nothing is stored (CiA 301, 7.5.2.13)
-
 class Plan {
  public:
+  using Kind = BootStep::Kind;
+
   Plan(const CanopenConfig& config, const DriveManners& manners) : config_(config), manners_(manners) {}
 
   void check_node(const AxisConfig& first) {
@@ -74,7 +73,7 @@ class Plan {
     if (!manners_.store_after_mapping) return;
     need("for its mapping to hold (StoreAfterMapping)");
     BootStep& store = add(Kind::Store, {0x1010, 1});
-    store.bytes.assign(kSave.begin(), kSave.end());
+    store.bytes.assign(kSaveSignature.begin(), kSaveSignature.end());
     store.after_change = true;
     add(Kind::Reset, {}).after_change = true;
   }

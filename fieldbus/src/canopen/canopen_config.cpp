@@ -270,7 +270,6 @@ unsigned own_bytes(const AxisConfig& axis) {
   unsigned bytes = 0;
   std::size_t at = 0;
   for (const MappedObject& object : axis.setpoints) {
-    constexpr std::uint16_t kFirstObject = 0x1000;  // below are data types, which fill room
     for (std::size_t i = 0; i < object.bits / 8U; ++i, ++at) {
       if (object.object.index >= kFirstObject) bytes |= 1U << at;
     }

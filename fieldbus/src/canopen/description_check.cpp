@@ -48,7 +48,7 @@ Expected<> check_dummy(const DeviceDescription& description, ObjectAddress addre
 
 Expected<> check_mapped(const DeviceDescription& description, const MappedObject& object, std::uint16_t offset,
                         bool setpoint) {
-  if (object.object.index < 0x1000) return check_dummy(description, object.object);
+  if (object.object.index < kFirstObject) return check_dummy(description, object.object);
   const ObjectAddress address = of_axis(object.object, offset);
   const ObjectEntry* entry = description.find(address);
   if (entry == nullptr) return absent(description, address, setpoint ? "mapped by rpdo" : "mapped by tpdo");

@@ -14,7 +14,6 @@ namespace rmac::fieldbus::canopen {
 namespace {
 
 constexpr std::size_t kPdoBytes = 8;
-constexpr std::uint16_t kFirstObject = 0x1000;  // below are data types, which fill room
 
 template <typename Number>
 bool read_number(std::string_view text, int base, Number& number) {

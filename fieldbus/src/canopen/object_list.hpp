@@ -6,6 +6,9 @@
 
 namespace rmac::fieldbus::canopen {
 
+/// Below are data types, which fill room in a PDO.
+inline constexpr std::uint16_t kFirstObject = 0x1000;
+
 /// Reads a PDO's contents: `index:sub/bits` in hexadecimal, hexadecimal and decimal, with spaces between, for example
 /// "6040:00/16 607A:00/32". Whole bytes, 64 bits at most.
 [[nodiscard]] Expected<std::vector<MappedObject>> read_mapping(const std::string& text);

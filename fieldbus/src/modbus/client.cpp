@@ -16,9 +16,8 @@ namespace {
 
 using Kind = Failure::Kind;
 
-constexpr int kMostSlave = 247;  // Modbus over Serial Line V1.02, 2.2
-constexpr int kAnyUnit = 255;    // a TCP device without a gateway behind it (Messaging on TCP/IP V1.0b, 4.4.2.6)
-constexpr std::size_t kAddresses = 65536;
+constexpr int kMostSlave = 247;      // Modbus over Serial Line V1.02, 2.2
+constexpr int kAnyUnit = 255;        // a TCP device without a gateway behind it (Messaging on TCP/IP V1.0b, 4.4.2.6)
 constexpr std::size_t kProbes = 64;  ///< lengths that a probe can have
 
 std::string error_text(int error) {

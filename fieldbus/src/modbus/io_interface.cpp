@@ -9,7 +9,7 @@ namespace rmac::fieldbus::modbus {
 namespace {
 
 /// A device without inputs shows its outputs, so that it is known to be there.
-std::vector<Image::Wanted> wanted_of(const IoMap& map) {
+std::vector<Image::Wanted> io_registers(const IoMap& map) {
   std::vector<Image::Wanted> wanted;
   for (const BitRange& range : map.inputs.empty() ? map.outputs : map.inputs) {
     wanted.push_back({range.place.table, range.place.address, range.addresses()});
@@ -19,7 +19,8 @@ std::vector<Image::Wanted> wanted_of(const IoMap& map) {
 
 class IoStation final : public Station {
  public:
-  IoStation(int slave, IoMap map) : slave_(slave), map_(std::move(map)), image_(wanted_of(map_), map_.most_per_read) {}
+  IoStation(int slave, IoMap map)
+      : slave_(slave), map_(std::move(map)), image_(io_registers(map_), map_.most_per_read) {}
 
   [[nodiscard]] int slave() const noexcept override { return slave_; }
   void forget() noexcept override { applied_.reset(); }

@@ -5,7 +5,6 @@
 namespace rmac::fieldbus::modbus {
 namespace {
 
-constexpr std::size_t kAddresses = 65536;
 constexpr std::size_t kIoBits = 64;
 
 /// Addresses that an entry takes, for telling which overlap.

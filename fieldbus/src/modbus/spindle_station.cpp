@@ -17,7 +17,7 @@ constexpr std::uint64_t kTripped = std::uint64_t{1} << 48U;
 constexpr std::uint64_t kDropped = std::uint64_t{1} << 49U;
 constexpr std::uint16_t kNoCodeOfItsOwn = 0xFF00;  // CiA 402: manufacturer specific
 
-std::vector<Image::Wanted> wanted_of(const SpindleMap& map) {
+std::vector<Image::Wanted> spindle_registers(const SpindleMap& map) {
   std::vector<Image::Wanted> wanted;
   const auto add = [&wanted](const Place& place) { wanted.push_back({place.table, place.address, place.count()}); };
   add(map.speed.place);
@@ -32,7 +32,7 @@ std::vector<Image::Wanted> wanted_of(const SpindleMap& map) {
 }  // namespace
 
 SpindleStation::SpindleStation(SpindleConfig config)
-    : config_(std::move(config)), image_(wanted_of(config_.map), config_.map.most_per_read) {}
+    : config_(std::move(config)), image_(spindle_registers(config_.map), config_.map.most_per_read) {}
 
 bool SpindleStation::command(std::int32_t rpm) noexcept {
   const bool possible = rpm >= 0 || !config_.map.backward_run.empty();

@@ -11,6 +11,7 @@ namespace rmac::gateway {
 
 namespace {
 
+using sdk::DeviceObject;
 using sdk::InterfaceConfig;
 using sdk::JointConfig;
 using sdk::MechanismConfig;
@@ -270,7 +271,6 @@ void add_spindle_setters(const auto& add) {
 }
 
 void add_interface_setters(const auto& add) {
-  using sdk::DeviceObject;
   add(module_setter("RMAC_Config.SetMechanismDigitalControlInterface",
                     "Interface to the drives. Apply brings them down and up again, because two cannot run one bus.",
                     "DigitalControlInterface", &DeviceObject::digital_control_interface, &RmacConfig::interfaces,

@@ -63,7 +63,7 @@ Expected<> start(Call& call, std::int64_t mode) {
   return call.machine.cam().cycle().start(static_cast<sdk::CycleMode>(mode));
 }
 
-nlohmann::json to_json(const sdk::ParkedProgram& parked) {
+nlohmann::json parked_json(const sdk::ParkedProgram& parked) {
   const ToolPose& place = parked.place;
   return {{"mechanism", parked.mechanism},
           {"moves", parked.moves},
@@ -106,7 +106,7 @@ void add_parking_methods(const auto& add) {
           .extension()
           .does([](Call& call) {
             const auto parked = call.machine.cam().parking().parked();
-            return parked ? to_json(*parked) : nlohmann::json::object();
+            return parked ? parked_json(*parked) : nlohmann::json::object();
           }));
 }
 

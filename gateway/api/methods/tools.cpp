@@ -12,14 +12,14 @@ using nlohmann::json;
 
 constexpr Range kToolNumbers{1, kLargestToolNumber};
 
-json to_json(const Tool& tool) {
+json entry_of(const Tool& tool) {
   return {{"ToolNumber", tool.number},          {"Name", tool.name},
           {"Length", tool.length_mm},           {"Radius", tool.radius_mm},
           {"Frame", frame_to_json(tool.frame)}, {"MaxRPM", tool.max_rpm},
           {"MaxTorque", tool.max_torque_nm},    {"NeedsSpindle", tool.needs_spindle}};
 }
 
-json to_json(const std::optional<int>& number) {
+json or_null(const std::optional<int>& number) {
   return number ? json(*number) : json();
 }
 
@@ -28,9 +28,9 @@ tl::expected<json, RpcError> list(Call& call) {
   if (!tools) return tl::unexpected<RpcError>(to_rpc_error(tools.error()));
   const ToolsNow now = call.machine.tools().tools_now();
   json entries = json::array();
-  for (const Tool& tool : *tools) entries.push_back(to_json(tool));
-  return json{{"Mounted", to_json(now.mounted)},
-              {"Wanted", to_json(now.wanted)},
+  for (const Tool& tool : *tools) entries.push_back(entry_of(tool));
+  return json{{"Mounted", or_null(now.mounted)},
+              {"Wanted", or_null(now.wanted)},
               {"Prompt", now.prompt},
               {"Tools", std::move(entries)}};
 }

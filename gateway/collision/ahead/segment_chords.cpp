@@ -22,13 +22,13 @@ class Halving {
   /// False where the kinematics have no joints.
   bool add(double from_s, double to_s) {
     Chord chord{from_s, to_s, {}, {}, {}};
-    if (!joints_at(from_s, 1, chord.from) || !joints_at(to_s, -1, chord.to)) return false;
+    if (!find_joints(from_s, 1, chord.from) || !find_joints(to_s, -1, chord.to)) return false;
     return add(chord);
   }
   [[nodiscard]] std::vector<Chord> take() { return std::move(chords_); }
 
  private:
-  bool joints_at(double s, int side, Chord::Joints& joints) const {
+  bool find_joints(double s, int side, Chord::Joints& joints) const {
     JointPoint point;
     if (segment_.evaluate(s, 0, side, point) != KinematicsStatus::Ok) return false;
     std::copy_n(point.d[0].begin(), segment_.joint_count(), joints.begin());
@@ -40,7 +40,7 @@ class Halving {
     bool straight = chord.to_s - chord.from_s <= kLongest_mm;
     for (const double at : {0.5, 0.25, 0.75}) {
       Chord::Joints joints{};
-      if (!joints_at(chord.from_s + at * (chord.to_s - chord.from_s), 1, joints)) return false;
+      if (!find_joints(chord.from_s + at * (chord.to_s - chord.from_s), 1, joints)) return false;
       if (at == 0.5) middle = joints;
       for (std::size_t j = 0; j < segment_.joint_count(); ++j) {
         const double beside = kUnseen * std::abs(joints[j] - (chord.from[j] + at * (chord.to[j] - chord.from[j])));

@@ -7,9 +7,9 @@
 namespace rmac::gateway {
 namespace {
 
+using Eigen::AlignedBox3d;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-using Box = TriangleTree::Box;
 
 constexpr double kPrecisely = 1e300;
 
@@ -19,12 +19,12 @@ struct Candidate {
   std::uint32_t first, second;
 };
 
-double gap(const Box& a, const Box& b) {
+double gap(const AlignedBox3d& a, const AlignedBox3d& b) {
   return std::sqrt(std::max(0.0, a.squaredExteriorDistance(b)));
 }
 
-Box around(const Convex& convex, const Isometry3d& pose) {
-  Box box;
+AlignedBox3d around(const Convex& convex, const Isometry3d& pose) {
+  AlignedBox3d box;
   for (int c = 0; c < 3; ++c) {
     for (const double sign : {1.0, -1.0}) {
       const Vector3d direction = sign * Vector3d::Unit(c);
@@ -36,7 +36,7 @@ Box around(const Convex& convex, const Isometry3d& pose) {
 }
 
 /// The box, along other axes, around a box.
-Box turned(const Box& box, const Isometry3d& pose) {
+AlignedBox3d turned(const AlignedBox3d& box, const Isometry3d& pose) {
   const Vector3d middle = pose * box.center();
   const Vector3d half = pose.linear().cwiseAbs() * (box.sizes() / 2);
   return {Vector3d(middle - half), Vector3d(middle + half)};
@@ -54,7 +54,7 @@ class Side {
   Side(const Solid& solid, const Isometry3d& pose) : solid_(solid), pose_(pose) {
     if (const Convex* convex = solid.convex()) convex_box_ = around(*convex, pose);
   }
-  [[nodiscard]] Box box(std::uint32_t node) const {
+  [[nodiscard]] AlignedBox3d box(std::uint32_t node) const {
     return solid_.convex() != nullptr ? convex_box_ : turned(solid_.tree().nodes()[node].box, pose_);
   }
   [[nodiscard]] bool leaf(std::uint32_t node) const {
@@ -73,7 +73,7 @@ class Side {
   /// How far a node, or the convex solid, reaches.
   [[nodiscard]] double reach(std::uint32_t node) const {
     if (solid_.convex() != nullptr) return convex_reach_;
-    const Box& box = solid_.tree().nodes()[node].box;
+    const AlignedBox3d& box = solid_.tree().nodes()[node].box;
     return own_.dot(box.center()) + own_size_.dot(box.sizes()) + moved_;
   }
   template <typename Do>
@@ -86,7 +86,7 @@ class Side {
  private:
   const Solid& solid_;
   const Isometry3d& pose_;
-  Box convex_box_;
+  AlignedBox3d convex_box_;
   Vector3d direction_ = Vector3d::Zero(), own_ = Vector3d::Zero(), own_size_ = Vector3d::Zero();
   double moved_ = 0, convex_reach_ = 0;
 };
@@ -97,7 +97,7 @@ void search(const Side& first, const Side& second, const Candidate& at, const Sk
   if (skip(at)) return;
   const bool first_leaf = first.leaf(at.first), second_leaf = second.leaf(at.second);
   if (first_leaf && second_leaf) return look(at);
-  const Box first_box = first.box(at.first), second_box = second.box(at.second);
+  const AlignedBox3d first_box = first.box(at.first), second_box = second.box(at.second);
   const bool open_first =
       second_leaf || (!first_leaf && first_box.sizes().squaredNorm() > second_box.sizes().squaredNorm());
   std::array<Candidate, 2> branches;

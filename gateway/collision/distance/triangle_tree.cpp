@@ -4,6 +4,8 @@
 #include <numeric>
 
 namespace rmac::gateway {
+
+using Eigen::Vector3d;
 namespace {
 
 constexpr std::uint32_t kLeaf = 4;  ///< triangles

@@ -73,8 +73,22 @@ Command Command::add(const std::string& name, const std::string& meaning) {
   return {app_->add_subcommand(name, meaning), chosen_};
 }
 
+namespace {
+
+/// Whose empty word a command would take for none at all: a shell makes one of a variable that is not set.
+bool is_text(const Target& target) {
+  return std::holds_alternative<std::string*>(target) || std::holds_alternative<std::filesystem::path*>(target) ||
+         std::holds_alternative<std::optional<std::string>*>(target);
+}
+
+}  // namespace
+
 Option Command::option(const std::string& name, Target target, const std::string& meaning) {
-  return Option(std::visit([&](auto* value) { return app_->add_option(name, *value, meaning); }, target));
+  CLI::Option* const added = std::visit([&](auto* value) { return app_->add_option(name, *value, meaning); }, target);
+  if (is_text(target)) {
+    added->check([](const std::string& word) { return word.empty() ? "is empty" : ""; });
+  }
+  return Option(added);
 }
 
 Option Command::flag(const std::string& name, bool* target, const std::string& meaning) {

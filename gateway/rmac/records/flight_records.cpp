@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cstdio>
-#include <fstream>
-#include <system_error>
 
+#include "gateway/files/whole_file.hpp"
 #include "gateway/rmac/wire/requests.hpp"
 
 namespace rmac::cli {
@@ -37,11 +35,8 @@ Result<> write_file(const std::string& file, std::string_view text) {
     std::fwrite(text.data(), 1, text.size(), stdout);
     return std::fflush(stdout) == 0 ? Result<>() : fail("standard output cannot be written");
   }
-  std::ofstream output(file, std::ios::trunc | std::ios::binary);
-  output << text;
-  output.close();
-  if (output) return {};
-  return fail(fmt::format("{}: cannot be written: {}", file, std::generic_category().message(errno)));
+  if (auto written = gateway::write_whole(file, text); !written) return fail(written.error().message);
+  return {};
 }
 
 Result<EventNote> record_flight(Connection& connection) {

@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
-#include <system_error>
 
 #include "gateway/configuration/configuration.hpp"
+#include "gateway/files/whole_file.hpp"
 
 namespace rmac::cli {
 namespace {
@@ -67,21 +66,8 @@ Result<std::size_t> write_page(const nlohmann::json& data, const std::string& fi
     }
     text += '\n';
   }
-  // What is there stays until the page is whole; a link goes on leading to it.
-  std::error_code trouble;
-  const fs::path place = fs::weakly_canonical(fs::absolute(file), trouble), part = place.string() + ".part";
-  std::ofstream out(part, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.close();
-  if (out) {
-    fs::rename(part, place, trouble);
-    if (!trouble) return text.size();
-  } else {
-    trouble = {errno, std::generic_category()};
-  }
-  std::error_code ignored;
-  fs::remove(part, ignored);
-  return fail(fmt::format("{}: cannot be written: {}", file, trouble.message()));
+  if (auto written = gateway::write_whole(file, text); !written) return fail(written.error().message);
+  return text.size();
 }
 
 }  // namespace rmac::cli

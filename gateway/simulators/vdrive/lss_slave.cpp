@@ -3,8 +3,6 @@
 namespace rmac::vdrive {
 namespace {
 
-using fieldbus::CanFrame;
-
 // Command specifiers (CiA 305, 3.8)
 enum : std::uint8_t {
   kSwitchAll = 0x04,

@@ -12,7 +12,7 @@ constexpr std::uint32_t kTooLongForPdo = 0x06040042;
 constexpr std::uint32_t kStateForbids = 0x08000022;
 constexpr std::uint8_t kLastSyncType = 240;
 constexpr std::uint8_t kFirstEventType = 254;
-constexpr std::size_t kMostBytes = 8;
+constexpr std::size_t kFrameBytes = 8;
 
 enum class Kind { None, SetpointCommunication, SetpointContents, ToldCommunication, ToldContents };
 
@@ -58,14 +58,14 @@ std::uint32_t PdoSet::check_contents(ObjectAddress object, std::uint32_t value) 
     if (dictionary_.number(object.index, 0) != 0) return kStateForbids;
     return value == 0 ? 0 : dictionary_.check_mapping(value, setpoint);
   }
-  if (value > kMostBytes) return kTooLongForPdo;
+  if (value > kFrameBytes) return kTooLongForPdo;
   std::uint32_t bits = 0;
   for (std::uint8_t sub = 1; sub <= value; ++sub) {
     const auto entry = static_cast<std::uint32_t>(dictionary_.number(object.index, sub));
     if (const std::uint32_t code = dictionary_.check_mapping(entry, setpoint); code != 0) return code;
     bits += entry & 0xFF;
   }
-  return bits > 8 * kMostBytes ? kTooLongForPdo : 0;
+  return bits > 8 * kFrameBytes ? kTooLongForPdo : 0;
 }
 
 std::uint32_t PdoSet::check(ObjectAddress object, std::int64_t value) const {
@@ -149,11 +149,11 @@ CanFrame PdoSet::frame_of(const Told& pdo) const {
   frame.id = pdo.id;
   for (const Mapped& mapped : pdo.contents) {
     const Bytes* bytes = dictionary_.bytes(mapped.object);
-    for (std::size_t i = 0; i < mapped.bytes && frame.size < kMostBytes; ++i) {
+    for (std::size_t i = 0; i < mapped.bytes && frame.size < kFrameBytes; ++i) {
       frame.data.at(frame.size++) = bytes != nullptr && i < bytes->size() ? (*bytes)[i] : std::uint8_t{0};
     }
   }
-  frame.size = static_cast<std::uint8_t>(std::clamp(frame.size + length_change, 0, static_cast<int>(kMostBytes)));
+  frame.size = static_cast<std::uint8_t>(std::clamp(frame.size + length_change, 0, static_cast<int>(kFrameBytes)));
   return frame;
 }
 

@@ -28,7 +28,7 @@ constexpr double kLeastWay = 0.005, kMostWay = 0.05;  ///< of a joint's travel, 
 
 using Joints = std::vector<double>;
 
-double cpu_time_s() {
+double process_time_s() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
@@ -138,7 +138,7 @@ class PlannedMovesCheck {
     frames_ = {Frame{}, given_.tools[static_cast<std::size_t>(program_) % given_.tools.size()]};
     builder_.restart(joints_, frames_);
     moves_.clear();
-    begun_cpu_s_ = cpu_time_s();
+    begun_cpu_s_ = process_time_s();
     for (int i = 0; i < kMoves; ++i) {
       Move move;
       move.id = static_cast<std::int64_t>(moves_.size());
@@ -180,7 +180,7 @@ class PlannedMovesCheck {
   Checked plan() {
     while (!planner_.idle(progress())) {
       planner_.step(progress());
-      if (cpu_time_s() - begun_cpu_s_ > kPlanning_s) {
+      if (process_time_s() - begun_cpu_s_ > kPlanning_s) {
         return fault(fmt::format("the planner works on it for more than {} s", kPlanning_s));
       }
     }

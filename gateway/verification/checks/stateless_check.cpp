@@ -23,7 +23,7 @@ constexpr double kBeside_s = 0.2;        ///< of CPU time of each of two threads
 
 using Answer = std::vector<double>;
 
-double cpu_time_s(clockid_t clock) {
+double clock_s(clockid_t clock) {
   return std::chrono::duration<double>(gateway::cpu_time(clock)).count();
 }
 
@@ -34,10 +34,9 @@ class StatelessCheck {
   tl::expected<std::int64_t, CounterExample> run() {
     for (std::size_t i = 0; i < given_.calls.size(); ++i) take_first_answer(i);
     if (auto fine = misdeed_or(given_.misdeed, {}); !fine) return tl::unexpected(fine.error());
-    const double begun_s = cpu_time_s(CLOCK_PROCESS_CPUTIME_ID);
+    const double begun_s = clock_s(CLOCK_PROCESS_CPUTIME_ID);
     std::int64_t made = 0;
-    for (; made < kRepetitions && cpu_time_s(CLOCK_PROCESS_CPUTIME_ID) - begun_s <= given_.most_cpu_s;
-         made += kAtOnce) {
+    for (; made < kRepetitions && clock_s(CLOCK_PROCESS_CPUTIME_ID) - begun_s <= given_.most_cpu_s; made += kAtOnce) {
       std::shuffle(functions_.begin(), functions_.end(), random_);
       for (const std::vector<std::size_t>& calls : functions_) {
         if (auto fine = misdeed_or(given_.misdeed, repeat(calls)); !fine) return tl::unexpected(fine.error());
@@ -105,11 +104,11 @@ class StatelessCheck {
       std::minstd_rand random(seed);
       Answer room(most_answers_);
       both.arrive_and_wait();
-      const double begun_s = cpu_time_s(CLOCK_THREAD_CPUTIME_ID);
+      const double begun_s = clock_s(CLOCK_THREAD_CPUTIME_ID);
       for (std::int64_t made = 1; !over && odd == count; ++made) {
         const std::size_t i = random() % count;
         if (!answers_as_before(i, room)) odd = i;
-        if (made % kAtOnce == 0 && cpu_time_s(CLOCK_THREAD_CPUTIME_ID) - begun_s > kBeside_s) return;
+        if (made % kAtOnce == 0 && clock_s(CLOCK_THREAD_CPUTIME_ID) - begun_s > kBeside_s) return;
       }
       over = true;
     };

@@ -7,7 +7,7 @@
 namespace rmac::curves {
 namespace {
 
-constexpr double kDegree = 180 / std::numbers::pi;
+constexpr double kInDegrees = 180 / std::numbers::pi;
 
 /// Tip on a line, axis on a great circle. Where the tip rests, s is the turn in degrees, and what little the tip moves
 /// goes in step with it.
@@ -85,7 +85,7 @@ Expected<CurvePtr> make_line(const ToolPose& start, const ToolPose& end) {
   const double tip_mm = distance(start.tip, end.tip);
   const bool turns = turn->angle_rad() > kStartTolerance_axis;
   if (turns && tip_mm < kStartTolerance_mm) {
-    return std::make_unique<LineCurve>(start.tip, end.tip, turn->angle_rad() * kDegree, *turn);
+    return std::make_unique<LineCurve>(start.tip, end.tip, turn->angle_rad() * kInDegrees, *turn);
   }
   if (tip_mm <= kZeroLength_mm) return CurvePtr{};
   return std::make_unique<LineCurve>(start.tip, end.tip, tip_mm, *turn);

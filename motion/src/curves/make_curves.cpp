@@ -18,7 +18,7 @@ Expected<ToolPose> checked(const ToolPose& pose, const char* which) {
   return ToolPose{pose.tip, scaled(1 / length, pose.axis)};
 }
 
-Expected<> check_start(const ToolPose& pose, const CurveStart& start) {
+Expected<> check_start_pose(const ToolPose& pose, const CurveStart& start) {
   if (auto joined = curves::check_start(pose.tip, start); !joined) return joined;
   return check_start_axis(pose.axis, start);
 }
@@ -38,7 +38,7 @@ Expected<CurveList> joined(Shape shape, const CurveStart& start, const Build& bu
   if (!begin) return tl::unexpected(begin.error());
   const auto end = checked(shape.end, "end");
   if (!end) return tl::unexpected(end.error());
-  if (auto fits = check_start(*begin, start); !fits) return tl::unexpected(fits.error());
+  if (auto fits = check_start_pose(*begin, start); !fits) return tl::unexpected(fits.error());
   shape.end = *end;
   return listed(build(shape, start.pose));
 }

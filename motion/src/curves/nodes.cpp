@@ -30,7 +30,7 @@ Bend bend_at(const Curve& curve, double s, int side) {
 
 /// Small turn, and a change of bend that is small relative to it or in the angle it makes (section 5 of the
 /// derivation).
-bool even(double most, double least, double step) {
+bool bends_evenly(double most, double least, double step) {
   constexpr double kChange = 0.15;
   constexpr double kChange_rad = 0.005;
   const double change = most - least;
@@ -47,7 +47,7 @@ void halve(const Curve& curve, const Five& known, std::span<const Bend> inside, 
     double most = 0, least = std::numeric_limits<double>::infinity();
     for (const Bend& here : known) most = std::max(most, here.*bend), least = std::min(least, here.*bend);
     for (const Bend& here : inside) most = std::max(most, here.*bend), least = std::min(least, here.*bend);
-    return !even(most, least, step);
+    return !bends_evenly(most, least, step);
   };
   if (step >= 2 * kNodeSpacing && (uneven(&Bend::path) || uneven(&Bend::axis))) {
     const auto middle =

@@ -10,7 +10,7 @@ namespace rmac {
 namespace {
 
 /// So many segments stay remembered behind the tool, for a retrace; twice as many before they are dropped together.
-constexpr std::size_t kRemembered = 1000;
+constexpr std::size_t kKeptBehind = 1000;
 
 /// Brings what is certain before the gate, or does a part of the work that it takes.
 void hand_over(PathJoiner& joiner, BeforeGate& gate) {
@@ -119,8 +119,8 @@ void LaidPath::travelled(double s, double needed_from) {
   counted_s_ = std::max(counted_s_, s);
 
   const std::size_t behind = view().find(std::min(s, needed_from) - kSamePlace, -1);
-  if (behind < 2 * kRemembered) return;
-  const auto n = static_cast<std::ptrdiff_t>(behind - kRemembered);
+  if (behind < 2 * kKeptBehind) return;
+  const auto n = static_cast<std::ptrdiff_t>(behind - kKeptBehind);
   segments_.erase(segments_.begin(), segments_.begin() + n);
   starts_.erase(starts_.begin(), starts_.begin() + n);
   rest_after_.erase(rest_after_.begin(), rest_after_.begin() + n);

@@ -10,13 +10,13 @@ namespace {
 
 constexpr double kLongest = 64;
 /// Of the longest time seen, this much is still believed after each shorter one.
-constexpr double kRemembered = 0.9;
+constexpr double kPartRemembered = 0.9;
 
 }  // namespace
 
 void PlanningTime::learn(const ServoProgress& progress) noexcept {
   if (began_ >= 0) {
-    cycles_ = std::max(kRemembered * cycles_, static_cast<double>(progress.cycle - began_ - 1));
+    cycles_ = std::max(kPartRemembered * cycles_, static_cast<double>(progress.cycle - began_ - 1));
     began_ = -1;
   }
   if (progress.last_refused != last_refused_) {

@@ -12,7 +12,7 @@ namespace rmac {
 namespace {
 
 /// Steps of all laws that are tried for one answer, those of a check among them.
-constexpr int kMostSteps = 1800;
+constexpr int kMostLawSteps = 1800;
 /// A piece is checked at five places or more, a step looks at one.
 constexpr int kStepsACheck = 4;
 constexpr std::size_t kCheckedAtOnce = 16;
@@ -40,7 +40,7 @@ bool keeps_limits(const LeftPlan& left, const std::vector<LawPiece>& law, const 
 }  // namespace
 
 std::optional<PromptLaw> prompt_stop(const LeftPlan& left, double rest, const FeedRule& feed, int later) {
-  int steps_left = kMostSteps;
+  int steps_left = kMostLawSteps;
   for (const Way& way : kWays) {
     if (steps_left <= 0) break;
     const double t = left.t + (later + way.later) * left.period_s;

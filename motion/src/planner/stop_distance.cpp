@@ -13,7 +13,7 @@ namespace {
 constexpr double kStep_s = 1e-3;
 /// Who takes longer to brake is judged on a line: where the path leaves hardly any braking, a speed next to nothing
 /// would be followed without end.
-constexpr int kMostSteps = 20'000;
+constexpr int kMostBrakingSteps = 20'000;
 
 /// What the joints allow at a place and speed.
 struct Allowed {
@@ -38,10 +38,11 @@ Allowed allowed_at(const JointPoint& p, const std::vector<JointLimits>& joints, 
   return allowed;
 }
 
-double brake(const PathView& path, const std::vector<JointLimits>& joints, const PathState& from, double part) {
+double braking_distance(const PathView& path, const std::vector<JointLimits>& joints, const PathState& from,
+                        double part) {
   PathState at = from;
   JointPoint point;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMostBrakingSteps; ++step) {
     if (!(at.s < path.end()) || path.derivatives(at.s, 1, point) != KinematicsStatus::Ok) break;
     const Allowed allowed = allowed_at(point, joints, at, part);
     // The last ramp takes the acceleration back to zero just when the speed is zero.
@@ -77,7 +78,7 @@ double on_a_line(const PathView& path, const std::vector<JointLimits>& joints, c
 double stop_distance(const PathView& path, const std::vector<JointLimits>& joints, const PathState& from) {
   // Who brakes as hard as he can may find no way through the next bend; with less there is one.
   for (const double part : {0.95, 0.7, 0.45, 0.2}) {
-    const double distance = brake(path, joints, from, part);
+    const double distance = braking_distance(path, joints, from, part);
     if (std::isfinite(distance)) return distance;
   }
   return on_a_line(path, joints, from);

@@ -15,7 +15,7 @@ using curves::difference;
 using curves::dot;
 using curves::unit;
 
-constexpr double kSpacing_mm = 0.1;
+constexpr double kKnotSpacing_mm = 0.1;
 /// Widths: at most this part of the overlap, so that what comes behind it hardly shapes what goes before it; at a free
 /// end, where a spline would rather not bend, this much, and more by this slope behind it; growing by this slope on new
 /// lines.
@@ -25,7 +25,7 @@ constexpr double kFreeEndSlope = 0.3;
 constexpr double kGrowth = 0.4;
 /// Knots' distance in widths, and in lines: closer ones shape nothing that the smoothing leaves.
 constexpr double kKnotsAWidth = 2;
-constexpr double kLeastOfALine = 0.3;
+constexpr double kLeastStepOfALine = 0.3;
 constexpr double kLongestStep_mm = 2;
 /// The part of the tolerance that widths aim at; with every trial a little less, until one is within.
 constexpr double kAim = 0.9, kLessATrial = 0.015, kLeastAim = 0.6;
@@ -60,7 +60,7 @@ std::vector<SplineSample> samples_of(const Polyline& polyline, const LineSpline&
     const double from = std::max(begin + std::max(lead, 0.0), line);
     if (!(from < end)) continue;
     const Vector chord = difference(polyline.vertices[k + 1], polyline.vertices[k]);
-    const auto parts = std::max(1, static_cast<int>(std::round((end - from) / kSpacing_mm)));
+    const auto parts = std::max(1, static_cast<int>(std::round((end - from) / kKnotSpacing_mm)));
     for (int i = 0; i < parts; ++i) {
       const double q = from + (end - from) * i / parts;
       const double place = std::max(place_of(q), begin);
@@ -138,7 +138,7 @@ std::vector<double> knots_for(const DenseLines& lines, const std::vector<SplineS
   const auto& places = lines.polyline.places;
   const auto step = [&](const SplineSample& sample) {
     const double line = places[sample.line + 1] - places[sample.line];
-    const double least = lines.least_step_mm.value_or(kLeastOfALine * line);
+    const double least = lines.least_step_mm.value_or(kLeastStepOfALine * line);
     return std::min(longest, std::max(sample.width_mm / kKnotsAWidth, least));
   };
   const auto steps_from = [&](std::size_t k) {

@@ -20,7 +20,7 @@ using quintic::kDegree;
 
 /// The part of the tolerance that is used: something is left for the blend where the spline meets another move at a
 /// corner.
-constexpr double kPart = 0.95;
+constexpr double kPartForFit = 0.95;
 /// Lines that turn by more meet in a corner that was meant.
 constexpr double kMostTurn = 1.5;
 /// Lines longer than this, in tolerances, may turn up to here where a curve through their ends is out of it: their
@@ -166,7 +166,7 @@ bool LineFit::fit_dense(std::size_t lines, bool ends, Fit& fit) {
   fit.polyline = polyline(lines);
   const double tolerance = waiting_[0]->demand().tolerance_mm, length = fit.polyline.places.back();
   const double third = length / 3, corner = std::min(kCorner * tolerance, third);
-  DenseLines dense{fit.polyline, kPart * tolerance, tolerance, third};
+  DenseLines dense{fit.polyline, kPartForFit * tolerance, tolerance, third};
   if (!goes_on() && begins_at_join_) dense.start_corner_mm = corner;
   if (ends && lines < waiting_.size()) dense.end_corner_mm = corner;
   auto spline = smoothest_along(dense, before_.spline);
@@ -297,7 +297,7 @@ bool LineFit::turn(TipPath& tip, bool ends, Fit& fit) const {
   const auto turning = turning_lines({window, fit.polyline, tip, joints_, before}, fit.overs);
   if (!turning) return false;
   const double third = tip.length / 3, corner = std::min(kCorner * demand.tolerance_mm, third);
-  TurnBounds bounds{kPart * demand.tolerance_rad, third};
+  TurnBounds bounds{kPartForFit * demand.tolerance_rad, third};
   if (!goes_on() && begins_at_join_) bounds.start_corner_mm = corner;
   if (ends && lines < waiting_.size()) bounds.end_corner_mm = corner;
   fit.cut_mm = ends ? tip.length : tip.starts.back();

@@ -19,9 +19,9 @@ using curves::dot;
 using Lines = std::span<const std::shared_ptr<const PathSegment>>;
 
 /// The part of the tolerance that one line for several may use, and below which a line is not to stay alone.
-constexpr double kPart = 0.5;
+constexpr double kPartForMerge = 0.5;
 /// Corners that one line may pass by.
-constexpr std::size_t kMostLines = 64;
+constexpr std::size_t kMostInChain = 64;
 /// A line has at least this much for each one that it stands for: far above what tells two places of a path apart.
 constexpr double kLeastStretch_mm = 1e-5;
 
@@ -33,10 +33,10 @@ bool may_merge(const PathSegment& line) {
 }
 
 double allowed_mm(const PathSegment& line) {
-  return kPart * line.demand().tolerance_mm;
+  return kPartForMerge * line.demand().tolerance_mm;
 }
 double allowed_rad(const PathSegment& line) {
-  return kPart * line.demand().tolerance_rad;
+  return kPartForMerge * line.demand().tolerance_rad;
 }
 
 ToolPose pose_at(const PathSegment& line, double s) {
@@ -106,7 +106,7 @@ void LineMerger::add(std::shared_ptr<const PathSegment> segment, const std::vect
   if (!chain_.empty()) {
     const double allowed = allowed_mm(*chain_.front());
     chain_.push_back(segment);
-    const bool one = chain_.size() <= kMostLines && may_merge(*segment) && alike(*chain_.front(), *segment);
+    const bool one = chain_.size() <= kMostInChain && may_merge(*segment) && alike(*chain_.front(), *segment);
     const Off missed = one ? off(chain_) : Off{};
     if (one && missed.mm <= allowed && missed.rad <= allowed_rad(*segment)) {
       if (distance(begin_of(chain_).tip, end_of(chain_).tip) >= allowed) flush(joints, out);

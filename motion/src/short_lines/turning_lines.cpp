@@ -24,13 +24,13 @@ using curves::unit;
 
 /// Samples are this near to each other, but no more than so many a line, or so that a joint turns by this between them,
 /// and then no more than so many.
-constexpr double kSpacing_mm = 0.1, kTurn_deg = 8;
+constexpr double kNodeSpacing_mm = 0.1, kTurn_deg = 8;
 constexpr int kPlainParts = 10, kMostParts = 64;
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr std::size_t kMostTurns = 3, kSlides = 3;
 constexpr int kNewtonSteps = 3;
 /// Of the lines' lengths, what the tip's path along one is at least.
-constexpr double kLeastOfALine = 0.05;
+constexpr double kLeastReachOfALine = 0.05;
 /// Widths are no more than what the tool travels in this time, where it is slow, and more by this slope beside it.
 constexpr double kWidth_s = 0.025, kSlope = 0.3;
 /// Joints are followed by steps in which the axis turns by this part of its distance from the pole, but not less than
@@ -67,7 +67,7 @@ std::optional<std::vector<double>> places_of(const Polyline& polyline, const Tip
                                               curves::unit(difference(vertices[k + 1], vertices[k]))));
       for (int i = 0; i < kNewtonSteps; ++i)
         s = std::clamp(s - dot(ahead, difference(tip.at(s), vertices[k])), 0.0, tip.length);
-      s = std::max(s, places.back() + kLeastOfALine * line);
+      s = std::max(s, places.back() + kLeastReachOfALine * line);
     }
     if (!(s > places.back())) return std::nullopt;
     places.push_back(s);
@@ -170,7 +170,7 @@ int parts_of(const PathSegment& line, double length, const std::vector<std::size
   double most = 0;
   for (const std::size_t j : turns) most = std::max(most, std::abs(end[j] - begin[j]));
   const int by_turn = std::clamp(static_cast<int>(std::ceil(most / kTurn_deg)), 1, kMostParts);
-  return std::max(std::min(static_cast<int>(std::round(length / kSpacing_mm)), kPlainParts), by_turn);
+  return std::max(std::min(static_cast<int>(std::round(length / kNodeSpacing_mm)), kPlainParts), by_turn);
 }
 
 /// Where a line passes the pole by less than the tolerance: nothing where it does not.
@@ -232,7 +232,7 @@ class Asking {
       const auto over = over_pole(line, at[k], at[k + 1], following_.pole());
       if (!over || !following_.stand(line, line.length())) return false;
       const bool known = std::any_of(overs.begin(), overs.end(), [&](const OverPole& other) {
-        return std::abs(other.place - over->place) < kSpacing_mm;
+        return std::abs(other.place - over->place) < kNodeSpacing_mm;
       });
       if (!known) overs.push_back(*over);
     }

@@ -34,8 +34,8 @@ constexpr Retreat kRetreats[] = {{5, 0.5, 0.7}, {10, 0.5, 0.6}, {20, 0.2, 0.5}, 
 /// Braking stays gentle for so long behind the place.
 constexpr double kPastTrouble_s = 0.012;
 
-/// Bounds of one number.
-struct Bounds {
+/// Range of one number.
+struct Range {
   double low = -kInfinity, high = kInfinity;
 
   /// -most <= offset + slope·x <= most.
@@ -135,8 +135,8 @@ class Brake {
   }
 
   /// The path jerk that the joints' jerks allow at a place.
-  [[nodiscard]] Bounds jerk_bounds(const JointPoint& point, const PathState& at, double part) const {
-    Bounds bounds;
+  [[nodiscard]] Range jerk_bounds(const JointPoint& point, const PathState& at, double part) const {
+    Range bounds;
     for (std::size_t j = 0; j < joints_.size(); ++j) {
       const double turning = at.v * (point.d[3][j] * at.v * at.v + 3 * point.d[2][j] * at.a);
       bounds.take(point.d[1][j], turning, part * joints_[j].max_jerk);
@@ -145,8 +145,8 @@ class Brake {
   }
 
   /// The path acceleration that the joints' accelerations and the move allow.
-  [[nodiscard]] Bounds acceleration_bounds(const JointPoint& point, double v, double part) const {
-    Bounds bounds;
+  [[nodiscard]] Range acceleration_bounds(const JointPoint& point, double v, double part) const {
+    Range bounds;
     for (std::size_t j = 0; j < joints_.size(); ++j)
       bounds.take(point.d[1][j], point.d[2][j] * v * v, part * joints_[j].max_acceleration);
     const PathDemand& demand = path_.segment(index_).demand();
@@ -197,7 +197,7 @@ class Brake {
 
   [[nodiscard]] bool go_on() {
     const double by_geometry = geometry_step() / at_.v;
-    const Bounds begin = jerk_bounds(here_, at_, kMostJerk);
+    const Range begin = jerk_bounds(here_, at_, kMostJerk);
     if (begin.empty()) return false;
     for (double step = std::max(std::min(time_to_rest() / kStepsToRest, by_geometry), kShortestStep_s);
          step > 1e-9 * kShortestStep_s; step *= 0.5) {
@@ -226,14 +226,14 @@ class Brake {
   }
 
   /// The jerk of a step of which the end is about `then`; nothing where no jerk keeps the limits.
-  [[nodiscard]] std::optional<double> jerk_of_step(Bounds allowed, double dt, const PathState& then) {
+  [[nodiscard]] std::optional<double> jerk_of_step(Range allowed, double dt, const PathState& then) {
     for (std::size_t j = 0; j < joints_.size(); ++j) {
       const double d1 = there_.d[1][j], bend = 3 * there_.d[2][j] * then.v;
       allowed.take(bend * dt + d1, there_.d[3][j] * then.v * then.v * then.v + bend * at_.a,
                    kMostJerk * joints_[j].max_jerk);
     }
-    const Bounds allowed_jerk = allowed;
-    const Bounds most = acceleration_bounds(there_, then.v, kMostAcceleration);
+    const Range allowed_jerk = allowed;
+    const Range most = acceleration_bounds(there_, then.v, kMostAcceleration);
     allowed.low = std::max(allowed.low, (most.low - at_.a) / dt);
     allowed.high = std::min(allowed.high, (most.high - at_.a) / dt);
     if (allowed.empty()) {
@@ -242,7 +242,7 @@ class Brake {
       return std::nullopt;
     }
     const double hardest = std::min(acceleration_bounds(there_, then.v, kPart).low, 0.0);
-    const Bounds release = jerk_bounds(there_, then, kPart);
+    const Range release = jerk_bounds(there_, then, kPart);
     const double let_go = letting_go(dt, std::max(release.high, -1e-3 * release.low));
     const double wish = std::max({hardest, let_go, gentle(then), in_time(then)});
     return std::clamp((wish - at_.a) / dt, allowed.low, allowed.high);

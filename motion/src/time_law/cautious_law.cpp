@@ -6,15 +6,15 @@
 namespace rmac {
 namespace {
 
-struct Bounds {
+struct ConstantBounds {
   double speed, acceleration, jerk;
 };
 
 /// Constant path bounds under which each of the three terms of a joint's jerk has a third of its limit, and each of the
 /// two terms of its acceleration a half (docs/derivations/time-law.md, eq. 14).
-Bounds constant_bounds(const PathView& path, const std::vector<JointLimits>& joints, double s_begin, double s_end,
-                       const FeedRule& feed) {
-  Bounds bounds{kInfinity, kInfinity, kInfinity};
+ConstantBounds constant_bounds(const PathView& path, const std::vector<JointLimits>& joints, double s_begin,
+                               double s_end, const FeedRule& feed) {
+  ConstantBounds bounds{kInfinity, kInfinity, kInfinity};
   std::vector<double> d1(joints.size()), d2(joints.size()), d3(joints.size());
   JointPoint point;
   const auto take = [&](double s, int side) {
@@ -63,7 +63,7 @@ Bounds constant_bounds(const PathView& path, const std::vector<JointLimits>& joi
 
 std::vector<LawPiece> cautious_law(const PathView& path, const std::vector<JointLimits>& joints, double s_begin,
                                    double s_end, const FeedRule& feed) {
-  Bounds b = constant_bounds(path, joints, s_begin, s_end, feed);
+  ConstantBounds b = constant_bounds(path, joints, s_begin, s_end, feed);
   const double length = s_end - s_begin;
   // Largest speed whose two ramps fit into the length; the ramp's length grows with the speed.
   if (2 * ramp_length(b.speed, b.acceleration, b.jerk) > length) {

@@ -15,7 +15,7 @@ namespace rmac::rs274 {
 namespace {
 
 /// Of LinuxCNC's ten levels the program itself is the first.
-constexpr std::size_t kDeepest = 9;
+constexpr std::size_t kDeepestCalls = 9;
 
 }  // namespace
 
@@ -168,9 +168,9 @@ void Flow::call(int label, int times, std::size_t place) {
 }
 
 void Flow::enter(std::size_t statement, int more_times, std::size_t place) {
-  if (calls_.size() == kDeepest)
+  if (calls_.size() == kDeepestCalls)
     refuse(place, fmt::format("a call within {0} others; LinuxCNC has {0}, too. Does it call itself without an end?",
-                              kDeepest));
+                              kDeepestCalls));
   endless_.come_again(place);
   calls_.push_back({statement, next_, more_times, repeats_.size()});
   go_behind(statement);

@@ -12,7 +12,7 @@ namespace rmac::rs274 {
 namespace {
 
 /// Blocks within blocks: what nests deeper is no program.
-constexpr std::size_t kDeepest = 100;
+constexpr std::size_t kDeepestBlocks = 100;
 
 /// Whether a line is a % or begins with O, with no more before it than / and N with its digits. Most lines are not, and
 /// a million of them are to be passed in no time.
@@ -147,7 +147,8 @@ void Outline::declare(std::size_t index) {
 
 void Outline::open(std::size_t index) {
   const Statement& statement = statements_[index];
-  if (open_.size() == kDeepest) refuse(statement.place, fmt::format("blocks nested more than {} deep", kDeepest));
+  if (open_.size() == kDeepestBlocks)
+    refuse(statement.place, fmt::format("blocks nested more than {} deep", kDeepestBlocks));
   for (const Block& block : open_) {
     const Statement& outer = statements_[block.begin];
     if (outer.label == statement.label && outer.keyword != Keyword::Sub)

@@ -4,14 +4,20 @@
 
 namespace rmac::fieldbus::canopen {
 
-using namespace sdo_command;
+using sdo_command::kBlockSpecifier;
+using sdo_command::kExpedited;
+using sdo_command::kLastSegment;
+using sdo_command::kSegment;
+using sdo_command::kSequenceBits;
+using sdo_command::kSpecifier;
+using sdo_command::kToggleBit;
 
 namespace {
 
 constexpr std::uint8_t kInitiateExpedited = 0x23;
 constexpr std::uint8_t kInitiateSized = 0x21;
-constexpr std::uint8_t kBlockInitiate = 0xC0;
-constexpr std::uint8_t kBlockEnd = 0xC1;
+constexpr std::uint8_t kBlockDownloadInitiate = 0xC0;
+constexpr std::uint8_t kBlockDownloadEnd = 0xC1;
 constexpr std::uint8_t kMostStalls = 3;
 
 bool sound_block_size(std::uint8_t size) noexcept {
@@ -34,7 +40,7 @@ SdoStep SdoDownload::begin(ObjectAddress object, std::span<const std::uint8_t> d
   data_ = data;
   if (data.size() <= kExpedited || data.size() < block_from_) return begin_without_blocks();
   constexpr std::uint8_t kWithCrcAndSize = 0x06;
-  SdoBytes bytes = sdo_frame(kBlockInitiate | kWithCrcAndSize, object_);
+  SdoBytes bytes = sdo_frame(kBlockDownloadInitiate | kWithCrcAndSize, object_);
   put_long(&bytes[4], static_cast<std::uint32_t>(data_.size()));
   phase_ = Phase::BlockInitiate;
   return SdoStep::send(bytes);
@@ -128,7 +134,7 @@ SdoStep SdoDownload::take_block_ack(const SdoBytes& answer) noexcept {
 
 SdoBytes SdoDownload::block_end() const noexcept {
   const std::size_t in_last = (data_.size() - 1) % kSegment + 1;
-  SdoBytes bytes = sdo_frame(static_cast<std::uint8_t>(kBlockEnd | (kSegment - in_last) << 2));
+  SdoBytes bytes = sdo_frame(static_cast<std::uint8_t>(kBlockDownloadEnd | (kSegment - in_last) << 2));
   if (with_crc_) put_word(&bytes[1], sdo_crc(data_));
   return bytes;
 }

@@ -4,16 +4,22 @@
 
 namespace rmac::fieldbus::canopen {
 
-using namespace sdo_command;
+using sdo_command::kBlockSpecifier;
+using sdo_command::kExpedited;
+using sdo_command::kLastSegment;
+using sdo_command::kSegment;
+using sdo_command::kSequenceBits;
+using sdo_command::kSpecifier;
+using sdo_command::kToggleBit;
 
 namespace {
 
 constexpr std::uint8_t kInitiate = 0x40;
 constexpr std::uint8_t kSegmentRequest = 0x60;
-constexpr std::uint8_t kBlockInitiate = 0xA0;
+constexpr std::uint8_t kBlockUploadInitiate = 0xA0;
 constexpr std::uint8_t kBlockStart = 0xA3;
 constexpr std::uint8_t kBlockAck = 0xA2;
-constexpr std::uint8_t kBlockEnd = 0xA1;
+constexpr std::uint8_t kBlockUploadEnd = 0xA1;
 
 }  // namespace
 
@@ -23,7 +29,7 @@ SdoStep SdoUpload::begin(ObjectAddress object, std::span<std::uint8_t> into) noe
   into_ = into;
   if (into.size() < block_from_) return begin_without_blocks();
   constexpr std::uint8_t kWithCrc = 0x04;
-  SdoBytes bytes = sdo_frame(kBlockInitiate | kWithCrc, object_);
+  SdoBytes bytes = sdo_frame(kBlockUploadInitiate | kWithCrc, object_);
   bytes[4] = block_size_;
   // Up to so many bytes the server may answer with an ordinary upload instead.
   bytes[5] = static_cast<std::uint8_t>(std::min<std::size_t>(block_from_ - 1, 0xFF));
@@ -131,7 +137,7 @@ SdoStep SdoUpload::take_block_end(const SdoBytes& answer) noexcept {
   if (!store({tail_.data(), kSegment - (command >> 2 & 7U)})) return SdoStep::abort(sdo_abort::kMemory);
   if (!complete()) return SdoStep::abort(sdo_abort::kLength);
   if (with_crc_ && sdo_crc(into_.first(stored_)) != word_at(&answer[1])) return SdoStep::abort(sdo_abort::kCrc);
-  return SdoStep::send_and_done(sdo_frame(kBlockEnd));
+  return SdoStep::send_and_done(sdo_frame(kBlockUploadEnd));
 }
 
 }  // namespace rmac::fieldbus::canopen

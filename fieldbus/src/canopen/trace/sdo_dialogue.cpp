@@ -4,11 +4,17 @@
 
 namespace rmac::fieldbus::canopen {
 
-using namespace sdo_command;
+using sdo_command::kAbort;
+using sdo_command::kExpedited;
+using sdo_command::kLastSegment;
+using sdo_command::kSegment;
+using sdo_command::kSequenceBits;
+using sdo_command::kSpecifier;
+using sdo_command::kToggleBit;
 
 namespace {
 
-using Kind = SdoRemark::Kind;
+using Says = SdoRemark::Kind;
 
 /// Beyond so many bytes a value is told as far as it came.
 constexpr std::size_t kMostBytes = 1U << 20U;
@@ -37,11 +43,11 @@ SdoRemark SdoDialogue::from_client(const SdoBytes& bytes) {
   if (phase_ == Phase::BlockWrite && streams_) return take_block_segment(bytes);
   switch (command & kSpecifier) {
     case kUpload:
-      return begin(Kind::Reads, Phase::Read, bytes);
+      return begin(Says::Reads, Phase::Read, bytes);
     case kUploadSegment:
       return goes_on();
     case kDownload: {
-      SdoRemark remark = begin(Kind::Writes, Phase::Write, bytes);
+      SdoRemark remark = begin(Says::Writes, Phase::Write, bytes);
       if (!expedited(command)) return remark;
       store(&bytes[4], expedited_bytes(command));
       last_ = true;
@@ -51,11 +57,11 @@ SdoRemark SdoDialogue::from_client(const SdoBytes& bytes) {
     case kDownloadSegment:
       return take_segment(bytes, Phase::Write);
     case kBlockDownload:
-      if ((command & kEnd) == 0) return begin(Kind::Writes, Phase::BlockWrite, bytes);
+      if ((command & kEnd) == 0) return begin(Says::Writes, Phase::BlockWrite, bytes);
       drop_unused(command >> 2 & 7U);
       return goes_on();
     case kBlockUpload:
-      if ((command & 3U) == 0) return begin(Kind::Reads, Phase::BlockRead, bytes);
+      if ((command & 3U) == 0) return begin(Says::Reads, Phase::BlockRead, bytes);
       if ((command & 3U) == kAcknowledged) return acknowledge(bytes[1]);
       streams_ = (command & 3U) == kStart;
       return goes_on();
@@ -71,35 +77,35 @@ SdoRemark SdoDialogue::from_server(const SdoBytes& bytes) {
   switch (command & kSpecifier) {
     case kTold: {
       // It names the object, so that it is understood without its question, too; a block transfer may be answered so.
-      SdoRemark remark = begin(Kind::Goes, Phase::Read, bytes);
+      SdoRemark remark = begin(Says::Goes, Phase::Read, bytes);
       if (!expedited(command)) return remark;
       store(&bytes[4], expedited_bytes(command));
-      return done(Kind::Read);
+      return done(Says::Read);
     }
     case kSegmentTold: {
       SdoRemark remark = take_segment(bytes, Phase::Read);
-      return remark.kind == Kind::Goes && last_ ? done(Kind::Read) : remark;
+      return remark.kind == Says::Goes && last_ ? done(Says::Read) : remark;
     }
     case kTaken:
     case kSegmentTaken:
-      if (phase_ == Phase::Write && last_) return done(Kind::Written);
+      if (phase_ == Phase::Write && last_) return done(Says::Written);
       return goes_on();
     case kBlockTaken:
       if ((command & 3U) == kAcknowledged) return acknowledge(bytes[1]);
-      if ((command & 3U) == kEnd) return phase_ == Phase::BlockWrite ? done(Kind::Written) : SdoRemark();
+      if ((command & 3U) == kEnd) return phase_ == Phase::BlockWrite ? done(Says::Written) : SdoRemark();
       streams_ = phase_ == Phase::BlockWrite;
       return goes_on();
     case kBlockTold:
       if ((command & kEnd) == 0) return goes_on();
       if (phase_ != Phase::BlockRead) return {};
       drop_unused(command >> 2 & 7U);
-      return done(Kind::Read);
+      return done(Says::Read);
     default:
       return {};
   }
 }
 
-SdoRemark SdoDialogue::begin(Kind kind, Phase phase, const SdoBytes& bytes) {
+SdoRemark SdoDialogue::begin(Says kind, Phase phase, const SdoBytes& bytes) {
   *this = SdoDialogue();
   phase_ = phase;
   object_ = {word_at(&bytes[1]), bytes[3]};
@@ -108,15 +114,15 @@ SdoRemark SdoDialogue::begin(Kind kind, Phase phase, const SdoBytes& bytes) {
 
 SdoRemark SdoDialogue::aborted(const SdoBytes& bytes) {
   *this = SdoDialogue();
-  return {Kind::Aborted, ObjectAddress{word_at(&bytes[1]), bytes[3]}, {}, long_at(&bytes[4])};
+  return {Says::Aborted, ObjectAddress{word_at(&bytes[1]), bytes[3]}, {}, long_at(&bytes[4])};
 }
 
 SdoRemark SdoDialogue::goes_on() const {
   if (phase_ == Phase::Idle) return {};
-  return {Kind::Goes, object_, {}, 0};
+  return {Says::Goes, object_, {}, 0};
 }
 
-SdoRemark SdoDialogue::done(Kind kind) {
+SdoRemark SdoDialogue::done(Says kind) {
   SdoRemark remark{kind, object_, std::move(data_), 0};
   *this = SdoDialogue();
   return remark;

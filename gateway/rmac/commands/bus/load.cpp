@@ -13,7 +13,7 @@ namespace {
 using fieldbus::canopen::BusLoad;
 using fieldbus::canopen::CanopenConfig;
 
-nlohmann::json to_json(const CanopenConfig& config, const BusLoad& load) {
+nlohmann::json load_json(const CanopenConfig& config, const BusLoad& load) {
   return {{"bus", config.interface},
           {"axes", config.axes.size()},
           {"period_s", std::chrono::duration<double>(config.period).count()},
@@ -29,7 +29,7 @@ nlohmann::json to_json(const CanopenConfig& config, const BusLoad& load) {
           {"fits", load.fits()}};
 }
 
-std::vector<std::string> to_row(const CanopenConfig& config, const BusLoad& load) {
+std::vector<std::string> load_row(const CanopenConfig& config, const BusLoad& load) {
   const double heartbeat_percent = load.heartbeat_bits_per_s / config.bit_rate * 100;
   return {config.interface,
           std::to_string(config.axes.size()),
@@ -53,8 +53,8 @@ Result<> show_bus_load(const MachineChoice& choice, bool json) {
   std::string refusal;  // of the first bus that carries too much
   for (const CanopenConfig& config : *buses) {
     const BusLoad load = bus_load(config);
-    list.push_back(to_json(config, load));
-    rows.push_back(to_row(config, load));
+    list.push_back(load_json(config, load));
+    rows.push_back(load_row(config, load));
     if (const auto fits = check_bus_load(config); !fits && refusal.empty()) refusal = fits.error().message;
   }
   if (json) {

@@ -15,14 +15,14 @@ namespace {
 namespace canopen = fieldbus::canopen;
 using canopen::Identity;
 
-Result<std::unique_ptr<fieldbus::SocketCanPort>> open(const std::string& interface) {
+Result<std::unique_ptr<fieldbus::SocketCanPort>> open_bus(const std::string& interface) {
   constexpr std::size_t kBurst = 8;
   auto port = fieldbus::SocketCanPort::open(interface, {}, kBurst);
   if (!port) return fail(port.error().message);
   return std::move(*port);
 }
 
-std::vector<std::string> to_row(const Identity& identity) {
+std::vector<std::string> identity_row(const Identity& identity) {
   const auto hexadecimal = [](std::uint32_t number) { return fmt::format("{:X}h", number); };
   return {hexadecimal(identity.vendor_id), hexadecimal(identity.product_code), hexadecimal(identity.revision_number),
           hexadecimal(identity.serial_number)};
@@ -46,7 +46,7 @@ Expected<std::vector<Identity>> everyone(fieldbus::CanPort& port) {
 }
 
 Result<> scan(const std::string& interface, bool json) {
-  const auto port = open(interface);
+  const auto port = open_bus(interface);
   if (!port) return tl::unexpected(port.error());
   const auto nodes = canopen::lss_scan(**port);
   if (!nodes) return fail(fmt::format("{}: {}", interface, nodes.error().message));
@@ -66,7 +66,7 @@ Result<> scan(const std::string& interface, bool json) {
     return {};
   }
   std::vector<std::vector<std::string>> rows;
-  for (const Identity& node : *nodes) rows.push_back(to_row(node));
+  for (const Identity& node : *nodes) rows.push_back(identity_row(node));
   fmt::print("{}", table({"vendor", "product", "revision", "serial"}, rows));
   return {};
 }
@@ -79,7 +79,7 @@ struct Assignment {
 };
 
 Result<> assign(const Assignment& wanted) {
-  const auto port = open(wanted.interface);
+  const auto port = open_bus(wanted.interface);
   if (!port) return tl::unexpected(port.error());
   std::optional<Identity> identity;
   if (!wanted.identity.empty()) {
@@ -100,7 +100,7 @@ struct BitRate {
 
 Result<> set_bit_rate(const BitRate& wanted) {
   const auto& [interface, bit_rate, delay_s] = wanted;
-  const auto port = open(interface);
+  const auto port = open_bus(interface);
   if (!port) return tl::unexpected(port.error());
   const auto nodes = everyone(**port);
   if (!nodes) return fail(fmt::format("{}: {}", interface, nodes.error().message));

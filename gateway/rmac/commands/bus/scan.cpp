@@ -67,7 +67,7 @@ const DriveDescription* drive_of(const ScannedNode& node, const Known& known) {
   return node.answers ? known.drives.find(node.identity) : nullptr;
 }
 
-nlohmann::json to_json(const ScannedNode& node, const Known& known) {
+nlohmann::json node_json(const ScannedNode& node, const Known& known) {
   nlohmann::json entry{{"node", node.node},
                        {"state", state_text(node)},
                        {"answers", node.answers},
@@ -88,7 +88,7 @@ nlohmann::json to_json(const ScannedNode& node, const Known& known) {
   return entry;
 }
 
-std::vector<std::string> to_row(const ScannedNode& node, const Known& known) {
+std::vector<std::string> node_row(const ScannedNode& node, const Known& known) {
   const auto hexadecimal = [](std::uint32_t number) { return fmt::format("{:X}h", number); };
   if (!node.answers) return {std::to_string(node.node), state_text(node), "answers no SDO", "", "", "", "", "", "", ""};
   const DriveDescription* drive = drive_of(node, known);
@@ -120,13 +120,13 @@ std::string warning(const ScannedNode& node, const Known& known) {
       "node {}: each question was answered twice: two devices have this id, or a gateway repeats frames\n", node.node);
 }
 
-struct Options {
+struct ScanOptions {
   std::string interface;
   std::string folder;            ///< of data sheets; empty: none
   std::filesystem::path drives;  ///< descriptions of drives; empty: the installation's
 };
 
-Result<> scan_bus(const Options& options, bool json) {
+Result<> scan_bus(const ScanOptions& options, bool json) {
   const std::string& interface = options.interface;
   auto sheets = read_sheets(options.folder);
   if (!sheets) return tl::unexpected(sheets.error());
@@ -141,7 +141,7 @@ Result<> scan_bus(const Options& options, bool json) {
   if (!nodes) return fail(fmt::format("{}: {}", interface, nodes.error().message));
   if (json) {
     nlohmann::json list = nlohmann::json::array();
-    for (const ScannedNode& node : *nodes) list.push_back(to_json(node, known));
+    for (const ScannedNode& node : *nodes) list.push_back(node_json(node, known));
     fmt::print("{}\n", list.dump());
     return {};
   }
@@ -152,7 +152,7 @@ Result<> scan_bus(const Options& options, bool json) {
                     interface));
   }
   std::vector<std::vector<std::string>> rows;
-  for (const ScannedNode& node : *nodes) rows.push_back(to_row(node, known));
+  for (const ScannedNode& node : *nodes) rows.push_back(node_row(node, known));
   fmt::print(
       "{}",
       table({"node", "state", "device", "vendor", "product", "revision", "serial", "name", "file", "drive"}, rows));
@@ -163,7 +163,7 @@ Result<> scan_bus(const Options& options, bool json) {
 }  // namespace
 
 void add_bus_scan(Command& bus) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ScanOptions>();
   Command scan = bus.add("scan", "list the CANopen nodes on an interface; refuses a bus on which a machine runs");
   scan.option("INTERFACE", &options->interface, kInterfaceMeaning).required();
   scan.option("--eds", &options->folder, "a folder of EDS and DCF files: say which are the nodes'").existing_folder();

@@ -17,7 +17,7 @@ namespace canopen = fieldbus::canopen;
 namespace eds = fieldbus::eds;
 using canopen::ObjectMeaning;
 
-struct Options {
+struct SdoOptions {
   std::string interface, object, type, eds;
   std::optional<std::string> value;
   int node = 0;
@@ -33,7 +33,7 @@ struct Place {
 };
 
 /// The data sheet of the node: the one that was named, or the one that the machine has for it. Null: there is none.
-Result<std::shared_ptr<const eds::DeviceDescription>> sheet_of(const Options& options) {
+Result<std::shared_ptr<const eds::DeviceDescription>> sheet_of(const SdoOptions& options) {
   using Sheet = std::shared_ptr<const eds::DeviceDescription>;
   if (!options.eds.empty()) {
     auto read = eds::read_device_description(options.eds);
@@ -53,7 +53,7 @@ Result<std::shared_ptr<const eds::DeviceDescription>> sheet_of(const Options& op
   return Sheet();
 }
 
-Result<Place> place_of(const Options& options) {
+Result<Place> place_of(const SdoOptions& options) {
   const auto object = canopen::read_object_address(options.object);
   if (!object) return fail(object.error().message);
   const auto sheet = sheet_of(options);
@@ -76,7 +76,7 @@ Result<std::unique_ptr<fieldbus::SocketCanPort>> open_idle(const std::string& in
   return std::move(*port);
 }
 
-void show(const Place& place, const std::vector<std::uint8_t>& bytes, bool json) {
+void show_value(const Place& place, const std::vector<std::uint8_t>& bytes, bool json) {
   if (!json) {
     fmt::print("{} = {}\n", object_text(place.object, place.meaning), value_text(place.object, place.meaning, bytes));
     return;
@@ -93,22 +93,22 @@ void show(const Place& place, const std::vector<std::uint8_t>& bytes, bool json)
   fmt::print("{}\n", told.dump());
 }
 
-std::chrono::nanoseconds timeout_of(const Options& options) {
+std::chrono::nanoseconds timeout_of(const SdoOptions& options) {
   return std::chrono::milliseconds(std::llround(options.timeout_s * 1000));
 }
 
-Result<> read(const Options& options, bool json) {
+Result<> read_value(const SdoOptions& options, bool json) {
   const auto place = place_of(options);
   if (!place) return tl::unexpected(place.error());
   const auto port = open_idle(options.interface);
   if (!port) return tl::unexpected(port.error());
   const auto bytes = canopen::read_object(**port, place->node, place->object, timeout_of(options));
   if (!bytes) return fail(fmt::format("{}: {}", options.interface, bytes.error().message));
-  show(*place, *bytes, json);
+  show_value(*place, *bytes, json);
   return {};
 }
 
-Result<> write(Options options, bool json) {
+Result<> write_value(SdoOptions options, bool json) {
   // TYPE may be left out; the last word is VALUE in any case.
   if (!options.value) options.value = std::exchange(options.type, {});
   const auto place = place_of(options);
@@ -124,18 +124,18 @@ Result<> write(Options options, bool json) {
   auto done = canopen::check_moves_nothing(**port, place->node, place->object, *bytes);
   if (done) done = canopen::write_object(**port, place->node, place->object, *bytes, timeout_of(options));
   if (!done) return fail(fmt::format("{}: {}", options.interface, done.error().message));
-  show(*place, *bytes, json);
+  show_value(*place, *bytes, json);
   return {};
 }
 
 /// What both commands take first, and the options.
-void add_place(Command& command, Options& options) {
+void add_place(Command& command, SdoOptions& options) {
   command.option("INTERFACE", &options.interface, kInterfaceMeaning).required();
   command.option("NODE", &options.node, "its node id").required().within(1, 127);
   command.option("INDEX:SUB", &options.object, "the object, in hexadecimal: 6041:00, 0x6041:0 or 6041h").required();
 }
 
-void add_options(Command& command, Options& options) {
+void add_options(Command& command, SdoOptions& options) {
   command.option("--eds", &options.eds, "the node's EDS or DCF file: names and types").excludes({"--machine"});
   command.option("--timeout", &options.timeout_s, "s that each answer of the node may take")
       .within(0.001, 60.0)
@@ -147,15 +147,15 @@ void add_options(Command& command, Options& options) {
 void add_bus_sdo(Command& bus) {
   Command sdo = bus.add("sdo", "read and write objects of a node; refuses a bus on which a machine runs");
   sdo.needs_command();
-  const auto reading = std::make_shared<Options>();
+  const auto reading = std::make_shared<SdoOptions>();
   Command reads = sdo.add("read", "tell the value of an object");
   add_place(reads, *reading);
   reads.option("TYPE", &reading->type, "how to read it, unless the EDS or the standard tell: u16, i32, vs, UNSIGNED16");
   add_machine_options(reads, reading->machine);
   add_options(reads, *reading);
-  reads.does(without_appliance([reading](bool json) { return read(*reading, json); }));
+  reads.does(without_appliance([reading](bool json) { return read_value(*reading, json); }));
 
-  const auto writing = std::make_shared<Options>();
+  const auto writing = std::make_shared<SdoOptions>();
   Command writes = sdo.add("write", "change the value of an object; refused while the node's motor has power");
   add_place(writes, *writing);
   writes.option("TYPE", &writing->type, "how to write it, unless the EDS or the standard tell; may be left out")
@@ -163,7 +163,7 @@ void add_bus_sdo(Command& bus) {
   writes.option("VALUE", &writing->value, "decimal, hexadecimal behind 0x, text or pairs of hexadecimal digits");
   add_machine_options(writes, writing->machine);
   add_options(writes, *writing);
-  writes.does(without_appliance([writing](bool json) { return write(*writing, json); }));
+  writes.does(without_appliance([writing](bool json) { return write_value(*writing, json); }));
 }
 
 }  // namespace rmac::cli

@@ -9,13 +9,13 @@ namespace {
 
 using fieldbus::canopen::StoreCommand;
 
-struct Options {
+struct StoreOptions {
   std::string interface;
   int node = 0;
 };
 
 /// Has a node keep its parameters as they are now (1010h), or take the maker's from its next reset on (1011h).
-Result<> store_node(const Options& options, StoreCommand what) {
+Result<> store_node(const StoreOptions& options, StoreCommand what) {
   constexpr std::size_t kBurst = 4;
   auto port = fieldbus::SocketCanPort::open(options.interface, {}, kBurst);
   if (!port) return fail(port.error().message);
@@ -28,8 +28,8 @@ Result<> store_node(const Options& options, StoreCommand what) {
   return {};
 }
 
-void add(Command& bus, const char* name, const char* meaning, StoreCommand what) {
-  const auto options = std::make_shared<Options>();
+void add_storing(Command& bus, const char* name, const char* meaning, StoreCommand what) {
+  const auto options = std::make_shared<StoreOptions>();
   Command store = bus.add(name, meaning);
   store.option("INTERFACE", &options->interface, kInterfaceMeaning).required();
   store.option("NODE", &options->node, "its node id").required().within(1, 127);
@@ -39,9 +39,10 @@ void add(Command& bus, const char* name, const char* meaning, StoreCommand what)
 }  // namespace
 
 void add_bus_store(Command& bus) {
-  add(bus, "store", "have a node keep its parameters as they are now, without power too (1010h)", StoreCommand::Save);
-  add(bus, "restore", "have a node take its maker's parameters from its next reset on (1011h)",
-      StoreCommand::LoadDefaults);
+  add_storing(bus, "store", "have a node keep its parameters as they are now, without power too (1010h)",
+              StoreCommand::Save);
+  add_storing(bus, "restore", "have a node take its maker's parameters from its next reset on (1011h)",
+              StoreCommand::LoadDefaults);
 }
 
 }  // namespace rmac::cli

@@ -14,7 +14,7 @@ namespace {
 
 using fieldbus::canopen::CanopenConfig;
 
-struct Options {
+struct TraceOptions {
   std::string interface, file, record;
   MachineChoice machine;
   TraceView view;
@@ -56,7 +56,7 @@ void tell_lost(const std::string& interface, std::uint64_t lost, std::uint64_t& 
   told = lost;
 }
 
-Result<> trace_bus(const Options& options, const std::vector<CanopenConfig>& buses) {
+Result<> trace_bus(const TraceOptions& options, const std::vector<CanopenConfig>& buses) {
   const std::string& interface = options.interface;
   auto port = fieldbus::SocketCanPort::open(interface, {}, 0);
   if (!port) return fail(port.error().message);
@@ -118,7 +118,7 @@ class Reading {
   std::set<std::string> interfaces_;
 };
 
-Result<> trace_file(const Options& options, const std::vector<CanopenConfig>& buses) {
+Result<> trace_file(const TraceOptions& options, const std::vector<CanopenConfig>& buses) {
   const bool from_input = options.file == "-";
   std::ifstream file;
   if (!from_input) {
@@ -136,7 +136,7 @@ Result<> trace_file(const Options& options, const std::vector<CanopenConfig>& bu
   return reading.finish();
 }
 
-Result<> trace(Options options, bool json) {
+Result<> trace(TraceOptions options, bool json) {
   options.view.json = json;
   if (options.interface.empty() && options.file.empty()) {
     return fail("name the interface to listen to, or the --file to read");
@@ -156,7 +156,7 @@ Result<> trace(Options options, bool json) {
 }  // namespace
 
 void add_bus_trace(Command& bus) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TraceOptions>();
   Command traces = bus.add("trace", "tell what passes on a bus, in words; sends nothing, while a machine runs, too");
   traces.option("INTERFACE", &options->interface,
                 "a CAN interface that is up; of a file, the one whose frames to show");

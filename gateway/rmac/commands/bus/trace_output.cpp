@@ -16,14 +16,14 @@ using fieldbus::canopen::DecodedValue;
 using fieldbus::canopen::FrameDecoder;
 using fieldbus::canopen::FrameKind;
 
-nlohmann::json to_json(const DecodedValue& value) {
+nlohmann::json decoded_json(const DecodedValue& value) {
   nlohmann::json told{{"index", value.object.index}, {"sub", value.object.sub}, {"text", value.text}};
   std::visit([&](const auto& held) { told["value"] = held; }, value.value);
   if (!value.name.empty()) told["name"] = value.name;
   return told;
 }
 
-nlohmann::json to_json(const LoggedFrame& logged, const DecodedFrame& decoded) {
+nlohmann::json decoded_json(const LoggedFrame& logged, const DecodedFrame& decoded) {
   const CanFrame& frame = logged.frame;
   nlohmann::json told{{"time", std::chrono::duration<double>(frame.stamp).count()},
                       {"interface", logged.interface},
@@ -36,7 +36,7 @@ nlohmann::json to_json(const LoggedFrame& logged, const DecodedFrame& decoded) {
   if (decoded.node) told["node"] = *decoded.node;
   if (decoded.abort_code) told["abort_code"] = *decoded.abort_code;
   if (decoded.error_code) told["error_code"] = *decoded.error_code;
-  for (const DecodedValue& value : decoded.values) told["values"].push_back(to_json(value));
+  for (const DecodedValue& value : decoded.values) told["values"].push_back(decoded_json(value));
   return told;
 }
 
@@ -55,7 +55,7 @@ void TraceOutput::show(const LoggedFrame& logged) {
   }
   if (hides(decoded)) return;
   if (view_.json) {
-    fmt::print("{}\n", to_json(logged, decoded).dump());
+    fmt::print("{}\n", decoded_json(logged, decoded).dump());
   } else if (logged.kind == LoggedFrame::Kind::Data) {
     fmt::print("{}  {}\n", to_log_line(logged), decoded.text);
   } else {

@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 constexpr std::int64_t kTurn = 3;
 
 /// A circle from where the tool stands, upwards in Y.
-struct Options {
+struct FollowingOptions {
   double radius_mm = 25;
   double feed_mm_min = 0;  ///< 0: the machine's largest
   std::string picture;     ///< empty: following.png here
@@ -27,7 +27,7 @@ Json pose(double x, double y, double z, const std::vector<double>& axis) {
 
 /// Queues the way to where the tool stands, as nearly as a joint rests; then a quarter to get to speed, the turn that
 /// counts, and a quarter to stop.
-Result<> queue_circle(Connection& connection, const Options& options, const StateNote& now) {
+Result<> queue_circle(Connection& connection, const FollowingOptions& options, const StateNote& now) {
   constexpr std::size_t kPoseNumbers = 6;
   if (now.pose.size() != kPoseNumbers) {
     return fail("the tool has no pose where the joints stand; lead them to where it has one, as with rmac jog");
@@ -55,7 +55,7 @@ Result<> queue_circle(Connection& connection, const Options& options, const Stat
       .and_then([&] { return arc(kTurn + 1, false, right, above); });
 }
 
-Result<> go_round(Connection& connection, const Options& options, const std::string& fault) {
+Result<> go_round(Connection& connection, const FollowingOptions& options, const std::string& fault) {
   const auto now = ask_state(connection);
   if (!now) return tl::unexpected(now.error());
   if (auto queued = queue_circle(connection, options, *now); !queued) return queued;
@@ -65,7 +65,7 @@ Result<> go_round(Connection& connection, const Options& options, const std::str
 }
 
 /// The same, exactly on the circle; the path tolerance is put back.
-Result<> go_round_exactly(Connection& connection, const Options& options, const std::string& fault) {
+Result<> go_round_exactly(Connection& connection, const FollowingOptions& options, const std::string& fault) {
   const auto tolerance = connection.call("RMAC_CAM.GetPathTolerance");
   if (!tolerance) return tl::unexpected(tolerance.error());
   const auto set = [&](const Json& value) {
@@ -87,7 +87,7 @@ void print(const Json& found, const std::string& picture) {
 }
 
 /// The circle test of ISO 230-4, as the drives' encoders show it.
-Result<> measure_following(Connection& connection, Options options, bool json) {
+Result<> measure_following(Connection& connection, FollowingOptions options, bool json) {
   const TemporaryFile record;
   if (options.picture.empty()) options.picture = "following.png";
   if (auto fine = check_picture(options.picture); !fine) return fine;
@@ -117,7 +117,7 @@ Result<> measure_following(Connection& connection, Options options, bool json) {
 }  // namespace
 
 void add_measure_following(Command& rmac) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<FollowingOptions>();
   Command follow = rmac.add("measure-following",
                             "go round a circle from where the tool stands (upwards in Y) and draw what a ballbar would "
                             "(ISO 230-4)");

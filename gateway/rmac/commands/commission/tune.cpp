@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// What moves, and what is aimed at.
-struct Options {
+struct TuneOptions {
   Stroke stroke;
   double bandwidth_hz = 0;  ///< 0: the largest that keeps its margins
   double phase_margin_deg = 40;
@@ -26,7 +26,7 @@ struct Options {
   bool apply = false;
 };
 
-Result<> apply_gains(Connection& connection, const Options& options, const Json& found) {
+Result<> apply_gains(Connection& connection, const TuneOptions& options, const Json& found) {
   if (found["apply"].is_null()) {
     return fail(fmt::format("nothing is changed: {} takes other gains than those that were found; choose a PID law",
                             found["law"].get<std::string>()));
@@ -68,7 +68,7 @@ Result<StateNote> check_machine(Connection& connection, int joint) {
   return state;
 }
 
-std::vector<std::string> program_words(const Options& options, const TemporaryFile& record, double begin_s,
+std::vector<std::string> program_words(const TuneOptions& options, const TemporaryFile& record, double begin_s,
                                        const std::string& picture) {
   return {record.path(),
           std::to_string(options.stroke.joint),
@@ -82,7 +82,7 @@ std::vector<std::string> program_words(const Options& options, const TemporaryFi
 }
 
 /// What the joint answers to swept sines, and what is proposed for it; `found` is what its swings have shown.
-Result<Json> measure_response(Connection& connection, const Options& options, const Json& found,
+Result<Json> measure_response(Connection& connection, const TuneOptions& options, const Json& found,
                               std::vector<std::string> words, const std::string& fault) {
   if (found["before"].is_null()) {
     return fail(fmt::format(
@@ -121,7 +121,7 @@ Result<Json> measure_response(Connection& connection, const Options& options, co
 }
 
 /// Swings, and unless it is not wanted the joint's response.
-Result<Json> find_tuning(Connection& connection, const Options& options, double begin_s, const std::string& picture,
+Result<Json> find_tuning(Connection& connection, const TuneOptions& options, double begin_s, const std::string& picture,
                          const std::string& fault) {
   if (auto moved = swing_at_speeds(connection, options.stroke, fault); !moved) return tl::unexpected(moved.error());
   const TemporaryFile record;
@@ -135,7 +135,7 @@ Result<Json> find_tuning(Connection& connection, const Options& options, double 
   });
 }
 
-Result<> tune(Connection& connection, const Options& options, bool json) {
+Result<> tune(Connection& connection, const TuneOptions& options, bool json) {
   const std::string picture =
       options.picture.empty() ? fmt::format("tune-{}.png", options.stroke.joint) : options.picture;
   if (auto fine = check_picture(picture); !fine) return fine;  // before anything moves
@@ -162,7 +162,7 @@ Result<> tune(Connection& connection, const Options& options, bool json) {
 }  // namespace
 
 void add_tune(Command& rmac) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TuneOptions>();
   Command tuned = rmac.add(
       "tune",
       "move a joint, find its mass, friction, delay and resonances, and propose gains and filters; needs python3-scipy "

@@ -8,13 +8,13 @@ namespace rmac::cli {
 
 namespace {
 
-struct Options {
+struct LoadOptions {
   std::string name;
   bool virtual_mode = false;
   double soften = 1;
 };
 
-Result<> load_softly(Connection& appliance, const Options& options, bool json) {
+Result<> load_softly(Connection& appliance, const LoadOptions& options, bool json) {
   return load_machine(appliance, options.name, options.virtual_mode, options.soften).map([&] {
     if (json || options.soften == 1) return;
     fmt::print("its PIDs are softer by {:g}, and their joints speed up at a quarter, until it is loaded again\n",
@@ -25,7 +25,7 @@ Result<> load_softly(Connection& appliance, const Options& options, bool json) {
 }  // namespace
 
 void add_load(Command& rmac) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<LoadOptions>();
   Command load = rmac.add("load", "make a machine's driver configure the controller");
   load.option("NAME", &options->name, "as `rmac machines` lists it").required();
   load.flag("--virtual", &options->virtual_mode, "setpoints come back as joint values, drives stay untouched");

@@ -13,7 +13,7 @@ namespace rmac::cli {
 
 namespace {
 
-struct Options {
+struct ShowOptions {
   std::string name;
   std::string picture;                ///< empty: none
   std::filesystem::path device_tree;  ///< empty: the installation's
@@ -109,7 +109,7 @@ Result<> plot_machine(const std::string& name, const std::string& picture, const
 }  // namespace
 
 void add_show(Command& rmac) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ShowOptions>();
   Command show = rmac.add("show", "a machine's characteristics; of the loaded one its joints too");
   show.option("NAME", &options->name, "as `rmac machines` lists it").required();
   show.option("--plot", &options->picture, "draw its reach and its joints' limits here; needs python3-matplotlib");

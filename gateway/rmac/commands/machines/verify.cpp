@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct VerifyOptions {
   std::string machine;   ///< its name, or the path of its folder or of its device.json
   fs::path device_tree;  ///< with a path; empty: the installation's
 };
@@ -43,7 +43,7 @@ Result<> verify_machine(Connection& connection, const std::string& name, bool js
 }  // namespace
 
 void add_verify(Command& rmac) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<VerifyOptions>();
   Command verify =
       rmac.add("verify", "check a machine's modules, each in a process of its own; exit code 1 when it is refused");
   verify

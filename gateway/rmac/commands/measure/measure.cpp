@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Options {
+struct MeasureOptions {
   std::string plan;      ///< file
   bool apply = false;    ///< put the frame of the part as it was measured in force
   bool upright = false;  ///< a frame that is not tilted against the tool
@@ -52,7 +52,7 @@ Result<double> tip_radius(Connection& connection, const MeasuringPlan& plan) {
 }
 
 /// The points of features that no tool is judged by; with `tool`, of those that this one cut.
-std::vector<gateway::SurfacePoint> points_of(const MeasuringPlan& plan, std::optional<int> tool) {
+std::vector<gateway::SurfacePoint> touched_points(const MeasuringPlan& plan, std::optional<int> tool) {
   std::vector<gateway::SurfacePoint> points;
   for (const auto& point : plan.points) {
     const auto cut = plan.cut_by.find(point.feature);
@@ -66,7 +66,7 @@ std::vector<ToolFound> find_tools(const MeasuringPlan& plan, const Frame& part, 
   std::set<int> numbers;
   for (const auto& [feature, number] : plan.cut_by) numbers.insert(number);
   std::vector<ToolFound> found;
-  for (const int number : numbers) found.push_back({number, tool_offset(points_of(plan, number), part, axis)});
+  for (const int number : numbers) found.push_back({number, tool_offset(touched_points(plan, number), part, axis)});
   return found;
 }
 
@@ -88,7 +88,7 @@ Frame without_tilt(const Frame& frame, const Vector& axis, const std::vector<gat
 }
 
 /// The tools of the table with what was found; nothing is set yet, so that one that is missing leaves all as they were.
-Result<std::vector<json>> corrected(Connection& connection, const std::vector<ToolFound>& found) {
+Result<std::vector<json>> corrected_tools(Connection& connection, const std::vector<ToolFound>& found) {
   std::vector<json> tools;
   for (const auto& [number, offset] : found) {
     auto tool = read_tool(connection, number);
@@ -102,7 +102,7 @@ Result<std::vector<json>> corrected(Connection& connection, const std::vector<To
 
 /// Puts frame and tools in force; a tool that is in the spindle has its new length at once.
 Result<> apply(Connection& connection, const MeasureReport& report) {
-  const auto tools = corrected(connection, report.tools);
+  const auto tools = corrected_tools(connection, report.tools);
   if (!tools) return tl::unexpected(tools.error());
   if (auto set = set_part_frame(connection, *report.part_frame); !set) return set;
   for (const json& tool : *tools) {
@@ -115,7 +115,7 @@ Result<> apply(Connection& connection, const MeasureReport& report) {
 Result<> evaluate(const MeasuringPlan& plan, const Frame& frame, const Vector& axis, bool upright,
                   MeasureReport& report) {
   report.before = gateway::feature_deviations(plan.points, {});
-  const auto datums = points_of(plan, std::nullopt);
+  const auto datums = touched_points(plan, std::nullopt);
   // A plan for tools alone takes the part to lie where it is said to.
   const auto fit = datums.empty() ? Expected<Frame>() : gateway::fit_surfaces(datums);
   if (!fit) return fail(fit.error().message);
@@ -126,7 +126,7 @@ Result<> evaluate(const MeasuringPlan& plan, const Frame& frame, const Vector& a
   return {};
 }
 
-Result<MeasureReport> measure_and_apply(Connection& connection, MeasuringPlan& plan, const Options& options) {
+Result<MeasureReport> measure_and_apply(Connection& connection, MeasuringPlan& plan, const MeasureOptions& options) {
   const auto frame = read_part_frame(connection);
   if (!frame) return tl::unexpected(frame.error());
   const auto tip_radius_mm = tip_radius(connection, plan);
@@ -148,7 +148,7 @@ Result<MeasureReport> measure_and_apply(Connection& connection, MeasuringPlan& p
 }
 
 /// Measures the points of a plan, and tells how far the part and its features are off.
-Result<> measure(Connection& connection, const Options& options, bool json_wanted) {
+Result<> measure(Connection& connection, const MeasureOptions& options, bool json_wanted) {
   auto plan = read_measuring_plan(options.plan);
   if (!plan) return tl::unexpected(plan.error());
   MeasureReport report;
@@ -167,7 +167,7 @@ Result<> measure(Connection& connection, const Options& options, bool json_wante
 }  // namespace
 
 void add_measure(Command& rmac) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MeasureOptions>();
   Command measured = rmac.add("measure", "measure the points of a plan: where the part lies, how far it is off");
   measured.option("PLAN", &options->plan, "the measuring plan, a JSON file").required();
   measured.flag("--apply", &options->apply, "set the part frame to where the part lies; without it nothing is set");

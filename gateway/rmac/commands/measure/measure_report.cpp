@@ -33,7 +33,7 @@ json features_of(const MeasureReport& report) {
   return features;
 }
 
-json points_of(const MeasuringPlan& plan, const MeasureReport& report) {
+json points_json(const MeasuringPlan& plan, const MeasureReport& report) {
   json points = json::array();
   for (const auto& point : plan.points) {
     json entry{
@@ -74,7 +74,7 @@ void print_tools(const MeasureReport& report) {
 }  // namespace
 
 void print_json(const MeasuringPlan& plan, const MeasureReport& report) {
-  json line{{"features", features_of(report)}, {"points", points_of(plan, report)}, {"applied", report.applied}};
+  json line{{"features", features_of(report)}, {"points", points_json(plan, report)}, {"applied", report.applied}};
   line["part_off"] = report.off ? gateway::frame_to_json(*report.off) : json();
   line["part_frame"] = report.part_frame ? gateway::frame_to_json(*report.part_frame) : json();
   if (!report.off) line["not_aligned"] = report.why_not;

@@ -19,7 +19,7 @@ using gateway::ProbeQualification;
 using nlohmann::json;
 
 /// A reference sphere, and the probe that touches it. Part frame, mm.
-struct Options {
+struct QualifyOptions {
   std::vector<double> sphere;           ///< its centre and its radius
   std::optional<double> tip_radius_mm;  ///< about; none: that of the tool in the spindle
   double clearance_mm = 5;
@@ -41,7 +41,7 @@ std::vector<Vector> directions() {
   return all;
 }
 
-Vector beside(const Options& options, const Vector& direction, double distance_mm) {
+Vector beside(const QualifyOptions& options, const Vector& direction, double distance_mm) {
   Vector place{};
   for (std::size_t i = 0; i < 3; ++i) place[i] = options.sphere[i] + distance_mm * direction[i];
   return place;
@@ -65,7 +65,7 @@ Result<> require_turns_at_zero(Connection& connection, const std::vector<double>
 }
 
 /// The tool with its tip where it was found: the length takes what lies along the tool, its frame the rest.
-Result<json> corrected(Connection& connection, json tool, const ProbeQualification& found) {
+Result<json> corrected_probe(Connection& connection, json tool, const ProbeQualification& found) {
   const auto part = read_part_frame(connection);
   if (!part) return tl::unexpected(part.error());
   Frame turned, seat;
@@ -81,7 +81,7 @@ Result<json> corrected(Connection& connection, json tool, const ProbeQualificati
   return tool;
 }
 
-Result<ProbeQualification> touch_all(Connection& connection, const Options& options, double tip_radius_mm) {
+Result<ProbeQualification> touch_all(Connection& connection, const QualifyOptions& options, double tip_radius_mm) {
   const double radius_mm = options.sphere[3];
   Prober prober(connection, {options.sphere[2] + radius_mm + tip_radius_mm + options.clearance_mm, options.clearance_mm,
                              options.speed_mm_s});
@@ -120,7 +120,7 @@ void print(const ProbeQualification& found, const json& tool, bool applied, bool
 }
 
 /// Touches a sphere that is known, and tells the radius of the probe's tip and how far its centre is off.
-Result<> qualify(Connection& connection, const Options& options, bool json_wanted) {
+Result<> qualify(Connection& connection, const QualifyOptions& options, bool json_wanted) {
   return with_authority(connection, [&]() -> Result<> {
     json tool;
     if (options.apply || !options.tip_radius_mm) {
@@ -137,7 +137,7 @@ Result<> qualify(Connection& connection, const Options& options, bool json_wante
     const auto found = touch_all(connection, options, tip_radius_mm);
     if (!found) return tl::unexpected(found.error());
     if (options.apply) {
-      const auto better = corrected(connection, tool, *found);
+      const auto better = corrected_probe(connection, tool, *found);
       if (!better) return tl::unexpected(better.error());
       if (auto set = set_tool(connection, *better); !set) return set;
     }
@@ -149,7 +149,7 @@ Result<> qualify(Connection& connection, const Options& options, bool json_wante
 }  // namespace
 
 void add_qualify(Command& rmac) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<QualifyOptions>();
   Command qualified =
       rmac.add("qualify", "touch a sphere that is known: the radius of the probe's tip, and how far it is off");
   qualified.option("--sphere", &options->sphere, "its centre, x y z, and its radius, in the part frame, mm")

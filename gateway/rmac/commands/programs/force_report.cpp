@@ -22,7 +22,7 @@ Quantity quantity(gateway::Overload::Of of) {
   return of == gateway::Overload::Of::Torque ? Quantity{"torque", "N·m"} : Quantity{"power", "W"};
 }
 
-Json to_json(const gateway::CuttingShare& share) {
+Json share_json(const gateway::CuttingShare& share) {
   return {{"cutting_s", share.time_s},       {"mean_force_n", share.mean_n},    {"peak_force_n", share.peak_n},
           {"mean_torque_nm", share.mean_nm}, {"peak_torque_nm", share.peak_nm}, {"mean_power_w", share.mean_w},
           {"peak_power_w", share.peak_w}};
@@ -54,14 +54,14 @@ Json forces_json(const CollisionWatch* watch, bool by_move) {
   Json object{{"not_told", watch->forces_not_told()}};
   const gateway::CuttingLoad* const load = watch->load();
   if (load == nullptr) return object;
-  object.update(to_json(load->all()));
+  object.update(share_json(load->all()));
   object["material"] = load->material().name;
   object["source"] = load->material().source;
   object["overloads"] = to_json(load->overloads());
   if (by_move) {
     Json moves = Json::array();
     for (const auto& [move_id, share] : load->moves()) {
-      moves.push_back(to_json(share));
+      moves.push_back(share_json(share));
       moves.back()["move_id"] = move_id;
     }
     object["moves"] = std::move(moves);

@@ -10,12 +10,12 @@ namespace rmac::cli {
 
 namespace {
 
-struct Options {
+struct RunCommand {
   Source source;
   RunOptions run;
 };
 
-void print_json(const RunReport& report) {
+void print_run_json(const RunReport& report) {
   const nlohmann::json line{{"ok", true},
                             {"requests", report.requests},
                             {"moves", report.moves},
@@ -28,7 +28,7 @@ void print_json(const RunReport& report) {
   fmt::print("{}\n", line.dump());
 }
 
-void print_table(const RunReport& report) {
+void print_run_table(const RunReport& report) {
   std::vector<std::vector<std::string>> rows{{"requests", std::to_string(report.requests), ""},
                                              {"moves", std::to_string(report.moves), ""},
                                              {"cycle time", number(report.cycle_time_s), "s"},
@@ -44,7 +44,7 @@ void print_table(const RunReport& report) {
   fmt::print("{}", table({"", "", ""}, rows));
 }
 
-Result<> run_program(Connection& connection, const Options& options, bool json) {
+Result<> run_program(Connection& connection, const RunCommand& options, bool json) {
   const auto program = read_source(options.source);
   if (!program) return tl::unexpected(program.error());
   RunOptions run = options.run;
@@ -52,14 +52,14 @@ Result<> run_program(Connection& connection, const Options& options, bool json) 
   if (isatty(STDIN_FILENO) == 1) run.terminal = STDIN_FILENO;
   const auto report = Runner(connection, *program, run).run();
   if (!report) return tl::unexpected(report.error());
-  (json ? print_json : print_table)(*report);
+  (json ? print_run_json : print_run_table)(*report);
   return {};
 }
 
 }  // namespace
 
 void add_run(Command& rmac) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunCommand>();
   Command run = rmac.add("run",
                          "machine a program, one JSON-RPC request a line; at the terminal, h holds, 50% sets the feed "
                          "override; when held, Enter goes on, a distance in mm runs back, p parks it");

@@ -27,7 +27,7 @@
 namespace rmac::cli {
 namespace {
 
-struct Options {
+struct SimulateOptions {
   Source source;
   std::string machine;                ///< a name in the device tree, or the path of a device.json; empty: the program's
   std::filesystem::path device_tree;  ///< empty: the installation's
@@ -48,7 +48,7 @@ double cpu_time_s() {
   return std::chrono::duration<double>(gateway::cpu_time(CLOCK_PROCESS_CPUTIME_ID)).count();
 }
 
-nlohmann::json to_json(const std::vector<MoveLimit>& limits) {
+nlohmann::json limits_json(const std::vector<MoveLimit>& limits) {
   nlohmann::json list = nlohmann::json::array();
   for (const auto& [move_id, limit] : limits) list.push_back({{"move_id", move_id}, {"limit", limit}});
   return list;
@@ -61,7 +61,7 @@ struct Beside {
   const ViewReport* view = nullptr;          ///< null where no page was asked for
 };
 
-void print_json(const SimulationReport& report, const Beside& beside, bool by_move, double took_s) {
+void print_simulation_json(const SimulationReport& report, const Beside& beside, bool by_move, double took_s) {
   const auto& [watch, material, view] = beside;
   nlohmann::json joints = nlohmann::json::array();
   for (const auto& joint : report.joints) {
@@ -76,7 +76,7 @@ void print_json(const SimulationReport& report, const Beside& beside, bool by_mo
                       {"tool_changes", report.tool_changes}, {"length_mm", report.length_mm},
                       {"joints", std::move(joints)},         {"limited_by_s", std::move(limited_by)},
                       {"collisions", "not checked"},         {"cpu_time_s", took_s}};
-  if (by_move) line["move_limits"] = to_json(report.move_limits);
+  if (by_move) line["move_limits"] = limits_json(report.move_limits);
   if (watch != nullptr) add_collisions(*watch, line);
   if (material != nullptr) line["material"] = to_json(*material);
   line["forces"] = forces_json(watch, by_move);
@@ -89,7 +89,7 @@ void print_json(const SimulationReport& report, const Beside& beside, bool by_mo
   fmt::print("{}\n", line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-void print_table(const SimulationReport& report, const Beside& beside, double took_s) {
+void print_simulation_table(const SimulationReport& report, const Beside& beside, double took_s) {
   const auto& [watch, material, view] = beside;
   std::vector<std::vector<std::string>> rows{
       {"moves", std::to_string(report.moves), ""},
@@ -152,7 +152,7 @@ class StandstillWatch {
 };
 
 /// Refuses what cannot be told of this program, before anything is planned.
-Result<> check_options(const Options& options, const Program& program, bool json) {
+Result<> check_options(const SimulateOptions& options, const Program& program, bool json) {
   if (options.machine.empty() && !program.loads_mechanism) {
     return fail(fmt::format("{}: the program loads no machine; name one with --machine", program.file));
   }
@@ -171,13 +171,13 @@ Result<> check_options(const Options& options, const Program& program, bool json
   return {};
 }
 
-std::filesystem::path materials_of(const Options& options) {
+std::filesystem::path materials_of(const SimulateOptions& options) {
   return options.materials.empty() ? gateway::default_folders().materials : options.materials;
 }
 
 /// Nothing that is written takes the place of what is read, or written otherwise. `collisions` and `shown` may be null.
-Result<> check_written(const Options& options, const std::filesystem::path& tree, const CollisionWatch* collisions,
-                       const ShapedMachine* shown) {
+Result<> check_written(const SimulateOptions& options, const std::filesystem::path& tree,
+                       const CollisionWatch* collisions, const ShapedMachine* shown) {
   std::vector<std::filesystem::path> used = files_in(options.tools);
   used.emplace_back(options.source.file);
   // A machine that the program loads is known when it does.
@@ -205,11 +205,15 @@ Result<> check_written(const Options& options, const std::filesystem::path& tree
 }
 
 /// Null without a set-up.
-Result<std::unique_ptr<CollisionWatch>> open_watch(const Options& options, const std::filesystem::path& tree,
+Result<std::unique_ptr<CollisionWatch>> open_watch(const SimulateOptions& options, const std::filesystem::path& tree,
                                                    gateway::Simulation& simulation) {
   if (options.setup.empty()) return nullptr;
   auto watch = CollisionWatch::open(options.machine, tree, options.setup, options.resolution, materials_of(options));
   if (!watch) return watch;
+  if (!options.materials.empty() && (*watch)->setup().material.empty()) {
+    return fail(
+        fmt::format("{}: names no Material, so that nothing is looked up in --materials", options.setup.string()));
+  }
   // As somebody would who clamped the part there; a program may set another one.
   const auto stands =
       simulation.call("RMAC_CAM.SetPartFrame", {{"PartFrame", gateway::frame_to_json((*watch)->setup().part_frame)}});
@@ -218,14 +222,14 @@ Result<std::unique_ptr<CollisionWatch>> open_watch(const Options& options, const
 }
 
 /// None where no page is asked for.
-Result<std::optional<ShapedMachine>> shown_machine(const Options& options, const std::filesystem::path& tree) {
+Result<std::optional<ShapedMachine>> shown_machine(const SimulateOptions& options, const std::filesystem::path& tree) {
   if (options.view.empty()) return std::nullopt;
   auto machine = read_shaped_machine(options.machine, tree, "there is nothing to show with --view");
   if (!machine) return tl::unexpected(machine.error());
   return std::move(*machine);
 }
 
-Result<> simulate_program(const Options& options, bool json) {
+Result<> simulate_program(const SimulateOptions& options, bool json) {
   const double began_s = cpu_time_s();
   const auto program = read_source(options.source);
   if (!program) return tl::unexpected(program.error());
@@ -273,9 +277,9 @@ Result<> simulate_program(const Options& options, bool json) {
   const Beside beside{watched, material ? &*material : nullptr, view ? &*view : nullptr};
   const double took_s = cpu_time_s() - began_s;
   if (json) {
-    print_json(*report, beside, options.by_move, took_s);
+    print_simulation_json(*report, beside, options.by_move, took_s);
   } else {
-    print_table(*report, beside, took_s);
+    print_simulation_table(*report, beside, took_s);
   }
   if (watched == nullptr) return {};
   const auto met = verdict(*watched), takes = force_verdict(*watched);
@@ -286,7 +290,7 @@ Result<> simulate_program(const Options& options, bool json) {
 }  // namespace
 
 void add_simulate(Command& rmac) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SimulateOptions>();
   Command simulate = rmac.add(
       "simulate", "only plan a program, faster than real time: cycle time, limits, collisions; needs no appliance");
   declare_source(simulate, options->source);

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The importer bounds what it writes, so this ends one that hangs.
-constexpr std::chrono::hours kPatience{1};
+constexpr std::chrono::hours kImportPatience{1};
 
 struct Passed {
   const char* name;
@@ -89,7 +89,7 @@ Result<Program> import(const Source& source, const std::string& dialect) {
         fmt::format("standard input is taken as .rmac; write rmac import --dialect {} - -o - before it", dialect));
   }
   const std::atomic<bool> never = false;
-  auto outcome = gateway::run_child(importer_words(source, dialect), kPatience, never);
+  auto outcome = gateway::run_child(importer_words(source, dialect), kImportPatience, never);
   if (!outcome) return fail(outcome.error().message);
   if (outcome->exit_code != 0) return tl::unexpected(told_by_importer(std::move(outcome->complaint)));
   return read_imported(std::move(outcome->output), source.file);

@@ -5,7 +5,15 @@
 namespace rmac::vdrive {
 namespace {
 
-using namespace fieldbus::eds;
+using fieldbus::eds::bits_of;
+using fieldbus::eds::bytes_of;
+using fieldbus::eds::DataType;
+using fieldbus::eds::DeviceDescription;
+using fieldbus::eds::is_signed;
+using fieldbus::eds::readable;
+using fieldbus::eds::settable_by_pdo;
+using fieldbus::eds::tellable_by_pdo;
+using fieldbus::eds::writable;
 
 // Abort codes (CiA 301, 7.2.4.3.17, table 22)
 constexpr std::uint32_t kWriteOnly = 0x06010001;

@@ -42,7 +42,11 @@ DriveState drive_state(std::uint16_t statusword) noexcept {
 
 namespace {
 
-using namespace controlword;
+using controlword::kEnableOperation;
+using controlword::kEnableVoltage;
+using controlword::kFaultReset;
+using controlword::kNoQuickStop;
+using controlword::kSwitchOn;
 constexpr std::uint16_t kDisableVoltage = 0;
 constexpr std::uint16_t kQuickStop = kEnableVoltage;
 constexpr std::uint16_t kShutdown = kEnableVoltage | kNoQuickStop;

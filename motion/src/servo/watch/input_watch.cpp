@@ -9,7 +9,7 @@ namespace {
 /// mm/s or deg/s; less is rounding.
 constexpr double kStanding = 1e-6;
 
-void raise(ServoFault::Kind kind, std::uint64_t inputs, FaultSink& faults) noexcept {
+void raise_inputs(ServoFault::Kind kind, std::uint64_t inputs, FaultSink& faults) noexcept {
   faults.raise({kind, ServoFault::Part::Io, static_cast<std::uint32_t>(std::countr_zero(inputs)), 0, 0});
 }
 
@@ -22,15 +22,15 @@ void InputWatch::step(std::uint64_t inputs, IndexSet homing, FaultSink& faults) 
   for (const ServoLimit& limit : parts_.limits) {
     if (has(homing, limit.joint)) reached &= ~limit.input;
   }
-  if (pressed != 0) raise(ServoFault::Kind::EmergencyStop, pressed, faults);
-  if (reached != 0) raise(ServoFault::Kind::LimitSwitch, reached, faults);
+  if (pressed != 0) raise_inputs(ServoFault::Kind::EmergencyStop, pressed, faults);
+  if (reached != 0) raise_inputs(ServoFault::Kind::LimitSwitch, reached, faults);
 }
 
 void InputWatch::hold_back(IndexSet live, std::span<const double> velocity_set, FaultSink& faults) const noexcept {
   for (const ServoLimit& limit : parts_.limits) {
     const bool on = (inputs_ & limit.input) != 0;
     if (!on || !has(live, limit.joint) || velocity_set[limit.joint] * limit.direction <= kStanding) continue;
-    raise(ServoFault::Kind::LimitSwitch, limit.input, faults);
+    raise_inputs(ServoFault::Kind::LimitSwitch, limit.input, faults);
     return;
   }
 }

@@ -6,10 +6,11 @@ namespace rmac::gateway {
 namespace {
 
 using testing::HasSubstr;
-using Outcome = ProgramTurn::Outcome;
 
 class TurnOfAProgram : public testing::Test {
  protected:
+  using Outcome = ProgramTurn::Outcome;
+
   Outcome take(const InTurn& step, double t_s, std::uint64_t inputs = 0) {
     news_.set_time(t_s, static_cast<std::int64_t>(t_s * 1000));
     return turn_.take(step, {.t_s = t_s, .inputs = inputs});

@@ -6,10 +6,11 @@ namespace rmac::gateway {
 namespace {
 
 using testing::HasSubstr;
-using Outcome = ToolChange::Outcome;
 
 class ToolSteps : public testing::Test {
  protected:
+  using Outcome = ToolChange::Outcome;
+
   Outcome take(QueueStep step, const ToolChange::Seen& seen = {}) { return tools_.take(step, seen); }
   [[nodiscard]] std::vector<Event> told() { return news_.take().events; }
 

@@ -1,10 +1,14 @@
 #pragma once
 
-#include <chrono>
+#include <array>
+#include <cstdint>
 
 #include "rmac/fieldbus/can/can_port.hpp"
 
 namespace rmac::fieldbus::canopen {
+
+/// What to write to 1010h, without which nothing is stored (CiA 301, 7.5.2.13).
+inline constexpr std::array<std::uint8_t, 4> kSaveSignature{'s', 'a', 'v', 'e'};
 
 /// What a node keeps without power.
 enum class StoreCommand : std::uint8_t {

@@ -12,6 +12,8 @@
 
 namespace rmac::fieldbus::modbus {
 
+inline constexpr std::size_t kAddresses = 65536;  ///< of each table
+
 /// The four tables of a slave (Modbus Application Protocol V1.1b3, 4.3).
 enum class Table : std::uint8_t { Coils, DiscreteInputs, InputRegisters, HoldingRegisters };
 

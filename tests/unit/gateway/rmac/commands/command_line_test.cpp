@@ -48,6 +48,19 @@ TEST_F(CommandLineTest, TellsWrongWordsFromFailures) {
   EXPECT_EQ(run({"hold", "--now"}).exit_code, kExitUsage);
 }
 
+TEST_F(CommandLineTest, RefusesAnEmptyWordWhereATextIsToStand) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"simulate", "a.rmac", "--machine", "DMACXYZ", "--view", ""},
+        {"simulate", "a.rmac", "--machine", ""},
+        {"simulate", ""},
+        {"load", ""},
+        {"run", "a.rmac", "--record", ""}}) {
+    const auto refused = run(words);
+    EXPECT_EQ(refused.exit_code, kExitUsage) << words[0];
+    EXPECT_THAT(refused.err, HasSubstr("is empty"));
+  }
+}
+
 TEST_F(CommandLineTest, TellsAFailureInOneLine) {
   appliance_.refuses("RMAC_CAM.FeedHold", -32001, "nothing\nmoves\x1b[2J\n");
   EXPECT_EQ(run({"hold"}).err, "rmac: nothing?moves?[2J\n");
