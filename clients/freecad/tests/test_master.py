@@ -313,6 +313,29 @@ class DocumentTest(unittest.TestCase):
             with self.assertRaisesRegex(MasterRefused, "not there any more"):
                 ask()
 
+    def test_sizes_of_a_part_that_lies_far_off_are_fitted_too(self):
+        sheet, part = self.plate()
+        for seed in range(2):
+            chance = np.random.default_rng(seed)
+            truth, places = random_placement(chance, 5, 5), scattered(part.Shape, 5, chance)
+            off = [-0.08 if abs(place.point[2] - 7) < 1e-6 and place.normal[2] > 0.9 else 0.0 for place in places]
+            fit = fit_parameters(part, sheet, ["Depth", "Width"], lain(places, truth, off))
+            np.testing.assert_allclose(fit.values, (5.08, 9), atol=2e-5)
+            np.testing.assert_allclose(corners(fit.placement), corners(truth), atol=5e-5)
+
+    def test_a_placement_is_corrected_once(self):
+        _, part = self.plate()
+        touched, _ = self.measured(part, 0, 0, 1)
+        fit = fit_placement(part.Shape, touched)
+        correct_placement(part, fit)
+        corrected = part.Placement
+        with self.assertRaisesRegex(MasterRefused, "corrected already"):
+            correct_placement(part, fit)
+        np.testing.assert_allclose(part.Placement.Matrix.A, corrected.Matrix.A, atol=1e-12)
+        self.document.undo()
+        correct_placement(part, fit)
+        np.testing.assert_allclose(part.Placement.Matrix.A, corrected.Matrix.A, atol=1e-12)
+
     def test_an_object_that_is_attached_is_refused_and_stays(self):
         _, part = self.plate()
         touched, _ = self.measured(part, 0, 0, 1)

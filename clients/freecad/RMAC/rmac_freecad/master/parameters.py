@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rmac_freecad.master.model import Model, NoFace, measured_points
-from rmac_freecad.master.placement import INSTRUMENT_MM
+from rmac_freecad.master.placement import INSTRUMENT_MM, fit_placement
 from rmac_freecad.master.refusal import MasterRefused, document_of
 from rmac_freecad.master.rigid import FREEDOMS, check_held, covariance, placement_of, matrix_of, rows, spread_of
 
@@ -43,7 +43,8 @@ def fit_parameters(feature, sheet, names, touched, instrument_mm=INSTRUMENT_MM):
     shapes = _Shapes(document, feature, sheet, names)
     document.openTransaction("Look at parameters")
     try:
-        values, rotation, shift = np.array(nominal), np.eye(3), np.zeros(3)
+        start = fit_placement(shapes.at(nominal), touched, instrument_mm)  # else a part that lies far off is taken for sizes that are
+        values, rotation, shift = np.array(nominal), matrix_of(start.turn), start.shift
         before = None
         for _ in range(MOST_ROUNDS):
             points = (measured - centre - shift) @ rotation + centre

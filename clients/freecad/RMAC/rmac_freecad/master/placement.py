@@ -26,6 +26,7 @@ class PlacementFit:
     shift: np.ndarray  # of that centre
     turn: np.ndarray  # rad, about x, y, z
     covariance: np.ndarray  # of shift and turn, one standard deviation squared
+    stood: FreeCAD.Placement  # the shape's, as it was taken to lie
 
     @property
     def uncertainty(self):
@@ -69,7 +70,7 @@ def fit_placement(shape, touched, instrument_mm=INSTRUMENT_MM):
     else:
         raise MasterRefused("the fit does not come to rest; is this the part that was measured?")
     placement = placement_of(rotation, centre + shift - rotation @ centre)
-    return PlacementFit(placement, before, off, centre, shift, _turn_of(rotation), covariance(jacobian, off, instrument_mm))
+    return PlacementFit(placement, before, off, centre, shift, _turn_of(rotation), covariance(jacobian, off, instrument_mm), shape.Placement)
 
 
 def _turn_of(rotation):
@@ -99,6 +100,8 @@ def correct_placement(feature, fit):
         raise MasterRefused(f"an expression rules the placement of {feature.Label}; correct what it refers to")
     if getattr(feature, "MapMode", "Deactivated") != "Deactivated":
         raise MasterRefused(f"{feature.Label} is attached, and would be put back when what it is attached to changes; correct that, or detach it")
+    if not np.allclose(feature.getGlobalPlacement().Matrix.A, fit.stood.Matrix.A, rtol=0, atol=1e-9):
+        raise MasterRefused(f"{feature.Label} does not stand where the shape stood to which the fit was made; it may have been corrected already: fit anew, to its shape as it stands in the document")
     outer = feature.getGlobalPlacement() * feature.Placement.inverse()
     document.openTransaction(f"Correct where {feature.Label} lies")
     feature.Placement = outer.inverse() * fit.placement * outer * feature.Placement
