@@ -61,6 +61,9 @@ class WhatIsThereTest(unittest.TestCase):
         sunk = block_without(bore(5, -4), Part.makeCone(2.5, 4.5, 2, Vector(20, 15, 10)))
         self.assertEqual([(hole.top, hole.through) for hole in recognise(sunk).holes], [(12, True)])
         self.assertEqual(len(recognise(sunk).free_form), 1)
+        plain = block_without(bore(5, -4))
+        rounded = plain.makeFillet(2, [edge for edge in plain.Edges if isinstance(edge.Curve, Part.Circle) and edge.CenterOfMass.z > 11])
+        self.assertEqual([(round(hole.top, 6), hole.through) for hole in recognise(rounded).holes], [(12, True)])
 
     def test_what_is_not_open_above_is_neither_hole_nor_pocket(self):
         self.assertEqual(self.holes(bore(5, -4, 9)), [], "it is drilled from below")
@@ -77,6 +80,17 @@ class WhatIsThereTest(unittest.TestCase):
         self.assertEqual(self.holes(bore(6, -4, y=0.0), Part.makeBox(60, 5, 2, Vector(0, 0, 5))), [])
         self.assertEqual(self.holes(bore(6, -4), groove), [(6, 0, 12, True)])
 
+    def test_an_island_whose_wall_is_where_a_floor_is_looked_at_is_no_roof(self):
+        island = Part.makeBox(6, 4, 12, Vector(13, 13, 0))  # places are at tenths of the floor's sides: X 13, 19, …
+        found = recognise(block_without(Part.makeBox(30, 16, 20, Vector(10, 7, 6)).cut(island)))
+        self.assertEqual([(recess.z, recess.islands) for recess in found.recesses], [(6, 1)])
+
+    def test_of_many_holes_each_is_found(self):
+        places = [(3 + 5.5 * i, 3 + 4 * j, -4 if (i + j) % 2 else 5) for i in range(10) for j in range(6)]
+        found = recognise(block_without(Part.makeCompound([bore(2, z, x=x, y=y) for x, y, z in places]))).holes
+        np.testing.assert_allclose(sorted((hole.x, hole.y, hole.bottom) for hole in found), sorted((x, y, max(z, 0)) for x, y, z in places), atol=1e-9)
+        self.assertEqual(sum(hole.through for hole in found), 30)
+
     def test_halves_are_put_together_wherever_they_are(self):
         for number in range(1, 30):
             shape, x = Part.makeBox(60, 30, 12), 10 + number * 25.4 / 32
@@ -86,6 +100,9 @@ class WhatIsThereTest(unittest.TestCase):
 
     def test_a_pocket_goes_up_over_fillets_and_chamfers_of_its_walls(self):
         box = Part.makeBox(30, 16, 20, Vector(10, 7, 5))
+        upright = box.makeFillet(3, [edge for edge in box.Edges if edge.BoundBox.ZLength > 1])
+        floor = upright.makeFillet(1, [edge for edge in upright.Edges if abs(edge.BoundBox.ZMax - 5) < 1e-6])
+        self.assertEqual([(round(one.z, 6), round(one.top, 6)) for one in recognise(block_without(floor)).recesses], [(5, 12)])
         rounded = block_without(box.makeFillet(2, box.Edges))
         rim = [edge for edge in rounded.Edges if abs(edge.BoundBox.ZMin - 12) < 1e-6 and 5 < edge.CenterOfMass.x < 45 and 5 < edge.CenterOfMass.y < 25]
         for shape in (rounded, rounded.makeChamfer(0.5, rim)):
@@ -115,7 +132,7 @@ class StrangersTest(unittest.TestCase):
 
     def test_what_there_is_to_machine_is_found_from_the_shape(self):
         found = recognise(open_step(self.written(plate())).Shape)
-        self.assertEqual([(recess.z, recess.top, recess.islands) for recess in found.recesses], [(7.0, 12.0, 1)])
+        self.assertEqual([(recess.z, round(recess.top, 6), recess.islands) for recess in found.recesses], [(7.0, 12.0, 1)])
         self.assertEqual(len(found.recesses[0].walls), 8 + 1)
         holes = [(round(hole.x, 6), round(hole.y, 6), round(hole.diameter_mm, 6), round(hole.bottom, 6), round(hole.top, 6), hole.through) for hole in found.holes]
         self.assertEqual(holes, [(34, 8, 5, 0, 12, True), (34, 20, 8, 5, 12, False)])

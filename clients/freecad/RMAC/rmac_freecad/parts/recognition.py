@@ -99,20 +99,26 @@ class _Looking:
         top = min(self._top_of(other) for other in walls)
         return Recess(name, z, top, len(islands), tuple(dict.fromkeys([*walls, *around])))
 
+    def _is_apart(self, other, by):
+        """Whether the part keeps off a body or a line, which lies in it whole or not at all where no face is near; far faces are not looked at, of which there may be many."""
+        near = (face for face in self._faces.values() if face.BoundBox.intersect(other.BoundBox))
+        return all(face.distToShape(other)[0] > by for face in near) and not self._shape.isInside(other.Vertexes[0].Point, 1e-7, False)
+
     def _is_open_above(self, face, z):
         up = Vector(0, 0, self._shape.BoundBox.ZMax + 1 - z)
-        feet = [face.valueAt(*place) + Vector(0, 0, 2 * CLEAR_MM) for place in _places(face)]
-        return all(self._shape.distToShape(Part.makeLine(foot, foot + up))[0] > CLEAR_MM for foot in feet)
+        places = [face.valueAt(*place) for place in _places(face)]
+        feet = [foot + Vector(0, 0, 2 * CLEAR_MM) for foot in places if all(edge.distToShape(Part.Vertex(foot))[0] > 2 * CLEAR_MM for edge in face.Edges)]
+        return all(self._is_apart(Part.makeLine(foot, foot + up), CLEAR_MM) for foot in feet)
 
     def _top_of(self, name):
         """Of a wall, with what goes on above it, as above a fillet."""
-        top = self._faces[name].BoundBox.ZMax
+        _, top = _heights(self._faces[name])
         above = [other for edge in self._faces[name].Edges for other in self._beside(edge, name) if self._rises(other, top)]
         return max((self._top_of(other) for other in set(above)), default=top)
 
     def _rises(self, name, z):
-        box = self._faces[name].BoundBox
-        return box.ZMin > z - 1e-3 and box.ZMax > z + 1e-3 and not _level(self._faces[name])
+        bottom, top = _heights(self._faces[name])
+        return bottom > z - 1e-3 and top > z + 1e-3 and not _level(self._faces[name])
 
     def _holes(self):
         """Cylinders that are hollow, upright, whole, and open above as wide as they are; halves of one are put together."""
@@ -148,11 +154,11 @@ class _Looking:
     def _is_clear(self, x, y, radius, a, b):
         """Whether a drill as wide as that meets nothing between two heights."""
         drill = Part.makeCylinder(0.999 * radius, b - a, Vector(x, y, a))
-        return self._shape.distToShape(drill)[0] > 0.0005 * radius
+        return self._is_apart(drill, 0.0005 * radius)
 
     def _mouths(self, x, y, top):
-        """Up to where countersinks and wider bores go, which may not have been cut when the hole is."""
-        return [face.BoundBox.ZMax for face in self._faces.values() if isinstance(face.Surface, (Part.Cylinder, Part.Cone)) and _is_upright(face) and _is_around(face, x, y) and face.BoundBox.ZMin > top - 1e-3 and _is_hollow(face)]
+        """Up to where countersinks, roundings and wider bores go, which may not have been cut when the hole is."""
+        return [face.BoundBox.ZMax for face in self._faces.values() if isinstance(face.Surface, (Part.Cylinder, Part.Cone, Part.Toroid)) and _is_upright(face) and _is_around(face, x, y) and face.CenterOfMass.z > top and _is_hollow(face)]
 
     def _is_point(self, face, holes):
         """Of a drill, at the end of one of the holes."""
@@ -207,6 +213,12 @@ def _stacked(bores):
         else:
             stacks.append([bore])
     return stacks
+
+
+def _heights(face):
+    """Of a wall: it ends at its edges, and a box round the whole of it is wider than a rounding is."""
+    boxes = [edge.BoundBox for edge in face.Edges if not edge.Degenerated]
+    return min(box.ZMin for box in boxes), max(box.ZMax for box in boxes)
 
 
 def _is_upright(face):
