@@ -73,7 +73,7 @@ class _Looking:
         recesses = [recess for name in self._faces if (recess := self._recess(name)) is not None]
         return Found(
             tuple(name for name, face in self._faces.items() if _is_free_form(face) and not self._is_point(face, holes)),
-            tuple(recess for recess in recesses if not any(set(recess.walls) <= one for one in round_ones)),
+            tuple(recess for recess in recesses if not any(set(recess.walls) <= one for one in round_ones) and self._is_open_above(self._faces[recess.floor], recess.z)),
             holes,
             tuple(name for name, face in self._faces.items() if _level(face) == 1 and abs(face.CenterOfMass.z - box.ZMax) < SAME_MM),
             outline, sides,
@@ -94,8 +94,6 @@ class _Looking:
         inner = [wire for wire in face.Wires if not wire.isSame(face.OuterWire)]
         islands = [wire for wire in inner if all(self._rises(other, z) for edge in wire.Edges for other in self._beside(edge, name))]
         around = [other for wire in islands for edge in wire.Edges for other in self._beside(edge, name)]
-        if not self._is_open_above(face, z):
-            return None
         top = min(self._top_of(other) for other in walls)
         return Recess(name, z, top, len(islands), tuple(dict.fromkeys([*walls, *around])))
 
