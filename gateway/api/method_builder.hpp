@@ -43,6 +43,11 @@ struct Parameter {
     spec.optional = true;
     return {std::move(spec)};
   }
+  /// Optional, and null stands for it too.
+  Parameter<std::optional<T>> or_null() && {
+    spec.null_is_none = true;
+    return std::move(*this).optional();
+  }
 };
 
 template <typename T>
@@ -126,7 +131,7 @@ struct IsOptional<std::optional<T>> : std::true_type {};
 /// One argument as T, or the message that names the parameter, the value and what goes there.
 template <typename T>
 bool take(const nlohmann::json* argument, const ParameterSpec& spec, T& out, RpcError& error) {
-  if (argument == nullptr) return true;  // optional and left out
+  if (argument == nullptr || (spec.null_is_none && argument->is_null())) return true;  // optional and left out
   Decoded<T> decoded{T{}};
   decode_into(*argument, spec, decoded);
   if (decoded) {

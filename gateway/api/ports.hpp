@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gateway/api/rpc_error.hpp"
+#include "gateway/collision/ahead/guard_port.hpp"
 #include "gateway/device_driver_manager/device_driver_manager.hpp"
 #include "gateway/modules/module_loader.hpp"
 #include "gateway/record/flight_record.hpp"
@@ -86,6 +87,7 @@ class MachinePort {
   [[nodiscard]] virtual sdk::RmacConfig& config() = 0;
   [[nodiscard]] virtual DevicePort& device() = 0;
   [[nodiscard]] virtual ToolPort& tools() = 0;
+  [[nodiscard]] virtual GuardPort& guard() = 0;
   /// The mechanism in force, or nullptr.
   [[nodiscard]] virtual const sdk::DeviceObject* mechanism() const = 0;
   [[nodiscard]] virtual CycleSample sample() const = 0;

@@ -57,6 +57,10 @@ const char* to_string(Event::Kind kind) noexcept {
       return "ProgramStopped";
     case Event::Kind::Bus:
       return "Bus";
+    case Event::Kind::CollisionAhead:
+      return "CollisionAhead";
+    case Event::Kind::NotChecked:
+      return "NotChecked";
   }
   return "unknown";
 }

@@ -37,6 +37,7 @@ struct ParameterSpec {
   Range range;
   const Enumeration* enumeration = nullptr;
   bool optional = false;
+  bool null_is_none = false;  ///< of an optional one: null is the same as to leave it out
   std::string note;
 };
 

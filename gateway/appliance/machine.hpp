@@ -67,6 +67,7 @@ class Machine final : public MachinePort {
   sdk::RmacConfig& config() override { return controller_.config(); }
   DevicePort& device() override { return device_; }
   ToolPort& tools() override { return controller_.tools(); }
+  GuardPort& guard() override { return collision_guard(controller_); }
   const sdk::DeviceObject* mechanism() const override { return controller_.mechanism(); }
   CycleSample sample() const override { return controller_.sample(); }
   const CycleTimes& cycle_times() const override { return controller_.cycle_times(); }

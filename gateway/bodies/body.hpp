@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "gateway/bodies/triangle_mesh.hpp"
 #include "rmac/motion/pose.hpp"
 
 namespace rmac::gateway {
@@ -23,10 +25,11 @@ struct ConeShape {
 struct SphereShape {
   double radius = 0;
 };
-/// A closed surface of triangles in a file; coordinates times `unit_mm` are mm.
+/// A closed surface of triangles in a file, or here; coordinates times `unit_mm` are mm.
 struct MeshShape {
   std::filesystem::path file;
   double unit_mm = 1;
+  std::shared_ptr<const TriangleMesh> surface{};  ///< instead of the file; not yet looked at
 };
 
 using SolidShape = std::variant<BoxShape, ConeShape, SphereShape, MeshShape>;

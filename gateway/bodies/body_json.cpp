@@ -5,7 +5,9 @@
 #include <strings.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
@@ -19,6 +21,7 @@ using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr double kInch_mm = 25.4;
+constexpr double kFarthest_mm = 1e5;
 
 tl::unexpected<Error> wrong(const std::string& pointer, const std::string& what) {
   return failure(MinorCode::InvalidParameterValue, pointer + what);
@@ -87,7 +90,68 @@ Expected<Frame> read_frame(const Json& object, const std::string& pointer) {
   return normalized(frame);
 }
 
-Expected<SolidShape> read_shape(const Json& object, const std::string& pointer, const fs::path& folder) {
+namespace {
+
+/// Three numbers that a mesh may have; none: it is something else.
+template <typename T>
+std::optional<std::array<T, 3>> three(const Json& entry, double least, double most) {
+  if (!entry.is_array() || entry.size() != 3) return std::nullopt;
+  std::array<T, 3> all{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Json& value = entry[i];
+    const bool fits = std::is_integral_v<T> ? value.is_number_integer() : value.is_number();
+    if (!fits || !(value.get<double>() >= least && value.get<double>() <= most)) return std::nullopt;
+    all[i] = value.get<T>();
+  }
+  return all;
+}
+
+/// The triangles that stand in the document itself.
+Expected<SolidShape> read_surface(const Json& shape, const std::string& pointer, double unit_mm) {
+  if (!shape.contains("Points") || !shape.contains("Triangles")) {
+    return wrong(pointer, " needs \"File\", or both \"Points\" and \"Triangles\"");
+  }
+  const Json &points = shape["Points"], &triangles = shape["Triangles"];
+  TriangleMesh mesh;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto point = three<double>(points[i], -kFarthest_mm, kFarthest_mm);
+    if (!point) {
+      return wrong(pointer, fmt::format("/Points/{} is no place: three numbers of -{:g} to {:g}", i, kFarthest_mm,
+                                        kFarthest_mm));
+    }
+    mesh.points.push_back(*point);
+  }
+  const double last = static_cast<double>(points.size()) - 1;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto triangle = three<std::uint32_t>(triangles[i], 0, last);
+    if (!triangle) {
+      return wrong(pointer,
+                   fmt::format("/Triangles/{} is no triangle: three numbers of Points, 0 to {:.0f}", i, last));
+    }
+    mesh.triangles.push_back(*triangle);
+  }
+  return MeshShape{{}, unit_mm, std::make_shared<const TriangleMesh>(std::move(mesh))};
+}
+
+Expected<SolidShape> read_mesh_shape(const Json& shape, const std::string& pointer, const MeshFolder& folder) {
+  const double unit_mm = shape.value("Unit", "mm") == "inch" ? kInch_mm : 1.0;
+  if (!shape.contains("File")) return read_surface(shape, pointer, unit_mm);
+  if (shape.contains("Points") || shape.contains("Triangles")) {
+    return wrong(pointer, " has \"File\" and triangles of its own; give it one of both");
+  }
+  if (!folder) {
+    return wrong(pointer, "/File names a file, and none is read here; send the surface itself, as \"Points\" and "
+                          "\"Triangles\"");
+  }
+  return mesh_file(shape.at("File").get<std::string>(), pointer, *folder)
+      .map([&](const fs::path& file) -> SolidShape {
+        return MeshShape{file, unit_mm};
+      });
+}
+
+}  // namespace
+
+Expected<SolidShape> read_shape(const Json& object, const std::string& pointer, const MeshFolder& folder) {
   if (object.size() != 1) {
     return wrong(pointer,
                  fmt::format(" has {} shapes; it must have one: Box, Cylinder, Cone, Sphere or Mesh", object.size()));
@@ -103,14 +167,10 @@ Expected<SolidShape> read_shape(const Json& object, const std::string& pointer, 
   if (kind == "Cone") {
     return ConeShape{shape.at("Radius").get<double>(), shape.value("TopRadius", 0.0), shape.at("Height").get<double>()};
   }
-  const double unit_mm = shape.value("Unit", "mm") == "inch" ? kInch_mm : 1.0;
-  return mesh_file(shape.at("File").get<std::string>(), pointer + "/Mesh", folder)
-      .map([&](const fs::path& file) -> SolidShape {
-        return MeshShape{file, unit_mm};
-      });
+  return read_mesh_shape(shape, pointer + "/Mesh", folder);
 }
 
-Expected<Body> read_body(const Json& object, const std::string& pointer, const fs::path& folder) {
+Expected<Body> read_body(const Json& object, const std::string& pointer, const MeshFolder& folder) {
   Body body;
   body.name = object.value("Name", "");
   body.link = object.value("Link", "");

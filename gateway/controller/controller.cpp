@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <thread>
+#include <utility>
 
 #include "gateway/buses/built_in_interfaces.hpp"
 #include "gateway/buses/report/bus_report_json.hpp"
@@ -98,7 +99,10 @@ struct Controller::Impl {
 Controller::Impl::Impl(ControllerOptions controller_options)
     : options(std::move(controller_options)),
       link(std::make_unique<ServoLink>(FlightRecorder::history_cycles(options.flight_recorder, options.period_s))),
-      supervisor({.queue_capacity = options.queue_capacity, .jog_while_waiting = options.jog_while_waiting}, *link),
+      supervisor({.queue_capacity = options.queue_capacity,
+                  .jog_while_waiting = options.jog_while_waiting,
+                  .guard_in_thread = !options.stepped},
+                 *link),
       thread(thread_options(options), *link, supervisor),
       flights(options.flight_recorder, options.period_s, link->history, [this] { return to_json(registry.reports()); }),
       announcer(*link, [this](std::uint64_t generation) { return reconfiguration.of_generation(generation); }),
@@ -269,6 +273,10 @@ const CycleTimes& Controller::cycle_times() const noexcept {
 
 fieldbus::FieldbusReport bus_reports(const Controller& controller) {
   return controller.impl_->registry.reports();
+}
+
+GuardPort& collision_guard(Controller& controller) {
+  return controller.impl_->cam.guard();
 }
 
 const nlohmann::json& bus_summary(const Controller& controller) {

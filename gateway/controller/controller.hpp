@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gateway/buses/bus_registry.hpp"
+#include "gateway/collision/ahead/guard_port.hpp"
 #include "gateway/record/flight_recorder_options.hpp"
 #include "gateway/servo/clock.hpp"
 #include "gateway/servo/cycle_times.hpp"
@@ -148,6 +149,7 @@ class Controller {
  private:
   friend fieldbus::FieldbusReport bus_reports(const Controller& controller);
   friend const nlohmann::json& bus_summary(const Controller& controller);
+  friend GuardPort& collision_guard(Controller& controller);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
@@ -156,5 +158,7 @@ class Controller {
 [[nodiscard]] fieldbus::FieldbusReport bus_reports(const Controller& controller);
 /// What the topic `state` tells of them, as of the latest look.
 [[nodiscard]] const nlohmann::json& bus_summary(const Controller& controller);
+/// What a controller holds its paths against.
+[[nodiscard]] GuardPort& collision_guard(Controller& controller);
 
 }  // namespace rmac::gateway

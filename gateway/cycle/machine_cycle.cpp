@@ -43,6 +43,7 @@ MachineCycle::MachineCycle(Options options, ServoLink& link)
       program_turn(wishes, news),
       marks(wishes, link.marks),
       steps({queue, tools, program_turn, sequencer, marks}),
+      guard(options.guard_in_thread),
       options_(options),
       link_(link) {}
 
@@ -51,46 +52,50 @@ CycleObservation MachineCycle::observe(const ServoStatus& status) {
   seen.t_s = status.t_s;
   news.set_time(status.t_s, status.progress.cycle);
   marks.settle(status.marks_passed);
-  if (!mechanism_) return seen;
+  if (!in_force_.mechanism) return seen;
   seen.moves_left = queue.planned();
   seen.done = queue.left() == 0 && queue.steps().empty();
-  if (status.generation != generation_) {
+  if (status.generation != in_force_.generation) {
     seen.spindles_at_speed = false;  // nobody knows
     return seen;
   }
-  const Planner& planner = mechanism_->planner;
+  const Planner& planner = in_force_.mechanism->planner;
   seen.at_rest = !status.moving && planner.at_rest(status.progress);
   seen.retraced = seen.at_rest && planner.retraced(status.progress);
   seen.at_end = seen.at_rest && planner.at_end();
+  seen.blocked = seen.at_rest && planner.blocked();
   seen.moves_done = status.moves_done;
   seen.follows = status.follows;
   seen.homings = status.homings;
   seen.reference_lost = status.reference_lost;
-  seen.device = &mechanism_->device;
+  seen.device = &in_force_.mechanism->device;
   seen.faulted = status.state == ServoState::Faulted;
   seen.emergency_stop = seen.faulted && status.fault.kind == ServoFault::Kind::EmergencyStop;
-  seen.spindles_at_speed = spindles_at_speed(*mechanism_, wishes.now(), status);
-  seen.air = has_air(*mechanism_, link_.history);
+  seen.spindles_at_speed = spindles_at_speed(*in_force_.mechanism, wishes.now(), status);
+  seen.air = has_air(*in_force_.mechanism, link_.history);
   const Measurement& measurement = probe.measurement();
   seen.measures = measurement.pending() && seen.moves_left <= measurement.steps();
   return seen;
 }
 
 void MachineCycle::settle(const ServoStatus& status) {
-  if (mechanism_ && sequencer.state() == CycleState::Running && wishes.turn_on_again()) await_spindles();
+  if (in_force_.mechanism && sequencer.state() == CycleState::Running && wishes.turn_on_again()) await_spindles();
   const CycleObservation seen = observe(status);
   watch_probe(seen, status);
   watch_path(seen, status);
   apply_verdict(sequencer.step(seen), status);
   lead_back(seen, status);
+  heed_guard(seen);
   take_steps(status);
 }
 
 void MachineCycle::watch_path(const CycleObservation& seen, const ServoStatus& status) {
-  if (!mechanism_ || status.generation != generation_) return;
+  if (!in_force_.mechanism || status.generation != in_force_.generation) return;
   const bool waits = sequencer.waits_for_spindle() && !sequencer.phase().positions() && seen.at_rest;
   const bool should_move = sequencer.travels() && sequencer.state() == CycleState::Running && seen.follows && !waits &&
-                           queue.planned() > 0 && feed.effective_percent() > 0 && !mechanism_->planner.off_path();
+                           queue.planned() > 0 && feed.effective_percent() > 0 &&
+                           !in_force_.mechanism->planner.off_path() && !seen.blocked &&
+                           !in_force_.mechanism->planner.waits_for_gate();
   const auto wrong =
       path_watch_.step({status.t_s, should_move, status.move_id, status.s_mm, status.progress.departure});
   if (!wrong || is_faulted(sequencer.state())) return;
@@ -99,7 +104,7 @@ void MachineCycle::watch_path(const CycleObservation& seen, const ServoStatus& s
 }
 
 void MachineCycle::lead_back(const CycleObservation& seen, const ServoStatus& status) {
-  if (!mechanism_ || status.generation != generation_ || !mechanism_->planner.off_path()) {
+  if (!in_force_.mechanism || status.generation != in_force_.generation || !in_force_.mechanism->planner.off_path()) {
     told_.beside = false;
     return;
   }
@@ -110,7 +115,7 @@ void MachineCycle::lead_back(const CycleObservation& seen, const ServoStatus& st
     }
     return;
   }
-  auto led = mechanism_->planner.rejoin({status.position_set.data(), status.joint_count});
+  auto led = in_force_.mechanism->planner.rejoin({status.position_set.data(), status.joint_count});
   if (led) return;
   news.tell(Event::Kind::Fault,
             fmt::format("going back to the path, which a stop has left: {}; jog away from there, and send the program "
@@ -121,12 +126,35 @@ void MachineCycle::lead_back(const CycleObservation& seen, const ServoStatus& st
   tell_state();
 }
 
+void MachineCycle::heed_guard(const CycleObservation& seen) {
+  for (std::string& remark : guard.take_remarks()) news.tell(Event::Kind::NotChecked, std::move(remark));
+  const auto& obstacle = guard.obstacle();
+  if (!seen.blocked) told_.obstacle = false;
+  if (!obstacle || !seen.blocked || is_faulted(sequencer.state())) return;
+  if (!std::exchange(told_.obstacle, true)) {
+    Event ahead;
+    ahead.kind = Event::Kind::CollisionAhead;
+    ahead.move_id = obstacle->move_id;
+    ahead.message = described(*obstacle);
+    ahead.code = MinorCode::Other;
+    news.tell_now(std::move(ahead));
+  }
+  if (sequencer.phase().runs<CyclePhase::Program>() != nullptr) {
+    (void)sequencer.hold();
+  } else if (sequencer.phase().positions() && sequencer.state() == CycleState::Running) {
+    (void)sequencer.stop();
+  } else {
+    return;
+  }
+  tell_state();
+}
+
 std::string MachineCycle::beside_path(const ServoStatus& status) const {
   return fmt::format(
       ", beside the path: no plan to stop on it was there within two cycles, so each joint came to rest by itself; the "
       "farthest is {:.3f} mm or degrees from where it left. FeedResume and CycleStart go back there first, at {:.0f} % "
       "of the joints' speeds",
-      mechanism_->planner.distance_to_path({status.position_set.data(), status.joint_count}),
+      in_force_.mechanism->planner.distance_to_path({status.position_set.data(), status.joint_count}),
       100 * Planner::kRejoinSpeed);
 }
 
@@ -137,8 +165,8 @@ void MachineCycle::notice_fault() {
 }
 
 void MachineCycle::watch_probe(const CycleObservation& seen, const ServoStatus& status) {
-  if (!mechanism_) return;
-  if (status.generation != generation_) {
+  if (!in_force_.mechanism) return;
+  if (status.generation != in_force_.generation) {
     probe.measurement().abandon();
     return;
   }
@@ -159,14 +187,14 @@ void MachineCycle::apply_verdict(const CycleSequencer::Verdict& verdict, const S
     wishes.change([until_s](ServoWishes& wish) { wish.moves_until_s = until_s; });
     jogs_.store(verdict.jog_until_s.has_value(), std::memory_order_release);
   }
-  if (mechanism_ && verdict.command) {
+  if (in_force_.mechanism && verdict.command) {
     link_.stops.planned.store(*verdict.command == PathCommand::Stop, std::memory_order_release);
-    mechanism_->planner.command(*verdict.command);
+    in_force_.mechanism->planner.command(*verdict.command);
   }
-  if (mechanism_ && verdict.clear_queue) empty_queue(status);
+  if (in_force_.mechanism && verdict.clear_queue) empty_queue(status);
   if (verdict.spindle_timed_out) tell_spindle_timeout(status);
   if (verdict.came_to_rest) {
-    const bool beside = mechanism_ && mechanism_->planner.off_path();
+    const bool beside = in_force_.mechanism && in_force_.mechanism->planner.off_path();
     told_.beside = beside;
     news.tell(Event::Kind::Stopped, describe(*verdict.came_to_rest) + (beside ? beside_path(status) : std::string()),
               code_of(*verdict.came_to_rest));
@@ -177,7 +205,7 @@ void MachineCycle::apply_verdict(const CycleSequencer::Verdict& verdict, const S
 
 void MachineCycle::tell_spindle_timeout(const ServoStatus& status) {
   std::string speeds;
-  for (std::size_t i = 0; i < mechanism_->device.spindles.size(); ++i) {
+  for (std::size_t i = 0; i < in_force_.mechanism->device.spindles.size(); ++i) {
     speeds += fmt::format("{}spindle {} turns at {:.0f} of {:.0f} rpm", i == 0 ? "" : ", ", i, status.spindle_rpm[i],
                           wishes.now().spindle_rpm[i]);
   }
@@ -207,10 +235,11 @@ void MachineCycle::tell_state() {
 }
 
 void MachineCycle::take_steps(const ServoStatus& status) {
-  while (!queue.steps().empty() && mechanism_ && status.generation == generation_ && !is_faulted(sequencer.state())) {
+  while (!queue.steps().empty() && in_force_.mechanism && status.generation == in_force_.generation &&
+         !is_faulted(sequencer.state())) {
     steps.hand_on();  // what is handed on is seen to be there
     const CycleObservation seen = observe(status);
-    switch (steps.take(seen, {seen.t_s, link_.history.latest().inputs, mechanism_->virtual_mode()})) {
+    switch (steps.take(seen, {seen.t_s, link_.history.latest().inputs, in_force_.mechanism->virtual_mode()})) {
       case QueueSteps::Came::Nothing:
         return;
       case QueueSteps::Came::Done:
@@ -219,7 +248,8 @@ void MachineCycle::take_steps(const ServoStatus& status) {
         await_spindles();
         continue;
       case QueueSteps::Came::ToolMounted:
-        mechanism_->planner.clear();  // what was cut with another tool is not retraced with this one
+        in_force_.mechanism->planner.clear();  // what was cut with another tool is not retraced with this one
+        guard.set_tool(tools.last_mounted());
         continue;
       case QueueSteps::Came::Held:
       case QueueSteps::Came::Failed:
@@ -231,11 +261,13 @@ void MachineCycle::take_steps(const ServoStatus& status) {
 
 Planning::Pace MachineCycle::advance(const ServoStatus& status) {
   settle(status);
-  if (!mechanism_ || status.generation != generation_) return Planning::Pace::Calm;
+  if (!in_force_.mechanism || status.generation != in_force_.generation) return Planning::Pace::Calm;
   if (!is_faulted(sequencer.state())) {
-    mechanism_->planner.rest_follows(!queue.steps().empty());
-    mechanism_->planner.step(status.progress);
-    if (!mechanism_->planner.idle(status.progress)) return Planning::Pace::Planning;
+    in_force_.mechanism->planner.rest_follows(!queue.steps().empty());
+    in_force_.mechanism->planner.step(status.progress);
+    // In virtual time nothing moves meanwhile.
+    if (in_force_.mechanism->planner.waits_for_gate()) return Planning::Pace::Sending;
+    if (!in_force_.mechanism->planner.idle(status.progress)) return Planning::Pace::Planning;
   }
   return pace(status);
 }
@@ -250,14 +282,14 @@ Planning::Pace MachineCycle::pace(const ServoStatus& status) {
   }
   const bool between = !queue.steps().empty() && !tools.asked();
   const bool waiting = state == CycleState::Running && (left > 0 || between || sequencer.waits_for_spindle());
-  const bool coming_to_rest = status.moving || !mechanism_->planner.at_rest(status.progress);
+  const bool coming_to_rest = status.moving || !in_force_.mechanism->planner.at_rest(status.progress);
   const bool busy = waiting || coming_to_rest || sequencer.phase().homes() || state == CycleState::Stopping ||
                     status.state == ServoState::Enabling;
   return busy && !is_faulted(state) ? Planning::Pace::Busy : Planning::Pace::Calm;
 }
 
 Expected<> MachineCycle::ready_for_move() {
-  if (!mechanism_) {
+  if (!in_force_.mechanism) {
     return failure(MinorCode::Other, "there is no mechanism; load one with Device.Load before sending moves");
   }
   const CycleState state = sequencer.state();
@@ -280,7 +312,7 @@ Expected<> MachineCycle::ready_for_move() {
   if (state == CycleState::Stopping || !seen.at_rest) {
     return failure(MinorCode::Other, "the machine is still coming to rest; send moves when it has stopped");
   }
-  if (now.generation != generation_ || !now.follows) {
+  if (now.generation != in_force_.generation || !now.follows) {
     return failure(MinorCode::Other, "the drives are not enabled yet; send moves when they are");
   }
   queue.begin_here(now.moves_done);
@@ -308,7 +340,7 @@ Expected<std::size_t> MachineCycle::add(std::vector<BuiltMove> built) {
 }
 
 Expected<> MachineCycle::require_rest(const char* what) {
-  if (!mechanism_) return {};
+  if (!in_force_.mechanism) return {};
   const CycleObservation seen = observe(status());
   if (probe.measurement().pending()) {
     return failure(MinorCode::Other,
@@ -334,8 +366,8 @@ Expected<> MachineCycle::require_rest(const char* what) {
 std::size_t MachineCycle::moves_left() {
   // Samples tell of a move that is done before the planning thread comes to count it.
   const ServoStatus now = status();
-  if (mechanism_ && now.generation == generation_ && !is_faulted(sequencer.state())) {
-    mechanism_->planner.follow(now.progress);
+  if (in_force_.mechanism && now.generation == in_force_.generation && !is_faulted(sequencer.state())) {
+    in_force_.mechanism->planner.follow(now.progress);
   }
   const std::size_t left = queue.left();
   const Measurement& measurement = probe.measurement();
@@ -347,17 +379,17 @@ void MachineCycle::empty_queue(const ServoStatus& status) {
   wishes.forget_later();
   marks.settle(status.marks_passed);
   marks.drop();
-  tools.drop(queue.clear(status.progress.cycle, status.generation == generation_ ? status.moves_done : 0));
+  tools.drop(queue.clear(status.progress.cycle, status.generation == in_force_.generation ? status.moves_done : 0));
   program_turn.drop();
 }
 
 void MachineCycle::apply_feed() {
-  if (mechanism_) mechanism_->planner.set_override(feed.effective_percent());
+  if (in_force_.mechanism) in_force_.mechanism->planner.set_override(feed.effective_percent());
 }
 
 void MachineCycle::await_spindles() {
   double patience_s = 0;
-  for (const sdk::Spindle& spindle : mechanism_->device.spindles) {
+  for (const sdk::Spindle& spindle : in_force_.mechanism->device.spindles) {
     patience_s = std::max(patience_s, spindle.speed_timeout_s);
   }
   sequencer.spindle_commanded(patience_s);
@@ -365,20 +397,28 @@ void MachineCycle::await_spindles() {
 
 std::shared_ptr<Mechanism> MachineCycle::install(std::shared_ptr<Mechanism> next, std::uint64_t generation,
                                                  bool keep_running) {
-  std::swap(mechanism_, next);
-  if (next) next->planner.give_way_to(nullptr);
-  if (mechanism_) mechanism_->planner.give_way_to(&interruption);
-  generation_ = generation;
-  builder_ = mechanism_ ? &mechanism_->builder : nullptr;
+  std::swap(in_force_.mechanism, next);
+  if (next) {
+    next->planner.give_way_to(nullptr);
+    next->planner.set_gate(nullptr);
+  }
+  guard.forget();
+  guard.wait_until_idle();
+  if (in_force_.mechanism) {
+    in_force_.mechanism->planner.give_way_to(&interruption);
+    in_force_.mechanism->planner.set_gate(guard.on() ? &guard : nullptr);
+  }
+  in_force_.generation = generation;
+  builder_ = in_force_.mechanism ? &in_force_.mechanism->builder : nullptr;
   wishes.forget_later();
   tools.drop(queue.forget());
   program_turn.drop();
   marks.drop();
   path_watch_.restart();
-  queue.install(mechanism_ ? &mechanism_->planner : nullptr);
+  queue.install(in_force_.mechanism ? &in_force_.mechanism->planner : nullptr);
   apply_feed();
   const ServoStatus now = status();
-  probe.install(mechanism_ && mechanism_->virtual_mode(), now.probe);
+  probe.install(in_force_.mechanism && in_force_.mechanism->virtual_mode(), now.probe);
   sequencer.mechanism_changed(keep_running);
   news.tell({QueueChange::Kind::Replaced, 0, now.progress.cycle, {}});
   settle(now);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "gateway/collision/ahead/collision_guard.hpp"
 #include "gateway/cycle/output_marks.hpp"
 #include "gateway/cycle/program_turn.hpp"
 #include "gateway/cycle/queue_steps.hpp"
@@ -35,6 +36,7 @@ class MachineCycle {
     /// still sending must not find its queue run dry because time flew.
     std::chrono::milliseconds client_grace{20};
     bool jog_while_waiting = false;  ///< see `CycleSequencer`
+    bool guard_in_thread = true;     ///< see `CollisionGuard`
   };
 
   MachineCycle(Options options, ServoLink& link);
@@ -53,6 +55,7 @@ class MachineCycle {
   FeedOverride feed GUARDED_BY(lock);
   OutputMarks marks GUARDED_BY(lock);
   QueueSteps steps GUARDED_BY(lock);
+  CollisionGuard guard GUARDED_BY(lock);
 
   /// Takes a turn of the gateway: `function(sequencer, observation)` commands the cycle states; then acts on what it
   /// changed.
@@ -120,7 +123,7 @@ class MachineCycle {
   /// Puts a mechanism in force, or none; the one before.
   [[nodiscard]] std::shared_ptr<Mechanism> install(std::shared_ptr<Mechanism> next, std::uint64_t generation,
                                                    bool keep_running) REQUIRES(lock);
-  [[nodiscard]] const std::shared_ptr<Mechanism>& mechanism() const REQUIRES(lock) { return mechanism_; }
+  [[nodiscard]] const std::shared_ptr<Mechanism>& mechanism() const REQUIRES(lock) { return in_force_.mechanism; }
   /// That of the mechanism in force, which there must be. Gateway thread, with a turn or without: building takes long,
   /// and planning goes on meanwhile.
   [[nodiscard]] PathBuilder& builder() noexcept { return *builder_; }
@@ -134,19 +137,25 @@ class MachineCycle {
   /// From beside the path the way back to it comes first.
   void lead_back(const CycleObservation& seen, const ServoStatus& status) REQUIRES(lock);
   [[nodiscard]] std::string beside_path(const ServoStatus& status) const REQUIRES(lock);
+  /// Holds a program, and ends a jog, that rests before a collision.
+  void heed_guard(const CycleObservation& seen) REQUIRES(lock);
   void tell_state() REQUIRES(lock);
   [[nodiscard]] Planning::Pace pace(const ServoStatus& status) REQUIRES(lock);
 
+  struct InForce {
+    std::shared_ptr<Mechanism> mechanism;
+    std::uint64_t generation = 0;
+  };
   /// What clients know already.
   struct Told {
     CycleState state = CycleState::Idle;
-    bool beside = false;  ///< the machine rests beside its path
+    bool beside = false;    ///< the machine rests beside its path
+    bool obstacle = false;  ///< a collision lies ahead
   };
 
   const Options options_;
   ServoLink& link_;  ///< free of locks itself
-  std::shared_ptr<Mechanism> mechanism_ GUARDED_BY(lock);
-  std::uint64_t generation_ GUARDED_BY(lock) = 0;
+  InForce in_force_ GUARDED_BY(lock);
   PathBuilder* builder_ = nullptr;  ///< the gateway thread's alone
   std::atomic<bool> jogs_{false};   ///< written with a turn, read without
   PathWatch path_watch_ GUARDED_BY(lock);

@@ -14,6 +14,7 @@ const char* waits_for(MachineCycle& cycle) REQUIRES(cycle.lock) {
   if (waits_for_moves(cycle.sequencer.phase(), seen)) return "moves";
   if (cycle.feed.percent() == 0) return "override";
   if (!seen.at_rest || cycle.sequencer.phase().positions()) return "";
+  if (cycle.mechanism() && cycle.mechanism()->planner.waits_for_gate()) return "check";
   if (cycle.tools.asked()) return "tool";
   if (const char* const waits = cycle.program_turn.waits_for(); *waits != '\0') return waits;
   return cycle.sequencer.waits_for_spindle() ? "spindle" : "";
@@ -36,11 +37,6 @@ Expected<> MotionSupervisor::add_steps(const char* function, std::vector<QueueSt
   cycle_.queue.add_steps(std::move(steps), std::move(as_sent));
   cycle_.steps.hand_on();
   return {};
-}
-
-void MotionSupervisor::set_optional_stops(bool on) {
-  const GatewayTurn turn(cycle_.lock);
-  cycle_.program_turn.set_optional_stops(on);
 }
 
 ToolsNow MotionSupervisor::tools_now() {

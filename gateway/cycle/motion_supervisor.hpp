@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "gateway/cycle/guarding.hpp"
 #include "gateway/cycle/jogging.hpp"
 #include "gateway/cycle/machine_cycle.hpp"
 #include "gateway/cycle/move_entry.hpp"
@@ -50,6 +51,7 @@ class MotionSupervisor final : public Planning {
   [[nodiscard]] Probing& probing() noexcept { return probing_; }
   [[nodiscard]] Jogging& jogging() noexcept { return jogging_; }
   [[nodiscard]] Operating& operating() noexcept { return operating_; }
+  [[nodiscard]] Guarding& guarding() noexcept { return guarding_; }
 
   /// See `MoveEntry`.
   [[nodiscard]] Expected<> prepare_move() { return entry_.prepare(); }
@@ -58,8 +60,6 @@ class MotionSupervisor final : public Planning {
   /// Adds what is to be done between moves: moves that are added from now on wait behind it. The caller has seen to it
   /// that `builder()` goes on where the steps leave the machine. `function` is what an error names.
   [[nodiscard]] Expected<> add_steps(const char* function, std::vector<QueueStep> steps, ProgramStep as_sent);
-  /// See `ProgramTurn`.
-  void set_optional_stops(bool on);
   [[nodiscard]] ToolsNow tools_now();
   /// The person who was asked says that this tool is in.
   [[nodiscard]] Expected<> confirm_tool(int number);
@@ -94,6 +94,7 @@ class MotionSupervisor final : public Planning {
   Probing probing_{cycle_};
   Parking parking_{cycle_};
   Operating operating_{cycle_};
+  Guarding guarding_{cycle_};
 };
 
 }  // namespace rmac::gateway

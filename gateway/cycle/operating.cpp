@@ -20,6 +20,11 @@ Expected<> Operating::set_override(double percent, const OperatorRef& by) {
   return set;
 }
 
+void Operating::set_optional_stops(bool on) {
+  const GatewayTurn turn(cycle_.lock);
+  cycle_.program_turn.set_optional_stops(on);
+}
+
 void Operating::let_go() {
   const GatewayTurn turn(cycle_.lock);
   cycle_.sequencer.let_go();

@@ -18,6 +18,8 @@ class Operating {
   [[nodiscard]] Expected<> set_override(double percent, const OperatorRef& by);
   /// Runs back along up to `distance_mm` of the path of what is held. The way it will go, in mm.
   [[nodiscard]] Expected<double> retrace(double distance_mm, const OperatorRef& by);
+  /// The switch on the panel, see `ProgramTurn`.
+  void set_optional_stops(bool on);
   /// What an operator holds, by a hold or by an override of 0, is the program's to resume; nothing moves.
   void let_go();
   /// The same, unless the operator who holds it is there: then an error that names them. True when there was something.

@@ -76,6 +76,7 @@ ToolChange::Outcome ToolChange::take(const AskPerson& person) {
 
 ToolChange::Outcome ToolChange::take(const MountTool& mount) {
   mounted_ = mount.number;
+  last_mounted_ = mount.tool;
   changing_ = false;
   wishes_.change([&](ServoWishes& wishes) {
     wishes.frames.tool = mount.tip;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 
 #include "gateway/cycle/standing_wishes.hpp"
@@ -35,6 +36,8 @@ class ToolChange {
   /// What is in the spindle, as it is known when nothing is queued, and the torque that it bears.
   void set_mounted(std::optional<int> number, double max_torque_nm);
   [[nodiscard]] ToolsNow now(const std::deque<QueueStep>& queued) const;
+  /// What the last change has put in the spindle.
+  [[nodiscard]] const std::shared_ptr<const Tool>& last_mounted() const noexcept { return last_mounted_; }
   /// A change has begun, and is not done.
   [[nodiscard]] bool changing() const noexcept { return changing_; }
   /// A person was asked, and has not answered.
@@ -58,6 +61,7 @@ class ToolChange {
   StandingWishes& wishes_;
   CycleNews& news_;
   std::optional<int> mounted_ = kNoTool;  ///< tool; none: not known
+  std::shared_ptr<const Tool> last_mounted_;
   bool changing_ = false;
   bool asked_ = false;
 };

@@ -199,9 +199,11 @@ Expected<> DeviceHost::Impl::load(const std::string& what, const std::filesystem
   const bool virtual_before = controller.virtual_mode();
   const std::optional<Base> base_before = base();
   begin_in(device_json.parent_path().string(), virtual_mode);
-  auto made = read_softened(device_json, soften).and_then([&](const sdk::DeviceObject& device) {
-    return configure_anew(device, base_before);
-  });
+  MachineBodies bodies;
+  auto made = read_device_json(device_json)
+                  .map([&](DeviceDatabase database) { bodies = std::move(database.bodies); })
+                  .and_then([&] { return read_softened(device_json, soften); })
+                  .and_then([&](const sdk::DeviceObject& device) { return configure_anew(device, base_before); });
   if (!made) {
     begin_in(folder_before, virtual_before);
     controller.discard_draft();
@@ -210,11 +212,16 @@ Expected<> DeviceHost::Impl::load(const std::string& what, const std::filesystem
     return not_loaded(what, made.error());
   }
   loaded = std::move(*made);
+  // What an overlay lies over has its shape still.
+  if (!loaded->base) collision_guard(controller).set_shape(std::move(bodies));
   return {};
 }
 
 Expected<> DeviceHost::unload() {
-  return impl_->controller.unload().map([&] { impl_->loaded.reset(); });
+  return impl_->controller.unload().map([&] {
+    impl_->loaded.reset();
+    collision_guard(impl_->controller).set_shape({});
+  });
 }
 
 bool DeviceHost::loaded() const noexcept {

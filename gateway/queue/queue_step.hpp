@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "gateway/tools/tool.hpp"
 #include "rmac/motion/path_segment.hpp"
 #include "rmac/motion/pose.hpp"
 
@@ -53,8 +54,9 @@ struct AskPerson {
 struct MountTool {
   int number = 0;
   Frame tip{};
-  std::string text{};        ///< the tool, for people
-  double max_torque_nm = 0;  ///< that it bears; 0: not given
+  std::string text{};                  ///< the tool, for people
+  double max_torque_nm = 0;            ///< that it bears; 0: not given
+  std::shared_ptr<const Tool> tool{};  ///< as the table has it when the change is queued
 };
 
 /// The program rests for so long.

@@ -15,7 +15,8 @@ Cam::Cam(MotionSupervisor& supervisor, ServoLink& link, ToolRack& rack, std::fun
       cmm_moves_(device_, supervisor, maker_),
       positioning_(device_, supervisor, link, path_, maker_),
       flow_(device_, supervisor, spindles_),
-      parking_(device_, supervisor, link, {path_, joints_, spindles_, tools_, forces_, flow_}) {}
+      parking_(device_, supervisor, link, {path_, joints_, spindles_, tools_, forces_, flow_}),
+      guard_(device_, supervisor) {}
 
 void Cam::mechanism_changed(const sdk::DeviceObject* device, bool fresh) {
   device_.change(device);
@@ -24,6 +25,7 @@ void Cam::mechanism_changed(const sdk::DeviceObject* device, bool fresh) {
   cycle_.mechanism_changed(fresh);
   tools_.mechanism_changed(fresh);
   spindles_.mechanism_changed();
+  guard_.mechanism_changed(fresh);
   forces_.let_go();
 }
 

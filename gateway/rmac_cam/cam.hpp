@@ -5,6 +5,7 @@
 #include "gateway/rmac_cam/cam_cmm_moves.hpp"
 #include "gateway/rmac_cam/cam_cycle.hpp"
 #include "gateway/rmac_cam/cam_forces.hpp"
+#include "gateway/rmac_cam/cam_guard.hpp"
 #include "gateway/rmac_cam/cam_parking.hpp"
 #include "gateway/rmac_cam/cam_positioning.hpp"
 #include "gateway/rmac_cam/cam_program_flow.hpp"
@@ -39,6 +40,7 @@ class Cam final : public sdk::RmacCam {
   CamForces& forces() override { return forces_; }
   CamProgramFlow& flow() override { return flow_; }
   CamTools& tools() { return tools_; }
+  CamGuard& guard() { return guard_; }
 
   /// What the measuring part of RMAC_CAM is made of.
   [[nodiscard]] const DeviceInForce& device() const { return device_; }
@@ -59,6 +61,7 @@ class Cam final : public sdk::RmacCam {
   CamPositioning positioning_;
   CamProgramFlow flow_;
   CamParking parking_;
+  CamGuard guard_;
 };
 
 }  // namespace rmac::gateway

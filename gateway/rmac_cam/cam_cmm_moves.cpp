@@ -50,7 +50,7 @@ Expected<> CamCmmMoves::in_arc(std::int64_t id, const sdk::ArcTo& arc, double sp
   return supervisor_.prepare_move().and_then([&] {
     constexpr double kSamePoint_mm = 1e-6;
     const ToolPose from = supervisor_.mechanism()->builder.end_pose();
-    const bool closed = distance(arc.end, from.tip) < kSamePoint_mm;
+    const bool closed = rmac::distance(arc.end, from.tip) < kSamePoint_mm;
     const ArcGeometry geometry{arc.center, arc.normal, 1, closed, from, {arc.end, from.axis}};
     return add_path_move("MoveInArc", id, geometry, speed);
   });

@@ -27,7 +27,9 @@ Expected<> CamCycle::hold(const OperatorRef& who) {
 }
 
 Expected<> CamCycle::resume(const OperatorRef& who) {
-  return supervisor_.command([&who](CycleSequencer& cycle, const CycleObservation&) { return cycle.resume(who); });
+  return supervisor_.command([&who](CycleSequencer& cycle, const CycleObservation& seen) {
+    return refuse_when_blocked("FeedResume", seen).and_then([&] { return cycle.resume(who); });
+  });
 }
 
 Expected<double> CamCycle::retrace(double distance_mm, const OperatorRef& who) {

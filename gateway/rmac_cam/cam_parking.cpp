@@ -92,7 +92,7 @@ std::optional<sdk::ParkedProgram> CamParking::parked() const {
   if (!parked) return {};
   const ProgramStep& first = parked->steps.front();
   sdk::ParkedProgram told{parked->mechanism, parked->steps.size(), id_of(first.what), first.from_mm, parked->place, 0};
-  if (device_.get() != nullptr) told.off_mm = distance(tool_.in_part().tip, told.place.tip);
+  if (device_.get() != nullptr) told.off_mm = rmac::distance(tool_.in_part().tip, told.place.tip);
   return told;
 }
 

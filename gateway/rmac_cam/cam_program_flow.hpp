@@ -16,7 +16,7 @@ class CamProgramFlow final : public sdk::ProgramFlow {
   Expected<> stop(std::int64_t id, bool optional, const std::string& message) override;
   Expected<> await_input(std::int64_t id, const std::string& name, bool on, double timeout_s) override;
   Expected<> in_turn(std::int64_t id, const std::vector<sdk::CallInTurn>& calls) override;
-  void set_optional_stops(bool on) override { supervisor_.set_optional_stops(on); }
+  void set_optional_stops(bool on) override { supervisor_.operating().set_optional_stops(on); }
   [[nodiscard]] bool optional_stops() const override { return supervisor_.now().optional_stops; }
 
   /// Queues what was queued before, on the mechanism in force now.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "gateway/mechanism/mechanism.hpp"
 #include "rmac/motion/frame.hpp"
@@ -16,6 +17,8 @@ void CamTools::mechanism_changed(bool fresh) {
   const auto mounted = device_.get() != nullptr ? rack_.mounted() : kNoTool;
   const auto tool = mounted && *mounted != kNoTool ? rack_.tool(*mounted) : std::nullopt;
   supervisor_.set_mounted(mounted, tool ? tool->max_torque_nm : 0);
+  const auto in_spindle = mounted == kNoTool ? std::optional(Tool{.number = kNoTool}) : tool;
+  supervisor_.guarding().set_tool(in_spindle ? std::make_shared<const Tool>(*in_spindle) : nullptr);
   if (tool) supervisor_.set_frames({{}, tip_on_interface(*tool)});
 }
 
@@ -27,6 +30,7 @@ Expected<Tool> CamTools::find(int number, const char* function) const {
 
 void CamTools::put_in_spindle(const Tool& tool) {
   supervisor_.set_mounted(tool.number, tool.max_torque_nm);
+  supervisor_.guarding().set_tool(std::make_shared<const Tool>(tool));
   supervisor_.set_frames({supervisor_.wishes().frames.part, tip_on_interface(tool)});
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <memory>
+
 #include "rmac/motion/move_name.hpp"
 #include "rmac/motion/planner.hpp"
 
@@ -13,7 +15,7 @@ std::string described(const Tool& tool) {
 }
 
 MountTool ToolChangeSteps::mount(const Tool& tool) {
-  return {tool.number, tip_on_interface(tool), described(tool), tool.max_torque_nm};
+  return {tool.number, tip_on_interface(tool), described(tool), tool.max_torque_nm, std::make_shared<const Tool>(tool)};
 }
 
 std::vector<QueueStep> ToolChangeSteps::by_hand(const Tool& tool) const {

@@ -173,7 +173,9 @@ Expected<> Daemon::run(const Configuration& configuration) {
     if (event.kind == Event::Kind::Fault) spdlog::error("cycle {}: {}", event.cycle, event.message);
     if (event.kind == Event::Kind::FlightRecord) spdlog::info("{}", event.message);
     if (event.kind == Event::Kind::FlightRecordFailed) spdlog::error("{}", event.message);
-    if (event.kind == Event::Kind::Bus) spdlog::warn("{}", event.message);
+    const bool warns = event.kind == Event::Kind::Bus || event.kind == Event::Kind::CollisionAhead ||
+                       event.kind == Event::Kind::NotChecked;
+    if (warns) spdlog::warn("{}", event.message);
     server_.on_event(event);
   });
   if (auto started = controller_.start(); !started) return started;

@@ -25,7 +25,7 @@ struct CycleNow {
   CycleState state = CycleState::Idle;
   const char* mode = "";  ///< Appendix IV's name of the mode of the cycle that is started; empty when none is
   double override_percent = 100;
-  /// What a cycle that runs waits for: moves, override, tool, spindle, dwell or input; empty: it does not.
+  /// What a cycle that runs waits for: moves, override, check, tool, spindle, dwell or input; empty: it does not.
   const char* waits_for = "";
   std::string held_by{};        ///< the operator who holds the machine; empty: none does
   bool optional_stops = false;  ///< hold the program

@@ -27,7 +27,9 @@ struct Event {
     ToolChanged,
     ToolChangeDropped,
     ProgramStopped,
-    Bus
+    Bus,
+    CollisionAhead,
+    NotChecked
   };
   Kind kind = Kind::Stopped;
   double t_s = 0;

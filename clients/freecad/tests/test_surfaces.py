@@ -157,6 +157,24 @@ class PartsTest(SweptTest):
                 program, _ = self.swept(shape, chosen, ball_end(1), scallop_mm=0.1, along=along)
                 self.assertLess(ball_gouge(shape, 1, tips(program)[::8]), GOUGE_MM)
 
+    def test_curves_meet_in_a_shallow_concave_edge_and_none_bends_through_it(self):
+        for degrees in (5, 20, 35):  # by which the faces are bent
+            up = math.tan(math.radians(degrees / 2))
+            outline = [Vector(x, 0, z) for x, z in ((-6, 6 * up), (0, 0), (6.3, 6.3 * up), (6.3, -3), (-6, -3), (-6, 6 * up))]
+            shape = Part.Face(Part.makePolygon(outline)).extrude(Vector(0, 1, 0))
+            faces = [i for i, f in enumerate(shape.Faces) if f.normalAt(0, 0).z > 0.5]
+            with self.subTest(degrees=degrees):
+                program, _ = self.swept(shape, faces, ball_end(2), scallop_mm=0.05)
+                curves = [move.curve for move in program.moves if hasattr(move, "curve") and move.curve.degree == 5]
+                inner = [[point for point in (curve.points[0], curve.points[-1]) if abs(point[0]) < 1] for curve in curves]
+                for ends in inner:  # a curve may go round a bend of 5 degrees within what the scallop allows
+                    self.assertTrue((len(ends) == 1 and abs(ends[0][0]) < 0.001) or (not ends and degrees == 5), inner)
+                self.assertGreater(len(curves), 1)
+                for curve in curves:  # a bend would need spans of micrometres
+                    long = math.dist(curve.points[0], curve.points[-1]) / (curve.knots[-1] - curve.knots[0])
+                    self.assertGreater(np.diff(np.unique(curve.knots)).min() * long, 0.02)
+                self.assertLess(ball_gouge(shape, 2, tips(program)[::8]), GOUGE_MM)
+
     def test_a_face_with_a_hole_and_a_boss_is_swept_round_them(self):
         shape = Part.makeBox(10, 6, 4).cut(Part.makeCylinder(1.8, 10, Vector(3, 3, -1))).fuse(Part.makeCylinder(1, 7, Vector(7, 3, 0)))
         face = next(i for i, f in enumerate(shape.Faces) if isinstance(f.Surface, Part.Plane) and abs(f.CenterOfMass.z - 4) < 1e-6)

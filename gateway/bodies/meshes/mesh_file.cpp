@@ -70,9 +70,33 @@ class OnlyThisFile final : public Assimp::IOSystem {
   Assimp::DefaultIOSystem files_;
 };
 
+/// Corners that are the same to the last digit first. Programs that write text round, so that an open mesh may be closed
+/// after all.
+TriangleMesh closed(const TriangleMesh& read, std::string& fault) {
+  constexpr double kSame_mm = 1e-9, kRounded_mm = 1e-3;
+  TriangleMesh mesh = welded(read, kSame_mm);
+  fault = fault_of(mesh);
+  if (fault.empty()) return mesh;
+  TriangleMesh closer = welded(read, kRounded_mm);
+  if (!fault_of(closer).empty()) return mesh;
+  fault.clear();
+  return closer;
+}
+
+Expected<TriangleMesh> surface_of(TriangleMesh read, double unit_mm) {
+  for (Vector& point : read.points) {
+    for (double& c : point) c *= unit_mm;
+  }
+  std::string fault;
+  TriangleMesh mesh = closed(read, fault);
+  if (!fault.empty()) return failure(MinorCode::InvalidParameterValue, "its surface " + fault);
+  return mesh;
+}
+
 }  // namespace
 
 Expected<TriangleMesh> read_mesh_file(const MeshShape& shape) {
+  if (shape.surface) return surface_of(*shape.surface, shape.unit_mm);
   const fs::path& file = shape.file;
   if (!known_ending(file)) return wrong(file, "is neither an .stl nor an .obj file");
   std::error_code code;
@@ -95,16 +119,9 @@ Expected<TriangleMesh> read_mesh_file(const MeshShape& shape) {
     return wrong(file, fmt::format("has {} triangles; at most {} are taken: export it coarser", read.triangles.size(),
                                    kMostTriangles));
   }
-  // Corners that are the same to the last digit first. Programs that write text round, so that an open mesh may be
-  // closed after all.
-  constexpr double kSame_mm = 1e-9, kRounded_mm = 1e-3;
-  TriangleMesh mesh = welded(read, kSame_mm);
-  std::string fault = fault_of(mesh);
-  if (!fault.empty()) {
-    TriangleMesh closer = welded(read, kRounded_mm);
-    if (fault_of(closer).empty()) return closer;
-    return wrong(file, fault);
-  }
+  std::string fault;
+  TriangleMesh mesh = closed(read, fault);
+  if (!fault.empty()) return wrong(file, fault);
   return mesh;
 }
 

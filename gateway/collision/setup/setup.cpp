@@ -6,6 +6,7 @@
 
 #include "gateway/bodies/body_json.hpp"
 #include "gateway/json/json_document.hpp"
+#include "gateway/json/printable.hpp"
 #include "gateway/json/schemas.hpp"
 
 namespace rmac::gateway {
@@ -13,7 +14,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-Expected<> read_bodies(const Json& document, const std::filesystem::path& folder, Setup& setup) {
+const JsonSchema& schema() {
+  static const JsonSchema kSchema(setup_schema_text());
+  return kSchema;
+}
+
+Expected<> read_bodies(const Json& document, const MeshFolder& folder, Setup& setup) {
   const auto one = [&](const char* key, const char* name, std::optional<Body>& body) -> Expected<> {
     if (!document.contains(key)) return {};
     auto read = read_body(document[key], fmt::format("/{}", key), folder);
@@ -39,30 +45,56 @@ Expected<> read_bodies(const Json& document, const std::filesystem::path& folder
   return {};
 }
 
+/// Of a document that the schema has passed.
+Expected<Setup> fill(const Json& document, const MeshFolder& folder) {
+  Setup setup;
+  setup.machine = document["Machine"];
+  setup.material = document.value("Material", "");
+  setup.clearance_mm = document.value("Clearance", setup.clearance_mm);
+  setup.tolerance_mm = document.value("Tolerance", setup.tolerance_mm);
+  if (document.contains("Resolution")) setup.resolution_mm = document["Resolution"].get<double>();
+  if (document.contains("PartFrame")) {
+    auto frame = read_frame(document["PartFrame"], "/PartFrame");
+    if (!frame) return tl::unexpected(frame.error());
+    setup.part_frame = *frame;
+  }
+  return read_bodies(document, folder, setup).map([&] { return std::move(setup); });
+}
+
+/// Where a text stands that is longer than any that a set-up has: patterns are not tried on it.
+std::optional<std::string> long_text(const Json& value, int depth = 0) {
+  constexpr std::size_t kLongest = 4096;
+  constexpr int kDeepest = 8;
+  if (value.is_string()) {
+    return value.get_ref<const std::string&>().size() > kLongest ? std::optional(std::string()) : std::nullopt;
+  }
+  if (!value.is_structured() || depth > kDeepest) return std::nullopt;
+  for (const auto& [key, entry] : value.items()) {
+    if (const auto below = long_text(entry, depth + 1)) return fmt::format("/{}{}", key, *below);
+  }
+  return std::nullopt;
+}
+
+tl::unexpected<Error> wrong(const std::string& what) {
+  constexpr std::size_t kLongestMessage = 1000;
+  return failure(MinorCode::InvalidParameterValue, printable(what, kLongestMessage));
+}
+
 }  // namespace
 
 Expected<Setup> read_setup(const std::filesystem::path& file) {
-  static const JsonSchema kSchema(setup_schema_text());
-  const auto document = read_json_document(file, kSchema);
+  const auto document = read_json_document(file, schema());
   if (!document) return tl::unexpected(document.error());
-  Setup setup;
-  setup.machine = (*document)["Machine"];
-  setup.material = document->value("Material", "");
-  setup.clearance_mm = document->value("Clearance", setup.clearance_mm);
-  setup.tolerance_mm = document->value("Tolerance", setup.tolerance_mm);
-  if (document->contains("Resolution")) setup.resolution_mm = (*document)["Resolution"].get<double>();
-  const auto fill = [&]() -> Expected<> {
-    if (document->contains("PartFrame")) {
-      auto frame = read_frame((*document)["PartFrame"], "/PartFrame");
-      if (!frame) return tl::unexpected(frame.error());
-      setup.part_frame = *frame;
-    }
-    return read_bodies(*document, file.parent_path(), setup);
-  };
-  if (auto filled = fill(); !filled) {
-    return failure(filled.error().code, fmt::format("{}: {}", file.string(), filled.error().message));
-  }
-  return setup;
+  auto setup = fill(*document, file.parent_path());
+  if (setup) return setup;
+  return failure(setup.error().code, fmt::format("{}: {}", file.string(), setup.error().message));
+}
+
+Expected<Setup> read_setup_object(const Json& document) {
+  if (const auto text = long_text(document)) return wrong(*text + " is longer than any text that a set-up has");
+  if (const std::string problems = schema().check(document); !problems.empty()) return wrong(problems);
+  auto setup = fill(document, std::nullopt);
+  return setup ? std::move(setup) : wrong(setup.error().message);
 }
 
 }  // namespace rmac::gateway

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,5 +26,8 @@ struct Setup {
 /// Reads a `setup.json` and checks it against etc/setup.schema.json. Files of meshes lie beside it or below. An error
 /// begins with the file's name.
 [[nodiscard]] Expected<Setup> read_setup(const std::filesystem::path& file);
+/// The same of an object that came over a socket: meshes are in it, and no file is read. An error begins with the JSON
+/// pointer of what is wrong.
+[[nodiscard]] Expected<Setup> read_setup_object(const nlohmann::json& document);
 
 }  // namespace rmac::gateway

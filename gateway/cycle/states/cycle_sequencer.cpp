@@ -53,6 +53,15 @@ Expected<> refuse_when_held(const char* what, const OperatorRef& by) {
                         what, by->name()));
 }
 
+Expected<> refuse_when_blocked(const char* what, const CycleObservation& seen) {
+  if (!seen.blocked) return {};
+  return failure(
+      MinorCode::Other,
+      fmt::format("{}: a collision lies ahead, which the event CollisionAhead has told; go back from there with "
+                  "FeedRetrace, or drop the program with StopNow",
+                  what));
+}
+
 bool waits_for_moves(const Phase& phase, const CycleObservation& seen) noexcept {
   return phase.runs<Phase::Program>() && seen.at_rest && seen.done && !seen.measures && !phase.ends_search();
 }
@@ -60,6 +69,7 @@ bool waits_for_moves(const Phase& phase, const CycleObservation& seen) noexcept 
 Expected<> CycleSequencer::start(sdk::CycleMode mode, const CycleObservation& seen) {
   if (auto fine = refuse_when_unfit("CycleStart", phase_, seen); !fine) return fine;
   if (auto free = refuse_when_held("CycleStart", phase_.held_by()); !free) return free;
+  if (auto clear = refuse_when_blocked("CycleStart", seen); !clear) return clear;
   if (auto known = require_references("CycleStart", seen.reference_lost, seen.device); !known) return known;
   if (phase_.in<Phase::Stopping>()) {
     return failure(MinorCode::Other, "CycleStart: the machine is still stopping; start it when it has come to rest");

@@ -18,6 +18,7 @@ struct CycleObservation {
   bool at_rest = true;           ///< nothing moves and nothing published is still to move
   bool retraced = false;         ///< at rest at the end of a retrace
   bool at_end = true;            ///< at rest where the path that is planned ends; the tool did not go back from there
+  bool blocked = false;          ///< at rest where a collision check lets the path go no farther
   std::size_t moves_left = 0;    ///< queued, the one under way included
   bool done = true;              ///< nothing is queued, no tool change either
   std::uint64_t moves_done = 0;  ///< since the mechanism went in
@@ -38,6 +39,9 @@ struct CycleObservation {
 
 /// Refuses what would start motion while an operator holds the machine; null: none does.
 [[nodiscard]] Expected<> refuse_when_held(const char* what, const OperatorRef& by);
+
+/// Refuses what would go on into a collision.
+[[nodiscard]] Expected<> refuse_when_blocked(const char* what, const CycleObservation& seen);
 
 /// The cycle is started, and nothing is there for it to do.
 [[nodiscard]] bool waits_for_moves(const CyclePhase& phase, const CycleObservation& seen) noexcept;

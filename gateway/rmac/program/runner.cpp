@@ -253,12 +253,13 @@ void Runner::take(const EventNote& event) {
     moves_.started(event.t_s);
   } else if (event.is(Kind::MoveDone)) {
     moves_.done(event.move_id, event.t_s);
-  } else if (event.is(Kind::ToolWanted) || event.is(Kind::Operator) || event.is(Kind::ProgramStopped)) {
+  } else if (event.is(Kind::ToolWanted) || event.is(Kind::Operator) || event.is(Kind::ProgramStopped) ||
+             event.is(Kind::NotChecked)) {
     progress_.clear();
     fmt::print(stderr, "rmac: {}\n", event.message);
   } else if (event.is(Kind::ToolChanged)) {
     moves_.tool_changed();
-  } else if (event.is(Kind::Fault) || event.is(Kind::ToolChangeDropped)) {
+  } else if (event.is(Kind::Fault) || event.is(Kind::ToolChangeDropped) || event.is(Kind::CollisionAhead)) {
     fail_with(event.message);
   } else if (event.is(Kind::Stopped)) {
     rest_told_ = !moves_.empty();

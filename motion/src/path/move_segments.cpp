@@ -147,6 +147,7 @@ Expected<std::vector<double>> MoveSegments::cuts_of(const CurvePtr& curve) const
 Expected<> MoveSegments::append(const CurvePtr& piece, bool last) {
   demand_.rest_before = positioning_ && segments_.empty();
   demand_.rest_after = positioning_ && last;
+  demand_.positioning = positioning_;
   stretch_.last_of_move = last;
   const auto segment = std::make_shared<PathSegment>(piece, map_, demand_, std::vector{stretch_});
   double s_failed = 0;

@@ -19,6 +19,7 @@ HorizonLimit horizon_limit(const Route& route, const Commanded& commanded, doubl
   const LaidPath& path = route.path();
   if (planned_to < path.end() - kSamePlace || path.can_supply()) return HorizonLimit::Planning;
   if (route.on_detour()) return HorizonLimit::Rest;
+  if (path.gate.blocked()) return HorizonLimit::Rest;
   if (path.has_more()) return HorizonLimit::HeldBack;
   return commanded.rest_follows ? HorizonLimit::Rest : HorizonLimit::Queue;
 }

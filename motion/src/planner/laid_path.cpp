@@ -12,6 +12,13 @@ namespace {
 /// So many segments stay remembered behind the tool, for a retrace; twice as many before they are dropped together.
 constexpr std::size_t kKeptBehind = 1000;
 
+/// Brings what is certain before the gate, or does a part of the work that it takes.
+void hand_over(PathJoiner& joiner, BeforeGate& gate) {
+  PathSegments fresh;
+  joiner.advance(fresh);
+  gate.hand_over(std::move(fresh));
+}
+
 }  // namespace
 
 LaidPath::LaidPath(std::vector<JointLimits> joints, double period_s)
@@ -29,6 +36,7 @@ void LaidPath::clear(double s) {
   starts_.clear();
   rest_after_.clear();
   joiner_.clear();
+  gate.clear();
   moves_left_ = 0;
   origin_ = s;
   counted_s_ = s;
@@ -49,14 +57,25 @@ void LaidPath::lay(const PathSegments& fresh) {
 bool LaidPath::supply() {
   PathSegments fresh;
   const std::uint64_t work = joiner_.work();
+  if (gate.closed()) {
+    while (gate.wants_more() && joiner_.ready() && joiner_.work() == work) hand_over(joiner_, gate);
+    gate.take(fresh);
+    lay(fresh);
+    return !fresh.empty();
+  }
   while (fresh.empty() && joiner_.ready() && joiner_.work() == work) joiner_.advance(fresh);
   lay(fresh);
   return !fresh.empty();
 }
 
 void LaidPath::release() {
+  if (gate.blocked()) return;
   PathSegments fresh;
   joiner_.release(fresh);
+  if (gate.closed()) {
+    gate.hand_over(std::exchange(fresh, {}));
+    gate.take(fresh);
+  }
   lay(fresh);
 }
 
@@ -69,13 +88,22 @@ double LaidPath::next_rest(double s, double otherwise) const noexcept {
 
 double LaidPath::next_move_end(double s) {
   for (std::size_t i = view().find(s + kSamePlace, 1);; ++i) {
-    while (i >= size() && has_more()) {
-      if (!supply() && !can_supply()) release();
+    while (i >= size() + gate.size() && !joiner_.empty() && !gate.blocked()) {
+      // How far a move goes is known before the gate says whether it may.
+      if (!joiner_.ready()) {
+        release();
+      } else if (gate.closed()) {
+        hand_over(joiner_, gate);
+      } else {
+        supply();
+      }
     }
-    if (i >= size()) return end();
-    const auto stretches = segments_[i]->stretches();
+    if (i >= size() + gate.size()) return gate.end(end());
+    double start = i < size() ? starts_[i] : 0;
+    const PathSegment& segment = i < size() ? *segments_[i] : gate.segment(i - size(), end(), start);
+    const auto stretches = segment.stretches();
     for (std::size_t k = 0; k < stretches.size(); ++k) {
-      const double stretch_end = k + 1 < stretches.size() ? starts_[i] + stretches[k + 1].begin : end(i);
+      const double stretch_end = start + (k + 1 < stretches.size() ? stretches[k + 1].begin : segment.length());
       if (stretches[k].last_of_move && stretch_end > s + kSamePlace) return stretch_end;
     }
   }

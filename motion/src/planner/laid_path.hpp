@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "joins/path_joiner.hpp"
+#include "planner/before_gate.hpp"
 #include "rmac/motion/path_segment.hpp"
 #include "rmac/motion/planner.hpp"
 #include "time_law/path_view.hpp"
@@ -23,6 +24,9 @@ class LaidPath {
  public:
   LaidPath(std::vector<JointLimits> joints, double period_s);
 
+  /// Where a gate is set, the path grows by what has passed it; else by what is certain.
+  BeforeGate gate;
+
   void add(PathSegments moves);
   /// Drops everything; the path goes on from path length `s`.
   void clear(double s);
@@ -35,9 +39,9 @@ class LaidPath {
   /// Makes the path longer by what was held back for a join, where nothing can be supplied.
   void release();
   /// There is more for certain, or in work.
-  [[nodiscard]] bool can_supply() const noexcept { return joiner_.ready(); }
+  [[nodiscard]] bool can_supply() const noexcept { return !gate.blocked() && (!gate.empty() || joiner_.ready()); }
   /// Something is queued that is not laid yet.
-  [[nodiscard]] bool has_more() const noexcept { return !joiner_.empty(); }
+  [[nodiscard]] bool has_more() const noexcept { return !gate.empty() || !joiner_.empty(); }
 
   [[nodiscard]] PathView view() const noexcept { return {segments_, starts_}; }
   [[nodiscard]] std::size_t size() const noexcept { return segments_.size(); }
@@ -50,7 +54,8 @@ class LaidPath {
   [[nodiscard]] double end() const noexcept { return segments_.empty() ? origin_ : end(segments_.size() - 1); }
   /// The first demanded rest at or behind s, or `otherwise` when it comes first.
   [[nodiscard]] double next_rest(double s, double otherwise) const noexcept;
-  /// Where the move ends that the machine is in, or stands before; lays path until it is known.
+  /// Where the move ends that the machine is in, or stands before; lays path, or brings it before the gate, until it is
+  /// known.
   [[nodiscard]] double next_move_end(double s);
 
   [[nodiscard]] std::uint64_t lines_merged() const noexcept { return joiner_.lines_merged(); }

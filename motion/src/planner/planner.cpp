@@ -300,14 +300,14 @@ struct Planner::Impl {
     if (!known && !(factor < p->override_factor && p->purpose.better_tries == 0)) return Task::None;
     if (at_end || p == nullptr) {
       if (more) return Task::Start;
-      return dry && path().has_more() ? Task::Supply : Task::None;
+      return dry && path().has_more() && !path().gate.blocked() ? Task::Supply : Task::None;
     }
     if (p->purpose.stops) return Task::None;
     const double t_now = now_s(*p, progress.cycle);
     if (factor != p->override_factor || p->purpose.better_tries > 0) return begun ? Task::Override : Task::None;
     const double t_decide = p->hard_end ? p->plan->end_time_s : p->commit_t;
     if (more && t_decide - t_now < kHorizon_s) return Task::Extend;
-    if (dry && path().has_more() &&
+    if (dry && path().has_more() && !path().gate.blocked() &&
         t_decide - t_now < kRelease_s + static_cast<double>(planning_time.lead()) * model.period_s)
       return Task::Supply;
     return Task::None;
@@ -334,6 +334,7 @@ struct Planner::Impl {
 
   bool step(const ServoProgress& progress) {
     const bool known = follow(progress);
+    route.forward.gate.wait_no_more();
     planning_time.learn(progress);
     if (!known) return false;
     // A plan that may still be refused has said of itself what there is to say.
@@ -435,6 +436,17 @@ Expected<> Planner::rejoin(std::span<const double> joints) {
 }
 void Planner::give_way_to(const Interruption* interruption) noexcept {
   impl_->interruption = interruption;
+}
+void Planner::set_gate(PathGate* gate) noexcept {
+  impl_->route.forward.gate.set(gate);
+}
+bool Planner::blocked() const noexcept {
+  const Impl& i = *impl_;
+  return !i.route.on_detour() && !i.route.beside() && i.path().gate.blocked() &&
+         i.base_end_s() >= i.path().end() - kSamePlace;
+}
+bool Planner::waits_for_gate() const noexcept {
+  return impl_->route.forward.gate.waits();
 }
 void Planner::command(PathCommand command) noexcept {
   impl_->command(command);

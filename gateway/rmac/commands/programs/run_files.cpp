@@ -24,7 +24,8 @@ fs::path place_of(const fs::path& file) {
 }
 
 void add_mesh(const gateway::Body& body, std::vector<fs::path>& files) {
-  if (const auto* const mesh = std::get_if<gateway::MeshShape>(&body.shape)) files.push_back(mesh->file);
+  const auto* const mesh = std::get_if<gateway::MeshShape>(&body.shape);
+  if (mesh != nullptr && !mesh->surface) files.push_back(mesh->file);
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ struct PathDemand {
   double joint_speed_fraction = 1;  ///< of the joints' speed limits
   bool rest_before = false;         ///< positioning moves start at rest
   bool rest_after = false;          ///< and end at rest
+  bool positioning = false;         ///< of a positioning move: the tool cuts nothing
 };
 
 /// The stretch of a segment that belongs to one of the client's moves: from `begin` to the next stretch, or the end.

@@ -12,6 +12,7 @@
 #include "rmac/motion/path_segment.hpp"
 #include "rmac/motion/plan_channel.hpp"
 #include "rmac/motion/planner_model.hpp"
+#include "rmac/motion/ports/path_gate.hpp"
 #include "rmac/motion/pose.hpp"
 
 namespace rmac {
@@ -70,6 +71,14 @@ class Planner {
   /// A step ends early, without a plan, while somebody waits there to command something; what it was about is done by a
   /// later one. Null: nobody does. It must outlive the planner, or be taken away.
   void give_way_to(const Interruption* interruption) noexcept;
+  /// The queue's path grows by what passes this gate alone, from now on; null: there is none. With an empty queue, at
+  /// rest. A retrace goes over what has passed; the way back to a path that was left is no part of it. It must outlive
+  /// the planner, or be taken away.
+  void set_gate(PathGate* gate) noexcept;
+  /// What is queued is not planned to its end because the gate lets no more through.
+  [[nodiscard]] bool blocked() const noexcept;
+  /// The last step waited for the gate.
+  [[nodiscard]] bool waits_for_gate() const noexcept;
   /// 0 to 200 percent of the programmed feed, from as soon as the limits allow.
   void set_override(double percent) noexcept;
 

@@ -316,6 +316,15 @@ class MockTools : public ToolPort {
   MOCK_METHOD(Expected<>, confirm_tool, (int), (override));
 };
 
+class MockGuard : public GuardPort {
+ public:
+  MOCK_METHOD(void, set_shape, (MachineBodies), (override));
+  MOCK_METHOD(Expected<>, set_setup, (const nlohmann::json&), (override));
+  MOCK_METHOD(nlohmann::json, setup, (), (const, override));
+  MOCK_METHOD(Expected<>, set_check, (bool), (override));
+  MOCK_METHOD(bool, checks, (), (const, override));
+};
+
 class FakeMachine : public MachinePort {
  public:
   // Not here: every file that includes this would compile all mocks anew.
@@ -325,6 +334,7 @@ class FakeMachine : public MachinePort {
   ~FakeMachine() override;
 
   ToolPort& tools() override { return tools_mock; }
+  GuardPort& guard() override { return guard_mock; }
   sdk::RmacCam& cam() override { return cam_mock; }
   OperatorPort& operating() override { return operating_mock; }
   sdk::Measuring& measuring() override { return measuring_mock; }
@@ -349,6 +359,7 @@ class FakeMachine : public MachinePort {
   testing::NiceMock<MockConfig> config_mock;
   testing::NiceMock<FakeDevice> device_fake;
   testing::NiceMock<MockTools> tools_mock;
+  testing::NiceMock<MockGuard> guard_mock;
   std::optional<Event> stop;
   CycleSample now;
   CycleTimes times;

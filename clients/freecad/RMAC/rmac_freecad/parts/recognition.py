@@ -156,7 +156,8 @@ class _Looking:
 
     def _mouths(self, x, y, top):
         """Up to where countersinks, roundings and wider bores go, which may not have been cut when the hole is."""
-        return [face.BoundBox.ZMax for face in self._faces.values() if isinstance(face.Surface, (Part.Cylinder, Part.Cone, Part.Toroid)) and _is_upright(face) and _is_around(face, x, y) and face.CenterOfMass.z > top and _is_hollow(face)]
+        around = [face for face in self._faces.values() if isinstance(face.Surface, (Part.Cylinder, Part.Cone, Part.Toroid)) and _is_upright(face) and _is_around(face, x, y)]
+        return [face.BoundBox.ZMax for face in around if face.CenterOfMass.z > top and _is_hollow(face)]
 
     def _is_point(self, face, holes):
         """Of a drill, at the end of one of the holes."""

@@ -9,6 +9,18 @@ DEGREE = 5
 IN_A_SPAN = 6
 SHORTEST_MM = 2e-4
 KINK_SLOPE = 2e-3
+KINK_SPAN_MM = 0.06  # where spans are to be so short, one is looked for
+KINK_STEP_MM = 1e-3
+PARTS = 16
+NARROWINGS = 4
+
+
+class Kink(Exception):
+    """The heights bend in one place, between whose sides no smooth curve can lie as near as is wanted."""
+
+    def __init__(self, t, z):
+        super().__init__(f"at {t:g}")
+        self.t, self.z = t, z
 
 
 class Plan:
@@ -46,7 +58,7 @@ class Plan:
 
 def fit(plan, height_at, t, z, band_mm, mm_a_unit):
     """Knots and poles of the tip's curve: at most `band_mm` above the heights and never below. `t`, `z` are what is known of them,
-    both ends among them; `height_at(t)` tells more."""
+    both ends among them; `height_at(t)` tells more. Raises `Kink` where there is one."""
     breaks = plan.breaks
     while True:
         t, z = _completed(breaks, t, z, height_at)
@@ -63,9 +75,27 @@ def fit(plan, height_at, t, z, band_mm, mm_a_unit):
             if not len(bad):
                 return knots, np.column_stack([plan.poles(knots), poles])
         bad = _spans_of(breaks, bad)
+        for span in bad[np.diff(breaks)[bad] * mm_a_unit < KINK_SPAN_MM]:
+            _refuse_kink(height_at, breaks, span, mm_a_unit)
         if (np.diff(breaks)[bad] * mm_a_unit).min() < SHORTEST_MM:
             raise JobRefused(f"no smooth curve stays within {band_mm:g} mm of the part; give a larger tolerance or scallop")
         breaks = _halved(breaks, bad)
+
+
+def _refuse_kink(height_at, breaks, span, mm_a_unit):
+    low, high = breaks[span], breaks[span + 1]
+    for _ in range(NARROWINGS):
+        tried = np.linspace(low, high, PARTS + 1)
+        most = np.abs(np.diff(height_at(tried), 2)).argmax()
+        low, high = tried[most], tried[most + 2]
+    step = KINK_STEP_MM / mm_a_unit
+    around = np.array([low - 2 * step, low - step, low, high, high + step, high + 2 * step])
+    if around[0] < breaks[0] or around[-1] > breaks[-1]:
+        return
+    z = height_at(around)
+    steep = np.abs(np.diff(z)).max() > 10 * KINK_STEP_MM  # a wall, where no curve goes on
+    if not steep and abs((z[5] - z[4]) - (z[1] - z[0])) > KINK_SLOPE * KINK_STEP_MM:
+        raise Kink(around[2], z[2])
 
 
 def _off(knots, poles, t, z, band_mm, share):

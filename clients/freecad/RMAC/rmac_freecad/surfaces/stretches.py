@@ -39,7 +39,7 @@ class Stretches:
         t, index = np.unique(t, return_index=True)
         z = z[index]
         breaks = np.concatenate([[t[0]], np.sort(inner), [t[-1]]])
-        return [self._curve(row.w, t, z, a, b) for a, b in zip(breaks, breaks[1:]) if b > a]
+        return self._curves(row.w, t, z, [(a, b) for a, b in zip(breaks, breaks[1:]) if b > a])
 
     def _end(self, row, index, way):
         """Where the last sample's neighbour is behind a wall: how far it goes. None where it ends for another reason."""
@@ -76,12 +76,25 @@ class Stretches:
             near[:, -1] = False
             last = near.argmin(1) - 1
             low, high, from_, to = tried[each, last], tried[each, last + 1], point[each, last], point[each, last + 1]
-        step = 1e-3 / self._rows.family.t_mm
+        step = fit.KINK_STEP_MM / self._rows.family.t_mm
         around = np.concatenate([low - 2 * step, low - step, low, high, high + step, high + 2 * step])
         z = self._tips(row.w, around)[0][:, 2].reshape(6, -1)
-        bent = np.abs((z[5] - z[4]) - (z[1] - z[0])) > fit.KINK_SLOPE * 1e-3
+        bent = np.abs((z[5] - z[4]) - (z[1] - z[0])) > fit.KINK_SLOPE * fit.KINK_STEP_MM
         inside = (low - 2 * step > t[0]) & (high + 2 * step < t[-1])
         return np.column_stack([low, z[2]])[bent & inside]
+
+    def _curves(self, w, t, z, ranges):
+        """One after the other; kinks that leap too little to be seen in the samples part them too."""
+        found, waiting = [], ranges[::-1]
+        while waiting:
+            first, last = waiting.pop()
+            try:
+                found.append(self._curve(w, t, z, first, last))
+            except fit.Kink as kink:
+                index = np.searchsorted(t, kink.t)
+                t, z = np.insert(t, index, kink.t), np.insert(z, index, kink.z)
+                waiting += [(kink.t, last), (first, kink.t)]
+        return found
 
     def _curve(self, w, t, z, first, last):
         family = self._rows.family

@@ -648,6 +648,22 @@ class RMAC_CAM:
         """Takes a tool out of the mechanism's table; not the one in the spindle."""
         return self._call(calls.RMAC_CAM.RemoveTool(ToolNumber))
 
+    def SetSetup(self, Setup: Mapping[str, Any] | None = None) -> None:
+        """Says what stands on the table: stock, part and fixtures, for SetCollisionCheck. All of it is in force, or nothing of it. Needs rest and an empty queue; loading or unloading a machine drops it. Setup: as setup.json, but for meshes, which have Points and Triangles instead of a File; null, or left out: nothing stands there, and the check is switched off."""
+        return self._call(calls.RMAC_CAM.SetSetup(Setup))
+
+    def GetSetup(self) -> dict[str, Any]:
+        """What SetSetup set, as it was sent; empty: nothing is known of the table."""
+        return self._call(calls.RMAC_CAM.GetSetup())
+
+    def SetCollisionCheck(self, On: bool) -> None:
+        """Switches the check of the path against the machine's bodies and the set-up on or off; off at first. While it is on nothing is planned that was not checked: the machine comes to rest before bodies come nearer to each other than the set-up's Clearance, and the event CollisionAhead says which. Needs rest and an empty queue."""
+        return self._call(calls.RMAC_CAM.SetCollisionCheck(On))
+
+    def GetCollisionCheck(self) -> bool:
+        """Whether what moves is checked before it does."""
+        return self._call(calls.RMAC_CAM.GetCollisionCheck())
+
     def MoveAlongNurbsND(self, MoveID: int, NurbsND: types.NurbsLike) -> bool:
         """Queues a NURBS in joint space or with a tool axis; evaluated exactly, never cut into lines. MoveID: the client's number; comes back in events and records. NurbsND: mm or deg."""
         return self._call(calls.RMAC_CAM.MoveAlongNurbsND(MoveID, NurbsND))

@@ -792,6 +792,26 @@ class RMAC_CAM:
         return Call("RMAC_CAM.RemoveTool", {"ToolNumber": ToolNumber})
 
     @staticmethod
+    def SetSetup(Setup: Mapping[str, Any] | None = None) -> Call[None]:
+        """Says what stands on the table: stock, part and fixtures, for SetCollisionCheck. All of it is in force, or nothing of it. Needs rest and an empty queue; loading or unloading a machine drops it. Setup: as setup.json, but for meshes, which have Points and Triangles instead of a File; null, or left out: nothing stands there, and the check is switched off."""
+        return Call("RMAC_CAM.SetSetup", {"Setup": Setup})
+
+    @staticmethod
+    def GetSetup() -> Call[dict[str, Any]]:
+        """What SetSetup set, as it was sent; empty: nothing is known of the table."""
+        return Call("RMAC_CAM.GetSetup", {})
+
+    @staticmethod
+    def SetCollisionCheck(On: bool) -> Call[None]:
+        """Switches the check of the path against the machine's bodies and the set-up on or off; off at first. While it is on nothing is planned that was not checked: the machine comes to rest before bodies come nearer to each other than the set-up's Clearance, and the event CollisionAhead says which. Needs rest and an empty queue."""
+        return Call("RMAC_CAM.SetCollisionCheck", {"On": On})
+
+    @staticmethod
+    def GetCollisionCheck() -> Call[bool]:
+        """Whether what moves is checked before it does."""
+        return Call("RMAC_CAM.GetCollisionCheck", {})
+
+    @staticmethod
     def MoveAlongNurbsND(MoveID: int, NurbsND: types.NurbsLike) -> Call[bool]:
         """Queues a NURBS in joint space or with a tool axis; evaluated exactly, never cut into lines. MoveID: the client's number; comes back in events and records. NurbsND: mm or deg."""
         return Call("RMAC_CAM.MoveAlongNurbsND", {"MoveID": MoveID, "NurbsND": NurbsND})

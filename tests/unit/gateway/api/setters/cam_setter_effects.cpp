@@ -17,6 +17,14 @@ Trace corner(SetterBench& bench) {
   return bench.run();
 }
 
+/// A clamp on the table, its middle at this x; the spindle's nose has a radius of 25 mm at its height.
+std::string setup_with_clamp(double x) {
+  return fmt::format(R"({{"Setup": {{"Machine": "DMACXYZ", "Fixtures": [
+                            {{"Name": "clamp", "Shape": {{"Box": {{"Size": [10, 10, 20]}}}},
+                              "Pose": {{"p": [{}, 0, 0], "axis": [0, 0, 1]}}}}]}}}})",
+                     x);
+}
+
 /// Changes over to a five-axis machine, and is ready to run.
 void load_five_axes(SetterBench& bench) {
   bench.call("Device.Load", R"({"Name": "SuginoXYZAC", "Virtual": true})");
@@ -209,6 +217,27 @@ const std::vector<SetterEffect>& cam_setter_effects() {
          bench.call("RMAC_CAM.SetOptionalStop", R"({"On": true})");
          bench.call("RMAC_CAM.ProgramStop", R"({"MoveID": 2, "Optional": true})");
          bench.run_until([&] { return bench.now().state == CycleState::Holding; });
+       }},
+      {"RMAC_CAM.SetSetup",
+       [](SetterBench& bench) {
+         bench.call("RMAC_CAM.SetSetup", setup_with_clamp(-40));
+         bench.call("RMAC_CAM.SetCollisionCheck", R"({"On": true})");
+         bench.tip_to(20, 0, 0);
+         bench.call("RMAC_CAM.SetSetup", setup_with_clamp(60));
+         bench.call("RMAC_CAM.MoveToJointTarget", R"({"MoveID": 5, "JointTargetFrame": {"joints": [40, 0, 0]}})");
+         bench.run_until([&] { return bench.now().state == CycleState::Holding; });
+         EXPECT_LT(bench.now().position_set[0], 30) << "the other side is not free any more";
+       }},
+      {"RMAC_CAM.SetCollisionCheck",
+       [](SetterBench& bench) {
+         bench.call("RMAC_CAM.SetSetup", setup_with_clamp(60));
+         bench.tip_to(40, 0, 0);
+         bench.tip_to(0, 0, 0);
+         bench.call("RMAC_CAM.SetCollisionCheck", R"({"On": true})");
+         bench.call("RMAC_CAM.MoveToJointTarget", R"({"MoveID": 5, "JointTargetFrame": {"joints": [40, 0, 0]}})");
+         bench.run_until([&] { return bench.now().state == CycleState::Holding; });
+         EXPECT_LT(bench.now().position_set[0], 30) << "nothing was in the way before";
+         EXPECT_THAT(bench.refusal("RMAC_CAM.FeedResume"), HasSubstr("a collision lies ahead"));
        }},
       {"RMAC_CAM.SetOutput",
        [](SetterBench& bench) {
