@@ -113,6 +113,19 @@ class PlacementTest(unittest.TestCase):
         with self.assertRaisesRegex(MasterRefused, "no face of the model is within"):
             fit_placement(Part.makeBox(5, 5, 5), touched)
 
+    def test_no_places_no_numbers_and_faces_without_places_are_told(self):
+        places = scattered(self.shape, 4, np.random.default_rng(2))
+        touched = lain(places, Placement(), np.zeros(len(places)))
+        with self.assertRaisesRegex(MasterRefused, "no place was measured"):
+            deviations(self.shape, [])
+        with self.assertRaisesRegex(MasterRefused, "no place was measured on Face77"):
+            deviations(self.shape, touched).of(["Face77"])
+        nowhere = Place("Face1", (math.nan, 0.0, 0.0), (0.0, 0.0, 1.0))
+        for one in (Touched(places[0], (math.nan, 0, 0)), Touched(nowhere, (0, 0, 0))):
+            for ask in (deviations, fit_placement):
+                with self.assertRaisesRegex(MasterRefused, "is no number"):
+                    ask(self.shape, [*touched, one])
+
     def test_the_corrected_frame_lays_the_model_where_the_part_is(self):
         chance = np.random.default_rng(3)
         truth, places = Placement(Vector(0.1, -0.2, 0.05), Rotation(Vector(0, 0, 1), 0.2)), scattered(self.shape, 4, chance)
@@ -241,6 +254,99 @@ class DocumentTest(unittest.TestCase):
             with self.assertRaisesRegex(MasterRefused, told):
                 fit_parameters(part, sheet, names, touched)
             self.assertEqual(sheet.Depth.Value, 5)
+
+    def test_sizes_and_a_place_that_are_no_numbers_or_none_are_refused(self):
+        sheet, part = self.plate()
+        touched, _ = self.measured(part, 0, 0, 1)
+        for given, told in (([], "no place was measured"), ([Touched(touched[0].place, (math.nan, 0, 0)), *touched[1:]], "is no number")):
+            with self.assertRaisesRegex(MasterRefused, told):
+                fit_parameters(part, sheet, ["Depth"], given)
+
+    def test_a_size_that_is_far_off_is_told_with_the_value_that_was_tried(self):
+        sheet, part = self.plate()
+        with self.assertRaisesRegex(MasterRefused, "with Depth [678]..*, no face of the model is within 0.5 mm of .*nearer to what they are"):
+            fit_parameters(part, sheet, ["Depth"], self.measured(part, 2.5, 0.0, 1)[0])
+        self.assertEqual(sheet.Depth.Value, 5)
+
+    def test_what_else_is_broken_in_the_document_does_not_matter(self):
+        sheet, part = self.plate()
+        touched, _ = self.measured(part, 0.08, 0, 1)
+        self.document.addObject("Part::Cut", "Unfinished")
+        self.document.recompute()
+        fit = fit_parameters(part, sheet, ["Depth"], touched)
+        correct_parameters(part, fit)
+        self.assertAlmostEqual(sheet.Depth.Value, 5.08, 4)
+
+    def test_sizes_of_a_model_within_another_part_are_fitted_where_it_stands(self):
+        sheet, part = self.plate()
+        holder = self.document.addObject("App::Part", "Holder")
+        holder.addObject(part)
+        holder.Placement = Placement(Vector(5, 6, 7), Rotation(Vector(0, 0, 1), 30))
+        self.document.recompute()
+        shape, chance = part.Shape.copy(), np.random.default_rng(4)
+        shape.Placement = part.getGlobalPlacement()
+        places = scattered(shape, 5, chance)
+        off = [-0.08 if abs(place.point[2] - 14) < 1e-6 and place.normal[2] > 0.9 else 0.0 for place in places]
+        truth = random_placement(chance, 0.2, 0.1)
+        fit = fit_parameters(part, sheet, ["Depth"], lain(places, truth, off))
+        self.assertAlmostEqual(fit.values[0], 5.08, 4)
+        np.testing.assert_allclose(corners(fit.placement), corners(truth), atol=1e-4)
+
+    def test_an_object_or_a_cell_that_is_gone_is_told(self):
+        sheet, part = self.plate()
+        touched, _ = self.measured(part, 0.05, 0, 1)
+        sizes, place = fit_parameters(part, sheet, ["Depth"], touched), fit_placement(part.Shape, touched)
+        other = FreeCAD.newDocument("other")
+        self.addCleanup(lambda: [FreeCAD.closeDocument(name) for name in FreeCAD.listDocuments() if name == other.Name])
+        foreign = other.addObject("Spreadsheet::Sheet", "Dimensions")
+        foreign.set("A1", "5 mm")
+        foreign.setAlias("A1", "Depth")
+        other.recompute()
+        with self.assertRaisesRegex(MasterRefused, "is in the document other"):
+            fit_parameters(part, foreign, ["Depth"], touched)
+        sheet.setAlias("A1", "")
+        with self.assertRaisesRegex(MasterRefused, "no cell with the alias Depth"):
+            correct_parameters(part, sizes)
+        box = other.addObject("Part::Box", "Gone")
+        other.removeObject("Gone")
+        for ask in (lambda: correct_placement(box, place), lambda: correct_parameters(box, sizes), lambda: fit_parameters(box, sheet, ["Width"], touched)):
+            with self.assertRaisesRegex(MasterRefused, "not there any more"):
+                ask()
+
+    def test_sizes_of_a_part_that_lies_far_off_are_fitted_too(self):
+        sheet, part = self.plate()
+        for seed in range(2):
+            chance = np.random.default_rng(seed)
+            truth, places = random_placement(chance, 5, 5), scattered(part.Shape, 5, chance)
+            off = [-0.08 if abs(place.point[2] - 7) < 1e-6 and place.normal[2] > 0.9 else 0.0 for place in places]
+            fit = fit_parameters(part, sheet, ["Depth", "Width"], lain(places, truth, off))
+            np.testing.assert_allclose(fit.values, (5.08, 9), atol=2e-5)
+            np.testing.assert_allclose(corners(fit.placement), corners(truth), atol=5e-5)
+
+    def test_a_placement_is_corrected_once(self):
+        _, part = self.plate()
+        touched, _ = self.measured(part, 0, 0, 1)
+        fit = fit_placement(part.Shape, touched)
+        correct_placement(part, fit)
+        corrected = part.Placement
+        with self.assertRaisesRegex(MasterRefused, "corrected already"):
+            correct_placement(part, fit)
+        np.testing.assert_allclose(part.Placement.Matrix.A, corrected.Matrix.A, atol=1e-12)
+        self.document.undo()
+        correct_placement(part, fit)
+        np.testing.assert_allclose(part.Placement.Matrix.A, corrected.Matrix.A, atol=1e-12)
+
+    def test_an_object_that_is_attached_is_refused_and_stays(self):
+        _, part = self.plate()
+        touched, _ = self.measured(part, 0, 0, 1)
+        fit = fit_placement(part.Shape, touched)
+        attached = self.document.addObject("Part::Box", "Attached")
+        attached.Support, attached.MapMode = [(part, "Face1")], "FlatFace"
+        self.document.recompute()
+        stood = attached.Placement
+        with self.assertRaisesRegex(MasterRefused, "Attached is attached"):
+            correct_placement(attached, fit)
+        np.testing.assert_allclose(attached.Placement.Matrix.A, stood.Matrix.A, atol=1e-12)
 
     def test_a_corrected_placement_is_one_step_that_can_be_undone_also_within_another_part(self):
         holder = self.document.addObject("App::Part", "Holder")

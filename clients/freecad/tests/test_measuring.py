@@ -1,8 +1,10 @@
 """Places on a part, and a real daemon that touches them on its simulated measuring machine (drivers/cmm/3-axis/CMM)."""
 
 import json
+import math
 import os
 import sys
+import threading
 import unittest
 
 sys.path.append(os.path.join(os.environ["RMAC_SOURCE"], "tests/system"))
@@ -58,6 +60,15 @@ class PlacesTest(unittest.TestCase):
         with self.assertRaisesRegex(MeasuringRefused, f"{inner} has no place 1 mm from its edges"):
             places_on(narrow, [inner], count=2, edge_mm=1, **{**TIP, "clearance_mm": 3.0})
 
+    def test_a_narrow_rim_has_places(self):
+        rim = Part.makeBox(100, 100, 12, Vector(0, 0, -40)).cut(Part.makeBox(92, 92, 20, Vector(4, 4, -34)))
+        top = next(f"Face{number}" for number, face in enumerate(rim.Faces, 1) if abs(face.CenterOfMass.z + 28) < 1e-6 and face.BoundBox.ZLength < 1e-6)
+        places = places_on(rim, [top], count=4, edge_mm=1.5, **TIP)
+        self.assertEqual(len(places), 4)
+        for place in places:
+            x, y, _ = place.point
+            self.assertTrue(1.5 <= min(x, y, 100 - x, 100 - y) <= 4 - 1.5 / math.sqrt(2), place)  # the most is in a corner
+
     def test_heights_between_which_the_tip_stays_are_kept(self):
         for place in self.places([self.bore], between_mm=(-32.0, -26.0)):
             self.assertTrue(-31 <= place.point[2] <= -27, place)
@@ -65,7 +76,7 @@ class PlacesTest(unittest.TestCase):
 
     def test_what_makes_no_sense_is_refused(self):
         for told, names, changes in (("there is no Face99", ["Face99"], {}), ("no face was named", [], {}), ("has no place", [face_of(self.shape, (0, 0, -1))], {}),
-                                     ("height to cross", [self.top], {"safe_mm": -19.5}), ("more than 0", [self.top], {"tip_radius_mm": 0})):  # fmt: skip
+                                     ("height to cross", [self.top], {"safe_mm": -19.5}), ("height to cross", [self.top], {"safe_mm": math.inf}), ("more than 0", [self.top], {"tip_radius_mm": 0})):  # fmt: skip
             with self.assertRaisesRegex(MeasuringRefused, told):
                 self.places(names, **changes)
 
@@ -108,6 +119,20 @@ class MeasureTest(unittest.TestCase):
         with self.client.authority():
             self.client.cam.StopNow()
             self.client.load("CMM")
+
+    def test_an_appliance_that_ends_meanwhile_is_told_with_the_place(self):
+        appliance = Appliance(pace="real-time")
+        appliance.ends_with = -9
+        with appliance, rmac.connect(f"127.0.0.1:{appliance.port}", "FreeCAD") as client, client.events() as events:
+            with client.authority():
+                client.load("CMM")
+            ends = threading.Thread(target=lambda: next(event for event in events if event.kind == "Hit") and appliance.process.kill())
+            ends.start()
+            try:
+                with self.assertRaisesRegex(MeasuringRefused, "place [23] of 3, on Face.*: .*connection"):
+                    measure(client, self.places(self.sides[:1]), rmac=RMAC, **TIP)
+            finally:
+                ends.join()
 
     def test_another_station_that_has_authority_is_told(self):
         with rmac.connect(f"127.0.0.1:{self.appliance.port}", "lathe hand") as other, other.authority(), self.assertRaisesRegex(MeasuringRefused, "lathe hand"):

@@ -13,6 +13,7 @@ from FreeCAD import Vector
 from rmac_freecad.holes import Drilling, read_holes
 from rmac_freecad.jobs.refusal import JobRefused
 from rmac_freecad.parts import PartRefused, check_size, open_step, recognise
+from rmac_freecad.pockets import outline_of
 
 INCH = """#9900=(CONVERSION_BASED_UNIT('INCH',#9901)LENGTH_UNIT()NAMED_UNIT(#9902));
 #9901=LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(25.4),#9903);
@@ -30,6 +31,95 @@ def plate(x=0.0):
     return shape.cut(Part.makeBox(20, 6, 10, Vector(x + 45, 12, 9)))
 
 
+def block_without(*tools):
+    """60 × 30 × 12 mm; tools are taken away."""
+    shape = Part.makeBox(60, 30, 12)
+    for tool in tools:
+        shape = shape.cut(tool)
+    return shape
+
+
+def bore(diameter, bottom, height=20, x=20.0, y=15.0):
+    return Part.makeCylinder(diameter / 2, height, Vector(x, y, bottom))
+
+
+class WhatIsThereTest(unittest.TestCase):
+    """A wrong hole is worse than none: the drill goes down in rapids to 1 mm above its top, and further where it is through."""
+
+    def holes(self, *tools):
+        return [tuple(round(float(value), 6) for value in (hole.diameter_mm, hole.bottom, hole.top, hole.through)) for hole in recognise(block_without(*tools)).holes]
+
+    def test_a_blind_hole_is_not_through_whatever_its_end_is(self):
+        point, ball = Part.makeCone(0, 2.5, 1.5, Vector(20, 15, 2.5)), Part.makeSphere(2.5, Vector(20, 15, 4))
+        for end in ((), (point,), (ball,)):
+            self.assertEqual(self.holes(bore(5, 4), *end), [(5, 4, 12, False)])
+        self.assertEqual(recognise(block_without(bore(5, 4), point)).free_form, (), "the point is the drill's")
+
+    def test_a_wider_bore_ends_at_its_ledge_and_drills_begin_above_it(self):
+        self.assertEqual(self.holes(bore(5, -4), bore(9, 6)), [(5, 0, 12, True), (9, 6, 12, False)])
+        self.assertEqual(self.holes(bore(5, -4), bore(9, 11)), [(5, 0, 12, True), (9, 11, 12, False)])
+        sunk = block_without(bore(5, -4), Part.makeCone(2.5, 4.5, 2, Vector(20, 15, 10)))
+        self.assertEqual([(hole.top, hole.through) for hole in recognise(sunk).holes], [(12, True)])
+        self.assertEqual(len(recognise(sunk).free_form), 1)
+        plain = block_without(bore(5, -4))
+        rounded = plain.makeFillet(2, [edge for edge in plain.Edges if isinstance(edge.Curve, Part.Circle) and edge.CenterOfMass.z > 11])
+        self.assertEqual([(round(hole.top, 6), hole.through) for hole in recognise(rounded).holes], [(12, True)])
+
+    def test_what_is_not_open_above_is_neither_hole_nor_pocket(self):
+        self.assertEqual(self.holes(bore(5, -4, 9)), [], "it is drilled from below")
+        self.assertEqual(self.holes(bore(5, -4, 6), bore(5, 4)), [(5, 4, 12, False)], "between the two is a web")
+        self.assertEqual(self.holes(bore(5, -4, 7), bore(5, 9)), [(5, 9, 12, False)])
+        for hollow in (bore(10, 4, 4), Part.makeBox(20, 10, 4, Vector(10, 10, 4)), Part.makeBox(20, 10, 4, Vector(10, 10, 4)).fuse(Part.makeBox(20, 4, 10, Vector(10, 13, 6)))):
+            found = recognise(block_without(hollow))
+            self.assertEqual((found.holes, found.recesses), ((), ()))
+
+    def test_halves_above_each_other_are_no_hole_and_a_hole_that_a_groove_crosses_is_one(self):
+        groove = Part.makeBox(60, 20, 2, Vector(0, 5, 5))
+        slot = bore(6, -4).fuse(bore(6, -4, x=40.0)).fuse(Part.makeBox(20, 6, 20, Vector(20, 12, -4))).removeSplitter()
+        self.assertEqual(self.holes(slot, groove), [])
+        self.assertEqual(self.holes(bore(6, -4, y=0.0), Part.makeBox(60, 5, 2, Vector(0, 0, 5))), [])
+        self.assertEqual(self.holes(bore(6, -4), groove), [(6, 0, 12, True)])
+
+    def test_an_island_whose_wall_is_where_a_floor_is_looked_at_is_no_roof(self):
+        island = Part.makeBox(6, 4, 12, Vector(13, 13, 0))  # places are at tenths of the floor's sides: X 13, 19, …
+        found = recognise(block_without(Part.makeBox(30, 16, 20, Vector(10, 7, 6)).cut(island)))
+        self.assertEqual([(recess.z, recess.islands) for recess in found.recesses], [(6, 1)])
+
+    def test_of_many_holes_each_is_found(self):
+        places = [(3 + 5.5 * i, 3 + 4 * j, -4 if (i + j) % 2 else 5) for i in range(10) for j in range(6)]
+        found = recognise(block_without(Part.makeCompound([bore(2, z, x=x, y=y) for x, y, z in places]))).holes
+        np.testing.assert_allclose(sorted((hole.x, hole.y, hole.bottom) for hole in found), sorted((x, y, max(z, 0)) for x, y, z in places), atol=1e-9)
+        self.assertEqual(sum(hole.through for hole in found), 30)
+
+    def test_halves_are_put_together_wherever_they_are(self):
+        for number in range(1, 30):
+            shape, x = Part.makeBox(60, 30, 12), 10 + number * 25.4 / 32
+            for half in (0, 180):
+                shape = shape.cut(Part.makeCylinder(2, 12, Vector(x, 15.08125, 0), Vector(0, 0, 1), 180).rotated(Vector(x, 15.08125, 0), Vector(0, 0, 1), half))
+            self.assertEqual(len(recognise(shape).holes), 1, x)
+
+    def test_a_pocket_goes_up_over_fillets_and_chamfers_of_its_walls(self):
+        box = Part.makeBox(30, 16, 20, Vector(10, 7, 5))
+        upright = box.makeFillet(3, [edge for edge in box.Edges if edge.BoundBox.ZLength > 1])
+        floor = upright.makeFillet(1, [edge for edge in upright.Edges if abs(edge.BoundBox.ZMax - 5) < 1e-6])
+        self.assertEqual([(round(one.z, 6), round(one.top, 6)) for one in recognise(block_without(floor)).recesses], [(5, 12)])
+        rounded = block_without(box.makeFillet(2, box.Edges))
+        rim = [edge for edge in rounded.Edges if abs(edge.BoundBox.ZMin - 12) < 1e-6 and 5 < edge.CenterOfMass.x < 45 and 5 < edge.CenterOfMass.y < 25]
+        for shape in (rounded, rounded.makeChamfer(0.5, rim)):
+            self.assertEqual([(round(one.z, 6), round(one.top, 6)) for one in recognise(shape).recesses], [(5, 12)])
+
+
+    def test_a_hole_or_a_deeper_pocket_in_a_floor_is_no_island_and_what_stands_in_it_is_one(self):
+        document = FreeCAD.newDocument("floors")
+        self.addCleanup(FreeCAD.closeDocument, document.Name)
+        pocket, deeper, boss = Part.makeBox(30, 16, 20, Vector(10, 7, 8)), Part.makeBox(10, 8, 20, Vector(20, 11, 4)), Part.makeCylinder(2, 20, Vector(25, 15, 0))
+        for tools, islands in (((pocket, bore(5, -4)), 0), ((pocket, deeper), 0), ((pocket.fuse(deeper).cut(boss),), 1), ((pocket.cut(boss), bore(5, -4, x=15.0)), 1)):
+            part = document.addObject("Part::Feature", "Part")
+            part.Shape = block_without(*tools)
+            floor = next(recess.floor for recess in recognise(part.Shape).recesses if recess.z == 8)
+            self.assertEqual(len(outline_of(part, floor).contours), 1 + islands)
+
+
 class StrangersTest(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
@@ -42,7 +132,7 @@ class StrangersTest(unittest.TestCase):
 
     def test_what_there_is_to_machine_is_found_from_the_shape(self):
         found = recognise(open_step(self.written(plate())).Shape)
-        self.assertEqual([(recess.z, recess.top, recess.islands) for recess in found.recesses], [(7.0, 12.0, 1)])
+        self.assertEqual([(recess.z, round(recess.top, 6), recess.islands) for recess in found.recesses], [(7.0, 12.0, 1)])
         self.assertEqual(len(found.recesses[0].walls), 8 + 1)
         holes = [(round(hole.x, 6), round(hole.y, 6), round(hole.diameter_mm, 6), round(hole.bottom, 6), round(hole.top, 6), hole.through) for hole in found.holes]
         self.assertEqual(holes, [(34, 8, 5, 0, 12, True), (34, 20, 8, 5, 12, False)])

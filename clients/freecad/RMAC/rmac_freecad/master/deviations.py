@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import FreeCAD
 import numpy as np
 
-from rmac_freecad.master.model import Model
+from rmac_freecad.master.model import Model, measured_points
+from rmac_freecad.master.refusal import MasterRefused
 
 
 @dataclass(frozen=True)
@@ -27,12 +28,14 @@ class Deviations:
     def of(self, names):
         """Those on these faces."""
         chosen = [number for number, one in enumerate(self.touched) if one.place.face in names]
+        if not chosen:
+            raise MasterRefused(f"no place was measured on {', '.join(names)}")
         return Deviations(tuple(self.touched[number] for number in chosen), self.off[chosen])
 
 
 def deviations(shape, touched, placement=None):
     """`placement` takes the model to where it lies, as a `PlacementFit` has it; without one it lies where it was taken to lie."""
-    points = np.array([one.measured for one in touched], float)
+    points = measured_points(touched)
     if placement is not None:
         back = placement.inverse()
         points = np.array([tuple(back.multVec(FreeCAD.Vector(*map(float, point)))) for point in points])

@@ -10,6 +10,21 @@ NEAR_MM = 0.5  # a nominal place lies on its face; what is farther has none
 AGREES = 0.7  # cosine between a face's normal and the one that was told
 
 
+class NoFace(MasterRefused):
+    """A place lies on no face."""
+
+
+def measured_points(touched):
+    """What was measured, one point a row. Raises `MasterRefused` where there is nothing, or no number."""
+    if not touched:
+        raise MasterRefused("no place was measured")
+    numbers = np.array([(*one.measured, *one.place.point, *one.place.normal) for one in touched], float)
+    for one, finite in zip(touched, np.isfinite(numbers).all(1)):
+        if not finite:
+            raise MasterRefused(f"a measured point is no number: {one.measured}, on {one.place.face} at {one.place.point}")
+    return numbers[:, :3]
+
+
 class Model:
     """Each place keeps the face on which it lies, so that it is the same one however far a measured point is off. Names of faces are not
     trusted: a model that was computed anew may have others."""
@@ -30,7 +45,7 @@ class Model:
             if away <= within_mm and (best is None or away < best[0]) and _foot(face, point)[1].dot(normal) > AGREES:
                 best = away, face
         if best is None:
-            raise MasterRefused(f"no face of the model is within {within_mm:g} mm of X {point.x:.4g} Y {point.y:.4g} Z {point.z:.4g}; measure places of this model")
+            raise NoFace(f"no face of the model is within {within_mm:g} mm of X {point.x:.4g} Y {point.y:.4g} Z {point.z:.4g}; measure places of this model")
         return best[1]
 
     def held_against(self, points):

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rmac_freecad.master.model import Model
-from rmac_freecad.master.placement import INSTRUMENT_MM
-from rmac_freecad.master.refusal import MasterRefused
+from rmac_freecad.master.model import Model, NoFace, measured_points
+from rmac_freecad.master.placement import INSTRUMENT_MM, fit_placement
+from rmac_freecad.master.refusal import MasterRefused, document_of
 from rmac_freecad.master.rigid import FREEDOMS, check_held, covariance, placement_of, matrix_of, rows, spread_of
 
 STEP_MM = 0.02  # by which each parameter is changed to see what it moves
@@ -34,22 +34,23 @@ class ParametersFit:
 def fit_parameters(feature, sheet, names, touched, instrument_mm=INSTRUMENT_MM):
     """`names` are aliases of cells with lengths, on which `feature` depends. The part's place is fitted with them, so that neither is
     taken for the other. The document is left as it was. Raises `MasterRefused`."""
+    document = _document_of(feature, sheet)
     nominal = [_length(sheet, name) for name in names]
     if not names:
         raise MasterRefused("no parameter was named")
-    measured = np.array([one.measured for one in touched], float)
+    measured = measured_points(touched)
     centre = measured.mean(0)
-    document = feature.Document
     shapes = _Shapes(document, feature, sheet, names)
     document.openTransaction("Look at parameters")
     try:
-        values, rotation, shift = np.array(nominal), np.eye(3), np.zeros(3)
+        start = fit_placement(shapes.at(nominal), touched, instrument_mm)  # else a part that lies far off is taken for sizes that are
+        values, rotation, shift = np.array(nominal), matrix_of(start.turn), start.shift
         before = None
         for _ in range(MOST_ROUNDS):
             points = (measured - centre - shift) @ rotation + centre
-            off, _, normals = Model(shapes.at(values), touched).held_against(points)
+            off, _, normals = shapes.model_at(values, touched).held_against(points)
             before = off if before is None else before
-            moved = [Model(shapes.at(values + STEP_MM * one), touched).held_against(points)[0] for one in np.eye(len(names))]
+            moved = [shapes.model_at(values + STEP_MM * one, touched).held_against(points)[0] for one in np.eye(len(names))]
             jacobian = np.column_stack([rows(points, normals, centre), *[(off - other) / STEP_MM for other in moved]])
             scales = np.array([1.0] * 3 + [spread_of(points, centre)] * 3 + [1.0] * len(names))
             check_held(jacobian, (*FREEDOMS, *names), scales)
@@ -72,7 +73,7 @@ def fit_parameters(feature, sheet, names, touched, instrument_mm=INSTRUMENT_MM):
 def correct_parameters(feature, fit):
     """Writes the values into their cells and computes the model anew, in one step that can be undone. A model that cannot be computed
     with them is refused, and stays as it was."""
-    document = feature.Document
+    document = _document_of(feature, fit.sheet)
     shapes = _Shapes(document, feature, fit.sheet, fit.names)
     document.openTransaction(f"Correct {', '.join(fit.names)}")
     try:
@@ -89,8 +90,10 @@ class _Shapes:
 
     def __init__(self, document, feature, sheet, names):
         self._document, self._feature, self._sheet, self._names = document, feature, sheet, names
-        self._cells = [sheet.getCellFromAlias(name) for name in names]
+        self._cells = [_cell(sheet, name) for name in names]
         self._texts = [sheet.getContents(cell) for cell in self._cells]
+        needed = {feature.Name, *(one.Name for one in feature.OutListRecursive)}
+        self._watched = [one for one in document.Objects if one.Name in needed or "Invalid" not in one.State]  # what else was broken before may stay so
 
     def restore(self):
         for cell, text in zip(self._cells, self._texts):
@@ -102,17 +105,39 @@ class _Shapes:
         for cell, value in zip(self._cells, values):
             self._sheet.set(cell, f"={float(value):.9f} mm")
         self._document.recompute()
-        broken = [one.Label for one in self._document.Objects if "Invalid" in one.State]
+        broken = [one.Label for one in self._watched if "Invalid" in one.State]
         if broken or self._feature.Shape.isNull():
-            told = ", ".join(f"{name} {value:.4f} mm" for name, value in zip(self._names, values))
-            raise MasterRefused(f"with {told} the model cannot be computed: {', '.join(broken) or self._feature.Label} is broken")
-        return self._feature.Shape.copy()
+            raise MasterRefused(f"with {self._told(values)} the model cannot be computed: {', '.join(broken) or self._feature.Label} is broken")
+        shape = self._feature.Shape.copy()
+        shape.Placement = self._feature.getGlobalPlacement()
+        return shape
+
+    def model_at(self, values, touched):
+        try:
+            return Model(self.at(values), touched)
+        except NoFace as gone:
+            raise MasterRefused(f"with {self._told(values)}, {gone}, or set the parameters nearer to what they are") from gone
+
+    def _told(self, values):
+        return ", ".join(f"{name} {value:.4f} mm" for name, value in zip(self._names, values))
 
 
-def _length(sheet, name):
+def _document_of(feature, sheet):
+    document = document_of(feature)
+    if document_of(sheet).Name != document.Name:
+        raise MasterRefused(f"{sheet.Label} is in the document {sheet.Document.Label}, and {feature.Label} in {document.Label}; correct a model whose spreadsheet is in its document")
+    return document
+
+
+def _cell(sheet, name):
     cell = sheet.getCellFromAlias(name)
     if not cell:
         raise MasterRefused(f"{sheet.Label} has no cell with the alias {name}")
+    return cell
+
+
+def _length(sheet, name):
+    cell = _cell(sheet, name)
     if not WRITTEN.match(sheet.getContents(cell)):
         raise MasterRefused(f"{name} is computed ({sheet.getContents(cell)}); correct what it is computed from")
     value = getattr(sheet, name)

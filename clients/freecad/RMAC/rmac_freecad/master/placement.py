@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import FreeCAD
 import numpy as np
 
-from rmac_freecad.master.model import Model
-from rmac_freecad.master.refusal import MasterRefused
+from rmac_freecad.master.model import Model, measured_points
+from rmac_freecad.master.refusal import MasterRefused, document_of
 from rmac_freecad.master.rigid import FREEDOMS, check_held, covariance, matrix_of, placement_of, rows, spread_of
 
 MOST_STEPS = 30
@@ -26,6 +26,7 @@ class PlacementFit:
     shift: np.ndarray  # of that centre
     turn: np.ndarray  # rad, about x, y, z
     covariance: np.ndarray  # of shift and turn, one standard deviation squared
+    stood: FreeCAD.Placement  # the shape's, as it was taken to lie
 
     @property
     def uncertainty(self):
@@ -50,9 +51,7 @@ def fit_placement(shape, touched, instrument_mm=INSTRUMENT_MM):
     """`shape` as it was taken to lie, in the part frame. Raises `MasterRefused` where the places do not hold the part."""
     if len(touched) < 7:
         raise MasterRefused(f"{len(touched)} places were measured; where a part lies takes six, and one more tells how sure that is")
-    measured = np.array([one.measured for one in touched], float)
-    if not np.isfinite(measured).all():
-        raise MasterRefused("a measured point is no number")
+    measured = measured_points(touched)
     centre = measured.mean(0)
     model = Model(shape, touched)
     before, _, _ = model.held_against(measured)
@@ -71,7 +70,7 @@ def fit_placement(shape, touched, instrument_mm=INSTRUMENT_MM):
     else:
         raise MasterRefused("the fit does not come to rest; is this the part that was measured?")
     placement = placement_of(rotation, centre + shift - rotation @ centre)
-    return PlacementFit(placement, before, off, centre, shift, _turn_of(rotation), covariance(jacobian, off, instrument_mm))
+    return PlacementFit(placement, before, off, centre, shift, _turn_of(rotation), covariance(jacobian, off, instrument_mm), shape.Placement)
 
 
 def _turn_of(rotation):
@@ -96,9 +95,13 @@ def corrected_frame(part_frame, fit, upright=False):
 
 def correct_placement(feature, fit):
     """Puts the object where it lies, in one step that can be undone; the document keeps undo steps where `UndoMode` is 1."""
+    document = document_of(feature)
     if feature.ExpressionEngine and any(path.startswith("Placement") for path, _ in feature.ExpressionEngine):
         raise MasterRefused(f"an expression rules the placement of {feature.Label}; correct what it refers to")
-    document = feature.Document
+    if getattr(feature, "MapMode", "Deactivated") != "Deactivated":
+        raise MasterRefused(f"{feature.Label} is attached, and would be put back when what it is attached to changes; correct that, or detach it")
+    if not np.allclose(feature.getGlobalPlacement().Matrix.A, fit.stood.Matrix.A, rtol=0, atol=1e-9):
+        raise MasterRefused(f"{feature.Label} does not stand where the shape stood to which the fit was made; it may have been corrected already: fit anew, to its shape as it stands in the document")
     outer = feature.getGlobalPlacement() * feature.Placement.inverse()
     document.openTransaction(f"Correct where {feature.Label} lies")
     feature.Placement = outer.inverse() * fit.placement * outer * feature.Placement

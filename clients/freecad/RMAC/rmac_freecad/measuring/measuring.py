@@ -1,5 +1,6 @@
 """Has a machine with a probe touch places of a part, by the command-line client, and tells what it found."""
 
+import contextlib
 import json
 import math
 import pathlib
@@ -8,6 +9,7 @@ import subprocess
 import tempfile
 from dataclasses import dataclass
 
+from rmac.errors import ConnectionLost
 from rmac_freecad.measuring.places import Place
 from rmac_freecad.measuring.refusal import MeasuringRefused
 
@@ -44,14 +46,26 @@ def measure(client, places, *, tip_radius_mm, clearance_mm, safe_mm, speed_mm_s=
                 )  # fmt: skip
             except subprocess.TimeoutExpired as late:
                 raise MeasuringRefused(f"measuring {len(places)} places took longer than {patience_s} s") from late
-            client.state()  # events that came before its answer are here
-            hits = sum(event.kind == "Hit" for event in events.so_far())
+            hits = _hits(client, events)
     if ended.returncode != 0:
         place = places[min(hits, len(places) - 1)]
         where = ", ".join(f"{axis} {value:.4g}" for axis, value in zip("XYZ", place.point))
         raise MeasuringRefused(f"place {hits + 1} of {len(places)}, on {place.face} at {where}: {ended.stderr.strip().removeprefix('rmac: ')}")
     points = json.loads(ended.stdout)["points"]
     return [Touched(place, tuple(point["measured"])) for place, point in zip(places, points, strict=True)]
+
+
+def _hits(client, events):
+    """How many came before the connection's end, of which the client that measured tells, too."""
+    try:
+        client.state()  # events that came before its answer are here
+    except ConnectionLost:
+        hits = 0
+        with contextlib.suppress(ConnectionLost):
+            for event in events:
+                hits += event.kind == "Hit"
+        return hits
+    return sum(event.kind == "Hit" for event in events.so_far())
 
 
 def _plan(places, tip_radius, clearance, safe, speed):

@@ -9,7 +9,7 @@ from FreeCAD import Vector
 
 from rmac_freecad.measuring.refusal import MeasuringRefused
 
-GRID = 13  # candidates along each parameter of a face
+GRIDS = 13, 52  # candidates along each parameter of a face; the finer one where the first has none off the edges
 CLOSE_MM = 1e-4
 
 
@@ -21,7 +21,7 @@ class Place:
 
 
 def places_on(shape, names, *, count, tip_radius_mm, clearance_mm, edge_mm, safe_mm, between_mm=(-math.inf, math.inf)):
-    """`count` places on each of the faces, as far apart as may be: no nearer than `edge_mm` to an edge of the face, where a probe with a tip of
+    """`count` places on each of the faces, fewer where no more are found, as far apart as may be: no nearer than `edge_mm` to an edge of the face, where a probe with a tip of
     that radius touches nothing else, neither there nor `clearance_mm` off nor straight up from there to `safe_mm`. Of walls those
     heights alone are taken that leave the tip between two, as a stylus is only so long. Raises `MeasuringRefused` of a face that has no such place."""
     faces = {f"Face{number}": face for number, face in enumerate(shape.Faces, 1)}
@@ -30,21 +30,22 @@ def places_on(shape, names, *, count, tip_radius_mm, clearance_mm, edge_mm, safe
         raise MeasuringRefused(f"there is no {unknown[0]}; the part has Face1 to Face{len(faces)}" if unknown else "no face was named")
     if not all(math.isfinite(value) and value > 0 for value in (tip_radius_mm, clearance_mm)) or count < 1 or not edge_mm >= 0:
         raise MeasuringRefused("the tip's radius and the clearance are more than 0, and there is 1 place a face at least")
-    if not safe_mm >= shape.BoundBox.ZMax + tip_radius_mm:
+    if not math.inf > safe_mm >= shape.BoundBox.ZMax + tip_radius_mm:
         raise MeasuringRefused(f"the height to cross at, Z {safe_mm:g}, is at least the tip's radius above the part, Z {shape.BoundBox.ZMax:.4g}")
     reach = _Reach(shape, tip_radius_mm, clearance_mm, safe_mm, between_mm)
     found = []
     for name in names:
-        chosen = _apart([place for place in _candidates(name, faces[name]) if _off_edges(faces[name], place, edge_mm)], count, reach.gets_to)
+        grids = ([place for place in _candidates(name, faces[name], grid) if _off_edges(faces[name], place, edge_mm)] for grid in GRIDS)
+        chosen = _apart(next(filter(None, grids), []), count, reach.gets_to)
         if not chosen:
             raise MeasuringRefused(f"{name} has no place {edge_mm:g} mm from its edges that a tip of radius {tip_radius_mm:g} mm gets to from above; have a smaller tip, clearance or distance, or leave it out")
         found += chosen
     return found
 
 
-def _candidates(name, face):
+def _candidates(name, face, grid):
     a, b, c, d = face.ParameterRange
-    steps = (np.arange(GRID) + 0.5) / GRID
+    steps = (np.arange(grid) + 0.5) / grid
     for s in steps:
         for t in steps:
             u, v = a + s * (b - a), c + t * (d - c)

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import Part
+from FreeCAD import Vector
 
 from rmac_freecad.pockets.crossings import crossings
 from rmac_freecad.pockets.refusal import PocketRefused
@@ -15,6 +16,7 @@ from rmac_freecad.profiles.pieces import Bow, Spline, Straight
 
 LEVEL = 1e-7  # of a normal of length 1
 SAME_PLACE_MM = 1e-5
+ABOVE_MM = 1e-3
 
 
 @dataclass(frozen=True)
@@ -25,7 +27,7 @@ class Outline:
 
 
 def outline_of(feature, face=""):
-    """Of a face, "Face3", of the object, whose inner wires are islands; else of all its edges, as of a sketch. Where it stands in the
+    """Of a face, "Face3", of the object, whose inner wires are islands, but for ways down from a floor; else of all its edges, as of a sketch. Where it stands in the
     document. Raises `PocketRefused`, and `ProfileRefused` where edges do not make contours."""
     wires = _wires_of_face(feature, face) if face else _wires_of_edges(edges_of(feature))
     contours = [_closed(contour_of(wire)) for wire in wires]
@@ -54,7 +56,19 @@ def _wires_of_face(feature, name):
         raise PocketRefused("it is not level; a pocket is cleared on a face that lies across Z", edge=name)
     if shape.Solids and face.normalAt(*(sum(face.ParameterRange[i : i + 2]) / 2 for i in (0, 2))).z < 0:
         raise PocketRefused("it looks down; a pocket is cleared from above", edge=name)
-    return [[(_name(shape, edge), edge) for edge in wire.Edges] for wire in face.Wires]
+    wires = [wire for wire in face.Wires if wire.isSame(face.OuterWire) or not _is_way_down(shape, face, wire)]
+    return [[(_name(shape, edge), edge) for edge in wire.Edges] for wire in wires]
+
+
+def _is_way_down(shape, face, wire):
+    """Into a hole or a deeper pocket of a pocket's floor, with nothing standing above: no island."""
+    z, top = face.CenterOfMass.z, shape.BoundBox.ZMax
+    walls = [other for edge in face.OuterWire.Edges for other in shape.Faces if not other.isSame(face) and any(one.isSame(edge) for one in other.Edges)]
+    if not walls or any(wall.BoundBox.ZMax < z + ABOVE_MM for wall in walls):
+        return False  # no floor
+    above = Part.Face(wire).extrude(Vector(0, 0, top + 1 - z))
+    above.translate(Vector(0, 0, ABOVE_MM))
+    return shape.distToShape(above)[0] > 0
 
 
 def _name(shape, edge):
