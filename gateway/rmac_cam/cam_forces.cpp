@@ -25,6 +25,12 @@ Expected<> CamForces::set(int joint, double force) {
                                "beyond the other",
                                kFunction, force, least, most, there.limits.name));
   }
+  if (force != 0 && supervisor_.guarding().on()) {
+    return failure(MinorCode::Other,
+                   fmt::format("{}: collisions are checked ahead, and where joint {} goes for its force is not known "
+                               "ahead; switch the check off with SetCollisionCheck first",
+                               kFunction, there.limits.name));
+  }
   const CycleState state = supervisor_.state();
   if (force != 0 && is_faulted(state)) {
     return failure(MinorCode::Other,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "gateway/json/printable.hpp"
@@ -92,6 +93,11 @@ Expected<> CamGuard::set_check(bool on) {
                    fmt::format("SetCollisionCheck: device.json of {} has no Geometry, so that collisions cannot be "
                                "checked",
                                machine_of(*device_.get())));
+  }
+  if (std::ranges::any_of(supervisor_.wishes().force, [](double force) { return force != 0; })) {
+    return failure(MinorCode::Other,
+                   "SetCollisionCheck: a joint keeps a force, and where it goes for that is not known ahead; set "
+                   "SetJointForce to 0 first");
   }
   auto way = way_for(*in_force_);
   if (!way) return prefixed(kFunction, way.error());

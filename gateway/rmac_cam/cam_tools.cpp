@@ -51,7 +51,8 @@ Expected<> CamTools::set_tool(const Tool& tool) {
   Tool set = tool;
   set.frame = normalized(tool.frame);
   return rack_.set(set).map([&] {
-    if (now.mounted == set.number) put_in_spindle(set);
+    // With the shape that the table has kept.
+    if (now.mounted == set.number) put_in_spindle(rack_.tool(set.number).value_or(set));
   });
 }
 

@@ -1,5 +1,6 @@
 """The daemon's check of a path before it is run: what somebody sends who has never read our code."""
 
+import json
 import unittest
 
 from appliance import Appliance, line, wait_for_rest
@@ -20,6 +21,11 @@ def with_clamp(**changes):
 
 def mesh(**changes):
     return with_clamp(Shape={"Mesh": CUBE | changes})
+
+
+def wait_for_stop(client):
+    while client.state()["moving"]:
+        pass
 
 
 class CollisionCheck(unittest.TestCase):
@@ -142,6 +148,35 @@ class CollisionCheck(unittest.TestCase):
         self.assertIn("loaded or unloaded", self.event("NotChecked")["message"])
         self.assertEqual(self.client.call("RMAC_CAM.GetSetup"), {})
 
+    def test_a_force_is_not_kept_while_it_is_on(self):
+        self.client.call("RMAC_Config.SetMechanismJointControlMethod", JntNum=2,
+                         DMACServoControlMethod="DMAC_FORCE_CONTROL")
+        self.client.call("RMAC_Config.Apply")
+        self.check()
+        self.assertIn("checked ahead", self.client.refusal("RMAC_CAM.SetJointForce", JntNum=2, Force=-20).message)
+        self.client.call("RMAC_CAM.SetJointForce", JntNum=2, Force=0)
+        self.client.call("RMAC_CAM.SetCollisionCheck", On=False)
+        self.client.call("RMAC_CAM.SetJointForce", JntNum=2, Force=-20)
+        self.assertIn("keeps a force", self.client.refusal("RMAC_CAM.SetCollisionCheck", On=True).message)
+
+    def test_a_program_that_is_parked_before_a_clamp_goes_on_from_there(self):
+        self.check()
+        self.to(10, 1)
+        self.to(40, 2)
+        self.start()
+        self.event("CollisionAhead", 2)
+        wait_for_stop(self.client)
+        stands = self.x()
+        self.client.call("RMAC_CAM.ParkProgram")
+        parked = self.client.call("RMAC_CAM.GetParkedProgram")
+        self.assertEqual(parked["move_id"], 2)
+        self.assertAlmostEqual(parked["pose"][0], stands, delta=0.01)
+        self.assertLess(parked["off_mm"], 0.01)
+        self.client.call("RMAC_CAM.TakeUpProgram")
+        self.client.call("RMAC_CAM.FeedResume")
+        self.event("CollisionAhead", 2)
+        self.assertLess(self.x(), 55 - NOSE - SETUP["Clearance"])
+
     def test_is_not_changed_while_something_is_queued(self):
         self.check()
         self.to(10, 1)
@@ -149,6 +184,35 @@ class CollisionCheck(unittest.TestCase):
             self.assertIn("empty queue", self.client.refusal(f"RMAC_CAM.{method}", **params).message)
         self.start()
         self.event("MoveDone", 1)
+
+
+class Tools(unittest.TestCase):
+    def test_a_new_length_keeps_the_shape_that_is_checked(self):
+        post = CLAMP | {"Pose": {"p": [30, 0, -60], "axis": [0, 0, 1]}}  # Its top is at -50.
+        appliance = Appliance()
+        (appliance.folder / "state/tools").mkdir()
+        (appliance.folder / "state/tools/DMACXYZ.json").write_text(json.dumps({"Mounted": 1, "Tools": [
+            {"ToolNumber": 1, "Length": 30, "Radius": 3, "Shape": {"DC": 6, "LCF": 20, "OAL": 30}}]}))
+        with appliance:
+            client = appliance.operator()
+            watcher = appliance.client("watcher")
+            watcher.call("subscribe", topics=["events"])
+            client.call("RMAC_CAM.SetSetup", Setup=SETUP | {"Fixtures": [post]})
+            client.call("RMAC_CAM.SetCollisionCheck", On=True)
+            for distance, length in ((5, 31), (40, 65)):  # The old length passes above the post.
+                self.jog(client, distance)
+                self.jog(client, -distance)
+                client.call("RMAC_CAM.SetTool", ToolNumber=1, Length=length, Radius=3, NeedsSpindle=False)
+            self.jog(client, 40)
+            self.assertLess(client.call("RMAC_CAM.CurrentPosition")[0], 25 - 3 - SETUP["Clearance"])
+            told = watcher.wait_note("events", lambda e: e["kind"] == "CollisionAhead")
+            self.assertIn("tool 1", told["message"])
+
+    def jog(self, client, distance):
+        client.call("RMAC_CAM.JogJoint", JntNum=0, Distance=distance)
+        wait_for_rest(client)
+        while client.state()["state"] != "Idle":
+            pass
 
 
 class CollisionCheckInRealPace(CollisionCheck):

@@ -133,12 +133,15 @@ void LaidPath::move_origin(double distance_mm) {
 }
 
 std::optional<PathPlace> LaidPath::place_at(double s) const {
-  if (segments_.empty() || s + kSamePlace >= end()) return std::nullopt;
-  const std::size_t i = view().find(s + kSamePlace, 1);
+  if (segments_.empty()) return std::nullopt;
+  // A path that ends within a move, as before a collision, has its place there.
+  const bool at_end = s + kSamePlace >= end();
+  if (at_end && (s > end() + kSamePlace || segments_.back()->stretches().back().last_of_move)) return std::nullopt;
+  const std::size_t i = at_end ? segments_.size() - 1 : view().find(s + kSamePlace, 1);
   const double on_segment = std::max(s - starts_[i], 0.0);
   const MoveStretch& stretch = segments_[i]->stretch_at(on_segment + kSamePlace);
   JointPoint point;
-  if (segments_[i]->evaluate(on_segment, 0, 1, point) != KinematicsStatus::Ok) return std::nullopt;
+  if (segments_[i]->evaluate(on_segment, 0, at_end ? -1 : 1, point) != KinematicsStatus::Ok) return std::nullopt;
   return PathPlace{stretch.move_id,
                    stretch.s_begin_mm + stretch.s_per_length * std::max(on_segment - stretch.begin, 0.0),
                    segments_[i]->pose(on_segment),
