@@ -125,8 +125,7 @@ Expected<SolidShape> read_surface(const Json& shape, const std::string& pointer,
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const auto triangle = three<std::uint32_t>(triangles[i], 0, last);
     if (!triangle) {
-      return wrong(pointer,
-                   fmt::format("/Triangles/{} is no triangle: three numbers of Points, 0 to {:.0f}", i, last));
+      return wrong(pointer, fmt::format("/Triangles/{} is no triangle: three numbers of Points, 0 to {:.0f}", i, last));
     }
     mesh.triangles.push_back(*triangle);
   }
@@ -140,13 +139,13 @@ Expected<SolidShape> read_mesh_shape(const Json& shape, const std::string& point
     return wrong(pointer, " has \"File\" and triangles of its own; give it one of both");
   }
   if (!folder) {
-    return wrong(pointer, "/File names a file, and none is read here; send the surface itself, as \"Points\" and "
-                          "\"Triangles\"");
+    return wrong(pointer,
+                 "/File names a file, and none is read here; send the surface itself, as \"Points\" and "
+                 "\"Triangles\"");
   }
-  return mesh_file(shape.at("File").get<std::string>(), pointer, *folder)
-      .map([&](const fs::path& file) -> SolidShape {
-        return MeshShape{file, unit_mm};
-      });
+  return mesh_file(shape.at("File").get<std::string>(), pointer, *folder).map([&](const fs::path& file) -> SolidShape {
+    return MeshShape{file, unit_mm};
+  });
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ namespace rmac::gateway {
 /// Where files of meshes are looked for, and nowhere else; none: there may be no files, as in what comes over a socket.
 using MeshFolder = std::optional<std::filesystem::path>;
 
-/// `{"Box": …}`, `{"Cylinder": …}`, `{"Cone": …}`, `{"Sphere": …}` or `{"Mesh": …}`, that by its file or with its points
-/// and triangles.
+/// `{"Box": …}`, `{"Cylinder": …}`, `{"Cone": …}`, `{"Sphere": …}` or `{"Mesh": …}`, that by its file or with its
+/// points and triangles.
 [[nodiscard]] Expected<SolidShape> read_shape(const nlohmann::json& object, const std::string& pointer,
                                               const MeshFolder& folder);
 

@@ -25,7 +25,9 @@ class CamGuard final : public GuardPort {
   void mechanism_changed(bool fresh);
   void set_shape(MachineBodies bodies) override { shape_ = std::move(bodies); }
   Expected<> set_setup(const nlohmann::json& setup) override;
-  [[nodiscard]] nlohmann::json setup() const override { return in_force_ ? in_force_->as_sent : nlohmann::json::object(); }
+  [[nodiscard]] nlohmann::json setup() const override {
+    return in_force_ ? in_force_->as_sent : nlohmann::json::object();
+  }
   Expected<> set_check(bool on) override;
   [[nodiscard]] bool checks() const override { return supervisor_.guarding().on(); }
 

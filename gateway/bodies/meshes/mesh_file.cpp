@@ -70,8 +70,8 @@ class OnlyThisFile final : public Assimp::IOSystem {
   Assimp::DefaultIOSystem files_;
 };
 
-/// Corners that are the same to the last digit first. Programs that write text round, so that an open mesh may be closed
-/// after all.
+/// Corners that are the same to the last digit first. Programs that write text round, so that an open mesh may be
+/// closed after all.
 TriangleMesh closed(const TriangleMesh& read, std::string& fault) {
   constexpr double kSame_mm = 1e-9, kRounded_mm = 1e-3;
   TriangleMesh mesh = welded(read, kSame_mm);
