@@ -4,6 +4,18 @@
 
 namespace rmac::cli {
 
+namespace {
+
+constexpr const char* kFilled = "filled";
+
+/// Whose empty word a command would take for none at all: a shell makes one of a variable that is not set.
+bool is_text(const Target& target) {
+  return std::holds_alternative<std::string*>(target) || std::holds_alternative<std::filesystem::path*>(target) ||
+         std::holds_alternative<std::optional<std::string>*>(target);
+}
+
+}  // namespace
+
 Option& Option::required() {
   option_->required();
   return *this;
@@ -69,24 +81,20 @@ Option& Option::existing_folder() {
   return *this;
 }
 
+Option& Option::may_be_empty() {
+  option_->get_validator(kFilled)->active(false);
+  return *this;
+}
+
 Command Command::add(const std::string& name, const std::string& meaning) {
   return {app_->add_subcommand(name, meaning), chosen_};
 }
 
-namespace {
-
-/// Whose empty word a command would take for none at all: a shell makes one of a variable that is not set.
-bool is_text(const Target& target) {
-  return std::holds_alternative<std::string*>(target) || std::holds_alternative<std::filesystem::path*>(target) ||
-         std::holds_alternative<std::optional<std::string>*>(target);
-}
-
-}  // namespace
-
 Option Command::option(const std::string& name, Target target, const std::string& meaning) {
   CLI::Option* const added = std::visit([&](auto* value) { return app_->add_option(name, *value, meaning); }, target);
   if (is_text(target)) {
-    added->check([](const std::string& word) { return word.empty() ? "is empty" : ""; });
+    const auto filled = [](const std::string& word) -> std::string { return word.empty() ? "is empty" : ""; };
+    added->check(CLI::Validator(filled, "", kFilled));
   }
   return Option(added);
 }

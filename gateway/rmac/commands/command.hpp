@@ -45,6 +45,8 @@ class Option {
   Option& positive();
   Option& one_of(const std::vector<std::string>& words);
   Option& existing_folder();
+  /// Otherwise an empty word is refused where a text is to stand.
+  Option& may_be_empty();
 
  private:
   CLI::Option* option_;

@@ -159,8 +159,10 @@ void add_bus_sdo(Command& bus) {
   Command writes = sdo.add("write", "change the value of an object; refused while the node's motor has power");
   add_place(writes, *writing);
   writes.option("TYPE", &writing->type, "how to write it, unless the EDS or the standard tell; may be left out")
-      .required();
-  writes.option("VALUE", &writing->value, "decimal, hexadecimal behind 0x, text or pairs of hexadecimal digits");
+      .required()
+      .may_be_empty();
+  writes.option("VALUE", &writing->value, "decimal, hexadecimal behind 0x, text or pairs of hexadecimal digits")
+      .may_be_empty();
   add_machine_options(writes, writing->machine);
   add_options(writes, *writing);
   writes.does(without_appliance([writing](bool json) { return write_value(*writing, json); }));

@@ -66,7 +66,7 @@ TEST_F(TraceCommand, SaysThatThereIsNothingToExport) {
 TEST_F(TraceCommand, SaysWhereItCannotWrite) {
   const auto failed = run({"trace", "export", "-o", "/nonexistent/r.csv"});
   EXPECT_EQ(failed.exit_code, 1);
-  EXPECT_EQ(failed.err, "rmac: /nonexistent/r.csv: cannot be written: No such file or directory\n");
+  EXPECT_EQ(failed.err, "rmac: /nonexistent/r.csv: cannot be opened: No such file or directory\n");
 }
 
 TEST_F(TraceCommand, WaitsUntilTheRecordThatItAskedForIsWritten) {
