@@ -60,8 +60,13 @@ WindowEnd next_window_end(LaidPath& path, const std::vector<JointLimits>& joints
   const double least = s + kRampsAtLeast * weakest.length(from.v);
   std::size_t nodes = 0;
   double s_many = std::numeric_limits<double>::infinity();
-  for (std::size_t i = path.view().find(s + kSamePlace, 1); !found; ++i) {
+  const std::size_t first = path.view().find(s + kSamePlace, 1);
+  for (std::size_t i = first; !found; ++i) {
     if (i >= path.size() && !supply()) break;
+    if (i > first && path.rest_after(i - 1)) {  // what follows it came only now, as from a gate that was waited for
+      found = WindowEnd{path.end(i - 1), true};
+      break;
+    }
     v = std::max(v, std::min(path.segment(i)->demand().feed_mm_s * std::max(factor, 1.0), 2 * fastest));
     reach = std::max(reach, ramps * weakest.length(v));
     if (nodes < kMostNodes) s_many = place_of_many(path, i, std::max(s, least), nodes);
