@@ -140,6 +140,18 @@ Expected<LinkChain> LinkChain::make(const Kinematics& kinematics, std::span<cons
   return made;
 }
 
+Expected<LinkChain> LinkChain::make(const Kinematics& kinematics, std::span<const std::string> chain,
+                                    std::span<const JointLimits> joints) {
+  constexpr double kEndless = 400;
+  std::vector<std::string> names;
+  std::vector<std::pair<double, double>> limits;
+  for (const JointLimits& joint : joints) {
+    names.push_back(joint.name);
+    limits.emplace_back(ends_below(joint) ? joint.min : -kEndless, ends_above(joint) ? joint.max : kEndless);
+  }
+  return make(kinematics, chain, names, limits);
+}
+
 void LinkChain::displace(std::span<const double> joints, std::span<Frame> frames) const noexcept {
   frames[0] = Frame{};
   for (std::size_t k = 0; k < order_.size(); ++k) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rmac/motion/error.hpp"
+#include "rmac/motion/limits.hpp"
 #include "rmac/motion/ports/kinematics.hpp"
 #include "rmac/motion/pose.hpp"
 
@@ -22,6 +23,11 @@ class LinkChain {
   [[nodiscard]] static Expected<LinkChain> make(const Kinematics& kinematics, std::span<const std::string> chain,
                                                 std::span<const std::string> names,
                                                 std::span<const std::pair<double, double>> limits);
+
+  /// The same of joints as the module counts them: within their limits, and where one has no end, within 400 mm or
+  /// degrees.
+  [[nodiscard]] static Expected<LinkChain> make(const Kinematics& kinematics, std::span<const std::string> chain,
+                                                std::span<const JointLimits> joints);
 
   /// Links, by `link_number`.
   [[nodiscard]] std::size_t link_count() const noexcept { return order_.size() + 1; }

@@ -33,28 +33,11 @@ void CollisionChecker::set_tool(const Tool& tool) {
   pair_up();
 }
 
-/// Neighbours on the chain slide or turn in each other; what stands on the table and what is in the spindle was put
-/// there, and is held against all that moves against it.
-bool CollisionChecker::may_not_meet(const SceneBody& first, const SceneBody& second) {
-  const std::size_t joints = std::max(first.link, second.link) - std::min(first.link, second.link);
-  return first.kind == Kind::Machine && second.kind == Kind::Machine ? joints > 1 : joints > 0;
-}
-
 void CollisionChecker::pair_up() {
   pairs_.clear();
-  for (std::size_t a = 0; a < bodies_.size(); ++a) {
-    for (std::size_t b = a + 1; b < bodies_.size(); ++b) {
-      if (!may_not_meet(bodies_[a], bodies_[b])) continue;
-      const Kind on = bodies_[a].kind, by = bodies_[b].kind;
-      // Cutting touches the part: there only what is too deep counts.
-      if (on == Kind::Part ? by == Kind::Cutter : by == Kind::CutterCore) continue;
-      Pair pair{.first = a, .second = b};
-      pair.with_stock = on == Kind::Stock || by == Kind::Stock;
-      pair.cutter_in_stock = pair.with_stock && by == Kind::Cutter;
-      pair.tool_in_stock = pair.with_stock && on_tool(by);
-      pair.near_mm = by == Kind::CutterCore ? 0 : clearance_mm_;
-      pairs_.push_back(pair);
-    }
+  for (const BodyPair& pair : body_pairs(bodies_)) {
+    pairs_.push_back({pair});
+    pairs_.back().near_mm = pair.core_in_part ? 0 : clearance_mm_;
   }
 }
 

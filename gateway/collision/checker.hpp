@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "gateway/collision/body_pair.hpp"
 #include "gateway/collision/finding_list.hpp"
 #include "gateway/collision/motion_bound.hpp"
 #include "gateway/collision/scene.hpp"
@@ -33,9 +34,7 @@ class CollisionChecker {
   [[nodiscard]] std::size_t distances_computed() const noexcept { return distances_; }
 
  private:
-  struct Pair {
-    std::size_t first = 0, second = 0;  ///< bodies
-    bool with_stock = false, cutter_in_stock = false, tool_in_stock = false;
+  struct Pair : BodyPair {
     double near_mm = 0;            ///< nearer than this is told
     double margin_mm = 0;          ///< motion that cannot bring them nearer than that
     double depth_mm = 0;           ///< as last measured, while they meet
@@ -49,7 +48,6 @@ class CollisionChecker {
   };
 
   void pair_up();
-  [[nodiscard]] static bool may_not_meet(const SceneBody& first, const SceneBody& second);
   void forget_what_was_near_stock();
   [[nodiscard]] Look look(const Pair& pair, double at);
   void examine(Pair& pair, const Look& from, const Look& to);

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 
+#include "gateway/bodies/isometry.hpp"
+
 namespace rmac::gateway {
 
-FindingList::FindingList(const Frame& part_frame) {
-  const auto& [p, q] = part_frame;
-  to_part_ =
-      Eigen::Isometry3d(Eigen::Translation3d(p[0], p[1], p[2]) * Eigen::Quaterniond(q[0], q[1], q[2], q[3])).inverse();
-}
+FindingList::FindingList(const Frame& part_frame) : to_part_(to_isometry(part_frame).inverse()) {}
 
 Finding* FindingList::of(const std::string& first, const std::string& second, double since_s, const MoveNow& move,
                          const Meeting& meeting) {

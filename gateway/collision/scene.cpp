@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "gateway/bodies/isometry.hpp"
 #include "gateway/bodies/link.hpp"
 #include "gateway/bodies/meshes/mesh_file.hpp"
 #include "rmac/motion/frame.hpp"
@@ -14,13 +15,6 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using Kind = SceneBody::Kind;
-
-Isometry3d to_isometry(const Frame& frame) {
-  Isometry3d at = Isometry3d::Identity();
-  at.linear() = Eigen::Quaterniond(frame.q[0], frame.q[1], frame.q[2], frame.q[3]).toRotationMatrix();
-  at.translation() = Vector3d(frame.p[0], frame.p[1], frame.p[2]);
-  return at;
-}
 
 Expected<Solid> solid_of(const SolidShape& shape) {
   if (const auto* box = std::get_if<BoxShape>(&shape)) {

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "gateway/bodies/isometry.hpp"
 #include "gateway/bodies/meshes/mesh_file.hpp"
 #include "gateway/material/mesh_rays.hpp"
 #include "gateway/material/sweep/axis_frame.hpp"
@@ -77,13 +78,6 @@ void fill_family(DexelGrid& grid, std::size_t axis, const TriangleMesh& mesh) {
     }
     grid.put(axis, of_ray.front().ray, pieces);
   });
-}
-
-Isometry3d to_isometry(const Frame& frame) {
-  Isometry3d at = Isometry3d::Identity();
-  at.linear() = Eigen::Quaterniond(frame.q[0], frame.q[1], frame.q[2], frame.q[3]).toRotationMatrix();
-  at.translation() = Vector3d(frame.p[0], frame.p[1], frame.p[2]);
-  return at;
 }
 
 SweptCone standing(const ConeShape& cone, const Isometry3d& pose) {

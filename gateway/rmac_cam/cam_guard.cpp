@@ -11,9 +11,6 @@
 namespace rmac::gateway {
 namespace {
 
-/// Where joints without ends are compared with the module.
-constexpr double kEndless = 400;
-
 tl::unexpected<Error> prefixed(const char* function, const Error& error) {
   return failure(error.code, fmt::format("{}: {}", function, error.message));
 }
@@ -39,14 +36,9 @@ Expected<CamGuard::InForce> CamGuard::read(const nlohmann::json& object) const {
 
 Expected<std::shared_ptr<ClearWay>> CamGuard::way_for(const InForce& in_force) const {
   const std::shared_ptr<Mechanism> mechanism = supervisor_.mechanism();
-  std::vector<std::string> names;
-  std::vector<std::pair<double, double>> limits;
-  for (const sdk::Joint& joint : device_.get()->joints) {
-    names.push_back(joint.limits.name);
-    limits.emplace_back(ends_below(joint.limits) ? joint.limits.min : -kEndless,
-                        ends_above(joint.limits) ? joint.limits.max : kEndless);
-  }
-  return LinkChain::make(*mechanism->planner_model.kinematics, shape_.chain, names, limits).map([&](LinkChain chain) {
+  std::vector<JointLimits> joints;
+  for (const sdk::Joint& joint : device_.get()->joints) joints.push_back(joint.limits);
+  return LinkChain::make(*mechanism->planner_model.kinematics, shape_.chain, joints).map([&](LinkChain chain) {
     return std::make_shared<ClearWay>(std::move(chain), in_force.scene, in_force.setup.part_frame,
                                       in_force.setup.clearance_mm);
   });

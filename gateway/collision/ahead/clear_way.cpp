@@ -5,6 +5,8 @@
 #include <span>
 #include <utility>
 
+#include "gateway/bodies/isometry.hpp"
+
 namespace rmac::gateway {
 namespace {
 
@@ -22,11 +24,6 @@ constexpr double kAmple = 1.001;
 constexpr double kNearly = 0.99, kNoNearer = 0.95;
 constexpr std::size_t kMostLooks = 20'000;
 
-Eigen::Isometry3d isometry(const Frame& frame) {
-  const auto& [p, q] = frame;
-  return Eigen::Translation3d(p[0], p[1], p[2]) * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-}
-
 /// How near two bodies may come that are so far apart at the begin.
 double floor_from(double wanted_mm, double least_mm) {
   const double floor =
@@ -41,13 +38,18 @@ bool joints_at(const PathSegment& segment, double s, Chord::Joints& joints) {
   return true;
 }
 
+/// Nothing is known from there on, and nothing runs there.
+ClearWay::Checked unknown(const PathSegment& segment, double s) {
+  return {s, false, Obstacle{.move_id = segment.stretch_at(s).move_id}};
+}
+
 }  // namespace
 
 ClearWay::ClearWay(LinkChain chain, std::vector<SceneBody> bodies, const Frame& part_frame, double clearance_mm)
     : chain_(std::move(chain)),
       bodies_(std::move(bodies)),
       without_tool_(bodies_.size()),
-      to_part_(isometry(part_frame).inverse()),
+      to_part_(to_isometry(part_frame).inverse()),
       clearance_mm_(clearance_mm),
       posture_(chain_) {
   for (std::size_t link = 0; link + 1 < chain_.link_count(); ++link) {
@@ -68,20 +70,9 @@ void ClearWay::set_tool(const Tool& tool) {
 
 void ClearWay::pair_up() {
   pairs_.clear();
-  for (std::size_t a = 0; a < bodies_.size(); ++a) {
-    for (std::size_t b = a + 1; b < bodies_.size(); ++b) {
-      const SceneBody &first = bodies_[a], &second = bodies_[b];
-      const std::size_t joints = std::max(first.link, second.link) - std::min(first.link, second.link);
-      const bool neighbours_may = first.kind != Kind::Machine || second.kind != Kind::Machine;
-      if (joints == 0 || (joints == 1 && !neighbours_may)) continue;
-      // Cutting touches the part: there only what is too deep counts.
-      if (first.kind == Kind::Part ? second.kind == Kind::Cutter : second.kind == Kind::CutterCore) continue;
-      Pair pair{.first = a, .second = b};
-      pair.with_stock = first.kind == Kind::Stock || second.kind == Kind::Stock;
-      pair.cutter_in_stock = pair.with_stock && second.kind == Kind::Cutter;
-      pair.wanted_mm = second.kind == Kind::CutterCore ? kTouch_mm : kAmple * clearance_mm_;
-      pairs_.push_back(pair);
-    }
+  for (const BodyPair& pair : body_pairs(bodies_)) {
+    pairs_.push_back({pair});
+    pairs_.back().wanted_mm = pair.core_in_part ? kTouch_mm : kAmple * clearance_mm_;
   }
 }
 
@@ -228,7 +219,7 @@ ClearWay::Checked ClearWay::check(const PathSegment& segment, double from_s) {
   cutting_ = !segment.demand().positioning;
   if (!begun_) {
     Chord::Joints joints{};
-    if (!joints_at(segment, from_s, joints)) return {from_s, true};  // which no plan goes along
+    if (!joints_at(segment, from_s, joints)) return unknown(segment, from_s);
     if (const Pair* const meets = start_at(joints)) {
       Obstacle obstacle = describe(segment, *meets, from_s);
       obstacle.at_begin = true;
@@ -239,7 +230,7 @@ ClearWay::Checked ClearWay::check(const PathSegment& segment, double from_s) {
   for (const double node : segment.nodes()) {
     if (node <= at) continue;
     const std::vector<Chord> chords = chords_of(segment, at, node, most_beside_);
-    if (chords.empty()) return {at, false, Obstacle{.move_id = segment.stretch_at(at).move_id}};
+    if (chords.empty()) return unknown(segment, at);
     for (const Chord& chord : chords) {
       if (looks_ - looks_before > kMostLooks && chord.from_s > from_s) return {chord.from_s, false};
       const auto stop = advance(chord);

@@ -8,6 +8,7 @@
 
 #include "gateway/collision/ahead/obstacle.hpp"
 #include "gateway/collision/ahead/segment_chords.hpp"
+#include "gateway/collision/body_pair.hpp"
 #include "gateway/collision/motion_bound.hpp"
 #include "gateway/collision/scene.hpp"
 
@@ -41,9 +42,7 @@ class ClearWay {
   [[nodiscard]] bool stock_cut() const noexcept { return has_stock_ && stock_cut_; }
 
  private:
-  struct Pair {
-    std::size_t first = 0, second = 0;  ///< bodies
-    bool with_stock = false, cutter_in_stock = false;
+  struct Pair : BodyPair {
     double wanted_mm = 0;     ///< apart
     double floor_mm = 1e300;  ///< the same, or less where they began nearer
     double margin_mm = 0;     ///< motion that cannot bring them nearer than that

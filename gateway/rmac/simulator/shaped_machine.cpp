@@ -15,9 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where joints without ends are compared with the module.
-constexpr double kEndless = 400;
-
 Expected<gateway::LinkChain> chain_of(const gateway::DeviceDatabase& database, const fs::path& device_json,
                                       const fs::path& device_tree) {
   const sdk::DeviceObject& device = database.device;
@@ -28,14 +25,9 @@ Expected<gateway::LinkChain> chain_of(const gateway::DeviceDatabase& database, c
   folders.push_back(device_tree / "modules");
   const auto kinematics = gateway::ModuleLoader(folders).load<Kinematics>(device.kinematics);
   if (!kinematics) return tl::unexpected(kinematics.error());
-  std::vector<std::string> names;
-  std::vector<std::pair<double, double>> limits;
-  for (const sdk::Joint& joint : device.joints) {
-    names.push_back(joint.limits.name);
-    limits.emplace_back(ends_below(joint.limits) ? joint.limits.min : -kEndless,
-                        ends_above(joint.limits) ? joint.limits.max : kEndless);
-  }
-  return gateway::LinkChain::make(*kinematics->object, database.bodies.chain, names, limits);
+  std::vector<JointLimits> joints;
+  for (const sdk::Joint& joint : device.joints) joints.push_back(joint.limits);
+  return gateway::LinkChain::make(*kinematics->object, database.bodies.chain, joints);
 }
 
 }  // namespace
