@@ -1,0 +1,144 @@
+"""From what was simulated and what the axes did to the figures; the truth of each is computed here, by formulas of the part, the tool and the chain."""
+
+import dataclasses
+import json
+import pathlib
+
+import clamping
+import clash
+import dome
+import numpy as np
+import stl
+import sweeps
+import swept
+
+BOUNDS = json.loads((pathlib.Path(__file__).parent / "bounds.json").read_text(encoding="utf-8"))
+BODIES = ["clamp stud", f"tool {clamping.TOOL}, holder"]
+PLACES, SEED = 10000, 7  # of the predicted part's surface
+ON_A_FACE = 1e-3  # of the block as it was
+FIRST_MOVE = 2  # before it the machine goes up from wherever it stood
+
+
+@dataclasses.dataclass
+class Figure:
+    name: str
+    value: float
+    unit: str
+    least: float = -np.inf
+    most: float = np.inf
+    key: str = ""  # in the JSON line
+
+    def ok(self):
+        return bool(self.least <= self.value <= self.most)
+
+    def bound(self):
+        if self.least > -np.inf:
+            return f"{self.least:g} to {self.most:g}"
+        return f"{self.most:g}" if self.most < np.inf else ""
+
+
+def of_program(moves, joints):
+    return joints[moves >= FIRST_MOVE]
+
+
+def in_motion_s(joints, period_s=0.001):
+    """From the first to the last change."""
+    changes = np.flatnonzero(np.abs(np.diff(joints, axis=0)).max(axis=1) > 0)
+    return period_s * (changes[-1] - changes[0] + 1)
+
+
+def places_of(surface):
+    """So many places of a surface: those that were cut, and those on a face of the block as it was."""
+    corners = stl.corners(surface)
+    face = swept.out_of_stock(corners) > -ON_A_FACE
+    draw = np.random.default_rng(SEED)
+
+    def some(points):
+        return points[draw.choice(len(points), min(len(points), PLACES), replace=False)]
+
+    return some(corners[~face]), some(corners[face])
+
+
+def off_um(cut, faces, joints):
+    """How far a part that joints cut is from another one's surface: above it at places that were cut, and how deep it was cut at places of the block's own faces."""
+    motion = swept.moving(swept.motion(joints))
+    return 1000 * swept.left_over(cut, motion), 1000 * np.minimum(swept.left_over(faces, motion), 0)
+
+
+def truth_of(joints):
+    """What planned joints leave of the block, over a grid of places of the part's top: the most left, the most cut too deep (mm), and the volume removed (mm³)."""
+    step = 0.25
+    x, y = (np.arange(-side / 2 + step / 2, side / 2, step) for side in (dome.LENGTH, dome.WIDTH))
+    x, y = (grid.ravel() for grid in np.meshgrid(x, y))
+    points, normals = dome.surface(x, y)
+    left = swept.from_ball(points, swept.moving(swept.motion(joints)))
+    removed = step**2 * (dome.STOCK_HEIGHT - points[:, 2] - left / normals[:, 2]).sum()
+    return left.max(), max(-left.min(), 0.0), removed
+
+
+def of_first(first, held):
+    """The collision, as it was found and before which the appliance held."""
+    found = first.finding()
+    joints = first.motion()[1]
+    about = round(1000 * found["t_s"])
+    start = max(about - 300, 0)
+    inside = np.flatnonzero(clash.gaps(joints[start : about + 300]) < 0)
+    met_ms = start + inside[0] if len(inside) else np.inf
+    return [
+        Figure("first program: holder in the clamp's stud, deepest", found["depth_mm"], "mm", key="collision_mm"),
+        Figure("  its begin off the one by formula", abs(met_ms - 1000 * found["t_s"]), "ms", most=BOUNDS["first_contact_off_ms"]),
+        Figure("  between holder and stud where the appliance held", float(clash.gaps(np.array([held.joints]))[0]), "mm",
+               BOUNDS["held_nearest_mm"], BOUNDS["held_farthest_mm"], key="held_apart_mm"),
+    ]  # fmt: skip
+
+
+def of_second(second, record):
+    """The prediction, and the part that the measured axes cut."""
+    told = second.told
+    planned = of_program(*second.motion())
+    rest, gouge, removed = truth_of(planned)
+    deviation, forces = told["material"]["deviation"], told["forces"]
+    measured, setpoints = (of_program(record.move, joints) for joints in (record.a, record.q))
+    cut, faces = places_of(second.stock)
+    predicted, predicted_faces = off_um(cut, faces, planned)
+    machined, machined_faces = off_um(cut, faces, measured)
+    figures = [
+        Figure("second program: collisions", len(told["collisions"]), "", most=0, key="collisions"),
+        Figure("  not checked, or not told", len(told["collisions_not_checked"]) + len(forces["not_told"]), "", most=0),
+        Figure("  force, at most", forces["peak_force_n"], "N"),
+        Figure("  power, at most", forces["peak_power_w"], "W"),
+        Figure("  more than the spindle has", len(forces["overloads"]), "times", most=0),
+        Figure("  cycle time, as predicted", told["cycle_time_s"], "s", key="cycle_time_s"),
+        Figure("  time in motion, off the appliance's", 1000 * abs(in_motion_s(planned) - in_motion_s(setpoints)), "ms", most=BOUNDS["cycle_time_off_ms"]),
+        Figure("predicted part: left above the design, most", 1000 * deviation["rest_mm"], "um", key="rest_um"),
+        Figure("  off the ridges by formula", 1000 * abs(deviation["rest_mm"] - rest), "um", most=BOUNDS["rest_off_um"]),
+        Figure("  cut into the design, most", 1000 * deviation["gouge_mm"], "um", most=BOUNDS["gouge_um"]),
+        Figure("  the same by formula", 1000 * gouge, "um", most=BOUNDS["gouge_um"]),
+        Figure("  volume removed, off the one by formula", 100 * abs(told["material"]["removed_mm3"] / removed - 1), "%", most=BOUNDS["removed_off_percent"]),
+        Figure("  surface off what the planned axes cut, rms", rms(predicted), "um", most=BOUNDS["predicted_off_rms_um"], key="predicted_off_rms_um"),
+        Figure("  the same, largest", largest(predicted, predicted_faces), "um", most=BOUNDS["predicted_off_um"]),
+        Figure("machined part off the predicted one, rms", rms(machined), "um", most=BOUNDS["machined_off_rms_um"], key="machined_off_rms_um"),
+        Figure("  the same, largest", largest(machined, machined_faces), "um", most=BOUNDS["machined_off_um"], key="machined_off_um"),
+    ]
+    return figures, cut, machined
+
+
+def rms(off):
+    return float(np.sqrt((off**2).mean()))
+
+
+def largest(*offs):
+    return float(max(np.abs(off).max() for off in offs))
+
+
+def problems(first, held, second):
+    """What is wrong and is no figure."""
+    found = first.finding() if first.told["collisions"] else {"bodies": [], "move_id": 0, "certain": False}
+    if found["bodies"] != BODIES or not found["certain"]:
+        yield f"the first program's finding is {found['bodies']}, and {BODIES} was planted"
+    if held.move_id != found["move_id"] or held.state != "Holding":
+        yield f"the appliance is {held.state} in move {held.move_id}; the holder meets the stud in move {found['move_id']}"
+    if second.warning:
+        yield f"the second program: {second.warning}"
+    if found["move_id"] < sweeps.FIRST_SWEEP:
+        yield "the holder meets the stud before it cuts"
