@@ -49,7 +49,7 @@ def scene(plot, joints, title, hit):
     motion = swept.motion(joints[None])
     bodies(plot, motion.middle[0, 0], HIT if hit else DARK)
     tool(plot, motion, "#e58f7b" if hit else STEEL)
-    plot.set(aspect="equal", xlim=(-58, 68), ylim=(-16, 118), xlabel="y of the part, mm", ylabel="z, mm", title=title)
+    plot.set(aspect="equal", xlim=(-58, 76), ylim=(-16, 122), xlabel="y of the part, mm", ylabel="z, mm", title=title)
 
 
 def draw(first, second, cut, off_um, file):
@@ -65,7 +65,7 @@ def draw(first, second, cut, off_um, file):
     scene(left, deepest, f"First program: holder {found['depth_mm']:.1f} mm deep in the stud", True)
     scene(right, same, "Second: it leans the other way", False)
     reach = max(float(np.percentile(np.abs(off_um), 99.5)), 0.5)
-    dots = chart.scatter(cut[:, 0], cut[:, 1], c=off_um, s=3, cmap="RdBu_r", vmin=-reach, vmax=reach, linewidths=0)
+    dots = chart.scatter(cut[:, 0], cut[:, 1], c=off_um, s=6, cmap="RdBu_r", vmin=-reach, vmax=reach, linewidths=0)
     figure.colorbar(dots, ax=chart, label="left (red) or cut deeper (blue), µm", shrink=0.8)
     chart.set(aspect="equal", xlabel="x, mm", ylabel="y, mm", title=f"Machined part off the predicted one: {np.sqrt((off_um**2).mean()):.2f} µm rms")
     figure.savefig(file, dpi=110)

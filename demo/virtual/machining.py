@@ -42,7 +42,7 @@ class Machining:
         self.within.callback(client.device.Unload)
         if client.state()["tool"] != clamping.TOOL:
             raise RuntimeError(f"tool {clamping.TOOL} is not in the spindle of {clamping.MACHINE}: run_virtual.py --tools FOLDER writes its tool table")
-        client.cam.JogJoint(2, Distance=sweeps.SAFE[2] - client.state()["joints"][2])
+        client.cam.JogJoint(2, Distance=sweeps.HIGH - client.state()["joints"][2])
         self.rest()
         client.cam.SetPartFrame({"p": list(clamping.PART_FRAME), "q": [1, 0, 0, 0]})
         client.cam.SetSetup(self.setup)
@@ -80,7 +80,7 @@ class Machining:
         self.client.cam.StopNow()
         self.rest()
         # The head goes up along the tool, clear of all, before the table turns back.
-        self.client.cam.JogJoint(2, Distance=sweeps.SAFE[2] - self.client.state()["joints"][2])
+        self.client.cam.JogJoint(2, Distance=sweeps.HIGH - self.client.state()["joints"][2])
         self.rest()
         return held
 

@@ -14,7 +14,7 @@ def write(file, points, triangles):
 
 
 def corners(file):
-    """Each corner of the surface once, (n, 3)."""
+    """Those of all triangles, (n, 3)."""
     data = file.read_bytes()
     table = np.frombuffer(data, RECORD, count=int(np.frombuffer(data, "<u4", 1, 80)[0]), offset=84)
-    return np.unique(table["corners"].reshape(-1, 3), axis=0).astype(float)
+    return table["corners"].reshape(-1, 3).astype(float)

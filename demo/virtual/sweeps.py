@@ -6,14 +6,15 @@ The middle of the ball is on the offset of the surface, tip = surface point + R 
 import dataclasses
 import json
 
+import chain
 import clamping
 import dome
 import numpy as np
-from scipy.interpolate import make_interp_spline
+from scipy.interpolate import BSpline, make_interp_spline
 
-FEED_MM_MIN, APPROACH_MM_MIN, RPM = 1500, 1500, 3800
-SAFE = [0, 0, 200, 0, 0]  # joints: high above all
-RETREAT = 60.0  # along the tool
+FEED_MM_MIN, APPROACH_MM_MIN, RPM = 1500, 5000, 3800
+HIGH = 200.0  # joint Z: above all, however the table lies
+SAFE = [0, 0, HIGH, 0, 0]
 BESIDE = dome.LENGTH / 2 + clamping.BALL_RADIUS  # from there on the ball does not reach the block
 APART = 2.5  # of the places through which a curve goes
 MOST_OFF_UM = 0.1
@@ -56,7 +57,7 @@ def sweep(y, ways, lean):
     return make_interp_spline(length, through, k=DEGREE)
 
 
-def off_surface_um(spline, y):
+def off_surface_um(spline):
     """How far the ball's middle is from the offset surface, most, at places between those of the fit; by Newton's steps in x and y."""
     at = spline(np.linspace(spline.t[0], spline.t[-1], 501))
     a = at[:, 3:] / np.linalg.norm(at[:, 3:], axis=1, keepdims=True)
@@ -107,24 +108,27 @@ def program(step, lean):
         requests.append({"jsonrpc": "2.0", "id": len(requests) + 1, "method": "RMAC_CAM." + method, "params": parameters})
 
     splines = [sweep(y, 1 if n % 2 == 0 else -1, lean) for n, y in enumerate(rows(step))]
-    off = max(off_surface_um(spline, y) for spline, y in zip(splines, rows(step)))
+    off = max(off_surface_um(spline) for spline in splines)
     if off > MOST_OFF_UM:
         raise ValueError(f"the sweeps leave the offset surface by {off:.3f} um, {MOST_OFF_UM} um is the most: put their places nearer than {APART} mm")
     first, last = splines[0](splines[0].t[0]), splines[-1](splines[-1].t[-1])
-    above = [pose_of(place + np.concatenate([RETREAT * place[3:], np.zeros(3)])) for place in (first, last)]
+    first_joints, last_joints = chain.joints(first), chain.joints(last)
+    # Up and down along the tool, which is the machine's Z.
+    above, away = (pose_of(np.concatenate([place[:3] + (HIGH - joints[2]) * place[3:], place[3:]])) for place, joints in ((first, first_joints), (last, last_joints)))
     call("SetPathTolerance", Tolerance=0)
     call("SetSpindleRPM", SpindleNumber=0, RPM=RPM)
     call("SetFeedrate", Feedrate=APPROACH_MM_MIN)
     call("MoveToJointTarget", MoveID=1, JointTargetFrame={"joints": SAFE})
-    call("MoveToPathTarget", MoveID=2, TargetFrame=above[0])
-    call("MoveAlongLine", MoveID=3, StartPoint=above[0], EndPoint=pose_of(first))
+    call("MoveToJointTarget", MoveID=2, JointTargetFrame={"joints": [*first_joints[:2], HIGH, *first_joints[3:]]})
+    call("MoveAlongLine", MoveID=3, StartPoint=above, EndPoint=pose_of(first))
     call("SetFeedrate", Feedrate=FEED_MM_MIN)
     for n, spline in enumerate(splines):
         if n:
             call("MoveAlongNurbsND", MoveID=FIRST_SWEEP + 2 * n - 1, NurbsND=loop(splines[n - 1], spline).to_wire())
         call("MoveAlongNurbsND", MoveID=FIRST_SWEEP + 2 * n, NurbsND=Curve(DEGREE, spline.t, spline.c).to_wire())
     end = FIRST_SWEEP + 2 * len(splines)
-    call("MoveAlongLine", MoveID=end, StartPoint=pose_of(last), EndPoint=above[1])
+    call("SetFeedrate", Feedrate=APPROACH_MM_MIN)
+    call("MoveAlongLine", MoveID=end, StartPoint=pose_of(last), EndPoint=away)
     call("MoveToJointTarget", MoveID=end + 1, JointTargetFrame={"joints": SAFE})
     return requests
 

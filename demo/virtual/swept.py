@@ -1,4 +1,4 @@
-"""What a tool takes away that goes where joints were: the chain of the machine and the tool by formulas that share nothing with the appliance.
+"""What a tool takes away that goes where joints were: by formulas that share nothing with the appliance.
 
 A place's height over what a ball end sweeps is the least, over time, of its distance from the tool: 0 on the surface that is
 left, positive where material is left beyond it, negative where it was cut. Part frame, mm.
@@ -6,13 +6,13 @@ left, positive where material is left beyond it, negative where it was cut. Part
 
 import dataclasses
 
+import chain
 import clamping
 import dome
 import numpy as np
 from scipy.spatial import cKDTree
 
-CRADLE = -60.0  # height of the line about which A turns, machine frame
-COARSE = 0.5  # way between the places at which the tool's straight part is looked at first
+COARSE = 1.0  # way between the places at which the tool's straight part is looked at first
 CHUNK = 500  # places looked at together
 
 
@@ -24,18 +24,9 @@ class Motion:
     axis: np.ndarray  # unit vectors from the tip up
 
 
-def places(joints, along):
-    """Where points of the tool's axis, `along` above its tip, are against the part while all joints are as in `joints`, (rows, 3)."""
-    x, y, z, a, c = joints[:, :5].T
-    a, c = np.radians(a), np.radians(c)
-    z = z - clamping.TOOL_LENGTH + along - CRADLE
-    y, z = y * np.cos(a) - z * np.sin(a), y * np.sin(a) + z * np.cos(a)
-    return np.stack([x * np.cos(c) - y * np.sin(c), x * np.sin(c) + y * np.cos(c), z + CRADLE], axis=1) - clamping.PART_FRAME
-
-
 def motion(joints):
-    middle = places(joints, clamping.BALL_RADIUS)
-    return Motion(middle, places(joints, clamping.BALL_RADIUS + 1) - middle)
+    middle = chain.places(joints, clamping.BALL_RADIUS)
+    return Motion(middle, chain.places(joints, clamping.BALL_RADIUS + 1) - middle)
 
 
 def moving(motion, step=1e-4):
