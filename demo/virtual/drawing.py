@@ -49,7 +49,7 @@ def scene(plot, joints, title, hit):
     motion = swept.motion(joints[None])
     bodies(plot, motion.middle[0, 0], HIT if hit else DARK)
     tool(plot, motion, "#e58f7b" if hit else STEEL)
-    plot.set(aspect="equal", xlim=(-58, 76), ylim=(-16, 122), xlabel="y of the part, mm", ylabel="z, mm", title=title)
+    plot.set(aspect="equal", xlim=(-58, 86), ylim=(-16, 122), xlabel="y of the part, mm", ylabel="z, mm", title=title)
 
 
 def draw(first, second, cut, off_um, file):

@@ -27,7 +27,6 @@ import rmac  # noqa: E402 from clients/python, where `machining` found it
 
 TOWARDS_CLAMP, AWAY = 1, -1
 MESH_STEP = 0.5
-COARSE = 0.5  # mm from ray to ray where collisions alone are looked for
 
 
 def say(text):
@@ -48,18 +47,18 @@ def run(arguments):
     setup_file, setup = clamping.write_setup(out, dome.mesh(MESH_STEP))
     programs = {name: sweeps.program(arguments.step, lean) for name, lean in (("first", TOWARDS_CLAMP), ("second", AWAY))}
 
-    def simulate(name, resolution):
+    def simulate(name):
         file = out / f"{name}.rmac"
         sweeps.write(file, programs[name])
-        return rehearsal.simulate(arguments.rmac, file, setup_file, out / "tools", arguments.device_tree, resolution, name)
+        return rehearsal.simulate(arguments.rmac, file, setup_file, out / "tools", arguments.device_tree, arguments.resolution, name)
 
     say("Simulated: the first program, whose tool leans towards the clamp")
-    first = simulate("first", max(arguments.resolution, COARSE))
+    first = simulate("first")
     for finding in first.told["collisions"]:
         tell(finding)
     say(f"  {first.page} shows it")
     say("Simulated: the second, which leans the other way")
-    second = simulate("second", arguments.resolution)
+    second = simulate("second")
     say(f"  {len(second.told['collisions'])} collisions, {second.told['cycle_time_s']:.1f} s of machine time; {second.page} shows it, {second.stock} is the predicted part")
     with Machining(arguments.host, arguments.port, setup) as machine:
         say("On the appliance, its check on: the first program")
