@@ -11,15 +11,15 @@ import numpy as np  # noqa: E402
 import swept  # noqa: E402
 
 plt.rcParams.update({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "figure.constrained_layout.use": True})
-STEEL, DARK, PART, STOCK, HIT, WAY = "#b8bec6", "#5a6672", "#8fb3c9", "#dde6ec", "#c03028", "#2a6f97"
+STEEL, DARK, BRASS, PART, STOCK, HIT, STRUCK = "#b8bec6", "#5a6672", "#e7c86e", "#8fb3c9", "#dde6ec", "#c03028", "#e58f7b"
 
 
-def across(axis, middle, u, points):
-    """An outline of (radius, height above the tip) about the tool's axis, as one sees it along x."""
+def outline(plot, colour, middle, u, points):
+    """Of (radius, height above the tip) about the tool's axis, as one sees it along x."""
     side = np.array([u[2], -u[1]]) / np.hypot(u[1], u[2])
     tip = middle[1:] - clamping.BALL_RADIUS * u[1:]
-    outline = [tip + height * u[1:] + sign * radius * side for sign, some in ((1, points), (-1, points[::-1])) for radius, height in some]
-    axis[0].add_patch(plt.Polygon(outline, facecolor=axis[1], edgecolor=DARK, linewidth=0.8, zorder=3))
+    corners = [tip + height * u[1:] + sign * radius * side for sign, some in ((1, points), (-1, points[::-1])) for radius, height in some]
+    plot.add_patch(plt.Polygon(corners, facecolor=colour, edgecolor=DARK, linewidth=0.8, zorder=3))
 
 
 def tool(plot, motion, holder_colour):
@@ -27,11 +27,11 @@ def tool(plot, motion, holder_colour):
     r = clamping.BALL_RADIUS
     turn = np.linspace(0, np.pi / 2, 20)
     ball = [(r * np.sin(t), r - r * np.cos(t)) for t in turn]
-    across((plot, "#e7c86e"), middle, u, [*ball, (r, clamping.CUTS_UP_TO)])
-    across((plot, STEEL), middle, u, [(r, clamping.CUTS_UP_TO), (r, clamping.HOLDER_FROM)])
+    outline(plot, BRASS, middle, u, [*ball, (r, clamping.CUTS_UP_TO)])
+    outline(plot, STEEL, middle, u, [(r, clamping.CUTS_UP_TO), (r, clamping.HOLDER_FROM)])
     height = clamping.HOLDER_FROM
     for low, high, tall in clamping.HOLDER:
-        across((plot, holder_colour), middle, u, [(low, height), (high, height + tall)])
+        outline(plot, holder_colour, middle, u, [(low, height), (high, height + tall)])
         height += tall
 
 
@@ -48,18 +48,17 @@ def bodies(plot, x, stud_colour):
 def scene(plot, joints, title, hit):
     motion = swept.motion(joints[None])
     bodies(plot, motion.middle[0, 0], HIT if hit else DARK)
-    tool(plot, motion, "#e58f7b" if hit else STEEL)
+    tool(plot, motion, STRUCK if hit else STEEL)
     plot.set(aspect="equal", xlim=(-58, 86), ylim=(-16, 122), xlabel="y of the part, mm", ylabel="z, mm", title=title)
 
 
 def draw(first, second, cut, off_um, file):
     """The deepest moment of the first program, the second where its ball is at the same place, and how far the machined part is off the predicted one."""
     found = first.finding()
-    joints = first.motion()[1]
-    rows = np.arange(round(1000 * found["t_s"]), min(round(1000 * found["until_s"]) + 1, len(joints)), 5)
-    gaps = clash.gaps(joints[rows])
-    deepest = joints[rows[np.argmin(gaps)]]
-    later = second.motion()[1]
+    times, _, joints = first.motion
+    meeting = joints[(times >= found["t_s"]) & (times <= found["until_s"])][::5]
+    deepest = meeting[np.argmin(clash.gaps(meeting))]
+    later = second.motion[2]
     same = later[np.argmin(np.linalg.norm(swept.motion(later).middle - swept.motion(deepest[None]).middle, axis=1))]
     figure, (left, right, chart) = plt.subplots(1, 3, figsize=(14, 5), width_ratios=[1, 1, 1.35])
     scene(left, deepest, f"First program: holder {found['depth_mm']:.1f} mm deep in the stud", True)

@@ -1,6 +1,7 @@
 """Programs simulated before any machine moves: `rmac simulate`, and what it told."""
 
 import dataclasses
+import functools
 import json
 import pathlib
 import subprocess
@@ -17,10 +18,11 @@ class Rehearsal:
     stock: pathlib.Path
     record: pathlib.Path
 
+    @functools.cached_property
     def motion(self):
-        """The record: (MoveID, joints) of each cycle."""
-        table = np.loadtxt(self.record, delimiter=",", skiprows=1)
-        return table[:, 1].astype(int), table[:, 10:15]
+        """The record: times, MoveIDs and joints of each cycle."""
+        table = np.loadtxt(self.record, delimiter=",", skiprows=1, usecols=[0, 1, *range(10, 15)])
+        return table[:, 0], table[:, 1].astype(int), table[:, 2:]
 
     def finding(self):
         return self.told["collisions"][0]

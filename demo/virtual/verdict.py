@@ -87,14 +87,13 @@ def truth_of(motion):
 def of_first(first, held):
     """The collision, as it was found and before which the appliance held."""
     found = first.finding()
-    joints = first.motion()[1]
-    about = round(1000 * found["t_s"])
-    start = max(about - 300, 0)
-    inside = np.flatnonzero(clash.gaps(joints[start : about + 300]) < 0)
-    met_ms = start + inside[0] if len(inside) else np.inf
+    times, _, joints = first.motion
+    near = np.abs(times - found["t_s"]) < 0.3
+    inside = times[near][clash.gaps(joints[near]) < 0]
+    met_s = inside[0] if len(inside) else np.inf
     return [
         Figure("first program: holder in the clamp's stud, deepest", found["depth_mm"], "mm", key="collision_mm"),
-        Figure("  its begin off the one by formula", abs(met_ms - 1000 * found["t_s"]), "ms", most=BOUNDS["first_contact_off_ms"]),
+        Figure("  its begin off the one by formula", 1000 * abs(met_s - found["t_s"]), "ms", most=BOUNDS["first_contact_off_ms"]),
         Figure("  between holder and stud where the appliance held", float(clash.gaps(np.array([held.joints]))[0]), "mm",
                BOUNDS["held_nearest_mm"], BOUNDS["held_farthest_mm"], key="held_apart_mm"),
     ]  # fmt: skip
@@ -103,7 +102,7 @@ def of_first(first, held):
 def of_second(second, record):
     """The prediction, and the part that the measured axes cut."""
     told = second.told
-    planned = of_program(*second.motion())
+    planned = of_program(*second.motion[1:])
     motion = swept.moving(swept.motion(planned))
     rest, gouge, removed = truth_of(motion)
     deviation, forces = told["material"]["deviation"], told["forces"]
