@@ -55,11 +55,9 @@ def scene(plot, joints, title, hit):
 def draw(first, second, cut, off_um, file):
     """The deepest moment of the first program, the second where its ball is at the same place, and how far the machined part is off the predicted one."""
     found = first.finding()
-    times, _, joints = first.motion
-    meeting = joints[(times >= found["t_s"]) & (times <= found["until_s"])][::5]
+    meeting = first.joints[(first.times >= found["t_s"]) & (first.times <= found["until_s"])][::5]
     deepest = meeting[np.argmin(clash.gaps(meeting))]
-    later = second.motion[2]
-    same = later[np.argmin(np.linalg.norm(swept.motion(later).middle - swept.motion(deepest[None]).middle, axis=1))]
+    same = second.joints[np.argmin(np.linalg.norm(swept.motion(second.joints).middle - swept.motion(deepest[None]).middle, axis=1))]
     figure, (left, right, chart) = plt.subplots(1, 3, figsize=(14, 5), width_ratios=[1, 1, 1.35])
     scene(left, deepest, f"First program: holder {found['depth_mm']:.1f} mm deep in the stud", True)
     scene(right, same, "Second: it leans the other way", False)

@@ -1,13 +1,15 @@
 """Programs simulated before any machine moves: `rmac simulate`, and what it told."""
 
 import dataclasses
-import functools
 import json
 import pathlib
 import subprocess
+import tempfile
 
 import clamping
 import numpy as np
+
+TIME, MOVE, JOINTS = 0, 1, slice(10, 15)  # columns of a setpoint record
 
 
 @dataclasses.dataclass
@@ -15,25 +17,25 @@ class Rehearsal:
     told: dict  # as `rmac simulate --json` prints it
     warning: str
     page: pathlib.Path
-    stock: pathlib.Path
-    record: pathlib.Path
-
-    @functools.cached_property
-    def motion(self):
-        """The record: times, MoveIDs and joints of each cycle."""
-        table = np.loadtxt(self.record, delimiter=",", skiprows=1, usecols=[0, 1, *range(10, 15)])
-        return table[:, 0], table[:, 1].astype(int), table[:, 2:]
+    stock: pathlib.Path | None  # surface of what is left
+    times: np.ndarray  # of each cycle
+    moves: np.ndarray
+    joints: np.ndarray
 
     def finding(self):
         return self.told["collisions"][0]
 
 
-def simulate(rmac, program, setup, tools, tree, resolution, name):
-    """Leaves `NAME.html`, `NAME.stl` and `NAME.csv` beside the program."""
-    page, stock, record = (program.with_name(name + ending) for ending in (".html", ".stl", ".csv"))
-    words = ["--setup", setup, "--tools", tools, "--resolution", str(resolution), "--view", page, "--stock-out", stock, "--record", record, "--json"]
-    done = subprocess.run([rmac, "simulate", program, "--machine", clamping.MACHINE, "--device-tree", tree, *words],
-                          stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)  # fmt: skip
-    if not done.stdout.strip():
-        raise RuntimeError(f"rmac simulate {program}: {done.stderr.strip() or 'it told nothing'}")
-    return Rehearsal(json.loads(done.stdout), done.stderr.strip(), page, stock, record)
+def simulate(rmac, program, setup, tools, tree, resolution, with_surface):
+    """Leaves a page beside the program, by its name, and where wanted the surface of what is left."""
+    page, stock = program.with_suffix(".html"), program.with_suffix(".stl") if with_surface else None
+    words = ["--device-tree", tree, "--setup", setup, "--tools", tools, "--resolution", str(resolution), "--view", page, "--json"]
+    words += ["--stock-out", stock] if stock else []
+    with tempfile.TemporaryDirectory() as folder:
+        record = pathlib.Path(folder) / "record.csv"
+        done = subprocess.run([rmac, "simulate", program, "--machine", clamping.MACHINE, "--record", record, *words],
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)  # fmt: skip
+        if not done.stdout.strip():
+            raise RuntimeError(f"rmac simulate {program}: {done.stderr.strip() or 'it told nothing'}")
+        table = np.loadtxt(record, delimiter=",", skiprows=1, usecols=[TIME, MOVE, *range(*JOINTS.indices(100))])
+    return Rehearsal(json.loads(done.stdout), done.stderr.strip(), page, stock, table[:, 0], table[:, 1].astype(int), table[:, 2:])

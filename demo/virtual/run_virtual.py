@@ -19,6 +19,7 @@ import clamping  # noqa: E402
 import dome  # noqa: E402
 import drawing  # noqa: E402
 import rehearsal  # noqa: E402
+import replay  # noqa: E402
 import sweeps  # noqa: E402
 import verdict  # noqa: E402
 from machining import Machining  # noqa: E402
@@ -47,18 +48,18 @@ def run(arguments):
     setup_file, setup = clamping.write_setup(out, dome.mesh(MESH_STEP))
     programs = {name: sweeps.program(arguments.step, lean) for name, lean in (("first", TOWARDS_CLAMP), ("second", AWAY))}
 
-    def simulate(name):
+    def simulate(name, requests, with_surface=True):
         file = out / f"{name}.rmac"
-        sweeps.write(file, programs[name])
-        return rehearsal.simulate(arguments.rmac, file, setup_file, out / "tools", arguments.device_tree, arguments.resolution, name)
+        sweeps.write(file, requests)
+        return rehearsal.simulate(arguments.rmac, file, setup_file, out / "tools", arguments.device_tree, arguments.resolution, with_surface)
 
     say("Simulated: the first program, whose tool leans towards the clamp")
-    first = simulate("first")
+    first = simulate("first", programs["first"], with_surface=False)
     for finding in first.told["collisions"]:
         tell(finding)
     say(f"  {first.page} shows it")
     say("Simulated: the second, which leans the other way")
-    second = simulate("second")
+    second = simulate("second", programs["second"])
     say(f"  {len(second.told['collisions'])} collisions, {second.told['cycle_time_s']:.1f} s of machine time; {second.page} shows it, {second.stock} is the predicted part")
     with Machining(arguments.host, arguments.port, setup) as machine:
         say("On the appliance, its check on: the first program")
@@ -66,13 +67,18 @@ def run(arguments):
         say(f"  held: {held.message}")
         say("On the appliance: the second program, to its end")
         record = machine.run(programs["second"])
-        record.write(out / "machined.csv")
-    return judge(out, first, held, second, record)
+        record.write(out / "measured.csv")
+    say("Simulated: what the axes did, as they were measured")
+    replayed = simulate("machined", replay.program(record.move, record.a))
+    say(f"  {replayed.stock} is the machined part")
+    return judge(arguments, first, held, second, record, replayed)
 
 
-def judge(out, first, held, second, record):
+def judge(arguments, first, held, second, record, replayed):
+    out = arguments.out
     wrong = list(verdict.problems(first, held, second))
     figures, cut, off = verdict.of_second(second, record)
+    figures += verdict.of_replay(replayed, second, record, arguments.resolution)
     if first.told["collisions"]:
         figures = verdict.of_first(first, held) + figures
         picture = out / "virtual.png"

@@ -20,6 +20,7 @@ APART = 2.5  # of the places through which a curve goes
 MOST_OFF_UM = 0.1
 DEGREE, LOOP_DEGREE = 5, 9
 LOOP = 18.0  # length of a loop's parameter
+DOWN = 3  # MoveID of the line onto the block; before it the machine comes from wherever it stood
 FIRST_SWEEP = 100  # MoveID of the first; loops have the odd ones between
 
 
@@ -100,13 +101,22 @@ def pose_of(place):
     return {"p": place[:3].tolist(), "axis": (place[3:] / np.linalg.norm(place[3:])).tolist()}
 
 
+class Requests:
+    """As the lines of a .rmac file have them."""
+
+    def __init__(self):
+        self.lines = []
+
+    def call(self, method, **parameters):
+        self.lines.append({"jsonrpc": "2.0", "id": len(self.lines) + 1, "method": "RMAC_CAM." + method, "params": parameters})
+
+    def begin(self):
+        self.call("SetPathTolerance", Tolerance=0)
+        self.call("SetSpindleRPM", SpindleNumber=0, RPM=RPM)
+
+
 def program(step, lean):
-    """The requests, as lines of a .rmac file have them."""
-    requests = []
-
-    def call(method, **parameters):
-        requests.append({"jsonrpc": "2.0", "id": len(requests) + 1, "method": "RMAC_CAM." + method, "params": parameters})
-
+    """The whole of it, from above all and back there."""
     splines = [sweep(y, 1 if n % 2 == 0 else -1, lean) for n, y in enumerate(rows(step))]
     off = max(off_surface_um(spline) for spline in splines)
     if off > MOST_OFF_UM:
@@ -115,12 +125,13 @@ def program(step, lean):
     first_joints, last_joints = chain.joints(first), chain.joints(last)
     # Up and down along the tool, which is the machine's Z.
     above, away = (pose_of(np.concatenate([place[:3] + (HIGH - joints[2]) * place[3:], place[3:]])) for place, joints in ((first, first_joints), (last, last_joints)))
-    call("SetPathTolerance", Tolerance=0)
-    call("SetSpindleRPM", SpindleNumber=0, RPM=RPM)
+    requests = Requests()
+    requests.begin()
+    call = requests.call
     call("SetFeedrate", Feedrate=APPROACH_MM_MIN)
     call("MoveToJointTarget", MoveID=1, JointTargetFrame={"joints": SAFE})
     call("MoveToJointTarget", MoveID=2, JointTargetFrame={"joints": [*first_joints[:2], HIGH, *first_joints[3:]]})
-    call("MoveAlongLine", MoveID=3, StartPoint=above, EndPoint=pose_of(first))
+    call("MoveAlongLine", MoveID=DOWN, StartPoint=above, EndPoint=pose_of(first))
     call("SetFeedrate", Feedrate=FEED_MM_MIN)
     for n, spline in enumerate(splines):
         if n:
@@ -130,7 +141,7 @@ def program(step, lean):
     call("SetFeedrate", Feedrate=APPROACH_MM_MIN)
     call("MoveAlongLine", MoveID=end, StartPoint=pose_of(last), EndPoint=away)
     call("MoveToJointTarget", MoveID=end + 1, JointTargetFrame={"joints": SAFE})
-    return requests
+    return requests.lines
 
 
 def write(file, requests):

@@ -16,7 +16,6 @@ BOUNDS = json.loads((pathlib.Path(__file__).parent / "bounds.json").read_text(en
 BODIES = ["clamp stud", f"tool {clamping.TOOL}, holder"]
 PLACES, ON_FACES, SEED = 10000, 2000, 7  # that are looked at of the predicted part's surface
 ON_A_FACE = 1e-3  # of the block as it was
-FIRST_MOVE = 2  # before it the machine goes up from wherever it stood
 
 
 @dataclasses.dataclass
@@ -38,7 +37,7 @@ class Figure:
 
 
 def of_program(moves, joints):
-    return joints[moves >= FIRST_MOVE]
+    return joints[moves >= sweeps.DOWN]
 
 
 def in_motion_s(joints, period_s=0.001):
@@ -47,9 +46,8 @@ def in_motion_s(joints, period_s=0.001):
     return period_s * (changes[-1] - changes[0] + 1)
 
 
-def places_of(surface):
+def places_of(corners):
     """So many places of a surface: those that were cut, and those on a face of the block as it was."""
-    corners = stl.corners(surface)
     face = swept.out_of_stock(corners) > -ON_A_FACE
     draw = np.random.default_rng(SEED)
 
@@ -87,9 +85,8 @@ def truth_of(motion):
 def of_first(first, held):
     """The collision, as it was found and before which the appliance held."""
     found = first.finding()
-    times, _, joints = first.motion
-    near = np.abs(times - found["t_s"]) < 0.3
-    inside = times[near][clash.gaps(joints[near]) < 0]
+    near = np.abs(first.times - found["t_s"]) < 0.3
+    inside = first.times[near][clash.gaps(first.joints[near]) < 0]
     met_s = inside[0] if len(inside) else np.inf
     return [
         Figure("first program: holder in the clamp's stud, deepest", found["depth_mm"], "mm", key="collision_mm"),
@@ -102,14 +99,14 @@ def of_first(first, held):
 def of_second(second, record):
     """The prediction, and the part that the measured axes cut."""
     told = second.told
-    planned = of_program(*second.motion[1:])
+    planned = of_program(second.moves, second.joints)
     motion = swept.moving(swept.motion(planned))
     rest, gouge, removed = truth_of(motion)
     deviation, forces = told["material"]["deviation"], told["forces"]
     place = np.array(deviation["rest_place_mm"])
     rest_there = above_design(place[:1], place[1:2], motion)[1][0]
     measured, setpoints = (of_program(record.move, joints) for joints in (record.a, record.q))
-    cut, faces = places_of(second.stock)
+    cut, faces = places_of(stl.corners(second.stock))
     predicted, predicted_faces = off_um(cut, faces, planned)
     machined, machined_faces = off_um(cut, faces, measured)
     figures = [
@@ -128,10 +125,42 @@ def of_second(second, record):
         Figure("  volume removed, off the one by formula", 100 * abs(told["material"]["removed_mm3"] / removed - 1), "%", most=BOUNDS["removed_off_percent"]),
         Figure("  surface off what the planned axes cut, rms", rms(predicted), "um", most=BOUNDS["predicted_off_rms_um"], key="predicted_off_rms_um"),
         Figure("  the same, largest", largest(predicted, predicted_faces), "um", most=BOUNDS["predicted_off_um"]),
-        Figure("machined part off the predicted one, rms", rms(machined), "um", most=BOUNDS["machined_off_rms_um"], key="machined_off_rms_um"),
+        Figure("machined part by formula: off the predicted one, rms", rms(machined), "um", most=BOUNDS["machined_off_rms_um"], key="machined_off_rms_um"),
         Figure("  the same, largest", largest(machined, machined_faces), "um", most=BOUNDS["machined_off_um"], key="machined_off_um"),
     ]
     return figures, cut, machined
+
+
+def of_replay(replayed, second, record, resolution):
+    """The part that `rmac simulate` cuts from the measured motion: held to the formula, to the design, and ray by ray to the predicted one."""
+    corners, deviation = stl.corners(replayed.stock), replayed.told["material"]["deviation"]
+    by_formula = off_um(*places_of(corners), of_program(record.move, record.a))
+    rays = between_rays_um(stl.corners(second.stock), corners, resolution)
+    return [
+        Figure("machined part by rmac simulate: left above the design", 1000 * deviation["rest_mm"], "um"),
+        Figure("  cut into the design, most", 1000 * deviation["gouge_mm"], "um", most=BOUNDS["machined_off_um"]),
+        Figure("  off the one by formula, rms", rms(by_formula[0]), "um", most=BOUNDS["predicted_off_rms_um"]),
+        Figure("  the same, largest", largest(*by_formula), "um", most=BOUNDS["predicted_off_um"]),
+        Figure("  off the predicted one, ray by ray, rms", rms(rays), "um", most=BOUNDS["machined_off_rms_um"], key="machined_off_by_rays_rms_um"),
+        Figure("  rays along z that were compared", len(rays), "", least=0.9 * dome.LENGTH * dome.WIDTH / resolution**2),
+    ]
+
+
+def on_rays(corners, resolution):
+    """Numbers of the rays along z, and the heights where they leave the material that was cut."""
+    number = (corners[:, :2] + [dome.LENGTH / 2, dome.WIDTH / 2]) / resolution - 0.5
+    whole = np.rint(number)
+    these = (np.abs(number - whole).max(axis=1) < 1e-3) & (swept.out_of_stock(corners) < -ON_A_FACE)
+    keys, first = np.unique(whole[these] @ [1, round(dome.LENGTH / resolution)], return_index=True)
+    return keys, corners[these][first]
+
+
+def between_rays_um(predicted, machined, resolution):
+    """Along the part's normal, how far the machined surface is above the predicted one on the rays along z that meet both."""
+    (keys, places), (others, machined_places) = on_rays(predicted, resolution), on_rays(machined, resolution)
+    _, here, there = np.intersect1d(keys, others, return_indices=True)
+    higher = machined_places[there][:, 2] - places[here][:, 2]
+    return 1000 * higher * dome.surface(*places[here][:, :2].T)[1][:, 2]
 
 
 def rms(off):
