@@ -23,8 +23,7 @@ class LssSlave {
   explicit LssSlave(std::uint8_t node) : active_(node), pending_(node), stored_(node) {}
 
   /// A frame of the master's identifier; what is answered.
-  [[nodiscard]] std::optional<CanFrame> receive(const CanFrame& frame, const Identity& identity,
-                                                          Time now);
+  [[nodiscard]] std::optional<CanFrame> receive(const CanFrame& frame, const Identity& identity, Time now);
   /// What was not stored is forgotten.
   void power_on();
   /// The node id becomes what it was told to be, as by a reset of the communication. Returns it.
