@@ -1,6 +1,9 @@
 #include "gateway/simulators/vdrive/lss_slave.hpp"
 
+#include <array>
+
 namespace rmac::vdrive {
+
 namespace {
 
 // Command specifiers (CiA 305, 3.8)
