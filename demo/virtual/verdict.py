@@ -31,9 +31,9 @@ class Figure:
         return bool(self.least <= self.value <= self.most)
 
     def bound(self):
-        if self.least > -np.inf:
-            return f"{self.least:g} to {self.most:g}"
-        return f"{self.most:g}" if self.most < np.inf else ""
+        if self.least == -np.inf:
+            return f"{self.most:g}" if self.most < np.inf else ""
+        return f"{self.least:g} to {self.most:g}" if self.most < np.inf else f"from {self.least:g}"
 
 
 def of_program(moves, joints):
