@@ -20,6 +20,9 @@ constexpr double kSameFeed = 0.002;
 constexpr double kStraightDown = 1e-6;
 /// A tooth that goes down by less with its face cuts no chip: that is no more than edges are sharp, and axes give way.
 constexpr double kSharp_mm = 0.002;
+/// Nor does one that gives way as a cut begins: less than 6° down, for so many looks on end.
+constexpr double kPlunge = 0.1;
+constexpr int kGivesWayLooks = 4;
 constexpr double kLongestTurn_s = 0.05;
 
 bool same(const std::vector<EngagedSlice>& a, const std::vector<EngagedSlice>& b) {
@@ -55,7 +58,7 @@ void CuttingLoad::set_tool(const Tool& tool) {
   mill_.reset();
   last_.reset();
   now_until_s_ = -1;
-  taken_mm3_ = 0, blind_ = 0;
+  taken_mm3_ = 0, blind_ = down_ = 0;
   no_mill_.clear();
   if (!tool.shape) return;  // it takes nothing away
   auto mill = EndMill::of(*tool.shape);
@@ -90,7 +93,7 @@ void CuttingLoad::cuts(const DexelGrid& grid, const ToolAt& tool, const Eigen::V
   }
   Engagement met = engagement_of(*mill_, grid, tool, velocity, every_mm() / 2);
   const double teeth_s = mill_->teeth() * std::abs(rpm_) / 60, along = velocity.dot(tool.axis);
-  if (met.face && -along >= kSharp_mm * teeth_s) {
+  if (plunges(met, teeth_s > 0 ? -along / teeth_s : -along, -along / speed)) {
     miss("face", fmt::format("it goes down into material with the face of its flat end, first in line {}; what that "
                              "takes is not in them",
                              move.line));
@@ -124,6 +127,11 @@ void CuttingLoad::cuts(const DexelGrid& grid, const ToolAt& tool, const Eigen::V
   add(moves_[move.id], last_->forces, time_s);
   judge(Overload::Of::Torque, last_->forces.torque_nm.mean, spindle_.torque_nm, {before_s, t_s}, tool, move);
   judge(Overload::Of::Power, last_->forces.power_w.mean, spindle_.power_w, {before_s, t_s}, tool, move);
+}
+
+bool CuttingLoad::plunges(const Engagement& met, double down_mm, double share) {
+  down_ = met.face && down_mm >= kSharp_mm ? down_ + 1 : 0;
+  return down_ >= kGivesWayLooks || (down_ > 0 && share > kPlunge);
 }
 
 bool CuttingLoad::engaged(const Engagement& met, const MoveNow& move) {

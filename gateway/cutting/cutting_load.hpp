@@ -92,6 +92,9 @@ class CuttingLoad : public CutListener {
   void judge(Overload::Of of, double mean, double allowed, const Span& span, const ToolAt& tool, const MoveNow& move);
   /// Whether teeth are in material now; tells of material that goes though none is seen to be.
   [[nodiscard]] bool engaged(const Engagement& met, const MoveNow& move);
+  /// Whether it goes down with its face, by so much a tooth and by this share of its speed, and not only gives way as
+  /// a cut begins.
+  [[nodiscard]] bool plunges(const Engagement& met, double down_mm, double share);
   /// Once for each tool.
   void miss(const char* kind, const std::string& sentence);
 
@@ -113,6 +116,7 @@ class CuttingLoad : public CutListener {
   double now_until_s_ = -1;  ///< from then on nobody knows it to cut
   double told_s_ = 0;        ///< when it last heard of the tool
   double taken_mm3_ = 0;     ///< since then
+  int down_ = 0;             ///< so often on end it went down with its face
   int blind_ = 0;            ///< so often on end material went and no tooth was seen in any
 };
 

@@ -24,6 +24,15 @@ double approach_s(const JointLimits& limits, double length) {
                    std::cbrt(60 * length / (kShare * limits.max_jerk))});
 }
 
+/// Straight between the points of the table, steady beyond its ends.
+double pitch_error(const PitchErrors& pitch, double shown) {
+  if (pitch.errors.empty()) return 0;
+  const auto last = static_cast<double>(pitch.errors.size() - 1);
+  const double along = last > 0 ? std::clamp((shown - pitch.first) / pitch.step, 0.0, last) : 0;
+  const auto before = static_cast<std::size_t>(along), after = static_cast<std::size_t>(std::ceil(along));
+  return std::lerp(pitch.errors[before], pitch.errors[after], along - std::floor(along));
+}
+
 }  // namespace
 
 void AxisDynamics::Mean::add(double value) noexcept {
@@ -62,7 +71,27 @@ AxisDynamics::AxisDynamics(std::unique_ptr<ClosedLoops> loops, std::vector<Motor
       joints_(device.joints.size()),
       torques_(motors_.size()),
       deviation_(device.positioning_tolerance_mm) {
-  see_truth();
+  find_plays();
+  see_truth(loads());
+}
+
+/// A joint is a motor's where the shaft moves it.
+void AxisDynamics::find_plays() {
+  const ServoLoopParts& parts = loops_->mechanism().loop->parts();
+  const std::array<double, kMaxJoints> there = loads();
+  const auto joints_at = [&](const std::array<double, kMaxJoints>& shafts) {
+    std::array<double, kMaxJoints> joints{};
+    parts.actuator_map->joint_positions(std::span(shafts).first(motors_.size()),
+                                        std::span(joints).first(parts.joints.size()));
+    return joints;
+  };
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    if (!motors_[i].bus->plant(motors_[i].axis).has_play()) continue;
+    auto turned = there;
+    turned[i] += 1;
+    const auto before = joints_at(there), after = joints_at(turned);
+    for (std::size_t j = 0; j < parts.joints.size(); ++j) plays_[j] = plays_[j] || before[j] != after[j];
+  }
 }
 
 std::span<const double> AxisDynamics::joints() const noexcept {
@@ -85,17 +114,17 @@ void AxisDynamics::cycle(const CycleSample& planned, const Beside& beside) {
   setpoint.pose = planned.pose_set;
   setpoint.move_id = planned.move_id;
   setpoint.moving = planned.moving;
-  if (!run(planned, beside.line)) return;
+  run(planned, beside.line);
   account(planned, beside);
 }
 
-bool AxisDynamics::run(const CycleSample& planned, int line) {
+void AxisDynamics::run(const CycleSample& planned, int line) {
+  // Drives measure as a cycle begins, and tell late or soon: where the loads are then is the cycle's.
+  const std::array<double, kMaxJoints> now = loads();
   const bool sound = loops_->cycle();
-  see_truth();
-  if (!sound) {
-    stopped_ = {.line = line, .move_id = planned.move_id, .t_s = planned.t_s, .why = loops_->fault_text()};
-  }
-  return sound;
+  see_truth(now);
+  if (sound) return;
+  stopped_ = {.line = line, .move_id = planned.move_id, .t_s = planned.t_s, .why = loops_->fault_text()};
 }
 
 void AxisDynamics::approach(const CycleSample& planned) {
@@ -115,7 +144,8 @@ void AxisDynamics::approach(const CycleSample& planned) {
       setpoint.velocity[j] = way * u * u * (30 + u * (-60 + 30 * u)) / time_s;
       setpoint.acceleration[j] = way * u * (60 + u * (-180 + 120 * u)) / (time_s * time_s);
     }
-    if (!run(planned, 0)) return;
+    run(planned, 0);
+    if (stopped_) return;
   }
 }
 
@@ -145,20 +175,35 @@ void AxisDynamics::push(const Beside& beside) {
   }
 }
 
-/// A joint is as far from where its motor's encoder has it as the map makes of the shaft's difference.
-void AxisDynamics::see_truth() {
+std::array<double, kMaxJoints> AxisDynamics::loads() const {
+  const ServoLoopParts& parts = loops_->mechanism().loop->parts();
+  std::array<double, kMaxJoints> angles{};
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    const DriveScale& scale = parts.actuators[i].scale;
+    const double turns = motors_[i].bus->plant(motors_[i].axis).load_rad() / (2 * std::numbers::pi);
+    angles[i] = shaft_rad(scale, turns * scale.counts_per_revolution);
+  }
+  return angles;
+}
+
+/// What a joint's mechanics do wrong is what the loop makes good of where its drives are.
+void AxisDynamics::see_truth(const std::array<double, kMaxJoints>& loads) {
   const ServoLoopParts& parts = loops_->mechanism().loop->parts();
   const std::size_t count = parts.joints.size();
-  std::array<double, kMaxJoints> told{}, loads{}, by_told{}, by_loads{};
-  for (std::size_t i = 0; i < parts.actuators.size(); ++i) {
+  std::array<double, kMaxJoints> told{}, by_told{};
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
     const ServoActuator& actuator = parts.actuators[i];
-    const DriveFeedback& words = actuator.bus->feedback[actuator.axis];
-    told[i] = shaft_rad(actuator.scale, words.position_counts);
-    loads[i] = shaft_rad(actuator.scale, words.load_counts);
+    told[i] = shaft_rad(actuator.scale, actuator.bus->feedback[actuator.axis].position_counts);
   }
-  parts.actuator_map->joint_positions(std::span(told).first(parts.actuators.size()), std::span(by_told).first(count));
-  parts.actuator_map->joint_positions(std::span(loads).first(parts.actuators.size()), std::span(by_loads).first(count));
-  for (std::size_t j = 0; j < count; ++j) truth_[j] = loops_->report().position[j] + by_loads[j] - by_told[j];
+  const auto joints_of = [&](std::span<const double> shafts, std::span<double> joints) {
+    parts.actuator_map->joint_positions(shafts.first(motors_.size()), joints.first(count));
+  };
+  joints_of(told, by_told);
+  joints_of(loads, truth_);
+  for (std::size_t j = 0; j < count; ++j) {
+    truth_[j] +=
+        plays_[j] ? pitch_error(parts.joints[j].mechanics.pitch, truth_[j]) : loops_->report().position[j] - by_told[j];
+  }
 }
 
 Eigen::Vector3d AxisDynamics::tip(std::span<const double> joints, const Frame& tool) const {

@@ -35,14 +35,15 @@ struct MotorTorque {
 
 /// What stopped the machine, where the program did not.
 struct StoppedByFault {
-  int line = 0;
+  int line = 0;  ///< of the program; 0: on the way to where it begins
   std::int64_t move_id = 0;
   double t_s = 0;
   std::string why;
 };
 
 /// What a machine's axes make of a planned motion: its servo loops, closed over the models of its axes as
-/// `device.json` has them (docs/simulated-bus.md), are given the setpoints of each cycle, and the tool is pushed.
+/// `device.json` has them (docs/simulated-bus.md), are given the setpoints of each cycle, and the tool is pushed. Pitch
+/// errors that a joint declares it has; a backlash too, unless the model of its axis has play of its own.
 /// Spindles stand: what turns them is not looked at. One thread.
 class AxisDynamics {
  public:
@@ -85,11 +86,14 @@ class AxisDynamics {
   };
 
   AxisDynamics(std::unique_ptr<ClosedLoops> loops, std::vector<Motor> motors, const sdk::DeviceObject& device);
+  void find_plays();
   void approach(const CycleSample& planned);
   void push(const Beside& beside);
-  void see_truth();
+  /// Shaft angles of the loads as they are now.
+  [[nodiscard]] std::array<double, kMaxJoints> loads() const;
+  void see_truth(const std::array<double, kMaxJoints>& loads);
   void account(const CycleSample& planned, const Beside& beside);
-  [[nodiscard]] bool run(const CycleSample& planned, int line);
+  void run(const CycleSample& planned, int line);
   [[nodiscard]] Eigen::Vector3d tip(std::span<const double> joints, const Frame& tool) const;
   [[nodiscard]] const Kinematics& kinematics() const noexcept { return *loops_->mechanism().planner_model.kinematics; }
 
@@ -97,6 +101,7 @@ class AxisDynamics {
   std::vector<Motor> motors_;
   sdk::DeviceObject device_;  ///< as it was before its drives were put on models
   std::array<double, kMaxJoints> truth_{};
+  std::array<bool, kMaxJoints> plays_{};  ///< joints whose motors' models have play
   bool begun_ = false, moved_ = false, pushed_ = false;
   std::vector<Mean> joints_, torques_;
   std::size_t count_ = 0;

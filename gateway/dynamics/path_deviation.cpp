@@ -50,9 +50,9 @@ void PathDeviation::judge(std::size_t at) {
   const double off_mm = std::sqrt(least2);
   peak_mm_ = std::max(peak_mm_, off_mm);
   if (allowed_mm_ <= 0 || off_mm <= allowed_mm_) return;
-  // It is one as long as it lasts, or comes again within a move.
-  const bool goes_on = !off_path_.empty() && (off_path_.back().move_id == cycle.move_id ||
-                                              (at > 0 && off_path_.back().until_s >= passed_[at - 1].t_s));
+  // What is within so little for some cycles, and beyond it again, is one.
+  const std::size_t recent = at - std::min(at, kAfter);
+  const bool goes_on = !off_path_.empty() && off_path_.back().until_s >= passed_[recent].t_s;
   if (!goes_on) {
     if (off_path_.size() == kMostOffPath) return;
     off_path_.push_back({.line = cycle.line, .move_id = cycle.move_id, .t_s = cycle.t_s, .allowed_mm = allowed_mm_});

@@ -7,7 +7,7 @@
 
 namespace rmac::gateway {
 
-/// A time on end in which the tool was farther beside its path than is allowed.
+/// A time on end in which the tool was farther beside its path than is allowed; pauses of up to 16 cycles are none.
 struct OffPath {
   int line = 0;  ///< of the program, when it began
   std::int64_t move_id = 0;

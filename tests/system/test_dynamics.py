@@ -166,6 +166,29 @@ class Dynamics(unittest.TestCase):
         self.assertEqual(self.simulate(slower, "--dynamics", "--device-tree", tree).returncode, 0)
         self.assertIn(f"At a feed override of {told['keeps_at_percent']:g} % it keeps", self.simulate(self.folder / "p.rmac", "--dynamics", "--device-tree", tree).stdout)
 
+    def test_a_program_that_configures_the_machine_anew_is_told(self):
+        weak = [request("RMAC_Config.SetMechanismJointServoControlGains", JntNum=0, ServoControlGains=[100, 1000, 5]), request("RMAC_Config.Apply")]
+        told, done = self.report(write(self.folder / "p.rmac", [*weak, *path(1, 2)]))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("the program configures the machine anew", told["not_told"][0])
+
+    def test_drives_that_answer_late_are_where_they_are_all_the_same(self):
+        tree = self.folder / "drivers"
+        shutil.copytree(BUILD / "drivers", tree)
+        file = tree / "mill/5-axis/TarusXYZCA/device.json"
+        device, peaks = json.loads(file.read_text()), []
+        device["PositioningTolerance"] = 1
+        target = [request("RMAC_CAM.MoveToJointTarget", MoveID=1, JointTargetFrame={"joints": [100, 50, 0, 60, 30]})]
+        for late in ((1, 1), (0, 1), (1, 2)):
+            for bus, cycles in zip(("can0", "can1"), late):
+                device["DigitalControlInterface"]["Parameters"][f"{bus}.model.late_answers"] = cycles
+            file.write_text(json.dumps(device))
+            told, done = self.report(write(self.folder / "p.rmac", target), "--device-tree", tree, machine="TarusXYZCA")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            peaks.append(told["path_peak_mm"])
+        self.assertLess(max(peaks), 2 * min(peaks))
+        self.assertLess(max(peaks), 0.02)
+
     def test_what_cannot_be_told_is_refused(self):
         program = write(self.folder / "p.rmac", path(1, 2))
         tree = self.folder / "drivers"

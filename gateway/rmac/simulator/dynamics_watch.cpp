@@ -9,12 +9,17 @@
 #include <vector>
 
 #include "gateway/device_database/device_database.hpp"
+#include "gateway/device_database/device_json.hpp"
 #include "gateway/device_driver_manager/device_tree.hpp"
 #include "gateway/rmac/simulator/machine_modules.hpp"
 #include "gateway/rmac/simulator/mounted_tool.hpp"
 #include "rmac/motion/frame.hpp"
 
 namespace rmac::cli {
+
+DynamicsWatch::DynamicsWatch(const sdk::DeviceObject& device, std::unique_ptr<gateway::AxisDynamics> axes,
+                             const CollisionWatch* cuts)
+    : machine_(device.name), configured_(gateway::to_device_json(device)), axes_(std::move(axes)), cuts_(cuts) {}
 
 Result<std::unique_ptr<DynamicsWatch>> DynamicsWatch::open(const std::string& machine,
                                                            const std::filesystem::path& device_tree, double period_s,
@@ -25,7 +30,7 @@ Result<std::unique_ptr<DynamicsWatch>> DynamicsWatch::open(const std::string& ma
   if (!device) return fail(device.error().message);
   auto axes = gateway::AxisDynamics::open(*device, loader_of(*device, *device_json, device_tree), period_s);
   if (!axes) return fail(fmt::format("{}: {}", device_json->string(), axes.error().message));
-  return std::unique_ptr<DynamicsWatch>(new DynamicsWatch(device->name, std::move(*axes), cuts));
+  return std::unique_ptr<DynamicsWatch>(new DynamicsWatch(*device, std::move(*axes), cuts));
 }
 
 void DynamicsWatch::take_force(const gateway::CycleSample& planned) {
@@ -38,6 +43,19 @@ void DynamicsWatch::take_force(const gateway::CycleSample& planned) {
   force_n_ += std::min(1.0, turns_s * passed_s) * change;
 }
 
+void DynamicsWatch::check_configuration(const sdk::DeviceObject& device) {
+  if (gateway::to_device_json(device) == configured_) return;
+  not_told_.insert("the program configures the machine anew: what its axes do is told by device.json all the same");
+}
+
+void DynamicsWatch::finish() {
+  axes_->finish();
+  if (cuts_ != nullptr && !cuts_->forces_not_told().empty()) {
+    not_told_.insert(
+        "not all that pushes the tool is known: what is missing of the cutting forces is missing here too");
+  }
+}
+
 gateway::CycleSample DynamicsWatch::cycle(const gateway::CycleSample& planned, int line,
                                           gateway::Controller& controller) {
   const sdk::DeviceObject* const device = controller.mechanism();
@@ -47,6 +65,7 @@ gateway::CycleSample DynamicsWatch::cycle(const gateway::CycleSample& planned, i
     }
     return planned;
   }
+  if (std::exchange(look_at_configuration_, false)) check_configuration(*device);
   if (std::exchange(look_at_tool_, false)) {
     tool_ = gateway::tip_on_interface(mounted_tool(controller));
     axes_->forget_path();
@@ -61,10 +80,14 @@ gateway::CycleSample DynamicsWatch::cycle(const gateway::CycleSample& planned, i
   return seen;
 }
 
+std::string where(const gateway::StoppedByFault& stopped) {
+  return stopped.line > 0 ? fmt::format("in line {}", stopped.line) : "before its program begins";
+}
+
 Result<> verdict(const DynamicsWatch& watch) {
   std::vector<std::string> clauses;
   if (const auto& stopped = watch.axes().stopped()) {
-    clauses.push_back(fmt::format("the machine stops in line {}: {}", stopped->line, stopped->why));
+    clauses.push_back(fmt::format("the machine stops {}: {}", where(*stopped), stopped->why));
   }
   if (const auto& off = watch.axes().deviation().off_path(); !off.empty()) {
     clauses.push_back(

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
@@ -22,32 +23,40 @@ class DynamicsWatch {
                                                                    double period_s, const CollisionWatch* cuts);
 
   void tool_may_have_changed() noexcept { look_at_tool_ = true; }
+  void configuration_may_have_changed() noexcept { look_at_configuration_ = true; }
   /// The same cycle with its joints, and they alone, where they truly are. As planned before the first motion, for
   /// another machine, and once a fault stopped this one.
   [[nodiscard]] gateway::CycleSample cycle(const gateway::CycleSample& planned, int line,
                                            gateway::Controller& controller);
   /// The run is over.
-  void finish() { axes_->finish(); }
+  void finish();
 
   [[nodiscard]] const gateway::AxisDynamics& axes() const noexcept { return *axes_; }
   /// What it does not tell of, a sentence each; empty: it tells of all.
   [[nodiscard]] const std::set<std::string>& not_told() const noexcept { return not_told_; }
 
  private:
-  DynamicsWatch(std::string machine, std::unique_ptr<gateway::AxisDynamics> axes, const CollisionWatch* cuts)
-      : machine_(std::move(machine)), axes_(std::move(axes)), cuts_(cuts) {}
+  DynamicsWatch(const sdk::DeviceObject& device, std::unique_ptr<gateway::AxisDynamics> axes,
+                const CollisionWatch* cuts);
   /// On the tool, in the frame of the link that holds the part. As a mean over a turn it takes a turn to change.
   void take_force(const gateway::CycleSample& planned);
 
+  /// Tells where the machine in force is not the one that was opened.
+  void check_configuration(const sdk::DeviceObject& device);
+
   std::string machine_;
+  nlohmann::json configured_;  ///< what its axes go by
   std::unique_ptr<gateway::AxisDynamics> axes_;
   const CollisionWatch* cuts_;
   std::set<std::string> not_told_;
   Frame tool_;
   double told_s_ = 0;  ///< when there was a force last
   Eigen::Vector3d force_n_{0, 0, 0};
-  bool look_at_tool_ = true, begun_ = false;
+  bool look_at_tool_ = true, look_at_configuration_ = true, begun_ = false;
 };
+
+/// "in line 7", or that it was before.
+[[nodiscard]] std::string where(const gateway::StoppedByFault& stopped);
 
 /// A failure where the machine stops, leaves its path, or a motor grows too hot, or not all is told.
 [[nodiscard]] Result<> verdict(const DynamicsWatch& watch);

@@ -14,6 +14,12 @@ namespace {
 /// Without drives nothing outside of the machine can still set it going, so this is long.
 constexpr double kStuckAfter_s = 1;
 
+/// The one parameter, by name or by place; what is no number is refused where it is called.
+void scale_first(nlohmann::json& params, double share) {
+  if (share == 1 || params.empty() || !params.is_structured() || !params.front().is_number()) return;
+  params.front() = params.front().get<double>() * share;
+}
+
 /// `measured`: empty where no drives ran.
 JointSample to_note(const gateway::CycleSample& sample, std::span<const double> measured) {
   const auto joints = [&](const auto& values) {
@@ -75,6 +81,9 @@ Result<SimulationReport> Simulator::run() {
 }
 
 Result<> Simulator::play() {
+  if (share_of_feed_ != 1) {
+    if (auto slower = call(kSetOverride, {{"Percent", 100}}); !slower) return slower;
+  }
   for (const Request& request : program_.requests) {
     line_ = request.line;
     if (auto done = submit(request); !done) return done;
@@ -190,7 +199,9 @@ std::string Simulator::stuck() {
 
 Result<> Simulator::call(const std::string& method, nlohmann::json params) {
   if (may_change_tool(method)) tool_may_have_changed();
+  if (method == kSetOverride) scale_first(params, share_of_feed_);
   const gateway::Answer answer = simulation_.call(method, std::move(params));
+  if (dynamics_ != nullptr && !method.starts_with("RMAC_CAM.")) dynamics_->configuration_may_have_changed();
   return answer ? Result<>() : fail_at(line_, fmt::format("{}: {}", method, answer.error().message));
 }
 

@@ -50,6 +50,9 @@ class Simulator {
   /// ends where the machine stops, and with `first` where it leaves its path. `dynamics` outlives the simulator.
   void go_by(DynamicsWatch& dynamics, bool first) noexcept { dynamics_ = &dynamics, ends_off_path_ = first; }
 
+  /// Has all feed overrides, the program's and the one that it begins with, be this share of what they are.
+  void slow_down(double share) noexcept { share_of_feed_ = share; }
+
   /// Tells of every cycle, from before `run` on; the listener outlives the simulator.
   void listen(CycleListener& listener) noexcept { listener_ = &listener; }
 
@@ -89,6 +92,7 @@ class Simulator {
   DynamicsWatch* dynamics_ = nullptr;
   CycleListener* listener_ = nullptr;
   bool ends_at_first_ = false, ends_off_path_ = false, ended_ = false;
+  double share_of_feed_ = 1;
   bool moving_ = false;
   bool tool_asked_for_ = false;
   bool stopped_ = false;  ///< at a stop of the program

@@ -58,7 +58,7 @@ void add_dynamics_rows(const DynamicsWatch& watch, std::vector<std::vector<std::
 void print_dynamics(const DynamicsWatch& watch, std::optional<double> keeps_at) {
   const gateway::AxisDynamics& axes = watch.axes();
   if (const auto& stopped = axes.stopped()) {
-    fmt::print("THE MACHINE STOPS in line {}, move {}, at {} s: {}\n\n", stopped->line, stopped->move_id,
+    fmt::print("THE MACHINE STOPS {}, move {}, at {} s: {}\n\n", where(*stopped), stopped->move_id,
                number(stopped->t_s), gateway::printable(stopped->why));
   }
   std::vector<std::vector<std::string>> rows;

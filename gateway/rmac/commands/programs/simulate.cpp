@@ -262,17 +262,17 @@ Result<Parts> open_parts(const SimulateOptions& options, const std::filesystem::
   return parts;
 }
 
-/// The largest of some feed overrides, %, at which the axes keep to the program; none where not even the least is.
+/// The largest of some shares of its feed overrides, %, at which the axes keep to the program; none where not even the
+/// least is.
 Result<std::optional<double>> feed_that_keeps(const SimulateOptions& options, const std::filesystem::path& tree,
                                               const Program& program) {
   for (const double percent : {80.0, 65.0, 50.0, 40.0, 30.0, 20.0, 10.0}) {
     const auto parts = open_parts(options, tree);
     if (!parts) return tl::unexpected(parts.error());
-    const gateway::Answer slower = parts->simulation->call("RMAC_CAM.SetFeedOverride", {{"Percent", percent}});
-    if (!slower) return fail(slower.error().message);
     Simulator simulator(*parts->simulation, program, "");
     if (parts->collisions) simulator.watch_collisions(*parts->collisions, false);
     simulator.go_by(*parts->dynamics, true);
+    simulator.slow_down(percent / 100);
     const auto run = simulator.run();
     if (run && verdict(*parts->dynamics)) return percent;
   }

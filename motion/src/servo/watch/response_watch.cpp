@@ -66,7 +66,8 @@ void ResponseWatch::watch_direction(const ResponseSeen& seen, double way, FaultS
   ++against_;
   gone_ += way;
   if (against_ < most || std::abs(gone_) < kLeastWayShare * joint_->max_following_error) return;
-  const double away = (error_before_ - error) * (gone_ < 0 ? -1 : 1);
+  const double away =
+      std::min((error_before_ - error) * (gone_ < 0 ? -1 : 1), std::abs(error) - std::abs(error_before_));
   if (away < kAwayShare * std::abs(gone_)) return;
   if (last_gain_ / (against_ - 1 - half) < kHeldShare * first_gain_ / half) return;
   faults.raise({ServoFault::Kind::WrongDirection, ServoFault::Part::Joint, index_, gone_, seen.effort});

@@ -53,11 +53,11 @@ TEST(PathDeviations, AreHowFarATipIsBesideThePathWheneverItGetsThere) {
 TEST(PathDeviations, TellEachTimeOnEndThatATipIsFartherThanAllowed) {
   PathDeviation deviation(0.05);
   const auto beside = [](int i) {
-    return i > 600 && i <= 700 ? 0.08 : i > 800 && i <= 850 ? 0.06 : i > 1200 ? 0.2 : 0.01;
+    return i > 600 && i <= 700 ? 0.08 : i > 710 && i <= 850 ? 0.06 : i > 1200 ? 0.2 : 0.01;
   };
   for (int i = 0; i < 1300; ++i) deviation.add(at(i, on_circle(i * kCycle_s, kRadius_mm + beside(i))));
   deviation.forget();
-  ASSERT_EQ(deviation.off_path().size(), 2U) << "that it comes again within a move is the same";
+  ASSERT_EQ(deviation.off_path().size(), 2U) << "a pause of ten cycles is none";
   const OffPath& first = deviation.off_path()[0];
   EXPECT_EQ(first.line, 7);
   EXPECT_EQ(first.move_id, 1);
@@ -67,6 +67,7 @@ TEST(PathDeviations, TellEachTimeOnEndThatATipIsFartherThanAllowed) {
   EXPECT_EQ(first.allowed_mm, 0.05);
   EXPECT_LT((first.place - on_circle(0.65)).norm(), 0.1 * 51);
   EXPECT_EQ(deviation.off_path()[1].move_id, 2);
+  EXPECT_NEAR(deviation.off_path()[1].t_s, 1.201, 1e-9);
 }
 
 TEST(PathDeviations, DoNotHoldATipToThePathOfAnotherTool) {

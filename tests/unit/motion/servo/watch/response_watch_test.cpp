@@ -34,7 +34,7 @@ TEST_F(AnsweringJoint, IsFoundWithin10MsWhereItGoesTheWrongWayEitherWay) {
   for (const double effort : {250.0, -250.0, 800.0}) {
     watch_.rest();
     faults_.raised.clear();
-    velocity_ = 0;
+    position_ = velocity_ = 0;
     const int found = push(100, effort, -1);
     ASSERT_GT(found, 0);
     EXPECT_LE(found, 10);
@@ -80,6 +80,17 @@ TEST_F(AnsweringJoint, MayMissAnAnswerInSlowCycles) {
     slow.step({.position = 2 * there, .position_set = 2.0 * i}, faults_);
   }
   EXPECT_THAT(faults_.raised, IsEmpty());
+}
+
+// As when a cutter leaves material, and what held it lets go.
+TEST_F(AnsweringJoint, MayComeBackToItsSetpointAgainstItsEffort) {
+  for (const double effort : {-450.0, 450.0}) {
+    watch_.rest();
+    velocity_ = 0;
+    position_ = std::copysign(20, effort);
+    EXPECT_EQ(push(40, effort, -1), -1) << effort;
+    EXPECT_LT(position_ * effort, 20 * std::abs(effort)) << "it comes back";
+  }
 }
 
 TEST_F(AnsweringJoint, MayBePushedAgainstALittleEffort) {
