@@ -18,7 +18,10 @@ CycleSample sample_of_cycle(std::int64_t cycle) {
 
 /// The subscriptions of one client of a machine with 1000 cycles a second.
 struct Topics : Subscriptions {
-  Topics() : Subscriptions(1000, [](const CycleSample& sample) { return std::to_string(sample.cycle); }) {}
+  Topics()
+      : Subscriptions(
+            1000, [](const CycleSample& sample) { return std::to_string(sample.cycle); },
+            [this] { return Scene{.drawing = drawing}; }) {}
 
   /// How many samples each topic has in the batches after `count` cycles.
   std::map<std::string, std::size_t> batched(std::int64_t count) {
@@ -28,27 +31,30 @@ struct Topics : Subscriptions {
     std::map<std::string, std::size_t> samples;
     for (const std::string& line : batches()) {
       const json message = json::parse(line);
-      samples[message["method"]] = message["params"]["samples"].size();
+      samples[message["method"]] += message["params"]["samples"].size();
     }
     return samples;
   }
 
   std::int64_t cycle = 0;
   std::vector<std::int64_t> states;
+  std::shared_ptr<const MachineDrawing> drawing = std::make_shared<const MachineDrawing>();
 };
 
 using Counts = std::map<std::string, std::size_t>;
 
-TEST(Subscriptions, KnowFourTopicsAndNameAnotherAsItIsShown) {
-  EXPECT_TRUE(Subscriptions::check({"state", "joints", "drives", "events"}));
+TEST(Subscriptions, KnowFiveTopicsAndNameAnotherAsItIsShown) {
+  EXPECT_TRUE(Subscriptions::check({"state", "joints", "drives", "animation", "events"}));
   const auto refused = Subscriptions::check({"state", "wea\nther"});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().message, "parameter \"topics\" has \"wea?ther\", expected state, joints, drives or events");
+  EXPECT_EQ(refused.error().message,
+            "parameter \"topics\" has \"wea?ther\", expected state, joints, drives, animation or events");
 }
 
 TEST(Subscriptions, HaveARateUnlessTheyAreOfEvents) {
   EXPECT_FALSE(Subscriptions::has_rate({"events"}));
-  for (const char* topic : {"state", "joints", "drives"}) EXPECT_TRUE(Subscriptions::has_rate({"events", topic}));
+  for (const char* topic : {"state", "joints", "drives", "animation"})
+    EXPECT_TRUE(Subscriptions::has_rate({"events", topic}));
 }
 
 TEST(Subscriptions, CollectEachTopicAtItsOwnPace) {
@@ -78,7 +84,7 @@ TEST(Subscriptions, EndForTheTopicsThatAreNamedOrForAll) {
 }
 
 TEST(Subscriptions, AreFastAboveTheWatchersRateOnly) {
-  for (const char* topic : {"joints", "drives", "state"}) {
+  for (const char* topic : {"joints", "drives", "animation", "state"}) {
     SCOPED_TRACE(topic);
     Topics topics;
     topics.start({topic}, 100);
