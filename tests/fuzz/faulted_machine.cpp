@@ -63,11 +63,15 @@ class Mill {
     call("Device.Load", {{"Name", "DMACXYZ"}});
     return moves();
   }
-  /// As `begin`, of one that was just made: it moves, however busy the computer is, or something is wrong.
+  /// As `begin`, of one that was just made: it moves, or something is wrong. On a busy computer a move may begin after
+  /// the look, or be over before it.
   void begin_surely() {
-    if (begin()) return;
-    for (int i = 0; i < kLongestStop && !now_.moving; i += kMostCycles) pass(kMostCycles);
-    if (bus_ != nullptr && now_.moving) return;
+    constexpr int kTries = 20;
+    for (int i = 0; i < kTries; ++i) {
+      if (begin()) return;
+      for (int k = 0; k < kLongestStop && !now_.moving; k += kMostCycles) pass(kMostCycles);
+      if (bus_ != nullptr && now_.moving) return;
+    }
     std::cerr << "a machine that was just made does not move; refused were:" << refused_ << '\n';
     std::abort();
   }

@@ -1,6 +1,11 @@
 #include "gateway/simulators/vdrive/lss_slave.hpp"
 
+#include <array>
+
 namespace rmac::vdrive {
+
+using fieldbus::CanFrame;
+
 namespace {
 
 // Command specifiers (CiA 305, 3.8)

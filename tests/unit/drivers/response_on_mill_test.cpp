@@ -1,3 +1,5 @@
+#include <random>
+
 #include "mill_on_simulated_bus.hpp"
 
 namespace rmac::mill_test {
@@ -48,6 +50,36 @@ TEST(ResponseOnMill, NamesAReversedMotorWithin10MsOfItsEffort) {
   EXPECT_EQ(report.fault.index, 0U);
   EXPECT_LE(since_effort, 10);
   EXPECT_LT(std::abs(simulated->plant(0).angle_rad() - start) * 5 / (2 * std::numbers::pi), 0.5);
+}
+
+// What a cutter or a hand does within anything from a cycle to a fifth of a second: the loop gives way and comes back.
+TEST(ResponseOnMill, TakesNoPushForAReversedMotor) {
+  constexpr double kNmPerN = 5e-3 / (2 * std::numbers::pi);
+  std::mt19937_64 random(8);
+  const auto between = [&](double least, double most) { return std::uniform_real_distribution<>(least, most)(random); };
+  for (int k = 0; k < 200; ++k) {
+    const auto simulated = std::make_shared<fieldbus::SimulatedInterface>(fieldbus::default_simulated_axes(), 0.001);
+    Mill mill("mill/3-axis/DMACXYZ", std::make_shared<ServoBus>(simulated));
+    ServoCommand command;
+    ServoReport report;
+    command.power = true;
+    const double newton = between(-400, 400), rise = std::pow(10, between(0, 2.3)),
+                 speed = k % 2 == 0 ? 0 : between(-20, 20);
+    int pushed = 0;
+    for (int i = 0; i < 3000 && pushed < 600 && report.fault.kind == ServoFault::Kind::None; ++i) {
+      if (!report.follows) {
+        const std::span<const double> hold = mill.loop().hold_position();
+        std::copy(hold.begin(), hold.end(), command.setpoint.position.begin());
+      } else {
+        command.setpoint.position[0] += speed * 0.001;
+        command.setpoint.velocity[0] = speed;
+        if (++pushed > 100) simulated->push(0, newton * kNmPerN * std::min(1.0, (pushed - 100) / rise));
+      }
+      mill.loop().cycle(command, report);
+    }
+    EXPECT_EQ(pushed, 600) << "pushed by " << newton << " N within " << rise << " ms, at " << speed
+                           << " mm/s: " << to_string(report.fault.kind);
+  }
 }
 
 TEST(ResponseOnMill, NamesAnEncoderThatStandsStill) {

@@ -11,6 +11,8 @@ constexpr double kEffort = 0.25;     // of MaxEffort: less is what blows and cut
 constexpr double kAwayShare = 0.5;   // of the way against the effort by which it leaves its setpoint: weight has none
 constexpr double kAgainstS = 0.005;  // of speeding up against the effort
 constexpr int kAgainstCycles = 5;    // which are more than a word that came late explains
+constexpr double kLeastWayShare = 0.02;  // of MaxFollowingError: a load lets a sound joint creep so far
+constexpr double kHeldShare = 0.9;       // of what it gained in the first half: less, and the effort holds it
 constexpr double kStandsS = 0.02;
 constexpr int kStandsCycles = 5;       // which are more than answers that come late, or once not, explain
 constexpr double kStandsWay = 1;       // mm or degrees that it was to go meanwhile
@@ -20,8 +22,8 @@ constexpr double kStandsShare = 0.01;  // of what it was to go: less is standing
 
 void ResponseWatch::rest() noexcept {
   begun_ = false;
-  last_way_ = gone_ = 0;
-  against_ = 0;
+  last_way_ = 0;
+  forget_direction(0);
   stands_ = 0;
 }
 
@@ -43,22 +45,30 @@ void ResponseWatch::step(const ResponseSeen& seen, FaultSink& faults) noexcept {
   last_way_ = way;
 }
 
+void ResponseWatch::forget_direction(double error) noexcept {
+  against_ = 0;
+  gone_ = first_gain_ = last_gain_ = 0;
+  error_before_ = error;
+}
+
 // A head that is let down speeds up against its effort, too, and goes where it is to go.
 void ResponseWatch::watch_direction(const ResponseSeen& seen, double way, FaultSink& faults) noexcept {
   const double error = seen.position_set - seen.position;
   const bool pushed = joint_->max_effort > 0 && std::abs(seen.effort) > kEffort * joint_->max_effort;
   const bool faster = way * seen.effort < 0 && std::abs(way) > std::abs(last_way_) && way * last_way_ >= 0;
   if (!pushed || !faster) {
-    against_ = 0;
-    gone_ = 0;
-    error_before_ = error;
+    forget_direction(error);
     return;
   }
+  const int most = std::max(kAgainstCycles, static_cast<int>(std::ceil(kAgainstS / period_s_)));
+  const int half = (most - 1) / 2;
+  if (against_ > 0) (against_ <= half ? first_gain_ : last_gain_) += std::abs(way) - std::abs(last_way_);
   ++against_;
   gone_ += way;
-  const int most = std::max(kAgainstCycles, static_cast<int>(std::ceil(kAgainstS / period_s_)));
+  if (against_ < most || std::abs(gone_) < kLeastWayShare * joint_->max_following_error) return;
   const double away = (error_before_ - error) * (gone_ < 0 ? -1 : 1);
-  if (against_ < most || away < kAwayShare * std::abs(gone_)) return;
+  if (away < kAwayShare * std::abs(gone_)) return;
+  if (last_gain_ / (against_ - 1 - half) < kHeldShare * first_gain_ / half) return;
   faults.raise({ServoFault::Kind::WrongDirection, ServoFault::Part::Joint, index_, gone_, seen.effort});
 }
 

@@ -15,9 +15,10 @@ struct ResponseSeen {
   bool out_of_bound = false;  ///< the following error is
 };
 
-/// Finds a joint that does not answer: it goes faster and faster against its effort and away from its setpoint, as
-/// with a motor or an encoder of the wrong sign; or it stands still while it is to move, as with an encoder that froze.
-/// Real-time safe.
+/// Finds a joint that does not answer: it goes faster and faster against its effort and away from its setpoint, the
+/// faster the longer that lasts, as with a motor or an encoder of the wrong sign, where what pushes it grows with the
+/// way, and what only pushed a sound one is held better and better; or it stands still while it is to move, as with an
+/// encoder that froze. Real-time safe.
 class ResponseWatch {
  public:
   /// `joint` must outlive it; `index` names it in faults.
@@ -29,6 +30,7 @@ class ResponseWatch {
   void rest() noexcept;
 
  private:
+  void forget_direction(double error) noexcept;
   void watch_direction(const ResponseSeen& seen, double way, FaultSink& faults) noexcept;
   void watch_standing(const ResponseSeen& seen, FaultSink& faults) noexcept;
 
@@ -38,8 +40,9 @@ class ResponseWatch {
 
   bool begun_ = false;
   double last_position_ = 0, last_way_ = 0;
-  int against_ = 0;  ///< cycles on end
-  double gone_ = 0;  ///< way of them
+  int against_ = 0;                        ///< cycles on end
+  double gone_ = 0;                        ///< way of them
+  double first_gain_ = 0, last_gain_ = 0;  ///< of its way, in the first half of them and after it
   double error_before_ = 0;
   double stood_at_ = 0;  ///< where it stands, and was to stand when that began
   double wanted_at_ = 0;
