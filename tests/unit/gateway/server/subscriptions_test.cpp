@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "animated_machine.hpp"
+
 namespace rmac::gateway {
 namespace {
 
@@ -13,6 +15,7 @@ using testing::HasSubstr;
 CycleSample sample_of_cycle(std::int64_t cycle) {
   CycleSample sample;
   sample.cycle = cycle;
+  sample.joint_count = sample.joint_count_with_held = 2;
   return sample;
 }
 
@@ -38,7 +41,7 @@ struct Topics : Subscriptions {
 
   std::int64_t cycle = 0;
   std::vector<std::int64_t> states;
-  std::shared_ptr<const MachineDrawing> drawing = std::make_shared<const MachineDrawing>();
+  std::shared_ptr<const MachineDrawing> drawing = fakes::slides_drawing();
 };
 
 using Counts = std::map<std::string, std::size_t>;
@@ -61,8 +64,9 @@ TEST(Subscriptions, CollectEachTopicAtItsOwnPace) {
   Topics topics;
   topics.start({"joints"}, 1000);
   topics.start({"drives"}, 100);
+  topics.start({"animation"}, 250);
   topics.start({"state"}, 10);
-  EXPECT_EQ(topics.batched(200), (Counts{{"joints", 200}, {"drives", 20}}));
+  EXPECT_EQ(topics.batched(200), (Counts{{"joints", 200}, {"drives", 20}, {"animation", 50}}));
   EXPECT_EQ(topics.states, (std::vector<std::int64_t>{1, 101})) << "a state is no batch";
   EXPECT_EQ(topics.batched(0), Counts{}) << "batches go once";
 }
@@ -129,16 +133,16 @@ TEST(Subscriptions, AreFullBeforeABatchIsLargerThanASocketLikes) {
   EXPECT_FALSE(topics.is_full());
 }
 
-TEST(Subscriptions, AnimateWithFiftySamplesASecondAndThenGoOnAsBefore) {
+TEST(Subscriptions, AnimateWithSixtyPosesAndFiftySamplesOfJointsASecondAndThenGoOnAsBefore) {
   Topics topics;
   topics.animate(true);
-  EXPECT_EQ(topics.batched(100), (Counts{{"joints", 5}}));
+  EXPECT_EQ(topics.batched(100), (Counts{{"animation", 6}, {"joints", 5}}));
   topics.animate(true);
   topics.animate(false);
   EXPECT_EQ(topics.batched(100), Counts{});
   topics.start({"joints"}, 10);
   topics.animate(true);
-  EXPECT_EQ(topics.batched(100), (Counts{{"joints", 5}}));
+  EXPECT_EQ(topics.batched(100), (Counts{{"animation", 6}, {"joints", 5}}));
   topics.animate(false);
   EXPECT_EQ(topics.batched(200), (Counts{{"joints", 2}}));
 }
