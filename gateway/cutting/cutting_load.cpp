@@ -16,6 +16,11 @@ constexpr int kBlindLooks = 3;
 constexpr double kLeastTaken_mm3 = 1e-3;
 /// Feeds that differ by less need no new forces.
 constexpr double kSameFeed = 0.002;
+/// Of its speed: a tool that goes across its axis by less goes along it.
+constexpr double kStraightDown = 1e-6;
+/// A tooth that goes down by less with its face cuts no chip: that is no more than edges are sharp, and axes give way.
+constexpr double kSharp_mm = 0.002;
+constexpr double kLongestTurn_s = 0.05;
 
 bool same(const std::vector<EngagedSlice>& a, const std::vector<EngagedSlice>& b) {
   return std::ranges::equal(a, b, [](const EngagedSlice& one, const EngagedSlice& other) {
@@ -33,6 +38,14 @@ void add(CuttingShare& share, const TurnForces& forces, double time_s) {
   share.peak_n = std::max(share.peak_n, forces.total_n.peak);
   share.peak_nm = std::max(share.peak_nm, forces.torque_nm.peak);
   share.peak_w = std::max(share.peak_w, forces.power_w.peak);
+}
+
+/// Of a tool that goes by `velocity`; without a way across its axis there is nothing across it either.
+Eigen::Vector3d mean_force(const TurnForces& forces, const Eigen::Vector3d& axis, const Eigen::Vector3d& velocity) {
+  const Eigen::Vector3d along = forces.z_n.mean * axis, across = velocity - velocity.dot(axis) * axis;
+  if (across.norm() <= kStraightDown * velocity.norm()) return along;
+  const Eigen::Vector3d x = across.normalized();
+  return along + forces.x_n.mean * x + forces.y_n.mean * axis.cross(x);
 }
 
 }  // namespace
@@ -57,6 +70,10 @@ double CuttingLoad::every_mm() const {
   return std::max(2 * rays_mm_, mill_ ? kShareOfDiameter * 2 * mill_->radius_mm() : kUnknownTool_mm);
 }
 
+double CuttingLoad::steady_s() const {
+  return rpm_ != 0 ? std::min(60 / std::abs(rpm_), kLongestTurn_s) : 0;
+}
+
 void CuttingLoad::miss(const char* kind, const std::string& sentence) {
   if (!missed_.insert(fmt::format("{} {}", kind, tool_)).second) return;
   not_told_.insert(fmt::format("forces of tool {}: {}", tool_, sentence));
@@ -72,7 +89,8 @@ void CuttingLoad::cuts(const DexelGrid& grid, const ToolAt& tool, const Eigen::V
     return;
   }
   Engagement met = engagement_of(*mill_, grid, tool, velocity, every_mm() / 2);
-  if (met.face) {
+  const double teeth_s = mill_->teeth() * std::abs(rpm_) / 60, along = velocity.dot(tool.axis);
+  if (met.face && -along >= kSharp_mm * teeth_s) {
     miss("face", fmt::format("it goes down into material with the face of its flat end, first in line {}; what that "
                              "takes is not in them",
                              move.line));
@@ -88,7 +106,6 @@ void CuttingLoad::cuts(const DexelGrid& grid, const ToolAt& tool, const Eigen::V
     miss("speed", fmt::format("how fast it turns is not known, first in line {}", move.line));
     return;
   }
-  const double teeth_s = mill_->teeth() * rpm_ / 60, along = velocity.dot(tool.axis);
   const ToothFeed feed{.across_mm = (velocity - along * tool.axis).norm() / teeth_s, .along_mm = along / teeth_s};
   const double most = kSameFeed * speed / teeth_s;
   if (!last_ || last_->rpm != rpm_ || std::abs(last_->feed.across_mm - feed.across_mm) > most ||
@@ -100,7 +117,8 @@ void CuttingLoad::cuts(const DexelGrid& grid, const ToolAt& tool, const Eigen::V
     }
     last_ = Last{.slices = std::move(met.slices), .feed = feed, .rpm = rpm_, .forces = *forces};
   }
-  now_ = {last_->forces.total_n.mean, last_->forces.torque_nm.mean, last_->forces.power_w.mean};
+  now_ = {last_->forces.total_n.mean, last_->forces.torque_nm.mean, last_->forces.power_w.mean,
+          mean_force(last_->forces, tool.axis, velocity)};
   now_until_s_ = t_s + 2 * every_s;
   add(all_, last_->forces, time_s);
   add(moves_[move.id], last_->forces, time_s);

@@ -36,6 +36,7 @@ struct Overload {
 /// Means over a turn, at one place of the way.
 struct CuttingNow {
   double n = 0, nm = 0, w = 0;
+  Eigen::Vector3d force_n{0, 0, 0};  ///< on the tool, part frame
 };
 
 /// What a spindle can give; 0: not known.
@@ -60,6 +61,8 @@ class CuttingLoad : public CutListener {
             const MoveNow& move) override;
   void takes(double mm3) noexcept override { taken_mm3_ += mm3; }
   [[nodiscard]] double every_mm() const override;
+  /// A turn: what an axis does within one changes no mean over it.
+  [[nodiscard]] double steady_s() const override;
 
   [[nodiscard]] const WorkMaterial& material() const noexcept { return material_; }
   /// What it takes as far as it was told by then; nothing in the air, and where it cannot be told.

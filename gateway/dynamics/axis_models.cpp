@@ -1,13 +1,13 @@
-#include "gateway/verifier/axis_models.hpp"
+#include "gateway/dynamics/axis_models.hpp"
 
 #include "gateway/buses/bus_choice.hpp"
 
-namespace rmac::verifier {
+namespace rmac::gateway {
 
 std::string put_on_models(sdk::DeviceObject& device) {
   std::string without;
   const auto is_simulated = [&](const std::string& bus) {
-    return gateway::interface_of_bus(bus, device.digital_control_interface).name == "SimulatedInterface";
+    return interface_of_bus(bus, device.digital_control_interface).name == "SimulatedInterface";
   };
   const auto put = [&](std::string& bus) {
     if (is_simulated(bus)) return;
@@ -27,4 +27,4 @@ std::string put_on_models(sdk::DeviceObject& device) {
   return without;
 }
 
-}  // namespace rmac::verifier
+}  // namespace rmac::gateway

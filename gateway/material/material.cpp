@@ -134,14 +134,25 @@ void Material::go_to(const ToolAt& there) {
   }
 }
 
+/// A mean over as long as the listener wants, or as it goes without a rest.
+Vector3d Material::velocity(double t_s, const ToolAt& there) {
+  auto& way = listening_.way;
+  if (!way.empty() && way.back().first < s_.now) way.clear();  // it stood
+  way.emplace_back(t_s, there.tip);
+  const double since_s = t_s - listening_.listener->steady_s();
+  while (way.size() > 2 && way[1].first <= since_s) way.pop_front();
+  if (way.size() < 2) return (there.tip - at_.tip) / (t_s - s_.now);
+  return (there.tip - way.front().second) / (t_s - way.front().first);
+}
+
 void Material::tell_listener(double t_s, const ToolAt& there) {
   if (listening_.listener == nullptr || !turns_ || t_s <= s_.now) return;
   if (std::ranges::none_of(parts_, &Part::cuts)) return;
-  const Vector3d velocity = (there.tip - at_.tip) / (t_s - s_.now);
-  if ((there.tip - listening_.told.tip).norm() < listening_.listener->every_mm() || velocity.norm() == 0) return;
+  const Vector3d goes = velocity(t_s, there);
+  if ((there.tip - listening_.told.tip).norm() < listening_.listener->every_mm() || goes.norm() == 0) return;
   listening_.told = there;
   end_strokes(true);
-  listening_.listener->cuts(grid_, there, velocity, t_s, move_);
+  listening_.listener->cuts(grid_, there, goes, t_s, move_);
 }
 
 void Material::finish() {

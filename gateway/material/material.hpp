@@ -1,7 +1,9 @@
 #pragma once
 
+#include <deque>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gateway/bodies/link_chain.hpp"
@@ -50,6 +52,7 @@ class Material {
   struct Listening {
     CutListener* listener = nullptr;
     ToolAt told{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};  ///< where it last heard of the tool
+    std::deque<std::pair<double, Eigen::Vector3d>> way;              ///< when the tip was where, the newest last
   };
   struct Times {
     double since = 0;  ///< of the strokes under way
@@ -60,6 +63,7 @@ class Material {
   void go_between(std::span<const double> from, const ToolAt& begin, std::span<const double> to, const ToolAt& end,
                   int halvings);
   void go_to(const ToolAt& there);
+  [[nodiscard]] Eigen::Vector3d velocity(double t_s, const ToolAt& there);
   void tell_listener(double t_s, const ToolAt& there);
   void end_strokes(bool cutting);
   void take(Part& part, const Stroke& stroke);

@@ -1,20 +1,15 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 
-#include "gateway/buses/bus_registry.hpp"
-#include "gateway/mechanism/mechanism.hpp"
+#include "gateway/dynamics/closed_loops.hpp"
 #include "gateway/verification/checks/check.hpp"
 #include "gateway/verifier/worker.hpp"
-#include "rmac/motion/servo/servo_command.hpp"
-#include "rmac/motion/servo/servo_report.hpp"
 
 namespace rmac::verifier {
 
-/// All modules of a mechanism together, its servo loops on the axis models of its buses, cycled by hand. Its inputs and
-/// outputs are left out: their device may not be here.
+/// All modules of a mechanism together, its servo loops on the axis models of its buses, cycled by hand under a watch.
 class MachineRig {
  public:
   static constexpr double kPeriod_s = 0.001;
@@ -29,21 +24,16 @@ class MachineRig {
   Checked cycle();
   [[nodiscard]] tl::unexpected<CounterExample> fault(const char* check, std::string what) const;
 
-  [[nodiscard]] gateway::Mechanism& mechanism() noexcept { return *mechanism_; }
-  [[nodiscard]] const gateway::Mechanism& mechanism() const noexcept { return *mechanism_; }
-  [[nodiscard]] const ServoReport& report() const noexcept { return report_; }
-
-  ServoCommand command;
+  [[nodiscard]] ServoCommand& command() noexcept { return loops_->command; }
+  [[nodiscard]] gateway::Mechanism& mechanism() noexcept { return loops_->mechanism(); }
+  [[nodiscard]] const gateway::Mechanism& mechanism() const noexcept { return loops_->mechanism(); }
+  [[nodiscard]] const ServoReport& report() const noexcept { return loops_->report(); }
 
  private:
-  MachineRig(Watch& watch) : watch_(watch) {}
-  void hold_still();
+  explicit MachineRig(std::unique_ptr<gateway::ClosedLoops> loops) : loops_(std::move(loops)) {}
+  [[nodiscard]] tl::unexpected<CounterExample> unstable() const;
 
-  Watch& watch_;
-  gateway::BusRegistry registry_;
-  std::shared_ptr<gateway::Mechanism> mechanism_;
-  ServoReport report_;
-  std::int64_t cycles_ = 0;
+  std::unique_ptr<gateway::ClosedLoops> loops_;
 };
 
 }  // namespace rmac::verifier

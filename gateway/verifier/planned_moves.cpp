@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "gateway/dynamics/axis_models.hpp"
 #include "gateway/verification/checks/planned_moves_check.hpp"
-#include "gateway/verifier/axis_models.hpp"
 #include "gateway/verifier/machine_rig.hpp"
 #include "gateway/verifier/samples.hpp"
 #include "gateway/verifier/watched_ports.hpp"
@@ -32,15 +32,15 @@ PlannedMovesCase case_of(const MachineRig& rig, const Task& task, Watch& watch) 
 
 void check_planned_moves(const Task& task, Watch& watch, ModuleReport& report, const std::function<void()>& tell) {
   sdk::DeviceObject device = task.device;
-  const bool virtual_mode = !put_on_models(device).empty();
+  const bool virtual_mode = !gateway::put_on_models(device).empty();
   auto rig = MachineRig::assemble(task, virtual_mode ? task.device : device, virtual_mode, watch);
   Checked checked = rig ? (*rig)->power_up() : Checked(tl::unexpected(rig.error()));
   PlannedMoves moves;
   if (checked) {
     PlannedMovesCase given = case_of(**rig, task, watch);
     given.follow = [&](const Setpoint& setpoint, const Frames& frames) {
-      (*rig)->command.setpoint = setpoint;
-      (*rig)->command.frames = frames;
+      (*rig)->command().setpoint = setpoint;
+      (*rig)->command().frames = frames;
       const Checked fine = (*rig)->cycle();
       watch.step("planning");
       return fine;

@@ -7,7 +7,7 @@
 #include <limits>
 #include <tuple>
 
-#include "gateway/verifier/axis_models.hpp"
+#include "gateway/dynamics/axis_models.hpp"
 #include "gateway/verifier/machine_rig.hpp"
 
 namespace rmac::verifier {
@@ -93,7 +93,7 @@ struct SteadyWay {
 class ServoLoopCheck {
  public:
   explicit ServoLoopCheck(MachineRig& rig)
-      : rig_(rig), device_(rig.mechanism().device), loop_(*rig.mechanism().loop), command_(rig.command) {}
+      : rig_(rig), device_(rig.mechanism().device), loop_(*rig.mechanism().loop), command_(rig.command()) {}
 
   Checked run() {
     if (auto fine = rig_.power_up(); !fine) return fine;
@@ -201,7 +201,7 @@ class ServoLoopCheck {
 
 void check_servo_loops(const Task& task, Watch& watch, ModuleReport& report, const std::function<void()>& tell) {
   sdk::DeviceObject device = task.device;
-  if (const std::string bus = put_on_models(device); !bus.empty()) {
+  if (const std::string bus = gateway::put_on_models(device); !bus.empty()) {
     report.not_checked.push_back(
         fmt::format("stability: bus {0} is not a simulated one, and device.json has no model of its axes "
                     "({0}.model.interface; docs/simulated-bus.md)",

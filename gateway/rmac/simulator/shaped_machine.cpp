@@ -7,7 +7,7 @@
 
 #include "gateway/device_database/device_database.hpp"
 #include "gateway/device_driver_manager/device_tree.hpp"
-#include "gateway/modules/module_loader.hpp"
+#include "gateway/rmac/simulator/machine_modules.hpp"
 #include "rmac/motion/ports/kinematics.hpp"
 
 namespace rmac::cli {
@@ -18,12 +18,7 @@ namespace fs = std::filesystem;
 Expected<gateway::LinkChain> chain_of(const gateway::DeviceDatabase& database, const fs::path& device_json,
                                       const fs::path& device_tree) {
   const sdk::DeviceObject& device = database.device;
-  std::vector<fs::path> folders{device_json.parent_path()};
-  for (const std::string& name : {device.name, device.device_driver}) {
-    if (const auto file = gateway::find_device_json(name, device_tree); file) folders.push_back(file->parent_path());
-  }
-  folders.push_back(device_tree / "modules");
-  const auto kinematics = gateway::ModuleLoader(folders).load<Kinematics>(device.kinematics);
+  const auto kinematics = loader_of(device, device_json, device_tree).load<Kinematics>(device.kinematics);
   if (!kinematics) return tl::unexpected(kinematics.error());
   std::vector<JointLimits> joints;
   for (const sdk::Joint& joint : device.joints) joints.push_back(joint.limits);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <span>
 #include <utility>
 
 #include "gateway/rmac/simulator/mounted_tool.hpp"
@@ -13,7 +14,8 @@ namespace {
 /// Without drives nothing outside of the machine can still set it going, so this is long.
 constexpr double kStuckAfter_s = 1;
 
-JointSample to_note(const gateway::CycleSample& sample) {
+/// `measured`: empty where no drives ran.
+JointSample to_note(const gateway::CycleSample& sample, std::span<const double> measured) {
   const auto joints = [&](const auto& values) {
     return std::vector<double>(values.begin(), values.begin() + sample.joint_count);
   };
@@ -29,6 +31,7 @@ JointSample to_note(const gateway::CycleSample& sample) {
   note.position_set = joints(sample.position_set);
   note.velocity_set = joints(sample.velocity_set);
   note.acceleration_set = joints(sample.acceleration_set);
+  note.position.assign(measured.begin(), measured.end());
   return note;
 }
 
@@ -53,6 +56,7 @@ Result<SimulationReport> Simulator::run() {
   }
   // A run that ended at a collision has not failed: it tells what it set out to.
   if (auto played = play(); !played && !ended_) return tl::unexpected(played.error());
+  if (dynamics_ != nullptr) dynamics_->finish();
   if (watch_ != nullptr) watch_->finish();
   SimulationReport report;
   if (record_) {
@@ -147,11 +151,19 @@ Result<> Simulator::run_until(const std::function<bool()>& reached) {
     const int line = moves_.line().value_or(line_);
     ended_ = ends_at_first_ && watch_ != nullptr && watch_->findings().collided();
     if (ended_) return fail_at(line, "collision");
+    ended_ = ends_early();
+    if (ended_) return fail_at(line, "the axes do not keep to the program");
     if (!failure_.empty()) return fail_at(line, failure_);
     still_s = moving_ || dwells() ? 0 : still_s + simulation_.period_s();
     if (still_s > kStuckAfter_s) return fail_at(line, stuck());
   }
   return {};
+}
+
+bool Simulator::ends_early() const {
+  if (dynamics_ == nullptr) return false;
+  const gateway::AxisDynamics& axes = dynamics_->axes();
+  return axes.stopped() || (ends_off_path_ && !axes.deviation().off_path().empty());
 }
 
 bool Simulator::dwells() {
@@ -184,6 +196,7 @@ Result<> Simulator::call(const std::string& method, nlohmann::json params) {
 
 void Simulator::tool_may_have_changed() {
   if (watch_ != nullptr) watch_->tool_may_have_changed();
+  if (dynamics_ != nullptr) dynamics_->tool_may_have_changed();
   if (listener_ != nullptr) listener_->tool_may_have_changed();
 }
 
@@ -191,11 +204,19 @@ void Simulator::take(const gateway::CycleSample& sample) {
   moving_ = sample.moving;
   account_.cycle(sample, simulation_.controller().cycle_now().override_percent);
   const int line = moves_.line().value_or(line_);
-  if (watch_ != nullptr) watch_->cycle(sample, line, simulation_.controller());
-  if (listener_ != nullptr) listener_->cycle(sample, {line, account_, simulation_.controller()});
+  gateway::Controller& controller = simulation_.controller();
+  if (dynamics_ != nullptr) {
+    const gateway::CycleSample seen = dynamics_->cycle(sample, line, controller);
+    if (watch_ != nullptr) watch_->cycle(seen, line, controller);
+  } else if (watch_ != nullptr) {
+    watch_->cycle(sample, line, controller);
+  }
+  if (listener_ != nullptr) listener_->cycle(sample, {line, account_, controller});
   // As in a record of `rmac run`: every cycle from the first move on.
   if (!record_ || !(sample.moving || record_->rows() > 0)) return;
-  if (auto added = record_->add(to_note(sample)); !added && failure_.empty()) failure_ = added.error().message;
+  const auto measured = dynamics_ != nullptr ? dynamics_->axes().measured() : std::span<const double>();
+  if (auto added = record_->add(to_note(sample, measured)); !added && failure_.empty())
+    failure_ = added.error().message;
 }
 
 void Simulator::take(const gateway::Event& event) {

@@ -11,6 +11,7 @@
 #include "gateway/rmac/program/unfinished_moves.hpp"
 #include "gateway/rmac/simulator/collision_watch.hpp"
 #include "gateway/rmac/simulator/cycle_listener.hpp"
+#include "gateway/rmac/simulator/dynamics_watch.hpp"
 #include "gateway/simulation/motion_account.hpp"
 #include "gateway/simulation/simulation.hpp"
 
@@ -45,6 +46,10 @@ class Simulator {
   /// run ends at the first that is certain, and what it reports is of the way to there.
   void watch_collisions(CollisionWatch& watch, bool first) noexcept { watch_ = &watch, ends_at_first_ = first; }
 
+  /// Has the axes go as the machine's do, from before `run` on; what is watched is then where they truly are. The run
+  /// ends where the machine stops, and with `first` where it leaves its path. `dynamics` outlives the simulator.
+  void go_by(DynamicsWatch& dynamics, bool first) noexcept { dynamics_ = &dynamics, ends_off_path_ = first; }
+
   /// Tells of every cycle, from before `run` on; the listener outlives the simulator.
   void listen(CycleListener& listener) noexcept { listener_ = &listener; }
 
@@ -60,6 +65,8 @@ class Simulator {
   /// Lets machine time go on until `reached`; an error when nothing moves any more before it is.
   [[nodiscard]] Result<> run_until(const std::function<bool()>& reached);
   [[nodiscard]] Result<> call(const std::string& method, nlohmann::json params);
+  /// By what the axes do.
+  [[nodiscard]] bool ends_early() const;
   [[nodiscard]] bool at_rest();
   [[nodiscard]] bool dwells();
   [[nodiscard]] std::string stuck();
@@ -79,8 +86,9 @@ class Simulator {
   int line_ = 0;  ///< of the request under way
   std::string failure_;
   CollisionWatch* watch_ = nullptr;
+  DynamicsWatch* dynamics_ = nullptr;
   CycleListener* listener_ = nullptr;
-  bool ends_at_first_ = false, ended_ = false;
+  bool ends_at_first_ = false, ends_off_path_ = false, ended_ = false;
   bool moving_ = false;
   bool tool_asked_for_ = false;
   bool stopped_ = false;  ///< at a stop of the program

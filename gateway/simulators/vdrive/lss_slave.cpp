@@ -4,8 +4,6 @@
 
 namespace rmac::vdrive {
 
-using fieldbus::CanFrame;
-
 namespace {
 
 // Command specifiers (CiA 305, 3.8)

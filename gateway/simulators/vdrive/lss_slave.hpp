@@ -8,6 +8,8 @@
 
 namespace rmac::vdrive {
 
+using fieldbus::CanFrame;
+
 /// The slave's side of layer setting services (CiA 305): node id and bit rate over the bus, for nodes that have no
 /// switches. It knows frames and time, and what it was told; what follows from that is the node's.
 class LssSlave {
@@ -21,8 +23,7 @@ class LssSlave {
   explicit LssSlave(std::uint8_t node) : active_(node), pending_(node), stored_(node) {}
 
   /// A frame of the master's identifier; what is answered.
-  [[nodiscard]] std::optional<fieldbus::CanFrame> receive(const fieldbus::CanFrame& frame, const Identity& identity,
-                                                          Time now);
+  [[nodiscard]] std::optional<CanFrame> receive(const CanFrame& frame, const Identity& identity, Time now);
   /// What was not stored is forgotten.
   void power_on();
   /// The node id becomes what it was told to be, as by a reset of the communication. Returns it.
@@ -36,7 +37,7 @@ class LssSlave {
 
  private:
   void select(unsigned part, std::uint32_t number, const Identity& identity);
-  [[nodiscard]] bool scan(const fieldbus::CanFrame& frame, const Identity& identity);
+  [[nodiscard]] bool scan(const CanFrame& frame, const Identity& identity);
 
   std::uint8_t active_, pending_, stored_;
   bool configures_ = false;

@@ -10,6 +10,7 @@
 #include "gateway/configuration/configuration.hpp"
 #include "gateway/device_driver_manager/device_tree.hpp"
 #include "gateway/rmac/commands/programs/collision_report.hpp"
+#include "gateway/rmac/commands/programs/dynamics_report.hpp"
 #include "gateway/rmac/commands/programs/force_report.hpp"
 #include "gateway/rmac/commands/programs/material_report.hpp"
 #include "gateway/rmac/commands/programs/registrations.hpp"
@@ -38,6 +39,7 @@ struct SimulateOptions {
   std::filesystem::path materials;    ///< work materials that are known; empty: the installation's
   std::string stock_out;              ///< STL file of what is left of the stock; empty: none
   std::string view;                   ///< page that shows the machine moving; empty: none
+  bool dynamics = false;              ///< go by what the axes do, not by where they are told to be
   bool first = false;                 ///< end at the first collision
   bool by_move = false;               ///< tell each move's limit too
   double period_s = 0.001;
@@ -59,10 +61,12 @@ struct Beside {
   const CollisionWatch* watch = nullptr;     ///< null without a set-up
   const MaterialReport* material = nullptr;  ///< null without a stock
   const ViewReport* view = nullptr;          ///< null where no page was asked for
+  const DynamicsWatch* dynamics = nullptr;   ///< null where nobody asked what the axes do
+  std::optional<double> keeps_at;            ///< the feed override at which they keep to the program, %
 };
 
 void print_simulation_json(const SimulationReport& report, const Beside& beside, bool by_move, double took_s) {
-  const auto& [watch, material, view] = beside;
+  const auto& [watch, material, view, dynamics, keeps_at] = beside;
   nlohmann::json joints = nlohmann::json::array();
   for (const auto& joint : report.joints) {
     joints.push_back({{"name", joint.name},
@@ -80,6 +84,7 @@ void print_simulation_json(const SimulationReport& report, const Beside& beside,
   if (watch != nullptr) add_collisions(*watch, line);
   if (material != nullptr) line["material"] = to_json(*material);
   line["forces"] = forces_json(watch, by_move);
+  line["dynamics"] = dynamics_json(dynamics, keeps_at);
   if (!report.record_files.empty()) {
     line["record_rows"] = report.record_rows;
     line["record_files"] = report.record_files;
@@ -90,7 +95,7 @@ void print_simulation_json(const SimulationReport& report, const Beside& beside,
 }
 
 void print_simulation_table(const SimulationReport& report, const Beside& beside, double took_s) {
-  const auto& [watch, material, view] = beside;
+  const auto& [watch, material, view, dynamics, keeps_at] = beside;
   std::vector<std::vector<std::string>> rows{
       {"moves", std::to_string(report.moves), ""},
       {"tool changes", std::to_string(report.tool_changes), report.tool_changes > 0 ? "in no time" : ""},
@@ -105,9 +110,11 @@ void print_simulation_table(const SimulationReport& report, const Beside& beside
   if (view != nullptr) rows.push_back(row_of(*view));
   if (material != nullptr) add_rows(*material, rows);
   add_force_rows(watch, rows);
+  if (dynamics != nullptr) add_dynamics_rows(*dynamics, rows);
   fmt::print("{}\n", table({"", "", ""}, rows));
   if (watch != nullptr) print_collisions(*watch);
   if (watch != nullptr) print_forces(*watch);
+  if (dynamics != nullptr) print_dynamics(*dynamics, keeps_at);
   rows.clear();
   for (const auto& joint : report.joints) {
     rows.push_back({joint.name, number(joint.peak_velocity), number(joint.peak_acceleration), number(joint.peak_jerk)});
@@ -159,6 +166,7 @@ Result<> check_options(const SimulateOptions& options, const Program& program, b
   if (options.machine.empty() && !options.setup.empty())
     return fail("--setup needs --machine: what stands on which table");
   if (options.machine.empty() && !options.view.empty()) return fail("--view needs --machine: which one is shown");
+  if (options.machine.empty() && options.dynamics) return fail("--dynamics needs --machine: whose axes they are");
   if (options.by_move && !json) return fail("--by-move needs --json: it tells something of every move");
   if (options.first && options.setup.empty())
     return fail("--first needs --setup: without one collisions are not checked");
@@ -230,6 +238,47 @@ Result<std::optional<ShapedMachine>> shown_machine(const SimulateOptions& option
   return std::move(*machine);
 }
 
+/// A machine, and what watches it, before a program runs.
+struct Parts {
+  std::unique_ptr<gateway::Simulation> simulation;
+  std::unique_ptr<CollisionWatch> collisions;  ///< null without a set-up
+  std::unique_ptr<DynamicsWatch> dynamics;     ///< null where nobody asked what the axes do
+};
+
+Result<Parts> open_parts(const SimulateOptions& options, const std::filesystem::path& tree) {
+  auto simulation = gateway::Simulation::open({.device_tree = tree,
+                                               .searcher = gateway::default_folders().searcher,
+                                               .tools_folder = options.tools,
+                                               .period_s = options.period_s},
+                                              options.machine);
+  if (!simulation) return fail(simulation.error().message);
+  auto collisions = open_watch(options, tree, **simulation);
+  if (!collisions) return tl::unexpected(collisions.error());
+  Parts parts{std::move(*simulation), std::move(*collisions), nullptr};
+  if (!options.dynamics) return parts;
+  auto dynamics = DynamicsWatch::open(options.machine, tree, options.period_s, parts.collisions.get());
+  if (!dynamics) return tl::unexpected(dynamics.error());
+  parts.dynamics = std::move(*dynamics);
+  return parts;
+}
+
+/// The largest of some feed overrides, %, at which the axes keep to the program; none where not even the least is.
+Result<std::optional<double>> feed_that_keeps(const SimulateOptions& options, const std::filesystem::path& tree,
+                                              const Program& program) {
+  for (const double percent : {80.0, 65.0, 50.0, 40.0, 30.0, 20.0, 10.0}) {
+    const auto parts = open_parts(options, tree);
+    if (!parts) return tl::unexpected(parts.error());
+    const gateway::Answer slower = parts->simulation->call("RMAC_CAM.SetFeedOverride", {{"Percent", percent}});
+    if (!slower) return fail(slower.error().message);
+    Simulator simulator(*parts->simulation, program, "");
+    if (parts->collisions) simulator.watch_collisions(*parts->collisions, false);
+    simulator.go_by(*parts->dynamics, true);
+    const auto run = simulator.run();
+    if (run && verdict(*parts->dynamics)) return percent;
+  }
+  return std::nullopt;
+}
+
 Result<> simulate_program(const SimulateOptions& options, bool json) {
   const double began_s = cpu_time_s();
   const auto program = read_source(options.source);
@@ -237,15 +286,10 @@ Result<> simulate_program(const SimulateOptions& options, bool json) {
   if (auto fine = check_options(options, *program, json); !fine) return fine;
   spdlog::set_level(spdlog::level::off);  // what is wrong with other machines of the tree is not asked here
   const auto tree = options.device_tree.empty() ? gateway::default_folders().device_tree : options.device_tree;
-  auto simulation = gateway::Simulation::open({.device_tree = tree,
-                                               .searcher = gateway::default_folders().searcher,
-                                               .tools_folder = options.tools,
-                                               .period_s = options.period_s},
-                                              options.machine);
-  if (!simulation) return fail(simulation.error().message);
-  const auto collisions = open_watch(options, tree, **simulation);
-  if (!collisions) return tl::unexpected(collisions.error());
-  CollisionWatch* const watched = collisions->get();
+  const auto parts = open_parts(options, tree);
+  if (!parts) return tl::unexpected(parts.error());
+  CollisionWatch* const watched = parts->collisions.get();
+  DynamicsWatch* const dynamics = parts->dynamics.get();
   const auto shown = shown_machine(options, tree);
   if (!shown) return tl::unexpected(shown.error());
   if (auto fine = check_written(options, tree, watched, *shown ? &**shown : nullptr); !fine) return fine;
@@ -255,9 +299,10 @@ Result<> simulate_program(const SimulateOptions& options, bool json) {
     if (!drawn) return tl::unexpected(drawn.error());
     film.emplace(**shown, watched, std::move(*drawn));
   }
-  std::optional<StandstillWatch> watch(std::in_place, (*simulation)->controller());
-  Simulator simulator(**simulation, *program, options.record_file);
+  std::optional<StandstillWatch> watch(std::in_place, parts->simulation->controller());
+  Simulator simulator(*parts->simulation, *program, options.record_file);
   if (watched != nullptr) simulator.watch_collisions(*watched, options.first);
+  if (dynamics != nullptr) simulator.go_by(*dynamics, false);
   if (film) simulator.listen(*film);
   const auto report = simulator.run();
   watch.reset();  // machine time is over: what is told of the material may take long
@@ -275,15 +320,23 @@ Result<> simulate_program(const SimulateOptions& options, bool json) {
     if (!written) return tl::unexpected(written.error());
     view = std::move(*written);
   }
-  const Beside beside{watched, material ? &*material : nullptr, view ? &*view : nullptr};
+  const Result<> met = watched != nullptr ? verdict(*watched) : Result<>();
+  const Result<> held = dynamics != nullptr ? verdict(*dynamics) : Result<>();
+  std::optional<double> keeps;
+  if (!held) {
+    auto found = feed_that_keeps(options, tree, *program);
+    if (!found) return tl::unexpected(found.error());
+    keeps = *found;
+  }
+  const Beside beside{watched, material ? &*material : nullptr, view ? &*view : nullptr, dynamics, keeps};
   const double took_s = cpu_time_s() - began_s;
   if (json) {
     print_simulation_json(*report, beside, options.by_move, took_s);
   } else {
     print_simulation_table(*report, beside, took_s);
   }
-  if (watched == nullptr) return {};
-  return verdict(*watched);
+  if (!met && !held) return fail(met.error().message + "; " + held.error().message);
+  return met ? held : met;
 }
 
 }  // namespace
@@ -307,6 +360,8 @@ void add_simulate(Command& rmac) {
   simulate.option("--stock-out", &options->stock_out, "with --setup: write what is left of the stock to this STL file");
   simulate.option("--view", &options->view,
                   "write a page (.html) that shows the machine moving, its limits and what --setup found");
+  simulate.flag("--dynamics", &options->dynamics,
+                "close the servo loops over the models of the machine's axes: what they do is what is watched and cut");
   simulate.flag("--first", &options->first, "with --setup: end at the first collision");
   simulate.flag("--by-move", &options->by_move,
                 "with --json: the limit that ruled each move for the longest time, and what cutting it took");

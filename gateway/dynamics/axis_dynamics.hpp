@@ -1,0 +1,107 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gateway/dynamics/closed_loops.hpp"
+#include "gateway/dynamics/path_deviation.hpp"
+#include "gateway/state/cycle_sample.hpp"
+#include "rmac/fieldbus/simulated_interface.hpp"
+
+namespace rmac::gateway {
+
+/// Where a joint really was against where it was to be, mm or degrees; all the time from the first motion to the last.
+struct JointDeviation {
+  std::string name;
+  double peak = 0, rms = 0;
+};
+
+/// What a motor gave at its shaft, N·m, over the same time.
+struct MotorTorque {
+  std::string bus;
+  std::uint32_t axis = 0;
+  double rated_nm = 0;
+  double peak_nm = 0, rms_nm = 0;
+  double allowed_nm = 0;  ///< beyond it the machine stops: `MaxMeasuredTorque`
+
+  /// For ever at what it gave in the mean, it grows too hot.
+  [[nodiscard]] bool overheats() const noexcept { return rms_nm > rated_nm; }
+};
+
+/// What stopped the machine, where the program did not.
+struct StoppedByFault {
+  int line = 0;
+  std::int64_t move_id = 0;
+  double t_s = 0;
+  std::string why;
+};
+
+/// What a machine's axes make of a planned motion: its servo loops, closed over the models of its axes as
+/// `device.json` has them (docs/simulated-bus.md), are given the setpoints of each cycle, and the tool is pushed.
+/// Spindles stand: what turns them is not looked at. One thread.
+class AxisDynamics {
+ public:
+  /// Refused where not each drive is simulated or has a model, or the loops do not come up.
+  [[nodiscard]] static Expected<std::unique_ptr<AxisDynamics>> open(const sdk::DeviceObject& device,
+                                                                    const ModuleLoader& loader, double period_s);
+
+  /// What is beside the setpoints of a cycle.
+  struct Beside {
+    int line = 0;                      ///< of the program
+    Frame tool{};                      ///< its tip on the tool interface
+    Eigen::Vector3d force_n{0, 0, 0};  ///< on the tool, in the frame of the link that holds the part
+  };
+  /// One cycle of this mechanism's planned motion. Before the first, the joints are brought to where that begins. After
+  /// a fault nothing changes any more.
+  void cycle(const CycleSample& planned, const Beside& beside);
+  /// The tool is another.
+  void forget_path() { deviation_.forget(); }
+  /// The motion is over.
+  void finish();
+
+  /// Where the joints are in truth: behind what bends and sticks, whatever encoders tell. Those of the kinematics.
+  [[nodiscard]] std::span<const double> joints() const noexcept;
+  /// Where their encoders have them.
+  [[nodiscard]] std::span<const double> measured() const noexcept;
+  [[nodiscard]] const std::optional<StoppedByFault>& stopped() const noexcept { return stopped_; }
+  [[nodiscard]] std::vector<JointDeviation> joint_deviations() const;
+  [[nodiscard]] std::vector<MotorTorque> motor_torques() const;
+  [[nodiscard]] const PathDeviation& deviation() const noexcept { return deviation_; }
+
+ private:
+  struct Mean {
+    double peak = 0, sum2 = 0;
+    void add(double value) noexcept;
+  };
+  /// One drive: where it hangs on its bus's model.
+  struct Motor {
+    fieldbus::SimulatedInterface* bus;
+    std::uint32_t axis;
+  };
+
+  AxisDynamics(std::unique_ptr<ClosedLoops> loops, std::vector<Motor> motors, const sdk::DeviceObject& device);
+  void approach(const CycleSample& planned);
+  void push(const Beside& beside);
+  void see_truth();
+  void account(const CycleSample& planned, const Beside& beside);
+  [[nodiscard]] bool run(const CycleSample& planned, int line);
+  [[nodiscard]] Eigen::Vector3d tip(std::span<const double> joints, const Frame& tool) const;
+  [[nodiscard]] const Kinematics& kinematics() const noexcept { return *loops_->mechanism().planner_model.kinematics; }
+
+  std::unique_ptr<ClosedLoops> loops_;
+  std::vector<Motor> motors_;
+  sdk::DeviceObject device_;  ///< as it was before its drives were put on models
+  std::array<double, kMaxJoints> truth_{};
+  bool begun_ = false, moved_ = false, pushed_ = false;
+  std::vector<Mean> joints_, torques_;
+  std::size_t count_ = 0;
+  PathDeviation deviation_;
+  std::optional<StoppedByFault> stopped_;
+};
+
+}  // namespace rmac::gateway
