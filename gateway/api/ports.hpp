@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "gateway/animation/machine_drawing.hpp"
 #include "gateway/api/rpc_error.hpp"
 #include "gateway/collision/ahead/guard_port.hpp"
 #include "gateway/device_driver_manager/device_driver_manager.hpp"
@@ -88,6 +89,7 @@ class MachinePort {
   [[nodiscard]] virtual DevicePort& device() = 0;
   [[nodiscard]] virtual ToolPort& tools() = 0;
   [[nodiscard]] virtual GuardPort& guard() = 0;
+  [[nodiscard]] virtual ShapePort& shape() = 0;
   /// The mechanism in force, or nullptr.
   [[nodiscard]] virtual const sdk::DeviceObject* mechanism() const = 0;
   [[nodiscard]] virtual CycleSample sample() const = 0;
@@ -137,7 +139,8 @@ class SessionPort {
   virtual void tell(const std::string& what) = 0;
   virtual tl::expected<void, RpcError> subscribe(const std::vector<std::string>& topics, double rate_hz) = 0;
   virtual void unsubscribe(const std::vector<std::string>& topics) = 0;
-  /// Streams the joints for an animation, or ends that; what the client subscribed to itself stays as it is.
+  /// Streams joints and poses of links for an animation, or ends that; what the client subscribed to itself stays as it
+  /// is.
   virtual void animate(bool on) = 0;
 
  private:

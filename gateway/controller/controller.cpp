@@ -279,6 +279,10 @@ GuardPort& collision_guard(Controller& controller) {
   return controller.impl_->cam.guard();
 }
 
+ShapePort& machine_shape(Controller& controller) {
+  return controller.impl_->cam.shape();
+}
+
 const nlohmann::json& bus_summary(const Controller& controller) {
   return controller.impl_->bus_watch.summary();
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "gateway/animation/machine_drawing.hpp"
 #include "gateway/buses/bus_registry.hpp"
 #include "gateway/collision/ahead/guard_port.hpp"
 #include "gateway/record/flight_recorder_options.hpp"
@@ -150,6 +151,7 @@ class Controller {
   friend fieldbus::FieldbusReport bus_reports(const Controller& controller);
   friend const nlohmann::json& bus_summary(const Controller& controller);
   friend GuardPort& collision_guard(Controller& controller);
+  friend ShapePort& machine_shape(Controller& controller);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
@@ -160,5 +162,7 @@ class Controller {
 [[nodiscard]] const nlohmann::json& bus_summary(const Controller& controller);
 /// What a controller holds its paths against.
 [[nodiscard]] GuardPort& collision_guard(Controller& controller);
+/// What is known of the shape of a controller's mechanism.
+[[nodiscard]] ShapePort& machine_shape(Controller& controller);
 
 }  // namespace rmac::gateway

@@ -213,14 +213,14 @@ Expected<> DeviceHost::Impl::load(const std::string& what, const std::filesystem
   }
   loaded = std::move(*made);
   // What an overlay lies over has its shape still.
-  if (!loaded->base) collision_guard(controller).set_shape(std::move(bodies));
+  if (!loaded->base) machine_shape(controller).set_bodies(std::move(bodies));
   return {};
 }
 
 Expected<> DeviceHost::unload() {
   return impl_->controller.unload().map([&] {
     impl_->loaded.reset();
-    collision_guard(impl_->controller).set_shape({});
+    machine_shape(impl_->controller).set_bodies({});
   });
 }
 

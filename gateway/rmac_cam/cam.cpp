@@ -1,9 +1,13 @@
 #include "gateway/rmac_cam/cam.hpp"
 
+#include "gateway/mechanism/mechanism.hpp"
+
 namespace rmac::gateway {
 
 Cam::Cam(MotionSupervisor& supervisor, ServoLink& link, ToolRack& rack, std::function<Expected<>()> reset)
-    : path_(device_, link.history),
+    : supervisor_(supervisor),
+      link_(link),
+      path_(device_, link.history),
       joints_(device_),
       maker_(device_, path_, joints_),
       frames_(device_, supervisor),
@@ -16,10 +20,13 @@ Cam::Cam(MotionSupervisor& supervisor, ServoLink& link, ToolRack& rack, std::fun
       positioning_(device_, supervisor, link, path_, maker_),
       flow_(device_, supervisor, spindles_),
       parking_(device_, supervisor, link, {path_, joints_, spindles_, tools_, forces_, flow_}),
-      guard_(device_, supervisor) {}
+      guard_(device_, supervisor, shape_) {}
 
 void Cam::mechanism_changed(const sdk::DeviceObject* device, bool fresh) {
   device_.change(device);
+  const std::shared_ptr<Mechanism> mechanism = device == nullptr ? nullptr : supervisor_.mechanism();
+  shape_.mechanism_changed(device, mechanism == nullptr ? nullptr : mechanism->planner_model.kinematics,
+                           link_.history.latest().cycle);
   path_.mechanism_changed(fresh);
   joints_.mechanism_changed(fresh);
   cycle_.mechanism_changed(fresh);

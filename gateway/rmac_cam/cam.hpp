@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "gateway/animation/machine_shape.hpp"
 #include "gateway/rmac_cam/cam_cmm_moves.hpp"
 #include "gateway/rmac_cam/cam_cycle.hpp"
 #include "gateway/rmac_cam/cam_forces.hpp"
@@ -41,12 +42,15 @@ class Cam final : public sdk::RmacCam {
   CamProgramFlow& flow() override { return flow_; }
   CamTools& tools() { return tools_; }
   CamGuard& guard() { return guard_; }
+  MachineShape& shape() { return shape_; }
 
   /// What the measuring part of RMAC_CAM is made of.
   [[nodiscard]] const DeviceInForce& device() const { return device_; }
   [[nodiscard]] const MoveMaker& move_maker() const { return maker_; }
 
  private:
+  MotionSupervisor& supervisor_;
+  ServoLink& link_;
   DeviceInForce device_;
   CamPathSettings path_;
   CamJointSettings joints_;
@@ -61,6 +65,7 @@ class Cam final : public sdk::RmacCam {
   CamPositioning positioning_;
   CamProgramFlow flow_;
   CamParking parking_;
+  MachineShape shape_;
   CamGuard guard_;
 };
 

@@ -29,7 +29,7 @@ Expected<CamGuard::InForce> CamGuard::read(const nlohmann::json& object) const {
     return failure(MinorCode::InvalidParameterValue,
                    fmt::format("SetSetup: /Machine is \"{}\", and {} is loaded", printable(setup->machine), machine));
   }
-  auto scene = scene_bodies(shape_, *setup);
+  auto scene = scene_bodies(*shape_.bodies(), *setup);
   if (!scene) return prefixed("SetSetup", scene.error());
   return InForce{object, std::move(*setup), std::move(*scene)};
 }
@@ -38,10 +38,11 @@ Expected<std::shared_ptr<ClearWay>> CamGuard::way_for(const InForce& in_force) c
   const std::shared_ptr<Mechanism> mechanism = supervisor_.mechanism();
   std::vector<JointLimits> joints;
   for (const sdk::Joint& joint : device_.get()->joints) joints.push_back(joint.limits);
-  return LinkChain::make(*mechanism->planner_model.kinematics, shape_.chain, joints).map([&](LinkChain chain) {
-    return std::make_shared<ClearWay>(std::move(chain), in_force.scene, in_force.setup.part_frame,
-                                      in_force.setup.clearance_mm);
-  });
+  return LinkChain::make(*mechanism->planner_model.kinematics, shape_.bodies()->chain, joints)
+      .map([&](LinkChain chain) {
+        return std::make_shared<ClearWay>(std::move(chain), in_force.scene, in_force.setup.part_frame,
+                                          in_force.setup.clearance_mm);
+      });
 }
 
 Expected<> CamGuard::set_setup(const nlohmann::json& setup) {
@@ -80,7 +81,7 @@ Expected<> CamGuard::set_check(bool on) {
         MinorCode::Other,
         "SetCollisionCheck: there is no set-up to check against; send what stands on the table with SetSetup");
   }
-  if (shape_.bodies.empty()) {
+  if (shape_.bodies()->bodies.empty()) {
     return failure(MinorCode::UnsupportedOperation,
                    fmt::format("SetCollisionCheck: device.json of {} has no Geometry, so that collisions cannot be "
                                "checked",

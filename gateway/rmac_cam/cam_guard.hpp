@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "gateway/bodies/body.hpp"
+#include "gateway/animation/machine_shape.hpp"
 #include "gateway/collision/ahead/clear_way.hpp"
 #include "gateway/collision/ahead/guard_port.hpp"
 #include "gateway/collision/setup/setup.hpp"
@@ -19,11 +19,11 @@ namespace rmac::gateway {
 /// The set-up in force, and the check that goes by it. Gateway thread only.
 class CamGuard final : public GuardPort {
  public:
-  CamGuard(const DeviceInForce& device, MotionSupervisor& supervisor) : device_(device), supervisor_(supervisor) {}
+  CamGuard(const DeviceInForce& device, MotionSupervisor& supervisor, const MachineShape& shape)
+      : device_(device), supervisor_(supervisor), shape_(shape) {}
 
   /// `fresh`: another mechanism, or none, so that the set-up is dropped. The same one configured anew keeps it.
   void mechanism_changed(bool fresh);
-  void set_shape(MachineBodies bodies) override { shape_ = std::move(bodies); }
   Expected<> set_setup(const nlohmann::json& setup) override;
   [[nodiscard]] nlohmann::json setup() const override {
     return in_force_ ? in_force_->as_sent : nlohmann::json::object();
@@ -44,7 +44,7 @@ class CamGuard final : public GuardPort {
 
   const DeviceInForce& device_;
   MotionSupervisor& supervisor_;
-  MachineBodies shape_;
+  const MachineShape& shape_;
   std::optional<InForce> in_force_;
 };
 

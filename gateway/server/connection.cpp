@@ -27,6 +27,16 @@ std::string state_text(const ConnectionContext& context, const CycleSample& samp
                                {context.lease.holder_name(), on_duty ? on_duty->name() : ""}));
 }
 
+/// The machine as everybody sees it move.
+Scene scene_of(const ConnectionContext& context) {
+  MachinePort& machine = context.dispatcher.machine();
+  const sdk::FrameSettings& frames = machine.cam().frames();
+  return {.drawing = machine.shape().drawing(),
+          .virtual_mode = machine.device().virtual_mode(),
+          .tool = machine.tools().tools_now().mounted,
+          .frames = {frames.part(), frames.tool_interface()}};
+}
+
 /// Longer first lines are held to their first character alone: reading them takes long.
 constexpr std::size_t kLongFirstLine = 65536;
 
@@ -43,7 +53,9 @@ bool is_json(std::string_view line) {
 Connection::Connection(const ConnectionContext& context, Socket socket, Visitor visitor)
     : context_(context),
       socket_(std::move(socket)),
-      topics_(context.options.cycle_hz, [&context](const CycleSample& sample) { return state_text(context, sample); }),
+      topics_(
+          context.options.cycle_hz, [&context](const CycleSample& sample) { return state_text(context, sample); },
+          [&context] { return scene_of(context); }),
       session_(context, visitor.id, std::move(visitor.where), topics_),
       requests_(*this, context.dispatcher, context.aside, context.options.queue_wait),
       lines_(context.options.line_limit_bytes),

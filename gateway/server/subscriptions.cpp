@@ -13,7 +13,8 @@ namespace rmac::gateway {
 
 namespace {
 
-constexpr double kAnimationRateHz = 50;
+constexpr double kAnimatedJointsHz = 50;  ///< as clients know it that look at joints alone
+constexpr double kAnimationHz = 60;
 constexpr std::size_t kBatchBytes = 256 * 1024;
 
 bool names(const std::vector<std::string>& topics, const char* topic) {
@@ -29,14 +30,15 @@ void take_batch(const char* topic, std::string& batch, std::vector<std::string>&
 
 }  // namespace
 
-Subscriptions::Subscriptions(double cycle_hz, State state) : cycle_hz_(cycle_hz), describe_(std::move(state)) {}
+Subscriptions::Subscriptions(double cycle_hz, State state, AnimationFeed::Look look)
+    : cycle_hz_(cycle_hz), describe_(std::move(state)), animation_(std::move(look)) {}
 
 tl::expected<void, RpcError> Subscriptions::check(const std::vector<std::string>& topics) {
   for (const std::string& topic : topics) {
     if (std::ranges::count(topic::kAll, topic) > 0) continue;
     return tl::unexpected<RpcError>(
         RpcError{rpc_code::kInvalidParams,
-                 fmt::format("parameter \"topics\" has \"{}\", expected state, joints, drives or events",
+                 fmt::format("parameter \"topics\" has \"{}\", expected state, joints, drives, animation or events",
                              printable(topic, kLongestName)),
                  MinorCode::InvalidParameterValue});
   }
@@ -53,14 +55,19 @@ std::vector<TopicPace*> Subscriptions::paces(const std::vector<std::string>& top
     if (topic == topic::kState) result.push_back(&state_);
     if (topic == topic::kJoints) result.push_back(&joints_);
     if (topic == topic::kDrives) result.push_back(&drives_);
+    if (topic == topic::kAnimation) result.push_back(&animation_.pace());
   }
   return result;
 }
 
 void Subscriptions::start(const std::vector<std::string>& topics, double rate_hz) {
   const double cycles = std::clamp(std::round(cycle_hz_ / rate_hz), 1.0, 1e12);
-  for (TopicPace* pace : paces(topics)) pace->start(static_cast<std::int64_t>(cycles));
-  if (names(topics, topic::kJoints)) joints_before_animation_.reset();
+  for (TopicPace* pace : paces(topics)) pace->start(cycles);
+  if (names(topics, topic::kAnimation)) {
+    animation_.start(std::max(cycle_hz_ / rate_hz, 1.0));
+    animation_before_.reset();
+  }
+  if (names(topics, topic::kJoints)) joints_before_.reset();
   owes_state_ = owes_state_ || names(topics, topic::kState);
   events_ = events_ || names(topics, topic::kEvents);
 }
@@ -73,19 +80,21 @@ void Subscriptions::stop(const std::vector<std::string>& topics) {
 }
 
 void Subscriptions::animate(bool on) {
-  const std::int64_t every = std::max(std::llround(cycle_hz_ / kAnimationRateHz), 1LL);
-  if (on && (!joints_.on() || joints_.every_cycles() > every)) {
-    joints_before_animation_ = joints_.every_cycles();
-    joints_.start(every);
-  } else if (!on && joints_before_animation_) {
-    const std::int64_t before = *std::exchange(joints_before_animation_, std::nullopt);
-    joints_.start(before);
-  }
+  const auto raised = [on](TopicPace& pace, std::optional<double>& before, double every) -> std::optional<double> {
+    if (!on) return std::exchange(before, std::nullopt);
+    if (pace.on() && pace.every_cycles() <= every) return std::nullopt;
+    before = pace.every_cycles();
+    return every;
+  };
+  const double joints_every = std::max(std::round(cycle_hz_ / kAnimatedJointsHz), 1.0);
+  if (const auto every = raised(joints_, joints_before_, joints_every)) joints_.start(*every);
+  const double animation_every = std::max(cycle_hz_ / kAnimationHz, 1.0);
+  if (const auto every = raised(animation_.pace(), animation_before_, animation_every)) animation_.start(*every);
 }
 
 bool Subscriptions::is_fast() const noexcept {
-  return std::ranges::any_of(std::array{&state_, &joints_, &drives_}, [&](const TopicPace* pace) {
-    return pace->on() && static_cast<double>(pace->every_cycles()) < cycle_hz_ / kWatchRateHz;
+  return std::ranges::any_of(std::array{&state_, &joints_, &drives_, &animation_.pace()}, [&](const TopicPace* pace) {
+    return pace->on() && pace->every_cycles() < cycle_hz_ / kWatchRateHz;
   });
 }
 
@@ -98,18 +107,20 @@ std::optional<std::string> Subscriptions::take(const CycleSample& sample) {
     if (!drives_batch_.empty()) drives_batch_ += ',';
     append_drives(sample, drives_batch_);
   }
+  animation_.take(sample);
   if (!state_.due(sample.cycle)) return std::nullopt;
   return state_line(sample);
 }
 
 bool Subscriptions::is_full() const noexcept {
-  return joints_batch_.size() + drives_batch_.size() > kBatchBytes;
+  return joints_batch_.size() + drives_batch_.size() + animation_.bytes() > kBatchBytes;
 }
 
 std::vector<std::string> Subscriptions::batches() {
   std::vector<std::string> lines;
   take_batch(topic::kJoints, joints_batch_, lines);
   take_batch(topic::kDrives, drives_batch_, lines);
+  animation_.take_out(lines);
   return lines;
 }
 

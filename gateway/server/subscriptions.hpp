@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gateway/api/rpc_error.hpp"
+#include "gateway/server/animation_feed.hpp"
 #include "gateway/server/telemetry.hpp"
 
 namespace rmac::gateway {
@@ -20,7 +21,8 @@ class Subscriptions {
   /// The topic `state` of a sample, as JSON text.
   using State = std::function<std::string(const CycleSample& sample)>;
 
-  Subscriptions(double cycle_hz, State state);
+  /// `look` tells of the machine for the topic `animation`.
+  Subscriptions(double cycle_hz, State state, AnimationFeed::Look look);
 
   /// An error where there is no such topic.
   [[nodiscard]] static tl::expected<void, RpcError> check(const std::vector<std::string>& topics);
@@ -30,7 +32,8 @@ class Subscriptions {
   void start(const std::vector<std::string>& topics, double rate_hz);
   /// Ends the topics, or all of them when none is named.
   void stop(const std::vector<std::string>& topics);
-  /// Streams the joints for an animation, or ends that; what the client subscribed to itself stays as it is.
+  /// Streams joints and poses of links for an animation, or ends that; what the client subscribed to itself stays as it
+  /// is.
   void animate(bool on);
   /// Whether it receives more than the watchers' rate.
   [[nodiscard]] bool is_fast() const noexcept;
@@ -53,7 +56,9 @@ class Subscriptions {
   double cycle_hz_;
   State describe_;
   TopicPace state_, joints_, drives_;
-  std::optional<std::int64_t> joints_before_animation_;  ///< cycles between samples; 0: none went out
+  AnimationFeed animation_;
+  /// Cycles between samples before an animation; 0: none went out.
+  std::optional<double> joints_before_, animation_before_;
   bool events_ = false;
   bool owes_state_ = false;
   std::string joints_batch_, drives_batch_;

@@ -85,6 +85,40 @@ void append_drives(const CycleSample& sample, std::string& out) {
                  sample.inputs, sample.outputs, sample.deadline_misses, sample.samples_lost);
 }
 
+void append_frame(const Frame& frame, std::string& out) {
+  const auto append = [&](char before, const auto& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      out += i == 0 ? before : ',';
+      append_number(values[i], out);
+    }
+  };
+  out += R"({"p":)";
+  append('[', frame.p);
+  out += R"(],"q":)";
+  append('[', frame.q);
+  out += "]}";
+}
+
+void append_animation(const CycleSample& sample, const LinkPoses& links, std::string& out) {
+  append_head(sample, out);
+  fmt::format_to(std::back_inserter(out), ",\"moving\":{},\"move_id\":{}", sample.moving, sample.move_id);
+  const auto& [tip, axis] = sample.pose_actual;
+  append_list("pose", std::array{tip[0], tip[1], tip[2], axis[0], axis[1], axis[2]}, 0, 6, out);
+  append_list("joints", sample.position, 0, sample.joint_count, out);
+  if (sample.joint_count_with_held > sample.joint_count) {
+    append_list("held", sample.position, sample.joint_count, sample.joint_count_with_held, out);
+  }
+  std::array<Frame, kMaxJoints + 3> poses{};  // base, spindle and table beside the joints
+  links.at(std::span(sample.position).first(links.joint_count()), poses);
+  out += ",\"links\":";
+  char before = '{';
+  for (std::size_t i = 0; i < links.names().size(); ++i) {
+    fmt::format_to(std::back_inserter(out), "{}{}:", std::exchange(before, ','), text_of(links.names()[i]));
+    append_frame(poses[i], out);
+  }
+  out += "}}";
+}
+
 std::string notification(const char* topic, const std::string& params) {
   return fmt::format("{{\"jsonrpc\":\"2.0\",\"method\":\"{}\",\"params\":{}}}", topic, params);
 }

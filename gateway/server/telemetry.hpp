@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "gateway/bodies/link_poses.hpp"
 #include "gateway/state/cycle_sample.hpp"
 #include "gateway/state/event.hpp"
 
@@ -16,33 +18,42 @@ void append_joints(const CycleSample& sample, std::string& out);
 /// One sample of the topic `drives`.
 void append_drives(const CycleSample& sample, std::string& out);
 
+/// One sample of the topic `animation`: where the measured joints have the links of their machine.
+void append_animation(const CycleSample& sample, const LinkPoses& links, std::string& out);
+
+/// `{"p": …, "q": …}`
+void append_frame(const Frame& frame, std::string& out);
+
 /// A notification's line: `{"jsonrpc":"2.0","method":topic,"params":params}` without a newline.
 [[nodiscard]] std::string notification(const char* topic, const std::string& params);
 
 /// The topic `events`.
 [[nodiscard]] std::string event_notification(const Event& event);
 
-/// The pace at which one topic goes to one connection, counted in cycles so that no clock is needed.
+/// The pace at which one topic goes to one connection, counted in cycles so that no clock is needed. Where a period is
+/// no whole number of cycles, cycles between samples are now one fewer, now one more.
 class TopicPace {
  public:
   [[nodiscard]] bool on() const noexcept { return every_ != 0; }
-  [[nodiscard]] std::int64_t every_cycles() const noexcept { return every_; }
-  void start(std::int64_t every_cycles) noexcept {
+  [[nodiscard]] double every_cycles() const noexcept { return every_; }
+  void start(double every_cycles) noexcept {
     every_ = every_cycles;
-    next_ = 0;
+    next_ = -std::numeric_limits<double>::infinity();
   }
   void stop() noexcept { every_ = 0; }
   /// Whether this cycle's sample is due; counts it when so.
   [[nodiscard]] bool due(std::int64_t cycle) noexcept {
     if (every_ == 0) return false;
-    if (cycle < next_ && next_ - cycle <= every_) return false;
-    next_ = cycle + every_;
+    const auto now = static_cast<double>(cycle);
+    if (now < next_ && next_ - now <= every_) return false;
+    const bool in_step = now >= next_ && now - next_ < 1;
+    next_ = (in_step ? next_ : now) + every_;
     return true;
   }
 
  private:
-  std::int64_t every_ = 0;
-  std::int64_t next_ = 0;
+  double every_ = 0;
+  double next_ = 0;
 };
 
 }  // namespace rmac::gateway

@@ -81,6 +81,24 @@ class PythonRecordsTest(unittest.TestCase):
         # The first comes at once, the others in step.
         self.assertTrue(all(b - a == 20 for a, b in zip(cycles[1:], cycles[2:])), cycles)
 
+    def test_an_animation_has_the_tip_where_the_program_takes_it(self):
+        geometry = self.client.geometry()
+        self.assertEqual((geometry.machine, geometry.missing), ("DMACXYZ", ""))
+        self.assertTrue(all(body.link in geometry.links for body in geometry.bodies))
+        seen = []
+        with self.client.animation() as animations:
+            self.client.run(PROGRAM).wait()
+            done = self.client.state()["cycle"]
+            while not seen or seen[-1][1].cycle < done:
+                animation = next(animations)
+                seen += [(animation, sample) for sample in animation.samples]
+        for animation, sample in seen:
+            self.assertEqual(animation.geometry, geometry.number)
+            on_part = animation.part(sample).inverse().times(animation.tip(sample, geometry))
+            numpy.testing.assert_allclose(on_part.p, sample.pose[:3], atol=1e-6, err_msg=f"cycle {sample.cycle}")
+        self.assertEqual({b.cycle - a.cycle for (_, a), (_, b) in zip(seen, seen[1:])}, {16, 17})
+        self.assertGreater(max(sample.pose[1] for _, sample in seen), 4)
+
     def test_what_was_recorded_of_two_machines_is_no_record(self):
         with self.client.record() as recording:
             recording.catch_up()
@@ -117,6 +135,12 @@ class PythonAioRecordsTest(unittest.IsolatedAsyncioTestCase):
             name = await client.recorder.Record()
             async with client.states() as states:
                 async for _ in states:
+                    break
+            geometry = await client.geometry()
+            async with client.animation() as animations:
+                async for animation in animations:
+                    self.assertEqual(animation.geometry, geometry.number)
+                    self.assertEqual(set(animation.samples[0].links), set(geometry.links))
                     break
             self.assertTrue(name)
         record = recording.record()

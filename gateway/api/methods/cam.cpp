@@ -164,10 +164,11 @@ void add_auxiliaries(const auto& add) {
           .does([](Call& call, const std::string& name, bool on) {
             return call.machine.cam().spindles().set_output(name, on);
           }));
-  add(method("RMAC_CAM.SetAnimation",
-             "True streams the joint values to this connection (topic joints, 50 Hz, or faster if it is subscribed to "
-             "so) for "
-             "an animation; false ends it.")
+  add(method(
+          "RMAC_CAM.SetAnimation",
+          "True streams to this connection, for an animation, where each link of the machine stands (topic "
+          "animation, 60 Hz; what there is to draw gives GetGeometry) and the joint values (topic joints, 50 Hz), or "
+          "faster where it is subscribed to so; false ends it.")
           .takes(boolean("mode"))
           .does([](Call& call, bool on) {
             call.session.animate(on);

@@ -56,7 +56,7 @@ void add_session_methods(std::vector<Method>& table) {
           .gives(WireType::Boolean)
           .extension()
           .does([](Call& call) { return call.session.release_operator(); }));
-  add(method("subscribe", "Pushes topics to this connection: state, joints, drives, events.")
+  add(method("subscribe", "Pushes topics to this connection: state, joints, drives, animation, events.")
           .takes(texts("topics"),
                  number("rate_hz", "Hz").above(0).optional().noted("100 when left out; more for one client at a time"))
           .gives(WireType::Boolean)

@@ -2,7 +2,6 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "gateway/bodies/body.hpp"
 #include "rmac/motion/error.hpp"
 
 namespace rmac::gateway {
@@ -12,8 +11,6 @@ class GuardPort {
  public:
   virtual ~GuardPort() = default;
 
-  /// The solids of the mechanism in force; none: nothing is known of its shape.
-  virtual void set_shape(MachineBodies bodies) = 0;
   /// The object of a `setup.json`, its meshes in it; null: nothing stands there any more, and nothing is checked. All
   /// of it is in force, or nothing of it. At rest, with an empty queue.
   virtual Expected<> set_setup(const nlohmann::json& setup) = 0;

@@ -16,7 +16,8 @@ from rmac_freecad.window.legacy.open_dialog import OpenDialog
 from rmac_freecad.window.machines.search_dialog import SearchDialog
 from rmac_freecad.window.operations.operations import PocketDialog, SweepDialog
 from rmac_freecad.window.running.machining_dialog import MachiningDialog
-from windowed import WindowTest, process_until
+from rmac_freecad.window.shown_machine import ShownMachine
+from windowed import MACHINE, WindowTest, process_until
 
 import rmac
 
@@ -97,6 +98,26 @@ class Screens(WindowTest):
         FreeCADGui.activateWorkbench("RmacWorkbench")
         self.operation("pocket", PocketDialog, tray, 7, Diameter=6, StepDown=1.5, StepOver=3.5)
         self.operation("sweep", SweepDialog, wave, None, Diameter=4, Scallop=0.2)
+
+    def test_a_picture_of_the_machine(self):
+        window = FreeCADGui.getMainWindow()
+        window.setGeometry(0, 0, 1600, 1000)
+        FreeCADGui.activateWorkbench("RmacWorkbench")
+        with self.connect("set-up") as client, client.authority():
+            client.load("SuginoXYZAC", virtual=True)
+            client.run([rmac.MoveJoints((60, -30, 40, 25, 30))]).wait()
+            document = FreeCAD.newDocument("shown")
+            self.addCleanup(FreeCAD.closeDocument, document.Name)
+            shown = ShownMachine(self.session)
+            self.addCleanup(shown.leave)
+            shown.show(document)
+            process_until(lambda: shown.follower is not None and shown.follower.model is not None, "the machine is drawn")
+            FreeCADGui.ActiveDocument.ActiveView.viewIsometric()
+            self.settle()
+            FreeCADGui.SendMsgToActiveView("ViewFit")
+            self.settle()
+            shoot("machine")
+            client.load(MACHINE)
 
     def operation(self, name, kind, shape, z, **values):
         for one in self.dialogs:

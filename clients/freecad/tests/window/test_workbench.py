@@ -2,12 +2,16 @@
 
 import unittest
 
+import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 from rmac_freecad.station import Settings
 from rmac_freecad.window.commands import COMMANDS
 from rmac_freecad.window.session import session
-from windowed import WindowTest, process_until
+from rmac_freecad.window.shown_machine import shown_machine
+from windowed import MACHINE, WindowTest, process_until
+
+import rmac  # isort: skip
 
 EVERY_MS = 20
 
@@ -21,7 +25,7 @@ class ToolbarTest(unittest.TestCase):
         window = FreeCADGui.getMainWindow()
         bar = window.findChild(QtGui.QToolBar, "Direct machining")
         self.assertIsNotNone(bar)
-        self.assertEqual([action.text() for action in bar.actions()], ["Select machine…", "Jog…", "Open legacy code…", "Cut along edges…", "Clear a pocket…", "Sweep faces…", "Machine a job…", "Simulate a job…", "Stop the machine"])
+        self.assertEqual([action.text() for action in bar.actions()], ["Select machine…", "Jog…", "Open legacy code…", "Cut along edges…", "Clear a pocket…", "Sweep faces…", "Machine a job…", "Simulate a job…", "Show the machine", "Stop the machine"])
         for action in bar.actions():
             self.assertFalse(action.icon().pixmap(24, 24).isNull(), action.text())
 
@@ -88,6 +92,22 @@ class CommandsTest(WindowTest):
         dialog = self.run_command("RMAC_Machine", "Machine a job")
         process_until(lambda: dialog.headline.text(), lambda: dialog.message.text())
         self.assertFalse(dialog.machining.running)
+
+    def test_the_machine_is_shown_until_the_button_is_pressed_again(self):
+        document = FreeCAD.newDocument("Shown")
+        self.addCleanup(lambda: FreeCAD.closeDocument(document.Name))
+        shown = shown_machine(session())
+        self.addCleanup(shown.leave)
+        FreeCADGui.runCommand("RMAC_Animate")
+        process_until(lambda: shown.follower is not None and shown.follower.model is not None, "the machine is drawn")
+        head = shown.follower.model.objects["head"]
+        self.assertEqual([one.Label for one in document.RootObjects], [MACHINE])
+        before = head.Placement.Base.z
+        with self.connect() as other, other.authority():
+            other.run([rmac.MoveJoints((0, 0, -20))]).wait()
+        process_until(lambda: abs(head.Placement.Base.z - before + 20) < 0.1, lambda: f"the head went down to {head.Placement.Base.z}")
+        FreeCADGui.runCommand("RMAC_Animate")
+        self.assertEqual(document.Objects, [])
 
     def test_stop_stops_who_else_moves_the_machine(self):
         other = self.connect()

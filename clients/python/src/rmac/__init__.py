@@ -1,6 +1,7 @@
 """Talks to an RMAC appliance. `rmac.connect` gives a blocking client, `rmac.aio.connect` one for asyncio."""
 
 from rmac import errors
+from rmac.animation import Animation, Body, MachineGeometry, Sample
 from rmac.client import Client, connect
 from rmac.errors import (
     AuthorityHeld,
@@ -19,6 +20,7 @@ from rmac.errors import (
 )
 from rmac.events import Event
 from rmac.generated import API_VERSION, calls
+from rmac.geometry.frame import Frame
 from rmac.geometry.nurbs import NurbsCurve
 from rmac.geometry.pose import Pose
 from rmac.machines import Joint, LoadedMachine, Machine
@@ -48,11 +50,13 @@ from rmac.wire.call import Call
 
 __all__ = [
     "API_VERSION",
+    "Animation",
     "Arc",
     "ArcThrough",
     "AuthorityHeld",
     "AuthorityRequired",
     "AwaitInput",
+    "Body",
     "Call",
     "CannotConnect",
     "CannotResume",
@@ -61,6 +65,7 @@ __all__ = [
     "Dwell",
     "Event",
     "FlightRecord",
+    "Frame",
     "InTurn",
     "Interrupted",
     "InvalidValue",
@@ -69,6 +74,7 @@ __all__ = [
     "Line",
     "LoadedMachine",
     "Machine",
+    "MachineGeometry",
     "MachineRefused",
     "MachineStopped",
     "Move",
@@ -87,6 +93,7 @@ __all__ = [
     "RequestRefused",
     "RmacError",
     "Run",
+    "Sample",
     "VersionMismatch",
     "calls",
     "connect",

@@ -10,6 +10,7 @@ from types import TracebackType
 from typing import Any, TypeVar
 
 from rmac.address import Address, parse_address
+from rmac.animation import RATE_HZ, Animation, MachineGeometry, read_animation, read_geometry
 from rmac.authority import Authority, OperatorPlace
 from rmac.connection import Connection
 from rmac.errors import CannotConnect, OtherRefusal, RmacError
@@ -145,6 +146,14 @@ class Client(Methods):
     def states(self, rate_hz: float = 20) -> Heard[dict[str, Any]]:
         """The topic `state`, so often a second of the machine's time."""
         return Heard(self, "state", rate_hz, dict)
+
+    def geometry(self) -> MachineGeometry:
+        """What there is to draw of the machine that is loaded."""
+        return read_geometry(self.cam.GetGeometry())
+
+    def animation(self, rate_hz: float = RATE_HZ) -> Heard[Animation]:
+        """Where the machine's links stand, so often a second of its time."""
+        return Heard(self, "animation", rate_hz, read_animation)
 
     def record(self, rate_hz: float | None = None) -> Recording:
         """Records joints within a `with` block: every cycle, which one client at a time may have more than 100 of a second,

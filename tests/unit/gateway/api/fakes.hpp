@@ -318,11 +318,19 @@ class MockTools : public ToolPort {
 
 class MockGuard : public GuardPort {
  public:
-  MOCK_METHOD(void, set_shape, (MachineBodies), (override));
   MOCK_METHOD(Expected<>, set_setup, (const nlohmann::json&), (override));
   MOCK_METHOD(nlohmann::json, setup, (), (const, override));
   MOCK_METHOD(Expected<>, set_check, (bool), (override));
   MOCK_METHOD(bool, checks, (), (const, override));
+};
+
+/// A machine whose links are not known, unless a test says what can be drawn.
+class FakeShape : public ShapePort {
+ public:
+  void set_bodies(MachineBodies /*bodies*/) override {}
+  std::shared_ptr<const MachineDrawing> drawing() const override { return now; }
+
+  std::shared_ptr<const MachineDrawing> now = std::make_shared<const MachineDrawing>();
 };
 
 class FakeMachine : public MachinePort {
@@ -335,6 +343,7 @@ class FakeMachine : public MachinePort {
 
   ToolPort& tools() override { return tools_mock; }
   GuardPort& guard() override { return guard_mock; }
+  ShapePort& shape() override { return shape_fake; }
   sdk::RmacCam& cam() override { return cam_mock; }
   OperatorPort& operating() override { return operating_mock; }
   sdk::Measuring& measuring() override { return measuring_mock; }
@@ -360,6 +369,7 @@ class FakeMachine : public MachinePort {
   testing::NiceMock<FakeDevice> device_fake;
   testing::NiceMock<MockTools> tools_mock;
   testing::NiceMock<MockGuard> guard_mock;
+  FakeShape shape_fake;
   std::optional<Event> stop;
   CycleSample now;
   CycleTimes times;

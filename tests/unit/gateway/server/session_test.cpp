@@ -29,7 +29,8 @@ struct SessionBench {
   OnePeer peers;
   ConnectionContext context{
       dispatcher, aside, lease, post, peers, options, [] { return std::make_unique<fakes::FakeRecords>(); }};
-  Subscriptions subscriptions{1000, [](const CycleSample&) { return std::string("0"); }};
+  Subscriptions subscriptions{1000, [](const CycleSample&) { return std::string("0"); },
+                              [] { return Scene{.drawing = std::make_shared<const MachineDrawing>()}; }};
   Session session{context, 7, "TCP client 7", subscriptions};
 };
 

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "animated_machine.hpp"
+
 namespace rmac::gateway {
 namespace {
 
@@ -13,12 +15,16 @@ using testing::HasSubstr;
 CycleSample sample_of_cycle(std::int64_t cycle) {
   CycleSample sample;
   sample.cycle = cycle;
+  sample.joint_count = sample.joint_count_with_held = 2;
   return sample;
 }
 
 /// The subscriptions of one client of a machine with 1000 cycles a second.
 struct Topics : Subscriptions {
-  Topics() : Subscriptions(1000, [](const CycleSample& sample) { return std::to_string(sample.cycle); }) {}
+  Topics()
+      : Subscriptions(
+            1000, [](const CycleSample& sample) { return std::to_string(sample.cycle); },
+            [this] { return Scene{.drawing = drawing}; }) {}
 
   /// How many samples each topic has in the batches after `count` cycles.
   std::map<std::string, std::size_t> batched(std::int64_t count) {
@@ -28,35 +34,39 @@ struct Topics : Subscriptions {
     std::map<std::string, std::size_t> samples;
     for (const std::string& line : batches()) {
       const json message = json::parse(line);
-      samples[message["method"]] = message["params"]["samples"].size();
+      samples[message["method"]] += message["params"]["samples"].size();
     }
     return samples;
   }
 
   std::int64_t cycle = 0;
   std::vector<std::int64_t> states;
+  std::shared_ptr<const MachineDrawing> drawing = fakes::slides_drawing();
 };
 
 using Counts = std::map<std::string, std::size_t>;
 
-TEST(Subscriptions, KnowFourTopicsAndNameAnotherAsItIsShown) {
-  EXPECT_TRUE(Subscriptions::check({"state", "joints", "drives", "events"}));
+TEST(Subscriptions, KnowFiveTopicsAndNameAnotherAsItIsShown) {
+  EXPECT_TRUE(Subscriptions::check({"state", "joints", "drives", "animation", "events"}));
   const auto refused = Subscriptions::check({"state", "wea\nther"});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().message, "parameter \"topics\" has \"wea?ther\", expected state, joints, drives or events");
+  EXPECT_EQ(refused.error().message,
+            "parameter \"topics\" has \"wea?ther\", expected state, joints, drives, animation or events");
 }
 
 TEST(Subscriptions, HaveARateUnlessTheyAreOfEvents) {
   EXPECT_FALSE(Subscriptions::has_rate({"events"}));
-  for (const char* topic : {"state", "joints", "drives"}) EXPECT_TRUE(Subscriptions::has_rate({"events", topic}));
+  for (const char* topic : {"state", "joints", "drives", "animation"})
+    EXPECT_TRUE(Subscriptions::has_rate({"events", topic}));
 }
 
 TEST(Subscriptions, CollectEachTopicAtItsOwnPace) {
   Topics topics;
   topics.start({"joints"}, 1000);
   topics.start({"drives"}, 100);
+  topics.start({"animation"}, 250);
   topics.start({"state"}, 10);
-  EXPECT_EQ(topics.batched(200), (Counts{{"joints", 200}, {"drives", 20}}));
+  EXPECT_EQ(topics.batched(200), (Counts{{"joints", 200}, {"drives", 20}, {"animation", 50}}));
   EXPECT_EQ(topics.states, (std::vector<std::int64_t>{1, 101})) << "a state is no batch";
   EXPECT_EQ(topics.batched(0), Counts{}) << "batches go once";
 }
@@ -78,7 +88,7 @@ TEST(Subscriptions, EndForTheTopicsThatAreNamedOrForAll) {
 }
 
 TEST(Subscriptions, AreFastAboveTheWatchersRateOnly) {
-  for (const char* topic : {"joints", "drives", "state"}) {
+  for (const char* topic : {"joints", "drives", "animation", "state"}) {
     SCOPED_TRACE(topic);
     Topics topics;
     topics.start({topic}, 100);
@@ -123,16 +133,16 @@ TEST(Subscriptions, AreFullBeforeABatchIsLargerThanASocketLikes) {
   EXPECT_FALSE(topics.is_full());
 }
 
-TEST(Subscriptions, AnimateWithFiftySamplesASecondAndThenGoOnAsBefore) {
+TEST(Subscriptions, AnimateWithSixtyPosesAndFiftySamplesOfJointsASecondAndThenGoOnAsBefore) {
   Topics topics;
   topics.animate(true);
-  EXPECT_EQ(topics.batched(100), (Counts{{"joints", 5}}));
+  EXPECT_EQ(topics.batched(100), (Counts{{"animation", 6}, {"joints", 5}}));
   topics.animate(true);
   topics.animate(false);
   EXPECT_EQ(topics.batched(100), Counts{});
   topics.start({"joints"}, 10);
   topics.animate(true);
-  EXPECT_EQ(topics.batched(100), (Counts{{"joints", 5}}));
+  EXPECT_EQ(topics.batched(100), (Counts{{"animation", 6}, {"joints", 5}}));
   topics.animate(false);
   EXPECT_EQ(topics.batched(200), (Counts{{"joints", 2}}));
 }

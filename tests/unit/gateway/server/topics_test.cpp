@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "animated_machine.hpp"
 #include "bench.hpp"
 #include "gateway/server/telemetry.hpp"
 
@@ -109,6 +110,62 @@ TEST(Topics, AnAnimationRaisesALowerRateUntilItEnds) {
   EXPECT_TRUE(client.call("RMAC_CAM.SetAnimation", "[false]").contains("result"));
   push_samples(bench, 101, 100);
   EXPECT_EQ(client.pushed("joints")["samples"].size(), 1U);
+}
+
+TEST(Topics, AnAnimationTellsSixtyTimesASecondWhereTheLinksAreAndEndsWithIt) {
+  ServerBench bench;
+  bench.on_gateway([](Server&, FakeMachine& machine) {
+    machine.shape_fake.now = fakes::slides_drawing();
+    machine.device_fake.is_virtual = true;
+  });
+  Client client(bench.port());
+  EXPECT_TRUE(client.call("RMAC_CAM.SetAnimation", "[true]").contains("result"));
+  push_samples(bench, 1, 1000);
+  const json params = client.pushed("animation");
+  EXPECT_EQ(params["samples"].size(), 60U);
+  EXPECT_EQ(params["machine"], "Slides");
+  EXPECT_EQ(params["virtual"], true);
+  EXPECT_EQ(params["samples"][0]["joints"], json::parse("[0.11, 0.22]"));
+  EXPECT_EQ(client.pushed("joints")["samples"].size(), 50U) << "who looks at joints alone goes on to";
+  EXPECT_TRUE(client.call("RMAC_CAM.SetAnimation", "[false]").contains("result"));
+  client.notifications.clear();
+  push_samples(bench, 1001, 1000);
+  EXPECT_TRUE(client.call("RMAC_CAM.Ok").contains("result"));
+  EXPECT_TRUE(client.notifications.empty()) << client.notifications[0];
+}
+
+TEST(Topics, AnAnimationLeavesPosesThatWereSubscribedToAsTheyWere) {
+  ServerBench bench;
+  bench.on_gateway([](Server&, FakeMachine& machine) { machine.shape_fake.now = fakes::slides_drawing(); });
+  Client client(bench.port());
+  EXPECT_EQ(client.call("subscribe", R"({"topics":["animation"],"rate_hz":10})")["result"], true);
+  EXPECT_TRUE(client.call("RMAC_CAM.SetAnimation", "[true]").contains("result"));
+  push_samples(bench, 1, 1000);
+  EXPECT_EQ(client.pushed("animation")["samples"].size(), 60U);
+  EXPECT_TRUE(client.call("RMAC_CAM.SetAnimation", "[false]").contains("result"));
+  push_samples(bench, 1001, 1000);
+  EXPECT_EQ(client.pushed("animation")["samples"].size(), 10U);
+  EXPECT_EQ(client.call("unsubscribe", R"({"topics":["animation"]})")["result"], true);
+  client.notifications.clear();
+  push_samples(bench, 2001, 1000);
+  EXPECT_TRUE(client.call("RMAC_CAM.Ok").contains("result"));
+  EXPECT_TRUE(client.notifications.empty()) << client.notifications[0];
+}
+
+TEST(Topics, AWatcherOfPosesThatDoesNotReadIsCutOffAsAnyOther) {
+  ServerOptions options;
+  options.output_limit_bytes = 1 << 20;
+  ServerBench bench(options);
+  bench.on_gateway([](Server&, FakeMachine& machine) { machine.shape_fake.now = fakes::slides_drawing(); });
+  Client client(bench.port(), 4096);
+  EXPECT_EQ(client.call("subscribe", R"({"topics":["animation"],"rate_hz":1000})")["result"], true);
+  const auto watched = [&] {
+    return bench.on_gateway([](Server& server, FakeMachine&) { return server.connection_count(); });
+  };
+  for (std::int64_t cycle = 1; watched() == 1; cycle += 1000) {
+    push_samples(bench, cycle, 1000);
+    ASSERT_LT(cycle, 1'000'000) << "never cut off";
+  }
 }
 
 TEST(Topics, OneClientAtATimeGetsTheFullRate) {

@@ -72,6 +72,12 @@ def simulate():
     show(session()).simulate()
 
 
+def show_machine():
+    from rmac_freecad.window.shown_machine import shown_machine
+
+    shown_machine(session()).toggle()
+
+
 def stop():
     here = session()
     here.station.stop(
@@ -89,6 +95,7 @@ COMMANDS = (
     Command("Sweep", "Sweep faces…", "Selected faces of a part, with a ball, bull-nose or flat end, without a Path job", sweep_faces, needs_document=True),
     Command("Machine", "Machine a job…", "Send a Path job, a profile, pocket or sweep, or a file of another control, to the machine as it is", machine_job, needs_document=True),
     Command("Simulate", "Simulate a job…", "How long a job takes, whether the machine can do it, and what limits it; moves nothing", simulate, needs_document=True),
+    Command("Animate", "Show the machine", "The loaded machine about the part, moving as it does, be it real or virtual; once more: it is taken out", show_machine, needs_document=True),
     Command("Stop", "Stop the machine", "Stop at once, whoever moves it, and drop what is queued. This is no emergency stop", stop),
 )
 

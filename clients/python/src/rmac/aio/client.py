@@ -13,6 +13,7 @@ from rmac.aio.authority import Authority, OperatorPlace
 from rmac.aio.connection import Connection
 from rmac.aio.heard import Heard, Recording
 from rmac.aio.run import Run
+from rmac.animation import RATE_HZ, Animation, MachineGeometry, read_animation, read_geometry
 from rmac.errors import CannotConnect, OtherRefusal, RmacError
 from rmac.events import Event, read_event
 from rmac.generated.awaiting import Methods
@@ -145,6 +146,14 @@ class Client(Methods):
     def states(self, rate_hz: float = 20) -> Heard[dict[str, Any]]:
         """The topic `state`, so often a second of the machine's time."""
         return Heard(self, "state", rate_hz, dict)
+
+    async def geometry(self) -> MachineGeometry:
+        """What there is to draw of the machine that is loaded."""
+        return read_geometry(await self.cam.GetGeometry())
+
+    def animation(self, rate_hz: float = RATE_HZ) -> Heard[Animation]:
+        """Where the machine's links stand, so often a second of its time."""
+        return Heard(self, "animation", rate_hz, read_animation)
 
     def record(self, rate_hz: float | None = None) -> Recording:
         """Records joints within a `with` block: every cycle, which one client at a time may have more than 100 of a second,

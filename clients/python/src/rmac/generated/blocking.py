@@ -625,7 +625,7 @@ class RMAC_CAM:
         return self._call(calls.RMAC_CAM.SetOutput(Name, On))
 
     def SetAnimation(self, mode: bool) -> None:
-        """True streams the joint values to this connection (topic joints, 50 Hz, or faster if it is subscribed to so) for an animation; false ends it."""
+        """True streams to this connection, for an animation, where each link of the machine stands (topic animation, 60 Hz; what there is to draw gives GetGeometry) and the joint values (topic joints, 50 Hz), or faster where it is subscribed to so; false ends it."""
         return self._call(calls.RMAC_CAM.SetAnimation(mode))
 
     def DoToolChange(self, ToolNumber: int) -> bool:
@@ -663,6 +663,14 @@ class RMAC_CAM:
     def GetCollisionCheck(self) -> bool:
         """Whether what moves is checked before it does."""
         return self._call(calls.RMAC_CAM.GetCollisionCheck())
+
+    def GetGeometry(self) -> dict[str, Any]:
+        """What there is to draw of the loaded machine: the solids of its links, each with its pose while all joints stand at 0, names of links and joints, and where the tool interface is; `missing` says what is not known. Asked for once, and again when `geometry` in the topic animation is another number."""
+        return self._call(calls.RMAC_CAM.GetGeometry())
+
+    def GetMesh(self, Body: str) -> dict[str, Any]:
+        """The surface of a body of GetGeometry that is a mesh, in mm: `Points` and `Triangles`. At most 50000 triangles, from a file of at most 16 MiB. Body: its Name."""
+        return self._call(calls.RMAC_CAM.GetMesh(Body))
 
     def MoveAlongNurbsND(self, MoveID: int, NurbsND: types.NurbsLike) -> bool:
         """Queues a NURBS in joint space or with a tool axis; evaluated exactly, never cut into lines. MoveID: the client's number; comes back in events and records. NurbsND: mm or deg."""
@@ -872,7 +880,7 @@ class Connection:
         return self._call(calls.Connection.hello(client, version))
 
     def subscribe(self, topics: Sequence[str], rate_hz: float | None = None) -> bool:
-        """Pushes topics to this connection: state, joints, drives, events. rate_hz: Hz; 100 when left out; more for one client at a time."""
+        """Pushes topics to this connection: state, joints, drives, animation, events. rate_hz: Hz; 100 when left out; more for one client at a time."""
         return self._call(calls.Connection.subscribe(topics, rate_hz))
 
     def unsubscribe(self, topics: Sequence[str] | None = None) -> bool:

@@ -763,7 +763,7 @@ class RMAC_CAM:
 
     @staticmethod
     def SetAnimation(mode: bool) -> Call[None]:
-        """True streams the joint values to this connection (topic joints, 50 Hz, or faster if it is subscribed to so) for an animation; false ends it."""
+        """True streams to this connection, for an animation, where each link of the machine stands (topic animation, 60 Hz; what there is to draw gives GetGeometry) and the joint values (topic joints, 50 Hz), or faster where it is subscribed to so; false ends it."""
         return Call("RMAC_CAM.SetAnimation", {"mode": mode})
 
     @staticmethod
@@ -810,6 +810,16 @@ class RMAC_CAM:
     def GetCollisionCheck() -> Call[bool]:
         """Whether what moves is checked before it does."""
         return Call("RMAC_CAM.GetCollisionCheck", {})
+
+    @staticmethod
+    def GetGeometry() -> Call[dict[str, Any]]:
+        """What there is to draw of the loaded machine: the solids of its links, each with its pose while all joints stand at 0, names of links and joints, and where the tool interface is; `missing` says what is not known. Asked for once, and again when `geometry` in the topic animation is another number."""
+        return Call("RMAC_CAM.GetGeometry", {})
+
+    @staticmethod
+    def GetMesh(Body: str) -> Call[dict[str, Any]]:
+        """The surface of a body of GetGeometry that is a mesh, in mm: `Points` and `Triangles`. At most 50000 triangles, from a file of at most 16 MiB. Body: its Name."""
+        return Call("RMAC_CAM.GetMesh", {"Body": Body})
 
     @staticmethod
     def MoveAlongNurbsND(MoveID: int, NurbsND: types.NurbsLike) -> Call[bool]:
@@ -1061,7 +1071,7 @@ class Connection:
 
     @staticmethod
     def subscribe(topics: Sequence[str], rate_hz: float | None = None) -> Call[bool]:
-        """Pushes topics to this connection: state, joints, drives, events. rate_hz: Hz; 100 when left out; more for one client at a time."""
+        """Pushes topics to this connection: state, joints, drives, animation, events. rate_hz: Hz; 100 when left out; more for one client at a time."""
         return Call("subscribe", {"topics": topics, "rate_hz": rate_hz})
 
     @staticmethod
