@@ -58,7 +58,7 @@ void CuttingLoad::set_tool(const Tool& tool) {
   mill_.reset();
   last_.reset();
   now_until_s_ = -1;
-  taken_mm3_ = 0, blind_ = down_ = 0;
+  taken_mm3_ = 0, looks_ = {};
   no_mill_.clear();
   if (!tool.shape) return;  // it takes nothing away
   auto mill = EndMill::of(*tool.shape);
@@ -130,18 +130,18 @@ void CuttingLoad::cuts(const DexelGrid& grid, const ToolAt& tool, const Eigen::V
 }
 
 bool CuttingLoad::plunges(const Engagement& met, double down_mm, double share) {
-  down_ = met.face && down_mm >= kSharp_mm ? down_ + 1 : 0;
-  return down_ >= kGivesWayLooks || (down_ > 0 && share > kPlunge);
+  looks_.down = met.face && down_mm >= kSharp_mm ? looks_.down + 1 : 0;
+  return looks_.down >= kGivesWayLooks || (looks_.down > 0 && share > kPlunge);
 }
 
 bool CuttingLoad::engaged(const Engagement& met, const MoveNow& move) {
   const double taken = std::exchange(taken_mm3_, 0);
   if (!met.slices.empty() || met.face || taken < kLeastTaken_mm3) {
-    blind_ = 0;
+    looks_.blind = 0;
     return !met.slices.empty();
   }
   // A look or two may fall beside the last of a cut.
-  if (++blind_ == kBlindLooks) {
+  if (++looks_.blind == kBlindLooks) {
     miss("rays", fmt::format("it takes off less than rays {:g} mm apart show, first in line {}; give a finer "
                              "--resolution",
                              rays_mm_, move.line));

@@ -89,6 +89,10 @@ class CuttingLoad : public CutListener {
     double rpm = 0;
     TurnForces forces;
   };
+  /// So often on end material went and no tooth was seen in any, and it went down with its face.
+  struct Looks {
+    int blind = 0, down = 0;
+  };
   void judge(Overload::Of of, double mean, double allowed, const Span& span, const ToolAt& tool, const MoveNow& move);
   /// Whether teeth are in material now; tells of material that goes though none is seen to be.
   [[nodiscard]] bool engaged(const Engagement& met, const MoveNow& move);
@@ -116,8 +120,7 @@ class CuttingLoad : public CutListener {
   double now_until_s_ = -1;  ///< from then on nobody knows it to cut
   double told_s_ = 0;        ///< when it last heard of the tool
   double taken_mm3_ = 0;     ///< since then
-  int down_ = 0;             ///< so often on end it went down with its face
-  int blind_ = 0;            ///< so often on end material went and no tooth was seen in any
+  Looks looks_;
 };
 
 }  // namespace rmac::gateway
