@@ -55,8 +55,8 @@ MachineDrawing MachineShape::draw() const {
   for (const JointLimits& joint : joints_) made.joints.push_back(joint.name);
   const std::vector<std::string>& chain = bodies_->chain;
   if (chain.empty()) {
-    made.missing =
-        fmt::format("device.json of {} has no Chain and no Geometry, so that nothing is known of its links", machine_);
+    made.missing = fmt::format(
+        "nothing is known of the links of {}: the device.json of its machine has no Chain and no Geometry", machine_);
     return made;
   }
   std::vector<std::string> wanted = made.joints;
@@ -75,7 +75,9 @@ MachineDrawing MachineShape::draw() const {
   made.bodies = bodies_;
   if (bodies_->bodies.empty()) {
     made.missing = fmt::format(
-        "device.json of {} has no Geometry: it is known where its links stand, and not what they look like", machine_);
+        "where the links of {} stand is known, and not what they look like: the device.json of its machine has no "
+        "Geometry",
+        machine_);
   }
   return made;
 }

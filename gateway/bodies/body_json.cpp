@@ -61,6 +61,13 @@ std::string unknown_link(const std::string& link, const std::vector<std::string>
 /// What is wrong with the order of the links; empty: nothing.
 std::string check_chain(const std::vector<std::string>& chain, std::span<const std::string> joints) {
   std::vector<std::string> wanted(joints.begin(), joints.end());
+  for (const std::string& joint : wanted) {
+    if (joint != kBase && joint != kTable && joint != kSpindle) continue;
+    return fmt::format(
+        "/Joints has one that is called \"{}\", which is the name of a link of every machine; call it "
+        "something else",
+        joint);
+  }
   wanted.emplace_back(kBase);
   std::vector<std::string> given = chain;
   std::sort(wanted.begin(), wanted.end());

@@ -167,14 +167,14 @@ class AnimationTest(Animated):
         self.edit("DMACXYZ", lambda device, folder: [device.pop(key) for key in ("Chain", "Geometry")])
         self.edit("SuginoXYZ", lambda device, folder: device.pop("Geometry"))
         self.load("DMACXYZ")
-        nothing = "device.json of DMACXYZ has no Chain and no Geometry, so that nothing is known of its links"
+        nothing = "nothing is known of the links of DMACXYZ: the device.json of its machine has no Chain and no Geometry"
         geometry = self.watch()
         self.assertEqual((geometry["missing"], geometry["links"], geometry["bodies"]), (nothing, [], []))
         told = self.watcher.wait_note("animation")
         self.assertEqual((told["missing"], told["samples"]), (nothing, []))
         self.load("SuginoXYZ")
         told = self.watcher.wait_note("animation", lambda params: params["samples"])
-        self.assertIn("has no Geometry: it is known where its links stand", told["missing"])
+        self.assertIn("where the links of SuginoXYZ stand is known", told["missing"])
 
     def test_a_mesh_is_named_and_sent_when_it_is_asked_for(self):
         def add_mesh(device, folder):

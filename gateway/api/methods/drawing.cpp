@@ -37,6 +37,11 @@ Expected<nlohmann::json> mesh_of(const MachineDrawing& drawing, const std::strin
   }
   const auto& shape = std::get<MeshShape>(body->shape);
   std::error_code unknown;
+  // It led to where it lay when the machine was loaded.
+  if (const auto now = std::filesystem::weakly_canonical(shape.file, unknown); !unknown && now != shape.file) {
+    return no_mesh(name, fmt::format("is in {}, which leads elsewhere since the machine was loaded; load it anew",
+                                     shape.file.filename().string()));
+  }
   const std::uintmax_t bytes = std::filesystem::file_size(shape.file, unknown);
   if (!unknown && bytes > kLargestMeshFile) {
     return no_mesh(name, fmt::format("is in a file of {} MiB, and at most {} MiB are sent; take {} of the folder of "

@@ -108,13 +108,13 @@ TEST(MachineShape, SaysWhatIsMissing) {
   MachineShape& shape = loaded.shape;
   loaded.load(slides(), {});
   EXPECT_EQ(shape.drawing()->missing,
-            "device.json of Slides has no Chain and no Geometry, so that nothing is known of its links");
+            "nothing is known of the links of Slides: the device.json of its machine has no Chain and no Geometry");
   EXPECT_FALSE(shape.drawing()->links);
   MachineBodies chain_alone = bodies(), wrong_names = bodies();
   chain_alone.bodies.clear();
   loaded.load(slides(), chain_alone);
   EXPECT_TRUE(shape.drawing()->links);
-  EXPECT_THAT(shape.drawing()->missing, HasSubstr("has no Geometry: it is known where its links stand"));
+  EXPECT_THAT(shape.drawing()->missing, HasSubstr("where the links of Slides stand is known"));
   wrong_names.chain = {"X", "base", "Y"};
   loaded.load(slides(), wrong_names);
   EXPECT_FALSE(shape.drawing()->links);

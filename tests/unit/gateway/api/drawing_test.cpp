@@ -79,6 +79,16 @@ TEST(GetMesh, RefusesWhatIsNoneWithThoseThatThereAre) {
               HasSubstr("is no mesh of this machine; there are head, arm"));
 }
 
+TEST(GetMesh, SendsNothingThatALinkLeadsToSinceTheMachineWasLoaded) {
+  const TemporaryFolder folder("mesh"), elsewhere("elsewhere");
+  write_ball(elsewhere.path() / "other.obj", 8);
+  fs::create_symlink(elsewhere.path() / "other.obj", folder.path() / "ball.obj");
+  Api api;
+  show(api, {{"ball", "base", MeshShape{folder.path() / "ball.obj"}, {}, ""}});
+  EXPECT_THAT(api.refusal("RMAC_CAM.GetMesh", R"({"Body": "ball"})", rpc_code::kMachineBase - 14),
+              HasSubstr("is in ball.obj, which leads elsewhere"));
+}
+
 TEST(GetMesh, RefusesMoreThanASocketShouldCarry) {
   const TemporaryFolder folder("mesh");
   write_ball(folder.path() / "fine.obj", 113);

@@ -76,6 +76,11 @@ TEST(DeviceGeometry, IsRefusedWithWhatIsWrongAndWhatIsAllowed) {
                 d["Chain"] = {"C", "A", "X", "Y", "Z"};
               }),
               HasSubstr("it must name base and each"));
+  EXPECT_THAT(problem_with([](json& d) {
+                d["Joints"][2]["Name"] = "spindle";
+                d["Chain"] = {"C", "A", "base", "X", "Y", "spindle"};
+              }),
+              HasSubstr("/Joints has one that is called \"spindle\""));
   EXPECT_THAT(problem_with([](json& d) { d["Geometry"][1]["Name"] = d["Geometry"][0]["Name"]; }),
               HasSubstr("/Geometry/1/Name"));
   EXPECT_THAT(problem_with([](json& d) { d["Geometry"][0]["Shape"] = json::object(); }),
