@@ -45,10 +45,12 @@ void add(CuttingShare& share, const TurnForces& forces, double time_s) {
 
 /// Of a tool that goes by `velocity`; without a way across its axis there is nothing across it either.
 Eigen::Vector3d mean_force(const TurnForces& forces, const Eigen::Vector3d& axis, const Eigen::Vector3d& velocity) {
-  const Eigen::Vector3d along = forces.z_n.mean * axis, across = velocity - velocity.dot(axis) * axis;
-  if (across.norm() <= kStraightDown * velocity.norm()) return along;
+  const Eigen::Vector3d across = velocity - velocity.dot(axis) * axis;
+  Eigen::Vector3d force = forces.z_n.mean * axis;
+  if (across.norm() <= kStraightDown * velocity.norm()) return force;
   const Eigen::Vector3d x = across.normalized();
-  return along + forces.x_n.mean * x + forces.y_n.mean * axis.cross(x);
+  force += forces.x_n.mean * x + forces.y_n.mean * axis.cross(x);
+  return force;
 }
 
 }  // namespace
