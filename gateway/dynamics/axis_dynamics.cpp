@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "gateway/dynamics/axis_models.hpp"
+#include "gateway/dynamics/least_jerk_way.hpp"
 #include "rmac/motion/drive_scale.hpp"
+#include "rmac/motion/servo/pitch_error.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -16,22 +19,6 @@ constexpr double kMetresPerMm = 1e-3;
 /// Of a joint's limits, on the way to where the motion begins.
 constexpr double kShare = 0.5;
 constexpr double kLeastApproach_s = 0.1, kSettling_s = 0.5;
-
-/// How long a joint takes for a way by the polynomial of least jerk, whose peaks are 1.875, 5.774 and 60.
-double approach_s(const JointLimits& limits, double length) {
-  return std::max({1.875 * length / (kShare * limits.max_speed),
-                   std::sqrt(5.774 * length / (kShare * limits.max_acceleration)),
-                   std::cbrt(60 * length / (kShare * limits.max_jerk))});
-}
-
-/// Straight between the points of the table, steady beyond its ends.
-double pitch_error(const PitchErrors& pitch, double shown) {
-  if (pitch.errors.empty()) return 0;
-  const auto last = static_cast<double>(pitch.errors.size() - 1);
-  const double along = last > 0 ? std::clamp((shown - pitch.first) / pitch.step, 0.0, last) : 0;
-  const auto before = static_cast<std::size_t>(along), after = static_cast<std::size_t>(std::ceil(along));
-  return std::lerp(pitch.errors[before], pitch.errors[after], along - std::floor(along));
-}
 
 }  // namespace
 
@@ -132,17 +119,16 @@ void AxisDynamics::approach(const CycleSample& planned) {
   const std::array<double, kMaxJoints> from = setpoint.position;
   double time_s = kLeastApproach_s;
   for (std::size_t j = 0; j < device_.joints.size(); ++j) {
-    time_s = std::max(time_s, approach_s(device_.joints[j].limits, std::abs(planned.position_set[j] - from[j])));
+    const double length = std::abs(planned.position_set[j] - from[j]);
+    time_s = std::max(time_s, LeastJerkWay::least_time_s(device_.joints[j].limits, length, kShare));
   }
   const double period_s = loops_->mechanism().planner_model.period_s;
   const auto cycles = static_cast<int>(std::ceil((time_s + kSettling_s) / period_s));
   for (int i = 1; i <= cycles; ++i) {
-    const double u = std::min(1.0, i * period_s / time_s);
     for (std::size_t j = 0; j < device_.joints.size(); ++j) {
-      const double way = planned.position_set[j] - from[j];
-      setpoint.position[j] = from[j] + way * u * u * u * (10 + u * (-15 + 6 * u));
-      setpoint.velocity[j] = way * u * u * (30 + u * (-60 + 30 * u)) / time_s;
-      setpoint.acceleration[j] = way * u * (60 + u * (-180 + 120 * u)) / (time_s * time_s);
+      const LeastJerkWay way{from[j], planned.position_set[j] - from[j], time_s};
+      std::tie(setpoint.position[j], setpoint.velocity[j], setpoint.acceleration[j]) =
+          std::tuple_cat(way.at(i * period_s));
     }
     run(planned, 0);
     if (stopped_) return;

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "gateway/dynamics/axis_models.hpp"
+#include "gateway/dynamics/least_jerk_way.hpp"
 #include "gateway/verifier/machine_rig.hpp"
 
 namespace rmac::verifier {
@@ -32,28 +33,11 @@ double reach(const JointLimits& limits, double from) {
   return above >= below ? std::min(kMost, 0.5 * above) : -std::min(kMost, 0.5 * below);
 }
 
-/// One joint's way there and back, by the polynomial of least jerk.
-struct Way {
-  double from = 0, by = 0, time_s = 0;
-
-  static Way within(const sdk::Joint& joint, double from) {
-    const JointLimits& limits = joint.limits;
-    Way way{from, reach(limits, from), 0};
-    // Peaks of s(τ) = 10 τ³ - 15 τ⁴ + 6 τ⁵ over τ from 0 to 1: 1.875, 5.774 and 60.
-    const double length = std::abs(way.by);
-    way.time_s = std::max({1.875 * length / (kShare * limits.max_speed),
-                           std::sqrt(5.774 * length / (kShare * limits.max_acceleration)),
-                           std::cbrt(60 * length / (kShare * limits.max_jerk)), 0.05});
-    return way;
-  }
-  [[nodiscard]] std::array<double, 3> at(double t_s, bool back) const {
-    const double u = std::clamp(t_s / time_s, 0.0, 1.0);
-    const double s = u * u * u * (10 + u * (-15 + 6 * u));
-    const double v = u * u * (30 + u * (-60 + 30 * u)) / time_s;
-    const double a = u * (60 + u * (-180 + 120 * u)) / (time_s * time_s);
-    return {from + by * (back ? 1 - s : s), (back ? -by : by) * v, (back ? -by : by) * a};
-  }
-};
+/// One joint's way there, within its limits.
+gateway::LeastJerkWay way_within(const JointLimits& limits, double from) {
+  const double by = reach(limits, from);
+  return {from, by, std::max(gateway::LeastJerkWay::least_time_s(limits, std::abs(by), kShare), 0.05)};
+}
 
 /// One joint's way there, most of it at a steady speed.
 struct SteadyWay {
@@ -101,9 +85,9 @@ class ServoLoopCheck {
     for (std::size_t j = 0; j < loop_.joint_count(); ++j) {
       const sdk::Joint& joint = device_.joints[j];
       if (joint.method == ControlMethod::Force) continue;
-      const Way way = Way::within(joint, command_.setpoint.position[j]);
-      for (const bool back : {false, true}) {
-        if (auto fine = go(j, way, back).and_then([&] { return rest(); }); !fine) return fine;
+      const auto way = way_within(joint.limits, command_.setpoint.position[j]);
+      for (const auto& each : {way, way.back()}) {
+        if (auto fine = go(j, each).and_then([&] { return rest(); }); !fine) return fine;
       }
       const SteadyWay steady = SteadyWay::within(joint, command_.setpoint.position[j]);
       if (auto fine = go_steadily(j, steady).and_then([&] { return rest(); }); !fine) return fine;
@@ -122,10 +106,10 @@ class ServoLoopCheck {
     return rig_.fault("stability", std::move(what));
   }
 
-  Checked go(std::size_t j, const Way& way, bool back) {
+  Checked go(std::size_t j, const gateway::LeastJerkWay& way) {
     const auto cycles = static_cast<int>(std::ceil(way.time_s / kCycle_s));
     for (int i = 1; i <= cycles; ++i) {
-      if (auto fine = follow(j, way.at(i * kCycle_s, back)); !fine) return fine;
+      if (auto fine = follow(j, way.at(i * kCycle_s)); !fine) return fine;
     }
     return {};
   }

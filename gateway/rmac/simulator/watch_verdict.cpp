@@ -32,10 +32,13 @@ Result<> force_verdict(const CollisionWatch& watch) {
   return clauses.empty() ? Result<>() : fail(fmt::format("{}", fmt::join(clauses, "; ")));
 }
 
+Result<> both(const Result<>& first, const Result<>& second) {
+  if (!first && !second) return fail(first.error().message + "; " + second.error().message);
+  return first ? second : first;
+}
+
 Result<> verdict(const CollisionWatch& watch) {
-  const auto met = collision_verdict(watch), takes = force_verdict(watch);
-  if (!met && !takes) return fail(met.error().message + "; " + takes.error().message);
-  return met ? takes : met;
+  return both(collision_verdict(watch), force_verdict(watch));
 }
 
 const char* name_of(gateway::Overload::Of of) noexcept {

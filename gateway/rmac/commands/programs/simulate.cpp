@@ -335,8 +335,7 @@ Result<> simulate_program(const SimulateOptions& options, bool json) {
   } else {
     print_simulation_table(*report, beside, took_s);
   }
-  if (!met && !held) return fail(met.error().message + "; " + held.error().message);
-  return met ? held : met;
+  return both(met, held);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "rmac/motion/servo/pitch_error.hpp"
+
 namespace rmac {
 
 namespace {
@@ -38,25 +40,17 @@ void PositionCorrection::follow(double wanted_velocity, double period_s) noexcep
   side_acceleration_ = way * 2 * std::numbers::pi * std::sin(angle) / (kCrossingS * kCrossingS);
 }
 
-PositionCorrection::Place PositionCorrection::place(double shown) const noexcept {
-  const std::size_t last = pitch_.errors.size() - 1;
-  const double along = std::clamp((shown - pitch_.first) / pitch_.step, 0.0, static_cast<double>(last));
-  const std::size_t index = std::min(static_cast<std::size_t>(along), last - std::min<std::size_t>(last, 1));
-  const double part = along - static_cast<double>(index);
-  const double raw = (shown - pitch_.first) / pitch_.step;
-  return {index, part, raw >= 0 && raw <= static_cast<double>(last)};
-}
-
 double PositionCorrection::error(double shown) const noexcept {
-  if (pitch_.errors.size() < 2) return pitch_.errors.empty() ? 0 : pitch_.errors.front();
-  const Place at = place(shown);
-  return pitch_.errors[at.index] * (1 - at.part) + pitch_.errors[at.index + 1] * at.part;
+  return pitch_error(pitch_, shown);
 }
 
 double PositionCorrection::slope(double shown) const noexcept {
   if (pitch_.errors.size() < 2) return 0;
-  const Place at = place(shown);
-  return at.inside ? (pitch_.errors[at.index + 1] - pitch_.errors[at.index]) / pitch_.step : 0;
+  const std::size_t last = pitch_.errors.size() - 1;
+  const double along = (shown - pitch_.first) / pitch_.step;
+  if (!(along >= 0 && along <= static_cast<double>(last))) return 0;
+  const std::size_t index = std::min(static_cast<std::size_t>(along), last - 1);
+  return (pitch_.errors[index + 1] - pitch_.errors[index]) / pitch_.step;
 }
 
 double PositionCorrection::shown(double actual) const noexcept {

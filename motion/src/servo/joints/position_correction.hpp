@@ -35,12 +35,6 @@ class PositionCorrection {
  private:
   [[nodiscard]] double error(double shown) const noexcept;
   [[nodiscard]] double slope(double shown) const noexcept;
-  struct Place {
-    std::size_t index;  ///< of the point before
-    double part;        ///< 0 to 1 of the way to the next
-    bool inside;
-  };
-  [[nodiscard]] Place place(double shown) const noexcept;
 
   PitchErrors pitch_;
   double half_backlash_;
