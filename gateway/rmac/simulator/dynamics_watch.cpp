@@ -72,9 +72,11 @@ gateway::CycleSample DynamicsWatch::cycle(const gateway::CycleSample& planned, i
   }
   // Where the machine stands before nobody knows.
   begun_ = begun_ || planned.moving;
-  if (!begun_ || axes_->stopped()) return planned;
-  take_force(planned);
-  axes_->cycle(planned, {.line = line, .tool = tool_, .force_n = force_n_});
+  if (!begun_) return planned;
+  if (!axes_->stopped()) {
+    take_force(planned);
+    axes_->cycle(planned, {.line = line, .tool = tool_, .force_n = force_n_});
+  }
   gateway::CycleSample seen = planned;
   std::ranges::copy(axes_->joints(), seen.position_set.begin());
   return seen;

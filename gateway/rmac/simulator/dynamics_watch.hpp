@@ -24,14 +24,15 @@ class DynamicsWatch {
 
   void tool_may_have_changed() noexcept { look_at_tool_ = true; }
   void configuration_may_have_changed() noexcept { look_at_configuration_ = true; }
-  /// The same cycle with its joints, and they alone, where they truly are. As planned before the first motion, for
-  /// another machine, and once a fault stopped this one.
+  /// The same cycle with its joints, and they alone, where they truly are: as planned before the first motion and for
+  /// another machine, and where they were when a fault stopped this one.
   [[nodiscard]] gateway::CycleSample cycle(const gateway::CycleSample& planned, int line,
                                            gateway::Controller& controller);
   /// The run is over.
   void finish();
 
   [[nodiscard]] const gateway::AxisDynamics& axes() const noexcept { return *axes_; }
+  [[nodiscard]] gateway::AxisDynamics& axes() noexcept { return *axes_; }
   /// What it does not tell of, a sentence each; empty: it tells of all.
   [[nodiscard]] const std::set<std::string>& not_told() const noexcept { return not_told_; }
 

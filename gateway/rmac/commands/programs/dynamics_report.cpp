@@ -30,7 +30,9 @@ Json dynamics_json(const DynamicsWatch* watch, std::optional<double> keeps_at) {
                                 {"axis", motor.axis},
                                 {"rms_nm", motor.rms_nm},
                                 {"rated_nm", motor.rated_nm},
+                                {"overheats", motor.overheats()},
                                 {"peak_nm", motor.peak_nm},
+                                {"peak_t_s", motor.peak_t_s},
                                 {"allowed_nm", motor.allowed_nm}});
   }
   for (const gateway::OffPath& off : axes.deviation().off_path()) {
@@ -40,6 +42,7 @@ Json dynamics_json(const DynamicsWatch* watch, std::optional<double> keeps_at) {
                                   {"until_s", off.until_s},
                                   {"place_mm", {off.place[0], off.place[1], off.place[2]}},
                                   {"most_mm", off.most_mm},
+                                  {"most_t_s", off.most_t_s},
                                   {"allowed_mm", off.allowed_mm}});
   }
   if (const auto& stopped = axes.stopped()) {
