@@ -7,7 +7,7 @@ import unittest
 import numpy as np
 
 from appliance import BUILD
-from test_collisions import SANITIZED, request
+from test_collisions import SANITIZED, SETUP, cut, request, to
 from view_page import BETWEEN_LOOKS_MM, TABLE_LINK, ViewCase, at, chain, frame, moves_at_random, program, shown
 
 COUNT = 10 / 2**20  # mm of a screw that an encoder tells apart, or more than the degrees of a gear
@@ -161,13 +161,28 @@ class ViewOfDynamics(ViewCase):
         self.assertIn(f"line {stopped['line']}", seen["text"])
 
     def test_without_a_set_up_findings_stand_where_the_tip_is(self):
-        report, data, _ = self.seen(moves_at_random(6), with_setup=False)
+        gains = request("RMAC_Config.SetMechanismJointServoControlGains", JntNum=0, ServoControlGains=[10000, 900000, 70, 0, 0, 0, 0])
+        configured = [gains, request("RMAC_Config.Apply")]
+        report, data, _ = self.seen([*configured, *moves_at_random(6)], with_setup=False)
         self.assertTrue(report["dynamics"]["off_path"])
         check = self.self_check()
+        self.assertEqual(check["notes"], ["NOT TOLD: " + text for text in report["dynamics"]["not_told"]])
+        self.assertIn("configures the machine anew", check["notes"][0])
         self.assertEqual(len(check["findings"]), len(report["dynamics"]["off_path"]))
         for seen, off in zip(check["findings"], report["dynamics"]["off_path"]):
             tip = at(shown(data["links"][-1], off["most_t_s"]), data["tools"][0]["tip"])
             np.testing.assert_allclose(seen["mark"], tip, atol=1e-3)
+
+    def test_a_note_tells_the_feed_at_which_the_axes_keep_to_the_program(self):
+        slot = [(x, -20, 25.5) for x in (-50, 20)]
+        requests = [to(*slot[0]), SPINDLE, request("RMAC_CAM.SetFeedrate", Feedrate=3600), cut(*slot, 2)]
+        self.write(requests, SETUP | {"Material": "Al6082-T6"})
+        report, _ = self.view("--dynamics")
+        percent = report["dynamics"]["keeps_at_percent"]
+        self.assertTrue(report["dynamics"]["off_path"] and percent)
+        check = self.self_check()
+        self.assertEqual(check["errors"], [])
+        self.assertEqual(check["notes"][-1], f"At a feed override of {percent:g} % the axes keep to the program.")
 
     def test_nothing_of_it_is_shown_where_nobody_asked(self):
         self.write(spun())
