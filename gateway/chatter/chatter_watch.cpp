@@ -45,7 +45,7 @@ void ChatterWatch::add(const Look& look, std::span<const VibrationMode> modes) {
   chatter.until_s = look.t_s;
   if (limit.share >= chatter.share) return;
   chatter.share = limit.share, chatter.frequency_hz = limit.frequency_hz;
-  chatter.place = look.place, chatter.rpm = look.rpm;
+  chatter.most_t_s = look.t_s, chatter.place = look.place, chatter.rpm = look.rpm;
   chatter.steady_rpm = steady_rpm(stability, look);
 }
 

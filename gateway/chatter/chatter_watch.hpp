@@ -16,9 +16,10 @@ struct Chatter {
   int line = 0;  ///< of the program, when it began
   std::int64_t move_id = 0;
   double t_s = 0, until_s = 0;
-  Eigen::Vector3d place{0, 0, 0};  ///< of the tool's tip where it is the worst, part frame
-  // There:
-  double share = 0;  ///< of its depth at which it would begin to
+  // Where it is the worst:
+  double most_t_s = 0;
+  Eigen::Vector3d place{0, 0, 0};  ///< of the tool's tip, part frame
+  double share = 0;                ///< of its depth at which it would begin to
   double frequency_hz = 0;
   double rpm = 0;                      ///< that the spindle turns with
   std::optional<double> steady_rpm{};  ///< the nearest to it at which this cut is steady

@@ -22,8 +22,8 @@ constexpr double kLeastApproach_s = 0.1, kSettling_s = 0.5;
 
 }  // namespace
 
-void AxisDynamics::Mean::add(double value) noexcept {
-  peak = std::max(peak, std::abs(value));
+void AxisDynamics::Mean::add(double t_s, double value) noexcept {
+  if (std::abs(value) > peak) peak = std::abs(value), peak_t_s = t_s;
   sum2 += value * value;
 }
 
@@ -231,11 +231,8 @@ void AxisDynamics::account(const CycleSample& planned, const Beside& beside) {
   moved_ = moved_ || planned.moving;
   if (!moved_) return;
   ++count_;
-  for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].add(truth_[j] - planned.position_set[j]);
-  const ServoLoopParts& parts = loops_->mechanism().loop->parts();
-  for (std::size_t i = 0; i < torques_.size(); ++i) {
-    torques_[i].add(shaft_nm(parts.actuators[i].scale, loops_->report().torque_permille[i]));
-  }
+  for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].add(planned.t_s, truth_[j] - planned.position_set[j]);
+  for (std::size_t i = 0; i < torques_.size(); ++i) torques_[i].add(planned.t_s, torque_nm(i));
   if (!planned.moving) return;
   const std::span wanted = std::span(planned.position_set).first(device_.joints.size());
   const Vector& place = planned.pose_set.tip;
@@ -247,6 +244,10 @@ void AxisDynamics::account(const CycleSample& planned, const Beside& beside) {
                   .move_id = planned.move_id});
 }
 
+double AxisDynamics::torque_nm(std::size_t motor) const {
+  return shaft_nm(loops_->mechanism().loop->parts().actuators[motor].scale, loops_->report().torque_permille[motor]);
+}
+
 void AxisDynamics::finish() {
   deviation_.forget();
 }
@@ -255,6 +256,7 @@ std::vector<JointDeviation> AxisDynamics::joint_deviations() const {
   std::vector<JointDeviation> told;
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     told.push_back({.name = device_.joints[j].limits.name,
+                    .rotary = device_.joints[j].limits.type == JointType::Rotary,
                     .peak = joints_[j].peak,
                     .rms = std::sqrt(joints_[j].sum2 / static_cast<double>(std::max<std::size_t>(count_, 1)))});
   }
@@ -271,6 +273,7 @@ std::vector<MotorTorque> AxisDynamics::motor_torques() const {
                     .rated_nm = actuator.scale.rated_torque_nm,
                     .peak_nm = torques_[i].peak,
                     .rms_nm = std::sqrt(torques_[i].sum2 / static_cast<double>(std::max<std::size_t>(count_, 1))),
+                    .peak_t_s = torques_[i].peak_t_s,
                     .allowed_nm = bound_nm});
   }
   return told;

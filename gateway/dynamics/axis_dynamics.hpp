@@ -2,10 +2,12 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gateway/chatter/vibration_mode.hpp"
@@ -19,6 +21,7 @@ namespace rmac::gateway {
 /// Where a joint really was against where it was to be, mm or degrees; all the time from the first motion to the last.
 struct JointDeviation {
   std::string name;
+  bool rotary = false;
   double peak = 0, rms = 0;
 };
 
@@ -28,6 +31,7 @@ struct MotorTorque {
   std::uint32_t axis = 0;
   double rated_nm = 0;
   double peak_nm = 0, rms_nm = 0;
+  double peak_t_s = 0;    ///< when it gave the most
   double allowed_nm = 0;  ///< beyond it the machine stops: `MaxMeasuredTorque`
 
   /// For ever at what it gave in the mean, it grows too hot.
@@ -66,6 +70,8 @@ class AxisDynamics {
   void forget_path() { deviation_.forget(); }
   /// The motion is over.
   void finish();
+  /// As `PathDeviation::on_judged`.
+  void on_deviation(std::function<void(double t_s, double off_mm)> told) { deviation_.on_judged(std::move(told)); }
 
   /// Where the joints are in truth: behind what bends and sticks, whatever encoders tell. Those of the kinematics.
   [[nodiscard]] std::span<const double> joints() const noexcept;
@@ -74,6 +80,8 @@ class AxisDynamics {
   /// How a tip swings with the axes that bend, each of them motor against load as if no loop held either, with the
   /// joints where they are; in the frame of the link that holds the part. Empty: all are rigid.
   [[nodiscard]] std::vector<VibrationMode> modes(const Frame& tool) const;
+  /// What a motor gives at its shaft, as its drive tells it.
+  [[nodiscard]] double torque_nm(std::size_t motor) const;
   [[nodiscard]] const std::optional<StoppedByFault>& stopped() const noexcept { return stopped_; }
   [[nodiscard]] std::vector<JointDeviation> joint_deviations() const;
   [[nodiscard]] std::vector<MotorTorque> motor_torques() const;
@@ -81,8 +89,8 @@ class AxisDynamics {
 
  private:
   struct Mean {
-    double peak = 0, sum2 = 0;
-    void add(double value) noexcept;
+    double peak = 0, peak_t_s = 0, sum2 = 0;
+    void add(double t_s, double value) noexcept;
   };
   /// One drive: where it hangs on its bus's model.
   struct Motor {

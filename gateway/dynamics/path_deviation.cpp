@@ -49,6 +49,7 @@ void PathDeviation::judge(std::size_t at) {
   ++count_;
   const double off_mm = std::sqrt(least2);
   peak_mm_ = std::max(peak_mm_, off_mm);
+  if (told_) told_(cycle.t_s, off_mm);
   if (allowed_mm_ <= 0 || off_mm <= allowed_mm_) return;
   // What is within so little for some cycles, and beyond it again, is one.
   const std::size_t recent = at - std::min(at, kAfter);
@@ -60,7 +61,7 @@ void PathDeviation::judge(std::size_t at) {
   OffPath& last_one = off_path_.back();
   last_one.until_s = cycle.t_s;
   if (off_mm <= last_one.most_mm) return;
-  last_one.most_mm = off_mm, last_one.place = cycle.place;
+  last_one.most_mm = off_mm, last_one.most_t_s = cycle.t_s, last_one.place = cycle.place;
 }
 
 }  // namespace rmac::gateway

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <utility>
 #include <vector>
 
 namespace rmac::gateway {
@@ -12,8 +14,8 @@ struct OffPath {
   int line = 0;  ///< of the program, when it began
   std::int64_t move_id = 0;
   double t_s = 0, until_s = 0;
-  Eigen::Vector3d place{0, 0, 0};  ///< of the planned tip where it was the most, part frame
-  double most_mm = 0;
+  Eigen::Vector3d place{0, 0, 0};    ///< of the planned tip where it was the most, part frame
+  double most_mm = 0, most_t_s = 0;  ///< and when
   double allowed_mm = 0;
 };
 
@@ -33,10 +35,13 @@ class PathDeviation {
     int line = 0;
     std::int64_t move_id = 0;
   };
+  /// Hears of each cycle, in turn, how far the tip is beside its path: up to 16 cycles later.
+  void on_judged(std::function<void(double t_s, double off_mm)> told) { told_ = std::move(told); }
   void add(const Cycle& cycle);
   /// What comes next does not go on from what was before: another tool, or the end.
   void forget();
 
+  [[nodiscard]] double allowed_mm() const noexcept { return allowed_mm_; }
   [[nodiscard]] double peak_mm() const noexcept { return peak_mm_; }
   [[nodiscard]] double rms_mm() const noexcept;
   /// In the order in which they began; at most `kMostOffPath`.
@@ -47,6 +52,7 @@ class PathDeviation {
   void judge(std::size_t at);
 
   double allowed_mm_;
+  std::function<void(double, double)> told_;
   std::vector<Cycle> passed_;  ///< the newest last
   std::size_t judged_ = 0;     ///< of them
   double peak_mm_ = 0, sum_mm2_ = 0;

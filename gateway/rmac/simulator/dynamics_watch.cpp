@@ -120,9 +120,12 @@ TrueCycle DynamicsWatch::cycle(const gateway::CycleSample& planned, int line, ga
   }
   // Where the machine stands before nobody knows.
   begun_ = begun_ || planned.moving;
-  if (!begun_ || axes_->stopped()) return {planned};
-  take_force(planned);
-  axes_->cycle(planned, {.line = line, .tool = tool_, .force_n = to_link_ * force_n_, .bend_mm = to_link_ * bend_mm_});
+  if (!begun_) return {planned};
+  if (!axes_->stopped()) {
+    take_force(planned);
+    axes_->cycle(planned,
+                 {.line = line, .tool = tool_, .force_n = to_link_ * force_n_, .bend_mm = to_link_ * bend_mm_});
+  }
   TrueCycle seen{planned, bend_mm_};
   std::ranges::copy(axes_->joints(), seen.sample.position_set.begin());
   return seen;

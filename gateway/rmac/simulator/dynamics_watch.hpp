@@ -32,13 +32,14 @@ class DynamicsWatch : gateway::EngagedListener {
 
   void tool_may_have_changed() noexcept { look_at_tool_ = true; }
   void configuration_may_have_changed() noexcept { look_at_configuration_ = true; }
-  /// As planned before the first motion, for another machine, and once a fault stopped this one.
+  /// As planned before the first motion and for another machine; where it was when a fault stopped this one.
   [[nodiscard]] TrueCycle cycle(const gateway::CycleSample& planned, int line, gateway::Controller& controller);
   /// The run is over.
   void finish();
 
   [[nodiscard]] const gateway::AxisDynamics& axes() const noexcept { return *axes_; }
   [[nodiscard]] const gateway::ChatterWatch& chatter() const noexcept { return chatter_; }
+  [[nodiscard]] gateway::AxisDynamics& axes() noexcept { return *axes_; }
   /// What it does not tell of, a sentence each; empty: it tells of all.
   [[nodiscard]] const std::set<std::string>& not_told() const noexcept { return not_told_; }
 

@@ -216,13 +216,15 @@ void Simulator::take(const gateway::CycleSample& sample) {
   account_.cycle(sample, simulation_.controller().cycle_now().override_percent);
   const int line = moves_.line().value_or(line_);
   gateway::Controller& controller = simulation_.controller();
-  if (dynamics_ != nullptr) {
-    const TrueCycle seen = dynamics_->cycle(sample, line, controller);
-    if (watch_ != nullptr) watch_->cycle(seen.sample, line, controller, seen.bend_mm);
-  } else if (watch_ != nullptr) {
-    watch_->cycle(sample, line, controller);
+  std::optional<TrueCycle> moved;
+  if (dynamics_ != nullptr) moved = dynamics_->cycle(sample, line, controller);
+  const gateway::CycleSample& seen = moved ? moved->sample : sample;
+  if (watch_ != nullptr) {
+    watch_->cycle(seen, line, controller, moved ? moved->bend_mm : Eigen::Vector3d::Zero());
   }
-  if (listener_ != nullptr) listener_->cycle(sample, {line, account_, controller});
+  if (listener_ != nullptr) {
+    listener_->cycle(sample, {line, std::span(seen.position_set).first(seen.joint_count), account_, controller});
+  }
   // As in a record of `rmac run`: every cycle from the first move on.
   if (!record_ || !(sample.moving || record_->rows() > 0)) return;
   const auto measured = dynamics_ != nullptr ? dynamics_->axes().measured() : std::span<const double>();

@@ -24,7 +24,7 @@ LinkTracks::LinkTracks(const gateway::LinkChain& chain, std::size_t base, std::s
     : chain_(chain), base_(base), most_keys_(most_keys), frames_(chain.link_count()) {
   for (const Reach& reach : reaches) {
     middles_.push_back(reach.middle);
-    tracks_.emplace_back(kTolerance_mm, PlacedWay{reach.radius});
+    tracks_.emplace_back(kTolerance_mm, WaitingValues<Placed, PlacedWay>(PlacedWay{reach.radius}));
   }
 }
 

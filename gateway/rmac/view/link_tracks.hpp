@@ -54,7 +54,7 @@ class LinkTracks {
   const gateway::LinkChain& chain_;
   std::size_t base_, most_keys_;
   std::vector<Eigen::Vector3d> middles_;
-  std::vector<ThinnedTrack<Placed, PlacedWay>> tracks_;
+  std::vector<ThinnedTrack<WaitingValues<Placed, PlacedWay>>> tracks_;
   std::vector<Frame> frames_;  ///< of the moment under way
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace rmac::cli {
@@ -47,6 +48,27 @@ class StepTrack {
   double apart_s_ = 0;
   std::vector<double> t_s_;
   std::vector<int> values_;
+};
+
+/// Which of some texts holds, from when on.
+class NamedSteps {
+ public:
+  explicit NamedSteps(std::size_t most) : steps_(most) {}
+
+  void add(double t_s, const std::string& name) {
+    const auto known = std::ranges::find(names_, name);
+    steps_.add(t_s, static_cast<int>(known - names_.begin()));
+    if (known == names_.end()) names_.push_back(name);
+  }
+
+  /// By their place in `names()`.
+  [[nodiscard]] const StepTrack& steps() const noexcept { return steps_; }
+  /// In the order in which they came.
+  [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
+
+ private:
+  StepTrack steps_;
+  std::vector<std::string> names_;
 };
 
 }  // namespace rmac::cli

@@ -33,7 +33,9 @@ Json dynamics_json(const DynamicsWatch* watch, std::optional<double> keeps_at) {
                                 {"axis", motor.axis},
                                 {"rms_nm", motor.rms_nm},
                                 {"rated_nm", motor.rated_nm},
+                                {"overheats", motor.overheats()},
                                 {"peak_nm", motor.peak_nm},
+                                {"peak_t_s", motor.peak_t_s},
                                 {"allowed_nm", motor.allowed_nm}});
   }
   for (const gateway::OffPath& off : axes.deviation().off_path()) {
@@ -43,6 +45,7 @@ Json dynamics_json(const DynamicsWatch* watch, std::optional<double> keeps_at) {
                                   {"until_s", off.until_s},
                                   {"place_mm", {off.place[0], off.place[1], off.place[2]}},
                                   {"most_mm", off.most_mm},
+                                  {"most_t_s", off.most_t_s},
                                   {"allowed_mm", off.allowed_mm}});
   }
   for (const gateway::Chatter& chatter : watch->chatter().found()) {
@@ -50,6 +53,7 @@ Json dynamics_json(const DynamicsWatch* watch, std::optional<double> keeps_at) {
                                  {"move_id", chatter.move_id},
                                  {"t_s", chatter.t_s},
                                  {"until_s", chatter.until_s},
+                                 {"most_t_s", chatter.most_t_s},
                                  {"place_mm", {chatter.place[0], chatter.place[1], chatter.place[2]}},
                                  {"frequency_hz", chatter.frequency_hz},
                                  {"from_percent", 100 * chatter.share},

@@ -297,7 +297,7 @@ Result<> simulate_program(const SimulateOptions& options, bool json) {
   if (*shown) {
     auto drawn = drawn_bodies((*shown)->bodies, watched != nullptr ? &watched->setup() : nullptr);
     if (!drawn) return tl::unexpected(drawn.error());
-    film.emplace(**shown, watched, std::move(*drawn));
+    film.emplace(**shown, watched, dynamics != nullptr ? &dynamics->axes() : nullptr, std::move(*drawn));
   }
   std::optional<StandstillWatch> watch(std::in_place, parts->simulation->controller());
   Simulator simulator(*parts->simulation, *program, options.record_file);
@@ -313,13 +313,6 @@ Result<> simulate_program(const SimulateOptions& options, bool json) {
     if (!found) return tl::unexpected(found.error());
     material = std::move(*found);
   }
-  std::optional<ViewReport> view;
-  if (film) {
-    film->end();
-    auto written = report_view(*film, watched, options.source.file, options.view);
-    if (!written) return tl::unexpected(written.error());
-    view = std::move(*written);
-  }
   const Result<> met = watched != nullptr ? verdict(*watched) : Result<>();
   const Result<> held = dynamics != nullptr ? verdict(*dynamics) : Result<>();
   std::optional<double> keeps;
@@ -327,6 +320,13 @@ Result<> simulate_program(const SimulateOptions& options, bool json) {
     auto found = feed_that_keeps(options, tree, *program);
     if (!found) return tl::unexpected(found.error());
     keeps = *found;
+  }
+  std::optional<ViewReport> view;
+  if (film) {
+    film->end();
+    auto written = report_view(*film, watched, dynamics_json(dynamics, keeps), options.source.file, options.view);
+    if (!written) return tl::unexpected(written.error());
+    view = std::move(*written);
   }
   const Beside beside{watched, material ? &*material : nullptr, view ? &*view : nullptr, dynamics, keeps};
   const double took_s = cpu_time_s() - began_s;
@@ -357,8 +357,9 @@ void add_simulate(Command& rmac) {
   simulate.option("--materials", &options->materials,
                   "with --setup: file of the work materials that are known; the installation's unless given");
   simulate.option("--stock-out", &options->stock_out, "with --setup: write what is left of the stock to this STL file");
-  simulate.option("--view", &options->view,
-                  "write a page (.html) that shows the machine moving, its limits and what --setup found");
+  simulate.option(
+      "--view", &options->view,
+      "write a page (.html) that shows the machine moving, its limits and what --setup and --dynamics found");
   simulate.flag("--dynamics", &options->dynamics,
                 "close the servo loops over the models of the machine's axes: what they do is what is watched and cut");
   simulate.flag("--first", &options->first, "with --setup: end at the first collision");

@@ -42,12 +42,13 @@ Result<> check_view(const std::string& file, const ShapedMachine& machine, std::
   return refuse_used(file, "--view", taken);
 }
 
-Result<ViewReport> report_view(const Film& film, const CollisionWatch* watch, const std::string& program,
-                               const std::string& file) {
+Result<ViewReport> report_view(const Film& film, const CollisionWatch* watch, nlohmann::json dynamics,
+                               const std::string& program, const std::string& file) {
   if (film.empty())
     return fail(fmt::format("{}: it moves nothing, so that there is nothing to show with --view", program));
   nlohmann::json data = film.to_json();
   data["program"] = program;
+  data["dynamics"] = std::move(dynamics);
   data["checked"] = watch != nullptr;
   if (watch != nullptr) add_watched(*watch, data);
   const auto bytes = write_page(data, file);

@@ -25,9 +25,9 @@ struct ViewReport {
 [[nodiscard]] Result<> check_view(const std::string& file, const ShapedMachine& machine,
                                   std::vector<std::filesystem::path> taken);
 
-/// Writes the page of a run that is over. `watch` may be null.
-[[nodiscard]] Result<ViewReport> report_view(const Film& film, const CollisionWatch* watch, const std::string& program,
-                                             const std::string& file);
+/// Writes the page of a run that is over. `watch` may be null; `dynamics` as `--json` has it.
+[[nodiscard]] Result<ViewReport> report_view(const Film& film, const CollisionWatch* watch, nlohmann::json dynamics,
+                                             const std::string& program, const std::string& file);
 
 void add_to_json(const ViewReport& report, nlohmann::json& line);
 /// A row of the table: what, where, and a remark.

@@ -57,6 +57,7 @@ TEST(ChatterWatch, HasOneFindingOfAMoveWithItsWorstPlace) {
   EXPECT_EQ(chatter.t_s, 1.0);
   EXPECT_EQ(chatter.until_s, 2.0);
   EXPECT_EQ(chatter.place[0], 1.5);
+  EXPECT_EQ(chatter.most_t_s, 1.5);
   EXPECT_EQ(chatter.share, watch.least_share());
   EXPECT_LT(chatter.share, 0.5);
   EXPECT_NEAR(chatter.frequency_hz, 410, 20);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <numbers>
 #include <random>
 #include <utility>
@@ -42,7 +43,9 @@ std::unique_ptr<AxisDynamics> open(const Machine& machine) {
 /// Cycles of a motion, as the planner would leave them behind.
 class Motion {
  public:
-  Motion(AxisDynamics& axes, const std::vector<double>& from) : axes_(axes) {
+  /// `after`: hears of each cycle; may be empty.
+  Motion(AxisDynamics& axes, const std::vector<double>& from, std::function<void(const CycleSample&)> after = {})
+      : axes_(axes), after_(std::move(after)) {
     sample_.joint_count = sample_.joint_count_with_held = static_cast<std::uint32_t>(from.size());
     std::ranges::copy(from, sample_.position_set.begin());
     sample_.moving = true;
@@ -78,8 +81,10 @@ class Motion {
   void cycle(const AxisDynamics::Beside& beside) {
     sample_.t_s += kPeriod_s;
     axes_.cycle(sample_, beside);
+    if (after_) after_(sample_);
   }
   AxisDynamics& axes_;
+  std::function<void(const CycleSample&)> after_;
   CycleSample sample_;
 };
 
@@ -173,6 +178,42 @@ TEST(AxisDynamics, TellsWhatStopsTheMachineAndWhere) {
   const std::vector<double> then(axes->joints().begin(), axes->joints().end());
   motion.rest(0.5, {.line = 5, .force_n = {5000, 0, 0}});
   EXPECT_EQ(std::vector<double>(axes->joints().begin(), axes->joints().end()), then) << "nothing goes on";
+}
+
+// Red when a motor's torque is another's, or of another cycle than the means.
+TEST(AxisDynamics, TellsOfEachCycleWhatItsMeansAreMadeOf) {
+  const Machine mill("mill/3-axis/DMACXYZ");
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    std::mt19937_64 random(seed);
+    const auto between = [&](double least, double most) {
+      return std::uniform_real_distribution<>(least, most)(random);
+    };
+    const auto axes = open(mill);
+    struct Seen {
+      double peak = 0, peak_t_s = 0, sum2 = 0;
+    };
+    std::vector<Seen> seen(mill.device.actuators.size());
+    int cycles = 0;
+    Motion motion(*axes, {0, 0, 0}, [&](const CycleSample& planned) {
+      ++cycles;
+      for (std::size_t i = 0; i < seen.size(); ++i) {
+        const double nm = axes->torque_nm(i);
+        seen[i].sum2 += nm * nm;
+        if (std::abs(nm) > seen[i].peak) seen[i].peak = std::abs(nm), seen[i].peak_t_s = planned.t_s;
+      }
+    });
+    for (int k = 0; k < 4; ++k) {
+      motion.go({between(-30, 30), between(-30, 30), between(-30, 30)}, between(0.8, 2));
+    }
+    ASSERT_FALSE(axes->stopped()) << axes->stopped()->why;
+    const auto told = axes->motor_torques();
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      EXPECT_GT(told[i].peak_nm, 0.01) << "seed " << seed << " motor " << i;
+      EXPECT_EQ(told[i].peak_nm, seen[i].peak);
+      EXPECT_EQ(told[i].peak_t_s, seen[i].peak_t_s);
+      EXPECT_NEAR(told[i].rms_nm, std::sqrt(seen[i].sum2 / cycles), 1e-9);
+    }
+  }
 }
 
 TEST(AxisDynamics, BringsJointsToWhereTheMotionBegins) {

@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <vector>
 
 namespace rmac::gateway {
 namespace {
@@ -66,8 +68,32 @@ TEST(PathDeviations, TellEachTimeOnEndThatATipIsFartherThanAllowed) {
   EXPECT_NEAR(first.most_mm, 0.08, 1e-4);
   EXPECT_EQ(first.allowed_mm, 0.05);
   EXPECT_LT((first.place - on_circle(0.65)).norm(), 0.1 * 51);
+  EXPECT_LT((first.place - on_circle(first.most_t_s)).norm(), 1e-9) << "the place is where it was then";
   EXPECT_EQ(deviation.off_path()[1].move_id, 2);
   EXPECT_NEAR(deviation.off_path()[1].t_s, 1.201, 1e-9);
+}
+
+// Red when a cycle is left out, told twice or under another's time, where old cycles go and where the path is
+// forgotten.
+TEST(PathDeviations, AreToldOfEachCycleInTurn) {
+  constexpr int kCycles = 9000, kForgets = 5000;
+  PathDeviation deviation(0);
+  std::vector<double> told_s, told_mm;
+  deviation.on_judged([&](double t_s, double off_mm) { told_s.push_back(t_s), told_mm.push_back(off_mm); });
+  const auto beside = [](int i) { return 0.02 * std::abs(std::sin(i * 0.001)); };
+  for (int i = 0; i < kCycles; ++i) {
+    if (i == kForgets) deviation.forget();
+    deviation.add(at(i, on_circle(i * kCycle_s, kRadius_mm + beside(i))));
+  }
+  EXPECT_LT(told_s.size(), static_cast<std::size_t>(kCycles)) << "the last ones wait for what comes after them";
+  deviation.forget();
+  ASSERT_EQ(told_s.size(), static_cast<std::size_t>(kCycles));
+  for (int i = 0; i < kCycles; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    EXPECT_EQ(told_s[n], i * kCycle_s);
+    EXPECT_NEAR(told_mm[n], beside(i), 1e-4) << i;
+  }
+  EXPECT_EQ(*std::ranges::max_element(told_mm), deviation.peak_mm());
 }
 
 TEST(PathDeviations, DoNotHoldATipToThePathOfAnotherTool) {

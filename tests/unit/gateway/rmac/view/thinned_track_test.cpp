@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,12 +14,21 @@
 namespace rmac::cli {
 namespace {
 
-using Track = ThinnedTrack<double, NumberWay>;
+struct NumberWay {
+  [[nodiscard]] static double between(double a, double b, double share) { return a + (b - a) * share; }
+  [[nodiscard]] static double apart(double a, double b) { return std::abs(a - b); }
+};
+/// The same numbers, each held against the way, or all by how steep it may be.
+template <typename Waiting>
+class ThinnedTracks : public testing::Test {};
+using Kinds = testing::Types<WaitingNumbers, WaitingValues<double, NumberWay>>;
+TYPED_TEST_SUITE(ThinnedTracks, Kinds);
 
 /// By the keys alone, as a page has it.
+template <typename Track>
 double value_at(const Track& track, double t_s) {
   const auto& keys = track.keys();
-  const auto after = std::ranges::find_if(keys, [t_s](const Track::Key& key) { return key.t_s >= t_s; });
+  const auto after = std::ranges::lower_bound(keys, t_s, {}, &Track::Key::t_s);
   if (after == keys.begin()) return after->value;
   if (after == keys.end()) return keys.back().value;
   const auto& before = *(after - 1);
@@ -41,11 +51,11 @@ std::vector<std::pair<double, double>> walk(unsigned seed, std::size_t count) {
 }
 
 // Red when what waits is not held against the new key, or when a coarser track counts its second error alone.
-TEST(ThinnedTrack, KeepsEveryValueWithinWhatItSays) {
+TYPED_TEST(ThinnedTracks, KeepEveryValueWithinWhatTheySay) {
   constexpr double kTolerance = 0.05, kRounding = 1e-9;
   for (unsigned seed = 1; seed <= 30; ++seed) {
     for (const int coarsenings : {0, 1, 3}) {
-      Track track(kTolerance);
+      ThinnedTrack<TypeParam> track(kTolerance);
       const auto values = walk(seed, 3000);
       for (std::size_t i = 0; i < values.size(); ++i) {
         track.add(values[i].first, values[i].second);
@@ -63,12 +73,29 @@ TEST(ThinnedTrack, KeepsEveryValueWithinWhatItSays) {
   }
 }
 
-TEST(ThinnedTrack, NeedsFewKeysForRestAndForAStraightWay) {
-  Track track(0.01);
+TYPED_TEST(ThinnedTracks, NeedFewKeysForRestAndForAStraightWay) {
+  ThinnedTrack<TypeParam> track(0.01);
   for (int i = 0; i <= 600; ++i) track.add(i, i < 300 ? 0.0 : i - 300.0);
   track.end();
   EXPECT_LE(track.keys().size(), 15U);
   EXPECT_NEAR(value_at(track, 450), 150, 0.01);
+}
+
+TEST(ThinnedNumbers, NeedTwoKeysForAnyNumberOfNumbersOnALine) {
+  ThinnedTrack<WaitingNumbers> track(0.01);
+  for (int i = 0; i <= 100'000; ++i) track.add(i, 3 - 0.002 * i);
+  track.end();
+  ASSERT_EQ(track.keys().size(), 2U);
+  EXPECT_NEAR(value_at(track, 50'000), -97, 0.01);
+}
+
+// Red when a name that comes again is another one, or holds from a wrong time on.
+TEST(NamedSteps, KnowANameThatComesAgain) {
+  NamedSteps steps(10);
+  for (int i = 0; i < 6; ++i) steps.add(i, i / 2 == 1 ? "X velocity" : "feed");
+  EXPECT_THAT(steps.names(), testing::ElementsAre("feed", "X velocity"));
+  EXPECT_THAT(steps.steps().t_s(), testing::ElementsAre(0, 2, 4));
+  EXPECT_THAT(steps.steps().values(), testing::ElementsAre(0, 1, 0));
 }
 
 TEST(StepTrack, KeepsEachChangeUntilThereAreTooMany) {

@@ -28,8 +28,9 @@ const page = {
     $("now").textContent = [`line ${stepAt(film.lines, this.time)}`,
       tool ? (tool.number ? `tool ${tool.number} ${tool.name}`.trim() : "no tool") : "",
       limit ? (limit === "none" ? "ruled by none" : `ruled by ${limit}`) : "at rest",
-      ...film.plots.map(plot => `${plot.name} ${figure(valueAt(plot, this.time))} ${plot.unit}`)]
+      ...plotRows.map(row => mostAt(row, this.time))]
       .filter(Boolean).join(" · ");
+    $("now").title = $("now").textContent;
   },
 
   choose(n) {
@@ -37,8 +38,8 @@ const page = {
     for (const button of $("findings").querySelectorAll("button")) button.toggleAttribute("aria-current", Number(button.dataset.n) === n);
     this.chosen = n;
     this.play(false);
-    this.goTo(finding.t_s);
-    if (this.view) this.view.colour(finding.bodies, finding.place_mm);
+    this.goTo(finding.at_s);
+    if (this.view) this.view.colour(finding.bodies, this.view.placeOf(finding));
   },
 
   play(on) {
@@ -57,15 +58,17 @@ const page = {
 
   listFindings() {
     findings.slice(0, MOST_LISTED).forEach((finding, n) => {
-      const button = element("button", `${finding.kind}: ${finding.bodies.join(" × ")} · ${finding.text}` +
-        `${finding.why ? " (" + finding.why + ")" : ""} · ${finding.t_s.toFixed(3)} s · line ${finding.line}`);
-      button.style.setProperty("--mark", KIND_COLOURS[finding.kind]);
+      const told = finding.text + (finding.why ? ` (${finding.why})` : "");
+      const button = element("button", finding.kind + ": " + [finding.bodies.join(" × "), told, finding.at_s.toFixed(3) + " s",
+        finding.line > 0 ? "line " + finding.line : "before the program"].filter(Boolean).join(" · "));
+      button.style.setProperty("--mark", finding.colour);
       button.dataset.n = n;
       button.addEventListener("click", () => this.choose(n));
       $("findings").append(document.createElement("li"));
       $("findings").lastChild.append(button);
     });
-    if (findings.length === 0) $("findings").append(element("li", film.checked ? "none" : "not checked: no --setup was named"));
+    if (!film.checked) $("findings").append(element("li", "collisions are not checked: no --setup was named"));
+    else if (findings.length === 0) $("findings").append(element("li", "none"));
     if (findings.length > MOST_LISTED) $("findings").append(element("li", `${findings.length - MOST_LISTED} more stand on the line of findings alone`));
   },
 
@@ -83,8 +86,9 @@ const page = {
 
   listNotes() {
     const notes = [...(film.not_checked || []).map(text => "NOT CHECKED: " + text),
-      ...(film.forces_not_told || []).map(text => "NOT TOLD: " + text),
+      ...[...(film.forces_not_told || []), ...(dynamics.not_told || [])].map(text => "NOT TOLD: " + text),
       ...film.not_shown.map(text => "NOT SHOWN: " + text)];
+    if (dynamics.keeps_at_percent) notes.push(`At a feed override of ${figure(dynamics.keeps_at_percent)} % the axes keep to the program.`);
     if (film.findings_left_off > 0) notes.push(`${film.findings_left_off} findings were too many to keep`);
     if (film.meshes_coarser_mm > 0) notes.push(`Meshes are drawn coarser than they are, by up to ${figure(film.meshes_coarser_mm)} mm.`);
     if (film.within_mm > 0.05) notes.push(`So long a program is shown to ${figure(film.within_mm)} mm.`);

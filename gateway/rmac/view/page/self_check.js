@@ -2,6 +2,9 @@
 // Opened with #self-check, the page tells in its document what it drew: for programs that test it.
 function selfCheck() {
   const view = page.view, report = {errors, bodies: film.bodies.length, drawn: 0};
+  report.notes = [...$("notes").children].map(note => note.textContent);
+  report.rows = page.plots.rows.filter(row => row.curves).map(({name, unit, curves, most, levels, beyond}) =>
+    ({name, unit, curves: curves.map(plot => plot.name), most, levels: levels.map(each => each.name), beyond: beyond.map(each => each.name)}));
   if (view) {
     view.render();
     Object.assign(report, {drawn: view.renderer.info.render.calls, triangles: view.renderer.info.render.triangles, meshes: view.meshes.length});

@@ -54,15 +54,16 @@ function toolAt(t) {
   return film.tools[stepAt(film.tool_at, t)];
 }
 
-/// All that was found, in the order in which it began: what, when, where, and between which bodies.
-const findings = [
-  ...(film.collisions || []).map(f => ({...f, kind: f.certain ? "collision" : "possible", text: f.depth_mm.toFixed(3) + " mm deep"})),
-  ...(film.near_misses || []).map(f => ({...f, kind: "near miss", text: f.distance_mm.toFixed(3) + " mm apart"})),
-  ...(film.overloads || []).map(f => {
-    const tool = toolAt(f.t_s), body = tool && tool.bodies.find(b => b.kind === "cutting part");
-    const unit = f.what === "torque" ? " N·m" : " W";
-    return {...f, kind: "overload", bodies: body ? [body.name] : [],
-      text: f.what + " " + figure(f.most) + " of " + figure(f.allowed) + unit};
-  }),
-].sort((a, b) => a.t_s - b.t_s);
-const KIND_COLOURS = {collision: "#d0302a", possible: "#e07b2a", "near miss": "#d9b020", overload: "#8a4fbf"};
+/// Plots that are drawn in one: of one row and one unit.
+const plotRows = [];
+for (const plot of film.plots) {
+  const row = plotRows.find(each => each.name === plot.row && each.unit === plot.unit);
+  if (row) row.curves.push(plot); else plotRows.push({name: plot.row, unit: plot.unit, curves: [plot]});
+}
+
+/// Of a row the value that is the most then, and whose it is where there are several.
+function mostAt({name, unit, curves}, t) {
+  const values = curves.map(plot => valueAt(plot, t));
+  const n = values.reduce((best, value, i) => Math.abs(value) > Math.abs(values[best]) ? i : best, 0);
+  return `${name} ${curves.length > 1 ? curves[n].name + " " : ""}${figure(values[n])} ${unit}`;
+}

@@ -161,7 +161,12 @@ class MachineView {
     if (this.after) this.after.visible = this.stock === "after";
   }
 
-  /// Colours the bodies of these names, each its own way, and marks the place; nothing: as they are.
+  /// Where a finding is, as the table sees it.
+  placeOf(finding) {
+    return finding.place_mm ? vector(finding.place_mm).applyMatrix4(this.toMachine) : this.tipOnTable(finding.at_s);
+  }
+
+  /// Colours the bodies of these names, each its own way, and marks the place as the table sees it; nothing: as they are.
   colour(names, place) {
     for (const mesh of [...this.meshes, ...this.cut, ...(this.after ? [this.after] : [])]) {
       const n = names.indexOf(mesh.userData.body.name);
@@ -169,7 +174,7 @@ class MachineView {
       mesh.userData.met = n >= 0;
     }
     this.mark.visible = Boolean(place);
-    if (place) this.mark.position.copy(vector(place).applyMatrix4(this.toMachine));
+    if (place) this.mark.position.copy(place);
     this.render();
   }
 
