@@ -107,7 +107,8 @@ class Dynamics(unittest.TestCase):
 
     def test_a_cut_pushes_the_axes_and_the_part_shows_it(self):
         (self.folder / "tools").mkdir()
-        (self.folder / "tools/SuginoXYZAC.json").write_text(json.dumps({"Mounted": 7, "Tools": [TOOL]}))
+        stiff = TOOL | {"Shape": TOOL["Shape"] | {"Modes": [{"Frequency": 9000, "DampingRatio": 0.1, "Stiffness": 1e7}]}}
+        (self.folder / "tools/SuginoXYZAC.json").write_text(json.dumps({"Mounted": 7, "Tools": [stiff]}))
         told = {}
         for name, setup in (("air", None), ("cut", STOCK)):
             words = []
