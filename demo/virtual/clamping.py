@@ -58,7 +58,7 @@ def setup(part_mesh):
 
 def tool():
     sections = [{"Cone": {"Radius": low, "TopRadius": high, "Height": tall}} for low, high, tall in HOLDER]
-    shape = {"DC": 2 * BALL_RADIUS, "RE": BALL_RADIUS, "LCF": CUTS_UP_TO, "OAL": 75, "ZEFP": 2, "FHA": 30, "Holder": sections}
+    shape = {"DC": 2 * BALL_RADIUS, "RE": BALL_RADIUS, "LCF": CUTS_UP_TO, "OAL": 75, "ZEFP": 2, "FHA": 30, "BMC": "HM", "Holder": sections}
     return {"ToolNumber": TOOL, "Name": "ball 10", "Length": TOOL_LENGTH, "Radius": BALL_RADIUS, "Shape": shape}
 
 

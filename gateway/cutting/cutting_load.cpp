@@ -43,14 +43,15 @@ void add(CuttingShare& share, const TurnForces& forces, double time_s) {
   share.peak_w = std::max(share.peak_w, forces.power_w.peak);
 }
 
-/// Of a tool that goes by `velocity`; without a way across its axis there is nothing across it either.
-Eigen::Vector3d mean_force(const TurnForces& forces, const Eigen::Vector3d& axis, const Eigen::Vector3d& velocity) {
-  const Eigen::Vector3d across = velocity - velocity.dot(axis) * axis;
-  Eigen::Vector3d force = forces.z_n.mean * axis;
-  if (across.norm() <= kStraightDown * velocity.norm()) return force;
-  const Eigen::Vector3d x = across.normalized();
-  force += forces.x_n.mean * x + forces.y_n.mean * axis.cross(x);
-  return force;
+/// Of a tool that goes by `velocity`; 0 without a way across its axis.
+Eigen::Vector3d across(const Eigen::Vector3d& axis, const Eigen::Vector3d& velocity) {
+  const Eigen::Vector3d way = velocity - velocity.dot(axis) * axis;
+  return way.norm() > kStraightDown * velocity.norm() ? way.normalized() : Eigen::Vector3d::Zero();
+}
+
+/// Where nothing goes across the axis, there is no force across it either.
+Eigen::Vector3d mean_force(const TurnForces& forces, const Eigen::Vector3d& axis, const Eigen::Vector3d& x) {
+  return forces.x_n.mean * x + forces.y_n.mean * axis.cross(x) + forces.z_n.mean * axis;
 }
 
 }  // namespace
@@ -122,13 +123,15 @@ void CuttingLoad::cuts(const DexelGrid& grid, const ToolAt& tool, const Eigen::V
     }
     last_ = Last{.slices = std::move(met.slices), .feed = feed, .rpm = rpm_, .forces = *forces};
   }
+  const Eigen::Vector3d goes = across(tool.axis, velocity);
   now_ = {last_->forces.total_n.mean, last_->forces.torque_nm.mean, last_->forces.power_w.mean,
-          mean_force(last_->forces, tool.axis, velocity)};
+          mean_force(last_->forces, tool.axis, goes), tool.axis};
   now_until_s_ = t_s + 2 * every_s;
   add(all_, last_->forces, time_s);
   add(moves_[move.id], last_->forces, time_s);
   judge(Overload::Of::Torque, last_->forces.torque_nm.mean, spindle_.torque_nm, {before_s, t_s}, tool, move);
   judge(Overload::Of::Power, last_->forces.power_w.mean, spindle_.power_w, {before_s, t_s}, tool, move);
+  if (listener_ != nullptr) listener_->engaged({*mill_, last_->slices, feed, rpm_, tool, goes, t_s, move});
 }
 
 bool CuttingLoad::plunges(const Engagement& met, double down_mm, double share) {

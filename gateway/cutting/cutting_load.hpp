@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,26 @@ struct Overload {
 struct CuttingNow {
   double n = 0, nm = 0, w = 0;
   Eigen::Vector3d force_n{0, 0, 0};  ///< on the tool, part frame
+  Eigen::Vector3d axis{0, 0, 1};     ///< of the tool, part frame
+};
+
+/// A tool in material, at one place of the way.
+struct EngagedTool {
+  const EndMill& mill;
+  std::span<const EngagedSlice> slices;
+  ToothFeed feed;
+  double rpm = 0;
+  ToolAt at;             ///< part frame
+  Eigen::Vector3d goes;  ///< where to, across its axis; a unit vector, or 0 where it goes along its axis
+  double t_s = 0;
+  MoveNow move;
+};
+
+/// Hears of every look at a tool that found it in material, with forces that could be told.
+class EngagedListener {
+ public:
+  virtual ~EngagedListener() = default;
+  virtual void engaged(const EngagedTool& tool) = 0;
 };
 
 /// What a spindle can give; 0: not known.
@@ -56,6 +77,9 @@ class CuttingLoad : public CutListener {
   void set_tool(const Tool& tool);
   /// What turns it from now on, to the right where rpm > 0; 0 rpm where nobody knows.
   void set_spindle(double rpm, const SpindlePower& power) noexcept { rpm_ = rpm, spindle_ = power; }
+
+  /// Tells of every look from now on; the listener outlives this.
+  void listen(EngagedListener& listener) noexcept { listener_ = &listener; }
 
   void cuts(const DexelGrid& grid, const ToolAt& tool, const Eigen::Vector3d& velocity, double t_s,
             const MoveNow& move) override;
@@ -121,6 +145,7 @@ class CuttingLoad : public CutListener {
   double told_s_ = 0;        ///< when it last heard of the tool
   double taken_mm3_ = 0;     ///< since then
   Looks looks_;
+  EngagedListener* listener_ = nullptr;
 };
 
 }  // namespace rmac::gateway

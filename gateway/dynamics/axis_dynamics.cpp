@@ -137,18 +137,15 @@ void AxisDynamics::approach(const CycleSample& planned) {
 
 /// Power is conserved: what a joint feels is the force along the way that the tip goes with it, and what a shaft feels
 /// is what its joints do.
-void AxisDynamics::push(const Beside& beside) {
-  const bool pushes = !beside.force_n.isZero();
-  if (!pushes && !std::exchange(pushed_, false)) return;
-  pushed_ = pushes;
+std::array<double, kMaxJoints> AxisDynamics::torques_of(const Eigen::Vector3d& force_n, const Frame& tool) const {
   const ServoLoopParts& parts = loops_->mechanism().loop->parts();
   const std::size_t count = device_.joints.size();
   std::array<double, 6 * kMaxJoints> jacobian{};
-  kinematics().jacobian(joints(), beside.tool, std::span(jacobian).first(6 * count));
+  kinematics().jacobian(joints(), tool, std::span(jacobian).first(6 * count));
   std::array<double, kMaxJoints> efforts{}, torques{};
   for (std::size_t j = 0; j < count; ++j) {
     for (std::size_t row = 0; row < 3; ++row) {
-      efforts[j] += jacobian[row * count + j] * beside.force_n[static_cast<Eigen::Index>(row)];
+      efforts[j] += jacobian[row * count + j] * force_n[static_cast<Eigen::Index>(row)];
     }
     // mm a degree to m a radian.
     if (device_.joints[j].limits.type == JointType::Rotary) efforts[j] *= kMetresPerMm * 180 / std::numbers::pi;
@@ -156,9 +153,41 @@ void AxisDynamics::push(const Beside& beside) {
   parts.actuator_map->actuator_efforts(std::span(truth_).first(parts.joints.size()),
                                        std::span(efforts).first(parts.joints.size()),
                                        std::span(torques).first(parts.actuators.size()));
+  for (std::size_t i = 0; i < motors_.size(); ++i) torques[i] *= parts.actuators[i].scale.direction;
+  return torques;
+}
+
+void AxisDynamics::push(const Beside& beside) {
+  const bool pushes = !beside.force_n.isZero();
+  if (!pushes && !std::exchange(pushed_, false)) return;
+  pushed_ = pushes;
+  const auto torques = torques_of(beside.force_n, beside.tool);
+  for (std::size_t i = 0; i < motors_.size(); ++i) motors_[i].bus->push(motors_[i].axis, torques[i]);
+}
+
+std::vector<VibrationMode> AxisDynamics::modes(const Frame& tool) const {
+  std::array<std::array<double, kMaxJoints>, 3> by_unit{};
+  const auto gives_way = [&](const Motor& motor) { return motor.bus->plant(motor.axis).parameters().gives_way(); };
+  if (std::ranges::none_of(motors_, gives_way)) return {};
+  for (Eigen::Index i = 0; i < 3; ++i)
+    by_unit[static_cast<std::size_t>(i)] = torques_of(Eigen::Vector3d::Unit(i), tool);
+  std::vector<VibrationMode> modes;
   for (std::size_t i = 0; i < motors_.size(); ++i) {
-    motors_[i].bus->push(motors_[i].axis, parts.actuators[i].scale.direction * torques[i]);
+    if (!gives_way(motors_[i])) continue;
+    // N·m a newton: the way in metres that the tip goes for each radian of the load.
+    const Eigen::Vector3d way(by_unit[0][i], by_unit[1][i], by_unit[2][i]);
+    if (way.isZero()) continue;
+    const fieldbus::AxisPlantParameters& plant = motors_[i].bus->plant(motors_[i].axis).parameters();
+    const fieldbus::TwoMassParameters masses = plant.two_masses();
+    // Of the free oscillation, seen at the load: the motor takes its share of it.
+    const double share = (masses.motor_inertia_kg_m2 + masses.load_inertia_kg_m2) / masses.motor_inertia_kg_m2;
+    const double stiffness_n_m = masses.stiffness_nm_rad * share * share / way.squaredNorm();
+    modes.push_back({.frequency_hz = masses.resonance_rad_s() / (2 * std::numbers::pi),
+                     .damping_ratio = plant.damping_ratio,
+                     .stiffness_n_mm = stiffness_n_m * kMetresPerMm,
+                     .directions = way.normalized() * way.normalized().transpose()});
   }
+  return modes;
 }
 
 std::array<double, kMaxJoints> AxisDynamics::loads() const {
@@ -211,7 +240,7 @@ void AxisDynamics::account(const CycleSample& planned, const Beside& beside) {
   const std::span wanted = std::span(planned.position_set).first(device_.joints.size());
   const Vector& place = planned.pose_set.tip;
   deviation_.add({.planned = tip(wanted, beside.tool),
-                  .truth = tip(joints(), beside.tool),
+                  .truth = tip(joints(), beside.tool) + beside.bend_mm,
                   .place = {place[0], place[1], place[2]},
                   .t_s = planned.t_s,
                   .line = beside.line,

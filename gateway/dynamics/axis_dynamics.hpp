@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "gateway/chatter/vibration_mode.hpp"
 #include "gateway/dynamics/closed_loops.hpp"
 #include "gateway/dynamics/path_deviation.hpp"
 #include "gateway/state/cycle_sample.hpp"
@@ -56,6 +57,7 @@ class AxisDynamics {
     int line = 0;                      ///< of the program
     Frame tool{};                      ///< its tip on the tool interface
     Eigen::Vector3d force_n{0, 0, 0};  ///< on the tool, in the frame of the link that holds the part
+    Eigen::Vector3d bend_mm{0, 0, 0};  ///< of the tool, there: by so much its tip is beside where the joints have it
   };
   /// One cycle of this mechanism's planned motion. Before the first, the joints are brought to where that begins. After
   /// a fault nothing changes any more.
@@ -69,6 +71,9 @@ class AxisDynamics {
   [[nodiscard]] std::span<const double> joints() const noexcept;
   /// Where their encoders have them.
   [[nodiscard]] std::span<const double> measured() const noexcept;
+  /// How a tip swings with the axes that bend, each of them motor against load as if no loop held either, with the
+  /// joints where they are; in the frame of the link that holds the part. Empty: all are rigid.
+  [[nodiscard]] std::vector<VibrationMode> modes(const Frame& tool) const;
   [[nodiscard]] const std::optional<StoppedByFault>& stopped() const noexcept { return stopped_; }
   [[nodiscard]] std::vector<JointDeviation> joint_deviations() const;
   [[nodiscard]] std::vector<MotorTorque> motor_torques() const;
@@ -89,6 +94,8 @@ class AxisDynamics {
   void find_plays();
   void approach(const CycleSample& planned);
   void push(const Beside& beside);
+  /// What motors feel at their shafts of a force on the tip, N·m, as joints turn them.
+  [[nodiscard]] std::array<double, kMaxJoints> torques_of(const Eigen::Vector3d& force_n, const Frame& tool) const;
   /// Shaft angles of the loads as they are now.
   [[nodiscard]] std::array<double, kMaxJoints> loads() const;
   void see_truth(const std::array<double, kMaxJoints>& loads);

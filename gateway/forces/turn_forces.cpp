@@ -52,18 +52,27 @@ class Model {
   /// Of all teeth, over the time.
   [[nodiscard]] Sum mean() const {
     Sum sum;
-    for (const EngagedSlice& slice : slices_) {
-      const double most_turned = feed_.along_mm == 0 ? kMostTurned : kMostTurnedObliquely;
-      along_profile(slice.from_mm, slice.to_mm, most_turned, [&](double from, double to) {
-        for (const auto& [part, weight] : kGauss) {
-          const EndMill::Place place = mill_.at(from + part * (to - from));
-          for (const Arc& arc : slice.arcs) sum.add(weight * (to - from), over_arc(place, arc));
-        }
-      });
-    }
-    Sum all;
-    all.add(mill_.teeth() / (2 * pi), sum);
-    return all;
+    over_edges([&](const EndMill::Place& place, double from, double to, double weight) {
+      Sum of;
+      add_between(from, to, place, chip_of_feed(place), of);
+      sum.add(weight, of);
+    });
+    return sum;
+  }
+
+  /// By how much the mean force changes with the way of the tool since the tooth before, N/mm: a column for each of its
+  /// x, y and z.
+  [[nodiscard]] Eigen::Matrix3d change() const {
+    Eigen::Matrix3d columns = Eigen::Matrix3d::Zero();
+    over_edges([&](const EndMill::Place& place, double from, double to, double weight) {
+      const std::array ways{Chip{place.sin_k, 0, 0}, Chip{0, place.sin_k, 0}, Chip{0, 0, -place.cos_k}};
+      for (std::size_t i = 0; i < ways.size(); ++i) {
+        Sum of;
+        add_between(from, to, place, ways[i], of);
+        columns.col(static_cast<Eigen::Index>(i)) += weight * of.force;
+      }
+    });
+    return columns;
   }
 
   /// Of all teeth, the lowest point of one of them at this angle.
@@ -132,6 +141,25 @@ class Model {
     pieces(std::max(low, corner), high, lag);
   }
 
+  /// Calls `visit(place, from, to, weight)` for places of the edges and the angles at which there is a chip; with their
+  /// weights they make a mean over a turn, of all teeth.
+  template <class Visit>
+  void over_edges(Visit&& visit) const {
+    const double most_turned = feed_.along_mm == 0 ? kMostTurned : kMostTurnedObliquely;
+    const double share = mill_.teeth() / (2 * pi);
+    for (const EngagedSlice& slice : slices_) {
+      along_profile(slice.from_mm, slice.to_mm, most_turned, [&](double from, double to) {
+        for (const auto& [part, weight] : kGauss) {
+          const EndMill::Place place = mill_.at(from + part * (to - from));
+          const auto at_place = [&](double entry, double exit) {
+            visit(place, entry, exit, share * weight * (to - from));
+          };
+          for (const Arc& arc : slice.arcs) over_chips(place, arc, at_place);
+        }
+      });
+    }
+  }
+
   [[nodiscard]] Sum on_tool(const EndMill::Place& place, double angle, double t, double r, double a) const {
     const double s = std::sin(angle), c = std::cos(angle);
     Sum sum;
@@ -142,48 +170,60 @@ class Model {
     return sum;
   }
 
-  /// Of one tooth at one place, for each millimetre of profile, integrated over an arc.
-  [[nodiscard]] Sum over_arc(const EndMill::Place& place, const Arc& arc) const {
-    const double wave = feed_.across_mm * place.sin_k, level = -feed_.along_mm * place.cos_k;
-    Sum sum;
-    const auto add = [&](double from, double to) {
-      if (to <= from) return;
-      const auto between = [&](auto&& integral) { return integral(to) - integral(from); };
-      using std::cos, std::sin;
-      const double angle = to - from, sines = between([](double x) { return -cos(x); }),
-                   cosines = between([](double x) { return sin(x); });
-      const double chip = wave * sines + level * angle;
-      const double chip_sines = wave * between([](double x) { return x / 2 - sin(2 * x) / 4; }) + level * sines;
-      const double chip_cosines = wave * between([](double x) { return sin(x) * sin(x) / 2; }) + level * cosines;
-      const double longer = place.edge_per_profile;
-      // What the directions of a tooth at 90°, where the sine is 1, and at 0, where the cosine is, have of it.
-      const auto with = [&](double h, double e) {
-        return std::array{k_.ktc * h + k_.kte * longer * e, k_.krc * h + k_.kre * longer * e,
-                          k_.kac * h + k_.kae * longer * e};
-      };
-      const auto all = with(chip, angle), by_sine = with(chip_sines, sines), by_cosine = with(chip_cosines, cosines);
-      const auto inward = [&](const std::array<double, 3>& tra) { return tra[1] * place.sin_k + tra[2] * place.cos_k; };
-      sum.force += Vector3d(-by_cosine[0] - inward(by_sine), by_sine[0] - inward(by_cosine),
-                            all[1] * place.cos_k - all[2] * place.sin_k);
-      sum.tangential += all[0];
-      sum.torque += all[0] * place.radius_mm;
+  /// How thick a chip is along the angle φ: so much of its sine, so much of its cosine, and a level.
+  struct Chip {
+    double sine = 0, cosine = 0, level = 0;
+  };
+  [[nodiscard]] Chip chip_of_feed(const EndMill::Place& place) const {
+    return {feed_.across_mm * place.sin_k, 0, -feed_.along_mm * place.cos_k};
+  }
+
+  /// Of one tooth at one place, for each millimetre of profile, integrated between two angles.
+  void add_between(double from, double to, const EndMill::Place& place, const Chip& chip, Sum& sum) const {
+    if (to <= from) return;
+    const auto between = [&](auto&& integral) { return integral(to) - integral(from); };
+    using std::cos, std::sin;
+    const double angle = to - from, sines = between([](double x) { return -cos(x); }),
+                 cosines = between([](double x) { return sin(x); });
+    const double sine_sines = between([](double x) { return x / 2 - sin(2 * x) / 4; });
+    const double sine_cosines = between([](double x) { return sin(x) * sin(x) / 2; });
+    const double cosine_cosines = angle - sine_sines;
+    const double chips = chip.sine * sines + chip.cosine * cosines + chip.level * angle;
+    const double chip_sines = chip.sine * sine_sines + chip.cosine * sine_cosines + chip.level * sines;
+    const double chip_cosines = chip.sine * sine_cosines + chip.cosine * cosine_cosines + chip.level * cosines;
+    const double longer = place.edge_per_profile;
+    // What the directions of a tooth at 90°, where the sine is 1, and at 0, where the cosine is, have of it.
+    const auto with = [&](double h, double e) {
+      return std::array{k_.ktc * h + k_.kte * longer * e, k_.krc * h + k_.kre * longer * e,
+                        k_.kac * h + k_.kae * longer * e};
     };
+    const auto all = with(chips, angle), by_sine = with(chip_sines, sines), by_cosine = with(chip_cosines, cosines);
+    const auto inward = [&](const std::array<double, 3>& tra) { return tra[1] * place.sin_k + tra[2] * place.cos_k; };
+    sum.force += Vector3d(-by_cosine[0] - inward(by_sine), by_sine[0] - inward(by_cosine),
+                          all[1] * place.cos_k - all[2] * place.sin_k);
+    sum.tangential += all[0];
+    sum.torque += all[0] * place.radius_mm;
+  }
+
+  /// Calls `visit(from, to)` for the angles of an arc at which the feed leaves a chip.
+  template <class Visit>
+  void over_chips(const EndMill::Place& place, const Arc& arc, Visit&& visit) const {
+    const auto [wave, none, level] = chip_of_feed(place);
     if (wave <= 0) {
-      if (level >= 0) add(arc.entry, arc.exit);
-      return sum;
+      if (level >= 0) visit(arc.entry, arc.exit);
+      return;
     }
     // The chip is there where the sine is at least so much.
     const double least = -level / wave;
-    if (least > 1) return sum;
+    if (least > 1) return;
     if (least <= -1) {
-      add(arc.entry, arc.exit);
-      return sum;
+      visit(arc.entry, arc.exit);
+      return;
     }
     const double begin = std::asin(least), end = pi - begin;
     for (double turn = 2 * pi * (std::floor((arc.entry - end) / (2 * pi))); begin + turn < arc.exit; turn += 2 * pi) {
-      add(std::max(arc.entry, begin + turn), std::min(arc.exit, end + turn));
+      visit(std::max(arc.entry, begin + turn), std::min(arc.exit, end + turn));
     }
-    return sum;
   }
 
   /// What one tooth gives in an arc of a slice.
@@ -284,6 +324,16 @@ Expected<TurnForces> forces_over_turn(const EndMill& mill, const ForceCoefficien
   }
   forces.power_w = {forces.torque_nm.mean * per_second, forces.torque_nm.peak * per_second};
   return forces;
+}
+
+Expected<Eigen::Matrix3d> chip_stiffness(const EndMill& mill, const ForceCoefficients& material,
+                                         std::span<const EngagedSlice> slices, const ToothFeed& feed) {
+  constexpr double kAnySpeed_rpm = 1;
+  if (auto wrong = problem(mill, slices, feed, kAnySpeed_rpm)) {
+    return failure(MinorCode::InvalidParameterValue, std::move(*wrong));
+  }
+  const ForceCoefficients of_chips{.ktc = material.ktc, .krc = material.krc, .kac = material.kac};
+  return Model(mill, of_chips, slices, feed).change();
 }
 
 double removal_rate_mm3_s(const EndMill& mill, std::span<const EngagedSlice> slices, const ToothFeed& feed,

@@ -68,35 +68,37 @@ std::string Material::set_tool(const Tool& tool) {
       tool.number, within_mm_);
 }
 
-ToolAt Material::tool_at(std::span<const double> joints) {
+Material::Stand Material::stand(std::span<const double> joints, const Vector3d& bend_mm) {
   chain_.displace(joints, links_);
   const Frame at = compose(to_part_, compose(links_.back(), tip_home_));
   const Vector axis = z_axis(at);
-  return {Vector3d(at.p[0], at.p[1], at.p[2]), Vector3d(axis[0], axis[1], axis[2]).normalized()};
+  const ToolAt tool{Vector3d(at.p[0], at.p[1], at.p[2]) + bend_mm, Vector3d(axis[0], axis[1], axis[2]).normalized()};
+  return {joints, bend_mm, tool};
 }
 
-void Material::advance(double t_s, std::span<const double> joints, const MoveNow& move, bool spindle_turns) {
+void Material::advance(double t_s, std::span<const double> joints, const MoveNow& move, bool spindle_turns,
+                       const Vector3d& bend_mm) {
   const bool turns = spindle_turns || !spindle_needed_;
   // A stroke is of one move, and cuts as a whole or not at all.
   if (move.id != move_.id || move.line != move_.line || move.cutting != move_.cutting || turns != turns_) finish();
   move_ = move, turns_ = turns;
-  const ToolAt there = tool_at(joints);
+  const Stand there = stand(joints, bend_mm);
   if (!begun_) {
     for (Part& part : parts_) part.strokes.forget();
-    go_to(there);
+    go_to(there.tool);
     s_.since = t_s;
-    listening_.told = there;
+    listening_.told = there.tool;
   } else if (!std::ranges::equal(joints, joints_)) {
-    tell_listener(t_s, there);
+    tell_listener(t_s, there.tool);
     if (turns_between(joints_, joints)) {
-      go_between(joints_, at_, joints, there, kMostHalvings);
+      go_between({joints_, bend_mm_, at_}, there, kMostHalvings);
     } else {
-      go_to(there);
+      go_to(there.tool);
     }
   }
   begun_ = true;
   s_.now = t_s;
-  at_ = there;
+  at_ = there.tool, bend_mm_ = bend_mm;
   joints_.assign(joints.begin(), joints.end());
 }
 
@@ -109,23 +111,23 @@ bool Material::turns_between(std::span<const double> from, std::span<const doubl
 }
 
 /// Halves the way of the joints until the tool goes straight on it as far as the tolerance can tell.
-void Material::go_between(std::span<const double> from, const ToolAt& begin, std::span<const double> to,
-                          const ToolAt& end, int halvings) {
-  std::vector<double> middle(from.size());
-  for (std::size_t j = 0; j < middle.size(); ++j) middle[j] = (from[j] + to[j]) / 2;
-  const ToolAt between = tool_at(middle);
-  const Vector3d bend = between.tip - (begin.tip + end.tip) / 2, turn = between.axis - (begin.axis + end.axis) / 2;
+void Material::go_between(const Stand& from, const Stand& to, int halvings) {
+  std::vector<double> halfway(from.joints.size());
+  for (std::size_t j = 0; j < halfway.size(); ++j) halfway[j] = (from.joints[j] + to.joints[j]) / 2;
+  const Stand middle = stand(halfway, (from.bend_mm + to.bend_mm) / 2);
+  const Vector3d bulge = middle.tool.tip - (from.tool.tip + to.tool.tip) / 2;
+  const Vector3d turn = middle.tool.axis - (from.tool.axis + to.tool.axis) / 2;
   const bool straight = std::ranges::all_of(parts_, [&](const Part& part) {
     const double tolerance = part.cuts ? tolerance_mm_ : within_mm_ / 2;
-    return (bend + part.strokes.piece().middle * turn).norm() <= kShareBetween * tolerance &&
-           part.strokes.turned_mm(begin, end) <= (1 - kShareBetween) * tolerance / 2;
+    return (bulge + part.strokes.piece().middle * turn).norm() <= kShareBetween * tolerance &&
+           part.strokes.turned_mm(from.tool, to.tool) <= (1 - kShareBetween) * tolerance / 2;
   });
   if (straight || halvings == 0) {
-    go_to(end);
+    go_to(to.tool);
     return;
   }
-  go_between(from, begin, middle, between, halvings - 1);
-  go_between(middle, between, to, end, halvings - 1);
+  go_between(from, middle, halvings - 1);
+  go_between(middle, to, halvings - 1);
 }
 
 void Material::go_to(const ToolAt& there) {

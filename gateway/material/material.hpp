@@ -30,8 +30,10 @@ class Material {
   std::string set_tool(const Tool& tool);
   /// Tells of every cut from now on; the listener outlives this.
   void listen(CutListener& listener) noexcept { listening_.listener = &listener; }
-  /// The joints have gone straight to there since they were told last.
-  void advance(double t_s, std::span<const double> joints, const MoveNow& move, bool spindle_turns);
+  /// The joints have gone straight to there since they were told last, and the tool's tip is so far beside where they
+  /// have it (part frame): it bends.
+  void advance(double t_s, std::span<const double> joints, const MoveNow& move, bool spindle_turns,
+               const Eigen::Vector3d& bend_mm = Eigen::Vector3d::Zero());
   /// What is under way counts as far as it came. To be called before anything is read.
   void finish();
 
@@ -58,10 +60,15 @@ class Material {
     double since = 0;  ///< of the strokes under way
     double now = 0;
   };
-  [[nodiscard]] ToolAt tool_at(std::span<const double> joints);
+  /// The joints and where the tool is with them.
+  struct Stand {
+    std::span<const double> joints;
+    Eigen::Vector3d bend_mm;
+    ToolAt tool;
+  };
+  [[nodiscard]] Stand stand(std::span<const double> joints, const Eigen::Vector3d& bend_mm);
   [[nodiscard]] bool turns_between(std::span<const double> from, std::span<const double> to) const;
-  void go_between(std::span<const double> from, const ToolAt& begin, std::span<const double> to, const ToolAt& end,
-                  int halvings);
+  void go_between(const Stand& from, const Stand& to, int halvings);
   void go_to(const ToolAt& there);
   [[nodiscard]] Eigen::Vector3d velocity(double t_s, const ToolAt& there);
   void tell_listener(double t_s, const ToolAt& there);
@@ -88,6 +95,7 @@ class Material {
   // The step under way.
   std::vector<Frame> links_;
   std::vector<double> joints_;
+  Eigen::Vector3d bend_mm_{0, 0, 0};
   ToolAt at_{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};  ///< with these joints
   MoveNow move_;
   bool begun_ = false, turns_ = false;

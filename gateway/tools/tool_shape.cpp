@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace rmac::gateway {
 namespace {
@@ -10,6 +12,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double kSlack_mm = 1e-6;
+constexpr std::array kBodies{std::pair{"HM", BodyMaterial::Carbide}, std::pair{"HSS", BodyMaterial::HighSpeedSteel}};
 
 double height(const std::vector<ConeShape>& sections) {
   double sum = 0;
@@ -84,6 +87,12 @@ Expected<ToolShape> read_tool_shape(const Json& object, double tool_length_mm) {
   shape.fha = object.value("FHA", 0.0);
   shape.shank = sections(object.value("Shank", Json::array()));
   shape.holder = sections(object.value("Holder", Json::array()));
+  for (const auto& [code, body] : kBodies) {
+    if (object.value("BMC", "") == code) shape.bmc = body;
+  }
+  for (const Json& mode : object.value("Modes", Json::array())) {
+    shape.modes.push_back({mode.at("Frequency"), mode.at("DampingRatio"), mode.at("Stiffness")});
+  }
   // A tool of which nothing else is said goes on as thick as it cuts.
   if (shape.shank.empty() && shape.oal > shape.lcf)
     shape.shank.push_back({shape.dc / 2, shape.dc / 2, shape.oal - shape.lcf});
@@ -103,6 +112,13 @@ Json to_json(const ToolShape& shape) {
               {"Holder", sections_json(shape.holder)}};
   if (shape.zefp > 0) object["ZEFP"] = shape.zefp;
   if (shape.fha > 0) object["FHA"] = shape.fha;
+  for (const auto& [code, body] : kBodies) {
+    if (shape.bmc == body) object["BMC"] = code;
+  }
+  for (const TipMode& mode : shape.modes) {
+    object["Modes"].push_back(
+        {{"Frequency", mode.frequency_hz}, {"DampingRatio", mode.damping_ratio}, {"Stiffness", mode.stiffness_n_mm}});
+  }
   return object;
 }
 

@@ -9,6 +9,17 @@
 
 namespace rmac::gateway {
 
+/// What a tool's body is made of, by ISO 13399's BMC.
+enum class BodyMaterial { Unknown, Carbide, HighSpeedSteel };
+
+/// One way in which a tool swings in its holder, as a knock on its tip shows it: alike in all directions across its
+/// axis.
+struct TipMode {
+  double frequency_hz = 0;
+  double damping_ratio = 0;
+  double stiffness_n_mm = 0;  ///< modal, at the tip
+};
+
 /// What a tool looks like, by the symbols of ISO 13399. mm, along the tool's axis from its tip up.
 struct ToolShape {
   double dc = 0;                  ///< cutting diameter
@@ -20,6 +31,8 @@ struct ToolShape {
   double fha = 0;                 ///< helix angle of the flutes, degrees
   std::vector<ConeShape> shank;   ///< from the flutes up
   std::vector<ConeShape> holder;  ///< its last one ends at the tool interface, `Length` above the tip
+  BodyMaterial bmc{};
+  std::vector<TipMode> modes{};  ///< as measured; none: nobody did
 
   /// How far above the tip the holder begins.
   [[nodiscard]] double holder_begins(double tool_length_mm) const;

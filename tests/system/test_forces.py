@@ -24,7 +24,9 @@ def slot(depth, feed_mm_min, rpm):
             to(-BEYOND, 0, TOP - depth), request("RMAC_CAM.MoveAlongLine", MoveID=2, StartPoint=line[0], EndPoint=line[1])]
 
 
-class Forces(unittest.TestCase):
+class SimulatedCut(unittest.TestCase):
+    """A program on SuginoXYZAC with a stock and a material."""
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="rmac-test-")
         self.addCleanup(folder.cleanup)
@@ -45,6 +47,8 @@ class Forces(unittest.TestCase):
         self.assertEqual(len(done.stdout.splitlines()), 1, done.stderr)
         return json.loads(done.stdout), done
 
+
+class Forces(SimulatedCut):
     def test_a_slot_takes_what_its_chips_and_its_edges_take(self):
         depth, feed, rpm = 4, 600, 3000
         report, done = self.report(slot(depth, feed, rpm), "--by-move")

@@ -107,7 +107,8 @@ void CollisionWatch::take_tool(gateway::Controller& controller) {
   if (load_) load_->set_tool(tool);
 }
 
-void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller) {
+void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller,
+                           const Eigen::Vector3d& bend_mm) {
   const sdk::DeviceObject* const device = controller.mechanism();
   if (device == nullptr || device->name != setup_.machine) {
     if (device != nullptr && sample.moving) {
@@ -135,7 +136,7 @@ void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway
     load_->set_spindle(sample.spindle_rpm.front(),
                        {.torque_nm = spindle.max_torque_nm, .power_w = spindle.horse_power * kWattsPerHorsePower});
   }
-  material_->advance(sample.t_s, joints, move, turns);
+  material_->advance(sample.t_s, joints, move, turns, bend_mm);
 }
 
 void CollisionWatch::finish() {

@@ -40,7 +40,9 @@ class CollisionWatch {
   void move_done();
   /// The tool in the spindle, its number and what the table says of it, may be another.
   void tool_may_have_changed() noexcept { look_at_tool_ = true; }
-  void cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller);
+  /// `bend_mm`: by so much the tool's tip is beside where the joints have it, part frame.
+  void cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller,
+             const Eigen::Vector3d& bend_mm = Eigen::Vector3d::Zero());
   /// The run is over.
   void finish();
 
@@ -49,6 +51,10 @@ class CollisionWatch {
   [[nodiscard]] const gateway::Material* material() const noexcept { return material_.get(); }
   /// What cutting takes; null where the set-up has no stock or does not say of which material, or that is not known.
   [[nodiscard]] const gateway::CuttingLoad* load() const noexcept { return load_.get(); }
+  /// Tells of the tool in material, where there is a load; the listener outlives this.
+  void listen_to_cuts(gateway::EngagedListener& listener) noexcept {
+    if (load_) load_->listen(listener);
+  }
   /// What of it cannot be told, a sentence each; empty: all is, or nobody asked.
   [[nodiscard]] std::vector<std::string> forces_not_told() const;
   [[nodiscard]] const gateway::Setup& setup() const noexcept { return setup_; }

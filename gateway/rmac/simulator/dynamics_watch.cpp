@@ -11,19 +11,29 @@
 #include "gateway/device_database/device_database.hpp"
 #include "gateway/device_database/device_json.hpp"
 #include "gateway/device_driver_manager/device_tree.hpp"
+#include "gateway/forces/turn_forces.hpp"
 #include "gateway/rmac/simulator/machine_modules.hpp"
 #include "gateway/rmac/simulator/mounted_tool.hpp"
+#include "gateway/rmac/simulator/watch_verdict.hpp"
 #include "rmac/motion/frame.hpp"
 
 namespace rmac::cli {
 
 DynamicsWatch::DynamicsWatch(const sdk::DeviceObject& device, std::unique_ptr<gateway::AxisDynamics> axes,
-                             const CollisionWatch* cuts)
-    : machine_(device.name), configured_(gateway::to_device_json(device)), axes_(std::move(axes)), cuts_(cuts) {}
+                             CollisionWatch* cuts)
+    : machine_(device.name), configured_(gateway::to_device_json(device)), axes_(std::move(axes)), cuts_(cuts) {
+  if (cuts == nullptr) return;
+  cuts->listen_to_cuts(*this);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Vector3d unit = Eigen::Vector3d::Unit(i);
+    const Vector there = rotate(cuts->setup().part_frame.q, {unit[0], unit[1], unit[2]});
+    to_link_.col(i) = Eigen::Vector3d(there[0], there[1], there[2]);
+  }
+}
 
 Result<std::unique_ptr<DynamicsWatch>> DynamicsWatch::open(const std::string& machine,
                                                            const std::filesystem::path& device_tree, double period_s,
-                                                           const CollisionWatch* cuts) {
+                                                           CollisionWatch* cuts) {
   const auto device_json = gateway::find_device_json(machine, device_tree);
   if (!device_json) return fail(device_json.error().message);
   const auto device = gateway::read_device_database(*device_json);
@@ -33,14 +43,54 @@ Result<std::unique_ptr<DynamicsWatch>> DynamicsWatch::open(const std::string& ma
   return std::unique_ptr<DynamicsWatch>(new DynamicsWatch(*device, std::move(*axes), cuts));
 }
 
+void DynamicsWatch::take_tool(const gateway::Tool& tool, const sdk::DeviceObject& device) {
+  tool_ = gateway::tip_on_interface(tool);
+  most_rpm_ = device.spindles.empty() ? 0 : device.spindles.front().max_speed_rpm;
+  if (tool.max_rpm > 0) most_rpm_ = most_rpm_ > 0 ? std::min(most_rpm_, tool.max_rpm) : tool.max_rpm;
+  auto bending = gateway::bending_of(tool);
+  no_bending_ =
+      bending ? ""
+              : fmt::format("how far tool {} bends, and whether it chatters: {}", tool.number, bending.error().message);
+  bending_ = bending ? std::move(*bending) : gateway::ToolBending{};
+  axes_->forget_path();
+}
+
 void DynamicsWatch::take_force(const gateway::CycleSample& planned) {
   const double passed_s = planned.t_s - std::exchange(told_s_, planned.t_s);
   if (cuts_ == nullptr || cuts_->load() == nullptr) return;
   const double turns_s = std::abs(planned.spindle_rpm.front()) / 60;
-  const Eigen::Vector3d now = cuts_->load()->now(planned.t_s).force_n;
-  const Vector there = rotate(cuts_->setup().part_frame.q, {now[0], now[1], now[2]});
-  const Eigen::Vector3d change = Eigen::Vector3d(there[0], there[1], there[2]) - force_n_;
-  force_n_ += std::min(1.0, turns_s * passed_s) * change;
+  const gateway::CuttingNow now = cuts_->load()->now(planned.t_s);
+  force_n_ += std::min(1.0, turns_s * passed_s) * (now.force_n - force_n_);
+  bend_mm_ = bending_.compliance_mm_n * (force_n_ - force_n_.dot(now.axis) * now.axis);
+}
+
+void DynamicsWatch::engaged(const gateway::EngagedTool& tool) {
+  if (!no_bending_.empty()) not_told_.insert(no_bending_);
+  const Eigen::Vector3d& axis = tool.at.axis;
+  const Eigen::Vector3d x = tool.goes.isZero() ? axis.unitOrthogonal() : tool.goes;
+  const auto stiffness =
+      gateway::chip_stiffness(tool.mill, cuts_->load()->material().coefficients, tool.slices, tool.feed);
+  if (!stiffness) return;  // then nor could forces be told
+  Eigen::Matrix3d feed_frame;
+  feed_frame << x, axis.cross(x), axis;
+  std::vector<gateway::VibrationMode> modes = axes_->modes(tool_);
+  for (gateway::VibrationMode& mode : modes) mode.directions = to_link_.transpose() * mode.directions * to_link_;
+  const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - axis * axis.transpose();
+  for (const gateway::TipMode& mode : bending_.modes) {
+    modes.push_back({.frequency_hz = mode.frequency_hz,
+                     .damping_ratio = mode.damping_ratio,
+                     .stiffness_n_mm = mode.stiffness_n_mm,
+                     .directions = across});
+  }
+  chatter_.add({.cutting_n_mm = feed_frame * *stiffness * feed_frame.transpose(),
+                .teeth = tool.mill.teeth(),
+                .rpm = tool.rpm,
+                .most_rpm = most_rpm_,
+                .t_s = tool.t_s,
+                .line = tool.move.line,
+                .move_id = tool.move.id,
+                .place = tool.at.tip},
+               modes);
 }
 
 void DynamicsWatch::check_configuration(const sdk::DeviceObject& device) {
@@ -56,27 +106,25 @@ void DynamicsWatch::finish() {
   }
 }
 
-gateway::CycleSample DynamicsWatch::cycle(const gateway::CycleSample& planned, int line,
-                                          gateway::Controller& controller) {
+TrueCycle DynamicsWatch::cycle(const gateway::CycleSample& planned, int line, gateway::Controller& controller) {
   const sdk::DeviceObject* const device = controller.mechanism();
   if (device == nullptr || device->name != machine_) {
     if (device != nullptr && planned.moving) {
       not_told_.insert(fmt::format("moves of {}: the axes are those of {}", device->name, machine_));
     }
-    return planned;
+    return {planned};
   }
   if (std::exchange(look_at_configuration_, false)) check_configuration(*device);
   if (std::exchange(look_at_tool_, false)) {
-    tool_ = gateway::tip_on_interface(mounted_tool(controller));
-    axes_->forget_path();
+    take_tool(mounted_tool(controller), *device);
   }
   // Where the machine stands before nobody knows.
   begun_ = begun_ || planned.moving;
-  if (!begun_ || axes_->stopped()) return planned;
+  if (!begun_ || axes_->stopped()) return {planned};
   take_force(planned);
-  axes_->cycle(planned, {.line = line, .tool = tool_, .force_n = force_n_});
-  gateway::CycleSample seen = planned;
-  std::ranges::copy(axes_->joints(), seen.position_set.begin());
+  axes_->cycle(planned, {.line = line, .tool = tool_, .force_n = to_link_ * force_n_, .bend_mm = to_link_ * bend_mm_});
+  TrueCycle seen{planned, bend_mm_};
+  std::ranges::copy(axes_->joints(), seen.sample.position_set.begin());
   return seen;
 }
 
@@ -84,7 +132,15 @@ std::string where(const gateway::StoppedByFault& stopped) {
   return stopped.line > 0 ? fmt::format("in line {}", stopped.line) : "before its program begins";
 }
 
-Result<> verdict(const DynamicsWatch& watch) {
+namespace {
+
+Result<> joined(const std::vector<std::string>& clauses) {
+  return clauses.empty() ? Result<>() : fail(fmt::format("{}", fmt::join(clauses, "; ")));
+}
+
+}  // namespace
+
+Result<> keeps_to_program(const DynamicsWatch& watch) {
   std::vector<std::string> clauses;
   if (const auto& stopped = watch.axes().stopped()) {
     clauses.push_back(fmt::format("the machine stops {}: {}", where(*stopped), stopped->why));
@@ -100,8 +156,18 @@ Result<> verdict(const DynamicsWatch& watch) {
     clauses.push_back(fmt::format("the motor at axis {} of {} gives {:.3g} N·m in the mean, and is made for {:.3g}",
                                   motor.axis, motor.bus, motor.rms_nm, motor.rated_nm));
   }
+  return joined(clauses);
+}
+
+Result<> verdict(const DynamicsWatch& watch) {
+  std::vector<std::string> clauses;
+  if (const auto& found = watch.chatter().found(); !found.empty()) {
+    const gateway::Chatter& first = found.front();
+    clauses.push_back(fmt::format("{} cuts chatter, first in line {}: at {:.0f} Hz, from {:.0f} % of its depth on",
+                                  found.size(), first.line, first.frequency_hz, 100 * first.share));
+  }
   clauses.insert(clauses.end(), watch.not_told().begin(), watch.not_told().end());
-  return clauses.empty() ? Result<>() : fail(fmt::format("{}", fmt::join(clauses, "; ")));
+  return both(keeps_to_program(watch), joined(clauses));
 }
 
 }  // namespace rmac::cli

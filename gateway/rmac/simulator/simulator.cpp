@@ -217,8 +217,8 @@ void Simulator::take(const gateway::CycleSample& sample) {
   const int line = moves_.line().value_or(line_);
   gateway::Controller& controller = simulation_.controller();
   if (dynamics_ != nullptr) {
-    const gateway::CycleSample seen = dynamics_->cycle(sample, line, controller);
-    if (watch_ != nullptr) watch_->cycle(seen, line, controller);
+    const TrueCycle seen = dynamics_->cycle(sample, line, controller);
+    if (watch_ != nullptr) watch_->cycle(seen.sample, line, controller, seen.bend_mm);
   } else if (watch_ != nullptr) {
     watch_->cycle(sample, line, controller);
   }

@@ -74,6 +74,7 @@ class AxisPlant {
   [[nodiscard]] double load_rad_s() const noexcept { return masses_ ? masses_->load_rad_s() : speed_rad_s_; }
   [[nodiscard]] double motor_nm() const noexcept { return motor_nm_; }
   [[nodiscard]] bool has_play() const noexcept { return masses_ && parameters_.play_rad > 0; }
+  [[nodiscard]] const AxisPlantParameters& parameters() const noexcept { return parameters_; }
   void put_at(double angle_rad) noexcept;
   /// Torque from outside on the load, such as of a collision.
   void push(double nm) noexcept { push_nm_ = nm; }

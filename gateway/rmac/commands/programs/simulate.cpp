@@ -274,7 +274,7 @@ Result<std::optional<double>> feed_that_keeps(const SimulateOptions& options, co
     simulator.go_by(*parts->dynamics, true);
     simulator.slow_down(percent / 100);
     const auto run = simulator.run();
-    if (run && verdict(*parts->dynamics)) return percent;
+    if (run && keeps_to_program(*parts->dynamics)) return percent;
   }
   return std::nullopt;
 }
@@ -323,7 +323,7 @@ Result<> simulate_program(const SimulateOptions& options, bool json) {
   const Result<> met = watched != nullptr ? verdict(*watched) : Result<>();
   const Result<> held = dynamics != nullptr ? verdict(*dynamics) : Result<>();
   std::optional<double> keeps;
-  if (!held) {
+  if (dynamics != nullptr && !keeps_to_program(*dynamics)) {
     auto found = feed_that_keeps(options, tree, *program);
     if (!found) return tl::unexpected(found.error());
     keeps = *found;

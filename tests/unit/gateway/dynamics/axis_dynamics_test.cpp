@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "gateway/device_database/device_database.hpp"
 #include "gateway/tools/tool.hpp"
@@ -182,6 +183,73 @@ TEST(AxisDynamics, BringsJointsToWhereTheMotionBegins) {
   ASSERT_FALSE(axes->stopped()) << axes->stopped()->why;
   EXPECT_THAT(axes->joints(), testing::Pointwise(testing::DoubleNear(0.002), std::vector<double>{40, -30, 20}));
   EXPECT_LT(axes->joint_deviations()[0].peak, 0.002) << "the way there does not count";
+}
+
+/// Of a simulated axis without friction that is pushed at its load with this torque and frequency: how far the load
+/// swings, rad.
+double swing_rad(const fieldbus::AxisPlantParameters& parameters, double torque_nm, double frequency_hz) {
+  fieldbus::AxisPlantParameters free = parameters;
+  free.coulomb_nm = free.static_nm = 1e-9;
+  free.viscous_nm_s = free.gravity_nm = free.cogging = 0;
+  fieldbus::AxisPlant plant(free);
+  constexpr double kStep_s = 2e-5;
+  double least = 0, most = 0, drift = 0;
+  const auto swings = static_cast<int>(60 / parameters.damping_ratio / 10);
+  const auto steps = static_cast<int>(swings / frequency_hz / kStep_s);
+  for (int i = 0; i < steps; ++i) {
+    // A cosine leaves no drift behind.
+    plant.push(torque_nm * std::cos(2 * std::numbers::pi * frequency_hz * (i + 0.5) * kStep_s));
+    plant.advance(0, false, kStep_s);
+    if (i < steps * 9 / 10) continue;
+    if (i == steps * 9 / 10) drift = least = most = plant.load_rad();
+    least = std::min(least, plant.load_rad()), most = std::max(most, plant.load_rad());
+  }
+  return drift != 0 ? (most - least) / 2 : 0;
+}
+
+// At its resonance an oscillator swings by the force over twice its damping and stiffness.
+TEST(AxisDynamics, SwingsAtTheTipAsItsAxesDo) {
+  constexpr double kMPerRad = 5e-3 / (2 * std::numbers::pi), kForce_n = 10;
+  for (const auto& [stiffness, load] : {std::pair(15.8, 1.27e-5), {7.9, 1.1e-5}, {15.8, 0.6e-5}}) {
+    Machine mill("mill/3-axis/DMACXYZ");
+    auto& numbers = mill.device.digital_control_interface.numbers;
+    numbers["stiffness_nm_rad"] = {stiffness, 0, 0, 0, 0, 0, 0, 0};
+    numbers["load_inertia_kg_m2"] = {load, 0, 0, 0, 0, 0, 0, 0};
+    const auto axes = open(mill);
+    ASSERT_NE(axes, nullptr);
+    const auto modes = axes->modes(tip_on_interface({.number = 1, .length_mm = 40}));
+    ASSERT_EQ(modes.size(), 1u) << "the others are rigid";
+    EXPECT_TRUE(modes[0].directions.isApprox(Vector3d::UnitX() * Vector3d::UnitX().transpose(), 1e-9));
+    fieldbus::AxisPlantParameters plant;
+    plant.rotor_inertia_kg_m2 = 2.2e-5, plant.screw_inertia_kg_m2 = plant.table_mass_kg = 0;
+    plant.stiffness_nm_rad = stiffness, plant.load_inertia_kg_m2 = load;
+    const double swings_mm = 1000 * kMPerRad * swing_rad(plant, kForce_n * kMPerRad, modes[0].frequency_hz);
+    EXPECT_NEAR(kForce_n / (2 * modes[0].damping_ratio * modes[0].stiffness_n_mm) / swings_mm, 1, 0.03) << stiffness;
+  }
+}
+
+// A table that leans swings its tip where the lever takes it, and the farther the longer the lever.
+TEST(AxisDynamics, SwingsByTheLeverOfAJointThatTurns) {
+  Machine mill("mill/5-axis/SuginoXYZAC");
+  auto& numbers = mill.device.digital_control_interface.numbers;
+  ASSERT_TRUE(numbers.contains("inertia_kg_m2"));
+  for (const auto& [name, share] : {std::pair("stiffness_nm_rad", 0.0), {"load_inertia_kg_m2", 0.5}}) {
+    numbers[name].assign(numbers["inertia_kg_m2"].size(), 0);
+    const std::size_t table = mill.device.actuators[3].axis;
+    numbers[name][table] = share > 0 ? share * numbers["inertia_kg_m2"][table] : 40;
+  }
+  const auto axes = open(mill);
+  ASSERT_NE(axes, nullptr);
+  const auto mode = [&](double length_mm) {
+    const auto modes = axes->modes(tip_on_interface({.number = 1, .length_mm = length_mm}));
+    EXPECT_EQ(modes.size(), 1u);
+    return modes.front();
+  };
+  const VibrationMode near = mode(30), far = mode(90);
+  EXPECT_EQ(near.frequency_hz, far.frequency_hz);
+  EXPECT_NEAR(near.directions.trace(), 1, 1e-9);
+  EXPECT_NEAR(near.directions(0, 0), 0, 1e-9) << "about X";
+  EXPECT_NE(near.stiffness_n_mm, far.stiffness_n_mm);
 }
 
 // With a spring, the load swings where the motor stands: what is told is the load.

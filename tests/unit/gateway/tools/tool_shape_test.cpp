@@ -21,6 +21,8 @@ json ball_mill() {
           {"OAL", 57},
           {"ZEFP", 2},
           {"FHA", 30},
+          {"BMC", "HM"},
+          {"Modes", {{{"Frequency", 900}, {"DampingRatio", 0.03}, {"Stiffness", 8000}}}},
           {"Shank",
            {{{"Cone", {{"Radius", 2.9}, {"TopRadius", 3}, {"Height", 5}}}},
             {{"Cylinder", {{"Radius", 3}, {"Height", 40}}}}}},
