@@ -27,6 +27,11 @@ std::uint32_t DexelGrid::keep(const Piece& piece, std::uint32_t next) {
   return at;
 }
 
+void DexelGrid::release(std::uint32_t at) {
+  more_[at].next = free_;
+  free_ = at;
+}
+
 void DexelGrid::put(std::size_t axis, std::size_t ray, std::span<const Piece> pieces) {
   std::uint32_t next = kNone;
   for (std::size_t i = pieces.size(); i-- > 1;) next = keep(pieces[i], next);
@@ -100,24 +105,46 @@ float DexelGrid::remove(std::size_t axis, std::size_t ray, float from, float to)
   return remove_of_several(axis, ray, from, to);
 }
 
+/// In place: a ray through a slot has two pieces, and the next cut along the slot's side changes an end of one.
 float DexelGrid::remove_of_several(std::size_t axis, std::size_t ray, float from, float to) {
-  const float removed = between(axis, ray, from, to);
-  if (removed == 0) return 0;
-  rest_.clear();
-  pieces(axis, ray, [&](const Piece& piece) {
-    if (piece.from < std::min(from, piece.to)) rest_.push_back({piece.from, std::min(from, piece.to)});
-    if (std::max(to, piece.from) < piece.to) rest_.push_back({std::max(to, piece.from), piece.to});
-  });
   Ray& first = families_[axis].rays[ray];
-  for (std::uint32_t next = first.next; next != kNone;) {
-    const std::uint32_t behind = more_[next].next;
-    more_[next].next = free_;
-    free_ = next;
-    next = behind;
+  const auto ray_at = [&](std::uint32_t at) -> Ray& { return at == kNone ? first : more_[at]; };
+  float removed = 0;
+  std::uint32_t at = kNone, before = kNone;  // `kNone` is the first piece
+  while (true) {
+    Piece& piece = ray_at(at).piece;
+    const std::uint32_t next = ray_at(at).next;
+    if (piece.from >= to) return removed;
+    if (piece.from < from && piece.to > to) {
+      const std::uint32_t rest = keep({to, piece.to}, next);  // what `piece` refers to may have moved
+      if (rest == next) return 0;
+      ray_at(at).piece.to = from, ray_at(at).next = rest;
+      return to - from;
+    }
+    if (piece.to > to) {
+      removed += to - std::max(piece.from, from);
+      piece.from = std::max(piece.from, to);
+      return removed;
+    }
+    if (piece.from >= from) {
+      removed += piece.to - piece.from;
+      if (at != kNone) {
+        ray_at(before).next = next;
+        release(at);
+      } else if (next != kNone) {
+        first = more_[next];
+        release(next);
+        continue;  // with what is the first piece now
+      } else {
+        piece = kNothing;
+      }
+    } else {
+      if (piece.to > from) removed += piece.to - from, piece.to = from;
+      before = at;
+    }
+    if (next == kNone) return removed;
+    at = next;
   }
-  first = Ray{};
-  put(axis, ray, rest_);
-  return removed;
 }
 
 double DexelGrid::touched_area_mm2(std::size_t axis) const {

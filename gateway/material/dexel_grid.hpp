@@ -111,6 +111,7 @@ class DexelGrid {
     std::vector<std::uint8_t> touched;  ///< of each ray
   };
   [[nodiscard]] std::uint32_t keep(const Piece& piece, std::uint32_t next);
+  void release(std::uint32_t at);
   float remove_of_several(std::size_t axis, std::size_t ray, float from, float to);
 
   DexelLayout layout_;
@@ -118,7 +119,6 @@ class DexelGrid {
   std::vector<Ray> more_;  ///< pieces behind a ray's first one
   std::uint32_t free_ = kNone;
   bool overflowed_ = false;
-  std::vector<Piece> rest_;  ///< of the ray at hand
 };
 
 }  // namespace rmac::gateway

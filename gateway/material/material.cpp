@@ -18,7 +18,7 @@ constexpr double kShareBetween = 0.25;
 /// Of the tolerance: walls that the cutting part left may be off by it, on either side.
 constexpr double kToldFrom = 4;
 constexpr int kMostHalvings = 20;
-constexpr std::size_t kTogether = 16;  ///< strokes
+constexpr std::size_t kTogether = 32;  ///< strokes
 
 double resolution_of(const DexelLayout& layout) {
   return *std::ranges::max_element(layout.pitch);
@@ -167,8 +167,8 @@ void Material::end_strokes(bool cutting) {
   for (Part& part : parts_) {
     if (part.cuts != cutting) continue;
     if (const auto stroke = part.strokes.end()) take(part, *stroke);
-    cut_with(part);
   }
+  if (cutting) cut_all();
 }
 
 void Material::take(Part& part, const Stroke& stroke) {
@@ -179,11 +179,24 @@ void Material::take(Part& part, const Stroke& stroke) {
   }
   ++strokes_;
   part.waiting.push_back(sweep);
-  if (part.waiting.size() >= kTogether) cut_with(part);
+  if (part.waiting.size() >= kTogether) cut_all();
+}
+
+/// Where the tool cuts its side goes first: the upper half of a ball then meets nothing that is not gone.
+void Material::cut_all() {
+  const auto cut_one = [this](Part& part) {
+    if (part.cuts && !part.waiting.empty()) cut_with(part);
+  };
+  if (turns_ && move_.cutting) {
+    std::for_each(parts_.rbegin(), parts_.rend(), cut_one);
+  } else {
+    std::ranges::for_each(parts_, cut_one);
+  }
 }
 
 void Material::cut_with(Part& part) {
-  const Removal met = cut(grid_, part.waiting, turns_ ? Cut::Remove : Cut::Look);
+  const bool may_cut = turns_ && move_.cutting;  // how deep is nobody's concern then
+  const Removal met = cut(grid_, part.waiting, may_cut ? Cut::Remove : turns_ ? Cut::RemoveAndTell : Cut::Look);
   part.waiting.clear();
   if (turns_) removed_.add(met);
   if (turns_ && listening_.listener != nullptr) listening_.listener->takes(*std::ranges::max_element(met.volumes_mm3));

@@ -74,6 +74,7 @@ class Material {
   void tell_listener(double t_s, const ToolAt& there);
   void end_strokes(bool cutting);
   void take(Part& part, const Stroke& stroke);
+  void cut_all();
   void cut_with(Part& part);
   void look_at(const Part& part, const Sweep& sweep);
   void tell(const Part& part, const Removal& met, const char* why);

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gateway/material/sweep/ray_row.hpp"
+
 namespace rmac::gateway {
 
 /// What a ball passes on a straight way: a capsule. mm.
 class SweptBall {
  public:
   using Vector3d = Eigen::Vector3d;
+  static constexpr bool kClosedForm = true;  ///< lines have its ends but for rounding
 
   SweptBall(const Vector3d& from, const Vector3d& way, double radius) : from_(from), way_(way), radius_(radius) {}
 
@@ -32,8 +35,12 @@ class SweptBall {
     /// The same of what the ball passes between two parts of its way.
     [[nodiscard]] bool on_part(double first, double second, double begin, double end, double& from,
                                double& to) const noexcept;
+    /// The same of many lines, at less than half of the cost.
+    void on_part(const RayRow& row, double begin, double end, RowMet& met) const noexcept;
+    void operator()(const RayRow& row, RowMet& met) const noexcept { on_part(row, 0, 1, met); }
 
    private:
+    struct Rows;
     double first_, second_, along_;              ///< where the ball begins
     double way_first_, way_second_, way_along_;  ///< its way
     double radius2_, across2_, length2_;         ///< squares: of the radius, and of the way across the axis and in all

@@ -11,6 +11,7 @@ namespace rmac::gateway {
 class SweptCone {
  public:
   using Vector3d = Eigen::Vector3d;
+  static constexpr bool kClosedForm = true;  ///< lines have its ends but for rounding
   struct Size {
     double bottom_radius = 0, top_radius = 0, height = 0;
   };
@@ -34,6 +35,13 @@ class SweptCone {
     /// where along the axis.
     [[nodiscard]] bool operator()(double first, double second, double& from, double& to) const noexcept {
       return upright_ ? (*upright_)(first, second, from, to) : leaning(first, second, from, to);
+    }
+    void operator()(const RayRow& row, RowMet& met) const noexcept {
+      if (upright_) {
+        (*upright_)(row, met);
+      } else {
+        meet_one_by_one(*this, row, met);
+      }
     }
 
    private:

@@ -11,6 +11,7 @@ namespace rmac::gateway {
 class SweptDisc {
  public:
   using Vector3d = Eigen::Vector3d;
+  static constexpr bool kClosedForm = false;  ///< nearest places are looked for in steps
 
   /// `axis`, unit, across the disc.
   SweptDisc(const Vector3d& from, const Vector3d& way, const Vector3d& axis, double radius, double rounded)
@@ -28,6 +29,7 @@ class SweptDisc {
     /// The line through first and second coordinate across the axis: whether it meets the solid, and between where and
     /// where along the axis, to a millionth of a millimetre.
     [[nodiscard]] bool operator()(double first, double second, double& from, double& to) const noexcept;
+    void operator()(const RayRow& row, RowMet& met) const noexcept { meet_one_by_one(*this, row, met); }
 
    private:
     struct Near {

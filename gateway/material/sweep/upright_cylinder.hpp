@@ -34,16 +34,23 @@ class UprightCylinder {
       to = level_ + half_ + std::max(begin * rise_, end * rise_);
       return true;
     }
-    const double above = (height_is_first_ ? first : second) - level_;
-    if (std::abs(rise_) < kFlat) {
-      if (std::abs(above) > half_) return false;
-    } else {
-      const double one = (above - half_) / rise_, other = (above + half_) / rise_;
-      begin = std::max(begin, std::min(one, other)), end = std::min(end, std::max(one, other));
-      if (begin > end) return false;
-    }
+    if (!at_height(height_is_first_ ? first : second, begin, end)) return false;
     return height_is_first_ ? disc_.on_part(first_, second, begin, end, from, to)
                             : disc_.on_part(first, second_, begin, end, from, to);
+  }
+  /// Across the axis, lines of one height meet the same disc, and lines one above the other the same part of it.
+  void operator()(const RayRow& row, RowMet& met) const noexcept {
+    double begin = 0, end = 1;
+    if (across_ && !height_is_first_) {
+      if (!at_height(row.second, begin, end)) return met.none();
+      disc_.on_part({row.first, second_}, begin, end, met);
+    } else if (across_ && on_all_of_its_way(row.first.front()) && on_all_of_its_way(row.first.back())) {
+      double from = 0, to = 0;
+      if (!disc_.on_part(first_, row.second, begin, end, from, to)) return met.none();
+      met.from.fill(from), met.to.fill(to);
+    } else {
+      meet_one_by_one(*this, row, met);
+    }
   }
 
  private:
@@ -51,6 +58,17 @@ class UprightCylinder {
   [[nodiscard]] static Vector3d flat(Vector3d way, std::size_t upright) {
     way[static_cast<Eigen::Index>(upright)] = 0;
     return way;
+  }
+  /// Whether it is ever at a height, and on what part of its way.
+  [[nodiscard]] bool at_height(double height, double& begin, double& end) const noexcept {
+    const double above = height - level_;
+    if (std::abs(rise_) < kFlat) return std::abs(above) <= half_;
+    const double one = (above - half_) / rise_, other = (above + half_) / rise_;
+    begin = std::max(begin, std::min(one, other)), end = std::min(end, std::max(one, other));
+    return begin <= end;
+  }
+  [[nodiscard]] bool on_all_of_its_way(double height) const noexcept {
+    return std::abs(height - level_) <= half_ && std::abs(height - level_ - rise_) <= half_;
   }
   /// The part of its way on which its axis is nearer to a line along it than its radius.
   [[nodiscard]] bool passes(double u, double v, double& begin, double& end) const noexcept {

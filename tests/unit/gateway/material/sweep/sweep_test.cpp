@@ -113,6 +113,42 @@ TEST(Sweep, BeginsAndEndsOnALineWhereSomePlaceOfThePieceOnItsWayDoes) {
   EXPECT_GT(missed, 10);
 }
 
+TEST(Sweep, HasOfARowOfLinesWhatItHasOfEach) {
+  std::mt19937_64 random(13);
+  std::uniform_real_distribution<double> offset(-1, 1);
+  int met = 0, missed = 0;
+  for (int n = 0; n < (kSanitized ? 500 : 5000); ++n) {
+    const Case made = random_case(random);
+    const std::size_t axis = random() % 3;
+    const auto u = static_cast<Eigen::Index>((axis + 1) % 3), v = static_cast<Eigen::Index>((axis + 2) % 3);
+    std::visit(
+        [&](const auto& swept) {
+          const Eigen::AlignedBox3d box = swept.bounds();
+          const double begin = box.center()[u] + offset(random) * box.sizes()[u] / 2;
+          const double pitch = 0.1 * (offset(random) + 1);
+          RayRow row{.first = {}, .second = box.center()[v] + offset(random) * box.sizes()[v] / 2};
+          for (std::size_t i = 0; i < RayRow::kRays; ++i) row.first[i] = begin + static_cast<double>(i) * pitch;
+          const auto lines = swept.along(axis);
+          RowMet of_row;
+          lines(row, of_row);
+          for (std::size_t i = 0; i < RayRow::kRays; ++i) {
+            double from = 0, to = 0;
+            if (lines(row.first[i], row.second, from, to)) {
+              ++met;
+              EXPECT_NEAR(of_row.from[i], from, 1e-12) << "case " << n << ", line " << i;
+              EXPECT_NEAR(of_row.to[i], to, 1e-12) << "case " << n << ", line " << i;
+            } else {
+              ++missed;
+              EXPECT_GT(of_row.from[i], of_row.to[i]) << "case " << n << ", line " << i;
+            }
+          }
+        },
+        sweep_of(made.piece, made.stroke));
+  }
+  EXPECT_GT(met, missed);
+  EXPECT_GT(missed, 1000);
+}
+
 TEST(Sweep, IsHeldByTheWiderOne) {
   std::mt19937_64 random(12);
   std::uniform_real_distribution<double> offset(-1, 1);
