@@ -61,7 +61,7 @@ void CuttingLoad::set_tool(const Tool& tool) {
   mill_.reset();
   last_.reset();
   now_until_s_ = -1;
-  taken_mm3_ = 0, looks_ = {};
+  looks_ = {};
   no_mill_.clear();
   if (!tool.shape) return;  // it takes nothing away
   auto mill = EndMill::of(*tool.shape);
@@ -88,7 +88,7 @@ void CuttingLoad::miss(const char* kind, const std::string& sentence) {
 void CuttingLoad::cuts(const DexelGrid& grid, const ToolAt& tool, const Eigen::Vector3d& velocity, double t_s,
                        const MoveNow& move) {
   const double speed = velocity.norm(), every_s = every_mm() / speed;
-  const double time_s = std::min(t_s - told_s_, 2 * every_s), before_s = std::exchange(told_s_, t_s);
+  const double time_s = std::min(t_s - looks_.told_s, 2 * every_s), before_s = std::exchange(looks_.told_s, t_s);
   now_until_s_ = -1;
   if (!mill_) {
     if (!no_mill_.empty()) miss("teeth", no_mill_);
@@ -140,7 +140,7 @@ bool CuttingLoad::plunges(const Engagement& met, double down_mm, double share) {
 }
 
 bool CuttingLoad::engaged(const Engagement& met, const MoveNow& move) {
-  const double taken = std::exchange(taken_mm3_, 0);
+  const double taken = std::exchange(looks_.taken_mm3, 0);
   if (!met.slices.empty() || met.face || taken < kLeastTaken_mm3) {
     looks_.blind = 0;
     return !met.slices.empty();

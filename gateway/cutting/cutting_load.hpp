@@ -83,7 +83,7 @@ class CuttingLoad : public CutListener {
 
   void cuts(const DexelGrid& grid, const ToolAt& tool, const Eigen::Vector3d& velocity, double t_s,
             const MoveNow& move) override;
-  void takes(double mm3) noexcept override { taken_mm3_ += mm3; }
+  void takes(double mm3) noexcept override { looks_.taken_mm3 += mm3; }
   [[nodiscard]] double every_mm() const override;
   /// A turn: what an axis does within one changes no mean over it.
   [[nodiscard]] double steady_s() const override;
@@ -113,8 +113,10 @@ class CuttingLoad : public CutListener {
     double rpm = 0;
     TurnForces forces;
   };
-  /// So often on end material went and no tooth was seen in any, and it went down with its face.
   struct Looks {
+    double told_s = 0;     ///< when it last heard of the tool
+    double taken_mm3 = 0;  ///< since then
+    /// So often on end material went and no tooth was seen in any, and it went down with its face.
     int blind = 0, down = 0;
   };
   void judge(Overload::Of of, double mean, double allowed, const Span& span, const ToolAt& tool, const MoveNow& move);
@@ -142,8 +144,6 @@ class CuttingLoad : public CutListener {
   std::optional<Last> last_;
   CuttingNow now_;
   double now_until_s_ = -1;  ///< from then on nobody knows it to cut
-  double told_s_ = 0;        ///< when it last heard of the tool
-  double taken_mm3_ = 0;     ///< since then
   Looks looks_;
   EngagedListener* listener_ = nullptr;
 };

@@ -88,18 +88,18 @@ void Material::advance(double t_s, std::span<const double> joints, const MoveNow
     go_to(there.tool);
     s_.since = t_s;
     listening_.told = there.tool;
-  } else if (!std::ranges::equal(joints, joints_)) {
+  } else if (!std::ranges::equal(joints, at_.joints)) {
     tell_listener(t_s, there.tool);
-    if (turns_between(joints_, joints)) {
-      go_between({joints_, bend_mm_, at_}, there, kMostHalvings);
+    if (turns_between(at_.joints, joints)) {
+      go_between({at_.joints, at_.bend_mm, at_.tool}, there, kMostHalvings);
     } else {
       go_to(there.tool);
     }
   }
   begun_ = true;
   s_.now = t_s;
-  at_ = there.tool, bend_mm_ = bend_mm;
-  joints_.assign(joints.begin(), joints.end());
+  at_.tool = there.tool, at_.bend_mm = bend_mm;
+  at_.joints.assign(joints.begin(), joints.end());
 }
 
 /// Slides alone leave the way straight.
@@ -143,7 +143,7 @@ Vector3d Material::velocity(double t_s, const ToolAt& there) {
   way.emplace_back(t_s, there.tip);
   const double since_s = t_s - listening_.listener->steady_s();
   while (way.size() > 2 && way[1].first <= since_s) way.pop_front();
-  if (way.size() < 2) return (there.tip - at_.tip) / (t_s - s_.now);
+  if (way.size() < 2) return (there.tip - at_.tool.tip) / (t_s - s_.now);
   return (there.tip - way.front().second) / (t_s - way.front().first);
 }
 

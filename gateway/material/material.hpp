@@ -66,6 +66,11 @@ class Material {
     Eigen::Vector3d bend_mm;
     ToolAt tool;
   };
+  struct Last {
+    std::vector<double> joints{};
+    Eigen::Vector3d bend_mm{0, 0, 0};
+    ToolAt tool{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
+  };
   [[nodiscard]] Stand stand(std::span<const double> joints, const Eigen::Vector3d& bend_mm);
   [[nodiscard]] bool turns_between(std::span<const double> from, std::span<const double> to) const;
   void go_between(const Stand& from, const Stand& to, int halvings);
@@ -94,9 +99,7 @@ class Material {
 
   // The step under way.
   std::vector<Frame> links_;
-  std::vector<double> joints_;
-  Eigen::Vector3d bend_mm_{0, 0, 0};
-  ToolAt at_{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};  ///< with these joints
+  Last at_;
   MoveNow move_;
   bool begun_ = false, turns_ = false;
   Times s_;
