@@ -190,7 +190,8 @@ TEST(BootPlan, TellsTheCycleAsFewDigitsSayIt) {
         Time{nanoseconds(120), 12, -8}, Time{nanoseconds(255), 255, -9}}) {
     CanopenConfig config = config_of({{"mode", {8}}});
     config.period = time.period;
-    EXPECT_THAT(plan_of(config, {0x60C2, 1}), Contains("may write 60C2h:01 = " + hexadecimal(time.value) + " (1 byte)"));
+    EXPECT_THAT(plan_of(config, {0x60C2, 1}),
+                Contains("may write 60C2h:01 = " + hexadecimal(time.value) + " (1 byte)"));
     const auto exponent = static_cast<std::uint8_t>(time.exponent);
     EXPECT_THAT(plan_of(config, {0x60C2, 2}), Contains("may write 60C2h:02 = " + hexadecimal(exponent) + " (1 byte)"));
   }
@@ -281,10 +282,10 @@ TEST(BootPlan, StoresAMappingThatCountsFromTheNextResetOn) {
   DriveDescription drive;
   drive.manners.store_after_mapping = true;
   const auto config = config_of({{"mode", {8}}});
-  EXPECT_THAT(plan_of(config, {0x1600, 0}, &drive),
-              ElementsAre("compare 1600h:00 with 2 in FF",
-                          "write 1600h:00 = 0 (1 byte) or find 2 in FF, where it is changed",
-                          "write 1600h:00 = 2 (1 byte) or find 2 in FF, where it is changed"));
+  EXPECT_THAT(
+      plan_of(config, {0x1600, 0}, &drive),
+      ElementsAre("compare 1600h:00 with 2 in FF", "write 1600h:00 = 0 (1 byte) or find 2 in FF, where it is changed",
+                  "write 1600h:00 = 2 (1 byte) or find 2 in FF, where it is changed"));
   EXPECT_THAT(plan_of(config, {0x1600, 1}, &drive),
               ElementsAre("compare 1600h:01 with 60400010 in FFFFFFFF",
                           "write 1600h:01 = 60400010 (4 bytes) or find 60400010 in FFFFFFFF, where it is changed"));
@@ -301,8 +302,8 @@ TEST(BootPlan, LeavesAloneWhatIsToBeSkippedOnEachAxis) {
   DriveDescription drive;
   drive.manners.skip = {{0x60C2, 1}, {0x6502, {}}, {0x1802, 1}, {0x1018, 4}};
   const auto config = config_of({{"node", {5, 5}}, {"axis_in_node", {0, 1}}, {"mode", {8}}});
-  for (const ObjectAddress skipped : {ObjectAddress{0x60C2, 1}, {0x68C2, 1}, {0x6502, 0}, {0x6D02, 0}, {0x1802, 1},
-                                      {0x1018, 4}}) {
+  for (const ObjectAddress skipped :
+       {ObjectAddress{0x60C2, 1}, {0x68C2, 1}, {0x6502, 0}, {0x6D02, 0}, {0x1802, 1}, {0x1018, 4}}) {
     EXPECT_THAT(plan_of(config, skipped, &drive), IsEmpty()) << to_string(skipped);
     EXPECT_THAT(plan_of(config, skipped), Not(IsEmpty())) << to_string(skipped);
   }

@@ -160,10 +160,10 @@ TEST(CanopenParameters, OfUnitsAreWrittenToTheirObjects) {
     ObjectAddress object;
     std::size_t bytes;
   };
-  for (const Unit& unit : {Unit{"polarity", {0x607E, 0}, 1}, Unit{"encoder_counts", {0x608F, 1}, 4},
-                           Unit{"encoder_turns", {0x608F, 2}, 4}, Unit{"gear_motor_turns", {0x6091, 1}, 4},
-                           Unit{"gear_shaft_turns", {0x6091, 2}, 4}, Unit{"feed_counts", {0x6092, 1}, 4},
-                           Unit{"feed_shaft_turns", {0x6092, 2}, 4}}) {
+  for (const Unit& unit :
+       {Unit{"polarity", {0x607E, 0}, 1}, Unit{"encoder_counts", {0x608F, 1}, 4}, Unit{"encoder_turns", {0x608F, 2}, 4},
+        Unit{"gear_motor_turns", {0x6091, 1}, 4}, Unit{"gear_shaft_turns", {0x6091, 2}, 4},
+        Unit{"feed_counts", {0x6092, 1}, 4}, Unit{"feed_shaft_turns", {0x6092, 2}, 4}}) {
     const CanopenConfig config = config_of({{unit.name, {129}}});
     const AxisConfig& axis = config.axes.at(0);
     ASSERT_EQ(axis.setup.size(), 1U) << unit.name;
@@ -194,7 +194,8 @@ TEST(CanopenParameters, MapWhatTheModeNeeds) {
                          Mode{9, 17, "6040:00/16 6060:00/8 60FF:00/32", kWithMode},
                          Mode{10, 17, "6040:00/16 6060:00/8 6071:00/16", kWithMode}}) {
     const Numbers numbers{{"mode", {of.mode}}, {"homing_method", {of.homing_method}}};
-    const CanopenConfig by_mode = config_of(numbers), by_text = config_of(numbers, {{"rpdo", of.rpdo}, {"tpdo", of.tpdo}});
+    const CanopenConfig by_mode = config_of(numbers),
+                        by_text = config_of(numbers, {{"rpdo", of.rpdo}, {"tpdo", of.tpdo}});
     EXPECT_EQ(by_mode.axes.at(0).setpoints, by_text.axes.at(0).setpoints) << of.mode;
     EXPECT_EQ(by_mode.axes.at(0).answers, by_text.axes.at(0).answers) << of.mode;
   }
@@ -246,12 +247,14 @@ TEST(CanopenParameters, ShareAnRpdoWhereEachByteIsOfOneDrive) {
         if (mine) own[axis] |= 1U << place;
       }
     }
-    const std::string said = answer({{"node", {1, 2}}, {"rpdo_node", {1, 1}}}, {{"rpdo_0", texts[0]}, {"rpdo_1", texts[1]}});
+    const std::string said =
+        answer({{"node", {1, 2}}, {"rpdo_node", {1, 1}}}, {{"rpdo_0", texts[0]}, {"rpdo_1", texts[1]}});
     if ((own[0] & own[1]) == 0) {
       ASSERT_EQ(said, "accepted") << texts[0] << "and " << texts[1];
       ++accepted;
     } else {
-      ASSERT_THAT(said, HasSubstr("nodes 1 and 2 share an RPDO, and both map some of its bytes")) << texts[0] << texts[1];
+      ASSERT_THAT(said, HasSubstr("nodes 1 and 2 share an RPDO, and both map some of its bytes"))
+          << texts[0] << texts[1];
     }
   }
   EXPECT_GT(accepted, 100);

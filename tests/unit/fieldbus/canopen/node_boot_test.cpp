@@ -64,9 +64,7 @@ class BootAlone : public testing::Test {
              frame.data[3] == object.sub;
     });
   }
-  void say_heartbeat(std::uint8_t state) {
-    boot_->receive({.id = 0x705, .size = 1, .data = {state}}, port_->now());
-  }
+  void say_heartbeat(std::uint8_t state) { boot_->receive({.id = 0x705, .size = 1, .data = {state}}, port_->now()); }
 
   CanWire wire_;
   VirtualDrive& drive_ = wire_.add(5);
@@ -294,8 +292,9 @@ TEST_F(BootAlone, NotesAMappingThatIsConstantAsOneMatter) {
 TEST_F(BootAlone, TakesOnlyWhatIsTheNodesOwn) {
   make();
   until(State::Operational);
-  for (const CanFrame& frame : {CanFrame{.id = 0x706, .size = 1}, CanFrame{.id = 0x705, .size = 2},
-                                CanFrame{.id = 0x705, .size = 0}, CanFrame{.id = 0x586, .size = 8, .data = {0x43, 0x18, 0x10, 4, 9}}}) {
+  for (const CanFrame& frame :
+       {CanFrame{.id = 0x706, .size = 1}, CanFrame{.id = 0x705, .size = 2}, CanFrame{.id = 0x705, .size = 0},
+        CanFrame{.id = 0x586, .size = 8, .data = {0x43, 0x18, 0x10, 4, 9}}}) {
     boot_->receive(frame, port_->now());
     EXPECT_EQ(boot_->state(), State::Operational) << frame.id;
   }

@@ -44,7 +44,9 @@ TEST(Setpoints, StandInTheirObjectsOneBehindTheOther) {
     command.velocity_offset_rpm = static_cast<std::int32_t>(random());
     command.torque_offset_permille = static_cast<std::int16_t>(random());
     command.touch_probe = static_cast<std::uint16_t>(random());
-    const auto unsigned_of = [](double number) { return static_cast<std::uint32_t>(static_cast<std::int64_t>(number)); };
+    const auto unsigned_of = [](double number) {
+      return static_cast<std::uint32_t>(static_cast<std::int64_t>(number));
+    };
     const std::vector<std::pair<MappedObject, std::uint32_t>> words{
         {{{0x6040, 0}, 16}, command.controlword},
         {{{0x6060, 0}, 8}, static_cast<std::uint32_t>(command.mode)},

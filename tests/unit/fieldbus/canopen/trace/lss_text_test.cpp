@@ -73,7 +73,8 @@ TEST(LssText, TellsNumbersThatMeanSomethingByTheirMeaning) {
   EXPECT_EQ(lss_text(frame_of(kRequest, 0x11, {0xFE})), "LSS configure node id 254");
   EXPECT_EQ(lss_text(frame_of(kAnswer, 0x5E, {0xFF})), "LSS answer: inquire node id none");
   EXPECT_EQ(lss_text(frame_of(kRequest, 0x51, {1, 2, 3, 4, 0x80})), "LSS fast scan, from the beginning");
-  EXPECT_EQ(lss_text(frame_of(kRequest, 0x51, {1, 0, 0, 0, 31, 0, 0})), "LSS fast scan 1h down to bit 31 of part 0, next 0");
+  EXPECT_EQ(lss_text(frame_of(kRequest, 0x51, {1, 0, 0, 0, 31, 0, 0})),
+            "LSS fast scan 1h down to bit 31 of part 0, next 0");
   EXPECT_EQ(lss_text(frame_of(kAnswer, 0x17, {0, 7})), "LSS answer: store configuration: done");
   EXPECT_EQ(lss_text(frame_of(kAnswer, 0x17, {1, 7})), "LSS answer: store configuration: error 1, 7");
   EXPECT_EQ(lss_text(frame_of(kAnswer, 0x17, {0xFF, 7})), "LSS answer: store configuration: error 255, 7");

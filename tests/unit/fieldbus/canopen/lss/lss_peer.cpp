@@ -1,4 +1,4 @@
-#include "unit/fieldbus/canopen/lss_peer.hpp"
+#include "unit/fieldbus/canopen/lss/lss_peer.hpp"
 
 #include <algorithm>
 
