@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "rmac/fieldbus/canopen/sdo.hpp"
 #include "unit/fieldbus/canopen/canopen_bench.hpp"
@@ -104,6 +105,30 @@ TEST_F(ExactTrial, BeginsWhereTheDriveStands) {
     ASSERT_FALSE(told.empty());
     EXPECT_EQ(told.front(), stands) << "it is enabled where it is";
     EXPECT_EQ(*std::min_element(told.begin(), told.end()), stands - 500);
+  }
+}
+
+// Red when the power goes while the drive still runs: its brake would have to hold what its motor could.
+TEST_F(ExactTrial, EndsWithAQuickStopAndTakesThePowerAtRest) {
+  for (const DriveMode mode : {DriveMode::CyclicSyncVelocity, DriveMode::CyclicSyncTorque}) {
+    drive_.put_at(0);
+    bool moved = false, stopped = false;
+    pass_ = [&] {
+      const auto state = drive_.state();
+      moved = moved || std::abs(drive_.velocity()) > 10000;
+      stopped = stopped || state == test::PowerStates::QuickStop;
+      const bool power = state == test::PowerStates::OperationEnabled || state == test::PowerStates::QuickStop;
+      if (moved && !power) {
+        EXPECT_TRUE(stopped);
+        EXPECT_EQ(drive_.velocity(), 0);
+      }
+    };
+    const int amount = mode == DriveMode::CyclicSyncVelocity ? 400000 : 800;
+    const auto done = attempt({.mode = mode, .amount = amount, .seconds = 0.2, .most_counts = 500000});
+    ASSERT_TRUE(done) << done.error().message;
+    EXPECT_TRUE(moved && stopped);
+    EXPECT_EQ(drive_.state(), test::PowerStates::SwitchOnDisabled);
+    pass_ = nullptr;
   }
 }
 

@@ -93,6 +93,7 @@ void LssPeer::while_configuring(const CanFrame& frame, Time now) {
 }
 
 bool LssWire::send(const CanFrame& frame) noexcept {
+  if (listen) listen(frame);
   for (auto& peer : peers_) peer->receive(frame, now_);
   return true;
 }
