@@ -113,6 +113,10 @@ TEST_F(ExactTrial, EndsWithAQuickStopAndTakesThePowerAtRest) {
   for (const DriveMode mode : {DriveMode::CyclicSyncVelocity, DriveMode::CyclicSyncTorque}) {
     drive_.put_at(0);
     bool moved = false, stopped = false;
+    wire_.listen = [&](const CanFrame& frame) {
+      if (frame.id != 0x201 || !stopped) return;
+      EXPECT_EQ(word_at(&frame.data[2]), 0) << "whatever the drive does next, it is not told to move";
+    };
     pass_ = [&] {
       const auto state = drive_.state();
       moved = moved || std::abs(drive_.velocity()) > 10000;
@@ -128,6 +132,7 @@ TEST_F(ExactTrial, EndsWithAQuickStopAndTakesThePowerAtRest) {
     ASSERT_TRUE(done) << done.error().message;
     EXPECT_TRUE(moved && stopped);
     EXPECT_EQ(drive_.state(), test::PowerStates::SwitchOnDisabled);
+    wire_.listen = nullptr;
     pass_ = nullptr;
   }
 }
