@@ -73,6 +73,68 @@ TEST(FastScan, WaitsTwiceAsLongAsTheSlowestTookToTheFirstQuestion) {
   }
 }
 
+/// Cuts the wire for those questions of a fast scan that `lost` names by their number, from 1.
+void lose(LssWire& wire, int& asked, const std::function<bool(int number)>& lost) {
+  wire.listen = [&wire, &asked, lost](const CanFrame& frame) {
+    if (frame.data[0] == kFastScan) wire.cut = lost(++asked);
+  };
+}
+
+TEST(FastScan, FindsNobodyWhoLeavesAfterTheFirstQuestion) {
+  LssWire wire;
+  wire.add({1, 2, 3, 4});
+  int asked = 0;
+  lose(wire, asked, [](int number) { return number > 1; });
+  const auto nodes = lss_scan(wire);
+  ASSERT_TRUE(nodes) << nodes.error().message;
+  EXPECT_TRUE(nodes->empty());
+  EXPECT_EQ(asked, 2 + 3) << "three searches, of which each begins anew";
+}
+
+TEST(FastScan, SearchesAgainMorePatientlyWhereAnAnswerIsMissing) {
+  for (const int lost : {3, 4, 50, 200}) {
+    LssWire wire;
+    wire.add({1, 2, 3, 4});
+    int asked = 0;
+    lose(wire, asked, [lost](int number) { return number == lost; });
+    const auto nodes = lss_scan(wire);
+    ASSERT_TRUE(nodes) << nodes.error().message;
+    EXPECT_EQ(nodes->size(), 1U) << lost;
+  }
+}
+
+// Red when a node that is heard at times is told as another one, or when the search does not end.
+TEST(FastScan, GivesUpAfterThreeSearchesWhereAnswersAreMissingAtTimes) {
+  LssWire wire;
+  wire.add({1, 2, 3, 0x80000000});
+  int searches = 0, asked = 0;
+  wire.listen = [&](const CanFrame& frame) {
+    const bool begins = frame.data[0] == kFastScan && frame.data[5] == kBegin;
+    searches += begins ? 1 : 0;
+    asked = begins ? 0 : asked + 1;
+    wire.cut = asked > 20;  // the first bits of its identity fit, and nothing behind them
+  };
+  const auto nodes = lss_scan(wire);
+  ASSERT_FALSE(nodes);
+  EXPECT_NE(nodes.error().message.find("answer at times and not at others, within 200 ms too"), std::string::npos)
+      << nodes.error().message;
+  EXPECT_EQ(searches, 1 + 3);
+}
+
+TEST(FastScan, GivesNoIdToANodeThatLeavesOnceItIsFound) {
+  LssWire wire;
+  const test::LssPeer& peer = wire.add({1, 2, 3, 4});
+  const auto asked_for_it = static_cast<int>(questions_of_scan(wire, 1).size());
+  int asked = 0;
+  lose(wire, asked, [=](int number) { return number > asked_for_it; });
+  const auto given = lss_assign(wire, 9, {});
+  ASSERT_FALSE(given);
+  EXPECT_EQ(given.error().message,
+            "vendor 1h, product 2h, revision 3h, serial 4h was found and does not answer any more; is it still "
+            "connected?");
+  EXPECT_EQ(peer.node(), test::LssPeer::kUnconfigured);
+}
+
 TEST(FastScan, EndsWithItsFirstQuestionWhereNobodyAnswers) {
   LssWire wire;
   wire.add({1, 2, 3, 4}, {}, 12);

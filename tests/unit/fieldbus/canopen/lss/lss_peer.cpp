@@ -94,7 +94,9 @@ void LssPeer::while_configuring(const CanFrame& frame, Time now) {
 
 bool LssWire::send(const CanFrame& frame) noexcept {
   if (listen) listen(frame);
-  for (auto& peer : peers_) peer->receive(frame, now_);
+  for (auto& peer : peers_) {
+    if (!cut) peer->receive(frame, now_);
+  }
   return true;
 }
 

@@ -71,6 +71,7 @@ class LssWire final : public CanPort {
   [[nodiscard]] CanHealth health() const noexcept override { return {}; }
 
   std::function<void(const CanFrame&)> listen;  ///< what the master sends
+  bool cut = false;                             ///< and whether it does not arrive
 
  private:
   std::vector<std::unique_ptr<LssPeer>> peers_;
