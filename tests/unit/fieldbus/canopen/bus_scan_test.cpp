@@ -224,6 +224,27 @@ TEST_F(BusScan, BeginsWithOneNodeMoreARound) {
     EXPECT_EQ(first[node] - first[node - 1], std::chrono::milliseconds(2)) << node;
 }
 
+// Red when it does not ask twice who it is: two devices of one id may take turns to answer.
+TEST_F(BusScan, AsksWhatANodeIsAndTwiceWhoItIs) {
+  wire_.add(3);
+  std::vector<ObjectAddress> asked;
+  wire_.listen = [&](const CanFrame& frame) {
+    if (frame.id == 0x603) asked.push_back({word_at(&frame.data[1]), frame.data[3]});
+  };
+  scan();
+  wire_.listen = nullptr;
+  EXPECT_EQ(asked, (std::vector<ObjectAddress>{{0x1000, 0},
+                                               {0x1018, 1},
+                                               {0x1018, 2},
+                                               {0x1018, 3},
+                                               {0x1018, 4},
+                                               {0x1008, 0},
+                                               {0x1018, 1},
+                                               {0x1018, 2},
+                                               {0x1018, 3},
+                                               {0x1018, 4}}));
+}
+
 TEST_F(BusScan, WaitsForAnAnswerAsLongAsItIsTold) {
   wire_.add(3).sdo_time = std::chrono::milliseconds(150);
   EXPECT_EQ(scan().size(), 1U);
