@@ -25,14 +25,17 @@ struct Chatter {
   std::optional<double> steady_rpm{};  ///< the nearest to it at which this cut is steady
 };
 
-/// Notes where cuts chatter. One thread.
+/// Notes where cuts chatter: by the mean over a turn of what chips change, and in time where that is far from all there
+/// is and the cut not far from its limit. One thread.
 class ChatterWatch {
  public:
   static constexpr std::size_t kMost = 1000;
 
   /// A cut, as it was found at one place of the way.
   struct Look {
-    Eigen::Matrix3d cutting_n_mm;  ///< its `chip_stiffness`, in the frame of the modes
+    // Its `ChipStiffness`, in the frame of the modes:
+    Eigen::Matrix3d cutting_n_mm;
+    std::vector<Eigen::Matrix3d> over_pitch_n_mm;
     int teeth = 0;
     double rpm = 0, most_rpm = 0;  ///< most: that spindle and tool can; 0: not known
     double t_s = 0;
@@ -49,7 +52,17 @@ class ChatterWatch {
   [[nodiscard]] double least_share() const noexcept { return least_; }
 
  private:
+  /// By how much a limit in time differed from that by the mean, and of which cut.
+  struct InTime {
+    double by_mean = 0, unevenness = 0, rpm = 0;
+    double ratio = 1;
+  };
+  [[nodiscard]] double ratio_in_time(const Look& look, double unevenness, double by_mean,
+                                     std::span<const VibrationMode> modes);
+
   std::vector<Chatter> found_;
+  InTime in_time_;
+  double proposed_at_ = 0;  ///< share of the last finding for which a speed was looked for
   double least_ = std::numeric_limits<double>::infinity();
 };
 

@@ -109,7 +109,7 @@ void CutStability::add_up_to(Point next, int halvings) {
   points_.push_back(next);
 }
 
-double CutStability::least_share(const Eigen::Matrix3d& cutting_n_mm, std::span<const VibrationMode> modes) {
+double CutStability::least_share(double strongest_n_mm, std::span<const VibrationMode> modes) {
   double most = 0;
   for (const VibrationMode& mode : modes) {
     // At its peak; a mode with more than 0.7 of critical damping has none, and is the softest at rest.
@@ -118,7 +118,7 @@ double CutStability::least_share(const Eigen::Matrix3d& cutting_n_mm, std::span<
                             : 1;
     most += mode.directions.norm() / (mode.stiffness_n_mm * peak);
   }
-  const double gain = 2 * most * cutting_n_mm.norm();
+  const double gain = 2 * most * strongest_n_mm;
   return gain > 0 ? 1 / gain : kInfinity;
 }
 

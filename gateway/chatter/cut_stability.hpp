@@ -30,8 +30,9 @@ class CutStability {
   /// With so long from one tooth to the next.
   [[nodiscard]] ChatterLimit at(double tooth_period_s) const;
 
-  /// What none of it goes below, found at once.
-  [[nodiscard]] static double least_share(const Eigen::Matrix3d& cutting_n_mm, std::span<const VibrationMode> modes);
+  /// What no cut goes below whose `ChipStiffness` has at most this norm at each moment, found at once: waves that come
+  /// back weaker than they went cannot grow.
+  [[nodiscard]] static double least_share(double strongest_n_mm, std::span<const VibrationMode> modes);
 
  private:
   /// At one frequency: the inverses of the loop's eigenvalues with a tooth that meets no wave. A loop that is `share`

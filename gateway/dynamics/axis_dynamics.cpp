@@ -18,6 +18,7 @@ namespace {
 constexpr double kMetresPerMm = 1e-3;
 /// Of a joint's limits, on the way to where the motion begins.
 constexpr double kShare = 0.5;
+constexpr double kStands_mm = 1e-9;  ///< in a cycle
 constexpr double kLeastApproach_s = 0.1, kSettling_s = 0.5;
 
 }  // namespace
@@ -236,8 +237,9 @@ void AxisDynamics::account(const CycleSample& planned, const Beside& beside) {
   if (!planned.moving) return;
   const std::span wanted = std::span(planned.position_set).first(device_.joints.size());
   const Vector& place = planned.pose_set.tip;
-  deviation_.add({.planned = tip(wanted, beside.tool),
-                  .truth = tip(joints(), beside.tool) + beside.bend_mm,
+  const Eigen::Vector3d there = tip(wanted, beside.tool);
+  deviation_.add({.planned = there,
+                  .truth = tip(joints(), beside.tool) + beside_way(beside.bend_mm, there),
                   .place = {place[0], place[1], place[2]},
                   .t_s = planned.t_s,
                   .line = beside.line,
@@ -246,6 +248,12 @@ void AxisDynamics::account(const CycleSample& planned, const Beside& beside) {
 
 double AxisDynamics::torque_nm(std::size_t motor) const {
   return shaft_nm(loops_->mechanism().loop->parts().actuators[motor].scale, loops_->report().torque_permille[motor]);
+}
+
+Eigen::Vector3d AxisDynamics::beside_way(const Eigen::Vector3d& bend_mm, const Eigen::Vector3d& planned) {
+  if (way_.last && (planned - *way_.last).norm() > kStands_mm) way_.along = (planned - *way_.last).normalized();
+  way_.last = planned;
+  return bend_mm - bend_mm.dot(way_.along) * way_.along;
 }
 
 void AxisDynamics::finish() {

@@ -67,7 +67,7 @@ class AxisDynamics {
   /// a fault nothing changes any more.
   void cycle(const CycleSample& planned, const Beside& beside);
   /// The tool is another.
-  void forget_path() { deviation_.forget(); }
+  void forget_path() { deviation_.forget(), way_ = {}; }
   /// The motion is over.
   void finish();
   /// As `PathDeviation::on_judged`.
@@ -109,6 +109,8 @@ class AxisDynamics {
   void see_truth(const std::array<double, kMaxJoints>& loads);
   void account(const CycleSample& planned, const Beside& beside);
   void run(const CycleSample& planned, int line);
+  /// Of what the tool bends by, what is beside its way; along it the tip only comes sooner or later.
+  [[nodiscard]] Eigen::Vector3d beside_way(const Eigen::Vector3d& bend_mm, const Eigen::Vector3d& planned);
   [[nodiscard]] Eigen::Vector3d tip(std::span<const double> joints, const Frame& tool) const;
   [[nodiscard]] const Kinematics& kinematics() const noexcept { return *loops_->mechanism().planner_model.kinematics; }
 
@@ -121,6 +123,11 @@ class AxisDynamics {
   std::vector<Mean> joints_, torques_;
   std::size_t count_ = 0;
   PathDeviation deviation_;
+  struct Way {
+    std::optional<Eigen::Vector3d> last;  ///< planned tip
+    Eigen::Vector3d along{0, 0, 0};       ///< unit
+  };
+  Way way_;
   std::optional<StoppedByFault> stopped_;
 };
 

@@ -55,11 +55,18 @@ struct TurnForces {
                                                     std::span<const EngagedSlice> slices, const ToothFeed& feed,
                                                     double spindle_rpm);
 
-/// By how much the mean force on the tool changes, N/mm, with where it is against where the tooth before it was: a
-/// column for each of x, y and z as `TurnForces` has them. Edges alone change nothing. Where there is a chip is taken
-/// as the feed leaves it (Y. Altintas, Manufacturing Automation, 2nd ed., ch. 4). Refused as `forces_over_turn`.
-[[nodiscard]] Expected<Eigen::Matrix3d> chip_stiffness(const EndMill& mill, const ForceCoefficients& material,
-                                                       std::span<const EngagedSlice> slices, const ToothFeed& feed);
+/// By how much the force on the tool changes, N/mm, with where it is against where the tooth before it was: a column
+/// for each of x, y and z as `TurnForces` has them.
+struct ChipStiffness {
+  Eigen::Matrix3d mean;                     ///< over a turn
+  std::vector<Eigen::Matrix3d> over_pitch;  ///< in the middles of equal parts of the turn from tooth to tooth
+};
+
+/// Edges alone change nothing. Where there is a chip is taken as the feed leaves it (Y. Altintas, Manufacturing
+/// Automation, 2nd ed., ch. 4). Refused as `forces_over_turn`.
+[[nodiscard]] Expected<ChipStiffness> chip_stiffness(const EndMill& mill, const ForceCoefficients& material,
+                                                     std::span<const EngagedSlice> slices, const ToothFeed& feed,
+                                                     int positions);
 
 /// The chip that the model takes, mm³/s.
 [[nodiscard]] double removal_rate_mm3_s(const EndMill& mill, std::span<const EngagedSlice> slices,

@@ -17,6 +17,7 @@ constexpr double kMostTolerance_mm = 0.005, kShareOfResolution = 0.05;
 constexpr double kShareBetween = 0.25;
 /// Of the tolerance: walls that the cutting part left may be off by it, on either side.
 constexpr double kToldFrom = 4;
+constexpr double kSprings_mm = 1e-5;  ///< a tool that bends no more in a step stands with its joints
 constexpr int kMostHalvings = 20;
 constexpr std::size_t kTogether = 32;  ///< strokes
 
@@ -89,12 +90,14 @@ void Material::advance(double t_s, std::span<const double> joints, const MoveNow
     s_.since = t_s;
     listening_.told = there.tool;
   } else if (!std::ranges::equal(joints, at_.joints)) {
-    tell_listener(t_s, there.tool);
+    tell_listener(t_s, there);
     if (turns_between(at_.joints, joints)) {
       go_between({at_.joints, at_.bend_mm, at_.tool}, there, kMostHalvings);
     } else {
       go_to(there.tool);
     }
+  } else if ((bend_mm - at_.bend_mm).norm() > kSprings_mm) {
+    go_to(there.tool);
   }
   begun_ = true;
   s_.now = t_s;
@@ -137,24 +140,25 @@ void Material::go_to(const ToolAt& there) {
 }
 
 /// A mean over as long as the listener wants, or as it goes without a rest.
-Vector3d Material::velocity(double t_s, const ToolAt& there) {
+Vector3d Material::velocity(double t_s, const Vector3d& tip) {
   auto& way = listening_.way;
   if (!way.empty() && way.back().first < s_.now) way.clear();  // it stood
-  way.emplace_back(t_s, there.tip);
+  way.emplace_back(t_s, tip);
   const double since_s = t_s - listening_.listener->steady_s();
   while (way.size() > 2 && way[1].first <= since_s) way.pop_front();
-  if (way.size() < 2) return (there.tip - at_.tool.tip) / (t_s - s_.now);
-  return (there.tip - way.front().second) / (t_s - way.front().first);
+  if (way.size() < 2) return (tip - (at_.tool.tip - at_.bend_mm)) / (t_s - s_.now);
+  return (tip - way.front().second) / (t_s - way.front().first);
 }
 
-void Material::tell_listener(double t_s, const ToolAt& there) {
+void Material::tell_listener(double t_s, const Stand& there) {
   if (listening_.listener == nullptr || !turns_ || t_s <= s_.now) return;
   if (std::ranges::none_of(parts_, &Part::cuts)) return;
-  const Vector3d goes = velocity(t_s, there);
-  if ((there.tip - listening_.told.tip).norm() < listening_.listener->every_mm() || goes.norm() == 0) return;
-  listening_.told = there;
+  // How it bends is not how it is fed: it would swing with the force that it gives.
+  const Vector3d goes = velocity(t_s, there.tool.tip - there.bend_mm);
+  if ((there.tool.tip - listening_.told.tip).norm() < listening_.listener->every_mm() || goes.norm() == 0) return;
+  listening_.told = there.tool;
   end_strokes(true);
-  listening_.listener->cuts(grid_, there, goes, t_s, move_);
+  listening_.listener->cuts(grid_, there.tool, goes, t_s, move_);
 }
 
 void Material::finish() {

@@ -75,8 +75,8 @@ class Material {
   [[nodiscard]] bool turns_between(std::span<const double> from, std::span<const double> to) const;
   void go_between(const Stand& from, const Stand& to, int halvings);
   void go_to(const ToolAt& there);
-  [[nodiscard]] Eigen::Vector3d velocity(double t_s, const ToolAt& there);
-  void tell_listener(double t_s, const ToolAt& there);
+  [[nodiscard]] Eigen::Vector3d velocity(double t_s, const Eigen::Vector3d& tip);
+  void tell_listener(double t_s, const Stand& there);
   void end_strokes(bool cutting);
   void take(Part& part, const Stroke& stroke);
   void cut_all();

@@ -3,8 +3,9 @@
 import math
 import unittest
 
-from test_collisions import LENGTH
-from test_forces import MATERIAL, TEETH, TOOL, SimulatedCut, slot
+from appliance import pose
+from test_collisions import LENGTH, request, to
+from test_forces import BEYOND, MATERIAL, TEETH, TOP, TOOL, SimulatedCut, slot
 
 RPM, FEED, DEPTH = 3000, 600, 1.0
 MODE = {"Frequency": 250, "DampingRatio": 0.03, "Stiffness": 10000}
@@ -67,6 +68,38 @@ class Chatter(SimulatedCut):
         self.assertLess(steel[1], carbide[1])
         self.assertGreater(long[0], 2 * carbide[0])
         self.assertLess(long[1], carbide[1])
+
+    def test_a_tool_that_would_break_is_told_and_swings_with_no_force_of_its_own(self):
+        """Red when the tip's own bending counted as feed, and forces grew with it."""
+        stiff, weak = (self.report(slot(2, FEED, RPM), "--dynamics", tool=tool(Modes=[MODE | {"Stiffness": k}]))[0] for k in (1e6, 20))
+        self.assertIn("tool 7 would bend by more than 0.3 mm, a twentieth of its diameter, first in line 4", weak["dynamics"]["not_told"][0])
+        self.assertLess(weak["dynamics"]["path_peak_mm"], 0.35)
+        for key in ("mean_force_n", "peak_force_n"):
+            self.assertAlmostEqual(weak["forces"][key] / stiff["forces"][key], 1, delta=0.1, msg=key)
+
+    def test_what_a_tool_still_cuts_as_it_springs_back_is_its_cut(self):
+        """Red when a dwell in the slot, and the way up from its end, were collisions of a positioning move."""
+        for stiffness in (1500, 1e7):
+            inside, line = pose(10, 0, TOP - 2), pose(-BEYOND, 0, TOP - 2)
+            program = [*slot(2, FEED, RPM)[:3], request("RMAC_CAM.MoveAlongLine", MoveID=2, StartPoint=line, EndPoint=inside),
+                       request("RMAC_CAM.Dwell", MoveID=3, Time=1),
+                       request("RMAC_CAM.MoveAlongLine", MoveID=4, StartPoint=inside, EndPoint=pose(20, 0, TOP - 2)), to(20, 0, TOP + 20)]
+            report, _ = self.report(program, "--dynamics", tool=tool(Modes=[MODE | {"Stiffness": stiffness}]))
+            self.assertEqual(report["collisions"], [], stiffness)
+            self.assertLessEqual({each["move_id"] for each in report["dynamics"]["chatter"]}, {2, 4})
+
+    def test_a_tool_is_beside_its_path_as_far_however_slow_it_goes(self):
+        """Red when a bend along the path counted for the cycles that the tip needs for as much."""
+        soft = MODE | {"Stiffness": 8000, "Frequency": 2000, "DampingRatio": 0.1}
+        fast, slow = (self.report(slot(1, feed, rpm), "--dynamics", tool=tool(Modes=[soft]))[0]["dynamics"]["path_peak_mm"]
+                      for feed, rpm in ((600, 3000), (60, 300)))
+        self.assertAlmostEqual(slow, fast, delta=0.15 * fast + 0.003)
+
+    def test_no_speed_is_proposed_that_the_spindle_may_not_have(self):
+        program = [request("RMAC_CAM.SetSpindleMaxRPM", SpindleNumber=0, MaxRPM=RPM), *slot(DEPTH, FEED, RPM)]
+        report, _ = self.report(program, "--dynamics", tool=tool(Modes=[MODE]))
+        self.assertEqual(len(report["dynamics"]["chatter"]), 1)
+        self.assertLess(report["dynamics"]["chatter"][0]["steady_rpm"] or 0, RPM)
 
     def test_what_nobody_knows_of_the_tool_is_told_as_loudly(self):
         found, done = self.dynamics(2)

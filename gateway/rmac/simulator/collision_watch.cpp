@@ -17,6 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kWattsPerHorsePower = 745.69987;
+/// After a cut axes come up to their setpoints, and a tool springs back with its force, a mean over a turn.
+constexpr double kSettling_s = 0.05, kSettlingTurns = 6, kLongestSettling_s = 0.5;
 
 }  // namespace
 
@@ -107,6 +109,21 @@ void CollisionWatch::take_tool(gateway::Controller& controller) {
   if (load_) load_->set_tool(tool);
 }
 
+gateway::MoveNow CollisionWatch::under_way(const gateway::CycleSample& sample, int line) {
+  const bool cutting = sample.moving && !queue_.empty() && queue_.front().cuts;
+  const gateway::MoveNow planned{.id = sample.move_id, .line = line, .cutting = cutting};
+  if (!by_axes_) return planned;
+  if (cutting) {
+    last_cut_ = {planned, sample.t_s};
+    // In the cycle in which the next one begins it is not done yet.
+    last_cut_.move.id = queue_.front().id;
+    return last_cut_.move;
+  }
+  const double rpm = std::abs(sample.spindle_rpm.front());
+  const double settling_s = kSettling_s + (rpm > 0 ? std::min(kSettlingTurns * 60 / rpm, kLongestSettling_s) : 0);
+  return last_cut_.ended_s >= 0 && sample.t_s - last_cut_.ended_s < settling_s ? last_cut_.move : planned;
+}
+
 void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller,
                            const Eigen::Vector3d& bend_mm) {
   const sdk::DeviceObject* const device = controller.mechanism();
@@ -119,13 +136,12 @@ void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway
   if (std::exchange(look_at_tool_, false)) take_tool(controller);
   if (sample.moving && !tool_fault_.empty()) not_checked_.insert(tool_fault_);
   if (sample.moving && !too_thin_.empty()) not_checked_.insert(too_thin_);
-  const bool cutting = sample.moving && !queue_.empty() && queue_.front().cuts;
+  const gateway::MoveNow move = under_way(sample, line);
   // A simulation begins with all joints at 0, where the machine need not stand: the way from there to the first
   // position is nobody's.
-  if (!begun_ && !cutting) return;
+  if (!begun_ && !move.cutting) return;
   begun_ = true;
   const std::span joints = std::span(sample.position_set).first(sample.joint_count);
-  const gateway::MoveNow move{.id = sample.move_id, .line = line, .cutting = cutting};
   checker_->advance(sample.t_s, joints, move);
   if (!material_) return;
   // A machine that has no spindle for the controller turns its tool some other way.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <memory>
@@ -36,7 +37,7 @@ class CollisionWatch {
   /// Sets the part frame as somebody would who clamped the part there; a program may set another one.
   [[nodiscard]] Result<> place_part(gateway::Simulation& simulation) const;
   /// A move has been added to those that are not done; the first of them is done.
-  void queued(const Move& move) { queue_.push_back({may_cut(move), leads_somewhere(move)}); }
+  void queued(const Move& move) { queue_.push_back({move.id, may_cut(move), leads_somewhere(move)}); }
   void move_done();
   /// The tool in the spindle, its number and what the table says of it, may be another.
   void tool_may_have_changed() noexcept { look_at_tool_ = true; }
@@ -51,8 +52,10 @@ class CollisionWatch {
   [[nodiscard]] const gateway::Material* material() const noexcept { return material_.get(); }
   /// What cutting takes; null where the set-up has no stock or does not say of which material, or that is not known.
   [[nodiscard]] const gateway::CuttingLoad* load() const noexcept { return load_.get(); }
-  /// Tells of the tool in material, where there is a load; the listener outlives this.
-  void listen_to_cuts(gateway::EngagedListener& listener) noexcept {
+  /// Joints come where axes and tool truly are, and not where they are told to be: what these still cut after a move
+  /// has ended is that move's. The listener hears of the tool in material, where there is a load, and outlives this.
+  void goes_by_axes(gateway::EngagedListener& listener) noexcept {
+    by_axes_ = true;
     if (load_) load_->listen(listener);
   }
   /// What of it cannot be told, a sentence each; empty: all is, or nobody asked.
@@ -70,6 +73,8 @@ class CollisionWatch {
   [[nodiscard]] static bool leads_somewhere(const Move& move) noexcept;
   [[nodiscard]] Result<> watch_load(const std::filesystem::path& materials);
   void take_tool(gateway::Controller& controller);
+  /// What is under way, with axes that come after it: a cut goes on until they and the tool have come to rest from it.
+  [[nodiscard]] gateway::MoveNow under_way(const gateway::CycleSample& sample, int line);
 
   std::filesystem::path file_;  ///< of the set-up
   gateway::Setup setup_;
@@ -78,12 +83,19 @@ class CollisionWatch {
   std::unique_ptr<gateway::CuttingLoad> load_;   ///< listens to the material
   std::string unknown_material_;                 ///< why there is no load
   struct Queued {
+    std::int64_t id;
     bool cuts, leads;
   };
   std::deque<Queued> queue_;  ///< what is not done
   std::set<std::string> not_checked_;
   std::string tool_fault_;  ///< what cannot be checked with the tool in the spindle
   std::string too_thin_;    ///< what of it is not found in material
+  struct LastCut {
+    gateway::MoveNow move;
+    double ended_s = -1;
+  };
+  LastCut last_cut_;
+  bool by_axes_ = false;
   bool look_at_tool_ = true;
   bool begun_ = false;  ///< the first position is reached, or something cuts
 };

@@ -18,12 +18,18 @@
 #include "rmac/motion/frame.hpp"
 
 namespace rmac::cli {
+namespace {
+
+constexpr double kMostBend = 0.05;  ///< of the cutting diameter
+constexpr int kPositions = 72;      ///< of the tool, from tooth to tooth
+
+}  // namespace
 
 DynamicsWatch::DynamicsWatch(const sdk::DeviceObject& device, std::unique_ptr<gateway::AxisDynamics> axes,
                              CollisionWatch* cuts)
     : machine_(device.name), configured_(gateway::to_device_json(device)), axes_(std::move(axes)), cuts_(cuts) {
   if (cuts == nullptr) return;
-  cuts->listen_to_cuts(*this);
+  cuts->goes_by_axes(*this);
   for (Eigen::Index i = 0; i < 3; ++i) {
     const Eigen::Vector3d unit = Eigen::Vector3d::Unit(i);
     const Vector there = rotate(cuts->setup().part_frame.q, {unit[0], unit[1], unit[2]});
@@ -43,49 +49,73 @@ Result<std::unique_ptr<DynamicsWatch>> DynamicsWatch::open(const std::string& ma
   return std::unique_ptr<DynamicsWatch>(new DynamicsWatch(*device, std::move(*axes), cuts));
 }
 
-void DynamicsWatch::take_tool(const gateway::Tool& tool, const sdk::DeviceObject& device) {
-  tool_ = gateway::tip_on_interface(tool);
-  most_rpm_ = device.spindles.empty() ? 0 : device.spindles.front().max_speed_rpm;
-  if (tool.max_rpm > 0) most_rpm_ = most_rpm_ > 0 ? std::min(most_rpm_, tool.max_rpm) : tool.max_rpm;
-  auto bending = gateway::bending_of(tool);
-  no_bending_ =
-      bending ? ""
-              : fmt::format("how far tool {} bends, and whether it chatters: {}", tool.number, bending.error().message);
-  bending_ = bending ? std::move(*bending) : gateway::ToolBending{};
+void DynamicsWatch::take_tool(const gateway::Tool& tool) {
+  tool_ = {.number = tool.number,
+           .tip = gateway::tip_on_interface(tool),
+           .bending = {},
+           .no_bending = {},
+           .most_bend_mm = kMostBend * (tool.shape ? tool.shape->dc : 0),
+           .most_rpm = tool.max_rpm};
+  if (auto bending = gateway::bending_of(tool)) {
+    tool_.bending = std::move(*bending);
+  } else {
+    tool_.no_bending =
+        fmt::format("how far tool {} bends, and whether it chatters: {}", tool.number, bending.error().message);
+  }
   axes_->forget_path();
 }
 
-void DynamicsWatch::take_force(const gateway::CycleSample& planned) {
+double DynamicsWatch::most_rpm() const noexcept {
+  if (tool_.most_rpm <= 0 || spindle_most_rpm_ <= 0) return std::max(tool_.most_rpm, spindle_most_rpm_);
+  return std::min(tool_.most_rpm, spindle_most_rpm_);
+}
+
+void DynamicsWatch::take_force(const gateway::CycleSample& planned, int line) {
   const double passed_s = planned.t_s - std::exchange(told_s_, planned.t_s);
   if (cuts_ == nullptr || cuts_->load() == nullptr) return;
   const double turns_s = std::abs(planned.spindle_rpm.front()) / 60;
   const gateway::CuttingNow now = cuts_->load()->now(planned.t_s);
   force_n_ += std::min(1.0, turns_s * passed_s) * (now.force_n - force_n_);
-  bend_mm_ = bending_.compliance_mm_n * (force_n_ - force_n_.dot(now.axis) * now.axis);
+  bend_mm_ = tool_.bending.compliance_mm_n * (force_n_ - force_n_.dot(now.axis) * now.axis);
+  if (bend_mm_.norm() <= tool_.most_bend_mm) return;
+  bend_mm_ *= tool_.most_bend_mm / bend_mm_.norm();
+  if (!std::exchange(tool_.broken, true)) {
+    not_told_.insert(fmt::format(
+        "tool {} would bend by more than {:.3g} mm, a twentieth of its diameter, first in line {}: it is too "
+        "slender for this cut, or softer than it is made; what it cuts and takes there is not told",
+        tool_.number, tool_.most_bend_mm, line));
+  }
 }
 
 void DynamicsWatch::engaged(const gateway::EngagedTool& tool) {
-  if (!no_bending_.empty()) not_told_.insert(no_bending_);
+  if (!tool.move.cutting) return;  // what a positioning move meets is a collision
+  if (!tool_.no_bending.empty()) not_told_.insert(tool_.no_bending);
   const Eigen::Vector3d& axis = tool.at.axis;
   const Eigen::Vector3d x = tool.goes.isZero() ? axis.unitOrthogonal() : tool.goes;
   const auto stiffness =
-      gateway::chip_stiffness(tool.mill, cuts_->load()->material().coefficients, tool.slices, tool.feed);
+      gateway::chip_stiffness(tool.mill, cuts_->load()->material().coefficients, tool.slices, tool.feed, kPositions);
   if (!stiffness) return;  // then nor could forces be told
   Eigen::Matrix3d feed_frame;
   feed_frame << x, axis.cross(x), axis;
-  std::vector<gateway::VibrationMode> modes = axes_->modes(tool_);
+  std::vector<gateway::VibrationMode> modes = axes_->modes(tool_.tip);
   for (gateway::VibrationMode& mode : modes) mode.directions = to_link_.transpose() * mode.directions * to_link_;
   const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - axis * axis.transpose();
-  for (const gateway::TipMode& mode : bending_.modes) {
+  for (const gateway::TipMode& mode : tool_.bending.modes) {
     modes.push_back({.frequency_hz = mode.frequency_hz,
                      .damping_ratio = mode.damping_ratio,
                      .stiffness_n_mm = mode.stiffness_n_mm,
                      .directions = across});
   }
-  chatter_.add({.cutting_n_mm = feed_frame * *stiffness * feed_frame.transpose(),
+  std::vector<Eigen::Matrix3d> over_pitch;
+  over_pitch.reserve(stiffness->over_pitch.size());
+  for (const Eigen::Matrix3d& each : stiffness->over_pitch) {
+    over_pitch.emplace_back(feed_frame * each * feed_frame.transpose());
+  }
+  chatter_.add({.cutting_n_mm = feed_frame * stiffness->mean * feed_frame.transpose(),
+                .over_pitch_n_mm = std::move(over_pitch),
                 .teeth = tool.mill.teeth(),
                 .rpm = tool.rpm,
-                .most_rpm = most_rpm_,
+                .most_rpm = most_rpm(),
                 .t_s = tool.t_s,
                 .line = tool.move.line,
                 .move_id = tool.move.id,
@@ -116,15 +146,16 @@ TrueCycle DynamicsWatch::cycle(const gateway::CycleSample& planned, int line, ga
   }
   if (std::exchange(look_at_configuration_, false)) check_configuration(*device);
   if (std::exchange(look_at_tool_, false)) {
-    take_tool(mounted_tool(controller), *device);
+    take_tool(mounted_tool(controller));
   }
+  spindle_most_rpm_ = controller.cam().spindles().max_rpm(0).value_or(0);
   // Where the machine stands before nobody knows.
   begun_ = begun_ || planned.moving;
   if (!begun_) return {planned};
   if (!axes_->stopped()) {
-    take_force(planned);
+    take_force(planned, line);
     axes_->cycle(planned,
-                 {.line = line, .tool = tool_, .force_n = to_link_ * force_n_, .bend_mm = to_link_ * bend_mm_});
+                 {.line = line, .tool = tool_.tip, .force_n = to_link_ * force_n_, .bend_mm = to_link_ * bend_mm_});
   }
   TrueCycle seen{planned, bend_mm_};
   std::ranges::copy(axes_->joints(), seen.sample.position_set.begin());

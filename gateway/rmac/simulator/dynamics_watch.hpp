@@ -46,8 +46,9 @@ class DynamicsWatch : gateway::EngagedListener {
  private:
   DynamicsWatch(const sdk::DeviceObject& device, std::unique_ptr<gateway::AxisDynamics> axes, CollisionWatch* cuts);
   /// On the tool, part frame. As a mean over a turn it takes a turn to change.
-  void take_force(const gateway::CycleSample& planned);
-  void take_tool(const gateway::Tool& tool, const sdk::DeviceObject& device);
+  void take_force(const gateway::CycleSample& planned, int line);
+  void take_tool(const gateway::Tool& tool);
+  [[nodiscard]] double most_rpm() const noexcept;
   void engaged(const gateway::EngagedTool& tool) override;
 
   /// Tells where the machine in force is not the one that was opened.
@@ -59,10 +60,17 @@ class DynamicsWatch : gateway::EngagedListener {
   const CollisionWatch* cuts_;
   gateway::ChatterWatch chatter_;
   std::set<std::string> not_told_;
-  Frame tool_;
-  gateway::ToolBending bending_;                           ///< of the tool; stiff where nobody knows
-  std::string no_bending_;                                 ///< why that is not known
-  double most_rpm_ = 0;                                    ///< that spindle and tool can; 0: not known
+  struct Mounted {
+    int number = gateway::kNoTool;
+    Frame tip;
+    gateway::ToolBending bending;  ///< stiff where nobody knows
+    std::string no_bending;        ///< why that is not known
+    double most_bend_mm = 0;       ///< beyond it the tool would break
+    double most_rpm = 0;           ///< 0: not known
+    bool broken = false;
+  };
+  Mounted tool_;
+  double spindle_most_rpm_ = 0;                            ///< 0: not known
   Eigen::Matrix3d to_link_ = Eigen::Matrix3d::Identity();  ///< from the part frame to the frame of its link
   double told_s_ = 0;                                      ///< when there was a force last
   Eigen::Vector3d force_n_{0, 0, 0}, bend_mm_{0, 0, 0};

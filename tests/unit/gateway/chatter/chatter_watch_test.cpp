@@ -21,6 +21,7 @@ constexpr double kBears = 2 * 0.03 * 1.03 * 8e3;
 /// Near the speed at which that is all it bears: 400 Hz and a bit, and eight waves and three quarters between teeth.
 ChatterWatch::Look look(double cutting, double t_s = 1, std::int64_t move = 1) {
   return {.cutting_n_mm = -cutting * Vector3d::UnitX() * Vector3d::UnitX().transpose(),
+          .over_pitch_n_mm = {},
           .teeth = 2,
           .rpm = 1410,
           .most_rpm = 0,

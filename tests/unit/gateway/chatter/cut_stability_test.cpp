@@ -9,8 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "gateway/forces/turn_forces.hpp"
-#include "unit/gateway/chatter/milling_in_time.hpp"
+#include "unit/gateway/chatter/straight_teeth.hpp"
 
 namespace rmac::gateway {
 namespace {
@@ -18,24 +17,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using std::numbers::pi;
+using test::kDown, test::kMaterial, test::kSlot, test::kUp, test::modes_of;
 using test::Oscillator;
 using test::StraightTeeth;
-
-constexpr ForceCoefficients kMaterial{.ktc = 800, .krc = 300, .kac = 150, .kte = 28, .kre = 31, .kae = 1.4};
-constexpr Arc kSlot{0, pi}, kUp{0, pi / 2}, kDown{pi / 2, pi};
-
-Matrix3d stiffness_of(const StraightTeeth& teeth) {
-  const ToolShape shape{
-      .dc = 12, .re = 0, .apmx = 50, .lcf = 50, .oal = 60, .zefp = teeth.count, .fha = 0, .shank = {}, .holder = {}};
-  const std::vector<EngagedSlice> slices{{.from_mm = 0, .to_mm = teeth.depth_mm, .arcs = {teeth.arc}}};
-  return chip_stiffness(EndMill::of(shape).value(), teeth.material, slices, {.across_mm = 0.05, .along_mm = 0}).value();
-}
-
-std::vector<VibrationMode> modes_of(std::span<const Oscillator> oscillators) {
-  std::vector<VibrationMode> modes;
-  for (const Oscillator& one : oscillators) modes.push_back(one.mode());
-  return modes;
-}
 
 /// Of all speeds.
 ChatterLimit worst(const CutStability& stability) {
@@ -97,10 +81,10 @@ TEST(CutStability, OfOneModeHasTheLobesOfItsClosedForm) {
 }
 
 TEST(CutStability, IsGrantedWhereNothingGivesWayOrNothingIsCut) {
-  EXPECT_TRUE(std::isinf(CutStability(stiffness_of({4, 2, kSlot, kMaterial}), {}).at(0.01).share));
+  EXPECT_TRUE(std::isinf(CutStability(test::stiffness_of({4, 2, kSlot, kMaterial}).mean, {}).at(0.01).share));
   const std::vector modes{Oscillator{400, 0.03, 8e3, Vector3d::UnitX()}.mode()};
   EXPECT_TRUE(std::isinf(CutStability(Matrix3d::Zero(), modes).at(0.01).share));
-  EXPECT_TRUE(std::isinf(CutStability::least_share(Matrix3d::Zero(), modes)));
+  EXPECT_TRUE(std::isinf(CutStability::least_share(0, modes)));
 }
 
 using Stability = Seeded;
@@ -111,7 +95,7 @@ TEST_P(Stability, OfASlotIsWhereTheToolBeginsToSwing) {
   const auto tools = oscillators(3);
   StraightTeeth teeth{4 + 2 * static_cast<int>(random_() % 2), 1, kSlot, kMaterial};
   const double period_s = between(0.001, 0.006);
-  const ChatterLimit limit = CutStability(stiffness_of(teeth), modes_of(tools)).at(period_s);
+  const ChatterLimit limit = CutStability(test::stiffness_of(teeth).mean, modes_of(tools)).at(period_s);
   ASSERT_LT(limit.share, 1e4);
   teeth.depth_mm = 0.93 * limit.share;
   EXPECT_LT(test::growth(teeth, tools, period_s, 600), 1);
@@ -130,7 +114,7 @@ TEST_P(Stability, OfHalfImmersionIsNear) {
   }
   StraightTeeth teeth{4, 1, GetParam() % 2 == 0 ? kUp : kDown, kMaterial};
   const double period_s = between(0.0015, 0.01);
-  const ChatterLimit limit = CutStability(stiffness_of(teeth), modes_of(tools)).at(period_s);
+  const ChatterLimit limit = CutStability(test::stiffness_of(teeth).mean, modes_of(tools)).at(period_s);
   teeth.depth_mm = 0.75 * limit.share;
   EXPECT_LT(test::growth(teeth, tools, period_s, 150), 1);
   teeth.depth_mm = 1.4 * limit.share;
@@ -140,14 +124,15 @@ TEST_P(Stability, OfHalfImmersionIsNear) {
 TEST_P(Stability, IsNeverLessThanWhatIsFoundAtOnce) {
   const auto tools = oscillators(3);
   const StraightTeeth teeth{2, 1, {between(0, 1), between(1.2, pi)}, kMaterial};
-  const Matrix3d cutting = stiffness_of(teeth);
-  EXPECT_GE(worst(CutStability(cutting, modes_of(tools))).share, CutStability::least_share(cutting, modes_of(tools)));
+  const Matrix3d cutting = test::stiffness_of(teeth).mean;
+  EXPECT_GE(worst(CutStability(cutting, modes_of(tools))).share,
+            CutStability::least_share(cutting.norm(), modes_of(tools)));
 }
 
 TEST_P(Stability, IsTheSameInAnyFrame) {
   auto tools = oscillators(3);
   const StraightTeeth teeth{3, 1, {between(0, 1), between(1.2, pi)}, kMaterial};
-  const Matrix3d cutting = stiffness_of(teeth);
+  const Matrix3d cutting = test::stiffness_of(teeth).mean;
   const double period_s = between(0.001, 0.006), share = CutStability(cutting, modes_of(tools)).at(period_s).share;
   const Matrix3d turned =
       Eigen::AngleAxisd(between(-3, 3), Vector3d(between(-1, 1), 0.4, between(-1, 1)).normalized()).toRotationMatrix();
@@ -161,7 +146,7 @@ TEST_P(Stability, IsAShareOfTheDepth) {
   const auto tools = oscillators(3);
   const double period_s = between(0.001, 0.006);
   const auto share = [&](double depth) {
-    return CutStability(stiffness_of({4, depth, kSlot, kMaterial}), modes_of(tools)).at(period_s).share;
+    return CutStability(test::stiffness_of({4, depth, kSlot, kMaterial}).mean, modes_of(tools)).at(period_s).share;
   };
   EXPECT_NEAR(share(2) / share(1), 0.5, 1e-9);
 }
