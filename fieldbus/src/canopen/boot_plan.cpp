@@ -6,6 +6,7 @@
 
 #include "canopen/description_check.hpp"
 #include "canopen/drives/drive_of_node.hpp"
+#include "canopen/objects/standard_objects.hpp"
 #include "rmac/fieldbus/canopen/stored_parameters.hpp"
 
 namespace rmac::fieldbus::canopen {

@@ -39,13 +39,6 @@ inline constexpr std::uint16_t kPdoOffset = 0x40;  ///< between the PDO numbers 
   return shifts ? ObjectAddress{static_cast<std::uint16_t>(object.index + offset), object.sub} : object;
 }
 
-/// The other way round.
-[[nodiscard]] inline ObjectAddress of_first_axis(ObjectAddress object) noexcept {
-  if (object.index < kFirstProfileObject) return object;
-  const auto index = kFirstProfileObject + (object.index - kFirstProfileObject) % kAxisOffset;
-  return {static_cast<std::uint16_t>(index), object.sub};
-}
-
 /// By which a drive makes units of position of its encoder's counts: encoder resolution, gear ratio, feed constant.
 inline constexpr std::array<ObjectAddress, 6> kScaleObjects{
     {{0x608F, 1}, {0x608F, 2}, {0x6091, 1}, {0x6091, 2}, {0x6092, 1}, {0x6092, 2}}};

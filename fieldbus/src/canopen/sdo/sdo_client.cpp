@@ -46,7 +46,6 @@ bool SdoClient::tries_blocks() const noexcept {
 void SdoClient::receive(const CanFrame& frame, std::chrono::nanoseconds now) noexcept {
   if (state_ != State::Busy || frame.size != SdoBytes().size()) return;
   if (frame.data[0] == sdo_command::kAbort) return take_abort(frame);
-  if (!uploads_ && download_.streams()) return;
   if (initiating() && !answers_object(frame)) return;
   deadline_ = now + timeout_;
   SdoBytes answer;

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <map>
 #include <set>
 
 #include "rmac/fieldbus/canopen/stored_parameters.hpp"
@@ -147,9 +148,155 @@ TEST(DeviceType, IsNamedByItsProfile) {
   EXPECT_EQ(device_type_text(0x00020192), "servo drive (CiA 402)");
   EXPECT_EQ(device_type_text(0x00010192), "frequency converter (CiA 402)");
   EXPECT_EQ(device_type_text(0x00040192), "stepper drive (CiA 402)");
+  EXPECT_EQ(device_type_text(0x00080192), "drive (CiA 402)");
+  EXPECT_EQ(device_type_text(0xFF000192), "drive (CiA 402)") << "the highest byte is the maker's";
   EXPECT_EQ(device_type_text(0x00030191), "I/O, digital in, digital out (CiA 401)");
   EXPECT_EQ(device_type_text(0), "no standard profile");
+  EXPECT_EQ(device_type_text(404), "measuring device (CiA 404)");
+  EXPECT_EQ(device_type_text(406), "encoder (CiA 406)");
+  EXPECT_EQ(device_type_text(408), "hydraulic drive (CiA 408)");
+  EXPECT_EQ(device_type_text(410), "inclinometer (CiA 410)");
   EXPECT_EQ(device_type_text(0x123), "profile CiA 291");
+}
+
+TEST(DeviceType, OfAnIoDeviceSaysWhatItHas) {
+  for (std::uint32_t bits = 0; bits < 16; ++bits) {
+    std::string has = "I/O";
+    if ((bits & 1) != 0) has += ", digital in";
+    if ((bits & 2) != 0) has += ", digital out";
+    if ((bits & 4) != 0) has += ", analogue in";
+    if ((bits & 8) != 0) has += ", analogue out";
+    EXPECT_EQ(device_type_text(bits << 16 | 401), has + " (CiA 401)");
+  }
+}
+
+/// A bus that is listened to, with these frames on it.
+Expected<> idle_with(CanWire& wire, const std::vector<CanFrame>& frames, std::vector<CanFrame>* seen = nullptr) {
+  const auto port = wire.open();
+  for (const CanFrame& frame : frames) wire.inject(frame);
+  return check_idle(*port, std::chrono::milliseconds(500), [&](const CanFrame& frame) {
+    if (seen != nullptr) seen->push_back(frame);
+  });
+}
+
+TEST(IdleBus, IsListenedToForItsTimeAndShowsAllThatCameMeanwhile) {
+  CanWire wire;
+  const auto begin = wire.now();
+  const std::vector<CanFrame> frames{{.id = 0x181, .size = 8},
+                                     {.id = 0x705, .size = 1, .data = {127}},
+                                     {.id = 0x705, .size = 1, .data = {4}},
+                                     {.id = 0x705, .size = 2, .data = {5}},
+                                     {.id = 0x700, .size = 1, .data = {5}},
+                                     {.id = 0x7F, .size = 0},
+                                     {.id = 0x81, .size = 8},
+                                     {.id = 0x585, .size = 1, .data = {5}}};
+  std::vector<CanFrame> seen;
+  EXPECT_TRUE(idle_with(wire, frames, &seen));
+  EXPECT_EQ(wire.now() - begin, std::chrono::milliseconds(500));
+  EXPECT_EQ(seen, frames);
+}
+
+TEST(IdleBus, IsNoneWhereThereIsSyncOrANodeThatIsOperational) {
+  CanWire wire;
+  const auto sync = idle_with(wire, {{.id = 0x80, .size = 0}});
+  ASSERT_FALSE(sync);
+  EXPECT_THAT(sync.error().message, HasSubstr("there is SYNC"));
+  for (const int node : {1, 127}) {
+    const auto id = static_cast<std::uint16_t>(0x700 + node);
+    const auto works = idle_with(wire, {{.id = id, .size = 1, .data = {5}}});
+    ASSERT_FALSE(works);
+    EXPECT_THAT(works.error().message, HasSubstr("node " + std::to_string(node) + " is operational"));
+  }
+  const auto port = wire.open();
+  wire.inject({.id = 0x80});
+  EXPECT_FALSE(check_idle(*port, std::chrono::milliseconds(500))) << "also where nobody wants to see the frames";
+}
+
+// Red when all questions come at once, which no transmit queue holds.
+TEST_F(BusScan, BeginsWithOneNodeMoreARound) {
+  std::map<int, std::chrono::nanoseconds> first;
+  wire_.listen = [&](const CanFrame& frame) {
+    if (frame.id > 0x600 && frame.id < 0x680) first.try_emplace(frame.id - 0x600, wire_.now());
+  };
+  scan();
+  ASSERT_EQ(first.size(), 127U);
+  for (int node = 2; node <= 127; ++node)
+    EXPECT_EQ(first[node] - first[node - 1], std::chrono::milliseconds(2)) << node;
+}
+
+// Red when it does not ask twice who it is: two devices of one id may take turns to answer.
+TEST_F(BusScan, AsksWhatANodeIsAndTwiceWhoItIs) {
+  wire_.add(3);
+  std::vector<ObjectAddress> asked;
+  wire_.listen = [&](const CanFrame& frame) {
+    if (frame.id == 0x603) asked.push_back({word_at(&frame.data[1]), frame.data[3]});
+  };
+  scan();
+  wire_.listen = nullptr;
+  EXPECT_EQ(asked, (std::vector<ObjectAddress>{{0x1000, 0},
+                                               {0x1018, 1},
+                                               {0x1018, 2},
+                                               {0x1018, 3},
+                                               {0x1018, 4},
+                                               {0x1008, 0},
+                                               {0x1018, 1},
+                                               {0x1018, 2},
+                                               {0x1018, 3},
+                                               {0x1018, 4}}));
+}
+
+TEST_F(BusScan, WaitsForAnAnswerAsLongAsItIsTold) {
+  wire_.add(3).sdo_time = std::chrono::milliseconds(150);
+  EXPECT_EQ(scan().size(), 1U);
+  const auto port = wire_.open();
+  const auto hasty = scan_bus(*port, {.timeout = std::chrono::milliseconds(140)});
+  ASSERT_TRUE(hasty);
+  EXPECT_TRUE(hasty->empty());
+}
+
+TEST_F(BusScan, KeepsWhatANodeToldBeforeItFellSilent) {
+  wire_.add(3).silent = {{0x1018, 3}};
+  const auto found = scan();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_TRUE(found[0].answers);
+  EXPECT_EQ(found[0].identity.product_code, 0x203U);
+  EXPECT_EQ(found[0].identity.revision_number, 0U);
+}
+
+TEST_F(BusScan, GoesOnBehindWhatANodeRefuses) {
+  VirtualDrive& drive = wire_.add(3);
+  drive.refuse_reading({0x1000, 0}, 0x06010000);
+  drive.refuse_reading({0x1018, 2}, 0x06010000);
+  const auto found = scan();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_TRUE(found[0].answers);
+  EXPECT_EQ(found[0].device_type, 0U);
+  EXPECT_EQ(found[0].identity.product_code, 0U);
+  EXPECT_EQ(found[0].identity.serial_number, 0x403U);
+}
+
+TEST_F(BusScan, TakesNumbersAsLongAsTheNodeTellsThem) {
+  VirtualDrive& drive = wire_.add(3);
+  drive.set_bytes({0x1018, 1}, {0xFF, 0xFF, 0xFF, 0xFF});
+  drive.set_bytes({0x1018, 2}, {0x12});
+  drive.set_bytes({0x1018, 3}, {0x34, 0x12});
+  const auto found = scan();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].identity.vendor_id, 0xFFFFFFFFU);
+  EXPECT_EQ(found[0].identity.product_code, 0x12U) << "and nothing of the number before";
+  EXPECT_EQ(found[0].identity.revision_number, 0x1234U);
+}
+
+TEST_F(BusScan, PrintsFromTheBlankToTheTilde) {
+  Bytes all;
+  for (int c = 0; c < 128; ++c) all.push_back(static_cast<std::uint8_t>(c == 127 ? 0xE4 : c + 1));
+  VirtualDrive& drive = wire_.add(3);
+  name(drive, all);
+  drive.power_on(wire_.now());
+  std::string printable;
+  for (char c = ' '; c <= '~'; ++c) printable += c;
+  ASSERT_EQ(scan().size(), 1U);
+  EXPECT_EQ(scan()[0].name, printable);
 }
 
 TEST(DeviceDescription, FitsTheNodesThatItsNumbersName) {
@@ -164,6 +311,13 @@ TEST(DeviceDescription, FitsTheNodesThatItsNumbersName) {
   EXPECT_FALSE(describes(sheet, node));
   sheet.vendor_number = 0x1A1;
   EXPECT_TRUE(describes(sheet, node));
+  sheet.product_number = 0;
+  EXPECT_TRUE(describes(sheet, node)) << "it is for all products of a make";
+  sheet.product_number = 8;
+  EXPECT_FALSE(describes(sheet, node));
+  sheet.product_number = 7;
+  node.answers = false;
+  EXPECT_FALSE(describes(sheet, node)) << "nobody knows who that is";
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 
 #include "rmac/fieldbus/can/can_load.hpp"
 #include "rmac/fieldbus/canopen/bus_load.hpp"
-#include "rmac/fieldbus/canopen/emergency.hpp"
 #include "unit/fieldbus/canopen/canopen_bench.hpp"
 
 namespace {
@@ -334,14 +333,6 @@ TEST_F(CanopenBench, SendsNoMoreBitsThanPredicted) {
     ASSERT_TRUE(config.has_value());
     ASSERT_LE(counted, kCycles * bus_load(*config).cyclic_bits());
   }
-}
-
-TEST(Emergency, NamesAKnownCodeAndTheClassOfAnUnknownOne) {
-  EXPECT_STREQ(emergency_text(0x8130), "heartbeat of the master missing");
-  EXPECT_STREQ(emergency_text(0x3211), "DC link over-voltage");
-  EXPECT_STREQ(emergency_text(0x23FF), "current");
-  EXPECT_STREQ(emergency_text(0xFF31), "an error of the maker's own");
-  for (unsigned code = 0; code <= 0xFFFF; ++code) ASSERT_NE(emergency_text(static_cast<std::uint16_t>(code)), nullptr);
 }
 
 }  // namespace

@@ -52,26 +52,6 @@ TEST_F(CanopenBench, ConformsToThePortWithSyncFirst) {
   conformance::ControlInterfaceConformance(paced, 0).check();
 }
 
-// Red when a start that fails leaves a running interface without its port: the next cycle crashed.
-TEST_F(CanopenBench, StandsStillWhereItIsStartedAgainAndThatFails) {
-  VirtualDrive& drive = wire_.add(1);
-  make({{"node", {1}}});
-  start();
-  enable_all();
-  drive.answers_sdo = false;
-  EXPECT_NE(start_error(), "it started");
-  EXPECT_NE(drive.state(), PowerStates::OperationEnabled);
-  cycles(3, DriveWish::Operational);
-  EXPECT_TRUE(sound_) << "as one that was never started";
-  EXPECT_FALSE(feedback_[0].online);
-  master_->stop();
-  drive.answers_sdo = true;
-  EXPECT_EQ(start_error(), "it started");
-  EXPECT_EQ(drive.state(), PowerStates::Fault) << "it missed its master meanwhile";
-  for (const bool reset : {false, false, true, false}) cycle(DriveWish::Operational, reset);
-  enable_all();
-}
-
 TEST_F(CanopenBench, ReadsASensorBesideADriveWithItsSign) {
   VirtualDrive& drive = wire_.add(1);
   wire_.add(2);

@@ -90,6 +90,24 @@ TEST_F(PatientBoot, ResetsADriveAgainThatDidNotHear) {
   }
 }
 
+// Red when a drive that has just booted by itself, and waits for what it is to be told, is reset once more.
+TEST_F(PatientBoot, SetsUpADriveThatStartedAnewByItselfWithoutAReset) {
+  VirtualDrive& drive = fresh_drive();
+  make({{"node", {1}}, {"mode", {8}}});
+  start();
+  ASSERT_TRUE(comes_back(10));
+  int resets = 0;
+  wire_.listen = [&](const CanFrame& frame) { resets += frame.id == 0 && frame.data[0] == 130 ? 1 : 0; };
+  drive.power_off();
+  drive.power_on(wire_.now());
+  wire_.pass(milliseconds(1));
+  cycle();
+  cycle();
+  ASSERT_FALSE(feedback_[0].online);
+  EXPECT_TRUE(comes_back(2000));
+  EXPECT_EQ(resets, 0);
+}
+
 TEST_F(PatientBoot, PutsUpWithAnyOneLostSdoAnswer) {
   int answers = 1;
   for (int lost = 0; lost < answers; ++lost) {

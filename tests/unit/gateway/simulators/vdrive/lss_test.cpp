@@ -152,6 +152,36 @@ TEST_F(LayerSetting, ChangesNoBitRateWhereOneNodeIsNotThere) {
   EXPECT_FALSE(lss_set_bit_rate(*wire_.open(), {identity(1)}, 100'000, milliseconds(100))) << "not in the table";
 }
 
+/// CiA 305, table 1.
+TEST_F(LayerSetting, KnowsTheBitRatesOfTheStandardAndNoOthers) {
+  Node& node = wire_.add(1);
+  for (const std::uint32_t rate : {1'000'000U, 800'000U, 500'000U, 250'000U, 125'000U, 50'000U, 20'000U, 10'000U}) {
+    const auto done = lss_set_bit_rate(*wire_.open(), {identity(1)}, rate, milliseconds(1));
+    ASSERT_TRUE(done) << done.error().message;
+    EXPECT_EQ(node.lss().bit_rate(), rate);
+    wire_.pass(milliseconds(10));
+  }
+  for (const std::uint32_t rate : {0U, 100'000U, 999'999U, 1'000'001U}) {
+    const auto refused = lss_set_bit_rate(*wire_.open(), {identity(1)}, rate, milliseconds(1));
+    ASSERT_FALSE(refused) << rate;
+    EXPECT_NE(refused.error().message.find("bit rates are 10000, 20000"), std::string::npos);
+  }
+  EXPECT_EQ(node.lss().bit_rate(), 10'000U);
+}
+
+TEST_F(LayerSetting, TakesADelayThatTwoBytesHold) {
+  wire_.add(1);
+  for (const int ms : {-1, 65536}) {
+    EXPECT_FALSE(lss_set_bit_rate(*wire_.open(), {identity(1)}, 500'000, milliseconds(ms))) << ms;
+  }
+  for (const int ms : {65535, 0}) {
+    const auto done = lss_set_bit_rate(*wire_.open(), {identity(1)}, 500'000, milliseconds(ms));
+    EXPECT_TRUE(done) << ms << ": " << done.error().message;
+    wire_.pass(milliseconds(2 * ms + 10));
+  }
+  EXPECT_FALSE(lss_set_bit_rate(*wire_.open(), {}, 500'000, milliseconds(1))) << "there is nobody";
+}
+
 TEST(LayerSettingMaster, EndsWhateverFramesCome) {
   for (unsigned seed = 0; seed < 8; ++seed) {
     fieldbus::test::NoisyPort port(seed, {0x11, 0x13, 0x17, 0x44, 0x4F, 0x5E});

@@ -1,4 +1,4 @@
-#include "unit/fieldbus/canopen/lss_peer.hpp"
+#include "unit/fieldbus/canopen/lss/lss_peer.hpp"
 
 #include <algorithm>
 
@@ -93,7 +93,10 @@ void LssPeer::while_configuring(const CanFrame& frame, Time now) {
 }
 
 bool LssWire::send(const CanFrame& frame) noexcept {
-  for (auto& peer : peers_) peer->receive(frame, now_);
+  if (listen) listen(frame);
+  for (auto& peer : peers_) {
+    if (!cut) peer->receive(frame, now_);
+  }
   return true;
 }
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-#include "unit/fieldbus/canopen/lss_peer.hpp"
+#include "unit/fieldbus/canopen/lss/lss_peer.hpp"
 
 // CiA 305: the master against slaves that take liberties.
 namespace rmac::fieldbus::canopen {

@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -68,6 +69,9 @@ class LssWire final : public CanPort {
   void wait(std::chrono::nanoseconds at_most) noexcept override;
   [[nodiscard]] std::chrono::nanoseconds now() const noexcept override { return now_; }
   [[nodiscard]] CanHealth health() const noexcept override { return {}; }
+
+  std::function<void(const CanFrame&)> listen;  ///< what the master sends
+  bool cut = false;                             ///< and whether it does not arrive
 
  private:
   std::vector<std::unique_ptr<LssPeer>> peers_;

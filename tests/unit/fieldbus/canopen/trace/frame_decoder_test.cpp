@@ -45,6 +45,62 @@ TEST(FrameDecoder, TellsManagementInTheStandardsWords) {
   EXPECT_THAT(text_of(0x085, {0x11, 0x86, 0x21, 0, 0, 0, 0, 7}), EndsWith("of the maker 00 00 00 00 07"));
 }
 
+TEST(FrameDecoder, TellsTheLengthOfAFrameThatIsNotAsLongAsItsKind) {
+  EXPECT_EQ(text_of(0, {0x01}), "NMT of 1 bytes");
+  EXPECT_EQ(text_of(0, {0x01, 2, 3}), "NMT of 3 bytes");
+  EXPECT_EQ(text_of(0x085, {0x11, 0x86}), "EMCY node 5 of 2 bytes");
+  EXPECT_EQ(text_of(0x085, {0x11, 0x86, 0x21}), "EMCY node 5: 8611h (following error), error register 21h");
+  EXPECT_EQ(text_of(0x085, {0x11, 0x86, 0x21, 0xA}),
+            "EMCY node 5: 8611h (following error), error register 21h, of the maker 0A");
+  EXPECT_EQ(text_of(0x705, {}), "heartbeat node 5 of 0 bytes");
+  EXPECT_EQ(text_of(0x705, {5, 5}), "heartbeat node 5 of 2 bytes");
+  EXPECT_EQ(text_of(0x100, {1, 2, 3, 4, 5}), "TIME of 5 bytes");
+  EXPECT_EQ(text_of(0x605, {0x40}), "SDO to node 5: 1 bytes, and it has 8");
+}
+
+/// CiA 301, 7.3.5: the predefined connection set, of every identifier.
+TEST(FrameDecoder, KnowsEachIdentifierByItsKindAndNode) {
+  for (unsigned id = 0; id < 0x800; ++id) {
+    const unsigned function = id >> 7, node = id & 0x7F;
+    FrameKind kind = FrameKind::Other;
+    if (id == 0) kind = FrameKind::Nmt;
+    if (id == 0x80) kind = FrameKind::Sync;
+    if (id == 0x100) kind = FrameKind::Time;
+    if (id == 0x7E4 || id == 0x7E5) kind = FrameKind::Lss;
+    if (node != 0 && function == 1) kind = FrameKind::Emergency;
+    if (node != 0 && function >= 3 && function <= 10) kind = FrameKind::Pdo;
+    if (node != 0 && (function == 11 || function == 12)) kind = FrameKind::Sdo;
+    if (node != 0 && function == 14) kind = FrameKind::Heartbeat;
+    const DecodedFrame decoded = FrameDecoder().decode({.id = static_cast<std::uint16_t>(id), .size = 8});
+    ASSERT_EQ(decoded.kind, kind) << std::hex << id << " " << decoded.text;
+    const bool of_node = kind == FrameKind::Emergency || kind == FrameKind::Pdo || kind == FrameKind::Sdo ||
+                         kind == FrameKind::Heartbeat;
+    ASSERT_EQ(decoded.node, of_node ? std::optional(static_cast<std::uint8_t>(node)) : std::nullopt) << std::hex << id;
+    if (kind == FrameKind::Pdo) {
+      const std::string name = (function % 2 == 1 ? "TPDO" : "RPDO") + std::to_string((function - 1) / 2);
+      ASSERT_EQ(decoded.text, name + " node " + std::to_string(node) + ": 8 bytes, by a mapping that is not known");
+    }
+    if (kind == FrameKind::Other) {
+      ASSERT_EQ(decoded.text, "outside the predefined connection set");
+    }
+  }
+  EXPECT_EQ(FrameDecoder().decode({.id = 0, .size = 2, .data = {1, 5}}).node, 5);
+  EXPECT_EQ(FrameDecoder().decode({.id = 0x85, .size = 8, .data = {0x11, 0x86}}).error_code, 0x8611);
+}
+
+TEST(FrameDecoder, NamesTheKindsForPrograms) {
+  const std::array<std::pair<FrameKind, const char*>, 9> names{{{FrameKind::Nmt, "nmt"},
+                                                                {FrameKind::Sync, "sync"},
+                                                                {FrameKind::Time, "time"},
+                                                                {FrameKind::Emergency, "emcy"},
+                                                                {FrameKind::Pdo, "pdo"},
+                                                                {FrameKind::Sdo, "sdo"},
+                                                                {FrameKind::Heartbeat, "heartbeat"},
+                                                                {FrameKind::Lss, "lss"},
+                                                                {FrameKind::Other, "other"}}};
+  for (const auto& [kind, name] : names) EXPECT_STREQ(to_text(kind), name);
+}
+
 TEST(FrameDecoder, TellsTheTimeThatIsSent) {
   using namespace std::chrono;
   const auto time = sys_days(year(2026) / November / 24) + hours(15) + minutes(4) + milliseconds(5007);
