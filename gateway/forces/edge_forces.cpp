@@ -124,9 +124,8 @@ void EdgeForces::over_edges(Visit&& visit) const {
     along_profile(slice.from_mm, slice.to_mm, most_turned, [&](double from, double to) {
       for (const auto& [part, weight] : kGauss) {
         const EndMill::Place place = mill_.at(from + part * (to - from));
-        const auto at_place = [&](double entry, double exit) {
-          visit(place, entry, exit, share * weight * (to - from));
-        };
+        const double of_piece = share * weight * (to - from);
+        const auto at_place = [&](double entry, double exit) { visit(place, entry, exit, of_piece); };
         for (const Arc& arc : slice.arcs) over_chips(place, arc, at_place);
       }
     });
