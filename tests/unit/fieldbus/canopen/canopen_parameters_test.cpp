@@ -23,7 +23,7 @@ std::string answer(const Numbers& numbers, const Texts& texts = {}) {
   const auto config = read(numbers, texts);
   return config ? "accepted" : config.error().message;
 }
-CanopenConfig config_of(const Numbers& numbers, const Texts& texts = {}) {
+CanopenConfig config_by(const Numbers& numbers, const Texts& texts = {}) {
   const auto config = read(numbers, texts);
   EXPECT_TRUE(config) << config.error().message;
   return config.value_or(CanopenConfig());
@@ -84,7 +84,7 @@ TEST(CanopenParameters, MayBeWhatIsWithinTheirBounds) {
 }
 
 TEST(CanopenParameters, AreTheseWhereNothingIsGiven) {
-  const CanopenConfig config = config_of({});
+  const CanopenConfig config = config_by({});
   EXPECT_EQ(config.interface, "can0");
   EXPECT_EQ(config.period, milliseconds(1));
   EXPECT_EQ(config.bit_rate, 1'000'000U);
@@ -110,7 +110,7 @@ TEST(CanopenParameters, AreTheseWhereNothingIsGiven) {
 }
 
 TEST(CanopenParameters, GoWhereTheirNamesSay) {
-  const CanopenConfig config = config_of({{"bit_rate", {500e3}},
+  const CanopenConfig config = config_by({{"bit_rate", {500e3}},
                                           {"load_share", {37.5}},
                                           {"heartbeat_ms", {20}},
                                           {"time_s", {0.25}},
@@ -149,8 +149,8 @@ TEST(CanopenParameters, GoWhereTheirNamesSay) {
   EXPECT_EQ(axis.answer_delay, 2);
   EXPECT_EQ(axis.drive, "none");
   EXPECT_FALSE(axis.check_scale);
-  EXPECT_EQ(config_of({}, {{"sync", "first"}}).sync, SyncOrder::First);
-  EXPECT_EQ(config_of({}, {{"sync", "last"}}).sync, SyncOrder::Last);
+  EXPECT_EQ(config_by({}, {{"sync", "first"}}).sync, SyncOrder::First);
+  EXPECT_EQ(config_by({}, {{"sync", "last"}}).sync, SyncOrder::Last);
 }
 
 /// CiA 402-2: sense and units of positions.
@@ -164,7 +164,7 @@ TEST(CanopenParameters, OfUnitsAreWrittenToTheirObjects) {
        {Unit{"polarity", {0x607E, 0}, 1}, Unit{"encoder_counts", {0x608F, 1}, 4}, Unit{"encoder_turns", {0x608F, 2}, 4},
         Unit{"gear_motor_turns", {0x6091, 1}, 4}, Unit{"gear_shaft_turns", {0x6091, 2}, 4},
         Unit{"feed_counts", {0x6092, 1}, 4}, Unit{"feed_shaft_turns", {0x6092, 2}, 4}}) {
-    const CanopenConfig config = config_of({{unit.name, {129}}});
+    const CanopenConfig config = config_by({{unit.name, {129}}});
     const AxisConfig& axis = config.axes.at(0);
     ASSERT_EQ(axis.setup.size(), 1U) << unit.name;
     std::vector<std::uint8_t> bytes(unit.bytes);
@@ -194,8 +194,8 @@ TEST(CanopenParameters, MapWhatTheModeNeeds) {
                          Mode{9, 17, "6040:00/16 6060:00/8 60FF:00/32", kWithMode},
                          Mode{10, 17, "6040:00/16 6060:00/8 6071:00/16", kWithMode}}) {
     const Numbers numbers{{"mode", {of.mode}}, {"homing_method", {of.homing_method}}};
-    const CanopenConfig by_mode = config_of(numbers),
-                        by_text = config_of(numbers, {{"rpdo", of.rpdo}, {"tpdo", of.tpdo}});
+    const CanopenConfig by_mode = config_by(numbers),
+                        by_text = config_by(numbers, {{"rpdo", of.rpdo}, {"tpdo", of.tpdo}});
     EXPECT_EQ(by_mode.axes.at(0).setpoints, by_text.axes.at(0).setpoints) << of.mode;
     EXPECT_EQ(by_mode.axes.at(0).answers, by_text.axes.at(0).answers) << of.mode;
   }
@@ -221,10 +221,10 @@ TEST(CanopenParameters, OfHomingNeedTheModeOnBothSides) {
 
 TEST(CanopenParameters, NameASensorAmongTheAnswersOfAnyOfItsPdos) {
   const Texts first{{"tpdo", "6041:00/16 6401:01/16"}, {"sensor", "6401:01/16"}};
-  EXPECT_EQ(config_of({}, first).axes.at(0).sensor, (MappedObject{{0x6401, 1}, 16}));
+  EXPECT_EQ(config_by({}, first).axes.at(0).sensor, (MappedObject{{0x6401, 1}, 16}));
   const Texts second{{"second_tpdo", "6401:01/16"}, {"sensor", "6401:01/16"}};
-  EXPECT_EQ(config_of({}, second).axes.at(0).sensor, (MappedObject{{0x6401, 1}, 16}));
-  EXPECT_EQ(config_of({}).axes.at(0).sensor, std::nullopt);
+  EXPECT_EQ(config_by({}, second).axes.at(0).sensor, (MappedObject{{0x6401, 1}, 16}));
+  EXPECT_EQ(config_by({}).axes.at(0).sensor, std::nullopt);
   for (const char* const sensor : {"6401:01/8", "6401:02/16", "6041:00/16 6401:01/16"}) {
     EXPECT_THAT(answer({}, {{"tpdo", "6041:00/16 6401:01/16"}, {"sensor", sensor}}), HasSubstr("it names one object"));
   }
@@ -265,15 +265,15 @@ TEST(Patience, IsThatOfDeviceJsonElseOfTheDriveElseTheUsual) {
   slow.manners.sdo_timeout = milliseconds(900);
   slow.manners.boot_timeout = milliseconds(20000);
   slow.manners.sdo_retries = 4;
-  const Patience usual = patience_with(config_of({}), 5, nullptr);
+  const Patience usual = patience_with(config_by({}), 5, nullptr);
   EXPECT_EQ(usual.sdo_timeout, milliseconds(500));
   EXPECT_EQ(usual.sdo_tries, 3);
   EXPECT_EQ(usual.boot_timeout, milliseconds(5000));
-  const Patience of_drive = patience_with(config_of({}), 5, &slow);
+  const Patience of_drive = patience_with(config_by({}), 5, &slow);
   EXPECT_EQ(of_drive.sdo_timeout, milliseconds(900));
   EXPECT_EQ(of_drive.sdo_tries, 5) << "the first, and four more";
   EXPECT_EQ(of_drive.boot_timeout, milliseconds(20000));
-  const CanopenConfig given = config_of({{"sdo_timeout_ms", {70}}, {"boot_timeout_s", {3}}});
+  const CanopenConfig given = config_by({{"sdo_timeout_ms", {70}}, {"boot_timeout_s", {3}}});
   EXPECT_EQ(patience_with(given, 5, &slow).sdo_timeout, milliseconds(70));
   EXPECT_EQ(patience_with(given, 5, &slow).boot_timeout, milliseconds(3000));
   EXPECT_EQ(patience_with(given, 6, &slow).sdo_timeout, milliseconds(900)) << "of another node nothing is given";
@@ -281,21 +281,21 @@ TEST(Patience, IsThatOfDeviceJsonElseOfTheDriveElseTheUsual) {
 
 TEST(BusLoad, CountsHeartbeatsAndTimeOfEachSecond) {
   // 65 bits are a frame of a byte at its longest, 115 one of six.
-  EXPECT_DOUBLE_EQ(bus_load(config_of({})).heartbeat_bits_per_s, 2 * 65 / 0.05) << "the master's, too";
-  EXPECT_DOUBLE_EQ(bus_load(config_of({{"node", {1, 2, 2}}, {"axis_in_node", {0, 0, 1}}, {"heartbeat_ms", {100}}}))
+  EXPECT_DOUBLE_EQ(bus_load(config_by({})).heartbeat_bits_per_s, 2 * 65 / 0.05) << "the master's, too";
+  EXPECT_DOUBLE_EQ(bus_load(config_by({{"node", {1, 2, 2}}, {"axis_in_node", {0, 0, 1}}, {"heartbeat_ms", {100}}}))
                        .heartbeat_bits_per_s,
                    3 * 65 / 0.1)
       << "one a node, however many axes it has";
-  EXPECT_DOUBLE_EQ(bus_load(config_of({{"time_s", {2}}})).heartbeat_bits_per_s, 2 * 65 / 0.05 + 115 / 2.0);
-  EXPECT_DOUBLE_EQ(bus_load(config_of({{"bit_rate", {250e3}}})).bits_of_cycle, 250);
+  EXPECT_DOUBLE_EQ(bus_load(config_by({{"time_s", {2}}})).heartbeat_bits_per_s, 2 * 65 / 0.05 + 115 / 2.0);
+  EXPECT_DOUBLE_EQ(bus_load(config_by({{"bit_rate", {250e3}}})).bits_of_cycle, 250);
 }
 
 TEST(BusLoad, HasRoomInTheQueueForAllFramesOfACycle) {
   // SYNC, heartbeat, TIME and a frame of a boot beside the setpoints.
-  EXPECT_EQ(frames_of_cycle(config_of({})), 1U + 4);
-  EXPECT_EQ(frames_of_cycle(config_of({{"node", {1, 2, 3}}})), 3U + 4);
-  EXPECT_EQ(frames_of_cycle(config_of({{"node", {1, 2, 3}}}, {{"second_rpdo_1", "60B1:00/32"}})), 3U + 1 + 4);
-  CanopenConfig guarded = config_of({{"node", {1, 2, 3}}});
+  EXPECT_EQ(frames_of_cycle(config_by({})), 1U + 4);
+  EXPECT_EQ(frames_of_cycle(config_by({{"node", {1, 2, 3}}})), 3U + 4);
+  EXPECT_EQ(frames_of_cycle(config_by({{"node", {1, 2, 3}}}, {{"second_rpdo_1", "60B1:00/32"}})), 3U + 1 + 4);
+  CanopenConfig guarded = config_by({{"node", {1, 2, 3}}});
   auto library = std::make_shared<DriveLibrary>();
   library->drives.resize(2);
   guarded.drives = library;

@@ -12,7 +12,7 @@ namespace {
 
 using Kind = SdoStep::Kind;
 
-constexpr ObjectAddress kObject{0x2001, 3};
+constexpr ObjectAddress kAsked{0x2001, 3};
 constexpr std::size_t kNoBlocks = 100'000;
 
 std::vector<std::uint8_t> counting(std::size_t size) {
@@ -40,7 +40,7 @@ TEST(SdoUploadCommands, OfTheFirstAnswerAreThoseOfAnUpload) {
   for (int command = 0; command < 256; ++command) {
     std::vector<std::uint8_t> into(8);
     SdoUpload upload(kNoBlocks, 127);
-    (void)upload.begin(kObject, into);
+    (void)upload.begin(kAsked, into);
     const SdoStep step = upload.take(answer_of(command, {0, 1, 0x20, 3, 8}));
     if (specifier(command) != 2) {
       EXPECT_TRUE(is_aborted(step, sdo_abort::kCommand)) << command;
@@ -58,7 +58,7 @@ TEST(SdoUploadCommands, OfASegmentAreItsToggleBitItsLengthAndWhetherItIsTheLast)
   for (int command = 0; command < 256; ++command) {
     std::vector<std::uint8_t> into(30);
     SdoUpload upload(kNoBlocks, 127);
-    (void)upload.begin(kObject, into);
+    (void)upload.begin(kAsked, into);
     (void)upload.take({0x40, 1, 0x20, 3});  // without a size
     (void)upload.take({0x00, 1, 2, 3, 4, 5, 6, 7});
     const SdoStep step = upload.take(answer_of(command, {0, 8, 9, 10, 11, 12, 13, 14}));
@@ -77,7 +77,7 @@ TEST(SdoUploadCommands, OfABlockMayBeThoseOfAnOrdinaryUpload) {
   for (int command = 0; command < 256; ++command) {
     std::vector<std::uint8_t> into(30);
     SdoUpload upload(30, 127);
-    EXPECT_EQ(upload.begin(kObject, into).bytes[0], 0xA4);
+    EXPECT_EQ(upload.begin(kAsked, into).bytes[0], 0xA4);
     const SdoStep step = upload.take(answer_of(command, {0, 1, 0x20, 3, 8}));
     const bool ordinary = specifier(command) == 2, block = specifier(command) == 6 && (command & 1) == 0;
     EXPECT_EQ(is_aborted(step, sdo_abort::kCommand), !ordinary && !block) << command;
@@ -94,7 +94,7 @@ TEST(SdoUploadCommands, OfTheEndOfABlockTellHowMuchOfTheLastSegmentCounts) {
   for (int command = 0; command < 256; ++command) {
     std::vector<std::uint8_t> into(30);
     SdoUpload upload(30, 127);
-    (void)upload.begin(kObject, into);
+    (void)upload.begin(kAsked, into);
     (void)upload.take({0xC0, 1, 0x20, 3});  // neither size nor checksum
     (void)upload.take({0x81, 1, 2, 3, 4, 5, 6, 7});
     const SdoStep step = upload.take(answer_of(command, {0, 0xAA, 0xBB}));
@@ -111,7 +111,7 @@ TEST(SdoUpload, TakesChecksumAndSizeOfABlockForWhatTheyAre) {
   const auto end_of = [](int initiate, std::uint32_t size, std::uint16_t checksum) {
     std::vector<std::uint8_t> into(30);
     SdoUpload upload(30, 127);
-    (void)upload.begin(kObject, into);
+    (void)upload.begin(kAsked, into);
     SdoBytes first = answer_of(initiate, {0, 1, 0x20, 3});
     put_long(&first[4], size);
     if (const SdoStep begun = upload.take(first); begun.kind == Kind::Abort) return begun;
@@ -137,7 +137,7 @@ TEST(SdoUpload, TakesNoSegmentOfABlockBeyondWhatItAskedFor) {
     for (const int last : {0, 0x80}) {
       std::vector<std::uint8_t> into(30);
       SdoUpload upload(30, 5);
-      (void)upload.begin(kObject, into);
+      (void)upload.begin(kAsked, into);
       (void)upload.take({0xC0, 1, 0x20, 3});
       const SdoStep step = upload.take(answer_of(sequence | last));
       EXPECT_EQ(is_aborted(step, sdo_abort::kSequence), sequence == 0 || sequence > 5) << sequence;
@@ -156,7 +156,7 @@ TEST(SdoUpload, TakesNoSegmentOfABlockBeyondWhatItAskedFor) {
 TEST(SdoUpload, GoesOnUntilTheLastSegmentCameInOrder) {
   std::vector<std::uint8_t> into(30);
   SdoUpload upload(30, 2);
-  (void)upload.begin(kObject, into);
+  (void)upload.begin(kAsked, into);
   (void)upload.take({0xC0, 1, 0x20, 3});
   EXPECT_EQ(upload.take({0x82, 8, 9}).bytes, (SdoBytes{0xA2, 0, 2})) << "the first is lost";
   EXPECT_EQ(upload.take({0x01, 1, 2, 3, 4, 5, 6, 7}).kind, Kind::Wait);
@@ -172,7 +172,7 @@ TEST(SdoUpload, TriesBlocksFromSoManyBytesOfRoomOn) {
     for (const std::size_t from : {29U, 256U, 257U, 300U}) {
       std::vector<std::uint8_t> into(room);
       SdoUpload upload(from, 7);
-      const SdoStep step = upload.begin(kObject, into);
+      const SdoStep step = upload.begin(kAsked, into);
       const bool blocks = room >= from;
       EXPECT_EQ(upload.tries_blocks(), blocks) << room << " from " << from;
       EXPECT_TRUE(upload.initiating());
@@ -186,7 +186,7 @@ TEST(SdoUpload, TakesOfAnAnswerWithoutSizeAsMuchAsThereIsRoomFor) {
   for (const std::size_t room : {1U, 2U, 3U, 4U, 5U}) {
     std::vector<std::uint8_t> into(room);
     SdoUpload upload(kNoBlocks, 7);
-    (void)upload.begin(kObject, into);
+    (void)upload.begin(kAsked, into);
     EXPECT_EQ(upload.take({0x42, 1, 0x20, 3, 1, 2, 3, 4}).kind, Kind::Done);
     EXPECT_EQ(upload.size(), std::min<std::size_t>(room, 4));
     into.resize(upload.size());
@@ -197,10 +197,10 @@ TEST(SdoUpload, TakesOfAnAnswerWithoutSizeAsMuchAsThereIsRoomFor) {
 TEST(SdoUpload, BeginsEachTransferAsIfItWereTheFirst) {
   std::vector<std::uint8_t> into(30);
   SdoUpload upload(29, 2);
-  (void)upload.begin(kObject, into);
+  (void)upload.begin(kAsked, into);
   (void)upload.take({0x41, 1, 0x20, 3, 20});
   (void)upload.take({0x00, 1, 2, 3, 4, 5, 6, 7});
-  EXPECT_EQ(upload.begin(kObject, into).bytes, (SdoBytes{0xA4, 1, 0x20, 3, 2, 28}));
+  EXPECT_EQ(upload.begin(kAsked, into).bytes, (SdoBytes{0xA4, 1, 0x20, 3, 2, 28}));
   EXPECT_EQ(upload.size(), 0U);
   EXPECT_EQ(upload.take({0x40, 1, 0x20, 3}).bytes, SdoBytes{0x60}) << "its toggle bit, too";
   EXPECT_EQ(upload.take({0x01, 1, 2, 3, 4, 5, 6, 7}).kind, Kind::Done);
@@ -210,13 +210,13 @@ TEST(SdoDownloadCommands, OfEachPhaseAreTakenAndNoOthers) {
   for (int command = 0; command < 256; ++command) {
     const auto data = counting(30);
     SdoDownload expedited(kNoBlocks);
-    (void)expedited.begin(kObject, {data.data(), 4});
+    (void)expedited.begin(kAsked, {data.data(), 4});
     EXPECT_EQ(expedited.take(answer_of(command)).kind, specifier(command) == 3 ? Kind::Done : Kind::Abort) << command;
 
     SdoDownload segmented(kNoBlocks);
-    (void)segmented.begin(kObject, data);
+    (void)segmented.begin(kAsked, data);
     EXPECT_EQ(segmented.take(answer_of(command)).kind, specifier(command) == 3 ? Kind::Send : Kind::Abort) << command;
-    (void)segmented.begin(kObject, data);
+    (void)segmented.begin(kAsked, data);
     (void)segmented.take({0x60});
     const SdoStep step = segmented.take(answer_of(command));
     if (specifier(command) != 1) {
@@ -228,11 +228,11 @@ TEST(SdoDownloadCommands, OfEachPhaseAreTakenAndNoOthers) {
     }
 
     SdoDownload block(30);
-    (void)block.begin(kObject, data);
+    (void)block.begin(kAsked, data);
     const bool begins = specifier(command) == 5 && subcommand(command) == 0;
     EXPECT_EQ(block.take(answer_of(command, {0, 1, 0x20, 3, 5})).kind, begins ? Kind::Wait : Kind::Abort) << command;
     EXPECT_EQ(block.streams(), begins);
-    (void)block.begin(kObject, data);
+    (void)block.begin(kAsked, data);
     (void)block.take({0xA0, 1, 0x20, 3, 5});
     for (int segment = 0; segment < 5; ++segment) (void)block.next_segment();
     const bool acknowledges = specifier(command) == 5 && subcommand(command) == 2;
@@ -248,7 +248,7 @@ TEST(SdoDownload, TriesBlocksFromSoManyBytesOnThatDoNotFitTheFirstFrame) {
     for (const std::size_t from : {1U, 4U, 5U, 29U}) {
       const auto data = counting(size);
       SdoDownload download(from);
-      const SdoStep step = download.begin(kObject, data);
+      const SdoStep step = download.begin(kAsked, data);
       const bool blocks = size > 4 && size >= from;
       EXPECT_EQ(download.tries_blocks(), blocks) << size << " from " << from;
       EXPECT_TRUE(download.initiating());
@@ -270,7 +270,7 @@ TEST(SdoDownload, MarksTheLastSegmentAndWhatOfItCounts) {
   for (std::size_t size = 5; size <= 40; ++size) {
     const auto data = counting(size);
     SdoDownload download(kNoBlocks);
-    (void)download.begin(kObject, data);
+    (void)download.begin(kAsked, data);
     SdoStep step = download.take({0x60});
     for (std::size_t at = 0; at < size; at += 7) {
       const std::size_t here = std::min<std::size_t>(7, size - at);
@@ -289,7 +289,7 @@ TEST(SdoDownload, EndsABlockWithWhatOfItsLastSegmentCountsAndItsChecksumWhereItI
     for (const bool checked : {true, false}) {
       const auto data = counting(size);
       SdoDownload download(5);
-      (void)download.begin(kObject, data);
+      (void)download.begin(kAsked, data);
       (void)download.take({static_cast<std::uint8_t>(checked ? 0xA4 : 0xA0), 1, 0x20, 3, 127});
       std::uint8_t segments = 0;
       for (bool last = false; !last; ++segments) {
@@ -314,9 +314,9 @@ TEST(SdoDownload, RefusesBlocksOfASizeThatThereIsNot) {
     const auto told = static_cast<std::uint8_t>(size);
     const bool sound = size >= 1 && size <= 127;
     SdoDownload download(5);
-    (void)download.begin(kObject, data);
+    (void)download.begin(kAsked, data);
     EXPECT_EQ(is_aborted(download.take({0xA0, 1, 0x20, 3, told}), sdo_abort::kBlockSize), !sound) << size;
-    (void)download.begin(kObject, data);
+    (void)download.begin(kAsked, data);
     (void)download.take({0xA0, 1, 0x20, 3, 1});
     (void)download.next_segment();
     EXPECT_EQ(is_aborted(download.take({0xA2, 1, told}), sdo_abort::kBlockSize), !sound) << size;
@@ -332,7 +332,7 @@ TEST(SdoDownload, RefusesAnAcknowledgementOfMoreThanWasSent) {
   for (std::uint8_t taken = 0; taken < 5; ++taken) {
     const auto data = counting(30);
     SdoDownload download(5);
-    (void)download.begin(kObject, data);
+    (void)download.begin(kAsked, data);
     (void)download.take({0xA0, 1, 0x20, 3, 3});
     for (int segment = 0; segment < 3; ++segment) (void)download.next_segment();
     EXPECT_EQ(is_aborted(download.take({0xA2, taken, 3}), sdo_abort::kSequence), taken > 3) << int{taken};
@@ -346,7 +346,7 @@ TEST(SdoDownload, RefusesAnAcknowledgementOfMoreThanWasSent) {
 TEST(SdoDownload, CountsOnlyBlocksInARowOfWhichNothingWasTaken) {
   const auto data = counting(100);
   SdoDownload download(5);
-  (void)download.begin(kObject, data);
+  (void)download.begin(kAsked, data);
   (void)download.take({0xA0, 1, 0x20, 3, 1});
   for (int round = 0; round < 5; ++round) {
     for (const std::uint8_t taken : {std::uint8_t{0}, std::uint8_t{0}, std::uint8_t{1}}) {
@@ -359,13 +359,13 @@ TEST(SdoDownload, CountsOnlyBlocksInARowOfWhichNothingWasTaken) {
 TEST(SdoDownload, BeginsAgainWithoutBlocksFromItsFirstByte) {
   const auto data = counting(30);
   SdoDownload download(5);
-  (void)download.begin(kObject, data);
+  (void)download.begin(kAsked, data);
   EXPECT_TRUE(download.tries_blocks());
   EXPECT_EQ(download.begin_without_blocks().bytes, (SdoBytes{0x21, 1, 0x20, 3, 30}));
   EXPECT_FALSE(download.tries_blocks());
   EXPECT_EQ(download.take({0x60}).bytes, (SdoBytes{0, 1, 2, 3, 4, 5, 6, 7}));
   // And another one from its own.
-  EXPECT_EQ(download.begin(kObject, data).bytes, (SdoBytes{0xC6, 1, 0x20, 3, 30}));
+  EXPECT_EQ(download.begin(kAsked, data).bytes, (SdoBytes{0xC6, 1, 0x20, 3, 30}));
   (void)download.begin_without_blocks();
   EXPECT_EQ(download.take({0x60}).bytes, (SdoBytes{0, 1, 2, 3, 4, 5, 6, 7}));
 }
