@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gateway/chatter/cut_in_time.hpp"
-
 namespace rmac::gateway {
 namespace {
 
@@ -36,14 +34,17 @@ double unevenness_of(const ChatterWatch::Look& look) {
 /// The nearest speed at which a cut is steady.
 std::optional<double> steady_rpm(const ChatterWatch::Look& look, const CutStability& by_mean,
                                  const CutInTime* in_time) {
-  for (int percent = 1; percent <= kMostPercent; ++percent) {
+  // In time each takes milliseconds: the nearest ones, then others.
+  const auto next = [&](int percent) { return percent + (in_time != nullptr ? std::max(1, percent / 3) : 1); };
+  for (int percent = 1; percent <= kMostPercent; percent = next(percent)) {
     for (const int sign : {1, -1}) {
       const double rpm = std::round(look.rpm * (1 + sign * percent / 100.0));
       if (rpm < 1 || rpm == look.rpm || (look.most_rpm > 0 && rpm > look.most_rpm)) continue;
       const double period_s = tooth_period_s(look, rpm);
       // What the mean says is far off is not tried in time.
       if (by_mean.at(period_s).share < (in_time != nullptr ? kSteadyShare / 2 : kSteadyShare)) continue;
-      if (in_time == nullptr || !in_time->grows(kSteadyShare, period_s)) return rpm;
+      if (in_time == nullptr) return rpm;
+      if (in_time->can_tell(kSteadyShare, period_s) && !in_time->grows(kSteadyShare, period_s)) return rpm;
     }
   }
   return std::nullopt;
@@ -55,12 +56,11 @@ bool same(double a, double b) {
 
 }  // namespace
 
-double ChatterWatch::ratio_in_time(const Look& look, double unevenness, double by_mean,
-                                   std::span<const VibrationMode> modes) {
+double ChatterWatch::ratio_in_time(const Look& look, double unevenness, double by_mean, const CutInTime& cut) {
   const bool known =
       look.rpm == in_time_.rpm && same(by_mean, in_time_.by_mean) && same(unevenness, in_time_.unevenness);
   if (known) return in_time_.ratio;
-  const double limit = CutInTime(look.over_pitch_n_mm, modes).limit(by_mean, tooth_period_s(look, look.rpm));
+  const double limit = cut.limit(by_mean, tooth_period_s(look, look.rpm));
   in_time_ = {.by_mean = by_mean, .unevenness = unevenness, .rpm = look.rpm, .ratio = limit / by_mean};
   return in_time_.ratio;
 }
@@ -73,8 +73,10 @@ void ChatterWatch::add(const Look& look, std::span<const VibrationMode> modes) {
   const CutStability stability(look.cutting_n_mm, modes);
   ChatterLimit limit = stability.at(tooth_period_s(look, look.rpm));
   const double unevenness = unevenness_of(look);
-  const bool in_time = unevenness > kUneven && limit.share < kFarFromIt;
-  if (in_time) limit.share *= ratio_in_time(look, unevenness, limit.share, modes);
+  const CutInTime cut(look.over_pitch_n_mm, modes);
+  const bool in_time =
+      unevenness > kUneven && limit.share < kFarFromIt && cut.can_tell(limit.share, tooth_period_s(look, look.rpm));
+  if (in_time) limit.share *= ratio_in_time(look, unevenness, limit.share, cut);
   least_ = std::min(least_, limit.share);
   if (limit.share >= 1) return;
   const bool goes_on = !found_.empty() && found_.back().move_id == look.move_id && found_.back().line == look.line;
@@ -93,7 +95,6 @@ void ChatterWatch::add(const Look& look, std::span<const VibrationMode> modes) {
   chatter.most_t_s = look.t_s, chatter.place = look.place, chatter.rpm = look.rpm;
   if (limit.share > kWorse * proposed_at_) return;
   proposed_at_ = limit.share;
-  const CutInTime cut(look.over_pitch_n_mm, modes);
   chatter.steady_rpm = steady_rpm(look, stability, in_time ? &cut : nullptr);
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "gateway/chatter/cut_in_time.hpp"
 #include "gateway/chatter/cut_stability.hpp"
 
 namespace rmac::gateway {
@@ -57,8 +58,7 @@ class ChatterWatch {
     double by_mean = 0, unevenness = 0, rpm = 0;
     double ratio = 1;
   };
-  [[nodiscard]] double ratio_in_time(const Look& look, double unevenness, double by_mean,
-                                     std::span<const VibrationMode> modes);
+  [[nodiscard]] double ratio_in_time(const Look& look, double unevenness, double by_mean, const CutInTime& cut);
 
   std::vector<Chatter> found_;
   InTime in_time_;

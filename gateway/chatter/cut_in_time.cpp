@@ -18,10 +18,11 @@ constexpr double kLeastDirection = 1e-9;  ///< of a direction's weight
 constexpr double kStiff = 10;
 constexpr double kStepsASwing = 24;
 constexpr int kRounds = 3;
-constexpr int kLeastSteps = 48;  ///< from tooth to tooth
+constexpr double kLeastSteps = 48;  ///< from tooth to tooth
 /// Looked at so long: the slowest swings so often, and so many teeth pass.
 constexpr double kSwings = 60;
-constexpr int kLeastTeeth = 12, kMostTeeth = 400;
+constexpr double kLeastTeeth = 8, kMostTeeth = 400;
+constexpr double kMostWork = 3e5;  ///< steps of all oscillators: some ten milliseconds
 constexpr double kBoundless = 1e60;
 constexpr int kHalvings = 6;
 
@@ -63,13 +64,29 @@ CutInTime::CutInTime(std::span<const Eigen::Matrix3d> over_pitch_n_mm, std::span
   }
 }
 
+CutInTime::Length CutInTime::length_of(double share, double tooth_period_s) const {
+  const auto swings = [&](double omega) { return omega / (2 * pi) * tooth_period_s; };
+  double slowest = std::numeric_limits<double>::infinity(), fastest = 0;
+  for (const Oscillator& one : oscillators_) {
+    slowest = std::min(slowest, one.omega_rad_s);
+    // Material that holds the tool makes it swing faster.
+    fastest = std::max(fastest, std::sqrt(one.omega_rad_s * one.omega_rad_s + share * strongest_n_mm_ * one.gain));
+  }
+  const double steps = std::max(kLeastSteps, std::ceil(kStepsASwing * swings(fastest)));
+  const double teeth = std::clamp(std::floor(kSwings / swings(slowest)), kLeastTeeth, kMostTeeth);
+  const bool short_enough = steps * teeth * static_cast<double>(oscillators_.size()) <= kMostWork;
+  return short_enough ? Length{static_cast<int>(steps), static_cast<int>(teeth)} : Length{};
+}
+
+bool CutInTime::can_tell(double share, double tooth_period_s) const {
+  return !oscillators_.empty() && !over_pitch_.empty() && length_of(2 * share, tooth_period_s).steps > 0;
+}
+
 bool CutInTime::grows(double share, double tooth_period_s) const {
   if (oscillators_.empty() || over_pitch_.empty()) return false;
-  const auto [slowest, fastest] = std::ranges::minmax(oscillators_, {}, &Oscillator::omega_rad_s);
-  const int steps = std::max(
-      kLeastSteps, static_cast<int>(std::ceil(kStepsASwing * fastest.omega_rad_s / (2 * pi) * tooth_period_s)));
-  const int teeth = std::clamp(static_cast<int>(kSwings / (slowest.omega_rad_s / (2 * pi) * tooth_period_s)),
-                               kLeastTeeth, kMostTeeth);
+  const Length length = length_of(share, tooth_period_s);
+  const int steps = length.steps, teeth = length.teeth;
+  if (steps == 0) return false;
   std::vector<Step> step;
   step.reserve(oscillators_.size());
   for (const Oscillator& one : oscillators_) {

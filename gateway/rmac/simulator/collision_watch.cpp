@@ -19,6 +19,17 @@ namespace fs = std::filesystem;
 constexpr double kWattsPerHorsePower = 745.69987;
 /// After a cut axes come up to their setpoints, and a tool springs back with its force, a mean over a turn.
 constexpr double kSettling_s = 0.05, kSettlingTurns = 6, kLongestSettling_s = 0.5;
+constexpr double kSettling_mm = 0.05;
+
+/// Nothing beside where it ended, or deeper, is what springs back.
+bool stays_or_leaves(const ToolPose& ended_at, const Vector& tip) {
+  double out = 0, way2 = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double way = tip[i] - ended_at.tip[i];
+    out += way * ended_at.axis[i], way2 += way * way;
+  }
+  return out > -kSettling_mm && way2 - out * out < kSettling_mm * kSettling_mm;
+}
 
 }  // namespace
 
@@ -109,19 +120,23 @@ void CollisionWatch::take_tool(gateway::Controller& controller) {
   if (load_) load_->set_tool(tool);
 }
 
-gateway::MoveNow CollisionWatch::under_way(const gateway::CycleSample& sample, int line) {
+gateway::MoveNow CollisionWatch::planned_move(const gateway::CycleSample& sample, int line) const {
   const bool cutting = sample.moving && !queue_.empty() && queue_.front().cuts;
-  const gateway::MoveNow planned{.id = sample.move_id, .line = line, .cutting = cutting};
+  return {.id = sample.move_id, .line = line, .cutting = cutting};
+}
+
+gateway::MoveNow CollisionWatch::cut_under_way(const gateway::CycleSample& sample, const gateway::MoveNow& planned) {
   if (!by_axes_) return planned;
-  if (cutting) {
-    last_cut_ = {planned, sample.t_s};
+  if (planned.cutting) {
+    last_cut_ = {planned, sample.t_s, sample.pose_set};
     // In the cycle in which the next one begins it is not done yet.
     last_cut_.move.id = queue_.front().id;
     return last_cut_.move;
   }
   const double rpm = std::abs(sample.spindle_rpm.front());
   const double settling_s = kSettling_s + (rpm > 0 ? std::min(kSettlingTurns * 60 / rpm, kLongestSettling_s) : 0);
-  return last_cut_.ended_s >= 0 && sample.t_s - last_cut_.ended_s < settling_s ? last_cut_.move : planned;
+  const bool settles = last_cut_.ended_s >= 0 && sample.t_s - last_cut_.ended_s < settling_s;
+  return settles && stays_or_leaves(last_cut_.ended_at, sample.pose_set.tip) ? last_cut_.move : planned;
 }
 
 void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller,
@@ -136,7 +151,7 @@ void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway
   if (std::exchange(look_at_tool_, false)) take_tool(controller);
   if (sample.moving && !tool_fault_.empty()) not_checked_.insert(tool_fault_);
   if (sample.moving && !too_thin_.empty()) not_checked_.insert(too_thin_);
-  const gateway::MoveNow move = under_way(sample, line);
+  const gateway::MoveNow move = planned_move(sample, line);
   // A simulation begins with all joints at 0, where the machine need not stand: the way from there to the first
   // position is nobody's.
   if (!begun_ && !move.cutting) return;
@@ -152,7 +167,7 @@ void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway
     load_->set_spindle(sample.spindle_rpm.front(),
                        {.torque_nm = spindle.max_torque_nm, .power_w = spindle.horse_power * kWattsPerHorsePower});
   }
-  material_->advance(sample.t_s, joints, move, turns, bend_mm);
+  material_->advance(sample.t_s, joints, turns ? cut_under_way(sample, move) : move, turns, bend_mm);
 }
 
 void CollisionWatch::finish() {

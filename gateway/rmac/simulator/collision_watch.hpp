@@ -73,8 +73,10 @@ class CollisionWatch {
   [[nodiscard]] static bool leads_somewhere(const Move& move) noexcept;
   [[nodiscard]] Result<> watch_load(const std::filesystem::path& materials);
   void take_tool(gateway::Controller& controller);
-  /// What is under way, with axes that come after it: a cut goes on until they and the tool have come to rest from it.
-  [[nodiscard]] gateway::MoveNow under_way(const gateway::CycleSample& sample, int line);
+  [[nodiscard]] gateway::MoveNow planned_move(const gateway::CycleSample& sample, int line) const;
+  /// What takes material, with axes that come after it: a cut goes on until they and the tool have come to rest from
+  /// it, where it ended or straight out of there.
+  [[nodiscard]] gateway::MoveNow cut_under_way(const gateway::CycleSample& sample, const gateway::MoveNow& planned);
 
   std::filesystem::path file_;  ///< of the set-up
   gateway::Setup setup_;
@@ -93,6 +95,7 @@ class CollisionWatch {
   struct LastCut {
     gateway::MoveNow move;
     double ended_s = -1;
+    ToolPose ended_at{};  ///< as planned
   };
   LastCut last_cut_;
   bool by_axes_ = false;

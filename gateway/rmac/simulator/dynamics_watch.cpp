@@ -79,7 +79,7 @@ void DynamicsWatch::take_force(const gateway::CycleSample& planned, int line) {
   bend_mm_ = tool_.bending.compliance_mm_n * (force_n_ - force_n_.dot(now.axis) * now.axis);
   if (bend_mm_.norm() <= tool_.most_bend_mm) return;
   bend_mm_ *= tool_.most_bend_mm / bend_mm_.norm();
-  if (!std::exchange(tool_.broken, true)) {
+  if (broken_.insert(tool_.number).second) {
     not_told_.insert(fmt::format(
         "tool {} would bend by more than {:.3g} mm, a twentieth of its diameter, first in line {}: it is too "
         "slender for this cut, or softer than it is made; what it cuts and takes there is not told",

@@ -67,9 +67,9 @@ class DynamicsWatch : gateway::EngagedListener {
     std::string no_bending;        ///< why that is not known
     double most_bend_mm = 0;       ///< beyond it the tool would break
     double most_rpm = 0;           ///< 0: not known
-    bool broken = false;
   };
   Mounted tool_;
+  std::set<int> broken_;                                   ///< tools that would
   double spindle_most_rpm_ = 0;                            ///< 0: not known
   Eigen::Matrix3d to_link_ = Eigen::Matrix3d::Identity();  ///< from the part frame to the frame of its link
   double told_s_ = 0;                                      ///< when there was a force last
