@@ -21,7 +21,7 @@ constexpr int kRounds = 3;
 constexpr double kLeastSteps = 48;  ///< from tooth to tooth
 /// Looked at so long: the slowest swings so often, and so many teeth pass.
 constexpr double kSwings = 60;
-constexpr double kLeastTeeth = 8, kMostTeeth = 400;
+constexpr double kLeastTeeth = 12, kMostTeeth = 400;
 constexpr double kMostWork = 3e5;  ///< steps of all oscillators: some ten milliseconds
 constexpr double kBoundless = 1e60;
 constexpr int kHalvings = 6;

@@ -88,6 +88,15 @@ class Chatter(SimulatedCut):
             self.assertEqual(report["collisions"], [], stiffness)
             self.assertLessEqual({each["move_id"] for each in report["dynamics"]["chatter"]}, {2, 4})
 
+    def test_a_positioning_move_through_stock_right_after_a_cut_is_a_collision(self):
+        """Red when all that was cut for six turns after a cut was the cut's."""
+        end = pose(10, 0, TOP - 2)
+        program = [*slot(2, FEED, RPM)[:3], request("RMAC_CAM.MoveAlongLine", MoveID=2, StartPoint=pose(-BEYOND, 0, TOP - 2), EndPoint=end)]
+        for name, way in (("sideways", (10, 1, TOP - 2)), ("down", (10, 0, TOP - 3)), ("far", (10, 15, TOP - 2))):
+            report, done = self.report([*program, to(*way, move_id=5)], "--dynamics", tool=tool(Modes=[MODE | {"Stiffness": 20000}]))
+            self.assertEqual({(each["line"], each["move_id"], each["why"]) for each in report["collisions"]}, {(5, 5, "positioning move")}, name)
+            self.assertEqual(done.returncode, 1)
+
     def test_a_tool_is_beside_its_path_as_far_however_slow_it_goes(self):
         """Red when a bend along the path counted for the cycles that the tip needs for as much."""
         soft = MODE | {"Stiffness": 8000, "Frequency": 2000, "DampingRatio": 0.1}

@@ -6,8 +6,10 @@ import unittest
 
 import numpy as np
 
+import test_chatter
 from appliance import BUILD
 from test_collisions import SANITIZED, SETUP, cut, request, to
+from test_forces import STOCK, slot
 from view_page import BETWEEN_LOOKS_MM, TABLE_LINK, ViewCase, at, chain, frame, moves_at_random, program, shown
 
 COUNT = 10 / 2**20  # mm of a screw that an encoder tells apart, or more than the degrees of a gear
@@ -159,6 +161,21 @@ class ViewOfDynamics(ViewCase):
         self.assertAlmostEqual(seen["time"], stopped["t_s"], places=6)
         self.assertIn(stopped["why"], seen["text"])
         self.assertIn(f"line {stopped['line']}", seen["text"])
+
+    def test_a_browser_goes_to_where_a_cut_chatters(self):
+        soft = {"Mounted": 7, "Tools": [test_chatter.tool(Modes=[test_chatter.MODE])]}
+        self.write(slot(test_chatter.DEPTH, test_chatter.FEED, test_chatter.RPM), setup=STOCK, tools=soft)
+        report, data = self.view("--dynamics")
+        chatter = report["dynamics"]["chatter"]
+        self.assertTrue(chatter)
+        check = self.self_check()
+        self.assertEqual(check["errors"], [])
+        found = [f for f in check["findings"] if f["text"].startswith("chatter: ")]
+        self.assertEqual(len(found), len(chatter))
+        for seen, each in zip(found, chatter):
+            self.assertAlmostEqual(seen["time"], each["most_t_s"], places=6)
+            self.assertEqual(seen["coloured"], [data["tools"][0]["bodies"][0]["name"]])
+            self.assertIn(f"{each['frequency_hz']:.0f} Hz at {each['rpm']:.0f} rpm, from {each['from_percent']:.0f} % of its depth on", seen["text"])
 
     def test_without_a_set_up_findings_stand_where_the_tip_is(self):
         gains = request("RMAC_Config.SetMechanismJointServoControlGains", JntNum=0, ServoControlGains=[10000, 900000, 70, 0, 0, 0, 0])
