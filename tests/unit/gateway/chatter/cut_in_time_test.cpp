@@ -10,6 +10,7 @@
 #include <set>
 
 #include "gateway/chatter/cut_stability.hpp"
+#include "gateway/threads/sanitized.hpp"
 #include "unit/gateway/chatter/straight_teeth.hpp"
 
 namespace rmac::gateway {
@@ -28,7 +29,8 @@ class CutInTimes : public testing::TestWithParam<unsigned> {
   double between(double low, double high) { return std::uniform_real_distribution<>(low, high)(random_); }
   std::mt19937 random_{GetParam()};
 };
-INSTANTIATE_TEST_SUITE_P(Seeds, CutInTimes, testing::Range(1u, 31u));
+// A sanitizer makes minutes of each second.
+INSTANTIATE_TEST_SUITE_P(Seeds, CutInTimes, testing::Range(1u, kSanitized ? 3u : 31u));
 
 // Few degrees or many, with the waves of several teeth or less than one between two of them.
 TEST_P(CutInTimes, BeginToChatterWhereTheToolDoes) {

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "gateway/threads/sanitized.hpp"
 #include "unit/gateway/chatter/straight_teeth.hpp"
 
 namespace rmac::gateway {
@@ -88,7 +89,8 @@ TEST(CutStability, IsGrantedWhereNothingGivesWayOrNothingIsCut) {
 }
 
 using Stability = Seeded;
-INSTANTIATE_TEST_SUITE_P(Seeds, Stability, testing::Range(1u, 25u));
+// A sanitizer makes minutes of each second.
+INSTANTIATE_TEST_SUITE_P(Seeds, Stability, testing::Range(1u, kSanitized ? 3u : 25u));
 
 // Four teeth, or six, in a slot change nothing as they turn, so that the mean is all there is.
 TEST_P(Stability, OfASlotIsWhereTheToolBeginsToSwing) {
