@@ -102,7 +102,7 @@ void CutStability::add_up_to(Point next, int halvings) {
     const double middle = (last.omega_rad_s + next.omega_rad_s) / 2;
     if (!close && halvings > 0) {
       add_up_to(point(middle), halvings - 1);
-      add_up_to(std::move(next), halvings - 1);
+      add_up_to(next, halvings - 1);
       return;
     }
   }
@@ -140,7 +140,8 @@ ChatterLimit CutStability::at(double tooth_period_s) const {
         take(way, 0), take(way, 1);
         continue;
       }
-      for (double waves = std::max(0.0, std::ceil(std::min(from, to))); waves <= std::max(from, to); ++waves) {
+      const auto last = static_cast<int>(std::floor(std::max(from, to)));
+      for (int waves = std::max(0, static_cast<int>(std::ceil(std::min(from, to)))); waves <= last; ++waves) {
         take(way, to != from ? (waves - from) / (to - from) : 0);
       }
     }
