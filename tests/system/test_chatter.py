@@ -102,6 +102,17 @@ class Chatter(SimulatedCut):
             self.assertEqual({(each["line"], each["move_id"], each["why"]) for each in report["collisions"]}, {(5, 5, "positioning move")}, name)
             self.assertEqual(done.returncode, 1)
 
+    def test_a_tool_whose_spindle_stands_is_pushed_by_nothing(self):
+        """Red when the force of the cut stayed for good, as a mean over a turn that never ends."""
+        end = pose(10, 0, TOP - 2)
+        program = [*slot(2, FEED, RPM)[:3], request("RMAC_CAM.MoveAlongLine", MoveID=2, StartPoint=pose(-BEYOND, 0, TOP - 2), EndPoint=end),
+                   request("RMAC_CAM.InTurn", MoveID=4, Calls=[{"method": "RMAC_CAM.SetSpindleRPM", "params": {"SpindleNumber": 0, "RPM": 0}}]),
+                   to(10, 0, TOP + 40, move_id=5)]
+        report, _ = self.report(program, "--dynamics", tool=tool(Modes=[MODE | {"Stiffness": 1500}]))
+        off = report["dynamics"]["off_path"]
+        self.assertEqual(off[0]["move_id"], 2, "it is pushed while it cuts")
+        self.assertLess(off[-1]["until_s"], report["cycle_time_s"] - 0.1, "and not on the way up")
+
     @slow
     def test_a_tool_is_beside_its_path_as_far_however_slow_it_goes(self):
         """Red when a bend along the path counted for the cycles that the tip needs for as much."""

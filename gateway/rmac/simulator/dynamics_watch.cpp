@@ -75,7 +75,8 @@ void DynamicsWatch::take_force(const gateway::CycleSample& planned, int line) {
   if (cuts_ == nullptr || cuts_->load() == nullptr) return;
   const double turns_s = std::abs(planned.spindle_rpm.front()) / 60;
   const gateway::CuttingNow now = cuts_->load()->now(planned.t_s);
-  force_n_ += std::min(1.0, turns_s * passed_s) * (now.force_n - force_n_);
+  // A spindle that stands has no turn to take a mean over: what pushed is gone at once.
+  force_n_ += (turns_s > 0 ? std::min(1.0, turns_s * passed_s) : 1.0) * (now.force_n - force_n_);
   bend_mm_ = tool_.bending.compliance_mm_n * (force_n_ - force_n_.dot(now.axis) * now.axis);
   if (bend_mm_.norm() <= tool_.most_bend_mm) return;
   bend_mm_ *= tool_.most_bend_mm / bend_mm_.norm();
