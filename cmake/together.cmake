@@ -1,8 +1,11 @@
-# What sources include is most of what they cost: those of a folder compile some at a time, as one. What they mean does not change
-# by it, as tests/layout/file_names.py sees to; of tests, a name that two of a folder give themselves does not compile.
-set(RMAC_SOURCES_AT_A_TIME 8 CACHE STRING "How many sources of a folder are compiled as one; 1: each by itself, which is what one wants who changes them")
+# What sources include is most of what they cost: some at a time compile as one, of the product those of a folder, of tests those of
+# an executable. What the product's mean does not change by it, as tests/layout/file_names.py sees to; of tests, a name that two of an
+# executable give themselves does not compile.
+set(RMAC_SOURCES_AT_A_TIME 8 CACHE STRING "How many sources are compiled as one; 1: each by itself, which is what one wants who changes them")
 
-function(rmac_compile_target_together target)
+# Not CMake's UNITY_BUILD, as that names the sources by their absolute paths: what one checkout compiled, a compiler cache would not find
+# for another one.
+function(rmac_compile_target_together target within code)
   get_target_property(sources ${target} SOURCES)
   get_target_property(here ${target} SOURCE_DIR)
   foreach(source ${sources})
@@ -11,8 +14,11 @@ function(rmac_compile_target_together target)
     if(NOT source MATCHES "\\.cpp$" OR name STREQUAL main.cpp)
       continue()
     endif()
-    cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE folder)
-    cmake_path(GET folder PARENT_PATH folder)
+    cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
+    cmake_path(GET source PARENT_PATH folder)
+    if(within STREQUAL TARGET)
+      set(folder ${target})
+    endif()
     string(MAKE_C_IDENTIFIER "${folder}" group)
     list(APPEND of_${group} ${source})
     list(APPEND groups ${group})
@@ -24,16 +30,23 @@ function(rmac_compile_target_together target)
     set(at 0)
     foreach(source ${of_${group}})
       math(EXPR part "${at} * ${parts} / ${count}")
-      set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${group}_${part})
+      string(APPEND text_${group}_${part} "${code}\n#include \"${source}\"\n")
+      set_source_files_properties(${PROJECT_SOURCE_DIR}/${source} TARGET_DIRECTORY ${target} PROPERTIES HEADER_FILE_ONLY ON)
       math(EXPR at "${at} + 1")
     endforeach()
+    foreach(part RANGE 1 ${parts})
+      math(EXPR part "${part} - 1")
+      set(file ${PROJECT_BINARY_DIR}/together/${target}/${group}_${part}.cpp)
+      file(CONFIGURE OUTPUT ${file} CONTENT "${text_${group}_${part}}" @ONLY)
+      target_sources(${target} PRIVATE ${file})
+    endforeach()
   endforeach()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP UNITY_BUILD_CODE_BEFORE_INCLUDE "${ARGN}")
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
 endfunction()
 
-# rmac_compile_together(FOLDER code…): the targets of a folder and of those below, as a last step, when their sources are known; the code
-# stands before each source.
-function(rmac_compile_together folder)
+# rmac_compile_together(FOLDER FOLDER|TARGET CODE): the targets of a folder and of those below, as a last step, when their sources are
+# known: sources of one folder, or of one target. The code stands before each source.
+function(rmac_compile_together folder within code)
   if(RMAC_SOURCES_AT_A_TIME LESS 2)
     return()
   endif()
@@ -42,11 +55,11 @@ function(rmac_compile_together folder)
     get_target_property(type ${target} TYPE)
     get_target_property(apart ${target} EXCLUDE_FROM_ALL)  # the benches, which a clean build has not
     if(type MATCHES "LIBRARY|EXECUTABLE" AND NOT type STREQUAL INTERFACE_LIBRARY AND NOT apart)
-      rmac_compile_target_together(${target} ${ARGN})
+      rmac_compile_target_together(${target} ${within} "${code}")
     endif()
   endforeach()
   get_property(below DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)
   foreach(each ${below})
-    rmac_compile_together(${each} ${ARGN})
+    rmac_compile_together(${each} ${within} "${code}")
   endforeach()
 endfunction()

@@ -18,37 +18,37 @@ namespace rmac::fieldbus {
 namespace {
 
 using State = CanController::State;
-using Bytes = std::vector<std::byte>;
+using RawBytes = std::vector<std::byte>;
 
 template <typename Value>
-Bytes bytes_of(const Value& value) {
-  Bytes bytes(sizeof(value));
+RawBytes bytes_of(const Value& value) {
+  RawBytes bytes(sizeof(value));
   std::memcpy(bytes.data(), &value, sizeof(value));
   return bytes;
 }
 
-Bytes text(const std::string& words) {
-  Bytes bytes(words.size() + 1);
+RawBytes text(const std::string& words) {
+  RawBytes bytes(words.size() + 1);
   std::memcpy(bytes.data(), words.c_str(), bytes.size());
   return bytes;
 }
 
-Bytes operator+(Bytes left, const Bytes& right) {
+RawBytes operator+(RawBytes left, const RawBytes& right) {
   left.insert(left.end(), right.begin(), right.end());
   return left;
 }
 
-Bytes attribute(unsigned short type, const Bytes& payload) {
-  Bytes bytes = bytes_of(rtattr{static_cast<unsigned short>(RTA_LENGTH(payload.size())), type}) + payload;
+RawBytes attribute(unsigned short type, const RawBytes& payload) {
+  RawBytes bytes = bytes_of(rtattr{static_cast<unsigned short>(RTA_LENGTH(payload.size())), type}) + payload;
   bytes.resize(RTA_ALIGN(bytes.size()));
   return bytes;
 }
 
 /// As rtnl_fill_ifinfo builds it: a name before, statistics behind.
-Bytes answer(const std::string& kind, const Bytes& data) {
-  const Bytes body =
+RawBytes answer(const std::string& kind, const RawBytes& data) {
+  const RawBytes body =
       bytes_of(ifinfomsg{}) + attribute(IFLA_IFNAME, text("can0")) +
-      attribute(IFLA_LINKINFO, attribute(IFLA_INFO_KIND, text(kind)) + attribute(IFLA_INFO_XSTATS, Bytes(24)) +
+      attribute(IFLA_LINKINFO, attribute(IFLA_INFO_KIND, text(kind)) + attribute(IFLA_INFO_XSTATS, RawBytes(24)) +
                                    attribute(IFLA_INFO_DATA | NLA_F_NESTED, data)) +
       attribute(IFLA_MTU, bytes_of(16U));
   nlmsghdr head{};
@@ -57,8 +57,8 @@ Bytes answer(const std::string& kind, const Bytes& data) {
   return bytes_of(head) + body;
 }
 
-Bytes controller(std::uint32_t state, can_berr_counter errors) {
-  return attribute(IFLA_CAN_BITTIMING, Bytes(32)) + attribute(IFLA_CAN_STATE, bytes_of(state)) +
+RawBytes controller(std::uint32_t state, can_berr_counter errors) {
+  return attribute(IFLA_CAN_BITTIMING, RawBytes(32)) + attribute(IFLA_CAN_STATE, bytes_of(state)) +
          attribute(IFLA_CAN_BERR_COUNTER, bytes_of(errors));
 }
 
@@ -97,14 +97,14 @@ TEST(CanController, IsUnknownWhereThereIsNone) {
 }
 
 TEST(CanController, StandsAnAnswerThatIsCutShortOrSpoilt) {
-  const Bytes whole = answer("can", controller(CAN_STATE_ERROR_ACTIVE, {1, 2}));
+  const RawBytes whole = answer("can", controller(CAN_STATE_ERROR_ACTIVE, {1, 2}));
   for (std::size_t size = 0; size < whole.size(); ++size) {
     // A copy of its own, so that a read behind it is one behind its end.
-    EXPECT_EQ(controller_of(Bytes(whole.begin(), whole.begin() + static_cast<long>(size))).state, State::Unknown);
+    EXPECT_EQ(controller_of(RawBytes(whole.begin(), whole.begin() + static_cast<long>(size))).state, State::Unknown);
   }
   std::mt19937 random(20);
   for (int round = 0; round < 20000; ++round) {
-    Bytes spoilt = whole;
+    RawBytes spoilt = whole;
     for (int i = 0; i < 3; ++i) spoilt[random() % spoilt.size()] = static_cast<std::byte>(random());
     static_cast<void>(controller_of(spoilt));
   }

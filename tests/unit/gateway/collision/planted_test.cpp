@@ -21,11 +21,11 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using Joints = std::array<double, 5>;
 
-double uniform(std::mt19937_64& random, double low, double high) {
+double evenly(std::mt19937_64& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 double spread(std::mt19937_64& random, double low, double high) {
-  return std::exp(uniform(random, std::log(low), std::log(high)));
+  return std::exp(evenly(random, std::log(low), std::log(high)));
 }
 
 /// A turntable C on a cradle A, and a spindle that X, Y and Z carry.
@@ -116,12 +116,12 @@ Scene planted(std::uint64_t seed) {
   Scene scene;
   std::normal_distribution<double> bell;
   scene.radius = spread(random, 0.2, 20);
-  scene.ball = {uniform(random, -20, 20), uniform(random, -20, 20), uniform(random, -80, 0)};
+  scene.ball = {evenly(random, -20, 20), evenly(random, -20, 20), evenly(random, -80, 0)};
   scene.clearance = std::array{0.001, 0.01, 0.1, 1.0}[random() % 4];
   scene.steps = std::array{1, 2, 7, 60}[random() % 4];
   for (std::size_t j = 0; j < 5; ++j) {
-    scene.from[j] = uniform(random, -100, 100);
-    scene.way[j] = random() % 3 == 0 ? 0 : uniform(random, -60, 60);
+    scene.from[j] = evenly(random, -100, 100);
+    scene.way[j] = random() % 3 == 0 ? 0 : evenly(random, -60, 60);
   }
   scene.way[0] += 5;
   scene.obstacle.kind = static_cast<Obstacle::Kind>(random() % 4);
@@ -129,7 +129,7 @@ Scene planted(std::uint64_t seed) {
   scene.obstacle.at.linear() =
       Eigen::Quaterniond(bell(random), bell(random), bell(random), bell(random)).normalized().toRotationMatrix();
   // The ball's middle at some moment lies off a point of the surface by its radius, and a little more or less.
-  const double u = uniform(random, 0, 1), depth = spread(random, 1e-3, 10) * (random() % 2 == 0 ? 1 : -1);
+  const double u = evenly(random, 0, 1), depth = spread(random, 1e-3, 10) * (random() % 2 == 0 ? 1 : -1);
   Joints q = scene.from;
   for (std::size_t j = 0; j < 5; ++j) q[j] += u * scene.way[j];
   const Vector3d out = Vector3d(bell(random), bell(random), bell(random)).normalized();

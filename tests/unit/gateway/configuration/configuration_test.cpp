@@ -20,7 +20,7 @@ Configuration read(const std::string& text, const ConfigurationOverrides& overri
   return configuration ? *configuration : Configuration{};
 }
 
-std::string problem_of(const std::string& text) {
+std::string refusal_of(const std::string& text) {
   const TemporaryFolder folder;
   const auto file = folder.write("rmacd.json", text);
   const auto configuration = read_configuration(file);
@@ -110,9 +110,9 @@ TEST(Configuration, TakesEveryKeyOfTheFile) {
 }
 
 TEST(Configuration, RefusesWhatCannotActYetAndSaysWhy) {
-  EXPECT_EQ(problem_of(R"({"stop_categories": {"FollowingError": 2}})"),
+  EXPECT_EQ(refusal_of(R"({"stop_categories": {"FollowingError": 2}})"),
             "/stop_categories/FollowingError is 2; allowed is one of 1");
-  EXPECT_EQ(problem_of(R"({"stop_categories": {"SensorLost": 0}})"),
+  EXPECT_EQ(refusal_of(R"({"stop_categories": {"SensorLost": 0}})"),
             "/stop_categories/SensorLost is 0; allowed is one of 1, 2");
 }
 
@@ -143,7 +143,7 @@ TEST(Configuration, CommandLineGoesOverTheFileAndWhatFollowsFromIt) {
 
 TEST(Configuration, OtherThanLoopbackIsRefusedWithTheReason) {
   for (const char* address : {"0.0.0.0", "192.168.1.5", "::", "localhost", "127.0.0.1.evil.example", ""}) {
-    const std::string problem = problem_of(std::string(R"({"listen": {"address": ")") + address + "\"}}");
+    const std::string problem = refusal_of(std::string(R"({"listen": {"address": ")") + address + "\"}}");
     EXPECT_THAT(problem,
                 StartsWith(std::string("/listen/address is \"") + address + "\"; allowed is a loopback address"));
     EXPECT_THAT(problem, HasSubstr("not authenticated yet"));
@@ -152,25 +152,25 @@ TEST(Configuration, OtherThanLoopbackIsRefusedWithTheReason) {
 }
 
 TEST(Configuration, ErrorNamesKeyValueAndAllowedRange) {
-  EXPECT_EQ(problem_of(R"({"period_s": 1})"), "/period_s is 1; allowed is a number from 0.0001 to 0.1 (s)");
-  EXPECT_EQ(problem_of(R"({"listen": {"port": 70000}})"),
+  EXPECT_EQ(refusal_of(R"({"period_s": 1})"), "/period_s is 1; allowed is a number from 0.0001 to 0.1 (s)");
+  EXPECT_EQ(refusal_of(R"({"listen": {"port": 70000}})"),
             "/listen/port is 70000; allowed is an integer from 0 to 65535");
-  EXPECT_EQ(problem_of(R"({"pace": "slow"})"),
+  EXPECT_EQ(refusal_of(R"({"pace": "slow"})"),
             "/pace is \"slow\"; allowed is one of \"real-time\", \"as-fast-as-computed\"");
-  EXPECT_EQ(problem_of(R"({"stop_categories": {"LeaseLost": 0}})"),
+  EXPECT_EQ(refusal_of(R"({"stop_categories": {"LeaseLost": 0}})"),
             "/stop_categories/LeaseLost is 0; allowed is one of 1, 2");
-  EXPECT_THAT(problem_of(R"({"listen": {"prot": 7402}})"),
+  EXPECT_THAT(refusal_of(R"({"listen": {"prot": 7402}})"),
               StartsWith("/listen has the unknown key \"prot\"; did you mean \"port\"?"));
   EXPECT_EQ(
-      problem_of(R"({"autoload": {}})"),
+      refusal_of(R"({"autoload": {}})"),
       "/autoload lacks the key \"mechanism\", a text of at most 100 characters (a letter, then letters, digits, - "
       "and _)");
-  EXPECT_THAT(problem_of("{\n\"pace\" \"slow\"}"), StartsWith("line 2, column 13 is not JSON: "));
+  EXPECT_THAT(refusal_of("{\n\"pace\" \"slow\"}"), StartsWith("line 2, column 13 is not JSON: "));
 }
 
 TEST(Configuration, SocketPathThatTheSystemCannotTakeIsRefused) {
   const std::string path = "/" + std::string(107, 'a');
-  EXPECT_THAT(problem_of(R"({"listen": {"unix_socket": ")" + path + "\"}}"), HasSubstr("108 bytes"));
+  EXPECT_THAT(refusal_of(R"({"listen": {"unix_socket": ")" + path + "\"}}"), HasSubstr("108 bytes"));
   EXPECT_EQ(read(R"({"listen": {"unix_socket": ")" + path.substr(0, 107) + "\"}}").unix_socket, path.substr(0, 107));
 }
 
@@ -180,7 +180,7 @@ TEST(Configuration, MayHaveNoTcpPort) {
   ConfigurationOverrides port;
   port.port = 0;
   EXPECT_TRUE(read(R"({"listen": {"tcp": false}})", port).tcp) << "who names a port wants one";
-  EXPECT_THAT(problem_of(R"({"listen": {"tcp": false, "unix_socket": ""}})"), HasSubstr("nobody could connect"));
+  EXPECT_THAT(refusal_of(R"({"listen": {"tcp": false, "unix_socket": ""}})"), HasSubstr("nobody could connect"));
 }
 
 TEST(Configuration, TheOneThatIsInstalledIsSound) {

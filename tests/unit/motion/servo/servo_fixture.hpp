@@ -13,10 +13,9 @@
 #include "rmac/motion/servo/servo_loop.hpp"
 #include "rmac/motion/servo/servo_loop_parts.hpp"
 #include "rmac/motion/servo/servo_report.hpp"
+#include "unit/motion/servo/period.hpp"
 
 namespace rmac::servo_test {
-
-inline constexpr double kPeriod = 0.001;  ///< of a cycle, s
 
 constexpr double kCountsPerMm = 1000;
 constexpr double kRatedNm = 1;

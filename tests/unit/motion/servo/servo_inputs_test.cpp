@@ -3,7 +3,7 @@
 
 namespace rmac::servo_test {
 
-constexpr std::uint64_t kTouch = 1U << 5U, kUpper = 1U << 6U, kLower = 1U << 7U;
+constexpr std::uint64_t kProbe = 1U << 5U, kUpper = 1U << 6U, kLower = 1U << 7U;
 
 /// Drives whose touch probes do what the standard says: an edge is latched once, until the function was 0.
 class LatchingBus : public FakeBus {
@@ -32,10 +32,10 @@ class ServoInputs : public ServoLoopTest {
     fake = latching;
     bus = std::make_shared<ServoBus>(fake);
     ServoLoopParts with_inputs = parts();
-    with_inputs.drive_inputs = {{0, 1U << 16U, kTouch}, {0, 2U, kUpper}, {0, 1U, kLower}};
+    with_inputs.drive_inputs = {{0, 1U << 16U, kProbe}, {0, 2U, kUpper}, {0, 1U, kLower}};
     with_inputs.limit_inputs = kUpper | kLower;
     with_inputs.limits = {{kUpper, 0, 1}, {kLower, 0, -1}};
-    with_inputs.probe.touch_input = kTouch;
+    with_inputs.probe.touch_input = kProbe;
     for (const std::size_t i : {0U, 2U}) with_inputs.actuators[i].probe_edge = TouchProbeEdge::FirstRising;
     build(std::move(with_inputs));
   }
@@ -54,7 +54,7 @@ class ServoInputs : public ServoLoopTest {
 TEST_F(ServoInputs, OfADriveAreAmongTheMachines) {
   tell(1U << 16U | 1U << 20U);
   cycle();
-  EXPECT_EQ(report.inputs, kTouch);
+  EXPECT_EQ(report.inputs, kProbe);
   EXPECT_TRUE(report.probe.touching);
   tell(0);
   cycle();

@@ -14,14 +14,14 @@ using fieldbus::NodeReport;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using Controller = fieldbus::CanController::State;
+using ControllerState = fieldbus::CanController::State;
 
 class BusWatchTest : public testing::Test {
  protected:
   BusWatchTest() {
     fieldbus::BusReport bus;
     bus.interface = "can0";
-    bus.controller.state = Controller::ErrorActive;
+    bus.controller.state = ControllerState::ErrorActive;
     for (const auto node : {std::uint8_t{3}, std::uint8_t{4}}) {
       NodeReport& told = bus.nodes.emplace_back();
       told.node = node;
@@ -99,7 +99,7 @@ TEST_F(BusWatchTest, TellsOfANodeThatWasLostAndCameBackBetweenTwoLooks) {
 
 TEST_F(BusWatchTest, TellsHowTheControllerFares) {
   (void)look(0);
-  report_.can[0].controller.state = Controller::ErrorPassive;
+  report_.can[0].controller.state = ControllerState::ErrorPassive;
   report_.can[0].health.passives = 1;
   EXPECT_THAT(look(0.5), ElementsAre("can0: controller error-passive, after error-active; 0 times error-warning, 1 "
                                      "error-passive, 0 bus-off since"));

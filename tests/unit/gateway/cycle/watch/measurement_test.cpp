@@ -5,7 +5,6 @@
 namespace rmac::gateway {
 namespace {
 
-using Phase = Measurement::Phase;
 using Verdict = Measurement::Verdict;
 
 class Touch : public testing::Test {
@@ -19,9 +18,9 @@ class Touch : public testing::Test {
   void search() {
     measurement_.begin(2);
     EXPECT_EQ(see(2, false), Verdict::Nothing);
-    EXPECT_EQ(measurement_.phase(), Phase::Approach);
+    EXPECT_EQ(measurement_.phase(), Measurement::Phase::Approach);
     EXPECT_EQ(see(1, false), Verdict::Nothing);
-    EXPECT_EQ(measurement_.phase(), Phase::Search);
+    EXPECT_EQ(measurement_.phase(), Measurement::Phase::Search);
     EXPECT_EQ(measurement_.steps(), 1U) << "the approach is done";
   }
   Measurement measurement_;
@@ -33,9 +32,9 @@ TEST_F(Touch, IsFoundRetractedFromAndDone) {
   touch();
   EXPECT_EQ(see(1, false), Verdict::Touched);
   EXPECT_EQ(see(1, false), Verdict::Nothing) << "the hit counts once";
-  EXPECT_EQ(measurement_.phase(), Phase::Touched);
+  EXPECT_EQ(measurement_.phase(), Measurement::Phase::Touched);
   EXPECT_EQ(see(0, true), Verdict::Nothing);
-  EXPECT_EQ(measurement_.phase(), Phase::Standing);
+  EXPECT_EQ(measurement_.phase(), Measurement::Phase::Standing);
   measurement_.retract();
   EXPECT_EQ(see(1, false), Verdict::Nothing);
   probe_.touching = false;
@@ -60,7 +59,7 @@ TEST_F(Touch, IsNoHitOfTheSearchWhileThatIsHeld) {
   EXPECT_EQ(see(1, true), Verdict::Nothing);
   touch();
   EXPECT_EQ(see(1, true), Verdict::Nothing) << "somebody touched the probe by hand";
-  EXPECT_EQ(measurement_.phase(), Phase::Search);
+  EXPECT_EQ(measurement_.phase(), Measurement::Phase::Search);
 }
 
 TEST_F(Touch, ByAProbeThatIsDeflectedAlreadyOrHasNoPowerIsNone) {

@@ -5,8 +5,6 @@
 namespace rmac::gateway {
 namespace {
 
-using Cause = PathDeparture::Cause;
-
 /// Machine time in cycles of a millisecond, at a place that the test moves.
 class PathWatched : public ::testing::Test {
  protected:
@@ -59,18 +57,18 @@ TEST_F(PathWatched, APlannerThatIsNotLetRunHasTime) {
 }
 
 TEST_F(PathWatched, JointsThatWereStoppedAsAskedAreRight) {
-  now.departure = {1, 3, 100, Cause::Stop, 0};
+  now.departure = {1, 3, 100, PathDeparture::Cause::Stop, 0};
   EXPECT_FALSE(cycles(10));
 }
 
 TEST_F(PathWatched, KinematicsThatFailOnTheWayAreToldOnce) {
-  now.departure = {1, 3, 100, Cause::NotANumber, 2};
+  now.departure = {1, 3, 100, PathDeparture::Cause::NotANumber, 2};
   auto wrong = cycles(1);
   ASSERT_TRUE(wrong);
   EXPECT_NE(wrong->find("cycle 101: the kinematics gave something that is no number for joint 2"), std::string::npos)
       << *wrong;
   EXPECT_FALSE(cycles(10));
-  now.departure = {2, 3, 200, Cause::NoSolution, 0};
+  now.departure = {2, 3, 200, PathDeparture::Cause::NoSolution, 0};
   wrong = cycles(1);
   ASSERT_TRUE(wrong);
   EXPECT_NE(wrong->find("found no joints"), std::string::npos) << *wrong;
@@ -78,7 +76,7 @@ TEST_F(PathWatched, KinematicsThatFailOnTheWayAreToldOnce) {
 }
 
 TEST_F(PathWatched, AnotherMechanismsDeparturesCountFromZero) {
-  now.departure = {1, 3, 100, Cause::Jump, 2};
+  now.departure = {1, 3, 100, PathDeparture::Cause::Jump, 2};
   ASSERT_TRUE(cycles(1));
   watch.restart();
   EXPECT_TRUE(cycles(1));

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "unit/motion/servo/period.hpp"
+
 namespace rmac {
 namespace {
 
-constexpr double kPeriod = 0.001;
+using servo_test::kPeriod;
 
 /// A joint that may be 0.5 mm behind its setpoint, and travels from -10 to 10 mm.
 class VelocityFollowing : public testing::Test {

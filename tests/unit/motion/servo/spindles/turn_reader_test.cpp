@@ -3,11 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "servo/spindles/overload_watch.hpp"
+#include "unit/motion/servo/period.hpp"
 
 namespace rmac {
 namespace {
 
-constexpr double kPeriod = 0.001;
+using servo_test::kPeriod;
 
 /// 1000 counts a turn, against the drive: 10 counts a cycle are -600 rpm.
 class TurningSpindle : public testing::Test {

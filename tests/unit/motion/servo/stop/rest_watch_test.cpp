@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "unit/motion/servo/period.hpp"
+
 namespace rmac {
 namespace {
 
-constexpr double kPeriod = 0.001;
+using servo_test::kPeriod;
 constexpr double kTurn = 10000;  // 5 counts are still
 
 /// A drive with an encoder, and one that only tells its speed.
