@@ -41,7 +41,8 @@ if(RMAC_COVERAGE)
 endif()
 find_program(RMAC_CCACHE ccache)
 if(RMAC_CCACHE)
-  # One checkout finds what another one compiled, by what the compiler said it read: a miss costs no preprocessing.
+  # One checkout finds what another one compiled, by what the compiler said it read: a miss costs no preprocessing. The time that a module
+  # tells is when what stands in it was compiled.
   set(CMAKE_CXX_COMPILER_LAUNCHER
-    ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_DEPEND=1 ${RMAC_CCACHE})
+    ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_DEPEND=1 CCACHE_SLOPPINESS=time_macros ${RMAC_CCACHE})
 endif()
