@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rmac_freecad.surfaces.ridges import ridge
+
 STEEPEST_CLIMB = 12.0  # a tip that rises faster than so much a millimetre has come to a wall
 STEEPEST_OVER = 2.5  # and beyond the end of what is cut: there the mill may touch with its side, where heights hang on nothing
 MOST_SAMPLES = 4000
@@ -26,8 +28,8 @@ class Row:
 
 
 class Rows:
-    def __init__(self, family, drop, part, spacing_mm):
-        self.family, self.drop = family, drop
+    def __init__(self, family, drop, part, mill, spacing_mm):
+        self.family, self.drop, self._mill = family, drop, mill
         self._floor = part.floor + 0.2
         first, last = family.t_range
         count = int(np.clip((last - first) * family.t_mm / spacing_mm, 40, MOST_SAMPLES)) + 1
@@ -54,6 +56,9 @@ class Rows:
         with np.errstate(invalid="ignore"):  # where nothing is
             climb = np.abs(b[..., 2] - a[..., 2]) <= steepest * np.linalg.norm(b[..., :2] - a[..., :2], axis=-1)
         return climb & np.isfinite(b[..., 2]) & (b[..., 2] > self._floor)
+
+    def ridge(self, before, middle, after, every):
+        return ridge(self._mill, before, middle, after, every)
 
     def reach(self, row, other, over_mm):
         """Lets a pass go on over its ends to where the other one, its neighbour, cuts, and somewhat farther: else places at a

@@ -1,0 +1,174 @@
+"""The axis along a pass: by lead and tilt against the normal, and where the mill would touch the part so, by the nearest angles at
+which it passes."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rmac_freecad.jobs.refusal import JobRefused
+
+TILTS, BOTH = 5.0, 10.0  # degrees from angle to angle: tilt alone, and where that is not enough, both
+MOST = 80.0  # degrees from the normal
+SPARE = 0.03  # radii that angles which nobody asked for keep off the part
+OFF_COST = 15.0  # degrees off what was asked for cost as much as a turn by one angle
+WINDOW = 7  # samples over which angles are evened out
+
+
+@dataclass(frozen=True)
+class Lean:
+    """Degrees: `lead` to where the mill goes, `tilt` to the left of that; or an `axis` that never turns."""
+
+    lead: float = 0.0
+    tilt: float = 0.0
+    axis: tuple | None = None
+
+    @property
+    def one_way(self):
+        """With a lead the axis would swing over from pass to pass, went they to and fro."""
+        return self.lead != 0 and self.axis is None
+
+    def axes(self, normal, feed, angles):
+        """Unit vectors; `angles` are leads and tilts, (…, 2)."""
+        if self.axis is not None:
+            return np.broadcast_to(np.array(self.axis), np.broadcast_shapes(normal.shape, (*angles.shape[:-1], 3))).copy()
+        lead, tilt = np.radians(angles[..., :1]), np.radians(angles[..., 1:])
+        side = np.cross(normal, feed)
+        return np.sin(lead) * feed + np.cos(lead) * (np.cos(tilt) * normal + np.sin(tilt) * side)
+
+
+def lean_of(lead_deg, tilt_deg, axis):
+    """None where nothing of them is given: then the axis stays along Z. Raises `JobRefused`."""
+    if axis is not None:
+        if lead_deg is not None or tilt_deg is not None:
+            raise JobRefused("give an axis, which never turns, or lead_deg and tilt_deg, not both")
+        return Lean(axis=_direction(axis))
+    if lead_deg is None and tilt_deg is None:
+        return None
+    angles = [0.0 if given is None else given for given in (lead_deg, tilt_deg)]
+    for name, angle in zip(("lead_deg", "tilt_deg"), angles):
+        if not _number(angle):
+            raise JobRefused(f"{name} is {angle!r}: give degrees against the face's normal")
+    off = math.degrees(math.acos(math.cos(math.radians(angles[0])) * math.cos(math.radians(angles[1]))))
+    if max(map(abs, angles)) > MOST or off > MOST + 1e-9:
+        raise JobRefused(f"lead_deg {angles[0]:g} and tilt_deg {angles[1]:g} lean the tool by {off:.0f} degrees: at most {MOST:g} are possible, then its side would cut")
+    return Lean(float(angles[0]), float(angles[1]))
+
+
+def _number(given):
+    return isinstance(given, (int, float, np.floating, np.integer)) and not isinstance(given, bool) and math.isfinite(given)
+
+
+def _direction(axis):
+    try:
+        found = [float(one) for one in axis]
+    except (TypeError, ValueError):
+        found = []
+    length = math.sqrt(sum(one * one for one in found)) if len(found) == 3 else 0.0
+    if not math.isfinite(length) or length < 1e-9:
+        raise JobRefused(f"axis is {axis!r}: give i, j, k from the tip to the spindle")
+    if found[2] < 0:
+        raise JobRefused(f"axis is {axis!r}: the spindle would be below the tip; give one that does not point down")
+    return tuple(one / length for one in found)
+
+
+class Axes:
+    def __init__(self, lean, access):
+        self.lean, self._access = lean, access
+        self._wanted = np.array([lean.lead, lean.tilt])
+        self._grids = [] if lean.axis is not None else [self._grid((0.0,), TILTS), self._grid(_around(lean.lead, BOTH), BOTH)]
+
+    def _grid(self, leads, step):
+        leads = np.array(leads if len(leads) > 1 else (self._wanted[0],))
+        grid = np.stack(np.meshgrid(leads, _around(self._wanted[1], step), indexing="ij"), 2)
+        return grid
+
+    def angles(self, places, wanted):
+        """Leads and tilts at each place that is wanted; nan where the mill does not pass at any."""
+        found = np.full((len(wanted), 2), np.nan)
+        asked = np.flatnonzero(wanted)
+        axes = self.lean.axes(places.normal[asked], places.feed[asked], np.broadcast_to(self._wanted, (len(asked), 2)))
+        good = self._access(places.centre[asked], axes[:, None])[:, 0]
+        found[asked[good]] = self._wanted
+        if good.all() or not self._grids:
+            return found
+        for first, last in _runs(wanted):
+            if np.isnan(found[first : last + 1, 0]).any():
+                found[first : last + 1] = self._way(places.of(slice(first, last + 1)))
+        return found
+
+    def passes(self, places):
+        """Whether the mill does at any angle, place by place."""
+        grid = self._wanted.reshape(1, 1, 2) if not self._grids else self._grids[1]
+        return self._free(places, grid).any((1, 2))
+
+    def _free(self, places, grid):
+        flat = grid.reshape(-1, 2)
+        axes = self.lean.axes(places.normal[:, None], places.feed[:, None], flat[None])
+        lean = np.cos(np.radians(flat)).prod(1) >= math.cos(math.radians(MOST)) - 1e-9
+        asked = (flat == self._wanted).all(1)
+        free = np.zeros(axes.shape[:2], bool)
+        free[:, asked] = self._access(places.centre, axes[:, asked])
+        others = lean & ~asked
+        free[:, others] = self._access(places.centre, axes[:, others], SPARE)
+        return free.reshape(len(places.centre), *grid.shape[:2])
+
+    def _way(self, places):
+        """The cheapest way through the angles that are free, from place to place by one step of each at most."""
+        for grid in self._grids:
+            free = self._free(places, grid)
+            if free.any((1, 2)).all():
+                break
+        step = TILTS if grid is self._grids[0] else BOTH
+        cost = np.where(free, (((grid - self._wanted) / OFF_COST) ** 2).sum(2), np.inf)
+        found = np.full((len(free), 2), np.nan)
+        begin, total, froms = 0, None, []
+        for number, here in enumerate(cost):
+            new, back = (here, None) if total is None else _onward(total, here, step / TILTS)
+            if np.isfinite(new).any():
+                total = new
+                froms.append(back)
+                continue
+            if total is not None:
+                self._trace(found, grid, total, froms, begin)
+            begin, total, froms = number + 1, None, []
+        if total is not None:
+            self._trace(found, grid, total, froms, begin)
+        return found
+
+    def _trace(self, found, grid, total, froms, begin):
+        at = np.unravel_index(total.argmin(), total.shape)
+        ways = [at]
+        for back in froms[:0:-1]:
+            at = tuple(back[at])
+            ways.append(at)
+        angles = np.array([grid[at] for at in ways[::-1]])
+        found[begin : begin + len(angles)] = _evened(_evened(angles))
+
+
+def _onward(total, here, step_cost):
+    """Costs of the next place, and from which angles each comes."""
+    rows, columns = total.shape
+    padded = np.pad(total, 1, constant_values=np.inf)
+    shifts = [(i, j) for i in (0, -1, 1) for j in (0, -1, 1)]
+    each = np.stack([padded[1 + i : 1 + i + rows, 1 + j : 1 + j + columns] + step_cost * (abs(i) + abs(j)) for i, j in shifts])
+    best = each.argmin(0)
+    back = np.stack(np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij"), 2) + np.array(shifts)[best]
+    return each.min(0) + here, back
+
+
+def _evened(angles):
+    half = WINDOW // 2
+    padded = np.pad(angles, ((half, half), (0, 0)), mode="edge")
+    return np.stack([padded[k : k + len(angles)] for k in range(WINDOW)]).mean(0)
+
+
+def _around(angle, step):
+    """Angles up to the most that are whole steps from it, itself among them."""
+    low, high = math.ceil((-MOST - angle) / step - 1e-9), math.floor((MOST - angle) / step + 1e-9)
+    return angle + step * np.arange(min(low, 0), max(high, 0) + 1)
+
+
+def _runs(flags):
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]])))
+    return list(zip(edges[::2], edges[1::2] - 1))
