@@ -12,7 +12,6 @@ MOST_TRIES = 14
 MOST_PASSES = 5000
 WIDEST = 1.6  # radii from pass to pass
 CLOSEST = 1 / 64  # of a step on a plane: there it is told instead
-EVERY = 1  # of them is looked at for its ridge
 
 
 @dataclass
@@ -21,6 +20,7 @@ class Pass:
 
     w_mm: float
     stretches: list
+    trace: object = None  # as the witnesses have it
 
 
 @dataclass
@@ -33,7 +33,8 @@ class _Laid:
 class Passes:
     """`rows` tell of a pass what it touches, `stretches` lay its curves; `ridge_mm` may stand between two."""
 
-    def __init__(self, rows, stretches, radius_mm, ridge_mm):
+    def __init__(self, rows, stretches, radius_mm, ridge_mm, closest=CLOSEST):
+        self._closest = closest
         self._rows, self._family, self._stretches, self._ridge_mm = rows, rows.family, stretches, ridge_mm
         self._widest = WIDEST * radius_mm
         self._plain = self._step = min(math.sqrt(8 * radius_mm * ridge_mm), self._widest)
@@ -54,7 +55,7 @@ class Passes:
                 ahead.append(self._lay(between, witnesses))
             if ahead and place is not None:
                 self.high.append(f"at {', '.join(f'{x:.3f}' for x in place)} up to {up:.3g} mm are left between passes")
-            found.append(Pass(one.row.w * self._family.w_mm, one.stretches))
+            found.append(Pass(one.row.w * self._family.w_mm, one.stretches, one.trace))
         return found
 
     def _lay(self, row, witnesses):
@@ -64,7 +65,7 @@ class Passes:
     def _between(self, before, after):
         """The pass in the middle; None where it cuts nothing, or both are closer together than makes sense."""
         gap = (after.w - before.w) * self._family.w_mm
-        if gap < CLOSEST * self._plain:
+        if gap < self._closest * self._plain:
             return None
         row = self._rows.at((before.w + after.w) / 2)
         if not row.core.any():
@@ -127,11 +128,11 @@ class Passes:
     def _tried(self, row, w):
         """The pass there, and the ridge between both."""
         before = dataclasses.replace(row, used=row.used.copy())
-        after, middle = self._rows.several([(w, 1), ((row.w + w) / 2, EVERY)])
+        after, middle = self._rows.at_and_between(w, (row.w + w) / 2)
         step = (w - row.w) * self._family.w_mm
         self._rows.reach(before, after, step)
         self._rows.reach(after, before, step)
-        found = self._rows.ridge(before, middle, after, EVERY)
+        found = self._rows.ridge(before, middle, after)
         after.used = after.core.copy()
         return after, found
 

@@ -66,14 +66,14 @@ def least(up):
     return np.where(good, np.maximum(between, 0), up[rows, best])
 
 
-def ridge(mill, before, middle, after, every):
+def ridge(mill, before, middle, after):
     """The highest between two passes, by the pass in their middle, which is not cut: heights go with the square of the distance,
     so that those over the middle tell where both are equal. None where no place lies between both."""
     chosen = np.flatnonzero(middle.core & np.isfinite(middle.normal).all(1))
     points, normals = middle.point[chosen], middle.normal[chosen]
     if not len(chosen):
         return None
-    sides = [np.sqrt(left_standing(mill, row, chosen * every, points, normals)) for row in (before, after)]
+    sides = [np.sqrt(left_standing(mill, row, chosen, points, normals)) for row in (before, after)]
     found = ((sides[0] + sides[1]) / 2) ** 2
     found = found[np.isfinite(found)]
     return found.max() if len(found) else None

@@ -2,10 +2,11 @@
 
 import numpy as np
 
-NEAR = 4  # radii: so far the dense points of the part are looked at
+NEAR = 2  # radii: so far the dense points of the part are looked at
 MARGIN = 0.0025  # radii that the side keeps off dense points, between which the part may be nearer
 COARSE_MARGIN = 0.05  # and off coarse ones
 LOWEST = -1e-6  # an axis that points further down would need a spindle below the part
+UP = 2.0  # so much more than the spare is kept of that
 
 
 class Access:
@@ -16,7 +17,7 @@ class Access:
         """Whether it passes, `spare` radii off: `axes` are several for each centre, (centres, axes, 3)."""
         free = np.zeros(axes.shape[:2], bool)
         for number, (centre, some) in enumerate(zip(centres, axes)):
-            wanted = np.isfinite(some).all(1) & (some[:, 2] >= LOWEST)
+            wanted = np.isfinite(some).all(1) & (some[:, 2] >= LOWEST + UP * spare)
             if not wanted.any() or not np.isfinite(centre).all():
                 continue
             free[number, wanted] = self._passes(centre, some[wanted], spare)

@@ -7,10 +7,11 @@ from rmac_freecad.jobs.refusal import JobRefused
 from rmac_freecad.surfaces.drop import upward
 from rmac_freecad.surfaces.part import SPACING, Face, edges_of, points_along
 
-AROUND = 5  # radii round what is cut, where points are dense
+AROUND = 3  # radii round what is cut, where points are dense
 COARSE = 0.3  # radii between points elsewhere
 CELLS = 2  # of the grid, a radius
 ASIDE_MM = 1e-3  # of a face, where its material is looked for
+POLE = 1e-6  # of a face's size, below which a place has no normal
 LOOKED_AT = 7  # places of a face
 
 
@@ -24,12 +25,15 @@ class Body:
         self.targets, self.radius_mm = targets, radius_mm
         self.top = shape.BoundBox
         self._sides = {label: _side(shape, exact.Faces[label], self.faces[label], label) for label in targets}
+        self._sizes = {label: _size(self.faces[label]) for label in targets}
         self._sample(radius_mm / SPACING)
 
     def outward(self, label, uv):
-        """Points, normals that point away from the material, and the derivatives of both along u and v."""
+        """Points, normals that point away from the material, and the derivatives of both along u and v; nan at poles."""
         point, normal, along, turns = upward(self.faces[label], uv)
-        turn = np.where(np.cross(*along)[:, 2:] < 0, -1, 1) * self._sides[label]
+        across = np.cross(*along)
+        turn = np.where(across[:, 2:] < 0, -1, 1) * self._sides[label]
+        turn = np.where(np.linalg.norm(across, axis=1, keepdims=True) < POLE * self._sizes[label], np.nan, turn)
         return point, normal * turn, along, [one * turn for one in turns]
 
     def _sample(self, spacing):
@@ -74,6 +78,12 @@ class Body:
         end = np.searchsorted(self._key, rows + b[2], side="right")
         parts = [np.arange(x, y) for x, y in zip(begin, end) if y > x]
         return np.concatenate(parts) if parts else np.zeros(0, int)
+
+
+def _size(face):
+    """Square millimetres a unit of u and v."""
+    uv = face.trim.low + (face.trim.high - face.trim.low) * np.random.default_rng(1).uniform(size=(100, 2))
+    return np.linalg.norm(np.cross(*face.evaluate(uv, 1)[1:]), axis=1).max()
 
 
 def _side(shape, exact, face, label):

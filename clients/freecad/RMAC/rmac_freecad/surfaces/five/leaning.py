@@ -11,8 +11,9 @@ from rmac_freecad.jobs.refusal import JobRefused
 TILTS, BOTH = 5.0, 10.0  # degrees from angle to angle: tilt alone, and where that is not enough, both
 MOST = 80.0  # degrees from the normal
 SPARE = 0.03  # radii that angles which nobody asked for keep off the part
+EVERY = 3  # samples of a pass from place to place where angles are chosen
 OFF_COST = 15.0  # degrees off what was asked for cost as much as a turn by one angle
-WINDOW = 7  # samples over which angles are evened out
+WINDOW = 3  # of these, over which angles are evened out
 
 
 @dataclass(frozen=True)
@@ -97,11 +98,6 @@ class Axes:
                 found[first : last + 1] = self._way(places.of(slice(first, last + 1)))
         return found
 
-    def passes(self, places):
-        """Whether the mill does at any angle, place by place."""
-        grid = self._wanted.reshape(1, 1, 2) if not self._grids else self._grids[1]
-        return self._free(places, grid).any((1, 2))
-
     def _free(self, places, grid):
         flat = grid.reshape(-1, 2)
         axes = self.lean.axes(places.normal[:, None], places.feed[:, None], flat[None])
@@ -114,7 +110,18 @@ class Axes:
         return free.reshape(len(places.centre), *grid.shape[:2])
 
     def _way(self, places):
-        """The cheapest way through the angles that are free, from place to place by one step of each at most."""
+        """The cheapest way through the angles that are free, by some of the places."""
+        count = len(places.centre)
+        some = np.unique(np.linspace(0, count - 1, max((count - 1) // EVERY, 1) + 1).round().astype(int))
+        found = self._cheapest(places.of(some))
+        after = np.clip(np.searchsorted(some, np.arange(count)), 1, len(some) - 1) if count > 1 else np.zeros(1, int)
+        before = np.maximum(after - 1, 0)
+        share = ((np.arange(count) - some[before]) / np.maximum(some[after] - some[before], 1))[:, None]
+        exact = np.where(share == 0, found[before], found[after])
+        return np.where((share == 0) | (share == 1), exact, found[before] + share * (found[after] - found[before]))
+
+    def _cheapest(self, places):
+        """From place to place by one step of each angle at most."""
         for grid in self._grids:
             free = self._free(places, grid)
             if free.any((1, 2)).all():

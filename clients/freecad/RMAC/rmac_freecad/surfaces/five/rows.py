@@ -36,6 +36,13 @@ class Rows:
         self._clearance = clearance
 
     def at(self, w):
+        return self._row(w, True)
+
+    def at_and_between(self, w, between):
+        """A pass, and one that is not cut and needs no axis, by which its ridge is told."""
+        return self._row(w, True), self._row(between, False)
+
+    def _row(self, w, leans):
         tracks = self.family.tracks(w)
         lines = [np.append(_samples(track, self.radius_mm / SAMPLES), np.nan) for track in tracks]
         s = np.concatenate([np.zeros(0), *lines])
@@ -46,26 +53,14 @@ class Rows:
         places = Places(*(np.concatenate([empty[name], *(getattr(one, name) for one in found)]) for name in names))
         places.centre[np.isnan(s)] = np.nan
         ball = self.ball(places)
-        angles = self.leaning.angles(places, ball)
+        angles = self.leaning.angles(places, ball) if leans else np.where(ball[:, None], [0.0, 0.0], np.nan)
         core = ball & places.inside & np.isfinite(angles[:, 0])
         return Row(w, tracks, line, s, places, ball, angles, core, core.copy())
-
-    def several(self, wanted):
-        return [self.at(w) for w, _ in wanted]
 
     def ball(self, places):
         """Whether it touches the part there alone, lifted as curves lift it."""
         lifted = places.centre + self.band_mm / 2 * places.normal
         return self._clearance(lifted) >= self.radius_mm + TOUCHING * self.band_mm
-
-    def comes(self, points, normals, centres, feeds):
-        """Whether the mill gets to places of a face at any angle, going as the nearest of these centres does."""
-        ideal = points + self.radius_mm * normals
-        nearest = np.linalg.norm(ideal[:, None] - centres, axis=2).argmin(1)
-        feed = feeds[nearest]
-        feed = feed - (feed * normals).sum(1, keepdims=True) * normals
-        feed /= np.maximum(np.linalg.norm(feed, axis=1, keepdims=True), 1e-30)
-        return self.leaning.passes(Places(ideal, points, normals, feed, np.ones(len(points), bool)))
 
     def reach(self, row, other, over_mm):
         """Lets a pass go on over its ends to where its neighbour cuts, else places at a slanting border would be far from both."""
@@ -81,9 +76,14 @@ class Rows:
         for i in range(len(may) - 2, -1, -1):
             row.used[i] |= may[i] and row.used[i + 1]
 
-    def ridge(self, before, middle, after, every):
-        """As that of the heights; all samples are looked at."""
+    def ridge(self, before, middle, after):
+        """As that of the heights, but only where both go beside: what their ends leave is told by witnesses."""
         chosen = np.flatnonzero(middle.core)
+        for row in (before, after):
+            known = np.flatnonzero(np.isfinite(row.s))
+            if len(chosen) and len(known):
+                away = np.linalg.norm(middle.places.centre[chosen][:, None] - row.places.centre[known], axis=2)
+                chosen = chosen[row.used[known[away.argmin(1)]]]
         if not len(chosen):
             return None
         points, normals = middle.places.point[chosen], middle.places.normal[chosen]

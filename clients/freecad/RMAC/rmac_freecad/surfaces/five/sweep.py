@@ -18,6 +18,8 @@ from rmac_freecad.surfaces.five.writer import Writer
 from rmac_freecad.surfaces.passes import Passes
 from rmac_freecad.surfaces.sweep import ABOVE, BAND_SHARE, angle_of, check_sizes
 
+CLOSEST = 1 / 8  # of a step on a plane: there what is left is told instead
+TOLD = 3  # places where passes leave more
 ASIDE_MM = 5.0  # of the part, where the mill goes up beside it
 OVER = 1.3  # steps, that a pass may go on beyond its face
 
@@ -57,11 +59,11 @@ def sweep(shape, targets, mill, lean: Lean, *, scallop_mm, tolerance_mm, along, 
     for family in families:
         rows = Rows(family, clearance, Axes(lean, access), mill.radius_mm, band_mm)
         witnesses = Witnesses(rows, clearance, step)
-        one = Passes(rows, Stretches(rows, clearance, access), mill.radius_mm, scallop_mm - band_mm)
+        one = Passes(rows, Stretches(rows, clearance, access), mill.radius_mm, scallop_mm - band_mm, CLOSEST)
         laid = one.laid(witnesses, ABOVE * scallop_mm)
         passes += laid
-        traces += [witnesses.trace(None, each.stretches) for each in laid]
-        high += one.high
+        traces += [each.trace for each in laid]
+        high += one.high[:TOLD] + ([f"and so at {len(one.high) - TOLD} other places"] if len(one.high) > TOLD else [])
     told = left_out(body, clearance, families, traces, scallop_mm) if traces else []
     if not any(one.stretches for one in passes):
         raise JobRefused("nothing of the faces can be cut: " + "; ".join(told or ["the mill does not get there"]))

@@ -6,6 +6,7 @@ import numpy as np
 
 DENSE = 24  # places a radius, by which the length is told
 FEWEST, MOST = 48, 20_000
+SHORTEST_MM = 1e-9
 
 
 @dataclass
@@ -30,7 +31,7 @@ class Track:
         steps = np.nan_to_num(np.linalg.norm(np.diff(rough, axis=0), axis=1))
         self._t = np.linspace(first, last, int(np.clip(steps.sum() / radius_mm * DENSE, FEWEST, MOST)) + 1)
         steps = np.nan_to_num(np.linalg.norm(np.diff(self._centres(self._t), axis=0), axis=1))
-        self._s = np.concatenate([[0], np.cumsum(np.maximum(steps, 1e-12))])
+        self._s = np.concatenate([[0], np.cumsum(np.maximum(steps, SHORTEST_MM))])
         self._slope = np.gradient(self._t, self._s)
         self.length = self._s[-1]
         self.first, self.last = -over_mm, self.length + over_mm

@@ -13,15 +13,15 @@ APART = 0.12  # of the step between passes on a plane
 TRACE = 24  # samples of a curve a radius
 FREE_MM = 1e-6
 AT_ONCE = 16
-TOLD = 1500  # places of a face, by which what is left out is told
+BARRED = 0.34  # radii from its curves, where a pass was to go and does not
 
 
 @dataclass
 class Trace:
     w: float
     centre: np.ndarray
-    feed: np.ndarray
     used: np.ndarray
+    barred: np.ndarray  # centres of the ball where the mill's side keeps it from going
 
 
 class Witnesses:
@@ -40,18 +40,18 @@ class Witnesses:
 
     def trace(self, row, stretches):
         """A pass as its curves are, in many samples."""
-        parts = [np.full((1, 6), np.nan)]
+        parts = [np.full((1, 3), np.nan)]
         for knots, poles in (curve for curves in stretches for curve in curves):
             s = np.linspace(knots[0], knots[-1], int((knots[-1] - knots[0]) / self._radius * TRACE) + 4)
-            centre, _ = fit.balls(knots, poles, s, self._radius)
-            ahead = np.gradient(centre, axis=0)
-            parts += [np.column_stack([centre, ahead]), np.full((1, 6), np.nan)]
-        both = np.concatenate(parts)
-        return Trace(getattr(row, "w", math.nan), both[:, :3], both[:, 3:], np.isfinite(both[:, 0]))
+            parts += [fit.balls(knots, poles, s, self._radius)[0], np.full((1, 3), np.nan)]
+        centre = np.concatenate(parts)
+        used = np.isfinite(centre[:, 0])
+        wanted = row.places.centre[row.ball & (row.places.inside | row.used)]
+        return Trace(row.w, centre, used, wanted[_away(wanted, centre[used]) > BARRED * self._radius])
 
     def highest(self, before, after, limit_mm):
         """What two traces leave at most of a place between them that the mill gets to, and the place; where that is no more than the
-        limit, 0 and None."""
+        limit, 0 and None. Not where the mill's side bars the way: more passes would not get there either."""
         chosen = np.arange(*np.searchsorted(self._w, (before.w, after.w)))
         if not len(chosen):
             return 0.0, None
@@ -66,12 +66,13 @@ class Witnesses:
 
     def _gets_to(self, index, *traces):
         asked = index[np.isnan(self._free[index])]
-        if len(asked):
-            ideal = self._point[asked] + self._radius * self._normal[asked]
-            free = self._clearance(ideal) >= self._radius - FREE_MM
-            cut = [one for one in traces if one.used.any()]
-            if free.any() and cut:
-                centres, feeds = (np.concatenate([getattr(one, name)[one.used] for one in cut]) for name in ("centre", "feed"))
-                free[free] = self._rows.comes(self._point[asked[free]], self._normal[asked[free]], centres, feeds)
-            self._free[asked] = free
-        return self._free[index] == 1
+        ideal = self._point[asked] + self._radius * self._normal[asked]
+        self._free[asked] = self._clearance(ideal) >= self._radius - FREE_MM
+        index_free = self._free[index] == 1
+        ideal = self._point[index] + self._radius * self._normal[index]
+        cut, barred = (np.concatenate(column) for column in zip(*((one.centre[one.used], one.barred) for one in traces)))
+        return index_free & (_away(ideal, cut) <= _away(ideal, barred))
+
+
+def _away(places, others):
+    return np.linalg.norm(places[:, None] - others, axis=2).min(1, initial=np.inf)
