@@ -27,7 +27,8 @@ class Access:
         reach = NEAR * self._radius
         near = self._body.points[self._body.near(centre - reach, centre + reach)] - centre
         far = self._body.coarse - centre
-        far = far[(np.abs(far) > reach).any(1) | ~self._within(centre, reach)]
+        if self._within(centre, reach):
+            far = far[(np.abs(far) > reach).any(1)]
         free = np.ones(len(axes), bool)
         for points, margin in ((near, MARGIN), (far, COARSE_MARGIN)):
             limit = (self._radius * (1 + margin + spare)) ** 2

@@ -8,11 +8,11 @@ import numpy as np
 
 from rmac_freecad.jobs.refusal import JobRefused
 
-TILTS, BOTH = 5.0, 10.0  # degrees from angle to angle: tilt alone, and where that is not enough, both
+STEPS = ((None, 5.0), (10.0, 10.0), (5.0, 5.0))  # degrees from lead to lead and from tilt to tilt, each where those before do not do
 MOST = 80.0  # degrees from the normal
 SPARE = 0.03  # radii that angles which nobody asked for keep off the part
 EVERY = 3  # samples of a pass from place to place where angles are chosen
-OFF_COST = 15.0  # degrees off what was asked for cost as much as a turn by one angle
+OFF_COST, TURN_COST = 15.0, 5.0  # degrees off what was asked for, and of a turn from place to place, that cost the same
 WINDOW = 3  # of these, over which angles are evened out
 
 
@@ -77,12 +77,7 @@ class Axes:
     def __init__(self, lean, access):
         self.lean, self._access = lean, access
         self._wanted = np.array([lean.lead, lean.tilt])
-        self._grids = [] if lean.axis is not None else [self._grid((0.0,), TILTS), self._grid(_around(lean.lead, BOTH), BOTH)]
-
-    def _grid(self, leads, step):
-        leads = np.array(leads if len(leads) > 1 else (self._wanted[0],))
-        grid = np.stack(np.meshgrid(leads, _around(self._wanted[1], step), indexing="ij"), 2)
-        return grid
+        self._grids = [] if lean.axis is not None else [_grid(lean, lead_step, tilt_step) for lead_step, tilt_step in STEPS]
 
     def angles(self, places, wanted):
         """Leads and tilts at each place that is wanted; nan where the mill does not pass at any."""
@@ -122,16 +117,15 @@ class Axes:
 
     def _cheapest(self, places):
         """From place to place by one step of each angle at most."""
-        for grid in self._grids:
+        for grid, (_, step) in zip(self._grids, STEPS):
             free = self._free(places, grid)
             if free.any((1, 2)).all():
                 break
-        step = TILTS if grid is self._grids[0] else BOTH
         cost = np.where(free, (((grid - self._wanted) / OFF_COST) ** 2).sum(2), np.inf)
         found = np.full((len(free), 2), np.nan)
         begin, total, froms = 0, None, []
         for number, here in enumerate(cost):
-            new, back = (here, None) if total is None else _onward(total, here, step / TILTS)
+            new, back = (here, None) if total is None else _onward(total, here, step / TURN_COST)
             if np.isfinite(new).any():
                 total = new
                 froms.append(back)
@@ -168,6 +162,11 @@ def _evened(angles):
     half = WINDOW // 2
     padded = np.pad(angles, ((half, half), (0, 0)), mode="edge")
     return np.stack([padded[k : k + len(angles)] for k in range(WINDOW)]).mean(0)
+
+
+def _grid(lean, lead_step, tilt_step):
+    leads = np.array([lean.lead]) if lead_step is None else _around(lean.lead, lead_step)
+    return np.stack(np.meshgrid(leads, _around(lean.tilt, tilt_step), indexing="ij"), 2)
 
 
 def _around(angle, step):

@@ -7,7 +7,7 @@ from rmac_freecad.surfaces import bspline
 
 LIFTS = (0.0, 0.05, 0.1, 0.2, 0.4, 0.8)  # of the mill's radius
 KNOTS = np.array([0.0, 0, 0, 0, 1, 1, 1, 1])
-BETWEEN, SIDES = 100, 6  # samples a radius: of the ball, of the mill's side
+BETWEEN, SIDES = 100, 12  # samples a radius: of the ball, of the mill's side
 MAY_MM = 2e-4
 MOST_TURN = 0.5  # radians of the axis
 OPPOSITE = -0.8  # cosine between axes, from which on the axis turns by way of upright

@@ -6,9 +6,10 @@ from rmac_freecad.surfaces.five import fit
 
 PARTS, NARROWINGS = 8, 4  # an end at a wall is looked for in so many parts, so many times
 LEAST_MM = 0.01
-BALL_CHECKS, SIDE_CHECKS = 20, 3  # places a radius
+BALL_CHECKS, SIDE_CHECKS = 20, 12  # places a radius
 MAY_MM = 2e-4  # that the ball is in the part by the check
 TRIES = 3
+ASIDE = 6  # of a radius, that is left out beside a place where it touches a second time
 
 
 class Stretches:
@@ -44,7 +45,7 @@ class Stretches:
             return [curve]
         if not tries:
             return []
-        aside = self._radius / SIDE_CHECKS / 2 if tries < TRIES else fit.SHORTEST_MM
+        aside = self._radius / ASIDE if tries < TRIES else fit.SHORTEST_MM
         return [one for a, b in ((begin, bad.min() - aside), (bad.max() + aside, end)) for one in self._laid(track, axes_at, a, b, tries - 1)]
 
     def _touching(self, curve):
