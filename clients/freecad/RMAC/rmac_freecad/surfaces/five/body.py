@@ -7,7 +7,7 @@ from rmac_freecad.jobs.refusal import JobRefused
 from rmac_freecad.surfaces.drop import upward
 from rmac_freecad.surfaces.part import SPACING, Face, edges_of, points_along
 
-AROUND = 3  # radii round what is cut, where points are dense
+AROUND = 4  # radii round what is cut, where points are dense: more than a pass goes beyond its face and the side is looked at closely
 COARSE = 0.3  # radii between points elsewhere
 CELLS = 2  # of the grid, a radius
 ASIDE_MM = 1e-3  # of a face, where its material is looked for
@@ -53,8 +53,19 @@ class Body:
         self.low, self.high = cut.min(0) - AROUND * self.radius_mm, cut.max(0) + AROUND * self.radius_mm
         near = ((points >= self.low) & (points <= self.high)).all(1)
         self._index(points[near], labels[near], parameters[near])
-        cell = COARSE * self.radius_mm
-        self.coarse = points[np.unique(np.floor(points / cell).astype(int), axis=0, return_index=True)[1]]
+        self.coarse = self._thinned(points, labels)
+
+    def _thinned(self, points, labels):
+        """Faces and edges each by themselves: what is nearest to an edge is none of a face's points."""
+        faces = labels < len(self.faces)
+        cells = np.floor(points[faces] / (COARSE * self.radius_mm)).astype(int)
+        on_faces = points[faces][np.unique(cells, axis=0, return_index=True)[1]]
+        on_edges = []
+        for number in range(len(self.faces), len(self.faces) + len(self.edges)):
+            of = points[labels == number]
+            every = max(int(COARSE * self.radius_mm / max(self.step_of[number], 1e-9)), 1)
+            on_edges += [of[::every], of[-1:]]
+        return np.concatenate([on_faces, *on_edges])
 
     def of_target(self, label):
         return self.parameters[self.labels == label]

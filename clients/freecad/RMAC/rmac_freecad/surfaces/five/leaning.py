@@ -10,8 +10,8 @@ from rmac_freecad.jobs.refusal import JobRefused
 
 STEPS = ((None, 5.0), (10.0, 10.0), (5.0, 5.0))  # degrees from lead to lead and from tilt to tilt, each where those before do not do
 MOST = 80.0  # degrees from the normal
-SPARE = 0.03  # radii that angles which nobody asked for keep off the part
-EVERY = 3  # samples of a pass from place to place where angles are chosen
+SPARE = 0.03  # radii that the side keeps off the part where angles change
+EVERY = ((3, 2), (1, 2), (1, 0))  # samples from place to place where angles are chosen, and how often these are evened out
 OFF_COST, TURN_COST = 15.0, 5.0  # degrees off what was asked for, and of a turn from place to place, that cost the same
 WINDOW = 3  # of these, over which angles are evened out
 
@@ -97,25 +97,32 @@ class Axes:
         flat = grid.reshape(-1, 2)
         axes = self.lean.axes(places.normal[:, None], places.feed[:, None], flat[None])
         lean = np.cos(np.radians(flat)).prod(1) >= math.cos(math.radians(MOST)) - 1e-9
-        asked = (flat == self._wanted).all(1)
         free = np.zeros(axes.shape[:2], bool)
-        free[:, asked] = self._access(places.centre, axes[:, asked])
-        others = lean & ~asked
-        free[:, others] = self._access(places.centre, axes[:, others], SPARE)
+        free[:, lean] = self._access(places.centre, axes[:, lean], SPARE)
         return free.reshape(len(places.centre), *grid.shape[:2])
 
     def _way(self, places):
-        """The cheapest way through the angles that are free, by some of the places."""
+        """Chosen at some of the places, or where it would touch between them at all."""
+        for every, even in EVERY:
+            found = self._through(places, every, even)
+            known = np.isfinite(found[:, 0])
+            axes = self.lean.axes(places.normal[known], places.feed[known], found[known])
+            if self._access(places.centre[known], axes[:, None]).all():
+                break
+        return found
+
+    def _through(self, places, every, even):
+        """The cheapest way through the angles that are free."""
         count = len(places.centre)
-        some = np.unique(np.linspace(0, count - 1, max((count - 1) // EVERY, 1) + 1).round().astype(int))
-        found = self._cheapest(places.of(some))
+        some = np.unique(np.linspace(0, count - 1, max((count - 1) // every, 1) + 1).round().astype(int))
+        found = self._cheapest(places.of(some), even)
         after = np.clip(np.searchsorted(some, np.arange(count)), 1, len(some) - 1) if count > 1 else np.zeros(1, int)
         before = np.maximum(after - 1, 0)
         share = ((np.arange(count) - some[before]) / np.maximum(some[after] - some[before], 1))[:, None]
         exact = np.where(share == 0, found[before], found[after])
         return np.where((share == 0) | (share == 1), exact, found[before] + share * (found[after] - found[before]))
 
-    def _cheapest(self, places):
+    def _cheapest(self, places, even):
         """From place to place by one step of each angle at most."""
         for grid, (_, step) in zip(self._grids, STEPS):
             free = self._free(places, grid)
@@ -131,20 +138,22 @@ class Axes:
                 froms.append(back)
                 continue
             if total is not None:
-                self._trace(found, grid, total, froms, begin)
+                self._trace(found, grid, total, froms, begin, even)
             begin, total, froms = number + 1, None, []
         if total is not None:
-            self._trace(found, grid, total, froms, begin)
+            self._trace(found, grid, total, froms, begin, even)
         return found
 
-    def _trace(self, found, grid, total, froms, begin):
+    def _trace(self, found, grid, total, froms, begin, even):
         at = np.unravel_index(total.argmin(), total.shape)
         ways = [at]
         for back in froms[:0:-1]:
             at = tuple(back[at])
             ways.append(at)
         angles = np.array([grid[at] for at in ways[::-1]])
-        found[begin : begin + len(angles)] = _evened(_evened(angles))
+        for _ in range(even):
+            angles = _evened(angles)
+        found[begin : begin + len(angles)] = angles
 
 
 def _onward(total, here, step_cost):

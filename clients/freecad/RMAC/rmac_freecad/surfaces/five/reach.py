@@ -15,7 +15,8 @@ ASIDE = "out of reach: the mill's side, up to the spindle, would touch the part 
 def left_out(body, clearance, families, traces, scallop_mm):
     """Texts, with areas as samples of the faces tell them."""
     found = []
-    centre, used = (np.concatenate([getattr(one, name) for one in traces]) for name in ("centre", "used"))
+    centre = np.concatenate([np.full((1, 3), np.nan), *(one.centre for one in traces)])
+    used = np.isfinite(centre[:, 0])
     for family in families:
         for label in family.targets:
             face = family.face(label)

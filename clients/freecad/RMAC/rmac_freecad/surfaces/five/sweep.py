@@ -64,7 +64,7 @@ def sweep(shape, targets, mill, lean: Lean, *, scallop_mm, tolerance_mm, along, 
         passes += laid
         traces += [each.trace for each in laid]
         high += one.high[:TOLD] + ([f"and so at {len(one.high) - TOLD} other places"] if len(one.high) > TOLD else [])
-    told = left_out(body, clearance, families, traces, scallop_mm) if traces else []
+    told = left_out(body, clearance, families, traces, scallop_mm)
     if not any(one.stretches for one in passes):
         raise JobRefused("nothing of the faces can be cut: " + "; ".join(told or ["the mill does not get there"]))
     return Leaning(passes, told + high, Links(body, clearance, access, clear_mm, ASIDE_MM), lean.one_way)
