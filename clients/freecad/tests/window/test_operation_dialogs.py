@@ -173,6 +173,19 @@ class OthersTest(OperationTest):
         self.assertIn("Faces of Box, ", str(machining.machining.place))
         self.assertEqual(len(sweeps(self.document)), 1)
 
+    def test_an_upright_face_is_swept_by_lead_and_tilt(self):
+        wall = next(f"Face{number}" for number, face in enumerate(self.box.Shape.Faces, 1) if face.BoundBox.XMin == face.BoundBox.XMax > 0)
+        dialog = self.dialog(SweepDialog, wall)
+        self.refused(dialog, "less steep")
+        self.set(dialog, Axis="by lead and tilt", Along="level", Tilt=50, Safe=20)
+        self.press(dialog.preview_button)
+        strokes = self.shown(dialog)
+        self.assertIn("nothing is left out", dialog.message.text())
+        self.assertGreater(len(strokes), 3)
+        self.set(dialog, Lead=75, Tilt=75)
+        self.press(dialog.preview_button)
+        self.refused(dialog, "at most 80")
+
     def test_a_scallop_that_makes_no_sense_and_no_face_are_told(self):
         dialog = self.dialog(SweepDialog, self.face(4))
         self.set(dialog, Scallop=3)

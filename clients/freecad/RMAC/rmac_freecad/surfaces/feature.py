@@ -7,7 +7,8 @@ from rmac_freecad.surfaces.mill import Mill
 
 GROUP = "Sweep"
 MILLS = ("ball end", "bull nose", "flat end")
-ALONG = ("direction", "u of each face", "v of each face")
+ALONG = {"direction": None, "u of each face": "u", "v of each face": "v", "level": "level"}
+THREE, FIVE = AXES = ("along Z", "by lead and tilt")
 # Name, type, value before anybody gives one, and what it is. Lengths are mm, speeds mm/s whatever unit FreeCAD shows.
 PROPERTIES = (
     ("Faces", "App::PropertyLinkSub", None, "Of one object"),
@@ -19,7 +20,10 @@ PROPERTIES = (
     ("Tolerance", "App::PropertyDistance", 0.005, "At most so far above the lowest place of the mill"),
     ("Along", "App::PropertyEnumeration", list(ALONG), "Where passes go"),
     ("Direction", "App::PropertyAngle", 0.0, "Of the passes, from X"),
-    ("Steepest", "App::PropertyAngle", 80.0, "Faces are cut where they are no steeper"),
+    ("Steepest", "App::PropertyAngle", 80.0, "Faces are cut where they are no steeper, with the axis along Z"),
+    ("Axis", "App::PropertyEnumeration", list(AXES), "Of the mill; by lead and tilt takes a machine with five axes and a ball end"),
+    ("Lead", "App::PropertyAngle", 0.0, "Of the axis against the face's normal, to where the mill goes"),
+    ("Tilt", "App::PropertyAngle", 20.0, "Of the axis against the face's normal, to the left of that"),
     ("Safe", "App::PropertyDistance", ABOVE_MM, "Z where the tool crosses"),
     ("Feed", "App::PropertySpeed", 10.0, "Along passes"),
     ("FeedDown", "App::PropertySpeed", 100 / 60, "Straight down"),
@@ -80,7 +84,7 @@ def _mill_of(feature):
 
 
 def _settings_of(feature):
-    along = {"direction": feature.Direction.Value, "u of each face": "u", "v of each face": "v"}[feature.Along]
-    return {"scallop_mm": feature.Scallop.Value, "tolerance_mm": feature.Tolerance.Value, "along": along, "steepest_deg": feature.Steepest.Value,
-            "clearance_mm": feature.Safe.Value, "feed_mm_min": round(feature.Feed.Value * 60, 9), "plunge_mm_min": round(feature.FeedDown.Value * 60, 9),
-            "tool": feature.Tool, "rpm": feature.SpindleSpeed}  # fmt: skip
+    along = ALONG[feature.Along] or feature.Direction.Value
+    leans = {"lead_deg": feature.Lead.Value, "tilt_deg": feature.Tilt.Value} if feature.Axis == FIVE else {"steepest_deg": feature.Steepest.Value}
+    return {"scallop_mm": feature.Scallop.Value, "tolerance_mm": feature.Tolerance.Value, "along": along, **leans, "clearance_mm": feature.Safe.Value,
+            "feed_mm_min": round(feature.Feed.Value * 60, 9), "plunge_mm_min": round(feature.FeedDown.Value * 60, 9), "tool": feature.Tool, "rpm": feature.SpindleSpeed}  # fmt: skip

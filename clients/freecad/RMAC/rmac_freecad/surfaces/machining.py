@@ -10,6 +10,8 @@ from rmac_freecad.jobs.mover import Mover
 from rmac_freecad.jobs.refusal import JobRefused
 from rmac_freecad.program import Place, Program
 from rmac_freecad.surfaces import fit
+from rmac_freecad.surfaces.five import Leaning, lean_of
+from rmac_freecad.surfaces.five import sweep as lean_sweep
 from rmac_freecad.surfaces.links import Links
 from rmac_freecad.surfaces.sweep import Swept, sweep
 
@@ -18,23 +20,25 @@ OVER_MM = 0.5  # of the place where it plunges: from there on at its own feed
 
 
 def read_faces(
-    feature, names, mill, *, scallop_mm, feed_mm_min, rapid_mm_min, plunge_mm_min=None, tolerance_mm=0.005, along=0.0, steepest_deg=80.0,
-    clearance_mm=None, tool=None, rpm=None,
+    feature, names, mill, *, scallop_mm, feed_mm_min, rapid_mm_min, plunge_mm_min=None, tolerance_mm=0.005, along=0.0, steepest_deg=None,
+    lead_deg=None, tilt_deg=None, axis=None, clearance_mm=None, tool=None, rpm=None,
 ):  # fmt: skip
-    """A program that sweeps faces of an object, "Face3", with the axis along Z, in the document's own coordinates; and texts of what it
-    leaves out. `along` is the direction of the passes in degrees from X, or "u" or "v" of each face. With `tool`, a number, and
-    `rpm` it begins with them. Raises `JobRefused`."""
+    """A program that sweeps faces of an object, "Face3", in the document's own coordinates; and texts of what it leaves out. `along` is
+    the direction of the passes in degrees from X, or "u" or "v" of each face. The tool's axis is along Z, unless `lead_deg` or
+    `tilt_deg` lean it against the face's normal, or an `axis` is given that it keeps: that takes five axes, and `along` may be "level".
+    With `tool`, a number, and `rpm` it begins with them. Raises `JobRefused`."""
     _check_speeds({"rapid_mm_min": rapid_mm_min})
     swept = plan_faces(
         feature.Label, placed_shape(feature), names, mill, scallop_mm=scallop_mm, feed_mm_min=feed_mm_min, plunge_mm_min=plunge_mm_min,
-        tolerance_mm=tolerance_mm, along=along, steepest_deg=steepest_deg, clearance_mm=clearance_mm, tool=tool, rpm=rpm,
+        tolerance_mm=tolerance_mm, along=along, steepest_deg=steepest_deg, lead_deg=lead_deg, tilt_deg=tilt_deg, axis=axis,
+        clearance_mm=clearance_mm, tool=tool, rpm=rpm,
     )  # fmt: skip
     return swept.program(feature.Label, rapid_mm_min), swept.left_out
 
 
 def plan_faces(
-    label, shape, names, mill, *, scallop_mm, feed_mm_min, plunge_mm_min=None, tolerance_mm=0.005, along=0.0, steepest_deg=80.0, clearance_mm=None,
-    tool=None, rpm=None,
+    label, shape, names, mill, *, scallop_mm, feed_mm_min, plunge_mm_min=None, tolerance_mm=0.005, along=0.0, steepest_deg=None, lead_deg=None,
+    tilt_deg=None, axis=None, clearance_mm=None, tool=None, rpm=None,
 ):  # fmt: skip
     """As `read_faces`, of a shape that nobody changes, before anybody knows the machine's rapids. Takes its time; touches no document."""
     feeds = {"feed_mm_min": feed_mm_min, "plunge_mm_min": feed_mm_min if plunge_mm_min is None else plunge_mm_min}
@@ -42,12 +46,23 @@ def plan_faces(
     targets = [_index(label, shape, name) for name in dict.fromkeys(names)]
     if not targets:
         raise JobRefused(f"no face of {label} was named; give names such as Face1")
-    top = shape.BoundBox.ZMax
-    clear = top + ABOVE_MM if clearance_mm is None else clearance_mm
-    if not math.isfinite(clear) or clear < top + 2 * OVER_MM:
-        raise JobRefused(f"clearance_mm is {clear!r}: the part is as high as {top:g} mm, and the mill is to pass {2 * OVER_MM:g} mm above it")
-    _, drop, swept = sweep(shape, targets, mill, scallop_mm=scallop_mm, tolerance_mm=tolerance_mm, along=along, steepest_deg=steepest_deg)
+    lean = lean_of(lead_deg, tilt_deg, axis)
+    clear = _clear(shape.BoundBox.ZMax, clearance_mm, mill.radius_mm if lean else 0.0)
+    if lean:
+        swept = lean_sweep(shape, targets, mill, lean, scallop_mm=scallop_mm, tolerance_mm=tolerance_mm, along=along, steepest_deg=steepest_deg, clear_mm=clear)
+        return LeaningSweep(swept, feeds, tool, rpm)
+    gentle = {} if steepest_deg is None else {"steepest_deg": steepest_deg}
+    _, drop, swept = sweep(shape, targets, mill, scallop_mm=scallop_mm, tolerance_mm=tolerance_mm, along=along, **gentle)
     return Sweeping(swept, Links(drop, mill), clear, feeds, tool, rpm)
+
+
+def _clear(top, clearance_mm, beside_mm):
+    """Height of the tip where it crosses; a leaning mill reaches so much below it."""
+    clear = top + ABOVE_MM + beside_mm if clearance_mm is None else clearance_mm
+    if not math.isfinite(clear) or clear < top + 2 * OVER_MM + beside_mm:
+        below = f", and up to {beside_mm:g} mm of it are below its tip where it leans" if beside_mm else ""
+        raise JobRefused(f"clearance_mm is {clear!r}: the part is as high as {top:g} mm, and the mill is to pass {2 * OVER_MM:g} mm above it{below}")
+    return clear
 
 
 @dataclass(frozen=True)
@@ -71,6 +86,22 @@ class Sweeping:
             writer.cut(number, one.stretches if number % 2 else _reversed(one.stretches))
         writer.end(self.rpm)
         return writer.program
+
+
+@dataclass(frozen=True)
+class LeaningSweep:
+    swept: Leaning
+    feeds: dict
+    tool: int | None
+    rpm: float | None
+
+    @property
+    def left_out(self):
+        return self.swept.left_out
+
+    def program(self, label, rapid_mm_min):
+        _check_speeds({"rapid_mm_min": rapid_mm_min})
+        return self.swept.program(label, {**self.feeds, "rapid_mm_min": rapid_mm_min}, self.tool, self.rpm)
 
 
 def _check_speeds(speeds):

@@ -68,7 +68,7 @@ class Part:
         exact = shape.toNurbs()
         self.faces = [Face(face) for face in exact.Faces]
         self.targets = targets
-        self.edges, self.faces_of = _edges(exact)
+        self.edges, self.faces_of = edges_of(exact)
         self.radius_mm = radius_mm
         self.top = shape.BoundBox.ZMax
         self._sample(radius_mm / SPACING)
@@ -96,7 +96,7 @@ class Part:
             if label == self.targets[-1]:
                 self._bound([points for points, _, _ in clouds])
         for number, curve in enumerate(self.edges):
-            t, step, sag = _along(curve, spacing / 2)
+            t, step, sag = points_along(curve, spacing / 2)
             curve.interval = t[1] - t[0]
             steps[self.owner(number)], sags[self.owner(number)] = step, sag
             clouds.append((curve(t), np.full(len(t), self.owner(number)), np.column_stack([t, t])))
@@ -130,7 +130,7 @@ class Part:
         return np.concatenate(parts) if parts else np.zeros(0, int)
 
 
-def _edges(exact):
+def edges_of(exact):
     curves, faces_of, known = [], [], {}
     for number, face in enumerate(exact.Faces):
         for edge in face.Edges:
@@ -150,7 +150,7 @@ def _edges(exact):
     return curves, faces_of
 
 
-def _along(curve, spacing):
+def points_along(curve, spacing):
     t = np.linspace(curve.first, curve.last, 60)
     length = np.linalg.norm(np.diff(curve(t), axis=0), axis=1).sum()
     count = max(length / spacing, 8 * len(np.unique(curve.knots)), 16)

@@ -15,9 +15,9 @@ def left_standing(mill, row, at, points, normals, window=WINDOW):
     inside &= row.used[index] & np.isfinite(tips[:, :, 2])
     way = points[:, None] - np.where(np.isfinite(tips), tips, 0)
     if not mill.flat_mm:
-        return _least(np.where(inside, _below_ball(mill.radius_mm, way, normals), np.inf))
+        return least(np.where(inside, _below_ball(mill.radius_mm, way, normals), np.inf))
     if not mill.corner_mm:
-        return _least(np.where(inside, _below_cylinder(mill.radius_mm, way, normals), np.inf))
+        return least(np.where(inside, _below_cylinder(mill.radius_mm, way, normals), np.inf))
     up = np.zeros(way.shape[:2])
     for _ in range(NEWTON):
         place = way + up[:, :, None] * normals[:, None]
@@ -30,7 +30,7 @@ def left_standing(mill, row, at, points, normals, window=WINDOW):
         slope = normals[:, None, 2] - beyond / depth * outward
         up = up + (height - place[:, :, 2]) / np.maximum(slope, 1e-3)
     up = np.where(inside, np.maximum(up, 0), np.inf)
-    return _least(up)
+    return least(up)
 
 
 def _below_ball(radius, way, normals):
@@ -53,7 +53,7 @@ def _below_cylinder(radius, way, normals):
     return np.where((b**2 >= a * c) & ~(upright & (c > 0)) & (up <= leaves), up, np.inf)
 
 
-def _least(up):
+def least(up):
     """Of each line of samples, between samples, too, by the parabola through the least and its neighbours."""
     best = up.argmin(1)
     rows = np.arange(len(up))
@@ -66,14 +66,14 @@ def _least(up):
     return np.where(good, np.maximum(between, 0), up[rows, best])
 
 
-def ridge(mill, before, middle, after, every):
+def ridge(mill, before, middle, after):
     """The highest between two passes, by the pass in their middle, which is not cut: heights go with the square of the distance,
     so that those over the middle tell where both are equal. None where no place lies between both."""
     chosen = np.flatnonzero(middle.core & np.isfinite(middle.normal).all(1))
     points, normals = middle.point[chosen], middle.normal[chosen]
     if not len(chosen):
         return None
-    sides = [np.sqrt(left_standing(mill, row, chosen * every, points, normals)) for row in (before, after)]
+    sides = [np.sqrt(left_standing(mill, row, chosen, points, normals)) for row in (before, after)]
     found = ((sides[0] + sides[1]) / 2) ** 2
     found = found[np.isfinite(found)]
     return found.max() if len(found) else None

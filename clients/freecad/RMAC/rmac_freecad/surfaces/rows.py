@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rmac_freecad.surfaces.ridges import ridge
+
 STEEPEST_CLIMB = 12.0  # a tip that rises faster than so much a millimetre has come to a wall
 STEEPEST_OVER = 2.5  # and beyond the end of what is cut: there the mill may touch with its side, where heights hang on nothing
 MOST_SAMPLES = 4000
@@ -26,23 +28,27 @@ class Row:
 
 
 class Rows:
-    def __init__(self, family, drop, part, spacing_mm):
-        self.family, self.drop = family, drop
+    def __init__(self, family, drop, part, mill, spacing_mm):
+        self.family, self.drop, self._mill = family, drop, mill
         self._floor = part.floor + 0.2
         first, last = family.t_range
         count = int(np.clip((last - first) * family.t_mm / spacing_mm, 40, MOST_SAMPLES)) + 1
         self.t = np.linspace(first, last, count)
 
     def at(self, w):
-        return self.several([(w, 1)])[0]
+        return self._several(w)[0]
 
-    def several(self, wanted):
-        """Of each (w, every so manieth sample); together they are quicker."""
-        samples = [(w, self.t[::every]) for w, every in wanted]
-        plans = [self.family.plan(w, t) for w, t in samples]
+    def at_and_between(self, w, between):
+        """A pass, and one that is not cut, by which its ridge is told."""
+        return self._several(w, between)
+
+    def _several(self, *wanted):
+        """Together they are quicker."""
+        t = self.t
+        plans = [self.family.plan(w, t) for w in wanted]
         together = self.drop(np.nan_to_num(np.concatenate(plans), nan=1e9))
         found, begin = [], 0
-        for (w, t), xy in zip(samples, plans):
+        for w, xy in zip(wanted, plans):
             heights = together.part(begin, begin + len(t))
             begin += len(t)
             core = self.family.cuts(w, t, heights)
@@ -54,6 +60,9 @@ class Rows:
         with np.errstate(invalid="ignore"):  # where nothing is
             climb = np.abs(b[..., 2] - a[..., 2]) <= steepest * np.linalg.norm(b[..., :2] - a[..., :2], axis=-1)
         return climb & np.isfinite(b[..., 2]) & (b[..., 2] > self._floor)
+
+    def ridge(self, before, middle, after):
+        return ridge(self._mill, before, middle, after)
 
     def reach(self, row, other, over_mm):
         """Lets a pass go on over its ends to where the other one, its neighbour, cuts, and somewhat farther: else places at a

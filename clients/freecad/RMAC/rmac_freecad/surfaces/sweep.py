@@ -1,6 +1,5 @@
 """Faces of a part, swept with a mill: the passes, and the program that they are."""
 
-import dataclasses
 import math
 from dataclasses import dataclass, field
 
@@ -10,29 +9,15 @@ from rmac_freecad.jobs.refusal import JobRefused
 from rmac_freecad.surfaces.drop import Drop
 from rmac_freecad.surfaces.families import Isolines, Planes
 from rmac_freecad.surfaces.part import Part
+from rmac_freecad.surfaces.passes import Passes
 from rmac_freecad.surfaces.reach import left_out
-from rmac_freecad.surfaces.ridges import ridge
-from rmac_freecad.surfaces.rows import Row, Rows
+from rmac_freecad.surfaces.rows import Rows
 from rmac_freecad.surfaces.stretches import Stretches
 from rmac_freecad.surfaces.witnesses import Witnesses
 
 BAND_SHARE = 0.025  # of the scallop, which the curves may be above the part
-STEADY = 0.98  # a step is taken when its ridge is so near to what is wanted
-MOST_TRIES = 14
-MOST_PASSES = 5000
-WIDEST = 1.6  # radii from pass to pass
 SAMPLES = 6  # a radius
 ABOVE = 1.01  # times the scallop: where two passes really left more, one is laid between them
-CLOSEST = 1 / 64  # of a step on a plane: there it is told instead
-EVERY = 1  # of them is looked at for its ridge
-
-
-@dataclass
-class Pass:
-    """Stretches, each of curves (knots, poles) that follow each other; its place across, in mm."""
-
-    w_mm: float
-    stretches: list
 
 
 @dataclass
@@ -51,159 +36,36 @@ def sweep(shape, targets, mill, *, scallop_mm, tolerance_mm=0.005, along=0.0, st
     if along in ("u", "v"):
         families = [Isolines(part, mill, steepest, label, "uv".index(along)) for label in targets]
     else:
-        families = [Planes(part, mill, steepest, _angle(along))]
+        families = [Planes(part, mill, steepest, angle_of(along))]
     band = min(tolerance_mm, BAND_SHARE * scallop_mm)
     for family in families:
         witnesses = Witnesses(part, drop, mill, family, steepest, math.sqrt(8 * mill.radius_mm * scallop_mm))
-        one = _Sweep(part, drop, mill, family, scallop_mm - band, band)
-        swept.passes += one.passes(witnesses, ABOVE * scallop_mm)
+        rows = Rows(family, drop, part, mill, mill.radius_mm / SAMPLES)
+        one = Passes(rows, Stretches(rows, mill, band), mill.radius_mm, scallop_mm - band)
+        swept.passes += one.laid(witnesses, ABOVE * scallop_mm)
         swept.left_out += one.high
     if not any(one.stretches for one in swept.passes):
         raise JobRefused("nothing of the faces can be cut: " + "; ".join(swept.left_out or ["the mill does not get there"]))
     return part, drop, swept
 
 
-@dataclass
-class _Laid:
-    row: Row
-    stretches: list
-    trace: Row
-
-
-class _Sweep:
-    def __init__(self, part, drop, mill, family, ridge_mm, band_mm):
-        self._mill, self._family, self._ridge_mm = mill, family, ridge_mm
-        self._rows = Rows(family, drop, part, mill.radius_mm / SAMPLES)
-        self._stretches = Stretches(self._rows, mill, band_mm)
-        self._widest = WIDEST * mill.radius_mm
-        self._plain = self._step = min(math.sqrt(8 * mill.radius_mm * ridge_mm), self._widest)
-        self.high = []
-
-    def passes(self, witnesses, limit_mm):
-        """Held against the witnesses; `high` tells where they find more than the limit nevertheless."""
-        rows = [row for row in self._steps() if row.core.any()]
-        ahead = [self._laid(row, witnesses) for row in reversed(rows)]
-        found = []
-        while ahead:
-            one = ahead.pop()
-            while ahead:
-                up, place = witnesses.highest(one.trace, ahead[-1].trace, limit_mm)
-                between = self._between(one.row, ahead[-1].row) if place is not None else None
-                if between is None:
-                    break
-                ahead.append(self._laid(between, witnesses))
-            if ahead and place is not None:
-                self.high.append(f"at {', '.join(f'{x:.3f}' for x in place)} up to {up:.3g} mm are left between passes")
-            found.append(Pass(one.row.w * self._family.w_mm, one.stretches))
-        return found
-
-    def _laid(self, row, witnesses):
-        stretches = self._stretches.of(row)
-        return _Laid(row, stretches, witnesses.trace(row, stretches))
-
-    def _between(self, before, after):
-        """The pass in the middle; None where it cuts nothing, or both are closer together than makes sense."""
-        gap = (after.w - before.w) * self._family.w_mm
-        if gap < CLOSEST * self._plain:
-            return None
-        row = self._rows.at((before.w + after.w) / 2)
-        if not row.core.any():
-            return None
-        self._rows.reach(row, before, gap)
-        self._rows.reach(row, after, gap)
-        return row
-
-    def _steps(self):
-        low, high = self._family.w_range
-        if high < low:
-            low = high = (low + high) / 2
-        found = [self._rows.at(low)]
-        while found[-1].w < high:
-            if len(found) > MOST_PASSES:
-                raise JobRefused(f"more than {MOST_PASSES} passes would be needed; give a larger scallop or mill, or a smaller steepest_deg")
-            row = found[-1]
-            after = self._next(row, high)
-            if row.core.any() == after.core.any():
-                found.append(after)
-                continue
-            # Where passes begin or end to find something to cut, one is laid at that border, and steps are taken from it or up to it.
-            border = self._border(row, after)
-            if not row.core.any():
-                found.append(border or after)
-                continue
-            while border is not None and found[-1].w < border.w:
-                found.append(self._next(found[-1], border.w))
-            found.append(after)
-        return found
-
-    def _next(self, row, high):
-        """The farthest next pass that leaves no higher ridge than is wanted."""
-        unit = self._family.w_mm
-        good, low, bad = None, 0.0, math.inf
-        for _ in range(MOST_TRIES):
-            w = min(row.w + self._step / unit, high)
-            if high - w < 0.02 * self._step / unit:
-                w = high
-            after, found = self._tried(row, w)
-            step = (w - row.w) * unit
-            if found is None or found <= self._ridge_mm:
-                good, low = after, step
-                if found is None or w >= high or step >= self._widest * 0.999 or found >= STEADY * self._ridge_mm:
-                    break
-            else:
-                bad = step
-            if bad - low < 0.01 * bad:
-                break
-            wished = step * min(max(math.sqrt(0.99 * self._ridge_mm / max(found, 1e-9)), 0.3), 2.0)
-            if math.isfinite(bad):
-                wished = min(max(wished, low + 0.1 * (bad - low)), bad - 0.1 * (bad - low))
-            self._step = min(wished, self._widest)
-        if good is None:
-            raise JobRefused("no step from pass to pass leaves so low a ridge; give a larger scallop, another direction or a smaller steepest_deg")
-        self._rows.reach(row, good, low)
-        self._rows.reach(good, row, low)
-        return good
-
-    def _tried(self, row, w):
-        """The pass there, and the ridge between both."""
-        before = dataclasses.replace(row, used=row.used.copy())
-        after, middle = self._rows.several([(w, 1), ((row.w + w) / 2, EVERY)])
-        step = (w - row.w) * self._family.w_mm
-        self._rows.reach(before, after, step)
-        self._rows.reach(after, before, step)
-        found = ridge(self._mill, before, middle, after, EVERY)
-        after.used = after.core.copy()
-        return after, found
-
-    def _border(self, a, b):
-        """Between a pass that cuts and one that does not."""
-        cuts, idle = (a, b) if a.core.any() else (b, a)
-        good, w = None, cuts.w
-        off = idle.w
-        while abs(off - w) * self._family.w_mm > 1e-3:
-            row = self._rows.at((w + off) / 2)
-            if row.core.any():
-                good, w = row, row.w
-            else:
-                off = row.w
-        if good is not None:
-            self._rows.reach(good, cuts, self._step)
-        return good
-
-
 def _check(mill, scallop_mm, tolerance_mm, steepest_deg):
-    for name, value in (("scallop_mm", scallop_mm), ("tolerance_mm", tolerance_mm), ("steepest_deg", steepest_deg)):
+    check_sizes(mill, scallop_mm, tolerance_mm, steepest_deg=steepest_deg)
+    if steepest_deg > 85:
+        raise JobRefused(f"steepest_deg is {steepest_deg:g}: give at most 85; what is steeper is cut with the side of a mill, or with a lead or tilt")
+
+
+def check_sizes(mill, scallop_mm, tolerance_mm, **others):
+    for name, value in {"scallop_mm": scallop_mm, "tolerance_mm": tolerance_mm, **others}.items():
         if isinstance(value, bool) or not isinstance(value, (int, float, np.floating)) or not math.isfinite(value) or value <= 0:
             raise JobRefused(f"{name} is {value!r}: give a number that is more than 0")
     if scallop_mm > mill.radius_mm / 4:
         raise JobRefused(f"a scallop of {scallop_mm:g} mm is more than a quarter of the mill's radius of {mill.radius_mm:g} mm; give a smaller one")
     if scallop_mm < 1e-4:
         raise JobRefused(f"a scallop of {scallop_mm:g} mm is less than 0.0001 mm; give a larger one")
-    if steepest_deg > 85:
-        raise JobRefused(f"steepest_deg is {steepest_deg:g}: give at most 85; what is steeper is cut with the side of a mill")
 
 
-def _angle(along):
+def angle_of(along):
     if isinstance(along, bool) or not isinstance(along, (int, float, np.floating)) or not math.isfinite(along):
-        raise JobRefused(f"along is {along!r}: give the direction of the passes in degrees from X, or 'u' or 'v'")
+        raise JobRefused(f"along is {along!r}: give the direction of the passes in degrees from X, or 'u' or 'v', or with five axes 'level'")
     return math.radians(along)

@@ -26,7 +26,7 @@ class Witnesses:
         found = [
             self._of(face, uv, steepest)
             for face in (part.faces[label] for label in family.targets)
-            for uv in _shares(_spread(face, APART * step_mm))
+            for uv in _shares(spread(face, APART * step_mm))
         ]
         w, t, point, normal, tip = (np.concatenate(column) for column in zip(*found))
         order = np.argsort(w)
@@ -75,7 +75,7 @@ class Witnesses:
         return np.minimum(*each)
 
 
-def _spread(face, apart_mm):
+def spread(face, apart_mm):
     """Parameters as dense in space everywhere."""
     low, high = face.trim.low, face.trim.high
     coarse = low + (high - low) * _sequence(400)

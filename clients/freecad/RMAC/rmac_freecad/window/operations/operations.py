@@ -21,7 +21,7 @@ SPEEDS = (("Feed", "Feed"), ("FeedDown", "Feed down"), ("SpindleSpeed", "Spindle
 POCKET = (*TOOL, ("Top", "Top"), ("Depth", "Depth"), ("StepDown", "Step-down"), ("StepOver", "Step-over"), ("Safe", "Cross at"), *SPEEDS,
           ("Entry", "Entry"), ("Ramp", "Angle of entry"), ("Order", "Order"), ("Climb", "Climb"))  # fmt: skip
 SWEEP = (*TOOL, ("Mill", "Mill"), ("Corner", "Corner"), ("Scallop", "Scallop"), ("Tolerance", "Tolerance"), ("Safe", "Cross at"), *SPEEDS,
-         ("Along", "Passes along"), ("Direction", "Direction"), ("Steepest", "Steepest"))  # fmt: skip
+         ("Along", "Passes along"), ("Direction", "Direction"), ("Steepest", "Steepest"), ("Axis", "Axis"), ("Lead", "Lead"), ("Tilt", "Tilt"))  # fmt: skip
 PROFILE = (*TOOL, ("Side", "Side"), ("Turned", "Turned"), ("Top", "Top"), ("Bottom", "Bottom"), ("Step", "Step-down"), ("Safe", "Cross at"), *SPEEDS,
            ("Ramp", "Ramp"), ("Lead", "Lead"))  # fmt: skip
 

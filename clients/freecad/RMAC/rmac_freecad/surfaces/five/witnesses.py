@@ -1,0 +1,78 @@
+"""Places of the faces, spread evenly, that tell what passes as they were laid really left: between two of them, and at the end."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rmac_freecad.surfaces.five import fit
+from rmac_freecad.surfaces.five.ridges import left_standing
+from rmac_freecad.surfaces.witnesses import spread
+
+APART = 0.12  # of the step between passes on a plane
+TRACE = 24  # samples of a curve a radius
+FREE_MM = 1e-6
+AT_ONCE = 16
+BARRED = 0.34  # radii from its curves, where a pass was to go and does not
+
+
+@dataclass
+class Trace:
+    w: float
+    centre: np.ndarray
+    used: np.ndarray
+    barred: np.ndarray  # centres of the ball where the mill's side keeps it from going
+
+
+class Witnesses:
+    def __init__(self, rows, clearance, step_mm):
+        self._rows, self._clearance, self._radius = rows, clearance, rows.radius_mm
+        self._family, found = rows.family, []
+        for label in self._family.targets:
+            uv = spread(rows.family.face(label), APART * step_mm)
+            point, normal, centre = self._family.touch(label, uv)
+            good = self._family.gentle(normal) & np.isfinite(centre).all(1)
+            found.append([column[good] for column in (self._family.places(uv, centre), point, normal)])
+        w, point, normal = (np.concatenate(column) for column in zip(*found))
+        order = np.argsort(w)
+        self._w, self._point, self._normal = w[order], point[order], normal[order]
+        self._free = np.full(len(w), np.nan)  # where that was asked
+
+    def trace(self, row, stretches):
+        """A pass as its curves are, in many samples."""
+        parts = [np.full((1, 3), np.nan)]
+        for knots, poles in (curve for curves in stretches for curve in curves):
+            s = np.linspace(knots[0], knots[-1], int((knots[-1] - knots[0]) / self._radius * TRACE) + 4)
+            parts += [fit.balls(knots, poles, s, self._radius)[0], np.full((1, 3), np.nan)]
+        centre = np.concatenate(parts)
+        used = np.isfinite(centre[:, 0])
+        wanted = row.places.centre[row.ball & (row.places.inside | row.used)]
+        return Trace(row.w, centre, used, wanted[_away(wanted, centre[used]) > BARRED * self._radius])
+
+    def highest(self, before, after, limit_mm):
+        """What two traces leave at most of a place between them that the mill gets to, and the place; where that is no more than the
+        limit, 0 and None. Not where the mill's side bars the way: more passes would not get there either."""
+        chosen = np.arange(*np.searchsorted(self._w, (before.w, after.w)))
+        if not len(chosen):
+            return 0.0, None
+        up = np.minimum(*(left_standing(self._radius, one.centre, one.used, self._point[chosen], self._normal[chosen]) for one in (before, after)))
+        high = np.flatnonzero(up > limit_mm)
+        high = high[np.argsort(-up[high])]
+        for some in np.array_split(high, math.ceil(len(high) / AT_ONCE)) if len(high) else ():
+            free = some[self._gets_to(chosen[some], before, after)]
+            if len(free):
+                return up[free[0]], self._point[chosen[free[0]]]
+        return 0.0, None
+
+    def _gets_to(self, index, *traces):
+        asked = index[np.isnan(self._free[index])]
+        ideal = self._point[asked] + self._radius * self._normal[asked]
+        self._free[asked] = self._clearance(ideal) >= self._radius - FREE_MM
+        index_free = self._free[index] == 1
+        ideal = self._point[index] + self._radius * self._normal[index]
+        cut, barred = (np.concatenate(column) for column in zip(*((one.centre[one.used], one.barred) for one in traces)))
+        return index_free & (_away(ideal, cut) <= _away(ideal, barred))
+
+
+def _away(places, others):
+    return np.linalg.norm(places[:, None] - others, axis=2).min(1, initial=np.inf)

@@ -1,0 +1,77 @@
+"""The program of a sweep with five axes."""
+
+import math
+
+import rmac
+from rmac_freecad.jobs.refusal import JobRefused
+from rmac_freecad.program import Place, Program
+from rmac_freecad.surfaces.fit import DEGREE
+from rmac_freecad.surfaces.five.links import KNOTS
+
+OVER_MM = 0.5  # of the place where it plunges: from there on at its own feed
+SAME = 1e-9
+
+
+class Writer:
+    def __init__(self, label, links, feeds):
+        self.program = Program()
+        self._label, self._links, self._feeds = label, links, feeds
+        self._in_force = self._at = None
+
+    def begin(self, tool, rpm):
+        place = Place(self._label, 1, "begin")
+        if tool is not None:
+            if isinstance(tool, bool) or tool != int(tool) or tool < 1:
+                raise JobRefused(f"a tool's number is 1 or more, and whole; this is {tool!r}")
+            self.program.append(rmac.tool_change(int(tool)), place)
+        if rpm is not None:
+            self.program.append(rmac.spindle(rpm), place)
+
+    def cut(self, number, curves):
+        for knots, poles in curves:
+            self._go_to(poles[0], number)
+            self._along(knots, poles, DEGREE, Place(self._label, number, "pass"))
+
+    def end(self, rpm):
+        place = Place(self._label, 1, "end")
+        if self._at is not None:
+            self._to(self._links.out(self._at), place)
+        if rpm is not None:
+            self.program.append(rmac.spindle(0), place)
+
+    def _go_to(self, begin, number):
+        place = Place(self._label, number, "link")
+        poles = None if self._at is None else self._links.between(self._at, begin)
+        if poles is not None:
+            return self._along(KNOTS, poles, 3, place)
+        ways = self._links.out(begin)[::-1]
+        if self._at is not None:
+            place = Place(self._label, number, "retract")
+            up = self._links.out(self._at)
+            self._to(up, place)
+            self._to(self._links.over(up[-1], ways[0]), place)
+        self._to(ways, place)
+        above = begin.copy()
+        above[:3] += min(OVER_MM, math.dist(ways[-1][:3], begin[:3])) * begin[3:]
+        self._to([above], place)
+        self._set_feed("plunge_mm_min", place)
+        self.program.append(rmac.Line(tuple(above.tolist()), tuple(begin.tolist())), place)
+        self._at = begin
+
+    def _to(self, poses, place):
+        for pose in poses:
+            if self._at is not None and abs(self._at - pose).max() < SAME:
+                continue
+            self._set_feed("rapid_mm_min", place)
+            self.program.append(rmac.MoveTo(tuple(pose.tolist())), place)
+            self._at = pose
+
+    def _along(self, knots, poles, degree, place):
+        self._set_feed("feed_mm_min", place)
+        self.program.append(rmac.PoseNurbs(rmac.NurbsCurve(degree, knots, poles)), place)
+        self._at = poles[-1]
+
+    def _set_feed(self, name, place):
+        if self._feeds[name] != self._in_force:
+            self._in_force = self._feeds[name]
+            self.program.append(rmac.calls.RMAC_CAM.SetFeedrate(self._in_force), place)
