@@ -67,7 +67,7 @@ bool read_offset(const std::string& text, rs274::Options& options) {
   const auto* name = std::find(kNames.begin(), kNames.end(), text.substr(0, equals));
   const auto point = read_point(text.substr(equals + 1));
   if (name == kNames.end() || !point) return false;
-  options.offsets.at(static_cast<std::size_t>(name - kNames.begin())) = {(*point)[0], (*point)[1], (*point)[2]};
+  options.offsets[static_cast<std::size_t>(name - kNames.begin())] = {(*point)[0], (*point)[1], (*point)[2]};
   return true;
 }
 

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "clients/legacy/gcode/arc_geometry.hpp"
+
+namespace rmac::gcode {
+
+/// Of each axis its value, or none where it is not known.
+using Known = std::array<std::optional<double>, 3>;
+
+/// Where the tool tip is, and what coordinates mean. A program's coordinates are those of the part (the frame of the
+/// active work system, which `.rmac` moves in) less what G92 set. Where a work system is in the machine is known only
+/// when the program, or who imports it, says so. All in mm.
+class Coordinates {
+ public:
+  static constexpr std::size_t kSystems = 9;  ///< G54 to G59.3
+
+  [[nodiscard]] const Known& tip() const noexcept { return tip_; }
+  [[nodiscard]] bool tip_is_known() const noexcept { return tip_[0] && tip_[1] && tip_[2]; }
+  [[nodiscard]] Point known_tip() const { return {tip_[0].value(), tip_[1].value(), tip_[2].value()}; }
+  void move_to(const Point& part) noexcept { tip_ = {part[0], part[1], part[2]}; }
+  /// What a tool change leaves.
+  void forget_tip() noexcept { tip_ = {}; }
+
+  [[nodiscard]] std::size_t active() const noexcept { return active_; }
+  [[nodiscard]] const Known& offset(std::size_t system) const { return offsets_.at(system); }
+  /// Where the active system is; none unless all of it is known.
+  [[nodiscard]] std::optional<Point> part_origin() const;
+  /// The tip stays where it is in the machine, so that it has other coordinates, or none that are known.
+  void set_offset(std::size_t system, const Known& offset);
+  void activate(std::size_t system);
+
+  [[nodiscard]] double g92(std::size_t axis) const { return g92_.at(axis); }
+  void set_g92(const Point& offset) noexcept { g92_ = saved_g92_ = offset; }
+  void suspend_g92() noexcept { g92_ = {}; }
+  void restore_g92() noexcept { g92_ = saved_g92_; }
+
+  /// Coordinates of the program.
+  [[nodiscard]] double to_part(std::size_t axis, double program) const { return program + g92_.at(axis); }
+  [[nodiscard]] std::optional<double> program_tip(std::size_t axis) const;
+  [[nodiscard]] std::optional<double> machine_tip(std::size_t axis) const;
+
+ private:
+  void keep_in_machine(const Known& machine);
+
+  Known tip_{};
+  std::array<Known, kSystems> offsets_{};
+  Point g92_{}, saved_g92_{};
+  std::size_t active_ = 0;
+};
+
+}  // namespace rmac::gcode
