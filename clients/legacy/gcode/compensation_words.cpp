@@ -20,7 +20,8 @@ double diameter_of(int tool, const Options& options, std::size_t place) {
   return found->second;
 }
 
-double diameter(Block& block, const Code& code, const Options& options, const Modes& modes, const Switches& switches) {
+double diameter_of_tool(Block& block, const Code& code, const Options& options, const Modes& modes,
+                        const Switches& switches) {
   const Word* word = block.find('D');
   if (code.number % 10 != 0) {
     if (word == nullptr) refuse(code.place, "G41.1 and G42.1 need D, the tool's diameter");
@@ -39,6 +40,27 @@ double diameter(Block& block, const Code& code, const Options& options, const Mo
   if (!(word->value > 0 && word->value < 1e6 && word->value == std::floor(word->value)))
     refuse(word->place, "D of G41 and G42 is the number of a tool; a diameter stands in G41.1 and G42.1");
   return diameter_of(static_cast<int>(word->value), options, word->place);
+}
+
+double diameter_in_register(const Code& code, const Options& options, const Modes& modes) {
+  if (!modes.diameter_register) refuse(code.place, "no D says which offset holds the tool's radius; write D");
+  const int number = *modes.diameter_register;
+  if (number == 0) return 0;
+  const auto found = options.tool_diameters_mm.find(number);
+  if (found == options.tool_diameters_mm.end())
+    refuse(code.place, fmt::format("what D{0} holds is not known here; give --tool-diameter {0}=MM, twice the radius "
+                                   "that the tool's centre is to be away",
+                                   number));
+  return found->second;
+}
+
+void set_register(const Word& word, Modes& modes, const Compensation& compensation) {
+  if (!(word.value >= 0 && word.value < 1e6 && word.value == std::floor(word.value)))
+    refuse(word.place, "D is the number of an offset");
+  const int number = static_cast<int>(word.value);
+  if (compensation.on() && number != modes.diameter_register)
+    refuse(word.place, "another D while cutter radius compensation is on; write G40 before it");
+  modes.diameter_register = number;
 }
 
 bool may_be_within(GGroup group, const Code& code, const Modes& modes) {
@@ -67,15 +89,18 @@ bool may_be_behind(GGroup group, const Code& code) {
 
 }  // namespace
 
-void switch_compensation(Block& block, const Options& options, const Modes& modes, const Switches& switches,
-                         Mover& mover, Compensation& compensation) {
+void switch_compensation(Block& block, const Options& options, const Rules& rules, Modes& modes,
+                         const Switches& switches, Mover& mover, Compensation& compensation) {
+  if (const Word* word = rules.d_is_register ? block.find('D') : nullptr) set_register(*word, modes, compensation);
   const auto& code = block.g(GGroup::Radius);
   if (!code) return;
   if (code->number == 400) return compensation.end(code->place);
   if (compensation.on()) refuse(code->place, "cutter radius compensation is on already; write G40 before this");
   if (compensation.leaving()) refuse(code->place, "a straight move stands between G40 and this; write it");
   if (modes.plane.normal != 2) refuse(code->place, "cutter radius compensation is taken in G17");
-  const double radius = diameter(block, *code, options, modes, switches) / 2;
+  const double diameter = rules.d_is_register ? diameter_in_register(*code, options, modes)
+                                              : diameter_of_tool(block, *code, options, modes, switches);
+  const double radius = diameter / 2;
   compensation.begin(code->number < 420 ? radius : -radius, mover.start(code->place));
 }
 

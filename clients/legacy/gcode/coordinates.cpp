@@ -2,25 +2,31 @@
 
 namespace rmac::gcode {
 
+const Known& Coordinates::offset(std::size_t system) const {
+  static const Known kUnknown;
+  const auto found = offsets_.find(system);
+  return found == offsets_.end() ? kUnknown : found->second;
+}
+
 std::optional<Point> Coordinates::part_origin() const {
-  const Known& offset = offsets_.at(active_);
+  const Known& offset = this->offset(active_);
   if (!offset[0] || !offset[1] || !offset[2]) return std::nullopt;
   return Point{*offset[0], *offset[1], *offset[2]};
 }
 
 std::optional<double> Coordinates::machine_tip(std::size_t axis) const {
-  const auto& offset = offsets_.at(active_).at(axis);
+  const auto& offset = this->offset(active_).at(axis);
   const auto& tip = tip_.at(axis);
   return offset && tip ? std::optional(*tip + *offset) : std::nullopt;
 }
 
 std::optional<double> Coordinates::program_tip(std::size_t axis) const {
   const auto& tip = tip_.at(axis);
-  return tip ? std::optional(*tip - g92_.at(axis)) : std::nullopt;
+  return tip ? std::optional(*tip - shift(axis)) : std::nullopt;
 }
 
 void Coordinates::keep_in_machine(const Known& machine) {
-  const Known& offset = offsets_.at(active_);
+  const Known& offset = this->offset(active_);
   for (std::size_t axis = 0; axis < tip_.size(); ++axis) {
     const bool known = machine.at(axis) && offset.at(axis);
     tip_.at(axis) = known ? std::optional(*machine.at(axis) - *offset.at(axis)) : std::nullopt;
@@ -29,11 +35,11 @@ void Coordinates::keep_in_machine(const Known& machine) {
 
 void Coordinates::set_offset(std::size_t system, const Known& offset) {
   if (system != active_) {
-    offsets_.at(system) = offset;
+    offsets_[system] = offset;
     return;
   }
   const Known machine{machine_tip(0), machine_tip(1), machine_tip(2)};
-  offsets_.at(system) = offset;
+  offsets_[system] = offset;
   keep_in_machine(machine);
 }
 

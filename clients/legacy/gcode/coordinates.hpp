@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <optional>
 
 #include "clients/legacy/gcode/arc_geometry.hpp"
@@ -16,8 +17,6 @@ using Known = std::array<std::optional<double>, 3>;
 /// when the program, or who imports it, says so. All in mm.
 class Coordinates {
  public:
-  static constexpr std::size_t kSystems = 9;  ///< G54 to G59.3
-
   [[nodiscard]] const Known& tip() const noexcept { return tip_; }
   [[nodiscard]] bool tip_is_known() const noexcept { return tip_[0] && tip_[1] && tip_[2]; }
   [[nodiscard]] Point known_tip() const { return {tip_[0].value(), tip_[1].value(), tip_[2].value()}; }
@@ -26,7 +25,8 @@ class Coordinates {
   void forget_tip() noexcept { tip_ = {}; }
 
   [[nodiscard]] std::size_t active() const noexcept { return active_; }
-  [[nodiscard]] const Known& offset(std::size_t system) const { return offsets_.at(system); }
+  /// Of a work system by its index: 0 is G54.
+  [[nodiscard]] const Known& offset(std::size_t system) const;
   /// Where the active system is; none unless all of it is known.
   [[nodiscard]] std::optional<Point> part_origin() const;
   /// The tip stays where it is in the machine, so that it has other coordinates, or none that are known.
@@ -37,18 +37,22 @@ class Coordinates {
   void set_g92(const Point& offset) noexcept { g92_ = saved_g92_ = offset; }
   void suspend_g92() noexcept { g92_ = {}; }
   void restore_g92() noexcept { g92_ = saved_g92_; }
+  /// G52: the same of all work systems, beside G92.
+  [[nodiscard]] const Point& local() const noexcept { return local_; }
+  void set_local(const Point& offset) noexcept { local_ = offset; }
 
   /// Coordinates of the program.
-  [[nodiscard]] double to_part(std::size_t axis, double program) const { return program + g92_.at(axis); }
+  [[nodiscard]] double to_part(std::size_t axis, double program) const { return program + shift(axis); }
   [[nodiscard]] std::optional<double> program_tip(std::size_t axis) const;
   [[nodiscard]] std::optional<double> machine_tip(std::size_t axis) const;
 
  private:
+  [[nodiscard]] double shift(std::size_t axis) const { return g92_.at(axis) + local_.at(axis); }
   void keep_in_machine(const Known& machine);
 
   Known tip_{};
-  std::array<Known, kSystems> offsets_{};
-  Point g92_{}, saved_g92_{};
+  std::map<std::size_t, Known> offsets_;
+  Point g92_{}, saved_g92_{}, local_{};
   std::size_t active_ = 0;
 };
 

@@ -27,11 +27,13 @@ bool dwells(int code) {
 /// Of one block.
 constexpr int kMostRepeats = legacy::kMostPecks;
 
-int repeats_of(Block& block) {
-  const Word* word = block.find('L');
+int repeats_of(Block& block, const Rules::Cycles& rules) {
+  const Word* word = block.find(rules.repeats);
   if (word == nullptr) return 1;
-  if (word->value != std::round(word->value) || word->value < 1 || word->value > kMostRepeats) {
-    refuse(word->place, fmt::format("L is how often the hole is repeated, 1 to {}", kMostRepeats));
+  const int least = rules.may_wait ? 0 : 1;
+  if (word->value != std::round(word->value) || word->value < least || word->value > kMostRepeats) {
+    refuse(word->place,
+           fmt::format("{} is how often the hole is repeated, {} to {}", rules.repeats, least, kMostRepeats));
   }
   return static_cast<int>(word->value);
 }
@@ -39,7 +41,8 @@ int repeats_of(Block& block) {
 }  // namespace
 
 double Drilling::sticky(Block& block, char letter, std::optional<double>& value, std::size_t place) {
-  if (const Word* word = block.find(letter)) value = letter == 'P' ? word->value : modes_.mm(*word);
+  if (const Word* word = block.find(letter))
+    value = letter != 'P' ? modes_.mm(*word) : word->value * (word->whole ? whole_dwell_s_ : 1);
   if (!value) refuse(place, fmt::format("the first block of a canned cycle needs {}", letter));
   return *value;
 }
@@ -47,7 +50,8 @@ double Drilling::sticky(Block& block, char letter, std::optional<double>& value,
 void Drilling::read(Block& block, int code, std::size_t place) {
   static_cast<void>(sticky(block, 'R', retract_, place));
   static_cast<void>(sticky(block, kAxisLetters.at(modes_.plane.normal), depth_, place));
-  if (dwells(code) && sticky(block, 'P', dwell_s_, place) < 0) refuse(place, "a dwell of less than no time");
+  const bool needs_dwell = rules_.dwell_is_free ? block.has('P') : dwells(code);
+  if (needs_dwell && sticky(block, 'P', dwell_s_, place) < 0) refuse(place, "a dwell of less than no time");
   if (pecks(code) && !(sticky(block, 'Q', peck_, place) > 0)) refuse(place, "Q, the depth of a peck, is more than 0");
 }
 
@@ -59,18 +63,21 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
   }
   if (!block.has_any("XYZ")) refuse(place, "a canned cycle needs X, Y or Z in its block");
   Point at = mover_.start(place);
-  if (before != code) retract_ = depth_ = dwell_s_ = peck_ = std::nullopt;
+  if (before != code) dwell_s_ = std::nullopt;
+  if (before != code && !(rules_.words_stay && is_cycle(before))) retract_ = depth_ = peck_ = std::nullopt;
   if (!is_cycle(before)) initial_ = at.at(plane.normal);
   read(block, code, place);
   const double retract = modes_.incremental ? initial_ + *retract_ : coordinates_.to_part(plane.normal, *retract_);
   const double bottom = modes_.incremental ? retract + *depth_ : coordinates_.to_part(plane.normal, *depth_);
   if (bottom > retract) refuse(place, "the hole's bottom is above R");
-  if (at.at(plane.normal) < retract) {
+  if (rules_.cross_first && !modes_.retract_to_r && initial_ < retract)
+    refuse(place, "under G98 R is not above the level where the cycles began: the tool would come back below it");
+  if (!rules_.cross_first && at.at(plane.normal) < retract) {
     at.at(plane.normal) = retract;
     mover_.rapid(at, place);
   }
   const double clear = modes_.retract_to_r ? retract : std::max(initial_, retract);
-  const int repeats = repeats_of(block);
+  const int repeats = repeats_of(block, rules_);
   if (pecks(code) && !((retract - bottom) / *peck_ * repeats <= kMostRepeats)) {
     refuse(place, fmt::format("more than {} pecks in one block", kMostRepeats));
   }
@@ -114,9 +121,9 @@ void Drilling::hole(const Point& above, double bottom, double clear, int code, s
   };
   if (pecks(code)) peck(above, bottom, code, place);
   mover_.line(at(bottom), place);
-  if (dwells(code)) writer_.dwell(*dwell_s_);
-  if (code == kReaming) mover_.line(above, place);
-  if (code == kBoring) mover_.line(at(clear), place);
+  if (dwell_s_) writer_.dwell(*dwell_s_);
+  if (code == kReaming || (code == kBoring && rules_.bore_to_r)) mover_.line(above, place);
+  if (code == kBoring && !rules_.bore_to_r) mover_.line(at(clear), place);
   if (code == kStopping) switches_.hold_spindle();
   mover_.rapid(at(clear), place);
   if (code == kStopping) switches_.release_spindle();

@@ -14,8 +14,15 @@ namespace rmac::gcode {
 /// say stays as the block before it had it, as long as the cycle is the same.
 class Drilling {
  public:
-  Drilling(const Modes& modes, Coordinates& coordinates, Mover& mover, Switches& switches, Writer& writer)
-      : modes_(modes), coordinates_(coordinates), mover_(mover), switches_(switches), writer_(writer) {}
+  Drilling(const Rules& rules, const Modes& modes, Coordinates& coordinates, Mover& mover, Switches& switches,
+           Writer& writer)
+      : rules_(rules.cycles),
+        whole_dwell_s_(rules.whole_dwell_s),
+        modes_(modes),
+        coordinates_(coordinates),
+        mover_(mover),
+        switches_(switches),
+        writer_(writer) {}
 
   /// `code` and that of the motion before: tenfold.
   void drill(Block& block, int code, int before, std::size_t place);
@@ -26,6 +33,8 @@ class Drilling {
   void peck(const Point& above, double bottom, int code, std::size_t place);
   void hole(const Point& above, double bottom, double clear, int code, std::size_t place);
 
+  const Rules::Cycles& rules_;
+  double whole_dwell_s_;
   const Modes& modes_;
   Coordinates& coordinates_;
   Mover& mover_;

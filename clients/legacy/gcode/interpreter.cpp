@@ -20,6 +20,16 @@ constexpr double kMostTimes = 1e9;
 /// What a stop's message may have.
 constexpr std::size_t kMostMessage_bytes = 200;
 
+/// G10, G52 and G92 to G92.3.
+bool sets_coordinates(int once) {
+  return once == 100 || once == 520 || (once >= 920 && once <= 923);
+}
+
+/// Whose X, Y and Z are no end of a motion.
+bool takes_axes(int once) {
+  return once == 100 || once == 280 || once == 300 || once == 520 || once == 920;
+}
+
 std::string trimmed(std::string_view text) {
   const auto begin = text.find_first_not_of(" \t\r");
   if (begin == std::string_view::npos) return {};
@@ -34,11 +44,12 @@ Interpreter::Interpreter(const Options& options, const Rules& rules, Writer& wri
       writer_(writer),
       mover_(options, modes_, coordinates_, writer),
       compensation_([this](const ContourMove& move, std::size_t place) { mover_.held(move, place); }),
-      motions_(options, modes_, coordinates_, mover_, compensation_),
+      motions_(options, rules, modes_, coordinates_, mover_, compensation_),
       splines_(motions_, modes_, mover_),
       switches_(writer),
-      drilling_(modes_, coordinates_, mover_, switches_, writer) {
+      drilling_(rules, modes_, coordinates_, mover_, switches_, writer) {
   modes_.unit_mm = options.unit_mm;
+  modes_.whole_numbers = options.whole_numbers;
   for (const auto& [system, offset] : options.offsets) coordinates_.set_offset(system, offset);
 }
 
@@ -59,9 +70,9 @@ After Interpreter::execute(Block& block, const Line& line) {
   act_on_names(block, options_, writer_);
   dwell(block);
   set_plane_and_units(block);
-  switch_compensation(block, options_, modes_, switches_, mover_, compensation_);
+  switch_compensation(block, options_, rules_, modes_, switches_, mover_, compensation_);
   set_length(block);
-  if (const auto& system = block.g(GGroup::System)) select_system(*system, coordinates_);
+  if (const auto& system = block.g(GGroup::System)) select_system(block, *system, rules_, coordinates_);
   set_control(block);
   set_distances(block);
   act_once(block);
@@ -88,7 +99,7 @@ void Interpreter::set_speeds(Block& block) {
              "F in the block that changes the unit would count in the unit before it; write F in a block behind it");
     }
     if (feed->value < 0) refuse(feed->place, "a negative feed");
-    modes_.feed_mm_min = units ? feed->value * unit : modes_.mm(*feed);
+    modes_.feed_mm_min = modes_.feed(*feed, units ? unit : modes_.unit(feed->place));
   }
   if (const Word* speed = block.find('S')) switches_.set_speed(*speed);
 }
@@ -108,8 +119,9 @@ void Interpreter::dwell(Block& block) {
   const std::size_t place = block.g(GGroup::Once)->place;
   if (!block.has('P')) refuse(place, "G4 needs P, its time in seconds");
   const Word& time = block.use('P');
-  if (time.value < 0 || time.value > kMostDwell_s) refuse(time.place, "a dwell is 0 to 3600 seconds");
-  writer_.dwell(time.value);
+  const double seconds = time.value * (time.whole ? rules_.whole_dwell_s : 1);
+  if (seconds < 0 || seconds > kMostDwell_s) refuse(time.place, "a dwell is 0 to 3600 seconds");
+  writer_.dwell(seconds);
 }
 
 void Interpreter::set_plane_and_units(Block& block) {
@@ -142,10 +154,15 @@ void Interpreter::set_length(Block& block) {
 void Interpreter::set_control(Block& block) {
   const auto& control = block.g(GGroup::Control);
   if (!control) return;
-  if (control->number == 610) return writer_.path_tolerance(0);
+  if (control->number == 610) {
+    exact_ = true;
+    return writer_.path_tolerance(0);
+  }
   std::optional<double> tolerance = options_.tolerance_mm;
   if (const Word* wanted = block.find('P'); wanted != nullptr && wanted->value != 0) tolerance = modes_.mm(*wanted);
   static_cast<void>(block.find('Q'));  // lines that the control may take together: it does so within P anyway
+  if (!tolerance && !rules_.needs_path_tolerance && !exact_) return;
+  exact_ = false;
   if (!tolerance)
     refuse(control->place,
            "G64 without P leaves open how far the path may be from what is programmed; write P, or give --tolerance");
@@ -162,21 +179,21 @@ void Interpreter::set_distances(Block& block) {
 void Interpreter::act_once(Block& block) {
   const auto& once = block.g(GGroup::Once);
   if (!once) return;
-  if (once->number == 100) set_system(block, modes_, coordinates_, once->place);
-  if (once->number == 280 || once->number == 300) motions_.reference(block, *once);
-  if (once->number >= 920) shift_coordinates(block, *once, modes_, coordinates_);
+  if (once->number == 280 || once->number == 300) return motions_.reference(block, *once);
+  if (sets_coordinates(once->number)) rules_.set_coordinates(block, *once, modes_, coordinates_);
 }
 
 void Interpreter::move(Block& block) {
   const auto& motion = block.g(GGroup::Motion);
-  const bool axes_are_taken = block.once(100) || block.once(920) || block.once(280) || block.once(300);
+  const auto& once = block.g(GGroup::Once);
+  const bool axes_are_taken = once && takes_axes(once->number);
   if (motion) {
     const bool only_mode = (motion->number == 0 || motion->number == 10) && !block.has_any("XYZ");
-    if (motion->number == Modes::kNoMotion || only_mode) {
-      modes_.motion = motion->number;
-      return;
-    }
-    return move_by(block, motion->number, motion->place);
+    const bool ends_cycle = motion->number == Modes::kNoMotion;
+    if (!ends_cycle && !only_mode) return move_by(block, motion->number, motion->place);
+    if (only_mode) modes_.interpolation = motion->number;
+    modes_.motion = ends_cycle && rules_.motion_outlives_cycles ? modes_.interpolation : motion->number;
+    if (!(ends_cycle && rules_.motion_outlives_cycles)) return;
   }
   if (axes_are_taken || !block.has_any("XYZ")) return;
   const char letter = block.has('X') ? 'X' : block.has('Y') ? 'Y' : 'Z';
@@ -187,6 +204,7 @@ void Interpreter::move(Block& block) {
 
 void Interpreter::move_by(Block& block, int code, std::size_t place) {
   const int before = std::exchange(modes_.motion, code);
+  if (code <= 30) modes_.interpolation = code;
   if (code == 0 || code == 10) return motions_.straight(block, code == 0, place);
   if (code == 20 || code == 30) return motions_.arc(block, code == 30, place);
   if (code >= 50 && code <= 53) return splines_.move(block, code, before, place);

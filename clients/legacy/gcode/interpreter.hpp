@@ -69,6 +69,7 @@ class Interpreter {
   Switches switches_;
   Drilling drilling_;
   std::string message_, block_comment_;
+  bool exact_ = false;  ///< G61 is in force
 };
 
 }  // namespace rmac::gcode

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace rmac::gcode {
@@ -23,6 +24,12 @@ int turns_of(const Word& word) {
 
 double Motions::machine_value(const Word& word, std::size_t axis) const {
   if (modes_.incremental) refuse(word.place, "G53 under G91; write G90 before it");
+  if (rules_.zero_is_reference && word.value == 0) {
+    if (options_.reference_mm) return options_.reference_mm->at(axis);
+    refuse(word.place,
+           "where the machine's zero is, in the coordinates of the part, is not known here; give --reference-point "
+           "X,Y,Z, or write the way there without G53");
+  }
   const auto& offset = coordinates_.offset(coordinates_.active()).at(axis);
   if (!offset) {
     refuse(word.place,
@@ -38,7 +45,8 @@ double Motions::machine_value(const Word& word, std::size_t axis) const {
 
 Point Motions::end_of(Block& block, std::size_t place) {
   const bool in_machine = block.once(530);
-  const bool all = block.has('X') && block.has('Y') && block.has('Z');
+  const bool all = std::ranges::all_of(
+      kAxisLetters, [&block](char letter) { return block.has(letter) && !block.use(letter).relative; });
   Point end{};
   if (!all || modes_.incremental) end = start(place);
   for (std::size_t axis = 0; axis < end.size(); ++axis) {
@@ -48,14 +56,19 @@ Point Motions::end_of(Block& block, std::size_t place) {
     if (in_machine) {
       value = machine_value(*word, axis);
     } else {
-      value = modes_.incremental ? value + modes_.mm(*word) : coordinates_.to_part(axis, modes_.mm(*word));
+      value = modes_.incremental || word->relative ? value + modes_.mm(*word)
+                                                   : coordinates_.to_part(axis, modes_.mm(*word));
     }
   }
   return end;
 }
 
 void Motions::straight(Block& block, bool rapid, std::size_t place) {
-  go_straight(end_of(block, place), rapid, place);
+  const Point end = end_of(block, place);
+  if (!block.once(530) || !rules_.zero_is_reference) return go_straight(end, rapid, place);
+  if (!rapid) refuse(block.g(GGroup::Once)->place, "G53 goes with G0; write that into its block");
+  compensation_.left();
+  mover_.reference(end, place);
 }
 
 Point Motions::start(std::size_t place) {
@@ -120,7 +133,7 @@ void Motions::arc(Block& block, bool counter_clockwise, std::size_t place) {
   const Point start = this->start(place);
   const Point end = end_of(block, place);
   Arc arc{.end = end, .axis = legacy::unit_axis(plane.normal), .counter_clockwise = counter_clockwise};
-  if (const Word* turns = block.find('P')) arc.more_turns = turns_of(*turns) - 1;
+  if (const Word* turns = rules_.arcs_have_turns ? block.find('P') : nullptr) arc.more_turns = turns_of(*turns) - 1;
   if (const Word* radius = block.find('R')) {
     if (block.has_any("IJK")) refuse(radius->place, "an arc has a radius or a centre, not both");
     if (radius->value == 0) refuse(radius->place, "an arc of radius 0");

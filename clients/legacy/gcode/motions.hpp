@@ -9,9 +9,14 @@ namespace rmac::gcode {
 /// G0 to G3, G28 and G30: where a block of them ends, and by which way.
 class Motions {
  public:
-  Motions(const Options& options, const Modes& modes, Coordinates& coordinates, Mover& mover,
+  Motions(const Options& options, const Rules& rules, const Modes& modes, Coordinates& coordinates, Mover& mover,
           Compensation& compensation)
-      : options_(options), modes_(modes), coordinates_(coordinates), mover_(mover), compensation_(compensation) {}
+      : options_(options),
+        rules_(rules),
+        modes_(modes),
+        coordinates_(coordinates),
+        mover_(mover),
+        compensation_(compensation) {}
 
   /// G0 or G1. `place`: of what asks for it.
   void straight(Block& block, bool rapid, std::size_t place);
@@ -29,6 +34,7 @@ class Motions {
   [[nodiscard]] Point written_centre(Block& block, const Point& start, std::size_t place) const;
 
   const Options& options_;
+  const Rules& rules_;
   const Modes& modes_;
   Coordinates& coordinates_;
   Mover& mover_;

@@ -2,22 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 namespace rmac::gcode {
-
-namespace {
-
-std::string system_name(std::size_t system) {
-  return system < 6 ? fmt::format("G{}", 54 + system) : fmt::format("G59.{}", system - 5);
-}
-
-std::size_t system_of(const Word& word, const Coordinates& coordinates) {
-  if (word.value != std::round(word.value) || word.value < 0 || word.value > Coordinates::kSystems) {
-    refuse(word.place, "P of G10 is the work system: 1 is G54, 6 is G59, 9 is G59.3, 0 the one in force");
-  }
-  return word.value == 0 ? coordinates.active() : static_cast<std::size_t>(word.value) - 1;
-}
 
 double known_or_refuse(const std::optional<double>& value, const Word& word) {
   if (!value)
@@ -26,59 +11,18 @@ double known_or_refuse(const std::optional<double>& value, const Word& word) {
   return *value;
 }
 
-}  // namespace
-
-void select_system(const Code& code, Coordinates& coordinates) {
-  const auto system = static_cast<std::size_t>(code.number >= 591 ? code.number - 585 : code.number / 10 - 54);
+void select_system(Block& block, const Code& code, const Rules& rules, Coordinates& coordinates) {
+  const std::size_t system = rules.system_of(block, code);
   if (system == coordinates.active()) return;
   for (const std::size_t needed : {system, coordinates.active()}) {
     const Known& offset = coordinates.offset(needed);
     if (offset[0] && offset[1] && offset[2]) continue;
-    refuse(code.place, fmt::format("where {} is in the machine is not known here; set it by G10 L2 P{} X Y Z before, "
-                                   "or give --offset {}=X,Y,Z",
-                                   system_name(needed), needed + 1, system_name(needed)));
+    const SystemName name = rules.system_name(needed);
+    refuse(code.place, fmt::format("where {0} is in the machine is not known here; set it by {1} X Y Z before, or give "
+                                   "--offset {0}=X,Y,Z",
+                                   name.name, name.setter));
   }
   coordinates.activate(system);
-}
-
-void set_system(Block& block, const Modes& modes, Coordinates& coordinates, std::size_t place) {
-  const Word* kind = block.find('L');
-  if (kind == nullptr || (kind->value != 2 && kind->value != 20)) {
-    refuse(kind != nullptr ? kind->place : place,
-           "of G10 there are L2 and L20, which set work systems; tools are set by rmac tools");
-  }
-  if (!block.has('P')) refuse(place, "G10 needs P, the work system");
-  if (block.has('R')) refuse(block.use('R').place, "a work system that is turned (R) is not taken yet");
-  const std::size_t system = system_of(block.use('P'), coordinates);
-  Known offset = coordinates.offset(system);
-  for (std::size_t axis = 0; axis < offset.size(); ++axis) {
-    const Word* word = block.find(kAxisLetters.at(axis));
-    if (word == nullptr) continue;
-    offset.at(axis) = modes.mm(*word);
-    if (kind->value == 20) {
-      const double machine = known_or_refuse(coordinates.machine_tip(axis), *word);
-      offset.at(axis) = machine - modes.mm(*word) - coordinates.g92(axis);
-    }
-  }
-  if (system == coordinates.active() && !(offset[0] && offset[1] && offset[2])) {
-    refuse(place, fmt::format("of {}, which is in force, only a part is set and the rest is not known; write X, Y and "
-                              "Z, or give --offset {}=X,Y,Z",
-                              system_name(system), system_name(system)));
-  }
-  coordinates.set_offset(system, offset);
-}
-
-void shift_coordinates(Block& block, const Code& code, const Modes& modes, Coordinates& coordinates) {
-  if (code.number == 921) return coordinates.set_g92({});
-  if (code.number == 922) return coordinates.suspend_g92();
-  if (code.number == 923) return coordinates.restore_g92();
-  if (!block.has_any("XYZ")) refuse(code.place, "G92 needs X, Y or Z");
-  Point shift{coordinates.g92(0), coordinates.g92(1), coordinates.g92(2)};
-  for (std::size_t axis = 0; axis < shift.size(); ++axis) {
-    const Word* word = block.find(kAxisLetters.at(axis));
-    if (word != nullptr) shift.at(axis) = known_or_refuse(coordinates.tip().at(axis), *word) - modes.mm(*word);
-  }
-  coordinates.set_g92(shift);
 }
 
 }  // namespace rmac::gcode

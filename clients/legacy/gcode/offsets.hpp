@@ -4,13 +4,10 @@
 
 namespace rmac::gcode {
 
-// What changes the meaning of coordinates. Each takes its words of the block, and refuses what is not known.
+/// A code of the group System. Refused where it is not known where the systems are in the machine.
+void select_system(Block& block, const Code& code, const Rules& rules, Coordinates& coordinates);
 
-/// G54 to G59.3.
-void select_system(const Code& code, Coordinates& coordinates);
-/// G10 L2 and L20.
-void set_system(Block& block, const Modes& modes, Coordinates& coordinates, std::size_t place);
-/// G92 to G92.3.
-void shift_coordinates(Block& block, const Code& code, const Modes& modes, Coordinates& coordinates);
+/// A place of the tool that a word sets something by. Throws a Refusal where it is not known.
+[[nodiscard]] double known_or_refuse(const std::optional<double>& value, const Word& word);
 
 }  // namespace rmac::gcode

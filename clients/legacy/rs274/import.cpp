@@ -9,6 +9,7 @@
 #include "clients/legacy/rs274/blocks/reader.hpp"
 #include "clients/legacy/rs274/blocks/refusal.hpp"
 #include "clients/legacy/rs274/flow/flow.hpp"
+#include "clients/legacy/rs274/work_systems.hpp"
 
 namespace rmac::rs274 {
 
@@ -16,7 +17,14 @@ using gcode::After, gcode::Made;
 
 namespace {
 
-constexpr gcode::Rules kRules;
+constexpr gcode::Rules kRules{
+    .system_of = system_of,
+    .system_name = system_name,
+    .set_coordinates = set_coordinates,
+    .arcs_have_turns = true,
+    .needs_path_tolerance = true,
+    .cycles = {},
+};
 
 /// One import: line by line, in the order in which they are carried out, to the program's end.
 class Import {

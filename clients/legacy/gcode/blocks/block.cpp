@@ -34,6 +34,11 @@ void Block::add_word(char letter, const Word& word) {
   word_.at(static_cast<std::size_t>(letter - 'A')) = word;
 }
 
+Word Block::take(char letter) noexcept {
+  words_ &= ~bit(letter);
+  return word_.at(static_cast<std::size_t>(letter - 'A'));
+}
+
 void Block::add_g(const GCode& code, std::size_t place) {
   constexpr int kEndOfCycle = 800;  // G80
   if (!code.refusal.empty()) refuse(place, fmt::format("{}: {}", g_name(code.tenfold), code.refusal));

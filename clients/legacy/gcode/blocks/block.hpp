@@ -13,6 +13,8 @@ namespace rmac::gcode {
 struct Word {
   double value = 0;
   std::size_t place = 0;
+  bool whole = false;     ///< it has no decimal point, where that counts
+  bool relative = false;  ///< a way from where the tool is, whatever mode is in force
 };
 
 /// One code of a modal group, where the block has one.
@@ -30,6 +32,8 @@ class Block {
   void add_m(const MCode& code, std::size_t place);
   /// Throws a Refusal for two words of one letter.
   void add_word(char letter, const Word& word);
+  /// A word that the block has, and has no more then.
+  Word take(char letter) noexcept;
   /// Throws a Refusal for what does not go together.
   void check_together() const;
 

@@ -30,9 +30,10 @@ bool any_unreadable(std::string_view source) noexcept {
 
 }  // namespace
 
-void Line::read(std::string_view source) {
+void Line::read(std::string_view source, LineComments comments) {
   if (source.ends_with('\r')) source.remove_suffix(1);
   source_ = source;
+  line_comments_ = comments;
   unreadable_ = std::string_view::npos;
   comments_.clear();
   text_.clear();
@@ -46,7 +47,7 @@ void Line::read(std::string_view source) {
   for (std::size_t at = 0; at < source.size(); ++at) {
     const char letter = kKept[static_cast<unsigned char>(source[at])];
     if (letter == '\0') continue;
-    const bool is_comment = letter == ';' || letter == '(';
+    const bool is_comment = letter == '(' || (letter == ';' && comments == LineComments::Semicolon);
     text_[end] = is_comment ? kComment : letter;
     if (is_comment) read_comment(at, end);
     ++end;
@@ -73,7 +74,7 @@ std::size_t Line::column(std::size_t place) const noexcept {
   for (std::size_t at = 0; at < source_.size(); ++at) {
     if (kKept[static_cast<unsigned char>(source_[at])] == '\0') continue;
     if (place-- == 0) return at + 1;
-    if (source_[at] == ';') break;
+    if (source_[at] == ';' && line_comments_ == LineComments::Semicolon) break;
     if (source_[at] == '(') at = source_.find_first_of("()", at + 1);
     if (at == std::string_view::npos) break;
   }

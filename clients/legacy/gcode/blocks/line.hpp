@@ -7,6 +7,9 @@
 
 namespace rmac::gcode {
 
+/// How a comment begins that goes on to the end of its line; every language has ( ).
+enum class LineComments { Semicolon, None };
+
 /// A line of a program as the report reads it: without spaces, which may stand anywhere, in capitals, each comment a
 /// kComment. One object reads many lines, so that none allocates; the source of the last is to be there still.
 class Line {
@@ -14,7 +17,7 @@ class Line {
   static constexpr char kComment = '\x01';
 
   /// Throws a Refusal where a comment does not end.
-  void read(std::string_view source);
+  void read(std::string_view source, LineComments comments = LineComments::Semicolon);
 
   [[nodiscard]] std::string_view text() const noexcept { return text_; }
   /// Views of the source, without their marks.
@@ -27,6 +30,7 @@ class Line {
 
   std::string text_;
   std::string_view source_;
+  LineComments line_comments_ = LineComments::Semicolon;
   std::vector<std::string_view> comments_;
   std::size_t unreadable_ = std::string_view::npos;  ///< a byte of the source that stands in no line
 };
