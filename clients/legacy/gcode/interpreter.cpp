@@ -249,6 +249,11 @@ After Interpreter::numbered_program(Block& block, const Code& code) {
           code.place};
 }
 
+void Interpreter::require_no_contour(std::size_t place) const {
+  if (compensation_.on() || compensation_.leaving())
+    refuse(place, "cutter radius compensation is on, and takes moves and feeds alone; write G40 before this");
+}
+
 std::optional<double> Interpreter::tip(std::size_t axis) const {
   if (!modes_.unit_mm || compensation_.on() || compensation_.leaving()) return std::nullopt;
   const auto tip = coordinates_.program_tip(axis);

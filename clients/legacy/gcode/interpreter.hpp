@@ -35,6 +35,9 @@ class Interpreter {
     compensation_.end(place);
   }
 
+  /// Throws a Refusal while moves are held back, or the tool is beside a contour.
+  void require_no_contour(std::size_t place) const;
+
   /// What holds behind the last block, where programs ask for it.
   [[nodiscard]] const Modes& modes() const noexcept { return modes_; }
   [[nodiscard]] const Coordinates& coordinates() const noexcept { return coordinates_; }

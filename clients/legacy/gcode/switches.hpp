@@ -30,6 +30,8 @@ class Switches {
   void off() { machine_.off(); }
 
   [[nodiscard]] std::optional<int> tool() const noexcept { return tool_; }
+  /// The last T.
+  [[nodiscard]] std::optional<int> selected() const noexcept { return selected_; }
   [[nodiscard]] double rpm() const noexcept { return machine_.rpm(); }
 
  private:

@@ -16,8 +16,6 @@ namespace {
 
 /// Values within values: what nests deeper is no program, and would use up the stack.
 constexpr int kDeepest = 100;
-/// Of the operator that binds least.
-constexpr int kLeastLevel = 1;
 /// How far a parameter's number may be from an integer, as in rs274.
 constexpr double kInteger = 1e-4;
 

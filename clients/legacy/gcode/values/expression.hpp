@@ -17,9 +17,13 @@ class Expression {
   /// A vacant one is 0.
   [[nodiscard]] double value(std::size_t& at) { return maybe(at).value_or(0); }
   [[nodiscard]] Maybe maybe(std::size_t& at);
+  /// The same with operators, as far as they go.
+  [[nodiscard]] Maybe without_brackets(std::size_t& at) { return terms(kLeastLevel, at); }
   [[nodiscard]] Name parameter_name(std::size_t& at);
 
  private:
+  static constexpr int kLeastLevel = 1;  ///< of the operator that binds least
+
   [[nodiscard]] bool skip(std::string_view word, std::size_t& at) const noexcept;
   void expect(char letter, std::size_t& at) const;
   [[nodiscard]] double number(std::size_t& at) const;
