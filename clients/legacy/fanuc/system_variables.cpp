@@ -63,9 +63,9 @@ gcode::Maybe SystemVariables::code_in_force(int number) const {
     case 4010:
       return modes.retract_to_r ? 99 : 98;
     case 4014: {
-      constexpr std::size_t kPlain = 6, kFirst = 54;
+      constexpr std::size_t kSystems = 6, kFirst = 54;
       const std::size_t system = interpreter_.coordinates().active();
-      return system < kPlain ? static_cast<double>(kFirst + system) : 54.1;
+      return system < kSystems ? static_cast<double>(kFirst + system) : 54.1;
     }
     case 4109:
       return modes.unit_mm ? gcode::Maybe(modes.feed_mm_min / *modes.unit_mm) : std::nullopt;
