@@ -38,7 +38,7 @@ struct Words {
   std::vector<std::string> offsets, outputs, inputs, diameters, variables, passed;
   bool ids_are_lines = false;
   rs274::Options options;
-  std::string circle_axis, whole_numbers;
+  std::string circle_axis, whole_numbers, rotary;
   bool multax = false;
 
   [[nodiscard]] bool is_apt() const { return dialect == "apt"; }
@@ -116,12 +116,30 @@ bool read_m(const std::string& text, std::set<int>& codes) {
   return read.ec == std::errc() && read.ptr == end && number >= 0 && codes.insert(number).second;
 }
 
+/// C,-A.
+std::vector<gcode::RotaryAxis> read_rotary(const std::string& text) {
+  std::vector<gcode::RotaryAxis> axes;
+  for (std::size_t at = 0; at <= text.size(); ++at) {
+    const bool turns_back = at < text.size() && text[at] == '-';
+    if (turns_back) ++at;
+    const char letter = at < text.size() ? text[at] : '\0';
+    const bool is_new = std::ranges::find(axes, letter, &gcode::RotaryAxis::letter) == axes.end();
+    if (letter < 'A' || letter > 'C' || !is_new) return {};
+    axes.push_back({letter, turns_back ? -1.0 : 1.0});
+    if (++at < text.size() && text[at] != ',') return {};
+  }
+  return axes;
+}
+
 /// What a Fanuc program alone has.
 std::optional<std::string> finish_fanuc(Words& words) {
   if (!words.whole_numbers.empty()) {
     words.options.whole_numbers =
         words.whole_numbers == "units" ? gcode::WholeNumbers::Units : gcode::WholeNumbers::Increments;
   }
+  if (!words.rotary.empty()) words.options.rotary = read_rotary(words.rotary);
+  if (!words.rotary.empty() && words.options.rotary.empty())
+    return "--rotary is A, B and C, each at most once and with - where it turns the other way, as C,A or C,-B";
   for (const auto& text : words.variables) {
     if (!read_variable(text, words.options.variables))
       return fmt::format("--variable {}: it is a number from 100 to 199 or 500 to 999, and a value, as 500=12.5", text);
@@ -309,6 +327,11 @@ void declare_fanuc(CLI::App& app, Words& words) {
          "what lengths and angles without a decimal point count in, in a fanuc program: units (X10 is 10 mm) or "
          "increments (X10 is 0.010 mm); refused unless given")
       ->check(CLI::IsMember({"units", "increments"}));
+  app.add_option(
+         "--rotary", words.rotary,
+         "C,A: the axes of a fanuc program's machine that turn the tool about Z (C), Y (B) and X (A) of the part, "
+         "from the part to the tool; each counter-clockwise, or with - the other way")
+      ->allow_extra_args(false);
   app.add_option("--variable", words.variables,
                  "500=12.5: what the machine has in a common variable that a fanuc program reads")
       ->allow_extra_args(false);
@@ -329,7 +352,7 @@ void declare_apt(CLI::App& app, Words& words) {
 /// The option that was given and is of another language than the file's, or nothing.
 std::optional<std::string> foreign_option(const CLI::App& app, const Words& words) {
   enum Languages { Rs274 = 1, Fanuc = 2, Apt = 4 };
-  static constexpr std::array<std::pair<const char*, int>, 14> kOf{{{"--block-delete", Rs274 | Fanuc},
+  static constexpr std::array<std::pair<const char*, int>, 15> kOf{{{"--block-delete", Rs274 | Fanuc},
                                                                     {"--tolerance", Rs274 | Fanuc},
                                                                     {"--assume-g43", Rs274 | Fanuc},
                                                                     {"--offset", Rs274 | Fanuc},
@@ -340,6 +363,7 @@ std::optional<std::string> foreign_option(const CLI::App& app, const Words& word
                                                                     {"--tool-diameter", Rs274 | Fanuc},
                                                                     {"--whole-numbers", Fanuc},
                                                                     {"--variable", Fanuc},
+                                                                    {"--rotary", Fanuc},
                                                                     {"--pass-over", Fanuc},
                                                                     {"--multax", Apt},
                                                                     {"--circle-axis", Apt}}};

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "clients/legacy/gcode/rules.hpp"
+#include "clients/legacy/gcode/modes/rules.hpp"
 
 namespace rmac::fanuc {
 

@@ -4,7 +4,7 @@
 
 #include "clients/legacy/fanuc/blocks/refusal.hpp"
 #include "clients/legacy/fanuc/blocks/words.hpp"
-#include "clients/legacy/gcode/offsets.hpp"
+#include "clients/legacy/gcode/modes/offsets.hpp"
 
 namespace rmac::fanuc {
 

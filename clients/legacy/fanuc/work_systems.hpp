@@ -1,6 +1,6 @@
 #pragma once
 
-#include "clients/legacy/gcode/modes.hpp"
+#include "clients/legacy/gcode/modes/modes.hpp"
 
 namespace rmac::fanuc {
 

@@ -84,7 +84,8 @@ bool may_be_within(GGroup group, const Code& code, const Modes& modes) {
 /// Once it is off, until the tool is back on the program's own way: what goes by where the tool is.
 bool may_be_behind(GGroup group, const Code& code) {
   if (group == GGroup::Once) return code.number == 40;
-  return group != GGroup::System && (group != GGroup::Motion || code.number <= 30 || code.number == Modes::kNoMotion);
+  return group != GGroup::System && group != GGroup::Turn && group != GGroup::Mirror &&
+         (group != GGroup::Motion || code.number <= 30 || code.number == Modes::kNoMotion);
 }
 
 }  // namespace

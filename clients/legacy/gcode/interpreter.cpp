@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "clients/legacy/gcode/blocks/comments.hpp"
+#include "clients/legacy/gcode/modes/offsets.hpp"
 #include "clients/legacy/gcode/named_io.hpp"
-#include "clients/legacy/gcode/offsets.hpp"
 
 namespace rmac::gcode {
 
@@ -45,6 +45,8 @@ Interpreter::Interpreter(const Options& options, const Rules& rules, Writer& wri
       mover_(options, modes_, coordinates_, writer),
       compensation_([this](const ContourMove& move, std::size_t place) { mover_.held(move, place); }),
       motions_(options, rules, modes_, coordinates_, mover_, compensation_),
+      turning_(modes_, coordinates_, mover_),
+      tool_axis_(options, modes_, coordinates_, mover_),
       splines_(motions_, modes_, mover_),
       switches_(writer),
       drilling_(rules, modes_, coordinates_, mover_, switches_, writer) {
@@ -75,7 +77,9 @@ After Interpreter::execute(Block& block, const Line& line) {
   if (const auto& system = block.g(GGroup::System)) select_system(block, *system, rules_, coordinates_);
   set_control(block);
   set_distances(block);
+  turning_.act(block);
   act_once(block);
+  tool_axis_.read(block);
   move(block);
   const bool goes_on = stop(block);
   block.require_all_used();
@@ -136,8 +140,12 @@ void Interpreter::set_length(Block& block) {
   if (!length) return;
   if (length->number == 490) {
     modes_.length = ToolLength::Off;
+    modes_.centre_point = ToolCentrePoint::Off;
     return;
   }
+  modes_.centre_point = length->number == 434   ? ToolCentrePoint::Angles
+                        : length->number == 435 ? ToolCentrePoint::Vectors
+                                                : ToolCentrePoint::Off;
   if (const Word* entry = block.find('H'); entry != nullptr && switches_.tool() != entry->value) {
     refuse(
         entry->place,
@@ -180,7 +188,10 @@ void Interpreter::act_once(Block& block) {
   const auto& once = block.g(GGroup::Once);
   if (!once) return;
   if (once->number == 280 || once->number == 300) return motions_.reference(block, *once);
-  if (sets_coordinates(once->number)) rules_.set_coordinates(block, *once, modes_, coordinates_);
+  if (once->number == 531 || once->number == 536) return turning_.align(block, once->place);
+  if (!sets_coordinates(once->number)) return;
+  require_unplaced(coordinates_, once->place);
+  rules_.set_coordinates(block, *once, modes_, coordinates_);
 }
 
 void Interpreter::move(Block& block) {
@@ -205,6 +216,7 @@ void Interpreter::move(Block& block) {
 void Interpreter::move_by(Block& block, int code, std::size_t place) {
   const int before = std::exchange(modes_.motion, code);
   if (code <= 30) modes_.interpolation = code;
+  turning_.require_whole(block, code < 20 || code > 53, place);
   if (code == 0 || code == 10) return motions_.straight(block, code == 0, place);
   if (code == 20 || code == 30) return motions_.arc(block, code == 30, place);
   if (code >= 50 && code <= 53) return splines_.move(block, code, before, place);
@@ -256,6 +268,7 @@ void Interpreter::require_no_contour(std::size_t place) const {
 
 std::optional<double> Interpreter::tip(std::size_t axis) const {
   if (!modes_.unit_mm || compensation_.on() || compensation_.leaving()) return std::nullopt;
+  if (coordinates_.placement()) return std::nullopt;
   const auto tip = coordinates_.program_tip(axis);
   return tip ? std::optional(*tip / *modes_.unit_mm) : std::nullopt;
 }

@@ -9,6 +9,8 @@
 #include "clients/legacy/gcode/motions.hpp"
 #include "clients/legacy/gcode/splines.hpp"
 #include "clients/legacy/gcode/switches.hpp"
+#include "clients/legacy/gcode/tool_axis.hpp"
+#include "clients/legacy/gcode/turning.hpp"
 
 namespace rmac::gcode {
 
@@ -68,6 +70,8 @@ class Interpreter {
   Mover mover_;
   Compensation compensation_;
   Motions motions_;
+  Turning turning_;
+  ToolAxis tool_axis_;
   Splines splines_;
   Switches switches_;
   Drilling drilling_;

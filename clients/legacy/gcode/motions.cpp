@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clients/legacy/gcode/modes/offsets.hpp"
+
 namespace rmac::gcode {
 
 namespace {
@@ -23,6 +25,7 @@ int turns_of(const Word& word) {
 }  // namespace
 
 double Motions::machine_value(const Word& word, std::size_t axis) const {
+  require_unplaced(coordinates_, word.place);
   if (modes_.incremental) refuse(word.place, "G53 under G91; write G90 before it");
   if (rules_.zero_is_reference && word.value == 0) {
     if (options_.reference_mm) return options_.reference_mm->at(axis);
@@ -91,6 +94,7 @@ void Motions::go_along(const Arc& arc, std::size_t place) {
 }
 
 void Motions::reference(Block& block, const Code& code) {
+  require_unplaced(coordinates_, code.place);
   const bool first = code.number == 280;
   const auto& known = first ? options_.reference_mm : options_.second_reference_mm;
   if (!known) {

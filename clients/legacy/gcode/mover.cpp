@@ -19,7 +19,19 @@ void Mover::write_feed(double mm_min, std::size_t place) {
 
 void Mover::write_rapid(const Point& end, std::size_t place) {
   write_feed(options_.rapid_mm_min, place);
-  writer_.rapid(end);
+  writer_.rapid(coordinates_.placed(end));
+  axis_here_ = axis_;
+}
+
+void Mover::aim(const Point& axis) {
+  if (axis == axis_) return;
+  axis_ = axis;
+  writer_.tool_axis(axis);
+}
+
+void Mover::turn(const Point& axis, std::size_t place) {
+  aim(axis);
+  if (coordinates_.tip_is_known()) go(coordinates_.known_tip(), place);
 }
 
 Point Mover::start(std::size_t place) {
@@ -31,14 +43,15 @@ Point Mover::start(std::size_t place) {
              "with a G0 to X, Y and Z, or give --approach X,Y,Z");
     }
     write_frame();
-    write_rapid(*options_.approach_mm, place);
-    coordinates_.move_to(*options_.approach_mm);
+    const Point approach = coordinates_.unplaced(*options_.approach_mm);
+    write_rapid(approach, place);
+    coordinates_.move_to(approach);
   }
   return coordinates_.known_tip();
 }
 
-void Mover::require_reach(const Point& point, std::size_t place) {
-  for (const double value : point) {
+void Mover::require_reach(const Point& point, std::size_t place) const {
+  for (const double value : coordinates_.placed(point)) {
     if (!(std::abs(value) <= legacy::kFarthest_mm)) refuse(place, "a move beyond 1 000 000 mm");
   }
 }
@@ -66,7 +79,7 @@ void Mover::reference(const Point& end, std::size_t place) {
 }
 
 void Mover::go(const Point& end, std::size_t place) {
-  if (!coordinates_.tip_is_known() || coordinates_.known_tip() != end) write_rapid(end, place);
+  if (!coordinates_.tip_is_known() || coordinates_.known_tip() != end || axis_ != axis_here_) write_rapid(end, place);
   coordinates_.move_to(end);
 }
 
@@ -75,19 +88,32 @@ void Mover::prepare_feed(const Point& end, double feed_mm_min, std::size_t place
   prepare(end, place);
   if (feed_mm_min == 0) refuse(place, "no feed was set before this move; write F");
   write_feed(feed_mm_min, place);
-  writer_.begin(from);
+  writer_.begin(coordinates_.placed(from));
 }
 
 void Mover::line(const Point& end, double feed_mm_min, std::size_t place) {
   prepare_feed(end, feed_mm_min, place);
-  writer_.line(end);
+  writer_.line(coordinates_.placed(end));
+  axis_here_ = axis_;
   coordinates_.move_to(end);
 }
 
 void Mover::arc(const Arc& arc, double feed_mm_min, std::size_t place) {
   prepare_feed(arc.end, feed_mm_min, place);
-  writer_.arc(arc);
+  writer_.arc(placed(arc));
+  axis_here_ = axis_;
   coordinates_.move_to(arc.end);
+}
+
+Arc Mover::placed(const Arc& arc) const {
+  const auto& placement = coordinates_.placement();
+  if (!placement) return arc;
+  Arc there = arc;
+  there.centre = placement->placed(arc.centre);
+  there.end = placement->placed(arc.end);
+  there.axis = placement->turned(arc.axis);
+  if (placement->mirrors()) there.counter_clockwise = !arc.counter_clockwise;
+  return there;
 }
 
 void Mover::held(const ContourMove& move, std::size_t place) {
@@ -106,7 +132,13 @@ void Mover::held(const ContourMove& move, std::size_t place) {
 void Mover::nurbs(const legacy::Nurbs& curve, std::size_t place) {
   for (const Point& point : curve.points) require_reach(point, place);
   prepare_feed(curve.points.back(), modes_.feed_mm_min, place);
-  writer_.nurbs(curve);
+  if (!coordinates_.placement()) {
+    writer_.nurbs(curve);
+  } else {
+    legacy::Nurbs there = curve;
+    for (Point& point : there.points) point = coordinates_.placed(point);
+    writer_.nurbs(there);
+  }
   coordinates_.move_to(curve.points.back());
 }
 

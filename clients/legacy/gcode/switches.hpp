@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "clients/legacy/gcode/modes.hpp"
+#include "clients/legacy/gcode/modes/modes.hpp"
 #include "clients/legacy/program/machine_switches.hpp"
 
 namespace rmac::gcode {

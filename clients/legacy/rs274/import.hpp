@@ -3,7 +3,7 @@
 #include <string_view>
 #include <tl/expected.hpp>
 
-#include "clients/legacy/gcode/modes.hpp"
+#include "clients/legacy/gcode/modes/modes.hpp"
 #include "clients/legacy/program/outcome.hpp"
 
 namespace rmac::rs274 {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "clients/legacy/gcode/offsets.hpp"
+#include "clients/legacy/gcode/modes/offsets.hpp"
 #include "clients/legacy/rs274/blocks/refusal.hpp"
 
 namespace rmac::rs274 {

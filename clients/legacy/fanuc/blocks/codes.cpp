@@ -22,6 +22,7 @@ constexpr std::string_view kExact =
 constexpr std::string_view kLength =
     "tool lengths are those of the appliance's tool table (rmac tools); write G43 H and the tool's number";
 constexpr std::string_view kBegin = "this stands at the begin of its block, behind N alone";
+constexpr std::string_view kTilt = "this way to tilt a plane is not taken; have the post write Euler's angles, G68.2";
 constexpr std::string_view kLimits = "which room the machine has, the appliance knows; take it out";
 constexpr std::string_view kSurface = "constant surface speed is not taken; write G97 and S in turns a minute";
 
@@ -70,6 +71,8 @@ constexpr auto kG = std::to_array<FanucG>({
     {{422, GGroup::Radius, kSpace}},
     {{430, GGroup::Length, {}}},
     {{431, GGroup::Length, "a length along a tilted axis is not taken; write G43.5, whose I, J and K are the axis"}},
+    {{434, GGroup::Length, {}}},
+    {{435, GGroup::Length, {}}},
     {{440, GGroup::Length, kLength}},
     {{450, GGroup::Once, kLength}},
     {{460, GGroup::Once, kLength}},
@@ -78,11 +81,13 @@ constexpr auto kG = std::to_array<FanucG>({
     {{490, GGroup::Length, {}}},
     {{491, GGroup::Once, {}}, Use::Nothing},
     {{500, GGroup::Once, {}}, Use::Nothing},
-    {{501, GGroup::Once, {}}, Use::Nothing},
+    {{501, GGroup::Mirror, {}}},
     {{510, GGroup::Once, "scaling is not taken; have the CAM program write the part in its size"}},
-    {{511, GGroup::Once, "mirrors are not taken yet; have the CAM program write the mirrored part"}},
+    {{511, GGroup::Mirror, {}}},
     {{520, GGroup::Once, {}}},
     {{530, GGroup::Once, {}}},
+    {{531, GGroup::Once, {}}},
+    {{536, GGroup::Once, {}}},
     {{540, GGroup::System, {}}},
     {{541, GGroup::System, {}}},
     {{550, GGroup::System, {}}},
@@ -99,10 +104,11 @@ constexpr auto kG = std::to_array<FanucG>({
     {{660, GGroup::Once, kBegin}},
     {{661, GGroup::Once, "a call behind every block is not taken; write G66, which calls behind moves"}},
     {{670, GGroup::Once, {}}, Use::EndOfModalCall},
-    {{680, GGroup::Once, "turned coordinates are not taken yet; have the CAM program write the turned part"}},
-    {{682, GGroup::Once, "tilted planes are not taken yet; have the CAM program write tool axes, as APT"}},
-    {{690, GGroup::Once, {}}, Use::Nothing},
-    {{691, GGroup::Once, {}}, Use::Nothing},
+    {{680, GGroup::Turn, {}}},
+    {{682, GGroup::Turn, {}}},
+    {{683, GGroup::Turn, kTilt}},
+    {{684, GGroup::Turn, kTilt}},
+    {{690, GGroup::Turn, {}}},
     {{730, GGroup::Motion, {}}},
     {{740, GGroup::Motion, kThread}},
     {{760, GGroup::Motion, kHand}},

@@ -59,8 +59,6 @@ Ordered BlockReader::read(std::string_view text, std::size_t at, const Variables
 void BlockReader::add(const FanucWord& word, gcode::Block& block, Ordered& ordered) {
   if (word.letter == 'G') return add_g(word.word, block, ordered);
   if (word.letter == 'M') return add_m(word.word, block, ordered);
-  if (word.letter == 'A' || word.letter == 'B' || word.letter == 'C')
-    refuse(word.word.place, fmt::format("axis {} is not taken yet: programs of X, Y and Z are", word.letter));
   block.add_word(word.letter, word.word);
 }
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "clients/legacy/fanuc/blocks/variables.hpp"
-#include "clients/legacy/gcode/modes.hpp"
+#include "clients/legacy/gcode/modes/modes.hpp"
 
 namespace rmac::fanuc {
 

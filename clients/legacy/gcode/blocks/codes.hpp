@@ -20,9 +20,11 @@ enum class GGroup {
   Return,
   System,
   Control,
-  SpindleMode
+  SpindleMode,
+  Turn,   ///< G68, G68.2 and G69
+  Mirror  ///< G51.1 and G50.1
 };
-inline constexpr std::size_t kGGroups = 13;
+inline constexpr std::size_t kGGroups = 15;
 
 enum class MGroup { Stop, Tool, Spindle, Mist, Flood, CoolantOff, Override, Io };
 inline constexpr std::size_t kMGroups = 8;

@@ -89,7 +89,7 @@ TEST(FanucFormat, NamesWhatIsNoBlock) {
   EXPECT_THAT(refusal_of(program_of("G7.1 C10.")), HasSubstr("G7.1"));
   EXPECT_THAT(refusal_of(program_of("G12345")), HasSubstr("there is no G12345 here"));
   EXPECT_THAT(refusal_of(program_of("DPRNT[HELLO]")), StartsWith("5:1: what a program prints"));
-  EXPECT_THAT(refusal_of(program_of("G1 A90.")), HasSubstr("axis A"));
+  EXPECT_THAT(refusal_of(program_of("G1 X0 A90.")), HasSubstr("give --rotary"));
 }
 
 }  // namespace

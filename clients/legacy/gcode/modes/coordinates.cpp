@@ -1,4 +1,4 @@
-#include "clients/legacy/gcode/coordinates.hpp"
+#include "clients/legacy/gcode/modes/coordinates.hpp"
 
 namespace rmac::gcode {
 
@@ -6,6 +6,17 @@ const Known& Coordinates::offset(std::size_t system) const {
   static const Known kUnknown;
   const auto found = offsets_.find(system);
   return found == offsets_.end() ? kUnknown : found->second;
+}
+
+void Coordinates::place(const std::optional<legacy::Placement>& placement) {
+  if (placement == placement_) return;
+  const std::optional<Point> part = tip_is_known() ? std::optional(placed(known_tip())) : std::nullopt;
+  placement_ = placement;
+  if (part) {
+    move_to(unplaced(*part));
+  } else {
+    forget_tip();
+  }
 }
 
 std::optional<Point> Coordinates::part_origin() const {

@@ -5,7 +5,8 @@
 #include <map>
 #include <optional>
 
-#include "clients/legacy/gcode/arc_geometry.hpp"
+#include "clients/legacy/gcode/modes/arc_geometry.hpp"
+#include "clients/legacy/program/vectors.hpp"
 
 namespace rmac::gcode {
 
@@ -14,7 +15,8 @@ using Known = std::array<std::optional<double>, 3>;
 
 /// Where the tool tip is, and what coordinates mean. A program's coordinates are those of the part (the frame of the
 /// active work system, which `.rmac` moves in) less what G92 set. Where a work system is in the machine is known only
-/// when the program, or who imports it, says so. All in mm.
+/// when the program, or who imports it, says so. All in mm. Where a placement is in force, all of this is so in
+/// coordinates that it leads to those of the part from.
 class Coordinates {
  public:
   [[nodiscard]] const Known& tip() const noexcept { return tip_; }
@@ -41,6 +43,13 @@ class Coordinates {
   [[nodiscard]] const Point& local() const noexcept { return local_; }
   void set_local(const Point& offset) noexcept { local_ = offset; }
 
+  /// Turned, tilted and mirrored coordinates; none: as they are. The tip stays where it is in the part.
+  [[nodiscard]] const std::optional<legacy::Placement>& placement() const noexcept { return placement_; }
+  void place(const std::optional<legacy::Placement>& placement);
+  [[nodiscard]] Point placed(const Point& point) const { return placement_ ? placement_->placed(point) : point; }
+  /// Where coordinates of the part are.
+  [[nodiscard]] Point unplaced(const Point& part) const { return placement_ ? placement_->back().placed(part) : part; }
+
   /// Coordinates of the program.
   [[nodiscard]] double to_part(std::size_t axis, double program) const { return program + shift(axis); }
   [[nodiscard]] std::optional<double> program_tip(std::size_t axis) const;
@@ -52,6 +61,7 @@ class Coordinates {
 
   Known tip_{};
   std::map<std::size_t, Known> offsets_;
+  std::optional<legacy::Placement> placement_;
   Point g92_{}, saved_g92_{}, local_{};
   std::size_t active_ = 0;
 };

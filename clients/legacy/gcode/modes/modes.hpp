@@ -5,19 +5,30 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
-#include "clients/legacy/gcode/arc_geometry.hpp"
 #include "clients/legacy/gcode/blocks/block.hpp"
 #include "clients/legacy/gcode/blocks/refusal.hpp"
-#include "clients/legacy/gcode/coordinates.hpp"
 #include "clients/legacy/gcode/flow/endless.hpp"
-#include "clients/legacy/gcode/rules.hpp"
+#include "clients/legacy/gcode/modes/arc_geometry.hpp"
+#include "clients/legacy/gcode/modes/coordinates.hpp"
+#include "clients/legacy/gcode/modes/rules.hpp"
 
 namespace rmac::gcode {
 
 /// What lengths and angles without a decimal point count in: mm, inches and degrees, or thousandths of mm and degrees
 /// and ten-thousandths of inches.
 enum class WholeNumbers { Refused, Units, Increments };
+
+/// An axis of the machine that turns the tool about X (A), Y (B) or Z (C) of the part, counter-clockwise seen against
+/// that where the angle grows, or the other way.
+struct RotaryAxis {
+  char letter = 'A';
+  double sign = 1;
+};
+
+/// How programs say which way the tool points: not at all, by angles of the machine's axes, or by vectors.
+enum class ToolCentrePoint { Off, Angles, Vectors };
 
 /// What whoever imports a program says of it, because it does not say it itself.
 struct Options {
@@ -32,6 +43,7 @@ struct Options {
   std::map<int, double> tool_diameters_mm;                 ///< of G41 and G42, by the numbers of the tools
   WholeNumbers whole_numbers = WholeNumbers::Refused;
   std::map<int, double> variables;  ///< what the machine has in common variables, by their numbers
+  std::vector<RotaryAxis> rotary;   ///< what A, B and C turn, from the part to the tool
   std::set<int> passed_m;           ///< M codes of the machine that mean nothing here
   legacy::Ids ids = legacy::Ids::Numbers;
   Bounds bounds;                         ///< of loops and subprograms
@@ -53,6 +65,7 @@ struct Modes {
   bool incremental = false, absolute_centres = false, retract_to_r = false;
   double feed_mm_min = 0;
   ToolLength length = ToolLength::Unsaid;
+  ToolCentrePoint centre_point = ToolCentrePoint::Off;
   std::optional<int> diameter_register;  ///< the last D, where that is an offset
 
   /// That lengths are written in, mm. `place`: of a length.

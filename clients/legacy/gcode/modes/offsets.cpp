@@ -1,4 +1,4 @@
-#include "clients/legacy/gcode/offsets.hpp"
+#include "clients/legacy/gcode/modes/offsets.hpp"
 
 #include <fmt/format.h>
 
@@ -11,9 +11,15 @@ double known_or_refuse(const std::optional<double>& value, const Word& word) {
   return *value;
 }
 
+void require_unplaced(const Coordinates& coordinates, std::size_t place) {
+  if (coordinates.placement())
+    refuse(place, "this in turned, tilted or mirrored coordinates is not taken; write G69, or G50.1, before it");
+}
+
 void select_system(Block& block, const Code& code, const Rules& rules, Coordinates& coordinates) {
   const std::size_t system = rules.system_of(block, code);
   if (system == coordinates.active()) return;
+  require_unplaced(coordinates, code.place);
   for (const std::size_t needed : {system, coordinates.active()}) {
     const Known& offset = coordinates.offset(needed);
     if (offset[0] && offset[1] && offset[2]) continue;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "clients/legacy/gcode/blocks/block.hpp"
-#include "clients/legacy/gcode/coordinates.hpp"
+#include "clients/legacy/gcode/modes/coordinates.hpp"
 
 namespace rmac::gcode {
 
