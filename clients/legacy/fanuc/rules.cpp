@@ -14,7 +14,7 @@ constexpr gcode::Rules kRules{
     .zero_is_reference = true,
     .motion_outlives_cycles = true,
     .whole_dwell_s = 1e-3,
-    .cycles = {.repeats = 'K',
+    .cycles = {.repeats = "KL",
                .may_wait = true,
                .words_stay = true,
                .dwell_is_free = true,

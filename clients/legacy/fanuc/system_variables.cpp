@@ -72,7 +72,7 @@ gcode::Maybe SystemVariables::code_in_force(int number) const {
     case 4114:
       return flow_.last_label();
     case 4115:
-      return flow_.program();
+      return flow_.program() == FanucProgram::kUnnumbered ? std::nullopt : gcode::Maybe(flow_.program());
     case 4119:
       return interpreter_.switches().rpm();
     case 4120:

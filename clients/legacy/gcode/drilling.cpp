@@ -28,12 +28,12 @@ bool dwells(int code) {
 constexpr int kMostRepeats = legacy::kMostPecks;
 
 int repeats_of(Block& block, const Rules::Cycles& rules) {
-  const Word* word = block.find(rules.repeats);
-  if (word == nullptr) return 1;
+  const auto letter = std::ranges::find_if(rules.repeats, [&block](char one) { return block.has(one); });
+  if (letter == rules.repeats.end()) return 1;
+  const Word* word = block.find(*letter);
   const int least = rules.may_wait ? 0 : 1;
   if (word->value != std::round(word->value) || word->value < least || word->value > kMostRepeats) {
-    refuse(word->place,
-           fmt::format("{} is how often the hole is repeated, {} to {}", rules.repeats, least, kMostRepeats));
+    refuse(word->place, fmt::format("{} is how often the hole is repeated, {} to {}", *letter, least, kMostRepeats));
   }
   return static_cast<int>(word->value);
 }

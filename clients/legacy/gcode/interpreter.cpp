@@ -187,7 +187,10 @@ void Interpreter::set_distances(Block& block) {
 void Interpreter::act_once(Block& block) {
   const auto& once = block.g(GGroup::Once);
   if (!once) return;
-  if (once->number == 280 || once->number == 300) return motions_.reference(block, *once);
+  if (once->number == 280 || once->number == 300) {
+    if (block.has_any("ABC") && !block.has_any("XYZ")) return;  // these alone are what the tool's axis is asked for
+    return motions_.reference(block, *once);
+  }
   if (once->number == 531 || once->number == 536) return turning_.align(block, once->place);
   if (!sets_coordinates(once->number)) return;
   require_unplaced(coordinates_, once->place);

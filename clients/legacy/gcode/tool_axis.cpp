@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ranges>
 
 #include "clients/legacy/gcode/modes/offsets.hpp"
 #include "clients/legacy/gcode/turns.hpp"
@@ -39,7 +38,10 @@ void ToolAxis::read_angles(Block& block, int motion) {
   for (const char letter : kRotaryLetters) {
     if (!block.has(letter)) continue;
     const Word word = block.take(letter);
-    if (read_angle(letter, word)) place = word.place;
+    if (!read_angle(letter, word)) continue;
+    place = word.place;
+    if (block.once(280) || block.once(300))
+      refuse(word.place, "where this axis is at its reference point is not known here; write its angle");
   }
   if (!place) return;
   const Point axis = axis_of_angles(*place);
@@ -71,11 +73,11 @@ bool ToolAxis::read_angle(char letter, const Word& word) {
 
 Point ToolAxis::axis_of_angles(std::size_t place) const {
   Point axis = legacy::unit_axis(2);
-  for (const RotaryAxis& rotary : std::views::reverse(options_.rotary)) {
-    const auto& angle = angles_.at(place_of(rotary.letter));
+  for (auto rotary = options_.rotary.rbegin(); rotary != options_.rotary.rend(); ++rotary) {
+    const auto& angle = angles_.at(place_of(rotary->letter));
     if (!angle)
-      refuse(place, fmt::format("where axis {0} stands is not known here; write {0} beside this", rotary.letter));
-    axis = turn_about_normal(plane_of(rotary.letter), rotary.sign * *angle).turned(axis);
+      refuse(place, fmt::format("where axis {0} stands is not known here; write {0} beside this", rotary->letter));
+    axis = turn_about_normal(plane_of(rotary->letter), rotary->sign * *angle).turned(axis);
   }
   return axis;
 }

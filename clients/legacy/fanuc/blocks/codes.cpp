@@ -22,6 +22,7 @@ constexpr std::string_view kExact =
 constexpr std::string_view kLength =
     "tool lengths are those of the appliance's tool table (rmac tools); write G43 H and the tool's number";
 constexpr std::string_view kBegin = "this stands at the begin of its block, behind N alone";
+constexpr std::string_view kUnits = "a Fanuc has G20 (inches) and G21 (mm) for this; have the post write those";
 constexpr std::string_view kTilt = "this way to tilt a plane is not taken; have the post write Euler's angles, G68.2";
 constexpr std::string_view kLimits = "which room the machine has, the appliance knows; take it out";
 constexpr std::string_view kSurface = "constant surface speed is not taken; write G97 and S in turns a minute";
@@ -109,6 +110,8 @@ constexpr auto kG = std::to_array<FanucG>({
     {{683, GGroup::Turn, kTilt}},
     {{684, GGroup::Turn, kTilt}},
     {{690, GGroup::Turn, {}}},
+    {{700, GGroup::Units, kUnits}},
+    {{710, GGroup::Units, kUnits}},
     {{730, GGroup::Motion, {}}},
     {{740, GGroup::Motion, kThread}},
     {{760, GGroup::Motion, kHand}},

@@ -28,11 +28,7 @@ void rewrite_reference(gcode::Block& block) {
     block.add_word(axis, word);
   }
   const std::size_t place = block.g(gcode::GGroup::Once)->place;
-  if (!block.has_any("XYZ")) refuse(place, "this needs X, Y or Z: the axes that go to the reference point");
-  for (const char letter : {'A', 'B', 'C'}) {
-    if (block.has(letter))
-      refuse(block.place(letter), "where this axis is at its reference point is not known here; write its angle");
-  }
+  if (!block.has_any("XYZABC")) refuse(place, "this needs X, Y or Z: the axes that go to the reference point");
   if (const gcode::Word* point = block.once(300) ? block.find('P') : nullptr; point != nullptr && point->value != 2)
     refuse(point->place, "of G30 there is the second reference point, P2; write the way to others as G0");
 }

@@ -91,7 +91,7 @@ void Flow::pass_number(std::size_t place) {
   static_cast<void>(read_digits(line_.text(), at));
   const auto& programs = outline_.programs();
   const auto begins_here = [this](const FanucProgram& program) {
-    return program.number != 0 && program.begin == here_;
+    return program.number != FanucProgram::kUnnumbered && program.begin == here_;
   };
   const auto found = std::ranges::find_if(programs, begins_here);
   const auto index = static_cast<std::size_t>(found - programs.begin());
@@ -181,9 +181,9 @@ void Flow::go_to(int label, std::size_t place) {
   Frame& frame = frames_.back();
   const auto spot = outline_.find_label(frame.program, label, next_);
   if (!spot) {
-    const int number = program();
+    const bool numbered = program() != FanucProgram::kUnnumbered;
     refuse(place, fmt::format("there is no N{} in {}", label,
-                              number == 0 ? std::string("this program") : fmt::format("O{}", number)));
+                              numbered ? fmt::format("O{}", program()) : std::string("this program")));
   }
   auto around = outline_.loops_around(frame.program, *spot);
   const bool stays =

@@ -30,7 +30,7 @@ class Flow {
   /// Its number in the source, from 1; 0 before the first.
   [[nodiscard]] std::size_t number() const noexcept { return next_.lines; }
   [[nodiscard]] std::size_t furthest() const noexcept { return furthest_; }
-  /// N of the last line that had one, and O of the program that runs; 0 where there is none.
+  /// N of the last line that had one, and O of the program that runs; 0 and kUnnumbered where there is none.
   [[nodiscard]] int last_label() const noexcept { return last_label_; }
   [[nodiscard]] int program() const { return outline_.programs()[frames_.back().program].number; }
   /// `O100` of what M98 or G65 called and M99 ends; empty in the main program.

@@ -86,7 +86,7 @@ void Outline::begin_program(const gcode::Line& line, std::size_t place, const Sp
   require_loops_ended();
   std::size_t at = place + 1;
   const auto number = read_digits(line.text(), at);
-  if (!number || *number == 0) refuse(place, "a program's number is O and 1 to 9 digits");
+  if (!number) refuse(place, "a program's number is O and 1 to 9 digits");
   programs_.back().end = spot;
   programs_.push_back({*number, spot, {}});
   if (!by_number_.emplace(*number, programs_.size() - 1).second)

@@ -19,7 +19,9 @@ struct Spot {
 
 /// O1234, from its line to the next of this kind. What stands before the first is a program without a number.
 struct FanucProgram {
-  int number = 0;
+  static constexpr int kUnnumbered = -1;
+
+  int number = kUnnumbered;
   Spot begin, end;  ///< the former: of the line with its number
 };
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "clients/legacy/gcode/blocks/block.hpp"
 #include "clients/legacy/gcode/modes/coordinates.hpp"
@@ -31,12 +32,12 @@ struct Rules {
   double whole_dwell_s = 1;             ///< of a P without a decimal point
 
   struct Cycles {
-    char repeats = 'L';
-    bool may_wait = false;       ///< none at all is a number of repeats
-    bool words_stay = false;     ///< R, Z and Q from one cycle to another, until G80
-    bool dwell_is_free = false;  ///< each may have P, and none needs it
-    bool cross_first = false;    ///< to the hole where the tool is, and then to R
-    bool bore_to_r = false;      ///< G89 comes up at feed to R alone, as G85 does
+    std::string_view repeats = "L";  ///< letters
+    bool may_wait = false;           ///< none at all is a number of repeats
+    bool words_stay = false;         ///< R, Z and Q from one cycle to another, until G80
+    bool dwell_is_free = false;      ///< each may have P, and none needs it
+    bool cross_first = false;        ///< to the hole where the tool is, and then to R
+    bool bore_to_r = false;          ///< G89 comes up at feed to R alone, as G85 does
   } cycles;
 };
 

@@ -29,7 +29,8 @@ TEST(FanucCycle, GivesWayToTheMotionBeforeIt) {
 TEST(FanucCycle, IsRepeatedKTimesAndMayOnlyBeSet) {
   EXPECT_THAT(ends_of("G91 G99 G81 X1. Z-4. R-8. K2").back(), ElementsAre(2, 0, 2));
   EXPECT_THAT(zs_of("G99 G81 Z-2. R2. K0\nX1.\nG80"), ElementsAre(10, 2, -2, 2));
-  EXPECT_THAT(refusal_of(program_of("G81 Z-2. R2. L3")), HasSubstr("nothing in this block uses L"));
+  EXPECT_THAT(ends_of("G91 G99 G81 X1. Z-4. R-8. L2").back(), ElementsAre(2, 0, 2));  // Haas, and older controls
+  EXPECT_THAT(refusal_of(program_of("G81 Z-2. R2. L3 K3")), HasSubstr("nothing in this block uses L"));
 }
 
 TEST(FanucCycle, DwellsByMilliseconds) {

@@ -13,7 +13,7 @@ TEST(FanucFormat, TakesWhatPostsWriteAroundAProgram) {
   const std::string body =
       "\n(T1 D=10.)\nN10 G21 G90 G94 G17 G49 G40 G80\nN15 G50 G69 G15 G67\nT1 M6\nG43 H1\nG0 G54 X1. Y2. Z3.;\n";
   for (const std::string head :
-       {"%\nO1234 (PLATE)", "%\n:1234(PLATE)", "%\r\nO0001\r", "\n%\n\nO7", "O7", "(NC)\n%\nO7"})
+       {"%\nO1234 (PLATE)", "%\n:1234(PLATE)", "%\r\nO0001\r", "\n%\n\nO7", "O7", "%\nO0000(T)", "(NC)\n%\nO7"})
     EXPECT_EQ(imported(head + body + "M30\n%\nrest").requests.size(), 2U) << head;
   EXPECT_EQ(imported("G21 G0 X1. Y2. Z3.\nM30\n").requests.size(), 1U);
 }

@@ -32,6 +32,10 @@ TEST(FanucReference, IsWhereWhoImportsSaysIt) {
   EXPECT_THAT(ends_of("G30 P2 W0.", options), ElementsAre(ElementsAre(0, 0, 3)));
   EXPECT_THAT(ends_of("G0 G53 Z0.\nG53 X0 Y0", options),
               ElementsAre(ElementsAre(0, 0, 300), ElementsAre(100, 200, 300)));
+  EXPECT_THAT(ends_of("G91 G28 X0. Y0. A0.", options), ElementsAre(ElementsAre(100, 200, 10)));
+  EXPECT_THAT(ends_of("G91 G28 A0.", options), ElementsAre());
+  options.rotary = {{'A', 1}};
+  EXPECT_THAT(refusal_of(program_of("G91 G28 A0."), options), testing::Not("taken"));
   EXPECT_THAT(refusal_of(program_of("G28"), options), HasSubstr("needs X, Y or Z"));
   EXPECT_THAT(refusal_of(program_of("G30 P3 Z0"), options), HasSubstr("P2"));
   EXPECT_THAT(refusal_of(program_of("G91 G28 Z0.")), HasSubstr("give --reference-point"));
