@@ -40,8 +40,10 @@ void ToolAxis::read_angles(Block& block, int motion) {
     const Word word = block.take(letter);
     if (!read_angle(letter, word)) continue;
     place = word.place;
-    if (block.once(280) || block.once(300))
-      refuse(word.place, "where this axis is at its reference point is not known here; write its angle");
+    if (block.g(GGroup::Once))
+      refuse(word.place,
+             "what this axis does beside such a code, or where its reference point is, is not known here; write its "
+             "angle into a block of its own");
   }
   if (!place) return;
   const Point axis = axis_of_angles(*place);

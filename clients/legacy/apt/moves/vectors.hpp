@@ -4,8 +4,8 @@
 
 namespace rmac::apt {
 
-using legacy::Point, legacy::Writer, legacy::Placement;
 using legacy::dot, legacy::cross, legacy::along, legacy::difference, legacy::length, legacy::scaled;
+using legacy::Point, legacy::Writer, legacy::Placement;
 
 /// Where the tool is: its tip, in mm, and its axis, from the tip to the spindle and of unit length. In the coordinates
 /// of the part.

@@ -45,11 +45,13 @@ void pass_over_look_ahead(gcode::Block& block, const gcode::Code& code) {
       if (!block.has('P')) refuse(code.place, "G5 needs P, as in G5 P10000");
       return pass('P', 0, 10000, "P of G5 is 0 to 10000");
     case 51:
+      if (!block.has('Q')) refuse(code.place, "G5.1 needs Q, as in G5.1 Q1");
       pass('Q', 0, 3, "of G5.1 there are Q0 to Q3");
       pass('R', 0, 10, "R of G5.1 is a level, 1 to 10");
       for (const char axis : gcode::kAxisLetters) pass(axis, 0, 0, "X, Y and Z of G5.1 are 0: the axes that it is for");
       return;
     case 80:
+      if (!block.has('P')) refuse(code.place, "G8 needs P, as in G8 P1");
       return pass('P', 0, 1, "P of G8 is 1 or 0");
     case 1030:
       return pass('P', 0, kAny, "P of G103 is a number of blocks");

@@ -117,37 +117,40 @@ void Flow::assign(std::string_view text, std::size_t at) {
   variables_.set(number, value, line_.comments().empty() ? std::string_view() : line_.comments().front(), place);
 }
 
-double Flow::condition(std::string_view text, std::size_t& at) const {
+bool Flow::holds(std::string_view text, std::size_t& at) const {
+  const std::size_t place = at;
   if (at >= text.size() || text[at] != '[') refuse(at, "a condition stands in [ ]");
-  return gcode::Expression(text, grammar(), variables_).value(at);
+  const Maybe value = gcode::Expression(text, grammar(), variables_).maybe(at);
+  if (value != 0 && value != 1) refuse(place, "a condition compares, as in [#1 EQ 2]; this is a value");
+  return *value == 1;
 }
 
 void Flow::carry_out_if(std::string_view text, std::size_t at) {
   constexpr std::size_t kIf = 2, kThen = 4;
   at += kIf;
-  const bool holds = condition(text, at) != 0;
+  const bool goes = holds(text, at);
   const std::string_view rest = text.substr(at);
   if (rest.starts_with("GOTO")) {
-    if (holds) carry_out_goto(text, at);
+    if (goes) carry_out_goto(text, at);
     return;
   }
   if (!rest.starts_with("THEN")) refuse(at, "GOTO or THEN stands behind the condition of IF");
   at += kThen;
   if (at >= text.size() || text[at] != '#') refuse(at, "behind THEN a variable is set, as in THEN #1 = 2");
-  if (holds) assign(text, at);
+  if (goes) assign(text, at);
 }
 
 void Flow::begin_loop(std::string_view text, std::size_t at) {
   constexpr std::size_t kWhile = 5, kDoAndNumber = 3;
   const std::size_t index = outline_.loop_at(here_).value();
   const Loop& loop = outline_.loop(index);
-  bool holds = true;
+  bool goes = true;
   if (text.substr(at).starts_with("WHILE")) {
     at += kWhile;
-    holds = condition(text, at) != 0;
+    goes = holds(text, at);
   }
   require_line_end(text, at + kDoAndNumber);
-  if (holds) {
+  if (goes) {
     frames_.back().loops.push_back(index);
   } else {
     next_ = loop.end;

@@ -73,7 +73,7 @@ class Flow {
   void call_macro(const MacroCall& call);
   void enter(Frame frame, int times, std::size_t place);
   void return_from(const Ordered& ordered);
-  [[nodiscard]] double condition(std::string_view text, std::size_t& at) const;
+  [[nodiscard]] bool holds(std::string_view text, std::size_t& at) const;
 
   std::string_view text_;
   bool block_delete_;

@@ -139,6 +139,7 @@ TEST(FanucToolAxis, OfAnglesWithoutG43_4LeavesTheTipNobodyKnowsWhere) {
   EXPECT_THAT(refusal_of(program_of("G0 A90. C0\nG0 X1."), options),
               HasSubstr("where the tool is before this move is not known"));
   EXPECT_THAT(axis_at_end(imported(program_of("G0 A90. C0\nG0 X1. Y1. Z1."), options).requests.back()), near(0, -1, 0));
+  EXPECT_THAT(refusal_of(program_of("G52 X0 A90. C0"), options), HasSubstr("block of its own"));
   EXPECT_THAT(refusal_of(program_of("G0 X1. A90. C0"), options), HasSubstr("have the post write G43.4"));
   EXPECT_THAT(ends_of("G0 A0. C0 X1.", options), ElementsAre(near(1, 0, 10)));
   EXPECT_THAT(ends_of("G0 A0. B0 X1."), ElementsAre(near(1, 0, 10))) << "an axis that stands at 0 means nothing";

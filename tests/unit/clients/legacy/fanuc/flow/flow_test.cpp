@@ -55,6 +55,8 @@ TEST(FanucJump, GoesToTheNextLineOfThatNumberOrTheFirst) {
   EXPECT_THAT(refusal_of(program_of("GOTO 5", "O2\nN5 M99\n")), HasSubstr("there is no N5"));
   EXPECT_THAT(refusal_of(program_of("GOTO 1.5")), HasSubstr("not to 1.5"));
   EXPECT_THAT(refusal_of(program_of("IF[1 EQ 1] G0 X1.")), HasSubstr("GOTO or THEN"));
+  EXPECT_THAT(refusal_of(program_of("IF[#1] GOTO 5\nN5")), StartsWith("5:3: a condition compares"));
+  EXPECT_THAT(xs_of("IF[[#1 EQ 1] OR [#2 EQ #0]] GOTO 5\nG0 X1.\nN5 X2."), ElementsAre(2));
 }
 
 TEST(FanucSubprogram, IsCalledInBothWaysOfWritingHowOften) {
