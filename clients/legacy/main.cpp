@@ -13,14 +13,17 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <tl/expected.hpp>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "clients/legacy/apt/import.hpp"
+#include "clients/legacy/fanuc/import.hpp"
 #include "clients/legacy/program/output_file.hpp"
 #include "clients/legacy/program/writer.hpp"
 #include "clients/legacy/rs274/import.hpp"
@@ -32,13 +35,14 @@ using namespace rmac;
 
 struct Words {
   std::string file, output, dialect = "rs274", unit, approach, reference, second_reference;
-  std::vector<std::string> offsets, outputs, inputs, diameters;
+  std::vector<std::string> offsets, outputs, inputs, diameters, variables, passed;
   bool ids_are_lines = false;
   rs274::Options options;
-  std::string circle_axis;
+  std::string circle_axis, whole_numbers, rotary;
   bool multax = false;
 
   [[nodiscard]] bool is_apt() const { return dialect == "apt"; }
+  [[nodiscard]] bool is_fanuc() const { return dialect == "fanuc"; }
 };
 
 int fail(const std::string& message) {
@@ -58,17 +62,92 @@ std::optional<rs274::Point> read_point(const std::string& text) {
   return at == end ? std::optional(point) : std::nullopt;
 }
 
+/// The index of a work system: of G54 to G59, and of those behind them, which each language names in its own way.
+std::optional<std::size_t> system_of(const std::string& name, bool fanuc) {
+  constexpr std::size_t kPlain = 6;
+  constexpr int kMostFurther = 300, kMostFurtherOfRs274 = 3;
+  const std::string_view prefix = fanuc ? "G54.1P" : "G59.";
+  int number = 0;
+  const auto read = [&](std::size_t begin) {
+    const char* const end = name.data() + name.size();
+    const auto result = std::from_chars(name.data() + begin, end, number);
+    return result.ec == std::errc() && result.ptr == end;
+  };
+  if (name.starts_with(prefix)) {
+    const bool is_one = read(prefix.size()) && number >= 1 && number <= (fanuc ? kMostFurther : kMostFurtherOfRs274);
+    return is_one ? std::optional(kPlain + static_cast<std::size_t>(number) - 1) : std::nullopt;
+  }
+  const bool is_plain = name.size() == 3 && name.starts_with('G') && read(1) && number >= 54 && number <= 59;
+  return is_plain ? std::optional(static_cast<std::size_t>(number - 54)) : std::nullopt;
+}
+
 /// G54=X,Y,Z.
-bool read_offset(const std::string& text, rs274::Options& options) {
-  static constexpr std::array<std::string_view, 9> kNames{"G54", "G55",   "G56",   "G57",  "G58",
-                                                          "G59", "G59.1", "G59.2", "G59.3"};
+bool read_offset(const std::string& text, Words& words) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) return false;
-  const auto* name = std::find(kNames.begin(), kNames.end(), text.substr(0, equals));
+  const auto system = system_of(text.substr(0, equals), words.is_fanuc());
   const auto point = read_point(text.substr(equals + 1));
-  if (name == kNames.end() || !point) return false;
-  options.offsets.at(static_cast<std::size_t>(name - kNames.begin())) = {(*point)[0], (*point)[1], (*point)[2]};
+  if (!system || !point) return false;
+  words.options.offsets[*system] = {(*point)[0], (*point)[1], (*point)[2]};
   return true;
+}
+
+/// 500=12.5.
+bool read_variable(const std::string& text, std::map<int, double>& variables) {
+  const std::size_t equals = text.find('=');
+  int number = 0;
+  double value = 0;
+  if (equals == std::string::npos) return false;
+  const char *const middle = text.data() + equals, *const end = text.data() + text.size();
+  const auto read_number = std::from_chars(text.data(), middle, number);
+  const auto read = std::from_chars(middle + 1, end, value, std::chars_format::fixed);
+  const bool whole =
+      read_number.ec == std::errc() && read_number.ptr == middle && read.ec == std::errc() && read.ptr == end;
+  const bool is_common = (number >= 100 && number < 200) || (number >= 500 && number < 1000);
+  return whole && is_common && std::isfinite(value) && variables.emplace(number, value).second;
+}
+
+/// M10.
+bool read_m(const std::string& text, std::set<int>& codes) {
+  int number = 0;
+  const char* const end = text.data() + text.size();
+  if (!text.starts_with('M')) return false;
+  const auto read = std::from_chars(text.data() + 1, end, number);
+  return read.ec == std::errc() && read.ptr == end && number >= 0 && codes.insert(number).second;
+}
+
+/// C,-A.
+std::vector<gcode::RotaryAxis> read_rotary(const std::string& text) {
+  std::vector<gcode::RotaryAxis> axes;
+  for (std::size_t at = 0; at <= text.size(); ++at) {
+    const bool turns_back = at < text.size() && text[at] == '-';
+    if (turns_back) ++at;
+    const char letter = at < text.size() ? text[at] : '\0';
+    const bool is_new = std::ranges::find(axes, letter, &gcode::RotaryAxis::letter) == axes.end();
+    if (letter < 'A' || letter > 'C' || !is_new) return {};
+    axes.push_back({letter, turns_back ? -1.0 : 1.0});
+    if (++at < text.size() && text[at] != ',') return {};
+  }
+  return axes;
+}
+
+/// What a Fanuc program alone has.
+std::optional<std::string> finish_fanuc(Words& words) {
+  if (!words.whole_numbers.empty()) {
+    words.options.whole_numbers =
+        words.whole_numbers == "units" ? gcode::WholeNumbers::Units : gcode::WholeNumbers::Increments;
+  }
+  if (!words.rotary.empty()) words.options.rotary = read_rotary(words.rotary);
+  if (!words.rotary.empty() && words.options.rotary.empty())
+    return "--rotary is A, B and C, each at most once and with - where it turns the other way, as C,A or C,-B";
+  for (const auto& text : words.variables) {
+    if (!read_variable(text, words.options.variables))
+      return fmt::format("--variable {}: it is a number from 100 to 199 or 500 to 999, and a value, as 500=12.5", text);
+  }
+  for (const auto& text : words.passed) {
+    if (!read_m(text, words.options.passed_m)) return fmt::format("--pass-over {}: it is an M code, as M10", text);
+  }
+  return std::nullopt;
 }
 
 /// 3=Clamp.
@@ -120,9 +199,10 @@ std::optional<std::string> finish(Words& words) {
       return fmt::format("--tool-diameter {}: it is the number of a tool and 0 to 1000 mm, as 3=10", text);
   }
   for (const auto& offset : words.offsets) {
-    if (!read_offset(offset, words.options))
+    if (!read_offset(offset, words))
       return fmt::format("--offset {}: it is a work system and three numbers in mm, as G54=100,50,-20", offset);
   }
+  if (auto wrong = finish_fanuc(words)) return wrong;
   if (words.output.empty())
     words.output = words.file == "-" ? "-" : fs::path(words.file).replace_extension(".rmac").string();
   if (std::error_code none; words.output != "-" && words.file != "-" && fs::equivalent(words.output, words.file, none))
@@ -190,8 +270,9 @@ int import_file(const Words& words) {
   legacy::OutputFile output(words.output);
   if (!output.open()) return fail(words.output + ": cannot be written");
   const auto sink = [&output](std::string_view part) { output.write(part); };
-  const auto summary = words.is_apt() ? apt::import_program(*text, apt_options(words), sink)
-                                      : rs274::import_program(*text, words.options, sink);
+  const auto summary = words.is_apt()     ? apt::import_program(*text, apt_options(words), sink)
+                       : words.is_fanuc() ? fanuc::import_program(*text, words.options, sink)
+                                          : rs274::import_program(*text, words.options, sink);
   if (!summary) {
     const auto& error = summary.error();
     return fail(fmt::format("{}:{}:{}: {}", file, error.line, error.column, error.message));
@@ -206,7 +287,7 @@ void declare(CLI::App& app, Words& words) {
   app.add_option("-o", words.output, "the .rmac file, - for standard output; FILE with the ending .rmac unless given");
   app.add_option("--dialect", words.dialect,
                  "which language it is; unless given, apt of .apt, .cls and .aptsource, and rs274 of the others")
-      ->check(CLI::IsMember({"rs274", "apt"}));
+      ->check(CLI::IsMember({"rs274", "fanuc", "apt"}));
   app.add_flag("--block-delete", words.options.block_delete, "leave out blocks that begin with /");
   app.add_option("--unit", words.unit, "unit of a program without G20 and G21, or UNITS")
       ->check(CLI::IsMember({"mm", "inch"}));
@@ -221,7 +302,7 @@ void declare(CLI::App& app, Words& words) {
                  "offsets, unless its next move is a G0 to X, Y and Z, or RAPID and a GOTO");
   app.add_flag("--assume-g43", words.options.assume_g43, "the tool's length counts from M6 on, though no G43 says so");
   app.add_option("--offset", words.offsets,
-                 "G54=X,Y,Z in mm: where a work system is in the machine; may be given for each")
+                 "G54=X,Y,Z in mm: where a work system is in the machine; may be given for each; G54.1P3=... in fanuc")
       ->allow_extra_args(false);
   app.add_option("--reference-point", words.reference,
                  "X,Y,Z in mm: where G28, or GOHOME, takes the tool tip, in the coordinates of the part");
@@ -233,9 +314,30 @@ void declare(CLI::App& app, Words& words) {
                  "MB: a program with loops or subprograms that becomes more is one that does not end")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  app.add_option("--tool-diameter", words.diameters, "3=10: the diameter of tool 3 in mm, for G41 and G42")
+  app.add_option(
+         "--tool-diameter", words.diameters,
+         "3=10: the diameter of tool 3 in mm, for G41 and G42; of a fanuc program, twice the radius in the offset D3")
       ->allow_extra_args(false);
   app.add_flag("--ids-are-lines", words.ids_are_lines, "the id of each request is the line that it comes from");
+}
+
+void declare_fanuc(CLI::App& app, Words& words) {
+  app.add_option(
+         "--whole-numbers", words.whole_numbers,
+         "what lengths and angles without a decimal point count in, in a fanuc program: units (X10 is 10 mm) or "
+         "increments (X10 is 0.010 mm); refused unless given")
+      ->check(CLI::IsMember({"units", "increments"}));
+  app.add_option(
+         "--rotary", words.rotary,
+         "C,A: the axes of a fanuc program's machine that turn the tool about Z (C), Y (B) and X (A) of the part, "
+         "from the part to the tool; each counter-clockwise, or with - the other way")
+      ->allow_extra_args(false);
+  app.add_option("--variable", words.variables,
+                 "500=12.5: what the machine has in a common variable that a fanuc program reads")
+      ->allow_extra_args(false);
+  app.add_option("--pass-over", words.passed,
+                 "M10: an M code of the machine's builder that a fanuc program may go without; may be given for each")
+      ->allow_extra_args(false);
 }
 
 void declare_apt(CLI::App& app, Words& words) {
@@ -249,19 +351,29 @@ void declare_apt(CLI::App& app, Words& words) {
 
 /// The option that was given and is of another language than the file's, or nothing.
 std::optional<std::string> foreign_option(const CLI::App& app, const Words& words) {
-  static constexpr std::array<const char*, 9> kRs274{
-      "--block-delete",           "--tolerance",    "--assume-g43",   "--offset", "--output", "--input",
-      "--second-reference-point", "--output-limit", "--tool-diameter"};
-  static constexpr std::array<const char*, 2> kApt{"--multax", "--circle-axis"};
-  const auto given = [&app](const char* name) { return app.count(name) > 0; };
-  const auto find = [&given](const auto& names) -> std::optional<std::string> {
-    const auto* found = std::ranges::find_if(names, given);
-    return found == names.end() ? std::nullopt : std::optional<std::string>(*found);
-  };
-  const auto found = words.is_apt() ? find(kRs274) : find(kApt);
-  if (!found) return std::nullopt;
-  return fmt::format("{} is not of {}, which {} is taken as; --dialect says otherwise", *found, words.dialect,
-                     words.file);
+  enum Languages { Rs274 = 1, Fanuc = 2, Apt = 4 };
+  static constexpr std::array<std::pair<const char*, int>, 15> kOf{{{"--block-delete", Rs274 | Fanuc},
+                                                                    {"--tolerance", Rs274 | Fanuc},
+                                                                    {"--assume-g43", Rs274 | Fanuc},
+                                                                    {"--offset", Rs274 | Fanuc},
+                                                                    {"--output", Rs274},
+                                                                    {"--input", Rs274},
+                                                                    {"--second-reference-point", Rs274 | Fanuc},
+                                                                    {"--output-limit", Rs274 | Fanuc},
+                                                                    {"--tool-diameter", Rs274 | Fanuc},
+                                                                    {"--whole-numbers", Fanuc},
+                                                                    {"--variable", Fanuc},
+                                                                    {"--rotary", Fanuc},
+                                                                    {"--pass-over", Fanuc},
+                                                                    {"--multax", Apt},
+                                                                    {"--circle-axis", Apt}}};
+  const int language = words.is_apt() ? Apt : words.is_fanuc() ? Fanuc : Rs274;
+  for (const auto& [name, languages] : kOf) {
+    if ((languages & language) != 0 || app.count(name) == 0) continue;
+    return fmt::format("{} is not of {}, which {} is taken as; --dialect says otherwise", name, words.dialect,
+                       words.file);
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -273,6 +385,7 @@ int main(int count, char** arguments) {
   app.name("rmac import");
   Words words;
   declare(app, words);
+  declare_fanuc(app, words);
   declare_apt(app, words);
   try {
     app.parse(count, arguments);

@@ -3,11 +3,12 @@
 #include <string_view>
 #include <tl/expected.hpp>
 
+#include "clients/legacy/gcode/modes/modes.hpp"
 #include "clients/legacy/program/outcome.hpp"
-#include "clients/legacy/rs274/modes.hpp"
 
 namespace rmac::rs274 {
 
+using gcode::Options, gcode::Point, gcode::Writer;
 using legacy::Error, legacy::Summary;
 
 /// Makes `.rmac` text of an RS274/NGC program. What it does not understand, or the format cannot say, is an Error; the

@@ -5,6 +5,8 @@
 
 namespace rmac::rs274 {
 
+using gcode::GCode, gcode::GGroup, gcode::MCode, gcode::MGroup;
+
 namespace {
 
 constexpr std::string_view kCycle = "a cycle that needs the spindle's angle or a hand; write it out as G0 and G1";

@@ -1,47 +1,11 @@
 #pragma once
 
-#include <cstddef>
-#include <string_view>
+#include "clients/legacy/gcode/blocks/codes.hpp"
 
 namespace rmac::rs274 {
 
-/// The report's modal groups: of each a block has one code at most. `Once` is its group 0, which acts in its block
-/// alone.
-enum class GGroup {
-  Once,
-  Motion,
-  Plane,
-  Distance,
-  ArcDistance,
-  Feed,
-  Units,
-  Radius,
-  Length,
-  Return,
-  System,
-  Control,
-  SpindleMode
-};
-inline constexpr std::size_t kGGroups = 13;
-
-enum class MGroup { Stop, Tool, Spindle, Mist, Flood, CoolantOff, Override, Io };
-inline constexpr std::size_t kMGroups = 8;
-
-/// A G code by its tenfold: 921 is G92.1.
-struct GCode {
-  int tenfold = 0;
-  GGroup group = GGroup::Once;
-  std::string_view refusal;  ///< why it is not taken, and what to do; empty where it is
-};
-
-struct MCode {
-  int number = 0;
-  MGroup group = MGroup::Stop;
-  std::string_view refusal;
-};
-
-/// Null where there is none of this number.
-[[nodiscard]] const GCode* find_g(int tenfold) noexcept;
-[[nodiscard]] const MCode* find_m(int number) noexcept;
+/// Null where RS274/NGC has none of this number.
+[[nodiscard]] const gcode::GCode* find_g(int tenfold) noexcept;
+[[nodiscard]] const gcode::MCode* find_m(int number) noexcept;
 
 }  // namespace rmac::rs274

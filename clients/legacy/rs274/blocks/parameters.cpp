@@ -1,8 +1,30 @@
 #include "clients/legacy/rs274/blocks/parameters.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "clients/legacy/rs274/blocks/refusal.hpp"
+
 namespace rmac::rs274 {
+
+gcode::Maybe Parameters::value(const gcode::Name& name, std::size_t place) const {
+  if (const auto* text = std::get_if<std::string_view>(&name)) {
+    if (const auto found = read(*text)) return found;
+    refuse(place, fmt::format("#<{}> was not set before; set it in the program", *text));
+  }
+  const int number = std::get<int>(name);
+  if (const auto found = read(number)) return found;
+  if (number >= kFirstOfControl) {
+    refuse(place, fmt::format("#{} is the control's own, and not known here; write the value instead", number));
+  }
+  refuse(place, fmt::format("#{} was not set before, and what a machine has in it is not known; set it in the program",
+                            number));
+}
+
+bool Parameters::is_set(const gcode::Name& name) const {
+  return std::visit([this](const auto& which) { return read(which).has_value(); }, name);
+}
 
 std::optional<double> Parameters::read(int number) const {
   if (number >= kFirstOfControl) return of_control_ ? of_control_(number) : std::nullopt;

@@ -9,11 +9,13 @@
 #include <string_view>
 #include <vector>
 
+#include "clients/legacy/gcode/values/grammar.hpp"
+
 namespace rmac::rs274 {
 
 /// #1 to #5602, and #<names>. Those from 5061 on are the control's own: programs read some and set none. Names that
 /// begin with _ hold everywhere, others in the program or subprogram that sets them.
-class Parameters {
+class Parameters : public gcode::Variables {
  public:
   static constexpr int kFirstOfControl = 5061, kLast = 5602;
   /// #1 to #30 are what a sub is called with.
@@ -26,6 +28,8 @@ class Parameters {
   using OfControl = std::function<std::optional<double>(int number)>;
   void ask_control(OfControl of_control) { of_control_ = std::move(of_control); }
 
+  [[nodiscard]] gcode::Maybe value(const gcode::Name& name, std::size_t place) const override;
+  [[nodiscard]] bool is_set(const gcode::Name& name) const override;
   /// None where nothing set it.
   [[nodiscard]] std::optional<double> read(int number) const;
   [[nodiscard]] std::optional<double> read(std::string_view name) const;

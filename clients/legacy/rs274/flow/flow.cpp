@@ -6,7 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "clients/legacy/rs274/blocks/expression.hpp"
+#include "clients/legacy/gcode/values/expression.hpp"
+#include "clients/legacy/rs274/blocks/grammar.hpp"
 #include "clients/legacy/rs274/blocks/refusal.hpp"
 #include "clients/legacy/rs274/flow/label.hpp"
 
@@ -213,7 +214,7 @@ std::string Flow::running() const {
 
 double Flow::value(const Statement& statement) const {
   std::size_t at = statement.arguments;
-  const double result = Expression(line_.text(), parameters_).value(at);
+  const double result = gcode::Expression(line_.text(), grammar(), parameters_).value(at);
   require_end(line_.text(), at);
   return result;
 }
@@ -222,7 +223,7 @@ Parameters::Arguments Flow::arguments(const Statement& statement) const {
   const std::string_view text = line_.text();
   Parameters::Arguments result{};
   std::size_t count = 0, at = statement.arguments;
-  Expression expression(text, parameters_);
+  gcode::Expression expression(text, grammar(), parameters_);
   for (; at < text.size() && (text[at] == '[' || text[at] == Line::kComment);) {
     if (text[at] == Line::kComment) {
       ++at;

@@ -7,12 +7,14 @@
 #include <string_view>
 #include <vector>
 
-#include "clients/legacy/rs274/blocks/line.hpp"
+#include "clients/legacy/gcode/blocks/line.hpp"
+#include "clients/legacy/gcode/flow/endless.hpp"
 #include "clients/legacy/rs274/blocks/parameters.hpp"
-#include "clients/legacy/rs274/flow/endless.hpp"
 #include "clients/legacy/rs274/flow/outline.hpp"
 
 namespace rmac::rs274 {
+
+using gcode::Bounds, gcode::Endless, gcode::Made;
 
 /// A program's lines in the order in which they are carried out: O words are carried out here, and all other lines are
 /// given out, whatever they are. What is no program throws a Refusal, whose place is in line().

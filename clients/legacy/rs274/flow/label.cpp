@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "clients/legacy/rs274/blocks/expression.hpp"
+#include "clients/legacy/gcode/values/expression.hpp"
+#include "clients/legacy/rs274/blocks/grammar.hpp"
 #include "clients/legacy/rs274/blocks/refusal.hpp"
 
 namespace rmac::rs274 {
@@ -56,7 +57,7 @@ std::size_t behind_value(std::string_view text, std::size_t at) {
 
 std::string computed_label(std::string_view text, std::size_t at, const Parameters& parameters) {
   const std::size_t place = at;
-  const double value = Expression(text, parameters).value(at);
+  const double value = gcode::Expression(text, grammar(), parameters).value(at);
   const double nearest = std::round(value);
   if (!(std::abs(value - nearest) < kInteger) || nearest < 0 || nearest > kMostLabel)
     refuse(place, fmt::format("{} is no number of an O word; it is 0 or a greater integer", value));

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "clients/legacy/rs274/blocks/comments.hpp"
+#include "clients/legacy/gcode/blocks/comments.hpp"
 #include "clients/legacy/rs274/blocks/refusal.hpp"
 #include "clients/legacy/rs274/flow/label.hpp"
 

@@ -5,9 +5,11 @@
 #include <string>
 #include <string_view>
 
-#include "clients/legacy/rs274/blocks/line.hpp"
+#include "clients/legacy/gcode/blocks/line.hpp"
 
 namespace rmac::rs274 {
+
+using gcode::Line;
 
 /// What a line that begins with O is. Program is the bare `O100` with which a numbered program begins; EndDo is the
 /// `while` of a `do`; Trouble is a line that is none of these, or stands where it must not.

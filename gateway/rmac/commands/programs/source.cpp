@@ -33,6 +33,8 @@ constexpr std::array<Passed, std::tuple_size_v<decltype(Source::values)>> kPasse
     {"--approach", "X,Y,Z in mm: where an imported program's tool tip goes first"},
     {"--reference-point", "X,Y,Z in mm: where G28, or GOHOME, of an imported program goes"},
     {"--second-reference-point", "the same of G30"},
+    {"--whole-numbers", "units or increments: what a Fanuc program's lengths without a decimal point count in"},
+    {"--rotary", "C,A: the axes of a Fanuc program's machine that turn the tool, from the part to the tool"},
     {"--output-limit", "MB of .rmac: an imported program with loops that becomes more does not end"},
 }};
 constexpr std::array<Passed, std::tuple_size_v<decltype(Source::repeated)>> kRepeated{{
@@ -40,6 +42,8 @@ constexpr std::array<Passed, std::tuple_size_v<decltype(Source::repeated)>> kRep
     {"--output", "3=NAME: the output that M62 to M65 P3 of an imported program switch"},
     {"--input", "3=NAME: the input that M66 P3 of an imported program waits for"},
     {"--tool-diameter", "3=10: the diameter of tool 3 in mm, for G41 and G42 of an imported program"},
+    {"--variable", "500=12.5: what the machine has in a common variable that a Fanuc program reads"},
+    {"--pass-over", "M10: an M code of the machine's builder that a Fanuc program may go without"},
 }};
 
 struct Ending {
@@ -109,7 +113,7 @@ void declare_source(Command& command, Source& source) {
           "the .rmac file, - for standard input; .ngc, .nc and .tap (RS274/NGC), .apt, .cls and .aptsource (APT) are "
           "imported first")
       .required();
-  command.option("--dialect", &source.dialect, "whose language FILE is in, whatever its ending: rs274 or apt");
+  command.option("--dialect", &source.dialect, "whose language FILE is in, whatever its ending: rs274, fanuc or apt");
   for (std::size_t i = 0; i < kPassed.size(); ++i) {
     command.option(kPassed.at(i).name, &source.values.at(i), kPassed.at(i).meaning);
   }

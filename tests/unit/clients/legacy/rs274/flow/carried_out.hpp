@@ -6,7 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "clients/legacy/rs274/blocks/block.hpp"
+#include "clients/legacy/gcode/blocks/block.hpp"
+#include "clients/legacy/rs274/blocks/reader.hpp"
 #include "clients/legacy/rs274/blocks/refusal.hpp"
 #include "clients/legacy/rs274/flow/flow.hpp"
 
@@ -19,12 +20,13 @@ inline std::vector<std::string> carried_out(const std::string& program, Bounds b
   std::vector<std::string> done;
   Parameters parameters;
   Flow flow(program, block_delete, bounds, parameters, [&] { return Made{done.size(), 0}; });
+  BlockReader reader;
   Block block;
   try {
     while (flow.next()) {
       if (block_delete && flow.line().text().starts_with('/')) continue;
-      block.read(flow.line(), parameters);
-      if (const auto& code = block.m(MGroup::Stop)) {
+      reader.read(flow.line(), parameters, block);
+      if (const auto& code = block.m(gcode::MGroup::Stop)) {
         if (code->number == 2) return done;
         if (code->number == 99) flow.end_of_numbered(code->place);
         if (code->number == 98) {

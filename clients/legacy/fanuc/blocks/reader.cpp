@@ -1,0 +1,105 @@
+#include "clients/legacy/fanuc/blocks/reader.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "clients/legacy/fanuc/blocks/refusal.hpp"
+#include "clients/legacy/fanuc/blocks/rewriting.hpp"
+
+namespace rmac::fanuc {
+
+namespace {
+
+constexpr int kMostProgram = 99'999'999, kMostTimes = 9999;
+
+constexpr double kMostCode = 1e6;
+
+/// A code's number by tens; none where it is no such.
+std::optional<int> tenfold_of(double value) {
+  constexpr double kNear = 1e-6;
+  const double nearest = std::round(value * 10);
+  if (!(std::abs(value * 10 - nearest) < kNear) || nearest < 0 || nearest > kMostCode) return std::nullopt;
+  return static_cast<int>(nearest);
+}
+
+void take_call(gcode::Block& block, Ordered& ordered) {
+  if (!block.has('P')) refuse(ordered.place, "M98 needs P, the number of the program that it calls");
+  ordered.program = integer_of(block.take('P'), 1, kMostProgram, "P of M98 is the number of a program");
+  if (!block.has('L')) return;
+  ordered.times = integer_of(block.take('L'), 0, kMostTimes, "L of M98 says how often");
+  ordered.times_are_said = true;
+}
+
+void take_return(gcode::Block& block, Ordered& ordered) {
+  if (block.has('P')) ordered.label = integer_of(block.take('P'), 1, kMostProgram, "P of M99 is the N of a line");
+}
+
+}  // namespace
+
+Ordered BlockReader::read(std::string_view text, std::size_t at, const Variables& variables, const gcode::Modes& modes,
+                          gcode::Block& block) {
+  block.clear();
+  look_ahead_.reset();
+  Ordered ordered;
+  for (skip_comments(text, at); at < text.size(); skip_comments(text, at)) {
+    if (text[at] == '#') refuse(at, "a variable is set in a line of its own");
+    const FanucWord word = read_word(text, at, variables, modes);
+    if (!word.vacant) add(word, block, ordered);
+  }
+  block.check_together();
+  rewrite_dwell(block, modes);
+  rewrite_reference(block);
+  if (look_ahead_) pass_over_look_ahead(block, *look_ahead_);
+  if (ordered.what == Ordered::What::Call) take_call(block, ordered);
+  if (ordered.what == Ordered::What::Return) take_return(block, ordered);
+  return ordered;
+}
+
+void BlockReader::add(const FanucWord& word, gcode::Block& block, Ordered& ordered) {
+  if (word.letter == 'G') return add_g(word.word, block, ordered);
+  if (word.letter == 'M') return add_m(word.word, block, ordered);
+  block.add_word(word.letter, word.word);
+}
+
+void BlockReader::add_g(const gcode::Word& word, gcode::Block& block, Ordered& ordered) {
+  const auto tenfold = tenfold_of(word.value);
+  const FanucG* known = tenfold ? find_g(*tenfold) : nullptr;
+  if (known == nullptr) refuse(word.place, fmt::format("there is no G{:g} here", word.value));
+  const gcode::Code code{*tenfold, word.place};
+  switch (known->use) {
+    case Use::Block:
+      return block.add_g(known->code, word.place);
+    case Use::Nothing:
+      return;
+    case Use::LookAhead:
+      if (look_ahead_)
+        refuse(word.place, fmt::format("{} and {} in one block; write two blocks", gcode::g_name(look_ahead_->number),
+                                       gcode::g_name(code.number)));
+      look_ahead_ = code;
+      return;
+    case Use::EndOfModalCall:
+      ordered.ends_modal_call = true;
+      return;
+  }
+}
+
+void BlockReader::add_m(const gcode::Word& word, gcode::Block& block, Ordered& ordered) {
+  constexpr int kMostM = 99'999'999, kCall = 98, kReturn = 99;
+  const int number = integer_of(word, 0, kMostM, "M is a whole number");
+  if (number == kCall || number == kReturn) {
+    if (ordered.what != Ordered::What::Next) refuse(word.place, "one of M98 and M99 in a block; write two blocks");
+    ordered.what = number == kCall ? Ordered::What::Call : Ordered::What::Return;
+    ordered.place = word.place;
+    return;
+  }
+  const gcode::MCode* known = find_m(number);
+  if ((known == nullptr || !known->refusal.empty()) && passed_m_.contains(number)) return;
+  if (known == nullptr)
+    refuse(word.place, fmt::format("M{0} is a code of the machine's builder, and what it does is not known here; write "
+                                   "that out, or give --pass-over M{0} where nothing is to be done",
+                                   number));
+  block.add_m(*known, word.place);
+}
+
+}  // namespace rmac::fanuc

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string_view>
+#include <tl/expected.hpp>
+
+#include "clients/legacy/gcode/modes/modes.hpp"
+#include "clients/legacy/program/outcome.hpp"
+
+namespace rmac::fanuc {
+
+using gcode::Options, gcode::Point, gcode::Writer;
+using legacy::Error, legacy::Summary;
+
+/// Makes `.rmac` text of a program for a Fanuc-type control. What it does not understand, or the format cannot say, is
+/// an Error; the sink has got a part of the text then, which is worth nothing.
+[[nodiscard]] tl::expected<Summary, Error> import_program(std::string_view program, const Options& options,
+                                                          Writer::Sink sink);
+
+}  // namespace rmac::fanuc

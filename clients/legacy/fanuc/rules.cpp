@@ -1,0 +1,31 @@
+#include "clients/legacy/fanuc/rules.hpp"
+
+#include "clients/legacy/fanuc/work_systems.hpp"
+
+namespace rmac::fanuc {
+
+namespace {
+
+constexpr gcode::Rules kRules{
+    .system_of = system_of,
+    .system_name = system_name,
+    .set_coordinates = set_coordinates,
+    .d_is_register = true,
+    .zero_is_reference = true,
+    .motion_outlives_cycles = true,
+    .whole_dwell_s = 1e-3,
+    .cycles = {.repeats = "KL",
+               .may_wait = true,
+               .words_stay = true,
+               .dwell_is_free = true,
+               .cross_first = true,
+               .bore_to_r = true},
+};
+
+}  // namespace
+
+const gcode::Rules& rules() noexcept {
+  return kRules;
+}
+
+}  // namespace rmac::fanuc

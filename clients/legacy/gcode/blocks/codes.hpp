@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace rmac::gcode {
+
+/// The report's modal groups: of each a block has one code at most. `Once` is its group 0, which acts in its block
+/// alone.
+enum class GGroup {
+  Once,
+  Motion,
+  Plane,
+  Distance,
+  ArcDistance,
+  Feed,
+  Units,
+  Radius,
+  Length,
+  Return,
+  System,
+  Control,
+  SpindleMode,
+  Turn,   ///< G68, G68.2 and G69
+  Mirror  ///< G51.1 and G50.1
+};
+inline constexpr std::size_t kGGroups = 15;
+
+enum class MGroup { Stop, Tool, Spindle, Mist, Flood, CoolantOff, Override, Io };
+inline constexpr std::size_t kMGroups = 8;
+
+/// A G code by its tenfold: 921 is G92.1.
+struct GCode {
+  int tenfold = 0;
+  GGroup group = GGroup::Once;
+  std::string_view refusal;  ///< why it is not taken, and what to do; empty where it is
+};
+
+struct MCode {
+  int number = 0;
+  MGroup group = MGroup::Stop;
+  std::string_view refusal;
+};
+
+}  // namespace rmac::gcode

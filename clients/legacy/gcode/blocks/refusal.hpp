@@ -1,0 +1,10 @@
+#pragma once
+
+#include "clients/legacy/program/refusal.hpp"
+
+namespace rmac::gcode {
+
+// Places are those of Line::text().
+using legacy::Refusal, legacy::refuse;
+
+}  // namespace rmac::gcode

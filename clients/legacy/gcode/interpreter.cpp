@@ -1,0 +1,279 @@
+#include "clients/legacy/gcode/interpreter.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "clients/legacy/gcode/blocks/comments.hpp"
+#include "clients/legacy/gcode/modes/offsets.hpp"
+#include "clients/legacy/gcode/named_io.hpp"
+
+namespace rmac::gcode {
+
+namespace {
+
+constexpr double kInch_mm = 25.4, kMostTolerance_mm = 100, kMostDwell_s = 3600;
+/// How often M98 calls.
+constexpr double kMostTimes = 1e9;
+/// What a stop's message may have.
+constexpr std::size_t kMostMessage_bytes = 200;
+
+/// G10, G52 and G92 to G92.3.
+bool sets_coordinates(int once) {
+  return once == 100 || once == 520 || (once >= 920 && once <= 923);
+}
+
+/// Whose X, Y and Z are no end of a motion.
+bool takes_axes(int once) {
+  return once == 100 || once == 280 || once == 300 || once == 520 || once == 920;
+}
+
+std::string trimmed(std::string_view text) {
+  const auto begin = text.find_first_not_of(" \t\r");
+  if (begin == std::string_view::npos) return {};
+  return std::string(text.substr(begin, std::min(text.find_last_not_of(" \t\r") - begin + 1, kMostMessage_bytes)));
+}
+
+}  // namespace
+
+Interpreter::Interpreter(const Options& options, const Rules& rules, Writer& writer)
+    : options_(options),
+      rules_(rules),
+      writer_(writer),
+      mover_(options, modes_, coordinates_, writer),
+      compensation_([this](const ContourMove& move, std::size_t place) { mover_.held(move, place); }),
+      motions_(options, rules, modes_, coordinates_, mover_, compensation_),
+      turning_(modes_, coordinates_, mover_),
+      tool_axis_(options, modes_, coordinates_, mover_),
+      splines_(motions_, modes_, mover_),
+      switches_(writer),
+      drilling_(rules, modes_, coordinates_, mover_, switches_, writer) {
+  modes_.unit_mm = options.unit_mm;
+  modes_.whole_numbers = options.whole_numbers;
+  for (const auto& [system, offset] : options.offsets) coordinates_.set_offset(system, offset);
+}
+
+After Interpreter::execute(Block& block, const Line& line) {
+  read_comments(line);
+  if (block.empty()) return {};
+  if (splines_.open()) {
+    splines_.go_on(block);
+    block.require_all_used();
+    return {};
+  }
+  if (const auto& code = block.m(MGroup::Stop); code && code->number >= 98) return numbered_program(block, *code);
+  require_only_moves(block, modes_, compensation_);
+  set_speeds(block);
+  set_tool(block);
+  switches_.switch_coolant(block);
+  switches_.write();
+  act_on_names(block, options_, writer_);
+  dwell(block);
+  set_plane_and_units(block);
+  switch_compensation(block, options_, rules_, modes_, switches_, mover_, compensation_);
+  set_length(block);
+  if (const auto& system = block.g(GGroup::System)) select_system(block, *system, rules_, coordinates_);
+  set_control(block);
+  set_distances(block);
+  turning_.act(block);
+  act_once(block);
+  tool_axis_.read(block);
+  move(block);
+  const bool goes_on = stop(block);
+  block.require_all_used();
+  return {goes_on ? After::What::Next : After::What::End};
+}
+
+void Interpreter::read_comments(const Line& line) {
+  block_comment_.clear();
+  for (const std::string_view comment : line.comments()) {
+    const auto message = message_of(comment);
+    (message ? message_ : block_comment_) = trimmed(message.value_or(comment));
+  }
+}
+
+void Interpreter::set_speeds(Block& block) {
+  if (const Word* feed = block.find('F')) {
+    const auto& units = block.g(GGroup::Units);
+    const double unit = units && units->number == 200 ? kInch_mm : 1;
+    if (units && modes_.unit_mm && *modes_.unit_mm != unit) {
+      refuse(feed->place,
+             "F in the block that changes the unit would count in the unit before it; write F in a block behind it");
+    }
+    if (feed->value < 0) refuse(feed->place, "a negative feed");
+    modes_.feed_mm_min = modes_.feed(*feed, units ? unit : modes_.unit(feed->place));
+  }
+  if (const Word* speed = block.find('S')) switches_.set_speed(*speed);
+}
+
+void Interpreter::set_tool(Block& block) {
+  if (const Word* tool = block.find('T')) switches_.select_tool(*tool);
+  if (const auto& change = block.m(MGroup::Tool)) {
+    switches_.change_tool(change->place);
+    coordinates_.forget_tip();
+    modes_.length = ToolLength::Off;
+  }
+  if (const auto& spindle = block.m(MGroup::Spindle)) switches_.turn_spindle(spindle->number);
+}
+
+void Interpreter::dwell(Block& block) {
+  if (!block.once(40)) return;
+  const std::size_t place = block.g(GGroup::Once)->place;
+  if (!block.has('P')) refuse(place, "G4 needs P, its time in seconds");
+  const Word& time = block.use('P');
+  const double seconds = time.value * (time.whole ? rules_.whole_dwell_s : 1);
+  if (seconds < 0 || seconds > kMostDwell_s) refuse(time.place, "a dwell is 0 to 3600 seconds");
+  writer_.dwell(seconds);
+}
+
+void Interpreter::set_plane_and_units(Block& block) {
+  if (const auto& plane = block.g(GGroup::Plane)) {
+    modes_.plane = plane->number == 170 ? Plane{} : plane->number == 180 ? Plane{2, 0, 1} : Plane{1, 2, 0};
+  }
+  if (const auto& units = block.g(GGroup::Units)) modes_.unit_mm = units->number == 200 ? kInch_mm : 1;
+}
+
+void Interpreter::set_length(Block& block) {
+  const auto& length = block.g(GGroup::Length);
+  if (!length) return;
+  if (length->number == 490) {
+    modes_.length = ToolLength::Off;
+    modes_.centre_point = ToolCentrePoint::Off;
+    return;
+  }
+  modes_.centre_point = length->number == 434   ? ToolCentrePoint::Angles
+                        : length->number == 435 ? ToolCentrePoint::Vectors
+                                                : ToolCentrePoint::Off;
+  if (const Word* entry = block.find('H'); entry != nullptr && switches_.tool() != entry->value) {
+    refuse(
+        entry->place,
+        switches_.tool()
+            ? fmt::format("the length of another tool than the one in the spindle, {}, is not taken; write H{} or no H",
+                          *switches_.tool(), *switches_.tool())
+            : fmt::format(
+                  "the program does not say that tool {0} is in the spindle; write T{0} M6 before it, or G43 without H",
+                  entry->value));
+  }
+  modes_.length = ToolLength::On;
+}
+
+void Interpreter::set_control(Block& block) {
+  const auto& control = block.g(GGroup::Control);
+  if (!control) return;
+  if (control->number == 610) {
+    exact_ = true;
+    return writer_.path_tolerance(0);
+  }
+  std::optional<double> tolerance = options_.tolerance_mm;
+  if (const Word* wanted = block.find('P'); wanted != nullptr && wanted->value != 0) tolerance = modes_.mm(*wanted);
+  static_cast<void>(block.find('Q'));  // lines that the control may take together: it does so within P anyway
+  if (!tolerance && !rules_.needs_path_tolerance && !exact_) return;
+  exact_ = false;
+  if (!tolerance)
+    refuse(control->place,
+           "G64 without P leaves open how far the path may be from what is programmed; write P, or give --tolerance");
+  if (!(*tolerance >= 0 && *tolerance <= kMostTolerance_mm)) refuse(control->place, "a path tolerance is 0 to 100 mm");
+  writer_.path_tolerance(*tolerance);
+}
+
+void Interpreter::set_distances(Block& block) {
+  if (const auto& distance = block.g(GGroup::Distance)) modes_.incremental = distance->number == 910;
+  if (const auto& centres = block.g(GGroup::ArcDistance)) modes_.absolute_centres = centres->number == 901;
+  if (const auto& back = block.g(GGroup::Return)) modes_.retract_to_r = back->number == 990;
+}
+
+void Interpreter::act_once(Block& block) {
+  const auto& once = block.g(GGroup::Once);
+  if (!once) return;
+  if (once->number == 280 || once->number == 300) {
+    if (block.has_any("ABC") && !block.has_any("XYZ")) return;  // these alone are what the tool's axis is asked for
+    return motions_.reference(block, *once);
+  }
+  if (once->number == 531 || once->number == 536) return turning_.align(block, once->place);
+  if (!sets_coordinates(once->number)) return;
+  require_unplaced(coordinates_, once->place);
+  rules_.set_coordinates(block, *once, modes_, coordinates_);
+}
+
+void Interpreter::move(Block& block) {
+  const auto& motion = block.g(GGroup::Motion);
+  const auto& once = block.g(GGroup::Once);
+  const bool axes_are_taken = once && takes_axes(once->number);
+  if (motion) {
+    const bool only_mode = (motion->number == 0 || motion->number == 10) && !block.has_any("XYZ");
+    const bool ends_cycle = motion->number == Modes::kNoMotion;
+    if (!ends_cycle && !only_mode) return move_by(block, motion->number, motion->place);
+    if (only_mode) modes_.interpolation = motion->number;
+    modes_.motion = ends_cycle && rules_.motion_outlives_cycles ? modes_.interpolation : motion->number;
+    if (!(ends_cycle && rules_.motion_outlives_cycles)) return;
+  }
+  if (axes_are_taken || !block.has_any("XYZ")) return;
+  const char letter = block.has('X') ? 'X' : block.has('Y') ? 'Y' : 'Z';
+  const std::size_t place = block.use(letter).place;
+  if (modes_.motion == Modes::kNoMotion) refuse(place, "no G0, G1 or other motion is in force that could use this");
+  move_by(block, modes_.motion, place);
+}
+
+void Interpreter::move_by(Block& block, int code, std::size_t place) {
+  const int before = std::exchange(modes_.motion, code);
+  if (code <= 30) modes_.interpolation = code;
+  turning_.require_whole(block, code < 20 || code > 53, place);
+  if (code == 0 || code == 10) return motions_.straight(block, code == 0, place);
+  if (code == 20 || code == 30) return motions_.arc(block, code == 30, place);
+  if (code >= 50 && code <= 53) return splines_.move(block, code, before, place);
+  if (compensation_.on() || compensation_.leaving())
+    refuse(place,
+           "a cycle goes by where the tool is; end cutter radius compensation by G40 and a straight move before it");
+  drilling_.drill(block, code, before, place);
+}
+
+bool Interpreter::stop(const Block& block) {
+  const auto& stop = block.m(MGroup::Stop);
+  if (!stop) return true;
+  if (stop->number == 2 || stop->number == 30) {
+    compensation_.end(stop->place);
+    switches_.off();
+    return false;
+  }
+  std::string message = block_comment_.empty() ? message_ : block_comment_;
+  if (stop->number == 60 && message.empty()) message = "exchange the pallets (M60)";
+  writer_.stop(stop->number == 1, message);
+  message_.clear();
+  return true;
+}
+
+/// M98 and M99. What stands beside them LinuxCNC passes over, and other controls carry out first.
+After Interpreter::numbered_program(Block& block, const Code& code) {
+  if (block.codes() > 1) refuse(code.place, fmt::format("M{} has a block of its own; write two", code.number));
+  if (code.number == 99) {
+    block.require_all_used();
+    return {After::What::EndOfNumbered, 0, 1, code.place};
+  }
+  if (!block.has('P')) refuse(code.place, "M98 needs P, the number of the program that it calls");
+  const Word& label = block.use('P');
+  if (!(label.value >= 0 && label.value <= kMostTimes && label.value == std::floor(label.value)))
+    refuse(label.place, "P of M98 is the number behind the O of a program");
+  const Word* times = block.find('L');
+  if (times != nullptr &&
+      !(times->value >= 0 && times->value <= kMostTimes && times->value == std::floor(times->value)))
+    refuse(times->place, "L of M98 says how often: 0 or a greater integer");
+  block.require_all_used();
+  return {After::What::Call, static_cast<int>(label.value), times != nullptr ? static_cast<int>(times->value) : 1,
+          code.place};
+}
+
+void Interpreter::require_no_contour(std::size_t place) const {
+  if (compensation_.on() || compensation_.leaving())
+    refuse(place, "cutter radius compensation is on, and takes moves and feeds alone; write G40 before this");
+}
+
+std::optional<double> Interpreter::tip(std::size_t axis) const {
+  if (!modes_.unit_mm || compensation_.on() || compensation_.leaving()) return std::nullopt;
+  if (coordinates_.placement()) return std::nullopt;
+  const auto tip = coordinates_.program_tip(axis);
+  return tip ? std::optional(*tip / *modes_.unit_mm) : std::nullopt;
+}
+
+}  // namespace rmac::gcode

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "clients/legacy/gcode/blocks/line.hpp"
+#include "clients/legacy/gcode/compensation_words.hpp"
+#include "clients/legacy/gcode/drilling.hpp"
+#include "clients/legacy/gcode/motions.hpp"
+#include "clients/legacy/gcode/splines.hpp"
+#include "clients/legacy/gcode/switches.hpp"
+#include "clients/legacy/gcode/tool_axis.hpp"
+#include "clients/legacy/gcode/turning.hpp"
+
+namespace rmac::gcode {
+
+/// What comes behind a block: the next one, the end of the program, or a numbered program that M98 calls or M99 ends.
+struct After {
+  enum class What { Next, End, Call, EndOfNumbered };
+  What what = What::Next;
+  int label = 0, times = 1;  ///< of a call
+  std::size_t place = 0;     ///< of what asks for it
+};
+
+/// Carries out blocks, each in the order that the report's table gives to what stands in it.
+class Interpreter {
+ public:
+  Interpreter(const Options& options, const Rules& rules, Writer& writer);
+  Interpreter(const Interpreter&) = delete;
+  Interpreter& operator=(const Interpreter&) = delete;
+
+  /// `line`: what the block was read from. Throws a Refusal.
+  [[nodiscard]] After execute(Block& block, const Line& line);
+  /// The program ends here. Refused within what has to be ended first.
+  void end(std::size_t place) {
+    splines_.require_closed(place);
+    compensation_.end(place);
+  }
+
+  /// Throws a Refusal while moves are held back, or the tool is beside a contour.
+  void require_no_contour(std::size_t place) const;
+
+  /// What holds behind the last block, where programs ask for it.
+  [[nodiscard]] const Modes& modes() const noexcept { return modes_; }
+  [[nodiscard]] const Coordinates& coordinates() const noexcept { return coordinates_; }
+  [[nodiscard]] const Switches& switches() const noexcept { return switches_; }
+  /// Where the program believes the tool to be, in its own unit; none where that is not known, or beside a contour.
+  [[nodiscard]] std::optional<double> tip(std::size_t axis) const;
+
+ private:
+  void read_comments(const Line& line);
+  void set_speeds(Block& block);
+  void set_tool(Block& block);
+  void dwell(Block& block);
+  void set_plane_and_units(Block& block);
+  void set_length(Block& block);
+  void set_control(Block& block);
+  void set_distances(Block& block);
+  void act_once(Block& block);
+  void move(Block& block);
+  void move_by(Block& block, int code, std::size_t place);
+  [[nodiscard]] bool stop(const Block& block);
+  [[nodiscard]] After numbered_program(Block& block, const Code& code);
+
+  const Options& options_;
+  const Rules& rules_;
+  Writer& writer_;
+  Modes modes_;
+  Coordinates coordinates_;
+  Mover mover_;
+  Compensation compensation_;
+  Motions motions_;
+  Turning turning_;
+  ToolAxis tool_axis_;
+  Splines splines_;
+  Switches switches_;
+  Drilling drilling_;
+  std::string message_, block_comment_;
+  bool exact_ = false;  ///< G61 is in force
+};
+
+}  // namespace rmac::gcode

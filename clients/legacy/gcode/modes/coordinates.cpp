@@ -1,0 +1,64 @@
+#include "clients/legacy/gcode/modes/coordinates.hpp"
+
+namespace rmac::gcode {
+
+const Known& Coordinates::offset(std::size_t system) const {
+  static const Known kUnknown;
+  const auto found = offsets_.find(system);
+  return found == offsets_.end() ? kUnknown : found->second;
+}
+
+void Coordinates::place(const std::optional<legacy::Placement>& placement) {
+  if (placement == placement_) return;
+  const std::optional<Point> part = tip_is_known() ? std::optional(placed(known_tip())) : std::nullopt;
+  placement_ = placement;
+  if (part) {
+    move_to(unplaced(*part));
+  } else {
+    forget_tip();
+  }
+}
+
+std::optional<Point> Coordinates::part_origin() const {
+  const Known& offset = this->offset(active_);
+  if (!offset[0] || !offset[1] || !offset[2]) return std::nullopt;
+  return Point{*offset[0], *offset[1], *offset[2]};
+}
+
+std::optional<double> Coordinates::machine_tip(std::size_t axis) const {
+  const auto& offset = this->offset(active_).at(axis);
+  const auto& tip = tip_.at(axis);
+  return offset && tip ? std::optional(*tip + *offset) : std::nullopt;
+}
+
+std::optional<double> Coordinates::program_tip(std::size_t axis) const {
+  const auto& tip = tip_.at(axis);
+  return tip ? std::optional(*tip - shift(axis)) : std::nullopt;
+}
+
+void Coordinates::keep_in_machine(const Known& machine) {
+  const Known& offset = this->offset(active_);
+  for (std::size_t axis = 0; axis < tip_.size(); ++axis) {
+    const bool known = machine.at(axis) && offset.at(axis);
+    tip_.at(axis) = known ? std::optional(*machine.at(axis) - *offset.at(axis)) : std::nullopt;
+  }
+}
+
+void Coordinates::set_offset(std::size_t system, const Known& offset) {
+  if (system != active_) {
+    offsets_[system] = offset;
+    return;
+  }
+  const Known machine{machine_tip(0), machine_tip(1), machine_tip(2)};
+  offsets_[system] = offset;
+  keep_in_machine(machine);
+}
+
+void Coordinates::activate(std::size_t system) {
+  if (system == active_) return;
+  const Known machine{machine_tip(0), machine_tip(1), machine_tip(2)};
+  active_ = system;
+  keep_in_machine(machine);
+}
+
+}  // namespace rmac::gcode

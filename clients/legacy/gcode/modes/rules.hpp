@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "clients/legacy/gcode/blocks/block.hpp"
+#include "clients/legacy/gcode/modes/coordinates.hpp"
+
+namespace rmac::gcode {
+
+struct Modes;
+
+/// As programs write a work system, and what sets it.
+struct SystemName {
+  std::string name, setter;
+};
+
+/// Where languages mean different things by the same words.
+struct Rules {
+  /// The index of the work system that a code of the group System selects.
+  std::size_t (*system_of)(Block& block, const Code& code) = nullptr;
+  SystemName (*system_name)(std::size_t system) = nullptr;
+  /// G10, G52, G92 and its like: what changes the meaning of coordinates.
+  void (*set_coordinates)(Block& block, const Code& code, const Modes& modes, Coordinates& coordinates) = nullptr;
+
+  bool arcs_have_turns = false;         ///< P of an arc
+  bool needs_path_tolerance = false;    ///< G64 without P says less than is to be known
+  bool d_is_register = false;           ///< D of G41 is the number of an offset, that stays; else of a tool
+  bool zero_is_reference = false;       ///< X0, Y0 and Z0 of G53 are those of the first reference point
+  bool motion_outlives_cycles = false;  ///< behind G80 the last of G0 to G3 is in force again
+  double whole_dwell_s = 1;             ///< of a P without a decimal point
+
+  struct Cycles {
+    std::string_view repeats = "L";  ///< letters
+    bool may_wait = false;           ///< none at all is a number of repeats
+    bool words_stay = false;         ///< R, Z and Q from one cycle to another, until G80
+    bool dwell_is_free = false;      ///< each may have P, and none needs it
+    bool cross_first = false;        ///< to the hole where the tool is, and then to R
+    bool bore_to_r = false;          ///< G89 comes up at feed to R alone, as G85 does
+  } cycles;
+};
+
+}  // namespace rmac::gcode

@@ -1,0 +1,49 @@
+#include "clients/legacy/gcode/switches.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace rmac::gcode {
+
+namespace {
+
+constexpr double kMostRpm = 1e6;
+constexpr int kMostTool = 9999;
+
+}  // namespace
+
+void Switches::set_speed(const Word& word) {
+  if (word.value < 0 || word.value > kMostRpm)
+    refuse(word.place, "S is 0 to 1 000 000 turns a minute; M4 turns the other way");
+  machine_.set_speed(word.value);
+}
+
+void Switches::select_tool(const Word& word) {
+  if (word.value != std::round(word.value) || word.value < 0 || word.value > kMostTool) {
+    refuse(word.place, fmt::format("T is a tool's number, 0 to {}", kMostTool));
+  }
+  selected_ = static_cast<int>(word.value);
+}
+
+void Switches::change_tool(std::size_t place) {
+  if (!selected_) refuse(place, "M6 without a T before it: to which tool?");
+  tool_ = selected_;
+  writer_.change_tool(*tool_);
+  machine_.tool_was_changed();
+}
+
+void Switches::turn_spindle(int code) {
+  machine_.turn(code == 3 ? 1 : code == 4 ? -1 : 0);
+}
+
+void Switches::switch_coolant(const Block& block) {
+  if (block.m(MGroup::CoolantOff)) {
+    machine_.set_mist(false);
+    machine_.set_flood(false);
+  }
+  if (block.m(MGroup::Mist)) machine_.set_mist(true);
+  if (block.m(MGroup::Flood)) machine_.set_flood(true);
+}
+
+}  // namespace rmac::gcode

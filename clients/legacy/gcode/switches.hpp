@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+
+#include "clients/legacy/gcode/modes/modes.hpp"
+#include "clients/legacy/program/machine_switches.hpp"
+
+namespace rmac::gcode {
+
+/// Spindle, coolant and tool: what a program switches between its moves.
+class Switches {
+ public:
+  explicit Switches(Writer& writer) : writer_(writer), machine_(writer) {}
+
+  void set_speed(const Word& word);
+  void select_tool(const Word& word);
+  /// M6. The appliance stops spindle and coolant for it; the report has the coolant flow on.
+  void change_tool(std::size_t place);
+  /// M3, M4, M5.
+  void turn_spindle(int code);
+  [[nodiscard]] bool spindle_turns() const noexcept { return machine_.spindle_turns(); }
+  /// Stops the spindle where a program does not say so, and lets it turn again.
+  void hold_spindle() { machine_.hold_spindle(); }
+  void release_spindle() { machine_.release_spindle(); }
+  /// M7, M8, M9 of one block.
+  void switch_coolant(const Block& block);
+  /// Writes what of them the block changed. Several calls are one request.
+  void write() { machine_.write(); }
+  /// The end of the program: all off.
+  void off() { machine_.off(); }
+
+  [[nodiscard]] std::optional<int> tool() const noexcept { return tool_; }
+  /// The last T.
+  [[nodiscard]] std::optional<int> selected() const noexcept { return selected_; }
+  [[nodiscard]] double rpm() const noexcept { return machine_.rpm(); }
+
+ private:
+  Writer& writer_;
+  legacy::MachineSwitches machine_;
+  std::optional<int> selected_, tool_;
+};
+
+}  // namespace rmac::gcode

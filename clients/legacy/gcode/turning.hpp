@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "clients/legacy/gcode/modes/modes.hpp"
+#include "clients/legacy/gcode/mover.hpp"
+
+namespace rmac::gcode {
+
+/// Coordinates that lie askew in those of the part: mirrored (G51.1), turned in the plane (G68), tilted (G68.2); in
+/// this order, where several are.
+class Turning {
+ public:
+  Turning(const Modes& modes, Coordinates& coordinates, Mover& mover)
+      : modes_(modes), coordinates_(coordinates), mover_(mover) {}
+
+  /// G51.1, G50.1, G68, G68.2 and G69 of a block.
+  void act(Block& block);
+  /// G53.1 and G53.6: the tool along the normal of the tilted plane.
+  void align(Block& block, std::size_t place);
+  /// Throws a Refusal where the block moves from a place whose coordinates the program believes to be other ones than
+  /// they are: behind G68, G51.1, and their ends, a block has all of the axes that they turned.
+  void require_whole(const Block& block, bool straight, std::size_t place);
+
+ private:
+  struct Turn {
+    Plane plane;
+    Point centre{};
+    double degrees = 0;
+  };
+
+  void mirror(Block& block, const Code& code);
+  void turn(Block& block, const Code& code);
+  void tilt(Block& block, const Code& code);
+  void end();
+  void place();
+  void doubt(std::size_t axis) { doubtful_.at(axis) = true; }
+  [[nodiscard]] double shift(std::size_t axis) const { return coordinates_.to_part(axis, 0); }
+
+  const Modes& modes_;
+  Coordinates& coordinates_;
+  Mover& mover_;
+  std::array<std::optional<double>, 3> mirrors_{};  ///< where along each axis
+  std::optional<Turn> turn_;
+  std::optional<legacy::Placement> tilt_;
+  std::array<bool, 3> doubtful_{};  ///< whose coordinate is another than the program's last one
+};
+
+}  // namespace rmac::gcode

@@ -1,0 +1,21 @@
+// A program for a Fanuc-type control: taken, or refused with a place.
+#include <cstdint>
+#include <string_view>
+
+#include "clients/legacy/fanuc/import.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  rmac::fanuc::Options options;
+  options.approach_mm = {{0, 0, 50}};
+  options.reference_mm = options.second_reference_mm = {{0, 0, 100}};
+  options.offsets[0] = options.offsets[1] = options.offsets[6] = {1, 2, 3};
+  options.assume_g43 = true;
+  options.unit_mm = 1;
+  options.tool_diameters_mm = {{1, 4}, {2, 0}};
+  options.whole_numbers = rmac::gcode::WholeNumbers::Units;
+  options.variables = {{500, 1}};
+  options.bounds = {.idle_lines = 1000, .output_mb = 1};  // loops without an end are soon noticed
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  static_cast<void>(rmac::fanuc::import_program(text, options, [](std::string_view) {}));
+  return 0;
+}

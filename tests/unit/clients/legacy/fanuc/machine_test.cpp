@@ -1,0 +1,115 @@
+#include <gmock/gmock.h>
+
+#include "unit/clients/legacy/fanuc/imported.hpp"
+
+namespace rmac::fanuc {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST(FanucDwell, IsInMillisecondsWithoutAPointAndInSecondsWithOne) {
+  const auto time = [](const std::string& line) { return imported(program_of(line)).requests[1]["params"]["Time"]; };
+  EXPECT_EQ(time("G4 P1500"), 1.5);
+  EXPECT_EQ(time("G04 X2.5"), 2.5);
+  EXPECT_EQ(time("G4 U.25"), 0.25);
+  EXPECT_EQ(time("G4 P0.5"), 0.5);  // Haas
+  EXPECT_EQ(time("#1=250\nG4 P#1"), 0.25);
+  EXPECT_THAT(refusal_of(program_of("G4 X2")), HasSubstr("no decimal point"));
+  EXPECT_THAT(refusal_of(program_of("#1=2.5\nG4 P#1")), HasSubstr("whole numbers"));
+  EXPECT_THAT(refusal_of(program_of("G4 X1. P5")), HasSubstr("one time"));
+}
+
+TEST(FanucReference, IsWhereWhoImportsSaysIt) {
+  Options options;
+  options.reference_mm = {{100, 200, 300}};
+  options.second_reference_mm = {{1, 2, 3}};
+  EXPECT_THAT(ends_of("G91 G28 Z0.\nG90", options), ElementsAre(ElementsAre(0, 0, 300)));
+  EXPECT_THAT(ends_of("G28 U0 V0 W0", options), ElementsAre(ElementsAre(100, 200, 300)));
+  EXPECT_THAT(ends_of("G28 G91 X0 Y0 Z5.", options), ElementsAre(ElementsAre(0, 0, 15), ElementsAre(100, 200, 300)));
+  EXPECT_THAT(ends_of("G30 P2 W0.", options), ElementsAre(ElementsAre(0, 0, 3)));
+  EXPECT_THAT(ends_of("G0 G53 Z0.\nG53 X0 Y0", options),
+              ElementsAre(ElementsAre(0, 0, 300), ElementsAre(100, 200, 300)));
+  EXPECT_THAT(ends_of("G91 G28 X0. Y0. A0.", options), ElementsAre(ElementsAre(100, 200, 10)));
+  EXPECT_THAT(ends_of("G91 G28 A0.", options), ElementsAre());
+  options.rotary = {{'A', 1}};
+  EXPECT_THAT(refusal_of(program_of("G91 G28 A0."), options), testing::Not("taken"));
+  EXPECT_THAT(refusal_of(program_of("G28"), options), HasSubstr("needs X, Y or Z"));
+  EXPECT_THAT(refusal_of(program_of("G30 P3 Z0"), options), HasSubstr("P2"));
+  EXPECT_THAT(refusal_of(program_of("G91 G28 Z0.")), HasSubstr("give --reference-point"));
+  EXPECT_THAT(refusal_of(program_of("G0 G53 Z0.")), HasSubstr("give --reference-point"));
+  EXPECT_THAT(refusal_of(program_of("G0 G53 Z-5."), options), HasSubstr("not known"));
+  EXPECT_THAT(refusal_of(program_of("G1 G53 Z0."), options), HasSubstr("G53 goes with G0"));
+}
+
+TEST(FanucArc, OfANegativeRadiusIsTheLongerOne) {
+  const auto centre = [](const std::string& line) {
+    return imported(program_of(line)).requests.back()["params"]["CenterPoint"]["p"];
+  };
+  EXPECT_EQ(centre("G2 X10. Y10. R10."), json({10, 0, 10}));
+  EXPECT_EQ(centre("G2 X10. Y10. R-10."), json({0, 10, 10}));
+  EXPECT_THAT(refusal_of(program_of("G2 X0 Y0 R5.")), HasSubstr("5:"));
+}
+
+TEST(FanucArc, IsWholeWhereOnlyItsCentreIsWritten) {
+  const auto arc = imported(program_of("G1 Z0.\nG17 G3 X0 I5.")).requests.back()["params"];
+  EXPECT_EQ(arc["Closed"], true);
+  EXPECT_EQ(arc["CenterPoint"]["p"], json({5, 0, 0}));
+  EXPECT_THAT(refusal_of(program_of("G2 X1. I.5 P2")), HasSubstr("nothing in this block uses P"));
+}
+
+TEST(FanucTool, LengthIsThatOfTheToolInTheSpindle) {
+  EXPECT_EQ(imported(program_of("T3 M6\nG43 H3\nG0 X0 Y0 Z50.")).requests.size(), 3U);
+  EXPECT_THAT(refusal_of(program_of("T3 M6\nG43 H23 Z5.")), StartsWith("6:5: the length of another tool"));
+  EXPECT_THAT(refusal_of(program_of("G44 H1")), HasSubstr("rmac tools"));
+}
+
+TEST(FanucTool, RadiusIsInTheOffsetThatDNames) {
+  Options options;
+  options.tool_diameters_mm = {{31, 4}};
+  EXPECT_THAT(ends_of("G1 G41 D31 X10. Y0\nG1 Y20.\nG40 G1 X0.", options).back(), ElementsAre(0, 20, 10));
+  EXPECT_THAT(ends_of("G1 G42 D0 X10.\nY20.\nX20.\nG40 X0.", options)[0], ElementsAre(10, 0, 10));
+  EXPECT_EQ(ends_of("D31\nG1 G41 X10.\nY20.\nG40 X0.", options), ends_of("G1 G41 D31 X10.\n\nY20.\nG40 X0.", options));
+  EXPECT_THAT(refusal_of(program_of("G1 G41 D1 X10."), options), HasSubstr("give --tool-diameter 1=MM"));
+  EXPECT_THAT(refusal_of(program_of("G1 G41 X10."), options), HasSubstr("no D"));
+}
+
+TEST(FanucControl, TakesG64AsWhatIsInForceAnyway) {
+  EXPECT_EQ(imported(program_of("G64")).requests.size(), 1U);
+  EXPECT_EQ(imported(program_of("G61")).requests[1]["params"]["Tolerance"], 0);
+  EXPECT_THAT(refusal_of(program_of("G61\nG64")), HasSubstr("give --tolerance"));
+  EXPECT_EQ(imported(program_of("G61\nG64"), {.tolerance_mm = 0.2}).requests[2]["params"]["Tolerance"], 0.2);
+}
+
+TEST(FanucOffset, OfAFurtherWorkSystemIsThePartFrame) {
+  Options options;
+  options.offsets[0] = {0, 0, 0};
+  options.offsets[6 + 2] = {5, 0, 0};
+  EXPECT_THAT(ends_of("G54.1 P3 G0 Y1.", options), ElementsAre(ElementsAre(-5, 1, 10)));
+  EXPECT_THAT(ends_of("G54 P3\nG0 Y1.", options), ElementsAre(ElementsAre(-5, 1, 10)));
+  EXPECT_THAT(ends_of("G10 L20 P4 X7. Y0 Z0\nG54.1 P4\nG0 Y1.", options), ElementsAre(ElementsAre(-7, 1, 10)));
+  EXPECT_THAT(refusal_of(program_of("G54.1 P9"), options),
+              HasSubstr("set it by G10 L20 P9 X Y Z before, or give --offset G54.1P9"));
+  EXPECT_THAT(refusal_of(program_of("G54.1"), options), HasSubstr("needs P"));
+}
+
+TEST(FanucOffset, IsSetAbsolutelyOrAddedTo) {
+  Options options;
+  options.offsets[0] = {0, 0, 0};
+  EXPECT_THAT(ends_of("G10 L2 P1 X2. Y0 Z0\nG91 G10 L2 P1 X1.\nG90 G0 Y1.", options),
+              ElementsAre(ElementsAre(-3, 1, 10)));
+  EXPECT_THAT(refusal_of(program_of("G10 L2 P0 X1.")), HasSubstr("all work systems"));
+  EXPECT_THAT(refusal_of(program_of("G10 L12 P1 R5.")), HasSubstr("rmac tools"));
+}
+
+TEST(FanucOffset, OfALocalSystemHoldsInAllAndEndsByG92) {
+  EXPECT_THAT(ends_of("G52 X5. Y1.\nG0 X1. Y1.\nG52 X0 Y0\nG0 X1."),
+              ElementsAre(ElementsAre(6, 2, 10), ElementsAre(1, 2, 10)));
+  EXPECT_THAT(ends_of("G52 X5.\nG92 X0\nG0 X1.\nG92.1 X0\nG0 X2."),
+              ElementsAre(ElementsAre(1, 0, 10), ElementsAre(2, 0, 10)));
+}
+
+}  // namespace
+}  // namespace rmac::fanuc
