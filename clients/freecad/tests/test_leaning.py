@@ -1,113 +1,18 @@
-"""Faces that are swept with five axes: what is left of the part is told by code that shares nothing with the sweep (leaning_part.py)."""
+"""The passes that sweep a face with five axes: their angles, curves and links, and what is refused."""
 
 import math
 import os
 import pathlib
 import unittest
 
-import FreeCAD
 import numpy as np
 import Part
-from leaning_part import Poses, cloud, outward_points
-from swept_part import reachable
+from leaning_case import LeaningTest, Vector, looks, wavy
+from leaning_part import Poses
 
 from rmac_freecad.jobs import JobRefused
 from rmac_freecad.simulation import simulate
-from rmac_freecad.surfaces import ball_end, bull_nose, flat_end, read_faces
-
-Vector = FreeCAD.Vector
-GOUGE_MM = 0.001
-SIDE_MM = 0.001
-FEEDS = {"feed_mm_min": 600, "rapid_mm_min": 2000}
-
-
-def wavy(seed, length=6.0, width=4.0, height=0.025):
-    """A solid with a random bicubic face on top."""
-    chance = np.random.default_rng(seed)
-    surface = Part.BSplineSurface()
-    surface.interpolate([[Vector(length * i / 4, width * j / 4, 6 + chance.uniform(-height, height)) for j in range(5)] for i in range(5)])
-    return surface.toShape().extrude(Vector(0, 0, -8))
-
-
-def prism(outline, depth):
-    """Of an outline in X and Z, along Y."""
-    places = [Vector(x, 0, z) for x, z in outline]
-    return Part.Face(Part.makePolygon([*places, places[0]])).extrude(Vector(0, depth, 0))
-
-
-def passage(gap=6.0):
-    """Between two bent blades on a hub; the faces that look into it, and its floor."""
-
-    def blade(x, bend, thick):
-        surface = Part.BSplineSurface()
-        heights = [1.5 + 2.5 * j for j in range(5)]
-        surface.interpolate([[Vector(x + bend * math.sin(math.pi * j / 4) + 0.1 * i, 2 * i, heights[j]) for j in range(5)] for i in range(5)])
-        return surface.toShape().extrude(Vector(thick, 0, 0))
-
-    shape = Part.makeBox(20, 8, 2, Vector(-6, 0, 0)).fuse([blade(0, 0.8, -2.5), blade(gap, 0.6, 2.5)])
-    middle = [face.CenterOfMass for face in shape.Faces]
-    bent = [i for i, face in enumerate(shape.Faces) if isinstance(face.Surface, Part.BSplineSurface)]
-    walls = [next(i for i in bent if low < middle[i].x < high) for low, high in ((0, 2), (gap, gap + 1.5))]
-    floor = next(i for i, at in enumerate(middle) if abs(at.z - 2) < 1e-6 and 1 < at.x < 5)
-    return shape, walls, floor
-
-
-def looks(shape, *way):
-    """Number of the face that looks that way most."""
-    way = Vector(*way)
-
-    def toward(face):
-        u, v = (sum(face.ParameterRange[k : k + 2]) / 2 for k in (0, 2))
-        normal, point = face.normalAt(u, v), face.valueAt(u, v)
-        return (-normal if shape.isInside(point + normal * 1e-3, 1e-7, False) else normal).dot(way)
-
-    return max(range(len(shape.Faces)), key=lambda i: toward(shape.Faces[i]))
-
-
-class LeaningTest(unittest.TestCase):
-    def setUp(self):
-        self.document = FreeCAD.newDocument("leaning")
-        self.addCleanup(FreeCAD.closeDocument, self.document.Name)
-
-    def swept(self, shape, faces, mill, scallop_mm=0.05, **more):
-        feature = self.document.addObject("Part::Feature", "Cut")
-        feature.Shape = shape
-        return read_faces(feature, [f"Face{face + 1}" for face in faces], mill, scallop_mm=scallop_mm, **{**FEEDS, **more})
-
-    def check(self, shape, faces, radius, program, scallop_mm=0.05, every=6, least=-1.0):
-        """No gouge, with the ball or its side, on passes, links and rapids; the scallop wherever the ball gets to."""
-        poses = Poses(program, radius)
-        deepest = poses.ball_gouge(shape, every)
-        side = poses.side_gouge(cloud(shape, 3000, 3), every)
-        worst = 0.0
-        for face in faces:
-            points, normals = outward_points(shape, shape.Faces[face], 2000, 1)
-            above = poses.left_over(points, normals)
-            high = above > 0.9 * scallop_mm
-            free = reachable(shape, points[high], normals[high], radius)
-            worst = max(worst, above[high][free].max(initial=0))
-        print(f"ball {1e3 * max(deepest, 0):.2f} um, side {1e3 * max(side, 0):.2f} um in the part, left {1e3 * worst:.1f} um of {1e3 * scallop_mm:g}")
-        self.assertLess(deepest, GOUGE_MM)
-        self.assertLess(side, SIDE_MM)
-        self.assertLess(worst, 1.05 * scallop_mm)
-        self.assertGreater(worst, least * scallop_mm)
-        return poses
-
-    def angles(self, shape, face, poses):
-        """Lead and tilt in degrees, as a stranger would measure them on the first pass."""
-        surface = shape.Faces[face]
-        inner = np.flatnonzero(poses.cut)[5:60:5]
-        found = []
-        for i in inner:
-            centre = Vector(*poses.centre[i])
-            near = surface.distToShape(Part.Vertex(centre))[1][0][0]
-            normal = np.array(centre - near) / (centre - near).Length
-            feed = poses.centre[i + 1] - poses.centre[i - 1]
-            feed /= np.linalg.norm(feed)
-            axis = poses.axis[i]
-            lead = math.degrees(math.asin(axis @ feed))
-            found.append((lead, math.degrees(math.atan2(axis @ np.cross(normal, feed), axis @ normal))))
-        return np.array(found)
+from rmac_freecad.surfaces import ball_end, bull_nose, flat_end
 
 
 class AnglesTest(LeaningTest):
@@ -120,93 +25,6 @@ class AnglesTest(LeaningTest):
                 self.assertEqual(left, [])
                 found = self.angles(shape, top, Poses(program, 2))
                 np.testing.assert_allclose(found, np.broadcast_to((lead, tilt), found.shape), atol=0.5)
-
-
-class PartsTest(LeaningTest):
-    def test_random_faces_keep_the_scallop_and_are_not_gouged(self):
-        for seed, along in ((1, "u"), (2, 35), (3, "v")):
-            with self.subTest(seed=seed, along=along):
-                shape = wavy(seed)
-                top = looks(shape, 0, 0, 1)
-                program, left = self.swept(shape, [top], ball_end(2), along=along, lead_deg=5, tilt_deg=20)
-                self.assertEqual(left, [])
-                self.check(shape, [top], 2, program, least=0.9)
-
-
-    def test_upright_and_undercut_walls_are_swept(self):
-        box = Part.makeBox(10, 8, 6)
-        undercut = prism([(0, 0), (8, 0), (10, 8), (0, 8)], 6)  # its right side looks down by 14 degrees
-        for name, shape, way, more in (
-            ("upright, level passes", box, (1, 0, 0), {"along": "level", "tilt_deg": 40}),
-            ("upright, passes up", box, (1, 0, 0), {"along": 0, "lead_deg": 30}),
-            ("undercut", undercut, (1, 0, -0.2), {"along": "level", "tilt_deg": 40}),
-            ("undercut, and the axis asked for would point down", undercut, (1, 0, -0.2), {"along": "level", "tilt_deg": 0}),
-        ):
-            with self.subTest(name):
-                wall = looks(shape, *way)
-                program, left = self.swept(shape, [wall], ball_end(2), **more)
-                self.assertEqual(left, [])
-                poses = self.check(shape, [wall], 2, program, least=0.9)
-                self.assertGreater(poses.axis[:, 2].min(), -1e-5)
-
-    def test_a_standing_cylinder_is_swept_all_around_over_its_seam(self):
-        shape = Part.makeCylinder(5, 6)
-        side = looks(shape, -1, 0, 0)  # its middle is there
-        for along in ("level", "v"):
-            with self.subTest(along=along):
-                program, left = self.swept(shape, [side], ball_end(3), along=along, tilt_deg=45)
-                self.assertEqual(left, [])
-                self.check(shape, [side], 3, program, least=0.9)
-
-    def test_a_sphere_is_swept_to_below_its_equator_and_what_the_spindle_bars_is_told(self):
-        shape = Part.makeSphere(5)
-        program, left = self.swept(shape, [0], ball_end(3), along="u", tilt_deg=20, scallop_mm=0.1)
-        self.assertRegex(" ".join(left), "^Face1: [0-9.]+ % is out of reach")
-        poses = Poses(program, 3)
-        self.assertLess(poses.ball_gouge(shape, 6), GOUGE_MM)
-        self.assertLess(poses.side_gouge(cloud(shape, 3000, 3), 6), SIDE_MM)
-        points, normals = outward_points(shape, shape.Faces[0], 2000, 1)
-        above = poses.left_over(points, normals)
-        self.assertLess(above[normals[:, 2] > -0.9].max(), 1.05 * 0.1)
-
-    def test_in_a_passage_the_axis_gives_way_and_nothing_is_touched(self):
-        shape, walls, floor = passage()
-        for name, face, more in (("wall", walls[0], {"along": "level", "tilt_deg": 40}), ("other wall", walls[1], {"along": "u", "tilt_deg": 20}),
-                                 ("floor", floor, {"along": 90, "tilt_deg": 0})):  # fmt: skip
-            with self.subTest(name):
-                program, left = self.swept(shape, [face], ball_end(1.5), **more)
-                self.assertRegex(" ".join(left), "^Face[0-9]+: [0-9.]+ % is beside other places of the part, or too narrow for the mill$")
-                poses = self.check(shape, [face], 1.5, program, least=0.9)
-                self.assertLess(poses.most_turn(), 20)
-
-    def test_a_wall_is_swept_down_to_the_floor_that_is_not_touched(self):
-        shape = prism([(0, 0), (12, 0), (12, 3), (4, 3), (4, 12), (0, 12)], 6)
-        wall = next(i for i, face in enumerate(shape.Faces) if abs(face.CenterOfMass.x - 4) < 1e-6)
-        for along in ("level", 0):
-            with self.subTest(along=along):
-                program, left = self.swept(shape, [wall], ball_end(2), along=along, tilt_deg=0)  # level, it would be in the floor
-                self.assertEqual(len(left), 1)
-                self.check(shape, [wall], 2, program)
-
-    def test_an_axis_that_never_turns_is_kept(self):
-        shape = prism([(0, 0), (8, 0), (4, 8), (0, 8)], 6)
-        slope = looks(shape, 2, 0, 1)
-        program, left = self.swept(shape, [slope], ball_end(2), along="level", axis=(1, 0, 2))
-        self.assertEqual(left, [])
-        poses = self.check(shape, [slope], 2, program, least=0.9)
-        np.testing.assert_allclose(poses.axis, np.broadcast_to(np.array((1, 0, 2)) / math.sqrt(5), poses.axis.shape), atol=1e-9)
-
-    def test_trimmed_reversed_and_placed_faces_are_swept_on_their_outer_side(self):
-        holed = wavy(4).cut(Part.makeCylinder(1, 20, Vector(3, 2, -5)))
-        backward = wavy(1).copy()
-        backward.reverse()
-        moved = wavy(1).copy()
-        moved.Placement = FreeCAD.Placement(Vector(50, 20, 10), FreeCAD.Rotation(Vector(1, 0, 0), 70))
-        for name, shape, way in (("trimmed", holed, (0, 0, 1)), ("reversed", backward, (0, 0, 1)), ("placed", moved, (0, -1, 0.4))):
-            with self.subTest(name):
-                top = looks(Part.makeSolid(Part.Shell(shape.Faces)), *way)
-                program, _ = self.swept(shape, [top], ball_end(2), along="u", tilt_deg=20)
-                self.check(Part.makeSolid(Part.Shell(shape.Faces)), [top], 2, program)
 
 
 class PassesTest(LeaningTest):
