@@ -19,7 +19,8 @@ constexpr gcode::Rules kRules{
                .words_stay = true,
                .dwell_is_free = true,
                .cross_first = true,
-               .bore_to_r = true},
+               .bore_to_r = true,
+               .levels_stay = true},
 };
 
 }  // namespace

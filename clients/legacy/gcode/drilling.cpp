@@ -55,6 +55,21 @@ void Drilling::read(Block& block, int code, std::size_t place) {
   if (pecks(code) && !(sticky(block, 'Q', peck_, place) > 0)) refuse(place, "Q, the depth of a peck, is more than 0");
 }
 
+void Drilling::set_levels(Block& block) {
+  const std::size_t normal = modes_.plane.normal;
+  const bool writes_retract = block.has('R'), writes_depth = block.has(kAxisLetters.at(normal));
+  const bool anew = !rules_.levels_stay;
+  if (anew || writes_retract)
+    retract_level_ = modes_.incremental ? initial_ + *retract_ : coordinates_.to_part(normal, *retract_);
+  if (anew || writes_depth) {
+    bottom_level_ = modes_.incremental ? retract_level_ + *depth_ : coordinates_.to_part(normal, *depth_);
+    bottom_by_retract_ = modes_.incremental;
+  } else if (writes_retract && bottom_by_retract_) {
+    refuse(block.place('R'), fmt::format("{} was counted from the R before (G91); write it beside this R",
+                                         kAxisLetters.at(normal)));
+  }
+}
+
 void Drilling::drill(Block& block, int code, int before, std::size_t place) {
   const Plane& plane = modes_.plane;
   if (block.once(530)) refuse(place, "G53 goes with G0 and G1 only");
@@ -67,8 +82,8 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
   if (before != code && !(rules_.words_stay && is_cycle(before))) retract_ = depth_ = peck_ = std::nullopt;
   if (!is_cycle(before)) initial_ = at.at(plane.normal);
   read(block, code, place);
-  const double retract = modes_.incremental ? initial_ + *retract_ : coordinates_.to_part(plane.normal, *retract_);
-  const double bottom = modes_.incremental ? retract + *depth_ : coordinates_.to_part(plane.normal, *depth_);
+  set_levels(block);
+  const double retract = retract_level_, bottom = bottom_level_;
   if (bottom > retract) refuse(place, "the hole's bottom is above R");
   if (rules_.cross_first && !modes_.retract_to_r && initial_ < retract)
     refuse(place, "under G98 R is not above the level where the cycles began: the tool would come back below it");

@@ -38,6 +38,7 @@ struct Rules {
     bool dwell_is_free = false;      ///< each may have P, and none needs it
     bool cross_first = false;        ///< to the hole where the tool is, and then to R
     bool bore_to_r = false;          ///< G89 comes up at feed to R alone, as G85 does
+    bool levels_stay = false;  ///< R and Z that a block does not say are where they were, whatever mode is in force
   } cycles;
 };
 
