@@ -13,6 +13,7 @@ constexpr gcode::Rules kRules{
     .d_is_register = true,
     .zero_is_reference = true,
     .motion_outlives_cycles = true,
+    .reference_is_of_begin = true,
     .whole_dwell_s = 1e-3,
     .cycles = {.repeats = "KL",
                .may_wait = true,

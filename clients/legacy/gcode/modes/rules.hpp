@@ -29,6 +29,7 @@ struct Rules {
   bool d_is_register = false;           ///< D of G41 is the number of an offset, that stays; else of a tool
   bool zero_is_reference = false;       ///< X0, Y0 and Z0 of G53 are those of the first reference point
   bool motion_outlives_cycles = false;  ///< behind G80 the last of G0 to G3 is in force again
+  bool reference_is_of_begin = false;  ///< the first frame of G54 has the reference points; in others they are elsewhere
   double whole_dwell_s = 1;             ///< of a P without a decimal point
 
   struct Cycles {

@@ -111,5 +111,28 @@ TEST(FanucOffset, OfALocalSystemHoldsInAllAndEndsByG92) {
               ElementsAre(ElementsAre(1, 0, 10), ElementsAre(2, 0, 10)));
 }
 
+TEST(FanucReference, IsInTheFrameOfTheBegin) {
+  Options options;
+  options.reference_mm = options.second_reference_mm = {{100, 200, 300}};
+  options.offsets[0] = {-100, -200, 0};
+  options.offsets[1] = {-90, -180, 5};
+  EXPECT_THAT(ends_of("G55\nG28 U0 V0 W0", options).back(), ElementsAre(90, 180, 295));
+  EXPECT_THAT(ends_of("G55\nG30 U0 V0 W0", options).back(), ElementsAre(90, 180, 295));
+  EXPECT_THAT(ends_of("G55\nG0 G53 X0 Y0", options).back(), ElementsAre(90, 180, 5));
+  options.offsets.clear();
+  EXPECT_THAT(refusal_of(program_of("G10 L2 P1 X1. Y2. Z3.\nG0 X0 Y0 Z0\nG28 W0"), options),
+              StartsWith("7:1: --reference-point"));
+  EXPECT_THAT(refusal_of(program_of("G10 L2 P1 X1. Y2. Z3.\nG0 X0 Y0 Z0\nG0 G53 X0"), options),
+              StartsWith("7:8: --reference-point"));
+}
+
+TEST(FanucReference, IsNoZeroWhereTheOffsetSaysAnother) {
+  Options options;
+  options.reference_mm = {{100, 200, 300}};
+  options.offsets[0] = {-101, -200, 0};
+  EXPECT_THAT(refusal_of(program_of("G0 G53 X0"), options), StartsWith("5:8: --offset"));
+  EXPECT_THAT(ends_of("G0 G53 Y0", options).back(), ElementsAre(0, 200, 10));
+}
+
 }  // namespace
 }  // namespace rmac::fanuc
