@@ -14,6 +14,7 @@ constexpr gcode::Rules kRules{
     .zero_is_reference = true,
     .motion_outlives_cycles = true,
     .reference_is_of_begin = true,
+    .leaves_in_plane = true,
     .whole_dwell_s = 1e-3,
     .cycles = {.repeats = "KL",
                .may_wait = true,

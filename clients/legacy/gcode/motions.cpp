@@ -105,6 +105,9 @@ Point Motions::start(std::size_t place) {
 void Motions::go_straight(const Point& end, bool rapid, std::size_t place) {
   if (compensation_.on())
     return compensation_.move({rapid, std::nullopt, end, modes_.feed_mm_min, mover_.line()}, place);
+  const Point& from = compensation_.programmed();
+  if (rules_.leaves_in_plane && compensation_.leaving() && end[0] == from[0] && end[1] == from[1])
+    refuse(place, "write the move in X and Y that leaves the contour in the block of G40");
   compensation_.left();
   if (rapid) return mover_.rapid(end, place);
   mover_.line(end, place);

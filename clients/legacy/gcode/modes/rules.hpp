@@ -30,6 +30,7 @@ struct Rules {
   bool zero_is_reference = false;       ///< X0, Y0 and Z0 of G53 are those of the first reference point
   bool motion_outlives_cycles = false;  ///< behind G80 the last of G0 to G3 is in force again
   bool reference_is_of_begin = false;  ///< the first frame of G54 has the reference points; in others they are elsewhere
+  bool leaves_in_plane = false;  ///< behind G40 the first move has a way in X or Y
   double whole_dwell_s = 1;             ///< of a P without a decimal point
 
   struct Cycles {

@@ -134,5 +134,15 @@ TEST(FanucReference, IsNoZeroWhereTheOffsetSaysAnother) {
   EXPECT_THAT(ends_of("G0 G53 Y0", options).back(), ElementsAre(0, 200, 10));
 }
 
+TEST(FanucTool, LeavesAContourByAMoveInItsPlane) {
+  Options options;
+  options.tool_diameters_mm = {{31, 4}};
+  const std::string contour = "G1 Z0\nG41 D31 X10. Y0\nY20.\n";
+  EXPECT_THAT(refusal_of(program_of(contour + "G40\nG0 Z50."), options),
+              StartsWith("9:1: write the move in X and Y that leaves the contour"));
+  EXPECT_THAT(refusal_of(program_of(contour + "G40 G0 Z50."), options), StartsWith("8:5: write the move in X and Y"));
+  EXPECT_THAT(ends_of(contour + "G40\nG0 X0 Z50.", options).back(), ElementsAre(0, 20, 50));
+}
+
 }  // namespace
 }  // namespace rmac::fanuc
