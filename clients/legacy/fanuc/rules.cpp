@@ -15,6 +15,7 @@ constexpr gcode::Rules kRules{
     .motion_outlives_cycles = true,
     .reference_is_of_begin = true,
     .leaves_in_plane = true,
+    .enters_to_normal = true,
     .whole_dwell_s = 1e-3,
     .cycles = {.repeats = "KL",
                .may_wait = true,

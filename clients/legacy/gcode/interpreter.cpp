@@ -43,7 +43,7 @@ Interpreter::Interpreter(const Options& options, const Rules& rules, Writer& wri
       rules_(rules),
       writer_(writer),
       mover_(options, modes_, coordinates_, writer),
-      compensation_([this](const ContourMove& move, std::size_t place) { mover_.held(move, place); }),
+      compensation_([this](const ContourMove& move, std::size_t place) { mover_.held(move, place); }, rules.enters_to_normal),
       motions_(options, rules, modes_, coordinates_, mover_, compensation_),
       turning_(modes_, coordinates_, mover_),
       tool_axis_(options, modes_, coordinates_, mover_),

@@ -144,5 +144,13 @@ TEST(FanucTool, LeavesAContourByAMoveInItsPlane) {
   EXPECT_THAT(ends_of(contour + "G40\nG0 X0 Z50.", options).back(), ElementsAre(0, 20, 50));
 }
 
+TEST(FanucTool, ComesToAnInsideCornerBesideTheSecondMovesBegin) {
+  Options options;
+  options.tool_diameters_mm = {{31, 4}};
+  EXPECT_THAT(ends_of("G1 Z0\nG41 D31 X10. Y0\nX0 Y20.\nX-20.\nG40 Y0", options)[1],
+              ElementsAre(testing::DoubleNear(10 - 4 / std::sqrt(5), 1e-6), testing::DoubleNear(-2 / std::sqrt(5), 1e-6),
+                          0));
+}
+
 }  // namespace
 }  // namespace rmac::fanuc
