@@ -55,6 +55,11 @@ void Drilling::read(Block& block, int code, std::size_t place) {
   if (pecks(code) && !(sticky(block, 'Q', peck_, place) > 0)) refuse(place, "Q, the depth of a peck, is more than 0");
 }
 
+Drilling::Coordinated Drilling::coordinated() const {
+  return {coordinates_.active(), modes_.plane.normal, coordinates_.offset(coordinates_.active()),
+          {coordinates_.to_part(0, 0), coordinates_.to_part(1, 0), coordinates_.to_part(2, 0)}};
+}
+
 void Drilling::set_levels(Block& block) {
   const std::size_t normal = modes_.plane.normal;
   const bool writes_retract = block.has('R'), writes_depth = block.has(kAxisLetters.at(normal));
@@ -77,6 +82,11 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
     refuse(place, "G86 stops the spindle, which does not turn; write M3 or M4 and S before it");
   }
   if (!block.has_any("XYZ")) refuse(place, "a canned cycle needs X, Y or Z in its block");
+  if (!is_cycle(before)) begun_in_ = coordinated();
+  if (rules_.levels_stay && begun_in_ != coordinated())
+    refuse(place,
+           "a work system, other coordinates or another plane in the midst of a cycle, whose levels were meant in "
+           "those before; write G80 and a G0, and write the cycle again with R and Z");
   Point at = mover_.start(place);
   if (before != code) dwell_s_ = std::nullopt;
   if (before != code && !(rules_.words_stay && is_cycle(before))) retract_ = depth_ = peck_ = std::nullopt;

@@ -68,5 +68,16 @@ TEST(FanucCycle, KeepsItsLevelsAsTheBlockMeantThemThatWroteThem) {
               testing::StartsWith("6:5: Z was counted from the R before"));
 }
 
+TEST(FanucCycle, IsWrittenAgainInOtherCoordinates) {
+  Options options;
+  options.offsets[0] = options.offsets[1] = {0, 0, 0};
+  options.offsets[1][0] = 5;
+  for (const std::string line : {"G55", "G52 X1.", "G92 X1.", "G10 L2 P1 X1. Y0 Z0", "G18"}) {
+    const std::string lines = "G99 G81 X1. Z-2. R2.\n" + line + "\n";
+    EXPECT_THAT(refusal_of(program_of(lines + "X2."), options), HasSubstr("write the cycle again")) << line;
+    EXPECT_THAT(refusal_of(program_of(lines + "G80\nG17 G0 X2."), options), "taken") << line;
+  }
+}
+
 }  // namespace
 }  // namespace rmac::fanuc
