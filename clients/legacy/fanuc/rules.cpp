@@ -16,6 +16,7 @@ constexpr gcode::Rules kRules{
     .reference_is_of_begin = true,
     .leaves_in_plane = true,
     .enters_to_normal = true,
+    .stops_behind_motion = true,
     .whole_dwell_s = 1e-3,
     .cycles = {.repeats = "KL",
                .may_wait = true,

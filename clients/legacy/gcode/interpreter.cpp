@@ -15,6 +15,7 @@ namespace rmac::gcode {
 namespace {
 
 constexpr double kInch_mm = 25.4, kMostTolerance_mm = 100, kMostDwell_s = 3600;
+constexpr int kSpindleOff = 5;
 /// How often M98 calls.
 constexpr double kMostTimes = 1e9;
 /// What a stop's message may have.
@@ -67,7 +68,7 @@ After Interpreter::execute(Block& block, const Line& line) {
   require_only_moves(block, modes_, compensation_);
   set_speeds(block);
   set_tool(block);
-  switches_.switch_coolant(block);
+  if (!(rules_.stops_behind_motion && block.m(MGroup::CoolantOff))) switches_.switch_coolant(block);
   switches_.write();
   act_on_names(block, options_, writer_);
   dwell(block);
@@ -81,6 +82,7 @@ After Interpreter::execute(Block& block, const Line& line) {
   act_once(block);
   tool_axis_.read(block);
   move(block);
+  switch_off_behind_motion(block);
   const bool goes_on = stop(block);
   block.require_all_used();
   return {goes_on ? After::What::Next : After::What::End};
@@ -115,7 +117,17 @@ void Interpreter::set_tool(Block& block) {
     coordinates_.forget_tip();
     modes_.length = ToolLength::Off;
   }
-  if (const auto& spindle = block.m(MGroup::Spindle)) switches_.turn_spindle(spindle->number);
+  const auto& spindle = block.m(MGroup::Spindle);
+  if (spindle && !(rules_.stops_behind_motion && spindle->number == kSpindleOff))
+    switches_.turn_spindle(spindle->number);
+}
+
+void Interpreter::switch_off_behind_motion(const Block& block) {
+  if (!rules_.stops_behind_motion) return;
+  const auto& spindle = block.m(MGroup::Spindle);
+  if (spindle && spindle->number == kSpindleOff) switches_.turn_spindle(spindle->number);
+  if (block.m(MGroup::CoolantOff)) switches_.switch_coolant(block);
+  switches_.write();
 }
 
 void Interpreter::dwell(Block& block) {

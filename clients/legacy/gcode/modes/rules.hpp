@@ -32,6 +32,7 @@ struct Rules {
   bool reference_is_of_begin = false;  ///< the first frame of G54 has the reference points; in others they are elsewhere
   bool leaves_in_plane = false;  ///< behind G40 the first move has a way in X or Y
   bool enters_to_normal = false;  ///< the first move of G41 ends beside the begin of the second one, before an inside corner too
+  bool stops_behind_motion = false;  ///< M5 and M9 act behind the motion of their block
   double whole_dwell_s = 1;             ///< of a P without a decimal point
 
   struct Cycles {

@@ -152,5 +152,11 @@ TEST(FanucTool, ComesToAnInsideCornerBesideTheSecondMovesBegin) {
                           0));
 }
 
+TEST(FanucSwitch, OffActsBehindTheMotionAndOnBeforeIt) {
+  EXPECT_THAT(imported(program_of("G1 X1. M3 S500\nX2. M8\nX3. M9\nX4. M5")).methods,
+              ElementsAre("MoveToPathTarget", "InTurn", "SetFeedrate", "MoveAlongLine", "InTurn", "MoveAlongLine",
+                          "MoveAlongLine", "InTurn", "MoveAlongLine", "InTurn"));
+}
+
 }  // namespace
 }  // namespace rmac::fanuc
