@@ -17,6 +17,7 @@ constexpr gcode::Rules kRules{
     .leaves_in_plane = true,
     .enters_to_normal = true,
     .stops_behind_motion = true,
+    .spindle_needs_speed = true,
     .whole_dwell_s = 1e-3,
     .cycles = {.repeats = "KL",
                .may_wait = true,

@@ -118,6 +118,8 @@ void Interpreter::set_tool(Block& block) {
     modes_.length = ToolLength::Off;
   }
   const auto& spindle = block.m(MGroup::Spindle);
+  if (spindle && rules_.spindle_needs_speed && spindle->number != kSpindleOff && !switches_.speed_is_set())
+    refuse(spindle->place, "no S was given before this; write S, in turns a minute, beside it");
   if (spindle && !(rules_.stops_behind_motion && spindle->number == kSpindleOff))
     switches_.turn_spindle(spindle->number);
 }

@@ -158,5 +158,11 @@ TEST(FanucSwitch, OffActsBehindTheMotionAndOnBeforeIt) {
                           "MoveAlongLine", "InTurn", "MoveAlongLine", "InTurn"));
 }
 
+TEST(FanucSwitch, TurnsNoSpindleWithoutASpeed) {
+  EXPECT_THAT(refusal_of(program_of("M3")), StartsWith("5:1: no S"));
+  EXPECT_THAT(refusal_of(program_of("M4\nS500")), StartsWith("5:1: no S"));
+  EXPECT_EQ(refusal_of(program_of("S500\nM3\nM5\nM4\nM5")), "taken");
+}
+
 }  // namespace
 }  // namespace rmac::fanuc
