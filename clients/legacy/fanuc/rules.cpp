@@ -18,6 +18,7 @@ constexpr gcode::Rules kRules{
     .enters_to_normal = true,
     .stops_behind_motion = true,
     .spindle_needs_speed = true,
+    .unit_ends_feed = true,
     .whole_dwell_s = 1e-3,
     .cycles = {.repeats = "KL",
                .may_wait = true,

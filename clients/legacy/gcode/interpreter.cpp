@@ -146,7 +146,11 @@ void Interpreter::set_plane_and_units(Block& block) {
   if (const auto& plane = block.g(GGroup::Plane)) {
     modes_.plane = plane->number == 170 ? Plane{} : plane->number == 180 ? Plane{2, 0, 1} : Plane{1, 2, 0};
   }
-  if (const auto& units = block.g(GGroup::Units)) modes_.unit_mm = units->number == 200 ? kInch_mm : 1;
+  const auto& units = block.g(GGroup::Units);
+  if (!units) return;
+  const double unit = units->number == 200 ? kInch_mm : 1;
+  if (rules_.unit_ends_feed && modes_.unit_mm && *modes_.unit_mm != unit) modes_.feed_mm_min = 0;
+  modes_.unit_mm = unit;
 }
 
 void Interpreter::set_length(Block& block) {

@@ -34,6 +34,7 @@ struct Rules {
   bool enters_to_normal = false;  ///< the first move of G41 ends beside the begin of the second one, before an inside corner too
   bool stops_behind_motion = false;  ///< M5 and M9 act behind the motion of their block
   bool spindle_needs_speed = false;  ///< M3 and M4 before any S are refused
+  bool unit_ends_feed = false;  ///< F does not outlive another unit
   double whole_dwell_s = 1;             ///< of a P without a decimal point
 
   struct Cycles {

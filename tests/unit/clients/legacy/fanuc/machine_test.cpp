@@ -164,5 +164,11 @@ TEST(FanucSwitch, TurnsNoSpindleWithoutASpeed) {
   EXPECT_EQ(refusal_of(program_of("S500\nM3\nM5\nM4\nM5")), "taken");
 }
 
+TEST(FanucUnits, EndTheFeed) {
+  EXPECT_THAT(refusal_of(program_of("G20\nG1 X1.")), StartsWith("6:1: no feed was set"));
+  EXPECT_EQ(refusal_of(program_of("G20\nG1 X1. F10.")), "taken");
+  EXPECT_EQ(refusal_of(program_of("G21\nG1 X1.")), "taken");
+}
+
 }  // namespace
 }  // namespace rmac::fanuc
