@@ -29,6 +29,21 @@ bool same(double a, double b) {
   return std::abs(a - b) <= kSame * std::max({1.0, std::abs(a), std::abs(b)});
 }
 
+/// The integer that a value is but for rounding, or else what `cut` makes of it.
+template <typename Cut>
+double integral(double value, Cut cut) {
+  const double nearest = std::round(value);
+  return same(value, nearest) ? nearest : cut(value);
+}
+
+double fix(double value, std::size_t) {
+  return integral(value, [](double x) { return std::trunc(x); });
+}
+
+double fup(double value, std::size_t) {
+  return integral(value, [](double x) { return x < 0 ? std::floor(x) : std::ceil(x); });
+}
+
 double divide(double left, double right, std::size_t place) {
   if (right == 0) refuse(place, "a division by zero");
   return left / right;
@@ -129,8 +144,8 @@ constexpr auto kFunctionsOf = std::to_array<Function>({
     {"BIN", [](double x, std::size_t at) { return recoded(x, 16, 10, at); }},
     {"COS", [](double x, std::size_t) { return std::cos(x * kDegree); }},
     {"EXP", [](double x, std::size_t) { return std::exp(x); }},
-    {"FIX", [](double x, std::size_t) { return std::trunc(x); }},
-    {"FUP", [](double x, std::size_t) { return x < 0 ? std::floor(x) : std::ceil(x); }},
+    {"FIX", fix},
+    {"FUP", fup},
     {"LN", logarithm},
     {"POW", nullptr, power},
     {"ROUND", rounded<kDigits>},

@@ -130,5 +130,12 @@ TEST(FanucValue, InAWordIsRoundedToItsIncrement) {
   EXPECT_EQ(xs_of("G65 P7 A[2/3]", "O7\nG0 X[#1*3]\nM99\n").back(), 2) << "an argument is no length yet";
 }
 
+TEST(FanucValue, IsWholeForFixAndFupWhereItIsSoForEq) {
+  EXPECT_EQ(statement("FIX[0.6/0.1]"), 6);
+  EXPECT_EQ(statement("FUP[0.3/0.1]"), 3);
+  EXPECT_EQ(statement("FUP[[0.1+0.2]*10]"), 3);
+  EXPECT_EQ(statement("FIX[5.999]"), 5);
+}
+
 }  // namespace
 }  // namespace rmac::fanuc
