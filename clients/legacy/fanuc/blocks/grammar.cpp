@@ -166,7 +166,36 @@ constexpr Grammar kGrammarOf{
     .last = Variables::kLast,
 };
 
+constexpr auto kSyntaxOperators = [] {
+  auto operators = kOperators;
+  for (Operator& each : operators) each.apply = [](double, double, std::size_t) { return 1.0; };
+  return operators;
+}();
+
+constexpr auto kSyntaxFunctions = [] {
+  auto functions = kFunctionsOf<0>;
+  for (Function& each : functions) {
+    if (each.apply != nullptr) each.apply = [](double, std::size_t) { return 1.0; };
+    if (each.apply_two != nullptr) each.apply_two = [](double, double, std::size_t) { return 1.0; };
+  }
+  return functions;
+}();
+
+constexpr Grammar kSyntaxGrammar{
+    .operators = kSyntaxOperators,
+    .functions = kSyntaxFunctions,
+    .atan = [](double, double) { return 1.0; },
+    .atan_of_one = true,
+    .comparisons_stand_alone = true,
+    .first = 0,
+    .last = Variables::kLast,
+};
+
 }  // namespace
+
+const Grammar& grammar_of_syntax() noexcept {
+  return kSyntaxGrammar;
+}
 
 const Grammar& grammar() noexcept {
   return kGrammarOf<0>;

@@ -106,5 +106,15 @@ TEST(FanucModalCall, CallsBehindEachMove) {
   EXPECT_THAT(refusal_of(program_of("G66 P7\nG66 P7", "O7\nM99\n")), HasSubstr("G66 within G66"));
 }
 
+TEST(FanucJump, OrASettingThatIsNotDueHasToBeOne) {
+  for (const std::string rest : {"THEN #1=2 G0 X5.", "THEN #1=[2", "THEN #1 2", "THEN #1=FOO[2]", "GOTO 5 X1."}) {
+    const std::string there = refusal_of(program_of("IF[1 EQ 1]" + rest + "\nN5"));
+    EXPECT_THAT(there, StartsWith("5:")) << rest;
+    EXPECT_EQ(refusal_of(program_of("IF[1 EQ 2]" + rest + "\nN5")), there) << rest;
+  }
+  EXPECT_EQ(refusal_of(program_of("#2=0\nIF[#2 NE 0]THEN #1=1/#2\nIF[#2 NE 0]THEN #1=#500\nIF[#2 NE 0]THEN #3000=1")),
+            "taken");
+}
+
 }  // namespace
 }  // namespace rmac::fanuc
