@@ -40,7 +40,7 @@ void take_call(gcode::Block& block, Ordered& ordered) {
   if (!block.has('P')) refuse(ordered.place, "M98 needs P, the number of the program that it calls");
   ordered.program = integer_of(block.take('P'), 1, kMostProgram, "P of M98 is the number of a program");
   if (!block.has('L')) return;
-  ordered.times = integer_of(block.take('L'), 0, kMostTimes, "L of M98 says how often");
+  ordered.times = integer_of(block.take('L'), 1, kMostTimes, "L of M98 says how often");
   ordered.times_are_said = true;
 }
 

@@ -66,7 +66,6 @@ TEST(FanucSubprogram, IsCalledInBothWaysOfWritingHowOften) {
   EXPECT_THAT(xs_of("M98 P31001", sub), ElementsAre(1, 2, 3));
   EXPECT_THAT(xs_of("M98 P00021001", sub), ElementsAre(1, 2));
   EXPECT_THAT(xs_of("G0 X5. M98 P1001", sub), ElementsAre(5, 6));
-  EXPECT_THAT(xs_of("M98 P1001 L0", sub), ElementsAre());
   EXPECT_THAT(xs_of("M98 P31001", "O31001\nG0 X7.\nM99\n"), ElementsAre(7));
   EXPECT_THAT(refusal_of(program_of("M98 P31001", sub + "O31001\nM99\n")),
               HasSubstr("may be O31001, or O1001 3 times"));
@@ -114,6 +113,11 @@ TEST(FanucJump, OrASettingThatIsNotDueHasToBeOne) {
   }
   EXPECT_EQ(refusal_of(program_of("#2=0\nIF[#2 NE 0]THEN #1=1/#2\nIF[#2 NE 0]THEN #1=#500\nIF[#2 NE 0]THEN #3000=1")),
             "taken");
+}
+
+TEST(FanucSubprogram, IsCalledOnceAtLeast) {
+  EXPECT_THAT(refusal_of(program_of("M98 P7 L0", "O7\nM99\n")), StartsWith("5:8: L of M98"));
+  EXPECT_THAT(refusal_of(program_of("G65 P7 L0", "O7\nM99\n")), StartsWith("5:8: L says how often"));
 }
 
 }  // namespace
