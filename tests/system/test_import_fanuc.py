@@ -18,8 +18,8 @@ N15 G21
 N20 G05.1 Q1
 (CONTOUR1)
 N25 S800 M03
-N30 G00 X10. Y0. Z10.
-N35 G43
+N30 G43
+N35 G00 X10. Y0. Z10.
 N40 G01 Z-2. F1200.
 N45 G03 X0. Y10. R10.
 N50 G03 I0. J-10.
@@ -68,7 +68,7 @@ class ImportFanuc(unittest.TestCase):
         self.source.write_text(PLATE)
         done = self.rmac("simulate", self.source, "--dialect", "fanuc", "--machine", "BenchXYZ")
         self.assertEqual(done.returncode, 1)
-        self.assertIn("O1001.nc:16:33: no decimal point", done.stderr)
+        self.assertIn("O1001.nc:15:31: no decimal point", done.stderr)
         done = self.rmac("simulate", self.source, "--dialect", "fanuc", "--machine", "BenchXYZ", "--whole-numbers", "units")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 

@@ -13,13 +13,20 @@ constexpr gcode::Rules kRules{
     .d_is_register = true,
     .zero_is_reference = true,
     .motion_outlives_cycles = true,
+    .reference_is_of_begin = true,
+    .leaves_in_plane = true,
+    .enters_to_normal = true,
+    .stops_behind_motion = true,
+    .spindle_needs_speed = true,
+    .unit_ends_feed = true,
     .whole_dwell_s = 1e-3,
     .cycles = {.repeats = "KL",
                .may_wait = true,
                .words_stay = true,
                .dwell_is_free = true,
                .cross_first = true,
-               .bore_to_r = true},
+               .bore_to_r = true,
+               .levels_stay = true},
 };
 
 }  // namespace

@@ -55,6 +55,26 @@ void Drilling::read(Block& block, int code, std::size_t place) {
   if (pecks(code) && !(sticky(block, 'Q', peck_, place) > 0)) refuse(place, "Q, the depth of a peck, is more than 0");
 }
 
+Drilling::Coordinated Drilling::coordinated() const {
+  return {coordinates_.active(), modes_.plane.normal, coordinates_.offset(coordinates_.active()),
+          {coordinates_.to_part(0, 0), coordinates_.to_part(1, 0), coordinates_.to_part(2, 0)}};
+}
+
+void Drilling::set_levels(Block& block) {
+  const std::size_t normal = modes_.plane.normal;
+  const bool writes_retract = block.has('R'), writes_depth = block.has(kAxisLetters.at(normal));
+  const bool anew = !rules_.levels_stay;
+  if (anew || writes_retract)
+    retract_level_ = modes_.incremental ? initial_ + *retract_ : coordinates_.to_part(normal, *retract_);
+  if (anew || writes_depth) {
+    bottom_level_ = modes_.incremental ? retract_level_ + *depth_ : coordinates_.to_part(normal, *depth_);
+    bottom_by_retract_ = modes_.incremental;
+  } else if (writes_retract && bottom_by_retract_) {
+    refuse(block.place('R'), fmt::format("{} was counted from the R before (G91); write it beside this R",
+                                         kAxisLetters.at(normal)));
+  }
+}
+
 void Drilling::drill(Block& block, int code, int before, std::size_t place) {
   const Plane& plane = modes_.plane;
   if (block.once(530)) refuse(place, "G53 goes with G0 and G1 only");
@@ -62,13 +82,18 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
     refuse(place, "G86 stops the spindle, which does not turn; write M3 or M4 and S before it");
   }
   if (!block.has_any("XYZ")) refuse(place, "a canned cycle needs X, Y or Z in its block");
+  if (!is_cycle(before)) begun_in_ = coordinated();
+  if (rules_.levels_stay && begun_in_ != coordinated())
+    refuse(place,
+           "a work system, other coordinates or another plane in the midst of a cycle, whose levels were meant in "
+           "those before; write G80 and a G0, and write the cycle again with R and Z");
   Point at = mover_.start(place);
   if (before != code) dwell_s_ = std::nullopt;
   if (before != code && !(rules_.words_stay && is_cycle(before))) retract_ = depth_ = peck_ = std::nullopt;
   if (!is_cycle(before)) initial_ = at.at(plane.normal);
   read(block, code, place);
-  const double retract = modes_.incremental ? initial_ + *retract_ : coordinates_.to_part(plane.normal, *retract_);
-  const double bottom = modes_.incremental ? retract + *depth_ : coordinates_.to_part(plane.normal, *depth_);
+  set_levels(block);
+  const double retract = retract_level_, bottom = bottom_level_;
   if (bottom > retract) refuse(place, "the hole's bottom is above R");
   if (rules_.cross_first && !modes_.retract_to_r && initial_ < retract)
     refuse(place, "under G98 R is not above the level where the cycles began: the tool would come back below it");

@@ -29,9 +29,20 @@ class Drilling {
 
  private:
   void read(Block& block, int code, std::size_t place);
+  /// R and Z, where the block writes them, in coordinates of the part.
+  void set_levels(Block& block);
   [[nodiscard]] double sticky(Block& block, char letter, std::optional<double>& value, std::size_t place);
   void peck(const Point& above, double bottom, int code, std::size_t place);
   void hole(const Point& above, double bottom, double clear, int code, std::size_t place);
+
+  /// What its levels were meant in.
+  struct Coordinated {
+    std::size_t system = 0, normal = 2;
+    Known offset{};
+    Point shift{};
+    bool operator==(const Coordinated&) const = default;
+  };
+  [[nodiscard]] Coordinated coordinated() const;
 
   const Rules::Cycles& rules_;
   double whole_dwell_s_;
@@ -41,6 +52,9 @@ class Drilling {
   Switches& switches_;
   Writer& writer_;
   std::optional<double> retract_, depth_, dwell_s_, peck_;  ///< R, and Z or its like, as programmed, in mm
+  double retract_level_ = 0, bottom_level_ = 0;            ///< of them, in coordinates of the part
+  bool bottom_by_retract_ = false;                         ///< Z was written as a way from R
+  Coordinated begun_in_;  ///< the first of a row of cycles
   double initial_ = 0;  ///< level at which the first of a row of cycles began: G98 goes back there
 };
 

@@ -15,6 +15,7 @@ namespace rmac::gcode {
 namespace {
 
 constexpr double kInch_mm = 25.4, kMostTolerance_mm = 100, kMostDwell_s = 3600;
+constexpr int kSpindleOff = 5;
 /// How often M98 calls.
 constexpr double kMostTimes = 1e9;
 /// What a stop's message may have.
@@ -43,7 +44,7 @@ Interpreter::Interpreter(const Options& options, const Rules& rules, Writer& wri
       rules_(rules),
       writer_(writer),
       mover_(options, modes_, coordinates_, writer),
-      compensation_([this](const ContourMove& move, std::size_t place) { mover_.held(move, place); }),
+      compensation_([this](const ContourMove& move, std::size_t place) { mover_.held(move, place); }, rules.enters_to_normal),
       motions_(options, rules, modes_, coordinates_, mover_, compensation_),
       turning_(modes_, coordinates_, mover_),
       tool_axis_(options, modes_, coordinates_, mover_),
@@ -67,7 +68,7 @@ After Interpreter::execute(Block& block, const Line& line) {
   require_only_moves(block, modes_, compensation_);
   set_speeds(block);
   set_tool(block);
-  switches_.switch_coolant(block);
+  if (!(rules_.stops_behind_motion && block.m(MGroup::CoolantOff))) switches_.switch_coolant(block);
   switches_.write();
   act_on_names(block, options_, writer_);
   dwell(block);
@@ -81,6 +82,7 @@ After Interpreter::execute(Block& block, const Line& line) {
   act_once(block);
   tool_axis_.read(block);
   move(block);
+  switch_off_behind_motion(block);
   const bool goes_on = stop(block);
   block.require_all_used();
   return {goes_on ? After::What::Next : After::What::End};
@@ -115,7 +117,19 @@ void Interpreter::set_tool(Block& block) {
     coordinates_.forget_tip();
     modes_.length = ToolLength::Off;
   }
-  if (const auto& spindle = block.m(MGroup::Spindle)) switches_.turn_spindle(spindle->number);
+  const auto& spindle = block.m(MGroup::Spindle);
+  if (spindle && rules_.spindle_needs_speed && spindle->number != kSpindleOff && !switches_.speed_is_set())
+    refuse(spindle->place, "no S was given before this; write S, in turns a minute, beside it");
+  if (spindle && !(rules_.stops_behind_motion && spindle->number == kSpindleOff))
+    switches_.turn_spindle(spindle->number);
+}
+
+void Interpreter::switch_off_behind_motion(const Block& block) {
+  if (!rules_.stops_behind_motion) return;
+  const auto& spindle = block.m(MGroup::Spindle);
+  if (spindle && spindle->number == kSpindleOff) switches_.turn_spindle(spindle->number);
+  if (block.m(MGroup::CoolantOff)) switches_.switch_coolant(block);
+  switches_.write();
 }
 
 void Interpreter::dwell(Block& block) {
@@ -132,7 +146,11 @@ void Interpreter::set_plane_and_units(Block& block) {
   if (const auto& plane = block.g(GGroup::Plane)) {
     modes_.plane = plane->number == 170 ? Plane{} : plane->number == 180 ? Plane{2, 0, 1} : Plane{1, 2, 0};
   }
-  if (const auto& units = block.g(GGroup::Units)) modes_.unit_mm = units->number == 200 ? kInch_mm : 1;
+  const auto& units = block.g(GGroup::Units);
+  if (!units) return;
+  const double unit = units->number == 200 ? kInch_mm : 1;
+  if (rules_.unit_ends_feed && modes_.unit_mm && *modes_.unit_mm != unit) modes_.feed_mm_min = 0;
+  modes_.unit_mm = unit;
 }
 
 void Interpreter::set_length(Block& block) {

@@ -24,11 +24,35 @@ int turns_of(const Word& word) {
 
 }  // namespace
 
+double Motions::reference_value(const Point& reference, std::size_t axis, std::size_t place) const {
+  const double value = reference.at(axis);
+  if (!rules_.reference_is_of_begin) return value;
+  const auto found = options_.offsets.find(0);
+  const auto begin = found == options_.offsets.end() ? std::nullopt : found->second.at(axis);
+  const auto& now = coordinates_.offset(coordinates_.active()).at(axis);
+  if (begin == now) return value;
+  if (!begin || !now)
+    refuse(place,
+           "--reference-point is in the coordinates of the begin, and where they are in those in force is not known; "
+           "give --offset G54=X,Y,Z, or write the way there as G0");
+  return value + *begin - *now;
+}
+
 double Motions::machine_value(const Word& word, std::size_t axis) const {
   require_unplaced(coordinates_, word.place);
   if (modes_.incremental) refuse(word.place, "G53 under G91; write G90 before it");
   if (rules_.zero_is_reference && word.value == 0) {
-    if (options_.reference_mm) return options_.reference_mm->at(axis);
+    if (options_.reference_mm) {
+      constexpr double kSame_mm = 1e-6;
+      const double value = reference_value(*options_.reference_mm, axis, word.place);
+      const auto& zero = coordinates_.offset(coordinates_.active()).at(axis);
+      // Z is the tip's, and that of the spindle in the offset.
+      if (rules_.reference_is_of_begin && axis != 2 && zero && !(std::abs(value + *zero) <= kSame_mm))
+        refuse(word.place, fmt::format("--offset has the machine's zero at {0}{1:.6g}, and --reference-point the "
+                                       "reference point at {0}{2:.6g}; write the way there without G53",
+                                       kAxisLetters.at(axis), -*zero, value));
+      return value;
+    }
     refuse(word.place,
            "where the machine's zero is, in the coordinates of the part, is not known here; give --reference-point "
            "X,Y,Z, or write the way there without G53");
@@ -81,6 +105,9 @@ Point Motions::start(std::size_t place) {
 void Motions::go_straight(const Point& end, bool rapid, std::size_t place) {
   if (compensation_.on())
     return compensation_.move({rapid, std::nullopt, end, modes_.feed_mm_min, mover_.line()}, place);
+  const Point& from = compensation_.programmed();
+  if (rules_.leaves_in_plane && compensation_.leaving() && end[0] == from[0] && end[1] == from[1])
+    refuse(place, "write the move in X and Y that leaves the contour in the block of G40");
   compensation_.left();
   if (rapid) return mover_.rapid(end, place);
   mover_.line(end, place);
@@ -102,12 +129,14 @@ void Motions::reference(Block& block, const Code& code) {
                                    "X,Y,Z, or write the way there as G0",
                                    first ? "" : "second-"));
   }
-  if (!block.has_any("XYZ")) return mover_.reference(*known, code.place);
+  const Point there{reference_value(*known, 0, code.place), reference_value(*known, 1, code.place),
+                    reference_value(*known, 2, code.place)};
+  if (!block.has_any("XYZ")) return mover_.reference(there, code.place);
   const std::array<bool, 3> goes{block.has('X'), block.has('Y'), block.has('Z')};
   mover_.rapid(end_of(block, code.place), code.place);
   Point end = coordinates_.known_tip();
   for (std::size_t axis = 0; axis < end.size(); ++axis) {
-    if (goes.at(axis)) end.at(axis) = known->at(axis);
+    if (goes.at(axis)) end.at(axis) = there.at(axis);
   }
   mover_.reference(end, code.place);
 }

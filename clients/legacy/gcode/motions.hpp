@@ -30,6 +30,8 @@ class Motions {
   [[nodiscard]] Point start(std::size_t place);
   void go_along(const Arc& arc, std::size_t place);
   void go_straight(const Point& end, bool rapid, std::size_t place);
+  /// A coordinate of a reference point, in the frame in force. Throws a Refusal where that leads there by no known way.
+  [[nodiscard]] double reference_value(const Point& reference, std::size_t axis, std::size_t place) const;
   [[nodiscard]] double machine_value(const Word& word, std::size_t axis) const;
   [[nodiscard]] Point written_centre(Block& block, const Point& start, std::size_t place) const;
 

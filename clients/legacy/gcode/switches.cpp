@@ -17,6 +17,7 @@ void Switches::set_speed(const Word& word) {
   if (word.value < 0 || word.value > kMostRpm)
     refuse(word.place, "S is 0 to 1 000 000 turns a minute; M4 turns the other way");
   machine_.set_speed(word.value);
+  speed_is_set_ = true;
 }
 
 void Switches::select_tool(const Word& word) {

@@ -13,6 +13,7 @@ class Switches {
   explicit Switches(Writer& writer) : writer_(writer), machine_(writer) {}
 
   void set_speed(const Word& word);
+  [[nodiscard]] bool speed_is_set() const noexcept { return speed_is_set_; }
   void select_tool(const Word& word);
   /// M6. The appliance stops spindle and coolant for it; the report has the coolant flow on.
   void change_tool(std::size_t place);
@@ -38,6 +39,7 @@ class Switches {
   Writer& writer_;
   legacy::MachineSwitches machine_;
   std::optional<int> selected_, tool_;
+  bool speed_is_set_ = false;
 };
 
 }  // namespace rmac::gcode

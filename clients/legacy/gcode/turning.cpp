@@ -64,8 +64,23 @@ void Turning::turn(Block& block, const Code& code) {
     }
     doubt(axis);
   }
+  require_centre_in_mirrors(turn, code.place);
+  if (turns_back(turn)) turn.degrees = -turn.degrees;
   turn_ = turn;
   place();
+}
+
+void Turning::require_centre_in_mirrors(const Turn& turn, std::size_t place) const {
+  if (turns_back(turn) && turn.plane.normal != 2)
+    refuse(place, "a mirror and a turn in G18 or G19 are not taken; have the CAM program write the part as it lies");
+  for (const std::size_t axis : {turn.plane.first, turn.plane.second}) {
+    const auto& mirror = mirrors_.at(axis);
+    if (mirror && *mirror != turn.centre.at(axis))
+      refuse(place,
+             fmt::format("the centre of a turn beside its mirror is not taken; write the {} of G51.1 here, or have the "
+                         "CAM program write the part as it lies",
+                         kAxisLetters.at(axis)));
+  }
 }
 
 /// By Euler's angles: about Z, about the new X, about the new Z.

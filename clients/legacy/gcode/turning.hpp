@@ -37,6 +37,11 @@ class Turning {
   void end();
   void place();
   void doubt(std::size_t axis) { doubtful_.at(axis) = true; }
+  /// Whether a mirror turns the sense of a turn.
+  [[nodiscard]] bool turns_back(const Turn& turn) const {
+    return mirrors_.at(turn.plane.first).has_value() != mirrors_.at(turn.plane.second).has_value();
+  }
+  void require_centre_in_mirrors(const Turn& turn, std::size_t place) const;
   [[nodiscard]] double shift(std::size_t axis) const { return coordinates_.to_part(axis, 0); }
 
   const Modes& modes_;

@@ -60,7 +60,7 @@ MacroCall read_macro_call(std::string_view text, std::size_t at, const Variables
       continue;
     }
     if (word.letter == 'L') {
-      call.times = integer_of(word.word, 0, kMostCalls, "L says how often the macro is called");
+      call.times = integer_of(word.word, 1, kMostCalls, "L says how often the macro is called");
       continue;
     }
     if (word.letter == 'G') refuse(place, "another G code beside G65 or G66; write it into a block of its own");

@@ -29,6 +29,21 @@ bool same(double a, double b) {
   return std::abs(a - b) <= kSame * std::max({1.0, std::abs(a), std::abs(b)});
 }
 
+/// The integer that a value is but for rounding, or else what `cut` makes of it.
+template <typename Cut>
+double integral(double value, Cut cut) {
+  const double nearest = std::round(value);
+  return same(value, nearest) ? nearest : cut(value);
+}
+
+double fix(double value, std::size_t) {
+  return integral(value, [](double x) { return std::trunc(x); });
+}
+
+double fup(double value, std::size_t) {
+  return integral(value, [](double x) { return x < 0 ? std::floor(x) : std::ceil(x); });
+}
+
 double divide(double left, double right, std::size_t place) {
   if (right == 0) refuse(place, "a division by zero");
   return left / right;
@@ -129,8 +144,8 @@ constexpr auto kFunctionsOf = std::to_array<Function>({
     {"BIN", [](double x, std::size_t at) { return recoded(x, 16, 10, at); }},
     {"COS", [](double x, std::size_t) { return std::cos(x * kDegree); }},
     {"EXP", [](double x, std::size_t) { return std::exp(x); }},
-    {"FIX", [](double x, std::size_t) { return std::trunc(x); }},
-    {"FUP", [](double x, std::size_t) { return x < 0 ? std::floor(x) : std::ceil(x); }},
+    {"FIX", fix},
+    {"FUP", fup},
     {"LN", logarithm},
     {"POW", nullptr, power},
     {"ROUND", rounded<kDigits>},
@@ -151,7 +166,36 @@ constexpr Grammar kGrammarOf{
     .last = Variables::kLast,
 };
 
+constexpr auto kSyntaxOperators = [] {
+  auto operators = kOperators;
+  for (Operator& each : operators) each.apply = [](double, double, std::size_t) { return 1.0; };
+  return operators;
+}();
+
+constexpr auto kSyntaxFunctions = [] {
+  auto functions = kFunctionsOf<0>;
+  for (Function& each : functions) {
+    if (each.apply != nullptr) each.apply = [](double, std::size_t) { return 1.0; };
+    if (each.apply_two != nullptr) each.apply_two = [](double, double, std::size_t) { return 1.0; };
+  }
+  return functions;
+}();
+
+constexpr Grammar kSyntaxGrammar{
+    .operators = kSyntaxOperators,
+    .functions = kSyntaxFunctions,
+    .atan = [](double, double) { return 1.0; },
+    .atan_of_one = true,
+    .comparisons_stand_alone = true,
+    .first = 0,
+    .last = Variables::kLast,
+};
+
 }  // namespace
+
+const Grammar& grammar_of_syntax() noexcept {
+  return kSyntaxGrammar;
+}
 
 const Grammar& grammar() noexcept {
   return kGrammarOf<0>;

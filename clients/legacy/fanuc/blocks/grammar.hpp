@@ -12,4 +12,7 @@ using gcode::Grammar, gcode::Maybe;
 /// The same in a word, where ROUND rounds to the digits that a control has there: 0.001 mm or 0.0001 inch.
 [[nodiscard]] const Grammar& grammar_of_words(bool inch) noexcept;
 
+/// Of what is read and not computed: all values are 1.
+[[nodiscard]] const Grammar& grammar_of_syntax() noexcept;
+
 }  // namespace rmac::fanuc

@@ -23,11 +23,24 @@ std::optional<int> tenfold_of(double value) {
   return static_cast<int>(nearest);
 }
 
+/// A value that was computed, to the least input increment of its word.
+double incremented(const FanucWord& word, const gcode::Modes& modes) {
+  constexpr std::string_view kLengths = "XYZUVWIJKRQ", kAngles = "ABC";
+  const bool is_direction = word.letter >= 'I' && word.letter <= 'K' &&
+                            modes.centre_point == gcode::ToolCentrePoint::Vectors;
+  const bool is_length = kLengths.find(word.letter) != std::string_view::npos && !is_direction;
+  const bool is_angle = kAngles.find(word.letter) != std::string_view::npos;
+  if (!is_length && !is_angle) return word.word.value;
+  const bool inch = is_length && modes.unit_mm && *modes.unit_mm != 1;
+  const double per_unit = inch ? 1e4 : 1e3;
+  return std::round(word.word.value * per_unit) / per_unit;
+}
+
 void take_call(gcode::Block& block, Ordered& ordered) {
   if (!block.has('P')) refuse(ordered.place, "M98 needs P, the number of the program that it calls");
   ordered.program = integer_of(block.take('P'), 1, kMostProgram, "P of M98 is the number of a program");
   if (!block.has('L')) return;
-  ordered.times = integer_of(block.take('L'), 0, kMostTimes, "L of M98 says how often");
+  ordered.times = integer_of(block.take('L'), 1, kMostTimes, "L of M98 says how often");
   ordered.times_are_said = true;
 }
 
@@ -44,7 +57,8 @@ Ordered BlockReader::read(std::string_view text, std::size_t at, const Variables
   Ordered ordered;
   for (skip_comments(text, at); at < text.size(); skip_comments(text, at)) {
     if (text[at] == '#') refuse(at, "a variable is set in a line of its own");
-    const FanucWord word = read_word(text, at, variables, modes);
+    FanucWord word = read_word(text, at, variables, modes);
+    if (word.computed) word.word.value = incremented(word, modes);
     if (!word.vacant) add(word, block, ordered);
   }
   block.check_together();

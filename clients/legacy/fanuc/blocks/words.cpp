@@ -43,7 +43,7 @@ FanucWord read_word(std::string_view text, std::size_t& at, const Variables& var
     whole = *value == std::round(*value);
     if (!whole) refuse(place, "P takes whole numbers; write ROUND or FIX around this value");
   }
-  return {letter, {value.value_or(0), place, whole}, !value};
+  return {letter, {value.value_or(0), place, whole}, !value, !is_number};
 }
 
 void skip_comments(std::string_view text, std::size_t& at) {

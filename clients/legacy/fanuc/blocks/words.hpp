@@ -13,7 +13,8 @@ namespace rmac::fanuc {
 struct FanucWord {
   char letter = '\0';
   gcode::Word word;
-  bool vacant = false;  ///< then it counts as not written
+  bool vacant = false;    ///< then it counts as not written
+  bool computed = false;  ///< its value is no number that is written
 };
 
 /// Reads the word that begins at `at`, and leaves `at` behind it. Throws a Refusal for what is none.

@@ -18,6 +18,10 @@ namespace {
 /// What a control has within each other: macros, and macros and subprograms together.
 constexpr std::size_t kDeepestMacros = 4, kDeepestCalls = 14;
 
+void require_equals(std::string_view text, std::size_t at) {
+  if (at >= text.size() || text[at] != '=') refuse(at, "= expected: a # at the begin of a line sets a variable");
+}
+
 }  // namespace
 
 Flow::Flow(std::string_view text, bool block_delete, gcode::Bounds bounds, Variables& variables,
@@ -110,7 +114,7 @@ void Flow::assign(std::string_view text, std::size_t at) {
   const std::size_t place = at++;
   gcode::Expression expression(text, grammar(), variables_);
   const int number = std::get<int>(expression.parameter_name(at));
-  if (at >= text.size() || text[at] != '=') refuse(at, "= expected: a # at the begin of a line sets a variable");
+  require_equals(text, at);
   ++at;
   const Maybe value = expression.without_brackets(at);
   require_line_end(text, at);
@@ -131,13 +135,30 @@ void Flow::carry_out_if(std::string_view text, std::size_t at) {
   const bool goes = holds(text, at);
   const std::string_view rest = text.substr(at);
   if (rest.starts_with("GOTO")) {
-    if (goes) carry_out_goto(text, at);
-    return;
+    return goes ? carry_out_goto(text, at) : pass_over(text, at + kThen, false);
   }
   if (!rest.starts_with("THEN")) refuse(at, "GOTO or THEN stands behind the condition of IF");
   at += kThen;
   if (at >= text.size() || text[at] != '#') refuse(at, "behind THEN a variable is set, as in THEN #1 = 2");
-  if (goes) assign(text, at);
+  if (goes) return assign(text, at);
+  pass_over(text, at, true);
+}
+
+void Flow::pass_over(std::string_view text, std::size_t at, bool sets) const {
+  struct Ones final : gcode::Variables {
+    [[nodiscard]] gcode::Maybe value(const gcode::Name&, std::size_t) const override { return 1; }
+    [[nodiscard]] bool is_set(const gcode::Name&) const override { return true; }
+  };
+  const Ones ones;
+  gcode::Expression expression(text, grammar_of_syntax(), ones);
+  if (sets) {
+    static_cast<void>(expression.parameter_name(++at));
+    require_equals(text, at);
+    static_cast<void>(expression.without_brackets(++at));
+  } else {
+    static_cast<void>(expression.value(at));
+  }
+  require_line_end(text, at);
 }
 
 void Flow::begin_loop(std::string_view text, std::size_t at) {

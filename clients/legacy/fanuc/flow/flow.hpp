@@ -62,6 +62,8 @@ class Flow {
   [[nodiscard]] bool carry_out(std::string_view text, std::size_t at);
   void pass_number(std::size_t place);
   void assign(std::string_view text, std::size_t at);
+  /// A statement that a condition leaves out: throws a Refusal where it is none.
+  void pass_over(std::string_view text, std::size_t at, bool sets) const;
   void carry_out_if(std::string_view text, std::size_t at);
   void begin_loop(std::string_view text, std::size_t at);
   void end_loop(std::size_t place);

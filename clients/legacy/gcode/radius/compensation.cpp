@@ -101,6 +101,14 @@ void Compensation::turn_corner(const Offset& behind, const ContourMove& move, st
   } else if (away > 0 || away < -std::numbers::pi + kStraight_rad) {
     go_around(behind, move, std::abs(away), place);
     held_ = Held{move, behind, 0, behind.length()};
+  } else if (held_->is_first && enters_to_normal_) {
+    const Flat to = behind.at(0);
+    ContourMove first = held_->move;
+    first.end = {to.x, to.y, first.end[2]};
+    sink_(first, place);
+    tool_ = first.end;
+    give_out_depths(place);
+    held_ = Held{move, behind, 0, behind.length()};
   } else {
     // The first move may end where the next one begins to be cut, even behind its own begin, if the tool is clear
     // there.
@@ -163,6 +171,10 @@ void Compensation::give_out(double to, std::size_t place) {
   }
   sink_(given, place);
   tool_ = given.end;
+  give_out_depths(place);
+}
+
+void Compensation::give_out_depths(std::size_t place) {
   for (ContourMove& depth : depths_) {
     depth.end = {tool_[0], tool_[1], depth.end[2]};
     sink_(depth, place);

@@ -25,7 +25,10 @@ struct ContourMove {
 class Compensation {
  public:
   using Sink = std::function<void(const ContourMove& move, std::size_t place)>;
-  explicit Compensation(Sink sink) : sink_(std::move(sink)) {}
+  /// `enters_to_normal`: before an inside corner the first move ends beside the begin of the second one, and not where
+  /// that is crossed.
+  explicit Compensation(Sink sink, bool enters_to_normal = false)
+      : sink_(std::move(sink)), enters_to_normal_(enters_to_normal) {}
 
   /// G41 and G42: from where the tool is on. `left_mm`: the tool's radius; negative: right of the contour.
   void begin(double left_mm, const legacy::Point& at);
@@ -57,9 +60,11 @@ class Compensation {
   void turn_corner(const Offset& behind, const ContourMove& move, std::size_t place);
   void go_around(const Offset& behind, const ContourMove& move, double turn_rad, std::size_t place);
   void give_out(double to, std::size_t place);
+  void give_out_depths(std::size_t place);
   void step_to(const Flat& to, const ContourMove& move, std::size_t place);
 
   Sink sink_;
+  bool enters_to_normal_ = false;
   State state_ = State::Off;
   double left_mm_ = 0;
   legacy::Point programmed_{}, tool_{};  ///< the latter: as far as moves were given out

@@ -57,5 +57,27 @@ TEST(FanucCycle, IsRefusedWhereItNeedsTheSpindlesAngle) {
     EXPECT_THAT(refusal_of(program_of(code + " X1. Z-2. R2. Q1. P1 F100.")), testing::StartsWith("5:1: G")) << code;
 }
 
+TEST(FanucCycle, KeepsItsLevelsAsTheBlockMeantThemThatWroteThem) {
+  EXPECT_THAT(ends_of("G0 Z12.\nG91 G99 G81 X10. R-10. Z-50. F100\nG90 X50."),
+              ElementsAre(ElementsAre(0, 0, 12), ElementsAre(10, 0, 12), ElementsAre(10, 0, 2), ElementsAre(10, 0, -48),
+                          ElementsAre(10, 0, 2), ElementsAre(50, 0, 2), ElementsAre(50, 0, -48),
+                          ElementsAre(50, 0, 2)));
+  EXPECT_THAT(zs_of("G99 G81 X10. Z-1.5 R2. F100\nG91 X10. L3"),
+              ElementsAre(10, 2, -1.5, 2, 2, -1.5, 2, 2, -1.5, 2, 2, -1.5, 2));
+  EXPECT_THAT(refusal_of(program_of("G91 G99 G81 X10. R-8. Z-5. F100\nX10. R-7.")),
+              testing::StartsWith("6:6: Z was counted from the R before"));
+}
+
+TEST(FanucCycle, IsWrittenAgainInOtherCoordinates) {
+  Options options;
+  options.offsets[0] = options.offsets[1] = {0, 0, 0};
+  options.offsets[1][0] = 5;
+  for (const std::string line : {"G55", "G52 X1.", "G92 X2.", "G10 L2 P1 X1. Y0 Z0", "G18"}) {
+    const std::string lines = "G99 G81 X1. Z-2. R2.\n" + line + "\n";
+    EXPECT_THAT(refusal_of(program_of(lines + "X2."), options), HasSubstr("write the cycle again")) << line;
+    EXPECT_THAT(refusal_of(program_of(lines + "G80\nG17 G0 X2."), options), "taken") << line;
+  }
+}
+
 }  // namespace
 }  // namespace rmac::fanuc

@@ -112,7 +112,7 @@ std::string common_block(Random& random) {
     case 11:
       return "M5 M9";
     case 12:
-      return "G20\nG1 X" + random.length(2) + "\nG21\nG1 F200.";
+      return "G20\nG1 X" + random.length(2) + " F9.\nG21\nG1 F200.";
     default:
       return "G92 X" + random.length() + "\nG1 X1.\n(COMMENT)";
   }

@@ -111,5 +111,64 @@ TEST(FanucOffset, OfALocalSystemHoldsInAllAndEndsByG92) {
               ElementsAre(ElementsAre(1, 0, 10), ElementsAre(2, 0, 10)));
 }
 
+TEST(FanucReference, IsInTheFrameOfTheBegin) {
+  Options options;
+  options.reference_mm = options.second_reference_mm = {{100, 200, 300}};
+  options.offsets[0] = {-100, -200, 0};
+  options.offsets[1] = {-90, -180, 5};
+  EXPECT_THAT(ends_of("G55\nG28 U0 V0 W0", options).back(), ElementsAre(90, 180, 295));
+  EXPECT_THAT(ends_of("G55\nG30 U0 V0 W0", options).back(), ElementsAre(90, 180, 295));
+  EXPECT_THAT(ends_of("G55\nG0 G53 X0 Y0", options).back(), ElementsAre(90, 180, 5));
+  options.offsets.clear();
+  EXPECT_THAT(refusal_of(program_of("G10 L2 P1 X1. Y2. Z3.\nG0 X0 Y0 Z0\nG28 W0"), options),
+              StartsWith("7:1: --reference-point"));
+  EXPECT_THAT(refusal_of(program_of("G10 L2 P1 X1. Y2. Z3.\nG0 X0 Y0 Z0\nG0 G53 X0"), options),
+              StartsWith("7:8: --reference-point"));
+}
+
+TEST(FanucReference, IsNoZeroWhereTheOffsetSaysAnother) {
+  Options options;
+  options.reference_mm = {{100, 200, 300}};
+  options.offsets[0] = {-101, -200, 0};
+  EXPECT_THAT(refusal_of(program_of("G0 G53 X0"), options), StartsWith("5:8: --offset"));
+  EXPECT_THAT(ends_of("G0 G53 Y0", options).back(), ElementsAre(0, 200, 10));
+}
+
+TEST(FanucTool, LeavesAContourByAMoveInItsPlane) {
+  Options options;
+  options.tool_diameters_mm = {{31, 4}};
+  const std::string contour = "G1 Z0\nG41 D31 X10. Y0\nY20.\n";
+  EXPECT_THAT(refusal_of(program_of(contour + "G40\nG0 Z50."), options),
+              StartsWith("9:1: write the move in X and Y that leaves the contour"));
+  EXPECT_THAT(refusal_of(program_of(contour + "G40 G0 Z50."), options), StartsWith("8:5: write the move in X and Y"));
+  EXPECT_THAT(ends_of(contour + "G40\nG0 X0 Z50.", options).back(), ElementsAre(0, 20, 50));
+}
+
+TEST(FanucTool, ComesToAnInsideCornerBesideTheSecondMovesBegin) {
+  Options options;
+  options.tool_diameters_mm = {{31, 4}};
+  EXPECT_THAT(ends_of("G1 Z0\nG41 D31 X10. Y0\nX0 Y20.\nX-20.\nG40 Y0", options)[1],
+              ElementsAre(testing::DoubleNear(10 - 4 / std::sqrt(5), 1e-6), testing::DoubleNear(-2 / std::sqrt(5), 1e-6),
+                          0));
+}
+
+TEST(FanucSwitch, OffActsBehindTheMotionAndOnBeforeIt) {
+  EXPECT_THAT(imported(program_of("G1 X1. M3 S500\nX2. M8\nX3. M9\nX4. M5")).methods,
+              ElementsAre("MoveToPathTarget", "InTurn", "SetFeedrate", "MoveAlongLine", "InTurn", "MoveAlongLine",
+                          "MoveAlongLine", "InTurn", "MoveAlongLine", "InTurn"));
+}
+
+TEST(FanucSwitch, TurnsNoSpindleWithoutASpeed) {
+  EXPECT_THAT(refusal_of(program_of("M3")), StartsWith("5:1: no S"));
+  EXPECT_THAT(refusal_of(program_of("M4\nS500")), StartsWith("5:1: no S"));
+  EXPECT_EQ(refusal_of(program_of("S500\nM3\nM5\nM4\nM5")), "taken");
+}
+
+TEST(FanucUnits, EndTheFeed) {
+  EXPECT_THAT(refusal_of(program_of("G20\nG1 X1.")), StartsWith("6:1: no feed was set"));
+  EXPECT_EQ(refusal_of(program_of("G20\nG1 X1. F10.")), "taken");
+  EXPECT_EQ(refusal_of(program_of("G21\nG1 X1.")), "taken");
+}
+
 }  // namespace
 }  // namespace rmac::fanuc

@@ -82,7 +82,11 @@ TEST(FanucMirror, TurnsTheWayOfArcs) {
 }
 
 TEST(FanucMirror, ComesBeforeATurn) {
-  EXPECT_THAT(ends_of("G51.1 X0\nG68 X0 Y0 R90.\nG0 X3. Y1.").back(), near(-1, -3, 10));
+  EXPECT_THAT(ends_of("G51.1 X0\nG68 X0 Y0 R90.\nG0 X3. Y1.").back(), near(1, 3, 10));
+  EXPECT_THAT(ends_of("G51.1 X0\nG68 X0 Y0 R30.\nG0 X10. Y0").back(), near(-10 * std::sqrt(0.75), 5, 10));
+  EXPECT_THAT(ends_of("G51.1 X0 Y0\nG68 X0 Y0 R30.\nG0 X10. Y0").back(), near(-10 * std::sqrt(0.75), -5, 10));
+  EXPECT_THAT(refusal_of(program_of("G51.1 X0\nG68 X1. Y0 R30.")), StartsWith("6:1: the centre of a turn"));
+  EXPECT_THAT(refusal_of(program_of("G51.1 X0\nG18\nG68 X0 Z0 R30.")), StartsWith("7:1: a mirror and a turn"));
 }
 
 TEST(FanucTilt, IsByEulersAnglesAndTurnsTheTool) {

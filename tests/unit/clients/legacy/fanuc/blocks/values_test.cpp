@@ -122,5 +122,20 @@ TEST(FanucVariable, RaisesAlarmsAndStops) {
   EXPECT_EQ(imported(program_of("#3006=1 (TURN THE PART)")).requests[1]["params"]["Message"], "TURN THE PART");
 }
 
+TEST(FanucValue, InAWordIsRoundedToItsIncrement) {
+  EXPECT_EQ(value_of("[1/3]"), 0.333);
+  EXPECT_EQ(value_of("#1", "#1=2/3\n"), 0.667);
+  EXPECT_EQ(value_of("1.23456"), 1.23456);
+  EXPECT_NEAR(value_of("[1/3]", "G20\n"), 0.3333 * 25.4, 1e-9);
+  EXPECT_EQ(xs_of("G65 P7 A[2/3]", "O7\nG0 X[#1*3]\nM99\n").back(), 2) << "an argument is no length yet";
+}
+
+TEST(FanucValue, IsWholeForFixAndFupWhereItIsSoForEq) {
+  EXPECT_EQ(statement("FIX[0.6/0.1]"), 6);
+  EXPECT_EQ(statement("FUP[0.3/0.1]"), 3);
+  EXPECT_EQ(statement("FUP[[0.1+0.2]*10]"), 3);
+  EXPECT_EQ(statement("FIX[5.999]"), 5);
+}
+
 }  // namespace
 }  // namespace rmac::fanuc

@@ -66,7 +66,6 @@ TEST(FanucSubprogram, IsCalledInBothWaysOfWritingHowOften) {
   EXPECT_THAT(xs_of("M98 P31001", sub), ElementsAre(1, 2, 3));
   EXPECT_THAT(xs_of("M98 P00021001", sub), ElementsAre(1, 2));
   EXPECT_THAT(xs_of("G0 X5. M98 P1001", sub), ElementsAre(5, 6));
-  EXPECT_THAT(xs_of("M98 P1001 L0", sub), ElementsAre());
   EXPECT_THAT(xs_of("M98 P31001", "O31001\nG0 X7.\nM99\n"), ElementsAre(7));
   EXPECT_THAT(refusal_of(program_of("M98 P31001", sub + "O31001\nM99\n")),
               HasSubstr("may be O31001, or O1001 3 times"));
@@ -104,6 +103,21 @@ TEST(FanucModalCall, CallsBehindEachMove) {
   EXPECT_THAT(xs_of("G66 P7 A0.\nG0 Y1.\nG0 Y2.\nG67", "O7\n#1=#1+1\nG91 G1 X#1\nG90 M99\n"), ElementsAre(0, 1, 1, 3))
       << "its variables stay from call to call";
   EXPECT_THAT(refusal_of(program_of("G66 P7\nG66 P7", "O7\nM99\n")), HasSubstr("G66 within G66"));
+}
+
+TEST(FanucJump, OrASettingThatIsNotDueHasToBeOne) {
+  for (const std::string rest : {"THEN #1=2 G0 X5.", "THEN #1=[2", "THEN #1 2", "THEN #1=FOO[2]", "GOTO 5 X1."}) {
+    const std::string there = refusal_of(program_of("IF[1 EQ 1]" + rest + "\nN5"));
+    EXPECT_THAT(there, StartsWith("5:")) << rest;
+    EXPECT_EQ(refusal_of(program_of("IF[1 EQ 2]" + rest + "\nN5")), there) << rest;
+  }
+  EXPECT_EQ(refusal_of(program_of("#2=0\nIF[#2 NE 0]THEN #1=1/#2\nIF[#2 NE 0]THEN #1=#500\nIF[#2 NE 0]THEN #3000=1")),
+            "taken");
+}
+
+TEST(FanucSubprogram, IsCalledOnceAtLeast) {
+  EXPECT_THAT(refusal_of(program_of("M98 P7 L0", "O7\nM99\n")), StartsWith("5:8: L of M98"));
+  EXPECT_THAT(refusal_of(program_of("G65 P7 L0", "O7\nM99\n")), StartsWith("5:8: L says how often"));
 }
 
 }  // namespace
