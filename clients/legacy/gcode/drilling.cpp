@@ -56,8 +56,19 @@ void Drilling::read(Block& block, int code, std::size_t place) {
 }
 
 Drilling::Coordinated Drilling::coordinated() const {
-  return {coordinates_.active(), modes_.plane.normal, coordinates_.offset(coordinates_.active()),
-          {coordinates_.to_part(0, 0), coordinates_.to_part(1, 0), coordinates_.to_part(2, 0)}};
+  const std::size_t normal = modes_.plane.normal;
+  legacy::Placement level;
+  if (const auto& placement = coordinates_.placement()) {
+    level.z = placement->turned(legacy::unit_axis(normal));
+    level.shift.at(normal) = placement->shift.at(normal);
+  } else {
+    level.z = legacy::unit_axis(normal);
+  }
+  return {coordinates_.active(),
+          normal,
+          coordinates_.offset(coordinates_.active()),
+          {coordinates_.to_part(0, 0), coordinates_.to_part(1, 0), coordinates_.to_part(2, 0)},
+          level};
 }
 
 void Drilling::set_levels(Block& block) {
@@ -70,8 +81,8 @@ void Drilling::set_levels(Block& block) {
     bottom_level_ = modes_.incremental ? retract_level_ + *depth_ : coordinates_.to_part(normal, *depth_);
     bottom_by_retract_ = modes_.incremental;
   } else if (writes_retract && bottom_by_retract_) {
-    refuse(block.place('R'), fmt::format("{} was counted from the R before (G91); write it beside this R",
-                                         kAxisLetters.at(normal)));
+    refuse(block.place('R'),
+           fmt::format("{} was counted from the R before (G91); write it beside this R", kAxisLetters.at(normal)));
   }
 }
 

@@ -40,6 +40,7 @@ class Drilling {
     std::size_t system = 0, normal = 2;
     Known offset{};
     Point shift{};
+    legacy::Placement level{};  ///< what of a placement moves the levels
     bool operator==(const Coordinated&) const = default;
   };
   [[nodiscard]] Coordinated coordinated() const;
@@ -52,9 +53,9 @@ class Drilling {
   Switches& switches_;
   Writer& writer_;
   std::optional<double> retract_, depth_, dwell_s_, peck_;  ///< R, and Z or its like, as programmed, in mm
-  double retract_level_ = 0, bottom_level_ = 0;            ///< of them, in coordinates of the part
-  bool bottom_by_retract_ = false;                         ///< Z was written as a way from R
-  Coordinated begun_in_;  ///< the first of a row of cycles
+  double retract_level_ = 0, bottom_level_ = 0;             ///< of them, in coordinates of the part
+  bool bottom_by_retract_ = false;                          ///< Z was written as a way from R
+  Coordinated begun_in_;                                    ///< the first of a row of cycles
   double initial_ = 0;  ///< level at which the first of a row of cycles began: G98 goes back there
 };
 

@@ -44,7 +44,8 @@ Interpreter::Interpreter(const Options& options, const Rules& rules, Writer& wri
       rules_(rules),
       writer_(writer),
       mover_(options, modes_, coordinates_, writer),
-      compensation_([this](const ContourMove& move, std::size_t place) { mover_.held(move, place); }, rules.enters_to_normal),
+      compensation_([this](const ContourMove& move, std::size_t place) { mover_.held(move, place); },
+                    rules.enters_to_normal),
       motions_(options, rules, modes_, coordinates_, mover_, compensation_),
       turning_(modes_, coordinates_, mover_),
       tool_axis_(options, modes_, coordinates_, mover_),
@@ -68,7 +69,7 @@ After Interpreter::execute(Block& block, const Line& line) {
   require_only_moves(block, modes_, compensation_);
   set_speeds(block);
   set_tool(block);
-  if (!(rules_.stops_behind_motion && block.m(MGroup::CoolantOff))) switches_.switch_coolant(block);
+  if (!(switches_off_behind(block) && block.m(MGroup::CoolantOff))) switches_.switch_coolant(block);
   switches_.write();
   act_on_names(block, options_, writer_);
   dwell(block);
@@ -120,12 +121,17 @@ void Interpreter::set_tool(Block& block) {
   const auto& spindle = block.m(MGroup::Spindle);
   if (spindle && rules_.spindle_needs_speed && spindle->number != kSpindleOff && !switches_.speed_is_set())
     refuse(spindle->place, "no S was given before this; write S, in turns a minute, beside it");
-  if (spindle && !(rules_.stops_behind_motion && spindle->number == kSpindleOff))
+  if (spindle && !(switches_off_behind(block) && spindle->number == kSpindleOff))
     switches_.turn_spindle(spindle->number);
 }
 
+/// A change of tool would switch on what is to be off, before that.
+bool Interpreter::switches_off_behind(const Block& block) const {
+  return rules_.stops_behind_motion && !block.m(MGroup::Tool);
+}
+
 void Interpreter::switch_off_behind_motion(const Block& block) {
-  if (!rules_.stops_behind_motion) return;
+  if (!switches_off_behind(block)) return;
   const auto& spindle = block.m(MGroup::Spindle);
   if (spindle && spindle->number == kSpindleOff) switches_.turn_spindle(spindle->number);
   if (block.m(MGroup::CoolantOff)) switches_.switch_coolant(block);

@@ -51,6 +51,7 @@ class Interpreter {
   void read_comments(const Line& line);
   void set_speeds(Block& block);
   void set_tool(Block& block);
+  [[nodiscard]] bool switches_off_behind(const Block& block) const;
   void switch_off_behind_motion(const Block& block);
   void dwell(Block& block);
   void set_plane_and_units(Block& block);

@@ -50,7 +50,7 @@ double Motions::machine_value(const Word& word, std::size_t axis) const {
       if (rules_.reference_is_of_begin && axis != 2 && zero && !(std::abs(value + *zero) <= kSame_mm))
         refuse(word.place, fmt::format("--offset has the machine's zero at {0}{1:.6g}, and --reference-point the "
                                        "reference point at {0}{2:.6g}; write the way there without G53",
-                                       kAxisLetters.at(axis), -*zero, value));
+                                       kAxisLetters.at(axis), 0.0 - *zero, value));
       return value;
     }
     refuse(word.place,

@@ -26,8 +26,8 @@ std::optional<int> tenfold_of(double value) {
 /// A value that was computed, to the least input increment of its word.
 double incremented(const FanucWord& word, const gcode::Modes& modes) {
   constexpr std::string_view kLengths = "XYZUVWIJKRQ", kAngles = "ABC";
-  const bool is_direction = word.letter >= 'I' && word.letter <= 'K' &&
-                            modes.centre_point == gcode::ToolCentrePoint::Vectors;
+  const bool is_direction =
+      word.letter >= 'I' && word.letter <= 'K' && modes.centre_point == gcode::ToolCentrePoint::Vectors;
   const bool is_length = kLengths.find(word.letter) != std::string_view::npos && !is_direction;
   const bool is_angle = kAngles.find(word.letter) != std::string_view::npos;
   if (!is_length && !is_angle) return word.word.value;

@@ -29,13 +29,15 @@ struct Rules {
   bool d_is_register = false;           ///< D of G41 is the number of an offset, that stays; else of a tool
   bool zero_is_reference = false;       ///< X0, Y0 and Z0 of G53 are those of the first reference point
   bool motion_outlives_cycles = false;  ///< behind G80 the last of G0 to G3 is in force again
-  bool reference_is_of_begin = false;  ///< the first frame of G54 has the reference points; in others they are elsewhere
+  bool reference_is_of_begin =
+      false;                     ///< the first frame of G54 has the reference points; in others they are elsewhere
   bool leaves_in_plane = false;  ///< behind G40 the first move has a way in X or Y
-  bool enters_to_normal = false;  ///< the first move of G41 ends beside the begin of the second one, before an inside corner too
+  bool enters_to_normal =
+      false;  ///< the first move of G41 ends beside the begin of the second one, before an inside corner too
   bool stops_behind_motion = false;  ///< M5 and M9 act behind the motion of their block
   bool spindle_needs_speed = false;  ///< M3 and M4 before any S are refused
-  bool unit_ends_feed = false;  ///< F does not outlive another unit
-  double whole_dwell_s = 1;             ///< of a P without a decimal point
+  bool unit_ends_feed = false;       ///< F does not outlive another unit
+  double whole_dwell_s = 1;          ///< of a P without a decimal point
 
   struct Cycles {
     std::string_view repeats = "L";  ///< letters

@@ -58,10 +58,10 @@ TEST(FanucCycle, IsRefusedWhereItNeedsTheSpindlesAngle) {
 }
 
 TEST(FanucCycle, KeepsItsLevelsAsTheBlockMeantThemThatWroteThem) {
-  EXPECT_THAT(ends_of("G0 Z12.\nG91 G99 G81 X10. R-10. Z-50. F100\nG90 X50."),
-              ElementsAre(ElementsAre(0, 0, 12), ElementsAre(10, 0, 12), ElementsAre(10, 0, 2), ElementsAre(10, 0, -48),
-                          ElementsAre(10, 0, 2), ElementsAre(50, 0, 2), ElementsAre(50, 0, -48),
-                          ElementsAre(50, 0, 2)));
+  EXPECT_THAT(
+      ends_of("G0 Z12.\nG91 G99 G81 X10. R-10. Z-50. F100\nG90 X50."),
+      ElementsAre(ElementsAre(0, 0, 12), ElementsAre(10, 0, 12), ElementsAre(10, 0, 2), ElementsAre(10, 0, -48),
+                  ElementsAre(10, 0, 2), ElementsAre(50, 0, 2), ElementsAre(50, 0, -48), ElementsAre(50, 0, 2)));
   EXPECT_THAT(zs_of("G99 G81 X10. Z-1.5 R2. F100\nG91 X10. L3"),
               ElementsAre(10, 2, -1.5, 2, 2, -1.5, 2, 2, -1.5, 2, 2, -1.5, 2));
   EXPECT_THAT(refusal_of(program_of("G91 G99 G81 X10. R-8. Z-5. F100\nX10. R-7.")),
@@ -77,6 +77,9 @@ TEST(FanucCycle, IsWrittenAgainInOtherCoordinates) {
     EXPECT_THAT(refusal_of(program_of(lines + "X2."), options), HasSubstr("write the cycle again")) << line;
     EXPECT_THAT(refusal_of(program_of(lines + "G80\nG17 G0 X2."), options), "taken") << line;
   }
+  EXPECT_THAT(refusal_of(program_of("G99 G81 X1. Z-2. R2.\nG68.2 X0 Y0 Z5. I0 J0 K0\nX2.")),
+              testing::StartsWith("7:1: a work system, other coordinates"));
+  EXPECT_EQ(refusal_of(program_of("G99 G81 X1. Z-2. R2.\nG68 X0 Y0 R90.\nX2. Y0")), "taken");
 }
 
 }  // namespace

@@ -147,15 +147,18 @@ TEST(FanucTool, LeavesAContourByAMoveInItsPlane) {
 TEST(FanucTool, ComesToAnInsideCornerBesideTheSecondMovesBegin) {
   Options options;
   options.tool_diameters_mm = {{31, 4}};
-  EXPECT_THAT(ends_of("G1 Z0\nG41 D31 X10. Y0\nX0 Y20.\nX-20.\nG40 Y0", options)[1],
-              ElementsAre(testing::DoubleNear(10 - 4 / std::sqrt(5), 1e-6), testing::DoubleNear(-2 / std::sqrt(5), 1e-6),
-                          0));
+  EXPECT_THAT(
+      ends_of("G1 Z0\nG41 D31 X10. Y0\nX0 Y20.\nX-20.\nG40 Y0", options)[1],
+      ElementsAre(testing::DoubleNear(10 - 4 / std::sqrt(5), 1e-6), testing::DoubleNear(-2 / std::sqrt(5), 1e-6), 0));
 }
 
 TEST(FanucSwitch, OffActsBehindTheMotionAndOnBeforeIt) {
   EXPECT_THAT(imported(program_of("G1 X1. M3 S500\nX2. M8\nX3. M9\nX4. M5")).methods,
               ElementsAre("MoveToPathTarget", "InTurn", "SetFeedrate", "MoveAlongLine", "InTurn", "MoveAlongLine",
                           "MoveAlongLine", "InTurn", "MoveAlongLine", "InTurn"));
+  EXPECT_THAT(imported(program_of("M3 S500 M8\nT2 M6 M9")).methods,
+              ElementsAre("MoveToPathTarget", "InTurn", "DoToolChange"))
+      << "the change stopped both";
 }
 
 TEST(FanucSwitch, TurnsNoSpindleWithoutASpeed) {
