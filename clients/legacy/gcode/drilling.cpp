@@ -119,6 +119,15 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
   }
   const Word* first = block.find(kAxisLetters.at(plane.first));
   const Word* second = block.find(kAxisLetters.at(plane.second));
+  for (const Word* word : {first, second}) {
+    if (word == nullptr || repeats > 0) continue;
+    const std::size_t axis = word == first ? plane.first : plane.second;
+    const double to =
+        modes_.incremental ? at.at(axis) + modes_.mm(*word) : coordinates_.to_part(axis, modes_.mm(*word));
+    if (to != at.at(axis))
+      refuse(word->place,
+             "whether a tool that drills no hole goes there is not the same on all controls; write the way as G0");
+  }
   for (int repeat = 0; repeat < repeats; ++repeat) {
     for (const auto& [axis, word] : {std::pair{plane.first, first}, std::pair{plane.second, second}}) {
       if (word == nullptr) continue;

@@ -130,6 +130,16 @@ bool Interpreter::switches_off_behind(const Block& block) const {
   return rules_.stops_behind_motion && !block.m(MGroup::Tool);
 }
 
+void Interpreter::require_no_stop_beside_hole(const Block& block) {
+  for (const MGroup group : {MGroup::Stop, MGroup::CoolantOff, MGroup::Spindle}) {
+    const auto& code = block.m(group);
+    if (!code || (group == MGroup::Spindle && code->number != kSpindleOff)) continue;
+    refuse(code->place,
+           fmt::format("M{} beside a hole acts above it, before it is drilled; write it in a block of its own",
+                       code->number));
+  }
+}
+
 void Interpreter::switch_off_behind_motion(const Block& block) {
   if (!switches_off_behind(block)) return;
   const auto& spindle = block.m(MGroup::Spindle);
@@ -250,6 +260,7 @@ void Interpreter::move_by(Block& block, int code, std::size_t place) {
   if (compensation_.on() || compensation_.leaving())
     refuse(place,
            "a cycle goes by where the tool is; end cutter radius compensation by G40 and a straight move before it");
+  if (rules_.stops_behind_motion) require_no_stop_beside_hole(block);
   drilling_.drill(block, code, before, place);
 }
 

@@ -52,6 +52,8 @@ class Interpreter {
   void set_speeds(Block& block);
   void set_tool(Block& block);
   [[nodiscard]] bool switches_off_behind(const Block& block) const;
+  /// Of M0, M1, M5 and M9. Throws a Refusal.
+  static void require_no_stop_beside_hole(const Block& block);
   void switch_off_behind_motion(const Block& block);
   void dwell(Block& block);
   void set_plane_and_units(Block& block);

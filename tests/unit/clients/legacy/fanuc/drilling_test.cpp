@@ -33,6 +33,18 @@ TEST(FanucCycle, IsRepeatedKTimesAndMayOnlyBeSet) {
   EXPECT_THAT(refusal_of(program_of("G81 Z-2. R2. L3 K3")), HasSubstr("nothing in this block uses L"));
 }
 
+TEST(FanucCycle, ThatDrillsNoHoleIsRefusedElsewhere) {
+  EXPECT_THAT(refusal_of(program_of("G91 G81 X10. Z-5. R-48. K0\nX10.")), HasSubstr("write the way as G0"));
+  EXPECT_THAT(zs_of("G99 G81 X0 Y0 Z-2. R2. K0\nX1.\nG80"), ElementsAre(10, 2, -2, 2)) << "it is there";
+}
+
+TEST(FanucCycle, HasNoStopBesideAHole) {
+  for (const char* code : {"M0", "M1", "M5", "M9"}) {
+    EXPECT_THAT(refusal_of(program_of(std::string("G99 G81 X1. Z-2. R2. ") + code)), HasSubstr("beside a hole"));
+  }
+  EXPECT_THAT(zs_of("G99 G81 X1. Z-2. R2. M8\nG80 M9"), ElementsAre(10, 2, -2, 2));
+}
+
 TEST(FanucCycle, DwellsByMilliseconds) {
   const auto done = imported(program_of("G99 G82 X1. Z-2. R2. P300"));
   EXPECT_EQ(done.requests[5]["params"]["Time"], 0.3);
