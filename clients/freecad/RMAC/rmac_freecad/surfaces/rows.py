@@ -11,6 +11,12 @@ STEEPEST_OVER = 2.5  # and beyond the end of what is cut: there the mill may tou
 MOST_SAMPLES = 4000
 
 
+def runs(used):
+    """First and last sample of each stretch that is cut."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], used.astype(int), [0]])))
+    return list(zip(edges[::2], edges[1::2] - 1))
+
+
 @dataclass
 class Row:
     w: float
@@ -22,9 +28,7 @@ class Row:
     used: np.ndarray  # and over its ends
 
     def runs(self):
-        """First and last sample of each stretch that is cut."""
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], self.used.astype(int), [0]])))
-        return list(zip(edges[::2], edges[1::2] - 1))
+        return runs(self.used)
 
 
 class Rows:

@@ -6,6 +6,7 @@ import numpy as np
 
 from rmac_freecad.surfaces.five.ridges import left_standing
 from rmac_freecad.surfaces.five.track import Places
+from rmac_freecad.surfaces.rows import runs
 
 SAMPLES = 6  # a radius
 OVER = 1.05  # steps: a pass goes on over its ends to places that are so near to what its neighbour cuts
@@ -25,9 +26,7 @@ class Row:
     used: np.ndarray  # and over its ends
 
     def runs(self):
-        """First and last sample of each stretch that is cut."""
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], self.used.astype(int), [0]])))
-        return list(zip(edges[::2], edges[1::2] - 1))
+        return runs(self.used)
 
 
 class Rows:

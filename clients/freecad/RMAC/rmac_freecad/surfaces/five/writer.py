@@ -3,8 +3,8 @@
 import math
 
 import rmac
-from rmac_freecad.jobs.refusal import JobRefused
 from rmac_freecad.program import Place, Program
+from rmac_freecad.surfaces.beginning import begin_program
 from rmac_freecad.surfaces.fit import DEGREE
 from rmac_freecad.surfaces.five.links import KNOTS
 
@@ -19,13 +19,7 @@ class Writer:
         self._in_force = self._at = None
 
     def begin(self, tool, rpm):
-        place = Place(self._label, 1, "begin")
-        if tool is not None:
-            if isinstance(tool, bool) or tool != int(tool) or tool < 1:
-                raise JobRefused(f"a tool's number is 1 or more, and whole; this is {tool!r}")
-            self.program.append(rmac.tool_change(int(tool)), place)
-        if rpm is not None:
-            self.program.append(rmac.spindle(rpm), place)
+        begin_program(self.program, self._label, tool, rpm)
 
     def cut(self, number, curves):
         for knots, poles in curves:
