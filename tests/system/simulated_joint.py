@@ -40,6 +40,7 @@ class Joint:
         shown = [0.0, 0.0, 0.0]
         positions, efforts = [], []
         dt = PERIOD / STEPS
+        follows = 1 - math.exp(-dt / self.lag_s)
         for wanted, speed in setpoints:
             measured = math.floor(x / self.count) * self.count
             shown = [measured, shown[0], shown[1]]
@@ -50,7 +51,7 @@ class Joint:
             efforts.append(effort)
             acting, waiting = waiting, effort
             for _ in range(STEPS):
-                motor += (acting - motor) * (1 - math.exp(-dt / self.lag_s))
+                motor += (acting - motor) * follows
                 driving = motor - self.load
                 if v == 0 and abs(driving) <= 1.2 * self.friction:
                     continue

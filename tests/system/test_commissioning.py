@@ -2,23 +2,15 @@
 
 import csv
 import json
-import os
 import pathlib
 import random
 import subprocess
-import sys
 import tempfile
 import unittest
 
 import numpy as np
 
 from appliance import BUILD, Appliance, line, wait_for_rest
-from simulated_joint import PERIOD, Joint, excitation
-
-sys.path.insert(0, str(pathlib.Path(os.environ["RMAC_SOURCE"], "gateway/rmac/plots")))
-import loop_design  # noqa: E402
-import servo_model  # noqa: E402
-from frequency_response import Model  # noqa: E402
 
 # The whole build is a sanitizer's.
 SANITIZED = "RMAC_SANITIZE:STRING=\n" not in (BUILD / "CMakeCache.txt").read_text()
@@ -26,73 +18,6 @@ PNG = b"\x89PNG\r\n\x1a\n"
 MARGIN = 40.0
 ROTOR = 4.49e-6 + 4.8e-6  # kg·m², of the simulated axes beside their table
 RAD_PER_MM = 2 * np.pi / 5
-
-
-class Identification(unittest.TestCase):
-    def recordings(self, count):
-        for seed in range(1, count + 1):
-            joint = Joint.of(seed)
-            kg = 1000 * joint.mass
-            setpoints = list(excitation(travel=20, max_speed=100, acceleration=1000, jerk=10000))
-            positions, efforts = joint.follow(setpoints, (45 * kg, 45 * 90 * kg, 0.32 * kg))
-            found = servo_model.identify(np.arange(len(positions)) * PERIOD, np.array(positions), np.array(efforts))
-            yield seed, joint, found
-
-    def test_finds_the_parameters_of_seeded_joints(self):
-        """Mass and friction within 1 %, load within 0.5 N, delay within 0.3 ms, viscous friction within 5 % of all
-        friction at the fastest speed."""
-        for seed, joint, found in self.recordings(40):
-            with self.subTest(seed=seed, joint=joint, found=found):
-                self.assertAlmostEqual(found.mass / joint.mass, 1, delta=0.01)
-                self.assertAlmostEqual(found.friction / joint.friction, 1, delta=0.01)
-                self.assertAlmostEqual(found.load, joint.load, delta=0.5)
-                self.assertAlmostEqual(found.delay_s, joint.delay_s, delta=0.0003)
-                whole = joint.friction + 100 * joint.viscous
-                self.assertAlmostEqual(100 * found.viscous, 100 * joint.viscous, delta=0.05 * whole)
-
-    def test_proposed_gains_hold_the_phase_margin_on_the_true_joint(self):
-        """Within 4 degrees: what 0.3 ms of delay are at the crossover."""
-        for seed, joint, found in self.recordings(40):
-            true = Model(PERIOD, joint.mass, joint.delay_s)
-            thought = Model(PERIOD, found.mass, found.delay_s)
-            quickest = loop_design.margins_of(loop_design.design(thought, MARGIN), thought).bandwidth_hz
-            for share in (0.5, 0.9):
-                with self.subTest(seed=seed, joint=joint, share=share):
-                    loop = loop_design.design(thought, MARGIN, share * quickest)
-                    kept = loop_design.margins_of(loop, true)
-                    self.assertAlmostEqual(kept.bandwidth_hz, share * quickest, delta=0.02 * quickest)
-                    self.assertGreater(kept.phase_margin_deg, MARGIN - 4)
-
-    def test_proposed_gains_keep_the_true_joint_calm(self):
-        """In the time domain, with friction and the encoder: it follows a move and comes to rest."""
-        for seed, joint, found in self.recordings(10):
-            with self.subTest(seed=seed, joint=joint):
-                gains = loop_design.design(Model(PERIOD, found.mass, found.delay_s), MARGIN).gains
-                setpoints = list(excitation(travel=5, max_speed=50, acceleration=500, jerk=5000))
-                positions, _ = joint.follow(setpoints, gains)
-                error = np.abs(np.array([wanted for wanted, _ in setpoints]) - positions)
-                self.assertLess(error.max(), 0.1)
-                self.assertLess(error[-20:].max(), 0.005)
-
-    def test_gains_are_such_as_laws_take(self):
-        chance = random.Random(5)
-        for _ in range(40):
-            joint = Model(PERIOD, 10 ** chance.uniform(-3, 0), chance.uniform(0.001, 0.004))
-            margin = chance.uniform(32, 70)
-            with self.subTest(joint=joint, margin=margin):
-                gains = loop_design.design(joint, margin).gains
-                self.assertTrue(gains[0] > 0 and min(gains) >= 0, gains)
-
-    def test_refuses_what_cannot_be(self):
-        joint = Model(PERIOD, 0.02, 0.0017)
-        # A whole turn of delay later the same angle comes again; that is no lead that a law could give.
-        for bandwidth in (60, 80, 150, 300, 450):
-            with self.assertRaisesRegex(loop_design.Undesignable, "out of reach for a delay of 1.70 ms; at most about 4"):
-                loop_design.design(joint, MARGIN, bandwidth)
-        with self.assertRaisesRegex(servo_model.Unidentifiable, "did not move"):
-            servo_model.identify(np.arange(1000) * PERIOD, np.zeros(1000), np.ones(1000))
-        with self.assertRaisesRegex(servo_model.Unidentifiable, "too few"):
-            servo_model.identify(np.arange(50) * PERIOD, np.arange(50.0), np.ones(50))
 
 
 class Commands(unittest.TestCase):

@@ -55,13 +55,15 @@ def as_samples_show_it(frequency):
 
 
 class JointsThatBend(unittest.TestCase):
-    def setUp(self):
-        self.joints = [(seed, BendingJoint.of(seed)) for seed in range(FIRST_SEED, FIRST_SEED + SEEDS)]
+    @classmethod
+    def setUpClass(cls):
+        cls.joints = [(seed, BendingJoint.of(seed)) for seed in range(FIRST_SEED, FIRST_SEED + SEEDS)]
+        cls.found = {seed: frequency_response.fit(measured(joint), PERIOD) for seed, joint in cls.joints}
 
     def test_resonances_are_found_where_they_are(self):
         for seed, joint in self.joints:
             with self.subTest(seed=seed, joint=joint):
-                found = frequency_response.fit(measured(joint), PERIOD)
+                found = self.found[seed]
                 wanted = as_samples_show_it(joint.resonance_hz)
                 if wanted > 470:
                     continue
@@ -72,7 +74,7 @@ class JointsThatBend(unittest.TestCase):
         """6 dB and 30 degrees; and stable with 3 dB where its resonance is 15 % elsewhere."""
         for seed, joint in self.joints:
             with self.subTest(seed=seed, joint=joint):
-                loop = loop_design.design(frequency_response.fit(measured(joint), PERIOD), 40)
+                loop = loop_design.design(self.found[seed], 40)
                 closed = ClosedLoop(joint, loop.gains, filters_of(loop))
                 for gain in (0.7, 1, 1.4, 2):
                     self.assertTrue(closed.stable(gain), (gain, loop))
