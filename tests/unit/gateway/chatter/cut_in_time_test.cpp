@@ -30,7 +30,7 @@ class CutInTimes : public testing::TestWithParam<unsigned> {
   std::mt19937 random_{GetParam()};
 };
 // A sanitizer makes minutes of each second.
-INSTANTIATE_TEST_SUITE_P(Seeds, CutInTimes, testing::Range(1u, kSanitized ? 3u : 31u));
+INSTANTIATE_TEST_SUITE_P(Seeds, CutInTimes, testing::Range(1u, kSanitized ? 2u : 31u));
 
 // Few degrees or many, with the waves of several teeth or less than one between two of them.
 TEST_P(CutInTimes, BeginToChatterWhereTheToolDoes) {

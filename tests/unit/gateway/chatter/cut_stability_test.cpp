@@ -90,7 +90,7 @@ TEST(CutStability, IsGrantedWhereNothingGivesWayOrNothingIsCut) {
 
 using Stability = Seeded;
 // A sanitizer makes minutes of each second.
-INSTANTIATE_TEST_SUITE_P(Seeds, Stability, testing::Range(1u, kSanitized ? 3u : 25u));
+INSTANTIATE_TEST_SUITE_P(Seeds, Stability, testing::Range(1u, kSanitized ? 2u : 25u));
 
 // Four teeth, or six, in a slot change nothing as they turn, so that the mean is all there is.
 TEST_P(Stability, OfASlotIsWhereTheToolBeginsToSwing) {

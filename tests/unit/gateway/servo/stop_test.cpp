@@ -4,6 +4,7 @@
 #include <random>
 
 #include "gateway/servo/servo_cycle.hpp"
+#include "gateway/threads/sanitized.hpp"
 #include "unit/gateway/cycle/cycle_bench.hpp"
 
 namespace rmac::gateway {
@@ -69,7 +70,7 @@ class StopBench {
 
 TEST(Stop, ComesWithinTwoCyclesOfBeingAskedForWhereNobodyPlans) {
   std::mt19937 random(4711);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < (kSanitized ? 60 : 300); ++i) {
     StopBench bench;
     bench.run_planned(std::uniform_int_distribution(5, 900)(random));
     if (!bench.moving()) continue;

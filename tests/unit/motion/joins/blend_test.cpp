@@ -6,6 +6,7 @@
 #include <random>
 
 #include "curves/make_curves.hpp"
+#include "seeds.hpp"
 #include "unit/motion/joins/traces.hpp"
 
 namespace rmac::test {
@@ -179,7 +180,7 @@ TEST_P(JoinProperty, RestsAtTheExactEndOfWhatASlowClientSent) {
   expect_limits(bench);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, JoinProperty, ::testing::Range(1U, 9U));
+INSTANTIATE_TEST_SUITE_P(Seeds, JoinProperty, seeds(8));
 
 /// Two lines of 20 mm that turn by an angle.
 std::unique_ptr<PlannerBench> around_corner(double degrees, double tolerance_mm, double feed_mm_s = 100) {

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "curves/make_curves.hpp"
+#include "seeds.hpp"
 #include "unit/motion/joins/traces.hpp"
 
 namespace rmac::test {
@@ -201,7 +202,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Combine(::testing::Values(Debris{"RepeatedPoints", 0, 3, false}, Debris{"TinyLines", 0.002, 1, false},
                                          Debris{"ManyTinyLines", 0.003, 12, false},
                                          Debris{"ThereAndBack", 0.003, 2, true}, Debris{"Specks", 2e-5, 4, false}),
-                       ::testing::Range(1U, 7U)),
+                       seeds(6)),
     [](const auto& row) { return std::get<0>(row.param).name + std::to_string(std::get<1>(row.param)); });
 
 /// Arcs that go on from each other without a corner, their coordinates rounded to `to_mm`, and lines among them.
@@ -241,7 +242,7 @@ TEST_P(RoundedArcs, RunAsFastAsExactOnes) {
   EXPECT_LT(run(tangent_arcs(GetParam(), 0.001)).time_s, 1.02 * run(tangent_arcs(GetParam(), 0)).time_s);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, RoundedArcs, ::testing::Range(1U, 13U));
+INSTANTIATE_TEST_SUITE_P(Seeds, RoundedArcs, seeds(12));
 
 TEST(TinyLine, ThatIsTheLastIsRunToItsExactEnd) {
   Program program;

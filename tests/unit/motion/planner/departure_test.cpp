@@ -5,6 +5,7 @@
 #include <atomic>
 #include <limits>
 
+#include "seeds.hpp"
 #include "unit/motion/planner/program_fuzz.hpp"
 
 namespace rmac {
@@ -90,7 +91,7 @@ TEST_P(Departure, JointsRestInTheTimeTheirLimitsNeedAndThePathGoesOnWhereItWasLe
   expect_within_limits(bench);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, Departure, ::testing::Range(1U, 13U));
+INSTANTIATE_TEST_SUITE_P(Seeds, Departure, test::seeds(12));
 
 /// A line of 30 mm along X.
 void queue_line(PlannerBench& bench) {
@@ -318,7 +319,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, KinematicsThatErr,
                          ::testing::Combine(::testing::Values(Unfaithful::Fault::NoSolution,
                                                               Unfaithful::Fault::NotANumber, Unfaithful::Fault::Lie,
                                                               Unfaithful::Fault::Noise),
-                                            ::testing::Range(1U, 26U)));
+                                            test::seeds(25)));
 
 }  // namespace
 }  // namespace rmac

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "seeds.hpp"
 #include "unit/motion/planner/planner_bench.hpp"
 
 namespace rmac {
@@ -219,7 +220,7 @@ TEST(HorizonWatch, GivesThePlannerNoTimeWhereItsHorizonWasLongEnough) {
   EXPECT_EQ(watch.now().limit, HorizonLimit::Planning);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, Horizons, ::testing::Range(1U, 7U));
+INSTANTIATE_TEST_SUITE_P(Seeds, Horizons, test::seeds(6));
 
 }  // namespace
 }  // namespace rmac

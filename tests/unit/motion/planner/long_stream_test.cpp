@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "seeds.hpp"
 #include "unit/motion/planner/planner_bench.hpp"
 
 namespace rmac {
@@ -145,7 +146,7 @@ TEST_P(LongWay, IsAsExactAtItsEndAsAtItsBeginning) {
   EXPECT_LE(peaks.jerk, 1.0005) << "in cycle " << peaks.jerk_cycle;
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, LongWay, ::testing::Range(1U, 5U));
+INSTANTIATE_TEST_SUITE_P(Seeds, LongWay, test::seeds(4));
 
 }  // namespace
 }  // namespace rmac

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "seeds.hpp"
 #include "unit/motion/planner/planner_bench.hpp"
 
 namespace rmac {
@@ -236,7 +237,7 @@ TEST_P(PlannerProperty, KeepsLimitsAndFeedWhenThePlannerIsLate) {
   EXPECT_EQ(bench.moves_done(), moves);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, PlannerProperty, ::testing::Range(1U, 7U));
+INSTANTIATE_TEST_SUITE_P(Seeds, PlannerProperty, test::seeds(6));
 
 TEST(Planner, PassesCollinearLinesAtFullFeed) {
   PlannerBench bench(mill());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "seeds.hpp"
 #include "time_law/law_check.hpp"
 #include "time_law/window.hpp"
 #include "unit/motion/planner/planner_bench.hpp"
@@ -89,7 +90,7 @@ TEST_P(PromptLaws, BrakeFromAboveTheFeedAsWell) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, PromptLaws, ::testing::Range(1U, 13U));
+INSTANTIATE_TEST_SUITE_P(Seeds, PromptLaws, test::seeds(12));
 
 }  // namespace
 }  // namespace rmac

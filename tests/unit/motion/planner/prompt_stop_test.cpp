@@ -1,6 +1,7 @@
 // Every hold is answered within two cycles: the plan that is followed then ends at rest for it.
 #include <gtest/gtest.h>
 
+#include "seeds.hpp"
 #include "unit/motion/planner/program_fuzz.hpp"
 
 namespace rmac {
@@ -51,7 +52,7 @@ TEST_P(PromptStop, IsUnderWayFromTheSecondCycleOnUntilTheMachineRests) {
   EXPECT_LE(peaks.jerk, 1.001) << "in cycle " << peaks.jerk_cycle;
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, PromptStop, ::testing::Range(1U, 13U));
+INSTANTIATE_TEST_SUITE_P(Seeds, PromptStop, test::seeds(12));
 
 TEST(Override, ThatIsLoweredIsFollowedWithinTwoCyclesAndTheLimits) {
   PlannerBench bench(mill());

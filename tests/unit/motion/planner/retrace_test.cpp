@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "seeds.hpp"
 #include "unit/motion/planner/program_fuzz.hpp"
 
 namespace rmac {
@@ -144,7 +145,7 @@ TEST_P(Retrace, GoesOnFromWhereItStandsWhicheverPlansComeTooLate) {
   machine.expect_whole_program_done();
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, Retrace, ::testing::Range(1U, 13U));
+INSTANTIATE_TEST_SUITE_P(Seeds, Retrace, test::seeds(12));
 
 /// Three lines of 5 mm along X.
 void queue_lines(PlannerBench& bench) {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "seeds.hpp"
 #include "unit/motion/joins/traces.hpp"
 
 namespace rmac::test {
@@ -129,7 +130,7 @@ TEST_P(RoundedLines, AreNotSlowerTheFinerTheyAre) {
             1.02 * machined(rounded(waves(GetParam(), 0.2), 0.001), 0.003));
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, RoundedLines, ::testing::Range(1U, 9U));
+INSTANTIATE_TEST_SUITE_P(Seeds, RoundedLines, seeds(8));
 
 class CoarseLines : public ::testing::TestWithParam<unsigned> {};
 
@@ -141,7 +142,7 @@ TEST_P(CoarseLines, FindALawAlsoWhereJerkIsLow) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, CoarseLines, ::testing::Range(1U, 9U));
+INSTANTIATE_TEST_SUITE_P(Seeds, CoarseLines, seeds(8));
 
 /// Lines of all lengths and directions in space, now dense, now coarse, with corners among them.
 Trace wandering(unsigned seed) {
@@ -179,7 +180,7 @@ TEST_P(WanderingLines, KeepToleranceAndLimits) {
   machined(wandering(GetParam()), tolerance);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, WanderingLines, ::testing::Range(1U, 25U));
+INSTANTIATE_TEST_SUITE_P(Seeds, WanderingLines, seeds(24));
 
 TEST(ShortLines, OfASlowClientEndExactly) {
   Trace corners = rose(0.2);

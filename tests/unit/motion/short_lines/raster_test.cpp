@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "seeds.hpp"
 #include "unit/motion/joins/traces.hpp"
 
 namespace rmac::test {
@@ -67,7 +68,7 @@ TEST_P(Rasters, StepOverWithoutRest) {
   EXPECT_LE(peaks.jerk, kAtMost);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, Rasters, ::testing::Range(1U, 9U));
+INSTANTIATE_TEST_SUITE_P(Seeds, Rasters, seeds(8));
 
 }  // namespace
 }  // namespace rmac::test

@@ -8,6 +8,7 @@
 #include "curves/make_curves.hpp"
 #include "rmac/motion/frame.hpp"
 #include "rmac/motion/vector.hpp"
+#include "seeds.hpp"
 #include "unit/motion/joins/traces.hpp"
 
 namespace rmac::test {
@@ -381,8 +382,7 @@ TEST_P(TurningLines, JoinWithWhatFollows) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, TurningLines,
-                         ::testing::Combine(::testing::Range(1U, 7U),
-                                            ::testing::Values(Machine::Head, Machine::Table)));
+                         ::testing::Combine(seeds(6), ::testing::Values(Machine::Head, Machine::Table)));
 
 }  // namespace
 }  // namespace rmac::test

@@ -33,7 +33,9 @@ class BusWatchTest : public testing::Test {
   NodeReport& node(std::size_t place = 0) { return report_.can[0].nodes[place]; }
   void emergency(std::uint16_t code, const char* text) {
     ++node().emergency_count;
-    node().emergencies.insert(node().emergencies.begin(), {code, text, 0x21, 0});
+    auto& kept = node().emergencies;
+    kept.insert(kept.begin(), {code, text, 0x21, 0});
+    if (kept.size() > 8) kept.pop_back();
   }
   std::vector<std::string> look(double now_s) {
     report_.can[0].cycles += 500;
