@@ -1,10 +1,10 @@
 #include "clients/legacy/rs274/import.hpp"
 
-#include <fmt/format.h>
-
-#include <string>
+#include <optional>
+#include <string_view>
 #include <utility>
 
+#include "clients/legacy/gcode/flow/carry_out.hpp"
 #include "clients/legacy/gcode/interpreter.hpp"
 #include "clients/legacy/rs274/blocks/reader.hpp"
 #include "clients/legacy/rs274/blocks/refusal.hpp"
@@ -26,7 +26,7 @@ constexpr gcode::Rules kRules{
     .cycles = {},
 };
 
-/// One import: line by line, in the order in which they are carried out, to the program's end.
+/// One import.
 class Import {
  public:
   Import(std::string_view program, const Options& options, Writer::Sink sink)
@@ -40,17 +40,7 @@ class Import {
   }
 
   tl::expected<Summary, Error> run() {
-    try {
-      while (!ended_ && flow_.next()) {
-        writer_.at_line(flow_.number());
-        take(flow_.line().text());
-      }
-      if (!ended_) refuse_end();
-    } catch (const Refusal& refusal) {
-      return tl::unexpected(Error{flow_.number(), flow_.line().column(refusal.place), refusal.message});
-    }
-    writer_.flush();
-    return Summary{flow_.furthest(), writer_.moves(), writer_.requests()};
+    return gcode::carry_out(flow_, writer_, extent_, [this](std::string_view text) { take(text); });
   }
 
  private:
@@ -58,22 +48,18 @@ class Import {
     if (text.empty()) return;
     if (text.front() == '%') {
       if (text.size() > 1) refuse(1, "nothing stands behind %");
-      if (begun_ && !marked_) refuse(0, "a % in a program that did not begin with one");
-      if (marked_) require_main(0);
-      if (marked_) interpreter_.end(0);
-      ended_ = marked_;
-      marked_ = true;
+      if (extent_.mark(flow_.running())) interpreter_.end(0);
     } else if (!(text.front() == '/' && options_.block_delete)) {
       reader_.read(flow_.line(), parameters_, block_);
       go_on(interpreter_.execute(block_, flow_.line()));
     }
-    begun_ = true;
+    extent_.begin();
   }
 
   void go_on(const After& after) {
     if (after.what == After::What::Call) flow_.call(after.label, after.times, after.place);
     if (after.what == After::What::EndOfNumbered) flow_.end_of_numbered(after.place);
-    ended_ = after.what == After::What::End;
+    if (after.what == After::What::End) extent_.end();
   }
 
   /// Of the numbers that LinuxCNC's manual gives to the control, those that a program's own words make known. Those of
@@ -86,18 +72,6 @@ class Import {
     return interpreter_.tip(static_cast<std::size_t>(number - 5420));
   }
 
-  void require_main(std::size_t place) const {
-    if (const std::string running = flow_.running(); !running.empty())
-      refuse(place, fmt::format("the file ends within {}, which M99 is to end; it may be cut off", running));
-  }
-
-  [[noreturn]] void refuse_end() const {
-    const std::size_t end = flow_.line().text().size();
-    require_main(end);
-    refuse(end, marked_ ? "the program ends without its second %; it may be cut off"
-                        : "the program ends without M2 or M30; it may be cut off");
-  }
-
   const Options& options_;
   Parameters parameters_;
   BlockReader reader_;
@@ -105,7 +79,7 @@ class Import {
   Writer writer_;
   gcode::Interpreter interpreter_;
   Flow flow_;
-  bool begun_ = false, marked_ = false, ended_ = false;
+  gcode::Extent extent_;
 };
 
 }  // namespace
