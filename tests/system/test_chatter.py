@@ -4,12 +4,11 @@ import math
 import unittest
 
 from appliance import pose
-from test_collisions import LENGTH, SANITIZED, request, to
+from test_collisions import LENGTH, request, to
 from test_forces import BEYOND, MATERIAL, TEETH, TOP, TOOL, SimulatedCut, slot
 
 RPM, FEED, DEPTH = 3000, 600, 1.0
 MODE = {"Frequency": 250, "DampingRatio": 0.03, "Stiffness": 10000}
-slow = unittest.skipIf(SANITIZED, "a sanitizer makes minutes of each run; the others go the same ways")
 
 
 def tool(**shape):
@@ -45,12 +44,10 @@ class Chatter(SimulatedCut):
         self.assertEqual((faster["chatter"], done.returncode), ([], 0), done.stderr)
         self.assertIn("CHATTER", self.run_rmac(slot(DEPTH, FEED, RPM), "--dynamics", tool=tool(Modes=[MODE])).stdout)
 
-    @slow
     def test_a_stiffer_tool_bears_so_much_more(self):
         soft, stiff = (self.dynamics(DEPTH, Modes=[MODE | {"Stiffness": k}])[0]["chatter_from_percent"] for k in (10000, 30000))
         self.assertAlmostEqual(stiff / soft, 3, delta=0.01)
 
-    @slow
     def test_a_tool_bends_beside_its_path_by_the_force_across_it(self):
         depth = 2
         stiff, _ = self.dynamics(depth, Modes=[MODE | {"Stiffness": 1e7}])
@@ -62,7 +59,6 @@ class Chatter(SimulatedCut):
         force = TEETH * depth * (MATERIAL["Ktc"] * per_tooth / 4 + MATERIAL["Kte"] / math.pi / math.cos(math.radians(30)))
         self.assertAlmostEqual(found["path_peak_mm"], force / 20000, delta=0.1 * force / 20000 + stiff["path_peak_mm"])
 
-    @slow
     def test_by_what_it_is_made_of_a_tool_bends_more_the_longer_it_sticks_out(self):
         def across(**shape):
             found = self.dynamics(1, **shape)[0]
@@ -92,7 +88,6 @@ class Chatter(SimulatedCut):
             self.assertEqual(report["collisions"], [], stiffness)
             self.assertLessEqual({each["move_id"] for each in report["dynamics"]["chatter"]}, {2, 4})
 
-    @slow
     def test_a_positioning_move_through_stock_right_after_a_cut_is_a_collision(self):
         """Red when all that was cut for six turns after a cut was the cut's."""
         end = pose(10, 0, TOP - 2)
@@ -113,7 +108,6 @@ class Chatter(SimulatedCut):
         self.assertEqual(off[0]["move_id"], 2, "it is pushed while it cuts")
         self.assertLess(off[-1]["until_s"], report["cycle_time_s"] - 0.1, "and not on the way up")
 
-    @slow
     def test_a_tool_is_beside_its_path_as_far_however_slow_it_goes(self):
         """Red when a bend along the path counted for the cycles that the tip needs for as much."""
         soft = MODE | {"Stiffness": 8000, "Frequency": 2000, "DampingRatio": 0.1}
@@ -121,7 +115,6 @@ class Chatter(SimulatedCut):
                       for feed, rpm in ((600, 3000), (60, 300)))
         self.assertAlmostEqual(slow, fast, delta=0.15 * fast + 0.003)
 
-    @slow
     def test_no_speed_is_proposed_that_the_spindle_may_not_have(self):
         program = [request("RMAC_CAM.SetSpindleMaxRPM", SpindleNumber=0, MaxRPM=RPM), *slot(DEPTH, FEED, RPM)]
         report, _ = self.report(program, "--dynamics", tool=tool(Modes=[MODE]))

@@ -8,10 +8,8 @@ import subprocess
 import tempfile
 import unittest
 
-from appliance import BUILD, SOURCE, pose
+from appliance import BUILD, SANITIZED, SOURCE, pose
 
-# The whole build is a sanitizer's.
-SANITIZED = "RMAC_SANITIZE:STRING=\n" not in (BUILD / "CMakeCache.txt").read_text()
 MACHINE = SOURCE / "drivers/mill/5-axis/SuginoXYZAC/device.json"
 LENGTH = 80  # of the tool; with A and C at 0 its tip is so far below the joint Z
 TABLE = -100  # top of the turntable

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib import image
 
 from appliance import BUILD
-from test_collisions import FEED, LENGTH, MACHINE, SANITIZED, SETUP, TOOLS, request, to
+from test_collisions import FEED, LENGTH, MACHINE, SETUP, TOOLS, request, to
 from view_page import BASE_LINK, BETWEEN_LOOKS_MM, TABLE_LINK, ViewCase, at, chain, frame, moves_at_random, program, shown
 
 EVIL = "</script><script>errors.push('a name ran')</script>"
@@ -93,7 +93,6 @@ class View(ViewCase):
             self.assertLess(after, before)
         self.assertGreater(volumes[0] - volumes[-1], 0.5 * removed)
 
-    @unittest.skipIf(SANITIZED, "an hour of machine time")
     def test_an_hour_of_five_axes_fits_into_a_page(self):
         self.write(moves_at_random(2600))
         plain = json.loads(self.run_rmac("--json", with_setup=False).stdout)

@@ -8,7 +8,7 @@ import numpy as np
 
 import test_chatter
 from appliance import BUILD
-from test_collisions import SANITIZED, SETUP, cut, request, to
+from test_collisions import SETUP, cut, request, to
 from test_forces import STOCK, slot
 from view_page import BETWEEN_LOOKS_MM, TABLE_LINK, ViewCase, at, chain, frame, moves_at_random, program, shown
 
@@ -207,7 +207,6 @@ class ViewOfDynamics(ViewCase):
         self.assertEqual((report["dynamics"], data["dynamics"]), ("not asked", "not asked"))
         self.assertEqual({plot["row"] for plot in data["plots"]}, {"feed", "spindle"})
 
-    @unittest.skipIf(SANITIZED, "an hour of machine time")
     def test_an_hour_of_five_axes_fits_into_a_page(self):
         self.write(moves_at_random(2600))
         report, data = self.view("--dynamics", with_setup=False)
