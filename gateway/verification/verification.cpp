@@ -57,7 +57,7 @@ fs::path verdict_file(const fs::path& folder, const std::string& mechanism, cons
   return folder / (mechanism + "@" + fingerprint + ".json");
 }
 
-/// The verdicts on one mechanism beyond the newest few go.
+/// The verdicts on one mechanism beyond the few that were needed last go.
 void forget_old(const fs::path& folder, const std::string& mechanism) {
   constexpr std::size_t kKept = 16;
   std::error_code ignored;
@@ -162,9 +162,12 @@ Expected<> Verification::require(const Subject& subject) const {
   if (!device) return tl::unexpected(device.error());
   const std::string now = fingerprint(subject, *device);
   std::error_code ignored;
-  if (!now.empty() && !options_.verdicts.empty() &&
-      fs::exists(verdict_file(options_.verdicts, device->name, now), ignored)) {
-    return {};
+  if (!now.empty() && !options_.verdicts.empty()) {
+    const fs::path verdict = verdict_file(options_.verdicts, device->name, now);
+    if (fs::exists(verdict, ignored)) {
+      fs::last_write_time(verdict, fs::file_time_type::clock::now(), ignored);
+      return {};
+    }
   }
   const auto report = verify(subject);
   if (!report) return tl::unexpected(report.error());
