@@ -47,6 +47,15 @@ class PartsTest(LeaningTest):
                 self.assertEqual(left, [])
                 self.check(shape, [side], 3, program, least=0.9)
 
+    def test_a_cone_to_its_apex_and_the_wall_of_a_hole_are_swept(self):
+        cone, hole = Part.makeCone(6, 0, 8), Part.makeBox(12, 10, 6).cut(Part.makeCylinder(3, 20, Vector(6, 5, -5)))
+        for shape, kind, radius, tilt in ((cone, Part.Cone, 2, 30), (hole, Part.Cylinder, 1.5, 80)):
+            with self.subTest(kind=kind):
+                side = next(i for i, face in enumerate(shape.Faces) if isinstance(face.Surface, kind))
+                program, left = self.swept(shape, [side], ball_end(radius), along="level", tilt_deg=tilt, scallop_mm=0.1)
+                self.assertEqual(left, [])
+                self.check(shape, [side], radius, program, scallop_mm=0.1, least=0.9)
+
     def test_a_sphere_is_swept_to_below_its_equator_and_what_the_spindle_bars_is_told(self):
         shape = Part.makeSphere(5)
         program, left = self.swept(shape, [0], ball_end(3), along="u", tilt_deg=20, scallop_mm=0.1)
