@@ -126,7 +126,7 @@ class AnimationTest(Animated):
                     self.assertIn(body["Link"], geometry["links"])
                 self.mover.call("RMAC_CAM.SetToolInterfaceFrame",
                                 ToolInterfaceFrame={"p": [1, 2, -30], "q": [0.6, 0, 0.8, 0]})
-                for seed in range(5):
+                for seed in range(3):
                     draw = random.Random(f"{name} {seed}")
                     joints = [draw.uniform(-45, 45) for _ in geometry["joints"]]
                     self.mover.call("RMAC_CAM.MoveToJointTarget", MoveID=seed + 1, JointTargetFrame={"joints": joints})
