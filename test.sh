@@ -48,9 +48,11 @@ for preset in "${presets[@]}"; do
     cmake --build --preset "$preset" --parallel "$(nproc)" --target benches canopen_on_vcan -- --quiet
     begin "bench: two emulated machines, a processor each"
     # Where one cannot be run in that many seconds, it says so.
+    headlight=0 canopen=0
     LIMIT=420 tests/bench/run headlight &
-    LIMIT=420 tests/bench/run canopen || [ $? -eq 77 ]
-    wait $! || [ $? -eq 77 ]
+    LIMIT=420 tests/bench/run canopen || canopen=$?
+    wait $! || headlight=$?
+    [[ $headlight =~ ^(0|77)$ && $canopen =~ ^(0|77)$ ]]
   fi
   begin "$preset: tests"
   ctest --preset "$preset"
