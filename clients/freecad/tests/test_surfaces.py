@@ -238,7 +238,8 @@ class RefusalsTest(SweptTest):
         self.refused("quarter of the mill", scallop_mm=1)
         self.refused("clearance_mm", clearance_mm=2)
         self.refused("along", along="w")
-        self.refused("tool's number", tool=0)
+        for value in (0, -1, 1.5, math.nan, math.inf, True, "1"):
+            self.refused("tool is", tool=value)
         self.refused("at most 85", steepest_deg=90)
 
     def test_a_tolerance_above_the_scallop_does_no_harm(self):

@@ -10,7 +10,7 @@ from rmac_freecad.jobs.mover import Mover
 from rmac_freecad.jobs.refusal import JobRefused
 from rmac_freecad.program import Place, Program
 from rmac_freecad.surfaces import fit
-from rmac_freecad.surfaces.beginning import begin_program
+from rmac_freecad.surfaces.beginning import begin_program, check_tool
 from rmac_freecad.surfaces.five import Leaning, lean_of
 from rmac_freecad.surfaces.five import sweep as lean_sweep
 from rmac_freecad.surfaces.links import Links
@@ -44,6 +44,7 @@ def plan_faces(
     """As `read_faces`, of a shape that nobody changes, before anybody knows the machine's rapids. Takes its time; touches no document."""
     feeds = {"feed_mm_min": feed_mm_min, "plunge_mm_min": feed_mm_min if plunge_mm_min is None else plunge_mm_min}
     _check_speeds({**feeds, **({} if rpm is None else {"rpm": rpm})})
+    check_tool(tool)
     targets = [_index(label, shape, name) for name in dict.fromkeys(names)]
     if not targets:
         raise JobRefused(f"no face of {label} was named; give names such as Face1")
