@@ -8,6 +8,7 @@ from rmac_freecad.jobs.drilling import drill
 from rmac_freecad.jobs.mover import Mover
 from rmac_freecad.jobs.refusal import JobRefused
 from rmac_freecad.program import Program
+from rmac_freecad.program.tool_number import is_tool_number
 
 FITS_MM = 1e-3
 ABOVE_MM = 1.0  # of the hole: from there on at its own feed
@@ -66,5 +67,5 @@ def _check(drilling, holes):
         value = getattr(drilling, name)
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or (least is not None and (value < 0 or (least and not value))):
             raise JobRefused(f"{name} is {value!r}; give a number{'' if least is None else ' that is more than 0' if least else ', 0 or more'}")
-    if isinstance(drilling.tool, bool) or not isinstance(drilling.tool, int) or drilling.tool < 1:
+    if not is_tool_number(drilling.tool):
         raise JobRefused(f"the tool's number is {drilling.tool!r}; it is 1 or more")

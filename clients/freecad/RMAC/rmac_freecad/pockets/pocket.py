@@ -10,6 +10,7 @@ from rmac_freecad.pockets.entries import circle_at, entry_of, is_short
 from rmac_freecad.pockets.outline import Outline
 from rmac_freecad.pockets.refusal import PocketRefused
 from rmac_freecad.program import Program
+from rmac_freecad.program.tool_number import is_tool_number
 
 ENTRIES = ("helix", "ramp")
 ORDERS = ("inside out", "outside in")
@@ -109,7 +110,7 @@ def check(pocket):
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or not (signed or value > 0):
             given = "not given" if value is None else f"{value!r}"
             raise PocketRefused(f"the {what} ({name}) is {given}; give a number{'' if signed else ' that is more than 0'}")
-    if isinstance(pocket.tool, bool) or not isinstance(pocket.tool, int) or pocket.tool < 1:
+    if not is_tool_number(pocket.tool):
         raise PocketRefused(f"the tool's number is {pocket.tool!r}; it is 1 or more")
     for what, value, known in (("entry", pocket.entry, ENTRIES), ("order", pocket.order, ORDERS)):
         if value not in known:

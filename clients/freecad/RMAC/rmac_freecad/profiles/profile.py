@@ -9,6 +9,7 @@ from rmac_freecad.profiles.leads import with_leads
 from rmac_freecad.profiles.offset import beside
 from rmac_freecad.profiles.refusal import ProfileRefused
 from rmac_freecad.program import Program
+from rmac_freecad.program.tool_number import is_tool_number
 
 SIDES = ("on", "left", "right", "inside", "outside")
 
@@ -61,8 +62,8 @@ def _check(profile):
     for what, value in (("step", profile.step_mm), ("feed", profile.feed_mm_min), ("feed down", profile.plunge_mm_min), ("spindle speed", profile.spindle_rpm)):
         if not 0 < value < math.inf:
             raise ProfileRefused(f"the {what} is {value:g}; it is more than 0")
-    if profile.tool < 1:
-        raise ProfileRefused(f"the tool's number is {profile.tool}; it is 1 or more")
+    if not is_tool_number(profile.tool):
+        raise ProfileRefused(f"the tool's number is {profile.tool!r}; it is 1 or more")
     if profile.side != "on" and not profile.diameter_mm > 0:
         raise ProfileRefused("the tool's diameter is 0; beside a contour it is more")
     if not profile.bottom_mm < profile.top_mm < profile.safe_mm:

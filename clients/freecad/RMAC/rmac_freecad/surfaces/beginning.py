@@ -1,17 +1,14 @@
 """What the program of a sweep begins with, whatever sweeps."""
 
-import numbers
-
 import rmac
 from rmac_freecad.jobs.refusal import JobRefused
 from rmac_freecad.program import Place
+from rmac_freecad.program.tool_number import is_tool_number
 
 
 def check_tool(tool):
     """A number of a tool, or None. Raises `JobRefused`."""
-    if tool is None:
-        return
-    if isinstance(tool, bool) or not isinstance(tool, numbers.Real) or not tool >= 1 or tool % 1 != 0:
+    if tool is not None and not is_tool_number(tool):
         raise JobRefused(f"tool is {tool!r}: give a whole number of 1 or more")
 
 

@@ -54,8 +54,8 @@ class Passes:
                     break
                 ahead.append(self._lay(between, witnesses))
             if ahead and place is not None:
-                what = f"up to {up:.3g} mm are left" if math.isfinite(up) else "there is a place that no pass gets to,"
-                self.high.append(f"at {', '.join(f'{x:.3f}' for x in place)} {what} between passes")
+                what = f"up to {up:.3g} mm are left between passes" if math.isfinite(up) else "is a place that no pass gets to"
+                self.high.append(f"at {', '.join(f'{x:.3f}' for x in place)} {what}")
             found.append(Pass(one.row.w * self._family.w_mm, one.stretches, one.trace))
         return found
 
