@@ -185,8 +185,7 @@ TEST_F(SearchLimit, HoldsForHostileStatements) {
   for (int i = 0; i < kStatements; ++i) {
     const std::string sql = statements.next();
     Expected<std::vector<DriverRecord>> rows;
-    ASSERT_LE(cpu_time_of(most, [&] { rows = manager->search(sql); }), most)
-        << "statement " << i << ": " << sql;
+    ASSERT_LE(cpu_time_of(most, [&] { rows = manager->search(sql); }), most) << "statement " << i << ": " << sql;
     found += rows ? 1 : 0;
     if (rows) continue;
     stopped += rows.error().message.find("ran longer than 20 ms") != std::string::npos ? 1 : 0;
