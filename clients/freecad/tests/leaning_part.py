@@ -29,7 +29,8 @@ class Poses:
         poses = np.concatenate([one for one, _ in found])
         self.cut = np.concatenate([np.full(len(one), cut) for one, cut in found])
         self.axis = poses[:, 3:] / np.linalg.norm(poses[:, 3:], axis=1, keepdims=True)
-        self.centre = poses[:, :3] + radius * self.axis
+        self.tip = poses[:, :3]
+        self.centre = self.tip + radius * self.axis
 
     def ball_gouge(self, shape, every):
         return ball_gouge(shape, self.radius, self.centre[::every] - (0, 0, self.radius))

@@ -12,7 +12,7 @@ from leaning_part import Poses
 
 from rmac_freecad.jobs import JobRefused
 from rmac_freecad.simulation import simulate
-from rmac_freecad.surfaces import ball_end, bull_nose, flat_end
+from rmac_freecad.surfaces import ball_end, bull_nose, flat_end, plan_faces
 
 
 class AnglesTest(LeaningTest):
@@ -74,16 +74,30 @@ class RefusalsTest(LeaningTest):
             self.refused("at most 80 are possible", **{name: 85})
         self.refused("at most 80 are possible", lead_deg=75, tilt_deg=75)
         self.refused("at most 80 are possible", tilt_deg=360)
+        self.refused("lead_deg is 1000000000.0", lead_deg=1e9)
+        self.refused("steepest_deg is 200", tilt_deg=10, steepest_deg=200)
+        self.refused("along is 1e\\+300", tilt_deg=10, along=1e300)
 
     def test_other_mills_are_refused(self):
         self.refused("ball end", flat_end(2), tilt_deg=10)
         self.refused("ball end", bull_nose(2, 1), lead_deg=0)
+        for radius in (1e9, math.inf, 0, -1, True, "2"):
+            with self.assertRaisesRegex(JobRefused, "radius_mm is"):
+                ball_end(radius)
+
+    def test_faces_that_are_no_list_of_names_are_refused(self):
+        for names in (None, "Face1", 6):
+            with self.assertRaisesRegex(JobRefused, "give a list of names"):
+                plan_faces("Box", Part.makeBox(8, 6, 3), names, ball_end(2), scallop_mm=0.1, feed_mm_min=600)
 
     def test_axes_that_make_no_sense_are_refused(self):
         self.refused("not both", axis=(0, 0, 1), tilt_deg=10)
         self.refused("axis is", axis=(0, 0, 0))
         self.refused("axis is", axis=(0, 1))
         self.refused("axis is", axis=(math.nan, 0, 1))
+        self.refused("axis is", axis=(True, 0, 1))
+        self.refused("axis is", axis="up")
+        self.refused("axis is", axis=5)
         self.refused("below the tip", axis=(0, 0, -1))
 
     def test_what_cannot_be_reached_is_refused(self):

@@ -186,6 +186,16 @@ class OthersTest(OperationTest):
         self.press(dialog.preview_button)
         self.refused(dialog, "at most 80")
 
+    def test_a_bull_nose_is_matched_to_the_face_and_the_passes_it_saves_are_told(self):
+        dialog = self.dialog(SweepDialog, self.face(4))
+        self.set(dialog, Axis="matched to the face", Mill="ball end")
+        self.press(dialog.preview_button)
+        self.refused(dialog, "bull_nose")
+        self.set(dialog, Mill="bull nose", Safe=20)
+        self.press(dialog.preview_button)
+        self.shown(dialog)
+        self.assertRegex(dialog.message.text(), "[0-9]+ passes instead of [0-9]+ with a ball end")
+
     def test_a_scallop_that_makes_no_sense_and_no_face_are_told(self):
         dialog = self.dialog(SweepDialog, self.face(4))
         self.set(dialog, Scallop=3)

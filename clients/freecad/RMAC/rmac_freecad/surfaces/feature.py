@@ -2,13 +2,14 @@
 
 from rmac_freecad.jobs.cut_object import CutObject, add_cut_object
 from rmac_freecad.jobs.refusal import JobRefused
+from rmac_freecad.surfaces.five import MATCHED
 from rmac_freecad.surfaces.machining import ABOVE_MM, placed_shape, plan_faces
 from rmac_freecad.surfaces.mill import Mill
 
 GROUP = "Sweep"
 MILLS = ("ball end", "bull nose", "flat end")
 ALONG = {"direction": None, "u of each face": "u", "v of each face": "v", "level": "level"}
-THREE, FIVE = AXES = ("along Z", "by lead and tilt")
+THREE, FIVE, FITTED = AXES = ("along Z", "by lead and tilt", "matched to the face")
 # Name, type, value before anybody gives one, and what it is. Lengths are mm, speeds mm/s whatever unit FreeCAD shows.
 PROPERTIES = (
     ("Faces", "App::PropertyLinkSub", None, "Of one object"),
@@ -21,8 +22,8 @@ PROPERTIES = (
     ("Along", "App::PropertyEnumeration", list(ALONG), "Where passes go"),
     ("Direction", "App::PropertyAngle", 0.0, "Of the passes, from X"),
     ("Steepest", "App::PropertyAngle", 80.0, "Faces are cut where they are no steeper, with the axis along Z"),
-    ("Axis", "App::PropertyEnumeration", list(AXES), "Of the mill; by lead and tilt takes a machine with five axes and a ball end"),
-    ("Lead", "App::PropertyAngle", 0.0, "Of the axis against the face's normal, to where the mill goes"),
+    ("Axis", "App::PropertyEnumeration", list(AXES), "Of the mill; by lead and tilt takes a machine with five axes and a ball end, matched to the face one and a bull nose"),
+    ("Lead", "App::PropertyAngle", 0.0, "Of the axis against the face's normal, to where the mill goes; where it is matched, the least of it, 3 degrees where it is 0"),
     ("Tilt", "App::PropertyAngle", 20.0, "Of the axis against the face's normal, to the left of that"),
     ("Safe", "App::PropertyDistance", ABOVE_MM, "Z where the tool crosses"),
     ("Feed", "App::PropertySpeed", 10.0, "Along passes"),
@@ -53,9 +54,7 @@ class SweepFeature(CutObject):
         return plan
 
     def told(self, plan):
-        """For people: what is left."""
-        passes = f"{len(plan.swept.passes)} passes"
-        return f"{passes}; left out: {'; '.join(plan.left_out)}." if plan.left_out else f"{passes}, and nothing is left out."
+        return plan.told
 
 
 def is_sweep(feature):
@@ -85,6 +84,10 @@ def _mill_of(feature):
 
 def _settings_of(feature):
     along = ALONG[feature.Along] or feature.Direction.Value
-    leans = {"lead_deg": feature.Lead.Value, "tilt_deg": feature.Tilt.Value} if feature.Axis == FIVE else {"steepest_deg": feature.Steepest.Value}
+    leans = {
+        THREE: {"steepest_deg": feature.Steepest.Value},
+        FIVE: {"lead_deg": feature.Lead.Value, "tilt_deg": feature.Tilt.Value},
+        FITTED: {"axis": MATCHED, "lead_deg": feature.Lead.Value or None},
+    }[feature.Axis]
     return {"scallop_mm": feature.Scallop.Value, "tolerance_mm": feature.Tolerance.Value, "along": along, **leans, "clearance_mm": feature.Safe.Value,
             "feed_mm_min": round(feature.Feed.Value * 60, 9), "plunge_mm_min": round(feature.FeedDown.Value * 60, 9), "tool": feature.Tool, "rpm": feature.SpindleSpeed}  # fmt: skip

@@ -1,6 +1,7 @@
 """Faces of an object in the document become a program."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import Part as FreeCADPart
@@ -27,6 +28,7 @@ def read_faces(
     """A program that sweeps faces of an object, "Face3", in the document's own coordinates; and texts of what it leaves out. `along` is
     the direction of the passes in degrees from X, or "u" or "v" of each face. The tool's axis is along Z, unless `lead_deg` or
     `tilt_deg` lean it against the face's normal, or an `axis` is given that it keeps: that takes five axes, and `along` may be "level".
+    With the `axis` "matched" the lead of a bull nose goes with the face's curvature, and is `lead_deg` at least.
     With `tool`, a number, and `rpm` it begins with them. Raises `JobRefused`."""
     _check_speeds({"rapid_mm_min": rapid_mm_min})
     swept = plan_faces(
@@ -45,6 +47,8 @@ def plan_faces(
     feeds = {"feed_mm_min": feed_mm_min, "plunge_mm_min": feed_mm_min if plunge_mm_min is None else plunge_mm_min}
     _check_speeds({**feeds, **({} if rpm is None else {"rpm": rpm})})
     check_tool(tool)
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        raise JobRefused(f"faces are given as {names!r}: give a list of names, as ['Face1']")
     targets = [_index(label, shape, name) for name in dict.fromkeys(names)]
     if not targets:
         raise JobRefused(f"no face of {label} was named; give names such as Face1")
@@ -80,6 +84,11 @@ class Sweeping:
     def left_out(self):
         return self.swept.left_out
 
+    @property
+    def told(self):
+        """For people: how many passes, and what is left."""
+        return _told(self.swept)
+
     def program(self, label, rapid_mm_min):
         _check_speeds({"rapid_mm_min": rapid_mm_min})
         writer = _Writer(label, self.links, self.clear, {**self.feeds, "rapid_mm_min": rapid_mm_min})
@@ -101,9 +110,20 @@ class LeaningSweep:
     def left_out(self):
         return self.swept.left_out
 
+    @property
+    def told(self):
+        """As that of `Sweeping`; and how many passes a ball end would take, where the lead is matched."""
+        balls = self.swept.ball_passes
+        return _told(self.swept, "" if balls is None else f" instead of {balls} with a ball end of the same radius and scallop")
+
     def program(self, label, rapid_mm_min):
         _check_speeds({"rapid_mm_min": rapid_mm_min})
         return self.swept.program(label, {**self.feeds, "rapid_mm_min": rapid_mm_min}, self.tool, self.rpm)
+
+
+def _told(swept, compared=""):
+    passes = f"{len(swept.passes)} passes{compared}"
+    return f"{passes}; left out: {'; '.join(swept.left_out)}." if swept.left_out else f"{passes}, and nothing is left out."
 
 
 def _check_speeds(speeds):

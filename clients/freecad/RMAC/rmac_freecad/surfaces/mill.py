@@ -8,6 +8,7 @@ import numpy as np
 from rmac_freecad.jobs.refusal import JobRefused
 
 SIDE_MM = 2e-4  # a wall this far inside the side of the mill is one that it passes
+LARGEST_MM = 1000.0
 KINDS = {"ballend": "ball_end", "bullnose": "bull_nose", "endmill": "flat_end"}
 
 
@@ -19,8 +20,8 @@ class Mill:
     def __post_init__(self):
         for name, least in (("radius_mm", 1e-3), ("corner_mm", 0)):
             size = getattr(self, name)
-            if not math.isfinite(size) or size < least:
-                raise JobRefused(f"the mill's {name} is {size!r}: give millimetres, {least:g} or more")
+            if isinstance(size, bool) or not isinstance(size, (int, float, np.floating, np.integer)) or not least <= size <= LARGEST_MM:
+                raise JobRefused(f"the mill's {name} is {size!r}: give millimetres, {least:g} to {LARGEST_MM:g}")
         if self.corner_mm > self.radius_mm:
             raise JobRefused(f"the mill's corner, {self.corner_mm:g} mm, is larger than its radius of {self.radius_mm:g} mm")
 

@@ -33,17 +33,20 @@ class _Laid:
 class Passes:
     """`rows` tell of a pass what it touches, `stretches` lay its curves; `ridge_mm` may stand between two."""
 
-    def __init__(self, rows, stretches, radius_mm, ridge_mm, closest=CLOSEST):
+    def __init__(self, rows, stretches, radius_mm, ridge_mm, closest=CLOSEST, widest_mm=None):
         self._closest = closest
         self._rows, self._family, self._stretches, self._ridge_mm = rows, rows.family, stretches, ridge_mm
-        self._widest = WIDEST * radius_mm
+        self._widest = WIDEST * radius_mm if widest_mm is None else widest_mm
         self._plain = self._step = min(math.sqrt(8 * radius_mm * ridge_mm), self._widest)
         self.high = []
 
+    def rows(self):
+        """Those that cut something, each a step from the one before."""
+        return [row for row in self._steps() if row.core.any()]
+
     def laid(self, witnesses, limit_mm):
         """Held against the witnesses; `high` tells where they find more than the limit nevertheless."""
-        rows = [row for row in self._steps() if row.core.any()]
-        ahead = [self._lay(row, witnesses) for row in reversed(rows)]
+        ahead = [self._lay(row, witnesses) for row in reversed(self.rows())]
         found = []
         while ahead:
             one = ahead.pop()

@@ -66,6 +66,6 @@ def check_sizes(mill, scallop_mm, tolerance_mm, **others):
 
 
 def angle_of(along):
-    if isinstance(along, bool) or not isinstance(along, (int, float, np.floating)) or not math.isfinite(along):
+    if isinstance(along, bool) or not isinstance(along, (int, float, np.floating)) or not abs(along) <= 360:
         raise JobRefused(f"along is {along!r}: give the direction of the passes in degrees from X, or 'u' or 'v', or with five axes 'level'")
     return math.radians(along)

@@ -11,7 +11,7 @@ UP = 2.0  # so much more than the spare is kept of that
 
 class Access:
     def __init__(self, body):
-        self._body, self._radius = body, body.radius_mm
+        self._body, self._radius = body, body.mill.radius_mm
 
     def __call__(self, centres, axes, spare=0.0):
         """Whether it passes, `spare` radii off: `axes` are several for each centre, (centres, axes, 3)."""

@@ -7,6 +7,7 @@ from rmac_freecad.jobs.refusal import JobRefused
 from rmac_freecad.surfaces.drop import upward
 from rmac_freecad.surfaces.part import SPACING, Face, edges_of, points_along
 
+DISC_SPACING = 5  # points a radius of a disc's corner: they are many, and only where Newton's method begins
 AROUND = 4  # radii round what is cut, where points are dense: more than a pass goes beyond its face and the side is looked at closely
 COARSE = 0.3  # radii between points elsewhere
 CELLS = 2  # of the grid, a radius
@@ -16,17 +17,17 @@ LOOKED_AT = 7  # places of a face
 
 
 class Body:
-    """`targets` are indices of faces."""
+    """`targets` are indices of faces. Its points are as dense as the corner of the mill wants them, whose ball goes along the faces."""
 
-    def __init__(self, shape, targets, radius_mm):
+    def __init__(self, shape, targets, mill):
         exact = shape.toNurbs()
         self.faces = [Face(face) for face in exact.Faces]
         self.edges, _ = edges_of(exact)
-        self.targets, self.radius_mm = targets, radius_mm
+        self.targets, self.mill = targets, mill
         self.top = shape.BoundBox
         self._sides = {label: _side(shape, exact.Faces[label], self.faces[label], label) for label in targets}
         self._sizes = {label: _size(self.faces[label]) for label in targets}
-        self._sample(radius_mm / SPACING)
+        self._sample(mill.corner_mm / (DISC_SPACING if mill.flat_mm else SPACING))
 
     def outward(self, label, uv):
         """Points, normals that point away from the material, and the derivatives of both along u and v; nan at poles."""
@@ -50,7 +51,7 @@ class Body:
         points, labels, parameters = (np.concatenate(column) for column in zip(*clouds))
         self.step_of, self.sag_of = np.array(steps), np.array(sags)
         cut = points[np.isin(labels, self.targets)]
-        self.low, self.high = cut.min(0) - AROUND * self.radius_mm, cut.max(0) + AROUND * self.radius_mm
+        self.low, self.high = cut.min(0) - AROUND * self.mill.radius_mm, cut.max(0) + AROUND * self.mill.radius_mm
         near = ((points >= self.low) & (points <= self.high)).all(1)
         self._index(points[near], labels[near], parameters[near])
         self.coarse = self._thinned(points, labels)
@@ -58,12 +59,12 @@ class Body:
     def _thinned(self, points, labels):
         """Faces and edges each by themselves: what is nearest to an edge is none of a face's points."""
         faces = labels < len(self.faces)
-        cells = np.floor(points[faces] / (COARSE * self.radius_mm)).astype(int)
+        cells = np.floor(points[faces] / (COARSE * self.mill.radius_mm)).astype(int)
         on_faces = points[faces][np.unique(cells, axis=0, return_index=True)[1]]
         on_edges = []
         for number in range(len(self.faces), len(self.faces) + len(self.edges)):
             of = points[labels == number]
-            every = max(int(COARSE * self.radius_mm / max(self.step_of[number], 1e-9)), 1)
+            every = max(int(COARSE * self.mill.radius_mm / max(self.step_of[number], 1e-9)), 1)
             on_edges += [of[::every], of[-1:]]
         return np.concatenate([on_faces, *on_edges])
 
@@ -71,7 +72,7 @@ class Body:
         return self.parameters[self.labels == label]
 
     def _index(self, points, labels, parameters):
-        self._cell = self.radius_mm / CELLS
+        self._cell = self.mill.radius_mm / CELLS
         cells = np.floor((points - self.low) / self._cell).astype(int)
         self._counts = np.floor((self.high - self.low) / self._cell).astype(int) + 1
         key = (cells[:, 0] * self._counts[1] + cells[:, 1]) * self._counts[2] + cells[:, 2]

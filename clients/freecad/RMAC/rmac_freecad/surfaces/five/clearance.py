@@ -1,4 +1,5 @@
-"""How far places are from the part: from whichever face or edge is nearest. Exact where the ball of the mill might touch."""
+"""How far places are from the part: from whichever face or edge is nearest. Exact where the ball, of the mill or of its corner, might
+touch."""
 
 import numpy as np
 
@@ -14,7 +15,7 @@ STILL = 1e-10  # of a face
 class Clearance:
     def __init__(self, body):
         self._body = body
-        self._reach = REACH * body.radius_mm
+        self._reach = REACH * body.mill.corner_mm
 
     def __call__(self, centres):
         centres = np.asarray(centres, float).reshape(-1, 3)
@@ -73,7 +74,7 @@ class Clearance:
         low, high = face.trim.low, face.trim.high
         most, at, left = (high - low) / 10, uv.copy(), np.arange(len(uv))
         for _ in range(NEWTON):
-            step = _downhill(*face.evaluate(at[left], 2), centres[left])
+            step = downhill(*_bowl(*face.evaluate(at[left], 2), centres[left]))
             new = np.clip(at[left] + np.clip(step, -most, most), low, high)
             goes_on = (np.abs(new - at[left]) > STILL * (high - low)).any(1)
             at[left] = new
@@ -83,23 +84,32 @@ class Clearance:
         return np.where(face.trim.inside(at), np.linalg.norm(face.evaluate(at) - centres, axis=1), np.inf)
 
     def _from_edge(self, label, t, centres):
-        curve = self._body.edges[label - len(self._body.faces)]
-        at, width = t[:, 0], curve.interval
-        found, rows = np.full(len(at), np.inf), np.arange(len(at))
-        for _ in range(LEVELS):
-            tried = np.clip(at[:, None] + width * np.linspace(-1, 1, 9), curve.first, curve.last)
-            away = np.linalg.norm(curve(tried.ravel()).reshape(*tried.shape, 3) - centres[:, None], axis=2)
-            best = away.argmin(1)
-            at, width = tried[rows, best], width / 4
-            found = np.minimum(found, away[rows, best])
-        return found
+        return least_along(self._body.edges[label - len(self._body.faces)], t[:, 0], lambda points: np.linalg.norm(points - centres[:, None], axis=2))
 
 
-def _downhill(point, u, v, uu, uv, vv, centres):
+def least_along(curve, t, far):
+    """The least of a function of points, (places, some, 3), on an edge's curve about each of these parameters."""
+    at, width = t, curve.interval
+    found, rows = np.full(len(at), np.inf), np.arange(len(at))
+    for _ in range(LEVELS):
+        tried = np.clip(at[:, None] + width * np.linspace(-1, 1, 9), curve.first, curve.last)
+        away = far(curve(tried.ravel()).reshape(*tried.shape, 3))
+        best = away.argmin(1)
+        at, width = tried[rows, best], width / 4
+        found = np.minimum(found, away[rows, best])
+    return found
+
+
+def _bowl(point, u, v, uu, uv, vv, centres):
+    """Of half the square of the distance from the centres, along u and v: gradients, second derivatives, and these of a plane."""
     way = point - centres
     gradient = np.stack([(way * u).sum(1), (way * v).sum(1)], 1)
     flat = [(a * b).sum(1) for a, b in ((u, u), (u, v), (v, v))]
-    bent = [first + (way * second).sum(1) for first, second in zip(flat, (uu, uv, vv))]
+    return gradient, [first + (way * second).sum(1) for first, second in zip(flat, (uu, uv, vv))], flat
+
+
+def downhill(gradient, bent, flat):
+    """Newton's step; by the second derivatives `flat` where the others are none of a bowl."""
     bowl = (bent[0] > 0) & (bent[0] * bent[2] > bent[1] ** 2 * (1 + 1e-9))
     a, b, c = (np.where(bowl, full, short) for full, short in zip(bent, flat))
     with np.errstate(divide="ignore", invalid="ignore"):

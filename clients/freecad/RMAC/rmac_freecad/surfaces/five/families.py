@@ -1,4 +1,4 @@
-"""Families of lines of contact on faces: along a face's own parameters, or where the ball's centre stays in upright planes. w tells
+"""Families of lines of contact on faces: along a face's own parameters, or where the centre of the corner's ball stays in upright planes. w tells
 the pass."""
 
 import math
@@ -19,7 +19,7 @@ SPANS = 2  # a radius, of the line's spline in (u, v)
 
 class _Family:
     def __init__(self, body, targets, steepest, over_mm):
-        self.targets, self._body, self._radius = targets, body, body.radius_mm
+        self.targets, self._body, self._corner = targets, body, body.mill.corner_mm
         self._least = -2.0 if steepest is None else math.cos(steepest)
         self._over = over_mm
 
@@ -32,7 +32,7 @@ class _Family:
     def touch(self, label, uv):
         """Points, normals and where the ball's centre is then."""
         point, normal, _, _ = self._body.outward(label, uv)
-        return point, normal, point + self._radius * normal
+        return point, normal, point + self._corner * normal
 
 
 class Isolines(_Family):
@@ -60,9 +60,10 @@ class Isolines(_Family):
             uv = np.column_stack([t, np.full(len(t), w)] if self._axis == 0 else [np.full(len(t), w), t])
             point, normal, along, turns = self._body.outward(self.targets[0], uv)
             inside = self._trim.inside(uv) & self.gentle(normal)
-            return point, normal, _unit(along[self._axis] + self._radius * turns[self._axis]), inside
+            feed = _unit(along[self._axis] + self._corner * turns[self._axis])
+            return point, normal, feed, inside, _bend(normal, along, turns, feed)
 
-        return [Track(self.targets[0], contact, self._trim.low[self._axis], self._trim.high[self._axis], self._radius, self._over)]
+        return [Track(self.targets[0], contact, self._trim.low[self._axis], self._trim.high[self._axis], self._corner, self._over)]
 
 
 class Planes(_Family):
@@ -92,7 +93,7 @@ class Planes(_Family):
         trim = self._body.faces[label].trim
         rough = self._values(label, *(np.linspace(a, b, 25) for a, b in zip(trim.low, trim.high)))[1]
         lengths = [np.nanmax(np.nansum(np.linalg.norm(np.diff(rough, axis=k), axis=2), k)) for k in (0, 1)]
-        counts = [int(np.clip(length / self._radius * GRID, 24, MOST_GRID)) + 1 for length in lengths]
+        counts = [int(np.clip(length / self._corner * GRID, 24, MOST_GRID)) + 1 for length in lengths]
         u, v = (np.linspace(a, b, n) for a, b, n in zip(trim.low, trim.high, counts))
         return Contours(u, v, self._values(label, u, v)[0])
 
@@ -114,7 +115,7 @@ class Planes(_Family):
         far = np.concatenate([[0], np.cumsum(np.nan_to_num(np.linalg.norm(np.diff(centres, axis=0), axis=1)) + 1e-9)])
         if np.nansum(np.diff(centres, axis=0) * self._ahead(label, line)) < 0:
             line, centres, far = line[::-1], centres[::-1], far[-1] - far[::-1]
-        spans = max(int(far[-1] / self._radius * SPANS), 1)
+        spans = max(int(far[-1] / self._body.mill.radius_mm * SPANS), 1)
         even = np.linspace(0, far[-1], 3 * spans + 4)
         line = self._on_plane(label, np.column_stack([np.interp(even, far, line[:, k]) for k in (0, 1)]), w)
         knots = bspline.clamped(np.linspace(0, far[-1], spans + 1), 5)
@@ -124,10 +125,11 @@ class Planes(_Family):
 
         def contact(t):
             uv = self._on_plane(label, bspline.value(knots, 5, poles, t), w)
-            point, normal, _, _ = self._sloped(label, uv)
-            return point, normal, sense * self._feed(label, uv), self.face(label).trim.inside(uv) & self.gentle(normal)
+            point, normal, along, turns = self._body.outward(label, uv)
+            feed = sense * self._feed(label, uv)
+            return point, normal, feed, self.face(label).trim.inside(uv) & self.gentle(normal), _bend(normal, along, turns, feed)
 
-        return Track(label, contact, 0.0, far[-1], self._radius, self._over)
+        return Track(label, contact, 0.0, far[-1], self._corner, self._over)
 
     def _ahead(self, label, line):
         """Where passes go: in level planes about Z, counter-clockwise round what stands upright."""
@@ -143,7 +145,7 @@ class Planes(_Family):
         size = trim.high - trim.low
         for _ in range(NEWTON):
             point, normal, _, slope = self._sloped(label, uv)
-            off = (point + self._radius * normal) @ self._across - w
+            off = (point + self._corner * normal) @ self._across - w
             scaled = slope * size
             uv = uv - np.nan_to_num(off[:, None] * scaled * size / np.maximum((scaled**2).sum(1, keepdims=True), 1e-30))
             uv = np.clip(uv, trim.low, trim.high)
@@ -152,8 +154,23 @@ class Planes(_Family):
     def _sloped(self, label, uv):
         """With how the ball's centre goes along u and v, and how far off the plane that leads."""
         point, normal, along, turns = self._body.outward(label, uv)
-        ways = [one + self._radius * turn for one, turn in zip(along, turns)]
+        ways = [one + self._corner * turn for one, turn in zip(along, turns)]
         return point, normal, ways, np.column_stack([way @ self._across for way in ways])
+
+
+def _bend(normal, along, turns, feed):
+    """How far a face bends toward the mill, 1/mm: along the feed, along and across it, across it."""
+    metric = [(along[i] * along[j]).sum(1) for i, j in ((0, 0), (0, 1), (1, 1))]
+    shape = [-((turns[i] * along[j]).sum(1) + (turns[j] * along[i]).sum(1)) / 2 for i, j in ((0, 0), (0, 1), (1, 1))]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        area = metric[0] * metric[2] - metric[1] ** 2
+        ways = []
+        for way in (feed, np.cross(normal, feed)):
+            u, v = ((one * way).sum(1) for one in along)
+            ways.append(((metric[2] * u - metric[1] * v) / area, (metric[0] * v - metric[1] * u) / area))
+        return np.column_stack(
+            [shape[0] * a[0] * b[0] + shape[1] * (a[0] * b[1] + a[1] * b[0]) + shape[2] * a[1] * b[1] for a, b in ((ways[0],) * 2, ways, (ways[1],) * 2)]
+        )
 
 
 def _unit(vectors):

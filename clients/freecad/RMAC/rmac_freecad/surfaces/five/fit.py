@@ -3,12 +3,14 @@
 import numpy as np
 
 from rmac_freecad.surfaces import bspline
+from rmac_freecad.surfaces.five import solid
 from rmac_freecad.surfaces.fit import DEGREE
 
 IN_A_SPAN = 8
 SHARE = 0.35  # of the band, that the ball may be off to each side along the normal
 ALONG_MM = 2e-3  # and along the pass, where that changes nothing but the feed
 AXIS_DEG = 0.25
+DISC_AXIS_DEG = 0.03  # of a disc, which fits the face only as it leans
 SHORTEST_MM = 5e-3
 PIECE = 3.0  # radii a span at first
 
@@ -21,10 +23,10 @@ class Unfit(Exception):
         self.s = s
 
 
-def fit(track, axes_at, first, last, radius_mm, band_mm):
-    """Knots and poles between two lengths on a track. The ball is lifted off the face by half of the band; `axes_at(places, s)` tells
+def fit(track, axes_at, first, last, mill, band_mm):
+    """Knots and poles between two lengths on a track. The corner's ball is lifted off the face by half of the band; `axes_at(places, s)` tells
     the axis."""
-    breaks = np.linspace(first, last, max(int((last - first) / (PIECE * radius_mm)), 1) + 1)
+    breaks = np.linspace(first, last, max(int((last - first) / (PIECE * mill.radius_mm)), 1) + 1)
     while True:
         s = _filled(breaks)
         knots = bspline.clamped(breaks, DEGREE)
@@ -32,10 +34,10 @@ def fit(track, axes_at, first, last, radius_mm, band_mm):
         axes = axes_at(places, s)
         turned = _fitted(knots, DEGREE, s, axes)
         ball = places.centre + band_mm / 2 * places.normal
-        tips = _fitted(knots, DEGREE, s, ball - radius_mm * _unit(bspline.value(knots, DEGREE, turned, s)))
+        tips = _fitted(knots, DEGREE, s, solid.tips(mill, ball, places.normal, _unit(bspline.value(knots, DEGREE, turned, s))))
         poles = np.column_stack([tips, turned])
         between = np.concatenate([s, (s[1:] + s[:-1]) / 2])
-        bad = between[_off(knots, poles, track, axes_at, between, radius_mm, band_mm)]
+        bad = between[_off(knots, poles, track, axes_at, between, mill, band_mm)]
         if not len(bad):
             return knots, poles
         spans = np.unique(np.clip(np.searchsorted(breaks, bad, side="right") - 1, 0, len(breaks) - 2))
@@ -45,21 +47,20 @@ def fit(track, axes_at, first, last, radius_mm, band_mm):
         breaks = np.sort(np.concatenate([breaks, (breaks[spans] + breaks[spans + 1]) / 2]))
 
 
-def balls(knots, poles, s, radius_mm):
-    """Centres of the ball and axes along a curve."""
-    there = bspline.value(knots, DEGREE, poles, s)
-    axes = _unit(there[:, 3:])
-    return there[:, :3] + radius_mm * axes, axes
+def poses(knots, poles, s, degree=DEGREE):
+    """Tips and axes along a curve."""
+    there = bspline.value(knots, degree, poles, s)
+    return there[:, :3], _unit(there[:, 3:])
 
 
-def _off(knots, poles, track, axes_at, s, radius_mm, band_mm):
+def _off(knots, poles, track, axes_at, s, mill, band_mm):
     places = track.at(s)
-    centres, axes = balls(knots, poles, s, radius_mm)
-    off = centres - places.centre - band_mm / 2 * places.normal
+    tips, axes = poses(knots, poles, s)
+    off = solid.centres(mill, tips, places.normal, axes) - places.centre - band_mm / 2 * places.normal
     along = (off * places.normal).sum(1)
     aside = np.linalg.norm(off - along[:, None] * places.normal, axis=1)
     turned = np.linalg.norm(axes - axes_at(places, s), axis=1)
-    return (np.abs(along) > SHARE * band_mm) | (aside > ALONG_MM) | (turned > np.radians(AXIS_DEG))
+    return (np.abs(along) > SHARE * band_mm) | (aside > ALONG_MM) | (turned > np.radians(DISC_AXIS_DEG if mill.flat_mm else AXIS_DEG))
 
 
 def _fitted(knots, degree, t, values):

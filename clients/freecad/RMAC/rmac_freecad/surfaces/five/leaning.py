@@ -2,78 +2,21 @@
 which it passes."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
-from rmac_freecad.jobs.refusal import JobRefused
+from rmac_freecad.surfaces.five.lean import MOST
 
 STEPS = ((None, 5.0), (10.0, 10.0), (5.0, 5.0))  # degrees from lead to lead and from tilt to tilt, each where those before do not do
-MOST = 80.0  # degrees from the normal
 SPARE = 0.03  # radii that the side keeps off the part where angles change
 EVERY = ((3, 2), (1, 2), (1, 0))  # samples from place to place where angles are chosen, and how often these are evened out
 OFF_COST, TURN_COST = 15.0, 5.0  # degrees off what was asked for, and of a turn from place to place, that cost the same
 WINDOW = 3  # of these, over which angles are evened out
 
 
-@dataclass(frozen=True)
-class Lean:
-    """Degrees: `lead` to where the mill goes, `tilt` to the left of that; or an `axis` that never turns."""
-
-    lead: float = 0.0
-    tilt: float = 0.0
-    axis: tuple | None = None
-
-    @property
-    def one_way(self):
-        """With a lead the axis would swing over from pass to pass, went they to and fro."""
-        return self.lead != 0 and self.axis is None
-
-    def axes(self, normal, feed, angles):
-        """Unit vectors; `angles` are leads and tilts, (…, 2)."""
-        if self.axis is not None:
-            return np.broadcast_to(np.array(self.axis), np.broadcast_shapes(normal.shape, (*angles.shape[:-1], 3))).copy()
-        lead, tilt = np.radians(angles[..., :1]), np.radians(angles[..., 1:])
-        side = np.cross(normal, feed)
-        return np.sin(lead) * feed + np.cos(lead) * (np.cos(tilt) * normal + np.sin(tilt) * side)
-
-
-def lean_of(lead_deg, tilt_deg, axis):
-    """None where nothing of them is given: then the axis stays along Z. Raises `JobRefused`."""
-    if axis is not None:
-        if lead_deg is not None or tilt_deg is not None:
-            raise JobRefused("give an axis, which never turns, or lead_deg and tilt_deg, not both")
-        return Lean(axis=_direction(axis))
-    if lead_deg is None and tilt_deg is None:
-        return None
-    angles = [0.0 if given is None else given for given in (lead_deg, tilt_deg)]
-    for name, angle in zip(("lead_deg", "tilt_deg"), angles):
-        if not _number(angle):
-            raise JobRefused(f"{name} is {angle!r}: give degrees against the face's normal")
-    off = math.degrees(math.acos(math.cos(math.radians(angles[0])) * math.cos(math.radians(angles[1]))))
-    if max(map(abs, angles)) > MOST or off > MOST + 1e-9:
-        raise JobRefused(f"lead_deg {angles[0]:g} and tilt_deg {angles[1]:g} lean the tool by {off:.0f} degrees: at most {MOST:g} are possible, then its side would cut")
-    return Lean(float(angles[0]), float(angles[1]))
-
-
-def _number(given):
-    return isinstance(given, (int, float, np.floating, np.integer)) and not isinstance(given, bool) and math.isfinite(given)
-
-
-def _direction(axis):
-    try:
-        found = [float(one) for one in axis]
-    except (TypeError, ValueError):
-        found = []
-    length = math.sqrt(sum(one * one for one in found)) if len(found) == 3 else 0.0
-    if not math.isfinite(length) or length < 1e-9:
-        raise JobRefused(f"axis is {axis!r}: give i, j, k from the tip to the spindle")
-    if found[2] < 0:
-        raise JobRefused(f"axis is {axis!r}: the spindle would be below the tip; give one that does not point down")
-    return tuple(one / length for one in found)
-
-
 class Axes:
+    BARRED = "out of reach: the mill's side, up to the spindle, would touch the part with any axis that does not point down"
+
     def __init__(self, lean, access):
         self.lean, self._access = lean, access
         self._wanted = np.array([lean.lead, lean.tilt])
@@ -92,6 +35,9 @@ class Axes:
             if np.isnan(found[first : last + 1, 0]).any():
                 found[first : last + 1] = self._way(places.of(slice(first, last + 1)))
         return found
+
+    def given_way(self, s, angles, bad, times):
+        """Other angles for a curve that touches there, as it did some times before; None where nothing else is known."""
 
     def _free(self, places, grid):
         flat = grid.reshape(-1, 2)

@@ -3,12 +3,9 @@ and over the part."""
 
 import numpy as np
 
-from rmac_freecad.surfaces import bspline
-
 LIFTS = (0.0, 0.05, 0.1, 0.2, 0.4, 0.8)  # of the mill's radius
 KNOTS = np.array([0.0, 0, 0, 0, 1, 1, 1, 1])
-BETWEEN, SIDES = 100, 12  # samples a radius: of the ball, of the mill's side
-MAY_MM = 2e-4
+DENSER = 5  # than along passes it is looked whether a link touches
 MOST_TURN = 0.5  # radians of the axis
 OPPOSITE = -0.8  # cosine between axes, from which on the axis turns by way of upright
 
@@ -16,10 +13,10 @@ OPPOSITE = -0.8  # cosine between axes, from which on the axis turns by way of u
 class Links:
     """Poses are x y z of the tip and i j k of the axis. `clear_mm` is the height of the tip where it crosses over the part."""
 
-    def __init__(self, body, clearance, access, clear_mm, aside_mm):
-        self._clearance, self._access, self._radius = clearance, access, body.radius_mm
+    def __init__(self, body, touching, clear_mm, aside_mm):
+        self._touching, self._radius = touching, body.mill.radius_mm
         box, self._clear = body.top, clear_mm
-        margin = aside_mm + body.radius_mm
+        margin = aside_mm + self._radius
         self._low = np.array([box.XMin - margin, box.YMin - margin, -np.inf])
         self._high = np.array([box.XMax + margin, box.YMax + margin, clear_mm])
 
@@ -38,23 +35,9 @@ class Links:
             balls = centres[0] + shares[:, None] * way + np.outer([0, 1, 1, 0], lift * self._radius * away)
             poles = np.column_stack([balls - self._radius * axes, axes])
             poles[0], poles[-1] = begin, end
-            if self._free(poles, length + lift * self._radius):
+            if not len(self._touching(KNOTS, poles, 3, length + lift * self._radius, DENSER)):
                 return poles
         return None
-
-    def _free(self, poles, length):
-        for count, passes in ((SIDES, self._side_passes), (BETWEEN, self._ball_passes)):
-            there = bspline.value(KNOTS, 3, poles, np.linspace(0, 1, int(length / self._radius * count) + 8))
-            axes = there[:, 3:] / np.linalg.norm(there[:, 3:], axis=1, keepdims=True)
-            if not passes(there[:, :3] + self._radius * axes, axes):
-                return False
-        return True
-
-    def _ball_passes(self, centres, axes):
-        return bool((self._clearance(centres) >= self._radius - MAY_MM).all())
-
-    def _side_passes(self, centres, axes):
-        return bool(self._access(centres, axes[:, None]).all())
 
     def out(self, pose):
         """Poses that lead from there along the axis to where the mill, as long as it may be, is beside or above the part, and up to

@@ -2,21 +2,21 @@
 
 import numpy as np
 
-from rmac_freecad.surfaces.five.ridges import left_standing
+from rmac_freecad.surfaces.five.ridges import joined, left_standing
 
 SAMPLES = 1500
 TOUCHED_MM = 1e-6
 CUT = 1.5  # scallops: what stands higher was not cut
 STEEP = "steeper than what is to be cut"
 BLOCKED = "beside other places of the part, or too narrow for the mill"
-ASIDE = "out of reach: the mill's side, up to the spindle, would touch the part with any axis that does not point down"
 
 
-def left_out(body, clearance, families, traces, scallop_mm):
-    """Texts, with areas as samples of the faces tell them."""
+def left_out(body, clearance, families, traces, scallop_mm, barred):
+    """Texts, with areas as samples of the faces tell them; `barred` says why the ball alone gets to a place."""
     found = []
-    centre = np.concatenate([np.full((1, 3), np.nan), *(one.centre for one in traces)])
-    used = np.isfinite(centre[:, 0])
+    mill, lines = body.mill, [one.line for one in traces]
+    # The nearest pass leaves least of what a ball leaves, but not always of what discs do, which lean by more or less.
+    lines = lines if mill.flat_mm else [joined(lines)]
     for family in families:
         for label in family.targets:
             face = family.face(label)
@@ -28,9 +28,10 @@ def left_out(body, clearance, families, traces, scallop_mm):
             _, u, v = face.evaluate(uv, 1)
             size = np.linalg.norm(np.cross(u, v), axis=1)
             steep = ~family.gentle(normal)
-            blocked = ~steep & (clearance(ideal) < body.radius_mm - TOUCHED_MM)
-            aside = ~steep & ~blocked & (left_standing(body.radius_mm, centre, used, point, normal) > CUT * scallop_mm)
-            for what, where in ((STEEP, steep), (BLOCKED, blocked), (ASIDE, aside)):
+            blocked = ~steep & (clearance(ideal) < mill.corner_mm - TOUCHED_MM)
+            up = np.min([left_standing(mill, line, point, normal) for line in lines], axis=0, initial=np.inf)
+            aside = ~steep & ~blocked & (up > CUT * scallop_mm)
+            for what, where in ((STEEP, steep), (BLOCKED, blocked), (barred, aside)):
                 share = size[where].sum() / size.sum()
                 if share > 1e-3:
                     found.append(f"Face{label + 1}: {100 * share:.1f} % is {what}")

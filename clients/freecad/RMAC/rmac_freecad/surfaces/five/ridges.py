@@ -1,30 +1,85 @@
-"""What a ball that went along a line leaves above places of a face."""
+"""What a mill that went along a line leaves above places of a face."""
+
+from dataclasses import dataclass
 
 import numpy as np
 
+from rmac_freecad.surfaces.five.solid import outside, seen_along, slopes
 from rmac_freecad.surfaces.ridges import least
 
 WINDOW = 6  # samples to each side of the nearest
-AT_ONCE = 4_000_000
+BEHIND, AHEAD = 0.35, 1.05  # radii, where a disc cuts before and after its corner goes by
+AT_ONCE, DISCS_AT_ONCE = 4_000_000, 300_000
+NEWTON = 12
+HIT_MM = 1e-6
+STEEP = 0.05  # what is met at a slope less than that stands higher than elsewhere along the line
 
 
-def left_standing(radius, centres, used, points, normals):
-    """Above each point along its normal; infinite where no ball comes. `centres` are in the order of the line, those that are used."""
+@dataclass
+class Line:
+    """Samples in their order. A ball end is told by its centres; else these are of the corner's ball."""
+
+    centre: np.ndarray
+    used: np.ndarray
+    tip: np.ndarray
+    axis: np.ndarray
+    spacing_mm: float
+
+
+def joined(lines):
+    """One behind the other."""
+    gap = np.full((1, 3), np.nan)
+    columns = (np.concatenate([gap, *(one for line in lines for one in (getattr(line, name), gap))]) for name in ("centre", "tip", "axis"))
+    centre, tip, axis = columns
+    return Line(centre, np.isfinite(centre[:, 0]), tip, axis, min((line.spacing_mm for line in lines), default=1.0))
+
+
+def left_standing(mill, line, points, normals):
+    """Above each point along its normal; infinite where no mill comes."""
     up = np.full(len(points), np.inf)
-    index = np.flatnonzero(used)
+    index = np.flatnonzero(line.used)
     if not len(index):
         return up
-    cut = centres[index]
-    ideal = points + radius * normals
-    for some in np.array_split(np.arange(len(points)), len(points) * len(cut) // AT_ONCE + 1):
+    cut = line.centre[index]
+    ideal = points + mill.corner_mm * normals
+    behind, ahead = (int(np.ceil(share * mill.radius_mm / line.spacing_mm)) for share in (BEHIND, AHEAD)) if mill.flat_mm else (WINDOW, WINDOW)
+    window = np.arange(-behind, ahead + 1)
+    shares = max(len(points) * len(cut) // AT_ONCE, len(points) * len(window) // DISCS_AT_ONCE) + 1
+    for some in np.array_split(np.arange(len(points)), shares):
         away = (cut**2).sum(1) - 2 * ideal[some] @ cut.T
-        near = index[away.argmin(1)][:, None] + np.arange(-WINDOW, WINDOW + 1)
-        inside = (near >= 0) & (near < len(centres))
-        near = np.clip(near, 0, len(centres) - 1)
-        inside &= used[near]
-        way = np.where(inside[:, :, None], centres[near], 0) - points[some][:, None]
-        along = (way * normals[some][:, None]).sum(2)
-        beside = radius**2 - (way**2).sum(2) + along**2
-        entry = np.maximum(along - np.sqrt(np.maximum(beside, 0)), 0)
-        up[some] = least(np.where(inside & (beside > 0), entry, np.inf))
+        near = index[away.argmin(1)][:, None] + window
+        inside = (near >= 0) & (near < len(line.centre))
+        near = np.clip(near, 0, len(line.centre) - 1)
+        inside &= line.used[near]
+        entry = _into_disc if mill.flat_mm else _into_ball
+        up[some] = least(entry(mill, line, near, inside, points[some][:, None], normals[some][:, None]))
     return up
+
+
+def _into_ball(mill, line, near, inside, points, normals):
+    way = np.where(inside[:, :, None], line.centre[near], 0) - points
+    along = (way * normals).sum(2)
+    beside = mill.radius_mm**2 - (way**2).sum(2) + along**2
+    entry = np.maximum(along - np.sqrt(np.maximum(beside, 0)), 0)
+    return np.where(inside & (beside > 0), entry, np.inf)
+
+
+def _into_disc(mill, line, near, inside, points, normals):
+    """By Newton's method: the mill is convex, so that its distance falls ever more slowly along the normal up to where it is met."""
+    axes = np.where(inside[:, :, None], line.axis[near], (0.0, 0.0, 1.0))
+    ways = points - np.where(inside[:, :, None], line.tip[near] + mill.corner_mm * line.axis[near], 0)
+    rise = (normals * axes).sum(2)
+    up = np.zeros(near.shape)
+    for _ in range(NEWTON):
+        place = ways + up[:, :, None] * normals
+        off, height = seen_along(place, axes)
+        far = outside(mill, off, height)
+        outward = ((place * normals).sum(2) - height * rise) / np.maximum(off, 1e-12)
+        away, along = slopes(mill, off, height)
+        slope = away * outward + along * rise
+        step = np.where(far > 0, far, 0) / np.maximum(-slope, 1e-3)
+        up = up + step
+        if not (step[inside & (slope < -STEEP)] > HIT_MM).any():
+            break
+    hit = outside(mill, *seen_along(ways + up[:, :, None] * normals, axes)) < HIT_MM
+    return np.where(inside & hit, up, np.inf)

@@ -4,12 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rmac_freecad.surfaces.five.ridges import left_standing
-from rmac_freecad.surfaces.five.track import Places
+from rmac_freecad.surfaces.five import solid
+from rmac_freecad.surfaces.five.ridges import Line, left_standing
+from rmac_freecad.surfaces.five.track import NAMES, Places
 from rmac_freecad.surfaces.rows import runs
 
 SAMPLES = 6  # a radius
+CORNER_SAMPLES = 3  # and a radius of the corner
 OVER = 1.05  # steps: a pass goes on over its ends to places that are so near to what its neighbour cuts
+MOST_BESIDE = 0.95  # of a disc
 TOUCHING = 0.4  # of the band, that the lifted ball keeps off the part
 
 
@@ -30,8 +33,9 @@ class Row:
 
 
 class Rows:
-    def __init__(self, family, clearance, leaning, radius_mm, band_mm):
-        self.family, self.leaning, self.radius_mm, self.band_mm = family, leaning, radius_mm, band_mm
+    def __init__(self, family, clearance, leaning, mill, band_mm):
+        self.family, self.leaning, self.mill, self.band_mm = family, leaning, mill, band_mm
+        self._spacing = min(mill.radius_mm / SAMPLES, mill.corner_mm / CORNER_SAMPLES)
         self._clearance = clearance
 
     def at(self, w):
@@ -43,13 +47,12 @@ class Rows:
 
     def _row(self, w, leans):
         tracks = self.family.tracks(w)
-        lines = [np.append(_samples(track, self.radius_mm / SAMPLES), np.nan) for track in tracks]
+        lines = [np.append(_samples(track, self._spacing), np.nan) for track in tracks]
         s = np.concatenate([np.zeros(0), *lines])
         line = np.concatenate([np.zeros(0, int), *(np.full(len(one), number) for number, one in enumerate(lines))])
         found = [track.at(np.nan_to_num(one)) for track, one in zip(tracks, lines)]
-        names = Places.__dataclass_fields__
-        empty = {name: np.zeros((0,) if name == "inside" else (0, 3), bool if name == "inside" else float) for name in names}
-        places = Places(*(np.concatenate([empty[name], *(getattr(one, name) for one in found)]) for name in names))
+        empty = {name: np.zeros((0,) if name == "inside" else (0, 3), bool if name == "inside" else float) for name in NAMES}
+        places = Places(*(np.concatenate([empty[name], *(getattr(one, name) for one in found)]) for name in NAMES))
         places.centre[np.isnan(s)] = np.nan
         ball = self.ball(places)
         angles = self.leaning.angles(places, ball) if leans else np.where(ball[:, None], [0.0, 0.0], np.nan)
@@ -59,7 +62,7 @@ class Rows:
     def ball(self, places):
         """Whether it touches the part there alone, lifted as curves lift it."""
         lifted = places.centre + self.band_mm / 2 * places.normal
-        return self._clearance(lifted) >= self.radius_mm + TOUCHING * self.band_mm
+        return self._clearance(lifted) >= self.mill.corner_mm + TOUCHING * self.band_mm
 
     def reach(self, row, other, over_mm):
         """Lets a pass go on over its ends to where its neighbour cuts, else places at a slanting border would be far from both."""
@@ -74,6 +77,16 @@ class Rows:
             row.used[i] |= may[i] and row.used[i - 1]
         for i in range(len(may) - 2, -1, -1):
             row.used[i] |= may[i] and row.used[i + 1]
+        if self.mill.flat_mm:
+            self._run_out(row, over_mm)
+
+    def _run_out(self, row, gap_mm):
+        """A disc cuts what is beside its corner's way only when the corner is ahead of that."""
+        flat, may = self.mill.flat_mm, row.ball & np.isfinite(row.angles[:, 0])
+        ahead = left = self._spacing + flat - np.sqrt(flat**2 - min(gap_mm / 2, MOST_BESIDE * flat) ** 2)
+        for i in range(1, len(may)):
+            left = ahead if row.used[i] else left - (row.s[i] - row.s[i - 1])
+            row.used[i] |= bool(left >= 0 and may[i] and row.used[i - 1])
 
     def ridge(self, before, middle, after):
         """As that of the heights, but only where both go beside: what their ends leave is told by witnesses."""
@@ -86,10 +99,14 @@ class Rows:
         if not len(chosen):
             return None
         points, normals = middle.places.point[chosen], middle.places.normal[chosen]
-        sides = [np.sqrt(left_standing(self.radius_mm, row.places.centre, row.used, points, normals)) for row in (before, after)]
+        sides = [np.sqrt(left_standing(self.mill, self._line(row), points, normals)) for row in (before, after)]
         found = ((sides[0] + sides[1]) / 2) ** 2
         found = found[np.isfinite(found)]
         return found.max() if len(found) else None
+
+    def _line(self, row):
+        axes = self.leaning.lean.axes(row.places.normal, row.places.feed, row.angles)
+        return Line(row.places.centre, row.used, solid.tips(self.mill, row.places.centre, row.places.normal, axes), axes, self._spacing)
 
 
 def _samples(track, spacing):

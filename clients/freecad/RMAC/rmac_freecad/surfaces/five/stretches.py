@@ -6,16 +6,15 @@ from rmac_freecad.surfaces.five import fit
 
 PARTS, NARROWINGS = 8, 4  # an end at a wall is looked for in so many parts, so many times
 LEAST_MM = 0.01
-BALL_CHECKS, SIDE_CHECKS = 20, 12  # places a radius
-MAY_MM = 2e-4  # that the ball is in the part by the check
 TRIES = 3
+GIVES_WAY = 8  # times, that a curve is laid anew with other angles
 ASIDE = 6  # of a radius, that is left out beside a place where it touches a second time
 
 
 class Stretches:
-    def __init__(self, rows, clearance, access):
-        self._rows, self._clearance, self._access = rows, clearance, access
-        self._radius, self._band = rows.radius_mm, rows.band_mm
+    def __init__(self, rows, touching):
+        self._rows, self._touching = rows, touching
+        self._mill, self._band = rows.mill, rows.band_mm
 
     def of(self, row):
         """Lists of curves (knots, poles), each list one stretch without a gap."""
@@ -23,40 +22,39 @@ class Stretches:
 
     def _stretch(self, row, first, last):
         track = row.tracks[row.line[first]]
-        s, angles = row.s[first : last + 1], row.angles[first : last + 1]
-        begin, end = self._end(row, track, first, -1), self._end(row, track, last, 1)
+        span = self._end(row, track, first, -1), self._end(row, track, last, 1)
+        return self._laid(track, row.s[first : last + 1], row.angles[first : last + 1], *span, TRIES)
 
+    def _laid(self, track, s, angles, begin, end, tries):
+        """Where no curve fits, or it would touch the part whatever way the axis gives, it is laid on both sides of that place."""
+        if end - begin < LEAST_MM:
+            return []
+        bad = np.zeros(0)
+        for times in range(GIVES_WAY):
+            try:
+                curve = fit.fit(track, self._axes(s, angles), begin, end, self._mill, self._band)
+                bad = self._touching(*curve)
+            except fit.Unfit as kink:
+                bad = np.array([kink.s])
+                break
+            if not len(bad):
+                return [curve]
+            other = self._rows.leaning.given_way(s, angles, bad, times)
+            if other is None:
+                break
+            angles = other
+        if not tries:
+            return []
+        aside = self._mill.radius_mm / ASIDE if tries < TRIES else fit.SHORTEST_MM
+        spans = (begin, bad.min() - aside), (bad.max() + aside, end)
+        return [one for a, b in spans for one in self._laid(track, s, angles, a, b, tries - 1)]
+
+    def _axes(self, s, angles):
         def axes_at(places, at):
             here = np.column_stack([np.interp(at, s, angles[:, k]) for k in (0, 1)])
             return self._rows.leaning.lean.axes(places.normal, places.feed, here)
 
-        return self._laid(track, axes_at, begin, end, TRIES)
-
-    def _laid(self, track, axes_at, begin, end, tries):
-        """Where no curve fits, or it would touch the part, it is laid on both sides of that place."""
-        if end - begin < LEAST_MM:
-            return []
-        try:
-            curve = fit.fit(track, axes_at, begin, end, self._radius, self._band)
-            bad = self._touching(curve)
-        except fit.Unfit as kink:
-            bad = np.array([kink.s])
-        if not len(bad):
-            return [curve]
-        if not tries:
-            return []
-        aside = self._radius / ASIDE if tries < TRIES else fit.SHORTEST_MM
-        return [one for a, b in ((begin, bad.min() - aside), (bad.max() + aside, end)) for one in self._laid(track, axes_at, a, b, tries - 1)]
-
-    def _touching(self, curve):
-        knots, poles = curve
-        length = knots[-1] - knots[0]
-        s = np.linspace(knots[0], knots[-1], int(length / self._radius * BALL_CHECKS) + 5)
-        centres, _ = fit.balls(knots, poles, s, self._radius)
-        bad = s[self._clearance(centres) < self._radius - MAY_MM]
-        s = np.linspace(knots[0], knots[-1], int(length / self._radius * SIDE_CHECKS) + 3)
-        centres, axes = fit.balls(knots, poles, s, self._radius)
-        return np.concatenate([bad, s[~self._access(centres, axes[:, None])[:, 0]]])
+        return axes_at
 
     def _end(self, row, track, index, way):
         """How far it goes behind the last sample, where something is in the ball's way at the next."""

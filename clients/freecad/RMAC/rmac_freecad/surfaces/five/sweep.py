@@ -8,19 +8,25 @@ from rmac_freecad.surfaces.five.access import Access
 from rmac_freecad.surfaces.five.body import Body
 from rmac_freecad.surfaces.five.clearance import Clearance
 from rmac_freecad.surfaces.five.families import Isolines, Planes
-from rmac_freecad.surfaces.five.leaning import Axes, Lean
+from rmac_freecad.surfaces.five.lean import Lean
+from rmac_freecad.surfaces.five.leaning import Axes
 from rmac_freecad.surfaces.five.links import Links
+from rmac_freecad.surfaces.five.matched import Distance, Leads
 from rmac_freecad.surfaces.five.reach import left_out
 from rmac_freecad.surfaces.five.rows import Rows
 from rmac_freecad.surfaces.five.stretches import Stretches
+from rmac_freecad.surfaces.five.touching import ball_touching, disc_touching
 from rmac_freecad.surfaces.five.witnesses import Witnesses
 from rmac_freecad.surfaces.five.writer import Writer
-from rmac_freecad.surfaces.passes import Passes
+from rmac_freecad.surfaces.mill import ball_end
+from rmac_freecad.surfaces.passes import WIDEST, Passes
 from rmac_freecad.surfaces.sweep import ABOVE, BAND_SHARE, angle_of, check_sizes
 
 CLOSEST = 1 / 8  # of a step on a plane: there what is left is told instead
 TOLD = 3  # places where passes leave more
 ASIDE_MM = 5.0  # of the part, where the mill goes up beside it
+DISC_WIDEST, CORNER_WIDEST = 1.6, 0.8  # radii of a disc, and of its corner, from pass to pass
+DISC_WITNESSES = 0.4  # radii of a disc, whose ridges are wide, for the step that tells how densely they are looked at
 OVER = 1.3  # steps, that a pass may go on beyond its face
 
 
@@ -30,6 +36,7 @@ class Leaning:
     left_out: list
     links: Links
     one_way: bool
+    ball_passes: int | None = None  # that a ball end of the same radius and scallop takes, where the lead is matched
 
     def program(self, label, feeds, tool, rpm):
         writer = Writer(label, self.links, feeds)
@@ -41,33 +48,73 @@ class Leaning:
         return writer.program
 
 
+@dataclass(frozen=True)
+class Wanted:
+    scallop_mm: float
+    band_mm: float
+    direction: object
+    steepest: float | None
+
+    def families(self, body):
+        over_mm = max(OVER * self.step_mm(body.mill), body.mill.flat_mm)
+        if self.direction in ("u", "v"):
+            return [Isolines(body, label, "uv".index(self.direction), self.steepest, over_mm) for label in body.targets]
+        return [Planes(body, body.targets, self.direction, self.steepest, over_mm)]
+
+    def step_mm(self, mill):
+        """Of a ball end on a plane."""
+        return math.sqrt(8 * mill.radius_mm * self.scallop_mm)
+
+    def passes(self, rows, touching=None):
+        mill = rows.mill
+        widest = WIDEST * mill.radius_mm if not mill.flat_mm else DISC_WIDEST * mill.flat_mm + CORNER_WIDEST * mill.corner_mm
+        return Passes(rows, Stretches(rows, touching), mill.radius_mm, self.scallop_mm - self.band_mm, CLOSEST, widest)
+
+
 def sweep(shape, targets, mill, lean: Lean, *, scallop_mm, tolerance_mm, along, steepest_deg, clear_mm):
     """`targets` are indices of the shape's faces; `along` is "u", "v", "level", or degrees from X. Raises `JobRefused`."""
-    if mill.flat_mm:
-        raise JobRefused("with five axes faces are swept with a ball end; give ball_end(radius), or neither lead_deg, tilt_deg nor axis")
+    lean.check(mill)
     check_sizes(mill, scallop_mm, tolerance_mm, **({} if steepest_deg is None else {"steepest_deg": steepest_deg}))
-    band_mm, step = min(tolerance_mm, BAND_SHARE * scallop_mm), math.sqrt(8 * mill.radius_mm * scallop_mm)
+    if steepest_deg is not None and steepest_deg > 180:
+        raise JobRefused(f"steepest_deg is {steepest_deg:g}: give at most 180, which is a face that looks straight down")
     direction = along if isinstance(along, str) and along in ("u", "v", "level") else angle_of(along)
-    steepest = None if steepest_deg is None else math.radians(steepest_deg)
-    body = Body(shape, targets, mill.radius_mm)
+    wanted = Wanted(scallop_mm, min(tolerance_mm, BAND_SHARE * scallop_mm), direction, None if steepest_deg is None else math.radians(steepest_deg))
+    body = Body(shape, targets, mill)
     clearance, access = Clearance(body), Access(body)
-    if direction in ("u", "v"):
-        families = [Isolines(body, label, "uv".index(direction), steepest, OVER * step) for label in targets]
-    else:
-        families = [Planes(body, targets, direction, steepest, OVER * step)]
+    axes, touching = _leaning(body, clearance, access, lean, wanted.band_mm)
+    families = wanted.families(body)
     passes, traces, high = [], [], []
     for family in families:
-        rows = Rows(family, clearance, Axes(lean, access), mill.radius_mm, band_mm)
-        witnesses = Witnesses(rows, clearance, step)
-        one = Passes(rows, Stretches(rows, clearance, access), mill.radius_mm, scallop_mm - band_mm, CLOSEST)
-        laid = one.laid(witnesses, ABOVE * scallop_mm)
+        rows = Rows(family, clearance, axes, mill, wanted.band_mm)
+        one = wanted.passes(rows, touching)
+        laid = one.laid(Witnesses(rows, clearance, max(wanted.step_mm(mill), DISC_WITNESSES * mill.flat_mm)), ABOVE * scallop_mm)
         passes += laid
         traces += [each.trace for each in laid]
         high += one.high[:TOLD] + ([f"and so at {len(one.high) - TOLD} other places"] if len(one.high) > TOLD else [])
-    told = left_out(body, clearance, families, traces, scallop_mm)
+    told = left_out(body, clearance, families, traces, scallop_mm, axes.BARRED)
     if not any(one.stretches for one in passes):
         raise JobRefused("nothing of the faces can be cut: " + "; ".join(told or ["the mill does not get there"]))
-    return Leaning(passes, told + high, Links(body, clearance, access, clear_mm, ASIDE_MM), lean.one_way)
+    ball_passes = _ball_passes(shape, targets, mill, lean, wanted) if lean.matched else None
+    return Leaning(passes, told + high, Links(body, touching, clear_mm, ASIDE_MM), lean.one_way, ball_passes)
+
+
+def _leaning(body, clearance, access, lean, band_mm):
+    """What gives axes, and what tells where a curve touches the part."""
+    if lean.matched:
+        distance = Distance(body)
+        return Leads(lean, distance, body.mill, band_mm), disc_touching(body.mill, distance)
+    return Axes(lean, access), ball_touching(body.mill, clearance, access)
+
+
+def _ball_passes(shape, targets, mill, lean, wanted):
+    """At the least lead; None where it could not keep the scallop."""
+    body = Body(shape, targets, ball_end(mill.radius_mm))
+    clearance = Clearance(body)
+    axes = Axes(Lean(lean.lead), Access(body))
+    try:
+        return sum(len(wanted.passes(Rows(family, clearance, axes, body.mill, wanted.band_mm)).rows()) for family in wanted.families(body))
+    except JobRefused:
+        return None
 
 
 def _reversed(curves):

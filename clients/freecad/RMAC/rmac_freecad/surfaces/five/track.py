@@ -9,6 +9,9 @@ FEWEST, MOST = 48, 20_000
 SHORTEST_MM = 1e-9
 
 
+NAMES = ("centre", "point", "normal", "feed", "inside", "bend")
+
+
 @dataclass
 class Places:
     centre: np.ndarray  # of the ball that touches there
@@ -16,14 +19,15 @@ class Places:
     normal: np.ndarray  # away from the material
     feed: np.ndarray  # where that centre goes, at right angles to the normal
     inside: np.ndarray  # of the face
+    bend: np.ndarray  # of the face toward the mill, 1/mm: along the feed, along and across, across
 
     def of(self, chosen):
-        return Places(*(getattr(self, name)[chosen] for name in ("centre", "point", "normal", "feed", "inside")))
+        return Places(*(getattr(self, name)[chosen] for name in NAMES))
 
 
 class Track:
-    """`contact(t)` gives points, normals, feeds and what is inside for parameters from `first` to `last`. Beyond both the line goes on
-    straight, `over_mm` far."""
+    """`contact(t)` gives points, normals, feeds, what is inside, and bends for parameters from `first` to `last`. Beyond both the line goes
+    on straight, `over_mm` far."""
 
     def __init__(self, label, contact, first, last, radius_mm, over_mm):
         self.label, self._contact, self._radius, self.over_mm = label, contact, radius_mm, over_mm
@@ -53,6 +57,6 @@ class Track:
         s = np.asarray(s, float)
         within = np.clip(s, 0, self.length)
         t = np.clip(self.parameter(within), min(self._t[0], self._t[-1]), max(self._t[0], self._t[-1]))
-        point, normal, feed, inside = self._contact(t)
+        point, normal, feed, inside, bend = self._contact(t)
         point = point + (s - within)[:, None] * feed
-        return Places(point + self._radius * normal, point, normal, feed, inside & (s == within))
+        return Places(point + self._radius * normal, point, normal, feed, inside & (s == within), bend)

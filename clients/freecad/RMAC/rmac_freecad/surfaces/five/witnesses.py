@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rmac_freecad.surfaces.five import fit
-from rmac_freecad.surfaces.five.ridges import left_standing
+from rmac_freecad.surfaces.five import fit, solid
+from rmac_freecad.surfaces.five.ridges import Line, joined, left_standing
 from rmac_freecad.surfaces.witnesses import spread
 
 APART = 0.12  # of the step between passes on a plane
 TRACE = 24  # samples of a curve a radius
+CORNER_TRACE = 8  # and a radius of the corner
 FREE_MM = 1e-6
 AT_ONCE = 16
 BARRED = 0.34  # radii from its curves, where a pass was to go and does not
@@ -19,14 +20,14 @@ BARRED = 0.34  # radii from its curves, where a pass was to go and does not
 @dataclass
 class Trace:
     w: float
-    centre: np.ndarray
-    used: np.ndarray
-    barred: np.ndarray  # centres of the ball where the mill's side keeps it from going
+    line: Line
+    barred: np.ndarray  # centres of the ball where the rest of the mill keeps it from going
 
 
 class Witnesses:
     def __init__(self, rows, clearance, step_mm):
-        self._rows, self._clearance, self._radius = rows, clearance, rows.radius_mm
+        self._rows, self._clearance, self._mill = rows, clearance, rows.mill
+        self._spacing = min(self._mill.radius_mm / TRACE, self._mill.corner_mm / CORNER_TRACE)
         self._family, found = rows.family, []
         for label in self._family.targets:
             uv = spread(rows.family.face(label), APART * step_mm)
@@ -40,14 +41,14 @@ class Witnesses:
 
     def trace(self, row, stretches):
         """A pass as its curves are, in many samples."""
-        parts = [np.full((1, 3), np.nan)]
-        for knots, poles in (curve for curves in stretches for curve in curves):
-            s = np.linspace(knots[0], knots[-1], int((knots[-1] - knots[0]) / self._radius * TRACE) + 4)
-            parts += [fit.balls(knots, poles, s, self._radius)[0], np.full((1, 3), np.nan)]
-        centre = np.concatenate(parts)
-        used = np.isfinite(centre[:, 0])
+        line = joined([self._line(*curve) for curves in stretches for curve in curves])
         wanted = row.places.centre[row.ball & (row.places.inside | row.used)]
-        return Trace(row.w, centre, used, wanted[_away(wanted, centre[used]) > BARRED * self._radius])
+        return Trace(row.w, line, wanted[_away(wanted, line.centre[line.used]) > BARRED * self._mill.radius_mm])
+
+    def _line(self, knots, poles):
+        tips, axes = fit.poses(knots, poles, np.linspace(knots[0], knots[-1], int((knots[-1] - knots[0]) / self._spacing) + 4))
+        ahead = np.gradient(tips, axis=0)  # a disc leans to where it goes, and touches ahead
+        return Line(solid.centres(self._mill, tips, -ahead, axes), np.ones(len(tips), bool), tips, axes, self._spacing)
 
     def highest(self, before, after, limit_mm):
         """What two traces leave at most of a place between them that the mill gets to, and the place; where that is no more than the
@@ -55,7 +56,7 @@ class Witnesses:
         chosen = np.arange(*np.searchsorted(self._w, (before.w, after.w)))
         if not len(chosen):
             return 0.0, None
-        up = np.minimum(*(left_standing(self._radius, one.centre, one.used, self._point[chosen], self._normal[chosen]) for one in (before, after)))
+        up = np.minimum(*(left_standing(self._mill, one.line, self._point[chosen], self._normal[chosen]) for one in (before, after)))
         high = np.flatnonzero(up > limit_mm)
         high = high[np.argsort(-up[high])]
         for some in np.array_split(high, math.ceil(len(high) / AT_ONCE)) if len(high) else ():
@@ -66,11 +67,11 @@ class Witnesses:
 
     def _gets_to(self, index, *traces):
         asked = index[np.isnan(self._free[index])]
-        ideal = self._point[asked] + self._radius * self._normal[asked]
-        self._free[asked] = self._clearance(ideal) >= self._radius - FREE_MM
+        ideal = self._point[asked] + self._mill.corner_mm * self._normal[asked]
+        self._free[asked] = self._clearance(ideal) >= self._mill.corner_mm - FREE_MM
         index_free = self._free[index] == 1
-        ideal = self._point[index] + self._radius * self._normal[index]
-        cut, barred = (np.concatenate(column) for column in zip(*((one.centre[one.used], one.barred) for one in traces)))
+        ideal = self._point[index] + self._mill.corner_mm * self._normal[index]
+        cut, barred = (np.concatenate(column) for column in zip(*((one.line.centre[one.line.used], one.barred) for one in traces)))
         return index_free & (_away(ideal, cut) <= _away(ideal, barred))
 
 
