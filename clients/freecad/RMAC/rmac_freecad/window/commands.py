@@ -60,6 +60,12 @@ def sweep_faces():
     show_sweep(session())
 
 
+def measure_part():
+    from rmac_freecad.window.measuring.measure_dialog import show
+
+    show(session())
+
+
 def machine_job():
     from rmac_freecad.window.running.machining_dialog import show
 
@@ -95,6 +101,7 @@ COMMANDS = (
     Command("Sweep", "Sweep faces…", "Selected faces of a part, with a ball, bull-nose or flat end, without a Path job", sweep_faces, needs_document=True),
     Command("Machine", "Machine a job…", "Send a Path job, a profile, pocket or sweep, or a file of another control, to the machine as it is", machine_job, needs_document=True),
     Command("Simulate", "Simulate a job…", "How long a job takes, whether the machine can do it, and what limits it; moves nothing", simulate, needs_document=True),
+    Command("Measure", "Measure a part…", "Has the machine touch selected faces of a part with its probe, and keeps what it found in the document", measure_part, needs_document=True),
     Command("Animate", "Show the machine", "The loaded machine about the part, moving as it does, be it real or virtual; once more: it is taken out", show_machine, needs_document=True),
     Command("Stop", "Stop the machine", "Stop at once, whoever moves it, and drop what is queued. This is no emergency stop", stop),
 )
