@@ -2,15 +2,14 @@
 
 import FreeCADGui
 from measured_part import MeasuredPartTest
+from rmac_freecad.window.measuring.compare_dialog import CompareDialog
 from rmac_freecad.window.measuring.measure_dialog import MeasureDialog
 from shooting import Shooting, shoot
 from windowed import process_until
 
 
-class MeasuringScreens(Shooting, MeasuredPartTest):
-    PACE = "real-time"  # so that one is seen in its midst
-
-    def test_pictures(self):
+class PlacesScreens(Shooting, MeasuredPartTest):
+    def places(self):
         self.begin()
         self.part.ViewObject.Transparency = 40
         self.select(*self.held(), self.face())
@@ -19,6 +18,14 @@ class MeasuringScreens(Shooting, MeasuredPartTest):
         dialog.begin()
         dialog.built_in.setChecked(True)
         process_until(dialog.measure_button.isEnabled, "the places are there")
+        return dialog
+
+
+class MeasuringScreens(PlacesScreens):
+    PACE = "real-time"  # so that one is seen in its midst
+
+    def test_a_picture_in_its_midst(self):
+        dialog = self.places()
         FreeCADGui.Selection.clearSelection()
         self.seen(2)
         dialog.measure_button.click()
@@ -27,3 +34,20 @@ class MeasuringScreens(Shooting, MeasuredPartTest):
         shoot("measure")
         dialog.stop_button.click()
         self.refused(dialog, "place")
+
+
+class ComparedScreens(PlacesScreens):
+    def test_a_picture_of_what_was_found(self):
+        dialog = self.places()
+        dialog.measure_button.click()
+        self.told(dialog, "were touched")
+        dialog.close()
+        dialog.feature.ViewObject.Visibility = dialog.kept.ViewObject.Visibility = False
+        compared = self.placed(CompareDialog(self.session), 910, 520)
+        compared.resize(620, 430)
+        compared.begin()
+        compared.colours.setCurrentText("as it was taken to lie")
+        compared.compare()
+        FreeCADGui.Selection.clearSelection()
+        self.seen(3)
+        shoot("compare")

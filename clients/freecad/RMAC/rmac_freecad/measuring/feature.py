@@ -12,7 +12,7 @@ GROUP = "Measure"
 ABOVE_MM = 10.0
 # Name, type, value before anybody gives one, and what it is. Lengths are mm, speeds mm/s whatever unit FreeCAD shows.
 PROPERTIES = (
-    ("Faces", "App::PropertyLinkSub", None, "Of one object"),
+    ("Faces", "App::PropertyLinkSubGlobal", None, "Of one object"),
     ("Count", "App::PropertyInteger", 4, "Places on each face, at most"),
     ("Edge", "App::PropertyDistance", 2.0, "So far off the edges of the face, at least"),
     ("Tip", "App::PropertyDistance", 1.0, "Radius of the probe's tip"),

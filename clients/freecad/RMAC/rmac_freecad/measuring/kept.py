@@ -15,7 +15,7 @@ READ_ONLY = 1  # FreeCAD's editor mode
 SAME_MM = 1e-5
 # Name, type, and what it is. Lists have one entry a place.
 PROPERTIES = (
-    ("Part", "App::PropertyLink", "That was measured"),
+    ("Part", "App::PropertyLinkGlobal", "That was measured"),
     ("Face", "App::PropertyStringList", "On which the place is"),
     ("Nominal", "App::PropertyVectorList", "mm, the place on the model"),
     ("Normal", "App::PropertyVectorList", "Out of the material"),

@@ -66,6 +66,12 @@ def measure_part():
     show(session())
 
 
+def compare_part():
+    from rmac_freecad.window.measuring.compare_dialog import show
+
+    show(session())
+
+
 def machine_job():
     from rmac_freecad.window.running.machining_dialog import show
 
@@ -102,6 +108,7 @@ COMMANDS = (
     Command("Machine", "Machine a job…", "Send a Path job, a profile, pocket or sweep, or a file of another control, to the machine as it is", machine_job, needs_document=True),
     Command("Simulate", "Simulate a job…", "How long a job takes, whether the machine can do it, and what limits it; moves nothing", simulate, needs_document=True),
     Command("Measure", "Measure a part…", "Has the machine touch selected faces of a part with its probe, and keeps what it found in the document", measure_part, needs_document=True),
+    Command("Compare", "Compare with the model…", "What was measured against the part as it is drawn: in colours, and corrected by it", compare_part, needs_document=True),
     Command("Animate", "Show the machine", "The loaded machine about the part, moving as it does, be it real or virtual; once more: it is taken out", show_machine, needs_document=True),
     Command("Stop", "Stop the machine", "Stop at once, whoever moves it, and drop what is queued. This is no emergency stop", stop),
 )
