@@ -6,6 +6,7 @@ import os
 import sys
 import threading
 import unittest
+from types import SimpleNamespace
 
 sys.path.append(os.path.join(os.environ["RMAC_SOURCE"], "tests/system"))
 
@@ -15,6 +16,7 @@ from appliance import Appliance
 from FreeCAD import Vector
 from rmac_freecad.master import deviations, fit_placement
 from rmac_freecad.measuring import MeasuringRefused, Place, measure, places_on
+from rmac_freecad.measuring.under_way import Measuring
 
 import rmac  # isort: skip
 
@@ -78,6 +80,19 @@ class PlacesTest(unittest.TestCase):
                                      ("height to cross", [self.top], {"safe_mm": -19.5}), ("height to cross", [self.top], {"safe_mm": math.inf}), ("more than 0", [self.top], {"tip_radius_mm": 0})):  # fmt: skip
             with self.assertRaisesRegex(MeasuringRefused, told):
                 self.places(names, **changes)
+
+
+class UnderWayTest(unittest.TestCase):
+    def test_nothing_begins_that_was_stopped_while_the_machine_was_looked_at(self):
+        station = SimpleNamespace(stops=0, ask=lambda what, done, failed: done(what()))
+        came = []
+
+        def check(client):
+            station.stops += 1
+            return "looked"
+
+        Measuring(station, lambda: None).start(SimpleNamespace(places=[None]), check, lambda *what: came.append(what), came.append)
+        self.assertEqual(came, [(None, "looked")])
 
 
 class MeasureTest(unittest.TestCase):

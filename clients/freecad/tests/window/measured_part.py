@@ -1,5 +1,6 @@
 """A block on the simulated measuring machine, and the same block drawn in a document."""
 
+import contextlib
 import json
 
 import FreeCAD
@@ -16,17 +17,26 @@ def block():
     return Part.makeBox(40, 30, 20, Vector(-20, -15, 0)).cut(Part.makeCylinder(8, 30, Vector(0, 0, 5)))
 
 
+@contextlib.contextmanager
+def described(folder):
+    """A machine, to be changed."""
+    file = folder / "device.json"
+    device = json.loads(file.read_text())
+    yield device
+    file.write_text(json.dumps(device))
+
+
 class MeasuredPartTest(WindowTest):
     MACHINE = "CMM"
 
     @classmethod
     def made_appliance(cls):
-        """Whose bore is open above, so that a tip over it touches nothing."""
+        """Whose bore is open above, so that a tip over it touches nothing, and whose mill has no probe."""
         appliance = Appliance(pace=cls.PACE, own_tree=True)
-        file = appliance.tree / "cmm/3-axis/CMM/device.json"
-        device = json.loads(file.read_text())
-        device["DigitalIOInterface"]["Parameters"]["part_bore_mm"][4] = 0
-        file.write_text(json.dumps(device))
+        with described(appliance.tree / "cmm/3-axis/CMM") as device:
+            device["DigitalIOInterface"]["Parameters"]["part_bore_mm"][4] = 0
+        with described(appliance.tree / "mill/3-axis/DMACXYZ") as device:
+            del device["DigitalIOInterface"]["Inputs"]["Probe"]
         return appliance
 
     def setUp(self):
@@ -35,6 +45,8 @@ class MeasuredPartTest(WindowTest):
         with self.connect("set-up") as client:
             self.free(client)
             with client.authority():
+                if client.state()["mechanism"] not in (self.MACHINE, None):
+                    client.device.Unload()  # else it would be a role of that one
                 client.load(self.MACHINE)
                 client.cam.SetPartFrame(ZERO)
         self.document = FreeCAD.newDocument("measured")

@@ -145,6 +145,27 @@ class MeasureDialogTest(MeasuredPartTest):
             client.cam.ConfirmToolChange(number)
             client.until_done()
 
+    def test_a_machine_without_a_probe_is_told(self):
+        dialog = self.dialog(self.top())
+        with self.connect("set-up") as client, client.authority():
+            client.load("DMACXYZ")
+        self.press(dialog.measure_button)
+        self.refused(dialog, "DMACXYZ has no probe that answers")
+
+    def test_a_part_whose_group_was_moved_is_measured_where_it_stands_now(self):
+        holder = self.document.addObject("App::Part", "Holder")
+        holder.addObject(self.part)
+        dialog = self.dialog(self.top())
+        self.shown(dialog)
+        holder.Placement = FreeCAD.Placement(FreeCAD.Vector(0, 0, 20), FreeCAD.Rotation())
+        with self.connect("set-up") as client, client.authority():
+            client.cam.SetPartFrame({"p": [0, 0, -60], "q": [1, 0, 0, 0]})
+        dialog.fields["Safe"].widget.set_quantity(50)
+        self.press(dialog.measure_button)
+        self.told(dialog, "were touched")
+        self.assertEqual({round(point.z, 6) for point in dialog.kept.Nominal}, {40})
+        self.assertLess(max(map(abs, dialog.kept.Deviation)), 1e-3)
+
     def test_a_machine_in_virtual_mode_or_none_is_told(self):
         dialog = self.dialog(self.top())
         client = self.connect("set-up")

@@ -44,14 +44,11 @@ class MeasureFeature(CutObject):
 
     def planning(self, feature):
         """What a thread may call, for the plan. The object is looked at now."""
-        (base, names), last = _faces(feature), self.last
-        count, edge, lowest = feature.Count, feature.Edge.Value, feature.Lowest.Value
-        ways = {"tip_radius_mm": feature.Tip.Value, "clearance_mm": feature.Clearance.Value, "safe_mm": feature.Safe.Value}
-        speed = feature.Speed.Value
-        given = tuple(names), count, edge, lowest, tuple(ways.values()), speed
+        (base, names), given, last = _faces(feature), _given(feature), self.last
         if last is not None and last[0] == given:
             return lambda: last[1]
-        shape = placed_shape(base)
+        _, _, count, edge, lowest, speed, ways = given
+        shape, ways = placed_shape(base), dict(zip(("tip_radius_mm", "clearance_mm", "safe_mm"), ways))
 
         def plan():
             places = places_on(shape, names, count=count, edge_mm=edge, between_mm=(lowest, float("inf")), **ways)
@@ -60,8 +57,12 @@ class MeasureFeature(CutObject):
 
         return plan
 
+    def is_current(self, feature):
+        """Whether what was planned last is for the part where it stands now: a group that is moved tells its parts nothing."""
+        return self.last is not None and self.last[0] == _given(feature)
+
     def told(self, plan):
-        """For people: how many there are, and where fewer than were asked for."""
+        """For people: how many there are."""
         faces = list(dict.fromkeys(place.face for place in plan.places))
         return f"{len(plan.places)} places on {len(faces)} face{'' if len(faces) == 1 else 's'}. Look at the way in the 3D view; nothing moves before Measure."
 
@@ -93,3 +94,10 @@ def _faces(feature):
         what = f"{gone} of {base.Label} is gone" if gone else f"the faces of {base.Label} are gone"
         raise MeasuringRefused(f"{what}: the part was changed since they were selected, and has Face1 to Face{there}; select faces anew")
     return base, names
+
+
+def _given(feature):
+    """All that a plan is made from, but for the shape, of which FreeCAD tells."""
+    base, names = _faces(feature)
+    ways = feature.Tip.Value, feature.Clearance.Value, feature.Safe.Value
+    return tuple(base.getGlobalPlacement().Matrix.A), tuple(names), feature.Count, feature.Edge.Value, feature.Lowest.Value, feature.Speed.Value, ways

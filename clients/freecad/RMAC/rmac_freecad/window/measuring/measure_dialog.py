@@ -8,6 +8,7 @@ from rmac_freecad.measuring import feature as measure_feature
 from rmac_freecad.measuring.feature import is_measure, measure_of
 from rmac_freecad.measuring.kept import keep_measured
 from rmac_freecad.measuring.readiness import check_probe
+from rmac_freecad.measuring.refusal import MeasuringRefused
 from rmac_freecad.running import check_part_zero, look
 from rmac_freecad.window.dialog import OnlyOne, button, row
 from rmac_freecad.window.measuring.views import MeasuredView, PlacesView
@@ -42,6 +43,9 @@ class MeasureDialog(ObjectDialog):
         return self.measuring.running
 
     def measure(self):
+        """A group that was moved with the part in it tells nobody: its places are made anew."""
+        if is_there(self.feature) and "Touched" not in self.feature.State and not self._is_current():
+            self.feature.touch()
         self.apply(self._measure)
 
     def stop(self):
@@ -86,6 +90,12 @@ class MeasureDialog(ObjectDialog):
         self.message.tell("the machine measures…")
         self.tick()
         self._enable()
+
+    def _is_current(self):
+        try:
+            return self.feature.Proxy.is_current(self.feature)
+        except MeasuringRefused:
+            return False  # which is told when it is made anew
 
     def _show_progress(self):
         self.progress.setValue(self.measuring.done)
