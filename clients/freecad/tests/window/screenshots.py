@@ -3,7 +3,7 @@
 import FreeCAD
 import FreeCADGui
 import Part
-from legacy_file import file_of
+from legacy_file import file_of, folder_of
 import PathScripts.PathProfile as PathProfile
 from path_job import operation_of
 from rmac_freecad.legacy import codes
@@ -11,6 +11,7 @@ from rmac_freecad.window.jogging.jog_dialog import JogDialog
 from rmac_freecad.window.legacy.open_dialog import OpenDialog
 from rmac_freecad.window.machines.search_dialog import SearchDialog
 from rmac_freecad.window.operations.operations import PocketDialog, SweepDialog
+from rmac_freecad.window.parts.part_dialog import PartDialog
 from rmac_freecad.window.running.machining_dialog import MachiningDialog
 from rmac_freecad.window.shown_machine import ShownMachine
 from shooting import Shooting, hide_docks, shoot
@@ -76,6 +77,19 @@ class Screens(Shooting, WindowTest):
         FreeCADGui.activateWorkbench("RmacWorkbench")
         self.operation("pocket", PocketDialog, tray, 7, Diameter=6, StepDown=1.5, StepOver=3.5)
         self.operation("sweep", SweepDialog, wave, None, Diameter=4, Scallop=0.2)
+
+    def test_a_picture_of_a_part(self):
+        self.begin()
+        file = str(folder_of(self) / "bracket.step")
+        tray().cut(Part.makeCylinder(2.5, 20, FreeCAD.Vector(46, 18, -4))).exportStep(file)
+        dialog = self.placed(PartDialog(self.session), 930, 500)
+        dialog.file.setText(file)
+        dialog.open_button.click()
+        process_until(lambda: dialog.rows, lambda: dialog.message.text())
+        dialog.file.setText("/home/me/parts/bracket.step")
+        self.addCleanup(FreeCAD.closeDocument, dialog.part.Document.Name)
+        self.seen(3)
+        shoot("part")
 
     def test_a_picture_of_the_machine(self):
         window = FreeCADGui.getMainWindow()
