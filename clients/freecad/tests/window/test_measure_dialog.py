@@ -8,6 +8,7 @@ import FreeCAD
 import FreeCADGui
 import numpy as np
 import Part
+import PartDesign  # noqa: F401  its types of objects
 from measured_part import ZERO, MeasuredPartTest
 from rmac_freecad.measuring.kept import measured_in, touched_of
 from rmac_freecad.path import DONE
@@ -82,6 +83,25 @@ class MeasureDialogTest(MeasuredPartTest):
         self.assertEqual((touched_of(again), again.Label, again.Part.Label), (before, label, "Block"))
         process_until(lambda: again.ViewObject.Proxy.path is not None, "its places are shown")
         self.assertEqual(len(again.ViewObject.Proxy.path._strokes), len(before))
+
+    def test_faces_of_a_body_that_are_picked_in_the_view_are_those_of_its_feature(self):
+        body = self.document.addObject("PartDesign::Body", "Body")
+        box = body.newObject("PartDesign::AdditiveBox", "Solid")
+        self.document.recompute()
+        FreeCADGui.Selection.addSelection(self.document.Name, "Body", "Solid.Face6")
+        dialog = self.opened(MeasureDialog(self.session))
+        dialog.begin()
+        self.assertTrue(self.shown(dialog))
+        self.assertEqual(dialog.feature.Faces, (box, ["Face6"]))
+
+    def test_the_dialog_that_measured_is_opened_again_on_the_same_places(self):
+        dialog = self.measured(self.top())
+        feature = dialog.feature
+        dialog.appear()
+        self.shown(dialog)
+        self.assertEqual(dialog.feature, feature)
+        self.press(dialog.measure_button)
+        process_until(lambda: len(measured_in(self.document)) == 2, lambda: dialog.message.text())
 
     def test_nothing_selected_edges_and_a_part_without_faces_are_told(self):
         self.refused(self.dialog(), "nothing is selected")
@@ -246,6 +266,10 @@ class StopsTest(MeasuredPartTest):
         self.assertFalse(dialog.measure_button.isEnabled())
         self.opened(jog := JogDialog(self.session)).begin()
         self.refused(jog, "A part is being measured")
+        told = []
+        self.session.machining.start([], lambda: None, told.append)
+        process_until(lambda: told, "a cut is refused")
+        self.assertIn("A part is being measured", str(told[0]))
         dialog.stop_button.click()
         self.refused(dialog, "of 20, on Face")
         self.assertEqual(measured_in(self.document), [])

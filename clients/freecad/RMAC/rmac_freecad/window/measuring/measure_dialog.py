@@ -117,8 +117,6 @@ class MeasureDialog(ObjectDialog):
         worst = max((one.off_mm for one in touched), key=abs)
         zero = " The part's zero is the machine's own." if is_machine_frame(now.part_frame) else ""
         self.message.tell(f"{len(touched)} places were touched, the worst {length_text(round(worst, 4))} off. It is kept in the document as {self.kept.Label}; Compare with the model says where the part lies.{zero}")
-        FreeCADGui.Selection.clearSelection()
-        FreeCADGui.Selection.addSelection(self.kept)
 
 
 show = OnlyOne(MeasureDialog)
