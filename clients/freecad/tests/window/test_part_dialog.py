@@ -17,9 +17,9 @@ from windowed import WindowTest, process_until
 
 
 def bracket(x=0.0):
-    """A pocket with an island, a through hole, and a cone."""
+    """A pocket with an island, a through hole, and a low cone, which is swept soon."""
     block = Part.makeBox(60, 30, 12, Vector(x, 0, 0)).cut(Part.makeBox(20, 16, 10, Vector(x + 4, 7, 7)).cut(Part.makeCylinder(3, 20, Vector(x + 14, 15, 0))))
-    return block.cut(Part.makeCylinder(2.5, 20, Vector(x + 34, 8, -4))).fuse(Part.makeCone(5, 2, 3, Vector(x + 50, 15, 12)))
+    return block.cut(Part.makeCylinder(2.5, 20, Vector(x + 34, 8, -4))).fuse(Part.makeCone(5, 4, 1, Vector(x + 50, 15, 12)))
 
 
 class PartDialogTest(WindowTest):
@@ -57,7 +57,7 @@ class PartDialogTest(WindowTest):
     def test_what_was_found_is_listed_with_size_and_place(self):
         dialog = self.dialog(bracket())
         found = self.found(dialog)
-        self.assertIn("60 × 30 × 15 mm", dialog.headline.text())
+        self.assertIn("60 × 30 × 13 mm", dialog.headline.text())
         self.assertRegex(found["Pocket"][1].text, r"Face\d+ at Z 7, 5 mm deep, 1 island")
         self.assertIn("Ø 5 mm at X 34 Y 8, through", found["Hole"][1].text)
         self.assertEqual(list(found), ["Pocket", "Hole", "Free form", "Outline", "Top and sides"])
