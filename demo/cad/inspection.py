@@ -15,7 +15,7 @@ class Inspection:
 
     def __init__(self, session):
         self.part, self.found, self.nominal = session.part, session.found, session.part.Shape.copy()
-        self._client, self._rmac, self._step, self._say = session.client, session.rmac, session.steps.step, session.say
+        self._client, self._step, self._say = session.client, session.steps.step, session.say
 
     def places(self):
         """Where the part will be measured: the free-form face, sides, floor and flat walls of the pocket, and the holes."""
@@ -40,7 +40,7 @@ class Inspection:
             self._client.cam.SetPartFrame({"p": list(ZERO), "q": [1, 0, 0, 0]})
 
     def touch(self, places):
-        return measure(self._client, places, tip_radius_mm=TIP_RADIUS, clearance_mm=CLEARANCE, safe_mm=SAFE_MM, rmac=self._rmac)
+        return measure(self._client, places, tip_radius_mm=TIP_RADIUS, clearance_mm=CLEARANCE, safe_mm=SAFE_MM)
 
     def measure_part(self, places):
         with self._step("load the measuring machine and measure"):

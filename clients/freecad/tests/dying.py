@@ -1,11 +1,13 @@
-"""A FreeCAD that moves the machine, and is killed meanwhile: freecadcmd runs it with RMAC_ADDRESS, and RMAC_MOVES jog or cut."""
+"""A FreeCAD that moves the machine, and is killed meanwhile: freecadcmd runs it with RMAC_ADDRESS, and RMAC_MOVES jog, cut or measure."""
 
 import os
 import threading
 
 import rmac_freecad  # noqa: F401  finds the package rmac
 from rmac_freecad.jogging import Hand, HeldJog, axes_of
-from rmac_freecad.program import Place, Program
+from rmac_freecad.measuring import Place, measure
+from rmac_freecad.program import Place as JobPlace
+from rmac_freecad.program import Program
 from rmac_freecad.running import cut
 from rmac_freecad.station import Station
 
@@ -24,7 +26,7 @@ def jog(connect):
 
 def machine(connect):
     program = Program()
-    place = Place("Operation", 1, "G1")
+    place = JobPlace("Operation", 1, "G1")
     for move in (rmac.calls.RMAC_CAM.SetFeedrate(60), rmac.MoveTo((0, 0, 0)), rmac.Line((0, 0, 0), (40, 0, 0))):
         program.append(move, place)
     client = connect()
@@ -32,5 +34,10 @@ def machine(connect):
         list(cut(client, program))
 
 
+def touch(connect):
+    far = Place("Face1", (40.0, 0.0, -20.0), (0.0, 0.0, 1.0))
+    measure(connect(), [far], tip_radius_mm=1, clearance_mm=2, safe_mm=0, speed_mm_s=1)
+
+
 station = Station("dying")
-{"jog": jog, "cut": machine}[os.environ["RMAC_MOVES"]](lambda: station.connect(os.environ["RMAC_ADDRESS"]))
+{"jog": jog, "cut": machine, "measure": touch}[os.environ["RMAC_MOVES"]](lambda: station.connect(os.environ["RMAC_ADDRESS"]))

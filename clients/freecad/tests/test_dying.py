@@ -47,6 +47,9 @@ class DyingTest(unittest.TestCase):
     def test_while_a_button_is_held(self):
         self.killed_while_it_moves("jog")
 
+    def test_while_it_measures(self):
+        self.killed_while_it_moves("measure")
+
     def test_in_mid_cut(self):
         self.killed_while_it_moves("cut")
 

@@ -7,7 +7,9 @@ import unittest
 import FreeCAD
 import numpy as np
 import Part
+import PartDesign  # noqa: F401  its types of objects
 import rmac_freecad  # noqa: F401
+import Sketcher
 from FreeCAD import Placement, Rotation, Vector
 from rmac_freecad.master import MasterRefused, correct_parameters, correct_placement, corrected_frame, deviations, fit_parameters, fit_placement, show_deviations
 from rmac_freecad.measuring import Place, Touched
@@ -347,6 +349,47 @@ class DocumentTest(unittest.TestCase):
         with self.assertRaisesRegex(MasterRefused, "Attached is attached"):
             correct_placement(attached, fit)
         np.testing.assert_allclose(attached.Placement.Matrix.A, stood.Matrix.A, atol=1e-12)
+
+    def body(self):
+        """A pad of a body, which stands where its sketch does."""
+        body = self.document.addObject("PartDesign::Body", "Body")
+        sketch, corners = body.newObject("Sketcher::SketchObject", "Sketch"), ((-20, -15), (20, -15), (20, 15), (-20, 15))
+        for number, corner in enumerate(corners):
+            sketch.addGeometry(Part.LineSegment(Vector(*corner, 0), Vector(*corners[(number + 1) % 4], 0)), False)
+        for number in range(4):
+            sketch.addConstraint(Sketcher.Constraint("Coincident", number, 2, (number + 1) % 4, 1))
+        pad = body.newObject("PartDesign::Pad", "Pad")
+        pad.Profile, pad.Length = sketch, 10
+        self.document.recompute()
+        return body, pad
+
+    def test_of_a_body_the_whole_is_moved_to_where_a_feature_of_it_lies(self):
+        body, pad = self.body()
+        truth, places = random_placement(np.random.default_rng(8), 0.2, 0.1), scattered(pad.Shape, 4, np.random.default_rng(8))
+        for feature in (pad, body):
+            correct_placement(feature, fit_placement(pad.Shape, lain(places, truth, np.zeros(len(places)))))
+            pad.touch()
+            self.document.recompute()
+            np.testing.assert_allclose(corners(pad.getGlobalPlacement()), corners(truth), atol=1e-6)
+            self.document.undo()
+            np.testing.assert_allclose(corners(pad.getGlobalPlacement()), corners(Placement()), atol=1e-12)
+
+    def test_an_object_that_does_not_stay_where_it_is_put_is_refused_and_stays(self):
+        class Fixed:
+            def execute(self, feature):
+                feature.Shape, feature.Placement = bent(), Placement()
+
+        fixed = self.document.addObject("Part::FeaturePython", "Fixed")
+        fixed.Proxy = Fixed()
+        self.document.recompute()
+        places = scattered(fixed.Shape, 4, np.random.default_rng(8))
+        fit = fit_placement(fixed.Shape, lain(places, Placement(Vector(0.1, 0, 0), Rotation()), np.zeros(len(places))))
+        fixed.touch()
+        for mode in (0, 1):
+            self.document.UndoMode = mode
+            with self.assertRaisesRegex(MasterRefused, "Fixed does not stay where it was put"):
+                correct_placement(fixed, fit)
+            np.testing.assert_allclose(corners(fixed.Placement), corners(Placement()), atol=1e-12)
 
     def test_a_corrected_placement_is_one_step_that_can_be_undone_also_within_another_part(self):
         holder = self.document.addObject("App::Part", "Holder")

@@ -6,19 +6,20 @@ import os
 import sys
 import threading
 import unittest
+from types import SimpleNamespace
 
 sys.path.append(os.path.join(os.environ["RMAC_SOURCE"], "tests/system"))
 
 import numpy as np
 import Part
-from appliance import BUILD, Appliance
+from appliance import Appliance
 from FreeCAD import Vector
 from rmac_freecad.master import deviations, fit_placement
 from rmac_freecad.measuring import MeasuringRefused, Place, measure, places_on
+from rmac_freecad.measuring.under_way import Measuring
 
 import rmac  # isort: skip
 
-RMAC = str(BUILD / "bin/rmac")
 TURN_DEG = 0.2  # of the part in that machine's description, about Z
 TIP = {"tip_radius_mm": 1.0, "clearance_mm": 2.0, "safe_mm": -5.0}
 
@@ -81,6 +82,19 @@ class PlacesTest(unittest.TestCase):
                 self.places(names, **changes)
 
 
+class UnderWayTest(unittest.TestCase):
+    def test_nothing_begins_that_was_stopped_while_the_machine_was_looked_at(self):
+        station = SimpleNamespace(stops=0, ask=lambda what, done, failed: done(what()))
+        came = []
+
+        def check(client):
+            station.stops += 1
+            return "looked"
+
+        Measuring(station, lambda: None).start(SimpleNamespace(places=[None]), check, lambda *what: came.append(what), came.append)
+        self.assertEqual(came, [(None, "looked")])
+
+
 class MeasureTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -102,7 +116,7 @@ class MeasureTest(unittest.TestCase):
         return places_on(self.shape, names, count=count, edge_mm=2.0, between_mm=(-36.0, -5.0), **TIP)
 
     def measured(self, places, **changes):
-        return measure(self.client, places, **{**TIP, "rmac": RMAC, **changes})
+        return measure(self.client, places, **{**TIP, **changes})
 
     def test_a_part_that_lies_turned_is_found_and_fits_its_model_there(self):
         touched = self.measured(self.places([*self.sides, face_of(self.shape, None, "Part::GeomCylinder")]))
@@ -129,23 +143,35 @@ class MeasureTest(unittest.TestCase):
             ends = threading.Thread(target=lambda: next(event for event in events if event.kind == "Hit") and appliance.process.kill())
             ends.start()
             try:
-                with self.assertRaisesRegex(MeasuringRefused, "place [23] of 3, on Face.*: .*connection"):
-                    measure(client, self.places(self.sides[:1]), rmac=RMAC, **TIP)
+                with self.assertRaisesRegex(MeasuringRefused, "place [12] of 3, on Face.*: .*connection"):
+                    measure(client, self.places(self.sides[:1]), **TIP)
             finally:
                 ends.join()
 
     def test_another_station_that_has_authority_is_told(self):
-        with rmac.connect(f"127.0.0.1:{self.appliance.port}", "lathe hand") as other, other.authority(), self.assertRaisesRegex(MeasuringRefused, "lathe hand"):
+        with rmac.connect(f"127.0.0.1:{self.appliance.port}", "lathe hand") as other, other.authority(), self.assertRaisesRegex(rmac.AuthorityHeld, "lathe hand"):
             self.measured(self.places(self.sides[:1], 1))
 
-    def test_without_machine_program_or_places_it_says_what_to_do(self):
+    def test_a_stop_from_elsewhere_ends_it_and_the_machine_rests(self):
+        places, told = self.places(self.sides[:1]), []
+        with rmac.connect(f"127.0.0.1:{self.appliance.port}", "operator") as other:
+
+            def stop(done):
+                told.append(done)
+                other.cam.StopNow()
+
+            with self.assertRaisesRegex(MeasuringRefused, "place 2 of 3, on Face"):
+                self.measured(places, told=stop)
+            self.assertEqual(told, [1])
+            state = other.at_rest()
+            self.assertEqual((state["moves_in_buffer"], state["authority"]), (0, ""))
+
+    def test_without_machine_places_or_numbers_it_says_what_to_do(self):
         places = self.places(self.sides[:1], 2)
-        with self.assertRaisesRegex(MeasuringRefused, "give its path"):
-            self.measured(places, rmac="/nowhere/rmac")
-        with self.assertRaisesRegex(MeasuringRefused, "no place"):
-            self.measured([])
-        with self.assertRaisesRegex(MeasuringRefused, "sort them by face"):
-            self.measured([places[0], Place("Face99", places[0].point, places[0].normal), places[1]])
+        for told, given, changes in (("no place to be measured", [], {}), ("place 2, on Face9, is no place", [places[0], Place("Face9", (math.nan, 0.0, 0.0), (0.0, 0.0, 1.0))], {}),
+                                     ("speed_mm_s is 0; give more than 0", places, {"speed_mm_s": 0.0}), ("safe_mm is inf", places, {"safe_mm": math.inf})):  # fmt: skip
+            with self.assertRaisesRegex(MeasuringRefused, told):
+                self.measured(given, **changes)
         with self.client.authority():
             self.client.device.Unload()
         with self.assertRaisesRegex(MeasuringRefused, "no machine is loaded"):

@@ -1,28 +1,23 @@
 """Draws the pictures of docs/freecad.md: its ten minutes. Run as the tests of the window are, with RMAC_TEST=screenshots."""
 
-import os
-import pathlib
-
 import FreeCAD
 import FreeCADGui
 import Part
-from legacy_file import file_of
+from legacy_file import file_of, folder_of
 import PathScripts.PathProfile as PathProfile
 from path_job import operation_of
-from PySide import QtCore, QtGui
 from rmac_freecad.legacy import codes
 from rmac_freecad.window.jogging.jog_dialog import JogDialog
 from rmac_freecad.window.legacy.open_dialog import OpenDialog
 from rmac_freecad.window.machines.search_dialog import SearchDialog
 from rmac_freecad.window.operations.operations import PocketDialog, SweepDialog
+from rmac_freecad.window.parts.part_dialog import PartDialog
 from rmac_freecad.window.running.machining_dialog import MachiningDialog
 from rmac_freecad.window.shown_machine import ShownMachine
+from shooting import Shooting, hide_docks, shoot
 from windowed import MACHINE, WindowTest, process_until
 
 import rmac
-
-IMAGES = pathlib.Path(os.environ["RMAC_SOURCE"]) / "docs/images/freecad"
-
 
 # A wheel: its rim and four spokes, with a spline around the hub.
 WHEEL = """%
@@ -68,23 +63,7 @@ def wave():
     return surface.toShape().extrude(FreeCAD.Vector(0, 0, -12)).common(Part.makeBox(36, 27, 20))
 
 
-def hide_docks():
-    """But for the tree."""
-    for dock in FreeCADGui.getMainWindow().findChildren(QtGui.QDockWidget):
-        dock.setVisible(dock.objectName() == "Combo View")
-
-
-def shoot(name, dialog=None):
-    """A dialog, or all of the screen but for what FreeCAD reports."""
-    hide_docks()
-    QtGui.QApplication.processEvents()
-    picture = QtGui.QGuiApplication.primaryScreen().grabWindow(0) if dialog is None else dialog.grab()
-    IMAGES.mkdir(exist_ok=True)
-    if not picture.save(str(IMAGES / f"{name}.png")):
-        raise AssertionError(f"{name}.png was not written")
-
-
-class Screens(WindowTest):
+class Screens(Shooting, WindowTest):
     def test_pictures(self):
         self.show_job()
         self.search()
@@ -98,6 +77,19 @@ class Screens(WindowTest):
         FreeCADGui.activateWorkbench("RmacWorkbench")
         self.operation("pocket", PocketDialog, tray, 7, Diameter=6, StepDown=1.5, StepOver=3.5)
         self.operation("sweep", SweepDialog, wave, None, Diameter=4, Scallop=0.2)
+
+    def test_a_picture_of_a_part(self):
+        self.begin()
+        file = str(folder_of(self) / "bracket.step")
+        tray().cut(Part.makeCylinder(2.5, 20, FreeCAD.Vector(46, 18, -4))).exportStep(file)
+        dialog = self.placed(PartDialog(self.session), 930, 500)
+        dialog.file.setText(file)
+        dialog.open_button.click()
+        process_until(lambda: dialog.rows, lambda: dialog.message.text())
+        dialog.file.setText("/home/me/parts/bracket.step")
+        self.addCleanup(FreeCAD.closeDocument, dialog.part.Document.Name)
+        self.seen(3)
+        shoot("part")
 
     def test_a_picture_of_the_machine(self):
         window = FreeCADGui.getMainWindow()
@@ -148,16 +140,6 @@ class Screens(WindowTest):
             FreeCADGui.runCommand("Std_ViewZoomOut")
         self.settle()
         shoot(name)
-
-    def placed(self, dialog, x, y):
-        dialog.move(x, y)
-        return self.opened(dialog)
-
-    def settle(self):
-        """What is drawn by timers is drawn."""
-        until = QtCore.QElapsedTimer()
-        until.start()
-        process_until(lambda: until.elapsed() > 1000, "a second")
 
     def show_job(self):
         window = FreeCADGui.getMainWindow()

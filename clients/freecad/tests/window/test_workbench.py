@@ -25,7 +25,7 @@ class ToolbarTest(unittest.TestCase):
         window = FreeCADGui.getMainWindow()
         bar = window.findChild(QtGui.QToolBar, "Direct machining")
         self.assertIsNotNone(bar)
-        self.assertEqual([action.text() for action in bar.actions()], ["Select machine…", "Jog…", "Open legacy code…", "Cut along edges…", "Clear a pocket…", "Sweep faces…", "Machine a job…", "Simulate a job…", "Show the machine", "Stop the machine"])
+        self.assertEqual([action.text() for action in bar.actions()], ["Select machine…", "Jog…", "Open legacy code…", "Open a STEP part…", "Cut along edges…", "Clear a pocket…", "Sweep faces…", "Machine a job…", "Simulate a job…", "Measure a part…", "Compare with the model…", "Show the machine", "Stop the machine"])
         for action in bar.actions():
             self.assertFalse(action.icon().pixmap(24, 24).isNull(), action.text())
 
@@ -86,6 +86,12 @@ class CommandsTest(WindowTest):
         self.assertTrue(dialog.open_button.isEnabled())
         dialog.open_button.click()
         self.refused(dialog, "Choose a file")
+
+    def test_measure_says_that_faces_are_to_be_selected(self):
+        document = FreeCAD.newDocument("Empty")
+        self.addCleanup(lambda: FreeCAD.closeDocument(document.Name))
+        FreeCADGui.Selection.clearSelection()
+        self.refused(self.run_command("RMAC_Measure", "Measure a part"), "nothing is selected")
 
     def test_machine_waits_for_cut(self):
         self.profile()

@@ -33,13 +33,18 @@ def process_until(condition, what):
 
 class WindowTest(unittest.TestCase):
     PACE = "as-fast-as-computed"
+    MACHINE = MACHINE
 
     @classmethod
     def setUpClass(cls):
-        cls.appliance = cls.enterClassContext(Appliance(pace=cls.PACE))
+        cls.appliance = cls.enterClassContext(cls.made_appliance())
         cls.address = f"127.0.0.1:{cls.appliance.port}"
         with rmac.connect(cls.address, "set-up") as client, client.authority():
-            client.load(MACHINE)
+            client.load(cls.MACHINE)
+
+    @classmethod
+    def made_appliance(cls):
+        return Appliance(pace=cls.PACE)
 
     def setUp(self):
         self.settings = Settings("User parameter:BaseApp/Preferences/Mod/RMACTests")

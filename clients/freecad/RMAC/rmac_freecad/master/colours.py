@@ -27,6 +27,14 @@ def show_deviations(document, found, full_mm=None, label="Deviations", ball_mm=B
     return shown
 
 
+def update_deviations(shown, found):
+    """An object that `show_deviations` made of the same places: other values, and no step of its own."""
+    shown.Deviation = found.off.tolist()
+    if shown.ViewObject is not None:
+        paint(shown, full_of(shown))
+    shown.purgeTouched()
+
+
 def full_of(shown):
     return max(map(abs, shown.Deviation), default=0.0) or 1.0
 

@@ -10,6 +10,7 @@ from rmac_freecad.master.placement import INSTRUMENT_MM, fit_placement
 from rmac_freecad.master.refusal import MasterRefused, document_of
 from rmac_freecad.master.rigid import FREEDOMS, check_held, covariance, placement_of, matrix_of, rows, spread_of
 
+CELL = re.compile(r"^[A-Z]{1,2}[1-9]\d*$")
 STEP_MM = 0.02  # by which each parameter is changed to see what it moves
 MOST_ROUNDS = 8
 DONE_MM = 1e-6
@@ -29,6 +30,19 @@ class ParametersFit:
 
     def __str__(self):
         return "; ".join(f"{name} {old:.4g} mm is {new:.4f} ± {2 * sure:.4f} mm" for name, old, new, sure in zip(self.names, self.nominal, self.values, self.uncertainty))
+
+
+def lengths_of(feature):
+    """What `fit_parameters` may be asked for: sheet, alias and mm of each written length on whose sheet the feature depends."""
+    found = []
+    for sheet in feature.OutListRecursive:
+        if sheet.isDerivedFrom("Spreadsheet::Sheet"):
+            for name in filter(None, (sheet.getAlias(cell) for cell in sheet.PropertiesList if CELL.match(cell))):
+                try:
+                    found.append((sheet, name, _length(sheet, name)))
+                except MasterRefused:
+                    pass  # it is computed, or no length
+    return found
 
 
 def fit_parameters(feature, sheet, names, touched, instrument_mm=INSTRUMENT_MM):

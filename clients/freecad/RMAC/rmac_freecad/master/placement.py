@@ -94,16 +94,32 @@ def corrected_frame(part_frame, fit, upright=False):
 
 
 def correct_placement(feature, fit):
-    """Puts the object where it lies, in one step that can be undone; the document keeps undo steps where `UndoMode` is 1."""
-    document = document_of(feature)
-    if feature.ExpressionEngine and any(path.startswith("Placement") for path, _ in feature.ExpressionEngine):
-        raise MasterRefused(f"an expression rules the placement of {feature.Label}; correct what it refers to")
-    if getattr(feature, "MapMode", "Deactivated") != "Deactivated":
-        raise MasterRefused(f"{feature.Label} is attached, and would be put back when what it is attached to changes; correct that, or detach it")
-    if not np.allclose(feature.getGlobalPlacement().Matrix.A, fit.stood.Matrix.A, rtol=0, atol=1e-9):
+    """Puts the object where it lies, or the body that it is in, in one step that can be undone; the document keeps undo steps where `UndoMode`
+    is 1. Refused where it does not stay there."""
+    document, moved = document_of(feature), _moved_with(feature)
+    if moved.ExpressionEngine and any(path.startswith("Placement") for path, _ in moved.ExpressionEngine):
+        raise MasterRefused(f"an expression rules the placement of {moved.Label}; correct what it refers to")
+    if getattr(moved, "MapMode", "Deactivated") != "Deactivated":
+        raise MasterRefused(f"{moved.Label} is attached, and would be put back when what it is attached to changes; correct that, or detach it")
+    if not _same(feature.getGlobalPlacement(), fit.stood):
         raise MasterRefused(f"{feature.Label} does not stand where the shape stood to which the fit was made; it may have been corrected already: fit anew, to its shape as it stands in the document")
-    outer = feature.getGlobalPlacement() * feature.Placement.inverse()
+    stood, outer = moved.Placement, moved.getGlobalPlacement() * moved.Placement.inverse()
     document.openTransaction(f"Correct where {feature.Label} lies")
-    feature.Placement = outer.inverse() * fit.placement * outer * feature.Placement
+    moved.Placement = outer.inverse() * fit.placement * outer * stood
     document.recompute()
+    if not _same(feature.getGlobalPlacement(), fit.placement * fit.stood):
+        document.abortTransaction()
+        moved.Placement = stood  # a document that keeps no undo steps has nothing to go back to
+        document.recompute()
+        raise MasterRefused(f"{moved.Label} does not stay where it was put, as it is computed from others; correct where those stand")
     document.commitTransaction()
+
+
+def _moved_with(feature):
+    """A body computes where its features stand; it is moved with all of them."""
+    group = feature.getParentGeoFeatureGroup()
+    return group if group is not None and group.isDerivedFrom("PartDesign::Body") else feature
+
+
+def _same(one, other):
+    return np.allclose(one.Matrix.A, other.Matrix.A, rtol=0, atol=1e-9)

@@ -2,4 +2,8 @@
 
 
 class MeasuringRefused(Exception):
-    """It says what to do."""
+    """It says what to do. `place` is the one at which the machine refused; None where none was begun."""
+
+    def __init__(self, why, place=None):
+        super().__init__(why)
+        self.place = place

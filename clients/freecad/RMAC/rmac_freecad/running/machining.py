@@ -46,11 +46,11 @@ class Machining:
         self._station.ask(self._cut, over, broken)
 
     def _cut(self):
+        client = self._connect()
         lost, self._lost = self._lost, None
         if lost is not None:
             self.done = lost.done
         try:
-            client = self._connect()
             with client.authority():
                 for index in cut_moves(client, self.program, lost):
                     self.done = index + 1
@@ -58,6 +58,6 @@ class Machining:
         except CutEnded as ended:
             self._lost = ended.lost
             raise
-        except (rmac.CannotConnect, rmac.AuthorityHeld):
+        except rmac.AuthorityHeld:
             self._lost = lost  # nothing was begun
             raise

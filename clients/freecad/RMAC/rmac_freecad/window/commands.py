@@ -42,6 +42,12 @@ def open_legacy():
     show(session())
 
 
+def open_part():
+    from rmac_freecad.window.parts.part_dialog import show
+
+    show(session())
+
+
 def cut_along():
     from rmac_freecad.window.profiles.command import cut_along_selection
 
@@ -58,6 +64,18 @@ def sweep_faces():
     from rmac_freecad.window.operations.operations import show_sweep
 
     show_sweep(session())
+
+
+def measure_part():
+    from rmac_freecad.window.measuring.measure_dialog import show
+
+    show(session())
+
+
+def compare_part():
+    from rmac_freecad.window.measuring.compare_dialog import show
+
+    show(session())
 
 
 def machine_job():
@@ -90,11 +108,14 @@ COMMANDS = (
     Command("Select", "Select machine…", "Search machines, compare them, see which can cut the job, and load one", select_machine),
     Command("Jog", "Jog…", "Move the machine by hand, and set the part's zero where the tool stands", jog),
     Command("Legacy", "Open legacy code…", "A file of another control, RS274/NGC, Fanuc or APT, into the document, to be simulated and cut", open_legacy),
+    Command("Part", "Open a STEP part…", "A part that somebody else drew, and what there is to machine on it", open_part),
     Command("Profile", "Cut along edges…", "Selected edges, or a sketch, as a profile without a Path job", cut_along, needs_document=True),
     Command("Pocket", "Clear a pocket…", "A level face with its islands, or a closed sketch, cleared without a Path job", clear_pocket, needs_document=True),
     Command("Sweep", "Sweep faces…", "Selected faces of a part, with a ball, bull-nose or flat end, without a Path job", sweep_faces, needs_document=True),
     Command("Machine", "Machine a job…", "Send a Path job, a profile, pocket or sweep, or a file of another control, to the machine as it is", machine_job, needs_document=True),
     Command("Simulate", "Simulate a job…", "How long a job takes, whether the machine can do it, and what limits it; moves nothing", simulate, needs_document=True),
+    Command("Measure", "Measure a part…", "Has the machine touch selected faces of a part with its probe, and keeps what it found in the document", measure_part, needs_document=True),
+    Command("Compare", "Compare with the model…", "What was measured against the part as it is drawn: in colours, and corrected by it", compare_part, needs_document=True),
     Command("Animate", "Show the machine", "The loaded machine about the part, moving as it does, be it real or virtual; once more: it is taken out", show_machine, needs_document=True),
     Command("Stop", "Stop the machine", "Stop at once, whoever moves it, and drop what is queued. This is no emergency stop", stop),
 )

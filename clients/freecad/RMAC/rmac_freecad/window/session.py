@@ -5,6 +5,7 @@ from PySide import QtCore
 
 import rmac
 from rmac_freecad.jogging import Hand
+from rmac_freecad.measuring.under_way import Measuring
 from rmac_freecad.running import Machining
 from rmac_freecad.station import Settings, Station
 
@@ -17,6 +18,7 @@ class Session:
         self.station = Station()
         self.hand = Hand(self.client_unless_it_cuts)
         self.machining = Machining(self.station, self._client_for_a_cut)
+        self.measuring = Measuring(self.station, self._client_for_measuring)
         self.machine = None  # the one that is loaded, a rmac.LoadedMachine, as far as is known here
         self._listeners = []
         # The window's own: Python may collect what it owns in any thread, and a timer must end in its own.
@@ -42,15 +44,25 @@ class Session:
         return self.station.connect(self.settings.address)
 
     def client_unless_it_cuts(self):
-        """For what needs authority beside a job: it would end the cut when it gives it back."""
-        if self.machining.running:
-            raise rmac.RmacError("A job is being cut. Wait for its end, or stop it.")
+        """For what needs authority beside a job, or a part that is measured: it would end that when it gives it back."""
+        self._refuse_while(self.machining, "A job is being cut.")
+        self._refuse_while(self.measuring, "A part is being measured.")
         return self.client()
 
     def _client_for_a_cut(self):
         """Whoever jogged gives the machine back first; giving it back in mid-cut would stop it."""
+        self._refuse_while(self.measuring, "A part is being measured.")
         self.hand.leave()
         return self.client()
+
+    def _client_for_measuring(self):
+        self._refuse_while(self.machining, "A job is being cut.")
+        self.hand.leave()
+        return self.client()
+
+    def _refuse_while(self, other, what):
+        if other.running:
+            raise rmac.RmacError(f"{what} Wait for its end, or stop it.")
 
     def _tick(self):
         self.station.deliver()

@@ -1,156 +1,19 @@
-"""An operation on what is selected: its values, a preview in the document, a dry run, and the cut. Nothing moves before Cut is pressed."""
+"""An operation on what is selected: beside its values and its preview, a dry run, and the cut. Nothing moves before Cut is pressed."""
 
-import FreeCAD
-import FreeCADGui
-from PySide import QtGui
-
-from rmac_freecad.window.dialog import Dialog, button, row
-from rmac_freecad.window.operations.fields import PropertyField
+from rmac_freecad.window.dialog import button
+from rmac_freecad.window.operations.object_dialog import ObjectDialog
 from rmac_freecad.window.running.machining_dialog import show as show_machining
 
-COLUMN = 8  # fields
 
-
-class OperationDialog(Dialog):
-    """`made(document)` makes the object of what is selected, `is_one(feature)` knows one, and `view` is its view."""
-
-    def __init__(self, session, title, properties, labels, made, is_one, view):
-        super().__init__(session, title)
-        self._title, self._made, self._is_one, self._view = title, made, is_one, view
-        self.feature = None
-        self._awaited = None  # what is done once the path is there
-        self.headline = QtGui.QLabel()
-        self.headline.setWordWrap(True)
-        kinds = {name: (kind, tip) for name, kind, _, tip in properties}
-        self.fields = {name: PropertyField(name, kinds[name][0], label, kinds[name][1]) for name, label in labels}
-        self.preview_button = button("Preview", self.preview, "Shows the path in the document, and tells what is left")
+class OperationDialog(ObjectDialog):
+    def __init__(self, *what):
+        super().__init__(*what)
         self.simulate_button = button("Dry run", self.simulate, "Plans it as the machine would cut it; moves nothing")
         self.cut_button = button("Cut…", self.cut, "Sends it to the machine, which begins at once where nothing speaks against it")
-        forms = []
-        for number, field in enumerate(self.fields.values()):
-            if number % COLUMN == 0:
-                forms.append(QtGui.QFormLayout())
-            forms[-1].addRow(field.label, field.widget)
-        box = QtGui.QVBoxLayout(self)
-        box.addWidget(self.headline)
-        box.addLayout(row(*forms))
-        box.addLayout(row(None, self.preview_button, self.simulate_button, self.cut_button))
-        box.addWidget(self.message)
-        self.resize(520, 340)
-
-    def goes_on(self):
-        return False
-
-    def begin(self):
-        """With the object that is selected, or a new one of the faces, edges or sketch that are."""
-        self._awaited = None
-        self.feature = None
-        self._enable()
-        try:
-            self.feature = self._chosen()
-        except Exception as error:
-            self.headline.setText("")
-            return self.failed(error)
-        self.headline.setText(f"{self.feature.Label}: {_base_text(self.feature)}")
-        for field in self.fields.values():
-            field.take(self.feature)
-        self._select()
-        self._enable()
-        self.preview()
-
-    def preview(self):
-        self._apply(lambda: None)
+        self.lay_out(self.simulate_button, self.cut_button)
 
     def simulate(self):
-        self._apply(lambda: show_machining(self.session).simulate())
+        self.apply(lambda: show_machining(self.session).simulate())
 
     def cut(self):
-        self._apply(lambda: show_machining(self.session).cut())
-
-    def tick(self):
-        """Paths come from threads."""
-        if self._awaited is None:
-            return
-        try:
-            view = self.feature.ViewObject.Proxy
-            if view.busy:
-                return
-            then, self._awaited = self._awaited, None
-            self._enable()
-            if view.error is not None:
-                return self.failed(view.error)
-            self.message.tell(self._told())
-            self._select()
-        except ReferenceError:
-            return self._gone()
-        then()
-
-    def hideEvent(self, event):
-        self._awaited = None  # nothing begins that nobody sees
-        super().hideEvent(event)
-
-    def failed(self, error):
-        self._awaited = None
-        self._enable()
-        super().failed(error)
-
-    def _is_there(self):
-        """What was deleted lives on where that can be undone."""
-        try:
-            return self.feature.Document.getObject(self.feature.Name) is not None
-        except (ReferenceError, RuntimeError, AttributeError):
-            return False
-
-    def _gone(self):
-        self.feature = self._awaited = None
-        self._enable()
-        self.failed(ValueError("It was deleted from the document; select what is to be cut, and open this anew."))
-
-    def _apply(self, then):
-        """The fields' values become the object's, its path is made anew, and then it goes on."""
-        if not self._is_there():
-            return self._gone()
-        try:
-            document = self.feature.Document
-            document.openTransaction(self._title)
-            changed = [field.give(self.feature) for field in self.fields.values()]
-            document.commitTransaction()
-            view = self.feature.ViewObject.Proxy
-            if any(changed) or view.path is None or "Touched" in self.feature.State:
-                self.feature.touch()
-                document.recompute()
-        except ReferenceError:
-            return self._gone()
-        self._awaited = then
-        self._enable()
-        self.message.tell("the path is made…")
-
-    def _enable(self):
-        for one in (self.preview_button, self.simulate_button, self.cut_button):
-            one.setEnabled(self.feature is not None and self._awaited is None)
-
-    def _told(self):
-        proxy = self.feature.Proxy
-        return proxy.told(proxy.last[1]) if hasattr(proxy, "told") else "The path is in the document."
-
-    def _chosen(self):
-        for one in FreeCADGui.Selection.getSelection():
-            if self._is_one(one):
-                return one
-        feature = self._made(FreeCAD.ActiveDocument)
-        self._view(feature.ViewObject)
-        return feature
-
-    def _select(self):
-        """So that machining means it."""
-        FreeCADGui.Selection.clearSelection()
-        FreeCADGui.Selection.addSelection(self.feature)
-
-
-def _base_text(feature):
-    for name in ("Base", "Faces", "Edges"):
-        base = getattr(feature, name, None)
-        if base:
-            pairs = base if isinstance(base, list) else [base]
-            return ", ".join(f"{one.Label} {' '.join(part for part in parts if part)}".strip() for one, parts in pairs)
-    return "what it was made of is gone"
+        self.apply(lambda: show_machining(self.session).cut())

@@ -2,7 +2,6 @@
 
 import FreeCADGui
 
-from rmac_freecad.jobs import JobRefused
 from rmac_freecad.pockets import PocketRefused, is_pocket, pocket_of
 from rmac_freecad.pockets import feature as pocket_feature
 from rmac_freecad.profiles import is_profile, profile_of
@@ -10,6 +9,7 @@ from rmac_freecad.profiles import feature as profile_feature
 from rmac_freecad.surfaces import feature as sweep_feature
 from rmac_freecad.surfaces import is_sweep, sweep_of
 from rmac_freecad.window.dialog import OnlyOne
+from rmac_freecad.window.operations.chosen_faces import chosen_faces
 from rmac_freecad.window.operations.operation_dialog import OperationDialog
 from rmac_freecad.window.operations.planned_view import PocketView, SweepView
 from rmac_freecad.window.profiles.command import chosen_edges
@@ -54,14 +54,7 @@ def _pocket(document):
 
 
 def _sweep(document):
-    chosen = FreeCADGui.Selection.getSelectionEx()
-    if len(chosen) != 1:
-        raise JobRefused("select faces of one object" if chosen else "nothing is selected; select faces of one object")
-    names = [name for name in chosen[0].SubElementNames if name]
-    other = next((name for name in names if not name.startswith("Face")), None)
-    if other is not None or not names:
-        raise JobRefused(f"{chosen[0].Object.Label}{'.' + other if other else ''} is no face; select faces")
-    return sweep_of(document, chosen[0].Object, names)
+    return sweep_of(document, *chosen_faces())
 
 
 def _profile(document):

@@ -1,0 +1,1 @@
+"""A part measured by touch, and held against its model."""

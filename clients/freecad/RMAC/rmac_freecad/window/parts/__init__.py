@@ -1,0 +1,1 @@
+"""A part that somebody else drew: opened, and what there is to machine."""
