@@ -3,6 +3,7 @@
 
 #include "rmac/motion/drive_power.hpp"
 #include "unit/fieldbus/modbus/spindle_drive.hpp"
+#include "unit/fieldbus/modbus/still_clock.hpp"
 
 namespace rmac::fieldbus::modbus {
 namespace {
@@ -23,7 +24,8 @@ class ModbusTwoSpindles : public testing::TestWithParam<std::tuple<Wire, int>> {
     config.line.endpoint = peer.endpoint();
     config.line.deadline = 20ms;
     config.line.period = 2ms;
-    config.stale = 2s;
+    config.line.first_pause = config.line.longest_pause = 0ms;
+    config.line.now = clock.now();
     config.boot_timeout = 60s;
     for (const int slave : {1, 2}) config.axes.push_back({slave, 60, 0, spindle_map()});
     spindle = std::make_unique<SpindleInterface>(std::move(config));
@@ -48,6 +50,7 @@ class ModbusTwoSpindles : public testing::TestWithParam<std::tuple<Wire, int>> {
   std::atomic<bool> silent{false};
   std::array<RegisterBank, 2> banks;
   ModbusPeer peer;
+  StillClock clock;
   std::unique_ptr<SpindleInterface> spindle;
   std::array<DriveCommand, 2> commands{};
   std::array<DriveFeedback, 2> feedback{};
@@ -56,6 +59,7 @@ class ModbusTwoSpindles : public testing::TestWithParam<std::tuple<Wire, int>> {
 TEST_P(ModbusTwoSpindles, OneMuteLeavesTheOtherAtWork) {
   ASSERT_TRUE(spindle->start());
   silent = true;
+  clock.pass(2s);
   run_until([this] { return !feedback[static_cast<std::size_t>(mute) - 1].online && feedback[other()].online; });
 }
 
@@ -70,7 +74,7 @@ TEST_P(ModbusTwoSpindles, OneMuteLeavesTheOtherToBeStoppedWithTheAppliance) {
 TEST_P(ModbusTwoSpindles, AreReportedEachByItself) {
   ASSERT_TRUE(spindle->start());
   silent = true;
-  run_until([this] { return !feedback[static_cast<std::size_t>(mute) - 1].online && feedback[other()].online; });
+  run_until([this] { return spindle->counters().timeouts > 0 && feedback[other()].online; });
   const LineReport line = spindle->line_report();
   ASSERT_EQ(line.units.size(), 2U);
   const UnitReport& away = line.units[static_cast<std::size_t>(mute) - 1];
