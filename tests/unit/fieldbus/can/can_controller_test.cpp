@@ -96,6 +96,26 @@ TEST(CanController, IsUnknownWhereThereIsNone) {
   EXPECT_EQ(read_can_controller(0x7FFFFFFF).state, State::Unknown) << "no such interface";
 }
 
+TEST(CanController, IsReadFromTheAnswerToTheQuestionAlone) {
+  RawBytes other = answer("can", controller(CAN_STATE_ERROR_PASSIVE, {1, 2}));
+  nlmsghdr head{};
+  std::memcpy(&head, other.data(), sizeof(head));
+  head.nlmsg_type = RTM_DELLINK;
+  std::memcpy(other.data(), &head, sizeof(head));
+  EXPECT_EQ(controller_of(other).state, State::Unknown) << "a link that goes away";
+}
+
+TEST(CanController, HasAStateInWords) {
+  const std::vector<std::pair<State, std::string>> words{{State::Unknown, "unknown"},
+                                                         {State::ErrorActive, "error-active"},
+                                                         {State::ErrorWarning, "error-warning"},
+                                                         {State::ErrorPassive, "error-passive"},
+                                                         {State::BusOff, "bus-off"},
+                                                         {State::Stopped, "stopped"},
+                                                         {State::Sleeping, "sleeping"}};
+  for (const auto& [state, text] : words) EXPECT_EQ(to_string(state), text);
+}
+
 TEST(CanController, StandsAnAnswerThatIsCutShortOrSpoilt) {
   const RawBytes whole = answer("can", controller(CAN_STATE_ERROR_ACTIVE, {1, 2}));
   for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -124,12 +144,13 @@ CanHealth after(std::initializer_list<std::pair<canid_t, unsigned>> reports) {
 TEST(CanErrorFrame, CountsHowFarTheControllerGot) {
   const CanHealth health = after({{CAN_ERR_CRTL, CAN_ERR_CRTL_TX_WARNING},
                                   {CAN_ERR_CRTL | CAN_ERR_CNT, CAN_ERR_CRTL_RX_WARNING},
+                                  {CAN_ERR_CRTL, CAN_ERR_CRTL_TX_WARNING | CAN_ERR_CRTL_RX_WARNING},
                                   {CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE | CAN_ERR_CRTL_RX_PASSIVE},
                                   {CAN_ERR_CRTL, CAN_ERR_CRTL_ACTIVE},
                                   {CAN_ERR_CRTL, CAN_ERR_CRTL_RX_OVERFLOW},
                                   {CAN_ERR_PROT, CAN_ERR_CRTL_RX_PASSIVE}});  // not of the class that fills the byte
-  EXPECT_EQ(health.error_frames, 6U);
-  EXPECT_EQ(health.warnings, 2U);
+  EXPECT_EQ(health.error_frames, 7U);
+  EXPECT_EQ(health.warnings, 3U);
   EXPECT_EQ(health.passives, 1U);
   EXPECT_TRUE(health.usable());
 }
