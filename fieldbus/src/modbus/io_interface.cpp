@@ -38,7 +38,6 @@ class IoStation final : public Station {
 
   Answer<> make_safe(Client& client) override {
     if (auto sure = image_.resynchronise(client, slave_); !sure) return sure;
-    outputs = 0;
     applied_.reset();
     return apply(client, 0);
   }

@@ -40,7 +40,7 @@ class ModbusIo : public testing::TestWithParam<Wire> {
     config.line.now = clock.now();
     config.boot_timeout = 60s;
     config.slave = 1;
-    config.map = io_map();
+    config.map = map;
     io = std::make_unique<IoInterface>(std::move(config));
   }
   /// Cycles until the inputs are as wanted.
@@ -54,6 +54,7 @@ class ModbusIo : public testing::TestWithParam<Wire> {
     return true;
   }
 
+  IoMap map = io_map();
   RegisterBank bank;
   ModbusPeer peer;
   StillClock clock;
@@ -92,6 +93,61 @@ TEST_P(ModbusIo, CarriesBitsBothWays) {
   EXPECT_EQ(bank.get(Table::Coils, 7), 1);
 }
 
+TEST_P(ModbusIo, CarriesNoBitsButItsOwn) {
+  for (std::uint16_t address = 0; address < 16; ++address) {
+    bank.set(Table::DiscreteInputs, address, 1);
+    bank.set(Table::InputRegisters, address, 0);
+  }
+  ASSERT_TRUE(io->start());
+  EXPECT_TRUE(inputs_become(0, 0xF03));
+  static_cast<void>(peer.take_requests());
+  std::uint64_t inputs = 0;
+  EXPECT_TRUE(io->exchange(~std::uint64_t{0}, inputs));
+  Bytes coils, registers;
+  EXPECT_TRUE(peer.wait_for([&](const Bytes& request) {
+    if (request[1] == 15) coils = request;
+    if (request[1] == 16) registers = request;
+    return request[1] == 16;
+  }));
+  EXPECT_EQ(coils, (Bytes{1, 15, 0, 5, 0, 3, 1, 0b111}));
+  EXPECT_EQ(registers, (Bytes{1, 16, 0, 7, 0, 2, 4, 0xFF, 0xFF, 0, 0x0F}));
+}
+
+TEST_P(ModbusIo, WritesAnInvertedOutputTheOtherWayRound) {
+  map = io_map();
+  map.outputs = {{{Table::HoldingRegisters, 7}, 3, 1, true}};
+  make(60s);
+  ASSERT_TRUE(io->start());
+  EXPECT_EQ(bank.get(Table::HoldingRegisters, 7), 0b111) << "off";
+  std::uint64_t inputs = 0;
+  EXPECT_TRUE(io->exchange(0b0101, inputs));
+  EXPECT_TRUE(peer.wait_for([](const Bytes& request) { return request[1] == 6 && request.back() == 0b101; }))
+      << "bit 2 is its second";
+  io->stop();
+  EXPECT_EQ(bank.get(Table::HoldingRegisters, 7), 0b111);
+}
+
+// Red when nothing is read of a device that only takes: nobody would know whether it is there.
+TEST_P(ModbusIo, ReadsTheOutputsOfADeviceWithoutInputs) {
+  map.inputs.clear();
+  make(60s);
+  ASSERT_TRUE(io->start());
+  EXPECT_TRUE(inputs_become(0, 0));
+  EXPECT_TRUE(peer.wait_for([](const Bytes& request) { return request[1] == 1; }));
+  EXPECT_TRUE(peer.wait_for([](const Bytes& request) { return request[1] == 3; }));
+}
+
+TEST_P(ModbusIo, IsReportedWithItsLine) {
+  EXPECT_EQ(io->fault_text(), "what it told last is too old; see that the computer has time for its line");
+  ASSERT_TRUE(io->start());
+  const LineReport line = io->line_report();
+  EXPECT_EQ(line.endpoint, to_string(peer.endpoint()));
+  ASSERT_EQ(line.units.size(), 1U);
+  EXPECT_EQ(line.units[0].unit, 1);
+  EXPECT_EQ(line.units[0].state, "answers");
+  EXPECT_GT(line.units[0].traffic.answers, 0U);
+}
+
 TEST_P(ModbusIo, SwitchesItsOutputsOffWhenItEnds) {
   ASSERT_TRUE(io->start());
   std::uint64_t inputs = 0;
@@ -100,6 +156,13 @@ TEST_P(ModbusIo, SwitchesItsOutputsOffWhenItEnds) {
   io->stop();
   for (std::uint16_t address = 5; address < 8; ++address) EXPECT_EQ(bank.get(Table::Coils, address), 0);
   EXPECT_FALSE(io->exchange(0b111, inputs)) << "what is not running has no inputs";
+  static_cast<void>(peer.take_requests());
+  ASSERT_TRUE(io->start());
+  for (const Bytes& request : peer.take_requests()) {
+    if (request[1] == 15) {
+      EXPECT_EQ(request.back(), 0) << "what was wanted before it ended is not any more";
+    }
+  }
 }
 
 TEST_P(ModbusIo, FailsWhenItsInputsGrowOldAndLetsItsOutputsFall) {

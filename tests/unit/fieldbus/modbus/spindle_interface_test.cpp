@@ -41,12 +41,12 @@ class ModbusSpindle : public testing::TestWithParam<Wire> {
     EXPECT_TRUE(spindle->exchange(command, feedback));
     return feedback[0];
   }
-  /// Cycles until `reached`; false when a minute did not do.
+  /// Cycles until `reached`; false when it gave up.
   bool run_until(DriveWish wish, std::int32_t rpm, const std::function<bool(const DriveFeedback&)>& reached,
                  bool reset = false) {
-    const auto give_up = Clock::now() + 60s;
+    Patience patience(*spindle);
     while (!reached(cycle(wish, rpm, reset))) {
-      if (Clock::now() > give_up) return false;
+      if (patience.ends()) return false;
       std::this_thread::yield();
     }
     return true;

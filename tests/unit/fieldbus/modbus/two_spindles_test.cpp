@@ -32,7 +32,7 @@ class ModbusTwoSpindles : public testing::TestWithParam<std::tuple<Wire, int>> {
   }
   [[nodiscard]] std::size_t other() const noexcept { return mute == 1 ? 1 : 0; }
   void run_until(const std::function<bool()>& reached) {
-    const auto give_up = Clock::now() + 60s;
+    Patience patience(*spindle);
     do {
       for (std::size_t i = 0; i < commands.size(); ++i) {
         commands[i].controlword =
@@ -41,7 +41,7 @@ class ModbusTwoSpindles : public testing::TestWithParam<std::tuple<Wire, int>> {
         commands[i].target_velocity_rpm = 600;
       }
       ASSERT_TRUE(spindle->exchange(commands, feedback));
-      ASSERT_LT(Clock::now(), give_up);
+      ASSERT_FALSE(patience.ends());
       std::this_thread::yield();
     } while (!reached());
   }
