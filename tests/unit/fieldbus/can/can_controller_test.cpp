@@ -6,6 +6,7 @@
 #include <linux/rtnetlink.h>
 #include <net/if.h>
 
+#include <array>
 #include <cstring>
 #include <random>
 #include <string>
@@ -94,6 +95,24 @@ TEST(CanController, IsUnknownWhereThereIsNone) {
   EXPECT_EQ(controller_of({}).state, State::Unknown);
   EXPECT_EQ(read_can_controller(static_cast<int>(if_nametoindex("lo"))).state, State::Unknown);
   EXPECT_EQ(read_can_controller(0x7FFFFFFF).state, State::Unknown) << "no such interface";
+}
+
+TEST(CanController, IsAskedForByItsInterface) {
+  const int loopback = static_cast<int>(if_nametoindex("lo"));
+  if (loopback == 0) GTEST_SKIP() << "no interface to ask for";
+  std::array<std::byte, 16384> room{};
+  const auto told = ask_for_link(loopback, room);
+  nlmsghdr head{};
+  ifinfomsg link{};
+  ASSERT_GE(told.size(), NLMSG_LENGTH(sizeof(link)));
+  std::memcpy(&head, told.data(), sizeof(head));
+  std::memcpy(&link, told.data() + NLMSG_LENGTH(0), sizeof(link));
+  EXPECT_EQ(head.nlmsg_type, RTM_NEWLINK);
+  EXPECT_EQ(link.ifi_index, loopback);
+  const auto refused = ask_for_link(0x7FFFFFFF, room);
+  ASSERT_GE(refused.size(), sizeof(head));
+  std::memcpy(&head, refused.data(), sizeof(head));
+  EXPECT_EQ(head.nlmsg_type, NLMSG_ERROR) << "no such interface";
 }
 
 TEST(CanController, IsReadFromTheAnswerToTheQuestionAlone) {

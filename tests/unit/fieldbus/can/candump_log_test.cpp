@@ -80,6 +80,8 @@ TEST(CandumpLog, TellsFramesThatCanopenDoesNotUse) {
 
 TEST(CandumpLog, NamesFramesThatCanopenDoesNotUse) {
   EXPECT_EQ(foreign_frame_text(read("(1.0) can0 181#AABB")), "") << "it uses these";
+  EXPECT_EQ(read("(1.0) can0 20000040#0000000000000000").id, 0x40U) << "the classes alone";
+  EXPECT_EQ(read("(1.0) can0 98FF1234#AA").id, 0x18FF1234U) << "with the flag of the kernel's frames";
   EXPECT_EQ(foreign_frame_text(read("(1.0) can0 701#R")), "remote frame 701h");
   EXPECT_EQ(foreign_frame_text(read("(1.0) can0 00000181#AABB")),
             "29-bit identifier 00000181h, which CANopen does not use");
@@ -117,6 +119,7 @@ TEST(CandumpLog, TakesNoHalfLineForAFrame) {
                            "(1.0) can0 #AA",
                            "(1.0) can0 181#AG",
                            "(1.0) can0 181#AA.",
+                           "(1.0) can0 181#.AA",
                            "can0 181 [2] AA",
                            "can0 181 [2",
                            "can0 181 [22 AA BB",
@@ -138,10 +141,13 @@ TEST(CandumpLog, TakesNoHalfLineForAFrame) {
 }
 
 TEST(CandumpLog, TakesATimeThatNoClockHasForNone) {
-  for (const char* time : {"(99999999999999999999.0)", "(-5.0)", "(x)", "()", "(1.x)", "(9223372036854775807.5)"}) {
+  for (const char* time :
+       {"(99999999999999999999.0)", "(-5.0)", "(-1.0)", "(x)", "()", "(1.x)", "(9223372036854775807.5)"}) {
     EXPECT_EQ(read(std::string(time) + " can0 181#AA").frame.stamp.count(), 0) << time;
   }
   EXPECT_EQ(read("(5) can0 181#AA").frame.stamp, std::chrono::seconds(5));
+  EXPECT_EQ(read("(1.) can0 181#AA").frame.stamp, std::chrono::seconds(1));
+  EXPECT_EQ(read("(0.5) can0 181#AA").frame.stamp, std::chrono::milliseconds(500));
   EXPECT_EQ(read("(9000000000.5) can0 181#AA").frame.stamp, std::chrono::milliseconds(9000000000500));
   EXPECT_EQ(read("(9000000001.0) can0 181#AA").frame.stamp.count(), 0) << "nanoseconds do not count so far";
 }
