@@ -466,6 +466,7 @@ TEST(ModbusClientCreation, NamesWhatIsWrongInAnEndpoint) {
             "Modbus line spindle.local port 502: \"spindle.local\" is no numeric IP address, for example 192.168.1.20; "
             "names are not looked up");
   EXPECT_EQ(error(TcpEndpoint{"::1"}), "made");
+  EXPECT_THAT(error(TcpEndpoint{"localhost"}), HasSubstr("is no numeric IP address")) << "though it needs no network";
   EXPECT_THAT(error(RtuEndpoint{"/dev/ttyS0", 31250}), HasSubstr("bit rate 31250; there are 1200, 2400"));
   EXPECT_THAT(error(RtuEndpoint{"/dev/ttyS0", 9600, 'X'}), HasSubstr("parity 'X'"));
   EXPECT_THAT(error(RtuEndpoint{"/dev/ttyS0", 9600, 'N', 3}), HasSubstr("3 stop bits"));
