@@ -113,6 +113,15 @@ TEST_P(ModbusIo, CarriesNoBitsButItsOwn) {
   EXPECT_EQ(registers, (Bytes{1, 16, 0, 7, 0, 2, 4, 0xFF, 0xFF, 0, 0x0F}));
 }
 
+TEST_P(ModbusIo, ReadsSixteenBitsOfARegisterTheLowestFirst) {
+  map.inputs = {{{Table::InputRegisters, 9}, 20, 4, false}};
+  make(60s);
+  bank.set(Table::InputRegisters, 9, 0x8001);
+  bank.set(Table::InputRegisters, 10, 0xFFFA);
+  ASSERT_TRUE(io->start());
+  EXPECT_TRUE(inputs_become(0, 0xA80010)) << "and four of the next";
+}
+
 TEST_P(ModbusIo, WritesAnInvertedOutputTheOtherWayRound) {
   map = io_map();
   map.outputs = {{{Table::HoldingRegisters, 7}, 3, 1, true}};

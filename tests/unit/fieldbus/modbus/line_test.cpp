@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
+
 #include "unit/fieldbus/modbus/modbus_peer.hpp"
 #include "unit/fieldbus/modbus/still_clock.hpp"
 
@@ -111,6 +113,41 @@ TEST_F(ModbusLine, BeginsTheNextRoundBehindADeviceThatTookTheConnectionWithIt) {
   line->stop();
   order.resize(6);
   EXPECT_THAT(order, ElementsAre(1, 2, /* fails: */ 1, 2, /* from now on the other one first: */ 2, 1));
+}
+
+// Red when a line that broke is opened at once for the next device, and when devices are not told that it was closed.
+TEST_F(ModbusLine, WaitsForItsPauseWhenItBroke) {
+  config.first_pause = config.longest_pause = 1h;
+  first.on_serve = [&](Client& client) -> Answer<> {
+    if (first.served != 2) return {};
+    client.disconnect();
+    return fails(Kind::Disconnected);
+  };
+  ASSERT_TRUE(start());
+  rounds_pass(5);
+  EXPECT_EQ(first.served, 2);
+  EXPECT_EQ(second.served, 1);
+  EXPECT_EQ(second.forgotten, 1) << "when it was opened first";
+  EXPECT_EQ(line->counters().connected, 1U);
+  clock.pass(1h);
+  rounds_pass(2);
+  EXPECT_GT(second.served, 1);
+  EXPECT_EQ(second.forgotten, 2);
+  EXPECT_EQ(line->counters().connected, 2U);
+}
+
+TEST_F(ModbusLine, GivesItsDescriptorsBack) {
+  const auto open_descriptors = [] {
+    const std::filesystem::directory_iterator all("/proc/self/fd");
+    return std::distance(begin(all), end(all));
+  };
+  const auto before = open_descriptors();
+  for (int run = 0; run < 3; ++run) {
+    ASSERT_TRUE(start());
+    line.reset();
+  }
+  peer.vanish();  // with its own
+  EXPECT_LE(open_descriptors(), before);
 }
 
 TEST_F(ModbusLine, IsWokenBeforeItsPeriodIsOver) {

@@ -67,6 +67,10 @@ TEST_F(ModbusStation, TellsADriveWhatIsNewAndNothingTwice) {
   EXPECT_THAT(round(), ElementsAre(kRunsBackward)) << "its speed is the same";
   station->command(-1500);
   EXPECT_THAT(round(), ElementsAre(speed(250)));
+  station->command(-1);  // the slowest: it runs that way already
+  EXPECT_THAT(round(), ElementsAre(speed(0)));
+  station->command(-1500);
+  EXPECT_THAT(round(), ElementsAre(speed(250)));
   station->command(1500);
   EXPECT_THAT(round(), ElementsAre(kRunsForward));
   station->command(0);
