@@ -239,7 +239,7 @@ def mutants_of(path, source):
                 if reader.text(last + 1) != ";":
                     continue
                 value = reader.between(at + 1, last)
-                if value not in ("true", "false", "{}"):
+                if value not in ("true", "false", "{}", "nullptr", "std::nullopt"):
                     add(at + 1, last, "{}", "returns nothing")
                     logic = any(reader.text(i) in ("<", "<=", ">", ">=", "==", "!=", "&&", "||", "!")
                                 for i in range(at + 1, last + 1))

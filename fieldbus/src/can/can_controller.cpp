@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 
 #include "can/link_answer.hpp"
@@ -30,7 +31,7 @@ const char* to_string(CanController::State state) noexcept {
   return "unknown";
 }
 
-CanController read_can_controller(int interface_index) noexcept {
+std::span<const std::byte> ask_for_link(int interface_index, std::span<std::byte> answer) noexcept {
   struct {
     nlmsghdr head;
     ifinfomsg link;
@@ -41,15 +42,18 @@ CanController read_can_controller(int interface_index) noexcept {
   question.link.ifi_index = interface_index;
   const int socket = ::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE);
   if (socket < 0) return {};
-  CanController told;
-  std::array<std::byte, 16384> answer{};
+  ssize_t size = 0;
   if (send(socket, &question, question.head.nlmsg_len, 0) >= 0) {
     // The kernel answers within `send`: whoever waited here would wait for nothing.
-    const ssize_t size = recv(socket, answer.data(), answer.size(), MSG_DONTWAIT);
-    if (size > 0) told = controller_of(std::span(answer).first(static_cast<std::size_t>(size)));
+    size = recv(socket, answer.data(), answer.size(), MSG_DONTWAIT);
   }
   close(socket);
-  return told;
+  return answer.first(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+}
+
+CanController read_can_controller(int interface_index) noexcept {
+  std::array<std::byte, 16384> answer{};
+  return controller_of(ask_for_link(interface_index, answer));
 }
 
 }  // namespace rmac::fieldbus

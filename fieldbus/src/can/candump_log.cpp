@@ -70,7 +70,6 @@ bool read_id(std::string_view digits, LoggedFrame& logged) {
 
 /// Pairs of digits, with or without points between.
 bool read_data(std::string_view digits, CanFrame& frame) {
-  frame.size = 0;
   while (!digits.empty()) {
     if (digits.front() == '.' && frame.size > 0) digits.remove_prefix(1);
     if (digits.size() < 2 || frame.size == frame.data.size()) return false;

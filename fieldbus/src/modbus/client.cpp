@@ -69,7 +69,8 @@ std::string to_string(const Endpoint& endpoint) {
 }
 
 struct Client::Impl {
-  Impl(Endpoint of, std::chrono::milliseconds within) : endpoint(std::move(of)), deadline(within) {}
+  Impl(Endpoint of, std::chrono::milliseconds within, Now clock)
+      : endpoint(std::move(of)), deadline(within), now(std::move(clock)) {}
 
   /// What is known of a slave on a serial line.
   struct Slave {
@@ -81,6 +82,7 @@ struct Client::Impl {
 
   Endpoint endpoint;
   std::chrono::milliseconds deadline;
+  Now now;
   Context context{};
   bool open = false;
   std::array<Slave, kAnyUnit + 1> slaves{};
@@ -118,7 +120,7 @@ struct Client::Impl {
                              std::span<std::uint16_t> values) {
     records.asked(request.slave);
     auto answer = transact(request, written, values);
-    records.ended(request.slave, answer, Clock::now());
+    records.ended(request.slave, answer, now());
     return answer;
   }
 
@@ -129,7 +131,7 @@ struct Client::Impl {
     // What came since the last answer belongs to no question any more.
     if (serial()) static_cast<void>(modbus_flush(context.get()));
     const std::vector<std::uint8_t> question = encode(request, written);
-    slave(request).asked = Clock::now();
+    slave(request).asked = now();
     if (modbus_send_raw_request(context.get(), question.data(), static_cast<int>(question.size())) < 0) {
       return broken(request, errno);
     }
@@ -190,7 +192,7 @@ struct Client::Impl {
   }
 };
 
-Expected<std::unique_ptr<Client>> Client::create(Endpoint endpoint, std::chrono::milliseconds deadline) {
+Expected<std::unique_ptr<Client>> Client::create(Endpoint endpoint, std::chrono::milliseconds deadline, Now now) {
   if (const std::string wrong = check(endpoint); !wrong.empty()) {
     return failure(MinorCode::InvalidParameterValue, fmt::format("Modbus line {}: {}", to_string(endpoint), wrong));
   }
@@ -199,7 +201,7 @@ Expected<std::unique_ptr<Client>> Client::create(Endpoint endpoint, std::chrono:
                    fmt::format("Modbus line {}: a deadline of {} ms; allowed is 1 ms to 1 minute", to_string(endpoint),
                                deadline.count()));
   }
-  auto impl = std::make_unique<Impl>(std::move(endpoint), deadline);
+  auto impl = std::make_unique<Impl>(std::move(endpoint), deadline, std::move(now));
   impl->context = make_context(impl->endpoint);
   if (!impl->context) {
     return failure(MinorCode::Other, fmt::format("Modbus line {}: {}", to_string(impl->endpoint), error_text(errno)));
@@ -224,6 +226,9 @@ const Endpoint& Client::endpoint() const noexcept {
 bool Client::connected() const noexcept {
   return impl_->open;
 }
+Clock::time_point Client::now() const {
+  return impl_->now();
+}
 void Client::disconnect() noexcept {
   impl_->close();
 }
@@ -232,7 +237,7 @@ bool Client::in_doubt(int slave) const noexcept {
 }
 
 UnitTraffic Client::traffic(int unit) const {
-  return impl_->records.traffic(unit, Clock::now());
+  return impl_->records.traffic(unit, now());
 }
 
 Answer<> Client::connect() {
@@ -270,7 +275,7 @@ Answer<> Client::resynchronise(int slave, Table table, std::uint16_t address, st
   if (!in_doubt(slave)) return {};
   Impl::Slave& known = impl_->slaves[static_cast<std::size_t>(slave)];
   known.probed.resize(kProbes);
-  const auto now = Clock::now();
+  const auto now = impl_->now();
   const auto long_ago = [now](Clock::time_point asked) { return now - asked >= kSettle; };
   const bool settled = long_ago(known.asked);
   // The shortest length that is this probe's alone, because no answer to an older one of the same length can come.

@@ -38,7 +38,6 @@ class IoStation final : public Station {
 
   Answer<> make_safe(Client& client) override {
     if (auto sure = image_.resynchronise(client, slave_); !sure) return sure;
-    outputs = 0;
     applied_.reset();
     return apply(client, 0);
   }
@@ -86,11 +85,13 @@ class IoStation final : public Station {
 
 struct IoInterface::Impl {
   explicit Impl(IoLineConfig config)
-      : stale(config.stale),
+      : now(config.line.now),
+        stale(config.stale),
         boot_timeout(config.boot_timeout),
         station(config.slave, std::move(config.map)),
         line(std::move(config.line), {&station}) {}
 
+  Now now;
   std::chrono::milliseconds stale;
   std::chrono::milliseconds boot_timeout;
   IoStation station;
@@ -126,7 +127,7 @@ LineReport IoInterface::line_report() const {
 bool IoInterface::exchange(std::uint64_t outputs, std::uint64_t& inputs) noexcept {
   IoStation& station = impl_->station;
   const Clock::time_point asked{Clock::duration(station.asked_at.load(std::memory_order_acquire))};
-  const bool fresh = asked != Clock::time_point::min() && Clock::now() - asked <= impl_->stale;
+  const bool fresh = asked != Clock::time_point::min() && impl_->now() - asked <= impl_->stale;
   const std::uint64_t wanted = fresh ? outputs : 0;
   if (station.outputs.exchange(wanted, std::memory_order_acq_rel) != wanted) impl_->line.wake();
   if (!fresh) return false;

@@ -64,13 +64,13 @@ struct Line::Impl {
   void run() {
     Backoff backoff(config.first_pause, config.longest_pause);
     while (!ending) {
-      const auto begun = Clock::now();
+      const auto begun = config.now();
       if (client->connected() || (backoff.due(begun) && open(backoff))) {
         // To be opened proves nothing: only a device that answers ends the pauses.
         if (serve_all()) {
           backoff.succeeded();
         } else if (!client->connected()) {
-          backoff.failed(Clock::now());
+          backoff.failed(config.now());
         }
       }
       ++rounds;
@@ -83,7 +83,7 @@ struct Line::Impl {
   bool open(Backoff& backoff) {
     const auto opened = connect();
     if (!opened) {
-      backoff.failed(Clock::now());
+      backoff.failed(config.now());
       for (std::size_t i = 0; i < stations.size(); ++i) note(i, opened);
       return false;
     }
@@ -158,7 +158,7 @@ struct Line::Impl {
       // Doubt follows from an answer that was lost, and says nothing of why.
       const bool follows = served.error().kind == Failure::Kind::InDoubt && of.troubled && !of.works;
       if (!follows) of.trouble = served.error();
-      of.troubled = Clock::now();
+      of.troubled = config.now();
     }
     of.works = served.has_value();
     of.served = of.served || of.works;
@@ -172,7 +172,7 @@ struct Line::Impl {
 
   /// Until then, or until woken.
   void pause(Clock::time_point until) const {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - config.now());
     pollfd wanted{wakeup, POLLIN, 0};
     if (poll(&wanted, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0))) > 0) {
       std::uint64_t count = 0;
@@ -181,7 +181,7 @@ struct Line::Impl {
   }
 
   void finish() {
-    const auto patient_until = Clock::now() + kSafePatience;
+    const auto patient_until = config.now() + kSafePatience;
     for (int tries = 0; tries < kSafeTries; ++tries) {
       bool all = true, one_busy = false;
       for (Station* station : stations) {
@@ -194,8 +194,8 @@ struct Line::Impl {
         one_busy = one_busy || (!safe && safe.error().busy());
       }
       if (all) break;
-      if (!one_busy || Clock::now() >= patient_until) continue;
-      pause(Clock::now() + config.period);
+      if (!one_busy || config.now() >= patient_until) continue;
+      pause(config.now() + config.period);
       tries = -1;  // a device that answers is worth the wait
     }
     client->disconnect();
@@ -216,7 +216,7 @@ Expected<> Line::start(std::chrono::milliseconds patience) {
   Impl& line = *impl_;
   stop();
   if (line.wakeup < 0) return failure(MinorCode::Other, "no more file descriptors");
-  auto client = Client::create(line.config.endpoint, line.config.deadline);
+  auto client = Client::create(line.config.endpoint, line.config.deadline, line.config.now);
   if (!client) return tl::unexpected(client.error());
   line.client = std::move(*client);
   {
@@ -287,7 +287,7 @@ std::optional<std::string> Line::trouble(std::size_t station) const {
     const std::lock_guard lock(impl_->mutex);
     if (station >= impl_->known.size()) return {};
     const Impl::Known& of = impl_->known[station];
-    if (!of.troubled || (of.works && Clock::now() - *of.troubled > kRemembered)) return {};
+    if (!of.troubled || (of.works && impl_->config.now() - *of.troubled > kRemembered)) return {};
     text = fmt::format("{}: {}", manner(of.trouble), of.trouble.message);
   }
   const LineCounters seen = counters();

@@ -29,6 +29,10 @@ Extent extent(std::string entry, const Place& place) {
   return {std::move(entry), place.table, place.address, place.count()};
 }
 
+Extent extent(const std::string& list, std::size_t entry, const BitRange& range) {
+  return {fmt::format("{}/{}", list, entry), range.place.table, range.place.address, range.addresses()};
+}
+
 /// The first mistake that was found; an empty text is none.
 class Findings {
  public:
@@ -88,7 +92,7 @@ void check_bits(Findings& findings, const std::string& list, const std::vector<B
   std::uint64_t taken = 0;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const BitRange& range = ranges[i];
-    const Extent one{fmt::format("{}/{}", list, i), range.place.table, range.place.address, range.addresses()};
+    const Extent one = extent(list, i, range);
     findings.within(one);
     if (range.count == 0 || range.first + range.count > kIoBits) {
       findings.refuse(fmt::format("{} fills bits {} to {}; there are {}", one.text(), range.first,
@@ -100,8 +104,7 @@ void check_bits(Findings& findings, const std::string& list, const std::vector<B
     if ((taken & bits) != 0) findings.refuse(one.text() + " fills bits that another one fills already");
     taken |= bits;
     for (std::size_t j = 0; j < i; ++j) {
-      const Extent other{fmt::format("{}/{}", list, j), ranges[j].place.table, ranges[j].place.address,
-                         ranges[j].addresses()};
+      const Extent other = extent(list, j, ranges[j]);
       if (one.overlaps(other)) findings.refuse(fmt::format("{} and {} overlap", other.text(), one.text()));
     }
   }
@@ -138,10 +141,9 @@ Expected<> check(const IoMap& map) {
   Findings findings(map.name);
   check_bits(findings, "Inputs", map.inputs);
   check_bits(findings, "Outputs", map.outputs);
-  for (const BitRange& range : map.outputs) {
-    if (!writable(range.place.table)) {
-      findings.refuse(fmt::format("an output is a {}, which cannot be written", to_string(range.place.table)));
-    }
+  for (std::size_t i = 0; i < map.outputs.size(); ++i) {
+    const Extent one = extent("Outputs", i, map.outputs[i]);
+    if (!writable(one.table)) findings.refuse(one.text() + " cannot be written");
   }
   if (map.inputs.empty() && map.outputs.empty()) findings.refuse("it has neither inputs nor outputs");
   return findings.result();

@@ -18,6 +18,7 @@ struct SpindleInterface::Impl {
     std::uint16_t controlword = 0;  ///< of the cycle before
   };
 
+  Now clock;
   std::chrono::milliseconds stale;
   std::chrono::milliseconds busy;
   std::chrono::milliseconds boot_timeout;
@@ -53,7 +54,7 @@ struct SpindleInterface::Impl {
 };
 
 SpindleInterface::SpindleInterface(SpindleLineConfig config)
-    : impl_(new Impl{config.stale, config.busy, config.boot_timeout, {}, {}}) {
+    : impl_(new Impl{config.line.now, config.stale, config.busy, config.boot_timeout, {}, {}}) {
   std::vector<Station*> stations;
   for (SpindleConfig& axis : config.axes) {
     impl_->axes.emplace_back(std::move(axis));
@@ -85,7 +86,7 @@ void SpindleInterface::stop() noexcept {
 }
 
 bool SpindleInterface::exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept {
-  const Clock::time_point now = Clock::now();
+  const Clock::time_point now = impl_->clock();
   bool news = false;
   for (std::size_t i = 0; i < impl_->axes.size(); ++i) {
     news = impl_->exchange(impl_->axes[i], commands[i], feedback[i], now) || news;

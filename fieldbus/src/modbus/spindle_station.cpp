@@ -122,7 +122,7 @@ Answer<> SpindleStation::apply(Client& client, std::int32_t rpm) {
     const auto& writes = rpm == 0 ? map.stop : rpm > 0 ? map.forward_run : map.backward_run;
     applied_.reset();  // until it is confirmed
     if (auto written = write(client, writes); !written) return written;
-    applied_at_ = Clock::now();
+    applied_at_ = client.now();
   }
   applied_ = rpm;
   return {};
@@ -130,7 +130,7 @@ Answer<> SpindleStation::apply(Client& client, std::int32_t rpm) {
 
 Answer<> SpindleStation::reset_if_asked(Client& client) {
   const std::uint32_t asked = resets_.load(std::memory_order_relaxed);
-  const auto now = Clock::now();
+  const auto now = client.now();
   if (asked == resets_done_ || now - reset_at_ < kBetweenResets) return {};
   resets_done_ = asked;
   reset_at_ = now;
@@ -156,7 +156,7 @@ bool SpindleStation::lacks_its_code() const noexcept {
 /// A stop goes out before anything is asked, in doubt too: once, and then again seldom, because a slave may have to be
 /// left alone before its answers can be trusted again. A drive that is busy did not take it, and is told again.
 Answer<> SpindleStation::stop_at_once(Client& client) {
-  const auto now = Clock::now();
+  const auto now = client.now();
   const bool wanted = wanted_rpm_.load(std::memory_order_acquire) == 0;
   if (!wanted || applied_ == 0 || now - stop_sent_at_ < kBetweenStops) return {};
   stop_sent_at_ = now;
@@ -172,7 +172,7 @@ Answer<> SpindleStation::serve(Client& client) {
   // What was read before it was told to run or stop does not hold on for its being busy.
   const bool holds = Clock::time_point(Clock::duration(asked_.load(std::memory_order_relaxed))) >= applied_at_;
   if (!served && served.error().busy() && holds) {
-    busy_.store(Clock::now().time_since_epoch().count(), std::memory_order_release);
+    busy_.store(client.now().time_since_epoch().count(), std::memory_order_release);
   }
   return served;
 }

@@ -6,6 +6,7 @@
 #include <linux/rtnetlink.h>
 #include <net/if.h>
 
+#include <array>
 #include <cstring>
 #include <random>
 #include <string>
@@ -96,6 +97,44 @@ TEST(CanController, IsUnknownWhereThereIsNone) {
   EXPECT_EQ(read_can_controller(0x7FFFFFFF).state, State::Unknown) << "no such interface";
 }
 
+TEST(CanController, IsAskedForByItsInterface) {
+  const int loopback = static_cast<int>(if_nametoindex("lo"));
+  if (loopback == 0) GTEST_SKIP() << "no interface to ask for";
+  std::array<std::byte, 16384> room{};
+  const auto told = ask_for_link(loopback, room);
+  nlmsghdr head{};
+  ifinfomsg link{};
+  ASSERT_GE(told.size(), NLMSG_LENGTH(sizeof(link)));
+  std::memcpy(&head, told.data(), sizeof(head));
+  std::memcpy(&link, told.data() + NLMSG_LENGTH(0), sizeof(link));
+  EXPECT_EQ(head.nlmsg_type, RTM_NEWLINK);
+  EXPECT_EQ(link.ifi_index, loopback);
+  const auto refused = ask_for_link(0x7FFFFFFF, room);
+  ASSERT_GE(refused.size(), sizeof(head));
+  std::memcpy(&head, refused.data(), sizeof(head));
+  EXPECT_EQ(head.nlmsg_type, NLMSG_ERROR) << "no such interface";
+}
+
+TEST(CanController, IsReadFromTheAnswerToTheQuestionAlone) {
+  RawBytes other = answer("can", controller(CAN_STATE_ERROR_PASSIVE, {1, 2}));
+  nlmsghdr head{};
+  std::memcpy(&head, other.data(), sizeof(head));
+  head.nlmsg_type = RTM_DELLINK;
+  std::memcpy(other.data(), &head, sizeof(head));
+  EXPECT_EQ(controller_of(other).state, State::Unknown) << "a link that goes away";
+}
+
+TEST(CanController, HasAStateInWords) {
+  const std::vector<std::pair<State, std::string>> words{{State::Unknown, "unknown"},
+                                                         {State::ErrorActive, "error-active"},
+                                                         {State::ErrorWarning, "error-warning"},
+                                                         {State::ErrorPassive, "error-passive"},
+                                                         {State::BusOff, "bus-off"},
+                                                         {State::Stopped, "stopped"},
+                                                         {State::Sleeping, "sleeping"}};
+  for (const auto& [state, text] : words) EXPECT_EQ(to_string(state), text);
+}
+
 TEST(CanController, StandsAnAnswerThatIsCutShortOrSpoilt) {
   const RawBytes whole = answer("can", controller(CAN_STATE_ERROR_ACTIVE, {1, 2}));
   for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -124,12 +163,13 @@ CanHealth after(std::initializer_list<std::pair<canid_t, unsigned>> reports) {
 TEST(CanErrorFrame, CountsHowFarTheControllerGot) {
   const CanHealth health = after({{CAN_ERR_CRTL, CAN_ERR_CRTL_TX_WARNING},
                                   {CAN_ERR_CRTL | CAN_ERR_CNT, CAN_ERR_CRTL_RX_WARNING},
+                                  {CAN_ERR_CRTL, CAN_ERR_CRTL_TX_WARNING | CAN_ERR_CRTL_RX_WARNING},
                                   {CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE | CAN_ERR_CRTL_RX_PASSIVE},
                                   {CAN_ERR_CRTL, CAN_ERR_CRTL_ACTIVE},
                                   {CAN_ERR_CRTL, CAN_ERR_CRTL_RX_OVERFLOW},
                                   {CAN_ERR_PROT, CAN_ERR_CRTL_RX_PASSIVE}});  // not of the class that fills the byte
-  EXPECT_EQ(health.error_frames, 6U);
-  EXPECT_EQ(health.warnings, 2U);
+  EXPECT_EQ(health.error_frames, 7U);
+  EXPECT_EQ(health.warnings, 3U);
   EXPECT_EQ(health.passives, 1U);
   EXPECT_TRUE(health.usable());
 }

@@ -78,6 +78,29 @@ TEST(CandumpLog, TellsFramesThatCanopenDoesNotUse) {
               HasSubstr("controller, no acknowledgement"));
 }
 
+TEST(CandumpLog, NamesFramesThatCanopenDoesNotUse) {
+  EXPECT_EQ(foreign_frame_text(read("(1.0) can0 181#AABB")), "") << "it uses these";
+  EXPECT_EQ(read("(1.0) can0 20000040#0000000000000000").id, 0x40U) << "the classes alone";
+  EXPECT_EQ(read("(1.0) can0 98FF1234#AA").id, 0x18FF1234U) << "with the flag of the kernel's frames";
+  EXPECT_EQ(foreign_frame_text(read("(1.0) can0 701#R")), "remote frame 701h");
+  EXPECT_EQ(foreign_frame_text(read("(1.0) can0 00000181#AABB")),
+            "29-bit identifier 00000181h, which CANopen does not use");
+  EXPECT_EQ(foreign_frame_text(read("(1.0) can0 123##1AABB")), "CAN FD frame 123h, which CANopen does not use");
+  // The classes of linux/can/error.h, bit by bit.
+  const std::vector<const char*> classes{
+      "sending timed out",  "lost arbitration", "controller", "protocol violation",  "transceiver",
+      "no acknowledgement", "bus-off",          "bus error",  "controller restarted"};
+  for (std::size_t bit = 0; bit < classes.size(); ++bit) {
+    LoggedFrame error;
+    error.kind = Kind::Error;
+    error.id = 1U << bit;
+    EXPECT_EQ(foreign_frame_text(error), std::string("error frame: ") + classes[bit]);
+  }
+  LoggedFrame error;
+  error.kind = Kind::Error;
+  EXPECT_EQ(foreign_frame_text(error), "error frame") << "of none of them";
+}
+
 TEST(CandumpLog, TakesNoHalfLineForAFrame) {
   for (const char* line : {"",
                            " ",
@@ -96,8 +119,12 @@ TEST(CandumpLog, TakesNoHalfLineForAFrame) {
                            "(1.0) can0 #AA",
                            "(1.0) can0 181#AG",
                            "(1.0) can0 181#AA.",
+                           "(1.0) can0 181#.AA",
                            "can0 181 [2] AA",
                            "can0 181 [2",
+                           "can0 181 [22 AA BB",
+                           "can0 181 22] AA BB",
+                           "can0 181G [2] AA BB",
                            "can0 181 [] AA",
                            "can0 181 [-1] AA",
                            "can0 181 [9] 1 2 3 4 5 6 7 8 9",
@@ -114,10 +141,15 @@ TEST(CandumpLog, TakesNoHalfLineForAFrame) {
 }
 
 TEST(CandumpLog, TakesATimeThatNoClockHasForNone) {
-  for (const char* time : {"(99999999999999999999.0)", "(-5.0)", "(x)", "()", "(1.x)", "(9223372036854775807.5)"}) {
+  for (const char* time :
+       {"(99999999999999999999.0)", "(-5.0)", "(-1.0)", "(x)", "()", "(1.x)", "(9223372036854775807.5)"}) {
     EXPECT_EQ(read(std::string(time) + " can0 181#AA").frame.stamp.count(), 0) << time;
   }
   EXPECT_EQ(read("(5) can0 181#AA").frame.stamp, std::chrono::seconds(5));
+  EXPECT_EQ(read("(1.) can0 181#AA").frame.stamp, std::chrono::seconds(1));
+  EXPECT_EQ(read("(0.5) can0 181#AA").frame.stamp, std::chrono::milliseconds(500));
+  EXPECT_EQ(read("(9000000000.5) can0 181#AA").frame.stamp, std::chrono::milliseconds(9000000000500));
+  EXPECT_EQ(read("(9000000001.0) can0 181#AA").frame.stamp.count(), 0) << "nanoseconds do not count so far";
 }
 
 /// Bytes of any kind, and frames with a letter exchanged.

@@ -289,6 +289,21 @@ TEST_F(CanopenBench, BringsBackANodeThatWasGoneAndEnablesNothing) {
   enable_all();
 }
 
+// Red when a drive that is away misses answers all the time: the count is of a bus that loses some.
+TEST_F(CanopenBench, CountsNoAnswersOfANodeThatIsLost) {
+  VirtualDrive& drive = wire_.add(2);
+  make({{"node", {2}}, {"heartbeat_ms", {20}}});
+  start();
+  enable_all();
+  drive.power_off();
+  while (master_->counters().nodes_lost == 0) cycle(DriveWish::Off);
+  cycle(DriveWish::Off);
+  const std::uint64_t missed = master_->counters().missed_answers;
+  EXPECT_GT(missed, 0U) << "before it was known to be lost";
+  cycles(100, DriveWish::Off);
+  EXPECT_EQ(master_->counters().missed_answers, missed);
+}
+
 TEST_F(CanopenBench, BringsBackANodeThatFellOutOfOperational) {
   VirtualDrive& drive = wire_.add(2);
   make({{"node", {2}}});

@@ -193,6 +193,15 @@ TEST_F(BootAlone, AsksThreeTimesWhereAnAnswerIsMissing) {
   for (std::size_t i = 1; i < 3; ++i) EXPECT_NEAR(double((asked[i] - asked[i - 1]).count()), 500, 3);
 }
 
+// Its abort "SDO protocol timed out": it waited for what was lost on the way, and may be asked anew.
+TEST_F(BootAlone, AsksThreeTimesWhereTheNodeMissedSomething) {
+  drive_.refuse_writing({0x6060, 0}, 0x05040000);
+  make();
+  until(State::Failed);
+  EXPECT_EQ(boot_->problem().object, kMode);
+  EXPECT_EQ(questions(kMode).size(), 3U);
+}
+
 // Red when an optional object holds a machine up, or a node that died meanwhile passes for one that does not know it.
 TEST_F(BootAlone, AsksWhetherItIsThereBeforeItPassesOverAnObjectThatIsNotAnswered) {
   drive_.silent = {{0x603F, 0}};

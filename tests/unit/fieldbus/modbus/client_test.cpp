@@ -1,10 +1,16 @@
+#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <random>
+#include <stdexcept>
 
 #include "rmac/fieldbus/modbus/backoff.hpp"
 #include "unit/fieldbus/modbus/modbus_peer.hpp"
+#include "unit/fieldbus/modbus/still_clock.hpp"
 
 namespace rmac::fieldbus::modbus {
 namespace {
@@ -330,6 +336,127 @@ TEST(ModbusClientRtu, SaysThatThereIsNoSuchPort) {
   EXPECT_EQ(opened.error().message, "/dev/no-such-port: cannot be opened: No such file or directory");
 }
 
+/// A port that takes no more connections: what its backlog holds is never accepted.
+class FullPort {
+ public:
+  FullPort() : listener_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof(address);
+    auto* const any = reinterpret_cast<sockaddr*>(&address);
+    if (bind(listener_, any, size) != 0 || listen(listener_, 0) != 0 || getsockname(listener_, any, &size) != 0) {
+      throw std::runtime_error("no port to listen on");
+    }
+    port_ = ntohs(address.sin_port);
+    for (int waiting = 0; waiting < 4; ++waiting) {
+      guests_.push_back(socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+      static_cast<void>(connect(guests_.back(), any, size));
+    }
+  }
+  ~FullPort() {
+    for (const int guest : guests_) close(guest);
+    close(listener_);
+  }
+  FullPort(const FullPort&) = delete;
+  FullPort& operator=(const FullPort&) = delete;
+  [[nodiscard]] Endpoint endpoint() const { return TcpEndpoint{"127.0.0.1", port_}; }
+
+ private:
+  int listener_;
+  std::uint16_t port_ = 0;
+  std::vector<int> guests_;
+};
+
+TEST(ModbusTcpClient, WaitsForAConnectionAsLongAsItsDeadline) {
+  const FullPort port;
+  const auto client = std::move(*Client::create(port.endpoint(), 40ms));
+  const auto begun = Clock::now();
+  const auto connected = client->connect();
+  EXPECT_GE(Clock::now() - begun, 40ms);
+  ASSERT_FALSE(connected);
+  EXPECT_EQ(connected.error().kind, Kind::Timeout);
+  EXPECT_THAT(connected.error().message, HasSubstr("cannot be opened: Connection timed out"));
+  EXPECT_FALSE(client->connected());
+}
+
+// A slave that answers late: a length that was asked for may be told within two seconds.
+TEST(ModbusClientRtu, AsksForNoLengthTwiceWithinTwoSeconds) {
+  StillClock clock;
+  ModbusPeer peer(Wire::Rtu);
+  const auto client = std::move(*Client::create(peer.endpoint(), 60s, clock.now()));
+  ASSERT_TRUE(client->connect());
+  peer.behave(Manner::WrongId);
+  const auto lengths = [&](int probes) {
+    std::vector<int> asked;
+    static_cast<void>(peer.take_requests());
+    for (int i = 0; i < probes; ++i) EXPECT_FALSE(client->resynchronise(kSlave, Table::HoldingRegisters, 0, kProbe));
+    for (const Bytes& request : peer.take_requests()) asked.push_back(request[5]);
+    return asked;
+  };
+  EXPECT_EQ(lengths(3), (std::vector<int>{9, 10, 11}));
+  clock.pass(1999ms);
+  EXPECT_EQ(lengths(1), (std::vector<int>{12}));
+  clock.pass(1ms);
+  EXPECT_EQ(lengths(4), (std::vector<int>{9, 10, 11, 13}));
+  EXPECT_EQ(lengths(100).size(), 64U - 5) << "until no length is left";
+  EXPECT_TRUE(client->in_doubt(kSlave));
+  clock.pass(2s);
+  peer.behave(Manner::Honest);
+  EXPECT_TRUE(client->resynchronise(kSlave, Table::HoldingRegisters, 0, kProbe));
+  EXPECT_FALSE(client->in_doubt(kSlave));
+}
+
+TEST_P(ModbusClient, KeepsARecordOfEachUnit) {
+  open(60s);
+  std::array<std::uint16_t, 1> word{};
+  ASSERT_TRUE(read_registers(word));
+  const UnitTraffic before = client->traffic(kSlave);
+  EXPECT_EQ(before.requests, before.answers);
+  EXPECT_FALSE(before.last_trouble);
+  peer.behave(Manner::WrongId);
+  ASSERT_FALSE(client->read(kSlave, Table::HoldingRegisters, 0, word));
+  const UnitTraffic after = client->traffic(kSlave);
+  EXPECT_EQ(after.requests, before.requests + 1);
+  EXPECT_EQ(after.answers, before.answers);
+  EXPECT_EQ(after.wrong_answers, 1U);
+  ASSERT_TRUE(after.last_trouble);
+  EXPECT_THAT(after.last_trouble->message, HasSubstr("another slave answered"));
+  EXPECT_EQ(client->traffic(kSlave + 1).requests, 0U);
+}
+
+TEST(ModbusTcpClient, AsksADeviceWithoutAGatewayByItsOwnNumber) {
+  ModbusPeer peer(Wire::Tcp);
+  auto client = std::move(*Client::create(peer.endpoint(), 60s));
+  std::array<std::uint16_t, 1> word{};
+  const auto unopened = client->read(255, Table::HoldingRegisters, 0, word);
+  ASSERT_FALSE(unopened);
+  EXPECT_EQ(unopened.error().kind, Kind::NotConnected);
+  ASSERT_TRUE(client->connect());
+  EXPECT_TRUE(client->read(255, Table::HoldingRegisters, 0, word));
+  EXPECT_TRUE(client->read(247, Table::HoldingRegisters, 0, word));
+  EXPECT_TRUE(client->read(1, Table::HoldingRegisters, 0xFFFF, word)) << "the last address";
+  EXPECT_FALSE(client->read(254, Table::HoldingRegisters, 0, word));
+}
+
+TEST(ModbusClientCreation, TakesWhatALineCanHave) {
+  const auto made = [](Endpoint endpoint, std::chrono::milliseconds deadline = 100ms) {
+    return Client::create(std::move(endpoint), deadline).has_value();
+  };
+  for (const int rate : {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 230400, 460800, 500000, 921600}) {
+    EXPECT_TRUE(made(RtuEndpoint{"/dev/ttyS0", rate})) << rate;
+  }
+  for (const char parity : {'N', 'E', 'O'}) EXPECT_TRUE(made(RtuEndpoint{"/dev/ttyS0", 9600, parity})) << parity;
+  for (const int bits : {1, 2}) EXPECT_TRUE(made(RtuEndpoint{"/dev/ttyS0", 9600, 'N', bits})) << bits;
+  EXPECT_FALSE(made(RtuEndpoint{"/dev/ttyS0", 9600, 'N', 0}));
+  EXPECT_FALSE(made(RtuEndpoint{""}));
+  EXPECT_FALSE(made(TcpEndpoint{"127.0.0.1", 0}));
+  EXPECT_TRUE(made(TcpEndpoint{"127.0.0.1", 1}));
+  EXPECT_TRUE(made(TcpEndpoint{"127.0.0.1"}, 1ms));
+  EXPECT_TRUE(made(TcpEndpoint{"127.0.0.1"}, 1min));
+  EXPECT_FALSE(made(TcpEndpoint{"127.0.0.1"}, 60001ms));
+}
+
 TEST(ModbusClientCreation, NamesWhatIsWrongInAnEndpoint) {
   const auto error = [](Endpoint endpoint, std::chrono::milliseconds deadline = 100ms) {
     const auto made = Client::create(std::move(endpoint), deadline);
@@ -339,6 +466,7 @@ TEST(ModbusClientCreation, NamesWhatIsWrongInAnEndpoint) {
             "Modbus line spindle.local port 502: \"spindle.local\" is no numeric IP address, for example 192.168.1.20; "
             "names are not looked up");
   EXPECT_EQ(error(TcpEndpoint{"::1"}), "made");
+  EXPECT_THAT(error(TcpEndpoint{"localhost"}), HasSubstr("is no numeric IP address")) << "though it needs no network";
   EXPECT_THAT(error(RtuEndpoint{"/dev/ttyS0", 31250}), HasSubstr("bit rate 31250; there are 1200, 2400"));
   EXPECT_THAT(error(RtuEndpoint{"/dev/ttyS0", 9600, 'X'}), HasSubstr("parity 'X'"));
   EXPECT_THAT(error(RtuEndpoint{"/dev/ttyS0", 9600, 'N', 3}), HasSubstr("3 stop bits"));

@@ -80,6 +80,17 @@ TEST(ModbusPdu, TellsAnException) {
   EXPECT_EQ(decode(request, question, Bytes{3, 0x84, 6}, values).verdict, Verdict::Wrong);
 }
 
+TEST(ModbusPdu, SaysWhatAnExceptionMeans) {
+  const std::vector<std::pair<int, std::string>> texts{
+      {1, "it does not know the function"},  {2, "it has no such address"},
+      {3, "it does not take the value"},     {4, "it failed in carrying it out"},
+      {5, "it has begun and needs longer"},  {6, "it is busy"},
+      {7, "for a reason of its own"},        {8, "its memory has a parity error"},
+      {10, "the gateway has no path to it"}, {11, "the gateway got no answer from it"},
+      {200, "for a reason of its own"}};
+  for (const auto& [code, text] : texts) EXPECT_EQ(exception_text(code), text) << code;
+}
+
 TEST(ModbusPdu, TakesNothingForAnAnswerThatIsNot) {
   std::mt19937 random(2);  // NOLINT: the same damage in every run
   const auto below = [&](std::size_t bound) {

@@ -30,6 +30,22 @@ inline SpindleMap spindle_map() {
   return made;
 }
 
+/// When a test gives up that cycles until something is reached: the line and the test had a thousand turns each, or a
+/// minute has passed.
+class Patience {
+ public:
+  explicit Patience(const SpindleInterface& spindle) : spindle_(spindle), begun_(spindle.counters().rounds) {}
+  [[nodiscard]] bool ends() {
+    constexpr std::uint64_t kTurns = 1000;
+    return (++turns_ > kTurns && spindle_.counters().rounds > begun_ + kTurns) || Clock::now() > give_up_;
+  }
+
+ private:
+  const SpindleInterface& spindle_;
+  std::uint64_t begun_, turns_ = 0;
+  Clock::time_point give_up_ = Clock::now() + std::chrono::minutes(1);
+};
+
 /// What the drive does with what is written to it: it turns at once.
 inline void turn(RegisterBank& bank, Table, std::uint16_t address, std::uint16_t value) {
   if (address == kReset) {

@@ -3,6 +3,7 @@
 
 #include "rmac/motion/drive_power.hpp"
 #include "unit/fieldbus/modbus/spindle_drive.hpp"
+#include "unit/fieldbus/modbus/still_clock.hpp"
 
 namespace rmac::fieldbus::modbus {
 namespace {
@@ -23,14 +24,15 @@ class ModbusTwoSpindles : public testing::TestWithParam<std::tuple<Wire, int>> {
     config.line.endpoint = peer.endpoint();
     config.line.deadline = 20ms;
     config.line.period = 2ms;
-    config.stale = 2s;
+    config.line.first_pause = config.line.longest_pause = 0ms;
+    config.line.now = clock.now();
     config.boot_timeout = 60s;
     for (const int slave : {1, 2}) config.axes.push_back({slave, 60, 0, spindle_map()});
     spindle = std::make_unique<SpindleInterface>(std::move(config));
   }
   [[nodiscard]] std::size_t other() const noexcept { return mute == 1 ? 1 : 0; }
   void run_until(const std::function<bool()>& reached) {
-    const auto give_up = Clock::now() + 60s;
+    Patience patience(*spindle);
     do {
       for (std::size_t i = 0; i < commands.size(); ++i) {
         commands[i].controlword =
@@ -39,7 +41,7 @@ class ModbusTwoSpindles : public testing::TestWithParam<std::tuple<Wire, int>> {
         commands[i].target_velocity_rpm = 600;
       }
       ASSERT_TRUE(spindle->exchange(commands, feedback));
-      ASSERT_LT(Clock::now(), give_up);
+      ASSERT_FALSE(patience.ends());
       std::this_thread::yield();
     } while (!reached());
   }
@@ -48,6 +50,7 @@ class ModbusTwoSpindles : public testing::TestWithParam<std::tuple<Wire, int>> {
   std::atomic<bool> silent{false};
   std::array<RegisterBank, 2> banks;
   ModbusPeer peer;
+  StillClock clock;
   std::unique_ptr<SpindleInterface> spindle;
   std::array<DriveCommand, 2> commands{};
   std::array<DriveFeedback, 2> feedback{};
@@ -56,6 +59,7 @@ class ModbusTwoSpindles : public testing::TestWithParam<std::tuple<Wire, int>> {
 TEST_P(ModbusTwoSpindles, OneMuteLeavesTheOtherAtWork) {
   ASSERT_TRUE(spindle->start());
   silent = true;
+  clock.pass(2s);
   run_until([this] { return !feedback[static_cast<std::size_t>(mute) - 1].online && feedback[other()].online; });
 }
 
@@ -70,19 +74,20 @@ TEST_P(ModbusTwoSpindles, OneMuteLeavesTheOtherToBeStoppedWithTheAppliance) {
 TEST_P(ModbusTwoSpindles, AreReportedEachByItself) {
   ASSERT_TRUE(spindle->start());
   silent = true;
-  run_until([this] { return !feedback[static_cast<std::size_t>(mute) - 1].online && feedback[other()].online; });
-  const LineReport line = spindle->line_report();
-  ASSERT_EQ(line.units.size(), 2U);
-  const UnitReport& away = line.units[static_cast<std::size_t>(mute) - 1];
-  const UnitReport& well = line.units[other()];
+  // On a busy computer an answer of the other one may be late, too: what is told at last counts.
+  UnitReport away, well;
+  run_until([&] {
+    const LineReport line = spindle->line_report();
+    away = line.units.at(static_cast<std::size_t>(mute) - 1);
+    well = line.units.at(other());
+    return away.state == "does not answer" && away.traffic.timeouts > 0 && well.state == "answers";
+  });
+  EXPECT_EQ(spindle->axis_count(), 2U);
   EXPECT_EQ(away.unit, mute);
-  EXPECT_EQ(away.state, "does not answer");
-  EXPECT_GT(away.traffic.timeouts, 0U);
+  EXPECT_NE(well.unit, mute);
   ASSERT_TRUE(away.traffic.last_trouble);
-  EXPECT_THAT(away.traffic.last_trouble->message, HasSubstr("no whole answer"));
-  EXPECT_EQ(well.state, "answers");
+  EXPECT_THAT(away.traffic.last_trouble->message, HasSubstr("slave " + std::to_string(mute) + ", "));
   EXPECT_GT(well.traffic.answers, 0U);
-  EXPECT_LT(well.traffic.timeouts, away.traffic.timeouts) << "on a busy computer it may be late once";
 }
 
 INSTANTIATE_TEST_SUITE_P(Wires, ModbusTwoSpindles,

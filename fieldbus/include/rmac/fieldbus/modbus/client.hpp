@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -69,6 +70,8 @@ template <typename T = void>
 using Answer = tl::expected<T, Failure>;
 
 using Clock = std::chrono::steady_clock;
+/// The time that a line lives by. What waits for the kernel, as a transaction does for its deadline, has the kernel's.
+using Now = std::function<Clock::time_point()>;
 
 /// One Modbus line, TCP or RTU, over one libmodbus context: that frames, checks sums and waits; whether an answer is
 /// the one to the question is checked here (libmodbus 3.1.6 looks neither at a TCP answer's unit nor at what a write
@@ -88,13 +91,15 @@ using Clock = std::chrono::steady_clock;
 class Client {
  public:
   /// Checks the endpoint and opens nothing. The error names what is wrong in it.
-  [[nodiscard]] static Expected<std::unique_ptr<Client>> create(Endpoint endpoint, std::chrono::milliseconds deadline);
+  [[nodiscard]] static Expected<std::unique_ptr<Client>> create(Endpoint endpoint, std::chrono::milliseconds deadline,
+                                                                Now now = Clock::now);
   ~Client();
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
   [[nodiscard]] const Endpoint& endpoint() const noexcept;
   [[nodiscard]] bool connected() const noexcept;
+  [[nodiscard]] Clock::time_point now() const;
   /// Connects anew. Does not try again by itself.
   Answer<> connect();
   void disconnect() noexcept;

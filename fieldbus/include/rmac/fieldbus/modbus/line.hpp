@@ -29,6 +29,7 @@ struct LineConfig {
   std::chrono::milliseconds first_pause{
       100};  ///< before a line that broke is opened again; doubles until a device answers
   std::chrono::milliseconds longest_pause{5000};
+  Now now = Clock::now;
 };
 
 /// What a line went through since it was started.

@@ -99,6 +99,19 @@ TEST(LssOfSmallStacks, TakesBackOneThatAKilledScanLeftConfiguring) {
   EXPECT_FALSE(peer.configures() || left.configures());
 }
 
+// Red when one lost frame makes a node one that does not listen.
+TEST(LssOfSmallStacks, TakesBackOneThatDidNotHearItAtFirst) {
+  LssWire wire;
+  wire.add({1, 2, 3, 4});
+  wire.add({1, 2, 3, 5}).leave_configuring();
+  int switches = 0;
+  wire.listen = [&](const CanFrame& frame) { wire.cut = frame.data[0] == 0x04 && ++switches == 1; };
+  const auto found = lss_scan(wire);
+  wire.listen = nullptr;
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(keys(*found), (std::multiset<Key>{{1, 2, 3, 4}, {1, 2, 3, 5}}));
+}
+
 TEST(LssOfSmallStacks, SaysThatOneDoesNotListenInsteadOfSearchingForEver) {
   LssWire wire;
   wire.add({1, 2, 3, 4});
