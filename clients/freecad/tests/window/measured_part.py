@@ -9,6 +9,8 @@ import Part
 from FreeCAD import Vector
 from windowed import Appliance, WindowTest
 
+from rmac_freecad.window.measuring.measure_dialog import MeasureDialog
+
 ZERO = {"p": [0, 0, -40], "q": [1, 0, 0, 0]}  # of the part, where its lower corner is drawn at Z 0
 TURN_DEG = 0.2  # of the block on the machine, as its description has it
 
@@ -72,6 +74,13 @@ class MeasuredPartTest(WindowTest):
     def held(self):
         """Faces that hold all freedoms."""
         return [self.top(), *(self.face(normal) for normal in ((-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0)))]
+
+    def dialog(self, *names, built_in=True):
+        self.select(*names)
+        dialog = self.opened(MeasureDialog(self.session))
+        dialog.begin()
+        dialog.built_in.setChecked(built_in)
+        return dialog
 
     def select(self, *names):
         FreeCADGui.Selection.clearSelection()

@@ -16,7 +16,6 @@ from rmac_freecad.measuring import Touched, places_on
 from rmac_freecad.measuring.kept import keep_measured
 from rmac_freecad.surfaces.machining import placed_shape
 from rmac_freecad.window.measuring.compare_dialog import TAKEN, CompareDialog
-from rmac_freecad.window.measuring.measure_dialog import MeasureDialog
 from rmac_freecad.window.measuring.views import MeasuredView
 from windowed import process_until
 
@@ -192,12 +191,8 @@ class CompareDialogTest(CompareTest):
 
 class AtTheMachineTest(CompareTest):
     def measured(self):
-        self.select(*self.held())
-        dialog = self.opened(MeasureDialog(self.session))
-        dialog.begin()
-        dialog.built_in.setChecked(True)
-        process_until(dialog.measure_button.isEnabled, "it may be pressed")
-        dialog.measure_button.click()
+        dialog = self.dialog(*self.held())
+        self.press(dialog.measure_button)
         self.told(dialog, "were touched")
         return dialog.kept
 

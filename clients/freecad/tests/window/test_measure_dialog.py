@@ -18,23 +18,6 @@ from windowed import process_until
 
 
 class MeasureDialogTest(MeasuredPartTest):
-    def dialog(self, *names, built_in=True):
-        self.select(*names)
-        dialog = self.opened(MeasureDialog(self.session))
-        dialog.begin()
-        dialog.built_in.setChecked(built_in)
-        return dialog
-
-    def press(self, button):
-        process_until(button.isEnabled, f"{button.text()} may be pressed")
-        button.click()
-
-    def shown(self, dialog):
-        """The strokes of the places, once they are there."""
-        process_until(lambda: dialog.preview_button.isEnabled() or dialog.message.refused, lambda: dialog.message.text())
-        self.assertIsNone(dialog.message.refused, dialog.message.text())
-        return dialog.feature.ViewObject.Proxy.path._strokes
-
     def measured(self, *names):
         dialog = self.dialog(*names)
         self.press(dialog.measure_button)
@@ -249,12 +232,8 @@ class StopsTest(MeasuredPartTest):
     PACE = "real-time"
 
     def in_mid_measuring(self):
-        self.select(*self.held())
-        dialog = self.opened(MeasureDialog(self.session))
-        dialog.begin()
-        dialog.built_in.setChecked(True)
-        process_until(dialog.measure_button.isEnabled, "it may be pressed")
-        dialog.measure_button.click()
+        dialog = self.dialog(*self.held())
+        self.press(dialog.measure_button)
         process_until(lambda: dialog.measuring.done >= 1, lambda: dialog.message.text())
         return dialog
 

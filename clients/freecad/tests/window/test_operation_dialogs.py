@@ -31,16 +31,6 @@ class OperationTest(WindowTest):
         dialog.begin()
         return dialog
 
-    def press(self, button):
-        process_until(button.isEnabled, f"{button.text()} may be pressed")
-        button.click()
-
-    def shown(self, dialog):
-        """The strokes of the path in the document, once it is there."""
-        process_until(lambda: dialog.preview_button.isEnabled() or dialog.message.refused, lambda: dialog.message.text())
-        self.assertIsNone(dialog.message.refused, dialog.message.text())
-        return dialog.feature.ViewObject.Proxy.path._strokes
-
     def set(self, dialog, **values):
         for name, value in values.items():
             widget = dialog.fields[name].widget

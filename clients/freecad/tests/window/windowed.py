@@ -102,6 +102,16 @@ class WindowTest(unittest.TestCase):
         dialog.activateWindow()
         return dialog
 
+    def press(self, button):
+        process_until(button.isEnabled, f"{button.text()} may be pressed")
+        button.click()
+
+    def shown(self, dialog):
+        """The strokes of its path, or of its places, in the document, once they are there."""
+        process_until(lambda: dialog.preview_button.isEnabled() or dialog.message.refused, lambda: dialog.message.text())
+        self.assertIsNone(dialog.message.refused, dialog.message.text())
+        return dialog.feature.ViewObject.Proxy.path._strokes
+
     def refused(self, dialog, *words):
         """Waits for a message of something refused, and holds it against words that must stand in it."""
         process_until(lambda: dialog.message.refused is not None, lambda: f"a refusal with {words}; the dialog says {dialog.message.text()!r}")

@@ -25,7 +25,7 @@ from rmac_freecad.surfaces.sweep import ABOVE, BAND_SHARE, angle_of, check_sizes
 CLOSEST = 1 / 8  # of a step on a plane: there what is left is told instead
 TOLD = 3  # places where passes leave more
 ASIDE_MM = 5.0  # of the part, where the mill goes up beside it
-DISC_CLOSEST = 1 / 2  # of a disc: what passes so close leave no more of them take away
+DISC_CLOSEST = 1 / 2  # of a disc: what passes so close to each other leave, more of them do not take away
 DISC_WIDEST, CORNER_WIDEST = 1.6, 0.8  # radii of a disc, and of its corner, from pass to pass
 DISC_WITNESSES = 0.4  # radii of a disc, whose ridges are wide, for the step that tells how densely they are looked at
 OVER = 1.3  # steps, that a pass may go on beyond its face
