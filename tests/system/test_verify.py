@@ -23,7 +23,7 @@ REFUSALS = {
     "HasAnotherAbi": ("loading", "module ABI"),
     "StaysMapped": ("unloading", "stays mapped"),
     "EatsMemory": ("crash", "ABRT", "create"),
-    "IsSlow": ("call time", "us ", "in inverse", "pose"),  # on the average, and at worst where the computer is slow, too
+    "IsSlow": ("call time", "take more than 20 us", "in inverse", "pose"),
     "IsSlowInASlab": ("call time", "200 us are allowed at worst, in inverse", "pose"),
     "Remembers": ("state", "answers otherwise", "keeps something"),
     "SharesScratch": ("state", "answers otherwise", "another thread"),
