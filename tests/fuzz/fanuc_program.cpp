@@ -14,6 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.tool_diameters_mm = {{1, 4}, {2, 0}};
   options.whole_numbers = rmac::gcode::WholeNumbers::Units;
   options.variables = {{500, 1}};
+  options.block_delete = size % 2 == 1;
   options.bounds = {.idle_lines = 1000, .output_mb = 1};  // loops without an end are soon noticed
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   static_cast<void>(rmac::fanuc::import_program(text, options, [](std::string_view) {}));

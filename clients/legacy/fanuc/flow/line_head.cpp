@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "clients/legacy/fanuc/blocks/refusal.hpp"
+#include "clients/legacy/gcode/blocks/line.hpp"
 
 namespace rmac::fanuc {
 
@@ -33,10 +34,12 @@ LineHead read_head(std::string_view text) {
     const bool has_switch = at < text.size() && text[at] >= '1' && text[at] <= '9';
     if (has_switch) ++at;
   }
-  if (at >= text.size() || text[at] != 'N') return head;
-  const std::size_t place = at++;
-  head.number = read_digits(text, at);
-  if (!head.number) refuse(place, "N has a number of 1 to 9 digits");
+  if (at < text.size() && text[at] == 'N') {
+    const std::size_t place = at++;
+    head.number = read_digits(text, at);
+    if (!head.number) refuse(place, "N has a number of 1 to 9 digits");
+  }
+  at = std::min(text.find_first_not_of(gcode::Line::kComment, at), text.size());
   return head;
 }
 

@@ -6,11 +6,11 @@
 
 namespace rmac::fanuc {
 
-/// How a line begins: / or /2, and N with its number.
+/// How a line begins: / or /2, N with its number, and comments.
 struct LineHead {
   bool deletes = false;       ///< it is left out where the panel's switch is on
   std::optional<int> number;  ///< N
-  std::size_t behind = 0;     ///< where the rest stands
+  std::size_t behind = 0;     ///< where the rest stands, behind comments
 };
 
 /// `text`: as Line::text(). Throws a Refusal where N has no number that a line may have.

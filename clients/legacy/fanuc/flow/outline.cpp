@@ -15,10 +15,15 @@ namespace {
 /// A control has this many loops within each other, with these numbers.
 constexpr int kMostLoops = 3;
 
-/// Whether a line may begin a program, begin or end a loop, or be a %. Most lines do not, and a million of them are to
-/// be passed in no time.
+/// Whether a line may begin a program, begin or end a loop, or be a %, also behind comments. Most lines do not, and a
+/// million of them are to be passed in no time.
 bool may_be_of_outline(std::string_view line) noexcept {
-  const std::size_t at = line.find_first_not_of(" \t/Nn0123456789");
+  constexpr std::string_view kHead = " \t/Nn0123456789";
+  std::size_t at = line.find_first_not_of(kHead);
+  while (at != std::string_view::npos && line[at] == '(') {
+    const std::size_t close = line.find(')', at);
+    at = close == std::string_view::npos ? close : line.find_first_not_of(kHead, close + 1);
+  }
   return at != std::string_view::npos && std::string_view("OoWwDdEe:%").find(line[at]) != std::string_view::npos;
 }
 
@@ -63,9 +68,11 @@ void Outline::read(std::string_view text) {
     try {
       line.read(source, gcode::LineComments::None);
       const std::string_view words = line.text();
-      const std::size_t at = read_head(words).behind;
-      const std::string_view rest = words.substr(std::min(at, words.size()));
-      if (rest.starts_with('%') && std::exchange(marked, true)) break;
+      const LineHead head = read_head(words);
+      const std::size_t at = head.behind;
+      const std::string_view rest = words.substr(at);
+      // Behind a / it may be left out, and what follows it carried out.
+      if (rest.starts_with('%') && !head.deletes && std::exchange(marked, true)) break;
       if (rest.starts_with('O') || rest.starts_with(':')) begin_program(line, at, here);
       if (rest.starts_with("WHILE") || rest.starts_with("DO")) begin_loop(line, at, here, spot);
       if (rest.starts_with("END")) end_loop(line, at, spot);

@@ -38,6 +38,15 @@ TEST(FanucLoop, IsRefusedWhereItIsNone) {
   EXPECT_THAT(refusal_of(program_of("GOTO 5\nDO1\nN5 G0 X1.\nEND1")), StartsWith("5:1: N5 is within a loop"));
 }
 
+TEST(FanucLoop, StandsBehindACommentAndBehindAPercentSignThatIsLeftOut) {
+  EXPECT_THAT(xs_of("#1=0\n(TWICE) WHILE[#1LT2]DO1\n#1=#1+1\nG0X#1\nN7 (END9) (AND) END1 (HERE)"), ElementsAre(1, 2));
+  EXPECT_THAT(refusal_of(program_of("( ( ) DO1\nEND1")), StartsWith("5:1: a comment within this comment"));
+  EXPECT_THAT(refusal_of("\t()\tDO"), StartsWith("1:7: a loop has the number"));
+  Options options;
+  options.block_delete = true;
+  EXPECT_EQ(ends_of("#1=0\n/%\nWHILE[#1LT2]DO1\n#1=#1+1\nG0X#1\nEND1", options).size(), 2U);
+}
+
 TEST(FanucLoop, ThatNeverEndsIsEnded) {
   EXPECT_THAT(refusal_of(program_of("WHILE[1 EQ 1]DO1\nEND1")), HasSubstr("without a move"));
   EXPECT_THAT(refusal_of(program_of("N1 GOTO 1")), HasSubstr("without a move"));
@@ -113,6 +122,10 @@ TEST(FanucJump, OrASettingThatIsNotDueHasToBeOne) {
   }
   EXPECT_EQ(refusal_of(program_of("#2=0\nIF[#2 NE 0]THEN #1=1/#2\nIF[#2 NE 0]THEN #1=#500\nIF[#2 NE 0]THEN #3000=1")),
             "taken");
+}
+
+TEST(FanucSubprogram, HasItsNumberBehindACommentToo) {
+  EXPECT_THAT(xs_of("M98 P2", "(FIRST)\n(SIDE) O2\nG0 X2.\nM99\n"), ElementsAre(2));
 }
 
 TEST(FanucSubprogram, IsCalledOnceAtLeast) {
