@@ -44,9 +44,10 @@ class Appliance:
         # What one of the build's appliances verified another one need not; a verdict says for which files it holds.
         verified = BUILD / "verified"
         verified.mkdir(exist_ok=True)
-        (self.folder / "state").mkdir()
-        if not own_verdicts:
-            (self.folder / "state/verified").symlink_to(verified)
+        state = self.folder / settings["state_folder"]
+        state.mkdir(exist_ok=True)
+        if not own_verdicts and not (state / "verified").exists():
+            (state / "verified").symlink_to(verified)
         self.configuration = self.folder / "rmacd.json"
         self.configuration.write_text(json.dumps(settings))
         self.log = []

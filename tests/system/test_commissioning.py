@@ -1,5 +1,6 @@
 """rmac tune and rmac measure-following: what they find, and that they change nothing unless told to."""
 
+import contextlib
 import csv
 import json
 import pathlib
@@ -71,16 +72,15 @@ class Commands(unittest.TestCase):
     def test_tune_makes_a_loop_for_an_axis_that_bends(self):
         """What it proposes is taken, with the filters it belongs to, and holds where the resonance is 15 % elsewhere."""
         soft = {"Gains": [120, 2000, 1.2], "MaxFollowingError": 1}
-        appliance = self.bending(274, soft)
-        with tempfile.TemporaryDirectory() as folder:
+        with self.bending(274, soft) as appliance, tempfile.TemporaryDirectory() as folder:
             words = ("tune", "0", "--travel", "20", "-o", str(pathlib.Path(folder, "tune.png")))
             found = json.loads(self.rmac(appliance, "--json", *words))
             applied = json.loads(self.rmac(appliance, "--json", *words, "--apply"))
+            again = self.rmac(appliance, "--json", "trace", "record")
+            head = json.loads(appliance.client().call("FlightRecorder.Read", Name=json.loads(again)["name"],
+                                                      Offset=0)["text"].splitlines()[0])
         self.assertAlmostEqual(found["resonances"][0]["frequency"], 274, delta=3)
         self.assertTrue(found["before"]["stable"] and found["elsewhere"]["stable"])
-        again = self.rmac(appliance, "--json", "trace", "record")
-        head = json.loads(appliance.client().call("FlightRecorder.Read", Name=json.loads(again)["name"],
-                                                  Offset=0)["text"].splitlines()[0])
         joint, filters = head["joints"][0], applied["proposed"]["filters"]
         self.assertEqual(joint["law"], "DMACXYZPIDServoControlLaw", "the law is back")
         self.assertEqual((joint["gains"], joint["low_pass"], len(joint["resonances"])),
@@ -91,8 +91,8 @@ class Commands(unittest.TestCase):
         if not tuned["LowPass"]:
             del tuned["LowPass"]
         for hz in (233, 274, 315):
-            with self.subTest(hz=hz):
-                client = self.bending(hz, tuned).client()
+            with self.subTest(hz=hz), self.bending(hz, tuned) as appliance:
+                client = appliance.client()
                 client.call("authority.acquire")
                 client.call("RMAC_CAM.Home")
                 wait_for_rest(client)
@@ -122,8 +122,8 @@ class Commands(unittest.TestCase):
     def test_tune_begins_softly_where_the_gains_do_not_fit(self):
         """With the gains of the tree, which were made for axes that are rigid, and of another mass."""
         for hz, heavier, joints in ((274, 1, (0,)), (600, 1 / 3, (2,)), (346, 3, ())):
-            with self.subTest(hz=hz, heavier=heavier), tempfile.TemporaryDirectory() as folder:
-                appliance = self.bending(hz, {}, heavier, load=False)
+            with self.subTest(hz=hz, heavier=heavier), tempfile.TemporaryDirectory() as folder, \
+                    self.bending(hz, {}, heavier, load=False) as appliance:
                 refused = appliance.rmac("load", "DMACXYZ")
                 self.assertEqual(refused.returncode, 1)
                 self.assertIn("stability: on the model of its axes, where encoders are sound", refused.stderr)
@@ -145,10 +145,11 @@ class Commands(unittest.TestCase):
                     pass
                 self.assertEqual(client.state()["state"], "Idle")
 
+    @contextlib.contextmanager
     def bending(self, hz, joint, heavier=1.0, load=True):
         """DMACXYZ, with axes of two masses that swing at `hz`, so many times heavier than it says, and `joint` in the
         data of its first three."""
-        appliance = self.enterContext(Appliance(own_tree=True, flight_recorder={"seconds": 30}))
+        appliance = Appliance(own_tree=True, flight_recorder={"seconds": 30})
         file = next(appliance.tree.glob("*/*/DMACXYZ/device.json"))
         device = json.loads(file.read_text())
         motor, table = 0.93e-5 * heavier, 1.27e-5 * heavier
@@ -161,9 +162,10 @@ class Commands(unittest.TestCase):
             data.update(joint)
         device["Joints"][2]["ServoControlLaw"]["Parameters"]["load"] = [117.7]
         file.write_text(json.dumps(device))
-        if load:
-            self.rmac(appliance, "load", "DMACXYZ")
-        return appliance
+        with appliance:
+            if load:
+                self.rmac(appliance, "load", "DMACXYZ")
+            yield appliance
 
     def test_laws_and_gains_change_in_motion_without_a_step(self):
         """As a client does it: the plan goes on, and no joint's effort jumps where its law changes."""
