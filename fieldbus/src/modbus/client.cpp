@@ -220,9 +220,6 @@ Client::~Client() {
   disconnect();
 }
 
-const Endpoint& Client::endpoint() const noexcept {
-  return impl_->endpoint;
-}
 bool Client::connected() const noexcept {
   return impl_->open;
 }

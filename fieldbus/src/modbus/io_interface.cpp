@@ -112,7 +112,6 @@ void IoInterface::stop() noexcept {
   impl_->line.stop();
   impl_->station.outputs = 0;
   impl_->station.asked_at = Clock::time_point::min().time_since_epoch().count();
-  impl_->station.forget();
 }
 
 std::string IoInterface::fault_text() const {

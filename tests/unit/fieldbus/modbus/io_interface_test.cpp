@@ -174,6 +174,18 @@ TEST_P(ModbusIo, SwitchesItsOutputsOffWhenItEnds) {
   }
 }
 
+// Red when what was written before stands for what the device has: a person, or another master, may have switched it.
+TEST_P(ModbusIo, SwitchesOffWhatSomebodyElseSwitchedOn) {
+  ASSERT_TRUE(io->start());
+  ASSERT_TRUE(inputs_become(0, 0b111100000000));
+  bank.set(Table::Coils, 6, 1);
+  io->stop();
+  EXPECT_EQ(bank.get(Table::Coils, 6), 0) << "at its end";
+  bank.set(Table::Coils, 6, 1);
+  ASSERT_TRUE(io->start());
+  EXPECT_EQ(bank.get(Table::Coils, 6), 0) << "at its begin";
+}
+
 TEST_P(ModbusIo, FailsWhenItsInputsGrowOldAndLetsItsOutputsFall) {
   make(50ms);
   ASSERT_TRUE(io->start());

@@ -97,7 +97,6 @@ class Client {
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
-  [[nodiscard]] const Endpoint& endpoint() const noexcept;
   [[nodiscard]] bool connected() const noexcept;
   [[nodiscard]] Clock::time_point now() const;
   /// Connects anew. Does not try again by itself.
