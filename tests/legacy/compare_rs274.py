@@ -38,11 +38,11 @@ class Program:
         self.absolute_centres = False
         self.at = list(START)  # mm, in the coordinates of the program
         self.offset = [0.0, 0.0, 0.0]
-        self.write("g21 g90 g17 g40 g80 g94 g54")
+        self.write("g21 g90 g17 g40 g80 g94 g54 g98")
         self.write("F%d G0 X%g Y%g Z%g" % (self.random.randint(50, 3000), *START))
         for _ in range(self.random.randint(5, 40)):
             self.random.choice([self.straight, self.straight, self.arc, self.arc, self.rounded_arc, self.radius_arc, self.mode, self.unit_change, self.shift,
-                                self.switch, self.drill, self.parameters])()
+                                self.switch, self.drill, self.parameters, self.polar, self.told])()
         self.write(self.random.choice(["M2", "m30"]))
 
     def write(self, text):
@@ -218,6 +218,35 @@ class Program:
         # Where that is rs274 tells; here the next place is named whole.
         self.incremental = False
         self.at = [self.said(v) for v in (1, 2, 3)]
+        self.write("G0 X%.4f Y%.4f Z%.4f" % tuple(v / self.unit for v in self.at))
+
+    def polar(self):
+        if self.plane != "17" or math.hypot(*self.at[:2]) < 0.01:
+            return
+        distance, angle = math.hypot(*self.at[:2]), math.atan2(self.at[1], self.at[0])
+        words = []
+        if self.random.random() < 0.7:
+            value = self.said(self.random.uniform(1, 30))
+            words.append("@%.4f" % (value / self.unit))
+            distance = value + (distance if self.incremental else 0)
+        if not words or self.random.random() < 0.7:
+            degrees = round(self.random.uniform(-400, 400), 3)
+            words.append("^%.3f" % degrees)
+            angle = math.radians(degrees) + (angle if self.incremental else 0)
+        self.write(self.random.choice(["G0 ", "G1 "]) + " ".join(words))
+        self.at[:2] = [distance * math.cos(angle), distance * math.sin(angle)]
+
+    def told(self):
+        """What the control tells of itself becomes places."""
+        names = ["metric", "imperial", "absolute", "incremental", "units_per_minute", "units_per_rev", "inverse_time", "ijk_absolute_mode",
+                 "spindle_on", "spindle_cw", "spindle_rpm_mode", "flood", "mist", "feed_hold", "adaptive_feed", "lathe_radius_mode",
+                 "retract_r_plane", "retract_old_z", "call_level"]
+        tens = ["plane", "motion_mode", "coord_system", "rpm", "line"]
+        self.write("#1=[#<_%s> + 2*#<_%s>] #2=[#<_%s> / 100] #3=#<_%s>" % (*self.random.sample(names, 2), self.random.choice(tens),
+                                                                         self.random.choice("xyz")))
+        self.incremental = False
+        self.write("G90 G0 X#1 Y#2 Z#3")
+        self.at = [self.said(v) for v in (2, 3, 4)]
         self.write("G0 X%.4f Y%.4f Z%.4f" % tuple(v / self.unit for v in self.at))
 
 

@@ -9,6 +9,7 @@
 #include "clients/legacy/gcode/blocks/comments.hpp"
 #include "clients/legacy/gcode/modes/offsets.hpp"
 #include "clients/legacy/gcode/named_io.hpp"
+#include "clients/legacy/gcode/polar.hpp"
 
 namespace rmac::gcode {
 
@@ -67,6 +68,7 @@ After Interpreter::execute(Block& block, const Line& line) {
   }
   if (const auto& code = block.m(MGroup::Stop); code && code->number >= 98) return numbered_program(block, *code);
   require_only_moves(block, modes_, compensation_);
+  keep_overrides(block);
   set_speeds(block);
   set_tool(block);
   if (!(switches_off_behind(block) && block.m(MGroup::CoolantOff))) switches_.switch_coolant(block);
@@ -79,6 +81,7 @@ After Interpreter::execute(Block& block, const Line& line) {
   if (const auto& system = block.g(GGroup::System)) select_system(block, *system, rules_, coordinates_);
   set_control(block);
   set_distances(block);
+  place_polar(block, modes_, {tip(0), tip(1)});
   turning_.act(block);
   act_once(block);
   tool_axis_.read(block);
@@ -95,6 +98,16 @@ void Interpreter::read_comments(const Line& line) {
     const auto message = message_of(comment);
     (message ? message_ : block_comment_) = trimmed(message.value_or(comment));
   }
+}
+
+/// M50 to M53: what is in force anyway is no more than said.
+void Interpreter::keep_overrides(Block& block) {
+  constexpr int kFirst = 50, kAdaptiveFeed = 52, kLast = 53;
+  const auto& code = block.m(MGroup::Override);
+  if (!code || code->number < kFirst || code->number > kLast) return;
+  const Word* word = block.find('P');
+  const bool on = word == nullptr || word->value != 0;
+  if (on == (code->number == kAdaptiveFeed)) refuse(code->place, fmt::format("M{}: {}", code->number, kOverridesStay));
 }
 
 void Interpreter::set_speeds(Block& block) {

@@ -49,6 +49,7 @@ class Interpreter {
 
  private:
   void read_comments(const Line& line);
+  static void keep_overrides(Block& block);
   void set_speeds(Block& block);
   void set_tool(Block& block);
   [[nodiscard]] bool switches_off_behind(const Block& block) const;

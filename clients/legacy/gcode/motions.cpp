@@ -41,7 +41,9 @@ double Motions::reference_value(const Point& reference, std::size_t axis, std::s
 double Motions::machine_value(const Word& word, std::size_t axis) const {
   require_unplaced(coordinates_, word.place);
   if (modes_.incremental) refuse(word.place, "G53 under G91; write G90 before it");
-  if (rules_.zero_is_reference && word.value == 0) {
+  const auto& offset = coordinates_.offset(coordinates_.active()).at(axis);
+  const bool is_reference = rules_.zero_is_reference || (options_.reference_mm && (axis == 2 || !offset));
+  if (is_reference && word.value == 0) {
     if (options_.reference_mm) {
       constexpr double kSame_mm = 1e-6;
       const double value = reference_value(*options_.reference_mm, axis, word.place);
@@ -57,7 +59,6 @@ double Motions::machine_value(const Word& word, std::size_t axis) const {
            "where the machine's zero is, in the coordinates of the part, is not known here; give --reference-point "
            "X,Y,Z, or write the way there without G53");
   }
-  const auto& offset = coordinates_.offset(coordinates_.active()).at(axis);
   if (!offset) {
     refuse(word.place,
            "where the work system is in the machine is not known, so neither is this place; write it without G53, "
@@ -65,7 +66,8 @@ double Motions::machine_value(const Word& word, std::size_t axis) const {
   }
   if (axis == 2) {
     refuse(word.place,
-           "machine Z is that of the spindle without its tool, whose length is not known here; write Z without G53");
+           "machine Z is that of the spindle without its tool, whose length is not known here; write Z without G53, or "
+           "Z0 and give --reference-point X,Y,Z");
   }
   return modes_.mm(word) - *offset;
 }

@@ -33,6 +33,10 @@ class Switches {
   [[nodiscard]] std::optional<int> tool() const noexcept { return tool_; }
   /// The last T.
   [[nodiscard]] std::optional<int> selected() const noexcept { return selected_; }
+  /// Of the spindle, as of MachineSwitches.
+  [[nodiscard]] int direction() const noexcept { return machine_.direction(); }
+  [[nodiscard]] bool mist() const noexcept { return machine_.mist(); }
+  [[nodiscard]] bool flood() const noexcept { return machine_.flood(); }
   [[nodiscard]] double rpm() const noexcept { return machine_.rpm(); }
 
  private:

@@ -13,6 +13,9 @@ class MachineSwitches {
   /// 1: clockwise, -1: the other way, 0: not at all.
   void turn(int direction) noexcept { direction_ = direction; }
   [[nodiscard]] bool spindle_turns() const noexcept { return direction_ != 0 && rpm_ != 0; }
+  [[nodiscard]] int direction() const noexcept { return direction_; }
+  [[nodiscard]] bool mist() const noexcept { return mist_; }
+  [[nodiscard]] bool flood() const noexcept { return flood_; }
   [[nodiscard]] double rpm() const noexcept { return rpm_; }
   /// Stops the spindle where a program does not say so, and lets it turn again.
   void hold_spindle();

@@ -9,6 +9,7 @@
 #include "clients/legacy/rs274/blocks/reader.hpp"
 #include "clients/legacy/rs274/blocks/refusal.hpp"
 #include "clients/legacy/rs274/flow/flow.hpp"
+#include "clients/legacy/rs274/told.hpp"
 #include "clients/legacy/rs274/work_systems.hpp"
 
 namespace rmac::rs274 {
@@ -36,7 +37,7 @@ class Import {
         flow_(program, options.block_delete, options.bounds, parameters_, [this] {
           return Made{writer_.moves(), writer_.bytes()};
         }) {
-    parameters_.ask_control([this](int number) { return control_parameter(number); });
+    parameters_.ask_control([this](const gcode::Name& name) { return told(interpreter_, flow_, name); });
   }
 
   tl::expected<Summary, Error> run() {
@@ -60,16 +61,6 @@ class Import {
     if (after.what == After::What::Call) flow_.call(after.label, after.times, after.place);
     if (after.what == After::What::EndOfNumbered) flow_.end_of_numbered(after.place);
     if (after.what == After::What::End) extent_.end();
-  }
-
-  /// Of the numbers that LinuxCNC's manual gives to the control, those that a program's own words make known. Those of
-  /// G92 and the work systems (5211 to 5383) are not: the control keeps the former while G92.2 suspends them, and the
-  /// latter in the unit of the machine, which no program says.
-  [[nodiscard]] std::optional<double> control_parameter(int number) const {
-    if (number == 5220) return static_cast<double>(interpreter_.coordinates().active() + 1);
-    if (number == 5400) return interpreter_.switches().tool();
-    if (number < 5420 || number > 5422) return std::nullopt;
-    return interpreter_.tip(static_cast<std::size_t>(number - 5420));
   }
 
   const Options& options_;

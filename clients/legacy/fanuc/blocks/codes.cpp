@@ -159,7 +159,7 @@ constexpr auto kM = std::to_array<gcode::MCode>({
     {29, MGroup::Spindle, kThread},
     {30, MGroup::Stop, {}},
     {48, MGroup::Override, {}},
-    {49, MGroup::Override, "overrides belong to the operator, and no program takes them away"},
+    {49, MGroup::Override, gcode::kOverridesStay},
     {198, MGroup::Stop, "a program of another memory is not read; write it into this file, and M98"},
 });
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "clients/legacy/gcode/blocks/refusal.hpp"
 
@@ -25,6 +26,7 @@ void Block::clear() noexcept {
   g_.fill(std::nullopt);
   m_.fill(std::nullopt);
   words_ = used_ = 0;
+  polar_radius_ = polar_angle_ = std::nullopt;
   codes_ = 0;
 }
 
@@ -32,6 +34,14 @@ void Block::add_word(char letter, const Word& word) {
   if (has(letter)) refuse(word.place, fmt::format("two {} words in one block; write two blocks", letter));
   words_ |= bit(letter);
   word_.at(static_cast<std::size_t>(letter - 'A')) = word;
+}
+
+void Block::add_polar_radius(const Word& word) {
+  if (std::exchange(polar_radius_, word)) refuse(word.place, "two @ words in one block; write two blocks");
+}
+
+void Block::add_polar_angle(const Word& word) {
+  if (std::exchange(polar_angle_, word)) refuse(word.place, "two ^ words in one block; write two blocks");
 }
 
 Word Block::take(char letter) noexcept {

@@ -34,11 +34,14 @@ class Block {
   void add_word(char letter, const Word& word);
   /// A word that the block has, and has no more then.
   Word take(char letter) noexcept;
+  /// @ and ^, as above.
+  void add_polar_radius(const Word& word);
+  void add_polar_angle(const Word& word);
   /// Throws a Refusal for what does not go together.
   void check_together() const;
 
   /// Nothing but comments, numbers of lines and parameters.
-  [[nodiscard]] bool empty() const noexcept { return words_ == 0 && codes_ == 0; }
+  [[nodiscard]] bool empty() const noexcept { return words_ == 0 && codes_ == 0 && !polar_radius_ && !polar_angle_; }
   [[nodiscard]] const std::optional<Code>& g(GGroup group) const { return g_.at(static_cast<std::size_t>(group)); }
   [[nodiscard]] const std::optional<Code>& m(MGroup group) const { return m_.at(static_cast<std::size_t>(group)); }
   /// Whether the one code of group 0 is this one.
@@ -53,6 +56,8 @@ class Block {
   [[nodiscard]] bool has_any(std::string_view letters) const noexcept;
   /// Where a word stands that the block has.
   [[nodiscard]] std::size_t place(char letter) const { return word_.at(static_cast<std::size_t>(letter - 'A')).place; }
+  [[nodiscard]] const std::optional<Word>& polar_radius() const noexcept { return polar_radius_; }
+  [[nodiscard]] const std::optional<Word>& polar_angle() const noexcept { return polar_angle_; }
   /// A word that the block has; whoever asks for it, uses it.
   [[nodiscard]] const Word& use(char letter);
   /// The same, where the block has it.
@@ -66,6 +71,7 @@ class Block {
   std::array<std::optional<Code>, kGGroups> g_{};
   std::array<std::optional<Code>, kMGroups> m_{};
   std::array<Word, 26> word_{};
+  std::optional<Word> polar_radius_, polar_angle_;
   std::uint32_t words_ = 0, used_ = 0;
   std::size_t codes_ = 0;
 };

@@ -42,4 +42,6 @@ struct MCode {
   std::string_view refusal;
 };
 
+inline constexpr std::string_view kOverridesStay = "overrides belong to the operator, and no program takes them away";
+
 }  // namespace rmac::gcode

@@ -108,7 +108,6 @@ constexpr auto kG = std::to_array<GCode>({
 });
 
 constexpr std::string_view kOutput = "the appliance has no analogue outputs";
-constexpr std::string_view kOverrideOff = "overrides belong to the operator, and no program takes them away";
 constexpr std::string_view kState = "saving and restoring modes is not taken yet; write the modes out";
 
 constexpr auto kM = std::to_array<MCode>({
@@ -125,11 +124,11 @@ constexpr auto kM = std::to_array<MCode>({
     {19, MGroup::Spindle, "turning the spindle to an angle is not taken"},
     {30, MGroup::Stop, {}},
     {48, MGroup::Override, {}},
-    {49, MGroup::Override, kOverrideOff},
-    {50, MGroup::Override, kOverrideOff},
-    {51, MGroup::Override, kOverrideOff},
-    {52, MGroup::Override, kOverrideOff},
-    {53, MGroup::Override, kOverrideOff},
+    {49, MGroup::Override, gcode::kOverridesStay},
+    {50, MGroup::Override, {}},
+    {51, MGroup::Override, {}},
+    {52, MGroup::Override, {}},
+    {53, MGroup::Override, {}},
     {60, MGroup::Stop, {}},
     {61, MGroup::Tool, "which tool is in the spindle a person says with rmac confirm"},
     {62, MGroup::Io, {}},

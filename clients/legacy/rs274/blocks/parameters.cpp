@@ -11,6 +11,8 @@ namespace rmac::rs274 {
 gcode::Maybe Parameters::value(const gcode::Name& name, std::size_t place) const {
   if (const auto* text = std::get_if<std::string_view>(&name)) {
     if (const auto found = read(*text)) return found;
+    if (control_name(*text))
+      refuse(place, fmt::format("#<{}> is the control's own, and not known here; write the value instead", *text));
     refuse(place, fmt::format("#<{}> was not set before; set it in the program", *text));
   }
   const int number = std::get<int>(name);
@@ -32,6 +34,7 @@ std::optional<double> Parameters::read(int number) const {
 }
 
 std::optional<double> Parameters::read(std::string_view name) const {
+  if (control_name(name)) return of_control_ ? of_control_(name) : std::nullopt;
   const Names& all = is_global(name) ? global_ : names();
   const auto found = all.find(name);
   return found == all.end() ? std::nullopt : std::optional(found->second);

@@ -10,11 +10,12 @@
 #include <vector>
 
 #include "clients/legacy/gcode/values/grammar.hpp"
+#include "clients/legacy/rs274/blocks/control_names.hpp"
 
 namespace rmac::rs274 {
 
-/// #1 to #5602, and #<names>. Those from 5061 on are the control's own: programs read some and set none. Names that
-/// begin with _ hold everywhere, others in the program or subprogram that sets them.
+/// #1 to #5602, and #<names>. Those from 5061 on, and some names, are the control's own: programs read some and set
+/// none. Names that begin with _ hold everywhere, others in the program or subprogram that sets them.
 class Parameters : public gcode::Variables {
  public:
   static constexpr int kFirstOfControl = 5061, kLast = 5602;
@@ -25,7 +26,7 @@ class Parameters : public gcode::Variables {
   Parameters() { returned(std::nullopt); }
 
   /// What the control knows of one of its own; none where it knows nothing.
-  using OfControl = std::function<std::optional<double>(int number)>;
+  using OfControl = std::function<std::optional<double>(const gcode::Name& name)>;
   void ask_control(OfControl of_control) { of_control_ = std::move(of_control); }
 
   [[nodiscard]] gcode::Maybe value(const gcode::Name& name, std::size_t place) const override;
@@ -37,8 +38,10 @@ class Parameters : public gcode::Variables {
   void set(std::string_view name, double value);
   /// Whether a program only reads this name.
   [[nodiscard]] static bool is_of_control(std::string_view name) noexcept {
-    return name == kValue || name == kReturned;
+    return is_of_return(name) || control_name(name);
   }
+  /// Whether the last sub gave it back.
+  [[nodiscard]] static bool is_of_return(std::string_view name) noexcept { return name == kValue || name == kReturned; }
 
   /// A subprogram begins, with names of its own and, where it has arguments, with its own #1 to #30.
   void enter(const std::optional<Arguments>& arguments);

@@ -70,7 +70,8 @@ void BlockReader::read_word(std::string_view text, std::size_t& at, const Parame
     return;
   }
   if (letter == '#') return read_assignment(text, at, parameters);
-  if (letter < 'A' || letter > 'Z') {
+  const bool is_polar = letter == '@' || letter == '^';
+  if (!is_polar && (letter < 'A' || letter > 'Z')) {
     const bool shows = letter > ' ' && letter < '\x7f';
     refuse(place,
            shows ? fmt::format("a word begins with a letter, not with {}", letter) : "a character that no program has");
@@ -81,6 +82,8 @@ void BlockReader::read_word(std::string_view text, std::size_t& at, const Parame
   const double value = gcode::Expression(text, grammar(), parameters).value(at);
   if (letter == 'G') return add_g(value, place, block);
   if (letter == 'M') return add_m(value, place, block);
+  if (letter == '@') return block.add_polar_radius({value, place});
+  if (letter == '^') return block.add_polar_angle({value, place});
   if (!block.has(letter) && kAxesNotTaken.find(letter) != std::string_view::npos) {
     refuse(place, fmt::format("axis {} is not taken yet: programs of X, Y and Z are", letter));
   }
@@ -95,12 +98,16 @@ void BlockReader::read_assignment(std::string_view text, std::size_t& at, const 
   ++at;
   assignment.value = expression.value(at);
   const int* number = std::get_if<int>(&assignment.name);
+  constexpr int kShowsDebug = 5599;
+  if (number != nullptr && *number == kShowsDebug) return;  // whether (DEBUG, …) is shown, which it is not
   if (number != nullptr && *number >= Parameters::kFirstOfControl) {
     refuse(place, fmt::format("#{} is the control's own; set offsets by G10 and G92", *number));
   }
   const auto* name = std::get_if<std::string_view>(&assignment.name);
-  if (name != nullptr && Parameters::is_of_control(*name))
+  if (name != nullptr && Parameters::is_of_return(*name))
     refuse(place, "this is what the last sub gave back; return [a value] sets it");
+  if (name != nullptr && Parameters::is_of_control(*name))
+    refuse(place, fmt::format("#<{}> is the control's own, which a program reads; give yours another name", *name));
   assignments_.push_back(assignment);
 }
 

@@ -34,6 +34,9 @@ class Flow {
   /// `O100` of the numbered program or sub that runs; empty in the main program.
   [[nodiscard]] std::string running() const;
 
+  /// How many of those run within each other.
+  [[nodiscard]] std::size_t call_level() const noexcept { return calls_.size(); }
+
   /// M98, in the line that was given out: the numbered program, that many times. `place`: for a Refusal.
   void call(int label, int times, std::size_t place);
   /// M99, likewise.

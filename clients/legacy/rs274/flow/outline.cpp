@@ -193,14 +193,15 @@ void Outline::go_on_with_if(std::size_t index) {
   open_.pop_back();
 }
 
-/// break, continue and return: of the block around them that has their label.
+/// break and continue: of the block around them that has their label; return: of the sub around it.
 void Outline::leave(std::size_t index) {
   Statement& statement = statements_[index];
   const bool of_sub = statement.keyword == Keyword::Return;
   for (auto block = open_.rbegin(); block != open_.rend(); ++block) {
     const Statement& outer = statements_[block->begin];
     const bool is_sub = outer.keyword == Keyword::Sub;
-    if (outer.label == statement.label && is_sub == of_sub) {
+    // LinuxCNC has each return leave the sub around it, whatever its label.
+    if (is_sub == of_sub && (of_sub || outer.label == statement.label)) {
       if (outer.keyword == Keyword::Repeat || outer.keyword == Keyword::If)
         refuse(statement.place, fmt::format("{} of {} {}: it is for while and do, as in LinuxCNC",
                                             word_of(statement.keyword), outer.name(), word_of(outer.keyword)));
@@ -209,8 +210,8 @@ void Outline::leave(std::size_t index) {
     }
     if (is_sub) break;
   }
-  refuse(statement.place, fmt::format("{} {} stands in no {} of this label", statement.name(),
-                                      word_of(statement.keyword), of_sub ? "sub" : "while or do"));
+  refuse(statement.place, fmt::format("{} {} stands in no {}", statement.name(), word_of(statement.keyword),
+                                      of_sub ? "sub" : "while or do of this label"));
 }
 
 std::optional<std::size_t> Outline::find(const std::string& label, bool numbered) const {

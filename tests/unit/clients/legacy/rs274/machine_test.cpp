@@ -111,5 +111,11 @@ TEST(Rs274Offset, IsWhereWhoImportsSaysIt) {
   EXPECT_THAT(refusal_of(program_of("G53 G0 Z0"), options), HasSubstr("without its tool"));
 }
 
+TEST(Rs274Machine, KeepsOverridesWhereTheOperatorHasThem) {
+  EXPECT_THAT(ends_of("M48\nM50\nM51 P1\nM53 P1\nM52 P0\nG0 X1"), ElementsAre(ElementsAre(1, 0, 10)));
+  for (const char* code : {"M49", "M50 P0", "M51 P0", "M52", "M52 P1", "M53 P0"})
+    EXPECT_THAT(refusal_of(program_of(code)), HasSubstr("overrides belong to the operator")) << code;
+}
+
 }  // namespace
 }  // namespace rmac::rs274

@@ -10,6 +10,19 @@ using nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+// As headers and tool changes of posts have it: G53 G0 Z0.
+TEST(Rs274Reference, IsWhereTheMachinesZeroIsWhoseZIsOfNoTool) {
+  Options options;
+  options.reference_mm = {{100, 200, 300}};
+  EXPECT_THAT(ends_of("G53 G0 Z0\nG0 G53 X0 Y0", options),
+              ElementsAre(std::vector<double>{0, 0, 300}, std::vector<double>{100, 200, 300}));
+  EXPECT_THAT(refusal_of(program_of("G53 G0 Z-5"), options), HasSubstr("give --offset"));
+  options.offsets[0] = {10, 20, 30};
+  EXPECT_EQ(ends_of("G53 G0 X0 Y0 Z0", options).back(), (std::vector<double>{-10, -20, 300}));
+  EXPECT_THAT(refusal_of(program_of("G53 G0 Z-5"), options), HasSubstr("Z0 and give --reference-point"));
+  EXPECT_THAT(refusal_of(program_of("G91 G53 G0 Z0"), options), HasSubstr("G53 under G91"));
+}
+
 TEST(Rs274Reference, IsReachedByWayOfTheProgrammedPlace) {
   Options options;
   options.reference_mm = {{100, 200, 300}};

@@ -78,7 +78,7 @@ TEST(Rs274Sub, IsRefusedWhereItIsNotWholeOrNotThere) {
       {"o1 sub\nX1", "1:1: o1 sub is not closed; write o1 endsub"},
       {"o1 sub\no2 endsub", "2:1: o2 endsub does not belong"},
       {"o1 sub\no1 endsub\no1 sub\no1 endsub", "3:1: o1 is defined in line 1 already"},
-      {"o1 sub\no2 return\no1 endsub\no1 call", "2:1: o2 return stands in no sub of this label"},
+      {"o1 sub\no1 endsub\no1 return\no1 call", "3:1: o1 return stands in no sub"},
       {"o1 return [3]", "1:1: o1 return stands in no sub"},
       {"#1=1\no#1 sub\no#1 endsub", "2:1: what is called later has a number or a name"},
       {"o1 while [1]\no2 sub\no1 break\no2 endsub\no1 endwhile", "2:1: o2 sub within o1 while"},
@@ -90,6 +90,13 @@ TEST(Rs274Sub, IsRefusedWhereItIsNotWholeOrNotThere) {
     const auto done = carried_out(program);
     EXPECT_THAT(done.empty() ? "" : done.back(), StartsWith(message)) << program;
   }
+}
+
+// LinuxCNC's own examples give it the label of the condition that it stands in.
+TEST(Rs274Sub, IsLeftByAReturnOfAnyLabel) {
+  EXPECT_THAT(carried_out("o1 sub\no2 if [#1 GT 0]\no2 return [#1*2]\no2 endif\nX9\no3 return\nX8\no1 endsub\n"
+                          "o1 call [4]\nY#<_value>\no1 call [0]\nY#<_value>"),
+              ElementsAre("Y8", "X9", "Y0"));
 }
 
 TEST(Rs274NumberedProgram, IsCalledByM98AsOftenAsLSays) {

@@ -1,0 +1,49 @@
+#include "clients/legacy/gcode/polar.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "clients/legacy/gcode/blocks/refusal.hpp"
+
+namespace rmac::gcode {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+void require_plain(const Block& block, const Modes& modes, std::size_t place) {
+  if (modes.plane.normal != 2) refuse(place, "@ and ^ are in the plane of X and Y; write G17 before them");
+  for (const char letter : {'X', 'Y'}) {
+    if (block.has(letter)) refuse(block.place(letter), "X or Y beside @ or ^; write one or the other");
+  }
+  if (block.g(GGroup::Once)) refuse(place, "@ and ^ go with moves and cycles alone; write X and Y");
+  if (modes.incremental && block.has('L'))
+    refuse(block.place('L'), "repeats under G91 go on along X and Y; with @ or ^ write each hole");
+}
+
+}  // namespace
+
+void place_polar(Block& block, const Modes& modes, const ProgramTip& tip) {
+  const auto &radius = block.polar_radius(), &angle = block.polar_angle();
+  if (!radius && !angle) return;
+  const std::size_t place = radius ? radius->place : angle->place;
+  require_plain(block, modes, place);
+  const bool goes_on = modes.incremental || !radius || !angle;
+  if (goes_on && !(tip[0] && tip[1])) {
+    refuse(place,
+           "where the tool is now is not known, so neither is where this leads; write both @ and ^ under G90, or "
+           "a G0 to X, Y and Z before it");
+  }
+  const double x = goes_on ? *tip[0] : 0, y = goes_on ? *tip[1] : 0;
+  const double distance = std::hypot(x, y);
+  if (goes_on && distance == 0 && (modes.incremental || !angle))
+    refuse(place, "the tool is at zero, where it has no angle; write ^ under G90, or X and Y");
+  const bool adds = modes.incremental;
+  const double to_distance = (radius ? radius->value : adds ? 0 : distance) + (adds ? distance : 0);
+  const double now = goes_on ? std::atan2(y, x) : 0;
+  const double to = (angle ? angle->value * kDegree : adds ? 0 : now) + (adds ? now : 0);
+  block.add_word('X', {to_distance * std::cos(to) - (adds ? x : 0), place});
+  block.add_word('Y', {to_distance * std::sin(to) - (adds ? y : 0), place});
+}
+
+}  // namespace rmac::gcode
