@@ -42,6 +42,11 @@ class FindingTest(unittest.TestCase):
         self.assertAlmostEqual(hole.lean_deg, 30, 9)
         self.assertAlmostEqual(hole.depth_mm, 12 / axis[2] + 4 * math.tan(math.radians(30)), 2)
 
+    def test_what_leans_by_a_hundredth_of_a_degree_leans(self):
+        for degrees, told in ((1e-5, ""), (0.01, "its axis leans by 0.01°")):
+            (hole,) = holes_in(block_without(bore(5, -4)).rotated(Vector(20, 15, 0), Vector(1, 0, 0), degrees))
+            self.assertEqual(hole.obstacle[:23], told)
+
     def test_a_mirrored_part_has_the_same_holes_and_its_boss_is_none(self):
         part = box_with_holes().fuse(Part.makeCylinder(4, 8, Vector(30, 5, 10)))
         mirrored = part.mirror(Vector(0, 0, 0), Vector(1, 0, 0))
@@ -184,10 +189,10 @@ class DocumentTest(unittest.TestCase):
         for name, word in ((boss, "round outside"), (line, "no circle"), (ring, "goes round no hole"), ("Vertex1", "is no hole"), ("Face99", "is no hole")):
             with self.assertRaisesRegex(JobRefused, word):
                 self.drilled((sunk, name))
-        for shape, word in ((Part.makeBox(9, 9, 9), "no round hole"), (Part.makeLine(Vector(), Vector(9, 0, 0)), "neither circles nor points")):
+        for shape, word in ((Part.makeBox(9, 9, 9), "no hole"), (Part.makeShell(Part.makeBox(9, 9, 9).Faces), "a shell and no solid"), (Part.makeLine(Vector(), Vector(9, 0, 0)), "neither circles nor points")):
             with self.assertRaisesRegex(JobRefused, word):
                 self.drilled((self.part(shape),))
-        self.assertEqual(len(self.document.Objects), before + 2, "nothing is made of what is refused")
+        self.assertEqual(len(self.document.Objects), before + 3, "nothing is made of what is refused")
 
     def test_a_sketch_gives_circles_and_points_and_needs_a_depth(self):
         sketch = self.document.addObject("Sketcher::SketchObject", "Sketch")
@@ -216,6 +221,17 @@ class DocumentTest(unittest.TestCase):
         feature = drillings(self.document)[0]
         feature.Diameters, feature.Diameter, feature.Depth = [4.0], 4, 3
         self.assertIn("something of the part is above it", feature.Proxy.planning(feature)().told)
+
+    def test_a_link_and_a_part_in_a_container_are_where_they_stand(self):
+        part = self.part(block_without(bore(5, -4)))
+        link, container = self.document.addObject("App::Link", "Link"), self.document.addObject("App::Part", "Container")
+        link.LinkedObject, link.Placement.Base.z = part, 30
+        container.addObject(part)
+        container.Placement.Base.y = 50
+        self.document.recompute()
+        for one, place in ((part, (20, 65, 12)), (link, (20, 15, 42)), (container, (20, 65, 12))):
+            (hole,) = (hole for hole, _ in self.drilled((one,))[1].tipped)
+            np.testing.assert_allclose((hole.x, hole.y, hole.top), place, atol=1e-9)
 
     def test_it_follows_its_part_and_finds_anew(self):
         part = self.part(block_without(bore(5, -4)))

@@ -4,6 +4,7 @@ import FreeCAD
 import FreeCADGui
 import Part
 from FreeCAD import Vector
+from pivy import coin
 from rmac_freecad.window.holes.drill_dialog import DrillDialog
 from shooting import Shooting, shoot
 from windowed import WindowTest, process_until
@@ -22,6 +23,8 @@ def flange():
 class Screens(Shooting, WindowTest):
     def test_a_picture_of_holes(self):
         self.begin()
+        with self.connect("set-up") as client, client.authority():
+            client.cam.SetTool(1, 62.0, 2.5, "drill 5")
         document = FreeCAD.newDocument("drill_example")
         self.addCleanup(FreeCAD.closeDocument, document.Name)
         part = document.addObject("Part::Feature", "Flange")
@@ -29,7 +32,7 @@ class Screens(Shooting, WindowTest):
         part.ViewObject.Transparency = 40
         FreeCADGui.Selection.clearSelection()
         FreeCADGui.Selection.addSelection(document.Name, "Flange")
-        dialog = self.placed(DrillDialog(self.session), 780, 395)
+        dialog = self.placed(DrillDialog(self.session), 780, 390)
         dialog.begin()
         process_until(dialog.preview_button.isEnabled, "the path is there")
         dialog.fields["Cycle"].widget.setCurrentText("in pecks")
@@ -39,4 +42,13 @@ class Screens(Shooting, WindowTest):
         process_until(dialog.preview_button.isEnabled, "the path is there")
         FreeCADGui.Selection.clearSelection()
         self.seen(4)
+        self.aside(0.42, -0.22)
         shoot("drill")
+
+    def aside(self, right, up):
+        """The camera, by so much of what it sees: the dialog stands beside the part."""
+        camera = FreeCADGui.ActiveDocument.ActiveView.getCameraNode()
+        high = camera.height.getValue()
+        way = camera.orientation.getValue().multVec(coin.SbVec3f(right * high, up * high, 0))
+        camera.position.setValue(camera.position.getValue() + way)
+        self.settle()

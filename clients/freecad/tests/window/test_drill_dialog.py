@@ -45,6 +45,7 @@ class DrillDialogTest(OperationTest):
     def test_a_part_lists_its_holes_and_drills_the_diameters_that_are_ticked(self):
         dialog = self.opened_on()
         self.assertEqual(self.drilled_at(dialog), {(8, 8), (50, 8), (8, 22)})
+        self.assertIn("Holes of Plate: Plate", dialog.headline.text())
         self.assertIn("3 holes are drilled.", dialog.message.text())
         self.assertEqual(list(self.rows(dialog)), ["Ø 4 mm", "Ø 5 mm", "Ø 6 mm", "Ø 8 mm", "Ø 9 mm"])
         self.assertEqual(self.rows(dialog)["Ø 4 mm"], ("not chosen", ["its axis leans by 90° from Z; turn the part until it stands upright"]))
@@ -108,7 +109,7 @@ class DrillDialogTest(OperationTest):
         self.refused(self.opened_on(line), "no circle")
         FreeCADGui.Selection.clearSelection()
         dialog = self.opened_on(part="Box")
-        self.refused(dialog, "no round hole")
+        self.refused(dialog, "no hole whose wall")
         self.assertFalse(dialog.cut_button.isEnabled())
         self.assertEqual(drillings(self.document), [])
 

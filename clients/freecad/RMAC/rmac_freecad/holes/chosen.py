@@ -1,11 +1,12 @@
 """What is selected, as holes: faces and edges of them, a part as a whole, and circles and points of sketches."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 import Part
 
-from rmac_freecad.holes.finding import HELD_DEG, LEVEL, ROUND, bores_of_shape, holes_in, is_hollow
+from rmac_freecad.holes.finding import HELD_DEG, LEVEL, ROUND, UPRIGHT, bores_of_shape, holes_in, is_hollow
 from rmac_freecad.holes.hole import SAME_MM, Hole
 from rmac_freecad.holes.room import Room
 from rmac_freecad.jobs.refusal import JobRefused
@@ -48,7 +49,7 @@ def holes_of(sources):
 def diameters_of(source):
     """Of what may be holes of a part as a whole, at once: nothing is looked at that is near them. Upright ones, where there are any."""
     bores = bores_of_shape(source.shape)
-    upright = [bore for bore in bores if bore.axis[2] > 1 - LEVEL]
+    upright = [bore for bore in bores if bore.axis[2] == 1]
     return [2 * bore.radius for bore in upright or bores]
 
 
@@ -56,7 +57,7 @@ def _of_part(source):
     holes = holes_in(source.shape)
     if not source.names:
         if not holes:
-            raise JobRefused(f"{source.label} has no round hole")
+            raise JobRefused(f"{source.label} has no round hole that is open")
         return holes
     chosen = _Chosen(source, holes)
     return [hole for name in source.names for hole in chosen.of(name)]
@@ -85,7 +86,7 @@ class _Chosen:
             edges = {edge.hashCode() for edge in face.Edges}
             return [hole for hole in self._holes if any(edge.hashCode() in edges for wall in hole.faces for edge in self._shape.getElement(wall).Edges)], "no round hole begins or ends in it"
         if not isinstance(face.Surface, ROUND):
-            return [], "it is not round; a hole's wall is a cylinder"
+            return [], "it is no cylinder, which a hole's wall is; a spline that is as round is not taken for one"
         if not is_hollow(face):
             return [], "it is round outside, and no hole"
         if isinstance(face.Surface, Part.Cylinder):
@@ -110,6 +111,8 @@ class _Chosen:
 def _of_drawing(source):
     """Circles and points, which have no depth."""
     shape = source.shape
+    if shape.Shells:
+        raise JobRefused(f"{source.label} is a shell and no solid; make a solid of it")
     ends = {vertex.hashCode() for edge in shape.Edges for vertex in edge.Vertexes}
     circles = {f"Edge{number}": edge for number, edge in enumerate(shape.Edges, 1) if _is_circle(edge)}
     points = {f"Vertex{number}": vertex for number, vertex in enumerate(shape.Vertexes, 1) if vertex.hashCode() not in ends}
@@ -130,7 +133,7 @@ def _is_circle(edge):
 def _of_circle(edge):
     curve = edge.Curve
     axis = curve.Axis if (curve.Axis.z, curve.Axis.x, curve.Axis.y) > (0, 0, 0) else curve.Axis * -1
-    return _drawn(curve.Center, 2 * curve.Radius, (0.0, 0.0, 1.0) if axis.z > 1 - LEVEL else tuple(axis))
+    return _drawn(curve.Center, 2 * curve.Radius, (0.0, 0.0, 1.0) if math.hypot(axis.x, axis.y) < UPRIGHT else tuple(axis))
 
 
 def _drawn(place, diameter, axis=(0.0, 0.0, 1.0)):

@@ -136,7 +136,7 @@ def _check_width(hole, drilling, depth):
     if wide > hole.diameter_mm + FITS_MM:
         raise HoleRefused(f"it is {hole.diameter_mm:.4g} mm wide, and the drill {drilling.diameter_mm:.4g} mm{'' if wide == drilling.diameter_mm else f', {wide:.4g} mm of it at the top'}; drill what is as wide, or take a drill that is")
     spots = drilling.depth_mm and hole.depth_mm
-    if wide < hole.diameter_mm - FITS_MM and not spots and not drilling.predrills:
+    if drilling.diameter_mm < hole.diameter_mm - FITS_MM and not spots and not drilling.predrills:
         raise HoleRefused(f"it is {hole.diameter_mm:.4g} mm wide, and the drill {drilling.diameter_mm:.4g} mm; drill what is as wide, predrill it, or clear it as a pocket")
 
 

@@ -110,7 +110,7 @@ def _commonest(sources):
         found = holes_of(sources)
         diameters = [hole.diameter_mm for hole in found if not hole.obstacle] or [hole.diameter_mm for hole in found]
     if not diameters:
-        raise JobRefused(f"{sources[0].label} has no round hole")
+        raise JobRefused(f"{sources[0].label} has no hole whose wall is a cylinder")
     return Counter(round(one, 6) for one in diameters).most_common(1)[0][0], found
 
 
@@ -138,7 +138,10 @@ def _placed(one):
     shape = Part.getShape(one)
     if shape.isNull():
         raise JobRefused(f"{one.Label} has no shape; select parts with holes, or sketches")
-    shape.Placement = one.getGlobalPlacement() * one.Placement.inverse() * shape.Placement
+    if hasattr(one, "getGlobalPlacement"):
+        shape.Placement = one.getGlobalPlacement() * one.Placement.inverse() * shape.Placement
+    elif (group := one.getParentGeoFeatureGroup()) is not None:  # a link has none of its own
+        shape.Placement = group.getGlobalPlacement() * shape.Placement
     return shape
 
 

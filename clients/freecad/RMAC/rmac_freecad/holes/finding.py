@@ -11,6 +11,7 @@ from rmac_freecad.holes.hole import ALL_ROUND_DEG, SAME_MM, Hole
 from rmac_freecad.holes.room import Room
 
 LEVEL = 1e-7  # of a direction of length 1
+UPRIGHT = 1e-5  # sideways, of an axis: a micrometre in 100 mm
 HELD_DEG = 280.0  # more of a wall than that is a hole with a keyway; less is a rounding, the end of a slot, or a corner that was drilled out
 POINTS = 64  # along an edge
 ROUND = (Part.Cylinder, Part.Cone, Part.Toroid)
@@ -64,7 +65,7 @@ class _Finding:
     def _of(self, group):
         """Those of one axis and radius. What is open above, groove or not between, is drilled as one."""
         first = group[0]
-        upright = first.axis[2] > 1 - LEVEL
+        upright = first.axis[2] == 1
         stacks = [_Wall(stack) for stack in stacked(group)]
         stacks = [one for one in stacks if one.around_deg > HELD_DEG]
         open_above = [one for one in stacks if self._is_open(one, 1)] if upright else []
@@ -100,7 +101,7 @@ class _Finding:
         """As wide as it is, from its middle out of the part."""
         first = wall.bores[0]
         middle = first.foot + (wall.low + wall.high) / 2 * first.axis
-        far = self._room.top + first.radius - middle[2] if sign * first.axis[2] > 1 - LEVEL else self._length + first.radius
+        far = self._room.top + first.radius - middle[2] if sign * first.axis[2] == 1 else self._length + first.radius
         return self._room.is_free(Vector(*middle), Vector(*(sign * first.axis)), first.radius, far, wall.numbers)
 
     def _mouths(self, x, y, top):
@@ -124,7 +125,7 @@ def bore_of(number, face):
     surface, (u0, u1, v0, v1) = face.Surface, face.ParameterRange
     along, centre = np.array(surface.Axis), np.array(surface.Center)
     axis = along * next(np.sign(along[i]) for i in (2, 0, 1) if abs(along[i]) > LEVEL)
-    if axis[2] > 1 - LEVEL:
+    if math.hypot(*axis[:2]) < UPRIGHT:
         axis = np.array([0.0, 0.0, 1.0])
     base = centre @ axis
     if all(isinstance(edge.Curve, (Part.Line, Part.Circle)) for edge in face.Edges):

@@ -75,7 +75,7 @@ def _item(row):
     hole = row.hole
     told = row.told if row.tip is None else "; ".join(part for part in (f"down to Z {length_text(row.tip)}", row.told) if part)
     goes = "" if not hole.depth_mm else "through" if hole.through else "blind"
-    axis = "Z" if hole.lean_deg < 1e-4 else "−Z" if hole.lean_deg > 180 - 1e-4 else " ".join(f"{value:.4g}" for value in hole.axis)
+    axis = "Z" if hole.lean_deg < 1e-4 else "−Z" if hole.lean_deg > 180 - 1e-4 else " ".join(f"{round(value, 4) + 0.0:g}" for value in hole.axis)
     where = f"X {length_text(hole.x)} Y {length_text(hole.y)} Z {length_text(hole.top)}"
     item = QtGui.QTreeWidgetItem(["", where, length_text(hole.depth_mm) if hole.depth_mm else "", goes, axis, f"not drilled: {told}" if row.is_missing else told])
     item.setToolTip(5, told)
