@@ -3,9 +3,9 @@
 import math
 from dataclasses import dataclass
 
+import Part
 from FreeCAD import Vector
 
-import Part
 import rmac
 from rmac_freecad.jobs.drilling import drill
 from rmac_freecad.jobs.mover import Mover
