@@ -107,6 +107,12 @@ class RefusalsTest(LeaningTest):
         floor = next(i for i, one in enumerate(pocket.Faces) if abs(one.CenterOfMass.z - 4) < 1e-6)
         self.refused("nothing of the faces can be cut.*too narrow", face=floor, shape=pocket, tilt_deg=0)
 
+    def test_a_slot_that_is_hardly_wider_than_the_mill_tells_how_near_its_side_may_pass(self):
+        slot = Part.makeBox(30, 10, 20).cut(Part.makeBox(30, 4.3, 15, Vector(0, 3, 5)))  # 0.15 mm to each side of the mill
+        floor = next(i for i, one in enumerate(slot.Faces) if abs(one.CenterOfMass.z - 5) < 1e-6)
+        self.refused("pass it by less than 0.16 mm, with any axis that does not point down. Passes are up to 1.26 mm apart", face=floor, shape=slot, tilt_deg=30, mill=ball_end(2), scallop_mm=0.1)
+        self.refused("pass it by less than 0.1 mm, with the axis that was given", face=floor, shape=slot, axis=(0, 0, 1), mill=ball_end(2), scallop_mm=0.1)
+
     def test_level_passes_and_a_low_crossing_are_refused_with_the_reason(self):
         self.refused("with five axes", along="level")
         self.refused("below its tip where it leans", tilt_deg=10, clearance_mm=4.5)

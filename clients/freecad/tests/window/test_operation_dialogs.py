@@ -8,52 +8,12 @@ import FreeCAD
 import FreeCADGui
 import Part
 import Sketcher  # noqa: F401  its type of objects
+from operating import OperationTest
 from rmac_freecad.pockets import pockets
 from rmac_freecad.profiles import profiles
 from rmac_freecad.surfaces import sweeps
 from rmac_freecad.window.operations.operations import PocketDialog, ProfileDialog, SweepDialog
-from rmac_freecad.window.running.machining_dialog import show as show_machining
-from windowed import WindowTest, process_until
-
-
-class OperationTest(WindowTest):
-    def setUp(self):
-        super().setUp()
-        self.stand_before_a_box("operations", 4)
-
-    def face(self, z):
-        return next(f"Face{number}" for number, face in enumerate(self.box.Shape.Faces, 1) if face.BoundBox.ZMin == face.BoundBox.ZMax == z)
-
-    def dialog(self, kind, *names):
-        for name in names:
-            FreeCADGui.Selection.addSelection(self.document.Name, "Box", name)
-        dialog = self.opened(kind(self.session))
-        dialog.begin()
-        return dialog
-
-    def set(self, dialog, **values):
-        for name, value in values.items():
-            widget = dialog.fields[name].widget
-            (widget.set_quantity if hasattr(widget, "set_quantity") else widget.setCurrentText if hasattr(widget, "setCurrentText") else widget.setValue)(value)
-
-    def deepest(self, dialog):
-        return min(z for stroke in self.shown(dialog) for _, _, z in stroke.points)
-
-    def machined(self, dialog):
-        """Simulated, then cut to its end."""
-        process_until(lambda: getattr(show_machining._dialog, "session", None) is self.session, "it is there")
-        machining = show_machining._dialog
-        self.dialogs.append(machining)
-        process_until(lambda: machining.headline.text(), "the machine was looked at")
-        machining.at_machine_zero.setChecked(True)
-        self.told(machining, "It takes")
-        self.press(dialog.cut_button)
-        process_until(lambda: "is cut." in machining.message.text() or machining.message.refused or machining.prompts.isVisible(), lambda: machining.message.text())
-        if machining.prompts.isVisible():
-            machining.prompts.confirm.click()
-            process_until(lambda: "is cut." in machining.message.text() or machining.message.refused, lambda: machining.message.text())
-        self.assertIn(f"is kept in the document as {dialog.feature.Label}.rmac", machining.message.text())
-        return machining
+from windowed import process_until
 
 
 class PocketDialogTest(OperationTest):

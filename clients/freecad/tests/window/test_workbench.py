@@ -25,7 +25,7 @@ class ToolbarTest(unittest.TestCase):
         window = FreeCADGui.getMainWindow()
         bar = window.findChild(QtGui.QToolBar, "Direct machining")
         self.assertIsNotNone(bar)
-        self.assertEqual([action.text() for action in bar.actions()], ["Select machine…", "Jog…", "Open legacy code…", "Open a STEP part…", "Cut along edges…", "Clear a pocket…", "Sweep faces…", "Machine a job…", "Simulate a job…", "Measure a part…", "Compare with the model…", "Show the machine", "Stop the machine"])
+        self.assertEqual([action.text() for action in bar.actions()], ["Select machine…", "Jog…", "Open legacy code…", "Open a STEP part…", "Cut along edges…", "Clear a pocket…", "Drill holes…", "Sweep faces…", "Machine a job…", "Simulate a job…", "Measure a part…", "Compare with the model…", "Show the machine", "Stop the machine"])
         for action in bar.actions():
             self.assertFalse(action.icon().pixmap(24, 24).isNull(), action.text())
 

@@ -1,4 +1,4 @@
-"""What all objects of a document have that are cut without a Path job: pockets, swept faces, profiles of edges."""
+"""What all objects of a document have that are cut without a Path job: pockets, swept faces, profiles of edges, holes."""
 
 from rmac_freecad.jobs.table import JobTool
 

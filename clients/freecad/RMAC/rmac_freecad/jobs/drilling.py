@@ -9,8 +9,8 @@ MOST_PECKS = 10_000
 SAME_DEPTH = 1e-9
 
 
-def drill(mover, code, words, feed, initial, place):
-    """`initial` is the height above R that G98 retracts to; None where G99 holds."""
+def drill(mover, code, words, feed, initial, place, dwell_s=0.0):
+    """`initial` is the height above R that G98 retracts to; None where G99 holds. `dwell_s`: at the bottom of a cycle whose code tells none."""
     for letter in {"G73": "ZRQ", "G81": "ZR", "G82": "ZRP", "G83": "ZRQ"}[code]:
         if letter not in words:
             raise JobRefused(f"a {code} needs {letter}", place)
@@ -25,8 +25,8 @@ def drill(mover, code, words, feed, initial, place):
     if code in ("G73", "G83"):
         _peck(mover, code, words["Q"], retract, bottom, feed, place)
     mover.line({"Z": bottom}, feed, place)
-    if code == "G82":
-        mover.dwell(words["P"], place)
+    if code == "G82" or dwell_s:
+        mover.dwell(words["P"] if code == "G82" else dwell_s, place)
     mover.rapid({"Z": clear}, place)
 
 

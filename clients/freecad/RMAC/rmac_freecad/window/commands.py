@@ -60,6 +60,12 @@ def clear_pocket():
     show_pocket(session())
 
 
+def drill_holes():
+    from rmac_freecad.window.holes.drill_dialog import show
+
+    show(session())
+
+
 def sweep_faces():
     from rmac_freecad.window.operations.operations import show_sweep
 
@@ -111,8 +117,9 @@ COMMANDS = (
     Command("Part", "Open a STEP part…", "A part that somebody else drew, and what there is to machine on it", open_part),
     Command("Profile", "Cut along edges…", "Selected edges, or a sketch, as a profile without a Path job", cut_along, needs_document=True),
     Command("Pocket", "Clear a pocket…", "A level face with its islands, or a closed sketch, cleared without a Path job", clear_pocket, needs_document=True),
+    Command("Drill", "Drill holes…", "Holes of a part, chosen by their diameter, or circles and points of a sketch, drilled without a Path job", drill_holes, needs_document=True),
     Command("Sweep", "Sweep faces…", "Selected faces of a part, with a ball, bull-nose or flat end, without a Path job", sweep_faces, needs_document=True),
-    Command("Machine", "Machine a job…", "Send a Path job, a profile, pocket or sweep, or a file of another control, to the machine as it is", machine_job, needs_document=True),
+    Command("Machine", "Machine a job…", "Send a Path job, a profile, pocket, sweep or holes, or a file of another control, to the machine as it is", machine_job, needs_document=True),
     Command("Simulate", "Simulate a job…", "How long a job takes, whether the machine can do it, and what limits it; moves nothing", simulate, needs_document=True),
     Command("Measure", "Measure a part…", "Has the machine touch selected faces of a part with its probe, and keeps what it found in the document", measure_part, needs_document=True),
     Command("Compare", "Compare with the model…", "What was measured against the part as it is drawn: in colours, and corrected by it", compare_part, needs_document=True),

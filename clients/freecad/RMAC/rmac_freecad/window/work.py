@@ -1,8 +1,9 @@
-"""What is machined: a Path job, a profile of edges, a pocket, swept faces, or a file of another control."""
+"""What is machined: a Path job, a profile of edges, a pocket, swept faces, holes, or a file of another control."""
 
 import FreeCAD
 import FreeCADGui
 
+from rmac_freecad.holes import drillings
 from rmac_freecad.jobs import JobRefused, read_job, tools_of
 from rmac_freecad.legacy import codes, reading, tools_in
 from rmac_freecad.path import strokes_of
@@ -58,7 +59,7 @@ class ProfileWork(JobWork):
 
 
 class PlannedWork(ProfileWork):
-    """A pocket, or faces that are swept: planned by a thread, where that was not done already."""
+    """A pocket, faces that are swept, or holes: planned by a thread, where that was not done already."""
 
     def reading(self, fastest_mm_min, rmac):
         plan, label = self._feature.Proxy.planning(self._feature), self.label
@@ -98,7 +99,7 @@ def _show_own_path(feature, on):
 def works(document):
     """Each object of it that can be machined, with what makes work of it."""
     return [*((job, JobWork) for job in jobs()), *((one, ProfileWork) for one in profiles(document)), *((code, CodeWork) for code in codes(document)),
-            *((one, PlannedWork) for one in (*pockets(document), *sweeps(document)))]  # fmt: skip
+            *((one, PlannedWork) for one in (*pockets(document), *sweeps(document), *drillings(document)))]  # fmt: skip
 
 
 def work_in_question():
@@ -112,7 +113,7 @@ def work_in_question():
     if len(there) == 1:
         return there[0][1](there[0][0])
     raise JobRefused(
-        "the document has several jobs, profiles, pockets and files to machine; select one in the tree"
+        "the document has several jobs, profiles, pockets, holes and files to machine; select one in the tree"
         if there
-        else "the document has no Path job; make one with the Path workbench, cut along edges, clear a pocket, sweep faces, or open a file of another control by Open legacy code"
+        else "the document has no Path job; make one with the Path workbench, cut along edges, clear a pocket, drill holes, sweep faces, or open a file of another control by Open legacy code"
     )

@@ -13,6 +13,10 @@ class Access:
     def __init__(self, body):
         self._body, self._radius = body, body.mill.radius_mm
 
+    def margin_mm(self, spare):
+        """That the side keeps off the part at least wherever it passes."""
+        return self._radius * (COARSE_MARGIN + spare)
+
     def __call__(self, centres, axes, spare=0.0):
         """Whether it passes, `spare` radii off: `axes` are several for each centre, (centres, axes, 3)."""
         free = np.zeros(axes.shape[:2], bool)

@@ -15,12 +15,16 @@ WINDOW = 3  # of these, over which angles are evened out
 
 
 class Axes:
-    BARRED = "out of reach: the mill's side, up to the spindle, would touch the part with any axis that does not point down"
-
     def __init__(self, lean, access):
         self.lean, self._access = lean, access
         self._wanted = np.array([lean.lead, lean.tilt])
         self._grids = [] if lean.axis is not None else [_grid(lean, lead_step, tilt_step) for lead_step, tilt_step in STEPS]
+
+    @property
+    def barred(self):
+        """Why the ball alone gets to a place."""
+        way, near = ("the axis that was given", 0.0) if self.lean.axis is not None else ("any axis that does not point down", SPARE)
+        return f"out of reach: the mill's side, up to the spindle, would touch the part, or pass it by less than {self._access.margin_mm(near):.3g} mm, with {way}"
 
     def angles(self, places, wanted):
         """Leads and tilts at each place that is wanted; nan where the mill does not pass at any."""

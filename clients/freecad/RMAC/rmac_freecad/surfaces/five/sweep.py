@@ -92,9 +92,11 @@ def sweep(shape, targets, mill, lean: Lean, *, scallop_mm, tolerance_mm, along, 
         passes += laid
         traces += [each.trace for each in laid]
         high += one.high[:TOLD] + ([f"and so at {len(one.high) - TOLD} other places"] if len(one.high) > TOLD else [])
-    told = left_out(body, clearance, families, traces, scallop_mm, axes.BARRED)
+    told = left_out(body, clearance, families, traces, scallop_mm, axes.barred)
     if not any(one.stretches for one in passes):
-        raise JobRefused("nothing of the faces can be cut: " + "; ".join(told or ["the mill does not get there"]))
+        step = wanted.step_mm(mill)
+        told = told or ["the mill does not get there"]
+        raise JobRefused(f"nothing of the faces can be cut: {'; '.join(told)}. Passes are up to {step:.3g} mm apart; what is narrower may lie between two, and a smaller scallop lays them closer")
     ball_passes = _ball_passes(shape, targets, mill, lean, wanted) if lean.matched else None
     return Leaning(passes, told + high, Links(body, touching, clear_mm, ASIDE_MM), lean.one_way, ball_passes)
 

@@ -5,6 +5,7 @@ from PySide import QtGui
 from rmac_freecad.window.quantity import LENGTH, SPEED, QuantityField
 
 QUANTITIES = {"App::PropertyLength": LENGTH, "App::PropertyDistance": LENGTH, "App::PropertySpeed": SPEED}
+SUFFIXES = {"SpindleSpeed": " rpm", "Dwell": " s"}  # of plain numbers
 
 
 class PropertyField:
@@ -28,7 +29,7 @@ class PropertyField:
         else:
             self.widget = QtGui.QDoubleSpinBox()
             self.widget.setRange(-1e6, 1e6)
-            self.widget.setSuffix("°" if kind == "App::PropertyAngle" else " rpm")
+            self.widget.setSuffix("°" if kind == "App::PropertyAngle" else SUFFIXES[name])
             self._show, self._value = self.widget.setValue, self.widget.value
         self._kind = kind
         self._shown = None

@@ -155,7 +155,7 @@ def is_there(feature):
 
 
 def _base_text(feature):
-    for name in ("Base", "Faces", "Edges"):
+    for name in ("Base", "Faces", "Edges", "Holes"):
         base = getattr(feature, name, None)
         if base:
             pairs = base if isinstance(base, list) else [base]

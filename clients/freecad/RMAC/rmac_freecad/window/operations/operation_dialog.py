@@ -10,7 +10,11 @@ class OperationDialog(ObjectDialog):
         super().__init__(*what)
         self.simulate_button = button("Dry run", self.simulate, "Plans it as the machine would cut it; moves nothing")
         self.cut_button = button("Cut…", self.cut, "Sends it to the machine, which begins at once where nothing speaks against it")
-        self.lay_out(self.simulate_button, self.cut_button)
+        self.lay_out(self.simulate_button, self.cut_button, below=self.made_below())
+
+    def made_below(self):
+        """What else a kind of it shows, below the buttons."""
+        return ()
 
     def simulate(self):
         self.apply(lambda: show_machining(self.session).simulate())

@@ -1,4 +1,4 @@
-"""The three of them: what each is made of, and its fields."""
+"""Profiles, pockets and sweeps: what each is made of, and its fields."""
 
 import FreeCADGui
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from rmac_freecad.window.holes.drill_dialog import show as show_drill
 from rmac_freecad.window.measuring.measure_dialog import show as show_measure
 from rmac_freecad.window.operations.operations import show_pocket, show_profile, show_sweep
 
@@ -18,7 +19,7 @@ class FoundRow:
 
 def rows_of(found):
     rows = [FoundRow("Pocket", _pocket_text(one), (one.floor,), "Clear…", show_pocket) for one in found.recesses]
-    rows += [FoundRow("Hole", _hole_text(one)) for one in found.holes]
+    rows += [FoundRow("Hole", _hole_text(one), one.faces, "Drill…", show_drill) for one in found.holes]
     if found.free_form:
         rows.append(FoundRow("Free form", _named(found.free_form), found.free_form, "Sweep…", show_sweep))
     if found.outline:
@@ -34,7 +35,7 @@ def _pocket_text(one):
 
 
 def _hole_text(one):
-    return f"Ø {one.diameter_mm:.4g} mm at X {one.x:.4g} Y {one.y:.4g}, {'through' if one.through else f'down to Z {one.bottom:.4g}'}; drilled by a script (read_holes)"
+    return f"Ø {one.diameter_mm:.4g} mm at X {one.x:.4g} Y {one.y:.4g}, {'through' if one.through else f'down to Z {one.bottom:.4g}'}"
 
 
 def _named(names):

@@ -17,7 +17,7 @@ AGAIN, ABOUT = 0.1, 0.5  # degrees more, twice as many each time, so many radii 
 class Leads:
     """`lean` has the least lead; the mill is lifted by half of the band as curves are."""
 
-    BARRED = f"bent more than the mill follows, or barred by the part, with any lead of up to {MOST:g} degrees: give a smaller mill"
+    barred = f"bent more than the mill follows, or barred by the part, with any lead of up to {MOST:g} degrees: give a smaller mill"
 
     def __init__(self, lean, distance, mill, band_mm):
         self.lean, self._distance, self._mill, self._lift = lean, distance, mill, band_mm / 2

@@ -1,0 +1,1 @@
+"""Holes drilled: their list, and the dialog."""
