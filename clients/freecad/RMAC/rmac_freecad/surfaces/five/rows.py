@@ -10,7 +10,7 @@ from rmac_freecad.surfaces.five.track import NAMES, Places
 from rmac_freecad.surfaces.rows import runs
 
 SAMPLES = 6  # a radius
-CORNER_SAMPLES = 3  # and a radius of the corner
+DETAIL_SAMPLES = 3  # and a detail of the mill
 OVER = 1.05  # steps: a pass goes on over its ends to places that are so near to what its neighbour cuts
 MOST_BESIDE = 0.95  # of a disc
 TOUCHING = 0.4  # of the band, that the lifted ball keeps off the part
@@ -35,7 +35,7 @@ class Row:
 class Rows:
     def __init__(self, family, clearance, leaning, mill, band_mm):
         self.family, self.leaning, self.mill, self.band_mm = family, leaning, mill, band_mm
-        self._spacing = min(mill.radius_mm / SAMPLES, mill.corner_mm / CORNER_SAMPLES)
+        self._spacing = min(mill.radius_mm / SAMPLES, mill.detail_mm / DETAIL_SAMPLES)
         self._clearance = clearance
 
     def at(self, w):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-DENSE = 24  # places a radius, by which the length is told
+DENSE = 24  # places a detail of the mill, by which the length is told
 FEWEST, MOST = 48, 20_000
 SHORTEST_MM = 1e-9
 
@@ -26,14 +26,14 @@ class Places:
 
 
 class Track:
-    """`contact(t)` gives points, normals, feeds, what is inside, and bends for parameters from `first` to `last`. Beyond both the line goes
+    """Of the ball of a mill's corner. `contact(t)` gives points, normals, feeds, what is inside, and bends for parameters from `first` to `last`. Beyond both the line goes
     on straight, `over_mm` far."""
 
-    def __init__(self, label, contact, first, last, radius_mm, over_mm):
-        self.label, self._contact, self._radius, self.over_mm = label, contact, radius_mm, over_mm
+    def __init__(self, label, contact, first, last, mill, over_mm):
+        self.label, self._contact, self._radius, self.over_mm = label, contact, mill.corner_mm, over_mm
         rough = self._centres(np.linspace(first, last, FEWEST))
         steps = np.nan_to_num(np.linalg.norm(np.diff(rough, axis=0), axis=1))
-        self._t = np.linspace(first, last, int(np.clip(steps.sum() / radius_mm * DENSE, FEWEST, MOST)) + 1)
+        self._t = np.linspace(first, last, int(np.clip(steps.sum() / mill.detail_mm * DENSE, FEWEST, MOST)) + 1)
         steps = np.nan_to_num(np.linalg.norm(np.diff(self._centres(self._t), axis=0), axis=1))
         self._s = np.concatenate([[0], np.cumsum(np.maximum(steps, SHORTEST_MM))])
         self._slope = np.gradient(self._t, self._s)

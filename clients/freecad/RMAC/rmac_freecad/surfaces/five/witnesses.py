@@ -11,7 +11,6 @@ from rmac_freecad.surfaces.witnesses import spread
 
 APART = 0.12  # of the step between passes on a plane
 TRACE = 24  # samples of a curve a radius
-CORNER_TRACE = 8  # and a radius of the corner
 FREE_MM = 1e-6
 AT_ONCE = 16
 BARRED = 0.34  # radii from its curves, where a pass was to go and does not
@@ -27,7 +26,7 @@ class Trace:
 class Witnesses:
     def __init__(self, rows, clearance, step_mm):
         self._rows, self._clearance, self._mill = rows, clearance, rows.mill
-        self._spacing = min(self._mill.radius_mm / TRACE, self._mill.corner_mm / CORNER_TRACE)
+        self._spacing = self._mill.radius_mm / TRACE
         self._family, found = rows.family, []
         for label in self._family.targets:
             uv = spread(rows.family.face(label), APART * step_mm)
