@@ -8,9 +8,9 @@ import unittest
 
 import numpy as np
 import Part
-from disc_part import DiscPoses
+from disc_part import DiscPoses, Skin
 from leaning_case import FEEDS, GOUGE_MM, LeaningTest, Vector, looks
-from leaning_part import cloud, outward_points
+from leaning_part import outward_points
 
 from rmac_freecad.jobs import JobRefused
 from rmac_freecad.simulation import simulate
@@ -49,7 +49,7 @@ class MatchingTest(LeaningTest):
     def held(self, shape, faces, mill, plan, scallop_mm=0.05):
         """Against the part, on passes, links and rapids, at places that the sweep does not know."""
         poses = DiscPoses(plan.program("Part", FEEDS["rapid_mm_min"]), mill.radius_mm, mill.corner_mm)
-        deepest = poses.gouge(shape, cloud(shape, 6000, 3), 50, 5)
+        deepest = poses.gouge(Skin(shape, 6000, 3), 50, 5)
         left = [poses.left_over(*outward_points(shape, shape.Faces[face], 400, 1), 3 * scallop_mm) for face in faces]
         worst = max(one.max() for one in left)
         print(f"{len(plan.swept.passes)} passes, ball end {plan.swept.ball_passes}; {1e3 * max(deepest, 0):.2f} um in the part, left {1e3 * worst:.1f} um of {1e3 * scallop_mm:g}")
@@ -96,7 +96,7 @@ class PartsTest(MatchingTest):
         plan = self.matched(shape, [face], bull_nose(4, 1), along=90)
         self.assertRegex(" ".join(plan.left_out), "^Face[0-9]+: [0-9.]+ % is (bent|beside)")
         poses = DiscPoses(plan.program("Part", 2000), 4, 1)
-        self.assertLess(poses.gouge(shape, cloud(shape, 6000, 3), 50, 5), GOUGE_MM)
+        self.assertLess(poses.gouge(Skin(shape, 6000, 3), 50, 5), GOUGE_MM)
         points, normals = outward_points(shape, shape.Faces[face], 400, 1)
         self.assertLess(poses.left_over(points[points[:, 0] < 7], normals[points[:, 0] < 7], 0.2).max(), 1.05 * 0.05)
 

@@ -14,6 +14,7 @@ INSET_MM = 1e-3  # the outermost passes touch the face this far from its border
 GRID = 6  # places a detail of the mill, from which lines in planes are sought
 MOST_GRID = 400
 NEWTON = 4
+ON_PLANE_MM = 1e-10
 SPANS = 2  # a radius, of the line's spline in (u, v)
 
 
@@ -146,6 +147,8 @@ class Planes(_Family):
         for _ in range(NEWTON):
             point, normal, _, slope = self._sloped(label, uv)
             off = (point + self._corner * normal) @ self._across - w
+            if not (np.abs(off) > ON_PLANE_MM).any():
+                break
             scaled = slope * size
             uv = uv - np.nan_to_num(off[:, None] * scaled * size / np.maximum((scaled**2).sum(1, keepdims=True), 1e-30))
             uv = np.clip(uv, trim.low, trim.high)

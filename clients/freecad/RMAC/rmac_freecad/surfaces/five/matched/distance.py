@@ -11,6 +11,7 @@ from rmac_freecad.surfaces.five.solid import outside, seen_along
 NEAR = 1.5  # radii from the middle of the disc: so far the dense points are looked at
 COARSE_MARGIN = 0.05  # radii that the side keeps off coarse points
 TOLD_MM = 0.5  # what is farther away is told as that far
+DEEP_MM = -1e-3  # what is deeper inside needs not be known exactly
 CANDIDATES = 6  # places of one face or edge: a disc that fits may touch all along its rim
 APART = 0.3  # radii
 NEWTON, STILL = 12, 1e-9  # of a face, where a step changes nothing any more
@@ -48,6 +49,8 @@ class Distance:
         near = body.near(middle - reach, middle + reach)
         away, hoped = self._hoped(near, middle, axis)
         least = min(away.min(initial=TOLD_MM), self._far(middle, axis, reach))
+        if least < DEEP_MM:
+            return least, np.zeros(0, int)
         bar = min(hoped.min(initial=TOLD_MM), least)
         hopeful = hoped < bar + self._gain(body.labels[near])
         near, hoped = near[hopeful], hoped[hopeful]
