@@ -48,13 +48,23 @@ def left_standing(mill, line, points, normals):
     shares = max(len(points) * len(cut) // AT_ONCE, len(points) * len(window) // DISCS_AT_ONCE) + 1
     for some in np.array_split(np.arange(len(points)), shares):
         away = (cut**2).sum(1) - 2 * ideal[some] @ cut.T
-        near = index[away.argmin(1)][:, None] + window
-        inside = (near >= 0) & (near < len(line.centre))
-        near = np.clip(near, 0, len(line.centre) - 1)
-        inside &= line.used[near]
-        entry = _over_disc if mill.flat_mm else _over_ball
-        up[some] = entry(mill, line, near, inside, points[some][:, None], normals[some][:, None])
+        nearest = away.argmin(1)
+        up[some] = _about(index[nearest], window, mill, line, points[some], normals[some])
+        if mill.flat_mm:
+            bar = away[np.arange(len(some)), nearest] + line.spacing_mm**2
+            away[np.abs(np.arange(len(cut)) - nearest[:, None]) <= ahead] = np.inf
+            again = np.flatnonzero(away.min(1) < bar)  # by a pass that closes and goes on round: at its very end nothing is ahead
+            if len(again):
+                up[some[again]] = np.minimum(up[some[again]], _about(index[away[again].argmin(1)], window, mill, line, points[some[again]], normals[some[again]]))
     return up
+
+
+def _about(nearest, window, mill, line, points, normals):
+    near = nearest[:, None] + window
+    inside = (near >= 0) & (near < len(line.centre))
+    near = np.clip(near, 0, len(line.centre) - 1)
+    inside &= line.used[near]
+    return (_over_disc if mill.flat_mm else _over_ball)(mill, line, near, inside, points[:, None], normals[:, None])
 
 
 def _over_ball(mill, line, near, inside, points, normals):
