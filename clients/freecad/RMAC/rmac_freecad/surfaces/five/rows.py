@@ -28,6 +28,13 @@ class Row:
     core: np.ndarray  # where a target is cut
     used: np.ndarray  # and over its ends
 
+    @property
+    def again(self):
+        """Where a line that is closed has been or will be."""
+        lengths = np.array([track.length if track.closed else np.inf for track in self.tracks])
+        begins = np.array([0 if track.closed else -np.inf for track in self.tracks])
+        return (self.s < begins[self.line]) | (self.s > lengths[self.line])
+
     def runs(self):
         return runs(self.used)
 
@@ -72,7 +79,7 @@ class Rows:
         may = row.ball & np.isfinite(row.angles[:, 0]) & ~row.used
         chosen = np.flatnonzero(may)
         away = np.linalg.norm(row.places.centre[chosen][:, None] - cut, axis=2).min(1, initial=np.inf)
-        may[chosen] = away <= OVER * over_mm
+        may[chosen] = (away <= OVER * over_mm) & ~row.again[chosen]
         for i in range(1, len(may)):
             row.used[i] |= may[i] and row.used[i - 1]
         for i in range(len(may) - 2, -1, -1):

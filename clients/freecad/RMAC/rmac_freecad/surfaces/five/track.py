@@ -28,7 +28,7 @@ class Places:
 
 class Track:
     """Of the ball of a mill's corner. `contact(t)` gives points, normals, feeds, what is inside, and bends for parameters from `first` to `last`. Beyond both the line goes
-    on straight, `over_mm` far; or round, where it is closed."""
+    on straight, `over_mm` far; or round, where it is closed and a disc goes along it."""
 
     def __init__(self, label, contact, first, last, mill, over_mm):
         self.label, self._contact, self._radius, self.over_mm = label, contact, mill.corner_mm, over_mm
@@ -39,7 +39,7 @@ class Track:
         self._s = np.concatenate([[0], np.cumsum(np.maximum(steps, SHORTEST_MM))])
         self._slope = np.gradient(self._t, self._s)
         self.length = self._s[-1]
-        self._closed = self._ends_meet()
+        self.closed = mill.flat_mm > 0 and self._ends_meet()
         self.first, self.last = -over_mm, self.length + over_mm
 
     def _centres(self, t):
@@ -62,9 +62,9 @@ class Track:
     def at(self, s):
         s = np.asarray(s, float)
         inner = (0 <= s) & (s <= self.length)
-        within = np.where(inner, s, np.mod(s, self.length)) if self._closed else np.clip(s, 0, self.length)
+        within = np.where(inner, s, np.mod(s, self.length)) if self.closed else np.clip(s, 0, self.length)
         t = np.clip(self.parameter(within), min(self._t[0], self._t[-1]), max(self._t[0], self._t[-1]))
         point, normal, feed, inside, bend = self._contact(t)
-        if not self._closed:
+        if not self.closed:
             point = point + (s - within)[:, None] * feed
         return Places(point + self._radius * normal, point, normal, feed, inside & inner, bend)
