@@ -106,14 +106,12 @@ class PartsTest(MatchingTest):
     def test_beside_a_wall_the_part_is_not_touched_and_what_is_left_is_told(self):
         shape = dish()[0].fuse(Part.makeBox(4, 12, 25, Vector(16, 0, 0))).removeSplitter()
         face = next(i for i, one in enumerate(shape.Faces) if isinstance(one.Surface, Part.Sphere))
-        for mill in (bull_nose(4, 1), flat_end(4)):
-            with self.subTest(mill):
-                plan = self.matched(shape, [face], mill, along=90)
-                self.assertRegex(" ".join(plan.left_out), "^Face[0-9]+: [0-9.]+ % is (bent|beside)")
-                poses = DiscPoses(plan.program("Part", 2000), mill.radius_mm, mill.corner_mm)
-                self.assertLess(poses.gouge(Skin(shape, 6000, 3), 50, 5), GOUGE_MM)
-                points, normals = outward_points(shape, shape.Faces[face], 400, 1)
-                self.assertLess(poses.left_over(points[points[:, 0] < 7], normals[points[:, 0] < 7], 0.2).max(), 1.05 * 0.05)
+        plan = self.matched(shape, [face], bull_nose(4, 1), along=90)
+        self.assertRegex(" ".join(plan.left_out), "^Face[0-9]+: [0-9.]+ % is (bent|beside)")
+        poses = DiscPoses(plan.program("Part", 2000), 4, 1)
+        self.assertLess(poses.gouge(Skin(shape, 6000, 3), 50, 5), GOUGE_MM)
+        points, normals = outward_points(shape, shape.Faces[face], 400, 1)
+        self.assertLess(poses.left_over(points[points[:, 0] < 7], normals[points[:, 0] < 7], 0.2).max(), 1.05 * 0.05)
 
     def test_a_face_bent_more_than_the_disc_is_told(self):
         shape, face = trough(6)
