@@ -9,28 +9,33 @@ def spans(knots, degree, t):
 
 
 def basis(knots, degree, span, t, order=0):
-    """The derivatives of that order of the degree + 1 functions that are not zero there: from number span - degree on."""
-    if order > degree:
-        return np.zeros((len(t), degree + 1))
-    if order:
-        lower = basis(knots, degree - 1, span, t, order - 1)
-        out = np.zeros((len(t), degree + 1))
-        for j in range(degree):
-            i = span - degree + 1 + j
-            weight = degree * lower[:, j] / (knots[i + degree] - knots[i])
-            out[:, j] -= weight
-            out[:, j + 1] += weight
-        return out
-    out = np.zeros((len(t), degree + 1))
-    out[:, 0] = 1
+    """The degree + 1 functions that are not zero there, from number span - degree on; and in a list behind them their derivatives, up to that
+    order."""
+    near = knots[span[:, None] + np.arange(1 - degree, degree + 1)]
+    ahead, behind = near[:, degree:] - t[:, None], t[:, None] - near[:, :degree]
+    wide = [ahead[:, :p] + behind[:, degree - p :] for p in range(degree + 1)]
+    lower = [np.ones((len(t), 1))]
     for p in range(1, degree + 1):
-        kept = np.zeros(len(t))
-        for j in range(p):
-            right, left = knots[span + j + 1], knots[span + 1 - p + j]
-            share = out[:, j] / (right - left)
-            out[:, j] = kept + (right - t) * share
-            kept = (t - left) * share
-        out[:, p] = kept
+        share = lower[-1] / wide[p]
+        lower.append(_beside(share * behind[:, degree - p :], share * ahead[:, :p]))
+    found = []
+    for times in range(order + 1):
+        if times > degree:
+            found.append(np.zeros_like(lower[-1]))
+            continue
+        one = lower[degree - times]
+        for p in range(degree - times + 1, degree + 1):
+            weight = p * one / wide[p]
+            one = _beside(weight, -weight)
+        found.append(one)
+    return found
+
+
+def _beside(right, left):
+    """What of each function of a degree goes to the two of the next."""
+    out = np.zeros((len(right), right.shape[1] + 1))
+    out[:, 1:] = right
+    out[:, :-1] += left
     return out
 
 
@@ -38,14 +43,14 @@ def matrix(knots, degree, t):
     """Of the fit: a row for each parameter, a column for each pole."""
     span = spans(knots, degree, t)
     out = np.zeros((len(t), len(knots) - degree - 1))
-    np.put_along_axis(out, (span - degree)[:, None] + np.arange(degree + 1), basis(knots, degree, span, t), axis=1)
+    np.put_along_axis(out, (span - degree)[:, None] + np.arange(degree + 1), basis(knots, degree, span, t)[0], axis=1)
     return out
 
 
 def value(knots, degree, poles, t):
     span = spans(knots, degree, t)
     near = poles[(span - degree)[:, None] + np.arange(degree + 1)]
-    return np.einsum("nk,nk...->n...", basis(knots, degree, span, t), near)
+    return np.einsum("nk,nk...->n...", basis(knots, degree, span, t)[0], near)
 
 
 def clamped(breaks, degree):
@@ -91,7 +96,7 @@ class Surface:
         spread = [spans(knots, degree, uv[:, k]) for k, (knots, degree) in enumerate(zip(self.knots, self.degrees))]
         rows, columns = ((span - degree)[:, None] + np.arange(degree + 1) for span, degree in zip(spread, self.degrees))
         near = self.poles[rows[:, :, None], columns[:, None, :]]
-        functions = [[basis(self.knots[k], self.degrees[k], spread[k], uv[:, k], d) for d in range(order + 1)] for k in (0, 1)]
+        functions = [basis(self.knots[k], self.degrees[k], spread[k], uv[:, k], order) for k in (0, 1)]
         along = [np.einsum("ni,nijc->njc", one, near) for one in functions[0]]
         h = {(a, b): np.einsum("nj,njc->nc", functions[1][b], along[a]) for a in range(order + 1) for b in range(order + 1 - a)}
         return _projected(h, order)

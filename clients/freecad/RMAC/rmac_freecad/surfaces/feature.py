@@ -22,7 +22,7 @@ PROPERTIES = (
     ("Along", "App::PropertyEnumeration", list(ALONG), "Where passes go"),
     ("Direction", "App::PropertyAngle", 0.0, "Of the passes, from X"),
     ("Steepest", "App::PropertyAngle", 80.0, "Faces are cut where they are no steeper, with the axis along Z"),
-    ("Axis", "App::PropertyEnumeration", list(AXES), "Of the mill; by lead and tilt takes a machine with five axes and a ball end, matched to the face one and a bull nose"),
+    ("Axis", "App::PropertyEnumeration", list(AXES), "Of the mill; by lead and tilt takes a machine with five axes and a ball end, matched to the face one and a bull nose or flat end"),
     ("Lead", "App::PropertyAngle", 0.0, "Of the axis against the face's normal, to where the mill goes; where it is matched, the least of it, 3 degrees where it is 0"),
     ("Tilt", "App::PropertyAngle", 20.0, "Of the axis against the face's normal, to the left of that"),
     ("Safe", "App::PropertyDistance", ABOVE_MM, "Z where the tool crosses"),

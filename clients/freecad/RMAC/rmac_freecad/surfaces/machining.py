@@ -28,7 +28,7 @@ def read_faces(
     """A program that sweeps faces of an object, "Face3", in the document's own coordinates; and texts of what it leaves out. `along` is
     the direction of the passes in degrees from X, or "u" or "v" of each face. The tool's axis is along Z, unless `lead_deg` or
     `tilt_deg` lean it against the face's normal, or an `axis` is given that it keeps: that takes five axes, and `along` may be "level".
-    With the `axis` "matched" the lead of a bull nose goes with the face's curvature, and is `lead_deg` at least.
+    With the `axis` "matched" the lead of a bull nose or flat end goes with the face's curvature, and is `lead_deg` at least.
     With `tool`, a number, and `rpm` it begins with them. Raises `JobRefused`."""
     _check_speeds({"rapid_mm_min": rapid_mm_min})
     swept = plan_faces(

@@ -9,6 +9,7 @@ from rmac_freecad.jobs.refusal import JobRefused
 
 SIDE_MM = 2e-4  # a wall this far inside the side of the mill is one that it passes
 LARGEST_MM = 1000.0
+DETAIL = 0.2  # of its radius, of a mill whose corner is smaller
 KINDS = {"ballend": "ball_end", "bullnose": "bull_nose", "endmill": "flat_end"}
 
 
@@ -29,6 +30,15 @@ class Mill:
     def flat_mm(self):
         """Radius of the disc that it stands on."""
         return self.radius_mm - self.corner_mm
+
+    @property
+    def detail_mm(self):
+        """What it follows along a face is no smaller: its corner, or a share of its radius."""
+        return max(self.corner_mm, DETAIL * self.radius_mm)
+
+    def grown(self, by_mm):
+        """The places that are no farther from it."""
+        return Mill(self.radius_mm + by_mm, self.corner_mm + by_mm)
 
     def height(self, off):
         """Of its surface above the tip, so far from its axis; infinite beside it."""

@@ -8,6 +8,7 @@ from rmac_freecad.jobs.refusal import JobRefused
 from rmac_freecad.surfaces.rows import Row
 
 STEADY = 0.98  # a step is taken when its ridge is so near to what is wanted
+CLOSE = 0.02  # or when one that is so little longer leaves too much
 MOST_TRIES = 14
 MOST_PASSES = 5000
 WIDEST = 1.6  # radii from pass to pass
@@ -105,6 +106,7 @@ class Passes:
         """The farthest next pass that leaves no higher ridge than is wanted."""
         unit = self._family.w_mm
         good, low, bad = None, 0.0, math.inf
+        left = most = 0.0  # roots of what these leave: about as wide as the steps
         for _ in range(MOST_TRIES):
             w = min(row.w + self._step / unit, high)
             if high - w < 0.02 * self._step / unit:
@@ -112,16 +114,18 @@ class Passes:
             after, found = self._tried(row, w)
             step = (w - row.w) * unit
             if found is None or found <= self._ridge_mm:
-                good, low = after, step
+                good, low, left = after, step, math.sqrt(found or 0)
                 if found is None or w >= high or step >= self._widest * 0.999 or found >= STEADY * self._ridge_mm:
                     break
             else:
-                bad = step
-            if bad - low < 0.01 * bad:
+                bad, most = step, math.sqrt(found)
+            if bad - low < CLOSE * bad:
                 break
-            wished = step * min(max(math.sqrt(0.99 * self._ridge_mm / max(found, 1e-9)), 0.3), 2.0)
+            wanted = math.sqrt(0.99 * self._ridge_mm)
+            wished = step * min(max(wanted / math.sqrt(max(found, 1e-9)), 0.3), 2.0)
             if math.isfinite(bad):
-                wished = min(max(wished, low + 0.1 * (bad - low)), bad - 0.1 * (bad - low))
+                least = 0.25 if good else 0.1
+                wished = low + (bad - low) * min(max((wanted - left) / (most - left), least), 1 - least)
             self._step = min(wished, self._widest)
         if good is None:
             raise JobRefused("no step from pass to pass leaves so low a ridge; give a larger scallop, another direction or a smaller steepest_deg")

@@ -7,7 +7,7 @@ from rmac_freecad.jobs.refusal import JobRefused
 from rmac_freecad.surfaces.drop import upward
 from rmac_freecad.surfaces.part import SPACING, Face, edges_of, points_along
 
-DISC_SPACING = 5  # points a radius of a disc's corner: they are many, and only where Newton's method begins
+DISC_SPACING = 5  # points of a disc's detail: they are many, and only where Newton's method begins
 AROUND = 4  # radii round what is cut, where points are dense: more than a pass goes beyond its face and the side is looked at closely
 COARSE = 0.3  # radii between points elsewhere
 CELLS = 2  # of the grid, a radius
@@ -17,7 +17,7 @@ LOOKED_AT = 7  # places of a face
 
 
 class Body:
-    """`targets` are indices of faces. Its points are as dense as the corner of the mill wants them, whose ball goes along the faces."""
+    """`targets` are indices of faces. Its points are as dense as what the mill follows along the faces wants them."""
 
     def __init__(self, shape, targets, mill):
         exact = shape.toNurbs()
@@ -27,7 +27,7 @@ class Body:
         self.top = shape.BoundBox
         self._sides = {label: _side(shape, exact.Faces[label], self.faces[label], label) for label in targets}
         self._sizes = {label: _size(self.faces[label]) for label in targets}
-        self._sample(mill.corner_mm / (DISC_SPACING if mill.flat_mm else SPACING))
+        self._sample(mill.detail_mm / (DISC_SPACING if mill.flat_mm else SPACING))
 
     def outward(self, label, uv):
         """Points, normals that point away from the material, and the derivatives of both along u and v; nan at poles."""

@@ -4,7 +4,7 @@ touch."""
 import numpy as np
 
 AT_ONCE = 32
-REACH = 1.03  # radii: what is farther away is told as that far
+REACH = 0.03  # radii: what is farther off the ball is told as that far
 CANDIDATES = 2  # places of one face or edge; two where it is bent nearly as the ball is
 APART = 3.0  # steps of the cloud
 NEWTON = 10
@@ -15,7 +15,7 @@ STILL = 1e-10  # of a face
 class Clearance:
     def __init__(self, body):
         self._body = body
-        self._reach = REACH * body.mill.corner_mm
+        self._reach = body.mill.corner_mm + REACH * body.mill.radius_mm
 
     def __call__(self, centres):
         centres = np.asarray(centres, float).reshape(-1, 3)

@@ -11,9 +11,10 @@ from rmac_freecad.surfaces.five.contours import Contours
 from rmac_freecad.surfaces.five.track import Track
 
 INSET_MM = 1e-3  # the outermost passes touch the face this far from its border
-GRID = 6  # places a radius, from which lines in planes are sought
+GRID = 6  # places a detail of the mill, from which lines in planes are sought
 MOST_GRID = 400
 NEWTON = 4
+ON_PLANE_MM = 1e-10
 SPANS = 2  # a radius, of the line's spline in (u, v)
 
 
@@ -63,7 +64,7 @@ class Isolines(_Family):
             feed = _unit(along[self._axis] + self._corner * turns[self._axis])
             return point, normal, feed, inside, _bend(normal, along, turns, feed)
 
-        return [Track(self.targets[0], contact, self._trim.low[self._axis], self._trim.high[self._axis], self._corner, self._over)]
+        return [Track(self.targets[0], contact, self._trim.low[self._axis], self._trim.high[self._axis], self._body.mill, self._over)]
 
 
 class Planes(_Family):
@@ -93,7 +94,7 @@ class Planes(_Family):
         trim = self._body.faces[label].trim
         rough = self._values(label, *(np.linspace(a, b, 25) for a, b in zip(trim.low, trim.high)))[1]
         lengths = [np.nanmax(np.nansum(np.linalg.norm(np.diff(rough, axis=k), axis=2), k)) for k in (0, 1)]
-        counts = [int(np.clip(length / self._corner * GRID, 24, MOST_GRID)) + 1 for length in lengths]
+        counts = [int(np.clip(length / self._body.mill.detail_mm * GRID, 24, MOST_GRID)) + 1 for length in lengths]
         u, v = (np.linspace(a, b, n) for a, b, n in zip(trim.low, trim.high, counts))
         return Contours(u, v, self._values(label, u, v)[0])
 
@@ -129,7 +130,7 @@ class Planes(_Family):
             feed = sense * self._feed(label, uv)
             return point, normal, feed, self.face(label).trim.inside(uv) & self.gentle(normal), _bend(normal, along, turns, feed)
 
-        return Track(label, contact, 0.0, far[-1], self._corner, self._over)
+        return Track(label, contact, 0.0, far[-1], self._body.mill, self._over)
 
     def _ahead(self, label, line):
         """Where passes go: in level planes about Z, counter-clockwise round what stands upright."""
@@ -146,6 +147,8 @@ class Planes(_Family):
         for _ in range(NEWTON):
             point, normal, _, slope = self._sloped(label, uv)
             off = (point + self._corner * normal) @ self._across - w
+            if not (np.abs(off) > ON_PLANE_MM).any():
+                break
             scaled = slope * size
             uv = uv - np.nan_to_num(off[:, None] * scaled * size / np.maximum((scaled**2).sum(1, keepdims=True), 1e-30))
             uv = np.clip(uv, trim.low, trim.high)

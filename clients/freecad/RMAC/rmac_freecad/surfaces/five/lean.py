@@ -10,7 +10,6 @@ from rmac_freecad.jobs.refusal import JobRefused
 MOST = 80.0  # degrees from the normal
 MATCHED = "matched"
 LEAST, LEAST_MATCHED, MOST_MATCHED = 0.5, 3.0, 45.0  # degrees of lead; the second where none is given
-THINNEST = 0.04  # corners, in radii
 
 
 @dataclass(frozen=True)
@@ -25,13 +24,9 @@ class Lean:
     def check(self, mill):
         """Raises `JobRefused`."""
         if self.matched and not mill.flat_mm:
-            raise JobRefused("a ball end has no disc that could fit the face; with axis='matched' give bull_nose(radius, corner)")
-        if self.matched and mill.corner_mm < THINNEST * mill.radius_mm:
-            raise JobRefused(
-                f"with axis='matched' the corner of the mill is at least {THINNEST:g} of its radius, here {THINNEST * mill.radius_mm:g} mm: give bull_nose(radius, corner)"
-            )
+            raise JobRefused("a ball end has no disc that could fit the face; with axis='matched' give flat_end(radius) or bull_nose(radius, corner)")
         if mill.flat_mm and not self.matched:
-            raise JobRefused("with five axes faces are swept with a ball end, or with a bull nose and axis='matched'; give one of these, or neither lead_deg, tilt_deg nor axis")
+            raise JobRefused("with five axes faces are swept with a ball end, or with a flat end or bull nose and axis='matched'; give one of these, or neither lead_deg, tilt_deg nor axis")
 
     @property
     def one_way(self):

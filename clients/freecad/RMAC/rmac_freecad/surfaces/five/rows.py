@@ -10,7 +10,7 @@ from rmac_freecad.surfaces.five.track import NAMES, Places
 from rmac_freecad.surfaces.rows import runs
 
 SAMPLES = 6  # a radius
-CORNER_SAMPLES = 3  # and a radius of the corner
+DETAIL_SAMPLES = 3  # and a detail of the mill
 OVER = 1.05  # steps: a pass goes on over its ends to places that are so near to what its neighbour cuts
 MOST_BESIDE = 0.95  # of a disc
 TOUCHING = 0.4  # of the band, that the lifted ball keeps off the part
@@ -28,6 +28,13 @@ class Row:
     core: np.ndarray  # where a target is cut
     used: np.ndarray  # and over its ends
 
+    @property
+    def again(self):
+        """Where a line that is closed has been or will be."""
+        lengths = np.array([track.length if track.closed else np.inf for track in self.tracks])
+        begins = np.array([0 if track.closed else -np.inf for track in self.tracks])
+        return (self.s < begins[self.line]) | (self.s > lengths[self.line])
+
     def runs(self):
         return runs(self.used)
 
@@ -35,7 +42,7 @@ class Row:
 class Rows:
     def __init__(self, family, clearance, leaning, mill, band_mm):
         self.family, self.leaning, self.mill, self.band_mm = family, leaning, mill, band_mm
-        self._spacing = min(mill.radius_mm / SAMPLES, mill.corner_mm / CORNER_SAMPLES)
+        self._spacing = min(mill.radius_mm / SAMPLES, mill.detail_mm / DETAIL_SAMPLES)
         self._clearance = clearance
 
     def at(self, w):
@@ -72,7 +79,7 @@ class Rows:
         may = row.ball & np.isfinite(row.angles[:, 0]) & ~row.used
         chosen = np.flatnonzero(may)
         away = np.linalg.norm(row.places.centre[chosen][:, None] - cut, axis=2).min(1, initial=np.inf)
-        may[chosen] = away <= OVER * over_mm
+        may[chosen] = (away <= OVER * over_mm) & ~row.again[chosen]
         for i in range(1, len(may)):
             row.used[i] |= may[i] and row.used[i - 1]
         for i in range(len(may) - 2, -1, -1):

@@ -1,7 +1,7 @@
 """Faces of a part, swept with a ball end whose axis leans against them."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rmac_freecad.jobs.refusal import JobRefused
 from rmac_freecad.surfaces.five.access import Access
@@ -37,10 +37,11 @@ class Leaning:
     left_out: list
     links: Links
     one_way: bool
+    spare_mm: float = 0.0  # that the mill was held larger all round
     ball_passes: int | None = None  # that a ball end of the same radius and scallop takes, where the lead is matched
 
     def program(self, label, feeds, tool, rpm):
-        writer = Writer(label, self.links, feeds)
+        writer = Writer(label, self.links, feeds, self.spare_mm)
         writer.begin(tool, rpm)
         for number, one in enumerate(self.passes, 1):
             curves = [curve for stretch in one.stretches for curve in stretch]
@@ -79,26 +80,28 @@ def sweep(shape, targets, mill, lean: Lean, *, scallop_mm, tolerance_mm, along, 
     if steepest_deg is not None and steepest_deg > 180:
         raise JobRefused(f"steepest_deg is {steepest_deg:g}: give at most 180, which is a face that looks straight down")
     direction = along if isinstance(along, str) and along in ("u", "v", "level") else angle_of(along)
-    wanted = Wanted(scallop_mm, min(tolerance_mm, BAND_SHARE * scallop_mm), direction, None if steepest_deg is None else math.radians(steepest_deg))
-    body = Body(shape, targets, mill)
+    asked = Wanted(scallop_mm, min(tolerance_mm, BAND_SHARE * scallop_mm), direction, None if steepest_deg is None else math.radians(steepest_deg))
+    spare_mm = max(asked.band_mm - mill.corner_mm, 0)  # a sharp edge is held as one that is rounded outward
+    wanted = replace(asked, scallop_mm=scallop_mm - spare_mm)
+    body = Body(shape, targets, mill.grown(spare_mm))
     clearance, access = Clearance(body), Access(body)
     axes, touching = _leaning(body, clearance, access, lean, wanted.band_mm)
     families = wanted.families(body)
     passes, traces, high = [], [], []
     for family in families:
-        rows = Rows(family, clearance, axes, mill, wanted.band_mm)
+        rows = Rows(family, clearance, axes, body.mill, wanted.band_mm)
         one = wanted.passes(rows, touching)
-        laid = one.laid(Witnesses(rows, clearance, max(wanted.step_mm(mill), DISC_WITNESSES * mill.flat_mm)), ABOVE * scallop_mm)
+        laid = one.laid(Witnesses(rows, clearance, max(wanted.step_mm(body.mill), DISC_WITNESSES * mill.flat_mm)), ABOVE * wanted.scallop_mm)
         passes += laid
         traces += [each.trace for each in laid]
         high += one.high[:TOLD] + ([f"and so at {len(one.high) - TOLD} other places"] if len(one.high) > TOLD else [])
-    told = left_out(body, clearance, families, traces, scallop_mm, axes.barred)
+    told = left_out(body, clearance, families, traces, wanted.scallop_mm, axes.barred)
     if not any(one.stretches for one in passes):
-        step = wanted.step_mm(mill)
         told = told or ["the mill does not get there"]
-        raise JobRefused(f"nothing of the faces can be cut: {'; '.join(told)}. Passes are up to {step:.3g} mm apart; what is narrower may lie between two, and a smaller scallop lays them closer")
-    ball_passes = _ball_passes(shape, targets, mill, lean, wanted) if lean.matched else None
-    return Leaning(passes, told + high, Links(body, touching, clear_mm, ASIDE_MM), lean.one_way, ball_passes)
+        closer = "" if lean.matched else f". Passes are up to {wanted.step_mm(mill):.3g} mm apart; what is narrower may lie between two, and a smaller scallop lays them closer"
+        raise JobRefused(f"nothing of the faces can be cut: {'; '.join(told)}{closer}")
+    ball_passes = _ball_passes(shape, targets, mill, lean, asked) if lean.matched else None
+    return Leaning(passes, told + high, Links(body, touching, clear_mm, ASIDE_MM), lean.one_way, spare_mm, ball_passes)
 
 
 def _leaning(body, clearance, access, lean, band_mm):

@@ -37,4 +37,5 @@ def ball_touching(mill, clearance, access):
 
 
 def disc_touching(mill, distance):
-    return Touching(mill, (DISC_CHECKS, lambda tips, axes: distance(tips, axes) >= -MAY_MM))
+    may_mm = min(MAY_MM, mill.corner_mm / 2)  # deeper than its corner the distance has no gradient
+    return Touching(mill, (DISC_CHECKS, lambda tips, axes: distance(tips, axes) >= -may_mm))

@@ -11,9 +11,9 @@ from rmac_freecad.surfaces.witnesses import spread
 
 APART = 0.12  # of the step between passes on a plane
 TRACE = 24  # samples of a curve a radius
-CORNER_TRACE = 8  # and a radius of the corner
 FREE_MM = 1e-6
 AT_ONCE = 16
+MOST_ALONG = 20_000
 BARRED = 0.34  # radii from its curves, where a pass was to go and does not
 
 
@@ -27,10 +27,12 @@ class Trace:
 class Witnesses:
     def __init__(self, rows, clearance, step_mm):
         self._rows, self._clearance, self._mill = rows, clearance, rows.mill
-        self._spacing = min(self._mill.radius_mm / TRACE, self._mill.corner_mm / CORNER_TRACE)
+        self._spacing = self._mill.radius_mm / TRACE
         self._family, found = rows.family, []
         for label in self._family.targets:
-            uv = spread(rows.family.face(label), APART * step_mm)
+            face = rows.family.face(label)
+            uv = spread(face, APART * step_mm)
+            uv = np.concatenate([uv, *(_along(face, loop, APART * step_mm) for loop in face.trim.loops)]) if self._mill.flat_mm else uv
             point, normal, centre = self._family.touch(label, uv)
             good = self._family.gentle(normal) & np.isfinite(centre).all(1)
             found.append([column[good] for column in (self._family.places(uv, centre), point, normal)])
@@ -73,6 +75,14 @@ class Witnesses:
         ideal = self._point[index] + self._mill.corner_mm * self._normal[index]
         cut, barred = (np.concatenate(column) for column in zip(*((one.line.centre[one.line.used], one.barred) for one in traces)))
         return index_free & (_away(ideal, cut) <= _away(ideal, barred))
+
+
+def _along(face, loop, apart_mm):
+    """The border of a face, where passes end and a disc leaves most."""
+    loop = np.append(loop, loop[:1], 0)
+    far = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(face.evaluate(loop), axis=0), axis=1))])
+    even = np.linspace(0, far[-1], min(int(far[-1] / apart_mm), MOST_ALONG) + 2)
+    return np.column_stack([np.interp(even, far, loop[:, k]) for k in (0, 1)])
 
 
 def _away(places, others):

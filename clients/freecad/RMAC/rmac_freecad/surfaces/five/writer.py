@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 import rmac
 from rmac_freecad.program import Place, Program
 from rmac_freecad.surfaces.beginning import begin_program
@@ -13,9 +15,11 @@ SAME = 1e-9
 
 
 class Writer:
-    def __init__(self, label, links, feeds):
+    """`inset_mm` is how far up its axis the mill stands in the one that was held against the part."""
+
+    def __init__(self, label, links, feeds, inset_mm):
         self.program = Program()
-        self._label, self._links, self._feeds = label, links, feeds
+        self._label, self._links, self._feeds, self._inset = label, links, feeds, inset_mm
         self._in_force = self._at = None
 
     def begin(self, tool, rpm):
@@ -49,7 +53,7 @@ class Writer:
         above[:3] += min(OVER_MM, math.dist(ways[-1][:3], begin[:3])) * begin[3:]
         self._to([above], place)
         self._set_feed("plunge_mm_min", place)
-        self.program.append(rmac.Line(tuple(above.tolist()), tuple(begin.tolist())), place)
+        self.program.append(rmac.Line(*(tuple(self._real(pose).tolist()) for pose in (above, begin))), place)
         self._at = begin
 
     def _to(self, poses, place):
@@ -57,13 +61,16 @@ class Writer:
             if self._at is not None and abs(self._at - pose).max() < SAME:
                 continue
             self._set_feed("rapid_mm_min", place)
-            self.program.append(rmac.MoveTo(tuple(pose.tolist())), place)
+            self.program.append(rmac.MoveTo(tuple(self._real(pose).tolist())), place)
             self._at = pose
 
     def _along(self, knots, poles, degree, place):
         self._set_feed("feed_mm_min", place)
-        self.program.append(rmac.PoseNurbs(rmac.NurbsCurve(degree, knots, poles)), place)
+        self.program.append(rmac.PoseNurbs(rmac.NurbsCurve(degree, knots, self._real(poles))), place)
         self._at = poles[-1]
+
+    def _real(self, poses):
+        return poses + self._inset * np.concatenate([poses[..., 3:], np.zeros_like(poses[..., 3:])], -1)
 
     def _set_feed(self, name, place):
         if self._feeds[name] != self._in_force:
