@@ -1,5 +1,9 @@
 """What the tests of operations' dialogs share: a box, its faces selected, fields filled in, and the cut."""
 
+import os
+import tempfile
+
+import FreeCAD
 import FreeCADGui
 from rmac_freecad.window.running.machining_dialog import show as show_machining
 from windowed import WindowTest, process_until
@@ -24,6 +28,19 @@ class OperationTest(WindowTest):
         for name, value in values.items():
             widget = dialog.fields[name].widget
             next(getattr(widget, setter) for setter in ("set_quantity", "setCurrentText", "setChecked", "setValue") if hasattr(widget, setter))(value)
+
+    def saved_and_opened(self, dialog, listed):
+        """What the dialog's operation shows, and the strokes that are shown of it when its document is opened again. `listed`: operations of its kind."""
+        before = [stroke.points for stroke in self.shown(dialog)]
+        dialog.close()
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "Teil ü.FCStd")
+            self.document.saveAs(file)
+            FreeCAD.closeDocument(self.document.Name)
+            self.document = FreeCAD.openDocument(file)
+        view = listed(self.document)[0].ViewObject.Proxy
+        process_until(lambda: view.path is not None, "its path is shown")
+        return before, [stroke.points for stroke in view.path._strokes]
 
     def deepest(self, dialog):
         return min(z for stroke in self.shown(dialog) for _, _, z in stroke.points)

@@ -1,7 +1,5 @@
 """Holes in their dialog: listed, chosen by diameter, previewed, run dry and cut, and what is told instead."""
 
-import os
-import tempfile
 import unittest
 
 import FreeCAD
@@ -114,16 +112,8 @@ class DrillDialogTest(OperationTest):
         self.assertEqual(drillings(self.document), [])
 
     def test_a_saved_one_is_shown_when_its_document_is_opened(self):
-        dialog = self.opened_on()
-        before = [stroke.points for stroke in self.shown(dialog)]
-        dialog.close()
-        with tempfile.TemporaryDirectory() as folder:
-            self.document.saveAs(os.path.join(folder, "Teil ü.FCStd"))
-            FreeCAD.closeDocument(self.document.Name)
-            self.document = FreeCAD.openDocument(os.path.join(folder, "Teil ü.FCStd"))
-        view = drillings(self.document)[0].ViewObject.Proxy
-        process_until(lambda: view.path is not None, "its path is shown")
-        np.testing.assert_allclose([point for stroke in view.path._strokes for point in stroke.points], [point for points in before for point in points], atol=1e-9)
+        before, after = self.saved_and_opened(self.opened_on(), drillings)
+        np.testing.assert_allclose(np.concatenate(after), np.concatenate(before), atol=1e-9)
 
     def test_inches_are_shown_and_given(self):
         units = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Units")

@@ -1,7 +1,5 @@
 """Pockets, swept faces and profiles in their dialogs: values, preview, dry run and cut, and what is told instead."""
 
-import os
-import tempfile
 import unittest
 
 import FreeCAD
@@ -83,16 +81,8 @@ class PocketDialogTest(OperationTest):
         process_until(lambda: view.path is not None and abs(max(x for s in view.path._strokes for x, _, _ in s.points) - 37.5) < 1e-6, "the path follows")
 
     def test_a_saved_one_is_shown_when_its_document_is_opened(self):
-        dialog = self.dialog(PocketDialog, self.face(4))
-        before = [stroke.points for stroke in self.shown(dialog)]
-        dialog.close()
-        with tempfile.TemporaryDirectory() as folder:
-            self.document.saveAs(os.path.join(folder, "Teil ü.FCStd"))
-            FreeCAD.closeDocument(self.document.Name)
-            self.document = FreeCAD.openDocument(os.path.join(folder, "Teil ü.FCStd"))
-        view = pockets(self.document)[0].ViewObject.Proxy
-        process_until(lambda: view.path is not None, "its path is shown")
-        self.assertEqual([stroke.points for stroke in view.path._strokes], before)
+        before, after = self.saved_and_opened(self.dialog(PocketDialog, self.face(4)), pockets)
+        self.assertEqual(after, before)
 
     def test_one_that_was_deleted_is_told(self):
         dialog = self.dialog(PocketDialog, self.face(4))
