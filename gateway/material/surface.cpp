@@ -38,16 +38,21 @@ class Points {
   }
 
   /// Where the surface passes between a point and the next one along an axis, of which one is inside: where the ray
-  /// begins or ends there. Half-way, where rounding has the ray see none.
+  /// begins or ends there. Where rounding has it do so beyond one of the two, which other rays have on their other side,
+  /// it is that point; half-way, where the ray sees no such place near them.
   [[nodiscard]] Vector3f crossing(const Place& place, std::size_t axis, bool leaves) const {
     const double low = at(axis, place[axis]), high = at(axis, place[axis] + 1);
     double found = (low + high) / 2;
     Place on_ray = place;
     if (beyond(axis, place[axis])) ++on_ray[axis];
     const auto from = static_cast<float>(low - layout_.low[axis]), to = static_cast<float>(high - layout_.low[axis]);
+    float least = (to - from) / 2;
     grid_.pieces(axis, ray(axis, on_ray), [&](const DexelGrid::Piece& piece) {
       const float end = leaves ? piece.to : piece.from;
-      if (end >= from && end <= to) found = layout_.low[axis] + double{end};
+      const float between = std::clamp(end, from, to), away = std::abs(end - between);
+      if (away > least) return;
+      least = away;
+      found = layout_.low[axis] + double{between};
     });
     Vector3f point;
     for (std::size_t a = 0; a < 3; ++a) {

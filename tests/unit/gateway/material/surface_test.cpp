@@ -52,6 +52,27 @@ TEST(Surface, OfABallHasItsCornersOnTheBall) {
   EXPECT_NEAR(volume_mm3(mesh) / (4.0 / 3 * std::numbers::pi * 125), 1, 0.002);
 }
 
+// Red where a ray that sees no end between two points, of which rounding has one inside, ends half-way between them.
+TEST(Surface, HasItsCornersOnABallThatGoesThroughPointsOfTheLattice) {
+  std::mt19937_64 random(22);
+  std::uniform_real_distribution<double> nearly(-1e-6, 1e-6);
+  for (int n = 0; n < 40; ++n) {
+    const DexelLayout layout = filled(Stock::read(body_of(SphereShape{5})).value(), 0.25).layout();
+    Vector3d through;
+    for (std::size_t a = 0; a < 3; ++a)
+      through[static_cast<Eigen::Index>(a)] = layout.line(a, random() % layout.count[a]);
+    const double radius = std::clamp(through.norm() + nearly(random), 2.0, 5.0);
+    DexelGrid grid = block(10, 0.25);
+    const ProfilePiece ball{.kind = ProfilePiece::Kind::Ball, .middle = radius, .rounded = radius};
+    cut(grid, sweep_of(ball, {Vector3d::Zero(), Vector3d::Zero(), Vector3d::UnitZ()}), Cut::Remove);
+    for (const Vector& p : mesh_of(grid, 1).points) {
+      const bool on_block = std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}) > 4.999;
+      EXPECT_TRUE(on_block || std::abs(std::hypot(p[0], p[1], p[2]) - radius) < 1e-3)
+          << p[0] << ' ' << p[1] << ' ' << p[2] << ", radius " << radius;
+    }
+  }
+}
+
 TEST(Surface, GoesIntoAFileAsFineAsTrianglesAllowAndComesBackAsTheSameStock) {
   const DexelGrid grid = block(10, 0.1);
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "rmac-surface-test.stl";
@@ -72,6 +93,7 @@ TEST(Surface, GoesIntoAFileAsFineAsTrianglesAllowAndComesBackAsTheSameStock) {
 /// Neighbours in a lattice of random points agree on every face that they share, or edges would be open.
 TEST(MarchingCubes, CloseWhateverIsInside) {
   std::mt19937_64 random(22);
+  std::uniform_real_distribution<double> nearly(-1e-6, 1e-6);
   for (int n = 0; n < 20; ++n) {
     DexelGrid grid(DexelLayout::of(Eigen::AlignedBox3d(Vector3d::Zero(), Vector3d::Constant(6)), 1));
     bool in[6][6][6];
