@@ -38,8 +38,8 @@ class Points {
   }
 
   /// Where the surface passes between a point and the next one along an axis, of which one is inside: where the ray
-  /// begins or ends there. Where rounding has it do so beyond one of the two, which other rays have on their other side,
-  /// it is that point; half-way, where the ray sees no such place near them.
+  /// begins or ends there. Where rounding has it do so beyond one of the two, which other rays have on their other
+  /// side, it is that point; half-way, where the ray sees no such place near them.
   [[nodiscard]] Vector3f crossing(const Place& place, std::size_t axis, bool leaves) const {
     const double low = at(axis, place[axis]), high = at(axis, place[axis] + 1);
     double found = (low + high) / 2;

@@ -56,7 +56,7 @@ TEST(Surface, OfABallHasItsCornersOnTheBall) {
 TEST(Surface, HasItsCornersOnABallThatGoesThroughPointsOfTheLattice) {
   std::mt19937_64 random(22);
   std::uniform_real_distribution<double> nearly(-1e-6, 1e-6);
-  for (int n = 0; n < 40; ++n) {
+  for (int n = 0; n < 20; ++n) {
     const DexelLayout layout = filled(Stock::read(body_of(SphereShape{5})).value(), 0.25).layout();
     Vector3d through;
     for (std::size_t a = 0; a < 3; ++a)
