@@ -29,7 +29,7 @@ def main():
         done = subprocess.run([options.program, file, "-o", "/dev/null", *KNOWN], capture_output=True, text=True, errors="replace",
                               timeout=BOUND_S, check=False)
         if done.returncode != 0:
-            reasons[re.sub(r"\d+", "#", re.sub(r"^.*?:\d+:\d+: ", "", done.stderr.strip().splitlines()[-1]))] += 1
+            reasons[re.sub(r"(?<![GM\d.])\d+", "#", re.sub(r"^.*?:\d+:\d+: ", "", done.stderr.strip().splitlines()[-1]))] += 1
     for reason, count in reasons.most_common():
         print(f"{count:5} {reason}")
     print(f"{len(files) - sum(reasons.values())} of {len(files)} programs taken")

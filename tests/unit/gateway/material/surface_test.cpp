@@ -57,12 +57,12 @@ TEST(Surface, HasItsCornersOnABallThatGoesThroughPointsOfTheLattice) {
   std::mt19937_64 random(22);
   std::uniform_real_distribution<double> nearly(-1e-6, 1e-6);
   for (int n = 0; n < 20; ++n) {
-    const DexelLayout layout = filled(Stock::read(body_of(SphereShape{5})).value(), 0.25).layout();
+    DexelGrid grid = block(10, 0.25);
+    const DexelLayout& layout = grid.layout();
     Vector3d through;
     for (std::size_t a = 0; a < 3; ++a)
       through[static_cast<Eigen::Index>(a)] = layout.line(a, random() % layout.count[a]);
     const double radius = std::clamp(through.norm() + nearly(random), 2.0, 5.0);
-    DexelGrid grid = block(10, 0.25);
     const ProfilePiece ball{.kind = ProfilePiece::Kind::Ball, .middle = radius, .rounded = radius};
     cut(grid, sweep_of(ball, {Vector3d::Zero(), Vector3d::Zero(), Vector3d::UnitZ()}), Cut::Remove);
     for (const Vector& p : mesh_of(grid, 1).points) {

@@ -38,8 +38,3 @@ def _turned(at, order):
         if not changed:
             break
     return order
-
-
-def way_length(places):
-    at = np.asarray(places, float).reshape(-1, 2)
-    return float(np.hypot(*np.diff(at, axis=0).T).sum())
