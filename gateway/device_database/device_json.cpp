@@ -41,6 +41,15 @@ void add_mechanics(Json& object, const JointMechanics& mechanics) {
   add_if(object, "LowPass", mechanics.low_pass_hz);
 }
 
+void add_cogging(Json& object, const Cogging& cogging) {
+  if (cogging.harmonics.empty()) return;
+  Json harmonics = Json::array();
+  for (const Cogging::Harmonic& one : cogging.harmonics) {
+    harmonics.push_back({{"Order", one.order}, {"Cosine", one.cosine_nm}, {"Sine", one.sine_nm}});
+  }
+  object["Cogging"] = {{"Lead", cogging.lead_s}, {"Harmonics", std::move(harmonics)}};
+}
+
 void add_force(Json& object, const sdk::Joint& joint) {
   if (const auto& sensor = joint.force_sensor) {
     object["ForceSensor"] = {{"Bus", sensor->bus},
@@ -128,6 +137,7 @@ Json to_json(const std::vector<sdk::Actuator>& actuators) {
     add_if(entry, "MaxMeasuredTorque", actuator.max_measured_torque_nm);
     add_if(entry, "PositionGain", actuator.position_gain);
     if (actuator.probe_edge) entry["TouchProbe"] = name_of(*actuator.probe_edge, kTouchProbeNumbers);
+    add_cogging(entry, actuator.cogging);
     list.push_back(std::move(entry));
   }
   return list;

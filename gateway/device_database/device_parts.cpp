@@ -69,6 +69,17 @@ JointMechanics mechanics(const Json& joint) {
   return result;
 }
 
+Cogging cogging(const Json& actuator) {
+  Cogging result;
+  const auto given = actuator.find("Cogging");
+  if (given == actuator.end()) return result;
+  result.lead_s = number(*given, "Lead");
+  for (const Json& one : (*given)["Harmonics"]) {
+    result.harmonics.push_back({one["Order"].get<int>(), number(one, "Cosine"), number(one, "Sine")});
+  }
+  return result;
+}
+
 std::optional<sdk::ForceSensor> force_sensor(const Json& joint) {
   const auto sensor = joint.find("ForceSensor");
   if (sensor == joint.end()) return {};
@@ -163,6 +174,7 @@ std::vector<sdk::Actuator> actuators(const Json& list) {
     if (const auto probe = entry.find("TouchProbe"); probe != entry.end()) {
       actuator.probe_edge = named(probe->get<int>(), kTouchProbeNumbers);
     }
+    actuator.cogging = cogging(entry);
     result.push_back(std::move(actuator));
   }
   return result;

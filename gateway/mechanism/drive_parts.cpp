@@ -81,7 +81,7 @@ Expected<> add_drives(LoopDraft& draft) {
     const double gain = parts.virtual_mode ? 0 : actuator.position_gain;
     parts.actuators.push_back({std::move(*bus), actuator.axis, actuator.scale,
                                static_cast<std::uint8_t>(actuator.homing_turn), max_torque, mode, gain,
-                               actuator.probe_edge});
+                               actuator.probe_edge, actuator.cogging});
   }
   return {};
 }

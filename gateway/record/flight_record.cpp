@@ -25,7 +25,7 @@ void append_header(const CycleSample& sample, std::string& out) {
   const std::size_t drives = sample.actuator_count;
   append_setpoint_header(joints, true, out);
   for (const char* quantity : {"ad", "effort", "force"}) append_columns(quantity, joints, out);
-  for (const char* word : {"torque_permille", "load_counts", "statusword", "error_code"})
+  for (const char* word : {"torque_permille", "counts", "load_counts", "statusword", "error_code"})
     append_columns(word, drives, out);
   append_columns("rpm", sample.spindle_rpm.size(), out);
   out +=
@@ -49,6 +49,7 @@ void append_row(const CycleSample& sample, std::string& out) {
   append_numbers(of_joints(sample.effort), out);
   append_numbers(of_joints(sample.force), out);
   append_words(sample.torque_permille, drives, out);
+  append_words(sample.counts, drives, out);
   append_words(sample.load_counts, drives, out);
   append_words(sample.statusword, drives, out);
   append_words(sample.error_code, drives, out);
@@ -58,6 +59,14 @@ void append_row(const CycleSample& sample, std::string& out) {
                  sample.cycle, to_string(sample.state), to_string(sample.servo_state), to_string(fault.kind),
                  fault.value, fault.bound, sample.inputs, sample.outputs, sample.deadline_misses, sample.horizon.s,
                  to_string(sample.horizon.limit));
+}
+
+nlohmann::json to_json(const std::vector<Cogging::Harmonic>& harmonics) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Cogging::Harmonic& one : harmonics) {
+    list.push_back({{"order", one.order}, {"cosine", one.cosine_nm}, {"sine", one.sine_nm}});
+  }
+  return list;
 }
 
 nlohmann::json to_json(const std::vector<Resonance>& resonances) {
@@ -84,6 +93,13 @@ nlohmann::json to_json(const FlightHead& head) {
                       {"resonances", to_json(joint.resonances)},
                       {"low_pass", joint.low_pass_hz}});
   }
+  nlohmann::json actuators = nlohmann::json::array();
+  for (const auto& [scale, cogging] : head.actuators) {
+    actuators.push_back({{"counts_per_revolution", scale.counts_per_revolution},
+                         {"rated_torque", scale.rated_torque_nm},
+                         {"direction", scale.direction},
+                         {"cogging", to_json(cogging.harmonics)}});
+  }
   return {{"name", head.name},
           {"cause", head.cause == FlightCause::Fault ? "fault" : "demand"},
           {"message", head.message},
@@ -92,6 +108,7 @@ nlohmann::json to_json(const FlightHead& head) {
           {"utc", head.utc},
           {"mechanism", head.mechanism},
           {"joints", std::move(joints)},
+          {"actuators", std::move(actuators)},
           {"buses", head.buses},
           {"first_cycle", head.first_cycle},
           {"last_cycle", head.last_cycle}};

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "gateway/state/cycle_sample.hpp"
+#include "rmac/motion/cogging.hpp"
+#include "rmac/motion/drive_scale.hpp"
 #include "rmac/motion/error.hpp"
 #include "rmac/motion/joint_mechanics.hpp"
 
@@ -36,7 +38,12 @@ struct FlightHead {
   std::string utc;  ///< the same by the calendar
   std::string mechanism;
   std::vector<Joint> joints;  ///< held ones last, as in the columns
-  nlohmann::json buses;       ///< what the buses had gone through by then, as `Bus.GetState` tells it; null: not known
+  struct Actuator {
+    DriveScale scale;
+    Cogging cogging;  ///< that is taken away
+  };
+  std::vector<Actuator> actuators;
+  nlohmann::json buses;  ///< what the buses had gone through by then, as `Bus.GetState` tells it; null: not known
   std::int64_t first_cycle = 0, last_cycle = 0;
 };
 

@@ -31,6 +31,9 @@ Expected<std::string> FlightReporter::record(FlightCause cause, const Event& eve
                            joint.limits.max_speed, joint.limits.max_acceleration, joint.max_effort,
                            joint.mechanics.resonances, joint.mechanics.low_pass_hz});
   }
+  for (const sdk::Actuator& actuator : device->actuators) {
+    head.actuators.push_back({actuator.scale, actuator.cogging});
+  }
   return recorder_->request(std::move(head));
 }
 

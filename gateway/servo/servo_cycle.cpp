@@ -172,6 +172,7 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
     sample_.statusword = report_.statusword;
     sample_.error_code = report_.error_code;
     sample_.torque_permille = report_.torque_permille;
+    sample_.counts = report_.counts;
     sample_.load_counts = report_.load_counts;
     std::copy(report_.spindle_rpm.begin(), report_.spindle_rpm.end(), sample_.spindle_rpm.begin());
     std::copy(report_.spindle_torque_nm.begin(), report_.spindle_torque_nm.end(), sample_.spindle_torque_nm.begin());

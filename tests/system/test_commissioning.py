@@ -12,6 +12,7 @@ import unittest
 import numpy as np
 
 from appliance import BUILD, Appliance, line, wait_for_rest
+from bending_mill import bend
 
 PNG = b"\x89PNG\r\n\x1a\n"
 MARGIN = 40.0
@@ -145,23 +146,35 @@ class Commands(unittest.TestCase):
                     pass
                 self.assertEqual(client.state()["state"], "Idle")
 
+    def test_tune_creeps_a_turn_of_the_motor_at_least(self):
+        with Appliance() as appliance, tempfile.TemporaryDirectory() as folder:
+            self.rmac(appliance, "load", "DMACXYZ")
+            short = appliance.rmac("tune", "0", "--travel", "4", "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
+        self.assertEqual((short.returncode, short.stderr.count("\n")), (1, 1), short.stderr)
+        self.assertIn("--creep takes a turn of the motor at least, which is 5: give more --travel", short.stderr)
+
+    def test_tune_finds_cogging_and_how_friction_builds_up(self):
+        """And puts it in force: the law with feedforward, and the motor's map."""
+        soft = {"Gains": [120, 2000, 1.2], "MaxFollowingError": 1}
+        with self.bending(274, soft) as appliance, tempfile.TemporaryDirectory() as folder:
+            words = ("tune", "1", "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
+            said = self.rmac(appliance, *words, "--travel", "20", "--apply")
+            name = json.loads(self.rmac(appliance, "--json", "trace", "record"))["name"]
+            head = json.loads(appliance.client().call("FlightRecorder.Read", Name=name, Offset=0)["text"].splitlines()[0])
+        self.assertRegex(said, r"friction slides at (18|19)\.\d N, builds up over 0\.0(09|10)\d* mm")
+        self.assertRegex(said, r"cogging of 60 periods a turn: 0\.006\d* N·m, (1\.9|2\.0)\d % of the rated torque")
+        self.assertIn('into its actuator: "Cogging": {"Harmonics":[{', said)
+        joint = head["joints"][1]
+        self.assertEqual(joint["law"], "FeedforwardFeedbackServoControlLaw")
+        self.assertEqual(set(joint["parameters"]), {"rest_band", "lead_s", "presliding", "breakaway", "stribeck_speed"})
+        self.assertEqual(head["joints"][0]["law"], "DMACXYZPIDServoControlLaw")
+
     @contextlib.contextmanager
     def bending(self, hz, joint, heavier=1.0, load=True):
         """DMACXYZ, with axes of two masses that swing at `hz`, so many times heavier than it says, and `joint` in the
         data of its first three."""
         appliance = Appliance(own_tree=True, flight_recorder={"seconds": 30})
-        file = next(appliance.tree.glob("*/*/DMACXYZ/device.json"))
-        device = json.loads(file.read_text())
-        motor, table = 0.93e-5 * heavier, 1.27e-5 * heavier
-        stiffness = (2 * np.pi * hz) ** 2 * motor * table / (motor + table)
-        device["DigitalControlInterface"]["Parameters"] = {
-            "stiffness_nm_rad": [stiffness] * 3 + [0] * 5, "load_inertia_kg_m2": [table] * 3 + [0] * 5,
-            "inertia_kg_m2": [motor + table] * 3 + [2.2e-5] * 5,
-            "presliding_turns": [0.002] * 8, "cogging": [0.02] * 8}
-        for data in device["Joints"][:3]:
-            data.update(joint)
-        device["Joints"][2]["ServoControlLaw"]["Parameters"]["load"] = [117.7]
-        file.write_text(json.dumps(device))
+        bend(appliance, hz, joint, heavier)
         with appliance:
             if load:
                 self.rmac(appliance, "load", "DMACXYZ")

@@ -12,6 +12,7 @@ import sys
 import matplotlib
 
 matplotlib.use("Agg")
+import creep
 import frequency_response
 import loop_design as design
 import matplotlib.pyplot as plt
@@ -111,6 +112,8 @@ def read_words(words):
     parser.add_argument("--bandwidth", type=float, default=0, help="Hz; 0: the largest that keeps its margins")
     parser.add_argument("--margin", type=float, required=True, help="degrees")
     parser.add_argument("--picture", required=True)
+    parser.add_argument("--creep", nargs=2, help="flight records of strokes that creep: some turns, and to and fro")
+    parser.add_argument("--creep-begin", nargs=2, type=float, help="t_s after which each is")
     parser.add_argument("--sweep", help="flight record of swept sines")
     parser.add_argument("--sweep-begin", type=float, default=0, help="t_s after which they are")
     parser.add_argument("--sweep-period", type=float, help="s")
@@ -138,6 +141,37 @@ def measured_joint(given, plant):
     return joint, response
 
 
+def turn_of(head, columns, joint):
+    """What the joint goes in a turn of its motor, and why that is not known."""
+    try:
+        return abs(creep.motor_of(head, columns, joint).turn), None
+    except (model.Unidentifiable, KeyError) as problem:
+        return None, f"--creep: {problem}"
+
+
+def rounded(value):
+    """To five digits: what is written into device.json is read by people."""
+    return float(f"{value:.5g}")
+
+
+def crept(given, head, plant, bent, lead):
+    """What creeping has shown, for the law with feedforward and for the motor; None without it."""
+    if given.creep is None:
+        return None
+    records = [model.read_record(file, begin)[1] for file, begin in zip(given.creep, given.creep_begin)]
+    motor, found = creep.find(head, records, given.joint, plant, bent)
+    friction = found.friction
+    kept = {key: value for key, value in head["joints"][given.joint]["parameters"].items()
+            if key in ("derivative_filter_s", "rest_band")}
+    parameters = {"lead_s": lead, "presliding": friction.presliding, "breakaway": friction.breakaway,
+                  "stribeck_speed": friction.stribeck_speed}
+    harmonics = [{"Order": order, "Cosine": rounded(cosine), "Sine": rounded(sine)} for order, cosine, sine in found.harmonics]
+    return {"friction": friction.sliding, "explained": found.explained,
+            "parameters": {**kept, **{key: [rounded(value)] for key, value in parameters.items()}},
+            "motor": {"actuator": motor.actuator, "of": len(head["actuators"]), "rated_torque": motor.rated_torque,
+                      "cogging": {"Lead": rounded(plant.delay_s), "Harmonics": harmonics}}}
+
+
 def main():
     """Exit code 1 with one line that says why, when the record or the wish does not do."""
     given = read_words(sys.argv[1:])
@@ -148,6 +182,8 @@ def main():
         plant = model.identify(columns["t_s"], columns[f"a{column}"], columns[f"effort{column}"])
         bent, response = measured_joint(given, plant)
         proposed = design.design(bent, given.margin, given.bandwidth)
+        lead = plant.delay_s + proposed.filters.delay_s()
+        creeping = crept(given, head, plant, bent, lead)
     except (model.Unidentifiable, frequency_response.Unmeasured, design.Undesignable) as problem:
         print(problem, file=sys.stderr)
         return 1
@@ -159,7 +195,9 @@ def main():
          f"{plant.viscous:.3g} v, load {plant.load:.3g}, delay {1e3 * plant.delay_s:.2f} ms"
          + (f", resonances {modes}" if modes else ""), loops, bent, response, bent.period, given.picture)
     told = {label: describe(loop, found) for label, loop, found in loops}
-    forward = [*proposed.gains, plant.viscous, plant.mass, plant.friction, plant.load]
+    friction = creeping["friction"] if creeping else plant.friction
+    forward = [*proposed.gains, plant.viscous, plant.mass, friction, plant.load]
+    turn, no_creep = turn_of(head, columns, given.joint)
     print(json.dumps({
         "joint": joint["name"], "unit": joint["unit"], "law": joint["law"], "plant": model.as_json(plant),
         "max_speed": joint["max_speed"], "max_effort": joint["max_effort"], "parameters": joint["parameters"],
@@ -170,7 +208,7 @@ def main():
         "elsewhere": describe(proposed, design.judge(proposed, bent)),
         "filters_in_force": filters_of(before) if before else None,
         "pid_gains": list(proposed.gains), "feedforward_feedback_gains": forward,
-        "lead_s": plant.delay_s + proposed.filters.delay_s(),
+        "lead_s": lead, "turn": turn, "no_creep": no_creep, "creep": creeping,
         "apply": {3: list(proposed.gains), 7: forward}.get(len(joint["gains"]))}))
     return 0
 

@@ -112,6 +112,23 @@ Expected<> check_mode(const ServoActuator& actuator, double period_s, const std:
   return {};
 }
 
+Expected<> check_cogging(const ServoActuator& actuator, const std::string& who) {
+  constexpr double kMostShare = 0.25;  // no servo motor has more of its rated torque
+  double most = 0;
+  for (const Cogging::Harmonic& one : actuator.cogging.harmonics) most += std::hypot(one.cosine_nm, one.sine_nm);
+  if (most > 0 && actuator.mode != DriveMode::CyclicSyncTorque &&
+      !actuator.bus->interface->takes_torque_offset(actuator.axis)) {
+    return failure(MinorCode::InvalidParameterValue,
+                   "servo loop: " + who +
+                       " has Cogging, and its drive follows positions or velocities and takes no torque beside; leave "
+                       "it out, or have its torque offset carried (60B2h in rpdo)");
+  }
+  if (most <= kMostShare * actuator.scale.rated_torque_nm) return {};
+  return failure(MinorCode::InvalidParameterValue,
+                 "servo loop: " + who + " has cogging of up to " + std::to_string(most) +
+                     " N·m; more than a quarter of its RatedTorque is no cogging: give N·m at the motor");
+}
+
 Expected<> check_drives(const ServoLoopParts& parts) {
   std::vector<std::pair<const ServoBus*, std::uint32_t>> taken;
   const auto take = [&taken](const ServoBus* bus, std::uint32_t axis, const std::string& who) -> Expected<> {
@@ -135,6 +152,7 @@ Expected<> check_drives(const ServoLoopParts& parts) {
                          "1 or -1");
     }
     if (auto ok = check_mode(actuator, parts.period_s, who); !ok) return ok;
+    if (auto ok = check_cogging(actuator, who); !ok) return ok;
   }
   for (std::size_t i = 0; i < parts.spindles.size(); ++i) {
     const std::string who = "spindle " + std::to_string(i);

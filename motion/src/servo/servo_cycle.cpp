@@ -23,7 +23,7 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
       laws(parts.joints, parts.period_s),
       spindles(parts.spindles, parts.period_s, state),
       rest(parts.actuators.size() + parts.spindles.size(), parts.period_s),
-      torques(*parts.actuator_map, parts.actuators.size()),
+      torques(*parts.actuator_map, parts.actuators, parts.period_s),
       aims(parts.actuators, wiring.actuator_delays(), parts.period_s) {
   if (parts.virtual_mode) joints.reflect(setpoints.position(), setpoints.velocity());
 }
@@ -318,9 +318,10 @@ IndexSet ServoLoop::Impl::controlled() const noexcept {
 void ServoLoop::Impl::make_setpoints_of_drives() noexcept {
   torques.let_go();
   if (state.powered()) torques.make(joints.positions(), {laws.effort().data(), wiring.joints()}, state);
-  if (!wiring.all_take_torque()) {
+  if (!wiring.all_take_torque() || torques.know_cogging()) {
     std::array<double, kMaxJoints> wanted{};
     transmission.shafts_for(setpoints.positions(), {wanted.data(), wiring.actuators()});
+    torques.cancel_cogging(shafts.rad(), wanted, controlled());
     aims.step(wanted, controlled() & ~wiring.torque_drives(), state);
   }
   settle();

@@ -55,6 +55,7 @@ void ServoLoop::Impl::fill(const ServoCommand& command, ServoReport& report) con
       report.statusword[i] = words.statusword;
       report.error_code[i] = words.error_code;
       report.torque_permille[i] = words.torque_permille;
+      report.counts[i] = words.position_counts;
       report.load_counts[i] = words.load_counts;
     }
     spindles.fill(report);

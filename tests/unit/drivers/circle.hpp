@@ -62,6 +62,12 @@ class Ballbar {
     for (const auto& [angle, deviation] : points_) largest = std::max(largest, std::abs(deviation));
     return largest;
   }
+  /// Root of the mean square of the radial deviation.
+  [[nodiscard]] double contour_rms() const {
+    double sum = 0;
+    for (const auto& [angle, deviation] : points_) sum += deviation * deviation;
+    return points_.empty() ? 0 : std::sqrt(sum / static_cast<double>(points_.size()));
+  }
   /// Largest departure, within 8 degrees after an axis turns round, from the mean of the 8 degrees before.
   [[nodiscard]] double reversal_spike() const {
     constexpr double kWindow = 8 * std::numbers::pi / 180;

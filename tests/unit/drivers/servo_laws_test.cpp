@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <cmath>
+#include <random>
 
 #include "conformance/holds.hpp"
 #include "conformance/loaded_module.hpp"
@@ -29,6 +31,10 @@ constexpr double kFilter_s = 0.001, kLead_s = 0.0017, kFrictionSpeed = 2, kLoad 
 const sdk::Parameter kFiltered{"derivative_filter_s", {&kFilter_s, 1}, nullptr};
 const sdk::Parameter kLeading{"lead_s", {&kLead_s, 1}, nullptr};
 const sdk::Parameter kSpread{"friction_speed", {&kFrictionSpeed, 1}, nullptr};
+constexpr double kPresliding = 0.01, kBreakaway = 1.3, kStribeckSpeed = 2;
+const sdk::Parameter kBends{"presliding", {&kPresliding, 1}, nullptr};
+const sdk::Parameter kBreaksAway{"breakaway", {&kBreakaway, 1}, nullptr};
+const sdk::Parameter kSlides{"stribeck_speed", {&kStribeckSpeed, 1}, nullptr};
 const sdk::Parameter kLoaded{"load", {&kLoad, 1}, nullptr};
 
 const std::vector<double> kModelGains{0.16, 0.035, 19, -118};
@@ -46,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "FeedforwardFeedbackServoControlLaw",
                 {1500, 100000, 11, 0.16, 0.035, 19, -118},
                 {300, 0, 40, 0.3, 0, 40, 0},
-                {kFiltered, kLeading, kSpread}},
+                {kFiltered, kLeading, kBends, kBreaksAway, kSlides}},
         LawCase{"modules", "SweptSineServoControlLaw", {1500, 100000, 11}, {300, 0, 40}, {kFiltered, kLoaded}},
         LawCase{"modules", "FuzzyServoControlLaw", {0.1, 15, 80, 100000}, {0.02, 100, 300, 0}, {kFiltered, kLoaded}}),
     [](const testing::TestParamInfo<LawCase>& law) { return std::string(law.param.module); });
@@ -179,6 +185,60 @@ TEST(FeedforwardLaw, TurnsFrictionRoundEarlierByItsLead) {
   EXPECT_GT(effort(0.003), 15);
   EXPECT_NEAR(effort(0.002), 0, 1e-9);
   EXPECT_LT(effort(0.001), -15);
+}
+
+/// Friction alone, 20 N, as bristles have it, with this much to break away.
+class BendingFriction : public testing::TestWithParam<double> {
+ protected:
+  /// What the law adds to its first effort after ways of `step` mm a cycle, cycle by cycle.
+  std::vector<double> efforts(const std::vector<double>& steps) {
+    LoadedModule module("modules", "FeedforwardServoControlLaw");
+    const double breakaway = GetParam(), slow = 0.5;
+    const std::array<sdk::Parameter, 3> parameters{
+        {kBends, {"breakaway", {&breakaway, 1}, nullptr}, {"stribeck_speed", {&slow, 1}, nullptr}}};
+    const auto law = module.create<ServoLaw>(parameters);
+    EXPECT_TRUE(law) << module.error();
+    EXPECT_TRUE(law->set_gains(std::array{0.0, 0.0, kCoulomb, 0.0}));
+    law->set_effort_limit(100);
+    law->engage({}, 0);
+    std::vector<double> result;
+    for (const double step : steps) result.push_back(law->update({.velocity_setpoint = 1000 * step}));
+    return result;
+  }
+  static constexpr double kCoulomb = 20;
+};
+INSTANTIATE_TEST_SUITE_P(Ratios, BendingFriction, testing::Values(1.0, 1.2, 2.0));
+
+TEST_P(BendingFriction, BuildsUpOverItsWayWhateverTheSpeed) {
+  const double slow = efforts(std::vector<double>(100, 1e-5)).back();  // 1 µm in all
+  EXPECT_NEAR(slow, kCoulomb * 0.001 / kPresliding, 0.02) << "a tenth of the way, like a spring";
+  EXPECT_NEAR(efforts(std::vector<double>(5, 2e-4)).back(), slow, 0.02) << "20 times as fast";
+}
+
+TEST_P(BendingFriction, EndsAsSlidingFrictionAndTurnsRoundWithTheWay) {
+  EXPECT_NEAR(efforts(std::vector<double>(50, 0.1)).back(), kCoulomb, 1e-6) << "fast: nothing is left to break away";
+  std::vector<double> there_and_back(8000, 5e-5);
+  there_and_back.insert(there_and_back.end(), 8000, -5e-5);
+  const std::vector<double> found = efforts(there_and_back);
+  EXPECT_NEAR(found[7999], kCoulomb * (1 + (GetParam() - 1) * std::exp(-0.01)), 1e-3) << "slow: it has to break away";
+  EXPECT_NEAR(found.back(), -found[7999], 1e-3);
+  EXPECT_GT(found[8040], 0) << "2 µm after it turned round the bristles still push";
+}
+
+TEST_P(BendingFriction, StaysWhereItIsAtRest) {
+  std::vector<double> steps(300, 1e-4);
+  steps.insert(steps.end(), 500, 0.0);
+  const std::vector<double> found = efforts(steps);
+  // What is left over from engaging fades, and nothing else changes.
+  EXPECT_NEAR(found[299], found.back(), 0.2 * kCoulomb * (GetParam() - 1) + 1e-6);
+}
+
+TEST_P(BendingFriction, IsNeverMoreThanWhatBreaksAwayWhateverTheSteps) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> exponent(-7, 1);
+  std::vector<double> steps;
+  for (int i = 0; i < 20000; ++i) steps.push_back((random() % 2 == 0 ? 1 : -1) * std::pow(10, exponent(random)));
+  for (const double effort : efforts(steps)) ASSERT_LE(std::abs(effort), GetParam() * kCoulomb + 1e-9);
 }
 
 TEST(FuzzySurface, GivesEachRulesConsequenceWhereItsTermsPeak) {

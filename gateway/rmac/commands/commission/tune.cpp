@@ -16,6 +16,8 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr const char* kFeedforwardFeedback = "DMAC_FEEDFORWARDFEEDBACK_CONTROL";
+
 /// What moves, and what is aimed at.
 struct TuneOptions {
   Stroke stroke;
@@ -23,11 +25,26 @@ struct TuneOptions {
   double phase_margin_deg = 40;
   std::optional<double> sweep_effort;  ///< N or N·m; a twentieth of `MaxEffort` unless given; 0: no sweep
   std::string picture;                 ///< empty: tune-JOINT.png here
+  bool creep = false;                  ///< friction before it slides, and cogging
   bool apply = false;
 };
 
+/// The law with feedforward and all that creeping has shown, with its motor's cogging.
+Result<> put_model(Connection& connection, int joint, const Json& found) {
+  const Json& motor = found["creep"]["motor"];
+  Json actuators = Json::array();
+  for (int i = 0; i < motor["of"].get<int>(); ++i) actuators.push_back(Json::object());
+  actuators[motor["actuator"].get<std::size_t>()]["Cogging"] = motor["cogging"];
+  return connection
+      .command("RMAC_Config.SetMechanismNumActuators", {{"NumActuators", motor["of"]}, {"Buses", actuators}})
+      .and_then([&] {
+        return put_law(connection, joint, kFeedforwardFeedback, found["creep"]["parameters"],
+                       found["feedforward_feedback_gains"]);
+      });
+}
+
 Result<> apply_gains(Connection& connection, const TuneOptions& options, const Json& found) {
-  if (found["apply"].is_null()) {
+  if (found["apply"].is_null() && !options.creep) {
     return fail(fmt::format("nothing is changed: {} takes other gains than those that were found; choose a PID law",
                             found["law"].get<std::string>()));
   }
@@ -43,9 +60,13 @@ Result<> apply_gains(Connection& connection, const TuneOptions& options, const J
   };
   const Result<> set = filters == before ? Result<>() : set_filters(filters);
   const Json gains{{"JntNum", joint}, {"ServoControlGains", found["apply"]}};
-  const Result<> applied =
-      set.and_then([&] { return connection.command("RMAC_Config.SetMechanismJointServoControlGains", gains); })
-          .and_then([&] { return connection.command("RMAC_Config.Apply"); });
+  const auto put = [&] {
+    if (options.creep) return put_model(connection, joint, found);
+    return connection.command("RMAC_Config.SetMechanismJointServoControlGains", gains).and_then([&] {
+      return connection.command("RMAC_Config.Apply");
+    });
+  };
+  const Result<> applied = set.and_then(put);
   // Half of it would come in force with whatever is applied next.
   if (!applied && filters != before && before.is_object()) static_cast<void>(set_filters(before));
   return applied;
@@ -120,19 +141,29 @@ Result<Json> measure_response(Connection& connection, const TuneOptions& options
   return plot_answer("tune.py", words);
 }
 
-/// Swings, and unless it is not wanted the joint's response.
+/// Swings, and where they are wanted creeping, and the joint's response.
 Result<Json> find_tuning(Connection& connection, const TuneOptions& options, double begin_s, const std::string& picture,
                          const std::string& fault) {
   if (auto moved = swing_at_speeds(connection, options.stroke, fault); !moved) return tl::unexpected(moved.error());
   const TemporaryFile record;
   if (auto kept = keep_record(connection, record); !kept) return tl::unexpected(kept.error());
-  const auto words = program_words(options, record, begin_s, picture);
-  if (options.sweep_effort == 0) return plot_answer("tune.py", words);
+  auto words = program_words(options, record, begin_s, picture);
+  const bool sweeps = options.sweep_effort != 0;
+  if (!sweeps && !options.creep) return plot_answer("tune.py", words);
   auto rigid = words;
   rigid.back() = "0";  // the bandwidth that is wanted is for what will be measured
-  return plot_answer("tune.py", rigid).and_then([&](const Json& found) {
-    return measure_response(connection, options, found, words, fault);
-  });
+  const auto found = plot_answer("tune.py", rigid);
+  if (!found) return found;
+  CreepRecords creep;
+  if (options.creep) {
+    if (auto crept = creep_strokes(connection, options.stroke, *found, creep, fault); !crept)
+      return tl::unexpected(crept.error());
+    for (const std::string& word :
+         {std::string("--creep"), creep.turning.path(), creep.reversing.path(), std::string("--creep-begin"),
+          fmt::format("{}", creep.begins[0]), fmt::format("{}", creep.begins[1])})
+      words.push_back(word);
+  }
+  return sweeps ? measure_response(connection, options, *found, words, fault) : plot_answer("tune.py", words);
 }
 
 Result<> tune(Connection& connection, const TuneOptions& options, bool json) {
@@ -178,8 +209,13 @@ void add_tune(Command& rmac) {
       .option("--sweep-effort", &options->sweep_effort,
               "N or N·m of the sines that find resonances; a twentieth of MaxEffort unless given, 0 for none")
       .within(0.0, 1e7);
+  tuned.flag("--creep", &options->creep,
+             "also creep along, two turns of the motor and to and fro: finds its cogging, and how friction builds up "
+             "before it slides");
   tuned.option("-o,--output", &options->picture, "the picture to draw; tune-JOINT.png here unless given");
-  tuned.flag("--apply", &options->apply, "put gains and filters in force; without it nothing is changed");
+  tuned.flag("--apply", &options->apply,
+             "put gains and filters in force, with --creep the law with feedforward and what it found; without it "
+             "nothing is changed");
   tuned.does(with_appliance([options](Connection& appliance, bool json) { return tune(appliance, *options, json); }));
 }
 

@@ -8,6 +8,7 @@
 #include <functional>
 #include <numbers>
 
+#include "gateway/rmac/commands/commission/experiment.hpp"
 #include "gateway/rmac/wire/requests.hpp"
 #include "gateway/rmac/wire/rest.hpp"
 
@@ -72,6 +73,38 @@ Result<> swing_at_speeds(Connection& connection, const Stroke& stroke, const std
   });
 }
 
+Result<> creep_strokes(Connection& connection, const Stroke& stroke, const Json& found, CreepRecords& records,
+                       const std::string& fault) {
+  // What the recorder keeps, 10 s, is to hold each of the two. Two turns tell orders apart, and any slower friction
+  // makes a soft loop stick and slip.
+  constexpr double kTurns = 2, kTurningS = 3.5;
+  constexpr double kShortTurns = 0.06, kShortS = 0.75;
+  constexpr int kShortStrokes = 4;
+  constexpr double kLeastPercent = 0.1;
+  if (found["turn"].is_null()) return fail(found["no_creep"].get<std::string>());
+  const double turn = found["turn"].get<double>(), max_speed = found["max_speed"].get<double>();
+  if (std::abs(stroke.travel) < turn) {
+    return fail(fmt::format("--creep takes a turn of the motor at least, which is {:.4g}: give more --travel", turn));
+  }
+  return at_speeds(connection, [&](const auto& set_percent) -> Result<> {
+    const auto strokes = [&](std::size_t which, double turns, double seconds, int count,
+                             const TemporaryFile& file) -> Result<> {
+      const double way = std::min(std::abs(stroke.travel), turns * turn);
+      const auto begin = ask_state(connection);
+      if (!begin) return tl::unexpected(begin.error());
+      records.begins[which] = begin->t_s;
+      Result<> done = set_percent(std::clamp(100 * way / seconds / max_speed, kLeastPercent, 100.0));
+      for (int i = 0; i < count && done; ++i) {
+        done = swing(connection, {stroke.joint, std::copysign(way, stroke.travel)}, fault);
+      }
+      return done.and_then([&] { return keep_record(connection, file); });
+    };
+    return strokes(0, kTurns, kTurningS, 1, records.turning).and_then([&] {
+      return strokes(1, kShortTurns, kShortS, kShortStrokes, records.reversing);
+    });
+  });
+}
+
 // The joint, which goes to and fro with the sine, is to go on in the direction of its stroke: half of the stroke's
 // speed is what the sine may change.
 Sweep sweep_for(const Stroke& stroke, const Json& found, std::optional<double> effort) {
@@ -85,8 +118,6 @@ Sweep sweep_for(const Stroke& stroke, const Json& found, std::optional<double> e
   return sweep;
 }
 
-namespace {
-
 Result<> put_law(Connection& connection, int joint, const std::string& law, const Json& parameters, const Json& gains) {
   return connection
       .command("RMAC_Config.SetMechanismJointServoControlLaw",
@@ -97,6 +128,8 @@ Result<> put_law(Connection& connection, int joint, const std::string& law, cons
       })
       .and_then([&] { return connection.command("RMAC_Config.Apply"); });
 }
+
+namespace {
 
 /// The law that sweeps, with the feedback of the law in force.
 Result<> put_sweeping_law(Connection& connection, int joint, const Json& found, const Sweep& sweep) {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
+#include "gateway/rmac/plots/plot_program.hpp"
 #include "gateway/rmac/wire/connection.hpp"
 #include "gateway/rmac/wire/failure.hpp"
 
@@ -19,6 +21,21 @@ struct Stroke {
 
 /// Swings at several speeds, for what a rigid joint is made of.
 [[nodiscard]] Result<> swing_at_speeds(Connection& connection, const Stroke& stroke, const std::string& fault);
+
+/// Strokes that creep: some turns of the motor there and back at a steady speed, and short ones to and fro, one record
+/// each, of which `begins` says after which time it is.
+struct CreepRecords {
+  TemporaryFile turning, reversing;
+  std::array<double, 2> begins{};
+};
+
+/// Creeps with the joint of which `tune.py` found this in its swings.
+[[nodiscard]] Result<> creep_strokes(Connection& connection, const Stroke& stroke, const nlohmann::json& found,
+                                     CreepRecords& records, const std::string& fault);
+
+/// A law, its parameters and gains, and whatever else the draft holds, come in force.
+[[nodiscard]] Result<> put_law(Connection& connection, int joint, const std::string& law,
+                               const nlohmann::json& parameters, const nlohmann::json& gains);
 
 /// Swept sines (SweptSineServoControlLaw) of one stroke.
 struct Sweep {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <vector>
 
 #include "gateway/rmac/commands/commission/experiment.hpp"
@@ -21,6 +22,24 @@ void print_filters(const Json& filters) {
   if (filters["LowPass"] > 0) fmt::print("  low-pass at {:.1f} Hz\n", filters["LowPass"].get<double>());
 }
 
+/// What creeping has shown.
+void print_creep(const Json& found, const char* way, const char* effort) {
+  const Json &creep = found["creep"], &motor = creep["motor"], &parameters = creep["parameters"];
+  const auto number = [&](const char* key) { return parameters[key][0].get<double>(); };
+  fmt::print(
+      "friction slides at {:.3g} {}, builds up over {:.3g} {} and breaks away at {:.2f} times that, which is gone "
+      "at {:.2g} {}/s\n",
+      creep["friction"].get<double>(), effort, number("presliding"), way, number("breakaway"), number("stribeck_speed"),
+      way);
+  for (const Json& one : motor["cogging"]["Harmonics"]) {
+    const double size = std::hypot(one["Cosine"].get<double>(), one["Sine"].get<double>());
+    fmt::print("cogging of {} periods a turn: {:.3g} N·m, {:.2f} % of the rated torque\n", one["Order"].get<int>(),
+               size, 100 * size / motor["rated_torque"].get<double>());
+  }
+  if (motor["cogging"]["Harmonics"].empty()) fmt::print("cogging: none\n");
+  fmt::print("the model explains {:.1f} % of what creeping takes\n", 100 * creep["explained"].get<double>());
+}
+
 }  // namespace
 
 void print_tuning(const Json& found, const std::string& picture) {
@@ -38,6 +57,8 @@ void print_tuning(const Json& found, const std::string& picture) {
     fmt::print("resonance at {:.1f} Hz, damping {:.3f}\n", mode["frequency"].get<double>(),
                mode["damping"].get<double>());
   }
+  const bool crept = !found["creep"].is_null();
+  if (crept) print_creep(found, way, effort);
   std::vector<std::vector<std::string>> rows;
   for (const char* key : {"before", "proposed", "elsewhere"}) {
     const Json& loop = found[key];
@@ -57,6 +78,15 @@ void print_tuning(const Json& found, const std::string& picture) {
   print_filters(filters);
   fmt::print("for DMAC_FEEDFORWARDFEEDBACK_CONTROL: {} with lead_s {:.4f}\n{}\n",
              list_text(found["feedforward_feedback_gains"]), found["lead_s"].get<double>(), picture);
+  if (crept) {
+    fmt::print(
+        "to keep it, write into the joint in device.json: \"ServoControlLaw\": {}, \"Gains\": {}, "
+        "\"Resonances\": {}, \"LowPass\": {}\nand into its actuator: \"Cogging\": {}\n",
+        Json{{"Module", "DMAC_FEEDFORWARDFEEDBACK_CONTROL"}, {"Parameters", found["creep"]["parameters"]}}.dump(),
+        list_text(found["feedforward_feedback_gains"]), filters["Resonances"].dump(), filters["LowPass"].dump(),
+        found["creep"]["motor"]["cogging"].dump());
+    return;
+  }
   if (found["apply"].is_null() || loses_filters(found)) return;
   fmt::print("to keep it, write into the joint in device.json: \"Gains\": {}, \"Resonances\": {}, \"LowPass\": {}\n",
              list_text(found["apply"]), filters["Resonances"].dump(), filters["LowPass"].dump());

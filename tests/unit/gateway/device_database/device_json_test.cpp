@@ -96,6 +96,7 @@ TEST(DeviceJson, LosesNothingOfWhatFewMachinesHave) {
   json& motor = file["Actuators"][1];
   motor["Inputs"] = {{"LimitYNegative", 1}, {"LimitYPositive", 0}};
   motor["MaxMeasuredTorque"] = 7;
+  motor["Cogging"] = {{"Lead", 0.0016}, {"Harmonics", {{{"Order", 60}, {"Cosine", 0.001}, {"Sine", -0.006}}}}};
   motor["HomingTurn"] = 2;
   motor["HomeCounts"] = -70000;
   motor["Direction"] = -1;

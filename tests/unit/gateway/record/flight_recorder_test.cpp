@@ -190,6 +190,7 @@ CycleSample with_drives(std::int64_t cycle, std::uint32_t drives) {
     sample.statusword[i] = static_cast<std::uint16_t>(100 + i);
     sample.error_code[i] = static_cast<std::uint16_t>(200 + i);
     sample.torque_permille[i] = static_cast<std::int16_t>(300 + i);
+    sample.counts[i] = -60000 - static_cast<std::int32_t>(i);
     sample.load_counts[i] = -70000 - static_cast<std::int32_t>(i);
   }
   return sample;
@@ -220,6 +221,7 @@ TEST_F(FlightRecord, HasAColumnForEachDriveOfAGantry) {
   EXPECT_EQ(record.rows[0].at("statusword3"), "102");
   EXPECT_EQ(record.rows[0].at("error_code3"), "202");
   EXPECT_EQ(record.rows[0].at("torque_permille3"), "302");
+  EXPECT_EQ(record.rows[0].at("counts2"), "-60001");
   EXPECT_EQ(record.rows[0].at("load_counts3"), "-70002");
 }
 

@@ -1,6 +1,8 @@
 // Drives that follow a position or a velocity themselves: what words they get for what the joints are to do.
 #include <gmock/gmock.h>
 
+#include <limits>
+
 #include "unit/motion/servo/servo_fixture.hpp"
 
 namespace rmac::servo_test {
@@ -136,6 +138,14 @@ TEST_F(ServoModes, WhatDoesNotFitTogetherIsRefused) {
   ServoLoopParts idle = with(DriveMode::CyclicSyncPosition);
   idle.actuators[0].position_gain = 20;
   EXPECT_THAT(refusal_of(idle), testing::HasSubstr("only a drive in cyclic synchronous velocity"));
+  ServoLoopParts cogging = with(DriveMode::CyclicSyncPosition);
+  cogging.actuators[0].cogging.harmonics = {{12, 0.01, 0}};
+  EXPECT_THAT(refusal_of(cogging), testing::HasSubstr("has Cogging, and its drive follows positions or velocities"));
+  ServoLoopParts strong = parts();
+  strong.actuators[1].cogging.harmonics = {{12, 0.15, 0}, {60, 0, -0.11}};
+  EXPECT_THAT(refusal_of(strong), testing::HasSubstr("actuator 1 has cogging of up to 0.26"));
+  strong.actuators[1].cogging.harmonics = {{12, 0, std::numeric_limits<double>::quiet_NaN()}};
+  EXPECT_THAT(refusal_of(strong), testing::HasSubstr("actuator 1 has cogging"));
   EXPECT_THAT(refusal_of(with(DriveMode::ProfileVelocity)), testing::HasSubstr("which no joint can be moved in"));
   ServoLoopParts mixed = with(DriveMode::CyclicSyncPosition, std::make_shared<DifferentialMap>());
   EXPECT_THAT(refusal_of(mixed), testing::HasSubstr("give them all the same kind of mode"));

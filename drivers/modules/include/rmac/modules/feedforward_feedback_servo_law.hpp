@@ -37,12 +37,13 @@ class FeedforwardFeedbackServoLaw final : public ServoLaw {
 
   void engage(const ServoInput& input, double effort) noexcept override {
     last_ = input;
-    feedback_.engage(input, model_.effort(input), std::clamp(effort, -limit_, limit_));
+    feedback_.engage(input, model_.begin(input), std::clamp(effort, -limit_, limit_));
   }
 
   [[nodiscard]] double update(const ServoInput& input) noexcept override {
     if (!is_finite(input)) return std::numeric_limits<double>::quiet_NaN();
     last_ = input;
+    model_.step(input);
     return feedback_.update(input, model_.effort(input), limit_);
   }
 
@@ -61,11 +62,15 @@ class FeedforwardFeedbackServoLaw final : public ServoLaw {
   double limit_ = 0;
 };
 
-/// Makes a `FeedforwardFeedbackServoLaw`; parameters `derivative_filter_s`, `rest_band`, `lead_s` and `friction_speed`.
+/// Makes a `FeedforwardFeedbackServoLaw`; parameters `derivative_filter_s`, `rest_band`, `lead_s`,
+/// `friction_speed`, `presliding`, `breakaway` and
+/// `stribeck_speed`.
 struct FeedforwardFeedbackServoLawFactory {
   static ServoLaw* create(sdk::Parameters parameters, char* error, std::size_t error_size) noexcept {
-    if (!sdk::are_known_numbers(parameters, {"derivative_filter_s", "rest_band", "lead_s", "friction_speed"}, error,
-                                error_size))
+    if (!sdk::are_known_numbers(parameters,
+                                {"derivative_filter_s", "rest_band", "lead_s", "friction_speed", "presliding",
+                                 "breakaway", "stribeck_speed"},
+                                error, error_size))
       return nullptr;
     ErrorSignal::Parameters signal;
     FeedforwardModel::Parameters model;

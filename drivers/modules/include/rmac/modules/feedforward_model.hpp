@@ -12,16 +12,24 @@ namespace rmac::modules {
 
 /// What the axis needs to follow its setpoint, as far as that is known beforehand:
 ///
-///     effort = Kv·v + Ka·a + Fc·tanh((v + a·lead) / friction_speed) + load
+///     effort = Kv·v + Ka·a + Fc·f + load
 ///
 /// with v and a the wanted velocity and acceleration. Of the setpoint alone, so nothing here can make a loop unstable.
-/// Sliding friction changes its sign where the velocity does. A torque acts some time after it was worked out (a cycle
-/// to the drive, half a cycle of hold, the current loop); `lead` is that time, by which the sign is changed earlier.
+/// Friction turns round where the velocity w = v + a·lead does: f = tanh(w / friction_speed). With a presliding way δ
+/// it does so over the way instead, as bristles do that bend before they slide, and stays where it is at rest: f grows
+/// by way/δ, ever less as it comes near g = 1 + (breakaway - 1)·e^(-(w/stribeck_speed)²), which it ends at (Canudas de
+/// Wit et al., 1995; Dupont et al., 2002: docs/derivations/two-masses.md).
+///
+/// A torque acts some time after it was worked out (a cycle to the drive, half a cycle of hold, the current loop);
+/// `lead` is that time, by which friction turns round earlier.
 class FeedforwardModel {
  public:
   struct Parameters {
     double lead_s = 0;
     double friction_speed = 0.5;  ///< mm/s or deg/s; the change of sign is spread over about this much
+    double presliding = 0;        ///< mm or deg; 0: over the velocity
+    double breakaway = 1;         ///< what breaks it away over what it slides with
+    double stribeck_speed = 1;    ///< mm/s or deg/s at which breaking away has gone over into sliding
   };
   static constexpr std::array<GainInfo, 4> kGains{
       {{"Kv", "N·s/mm"}, {"Ka", "N·s²/mm"}, {"Friction", "N"}, {"Load", "N"}}};
@@ -36,11 +44,23 @@ class FeedforwardModel {
   void set_gains(std::span<const double, 4> gains) noexcept { std::copy(gains.begin(), gains.end(), gains_.begin()); }
 
   [[nodiscard]] double load() const noexcept { return gains_[3]; }
+  /// Begins at this input, of which nobody knows what was before: the effort of the cycle that steps to it.
+  [[nodiscard]] double begin(const ServoInput& input) noexcept {
+    slide(input);
+    FeedforwardModel next = *this;
+    next.step(input);
+    return next.effort(input);
+  }
+  /// One cycle.
+  void step(const ServoInput& input) noexcept {
+    if (parameters_.presliding <= 0) return slide(input);
+    const double way = led(input) * input.period_s;
+    friction_ = bent(friction_, way / parameters_.presliding, bound(led(input)));
+  }
+  /// After the step that was last.
   [[nodiscard]] double effort(const ServoInput& input) const noexcept {
-    const double v = input.velocity_setpoint;
-    const double a = input.acceleration_setpoint;
-    const double sign = std::tanh((v + a * parameters_.lead_s) / parameters_.friction_speed);
-    return gains_[0] * v + gains_[1] * a + gains_[2] * sign + gains_[3];
+    return gains_[0] * input.velocity_setpoint + gains_[1] * input.acceleration_setpoint + gains_[2] * friction_ +
+           gains_[3];
   }
 
   [[nodiscard]] static bool read(sdk::Parameters given, Parameters& parameters, char* error,
@@ -48,12 +68,40 @@ class FeedforwardModel {
     const Parameters defaults;
     return sdk::read_number(given, {"lead_s", defaults.lead_s, 0, 0.02, "s"}, parameters.lead_s, error, error_size) &&
            sdk::read_number(given, {"friction_speed", defaults.friction_speed, 1e-3, 100, "mm/s or deg/s"},
-                            parameters.friction_speed, error, error_size);
+                            parameters.friction_speed, error, error_size) &&
+           sdk::read_number(given, {"presliding", defaults.presliding, 0, 1, "mm or deg"}, parameters.presliding, error,
+                            error_size) &&
+           sdk::read_number(given, {"breakaway", defaults.breakaway, 1, 3, "times"}, parameters.breakaway, error,
+                            error_size) &&
+           sdk::read_number(given, {"stribeck_speed", defaults.stribeck_speed, 1e-3, 100, "mm/s or deg/s"},
+                            parameters.stribeck_speed, error, error_size);
   }
 
  private:
+  /// Largest share of friction at a speed.
+  [[nodiscard]] double bound(double speed) const noexcept {
+    const double share = speed / parameters_.stribeck_speed;
+    return 1 + (parameters_.breakaway - 1) * std::exp(-share * share);
+  }
+  /// Friction after so many presliding ways.
+  [[nodiscard]] static double bent(double friction, double way, double bound) noexcept {
+    constexpr double kElastic = 0.3;  // assumed: below, bristles only bend, and nothing creeps
+    const double end = std::copysign(bound, way);
+    const double slides = std::clamp(((friction + way / 2) / end - kElastic) / (1 - kElastic), 0.0, 1.0);
+    // f' = 1 - slides·|f|/g, with `slides` as half of the way has it, solved: a long way ends at g.
+    const double gone = slides * std::abs(way) / bound;
+    const double share = gone > 1e-9 ? -std::expm1(-gone) / gone : 1.0;
+    return std::clamp(friction + way * share * (1 - slides * friction / end), -bound, bound);
+  }
+  void slide(const ServoInput& input) noexcept { friction_ = std::tanh(led(input) / parameters_.friction_speed); }
+  /// How fast the joint is to go when this cycle's torque acts.
+  [[nodiscard]] double led(const ServoInput& input) const noexcept {
+    return input.velocity_setpoint + input.acceleration_setpoint * parameters_.lead_s;
+  }
+
   Parameters parameters_;
   std::array<double, 4> gains_{};
+  double friction_ = 0;  ///< share of sliding friction, -1 to 1
 };
 
 }  // namespace rmac::modules

@@ -32,12 +32,13 @@ class FeedforwardServoLaw final : public ServoLaw {
 
   void engage(const ServoInput& input, double effort) noexcept override {
     last_ = input;
-    offset_.start(std::clamp(effort, -limit_, limit_), model_.effort(input), 0, input.period_s);
+    offset_.start(std::clamp(effort, -limit_, limit_), model_.begin(input), 0, input.period_s);
   }
 
   [[nodiscard]] double update(const ServoInput& input) noexcept override {
     if (!is_finite(input)) return std::numeric_limits<double>::quiet_NaN();
     last_ = input;
+    model_.step(input);
     return offset_.output(model_.effort(input), 0, input.period_s, limit_);
   }
 
@@ -48,10 +49,13 @@ class FeedforwardServoLaw final : public ServoLaw {
   double limit_ = 0;
 };
 
-/// Makes a `FeedforwardServoLaw`; parameters `lead_s` and `friction_speed`.
+/// Makes a `FeedforwardServoLaw`; parameters `lead_s`, `friction_speed`, `presliding`, `breakaway` and
+/// `stribeck_speed`.
 struct FeedforwardServoLawFactory {
   static ServoLaw* create(sdk::Parameters parameters, char* error, std::size_t error_size) noexcept {
-    if (!sdk::are_known_numbers(parameters, {"lead_s", "friction_speed"}, error, error_size)) return nullptr;
+    if (!sdk::are_known_numbers(parameters, {"lead_s", "friction_speed", "presliding", "breakaway", "stribeck_speed"},
+                                error, error_size))
+      return nullptr;
     FeedforwardModel::Parameters model;
     if (!FeedforwardModel::read(parameters, model, error, error_size)) return nullptr;
     return new FeedforwardServoLaw(model);

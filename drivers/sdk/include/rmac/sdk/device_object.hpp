@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "rmac/motion/cogging.hpp"
 #include "rmac/motion/drive_scale.hpp"
 #include "rmac/motion/force_control.hpp"
 #include "rmac/motion/joint.hpp"
@@ -48,6 +49,7 @@ struct Actuator {
   double max_measured_torque_nm = 0;           ///< beyond it the machine stops; 0: 3.5 times the rated one
   double position_gain = 0;                    ///< 1/s: of the loop over a drive in cyclic synchronous velocity
   std::optional<TouchProbeEdge> probe_edge{};  ///< at which the drive latches its position for a hit of the probe
+  Cogging cogging{};                           ///< of the motor
 };
 
 /// An input of a drive (60FDh) among the machine's inputs.

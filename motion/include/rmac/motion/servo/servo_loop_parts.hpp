@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "rmac/motion/cogging.hpp"
 #include "rmac/motion/drive_scale.hpp"
 #include "rmac/motion/force_control.hpp"
 #include "rmac/motion/joint.hpp"
@@ -66,6 +67,7 @@ struct ServoActuator {
   DriveMode mode = DriveMode::CyclicSyncTorque;
   double position_gain = 0;  ///< 1/s: of the position loop that is closed here over a drive in velocity mode
   std::optional<TouchProbeEdge> probe_edge{};  ///< at which its drive latches the position of a hit
+  Cogging cogging{};                           ///< of the motor, made good in its torque
 };
 
 /// What a servo loop is made of. `joints`: the kinematic ones, then the held ones; `actuators` in the order of the map.

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 
 #include <limits>
+#include <numbers>
+#include <random>
 
 #include "servo/drives/shaft_aims.hpp"
 #include "servo/drives/shaft_torques.hpp"
@@ -14,7 +16,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(ShaftTorques, AreThoseThatGiveTheJointsTheirEfforts) {
   const DifferentialMap map;
-  ShaftTorques torques(map, 3);
+  const std::vector<ServoActuator> actuators(3);
+  ShaftTorques torques(map, actuators, kPeriod);
   RecordedFaults faults;
   torques.make(std::array{0.0, 0.0, 0.0}, std::array{4.0, 2.0, 7.0}, faults);
   EXPECT_THAT(torques.all(), testing::ElementsAre(3, 1, 7));
@@ -25,7 +28,8 @@ TEST(ShaftTorques, AreThoseThatGiveTheJointsTheirEfforts) {
 
 TEST(ShaftTorques, NoneIsLeftWhereOneIsNoNumber) {
   const DirectMap map;
-  ShaftTorques torques(map, 3);
+  const std::vector<ServoActuator> actuators(3);
+  ShaftTorques torques(map, actuators, kPeriod);
   RecordedFaults faults;
   const double infinity = std::numeric_limits<double>::infinity();
   torques.make(std::array{0.0, 0.0, 0.0}, std::array{4.0, infinity, 7.0}, faults);
@@ -35,6 +39,55 @@ TEST(ShaftTorques, NoneIsLeftWhereOneIsNoNumber) {
   EXPECT_EQ(faults.raised[0].part, ServoFault::Part::Actuator);
   EXPECT_EQ(faults.raised[0].index, 1U);
   EXPECT_EQ(faults.raised[0].value, infinity);
+}
+
+/// One motor with two harmonics, whose shaft and encoder go either way.
+class KnownCogging : public testing::TestWithParam<int> {
+ protected:
+  /// What is added to no effort where the shaft is `measured`, and was to be at `before` and is to be at `wanted`.
+  double added(double measured, double before, double wanted) {
+    torques_.cancel_cogging(std::array{before}, std::array{before}, 1);
+    torques_.let_go();
+    torques_.cancel_cogging(std::array{measured}, std::array{wanted}, 1);
+    return torques_[0];
+  }
+  [[nodiscard]] double at_shaft(double shaft_rad) const {
+    const double angle = 2 * std::numbers::pi * (shaft_counts(actuators_[0].scale, shaft_rad) / 1000);
+    return GetParam() * (0.02 * std::cos(12 * angle) - 0.05 * std::sin(60 * angle));
+  }
+  std::vector<ServoActuator> actuators_ = [] {
+    std::vector<ServoActuator> made(1);
+    made[0].scale = {1000, 1, GetParam(), 123};
+    made[0].cogging = {{{12, 0.02, 0}, {60, 0, -0.05}}, 0.0015};
+    return made;
+  }();
+  DirectMap map_;
+  ShaftTorques torques_{map_, actuators_, kPeriod};
+};
+INSTANTIATE_TEST_SUITE_P(Directions, KnownCogging, testing::Values(1, -1));
+
+// Red with the angle of the shaft instead of the encoder's, the sign of the other direction, or no lead.
+TEST_P(KnownCogging, IsTakenAwayWhereTheMotorWillBeWhenItsTorqueActs) {
+  ASSERT_TRUE(torques_.know_cogging());
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(-1000, 1000), way(-0.3, 0.3);
+  for (int i = 0; i < 200; ++i) {
+    const double at = place(random), step = way(random), off = way(random) / 100;
+    EXPECT_NEAR(added(at + off, at - step, at), -at_shaft(at + off + 1.5 * step), 1e-9);
+  }
+}
+
+TEST_P(KnownCogging, IsLeftWhereTheMotorIsNotUnderControl) {
+  torques_.cancel_cogging(std::array{0.3}, std::array{0.3}, 0);
+  EXPECT_EQ(torques_[0], 0);
+  torques_.cancel_cogging(std::array{0.3}, std::array{0.3}, 1);
+  EXPECT_NEAR(torques_[0], -at_shaft(0.3), 1e-9) << "where it was to be before it was followed is no way";
+}
+
+TEST(ShaftTorques, KnowNoCoggingUnlessItIsTold) {
+  const DirectMap map;
+  const std::vector<ServoActuator> actuators(3);
+  EXPECT_FALSE(ShaftTorques(map, actuators, kPeriod).know_cogging());
 }
 
 /// A drive in position mode, and two in velocity mode of which the last tells where it was a cycle before.

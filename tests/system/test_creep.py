@@ -1,0 +1,139 @@
+"""What `rmac tune --creep` finds, held to a joint that is simulated here, apart from the appliance and its simulated axes."""
+
+import math
+import os
+import random
+import sys
+import unittest
+
+import numpy as np
+from appliance import SOURCE
+
+sys.path.insert(0, str(SOURCE / "gateway/rmac/plots"))
+import creep  # noqa: E402
+import frequency_response  # noqa: E402
+import servo_model as model  # noqa: E402
+
+PERIOD, STEPS = 0.001, 4
+TURN, COUNTS = 5.0, 131072
+FIRST, SEEDS = int(os.environ.get("RMAC_SEED", "1")), int(os.environ.get("RMAC_SEEDS", "3"))
+
+
+class CreepingJoint:
+    """A mass on a screw with LuGre's friction (Canudas de Wit et al., 1995) and a motor that cogs, under a PID that holds it."""
+
+    def __init__(self, seed):
+        chance = random.Random(seed)
+        self.mass = 10 ** chance.uniform(-2, -1)  # N·s²/mm
+        self.viscous = self.mass * chance.uniform(1, 4)
+        self.coulomb = chance.uniform(10, 40)
+        self.presliding = chance.uniform(0.003, 0.02)
+        self.breakaway = chance.uniform(1.0, 1.4)
+        self.stribeck = chance.uniform(0.5, 2)
+        self.load = chance.uniform(-30, 30)
+        self.rated = self.mass * 10
+        self.direction = chance.choice([1, -1])
+        self.cogging = {order: (self.rated * chance.uniform(0.004, 0.02), chance.uniform(0, 2 * math.pi))
+                        for order in chance.sample([12, 24, 36, 60, 72, 84], 2)}
+        self.noise = np.random.default_rng(seed)
+
+    def force_of_motor(self, place):
+        """mm to N."""
+        angle = self.direction * 2 * math.pi * place / TURN
+        torque = sum(size * math.cos(order * angle + phase) for order, (size, phase) in self.cogging.items())
+        return self.direction * torque * 2 * math.pi * 1000 / TURN
+
+    def run(self, wanted):
+        """Columns of a record, of this way that it is to go."""
+        place = speed = bristle = integral = before = 0.0
+        sigma, effort, delayed = self.coulomb / self.presliding, self.load, self.load
+        damping = 0.6 * math.sqrt(sigma * self.mass)
+        rows, dt = [], PERIOD / STEPS
+        for target in wanted:
+            seen = round(self.direction * (place / TURN * COUNTS) + self.noise.normal(0, 1))
+            shown = self.direction * seen * TURN / COUNTS
+            error = target - shown
+            integral += error * PERIOD
+            rate, before = (error - before) / PERIOD, error
+            delayed, effort = effort, self.load + self.mass * (9000 * error + 160 * rate + 200_000 * integral)
+            rows.append((shown, effort, seen))
+            for _ in range(STEPS):
+                bound = self.coulomb * (1 + (self.breakaway - 1) * math.exp(-(speed / self.stribeck) ** 2))
+                bend = speed - sigma * abs(speed) / bound * bristle
+                near = math.exp(-(speed / self.stribeck) ** 2)
+                friction = sigma * bristle + near * damping * bend + self.viscous * speed
+                bristle += bend * dt
+                speed += (delayed - friction - self.load + self.force_of_motor(place)) / self.mass * dt
+                place += speed * dt
+        table = np.array(rows)
+        return {"t_s": np.arange(len(rows)) * PERIOD, "a1": table[:, 0], "effort1": table[:, 1], "counts1": table[:, 2],
+                "qd1": np.gradient(wanted, PERIOD)}
+
+
+def strokes(way, seconds, count):
+    """To and fro at a steady speed, with rests, and smooth between them."""
+    there = np.linspace(0, way, int(seconds / PERIOD))
+    rest = np.full(200, way)
+    wanted = np.concatenate([np.zeros(200), *([there, rest, there[::-1], np.zeros(200)] * count)])
+    smooth = np.hanning(63)[1:-1]
+    return np.convolve(np.pad(wanted, 30, mode="edge"), smooth / smooth.sum(), mode="valid")
+
+
+class Creep(unittest.TestCase):
+    def find(self, joint, known=()):
+        records = [joint.run(strokes(2 * TURN, 3.5, 1)), joint.run(strokes(0.06 * TURN, 0.75, 4))]
+        head = {"joints": [{"unit": "mm"}],
+                "actuators": [{"counts_per_revolution": COUNTS, "rated_torque": joint.rated, "direction": joint.direction,
+                               "cogging": known}]}
+        plant = model.Plant(joint.mass, joint.viscous, joint.coulomb, joint.load, 1.5 * PERIOD)
+        return creep.find(head, records, 0, plant, frequency_response.Model(PERIOD, plant.mass, plant.delay_s))
+
+    def test_finds_the_harmonics_and_the_friction_of_seeded_joints(self):
+        for seed in range(FIRST, FIRST + SEEDS):
+            with self.subTest(seed=seed):
+                joint = CreepingJoint(seed)
+                motor, found = self.find(joint)
+                self.assertAlmostEqual(motor.turn, joint.direction * TURN, delta=1e-3 * TURN)
+                self.assertEqual(sorted(order for order, _, _ in found.harmonics), sorted(joint.cogging))
+                for order, cosine, sine in found.harmonics:
+                    size, phase = joint.cogging[order]
+                    left = math.hypot(cosine - size * math.cos(phase), sine + size * math.sin(phase))
+                    self.assertLess(left, 0.2 * size + 0.001 * joint.rated, f"order {order}")
+                self.assertAlmostEqual(found.friction.sliding / joint.coulomb, 1, delta=0.06)
+                # Its bristles are those of another model, which begin to slide at once.
+                self.assertAlmostEqual(found.friction.presliding / joint.presliding, 1, delta=0.4)
+                self.assertAlmostEqual(found.friction.breakaway, joint.breakaway, delta=0.25)
+                self.assertGreater(found.explained, 0.99)
+
+    def test_what_is_taken_away_already_is_added_to_what_is_left(self):
+        joint = CreepingJoint(FIRST)
+        known = [{"order": order, "cosine": 0.3 * size * math.cos(phase), "sine": -0.3 * size * math.sin(phase)}
+                 for order, (size, phase) in joint.cogging.items()]
+        alone = {order: complex(cosine, sine) for order, cosine, sine in self.find(joint)[1].harmonics}
+        added = {order: complex(cosine, sine) for order, cosine, sine in self.find(joint, known)[1].harmonics}
+        self.assertEqual(set(added), set(alone))
+        for one in known:
+            self.assertAlmostEqual(abs(added[one["order"]] - alone[one["order"]] - complex(one["cosine"], one["sine"])), 0,
+                                   delta=2e-4 * joint.rated)
+
+    def test_finds_no_cogging_where_there_is_none(self):
+        for seed in range(FIRST, FIRST + (SEEDS + 2) // 3):
+            with self.subTest(seed=seed):
+                joint = CreepingJoint(seed)
+                joint.cogging = {}
+                self.assertEqual(self.find(joint)[1].harmonics, [])
+
+    def test_refuses_a_joint_of_two_motors(self):
+        columns = CreepingJoint(1).run(strokes(TURN, 1, 1))
+        columns["counts2"] = columns["counts1"]
+        scale = {"counts_per_revolution": COUNTS, "rated_torque": 1}
+        with self.assertRaisesRegex(model.Unidentifiable, "2 motors moved with the joint"):
+            creep.motor_of({"actuators": [scale, scale]}, columns, 0)
+
+    def test_goes_by_counts_that_wrap(self):
+        counts = np.array([2.0 ** 31 - 2, 2.0 ** 31 - 1, -2.0 ** 31, -2.0 ** 31 + 5])
+        self.assertEqual(list(np.diff(creep.unwrapped(counts))), [1, 1, 5])
+
+
+if __name__ == "__main__":
+    unittest.main()
