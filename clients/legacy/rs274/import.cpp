@@ -30,13 +30,16 @@ constexpr gcode::Rules kRules{
 /// One import.
 class Import {
  public:
-  Import(std::string_view program, const Options& options, Writer::Sink sink)
+  Import(std::string_view program, const Options& options, Writer::Sink sink, FindFile find_file)
       : options_(options),
         writer_(std::move(sink), options.ids),
         interpreter_(options, kRules, writer_),
-        flow_(program, options.block_delete, options.bounds, parameters_, [this] {
-          return Made{writer_.moves(), writer_.bytes()};
-        }) {
+        flow_(
+            program, options.block_delete, options.bounds, parameters_,
+            [this] {
+              return Made{writer_.moves(), writer_.bytes()};
+            },
+            std::move(find_file)) {
     parameters_.ask_control([this](const gcode::Name& name) { return told(interpreter_, flow_, name); });
   }
 
@@ -75,8 +78,9 @@ class Import {
 
 }  // namespace
 
-tl::expected<Summary, Error> import_program(std::string_view program, const Options& options, Writer::Sink sink) {
-  return Import(program, options, std::move(sink)).run();
+tl::expected<Summary, Error> import_program(std::string_view program, const Options& options, Writer::Sink sink,
+                                            FindFile find_file) {
+  return Import(program, options, std::move(sink), std::move(find_file)).run();
 }
 
 }  // namespace rmac::rs274

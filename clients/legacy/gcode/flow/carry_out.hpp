@@ -16,12 +16,13 @@ tl::expected<legacy::Summary, legacy::Error> carry_out(Flow& flow, legacy::Write
                                                        const Take& take) {
   try {
     while (!extent.ended() && flow.next()) {
-      writer.at_line(flow.number());
+      writer.at_line(flow.line_of_program());
       take(flow.line().text());
     }
     if (!extent.ended()) extent.refuse_end(flow.line().text().size(), flow.running());
   } catch (const Refusal& refusal) {
-    return tl::unexpected(legacy::Error{flow.number(), flow.line().column(refusal.place), refusal.message});
+    return tl::unexpected(
+        legacy::Error{flow.number(), flow.line().column(refusal.place), refusal.message, flow.file()});
   }
   writer.flush();
   return legacy::Summary{flow.furthest(), writer.moves(), writer.requests()};

@@ -35,6 +35,7 @@ constexpr std::array<Passed, std::tuple_size_v<decltype(Source::values)>> kPasse
     {"--second-reference-point", "the same of G30"},
     {"--whole-numbers", "units or increments: what a Fanuc program's lengths without a decimal point count in"},
     {"--rotary", "C,A: the axes of a Fanuc program's machine that turn the tool, from the part to the tool"},
+    {"--subroutines", "DIR[:DIR]: where the subs are that an imported RS274 program calls, each in NAME.ngc"},
     {"--output-limit", "MB of .rmac: an imported program with loops that becomes more does not end"},
 }};
 constexpr std::array<Passed, std::tuple_size_v<decltype(Source::repeated)>> kRepeated{{

@@ -20,7 +20,7 @@ inline constexpr const char* kImporter = "rmac-import";
 /// reads that, as `rmac import` would.
 struct Source {
   std::string file, dialect;
-  std::array<std::string, 10> values;                ///< of options that are given once; empty: not given
+  std::array<std::string, 11> values;                ///< of options that are given once; empty: not given
   std::array<std::vector<std::string>, 6> repeated;  ///< of options that may be given again
   bool assume_g43 = false, block_delete = false, multax = false;
 };
