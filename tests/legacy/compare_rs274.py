@@ -38,11 +38,11 @@ class Program:
         self.absolute_centres = False
         self.at = list(START)  # mm, in the coordinates of the program
         self.offset = [0.0, 0.0, 0.0]
-        self.write("g21 g90 g17 g40 g80 g94 g54 g98")
+        self.write("g21 g90 g17 g40 g80 g94 g54 g98 g64 p0.05")
         self.write("F%d G0 X%g Y%g Z%g" % (self.random.randint(50, 3000), *START))
         for _ in range(self.random.randint(5, 40)):
             self.random.choice([self.straight, self.straight, self.arc, self.arc, self.rounded_arc, self.radius_arc, self.mode, self.unit_change, self.shift,
-                                self.switch, self.drill, self.parameters, self.polar, self.told])()
+                                self.switch, self.drill, self.parameters, self.polar, self.told, self.saved])()
         self.write(self.random.choice(["M2", "m30"]))
 
     def write(self, text):
@@ -165,6 +165,16 @@ class Program:
         self.unit = 25.4 if self.unit == 1 else 1.0
         self.write("G20" if self.unit == 25.4 else "G21")
         self.write("F%d" % self.random.randint(1, 100))
+
+    def saved(self):
+        """Modes that M72 restores, or the end of a sub with M73."""
+        held = self.unit, self.plane, self.incremental, self.absolute_centres
+        sub = "o<saved%d>" % len(self.lines) if self.random.random() < 0.5 else None
+        self.write("%s sub\nM73" % sub if sub else "M70")
+        for _ in range(self.random.randint(1, 5)):
+            self.random.choice([self.straight, self.arc, self.mode, self.unit_change, self.switch])()
+        self.write("{0} endsub\n{0} call".format(sub) if sub else "M72")
+        self.unit, self.plane, self.incremental, self.absolute_centres = held
 
     def shift(self):
         if self.random.random() < 0.4:

@@ -16,7 +16,7 @@ namespace rmac::gcode {
 namespace {
 
 constexpr double kInch_mm = 25.4, kMostTolerance_mm = 100, kMostDwell_s = 3600;
-constexpr int kSpindleOff = 5;
+constexpr int kSpindleOff = 5, kFirstOfState = 70;
 /// How often M98 calls.
 constexpr double kMostTimes = 1e9;
 /// What a stop's message may have.
@@ -67,6 +67,8 @@ After Interpreter::execute(Block& block, const Line& line) {
     return {};
   }
   if (const auto& code = block.m(MGroup::Stop); code && code->number >= 98) return numbered_program(block, *code);
+  if (const auto& code = block.m(MGroup::Override); code && code->number >= kFirstOfState)
+    return save_or_restore(block, *code);
   require_only_moves(block, modes_, compensation_);
   keep_overrides(block);
   set_speeds(block);
@@ -210,19 +212,23 @@ void Interpreter::set_control(Block& block) {
   const auto& control = block.g(GGroup::Control);
   if (!control) return;
   if (control->number == 610) {
-    exact_ = true;
-    return writer_.path_tolerance(0);
+    return set_path_tolerance(0);
   }
   std::optional<double> tolerance = options_.tolerance_mm;
   if (const Word* wanted = block.find('P'); wanted != nullptr && wanted->value != 0) tolerance = modes_.mm(*wanted);
   static_cast<void>(block.find('Q'));  // lines that the control may take together: it does so within P anyway
-  if (!tolerance && !rules_.needs_path_tolerance && !exact_) return;
-  exact_ = false;
+  const bool is_exact = tolerance_mm_ == 0;
+  if (!tolerance && !rules_.needs_path_tolerance && !is_exact) return;
   if (!tolerance)
     refuse(control->place,
            "G64 without P leaves open how far the path may be from what is programmed; write P, or give --tolerance");
   if (!(*tolerance >= 0 && *tolerance <= kMostTolerance_mm)) refuse(control->place, "a path tolerance is 0 to 100 mm");
-  writer_.path_tolerance(*tolerance);
+  set_path_tolerance(*tolerance);
+}
+
+void Interpreter::set_path_tolerance(double mm) {
+  tolerance_mm_ = mm;
+  writer_.path_tolerance(mm);
 }
 
 void Interpreter::set_distances(Block& block) {
@@ -310,6 +316,33 @@ After Interpreter::numbered_program(Block& block, const Code& code) {
   block.require_all_used();
   return {After::What::Call, static_cast<int>(label.value), times != nullptr ? static_cast<int>(times->value) : 1,
           code.place};
+}
+
+After Interpreter::save_or_restore(const Block& block, const Code& code) {
+  if (block.codes() > 1) refuse(code.place, fmt::format("M{} has a block of its own; write two", code.number));
+  block.require_all_used();
+  return {After::What::Modes, code.number, 1, code.place};
+}
+
+State Interpreter::state(std::size_t place) const {
+  require_no_contour(place);
+  return {modes_, coordinates_.active(), tolerance_mm_, switches_.state()};
+}
+
+void Interpreter::restore(const State& saved, std::size_t place) {
+  require_no_contour(place);
+  if (saved.system != coordinates_.active()) activate_system(saved.system, place, rules_, coordinates_);
+  if (saved.tolerance_mm != tolerance_mm_ && !saved.tolerance_mm)
+    refuse(place,
+           "how far the path may be from what is programmed was not said when it was saved; write G61 or G64 P before "
+           "M70 or M73");
+  if (saved.tolerance_mm != tolerance_mm_) set_path_tolerance(*saved.tolerance_mm);
+  const Modes now = std::exchange(modes_, saved.modes);
+  modes_.motion = now.motion;
+  modes_.interpolation = now.interpolation;
+  // What the machine had before the program said anything may as well have been G49.
+  if (saved.modes.length == ToolLength::Unsaid && now.length != ToolLength::Unsaid) modes_.length = ToolLength::Off;
+  switches_.restore(saved.switches);
 }
 
 void Interpreter::require_no_contour(std::size_t place) const {

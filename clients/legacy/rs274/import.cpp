@@ -9,6 +9,7 @@
 #include "clients/legacy/rs274/blocks/reader.hpp"
 #include "clients/legacy/rs274/blocks/refusal.hpp"
 #include "clients/legacy/rs274/flow/flow.hpp"
+#include "clients/legacy/rs274/saved_states.hpp"
 #include "clients/legacy/rs274/told.hpp"
 #include "clients/legacy/rs274/work_systems.hpp"
 
@@ -34,12 +35,14 @@ class Import {
       : options_(options),
         writer_(std::move(sink), options.ids),
         interpreter_(options, kRules, writer_),
-        flow_(
-            program, options.block_delete, options.bounds, parameters_,
-            [this] {
-              return Made{writer_.moves(), writer_.bytes()};
-            },
-            std::move(find_file)) {
+        saved_(interpreter_),
+        flow_(program, options.block_delete, options.bounds, parameters_,
+              {.made =
+                   [this] {
+                     return Made{writer_.moves(), writer_.bytes()};
+                   },
+               .find_file = std::move(find_file),
+               .leaving = [this](std::size_t place) { saved_.leave(flow_.call_level(), place); }}) {
     parameters_.ask_control([this](const gcode::Name& name) { return told(interpreter_, flow_, name); });
   }
 
@@ -63,6 +66,7 @@ class Import {
   void go_on(const After& after) {
     if (after.what == After::What::Call) flow_.call(after.label, after.times, after.place);
     if (after.what == After::What::EndOfNumbered) flow_.end_of_numbered(after.place);
+    if (after.what == After::What::Modes) saved_.act(after, flow_.call_level());
     if (after.what == After::What::End) extent_.end();
   }
 
@@ -72,6 +76,7 @@ class Import {
   Block block_;
   Writer writer_;
   gcode::Interpreter interpreter_;
+  SavedStates saved_;
   Flow flow_;
   gcode::Extent extent_;
 };

@@ -108,7 +108,6 @@ constexpr auto kG = std::to_array<GCode>({
 });
 
 constexpr std::string_view kOutput = "the appliance has no analogue outputs";
-constexpr std::string_view kState = "saving and restoring modes is not taken yet; write the modes out";
 
 constexpr auto kM = std::to_array<MCode>({
     {0, MGroup::Stop, {}},
@@ -138,10 +137,10 @@ constexpr auto kM = std::to_array<MCode>({
     {66, MGroup::Io, {}},
     {67, MGroup::Override, kOutput},
     {68, MGroup::Override, kOutput},
-    {70, MGroup::Override, kState},
-    {71, MGroup::Override, kState},
-    {72, MGroup::Override, kState},
-    {73, MGroup::Override, kState},
+    {70, MGroup::Override, {}},
+    {71, MGroup::Override, {}},
+    {72, MGroup::Override, {}},
+    {73, MGroup::Override, {}},
     {98, MGroup::Stop, {}},
     {99, MGroup::Stop, {}},
 });

@@ -20,11 +20,11 @@ constexpr std::size_t kDeepestCalls = 9;
 
 }  // namespace
 
-Flow::Flow(std::string_view program, bool block_delete, Bounds bounds, Parameters& parameters,
-           std::function<Made()> made, FindFile find_file)
-    : sources_(program, block_delete, std::move(find_file)),
+Flow::Flow(std::string_view program, bool block_delete, Bounds bounds, Parameters& parameters, Asked asked)
+    : sources_(program, block_delete, std::move(asked.find_file)),
       parameters_(parameters),
-      endless_(bounds, std::move(made)),
+      endless_(bounds, std::move(asked.made)),
+      leaving_(std::move(asked.leaving)),
       next_{&sources_.program()},
       read_from_(next_.source) {}
 
@@ -169,10 +169,11 @@ void Flow::return_from_sub(const Statement& statement) {
   const bool has_value = line_.text().substr(statement.arguments).starts_with('[');
   if (!has_value) require_end(line_.text(), statement.arguments);
   parameters_.returned(has_value ? std::optional(value(statement)) : std::nullopt);
-  leave_call();
+  leave_call(statement.place);
 }
 
-void Flow::leave_call() {
+void Flow::leave_call(std::size_t place) {
+  if (leaving_) leaving_(place);
   parameters_.leave();
   repeats_.resize(calls_.back().repeats);
   next_ = calls_.back().back;
@@ -187,7 +188,8 @@ void Flow::end_of_numbered(std::size_t place) {
   Call& running = calls_.back();
   if (at(running.statement).keyword != Keyword::Program)
     refuse(place, "M99 ends a numbered program; a sub ends with endsub or return");
-  if (running.more_times == 0) return leave_call();
+  if (running.more_times == 0) return leave_call(place);
+  if (leaving_) leaving_(place);
   endless_.come_again(place);
   --running.more_times;
   parameters_.leave();

@@ -16,14 +16,20 @@ namespace rmac::rs274 {
 
 using gcode::Bounds, gcode::Endless, gcode::Made;
 
+/// What a Flow asks of who carries its lines out.
+struct Asked {
+  std::function<Made()> made;  ///< where lines come again
+  FindFile find_file{};
+  std::function<void(std::size_t place)> leaving{};  ///< a sub or numbered program ends, and is still what runs
+};
+
 /// A program's lines, and those of the files that it calls, in the order in which they are carried out: O words are
 /// carried out here, and all other lines are given out, whatever they are. What is no program throws a Refusal, whose
 /// place is in line().
 class Flow {
  public:
-  /// The program and the parameters outlive it. `made` is asked where lines come again.
-  Flow(std::string_view program, bool block_delete, Bounds bounds, Parameters& parameters, std::function<Made()> made,
-       FindFile find_file = {});
+  /// The program and the parameters outlive it.
+  Flow(std::string_view program, bool block_delete, Bounds bounds, Parameters& parameters, Asked asked);
 
   /// Goes on to the next line that is no statement with O. False at the end of the text.
   [[nodiscard]] bool next();
@@ -82,7 +88,7 @@ class Flow {
   [[nodiscard]] std::optional<Callee> find_in_texts(const std::string& label, bool numbered) const;
   void enter(const Callee& callee, int more_times, std::size_t place);
   void return_from_sub(const Statement& statement);
-  void leave_call();
+  void leave_call(std::size_t place);
 
   [[nodiscard]] const Statement& at(std::size_t statement) const {
     return next_.source->outline.statements()[statement];
@@ -97,6 +103,7 @@ class Flow {
   Sources sources_;
   Parameters& parameters_;
   Endless endless_;
+  std::function<void(std::size_t)> leaving_;
   Line line_;
   Position next_;
   const Source* read_from_ = nullptr;  ///< what line_ stands in

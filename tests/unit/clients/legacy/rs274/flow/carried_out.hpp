@@ -20,12 +20,12 @@ inline std::vector<std::string> carried_out(const std::string& program, Bounds b
                                             bool block_delete = false, FindFile find_file = {}) {
   std::vector<std::string> done;
   Parameters parameters;
-  Flow flow(
-      program, block_delete, bounds, parameters,
-      [&] {
-        return Made{done.size(), 0};
-      },
-      std::move(find_file));
+  Flow flow(program, block_delete, bounds, parameters,
+            {.made =
+                 [&] {
+                   return Made{done.size(), 0};
+                 },
+             .find_file = std::move(find_file)});
   BlockReader reader;
   Block block;
   try {
