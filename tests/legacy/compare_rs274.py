@@ -205,7 +205,10 @@ class Program:
         depth = retract - self.random.uniform(1, 9) if not self.incremental else -self.random.uniform(1, 9)
         axis = "XYZ"[normal]
         words, _ = self.target([first, second])
-        self.write("%s %s %s R%.4f %s%.4f%s" % (back, code, " ".join(words), retract / self.unit, axis, depth / self.unit, extra))
+        repeats = " L%d" % self.random.randint(2, 5) if self.random.random() < 0.4 else ""
+        if self.incremental and self.plane == "17" and math.hypot(*self.at[:2]) > 1:
+            words = self.random.choice([["@%.4f" % (3 / self.unit)], ["^%.3f" % 50.5], ["@%.4f" % (2 / self.unit), "^-30"]])
+        self.write("%s %s %s R%.4f %s%.4f%s%s" % (back, code, " ".join(words), retract / self.unit, axis, depth / self.unit, extra, repeats))
         for _ in range(self.random.randint(0, 2)):
             words, _ = self.target([first])
             self.write(" ".join(words))
