@@ -308,16 +308,16 @@ void declare_fanuc(CLI::App& app, Words& words) {
          "what lengths and angles without a decimal point count in, in a fanuc program: units (X10 is 10 mm) or "
          "increments (X10 is 0.010 mm); refused unless given")
       ->check(CLI::IsMember({"units", "increments"}));
-  app.add_option(
-         "--rotary", words.rotary,
-         "C,A: the axes of a fanuc program's machine that turn the tool about Z (C), Y (B) and X (A) of the part, "
-         "from the part to the tool; each counter-clockwise, or with - the other way")
+  app.add_option("--rotary", words.rotary,
+                 "C,A: the axes of the program's machine that turn the tool about Z (C), Y (B) and X (A) of the part, "
+                 "from the part to the tool; each counter-clockwise, or with - the other way")
       ->allow_extra_args(false);
   app.add_option("--variable", words.variables,
                  "500=12.5: what the machine has in a common variable that a fanuc program reads")
       ->allow_extra_args(false);
-  app.add_option("--pass-over", words.passed,
-                 "M10: an M code of the machine's builder that a fanuc program may go without; may be given for each")
+  app.add_option(
+         "--pass-over", words.passed,
+         "M10: an M code of the machine's builder or owner that the program may go without; may be given for each")
       ->allow_extra_args(false);
 }
 
@@ -345,8 +345,8 @@ std::optional<std::string> foreign_option(const CLI::App& app, const Words& word
                                                                     {"--tool-diameter", Rs274 | Fanuc},
                                                                     {"--whole-numbers", Fanuc},
                                                                     {"--variable", Fanuc},
-                                                                    {"--rotary", Fanuc},
-                                                                    {"--pass-over", Fanuc},
+                                                                    {"--rotary", Rs274 | Fanuc},
+                                                                    {"--pass-over", Rs274 | Fanuc},
                                                                     {"--multax", Apt},
                                                                     {"--circle-axis", Apt}}};
   const int language = words.is_apt() ? Apt : words.is_fanuc() ? Fanuc : Rs274;

@@ -49,7 +49,7 @@ Interpreter::Interpreter(const Options& options, const Rules& rules, Writer& wri
                     rules.enters_to_normal),
       motions_(options, rules, modes_, coordinates_, mover_, compensation_),
       turning_(modes_, coordinates_, mover_),
-      tool_axis_(options, modes_, coordinates_, mover_),
+      tool_axis_(options, modes_, coordinates_, turning_, mover_),
       splines_(motions_, modes_, mover_),
       switches_(writer),
       drilling_(rules, modes_, coordinates_, mover_, switches_, writer) {
@@ -86,6 +86,9 @@ After Interpreter::execute(Block& block, const Line& line) {
   place_polar(block, modes_, {tip(0), tip(1)});
   turning_.act(block);
   act_once(block);
+  for (const char letter : {'A', 'B', 'C'}) {
+    if (block.has(letter) && !options_.rotary.empty()) require_no_contour(block.place(letter));
+  }
   tool_axis_.read(block);
   move(block);
   switch_off_behind_motion(block);
@@ -272,6 +275,7 @@ void Interpreter::move(Block& block) {
 void Interpreter::move_by(Block& block, int code, std::size_t place) {
   const int before = std::exchange(modes_.motion, code);
   if (code <= 30) modes_.interpolation = code;
+  if (!block.once(530)) tool_axis_.require_coordinates_of_part(place);
   turning_.require_whole(block, code < 20 || code > 53, place);
   if (code == 0 || code == 10) return motions_.straight(block, code == 0, place);
   if (code == 20 || code == 30) return motions_.arc(block, code == 30, place);

@@ -19,7 +19,7 @@ void require_plain(const Block& block, const Modes& modes, std::size_t place) {
   if (block.g(GGroup::Once)) refuse(place, "@ and ^ go with moves and cycles alone; write X and Y");
 }
 
-std::size_t place_of(const Block& block) {
+std::size_t place_of_polar(const Block& block) {
   return (block.polar_radius() ? block.polar_radius() : block.polar_angle())->place;
 }
 
@@ -27,7 +27,7 @@ std::size_t place_of(const Block& block) {
 
 PolarEnd polar_end(const Block& block, const Modes& modes, const ProgramTip& tip) {
   const auto &radius = block.polar_radius(), &angle = block.polar_angle();
-  const std::size_t place = place_of(block);
+  const std::size_t place = place_of_polar(block);
   const bool goes_on = modes.incremental || !radius || !angle;
   if (goes_on && !(tip[0] && tip[1])) {
     refuse(place,
@@ -47,7 +47,7 @@ PolarEnd polar_end(const Block& block, const Modes& modes, const ProgramTip& tip
 
 void place_polar(Block& block, const Modes& modes, const ProgramTip& tip) {
   if (!block.is_polar()) return;
-  const std::size_t place = place_of(block);
+  const std::size_t place = place_of_polar(block);
   require_plain(block, modes, place);
   const PolarEnd end = polar_end(block, modes, tip);
   const bool adds = modes.incremental;

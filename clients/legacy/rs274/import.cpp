@@ -33,6 +33,7 @@ class Import {
  public:
   Import(std::string_view program, const Options& options, Writer::Sink sink, FindFile find_file)
       : options_(options),
+        reader_(options.passed_m),
         writer_(std::move(sink), options.ids),
         interpreter_(options, kRules, writer_),
         saved_(interpreter_),

@@ -37,7 +37,8 @@ TEST(Rs274SavedState, HoldsAgainBehindM72) {
 
 TEST(Rs274SavedState, HoldsSpindleCoolantAndWorkSystem) {
   const Options options{.offsets = {{0, {0, 0, 0}}, {1, {100, 0, 0}}}};
-  EXPECT_THAT(settings_of("M70\nG55\nG1 X1\nM72\nX2", options), ElementsAre("frame[0,0,0]", "frame[100,0,0]", "F600", "frame[0,0,0]"));
+  EXPECT_THAT(settings_of("M70\nG55\nG1 X1\nM72\nX2", options),
+              ElementsAre("frame[0,0,0]", "frame[100,0,0]", "F600", "frame[0,0,0]"));
   const auto switched = settings_of("M3 S500 M8\nM70\nM5 M9\nS100\nM72");
   ASSERT_EQ(switched.size(), 4U) << "and the program's end";
   EXPECT_THAT(switched[2], HasSubstr("500"));
