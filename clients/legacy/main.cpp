@@ -276,6 +276,7 @@ void declare(CLI::App& app, Words& words) {
                  "change and a change of unknown "
                  "offsets, unless its next move is a G0 to X, Y and Z, or RAPID and a GOTO");
   app.add_flag("--assume-g43", words.options.assume_g43, "the tool's length counts from M6 on, though no G43 says so");
+  app.add_flag("--assume-end", words.options.assume_end, "the program ends where its file does, as if M2 stood there");
   app.add_option("--offset", words.offsets,
                  "G54=X,Y,Z in mm: where a work system is in the machine; may be given for each; G54.1P3=... in fanuc")
       ->allow_extra_args(false);
@@ -333,9 +334,10 @@ void declare_apt(CLI::App& app, Words& words) {
 /// The option that was given and is of another language than the file's, or nothing.
 std::optional<std::string> foreign_option(const CLI::App& app, const Words& words) {
   enum Languages { Rs274 = 1, Fanuc = 2, Apt = 4 };
-  static constexpr std::array<std::pair<const char*, int>, 16> kOf{{{"--block-delete", Rs274 | Fanuc},
+  static constexpr std::array<std::pair<const char*, int>, 17> kOf{{{"--block-delete", Rs274 | Fanuc},
                                                                     {"--tolerance", Rs274 | Fanuc},
                                                                     {"--assume-g43", Rs274 | Fanuc},
+                                                                    {"--assume-end", Rs274 | Fanuc},
                                                                     {"--offset", Rs274 | Fanuc},
                                                                     {"--subroutines", Rs274},
                                                                     {"--output", Rs274},

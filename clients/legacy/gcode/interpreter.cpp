@@ -32,6 +32,10 @@ bool takes_axes(int once) {
   return once == 100 || once == 280 || once == 300 || once == 520 || once == 920;
 }
 
+double unit_of(const Code& units) {
+  return units.number == 200 || units.number == kInchOfMach ? kInch_mm : 1;
+}
+
 std::string trimmed(std::string_view text) {
   const auto begin = text.find_first_not_of(" \t\r");
   if (begin == std::string_view::npos) return {};
@@ -118,7 +122,7 @@ void Interpreter::keep_overrides(Block& block) {
 void Interpreter::set_speeds(Block& block) {
   if (const Word* feed = block.find('F')) {
     const auto& units = block.g(GGroup::Units);
-    const double unit = units && units->number == 200 ? kInch_mm : 1;
+    const double unit = units ? unit_of(*units) : 1;
     if (units && modes_.unit_mm && *modes_.unit_mm != unit) {
       refuse(feed->place,
              "F in the block that changes the unit would count in the unit before it; write F in a block behind it");
@@ -182,7 +186,11 @@ void Interpreter::set_plane_and_units(Block& block) {
   }
   const auto& units = block.g(GGroup::Units);
   if (!units) return;
-  const double unit = units->number == 200 ? kInch_mm : 1;
+  const double unit = unit_of(*units);
+  if (units->number >= kInchOfMach && modes_.unit_mm != unit)
+    refuse(units->place,
+           fmt::format("{} is a unit on some controls and a cycle of lathes on others; write {} before it",
+                       g_name(units->number), unit == 1 ? "G21" : "G20"));
   if (rules_.unit_ends_feed && modes_.unit_mm && *modes_.unit_mm != unit) modes_.feed_mm_min = 0;
   modes_.unit_mm = unit;
 }

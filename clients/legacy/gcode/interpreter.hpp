@@ -46,6 +46,12 @@ class Interpreter {
     compensation_.end(place);
   }
 
+  /// The same, and spindle and coolant off, as by M2.
+  void end_all() {
+    end(0);
+    switches_.off();
+  }
+
   /// What holds, but for what moves are, and so that it holds again. Both throw a Refusal.
   [[nodiscard]] State state(std::size_t place) const;
   void restore(const State& saved, std::size_t place);

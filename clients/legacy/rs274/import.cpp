@@ -43,12 +43,14 @@ class Import {
                      return Made{writer_.moves(), writer_.bytes()};
                    },
                .find_file = std::move(find_file),
-               .leaving = [this](std::size_t place) { saved_.leave(flow_.call_level(), place); }}) {
+               .leaving = [this](std::size_t place) { saved_.leave(flow_.call_level(), place); }}),
+        extent_(options.assume_end) {
     parameters_.ask_control([this](const gcode::Name& name) { return told(interpreter_, flow_, name); });
   }
 
   tl::expected<Summary, Error> run() {
-    return gcode::carry_out(flow_, writer_, extent_, [this](std::string_view text) { take(text); });
+    return gcode::carry_out(
+        flow_, writer_, extent_, [this](std::string_view text) { take(text); }, [this] { interpreter_.end_all(); });
   }
 
  private:

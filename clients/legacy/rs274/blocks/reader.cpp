@@ -28,6 +28,7 @@ std::optional<int> near_integer(double value, int most) {
 
 void add_g(double value, std::size_t place, Block& block) {
   const auto tenfold = near_integer(value * 10, 999);
+  if (tenfold && ends_nothing(*tenfold)) return;
   const gcode::GCode* known = tenfold ? find_g(*tenfold) : nullptr;
   if (known == nullptr) refuse(place, fmt::format("there is no G{:g}", value));
   block.add_g(*known, place);
