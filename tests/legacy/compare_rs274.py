@@ -33,6 +33,7 @@ class Program:
         self.random = random.Random(seed)
         self.unit = 1.0
         self.lines = []
+        self.feeds = self.random.sample(range(1, 1000), 999)
         self.plane = "17"
         self.incremental = False
         self.absolute_centres = False
@@ -157,14 +158,18 @@ class Program:
             self.absolute_centres = not self.absolute_centres
             self.write("G90.1" if self.absolute_centres else "G91.1")
         elif kind == 3:
-            self.write("F%d" % self.random.randint(1, 100))
+            self.feed()
         else:
             self.write("G64 P%.4f" % (0.05 / self.unit))
 
     def unit_change(self):
         self.unit = 25.4 if self.unit == 1 else 1.0
         self.write("G20" if self.unit == 25.4 else "G21")
-        self.write("F%d" % self.random.randint(1, 100))
+        self.feed()
+
+    def feed(self):
+        """No number twice: rs274 restores none that is in force, though the unit is another."""
+        self.write("F%d" % self.feeds.pop())
 
     def saved(self):
         """Modes that M72 restores, or the end of a sub with M73."""
