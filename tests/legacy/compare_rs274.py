@@ -269,10 +269,20 @@ class Program:
 
 
 KINDS = {"moves": Program, "o-words": OWordProgram, "radius": RadiusProgram}
+TRIALS = 5
 NUMBER = r"(-?[\d.]+)"
 
 
 def oracle_path(program, options, folder):
+    """Where rs274 says nothing, neither steps nor why not, it is asked again: on a busy computer it does now and then."""
+    for _ in range(TRIALS):
+        steps, words = asked_once(program, options, folder)
+        if steps is not None or not (words == "" or words.endswith("executing")):
+            break
+    return steps, words
+
+
+def asked_once(program, options, folder):
     environment = dict(os.environ, LD_LIBRARY_PATH=f"{options.oracle}/usr/lib:{options.oracle}/usr/lib/x86_64-linux-gnu",
                        PYTHONPATH=f"{options.oracle}/usr/lib/python3/dist-packages")
     done = subprocess.run([f"{options.oracle}/usr/bin/rs274", "-t", folder / "tool.tbl", "-g", program], cwd=folder, env=environment,
