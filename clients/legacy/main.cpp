@@ -4,13 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iostream>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -24,6 +20,7 @@
 
 #include "clients/legacy/apt/import.hpp"
 #include "clients/legacy/fanuc/import.hpp"
+#include "clients/legacy/program/input_file.hpp"
 #include "clients/legacy/program/output_file.hpp"
 #include "clients/legacy/program/writer.hpp"
 #include "clients/legacy/rs274/import.hpp"
@@ -35,7 +32,7 @@ using namespace rmac;
 
 struct Words {
   std::string file, output, dialect = "rs274", unit, approach, reference, second_reference;
-  std::vector<std::string> offsets, outputs, inputs, diameters, variables, passed;
+  std::vector<std::string> offsets, outputs, inputs, diameters, variables, passed, subroutines;
   bool ids_are_lines = false;
   rs274::Options options;
   std::string circle_axis, whole_numbers, rotary;
@@ -233,38 +230,15 @@ apt::Options apt_options(const Words& words) {
   return options;
 }
 
-/// What it is instead of a program's text, or nothing.
-std::optional<std::string> is_no_program(const std::string& text) {
-  if (text.find_first_not_of(" \t\r\n") == std::string::npos) return "is empty";
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-    return "is text in UTF-16; save it as plain text, which is ASCII or UTF-8";
-  }
-  if (text.find('\0') != std::string::npos) return "is no text";
-  return std::nullopt;
-}
-
-/// The text of a program, or why there is none.
-tl::expected<std::string, std::string> read_file(const std::string& name) {
-  std::ifstream opened;
-  if (name != "-") {
-    std::error_code none;
-    if (fs::is_directory(name, none)) return tl::unexpected<std::string>("is a folder");
-    opened.open(name, std::ios::binary);
-    if (!opened) {
-      return tl::unexpected(fmt::format("cannot be read: {}", std::generic_category().message(errno)));
-    }
-  }
-  std::istream& input = name == "-" ? std::cin : opened;
-  std::string text{std::istreambuf_iterator<char>(input), {}};
-  if (input.bad()) return tl::unexpected<std::string>("cannot be read");
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
-  if (auto other = is_no_program(text)) return tl::unexpected(std::move(*other));
-  return text;
+/// Where subs of other files are: beside the program, and in --subroutines.
+rs274::FindFile sub_files(const Words& words) {
+  std::vector<std::string> folders = words.subroutines;
+  if (words.file != "-") folders.insert(folders.begin(), fs::path(words.file).parent_path().string());
+  return [folders, program = words.file](const std::string& name) { return legacy::find_file(folders, name, program); };
 }
 
 int import_file(const Words& words) {
-  const auto text = read_file(words.file);
+  const auto text = legacy::read_file(words.file);
   const std::string file = words.file == "-" ? "standard input" : words.file;
   if (!text) return fail(fmt::format("{}: {}", file, text.error()));
   legacy::OutputFile output(words.output);
@@ -272,10 +246,11 @@ int import_file(const Words& words) {
   const auto sink = [&output](std::string_view part) { output.write(part); };
   const auto summary = words.is_apt()     ? apt::import_program(*text, apt_options(words), sink)
                        : words.is_fanuc() ? fanuc::import_program(*text, words.options, sink)
-                                          : rs274::import_program(*text, words.options, sink);
+                                          : rs274::import_program(*text, words.options, sink, sub_files(words));
   if (!summary) {
     const auto& error = summary.error();
-    return fail(fmt::format("{}:{}:{}: {}", file, error.line, error.column, error.message));
+    return fail(
+        fmt::format("{}:{}:{}: {}", error.file.empty() ? file : error.file, error.line, error.column, error.message));
   }
   if (!output.finish()) return fail(words.output + ": cannot be written");
   if (words.output != "-") fmt::print("{}: {} moves from {} lines\n", words.output, summary->moves, summary->lines);
@@ -301,6 +276,7 @@ void declare(CLI::App& app, Words& words) {
                  "change and a change of unknown "
                  "offsets, unless its next move is a G0 to X, Y and Z, or RAPID and a GOTO");
   app.add_flag("--assume-g43", words.options.assume_g43, "the tool's length counts from M6 on, though no G43 says so");
+  app.add_flag("--assume-end", words.options.assume_end, "the program ends where its file does, as if M2 stood there");
   app.add_option("--offset", words.offsets,
                  "G54=X,Y,Z in mm: where a work system is in the machine; may be given for each; G54.1P3=... in fanuc")
       ->allow_extra_args(false);
@@ -318,6 +294,12 @@ void declare(CLI::App& app, Words& words) {
          "--tool-diameter", words.diameters,
          "3=10: the diameter of tool 3 in mm, for G41 and G42; of a fanuc program, twice the radius in the offset D3")
       ->allow_extra_args(false);
+  app.add_option("--subroutines", words.subroutines,
+                 "DIR[:DIR]: folders where the subs are that an rs274 program calls and does not have, each NAME in "
+                 "NAME.ngc; its own folder is looked into first")
+      ->delimiter(':')
+      ->check(CLI::ExistingDirectory)
+      ->allow_extra_args(false);
   app.add_flag("--ids-are-lines", words.ids_are_lines, "the id of each request is the line that it comes from");
 }
 
@@ -327,16 +309,16 @@ void declare_fanuc(CLI::App& app, Words& words) {
          "what lengths and angles without a decimal point count in, in a fanuc program: units (X10 is 10 mm) or "
          "increments (X10 is 0.010 mm); refused unless given")
       ->check(CLI::IsMember({"units", "increments"}));
-  app.add_option(
-         "--rotary", words.rotary,
-         "C,A: the axes of a fanuc program's machine that turn the tool about Z (C), Y (B) and X (A) of the part, "
-         "from the part to the tool; each counter-clockwise, or with - the other way")
+  app.add_option("--rotary", words.rotary,
+                 "C,A: the axes of the program's machine that turn the tool about Z (C), Y (B) and X (A) of the part, "
+                 "from the part to the tool; each counter-clockwise, or with - the other way")
       ->allow_extra_args(false);
   app.add_option("--variable", words.variables,
                  "500=12.5: what the machine has in a common variable that a fanuc program reads")
       ->allow_extra_args(false);
-  app.add_option("--pass-over", words.passed,
-                 "M10: an M code of the machine's builder that a fanuc program may go without; may be given for each")
+  app.add_option(
+         "--pass-over", words.passed,
+         "M10: an M code of the machine's builder or owner that the program may go without; may be given for each")
       ->allow_extra_args(false);
 }
 
@@ -352,10 +334,12 @@ void declare_apt(CLI::App& app, Words& words) {
 /// The option that was given and is of another language than the file's, or nothing.
 std::optional<std::string> foreign_option(const CLI::App& app, const Words& words) {
   enum Languages { Rs274 = 1, Fanuc = 2, Apt = 4 };
-  static constexpr std::array<std::pair<const char*, int>, 15> kOf{{{"--block-delete", Rs274 | Fanuc},
+  static constexpr std::array<std::pair<const char*, int>, 17> kOf{{{"--block-delete", Rs274 | Fanuc},
                                                                     {"--tolerance", Rs274 | Fanuc},
                                                                     {"--assume-g43", Rs274 | Fanuc},
+                                                                    {"--assume-end", Rs274 | Fanuc},
                                                                     {"--offset", Rs274 | Fanuc},
+                                                                    {"--subroutines", Rs274},
                                                                     {"--output", Rs274},
                                                                     {"--input", Rs274},
                                                                     {"--second-reference-point", Rs274 | Fanuc},
@@ -363,8 +347,8 @@ std::optional<std::string> foreign_option(const CLI::App& app, const Words& word
                                                                     {"--tool-diameter", Rs274 | Fanuc},
                                                                     {"--whole-numbers", Fanuc},
                                                                     {"--variable", Fanuc},
-                                                                    {"--rotary", Fanuc},
-                                                                    {"--pass-over", Fanuc},
+                                                                    {"--rotary", Rs274 | Fanuc},
+                                                                    {"--pass-over", Rs274 | Fanuc},
                                                                     {"--multax", Apt},
                                                                     {"--circle-axis", Apt}}};
   const int language = words.is_apt() ? Apt : words.is_fanuc() ? Fanuc : Rs274;

@@ -11,6 +11,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.offsets[0] = options.offsets[1] = options.offsets[6] = {1, 2, 3};
   options.assume_g43 = true;
   options.unit_mm = 1;
+  options.rotary = {{'C', 1}, {'A', -1}};
+  options.assume_end = size % 3 == 1;
   options.tool_diameters_mm = {{1, 4}, {2, 0}};
   options.whole_numbers = rmac::gcode::WholeNumbers::Units;
   options.variables = {{500, 1}};

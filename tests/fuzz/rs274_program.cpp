@@ -1,5 +1,8 @@
-// A program in RS274/NGC: taken, or refused with a place.
+// A program in RS274/NGC: taken, or refused with a place. What stands behind a line of = is the file that a call of any
+// sub finds.
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "clients/legacy/rs274/import.hpp"
@@ -10,9 +13,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.offsets[0] = options.offsets[1] = {1, 2, 3};
   options.assume_g43 = true;
   options.unit_mm = 1;
+  options.rotary = {{'A', 1}, {'C', -1}};
   options.tool_diameters_mm = {{1, 4}, {2, 0}};
   options.bounds = {.idle_lines = 1000, .output_mb = 1};  // loops without an end are soon noticed
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  static_cast<void>(rmac::rs274::import_program(text, options, [](std::string_view) {}));
+  const std::size_t mark = std::min(text.find("\n=\n"), text.size());
+  const auto find_file =
+      [&](const std::string& name) -> tl::expected<std::optional<rmac::rs274::SubFile>, std::string> {
+    if (mark == text.size()) return std::nullopt;
+    return rmac::rs274::SubFile{name, std::string(text.substr(mark + 3))};
+  };
+  static_cast<void>(rmac::rs274::import_program(
+      text.substr(0, mark), options, [](std::string_view) {}, find_file));
   return 0;
 }

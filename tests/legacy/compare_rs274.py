@@ -33,16 +33,17 @@ class Program:
         self.random = random.Random(seed)
         self.unit = 1.0
         self.lines = []
+        self.feeds = self.random.sample(range(1, 1000), 999)
         self.plane = "17"
         self.incremental = False
         self.absolute_centres = False
         self.at = list(START)  # mm, in the coordinates of the program
         self.offset = [0.0, 0.0, 0.0]
-        self.write("g21 g90 g17 g40 g80 g94 g54 g98")
+        self.write("g21 g90 g17 g40 g80 g94 g54 g98 g64 p0.05")
         self.write("F%d G0 X%g Y%g Z%g" % (self.random.randint(50, 3000), *START))
         for _ in range(self.random.randint(5, 40)):
             self.random.choice([self.straight, self.straight, self.arc, self.arc, self.rounded_arc, self.radius_arc, self.mode, self.unit_change, self.shift,
-                                self.switch, self.drill, self.parameters, self.polar, self.told])()
+                                self.switch, self.drill, self.parameters, self.polar, self.told, self.saved])()
         self.write(self.random.choice(["M2", "m30"]))
 
     def write(self, text):
@@ -157,14 +158,28 @@ class Program:
             self.absolute_centres = not self.absolute_centres
             self.write("G90.1" if self.absolute_centres else "G91.1")
         elif kind == 3:
-            self.write("F%d" % self.random.randint(1, 100))
+            self.feed()
         else:
             self.write("G64 P%.4f" % (0.05 / self.unit))
 
     def unit_change(self):
         self.unit = 25.4 if self.unit == 1 else 1.0
         self.write("G20" if self.unit == 25.4 else "G21")
-        self.write("F%d" % self.random.randint(1, 100))
+        self.feed()
+
+    def feed(self):
+        """No number twice: rs274 restores none that is in force, though the unit is another."""
+        self.write("F%d" % self.feeds.pop())
+
+    def saved(self):
+        """Modes that M72 restores, or the end of a sub with M73."""
+        held = self.unit, self.plane, self.incremental, self.absolute_centres
+        sub = "o<saved%d>" % len(self.lines) if self.random.random() < 0.5 else None
+        self.write("%s sub\nM73" % sub if sub else "M70")
+        for _ in range(self.random.randint(1, 5)):
+            self.random.choice([self.straight, self.arc, self.mode, self.unit_change, self.switch])()
+        self.write("{0} endsub\n{0} call".format(sub) if sub else "M72")
+        self.unit, self.plane, self.incremental, self.absolute_centres = held
 
     def shift(self):
         if self.random.random() < 0.4:
@@ -195,7 +210,10 @@ class Program:
         depth = retract - self.random.uniform(1, 9) if not self.incremental else -self.random.uniform(1, 9)
         axis = "XYZ"[normal]
         words, _ = self.target([first, second])
-        self.write("%s %s %s R%.4f %s%.4f%s" % (back, code, " ".join(words), retract / self.unit, axis, depth / self.unit, extra))
+        repeats = " L%d" % self.random.randint(2, 5) if self.random.random() < 0.4 else ""
+        if self.incremental and self.plane == "17" and math.hypot(*self.at[:2]) > 1:
+            words = self.random.choice([["@%.4f" % (3 / self.unit)], ["^%.3f" % 50.5], ["@%.4f" % (2 / self.unit), "^-30"]])
+        self.write("%s %s %s R%.4f %s%.4f%s%s" % (back, code, " ".join(words), retract / self.unit, axis, depth / self.unit, extra, repeats))
         for _ in range(self.random.randint(0, 2)):
             words, _ = self.target([first])
             self.write(" ".join(words))
@@ -251,10 +269,20 @@ class Program:
 
 
 KINDS = {"moves": Program, "o-words": OWordProgram, "radius": RadiusProgram}
+TRIALS = 5
 NUMBER = r"(-?[\d.]+)"
 
 
 def oracle_path(program, options, folder):
+    """Where rs274 says nothing, neither steps nor why not, it is asked again: on a busy computer it does now and then."""
+    for _ in range(TRIALS):
+        steps, words = asked_once(program, options, folder)
+        if steps is not None or not (words == "" or words.endswith("executing")):
+            break
+    return steps, words
+
+
+def asked_once(program, options, folder):
     environment = dict(os.environ, LD_LIBRARY_PATH=f"{options.oracle}/usr/lib:{options.oracle}/usr/lib/x86_64-linux-gnu",
                        PYTHONPATH=f"{options.oracle}/usr/lib/python3/dist-packages")
     done = subprocess.run([f"{options.oracle}/usr/bin/rs274", "-t", folder / "tool.tbl", "-g", program], cwd=folder, env=environment,

@@ -127,6 +127,21 @@ class Import(unittest.TestCase):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn(f"{self.source}:8:7: M19: ", done.stderr)
 
+    def test_subs_are_read_from_files_beside_the_program_and_in_folders(self):
+        (self.folder / "library").mkdir()
+        (self.folder / "library" / "slot.ngc").write_text("o<slot> sub\nG1 X#1\no<deep> call\no<slot> endsub\n")
+        (self.folder / "deep.ngc").write_text("o<deep> sub\nG1 Z-1\nG1 Z1 M19\no<deep> endsub\n")
+        self.source.write_text("g21 f600\nG0 X0 Y0 Z10\no<Slot> call [5]\nM2\n")
+        words = ["simulate", self.source, "--machine", "BenchXYZ"]
+        done = self.rmac(*words)
+        self.assertIn(f"{self.source}:3:1: o<slot> is not in this file, and there is no slot.ngc beside the program", done.stderr)
+        done = self.rmac(*words, "--subroutines", self.folder / "library")
+        self.assertIn(f"{self.folder / 'deep.ngc'}:3:7: M19: ", done.stderr)
+        (self.folder / "deep.ngc").write_text("o<deep> sub\nG1 Z-1\no<deep> endsub\n")
+        done = self.rmac(*words, "--subroutines", self.folder / "library", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout)["moves"], 3)
+
     def test_an_imported_program_is_machined(self):
         self.source.write_text(PART)
         self.assertEqual(self.rmac("import", self.source).returncode, 0)

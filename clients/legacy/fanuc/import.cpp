@@ -28,7 +28,8 @@ class Import {
                 return gcode::Made{writer_.moves(), writer_.bytes()};
               }),
         reader_(options.passed_m),
-        system_(interpreter_, flow_, writer_) {
+        system_(interpreter_, flow_, writer_),
+        extent_(options.assume_end) {
     variables_.set_system({[this](int number, std::size_t place) { return system_.read(number, place); },
                            [this](int number, gcode::Maybe value, std::string_view message, std::size_t place) {
                              writer_.at_line(flow_.number());
@@ -37,7 +38,8 @@ class Import {
   }
 
   tl::expected<Summary, Error> run() {
-    return gcode::carry_out(flow_, writer_, extent_, [this](std::string_view text) { take(text); });
+    return gcode::carry_out(
+        flow_, writer_, extent_, [this](std::string_view text) { take(text); }, [this] { interpreter_.end_all(); });
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clients/legacy/gcode/polar.hpp"
 #include "clients/legacy/program/pecking.hpp"
 
 namespace rmac::gcode {
@@ -129,8 +130,10 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
              "whether a tool that drills no hole goes there is not the same on all controls; write the way as G0");
   }
   for (int repeat = 0; repeat < repeats; ++repeat) {
+    const bool goes_round = repeat > 0 && modes_.incremental && block.is_polar();
+    if (goes_round) go_round(block, at, place);
     for (const auto& [axis, word] : {std::pair{plane.first, first}, std::pair{plane.second, second}}) {
-      if (word == nullptr) continue;
+      if (word == nullptr || goes_round) continue;
       at.at(axis) = modes_.incremental ? at.at(axis) + modes_.mm(*word) : coordinates_.to_part(axis, modes_.mm(*word));
     }
     mover_.rapid(at, place);
@@ -140,6 +143,15 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
     hole(above, bottom, clear, code, place);
     at.at(plane.normal) = clear;
   }
+}
+
+/// On by @ and ^ from the hole before: along a circle or a ray, or both.
+void Drilling::go_round(const Block& block, Point& at, std::size_t place) const {
+  const double unit = modes_.unit(place);
+  const auto of_program = [&](std::size_t axis) { return (at.at(axis) - coordinates_.to_part(axis, 0)) / unit; };
+  const PolarEnd end = polar_end(block, modes_, {of_program(0), of_program(1)});
+  for (const std::size_t axis : {std::size_t{0}, std::size_t{1}})
+    at.at(axis) = coordinates_.to_part(axis, end.at(axis) * unit);
 }
 
 void Drilling::peck(const Point& above, double bottom, int code, std::size_t place) {

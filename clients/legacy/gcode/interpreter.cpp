@@ -16,7 +16,7 @@ namespace rmac::gcode {
 namespace {
 
 constexpr double kInch_mm = 25.4, kMostTolerance_mm = 100, kMostDwell_s = 3600;
-constexpr int kSpindleOff = 5;
+constexpr int kSpindleOff = 5, kFirstOfState = 70;
 /// How often M98 calls.
 constexpr double kMostTimes = 1e9;
 /// What a stop's message may have.
@@ -30,6 +30,10 @@ bool sets_coordinates(int once) {
 /// Whose X, Y and Z are no end of a motion.
 bool takes_axes(int once) {
   return once == 100 || once == 280 || once == 300 || once == 520 || once == 920;
+}
+
+double unit_of(const Code& units) {
+  return units.number == 200 || units.number == kInchOfMach ? kInch_mm : 1;
 }
 
 std::string trimmed(std::string_view text) {
@@ -49,7 +53,7 @@ Interpreter::Interpreter(const Options& options, const Rules& rules, Writer& wri
                     rules.enters_to_normal),
       motions_(options, rules, modes_, coordinates_, mover_, compensation_),
       turning_(modes_, coordinates_, mover_),
-      tool_axis_(options, modes_, coordinates_, mover_),
+      tool_axis_(options, modes_, coordinates_, turning_, mover_),
       splines_(motions_, modes_, mover_),
       switches_(writer),
       drilling_(rules, modes_, coordinates_, mover_, switches_, writer) {
@@ -67,6 +71,8 @@ After Interpreter::execute(Block& block, const Line& line) {
     return {};
   }
   if (const auto& code = block.m(MGroup::Stop); code && code->number >= 98) return numbered_program(block, *code);
+  if (const auto& code = block.m(MGroup::Override); code && code->number >= kFirstOfState)
+    return save_or_restore(block, *code);
   require_only_moves(block, modes_, compensation_);
   keep_overrides(block);
   set_speeds(block);
@@ -84,6 +90,9 @@ After Interpreter::execute(Block& block, const Line& line) {
   place_polar(block, modes_, {tip(0), tip(1)});
   turning_.act(block);
   act_once(block);
+  for (const char letter : {'A', 'B', 'C'}) {
+    if (block.has(letter) && !options_.rotary.empty()) require_no_contour(block.place(letter));
+  }
   tool_axis_.read(block);
   move(block);
   switch_off_behind_motion(block);
@@ -113,7 +122,7 @@ void Interpreter::keep_overrides(Block& block) {
 void Interpreter::set_speeds(Block& block) {
   if (const Word* feed = block.find('F')) {
     const auto& units = block.g(GGroup::Units);
-    const double unit = units && units->number == 200 ? kInch_mm : 1;
+    const double unit = units ? unit_of(*units) : 1;
     if (units && modes_.unit_mm && *modes_.unit_mm != unit) {
       refuse(feed->place,
              "F in the block that changes the unit would count in the unit before it; write F in a block behind it");
@@ -177,7 +186,11 @@ void Interpreter::set_plane_and_units(Block& block) {
   }
   const auto& units = block.g(GGroup::Units);
   if (!units) return;
-  const double unit = units->number == 200 ? kInch_mm : 1;
+  const double unit = unit_of(*units);
+  if (units->number >= kInchOfMach && modes_.unit_mm != unit)
+    refuse(units->place,
+           fmt::format("{} is a unit on some controls and a cycle of lathes on others; write {} before it",
+                       g_name(units->number), unit == 1 ? "G21" : "G20"));
   if (rules_.unit_ends_feed && modes_.unit_mm && *modes_.unit_mm != unit) modes_.feed_mm_min = 0;
   modes_.unit_mm = unit;
 }
@@ -210,19 +223,23 @@ void Interpreter::set_control(Block& block) {
   const auto& control = block.g(GGroup::Control);
   if (!control) return;
   if (control->number == 610) {
-    exact_ = true;
-    return writer_.path_tolerance(0);
+    return set_path_tolerance(0);
   }
   std::optional<double> tolerance = options_.tolerance_mm;
   if (const Word* wanted = block.find('P'); wanted != nullptr && wanted->value != 0) tolerance = modes_.mm(*wanted);
   static_cast<void>(block.find('Q'));  // lines that the control may take together: it does so within P anyway
-  if (!tolerance && !rules_.needs_path_tolerance && !exact_) return;
-  exact_ = false;
+  const bool is_exact = tolerance_mm_ == 0;
+  if (!tolerance && !rules_.needs_path_tolerance && !is_exact) return;
   if (!tolerance)
     refuse(control->place,
            "G64 without P leaves open how far the path may be from what is programmed; write P, or give --tolerance");
   if (!(*tolerance >= 0 && *tolerance <= kMostTolerance_mm)) refuse(control->place, "a path tolerance is 0 to 100 mm");
-  writer_.path_tolerance(*tolerance);
+  set_path_tolerance(*tolerance);
+}
+
+void Interpreter::set_path_tolerance(double mm) {
+  tolerance_mm_ = mm;
+  writer_.path_tolerance(mm);
 }
 
 void Interpreter::set_distances(Block& block) {
@@ -266,6 +283,7 @@ void Interpreter::move(Block& block) {
 void Interpreter::move_by(Block& block, int code, std::size_t place) {
   const int before = std::exchange(modes_.motion, code);
   if (code <= 30) modes_.interpolation = code;
+  if (!block.once(530)) tool_axis_.require_coordinates_of_part(place);
   turning_.require_whole(block, code < 20 || code > 53, place);
   if (code == 0 || code == 10) return motions_.straight(block, code == 0, place);
   if (code == 20 || code == 30) return motions_.arc(block, code == 30, place);
@@ -310,6 +328,33 @@ After Interpreter::numbered_program(Block& block, const Code& code) {
   block.require_all_used();
   return {After::What::Call, static_cast<int>(label.value), times != nullptr ? static_cast<int>(times->value) : 1,
           code.place};
+}
+
+After Interpreter::save_or_restore(const Block& block, const Code& code) {
+  if (block.codes() > 1) refuse(code.place, fmt::format("M{} has a block of its own; write two", code.number));
+  block.require_all_used();
+  return {After::What::Modes, code.number, 1, code.place};
+}
+
+State Interpreter::state(std::size_t place) const {
+  require_no_contour(place);
+  return {modes_, coordinates_.active(), tolerance_mm_, switches_.state()};
+}
+
+void Interpreter::restore(const State& saved, std::size_t place) {
+  require_no_contour(place);
+  if (saved.system != coordinates_.active()) activate_system(saved.system, place, rules_, coordinates_);
+  if (saved.tolerance_mm != tolerance_mm_ && !saved.tolerance_mm)
+    refuse(place,
+           "how far the path may be from what is programmed was not said when it was saved; write G61 or G64 P before "
+           "M70 or M73");
+  if (saved.tolerance_mm != tolerance_mm_) set_path_tolerance(*saved.tolerance_mm);
+  const Modes now = std::exchange(modes_, saved.modes);
+  modes_.motion = now.motion;
+  modes_.interpolation = now.interpolation;
+  // What the machine had before the program said anything may as well have been G49.
+  if (saved.modes.length == ToolLength::Unsaid && now.length != ToolLength::Unsaid) modes_.length = ToolLength::Off;
+  switches_.restore(saved.switches);
 }
 
 void Interpreter::require_no_contour(std::size_t place) const {

@@ -14,12 +14,21 @@
 
 namespace rmac::gcode {
 
-/// What comes behind a block: the next one, the end of the program, or a numbered program that M98 calls or M99 ends.
+/// What comes behind a block: the next one, the end of the program, a numbered program that M98 calls or M99 ends, or
+/// M70 to M73, which save what holds or restore it.
 struct After {
-  enum class What { Next, End, Call, EndOfNumbered };
+  enum class What { Next, End, Call, EndOfNumbered, Modes };
   What what = What::Next;
-  int label = 0, times = 1;  ///< of a call
+  int label = 0, times = 1;  ///< of a call; the former the code of Modes
   std::size_t place = 0;     ///< of what asks for it
+};
+
+/// What M70 and M73 save.
+struct State {
+  Modes modes;
+  std::size_t system = 0;
+  std::optional<double> tolerance_mm;  ///< as in Interpreter
+  Switches::State switches;
 };
 
 /// Carries out blocks, each in the order that the report's table gives to what stands in it.
@@ -36,6 +45,16 @@ class Interpreter {
     splines_.require_closed(place);
     compensation_.end(place);
   }
+
+  /// The same, and spindle and coolant off, as by M2.
+  void end_all() {
+    end(0);
+    switches_.off();
+  }
+
+  /// What holds, but for what moves are, and so that it holds again. Both throw a Refusal.
+  [[nodiscard]] State state(std::size_t place) const;
+  void restore(const State& saved, std::size_t place);
 
   /// Throws a Refusal while moves are held back, or the tool is beside a contour.
   void require_no_contour(std::size_t place) const;
@@ -66,6 +85,8 @@ class Interpreter {
   void move_by(Block& block, int code, std::size_t place);
   [[nodiscard]] bool stop(const Block& block);
   [[nodiscard]] After numbered_program(Block& block, const Code& code);
+  [[nodiscard]] static After save_or_restore(const Block& block, const Code& code);
+  void set_path_tolerance(double mm);
 
   const Options& options_;
   const Rules& rules_;
@@ -81,7 +102,7 @@ class Interpreter {
   Switches switches_;
   Drilling drilling_;
   std::string message_, block_comment_;
-  bool exact_ = false;  ///< G61 is in force
+  std::optional<double> tolerance_mm_;  ///< of the path, where the program said it; 0 of G61
 };
 
 }  // namespace rmac::gcode

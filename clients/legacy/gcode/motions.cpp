@@ -169,6 +169,15 @@ void Motions::arc(Block& block, bool counter_clockwise, std::size_t place) {
   const Point end = end_of(block, place);
   Arc arc{.end = end, .axis = legacy::unit_axis(plane.normal), .counter_clockwise = counter_clockwise};
   if (const Word* turns = rules_.arcs_have_turns ? block.find('P') : nullptr) arc.more_turns = turns_of(*turns) - 1;
+  const char beside = kCentreLetters.at(plane.normal);  // which some posts write of every arc
+  if (block.has(beside) && !modes_.absolute_centres && block.has_any("IJK") && !block.has('R')) {
+    const Word& none = block.use(beside);
+    if (none.value != 0)
+      refuse(none.place,
+             fmt::format("{} in a plane that it is beside of: some controls take it for the pitch of a helix, "
+                         "others for a fault; take it out",
+                         beside));
+  }
   if (const Word* radius = block.find('R')) {
     if (block.has_any("IJK")) refuse(radius->place, "an arc has a radius or a centre, not both");
     if (radius->value == 0) refuse(radius->place, "an arc of radius 0");

@@ -17,17 +17,17 @@ void require_plain(const Block& block, const Modes& modes, std::size_t place) {
     if (block.has(letter)) refuse(block.place(letter), "X or Y beside @ or ^; write one or the other");
   }
   if (block.g(GGroup::Once)) refuse(place, "@ and ^ go with moves and cycles alone; write X and Y");
-  if (modes.incremental && block.has('L'))
-    refuse(block.place('L'), "repeats under G91 go on along X and Y; with @ or ^ write each hole");
+}
+
+std::size_t place_of_polar(const Block& block) {
+  return (block.polar_radius() ? block.polar_radius() : block.polar_angle())->place;
 }
 
 }  // namespace
 
-void place_polar(Block& block, const Modes& modes, const ProgramTip& tip) {
+PolarEnd polar_end(const Block& block, const Modes& modes, const ProgramTip& tip) {
   const auto &radius = block.polar_radius(), &angle = block.polar_angle();
-  if (!radius && !angle) return;
-  const std::size_t place = radius ? radius->place : angle->place;
-  require_plain(block, modes, place);
+  const std::size_t place = place_of_polar(block);
   const bool goes_on = modes.incremental || !radius || !angle;
   if (goes_on && !(tip[0] && tip[1])) {
     refuse(place,
@@ -42,8 +42,17 @@ void place_polar(Block& block, const Modes& modes, const ProgramTip& tip) {
   const double to_distance = (radius ? radius->value : adds ? 0 : distance) + (adds ? distance : 0);
   const double now = goes_on ? std::atan2(y, x) : 0;
   const double to = (angle ? angle->value * kDegree : adds ? 0 : now) + (adds ? now : 0);
-  block.add_word('X', {to_distance * std::cos(to) - (adds ? x : 0), place});
-  block.add_word('Y', {to_distance * std::sin(to) - (adds ? y : 0), place});
+  return {to_distance * std::cos(to), to_distance * std::sin(to)};
+}
+
+void place_polar(Block& block, const Modes& modes, const ProgramTip& tip) {
+  if (!block.is_polar()) return;
+  const std::size_t place = place_of_polar(block);
+  require_plain(block, modes, place);
+  const PolarEnd end = polar_end(block, modes, tip);
+  const bool adds = modes.incremental;
+  block.add_word('X', {end[0] - (adds ? *tip[0] : 0), place});
+  block.add_word('Y', {end[1] - (adds ? *tip[1] : 0), place});
 }
 
 }  // namespace rmac::gcode

@@ -47,4 +47,13 @@ void Switches::switch_coolant(const Block& block) {
   if (block.m(MGroup::Flood)) machine_.set_flood(true);
 }
 
+void Switches::restore(const State& saved) {
+  machine_.set_speed(saved.rpm);
+  speed_is_set_ = saved.speed_is_set;
+  machine_.turn(saved.direction);
+  machine_.set_mist(saved.mist);
+  machine_.set_flood(saved.flood);
+  machine_.write();
+}
+
 }  // namespace rmac::gcode

@@ -39,6 +39,15 @@ class Switches {
   [[nodiscard]] bool flood() const noexcept { return machine_.flood(); }
   [[nodiscard]] double rpm() const noexcept { return machine_.rpm(); }
 
+  /// Of spindle and coolant.
+  struct State {
+    int direction = 0;
+    double rpm = 0;
+    bool speed_is_set = false, mist = false, flood = false;
+  };
+  [[nodiscard]] State state() const noexcept { return {direction(), rpm(), speed_is_set_, mist(), flood()}; }
+  void restore(const State& saved);
+
  private:
   Writer& writer_;
   legacy::MachineSwitches machine_;

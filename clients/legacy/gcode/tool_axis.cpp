@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "clients/legacy/gcode/modes/offsets.hpp"
 #include "clients/legacy/gcode/turns.hpp"
@@ -12,7 +13,7 @@ namespace rmac::gcode {
 namespace {
 
 constexpr std::array<char, 3> kRotaryLetters{'A', 'B', 'C'};
-constexpr int kRapid = 0, kLine = 10;
+constexpr int kRapid = 0, kLine = 10, kReference = 280;
 
 std::size_t place_of(char letter) {
   return static_cast<std::size_t>(letter - 'A');
@@ -28,6 +29,7 @@ constexpr Plane plane_of(char letter) {
 void ToolAxis::read(Block& block) {
   const auto& code = block.g(GGroup::Motion);
   const int motion = code ? code->number : modes_.motion;
+  if (block.once(kReference)) leave_for_reference(block);
   read_angles(block, motion);
   const bool has_vector = block.has_any("IJK") && (motion == kRapid || motion == kLine);
   if (modes_.centre_point == ToolCentrePoint::Vectors && has_vector) read_vector(block, motion);
@@ -38,6 +40,7 @@ void ToolAxis::read_angles(Block& block, int motion) {
   for (const char letter : kRotaryLetters) {
     if (!block.has(letter)) continue;
     const Word word = block.take(letter);
+    if (block.once(kReference) && is_rotary(letter)) continue;
     if (!read_angle(letter, word)) continue;
     place = word.place;
     if (block.g(GGroup::Once))
@@ -46,8 +49,11 @@ void ToolAxis::read_angles(Block& block, int motion) {
              "angle into a block of its own");
   }
   if (!place) return;
-  const Point axis = axis_of_angles(*place);
-  if (axis == mover_.axis()) return;
+  const legacy::Placement turn = turn_of_angles(*place);
+  at_reference_.reset();
+  const bool stays = std::exchange(turn_, turn) == turn;
+  const Point& axis = turn.z;
+  if (stays && axis == mover_.axis()) return;
   if (modes_.centre_point == ToolCentrePoint::Angles) return aim(block, axis, motion, *place);
   if (block.has_any("XYZ"))
     refuse(*place,
@@ -57,9 +63,32 @@ void ToolAxis::read_angles(Block& block, int motion) {
   coordinates_.forget_tip();
 }
 
+/// G28 and these axes: they go to where nobody here knows, and X, Y and Z mean nothing until they are somewhere else.
+void ToolAxis::leave_for_reference(const Block& block) {
+  const bool all = !block.has_any("XYZABC");
+  for (const auto& rotary : options_.rotary) {
+    if (!all && !block.has(rotary.letter)) continue;
+    angles_.at(place_of(rotary.letter)) = std::nullopt;
+    at_reference_ = rotary.letter;
+  }
+}
+
+void ToolAxis::require_coordinates_of_part(std::size_t place) const {
+  if (modes_.centre_point == ToolCentrePoint::Vectors) return;
+  if (at_reference_)
+    refuse(place, fmt::format("where axis {0} stands behind G28 is not known here; write {0} before this move",
+                              *at_reference_));
+  if (modes_.centre_point == ToolCentrePoint::Angles || turning_.tilted()) return;
+  if (turn_ == legacy::Placement{} && mover_.axis() == legacy::unit_axis(2)) return;
+  refuse(place,
+         "the tool, or the part, is turned, and X, Y and Z are those of the machine: where on the part this is, is not "
+         "known here; have the post write G68.2 or G43.4 before it, or turn back by A, B and C, which --rotary gives "
+         "a meaning");
+}
+
 bool ToolAxis::read_angle(char letter, const Word& word) {
   const double degrees = modes_.degrees(word);
-  if (std::ranges::find(options_.rotary, letter, &RotaryAxis::letter) == options_.rotary.end()) {
+  if (!is_rotary(letter)) {
     if (degrees == 0) return false;
     refuse(word.place,
            fmt::format("which way axis {} turns the tool is not known here; give --rotary with the machine's "
@@ -73,15 +102,15 @@ bool ToolAxis::read_angle(char letter, const Word& word) {
   return true;
 }
 
-Point ToolAxis::axis_of_angles(std::size_t place) const {
-  Point axis = legacy::unit_axis(2);
+legacy::Placement ToolAxis::turn_of_angles(std::size_t place) const {
+  legacy::Placement turn;
   for (auto rotary = options_.rotary.rbegin(); rotary != options_.rotary.rend(); ++rotary) {
     const auto& angle = angles_.at(place_of(rotary->letter));
     if (!angle)
       refuse(place, fmt::format("where axis {0} stands is not known here; write {0} beside this", rotary->letter));
-    axis = turn_about_normal(plane_of(rotary->letter), rotary->sign * *angle).turned(axis);
+    turn = turn_about_normal(plane_of(rotary->letter), rotary->sign * *angle).after(turn);
   }
-  return axis;
+  return turn;
 }
 
 void ToolAxis::read_vector(Block& block, int motion) {

@@ -18,6 +18,7 @@ class Turning {
 
   /// G51.1, G50.1, G68, G68.2 and G69 of a block.
   void act(Block& block);
+  [[nodiscard]] bool tilted() const noexcept { return tilt_.has_value(); }
   /// G53.1 and G53.6: the tool along the normal of the tilted plane.
   void align(Block& block, std::size_t place);
   /// Throws a Refusal where the block moves from a place whose coordinates the program believes to be other ones than

@@ -9,6 +9,7 @@ namespace rmac::legacy {
 struct Error {
   std::size_t line = 0, column = 0;
   std::string message;
+  std::string file{};  ///< that the line is of, where it is not the program itself
 };
 
 struct Summary {

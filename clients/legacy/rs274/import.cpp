@@ -9,6 +9,7 @@
 #include "clients/legacy/rs274/blocks/reader.hpp"
 #include "clients/legacy/rs274/blocks/refusal.hpp"
 #include "clients/legacy/rs274/flow/flow.hpp"
+#include "clients/legacy/rs274/saved_states.hpp"
 #include "clients/legacy/rs274/told.hpp"
 #include "clients/legacy/rs274/work_systems.hpp"
 
@@ -30,18 +31,26 @@ constexpr gcode::Rules kRules{
 /// One import.
 class Import {
  public:
-  Import(std::string_view program, const Options& options, Writer::Sink sink)
+  Import(std::string_view program, const Options& options, Writer::Sink sink, FindFile find_file)
       : options_(options),
+        reader_(options.passed_m),
         writer_(std::move(sink), options.ids),
         interpreter_(options, kRules, writer_),
-        flow_(program, options.block_delete, options.bounds, parameters_, [this] {
-          return Made{writer_.moves(), writer_.bytes()};
-        }) {
+        saved_(interpreter_),
+        flow_(program, options.block_delete, options.bounds, parameters_,
+              {.made =
+                   [this] {
+                     return Made{writer_.moves(), writer_.bytes()};
+                   },
+               .find_file = std::move(find_file),
+               .leaving = [this](std::size_t place) { saved_.leave(flow_.call_level(), place); }}),
+        extent_(options.assume_end) {
     parameters_.ask_control([this](const gcode::Name& name) { return told(interpreter_, flow_, name); });
   }
 
   tl::expected<Summary, Error> run() {
-    return gcode::carry_out(flow_, writer_, extent_, [this](std::string_view text) { take(text); });
+    return gcode::carry_out(
+        flow_, writer_, extent_, [this](std::string_view text) { take(text); }, [this] { interpreter_.end_all(); });
   }
 
  private:
@@ -60,6 +69,7 @@ class Import {
   void go_on(const After& after) {
     if (after.what == After::What::Call) flow_.call(after.label, after.times, after.place);
     if (after.what == After::What::EndOfNumbered) flow_.end_of_numbered(after.place);
+    if (after.what == After::What::Modes) saved_.act(after, flow_.call_level());
     if (after.what == After::What::End) extent_.end();
   }
 
@@ -69,14 +79,16 @@ class Import {
   Block block_;
   Writer writer_;
   gcode::Interpreter interpreter_;
+  SavedStates saved_;
   Flow flow_;
   gcode::Extent extent_;
 };
 
 }  // namespace
 
-tl::expected<Summary, Error> import_program(std::string_view program, const Options& options, Writer::Sink sink) {
-  return Import(program, options, std::move(sink)).run();
+tl::expected<Summary, Error> import_program(std::string_view program, const Options& options, Writer::Sink sink,
+                                            FindFile find_file) {
+  return Import(program, options, std::move(sink), std::move(find_file)).run();
 }
 
 }  // namespace rmac::rs274

@@ -22,6 +22,21 @@ void require_equals(std::string_view text, std::size_t at) {
   if (at >= text.size() || text[at] != '=') refuse(at, "= expected: a # at the begin of a line sets a variable");
 }
 
+/// POPEN, DPRNT and their like: what a control prints moves nothing.
+constexpr std::size_t kPrinting = 5;
+
+/// Where ends what is printed, whose brackets begin at `at`.
+std::size_t behind_printed(std::string_view text, std::size_t at) {
+  const std::size_t begin = at;
+  int depth = 0;
+  for (; at < text.size(); ++at) {
+    if (text[at] == '[') ++depth;
+    if (depth == 0) break;
+    if (text[at] == ']' && --depth == 0) return at + 1;
+  }
+  refuse(begin, "what is printed stands in [ ]");
+}
+
 }  // namespace
 
 Flow::Flow(std::string_view text, bool block_delete, gcode::Bounds bounds, Variables& variables,
@@ -80,8 +95,10 @@ bool Flow::carry_out(std::string_view text, std::size_t at) {
     carry_out_goto(text, at);
   } else if (begins("O") || begins(":")) {
     pass_number(at);
-  } else if (begins("POPEN") || begins("PCLOS") || begins("DPRNT") || begins("BPRNT")) {
-    refuse(at, "what a program prints or punches is not taken; take this line out");
+  } else if (begins("POPEN") || begins("PCLOS")) {
+    require_line_end(text, at + kPrinting);
+  } else if (begins("DPRNT") || begins("BPRNT")) {
+    require_line_end(text, behind_printed(text, at + kPrinting));
   } else if (begins("SETVN")) {
     refuse(at, "names of variables are not taken; write their numbers");
   } else {

@@ -29,6 +29,9 @@ class Flow {
   [[nodiscard]] std::size_t words() const noexcept { return words_; }
   /// Its number in the source, from 1; 0 before the first.
   [[nodiscard]] std::size_t number() const noexcept { return next_.lines; }
+  /// No other file than the program's is read.
+  [[nodiscard]] std::size_t line_of_program() const noexcept { return number(); }
+  [[nodiscard]] static std::string file() { return {}; }
   [[nodiscard]] std::size_t furthest() const noexcept { return furthest_; }
   /// N of the last line that had one, and O of the program that runs; 0 and kUnnumbered where there is none.
   [[nodiscard]] int last_label() const noexcept { return last_label_; }

@@ -41,7 +41,7 @@ class Block {
   void check_together() const;
 
   /// Nothing but comments, numbers of lines and parameters.
-  [[nodiscard]] bool empty() const noexcept { return words_ == 0 && codes_ == 0 && !polar_radius_ && !polar_angle_; }
+  [[nodiscard]] bool empty() const noexcept { return words_ == 0 && codes_ == 0 && !is_polar(); }
   [[nodiscard]] const std::optional<Code>& g(GGroup group) const { return g_.at(static_cast<std::size_t>(group)); }
   [[nodiscard]] const std::optional<Code>& m(MGroup group) const { return m_.at(static_cast<std::size_t>(group)); }
   /// Whether the one code of group 0 is this one.
@@ -56,6 +56,7 @@ class Block {
   [[nodiscard]] bool has_any(std::string_view letters) const noexcept;
   /// Where a word stands that the block has.
   [[nodiscard]] std::size_t place(char letter) const { return word_.at(static_cast<std::size_t>(letter - 'A')).place; }
+  [[nodiscard]] bool is_polar() const noexcept { return polar_radius_ || polar_angle_; }
   [[nodiscard]] const std::optional<Word>& polar_radius() const noexcept { return polar_radius_; }
   [[nodiscard]] const std::optional<Word>& polar_angle() const noexcept { return polar_angle_; }
   /// A word that the block has; whoever asks for it, uses it.

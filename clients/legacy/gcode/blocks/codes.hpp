@@ -42,6 +42,9 @@ struct MCode {
   std::string_view refusal;
 };
 
+/// G70 and G71, as Mach has them: taken where they say what holds anyway.
+inline constexpr int kInchOfMach = 700, kMmOfMach = 710;
+
 inline constexpr std::string_view kOverridesStay = "overrides belong to the operator, and no program takes them away";
 
 }  // namespace rmac::gcode

@@ -23,10 +23,11 @@ bool Extent::mark(const std::string& running) {
   return ended_;
 }
 
-void Extent::refuse_end(std::size_t place, const std::string& running) const {
+void Extent::require_end(std::size_t place, const std::string& running) const {
   require_main(place, running);
-  refuse(place, marked_ ? "the program ends without its second %; it may be cut off"
-                        : "the program ends without M30 or M2; it may be cut off");
+  if (ends_anyhow_) return;
+  refuse(place, marked_ ? "the program ends without its second %; it may be cut off: write that, or give --assume-end"
+                        : "the program ends without M30 or M2; it may be cut off: write M2, or give --assume-end");
 }
 
 }  // namespace rmac::gcode

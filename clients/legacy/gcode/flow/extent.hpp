@@ -10,6 +10,9 @@ namespace rmac::gcode {
 /// main program.
 class Extent {
  public:
+  /// `ends_anyhow`: the end of the file is the program's.
+  explicit Extent(bool ends_anyhow = false) : ends_anyhow_(ends_anyhow) {}
+
   [[nodiscard]] bool ended() const noexcept { return ended_; }
   /// Something stood there that is no %.
   void begin() noexcept { begun_ = true; }
@@ -18,9 +21,10 @@ class Extent {
   /// A line with %. Whether it ends the program.
   bool mark(const std::string& running);
   /// The file has no more lines, and the program has not ended.
-  [[noreturn]] void refuse_end(std::size_t place, const std::string& running) const;
+  void require_end(std::size_t place, const std::string& running) const;
 
  private:
+  bool ends_anyhow_;
   bool begun_ = false, marked_ = false, ended_ = false;
 };
 

@@ -34,6 +34,7 @@ enum class ToolCentrePoint { Off, Angles, Vectors };
 struct Options {
   bool block_delete = false;           ///< the switch of the panel: blocks that begin with / are left out
   bool assume_g43 = false;             ///< the tool's length counts from M6 on, as if G43 stood there
+  bool assume_end = false;             ///< the program ends where its file does, as if M2 stood there
   double rapid_mm_min = 3000;          ///< of G0: the appliance positions at the feed in force
   std::optional<double> unit_mm;       ///< of a program without G20 and G21
   std::optional<double> tolerance_mm;  ///< of G64 without P

@@ -7,6 +7,9 @@ namespace rmac::gcode {
 /// A code of the group System. Refused where it is not known where the systems are in the machine.
 void select_system(Block& block, const Code& code, const Rules& rules, Coordinates& coordinates);
 
+/// The same of a system by its index that is not in force.
+void activate_system(std::size_t system, std::size_t place, const Rules& rules, Coordinates& coordinates);
+
 /// Throws a Refusal where coordinates are turned, tilted or mirrored.
 void require_unplaced(const Coordinates& coordinates, std::size_t place);
 

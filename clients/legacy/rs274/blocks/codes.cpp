@@ -35,7 +35,6 @@ constexpr auto kG = std::to_array<GCode>({
     {70, GGroup::Once, kLathe},
     {80, GGroup::Once, kLathe},
     {100, GGroup::Once, {}},
-    {150, GGroup::Distance, kPolar},
     {160, GGroup::Distance, kPolar},
     {170, GGroup::Plane, {}},
     {171, GGroup::Plane, kAxis},
@@ -77,6 +76,8 @@ constexpr auto kG = std::to_array<GCode>({
     {610, GGroup::Control, {}},
     {611, GGroup::Control, "an exact stop behind every block is not taken; G61 stops wherever the path is not smooth"},
     {640, GGroup::Control, {}},
+    {gcode::kInchOfMach, GGroup::Units, {}},
+    {gcode::kMmOfMach, GGroup::Units, {}},
     {730, GGroup::Motion, {}},
     {740, GGroup::Motion, kThread},
     {760, GGroup::Motion, kThread},
@@ -108,7 +109,6 @@ constexpr auto kG = std::to_array<GCode>({
 });
 
 constexpr std::string_view kOutput = "the appliance has no analogue outputs";
-constexpr std::string_view kState = "saving and restoring modes is not taken yet; write the modes out";
 
 constexpr auto kM = std::to_array<MCode>({
     {0, MGroup::Stop, {}},
@@ -138,10 +138,10 @@ constexpr auto kM = std::to_array<MCode>({
     {66, MGroup::Io, {}},
     {67, MGroup::Override, kOutput},
     {68, MGroup::Override, kOutput},
-    {70, MGroup::Override, kState},
-    {71, MGroup::Override, kState},
-    {72, MGroup::Override, kState},
-    {73, MGroup::Override, kState},
+    {70, MGroup::Override, {}},
+    {71, MGroup::Override, {}},
+    {72, MGroup::Override, {}},
+    {73, MGroup::Override, {}},
     {98, MGroup::Stop, {}},
     {99, MGroup::Stop, {}},
 });

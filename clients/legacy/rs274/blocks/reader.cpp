@@ -17,7 +17,7 @@ namespace {
 
 /// How far a code's number may be from what it means, as in rs274.
 constexpr double kNear = 1e-3;
-constexpr std::string_view kAxesNotTaken = "ABCUVW";
+constexpr std::string_view kAxesNotTaken = "UVW";
 
 /// The integer that a number is near to; none where there is none from 0 to `most`.
 std::optional<int> near_integer(double value, int most) {
@@ -28,24 +28,32 @@ std::optional<int> near_integer(double value, int most) {
 
 void add_g(double value, std::size_t place, Block& block) {
   const auto tenfold = near_integer(value * 10, 999);
+  if (tenfold && ends_nothing(*tenfold)) return;
   const gcode::GCode* known = tenfold ? find_g(*tenfold) : nullptr;
   if (known == nullptr) refuse(place, fmt::format("there is no G{:g}", value));
   block.add_g(*known, place);
 }
 
-void add_m(double value, std::size_t place, Block& block) {
+}  // namespace
+
+void BlockReader::add_m(double value, std::size_t place, Block& block) {
   const auto number = near_integer(value, 999);
   const gcode::MCode* known = number ? find_m(*number) : nullptr;
+  if (number && passed_m_.contains(*number) && (known == nullptr || !known->refusal.empty())) {
+    passes_over_ = true;
+    return;
+  }
   if (known == nullptr)
-    refuse(place, fmt::format("there is no M{:g} here; what a machine's own code does, write out", value));
+    refuse(place, fmt::format("M{0:g} is a code of the machine's own, and what it does is not known here; write that "
+                              "out, or give --pass-over M{0:g} where nothing is to be done",
+                              value));
   block.add_m(*known, place);
 }
-
-}  // namespace
 
 void BlockReader::read(const Line& line, Parameters& parameters, Block& block) {
   block.clear();
   assignments_.clear();
+  passes_over_ = false;
   const std::string_view text = line.text();
   std::size_t at = 0;
   if (text.starts_with('/')) ++at;
@@ -56,6 +64,9 @@ void BlockReader::read(const Line& line, Parameters& parameters, Block& block) {
   }
   while (at < text.size()) read_word(text, at, parameters, block);
   block.check_together();
+  for (const char letter : {'P', 'Q'}) {
+    if (passes_over_) static_cast<void>(block.find(letter));  // what LinuxCNC gives to such a code
+  }
   for (const Assignment& assignment : assignments_) {
     std::visit([&](const auto& name) { parameters.set(name, assignment.value); }, assignment.name);
   }

@@ -20,14 +20,18 @@ constexpr std::size_t kDeepestCalls = 9;
 
 }  // namespace
 
-Flow::Flow(std::string_view program, bool block_delete, Bounds bounds, Parameters& parameters,
-           std::function<Made()> made)
-    : program_(program), outline_(program, block_delete), parameters_(parameters), endless_(bounds, std::move(made)) {}
+Flow::Flow(std::string_view program, bool block_delete, Bounds bounds, Parameters& parameters, Asked asked)
+    : sources_(program, block_delete, std::move(asked.find_file)),
+      parameters_(parameters),
+      endless_(bounds, std::move(asked.made)),
+      leaving_(std::move(asked.leaving)),
+      next_{&sources_.program()},
+      read_from_(next_.source) {}
 
 bool Flow::next() {
-  const auto& statements = outline_.statements();
-  while (next_.at < program_.size()) {
+  while (next_.at < next_.source->text.size()) {
     read_line();
+    const auto& statements = next_.source->outline.statements();
     if (next_.statement == statements.size() || statements[next_.statement].line != number_) return true;
     carry_out(next_.statement++);
   }
@@ -35,13 +39,15 @@ bool Flow::next() {
 }
 
 void Flow::read_line() {
-  const std::size_t end = std::min(program_.find('\n', next_.at), program_.size());
-  const std::string_view source = program_.substr(next_.at, end - next_.at);
-  next_.at = std::min(end + 1, program_.size());
+  read_from_ = next_.source;
+  const std::string_view text = next_.source->text;
+  const std::size_t end = std::min(text.find('\n', next_.at), text.size());
+  const std::string_view line = text.substr(next_.at, end - next_.at);
+  next_.at = std::min(end + 1, text.size());
   number_ = ++next_.lines;
-  furthest_ = std::max(furthest_, number_);
+  if (read_from_ == &sources_.program()) furthest_ = std::max(furthest_, number_);
   endless_.count();
-  line_.read(source);
+  line_.read(line);
 }
 
 void Flow::carry_out(std::size_t index) {
@@ -53,7 +59,7 @@ void Flow::carry_out(std::size_t index) {
                fmt::format("{} begins here while {} runs; end that with M99", statement.name(), running()));
       return;
     case Keyword::Sub:
-      require_whole(statement);
+      require_whole(*next_.source, index);
       return go_behind(statement.ending);
     case Keyword::Call:
       return call_sub(statement);
@@ -61,14 +67,14 @@ void Flow::carry_out(std::size_t index) {
     case Keyword::Return:
       return return_from_sub(statement);
     case Keyword::While:
-      require_whole(statement);
+      require_whole(*next_.source, index);
       if (value(statement) == 0) go_behind(statement.ending);
       return;
     case Keyword::EndWhile:
       endless_.come_again(statement.place);
       return go_before(statement.opening);
     case Keyword::Do:
-      return require_whole(statement);
+      return require_whole(*next_.source, index);
     case Keyword::EndDo:
       if (value(statement) == 0) return;
       endless_.come_again(statement.place);
@@ -78,7 +84,7 @@ void Flow::carry_out(std::size_t index) {
     case Keyword::EndRepeat:
       return end_repeat(index);
     case Keyword::If:
-      require_whole(statement);
+      require_whole(*next_.source, index);
       if (value(statement) == 0) go_to_branch(index);
       return;
     case Keyword::ElseIf:
@@ -90,7 +96,7 @@ void Flow::carry_out(std::size_t index) {
     case Keyword::Continue:
       return leave_loop(statement);
     case Keyword::Trouble:
-      refuse_trouble();
+      refuse_trouble(*next_.source);
   }
 }
 
@@ -106,7 +112,7 @@ void Flow::go_to_branch(std::size_t index) {
 
 void Flow::begin_repeat(std::size_t index) {
   const Statement& statement = at(index);
-  require_whole(statement);
+  require_whole(*next_.source, index);
   const double times = std::nearbyint(value(statement));  // a half to the even side, as LinuxCNC
   if (times < 1) return go_behind(statement.ending);
   repeats_.push_back({index, times - 1});
@@ -135,56 +141,39 @@ void Flow::call_sub(const Statement& statement) {
   const std::string_view text = line_.text();
   const std::string label =
       statement.computed ? computed_label(text, statement.place + 1, parameters_) : statement.label;
-  const auto sub = outline_.find(label, false);
-  if (!sub) {
-    if (outline_.trouble()) refuse_trouble();
-    const std::string name = name_of(label);
-    refuse(statement.place,
-           outline_.find(label, true)
-               ? fmt::format("{} is a numbered program; call it by M98 P{}", name, label)
-               : fmt::format("{0} is not in this file, and no other is read; write {0} sub … {0} endsub into this file",
-                             name));
-  }
-  require_whole(at(*sub));
+  const Callee sub = find(label, false, statement.place);
+  require_whole(*sub.source, sub.statement);
   const Parameters::Arguments given = arguments(statement);
-  enter(*sub, 0, statement.place);
+  enter(sub, 0, statement.place);
   parameters_.enter(given);
 }
 
 void Flow::call(int label, int times, std::size_t place) {
-  const std::string text = fmt::format("{}", label);
-  const auto program = outline_.find(text, true);
-  if (!program) {
-    if (outline_.trouble()) refuse_trouble();
-    refuse(place,
-           outline_.find(text, false)
-               ? fmt::format("o{0} is a sub; call it by o{0} call", text)
-               : fmt::format("O{0} is not in this file, and no other is read; write O{0} … M99 behind the end of "
-                             "the main program",
-                             text));
-  }
+  const Callee program = find(fmt::format("{}", label), true, place);
   if (times == 0) return;
-  enter(*program, times - 1, place);
+  enter(program, times - 1, place);
   parameters_.enter(std::nullopt);
 }
 
-void Flow::enter(std::size_t statement, int more_times, std::size_t place) {
+void Flow::enter(const Callee& callee, int more_times, std::size_t place) {
   if (calls_.size() == kDeepestCalls)
     refuse(place, fmt::format("a call within {0} others; LinuxCNC has {0}, too. Does it call itself without an end?",
                               kDeepestCalls));
   endless_.come_again(place);
-  calls_.push_back({statement, next_, more_times, repeats_.size()});
-  go_behind(statement);
+  calls_.push_back({callee.statement, next_, more_times, repeats_.size()});
+  next_.source = callee.source;
+  go_behind(callee.statement);
 }
 
 void Flow::return_from_sub(const Statement& statement) {
   const bool has_value = line_.text().substr(statement.arguments).starts_with('[');
   if (!has_value) require_end(line_.text(), statement.arguments);
   parameters_.returned(has_value ? std::optional(value(statement)) : std::nullopt);
-  leave_call();
+  leave_call(statement.place);
 }
 
-void Flow::leave_call() {
+void Flow::leave_call(std::size_t place) {
+  if (leaving_) leaving_(place);
   parameters_.leave();
   repeats_.resize(calls_.back().repeats);
   next_ = calls_.back().back;
@@ -199,7 +188,8 @@ void Flow::end_of_numbered(std::size_t place) {
   Call& running = calls_.back();
   if (at(running.statement).keyword != Keyword::Program)
     refuse(place, "M99 ends a numbered program; a sub ends with endsub or return");
-  if (running.more_times == 0) return leave_call();
+  if (running.more_times == 0) return leave_call(place);
+  if (leaving_) leaving_(place);
   endless_.come_again(place);
   --running.more_times;
   parameters_.leave();
@@ -237,22 +227,21 @@ Parameters::Arguments Flow::arguments(const Statement& statement) const {
 }
 
 void Flow::go_before(std::size_t statement) {
-  next_ = {at(statement).begin, at(statement).line - 1, statement};
+  next_ = {next_.source, at(statement).begin, at(statement).line - 1, statement};
 }
 
 void Flow::go_behind(std::size_t statement) {
-  next_ = {at(statement).end, at(statement).line, statement + 1};
+  next_ = {next_.source, at(statement).end, at(statement).line, statement + 1};
 }
 
 /// A block is entered only where all of it is understood.
-void Flow::require_whole(const Statement& statement) {
-  if (statement.ending == Statement::kNone) refuse_trouble();
+void Flow::require_whole(const Source& source, std::size_t statement) {
+  if (source.outline.statements()[statement].ending == Statement::kNone) refuse_trouble(source);
 }
 
-void Flow::refuse_trouble() {
-  const Outline::Trouble& trouble = *outline_.trouble();
-  next_.at = trouble.begin;
-  next_.lines = trouble.line - 1;
+void Flow::refuse_trouble(const Source& source) {
+  const Outline::Trouble& trouble = *source.outline.trouble();
+  next_ = {&source, trouble.begin, trouble.line - 1, 0};
   read_line();
   refuse(trouble.place, trouble.message);
 }

@@ -10,26 +10,38 @@
 #include "clients/legacy/gcode/blocks/line.hpp"
 #include "clients/legacy/gcode/flow/endless.hpp"
 #include "clients/legacy/rs274/blocks/parameters.hpp"
-#include "clients/legacy/rs274/flow/outline.hpp"
+#include "clients/legacy/rs274/flow/sources.hpp"
 
 namespace rmac::rs274 {
 
 using gcode::Bounds, gcode::Endless, gcode::Made;
 
-/// A program's lines in the order in which they are carried out: O words are carried out here, and all other lines are
-/// given out, whatever they are. What is no program throws a Refusal, whose place is in line().
+/// What a Flow asks of who carries its lines out.
+struct Asked {
+  std::function<Made()> made;  ///< where lines come again
+  FindFile find_file{};
+  std::function<void(std::size_t place)> leaving{};  ///< a sub or numbered program ends, and is still what runs
+};
+
+/// A program's lines, and those of the files that it calls, in the order in which they are carried out: O words are
+/// carried out here, and all other lines are given out, whatever they are. What is no program throws a Refusal, whose
+/// place is in line().
 class Flow {
  public:
-  /// The program and the parameters outlive it. `made` is asked where lines come again.
-  Flow(std::string_view program, bool block_delete, Bounds bounds, Parameters& parameters, std::function<Made()> made);
+  /// The program and the parameters outlive it.
+  Flow(std::string_view program, bool block_delete, Bounds bounds, Parameters& parameters, Asked asked);
 
   /// Goes on to the next line that is no statement with O. False at the end of the text.
   [[nodiscard]] bool next();
   /// The one that was come to last.
   [[nodiscard]] const Line& line() const noexcept { return line_; }
-  /// Its number in the source, from 1; 0 before the first.
+  /// Its number in its text, from 1; 0 before the first.
   [[nodiscard]] std::size_t number() const noexcept { return number_; }
-  /// The greatest number that was come to.
+  /// The file that it stands in; empty for the program itself.
+  [[nodiscard]] const std::string& file() const noexcept { return read_from_->file; }
+  /// The line of the program itself that has it carried out: it, or a call.
+  [[nodiscard]] std::size_t line_of_program() const noexcept;
+  /// The greatest number of the program's that was come to.
   [[nodiscard]] std::size_t furthest() const noexcept { return furthest_; }
   /// `O100` of the numbered program or sub that runs; empty in the main program.
   [[nodiscard]] std::string running() const;
@@ -43,13 +55,19 @@ class Flow {
   void end_of_numbered(std::size_t place);
 
  private:
-  /// Where to go on: a byte of the source where a line begins, how many lines are before it, and the next statement.
+  /// Where to go on: a byte of a text where a line begins, how many lines are before it, and the next statement.
   struct Position {
+    const Source* source = nullptr;
     std::size_t at = 0, lines = 0, statement = 0;
+  };
+  /// What a call calls.
+  struct Callee {
+    const Source* source = nullptr;
+    std::size_t statement = 0;
   };
   /// A sub or numbered program that runs.
   struct Call {
-    std::size_t statement = 0;  ///< of its begin
+    std::size_t statement = 0;  ///< of its begin, in its own text
     Position back;
     int more_times = 0;
     std::size_t repeats = 0;  ///< how many repeats the caller is in
@@ -66,24 +84,29 @@ class Flow {
   void go_to_branch(std::size_t index);
   void leave_loop(const Statement& statement);
   void call_sub(const Statement& statement);
-  void enter(std::size_t statement, int more_times, std::size_t place);
+  [[nodiscard]] Callee find(const std::string& label, bool numbered, std::size_t place);
+  [[nodiscard]] std::optional<Callee> find_in_texts(const std::string& label, bool numbered) const;
+  void enter(const Callee& callee, int more_times, std::size_t place);
   void return_from_sub(const Statement& statement);
-  void leave_call();
+  void leave_call(std::size_t place);
 
-  [[nodiscard]] const Statement& at(std::size_t statement) const { return outline_.statements()[statement]; }
+  [[nodiscard]] const Statement& at(std::size_t statement) const {
+    return next_.source->outline.statements()[statement];
+  }
   [[nodiscard]] double value(const Statement& statement) const;
   [[nodiscard]] Parameters::Arguments arguments(const Statement& statement) const;
   void go_before(std::size_t statement);
   void go_behind(std::size_t statement);
-  void require_whole(const Statement& statement);
-  [[noreturn]] void refuse_trouble();
+  void require_whole(const Source& source, std::size_t statement);
+  [[noreturn]] void refuse_trouble(const Source& source);
 
-  std::string_view program_;
-  Outline outline_;
+  Sources sources_;
   Parameters& parameters_;
   Endless endless_;
+  std::function<void(std::size_t)> leaving_;
   Line line_;
   Position next_;
+  const Source* read_from_ = nullptr;  ///< what line_ stands in
   std::size_t number_ = 0, furthest_ = 0;
   std::vector<Call> calls_;
   std::vector<Repeat> repeats_;

@@ -35,6 +35,7 @@ constexpr std::array<Passed, std::tuple_size_v<decltype(Source::values)>> kPasse
     {"--second-reference-point", "the same of G30"},
     {"--whole-numbers", "units or increments: what a Fanuc program's lengths without a decimal point count in"},
     {"--rotary", "C,A: the axes of a Fanuc program's machine that turn the tool, from the part to the tool"},
+    {"--subroutines", "DIR[:DIR]: where the subs are that an imported RS274 program calls, each in NAME.ngc"},
     {"--output-limit", "MB of .rmac: an imported program with loops that becomes more does not end"},
 }};
 constexpr std::array<Passed, std::tuple_size_v<decltype(Source::repeated)>> kRepeated{{
@@ -71,6 +72,7 @@ std::vector<std::string> importer_words(const Source& source, const std::string&
     for (const auto& value : source.repeated.at(i)) words.push_back(fmt::format("{}={}", kRepeated.at(i).name, value));
   }
   if (source.assume_g43) words.emplace_back("--assume-g43");
+  if (source.assume_end) words.emplace_back("--assume-end");
   if (source.block_delete) words.emplace_back("--block-delete");
   if (source.multax) words.emplace_back("--multax");
   words.emplace_back("--");
@@ -121,6 +123,7 @@ void declare_source(Command& command, Source& source) {
     command.option(kRepeated.at(i).name, &source.repeated.at(i), kRepeated.at(i).meaning).repeats();
   }
   command.flag("--assume-g43", &source.assume_g43, "an imported program's tool length counts from M6 on");
+  command.flag("--assume-end", &source.assume_end, "an imported program ends where its file does");
   command.flag("--block-delete", &source.block_delete, "leave out an imported program's blocks that begin with /");
   command.flag("--multax", &source.multax, "an APT program's tool axes count though no MULTAX/ON says so");
 }
@@ -135,7 +138,7 @@ Result<Program> read_source(const Source& source) {
   }
   if (!dialect->empty()) return import(source, *dialect);
   const auto given = [](const auto& value) { return !value.empty(); };
-  const bool told = source.assume_g43 || source.block_delete || source.multax ||
+  const bool told = source.assume_g43 || source.assume_end || source.block_delete || source.multax ||
                     std::ranges::any_of(source.values, given) || std::ranges::any_of(source.repeated, given);
   if (told)
     return fail(fmt::format("{}: is taken as .rmac, and has no options of an import; name its --dialect", source.file));

@@ -69,6 +69,10 @@ TEST(FanucFormat, PassesOverWhatTheMachineDoesOnlyWhereItIsToldSo) {
   EXPECT_EQ(imported(program_of("M3 S5"), options).requests.size(), 3U);  // what is known is done
 }
 
+TEST(FanucFormat, PassesOverWhatItPrints) {
+  EXPECT_EQ(imported(program_of("POPEN\nDPRNT[HOLE*X#9[53]*[#8]]\nN5 BPRNT[ A ]\nPCLOS")).requests.size(), 1U);
+}
+
 TEST(FanucFormat, PassesOverHowFarAControlLooksAhead) {
   EXPECT_EQ(
       imported(program_of("G05.1 Q1\nG5.1 Q1 R5\nG05.1 Q0\nG08 P1\nG8 P0\nG05 P10000\nG5 P0\nG187 P3 E0.02\nG103 P1"))
@@ -88,7 +92,10 @@ TEST(FanucFormat, NamesWhatIsNoBlock) {
   EXPECT_THAT(refusal_of(program_of("G1 X1. X2.")), HasSubstr("two X words"));
   EXPECT_THAT(refusal_of(program_of("G7.1 C10.")), HasSubstr("G7.1"));
   EXPECT_THAT(refusal_of(program_of("G12345")), HasSubstr("there is no G12345 here"));
-  EXPECT_THAT(refusal_of(program_of("DPRNT[HELLO]")), StartsWith("5:1: what a program prints"));
+  EXPECT_THAT(refusal_of(program_of("DPRNT[HELLO")), StartsWith("5:6: what is printed stands in [ ]"));
+  EXPECT_THAT(refusal_of(program_of("DPRNT")), StartsWith("5:6: what is printed stands in [ ]"));
+  EXPECT_THAT(refusal_of(program_of("DPRNT[A] G1 X5.")), StartsWith("5:10: "));
+  EXPECT_THAT(refusal_of(program_of("POPEN G1 X5.")), StartsWith("5:7: "));
   EXPECT_THAT(refusal_of(program_of("G1 X0 A90.")), HasSubstr("give --rotary"));
 }
 

@@ -56,7 +56,7 @@ TEST(Rs274Block, IsRefusedForWhatIsNotTaken) {
                            "G200", "M19", "M49", "M62",   "M100",  "G1.5",  "(PROBEOPEN x.txt)"}) {
     EXPECT_THAT(refusal_of(program_of(code)), StartsWith("3:1: ")) << code;
   }
-  EXPECT_THAT(refusal_of(program_of("G0 A90")), HasSubstr("axis A is not taken yet"));
+  EXPECT_THAT(refusal_of(program_of("G0 A90")), HasSubstr("give --rotary"));
 }
 
 TEST(Rs274Program, EndsWithM2OrM30OrPercent) {

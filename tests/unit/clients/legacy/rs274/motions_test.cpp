@@ -127,7 +127,7 @@ TEST(Rs274Arc, IsRefusedWhereItIsNone) {
   EXPECT_THAT(refusal_of(program_of("G2 X10")), HasSubstr("without centre and radius"));
   EXPECT_THAT(refusal_of(program_of("G2 X10 I5 R5")), HasSubstr("not both"));
   EXPECT_THAT(refusal_of(program_of("G90.1 G2 X10 I5")), HasSubstr("both I and J"));
-  EXPECT_THAT(refusal_of(program_of("G2 X10 I5 K1")), HasSubstr("nothing in this block uses K"));
+  EXPECT_THAT(refusal_of(program_of("G2 X10 I5 K1")), HasSubstr("K in a plane that it is beside of"));
   EXPECT_THAT(refusal_of(program_of("G2 X10 I5 P1.5")), HasSubstr("P of an arc is its turns"));
 }
 

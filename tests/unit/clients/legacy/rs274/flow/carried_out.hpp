@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "clients/legacy/gcode/blocks/block.hpp"
@@ -14,12 +15,17 @@
 namespace rmac::rs274 {
 
 /// What a program of O words and parameters does: the words of its other lines with their values, as in "X3 Y1", and
-/// "line:column: message" where it is refused. `M98 P… L…` calls.
+/// "[file:]line:column: message" where it is refused. `M98 P… L…` calls.
 inline std::vector<std::string> carried_out(const std::string& program, Bounds bounds = {.idle_lines = 1000},
-                                            bool block_delete = false) {
+                                            bool block_delete = false, FindFile find_file = {}) {
   std::vector<std::string> done;
   Parameters parameters;
-  Flow flow(program, block_delete, bounds, parameters, [&] { return Made{done.size(), 0}; });
+  Flow flow(program, block_delete, bounds, parameters,
+            {.made =
+                 [&] {
+                   return Made{done.size(), 0};
+                 },
+             .find_file = std::move(find_file)});
   BlockReader reader;
   Block block;
   try {
@@ -43,7 +49,8 @@ inline std::vector<std::string> carried_out(const std::string& program, Bounds b
       if (!words.empty()) done.push_back(words);
     }
   } catch (const Refusal& refusal) {
-    done.push_back(fmt::format("{}:{}: {}", flow.number(), flow.line().column(refusal.place), refusal.message));
+    const std::string file = flow.file().empty() ? "" : flow.file() + ":";
+    done.push_back(fmt::format("{}{}:{}: {}", file, flow.number(), flow.line().column(refusal.place), refusal.message));
   }
   return done;
 }
