@@ -67,16 +67,18 @@ Expected<> Learning::set_learned(const nlohmann::json& learned) {
   if (slot_.in_force()->virtual_mode()) return refuse("in virtual mode no drive runs, and there is nothing to learn");
   SwapRequest request;
   request.learns = true;
-  std::optional<InForce> next;
+  std::size_t moves = 0, knots = 0;
   if (!learned.is_null()) {
     auto path = read(learned);
     if (!path) return tl::unexpected(path.error());
-    next = {(*path)->moves(), (*path)->knots()};
+    moves = (*path)->moves();
+    knots = (*path)->knots();
     request.learned = std::move(*path);
   }
   if (auto asked = servo_.ask(request); !asked) return asked;
-  in_force_ = next;
-  supervisor_.wish([&](ServoWishes& wishes) { wishes.learned = next.has_value(); });
+  moves_ = moves;
+  knots_ = knots;
+  supervisor_.wish([knots](ServoWishes& wishes) { wishes.learned = knots > 0; });
   return {};
 }
 
@@ -94,13 +96,13 @@ Expected<nlohmann::json> Learning::learned() const {
                         {"Virtual", mechanism.virtual_mode()},
                         {"Period", mechanism.loop->parts().period_s},
                         {"Joints", std::move(joints)},
-                        {"Moves", in_force_ ? in_force_->moves : 0},
-                        {"Knots", in_force_ ? in_force_->knots : 0}};
+                        {"Moves", moves_.load()},
+                        {"Knots", knots_.load()}};
 }
 
 void Learning::forget() {
-  if (!in_force_) return;
-  in_force_.reset();
+  if (knots_.exchange(0) == 0) return;
+  moves_ = 0;
   supervisor_.wish([](ServoWishes& wishes) { wishes.learned = false; });
 }
 

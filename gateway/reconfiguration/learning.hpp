@@ -1,6 +1,7 @@
 #pragma once
 
-#include <optional>
+#include <atomic>
+#include <memory>
 #include <string>
 
 #include "gateway/learning/learning_port.hpp"
@@ -20,9 +21,6 @@ class Learning final : public LearningPort {
   void forget() override;
 
  private:
-  struct InForce {
-    std::size_t moves = 0, knots = 0;
-  };
   [[nodiscard]] Expected<std::shared_ptr<const LearnedPath>> read(const nlohmann::json& learned) const;
   [[nodiscard]] Expected<> check_joints(const LearnedPath& path) const;
   [[nodiscard]] std::string configuration() const;
@@ -30,7 +28,8 @@ class Learning final : public LearningPort {
   MechanismSlot& slot_;
   ServoRequests& servo_;
   MotionSupervisor& supervisor_;
-  std::optional<InForce> in_force_;
+  /// In force; atomic, as a lease may end while another thread puts in a machine.
+  std::atomic<std::size_t> moves_{0}, knots_{0};
 };
 
 }  // namespace rmac::gateway
