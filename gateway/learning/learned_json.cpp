@@ -67,8 +67,8 @@ Expected<> read_offsets(const Json& list, LearnedPath::Parts& path) {
   path.offsets.resize(path.places.size() * path.joints);
   for (std::size_t j = 0; j < path.joints; ++j) {
     const std::string name = fmt::format("/Joints/{}/Offsets", j);
-    const auto offsets = read_numbers(list[j].is_object() ? list[j].value("Offsets", Json()) : Json(), name,
-                                      LearnedPath::kMostKnots);
+    const auto offsets =
+        read_numbers(list[j].is_object() ? list[j].value("Offsets", Json()) : Json(), name, LearnedPath::kMostKnots);
     if (!offsets) return tl::unexpected(offsets.error());
     if (offsets->size() != path.places.size()) {
       return refuse(fmt::format("{} has {} numbers for {} places", name, offsets->size(), path.places.size()));
@@ -108,8 +108,9 @@ Json to_json(const Learned& learned) {
     for (std::size_t i = j; i < path.offsets.size(); i += path.joints) offsets.push_back(rounded(path.offsets[i]));
     joints.push_back({{"Offsets", std::move(offsets)}});
   }
-  return {{"Machine", learned.machine}, {"Configuration", learned.configuration}, {"Moves", std::move(moves)},
-          {"End", path.end_mm},         {"Places", path.places},                  {"Joints", std::move(joints)}};
+  return {{"Machine", learned.machine}, {"Configuration", learned.configuration},
+          {"Moves", std::move(moves)},  {"End", path.end_mm},
+          {"Places", path.places},      {"Joints", std::move(joints)}};
 }
 
 }  // namespace rmac::gateway

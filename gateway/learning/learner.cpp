@@ -12,7 +12,7 @@ namespace {
 /// A pass is worse than another one if it is by so much: what does not repeat makes as much of a difference.
 constexpr double kWorse = 1.03;
 constexpr double kKnotsPerPeriod = 8;  ///< of the highest frequency that is learned
-constexpr double kFade_s = 0.03;       ///< offsets begin and end with 0
+constexpr double kFade_s = 0.01;       ///< offsets begin and end with 0
 
 /// From 0 to 1, without a step of its slope.
 double risen(double share) {
@@ -45,7 +45,10 @@ std::vector<double> Learner::improved(const Pass& pass, std::size_t joint) const
   const Joint& how = joints_[joint];
   std::vector<double> offsets = offsets_of(next_.get(), pass, joint);
   const auto lead = static_cast<std::size_t>(std::lround(options_.lead_s / options_.period_s));
-  for (std::size_t i = 0; i < steps.size(); ++i) offsets[i] += how.gain * pass.error(joint, steps[i].cycle + lead);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const bool moves = pass.moves(joint, steps[i].cycle);
+    offsets[i] = moves ? offsets[i] + how.gain * pass.error(joint, steps[i].cycle + lead) : 0;
+  }
   filter_zero_phase(offsets, how.bandwidth_hz, options_.period_s);
   // An approach from elsewhere is not gone again.
   std::size_t first = 0;

@@ -18,9 +18,9 @@ class Learner {
  public:
   struct Options {
     double period_s = 0.001;
-    double bandwidth_hz = 20;        ///< of Q
-    double gain = 0.7;               ///< γ
-    double lead_s = 0.002;           ///< delay of the closed loop
+    double bandwidth_hz = 20;       ///< of Q
+    double gain = 0.7;              ///< γ
+    double lead_s = 0.004;          ///< delay of the closed loop
     std::vector<double> largest{};  ///< offset of each joint, mm or degrees; 0: learns nothing
   };
   explicit Learner(Options options);

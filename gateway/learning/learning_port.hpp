@@ -11,8 +11,8 @@ class LearningPort {
  public:
   virtual ~LearningPort() = default;
 
-  /// An object as docs/servo.md has it; null: nothing is made good any more. At rest, with an empty queue. Refused where
-  /// it was learned with another machine or configuration, and where it goes beyond what may be learned.
+  /// An object as docs/servo.md has it; null: nothing is made good any more. At rest, with an empty queue. Refused
+  /// where it was learned with another machine or configuration, and where it goes beyond what may be learned.
   virtual Expected<> set_learned(const nlohmann::json& learned) = 0;
   /// What there is to know of the machine for who learns, and how much is in force.
   [[nodiscard]] virtual Expected<nlohmann::json> learned() const = 0;

@@ -10,10 +10,13 @@ namespace {
 /// Less than this is standing still, mm or degrees.
 constexpr double kStanding = 1e-9;
 constexpr double kSamePlace = 1e-3;
+/// Of a joint, in a cycle.
+constexpr double kJointStands = 1e-7;
 
 }  // namespace
 
-Pass::Pass(std::vector<int> answer_delays) : delays_(std::move(answer_delays)), errors_(delays_.size()) {}
+Pass::Pass(std::vector<int> answer_delays)
+    : delays_(std::move(answer_delays)), errors_(delays_.size()), moves_(delays_.size()) {}
 
 void Pass::add(const Row& row) {
   if (row.position_set.size() < joints() || row.position.size() < joints()) return;
@@ -25,6 +28,7 @@ void Pass::add(const Row& row) {
   for (std::size_t j = 0; j < joints(); ++j) {
     const auto delay = static_cast<std::size_t>(delays_[j]);
     errors_[j].push_back(0);
+    moves_[j].push_back(!last_.empty() && std::abs(wanted_.back()[j] - last_[j]) > kJointStands);
     if (delay >= wanted_.size()) continue;
     errors_[j][cycles_ - delay] = wanted_[wanted_.size() - 1 - delay][j] - row.position[j];
   }
@@ -75,13 +79,20 @@ void Pass::lay_out() {
 
 double Pass::rms(std::size_t joint) const {
   double sum = 0;
-  for (const Step& step : steps_) sum += error(joint, step.cycle) * error(joint, step.cycle);
-  return steps_.empty() ? 0 : std::sqrt(sum / static_cast<double>(steps_.size()));
+  std::size_t count = 0;
+  for (const Step& step : steps_) {
+    if (!moves(joint, step.cycle)) continue;
+    sum += error(joint, step.cycle) * error(joint, step.cycle);
+    ++count;
+  }
+  return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
 }
 
 double Pass::largest(std::size_t joint) const {
   double largest = 0;
-  for (const Step& step : steps_) largest = std::max(largest, std::abs(error(joint, step.cycle)));
+  for (const Step& step : steps_) {
+    if (moves(joint, step.cycle)) largest = std::max(largest, std::abs(error(joint, step.cycle)));
+  }
   return largest;
 }
 

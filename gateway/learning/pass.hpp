@@ -42,7 +42,11 @@ class Pass {
   [[nodiscard]] double error(std::size_t joint, std::size_t cycle) const noexcept {
     return cycle < errors_[joint].size() ? errors_[joint][cycle] : 0;
   }
-  /// Root of the mean square, and the largest, of all steps.
+  /// The joint moves in this cycle. What it does at rest is its friction's, and does not repeat.
+  [[nodiscard]] bool moves(std::size_t joint, std::size_t cycle) const noexcept {
+    return cycle < moves_[joint].size() && moves_[joint][cycle];
+  }
+  /// Root of the mean square, and the largest, of all steps in which the joint moves.
   [[nodiscard]] double rms(std::size_t joint) const;
   [[nodiscard]] double largest(std::size_t joint) const;
   /// Cycles that nobody told of: what was learned would be wrong.
@@ -58,6 +62,7 @@ class Pass {
 
   std::vector<int> delays_;
   std::vector<std::vector<double>> errors_;
+  std::vector<std::vector<bool>> moves_;    ///< the setpoint, in each cycle
   std::deque<std::vector<double>> wanted_;  ///< setpoints of the last cycles, the newest last
   std::vector<double> first_, last_;        ///< setpoints
   std::vector<Step> steps_;

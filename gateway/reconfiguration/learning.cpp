@@ -36,9 +36,10 @@ Expected<> Learning::check_joints(const LearnedPath& path) const {
     if (path.largest(j) <= bound) continue;
     const std::string& name = joint_at(slot_.in_force()->device, j).limits.name;
     if (bound == 0) return refuse(fmt::format("joint {} takes no offset: its drive closes its loop itself", name));
-    return refuse(fmt::format("joint {} would be moved by {:.6g}; a quarter of its MaxFollowingError, {:.6g}, is the "
-                              "most",
-                              name, path.largest(j), bound));
+    return refuse(
+        fmt::format("joint {} would be moved by {:.6g}; a quarter of its MaxFollowingError, {:.6g}, is the "
+                    "most",
+                    name, path.largest(j), bound));
   }
   return {};
 }
@@ -51,9 +52,10 @@ Expected<std::shared_ptr<const LearnedPath>> Learning::read(const nlohmann::json
     return refuse(fmt::format("it was learned with {}, and {} is loaded", printable(learned->machine), name));
   }
   if (learned->configuration != configuration()) {
-    return refuse(fmt::format("it was learned with another configuration of {} (gains, filters, limits, …); learn the "
-                              "program anew",
-                              name));
+    return refuse(
+        fmt::format("it was learned with another configuration of {} (gains, filters, limits, …); learn the "
+                    "program anew",
+                    name));
   }
   auto path = LearnedPath::create(std::move(learned->path));
   if (!path) return refuse(path.error().message);

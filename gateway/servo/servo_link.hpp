@@ -29,8 +29,8 @@ struct ServoWishes {
   Frames frames;
   std::array<double, kMaxSpindles> spindle_rpm{};
   double tool_torque_nm = 0;  ///< most that the tool in spindle 0 bears; 0: not given
-  bool learned = false;  ///< what was learned of the program counts
-  bool program = false;  ///< what runs, or is held, is the queue of a cycle: no jog, no way back
+  bool learned = false;       ///< what was learned of the program counts
+  bool program = false;       ///< what runs, or is held, is the queue of a cycle: no jog, no way back
   std::uint64_t outputs = 0;
   std::uint64_t marks_settled = 0;         ///< marks up to this one are in `outputs`, or are dropped
   std::array<double, kMaxJoints> force{};  ///< of joints under force control

@@ -6,10 +6,11 @@ namespace rmac::gateway {
 
 void add_learning_methods(std::vector<Method>& table) {
   const auto add = [&](Method entry) { table.push_back(std::move(entry)); };
-  add(method("RMAC_CAM.SetLearnedOffsets",
-             "Has joints' servo laws make good what was learned of a program that is repeated, place by place on its "
-             "path (docs/servo.md). Setpoints as they are told, watched and recorded stay the program's. Needs rest and "
-             "an empty queue. Ends with motion authority, and when a machine is loaded, unloaded or configured.")
+  add(method(
+          "RMAC_CAM.SetLearnedOffsets",
+          "Has joints' servo laws make good what was learned of a program that is repeated, place by place on its "
+          "path (docs/servo.md). Setpoints as they are told, watched and recorded stay the program's. Needs rest and "
+          "an empty queue. Ends with motion authority, and when a machine is loaded, unloaded or configured.")
           .takes(object("Learned").or_null().noted(
               "as rmac run --learn writes it; null, or left out: nothing is made good any more"))
           .needs(Permission::Authority)

@@ -24,7 +24,7 @@ struct RunOptions {
   std::string machine;  ///< loaded before the program; empty: what is loaded
   bool show_progress = false;
   std::function<void(const JointSample&)> on_cycle{};  ///< hears every cycle from the first that moves on
-  nlohmann::json learned{};     ///< of the program, as the appliance takes it; null: nothing
+  nlohmann::json learned{};                            ///< of the program, as the appliance takes it; null: nothing
   std::optional<int> terminal;  ///< descriptor that a person's lines come from; none: nobody is there
 };
 

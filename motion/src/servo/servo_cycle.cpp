@@ -18,7 +18,6 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
       joints(parts, wiring, transmission),
       homing(parts.actuators, parts.homing_timeout_s, parts.period_s),
       setpoints(parts, wiring.joint_delays()),
-      learned(parts, wiring),
       motion_watch(parts),
       deadlines(parts.max_cycles_lost, parts.period_s),
       laws(parts.joints, parts.period_s),
@@ -205,7 +204,8 @@ void ServoLoop::Impl::go_live() noexcept {
 }
 
 void ServoLoop::Impl::choose_setpoints(const ServoCommand& command) noexcept {
-  learned.step(command.setpoint, command.program && state.follows() && !state.braking(), live.all());
+  const bool program = command.program && state.follows() && !state.braking();
+  setpoints.learned().step(command.setpoint, program, live.all() & ~wiring.follow_themselves());
   if (state.braking()) {
     setpoints.brake();
     return;
@@ -259,9 +259,9 @@ ServoInput ServoLoop::Impl::input(std::size_t joint) const noexcept {
   const PositionCorrection& correction = transmission.correction(joint);
   const std::optional<double> measured = joints.measured_effort(joint);
   ServoInput seen{
-      .position_setpoint = setpoints.position()[joint] + learned.position(joint),
+      .position_setpoint = setpoints.position()[joint] + setpoints.learned().position(joint),
       .velocity_setpoint =
-          setpoints.velocity()[joint] + learned.velocity(joint) + correction.crossing_velocity(),
+          setpoints.velocity()[joint] + setpoints.learned().velocity(joint) + correction.crossing_velocity(),
       .acceleration_setpoint = setpoints.acceleration()[joint] + correction.crossing_acceleration(),
       .position = joints.position()[joint] + setpoints.gone_on(joint),
       .velocity = joints.velocity()[joint] + setpoints.velocity_gone_on(joint) + correction.crossing_velocity(),

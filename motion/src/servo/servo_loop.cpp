@@ -48,7 +48,7 @@ void ServoLoop::set_control_method(std::size_t joint, ControlMethod method) noex
 }
 
 void ServoLoop::exchange_learned(std::shared_ptr<const LearnedPath>& path) noexcept {
-  impl_->learned.exchange(path);
+  impl_->setpoints.learned().exchange(path);
 }
 double ServoLoop::learned_bound(std::size_t joint) const noexcept {
   return LearnedOffsets::bound(impl_->parts.joints[joint], impl_->wiring.follows_itself(joint));

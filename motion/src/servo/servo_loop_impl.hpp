@@ -19,7 +19,6 @@
 #include "servo/joints/wiring.hpp"
 #include "servo/laws/joint_laws.hpp"
 #include "servo/probe/probe.hpp"
-#include "servo/learned/learned_offsets.hpp"
 #include "servo/setpoint/setpoints.hpp"
 #include "servo/spindles/spindles.hpp"
 #include "servo/state/loop_state.hpp"
@@ -84,7 +83,6 @@ struct ServoLoop::Impl {
   LiveJoints live;
   Homing homing;
   Setpoints setpoints;
-  LearnedOffsets learned;
   MotionWatch motion_watch;
   DeadlineWatch deadlines;
   JointLaws laws;

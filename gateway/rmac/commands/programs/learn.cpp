@@ -48,17 +48,20 @@ Result<> check(const Program& program) {
     const auto refuse = [&](const std::string& why) {
       return fail(fmt::format("{}:{}: {}", program.file, request.line, why));
     };
-    if (request.method.starts_with(kConfigures) || request.method == kLoadMachine || request.method == "Device.Unload") {
-      return refuse(fmt::format("{} changes the machine, and what is learned is forgotten by that; do it before, as with "
-                                "--machine",
-                                request.method));
+    if (request.method.starts_with(kConfigures) || request.method == kLoadMachine ||
+        request.method == "Device.Unload") {
+      return refuse(
+          fmt::format("{} changes the machine, and what is learned is forgotten by that; do it before, as with "
+                      "--machine",
+                      request.method));
     }
     if (request.method.starts_with(kDevice) && request.timing != Timing::Move) continue;
     const bool move = request.timing == Timing::Move && !request.tool_change;
     if (move && !ids.insert(request.move_id).second) {
-      return refuse(fmt::format("MoveID {} stands on an earlier line too; places are told apart by it, so give each move "
-                                "its own",
-                                request.move_id));
+      return refuse(
+          fmt::format("MoveID {} stands on an earlier line too; places are told apart by it, so give each move "
+                      "its own",
+                      request.move_id));
     }
   }
   return ids.empty() ? fail(fmt::format("{}: queues no move, so there is nothing to learn", program.file)) : Result<>();
@@ -76,7 +79,8 @@ Result<MachineTold> ask_machine(Connection& connection, const LearnOptions& opti
   if (!told) return tl::unexpected(told.error());
   MachineTold machine{(*told)["Machine"], (*told)["Configuration"], {}, {}, {}};
   if ((*told)["Virtual"].get<bool>()) {
-    return fail(fmt::format("{} is loaded in virtual mode: no drive runs, and there is nothing to learn", machine.name));
+    return fail(
+        fmt::format("{} is loaded in virtual mode: no drive runs, and there is nothing to learn", machine.name));
   }
   machine.learner.period_s = (*told)["Period"];
   machine.learner.bandwidth_hz = options.bandwidth_hz;
@@ -126,8 +130,8 @@ Result<> Lesson::pass() {
   run_.on_cycle = [&pass](const JointSample& sample) {
     pass.add({sample.cycle, sample.move_id, sample.s_mm, sample.moving, sample.position_set, sample.position});
   };
-  run_.learned = learner_.next() ? gateway::to_json({machine_.name, machine_.configuration, learner_.next_parts()})
-                                 : Json();
+  run_.learned =
+      learner_.next() ? gateway::to_json({machine_.name, machine_.configuration, learner_.next_parts()}) : Json();
   const auto report = Runner(connection_, program_, run_).run();
   if (!report) return tl::unexpected(report.error());
   pass.end();
@@ -139,8 +143,7 @@ Result<> Lesson::pass() {
   note(pass, *report);
   learner_.learn(pass);
   if (!learner_.next()) {
-    return fail(fmt::format("the program is too long to be learned: {} places at most",
-                            LearnedPath::kMostKnots));
+    return fail(fmt::format("the program is too long to be learned: {} places at most", LearnedPath::kMostKnots));
   }
   return told_.size() < 2 ? Result<>() : write(pass);
 }
@@ -167,9 +170,9 @@ void Lesson::print(bool json) const {
   Json best = Json::array();
   for (std::size_t j = 0; j < machine_.joints.size(); ++j) best.push_back(learner_.best_pass(j) + 1);
   if (json) {
-    fmt::print("{}\n", Json{{"ok", true}, {"joints", machine_.joints}, {"passes", told_}, {"best_pass", best},
-                            {"file", file_}}
-                           .dump());
+    fmt::print("{}\n",
+               Json{{"ok", true}, {"joints", machine_.joints}, {"passes", told_}, {"best_pass", best}, {"file", file_}}
+                   .dump());
     return;
   }
   std::vector<std::string> header{"pass"};
@@ -181,7 +184,8 @@ void Lesson::print(bool json) const {
   for (std::size_t i = 0; i < told_.size(); ++i) {
     rows.push_back({std::to_string(i + 1)});
     for (std::size_t j = 0; j < machine_.joints.size(); ++j) {
-      for (const char* what : {"rms", "largest"}) rows.back().push_back(fmt::format("{:.2f}", 1000 * told_[i][what][j].get<double>()));
+      for (const char* what : {"rms", "largest"})
+        rows.back().push_back(fmt::format("{:.2f}", 1000 * told_[i][what][j].get<double>()));
     }
   }
   fmt::print("following errors, µm or 0.001°\n{}", table(header, rows));
@@ -201,9 +205,9 @@ Result<> learn_program(Connection& connection, const Program& program, const Run
   if (program.file == "-" || program.file == "standard input") {
     return fail("standard input cannot be run again; learn a file");
   }
-  auto ready = check(program)
-                   .and_then([&] { return refuse_unwritable(file, kOption); })
-                   .and_then([&] { return refuse_used(file, kOption, {program.file}); });
+  auto ready = check(program).and_then([&] { return refuse_unwritable(file, kOption); }).and_then([&] {
+    return refuse_used(file, kOption, {program.file});
+  });
   if (!ready) return ready;
   RunOptions again = run;
   if (const std::string machine = std::exchange(again.machine, ""); !machine.empty()) {
@@ -232,7 +236,8 @@ Result<Json> learned_of(const Program& program, const LearnOptions& options) {
     return fail(fmt::format("{}: cannot be read; rmac run {} --learn 4 writes it", file, program.file));
   }
   Json learned = Json::parse(stream, nullptr, false);
-  if (!learned.is_object() || !learned.contains(kProgram)) return fail(fmt::format("{}: is not what was learned", file));
+  if (!learned.is_object() || !learned.contains(kProgram))
+    return fail(fmt::format("{}: is not what was learned", file));
   if (learned[kProgram] != hash_of(program)) {
     return fail(fmt::format("{}: was learned of another program, or {} has changed since; learn it anew with --learn",
                             file, program.file));

@@ -10,10 +10,10 @@
 namespace rmac::cli {
 
 struct LearnOptions {
-  int passes = 0;             ///< 0: nothing is to be learned
-  double bandwidth_hz = 20;   ///< up to which it is learned: about that of the slowest loop
-  bool use = false;           ///< what was learned before is to be made good
-  std::string file;           ///< where that is; empty: the program's name with .learned behind it
+  int passes = 0;            ///< 0: nothing is to be learned
+  double bandwidth_hz = 20;  ///< up to which it is learned: about that of the slowest loop
+  bool use = false;          ///< what was learned before is to be made good
+  std::string file;          ///< where that is; empty: the program's name with .learned behind it
 };
 
 /// Runs a program several times, learns from each pass for the next one, tells how it went, and writes down what made

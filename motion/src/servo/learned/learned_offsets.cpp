@@ -1,18 +1,17 @@
 #include "servo/learned/learned_offsets.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace rmac {
 
-LearnedOffsets::LearnedOffsets(const ServoLoopParts& parts, const Wiring& wiring)
-    : parts_(parts.joints), period_s_(parts.period_s) {
-  for (std::size_t j = 0; j < parts.joints.size(); ++j) {
-    joints_.push_back({.bound = bound(parts.joints[j], wiring.follows_itself(j))});
-  }
+LearnedOffsets::LearnedOffsets(std::span<const ServoJoint> joints, double period_s)
+    : parts_(joints), period_s_(period_s) {
+  for (const ServoJoint& joint : joints) joints_.push_back({.bound = bound(joint, false)});
 }
 
-void LearnedOffsets::step(const Setpoint& at, bool follows, IndexSet live) noexcept {
+void LearnedOffsets::step(const Setpoint& at, bool follows, IndexSet controlled) noexcept {
   std::array<double, kMaxJoints> learned{};
   const bool known = follows && path_ != nullptr && path_->at(cursor_, at.move_id, at.s_mm, learned);
   if (!known) cursor_ = {};
@@ -21,7 +20,7 @@ void LearnedOffsets::step(const Setpoint& at, bool follows, IndexSet live) noexc
   const double most = path_ == nullptr ? 0 : path_->steepest();
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     Joint& joint = joints_[j];
-    if (!has(live, j)) {
+    if (!has(controlled, j)) {
       joint = {.bound = joint.bound};
       continue;
     }

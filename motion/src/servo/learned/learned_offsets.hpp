@@ -1,14 +1,14 @@
 #pragma once
 
-#include <array>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "rmac/motion/servo/learned_path.hpp"
 #include "rmac/motion/servo/servo_loop_parts.hpp"
 #include "rmac/motion/servo/setpoint.hpp"
-#include "servo/joints/wiring.hpp"
+#include "servo/joints/index_set.hpp"
 
 namespace rmac {
 
@@ -17,16 +17,17 @@ namespace rmac {
 /// critically damped way. Real-time safe but for its making.
 class LearnedOffsets {
  public:
-  /// `parts` must outlive it.
-  LearnedOffsets(const ServoLoopParts& parts, const Wiring& wiring);
+  /// `joints` must outlive it.
+  LearnedOffsets(std::span<const ServoJoint> joints, double period_s);
 
   /// Another path, or none; `path` is left with the one of before.
   void exchange(std::shared_ptr<const LearnedPath>& path) noexcept {
     path_.swap(path);
     cursor_ = {};
   }
-  /// One cycle. `follows`: a program's path is followed, at this place. Of joints that are not `live` nothing is left.
-  void step(const Setpoint& at, bool follows, IndexSet live) noexcept;
+  /// One cycle. `follows`: a program's path is followed, at this place. Joints whose law does not control
+  /// them have none.
+  void step(const Setpoint& at, bool follows, IndexSet controlled) noexcept;
 
   /// What to add, mm or degrees, and its rate of change.
   [[nodiscard]] double position(std::size_t joint) const noexcept { return joints_[joint].offset; }
@@ -43,8 +44,8 @@ class LearnedOffsets {
   struct Joint {
     double bound = 0;
     double offset = 0, rate = 0;
-    double wanted = 0;                 ///< as it was learned
-    double rest = 0, rest_rate = 0;    ///< beside that, on its way to nothing
+    double wanted = 0;               ///< as it was learned
+    double rest = 0, rest_rate = 0;  ///< beside that, on its way to nothing
   };
   void go_on(Joint& joint, double wanted, bool jumps) const noexcept;
 

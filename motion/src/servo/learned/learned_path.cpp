@@ -121,7 +121,8 @@ void LearnedPath::interpolate(double along_mm, std::span<double> offsets) const 
   const double u = std::clamp((along_mm - places[before]) / (places[after] - places[before]), 0.0, 1.0);
   for (std::size_t j = 0; j < std::min(parts_.joints, offsets.size()); ++j) {
     const auto knot = [&](std::size_t i) { return parts_.offsets[i * parts_.joints + j]; };
-    offsets[j] = cubic(knot(before == 0 ? 0 : before - 1), knot(before), knot(after), knot(std::min(after + 1, last)), u);
+    offsets[j] =
+        cubic(knot(before == 0 ? 0 : before - 1), knot(before), knot(after), knot(std::min(after + 1, last)), u);
   }
 }
 
