@@ -189,7 +189,7 @@ class Learning(unittest.TestCase):
         client.call(put)
         self.assertEqual(client.call("RMAC_CAM.GetLearnedOffsets")["Knots"], 0)
 
-    def test_holds_retraces_overrides_and_a_reset_in_mid_path_leave_no_jump(self):
+    def test_holds_retraces_overrides_and_a_stop_in_mid_path_end_without_a_fault(self):
         self.learn(passes=3)
         learned = json.loads(pathlib.Path(f"{self.program}.learned").read_text())
         del learned["Program"]
@@ -211,6 +211,9 @@ class Learning(unittest.TestCase):
                 client.call(f"RMAC_CAM.{what}", **params)
         state = wait_for_rest(client)
         self.assertNotIn(state["state"], ("Faulted", "EmergencyStop"), state)
+        client.call("authority.release")
+        self.assertEqual(client.call("RMAC_CAM.GetLearnedOffsets")["Knots"], 0, "it ended with motion authority")
+        self.assertEqual(self.run_it("--learned").returncode, 0)
 
 
 if __name__ == "__main__":

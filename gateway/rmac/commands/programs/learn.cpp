@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 #include <string_view>
@@ -89,6 +90,10 @@ Result<MachineTold> ask_machine(Connection& connection, const LearnOptions& opti
     machine.delays.push_back(joint["AnswerDelay"]);
     machine.learner.largest.push_back(joint["LargestOffset"]);
   }
+  if (std::ranges::all_of(machine.learner.largest, [](double largest) { return largest == 0; })) {
+    return fail(
+        fmt::format("the drives of {} close their loops themselves, and there is nothing to learn here", machine.name));
+  }
   const double highest = 0.1 / machine.learner.period_s;
   if (options.bandwidth_hz > highest) {
     return fail(fmt::format("{:g} Hz cannot be learned with cycles of {:g} s; {:g} Hz are the most",
@@ -114,6 +119,10 @@ class Lesson {
   void print(bool json) const;
 
  private:
+  [[nodiscard]] Json learned() const {
+    return gateway::to_json({machine_.name, machine_.configuration, learner_.next_parts()});
+  }
+  [[nodiscard]] std::size_t line_bytes() const;
   void note(const gateway::Pass& pass, const RunReport& report);
 
   Connection& connection_;
@@ -125,13 +134,19 @@ class Lesson {
   Json told_ = Json::array();
 };
 
+std::size_t Lesson::line_bytes() const {
+  constexpr std::size_t kBeside = 1000;  // of the request that it goes in
+  constexpr std::size_t kUnlessTold = 8U << 20U;
+  const auto limits = connection_.greeting().value("limits", Json::object());
+  return limits.value("line_bytes", kUnlessTold) - kBeside;
+}
+
 Result<> Lesson::pass() {
   gateway::Pass pass(machine_.delays);
   run_.on_cycle = [&pass](const JointSample& sample) {
     pass.add({sample.cycle, sample.move_id, sample.s_mm, sample.moving, sample.position_set, sample.position});
   };
-  run_.learned =
-      learner_.next() ? gateway::to_json({machine_.name, machine_.configuration, learner_.next_parts()}) : Json();
+  run_.learned = learner_.next() ? learned() : Json();
   const auto report = Runner(connection_, program_, run_).run();
   if (!report) return tl::unexpected(report.error());
   pass.end();
@@ -142,8 +157,10 @@ Result<> Lesson::pass() {
   if (pass.steps().size() < 2) return fail("no joint moved along a path, so there is nothing to learn");
   note(pass, *report);
   learner_.learn(pass);
-  if (!learner_.next()) {
-    return fail(fmt::format("the program is too long to be learned: {} places at most", LearnedPath::kMostKnots));
+  if (!learner_.next() || learned().dump().size() > line_bytes()) {
+    return fail(
+        "the program is too long: what would be learned of it is more than the appliance takes at once; learn "
+        "its parts, or with a lower --bandwidth");
   }
   return told_.size() < 2 ? Result<>() : write(pass);
 }

@@ -81,7 +81,8 @@ void add_run(Command& rmac) {
       .within(2, 100)
       .excludes({"--virtual", "--record"});
   run.option("--bandwidth", &options->learn.bandwidth_hz,
-             "Hz up to which --learn learns: about that of the slowest servo loop; what a loop does wrong faster stays")
+             "Hz up to which --learn learns: from half the bandwidth of the slowest servo loop to all of it; what a "
+             "loop does wrong faster stays")
       .within(1.0, 200.0)
       .shows_default();
   run.flag("--learned", &options->learn.use, "make good what was learned of this program, with this machine")
