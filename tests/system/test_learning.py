@@ -136,12 +136,12 @@ class Learning(unittest.TestCase):
         self.assertEqual(self.run_it("--learn", "1").returncode, 2)
         self.assertEqual(self.run_it("--learn", "3", "--learned").returncode, 2)
         joints = self.appliance.client().state()["joints"]
-        self.assertEqual(max(map(abs, joints)) < 0.01, True, joints)
+        self.assertLess(max(map(abs, joints)), 0.01)
         self.assertEqual(self.appliance.rmac("load", "DMACXYZ", "--virtual").returncode, 0)
         self.assertIn("virtual mode", self.refused(self.run_it("--learn", "3")))
 
     def test_a_program_that_ends_elsewhere_learns_all_but_its_approach(self):
-        start, first, second = pose(0, 0, 0), pose(10, 0, 0), pose(10, 20, 0)
+        first, second = pose(10, 0, 0), pose(10, 20, 0)
         self.write([request("SetFeedrate", Feedrate=2000), request("MoveToPathTarget", MoveID=1, TargetFrame=first),
                     request("MoveAlongLine", MoveID=2, StartPoint=first, EndPoint=second)])
         told = self.learn(passes=3)
@@ -150,7 +150,6 @@ class Learning(unittest.TestCase):
         for joint in learned["Joints"]:
             for place, offset in zip(learned["Places"], joint["Offsets"], strict=True):
                 self.assertTrue(place > begins or offset == 0, (place, offset))
-        self.assertEqual(len(start["p"]), 3)
 
     def test_only_sound_offsets_are_taken_and_only_at_rest(self):
         self.learn(passes=2)
