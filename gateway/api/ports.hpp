@@ -12,6 +12,7 @@
 #include "gateway/api/rpc_error.hpp"
 #include "gateway/collision/ahead/guard_port.hpp"
 #include "gateway/device_driver_manager/device_driver_manager.hpp"
+#include "gateway/learning/learning_port.hpp"
 #include "gateway/modules/module_loader.hpp"
 #include "gateway/record/flight_record.hpp"
 #include "gateway/servo/cycle_times.hpp"
@@ -89,6 +90,7 @@ class MachinePort {
   [[nodiscard]] virtual DevicePort& device() = 0;
   [[nodiscard]] virtual ToolPort& tools() = 0;
   [[nodiscard]] virtual GuardPort& guard() = 0;
+  [[nodiscard]] virtual LearningPort& learning() = 0;
   [[nodiscard]] virtual ShapePort& shape() = 0;
   /// The mechanism in force, or nullptr.
   [[nodiscard]] virtual const sdk::DeviceObject* mechanism() const = 0;

@@ -68,6 +68,7 @@ class Machine final : public MachinePort {
   DevicePort& device() override { return device_; }
   ToolPort& tools() override { return controller_.tools(); }
   GuardPort& guard() override { return collision_guard(controller_); }
+  LearningPort& learning() override { return learning_of(controller_); }
   ShapePort& shape() override { return machine_shape(controller_); }
   const sdk::DeviceObject* mechanism() const override { return controller_.mechanism(); }
   CycleSample sample() const override { return controller_.sample(); }

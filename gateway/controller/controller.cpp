@@ -279,6 +279,10 @@ GuardPort& collision_guard(Controller& controller) {
   return controller.impl_->cam.guard();
 }
 
+LearningPort& learning_of(Controller& controller) {
+  return controller.impl_->reconfiguration.learning();
+}
+
 ShapePort& machine_shape(Controller& controller) {
   return controller.impl_->cam.shape();
 }

@@ -12,6 +12,7 @@
 #include "gateway/animation/machine_drawing.hpp"
 #include "gateway/buses/bus_registry.hpp"
 #include "gateway/collision/ahead/guard_port.hpp"
+#include "gateway/learning/learning_port.hpp"
 #include "gateway/record/flight_recorder_options.hpp"
 #include "gateway/servo/clock.hpp"
 #include "gateway/servo/cycle_times.hpp"
@@ -151,6 +152,7 @@ class Controller {
   friend fieldbus::FieldbusReport bus_reports(const Controller& controller);
   friend const nlohmann::json& bus_summary(const Controller& controller);
   friend GuardPort& collision_guard(Controller& controller);
+  friend LearningPort& learning_of(Controller& controller);
   friend ShapePort& machine_shape(Controller& controller);
   struct Impl;
   std::unique_ptr<Impl> impl_;
@@ -162,6 +164,8 @@ class Controller {
 [[nodiscard]] const nlohmann::json& bus_summary(const Controller& controller);
 /// What a controller holds its paths against.
 [[nodiscard]] GuardPort& collision_guard(Controller& controller);
+/// What was learned of the program that a controller's mechanism repeats.
+[[nodiscard]] LearningPort& learning_of(Controller& controller);
 /// What is known of the shape of a controller's mechanism.
 [[nodiscard]] ShapePort& machine_shape(Controller& controller);
 

@@ -218,6 +218,9 @@ void MachineCycle::tell_spindle_timeout(const ServoStatus& status) {
 
 void MachineCycle::tell_state() {
   const CycleState state = sequencer.state();
+  const CyclePhase& phase = sequencer.phase();
+  const bool program = phase.runs<CyclePhase::Program>() != nullptr || phase.holds<CyclePhase::Program>() != nullptr;
+  if (program != wishes.now().program) wishes.change([program](ServoWishes& wish) { wish.program = program; });
   if (state == told_.state) return;
   news.tell(Event::Kind::CycleStateChanged, fmt::format("{} to {}", to_string(told_.state), to_string(state)),
             MinorCode::None, state == CycleState::Running);

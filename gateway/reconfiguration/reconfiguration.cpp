@@ -11,10 +11,12 @@ Reconfiguration::Reconfiguration(const Parts& parts, std::function<void()> meanw
       slot_(parts.supervisor, servo_, parts.assembler, parts.registry, parts.users),
       mechanism_change_(slot_, parts.supervisor, parts.assembler, parts.registry, parts.users, parts.rack, simulated),
       interface_change_(slot_, parts.assembler, parts.registry),
-      loop_change_(slot_, servo_, parts.assembler, parts.users) {}
+      loop_change_(slot_, servo_, parts.assembler, parts.users),
+      learning_(slot_, servo_, parts.supervisor) {}
 
 Expected<> Reconfiguration::put_in(const sdk::DeviceObject& device, const MechanismSource& source, bool fresh) {
   if (auto ready = slot_.require_rest("putting in a configuration"); !ready) return ready;
+  learning_.forget();
   if (!fresh && interface_change_.needed(device, source)) return interface_change_.put_in(device, source);
   return mechanism_change_.put_in(device, source, fresh);
 }
@@ -27,7 +29,12 @@ Expected<> Reconfiguration::change_loops(const sdk::DeviceObject& device, const 
   if (loop_change_.changes_method(device, joints) && supervisor_.require_rest("another control method")) {
     return put_in(device, source, false);
   }
+  learning_.forget();
   return loop_change_.exchange(device, joints);
+}
+
+Expected<> Reconfiguration::unload() {
+  return slot_.unload().map([this] { learning_.forget(); });
 }
 
 Expected<> Reconfiguration::reset() {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "gateway/reconfiguration/interface_change.hpp"
+#include "gateway/reconfiguration/learning.hpp"
 #include "gateway/reconfiguration/loop_change.hpp"
 #include "gateway/reconfiguration/mechanism_change.hpp"
 #include "gateway/reconfiguration/mechanism_slot.hpp"
@@ -44,7 +45,9 @@ class Reconfiguration {
   /// Brings the machine back after a fault whose cause is gone; the drives are enabled then.
   [[nodiscard]] Expected<> reset();
   /// Takes the mechanism out, at rest or faulted.
-  [[nodiscard]] Expected<> unload() { return slot_.unload(); }
+  [[nodiscard]] Expected<> unload();
+  /// What was learned of a program; ends with a change of the mechanism.
+  [[nodiscard]] LearningPort& learning() noexcept { return learning_; }
   /// Waits for a stop that was ordered, then unloads; whatever goes wrong, it returns.
   void come_to_rest();
   /// Forgets the mechanism when the servo thread has ended.
@@ -58,6 +61,7 @@ class Reconfiguration {
   MechanismChange mechanism_change_;
   InterfaceChange interface_change_;
   LoopChange loop_change_;
+  Learning learning_;
 };
 
 }  // namespace rmac::gateway

@@ -60,6 +60,7 @@ void LeaseKeeper::stop_machine(std::string message) {
   // A move that is being built now must find that its queue is gone, too.
   const Expected<> stopped =
       runs || dropped_moves_ > 0 || aside_.is_away() ? machine.cam().cycle().stop_now() : machine.cam().cycle().stop();
+  machine.learning().forget();
   if (!stopped) {
     message += "; stopping failed: " + stopped.error().message;
     dispatcher_.status().fail(stopped.error().code, message, sample.t_s);

@@ -29,7 +29,7 @@ void ServoCycle::run(std::uint64_t missed) noexcept {
 void ServoCycle::serve_swap() noexcept {
   SwapRequest* const request = link_.swap.exchange(nullptr, std::memory_order_acq_rel);
   if (request == nullptr) return;
-  if (!request->laws.empty() || !request->methods.empty()) {
+  if (!request->laws.empty() || !request->methods.empty() || request->learns) {
     request->result.store(change_loops(*request), std::memory_order_release);
     return;
   }
@@ -43,7 +43,7 @@ void ServoCycle::serve_swap() noexcept {
   request->result.store(SwapRequest::Result::Done, std::memory_order_release);
 }
 
-SwapRequest::Result ServoCycle::change_loops(const SwapRequest& request) noexcept {
+SwapRequest::Result ServoCycle::change_loops(SwapRequest& request) noexcept {
   constexpr double kOnPlan = 1e-6;  // mm or degrees
   ServoLoop& loop = *mechanism_->loop;
   for (const SwapRequest::Method& other : request.methods) {
@@ -52,6 +52,7 @@ SwapRequest::Result ServoCycle::change_loops(const SwapRequest& request) noexcep
   }
   for (const SwapRequest::Method& other : request.methods) loop.set_control_method(other.joint, other.method);
   for (SwapRequest::Law& other : request.laws) other.joint->exchange(other.law);
+  loop.exchange_learned(request.learned);
   return SwapRequest::Result::Done;
 }
 
@@ -87,6 +88,7 @@ void ServoCycle::move(const ServoWishes& wishes) noexcept {
   if (!report_.follows) mechanism_->follower.hold_at(loop.hold_position().first(loop.joint_count()));
   see_to_stop(wishes);
   mechanism_->follower.sample(cycle_, command_.setpoint);
+  command_.program = wishes.program && wishes.learned && !mechanism_->follower.off_path();
   const std::uint64_t done = report_.follows ? command_.setpoint.moves_done : 0;
   command_.outputs = outputs_.step(wishes.outputs, wishes.marks_settled, status_.moves_done + done);
 

@@ -22,7 +22,7 @@ class ServoCycle {
  private:
   static constexpr std::int64_t kNever = -1;
   void serve_swap() noexcept;
-  [[nodiscard]] SwapRequest::Result change_loops(const SwapRequest& request) noexcept;
+  [[nodiscard]] SwapRequest::Result change_loops(SwapRequest& request) noexcept;
   void take_over(Mechanism* next) noexcept;
   void move(const ServoWishes& wishes) noexcept;
   /// A stop that the planner does not serve in time is the joints' own.

@@ -16,6 +16,7 @@
 #include "gateway/servo/path_outputs.hpp"
 #include "gateway/servo/snapshot.hpp"
 #include "gateway/state/cycle_state.hpp"
+#include "rmac/motion/servo/learned_path.hpp"
 
 namespace rmac::gateway {
 
@@ -28,6 +29,8 @@ struct ServoWishes {
   Frames frames;
   std::array<double, kMaxSpindles> spindle_rpm{};
   double tool_torque_nm = 0;  ///< most that the tool in spindle 0 bears; 0: not given
+  bool learned = false;       ///< what was learned of the program counts
+  bool program = false;       ///< what runs, or is held, is the queue of a cycle: no jog, no way back
   std::uint64_t outputs = 0;
   std::uint64_t marks_settled = 0;         ///< marks up to this one are in `outputs`, or are dropped
   std::array<double, kMaxJoints> force{};  ///< of joints under force control
@@ -83,7 +86,8 @@ struct FaultRecord {
 
 /// Another mechanism for the servo loop, or none. It is put in between two cycles, at standstill; `refused` otherwise.
 /// Or, where there are `laws` or `methods`, these for joints of the mechanism in force, at standstill or in motion;
-/// refused where a joint has slipped off the plan that is to keep its position.
+/// refused where a joint has slipped off the plan that is to keep its position. Or, where `learns`, what was learned of
+/// the program that follows. Other laws or methods forget that: it was learned with those of before.
 struct SwapRequest {
   enum class Result : std::uint8_t { Waiting, Done, Refused };
   struct Law {
@@ -96,6 +100,8 @@ struct SwapRequest {
   };
   std::span<Law> laws;
   std::span<const Method> methods;
+  bool learns = false;
+  std::shared_ptr<const LearnedPath> learned;  ///< afterwards what was there before
   Mechanism* next = nullptr;
   std::uint64_t generation = 0;
   std::atomic<Result> result{Result::Waiting};

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <iterator>
 #include <set>
 
 #include "gateway/device_database/device_database.hpp"
 #include "gateway/device_database/device_json.hpp"
+#include "gateway/files/content_hash.hpp"
 #include "gateway/files/whole_file.hpp"
 #include "gateway/modules/module_loader.hpp"
 #include "gateway/processes/child_process.hpp"
@@ -21,27 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-/// FNV-1a with 64 bits: tells files that changed from those that did not, and does no more.
-class Hash {
- public:
-  void add(std::string_view bytes) noexcept {
-    for (const char byte : bytes) value_ = (value_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
-  }
-  /// False when it cannot be read.
-  bool add_file(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::array<char, 65536> buffer{};
-    while (stream.read(buffer.data(), buffer.size()) || stream.gcount() > 0) {
-      add({buffer.data(), static_cast<std::size_t>(stream.gcount())});
-    }
-    return stream.eof();
-  }
-  [[nodiscard]] std::string text() const { return fmt::format("{:016x}", value_); }
-
- private:
-  std::uint64_t value_ = 0xcbf29ce484222325U;
-};
 
 std::set<std::string> modules_of(const sdk::DeviceObject& device) {
   std::set<std::string> names{device.device_driver, device.kinematics.name, device.actuator_map.name};
@@ -89,7 +68,7 @@ Verification::Subject Verification::beside(const fs::path& device_json) const {
 
 std::string Verification::fingerprint(const Subject& subject, const sdk::DeviceObject& device) const {
   const ModuleLoader loader(subject.folders);
-  Hash hash;
+  ContentHash hash;
   if (!hash.add_file(options_.program) || !hash.add_file(subject.device_json)) return "";
   for (const std::string& name : modules_of(device)) {
     const auto file = loader.find_file("", name, ".so", "module");

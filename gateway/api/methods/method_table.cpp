@@ -16,6 +16,7 @@ const std::vector<Method>& method_table() {
     add_cam_methods(table);
     add_tool_methods(table);
     add_guard_methods(table);
+    add_learning_methods(table);
     add_drawing_methods(table);
     add_move_methods(table);
     add_program_flow_methods(table);

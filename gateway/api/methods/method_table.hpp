@@ -23,6 +23,7 @@ void add_cycle_methods(std::vector<Method>& table);
 void add_cam_methods(std::vector<Method>& table);
 void add_tool_methods(std::vector<Method>& table);
 void add_guard_methods(std::vector<Method>& table);
+void add_learning_methods(std::vector<Method>& table);
 void add_drawing_methods(std::vector<Method>& table);
 void add_move_methods(std::vector<Method>& table);
 void add_program_flow_methods(std::vector<Method>& table);

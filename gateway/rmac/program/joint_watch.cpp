@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "gateway/rmac/wire/requests.hpp"
 
@@ -16,7 +17,7 @@ constexpr double kWatchRateHz = 100;
 
 }  // namespace
 
-JointWatch::JointWatch(const std::string& record_file) {
+JointWatch::JointWatch(const std::string& record_file, OnCycle on_cycle) : on_cycle_(std::move(on_cycle)) {
   if (!record_file.empty()) record_.emplace(record_file);
 }
 
@@ -27,7 +28,7 @@ Result<> JointWatch::open() {
 Result<> JointWatch::begin(Connection& connection) {
   if (watching_) return {};
   watching_ = true;
-  return subscribe(connection, kJointsTopic, record_ ? kFullRateHz : kWatchRateHz);
+  return subscribe(connection, kJointsTopic, wants_every_cycle() ? kFullRateHz : kWatchRateHz);
 }
 
 Result<> JointWatch::take(const nlohmann::json& params) {
@@ -45,7 +46,9 @@ Result<> JointWatch::take(const JointSample& sample) {
         std::max(following_error_[joint], std::abs(sample.position_set[joint] - sample.position[joint]));
   }
   // Waiting for the first move is no part of the record; every cycle from there on is.
-  return record_ && (sample.moving || record_->rows() > 0) ? record_->add(sample) : Result<>();
+  begun_ = begun_ || sample.moving;
+  if (begun_ && on_cycle_) on_cycle_(sample);
+  return begun_ && record_ ? record_->add(sample) : Result<>();
 }
 
 Result<> JointWatch::close() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,8 +14,10 @@ namespace rmac::cli {
 /// record of them.
 class JointWatch {
  public:
-  /// An empty `record_file`: no record.
-  explicit JointWatch(const std::string& record_file);
+  using OnCycle = std::function<void(const JointSample&)>;
+
+  /// An empty `record_file`: no record. `on_cycle`, where there is one, hears every cycle that a record would hold.
+  explicit JointWatch(const std::string& record_file, OnCycle on_cycle = {});
 
   /// Makes the record's file, if there is to be one.
   [[nodiscard]] Result<> open();
@@ -25,19 +28,22 @@ class JointWatch {
   /// Closes the record; an error where it lacks cycles.
   [[nodiscard]] Result<> close();
 
-  /// A record is to hold all up to the machine's time `t_s`, and does not yet.
-  [[nodiscard]] bool waits_for(double t_s) const { return record_ && watching_ && last_sample_s_ < t_s; }
+  /// All is to be seen up to the machine's time `t_s`, and is not yet.
+  [[nodiscard]] bool waits_for(double t_s) const { return sees_every_cycle() && last_sample_s_ < t_s; }
 
   /// Largest seen of each joint, mm or deg.
   [[nodiscard]] const std::vector<double>& following_error() const noexcept { return following_error_; }
   /// False: what is seen are samples, not all cycles.
-  [[nodiscard]] bool sees_every_cycle() const noexcept { return watching_ && record_; }
+  [[nodiscard]] bool sees_every_cycle() const noexcept { return watching_ && wants_every_cycle(); }
   [[nodiscard]] const std::optional<Record>& record() const noexcept { return record_; }
 
  private:
+  [[nodiscard]] bool wants_every_cycle() const noexcept { return record_ || on_cycle_; }
   [[nodiscard]] Result<> take(const JointSample& sample);
 
   std::optional<Record> record_;
+  OnCycle on_cycle_;
+  bool begun_ = false;  ///< something moved
   std::vector<double> following_error_;
   double last_sample_s_ = 0;
   bool watching_ = false;

@@ -25,7 +25,7 @@ Runner::Runner(Connection& connection, const Program& program, RunOptions option
       progress_(options_.show_progress),
       order_(program),
       prompt_(connection, moves_),
-      joints_(options_.record_file) {
+      joints_(options_.record_file, options_.on_cycle) {
   connection_.on_notification([this](const auto& topic, const auto& params) { take(topic, params); });
   connection_.on_entered_line(options_.terminal, [this](const std::string& line) { prompt_.obey(line); });
 }
@@ -90,7 +90,12 @@ Result<> Runner::prepare() {
                             state->moves_in_buffer));
   }
   prompt_.hear(std::move(*state));
-  return {};
+  return teach();
+}
+
+Result<> Runner::teach() {
+  if (options_.learned.is_null()) return {};
+  return connection_.command(kSetLearnedOffsets, {{"Learned", options_.learned}});
 }
 
 Result<> Runner::acquire() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,8 @@ struct RunOptions {
   bool virtual_mode = false;
   std::string machine;  ///< loaded before the program; empty: what is loaded
   bool show_progress = false;
+  std::function<void(const JointSample&)> on_cycle{};  ///< hears every cycle from the first that moves on
+  nlohmann::json learned{};                            ///< of the program, as the appliance takes it; null: nothing
   std::optional<int> terminal;  ///< descriptor that a person's lines come from; none: nobody is there
 };
 
@@ -53,6 +56,7 @@ class Runner {
   [[nodiscard]] Result<> acquire();
   /// Loads the machine that the options name, or in virtual mode the one that is loaded.
   [[nodiscard]] Result<> load();
+  [[nodiscard]] Result<> teach();
   [[nodiscard]] Result<> stream();
   [[nodiscard]] Result<> submit(const Request& request);
   void send(const Request& request, nlohmann::json params, const OpenEnds::Reach& reach);

@@ -21,6 +21,7 @@ inline constexpr const char* kHoldFeed = "RMAC_CAM.FeedHold";
 inline constexpr const char* kSetOverride = "RMAC_CAM.SetFeedOverride";
 inline constexpr const char* kResumeFeed = "RMAC_CAM.FeedResume";
 inline constexpr const char* kConfirmToolChange = "RMAC_CAM.ConfirmToolChange";
+inline constexpr const char* kSetLearnedOffsets = "RMAC_CAM.SetLearnedOffsets";
 inline constexpr const char* kGetParkedProgram = "RMAC_CAM.GetParkedProgram";
 
 /// The wire's name of a mode.

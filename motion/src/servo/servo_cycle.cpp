@@ -204,6 +204,8 @@ void ServoLoop::Impl::go_live() noexcept {
 }
 
 void ServoLoop::Impl::choose_setpoints(const ServoCommand& command) noexcept {
+  const bool program = command.program && state.follows() && !state.braking();
+  setpoints.learned().step(command.setpoint, program, live.all() & ~wiring.follow_themselves());
   if (state.braking()) {
     setpoints.brake();
     return;
@@ -257,8 +259,9 @@ ServoInput ServoLoop::Impl::input(std::size_t joint) const noexcept {
   const PositionCorrection& correction = transmission.correction(joint);
   const std::optional<double> measured = joints.measured_effort(joint);
   ServoInput seen{
-      .position_setpoint = setpoints.position()[joint],
-      .velocity_setpoint = setpoints.velocity()[joint] + correction.crossing_velocity(),
+      .position_setpoint = setpoints.position()[joint] + setpoints.learned().position(joint),
+      .velocity_setpoint =
+          setpoints.velocity()[joint] + setpoints.learned().velocity(joint) + correction.crossing_velocity(),
       .acceleration_setpoint = setpoints.acceleration()[joint] + correction.crossing_acceleration(),
       .position = joints.position()[joint] + setpoints.gone_on(joint),
       .velocity = joints.velocity()[joint] + setpoints.velocity_gone_on(joint) + correction.crossing_velocity(),

@@ -47,4 +47,14 @@ void ServoLoop::set_control_method(std::size_t joint, ControlMethod method) noex
   impl_->parts.joints[joint].method = method;
 }
 
+void ServoLoop::exchange_learned(std::shared_ptr<const LearnedPath>& path) noexcept {
+  impl_->setpoints.learned().exchange(path);
+}
+double ServoLoop::learned_bound(std::size_t joint) const noexcept {
+  return LearnedOffsets::bound(impl_->parts.joints[joint], impl_->wiring.follows_itself(joint));
+}
+int ServoLoop::answer_delay(std::size_t joint) const noexcept {
+  return impl_->wiring.joint_delays()[joint];
+}
+
 }  // namespace rmac

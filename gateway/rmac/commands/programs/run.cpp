@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "gateway/rmac/commands/programs/learn.hpp"
 #include "gateway/rmac/commands/programs/registrations.hpp"
 #include "gateway/rmac/commands/programs/source.hpp"
 #include "gateway/rmac/program/runner.hpp"
@@ -13,6 +14,7 @@ namespace {
 struct RunCommand {
   Source source;
   RunOptions run;
+  LearnOptions learn;
 };
 
 void print_run_json(const RunReport& report) {
@@ -50,6 +52,12 @@ Result<> run_program(Connection& connection, const RunCommand& options, bool jso
   RunOptions run = options.run;
   run.show_progress = !json && isatty(STDERR_FILENO) == 1;
   if (isatty(STDIN_FILENO) == 1) run.terminal = STDIN_FILENO;
+  if (options.learn.passes > 0) return learn_program(connection, *program, run, options.learn, json);
+  if (options.learn.use) {
+    auto learned = learned_of(*program, options.learn);
+    if (!learned) return tl::unexpected(learned.error());
+    run.learned = std::move(*learned);
+  }
   const auto report = Runner(connection, *program, run).run();
   if (!report) return tl::unexpected(report.error());
   (json ? print_run_json : print_run_table)(*report);
@@ -67,6 +75,20 @@ void add_run(Command& rmac) {
   run.flag("--virtual", &options->run.virtual_mode, "in virtual mode: drives stay untouched");
   run.option("--record", &options->run.record_file, "write every cycle's setpoints and measured joints to this CSV");
   run.option("--machine", &options->run.machine, "load this machine first");
+  run.option("--learn", &options->learn.passes,
+             "run it so many times, learn from each pass for the next one what the joints do wrong, and write that "
+             "beside the program")
+      .within(2, 100)
+      .excludes({"--virtual", "--record"});
+  run.option("--bandwidth", &options->learn.bandwidth_hz,
+             "Hz up to which --learn learns: from half the bandwidth of the slowest servo loop to all of it; what a "
+             "loop does wrong faster stays")
+      .within(1.0, 200.0)
+      .shows_default();
+  run.flag("--learned", &options->learn.use, "make good what was learned of this program, with this machine")
+      .excludes({"--learn", "--virtual"});
+  run.option("--offsets", &options->learn.file,
+             "where that is written to, and read from; the program's name with .learned behind it unless given");
   run.does(
       with_appliance([options](Connection& appliance, bool json) { return run_program(appliance, *options, json); }));
 }

@@ -39,6 +39,11 @@ class Wiring {
   [[nodiscard]] bool follows_itself(std::size_t joint) const noexcept {
     return (actuators_of_[joint] & ~torque_drives_) != 0;
   }
+  [[nodiscard]] IndexSet follow_themselves() const noexcept {
+    IndexSet found = 0;
+    for (std::size_t j = 0; j < joints_; ++j) found |= follows_itself(j) ? only(j) : 0;
+    return found;
+  }
   /// Actuators that move no joint outside of `joints`.
   [[nodiscard]] IndexSet actuators_within(IndexSet joints) const noexcept;
   /// So many cycles before this one were they where they tell in it: each actuator; and each joint, by the slowest of

@@ -24,6 +24,7 @@ Setpoints::Setpoints(const ServoLoopParts& parts, const Wiring::Delays& delays)
       kinematic_joints_(parts.kinematics->joint_count()),
       period_s_(parts.period_s),
       virtual_mode_(parts.virtual_mode),
+      learned_(parts.joints, parts.period_s),
       brake_(stop_bounds(parts.joints)) {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     followers_.emplace_back(joints_[j], period_s_);

@@ -11,6 +11,7 @@
 #include "servo/faults/fault_sink.hpp"
 #include "servo/joints/index_set.hpp"
 #include "servo/joints/wiring.hpp"
+#include "servo/learned/learned_offsets.hpp"
 #include "servo/setpoint/force_loop.hpp"
 #include "servo/setpoint/recent_way.hpp"
 #include "servo/setpoint/velocity_follower.hpp"
@@ -61,6 +62,9 @@ class Setpoints {
   [[nodiscard]] double gone_on(std::size_t joint) const noexcept { return ways_[joint].position.length(); }
   [[nodiscard]] double velocity_gone_on(std::size_t joint) const noexcept { return ways_[joint].velocity.length(); }
   [[nodiscard]] double slip(std::size_t joint) const noexcept { return followers_[joint].slip(); }
+  /// What is added for the laws alone.
+  [[nodiscard]] LearnedOffsets& learned() noexcept { return learned_; }
+  [[nodiscard]] const LearnedOffsets& learned() const noexcept { return learned_; }
   [[nodiscard]] const ForceLoop& force_loop(std::size_t joint) const noexcept { return force_loops_[joint]; }
 
  private:
@@ -87,6 +91,7 @@ class Setpoints {
   IndexSet on_the_way_ = 0;  ///< joints that followed the plan in the cycle before
   std::vector<VelocityFollower> followers_;
   std::vector<ForceLoop> force_loops_;
+  LearnedOffsets learned_;
   JointBrake brake_;
   Setpoint braking_;  ///< of all joints; its positions, velocities and accelerations alone
   double braked_s_ = 0;

@@ -324,6 +324,13 @@ class MockGuard : public GuardPort {
   MOCK_METHOD(bool, checks, (), (const, override));
 };
 
+class MockLearning : public LearningPort {
+ public:
+  MOCK_METHOD(Expected<>, set_learned, (const nlohmann::json&), (override));
+  MOCK_METHOD(Expected<nlohmann::json>, learned, (), (const, override));
+  MOCK_METHOD(void, forget, (), (override));
+};
+
 /// A machine whose links are not known, unless a test says what can be drawn.
 class FakeShape : public ShapePort {
  public:
@@ -343,6 +350,7 @@ class FakeMachine : public MachinePort {
 
   ToolPort& tools() override { return tools_mock; }
   GuardPort& guard() override { return guard_mock; }
+  LearningPort& learning() override { return learning_mock; }
   ShapePort& shape() override { return shape_fake; }
   sdk::RmacCam& cam() override { return cam_mock; }
   OperatorPort& operating() override { return operating_mock; }
@@ -369,6 +377,7 @@ class FakeMachine : public MachinePort {
   testing::NiceMock<FakeDevice> device_fake;
   testing::NiceMock<MockTools> tools_mock;
   testing::NiceMock<MockGuard> guard_mock;
+  testing::NiceMock<MockLearning> learning_mock;
   FakeShape shape_fake;
   std::optional<Event> stop;
   CycleSample now;

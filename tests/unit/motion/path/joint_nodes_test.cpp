@@ -10,7 +10,7 @@
 namespace rmac::test {
 namespace {
 
-constexpr Vector kUp{0, 0, 1};
+constexpr Vector kUpwards{0, 0, 1};
 constexpr int kPlaces = 2000;
 
 class LineOfAnArm : public testing::TestWithParam<unsigned> {
@@ -26,7 +26,7 @@ class LineOfAnArm : public testing::TestWithParam<unsigned> {
     Move move;
     move.id = 1;
     move.feed_mm_s = 50;
-    move.geometry = LineGeometry{builder_.end_pose(), {to, kUp}};
+    move.geometry = LineGeometry{builder_.end_pose(), {to, kUpwards}};
     return builder_.build(move);
   }
   ToolPose pose_of(const std::vector<double>& joints) const {

@@ -664,6 +664,14 @@ class RMAC_CAM:
         """Whether what moves is checked before it does."""
         return self._call(calls.RMAC_CAM.GetCollisionCheck())
 
+    def SetLearnedOffsets(self, Learned: Mapping[str, Any] | None = None) -> None:
+        """Has joints' servo laws make good what was learned of a program that is repeated, place by place on its path (docs/servo.md). Setpoints as they are told, watched and recorded stay the program's. Needs rest and an empty queue. Ends with motion authority, and when a machine is loaded, unloaded or configured. Learned: as rmac run --learn writes it; null, or left out: nothing is made good any more."""
+        return self._call(calls.RMAC_CAM.SetLearnedOffsets(Learned))
+
+    def GetLearnedOffsets(self) -> dict[str, Any]:
+        """What there is to know for who learns a program: Machine, Configuration (changes with gains, filters, limits, …), Virtual, Period (s), of each of the Joints its Name, LargestOffset (mm or deg; 0: its drive closes its loop itself) and AnswerDelay (cycles); and how many Moves and Knots are in force."""
+        return self._call(calls.RMAC_CAM.GetLearnedOffsets())
+
     def GetGeometry(self) -> dict[str, Any]:
         """What there is to draw of the loaded machine: the solids of its links, each with its pose while all joints stand at 0, names of links and joints, and where the tool interface is; `missing` says what is not known. Asked for once, and again when `geometry` in the topic animation is another number."""
         return self._call(calls.RMAC_CAM.GetGeometry())

@@ -812,6 +812,16 @@ class RMAC_CAM:
         return Call("RMAC_CAM.GetCollisionCheck", {})
 
     @staticmethod
+    def SetLearnedOffsets(Learned: Mapping[str, Any] | None = None) -> Call[None]:
+        """Has joints' servo laws make good what was learned of a program that is repeated, place by place on its path (docs/servo.md). Setpoints as they are told, watched and recorded stay the program's. Needs rest and an empty queue. Ends with motion authority, and when a machine is loaded, unloaded or configured. Learned: as rmac run --learn writes it; null, or left out: nothing is made good any more."""
+        return Call("RMAC_CAM.SetLearnedOffsets", {"Learned": Learned})
+
+    @staticmethod
+    def GetLearnedOffsets() -> Call[dict[str, Any]]:
+        """What there is to know for who learns a program: Machine, Configuration (changes with gains, filters, limits, …), Virtual, Period (s), of each of the Joints its Name, LargestOffset (mm or deg; 0: its drive closes its loop itself) and AnswerDelay (cycles); and how many Moves and Knots are in force."""
+        return Call("RMAC_CAM.GetLearnedOffsets", {})
+
+    @staticmethod
     def GetGeometry() -> Call[dict[str, Any]]:
         """What there is to draw of the loaded machine: the solids of its links, each with its pose while all joints stand at 0, names of links and joints, and where the tool interface is; `missing` says what is not known. Asked for once, and again when `geometry` in the topic animation is another number."""
         return Call("RMAC_CAM.GetGeometry", {})

@@ -11,9 +11,10 @@ namespace rmac {
 
 /// What the loop is to do in one cycle.
 struct ServoCommand {
-  Setpoint setpoint;   ///< of the kinematic joints; used when Engaged
-  Frames frames;       ///< in force for `setpoint`
-  bool power = false;  ///< after a fault or a quick stop it must fall before drives are enabled again
+  Setpoint setpoint;     ///< of the kinematic joints; used when Engaged
+  Frames frames;         ///< in force for `setpoint`
+  bool program = false;  ///< `setpoint` goes forward on a program's path: what was learned of it counts
+  bool power = false;    ///< after a fault or a quick stop it must fall before drives are enabled again
   bool quick_stop = false;
   /// Its rise, when Engaged, has the drives home, turn by turn; its fall before they are through ends it.
   bool home = false;

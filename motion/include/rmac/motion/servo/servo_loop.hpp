@@ -10,6 +10,7 @@
 
 namespace rmac {
 
+class LearnedPath;
 struct ServoBus;
 struct ServoCommand;
 struct ServoHandover;
@@ -58,6 +59,14 @@ class ServoLoop {
   /// What the joint's loop controls from the next cycle on, at rest or in motion: its position or its velocity. A joint
   /// that has not slipped goes on where it is, without a step.
   void set_control_method(std::size_t joint, ControlMethod method) noexcept;
+
+  /// What was learned of the program that follows, or nothing, at rest or in motion: no setpoint steps. `path` is left
+  /// with what was there before.
+  void exchange_learned(std::shared_ptr<const LearnedPath>& path) noexcept;
+  /// Largest offset of the joint that can be learned, mm or degrees; 0: none, as its drive closes its loop itself.
+  [[nodiscard]] double learned_bound(std::size_t joint) const noexcept;
+  /// So many cycles ago was the joint where it tells that it is.
+  [[nodiscard]] int answer_delay(std::size_t joint) const noexcept;
 
   [[nodiscard]] ServoState state() const noexcept;
   /// Where the loop holds its joints: the last setpoint, or the measured position where there is no torque.

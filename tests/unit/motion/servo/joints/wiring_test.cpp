@@ -1,5 +1,7 @@
 #include "servo/joints/wiring.hpp"
 
+#include <gmock/gmock.h>
+
 #include "servo/joints/live_joints.hpp"
 #include "unit/motion/servo/servo_fixture.hpp"
 
