@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "gateway/state/cycle_sample.hpp"
-#include "rmac/motion/cogging.hpp"
 #include "rmac/motion/drive_scale.hpp"
 #include "rmac/motion/error.hpp"
 #include "rmac/motion/joint_mechanics.hpp"
+#include "rmac/motion/servo/cogging.hpp"
 
 namespace rmac::gateway {
 

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "rmac/motion/cogging.hpp"
 #include "rmac/motion/drive_scale.hpp"
 #include "rmac/motion/force_control.hpp"
 #include "rmac/motion/joint.hpp"
 #include "rmac/motion/joint_mechanics.hpp"
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/ports/digital_control_interface.hpp"
+#include "rmac/motion/servo/cogging.hpp"
 #include "rmac/sdk/config/module_choice.hpp"
 
 namespace rmac::sdk {

@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "rmac/motion/cogging.hpp"
 #include "rmac/motion/drive_scale.hpp"
 #include "rmac/motion/force_control.hpp"
 #include "rmac/motion/joint.hpp"
@@ -15,6 +14,7 @@
 #include "rmac/motion/ports/digital_io_interface.hpp"
 #include "rmac/motion/ports/kinematics.hpp"
 #include "rmac/motion/ports/servo_law.hpp"
+#include "rmac/motion/servo/cogging.hpp"
 #include "rmac/motion/servo/servo_bus.hpp"
 #include "rmac/motion/servo/servo_fault.hpp"
 #include "rmac/motion/servo/servo_inputs.hpp"
