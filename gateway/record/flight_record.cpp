@@ -61,12 +61,12 @@ void append_row(const CycleSample& sample, std::string& out) {
                  to_string(sample.horizon.limit));
 }
 
-nlohmann::json to_json(const std::vector<Cogging::Harmonic>& harmonics) {
+nlohmann::json to_json(const Cogging& cogging) {
   nlohmann::json list = nlohmann::json::array();
-  for (const Cogging::Harmonic& one : harmonics) {
+  for (const Cogging::Harmonic& one : cogging.harmonics) {
     list.push_back({{"order", one.order}, {"cosine", one.cosine_nm}, {"sine", one.sine_nm}});
   }
-  return list;
+  return {{"lead", cogging.lead_s}, {"harmonics", std::move(list)}};
 }
 
 nlohmann::json to_json(const std::vector<Resonance>& resonances) {
@@ -98,7 +98,7 @@ nlohmann::json to_json(const FlightHead& head) {
     actuators.push_back({{"counts_per_revolution", scale.counts_per_revolution},
                          {"rated_torque", scale.rated_torque_nm},
                          {"direction", scale.direction},
-                         {"cogging", to_json(cogging.harmonics)}});
+                         {"cogging", to_json(cogging)}});
   }
   return {{"name", head.name},
           {"cause", head.cause == FlightCause::Fault ? "fault" : "demand"},

@@ -84,7 +84,7 @@ class Creep(unittest.TestCase):
         records = [joint.run(strokes(2 * TURN, 3.5, 1)), joint.run(strokes(0.06 * TURN, 0.75, 4))]
         head = {"joints": [{"unit": "mm"}],
                 "actuators": [{"counts_per_revolution": COUNTS, "rated_torque": joint.rated, "direction": joint.direction,
-                               "cogging": known}]}
+                               "cogging": {"lead": 0, "harmonics": known}}]}
         plant = model.Plant(joint.mass, joint.viscous, joint.coulomb, joint.load, 1.5 * PERIOD)
         return creep.find(head, records, 0, plant, frequency_response.Model(PERIOD, plant.mass, plant.delay_s))
 

@@ -86,7 +86,7 @@ def motor_of(head, columns, joint):
     if np.max(np.abs(turn * turns + offset - place)) > 0.005 * np.ptp(place):
         raise Unidentifiable("the joint does not go in proportion to its motor, so that cogging is not found")
     return Motor(index, float(turn), scale["counts_per_revolution"], scale["rated_torque"],
-                 {one["order"]: complex(one["cosine"], one["sine"]) for one in scale.get("cogging", [])})
+                 {one["order"]: complex(one["cosine"], one["sine"]) for one in scale.get("cogging", {}).get("harmonics", [])})
 
 
 def bent(way, speed, breakaway, stribeck_speed):

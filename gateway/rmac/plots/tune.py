@@ -154,6 +154,11 @@ def rounded(value):
     return float(f"{value:.5g}")
 
 
+def as_device_json(cogging):
+    """Of a flight record's head."""
+    return {"Lead": cogging["lead"], "Harmonics": [{key.capitalize(): value for key, value in one.items()} for one in cogging["harmonics"]]}
+
+
 def crept(given, head, plant, bent, lead):
     """What creeping has shown, for the law with feedforward and for the motor; None without it."""
     if given.creep is None:
@@ -168,7 +173,8 @@ def crept(given, head, plant, bent, lead):
     harmonics = [{"Order": order, "Cosine": rounded(cosine), "Sine": rounded(sine)} for order, cosine, sine in found.harmonics]
     return {"friction": friction.sliding, "explained": found.explained,
             "parameters": {**kept, **{key: [rounded(value)] for key, value in parameters.items()}},
-            "motor": {"actuator": motor.actuator, "of": len(head["actuators"]), "rated_torque": motor.rated_torque,
+            "motor": {"actuator": motor.actuator, "cogging_in_force": as_device_json(head["actuators"][motor.actuator]["cogging"]),
+                      "of": len(head["actuators"]), "rated_torque": motor.rated_torque,
                       "cogging": {"Lead": rounded(plant.delay_s), "Harmonics": harmonics}}}
 
 

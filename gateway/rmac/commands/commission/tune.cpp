@@ -29,18 +29,28 @@ struct TuneOptions {
   bool apply = false;
 };
 
+Result<> put_cogging(Connection& connection, const Json& motor, const char* which) {
+  Json actuators = Json::array();
+  for (int i = 0; i < motor["of"].get<int>(); ++i) actuators.push_back(Json::object());
+  actuators[motor["actuator"].get<std::size_t>()]["Cogging"] = motor[which];
+  return connection.command("RMAC_Config.SetMechanismNumActuators",
+                            {{"NumActuators", motor["of"]}, {"Buses", actuators}});
+}
+
 /// The law with feedforward and all that creeping has shown, with its motor's cogging.
 Result<> put_model(Connection& connection, int joint, const Json& found) {
   const Json& motor = found["creep"]["motor"];
-  Json actuators = Json::array();
-  for (int i = 0; i < motor["of"].get<int>(); ++i) actuators.push_back(Json::object());
-  actuators[motor["actuator"].get<std::size_t>()]["Cogging"] = motor["cogging"];
-  return connection
-      .command("RMAC_Config.SetMechanismNumActuators", {{"NumActuators", motor["of"]}, {"Buses", actuators}})
-      .and_then([&] {
-        return put_law(connection, joint, kFeedforwardFeedback, found["creep"]["parameters"],
-                       found["feedforward_feedback_gains"]);
-      });
+  const Result<> put = put_cogging(connection, motor, "cogging").and_then([&] {
+    return put_law(connection, joint, kFeedforwardFeedback, found["creep"]["parameters"],
+                   found["feedforward_feedback_gains"]);
+  });
+  // Nor is any of this to come in force with what is applied next.
+  if (!put) {
+    static_cast<void>(put_cogging(connection, motor, "cogging_in_force").and_then([&] {
+      return put_law(connection, joint, found["law"], found["parameters"], found["gains"]);
+    }));
+  }
+  return put;
 }
 
 Result<> apply_gains(Connection& connection, const TuneOptions& options, const Json& found) {

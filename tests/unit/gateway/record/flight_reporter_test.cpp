@@ -70,7 +70,7 @@ TEST_F(FlightReporterTest, RecordsBothMotorsOfAGantryAndDescribesHeldJointsLast)
   device_.joints[0].mechanics.resonances = {{274, 0.05, 0.7}};
   device_.joints[0].mechanics.low_pass_hz = 180;
   device_.actuators = {{.bus = "can0", .axis = 1, .scale = {65536, 2.4, -1, 0}}};
-  device_.actuators[0].cogging.harmonics = {{60, 0.001, -0.006}};
+  device_.actuators[0].cogging = {{{60, 0.001, -0.006}}, 0.0015};
   run_cycles(20, 3);
   Event asked;
   asked.cycle = cycle_;
@@ -92,7 +92,7 @@ TEST_F(FlightReporterTest, RecordsBothMotorsOfAGantryAndDescribesHeldJointsLast)
   EXPECT_EQ(head["joints"][0]["low_pass"], 180);
   EXPECT_EQ(head["actuators"], nlohmann::json::parse(
                                    R"([{"counts_per_revolution": 65536.0, "rated_torque": 2.4, "direction": -1,
-                                         "cogging": [{"order": 60, "cosine": 0.001, "sine": -0.006}]}])"));
+                                         "cogging": {"lead": 0.0015, "harmonics": [{"order": 60, "cosine": 0.001, "sine": -0.006}]}}])"));
   EXPECT_EQ(head["joints"][1]["name"], "C");
   EXPECT_EQ(head["joints"][1]["resonances"], nlohmann::json::array());
   EXPECT_EQ(head["joints"][1]["unit"], "deg");
