@@ -78,9 +78,9 @@ Expected<> read_offsets(const Json& list, LearnedPath::Parts& path) {
   return {};
 }
 
-/// 0.01 µm or 0.00001°: a thousandth of what a program can be learned to.
+/// To 0.01 µm or 0.00001°, a thousandth of what a program can be learned to; towards 0, so that a bound is kept.
 double rounded(double value) {
-  return std::round(value * 1e5) / 1e5;
+  return std::trunc(value * 1e5) / 1e5;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ namespace {
 /// A pass is worse than another one if it is by so much: what does not repeat makes as much of a difference.
 constexpr double kWorse = 1.03;
 constexpr double kKnotsPerPeriod = 8;  ///< of the highest frequency that is learned
+constexpr double kMostSlower = 8;      ///< a joint that comes out worse again and again
 constexpr double kFade_s = 0.01;       ///< offsets begin and end with 0
 
 /// From 0 to 1, without a step of its slope.
@@ -70,8 +71,8 @@ void Learner::learn(const Pass& pass) {
     const double rms = pass.rms(j);
     if (passes_ > 0 && rms > kWorse * joint.best_rms) {
       joint.fell_back = true;
-      joint.gain /= 2;
-      joint.bandwidth_hz /= 2;
+      joint.gain = std::max(joint.gain / 2, options_.gain / kMostSlower);
+      joint.bandwidth_hz = std::max(joint.bandwidth_hz / 2, options_.bandwidth_hz / kMostSlower);
       offsets.push_back(offsets_of(joint.best.get(), pass, j));
       continue;
     }
@@ -104,10 +105,13 @@ void Learner::lay(const Pass& pass, const std::vector<std::vector<double>>& offs
     }
     if (i % stride != 0 && i + 1 != steps.size()) continue;
     parts_.places.push_back(steps[i].along_mm);
-    for (const auto& of_joint : offsets) parts_.offsets.push_back(of_joint[i]);
+    // Between knots that stand at the bound their cubic goes beyond it.
+    for (std::size_t j = 0; j < offsets.size(); ++j)
+      parts_.offsets.push_back(std::clamp(offsets[j][i], -options_.largest[j], options_.largest[j]));
   }
   if (!steps.empty()) parts_.end_mm = steps.back().along_mm;
   auto made = LearnedPath::create(parts_);
+  problem_ = made ? std::string() : made.error().message;
   next_ = made ? std::make_shared<const LearnedPath>(std::move(*made)) : nullptr;
 }
 

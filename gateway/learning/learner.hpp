@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "gateway/learning/pass.hpp"
@@ -29,6 +30,8 @@ class Learner {
   void learn(const Pass& pass);
   /// For the next pass; nullptr: none yet.
   [[nodiscard]] const std::shared_ptr<const LearnedPath>& next() const noexcept { return next_; }
+  /// Why there are none after a pass.
+  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
   [[nodiscard]] const LearnedPath::Parts& next_parts() const noexcept { return parts_; }
   /// From now on `next` are the offsets of each joint's best pass.
   void settle(const Pass& last);
@@ -55,6 +58,7 @@ class Learner {
   std::size_t passes_ = 0;
   std::shared_ptr<const LearnedPath> next_;
   LearnedPath::Parts parts_;
+  std::string problem_;
 };
 
 }  // namespace rmac::gateway

@@ -66,7 +66,8 @@ Expected<std::shared_ptr<const LearnedPath>> Learning::read(const nlohmann::json
 Expected<> Learning::set_learned(const nlohmann::json& learned) {
   if (!slot_.in_force()) return refuse("no machine is loaded");
   if (auto rest = slot_.require_rest(kSet); !rest) return rest;
-  if (slot_.in_force()->virtual_mode()) return refuse("in virtual mode no drive runs, and there is nothing to learn");
+  if (!learned.is_null() && slot_.in_force()->virtual_mode())
+    return refuse("in virtual mode no drive runs, and there is nothing to learn");
   SwapRequest request;
   request.learns = true;
   std::size_t moves = 0, knots = 0;

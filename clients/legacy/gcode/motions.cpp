@@ -170,7 +170,7 @@ void Motions::arc(Block& block, bool counter_clockwise, std::size_t place) {
   Arc arc{.end = end, .axis = legacy::unit_axis(plane.normal), .counter_clockwise = counter_clockwise};
   if (const Word* turns = rules_.arcs_have_turns ? block.find('P') : nullptr) arc.more_turns = turns_of(*turns) - 1;
   const char beside = kCentreLetters.at(plane.normal);  // which some posts write of every arc
-  if (block.has(beside) && !modes_.absolute_centres && block.has_any("IJK") && !block.has('R')) {
+  if (block.has(beside) && !modes_.absolute_centres && !block.has('R')) {
     const Word& none = block.use(beside);
     if (none.value != 0)
       refuse(none.place,

@@ -53,7 +53,7 @@ tl::expected<std::optional<NamedText>, std::string> find_file(const std::vector<
   for (const std::string& folder : folders) {
     const std::string file = (fs::path(folder) / name).string();
     std::error_code none;
-    if (!fs::exists(file, none) || fs::equivalent(file, program, none)) continue;
+    if (!fs::is_regular_file(file, none) || fs::equivalent(file, program, none)) continue;
     auto text = read_file(file);
     if (!text) return tl::unexpected(fmt::format("{}: {}", file, text.error()));
     return NamedText{file, std::move(*text)};

@@ -178,16 +178,16 @@ def orders_of(turning, shape, known, least):
     return orders
 
 
-def stiffer(bent, plant, hz):
-    """How much more effort a rigid joint takes for the same motion: the harmonics are found as of one, and the joint is `bent`."""
-    rigid = type(bent)(bent.period, plant.mass, plant.delay_s)
-    return abs(rigid.response(hz)) / abs(bent.response(hz))
+def stiffer(joint_model, plant, hz):
+    """How much more effort a rigid joint takes for the same motion: the harmonics are found as of one, and the joint is `joint_model`."""
+    rigid = type(joint_model)(joint_model.period, plant.mass, plant.delay_s)
+    return abs(rigid.response(hz)) / abs(joint_model.response(hz))
 
 
-def find(head, records, joint, plant, bent):
-    """`records`: columns of the strokes at a steady speed, and of the short ones; `bent`: what the joint answers to an effort
+def find(head, records, joint, plant, joint_model):
+    """`records`: columns of the strokes at a steady speed, and of the short ones; `joint_model`: what the joint answers to an effort
     (frequency_response.Model)."""
-    period = bent.period
+    period = joint_model.period
     motor = motor_of(head, records[0], joint)
     unit = head["joints"][joint]["unit"]
     turning, short = (Strokes(columns, joint, motor, plant, period) for columns in records)
@@ -215,7 +215,7 @@ def find(head, records, joint, plant, bent):
     if not found[0] > 0:
         raise Unidentifiable("the strokes show no friction; give more --travel, or leave out --creep")
     passing = float(np.median(np.abs(turning.speed[turning.steady]))) / turn  # turns a second
-    amplitudes = [motor.torque_of(-value, unit) * stiffer(bent, plant, orders[i // 2] * passing)
+    amplitudes = [motor.torque_of(-value, unit) * stiffer(joint_model, plant, orders[i // 2] * passing)
                   for i, value in enumerate(found[2:])]
     left_over = {order: complex(amplitudes[2 * i], amplitudes[2 * i + 1]) for i, order in enumerate(orders)}
     whole = {order: size + motor.known.get(order, 0) for order, size in left_over.items()}

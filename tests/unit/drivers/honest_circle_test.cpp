@@ -16,7 +16,8 @@ TEST(CoggingAndPresliding, LeaveHalfAMicrometreWhereTheyAreKnown) {
     const Ballbar ballbar = HonestCircle().measure(feed, kAll);
     EXPECT_LT(ballbar.contour_rms(), 0.0008) << feed;
     EXPECT_LT(ballbar.reversal_spike(), 0.005) << feed;
-    RecordProperty("contour_rms_um", std::to_string(1e3 * ballbar.contour_rms()));
+    RecordProperty("contour_rms_um_F" + std::to_string(static_cast<int>(feed)),
+                   std::to_string(1e3 * ballbar.contour_rms()));
   }
 }
 

@@ -40,17 +40,17 @@ Result<> put_cogging(Connection& connection, const Json& motor, const char* whic
 /// The law with feedforward and all that creeping has shown, with its motor's cogging.
 Result<> put_model(Connection& connection, int joint, const Json& found) {
   const Json& motor = found["creep"]["motor"];
-  const Result<> put = put_cogging(connection, motor, "cogging").and_then([&] {
+  return put_cogging(connection, motor, "cogging").and_then([&] {
     return put_law(connection, joint, kFeedforwardFeedback, found["creep"]["parameters"],
                    found["feedforward_feedback_gains"]);
   });
-  // Nor is any of this to come in force with what is applied next.
-  if (!put) {
-    static_cast<void>(put_cogging(connection, motor, "cogging_in_force").and_then([&] {
-      return put_law(connection, joint, found["law"], found["parameters"], found["gains"]);
-    }));
-  }
-  return put;
+}
+
+/// The draft is as it was before `put_model`, and that in force.
+void put_back(Connection& connection, int joint, const Json& found) {
+  static_cast<void>(put_cogging(connection, found["creep"]["motor"], "cogging_in_force").and_then([&] {
+    return put_law(connection, joint, found["law"], found["parameters"], found["gains"]);
+  }));
 }
 
 Result<> apply_gains(Connection& connection, const TuneOptions& options, const Json& found) {
@@ -79,6 +79,7 @@ Result<> apply_gains(Connection& connection, const TuneOptions& options, const J
   const Result<> applied = set.and_then(put);
   // Half of it would come in force with whatever is applied next.
   if (!applied && filters != before && before.is_object()) static_cast<void>(set_filters(before));
+  if (!applied && options.creep) put_back(connection, joint, found);
   return applied;
 }
 

@@ -43,7 +43,6 @@ std::string hash_of(const Program& program) {
 /// Refuses what cannot be repeated, or whose places could not be told apart.
 Result<> check(const Program& program) {
   constexpr std::string_view kConfigures = "RMAC_Config.";
-  constexpr std::string_view kDevice = "Device.";
   std::set<std::int64_t> ids;
   for (const Request& request : program.requests) {
     const auto refuse = [&](const std::string& why) {
@@ -56,7 +55,6 @@ Result<> check(const Program& program) {
                       "--machine",
                       request.method));
     }
-    if (request.method.starts_with(kDevice) && request.timing != Timing::Move) continue;
     const bool move = request.timing == Timing::Move && !request.tool_change;
     if (move && !ids.insert(request.move_id).second) {
       return refuse(
@@ -157,7 +155,8 @@ Result<> Lesson::pass() {
   if (pass.steps().size() < 2) return fail("no joint moved along a path, so there is nothing to learn");
   note(pass, *report);
   learner_.learn(pass);
-  if (!learner_.next() || learned().dump().size() > line_bytes()) {
+  if (!learner_.next()) return fail(learner_.problem());
+  if (learned().dump().size() > line_bytes()) {
     return fail(
         "the program is too long: what would be learned of it is more than the appliance takes at once; learn "
         "its parts, or with a lower --bandwidth");

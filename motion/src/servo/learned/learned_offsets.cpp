@@ -16,7 +16,7 @@ void LearnedOffsets::step(const Setpoint& at, bool follows, IndexSet controlled)
   const bool known = follows && path_ != nullptr && path_->at(cursor_, at.move_id, at.s_mm, learned);
   if (!known) cursor_ = {};
   const bool turns = known != std::exchange(followed_, known);
-  // A cycle's way is a part of a knot's, at any override.
+  // Where a cycle goes by more than a knot, a change is taken for a jump, too: it fades in.
   const double most = path_ == nullptr ? 0 : path_->steepest();
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     Joint& joint = joints_[j];
@@ -39,7 +39,9 @@ void LearnedOffsets::go_on(Joint& joint, double wanted, bool jumps) const noexce
   joint.rest_rate -= period_s_ * kFading * (2 * joint.rest_rate + kFading * joint.rest);
   joint.rest += period_s_ * joint.rest_rate;
   const double before = joint.offset;
-  joint.offset = std::clamp(wanted + joint.rest, -joint.bound, joint.bound);
+  const double step = joint.bound * kFastest * period_s_;
+  joint.offset = std::clamp(wanted + joint.rest, before - step, before + step);
+  joint.offset = std::clamp(joint.offset, -joint.bound, joint.bound);
   joint.rate = (joint.offset - before) / period_s_;
 }
 

@@ -137,6 +137,16 @@ TEST_F(ServoLearning, FollowingErrorsAreWatchedAgainstTheProgram) {
   EXPECT_EQ(report.fault.kind, ServoFault::Kind::None) << "to the law's setpoint it would be 0.57";
 }
 
+TEST_F(ServoLearning, AnOffsetGoesNoFasterThanItMayWhateverThePathSays) {
+  build();
+  engage();
+  teach(hill(500));  // as of somebody who has not learned it: the whole bound from one knot to the next
+  command.program = true;
+  go_to(90);
+  EXPECT_LE(steepest_, 0.25 * 0.25 + 1e-12) << "a quarter of its bound in a cycle of 1 ms";
+  EXPECT_GT(steepest_, 0.01);
+}
+
 TEST_F(ServoLearning, AJointWhoseDriveClosesItsLoopTakesNone) {
   ServoLoopParts made = parts();
   made.actuators[0].mode = DriveMode::CyclicSyncPosition;

@@ -101,7 +101,7 @@ class FeedforwardModel {
 
   Parameters parameters_;
   std::array<double, 4> gains_{};
-  double friction_ = 0;  ///< share of sliding friction, -1 to 1
+  double friction_ = 0;  ///< shares of sliding friction; up to `breakaway` either way
 };
 
 }  // namespace rmac::modules
