@@ -85,7 +85,7 @@ class Learning(unittest.TestCase):
         for before, after in zip(velocity, velocity[1:]):
             self.assertLessEqual(abs(after - before), 1.001 * 5000 * PERIOD)
 
-    def test_drives_that_answer_a_cycle_late_teach_the_same(self):
+    def test_drives_that_answer_a_cycle_late_teach_too(self):
         file = next(self.appliance.tree.glob("*/*/DMACXYZ/device.json"))
         device = json.loads(file.read_text())
         device["DigitalControlInterface"]["Parameters"] = {"late_answers": [1]}
