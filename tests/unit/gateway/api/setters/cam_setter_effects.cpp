@@ -142,6 +142,33 @@ const std::vector<SetterEffect>& cam_setter_effects() {
          bench.call("RMAC_CAM.SetPathTolerance", R"({"Tolerance": 0.05})");
          EXPECT_GT(slowest_at_corner(corner(bench)), 3) << "rounded";
        }},
+      {"RMAC_CAM.SetLearnedOffsets",
+       [](SetterBench& bench) {
+         const nlohmann::json told = bench.call("RMAC_CAM.GetLearnedOffsets");
+         const double size = told["Joints"][0]["LargestOffset"].get<double>() / 2;
+         nlohmann::json learned{{"Machine", told["Machine"]},
+                                {"Configuration", told["Configuration"]},
+                                {"Moves", {{1, 0}}},
+                                {"End", 40},
+                                {"Places", {0, 10, 20, 30, 40}}};
+         for (std::size_t j = 0; j < told["Joints"].size(); ++j) {
+           const double moved = j == 0 ? size : 0;
+           learned["Joints"].push_back({{"Offsets", {0, moved, moved, moved, 0}}});
+         }
+         // Where the joint comes out, half-way of a move of 40 mm, beside where it is wanted.
+         const auto beside = [](const Trace& trace) {
+           const CycleSample& half = trace.at(trace.size() / 2);
+           return half.position[0] - half.position_set[0];
+         };
+         const double before = beside(bench.tip_to(40, 0, 0));
+         bench.tip_to(0, 0, 0);
+         const std::string request = nlohmann::json{{"Learned", learned}}.dump();
+         learned["Configuration"] = "another";
+         EXPECT_THAT(bench.refusal("RMAC_CAM.SetLearnedOffsets", nlohmann::json{{"Learned", learned}}.dump()),
+                     HasSubstr("another configuration"));
+         bench.call("RMAC_CAM.SetLearnedOffsets", request);
+         EXPECT_NEAR(beside(bench.tip_to(40, 0, 0)) - before, size, 0.1 * size);
+       }},
       {"RMAC_CAM.SetOrientationTolerance",
        [](SetterBench& bench) {
          load_five_axes(bench);
