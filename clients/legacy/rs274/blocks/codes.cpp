@@ -10,8 +10,6 @@ using gcode::GCode, gcode::GGroup, gcode::MCode, gcode::MGroup;
 namespace {
 
 constexpr std::string_view kCycle = "a cycle that needs the spindle's angle or a hand; write it out as G0 and G1";
-constexpr std::string_view kCompensation =
-    "cutter radius compensation is not taken yet; have the CAM program give the path of the tool's centre";
 constexpr std::string_view kProbe = "probing belongs into a measuring plan (rmac measure)";
 constexpr std::string_view kHome =
     "a program does not set the machine's points; give --reference-point when it is imported";
