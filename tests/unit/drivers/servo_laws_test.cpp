@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "conformance/holds.hpp"
@@ -191,11 +192,12 @@ TEST(FeedforwardLaw, TurnsFrictionRoundEarlierByItsLead) {
 class BendingFriction : public testing::TestWithParam<double> {
  protected:
   /// What the law adds to its first effort after ways of `step` mm a cycle, cycle by cycle.
-  std::vector<double> efforts(const std::vector<double>& steps) {
+  std::vector<double> efforts(const std::vector<double>& steps, double presliding = kPresliding) {
     LoadedModule module("modules", "FeedforwardServoControlLaw");
     const double breakaway = GetParam(), slow = 0.5;
-    const std::array<sdk::Parameter, 3> parameters{
-        {kBends, {"breakaway", {&breakaway, 1}, nullptr}, {"stribeck_speed", {&slow, 1}, nullptr}}};
+    const std::array<sdk::Parameter, 3> parameters{{{"presliding", {&presliding, 1}, nullptr},
+                                                    {"breakaway", {&breakaway, 1}, nullptr},
+                                                    {"stribeck_speed", {&slow, 1}, nullptr}}};
     const auto law = module.create<ServoLaw>(parameters);
     EXPECT_TRUE(law) << module.error();
     EXPECT_TRUE(law->set_gains(std::array{0.0, 0.0, kCoulomb, 0.0}));
@@ -223,6 +225,12 @@ TEST_P(BendingFriction, EndsAsSlidingFrictionAndTurnsRoundWithTheWay) {
   EXPECT_NEAR(found[7999], kCoulomb * (1 + (GetParam() - 1) * std::exp(-0.01)), 1e-3) << "slow: it has to break away";
   EXPECT_NEAR(found.back(), -found[7999], 1e-3);
   EXPECT_GT(found[8040], 0) << "2 µm after it turned round the bristles still push";
+}
+
+TEST_P(BendingFriction, IsANumberHoweverSmallItsWayIs) {
+  const double least = std::numeric_limits<double>::denorm_min();
+  EXPECT_NEAR(efforts({0, 0.1, 0.1, 0, 0.1}, least).back(), kCoulomb, 1e-6);
+  EXPECT_NEAR(efforts({0, 0.1, -0.1}, least).back(), -kCoulomb, 1e-6);
 }
 
 TEST_P(BendingFriction, StaysWhereItIsAtRest) {

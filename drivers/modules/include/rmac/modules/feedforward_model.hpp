@@ -55,7 +55,9 @@ class FeedforwardModel {
   void step(const ServoInput& input) noexcept {
     if (parameters_.presliding <= 0) return slide(input);
     const double way = led(input) * input.period_s;
-    friction_ = bent(friction_, way / parameters_.presliding, bound(led(input)));
+    // A way so long ends at g whatever it is, and is a number however small somebody has the presliding way.
+    constexpr double kLongest = 1e6;
+    friction_ = bent(friction_, std::clamp(way / parameters_.presliding, -kLongest, kLongest), bound(led(input)));
   }
   /// After the step that was last.
   [[nodiscard]] double effort(const ServoInput& input) const noexcept {
