@@ -23,8 +23,6 @@ SEARCH = (
     "Type = 'Mill' AND ConfigurationType = '3-axis' "
     "AND Length >= 100 AND Width >= 90 AND Depth >= 30 AND PositioningTolerance <= 0.05 ORDER BY Length * Width * Depth"
 )
-# What each axis of the simulated bus is: N·s/mm of grease, N·s²/mm of mass, N of friction (docs/servo.md, docs/simulated-bus.md).
-AXES = ((0.158, 0.0347, 18.85), (0.158, 0.0407, 18.85), (0.158, 0.0267, 18.85))
 REFUSALS = (rmac.errors.TravelLimit, rmac.errors.InvalidParameterValue, rmac.errors.UnsupportedOperation)
 
 
@@ -37,16 +35,6 @@ def search(client):
     names = [found.name for found in client.machines(SEARCH)]
     say(f"  {len(client.machines())} machines known, {len(names)} fit: {', '.join(names)}")
     return names
-
-
-def feed_forward(client, device_tree):
-    """Puts feedforward before the PID of DMACXYZ's joints: another law in the same loops, without shutting down."""
-    joints = json.loads((pathlib.Path(device_tree) / "mill/3-axis/DMACXYZ/device.json").read_text(encoding="utf-8"))["Joints"]
-    for number, (joint, axis) in enumerate(zip(joints, AXES)):
-        gains = [*joint["Gains"], *axis, *joint["ServoControlLaw"]["Parameters"].get("load", [0])]
-        client.config.SetMechanismJointServoControlLaw(number, "DMAC_FEEDFORWARDFEEDBACK_CONTROL")
-        client.config.SetMechanismJointServoControlGains(number, gains)
-    client.config.Apply()
 
 
 def split(program):
@@ -88,12 +76,11 @@ def probe_off_plane(client, plan, session):
         session.problems.append("the machine moved although the off-plane move was refused")
 
 
-def cut(client, device_tree, session, ready, plan, sweep, rim):
+def cut(client, session, ready, plan, sweep, rim):
     """The records, by the names of their files."""
     say("DMACXYZ: sweep the headlight (ball end)")
     preparation, moves = split(sweep)
     prepare(client, preparation)
-    feed_forward(client, device_tree)
     recorder, sent, _ = machine(client, moves)
     session.plan_to_motion_ms = (recorder.first_motion - ready) * 1e3
     session.send_to_motion_ms = (recorder.first_motion - sent) * 1e3
@@ -131,7 +118,7 @@ def run(host, port, out, device_tree):
         if "DMACXYZ" not in names:
             raise RuntimeError(f"the search did not find DMACXYZ, but {names or 'nothing'}")
         with client.authority():
-            records = cut(client, device_tree, session, ready, plan, sweep, rim)
+            records = cut(client, session, ready, plan, sweep, rim)
         session.problems += [f"fault: {event.message}" for event in events.so_far() if "fault" in event.kind.lower()]
 
     say("Checks")

@@ -17,6 +17,8 @@ namespace {
 constexpr double kFarAway = 1e5;
 /// A joint so near to its limit, in mm or degrees, stands at it.
 constexpr double kAtTheLimit = 1e-6;
+/// Joints stand so much beside their places, in mm or degrees, and all the more before they were moved.
+constexpr double kStandsWithin = 1e-2;
 /// To so much the way to a limit is found, in mm or degrees.
 constexpr double kReachFound = 1e-3;
 /// So far before it a jog ends: at the very end of reach, joints that friction holds a micrometre beyond have no pose.
@@ -26,6 +28,14 @@ double travel_end(const JointLimits& limits, double from, bool positive) {
   const bool bounded = positive ? ends_above(limits) : ends_below(limits);
   if (!bounded) return from + (positive ? kFarAway : -kFarAway);
   return positive ? limits.max : limits.min;
+}
+
+/// Where a jog ends. One by the whole way to a limit ends at it, and is not refused for where the joint stands.
+double jog_end(const JointLimits& limits, double from, double distance) {
+  const double to = from + distance;
+  if (ends_above(limits) && to > limits.max && to <= limits.max + kStandsWithin) return limits.max;
+  if (ends_below(limits) && to < limits.min && to >= limits.min - kStandsWithin) return limits.min;
+  return to;
 }
 
 }  // namespace
@@ -45,7 +55,8 @@ Expected<> CamPositioning::jog_joint(int joint, double distance) {
   if (auto free = check_limit_switches(*found, distance > 0); !free) return free;
   const JointTargetGeometry now = joints_now();
   JointTargetGeometry target = now;
-  target.joints[*found] += distance;
+  double& end = target.joints[*found];
+  end = jog_end(device_.get()->joints[*found].limits, end, distance);
   return supervisor_.jogging().run(maker_.joint_move(kPositioningMoveId, target, now.joints));
 }
 

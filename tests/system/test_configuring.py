@@ -69,7 +69,7 @@ class Configuring(unittest.TestCase):
         message = self.operator.refusal("RMAC_Config.SetMechanismNumActuators", NumActuators=4, Buses=[{}, {}, {}, {"Bus": "sim0"}]).message
         self.assertIn("/3", message)
         self.config("SetMechanismNumActuators", NumActuators=4,
-                    Buses=[{}, {}, {}, {"Bus": "sim0", "Axis": 4, "CountsPerRevolution": 131072, "RatedTorque": 0.318}])
+                    Buses=[{}, {}, {}, {"Bus": "sim0", "Axis": 5, "CountsPerRevolution": 131072, "RatedTorque": 0.318}])
         self.apply()
         self.assertAlmostEqual(self.moves_to(1, 2, 3, 30)[3], 30, delta=0.1)
 

@@ -11,14 +11,11 @@ import tempfile
 import unittest
 
 from appliance import BUILD, Appliance, pose
+from bending_mill import rigid
 from test_collisions import request
 from test_forces import STOCK, TOOL, TOP, slot
 
 MILL = "mill/3-axis/DMACXYZ"
-# Axes that bend, stick and cog as docs/simulated-bus.md has them for DMACXYZ, and a loop that `rmac tune` found for such.
-BENDS = {"stiffness_nm_rad": [15.8, 15.8, 0, 0, 0, 0, 0, 0], "load_inertia_kg_m2": [1.27e-5, 1.27e-5, 0, 0, 0, 0, 0, 0],
-         "cogging": [0.02, 0.02, 0, 0, 0, 0, 0, 0]}
-LOOP = {"Gains": [345, 14586, 6.0], "Resonances": [{"Frequency": 274.7, "Damping": 0.02, "Width": 0.3}], "LowPass": 180}
 
 
 def write(file, requests):
@@ -26,10 +23,12 @@ def write(file, requests):
     return file
 
 
-def path(seed, moves=7):
-    """Lines, arcs and rests within 40 mm of the middle, at feeds of their own."""
+def path(seed, moves=7, at=(0, 0, 0)):
+    """Lines, arcs and rests within 40 mm of the middle, at feeds of their own, from a place where the tool stands or is led to first."""
     chance = random.Random(seed)
-    at, requests = (0, 0, 0), []
+    requests = []
+    if any(at):
+        requests.append(request("RMAC_CAM.MoveToJointTarget", MoveID=moves + 1, JointTargetFrame={"joints": list(at)}))
     for move in range(1, moves + 1):
         there = tuple(round(chance.uniform(-25, 25), 3) for _ in range(3))
         requests.append(request("RMAC_CAM.SetFeedrate", Feedrate=chance.choice([300, 900, 2000])))
@@ -65,20 +64,19 @@ class Dynamics(unittest.TestCase):
         self.assertEqual(len(done.stdout.splitlines()), 1, done.stderr)
         return json.loads(done.stdout)["dynamics"], done
 
-    def bending_tree(self, **joint):
+    def tree_with(self, change):
+        """The device tree with DMACXYZ changed."""
         tree = self.folder / "drivers"
         shutil.copytree(BUILD / "drivers", tree)
         file = tree / MILL / "device.json"
         device = json.loads(file.read_text())
-        device["DigitalControlInterface"]["Parameters"] = BENDS
-        for each in device["Joints"][:2]:
-            each.update({**LOOP, **joint})
+        change(device)
         file.write_text(json.dumps(device))
         return tree
 
-    def held_to_the_daemon(self, tree, seeds, within_mm):
+    def held_to_the_daemon(self, tree, seeds, within_mm, sag_mm=0.0):
         for seed in seeds:
-            program = write(self.folder / f"{seed}.rmac", path(seed))
+            program = write(self.folder / f"{seed}.rmac", path(seed, at=(1, 1, 1)))
             # What an axis does that sticks depends on what it did before: each begins as it was switched on.
             with Appliance(device_tree=str(tree)) as appliance:
                 self.assertEqual(appliance.rmac("load", "DMACXYZ").returncode, 0)
@@ -88,22 +86,24 @@ class Dynamics(unittest.TestCase):
             self.assertIsNone(told["stopped"])
             ran, simulated = rows(self.folder / "run.csv"), rows(self.folder / "simulated.csv")
             self.assertEqual(ran[0].keys(), simulated[0].keys())
+            # Behind the way there, which begins where brakes and friction left the axes.
             errors = [[(ran_row[f"a{j}"] - ran_row[f"q{j}"], row[f"a{j}"] - row[f"q{j}"]) for j in (1, 2, 3)]
-                      for ran_row, row in zip(ran, simulated)]
+                      for ran_row, row in zip(ran, simulated) if row["move_id"] != 8]
             rms = [math.sqrt(sum(of(a, b) ** 2 for row in errors for a, b in row) / (3 * len(errors)))
                    for of in (lambda a, b: a - b, lambda a, _: a, lambda _, b: b)]
             self.assertAlmostEqual(rms[2] / rms[1], 1, delta=0.1)
             self.assertLess(rms[0], within_mm, f"seed {seed}: mm rms between what was predicted and what the daemon's axes did")
             most = max(abs(b) for row in errors for _, b in row)
             self.assertGreater(most, 0.005, "which is little against what they are off")
-            self.assertAlmostEqual(max(joint["peak_error"] for joint in told["joints"]), most, delta=0.3 * most)
+            # What is told is where the loads are; what is recorded, where their motors are.
+            self.assertAlmostEqual(max(joint["peak_error"] for joint in told["joints"]), most, delta=0.3 * most + sag_mm)
 
     def test_axes_do_what_the_daemons_do(self):
-        self.held_to_the_daemon(BUILD / "drivers", (1, 2), 0.0002)
+        self.held_to_the_daemon(self.tree_with(rigid), (1, 2), 0.0002)
 
     def test_so_do_axes_that_bend_stick_and_cog(self):
         # Where an axis sticks, a micrometre of where it began decides when it breaks loose.
-        self.held_to_the_daemon(self.bending_tree(), (4, 6), 0.006)
+        self.held_to_the_daemon(BUILD / "drivers", (4, 6), 0.006, sag_mm=117.7 / 25000)
 
     def test_a_cut_pushes_the_axes_and_the_part_shows_it(self):
         (self.folder / "tools").mkdir()
@@ -129,7 +129,12 @@ class Dynamics(unittest.TestCase):
 
     def test_a_machine_that_would_stop_or_leave_its_path_is_told(self):
         program = write(self.folder / "p.rmac", path(9, 2))
-        weak = self.bending_tree(MaxFollowingError=0.002)
+        def bounds(device):
+            rigid(device)
+            for joint in device["Joints"][:2]:
+                joint["MaxFollowingError"] = 0.002
+
+        weak = self.tree_with(bounds)
         told, done = self.report(program, "--device-tree", weak)
         self.assertEqual(done.returncode, 1)
         self.assertEqual(told["stopped"]["line"], 2)
@@ -155,8 +160,7 @@ class Dynamics(unittest.TestCase):
         circle = [request("RMAC_CAM.SetFeedrate", Feedrate=2000), request("RMAC_CAM.MoveToPathTarget", MoveID=1, TargetFrame=pose(20, 0, 0)),
                   request("RMAC_CAM.MoveAlongArc", MoveID=2, RotSign=1, Closed=True, CenterPoint=pose(0, 0, 0),
                           StartPoint=pose(20, 0, 0), EndPoint=pose(20, 0, 0))]
-        tree = self.folder / "drivers"
-        shutil.copytree(BUILD / "drivers", tree)
+        tree = self.tree_with(rigid)
         peak = self.report(write(self.folder / "p.rmac", circle), "--device-tree", tree)[0]["path_peak_mm"]
         file = tree / MILL / "device.json"
         file.write_text(json.dumps(json.loads(file.read_text()) | {"PositioningTolerance": 0.8 * peak}))

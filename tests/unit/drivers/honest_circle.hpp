@@ -21,11 +21,19 @@ class HonestCircle : public MillRun {
   }
 
   Ballbar measure(double feed, const Known& known) {
-    Mill mill(
-        "mill/3-axis/DMACXYZ", bus_, [&](nlohmann::json& device) { choose(device, known); },
-        [&](Mill&, ServoLoopParts& parts) { choose(parts, known); });
+    Mill mill = make(known);
     power_up(mill);
     return circle(mill, Circle(25, feed / 60, 1000, 10000));
+  }
+  /// Largest error on the way back after a way there and so long a rest, in mm.
+  double back_after_rest(double rest_s, const Known& known) {
+    Mill mill = make(known);
+    power_up(mill);
+    move(mill, 5.3);
+    dwell(mill, static_cast<int>(rest_s * 1000));
+    largest_error_.fill(0);
+    move(mill, -5.3);
+    return *std::max_element(largest_error_.begin(), largest_error_.end());
   }
   [[nodiscard]] bool failed() const { return failed_; }
 
@@ -33,13 +41,19 @@ class HonestCircle : public MillRun {
   static constexpr double kPeriod = 0.001;
   static constexpr int kCoggingOrder = 60;
 
+  Mill make(const Known& known) {
+    return {"mill/3-axis/DMACXYZ", bus_, [&](nlohmann::json& device) { choose(device, known); },
+            [&](Mill&, ServoLoopParts& parts) { choose(parts, known); }};
+  }
   static void choose(nlohmann::json& device, const Known& known) {
     for (nlohmann::json& joint : device["Joints"]) joint["Gains"] = {345, 14586, 6.0};
     choose_feedforward(device, 1, 0.0033);
     if (known.presliding == 0) return;
     for (nlohmann::json& joint : device["Joints"]) {
-      joint["ServoControlLaw"]["Parameters"].update(
-          {{"presliding", {known.presliding}}, {"breakaway", {1.2}}, {"stribeck_speed", {1.0}}});
+      joint["ServoControlLaw"]["Parameters"].update({{"presliding", {known.presliding}},
+                                                     {"breakaway", {1.2}},
+                                                     {"stribeck_speed", {1.0}},
+                                                     {"rest_band", {0.002}}});
     }
   }
   static void choose(ServoLoopParts& parts, const Known& known) {

@@ -30,6 +30,14 @@ TEST(CoggingAndPresliding, AreBothNeeded) {
   EXPECT_GT(HonestCircle().measure(kFast, {.presliding = kAll.presliding}).contour_rms(), 0.002);
 }
 
+// At rest the integral finds bristles bent otherwise than they were as the joint came to rest; the way back begins
+// there.
+TEST(CoggingAndPresliding, ARestBeforeAJointTurnsRoundDoesNotMatter) {
+  for (const double rest_s : {0.1, 1.0, 3.0}) {
+    EXPECT_LT(HonestCircle().back_after_rest(rest_s, kAll), 0.0075) << rest_s << " s";
+  }
+}
+
 // The loop has to bear twice the motor's own cogging, and friction that is nowhere what was found.
 TEST(CoggingAndPresliding, MayBeWrongWithoutAFault) {
   for (const double feed : kFeeds) {

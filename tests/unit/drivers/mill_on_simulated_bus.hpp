@@ -21,6 +21,7 @@
 #include "rmac/motion/servo/servo_loop_parts.hpp"
 #include "rmac/motion/servo/servo_report.hpp"
 #include "rmac/sdk/servo_law_names.hpp"
+#include "stiff_loops.hpp"
 
 namespace rmac::mill_test {
 
@@ -59,7 +60,8 @@ class RestToRest {
   double jerk_time_, accel_time_, cruise_time_;
 };
 
-/// A mill with the modules, gains and scales of its own device.json on the simulated bus, unless `edit` changes them.
+/// A mill with the modules and scales of its own device.json on rigid simulated axes, with loops for such, unless
+/// `edit` changes them.
 class Mill {
  public:
   using Edit = std::function<void(nlohmann::json& device)>;
@@ -69,6 +71,7 @@ class Mill {
        const EditParts& edit_parts = {})
       : folder_(folder),
         device_(nlohmann::json::parse(std::ifstream(RMAC_SOURCE_DIR "/drivers/" + folder + "/device.json"))) {
+    choose_stiff_loops(device_);
     if (edit) edit(device_);
     ServoLoopParts parts;
     parts.kinematics = make<Kinematics>(device_["Kinematics"]);
@@ -231,7 +234,7 @@ class MillRun {
 class MillOnSimulatedBus : public testing::Test, protected MillRun {};
 
 /// Feedforward with feedback for the two table axes: the model of the plant, `share` of it (1: as it is), on top of the
-/// gains that device.json gives to PID.
+/// gains that PID has.
 inline void choose_feedforward(nlohmann::json& device, double share = 1, double lead_s = 0.0017) {
   const std::vector<fieldbus::SimulatedAxis> axes = fieldbus::default_simulated_axes();
   for (std::size_t j = 0; j < device["Joints"].size(); ++j) {

@@ -55,5 +55,21 @@ TEST_F(JointTypes, OneEndIsKeptWhereTheOtherIsFree) {
   EXPECT_TRUE(jog(0, -1049));
 }
 
+// A joint that was enabled some micrometres beside its place is jogged by its whole travel all the same.
+TEST_F(JointTypes, AJogByTheWholeTravelEndsWhereThatEnds) {
+  load([](sdk::DeviceObject&) {});
+  const JointLimits limits = TestMachine::mill().joints[0].limits;
+  for (const double end : {limits.max, limits.min}) {
+    const double beyond = std::copysign(0.004, end);
+    const double from = machine_.controller.sample().position_set[0];
+    ASSERT_FALSE(machine_.controller.cam().positioning().jog_joint(0, end - from + 10 * beyond));
+    ASSERT_TRUE(machine_.controller.cam().positioning().jog_joint(0, end - from + beyond));
+    ASSERT_TRUE(machine_.run_until([&] {
+      const CycleSample now = machine_.controller.sample();
+      return !now.moving && now.position_set[0] == end;
+    }));
+  }
+}
+
 }  // namespace
 }  // namespace rmac::gateway

@@ -37,22 +37,23 @@ class ErrorSignal {
   }
   [[nodiscard]] double error() const noexcept { return error_; }
   [[nodiscard]] double rate() const noexcept { return rate_; }
-  /// The joint is to stand, and is as near to where it is to stand as it needs to be: an integral that went on would
+  /// The joint is to stand.
+  [[nodiscard]] bool stands() const noexcept { return stands_; }
+  /// It is to stand, and is as near to where it is to stand as it needs to be: an integral that went on would
   /// push it off against its static friction, and it would hunt.
   [[nodiscard]] bool rests() const noexcept { return rests_; }
 
  private:
   void look_for_rest(const ServoInput& input) noexcept {
     constexpr double kStanding = 1e-6;  // mm/s, mm/s², or degrees: less is rounding
-    const bool stands =
-        std::abs(input.velocity_setpoint) <= kStanding && std::abs(input.acceleration_setpoint) <= kStanding;
-    rests_ = stands && parameters_.rest_band > 0 && std::abs(error_) <= parameters_.rest_band;
+    stands_ = std::abs(input.velocity_setpoint) <= kStanding && std::abs(input.acceleration_setpoint) <= kStanding;
+    rests_ = stands_ && parameters_.rest_band > 0 && std::abs(error_) <= parameters_.rest_band;
   }
 
   Parameters parameters_;
   double error_ = 0;  ///< mm or deg
   double rate_ = 0;   ///< mm/s or deg/s, filtered
-  bool rests_ = false;
+  bool stands_ = false, rests_ = false;
 };
 
 }  // namespace rmac::modules

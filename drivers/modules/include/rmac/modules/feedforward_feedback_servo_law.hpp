@@ -44,7 +44,9 @@ class FeedforwardFeedbackServoLaw final : public ServoLaw {
     if (!is_finite(input)) return std::numeric_limits<double>::quiet_NaN();
     last_ = input;
     model_.step(input);
-    return feedback_.update(input, model_.effort(input), limit_);
+    const double effort = feedback_.update(input, model_.effort(input), limit_);
+    feedback_.shift(-model_.settle(feedback_.gained_at_rest()));
+    return effort;
   }
 
  private:

@@ -59,6 +59,15 @@ class FeedforwardModel {
     constexpr double kLongest = 1e6;
     friction_ = bent(friction_, std::clamp(way / parameters_.presliding, -kLongest, kLongest), bound(led(input)));
   }
+  /// Of a joint that stands: what a feedback has to add by and by is what friction takes up, for bristles that were bent
+  /// one way as the joint came to rest are bent otherwise when it goes on. Returns how much of `effort` it took.
+  double settle(double effort) noexcept {
+    if (parameters_.presliding <= 0 || gains_[2] <= 0) return 0;
+    const double before = friction_;
+    const double most = parameters_.breakaway;
+    friction_ = std::clamp(friction_ + effort / gains_[2], std::min(-most, friction_), std::max(most, friction_));
+    return (friction_ - before) * gains_[2];
+  }
   /// After the step that was last.
   [[nodiscard]] double effort(const ServoInput& input) const noexcept {
     return gains_[0] * input.velocity_setpoint + gains_[1] * input.acceleration_setpoint + gains_[2] * friction_ +

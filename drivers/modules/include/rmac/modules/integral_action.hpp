@@ -19,6 +19,9 @@ class IntegralAction {
   void start(double effort, double others, double error, double period_s) noexcept {
     value_ = effort - others - ki_ * error * period_s;
   }
+  /// False: its value only fades.
+  [[nodiscard]] bool grows() const noexcept { return ki_ > 0; }
+  [[nodiscard]] double value() const noexcept { return value_; }
   /// Takes up a change of the rest of the law by -`effort`.
   void shift(double effort) noexcept { value_ += effort; }
 

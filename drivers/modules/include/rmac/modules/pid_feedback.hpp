@@ -34,8 +34,13 @@ class PidFeedback {
   }
   [[nodiscard]] double update(const ServoInput& input, double known, double limit) noexcept {
     signal_.update(input);
-    return integral_.output(known + proportional(), integrated(), input.period_s, limit);
+    const double before = integral_.value();
+    const double effort = integral_.output(known + proportional(), integrated(), input.period_s, limit);
+    gained_ = signal_.stands() && integral_.grows() ? integral_.value() - before : 0;
+    return effort;
   }
+  /// What the integral gained in the last cycle of a joint that is to stand.
+  [[nodiscard]] double gained_at_rest() const noexcept { return gained_; }
 
  private:
   [[nodiscard]] double proportional() const noexcept { return kp_ * signal_.error() + kd_ * signal_.rate(); }
@@ -45,10 +50,10 @@ class PidFeedback {
   ErrorSignal signal_;
   IntegralAction integral_;
   double kp_ = 0, kd_ = 0;
+  double gained_ = 0;  ///< effort
 };
 
-/// The parameter of the laws without a feedforward model: the weight that hangs on the joint, as the effort that holds
-/// it.
+/// The parameter of the laws whose gains have none: the weight that hangs on the joint, as the effort that holds it.
 inline constexpr sdk::NumberParameter kLoad{"load", 0, -1e7, 1e7, "N or N·m"};
 
 }  // namespace rmac::modules

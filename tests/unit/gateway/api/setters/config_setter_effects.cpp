@@ -306,7 +306,7 @@ const std::vector<SetterEffect>& config_setter_effects() {
        [](SetterBench& bench) {
          const double stiff = peak_following_error(bench.joints_to({30, 0, 0}), 0);
          bench.call("RMAC_Config.SetMechanismJointServoControlGains",
-                    R"({"JntNum": 0, "ServoControlGains": [775, 35000, 7.8]})");
+                    R"({"JntNum": 0, "ServoControlGains": [172, 3650, 4.2]})");
          bench.apply();
          EXPECT_GT(peak_following_error(bench.joints_to({0, 0, 0}), 0), 1.5 * stiff) << "half the stiffness";
        }},
@@ -326,16 +326,17 @@ const std::vector<SetterEffect>& config_setter_effects() {
       {"RMAC_Config.SetMechanismJointServoControlParameter",
        [](SetterBench& bench) {
          bench.call("RMAC_Config.SetMechanismJointServoControlLaw",
-                    R"({"JntNum": 0, "ControlLaw": "DMAC_FEEDFORWARDFEEDBACK_CONTROL"})");
+                    R"({"JntNum": 0, "ControlLaw": "DMAC_FEEDFORWARDFEEDBACK_CONTROL",
+                        "Parameters": {"lead_s": 0.0033, "presliding": 0.0098, "breakaway": 1.2}})");
          bench.call("RMAC_Config.SetMechanismJointServoControlGains",
-                    R"({"JntNum": 0, "ServoControlGains": [1550, 140000, 11.1, 0.16, 0.035, 19, 0]})");
+                    R"({"JntNum": 0, "ServoControlGains": [345, 14600, 6.0, 0.158, 0.0349, 18.9, 0]})");
          bench.apply();
          const double known = peak_following_error(bench.joints_to({30, 0, 0}), 0);
          const auto set = [&](const char* name, double value) {
            bench.call("RMAC_Config.SetMechanismJointServoControlParameter",
                       fmt::format(R"({{"JntNum": 0, "Name": "{}", "Value": {}}})", name, value));
          };
-         set("friction_speed", 100);
+         set("presliding", 1);
          bench.apply();
          EXPECT_GT(peak_following_error(bench.joints_to({0, 0, 0}), 0), 1.5 * known) << "friction made good too late";
          set("friction_sped", 0.5);
