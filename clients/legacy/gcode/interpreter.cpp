@@ -48,12 +48,12 @@ Interpreter::Interpreter(const Options& options, const Rules& rules, Writer& wri
     : options_(options),
       rules_(rules),
       writer_(writer),
-      mover_(options, modes_, coordinates_, writer),
+      mover_(options, rules, modes_, coordinates_, writer),
       compensation_([this](const ContourMove& move, std::size_t place) { mover_.held(move, place); },
                     rules.enters_to_normal),
       motions_(options, rules, modes_, coordinates_, mover_, compensation_),
       turning_(modes_, coordinates_, mover_),
-      tool_axis_(options, modes_, coordinates_, turning_, mover_),
+      tool_axis_(options, rules, modes_, coordinates_, turning_, mover_),
       splines_(motions_, modes_, mover_),
       switches_(writer),
       drilling_(rules, modes_, coordinates_, mover_, switches_, writer) {
@@ -84,11 +84,15 @@ After Interpreter::execute(Block& block, const Line& line) {
   set_plane_and_units(block);
   switch_compensation(block, options_, rules_, modes_, switches_, mover_, compensation_);
   set_length(block);
-  if (const auto& system = block.g(GGroup::System)) select_system(block, *system, rules_, coordinates_);
+  if (const auto& system = block.g(GGroup::System)) {
+    select_system(block, *system, rules_, coordinates_);
+    tool_axis_.follow(system->place);
+  }
   set_control(block);
   set_distances(block);
   place_polar(block, modes_, {tip(0), tip(1)});
   turning_.act(block);
+  if (const auto& turn = block.g(GGroup::Turn)) tool_axis_.settle(turn->place);
   act_once(block);
   for (const char letter : {'A', 'B', 'C'}) {
     if (block.has(letter) && !options_.rotary.empty()) require_no_contour(block.place(letter));
@@ -128,7 +132,9 @@ void Interpreter::set_speeds(Block& block) {
              "F in the block that changes the unit would count in the unit before it; write F in a block behind it");
     }
     if (feed->value < 0) refuse(feed->place, "a negative feed");
-    modes_.feed_mm_min = modes_.feed(*feed, units ? unit : modes_.unit(feed->place));
+    const double counted = units ? unit : modes_.unit(feed->place);
+    modes_.feed_mm_min = modes_.feed(*feed, counted);
+    modes_.feed_degrees_min = modes_.feed_mm_min / counted;
   }
   if (const Word* speed = block.find('S')) switches_.set_speed(*speed);
 }
@@ -201,11 +207,12 @@ void Interpreter::set_length(Block& block) {
   if (length->number == 490) {
     modes_.length = ToolLength::Off;
     modes_.centre_point = ToolCentrePoint::Off;
-    return;
+    return tool_axis_.settle(length->place);
   }
   modes_.centre_point = length->number == 434   ? ToolCentrePoint::Angles
                         : length->number == 435 ? ToolCentrePoint::Vectors
                                                 : ToolCentrePoint::Off;
+  tool_axis_.settle(length->place);
   if (const Word* entry = block.find('H'); entry != nullptr && switches_.tool() != entry->value) {
     refuse(
         entry->place,
@@ -259,6 +266,7 @@ void Interpreter::act_once(Block& block) {
   if (!sets_coordinates(once->number)) return;
   require_unplaced(coordinates_, once->place);
   rules_.set_coordinates(block, *once, modes_, coordinates_);
+  tool_axis_.follow(once->place);
 }
 
 void Interpreter::move(Block& block) {
@@ -266,16 +274,16 @@ void Interpreter::move(Block& block) {
   const auto& once = block.g(GGroup::Once);
   const bool axes_are_taken = once && takes_axes(once->number);
   if (motion) {
-    const bool only_mode = (motion->number == 0 || motion->number == 10) && !block.has_any("XYZ");
+    const bool only_mode = (motion->number == 0 || motion->number == 10) && !block.has_any("XYZ") && !mover_.turns();
     const bool ends_cycle = motion->number == Modes::kNoMotion;
     if (!ends_cycle && !only_mode) return move_by(block, motion->number, motion->place);
     if (only_mode) modes_.interpolation = motion->number;
     modes_.motion = ends_cycle && rules_.motion_outlives_cycles ? modes_.interpolation : motion->number;
     if (!(ends_cycle && rules_.motion_outlives_cycles)) return;
   }
-  if (axes_are_taken || !block.has_any("XYZ")) return;
+  if (axes_are_taken || !(block.has_any("XYZ") || mover_.turns())) return;
   const char letter = block.has('X') ? 'X' : block.has('Y') ? 'Y' : 'Z';
-  const std::size_t place = block.use(letter).place;
+  const std::size_t place = block.has(letter) ? block.use(letter).place : 0;
   if (modes_.motion == Modes::kNoMotion) refuse(place, "no G0, G1 or other motion is in force that could use this");
   move_by(block, modes_.motion, place);
 }
@@ -343,7 +351,10 @@ State Interpreter::state(std::size_t place) const {
 
 void Interpreter::restore(const State& saved, std::size_t place) {
   require_no_contour(place);
-  if (saved.system != coordinates_.active()) activate_system(saved.system, place, rules_, coordinates_);
+  if (saved.system != coordinates_.active()) {
+    activate_system(saved.system, place, rules_, coordinates_);
+    tool_axis_.follow(place);
+  }
   if (saved.tolerance_mm != tolerance_mm_ && !saved.tolerance_mm)
     refuse(place,
            "how far the path may be from what is programmed was not said when it was saved; write G61 or G64 P before "
