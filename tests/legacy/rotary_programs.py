@@ -90,7 +90,7 @@ class RotaryProgram:
                 self.lines.append("F%d" % self.random.randint(5, 2000))
 
     def feed(self):
-        self.inverse = False
+        self.inverse = not self.inverse and self.random.random() < 0.7
         self.lines.append("G93" if self.inverse else "G94 F%d" % self.random.randint(5, 2000))
 
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "clients/legacy/gcode/blocks/comments.hpp"
+#include "clients/legacy/gcode/modes/feeds.hpp"
 #include "clients/legacy/gcode/modes/offsets.hpp"
 #include "clients/legacy/gcode/named_io.hpp"
 #include "clients/legacy/gcode/polar.hpp"
@@ -124,18 +125,8 @@ void Interpreter::keep_overrides(Block& block) {
 }
 
 void Interpreter::set_speeds(Block& block) {
-  if (const Word* feed = block.find('F')) {
-    const auto& units = block.g(GGroup::Units);
-    const double unit = units ? unit_of(*units) : 1;
-    if (units && modes_.unit_mm && *modes_.unit_mm != unit) {
-      refuse(feed->place,
-             "F in the block that changes the unit would count in the unit before it; write F in a block behind it");
-    }
-    if (feed->value < 0) refuse(feed->place, "a negative feed");
-    const double counted = units ? unit : modes_.unit(feed->place);
-    modes_.feed_mm_min = modes_.feed(*feed, counted);
-    modes_.feed_degrees_min = modes_.feed_mm_min / counted;
-  }
+  const auto& units = block.g(GGroup::Units);
+  set_feed(block, units ? std::optional(unit_of(*units)) : std::nullopt, rules_, modes_);
   if (const Word* speed = block.find('S')) switches_.set_speed(*speed);
 }
 
@@ -197,7 +188,8 @@ void Interpreter::set_plane_and_units(Block& block) {
     refuse(units->place,
            fmt::format("{} is a unit on some controls and a cycle of lathes on others; write {} before it",
                        g_name(units->number), unit == 1 ? "G21" : "G20"));
-  if (rules_.unit_ends_feed && modes_.unit_mm && *modes_.unit_mm != unit) modes_.feed_mm_min = 0;
+  const bool ends_feed = rules_.unit_ends_feed && !block.has('F');
+  if (ends_feed && modes_.unit_mm && *modes_.unit_mm != unit) modes_.feed_mm_min = 0;
   modes_.unit_mm = unit;
 }
 
@@ -295,10 +287,14 @@ void Interpreter::move_by(Block& block, int code, std::size_t place) {
   turning_.require_whole(block, code < 20 || code > 53, place);
   if (code == 0 || code == 10) return motions_.straight(block, code == 0, place);
   if (code == 20 || code == 30) return motions_.arc(block, code == 30, place);
+  if (code >= 50 && code <= 53 && modes_.inverse_time)
+    refuse(place, "a spline under G93 is not taken; write G94 and F before it");
   if (code >= 50 && code <= 53) return splines_.move(block, code, before, place);
   if (compensation_.on() || compensation_.leaving())
     refuse(place,
            "a cycle goes by where the tool is; end cutter radius compensation by G40 and a straight move before it");
+  if (modes_.inverse_time)
+    refuse(place, "a canned cycle has a way of many moves, and G93 a time of one; write G94 before it");
   if (rules_.stops_behind_motion) require_no_stop_beside_hole(block);
   drilling_.drill(block, code, before, place);
 }

@@ -101,6 +101,14 @@ void Mover::prepare_feed(const Point& end, double feed_mm_min, std::size_t place
   writer_.begin(coordinates_.placed(from));
 }
 
+void Mover::line(const Point& end, std::size_t place) {
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  double way = legacy::length(legacy::difference(end, start(place)));
+  if (way == 0)
+    way = kDegrees * std::atan2(legacy::length(legacy::cross(axis_here_, axis_)), legacy::dot(axis_here_, axis_));
+  line(end, turn_ ? 0 : modes_.feed_over(way, place), place);
+}
+
 void Mover::line(const Point& end, double feed_mm_min, std::size_t place) {
   if (turn_) {
     prepare(end, place);
@@ -140,6 +148,7 @@ void Mover::turn_unseen(const Point& axis) {
 }
 
 double Mover::minutes_of(const TableMove& move, const TurnedWay& way, std::size_t place) const {
+  if (modes_.inverse_time) return 1 / modes_.feed_over(1, place);
   if (modes_.feed_mm_min == 0) refuse(place, "no feed was set before this move; write F");
   const double straight_min = legacy::length(legacy::difference(move.to, move.from)) / modes_.feed_mm_min;
   const double degree_min = options_.rotary_diameter_mm

@@ -17,9 +17,8 @@ class Mover {
       : options_(options), rules_(rules), modes_(modes), coordinates_(coordinates), writer_(writer) {}
 
   void rapid(const Point& end, std::size_t place);
-  void line(const Point& end, std::size_t place) { line(end, modes_.feed_mm_min, place); }
+  void line(const Point& end, std::size_t place);
   void line(const Point& end, double feed_mm_min, std::size_t place);
-  void arc(const Arc& arc, std::size_t place) { this->arc(arc, modes_.feed_mm_min, place); }
   void arc(const Arc& arc, double feed_mm_min, std::size_t place);
   /// One that was held back until the move behind it was known.
   void held(const ContourMove& move, std::size_t place);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -71,6 +72,8 @@ struct Modes {
   Plane plane;
   bool incremental = false, absolute_centres = false, retract_to_r = false;
   double feed_mm_min = 0, feed_degrees_min = 0;  ///< the latter: the number of F
+  bool inverse_time = false;                     ///< G93: F is how many such moves a minute has
+  double moves_per_min = 0;                      ///< of the block, where that holds; 0: it has none
   ToolLength length = ToolLength::Unsaid;
   ToolCentrePoint centre_point = ToolCentrePoint::Off;
   std::optional<int> diameter_register;  ///< the last D, where that is an offset
@@ -80,6 +83,15 @@ struct Modes {
     if (!unit_mm)
       refuse(place, "no G20 or G21 says whether this is inches or mm; write one in the first block, or give --unit");
     return *unit_mm;
+  }
+  /// Of a move that is so long, mm/min, or degrees where it only turns.
+  [[nodiscard]] double feed_over(double way, std::size_t place) const {
+    constexpr double kLeast = 0.1;  // as LinuxCNC has it
+    if (!inverse_time) return feed_mm_min;
+    if (moves_per_min == 0)
+      refuse(place,
+             "under G93 each move at feed has an F of its own, how many such moves a minute has; write F, or G94");
+    return std::max(kLeast, way * moves_per_min);
   }
   [[nodiscard]] double mm(const Word& word) const {
     static_cast<void>(unit(word.place));
