@@ -212,7 +212,7 @@ def our_steps(text):
         planar = method == "MoveAlongArc" and abs(params["CenterPoint"]["axis"][0]) < 0.5
         if not planar:
             require_straight(begin, at, way, params["MoveID"])
-        time = (length if length > 1e-6 else abs(at[3] - begin[3])) / feed
+        time = (length if length > 1e-3 or at[3] == begin[3] else abs(at[3] - begin[3])) / feed
         if params["MoveID"] == move and not planar and steps[-1][0] == ("rapid" if feed == RAPID else "feed"):
             time += steps.pop()[2]
         if math.dist(begin, at) > SAME or params["MoveID"] == move:

@@ -178,7 +178,7 @@ TurnedWay by_splines(const Table& table, const TableMove& move) {
 }  // namespace
 
 TurnedWay turned_way(const Table& table, const TableMove& move) {
-  constexpr double kOnAxis_mm = kSplineTolerance_mm, kLeastOfArc_mm = 2e-3;
+  constexpr double kOnAxis_mm = 1e-4, kLeastOfArc_mm = 2e-3;
   const auto one = one_axis(table, move);
   const bool round = one && keeps_distance(*one) && one->turns_evenly;
   const bool on_axis = round && one->radius_mm <= kOnAxis_mm;
