@@ -4,12 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -20,6 +17,7 @@
 
 #include "clients/legacy/apt/import.hpp"
 #include "clients/legacy/fanuc/import.hpp"
+#include "clients/legacy/option_values.hpp"
 #include "clients/legacy/program/input_file.hpp"
 #include "clients/legacy/program/output_file.hpp"
 #include "clients/legacy/program/writer.hpp"
@@ -32,10 +30,10 @@ using namespace rmac;
 
 struct Words {
   std::string file, output, dialect = "rs274", unit, approach, reference, second_reference;
-  std::vector<std::string> offsets, outputs, inputs, diameters, variables, passed, subroutines;
+  std::vector<std::string> offsets, outputs, inputs, diameters, variables, passed, subroutines, centres;
   bool ids_are_lines = false;
   rs274::Options options;
-  std::string circle_axis, whole_numbers, rotary;
+  std::string circle_axis, whole_numbers, rotary, rotary_way;
   bool multax = false;
 
   [[nodiscard]] bool is_apt() const { return dialect == "apt"; }
@@ -47,85 +45,22 @@ int fail(const std::string& message) {
   return 1;
 }
 
-std::optional<rs274::Point> read_point(const std::string& text) {
-  rs274::Point point{};
-  const char *at = text.data(), *const end = text.data() + text.size();
-  for (std::size_t axis = 0; axis < point.size(); ++axis) {
-    if (axis > 0 && (at == end || *at++ != ',')) return std::nullopt;
-    const auto read = std::from_chars(at, end, point.at(axis), std::chars_format::fixed);
-    if (read.ec != std::errc() || !(std::abs(point.at(axis)) <= legacy::kFarthest_mm)) return std::nullopt;
-    at = read.ptr;
+/// What A, B and C turn.
+std::optional<std::string> finish_rotary(Words& words) {
+  auto& options = words.options;
+  if (!words.rotary.empty()) options.rotary = read_rotary(words.rotary);
+  if (!words.rotary.empty() && options.rotary.empty())
+    return "--rotary is A, B and C, each at most once and with - where it turns the other way, as C,A or C,-B";
+  for (const auto& text : words.centres) {
+    if (!read_rotary_centre(text, options.rotary))
+      return fmt::format(
+          "--rotary-centre {}: it is three numbers in mm, as 0,0,-50, or those of an axis that --rotary "
+          "has, as A=0,0,-50",
+          text);
   }
-  return at == end ? std::optional(point) : std::nullopt;
-}
-
-/// The index of a work system: of G54 to G59, and of those behind them, which each language names in its own way.
-std::optional<std::size_t> system_of(const std::string& name, bool fanuc) {
-  constexpr std::size_t kPlain = 6;
-  constexpr int kMostFurther = 300, kMostFurtherOfRs274 = 3;
-  const std::string_view prefix = fanuc ? "G54.1P" : "G59.";
-  int number = 0;
-  const auto read = [&](std::size_t begin) {
-    const char* const end = name.data() + name.size();
-    const auto result = std::from_chars(name.data() + begin, end, number);
-    return result.ec == std::errc() && result.ptr == end;
-  };
-  if (name.starts_with(prefix)) {
-    const bool is_one = read(prefix.size()) && number >= 1 && number <= (fanuc ? kMostFurther : kMostFurtherOfRs274);
-    return is_one ? std::optional(kPlain + static_cast<std::size_t>(number) - 1) : std::nullopt;
-  }
-  const bool is_plain = name.size() == 3 && name.starts_with('G') && read(1) && number >= 54 && number <= 59;
-  return is_plain ? std::optional(static_cast<std::size_t>(number - 54)) : std::nullopt;
-}
-
-/// G54=X,Y,Z.
-bool read_offset(const std::string& text, Words& words) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos) return false;
-  const auto system = system_of(text.substr(0, equals), words.is_fanuc());
-  const auto point = read_point(text.substr(equals + 1));
-  if (!system || !point) return false;
-  words.options.offsets[*system] = {(*point)[0], (*point)[1], (*point)[2]};
-  return true;
-}
-
-/// 500=12.5.
-bool read_variable(const std::string& text, std::map<int, double>& variables) {
-  const std::size_t equals = text.find('=');
-  int number = 0;
-  double value = 0;
-  if (equals == std::string::npos) return false;
-  const char *const middle = text.data() + equals, *const end = text.data() + text.size();
-  const auto read_number = std::from_chars(text.data(), middle, number);
-  const auto read = std::from_chars(middle + 1, end, value, std::chars_format::fixed);
-  const bool whole =
-      read_number.ec == std::errc() && read_number.ptr == middle && read.ec == std::errc() && read.ptr == end;
-  const bool is_common = (number >= 100 && number < 200) || (number >= 500 && number < 1000);
-  return whole && is_common && std::isfinite(value) && variables.emplace(number, value).second;
-}
-
-/// M10.
-bool read_m(const std::string& text, std::set<int>& codes) {
-  int number = 0;
-  const char* const end = text.data() + text.size();
-  if (!text.starts_with('M')) return false;
-  const auto read = std::from_chars(text.data() + 1, end, number);
-  return read.ec == std::errc() && read.ptr == end && number >= 0 && codes.insert(number).second;
-}
-
-/// C,-A.
-std::vector<gcode::RotaryAxis> read_rotary(const std::string& text) {
-  std::vector<gcode::RotaryAxis> axes;
-  for (std::size_t at = 0; at <= text.size(); ++at) {
-    const bool turns_back = at < text.size() && text[at] == '-';
-    if (turns_back) ++at;
-    const char letter = at < text.size() ? text[at] : '\0';
-    const bool is_new = std::ranges::find(axes, letter, &gcode::RotaryAxis::letter) == axes.end();
-    if (letter < 'A' || letter > 'C' || !is_new) return {};
-    axes.push_back({letter, turns_back ? -1.0 : 1.0});
-    if (++at < text.size() && text[at] != ',') return {};
-  }
-  return axes;
+  if (!words.rotary_way.empty())
+    options.rotary_way = words.rotary_way == "shorter" ? gcode::RotaryWay::Shorter : gcode::RotaryWay::Written;
+  return std::nullopt;
 }
 
 /// What a Fanuc program alone has.
@@ -134,9 +69,6 @@ std::optional<std::string> finish_fanuc(Words& words) {
     words.options.whole_numbers =
         words.whole_numbers == "units" ? gcode::WholeNumbers::Units : gcode::WholeNumbers::Increments;
   }
-  if (!words.rotary.empty()) words.options.rotary = read_rotary(words.rotary);
-  if (!words.rotary.empty() && words.options.rotary.empty())
-    return "--rotary is A, B and C, each at most once and with - where it turns the other way, as C,A or C,-B";
   for (const auto& text : words.variables) {
     if (!read_variable(text, words.options.variables))
       return fmt::format("--variable {}: it is a number from 100 to 199 or 500 to 999, and a value, as 500=12.5", text);
@@ -145,30 +77,6 @@ std::optional<std::string> finish_fanuc(Words& words) {
     if (!read_m(text, words.options.passed_m)) return fmt::format("--pass-over {}: it is an M code, as M10", text);
   }
   return std::nullopt;
-}
-
-/// 3=Clamp.
-bool read_name(const std::string& text, std::map<int, std::string>& names) {
-  const std::size_t equals = text.find('=');
-  int number = 0;
-  if (equals == std::string::npos || equals + 1 == text.size()) return false;
-  const auto read = std::from_chars(text.data(), text.data() + equals, number);
-  if (read.ec != std::errc() || read.ptr != text.data() + equals || number < 0) return false;
-  return names.emplace(number, text.substr(equals + 1)).second;
-}
-
-/// 3=10.
-bool read_diameter(const std::string& text, std::map<int, double>& diameters) {
-  const std::size_t equals = text.find('=');
-  int tool = 0;
-  double diameter = 0;
-  if (equals == std::string::npos) return false;
-  const char *const middle = text.data() + equals, *const end = text.data() + text.size();
-  const auto read_tool = std::from_chars(text.data(), middle, tool);
-  const auto read = std::from_chars(middle + 1, end, diameter, std::chars_format::fixed);
-  const bool whole =
-      read_tool.ec == std::errc() && read_tool.ptr == middle && read.ec == std::errc() && read.ptr == end;
-  return whole && tool >= 0 && diameter >= 0 && diameter <= 1000 && diameters.emplace(tool, diameter).second;
 }
 
 /// What the command line parser leaves as text. What is wrong, or nothing.
@@ -196,9 +104,10 @@ std::optional<std::string> finish(Words& words) {
       return fmt::format("--tool-diameter {}: it is the number of a tool and 0 to 1000 mm, as 3=10", text);
   }
   for (const auto& offset : words.offsets) {
-    if (!read_offset(offset, words))
+    if (!read_offset(offset, words.is_fanuc(), words.options.offsets))
       return fmt::format("--offset {}: it is a work system and three numbers in mm, as G54=100,50,-20", offset);
   }
+  if (auto wrong = finish_rotary(words)) return wrong;
   if (auto wrong = finish_fanuc(words)) return wrong;
   if (words.output.empty())
     words.output = words.file == "-" ? "-" : fs::path(words.file).replace_extension(".rmac").string();
@@ -303,16 +212,30 @@ void declare(CLI::App& app, Words& words) {
   app.add_flag("--ids-are-lines", words.ids_are_lines, "the id of each request is the line that it comes from");
 }
 
+void declare_rotary(CLI::App& app, Words& words) {
+  app.add_option("--rotary", words.rotary,
+                 "C,A: the axes of the program's machine that turn the tool about Z (C), Y (B) and X (A) of the part, "
+                 "from the part to the tool; each counter-clockwise, or with - the other way")
+      ->allow_extra_args(false);
+  app.add_option("--rotary-centre", words.centres,
+                 "X,Y,Z in mm: a point on the axes of --rotary, in the coordinates of the program's begin, where they "
+                 "turn a table that carries the part; A=X,Y,Z of one of them")
+      ->allow_extra_args(false);
+  app.add_option("--rotary-way", words.rotary_way,
+                 "how a table goes to an angle that is more than half a turn away: as written, or the shorter way "
+                 "round; of a fanuc program refused unless given, of others as written")
+      ->check(CLI::IsMember({"written", "shorter"}));
+  app.add_option("--rotary-diameter", words.options.rotary_diameter_mm,
+                 "mm: that the degrees of a table count as ways on, in the F of a move that turns it")
+      ->check(CLI::Range(0.001, 10'000.0));
+}
+
 void declare_fanuc(CLI::App& app, Words& words) {
   app.add_option(
          "--whole-numbers", words.whole_numbers,
          "what lengths and angles without a decimal point count in, in a fanuc program: units (X10 is 10 mm) or "
          "increments (X10 is 0.010 mm); refused unless given")
       ->check(CLI::IsMember({"units", "increments"}));
-  app.add_option("--rotary", words.rotary,
-                 "C,A: the axes of the program's machine that turn the tool about Z (C), Y (B) and X (A) of the part, "
-                 "from the part to the tool; each counter-clockwise, or with - the other way")
-      ->allow_extra_args(false);
   app.add_option("--variable", words.variables,
                  "500=12.5: what the machine has in a common variable that a fanuc program reads")
       ->allow_extra_args(false);
@@ -334,7 +257,7 @@ void declare_apt(CLI::App& app, Words& words) {
 /// The option that was given and is of another language than the file's, or nothing.
 std::optional<std::string> foreign_option(const CLI::App& app, const Words& words) {
   enum Languages { Rs274 = 1, Fanuc = 2, Apt = 4 };
-  static constexpr std::array<std::pair<const char*, int>, 17> kOf{{{"--block-delete", Rs274 | Fanuc},
+  static constexpr std::array<std::pair<const char*, int>, 20> kOf{{{"--block-delete", Rs274 | Fanuc},
                                                                     {"--tolerance", Rs274 | Fanuc},
                                                                     {"--assume-g43", Rs274 | Fanuc},
                                                                     {"--assume-end", Rs274 | Fanuc},
@@ -348,6 +271,9 @@ std::optional<std::string> foreign_option(const CLI::App& app, const Words& word
                                                                     {"--whole-numbers", Fanuc},
                                                                     {"--variable", Fanuc},
                                                                     {"--rotary", Rs274 | Fanuc},
+                                                                    {"--rotary-centre", Rs274 | Fanuc},
+                                                                    {"--rotary-way", Rs274 | Fanuc},
+                                                                    {"--rotary-diameter", Rs274 | Fanuc},
                                                                     {"--pass-over", Rs274 | Fanuc},
                                                                     {"--multax", Apt},
                                                                     {"--circle-axis", Apt}}};
@@ -369,6 +295,7 @@ int main(int count, char** arguments) {
   app.name("rmac import");
   Words words;
   declare(app, words);
+  declare_rotary(app, words);
   declare_fanuc(app, words);
   declare_apt(app, words);
   try {

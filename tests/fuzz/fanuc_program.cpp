@@ -11,7 +11,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.offsets[0] = options.offsets[1] = options.offsets[6] = {1, 2, 3};
   options.assume_g43 = true;
   options.unit_mm = 1;
-  options.rotary = {{'C', 1}, {'A', -1}};
+  options.rotary = {{'C', 1, std::nullopt}, {'A', -1, std::nullopt}};
+  if (size % 5 > 1) options.rotary[0].centre_mm = {{0, 0, 0}};
+  if (size % 5 > 2) options.rotary[1].centre_mm = {{5, 6, -70}};
+  if (size % 7 > 1)
+    options.rotary_way = size % 7 > 2 ? rmac::gcode::RotaryWay::Written : rmac::gcode::RotaryWay::Shorter;
   options.assume_end = size % 3 == 1;
   options.tool_diameters_mm = {{1, 4}, {2, 0}};
   options.whole_numbers = rmac::gcode::WholeNumbers::Units;

@@ -13,7 +13,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.offsets[0] = options.offsets[1] = {1, 2, 3};
   options.assume_g43 = true;
   options.unit_mm = 1;
-  options.rotary = {{'A', 1}, {'C', -1}};
+  options.rotary = {{'A', 1, std::nullopt}, {'C', -1, std::nullopt}};
+  if (size % 5 > 1) options.rotary[0].centre_mm = {{5, 6, -70}};
+  if (size % 5 > 2) options.rotary[1].centre_mm = {{0, 0, 0}};
   options.tool_diameters_mm = {{1, 4}, {2, 0}};
   options.bounds = {.idle_lines = 1000, .output_mb = 1};  // loops without an end are soon noticed
   const std::string_view text(reinterpret_cast<const char*>(data), size);

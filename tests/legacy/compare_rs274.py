@@ -18,8 +18,10 @@ import subprocess
 import sys
 import tempfile
 
+import rotary_programs
 from o_word_programs import OWordProgram
 from radius_programs import RadiusProgram
+from rotary_programs import RotaryProgram
 
 START = (1.0, 2.0, 30.0)
 TOLERANCE_MM = 3e-3  # of the four decimals, which are of an inch in many blocks: 25.4 times 0.00005, of a place and of an offset
@@ -268,7 +270,7 @@ class Program:
         self.write("G0 X%.4f Y%.4f Z%.4f" % tuple(v / self.unit for v in self.at))
 
 
-KINDS = {"moves": Program, "o-words": OWordProgram, "radius": RadiusProgram}
+KINDS = {"moves": Program, "o-words": OWordProgram, "radius": RadiusProgram, "rotary": RotaryProgram}
 TRIALS = 5
 NUMBER = r"(-?[\d.]+)"
 
@@ -287,6 +289,9 @@ def asked_once(program, options, folder):
                        PYTHONPATH=f"{options.oracle}/usr/lib/python3/dist-packages")
     done = subprocess.run([f"{options.oracle}/usr/bin/rs274", "-t", folder / "tool.tbl", "-g", program], cwd=folder, env=environment,
                           capture_output=True, text=True, timeout=60, check=False)
+    if options.kind == "rotary":
+        steps = rotary_programs.oracle_steps(done.stdout)
+        return steps, "" if steps is not None else (done.stdout + done.stderr).strip()
     unit, g92, plane, rpm, direction, at, steps = 1.0, [0.0] * 3, "XY", 0.0, 0, None, []
     for line in done.stdout.splitlines():
         match = re.match(r"\s*\d+ N\S*\s+(\w+)\((.*)\)$", line)
@@ -330,9 +335,12 @@ def asked_once(program, options, folder):
 
 def our_path(program, options, folder):
     out = folder / "out.rmac"
-    done = subprocess.run([options.importer, program, "-o", out], capture_output=True, text=True, timeout=60, check=False)
+    words = rotary_programs.WORDS if options.kind == "rotary" else []
+    done = subprocess.run([options.importer, program, "-o", out, *words], capture_output=True, text=True, timeout=60, check=False)
     if done.returncode != 0:
         return None, done.stderr.strip()
+    if options.kind == "rotary":
+        return rotary_programs.our_steps(out.read_text()), ""
     steps, move = [], None
     for line in out.read_text().splitlines():
         request = json.loads(line)
@@ -460,10 +468,11 @@ def main():
             differ += 1
             print(f"{program}: rs274: {their_words or 'takes it'}; rmac-import: {our_words or 'takes it'}")
             continue
-        theirs, ours = simplified(theirs), simplified(ours)
+        if options.kind != "rotary":
+            theirs, ours = simplified(theirs), simplified(ours)
         compared += 1
         steps += len(ours)
-        wrong = differs(theirs, ours)
+        wrong = (rotary_programs.differs if options.kind == "rotary" else differs)(theirs, ours)
         if wrong is None and len(theirs) == len(ours):
             program.unlink()
             continue

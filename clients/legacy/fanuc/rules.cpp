@@ -19,6 +19,7 @@ constexpr gcode::Rules kRules{
     .stops_behind_motion = true,
     .spindle_needs_speed = true,
     .unit_ends_feed = true,
+    .degrees_are_lengths = true,
     .whole_dwell_s = 1e-3,
     .cycles = {.repeats = "KL",
                .may_wait = true,
@@ -26,6 +27,7 @@ constexpr gcode::Rules kRules{
                .dwell_is_free = true,
                .cross_first = true,
                .bore_to_r = true,
+               .may_turn = true,
                .levels_stay = true},
 };
 

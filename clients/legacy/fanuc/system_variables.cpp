@@ -55,7 +55,7 @@ gcode::Maybe SystemVariables::code_in_force(int number) const {
     case 4003:
       return modes.incremental ? 91 : 90;
     case 4005:
-      return 94;
+      return modes.inverse_time ? 93 : 94;
     case 4006:
       return modes.unit_mm ? gcode::Maybe(*modes.unit_mm == 1 ? 21 : 20) : std::nullopt;
     case 4009:
@@ -68,7 +68,8 @@ gcode::Maybe SystemVariables::code_in_force(int number) const {
       return system < kSystems ? static_cast<double>(kFirst + system) : 54.1;
     }
     case 4109:
-      return modes.unit_mm ? gcode::Maybe(modes.feed_mm_min / *modes.unit_mm) : std::nullopt;
+      if (modes.inverse_time || !modes.unit_mm) return std::nullopt;
+      return modes.feed_mm_min / *modes.unit_mm;
     case 4114:
       return flow_.last_label();
     case 4115:

@@ -93,7 +93,7 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
   if (code == kStopping && !switches_.spindle_turns()) {
     refuse(place, "G86 stops the spindle, which does not turn; write M3 or M4 and S before it");
   }
-  if (!block.has_any("XYZ")) refuse(place, "a canned cycle needs X, Y or Z in its block");
+  if (!block.has_any("XYZ") && !mover_.turns()) refuse(place, "a canned cycle needs X, Y or Z in its block");
   if (!is_cycle(before)) begun_in_ = coordinated();
   if (rules_.levels_stay && begun_in_ != coordinated())
     refuse(place,
@@ -115,6 +115,8 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
   }
   const double clear = modes_.retract_to_r ? retract : std::max(initial_, retract);
   const int repeats = repeats_of(block, rules_);
+  if (mover_.turns() && repeats != 1)
+    refuse(place, "a table that turns beside a hole which is repeated is not taken; write each hole with its angle");
   if (pecks(code) && !((retract - bottom) / *peck_ * repeats <= kMostRepeats)) {
     refuse(place, fmt::format("more than {} pecks in one block", kMostRepeats));
   }

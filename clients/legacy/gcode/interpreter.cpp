@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "clients/legacy/gcode/blocks/comments.hpp"
+#include "clients/legacy/gcode/modes/feeds.hpp"
 #include "clients/legacy/gcode/modes/offsets.hpp"
 #include "clients/legacy/gcode/named_io.hpp"
 #include "clients/legacy/gcode/polar.hpp"
@@ -48,12 +49,12 @@ Interpreter::Interpreter(const Options& options, const Rules& rules, Writer& wri
     : options_(options),
       rules_(rules),
       writer_(writer),
-      mover_(options, modes_, coordinates_, writer),
+      mover_(options, rules, modes_, coordinates_, writer),
       compensation_([this](const ContourMove& move, std::size_t place) { mover_.held(move, place); },
                     rules.enters_to_normal),
       motions_(options, rules, modes_, coordinates_, mover_, compensation_),
       turning_(modes_, coordinates_, mover_),
-      tool_axis_(options, modes_, coordinates_, turning_, mover_),
+      tool_axis_(options, rules, modes_, coordinates_, turning_, mover_),
       splines_(motions_, modes_, mover_),
       switches_(writer),
       drilling_(rules, modes_, coordinates_, mover_, switches_, writer) {
@@ -84,11 +85,15 @@ After Interpreter::execute(Block& block, const Line& line) {
   set_plane_and_units(block);
   switch_compensation(block, options_, rules_, modes_, switches_, mover_, compensation_);
   set_length(block);
-  if (const auto& system = block.g(GGroup::System)) select_system(block, *system, rules_, coordinates_);
+  if (const auto& system = block.g(GGroup::System)) {
+    select_system(block, *system, rules_, coordinates_);
+    tool_axis_.follow(system->place);
+  }
   set_control(block);
   set_distances(block);
   place_polar(block, modes_, {tip(0), tip(1)});
   turning_.act(block);
+  if (const auto& turn = block.g(GGroup::Turn)) tool_axis_.settle(turn->place);
   act_once(block);
   for (const char letter : {'A', 'B', 'C'}) {
     if (block.has(letter) && !options_.rotary.empty()) require_no_contour(block.place(letter));
@@ -120,16 +125,8 @@ void Interpreter::keep_overrides(Block& block) {
 }
 
 void Interpreter::set_speeds(Block& block) {
-  if (const Word* feed = block.find('F')) {
-    const auto& units = block.g(GGroup::Units);
-    const double unit = units ? unit_of(*units) : 1;
-    if (units && modes_.unit_mm && *modes_.unit_mm != unit) {
-      refuse(feed->place,
-             "F in the block that changes the unit would count in the unit before it; write F in a block behind it");
-    }
-    if (feed->value < 0) refuse(feed->place, "a negative feed");
-    modes_.feed_mm_min = modes_.feed(*feed, units ? unit : modes_.unit(feed->place));
-  }
+  const auto& units = block.g(GGroup::Units);
+  set_feed(block, units ? std::optional(unit_of(*units)) : std::nullopt, rules_, modes_);
   if (const Word* speed = block.find('S')) switches_.set_speed(*speed);
 }
 
@@ -191,7 +188,8 @@ void Interpreter::set_plane_and_units(Block& block) {
     refuse(units->place,
            fmt::format("{} is a unit on some controls and a cycle of lathes on others; write {} before it",
                        g_name(units->number), unit == 1 ? "G21" : "G20"));
-  if (rules_.unit_ends_feed && modes_.unit_mm && *modes_.unit_mm != unit) modes_.feed_mm_min = 0;
+  const bool ends_feed = rules_.unit_ends_feed && !block.has('F');
+  if (ends_feed && modes_.unit_mm && *modes_.unit_mm != unit) modes_.feed_mm_min = 0;
   modes_.unit_mm = unit;
 }
 
@@ -201,11 +199,12 @@ void Interpreter::set_length(Block& block) {
   if (length->number == 490) {
     modes_.length = ToolLength::Off;
     modes_.centre_point = ToolCentrePoint::Off;
-    return;
+    return tool_axis_.settle(length->place);
   }
   modes_.centre_point = length->number == 434   ? ToolCentrePoint::Angles
                         : length->number == 435 ? ToolCentrePoint::Vectors
                                                 : ToolCentrePoint::Off;
+  tool_axis_.settle(length->place);
   if (const Word* entry = block.find('H'); entry != nullptr && switches_.tool() != entry->value) {
     refuse(
         entry->place,
@@ -259,6 +258,7 @@ void Interpreter::act_once(Block& block) {
   if (!sets_coordinates(once->number)) return;
   require_unplaced(coordinates_, once->place);
   rules_.set_coordinates(block, *once, modes_, coordinates_);
+  tool_axis_.follow(once->place);
 }
 
 void Interpreter::move(Block& block) {
@@ -266,16 +266,16 @@ void Interpreter::move(Block& block) {
   const auto& once = block.g(GGroup::Once);
   const bool axes_are_taken = once && takes_axes(once->number);
   if (motion) {
-    const bool only_mode = (motion->number == 0 || motion->number == 10) && !block.has_any("XYZ");
+    const bool only_mode = (motion->number == 0 || motion->number == 10) && !block.has_any("XYZ") && !mover_.turns();
     const bool ends_cycle = motion->number == Modes::kNoMotion;
     if (!ends_cycle && !only_mode) return move_by(block, motion->number, motion->place);
     if (only_mode) modes_.interpolation = motion->number;
     modes_.motion = ends_cycle && rules_.motion_outlives_cycles ? modes_.interpolation : motion->number;
     if (!(ends_cycle && rules_.motion_outlives_cycles)) return;
   }
-  if (axes_are_taken || !block.has_any("XYZ")) return;
+  if (axes_are_taken || !(block.has_any("XYZ") || mover_.turns())) return;
   const char letter = block.has('X') ? 'X' : block.has('Y') ? 'Y' : 'Z';
-  const std::size_t place = block.use(letter).place;
+  const std::size_t place = block.has(letter) ? block.use(letter).place : 0;
   if (modes_.motion == Modes::kNoMotion) refuse(place, "no G0, G1 or other motion is in force that could use this");
   move_by(block, modes_.motion, place);
 }
@@ -287,10 +287,14 @@ void Interpreter::move_by(Block& block, int code, std::size_t place) {
   turning_.require_whole(block, code < 20 || code > 53, place);
   if (code == 0 || code == 10) return motions_.straight(block, code == 0, place);
   if (code == 20 || code == 30) return motions_.arc(block, code == 30, place);
+  if (code >= 50 && code <= 53 && modes_.inverse_time)
+    refuse(place, "a spline under G93 is not taken; write G94 and F before it");
   if (code >= 50 && code <= 53) return splines_.move(block, code, before, place);
   if (compensation_.on() || compensation_.leaving())
     refuse(place,
            "a cycle goes by where the tool is; end cutter radius compensation by G40 and a straight move before it");
+  if (modes_.inverse_time)
+    refuse(place, "a canned cycle has a way of many moves, and G93 a time of one; write G94 before it");
   if (rules_.stops_behind_motion) require_no_stop_beside_hole(block);
   drilling_.drill(block, code, before, place);
 }
@@ -343,7 +347,10 @@ State Interpreter::state(std::size_t place) const {
 
 void Interpreter::restore(const State& saved, std::size_t place) {
   require_no_contour(place);
-  if (saved.system != coordinates_.active()) activate_system(saved.system, place, rules_, coordinates_);
+  if (saved.system != coordinates_.active()) {
+    activate_system(saved.system, place, rules_, coordinates_);
+    tool_axis_.follow(place);
+  }
   if (saved.tolerance_mm != tolerance_mm_ && !saved.tolerance_mm)
     refuse(place,
            "how far the path may be from what is programmed was not said when it was saved; write G61 or G64 P before "

@@ -105,8 +105,11 @@ Point Motions::start(std::size_t place) {
 }
 
 void Motions::go_straight(const Point& end, bool rapid, std::size_t place) {
-  if (compensation_.on())
-    return compensation_.move({rapid, std::nullopt, end, modes_.feed_mm_min, mover_.line()}, place);
+  if (compensation_.on()) {
+    const double length = legacy::length(legacy::difference(end, compensation_.programmed()));
+    const double feed = rapid ? 0 : modes_.feed_over(length, place);
+    return compensation_.move({rapid, std::nullopt, end, feed, mover_.line()}, place);
+  }
   const Point& from = compensation_.programmed();
   if (rules_.leaves_in_plane && compensation_.leaving() && end[0] == from[0] && end[1] == from[1])
     refuse(place, "write the move in X and Y that leaves the contour in the block of G40");
@@ -115,11 +118,16 @@ void Motions::go_straight(const Point& end, bool rapid, std::size_t place) {
   mover_.line(end, place);
 }
 
-void Motions::go_along(const Arc& arc, std::size_t place) {
+void Motions::go_along(const Arc& arc, double feed_mm_min, std::size_t place) {
   if (compensation_.leaving())
     refuse(place, "the first move behind G40 is a straight one, from beside the contour; write a line before this arc");
-  if (compensation_.on()) return compensation_.move({false, arc, arc.end, modes_.feed_mm_min, mover_.line()}, place);
-  mover_.arc(arc, place);
+  if (compensation_.on()) return compensation_.move({false, arc, arc.end, feed_mm_min, mover_.line()}, place);
+  mover_.arc(arc, feed_mm_min, place);
+}
+
+void Motions::go_to_written_end(const Point& end, double feed_mm_min, std::size_t place) {
+  if (compensation_.on()) return compensation_.go_on_from(end);
+  mover_.line(end, feed_mm_min, place);
 }
 
 void Motions::reference(Block& block, const Code& code) {
@@ -182,14 +190,14 @@ void Motions::arc(Block& block, bool counter_clockwise, std::size_t place) {
     if (block.has_any("IJK")) refuse(radius->place, "an arc has a radius or a centre, not both");
     if (radius->value == 0) refuse(radius->place, "an arc of radius 0");
     arc.centre = centre_by_radius(start, end, plane, counter_clockwise, modes_.mm(*radius), radius->place);
-    return go_along(arc, place);
+    return go_along(arc, modes_.feed_over(length_of(start, arc, plane), place), place);
   }
   arc.centre = written_centre(block, start, place);
   const auto kept = arc_about(start, arc, plane, place);
-  if (kept) go_along(*kept, place);
-  if (kept && kept->end == end) return;
-  if (compensation_.on()) return compensation_.go_on_from(end);
-  go_straight(end, false, place);
+  if (!kept && !compensation_.on()) return go_straight(end, false, place);
+  const double feed = kept ? modes_.feed_over(length_of(start, *kept, plane), place) : 0;
+  if (kept) go_along(*kept, feed, place);
+  if (!kept || kept->end != end) go_to_written_end(end, feed, place);
 }
 
 }  // namespace rmac::gcode

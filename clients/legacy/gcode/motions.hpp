@@ -28,8 +28,10 @@ class Motions {
  private:
   /// Where the program believes the tool to be.
   [[nodiscard]] Point start(std::size_t place);
-  void go_along(const Arc& arc, std::size_t place);
+  void go_along(const Arc& arc, double feed_mm_min, std::size_t place);
   void go_straight(const Point& end, bool rapid, std::size_t place);
+  /// What rounding left between the end of an arc's circle and the end that is written.
+  void go_to_written_end(const Point& end, double feed_mm_min, std::size_t place);
   /// A coordinate of a reference point, in the frame in force. Throws a Refusal where that leads there by no known way.
   [[nodiscard]] double reference_value(const Point& reference, std::size_t axis, std::size_t place) const;
   [[nodiscard]] double machine_value(const Word& word, std::size_t axis) const;

@@ -1,6 +1,9 @@
 #include "clients/legacy/gcode/mover.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 namespace rmac::gcode {
 
@@ -19,7 +22,11 @@ void Mover::write_feed(double mm_min, std::size_t place) {
 
 void Mover::write_rapid(const Point& end, std::size_t place) {
   write_feed(options_.rapid_mm_min, place);
-  writer_.rapid(coordinates_.placed(end));
+  if (std::exchange(by_joints_, false)) {
+    writer_.rapid_of_joints(coordinates_.placed(end));
+  } else {
+    writer_.rapid(coordinates_.placed(end));
+  }
   axis_here_ = axis_;
 }
 
@@ -43,7 +50,8 @@ Point Mover::start(std::size_t place) {
              "with a G0 to X, Y and Z, or give --approach X,Y,Z");
     }
     write_frame();
-    const Point approach = coordinates_.unplaced(*options_.approach_mm);
+    const auto& placement = coordinates_.placement();
+    const Point approach = placement ? placement->back().placed(*options_.approach_mm) : *options_.approach_mm;
     write_rapid(approach, place);
     coordinates_.move_to(approach);
   }
@@ -69,6 +77,7 @@ void Mover::prepare(const Point& end, std::size_t place) {
 
 void Mover::rapid(const Point& end, std::size_t place) {
   prepare(end, place);
+  if (turn_) return turn_along(end, true, place);
   go(end, place);
 }
 
@@ -79,7 +88,8 @@ void Mover::reference(const Point& end, std::size_t place) {
 }
 
 void Mover::go(const Point& end, std::size_t place) {
-  if (!coordinates_.tip_is_known() || coordinates_.known_tip() != end || axis_ != axis_here_) write_rapid(end, place);
+  const bool stays = coordinates_.tip_is_known() && coordinates_.known_tip() == end && axis_ == axis_here_;
+  if (!stays || by_joints_) write_rapid(end, place);
   coordinates_.move_to(end);
 }
 
@@ -91,7 +101,19 @@ void Mover::prepare_feed(const Point& end, double feed_mm_min, std::size_t place
   writer_.begin(coordinates_.placed(from));
 }
 
+void Mover::line(const Point& end, std::size_t place) {
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  double way = legacy::length(legacy::difference(end, start(place)));
+  if (way == 0)
+    way = kDegrees * std::atan2(legacy::length(legacy::cross(axis_here_, axis_)), legacy::dot(axis_here_, axis_));
+  line(end, turn_ ? 0 : modes_.feed_over(way, place), place);
+}
+
 void Mover::line(const Point& end, double feed_mm_min, std::size_t place) {
+  if (turn_) {
+    prepare(end, place);
+    return turn_along(end, false, place);
+  }
   prepare_feed(end, feed_mm_min, place);
   writer_.line(coordinates_.placed(end));
   axis_here_ = axis_;
@@ -106,7 +128,7 @@ void Mover::arc(const Arc& arc, double feed_mm_min, std::size_t place) {
 }
 
 Arc Mover::placed(const Arc& arc) const {
-  const auto& placement = coordinates_.placement();
+  const auto placement = coordinates_.whole();
   if (!placement) return arc;
   Arc there = arc;
   there.centre = placement->placed(arc.centre);
@@ -114,6 +136,71 @@ Arc Mover::placed(const Arc& arc) const {
   there.axis = placement->turned(arc.axis);
   if (placement->mirrors()) there.counter_clockwise = !arc.counter_clockwise;
   return there;
+}
+
+void Mover::turn_with_next(Table table, const Angles& begin, const Angles& end) {
+  turn_ = Turn{std::move(table), begin, end};
+}
+
+void Mover::turn_unseen(const Point& axis) {
+  aim(axis);
+  by_joints_ = true;
+}
+
+double Mover::minutes_of(const TableMove& move, const TurnedWay& way, std::size_t place) const {
+  if (modes_.inverse_time) return 1 / modes_.feed_over(1, place);
+  if (modes_.feed_mm_min == 0) refuse(place, "no feed was set before this move; write F");
+  const double straight_min = legacy::length(legacy::difference(move.to, move.from)) / modes_.feed_mm_min;
+  const double degree_min = options_.rotary_diameter_mm
+                                ? *options_.rotary_diameter_mm * std::numbers::pi / 360 / modes_.feed_mm_min
+                                : 1 / modes_.feed_degrees_min;
+  const double turning_min = way.turn_degrees * degree_min;
+  if (rules_.degrees_are_lengths) return std::hypot(straight_min, turning_min);
+  return straight_min > 0 ? straight_min : turning_min;
+}
+
+void Mover::turn_along(const Point& end, bool rapid, std::size_t place) {
+  const Turn turn = *std::exchange(turn_, std::nullopt);
+  const Point from = coordinates_.known_tip();
+  const TableMove move{coordinates_.beside_table(from), coordinates_.beside_table(end), turn.begin, turn.end};
+  const TurnedWay way = turned_way(turn.table, move);
+  const legacy::Placement table = placement_of(turn.table, turn.end);
+  writer_.begin(coordinates_.placed(from));
+  if (!rapid && way.rests_askew)
+    refuse(place,
+           "the tip stands on the axis of the table, and the tool, which is tilted to it, would go round a cone: have "
+           "the post write this turn as G0");
+  if (rapid && way.rests_askew) {
+    coordinates_.turn(table);
+    turn_unseen(table.z);
+    return go(end, place);
+  }
+  const double turns_or_mm = way.length_mm > 0 ? way.length_mm : way.turn_degrees;
+  // Where little of the block counts for F, axes that are as fast as they can be bound it on the program's machine.
+  const double feed = rapid ? options_.rapid_mm_min : turns_or_mm / minutes_of(move, way, place);
+  write_feed(std::min(feed, options_.rapid_mm_min), place);
+  write_way(way);
+  coordinates_.turn(table);
+  axis_ = axis_here_ = table.z;
+  writer_.tool_axis(axis_);
+  coordinates_.move_to(end);
+}
+
+void Mover::write_way(const TurnedWay& way) {
+  for (const TurnedPiece& piece : way.pieces) {
+    if (const auto* line = std::get_if<TurnedLine>(&piece)) {
+      writer_.tool_axis(line->axis);
+      writer_.line(line->end);
+    } else if (const auto* arc = std::get_if<TurnedArc>(&piece)) {
+      writer_.tool_axis(arc->axis);
+      writer_.arc(arc->arc);
+    } else {
+      const auto& spline = std::get<legacy::PoseSpline>(piece);
+      const auto& end = spline.points.back();
+      writer_.tool_axis({end[3], end[4], end[5]});
+      writer_.pose_spline(spline);
+    }
+  }
 }
 
 void Mover::held(const ContourMove& move, std::size_t place) {
@@ -132,7 +219,7 @@ void Mover::held(const ContourMove& move, std::size_t place) {
 void Mover::nurbs(const legacy::Nurbs& curve, std::size_t place) {
   for (const Point& point : curve.points) require_reach(point, place);
   prepare_feed(curve.points.back(), modes_.feed_mm_min, place);
-  if (!coordinates_.placement()) {
+  if (!coordinates_.whole()) {
     writer_.nurbs(curve);
   } else {
     legacy::Nurbs there = curve;

@@ -5,6 +5,7 @@
 
 #include "clients/legacy/gcode/modes/modes.hpp"
 #include "clients/legacy/gcode/radius/compensation.hpp"
+#include "clients/legacy/gcode/table/turned_way.hpp"
 
 namespace rmac::gcode {
 
@@ -12,13 +13,12 @@ namespace rmac::gcode {
 /// frame, its feed, and where it begins. Places are for refusals.
 class Mover {
  public:
-  Mover(const Options& options, const Modes& modes, Coordinates& coordinates, Writer& writer)
-      : options_(options), modes_(modes), coordinates_(coordinates), writer_(writer) {}
+  Mover(const Options& options, const Rules& rules, const Modes& modes, Coordinates& coordinates, Writer& writer)
+      : options_(options), rules_(rules), modes_(modes), coordinates_(coordinates), writer_(writer) {}
 
   void rapid(const Point& end, std::size_t place);
-  void line(const Point& end, std::size_t place) { line(end, modes_.feed_mm_min, place); }
+  void line(const Point& end, std::size_t place);
   void line(const Point& end, double feed_mm_min, std::size_t place);
-  void arc(const Arc& arc, std::size_t place) { this->arc(arc, modes_.feed_mm_min, place); }
   void arc(const Arc& arc, double feed_mm_min, std::size_t place);
   /// One that was held back until the move behind it was known.
   void held(const ContourMove& move, std::size_t place);
@@ -27,6 +27,13 @@ class Mover {
   /// That the moves which follow end with.
   void aim(const Point& axis);
   [[nodiscard]] const Point& axis() const noexcept { return axis_; }
+  /// The next straight move, or rapid, turns the table along with it, from where it stands. The tip is known.
+  void turn_with_next(Table table, const Angles& begin, const Angles& end);
+  /// The tool has this axis on the part, and on which way it comes there nobody knows: the next rapid is one of all
+  /// joints together.
+  void turn_unseen(const Point& axis);
+  /// Whether the table is still to turn, though no X, Y and Z may ask for a move.
+  [[nodiscard]] bool turns() const { return turn_ || (by_joints_ && coordinates_.tip_is_known()); }
   void nurbs(const legacy::Nurbs& curve, std::size_t place);
   /// A rapid to where whoever imports the program says that the tip is, whether or not the tool's length counts.
   void reference(const Point& end, std::size_t place);
@@ -44,13 +51,25 @@ class Mover {
   void write_feed(double mm_min, std::size_t place);
   void write_rapid(const Point& end, std::size_t place);
   void write_frame();
+  void turn_along(const Point& end, bool rapid, std::size_t place);
+  void write_way(const TurnedWay& way);
+  /// How long F has such a move take.
+  [[nodiscard]] double minutes_of(const TableMove& move, const TurnedWay& way, std::size_t place) const;
+
+  struct Turn {
+    Table table;
+    Angles begin{}, end{};
+  };
 
   const Options& options_;
+  const Rules& rules_;
   const Modes& modes_;
   Coordinates& coordinates_;
   Writer& writer_;
-  std::optional<Point> frame_;                                            ///< that was written
-  double feed_mm_min_ = 0;                                                ///< likewise
+  std::optional<Point> frame_;  ///< that was written
+  double feed_mm_min_ = 0;      ///< likewise
+  std::optional<Turn> turn_;
+  bool by_joints_ = false;
   Point axis_ = legacy::unit_axis(2), axis_here_ = legacy::unit_axis(2);  ///< of the next end, and of the last one
 };
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "clients/legacy/gcode/modes/offsets.hpp"
-#include "clients/legacy/gcode/turns.hpp"
+#include "clients/legacy/gcode/modes/turns.hpp"
 
 namespace rmac::gcode {
 
@@ -17,11 +17,6 @@ constexpr int kRapid = 0, kLine = 10, kReference = 280;
 
 std::size_t place_of(char letter) {
   return static_cast<std::size_t>(letter - 'A');
-}
-
-/// About X, Y or Z.
-constexpr Plane plane_of(char letter) {
-  return letter == 'A' ? Plane{1, 2, 0} : letter == 'B' ? Plane{2, 0, 1} : Plane{};
 }
 
 }  // namespace
@@ -36,11 +31,12 @@ void ToolAxis::read(Block& block) {
 }
 
 void ToolAxis::read_angles(Block& block, int motion) {
+  const KnownAngles before = angles_;
   std::optional<std::size_t> place;
   for (const char letter : kRotaryLetters) {
     if (!block.has(letter)) continue;
     const Word word = block.take(letter);
-    if (block.once(kReference) && is_rotary(letter)) continue;
+    if (block.once(kReference) && rotary(letter) != nullptr) continue;
     if (!read_angle(letter, word)) continue;
     place = word.place;
     if (block.g(GGroup::Once))
@@ -48,19 +44,36 @@ void ToolAxis::read_angles(Block& block, int motion) {
              "what this axis does beside such a code, or where its reference point is, is not known here; write its "
              "angle into a block of its own");
   }
-  if (!place) return;
-  const legacy::Placement turn = turn_of_angles(*place);
-  at_reference_.reset();
-  const bool stays = std::exchange(turn_, turn) == turn;
+  if (place) turn(block, before, motion, *place);
+}
+
+void ToolAxis::turn(Block& block, const KnownAngles& before, int motion, std::size_t place) {
+  const legacy::Placement turn = turn_of_angles(place), turn_before = std::exchange(turn_, turn);
+  const bool seen = !std::exchange(at_reference_, std::nullopt) && mover_.axis() == turn_before.z;
   const Point& axis = turn.z;
-  if (stays && axis == mover_.axis()) return;
-  if (modes_.centre_point == ToolCentrePoint::Angles) return aim(block, axis, motion, *place);
+  const bool by_part = modes_.centre_point == ToolCentrePoint::Angles;
+  const bool is_table = turntable_.carries(before) && turntable_.carries(angles_);
+  if (is_table && !by_part && !turning_.tilted()) {
+    const auto values = [](const KnownAngles& angles) {
+      return Angles{angles[0].value_or(0), angles[1].value_or(0), angles[2].value_or(0)};
+    };
+    const auto begin = seen ? std::optional(values(before)) : std::nullopt;
+    if (begin != values(angles_)) turntable_.turn(begin, values(angles_), motion, place);
+    return;
+  }
+  if (!seen && coordinates_.table()) {
+    coordinates_.turn(std::nullopt);
+    coordinates_.forget_tip();
+  }
+  if (turn_before == turn && axis == mover_.axis()) return;
+  if (by_part) return aim(block, axis, motion, place);
   if (block.has_any("XYZ"))
-    refuse(*place,
-           "A, B and C beside X, Y and Z move the axes of another machine here; have the post write G43.4, under "
-           "which X, Y and Z are those of the tip");
-  mover_.aim(axis);
+    refuse(place,
+           "A, B and C beside X, Y and Z move the axes of another machine here; where they turn a table, give "
+           "--rotary-centre; else have the post write G43.4, under which X, Y and Z are those of the tip");
   coordinates_.forget_tip();
+  if (is_table) return mover_.turn_unseen(axis);
+  mover_.aim(axis);
 }
 
 /// G28 and these axes: they go to where nobody here knows, and X, Y and Z mean nothing until they are somewhere else.
@@ -80,15 +93,22 @@ void ToolAxis::require_coordinates_of_part(std::size_t place) const {
                               *at_reference_));
   if (modes_.centre_point == ToolCentrePoint::Angles || turning_.tilted()) return;
   if (turn_ == legacy::Placement{} && mover_.axis() == legacy::unit_axis(2)) return;
-  refuse(place,
-         "the tool, or the part, is turned, and X, Y and Z are those of the machine: where on the part this is, is not "
-         "known here; have the post write G68.2 or G43.4 before it, or turn back by A, B and C, which --rotary gives "
-         "a meaning");
+  if (turntable_.carries(angles_) && (mover_.turns() || mover_.axis() == turn_.z)) return;
+  refuse_coordinates(place);
+}
+
+void ToolAxis::refuse_coordinates(std::size_t place) {
+  refuse(
+      place,
+      "the tool, or the part, is turned, and X, Y and Z are those of the machine: where on the part this is, is not "
+      "known here; give --rotary-centre, where A, B and C turn a table, or have the post write G68.2 or G43.4 before "
+      "it, or turn back by A, B and C, which --rotary gives a meaning");
 }
 
 bool ToolAxis::read_angle(char letter, const Word& word) {
   const double degrees = modes_.degrees(word);
-  if (!is_rotary(letter)) {
+  const RotaryAxis* axis = rotary(letter);
+  if (axis == nullptr) {
     if (degrees == 0) return false;
     refuse(word.place,
            fmt::format("which way axis {} turns the tool is not known here; give --rotary with the machine's "
@@ -98,7 +118,14 @@ bool ToolAxis::read_angle(char letter, const Word& word) {
   auto& angle = angles_.at(place_of(letter));
   if (modes_.incremental && !angle)
     refuse(word.place, fmt::format("where axis {} stands is not known here; write its angle under G90 first", letter));
-  angle = degrees + (modes_.incremental ? *angle : 0);
+  const bool comes_from_zero = !angle && !at_reference_;
+  if (modes_.incremental) {
+    *angle += degrees;
+  } else if (angle || comes_from_zero) {
+    angle = turntable_.led(*axis, angle.value_or(0), word, degrees);
+  } else {
+    angle = degrees;
+  }
   return true;
 }
 

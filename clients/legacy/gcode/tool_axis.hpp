@@ -1,13 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <optional>
 
 #include "clients/legacy/gcode/modes/modes.hpp"
 #include "clients/legacy/gcode/mover.hpp"
 #include "clients/legacy/gcode/turning.hpp"
+#include "clients/legacy/gcode/turntable.hpp"
 
 namespace rmac::gcode {
 
@@ -15,11 +15,24 @@ namespace rmac::gcode {
 /// I, J and K under G43.5.
 class ToolAxis {
  public:
-  ToolAxis(const Options& options, const Modes& modes, Coordinates& coordinates, const Turning& turning, Mover& mover)
-      : options_(options), modes_(modes), coordinates_(coordinates), turning_(turning), mover_(mover) {}
+  ToolAxis(const Options& options, const Rules& rules, const Modes& modes, Coordinates& coordinates,
+           const Turning& turning, Mover& mover)
+      : options_(options),
+        modes_(modes),
+        coordinates_(coordinates),
+        turning_(turning),
+        mover_(mover),
+        turntable_(options, rules, modes, coordinates, turning, mover) {}
 
   /// Takes the words of a block before it moves. Without X, Y and Z the tool turns where its tip is.
   void read(Block& block);
+  /// Other modes, or another frame of the part, may be in force than before.
+  void settle(std::size_t place) {
+    if (!at_reference_) turntable_.settle(angles_, place);
+  }
+  void follow(std::size_t place) {
+    if (!at_reference_) turntable_.follow(angles_, place);
+  }
   /// Throws a Refusal where X, Y and Z are not those of the part: A, B and C turned that below the tool, or away from
   /// it.
   void require_coordinates_of_part(std::size_t place) const;
@@ -28,9 +41,13 @@ class ToolAxis {
   void read_angles(Block& block, int motion);
   void leave_for_reference(const Block& block);
   void read_vector(Block& block, int motion);
-  [[nodiscard]] bool is_rotary(char letter) const {
-    return std::ranges::find(options_.rotary, letter, &RotaryAxis::letter) != options_.rotary.end();
+  /// None where --rotary does not have it.
+  [[nodiscard]] const RotaryAxis* rotary(char letter) const {
+    const auto found = std::ranges::find(options_.rotary, letter, &RotaryAxis::letter);
+    return found != options_.rotary.end() ? &*found : nullptr;
   }
+  void turn(Block& block, const KnownAngles& before, int motion, std::size_t place);
+  [[noreturn]] static void refuse_coordinates(std::size_t place);
   /// False where no option gives the letter a meaning, and it says nothing but 0.
   [[nodiscard]] bool read_angle(char letter, const Word& word);
   [[nodiscard]] legacy::Placement turn_of_angles(std::size_t place) const;
@@ -41,9 +58,10 @@ class ToolAxis {
   Coordinates& coordinates_;
   const Turning& turning_;
   Mover& mover_;
-  std::array<std::optional<double>, 3> angles_{};  ///< of A, B and C, degrees
-  legacy::Placement turn_{};                       ///< that they make of coordinates
-  std::optional<char> at_reference_;               ///< the axis that G28 took to where nobody knows
+  Turntable turntable_;
+  KnownAngles angles_{};
+  legacy::Placement turn_{};          ///< that they make of coordinates
+  std::optional<char> at_reference_;  ///< the axis that G28 took to where nobody knows
 };
 
 }  // namespace rmac::gcode

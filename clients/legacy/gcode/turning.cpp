@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "clients/legacy/gcode/modes/offsets.hpp"
-#include "clients/legacy/gcode/turns.hpp"
+#include "clients/legacy/gcode/modes/turns.hpp"
 
 namespace rmac::gcode {
 

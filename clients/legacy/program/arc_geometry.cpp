@@ -110,6 +110,11 @@ Point centre_by_radius(const Point& start, const Point& end, const Plane& plane,
   return centre;
 }
 
+double length_of(const Point& start, const Arc& arc, const Plane& plane) {
+  const double sweep = (arc.closed ? kTurn_rad : sweep_of(start, arc, plane)) + arc.more_turns * kTurn_rad;
+  return std::hypot(distance(start, arc.centre, plane) * sweep, arc.end.at(plane.normal) - start.at(plane.normal));
+}
+
 std::optional<Arc> arc_about(const Point& start, const Arc& written, const Plane& plane, std::size_t place) {
   const double to_start = distance(start, written.centre, plane), to_end = distance(written.end, written.centre, plane);
   require_radii(to_start, to_end, place);

@@ -21,6 +21,9 @@ struct Plane {
 [[nodiscard]] Point centre_by_radius(const Point& start, const Point& end, const Plane& plane, bool counter_clockwise,
                                      double radius, std::size_t place);
 
+/// Of an arc or a helix about its centre.
+[[nodiscard]] double length_of(const Point& start, const Arc& arc, const Plane& plane);
+
 /// Centre format: the arc that is written for one whose radii differ, because programs round; by more than rs274 allows
 /// it is refused. Its centre is moved to be evenly far from both ends where that keeps to the circle. Elsewhere the
 /// arc keeps its centre and ends on its own circle, and a line to the end that was programmed is to follow; none where

@@ -95,6 +95,16 @@ void Writer::rapid(const Point& end) {
   ++moves_;
 }
 
+void Writer::rapid_of_joints(const Point& end) {
+  begin(end);
+  open_move("MoveToJointTarget");
+  out_.append(R"("JointTargetFrame":)");
+  write_frame(out_, here_, axis_there_);
+  axis_here_ = axis_there_;
+  close();
+  ++moves_;
+}
+
 void Writer::line(const Point& end) {
   there_.clear();
   write_point(there_, end);
@@ -141,6 +151,30 @@ void Writer::nurbs(const Nurbs& curve) {
   close();
   here_.clear();
   write_point(here_, curve.points.back());
+  ++moves_;
+}
+
+void Writer::pose_spline(const PoseSpline& curve) {
+  constexpr int kDegree = 5, kInner = 3;
+  open_move("MoveAlongNurbsND");
+  fmt::format_to(std::back_inserter(out_), R"("NurbsND":{{"space":"pose","degree":{},"points":[)", kDegree);
+  for (const auto& [x, y, z, i, j, k] : curve.points) {
+    fmt::format_to(std::back_inserter(out_), "[{},{},{},{},{},{}],", rounded(x), rounded(y), rounded(z),
+                   rounded(i, kPerUnit), rounded(j, kPerUnit), rounded(k, kPerUnit));
+  }
+  out_.back() = ']';
+  out_.append(R"(,"knots":[)");
+  for (int knot = 0; knot <= curve.pieces; ++knot) fmt::format_to(std::back_inserter(out_), "{},", knot);
+  out_.back() = ']';
+  out_.append(R"(,"multiplicities":[)");
+  for (int knot = 0; knot <= curve.pieces; ++knot)
+    fmt::format_to(std::back_inserter(out_), "{},", knot == 0 || knot == curve.pieces ? kDegree + 1 : kInner);
+  out_.back() = ']';
+  out_ += '}';
+  close();
+  const auto& end = curve.points.back();
+  begin({end[0], end[1], end[2]});
+  axis_here_ = axis_there_;
   ++moves_;
 }
 

@@ -38,6 +38,14 @@ struct Nurbs {
   std::vector<double> weights;  ///< of each, or none
 };
 
+/// Tip and axis of the tool: a spline of degree 5 in even pieces, between which the second derivative is continuous
+/// (all inner knots are threefold), so it has three points a piece, and three more.
+struct PoseSpline {
+  using Pose = std::array<double, 6>;  ///< mm, and a direction of about unit length
+  std::vector<Pose> points;
+  int pieces = 0;
+};
+
 /// Ids of the requests: their numbers, or the lines of the source that they come from, for a reader who names those.
 enum class Ids { Numbers, Lines };
 
@@ -52,6 +60,8 @@ class Writer {
 
   /// Positioning, from rest to rest.
   void rapid(const Point& end);
+  /// Positioning by all joints together, from rest to rest.
+  void rapid_of_joints(const Point& end);
   /// Of the end of the moves that follow: from the part towards the spindle, of unit length. Z unless it is said; along
   /// a line and an arc it turns from that of the move before.
   void tool_axis(const Point& axis);
@@ -60,6 +70,8 @@ class Writer {
   void line(const Point& end);
   void arc(const Arc& arc);
   void nurbs(const Nurbs& curve);
+  /// Its end has the axis that tool_axis() said.
+  void pose_spline(const PoseSpline& curve);
 
   void feed(double mm_min);
   void path_tolerance(double mm);

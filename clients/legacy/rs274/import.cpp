@@ -25,6 +25,7 @@ constexpr gcode::Rules kRules{
     .set_coordinates = set_coordinates,
     .arcs_have_turns = true,
     .needs_path_tolerance = true,
+    .turns_as_written = true,
     .cycles = {},
 };
 

@@ -50,7 +50,11 @@ Told of_modes(const gcode::Modes& modes, ControlName name) {
     case ControlName::AbsoluteCentres:
       return modes.absolute_centres;
     case ControlName::Feed:
-      return in_unit(modes, modes.feed_mm_min);
+      return modes.inverse_time ? std::nullopt : in_unit(modes, modes.feed_mm_min);
+    case ControlName::InverseTime:
+      return modes.inverse_time;
+    case ControlName::UnitsPerMinute:
+      return !modes.inverse_time;
     default:
       return std::nullopt;
   }
@@ -85,13 +89,11 @@ Told by_name(const gcode::Interpreter& interpreter, const Flow& flow, ControlNam
       return interpreter.tip(1);
     case ControlName::Z:
       return interpreter.tip(2);
-    case ControlName::InverseTime:
     case ControlName::UnitsPerTurn:
     case ControlName::SpindleCssMode:
     case ControlName::LatheDiameter:
     case ControlName::AdaptiveFeed:
       return 0;
-    case ControlName::UnitsPerMinute:
     case ControlName::SpindleRpmMode:
     case ControlName::LatheRadius:
     case ControlName::SpeedOverride:

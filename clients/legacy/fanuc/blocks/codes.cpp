@@ -131,7 +131,7 @@ constexpr auto kG = std::to_array<FanucG>({
     {{910, GGroup::Distance, {}}},
     {{920, GGroup::Once, {}}},
     {{921, GGroup::Once, {}}},
-    {{930, GGroup::Feed, kFeed}},
+    {{930, GGroup::Feed, {}}},
     {{940, GGroup::Feed, {}}},
     {{950, GGroup::Feed, kFeed}},
     {{960, GGroup::SpindleMode, kSurface}},

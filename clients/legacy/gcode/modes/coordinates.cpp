@@ -2,6 +2,24 @@
 
 namespace rmac::gcode {
 
+namespace {
+
+/// Puts `by` in the place of one of its placements. The tip stays where it is on the part.
+void replace(Coordinates& coordinates, std::optional<legacy::Placement>& which,
+             const std::optional<legacy::Placement>& by) {
+  if (by == which) return;
+  const std::optional<Point> part =
+      coordinates.tip_is_known() ? std::optional(coordinates.placed(coordinates.known_tip())) : std::nullopt;
+  which = by;
+  if (part) {
+    coordinates.move_to(coordinates.unplaced(*part));
+  } else {
+    coordinates.forget_tip();
+  }
+}
+
+}  // namespace
+
 const Known& Coordinates::offset(std::size_t system) const {
   static const Known kUnknown;
   const auto found = offsets_.find(system);
@@ -9,14 +27,16 @@ const Known& Coordinates::offset(std::size_t system) const {
 }
 
 void Coordinates::place(const std::optional<legacy::Placement>& placement) {
-  if (placement == placement_) return;
-  const std::optional<Point> part = tip_is_known() ? std::optional(placed(known_tip())) : std::nullopt;
-  placement_ = placement;
-  if (part) {
-    move_to(unplaced(*part));
-  } else {
-    forget_tip();
-  }
+  replace(*this, placement_, placement);
+}
+
+void Coordinates::see_from(const std::optional<legacy::Placement>& table) {
+  replace(*this, table_, table);
+}
+
+std::optional<legacy::Placement> Coordinates::whole() const {
+  if (!table_ || !placement_) return table_ ? table_ : placement_;
+  return table_->after(*placement_);
 }
 
 std::optional<Point> Coordinates::part_origin() const {

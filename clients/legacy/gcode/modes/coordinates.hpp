@@ -15,8 +15,8 @@ using Known = std::array<std::optional<double>, 3>;
 
 /// Where the tool tip is, and what coordinates mean. A program's coordinates are those of the part (the frame of the
 /// active work system, which `.rmac` moves in) less what G92 set. Where a work system is in the machine is known only
-/// when the program, or who imports it, says so. All in mm. Where a placement is in force, all of this is so in
-/// coordinates that it leads to those of the part from.
+/// when the program, or who imports it, says so. All in mm. Where a placement or a turned table is in force, all of
+/// this is so in coordinates that they lead to those of the part from: the placement first.
 class Coordinates {
  public:
   [[nodiscard]] const Known& tip() const noexcept { return tip_; }
@@ -46,9 +46,28 @@ class Coordinates {
   /// Turned, tilted and mirrored coordinates; none: as they are. The tip stays where it is in the part.
   [[nodiscard]] const std::optional<legacy::Placement>& placement() const noexcept { return placement_; }
   void place(const std::optional<legacy::Placement>& placement);
-  [[nodiscard]] Point placed(const Point& point) const { return placement_ ? placement_->placed(point) : point; }
+  /// A table that has turned the part away from where its coordinates are those of the machine's axes; none: it stands
+  /// at zero, or X, Y and Z are those of the part anyway.
+  [[nodiscard]] const std::optional<legacy::Placement>& table() const noexcept { return table_; }
+  /// The table turns: the tip stays where it is in the machine.
+  void turn(const std::optional<legacy::Placement>& table) {
+    table_ = table == legacy::Placement{} ? std::nullopt : table;
+  }
+  /// X, Y and Z mean other places from now on: the tip stays where it is on the part.
+  void see_from(const std::optional<legacy::Placement>& table);
+
+  /// All of them.
+  [[nodiscard]] std::optional<legacy::Placement> whole() const;
+  [[nodiscard]] Point placed(const Point& point) const {
+    return table_ ? table_->placed(beside_table(point)) : beside_table(point);
+  }
   /// Where coordinates of the part are.
-  [[nodiscard]] Point unplaced(const Point& part) const { return placement_ ? placement_->back().placed(part) : part; }
+  [[nodiscard]] Point unplaced(const Point& part) const {
+    const auto all = whole();
+    return all ? all->back().placed(part) : part;
+  }
+  /// Between them: in coordinates that do not turn with the table.
+  [[nodiscard]] Point beside_table(const Point& point) const { return placement_ ? placement_->placed(point) : point; }
 
   /// Coordinates of the program.
   [[nodiscard]] double to_part(std::size_t axis, double program) const { return program + shift(axis); }
@@ -61,7 +80,7 @@ class Coordinates {
 
   Known tip_{};
   std::map<std::size_t, Known> offsets_;
-  std::optional<legacy::Placement> placement_;
+  std::optional<legacy::Placement> placement_, table_;
   Point g92_{}, saved_g92_{}, local_{};
   std::size_t active_ = 0;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -25,7 +26,11 @@ enum class WholeNumbers { Refused, Units, Increments };
 struct RotaryAxis {
   char letter = 'A';
   double sign = 1;
+  std::optional<Point> centre_mm;  ///< of one that turns the table: a point on it, in the coordinates of the begin
 };
+
+/// Which way an axis of the table goes to an angle under G90: as the numbers have it, or by no more than half a turn.
+enum class RotaryWay { Written, Shorter };
 
 /// How programs say which way the tool points: not at all, by angles of the machine's axes, or by vectors.
 enum class ToolCentrePoint { Off, Angles, Vectors };
@@ -45,7 +50,9 @@ struct Options {
   WholeNumbers whole_numbers = WholeNumbers::Refused;
   std::map<int, double> variables;  ///< what the machine has in common variables, by their numbers
   std::vector<RotaryAxis> rotary;   ///< what A, B and C turn, from the part to the tool
-  std::set<int> passed_m;           ///< M codes of the machine that mean nothing here
+  std::optional<RotaryWay> rotary_way;
+  std::optional<double> rotary_diameter_mm;  ///< that a table's angles count as ways on, in F
+  std::set<int> passed_m;                    ///< M codes of the machine that mean nothing here
   legacy::Ids ids = legacy::Ids::Numbers;
   Bounds bounds;                         ///< of loops and subprograms
   std::map<std::size_t, Known> offsets;  ///< where the work systems are in the machine, by their index
@@ -64,7 +71,9 @@ struct Modes {
   WholeNumbers whole_numbers = WholeNumbers::Refused;
   Plane plane;
   bool incremental = false, absolute_centres = false, retract_to_r = false;
-  double feed_mm_min = 0;
+  double feed_mm_min = 0, feed_degrees_min = 0;  ///< the latter: the number of F
+  bool inverse_time = false;                     ///< G93: F is how many such moves a minute has
+  double moves_per_min = 0;                      ///< of the block, where that holds; 0: it has none
   ToolLength length = ToolLength::Unsaid;
   ToolCentrePoint centre_point = ToolCentrePoint::Off;
   std::optional<int> diameter_register;  ///< the last D, where that is an offset
@@ -74,6 +83,15 @@ struct Modes {
     if (!unit_mm)
       refuse(place, "no G20 or G21 says whether this is inches or mm; write one in the first block, or give --unit");
     return *unit_mm;
+  }
+  /// Of a move that is so long, mm/min, or degrees where it only turns.
+  [[nodiscard]] double feed_over(double way, std::size_t place) const {
+    constexpr double kLeast = 0.1;  // as LinuxCNC has it
+    if (!inverse_time) return feed_mm_min;
+    if (moves_per_min == 0)
+      refuse(place,
+             "under G93 each move at feed has an F of its own, how many such moves a minute has; write F, or G94");
+    return std::max(kLeast, way * moves_per_min);
   }
   [[nodiscard]] double mm(const Word& word) const {
     static_cast<void>(unit(word.place));

@@ -37,6 +37,8 @@ struct Rules {
   bool stops_behind_motion = false;  ///< M5 and M9 act behind the motion of their block
   bool spindle_needs_speed = false;  ///< M3 and M4 before any S are refused
   bool unit_ends_feed = false;       ///< F does not outlive another unit
+  bool turns_as_written = false;     ///< a table goes to an angle as the numbers have it; else that is to be said
+  bool degrees_are_lengths = false;  ///< F of a move that turns a table is of X, Y, Z and of its degrees together
   double whole_dwell_s = 1;          ///< of a P without a decimal point
 
   struct Cycles {
@@ -46,6 +48,7 @@ struct Rules {
     bool dwell_is_free = false;      ///< each may have P, and none needs it
     bool cross_first = false;        ///< to the hole where the tool is, and then to R
     bool bore_to_r = false;          ///< G89 comes up at feed to R alone, as G85 does
+    bool may_turn = false;           ///< a hole may have an angle of the table beside it, or nothing but that
     bool levels_stay = false;  ///< R and Z that a block does not say are where they were, whatever mode is in force
   } cycles;
 };

@@ -97,7 +97,7 @@ constexpr auto kG = std::to_array<GCode>({
     {921, GGroup::Once, {}},
     {922, GGroup::Once, {}},
     {923, GGroup::Once, {}},
-    {930, GGroup::Feed, kFeed},
+    {930, GGroup::Feed, {}},
     {940, GGroup::Feed, {}},
     {950, GGroup::Feed, kFeed},
     {960, GGroup::SpindleMode, "constant surface speed is not taken; write G97 and S in turns a minute"},

@@ -34,7 +34,9 @@ constexpr std::array<Passed, std::tuple_size_v<decltype(Source::values)>> kPasse
     {"--reference-point", "X,Y,Z in mm: where G28, or GOHOME, of an imported program goes"},
     {"--second-reference-point", "the same of G30"},
     {"--whole-numbers", "units or increments: what a Fanuc program's lengths without a decimal point count in"},
-    {"--rotary", "C,A: the axes of a Fanuc program's machine that turn the tool, from the part to the tool"},
+    {"--rotary", "C,A: the axes of an imported program's machine that turn the tool, from the part to the tool"},
+    {"--rotary-way", "written or shorter: how a table of theirs goes to an angle more than half a turn away"},
+    {"--rotary-diameter", "mm: that degrees of a table count as ways on, in an imported program's F"},
     {"--subroutines", "DIR[:DIR]: where the subs are that an imported RS274 program calls, each in NAME.ngc"},
     {"--output-limit", "MB of .rmac: an imported program with loops that becomes more does not end"},
 }};
@@ -44,6 +46,7 @@ constexpr std::array<Passed, std::tuple_size_v<decltype(Source::repeated)>> kRep
     {"--input", "3=NAME: the input that M66 P3 of an imported program waits for"},
     {"--tool-diameter", "3=10: the diameter of tool 3 in mm, for G41 and G42 of an imported program"},
     {"--variable", "500=12.5: what the machine has in a common variable that a Fanuc program reads"},
+    {"--rotary-centre", "A=X,Y,Z in mm, or X,Y,Z: a point on an axis of --rotary that turns a table"},
     {"--pass-over", "M10: an M code of the machine's builder that a Fanuc program may go without"},
 }};
 

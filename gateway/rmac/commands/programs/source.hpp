@@ -20,8 +20,8 @@ inline constexpr const char* kImporter = "rmac-import";
 /// reads that, as `rmac import` would.
 struct Source {
   std::string file, dialect;
-  std::array<std::string, 11> values;                ///< of options that are given once; empty: not given
-  std::array<std::vector<std::string>, 6> repeated;  ///< of options that may be given again
+  std::array<std::string, 13> values;                ///< of options that are given once; empty: not given
+  std::array<std::vector<std::string>, 7> repeated;  ///< of options that may be given again
   bool assume_g43 = false, assume_end = false, block_delete = false, multax = false;
 };
 

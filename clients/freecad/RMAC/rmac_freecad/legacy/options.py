@@ -13,7 +13,8 @@ UNITS = {"as the program says": "", "mm": "mm", "inch": "inch"}
 ENDINGS = {".ngc": "rs274", ".nc": "rs274", ".tap": "rs274", ".apt": "apt", ".cls": "apt", ".aptsource": "apt"}
 # Those that a document may bring with it: none of them names a file that would be written.
 FURTHER = ("--tolerance", "--offset", "--reference-point", "--second-reference-point", "--output", "--input", "--output-limit",
-           "--tool-diameter", "--multax", "--circle-axis", "--whole-numbers", "--variable", "--pass-over", "--rotary", "--assume-end")  # fmt: skip
+           "--tool-diameter", "--multax", "--circle-axis", "--whole-numbers", "--variable", "--pass-over", "--rotary", "--rotary-centre",
+           "--rotary-way", "--rotary-diameter", "--assume-end")  # fmt: skip
 NUMBER = re.compile(r"-[\d.]")
 
 

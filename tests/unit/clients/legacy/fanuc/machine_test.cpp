@@ -171,6 +171,8 @@ TEST(FanucUnits, EndTheFeed) {
   EXPECT_THAT(refusal_of(program_of("G20\nG1 X1.")), StartsWith("6:1: no feed was set"));
   EXPECT_EQ(refusal_of(program_of("G20\nG1 X1. F10.")), "taken");
   EXPECT_EQ(refusal_of(program_of("G21\nG1 X1.")), "taken");
+  EXPECT_EQ(imported(program_of("G20 G1 X1. F10.")).requests[1]["params"]["Feedrate"], 254)
+      << "F beside it is the new one's";
 }
 
 }  // namespace

@@ -51,9 +51,9 @@ TEST(Rs274Block, IsRefusedForAWordThatNothingUses) {
 }
 
 TEST(Rs274Block, IsRefusedForWhatIsNotTaken) {
-  for (const char* code : {"G33",  "G28", "G41", "G76",   "G73",   "G38.2", "G93",
-                           "G95",  "G96", "G87", "G43.1", "G61.1", "G18.1", "G9",
-                           "G200", "M19", "M49", "M62",   "M100",  "G1.5",  "(PROBEOPEN x.txt)"}) {
+  for (const char* code :
+       {"G33",   "G28",   "G41", "G76",  "G73", "G38.2", "G95", "G96",  "G87",  "G43.1",
+        "G61.1", "G18.1", "G9",  "G200", "M19", "M49",   "M62", "M100", "G1.5", "(PROBEOPEN x.txt)"}) {
     EXPECT_THAT(refusal_of(program_of(code)), StartsWith("3:1: ")) << code;
   }
   EXPECT_THAT(refusal_of(program_of("G0 A90")), HasSubstr("give --rotary"));

@@ -14,6 +14,11 @@ namespace rmac::gcode {
   return axis == 0 ? placement.x : axis == 1 ? placement.y : placement.z;
 }
 
+/// What A, B and C turn: about X, Y and Z.
+[[nodiscard]] constexpr legacy::Plane plane_of(char letter) {
+  return letter == 'A' ? legacy::Plane{1, 2, 0} : letter == 'B' ? legacy::Plane{2, 0, 1} : legacy::Plane{};
+}
+
 /// Counter-clockwise in a plane, about the origin; exact at multiples of a right angle.
 [[nodiscard]] inline legacy::Placement turn_about_normal(const legacy::Plane& plane, double degrees) {
   constexpr double kRight = 90;
