@@ -121,6 +121,21 @@ class Commands(unittest.TestCase):
         stands = watcher.state()["joints"][0]
         self.assertTrue(2 < stands < 30, stands)
 
+    def test_tune_takes_a_joint_that_rests_beside_its_setpoint_for_what_it_is(self):
+        """Friction holds a soft loop: it creeps under the gains that are proposed, and where nothing was measured that they hold by, tune says
+        what is wrong."""
+        soft = {"Gains": [120, 100, 1.2], "MaxFollowingError": 2}
+        with self.bending(274, soft) as appliance, tempfile.TemporaryDirectory() as folder:
+            words = ("tune", "0", "--travel", "20", "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
+            rigid = appliance.rmac(*words, "--sweep-effort", "0")
+            found = json.loads(self.rmac(appliance, "--json", *words))
+            again = json.loads(self.rmac(appliance, "--json", *words[:-3], *words[-2:]))
+        self.assertEqual((rigid.returncode, rigid.stderr.count("\n")), (1, 1), rigid.stderr)
+        self.assertIn("its gains are too soft for its friction", rigid.stderr)
+        self.assertAlmostEqual(found["creep"]["friction"] / 18.85, 1, delta=0.1)
+        self.assertEqual((again["law"], again["gains"], again["filters_in_force"]),
+                         ("DMACXYZPIDServoControlLaw", soft["Gains"], {"Resonances": [], "LowPass": 0}), "nothing was changed")
+
     def test_tune_begins_softly_where_the_gains_do_not_fit(self):
         """With the gains of the tree, which were made for axes that are rigid, and of another mass."""
         for hz, heavier, joints in ((274, 1, (0,)), (600, 1 / 3, (2,)), (346, 3, ())):
