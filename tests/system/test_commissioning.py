@@ -13,7 +13,7 @@ import unittest
 import numpy as np
 
 from appliance import BUILD, Appliance, line, wait_for_rest
-from bending_mill import bend
+from bending_mill import bend, on_two_motors
 
 PNG = b"\x89PNG\r\n\x1a\n"
 MARGIN = 40.0
@@ -187,6 +187,23 @@ class Commands(unittest.TestCase):
         self.assertEqual(joint["law"], "FeedforwardFeedbackServoControlLaw")
         self.assertEqual(set(joint["parameters"]), {"rest_band", "lead_s", "presliding", "breakaway", "stribeck_speed"})
         self.assertEqual(head["joints"][0]["law"], "DMACXYZPIDServoControlLaw")
+
+    def test_tune_finds_a_joint_of_two_motors(self):
+        """All but their cogging, which the joint shows as a sum: mass and friction of both."""
+        with tempfile.TemporaryDirectory() as folder, Appliance(own_tree=True, flight_recorder={"seconds": 30}) as appliance:
+            bend(appliance, 274, {"Gains": [120, 2000, 1.2], "MaxFollowingError": 1})
+            on_two_motors(appliance)
+            self.rmac(appliance, "load", "DMACXYZ")
+            words = ("tune", "0", "--travel", "20", "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
+            found = json.loads(self.rmac(appliance, "--json", *words))
+            said = self.rmac(appliance, *words, "--apply")
+        both = 2 * 2.2e-5 * RAD_PER_MM ** 2 * 1000
+        self.assertAlmostEqual(found["plant"]["mass"] / both, 1, delta=0.03)
+        self.assertAlmostEqual(found["creep"]["friction"] / (2 * 18.85), 1, delta=0.1)
+        self.assertAlmostEqual(found["creep"]["parameters"]["presliding"][0] / 0.01, 1, delta=0.3)
+        self.assertIsNone(found["creep"]["motor"])
+        self.assertIn("cogging is not told: its 2 motors turn alike", said)
+        self.assertNotIn('"Cogging"', said)
 
     @contextlib.contextmanager
     def bending(self, hz, joint, heavier=1.0, load=True):

@@ -173,9 +173,11 @@ def crept(given, head, plant, bent, lead):
     harmonics = [{"Order": order, "Cosine": rounded(cosine), "Sine": rounded(sine)} for order, cosine, sine in found.harmonics]
     return {"friction": friction.sliding, "explained": found.explained,
             "parameters": {**kept, **{key: [rounded(value)] for key, value in parameters.items()}},
-            "motor": {"actuator": motor.actuator, "cogging_in_force": as_device_json(head["actuators"][motor.actuator]["cogging"]),
-                      "of": len(head["actuators"]), "rated_torque": motor.rated_torque,
-                      "cogging": {"Lead": rounded(plant.delay_s), "Harmonics": harmonics}}}
+            "motor": None if creep.no_cogging(motor) else {
+                "actuator": motor.actuators[0], "of": len(head["actuators"]), "rated_torque": motor.rated_torque,
+                "cogging_in_force": as_device_json(head["actuators"][motor.actuators[0]]["cogging"]),
+                "cogging": {"Lead": rounded(plant.delay_s), "Harmonics": harmonics}},
+            "no_cogging": creep.no_cogging(motor)}
 
 
 def main():

@@ -11,7 +11,9 @@ using Json = nlohmann::json;
 
 constexpr const char* kFeedforwardFeedback = "DMAC_FEEDFORWARDFEEDBACK_CONTROL";
 
+/// Into the draft; nothing where several motors share the joint.
 Result<> put_cogging(Connection& connection, const Json& motor, const char* which) {
+  if (motor.is_null()) return {};
   Json actuators = Json::array();
   for (int i = 0; i < motor["of"].get<int>(); ++i) actuators.push_back(Json::object());
   actuators[motor["actuator"].get<std::size_t>()]["Cogging"] = motor[which];
@@ -21,8 +23,7 @@ Result<> put_cogging(Connection& connection, const Json& motor, const char* whic
 
 /// The law with feedforward and all that creeping has shown, with its motor's cogging.
 Result<> put_model(Connection& connection, int joint, const Json& found) {
-  const Json& motor = found["creep"]["motor"];
-  return put_cogging(connection, motor, "cogging").and_then([&] {
+  return put_cogging(connection, found["creep"]["motor"], "cogging").and_then([&] {
     return put_law(connection, joint, kFeedforwardFeedback, found["creep"]["parameters"],
                    found["feedforward_feedback_gains"]);
   });
