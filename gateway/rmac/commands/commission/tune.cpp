@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -69,6 +70,9 @@ std::vector<std::string> program_words(const TuneOptions& options, const Tempora
           fmt::format("{}", options.bandwidth_hz)};
 }
 
+/// Of `MaxEffort`: with what the loop answers to it, more is a loop that swings (docs/servo.md).
+constexpr double kMostShare = 0.095;
+
 /// Why a joint is not swept; empty: it can be.
 std::string unswept(const TuneOptions& options, const Json& found) {
   if (found["before"].is_null()) {
@@ -80,8 +84,6 @@ std::string unswept(const TuneOptions& options, const Json& found) {
   if (!options.sweep_effort && found["max_effort"] == 0) {
     return "the joint has no MaxEffort, of which the sweep would be a twentieth; give --sweep-effort";
   }
-  // With what the loop answers to it, more is a loop that swings (docs/servo.md).
-  constexpr double kMostShare = 0.095;
   const double most = kMostShare * found["max_effort"].get<double>();
   if (most > 0 && options.sweep_effort.value_or(0) > most) {
     return fmt::format(
@@ -92,23 +94,35 @@ std::string unswept(const TuneOptions& options, const Json& found) {
   return {};
 }
 
-/// Sweeps the joint, of which `found` is what its swings have shown, and tells `tune.py` where that is recorded.
-Result<> measure_response(Connection& connection, const TuneOptions& options, const Json& found,
-                          const TemporaryFile& record, std::vector<std::string>& words, const std::string& fault) {
+/// Sweeps the joint, of which `found` is what its swings have shown, and has `words` tell `tune.py` where that is
+/// recorded. What is lost in noise is swept again, until all of it together says enough.
+Result<Json> measure_response(Connection& connection, const TuneOptions& options, const Json& found,
+                              std::deque<TemporaryFile>& records, std::vector<std::string>& words,
+                              const std::string& fault) {
+  constexpr std::size_t kMostSweeps = 6;
   if (const std::string why = unswept(options, found); !why.empty()) return fail(why);
-  const auto begin = ask_state(connection);
-  if (!begin) return tl::unexpected(begin.error());
   const Sweep sweep = sweep_for(options.stroke, found, options.sweep_effort);
-  for (const std::string& word :
-       {std::string("--sweep"), record.path(), std::string("--sweep-begin"), fmt::format("{}", begin->t_s),
-        std::string("--sweep-period"), fmt::format("{}", sweep.period_s), std::string("--sweeps"),
-        std::to_string(sweep.sweeps), std::string("--from-hz"), fmt::format("{}", sweep.from_hz),
-        std::string("--to-hz"), fmt::format("{}", sweep.to_hz)}) {
-    words.push_back(word);
+  std::vector<std::string> begins;
+  const std::vector<std::string> before = words;
+  for (;;) {
+    const auto begin = ask_state(connection);
+    if (!begin) return tl::unexpected(begin.error());
+    begins.push_back(fmt::format("{}", begin->t_s));
+    const auto swept = sweep_strokes(connection, options.stroke, found, sweep, fault).and_then([&] {
+      return keep_record(connection, records.emplace_back());
+    });
+    if (!swept) return tl::unexpected(swept.error());
+    words = before;
+    words.insert(words.end(),
+                 {"--sweep-period", fmt::format("{}", sweep.period_s), "--sweeps", std::to_string(sweep.sweeps),
+                  "--from-hz", fmt::format("{}", sweep.from_hz), "--to-hz", fmt::format("{}", sweep.to_hz), "--sweep"});
+    for (const TemporaryFile& record : records) words.push_back(record.path());
+    words.emplace_back("--sweep-begin");
+    words.insert(words.end(), begins.begin(), begins.end());
+    auto answer = plot_answer("tune.py", words);
+    if (!answer || !answer->contains("unmeasured")) return answer;
+    if (records.size() == kMostSweeps) return fail((*answer)["unmeasured"].get<std::string>());
   }
-  return sweep_strokes(connection, options.stroke, found, sweep, fault).and_then([&] {
-    return keep_record(connection, record);
-  });
 }
 
 /// Creeps under the loop that is proposed, which follows better than the one in force; that of a joint that was only
@@ -133,7 +147,8 @@ Result<> creep(Connection& connection, const TuneOptions& options, const Json& f
 Result<Json> find_tuning(Connection& connection, const TuneOptions& options, double begin_s, const std::string& picture,
                          const std::string& fault) {
   if (auto moved = swing_at_speeds(connection, options.stroke, fault); !moved) return tl::unexpected(moved.error());
-  const TemporaryFile record, swept;
+  const TemporaryFile record;
+  std::deque<TemporaryFile> swept;
   if (auto kept = keep_record(connection, record); !kept) return tl::unexpected(kept.error());
   auto words = program_words(options, record, begin_s, picture);
   const bool sweeps = options.sweep_effort != 0;
@@ -142,9 +157,7 @@ Result<Json> find_tuning(Connection& connection, const TuneOptions& options, dou
   auto found = plot_answer("tune.py", rigid);
   if (found && options.creep && !(*found)["no_creep"].is_null()) return fail((*found)["no_creep"].get<std::string>());
   if (found && sweeps) {
-    const auto measured = measure_response(connection, options, *found, swept, words, fault);
-    if (!measured) return tl::unexpected(measured.error());
-    found = plot_answer("tune.py", words);
+    found = measure_response(connection, options, *found, swept, words, fault);
   }
   if (!found || !options.creep) return found;
   CreepRecords records;

@@ -139,7 +139,7 @@ Result<> put_sweeping_law(Connection& connection, int joint, const Json& found, 
   for (const char* kept : {"derivative_filter_s", "rest_band"}) {
     if (found["parameters"].contains(kept)) parameters[kept] = found["parameters"][kept];
   }
-  return put_law(connection, joint, "SweptSineServoControlLaw", parameters, found["before"]["gains"]);
+  return put_law(connection, joint, "SweptSineServoControlLaw", parameters, found["sweep_gains"]);
 }
 
 }  // namespace
