@@ -98,6 +98,7 @@ nlohmann::json state_to_json(MachinePort& machine, int moves_left, const CycleSa
                        {"override_percent", cycle.override_percent},
                        {"pose", {tool.tip[0], tool.tip[1], tool.tip[2], tool.axis[0], tool.axis[1], tool.axis[2]}},
                        {"joints", first(sample.position, sample.joint_count)},
+                       {"joints_set", first(sample.position_set, sample.joint_count)},
                        {"held_joints", std::vector<double>(sample.position.begin() + sample.joint_count,
                                                            sample.position.begin() + sample.joint_count_with_held)},
                        {"inputs", sample.inputs},

@@ -35,3 +35,18 @@ def bend(appliance, hz, joint, heavier=1.0, **more):
     for data in device["Joints"][:3]:
         data.update(joint)
     file.write_text(json.dumps(device))
+
+
+def on_two_motors(appliance, axis=4):
+    """Has X of that mill moved by two motors, its own and this axis of the bus, which is as that, under twice the gains."""
+    file = next(appliance.tree.glob("*/*/DMACXYZ/device.json"))
+    device = json.loads(file.read_text())
+    device["ActuatorMap"] = {"Module": "TransmissionMap", "Parameters": {
+        "transmissions": "gantry screw screw", "t1": [5, 1], "t2": [5, 1], "t3": [5, 1]}}
+    device["Actuators"].insert(1, {**device["Actuators"][0], "Axis": axis})
+    joint = device["Joints"][0]
+    joint.update({"Gains": [2 * gain for gain in joint["Gains"]], "MaxEffort": 2 * joint["MaxEffort"]})
+    parameters = device["DigitalControlInterface"]["Parameters"]
+    for name in ("stiffness_nm_rad", "load_inertia_kg_m2", "inertia_kg_m2"):
+        parameters[name][axis] = parameters[name][0]
+    file.write_text(json.dumps(device))

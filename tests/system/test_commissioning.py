@@ -13,7 +13,7 @@ import unittest
 import numpy as np
 
 from appliance import BUILD, Appliance, line, wait_for_rest
-from bending_mill import bend, rigid
+from bending_mill import bend, on_two_motors, rigid
 
 PNG = b"\x89PNG\r\n\x1a\n"
 MARGIN = 40.0
@@ -119,9 +119,24 @@ class Commands(unittest.TestCase):
         stands = watcher.state()["joints"][0]
         self.assertTrue(2 < stands < 30, stands)
 
+    def test_tune_takes_a_joint_that_rests_beside_its_setpoint_for_what_it_is(self):
+        """Friction holds a soft loop: it creeps under the gains that are proposed, and where nothing was measured that they hold by, tune says
+        what is wrong."""
+        soft = {"Gains": [120, 100, 1.2], "MaxFollowingError": 2}
+        with self.bending(274, soft) as appliance, tempfile.TemporaryDirectory() as folder:
+            words = ("tune", "0", "--travel", "20", "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
+            rigid = appliance.rmac(*words, "--sweep-effort", "0")
+            found = json.loads(self.rmac(appliance, "--json", *words))
+            again = json.loads(self.rmac(appliance, "--json", *words[:-3], *words[-2:]))
+        self.assertEqual((rigid.returncode, rigid.stderr.count("\n")), (1, 1), rigid.stderr)
+        self.assertIn("its gains are too soft for its friction", rigid.stderr)
+        self.assertAlmostEqual(found["creep"]["friction"] / 18.85, 1, delta=0.1)
+        self.assertEqual((again["law"], again["gains"], again["filters_in_force"]),
+                         ("DMACXYZPIDServoControlLaw", soft["Gains"], {"Resonances": [], "LowPass": 0}), "nothing was changed")
+
     def test_tune_begins_softly_where_the_gains_do_not_fit(self):
         """With gains which were made for axes that are rigid, and of another mass."""
-        for hz, heavier, joints in ((274, 1, (0,)), (600, 1 / 3, (2,)), (346, 3, ())):
+        for hz, heavier, joints in ((346, 3, (0, 2)), (274, 1, (0,)), (600, 1 / 3, (2,))):
             with self.subTest(hz=hz, heavier=heavier), tempfile.TemporaryDirectory() as folder, \
                     self.bending(hz, {}, heavier, load=False) as appliance:
                 refused = appliance.rmac("load", "DMACXYZ")
@@ -191,6 +206,23 @@ class Commands(unittest.TestCase):
         self.assertEqual(joint["law"], "FeedforwardFeedbackServoControlLaw")
         self.assertEqual(set(joint["parameters"]), {"rest_band", "lead_s", "presliding", "breakaway", "stribeck_speed"})
         self.assertEqual(head["joints"][0]["law"], "DMACXYZPIDServoControlLaw")
+
+    def test_tune_finds_a_joint_of_two_motors(self):
+        """All but their cogging, which the joint shows as a sum: mass and friction of both."""
+        with tempfile.TemporaryDirectory() as folder, Appliance(own_tree=True, flight_recorder={"seconds": 30}) as appliance:
+            bend(appliance, 274, {"Gains": [120, 2000, 1.2], "MaxFollowingError": 1})
+            on_two_motors(appliance)
+            self.rmac(appliance, "load", "DMACXYZ")
+            words = ("tune", "0", "--travel", "20", "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
+            found = json.loads(self.rmac(appliance, "--json", *words))
+            said = self.rmac(appliance, *words, "--apply")
+        both = 2 * 2.2e-5 * RAD_PER_MM ** 2 * 1000
+        self.assertAlmostEqual(found["plant"]["mass"] / both, 1, delta=0.03)
+        self.assertAlmostEqual(found["creep"]["friction"] / (2 * 18.85), 1, delta=0.1)
+        self.assertAlmostEqual(found["creep"]["parameters"]["presliding"][0] / 0.01, 1, delta=0.3)
+        self.assertIsNone(found["creep"]["motor"])
+        self.assertIn("cogging is not told: its 2 motors turn alike", said)
+        self.assertNotIn('"Cogging"', said)
 
     @contextlib.contextmanager
     def bending(self, hz, joint, heavier=1.0, load=True):

@@ -82,9 +82,16 @@ def strokes(way, seconds, count):
 class Creep(unittest.TestCase):
     def find(self, joint, known=()):
         records = [joint.run(strokes(2 * TURN, 3.5, 1)), joint.run(strokes(0.06 * TURN, 0.75, 4))]
-        head = {"joints": [{"unit": "mm"}],
-                "actuators": [{"counts_per_revolution": COUNTS, "rated_torque": joint.rated, "direction": joint.direction,
-                               "cogging": {"lead": 0, "harmonics": known}}]}
+        return self.found_in(records, joint, [self.scale(joint, known)])
+
+    @staticmethod
+    def scale(joint, known=()):
+        return {"counts_per_revolution": COUNTS, "rated_torque": joint.rated, "direction": joint.direction,
+                "cogging": {"lead": 0, "harmonics": known}}
+
+    @staticmethod
+    def found_in(records, joint, actuators):
+        head = {"joints": [{"unit": "mm"}], "actuators": actuators}
         plant = model.Plant(joint.mass, joint.viscous, joint.coulomb, joint.load, 1.5 * PERIOD)
         return creep.find(head, records, 0, plant, frequency_response.Model(PERIOD, plant.mass, plant.delay_s))
 
@@ -123,12 +130,28 @@ class Creep(unittest.TestCase):
                 joint.cogging = {}
                 self.assertEqual(self.find(joint)[1].harmonics, [])
 
-    def test_refuses_a_joint_of_two_motors(self):
-        columns = CreepingJoint(1).run(strokes(TURN, 1, 1))
-        columns["counts2"] = columns["counts1"]
+    def test_finds_friction_of_two_motors_that_turn_alike_and_tells_no_cogging(self):
+        """A gantry: what the joint shows is the sum of what both motors do."""
+        joint = CreepingJoint(FIRST)
+        records = [self.gantry(joint.run(strokes(2 * TURN, 3.5, 1))), self.gantry(joint.run(strokes(0.06 * TURN, 0.75, 4)))]
+        motor, found = self.found_in(records, joint, [self.scale(joint), {**self.scale(joint), "direction": -joint.direction}])
+        self.assertEqual((motor.actuators, found.harmonics), ([0, 1], []))
+        self.assertIn("the sum of their cogging", creep.no_cogging(motor))
+        self.assertAlmostEqual(found.friction.sliding / joint.coulomb, 1, delta=0.06)
+        self.assertAlmostEqual(found.friction.presliding / joint.presliding, 1, delta=0.4)
+        self.assertAlmostEqual(found.friction.breakaway, joint.breakaway, delta=0.25)
+
+    def test_refuses_a_joint_of_motors_that_do_not_turn_alike(self):
+        columns = self.gantry(CreepingJoint(1).run(strokes(TURN, 1, 1)), ratio=2)
         scale = {"counts_per_revolution": COUNTS, "rated_torque": 1}
-        with self.assertRaisesRegex(model.Unidentifiable, "2 motors moved with the joint"):
+        with self.assertRaisesRegex(model.Unidentifiable, "2 motors do not turn alike"):
             creep.motor_of({"actuators": [scale, scale]}, columns, 0)
+
+    @staticmethod
+    def gantry(columns, ratio=1):
+        """With a second motor, on the other side and the other way round."""
+        columns["counts2"] = 5000 - ratio * columns["counts1"]
+        return columns
 
     def test_goes_by_counts_that_wrap(self):
         counts = np.array([2.0 ** 31 - 2, 2.0 ** 31 - 1, -2.0 ** 31, -2.0 ** 31 + 5])

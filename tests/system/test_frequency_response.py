@@ -41,7 +41,7 @@ def measured(joint, effort_per_mass=1000.0):
     wanted = np.array(setpoints)
     columns = {"t_s": np.arange(len(wanted)) * PERIOD, "q1": wanted[:, 0], "qd1": wanted[:, 1], "qdd1": wanted[:, 2],
                "a1": positions, "effort1": efforts}
-    return frequency_response.measure(columns, 1, SWEEP["period_s"], SWEEP["sweeps"], (20, 495))
+    return frequency_response.measure([columns], 1, SWEEP["period_s"], SWEEP["sweeps"], (20, 495))
 
 
 def filters_of(loop):

@@ -27,9 +27,9 @@ LEAST_SHARE = 0.001  # of the rated torque; less is not worth a harmonic
 
 @dataclass
 class Motor:
-    """The one that moves the joint."""
+    """The one that moves the joint, or the first of several that do so together."""
 
-    actuator: int
+    actuators: list  # all of them
     turn: float  # mm or deg of the joint for a turn in the drive's sense
     counts_per_turn: float
     rated_torque: float  # N·m
@@ -37,7 +37,7 @@ class Motor:
 
     def angle(self, columns):
         """rad, of each row."""
-        return unwrapped(columns[f"counts{self.actuator + 1}"]) * (2 * math.pi / self.counts_per_turn)
+        return unwrapped(columns[f"counts{self.actuators[0] + 1}"]) * (2 * math.pi / self.counts_per_turn)
 
     def torque_of(self, effort, unit):
         """N·m at the motor, in the drive's sense, of an effort at the joint."""
@@ -72,21 +72,35 @@ def unwrapped(counts):
 
 
 def motor_of(head, columns, joint):
-    """The motor that moved with the joint, and the joint's way for a turn of it."""
+    """The motor that moved with the joint, and the joint's way for a turn of it; of several, which turn alike, the first."""
     place = columns[f"a{joint + 1}"]
     moved = []
     for index, scale in enumerate(head.get("actuators", [])):
         turns = unwrapped(columns[f"counts{index + 1}"]) / scale["counts_per_revolution"]
         if np.ptp(turns) > 0.05:
             moved.append((index, scale, turns))
-    if len(moved) != 1:
-        raise Unidentifiable(f"{len(moved)} motors moved with the joint; one is needed, whose angles cogging goes by")
+    if not moved:
+        raise Unidentifiable("no motor moved with the joint")
+    ways = []
+    for _, _, turns in moved:
+        turn, offset = np.polyfit(turns, place, 1)
+        if np.max(np.abs(turn * turns + offset - place)) > 0.005 * np.ptp(place):
+            raise Unidentifiable("the joint does not go in proportion to its motors, so that neither friction nor cogging is found")
+        ways.append(abs(turn))
+    if max(ways) > 1.01 * min(ways):
+        raise Unidentifiable(f"its {len(moved)} motors do not turn alike, so that neither friction nor cogging is found")
     index, scale, turns = moved[0]
-    turn, offset = np.polyfit(turns, place, 1)
-    if np.max(np.abs(turn * turns + offset - place)) > 0.005 * np.ptp(place):
-        raise Unidentifiable("the joint does not go in proportion to its motor, so that cogging is not found")
-    return Motor(index, float(turn), scale["counts_per_revolution"], scale["rated_torque"],
+    return Motor([index for index, _, _ in moved], float(np.polyfit(turns, place, 1)[0]), scale["counts_per_revolution"],
+                 scale["rated_torque"],
                  {one["order"]: complex(one["cosine"], one["sine"]) for one in scale.get("cogging", {}).get("harmonics", [])})
+
+
+def no_cogging(motor):
+    """Why the motor's own torque is not told; None where it is. What the joint shows is the sum of its motors', by an angle that they
+    all share: how much of it is whose cannot be seen, nor with which phase."""
+    if len(motor.actuators) == 1:
+        return None
+    return f"its {len(motor.actuators)} motors turn alike, and the joint shows the sum of their cogging, not whose it is"
 
 
 def bent(way, speed, breakaway, stribeck_speed):
@@ -218,7 +232,10 @@ def find(head, records, joint, plant, joint_model):
     amplitudes = [motor.torque_of(-value, unit) * stiffer(joint_model, plant, orders[i // 2] * passing)
                   for i, value in enumerate(found[2:])]
     left_over = {order: complex(amplitudes[2 * i], amplitudes[2 * i + 1]) for i, order in enumerate(orders)}
+    if no_cogging(motor):
+        left_over = {}
     whole = {order: size + motor.known.get(order, 0) for order, size in left_over.items()}
-    harmonics = [(order, size.real, size.imag) for order, size in whole.items() if abs(size) > LEAST_SHARE * motor.rated_torque]
+    harmonics = [(order, size.real, size.imag) for order, size in whole.items()
+                 if abs(size) > LEAST_SHARE * motor.rated_torque]
     return motor, Creep(Friction(float(found[0]), *(float(value) for value in shape)), float(found[1]), harmonics,
                         1 - float(np.mean(left ** 2) / np.mean((wanted - wanted.mean()) ** 2)))

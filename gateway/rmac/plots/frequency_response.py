@@ -28,6 +28,10 @@ class Unmeasured(Exception):
     """The record does not say what the joint answers."""
 
 
+class Unheard(Unmeasured):
+    """More sines may say it."""
+
+
 @dataclass
 class Response:
     """Position over effort at `frequency`, delay of drive and bus included, as the loop's samples show it."""
@@ -133,15 +137,22 @@ def steady_stretches(velocity, acceleration, period):
     return [(int(begin), int(end)) for begin, end in zip(edges[::2], edges[1::2])]
 
 
-def measure(columns, joint, sweep_s, sweeps, band):
-    """The response of joint `joint` (from 1) in the record's `columns`; in each steady stretch `sweeps` sines of
-    `sweep_s` over `band` (Hz), of which the first is how the joint gets into its periodic state."""
-    period = period_of(columns)
+def sines_of(columns, joint, sweep_s, sweeps):
+    """Rows of each pair of sines in the record's `columns` of joint `joint` (from 1): in each steady stretch `sweeps` of `sweep_s`, of
+    which the first is how the joint gets into its periodic state."""
+    half = int(round(sweep_s / period_of(columns)))
+    for begin, end in steady_stretches(columns[f"qd{joint}"], columns[f"qdd{joint}"], period_of(columns)):
+        for first in range(begin + half, min(end, begin + sweeps * half) - 2 * half + 1, 2 * half):
+            yield slice(first, first + 2 * half)
+
+
+def measure(records, joint, sweep_s, sweeps, band):
+    """The response of joint `joint` (from 1) in the columns of these records together, over `band` (Hz)."""
+    period = period_of(records[0])
     half = int(round(sweep_s / period))
     answers, efforts = [], []
-    for begin, end in steady_stretches(columns[f"qd{joint}"], columns[f"qdd{joint}"], period):
-        for first in range(begin + half, min(end, begin + sweeps * half) - 2 * half + 1, 2 * half):
-            part = slice(first, first + 2 * half)
+    for columns in records:
+        for part in sines_of(columns, joint, sweep_s, sweeps):
             answers.append(np.fft.rfft(_level(columns[f"a{joint}"][part] - columns[f"q{joint}"][part])))
             efforts.append(np.fft.rfft(_level(columns[f"effort{joint}"][part])))
     if len(answers) < 2:
@@ -168,13 +179,13 @@ def fit(response, period):
     """The model that is nearest to the lines of `response`, with as few modes as explain them."""
     good = response.spread < WORST_LINE
     if good.sum() < FEWEST_LINES:
-        raise Unmeasured(f"only {good.sum()} of {len(good)} frequencies rise above noise; a larger sweep says more")
+        raise Unheard(f"only {good.sum()} of {len(good)} frequencies rise above noise; a larger sweep says more")
     lines = _Lines(2 * np.pi * response.frequency[good] * period, response.value[good], response.spread[good])
     best, left = None, np.inf
     for count in range(MOST_MODES + 1):
         found = lines.refine(lines.best_start(best[2:] if best is not None else [], with_mode=count > 0))
         cost = np.sum(lines.deviation(found) ** 2)
-        if cost > WORTH_A_MODE * left:
+        if cost > WORTH_A_MODE * left or lines.at_a_bound(found):
             break
         best, left = found, cost
     shares = lines.shares(best)
@@ -229,10 +240,20 @@ class _Lines:
                            for damping in ((0.01, 0.04) if with_mode else (0,))]
         return min(starts, key=lambda numbers: np.sum(self.deviation(numbers) ** 2))
 
+    def _bounds(self, numbers):
+        modes = (len(numbers) - 2) // 2
+        return (np.array([0.5, 0.0] + modes * [1.2 * self.angle[0], 0.001]),
+                np.array([10.0, 3.0] + modes * [0.995 * np.pi, MOST_DAMPING]))
+
+    def at_a_bound(self, numbers):
+        """Whether a mode's place or damping would go on beyond what is searched: it stands for something that is no mode."""
+        low, high = self._bounds(numbers)
+        near = 1e-3 * (high - low)
+        places, dampings = numbers[2::2], numbers[3::2]
+        return bool(np.any(places < (low + near)[2::2]) or np.any(places > (high - near)[2::2]) or np.any(dampings > (high - near)[3::2]))
+
     def refine(self, numbers):
         """The nearest best."""
-        modes = (len(numbers) - 2) // 2
-        low = [0.5, 0.0] + modes * [1.2 * self.angle[0], 0.001]
-        high = [10.0, 3.0] + modes * [0.995 * np.pi, MOST_DAMPING]
-        start = np.clip(numbers, np.array(low) + 1e-6, np.array(high) - 1e-6)
+        low, high = self._bounds(numbers)
+        start = np.clip(numbers, low + 1e-6, high - 1e-6)
         return least_squares(self.deviation, start, bounds=(low, high), x_scale="jac", max_nfev=100).x

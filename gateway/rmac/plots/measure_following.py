@@ -41,6 +41,19 @@ def turn_of(head, columns, move):
     return wanted - centre, measured - centre
 
 
+def reversal_spikes(angle, deviation):
+    """Largest departure, after an axis turns round, from the mean before; of each quadrant that the record holds both of."""
+    spikes = []
+    for quadrant in range(4):
+        after = np.remainder(angle - quadrant * np.pi / 2 + np.pi, 2 * np.pi) - np.pi
+        before = deviation[(after < 0) & (after > -WINDOW)]
+        behind = deviation[(after >= 0) & (after < WINDOW)]
+        if len(before) and len(behind):
+            departure = behind - before.mean()
+            spikes.append(float(departure[np.argmax(np.abs(departure))]))
+    return spikes
+
+
 def deviations(wanted, measured, radius):
     """Angles, radial deviations, and what ISO 230-4 makes of them; mm."""
     angle = np.arctan2(wanted[:, 1], wanted[:, 0])
@@ -49,17 +62,10 @@ def deviations(wanted, measured, radius):
     design = np.column_stack([np.cos(angle), np.sin(angle), np.ones_like(angle)])
     fit, *_ = np.linalg.lstsq(design, deviation, rcond=None)
     about_best = deviation - design[:, :2] @ fit[:2]
-    spikes = []
-    for quadrant in range(4):
-        after = np.remainder(angle - quadrant * np.pi / 2 + np.pi, 2 * np.pi) - np.pi
-        before = deviation[(after < 0) & (after > -WINDOW)]
-        behind = deviation[(after >= 0) & (after < WINDOW)]
-        departure = behind - before.mean()
-        spikes.append(float(departure[np.argmax(np.abs(departure))]))
     return angle, deviation, {
         "circular_deviation_um": float(1e3 * np.ptp(about_best)),
         "radial_deviation_um": [float(1e3 * deviation.min()), float(1e3 * deviation.max())],
-        "reversal_spikes_um": [1e3 * spike for spike in spikes],
+        "reversal_spikes_um": [1e3 * spike for spike in reversal_spikes(angle, deviation)],
         "following_error_um": float(1e3 * np.max(np.hypot(*(wanted - measured).T)))}
 
 

@@ -21,6 +21,10 @@ import servo_model as model
 
 # Further off than this (rms of the logarithm of measured over model), the model is not the joint's.
 WORST_MISFIT = 0.4
+# Phase margins in degrees: below the first a loop rings from one sine into the next; the second is of one that does not.
+LEAST_TO_SWEEP = 5.0
+SETTLES = 45.0
+SLOWER = 0.8
 
 
 def feedback_gains(joint):
@@ -32,6 +36,17 @@ def feedback_gains(joint):
         error_range, rate_range, effort_range, ki = gains
         return 2 * effort_range / error_range, ki, 2 * effort_range / rate_range
     return None
+
+
+def gains_to_sweep(loop, plant, period):
+    """Those in force, which hold the joint; where they hardly do, because its mass is not what they were made for, ones that cross 1
+    earlier and let it settle between sines."""
+    rigid = frequency_response.Model(period, plant.mass, plant.delay_s)
+    found = design.margins_of(loop, rigid)
+    if found.stable and found.phase_margin_deg >= LEAST_TO_SWEEP:
+        return list(loop.gains)
+    settling = design.gains_for(rigid, design.Filters(), SLOWER * found.bandwidth_hz, SETTLES) if found.bandwidth_hz > 0 else None
+    return list(settling or loop.gains)
 
 
 def load_known(joint):
@@ -114,8 +129,8 @@ def read_words(words):
     parser.add_argument("--picture", required=True)
     parser.add_argument("--creep", nargs=2, help="flight records of strokes that creep: some turns, and to and fro")
     parser.add_argument("--creep-begin", nargs=2, type=float, help="t_s after which each is")
-    parser.add_argument("--sweep", help="flight record of swept sines")
-    parser.add_argument("--sweep-begin", type=float, default=0, help="t_s after which they are")
+    parser.add_argument("--sweep", nargs="+", help="flight records of swept sines")
+    parser.add_argument("--sweep-begin", nargs="+", type=float, help="t_s after which each is")
     parser.add_argument("--sweep-period", type=float, help="s")
     parser.add_argument("--sweeps", type=int, help="of each steady stretch")
     parser.add_argument("--from-hz", type=float)
@@ -129,16 +144,20 @@ def measured_joint(given, plant):
     period = model.period_of(columns)
     if given.sweep is None:
         return frequency_response.Model(period, plant.mass, plant.delay_s), None
-    _, columns = model.read_record(given.sweep, given.sweep_begin)
-    response = frequency_response.measure(columns, given.joint + 1, given.sweep_period, given.sweeps,
-                                          (given.from_hz, given.to_hz))
+    records = swept(given)
+    response = frequency_response.measure(records, given.joint + 1, given.sweep_period, given.sweeps, (given.from_hz, given.to_hz))
     joint = frequency_response.fit(response, period)
     if joint.misfit > WORST_MISFIT:
-        raise frequency_response.Unmeasured(
+        raise frequency_response.Unheard(
             f"what was measured is no mass with up to {frequency_response.MOST_MODES} resonances (off by "
             f"{joint.misfit:.2f} in the logarithm, {WORST_MISFIT} at most); nothing is proposed. Sines of more effort are heard "
             "better: --sweep-effort")
     return joint, response
+
+
+def swept(given):
+    """Columns of each record of sines."""
+    return [model.read_record(file, begin)[1] for file, begin in zip(given.sweep, given.sweep_begin)]
 
 
 def turn_of(head, columns, joint):
@@ -173,9 +192,11 @@ def crept(given, head, plant, bent, lead):
     harmonics = [{"Order": order, "Cosine": rounded(cosine), "Sine": rounded(sine)} for order, cosine, sine in found.harmonics]
     return {"friction": friction.sliding, "explained": found.explained,
             "parameters": {**kept, **{key: [rounded(value)] for key, value in parameters.items()}},
-            "motor": {"actuator": motor.actuator, "cogging_in_force": as_device_json(head["actuators"][motor.actuator]["cogging"]),
-                      "of": len(head["actuators"]), "rated_torque": motor.rated_torque,
-                      "cogging": {"Lead": rounded(plant.delay_s), "Harmonics": harmonics}}}
+            "motor": None if creep.no_cogging(motor) else {
+                "actuator": motor.actuators[0], "of": len(head["actuators"]), "rated_torque": motor.rated_torque,
+                "cogging_in_force": as_device_json(head["actuators"][motor.actuators[0]]["cogging"]),
+                "cogging": {"Lead": rounded(plant.delay_s), "Harmonics": harmonics}},
+            "no_cogging": creep.no_cogging(motor)}
 
 
 def main():
@@ -190,6 +211,9 @@ def main():
         proposed = design.design(bent, given.margin, given.bandwidth)
         lead = plant.delay_s + proposed.filters.delay_s()
         creeping = crept(given, head, plant, bent, lead)
+    except frequency_response.Unheard as problem:
+        print(json.dumps({"unmeasured": str(problem)}))
+        return 0
     except (model.Unidentifiable, frequency_response.Unmeasured, design.Undesignable) as problem:
         print(problem, file=sys.stderr)
         return 1
@@ -212,6 +236,7 @@ def main():
         "misfit": bent.misfit if response is not None else None,
         "before": told.get("before"), "proposed": told["proposed"],
         "elsewhere": describe(proposed, design.judge(proposed, bent)),
+        "sweep_gains": gains_to_sweep(before, plant, bent.period) if before else None,
         "filters_in_force": filters_of(before) if before else None,
         "pid_gains": list(proposed.gains), "feedforward_feedback_gains": forward,
         "lead_s": lead, "turn": turn, "no_creep": no_creep, "creep": creeping,

@@ -59,6 +59,7 @@ StateNote read_state(const nlohmann::json& params) {
   read_key(params, "horizon_limit", state.horizon_limit);
   read_key(params, "pose", state.pose);
   read_key(params, "joints", state.joints);
+  read_key(params, "joints_set", state.joints_set);
   read_key(params, "held_joints", state.held_joints);
   read_key(params, "spindle_rpm", state.spindle_rpm);
   read_key(params, "deadline_misses", state.deadline_misses);

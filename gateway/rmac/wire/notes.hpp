@@ -38,6 +38,7 @@ struct StateNote {
   std::string horizon_limit;  ///< why motion is planned no further than `horizon_s`; empty: the appliance does not tell
   double horizon_s = 0;
   std::vector<double> pose, joints, held_joints, spindle_rpm;
+  std::vector<double> joints_set;  ///< where they are sent; empty: the appliance does not tell
   std::int64_t deadline_misses = 0;
   double wake_up_p999_us = 0;  ///< of the servo thread, after its cycle was due
   int tool_wanted = 0;         ///< by the tool change that comes next

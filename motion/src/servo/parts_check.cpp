@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "servo/drives/shaft_torques.hpp"
 #include "servo/joints/position_correction.hpp"
 #include "servo/joints/wiring.hpp"
 #include "servo/setpoint/force_loop.hpp"
@@ -115,7 +116,13 @@ Expected<> check_mode(const ServoActuator& actuator, double period_s, const std:
 Expected<> check_cogging(const ServoActuator& actuator, const std::string& who) {
   constexpr double kMostShare = 0.25;  // no servo motor has more of its rated torque
   double most = 0;
-  for (const Cogging::Harmonic& one : actuator.cogging.harmonics) most += std::hypot(one.cosine_nm, one.sine_nm);
+  for (const Cogging::Harmonic& one : actuator.cogging.harmonics) {
+    most += std::hypot(one.cosine_nm, one.sine_nm);
+    if (one.order >= 1 && one.order <= ShaftTorques::kHighestOrder) continue;
+    return failure(MinorCode::InvalidParameterValue,
+                   "servo loop: " + who + " has cogging of " + std::to_string(one.order) +
+                       " periods a turn; there are 1 to " + std::to_string(ShaftTorques::kHighestOrder));
+  }
   if (most > 0 && actuator.mode != DriveMode::CyclicSyncTorque &&
       !actuator.bus->interface->takes_torque_offset(actuator.axis)) {
     return failure(MinorCode::InvalidParameterValue,

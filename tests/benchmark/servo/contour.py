@@ -6,18 +6,20 @@ are tuned with --apply, and a circle is cut at each feed. Deviations from the ci
 
 import json
 import math
-import pathlib
 import sys
 
 import numpy as np
-from appliance import Appliance, pose, run_to_rest, wait_for_rest
+from appliance import SOURCE, Appliance, pose, run_to_rest, wait_for_rest
 from bending_mill import NOISY, bend
 from figures import Figures
+
+sys.path.insert(0, str(SOURCE / "gateway/rmac/plots"))
+from measure_following import reversal_spikes  # noqa: E402
+from servo_model import read_record  # noqa: E402
 
 HELD = {"Gains": [120, 2000, 1.2], "MaxFollowingError": 1}
 RADIUS = 25.0
 FEEDS = (2000, 500, 100)
-SPIKE = math.radians(8)
 
 
 def tune(appliance, *words):
@@ -27,16 +29,11 @@ def tune(appliance, *words):
             sys.exit(done.stderr)
 
 
-def record(appliance):
-    """Columns of the last seconds, those that are numbers."""
+def record(appliance, begin):
+    """Columns of what was after `begin` (t_s)."""
     name = json.loads(appliance.rmac("--json", "trace", "record").stdout)["name"]
     file = next(path for path in (appliance.folder / "state").rglob(name + "*") if path.is_file())
-    with file.open(encoding="utf-8") as lines:
-        lines.readline()
-        names = lines.readline().strip().split(",")
-        wanted = ("t_s", "q1", "q2", "a1", "a2", "counts1", "counts2", "load_counts1", "load_counts2")
-        table = np.loadtxt(lines, delimiter=",", usecols=[names.index(one) for one in wanted])
-    return dict(zip(wanted, table.T))
+    return read_record(file, begin)[1]
 
 
 def circle(appliance, client, feed):
@@ -50,8 +47,7 @@ def circle(appliance, client, feed):
         client.call("RMAC_CAM.MoveAlongArc", MoveID=move, RotSign=1, Closed=not slow, CenterPoint=pose(0, 0, 0), StartPoint=pose(RADIUS, 0, 0),
                     EndPoint=end)
     run_to_rest(client)
-    columns = record(appliance)
-    columns = {name: values[columns["t_s"] > begin] for name, values in columns.items()}
+    columns = record(appliance, begin)
     angle = np.unwrap(np.arctan2(columns["q2"], columns["q1"]))
     turn = angle - angle[0] > (0.01 if slow else 1.75 * math.pi)
     loads = []
@@ -60,18 +56,6 @@ def circle(appliance, client, feed):
         loads.append(np.polyval(scale, columns["load_counts" + joint]))
     motors = np.hypot(columns["a1"], columns["a2"]) - RADIUS
     return angle[turn], motors[turn], (np.hypot(*loads) - RADIUS)[turn]
-
-
-def spike(angle, deviation):
-    """Largest departure, within 8 degrees after an axis turns round, from the mean of the 8 degrees before."""
-    most = 0.0
-    for quadrant in range(4):
-        after = np.remainder(angle - quadrant * math.pi / 2 + math.pi, 2 * math.pi) - math.pi
-        before = deviation[(after > -SPIKE) & (after < 0)]
-        later = deviation[(after >= 0) & (after < SPIKE)]
-        if len(before) and len(later):
-            most = max(most, float(np.max(np.abs(later - before.mean()))))
-    return most
 
 
 def rows(figures, name, words, targets):
@@ -92,7 +76,7 @@ def rows(figures, name, words, targets):
             note = "" if targets else "friction turns round with the velocity, cogging is left to the loop"
             figures.add(f"contour_rms_F{feed}_{name}", rms[0], "um", 1.2 if targets else None, note or "by the encoders")
             figures.add(f"contour_rms_F{feed}_{name}_at_the_tool", rms[1], "um", None, "of the loads, which no loop sees")
-            figures.add(f"quadrant_spike_F{feed}_{name}", 1e3 * spike(angle, motors), "um", 3 if targets and feed == 500 else None)
+            figures.add(f"quadrant_spike_F{feed}_{name}", 1e3 * max(map(abs, reversal_spikes(angle, motors))), "um", 3 if targets and feed == 500 else None)
 
 
 def main():

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <deque>
 #include <optional>
 #include <vector>
 
 #include "gateway/rmac/commands/commission/experiment.hpp"
 #include "gateway/rmac/commands/commission/registrations.hpp"
+#include "gateway/rmac/commands/commission/tuning_laws.hpp"
 #include "gateway/rmac/commands/commission/tuning_motion.hpp"
 #include "gateway/rmac/commands/commission/tuning_text.hpp"
 #include "gateway/rmac/wire/requests.hpp"
@@ -15,8 +17,6 @@ namespace rmac::cli {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr const char* kFeedforwardFeedback = "DMAC_FEEDFORWARDFEEDBACK_CONTROL";
 
 /// What moves, and what is aimed at.
 struct TuneOptions {
@@ -29,30 +29,6 @@ struct TuneOptions {
   bool apply = false;
 };
 
-Result<> put_cogging(Connection& connection, const Json& motor, const char* which) {
-  Json actuators = Json::array();
-  for (int i = 0; i < motor["of"].get<int>(); ++i) actuators.push_back(Json::object());
-  actuators[motor["actuator"].get<std::size_t>()]["Cogging"] = motor[which];
-  return connection.command("RMAC_Config.SetMechanismNumActuators",
-                            {{"NumActuators", motor["of"]}, {"Buses", actuators}});
-}
-
-/// The law with feedforward and all that creeping has shown, with its motor's cogging.
-Result<> put_model(Connection& connection, int joint, const Json& found) {
-  const Json& motor = found["creep"]["motor"];
-  return put_cogging(connection, motor, "cogging").and_then([&] {
-    return put_law(connection, joint, kFeedforwardFeedback, found["creep"]["parameters"],
-                   found["feedforward_feedback_gains"]);
-  });
-}
-
-/// The draft is as it was before `put_model`, and that in force.
-void put_back(Connection& connection, int joint, const Json& found) {
-  static_cast<void>(put_cogging(connection, found["creep"]["motor"], "cogging_in_force").and_then([&] {
-    return put_law(connection, joint, found["law"], found["parameters"], found["gains"]);
-  }));
-}
-
 Result<> apply_gains(Connection& connection, const TuneOptions& options, const Json& found) {
   if (found["apply"].is_null() && !options.creep) {
     return fail(fmt::format("nothing is changed: {} takes other gains than those that were found; choose a PID law",
@@ -61,26 +37,7 @@ Result<> apply_gains(Connection& connection, const TuneOptions& options, const J
   if (loses_filters(found)) {
     return fail("nothing is changed: the joint has filters, and without a sweep nobody knows what they are for");
   }
-  const int joint = options.stroke.joint;
-  const Json &filters = found["proposed"]["filters"], &before = found["filters_in_force"];
-  const auto set_filters = [&](const Json& wanted) {
-    return connection.command(
-        "RMAC_Config.SetMechanismJointFilters",
-        {{"JntNum", joint}, {"Resonances", wanted["Resonances"]}, {"LowPass", wanted["LowPass"]}});
-  };
-  const Result<> set = filters == before ? Result<>() : set_filters(filters);
-  const Json gains{{"JntNum", joint}, {"ServoControlGains", found["apply"]}};
-  const auto put = [&] {
-    if (options.creep) return put_model(connection, joint, found);
-    return connection.command("RMAC_Config.SetMechanismJointServoControlGains", gains).and_then([&] {
-      return connection.command("RMAC_Config.Apply");
-    });
-  };
-  const Result<> applied = set.and_then(put);
-  // Half of it would come in force with whatever is applied next.
-  if (!applied && filters != before && before.is_object()) static_cast<void>(set_filters(before));
-  if (!applied && options.creep) put_back(connection, joint, found);
-  return applied;
+  return apply_found(connection, options.stroke.joint, found);
 }
 
 /// Refuses a machine of which nothing would be found.
@@ -113,68 +70,100 @@ std::vector<std::string> program_words(const TuneOptions& options, const Tempora
           fmt::format("{}", options.bandwidth_hz)};
 }
 
-/// What the joint answers to swept sines, and what is proposed for it; `found` is what its swings have shown.
-Result<Json> measure_response(Connection& connection, const TuneOptions& options, const Json& found,
-                              std::vector<std::string> words, const std::string& fault) {
+/// Of `MaxEffort`: with what the loop answers to it, more is a loop that swings (docs/servo.md).
+constexpr double kMostShare = 0.095;
+
+/// Why a joint is not swept; empty: it can be.
+std::string unswept(const TuneOptions& options, const Json& found) {
   if (found["before"].is_null()) {
-    return fail(fmt::format(
-        "{} has no feedback, which holds the joint while it is measured; put a PID law in force, or take the "
-        "joint for rigid with --sweep-effort 0",
-        found["law"].get<std::string>()));
+    return fmt::format(
+        "{} has no feedback, which holds the joint while it is measured; put a PID law in force, or take the joint for "
+        "rigid with --sweep-effort 0",
+        found["law"].get<std::string>());
   }
   if (!options.sweep_effort && found["max_effort"] == 0) {
-    return fail("the joint has no MaxEffort, of which the sweep would be a twentieth; give --sweep-effort");
+    return "the joint has no MaxEffort, of which the sweep would be a twentieth; give --sweep-effort";
   }
-  // With what the loop answers to it, more is a loop that swings (docs/servo.md).
-  constexpr double kMostShare = 0.095;
   const double most = kMostShare * found["max_effort"].get<double>();
   if (most > 0 && options.sweep_effort.value_or(0) > most) {
-    return fail(
-        fmt::format("--sweep-effort {:g}: from a tenth of the joint's MaxEffort on the watch takes the sines for a "
-                    "loop that swings; give at most {:g}",
-                    *options.sweep_effort, most));
+    return fmt::format(
+        "--sweep-effort {:g}: from a tenth of the joint's MaxEffort on the watch takes the sines for a "
+        "loop that swings; give at most {:g}",
+        *options.sweep_effort, most);
   }
-  const auto begin = ask_state(connection);
-  if (!begin) return tl::unexpected(begin.error());
-  const Sweep sweep = sweep_for(options.stroke, found, options.sweep_effort);
-  const TemporaryFile record;
-  if (auto swept = sweep_strokes(connection, options.stroke, found, sweep, fault); !swept) {
-    return tl::unexpected(swept.error());
-  }
-  if (auto kept = keep_record(connection, record); !kept) return tl::unexpected(kept.error());
-  for (const std::string& word :
-       {std::string("--sweep"), record.path(), std::string("--sweep-begin"), fmt::format("{}", begin->t_s),
-        std::string("--sweep-period"), fmt::format("{}", sweep.period_s), std::string("--sweeps"),
-        std::to_string(sweep.sweeps), std::string("--from-hz"), fmt::format("{}", sweep.from_hz),
-        std::string("--to-hz"), fmt::format("{}", sweep.to_hz)}) {
-    words.push_back(word);
-  }
-  return plot_answer("tune.py", words);
+  return {};
 }
 
-/// Swings, and where they are wanted creeping, and the joint's response.
+/// Sweeps the joint, of which `found` is what its swings have shown, and has `words` tell `tune.py` where that is
+/// recorded. What is lost in noise is swept again, until all of it together says enough.
+Result<Json> measure_response(Connection& connection, const TuneOptions& options, const Json& found,
+                              std::deque<TemporaryFile>& records, std::vector<std::string>& words,
+                              const std::string& fault) {
+  constexpr std::size_t kMostSweeps = 6;
+  if (const std::string why = unswept(options, found); !why.empty()) return fail(why);
+  const Sweep sweep = sweep_for(options.stroke, found, options.sweep_effort);
+  std::vector<std::string> begins;
+  const std::vector<std::string> before = words;
+  for (;;) {
+    const auto begin = ask_state(connection);
+    if (!begin) return tl::unexpected(begin.error());
+    begins.push_back(fmt::format("{}", begin->t_s));
+    const auto swept = sweep_strokes(connection, options.stroke, found, sweep, fault).and_then([&] {
+      return keep_record(connection, records.emplace_back());
+    });
+    if (!swept) return tl::unexpected(swept.error());
+    words = before;
+    words.insert(words.end(),
+                 {"--sweep-period", fmt::format("{}", sweep.period_s), "--sweeps", std::to_string(sweep.sweeps),
+                  "--from-hz", fmt::format("{}", sweep.from_hz), "--to-hz", fmt::format("{}", sweep.to_hz), "--sweep"});
+    for (const TemporaryFile& record : records) words.push_back(record.path());
+    words.emplace_back("--sweep-begin");
+    words.insert(words.end(), begins.begin(), begins.end());
+    auto answer = plot_answer("tune.py", words);
+    if (!answer || !answer->contains("unmeasured")) return answer;
+    if (records.size() == kMostSweeps) return fail((*answer)["unmeasured"].get<std::string>());
+  }
+}
+
+/// Creeps under the loop that is proposed, which follows better than the one in force; that of a joint that was only
+/// taken for rigid may not hold.
+Result<> creep(Connection& connection, const TuneOptions& options, const Json& found, CreepRecords& records,
+               std::vector<std::string>& words, const std::string& fault) {
+  const int joint = options.stroke.joint;
+  const auto strokes = [&] { return creep_strokes(connection, options.stroke, found, records, fault); };
+  for (const std::string& word : {std::string("--creep"), records.turning.path(), records.reversing.path()})
+    words.push_back(word);
+  const Result<> crept =
+      found["misfit"].is_null()
+          ? strokes()
+          : under_law(
+                connection, joint, found, [&] { return put_proposed(connection, joint, found); }, strokes);
+  words.emplace_back("--creep-begin");
+  for (const double begin : records.begins) words.push_back(fmt::format("{}", begin));
+  return crept;
+}
+
+/// Swings, the joint's response, and where it is wanted creeping.
 Result<Json> find_tuning(Connection& connection, const TuneOptions& options, double begin_s, const std::string& picture,
                          const std::string& fault) {
   if (auto moved = swing_at_speeds(connection, options.stroke, fault); !moved) return tl::unexpected(moved.error());
   const TemporaryFile record;
+  std::deque<TemporaryFile> swept;
   if (auto kept = keep_record(connection, record); !kept) return tl::unexpected(kept.error());
   auto words = program_words(options, record, begin_s, picture);
   const bool sweeps = options.sweep_effort != 0;
-  if (!sweeps && !options.creep) return plot_answer("tune.py", words);
   auto rigid = words;
-  rigid.back() = "0";  // the bandwidth that is wanted is for what will be measured
-  const auto found = plot_answer("tune.py", rigid);
-  if (!found) return found;
-  CreepRecords creep;
-  if (options.creep) {
-    if (auto crept = creep_strokes(connection, options.stroke, *found, creep, fault); !crept)
-      return tl::unexpected(crept.error());
-    for (const std::string& word :
-         {std::string("--creep"), creep.turning.path(), creep.reversing.path(), std::string("--creep-begin"),
-          fmt::format("{}", creep.begins[0]), fmt::format("{}", creep.begins[1])})
-      words.push_back(word);
+  if (sweeps) rigid.back() = "0";  // the bandwidth that is wanted is for what will be measured
+  auto found = plot_answer("tune.py", rigid);
+  if (found && options.creep && !(*found)["no_creep"].is_null()) return fail((*found)["no_creep"].get<std::string>());
+  if (found && sweeps) {
+    found = measure_response(connection, options, *found, swept, words, fault);
   }
-  return sweeps ? measure_response(connection, options, *found, words, fault) : plot_answer("tune.py", words);
+  if (!found || !options.creep) return found;
+  CreepRecords records;
+  if (auto crept = creep(connection, options, *found, records, words, fault); !crept)
+    return tl::unexpected(crept.error());
+  return plot_answer("tune.py", words);
 }
 
 Result<> tune(Connection& connection, const TuneOptions& options, bool json) {

@@ -33,10 +33,6 @@ struct CreepRecords {
 [[nodiscard]] Result<> creep_strokes(Connection& connection, const Stroke& stroke, const nlohmann::json& found,
                                      CreepRecords& records, const std::string& fault);
 
-/// A law, its parameters and gains, and whatever else the draft holds, come in force.
-[[nodiscard]] Result<> put_law(Connection& connection, int joint, const std::string& law,
-                               const nlohmann::json& parameters, const nlohmann::json& gains);
-
 /// Swept sines (SweptSineServoControlLaw) of one stroke.
 struct Sweep {
   double effort = 0;   ///< amplitude, N or N·m

@@ -31,12 +31,14 @@ void print_creep(const Json& found, const char* way, const char* effort) {
       "at {:.2g} {}/s\n",
       creep["friction"].get<double>(), effort, number("presliding"), way, number("breakaway"), number("stribeck_speed"),
       way);
-  for (const Json& one : motor["cogging"]["Harmonics"]) {
+  if (motor.is_null()) fmt::print("cogging is not told: {}\n", creep["no_cogging"].get<std::string>());
+  const Json harmonics = motor.is_null() ? Json::array() : motor["cogging"]["Harmonics"];
+  for (const Json& one : harmonics) {
     const double size = std::hypot(one["Cosine"].get<double>(), one["Sine"].get<double>());
     fmt::print("cogging of {} periods a turn: {:.3g} N·m, {:.2f} % of the rated torque\n", one["Order"].get<int>(),
                size, 100 * size / motor["rated_torque"].get<double>());
   }
-  if (motor["cogging"]["Harmonics"].empty()) fmt::print("cogging: none\n");
+  if (!motor.is_null() && harmonics.empty()) fmt::print("cogging: none\n");
   fmt::print("the model explains {:.1f} % of what creeping takes\n", 100 * creep["explained"].get<double>());
 }
 
@@ -81,10 +83,11 @@ void print_tuning(const Json& found, const std::string& picture) {
   if (crept) {
     fmt::print(
         "to keep it, write into the joint in device.json: \"ServoControlLaw\": {}, \"Gains\": {}, "
-        "\"Resonances\": {}, \"LowPass\": {}\nand into its actuator: \"Cogging\": {}\n",
+        "\"Resonances\": {}, \"LowPass\": {}\n",
         Json{{"Module", "DMAC_FEEDFORWARDFEEDBACK_CONTROL"}, {"Parameters", found["creep"]["parameters"]}}.dump(),
-        list_text(found["feedforward_feedback_gains"]), filters["Resonances"].dump(), filters["LowPass"].dump(),
-        found["creep"]["motor"]["cogging"].dump());
+        list_text(found["feedforward_feedback_gains"]), filters["Resonances"].dump(), filters["LowPass"].dump());
+    const Json& motor = found["creep"]["motor"];
+    if (!motor.is_null()) fmt::print("and into its actuator: \"Cogging\": {}\n", motor["cogging"].dump());
     return;
   }
   if (found["apply"].is_null() || loses_filters(found)) return;

@@ -1,5 +1,7 @@
 #include "servo/drives/shaft_torques.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -9,14 +11,47 @@ namespace rmac {
 
 namespace {
 
+/// Cosine and sine of multiples of an angle, by products: a few of them cost less than the library's one.
+class Multiples {
+ public:
+  Multiples(double angle, int highest) noexcept {
+    doubled_[0] = {std::cos(angle), std::sin(angle)};
+    for (std::size_t i = 1; (highest >> i) != 0; ++i) doubled_[i] = product(doubled_[i - 1], doubled_[i - 1]);
+  }
+  struct Wave {
+    double cosine = 1, sine = 0;
+  };
+  /// 1 to `highest`.
+  [[nodiscard]] Wave of(int order) const noexcept {
+    const auto bits = static_cast<unsigned>(order);
+    auto bit = static_cast<std::size_t>(std::countr_zero(bits));
+    Wave wave = doubled_[bit];
+    while ((bits >> ++bit) != 0) {
+      if (((bits >> bit) & 1U) != 0) wave = product(wave, doubled_[bit]);
+    }
+    return wave;
+  }
+
+ private:
+  static Wave product(const Wave& a, const Wave& b) noexcept {
+    return {a.cosine * b.cosine - a.sine * b.sine, a.cosine * b.sine + a.sine * b.cosine};
+  }
+  std::array<Wave, std::bit_width(static_cast<unsigned>(ShaftTorques::kHighestOrder))>
+      doubled_;  ///< of the angle, twice, four times … the angle
+};
+
 /// At the shaft, in its sense.
 double cogging_nm(const ServoActuator& actuator, double shaft_rad) noexcept {
   const DriveScale& scale = actuator.scale;
   const double turn = shaft_counts(scale, shaft_rad) / scale.counts_per_revolution;
   const double angle = 2 * std::numbers::pi * (turn - std::floor(turn));
+  int highest = 1;
+  for (const Cogging::Harmonic& one : actuator.cogging.harmonics) highest = std::max(highest, one.order);
+  const Multiples multiples(angle, highest);
   double torque = 0;
   for (const Cogging::Harmonic& one : actuator.cogging.harmonics) {
-    torque += one.cosine_nm * std::cos(one.order * angle) + one.sine_nm * std::sin(one.order * angle);
+    const Multiples::Wave wave = multiples.of(one.order);
+    torque += one.cosine_nm * wave.cosine + one.sine_nm * wave.sine;
   }
   return scale.direction * torque;
 }

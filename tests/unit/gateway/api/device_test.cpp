@@ -164,10 +164,12 @@ TEST(CamApi, StateTellsMechanismJointsAndStatus) {
   api.machine.now.joint_count = 2;
   api.machine.now.joint_count_with_held = 3;
   api.machine.now.position = {1, 2, 3};
+  api.machine.now.position_set = {1.5, 2.5, 3.5};
   api.machine.now.feed_actual_mm_s = 10;
   const json state = api.result("RMAC_CAM.GetState");
   EXPECT_EQ(state["mechanism"], "Fake");
   EXPECT_EQ(state["joints"], json::parse("[1.0,2.0]"));
+  EXPECT_EQ(state["joints_set"], json::parse("[1.5,2.5]"));
   EXPECT_EQ(state["held_joints"], json::parse("[3.0]"));
   EXPECT_EQ(state["feed_actual_mm_min"], 600.0);
   EXPECT_EQ(state["state"], "Idle");

@@ -144,6 +144,10 @@ TEST_F(ServoModes, WhatDoesNotFitTogetherIsRefused) {
   ServoLoopParts strong = parts();
   strong.actuators[1].cogging.harmonics = {{12, 0.15, 0}, {60, 0, -0.11}};
   EXPECT_THAT(refusal_of(strong), testing::HasSubstr("actuator 1 has cogging of up to 0.26"));
+  for (const int order : {0, 1001}) {
+    strong.actuators[1].cogging.harmonics = {{order, 0.01, 0}};
+    EXPECT_THAT(refusal_of(strong), testing::HasSubstr("periods a turn; there are 1 to 1000"));
+  }
   strong.actuators[1].cogging.harmonics = {{12, 0, std::numeric_limits<double>::quiet_NaN()}};
   EXPECT_THAT(refusal_of(strong), testing::HasSubstr("actuator 1 has cogging"));
   EXPECT_THAT(refusal_of(with(DriveMode::ProfileVelocity)), testing::HasSubstr("which no joint can be moved in"));

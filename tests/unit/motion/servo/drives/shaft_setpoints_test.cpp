@@ -53,12 +53,12 @@ class KnownCogging : public testing::TestWithParam<int> {
   }
   [[nodiscard]] double at_shaft(double shaft_rad) const {
     const double angle = 2 * std::numbers::pi * (shaft_counts(actuators_[0].scale, shaft_rad) / 1000);
-    return GetParam() * (0.02 * std::cos(12 * angle) - 0.05 * std::sin(60 * angle));
+    return GetParam() * (0.02 * std::cos(12 * angle) - 0.05 * std::sin(60 * angle) + 0.01 * std::cos(999 * angle));
   }
   std::vector<ServoActuator> actuators_ = [] {
     std::vector<ServoActuator> made(1);
     made[0].scale = {1000, 1, GetParam(), 123};
-    made[0].cogging = {{{12, 0.02, 0}, {60, 0, -0.05}}, 0.0015};
+    made[0].cogging = {{{12, 0.02, 0}, {60, 0, -0.05}, {999, 0.01, 0}}, 0.0015};
     return made;
   }();
   DirectMap map_;
