@@ -17,7 +17,7 @@ namespace {
 constexpr double kFarAway = 1e5;
 /// A joint so near to its limit, in mm or degrees, stands at it.
 constexpr double kAtTheLimit = 1e-6;
-/// Joints stand so much beside their places, in mm or degrees, and all the more before they were moved.
+/// Joints that nobody moved yet stand so much beside their places, in mm or degrees.
 constexpr double kStandsWithin = 1e-2;
 /// To so much the way to a limit is found, in mm or degrees.
 constexpr double kReachFound = 1e-3;
@@ -33,6 +33,7 @@ double travel_end(const JointLimits& limits, double from, bool positive) {
 /// Where a jog ends. One by the whole way to a limit ends at it, and is not refused for where the joint stands.
 double jog_end(const JointLimits& limits, double from, double distance) {
   const double to = from + distance;
+  if (std::abs(distance) <= kStandsWithin) return to;
   if (ends_above(limits) && to > limits.max && to <= limits.max + kStandsWithin) return limits.max;
   if (ends_below(limits) && to < limits.min && to >= limits.min - kStandsWithin) return limits.min;
   return to;

@@ -1,5 +1,7 @@
 #include "gateway/rmac/commands/commission/tuning_laws.hpp"
 
+#include <fmt/format.h>
+
 #include "gateway/rmac/wire/requests.hpp"
 #include "gateway/rmac/wire/rest.hpp"
 
@@ -29,11 +31,25 @@ Result<> put_model(Connection& connection, int joint, const Json& found) {
   });
 }
 
-/// The law that was in force, behind its filters.
+/// The law that was in force, behind its filters: as much of it as is taken.
 Result<> put_back_law(Connection& connection, int joint, const Json& found) {
   const Json& filters = found["filters_in_force"];
   const Result<> set = filters.is_object() ? set_filters(connection, joint, filters) : Result<>();
-  return set.and_then([&] { return put_law(connection, joint, found["law"], found["parameters"], found["gains"]); });
+  const Result<> put = put_law(connection, joint, found["law"], found["parameters"], found["gains"]);
+  return set ? put : set;
+}
+
+/// Gains, and of a law that knows its axis the lead, in which the filters' delay is.
+Result<> put_gains(Connection& connection, int joint, const Json& found) {
+  return connection
+      .command("RMAC_Config.SetMechanismJointServoControlGains",
+               {{"JntNum", joint}, {"ServoControlGains", found["apply"]}})
+      .and_then([&]() -> Result<> {
+        if (!found["parameters"].contains("lead_s")) return {};
+        return connection.command("RMAC_Config.SetMechanismJointServoControlParameter",
+                                  {{"JntNum", joint}, {"Name", "lead_s"}, {"Value", found["lead_s"]}});
+      })
+      .and_then([&] { return connection.command("RMAC_Config.Apply"); });
 }
 
 }  // namespace
@@ -63,7 +79,10 @@ Result<> under_law(Connection& connection, int joint, const Json& found, const s
     static_cast<void>(
         stop_now(connection).and_then([&] { return wait_for_rest(connection, "").map([](const StateNote&) {}); }));
   const Result<> put_back = put_back_law(connection, joint, found);
-  return worked ? put_back : worked;
+  if (put_back || worked) return worked ? put_back : worked;
+  return fail(
+      fmt::format("{}; and the law that was in force is not back ({}): `rmac load` brings the machine's own back",
+                  worked.error().message, put_back.error().message));
 }
 
 Result<> put_proposed(Connection& connection, int joint, const Json& found) {
@@ -78,24 +97,14 @@ Result<> put_proposed(Connection& connection, int joint, const Json& found) {
 
 Result<> apply_found(Connection& connection, int joint, const Json& found) {
   const bool crept = !found["creep"].is_null();
-  const Json &filters = found["proposed"]["filters"], &before = found["filters_in_force"];
-  const Result<> set = filters == before ? Result<>() : set_filters(connection, joint, filters);
-  const Result<> applied = set.and_then([&] {
-    if (crept) return put_model(connection, joint, found);
-    return connection
-        .command("RMAC_Config.SetMechanismJointServoControlGains",
-                 {{"JntNum", joint}, {"ServoControlGains", found["apply"]}})
-        .and_then([&] { return connection.command("RMAC_Config.Apply"); });
-  });
+  const Json& filters = found["proposed"]["filters"];
+  const Result<> set = filters == found["filters_in_force"] ? Result<>() : set_filters(connection, joint, filters);
+  const Result<> applied =
+      set.and_then([&] { return crept ? put_model(connection, joint, found) : put_gains(connection, joint, found); });
   if (applied) return {};
   // Half of it would come in force with whatever is applied next.
-  if (crept) {
-    static_cast<void>(put_cogging(connection, found["creep"]["motor"], "cogging_in_force").and_then([&] {
-      return put_back_law(connection, joint, found);
-    }));
-  } else if (filters != before && before.is_object()) {
-    static_cast<void>(set_filters(connection, joint, before));
-  }
+  if (crept) static_cast<void>(put_cogging(connection, found["creep"]["motor"], "cogging_in_force"));
+  static_cast<void>(put_back_law(connection, joint, found));
   return applied;
 }
 

@@ -14,7 +14,7 @@ namespace rmac {
 /// What each motor is to turn with, in N·m at its shaft. Real-time safe.
 class ShaftTorques {
  public:
-  static constexpr int kHighestOrder = 1000;  ///< of cogging, which nobody gives it more of
+  static constexpr int kHighestOrder = 1000;  ///< of cogging: more is refused as its machine is made
 
   /// Both must outlive it.
   ShaftTorques(const ActuatorMap& map, std::span<const ServoActuator> actuators, double period_s) noexcept;

@@ -68,6 +68,7 @@ TEST_F(JointTypes, AJogByTheWholeTravelEndsWhereThatEnds) {
       const CycleSample now = machine_.controller.sample();
       return !now.moving && now.position_set[0] == end;
     }));
+    EXPECT_FALSE(machine_.controller.cam().positioning().jog_joint(0, beyond)) << "there is no way left";
   }
 }
 
