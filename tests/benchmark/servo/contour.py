@@ -59,11 +59,14 @@ def circle(appliance, client, feed):
 
 
 def rows(figures, name, words, targets):
+    """Of the tree's own machine, or, with words for `rmac tune`, of one that is tuned by it."""
     with Appliance(own_tree=True, flight_recorder={"seconds": 60}) as appliance:
-        bend(appliance, 274, HELD, **NOISY)
+        if words is not None:
+            bend(appliance, 274, HELD, **NOISY)
         if (done := appliance.rmac("load", "DMACXYZ")).returncode != 0:
             sys.exit(done.stderr)
-        tune(appliance, *words)
+        if words is not None:
+            tune(appliance, *words)
         client = appliance.client()
         client.call("authority.acquire")
         client.call("RMAC_CAM.SetFeedrate", Feedrate=2000)
@@ -81,6 +84,7 @@ def rows(figures, name, words, targets):
 
 def main():
     figures = Figures()
+    rows(figures, "as_it_comes", None, True)
     rows(figures, "tuned", (), False)
     rows(figures, "tuned_creeping", ("--creep",), True)
     return 0 if figures.table() else 1
