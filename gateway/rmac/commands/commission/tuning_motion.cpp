@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 /// Jogs by `distance` and waits for rest; fails where the joint then was not sent to `target`, because somebody stopped
 /// it, and where it did not come along. A soft loop rests beside its setpoint, which is no harm.
 Result<> go(Connection& connection, const Stroke& stroke, double distance, double target, const std::string& fault) {
-  constexpr double kSame = 1e-4;          // mm or deg
+  constexpr double kSame = 0.02;          // mm or deg: a stroke by the whole travel ends where that ends
   constexpr double kShareOfStroke = 0.5;  // that it may lack
   if (auto begun = connection.command(kJogJoint, {{"JntNum", stroke.joint}, {"Distance", distance}}); !begun)
     return begun;

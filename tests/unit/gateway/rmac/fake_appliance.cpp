@@ -175,10 +175,18 @@ std::string FakeAppliance::answer(const std::string& line) {
 }
 
 json state(json members) {
-  json told{
-      {"state", "Idle"},    {"mode", ""},   {"mechanism", "BenchXYZ"}, {"authority", ""}, {"moving", false},
-      {"virtual", false},   {"move_id", 0}, {"moves_in_buffer", 0},    {"t_s", 10.0},     {"pose", {0, 0, 0, 0, 0, 1}},
-      {"joints", {0, 0, 0}}};
+  json told{{"state", "Idle"},
+            {"mode", ""},
+            {"mechanism", "BenchXYZ"},
+            {"authority", ""},
+            {"moving", false},
+            {"virtual", false},
+            {"move_id", 0},
+            {"moves_in_buffer", 0},
+            {"t_s", 10.0},
+            {"pose", {0, 0, 0, 0, 0, 1}},
+            {"joints", {0, 0, 0}},
+            {"joints_set", {0, 0, 0}}};
   told.update(members);
   return told;
 }

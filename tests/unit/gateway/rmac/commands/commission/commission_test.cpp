@@ -22,7 +22,7 @@ class TuneCommand : public CommandBench {
     appliance_.refuses("FlightRecorder.Record", -32001, "the recorder is off");
     appliance_.handles("RMAC_CAM.JogJoint", [this](const json& params) {
       place_ += params.at("Distance").get<double>();
-      appliance_.answers("RMAC_CAM.GetState", state({{"joints", {0.0, place_}}}));
+      appliance_.answers("RMAC_CAM.GetState", state({{"joints", {0.0, place_}}, {"joints_set", {0.0, place_}}}));
       return gateway::Answer(true);
     });
   }
@@ -72,10 +72,21 @@ TEST_F(TuneCommand, MovesNothingOfAFaultedMachineAndTellsWhatStoppedIt) {
 
 TEST_F(TuneCommand, GoesNoFurtherFromWhereSomebodyStoppedTheJoint) {
   appliance_.handles("RMAC_CAM.JogJoint", [this](const json&) {
-    appliance_.answers("RMAC_CAM.GetState", state({{"joints", {0.0, 1.3}}}));
+    appliance_.answers("RMAC_CAM.GetState", state({{"joints", {0.0, 1.3}}, {"joints_set", {0.0, 1.3}}}));
     return gateway::Answer(true);
   });
   EXPECT_THAT(tune().err, HasSubstr("joint 1 stands at 1.300 instead of 2.530: somebody stopped it"));
+  EXPECT_EQ(appliance_.params_of("RMAC_CAM.JogJoint").size(), 1U);
+}
+
+TEST_F(TuneCommand, TellsAJointThatFrictionHoldsFromOneThatSomebodyStopped) {
+  appliance_.handles("RMAC_CAM.JogJoint", [this](const json& params) {
+    place_ += params.at("Distance").get<double>();
+    appliance_.answers("RMAC_CAM.GetState", state({{"joints", {0.0, 0.1}}, {"joints_set", {0.0, place_}}}));
+    return gateway::Answer(true);
+  });
+  EXPECT_THAT(tune().err, testing::AllOf(HasSubstr("joint 1 was sent 2.53 further, and rests 2.43 beside that"),
+                                         HasSubstr("too soft for its friction")));
   EXPECT_EQ(appliance_.params_of("RMAC_CAM.JogJoint").size(), 1U);
 }
 
