@@ -1,9 +1,13 @@
 """DMACXYZ with other axes than the tree gives it: rigid ones, or of two masses with resonances of one's own."""
 
+import contextlib
 import json
+import unittest
 
 import numpy as np
+from appliance import Appliance
 
+RAD_PER_MM = 2 * np.pi / 5
 MOTOR, TABLE = 0.93e-5, 1.27e-5  # kg·m² at the shaft, on either side of the spring
 NOISY = {"torque_ripple": [0.01] * 8, "encoder_noise_counts": [1] * 8, "encoder_interpolation_counts": [2] * 8}
 STIFF = {"X": [1550, 140000, 11.1], "Y": [1820, 164000, 13.0], "Z": [1195, 107500, 8.5]}  # Kp = 44.8 m, Ki = 90 Kp, Kd = 0.32 m
@@ -50,3 +54,21 @@ def on_two_motors(appliance, axis=4):
     for name in ("stiffness_nm_rad", "load_inertia_kg_m2", "inertia_kg_m2"):
         parameters[name][axis] = parameters[name][0]
     file.write_text(json.dumps(device))
+
+
+class TuningTest(unittest.TestCase):
+    def rmac(self, appliance, *words):
+        done = appliance.rmac(*words)
+        self.assertEqual((done.returncode, done.stderr), (0, ""), words)
+        return done.stdout
+
+    @contextlib.contextmanager
+    def bending(self, hz, joint, heavier=1.0, load=True):
+        """DMACXYZ, with axes of two masses that swing at `hz`, so many times heavier than it says, and `joint` in the
+        data of its first three."""
+        appliance = Appliance(own_tree=True, flight_recorder={"seconds": 30})
+        bend(appliance, hz, joint, heavier)
+        with appliance:
+            if load:
+                self.rmac(appliance, "load", "DMACXYZ")
+            yield appliance

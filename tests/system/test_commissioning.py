@@ -1,32 +1,21 @@
 """rmac tune and rmac measure-following: what they find, and that they change nothing unless told to."""
 
-import contextlib
 import csv
 import json
 import pathlib
 import random
-import re
 import subprocess
 import tempfile
 import unittest
 
-import numpy as np
-
 from appliance import BUILD, Appliance, line, wait_for_rest
-from bending_mill import bend, on_two_motors, rigid
+from bending_mill import RAD_PER_MM, TuningTest, rigid
 
 PNG = b"\x89PNG\r\n\x1a\n"
 MARGIN = 40.0
-ROTOR = 4.49e-6 + 4.8e-6  # kg·m², of the simulated axes beside their table
-RAD_PER_MM = 2 * np.pi / 5
 
 
-class Commands(unittest.TestCase):
-    def rmac(self, appliance, *words):
-        done = appliance.rmac(*words)
-        self.assertEqual((done.returncode, done.stderr), (0, ""), words)
-        return done.stdout
-
+class Commands(TuningTest):
     def test_tune_finds_the_simulated_axes_and_applies_when_told(self):
         for seed in (2, 3):  # the latter is of the joint that carries a load
             chance = random.Random(seed)
@@ -118,122 +107,6 @@ class Commands(unittest.TestCase):
         self.assertIn("somebody stopped it", said)
         stands = watcher.state()["joints"][0]
         self.assertTrue(2 < stands < 30, stands)
-
-    def test_tune_takes_a_joint_that_rests_beside_its_setpoint_for_what_it_is(self):
-        """Friction holds a soft loop: it creeps under the gains that are proposed, and where nothing was measured that they hold by, tune says
-        what is wrong."""
-        soft = {"Gains": [120, 100, 1.2], "MaxFollowingError": 2}
-        with self.bending(274, soft) as appliance, tempfile.TemporaryDirectory() as folder:
-            words = ("tune", "0", "--travel", "20", "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
-            rigid = appliance.rmac(*words, "--sweep-effort", "0")
-            found = json.loads(self.rmac(appliance, "--json", *words))
-            again = json.loads(self.rmac(appliance, "--json", *words[:-3], *words[-2:]))
-        self.assertEqual((rigid.returncode, rigid.stderr.count("\n")), (1, 1), rigid.stderr)
-        self.assertIn("its gains are too soft for its friction", rigid.stderr)
-        self.assertAlmostEqual(found["creep"]["friction"] / 18.85, 1, delta=0.1)
-        self.assertEqual((again["law"], again["gains"], again["filters_in_force"]),
-                         ("DMACXYZPIDServoControlLaw", soft["Gains"], {"Resonances": [], "LowPass": 0}), "nothing was changed")
-
-    def test_tune_begins_softly_where_the_gains_do_not_fit(self):
-        """With gains which were made for axes that are rigid, and of another mass."""
-        for hz, heavier, joints in ((346, 3, (0, 2)), (274, 1, (0,)), (600, 1 / 3, (2,))):
-            with self.subTest(hz=hz, heavier=heavier), tempfile.TemporaryDirectory() as folder, \
-                    self.bending(hz, {}, heavier, load=False) as appliance:
-                refused = appliance.rmac("load", "DMACXYZ")
-                self.assertEqual(refused.returncode, 1)
-                self.assertIn("stability: on the model of its axes, where encoders are sound", refused.stderr)
-                self.assertIn("softer by 8, and their joints", self.rmac(appliance, "load", "DMACXYZ", "--soften", "8"))
-                client = appliance.client()
-                for joint in joints:
-                    words = ("tune", str(joint), "--travel", "20", "-o", str(pathlib.Path(folder, "tune.png")))
-                    found = json.loads(self.rmac(appliance, "--json", *words, "--apply"))
-                    seen = min(hz, 1000 - hz)  # by samples at 1 kHz
-                    self.assertAlmostEqual(found["resonances"][0]["frequency"] / seen, 1, delta=0.02)
-                    self.assertTrue(found["elsewhere"]["stable"])
-                    self.assertGreater(found["proposed"]["bandwidth_hz"], found["before"]["bandwidth_hz"])
-                client.call("authority.acquire")
-                for way in (20, -20, 3, -3):
-                    for joint in (0, 2):
-                        client.call("RMAC_CAM.JogJoint", JntNum=joint, Distance=way)
-                        wait_for_rest(client)
-                while client.state()["state"] == "Running":  # It follows the last motion by a cycle or two.
-                    pass
-                self.assertEqual(client.state()["state"], "Idle")
-
-    def test_the_tree_has_what_tune_finds(self):
-        """Gains, filters, friction and cogging of its machines are those that anybody finds on their axes."""
-        with Appliance() as appliance, tempfile.TemporaryDirectory() as folder:
-            self.rmac(appliance, "load", "DMACXYZ")
-            words = ("tune", "0", "--travel", "20", "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
-            found = json.loads(self.rmac(appliance, "--json", *words))
-            device = json.loads(next(appliance.tree.glob("*/*/DMACXYZ/device.json")).read_text())
-        joint, creep = device["Joints"][0], found["creep"]
-        for gain, own in zip(found["pid_gains"], joint["Gains"], strict=True):
-            self.assertAlmostEqual(gain / own, 1, delta=0.06)
-        (notch,), (own,) = found["proposed"]["filters"]["Resonances"], joint["Resonances"]
-        self.assertAlmostEqual(notch["Frequency"], own["Frequency"], delta=3)
-        self.assertEqual(found["proposed"]["filters"]["LowPass"], joint["LowPass"])
-        parameters = joint["ServoControlLaw"]["Parameters"]
-        self.assertAlmostEqual(found["plant"]["mass"] / parameters["mass"], 1, delta=0.02)
-        self.assertAlmostEqual(creep["friction"] / parameters["friction"], 1, delta=0.05)
-        self.assertAlmostEqual(creep["parameters"]["presliding"][0] / parameters["presliding"], 1, delta=0.15)
-        (cogs,), (known,) = creep["motor"]["cogging"]["Harmonics"], device["Actuators"][0]["Cogging"]["Harmonics"]
-        self.assertEqual(cogs["Order"], known["Order"])
-        self.assertAlmostEqual(cogs["Sine"] / known["Sine"], 1, delta=0.1)
-
-    def test_tune_creeps_a_turn_of_the_motor_at_least(self):
-        with Appliance() as appliance, tempfile.TemporaryDirectory() as folder:
-            self.rmac(appliance, "load", "DMACXYZ")
-            short = appliance.rmac("tune", "0", "--travel", "4", "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
-        self.assertEqual((short.returncode, short.stderr.count("\n")), (1, 1), short.stderr)
-        self.assertIn("--creep takes a turn of the motor at least, which is 5: give more --travel", short.stderr)
-
-    def test_tune_finds_cogging_and_how_friction_builds_up(self):
-        """And puts it in force: the law with feedforward, and the motor's map."""
-        soft = {"Gains": [120, 2000, 1.2], "MaxFollowingError": 1}
-        with self.bending(274, soft) as appliance, tempfile.TemporaryDirectory() as folder:
-            words = ("tune", "1", "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
-            said = self.rmac(appliance, *words, "--travel", "20", "--apply")
-            name = json.loads(self.rmac(appliance, "--json", "trace", "record"))["name"]
-            head = json.loads(appliance.client().call("FlightRecorder.Read", Name=name, Offset=0)["text"].splitlines()[0])
-        friction, way = re.search(r"friction slides at ([\d.]+) N, builds up over ([\d.]+) mm", said).groups()
-        self.assertAlmostEqual(float(friction) / 18.85, 1, delta=0.1)
-        self.assertAlmostEqual(float(way) / 0.01, 1, delta=0.3)
-        (percent,) = re.search(r"cogging of 60 periods a turn: .* N·m, ([\d.]+) % of the rated torque", said).groups()
-        self.assertAlmostEqual(float(percent) / 2, 1, delta=0.15)
-        self.assertIn('into its actuator: "Cogging": {"Harmonics":[{', said)
-        joint = head["joints"][1]
-        self.assertEqual(joint["law"], "FeedforwardFeedbackServoControlLaw")
-        self.assertEqual(set(joint["parameters"]), {"rest_band", "lead_s", "presliding", "breakaway", "stribeck_speed"})
-        self.assertEqual(head["joints"][0]["law"], "DMACXYZPIDServoControlLaw")
-
-    def test_tune_finds_a_joint_of_two_motors(self):
-        """All but their cogging, which the joint shows as a sum: mass and friction of both."""
-        with tempfile.TemporaryDirectory() as folder, Appliance(own_tree=True, flight_recorder={"seconds": 30}) as appliance:
-            bend(appliance, 274, {"Gains": [120, 2000, 1.2], "MaxFollowingError": 1})
-            on_two_motors(appliance)
-            self.rmac(appliance, "load", "DMACXYZ")
-            words = ("tune", "0", "--travel", "20", "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
-            found = json.loads(self.rmac(appliance, "--json", *words))
-            said = self.rmac(appliance, *words, "--apply")
-        both = 2 * 2.2e-5 * RAD_PER_MM ** 2 * 1000
-        self.assertAlmostEqual(found["plant"]["mass"] / both, 1, delta=0.03)
-        self.assertAlmostEqual(found["creep"]["friction"] / (2 * 18.85), 1, delta=0.1)
-        self.assertAlmostEqual(found["creep"]["parameters"]["presliding"][0] / 0.01, 1, delta=0.3)
-        self.assertIsNone(found["creep"]["motor"])
-        self.assertIn("cogging is not told: its 2 motors turn alike", said)
-        self.assertNotIn('"Cogging"', said)
-
-    @contextlib.contextmanager
-    def bending(self, hz, joint, heavier=1.0, load=True):
-        """DMACXYZ, with axes of two masses that swing at `hz`, so many times heavier than it says, and `joint` in the
-        data of its first three."""
-        appliance = Appliance(own_tree=True, flight_recorder={"seconds": 30})
-        bend(appliance, hz, joint, heavier)
-        with appliance:
-            if load:
-                self.rmac(appliance, "load", "DMACXYZ")
-            yield appliance
 
     def test_laws_and_gains_change_in_motion_without_a_step(self):
         """As a client does it: the plan goes on, and no joint's effort jumps where its law changes."""
