@@ -147,18 +147,6 @@ void Mover::turn_unseen(const Point& axis) {
   by_joints_ = true;
 }
 
-double Mover::minutes_of(const TableMove& move, const TurnedWay& way, std::size_t place) const {
-  if (modes_.inverse_time) return 1 / modes_.feed_over(1, place);
-  if (modes_.feed_mm_min == 0) refuse(place, "no feed was set before this move; write F");
-  const double straight_min = legacy::length(legacy::difference(move.to, move.from)) / modes_.feed_mm_min;
-  const double degree_min = options_.rotary_diameter_mm
-                                ? *options_.rotary_diameter_mm * std::numbers::pi / 360 / modes_.feed_mm_min
-                                : 1 / modes_.feed_degrees_min;
-  const double turning_min = way.turn_degrees * degree_min;
-  if (rules_.degrees_are_lengths) return std::hypot(straight_min, turning_min);
-  return straight_min > 0 ? straight_min : turning_min;
-}
-
 void Mover::turn_along(const Point& end, bool rapid, std::size_t place) {
   const Turn turn = *std::exchange(turn_, std::nullopt);
   const Point from = coordinates_.known_tip();
@@ -177,30 +165,18 @@ void Mover::turn_along(const Point& end, bool rapid, std::size_t place) {
   }
   const double turns_or_mm = way.length_mm > 0 ? way.length_mm : way.turn_degrees;
   // Where little of the block counts for F, axes that are as fast as they can be bound it on the program's machine.
-  const double feed = rapid ? options_.rapid_mm_min : turns_or_mm / minutes_of(move, way, place);
+  const double feed =
+      rapid ? options_.rapid_mm_min : turns_or_mm / minutes_of(move, way, {options_, rules_, modes_}, place);
+  if (!legacy::is_feed(feed) && feed < 1 && (modes_.inverse_time || legacy::is_feed(modes_.feed_mm_min)))
+    refuse(
+        place,
+        "the tip hardly moves while the table turns, and no feed says how slowly; have the post write this turn as G0");
   write_feed(std::min(feed, options_.rapid_mm_min), place);
-  write_way(way);
+  write(way, writer_);
   coordinates_.turn(table);
   axis_ = axis_here_ = table.z;
   writer_.tool_axis(axis_);
   coordinates_.move_to(end);
-}
-
-void Mover::write_way(const TurnedWay& way) {
-  for (const TurnedPiece& piece : way.pieces) {
-    if (const auto* line = std::get_if<TurnedLine>(&piece)) {
-      writer_.tool_axis(line->axis);
-      writer_.line(line->end);
-    } else if (const auto* arc = std::get_if<TurnedArc>(&piece)) {
-      writer_.tool_axis(arc->axis);
-      writer_.arc(arc->arc);
-    } else {
-      const auto& spline = std::get<legacy::PoseSpline>(piece);
-      const auto& end = spline.points.back();
-      writer_.tool_axis({end[3], end[4], end[5]});
-      writer_.pose_spline(spline);
-    }
-  }
 }
 
 void Mover::held(const ContourMove& move, std::size_t place) {

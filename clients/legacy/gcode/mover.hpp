@@ -5,7 +5,7 @@
 
 #include "clients/legacy/gcode/modes/modes.hpp"
 #include "clients/legacy/gcode/radius/compensation.hpp"
-#include "clients/legacy/gcode/table/turned_way.hpp"
+#include "clients/legacy/gcode/table/turned_move.hpp"
 
 namespace rmac::gcode {
 
@@ -52,9 +52,6 @@ class Mover {
   void write_rapid(const Point& end, std::size_t place);
   void write_frame();
   void turn_along(const Point& end, bool rapid, std::size_t place);
-  void write_way(const TurnedWay& way);
-  /// How long F has such a move take.
-  [[nodiscard]] double minutes_of(const TableMove& move, const TurnedWay& way, std::size_t place) const;
 
   struct Turn {
     Table table;

@@ -15,15 +15,12 @@ namespace {
 constexpr std::array<char, 3> kRotaryLetters{'A', 'B', 'C'};
 constexpr int kRapid = 0, kLine = 10, kReference = 280;
 
-std::size_t place_of(char letter) {
-  return static_cast<std::size_t>(letter - 'A');
-}
-
 }  // namespace
 
 void ToolAxis::read(Block& block) {
   const auto& code = block.g(GGroup::Motion);
-  const int motion = code ? code->number : modes_.motion;
+  const bool goes_on = code && code->number == Modes::kNoMotion && rules_.motion_outlives_cycles;
+  const int motion = goes_on ? modes_.interpolation : code ? code->number : modes_.motion;
   if (block.once(kReference)) leave_for_reference(block);
   read_angles(block, motion);
   const bool has_vector = block.has_any("IJK") && (motion == kRapid || motion == kLine);
@@ -53,12 +50,10 @@ void ToolAxis::turn(Block& block, const KnownAngles& before, int motion, std::si
   const Point& axis = turn.z;
   const bool by_part = modes_.centre_point == ToolCentrePoint::Angles;
   const bool is_table = turntable_.carries(before) && turntable_.carries(angles_);
-  if (is_table && !by_part && !turning_.tilted()) {
-    const auto values = [](const KnownAngles& angles) {
-      return Angles{angles[0].value_or(0), angles[1].value_or(0), angles[2].value_or(0)};
-    };
-    const auto begin = seen ? std::optional(values(before)) : std::nullopt;
-    if (begin != values(angles_)) turntable_.turn(begin, values(angles_), motion, place);
+  if (is_table && turntable_.in_force()) {
+    const Angles end = zeros_for_unknown(angles_);
+    const auto begin = seen ? std::optional(zeros_for_unknown(before)) : std::nullopt;
+    if (begin != end) turntable_.turn(begin, end, motion, place);
     return;
   }
   if (!seen && coordinates_.table()) {
@@ -66,6 +61,9 @@ void ToolAxis::turn(Block& block, const KnownAngles& before, int motion, std::si
     coordinates_.forget_tip();
   }
   if (turn_before == turn && axis == mover_.axis()) return;
+  if (modes_.centre_point == ToolCentrePoint::Vectors)
+    refuse(place,
+           "under G43.5 I, J and K say which way the tool points; write A, B and C behind G49, or G43.4 in its place");
   if (by_part) return aim(block, axis, motion, place);
   if (block.has_any("XYZ"))
     refuse(place,
@@ -81,7 +79,7 @@ void ToolAxis::leave_for_reference(const Block& block) {
   const bool all = !block.has_any("XYZABC");
   for (const auto& rotary : options_.rotary) {
     if (!all && !block.has(rotary.letter)) continue;
-    angles_.at(place_of(rotary.letter)) = std::nullopt;
+    angles_.at(index_of(rotary.letter)) = std::nullopt;
     at_reference_ = rotary.letter;
   }
 }
@@ -115,7 +113,7 @@ bool ToolAxis::read_angle(char letter, const Word& word) {
                        "axes from the part to the tool, as --rotary C,A",
                        letter));
   }
-  auto& angle = angles_.at(place_of(letter));
+  auto& angle = angles_.at(index_of(letter));
   if (modes_.incremental && !angle)
     refuse(word.place, fmt::format("where axis {} stands is not known here; write its angle under G90 first", letter));
   const bool comes_from_zero = !angle && !at_reference_;
@@ -132,7 +130,7 @@ bool ToolAxis::read_angle(char letter, const Word& word) {
 legacy::Placement ToolAxis::turn_of_angles(std::size_t place) const {
   legacy::Placement turn;
   for (auto rotary = options_.rotary.rbegin(); rotary != options_.rotary.rend(); ++rotary) {
-    const auto& angle = angles_.at(place_of(rotary->letter));
+    const auto& angle = angles_.at(index_of(rotary->letter));
     if (!angle)
       refuse(place, fmt::format("where axis {0} stands is not known here; write {0} beside this", rotary->letter));
     turn = turn_about_normal(plane_of(rotary->letter), rotary->sign * *angle).after(turn);

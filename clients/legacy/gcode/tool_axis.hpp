@@ -18,6 +18,7 @@ class ToolAxis {
   ToolAxis(const Options& options, const Rules& rules, const Modes& modes, Coordinates& coordinates,
            const Turning& turning, Mover& mover)
       : options_(options),
+        rules_(rules),
         modes_(modes),
         coordinates_(coordinates),
         turning_(turning),
@@ -54,6 +55,7 @@ class ToolAxis {
   void aim(const Block& block, const Point& axis, int motion, std::size_t place);
 
   const Options& options_;
+  const Rules& rules_;
   const Modes& modes_;
   Coordinates& coordinates_;
   const Turning& turning_;

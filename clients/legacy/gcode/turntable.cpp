@@ -14,19 +14,15 @@ namespace {
 constexpr int kPositioning = 0, kStraight = 10, kFirstCycle = 730;
 constexpr double kTurn_degrees = 360;
 
-std::size_t index_of(const RotaryAxis& axis) {
-  return static_cast<std::size_t>(axis.letter - 'A');
-}
+}  // namespace
 
 Angles zeros_for_unknown(const KnownAngles& angles) {
   return {angles[0].value_or(0), angles[1].value_or(0), angles[2].value_or(0)};
 }
 
-}  // namespace
-
 bool Turntable::carries(const KnownAngles& angles) const {
   const auto is_upright_or_table = [&angles](const RotaryAxis& axis) {
-    return axis.centre_mm || std::fmod(angles.at(index_of(axis)).value_or(0), kTurn_degrees) == 0;
+    return axis.centre_mm || std::fmod(angles.at(index_of(axis.letter)).value_or(0), kTurn_degrees) == 0;
   };
   const auto is_table = [](const RotaryAxis& axis) { return axis.centre_mm.has_value(); };
   return std::ranges::any_of(options_.rotary, is_table) && std::ranges::all_of(options_.rotary, is_upright_or_table);
@@ -51,7 +47,7 @@ Table Turntable::table(std::size_t place) const {
   const Known& now = coordinates_.offset(coordinates_.active());
   Table table;
   for (const RotaryAxis& rotary : options_.rotary) {
-    TableAxis axis{index_of(rotary), plane_of(rotary.letter), rotary.sign, rotary.centre_mm.value_or(Point{})};
+    TableAxis axis{index_of(rotary.letter), plane_of(rotary.letter), rotary.sign, rotary.centre_mm.value_or(Point{})};
     for (std::size_t i = 0; i < axis.centre.size(); ++i) {
       const auto &was = begin.at(i), &is = now.at(i);
       if (was == is || i == axis.plane.normal) continue;
@@ -74,7 +70,7 @@ std::optional<legacy::Placement> Turntable::placement(const KnownAngles& angles,
 
 void Turntable::turn(const std::optional<Angles>& begin, const Angles& end, int motion, std::size_t place) {
   const auto turns = [&end, &begin](const RotaryAxis& axis) {
-    return std::abs(end.at(index_of(axis)) - begin->at(index_of(axis))) > kMostTableTurns * kTurn_degrees;
+    return std::abs(end.at(index_of(axis.letter)) - begin->at(index_of(axis.letter))) > kMostTableTurns * kTurn_degrees;
   };
   if (motion == Modes::kNoMotion) refuse(place, "no G0 or G1 is in force that could use this");
   const bool positions = motion == kPositioning || motion >= kFirstCycle;

@@ -14,6 +14,12 @@ namespace rmac::gcode {
 /// Of A, B and C, degrees, where they are known.
 using KnownAngles = std::array<std::optional<double>, 3>;
 
+/// Of A, B or C, among angles.
+[[nodiscard]] constexpr std::size_t index_of(char letter) {
+  return static_cast<std::size_t>(letter - 'A');
+}
+[[nodiscard]] Angles zeros_for_unknown(const KnownAngles& angles);
+
 /// A table that A, B and C turn, under X, Y and Z of a machine whose tool stands upright: those axes of --rotary of
 /// which it is known where they are. Not in force under G43.4, G43.5 and G68.2, which say where on the part X, Y and Z
 /// are.
@@ -23,6 +29,7 @@ class Turntable {
             const Turning& turning, Mover& mover)
       : options_(options), rules_(rules), modes_(modes), coordinates_(coordinates), turning_(turning), mover_(mover) {}
 
+  [[nodiscard]] bool in_force() const { return modes_.centre_point == ToolCentrePoint::Off && !turning_.tilted(); }
   /// Whether the table alone turns to these angles, or has.
   [[nodiscard]] bool carries(const KnownAngles& angles) const;
   /// The angle that `degrees` under G90 mean of an axis.
@@ -36,7 +43,6 @@ class Turntable {
   void follow(const KnownAngles& angles, std::size_t place);
 
  private:
-  [[nodiscard]] bool in_force() const { return modes_.centre_point == ToolCentrePoint::Off && !turning_.tilted(); }
   /// In the frame in force. Throws a Refusal where that is not known.
   [[nodiscard]] Table table(std::size_t place) const;
   [[nodiscard]] std::optional<legacy::Placement> placement(const KnownAngles& angles, std::size_t place) const;

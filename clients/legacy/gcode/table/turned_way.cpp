@@ -1,6 +1,7 @@
 #include "clients/legacy/gcode/table/turned_way.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -13,6 +14,8 @@ namespace {
 using legacy::along, legacy::difference, legacy::dot, legacy::Point, legacy::PoseSpline;
 
 constexpr double kRadians = std::numbers::pi / 180;
+/// Smaller arcs are none to the appliance; and what four decimals of an inch round in two coordinates, 1.8 um, is less.
+constexpr double kLeastOfArc_mm = 2e-3;
 
 double way_of(const TableMove& move, const TableAxis& axis) {
   return move.end.at(axis.angle) - move.begin.at(axis.angle);
@@ -74,12 +77,30 @@ void cut(double degrees, const Add& add) {
   for (int piece = 1; piece <= pieces; ++piece) add(piece == pieces ? 1.0 : static_cast<double>(piece) / pieces);
 }
 
+/// A tip beside the axis by what digits round rests in the plane that turns, and goes to its end at the end: next to
+/// nothing would else be its way while the table turns.
 TurnedWay along_axis(const Table& table, const TableMove& move, const OneAxis& one) {
+  constexpr double kStep_mm = 5e-4;  // the appliance tells that from rest
+  const std::size_t normal = one.axis->plane.normal;
+  const double climb = one.to.at(normal) - one.from.at(normal);
+  const Point begin = tip_at(table, move, 0).at;
+  const Point climbed = placement_of(one.outside, move.begin).turned(legacy::scaled(climb, legacy::unit_axis(normal)));
+  const TurnedLine end{tip_at(table, move, 1).at, axis_at(table, move, 1).at};
+  const bool steps = legacy::length(difference(end.end, along(begin, 1, climbed))) > kStep_mm;
   TurnedWay way;
-  way.length_mm = legacy::length(difference(move.to, move.from));
+  way.length_mm = std::abs(climb);
   cut(way_of(move, *one.axis), [&](double share) {
-    way.pieces.emplace_back(TurnedLine{tip_at(table, move, share).at, axis_at(table, move, share).at});
+    const bool is_end = share == 1 && !steps;
+    way.pieces.emplace_back(is_end ? end : TurnedLine{along(begin, share, climbed), axis_at(table, move, share).at});
   });
+  if (steps) way.pieces.emplace_back(end);
+  return way;
+}
+
+TurnedWay straight(const Table& table, const TableMove& move, double length_mm) {
+  TurnedWay way;
+  way.length_mm = length_mm;
+  way.pieces.emplace_back(TurnedLine{tip_at(table, move, 1).at, axis_at(table, move, 1).at});
   return way;
 }
 
@@ -88,9 +109,11 @@ TurnedWay about_axis(const Table& table, const TableMove& move, const OneAxis& o
   const auto outside = placement_of(one.outside, move.begin);
   const double degrees = one.axis->sign * way_of(move, *one.axis);
   const double climb = one.to.at(normal) - one.from.at(normal);
+  const double round_mm = one.radius_mm * std::abs(degrees) * kRadians;
+  if (round_mm <= kLeastOfArc_mm) return straight(table, move, std::hypot(round_mm, climb));
   double share_before = 0;
   TurnedWay way;
-  way.length_mm = std::hypot(one.radius_mm * degrees * kRadians, climb);
+  way.length_mm = std::hypot(round_mm, climb);
   cut(degrees, [&](double share) {
     Point centre = one.axis->centre;
     centre.at(normal) += one.from.at(normal) + share_before * climb;
@@ -178,17 +201,24 @@ TurnedWay by_splines(const Table& table, const TableMove& move) {
 }  // namespace
 
 TurnedWay turned_way(const Table& table, const TableMove& move) {
-  constexpr double kOnAxis_mm = 1e-4, kLeastOfArc_mm = 2e-3;
-  const auto one = one_axis(table, move);
-  const bool round = one && keeps_distance(*one) && one->turns_evenly;
-  const bool on_axis = round && one->radius_mm <= kOnAxis_mm;
-  TurnedWay way = on_axis                                    ? along_axis(table, move, *one)
-                  : round && one->radius_mm > kLeastOfArc_mm ? about_axis(table, move, *one)
-                                                             : by_splines(table, move);
+  constexpr double kSpeck_degrees = 0.05;  // within 1e-7 its axis turns in one plane, whichever axes turn
   double squares = 0;
   for (const TableAxis& axis : table) squares += way_of(move, axis) * way_of(move, axis);
-  way.turn_degrees = std::sqrt(squares);
-  way.rests_askew = !on_axis && way.length_mm <= kOnAxis_mm;
+  const double turn_degrees = std::sqrt(squares);
+  const auto one = one_axis(table, move);
+  const bool evenly = one && one->turns_evenly;
+  TurnedWay way;
+  if (evenly && std::max(one->radius_mm, one->radius(one->to)) <= kLeastOfArc_mm) {
+    way = along_axis(table, move, *one);
+  } else if (evenly && keeps_distance(*one)) {
+    way = about_axis(table, move, *one);
+  } else {
+    way = by_splines(table, move);
+    const bool rests = way.length_mm <= kLeastOfArc_mm;
+    if (rests && turn_degrees <= kSpeck_degrees) way = straight(table, move, way.length_mm);
+    way.rests_askew = rests && turn_degrees > kSpeck_degrees;
+  }
+  way.turn_degrees = turn_degrees;
   return way;
 }
 

@@ -31,8 +31,8 @@ inline constexpr double kSplineTolerance_mm = 1e-5;
 inline constexpr double kMostTableTurns = 1000;
 
 /// The way of the tool about the part. Where one axis turns and the tip keeps its distance from it, an arc or a helix;
-/// a tip on the axis goes straight. Both are exact. Elsewhere a spline of degree 5, within kSplineTolerance_mm.
-/// `move` turns something, by no more than kMostTableTurns.
+/// a tip on the axis goes straight. Both are exact, but that a way or a radius of up to 2 um is as good as none.
+/// Elsewhere a spline of degree 5, within kSplineTolerance_mm. `move` turns something, by no more than kMostTableTurns.
 [[nodiscard]] TurnedWay turned_way(const Table& table, const TableMove& move);
 
 }  // namespace rmac::gcode

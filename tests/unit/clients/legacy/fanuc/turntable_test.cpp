@@ -175,6 +175,25 @@ TEST(FanucTurntable, HasAnglesOnItsArcsAndSplinesRefused) {
   EXPECT_THAT(refusal_of(program_of("G80 A9."), {.rotary = {{'A', 1}}}), "taken");
 }
 
+TEST(FanucTurntable, TurnsBesideG80ByWhatWasInForceBeforeTheCycle) {
+  EXPECT_THAT(ends_of("G99 G81 X5. Z-3. R0.\nG80 A90.", a_table()).back(), near(5, -10, -10)) << "by G0";
+  const auto fed = imported(program_of("G1 X1. F360.\nG80 A90."), a_table()).requests.back();
+  EXPECT_EQ(fed["params"]["EndPoint"]["p"], json({1, -20, -10})) << "by G1";
+}
+
+TEST(FanucTurntable, HasAnglesUnderVectorsRefused) {
+  EXPECT_THAT(refusal_of(program_of("G43.5\nG0 A90.\nX3. Y4. Z5."), a_table()), StartsWith("6:4: under G43.5 I, J"));
+  EXPECT_THAT(refusal_of(program_of("G43.5\nG0 A90. X3."), a_table()), StartsWith("6:4: under G43.5 I, J"));
+  EXPECT_EQ(refusal_of(program_of("G43.5\nG0 A0\nX3. Y4. Z5."), a_table()), "taken");
+}
+
+TEST(FanucTurntable, SaysWhereTheTipHardlyMovesWhileItTurns) {
+  EXPECT_THAT(refusal_of(program_of("G1 Z-10. Y0.01\nF1. A90."), a_table()),
+              StartsWith("6:5: the tip hardly moves while the table turns"));
+  EXPECT_EQ(refusal_of(program_of("G1 Z-10. Y0.01\nG0 A90."), a_table()), "taken");
+  EXPECT_THAT(refusal_of(program_of("F0.001 G1 A90."), a_table()), HasSubstr("feed is not within"));
+}
+
 TEST(FanucTurntable, OfTwoAxesTurnsBothAboutTheirCentres) {
   Options options;
   options.rotary = {{'C', 1, {{10, 0, 0}}}, {'A', 1, {{0, 0, -10}}}};

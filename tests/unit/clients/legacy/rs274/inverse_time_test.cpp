@@ -25,6 +25,7 @@ std::vector<double> feeds_of(const std::string& lines, const Options& options = 
 TEST(Rs274InverseTime, GivesEachMoveItsTime) {
   EXPECT_THAT(feeds_of("G93 G1 X10 F2\nF3 Z4\nG2 X20 I5 F4\nG94 F70 G1 X0"),
               ElementsAre(20, 18, DoubleNear(5 * M_PI * 4, 1e-6), 70));
+  EXPECT_THAT(feeds_of("G93 G1 X20 F0.05\nX20.5 F0.05"), ElementsAre(1, 0.1)) << "mm/min at least, as LinuxCNC has it";
   EXPECT_THAT(feeds_of("G93 G20 G1 X1 F2"), ElementsAre(50.8)) << "F counts moves in any unit";
   EXPECT_THAT(feeds_of("G93\nG1 X[#<_inverse_time> * 8 + #<_units_per_minute>] F1"), ElementsAre(8));
   EXPECT_THAT(feeds_of("G93 G3 X0 Y0 I5 Z4 P2 F1"), ElementsAre(DoubleNear(std::hypot(20 * M_PI, 6), 1e-6)));
@@ -41,6 +42,12 @@ TEST(Rs274InverseTime, OfAMoveThatTurnsATableIsTheWholeMoves) {
   EXPECT_THAT(feeds_of("G93 G1 A90 F2\nX30 A0 F2", options),
               ElementsAre(DoubleNear(20 * M_PI, 1e-6), DoubleNear(2 * std::hypot(10 * M_PI, 30), 1e-6)));
   EXPECT_THAT(feeds_of("G1 Z-10\nG93 A90 F2", options).back(), 180) << "degrees where the tip rests";
+  EXPECT_THAT(feeds_of("G93 G1 A90 F0.05", options), ElementsAre(DoubleNear(0.05 * 20 * M_PI / 2, 1e-6)));
+  EXPECT_THAT(feeds_of("G93 G1 X30 A90 F0.05", options),
+              ElementsAre(DoubleNear(0.05 * std::hypot(10 * M_PI, 30), 1e-6)));
+  EXPECT_THAT(feeds_of("G93 G1 X30 A90 F0.001", options),
+              ElementsAre(DoubleNear(0.1 / 30 * std::hypot(10 * M_PI, 30), 1e-6)))
+      << "X, Y and Z go at 0.1 at least, as in LinuxCNC";
 }
 
 TEST(Rs274InverseTime, NeedsAnFInEachMove) {
@@ -59,6 +66,11 @@ TEST(FanucInverseTime, IsTheSame) {
   EXPECT_EQ(requests[1]["params"]["Feedrate"], 20);
   EXPECT_EQ(requests[3]["params"]["Feedrate"], 50);
   EXPECT_EQ(fanuc::value_of("#4005", "G93\n"), 93);
+  EXPECT_EQ(fanuc::imported(fanuc::program_of("G93 G1 X10. F0.05")).requests.at(1)["params"]["Feedrate"], 0.5);
+  fanuc::Options options;
+  options.rotary = {{'A', 1, {{0, 0, -10}}}};
+  const auto turn = fanuc::imported(fanuc::program_of("G93 G1 A90. F0.05"), options).requests.at(1);
+  EXPECT_NEAR(turn["params"]["Feedrate"].get<double>(), 0.05 * 20 * M_PI / 2, 1e-6);
   EXPECT_THAT(fanuc::refusal_of(fanuc::program_of("G93 G1 X10. F2.\nX0")), StartsWith("6:1: under G93"));
 }
 

@@ -43,6 +43,25 @@ TEST(Rs274Turntable, FeedsByXYZAndByDegreesWhereThoseStand) {
   EXPECT_NEAR(feed_of("G20\nF60 (inches, or degrees)\nA90 G1", a_table()), 10 * M_PI * 60 / 90, 1e-6);
 }
 
+TEST(Rs274Turntable, HasATipThatInchesRoundedBesideTheAxisOnIt) {
+  Options options;
+  options.rotary = {{'A', 1, {{0, 0, -55}}}};
+  const auto requests = imported(program_of("G20 G1 Z-2.1654\nG94 F60 A90"), options).requests;
+  const auto turn = requests.at(requests.size() - 2);
+  EXPECT_EQ(turn["method"], "RMAC_CAM.MoveAlongLine") << "1.16 micrometres beside it";
+  EXPECT_EQ(turn["params"]["EndPoint"], nlohmann::json({{"p", {0, 0, -55.00116}}, {"axis", {0, -1, 0}}}));
+  EXPECT_EQ(requests.back()["params"]["EndPoint"], nlohmann::json({{"p", {0, 0.00116, -55}}, {"axis", {0, -1, 0}}}));
+  EXPECT_EQ(feed_of("G20 G1 Z-2.1654\nG94 F60 A90", options), 60) << "degrees a minute";
+}
+
+TEST(Rs274Turntable, TurnsByNextToNothingOnALine) {
+  for (const char* line : {"X30 A0.002", "A0.002", "Y0.001 A0.001"}) {
+    const auto requests = imported(program_of("G1 Z10\n" + std::string(line)), a_table()).requests;
+    EXPECT_EQ(requests.back()["method"], "RMAC_CAM.MoveAlongLine") << line;
+  }
+  EXPECT_EQ(imported(program_of("G1 X30 A0.02"), a_table()).requests.back()["method"], "RMAC_CAM.MoveAlongArc");
+}
+
 TEST(Rs274Turntable, DoesNotTurnInACycleOrAnArc) {
   EXPECT_THAT(refusal_of(program_of("G81 X1 A9 Z0 R5"), a_table()), StartsWith("3:8: a table turns by a G0 between"));
   EXPECT_THAT(refusal_of(program_of("G2 X10 I5 A9"), a_table()), HasSubstr("is a G0 or G1"));
