@@ -138,7 +138,7 @@ Arc Mover::placed(const Arc& arc) const {
   return there;
 }
 
-void Mover::turn_with_next(Table table, const Angles& begin, const Angles& end) {
+void Mover::turn_with_next(Table table, const TableAngles& begin, const TableAngles& end) {
   turn_ = Turn{std::move(table), begin, end};
 }
 

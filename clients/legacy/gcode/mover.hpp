@@ -28,7 +28,7 @@ class Mover {
   void aim(const Point& axis);
   [[nodiscard]] const Point& axis() const noexcept { return axis_; }
   /// The next straight move, or rapid, turns the table along with it, from where it stands. The tip is known.
-  void turn_with_next(Table table, const Angles& begin, const Angles& end);
+  void turn_with_next(Table table, const TableAngles& begin, const TableAngles& end);
   /// The tool has this axis on the part, and on which way it comes there nobody knows: the next rapid is one of all
   /// joints together.
   void turn_unseen(const Point& axis);
@@ -55,7 +55,7 @@ class Mover {
 
   struct Turn {
     Table table;
-    Angles begin{}, end{};
+    TableAngles begin{}, end{};
   };
 
   const Options& options_;

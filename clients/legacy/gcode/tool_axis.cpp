@@ -51,7 +51,7 @@ void ToolAxis::turn(Block& block, const KnownAngles& before, int motion, std::si
   const bool by_part = modes_.centre_point == ToolCentrePoint::Angles;
   const bool is_table = turntable_.carries(before) && turntable_.carries(angles_);
   if (is_table && turntable_.in_force()) {
-    const Angles end = zeros_for_unknown(angles_);
+    const TableAngles end = zeros_for_unknown(angles_);
     const auto begin = seen ? std::optional(zeros_for_unknown(before)) : std::nullopt;
     if (begin != end) turntable_.turn(begin, end, motion, place);
     return;

@@ -16,7 +16,7 @@ constexpr double kTurn_degrees = 360;
 
 }  // namespace
 
-Angles zeros_for_unknown(const KnownAngles& angles) {
+TableAngles zeros_for_unknown(const KnownAngles& angles) {
   return {angles[0].value_or(0), angles[1].value_or(0), angles[2].value_or(0)};
 }
 
@@ -68,7 +68,7 @@ std::optional<legacy::Placement> Turntable::placement(const KnownAngles& angles,
   return placement == legacy::Placement{} ? std::nullopt : std::optional(placement);
 }
 
-void Turntable::turn(const std::optional<Angles>& begin, const Angles& end, int motion, std::size_t place) {
+void Turntable::turn(const std::optional<TableAngles>& begin, const TableAngles& end, int motion, std::size_t place) {
   const auto turns = [&end, &begin](const RotaryAxis& axis) {
     return std::abs(end.at(index_of(axis.letter)) - begin->at(index_of(axis.letter))) > kMostTableTurns * kTurn_degrees;
   };

@@ -18,7 +18,7 @@ using KnownAngles = std::array<std::optional<double>, 3>;
 [[nodiscard]] constexpr std::size_t index_of(char letter) {
   return static_cast<std::size_t>(letter - 'A');
 }
-[[nodiscard]] Angles zeros_for_unknown(const KnownAngles& angles);
+[[nodiscard]] TableAngles zeros_for_unknown(const KnownAngles& angles);
 
 /// A table that A, B and C turn, under X, Y and Z of a machine whose tool stands upright: those axes of --rotary of
 /// which it is known where they are. Not in force under G43.4, G43.5 and G68.2, which say where on the part X, Y and Z
@@ -36,7 +36,7 @@ class Turntable {
   [[nodiscard]] double led(const RotaryAxis& axis, double from, const Word& word, double degrees) const;
   /// With the motion of a block, whose code is `motion`; by the next one, where nobody knows where the tip is. `begin`:
   /// none where it is not known where the table stands.
-  void turn(const std::optional<Angles>& begin, const Angles& end, int motion, std::size_t place);
+  void turn(const std::optional<TableAngles>& begin, const TableAngles& end, int motion, std::size_t place);
   /// Other modes are in force: what X, Y and Z mean now of a table that stands so.
   void settle(const KnownAngles& angles, std::size_t place);
   /// The frame of the part is another one: the tip stays in the machine.

@@ -37,7 +37,7 @@ Jet on_part(const Table& table, const TableMove& move, double share, Jet jet, bo
 
 }  // namespace
 
-Placement placement_of(const Table& table, const Angles& angles) {
+Placement placement_of(const Table& table, const TableAngles& angles) {
   Placement all;
   for (const TableAxis& axis : table | std::views::reverse) {
     Placement turn = turn_of(axis, angles.at(axis.angle));

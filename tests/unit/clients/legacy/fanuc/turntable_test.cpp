@@ -189,7 +189,7 @@ TEST(FanucTurntable, HasAnglesUnderVectorsRefused) {
 
 TEST(FanucTurntable, SaysWhereTheTipHardlyMovesWhileItTurns) {
   EXPECT_THAT(refusal_of(program_of("G1 Z-10. Y0.01\nF1. A90."), a_table()),
-              StartsWith("6:5: the tip hardly moves while the table turns"));
+              StartsWith("6:1: the tip hardly moves while the table turns"));
   EXPECT_EQ(refusal_of(program_of("G1 Z-10. Y0.01\nG0 A90."), a_table()), "taken");
   EXPECT_THAT(refusal_of(program_of("F0.001 G1 A90."), a_table()), HasSubstr("feed is not within"));
 }
