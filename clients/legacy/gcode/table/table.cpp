@@ -1,7 +1,6 @@
 #include "clients/legacy/gcode/table/table.hpp"
 
 #include <numbers>
-#include <ranges>
 
 #include "clients/legacy/gcode/modes/turns.hpp"
 
@@ -25,7 +24,8 @@ Jet turned(const Jet& jet, const Placement& turn, const legacy::Point& rate, con
 }
 
 Jet on_part(const Table& table, const TableMove& move, double share, Jet jet, bool is_point) {
-  for (const TableAxis& axis : table | std::views::reverse) {
+  for (auto at = table.rbegin(); at != table.rend(); ++at) {
+    const TableAxis& axis = *at;
     const double begin = move.begin.at(axis.angle), way = move.end.at(axis.angle) - begin;
     const double rate = axis.sign * way * std::numbers::pi / 180;
     const double degrees = share == 1 ? move.end.at(axis.angle) : begin + share * way;
@@ -39,7 +39,8 @@ Jet on_part(const Table& table, const TableMove& move, double share, Jet jet, bo
 
 Placement placement_of(const Table& table, const TableAngles& angles) {
   Placement all;
-  for (const TableAxis& axis : table | std::views::reverse) {
+  for (auto at = table.rbegin(); at != table.rend(); ++at) {
+    const TableAxis& axis = *at;
     Placement turn = turn_of(axis, angles.at(axis.angle));
     turn.shift = legacy::difference(axis.centre, turn.turned(axis.centre));
     all = turn.after(all);
