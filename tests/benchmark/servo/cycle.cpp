@@ -103,11 +103,10 @@ std::shared_ptr<const LearnedPath> learned_path(std::size_t joints, int cycles) 
   return std::make_shared<const LearnedPath>(*LearnedPath::create(std::move(parts)));
 }
 
-/// The first harmonics of six, which are as many as `rmac tune --creep` finds at most.
-Cogging cogging(std::size_t harmonics) {
+/// As many harmonics as `rmac tune --creep` finds at most.
+Cogging cogging() {
   Cogging known{{}, 0.0017};
   for (const int order : {12, 24, 36, 6, 60, 84}) known.harmonics.push_back({order, 0.001, 0.002});
-  known.harmonics.resize(harmonics);
   return known;
 }
 
@@ -118,9 +117,8 @@ struct Cycles {
   std::int64_t torques = 0;
 };
 
-/// With harmonics of cogging, friction is known before it slides, too, and offsets were learned.
-Cycles run_cycles(std::size_t joints, int count, std::size_t harmonics = 0) {
-  const bool more = harmonics > 0;
+/// With `more`, cogging is known and friction before it slides, and offsets were learned.
+Cycles run_cycles(std::size_t joints, int count, bool more = false) {
   const auto simulated = std::make_shared<InstantBus>(joints);
   for (DriveFeedback& words : simulated->words) words = {.statusword = 0x27, .online = true};
   const auto bus = std::make_shared<ServoBus>(simulated);
@@ -137,7 +135,7 @@ Cycles run_cycles(std::size_t joints, int count, std::size_t harmonics = 0) {
     (void)law->set_gains(std::array{50.0, 500.0, 0.5, 0.1, 0.01, 2.0, 0.0});
     parts.joints.push_back({law, ControlMethod::Position, 5, 500});
     parts.actuators.push_back({bus, static_cast<std::uint32_t>(j), {kCountsPerTurn, 1, 1, 0}});
-    if (more) parts.actuators.back().cogging = cogging(harmonics);
+    if (more) parts.actuators.back().cogging = cogging();
   }
   parts.actuator_map = std::make_shared<modules::TransmissionMap>(std::move(gears));
   auto loop = std::move(*ServoLoop::create(std::move(parts)));
@@ -193,12 +191,11 @@ void cycle_rows(Figures& figures) {
   const Cycles six = run_cycles(6, kCycles);
   const Cycles many = run_cycles(32, kCycles);
   const char* const note = "arm kinematics, gears, feedforward with feedback; a shared machine's clock";
-  const Cycles more = run_cycles(6, kCycles, 3);
-  const Cycles most = run_cycles(6, kCycles, 6);
+  const Cycles more = run_cycles(6, kCycles, true);
   const auto of_all = [&](auto count) {
-    return static_cast<double>(six.trapped.*count + many.trapped.*count + more.trapped.*count + most.trapped.*count);
+    return static_cast<double>(six.trapped.*count + many.trapped.*count + more.trapped.*count);
   };
-  if (!six.followed || !many.followed || !more.followed || !most.followed) {
+  if (!six.followed || !many.followed || !more.followed) {
     figures.missing("cycle_6_joints_p50", "<= 2", "us", "the loop did not follow its setpoints");
     return;
   }
@@ -210,9 +207,7 @@ void cycle_rows(Figures& figures) {
   figures.at_most("cycle_6_joints_p50", median, 2, "us", note);
   figures.at_most("cycle_6_joints_p99_9", quantile(six.microseconds, 0.999), 5, "us", note);
   figures.at_most("cycle_6_joints_cogging_and_learned_p50", quantile(more.microseconds, 0.5), 2, "us",
-                  "three harmonics of cogging a motor, friction before it slides, and learned offsets in force");
-  figures.inform("cycle_6_joints_most_cogging_and_learned_p50", quantile(most.microseconds, 0.5), "us",
-                 "the same with six harmonics, as many as rmac tune --creep finds at most");
+                  "six harmonics of cogging a motor, friction before it slides, and learned offsets in force");
   figures.at_most("cycle_32_joints_over_6_joints_p50", quantile(many.microseconds, 0.5) / median, 6, "times", note);
   figures.at_most("cycle_allocations", of_all(&verifier::TrapCounts::allocations), 0, "calls",
                   "every tenth cycle under the trap");
