@@ -59,8 +59,8 @@ class FeedforwardModel {
     constexpr double kLongest = 1e6;
     friction_ = bent(friction_, std::clamp(way / parameters_.presliding, -kLongest, kLongest), bound(led(input)));
   }
-  /// Of a joint that stands: what a feedback has to add by and by is what friction takes up, for bristles that were bent
-  /// one way as the joint came to rest are bent otherwise when it goes on. Returns how much of `effort` it took.
+  /// Of a joint that stands: what a feedback has to add by and by is what friction takes up, for bristles that were
+  /// bent one way as the joint came to rest are bent otherwise when it goes on. Returns how much of `effort` it took.
   double settle(double effort) noexcept {
     if (parameters_.presliding <= 0 || gains_[2] <= 0) return 0;
     const double before = friction_;
