@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace rmac {
 
@@ -27,6 +28,18 @@ std::optional<std::size_t> system_of(const std::string& name, bool fanuc) {
   }
   const bool is_plain = name.size() == 3 && name.starts_with('G') && read(1) && number >= 54 && number <= 59;
   return is_plain ? std::optional(static_cast<std::size_t>(number - 54)) : std::nullopt;
+}
+
+/// `N=VALUE`.
+std::optional<std::pair<int, double>> read_numbered(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) return std::nullopt;
+  const char *const middle = text.data() + equals, *const end = text.data() + text.size();
+  std::pair<int, double> result{};
+  const auto number = std::from_chars(text.data(), middle, result.first);
+  const auto value = std::from_chars(middle + 1, end, result.second, std::chars_format::fixed);
+  const bool whole = number.ec == std::errc() && number.ptr == middle && value.ec == std::errc() && value.ptr == end;
+  return whole ? std::optional(result) : std::nullopt;
 }
 
 }  // namespace
@@ -54,17 +67,11 @@ bool read_offset(const std::string& text, bool fanuc, std::map<std::size_t, gcod
 }
 
 bool read_variable(const std::string& text, std::map<int, double>& variables) {
-  const std::size_t equals = text.find('=');
-  int number = 0;
-  double value = 0;
-  if (equals == std::string::npos) return false;
-  const char *const middle = text.data() + equals, *const end = text.data() + text.size();
-  const auto read_number = std::from_chars(text.data(), middle, number);
-  const auto read = std::from_chars(middle + 1, end, value, std::chars_format::fixed);
-  const bool whole =
-      read_number.ec == std::errc() && read_number.ptr == middle && read.ec == std::errc() && read.ptr == end;
+  const auto read = read_numbered(text);
+  if (!read) return false;
+  const auto [number, value] = *read;
   const bool is_common = (number >= 100 && number < 200) || (number >= 500 && number < 1000);
-  return whole && is_common && std::isfinite(value) && variables.emplace(number, value).second;
+  return is_common && std::isfinite(value) && variables.emplace(number, value).second;
 }
 
 bool read_m(const std::string& text, std::set<int>& codes) {
@@ -99,16 +106,10 @@ bool read_name(const std::string& text, std::map<int, std::string>& names) {
 }
 
 bool read_diameter(const std::string& text, std::map<int, double>& diameters) {
-  const std::size_t equals = text.find('=');
-  int tool = 0;
-  double diameter = 0;
-  if (equals == std::string::npos) return false;
-  const char *const middle = text.data() + equals, *const end = text.data() + text.size();
-  const auto read_tool = std::from_chars(text.data(), middle, tool);
-  const auto read = std::from_chars(middle + 1, end, diameter, std::chars_format::fixed);
-  const bool whole =
-      read_tool.ec == std::errc() && read_tool.ptr == middle && read.ec == std::errc() && read.ptr == end;
-  return whole && tool >= 0 && diameter >= 0 && diameter <= 1000 && diameters.emplace(tool, diameter).second;
+  const auto read = read_numbered(text);
+  if (!read) return false;
+  const auto [tool, diameter] = *read;
+  return tool >= 0 && diameter >= 0 && diameter <= 1000 && diameters.emplace(tool, diameter).second;
 }
 
 bool read_rotary_centre(const std::string& text, std::vector<gcode::RotaryAxis>& axes) {

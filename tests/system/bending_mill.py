@@ -25,35 +25,40 @@ def rigid(device, **parameters):
             data.pop(filters, None)
 
 
-def bend(appliance, hz, joint, heavier=1.0, **more):
-    """Writes it into the tree of its own that the appliance has: resonances at `hz`, so many times heavier than it says, `joint` in the data
-    of these joints, and `more` parameters of the simulated bus."""
+@contextlib.contextmanager
+def device_of(appliance):
+    """That mill's data in the tree of its own that the appliance has; what becomes of it is written there."""
     file = next(appliance.tree.glob("*/*/DMACXYZ/device.json"))
     device = json.loads(file.read_text())
+    yield device
+    file.write_text(json.dumps(device))
+
+
+def bend(appliance, hz, joint, heavier=1.0, **more):
+    """Has its axes swing at `hz`, so many times heavier than it says, with `joint` in the data of these joints, and `more` parameters of the
+    simulated bus."""
     motor, table = MOTOR * heavier, TABLE * heavier
     stiffness = (2 * np.pi * hz) ** 2 * motor * table / (motor + table)
-    rigid(device, **{
-        "stiffness_nm_rad": [stiffness] * 3 + [0] * 5, "load_inertia_kg_m2": [table] * 3 + [0] * 5,
-        "inertia_kg_m2": [motor + table] * 3 + [2.2e-5] * 5,
-        "presliding_turns": [0.002] * 8, "cogging": [0.02] * 8, **more})
-    for data in device["Joints"][:3]:
-        data.update(joint)
-    file.write_text(json.dumps(device))
+    with device_of(appliance) as device:
+        rigid(device, **{
+            "stiffness_nm_rad": [stiffness] * 3 + [0] * 5, "load_inertia_kg_m2": [table] * 3 + [0] * 5,
+            "inertia_kg_m2": [motor + table] * 3 + [2.2e-5] * 5,
+            "presliding_turns": [0.002] * 8, "cogging": [0.02] * 8, **more})
+        for data in device["Joints"][:3]:
+            data.update(joint)
 
 
 def on_two_motors(appliance, axis=4):
     """Has X of that mill moved by two motors, its own and this axis of the bus, which is as that, under twice the gains."""
-    file = next(appliance.tree.glob("*/*/DMACXYZ/device.json"))
-    device = json.loads(file.read_text())
-    device["ActuatorMap"] = {"Module": "TransmissionMap", "Parameters": {
-        "transmissions": "gantry screw screw", "t1": [5, 1], "t2": [5, 1], "t3": [5, 1]}}
-    device["Actuators"].insert(1, {**device["Actuators"][0], "Axis": axis})
-    joint = device["Joints"][0]
-    joint.update({"Gains": [2 * gain for gain in joint["Gains"]], "MaxEffort": 2 * joint["MaxEffort"]})
-    parameters = device["DigitalControlInterface"]["Parameters"]
-    for name in ("stiffness_nm_rad", "load_inertia_kg_m2", "inertia_kg_m2"):
-        parameters[name][axis] = parameters[name][0]
-    file.write_text(json.dumps(device))
+    with device_of(appliance) as device:
+        device["ActuatorMap"] = {"Module": "TransmissionMap", "Parameters": {
+            "transmissions": "gantry screw screw", "t1": [5, 1], "t2": [5, 1], "t3": [5, 1]}}
+        device["Actuators"].insert(1, {**device["Actuators"][0], "Axis": axis})
+        joint = device["Joints"][0]
+        joint.update({"Gains": [2 * gain for gain in joint["Gains"]], "MaxEffort": 2 * joint["MaxEffort"]})
+        parameters = device["DigitalControlInterface"]["Parameters"]
+        for name in ("stiffness_nm_rad", "load_inertia_kg_m2", "inertia_kg_m2"):
+            parameters[name][axis] = parameters[name][0]
 
 
 class TuningTest(unittest.TestCase):

@@ -7,13 +7,17 @@ import tempfile
 import unittest
 
 from appliance import Appliance
+from bending_mill import device_of, rigid
 
 PNG = b"\x89PNG\r\n\x1a\n"
 
 
 class FlightRecorder(unittest.TestCase):
     def start(self, **configuration):
-        return self.enterContext(Appliance(**configuration))
+        appliance = Appliance(own_tree=True, **configuration)
+        with device_of(appliance) as device:
+            rigid(device)
+        return self.enterContext(appliance)
 
     def fault(self, appliance):
         """Moves until the machine faults; the events of the fault and of its record."""
@@ -21,9 +25,8 @@ class FlightRecorder(unittest.TestCase):
         client.call("subscribe", topics=["events"])
         client.call("authority.acquire")
         client.call("Device.Load", Name="DMACXYZ")
-        # So weak a loop, which knows nothing of its axis, that the first motion is a fault.
-        client.call("RMAC_Config.SetMechanismJointServoControlLaw", JntNum=0, ControlLaw="DMAC_PID_CONTROL")
-        client.call("RMAC_Config.SetMechanismJointServoControlGains", JntNum=0, ServoControlGains=[2, 0, 0.1])
+        # So weak a loop that the first motion is a fault.
+        client.call("RMAC_Config.SetMechanismJointServoControlGains", JntNum=0, ServoControlGains=[15, 0, 0.1])
         client.call("RMAC_Config.Apply")
         client.call("RMAC_CAM.JogJoint", JntNum=0, Distance=50)
         fault = client.wait_note("events", lambda event: event["kind"] == "Fault")
@@ -39,7 +42,7 @@ class FlightRecorder(unittest.TestCase):
         appliance = self.start(flight_recorder={"seconds": 1})
         client, fault, record = self.fault(appliance)
         self.assertEqual((record["kind"], record["record"]), ("FlightRecord", fault["record"]))
-        self.assertRegex(fault["message"], "stands still|weak gains")
+        self.assertIn("stands still", fault["message"])
         self.assertEqual(client.state()["last_stop"], fault)
 
         status = self.rmac(appliance, "status")
@@ -62,8 +65,7 @@ class FlightRecorder(unittest.TestCase):
         cycles = [int(row["cycle"]) for row in rows]
         self.assertEqual(cycles, list(range(cycles[0], cycles[0] + len(cycles))))
         first = next(row for row in rows if row["fault"] != "None")
-        self.assertEqual(int(first["cycle"]), fault["cycle"])
-        self.assertEqual(first["fault"], "StandsStill" if "stands still" in fault["message"] else "FollowingError")
+        self.assertEqual((int(first["cycle"]), first["fault"]), (fault["cycle"], "StandsStill"))
         error = max(abs(float(first[f"q{joint}"]) - float(first[f"a{joint}"])) for joint in (1, 2, 3))
         self.assertEqual(error, abs(float(first["fault_value"])))
         self.assertGreater(error, float(first["fault_bound"]))

@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 from appliance import Appliance, pose, wait_for_rest
-from bending_mill import rigid
+from bending_mill import device_of, rigid
 
 PERIOD = 0.001
 
@@ -38,7 +38,8 @@ class Learning(unittest.TestCase):
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
         self.appliance = self.enterContext(Appliance(own_tree=True))
         self.honest = self.device.read_text()
-        self.becomes(rigid)
+        with device_of(self.appliance) as device:
+            rigid(device)
         self.assertEqual(self.appliance.rmac("load", "DMACXYZ").returncode, 0)
         self.program = self.folder / "part.rmac"
         self.write(around())
@@ -46,11 +47,6 @@ class Learning(unittest.TestCase):
     @property
     def device(self):
         return next(self.appliance.tree.glob("*/*/DMACXYZ/device.json"))
-
-    def becomes(self, change):
-        device = json.loads(self.device.read_text())
-        change(device)
-        self.device.write_text(json.dumps(device))
 
     def write(self, lines):
         self.program.write_text("\n".join(lines) + "\n")
@@ -108,7 +104,8 @@ class Learning(unittest.TestCase):
         self.assertLess(max(after[:2]), 0.0005, "those that go round the circle")
 
     def test_drives_that_answer_a_cycle_late_teach_too(self):
-        self.becomes(lambda device: rigid(device, late_answers=[1]))
+        with device_of(self.appliance) as device:
+            rigid(device, late_answers=[1])
         self.assertEqual(self.appliance.rmac("load", "DMACXYZ").returncode, 0)
         told = self.learn()
         for before, after in zip(told["passes"][0]["rms"], told["passes"][-1]["rms"], strict=True):

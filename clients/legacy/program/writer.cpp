@@ -86,19 +86,17 @@ void Writer::begin(const Point& start) {
 }
 
 void Writer::rapid(const Point& end) {
-  begin(end);
-  open_move("MoveToPathTarget");
-  out_.append(R"("TargetFrame":)");
-  write_frame(out_, here_, axis_there_);
-  axis_here_ = axis_there_;
-  close();
-  ++moves_;
+  position("MoveToPathTarget", R"("TargetFrame":)", end);
 }
 
 void Writer::rapid_of_joints(const Point& end) {
+  position("MoveToJointTarget", R"("JointTargetFrame":)", end);
+}
+
+void Writer::position(std::string_view method, std::string_view frame, const Point& end) {
   begin(end);
-  open_move("MoveToJointTarget");
-  out_.append(R"("JointTargetFrame":)");
+  open_move(method);
+  out_.append(frame);
   write_frame(out_, here_, axis_there_);
   axis_here_ = axis_there_;
   close();

@@ -90,6 +90,8 @@ class Writer {
   [[nodiscard]] std::size_t bytes() const noexcept { return flushed_ + out_.size(); }
 
  private:
+  /// `frame`: the name of its target, with quotes and colon.
+  void position(std::string_view method, std::string_view frame, const Point& end);
   void open(std::string_view method);
   void open_move(std::string_view method);
   void close();
