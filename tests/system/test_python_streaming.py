@@ -8,6 +8,7 @@ import threading
 import unittest
 
 from appliance import SOURCE, Appliance
+from bending_mill import device_of, rigid
 
 sys.path[:0] = [str(SOURCE / "clients/python/src")]
 
@@ -55,7 +56,10 @@ class Watcher:
 
 class PythonStreamingTest(unittest.TestCase):
     def start(self, **configuration):
-        self.appliance = self.enterContext(Appliance(**configuration))
+        self.appliance = Appliance(own_tree=True, **configuration)
+        with device_of(self.appliance) as device:
+            rigid(device)
+        self.enterContext(self.appliance)
         self.address = f"127.0.0.1:{self.appliance.port}"
         client = self.enterContext(rmac.connect(self.address, "streamer"))
         self.lease = self.enterContext(client.authority())
@@ -128,8 +132,7 @@ class PythonStreamingTest(unittest.TestCase):
             self.assertEqual(caught.exception.refusal.minor_name, "MACHINE_ERR_TRAVEL_LIMIT")
             while (state := client.state())["moves_in_buffer"] or state["moving"]:
                 pass
-            for place in state["joints"]:
-                self.assertAlmostEqual(place, 0, delta=0.02)
+            self.assertEqual([round(place, 2) for place in state["joints"]], [0, 0, 0])
             self.assertEqual(state["outputs"], 0)
 
     def test_calls_and_requests_take_their_turn_among_moves(self):
