@@ -19,7 +19,7 @@ struct Outcome {
   int instants = 0, unfinished = 0, holds = 0, kept = 0;
   double worst = 0, off_nm = 0;
   std::vector<double> reaction_cycles, visible_cycles, stop_ratio, planning_ms;
-  std::vector<double> lowered_cycles, raised_cycles, override_ms;
+  std::vector<double> lowered_cycles, raised_cycles, override_ms, lowered_visible, raised_visible;
 };
 
 /// Path length of a plan at a time, for a comparison with what came instead.
@@ -106,6 +106,9 @@ class Case {
         (lowered ? outcome_.lowered_cycles : outcome_.raised_cycles)
             .push_back(static_cast<double>(drive_.now() - asked));
         outcome_.override_ms.push_back(answer_ms);
+        while (keeps(*before) && drive_.setpoint().feed_mm_s > 0) drive_.cycle();
+        (lowered ? outcome_.lowered_visible : outcome_.raised_visible)
+            .push_back(static_cast<double>(drive_.now() - asked));
       }
     }
     if (percent > 0) return;
@@ -113,6 +116,12 @@ class Case {
     for (int k = 0; k < wait; ++k) drive_.cycle();
     override_percent_ = random_.uniform(1, 200);
     drive_.planner.set_override(override_percent_);
+  }
+
+  /// The setpoint is where this plan has it, to 1 pm.
+  bool keeps(const Plan& plan) const {
+    const double t = static_cast<double>(drive_.now() - plan.start_cycle) * model_.period_s;
+    return std::abs(drive_.setpoint().s_mm - state_of(plan, t).s) <= 1e-9;
   }
 
   /// Cycles after the command that still follow the plan in force when it came, and the way to rest from there.
@@ -130,12 +139,11 @@ class Case {
     const std::size_t most = impatient ? static_cast<std::size_t>(random_.uniform(1, 150)) : 5000;
     bool rested = false;
     for (std::size_t k = 0; k < most && !rested; ++k) {
-      const Setpoint& setpoint = drive_.cycle();
+      drive_.cycle();
       if (answered < 0 && drive_.stops()) answered = drive_.now() - asked;
       if (measured && followed < 0) {
-        const double t = static_cast<double>(drive_.now() - before->start_cycle) * model_.period_s;
         if (taken_over < 0 && drive_.plan_followed() != before) taken_over = drive_.now() - asked;
-        if (std::abs(setpoint.s_mm - state_of(*before, t).s) > 1e-9) followed = drive_.now() - 1 - asked;
+        if (!keeps(*before)) followed = drive_.now() - 1 - asked;
       }
       rested = drive_.resting();
     }
@@ -195,14 +203,17 @@ void interruption_rows(Figures& figures, const Extent& extent) {
   figures.inform("hold_planning_p50", quantile(outcome.planning_ms, 0.5), "ms", "CPU time");
   figures.inform("hold_planning_p99", quantile(outcome.planning_ms, 0.99), "ms", "CPU time");
   figures.at_most("hold_planning_max", quantile(outcome.planning_ms, 1), 1, "ms", "CPU time of the step that answers");
-  const std::string lowered = std::to_string(outcome.lowered_cycles.size()) + " overrides lowered";
-  const std::string raised = std::to_string(outcome.raised_cycles.size()) + " overrides raised";
-  figures.inform("override_lowered_late", late(outcome.lowered_cycles), "overrides", lowered);
-  figures.inform("override_raised_late", late(outcome.raised_cycles), "overrides", raised);
-  figures.inform("override_lowered_p99", quantile(outcome.lowered_cycles, 0.99), "cycles", lowered);
-  figures.at_most("override_lowered_max", quantile(outcome.lowered_cycles, 1), 2, "cycles", lowered);
-  figures.inform("override_raised_p99", quantile(outcome.raised_cycles, 0.99), "cycles", raised);
-  figures.inform("override_raised_max", quantile(outcome.raised_cycles, 1), "cycles", raised);
+  const auto override_rows = [&](const std::string& way, const auto& taken_over, const auto& visible) {
+    const std::string name = "override_" + way, all = std::to_string(taken_over.size()) + " overrides " + way;
+    figures.inform(name + "_late", late(taken_over), "overrides", all);
+    figures.inform(name + "_p99", quantile(taken_over, 0.99), "cycles", all);
+    figures.at_most(name + "_max", quantile(taken_over, 1), 2, "cycles", all);
+    figures.inform(name + "_visible_p50", quantile(visible, 0.5), "cycles", "until the setpoint differs by 1 pm");
+    figures.inform(name + "_visible_p99", quantile(visible, 0.99), "cycles", all);
+    figures.inform(name + "_visible_max", quantile(visible, 1), "cycles", all);
+  };
+  override_rows("lowered", outcome.lowered_cycles, outcome.lowered_visible);
+  override_rows("raised", outcome.raised_cycles, outcome.raised_visible);
   figures.inform("override_planning_p50", quantile(outcome.override_ms, 0.5), "ms", "CPU time");
   figures.inform("override_planning_p99", quantile(outcome.override_ms, 0.99), "ms", "CPU time");
   figures.at_most("override_planning_max", quantile(outcome.override_ms, 1), 1, "ms", "CPU time");
