@@ -31,10 +31,16 @@ constexpr gcode::Rules kRules{
                .levels_stay = true},
 };
 
+constexpr gcode::Rules kHaasRules = [] {
+  gcode::Rules rules = kRules;
+  rules.system_name = haas_system_name;
+  return rules;
+}();
+
 }  // namespace
 
-const gcode::Rules& rules() noexcept {
-  return kRules;
+const gcode::Rules& rules(Dialect dialect) noexcept {
+  return dialect == Dialect::Haas ? kHaasRules : kRules;
 }
 
 }  // namespace rmac::fanuc

@@ -22,7 +22,9 @@ constexpr std::string_view kExact =
 constexpr std::string_view kLength =
     "tool lengths are those of the appliance's tool table (rmac tools); write G43 H and the tool's number";
 constexpr std::string_view kBegin = "this stands at the begin of its block, behind N alone";
-constexpr std::string_view kUnits = "a Fanuc has G20 (inches) and G21 (mm) for this; have the post write those";
+constexpr std::string_view kUnits =
+    "a Fanuc has G20 (inches) and G21 (mm) for this; have the post write those; bolt holes of a Haas' program "
+    "--dialect haas knows";
 constexpr std::string_view kTilt = "this way to tilt a plane is not taken; have the post write Euler's angles, G68.2";
 constexpr std::string_view kLimits = "which room the machine has, the appliance knows; take it out";
 constexpr std::string_view kSurface = "constant surface speed is not taken; write G97 and S in turns a minute";
@@ -43,9 +45,7 @@ constexpr auto kG = std::to_array<FanucG>({
     {{90, GGroup::Once, kExact}},
     {{100, GGroup::Once, {}}},
     {{110, GGroup::Once, {}}, Use::Nothing},
-    {{120, GGroup::Once, kCurve}},
     {{121, GGroup::Once, kPolar}},
-    {{130, GGroup::Once, kCurve}},
     {{131, GGroup::Once, {}}, Use::Nothing},
     {{150, GGroup::Once, {}}, Use::Nothing},
     {{160, GGroup::Once, kPolar}},

@@ -9,6 +9,7 @@ enum class Use {
   Block,      ///< the block has it
   Nothing,    ///< so it is, or it ends what never begins here
   LookAhead,  ///< passed over with its words
+  HaasCycle,  ///< written out as other blocks
   EndOfModalCall
 };
 

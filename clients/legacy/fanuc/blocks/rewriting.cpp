@@ -19,7 +19,7 @@ void rewrite_dwell(gcode::Block& block, const gcode::Modes& modes) {
   }
 }
 
-void rewrite_reference(gcode::Block& block) {
+void rewrite_reference(gcode::Block& block, bool all_alone) {
   if (!block.once(280) && !block.once(300)) return;
   for (const auto& [way, axis] : {std::pair{'U', 'X'}, std::pair{'V', 'Y'}, std::pair{'W', 'Z'}}) {
     if (!block.has(way)) continue;
@@ -28,7 +28,8 @@ void rewrite_reference(gcode::Block& block) {
     block.add_word(axis, word);
   }
   const std::size_t place = block.g(gcode::GGroup::Once)->place;
-  if (!block.has_any("XYZABC")) refuse(place, "this needs X, Y or Z: the axes that go to the reference point");
+  if (!block.has_any("XYZABC") && !(all_alone && block.once(280)))
+    refuse(place, "this needs X, Y or Z: the axes that go to the reference point");
   if (const gcode::Word* point = block.once(300) ? block.find('P') : nullptr; point != nullptr && point->value != 2)
     refuse(point->place, "of G30 there is the second reference point, P2; write the way to others as G0");
 }
