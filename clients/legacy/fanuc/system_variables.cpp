@@ -28,7 +28,9 @@ constexpr auto kRanges = std::to_array<Range>({
     {3003, 3004, "the operator's overrides, hold and single blocks, which no program takes away"},
     {3005, 3999, "settings and clocks of a control, which are not known here"},
     {4000, 4999, "codes that were in force, of which this one is not known here"},
-    {5001, 5199, "places of the tool, of which this one is not known here"},
+    {5001, 5060, "places of the tool, of which this one is not known here"},
+    {5061, 5080, gcode::kProbing},
+    {5081, 5199, "places of the tool, of which this one is not known here"},
     {5200, 5999, "work offsets; set them by G10 L2"},
     {7000, 7999, "work offsets; set them by G10 L20"},
     {10000, 19999, "tool offsets; those are in the appliance's tool table (rmac tools), and not known here"},
@@ -37,8 +39,10 @@ constexpr auto kRanges = std::to_array<Range>({
 [[noreturn]] void refuse_of_system(int number, std::size_t place) {
   const auto* found = std::ranges::find_if(
       kRanges, [number](const Range& range) { return number >= range.first && number <= range.last; });
-  refuse(place, found == kRanges.end() ? fmt::format("#{} is a variable of the system, and not known here", number)
-                                       : fmt::format("#{} is one of those that are {}", number, found->what));
+  if (found == kRanges.end()) refuse(place, fmt::format("#{} is a variable of the system, and not known here", number));
+  const bool is_of_probe = found->what == gcode::kProbing;
+  refuse(place, fmt::format("#{} is {} {}", number, is_of_probe ? "what the last G31 found:" : "one of those that are",
+                            found->what));
 }
 
 }  // namespace

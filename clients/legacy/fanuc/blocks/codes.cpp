@@ -13,7 +13,6 @@ constexpr std::string_view kThread = "moves that follow the spindle's angle are 
 constexpr std::string_view kHand = "a cycle that needs the spindle's angle or a hand; write it out as G0 and G1";
 constexpr std::string_view kFeed = "feed is taken in mm or inch a minute (G94); have the CAM program write F so";
 constexpr std::string_view kPolar = "polar coordinates are not taken; have the CAM program write X and Y";
-constexpr std::string_view kProbe = "probing belongs into a measuring plan (rmac measure)";
 constexpr std::string_view kCurve = "this curve is not taken; have the CAM program write lines and arcs";
 constexpr std::string_view kSpace =
     "corrections in space are not taken; have the CAM program give the path of the tool's centre";
@@ -61,9 +60,9 @@ constexpr auto kG = std::to_array<FanucG>({
     {{280, GGroup::Once, {}}},
     {{290, GGroup::Once, "the way back from the reference point is not taken; write it as G0"}},
     {{300, GGroup::Once, {}}},
-    {{310, GGroup::Motion, kProbe}},
+    {{310, GGroup::Motion, gcode::kProbing}},
     {{330, GGroup::Motion, kThread}},
-    {{370, GGroup::Once, kProbe}},
+    {{370, GGroup::Once, gcode::kProbing}},
     {{400, GGroup::Radius, {}}},
     {{401, GGroup::Once, {}}, Use::Nothing},
     {{410, GGroup::Radius, {}}},

@@ -9,7 +9,6 @@ namespace {
 
 using M = HaasM::Use;
 
-constexpr std::string_view kHaasProbe = "probing belongs into a measuring plan (rmac measure)";
 constexpr std::string_view kHaasPocket =
     "a pocket of any shape is not taken; have the CAM program write its moves, or clear it in FreeCAD";
 constexpr std::string_view kHaasText = "engraving is not taken; have the CAM program write the letters as moves";
@@ -49,8 +48,8 @@ constexpr Entry nothing(int tenfold) {
 constexpr auto kHaasG = std::to_array<Entry>({
     cycle(120),
     cycle(130),
-    refused(350, kHaasProbe),
-    refused(360, kHaasProbe),
+    refused(350, gcode::kProbing),
+    refused(360, gcode::kProbing),
     refused(470, kHaasText),
     cycle(700),
     cycle(710),
@@ -78,7 +77,7 @@ constexpr auto kHaasG = std::to_array<Entry>({
     system(1270),
     system(1280),
     system(1290),
-    refused(1360, kHaasProbe),
+    refused(1360, gcode::kProbing),
     refused(1410, kHaasSpace),
     refused(1430, kHaasLength),
     refused(1500, kHaasPocket),
@@ -120,7 +119,7 @@ constexpr auto kHaasM = std::to_array<HaasM>({
     {88, M::SwitchOn, 0, "coolant through the spindle"},
     {89, M::SwitchOff, 88, {}},
     {96, M::Refused, 0, "nothing goes by what an input is when the program runs; write the program without the jump"},
-    {104, M::Refused, 0, kHaasProbe},
+    {104, M::Refused, 0, gcode::kProbing},
     {105, M::Nothing, 0, {}},
     {109, M::Refused, 0, "nobody is asked while the program runs; write M0 with a message"},
     {130, M::Nothing, 0, {}},

@@ -9,6 +9,7 @@
 #include "clients/legacy/fanuc/blocks/grammar.hpp"
 #include "clients/legacy/fanuc/blocks/refusal.hpp"
 #include "clients/legacy/fanuc/flow/line_head.hpp"
+#include "clients/legacy/gcode/blocks/codes.hpp"
 #include "clients/legacy/gcode/values/expression.hpp"
 
 namespace rmac::fanuc {
@@ -257,7 +258,13 @@ bool Flow::call_of_macro(std::string_view text, std::size_t at) {
 }
 
 std::size_t Flow::program_of(int number, std::size_t place) const {
+  constexpr int kFirstOfProbe = 9700, kLastOfProbe = 9999;
   if (const auto found = outline_.find(number)) return *found;
+  if (number >= kFirstOfProbe && number <= kLastOfProbe)
+    refuse(place,
+           fmt::format("O{} is not in this file. Makers of probes have theirs from O9700 on: {}. Another macro is "
+                       "to be written behind the end of the main program",
+                       number, gcode::kProbing));
   refuse(place, fmt::format("O{0} is not in this file, and no other is read; write O{0} ... M99 behind the end of the "
                             "main program",
                             number));
