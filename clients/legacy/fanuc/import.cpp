@@ -33,7 +33,7 @@ class Import {
               }),
         reader_(options.passed_m, dialect),
         own_switches_(options, writer_),
-        system_(interpreter_, flow_, writer_),
+        system_(rules(dialect), interpreter_, flow_, writer_),
         extent_(options.assume_end) {
     variables_.set_system({[this](int number, std::size_t place) { return system_.read(number, place); },
                            [this](int number, gcode::Maybe value, std::string_view message, std::size_t place) {

@@ -12,7 +12,7 @@ namespace rmac::fanuc {
 
 namespace {
 
-constexpr int kAlarm = 3000, kMessageStop = 3006;
+constexpr int kAlarm = 3000, kMessageStop = 3006, kInMachine = 5021;
 
 struct Range {
   int first = 0, last = 0;
@@ -87,12 +87,34 @@ gcode::Maybe SystemVariables::code_in_force(int number) const {
   }
 }
 
-gcode::Maybe SystemVariables::read(int number, std::size_t place) const {
-  for (const int first : {5001, 5041}) {
-    if (number < first || number > first + 2) continue;
-    if (const auto tip = interpreter_.tip(static_cast<std::size_t>(number - first))) return tip;
-    refuse(place, fmt::format("#{} is where the tool is, which is not known here; write a G0 to X, Y and Z before it",
+gcode::Maybe SystemVariables::tip(std::size_t axis, int number, std::size_t place) const {
+  interpreter_.require_no_contour(place);
+  if (interpreter_.coordinates().placement())
+    refuse(place, fmt::format("#{} is where the tool is, and in turned, tilted or mirrored coordinates controls do not "
+                              "mean the same by it; write G69, or G50.1, before it",
                               number));
+  if (const auto tip = interpreter_.tip(axis)) return tip;
+  refuse(place,
+         fmt::format("#{} is where the tool is, which is not known here; write a G0 to X, Y and Z before it", number));
+}
+
+gcode::Maybe SystemVariables::machine_tip(std::size_t axis, int number, std::size_t place) const {
+  static_cast<void>(tip(axis, number, place));
+  if (axis == 2)
+    refuse(place, fmt::format("#{} is where the spindle is without its tool, whose length is not known here; write the "
+                              "value instead",
+                              number));
+  if (const auto mm = interpreter_.coordinates().machine_tip(axis)) return *mm / interpreter_.modes().unit(place);
+  refuse(place, fmt::format("#{0} is where the tool is in the machine, and where {1} is in it is not known here; give "
+                            "--offset {1}=X,Y,Z",
+                            number, rules_.system_name(interpreter_.coordinates().active()).name));
+}
+
+gcode::Maybe SystemVariables::read(int number, std::size_t place) const {
+  for (const int first : {5001, 5021, 5041}) {
+    if (number < first || number > first + 2) continue;
+    const auto axis = static_cast<std::size_t>(number - first);
+    return first == kInMachine ? machine_tip(axis, number, place) : tip(axis, number, place);
   }
   if (const auto value = code_in_force(number)) return value;
   refuse_of_system(number, place);
