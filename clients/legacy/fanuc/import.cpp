@@ -82,7 +82,7 @@ class Import {
 
   /// Whether G66 calls behind it.
   [[nodiscard]] static bool moves_of(const gcode::Block& block) {
-    return block.has_any("XYZ") && (!block.g(gcode::GGroup::Once) || block.once(530));
+    return (block.has_any("XYZ") || block.is_polar()) && (!block.g(gcode::GGroup::Once) || block.once(530));
   }
 
   void mark(std::string_view text) {

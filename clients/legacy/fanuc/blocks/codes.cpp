@@ -12,7 +12,7 @@ using gcode::GGroup, gcode::MGroup;
 constexpr std::string_view kThread = "moves that follow the spindle's angle are not taken";
 constexpr std::string_view kHand = "a cycle that needs the spindle's angle or a hand; write it out as G0 and G1";
 constexpr std::string_view kFeed = "feed is taken in mm or inch a minute (G94); have the CAM program write F so";
-constexpr std::string_view kPolar = "polar coordinates are not taken; have the CAM program write X and Y";
+constexpr std::string_view kPolar = "these polar coordinates are not taken; have the CAM program write X and Y, or G16";
 constexpr std::string_view kCurve = "this curve is not taken; have the CAM program write lines and arcs";
 constexpr std::string_view kSpace =
     "corrections in space are not taken; have the CAM program give the path of the tool's centre";
@@ -46,8 +46,8 @@ constexpr auto kG = std::to_array<FanucG>({
     {{110, GGroup::Once, {}}, Use::Nothing},
     {{121, GGroup::Once, kPolar}},
     {{131, GGroup::Once, {}}, Use::Nothing},
-    {{150, GGroup::Once, {}}, Use::Nothing},
-    {{160, GGroup::Once, kPolar}},
+    {{150, GGroup::Once, {}}, Use::PolarOff},
+    {{160, GGroup::Once, {}}, Use::PolarOn},
     {{170, GGroup::Plane, {}}},
     {{180, GGroup::Plane, {}}},
     {{190, GGroup::Plane, {}}},

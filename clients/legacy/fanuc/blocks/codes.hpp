@@ -10,6 +10,8 @@ enum class Use {
   Nothing,    ///< so it is, or it ends what never begins here
   LookAhead,  ///< passed over with its words
   HaasCycle,  ///< written out as other blocks
+  PolarOn,    ///< X and Y are a distance and an angle from it on
+  PolarOff,
   EndOfModalCall
 };
 

@@ -72,6 +72,7 @@ Ordered BlockReader::read(std::string_view text, std::size_t at, const Variables
   block.check_together();
   rewrite_dwell(block, modes);
   rewrite_reference(block, is_haas_);
+  if (polar_) rewrite_polar(block, modes);
   if (look_ahead_) pass_over_look_ahead(block, *look_ahead_);
   if (ordered.what == Ordered::What::Call) take_call(block, ordered);
   if (ordered.what == Ordered::What::CallLocal) take_local_call(block, ordered);
@@ -102,6 +103,10 @@ void BlockReader::add_g(const gcode::Word& word, gcode::Block& block, Ordered& o
       return set_only(look_ahead_, code);
     case Use::HaasCycle:
       return set_only(haas_.cycle, code);
+    case Use::PolarOn:
+    case Use::PolarOff:
+      polar_ = known->use == Use::PolarOn;
+      return;
     case Use::EndOfModalCall:
       ordered.ends_modal_call = true;
       return;

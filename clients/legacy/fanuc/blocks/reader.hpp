@@ -20,7 +20,7 @@ struct Ordered {
   bool ends_modal_call = false;
 };
 
-/// Reads blocks of words.
+/// Reads blocks of words, one after the other: G16 holds from one to the next.
 class BlockReader {
  public:
   /// `passed_m`: M codes that mean nothing here.
@@ -45,6 +45,7 @@ class BlockReader {
   bool is_haas_;
   HaasWords haas_;
   std::optional<gcode::Code> look_ahead_;
+  bool polar_ = false;  ///< G16 holds
 };
 
 }  // namespace rmac::fanuc
