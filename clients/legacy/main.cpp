@@ -153,6 +153,18 @@ rs274::FindFile sub_files(const Words& words) {
   return [folders, program = words.file](const std::string& name) { return legacy::find_file(folders, name, program); };
 }
 
+/// Whether a program begins as those of Fanuc-type controls do, O1234 or :1234 with no word behind it.
+bool begins_with_number(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r\n", kDigits = "0123456789";
+  std::size_t at = text.find_first_not_of(kBlank);
+  if (at < text.size() && text[at] == '%') at = text.find_first_not_of(kBlank, text.find('\n', at));
+  if (at >= text.size() || std::string_view("O:o").find(text[at]) == std::string_view::npos) return false;
+  const std::size_t behind = std::min(text.find_first_not_of(kDigits, at + 1), text.size());
+  const std::size_t rest = text.find_first_not_of(" \t", behind);
+  return behind > at + 1 &&
+         (rest >= text.size() || std::string_view("\r\n(;").find(text[rest]) != std::string_view::npos);
+}
+
 int import_file(const Words& words) {
   const auto text = legacy::read_file(words.file);
   const std::string file = words.file == "-" ? "standard input" : words.file;
@@ -167,8 +179,12 @@ int import_file(const Words& words) {
                            : rs274::import_program(*text, words.options, sink, sub_files(words));
   if (!summary) {
     const auto& error = summary.error();
-    return fail(
-        fmt::format("{}:{}:{}: {}", error.file.empty() ? file : error.file, error.line, error.column, error.message));
+    const bool may_be_fanucs = !words.is_apt() && !words.is_fanuc() && begins_with_number(*text);
+    return fail(fmt::format("{}:{}:{}: {}{}", error.file.empty() ? file : error.file, error.line, error.column,
+                            error.message,
+                            may_be_fanucs ? " (it begins as a program for a Fanuc or a Haas does; if it is one, give "
+                                            "--dialect fanuc or --dialect haas)"
+                                          : ""));
   }
   if (!output.finish()) return fail(words.output + ": cannot be written");
   if (words.output != "-") fmt::print("{}: {} moves from {} lines\n", words.output, summary->moves, summary->lines);

@@ -92,6 +92,9 @@ class ImportFanuc(unittest.TestCase):
         """The ending is the same, and the language is not."""
         done = self.rmac("import", self.source)
         self.assertEqual(done.returncode, 1)
+        self.assertIn("if it is one, give --dialect fanuc or --dialect haas)", done.stderr)
+        self.source.write_text("%\no100 sub\no100 endsub\nG65\n%\n")
+        self.assertIn("there is no G65\n", self.rmac("import", self.source).stderr, "and this is one of LinuxCNC")
         done = self.rmac("import", self.source, "--whole-numbers", "units")
         self.assertEqual(done.returncode, 2)
         self.assertIn("--whole-numbers is not of rs274", done.stderr)

@@ -141,7 +141,8 @@ constexpr auto kG = std::to_array<FanucG>({
     {{1870, GGroup::Once, {}}, Use::LookAhead},
 });
 
-constexpr std::string_view kTurn = "turning the spindle to an angle is not taken";
+constexpr std::string_view kTurn =
+    "turning the spindle to an angle is not taken; where the program may go without, give --pass-over M19";
 
 constexpr auto kM = std::to_array<gcode::MCode>({
     {0, MGroup::Stop, {}},

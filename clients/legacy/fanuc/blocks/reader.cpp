@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "clients/legacy/fanuc/blocks/refusal.hpp"
@@ -138,6 +139,13 @@ void BlockReader::add_m(const gcode::Word& word, gcode::Block& block, Ordered& o
   block.add_m(*known, word.place);
 }
 
+void BlockReader::add_switched(const HaasWords::Switched& switched) {
+  if (std::ranges::find(haas_.switched, switched.number, &HaasWords::Switched::number) != haas_.switched.end())
+    refuse(switched.place,
+           fmt::format("what M{} switches is switched twice in one block; write two blocks", switched.number));
+  haas_.switched.push_back(switched);
+}
+
 bool BlockReader::add_haas_m(int number, std::size_t place, gcode::Block& block) {
   const HaasM* own = find_haas_m(number);
   if (own == nullptr) return false;
@@ -146,10 +154,10 @@ bool BlockReader::add_haas_m(int number, std::size_t place, gcode::Block& block)
     case HaasM::Use::Nothing:
       break;
     case HaasM::Use::SwitchOn:
-      haas_.switched.push_back({number, true, own->message, place});
+      add_switched({number, true, own->message, place});
       break;
     case HaasM::Use::SwitchOff:
-      haas_.switched.push_back({own->as, false, {}, place});
+      add_switched({own->as, false, {}, place});
       break;
     case HaasM::Use::As:
       block.add_m(*find_m(own->as), place);

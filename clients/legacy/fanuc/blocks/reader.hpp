@@ -39,6 +39,7 @@ class BlockReader {
   void add_m(const gcode::Word& word, gcode::Block& block, Ordered& ordered);
   /// False where a Haas means nothing of its own by it.
   [[nodiscard]] bool add_haas_m(int number, std::size_t place, gcode::Block& block);
+  void add_switched(const HaasWords::Switched& switched);
   void set_only(std::optional<gcode::Code>& there, const gcode::Code& code);
 
   const std::set<int>& passed_m_;

@@ -133,6 +133,7 @@ TEST(HaasPost, IsRefusedWithWhatToDo) {
       {"M7", "write M8"},
       {"M138", "--pass-over M138"},
       {"M21", "give --pass-over M21"},
+      {"M19", "give --pass-over M19"},
       {"G84 Z-5. R1. F1.", "spindle's angle"},
   };
   for (const auto& [line, what] : cases) {
@@ -163,6 +164,7 @@ TEST(HaasSwitch, IsNamedAndGoesOffWithTheToolAndTheProgram) {
   EXPECT_THAT(switched("G1 X1. M73\nX2. M74 M83"), ElementsAre("Air+", "line", "Jet+", "line", "Air-", "Jet-"));
   EXPECT_THAT(switched("M88\nM88\nT1 M6"), ElementsAre("Through+", "Through-", "tool"));
   EXPECT_THAT(switched("M89\nM74\nM84"), ElementsAre());
+  EXPECT_THAT(refusal("M88 M89", options), StartsWith("5:5: what M88 switches is switched twice"));
   EXPECT_THAT(refusal("M88"), StartsWith("5:1: which output of the machine is coolant through the spindle"));
   options.tool_diameters_mm = {{1, 4}};
   EXPECT_THAT(refusal("G1 G41 D1 X10.\nM88\nY20.\nG40 X0", options),
