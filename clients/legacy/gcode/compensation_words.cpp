@@ -92,15 +92,15 @@ double diameter_in_register(std::size_t place, const Options& options, const Mod
 
 void switch_compensation(Block& block, const Options& options, const Rules& rules, Modes& modes,
                          const Switches& switches, Mover& mover, Compensation& compensation) {
-  if (const Word* word = rules.d_is_register ? block.find('D') : nullptr) set_register(*word, modes, compensation);
+  if (const Word* word = rules.radius_is_offset ? block.find('D') : nullptr) set_register(*word, modes, compensation);
   const auto& code = block.g(GGroup::Radius);
   if (!code) return;
   if (code->number == 400) return compensation.end(code->place);
   if (compensation.on()) refuse(code->place, "cutter radius compensation is on already; write G40 before this");
   if (compensation.leaving()) refuse(code->place, "a straight move stands between G40 and this; write it");
   if (modes.plane.normal != 2) refuse(code->place, "cutter radius compensation is taken in G17");
-  const double diameter = rules.d_is_register ? diameter_in_register(code->place, options, modes)
-                                              : diameter_of_tool(block, *code, options, modes, switches);
+  const double diameter = rules.radius_is_offset ? diameter_in_register(code->place, options, modes)
+                                                 : diameter_of_tool(block, *code, options, modes, switches);
   const double radius = diameter / 2;
   compensation.begin(code->number < 420 ? radius : -radius, mover.start(code->place));
 }
