@@ -25,6 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.bounds = {.idle_lines = 1000, .output_mb = 1};  // loops without an end are soon noticed
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const auto dialect = size % 11 > 4 ? rmac::fanuc::Dialect::Haas : rmac::fanuc::Dialect::Fanuc;
-  static_cast<void>(rmac::fanuc::import_program(text, options, [](std::string_view) {}, dialect));
+  static_cast<void>(rmac::fanuc::import_program(
+      text, options, [](std::string_view) {}, dialect));
   return 0;
 }
