@@ -37,8 +37,15 @@ struct Words {
   bool multax = false;
 
   [[nodiscard]] bool is_apt() const { return dialect == "apt"; }
-  [[nodiscard]] bool is_fanuc() const { return dialect == "fanuc"; }
+  [[nodiscard]] bool is_haas() const { return dialect == "haas"; }
+  /// A Haas reads what a Fanuc does, and more.
+  [[nodiscard]] bool is_fanuc() const { return dialect == "fanuc" || is_haas(); }
 };
+
+FurtherSystems further_systems(const Words& words) {
+  if (words.is_haas()) return {"G154P", 99};
+  return words.is_fanuc() ? FurtherSystems{"G54.1P", 300} : FurtherSystems{};
+}
 
 int fail(const std::string& message) {
   fmt::print(stderr, "rmac-import: {}\n", message);
@@ -104,7 +111,7 @@ std::optional<std::string> finish(Words& words) {
       return fmt::format("--tool-diameter {}: it is the number of a tool and 0 to 1000 mm, as 3=10", text);
   }
   for (const auto& offset : words.offsets) {
-    if (!read_offset(offset, words.is_fanuc(), words.options.offsets))
+    if (!read_offset(offset, further_systems(words), words.options.offsets))
       return fmt::format("--offset {}: it is a work system and three numbers in mm, as G54=100,50,-20", offset);
   }
   if (auto wrong = finish_rotary(words)) return wrong;
@@ -146,6 +153,18 @@ rs274::FindFile sub_files(const Words& words) {
   return [folders, program = words.file](const std::string& name) { return legacy::find_file(folders, name, program); };
 }
 
+/// Whether a program begins as those of Fanuc-type controls do, O1234 or :1234 with no word behind it.
+bool begins_with_number(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r\n", kDigits = "0123456789";
+  std::size_t at = text.find_first_not_of(kBlank);
+  if (at < text.size() && text[at] == '%') at = text.find_first_not_of(kBlank, text.find('\n', at));
+  if (at >= text.size() || std::string_view("O:o").find(text[at]) == std::string_view::npos) return false;
+  const std::size_t behind = std::min(text.find_first_not_of(kDigits, at + 1), text.size());
+  const std::size_t rest = text.find_first_not_of(" \t", behind);
+  return behind > at + 1 &&
+         (rest >= text.size() || std::string_view("\r\n(;").find(text[rest]) != std::string_view::npos);
+}
+
 int import_file(const Words& words) {
   const auto text = legacy::read_file(words.file);
   const std::string file = words.file == "-" ? "standard input" : words.file;
@@ -153,13 +172,19 @@ int import_file(const Words& words) {
   legacy::OutputFile output(words.output);
   if (!output.open()) return fail(words.output + ": cannot be written");
   const auto sink = [&output](std::string_view part) { output.write(part); };
-  const auto summary = words.is_apt()     ? apt::import_program(*text, apt_options(words), sink)
-                       : words.is_fanuc() ? fanuc::import_program(*text, words.options, sink)
-                                          : rs274::import_program(*text, words.options, sink, sub_files(words));
+  const auto summary = words.is_apt() ? apt::import_program(*text, apt_options(words), sink)
+                       : words.is_fanuc()
+                           ? fanuc::import_program(*text, words.options, sink,
+                                                   words.is_haas() ? fanuc::Dialect::Haas : fanuc::Dialect::Fanuc)
+                           : rs274::import_program(*text, words.options, sink, sub_files(words));
   if (!summary) {
     const auto& error = summary.error();
-    return fail(
-        fmt::format("{}:{}:{}: {}", error.file.empty() ? file : error.file, error.line, error.column, error.message));
+    const bool may_be_fanucs = !words.is_apt() && !words.is_fanuc() && begins_with_number(*text);
+    return fail(fmt::format("{}:{}:{}: {}{}", error.file.empty() ? file : error.file, error.line, error.column,
+                            error.message,
+                            may_be_fanucs ? " (it begins as a program for a Fanuc or a Haas does; if it is one, give "
+                                            "--dialect fanuc or --dialect haas)"
+                                          : ""));
   }
   if (!output.finish()) return fail(words.output + ": cannot be written");
   if (words.output != "-") fmt::print("{}: {} moves from {} lines\n", words.output, summary->moves, summary->lines);
@@ -171,7 +196,7 @@ void declare(CLI::App& app, Words& words) {
   app.add_option("-o", words.output, "the .rmac file, - for standard output; FILE with the ending .rmac unless given");
   app.add_option("--dialect", words.dialect,
                  "which language it is; unless given, apt of .apt, .cls and .aptsource, and rs274 of the others")
-      ->check(CLI::IsMember({"rs274", "fanuc", "apt"}));
+      ->check(CLI::IsMember({"rs274", "fanuc", "haas", "apt"}));
   app.add_flag("--block-delete", words.options.block_delete, "leave out blocks that begin with /");
   app.add_option("--unit", words.unit, "unit of a program without G20 and G21, or UNITS")
       ->check(CLI::IsMember({"mm", "inch"}));
@@ -187,21 +212,23 @@ void declare(CLI::App& app, Words& words) {
   app.add_flag("--assume-g43", words.options.assume_g43, "the tool's length counts from M6 on, though no G43 says so");
   app.add_flag("--assume-end", words.options.assume_end, "the program ends where its file does, as if M2 stood there");
   app.add_option("--offset", words.offsets,
-                 "G54=X,Y,Z in mm: where a work system is in the machine; may be given for each; G54.1P3=... in fanuc")
+                 "G54=X,Y,Z in mm: where a work system is in the machine; may be given for each; G54.1P3=... in fanuc, "
+                 "G154P3=... in haas")
       ->allow_extra_args(false);
   app.add_option("--reference-point", words.reference,
                  "X,Y,Z in mm: where G28, or GOHOME, takes the tool tip, in the coordinates of the part");
   app.add_option("--second-reference-point", words.second_reference, "the same of G30");
-  app.add_option("--output", words.outputs, "3=NAME: the machine's output that M62 to M65 P3 switch")
+  app.add_option("--output", words.outputs,
+                 "3=NAME: the machine's output that M62 to M65 P3 switch; in haas 88=NAME, which M88 switches on")
       ->allow_extra_args(false);
   app.add_option("--input", words.inputs, "3=NAME: the machine's input that M66 P3 waits for")->allow_extra_args(false);
   app.add_option("--output-limit", words.options.bounds.output_mb,
                  "MB: a program with loops or subprograms that becomes more is one that does not end")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  app.add_option(
-         "--tool-diameter", words.diameters,
-         "3=10: the diameter of tool 3 in mm, for G41 and G42; of a fanuc program, twice the radius in the offset D3")
+  app.add_option("--tool-diameter", words.diameters,
+                 "3=10: the diameter of tool 3 in mm, for G41 and G42; of a fanuc or haas program, twice the radius in "
+                 "the offset D3")
       ->allow_extra_args(false);
   app.add_option("--subroutines", words.subroutines,
                  "DIR[:DIR]: folders where the subs are that an rs274 program calls and does not have, each NAME in "
@@ -223,7 +250,7 @@ void declare_rotary(CLI::App& app, Words& words) {
       ->allow_extra_args(false);
   app.add_option("--rotary-way", words.rotary_way,
                  "how a table goes to an angle that is more than half a turn away: as written, or the shorter way "
-                 "round; of a fanuc program refused unless given, of others as written")
+                 "round; of a fanuc or haas program refused unless given, of others as written")
       ->check(CLI::IsMember({"written", "shorter"}));
   app.add_option("--rotary-diameter", words.options.rotary_diameter_mm,
                  "mm: that the degrees of a table count as ways on, in the F of a move that turns it")
@@ -231,13 +258,13 @@ void declare_rotary(CLI::App& app, Words& words) {
 }
 
 void declare_fanuc(CLI::App& app, Words& words) {
-  app.add_option(
-         "--whole-numbers", words.whole_numbers,
-         "what lengths and angles without a decimal point count in, in a fanuc program: units (X10 is 10 mm) or "
-         "increments (X10 is 0.010 mm); refused unless given")
+  app.add_option("--whole-numbers", words.whole_numbers,
+                 "what lengths and angles without a decimal point count in, in a fanuc or haas program: units (X10 is "
+                 "10 mm) or "
+                 "increments (X10 is 0.010 mm); refused unless given")
       ->check(CLI::IsMember({"units", "increments"}));
   app.add_option("--variable", words.variables,
-                 "500=12.5: what the machine has in a common variable that a fanuc program reads")
+                 "500=12.5: what the machine has in a common variable that a fanuc or haas program reads")
       ->allow_extra_args(false);
   app.add_option(
          "--pass-over", words.passed,
@@ -256,28 +283,28 @@ void declare_apt(CLI::App& app, Words& words) {
 
 /// The option that was given and is of another language than the file's, or nothing.
 std::optional<std::string> foreign_option(const CLI::App& app, const Words& words) {
-  enum Languages { Rs274 = 1, Fanuc = 2, Apt = 4 };
-  static constexpr std::array<std::pair<const char*, int>, 20> kOf{{{"--block-delete", Rs274 | Fanuc},
-                                                                    {"--tolerance", Rs274 | Fanuc},
-                                                                    {"--assume-g43", Rs274 | Fanuc},
-                                                                    {"--assume-end", Rs274 | Fanuc},
-                                                                    {"--offset", Rs274 | Fanuc},
+  enum Languages { Rs274 = 1, Fanuc = 2, Apt = 4, Haas = 8 };
+  static constexpr std::array<std::pair<const char*, int>, 20> kOf{{{"--block-delete", Rs274 | Fanuc | Haas},
+                                                                    {"--tolerance", Rs274 | Fanuc | Haas},
+                                                                    {"--assume-g43", Rs274 | Fanuc | Haas},
+                                                                    {"--assume-end", Rs274 | Fanuc | Haas},
+                                                                    {"--offset", Rs274 | Fanuc | Haas},
                                                                     {"--subroutines", Rs274},
-                                                                    {"--output", Rs274},
+                                                                    {"--output", Rs274 | Haas},
                                                                     {"--input", Rs274},
-                                                                    {"--second-reference-point", Rs274 | Fanuc},
-                                                                    {"--output-limit", Rs274 | Fanuc},
-                                                                    {"--tool-diameter", Rs274 | Fanuc},
-                                                                    {"--whole-numbers", Fanuc},
-                                                                    {"--variable", Fanuc},
-                                                                    {"--rotary", Rs274 | Fanuc},
-                                                                    {"--rotary-centre", Rs274 | Fanuc},
-                                                                    {"--rotary-way", Rs274 | Fanuc},
-                                                                    {"--rotary-diameter", Rs274 | Fanuc},
-                                                                    {"--pass-over", Rs274 | Fanuc},
+                                                                    {"--second-reference-point", Rs274 | Fanuc | Haas},
+                                                                    {"--output-limit", Rs274 | Fanuc | Haas},
+                                                                    {"--tool-diameter", Rs274 | Fanuc | Haas},
+                                                                    {"--whole-numbers", Fanuc | Haas},
+                                                                    {"--variable", Fanuc | Haas},
+                                                                    {"--rotary", Rs274 | Fanuc | Haas},
+                                                                    {"--rotary-centre", Rs274 | Fanuc | Haas},
+                                                                    {"--rotary-way", Rs274 | Fanuc | Haas},
+                                                                    {"--rotary-diameter", Rs274 | Fanuc | Haas},
+                                                                    {"--pass-over", Rs274 | Fanuc | Haas},
                                                                     {"--multax", Apt},
                                                                     {"--circle-axis", Apt}}};
-  const int language = words.is_apt() ? Apt : words.is_fanuc() ? Fanuc : Rs274;
+  const int language = words.is_apt() ? Apt : words.is_haas() ? Haas : words.is_fanuc() ? Fanuc : Rs274;
   for (const auto& [name, languages] : kOf) {
     if ((languages & language) != 0 || app.count(name) == 0) continue;
     return fmt::format("{} is not of {}, which {} is taken as; --dialect says otherwise", name, words.dialect,

@@ -12,18 +12,16 @@ namespace rmac {
 namespace {
 
 /// The index of a work system: of G54 to G59, and of those behind them, which each language names in its own way.
-std::optional<std::size_t> system_of(const std::string& name, bool fanuc) {
+std::optional<std::size_t> system_of(const std::string& name, const FurtherSystems& further) {
   constexpr std::size_t kPlain = 6;
-  constexpr int kMostFurther = 300, kMostFurtherOfRs274 = 3;
-  const std::string_view prefix = fanuc ? "G54.1P" : "G59.";
   int number = 0;
   const auto read = [&](std::size_t begin) {
     const char* const end = name.data() + name.size();
     const auto result = std::from_chars(name.data() + begin, end, number);
     return result.ec == std::errc() && result.ptr == end;
   };
-  if (name.starts_with(prefix)) {
-    const bool is_one = read(prefix.size()) && number >= 1 && number <= (fanuc ? kMostFurther : kMostFurtherOfRs274);
+  if (name.starts_with(further.prefix)) {
+    const bool is_one = read(further.prefix.size()) && number >= 1 && number <= further.most;
     return is_one ? std::optional(kPlain + static_cast<std::size_t>(number) - 1) : std::nullopt;
   }
   const bool is_plain = name.size() == 3 && name.starts_with('G') && read(1) && number >= 54 && number <= 59;
@@ -56,10 +54,10 @@ std::optional<legacy::Point> read_point(const std::string& text) {
   return at == end ? std::optional(point) : std::nullopt;
 }
 
-bool read_offset(const std::string& text, bool fanuc, std::map<std::size_t, gcode::Known>& offsets) {
+bool read_offset(const std::string& text, const FurtherSystems& further, std::map<std::size_t, gcode::Known>& offsets) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) return false;
-  const auto system = system_of(text.substr(0, equals), fanuc);
+  const auto system = system_of(text.substr(0, equals), further);
   const auto point = read_point(text.substr(equals + 1));
   if (!system || !point) return false;
   offsets[*system] = {(*point)[0], (*point)[1], (*point)[2]};

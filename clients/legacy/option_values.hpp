@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "clients/legacy/gcode/modes/modes.hpp"
@@ -15,8 +16,14 @@ namespace rmac {
 
 /// 0,0,50: in mm.
 [[nodiscard]] std::optional<legacy::Point> read_point(const std::string& text);
-/// G54=X,Y,Z; in Fanuc's languages G54.1P3=X,Y,Z, too, elsewhere G59.1=X,Y,Z.
-[[nodiscard]] bool read_offset(const std::string& text, bool fanuc, std::map<std::size_t, gcode::Known>& offsets);
+/// How a language names the work systems behind G59, up to which number; RS274/NGC unless said.
+struct FurtherSystems {
+  std::string_view prefix = "G59.";
+  int most = 3;
+};
+/// G54=X,Y,Z, or one of the further.
+[[nodiscard]] bool read_offset(const std::string& text, const FurtherSystems& further,
+                               std::map<std::size_t, gcode::Known>& offsets);
 /// 500=12.5.
 [[nodiscard]] bool read_variable(const std::string& text, std::map<int, double>& variables);
 /// M10.

@@ -1,4 +1,4 @@
-// A program for a Fanuc-type control: taken, or refused with a place.
+// A program for a Fanuc-type control, or a Haas: taken, or refused with a place.
 #include <cstdint>
 #include <string_view>
 
@@ -17,12 +17,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size % 7 > 1)
     options.rotary_way = size % 7 > 2 ? rmac::gcode::RotaryWay::Written : rmac::gcode::RotaryWay::Shorter;
   options.assume_end = size % 3 == 1;
+  options.outputs = {{88, "Through"}};
   options.tool_diameters_mm = {{1, 4}, {2, 0}};
   options.whole_numbers = rmac::gcode::WholeNumbers::Units;
   options.variables = {{500, 1}};
   options.block_delete = size % 2 == 1;
   options.bounds = {.idle_lines = 1000, .output_mb = 1};  // loops without an end are soon noticed
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  static_cast<void>(rmac::fanuc::import_program(text, options, [](std::string_view) {}));
+  const auto dialect = size % 11 > 4 ? rmac::fanuc::Dialect::Haas : rmac::fanuc::Dialect::Fanuc;
+  static_cast<void>(rmac::fanuc::import_program(
+      text, options, [](std::string_view) {}, dialect));
   return 0;
 }

@@ -166,15 +166,20 @@ class Program:
 
     def unit_change(self):
         self.unit = 25.4 if self.unit == 1 else 1.0
-        self.write("G20" if self.unit == 25.4 else "G21")
-        self.feed()
+        code = "G20" if self.unit == 25.4 else "G21"
+        if self.random.random() < 0.5:  # counts in the unit before
+            self.write("%s F%d" % (code, self.feeds.pop()))
+        else:
+            self.write(code)
+            self.feed()
 
     def feed(self):
         """No number twice: rs274 restores none that is in force, though the unit is another."""
         self.write("F%d" % self.feeds.pop())
 
     def saved(self):
-        """Modes that M72 restores, or the end of a sub with M73."""
+        """Modes that M72 restores, or the end of a sub with M73. An F in the unit that is restored: rs274 gives its number back."""
+        self.feed()
         held = self.unit, self.plane, self.incremental, self.absolute_centres
         sub = "o<saved%d>" % len(self.lines) if self.random.random() < 0.5 else None
         self.write("%s sub\nM73" % sub if sub else "M70")

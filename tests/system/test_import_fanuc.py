@@ -72,10 +72,29 @@ class ImportFanuc(unittest.TestCase):
         done = self.rmac("simulate", self.source, "--dialect", "fanuc", "--machine", "BenchXYZ", "--whole-numbers", "units")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
+    def test_a_haas_has_its_own_language(self):
+        self.source.write_text("%\nO1 (POCKET)\nG21 G90 G54 M31\nS800 M3 M88\nG0 X0 Y0 Z10.\nG13 I5. K9. Q4. Z-1. D1 F600.\n"
+                               "G0 Z10. M89\nM97 P100 L2\nM30\nN100 G0 X5.\nX0\nM99\n%\n")  # fmt: skip
+        given = ("--machine", "BenchXYZ", "--approach", "0,0,10", "--tool-diameter", "1=4")
+        done = self.rmac("simulate", self.source, "--dialect", "fanuc", *given)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("O1001.nc:3:13: M31 is a code of the machine's builder", done.stderr)
+        self.assertIn("of a Haas' program --dialect haas knows it", done.stderr)
+        done = self.rmac("simulate", self.source, "--dialect", "haas", *given)
+        self.assertIn("give --output 88=NAME", done.stderr)
+        done = self.rmac("simulate", self.source, "--dialect", "haas", *given, "--pass-over", "M88", "--json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        # From rest at 0, 0, 0: 10 up, 11 down; half turns of diameter 3, 10 and 7, circles of radius 3 and 7; 11 up; twice to and fro.
+        expected = 10 + 11 + 10 * math.pi + 20 * math.pi + 11 + 20
+        self.assertAlmostEqual(json.loads(done.stdout)["length_mm"], expected, delta=0.01)
+
     def test_it_is_no_program_of_linuxcnc(self):
         """The ending is the same, and the language is not."""
         done = self.rmac("import", self.source)
         self.assertEqual(done.returncode, 1)
+        self.assertIn("if it is one, give --dialect fanuc or --dialect haas)", done.stderr)
+        self.source.write_text("%\no100 sub\no100 endsub\nG65\n%\n")
+        self.assertIn("there is no G65\n", self.rmac("import", self.source).stderr, "and this is one of LinuxCNC")
         done = self.rmac("import", self.source, "--whole-numbers", "units")
         self.assertEqual(done.returncode, 2)
         self.assertIn("--whole-numbers is not of rs274", done.stderr)

@@ -215,7 +215,7 @@ class RefusedTest(CodeTest):
             self.refused("more than", content=SLOT)
 
     def test_an_unknown_ending_asks_for_the_language(self):
-        self.refused("choose RS274/NGC, Fanuc or APT", content=SLOT, name="slot.txt")
+        self.refused("choose RS274/NGC, Fanuc, Haas or APT", content=SLOT, name="slot.txt")
         self.assertEqual(self.program(SLOT, "slot.txt", dialect="rs274").text(), self.program(SLOT).text())
 
     def test_no_option_of_a_document_writes_a_file(self):

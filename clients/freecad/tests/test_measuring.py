@@ -148,6 +148,15 @@ class MeasureTest(unittest.TestCase):
             finally:
                 ends.join()
 
+    def test_a_connection_that_ended_before_is_told_with_what_to_do(self):
+        places = self.places(self.sides[:1], 1)
+        with rmac.connect(f"127.0.0.1:{self.appliance.port}", "FreeCAD") as client:
+            client.close()
+            with self.assertRaisesRegex(rmac.ConnectionLost, r"nothing of this was sent: client\.reconnect\(\) connects again"):
+                measure(client, places, **TIP)
+            client.reconnect()
+            self.assertEqual(len(measure(client, places, **TIP)), 1)
+
     def test_another_station_that_has_authority_is_told(self):
         with rmac.connect(f"127.0.0.1:{self.appliance.port}", "lathe hand") as other, other.authority(), self.assertRaisesRegex(rmac.AuthorityHeld, "lathe hand"):
             self.measured(self.places(self.sides[:1], 1))

@@ -3,6 +3,7 @@
 #include <string_view>
 #include <tl/expected.hpp>
 
+#include "clients/legacy/fanuc/blocks/haas_codes.hpp"
 #include "clients/legacy/gcode/modes/modes.hpp"
 #include "clients/legacy/program/outcome.hpp"
 
@@ -11,9 +12,9 @@ namespace rmac::fanuc {
 using gcode::Options, gcode::Point, gcode::Writer;
 using legacy::Error, legacy::Summary;
 
-/// Makes `.rmac` text of a program for a Fanuc-type control. What it does not understand, or the format cannot say, is
-/// an Error; the sink has got a part of the text then, which is worth nothing.
+/// Makes `.rmac` text of a program for a Fanuc-type control, or a Haas. What it does not understand, or the format
+/// cannot say, is an Error; the sink has got a part of the text then, which is worth nothing.
 [[nodiscard]] tl::expected<Summary, Error> import_program(std::string_view program, const Options& options,
-                                                          Writer::Sink sink);
+                                                          Writer::Sink sink, Dialect dialect = Dialect::Fanuc);
 
 }  // namespace rmac::fanuc

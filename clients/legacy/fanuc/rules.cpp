@@ -10,12 +10,9 @@ constexpr gcode::Rules kRules{
     .system_of = system_of,
     .system_name = system_name,
     .set_coordinates = set_coordinates,
-    .d_is_register = true,
-    .zero_is_reference = true,
+    .radius_is_offset = true,
+    .reference_is_zero = true,
     .motion_outlives_cycles = true,
-    .reference_is_of_begin = true,
-    .leaves_in_plane = true,
-    .enters_to_normal = true,
     .stops_behind_motion = true,
     .spindle_needs_speed = true,
     .unit_ends_feed = true,
@@ -31,10 +28,16 @@ constexpr gcode::Rules kRules{
                .levels_stay = true},
 };
 
+constexpr gcode::Rules kHaasRules = [] {
+  gcode::Rules rules = kRules;
+  rules.system_name = haas_system_name;
+  return rules;
+}();
+
 }  // namespace
 
-const gcode::Rules& rules() noexcept {
-  return kRules;
+const gcode::Rules& rules(Dialect dialect) noexcept {
+  return dialect == Dialect::Haas ? kHaasRules : kRules;
 }
 
 }  // namespace rmac::fanuc

@@ -12,7 +12,7 @@ namespace rmac::fanuc {
 
 namespace {
 
-constexpr int kAlarm = 3000, kMessageStop = 3006;
+constexpr int kAlarm = 3000, kMessageStop = 3006, kInMachine = 5021;
 
 struct Range {
   int first = 0, last = 0;
@@ -28,7 +28,9 @@ constexpr auto kRanges = std::to_array<Range>({
     {3003, 3004, "the operator's overrides, hold and single blocks, which no program takes away"},
     {3005, 3999, "settings and clocks of a control, which are not known here"},
     {4000, 4999, "codes that were in force, of which this one is not known here"},
-    {5001, 5199, "places of the tool, of which this one is not known here"},
+    {5001, 5060, "places of the tool, of which this one is not known here"},
+    {5061, 5080, gcode::kProbing},
+    {5081, 5199, "places of the tool, of which this one is not known here"},
     {5200, 5999, "work offsets; set them by G10 L2"},
     {7000, 7999, "work offsets; set them by G10 L20"},
     {10000, 19999, "tool offsets; those are in the appliance's tool table (rmac tools), and not known here"},
@@ -37,8 +39,10 @@ constexpr auto kRanges = std::to_array<Range>({
 [[noreturn]] void refuse_of_system(int number, std::size_t place) {
   const auto* found = std::ranges::find_if(
       kRanges, [number](const Range& range) { return number >= range.first && number <= range.last; });
-  refuse(place, found == kRanges.end() ? fmt::format("#{} is a variable of the system, and not known here", number)
-                                       : fmt::format("#{} is one of those that are {}", number, found->what));
+  if (found == kRanges.end()) refuse(place, fmt::format("#{} is a variable of the system, and not known here", number));
+  const bool is_of_probe = found->what == gcode::kProbing;
+  refuse(place, fmt::format("#{} is {} {}", number, is_of_probe ? "what the last G31 found:" : "one of those that are",
+                            found->what));
 }
 
 }  // namespace
@@ -83,12 +87,34 @@ gcode::Maybe SystemVariables::code_in_force(int number) const {
   }
 }
 
-gcode::Maybe SystemVariables::read(int number, std::size_t place) const {
-  for (const int first : {5001, 5041}) {
-    if (number < first || number > first + 2) continue;
-    if (const auto tip = interpreter_.tip(static_cast<std::size_t>(number - first))) return tip;
-    refuse(place, fmt::format("#{} is where the tool is, which is not known here; write a G0 to X, Y and Z before it",
+gcode::Maybe SystemVariables::tip(std::size_t axis, int number, std::size_t place) const {
+  interpreter_.require_no_contour(place);
+  if (interpreter_.coordinates().placement())
+    refuse(place, fmt::format("#{} is where the tool is, and in turned, tilted or mirrored coordinates controls do not "
+                              "mean the same by it; write G69, or G50.1, before it",
                               number));
+  if (const auto tip = interpreter_.tip(axis)) return tip;
+  refuse(place,
+         fmt::format("#{} is where the tool is, which is not known here; write a G0 to X, Y and Z before it", number));
+}
+
+gcode::Maybe SystemVariables::machine_tip(std::size_t axis, int number, std::size_t place) const {
+  static_cast<void>(tip(axis, number, place));
+  if (axis == 2)
+    refuse(place, fmt::format("#{} is where the spindle is without its tool, whose length is not known here; write the "
+                              "value instead",
+                              number));
+  if (const auto mm = interpreter_.coordinates().machine_tip(axis)) return *mm / interpreter_.modes().unit(place);
+  refuse(place, fmt::format("#{0} is where the tool is in the machine, and where {1} is in it is not known here; give "
+                            "--offset {1}=X,Y,Z",
+                            number, rules_.system_name(interpreter_.coordinates().active()).name));
+}
+
+gcode::Maybe SystemVariables::read(int number, std::size_t place) const {
+  for (const int first : {5001, 5021, 5041}) {
+    if (number < first || number > first + 2) continue;
+    const auto axis = static_cast<std::size_t>(number - first);
+    return first == kInMachine ? machine_tip(axis, number, place) : tip(axis, number, place);
   }
   if (const auto value = code_in_force(number)) return value;
   refuse_of_system(number, place);

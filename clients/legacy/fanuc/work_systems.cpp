@@ -75,14 +75,21 @@ void shift(gcode::Block& block, const gcode::Code& code, const gcode::Modes& mod
 }  // namespace
 
 std::size_t system_of(gcode::Block& block, const gcode::Code& code) {
-  constexpr int kFirst = 540, kFurtherCode = 541, kFirstCycle = 730;
+  constexpr int kFirst = 540, kFurtherCode = 541, kFirstCycle = 730, kFirstOfHaas = 1100, kFurtherOfHaas = 1540;
+  constexpr int kMostOfHaas = 99;
+  const bool of_haas = code.number == kFurtherOfHaas;
+  if (code.number >= kFirstOfHaas && !of_haas)
+    return static_cast<std::size_t>((code.number - kFirstOfHaas) / 10 + kPlain);
   const auto& motion = block.g(gcode::GGroup::Motion);
   const bool has_other_p = block.once(40) || block.once(100) || (motion && motion->number >= kFirstCycle);
-  const bool is_further = code.number == kFurtherCode || (code.number == kFirst && block.has('P') && !has_other_p);
+  const bool is_further =
+      of_haas || code.number == kFurtherCode || (code.number == kFirst && block.has('P') && !has_other_p);
   if (!is_further) return static_cast<std::size_t>(code.number / 10 - kFirst / 10);
   if (!block.has('P') || has_other_p)
-    refuse(code.place, "G54.1 needs P, the number of the work system, and a block without another P");
-  return static_cast<std::size_t>(integer_of(block.use('P'), 1, kFurther, "P of G54.1 is a work system") - 1 + kPlain);
+    refuse(code.place, fmt::format("{} needs P, the number of the work system, and a block without another P",
+                                   of_haas ? "G154" : "G54.1"));
+  const int number = integer_of(block.use('P'), 1, of_haas ? kMostOfHaas : kFurther, "P of this is a work system");
+  return static_cast<std::size_t>(number - 1 + kPlain);
 }
 
 gcode::SystemName system_name(std::size_t system) {
@@ -90,6 +97,12 @@ gcode::SystemName system_name(std::size_t system) {
   if (system < kPlain) return {fmt::format("G{}", kFirst + system), fmt::format("G10 L2 P{}", system + 1)};
   const std::size_t further = system - kPlain + 1;
   return {fmt::format("G54.1P{}", further), fmt::format("G10 L20 P{}", further)};
+}
+
+gcode::SystemName haas_system_name(std::size_t system) {
+  if (system < kPlain) return system_name(system);
+  const std::size_t further = system - kPlain + 1;
+  return {fmt::format("G154P{}", further), fmt::format("G10 L20 P{}", further)};
 }
 
 void set_coordinates(gcode::Block& block, const gcode::Code& code, const gcode::Modes& modes,

@@ -42,18 +42,6 @@ double diameter_of_tool(Block& block, const Code& code, const Options& options, 
   return diameter_of(static_cast<int>(word->value), options, word->place);
 }
 
-double diameter_in_register(const Code& code, const Options& options, const Modes& modes) {
-  if (!modes.diameter_register) refuse(code.place, "no D says which offset holds the tool's radius; write D");
-  const int number = *modes.diameter_register;
-  if (number == 0) return 0;
-  const auto found = options.tool_diameters_mm.find(number);
-  if (found == options.tool_diameters_mm.end())
-    refuse(code.place, fmt::format("what D{0} holds is not known here; give --tool-diameter {0}=MM, twice the radius "
-                                   "that the tool's centre is to be away",
-                                   number));
-  return found->second;
-}
-
 void set_register(const Word& word, Modes& modes, const Compensation& compensation) {
   if (!(word.value >= 0 && word.value < 1e6 && word.value == std::floor(word.value)))
     refuse(word.place, "D is the number of an offset");
@@ -90,17 +78,29 @@ bool may_be_behind(GGroup group, const Code& code) {
 
 }  // namespace
 
+double diameter_in_register(std::size_t place, const Options& options, const Modes& modes) {
+  if (!modes.diameter_register) refuse(place, "no D says which offset holds the tool's radius; write D");
+  const int number = *modes.diameter_register;
+  if (number == 0) return 0;
+  const auto found = options.tool_diameters_mm.find(number);
+  if (found == options.tool_diameters_mm.end())
+    refuse(place, fmt::format("what D{0} holds is not known here; give --tool-diameter {0}=MM, twice the radius that "
+                              "the tool's centre is to be away",
+                              number));
+  return found->second;
+}
+
 void switch_compensation(Block& block, const Options& options, const Rules& rules, Modes& modes,
                          const Switches& switches, Mover& mover, Compensation& compensation) {
-  if (const Word* word = rules.d_is_register ? block.find('D') : nullptr) set_register(*word, modes, compensation);
+  if (const Word* word = rules.radius_is_offset ? block.find('D') : nullptr) set_register(*word, modes, compensation);
   const auto& code = block.g(GGroup::Radius);
   if (!code) return;
   if (code->number == 400) return compensation.end(code->place);
   if (compensation.on()) refuse(code->place, "cutter radius compensation is on already; write G40 before this");
   if (compensation.leaving()) refuse(code->place, "a straight move stands between G40 and this; write it");
   if (modes.plane.normal != 2) refuse(code->place, "cutter radius compensation is taken in G17");
-  const double diameter = rules.d_is_register ? diameter_in_register(*code, options, modes)
-                                              : diameter_of_tool(block, *code, options, modes, switches);
+  const double diameter = rules.radius_is_offset ? diameter_in_register(code->place, options, modes)
+                                                 : diameter_of_tool(block, *code, options, modes, switches);
   const double radius = diameter / 2;
   compensation.begin(code->number < 420 ? radius : -radius, mover.start(code->place));
 }

@@ -125,9 +125,7 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
   for (const Word* word : {first, second}) {
     if (word == nullptr || repeats > 0) continue;
     const std::size_t axis = word == first ? plane.first : plane.second;
-    const double to =
-        modes_.incremental ? at.at(axis) + modes_.mm(*word) : coordinates_.to_part(axis, modes_.mm(*word));
-    if (to != at.at(axis))
+    if (written(*word, axis, at) != at.at(axis))
       refuse(word->place,
              "whether a tool that drills no hole goes there is not the same on all controls; write the way as G0");
   }
@@ -136,7 +134,7 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
     if (goes_round) go_round(block, at, place);
     for (const auto& [axis, word] : {std::pair{plane.first, first}, std::pair{plane.second, second}}) {
       if (word == nullptr || goes_round) continue;
-      at.at(axis) = modes_.incremental ? at.at(axis) + modes_.mm(*word) : coordinates_.to_part(axis, modes_.mm(*word));
+      at.at(axis) = written(*word, axis, at);
     }
     mover_.rapid(at, place);
     Point above = at;
@@ -145,6 +143,11 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
     hole(above, bottom, clear, code, place);
     at.at(plane.normal) = clear;
   }
+}
+
+double Drilling::written(const Word& word, std::size_t axis, const Point& at) const {
+  const bool is_way = modes_.incremental || word.relative;
+  return is_way ? at.at(axis) + modes_.mm(word) : coordinates_.to_part(axis, modes_.mm(word));
 }
 
 /// On by @ and ^ from the hole before: along a circle or a ray, or both.

@@ -32,6 +32,8 @@ class Drilling {
   /// R and Z, where the block writes them, in coordinates of the part.
   void set_levels(Block& block);
   [[nodiscard]] double sticky(Block& block, char letter, std::optional<double>& value, std::size_t place);
+  /// Where a word leads from `at`, in coordinates of the part.
+  [[nodiscard]] double written(const Word& word, std::size_t axis, const Point& at) const;
   void go_round(const Block& block, Point& at, std::size_t place) const;
   void peck(const Point& above, double bottom, int code, std::size_t place);
   void hole(const Point& above, double bottom, double clear, int code, std::size_t place);

@@ -51,7 +51,7 @@ Interpreter::Interpreter(const Options& options, const Rules& rules, Writer& wri
       writer_(writer),
       mover_(options, rules, modes_, coordinates_, writer),
       compensation_([this](const ContourMove& move, std::size_t place) { mover_.held(move, place); },
-                    rules.enters_to_normal),
+                    rules.radius_is_offset),
       motions_(options, rules, modes_, coordinates_, mover_, compensation_),
       turning_(modes_, coordinates_, mover_),
       tool_axis_(options, rules, modes_, coordinates_, turning_, mover_),

@@ -26,7 +26,7 @@ int turns_of(const Word& word) {
 
 double Motions::reference_value(const Point& reference, std::size_t axis, std::size_t place) const {
   const double value = reference.at(axis);
-  if (!rules_.reference_is_of_begin) return value;
+  if (!rules_.reference_is_zero) return value;
   const auto found = options_.offsets.find(0);
   const auto begin = found == options_.offsets.end() ? std::nullopt : found->second.at(axis);
   const auto& now = coordinates_.offset(coordinates_.active()).at(axis);
@@ -42,14 +42,14 @@ double Motions::machine_value(const Word& word, std::size_t axis) const {
   require_unplaced(coordinates_, word.place);
   if (modes_.incremental) refuse(word.place, "G53 under G91; write G90 before it");
   const auto& offset = coordinates_.offset(coordinates_.active()).at(axis);
-  const bool is_reference = rules_.zero_is_reference || (options_.reference_mm && (axis == 2 || !offset));
+  const bool is_reference = rules_.reference_is_zero || (options_.reference_mm && (axis == 2 || !offset));
   if (is_reference && word.value == 0) {
     if (options_.reference_mm) {
       constexpr double kSame_mm = 1e-6;
       const double value = reference_value(*options_.reference_mm, axis, word.place);
       const auto& zero = coordinates_.offset(coordinates_.active()).at(axis);
       // Z is the tip's, and that of the spindle in the offset.
-      if (rules_.reference_is_of_begin && axis != 2 && zero && !(std::abs(value + *zero) <= kSame_mm))
+      if (rules_.reference_is_zero && axis != 2 && zero && !(std::abs(value + *zero) <= kSame_mm))
         refuse(word.place, fmt::format("--offset has the machine's zero at {0}{1:.6g}, and --reference-point the "
                                        "reference point at {0}{2:.6g}; write the way there without G53",
                                        kAxisLetters.at(axis), 0.0 - *zero, value));
@@ -94,7 +94,7 @@ Point Motions::end_of(Block& block, std::size_t place) {
 
 void Motions::straight(Block& block, bool rapid, std::size_t place) {
   const Point end = end_of(block, place);
-  if (!block.once(530) || !rules_.zero_is_reference) return go_straight(end, rapid, place);
+  if (!block.once(530) || !rules_.reference_is_zero) return go_straight(end, rapid, place);
   if (!rapid) refuse(block.g(GGroup::Once)->place, "G53 goes with G0; write that into its block");
   compensation_.left();
   mover_.reference(end, place);
@@ -111,7 +111,7 @@ void Motions::go_straight(const Point& end, bool rapid, std::size_t place) {
     return compensation_.move({rapid, std::nullopt, end, feed, mover_.line()}, place);
   }
   const Point& from = compensation_.programmed();
-  if (rules_.leaves_in_plane && compensation_.leaving() && end[0] == from[0] && end[1] == from[1])
+  if (rules_.radius_is_offset && compensation_.leaving() && end[0] == from[0] && end[1] == from[1])
     refuse(place, "write the move in X and Y that leaves the contour in the block of G40");
   compensation_.left();
   if (rapid) return mover_.rapid(end, place);

@@ -31,13 +31,14 @@ PolarEnd polar_end(const Block& block, const Modes& modes, const ProgramTip& tip
   const bool goes_on = modes.incremental || !radius || !angle;
   if (goes_on && !(tip[0] && tip[1])) {
     refuse(place,
-           "where the tool is now is not known, so neither is where this leads; write both @ and ^ under G90, or "
+           "where the tool is now is not known, so neither is where this leads; write both distance and angle under "
+           "G90, or "
            "a G0 to X, Y and Z before it");
   }
   const double x = goes_on ? *tip[0] : 0, y = goes_on ? *tip[1] : 0;
   const double distance = std::hypot(x, y);
   if (goes_on && distance == 0 && (modes.incremental || !angle))
-    refuse(place, "the tool is at zero, where it has no angle; write ^ under G90, or X and Y");
+    refuse(place, "the tool is at zero, where it has no angle; write the angle under G90, or X and Y");
   const bool adds = modes.incremental;
   const double to_distance = (radius ? radius->value : adds ? 0 : distance) + (adds ? distance : 0);
   const double now = goes_on ? std::atan2(y, x) : 0;

@@ -1,11 +1,13 @@
 """Connections to those that are no appliance, or a broken one."""
 
+import asyncio
 import pathlib
 import tempfile
 import tomllib
 import unittest
 
 import rmac
+import rmac.aio
 from peer import GREETING, Peer
 from rmac.address import parse_address
 
@@ -46,11 +48,23 @@ class ConnectingTest(unittest.TestCase):
         with Peer(lambda request: GREETING if request["method"] == "hello" else None) as peer, rmac.connect(peer.address) as client:
             with self.assertRaises(rmac.ConnectionLost):
                 client.state()
-            with self.assertRaises(rmac.ConnectionLost):
+            with self.assertRaisesRegex(rmac.ConnectionLost, r"closed the connection; nothing of this was sent: client\.reconnect\(\)"):
                 client.state()
             self.assertIsInstance(client.lost, rmac.ConnectionLost)
             client.reconnect()
             self.assertIsNone(client.lost)
+
+    def test_so_does_one_of_asyncio(self):
+        async def ask(address):
+            async with await rmac.aio.connect(address) as client:
+                with self.assertRaises(rmac.ConnectionLost):
+                    await client.state()
+                with self.assertRaisesRegex(rmac.ConnectionLost, r"nothing of this was sent: client\.reconnect\(\)"):
+                    await client.state()
+                self.assertNotIn("sent", str(client.lost))
+
+        with Peer(lambda request: GREETING if request["method"] == "hello" else None) as peer:
+            asyncio.run(ask(peer.address))
 
     def test_an_answer_that_does_not_come_is_told(self):
         with Peer(lambda request: GREETING if request["method"] == "hello" else b"") as peer:

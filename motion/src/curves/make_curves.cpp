@@ -79,7 +79,7 @@ Expected<> check_start(const Vector& tip, const CurveStart& start) {
   if (gap_mm <= kStartTolerance_mm) return {};
   return refuse("the move starts " + text(gap_mm) + " mm from where the queue ends (" + text(start.pose.tip[0]) + ", " +
                 text(start.pose.tip[1]) + ", " + text(start.pose.tip[2]) + "); at most " + text(kStartTolerance_mm) +
-                " mm is allowed");
+                " mm is allowed: go to its start by MoveToPathTarget first, or begin it where the queue ends");
 }
 
 Expected<> check_start_axis(const Vector& axis, const CurveStart& start) {
@@ -87,7 +87,8 @@ Expected<> check_start_axis(const Vector& axis, const CurveStart& start) {
   if (gap <= kStartTolerance_axis) return {};
   return refuse("the move starts with a tool axis " + text(gap) + " from that at the end of the queue (" +
                 text(start.pose.axis[0]) + ", " + text(start.pose.axis[1]) + ", " + text(start.pose.axis[2]) +
-                "); at most " + text(kStartTolerance_axis) + " is allowed");
+                "); at most " + text(kStartTolerance_axis) +
+                " is allowed: turn the tool by MoveToPathTarget first, or begin with the axis that it has");
 }
 
 }  // namespace curves

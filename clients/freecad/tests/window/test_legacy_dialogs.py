@@ -98,7 +98,7 @@ class LegacyTest(WindowTest):
     def test_what_a_file_does_not_say_is_given_in_the_dialog(self):
         dialog = self.opening(SLOT.replace("G21 ", ""), "slot.txt")
         dialog.open_button.click()
-        self.refused(dialog, "choose RS274/NGC, Fanuc or APT")
+        self.refused(dialog, "choose RS274/NGC, Fanuc, Haas or APT")
         dialog.language.setCurrentText("RS274/NGC")
         dialog.open_button.click()
         self.refused(dialog, "--unit")

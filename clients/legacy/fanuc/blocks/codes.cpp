@@ -12,8 +12,7 @@ using gcode::GGroup, gcode::MGroup;
 constexpr std::string_view kThread = "moves that follow the spindle's angle are not taken";
 constexpr std::string_view kHand = "a cycle that needs the spindle's angle or a hand; write it out as G0 and G1";
 constexpr std::string_view kFeed = "feed is taken in mm or inch a minute (G94); have the CAM program write F so";
-constexpr std::string_view kPolar = "polar coordinates are not taken; have the CAM program write X and Y";
-constexpr std::string_view kProbe = "probing belongs into a measuring plan (rmac measure)";
+constexpr std::string_view kPolar = "these polar coordinates are not taken; have the CAM program write X and Y, or G16";
 constexpr std::string_view kCurve = "this curve is not taken; have the CAM program write lines and arcs";
 constexpr std::string_view kSpace =
     "corrections in space are not taken; have the CAM program give the path of the tool's centre";
@@ -22,7 +21,9 @@ constexpr std::string_view kExact =
 constexpr std::string_view kLength =
     "tool lengths are those of the appliance's tool table (rmac tools); write G43 H and the tool's number";
 constexpr std::string_view kBegin = "this stands at the begin of its block, behind N alone";
-constexpr std::string_view kUnits = "a Fanuc has G20 (inches) and G21 (mm) for this; have the post write those";
+constexpr std::string_view kUnits =
+    "a Fanuc has G20 (inches) and G21 (mm) for this; have the post write those; bolt holes of a Haas' program "
+    "--dialect haas knows";
 constexpr std::string_view kTilt = "this way to tilt a plane is not taken; have the post write Euler's angles, G68.2";
 constexpr std::string_view kLimits = "which room the machine has, the appliance knows; take it out";
 constexpr std::string_view kSurface = "constant surface speed is not taken; write G97 and S in turns a minute";
@@ -43,12 +44,10 @@ constexpr auto kG = std::to_array<FanucG>({
     {{90, GGroup::Once, kExact}},
     {{100, GGroup::Once, {}}},
     {{110, GGroup::Once, {}}, Use::Nothing},
-    {{120, GGroup::Once, kCurve}},
     {{121, GGroup::Once, kPolar}},
-    {{130, GGroup::Once, kCurve}},
     {{131, GGroup::Once, {}}, Use::Nothing},
-    {{150, GGroup::Once, {}}, Use::Nothing},
-    {{160, GGroup::Once, kPolar}},
+    {{150, GGroup::Once, {}}, Use::PolarOff},
+    {{160, GGroup::Once, {}}, Use::PolarOn},
     {{170, GGroup::Plane, {}}},
     {{180, GGroup::Plane, {}}},
     {{190, GGroup::Plane, {}}},
@@ -61,9 +60,9 @@ constexpr auto kG = std::to_array<FanucG>({
     {{280, GGroup::Once, {}}},
     {{290, GGroup::Once, "the way back from the reference point is not taken; write it as G0"}},
     {{300, GGroup::Once, {}}},
-    {{310, GGroup::Motion, kProbe}},
+    {{310, GGroup::Motion, gcode::kProbing}},
     {{330, GGroup::Motion, kThread}},
-    {{370, GGroup::Once, kProbe}},
+    {{370, GGroup::Once, gcode::kProbing}},
     {{400, GGroup::Radius, {}}},
     {{401, GGroup::Once, {}}, Use::Nothing},
     {{410, GGroup::Radius, {}}},
@@ -142,7 +141,8 @@ constexpr auto kG = std::to_array<FanucG>({
     {{1870, GGroup::Once, {}}, Use::LookAhead},
 });
 
-constexpr std::string_view kTurn = "turning the spindle to an angle is not taken";
+constexpr std::string_view kTurn =
+    "turning the spindle to an angle is not taken; where the program may go without, give --pass-over M19";
 
 constexpr auto kM = std::to_array<gcode::MCode>({
     {0, MGroup::Stop, {}},

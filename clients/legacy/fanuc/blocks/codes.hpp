@@ -9,6 +9,9 @@ enum class Use {
   Block,      ///< the block has it
   Nothing,    ///< so it is, or it ends what never begins here
   LookAhead,  ///< passed over with its words
+  HaasCycle,  ///< written out as other blocks
+  PolarOn,    ///< X and Y are a distance and an angle from it on
+  PolarOff,
   EndOfModalCall
 };
 

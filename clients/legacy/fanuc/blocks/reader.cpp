@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "clients/legacy/fanuc/blocks/refusal.hpp"
@@ -44,6 +45,12 @@ void take_call(gcode::Block& block, Ordered& ordered) {
   ordered.times_are_said = true;
 }
 
+void take_local_call(gcode::Block& block, Ordered& ordered) {
+  if (!block.has('P')) refuse(ordered.place, "M97 needs P, the N of the line that it calls");
+  ordered.label = integer_of(block.take('P'), 1, kMostProgram, "P of M97 is the N of a line");
+  if (block.has('L')) ordered.times = integer_of(block.take('L'), 1, kMostTimes, "L of M97 says how often");
+}
+
 void take_return(gcode::Block& block, Ordered& ordered) {
   if (block.has('P')) ordered.label = integer_of(block.take('P'), 1, kMostProgram, "P of M99 is the N of a line");
 }
@@ -54,6 +61,8 @@ Ordered BlockReader::read(std::string_view text, std::size_t at, const Variables
                           gcode::Block& block) {
   block.clear();
   look_ahead_.reset();
+  haas_.cycle.reset();
+  haas_.switched.clear();
   Ordered ordered;
   for (skip_comments(text, at); at < text.size(); skip_comments(text, at)) {
     if (text[at] == '#') refuse(at, "a variable is set in a line of its own");
@@ -63,9 +72,11 @@ Ordered BlockReader::read(std::string_view text, std::size_t at, const Variables
   }
   block.check_together();
   rewrite_dwell(block, modes);
-  rewrite_reference(block);
+  rewrite_reference(block, is_haas_);
+  if (polar_) rewrite_polar(block, modes);
   if (look_ahead_) pass_over_look_ahead(block, *look_ahead_);
   if (ordered.what == Ordered::What::Call) take_call(block, ordered);
+  if (ordered.what == Ordered::What::CallLocal) take_local_call(block, ordered);
   if (ordered.what == Ordered::What::Return) take_return(block, ordered);
   return ordered;
 }
@@ -78,8 +89,11 @@ void BlockReader::add(const FanucWord& word, gcode::Block& block, Ordered& order
 
 void BlockReader::add_g(const gcode::Word& word, gcode::Block& block, Ordered& ordered) {
   const auto tenfold = tenfold_of(word.value);
-  const FanucG* known = tenfold ? find_g(*tenfold) : nullptr;
-  if (known == nullptr) refuse(word.place, fmt::format("there is no G{:g} here", word.value));
+  const FanucG* of_haas = tenfold ? find_haas_g(*tenfold) : nullptr;
+  const FanucG* known = is_haas_ && of_haas != nullptr ? of_haas : tenfold ? find_g(*tenfold) : nullptr;
+  if (known == nullptr)
+    refuse(word.place, fmt::format("there is no G{:g} here{}", word.value,
+                                   of_haas != nullptr ? "; of a Haas' program --dialect haas knows it" : ""));
   const gcode::Code code{*tenfold, word.place};
   switch (known->use) {
     case Use::Block:
@@ -87,10 +101,12 @@ void BlockReader::add_g(const gcode::Word& word, gcode::Block& block, Ordered& o
     case Use::Nothing:
       return;
     case Use::LookAhead:
-      if (look_ahead_)
-        refuse(word.place, fmt::format("{} and {} in one block; write two blocks", gcode::g_name(look_ahead_->number),
-                                       gcode::g_name(code.number)));
-      look_ahead_ = code;
+      return set_only(look_ahead_, code);
+    case Use::HaasCycle:
+      return set_only(haas_.cycle, code);
+    case Use::PolarOn:
+    case Use::PolarOff:
+      polar_ = known->use == Use::PolarOn;
       return;
     case Use::EndOfModalCall:
       ordered.ends_modal_call = true;
@@ -99,21 +115,65 @@ void BlockReader::add_g(const gcode::Word& word, gcode::Block& block, Ordered& o
 }
 
 void BlockReader::add_m(const gcode::Word& word, gcode::Block& block, Ordered& ordered) {
-  constexpr int kMostM = 99'999'999, kCall = 98, kReturn = 99;
+  constexpr int kMostM = 99'999'999, kLocalCall = 97, kCall = 98, kReturn = 99;
   const int number = integer_of(word, 0, kMostM, "M is a whole number");
-  if (number == kCall || number == kReturn) {
-    if (ordered.what != Ordered::What::Next) refuse(word.place, "one of M98 and M99 in a block; write two blocks");
-    ordered.what = number == kCall ? Ordered::What::Call : Ordered::What::Return;
+  const bool is_local = is_haas_ && number == kLocalCall;
+  if (is_local || number == kCall || number == kReturn) {
+    if (ordered.what != Ordered::What::Next) refuse(word.place, "one of M97, M98 and M99 in a block; write two blocks");
+    ordered.what = is_local            ? Ordered::What::CallLocal
+                   : number == kReturn ? Ordered::What::Return
+                                       : Ordered::What::Call;
     ordered.place = word.place;
     return;
   }
+  if (is_haas_ && add_haas_m(number, word.place, block)) return;
   const gcode::MCode* known = find_m(number);
   if ((known == nullptr || !known->refusal.empty()) && passed_m_.contains(number)) return;
   if (known == nullptr)
     refuse(word.place, fmt::format("M{0} is a code of the machine's builder, and what it does is not known here; write "
-                                   "that out, or give --pass-over M{0} where nothing is to be done",
-                                   number));
+                                   "that out, or give --pass-over M{0} where nothing is to be done{1}",
+                                   number,
+                                   !is_haas_ && (number == kLocalCall || find_haas_m(number) != nullptr)
+                                       ? "; of a Haas' program --dialect haas knows it"
+                                       : ""));
   block.add_m(*known, word.place);
+}
+
+void BlockReader::add_switched(const HaasWords::Switched& switched) {
+  if (std::ranges::find(haas_.switched, switched.number, &HaasWords::Switched::number) != haas_.switched.end())
+    refuse(switched.place,
+           fmt::format("what M{} switches is switched twice in one block; write two blocks", switched.number));
+  haas_.switched.push_back(switched);
+}
+
+bool BlockReader::add_haas_m(int number, std::size_t place, gcode::Block& block) {
+  const HaasM* own = find_haas_m(number);
+  if (own == nullptr) return false;
+  if (passed_m_.contains(number)) return own->use != HaasM::Use::As;
+  switch (own->use) {
+    case HaasM::Use::Nothing:
+      break;
+    case HaasM::Use::SwitchOn:
+      add_switched({number, true, own->message, place});
+      break;
+    case HaasM::Use::SwitchOff:
+      add_switched({own->as, false, {}, place});
+      break;
+    case HaasM::Use::As:
+      block.add_m(*find_m(own->as), place);
+      break;
+    case HaasM::Use::Refused:
+      refuse(place, fmt::format("M{0}: {1}; where the program may go without it, give --pass-over M{0}", number,
+                                own->message));
+  }
+  return true;
+}
+
+void BlockReader::set_only(std::optional<gcode::Code>& there, const gcode::Code& code) {
+  if (there)
+    refuse(code.place, fmt::format("{} and {} in one block; write two blocks", gcode::g_name(there->number),
+                                   gcode::g_name(code.number)));
+  there = code;
 }
 
 }  // namespace rmac::fanuc

@@ -19,7 +19,7 @@ void rewrite_dwell(gcode::Block& block, const gcode::Modes& modes) {
   }
 }
 
-void rewrite_reference(gcode::Block& block) {
+void rewrite_reference(gcode::Block& block, bool all_alone) {
   if (!block.once(280) && !block.once(300)) return;
   for (const auto& [way, axis] : {std::pair{'U', 'X'}, std::pair{'V', 'Y'}, std::pair{'W', 'Z'}}) {
     if (!block.has(way)) continue;
@@ -28,9 +28,34 @@ void rewrite_reference(gcode::Block& block) {
     block.add_word(axis, word);
   }
   const std::size_t place = block.g(gcode::GGroup::Once)->place;
-  if (!block.has_any("XYZABC")) refuse(place, "this needs X, Y or Z: the axes that go to the reference point");
+  if (!block.has_any("XYZABC") && !(all_alone && block.once(280)))
+    refuse(place, "this needs X, Y or Z: the axes that go to the reference point");
   if (const gcode::Word* point = block.once(300) ? block.find('P') : nullptr; point != nullptr && point->value != 2)
     refuse(point->place, "of G30 there is the second reference point, P2; write the way to others as G0");
+}
+
+void rewrite_polar(gcode::Block& block, const gcode::Modes& modes) {
+  constexpr int kPlaneOfXY = 170, kIncremental = 910, kZ = 2;
+  if (!block.has_any("XY") || block.g(gcode::GGroup::Once)) return;
+  const auto& plane = block.g(gcode::GGroup::Plane);
+  const bool in_plane = plane ? plane->number == kPlaneOfXY : modes.plane.normal == kZ;
+  const auto& distance = block.g(gcode::GGroup::Distance);
+  const bool incremental = distance ? distance->number == kIncremental : modes.incremental;
+  if (!in_plane)
+    refuse(block.place(block.has('X') ? 'X' : 'Y'),
+           "G16 is taken in the plane of X and Y; write G17 before this, or G15");
+  if (block.has('X')) {
+    gcode::Word radius = block.take('X');
+    if (incremental)
+      refuse(radius.place,
+             "X under G16 and G91 counts from where the tool is, on some controls; write G90 before this");
+    radius = {modes.mm(radius) / modes.unit(radius.place), radius.place};
+    block.add_polar_radius(radius);
+  }
+  if (block.has('Y')) {
+    const gcode::Word angle = block.take('Y');
+    block.add_polar_angle({modes.degrees(angle), angle.place});
+  }
 }
 
 void pass_over_look_ahead(gcode::Block& block, const gcode::Code& code) {

@@ -9,6 +9,7 @@
 #include "clients/legacy/fanuc/blocks/grammar.hpp"
 #include "clients/legacy/fanuc/blocks/refusal.hpp"
 #include "clients/legacy/fanuc/flow/line_head.hpp"
+#include "clients/legacy/gcode/blocks/codes.hpp"
 #include "clients/legacy/gcode/values/expression.hpp"
 
 namespace rmac::fanuc {
@@ -35,6 +36,30 @@ std::size_t behind_printed(std::string_view text, std::size_t at) {
     if (text[at] == ']' && --depth == 0) return at + 1;
   }
   refuse(begin, "what is printed stands in [ ]");
+}
+
+/// A statement that a condition leaves out: throws a Refusal where it is none.
+void pass_over(std::string_view text, std::size_t at, bool sets) {
+  struct Ones final : gcode::Variables {
+    [[nodiscard]] gcode::Maybe value(const gcode::Name&, std::size_t) const override { return 1; }
+    [[nodiscard]] bool is_set(const gcode::Name&) const override { return true; }
+  };
+  const Ones ones;
+  gcode::Expression expression(text, grammar_of_syntax(), ones);
+  if (sets) {
+    static_cast<void>(expression.parameter_name(++at));
+    require_equals(text, at);
+    static_cast<void>(expression.without_brackets(++at));
+  } else {
+    static_cast<void>(expression.value(at));
+  }
+  require_line_end(text, at);
+}
+
+[[noreturn]] void refuse_label(int label, int program, std::size_t place) {
+  const bool numbered = program != FanucProgram::kUnnumbered;
+  refuse(place, fmt::format("there is no N{} in {}", label,
+                            numbered ? fmt::format("O{}", program) : std::string("this program")));
 }
 
 }  // namespace
@@ -161,23 +186,6 @@ void Flow::carry_out_if(std::string_view text, std::size_t at) {
   pass_over(text, at, true);
 }
 
-void Flow::pass_over(std::string_view text, std::size_t at, bool sets) const {
-  struct Ones final : gcode::Variables {
-    [[nodiscard]] gcode::Maybe value(const gcode::Name&, std::size_t) const override { return 1; }
-    [[nodiscard]] bool is_set(const gcode::Name&) const override { return true; }
-  };
-  const Ones ones;
-  gcode::Expression expression(text, grammar_of_syntax(), ones);
-  if (sets) {
-    static_cast<void>(expression.parameter_name(++at));
-    require_equals(text, at);
-    static_cast<void>(expression.without_brackets(++at));
-  } else {
-    static_cast<void>(expression.value(at));
-  }
-  require_line_end(text, at);
-}
-
 void Flow::begin_loop(std::string_view text, std::size_t at) {
   constexpr std::size_t kWhile = 5, kDoAndNumber = 3;
   const std::size_t index = outline_.loop_at(here_).value();
@@ -221,11 +229,7 @@ void Flow::carry_out_goto(std::string_view text, std::size_t at) {
 void Flow::go_to(int label, std::size_t place) {
   Frame& frame = frames_.back();
   const auto spot = outline_.find_label(frame.program, label, next_);
-  if (!spot) {
-    const bool numbered = program() != FanucProgram::kUnnumbered;
-    refuse(place, fmt::format("there is no N{} in {}", label,
-                              numbered ? fmt::format("O{}", program()) : std::string("this program")));
-  }
+  if (!spot) refuse_label(label, program(), place);
   auto around = outline_.loops_around(frame.program, *spot);
   const bool stays =
       around.size() <= frame.loops.size() && std::equal(around.begin(), around.end(), frame.loops.begin());
@@ -254,7 +258,13 @@ bool Flow::call_of_macro(std::string_view text, std::size_t at) {
 }
 
 std::size_t Flow::program_of(int number, std::size_t place) const {
+  constexpr int kFirstOfProbe = 9700, kLastOfProbe = 9999;
   if (const auto found = outline_.find(number)) return *found;
+  if (number >= kFirstOfProbe && number <= kLastOfProbe)
+    refuse(place,
+           fmt::format("O{} is not in this file. Makers of probes have theirs from O9700 on: {}. Another macro is "
+                       "to be written behind the end of the main program",
+                       number, gcode::kProbing));
   refuse(place, fmt::format("O{0} is not in this file, and no other is read; write O{0} ... M99 behind the end of the "
                             "main program",
                             number));
@@ -274,11 +284,21 @@ void Flow::call_subprogram(const Ordered& ordered) {
     if (!as_it_is) number %= kBeyondShort;
   }
   const std::size_t program = program_of(number, ordered.place);
-  enter({Kind::Subprogram, program, {}, 0}, times, ordered.place);
+  enter({Kind::Subprogram, program, outline_.programs()[program].begin}, times, ordered.place);
+}
+
+void Flow::call_local(const Ordered& ordered) {
+  const std::size_t program = frames_.back().program;
+  const auto spot = outline_.find_label(program, ordered.label.value(), next_);
+  if (!spot) refuse_label(*ordered.label, this->program(), ordered.place);
+  if (!outline_.loops_around(program, *spot).empty())
+    refuse(ordered.place, fmt::format("N{} is within a loop; nothing jumps into a loop", *ordered.label));
+  enter({Kind::Subprogram, program, *spot, {}, 0, {}, ordered.label}, ordered.times, ordered.place);
 }
 
 void Flow::call_macro(const MacroCall& call) {
-  enter({Kind::Macro, program_of(call.program, words_), {}, 0, call.locals}, call.times, words_);
+  const std::size_t program = program_of(call.program, words_);
+  enter({Kind::Macro, program, outline_.programs()[program].begin, {}, 0, call.locals}, call.times, words_);
 }
 
 void Flow::enter(Frame frame, int times, std::size_t place) {
@@ -294,7 +314,7 @@ void Flow::enter(Frame frame, int times, std::size_t place) {
   frame.back = next_;
   frame.more_times = times - 1;
   if (is_macro) variables_.enter(frame.given);
-  next_ = outline_.programs()[frame.program].begin;
+  next_ = frame.begin;
   frames_.push_back(std::move(frame));
 }
 
@@ -304,17 +324,21 @@ void Flow::go_on(const Ordered& ordered, bool moved) {
   const bool calls = moved && modal_ && std::ranges::none_of(frames_, is_modal);
   if (calls && ordered.what != Ordered::What::Next)
     refuse(ordered.place, "M98 or M99 in a block whose move G66 calls a macro behind; write two blocks");
-  if (calls) return enter({Kind::Modal, modal_->program, {}, 0, modal_->locals}, modal_->times, words_);
+  if (calls)
+    return enter({Kind::Modal, modal_->program, outline_.programs()[modal_->program].begin, {}, 0, modal_->locals},
+                 modal_->times, words_);
   if (ordered.what == Ordered::What::Call) call_subprogram(ordered);
+  if (ordered.what == Ordered::What::CallLocal) call_local(ordered);
   if (ordered.what == Ordered::What::Return) return_from(ordered);
 }
 
 void Flow::return_from(const Ordered& ordered) {
   if (frames_.size() == 1) {
     if (ordered.label) return go_to(*ordered.label, ordered.place);
-    refuse(ordered.place,
-           "M99 ends a program that M98 or G65 called; here the main program came to it, which would begin anew for "
-           "ever. End that with M30");
+    refuse(
+        ordered.place,
+        "M99 ends a program that M97, M98 or G65 called; here the main program came to it, which would begin anew for "
+        "ever. End that with M30");
   }
   if (modal_ && modal_->frame == frames_.size()) modal_.reset();
   Frame& frame = frames_.back();
@@ -327,7 +351,7 @@ void Flow::return_from(const Ordered& ordered) {
     --frame.more_times;
     if (frame.kind != Kind::Subprogram) variables_.enter(frame.given);
     frame.loops.clear();
-    next_ = outline_.programs()[frame.program].begin;
+    next_ = frame.begin;
     return;
   }
   next_ = frame.back;
@@ -336,7 +360,9 @@ void Flow::return_from(const Ordered& ordered) {
 }
 
 std::string Flow::running() const {
-  return frames_.size() == 1 ? std::string() : fmt::format("O{}", program());
+  if (frames_.size() == 1) return {};
+  const auto& label = frames_.back().label;
+  return label ? fmt::format("N{}", *label) : fmt::format("O{}", program());
 }
 
 }  // namespace rmac::fanuc

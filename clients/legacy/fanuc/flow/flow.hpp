@@ -36,9 +36,11 @@ class Flow {
   /// N of the last line that had one, and O of the program that runs; 0 and kUnnumbered where there is none.
   [[nodiscard]] int last_label() const noexcept { return last_label_; }
   [[nodiscard]] int program() const { return outline_.programs()[frames_.back().program].number; }
-  /// `O100` of what M98 or G65 called and M99 ends; empty in the main program.
+  /// `O100` of what M98 or G65 called, `N100` of what M97 did, and M99 ends; empty in the main program.
   [[nodiscard]] std::string running() const;
 
+  /// Whether G66 calls behind the moves of this program.
+  [[nodiscard]] bool calls_behind_moves() const noexcept { return modal_.has_value(); }
   /// What the block that was given out asks for. `moved`: it moved the tool, so that G66 calls.
   void go_on(const Ordered& ordered, bool moved);
 
@@ -48,9 +50,11 @@ class Flow {
   struct Frame {
     Kind kind = Kind::Subprogram;
     std::size_t program = 0;
-    Spot back;  ///< of the caller
+    Spot begin{};  ///< where it begins, each time
+    Spot back{};   ///< of the caller
     int more_times = 0;
     Variables::Locals given{};
+    std::optional<int> label{};        ///< of M97
     std::vector<std::size_t> loops{};  ///< that it is in, the innermost last
   };
   /// G66: what behind each move is called. Its variables stay from call to call.
@@ -65,8 +69,6 @@ class Flow {
   [[nodiscard]] bool carry_out(std::string_view text, std::size_t at);
   void pass_number(std::size_t place);
   void assign(std::string_view text, std::size_t at);
-  /// A statement that a condition leaves out: throws a Refusal where it is none.
-  void pass_over(std::string_view text, std::size_t at, bool sets) const;
   void carry_out_if(std::string_view text, std::size_t at);
   void begin_loop(std::string_view text, std::size_t at);
   void end_loop(std::size_t place);
@@ -75,6 +77,8 @@ class Flow {
   [[nodiscard]] bool call_of_macro(std::string_view text, std::size_t at);
   [[nodiscard]] std::size_t program_of(int number, std::size_t place) const;
   void call_subprogram(const Ordered& ordered);
+  /// M97: lines of the same program, to M99.
+  void call_local(const Ordered& ordered);
   void call_macro(const MacroCall& call);
   void enter(Frame frame, int times, std::size_t place);
   void return_from(const Ordered& ordered);

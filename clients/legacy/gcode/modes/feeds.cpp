@@ -24,11 +24,10 @@ void set_feed(Block& block, const std::optional<double>& unit, const Rules& rule
     modes.moves_per_min = feed->value;
     return;
   }
-  if (unit && !rules.unit_ends_feed && modes.unit_mm && *modes.unit_mm != *unit)
-    refuse(feed->place,
-           "F in the block that changes the unit would count in the unit before it; write F in a block behind it");
   if (feed->value < 0) refuse(feed->place, "a negative feed");
-  const double counted = unit ? *unit : modes.unit(feed->place);
+  // By the report's table F comes before the unit.
+  const bool in_new_unit = unit && (rules.unit_ends_feed || !modes.unit_mm);
+  const double counted = in_new_unit ? *unit : modes.unit(feed->place);
   modes.feed_mm_min = modes.feed(*feed, counted);
   modes.feed_degrees_min = modes.feed_mm_min / counted;
 }

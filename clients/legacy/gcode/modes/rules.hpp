@@ -24,22 +24,21 @@ struct Rules {
   /// G10, G52, G92 and its like: what changes the meaning of coordinates.
   void (*set_coordinates)(Block& block, const Code& code, const Modes& modes, Coordinates& coordinates) = nullptr;
 
-  bool arcs_have_turns = false;         ///< P of an arc
-  bool needs_path_tolerance = false;    ///< G64 without P says less than is to be known
-  bool d_is_register = false;           ///< D of G41 is the number of an offset, that stays; else of a tool
-  bool zero_is_reference = false;       ///< X0, Y0 and Z0 of G53 are those of the first reference point
+  bool arcs_have_turns = false;       ///< P of an arc
+  bool needs_path_tolerance = false;  ///< G64 without P says less than is to be known
+  /// D of G41 is the number of an offset, that stays; its first move ends beside the begin of the second one, before an
+  /// inside corner too, and the first one behind G40 has a way in X or Y. Else D is a tool.
+  bool radius_is_offset = false;
+  /// X0, Y0 and Z0 of G53 are the first reference point, and those are told in the first frame of G54: in others they
+  /// are elsewhere.
+  bool reference_is_zero = false;
   bool motion_outlives_cycles = false;  ///< behind G80 the last of G0 to G3 is in force again
-  bool reference_is_of_begin =
-      false;                     ///< the first frame of G54 has the reference points; in others they are elsewhere
-  bool leaves_in_plane = false;  ///< behind G40 the first move has a way in X or Y
-  bool enters_to_normal =
-      false;  ///< the first move of G41 ends beside the begin of the second one, before an inside corner too
-  bool stops_behind_motion = false;  ///< M5 and M9 act behind the motion of their block
-  bool spindle_needs_speed = false;  ///< M3 and M4 before any S are refused
-  bool unit_ends_feed = false;       ///< F does not outlive another unit
-  bool turns_as_written = false;     ///< a table goes to an angle as the numbers have it; else that is to be said
-  bool degrees_are_lengths = false;  ///< F of a move that turns a table is of X, Y, Z and of its degrees together
-  double whole_dwell_s = 1;          ///< of a P without a decimal point
+  bool stops_behind_motion = false;     ///< M5 and M9 act behind the motion of their block
+  bool spindle_needs_speed = false;     ///< M3 and M4 before any S are refused
+  bool unit_ends_feed = false;          ///< F does not outlive another unit, and beside it counts in the new one
+  bool turns_as_written = false;        ///< a table goes to an angle as the numbers have it; else that is to be said
+  bool degrees_are_lengths = false;     ///< F of a move that turns a table is of X, Y, Z and of its degrees together
+  double whole_dwell_s = 1;             ///< of a P without a decimal point
 
   struct Cycles {
     std::string_view repeats = "L";  ///< letters

@@ -10,7 +10,6 @@ using gcode::GCode, gcode::GGroup, gcode::MCode, gcode::MGroup;
 namespace {
 
 constexpr std::string_view kCycle = "a cycle that needs the spindle's angle or a hand; write it out as G0 and G1";
-constexpr std::string_view kProbe = "probing belongs into a measuring plan (rmac measure)";
 constexpr std::string_view kHome =
     "a program does not set the machine's points; give --reference-point when it is imported";
 constexpr std::string_view kLathe = "lathes are not taken yet";
@@ -48,10 +47,10 @@ constexpr auto kG = std::to_array<GCode>({
     {301, GGroup::Once, kHome},
     {330, GGroup::Motion, kThread},
     {331, GGroup::Motion, kThread},
-    {382, GGroup::Motion, kProbe},
-    {383, GGroup::Motion, kProbe},
-    {384, GGroup::Motion, kProbe},
-    {385, GGroup::Motion, kProbe},
+    {382, GGroup::Motion, gcode::kProbing},
+    {383, GGroup::Motion, gcode::kProbing},
+    {384, GGroup::Motion, gcode::kProbing},
+    {385, GGroup::Motion, gcode::kProbing},
     {400, GGroup::Radius, {}},
     {410, GGroup::Radius, {}},
     {411, GGroup::Radius, {}},

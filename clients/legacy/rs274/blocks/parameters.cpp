@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "clients/legacy/gcode/blocks/codes.hpp"
 #include "clients/legacy/rs274/blocks/refusal.hpp"
 
 namespace rmac::rs274 {
@@ -17,6 +18,9 @@ gcode::Maybe Parameters::value(const gcode::Name& name, std::size_t place) const
   }
   const int number = std::get<int>(name);
   if (const auto found = read(number)) return found;
+  constexpr int kLastOfProbe = 5070;
+  if (number >= kFirstOfControl && number <= kLastOfProbe)
+    refuse(place, fmt::format("#{} is what the last G38 found: {}", number, gcode::kProbing));
   if (number >= kFirstOfControl) {
     refuse(place, fmt::format("#{} is the control's own, and not known here; write the value instead", number));
   }

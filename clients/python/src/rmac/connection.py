@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 from rmac.address import Address
-from rmac.errors import ConnectionLost, NotAnswered, RmacError
+from rmac.errors import ConnectionLost, NotAnswered, RmacError, asked_too_late
 from rmac.wire.call import Call
 from rmac.wire.exchange import Exchange, Promise
 
@@ -62,7 +62,7 @@ class Connection:
 
     def _transmit(self, ask: Callable[[Any, Promise], bytes], what: Any, promise: Promise) -> None:
         if self._ended is not None:
-            raise self._ended
+            raise asked_too_late(self._ended) from self._ended
         line = ask(what, promise)
         try:
             self._socket.sendall(line)

@@ -31,9 +31,9 @@ Result<> become(const char* program, const std::vector<std::string>& words) {
 
 void add_import(Command& rmac) {
   const auto words = std::make_shared<std::vector<std::string>>();
-  Command importing =
-      rmac.add("import",
-               "make a .rmac program of another control's (RS274/NGC, Fanuc), or of APT; rmac import --help tells how");
+  Command importing = rmac.add(
+      "import",
+      "make a .rmac program of another control's (RS274/NGC, Fanuc, Haas), or of APT; rmac import --help tells how");
   importing.passes_on(words.get());
   importing.does(without_appliance([words](bool) { return become(kImporter, *words); }));
 }

@@ -42,7 +42,7 @@ constexpr std::array<Passed, std::tuple_size_v<decltype(Source::values)>> kPasse
 }};
 constexpr std::array<Passed, std::tuple_size_v<decltype(Source::repeated)>> kRepeated{{
     {"--offset", "G54=X,Y,Z in mm: where an imported program's work system is in the machine"},
-    {"--output", "3=NAME: the output that M62 to M65 P3 of an imported program switch"},
+    {"--output", "3=NAME: the output that M62 to M65 P3 of an imported program switch; 88=NAME, of a Haas' M88"},
     {"--input", "3=NAME: the input that M66 P3 of an imported program waits for"},
     {"--tool-diameter", "3=10: the diameter of tool 3 in mm, for G41 and G42 of an imported program"},
     {"--variable", "500=12.5: what the machine has in a common variable that a Fanuc program reads"},
@@ -118,7 +118,8 @@ void declare_source(Command& command, Source& source) {
           "the .rmac file, - for standard input; .ngc, .nc and .tap (RS274/NGC), .apt, .cls and .aptsource (APT) are "
           "imported first")
       .required();
-  command.option("--dialect", &source.dialect, "whose language FILE is in, whatever its ending: rs274, fanuc or apt");
+  command.option("--dialect", &source.dialect,
+                 "whose language FILE is in, whatever its ending: rs274, fanuc, haas or apt");
   for (std::size_t i = 0; i < kPassed.size(); ++i) {
     command.option(kPassed.at(i).name, &source.values.at(i), kPassed.at(i).meaning);
   }

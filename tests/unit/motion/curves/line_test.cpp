@@ -10,6 +10,7 @@ namespace rmac::test {
 namespace {
 
 using std::numbers::pi;
+using testing::AllOf;
 using testing::HasSubstr;
 
 using Line = Shapes;
@@ -53,11 +54,14 @@ TEST_F(Line, BeginsWhereTheQueueEndsWhenTheStartIsWithinTolerance) {
 }
 
 TEST_F(Line, IsRefusedWhenItStartsElsewhere) {
-  EXPECT_THAT(refusal(LineGeometry{{{0, 0, 0.002}, {0, 0, 1}}, {{1, 0, 0}, {0, 0, 1}}}, at({0, 0, 0})),
-              HasSubstr("starts 0.002 mm from where the queue ends (0, 0, 0); at most 0.001 mm"));
+  EXPECT_THAT(
+      refusal(LineGeometry{{{0, 0, 0.002}, {0, 0, 1}}, {{1, 0, 0}, {0, 0, 1}}}, at({0, 0, 0})),
+      HasSubstr("starts 0.002 mm from where the queue ends (0, 0, 0); at most 0.001 mm is allowed: go to its start "
+                "by MoveToPathTarget first"));
   const Vector tilted{std::sin(2e-6), 0, std::cos(2e-6)};
   EXPECT_THAT(refusal(LineGeometry{{{0, 0, 0}, tilted}, {{1, 0, 0}, {0, 0, 1}}}, at({0, 0, 0})),
-              HasSubstr("a tool axis 2e-06 from that at the end of the queue"));
+              AllOf(HasSubstr("a tool axis 2e-06 from that at the end of the queue"),
+                    HasSubstr("turn the tool by MoveToPathTarget first")));
 }
 
 TEST_F(Line, HasNoCurveWhereAPointIsRepeated) {

@@ -1,4 +1,4 @@
-"""Programs of other controls, RS274/NGC, Fanuc and APT, as objects of a document: by `rmac import`, each move with its line."""
+"""Programs of other controls, RS274/NGC, Fanuc, Haas and APT, as objects of a document: by `rmac import`, each move with its line."""
 
 from rmac_freecad.legacy.code import code_of, codes, is_code, open_code, options_of, read_code, reading
 from rmac_freecad.legacy.importing import import_source

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from rmac_freecad.legacy.refusal import CodeRefused
 
-LANGUAGES = {"by the file's ending": "", "RS274/NGC": "rs274", "Fanuc": "fanuc", "APT": "apt"}
+LANGUAGES = {"by the file's ending": "", "RS274/NGC": "rs274", "Fanuc": "fanuc", "Haas": "haas", "APT": "apt"}
 UNITS = {"as the program says": "", "mm": "mm", "inch": "inch"}
 ENDINGS = {".ngc": "rs274", ".nc": "rs274", ".tap": "rs274", ".apt": "apt", ".cls": "apt", ".aptsource": "apt"}
 # Those that a document may bring with it: none of them names a file that would be written.
@@ -20,7 +20,7 @@ NUMBER = re.compile(r"-[\d.]")
 
 @dataclass(frozen=True)
 class Options:
-    dialect: str = ""  # rs274, fanuc or apt; empty: by the file's ending
+    dialect: str = ""  # rs274, fanuc, haas or apt; empty: by the file's ending
     unit: str = ""  # mm or inch, where the program does not say it
     rapid_mm_min: float = 3000.0  # of G0 and RAPID; at most what the machine may go
     approach: str = ""  # X,Y,Z in mm
@@ -44,7 +44,7 @@ class Options:
     def dialect_of(self, name):
         dialect = self.dialect or ENDINGS.get(pathlib.PurePath(name).suffix.lower())
         if dialect is None:
-            raise CodeRefused("its ending does not say which language it is in; choose RS274/NGC, Fanuc or APT", name)
+            raise CodeRefused("its ending does not say which language it is in; choose RS274/NGC, Fanuc, Haas or APT", name)
         return dialect
 
     def _further(self):

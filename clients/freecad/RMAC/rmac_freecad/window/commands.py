@@ -113,7 +113,7 @@ def stop():
 COMMANDS = (
     Command("Select", "Select machine…", "Search machines, compare them, see which can cut the job, and load one", select_machine),
     Command("Jog", "Jog…", "Move the machine by hand, and set the part's zero where the tool stands", jog),
-    Command("Legacy", "Open legacy code…", "A file of another control, RS274/NGC, Fanuc or APT, into the document, to be simulated and cut", open_legacy),
+    Command("Legacy", "Open legacy code…", "A file of another control, RS274/NGC, Fanuc, Haas or APT, into the document, to be simulated and cut", open_legacy),
     Command("Part", "Open a STEP part…", "A part that somebody else drew, and what there is to machine on it", open_part),
     Command("Profile", "Cut along edges…", "Selected edges, or a sketch, as a profile without a Path job", cut_along, needs_document=True),
     Command("Pocket", "Clear a pocket…", "A level face with its islands, or a closed sketch, cleared without a Path job", clear_pocket, needs_document=True),

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 from rmac.address import Address, tune
-from rmac.errors import CannotConnect, ConnectionLost, NotAnswered, RmacError
+from rmac.errors import CannotConnect, ConnectionLost, NotAnswered, RmacError, asked_too_late
 from rmac.wire.call import Call
 from rmac.wire.exchange import Exchange, Promise
 
@@ -88,7 +88,7 @@ class Connection:
 
     def _transmit(self, ask: Callable[[Any, Promise], bytes], what: Any, promise: Promise) -> None:
         if self.ended is not None:
-            raise self.ended
+            raise asked_too_late(self.ended) from self.ended
         self._writer.write(ask(what, promise))
 
     async def _read(self, reader: asyncio.StreamReader) -> None:

@@ -25,15 +25,18 @@ inline std::string text_of(const std::string& program, const Options& options = 
   return outcome ? text : legacy::refusal_in(outcome);
 }
 
-inline Imported imported(const std::string& program, const Options& options = {}) {
+inline Imported imported(const std::string& program, const Options& options = {}, Dialect dialect = Dialect::Fanuc) {
   std::string text;
-  const auto outcome = import_program(program, options, [&text](std::string_view part) { text += part; });
+  const auto outcome = import_program(
+      program, options, [&text](std::string_view part) { text += part; }, dialect);
   return legacy::read_back(outcome, text, program, options.rapid_mm_min);
 }
 
 /// "LINE:COLUMN: message" of a program that is not taken.
-inline std::string refusal_of(const std::string& program, const Options& options = {}) {
-  return legacy::refusal_in(import_program(program, options, [](std::string_view) {}));
+inline std::string refusal_of(const std::string& program, const Options& options = {},
+                              Dialect dialect = Dialect::Fanuc) {
+  return legacy::refusal_in(import_program(
+      program, options, [](std::string_view) {}, dialect));
 }
 
 /// Where the moves of the program's lines end, after the first rapid.

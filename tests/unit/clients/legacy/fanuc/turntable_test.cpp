@@ -27,7 +27,7 @@ Options a_wound_table() {
   return options;
 }
 
-auto near(double x, double y, double z) {
+auto is_near(double x, double y, double z) {
   return ElementsAre(DoubleNear(x, 1e-6), DoubleNear(y, 1e-6), DoubleNear(z, 1e-6));
 }
 
@@ -46,7 +46,7 @@ double feed_of(const std::string& lines, const Options& options) {
 
 TEST(FanucTurntable, LeavesXYZToTheMachineAndTurnsThePart) {
   EXPECT_THAT(ends_of("G0 A90.\nX3. Y4. Z5.\nG1 Z0.", a_table()),
-              ElementsAre(near(0, -20, -10), near(3, -15, -6), near(3, -10, -6)));
+              ElementsAre(is_near(0, -20, -10), is_near(3, -15, -6), is_near(3, -10, -6)));
   const auto index = imported(program_of("G0 A90."), a_table()).requests.back();
   EXPECT_EQ(index["method"], "RMAC_CAM.MoveAlongArc") << "an index goes round the part, not through it";
   EXPECT_EQ(index["params"]["CenterPoint"], json({{"p", {0, 0, -10}}, {"axis", {1, 0, 0}}}));
@@ -57,7 +57,7 @@ TEST(FanucTurntable, LeavesXYZToTheMachineAndTurnsThePart) {
 TEST(FanucTurntable, OfTheOtherSenseTurnsTheOtherWay) {
   Options options = a_table();
   options.rotary[0].sign = -1;
-  EXPECT_THAT(ends_of("G0 A90.\nZ0.", options), ElementsAre(near(0, 20, -10), near(0, 10, -10)));
+  EXPECT_THAT(ends_of("G0 A90.\nZ0.", options), ElementsAre(is_near(0, 20, -10), is_near(0, 10, -10)));
 }
 
 TEST(FanucTurntable, KeepsArcsWholeAndCyclesAndContoursAlongItsTool) {
@@ -65,11 +65,12 @@ TEST(FanucTurntable, KeepsArcsWholeAndCyclesAndContoursAlongItsTool) {
   EXPECT_EQ(arc["CenterPoint"], json({{"p", {5, -20, -10}}, {"axis", {0, -1, 0}}}));
   EXPECT_EQ(arc["EndPoint"]["p"], json({10, -10, -10}));
   EXPECT_THAT(ends_of("G0 A-90.\nG98 G81 X1. Y2. Z-3. R1.\nG80", a_table()),
-              ElementsAre(near(0, 20, -10), near(1, 20, -12), near(1, 11, -12), near(1, 7, -12), near(1, 20, -12)));
+              ElementsAre(is_near(0, 20, -10), is_near(1, 20, -12), is_near(1, 11, -12), is_near(1, 7, -12),
+                          is_near(1, 20, -12)));
   Options options = a_table();
   options.tool_diameters_mm = {{1, 4}};
   EXPECT_THAT(ends_of("G0 A90.\nG1 G41 D1 X10. Y0\nG1 X20.\nG40 G1 X30. Y9.", options),
-              ElementsAre(near(0, -20, -10), near(10, -20, -8), near(20, -20, -8), near(30, -20, -1)));
+              ElementsAre(is_near(0, -20, -10), is_near(10, -20, -8), is_near(20, -20, -8), is_near(30, -20, -1)));
 }
 
 TEST(FanucTurntable, TurnsWhileTheToolMoves) {
@@ -129,7 +130,7 @@ TEST(FanucTurntable, IsApproachedWhereTheTableHasThePart) {
 
 TEST(FanucTurntable, RetractsAlongTheToolBetweenIndexes) {
   EXPECT_THAT(ends_of("A90.\nG91 G28 Z0\nG90\nG0 G53 Z0\nA180.", a_table()),
-              ElementsAre(near(0, -20, -10), near(0, -210, -10), near(0, 0, -220)));
+              ElementsAre(is_near(0, -20, -10), is_near(0, -210, -10), is_near(0, 0, -220)));
   const auto back = imported(program_of("A90.\nG91 G28 Z0 A0\nG90\nA90.\nX5."), a_table()).requests;
   EXPECT_EQ(back[3]["method"], "RMAC_CAM.MoveToJointTarget") << "nobody knows how far it was";
   EXPECT_EQ(back[3]["params"]["JointTargetFrame"]["p"], json({0, -210, -10}));
@@ -141,9 +142,9 @@ TEST(FanucTurntable, RetractsAlongTheToolBetweenIndexes) {
 TEST(FanucTurntable, DrillsAHoleAtEachAngle) {
   // R is 10 mm from the axis, and so is the hole of each angle.
   EXPECT_THAT(ends_of("G99 G81 X5. Z-3. R0.\nA90.\nG91 A90.\nG80", a_table()),
-              ElementsAre(near(5, 0, 10), near(5, 0, 0), near(5, 0, -3), near(5, 0, 0),  //
-                          near(5, -10, -10), near(5, -7, -10), near(5, -10, -10),        //
-                          near(5, 0, -20), near(5, 0, -17), near(5, 0, -20)));
+              ElementsAre(is_near(5, 0, 10), is_near(5, 0, 0), is_near(5, 0, -3), is_near(5, 0, 0),  //
+                          is_near(5, -10, -10), is_near(5, -7, -10), is_near(5, -10, -10),           //
+                          is_near(5, 0, -20), is_near(5, 0, -17), is_near(5, 0, -20)));
   EXPECT_THAT(refusal_of(program_of("A0\nG91 G81 X5. A10. Z-3. R0. K3"), a_table()),
               HasSubstr("each hole with its angle"));
 }
@@ -153,10 +154,10 @@ TEST(FanucTurntable, StaysWhereItIsInTheMachineInAnotherWorkSystem) {
   options.offsets[0] = {0, 0, 0};
   options.offsets[1] = {7, 2, 3};
   // Of the machine 0 4 5; of G54's part 0 -15 -6, and G55's is shifted by what the frame is.
-  EXPECT_THAT(ends_of("A90.\nG55\nG0 X-7. Y2. Z2.", options).back(), near(-7, -17, -9));
-  EXPECT_THAT(ends_of("G55\nA90.\nG0 X-7. Y2. Z2.", options).back(), near(-7, -17, -9));
-  EXPECT_THAT(ends_of("A90.\nG52 Y1.\nG0 Y3. Z5.", options).back(), near(0, -15, -6));
-  EXPECT_THAT(ends_of("A90.\nG92 Y1.\nG0 Y5. Z5.", options).back(), near(0, -15, -6));
+  EXPECT_THAT(ends_of("A90.\nG55\nG0 X-7. Y2. Z2.", options).back(), is_near(-7, -17, -9));
+  EXPECT_THAT(ends_of("G55\nA90.\nG0 X-7. Y2. Z2.", options).back(), is_near(-7, -17, -9));
+  EXPECT_THAT(ends_of("A90.\nG52 Y1.\nG0 Y3. Z5.", options).back(), is_near(0, -15, -6));
+  EXPECT_THAT(ends_of("A90.\nG92 Y1.\nG0 Y5. Z5.", options).back(), is_near(0, -15, -6));
   EXPECT_THAT(refusal_of(program_of("G10 L2 P1 X0 Y5. Z0\nG0 X0 Y0 Z0\nA90."), a_table()),
               StartsWith("7:1: --rotary-centre is in the coordinates of the begin"));
 }
@@ -165,8 +166,8 @@ TEST(FanucTurntable, EndsWhereThePartIsToldOtherwise) {
   Options options = a_table();
   options.assume_g43 = true;
   EXPECT_THAT(ends_of("A90.\nG43.4\nG0 X3. Y-15. Z-6.\nG49\nG0 X3. Y4. Z9.", options),
-              ElementsAre(near(0, -20, -10), near(3, -15, -6), near(3, -19, -6)));
-  EXPECT_THAT(ends_of("A90.\nG68 X0 Y0 R90.\nG0 X4. Y-3. Z5.\nG69\nX3. Y4.", options).back(), near(3, -15, -6));
+              ElementsAre(is_near(0, -20, -10), is_near(3, -15, -6), is_near(3, -19, -6)));
+  EXPECT_THAT(ends_of("A90.\nG68 X0 Y0 R90.\nG0 X4. Y-3. Z5.\nG69\nX3. Y4.", options).back(), is_near(3, -15, -6));
 }
 
 TEST(FanucTurntable, HasAnglesOnItsArcsAndSplinesRefused) {
@@ -176,7 +177,7 @@ TEST(FanucTurntable, HasAnglesOnItsArcsAndSplinesRefused) {
 }
 
 TEST(FanucTurntable, TurnsBesideG80ByWhatWasInForceBeforeTheCycle) {
-  EXPECT_THAT(ends_of("G99 G81 X5. Z-3. R0.\nG80 A90.", a_table()).back(), near(5, -10, -10)) << "by G0";
+  EXPECT_THAT(ends_of("G99 G81 X5. Z-3. R0.\nG80 A90.", a_table()).back(), is_near(5, -10, -10)) << "by G0";
   const auto fed = imported(program_of("G1 X1. F360.\nG80 A90."), a_table()).requests.back();
   EXPECT_EQ(fed["params"]["EndPoint"]["p"], json({1, -20, -10})) << "by G1";
 }
@@ -198,11 +199,11 @@ TEST(FanucTurntable, OfTwoAxesTurnsBothAboutTheirCentres) {
   Options options;
   options.rotary = {{'C', 1, {{10, 0, 0}}}, {'A', 1, {{0, 0, -10}}}};
   // A: 12 5 -> 12 -15 -5; C a quarter about 10 0.
-  EXPECT_THAT(ends_of("G0 A90. C90.\nX12. Y5. Z5.", options).back(), near(25, 2, -5));
+  EXPECT_THAT(ends_of("G0 A90. C90.\nX12. Y5. Z5.", options).back(), is_near(25, 2, -5));
   EXPECT_EQ(params_of("G1 Z5. A90. C90.", "MoveAlongNurbsND", options).size(), 1U);
   EXPECT_THAT(refusal_of(program_of("G1 X10. Z-10.\nA30. C0\nC90."), options), StartsWith("7:1: the tip stands on"));
   options.rotary[1].centre_mm.reset();
-  EXPECT_THAT(ends_of("G0 C90. A0\nX12. Y5. Z5.", options).back(), near(5, 2, 5));
+  EXPECT_THAT(ends_of("G0 C90. A0\nX12. Y5. Z5.", options).back(), is_near(5, 2, 5));
   EXPECT_THAT(refusal_of(program_of("G0 C90. A9.\nX12. Y5. Z5."), options), HasSubstr("give --rotary-centre"));
 }
 

@@ -72,7 +72,21 @@ TEST(Rs274Motion, TakesTheEndOfACycleBesideAMove) {
 TEST(Rs274Motion, NeedsAModeAndAFeed) {
   EXPECT_THAT(refusal_of("G21 G0 X0 Y0 Z0\nG80\nX1\nM2\n"), StartsWith("3:1: no G0, G1 or other motion"));
   EXPECT_THAT(refusal_of("G21 G0 X0 Y0 Z0\nG1 X1\nM2\n"), StartsWith("2:1: no feed"));
-  EXPECT_THAT(refusal_of(program_of("G20 F10")), HasSubstr("would count in the unit before it"));
+}
+
+// Held against rs274, which sets the feed before the unit.
+TEST(Rs274Motion, CountsAFeedInTheUnitBeforeThatOfItsBlock) {
+  const auto feeds_of = [](const std::string& program) {
+    std::vector<double> feeds;
+    for (const auto& request : imported(program).requests) {
+      if (request["method"] == "RMAC_CAM.SetFeedrate") feeds.push_back(request["params"]["Feedrate"]);
+    }
+    return feeds;
+  };
+  EXPECT_THAT(feeds_of(program_of("G20 F10 G1 X1\nG1 X2 F10")), ElementsAre(10, 254));
+  EXPECT_THAT(feeds_of(program_of("G20\nF10 G1 X1\nG21 F20 X1\nX2 F20")), ElementsAre(254, 508, 20));
+  EXPECT_THAT(feeds_of("G20 F10\nG0 X0 Y0 Z1\nG1 X1\nG21 X2 F10\nM2\n"), ElementsAre(254))
+      << "in the first block there is none before it, and 10 inches are 254 mm";
 }
 
 TEST(Rs274Arc, StaysAnArcInEachPlane) {

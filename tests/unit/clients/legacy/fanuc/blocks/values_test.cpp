@@ -102,6 +102,7 @@ TEST(FanucVariable, OfTheSystemSaysWhatIsInForce) {
   EXPECT_THAT(ends_of("#1=#4003\n#2=#4001\nG91 G1 X1.\nG#1 G#2 X5."),
               ElementsAre(ElementsAre(1, 0, 10), ElementsAre(5, 0, 10)));
   EXPECT_THAT(ends_of("G0 X3. Y4.\nG0 X[#5001+#5042]").back(), ElementsAre(7, 4, 10));
+  EXPECT_THAT(refusal_of(program_of("G68 X0 Y0 R90.\n#1=#5041")), HasSubstr("6:4: #5041 is where the tool is, and in"));
   EXPECT_EQ(value_of("#4109"), 600);
   EXPECT_EQ(value_of("#4006"), 21);
   EXPECT_EQ(value_of("#4115"), 1);
@@ -112,7 +113,7 @@ TEST(FanucVariable, OfTheSystemIsRefusedByWhatItIs) {
   EXPECT_THAT(refusal_of(program_of("#5221=1.")), HasSubstr("set them by G10 L2"));
   EXPECT_THAT(refusal_of(program_of("#3004=7")), HasSubstr("overrides"));
   EXPECT_THAT(refusal_of(program_of("#1=#3011")), HasSubstr("clocks"));
-  EXPECT_THAT(refusal_of(program_of("#1=#5021")), HasSubstr("places of the tool"));
+  EXPECT_THAT(refusal_of(program_of("#1=#5024")), HasSubstr("places of the tool"));
   EXPECT_THAT(refusal_of(program_of("#1=#50000")), HasSubstr("variable of the system"));
 }
 
@@ -135,6 +136,19 @@ TEST(FanucValue, IsWholeForFixAndFupWhereItIsSoForEq) {
   EXPECT_EQ(statement("FUP[0.3/0.1]"), 3);
   EXPECT_EQ(statement("FUP[[0.1+0.2]*10]"), 3);
   EXPECT_EQ(statement("FIX[5.999]"), 5);
+}
+
+TEST(FanucVariable, TellsWhereTheToolIsInTheMachine) {
+  Options options;
+  options.offsets[0] = {-100, -50, -20};
+  options.offsets[1] = {-200, -60, -20};
+  EXPECT_THAT(ends_of("G0 X3. Y4.\n#1=#5021\nG0 X#1 Y#5022", options).back(), ElementsAre(-97, -46, 10));
+  EXPECT_THAT(ends_of("G0 X3. Y4.\nG55\nG0 X#5021 Y0", options).back(), ElementsAre(-97, 0, 10)) << "it did not move";
+  EXPECT_THAT(ends_of("G0 X3.\nG20\nG0 X#5021 F1.", options).back(), ElementsAre(DoubleNear(-97, 2e-3), 0, 10));
+  EXPECT_THAT(refusal_of(program_of("#1=#5021")), HasSubstr("give --offset G54=X,Y,Z"));
+  EXPECT_THAT(refusal_of(program_of("#1=#5023"), options), HasSubstr("the spindle is without its tool"));
+  options.tool_diameters_mm = {{1, 4}};
+  EXPECT_THAT(refusal_of(program_of("G1 G41 D1 X10.\n#1=#5021\nY20.\nG40 X0"), options), HasSubstr("write G40"));
 }
 
 }  // namespace
