@@ -178,9 +178,9 @@ def figures(first, measured, after, again):
     return [
         ("datum faces off, as the part was taken to lie", worst_feature(measured, "before"), None),
         ("groove off in the part, not corrected", worst_of(first, first.a), None),
-        ("corners of the part off in the frame that was found", frame_error(measured), 5),
-        ("datum faces off after the correction: the residual", worst_feature(again, "before"), 5),
-        ("groove off in the part, corrected: setpoints", worst_of(after, after.q), 5),
+        ("corners of the part off in the frame that was found", frame_error(measured), 2),
+        ("datum faces off after the correction: the residual", worst_feature(again, "before"), 2),
+        ("groove off in the part, corrected: setpoints", worst_of(after, after.q), 2),
         ("groove off in the part, corrected: measured positions", worst_of(after, after.a), 30),
     ]
 
