@@ -111,6 +111,12 @@ TEST_F(HonestAxis, TellsTheTruthOfTheLoadWhateverItsEncoderSays) {
   EXPECT_NEAR(feedback_.load_counts, before, 1);
 }
 
+TEST_F(HonestAxis, SaysThatItTellsWhereItsLoadIs) {
+  const SimulatedInterface bus({honest(), SpindlePlantParameters{}}, 0.001);
+  EXPECT_TRUE(bus.tells_load(0));
+  EXPECT_FALSE(bus.tells_load(1)) << "a spindle's drive tells no position";
+}
+
 TEST_F(HonestAxisSeenAtTheLoad, TellsTheLoadsPlace) {
   enable();
   bus_.push(0, -0.2);
