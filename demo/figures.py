@@ -66,6 +66,7 @@ def judge(out, device_tree, session, records=None):
         "cycle_time_s": round(sum(c["cycle_time_s"] for c in checks), 3),
         "path_deviation_um": float(f"{max(c['path']['deviation_um'] for c in checks):.3g}"),
         "following_error_um": round(max(c["following"]["largest_um"] for c in checks), 3),
+        "following_error_truth_um": round(max(c["following_truth"]["largest_um"] for c in checks), 3),
         "part_deviation_um": round(deviation["part_deviation_um"], 3),
         "limit_violations": sum(c["limits"]["violations"] + c["feed"]["violations"] for c in checks),
         "plan_to_motion_ms": round(session.plan_to_motion_ms, 1),
@@ -78,14 +79,14 @@ def judge(out, device_tree, session, records=None):
 
 
 def machined(plan, records, programs):
-    """The height map that the measured positions of both runs leave."""
+    """The height map that the tool leaves where it truly was in both runs."""
     height_map = parts.blank(nurbs.Surface.read(HERE / "headlight.json"), plan)
     sweep, rim = records.values()
-    tips = verify.tips_of(sweep.a[:, : sweep.joints], programs[0])
+    tips = verify.tips_of(sweep.truth[:, : sweep.joints], programs[0])
     parts.cut(height_map, tips, plan["ball_radius_mm"], ball=True)
-    tips = verify.tips_of(rim.a[:, : rim.joints], programs[1])
-    # the mill's third axis is held: its measured position, seen from the part frame of the first run
-    tips[:, 2] = rim.a[:, rim.joints] - plan["part_origin_mm"][2]
+    tips = verify.tips_of(rim.truth[:, : rim.joints], programs[1])
+    # the mill's third axis is held: where it stands, seen from the part frame of the first run
+    tips[:, 2] = rim.truth[:, rim.joints] - plan["part_origin_mm"][2]
     parts.cut(height_map, tips, plan["flat_radius_mm"], ball=False)
     return height_map
 
@@ -112,9 +113,11 @@ def table(checks, deviation, plan, bounds, session):
     row("Reported tool tip off the joints', largest", max(c["pose_disagrees_um"] for c in checks), "µm",
         bounds["pose_disagrees_um"], ".1e")  # fmt: skip
     for check in checks:
-        row(f"Following error, {check['mechanism']}, largest of any joint", check["following"]["largest_um"], "µm",
+        row(f"Following error, {check['mechanism']}, largest of any joint, by the motors", check["following"]["largest_um"], "µm",
             bounds["following_error_um"])  # fmt: skip
-    row("Measured positions off the exact path, largest", max(c["contour_um"] for c in checks), "µm")
+        row("  the truth, at the loads", check["following_truth"]["largest_um"], "µm", bounds["following_error_um"])
+    row("Tool off the exact path, largest, by the motors", max(c["contour_um"] for c in checks), "µm")
+    row("  the truth, by the loads", max(c["contour_truth_um"] for c in checks), "µm")
     row("Limit violations (travel, feed, speed, acceleration, jerk, lost cycles)", violations, bound=0)
     for check in checks:
         peak = max(j["peak_jerk"] / j["limit_jerk"] for j in check["limits"]["joints"])

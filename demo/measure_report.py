@@ -37,7 +37,7 @@ def draw_plan(axis, first, before, after):
     axis.add_patch(plt.Rectangle((-20, -15), 40, 30, facecolor="#eeeeea", edgecolor="#666666"))
     axis.add_patch(plt.Circle((0, 0), 8, facecolor="white", edgecolor="#666666"))
     rows = before.move >= groove.PASSES["rough"][0]
-    rough = groove.in_part(before.a[rows])
+    rough = groove.in_part(before.truth[rows])
     axis.plot(rough[:, 0], rough[:, 1], color=ROUGH, linewidth=1, label="roughed before the pause")
     axis.plot(*rough[-1, :2], "o", color="black", markersize=4, label="paused here")
     for name in WALLS:
@@ -47,7 +47,7 @@ def draw_plan(axis, first, before, after):
         axis.plot(*nominal(offset + edge).T, "--", color="black", linewidth=0.7, zorder=3,
                   label="walls as designed" if label else None)
         for record, colour, text in ((first, WRONG, "not corrected"), (after, RIGHT, "corrected")):
-            *_, points = groove.off_pass(record, name, record.a)
+            *_, points = groove.off_pass(record, name, record.truth)
             wall = exaggerated(points, offset)
             normal = wall - points[:, :2]
             away = np.where(np.abs(groove.off_loop(points, offset))[:, None] > 1e-9, normal, 0)
@@ -69,7 +69,7 @@ def shifted_out(points, offset, by):
 
 def draw_deviation(axis, record, colour, title):
     for name, style in zip(WALLS, ("-", ":")):
-        turn, wall, floor, _ = groove.off_pass(record, name, record.a)
+        turn, wall, floor, _ = groove.off_pass(record, name, record.truth)
         order = np.argsort(turn)
         axis.plot(turn[order], 1000 * wall[order], style, color=colour, linewidth=1, label=name)
         if name == WALLS[0]:
@@ -83,7 +83,7 @@ def draw(first, before, after, file):
     figure = plt.figure(figsize=(12, 5.6))
     grid = figure.add_gridspec(2, 2, width_ratios=[1.25, 1])
     draw_plan(figure.add_subplot(grid[:, 0]), first, before, after)
-    draw_deviation(figure.add_subplot(grid[0, 1]), first, WRONG, "Not corrected: measured positions off in the part")
+    draw_deviation(figure.add_subplot(grid[0, 1]), first, WRONG, "Not corrected: the tool off in the part")
     last = figure.add_subplot(grid[1, 1])
     draw_deviation(last, after, RIGHT, "Measured and corrected (another scale)")
     last.set_xlabel("place on the groove, degrees about its middle")

@@ -1,4 +1,4 @@
-"""What the measured positions cut: a height map of the blank, and its deviation from the ideal part.
+"""What a tool cut that truly was at these places: a height map of the blank, and its deviation from the ideal part.
 
 Each cell holds the lowest height that any tool position left at the cell's centre, computed from the exact shape of the
 tool, so cells do not round heights: only what lies between centres is unseen. Part frame, mm.

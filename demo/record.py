@@ -1,7 +1,8 @@
 """The setpoint record: one row a cycle, as CSV. Lengths mm, time s, feed mm/s.
 
-Columns: t_s, move_id, s_mm, feed_mm_s, x..k (tool tip and axis, part frame), q, qd, qdd (setpoints of the joints) and a
-(measured; the axes that a mechanism holds still follow its joints).
+Columns: t_s, move_id, s_mm, feed_mm_s, x..k (tool tip and axis, part frame), q, qd, qdd (setpoints of the joints), a (as
+the drives' encoders measured them) and truth (where the loads were, which simulated axes alone tell); the axes that a
+mechanism holds still follow its joints in the latter two.
 """
 
 import dataclasses
@@ -20,6 +21,7 @@ class Record:
     qd: np.ndarray
     qdd: np.ndarray
     a: np.ndarray  # (rows, joints + held axes)
+    truth: np.ndarray  # as a
 
     @property
     def joints(self):
@@ -27,16 +29,19 @@ class Record:
 
     @classmethod
     def from_table(cls, table, joints):
-        parts = np.split(table, np.cumsum([1, 1, 1, 1, 6, joints, joints, joints]), axis=1)
+        setpoints = 10 + 3 * joints
+        measured = (table.shape[1] - setpoints) // 2
+        parts = np.split(table, np.cumsum([1, 1, 1, 1, 6, joints, joints, joints, measured]), axis=1)
         t, move, s, feed = (p[:, 0] for p in parts[:4])
         return cls(t, move.astype(np.int64), s, feed, *parts[4:])
 
     def table(self):
-        return np.column_stack([self.t, self.move, self.s, self.feed, self.pose, self.q, self.qd, self.qdd, self.a])
+        return np.column_stack([self.t, self.move, self.s, self.feed, self.pose, self.q, self.qd, self.qdd, self.a, self.truth])
 
     def header(self):
         names = ["t_s", "move_id", "s_mm", "feed_mm_s", "x", "y", "z", "i", "j", "k"]
-        for prefix, count in (("q", self.joints), ("qd", self.joints), ("qdd", self.joints), ("a", self.a.shape[1])):
+        measured = self.a.shape[1]
+        for prefix, count in (("q", self.joints), ("qd", self.joints), ("qdd", self.joints), ("a", measured), ("truth", measured)):
             names += [f"{prefix}{n + 1}" for n in range(count)]
         return names
 

@@ -28,6 +28,7 @@ class Recorder:
         self._ended = None
         self.rows = array.array("d")
         self.width = self.joints = 0
+        self.told = False  # where the loads truly are
         self.cycles = self.lost = 0
         self.last_cycle = None
         self.first_motion = None  # wall clock
@@ -65,10 +66,11 @@ class Recorder:
 
     def add(self, sample):
         q, measured = sample["q"], sample["a"] + sample.get("held", [])
+        truth = sample.get("truth", []) + sample.get("held_truth", [])
         row = [sample["t_s"], sample["move_id"], sample["s_mm"], sample["feed_mm_s"]]
-        row += sample["pose"] + q + sample["qd"] + sample["qdd"] + measured
+        row += sample["pose"] + q + sample["qd"] + sample["qdd"] + measured + truth
         if not self.width:
-            self.width, self.joints = len(row), len(q)
+            self.width, self.joints, self.told = len(row), len(q), bool(truth)
         if self.last_cycle is not None and sample["cycle"] != self.last_cycle + 1:
             self.lost += 1
         self.last_cycle = sample["cycle"]
@@ -91,4 +93,6 @@ class Recorder:
     def record(self):
         if not self.rows:
             raise RuntimeError("nothing moved while the record was taken")
+        if not self.told:
+            raise RuntimeError("the machine does not tell where its loads truly are, which the demo's part is cut from: run it on simulated drives")
         return Record.from_table(np.frombuffer(self.rows).reshape(-1, self.width).copy(), self.joints)

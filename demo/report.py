@@ -59,9 +59,9 @@ def time_figure(runs):
         t = record.t - record.t[0]
         fill(axes[0, column], t, record.feed * 60, "#2a6f97")
         axes[0, column].set(title=check["mechanism"], ylabel="feed of the setpoint, mm/min")
-        following = np.abs(record.q - record.a[:, : record.joints]).max(axis=1) * 1e3
+        following = np.abs(record.q - record.truth[:, : record.joints]).max(axis=1) * 1e3
         fill(axes[1, column], t, following, "#b5542d")
-        axes[1, column].set(xlabel="machine time, s", ylabel="following error, µm")
+        axes[1, column].set(xlabel="machine time, s", ylabel="loads off their setpoints, µm")
     return figure
 
 
@@ -77,9 +77,9 @@ def detail_figure(record, seconds=4.5):
     axes[0].set(xlabel="s", title="feed of the setpoint, mm/min")
     for joint in range(record.joints):
         axes[1].plot(t[1:-2], np.diff(q[:, joint], 3) / 1e-9, linewidth=0.8, label=f"q{joint + 1}")
-        axes[2].plot(t, (q - record.a[rows][:, : record.joints])[:, joint] * 1e3, linewidth=0.8, label=f"q{joint + 1}")
+        axes[2].plot(t, (q - record.truth[rows][:, : record.joints])[:, joint] * 1e3, linewidth=0.8, label=f"q{joint + 1}")
     axes[1].set(xlabel="s", title="jerk (third difference), mm/s³")
-    axes[2].set(xlabel="s", title="following error, µm")
+    axes[2].set(xlabel="s", title="loads off their setpoints, µm")
     axes[2].legend(frameon=False, loc="upper left")
     return figure
 
@@ -134,8 +134,8 @@ def write(out, rows, height_map, runs, bounds, plan, ok):
         show(picture_of_part(height_map), "The machined part", "part.png"),
         f"<table><tr><th>figure</th><th>value</th><th>bound</th></tr>{cells}</table>",
         "<h2>The part against the surface</h2><p>A ball end of radius "
-        f"{plan['ball_radius_mm']:g} mm, then a flat end of radius {plan['flat_radius_mm']:g} mm, swept along the measured "
-        f"positions. The ridges between sweeps were planned {plan['scallop_planned_um']:.1f} µm high.</p>",
+        f"{plan['ball_radius_mm']:g} mm, then a flat end of radius {plan['flat_radius_mm']:g} mm, swept where its loads "
+        f"truly were. The ridges between sweeps were planned {plan['scallop_planned_um']:.1f} µm high.</p>",
         show(deviation_figure(height_map, bounds["part_deviation_um"]), "Deviation map", "deviation.png"),
         "<h2>Feed and following error</h2>",
         show(time_figure(runs), "Feed and following error over time", "time.png"),

@@ -112,24 +112,24 @@ def check_path(record, program, tips, max_reach_mm=0.1):
     }
 
 
-def check_following(record):
-    """Largest difference of setpoint and measured position, of any joint in any cycle."""
-    error = np.abs(record.q - record.a[:, : record.joints]) * 1e3
+def check_following(record, positions):
+    """Largest difference of setpoint and position, of any joint in any cycle."""
+    error = np.abs(record.q - positions[:, : record.joints]) * 1e3
     return {"per_joint_um": error.max(axis=0).tolist(), "largest_um": float(error.max())}
 
 
 def check_held(record):
-    """Where the axes that the mechanism holds stood, and how far they strayed from their mean."""
-    held = record.a[:, record.joints :]
+    """Where the axes that the mechanism holds stood, and how far they strayed from their mean: their loads."""
+    held = record.truth[:, record.joints :]
     return [{"position_mm": float(h.mean()), "strayed_um": float(np.abs(h - h.mean()).max() * 1e3)} for h in held.T]
 
 
 def check_run(record, program, device, period_s=0.001):
     """Everything about one program's run."""
-    measured = tips_of(record.a[:, : record.joints], program)
     tips = setpoint_tips(record, program)
     path = check_path(record, program, tips)
-    contour = check_path(record, program, measured)
+    off_path = {name: check_path(record, program, tips_of(positions[:, : record.joints], program))["deviation_um"]
+                for name, positions in (("measured", record.a), ("truth", record.truth))}  # fmt: skip
     pose_gap = np.abs(record.pose[:, : record.joints] - tips[:, : record.joints]).max()
     return {
         "mechanism": program.mechanism,
@@ -138,8 +138,10 @@ def check_run(record, program, device, period_s=0.001):
         "limits": check_limits(record, device["Joints"], period_s),
         "feed": check_feed(record, program, period_s),
         "path": path,
-        "contour_um": contour["deviation_um"],
-        "following": check_following(record),
+        "contour_um": off_path["measured"],
+        "contour_truth_um": off_path["truth"],
+        "following": check_following(record, record.a),
+        "following_truth": check_following(record, record.truth),
         "held": check_held(record),
         "pose_disagrees_um": float(pose_gap * 1e3),
     }

@@ -61,7 +61,7 @@ def paths_figure(user):
     grid = figure.add_gridspec(len(user.records), 2, width_ratios=[1.2, 1])
     plan = figure.add_subplot(grid[:, 0])
     for number, ((name, record), colour) in enumerate(zip(user.records.items(), COLOURS)):
-        tips = record.a[:, :3] - verdict.frame_and_length()
+        tips = record.truth[:, :3] - verdict.frame_and_length()
         plan.plot(*np.where((tips[:, 2] < 0.5)[:, None], tips, np.nan)[::5, :2].T, color=colour, linewidth=0.8, label=name)
         if name == "holes":
             down = tips[tips[:, 2] < 0, :2]
@@ -71,7 +71,7 @@ def paths_figure(user):
         axis.set(ylabel=f"{name}\nmm/min")
         if not number:
             axis.set_title("Feed of the setpoint over the machine time of each program, s", fontsize=9)
-    plan.set(aspect="equal", xlabel="x in the part, mm", ylabel="y in the part, mm", title="Tips below Z 0.5, as measured by the drives")
+    plan.set(aspect="equal", xlabel="x in the part, mm", ylabel="y in the part, mm", title="Tips below Z 0.5, where they truly were")
     plan.legend(frameon=False, ncols=4, loc="upper center", bbox_to_anchor=(0.5, -0.14))
     return figure
 

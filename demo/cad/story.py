@@ -64,7 +64,7 @@ def tell(address, rmac_program, tree, out, scallop_mm, say):
 
 
 def cuts_of(user, column):
-    """Of the machine that was taken, three slides: where each cutter was, as it really is. `column`: `a` measured, `q` setpoints."""
+    """Of the machine that was taken, three slides: where each cutter was, as it really is. `column`: `truth`, `a` by the motors, `q` setpoints."""
     drill = user.found.holes[0].diameter_mm / 2 + DRILL_WIDER_MM / 2
     kinds = {"sweep": (sessions.BALL_RADIUS, True, 0.0), "pocket": (sessions.FLAT_RADIUS, False, END_MILL_LONGER_MM), "holes": (drill, False, 0.0),
              "profile": (sessions.FLAT_RADIUS, False, END_MILL_LONGER_MM)}  # fmt: skip
@@ -73,7 +73,7 @@ def cuts_of(user, column):
 
 
 def carry(user, tree, places):
-    cuts = cuts_of(user, "a")
+    cuts = cuts_of(user, "truth")
     points, normals = (np.array([getattr(place, key) for place in places]) for key in ("point", "normal"))
     holes = {name for hole in user.found.holes for name in hole.faces}
     others = np.array([place.face not in holes for place in places])

@@ -1,4 +1,4 @@
-"""The part as it was really cut, from the positions that the machine measured, and as it lies on the measuring machine.
+"""The part as it was really cut, from where its loads truly were, and as it lies on the measuring machine.
 
 Nothing here knows FreeCAD, the planner or the fits. The simulated probe touches blocks, bores and balls, so the part
 is made of them: blocks whose sides are where the cutter left them, bores where the drill was, and beneath each place of a bent face that
@@ -28,9 +28,9 @@ class Cut:
     ball: bool  # else flat
 
 
-def tips_of(measured, frame, length_mm):
+def tips_of(joints, frame, length_mm):
     """From the joints of a machine of three slides."""
-    return measured[:, :3] - np.asarray(frame) - [0, 0, length_mm]
+    return joints[:, :3] - np.asarray(frame) - [0, 0, length_mm]
 
 
 def as_cut(points, normals, cuts):

@@ -31,7 +31,7 @@ def sampled(move, speed_mm_s):
 
 
 def run(program, noise_um=3.0, seed=1, speed_mm_s=24.0, loop_speed_mm_s=4.0, held=()):
-    """Record of a program run by an ideal planner and servo loops with a few micrometres of error."""
+    """Record of a program run by an ideal planner and servo loops with a few micrometres of error, on rigid axes."""
     joints = 2 if program.mechanism == "DMACXY" else 3
     s, tips, ids = [], [], []
     for move in program.moves:
@@ -49,5 +49,5 @@ def run(program, noise_um=3.0, seed=1, speed_mm_s=24.0, loop_speed_mm_s=4.0, hel
     pose = np.column_stack([tips, np.tile([0.0, 0.0, 1.0], (rows, 1))])
     feed = np.linalg.norm(np.gradient(tips, PERIOD_S, axis=0), axis=1)
     return Record(
-        np.arange(rows) * PERIOD_S, ids, s, feed, pose, q, qd, np.gradient(qd, PERIOD_S, axis=0), measured
+        np.arange(rows) * PERIOD_S, ids, s, feed, pose, q, qd, np.gradient(qd, PERIOD_S, axis=0), measured, measured.copy()
     )  # fmt: skip

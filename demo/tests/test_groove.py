@@ -37,7 +37,7 @@ def record_of(tips_in_part):
     rotation = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
     joints = points @ rotation.T + groove.PLACE_MM + [0, 0, groove.CUTTER_LENGTH]
     n = len(moves)
-    return Record(np.arange(n), moves, np.zeros(n), np.zeros(n), np.zeros((n, 6)), joints, joints, joints, joints)
+    return Record(np.arange(n), moves, np.zeros(n), np.zeros(n), np.zeros((n, 6)), *[joints] * 5)
 
 
 class Groove(unittest.TestCase):

@@ -12,6 +12,7 @@ sys.path[:0] = [str(HERE.parent), str(HERE)]
 import numpy as np  # noqa: E402
 
 import entities  # noqa: E402
+import figures  # noqa: E402
 import nurbs  # noqa: E402
 import part  # noqa: E402
 import synthesis  # noqa: E402
@@ -109,7 +110,27 @@ class Path(unittest.TestCase):
     def test_a_following_error_is_found(self):
         bad = copy(good)
         bad.a[777, 2] += 0.040
-        self.assertGreater(verify.check_following(bad)["largest_um"], 35)
+        run = verify.check_run(bad, sweep, device)
+        self.assertGreater(run["following"]["largest_um"], 35)
+        self.assertLess(run["following_truth"]["largest_um"], 5)
+
+    def test_a_load_that_hangs_behind_its_motor_is_found_in_the_truth_alone(self):
+        bad = copy(good)
+        bad.truth[:, 2] -= 0.040
+        run = verify.check_run(bad, sweep, device)
+        self.assertGreater(run["following_truth"]["largest_um"], 35)
+        self.assertLess(run["following"]["largest_um"], 5)
+        self.assertGreater(run["contour_truth_um"], run["contour_um"] + 20)
+
+    def test_the_part_is_cut_where_the_tool_truly_was(self):
+        deep, shown = copy(good), copy(good)
+        deep.truth[:, 2] -= 0.050
+        shown.a[:, 2] -= 0.050
+        held = synthesis.run(rim, held=[plan["part_origin_mm"][2]])
+        cut = [figures.machined(plan, {"sweep": record, "rim": held}, [sweep, rim]) for record in (good, deep, shown)]
+        lowered = [float(np.nanmean((piece.z - cut[0].z)[cut[0].inside])) for piece in cut]
+        self.assertLess(lowered[1], -0.001)
+        self.assertEqual(lowered[2], 0.0)
 
 
 class Part(unittest.TestCase):

@@ -1,4 +1,4 @@
-"""The motion that was measured, as a program: NURBS through the places where the tool was, so that `rmac simulate` cuts what the machine cut."""
+"""The true motion of the axes, as a program: NURBS through the places where the tool was, so that `rmac simulate` cuts what the machine cut."""
 
 import chain
 import numpy as np

@@ -1,7 +1,7 @@
 """A five-axis part on SuginoXYZAC, first rehearsed and then machined by the simulated appliance.
 
 The first program brings the holder to a clamp: the simulation finds it, and the appliance holds before it. The second leans the
-tool the other way; what it is predicted to leave is compared with what the measured axes then cut. The last line is the figures
+tool the other way; what it is predicted to leave is compared with what the axes then cut. The last line is the figures
 as JSON; the exit code is 0 only if every figure is within bounds.json.
 """
 
@@ -67,9 +67,9 @@ def run(arguments):
         say(f"  held: {held.message}")
         say("On the appliance: the second program, to its end")
         record = machine.run(programs["second"])
-        record.write(out / "measured.csv")
-    say("Simulated: what the axes did, as they were measured")
-    replayed = simulate("machined", replay.program(record.move, record.a))
+        record.write(out / "record.csv")
+    say("Simulated: what the axes did, where they truly were")
+    replayed = simulate("machined", replay.program(record.move, record.truth))
     say(f"  {replayed.stock} is the machined part")
     return judge(arguments, first, held, second, record, replayed)
 

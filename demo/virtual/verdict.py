@@ -97,7 +97,7 @@ def of_first(first, held):
 
 
 def of_second(second, record):
-    """The prediction, and the part that the measured axes cut."""
+    """The prediction, and the part that the axes cut where they truly were."""
     told = second.told
     planned = of_program(second.moves, second.joints)
     motion = swept.moving(swept.motion(planned))
@@ -105,10 +105,10 @@ def of_second(second, record):
     deviation, forces = told["material"]["deviation"], told["forces"]
     place = np.array(deviation["rest_place_mm"])
     rest_there = above_design(place[:1], place[1:2], motion)[1][0]
-    measured, setpoints = (of_program(record.move, joints) for joints in (record.a, record.q))
+    truth, setpoints = (of_program(record.move, joints) for joints in (record.truth, record.q))
     cut, faces = places_of(stl.corners(second.stock))
     predicted, predicted_faces = off_um(cut, faces, planned)
-    machined, machined_faces = off_um(cut, faces, measured)
+    machined, machined_faces = off_um(cut, faces, truth)
     figures = [
         Figure("second program: collisions", len(told["collisions"]), "", most=0, key="collisions"),
         Figure("  not checked, or not told", len(told["collisions_not_checked"]) + len(forces["not_told"]), "", most=0),
@@ -132,9 +132,9 @@ def of_second(second, record):
 
 
 def of_replay(replayed, second, record, resolution):
-    """The part that `rmac simulate` cuts from the measured motion: held to the formula, to the design, and ray by ray to the predicted one."""
+    """The part that `rmac simulate` cuts from the true motion: held to the formula, to the design, and ray by ray to the predicted one."""
     corners, deviation = stl.corners(replayed.stock), replayed.told["material"]["deviation"]
-    by_formula = off_um(*places_of(corners), of_program(record.move, record.a))
+    by_formula = off_um(*places_of(corners), of_program(record.move, record.truth))
     rays = between_rays_um(stl.corners(second.stock), corners, resolution)
     return [
         Figure("machined part by rmac simulate: left above the design", 1000 * deviation["rest_mm"], "um"),

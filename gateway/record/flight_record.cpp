@@ -25,8 +25,8 @@ void append_header(const CycleSample& sample, std::string& out) {
   const std::size_t drives = sample.actuator_count;
   append_setpoint_header(joints, true, out);
   for (const char* quantity : {"ad", "effort", "force"}) append_columns(quantity, joints, out);
-  for (const char* word : {"torque_permille", "counts", "load_counts", "statusword", "error_code"})
-    append_columns(word, drives, out);
+  if (sample.truth) append_columns("truth", joints, out);
+  for (const char* word : {"torque_permille", "counts", "statusword", "error_code"}) append_columns(word, drives, out);
   append_columns("rpm", sample.spindle_rpm.size(), out);
   out +=
       ",feed_actual_mm_s,cycle,state,servo_state,fault,fault_value,fault_bound,inputs,outputs,deadline_misses,"
@@ -48,9 +48,9 @@ void append_row(const CycleSample& sample, std::string& out) {
   append_numbers(of_joints(sample.velocity), out);
   append_numbers(of_joints(sample.effort), out);
   append_numbers(of_joints(sample.force), out);
+  if (sample.truth) append_numbers(of_joints(*sample.truth), out);
   append_words(sample.torque_permille, drives, out);
   append_words(sample.counts, drives, out);
-  append_words(sample.load_counts, drives, out);
   append_words(sample.statusword, drives, out);
   append_words(sample.error_code, drives, out);
   append_numbers(sample.spindle_rpm, out);

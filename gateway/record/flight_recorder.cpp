@@ -138,7 +138,8 @@ std::vector<CycleSample> FlightRecorder::samples_of(const Request& request) cons
   const auto add = [&](std::int64_t cycle) {
     const bool fits = history_.read(cycle, sample) && sample.joint_count_with_held > 0 &&
                       (samples.empty() || (sample.joint_count_with_held == samples.front().joint_count_with_held &&
-                                           sample.actuator_count == samples.front().actuator_count));
+                                           sample.actuator_count == samples.front().actuator_count &&
+                                           sample.truth.has_value() == samples.front().truth.has_value()));
     if (fits) samples.push_back(sample);
     return fits;
   };

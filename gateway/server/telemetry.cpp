@@ -59,6 +59,7 @@ void append_joints(const CycleSample& sample, std::string& out) {
   append_list("qdd", sample.acceleration_set, 0, joints, out);
   append_list("a", sample.position, 0, joints, out);
   append_list("ad", sample.velocity, 0, joints, out);
+  if (sample.truth) append_list("truth", *sample.truth, 0, joints, out);
   append_list("effort", sample.effort, 0, joints, out);
   append_list("force", sample.force, 0, joints, out);
   std::array<double, kMaxJoints> error{};
@@ -68,6 +69,7 @@ void append_joints(const CycleSample& sample, std::string& out) {
     append_list("held", sample.position, joints, with_held, out);
     append_list("held_set", sample.position_set, joints, with_held, out);
     append_list("held_effort", sample.effort, joints, with_held, out);
+    if (sample.truth) append_list("held_truth", *sample.truth, joints, with_held, out);
   }
   out += '}';
 }

@@ -167,6 +167,7 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
     sample_.velocity_set = report_.velocity_set;
     sample_.acceleration_set = report_.acceleration_set;
     sample_.position = report_.position;
+    sample_.truth = report_.truth;
     sample_.velocity = report_.velocity;
     sample_.effort = report_.effort;
     sample_.force = report_.force;
@@ -175,7 +176,6 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
     sample_.error_code = report_.error_code;
     sample_.torque_permille = report_.torque_permille;
     sample_.counts = report_.counts;
-    sample_.load_counts = report_.load_counts;
     std::copy(report_.spindle_rpm.begin(), report_.spindle_rpm.end(), sample_.spindle_rpm.begin());
     std::copy(report_.spindle_torque_nm.begin(), report_.spindle_torque_nm.end(), sample_.spindle_torque_nm.begin());
     sample_.inputs = report_.inputs;

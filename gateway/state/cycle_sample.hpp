@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "gateway/state/cycle_state.hpp"
 #include "rmac/motion/follower/horizon.hpp"
@@ -35,13 +36,13 @@ struct CycleSample {
   ToolPose pose_actual;         ///< part frame
   std::array<double, kMaxJoints> position_set{}, velocity_set{}, acceleration_set{};
   std::array<double, kMaxJoints> position{}, velocity{}, effort{};
+  std::optional<std::array<double, kMaxJoints>> truth;       ///< where joints really are; simulated axes alone tell it
   std::array<double, kMaxJoints> force{};                    ///< as force sensors measure it; 0 where there is none
   std::array<ContactState, kMaxJoints> contact{};            ///< what joints under force control touch
   std::array<std::uint16_t, kMaxJoints> statusword{};        ///< one an actuator, as all that drives tell
   std::array<std::uint16_t, kMaxJoints> error_code{};        ///< CiA 402's 603Fh
   std::array<std::int16_t, kMaxJoints> torque_permille{};    ///< measured, of the rated torque
   std::array<std::int32_t, kMaxJoints> counts{};             ///< 6064h: where the motor is
-  std::array<std::int32_t, kMaxJoints> load_counts{};        ///< 60E4h: where the load is, for who looks back
   std::array<double, 4> spindle_rpm{}, spindle_torque_nm{};  ///< measured
   std::uint64_t inputs = 0, outputs = 0;
   ProbeReport probe;

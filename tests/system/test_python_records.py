@@ -30,6 +30,10 @@ class PythonRecordsTest(unittest.TestCase):
         self.assertEqual(record.q.shape, (len(record), 3))
         numpy.testing.assert_allclose(record.q[-1], (10, 0, 0), atol=1e-9)
         numpy.testing.assert_allclose(record.error, record.q - record.a, atol=1e-12)
+        # Loads of simulated axes: near the motors, and not where these are.
+        self.assertEqual(record.truth.shape, record.a.shape)
+        numpy.testing.assert_allclose(record.truth, record.a, atol=0.02)
+        self.assertGreater(abs(record.truth - record.a).max(), 1e-4)
         # Positions are what velocities add up to, to the second order in a cycle of 1 ms.
         moved = record.qd[:-1] * 0.5e-3 + record.qd[1:] * 0.5e-3
         numpy.testing.assert_allclose(numpy.diff(record.q, axis=0), moved, atol=1e-5)

@@ -40,7 +40,7 @@ class Whole(unittest.TestCase):
         self.assertGreater(line["collision_mm"], 5, "the stud is 13 mm higher than the holder's lower end where it is nearest")
         self.assertAlmostEqual(line["machined_off_by_rays_rms_um"] / line["machined_off_rms_um"], 1, delta=0.3, msg="two ways to know the same")
         self.assertGreater(line["machined_off_um"], 1, "the simulated axes have following errors, and the machined part none of them")
-        for name in ("first.html", "second.html", "second.stl", "machined.stl", "virtual.png", "measured.csv"):
+        for name in ("first.html", "second.html", "second.stl", "machined.stl", "virtual.png", "record.csv"):
             self.assertGreater((self.out / name).stat().st_size, 1000, name)
 
     def test_without_an_appliance_it_says_so_and_ends_with_1(self):

@@ -54,6 +54,7 @@ TwoMassParameters AxisPlantParameters::two_masses() const noexcept {
           .stiffness_nm_rad = stiffness_nm_rad,
           .damping_nm_s_rad = 2 * damping_ratio * std::sqrt(stiffness_nm_rad * together),
           .play_rad = play_rad,
+          .weight_nm = gravity_nm,
           .motor_friction = share(1 - friction_at_load, motor),
           .load_friction = share(friction_at_load, load_inertia_kg_m2),
           .brake = friction(brake_nm, brake_nm, kBrakeRad, 0, motor, kBrakeDamping, kBrakeElastic)};

@@ -44,11 +44,17 @@ double TwoMassParameters::resonance_rad_s() const noexcept {
   return std::sqrt(stiffness_nm_rad * (1 / motor_inertia_kg_m2 + 1 / load_inertia_kg_m2));
 }
 
+double TwoMassParameters::hanging_rad() const noexcept {
+  return weight_nm == 0 ? 0 : std::copysign(play_rad / 2, weight_nm) + weight_nm / stiffness_nm_rad;
+}
+
 TwoMasses::TwoMasses(const TwoMassParameters& parameters) noexcept
     : parameters_(parameters),
       motor_friction_(parameters.motor_friction),
       load_friction_(parameters.load_friction),
-      brake_(parameters.brake) {}
+      brake_(parameters.brake),
+      hanging_rad_(parameters.hanging_rad()),
+      twist_rad_(hanging_rad_) {}
 
 double TwoMasses::largest_step_s() const noexcept {
   return 0.1 / parameters_.resonance_rad_s();  // (ωh)²/12 is a thousandth
@@ -107,7 +113,8 @@ void TwoMasses::step(const TwoMassTorques& torques, double dt) noexcept {
 
 void TwoMasses::put_at(double angle_rad) noexcept {
   motor_rad_ = angle_rad;
-  twist_rad_ = motor_rad_s_ = load_rad_s_ = 0;
+  twist_rad_ = hanging_rad_;
+  motor_rad_s_ = load_rad_s_ = 0;
   motor_friction_.relax();
   load_friction_.relax();
   brake_.relax();

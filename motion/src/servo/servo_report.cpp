@@ -56,7 +56,10 @@ void ServoLoop::Impl::fill(const ServoCommand& command, ServoReport& report) con
       report.error_code[i] = words.error_code;
       report.torque_permille[i] = words.torque_permille;
       report.counts[i] = words.position_counts;
-      report.load_counts[i] = words.load_counts;
+    }
+    report.truth.reset();
+    if (const auto loads = shafts.loads_rad()) {
+      report.truth = joints.at_loads({loads->data(), wiring.actuators()});
     }
     spindles.fill(report);
   }

@@ -50,12 +50,8 @@ def circle(appliance, client, feed):
     columns = record(appliance, begin)
     angle = np.unwrap(np.arctan2(columns["q2"], columns["q1"]))
     turn = angle - angle[0] > (0.01 if slow else 1.75 * math.pi)
-    loads = []
-    for joint in ("1", "2"):
-        scale = np.polyfit(columns["counts" + joint], columns["a" + joint], 1)
-        loads.append(np.polyval(scale, columns["load_counts" + joint]))
     motors = np.hypot(columns["a1"], columns["a2"]) - RADIUS
-    return angle[turn], motors[turn], (np.hypot(*loads) - RADIUS)[turn]
+    return angle[turn], motors[turn], (np.hypot(columns["truth1"], columns["truth2"]) - RADIUS)[turn]
 
 
 def rows(figures, name, words, targets):

@@ -15,6 +15,7 @@ from rmac.machines import Steps
 
 _SCALARS = ("t_s", "cycle", "move_id", "moving", "s_mm", "feed_mm_s", "feed_actual_mm_s")
 _VECTORS = ("pose", "q", "qd", "qdd", "a", "ad", "effort", "error")
+_OF_SOME = ("truth",)  # which only simulated axes tell
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,7 @@ class Record:
     ad: Any
     effort: Any
     error: Any
+    truth: Any  # positions at the loads, whatever encoders measured: of simulated axes; None where nobody knows them
     lost: int
 
     def __len__(self) -> int:
@@ -56,9 +58,10 @@ class Samples:
     def take(self, samples: Sequence[Mapping[str, Any]]) -> None:
         for sample in samples:
             row: list[float] = [sample[name] for name in _SCALARS]
-            widths = [len(sample[name]) for name in _VECTORS]
-            for name in _VECTORS:
-                row += sample[name]
+            vectors = [sample[name] for name in _VECTORS] + [sample.get(name, []) for name in _OF_SOME]
+            widths = [len(vector) for vector in vectors]
+            for vector in vectors:
+                row += vector
             self._mixed |= bool(self._widths) and widths != self._widths
             self._widths = widths
             self._rows.extend(row)
@@ -81,8 +84,8 @@ class Samples:
             columns[name] = columns[name].astype(numpy.int64)
         columns["moving"] = columns["moving"].astype(bool)
         place = len(_SCALARS)
-        for name, width in zip(_VECTORS, self._widths):
-            columns[name] = table[:, place : place + width]
+        for name, width in zip(_VECTORS + _OF_SOME, self._widths):
+            columns[name] = table[:, place : place + width] if width else None
             place += width
         return Record(**columns, lost=self._lost)
 

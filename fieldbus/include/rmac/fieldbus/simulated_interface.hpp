@@ -47,6 +47,7 @@ class SimulatedInterface : public DigitalControlInterface {
   }
   [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override { return modes_[axis]; }
   [[nodiscard]] bool tells_torque(std::size_t /*axis*/) const noexcept override { return true; }
+  [[nodiscard]] bool tells_load(std::size_t axis) const noexcept override { return !is_spindle(axis); }
   [[nodiscard]] bool takes_torque_offset(std::size_t axis) const noexcept override { return !is_spindle(axis); }
   [[nodiscard]] int answer_delay(std::size_t /*axis*/) const noexcept override {
     return static_cast<int>(before_.size());

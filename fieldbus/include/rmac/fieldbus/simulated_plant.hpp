@@ -27,7 +27,8 @@ struct AxisPlantParameters {
   double viscous_nm_s = 1.0e-4;  ///< assumed: 0.03 N·m of grease and seals at 3000 rpm
   double coulomb_nm = 0.015;     ///< assumed: preloaded nut and wipers, 19 N at the table
   double static_nm = 0.018;      ///< assumed: 1.2 times the sliding friction, before it breaks away
-  double gravity_nm = 0;         ///< load that pulls towards negative angles; 0 for a horizontal axis
+  double gravity_nm = 0;         ///< load that pulls towards negative angles; 0 for a horizontal axis. Where it hangs
+                                 ///< by that is where it stands: the zero was set so
   double brake_nm = 0.318;       ///< assumed: a holding brake holds the rated torque
   // Where the limit switches close, which the drive tells as bits 0 and 1 of its inputs: there are none by default.
   double negative_switch_rad = -std::numeric_limits<double>::infinity();

@@ -21,12 +21,17 @@ struct TwoMassParameters {
   double stiffness_nm_rad = 0;  ///< of the spring between the two
   double damping_nm_s_rad = 0;  ///< beside it
   double play_rad = 0;          ///< in which the spring does nothing
+  /// What pulls the load towards smaller angles as the zero of its angle is set: it is where the load hangs while the
+  /// motor stands at its own.
+  double weight_nm = 0;
   FrictionParameters motor_friction{};
   FrictionParameters load_friction{};
   FrictionParameters brake{};  ///< at the motor, while it is closed
 
   /// Of the free oscillation, motor against load, without damping and play.
   [[nodiscard]] double resonance_rad_s() const noexcept;
+  /// By which the motor is ahead of a load that hangs on it by its weight: through the play, and what the spring gives.
+  [[nodiscard]] double hanging_rad() const noexcept;
 };
 
 /// What acts from outside in one step.
@@ -50,10 +55,10 @@ class TwoMasses {
   [[nodiscard]] double largest_step_s() const noexcept;
 
   [[nodiscard]] double motor_rad() const noexcept { return motor_rad_; }
-  [[nodiscard]] double load_rad() const noexcept { return motor_rad_ - twist_rad_; }
+  [[nodiscard]] double load_rad() const noexcept { return motor_rad_ - (twist_rad_ - hanging_rad_); }
   [[nodiscard]] double motor_rad_s() const noexcept { return motor_rad_s_; }
   [[nodiscard]] double load_rad_s() const noexcept { return load_rad_s_; }
-  /// At rest, with nothing bent and in the middle of the play.
+  /// At rest: the load hangs by its weight, or is in the middle of the play, and no friction is bent.
   void put_at(double angle_rad) noexcept;
   /// Of motion, spring and bristles.
   [[nodiscard]] double energy_j() const noexcept;
@@ -66,7 +71,8 @@ class TwoMasses {
   BristleFriction load_friction_;
   BristleFriction brake_;
   double motor_rad_ = 0;
-  double twist_rad_ = 0;  ///< by which the motor is ahead of the load; kept apart, for it is small
+  double hanging_rad_;
+  double twist_rad_;  ///< by which the spring and its play are turned; kept apart, for it is small
   double motor_rad_s_ = 0;
   double load_rad_s_ = 0;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,8 @@ class Shafts {
   /// As the last `read` found them, but for what was refused or put elsewhere since.
   [[nodiscard]] std::span<const double> rad() const noexcept { return {rad_.data(), readers_.size()}; }
   [[nodiscard]] std::span<const double> rad_s() const noexcept { return {rad_s_.data(), readers_.size()}; }
+  /// Where the loads are, as angles of the shafts; none where a drive does not tell (`tells_load`).
+  [[nodiscard]] std::optional<std::array<double, kMaxJoints>> loads_rad() const noexcept;
 
  private:
   void show(std::size_t actuator) noexcept {
@@ -41,6 +44,7 @@ class Shafts {
   std::span<const ServoActuator> actuators_;
   std::vector<ShaftReader> readers_;
   std::array<double, kMaxJoints> rad_{}, rad_s_{};
+  bool loads_told_ = true;
 };
 
 }  // namespace rmac

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "rmac/motion/servo/pitch_error.hpp"
+
 namespace rmac {
 
 JointReader::JointReader(const ServoLoopParts& parts, const Wiring& wiring, Transmission& transmission)
@@ -39,6 +41,13 @@ void JointReader::read_jump(std::size_t joint, double shown, bool steady) noexce
 void JointReader::reflect(std::span<const double> position_set, std::span<const double> velocity_set) noexcept {
   std::copy(position_set.begin(), position_set.end(), position_.begin());
   std::copy(velocity_set.begin(), velocity_set.end(), velocity_.begin());
+}
+
+std::array<double, kMaxJoints> JointReader::at_loads(std::span<const double> loads_rad) const noexcept {
+  std::array<double, kMaxJoints> joints{};
+  transmission_.map().joint_positions(loads_rad, {joints.data(), joints_.size()});
+  for (std::size_t j = 0; j < joints_.size(); ++j) joints[j] += pitch_error(joints_[j].mechanics.pitch, joints[j]);
+  return joints;
 }
 
 }  // namespace rmac

@@ -27,6 +27,10 @@ class JointReader {
   /// Where there are no drives: the joints are where they are wanted.
   void reflect(std::span<const double> position_set, std::span<const double> velocity_set) noexcept;
 
+  /// Where joints are whose loads stand at these angles of the shafts. A load is behind the play, so that no backlash
+  /// is in it; what a screw's pitch does wrong is between load and joint.
+  [[nodiscard]] std::array<double, kMaxJoints> at_loads(std::span<const double> loads_rad) const noexcept;
+
   [[nodiscard]] std::span<const double> positions() const noexcept { return {position_.data(), joints_.size()}; }
   [[nodiscard]] const std::array<double, kMaxJoints>& position() const noexcept { return position_; }
   [[nodiscard]] const std::array<double, kMaxJoints>& velocity() const noexcept { return velocity_; }

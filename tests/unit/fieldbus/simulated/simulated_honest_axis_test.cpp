@@ -42,6 +42,29 @@ class HonestAxis : public testing::Test {
   DriveFeedback feedback_;
 };
 
+/// A head that hangs on its motor, as DMACXYZ's.
+class HonestAxisThatHangs : public HonestAxis {
+ protected:
+  static AxisPlantParameters hanging(double play_rad = 0) {
+    AxisPlantParameters axis = honest();
+    axis.gravity_nm = 0.0937;
+    axis.play_rad = play_rad;
+    return axis;
+  }
+  explicit HonestAxisThatHangs(const AxisPlantParameters& axis = hanging()) : HonestAxis(axis) {}
+  /// Where the load is beside the motor, once it stands.
+  [[nodiscard]] double load_beside_motor_rad() {
+    for (int i = 0; i < 1000; ++i) cycle(DriveWish::Off);
+    return bus_.plant(0).load_rad() - bus_.plant(0).angle_rad();
+  }
+};
+
+class HonestAxisThatHangsWithPlay : public HonestAxisThatHangs {
+ protected:
+  HonestAxisThatHangsWithPlay() : HonestAxisThatHangs(hanging(kPlay)) {}
+  static constexpr double kPlay = 0.02;
+};
+
 class HonestAxisSeenAtTheLoad : public HonestAxis {
  protected:
   static AxisPlantParameters at_load() {
@@ -88,12 +111,48 @@ TEST_F(HonestAxis, TellsTheTruthOfTheLoadWhateverItsEncoderSays) {
   EXPECT_NEAR(feedback_.load_counts, before, 1);
 }
 
+TEST_F(HonestAxis, SaysThatItTellsWhereItsLoadIs) {
+  const SimulatedInterface bus({honest(), SpindlePlantParameters{}}, 0.001);
+  EXPECT_TRUE(bus.tells_load(0));
+  EXPECT_FALSE(bus.tells_load(1)) << "a spindle's drive tells no position";
+}
+
 TEST_F(HonestAxisSeenAtTheLoad, TellsTheLoadsPlace) {
   enable();
   bus_.push(0, -0.2);
   for (int i = 0; i < 30; ++i) cycle(DriveWish::Operational, 600);
   cycle(DriveWish::Operational, 600);
   EXPECT_EQ(feedback_.position_counts, feedback_.load_counts);
+}
+
+// Red where the zero of a load is that of a machine without weight: it would hang 123 counts below.
+TEST_F(HonestAxisThatHangs, HasItsZeroWhereTheLoadStandsWithItsWeightOnIt) {
+  EXPECT_EQ(bus_.plant(0).load_rad(), 0);
+  EXPECT_NEAR(load_beside_motor_rad(), 0, 2e-5);
+  EXPECT_NEAR(feedback_.load_counts, feedback_.position_counts, 2);
+  for (const double angle : {-7.0, 40.0}) {
+    bus_.plant(0).put_at(angle);
+    EXPECT_NEAR(bus_.plant(0).load_rad(), angle, 1e-12);
+    EXPECT_NEAR(load_beside_motor_rad(), 0, 2e-5);
+  }
+}
+
+// A spring with friction of the guides beside it, which gives way too: both hold what is pushed with.
+TEST_F(HonestAxisThatHangs, ShowsWhatIsHungOnItBesideItsOwnWeight) {
+  for (const double more_nm : {-0.005, 0.004}) {
+    bus_.push(0, 0);
+    bus_.plant(0).put_at(0);
+    bus_.push(0, more_nm);
+    EXPECT_NEAR(load_beside_motor_rad(), more_nm / 15.83, 0.1 * std::abs(more_nm) / 15.83) << more_nm;
+  }
+}
+
+TEST_F(HonestAxisThatHangsWithPlay, HangsOnTheFlankThatItsZeroWasSetOn) {
+  EXPECT_NEAR(load_beside_motor_rad(), 0, 2e-5);
+  bus_.push(0, 0.0937 - 0.03);  // less weight, and on the same flank
+  EXPECT_NEAR(load_beside_motor_rad(), (0.0937 - 0.03) / 15.83, 7e-4);
+  bus_.push(0, 2 * 0.0937);  // as heavy upwards
+  EXPECT_NEAR(load_beside_motor_rad(), kPlay + 2 * 0.0937 / 15.83, 7e-4);
 }
 
 TEST_F(HonestAxis, ComesToRestByItsDriveAloneAndIsHeldByTheBrake) {

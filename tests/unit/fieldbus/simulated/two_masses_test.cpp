@@ -283,6 +283,32 @@ TEST(TwoMasses, HoldTheMotorWhileTheBrakeIsClosed) {
   EXPECT_LT(plant.load_rad(), -100) << "and no longer";
 }
 
+// Whatever pulls, and through whatever play: what hangs at its zero stays there, and nothing swings.
+TEST(TwoMasses, StandAtTheirZeroUnderTheWeightItWasSetWith) {
+  std::mt19937 random(41);
+  std::uniform_real_distribution<double> share(-1, 1);
+  for (int k = 0; k < 50; ++k) {
+    TwoMassParameters p = frictionless();
+    p.play_rad = k % 2 == 0 ? 0 : 0.01 * (1 + share(random));
+    p.weight_nm = 0.1 * share(random);
+    TwoMasses plant(p);
+    const auto hold = [&] {
+      for (int i = 0; i < 4000; ++i) plant.step({.motor_nm = p.weight_nm, .load_nm = -p.weight_nm}, kStep);
+    };
+    hold();
+    ASSERT_NEAR(plant.motor_rad(), 0, 1e-9) << "case " << k << ", weight " << p.weight_nm << ", play " << p.play_rad;
+    ASSERT_NEAR(plant.load_rad(), 0, 1e-9);
+    const double angle = 100 * share(random);
+    plant.put_at(angle);
+    hold();
+    ASSERT_NEAR(plant.motor_rad(), angle, 1e-9);
+    ASSERT_NEAR(plant.load_rad(), angle, 1e-9);
+    // The springs' energy is that of the weight, and nothing moves.
+    const double wound = p.weight_nm * p.weight_nm / p.stiffness_nm_rad / 2;
+    ASSERT_NEAR(plant.energy_j(), wound, 1e-9 * wound);
+  }
+}
+
 TEST(TwoMasses, RestOnAPartThatPushesBackAndNeverPulls) {
   TwoMassParameters p = frictionless();
   p.damping_nm_s_rad = 4e-4;

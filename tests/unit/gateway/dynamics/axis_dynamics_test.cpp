@@ -223,8 +223,8 @@ TEST(AxisDynamics, BringsJointsToWhereTheMotionBegins) {
   Motion motion(*axes, {40, -30, 20});
   motion.rest(0.001);
   ASSERT_FALSE(axes->stopped()) << axes->stopped()->why;
-  constexpr double kSag = 117.7 / 25000;  // mm, of Z by its weight, on what is between its motor and it
-  EXPECT_THAT(axes->joints(), testing::Pointwise(testing::DoubleNear(0.002), std::vector<double>{40, -30, 20 - kSag}));
+  // Z's weight, which gives 4.7 µm, is in its zero.
+  EXPECT_THAT(axes->joints(), testing::Pointwise(testing::DoubleNear(0.002), std::vector<double>{40, -30, 20}));
   EXPECT_LT(axes->joint_deviations()[0].peak, 0.002) << "the way there does not count";
 }
 

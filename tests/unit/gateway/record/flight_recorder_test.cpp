@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -191,16 +192,15 @@ CycleSample with_drives(std::int64_t cycle, std::uint32_t drives) {
     sample.error_code[i] = static_cast<std::uint16_t>(200 + i);
     sample.torque_permille[i] = static_cast<std::int16_t>(300 + i);
     sample.counts[i] = -60000 - static_cast<std::int32_t>(i);
-    sample.load_counts[i] = -70000 - static_cast<std::int32_t>(i);
   }
   return sample;
 }
 
-/// The record up to cycle 20 of a machine that has `now` drives, and had `before` until cycle 10.
-ReadRecord record_of_drives(const FlightFolder& folder, const std::filesystem::path& path, std::uint32_t before,
-                            std::uint32_t now) {
+/// The record up to cycle 20 of a machine that makes these samples.
+ReadRecord record_of(const FlightFolder& folder, const std::filesystem::path& path,
+                     const std::function<CycleSample(std::int64_t)>& sample_at) {
   CycleHistory history(100);
-  for (std::int64_t cycle = 1; cycle <= 20; ++cycle) history.add(with_drives(cycle, cycle <= 10 ? before : now));
+  for (std::int64_t cycle = 1; cycle <= 20; ++cycle) history.add(sample_at(cycle));
   std::string name;
   {
     FlightRecorder recorder({path, 0.015, 20}, 0.001, history);
@@ -209,6 +209,12 @@ ReadRecord record_of_drives(const FlightFolder& folder, const std::filesystem::p
     name = recorder.request(std::move(head)).value_or("");
   }
   return read_record(folder, name);
+}
+
+/// The same of a machine that has `now` drives, and had `before` until cycle 10.
+ReadRecord record_of_drives(const FlightFolder& folder, const std::filesystem::path& path, std::uint32_t before,
+                            std::uint32_t now) {
+  return record_of(folder, path, [&](std::int64_t cycle) { return with_drives(cycle, cycle <= 10 ? before : now); });
 }
 
 // Red when the columns of drives are counted as joints.
@@ -222,7 +228,6 @@ TEST_F(FlightRecord, HasAColumnForEachDriveOfAGantry) {
   EXPECT_EQ(record.rows[0].at("error_code3"), "202");
   EXPECT_EQ(record.rows[0].at("torque_permille3"), "302");
   EXPECT_EQ(record.rows[0].at("counts2"), "-60001");
-  EXPECT_EQ(record.rows[0].at("load_counts3"), "-70002");
 }
 
 // Red when only joints tell one mechanism from another: rows with other columns would follow.
@@ -231,6 +236,32 @@ TEST_F(FlightRecord, BeginsWithTheDrivesThatItIsOf) {
   EXPECT_THAT(record.columns, Not(testing::Contains("statusword3")));
   ASSERT_EQ(record.rows.size(), 10U);
   EXPECT_EQ(record.cycle(0), 11);
+}
+
+// Red when a column of zeros stands for what a real drive does not tell, or rows of both kinds stand under one head.
+TEST_F(FlightRecord, HasTheTruthOfJointsWhereItIsToldAndNoColumnElsewhere) {
+  const FlightFolder folder(folder_.path());
+  const auto told_from = [&](std::int64_t first) {
+    return record_of(folder, folder_.path(), [first](std::int64_t cycle) {
+      CycleSample sample = with_drives(cycle, 3);
+      sample.position = {1.5, 2.5};
+      if (cycle >= first) sample.truth = {1.25, 2.75};
+      return sample;
+    });
+  };
+  const ReadRecord told = told_from(1);
+  ASSERT_EQ(told.rows.size(), 15U);
+  EXPECT_EQ(told.rows[0].at("a2"), "2.5");
+  EXPECT_EQ(told.rows[0].at("truth1"), "1.25");
+  EXPECT_EQ(told.rows[0].at("truth2"), "2.75");
+  EXPECT_EQ(told.rows[0].at("torque_permille1"), "300");
+  EXPECT_THAT(told.columns, Not(testing::Contains("truth3")));
+  const ReadRecord untold = told_from(100);
+  EXPECT_THAT(untold.columns, Not(testing::Contains("truth1")));
+  EXPECT_EQ(untold.rows.at(0).at("torque_permille1"), "300");
+  const ReadRecord half = told_from(11);
+  ASSERT_EQ(half.rows.size(), 10U);
+  EXPECT_EQ(half.rows[0].at("truth1"), "1.25");
 }
 
 TEST_F(FlightRecord, TheOldestMakeWayAndFaultsAreNotPushedOutByThoseAskedFor) {

@@ -58,6 +58,24 @@ TEST(Telemetry, JointsCarryASetpointRecordWithAllDigits) {
   EXPECT_DOUBLE_EQ(sample["error"][0], 0.1 - 0.11);
 }
 
+// Nothing stands for what no drive tells.
+TEST(Telemetry, JointsTellTheTruthApartFromWhatWasMeasuredWhereItIsKnown) {
+  CycleSample sample = sample_at(7);
+  const auto told = [&] {
+    std::string text;
+    append_joints(sample, text);
+    return json::parse(text);
+  };
+  EXPECT_FALSE(told().contains("truth"));
+  EXPECT_FALSE(told().contains("held_truth"));
+  sample.truth = {0.4, 0.5, 0.6};
+  EXPECT_EQ(told()["truth"], json::parse("[0.4,0.5]"));
+  EXPECT_EQ(told()["held_truth"], json::parse("[0.6]"));
+  EXPECT_EQ(told()["a"], json::parse("[0.11,0.22]"));
+  sample.joint_count_with_held = sample.joint_count;
+  EXPECT_FALSE(told().contains("held_truth"));
+}
+
 TEST(Telemetry, NumbersThatJsonHasNotBecomeNull) {
   CycleSample sample = sample_at(1);
   sample.position[0] = std::nan("");

@@ -157,6 +157,7 @@ class FakeBus : public DigitalControlInterface {
   }
   [[nodiscard]] int answer_delay(std::size_t axis) const noexcept override { return delays.at(axis); }
   [[nodiscard]] bool tells_torque(std::size_t axis) const noexcept override { return (torque_told >> axis & 1U) != 0; }
+  [[nodiscard]] bool tells_load(std::size_t axis) const noexcept override { return (loads_told >> axis & 1U) != 0; }
   [[nodiscard]] bool takes_torque_offset(std::size_t /*axis*/) const noexcept override { return torque_offset; }
 
   struct Drive {
@@ -169,6 +170,7 @@ class FakeBus : public DigitalControlInterface {
   bool torque_offset = false;  ///< they take one beside what they follow
   std::array<int, kMaxJoints> delays{};
   std::uint32_t torque_told = 0;  ///< bit i: the answers of axis i hold its torque
+  std::uint32_t loads_told = 0;   ///< and where its load is
   int exchanges = 0;
 
  private:

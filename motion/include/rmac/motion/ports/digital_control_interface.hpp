@@ -40,7 +40,7 @@ struct DriveFeedback {
   std::uint16_t statusword = 0;      ///< 6041h
   std::uint16_t error_code = 0;      ///< 603Fh
   std::int32_t position_counts = 0;  ///< 6064h; wraps
-  std::int32_t load_counts = 0;      ///< 60E4h, where the load is; for records, and no loop closes over it
+  std::int32_t load_counts = 0;      ///< 60E4h, where the load is, for who `tells_load`; no loop closes over it
   std::int32_t velocity_rpm = 0;     ///< 606Ch; spindles
   std::int16_t torque_permille = 0;  ///< 6077h
   DriveMode mode = DriveMode::None;  ///< 6061h; None where the interface does not tell
@@ -102,6 +102,8 @@ class DigitalControlInterface {
   [[nodiscard]] virtual double counts_per_revolution(std::size_t /*axis*/) const noexcept { return 0; }
   /// Whether the answers of this axis hold its torque (6077h).
   [[nodiscard]] virtual bool tells_torque(std::size_t /*axis*/) const noexcept { return false; }
+  /// Whether the answers of this axis hold where its load truly is, whatever its encoder says: simulated axes alone.
+  [[nodiscard]] virtual bool tells_load(std::size_t /*axis*/) const noexcept { return false; }
   /// How many cycles before an exchange this axis was where it tells in it, at most `kMostAnswerDelay`: 1 where the
   /// SYNC of an exchange has the drives measure, and the next exchange reads what they answered; more where a drive
   /// itself takes its time. Once started.

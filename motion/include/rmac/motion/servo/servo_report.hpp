@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "rmac/motion/force_control.hpp"
 #include "rmac/motion/machine_size.hpp"
@@ -18,6 +19,9 @@ struct ServoReport {
   ServoFault fault;
   std::array<double, kMaxJoints> position_set{}, velocity_set{}, acceleration_set{};
   std::array<double, kMaxJoints> position{}, velocity{};
+  /// Positions at the loads, whatever encoders say, for who judges the loop: it sees nothing of them. None where a
+  /// drive does not tell (`DigitalControlInterface::tells_load`).
+  std::optional<std::array<double, kMaxJoints>> truth;
   std::array<double, kMaxJoints> effort{};  ///< at the joint, as commanded
   std::array<double, kMaxJoints> force{};   ///< as the joint's force sensor measures it; 0 where there is none
   std::array<ContactState, kMaxJoints> contact{};
@@ -25,7 +29,6 @@ struct ServoReport {
   std::array<std::uint16_t, kMaxJoints> error_code{};
   std::array<std::int16_t, kMaxJoints> torque_permille{};  ///< measured by the drives
   std::array<std::int32_t, kMaxJoints> counts{};           ///< where the motors are, as the drives tell
-  std::array<std::int32_t, kMaxJoints> load_counts{};      ///< where the loads are, as the drives tell
   std::array<double, kMaxSpindles> spindle_rpm{};
   std::array<double, kMaxSpindles> spindle_torque_nm{};  ///< measured; 0 where the drive does not tell
   std::array<std::uint16_t, kMaxSpindles> spindle_statusword{};
