@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <limits>
+
 namespace rmac::gateway {
 namespace {
 
@@ -129,6 +132,75 @@ TEST(SimulatedBus, RefusesWhatItCannotBe) {
     const auto axes = simulated_axes(bus(numbers));
     ASSERT_FALSE(axes) << message;
     EXPECT_THAT(axes.error().message, HasSubstr(message));
+  }
+}
+
+/// What a parameter takes (docs/simulated-bus.md).
+struct Range {
+  const char* name;
+  double least, most;
+};
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+/// Takes both ends of the range, and nothing beyond them, as `accepts` tells of a value.
+template <typename Accepts>
+void expect_range(const Range& range, const Accepts& accepts) {
+  EXPECT_TRUE(accepts(range.least)) << range.name;
+  EXPECT_TRUE(accepts(range.most)) << range.name;
+  EXPECT_FALSE(accepts(std::nextafter(range.least, -kFar))) << range.name;
+  EXPECT_FALSE(accepts(std::nextafter(range.most, kFar))) << range.name;
+  EXPECT_FALSE(accepts(std::numeric_limits<double>::quiet_NaN())) << range.name;
+}
+
+TEST(SimulatedBus, TakesWhatIsSaidOfAnAxisUpToItsBounds) {
+  for (const Range& range :
+       {Range{"rated_torque_nm", 1e-3, 1e4}, Range{"inertia_kg_m2", 1e-8, 1e3}, Range{"friction_nm", 0, 1e4},
+        Range{"gravity_nm", -1e4, 1e4}, Range{"negative_switch_turns", -1e6, 1e6},
+        Range{"positive_switch_turns", -1e6, 1e6}, Range{"mode", 8, 10},
+        Range{"counts_per_revolution", 1, 4294967296.0}, Range{"damping_ratio", 0, 1}, Range{"friction_at_load", 0, 1},
+        Range{"presliding_turns", 1e-5, 1}, Range{"cogging", 0, 1}, Range{"cogging_periods", 1, 1e4},
+        Range{"torque_ripple", 0, 1}, Range{"torque_ripple_periods", 1, 1e4}, Range{"encoder_noise_counts", 0, 1e6},
+        Range{"encoder_interpolation_counts", 0, 1e6}, Range{"encoder_signal_periods", 1, 1e6}}) {
+    expect_range(range, [&](double value) {
+      return simulated_axes(bus({{"axes", {1}}, {"spindle", {-1}}, {range.name, {value}}})).has_value();
+    });
+  }
+}
+
+TEST(SimulatedBus, TakesOtherNumbersUpToTheirBounds) {
+  expect_range({"spindle_max_rpm", 1, 1e6}, [](double value) {
+    return simulated_axes(bus({{"spindle_max_rpm", {value}}})).has_value();
+  });
+  expect_range({"spindle_max_torque_nm", 1e-3, 1e5}, [](double value) {
+    return simulated_axes(bus({{"spindle_max_torque_nm", {value}}})).has_value();
+  });
+  expect_range({"seed", 0, 2147483647}, [](double value) {
+    return simulated_axes(bus({{"seed", {value}}})).has_value();
+  });
+  expect_range({"axes", 1, 64}, [](double value) {
+    return simulated_axes(bus({{"axes", {value}}, {"spindle", {-1}}})).has_value();
+  });
+  expect_range({"spindle", -1, 63}, [](double value) {
+    return simulated_axes(bus({{"axes", {64}}, {"spindle", {value}}})).has_value();
+  });
+}
+
+TEST(SimulatedBus, TakesWhatIsSaidOfAPartUpToItsBounds) {
+  for (const Range& range :
+       {Range{"contact_surface_mm", -1e6, 1e6}, Range{"contact_stiffness_n_mm", 1e-3, 1e6},
+        Range{"contact_damping_n_s_mm", 0, 1e4}, Range{"contact_slope", -1, 1}, Range{"contact_wave_mm", 0, 100},
+        Range{"contact_wave_length_mm", 0.1, 1e5}, Range{"contact_pitch_mm", 0.1, 1000}}) {
+    expect_range(range, [&](double value) { return simulated_contact(bus({{range.name, {value}}})).has_value(); });
+  }
+}
+
+TEST(SimulatedBus, CanHaveItsSpindleAtAnyPlace) {
+  for (const std::size_t place : {0U, 3U, 7U}) {
+    const auto axes = simulated_axes(bus({{"spindle", {static_cast<double>(place)}}}));
+    ASSERT_TRUE(axes) << axes.error().message;
+    for (std::size_t i = 0; i < axes->size(); ++i) {
+      EXPECT_EQ(std::holds_alternative<SpindlePlantParameters>((*axes)[i]), i == place) << i;
+    }
   }
 }
 
