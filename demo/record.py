@@ -30,7 +30,9 @@ class Record:
     @classmethod
     def from_table(cls, table, joints):
         setpoints = 10 + 3 * joints
-        measured = (table.shape[1] - setpoints) // 2
+        measured, odd = divmod(table.shape[1] - setpoints, 2)
+        if odd or measured < joints:
+            raise ValueError(f"a record of {joints} joints with {table.shape[1]} columns: there is no truth in it for each place that was measured; record it anew")
         parts = np.split(table, np.cumsum([1, 1, 1, 1, 6, joints, joints, joints, measured]), axis=1)
         t, move, s, feed = (p[:, 0] for p in parts[:4])
         return cls(t, move.astype(np.int64), s, feed, *parts[4:])

@@ -201,9 +201,9 @@ def run(program, host, port, out):
     say(f"\n{'figure':56}{'um':>10}{'bound':>8}")
     lines = []
     for name, value_mm, bound_um in table:
-        um = 1000 * value_mm
-        lines.append({"figure": name, "um": round(um, 4), "bound_um": bound_um, "ok": bound_um is None or um <= bound_um})
-        say(f"{name:56}{um:10.3f}{'-' if bound_um is None else bound_um:>8}")
+        off_um = 1000 * value_mm
+        lines.append({"figure": name, "um": round(off_um, 4), "bound_um": bound_um, "ok": bound_um is None or off_um <= bound_um})
+        say(f"{name:56}{off_um:10.3f}{'-' if bound_um is None else bound_um:>8}")
     held = groove.PASSES["rough"][0] <= rough < groove.PASSES["rough"][0] + 9
     if not held:
         say(f"the cut was held in move {rough}, which is not in the roughing")
@@ -211,8 +211,10 @@ def run(program, host, port, out):
     for line in lines:
         say(json.dumps(line))
     ok = held and all(line["ok"] for line in lines)
+    um = {line["figure"]: line["um"] for line in lines}
     say(json.dumps({"ok": ok, "clamped_off_mm": float(np.linalg.norm(groove.PLACE_MM)), "turned_deg": groove.TURN_DEG,
-                    "before_um": lines[1]["um"], "after_um": lines[6]["um"], "residual_um": lines[3]["um"]}))
+                    "before_um": um["groove off in the part, not corrected"], "after_um": um["groove off in the part, corrected: the truth"],
+                    "residual_um": um["datum faces off after the correction: the residual"]}))
     return 0 if ok else 1
 
 

@@ -64,7 +64,7 @@ def tell(address, rmac_program, tree, out, scallop_mm, say):
 
 
 def cuts_of(user, column):
-    """Of the machine that was taken, three slides: where each cutter was, as it really is. `column`: `truth`, `a` by the motors, `q` setpoints."""
+    """Of the machine that was taken, three slides: where each cutter was, as it really is. `column`: `truth`, or `q` as it was to be."""
     drill = user.found.holes[0].diameter_mm / 2 + DRILL_WIDER_MM / 2
     kinds = {"sweep": (sessions.BALL_RADIUS, True, 0.0), "pocket": (sessions.FLAT_RADIUS, False, END_MILL_LONGER_MM), "holes": (drill, False, 0.0),
              "profile": (sessions.FLAT_RADIUS, False, END_MILL_LONGER_MM)}  # fmt: skip

@@ -1,4 +1,4 @@
-"""A motion that was measured becomes a program that goes through it."""
+"""A motion that was recorded becomes a program that goes through it."""
 
 import pathlib
 import sys
@@ -32,7 +32,7 @@ class Replay(unittest.TestCase):
         self.requests = replay.program(self.moves, self.joints)
         self.curves = [r["params"]["NurbsND"] for r in self.requests if r["method"].endswith("NurbsND")]
 
-    def test_its_curves_go_through_all_that_was_measured_between_down_and_up(self):
+    def test_its_curves_go_through_all_that_was_recorded_between_down_and_up(self):
         way = np.concatenate([BSpline(np.array(c["knots"]), np.array(c["points"]), c["degree"])(np.linspace(0, c["knots"][-1], 40000)) for c in self.curves])
         cut = (self.moves >= sweeps.DOWN) & (self.moves < self.moves.max())
         tips = chain.places(self.joints[cut], 0)

@@ -84,6 +84,14 @@ void SimulatedInterface::read_sensor(std::size_t axis, DriveFeedback& words) noe
   words.sensor_counts = static_cast<std::int32_t>(std::lround(-force_n * contact_->counts_per_newton));
 }
 
+void SimulatedInterface::set_answer_delay(int cycles) {
+  std::vector<DriveFeedback> silence(drives_.size());
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    silence[i].load_counts = std::visit([](const auto& drive) { return drive.feedback().load_counts; }, drives_[i]);
+  }
+  before_.assign(static_cast<std::size_t>(cycles), silence);
+}
+
 bool SimulatedInterface::exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept {
   const bool bus_failed = bus_failed_;
   move_surface();
@@ -98,6 +106,7 @@ bool SimulatedInterface::exchange(std::span<const DriveCommand> commands, std::s
             drive.advance(commands[i], period_s_);
           } else {
             feedback[i].online = false;
+            feedback[i].load_counts = drive.feedback().load_counts;  // what nobody sends goes on
             if (drive.power().operational()) drive.power().trip(kHeartbeatError);
             drive.advance(DriveCommand{}, period_s_);
           }

@@ -74,9 +74,7 @@ class SimulatedInterface : public DigitalControlInterface {
   void set_contact(const SimulatedContact& contact) noexcept { contact_ = contact; }
   /// Answers are those of so many exchanges before: one as on a bus whose drives answer a SYNC while nobody reads on,
   /// more where drives take their time. Before a servo loop is made with it.
-  void set_answer_delay(int cycles) {
-    before_.assign(static_cast<std::size_t>(cycles), std::vector<DriveFeedback>(drives_.size()));
-  }
+  void set_answer_delay(int cycles);
   /// The bus itself fails, as on bus-off; and works again.
   void set_bus_failed(bool failed) noexcept { bus_failed_ = failed; }
 

@@ -2,7 +2,8 @@
 
 namespace rmac {
 
-Shafts::Shafts(std::span<const ServoActuator> actuators, double period_s) : actuators_(actuators) {
+Shafts::Shafts(std::span<const ServoActuator> actuators, double period_s)
+    : actuators_(actuators), loads_told_(!actuators.empty()) {
   for (const ServoActuator& actuator : actuators) {
     readers_.emplace_back(actuator.scale, period_s);
     loads_told_ = loads_told_ && actuator.bus->interface->tells_load(actuator.axis);

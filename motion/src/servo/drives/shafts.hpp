@@ -44,7 +44,7 @@ class Shafts {
   std::span<const ServoActuator> actuators_;
   std::vector<ShaftReader> readers_;
   std::array<double, kMaxJoints> rad_{}, rad_s_{};
-  bool loads_told_ = true;
+  bool loads_told_;
 };
 
 }  // namespace rmac

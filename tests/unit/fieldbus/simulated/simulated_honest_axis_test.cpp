@@ -111,6 +111,30 @@ TEST_F(HonestAxis, TellsTheTruthOfTheLoadWhateverItsEncoderSays) {
   EXPECT_NEAR(feedback_.load_counts, before, 1);
 }
 
+// Red when the truth stays where it was while a drive that nobody hears comes to rest.
+TEST_F(HonestAxis, TellsTheTruthOfTheLoadWhileItsDriveIsAway) {
+  enable();
+  for (int i = 0; i < 30; ++i) cycle(DriveWish::Operational, 300);
+  bus_.set_online(0, false);
+  const double far = counts(bus_.plant(0).load_rad());
+  for (int i = 0; i < 50; ++i) {
+    const double before = counts(bus_.plant(0).load_rad());
+    cycle(DriveWish::Operational, 300);
+    EXPECT_NEAR(feedback_.load_counts, before, 1);
+  }
+  EXPECT_FALSE(feedback_.online);
+  EXPECT_GT(feedback_.load_counts, far + 100) << "it runs on a little";
+}
+
+TEST_F(HonestAxis, TellsTheTruthFromTheFirstAnswerOnHoweverLate) {
+  bus_.plant(0).put_at(30);
+  bus_.set_answer_delay(3);
+  for (int i = 0; i < 5; ++i) {
+    cycle(DriveWish::Operational, 0);
+    EXPECT_NEAR(feedback_.load_counts, counts(30), 1) << i;
+  }
+}
+
 TEST_F(HonestAxis, SaysThatItTellsWhereItsLoadIs) {
   const SimulatedInterface bus({honest(), SpindlePlantParameters{}}, 0.001);
   EXPECT_TRUE(bus.tells_load(0));
