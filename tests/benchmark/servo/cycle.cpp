@@ -73,7 +73,7 @@ class Arm final : public Kinematics {
   std::size_t joints_;
 };
 
-/// Drives that are operational at once and stand wherever they are put.
+/// Drives that are operational at once, stand wherever they are put, and tell where their loads are.
 class InstantBus final : public DigitalControlInterface {
  public:
   explicit InstantBus(std::size_t axes) : words(axes) {}
@@ -86,6 +86,7 @@ class InstantBus final : public DigitalControlInterface {
     std::copy(words.begin(), words.end(), feedback.begin());
     return true;
   }
+  [[nodiscard]] bool tells_load(std::size_t /*axis*/) const noexcept override { return true; }
   std::vector<DriveFeedback> words;
   std::int64_t torques = 0;  ///< of all commands, per mille
 };

@@ -37,8 +37,8 @@ class Record:
     ad: Any
     effort: Any
     error: Any
-    truth: Any  # positions at the loads, whatever encoders measured: of simulated axes; None where nobody knows them
     lost: int
+    truth: Any = None  # positions at the loads, whatever encoders measured: of simulated axes; None where nobody knows them
 
     def __len__(self) -> int:
         return len(self.t_s)
