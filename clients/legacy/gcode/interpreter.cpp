@@ -191,6 +191,7 @@ void Interpreter::set_plane_and_units(Block& block) {
   const bool ends_feed = rules_.unit_ends_feed && !block.has('F');
   if (ends_feed && modes_.unit_mm && *modes_.unit_mm != unit) modes_.feed_mm_min = 0;
   modes_.unit_mm = unit;
+  modes_.unit_is_said = true;
 }
 
 void Interpreter::set_length(Block& block) {
