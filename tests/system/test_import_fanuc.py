@@ -89,7 +89,7 @@ class ImportFanuc(unittest.TestCase):
         self.assertAlmostEqual(json.loads(done.stdout)["length_mm"], expected, delta=0.01)
 
     def test_an_option_that_would_do_nothing_is_refused(self):
-        self.source.write_text("%\nO1\nG21 G90\nT1 M16\nG0 X0 Y0 Z10.\nM30\n%\n")
+        self.source.write_text("%\nO1\nG21 G90\nT1 M16\nG43 H1\nG0 X0 Y0 Z10.\nM30\n%\n")
         for option, value in (("--output", "99=Air"), ("--output", "89=Coolant"), ("--pass-over", "M97"), ("--pass-over", "M16"), ("--pass-over", "M6")):
             done = self.rmac("import", self.source, "--dialect", "haas", option, value)
             self.assertEqual(done.returncode, 2, value)

@@ -156,6 +156,7 @@ void Interpreter::set_tool(Block& block) {
   if (const auto& change = block.m(MGroup::Tool)) {
     switches_.change_tool(change->place);
     coordinates_.forget_tip();
+    doubts_.settle();
     modes_.length = ToolLength::Off;
   }
   const auto& spindle = block.m(MGroup::Spindle);

@@ -19,6 +19,12 @@ void Doubts::leave_open(std::string_view why) {
   doubtful_ = {true, true, false};
 }
 
+void Doubts::settle() {
+  if (why_.empty()) return;
+  doubtful_ = {};
+  why_ = {};
+}
+
 void Doubts::require_none(std::size_t place) const {
   if (left_open(0) || left_open(1))
     refuse(place, fmt::format("{}; name X and Y, under G90, in a straight move or a hole before this", why_));

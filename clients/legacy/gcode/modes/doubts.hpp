@@ -18,8 +18,11 @@ class Doubts {
   void about(std::size_t axis) { doubtful_.at(axis) = true; }
   /// Where the tool is in X and Y, nobody knows. `why` begins the refusal, and outlives this.
   void leave_open(std::string_view why);
-  /// Whether that is so of an axis. Throws a Refusal.
+  /// The tool goes elsewhere: what leaves it open is over.
+  void settle();
+  /// Whether that is so of an axis.
   [[nodiscard]] bool left_open(std::size_t axis) const { return !why_.empty() && axis != 2 && doubtful_.at(axis); }
+  /// Throws a Refusal where it is so of one.
   void require_none(std::size_t place) const;
   /// Likewise, where a block sets what the coordinates of the tool are.
   void require_none_of(const Block& block) const;

@@ -107,6 +107,9 @@ TEST(HaasHoles, LeaveWhatComesNextToNameItsPlace) {
   Options options;
   options.reference_mm = {{0, 0, 100}};
   EXPECT_EQ(refusal(holes + "G80\nG91 G28 Z0\nG28 X0 Y0\nG90 G0 X1. Y1. Z1.", options), "taken");
+  options.approach_mm = {{0, 0, 50}};
+  EXPECT_EQ(refusal(holes + "G80\nT1 M6\nG43 H1\nG0 Z20.\nX5.", options), "taken")
+      << "a change of tool has its own place";
 }
 
 /// K is how often G73 comes up to R there, or the least peck beside I and J.
