@@ -32,7 +32,7 @@ constexpr gcode::Rules kRules{
 constexpr gcode::Rules kHaasRules = [] {
   gcode::Rules rules = kRules;
   rules.system_name = haas_system_name;
-  rules.further_in_force = std::nullopt;
+  rules.further_in_force = 0;
   rules.stops_switch_off = true;
   rules.cycles.repeats = "L";
   rules.cycles.may_peck_less = true;

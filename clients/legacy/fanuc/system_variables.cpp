@@ -69,7 +69,7 @@ gcode::Maybe SystemVariables::code_in_force(int number) const {
       constexpr std::size_t kSystems = 6, kFirst = 54;
       const std::size_t system = interpreter_.coordinates().active();
       if (system < kSystems) return static_cast<double>(kFirst + system);
-      return rules_.further_in_force;
+      return rules_.further_in_force == 0 ? std::nullopt : gcode::Maybe(rules_.further_in_force);
     }
     case 4109:
       if (modes.inverse_time || !modes.unit_mm) return std::nullopt;

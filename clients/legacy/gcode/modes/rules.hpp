@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -40,8 +39,8 @@ struct Rules {
   bool turns_as_written = false;        ///< a table goes to an angle as the numbers have it; else that is to be said
   bool degrees_are_lengths = false;     ///< F of a move that turns a table is of X, Y, Z and of its degrees together
   bool stops_switch_off = false;        ///< M0 ends spindle and coolant, and M1 coolant
-  /// What the control tells of work systems behind the first six; none: not known here.
-  std::optional<double> further_in_force = std::nullopt;
+  /// What the control tells of work systems behind the first six; 0: not known here.
+  double further_in_force = 0;
   double whole_dwell_s = 1;  ///< of a P without a decimal point
 
   struct Cycles {
